@@ -1,0 +1,52 @@
+# How every target of the project is built, in one place.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+find_program(TAKT_CCACHE ccache)
+if(TAKT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${TAKT_CCACHE}")
+endif()
+
+add_library(takt_options INTERFACE)
+# No fused multiply-add: the same bits whatever the compiler contracts. -Wrestrict: GCC 12 raises it on std::string's own code (its bug 105651).
+target_compile_options(takt_options INTERFACE -Wall -Wextra -Wconversion -Werror -Wno-restrict -ffp-contract=off)
+if(TAKT_SANITIZE STREQUAL "address")
+  target_compile_options(takt_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(takt_options INTERFACE -fsanitize=address,undefined)
+elseif(TAKT_SANITIZE STREQUAL "thread")
+  target_compile_options(takt_options INTERFACE -fsanitize=thread -fno-omit-frame-pointer)
+  target_link_options(takt_options INTERFACE -fsanitize=thread)
+endif()
+
+# takt_folder(NAME DEPENDS a b ... LINK x y ... HEADERS z ...): the folder cpp/takt/NAME becomes the library takt::NAME.
+# DEPENDS names other folders (the arrows), LINK names libraries from outside, HEADERS those of them that are headers only, of which
+# nothing remains for whoever links with us.
+function(takt_folder name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;LINK;HEADERS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/takt/${name}/*.cc")
+  if(NOT sources)
+    message(STATUS "takt::${name}: no sources yet")
+    return()
+  endif()
+  add_library(takt_${name} STATIC ${sources})
+  add_library(takt::${name} ALIAS takt_${name})
+  set_property(GLOBAL APPEND PROPERTY TAKT_FOLDERS ${name})
+  set_target_properties(takt_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(takt_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/cpp> $<INSTALL_INTERFACE:include>)
+  target_compile_features(takt_${name} PUBLIC cxx_std_20)
+  foreach(folder IN LISTS ARG_DEPENDS)
+    if(TARGET takt::${folder})
+      target_link_libraries(takt_${name} PUBLIC takt::${folder})
+    endif()
+  endforeach()
+  list(TRANSFORM ARG_HEADERS REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>")
+  target_link_libraries(takt_${name} PRIVATE $<BUILD_INTERFACE:takt_options> ${ARG_LINK} ${ARG_HEADERS})
+endfunction()

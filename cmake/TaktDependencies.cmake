@@ -1,0 +1,28 @@
+# Where the libraries from outside come from. Debian's packages, but for Ruckig, whose wheel carries headers, archive and
+# CMake package.
+
+set(FIND_LIBRARY_USE_LIB64_PATHS TRUE)
+set_property(GLOBAL PROPERTY FIND_LIBRARY_USE_LIB64_PATHS TRUE)
+
+find_package(Threads REQUIRED)
+find_package(Eigen3 CONFIG REQUIRED)
+find_package(yaml-cpp CONFIG REQUIRED)
+find_package(nlohmann_json CONFIG REQUIRED)
+find_package(CLI11 CONFIG REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(LCM REQUIRED IMPORTED_TARGET lcm)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+
+# takt::ruckig: the wheel's headers and archive, without its cloud client, which does not link with GCC 12 and is not wanted. A target of
+# our own, since an installation of ours brings the archive along under this name.
+find_package(ruckig 0.19 CONFIG REQUIRED)
+get_target_property(ruckig_archive ruckig::ruckig IMPORTED_LOCATION_RELEASE)
+get_target_property(ruckig_headers ruckig::ruckig INTERFACE_INCLUDE_DIRECTORIES)
+file(GLOB TAKT_RUCKIG_LICENSE "${ruckig_DIR}/../../../ruckig-*.dist-info/licenses/LICENSE")
+add_library(takt::ruckig STATIC IMPORTED GLOBAL)
+set_target_properties(takt::ruckig PROPERTIES
+  IMPORTED_LOCATION "${ruckig_archive}" INTERFACE_INCLUDE_DIRECTORIES "${ruckig_headers}")
+
+if(TAKT_BUILD_PYTHON)
+  find_package(Python 3.10 COMPONENTS Interpreter Development.Module REQUIRED)
+endif()

@@ -1,0 +1,28 @@
+// The numbers inside a described struct, by name, for recorders and plots.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "takt/core/describe.h"
+
+namespace takt {
+
+struct Column {
+  std::string name;  // "set.position", "voltage[2]"
+  std::string_view about;
+  Unit unit;
+  std::size_t offset = 0;      // in the object the columns were made for
+  const Type* type = nullptr;  // bool, integer, real, enum, or an optional of these
+};
+
+// One column for each number, switch and enum that lies in the struct itself, internal ones too. Strings and lists of
+// changing length have none.
+std::vector<Column> ColumnsOf(const Type& type);
+
+// In written units; enums as their number, bools as 0 and 1, an empty optional as NaN. Fit for the cycle.
+double ReadColumn(const Column& column, const void* object) noexcept;
+
+}  // namespace takt

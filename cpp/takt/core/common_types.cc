@@ -1,0 +1,72 @@
+// Descriptions of the small types of this folder that every component shares.
+#include "takt/core/describe.h"
+#include "takt/core/feedback.h"
+#include "takt/core/kinematic_state.h"
+#include "takt/core/ports.h"
+
+namespace takt {
+
+void describe(Description<KinematicState>& d) {
+  using K = KinematicState;
+  d.about("Position, velocity and acceleration at one instant.");
+  d.internal<&K::position>(unit::u, "Position.");
+  d.internal<&K::velocity>(unit::u_s, "Velocity.");
+  d.internal<&K::acceleration>(unit::u_s2, "Acceleration.");
+}
+
+void describe(Enumeration<FeedbackState>& e) {
+  e.about("What has become of a command.");
+  e.value(FeedbackState::kBusy, "busy", "Accepted, waiting for its turn.");
+  e.value(FeedbackState::kActive, "active", "In control of its component.");
+  e.value(FeedbackState::kDone, "done", "Reached what it was for.");
+  e.value(FeedbackState::kAborted, "aborted", "Another command or a fault took over.");
+  e.value(FeedbackState::kError, "error", "Refused or failed.");
+}
+
+void describe(Description<FeedbackEvent>& d) {
+  using F = FeedbackEvent;
+  d.about("One step of a command's life.");
+  d.internal<&F::ticket>("Which command.");
+  d.internal<&F::cycle>(unit::cycles, "When.");
+  d.internal<&F::state>("What became of it.");
+  d.internal<&F::reached>("A command that never ends by itself has what it was given for.");
+  d.internal<&F::error>("Why it failed.");
+}
+
+void describe(Enumeration<DriveMode>& e) {
+  e.about("What a drive is commanded by.");
+  e.value(DriveMode::kCyclicPosition, "cyclic_position",
+          "A position every cycle (csp); the drive closes the position loop.");
+  e.value(DriveMode::kCyclicVelocity, "cyclic_velocity",
+          "A velocity every cycle (csv); the position loop is closed here.");
+  e.value(DriveMode::kAnalog, "analog", "A voltage of -10 to 10 V; the position loop is closed here.");
+}
+
+void describe(Description<ServoInputs>& d) {
+  using S = ServoInputs;
+  d.about("What comes from a drive, its encoder and switches in a cycle.");
+  d.internal<&S::counts>(unit::count, "Encoder: quadrature counter or SSI word.");
+  d.internal<&S::index_counts>(unit::count, "Counter latched at the last index pulse.");
+  d.internal<&S::index_pulses>("Index pulses seen, wraps.");
+  d.internal<&S::encoder_error>("The encoder reports an error or does not answer.");
+  d.internal<&S::limit_positive>("Positive limit switch.");
+  d.internal<&S::limit_negative>("Negative limit switch.");
+  d.internal<&S::reference>("Reference switch.");
+  d.internal<&S::touch_probe>("Touch probe.");
+  d.internal<&S::drive_ready>("Power stage on and following its set point.");
+  d.internal<&S::drive_fault>("The drive reports a fault.");
+  d.internal<&S::torque_nm>(unit::nm, "Torque; the force in N on linear motors.");
+}
+
+void describe(Description<ServoOutputs>& d) {
+  using S = ServoOutputs;
+  d.about("What goes to a drive in a cycle.");
+  d.internal<&S::position_counts>(unit::count, "Position set point (csp).");
+  d.internal<&S::velocity_counts_s>(unit::count_s, "Velocity: feed-forward (csp) or set point (csv).");
+  d.internal<&S::voltage_v>(unit::volt, "Analogue set point.");
+  d.internal<&S::mode>("Which of these the drive follows.");
+  d.internal<&S::enable>("Power stage on.");
+  d.internal<&S::release_brake>("Brake relay energised.");
+}
+
+}  // namespace takt

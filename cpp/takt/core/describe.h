@@ -1,0 +1,317 @@
+// Described once: a table for every struct that people configure, command or record, filled by one function beside the
+// struct. Readers, writers, the schema, the reference pages, equality and hash are plain code that walks the table.
+//
+//   struct MoveAbsolute { double position = 0, velocity = 0; Direction direction = Direction::kCurrent; };  // header
+//   void describe(Description<MoveAbsolute>&);
+//
+//   void describe(Description<MoveAbsolute>& d) {                                                           // .cc
+//     using M = MoveAbsolute;
+//     d.about("Moves an axis to an absolute position.");
+//     d.required<&M::position>(unit::u, "Where to stop.");
+//     d.required<&M::velocity>(unit::u_s, positive, "Largest speed on the way.");
+//     d.defaulted<&M::direction>("Sense of travel.");
+//   }
+//
+// A described struct is an aggregate whose members are bool, integers, double, std::string, described enums and
+// structs, or std::array, std::vector, std::optional of these. Texts are literals: the tables keep views of them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/describe_internal.h"
+#include "takt/core/unit.h"
+
+namespace takt {
+
+struct Type;
+
+enum class Kind : std::uint8_t { kBool, kInteger, kReal, kString, kEnum, kStruct, kArray, kVector, kOptional };
+
+enum class Presence : std::uint8_t {
+  kRequired,   // must be given
+  kDefaulted,  // may be given, else as the struct's own initialiser says
+  kInternal,   // state: hashed, compared and in the reference, never read from text
+};
+
+struct Field {
+  std::string_view name;
+  std::string_view about;
+  Presence presence = Presence::kDefaulted;
+  Unit unit;    // of the number, or of the numbers inside the list or optional
+  Range range;  // likewise, in written units
+  std::size_t offset = 0;
+  const Type* type = nullptr;
+};
+
+struct Enumerator {
+  std::int64_t value = 0;
+  std::string_view name;  // as in YAML and Python
+  std::string_view about;
+};
+
+// A condition on several fields, reported at one of them.
+struct Rule {
+  std::size_t field = 0;  // index into Type::fields
+  std::string_view text;  // "must lie above lower"
+  bool (*holds)(const void* object) = nullptr;
+};
+
+// A piece of an object for the hash: bytes without padding, or (`type` set) a value whose memory lies elsewhere.
+struct HashStep {
+  std::size_t offset = 0;
+  std::size_t bytes = 0;
+  const Type* type = nullptr;
+};
+
+struct Type {
+  Kind kind = Kind::kStruct;
+  std::string_view name;   // of the struct or enum, without namespace
+  std::string_view about;  // of the struct or enum
+  std::size_t size = 0;    // bytes
+  bool is_signed = false;  // integers
+
+  // Structs.
+  std::vector<Field> fields;
+  std::vector<Rule> rules;
+  std::size_t arity = 0;           // members the struct has, described or not
+  const void* defaults = nullptr;  // an object as its initialisers make it
+
+  std::vector<Enumerator> enumerators;
+
+  // Arrays, vectors, optionals.
+  const Type* element = nullptr;
+  std::size_t count = 0;  // arrays
+  // Vectors. Elements lie one behind the other, element->size bytes apart.
+  std::size_t (*vector_size)(const void* vector) noexcept = nullptr;
+  const void* (*vector_data)(const void* vector) noexcept = nullptr;
+  void (*vector_clear)(void* vector) = nullptr;
+  void* (*vector_append)(void* vector) = nullptr;  // a default-made element, its address
+  // Optionals.
+  const void* (*optional_value)(const void* optional) noexcept = nullptr;  // null: empty
+  void (*optional_reset)(void* optional) = nullptr;
+  void* (*optional_emplace)(void* optional) = nullptr;  // a default-made value, its address
+
+  std::vector<HashStep> hash_steps;
+
+  // Null where there is none.
+  const Field* FindField(std::string_view field_name) const noexcept;
+  const Enumerator* FindEnumerator(std::string_view enumerator_name) const noexcept;
+  const Enumerator* FindEnumerator(std::int64_t value) const noexcept;
+};
+
+// The table of a type, made at first use; that use allocates. Touch every type once at start, before the first cycle.
+template <typename T>
+const Type& TypeOf();
+
+// Limits of a described struct, so that reading needs no memory of its own.
+inline constexpr std::size_t kMaxFields = 256;
+inline constexpr std::size_t kMaxRules = 16;
+
+// Element `index` of an array or vector.
+inline const void* ElementAt(const Type& type, const void* list, std::size_t index) noexcept {
+  const void* data = type.kind == Kind::kVector ? type.vector_data(list) : list;
+  return static_cast<const std::byte*>(data) + index * type.element->size;
+}
+// How many elements an array or vector has.
+inline std::size_t ElementCount(const Type& type, const void* list) noexcept {
+  return type.kind == Kind::kVector ? type.vector_size(list) : type.count;
+}
+inline const void* FieldAt(const Field& field, const void* object) noexcept {
+  return static_cast<const std::byte*>(object) + field.offset;
+}
+// Value of a bool, integer or enum. Unsigned 64-bit values come as the same bits.
+std::int64_t IntegerAt(const Type& type, const void* object) noexcept;
+
+namespace internal {
+void AddField(Type& type, const Field& field);
+void AddRule(Type& type, std::string_view field, std::string_view text, bool (*holds)(const void*));
+void MakeHashSteps(Type& type);
+}  // namespace internal
+
+// Filled by describe(Description<T>&). Fields take (unit, range, about), (unit, about), (range, about) or (about).
+template <typename T>
+class Description {
+  static_assert(std::is_aggregate_v<T>, "described structs are plain: no constructors, no private members");
+
+ public:
+  // What the struct is for: one or more sentences.
+  void about(std::string_view text) {
+    type_.about = text;
+    type_.arity = internal::Arity<T>();
+  }
+  template <auto Member, typename... Details>
+  void required(Details... details) {
+    Add<Member>(Presence::kRequired, details...);
+  }
+  template <auto Member, typename... Details>
+  void defaulted(Details... details) {
+    Add<Member>(Presence::kDefaulted, details...);
+  }
+  template <auto Member, typename... Details>
+  void internal(Details... details) {
+    Add<Member>(Presence::kInternal, details...);
+  }
+  // `holds` is a lambda without captures over const T&; called only when all fields of the struct were read well.
+  template <auto Member, typename Holds>
+  void rule(std::string_view text, Holds) {
+    internal::AddRule(type_, internal::MemberName<Member>(), text,
+                      [](const void* object) -> bool { return Holds{}(*static_cast<const T*>(object)); });
+  }
+
+ private:
+  template <typename>
+  friend struct internal::TypeMaker;
+
+  template <auto Member>
+  void Add(Presence presence, Unit unit, Range range, std::string_view about) {
+    static_assert(std::is_same_v<typename internal::MemberPointer<decltype(Member)>::Class, T>,
+                  "a member of another struct");
+    const T& defaults = Defaults();
+    const auto offset =
+        reinterpret_cast<const std::byte*>(&(defaults.*Member)) - reinterpret_cast<const std::byte*>(&defaults);
+    internal::AddField(type_,
+                       {internal::MemberName<Member>(), about, presence, unit, range, static_cast<std::size_t>(offset),
+                        &TypeOf<typename internal::MemberPointer<decltype(Member)>::Value>()});
+  }
+  template <auto Member>
+  void Add(Presence presence, Unit unit, std::string_view about) {
+    Add<Member>(presence, unit, any_value, about);
+  }
+  template <auto Member>
+  void Add(Presence presence, Range range, std::string_view about) {
+    Add<Member>(presence, unit::none, range, about);
+  }
+  template <auto Member>
+  void Add(Presence presence, std::string_view about) {
+    Add<Member>(presence, unit::none, any_value, about);
+  }
+
+  static const T& Defaults() {
+    static const T object{};
+    return object;
+  }
+
+  Type type_;
+};
+
+// Filled by describe(Enumeration<E>&).
+template <typename E>
+class Enumeration {
+ public:
+  void about(std::string_view text) { type_.about = text; }
+  // `name` is how YAML and Python write it.
+  void value(E value, std::string_view name, std::string_view about) {
+    type_.enumerators.push_back({static_cast<std::int64_t>(value), name, about});
+  }
+
+ private:
+  template <typename>
+  friend struct internal::TypeMaker;
+
+  Type type_;
+};
+
+namespace internal {
+
+template <typename T>
+struct TypeMaker {
+  static Type Make() {
+    Type type;
+    if constexpr (std::is_same_v<T, bool>) {
+      type.kind = Kind::kBool;
+    } else if constexpr (std::is_integral_v<T>) {
+      type.kind = Kind::kInteger;
+      type.is_signed = std::is_signed_v<T>;
+    } else if constexpr (std::is_same_v<T, double>) {
+      type.kind = Kind::kReal;
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      type.kind = Kind::kString;
+    } else if constexpr (std::is_enum_v<T>) {
+      Enumeration<T> enumeration;
+      describe(enumeration);
+      type = std::move(enumeration.type_);
+      type.kind = Kind::kEnum;
+      type.name = TypeName<T>();
+      type.is_signed = std::is_signed_v<std::underlying_type_t<T>>;
+    } else {
+      Description<T> description;
+      describe(description);
+      type = std::move(description.type_);
+      type.kind = Kind::kStruct;
+      type.name = TypeName<T>();
+      type.defaults = &Description<T>::Defaults();
+    }
+    return type;
+  }
+};
+
+template <typename T, std::size_t N>
+struct TypeMaker<std::array<T, N>> {
+  static Type Make() {
+    Type type;
+    type.kind = Kind::kArray;
+    type.element = &TypeOf<T>();
+    type.count = N;
+    return type;
+  }
+};
+
+template <typename T>
+struct TypeMaker<std::vector<T>> {
+  static_assert(!std::is_same_v<T, bool>, "std::vector<bool> has no elements to point at");
+  using Vector = std::vector<T>;
+  static Type Make() {
+    Type type;
+    type.kind = Kind::kVector;
+    type.element = &TypeOf<T>();
+    type.vector_size = [](const void* v) noexcept { return static_cast<const Vector*>(v)->size(); };
+    type.vector_data = [](const void* v) noexcept -> const void* { return static_cast<const Vector*>(v)->data(); };
+    type.vector_clear = [](void* v) { static_cast<Vector*>(v)->clear(); };
+    type.vector_append = [](void* v) -> void* { return &static_cast<Vector*>(v)->emplace_back(); };
+    return type;
+  }
+};
+
+template <typename T>
+struct TypeMaker<std::optional<T>> {
+  using Optional = std::optional<T>;
+  static Type Make() {
+    Type type;
+    type.kind = Kind::kOptional;
+    type.element = &TypeOf<T>();
+    type.optional_value = [](const void* o) noexcept -> const void* {
+      const auto& optional = *static_cast<const Optional*>(o);
+      return optional ? &*optional : nullptr;
+    };
+    type.optional_reset = [](void* o) { static_cast<Optional*>(o)->reset(); };
+    type.optional_emplace = [](void* o) -> void* { return &static_cast<Optional*>(o)->emplace(); };
+    return type;
+  }
+};
+
+template <typename T>
+Type MakeType() {
+  Type type = TypeMaker<T>::Make();
+  type.size = sizeof(T);
+  MakeHashSteps(type);
+  return type;
+}
+
+}  // namespace internal
+
+template <typename T>
+const Type& TypeOf() {
+  static const Type type = internal::MakeType<T>();
+  return type;
+}
+
+}  // namespace takt

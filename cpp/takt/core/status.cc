@@ -1,0 +1,98 @@
+#include "takt/core/status.h"
+
+#include <array>
+
+#include "takt/core/describe.h"
+
+namespace takt {
+
+namespace {
+
+constexpr std::array kErrors = {
+    ErrorInfo{ErrorId::kNone, "none", "no error"},
+    ErrorInfo{ErrorId::kTimeLimit, "ETime", "the time limit of the command was exceeded"},
+    ErrorInfo{ErrorId::kDistanceLimit, "EDistance", "the distance limit of the command was exceeded"},
+    ErrorInfo{ErrorId::kDeviationLimit, "EDev", "the axis did not get into its in-position window in time"},
+    ErrorInfo{ErrorId::kBlending, "EBlanding", "the move cannot be blended into the one before it"},
+    ErrorInfo{ErrorId::kParameter, "EParam", "an argument is out of range or beyond the limits of the axis"},
+    ErrorInfo{ErrorId::kAxisStopping, "EAxStop", "the axis is being stopped and takes no other motion"},
+    ErrorInfo{ErrorId::kAxisFault, "EAxis", "the fault of the axis is still there"},
+    ErrorInfo{ErrorId::kTargetBehindLimit, "Ecil", "the target lies behind a SW limit"},
+    ErrorInfo{ErrorId::kNoReference, "Ehome", "the axis has no reference"},
+    ErrorInfo{ErrorId::kPowerOff, "Epower", "the axis is not powered"},
+    ErrorInfo{ErrorId::kErrorStop, "Eerrstop", "the axis is in ErrorStop and needs a reset"},
+    ErrorInfo{ErrorId::kNoConstants, "Econst", "the constants of the axis have not been set"},
+    ErrorInfo{ErrorId::kPowerOn, "EpowerOff", "the axis is powered and must not be"},
+    ErrorInfo{ErrorId::kGroupMember, "EGroupMember", "the axis is a member of a group"},
+    ErrorInfo{ErrorId::kGroupFull, "EGroupFull", "the group is full"},
+    ErrorInfo{ErrorId::kNotGroupMember, "ENotGroupMember", "the axis is not a member of the group"},
+    ErrorInfo{ErrorId::kOtherGroupMember, "EOtherGroup", "the axis is a member of another group"},
+    ErrorInfo{ErrorId::kGroupEmpty, "EGroupEmpty", "the group has no axes"},
+    ErrorInfo{ErrorId::kDeviation, "ERRPOS", "the following error was too large; the loop is open"},
+    ErrorInfo{ErrorId::kLimitSwitchPositive, "ERRLIP", "the axis ran onto its positive limit switch"},
+    ErrorInfo{ErrorId::kLimitSwitchNegative, "ERRLIN", "the axis ran onto its negative limit switch"},
+    ErrorInfo{ErrorId::kSoftLimitPositive, "ERRSWP", "the axis ran onto its positive SW limit"},
+    ErrorInfo{ErrorId::kSoftLimitNegative, "ERRSWN", "the axis ran onto its negative SW limit"},
+    ErrorInfo{ErrorId::kEncoder, "Encoder", "the encoder reports an error or jumped further than the axis can move"},
+    ErrorInfo{ErrorId::kDrive, "Drive", "the drive reports a fault or does not get ready"},
+    ErrorInfo{ErrorId::kBufferFull, "BufferFull", "the axis already holds as many buffered commands as it can"},
+    ErrorInfo{ErrorId::kPlanning, "Planning", "no motion could be planned; the one in progress is kept"},
+    ErrorInfo{ErrorId::kState, "State", "the command is not legal in this state of the axis"},
+    ErrorInfo{ErrorId::kAwayFromLimitOnly, "AwayFromLimitOnly",
+              "a limit switch is on: only moves away from it are accepted"},
+    ErrorInfo{ErrorId::kOverrun, "Overrun", "too many cycles in a row came too late; everything was stopped"},
+    ErrorInfo{ErrorId::kUnknownTarget, "UnknownTarget", "there is no such component"},
+    ErrorInfo{ErrorId::kUnknownVerb, "UnknownVerb", "the component has no such command"},
+    ErrorInfo{ErrorId::kQueueFull, "QueueFull", "commands arrive faster than the cycle takes them"},
+    ErrorInfo{ErrorId::kClientName, "ClientName", "another client uses this name"},
+    ErrorInfo{ErrorId::kLeaseExpired, "LeaseExpired",
+              "the heartbeat of the client is missing; the command was released"},
+    ErrorInfo{ErrorId::kShutdown, "Shutdown", "the engine is stopping"},
+    ErrorInfo{ErrorId::kInternal, "Internal",
+              "a number of the engine was not finite; outputs are zero and the loop is open"},
+    ErrorInfo{ErrorId::kGroupDeviation, "ERRPOSG", "an axis of the group had too large a following error"},
+};
+
+constexpr ErrorInfo kUnknown{ErrorId::kNone, "unknown", "unknown error"};
+
+const ErrorInfo& Find(ErrorId id) {
+  for (const ErrorInfo& e : kErrors) {
+    if (e.id == id) return e;
+  }
+  return kUnknown;
+}
+
+}  // namespace
+
+std::span<const ErrorInfo> Errors() noexcept {
+  return kErrors;
+}
+std::string_view ErrorText(ErrorId id) noexcept {
+  return Find(id).text;
+}
+std::string_view ErrorName(ErrorId id) noexcept {
+  return Find(id).name;
+}
+
+void describe(Enumeration<ErrorId>& e) {
+  e.about("What went wrong; 0: nothing.");
+  for (const ErrorInfo& error : kErrors) e.value(error.id, error.name, error.text);
+}
+
+void describe(Enumeration<LimitedBy>& e) {
+  e.about("What held a motion back although it was carried out.");
+  e.value(LimitedBy::kNothing, "nothing", "Nothing.");
+  e.value(LimitedBy::kVelocity, "velocity", "The largest velocity.");
+  e.value(LimitedBy::kAcceleration, "acceleration", "The largest acceleration or deceleration.");
+  e.value(LimitedBy::kJerk, "jerk", "The largest jerk.");
+  e.value(LimitedBy::kPosition, "position", "A position limit.");
+  e.value(LimitedBy::kDistance, "distance", "Too little room, for instance to blend at the velocity asked for.");
+}
+
+void describe(Description<Status>& d) {
+  d.about("Ok, limited or failed.");
+  d.internal<&Status::error>("What went wrong.");
+  d.internal<&Status::limited_by>("What held the motion back.");
+}
+
+}  // namespace takt

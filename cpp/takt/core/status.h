@@ -1,0 +1,90 @@
+// What a call on the cycle answers instead of throwing, and the numbers of everything that can go wrong.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "takt/core/describe_fwd.h"
+
+namespace takt {
+
+// Error numbers. Those up to 2007 and 8001 are those of the TECOMAT GT-775x modules (appendix 12.1 of their manual),
+// kept as they are; from 3001 on they are ours. A text for each: ErrorText().
+enum class ErrorId : std::uint16_t {
+  kNone = 0,
+  // A command was refused or failed; the axis itself is well.
+  kTimeLimit = 1,
+  kDistanceLimit = 2,
+  kDeviationLimit = 3,
+  kBlending = 4,
+  kParameter = 5,
+  kAxisStopping = 6,
+  kAxisFault = 7,
+  kTargetBehindLimit = 8,
+  kNoReference = 9,
+  kPowerOff = 10,
+  kErrorStop = 11,
+  kNoConstants = 12,
+  kPowerOn = 13,
+  kGroupMember = 1000,
+  kGroupFull = 1001,
+  kNotGroupMember = 1003,
+  kOtherGroupMember = 1004,
+  kGroupEmpty = 1005,
+  // An axis went to ErrorStop.
+  kDeviation = 2001,
+  kLimitSwitchPositive = 2004,
+  kLimitSwitchNegative = 2005,
+  kSoftLimitPositive = 2006,
+  kSoftLimitNegative = 2007,
+  // Ours.
+  kEncoder = 3001,            // the encoder reports an error, or jumped further than the axis can move in a cycle
+  kDrive = 3002,              // the drive reports a fault or does not get ready
+  kBufferFull = 3003,         // the axis already holds as many buffered commands as it can
+  kPlanning = 3004,           // no trajectory could be planned; the one in progress is kept
+  kState = 3005,              // the command is not legal in the axis' state
+  kAwayFromLimitOnly = 3006,  // while a limit switch is on, only moves away from it are accepted
+  kOverrun = 3007,            // too many cycles in a row came too late; everything was stopped
+  kUnknownTarget = 3010,      // no such component
+  kUnknownVerb = 3011,        // the component has no such command
+  kQueueFull = 3012,          // commands arrive faster than the cycle takes them
+  kClientName = 3013,         // another client uses this name
+  kLeaseExpired = 3014,       // the client's heartbeat is missing: a level-sensitive command was released
+  kShutdown = 3015,           // the engine is stopping
+  kInternal = 3016,           // the engine found its own numbers broken; outputs are zero, all loops open
+  kGroupDeviation = 8001,
+};
+
+struct ErrorInfo {
+  ErrorId id;
+  std::string_view name;  // the short name of the modules' list ("ETime", "ERRPOS"), or ours
+  std::string_view text;  // one sentence for people, without a full stop
+};
+// All of them, kNone first, ascending.
+std::span<const ErrorInfo> Errors() noexcept;
+// Never empty; "unknown error" for a number that stands for nothing.
+std::string_view ErrorText(ErrorId id) noexcept;
+std::string_view ErrorName(ErrorId id) noexcept;
+
+// What held a motion back although it was carried out.
+enum class LimitedBy : std::uint8_t { kNothing, kVelocity, kAcceleration, kJerk, kPosition, kDistance };
+
+// ok, limited (done, but held back by something) or failed.
+struct Status {
+  ErrorId error = ErrorId::kNone;
+  LimitedBy limited_by = LimitedBy::kNothing;
+
+  static constexpr Status Ok() { return {}; }
+  static constexpr Status Failed(ErrorId id) { return {id, LimitedBy::kNothing}; }
+  static constexpr Status Limited(LimitedBy by) { return {ErrorId::kNone, by}; }
+  constexpr bool ok() const { return error == ErrorId::kNone; }
+  constexpr bool failed() const { return error != ErrorId::kNone; }
+  constexpr bool operator==(const Status&) const = default;
+};
+
+void describe(Enumeration<ErrorId>&);
+void describe(Enumeration<LimitedBy>&);
+void describe(Description<Status>&);
+
+}  // namespace takt

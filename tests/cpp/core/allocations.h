@@ -1,0 +1,4 @@
+// Counts what the calling thread allocates, for tests of code that must not.
+#pragma once
+
+long AllocationsOfThisThread();
