@@ -1,0 +1,13 @@
+// How fast a motion may change.
+#pragma once
+
+namespace takt::trajectory {
+
+struct Limits {
+  double velocity = 0;      // u/s, > 0
+  double acceleration = 0;  // u/s², > 0: largest while the speed grows
+  double deceleration = 0;  // u/s², > 0: largest while the speed falls
+  double jerk = 0;          // u/s³, >= 0; 0: unlimited (trapezoid)
+};
+
+}  // namespace takt::trajectory

@@ -1,0 +1,102 @@
+#include "takt/trajectory/profile.h"
+
+#include <algorithm>
+#include <type_traits>
+
+#include "takt/core/describe.h"
+
+namespace takt::trajectory {
+
+static_assert(std::is_trivially_copyable_v<Profile>);
+
+namespace {
+
+void Include(Profile::Range& range, double value) noexcept {
+  range.min = std::min(range.min, value);
+  range.max = std::max(range.max, value);
+}
+
+}  // namespace
+
+bool Profile::AppendWithAcceleration(double duration_s, double acceleration, double jerk) noexcept {
+  if (!(duration_s > 0)) return true;
+  if (piece_count == kCapacity) return false;
+  const double before = duration();
+  if (before + duration_s == before) return true;
+  Piece& piece = pieces[Index(piece_count)];
+  piece = {end_state.position, end_state.velocity, acceleration, jerk};
+  piece_ends_s[Index(piece_count)] = before + duration_s;
+  ++piece_count;
+  end_state = piece.At(duration_s);
+  return true;
+}
+
+bool Profile::Append(const Profile& other) noexcept {
+  if (piece_count + other.piece_count > kCapacity) return false;
+  const double before = duration();
+  for (int i = 0; i < other.piece_count; ++i) {
+    pieces[Index(piece_count)] = other.pieces[Index(i)];
+    piece_ends_s[Index(piece_count)] = before + other.piece_ends_s[Index(i)];
+    ++piece_count;
+  }
+  end_state = other.end_state;
+  return true;
+}
+
+Profile::Range Profile::PositionRange() const noexcept {
+  Range range{start_state.position, start_state.position};
+  for (int i = 0; i < piece_count; ++i) {
+    const Piece& q = pieces[Index(i)];
+    const double length = Length(i);
+    Include(range, q.At(length).position);
+    for (const double t : q.VelocityZeros()) {
+      if (t > 0 && t < length) Include(range, q.At(t).position);
+    }
+  }
+  Include(range, end_state.position);
+  return range;
+}
+
+Profile::Range Profile::VelocityRange() const noexcept {
+  Range range{start_state.velocity, start_state.velocity};
+  for (int i = 0; i < piece_count; ++i) {
+    const Piece& q = pieces[Index(i)];
+    const double length = Length(i);
+    Include(range, q.At(length).velocity);
+    const double t = -q.acceleration / q.jerk;
+    if (t > 0 && t < length) Include(range, q.At(t).velocity);
+  }
+  Include(range, end_state.velocity);
+  return range;
+}
+
+Profile::Range Profile::AccelerationRange() const noexcept {
+  Range range{start_state.acceleration, start_state.acceleration};
+  for (int i = 0; i < piece_count; ++i) {
+    const Piece& q = pieces[Index(i)];
+    const double length = Length(i);
+    Include(range, q.acceleration);
+    Include(range, q.acceleration + q.jerk * length);
+  }
+  Include(range, end_state.acceleration);
+  return range;
+}
+
+void describe(Description<Piece>& d) {
+  d.about("A stretch of motion with constant jerk.");
+  d.internal<&Piece::position>(unit::u, "Position at its beginning.");
+  d.internal<&Piece::velocity>(unit::u_s, "Velocity at its beginning.");
+  d.internal<&Piece::acceleration>(unit::u_s2, "Acceleration at its beginning.");
+  d.internal<&Piece::jerk>(unit::u_s3, "Jerk during it.");
+}
+
+void describe(Description<Profile>& d) {
+  d.about("A motion known from beginning to end.");
+  d.internal<&Profile::start_state>("State at time 0.");
+  d.internal<&Profile::end_state>("State at the end.");
+  d.internal<&Profile::piece_count>("How many pieces it has.");
+  d.internal<&Profile::piece_ends_s>(unit::s, "When each piece ends, from the start.");
+  d.internal<&Profile::pieces>("The pieces, one after the other.");
+}
+
+}  // namespace takt::trajectory
