@@ -1,0 +1,145 @@
+// Commands as they arrive: carried out, buffered or refused.
+#include "takt/axis/sequence.h"
+
+namespace takt::axis {
+
+namespace {
+
+bool SwitchingOff(const State& s) {
+  return s.active.kind == RequestKind::kPower && !s.active.enable;
+}
+bool SwitchingOn(const State& s) {
+  return s.active.kind == RequestKind::kPower && s.active.enable;
+}
+
+Status Enqueue(const Context& c, const Request& r, State& s) {
+  const Request& last = s.buffered > 0 ? s.buffer[s.buffered - 1u] : s.active;
+  const bool last_switches_off = last.kind == RequestKind::kPower && !last.enable;
+  if (!RulesOf(last.kind).may_be_followed || last_switches_off) return Status::Failed(ErrorId::kState);
+  if (s.buffered == kBufferSize) return Status::Failed(ErrorId::kBufferFull);
+  s.buffer[s.buffered++] = r;
+  Report(c, r.ticket, FeedbackState::kBusy);
+  if (s.buffered == 1 && r.blends()) ReplanActive(c, s);
+  return Status::Ok();
+}
+
+// The same jog with other keys or another speed: the motion goes on.
+void ChangeJog(const Context& c, const Request& r, State& s) {
+  Report(c, s.active.ticket, FeedbackState::kAborted);
+  const bool other_speed = r.velocity != s.active.velocity;
+  const bool key_held = s.jog_sense > 0 ? r.forward : r.backward;
+  Grant(c, r, s);
+  trajectory::Profile profile;
+  if (s.jog_sense != 0 && key_held && other_speed &&
+      c.planner.ToVelocity(s.setpoint, s.jog_sense * r.velocity, r.limits(), profile).ok()) {
+    StartMotion(profile, 0, FromCycleBefore(c), s);
+  }
+}
+
+Status Jog(const Context& c, const Request& r, State& s) {
+  if (s.active.kind == RequestKind::kJog) {
+    ChangeJog(c, r, s);
+    return Status::Ok();
+  }
+  AbortAll(c, s);
+  if (s.plc != PlcState::kStandstill) ComeToRest(c, r.limits(), FromCycleBefore(c), s);
+  Grant(c, r, s);
+  s.jog_armed = true;
+  return Status::Ok();
+}
+
+Status TakeOver(const Context& c, const Request& r, State& s) {
+  Plan plan;
+  const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, r, nullptr, plan);
+  if (status.failed()) return status;
+  AbortAll(c, s);
+  TakeControl(c, r, plan, FromCycleBefore(c), s);
+  return Status::Ok();
+}
+
+Status SwitchOn(const Context& c, const Request& r, State& s) {
+  if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
+  if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
+  if (s.loop_closed) {
+    if (r.buffer_mode == BufferMode::kBuffered && s.active.kind != RequestKind::kNone) return Enqueue(c, r, s);
+    Report(c, r.ticket, FeedbackState::kActive);
+    Report(c, r.ticket, FeedbackState::kDone);
+    return Status::Ok();
+  }
+  if (s.error != ErrorId::kNone) {
+    Enter(s, PlcState::kErrorStop);
+    return Status::Failed(ErrorId::kErrorStop);
+  }
+  AbortAll(c, s);
+  Grant(c, r, s);
+  if (!s.enable) s.enable_cycle = c.cycle.count;
+  s.enable = true;
+  return Status::Ok();
+}
+
+Status SwitchOff(const Context& c, const Request& r, State& s) {
+  const bool waits = r.buffer_mode == BufferMode::kBuffered && s.active.kind != RequestKind::kNone && !SwitchingOff(s);
+  if (waits && s.loop_closed && s.plc != PlcState::kErrorStop) return Enqueue(c, r, s);
+  AbortAll(c, s);
+  Grant(c, r, s);
+  if (!s.loop_closed || AtRest(s)) {
+    Conclude(c, 0, s);
+    return Status::Ok();
+  }
+  if (s.plc != PlcState::kErrorStop) {
+    Enter(s, PlcState::kStopping);
+    Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);
+  }
+  return Status::Ok();
+}
+
+Status Admit(const Context& c, const Request& r, State& s) {
+  if (r.kind == RequestKind::kPower) return r.enable ? SwitchOn(c, r, s) : SwitchOff(c, r, s);
+  if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
+  if (c.params.follows) return Status::Failed(ErrorId::kState);
+  const bool buffered = r.buffer_mode != BufferMode::kAborting && s.active.kind != RequestKind::kNone;
+  if (!s.loop_closed) {
+    return buffered && SwitchingOn(s) ? Enqueue(c, r, s) : Status::Failed(ErrorId::kPowerOff);
+  }
+  if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
+  if (buffered) return Enqueue(c, r, s);
+  if (s.plc == PlcState::kStopping && r.kind != RequestKind::kStop) return Status::Failed(ErrorId::kAxisStopping);
+  return r.kind == RequestKind::kJog ? Jog(c, r, s) : TakeOver(c, r, s);
+}
+
+void BeginReset(const Context& c, Ticket ticket, State& s) {
+  if (s.reset_pending) Report(c, s.reset_ticket, FeedbackState::kAborted);
+  s.reset_pending = true;
+  s.reset_ticket = ticket;
+  Report(c, ticket, FeedbackState::kActive);
+}
+
+}  // namespace
+
+void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept {
+  if (std::holds_alternative<Reset>(command)) return BeginReset(c, ticket, s);
+  Request request;
+  Status status = MakeRequest(command, c.params, request);
+  if (status.ok()) {
+    request.ticket = ticket;
+    request.lease_s = lease_s;
+    status = Admit(c, request, s);
+  }
+  if (status.failed()) Report(c, ticket, FeedbackState::kError, status.error);
+}
+
+bool Release(const Context&, Ticket ticket, State& s) noexcept {
+  if (ticket == 0 || s.active.ticket != ticket) return false;
+  s.active.hold = false;
+  s.active.forward = false;
+  s.active.backward = false;
+  return true;
+}
+
+bool Renew(const Context& c, Ticket ticket, State& s) noexcept {
+  if (ticket == 0 || s.active.ticket != ticket || s.active.lease_s <= 0) return false;
+  s.lease_end_cycle = LeaseEnd(c, s.active.lease_s);
+  return true;
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,243 @@
+#include "takt/axis/axis.h"
+
+#include <cmath>
+
+#include "takt/axis/following.h"
+#include "takt/axis/sequence.h"
+
+namespace takt::axis {
+
+namespace {
+
+// An axis whose measured position moves further than this many times its largest velocity allows has a broken encoder.
+constexpr double kJumpFactor = 4;
+constexpr double kJumpCounts = 4;  // and a few counts of noise
+// Rotary axes: positions are brought back once they are so many turns out.
+constexpr double kFarTurns = 1000;
+
+double LargestStep(const Context& c) {
+  return kJumpFactor * c.params.limits.velocity * c.cycle.period_s + kJumpCounts / c.params.encoder.increments_per_unit;
+}
+
+double Reported(const AxisParams& p, double position) {
+  if (!p.rotary()) return position;
+  const double turns = std::floor(position / p.modulus);
+  const double inside = position - turns * p.modulus;
+  return inside >= 0 && inside < p.modulus ? inside : 0;
+}
+
+bool InMotion(const State& s) {
+  return !s.motion.arrived || !AtRest(s);
+}
+
+void WatchDeviation(const Context& c, State& s) {
+  const Supervision& limits = c.params.supervision;
+  const double deviation = std::abs(s.following_error);
+  const bool settled = !InMotion(s) && static_cast<double>(c.cycle.count - s.motion.arrived_cycle) * c.cycle.period_s >
+                                           limits.in_position_timeout_s;
+  const auto& limit = settled && limits.deviation_standstill ? limits.deviation_standstill : limits.deviation_moving;
+  if (limit && deviation > *limit) Fail(c, ErrorId::kDeviation, true, s);
+}
+
+// On a new edge, or when the axis moves further out.
+void WatchSwitches(const Context& c, State& s) {
+  if (s.plc == PlcState::kErrorStop) return;
+  if (s.limit_positive && (!s.limit_positive_before || s.setpoint.velocity > 0)) {
+    Fail(c, ErrorId::kLimitSwitchPositive, false, s);
+  } else if (s.limit_negative && (!s.limit_negative_before || s.setpoint.velocity < 0)) {
+    Fail(c, ErrorId::kLimitSwitchNegative, false, s);
+  }
+}
+
+void WatchLease(const Context& c, State& s) {
+  if (s.active.lease_s <= 0 || c.cycle.count < s.lease_end_cycle) return;
+  const Ticket ticket = s.active.ticket;
+  const bool jog = s.active.kind == RequestKind::kJog;
+  Release(c, ticket, s);
+  s.active.lease_s = 0;
+  if (jog) {
+    Report(c, ticket, FeedbackState::kAborted, ErrorId::kLeaseExpired);
+    s.active.ticket = 0;
+  }
+}
+
+void Supervise(const Context& c, State& s) {
+  if (s.encoder_error) Fail(c, ErrorId::kEncoder, true, s);
+  if (s.drive_fault || (s.loop_closed && !s.drive_ready)) Fail(c, ErrorId::kDrive, true, s);
+  if (!s.loop_closed) return;
+  WatchDeviation(c, s);
+  WatchSwitches(c, s);
+  WatchLease(c, s);
+}
+
+// Between power on and the drive's readiness.
+void AwaitDrive(const Context& c, State& s) {
+  if (s.active.kind != RequestKind::kPower || !s.active.enable) return;
+  if (s.drive_ready) {
+    s.loop_closed = true;
+    s.motion.profile = trajectory::Profile{s.setpoint};
+    s.motion.target = s.setpoint.position;
+    s.motion.arrived = true;
+    s.motion.arrived_cycle = c.cycle.count;
+    EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+    StartNext(c, 0, s);
+  } else if (static_cast<double>(c.cycle.count - s.enable_cycle) * c.cycle.period_s > c.params.drive.ready_timeout_s) {
+    Fail(c, ErrorId::kDrive, true, s);
+  }
+}
+
+// Invariant of motions without an end: braking now, from this set point, ends inside the SW limits. A set point that
+// would break it is not taken; the brake begins in its place, which the set point before allowed (AX-13).
+bool CanStopInside(const AxisParams& p, const State& s, const KinematicState& next) {
+  const double stop = trajectory::StopPosition(next, p.planner_limits());
+  const bool too_high = p.limits.upper && stop > *p.limits.upper && stop > s.setpoint.position;
+  const bool too_low = p.limits.lower && stop < *p.limits.lower && stop < s.setpoint.position;
+  return !too_high && !too_low;
+}
+
+void BringBackTurns(const AxisParams& p, State& s) {
+  const double turns = std::floor(s.setpoint.position / p.modulus) * p.modulus;
+  s.setpoint.position -= turns;
+  s.actual.position -= turns;
+  s.motion.profile.Shift(-turns);
+  s.motion.target -= turns;
+  s.origin += turns;
+}
+
+void Advance(const Context& c, State& s) {
+  KinematicState next = s.motion.profile.At(Elapsed(c, s));
+  if (s.plc == PlcState::kContinuousMotion && !CanStopInside(c.params, s, next)) {
+    Fail(c, next.velocity > 0 ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
+    next = s.motion.profile.At(Elapsed(c, s));
+  }
+  s.setpoint = next;
+  if (next.velocity != 0) s.last_sense = next.velocity > 0 ? 1 : -1;
+  const double late_s = Elapsed(c, s) - s.motion.profile.duration();
+  if (late_s >= 0 && !s.motion.arrived) {
+    s.motion.arrived = true;
+    s.motion.arrived_cycle = c.cycle.count;
+  }
+  if (s.motion.arrived) Conclude(c, late_s, s);
+}
+
+void FinishReset(const Context& c, State& s) {
+  if (!s.reset_pending) return;
+  const bool stopped = !s.loop_closed || AtRest(s);
+  if (s.plc == PlcState::kErrorStop && !stopped) return;
+  s.reset_pending = false;
+  if (s.drive_fault || s.encoder_line_error) {
+    Report(c, s.reset_ticket, FeedbackState::kError, ErrorId::kAxisFault);
+    return;
+  }
+  s.error = ErrorId::kNone;
+  if (s.plc == PlcState::kErrorStop) {
+    Trust(s.encoder);
+    Enter(s, s.loop_closed ? PlcState::kStandstill : PlcState::kDisabled);
+  }
+  Report(c, s.reset_ticket, FeedbackState::kDone);
+}
+
+}  // namespace
+
+State MakeState(const AxisParams&) noexcept {
+  State s;
+  s.motion.arrived = true;
+  return s;
+}
+
+void Sense(const Context& c, const ServoInputs& in, State& s) noexcept {
+  const InputSense& sense = c.params.inputs;
+  EncoderOutputs measured;
+  Step(c.params.encoder, {in.counts, in.encoder_error, LargestStep(c)}, c.cycle, s.encoder, measured);
+  s.encoder_error = measured.error;
+  s.encoder_line_error = in.encoder_error;
+  s.actual = {measured.position - s.origin, measured.velocity, 0};
+  s.following_error = s.loop_closed ? s.setpoint.position - s.actual.position : 0;
+  s.limit_positive_before = s.limit_positive;
+  s.limit_negative_before = s.limit_negative;
+  s.limit_positive = in.limit_positive != sense.invert_limit_positive;
+  s.limit_negative = in.limit_negative != sense.invert_limit_negative;
+  s.reference = in.reference != sense.invert_reference;
+  s.touch_probe = in.touch_probe != sense.invert_touch_probe;
+  s.drive_ready = in.drive_ready;
+  s.drive_fault = in.drive_fault;
+  s.torque_nm = in.torque_nm;
+}
+
+void Move(const Context& c, State& s) noexcept {
+  Supervise(c, s);
+  if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
+  if (s.loop_closed && Follow(c, s)) {
+    // The master's set point is this axis' too.
+  } else if (s.loop_closed) {
+    Advance(c, s);
+  } else {
+    s.setpoint = {s.actual.position, 0, 0};
+    AwaitDrive(c, s);
+  }
+  FinishReset(c, s);
+  if (c.params.rotary() && std::abs(s.setpoint.position) > kFarTurns * c.params.modulus) BringBackTurns(c.params, s);
+}
+
+void Control(const Context& c, State& s, ServoOutputs& out) noexcept {
+  const AxisParams& p = c.params;
+  const bool drive_closes = p.drive.mode == DriveMode::kCyclicPosition;
+  const double sign = p.drive.invert ? -1 : 1;
+  ControlLoopOutputs loop;
+  Step(p.loop,
+       {p.drive.mode, s.loop_closed && !drive_closes, p.drive.invert, s.setpoint.position, s.setpoint.velocity,
+        s.actual.position},
+       c.cycle, s.loop, loop);
+  out.mode = p.drive.mode;
+  out.position_counts = sign * CountsAt(p.encoder, s.setpoint.position + s.origin);
+  out.velocity_counts_s =
+      drive_closes ? sign * CountRateAt(p.encoder, s.setpoint.velocity) : CountRateAt(p.encoder, loop.velocity);
+  out.voltage_v = loop.voltage_v;
+  if (!std::isfinite(out.position_counts + out.velocity_counts_s + out.voltage_v)) {
+    s.setpoint = {0, 0, 0};
+    Fail(c, ErrorId::kInternal, true, s);
+    s.loop = ControlLoopState{};
+    out.position_counts = CountsAt(p.encoder, s.actual.position + s.origin);
+    out.velocity_counts_s = 0;
+    out.voltage_v = 0;
+  }
+  s.voltage_v = out.voltage_v;
+  out.enable = s.enable;
+  out.release_brake = s.loop_closed;
+}
+
+void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
+  if (s.error == ErrorId::kNone) s.error = error;
+  const bool in_use = s.loop_closed || s.enable;
+  if (in_use && s.plc != PlcState::kErrorStop) {
+    EndActive(c, FeedbackState::kError, error, s);
+    AbortBuffer(c, s);
+    Enter(s, PlcState::kErrorStop);
+    if (!open_loop) Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);
+  }
+  if (in_use && open_loop) OpenLoop(s);
+}
+
+void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
+  out.set_position = Reported(p, s.setpoint.position);
+  out.set_velocity = s.setpoint.velocity;
+  out.set_acceleration = s.setpoint.acceleration;
+  out.actual_position = Reported(p, s.actual.position);
+  out.actual_velocity = s.actual.velocity;
+  out.following_error = s.following_error;
+  out.voltage_v = s.voltage_v;
+  out.torque_nm = s.torque_nm;
+  out.active_command = s.active.ticket;
+  out.error = s.error;
+  out.state = s.plc;
+  out.limited_by = s.limited_by;
+  out.buffered_commands = s.buffered;
+  out.loop_closed = s.loop_closed;
+  out.in_position = s.loop_closed && std::abs(s.following_error) <= p.supervision.in_position.value_or(HUGE_VAL);
+  out.limit_positive = s.limit_positive;
+  out.limit_negative = s.limit_negative;
+  out.reference = s.reference;
+  out.touch_probe = s.touch_probe;
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,54 @@
+// One axis, stage by stage of the cycle. Free functions over plain state; nothing here allocates, locks, throws or
+// reads a clock.
+#pragma once
+
+#include "takt/axis/commands.h"
+#include "takt/axis/outputs.h"
+#include "takt/axis/params.h"
+#include "takt/axis/state.h"
+#include "takt/core/cycle.h"
+#include "takt/core/feedback.h"
+#include "takt/core/ports.h"
+#include "takt/trajectory/planner.h"
+
+namespace takt::axis {
+
+// What every stage gets besides the axis itself.
+struct Context {
+  const AxisParams& params;
+  Cycle cycle;
+  trajectory::Planner& planner;
+  FeedbackSink& feedback;
+  const State* master = nullptr;  // of an axis that follows another: its state of the same cycle
+};
+
+// As it stands when power comes on.
+State MakeState(const AxisParams& params) noexcept;
+
+// sense: raw inputs become positions and switches.
+void Sense(const Context& context, const ServoInputs& inputs, State& state) noexcept;
+
+// command: carries a command out, buffers it or refuses it; reports either way. `lease_s` > 0: see Renew.
+void Apply(const Context& context, Ticket ticket, double lease_s, const Command& command, State& state) noexcept;
+// Lets go of the level-sensitive command (jog, held stop) with this ticket. False: it is not in control here.
+bool Release(const Context& context, Ticket ticket, State& state) noexcept;
+// Extends its lease. False: it is not in control here.
+bool Renew(const Context& context, Ticket ticket, State& state) noexcept;
+
+// move: supervision, then the next set point.
+void Move(const Context& context, State& state) noexcept;
+
+// control and actuate: the position loop and what goes to the drive. Not finite: the axis opens its loop and says so
+// (AX-82).
+void Control(const Context& context, State& state, ServoOutputs& outputs) noexcept;
+
+// A fault from outside (overrun, internal): to ErrorStop; with `open_loop` the drive is switched off at once, else it
+// brakes.
+void Fail(const Context& context, ErrorId error, bool open_loop, State& state) noexcept;
+
+void Publish(const AxisParams& params, const State& state, Outputs& outputs) noexcept;
+
+// At rest: the set point stands.
+bool AtRest(const State& state) noexcept;
+
+}  // namespace takt::axis

@@ -1,0 +1,109 @@
+#include "takt/axis/commands.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+void describe(Enumeration<Direction>& e) {
+  e.about("Sense of travel of a rotary axis; without meaning on a linear one.");
+  e.value(Direction::kCurrent, "current", "As the axis moves now, or moved last.");
+  e.value(Direction::kPositive, "positive", "Upwards only.");
+  e.value(Direction::kShortest, "shortest", "Whichever way is shorter; upwards when both are equal.");
+  e.value(Direction::kNegative, "negative", "Downwards only.");
+}
+
+void describe(Enumeration<BufferMode>& e) {
+  e.about("When a command takes over from the one before it, and how fast the axis is at that moment.");
+  e.value(BufferMode::kAborting, "aborting", "At once; the command in progress and all buffered ones are aborted.");
+  e.value(BufferMode::kBuffered, "buffered", "When the command before is done.");
+  e.value(BufferMode::kBlendingLow, "blending_low",
+          "At the end position of the move before, at the lower of both velocities.");
+  e.value(BufferMode::kBlendingPrevious, "blending_previous", "At that position, at the velocity of the move before.");
+  e.value(BufferMode::kBlendingNext, "blending_next", "At that position, at the velocity of this move.");
+  e.value(BufferMode::kBlendingHigh, "blending_high", "At that position, at the higher of both velocities.");
+}
+
+namespace {
+
+constexpr std::string_view kAcceleration = "Largest acceleration; unset: the axis' limit.";
+constexpr std::string_view kDeceleration = "Largest deceleration; unset: the axis' limit.";
+constexpr std::string_view kJerk = "Largest jerk; 0: unlimited, where the axis allows it; unset: the axis' limit.";
+constexpr std::string_view kBufferMode = "How the command follows the one before it.";
+
+template <typename T>
+void DescribeRamps(Description<T>& d) {
+  d.template defaulted<&T::acceleration>(unit::u_s2, positive, kAcceleration);
+  d.template defaulted<&T::deceleration>(unit::u_s2, positive, kDeceleration);
+  d.template defaulted<&T::jerk>(unit::u_s3, not_negative, kJerk);
+}
+
+}  // namespace
+
+void describe(Description<Power>& d) {
+  d.about(
+      "Switches the drive on and closes the position loop, or opens it (MC_Power). Done when the axis stands in "
+      "Standstill, or is Disabled.");
+  d.defaulted<&Power::enable>("True: on. False: off; a moving axis stops along its ramp first.");
+  d.defaulted<&Power::buffer_mode>("aborting, or buffered: after the motion in progress.");
+}
+
+void describe(Description<Reset>& d) {
+  d.about(
+      "Clears the axis' fault and leaves ErrorStop: to Standstill, or to Disabled where the fault opened the loop "
+      "(MC_Reset).");
+}
+
+void describe(Description<MoveAbsolute>& d) {
+  using M = MoveAbsolute;
+  d.about("Moves to a position (MC_MoveAbsolute).");
+  d.required<&M::position>(unit::u, "Where to stop. Rotary axes: 0 to the modulus.");
+  d.defaulted<&M::velocity>(unit::u_s, positive, "Largest velocity on the way; unset: the axis' limit.");
+  DescribeRamps(d);
+  d.defaulted<&M::direction>("Sense of travel of a rotary axis.");
+  d.defaulted<&M::buffer_mode>(kBufferMode);
+}
+
+void describe(Description<MoveRelative>& d) {
+  using M = MoveRelative;
+  d.about("Moves by a distance from the set position at the moment it starts (MC_MoveRelative).");
+  d.required<&M::distance>(unit::u, "How far; negative: downwards.");
+  d.defaulted<&M::velocity>(unit::u_s, positive, "Largest velocity on the way; unset: the axis' limit.");
+  DescribeRamps(d);
+  d.defaulted<&M::buffer_mode>(kBufferMode);
+}
+
+void describe(Description<MoveVelocity>& d) {
+  using M = MoveVelocity;
+  d.about("Moves on and on at a velocity (MC_MoveVelocity). Reached when the velocity is; never done by itself.");
+  d.required<&M::velocity>(unit::u_s, not_negative, "How fast; the direction gives the sense.");
+  DescribeRamps(d);
+  d.defaulted<&M::direction>("positive, negative or current.");
+  d.defaulted<&M::buffer_mode>(kBufferMode);
+}
+
+void describe(Description<Halt>& d) {
+  d.about("Brakes to standstill; another command may take over on the way (MC_Halt).");
+  d.defaulted<&Halt::deceleration>(unit::u_s2, positive, kDeceleration);
+  d.defaulted<&Halt::jerk>(unit::u_s3, not_negative, kJerk);
+  d.defaulted<&Halt::buffer_mode>("aborting or buffered.");
+}
+
+void describe(Description<Stop>& d) {
+  d.about("Brakes to standstill; nothing may take over until it is released (MC_Stop).");
+  d.defaulted<&Stop::deceleration>(unit::u_s2, positive, kDeceleration);
+  d.defaulted<&Stop::jerk>(unit::u_s3, not_negative, kJerk);
+  d.defaulted<&Stop::hold>("True: stay in Stopping until released (Execute kept true). False: until at rest.");
+  d.defaulted<&Stop::buffer_mode>("aborting or buffered.");
+}
+
+void describe(Description<Jog>& d) {
+  d.about(
+      "Moves as long as a key is held (GT_Jog). The direction pressed first wins; both must be let go before the next "
+      "jog. Given again it changes the keys; done when both are let go and the axis is at rest.");
+  d.defaulted<&Jog::forward>("The key for upwards.");
+  d.defaulted<&Jog::backward>("The key for downwards.");
+  d.defaulted<&Jog::velocity>(unit::u_s, positive, "How fast; unset: the axis' limit.");
+  DescribeRamps(d);
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,105 @@
+#include "takt/axis/control_loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+namespace {
+
+double WithDeadBand(const ControlLoop& p, double volts) noexcept {
+  if (volts >= kVoltageStep / 2) return volts + p.dead_band_plus_mv / 1000;
+  if (volts <= -kVoltageStep / 2) return volts - p.dead_band_minus_mv / 1000;
+  return volts;
+}
+
+double InConverterSteps(double volts) noexcept {
+  constexpr double kLargestCode = kVoltageSteps / 2 - 1;
+  return std::min(std::round(volts / kVoltageStep), kLargestCode) * kVoltageStep;
+}
+
+}  // namespace
+
+void Step(const ControlLoop& p, const ControlLoopInputs& in, Cycle cycle, ControlLoopState& s,
+          ControlLoopOutputs& out) noexcept {
+  out = {};
+  if (!in.closed) {
+    s = {};
+    return;
+  }
+  const bool analogue = in.mode == DriveMode::kAnalog;
+  const double largest_speed = p.velocity_at_10v;                          // u/s
+  const double largest_output = analogue ? kVoltageLimit : largest_speed;  // V or u/s
+  const double sense = in.invert ? -1 : 1;
+  const double output_per_speed = sense * (analogue ? kVoltageLimit / largest_speed : 1);
+  const double output_per_sum = output_per_speed / cycle.period_s;
+  const double largest_sum = largest_speed * cycle.period_s;  // u
+
+  const double last_error = s.error;
+  s.error = in.model_position - in.feedback;
+  s.p = p.kp * s.error;
+  s.i = s.integral + p.ki * s.error;
+  s.d = s.closed ? p.kd * (s.error - last_error) : 0;
+
+  s.sum = s.p + s.i + s.d;
+  s.limited = std::clamp(s.sum, -largest_sum, largest_sum);
+
+  s.converted = s.limited * output_per_sum;
+  s.feed_forward = p.ff * in.model_velocity * output_per_speed;
+  s.compensated = s.converted + s.feed_forward;
+  if (analogue) s.compensated = WithDeadBand(p, s.compensated) + p.offset_mv / 1000;
+  s.output = std::clamp(s.compensated, -largest_output, largest_output);
+
+  const double cut_off = s.sum - s.limited + (s.compensated - s.output) / output_per_sum;
+  s.integral = s.i - std::clamp(p.kc * cut_off, std::min(s.i, 0.0), std::max(s.i, 0.0));
+
+  if (analogue) s.output = InConverterSteps(s.output);
+  (analogue ? out.voltage_v : out.velocity) = s.output;
+  s.closed = true;
+}
+
+void describe(Description<ControlLoop>& d) {
+  using P = ControlLoop;
+  d.about(
+      "The position loop: a sampled PID with velocity feed-forward. P, I and D are positions; their sum is what the "
+      "axis shall make up "
+      "for within one cycle of T seconds.");
+  d.defaulted<&P::kp>(between(0, 1e6), "Proportional gain: P = kp e. In a speed gain Kv: kp = T Kv.");
+  d.defaulted<&P::ki>(between(0, 1e6), "Integral gain: ki e is added to I each cycle. T / Ti.");
+  d.defaulted<&P::kd>(between(0, 1e6), "Derivative gain: D = kd (e - e of the cycle before). Td / T.");
+  d.defaulted<&P::kc>(
+      between(0, 1),
+      "Share of what the limiters cut off that is taken back from I, as far as I has it; 0: I may wind up.");
+  d.defaulted<&P::ff>(between(0, 10), "Share of the set velocity that is fed forward.");
+  d.defaulted<&P::velocity_at_10v>(unit::u_s, Range{.min = 0, .max = 1e9, .without_min = true},
+                                   "Largest speed the loop asks for; analogue drives: the speed at 10 V.");
+  constexpr Unit kMillivolt{"mV", ""};
+  d.defaulted<&P::offset_mv>(kMillivolt, between(-10000, 10000),
+                             "Analogue drives: voltage added always, against the drive's own offset.");
+  d.defaulted<&P::dead_band_plus_mv>(
+      kMillivolt, between(0, 10000),
+      "Analogue drives: voltage added to positive ones, which the drive would not feel otherwise.");
+  d.defaulted<&P::dead_band_minus_mv>(kMillivolt, between(0, 10000),
+                                      "Analogue drives: voltage taken from negative ones.");
+}
+
+void describe(Description<ControlLoopState>& d) {
+  using S = ControlLoopState;
+  d.about("The signals of the position loop, in the order of its block diagram, and what it remembers.");
+  d.internal<&S::error>(unit::u, "Set point less measured position.");
+  d.internal<&S::p>(unit::u, "Proportional term.");
+  d.internal<&S::i>(unit::u, "Integral term.");
+  d.internal<&S::d>(unit::u, "Derivative term.");
+  d.internal<&S::sum>(unit::u, "Sum of the terms.");
+  d.internal<&S::limited>(unit::u, "The sum, limited to what Vmax allows.");
+  d.internal<&S::converted>("The limited sum in V, or u/s on csv drives.");
+  d.internal<&S::feed_forward>("Velocity feed-forward in V, or u/s on csv drives.");
+  d.internal<&S::compensated>("Both, with dead band and offset made up for, in V; or u/s on csv drives.");
+  d.internal<&S::output>("What the drive is told, in V; or u/s on csv drives.");
+  d.internal<&S::integral>(unit::u, "What the next cycle's integral term starts from.");
+  d.internal<&S::closed>("The loop was closed in the cycle before.");
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,125 @@
+#include "takt/axis/encoder.h"
+
+#include <cmath>
+
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+namespace {
+
+int Bits(const Encoder& p) noexcept {
+  return p.type == EncoderType::kIncremental ? 32 : p.ssi_bits;
+}
+
+std::uint32_t Decode(const Encoder& p, std::uint32_t counts) noexcept {
+  if (p.type == EncoderType::kIncremental) return counts;
+  std::uint32_t word = counts & (~std::uint32_t{0} >> (32 - p.ssi_bits));
+  if (p.coding == SsiCoding::kGray) {
+    for (int shift = 1; shift < 32; shift *= 2) word ^= word >> shift;
+  }
+  return word;
+}
+
+// The shortest way from one word to another round the counter.
+std::int64_t Difference(const Encoder& p, std::uint32_t from, std::uint32_t to) noexcept {
+  const int unused = 32 - Bits(p);
+  return static_cast<std::int32_t>((to - from) << unused) >> unused;
+}
+
+double PositionOf(const Encoder& p, std::int64_t count) noexcept {
+  const double distance = static_cast<double>(count) / p.increments_per_unit;
+  return p.offset + (p.invert ? -distance : distance);
+}
+
+// Takes the sample into the state; the distance since the last one in u. False: it cannot be right.
+bool Take(const Encoder& p, const EncoderInputs& in, EncoderState& s, double& distance) noexcept {
+  const std::uint32_t word = Decode(p, in.counts);
+  distance = 0;
+  if (!s.started) {
+    s.count = p.type == EncoderType::kIncremental ? static_cast<std::int32_t>(word) : std::int64_t{word};
+  } else {
+    const std::int64_t step = Difference(p, s.word, word);
+    distance = static_cast<double>(p.invert ? -step : step) / p.increments_per_unit;
+    const double largest = in.largest_step * (static_cast<double>(s.missed) + 1);
+    if (!s.trusting && in.largest_step > 0 && std::abs(distance) > largest) return false;
+    s.count += step;
+    if (s.trusting) distance = 0;
+  }
+  s.started = true;
+  s.trusting = false;
+  s.word = word;
+  return true;
+}
+
+}  // namespace
+
+void Step(const Encoder& p, const EncoderInputs& in, Cycle cycle, EncoderState& s, EncoderOutputs& out) noexcept {
+  double distance = 0;
+  out.error = in.error || !Take(p, in, s, distance);
+  if (out.error) {
+    ++s.missed;
+  } else {
+    const double time = cycle.period_s * (static_cast<double>(s.missed) + 1);
+    const double share = p.velocity_filter_s > 0 ? -std::expm1(-time / p.velocity_filter_s) : 1;
+    s.velocity += (distance / time - s.velocity) * share;
+    s.missed = 0;
+  }
+  out.position = PositionOf(p, s.count);
+  out.velocity = s.velocity;
+}
+
+void Trust(EncoderState& s) noexcept {
+  s.trusting = true;
+}
+
+double LatchedPosition(const Encoder& p, const EncoderState& s, std::uint32_t counts) noexcept {
+  return PositionOf(p, s.count + Difference(p, s.word, Decode(p, counts)));
+}
+
+double CountsAt(const Encoder& p, double position) noexcept {
+  const double counts = (position - p.offset) * p.increments_per_unit;
+  return p.invert ? -counts : counts;
+}
+
+double CountRateAt(const Encoder& p, double velocity) noexcept {
+  const double rate = velocity * p.increments_per_unit;
+  return p.invert ? -rate : rate;
+}
+
+void describe(Enumeration<EncoderType>& e) {
+  e.about("What an encoder sends.");
+  e.value(EncoderType::kIncremental, "incremental", "A 32-bit counter of quadrature increments.");
+  e.value(EncoderType::kAbsoluteSsi, "absolute_ssi", "An SSI word that stands for the position.");
+}
+
+void describe(Enumeration<SsiCoding>& e) {
+  e.about("How an SSI encoder writes its position.");
+  e.value(SsiCoding::kBinary, "binary", "As a binary number.");
+  e.value(SsiCoding::kGray, "gray", "In Gray code: one bit changes from one count to the next.");
+}
+
+void describe(Description<Encoder>& d) {
+  using P = Encoder;
+  d.about("The position encoder of an axis.");
+  d.defaulted<&P::type>("What it sends.");
+  d.defaulted<&P::increments_per_unit>(unit::count_u, between(1e-6, 1e9), "Counts per unit of the axis.");
+  d.defaulted<&P::invert>("Counts fall while the position grows.");
+  d.defaulted<&P::ssi_bits>(between(8, 32), "Absolute: bits of the word.");
+  d.defaulted<&P::coding>("Absolute: how the word is written.");
+  d.defaulted<&P::offset>(unit::u, "Position of the axis where the encoder counts 0.");
+  d.defaulted<&P::velocity_filter_s>(unit::s, between(0, 10), "Time constant of the velocity's filter; 0: none.");
+}
+
+void describe(Description<EncoderState>& d) {
+  using S = EncoderState;
+  d.about("What the measurement remembers from one cycle to the next.");
+  d.internal<&S::started>("A first sample was taken.");
+  d.internal<&S::trusting>("The next sample is taken however far away it is.");
+  d.internal<&S::word>(unit::count, "Last good sample.");
+  d.internal<&S::count>(unit::count, "The same without wraps.");
+  d.internal<&S::missed>(unit::cycles, "Cycles since the last good sample.");
+  d.internal<&S::velocity>(unit::u_s, "Velocity behind the filter.");
+}
+
+}  // namespace takt::axis

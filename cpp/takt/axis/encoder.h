@@ -1,0 +1,74 @@
+// From the encoder's raw counts to position and velocity in the axis' unit.
+#pragma once
+
+#include <cstdint>
+
+#include "takt/core/cycle.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/ports.h"
+
+namespace takt::axis {
+
+enum class EncoderType : std::uint8_t { kIncremental, kAbsoluteSsi };
+enum class SsiCoding : std::uint8_t { kBinary, kGray };
+
+struct Encoder {
+  EncoderType type = EncoderType::kIncremental;
+  double increments_per_unit = 1000;      // counts per u, > 0
+  bool invert = false;                    // counts fall while the position grows
+  int ssi_bits = 24;                      // absolute: 8 to 32; bits of the word above them are ignored
+  SsiCoding coding = SsiCoding::kBinary;  // absolute
+  double offset = 0;                      // u: position at count 0
+  double velocity_filter_s = 0;           // s, >= 0: time constant of the velocity's filter; 0: none
+
+  bool operator==(const Encoder&) const = default;
+};
+
+struct EncoderInputs {
+  std::uint32_t counts = 0;  // as they come
+  bool error = false;        // ERR line, or no answer
+  double largest_step = 0;   // u the axis can move in one cycle at most; 0: any step is believed
+};
+
+struct EncoderState {
+  bool started = false;      // a first sample was taken
+  bool trusting = false;     // the next sample is taken however far away it is
+  std::uint32_t word = 0;    // last good sample, decoded
+  std::int64_t count = 0;    // the same without wraps, 0 where the counter's first pass begins
+  std::uint32_t missed = 0;  // cycles since the last good sample
+  double velocity = 0;       // u/s, filtered
+
+  bool operator==(const EncoderState&) const = default;
+};
+
+// While `error` is set, position and velocity are those of the last good sample.
+struct EncoderOutputs {
+  double position = 0;  // u, runs on over all wraps
+  double velocity = 0;  // u/s
+  bool error = false;   // the encoder says so, or it jumped further than the axis can
+};
+
+// A jump is not believed: the last good sample stays, and the next one is compared with it, over the longer time. So
+// one bad word costs one cycle with an error, and an encoder that really is elsewhere is believed when the axis could
+// have got there, or after Trust. Between two good samples the count must change by less than half its range: 2^31, or
+// 2^(ssi_bits - 1).
+void Step(const Encoder& params, const EncoderInputs& inputs, Cycle cycle, EncoderState& state,
+          EncoderOutputs& outputs) noexcept;
+
+// After a fault was seen to (MC_Reset): the next good sample is taken as it is. The position may have slipped by then.
+void Trust(EncoderState& state) noexcept;
+
+// The position of a counter value latched near the last good sample (index pulse).
+double LatchedPosition(const Encoder& params, const EncoderState& state, std::uint32_t counts) noexcept;
+
+// What a position is in counts without wraps: csp set points.
+double CountsAt(const Encoder& params, double position) noexcept;
+// And a velocity, in counts/s.
+double CountRateAt(const Encoder& params, double velocity) noexcept;
+
+void describe(Enumeration<EncoderType>&);
+void describe(Enumeration<SsiCoding>&);
+void describe(Description<Encoder>&);
+void describe(Description<EncoderState>&);
+
+}  // namespace takt::axis

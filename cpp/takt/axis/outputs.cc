@@ -1,0 +1,31 @@
+#include "takt/axis/outputs.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+void describe(Description<Outputs>& d) {
+  using O = Outputs;
+  d.about("State of an axis after a cycle.");
+  d.internal<&O::set_position>(unit::u, "Set point; rotary axes: in [0, modulus).");
+  d.internal<&O::set_velocity>(unit::u_s, "Velocity of the set point.");
+  d.internal<&O::set_acceleration>(unit::u_s2, "Acceleration of the set point.");
+  d.internal<&O::actual_position>(unit::u, "Measured; rotary axes: in [0, modulus).");
+  d.internal<&O::actual_velocity>(unit::u_s, "Measured.");
+  d.internal<&O::following_error>(unit::u, "Set point minus measured position.");
+  d.internal<&O::voltage_v>(unit::volt, "Output of the position loop, analogue drives.");
+  d.internal<&O::torque_nm>(unit::nm, "As the drive reports it.");
+  d.internal<&O::active_command>("Ticket of the command in control; 0: none.");
+  d.internal<&O::error>("Fault of the axis, not of a command; 0: none.");
+  d.internal<&O::state>("PLCopen state.");
+  d.internal<&O::limited_by>("What holds the motion in progress back from what was asked.");
+  d.internal<&O::buffered_commands>("Commands waiting behind the one in control.");
+  d.internal<&O::loop_closed>("The position loop is closed and the brake released.");
+  d.internal<&O::in_position>("The following error is inside the in-position window.");
+  d.internal<&O::limit_positive>("LIM+ after inversion.");
+  d.internal<&O::limit_negative>("LIM- after inversion.");
+  d.internal<&O::reference>("REF after inversion.");
+  d.internal<&O::touch_probe>("TP after inversion.");
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,36 @@
+// What an axis publishes every cycle.
+#pragma once
+
+#include <cstdint>
+
+#include "takt/axis/state_table.h"
+#include "takt/core/feedback.h"
+#include "takt/core/status.h"
+
+namespace takt::axis {
+
+struct Outputs {
+  double set_position = 0;         // u; rotary: in [0, modulus)
+  double set_velocity = 0;         // u/s
+  double set_acceleration = 0;     // u/s²
+  double actual_position = 0;      // u; rotary: in [0, modulus)
+  double actual_velocity = 0;      // u/s
+  double following_error = 0;      // u, set minus actual
+  double voltage_v = 0;            // V, output of the position loop
+  double torque_nm = 0;            // Nm, as the drive reports it
+  Ticket active_command = 0;       // 0: none
+  ErrorId error = ErrorId::kNone;  // fault of the axis (not of a command)
+  PlcState state = PlcState::kDisabled;
+  LimitedBy limited_by = LimitedBy::kNothing;  // what holds the motion in progress back
+  std::uint8_t buffered_commands = 0;
+  bool loop_closed = false;
+  bool in_position = false;
+  bool limit_positive = false;  // switches after inversion
+  bool limit_negative = false;
+  bool reference = false;
+  bool touch_probe = false;
+};
+
+void describe(Description<Outputs>&);
+
+}  // namespace takt::axis

@@ -1,0 +1,87 @@
+#include "takt/axis/params.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+trajectory::Limits AxisParams::planner_limits() const {
+  return {limits.velocity, limits.acceleration, limits.deceleration.value_or(limits.acceleration), limits.jerk};
+}
+
+void describe(Enumeration<AxisKind>& e) {
+  e.about("How positions of an axis are counted.");
+  e.value(AxisKind::kLinear, "linear", "From end to end.");
+  e.value(AxisKind::kRotary, "rotary", "Round and round: reported in [0, modulus).");
+}
+
+void describe(Description<AxisLimits>& d) {
+  using L = AxisLimits;
+  d.about("What the axis may do at most. Commands beyond it are refused; the engine's own stops use it in full.");
+  d.required<&L::velocity>(unit::u_s, positive, "Largest velocity.");
+  d.required<&L::acceleration>(unit::u_s2, positive, "Largest acceleration.");
+  d.defaulted<&L::deceleration>(unit::u_s2, positive, "Largest deceleration; unset: as the acceleration.");
+  d.required<&L::jerk>(unit::u_s3, not_negative, "Largest jerk; 0: unlimited.");
+  d.defaulted<&L::lower>(unit::u, "Lower SW limit (LimNeg); unset: none.");
+  d.defaulted<&L::upper>(unit::u, "Upper SW limit (LimPos); unset: none.");
+  d.rule<&L::upper>("must lie above lower", [](const L& l) { return !l.lower || !l.upper || *l.lower < *l.upper; });
+}
+
+void describe(Description<Supervision>& d) {
+  using S = Supervision;
+  d.about("What is watched while the loop is closed.");
+  d.defaulted<&S::deviation_moving>(
+      unit::u, positive, "Largest following error in motion; beyond it: ErrorStop 2001. Unset: not watched.");
+  d.defaulted<&S::deviation_standstill>(unit::u, positive, "The same at rest.");
+  d.defaulted<&S::in_position>(
+      unit::u, positive,
+      "A positioning command is done when the following error is inside this window; unset: with its set point.");
+  d.defaulted<&S::in_position_timeout_s>(unit::s, positive,
+                                         "How long to wait for that; then the command fails with error 0003.");
+}
+
+void describe(Description<Drive>& d) {
+  d.about("The drive behind the axis.");
+  d.defaulted<&Drive::mode>("What the drive is commanded by.");
+  d.defaulted<&Drive::invert>("Inverts the control sense.");
+  d.defaulted<&Drive::ready_timeout_s>(unit::s, positive,
+                                       "How long the drive may take to get ready; then ErrorStop 3002.");
+}
+
+void describe(Description<InputSense>& d) {
+  using I = InputSense;
+  d.about("Which switch inputs are active low (as normally closed contacts are).");
+  d.defaulted<&I::invert_limit_positive>("Inverts LIM+.");
+  d.defaulted<&I::invert_limit_negative>("Inverts LIM-.");
+  d.defaulted<&I::invert_reference>("Inverts REF.");
+  d.defaulted<&I::invert_touch_probe>("Inverts TP.");
+}
+
+void describe(Description<Following>& d) {
+  using F = Following;
+  d.about(
+      "The master of an axis that follows another one from load on (gantry, line shaft). It takes no motion commands "
+      "of its own.");
+  d.required<&F::axis>("Name of the master.");
+  d.defaulted<&F::ratio>("Own units per unit of the master; negative: the other way round.");
+  d.rule<&F::ratio>("must not be 0", [](const F& f) { return f.ratio != 0; });
+}
+
+void describe(Description<AxisParams>& d) {
+  using A = AxisParams;
+  d.about("One axis. Positions in its own unit u, velocities u/s, accelerations u/s², jerk u/s³.");
+  d.required<&A::name>("How commands and channels call it.");
+  d.defaulted<&A::unit>("The unit u, for people: mm, deg, rev ...");
+  d.defaulted<&A::kind>("linear or rotary.");
+  d.defaulted<&A::modulus>(unit::u, positive, "Rotary axes: one turn.");
+  d.required<&A::limits>("What the axis may do at most.");
+  d.defaulted<&A::supervision>("What is watched.");
+  d.defaulted<&A::encoder>("How the position is measured.");
+  d.defaulted<&A::drive>("The drive.");
+  d.defaulted<&A::inputs>("The switch inputs.");
+  d.defaulted<&A::loop>("The position loop, for drives that do not close it themselves.");
+  d.defaulted<&A::follows>("The axis it follows, if any.");
+  d.rule<&A::limits>("must have no lower and upper on a rotary axis",
+                     [](const A& a) { return !a.rotary() || (!a.limits.lower && !a.limits.upper); });
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,81 @@
+// What a machine file says about one axis.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "takt/axis/control_loop.h"
+#include "takt/axis/encoder.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/ports.h"
+#include "takt/trajectory/limits.h"
+
+namespace takt::axis {
+
+enum class AxisKind : std::uint8_t { kLinear, kRotary };
+
+// AX-05. Commands beyond these are refused; motion the engine decides on itself (faults) uses them in full.
+struct AxisLimits {
+  double velocity = 0;                   // u/s
+  double acceleration = 0;               // u/s²
+  std::optional<double> deceleration{};  // u/s²; unset: as acceleration
+  double jerk = 0;                       // u/s³; 0: unlimited
+  std::optional<double> lower{};         // u, SW limit LimNeg; unset: none
+  std::optional<double> upper{};         // u, SW limit LimPos; unset: none
+};
+
+struct Supervision {
+  std::optional<double> deviation_moving{};      // u, largest following error in motion; unset: not watched
+  std::optional<double> deviation_standstill{};  // u, the same at rest
+  std::optional<double>
+      in_position{};  // u, window in which a positioning command is done; unset: set point alone decides
+  double in_position_timeout_s = 1.0;  // s after the set point's arrival; then the command fails with error 0003
+};
+
+struct Drive {
+  DriveMode mode = DriveMode::kCyclicPosition;
+  bool invert = false;           // AX-03: invert the control sense
+  double ready_timeout_s = 1.0;  // s from enabling to ready
+};
+
+// AX-03: which of the switch inputs are active low.
+struct InputSense {
+  bool invert_limit_positive = false;
+  bool invert_limit_negative = false;
+  bool invert_reference = false;
+  bool invert_touch_probe = false;
+};
+
+// A second axis on the same mechanics (gantry, line shaft): it follows a master from load on.
+struct Following {
+  std::string axis;  // name of the master
+  double ratio = 1;  // own u per master's u, not 0
+};
+
+struct AxisParams {
+  std::string name;
+  std::string unit = "mm";  // the axis' own unit u, for people and columns
+  AxisKind kind = AxisKind::kLinear;
+  double modulus = 360;  // u, rotary axes: positions are reported in [0, modulus)
+  AxisLimits limits;
+  Supervision supervision;
+  Encoder encoder;
+  Drive drive;
+  InputSense inputs;
+  ControlLoop loop;
+  std::optional<Following> follows;
+
+  bool rotary() const { return kind == AxisKind::kRotary; }
+  // The limits as the planner takes them.
+  trajectory::Limits planner_limits() const;
+};
+
+void describe(Enumeration<AxisKind>&);
+void describe(Description<AxisLimits>&);
+void describe(Description<Supervision>&);
+void describe(Description<Drive>&);
+void describe(Description<InputSense>&);
+void describe(Description<Following>&);
+void describe(Description<AxisParams>&);
+
+}  // namespace takt::axis

@@ -1,0 +1,48 @@
+// From a request to a profile: where it ends, with what speed it is left, and whether limits allow it. Pure: nothing of
+// the axis changes.
+#pragma once
+
+#include "takt/axis/params.h"
+#include "takt/axis/request.h"
+#include "takt/core/kinematic_state.h"
+#include "takt/core/status.h"
+#include "takt/trajectory/planner.h"
+
+namespace takt::axis {
+
+// What planning has to know of an axis besides its parameters.
+struct Surroundings {
+  bool limit_positive = false;
+  bool limit_negative = false;
+  std::int8_t last_sense = 1;
+};
+
+struct Plan {
+  trajectory::Profile profile;
+  double target = 0;  // unwrapped end of a positioning request
+  LimitedBy limited_by = LimitedBy::kNothing;
+};
+
+// Plans `request` from `from`. `next`, where not null, is the blending command behind it: the profile then ends with
+// the highest velocity that `next` allows and both can keep (AX-12). Errors: kTargetBehindLimit, kAwayFromLimitOnly,
+// kPlanning.
+Status PlanRequest(const AxisParams& params, const Surroundings& around, trajectory::Planner& planner,
+                   const KinematicState& from, const Request& request, const Request* next, Plan& out) noexcept;
+
+// The same for a positioning request that is under way: `out.target` is given and stays.
+Status Replan(const AxisParams& params, const Surroundings& around, trajectory::Planner& planner,
+              const KinematicState& from, const Request& request, const Request* next, Plan& out) noexcept;
+
+// To standstill as `limits` say, or harder where the SW limits want it.
+Status PlanStop(const AxisParams& params, trajectory::Planner& planner, const KinematicState& from,
+                const trajectory::Limits& limits, trajectory::Profile& out) noexcept;
+
+// +1 or -1: where a velocity request goes.
+int SenseOf(const Request& request, std::int8_t last_sense) noexcept;
+
+// The next position equal to `position` modulo the turn that `direction` allows from `from` without reversing on the
+// way (AX-14). Linear axes: `position`.
+double ResolveTarget(const AxisParams& params, const KinematicState& from, const trajectory::Limits& limits,
+                     double position, Direction direction, std::int8_t last_sense) noexcept;
+
+}  // namespace takt::axis

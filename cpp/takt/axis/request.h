@@ -1,0 +1,72 @@
+// A command as the axis keeps it: checked, its unset values filled in, small and plain, so that it can be buffered and
+// hashed.
+#pragma once
+
+#include <string>
+
+#include "takt/axis/commands.h"
+#include "takt/axis/params.h"
+#include "takt/axis/state_table.h"
+#include "takt/core/feedback.h"
+#include "takt/core/status.h"
+
+namespace takt::axis {
+
+enum class RequestKind : std::uint8_t {
+  kNone,
+  kPower,
+  kMoveAbsolute,
+  kMoveRelative,
+  kMoveVelocity,
+  kHalt,
+  kStop,
+  kJog
+};
+
+struct Request {
+  Ticket ticket = 0;
+  double value = 0;     // position, distance; velocity moves: the signed velocity is velocity * sense
+  double velocity = 0;  // u/s, the four limits of the command, never beyond the axis' own
+  double acceleration = 0;
+  double deceleration = 0;
+  double jerk = 0;
+  double lease_s = 0;  // > 0: level-sensitive command under a dead man's lease
+  RequestKind kind = RequestKind::kNone;
+  Direction direction = Direction::kShortest;
+  BufferMode buffer_mode = BufferMode::kAborting;
+  bool enable = false;   // power
+  bool hold = false;     // stop
+  bool forward = false;  // jog
+  bool backward = false;
+
+  trajectory::Limits limits() const { return {velocity, acceleration, deceleration, jerk}; }
+  bool positions() const { return kind == RequestKind::kMoveAbsolute || kind == RequestKind::kMoveRelative; }
+  bool blends() const { return buffer_mode >= BufferMode::kBlendingLow; }
+};
+
+// What the seed's second table 8.3 says of each command, and the state it puts the axis in.
+struct RequestRules {
+  RequestKind kind;
+  bool may_be_buffered;
+  bool may_be_blended;   // into the move before it
+  bool may_be_followed;  // by a buffered command
+  PlcState state;        // power: while switching off in motion
+};
+const RequestRules& RulesOf(RequestKind kind) noexcept;
+
+// kParameter where a value is not finite, out of its range, beyond the axis' limits (AX-06) or the buffer mode is not
+// one of the command's. `why`, where given, says what was wrong.
+struct Refusal {
+  const char* field = "";
+  double found = 0;
+  double low = 0;
+  double high = 0;
+};
+Status MakeRequest(const Command& command, const AxisParams& params, Request& out, Refusal* why = nullptr) noexcept;
+// The same as a sentence for people; empty: the arguments are fine. Not for the cycle.
+std::string WhyNot(const Command& command, const AxisParams& params);
+
+void describe(Enumeration<RequestKind>&);
+void describe(Description<Request>&);
+
+}  // namespace takt::axis

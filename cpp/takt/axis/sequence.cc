@@ -1,0 +1,256 @@
+#include "takt/axis/sequence.h"
+
+#include <cmath>
+
+namespace takt::axis {
+
+using trajectory::Profile;
+
+void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error, bool reached) noexcept {
+  c.feedback.Report({ticket, c.cycle.count, feedback, reached, error});
+}
+
+void Enter(State& s, PlcState to) noexcept {
+  if (!IsLegal(s.plc, to)) ++s.illegal_transitions;
+  s.plc = to;
+}
+
+Surroundings SurroundingsOf(const State& s) noexcept {
+  return {s.limit_positive, s.limit_negative, s.last_sense};
+}
+
+double Elapsed(const Context& c, const State& s) noexcept {
+  return static_cast<double>(c.cycle.count - s.motion.start_cycle) * c.cycle.period_s + s.motion.start_offset_s;
+}
+
+void StartMotion(const Profile& profile, double target, const MotionStart& start, State& s) noexcept {
+  s.motion.profile = profile;
+  s.motion.target = target;
+  s.motion.start_cycle = start.cycle;
+  s.motion.start_offset_s = start.offset_s;
+  s.motion.arrived = false;
+}
+
+bool AtRest(const State& s) noexcept {
+  return s.setpoint.velocity == 0 && s.setpoint.acceleration == 0;
+}
+
+namespace {
+
+// The blending command behind the one in control, if any.
+const Request* Follower(const State& s) {
+  return s.buffered > 0 && s.buffer[0].blends() ? &s.buffer[0] : nullptr;
+}
+
+Request TakeFirst(State& s) {
+  const Request first = s.buffer[0];
+  for (std::size_t i = 1; i < s.buffered; ++i) s.buffer[i - 1] = s.buffer[i];
+  --s.buffered;
+  s.buffer[s.buffered] = Request{};
+  return first;
+}
+
+// Whether a positioning command may call itself done although the set point has arrived already.
+bool InPosition(const AxisParams& p, const State& s) {
+  return !p.supervision.in_position || std::abs(s.setpoint.position - s.actual.position) <= *p.supervision.in_position;
+}
+
+double ArrivedFor(const Context& c, const State& s) {
+  return static_cast<double>(c.cycle.count - s.motion.arrived_cycle) * c.cycle.period_s;
+}
+
+void ConcludePositioning(const Context& c, double late_s, State& s) {
+  const bool leaves_moving = s.motion.profile.end().velocity != 0;
+  if (leaves_moving || InPosition(c.params, s)) {
+    EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+    StartNext(c, leaves_moving ? late_s : 0, s);
+  } else if (ArrivedFor(c, s) > c.params.supervision.in_position_timeout_s) {
+    EndActive(c, FeedbackState::kError, ErrorId::kDeviationLimit, s);
+    AbortBuffer(c, s);
+    Enter(s, PlcState::kStandstill);
+  }
+}
+
+void ConcludeVelocity(const Context& c, State& s) {
+  if (!s.reported) {
+    Report(c, s.active.ticket, FeedbackState::kActive, ErrorId::kNone, true);
+    s.reported = true;
+  }
+  if (s.buffered > 0) {
+    const Ticket ticket = s.active.ticket;
+    s.active = Request{};
+    Report(c, ticket, FeedbackState::kAborted, ErrorId::kNone, true);
+    StartNext(c, 0, s);
+  }
+}
+
+void ConcludeStop(const Context& c, State& s) {
+  if (!s.reported) {
+    Report(c, s.active.ticket, FeedbackState::kDone);
+    s.reported = true;
+  }
+  if (s.active.hold) return;
+  s.active = Request{};
+  StartNext(c, 0, s);
+}
+
+}  // namespace
+
+void Grant(const Context& c, const Request& request, State& s) noexcept {
+  s.active = request;
+  s.reported = false;
+  s.lease_end_cycle = LeaseEnd(c, request.lease_s);
+  Report(c, request.ticket, FeedbackState::kActive);
+}
+
+void TakeControl(const Context& c, const Request& request, const Plan& plan, const MotionStart& start,
+                 State& s) noexcept {
+  Grant(c, request, s);
+  s.limited_by = plan.limited_by;
+  StartMotion(plan.profile, plan.target, start, s);
+  Enter(s, RulesOf(request.kind).state);
+}
+
+std::uint64_t LeaseEnd(const Context& c, double lease_s) noexcept {
+  return c.cycle.count + static_cast<std::uint64_t>(std::ceil(lease_s / c.cycle.period_s));
+}
+
+void EndActive(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
+  const bool final_is_out = s.active.kind == RequestKind::kStop && s.reported;
+  if (s.active.kind != RequestKind::kNone && !final_is_out) Report(c, s.active.ticket, feedback, error);
+  s.active = Request{};
+  s.reported = false;
+  s.jog_sense = 0;
+}
+
+void AbortBuffer(const Context& c, State& s) noexcept {
+  for (std::size_t i = 0; i < s.buffered; ++i) {
+    Report(c, s.buffer[i].ticket, FeedbackState::kAborted);
+    s.buffer[i] = Request{};
+  }
+  s.buffered = 0;
+}
+
+void AbortAll(const Context& c, State& s) noexcept {
+  EndActive(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  AbortBuffer(c, s);
+}
+
+void Brake(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s) noexcept {
+  Profile profile;
+  PlanStop(c.params, c.planner, s.setpoint, limits, profile);
+  StartMotion(profile, profile.end().position, start, s);
+}
+
+void ComeToRest(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s) noexcept {
+  s.active = Request{};
+  s.active.kind = RequestKind::kHalt;
+  Brake(c, limits, start, s);
+  Enter(s, PlcState::kDiscreteMotion);
+}
+
+void OpenLoop(State& s) noexcept {
+  s.enable = false;
+  s.loop_closed = false;
+  s.voltage_v = 0;
+  s.limited_by = LimitedBy::kNothing;
+  s.setpoint = {s.actual.position, 0, 0};
+  s.motion = Motion{};
+  s.motion.arrived = true;
+}
+
+void StartNext(const Context& c, double late_s, State& s) noexcept {
+  s.limited_by = LimitedBy::kNothing;
+  if (AtRest(s) && IsLegal(s.plc, PlcState::kStandstill)) Enter(s, PlcState::kStandstill);
+  while (s.buffered > 0) {
+    const Request next = TakeFirst(s);
+    if (next.kind == RequestKind::kPower && next.enable) {  // it is on already
+      Report(c, next.ticket, FeedbackState::kActive);
+      Report(c, next.ticket, FeedbackState::kDone);
+      continue;
+    }
+    const bool seamless = s.motion.profile.end().velocity != 0 && late_s > 0;
+    const KinematicState from = seamless ? s.motion.profile.end() : s.setpoint;
+    Plan plan;
+    const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, from, next, Follower(s), plan);
+    if (status.ok()) {
+      TakeControl(c, next, plan, {c.cycle.count, seamless ? late_s : 0}, s);
+      if (seamless) s.setpoint = s.motion.profile.At(late_s);
+      return;
+    }
+    Report(c, next.ticket, FeedbackState::kError, status.error);
+    AbortBuffer(c, s);
+  }
+  // Nobody takes over (any more): come to rest, if there is still anything to come to rest from.
+  if (s.plc != PlcState::kStandstill) ComeToRest(c, c.params.planner_limits(), FromThisCycle(c), s);
+}
+
+void ReplanActive(const Context& c, State& s) noexcept {
+  if (!s.active.positions() || s.motion.arrived) return;
+  Plan plan;
+  plan.target = s.motion.target;
+  if (Replan(c.params, SurroundingsOf(s), c.planner, s.setpoint, s.active, Follower(s), plan).failed()) return;
+  s.limited_by = plan.limited_by;
+  StartMotion(plan.profile, plan.target, FromCycleBefore(c), s);
+}
+
+void Conclude(const Context& c, double late_s, State& s) noexcept {
+  switch (s.active.kind) {
+    case RequestKind::kMoveAbsolute:
+    case RequestKind::kMoveRelative:
+      ConcludePositioning(c, late_s, s);
+      break;
+    case RequestKind::kMoveVelocity:
+      ConcludeVelocity(c, s);
+      break;
+    case RequestKind::kHalt:
+      EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+      StartNext(c, 0, s);
+      break;
+    case RequestKind::kStop:
+      ConcludeStop(c, s);
+      break;
+    case RequestKind::kPower:
+      OpenLoop(s);
+      Enter(s, PlcState::kDisabled);
+      EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+      break;
+    case RequestKind::kJog:
+      if (s.jog_sense == 0 && !s.active.forward && !s.active.backward) {
+        EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+        Enter(s, PlcState::kStandstill);
+      }
+      break;
+    case RequestKind::kNone:
+      break;
+  }
+}
+
+void FollowKeys(const Context& c, State& s) noexcept {
+  const bool up = s.active.forward;
+  const bool down = s.active.backward;
+  if (s.jog_sense != 0 && !(s.jog_sense > 0 ? up : down)) {
+    s.jog_sense = 0;
+    Enter(s, PlcState::kDiscreteMotion);
+    Brake(c, s.active.limits(), FromCycleBefore(c), s);
+  }
+  if (!up && !down) s.jog_armed = true;
+  if (s.jog_sense != 0 || !s.jog_armed || up == down) return;
+
+  Request move = s.active;
+  move.kind = RequestKind::kMoveVelocity;
+  move.direction = up ? Direction::kPositive : Direction::kNegative;
+  s.jog_armed = false;
+  Plan plan;
+  const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, move, nullptr, plan);
+  if (status.failed()) {
+    const trajectory::Limits limits = s.active.limits();
+    EndActive(c, FeedbackState::kError, status.error, s);
+    return ComeToRest(c, limits, FromCycleBefore(c), s);
+  }
+  s.jog_sense = up ? 1 : -1;
+  StartMotion(plan.profile, 0, FromCycleBefore(c), s);
+  Enter(s, PlcState::kContinuousMotion);
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,58 @@
+// Which command is in control, and how control passes from one to the next. Used by the stages of the axis only.
+#pragma once
+
+#include "takt/axis/axis.h"
+#include "takt/axis/planning.h"
+
+namespace takt::axis {
+
+// From which cycle a new motion counts its time.
+struct MotionStart {
+  std::uint64_t cycle = 0;
+  double offset_s = 0;
+};
+// From the set point of the cycle before (commands, faults: the first new set point is this cycle's) ...
+inline MotionStart FromCycleBefore(const Context& c) {
+  return {c.cycle.count - 1, 0};
+}
+// ... or from this cycle's set point, which is already out.
+inline MotionStart FromThisCycle(const Context& c) {
+  return {c.cycle.count, 0};
+}
+
+void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error = ErrorId::kNone,
+            bool reached = false) noexcept;
+void Enter(State& s, PlcState to) noexcept;
+Surroundings SurroundingsOf(const State& s) noexcept;
+// Seconds of the motion in progress at this cycle.
+double Elapsed(const Context& c, const State& s) noexcept;
+
+void StartMotion(const trajectory::Profile& profile, double target, const MotionStart& start, State& s) noexcept;
+std::uint64_t LeaseEnd(const Context& c, double lease_s) noexcept;
+
+// Puts a request in control of the motion there is ...
+void Grant(const Context& c, const Request& request, State& s) noexcept;
+// ... or with a motion of its own.
+void TakeControl(const Context& c, const Request& request, const Plan& plan, const MotionStart& start,
+                 State& s) noexcept;
+// Ends the command in control; the motion goes on until something replaces it.
+void EndActive(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
+void AbortBuffer(const Context& c, State& s) noexcept;
+void AbortAll(const Context& c, State& s) noexcept;
+// Brakes as `limits` say. Never fails.
+void Brake(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s) noexcept;
+// The same, with nobody in control, to Standstill.
+void ComeToRest(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s) noexcept;
+// Makes the axis stand where it is measured: loops open, nothing in motion.
+void OpenLoop(State& s) noexcept;
+// Gives control to the next buffered command, `late_s` after the motion in progress ended; with none, the axis is in
+// Standstill.
+void StartNext(const Context& c, double late_s, State& s) noexcept;
+// Plans the positioning command in control anew because what follows it changed.
+void ReplanActive(const Context& c, State& s) noexcept;
+// What to do once the motion in progress is over, each cycle until its command ends.
+void Conclude(const Context& c, double late_s, State& s) noexcept;
+// Follows the keys of a jog.
+void FollowKeys(const Context& c, State& s) noexcept;
+
+}  // namespace takt::axis

@@ -1,0 +1,61 @@
+#include "takt/axis/state.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+void describe(Description<Motion>& d) {
+  using M = Motion;
+  d.about("The motion in progress.");
+  d.internal<&M::profile>("Set points from its start.");
+  d.internal<&M::start_cycle>("Cycle its time counts from.");
+  d.internal<&M::start_offset_s>(unit::s, "How long before that cycle it began.");
+  d.internal<&M::target>(unit::u, "Where a positioning command ends, unwrapped.");
+  d.internal<&M::arrived>("The profile is over.");
+  d.internal<&M::arrived_cycle>("Since when.");
+}
+
+void describe(Description<State>& d) {
+  using S = State;
+  d.about("All memory of an axis.");
+  d.internal<&S::setpoint>("Set point of this cycle, unwrapped.");
+  d.internal<&S::actual>("As measured, unwrapped.");
+  d.internal<&S::plc>("PLCopen state.");
+  d.internal<&S::error>("Fault.");
+  d.internal<&S::limited_by>("What holds the motion back.");
+  d.internal<&S::active>("Command in control.");
+  d.internal<&S::reported>("Its final feedback is out.");
+  d.internal<&S::jog_sense>("Jogging up (1), down (-1) or not.");
+  d.internal<&S::jog_armed>("Both keys were seen up.");
+  d.internal<&S::last_sense>("Sense of the last motion.");
+  d.internal<&S::lease_end_cycle>("When the dead man's lease ends.");
+  d.internal<&S::reset_ticket>("Of the reset in progress.");
+  d.internal<&S::reset_pending>("A reset waits for standstill.");
+  d.internal<&S::buffer>("Buffered commands, the next one first.");
+  d.internal<&S::buffered>("How many.");
+  d.internal<&S::enable>("Drive told to be on.");
+  d.internal<&S::loop_closed>("Loop closed, brake released.");
+  d.internal<&S::enable_cycle>("Since when.");
+  d.internal<&S::limit_positive>("LIM+.");
+  d.internal<&S::limit_negative>("LIM-.");
+  d.internal<&S::reference>("REF.");
+  d.internal<&S::touch_probe>("TP.");
+  d.internal<&S::limit_positive_before>("LIM+ a cycle before.");
+  d.internal<&S::limit_negative_before>("LIM- a cycle before.");
+  d.internal<&S::drive_ready>("Drive says ready.");
+  d.internal<&S::drive_fault>("Drive says fault.");
+  d.internal<&S::encoder_error>("The measured position is not to be believed.");
+  d.internal<&S::encoder_line_error>("Because the encoder says so.");
+  d.internal<&S::torque_nm>(unit::nm, "As the drive says.");
+  d.internal<&S::coupled>("Follows its master.");
+  d.internal<&S::follow_offset>(unit::u, "Distance to the master's position times the ratio.");
+  d.internal<&S::origin>(unit::u, "Whole turns taken out of all positions.");
+  d.internal<&S::encoder>("Encoder.");
+  d.internal<&S::loop>("Position loop.");
+  d.internal<&S::voltage_v>(unit::volt, "Output of the position loop.");
+  d.internal<&S::following_error>(unit::u, "Set minus actual position.");
+  d.internal<&S::illegal_transitions>("Always 0.");
+  d.internal<&S::motion>("Motion in progress.");
+}
+
+}  // namespace takt::axis

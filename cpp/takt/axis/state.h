@@ -1,0 +1,86 @@
+// All memory of an axis: plain, so that it can be copied, compared, hashed and replayed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "takt/axis/control_loop.h"
+#include "takt/axis/encoder.h"
+#include "takt/axis/request.h"
+#include "takt/axis/state_table.h"
+#include "takt/core/kinematic_state.h"
+#include "takt/core/status.h"
+#include "takt/trajectory/profile.h"
+
+namespace takt::axis {
+
+inline constexpr int kBufferSize = 8;
+
+// The motion in progress: a profile and when it began.
+struct Motion {
+  trajectory::Profile profile;
+  std::uint64_t start_cycle = 0;  // profile time 0 lies ...
+  double start_offset_s = 0;      // ... so long before this cycle
+  double target = 0;              // u, unwrapped: where a positioning command ends
+  bool arrived = false;           // the profile is over
+  std::uint64_t arrived_cycle = 0;
+};
+
+struct State {
+  // Positions here are unwrapped; only the outputs are taken modulo.
+  KinematicState setpoint;
+  KinematicState actual;  // acceleration is not measured: 0
+  PlcState plc = PlcState::kDisabled;
+  ErrorId error = ErrorId::kNone;
+  LimitedBy limited_by = LimitedBy::kNothing;
+
+  Request active;  // in control; kind none: nothing is
+  bool reported =
+      false;  // its final feedback is out although it stays in control (held stop), or `reached` is (velocity)
+  std::int8_t jog_sense = 0;   // 1, -1: jogging that way; 0: not
+  bool jog_armed = false;      // both keys were seen up since the last jog
+  std::int8_t last_sense = 1;  // sense of the last motion, for Direction::kCurrent
+  std::uint64_t lease_end_cycle = 0;
+  Ticket reset_ticket = 0;
+  bool reset_pending = false;
+
+  std::array<Request, kBufferSize> buffer;  // [0] is next
+  std::uint8_t buffered = 0;
+
+  // Power.
+  bool enable = false;       // the drive is told to be on
+  bool loop_closed = false;  // and the position loop is closed, the brake released
+  std::uint64_t enable_cycle = 0;
+
+  // Switches after inversion, and as they were in the cycle before.
+  bool limit_positive = false;
+  bool limit_negative = false;
+  bool reference = false;
+  bool touch_probe = false;
+  bool limit_positive_before = false;
+  bool limit_negative_before = false;
+  bool drive_ready = false;
+  bool drive_fault = false;
+  bool encoder_error = false;       // not to be believed this cycle
+  bool encoder_line_error = false;  // because the encoder says so
+  double torque_nm = 0;
+
+  // Axes that follow a master.
+  bool coupled = false;
+  double follow_offset = 0;  // u, own position minus ratio times the master's when they were coupled
+
+  // Rotary axes: whole turns taken out of all positions, so that they stay small (counted in u).
+  double origin = 0;
+  EncoderState encoder;
+  ControlLoopState loop;
+  double voltage_v = 0;
+  double following_error = 0;             // u, set point of the cycle before minus what is measured now
+  std::uint64_t illegal_transitions = 0;  // always 0: the state table holds
+
+  Motion motion;
+};
+
+void describe(Description<Motion>&);
+void describe(Description<State>&);
+
+}  // namespace takt::axis

@@ -1,0 +1,19 @@
+#include "takt/axis/state_table.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+void describe(Enumeration<PlcState>& e) {
+  e.about("PLCopen's states of a single axis.");
+  e.value(PlcState::kDisabled, "Disabled", "The loop is open.");
+  e.value(PlcState::kStandstill, "Standstill", "Powered and at rest, nothing commanded.");
+  e.value(PlcState::kDiscreteMotion, "DiscreteMotion", "A move with an end.");
+  e.value(PlcState::kContinuousMotion, "ContinuousMotion", "A move without an end.");
+  e.value(PlcState::kSynchronizedMotion, "SynchronizedMotion", "Following a master.");
+  e.value(PlcState::kHoming, "Homing", "Looking for its reference.");
+  e.value(PlcState::kStopping, "Stopping", "Being stopped; takes no other motion.");
+  e.value(PlcState::kErrorStop, "ErrorStop", "A fault stopped it; only a reset leads out.");
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,342 @@
+#include "takt/plant/servo.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace takt::plant {
+
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+// How far a first-order motion v' = slope - rate (v - v0) gets in a time: v - v0 = slope * to_velocity, x - x0 - v0 t =
+// slope * to_distance.
+struct Reach {
+  double to_velocity = 0;  // s
+  double to_distance = 0;  // s²
+};
+
+Reach ReachAfter(double rate, double time) noexcept {
+  const double ratio = rate * time;
+  if (ratio < 1e-3) {  // the closed form would lose its digits
+    return {time * (1 - ratio / 2 * (1 - ratio / 3 * (1 - ratio / 4))),
+            time * time / 2 * (1 - ratio / 3 * (1 - ratio / 4 * (1 - ratio / 5)))};
+  }
+  const double to_velocity = (1 - std::exp(-ratio)) / rate;
+  return {to_velocity, (time - to_velocity) / rate};
+}
+
+// The time after which to_velocity has the given value.
+double TimeToReach(double rate, double to_velocity) noexcept {
+  return rate > 0 ? -std::log1p(-rate * to_velocity) / rate : to_velocity;
+}
+
+// What moves the axis during one step of the drive, per unit of inertia:
+// v' = clamp(gain (target - v) + bias, ±limit) - load - viscous v - friction sign(v)
+struct Law {
+  double gain = 0;      // 1/s; 0: no power
+  double lag = 0;       // s, 1 / gain
+  double target = 0;    // u/s
+  double bias = 0;      // u/s²
+  double limit = 0;     // u/s²
+  double viscous = 0;   // 1/s
+  double friction = 0;  // u/s²
+  double load = 0;      // u/s²
+
+  double DriveAt(double v) const noexcept { return std::clamp(gain * (target - v) + bias, -limit, limit); }
+};
+
+struct Motion {
+  double position = 0;  // u, of the motor
+  double velocity = 0;  // u/s, of the motor
+  double load = 0;      // u, position of the load
+};
+
+// Solved exactly, piece by piece. v' depends on v alone and falls with it, so v runs straight towards its resting value
+// and meets each border (full torque, friction turning round) once at most: four pieces at the most. `whole` is the
+// reach of an undisturbed piece that lasts the whole time.
+void Advance(const Law& law, double time, const Reach& whole, Motion& m) noexcept {
+  const bool powered = law.gain > 0;
+  const double full_below = powered ? law.target + (law.bias - law.limit) * law.lag : -kInfinite;
+  const double full_above = powered ? law.target + (law.bias + law.limit) * law.lag : kInfinite;
+  double left = time;
+  for (int piece = 0; piece < 4; ++piece) {
+    const double v = m.velocity;
+    const double push = law.DriveAt(v) - law.load - law.viscous * v;
+    if (v == 0 && std::abs(push) <= law.friction) return;
+    const double slope = push - std::copysign(law.friction, v == 0 ? push : v);
+
+    const bool up = slope > 0;
+    double border = up ? kInfinite : -kInfinite;
+    bool full = true;
+    if (up ? v < full_below : v > full_above) {
+      border = up ? full_below : full_above;
+    } else if (up ? v < full_above : v > full_below) {
+      border = up ? full_above : full_below;
+      full = false;
+    }
+    if (up ? (v < 0 && border > 0) : (v > 0 && border < 0)) border = 0;
+
+    const double rate = law.viscous + (full ? 0 : law.gain);
+    const Reach reach = !full && left == time ? whole : ReachAfter(rate, left);
+    const double end = v + slope * reach.to_velocity;
+    if (up ? end <= border : end >= border) {
+      m.position += v * left + slope * reach.to_distance;
+      m.velocity = end;
+      return;
+    }
+    const double passed = std::min(TimeToReach(rate, (border - v) / slope), left);
+    m.position += v * passed + slope * ReachAfter(rate, passed).to_distance;
+    m.velocity = border;
+    left -= passed;
+  }
+  m.position += m.velocity * left;
+}
+
+double FiniteOrZero(double x) noexcept {
+  return std::isfinite(x) ? x : 0;
+}
+
+// Limited to what a 64-bit counter holds with room for an origin.
+std::int64_t Whole(double x) noexcept {
+  return static_cast<std::int64_t>(std::clamp(x, -4e18, 4e18));
+}
+
+std::int64_t Nearest(double x) noexcept {
+  return Whole(x + (x < 0 ? -0.5 : 0.5));
+}
+
+std::int64_t Floor(double x) noexcept {
+  const std::int64_t whole = Whole(x);
+  return whole - (static_cast<double>(whole) > x ? 1 : 0);
+}
+
+double CountsPerUnit(const ServoEncoder& encoder) noexcept {
+  return encoder.inverted ? -encoder.increments_per_unit : encoder.increments_per_unit;
+}
+
+double EncoderPosition(const ServoEncoder& encoder, const ServoState& s) noexcept {
+  return encoder.place == ServoEncoderPlace::kMotor ? s.motor_position : s.load_position;
+}
+
+std::int64_t CounterAt(const ServoEncoder& encoder, const ServoState& s, double position, double noise) noexcept {
+  return Nearest(position * CountsPerUnit(encoder) + noise) + s.counter_origin;
+}
+
+std::uint32_t OnTheWire(const ServoEncoder& encoder, std::int64_t counter) noexcept {
+  const auto word = static_cast<std::uint32_t>(counter);
+  if (encoder.type == ServoEncoderType::kIncremental) return word;
+  const std::uint32_t value = word & (~std::uint32_t{0} >> (32 - encoder.ssi_bits));
+  return encoder.coding == ServoEncoderCoding::kGray ? value ^ (value >> 1) : value;
+}
+
+// The csp set point's place in u: the nearest one that the counter, which wraps, can mean.
+double SetPosition(const ServoEncoder& encoder, const ServoState& s, double position_counts) noexcept {
+  const double here = EncoderPosition(encoder, s);
+  const int bits = encoder.type == ServoEncoderType::kIncremental ? 32 : encoder.ssi_bits;
+  const auto range = static_cast<double>(std::uint64_t{1} << bits);
+  const double away =
+      FiniteOrZero(position_counts - static_cast<double>(s.counter_origin) - here * CountsPerUnit(encoder));
+  return here + (std::abs(away) < range / 2 ? away : std::remainder(away, range)) / CountsPerUnit(encoder);
+}
+
+double SetVelocity(const ServoParams& p, const ServoOutputs& commanded, double sense) noexcept {
+  if (commanded.mode != DriveMode::kAnalog) {
+    return sense * FiniteOrZero(commanded.velocity_counts_s) / CountsPerUnit(p.encoder);
+  }
+  const ServoDrive& d = p.drive;
+  const double seen_mv = FiniteOrZero(commanded.voltage_v) * 1000 + d.offset_mv;
+  const double acting_mv = std::max(seen_mv - d.dead_band_plus_mv, 0.0) + std::min(seen_mv + d.dead_band_minus_mv, 0.0);
+  return sense * acting_mv / 10000 * d.velocity_at_10v;
+}
+
+// Ready once enabled for the power-up time; half a cycle of tolerance for the sum of the periods.
+bool PowerOn(const ServoDrive& drive, bool enable, double period_s, ServoState& s) noexcept {
+  if (!enable || s.faults.drive_fault) {
+    s.enabled_s = 0;
+    s.following = false;
+    s.compensation = 0;
+    return false;
+  }
+  const bool ready = s.enabled_s > drive.power_up_s - period_s / 2;
+  if (!ready) s.enabled_s += period_s;
+  return ready;
+}
+
+// The mechanics behind the motor: the load follows at the ends of the play, and no further than the stops, which
+// swallow the speed. True: a stop was hit.
+bool MoveLoad(const ServoMechanics& mechanics, Motion& m) noexcept {
+  const double play = mechanics.backlash / 2;
+  bool hit = false;
+  if (mechanics.upper_stop && m.position > *mechanics.upper_stop + play) {
+    m.position = *mechanics.upper_stop + play;
+    hit = m.velocity > 0;
+  } else if (mechanics.lower_stop && m.position < *mechanics.lower_stop - play) {
+    m.position = *mechanics.lower_stop - play;
+    hit = m.velocity < 0;
+  }
+  if (hit) m.velocity = 0;
+  m.load = std::clamp(m.load, m.position - play, m.position + play);
+  return hit;
+}
+
+void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, bool powered, ServoState& s) noexcept {
+  const ServoDrive& drive = p.drive;
+  const ServoMechanics& mechanics = p.mechanics;
+  const double sense = drive.inverted ? -1 : 1;
+  const double per_inertia = 1 / mechanics.inertia;
+  const bool csp = powered && commanded.mode == DriveMode::kCyclicPosition;
+  const bool compensates = powered && drive.load_compensation_s > 0;
+
+  Law law;
+  law.viscous = mechanics.viscous_friction * per_inertia;
+  law.friction = (mechanics.coulomb_friction + (commanded.release_brake ? 0 : mechanics.brake_torque)) * per_inertia;
+  law.load = (mechanics.load_torque + s.faults.extra_load) * per_inertia;
+  if (powered) {
+    law.lag = drive.velocity_time_constant_s;
+    law.gain = 1 / law.lag;
+    law.limit = drive.max_torque * per_inertia;
+    law.target = SetVelocity(p, commanded, sense);
+  }
+
+  const double end_velocity = law.target;
+  const double end_position = csp ? SetPosition(p.encoder, s, sense * commanded.position_counts) : 0;
+  const double start_velocity = s.following ? s.set_velocity : end_velocity;
+  const double start_position = s.following ? s.set_position : end_position;
+  s.following = csp;
+  s.set_position = end_position;
+  s.set_velocity = end_velocity;
+
+  // The motion itself is exact over any time; steps in between only where the drive's own loops are sampled.
+  const int steps = csp || compensates ? std::max(1, static_cast<int>(period_s / drive.loop_period_s + 0.5)) : 1;
+  const double time = period_s / steps;
+  const double rate = law.viscous + law.gain;
+  if (s.reach_rate != rate || s.reach_time != time) {
+    const Reach reach = ReachAfter(rate, time);
+    s.reach_rate = rate;
+    s.reach_time = time;
+    s.reach_to_velocity = reach.to_velocity;
+    s.reach_to_distance = reach.to_distance;
+  }
+  const Reach whole{s.reach_to_velocity, s.reach_to_distance};
+  const Reach model = law.viscous > 0 ? ReachAfter(law.gain, time) : whole;
+  const double learning = compensates ? time / ((drive.load_compensation_s + time) * model.to_velocity) : 0;
+
+  const bool motor_encoder = p.encoder.place == ServoEncoderPlace::kMotor;
+  const double set_step = (end_position - start_position) / steps;
+  const double feed_forward_step = (end_velocity - start_velocity) / steps;
+  law.bias = s.compensation;
+  Motion motion{s.motor_position, s.faults.stuck ? 0 : s.velocity, s.load_position};
+  for (int i = 0; i < steps; ++i) {
+    if (csp) {
+      // The error is of the step's beginning, the speed fed forward that of its middle.
+      const double set = start_position + set_step * i;
+      const double feed_forward = start_velocity + feed_forward_step * (i + 0.5);
+      const double error = set - (motor_encoder ? motion.position : motion.load);
+      law.target = drive.position_gain * error + drive.velocity_feed_forward * feed_forward;
+    }
+    const double before = motion.velocity;
+    bool hit = false;
+    if (!s.faults.stuck) {
+      Advance(law, time, whole, motion);
+      hit = MoveLoad(mechanics, motion);
+    }
+    // What the speed lacks against the bare first-order model is load: the drive learns to add it. Not while the torque
+    // is at its limit or the axis is knocked to a halt, where the model says nothing.
+    const double lag = law.target - before;
+    if (compensates && !hit && std::abs(law.gain * lag + law.bias) <= law.limit) {
+      const double expected = before + lag * (law.gain * model.to_velocity);
+      law.bias = std::clamp(law.bias + learning * (expected - motion.velocity), -law.limit, law.limit);
+    }
+  }
+  s.motor_position = motion.position;
+  s.velocity = motion.velocity;
+  s.load_position = motion.load;
+  s.compensation = law.bias;
+  s.torque = law.DriveAt(s.velocity) * mechanics.inertia;
+}
+
+// SplitMix64: a counter and a mixing of its bits.
+double Uniform(std::uint64_t& state) noexcept {
+  state += 0x9E3779B97F4A7C15U;
+  std::uint64_t z = state;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
+  z ^= z >> 31;
+  return (static_cast<double>(z >> 11) + 0.5) * 0x1p-53;
+}
+
+double Normal(std::uint64_t& state) noexcept {
+  const double radius = std::sqrt(-2 * std::log(Uniform(state)));
+  return radius * std::cos(2 * std::numbers::pi * Uniform(state));
+}
+
+std::int64_t IndexCell(const ServoEncoder& encoder, double position) noexcept {
+  return encoder.index_distance > 0 ? Floor((position - encoder.index_offset) / encoder.index_distance) : 0;
+}
+
+void ReadEncoder(const ServoEncoder& encoder, ServoState& s) noexcept {
+  const double position = EncoderPosition(encoder, s);
+  const std::int64_t cell = IndexCell(encoder, position);
+  const double noise = encoder.noise_counts > 0 ? encoder.noise_counts * Normal(s.noise) : 0;
+  if (!s.faults.encoder_frozen) {
+    s.counts = OnTheWire(encoder, CounterAt(encoder, s, position, noise));
+    if (cell != s.index_cell) {
+      const std::int64_t passed = cell > s.index_cell ? cell : cell + 1;  // the last one met on the way
+      const double at = encoder.index_offset + static_cast<double>(passed) * encoder.index_distance;
+      s.index_counts = OnTheWire(encoder, CounterAt(encoder, s, at, 0));
+      s.index_pulses += static_cast<std::uint32_t>(std::abs(cell - s.index_cell));
+    }
+  }
+  s.index_cell = cell;
+}
+
+bool Reads(const ServoSwitch& sw, double position, double revolution) noexcept {
+  bool on = sw.from || sw.to;
+  if (sw.from && sw.to && revolution > 0) {
+    const double past = position - *sw.from;
+    on = past - revolution * std::floor(past / revolution) <= *sw.to - *sw.from;
+  } else {
+    on = on && (!sw.from || position >= *sw.from) && (!sw.to || position <= *sw.to);
+  }
+  return on != sw.normally_closed;
+}
+
+}  // namespace
+
+ServoState MakeServoState(const ServoParams& p) noexcept {
+  ServoState s;
+  s.motor_position = p.mechanics.start_position;
+  s.load_position = p.mechanics.start_position;
+  s.counter_origin = p.encoder.offset_counts;
+  if (p.encoder.type == ServoEncoderType::kIncremental) {
+    s.counter_origin -= Nearest(s.motor_position * CountsPerUnit(p.encoder));
+  }
+  s.index_cell = IndexCell(p.encoder, s.motor_position);
+  s.noise = static_cast<std::uint64_t>(p.encoder.noise_seed);
+  s.counts = OnTheWire(p.encoder, CounterAt(p.encoder, s, s.motor_position, 0));
+  return s;
+}
+
+void Step(const ServoParams& p, const ServoOutputs& commanded, double period_s, ServoState& s,
+          ServoInputs& measured) noexcept {
+  const bool powered = PowerOn(p.drive, commanded.enable, period_s, s);
+  Move(p, commanded, period_s, powered, s);
+  ReadEncoder(p.encoder, s);
+
+  measured.counts = s.counts;
+  measured.index_counts = s.index_counts;
+  measured.index_pulses = s.index_pulses;
+  measured.encoder_error = s.faults.encoder_error;
+  measured.limit_positive = Reads(p.switches.limit_positive, s.load_position, 0);
+  measured.limit_negative = Reads(p.switches.limit_negative, s.load_position, 0);
+  measured.reference = Reads(p.switches.reference, s.load_position, p.switches.revolution);
+  measured.touch_probe = Reads(p.switches.touch_probe, s.load_position, p.switches.revolution);
+  measured.drive_ready = powered;
+  measured.drive_fault = s.faults.drive_fault;
+  measured.torque_nm = s.torque;
+}
+
+}  // namespace takt::plant

@@ -1,0 +1,229 @@
+// Commands that follow one another: the buffer modes and the buffer itself.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "rig.h"
+
+namespace takt::axis {
+namespace {
+
+struct BlendCase {
+  BufferMode mode;
+  double first_velocity, second_velocity;
+  double expected;  // at the first move's end position
+};
+class Blending : public testing::TestWithParam<BlendCase> {};
+
+// State when the set point passes `position` upwards: velocity by linear interpolation of v² over the two samples
+// around it.
+double VelocityAt(const std::vector<Sample>& trace, double position) {
+  for (std::size_t i = 1; i < trace.size(); ++i) {
+    const KinematicState& a = trace[i - 1].setpoint;
+    const KinematicState& b = trace[i].setpoint;
+    if (a.position <= position && b.position > position) {
+      const double share = (position - a.position) / (b.position - a.position);
+      return std::sqrt(a.velocity * a.velocity + share * (b.velocity * b.velocity - a.velocity * a.velocity));
+    }
+  }
+  return NAN;
+}
+
+// AX-12: the velocity at the first move's end position, as the seed defines it for each mode; no stop between, all
+// limits held.
+TEST_P(Blending, PassesTheFirstTargetAtTheVelocityOfTheMode) {
+  const BlendCase& c = GetParam();
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  const std::size_t from = rig.trace.size();
+  const Ticket first = rig.Give(MoveAbsolute{.position = 200, .velocity = c.first_velocity});
+  const Ticket second = rig.Give(MoveAbsolute{.position = 400, .velocity = c.second_velocity, .buffer_mode = c.mode});
+  ASSERT_TRUE(rig.RunToEnd(second));
+  EXPECT_TRUE(rig.lives[first].done);
+  EXPECT_TRUE(rig.lives[second].done);
+  EXPECT_EQ(rig.position(), 400);
+  EXPECT_NEAR(VelocityAt(rig.trace, 200), c.expected, 0.02 * c.expected + 0.5);
+  EXPECT_EQ(rig.lives[first].final_cycle, rig.lives[second].active_cycle);
+  const Worst worst = WorstOf(rig.trace, rig.params.planner_limits(), 0.001, from);
+  EXPECT_LE(worst.acceleration, 1 + 1e-9);
+  EXPECT_LE(worst.jerk, 1 + 1e-6);
+  EXPECT_LE(worst.position_step, 1 + 1e-6);
+  double fastest_before = 0;
+  for (const Sample& s : rig.trace) {
+    if (s.setpoint.position < 150) fastest_before = std::max(fastest_before, s.setpoint.velocity);
+  }
+  EXPECT_LE(fastest_before,
+            c.first_velocity * (1 + 1e-9));  // the first move keeps its own velocity until it has to leave it
+}
+INSTANTIATE_TEST_SUITE_P(Modes, Blending,
+                         testing::Values(BlendCase{BufferMode::kBlendingLow, 300, 150, 150},
+                                         BlendCase{BufferMode::kBlendingLow, 150, 300, 150},
+                                         BlendCase{BufferMode::kBlendingPrevious, 300, 150, 300},
+                                         BlendCase{BufferMode::kBlendingPrevious, 150, 300, 150},
+                                         BlendCase{BufferMode::kBlendingNext, 300, 150, 150},
+                                         BlendCase{BufferMode::kBlendingNext, 150, 300, 300},
+                                         BlendCase{BufferMode::kBlendingHigh, 300, 150, 300},
+                                         BlendCase{BufferMode::kBlendingHigh, 150, 300, 300}));
+
+// AX-12: buffered starts when the move before is done, from standstill.
+TEST(Buffered, WaitsForDone) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket first = rig.Give(MoveAbsolute{.position = 100});
+  const Ticket second = rig.Give(MoveAbsolute{.position = 50, .buffer_mode = BufferMode::kBuffered});
+  ASSERT_TRUE(rig.RunToEnd(second));
+  EXPECT_EQ(rig.lives[second].active_cycle, rig.lives[first].final_cycle);
+  bool stood = false;
+  for (const Sample& s : rig.trace) stood |= s.setpoint.position == 100 && s.setpoint.velocity == 0;
+  EXPECT_TRUE(stood);
+  EXPECT_EQ(rig.position(), 50);
+}
+
+// AX-12: a blend that would have to reverse comes to rest first, and says what held it back.
+TEST(Blending, DoesNotRunThroughAReversal) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveAbsolute{.position = 100, .velocity = 200});
+  const Ticket second =
+      rig.Give(MoveAbsolute{.position = 50, .velocity = 200, .buffer_mode = BufferMode::kBlendingHigh});
+  rig.Run(0.1);
+  EXPECT_EQ(rig.out.limited_by, LimitedBy::kDistance);
+  ASSERT_TRUE(rig.RunToEnd(second));
+  double furthest = 0;
+  for (const Sample& s : rig.trace) furthest = std::max(furthest, s.setpoint.position);
+  EXPECT_EQ(furthest, 100);
+}
+
+// AX-12: where the second move is too short to stop from the velocity asked for, the first target is passed as fast as
+// still allows it.
+TEST(Blending, LeavesRoomForTheNextMoveToStop) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveAbsolute{.position = 200, .velocity = 400});
+  const Ticket second =
+      rig.Give(MoveAbsolute{.position = 202, .velocity = 400, .buffer_mode = BufferMode::kBlendingPrevious});
+  ASSERT_TRUE(rig.RunToEnd(second));
+  double furthest = 0;
+  for (const Sample& s : rig.trace) furthest = std::max(furthest, s.setpoint.position);
+  EXPECT_LE(furthest, 202 + 1e-9);
+  const double v = VelocityAt(rig.trace, 200);
+  EXPECT_GT(v, 50);
+  EXPECT_NEAR(trajectory::StopPosition({200, v, 0}, rig.params.planner_limits()), 202, 0.05);
+}
+
+// AX-12: eight commands wait, the ninth is refused and nothing is lost.
+TEST(Buffer, HoldsEightAndRefusesTheNinth) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveAbsolute{.position = 10});
+  rig.Step();
+  std::vector<Ticket> waiting;
+  for (int i = 0; i < 8; ++i) {
+    waiting.push_back(rig.Give(MoveAbsolute{.position = 20.0 + 10 * i,
+                                            .buffer_mode = i % 2 ? BufferMode::kBuffered : BufferMode::kBlendingLow}));
+  }
+  const Ticket ninth = rig.Give(MoveAbsolute{.position = -5, .buffer_mode = BufferMode::kBuffered});
+  rig.Step();
+  EXPECT_EQ(rig.out.buffered_commands, 8);
+  EXPECT_EQ(rig.lives[ninth].error_id, ErrorId::kBufferFull);
+  ASSERT_TRUE(rig.RunToEnd(waiting.back()));
+  for (const Ticket t : waiting) EXPECT_TRUE(rig.lives[t].done);
+  EXPECT_EQ(rig.position(), 90);
+}
+
+// AX-12: an aborting command empties the buffer; every command in it hears of it, once.
+TEST(Buffer, IsEmptiedByAnAbortingCommand) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket first = rig.Give(MoveAbsolute{.position = 100});
+  const Ticket second = rig.Give(MoveAbsolute{.position = 200, .buffer_mode = BufferMode::kBlendingHigh});
+  rig.Run(0.05);
+  const Ticket third = rig.Give(MoveAbsolute{.position = -10});
+  ASSERT_TRUE(rig.RunToEnd(third));
+  EXPECT_TRUE(rig.lives[first].aborted);
+  EXPECT_TRUE(rig.lives[second].aborted);
+  EXPECT_FALSE(rig.lives[second].active);
+  EXPECT_EQ(rig.position(), -10);
+}
+
+// AX-12, the seed's table 8.3: what starts the command behind each kind.
+TEST(Buffered, StartsAtTheSignalOfTheCommandBefore) {
+  Rig rig(LinearParams());
+  // Behind MC_Power: at Status.
+  const Ticket on = rig.Give(Power{});
+  const Ticket move = rig.Give(MoveVelocity{.velocity = 100, .buffer_mode = BufferMode::kBuffered});
+  rig.Run(0.01);
+  EXPECT_TRUE(rig.lives[on].done);
+  EXPECT_EQ(rig.lives[move].active_cycle, rig.lives[on].final_cycle);
+  // Behind MC_MoveVelocity: at InVelocity.
+  rig.Run(1);
+  const Ticket faster = rig.Give(MoveVelocity{.velocity = 300});
+  const Ticket halt = rig.Give(Halt{.buffer_mode = BufferMode::kBuffered});
+  ASSERT_TRUE(rig.RunToEnd(halt));
+  EXPECT_TRUE(rig.lives[faster].reached);
+  EXPECT_EQ(rig.lives[faster].reached_cycle, rig.lives[halt].active_cycle);
+  EXPECT_TRUE(rig.lives[halt].done);
+  // Behind MC_Stop: at Done and not Execute.
+  const Ticket stop = rig.Give(Stop{.hold = true});
+  const Ticket next = rig.Give(MoveRelative{.distance = 5, .buffer_mode = BufferMode::kBuffered});
+  rig.Run(0.5);
+  EXPECT_TRUE(rig.lives[stop].done);
+  EXPECT_FALSE(rig.lives[next].active);
+  rig.Let(stop);
+  ASSERT_TRUE(rig.RunToEnd(next));
+  EXPECT_TRUE(rig.lives[next].done);
+  // MC_Power may wait itself: off behind the move.
+  const Ticket last = rig.Give(MoveRelative{.distance = 5});
+  const Ticket off = rig.Give(Power{.enable = false, .buffer_mode = BufferMode::kBuffered});
+  ASSERT_TRUE(rig.RunToEnd(off));
+  EXPECT_TRUE(rig.lives[last].done);
+  EXPECT_EQ(rig.out.state, PlcState::kDisabled);
+}
+
+// AX-12: what cannot be buffered or followed is refused, and says so.
+TEST(Buffered, IsRefusedWhereTheTableSaysNo) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(Jog{.forward = true, .velocity = 50});
+  rig.Run(0.1);
+  const Ticket behind_jog = rig.Give(MoveAbsolute{.position = 5, .buffer_mode = BufferMode::kBuffered});
+  const Ticket blended_halt = rig.Give(Halt{.buffer_mode = BufferMode::kBlendingLow});
+  const Ticket blended_stop = rig.Give(Stop{.buffer_mode = BufferMode::kBlendingNext});
+  rig.Step();
+  EXPECT_EQ(rig.lives[behind_jog].error_id, ErrorId::kState);
+  EXPECT_EQ(rig.lives[blended_halt].error_id, ErrorId::kParameter);
+  EXPECT_EQ(rig.lives[blended_stop].error_id, ErrorId::kParameter);
+  EXPECT_EQ(rig.out.state, PlcState::kContinuousMotion);
+}
+
+// AX-12: nine moves blended into one another, random lengths and speeds, both senses: all done, none stopped at but at
+// reversals.
+TEST(Blending, ChainsOfManyMoves) {
+  std::mt19937_64 random(7);
+  for (int run = 0; run < 200; ++run) {
+    Rig rig(LinearParams());
+    ASSERT_TRUE(rig.PowerOn());
+    std::uniform_real_distribution<double> distance(-80, 120), speed(20, 500);
+    std::vector<Ticket> moves;
+    double end = 0;
+    const std::size_t from = rig.trace.size();
+    for (int i = 0; i < 9; ++i) {
+      const double d = distance(random);
+      end += d;
+      const auto mode = static_cast<BufferMode>(2 + run % 4);
+      moves.push_back(rig.Give(
+          MoveRelative{.distance = d, .velocity = speed(random), .buffer_mode = i ? mode : BufferMode::kAborting}));
+    }
+    ASSERT_TRUE(rig.RunToEnd(moves.back())) << run;
+    for (const Ticket t : moves) ASSERT_TRUE(rig.lives[t].done) << run;
+    ASSERT_NEAR(rig.position(), end, 1e-6);
+    const Worst worst = WorstOf(rig.trace, rig.params.planner_limits(), 0.001, from);
+    ASSERT_LE(worst.velocity, 1 + 1e-9) << run;
+    ASSERT_LE(worst.acceleration, 1 + 1e-9) << run;
+    ASSERT_LE(worst.jerk, 1 + 1e-6) << run;
+    ASSERT_LE(worst.position_step, 1 + 1e-6) << run;
+  }
+}
+
+}  // namespace
+}  // namespace takt::axis

@@ -1,0 +1,205 @@
+// SW limits, the limits of commands, and what happens when no plan can be made.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "rig.h"
+#include "takt/axis/request.h"
+
+namespace takt::axis {
+namespace {
+
+AxisParams Fenced() {
+  AxisParams p = LinearParams();
+  p.limits.lower = -100;
+  p.limits.upper = 100;
+  return p;
+}
+
+// AX-83: a target behind a SW limit is error 0008 of the command; the motion in progress goes on (AX-06).
+TEST(SoftLimit, RefusesATargetBehindIt) {
+  Rig rig(Fenced());
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket move = rig.Give(MoveAbsolute{.position = 100});
+  rig.Run(0.05);
+  const Ticket far = rig.Give(MoveAbsolute{.position = 100.001});
+  const Ticket relative = rig.Give(MoveRelative{.distance = -250});
+  rig.Step();
+  EXPECT_EQ(rig.lives[far].error_id, ErrorId::kTargetBehindLimit);
+  EXPECT_EQ(rig.lives[relative].error_id, ErrorId::kTargetBehindLimit);
+  ASSERT_TRUE(rig.RunToEnd(move));
+  EXPECT_TRUE(rig.lives[move].done);
+  EXPECT_EQ(rig.position(), 100);
+  const Ticket out = rig.Give(MoveVelocity{.velocity = 1});
+  rig.Step();
+  EXPECT_EQ(rig.lives[out].error_id, ErrorId::kTargetBehindLimit);
+}
+
+// AX-83, AX-13: a motion without an end brakes in time: ErrorStop 2006, and it stands at the limit, not behind it.
+TEST(SoftLimit, StopsAMotionWithoutAnEndInFrontOfIt) {
+  for (const double velocity : {10.0, 123.0, 500.0}) {
+    Rig rig(Fenced());
+    ASSERT_TRUE(rig.PowerOn());
+    const Ticket move =
+        rig.Give(MoveVelocity{.velocity = velocity, .acceleration = 1000, .deceleration = 500, .jerk = 20000});
+    const std::size_t from = rig.trace.size();
+    ASSERT_TRUE(rig.RunToEnd(move, 60));
+    EXPECT_EQ(rig.lives[move].error_id, ErrorId::kSoftLimitPositive);
+    rig.Run(1);
+    EXPECT_EQ(rig.out.error, ErrorId::kSoftLimitPositive);
+    EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
+    EXPECT_TRUE(rig.out.loop_closed);
+    EXPECT_LE(rig.position(), 100 + 1e-9);
+    EXPECT_GT(rig.position(), 100 - 1.5 * velocity * 0.001 - 0.01);  // no further off than a cycle's way
+    const Worst worst = WorstOf(rig.trace, rig.params.planner_limits(), 0.001, from);
+    EXPECT_LE(worst.acceleration, 1 + 1e-9);
+    EXPECT_LE(worst.jerk, 1 + 1e-6);
+    ASSERT_TRUE(rig.RunToEnd(rig.Give(Reset{})));
+    ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveAbsolute{.position = 0})));
+    EXPECT_EQ(rig.position(), 0);
+  }
+}
+
+// AX-13: a new command with a weak deceleration does not carry the axis over a limit that a stop at the axis' own
+// deceleration keeps.
+TEST(SoftLimit, IsKeptByABrakingHarderThanAsked) {
+  Rig rig(Fenced());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 500});
+  while (rig.position() < 50) rig.Step();
+  const Ticket weak = rig.Give(MoveAbsolute{.position = 60, .deceleration = 100, .jerk = 1000});
+  ASSERT_TRUE(rig.RunToEnd(weak));
+  double furthest = 0;
+  for (const Sample& s : rig.trace) furthest = std::max(furthest, s.setpoint.position);
+  EXPECT_LE(furthest, 100 + 1e-9);
+  EXPECT_EQ(rig.position(), 60);
+}
+
+// AX-13: nor does a halt or stop.
+TEST(SoftLimit, IsKeptByAWeakHalt) {
+  Rig rig(Fenced());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 500});
+  while (rig.position() < 50) rig.Step();
+  rig.Give(Halt{.deceleration = 100, .jerk = 1000});
+  rig.Run(10);
+  double furthest = 0;
+  for (const Sample& s : rig.trace) furthest = std::max(furthest, s.setpoint.position);
+  EXPECT_LE(furthest, 100 + 1e-9);
+}
+
+// An axis that stands outside may move back inside and only there.
+TEST(SoftLimit, LetsAnAxisOutsideComeBack) {
+  Rig rig(Fenced());
+  rig.frozen = true;
+  for (int i = 0; i < 600; ++i) {  // pushed out by hand
+    rig.inputs.counts += 200'000;
+    rig.Step();
+  }
+  rig.frozen = false;
+  ASSERT_TRUE(rig.PowerOn());
+  ASSERT_NEAR(rig.position(), 120, 1e-6);
+  const Ticket out = rig.Give(MoveVelocity{.velocity = 10});
+  rig.Step();
+  EXPECT_EQ(rig.lives[out].error_id, ErrorId::kTargetBehindLimit);
+  const Ticket back = rig.Give(MoveVelocity{.velocity = 100, .direction = Direction::kNegative});
+  rig.Run(0.5);
+  EXPECT_TRUE(rig.lives[back].reached);
+  EXPECT_LT(rig.position(), 100);
+}
+
+// AX-06, AX-11: beyond the axis' limits, not a number, infinite, negative: error 0005, and the motion in progress does
+// not notice.
+TEST(Commands, BeyondTheLimitsAreRefusedAndDisturbNothing) {
+  Rig calm(LinearParams());
+  Rig rig(LinearParams());
+  for (Rig* r : {&calm, &rig}) {
+    ASSERT_TRUE(r->PowerOn());
+    r->Give(MoveAbsolute{.position = 300});
+  }
+  std::vector<Ticket> refused;
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, -1.0, 0.0, 5001.0, 1e300}) {
+    refused.push_back(rig.Give(MoveAbsolute{.position = 1, .acceleration = bad}));
+    refused.push_back(rig.Give(MoveAbsolute{.position = 1, .deceleration = bad}));
+    refused.push_back(rig.Give(MoveRelative{.distance = 1, .velocity = bad}));
+    if (bad != 5001.0) refused.push_back(rig.Give(MoveVelocity{.velocity = bad == 0 ? -0.5 : bad}));
+    refused.push_back(rig.Give(Halt{.deceleration = bad}));
+    refused.push_back(rig.Give(Stop{.deceleration = bad}));
+    refused.push_back(rig.Give(Jog{.forward = true, .velocity = bad}));
+    if (bad != 5001.0) refused.push_back(rig.Give(MoveAbsolute{.position = 1, .jerk = bad}));
+    if (!std::isfinite(bad)) refused.push_back(rig.Give(MoveAbsolute{.position = bad}));
+    if (!std::isfinite(bad)) refused.push_back(rig.Give(MoveRelative{.distance = bad}));
+  }
+  refused.push_back(rig.Give(MoveAbsolute{.position = 1, .direction = static_cast<Direction>(77)}));
+  refused.push_back(rig.Give(MoveAbsolute{.position = 1, .buffer_mode = static_cast<BufferMode>(77)}));
+  for (int i = 0; i < 2000; ++i) {
+    calm.Step();
+    rig.Step();
+    ASSERT_EQ(calm.state.setpoint, rig.state.setpoint);
+  }
+  for (const Ticket t : refused) EXPECT_EQ(rig.lives[t].error_id, ErrorId::kParameter) << t;
+}
+
+// AX-06 for people: the sentence names the argument, the limit and what was found.
+TEST(Commands, SayWhyTheyAreRefused) {
+  const std::string why = WhyNot(MoveAbsolute{.position = 1, .velocity = 900}, LinearParams());
+  EXPECT_NE(why.find("velocity"), std::string::npos) << why;
+  EXPECT_NE(why.find("500"), std::string::npos) << why;
+  EXPECT_NE(why.find("900"), std::string::npos) << why;
+  EXPECT_EQ(WhyNot(MoveAbsolute{.position = 1}, LinearParams()), "");
+  EXPECT_EQ(WhyNot(Reset{}, LinearParams()), "");
+  EXPECT_NE(WhyNot(MoveAbsolute{.position = 361}, RotaryParams()), "");
+}
+
+// Where nothing can be planned the command fails with 3004 and the motion in progress is kept to its stop. With a jerk
+// limit so small that the numbers of a move no longer fit into doubles both scales of the planner give up.
+TEST(Planning, FailureKeepsTheMotionInProgress) {
+  AxisParams p = LinearParams();
+  p.limits = {.velocity = 1, .acceleration = 1e-3, .deceleration = 1e-3, .jerk = 1e-3, .lower = {}, .upper = {}};
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket move = rig.Give(MoveAbsolute{.position = 0.01});
+  rig.Run(1);
+  Ticket hopeless = 0;
+  for (const double target : {1e12, -1e12}) {
+    hopeless = rig.Give(MoveAbsolute{.position = target, .velocity = 1e-300, .acceleration = 1e-300, .jerk = 1e-300});
+    rig.Step();
+    EXPECT_TRUE(rig.lives[hopeless].error);
+  }
+  ASSERT_TRUE(rig.RunToEnd(move, 60));
+  EXPECT_TRUE(rig.lives[move].done);
+  EXPECT_EQ(rig.position(), 0.01);
+}
+
+// AX-01: an axis may count in anything; the same move in micrometres, millimetres and metres takes the same cycles and
+// ends at the same place.
+TEST(Units, DoNotMatter) {
+  std::vector<std::vector<double>> runs;
+  for (const double scale : {1000.0, 1.0, 0.001}) {
+    AxisParams p = LinearParams();
+    p.limits = {.velocity = 500 * scale,
+                .acceleration = 5000 * scale,
+                .deceleration = 4000 * scale,
+                .jerk = 1e5 * scale,
+                .lower = {},
+                .upper = {}};
+    p.encoder.increments_per_unit = 1e6 / scale;
+    Rig rig(p);
+    ASSERT_TRUE(rig.PowerOn());
+    rig.Give(MoveAbsolute{.position = 123 * scale});
+    rig.Run(0.1);
+    const Ticket back = rig.Give(MoveAbsolute{.position = -45 * scale});
+    ASSERT_TRUE(rig.RunToEnd(back));
+    std::vector<double> positions;
+    for (const Sample& s : rig.trace) positions.push_back(s.setpoint.position / scale);
+    runs.push_back(positions);
+  }
+  for (const auto& run : runs) {
+    ASSERT_EQ(run.size(), runs[1].size());
+    for (std::size_t i = 0; i < run.size(); ++i) ASSERT_NEAR(run[i], runs[1][i], 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace takt::axis

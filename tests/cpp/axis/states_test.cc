@@ -1,0 +1,405 @@
+// The state machine, power, faults and resets.
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "rig.h"
+
+namespace takt::axis {
+namespace {
+
+// AX-10: the table holds exactly the transitions of the PLCopen diagram (its arrows, each once), every state can be
+// left and entered.
+TEST(StateTable, IsThePlcopenDiagram) {
+  using S = PlcState;
+  const std::set<std::pair<S, S>> diagram = {{S::kDisabled, S::kStandstill},
+                                             {S::kDisabled, S::kErrorStop},
+                                             {S::kStandstill, S::kDisabled},
+                                             {S::kStandstill, S::kDiscreteMotion},
+                                             {S::kStandstill, S::kContinuousMotion},
+                                             {S::kStandstill, S::kSynchronizedMotion},
+                                             {S::kStandstill, S::kHoming},
+                                             {S::kStandstill, S::kStopping},
+                                             {S::kStandstill, S::kErrorStop},
+                                             {S::kDiscreteMotion, S::kStandstill},
+                                             {S::kDiscreteMotion, S::kContinuousMotion},
+                                             {S::kDiscreteMotion, S::kSynchronizedMotion},
+                                             {S::kDiscreteMotion, S::kStopping},
+                                             {S::kDiscreteMotion, S::kErrorStop},
+                                             {S::kDiscreteMotion, S::kDisabled},
+                                             {S::kContinuousMotion, S::kDiscreteMotion},
+                                             {S::kContinuousMotion, S::kSynchronizedMotion},
+                                             {S::kContinuousMotion, S::kStopping},
+                                             {S::kContinuousMotion, S::kErrorStop},
+                                             {S::kContinuousMotion, S::kDisabled},
+                                             {S::kSynchronizedMotion, S::kDiscreteMotion},
+                                             {S::kSynchronizedMotion, S::kContinuousMotion},
+                                             {S::kSynchronizedMotion, S::kStopping},
+                                             {S::kSynchronizedMotion, S::kErrorStop},
+                                             {S::kSynchronizedMotion, S::kDisabled},
+                                             {S::kHoming, S::kStandstill},
+                                             {S::kHoming, S::kStopping},
+                                             {S::kHoming, S::kErrorStop},
+                                             {S::kHoming, S::kDisabled},
+                                             {S::kStopping, S::kStandstill},
+                                             {S::kStopping, S::kErrorStop},
+                                             {S::kStopping, S::kDisabled},
+                                             {S::kErrorStop, S::kStandstill},
+                                             {S::kErrorStop, S::kDisabled}};
+  std::set<std::pair<S, S>> table;
+  for (const Transition& t : kTransitions) EXPECT_TRUE(table.insert({t.from, t.to}).second);
+  EXPECT_EQ(table, diagram);
+}
+
+// AX-20: closes the loop and releases the brake once the drive is ready; AX-82: the brake relay is on exactly while the
+// loop is closed.
+TEST(Power, ClosesTheLoopWhenTheDriveIsReady) {
+  Rig rig(LinearParams());
+  rig.Run(0.01);
+  EXPECT_EQ(rig.out.state, PlcState::kDisabled);
+  EXPECT_FALSE(rig.commanded.enable);
+  const Ticket on = rig.Give(Power{});
+  rig.Step();
+  EXPECT_TRUE(rig.commanded.enable);
+  EXPECT_FALSE(rig.commanded.release_brake);
+  EXPECT_EQ(rig.out.state, PlcState::kDisabled);
+  ASSERT_TRUE(rig.RunToEnd(on, 1));
+  EXPECT_TRUE(rig.lives[on].done);
+  EXPECT_EQ(rig.out.state, PlcState::kStandstill);
+  EXPECT_TRUE(rig.commanded.release_brake);
+  const Ticket again = rig.Give(Power{});
+  rig.Step();
+  EXPECT_TRUE(rig.lives[again].done);
+}
+
+// AX-20: a moving axis stops along its ramp before its loop opens.
+TEST(Power, OffInMotionBrakesFirst) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket move = rig.Give(MoveVelocity{.velocity = 400});
+  rig.Run(0.5);
+  const std::size_t from = rig.trace.size();
+  const Ticket off = rig.Give(Power{.enable = false});
+  rig.Step();
+  EXPECT_TRUE(rig.lives[move].aborted);
+  EXPECT_EQ(rig.out.state, PlcState::kStopping);
+  ASSERT_TRUE(rig.RunToEnd(off));
+  EXPECT_EQ(rig.out.state, PlcState::kDisabled);
+  EXPECT_FALSE(rig.commanded.enable);
+  EXPECT_FALSE(rig.commanded.release_brake);
+  EXPECT_LE(WorstOf(rig.trace, rig.params.planner_limits(), 0.001, from).acceleration, 1 + 1e-9);
+}
+
+// AX-20: the axis stands where it is when the loop closes, wherever it was moved by hand meanwhile.
+TEST(Power, TakesOverThePositionItFinds) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveAbsolute{.position = 50})));
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(Power{.enable = false})));
+  rig.frozen = true;
+  for (int i = 0; i < 100; ++i) {
+    rig.inputs.counts += 1000;  // 0.1 mm by hand
+    rig.Step();
+  }
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(Power{})));
+  EXPECT_NEAR(rig.position(), 50.1, 1e-6);
+}
+
+// AX-20, AX-82: a drive that does not get ready is a fault, and the drive is switched off again.
+TEST(Power, FailsWhenTheDriveDoesNotGetReady) {
+  Rig rig(LinearParams());
+  rig.drive_delay = 1000;
+  const Ticket on = rig.Give(Power{});
+  ASSERT_TRUE(rig.RunToEnd(on, 1));
+  EXPECT_EQ(rig.lives[on].error_id, ErrorId::kDrive);
+  EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
+  EXPECT_FALSE(rig.commanded.enable);
+}
+
+// Motion needs power (error 0010).
+TEST(Commands, NeedPower) {
+  Rig rig(LinearParams());
+  for (const Command& c :
+       {Command(MoveAbsolute{.position = 1}), Command(MoveRelative{.distance = 1}),
+        Command(MoveVelocity{.velocity = 1}), Command(Halt{}), Command(Stop{}), Command(Jog{.forward = true})}) {
+    const Ticket t = rig.Give(c);
+    rig.Step();
+    EXPECT_EQ(rig.lives[t].error_id, ErrorId::kPowerOff);
+  }
+  EXPECT_EQ(rig.out.state, PlcState::kDisabled);
+}
+
+// AX-83: following error too large: ErrorStop 2001 and the loop opens; reset leads to Disabled (AX-21), power on works
+// again.
+TEST(Fault, DeviationOpensTheLoop) {
+  AxisParams p = LinearParams();
+  p.supervision.deviation_moving = 1;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket move = rig.Give(MoveAbsolute{.position = 100});
+  const Ticket next = rig.Give(MoveAbsolute{.position = 200, .buffer_mode = BufferMode::kBuffered});
+  rig.Run(0.01);
+  rig.frozen = true;
+  rig.Run(0.2);
+  EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
+  EXPECT_EQ(rig.out.error, ErrorId::kDeviation);
+  EXPECT_FALSE(rig.out.loop_closed);
+  EXPECT_FALSE(rig.commanded.enable);
+  EXPECT_EQ(rig.lives[move].error_id, ErrorId::kDeviation);
+  EXPECT_TRUE(rig.lives[next].aborted);
+  const Ticket refused = rig.Give(MoveAbsolute{.position = 0});
+  const Ticket power = rig.Give(Power{});
+  rig.Step();
+  EXPECT_EQ(rig.lives[refused].error_id, ErrorId::kErrorStop);
+  EXPECT_EQ(rig.lives[power].error_id, ErrorId::kErrorStop);
+  const Ticket reset = rig.Give(Reset{});
+  rig.Step();
+  EXPECT_TRUE(rig.lives[reset].done);
+  EXPECT_EQ(rig.out.state, PlcState::kDisabled);
+  EXPECT_EQ(rig.out.error, ErrorId::kNone);
+  rig.frozen = false;
+  EXPECT_TRUE(rig.PowerOn());
+}
+
+// AX-05: at rest the narrower limit holds, once the axis had time to settle.
+TEST(Fault, DeviationAtRestHasItsOwnLimit) {
+  AxisParams p = LinearParams();
+  p.supervision.deviation_moving = 5;
+  p.supervision.deviation_standstill = 0.1;
+  p.supervision.in_position_timeout_s = 0.05;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Run(0.1);
+  rig.frozen = true;
+  rig.inputs.counts += 50000;  // 0.05 mm
+  rig.Run(0.1);
+  EXPECT_EQ(rig.out.state, PlcState::kStandstill);
+  rig.inputs.counts += 100000;  // 0.15 mm
+  rig.Run(0.1);
+  EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
+  EXPECT_EQ(rig.out.error, ErrorId::kDeviation);
+}
+
+// AX-83: onto a limit switch: brakes within limits, error, the loop stays closed; after reset only away from it.
+TEST(Fault, LimitSwitch) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket move = rig.Give(MoveVelocity{.velocity = 300});
+  rig.Run(0.5);
+  const std::size_t from = rig.trace.size();
+  rig.inputs.limit_positive = true;
+  rig.Step();
+  EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
+  EXPECT_EQ(rig.out.error, ErrorId::kLimitSwitchPositive);
+  EXPECT_EQ(rig.lives[move].error_id, ErrorId::kLimitSwitchPositive);
+  const Ticket early = rig.Give(Reset{});
+  rig.Step();
+  EXPECT_FALSE(rig.Ended(early));  // not before the axis stands (AX-21)
+  rig.Run(0.5);
+  EXPECT_TRUE(rig.lives[early].done);
+  EXPECT_TRUE(rig.out.loop_closed);
+  EXPECT_EQ(rig.out.set_velocity, 0);
+  EXPECT_LE(WorstOf(rig.trace, rig.params.planner_limits(), 0.001, from).acceleration, 1 + 1e-9);
+  EXPECT_EQ(rig.out.state, PlcState::kStandstill);
+  const Ticket further = rig.Give(MoveRelative{.distance = 1});
+  const Ticket faster = rig.Give(MoveVelocity{.velocity = 1});
+  const Ticket jog = rig.Give(Jog{.forward = true});
+  rig.Run(0.01);
+  EXPECT_EQ(rig.lives[further].error_id, ErrorId::kAwayFromLimitOnly);
+  EXPECT_EQ(rig.lives[faster].error_id, ErrorId::kAwayFromLimitOnly);
+  EXPECT_EQ(rig.lives[jog].error_id, ErrorId::kAwayFromLimitOnly);
+  const Ticket back = rig.Give(MoveRelative{.distance = -10});
+  ASSERT_TRUE(rig.RunToEnd(back));
+  EXPECT_TRUE(rig.lives[back].done);
+  rig.inputs.limit_positive = false;
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveRelative{.distance = 1})));
+  EXPECT_EQ(rig.out.state, PlcState::kStandstill);
+}
+
+// AX-03: a normally closed switch, and the other side.
+TEST(Fault, InvertedLimitSwitch) {
+  AxisParams p = LinearParams();
+  p.inputs.invert_limit_negative = true;
+  Rig rig(p);
+  rig.inputs.limit_negative = true;
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 300, .direction = Direction::kNegative});
+  rig.Run(0.3);
+  EXPECT_EQ(rig.out.state, PlcState::kContinuousMotion);
+  rig.inputs.limit_negative = false;  // the wire broke
+  rig.Step();
+  EXPECT_EQ(rig.out.error, ErrorId::kLimitSwitchNegative);
+  EXPECT_TRUE(rig.out.limit_negative);
+}
+
+// AX-04: the encoder's error line, or a jump: a fault that opens the loop; reset works only when the line is well
+// again.
+TEST(Fault, Encoder) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 100});
+  rig.Run(0.1);
+  rig.inputs.encoder_error = true;
+  rig.Step();
+  EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
+  EXPECT_EQ(rig.out.error, ErrorId::kEncoder);
+  EXPECT_FALSE(rig.out.loop_closed);
+  const Ticket reset = rig.Give(Reset{});
+  rig.Step();
+  EXPECT_EQ(rig.lives[reset].error_id, ErrorId::kAxisFault);
+  rig.inputs.encoder_error = false;
+  const Ticket again = rig.Give(Reset{});
+  rig.Step();
+  EXPECT_TRUE(rig.lives[again].done);
+  ASSERT_TRUE(rig.PowerOn());
+  rig.frozen = true;
+  rig.inputs.counts += 50'000'000;  // 50 mm in a cycle
+  rig.Step();
+  EXPECT_EQ(rig.out.error, ErrorId::kEncoder);
+}
+
+// A drive that drops out while the loop is closed.
+TEST(Fault, Drive) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.inputs.drive_fault = true;
+  rig.Step();
+  EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
+  EXPECT_EQ(rig.out.error, ErrorId::kDrive);
+  EXPECT_FALSE(rig.commanded.enable);
+}
+
+// The seed's note 2: power on with an error leads to ErrorStop, not to motion; power off leaves ErrorStop and keeps the
+// error.
+TEST(Fault, StaysUntilReset) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.inputs.limit_positive = true;
+  rig.Run(0.01);
+  ASSERT_EQ(rig.out.state, PlcState::kErrorStop);
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(Power{.enable = false})));
+  EXPECT_EQ(rig.out.state, PlcState::kDisabled);
+  EXPECT_EQ(rig.out.error, ErrorId::kLimitSwitchPositive);
+  const Ticket on = rig.Give(Power{});
+  rig.Step();
+  EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
+  EXPECT_EQ(rig.lives[on].error_id, ErrorId::kErrorStop);
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(Reset{})));
+  EXPECT_EQ(rig.out.state, PlcState::kDisabled);
+  EXPECT_TRUE(rig.PowerOn());
+}
+
+// AX-82: a set point that is not a number never reaches the drive: outputs 0, loop open.
+TEST(Fault, InternalOpensTheLoopWithZeroOutputs) {
+  AxisParams p = LinearParams();
+  p.drive.mode = DriveMode::kAnalog;
+  Rig rig(p);
+  rig.drive_delay = 0;
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 100});
+  rig.Run(0.01);
+  rig.state.motion.profile.pieces[0].velocity = NAN;
+  rig.state.motion.profile.pieces[1].velocity = NAN;
+  rig.state.motion.profile.pieces[2].velocity = NAN;
+  rig.Step();
+  EXPECT_EQ(rig.out.error, ErrorId::kInternal);
+  EXPECT_EQ(rig.commanded.voltage_v, 0);
+  EXPECT_FALSE(rig.commanded.enable);
+  EXPECT_FALSE(rig.commanded.release_brake);
+  EXPECT_TRUE(std::isfinite(rig.commanded.position_counts));
+}
+
+Command RandomCommand(std::mt19937_64& random, const AxisParams& p) {
+  std::uniform_real_distribution<double> any(-1.2, 1.2);
+  const auto position = [&] { return p.rotary() ? std::abs(any(random)) * 300 : any(random) * 400; };
+  const auto speed = [&] { return std::abs(any(random)) * p.limits.velocity; };
+  const auto mode = static_cast<BufferMode>(random() % 6);
+  const auto direction = static_cast<Direction>(random() % 4);
+  switch (random() % 10) {
+    case 0:
+      return Power{random() % 4 != 0, random() % 3 == 0 ? BufferMode::kBuffered : BufferMode::kAborting};
+    case 1:
+      return Reset{};
+    case 2:
+    case 3:
+      return MoveAbsolute{.position = position(), .velocity = speed(), .direction = direction, .buffer_mode = mode};
+    case 4:
+      return MoveRelative{.distance = position(), .velocity = speed(), .buffer_mode = mode};
+    case 5:
+    case 6:
+      return MoveVelocity{.velocity = speed(), .direction = direction, .buffer_mode = mode};
+    case 7:
+      return Halt{.buffer_mode = mode};
+    case 8:
+      return Stop{.hold = random() % 2 == 0, .buffer_mode = mode};
+    default:
+      return Jog{.forward = random() % 2 == 0, .backward = random() % 2 == 0, .velocity = speed()};
+  }
+}
+
+class RandomWalk : public testing::TestWithParam<int> {};
+
+// AX-10: a random walk of commands and faults, 10,000 steps: no transition outside the table. AX-11: each command's
+// feedback is Busy, Active, then one final state, once. AX-13: every set point of powered motion holds the limits and
+// follows from the one before without a step, and stays inside the SW limits.
+TEST_P(RandomWalk, MeetsNoIllegalTransitionAndHoldsAllLimits) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(GetParam()));
+  AxisParams p = GetParam() % 2 ? LinearParams() : RotaryParams();
+  if (!p.rotary()) p.limits.lower = -300, p.limits.upper = 300;
+  p.supervision.in_position = 0.01;
+  p.supervision.deviation_moving = 2;
+  Rig rig(p);
+  const trajectory::Limits limits = p.planner_limits();
+  std::vector<Ticket> held;
+  std::set<PlcState> seen;
+  for (int step = 0; step < 10000; ++step) {
+    for (auto n = random() % 4; n > 0; --n) held.push_back(rig.Give(RandomCommand(random, p)));
+    if (random() % 3 == 0 && !held.empty()) rig.Let(held[random() % held.size()]);
+    const auto fault = random() % 400;
+    if (fault == 0) rig.inputs.limit_positive = !rig.inputs.limit_positive;
+    if (fault == 1) rig.inputs.limit_negative = !rig.inputs.limit_negative;
+    if (fault == 2) rig.inputs.drive_fault = true;
+    if (fault == 3) rig.inputs.encoder_error = true;
+    if (fault > 370)
+      rig.inputs.drive_fault = rig.inputs.encoder_error = rig.inputs.limit_positive = rig.inputs.limit_negative = false;
+    for (auto n = random() % 60; n > 0; --n) {
+      rig.Step();
+      seen.insert(rig.out.state);
+      const Sample& before = rig.trace[rig.trace.size() > 1 ? rig.trace.size() - 2 : 0];
+      const Sample& now = rig.trace.back();
+      if (before.out.loop_closed && now.out.loop_closed &&
+          std::abs(now.setpoint.position - before.setpoint.position) < 300) {
+        const Worst worst = WorstOf({before, now}, limits, rig.cycle.period_s);
+        ASSERT_LE(worst.velocity, 1 + 1e-9) << step;
+        ASSERT_LE(worst.acceleration, 1 + 1e-9) << step;
+        ASSERT_LE(worst.jerk, 1 + 1e-6) << step;
+        ASSERT_LE(worst.position_step, 1 + 1e-6) << step;
+      }
+      if (!p.rotary()) {
+        ASSERT_LE(now.setpoint.position, 300 + 1e-6) << step;
+        ASSERT_GE(now.setpoint.position, -300 - 1e-6) << step;
+      }
+      if (rig.trace.size() > 100) rig.trace.erase(rig.trace.begin(), rig.trace.end() - 2);
+    }
+    ASSERT_EQ(rig.state.illegal_transitions, 0u) << step;
+  }
+  EXPECT_EQ(seen.size(), 6u);  // all but SynchronizedMotion and Homing
+  int open = 0;
+  for (const auto& [ticket, life] : rig.lives) {
+    int finals = 0;
+    bool active = false;
+    for (const FeedbackEvent& e : life.events) {
+      ASSERT_EQ(finals, 0) << "something after the end of " << ticket;
+      ASSERT_FALSE(e.state == FeedbackState::kBusy && active) << ticket;
+      active |= e.state == FeedbackState::kActive;
+      finals += IsFinal(e.state) ? 1 : 0;
+    }
+    open += finals == 0 ? 1 : 0;
+  }
+  EXPECT_LE(open, 10);  // what is in control or waits at the end
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomWalk, testing::Range(1, 9));
+
+}  // namespace
+}  // namespace takt::axis
