@@ -16,7 +16,13 @@ pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 # takt::ruckig: the wheel's headers and archive, without its cloud client, which does not link with GCC 12 and is not wanted. A target of
 # our own, since an installation of ours brings the archive along under this name.
 find_package(ruckig 0.19 CONFIG REQUIRED)
-get_target_property(ruckig_archive ruckig::ruckig IMPORTED_LOCATION_RELEASE)
+get_target_property(ruckig_wheel_archive ruckig::ruckig IMPORTED_LOCATION_RELEASE)
+set(ruckig_archive "${CMAKE_BINARY_DIR}/libtakt_ruckig.a")
+if(NOT EXISTS "${ruckig_archive}" OR "${ruckig_wheel_archive}" IS_NEWER_THAN "${ruckig_archive}")
+  # The client's object holds copies of standard library functions, for which a linker may pull it in.
+  configure_file("${ruckig_wheel_archive}" "${ruckig_archive}" COPYONLY)
+  execute_process(COMMAND "${CMAKE_AR}" d "${ruckig_archive}" cloud_client.cpp.o COMMAND_ERROR_IS_FATAL ANY)
+endif()
 get_target_property(ruckig_headers ruckig::ruckig INTERFACE_INCLUDE_DIRECTORIES)
 file(GLOB TAKT_RUCKIG_LICENSE "${ruckig_DIR}/../../../ruckig-*.dist-info/licenses/LICENSE")
 add_library(takt::ruckig STATIC IMPORTED GLOBAL)

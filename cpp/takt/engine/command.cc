@@ -1,0 +1,158 @@
+#include "takt/engine/command.h"
+
+#include <array>
+#include <vector>
+
+#include "takt/axis/request.h"
+#include "takt/core/arguments.h"
+#include "takt/core/describe.h"
+#include "takt/core/problem.h"
+#include "takt/core/writer.h"
+
+namespace takt::engine {
+
+namespace {
+
+constexpr std::string_view kMachine = "machine";
+constexpr std::string_view kAxis = "axis";
+
+// A verb together with how its struct gets in and out of a command.
+struct Entry {
+  Verb verb;
+  bool (*read)(std::string_view text, CommandBody& body, Problem& problem);
+  const void* (*find)(const CommandBody& body);  // null: the body is another verb's
+};
+
+template <typename Kind, typename T>
+Entry Make(std::string_view target_kind, std::string_view name, bool level_sensitive = false) {
+  return {{target_kind, name, &TypeOf<T>(), level_sensitive},
+          [](std::string_view text, CommandBody& body, Problem& problem) {
+            T arguments;
+            if (!ReadArguments(arguments, text, &problem)) return false;
+            body = Kind(arguments);
+            return true;
+          },
+          [](const CommandBody& body) -> const void* {
+            const Kind* kind = std::get_if<Kind>(&body);
+            return kind ? std::get_if<T>(kind) : nullptr;
+          }};
+}
+
+// Every command there is: the one list.
+const std::vector<Entry>& Entries() {
+  static const std::vector<Entry> entries = {
+      Make<MachineCommand, StopAll>(kMachine, "stop_all"),
+      Make<MachineCommand, FailAllAxes>(kMachine, "fail_all_axes"),
+      Make<MachineCommand, Release>(kMachine, "release"),
+      Make<MachineCommand, Renew>(kMachine, "renew"),
+      Make<axis::Command, axis::Power>(kAxis, "power"),
+      Make<axis::Command, axis::Reset>(kAxis, "reset"),
+      Make<axis::Command, axis::MoveAbsolute>(kAxis, "move_absolute"),
+      Make<axis::Command, axis::MoveRelative>(kAxis, "move_relative"),
+      Make<axis::Command, axis::MoveVelocity>(kAxis, "move_velocity"),
+      Make<axis::Command, axis::Halt>(kAxis, "halt"),
+      Make<axis::Command, axis::Stop>(kAxis, "stop", true),
+      Make<axis::Command, axis::Jog>(kAxis, "jog", true),
+  };
+  return entries;
+}
+
+std::optional<std::uint32_t> FindTarget(const Machine& machine, std::string_view name) {
+  if (name == kMachine) return kMachineTarget;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    if (machine.axes[i].name == name) return static_cast<std::uint32_t>(i + 1);
+  }
+  return std::nullopt;
+}
+
+ParsedCommand Refused(ErrorId error, std::string sentence) {
+  ParsedCommand refused;
+  refused.error = error;
+  refused.sentence = std::move(sentence);
+  return refused;
+}
+
+ParsedCommand UnknownTarget(const Machine& machine, std::string_view target) {
+  std::vector<std::string_view> names{kMachine};
+  for (const axis::AxisParams& axis : machine.axes) names.push_back(axis.name);
+  return Refused(ErrorId::kUnknownTarget, "target: expected the name of an axis or machine, found " + Quoted(target) +
+                                              DidYouMean(target, names));
+}
+
+ParsedCommand UnknownVerb(std::string_view kind, std::string_view verb) {
+  std::vector<std::string_view> names;
+  std::string list;
+  for (const Entry& entry : Entries()) {
+    if (entry.verb.target_kind != kind) continue;
+    names.push_back(entry.verb.name);
+    list += (list.empty() ? "" : ", ") + std::string(entry.verb.name);
+  }
+  return Refused(ErrorId::kUnknownVerb,
+                 "verb: expected one of " + list + ", found " + Quoted(verb) + DidYouMean(verb, names));
+}
+
+}  // namespace
+
+std::span<const Verb> Verbs() {
+  static const std::vector<Verb> verbs = [] {
+    std::vector<Verb> all;
+    for (const Entry& entry : Entries()) all.push_back(entry.verb);
+    return all;
+  }();
+  return verbs;
+}
+
+ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std::string_view verb,
+                           std::string_view arguments) {
+  const std::optional<std::uint32_t> found = FindTarget(machine, target);
+  if (!found) return UnknownTarget(machine, target);
+  const std::string_view kind = *found == kMachineTarget ? kMachine : kAxis;
+  for (const Entry& entry : Entries()) {
+    if (entry.verb.target_kind != kind || entry.verb.name != verb) continue;
+    ParsedCommand parsed;
+    parsed.command.target = *found;
+    parsed.level_sensitive = entry.verb.level_sensitive;
+    Problem problem;
+    if (!entry.read(arguments, parsed.command.body, problem)) return Refused(ErrorId::kParameter, problem.Text());
+    if (*found != kMachineTarget) {
+      const axis::AxisParams& axis = machine.axes[*found - 1];
+      if (std::string sentence = axis::WhyNot(std::get<axis::Command>(parsed.command.body), axis); !sentence.empty()) {
+        return Refused(ErrorId::kParameter, std::move(sentence));
+      }
+    }
+    return parsed;
+  }
+  return UnknownVerb(kind, verb);
+}
+
+CommandText ToText(const Machine& machine, const Command& command) {
+  const std::string target =
+      command.target == kMachineTarget ? std::string(kMachine) : machine.axes[command.target - 1].name;
+  for (const Entry& entry : Entries()) {
+    if (const void* arguments = entry.find(command.body)) {
+      return {target, std::string(entry.verb.name), WriteFlow(*entry.verb.arguments, arguments)};
+    }
+  }
+  return {target, "", ""};
+}
+
+void describe(Description<StopAll>& d) {
+  d.about("Stops every axis along its ramp.");
+  d.defaulted<&StopAll::open_loops>("True: and opens its loop.");
+}
+
+void describe(Description<FailAllAxes>& d) {
+  d.about("Every axis brakes and goes to ErrorStop with error 3007, as when too many cycles in a row come too late.");
+}
+
+void describe(Description<Release>& d) {
+  d.about("Lets go of a level-sensitive command: a jog, a held stop.");
+  d.required<&Release::ticket>("Of the command.");
+}
+
+void describe(Description<Renew>& d) {
+  d.about("Extends the lease of a level-sensitive command.");
+  d.required<&Renew::ticket>("Of the command.");
+}
+
+}  // namespace takt::engine

@@ -1,0 +1,73 @@
+// A command on its way to the cycle, and its text form (target, verb, arguments), which LCM, Python and the journal
+// share.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "takt/axis/commands.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/feedback.h"
+#include "takt/engine/machine.h"
+
+namespace takt::engine {
+
+// Commands of the engine itself; their target is "machine".
+struct StopAll {            // every axis stops along its ramp
+  bool open_loops = false;  // and then opens its loop
+};
+struct FailAllAxes {  // every axis brakes and goes to ErrorStop with error 3007 (overruns)
+};
+struct Release {  // lets go of a level-sensitive command (jog, stop with hold): Execute falls
+  Ticket ticket = 0;
+};
+struct Renew {  // a heartbeat: extends the lease of a level-sensitive command
+  Ticket ticket = 0;
+};
+
+void describe(Description<StopAll>&);
+void describe(Description<FailAllAxes>&);
+void describe(Description<Release>&);
+void describe(Description<Renew>&);
+
+using MachineCommand = std::variant<StopAll, FailAllAxes, Release, Renew>;
+using CommandBody = std::variant<MachineCommand, axis::Command>;
+
+inline constexpr std::uint32_t kMachineTarget = 0;  // axis i is target i + 1
+
+struct Command {
+  Ticket ticket = 0;
+  std::uint32_t target = kMachineTarget;
+  double lease_s = 0;  // > 0: a level-sensitive command releases itself so long after its last renewal
+  CommandBody body;
+};
+
+// One verb a kind of component understands; `arguments` describes its struct.
+struct Verb {
+  std::string_view target_kind;  // "machine" or "axis"
+  std::string_view name;         // "move_absolute"
+  const Type* arguments;
+  bool level_sensitive;  // needs a heartbeat over LCM
+};
+std::span<const Verb> Verbs();
+
+struct ParsedCommand {
+  Command command;  // ticket not set yet
+  ErrorId error = ErrorId::kNone;
+  bool level_sensitive = false;
+  std::string sentence;  // what is wrong, where, what was expected; empty when error is kNone
+};
+// `arguments` as in "{position: 100, velocity: 50}" or empty.
+ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std::string_view verb,
+                           std::string_view arguments);
+
+struct CommandText {
+  std::string target, verb, arguments;
+};
+// The inverse: parsing it again gives the identical command.
+CommandText ToText(const Machine& machine, const Command& command);
+
+}  // namespace takt::engine

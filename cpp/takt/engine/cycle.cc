@@ -1,0 +1,135 @@
+#include "takt/engine/cycle.h"
+
+#include "takt/axis/axis.h"
+#include "takt/core/describe.h"
+#include "takt/core/hash.h"
+#include "takt/engine/order.h"
+
+namespace takt::engine {
+
+namespace {
+
+// Feedback of one cycle: each live command of an axis may start and end in it, and so may each newly arrived one.
+constexpr std::size_t kEventsPerAxis = 4 * (axis::kBufferSize + 4);
+constexpr std::size_t kEventsPerCommand = 4;
+
+axis::Context ContextOf(World& w, std::size_t i) {
+  const axis::State* master = w.axis_masters[i] ? &w.axis_states[*w.axis_masters[i]] : nullptr;
+  return {w.axis_params[i], w.cycle, w.planner, w.feedback, master};
+}
+
+std::vector<std::uint32_t> OrderOf(const Machine& machine) {
+  std::vector<std::uint32_t> loop;
+  return OrderByMasters(MastersOf(machine), loop).value();
+}
+
+struct MachineApplier {
+  World& world;
+  Ticket ticket;
+
+  void Report(FeedbackState state, ErrorId error = ErrorId::kNone) const {
+    world.feedback.Report({ticket, world.cycle.count, state, false, error});
+  }
+  void operator()(const StopAll& c) const {
+    for (std::size_t i = 0; i < world.axis_states.size(); ++i) {
+      axis::State& state = world.axis_states[i];
+      if (c.open_loops) {
+        axis::Apply(ContextOf(world, i), 0, 0, axis::Power{.enable = false}, state);
+      } else if (state.loop_closed && state.plc != axis::PlcState::kErrorStop) {
+        axis::Apply(ContextOf(world, i), 0, 0, axis::Stop{}, state);
+      }
+    }
+    Report(FeedbackState::kDone);
+  }
+  void operator()(const FailAllAxes&) const {
+    for (std::size_t i = 0; i < world.axis_states.size(); ++i) {
+      axis::Fail(ContextOf(world, i), ErrorId::kOverrun, false, world.axis_states[i]);
+    }
+    Report(FeedbackState::kDone);
+  }
+  void operator()(const Release& c) const { ToOwner(c.ticket, axis::Release); }
+  void operator()(const Renew& c) const { ToOwner(c.ticket, axis::Renew); }
+
+  template <typename F>
+  void ToOwner(Ticket of, F change) const {
+    bool found = false;
+    for (std::size_t i = 0; i < world.axis_states.size() && !found; ++i) {
+      found = change(ContextOf(world, i), of, world.axis_states[i]);
+    }
+    Report(FeedbackState::kDone);  // letting go of what is over already is no error
+  }
+};
+
+}  // namespace
+
+World::World(const Machine& machine)
+    : cycle{0, machine.cycle.period_s},
+      axis_params(machine.axes),
+      axis_outputs(machine.axes.size()),
+      axis_order(OrderOf(machine)),
+      servo_inputs(machine.axes.size()),
+      servo_outputs(machine.axes.size()),
+      feedback_storage(machine.axes.size() * kEventsPerAxis + kCommandsPerCycle * kEventsPerCommand),
+      feedback(feedback_storage) {
+  TypeOf<axis::State>();  // the first use of a type allocates
+  TypeOf<plant::ServoState>();
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    axis_states.push_back(axis::MakeState(axis_params[i]));
+    servo_params.push_back(ServoOf(machine, i));
+    servo_states.push_back(plant::MakeServoState(servo_params[i]));
+    plant::Step(servo_params[i], servo_outputs[i], cycle.period_s, servo_states[i], servo_inputs[i]);
+  }
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    axis_masters.push_back(MasterOf(machine, i));
+  }
+}
+
+std::uint64_t World::StateHash() const noexcept {
+  std::uint64_t hash = cycle.count;
+  for (const axis::State& state : axis_states) hash = HashOf(state, hash);
+  for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
+  return hash;
+}
+
+void Sense(World& w) noexcept {
+  for (std::size_t i = 0; i < w.axis_states.size(); ++i)
+    axis::Sense(ContextOf(w, i), w.servo_inputs[i], w.axis_states[i]);
+}
+
+void Apply(World& w, const Command& command) noexcept {
+  if (const auto* machine = std::get_if<MachineCommand>(&command.body)) {
+    std::visit(MachineApplier{w, command.ticket}, *machine);
+  } else if (command.target > 0 && command.target <= w.axis_states.size()) {
+    const std::size_t i = command.target - 1;
+    axis::Apply(ContextOf(w, i), command.ticket, command.lease_s, std::get<axis::Command>(command.body),
+                w.axis_states[i]);
+  } else {
+    w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, ErrorId::kUnknownTarget});
+  }
+}
+
+void Move(World& w) noexcept {
+  for (const std::uint32_t i : w.axis_order) axis::Move(ContextOf(w, i), w.axis_states[i]);
+  // A master does not go on without a follower that has failed.
+  for (const std::uint32_t i : w.axis_order) {
+    const std::optional<std::uint32_t> master = w.axis_masters[i];
+    if (master && w.axis_states[i].plc == axis::PlcState::kErrorStop && !axis::AtRest(w.axis_states[*master])) {
+      axis::Fail(ContextOf(w, *master), ErrorId::kAxisFault, false, w.axis_states[*master]);
+    }
+  }
+}
+
+void Control(World& w) noexcept {
+  for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
+    axis::Control(ContextOf(w, i), w.axis_states[i], w.servo_outputs[i]);
+    axis::Publish(w.axis_params[i], w.axis_states[i], w.axis_outputs[i]);
+  }
+}
+
+void Actuate(World& w) noexcept {
+  for (std::size_t i = 0; i < w.servo_states.size(); ++i) {
+    plant::Step(w.servo_params[i], w.servo_outputs[i], w.cycle.period_s, w.servo_states[i], w.servo_inputs[i]);
+  }
+}
+
+}  // namespace takt::engine

@@ -1,0 +1,58 @@
+// One cycle of a machine, as a list of stages over plain data.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "takt/axis/outputs.h"
+#include "takt/axis/params.h"
+#include "takt/axis/state.h"
+#include "takt/core/cycle.h"
+#include "takt/core/feedback.h"
+#include "takt/core/ports.h"
+#include "takt/engine/command.h"
+#include "takt/engine/machine.h"
+#include "takt/plant/servo.h"
+#include "takt/trajectory/planner.h"
+
+namespace takt::engine {
+
+// So many commands are applied in one cycle at most; the others wait in the queue.
+inline constexpr std::size_t kCommandsPerCycle = 64;
+
+// Everything the cycle works on, in arrays by component; index i is axis i of the machine.
+struct World {
+  explicit World(const Machine& machine);
+  World(const World&) = delete;  // the sink points into the storage
+  World& operator=(const World&) = delete;
+
+  Cycle cycle;
+  trajectory::Planner planner;
+
+  std::vector<axis::AxisParams> axis_params;
+  std::vector<axis::State> axis_states;
+  std::vector<axis::Outputs> axis_outputs;
+  std::vector<std::uint32_t> axis_order;                   // masters before followers
+  std::vector<std::optional<std::uint32_t>> axis_masters;  // which axis each follows, if any
+
+  std::vector<ServoInputs> servo_inputs;
+  std::vector<ServoOutputs> servo_outputs;
+  std::vector<plant::ServoParams> servo_params;
+  std::vector<plant::ServoState> servo_states;
+
+  std::vector<FeedbackEvent> feedback_storage;
+  FeedbackSink feedback;
+
+  std::uint64_t StateHash() const noexcept;
+};
+
+// The stages, in the order of the cycle. Commands come between sense and move (Apply).
+void Sense(World& world) noexcept;
+void Apply(World& world, const Command& command) noexcept;
+void Move(World& world) noexcept;
+void Control(World& world) noexcept;
+void Actuate(World& world) noexcept;
+
+}  // namespace takt::engine

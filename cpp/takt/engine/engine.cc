@@ -1,0 +1,215 @@
+#include "takt/engine/engine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/engine/cycle.h"
+
+namespace takt::engine {
+
+namespace {
+
+// Every how many cycles something with this rate is due; 0: never.
+std::uint64_t Divisor(double rate_hz, double period_s) {
+  if (rate_hz <= 0) return 0;
+  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(1 / (rate_hz * period_s))));
+}
+
+std::vector<std::uint64_t> AxisDivisors(const Machine& m) {
+  std::vector<std::uint64_t> divisors;
+  for (const axis::AxisParams& axis : m.axes) {
+    double rate = m.lcm.axis_rate_hz;
+    for (const ChannelRate& own : m.lcm.rates) {
+      if (own.axis == axis.name) rate = own.rate_hz;
+    }
+    divisors.push_back(Divisor(rate, m.cycle.period_s));
+  }
+  return divisors;
+}
+
+}  // namespace
+
+struct Engine::Impl {
+  Impl(Machine m, const EngineOptions& o)
+      : machine(std::move(m)),
+        options(o),
+        world(machine),
+        commands(o.command_queue),
+        feedback(4 * world.feedback_storage.size()),
+        snapshots(o.publish ? o.snapshot_queue : 2),
+        figure_queue(16),
+        journal(o.journal ? o.snapshot_queue : 2),
+        hashes(o.journal ? o.snapshot_queue : 2),
+        axis_divisors(AxisDivisors(machine)),
+        figures_divisor(Divisor(machine.lcm.engine_rate_hz, machine.cycle.period_s)) {}
+
+  void TakeTiming(const CycleTiming& timing) noexcept {
+    if (timing.execution_ns > 0) figures.execution.Add(timing.execution_ns);
+    if (timing.latency_ns > 0 || timing.execution_ns > 0) figures.latency.Add(timing.latency_ns);
+    figures.overruns += timing.overrun ? 1 : 0;
+    overruns_in_a_row = timing.overrun ? overruns_in_a_row + 1 : 0;
+    const std::uint32_t allowed = machine.cycle.overruns_in_a_row;
+    if (allowed > 0 && overruns_in_a_row >= allowed) {
+      overruns_in_a_row = 0;
+      ApplyOne({0, kMachineTarget, 0, MachineCommand(FailAllAxes{})});
+    }
+  }
+
+  void ApplyOne(const Command& command) noexcept {
+    Apply(world, command);
+    ++figures.commands_applied;
+    if (options.journal) journal.TryPush({world.cycle.count, command});
+  }
+
+  void ApplyCommands() noexcept {
+    if (shutdown.load(std::memory_order_relaxed) && !shutting_down) {
+      shutting_down = true;
+      ApplyOne({0, kMachineTarget, 0, MachineCommand(StopAll{.open_loops = true})});
+    }
+    Command command;
+    for (std::size_t i = 0; i < kCommandsPerCycle && commands.TryPop(command); ++i) {
+      if (shutting_down) {
+        world.feedback.Report({command.ticket, world.cycle.count, FeedbackState::kError, false, ErrorId::kShutdown});
+      } else {
+        ApplyOne(command);
+      }
+    }
+  }
+
+  void Publish() noexcept {
+    figures.cycle = world.cycle.count;
+    figures.commands_refused = refused.load(std::memory_order_relaxed);
+    figures.planner_second_scale = world.planner.counters().second_scale;
+    figures.planner_failures = world.planner.counters().failures;
+    for (const FeedbackEvent& event : world.feedback.events()) {
+      if (!feedback.TryPush(event)) ++figures.feedback_dropped;
+    }
+    world.feedback.Clear();
+    if (options.journal) {
+      figures.state_hash = world.StateHash();
+      hashes.TryPush({world.cycle.count, figures.state_hash});
+    }
+    if (!options.publish) return;
+    for (std::size_t i = 0; i < axis_divisors.size(); ++i) {
+      // Axes of the same rate are spread over the cycles, so that no cycle carries them all.
+      const bool due = axis_divisors[i] != 0 && (world.cycle.count + i) % axis_divisors[i] == 0;
+      if (!due && !options.every_cycle) continue;
+      if (!snapshots.TryPush({world.cycle.count, static_cast<std::uint32_t>(i), due, world.axis_outputs[i]}))
+        ++figures.snapshots_dropped;
+    }
+    if (figures_divisor > 0 && world.cycle.count % figures_divisor == 0) figure_queue.TryPush(figures);
+  }
+
+  const Machine machine;
+  const EngineOptions options;
+  World world;
+  EngineFigures figures;
+
+  SpscQueue<Command> commands;
+  SpscQueue<FeedbackEvent> feedback;
+  SpscQueue<AxisSnapshot> snapshots;
+  SpscQueue<EngineFigures> figure_queue;
+  SpscQueue<JournalEntry> journal;
+  SpscQueue<HashEntry> hashes;
+
+  std::vector<std::uint64_t> axis_divisors;
+  std::uint64_t figures_divisor;
+  std::uint32_t overruns_in_a_row = 0;
+  bool shutting_down = false;
+  std::atomic<bool> shutdown{false};
+  std::atomic<std::uint64_t> refused{0};
+  Ticket next_ticket = 1;  // producing thread
+};
+
+Engine::Engine(Machine machine, const EngineOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(machine), options)) {}
+Engine::~Engine() = default;
+
+const Machine& Engine::machine() const {
+  return impl_->machine;
+}
+
+Ticket Engine::Submit(const Command& command) noexcept {
+  Command numbered = command;
+  numbered.ticket = impl_->next_ticket;
+  if (!impl_->commands.TryPush(numbered)) {
+    impl_->refused.fetch_add(1, std::memory_order_relaxed);
+    return 0;
+  }
+  return impl_->next_ticket++;
+}
+
+bool Engine::Resubmit(const Command& command) noexcept {
+  impl_->next_ticket = std::max(impl_->next_ticket, command.ticket + 1);
+  return impl_->commands.TryPush(command);
+}
+
+bool Engine::Replay(const Command& command, Ticket ticket) noexcept {
+  Command numbered = command;
+  numbered.ticket = ticket;
+  impl_->next_ticket = std::max(impl_->next_ticket, ticket + 1);
+  return impl_->commands.TryPush(numbered);
+}
+
+void Engine::RunCycle(const CycleTiming& timing) noexcept {
+  World& world = impl_->world;
+  Sense(world);
+  impl_->TakeTiming(timing);
+  impl_->ApplyCommands();
+  Move(world);
+  Control(world);
+  Actuate(world);
+  impl_->Publish();
+  ++world.cycle.count;
+}
+
+const Cycle& Engine::cycle() const noexcept {
+  return impl_->world.cycle;
+}
+const axis::Outputs& Engine::outputs(std::size_t axis) const noexcept {
+  return impl_->world.axis_outputs[axis];
+}
+std::uint64_t Engine::StateHash() const noexcept {
+  return impl_->world.StateHash();
+}
+
+const EngineFigures& Engine::figures() const noexcept {
+  impl_->figures.commands_refused = impl_->refused.load(std::memory_order_relaxed);
+  return impl_->figures;
+}
+
+plant::ServoFaults& Engine::faults(std::size_t axis) noexcept {
+  return impl_->world.servo_states[axis].faults;
+}
+
+bool Engine::all_disabled() const noexcept {
+  return std::all_of(impl_->world.axis_states.begin(), impl_->world.axis_states.end(),
+                     [](const axis::State& s) { return !s.enable && !s.loop_closed; });
+}
+
+bool Engine::at_rest() const noexcept {
+  return std::all_of(impl_->world.axis_states.begin(), impl_->world.axis_states.end(),
+                     [](const axis::State& s) { return s.setpoint.velocity == 0 && s.setpoint.acceleration == 0; });
+}
+
+void Engine::RequestShutdown() noexcept {
+  impl_->shutdown.store(true, std::memory_order_relaxed);
+}
+
+SpscQueue<FeedbackEvent>& Engine::feedback() noexcept {
+  return impl_->feedback;
+}
+SpscQueue<AxisSnapshot>& Engine::snapshots() noexcept {
+  return impl_->snapshots;
+}
+SpscQueue<EngineFigures>& Engine::figure_queue() noexcept {
+  return impl_->figure_queue;
+}
+SpscQueue<JournalEntry>& Engine::journal() noexcept {
+  return impl_->journal;
+}
+SpscQueue<HashEntry>& Engine::hashes() noexcept {
+  return impl_->hashes;
+}
+
+}  // namespace takt::engine

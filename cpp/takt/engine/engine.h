@@ -1,0 +1,76 @@
+// The engine: one machine, one cycle. Real time and virtual time differ only in who calls RunCycle.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "takt/core/cycle.h"
+#include "takt/core/spsc_queue.h"
+#include "takt/engine/command.h"
+#include "takt/engine/machine.h"
+#include "takt/engine/snapshot.h"
+
+namespace takt::engine {
+
+struct EngineOptions {
+  bool publish = false;      // hand axis snapshots and figures to the queues (a reader must drain them)
+  bool every_cycle = false;  // snapshots of every axis in every cycle, whatever the machine's rates say
+  bool journal = false;      // journal entries and a state hash every cycle
+  std::size_t command_queue = 1024;
+  std::size_t snapshot_queue = 1 << 14;
+};
+
+class Engine {
+ public:
+  // `machine` must have been checked (LoadMachine).
+  explicit Engine(Machine machine, const EngineOptions& options = {});
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  const Machine& machine() const;
+
+  // --- one producing thread ---
+  // Queues a command for the next cycle. Its ticket, or 0: the queue is full.
+  Ticket Submit(const Command& command) noexcept;
+  // The same for a command out of a journal, which keeps its ticket (0: one that the engine gave itself). False: the
+  // queue is full.
+  bool Resubmit(const Command& command) noexcept;
+
+  // Queues a command of a journal under the ticket it had.
+  bool Replay(const Command& command, Ticket ticket) noexcept;
+
+  // --- the cycle thread ---
+  void RunCycle(const CycleTiming& timing = {}) noexcept;
+  // From RunCycle's thread, or while it does not run.
+  const Cycle& cycle() const noexcept;
+  const axis::Outputs& outputs(std::size_t axis) const noexcept;
+  const EngineFigures& figures() const noexcept;
+  std::uint64_t StateHash() const noexcept;
+  // Every axis at rest with its loop open.
+  bool all_disabled() const noexcept;
+  bool at_rest() const noexcept;
+
+  // What is broken in the simulated servo of an axis; for tests. Not part of a journal.
+  plant::ServoFaults& faults(std::size_t axis) noexcept;
+
+  // --- any thread ---
+  // Stops everything along its ramps, opens the loops; further commands are refused.
+  void RequestShutdown() noexcept;
+
+  // --- one consuming thread ---
+  SpscQueue<FeedbackEvent>& feedback() noexcept;
+  SpscQueue<AxisSnapshot>& snapshots() noexcept;
+  SpscQueue<EngineFigures>& figure_queue() noexcept;
+  SpscQueue<JournalEntry>& journal() noexcept;
+  SpscQueue<HashEntry>& hashes() noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace takt::engine

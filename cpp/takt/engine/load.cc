@@ -1,0 +1,135 @@
+#include "takt/engine/load.h"
+
+#include <algorithm>
+
+#include "takt/axis/following.h"
+#include "takt/core/yaml_reader.h"
+#include "takt/engine/order.h"
+
+namespace takt::engine {
+
+namespace {
+
+// Names become part of channel names and of commands.
+bool GoodName(std::string_view name) {
+  const auto good = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           c == '.';
+  };
+  return !name.empty() && name.size() <= 40 && std::all_of(name.begin(), name.end(), good);
+}
+
+// What the reader cannot know: how parts of the file refer to one another.
+class CrossCheck {
+ public:
+  CrossCheck(const Machine& machine, const SourceMap& source) : machine_(machine), source_(source) {}
+
+  std::vector<Problem> Run() {
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) names_.push_back(machine_.axes[i].name);
+    CheckAxes();
+    CheckMasters();
+    std::vector<std::string_view> servos;
+    for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
+      CheckReference("simulation.servos[" + std::to_string(i) + "].axis", machine_.simulation.servos[i].axis, servos);
+    }
+    std::vector<std::string_view> rates;
+    for (std::size_t i = 0; i < machine_.lcm.rates.size(); ++i) {
+      CheckReference("lcm.rates[" + std::to_string(i) + "].axis", machine_.lcm.rates[i].axis, rates);
+    }
+    return std::move(problems_);
+  }
+
+ private:
+  void Add(const std::string& path, const std::string& message) {
+    problems_.push_back(source_.ProblemAt(path, message));
+  }
+
+  void CheckAxes() {
+    if (machine_.axes.empty()) Add("axes", "expected at least one axis");
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const std::string path = "axes[" + std::to_string(i) + "]";
+      const std::string& name = machine_.axes[i].name;
+      if (name.empty() && !Written(path, ".name")) continue;  // reported as missing already
+      if (!GoodName(name)) {
+        Add(path + ".name", "expected 1 to 40 letters, digits, _ - or ., found " + Quoted(name));
+      } else if (name == "machine") {
+        Add(path + ".name", "expected another name: machine means the engine itself");
+      }
+    }
+  }
+
+  // Whether the key behind `path` stands in the text.
+  bool Written(const std::string& path, const char* key) const {
+    const Place inner = source_.PlaceOf(path + key);
+    const Place outer = source_.PlaceOf(path);
+    return inner.line != outer.line || inner.column != outer.column;
+  }
+
+  void CheckMasters() {
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const axis::AxisParams& axis = machine_.axes[i];
+      if (!axis.follows || axis.follows->axis.empty()) continue;
+      const std::string path = "axes[" + std::to_string(i) + "].follows.axis";
+      const std::optional<std::uint32_t> master = MasterOf(machine_, i);
+      if (!master) {
+        Add(path, "expected the name of an axis, found " + Quoted(axis.follows->axis) +
+                      DidYouMean(axis.follows->axis, names_));
+      } else if (std::string why = axis::CannotFollow(axis, machine_.axes[*master]); !why.empty()) {
+        Add(path, why);
+      }
+    }
+    std::vector<std::uint32_t> loop;
+    if (OrderByMasters(MastersOf(machine_), loop)) return;
+    std::string members;
+    for (const std::uint32_t i : loop) members += machine_.axes[i].name + " -> ";
+    Add("axes[" + std::to_string(loop.front()) + "].follows.axis",
+        "expected axes that follow one another in no loop, found " + members + machine_.axes[loop.front()].name);
+  }
+
+  // A name that must be an axis', each at most once.
+  void CheckReference(const std::string& path, std::string_view name, std::vector<std::string_view>& seen) {
+    if (name.empty()) return;
+    if (std::find(names_.begin(), names_.end(), name) == names_.end()) {
+      Add(path, "expected the name of an axis, found " + Quoted(name) + DidYouMean(name, names_));
+    } else if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
+      Add(path, "expected each axis once, found " + Quoted(name) + " again");
+    }
+    seen.push_back(name);
+  }
+
+  const Machine& machine_;
+  const SourceMap& source_;
+  std::vector<std::string_view> names_;
+  std::vector<Problem> problems_;
+};
+
+}  // namespace
+
+LoadResult LoadMachine(std::string_view text, std::string_view file_name) {
+  Machine machine;
+  SourceMap source(file_name);
+  std::vector<Problem> problems = ReadYaml(TypeOf<Machine>(), &machine, text, file_name, source);
+  const bool readable = problems.size() < kMaxProblems;
+  if (readable && !machine.axes.empty()) {
+    std::vector<Problem> more = CrossCheck(machine, source).Run();
+    problems.insert(problems.end(), more.begin(), more.end());
+  } else if (problems.empty()) {
+    problems = CrossCheck(machine, source).Run();
+  }
+  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
+    return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+  });
+  LoadResult result;
+  for (const Problem& problem : problems) result.problems.push_back(problem.Text());
+  if (problems.empty()) result.machine = std::move(machine);
+  return result;
+}
+
+LoadResult LoadMachineFile(const std::string& path) {
+  std::string why;
+  const std::optional<std::string> text = LoadText(path, why);
+  if (!text) return {std::nullopt, {path + ": " + why}};
+  return LoadMachine(*text, path);
+}
+
+}  // namespace takt::engine

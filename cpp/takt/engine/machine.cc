@@ -1,0 +1,97 @@
+#include "takt/engine/machine.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::engine {
+
+namespace {
+
+// An encoder that sends what the axis expects.
+plant::ServoEncoder MatchingEncoder(const axis::Encoder& expected) {
+  plant::ServoEncoder encoder;
+  const bool incremental = expected.type == axis::EncoderType::kIncremental;
+  encoder.type = incremental ? plant::ServoEncoderType::kIncremental : plant::ServoEncoderType::kAbsolute;
+  encoder.increments_per_unit = expected.increments_per_unit;
+  encoder.inverted = expected.invert;
+  encoder.ssi_bits = expected.ssi_bits;
+  encoder.coding =
+      expected.coding == axis::SsiCoding::kGray ? plant::ServoEncoderCoding::kGray : plant::ServoEncoderCoding::kBinary;
+  return encoder;
+}
+
+// Enough torque for twice the axis' largest acceleration; the rest as the struct's defaults say.
+plant::ServoMechanics MatchingMechanics(const axis::AxisParams& axis, const plant::ServoDrive& drive) {
+  plant::ServoMechanics mechanics;
+  mechanics.inertia = drive.max_torque / (2 * axis.limits.acceleration);
+  return mechanics;
+}
+
+}  // namespace
+
+plant::ServoParams ServoOf(const Machine& machine, std::size_t index) {
+  const axis::AxisParams& axis = machine.axes[index];
+  plant::ServoParams servo;
+  servo.drive.velocity_at_10v = axis.loop.velocity_at_10v;
+  servo.drive.inverted = axis.drive.invert;
+  servo.mechanics = MatchingMechanics(axis, servo.drive);
+  servo.encoder = MatchingEncoder(axis.encoder);
+  for (const SimulatedServo& given : machine.simulation.servos) {
+    if (given.axis != axis.name) continue;
+    servo.drive = given.drive;
+    servo.mechanics = given.mechanics;
+    servo.switches = given.switches;
+    if (given.encoder) servo.encoder = *given.encoder;
+  }
+  return servo;
+}
+
+void describe(Description<CycleParams>& d) {
+  d.about("The engine's cycle.");
+  d.defaulted<&CycleParams::period_s>(unit::s, between(0.00025, 0.02), "How long a cycle lasts.");
+  d.defaulted<&CycleParams::overruns_in_a_row>("So many late cycles in a row stop every axis; 0: never.");
+}
+
+void describe(Description<ChannelRate>& d) {
+  d.about("How often one axis is published.");
+  d.required<&ChannelRate::axis>("Name of the axis.");
+  d.required<&ChannelRate::rate_hz>(unit::hz, between(0, 4000), "How often; 0: never.");
+}
+
+void describe(Description<LcmParams>& d) {
+  using L = LcmParams;
+  d.about("What goes out and comes in over LCM.");
+  d.defaulted<&L::url>("LCM's provider; as it is, messages stay on this host (ttl 0).");
+  d.defaulted<&L::axis_rate_hz>(unit::hz, between(0, 4000),
+                                "How often each axis is published, at most once a cycle; 0: never.");
+  d.defaulted<&L::rates>("Axes with a rate of their own.");
+  d.defaulted<&L::engine_rate_hz>(unit::hz, between(0.1, 1000), "How often the engine's own figures are published.");
+  d.defaulted<&L::dead_man_s>(unit::s, between(0.02, 60),
+                              "Without a heartbeat for so long, a client's level-sensitive commands are released.");
+}
+
+void describe(Description<SimulatedServo>& d) {
+  using S = SimulatedServo;
+  d.about("The simulated servo behind an axis.");
+  d.required<&S::axis>("Name of the axis.");
+  d.defaulted<&S::drive>("The drive.");
+  d.defaulted<&S::mechanics>("Motor and load.");
+  d.defaulted<&S::switches>("Where the switches are.");
+  d.defaulted<&S::encoder>("The encoder; unset: the one the axis expects.");
+}
+
+void describe(Description<Simulation>& d) {
+  d.about("What stands in for the metal. Axes without a servo here get an ideal one that fits their parameters.");
+  d.defaulted<&Simulation::servos>("Servos.");
+}
+
+void describe(Description<Machine>& d) {
+  using M = Machine;
+  d.about("A machine: everything an engine is made from.");
+  d.required<&M::name>("Of the machine.");
+  d.defaulted<&M::cycle>("The cycle.");
+  d.defaulted<&M::lcm>("Messages.");
+  d.required<&M::axes>("The axes.");
+  d.defaulted<&M::simulation>("What stands in for the metal.");
+}
+
+}  // namespace takt::engine

@@ -1,0 +1,65 @@
+// The machine file: everything an engine is made from.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "takt/axis/params.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/plant/servo.h"
+
+namespace takt::engine {
+
+struct CycleParams {
+  double period_s = 0.001;               // s, 250 µs to 20 ms
+  std::uint32_t overruns_in_a_row = 10;  // so many late cycles in a row stop everything; 0: never
+};
+
+struct ChannelRate {
+  std::string axis;  // name of the axis
+  double rate_hz = 100;
+};
+
+struct LcmParams {
+  std::string url = "udpm://239.255.76.67:7667?ttl=0";  // EN-25: stays on this host
+  double axis_rate_hz = 100;                            // of each axis' state channel; at most once a cycle
+  std::vector<ChannelRate> rates;                       // axes with a rate of their own
+  double engine_rate_hz = 10;                           // of the engine's own channel
+  double dead_man_s = 0.25;  // s without a heartbeat after which a level-sensitive command is released
+};
+
+// The simulated servo behind an axis. Axes without one get an ideal servo that fits their own parameters.
+struct SimulatedServo {
+  std::string axis;  // name of the axis
+  plant::ServoDrive drive;
+  plant::ServoMechanics mechanics;
+  plant::ServoSwitches switches;
+  std::optional<plant::ServoEncoder> encoder;  // unset: the one the axis expects
+};
+
+struct Simulation {
+  std::vector<SimulatedServo> servos;
+};
+
+struct Machine {
+  std::string name;
+  CycleParams cycle;
+  LcmParams lcm;
+  std::vector<axis::AxisParams> axes;
+  Simulation simulation;
+};
+
+// The servo behind `axis` in this machine.
+plant::ServoParams ServoOf(const Machine& machine, std::size_t axis);
+
+void describe(Description<CycleParams>&);
+void describe(Description<LcmParams>&);
+void describe(Description<ChannelRate>&);
+void describe(Description<SimulatedServo>&);
+void describe(Description<Simulation>&);
+void describe(Description<Machine>&);
+
+}  // namespace takt::engine

@@ -1,0 +1,31 @@
+// Makes the calling thread a real-time thread for as long as this object lives (EN-02).
+#pragma once
+
+#include <sched.h>
+
+#include <optional>
+#include <string>
+
+namespace takt::engine {
+
+class RealTimeThread {
+ public:
+  // SCHED_FIFO with this priority, memory locked, stack touched, and one CPU if given.
+  RealTimeThread(int priority, std::optional<int> cpu);
+  ~RealTimeThread();
+  RealTimeThread(const RealTimeThread&) = delete;
+  RealTimeThread& operator=(const RealTimeThread&) = delete;
+
+  // What the system did not permit, and why; empty: nothing.
+  const std::string& refused() const { return refused_; }
+
+ private:
+  void Check(const std::string& what, int error);
+
+  int policy_before_ = SCHED_OTHER;
+  sched_param priority_before_{};
+  cpu_set_t cpus_before_{};
+  std::string refused_;
+};
+
+}  // namespace takt::engine

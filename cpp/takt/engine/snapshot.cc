@@ -1,0 +1,60 @@
+#include "takt/engine/snapshot.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "takt/core/describe.h"
+
+namespace takt::engine {
+
+void Histogram::Add(std::uint64_t ns) noexcept {
+  const auto bucket = static_cast<std::size_t>(std::bit_width(ns | 1) - 1);
+  ++buckets[std::min(bucket, buckets.size() - 1)];
+  ++count;
+  max = std::max(max, ns);
+}
+
+double Histogram::Quantile(double share) const noexcept {
+  const double wanted = std::clamp(share, 0.0, 1.0) * static_cast<double>(count);
+  double below = 0;
+  for (std::size_t i = 0; i < buckets.size(); ++i) {
+    const double here = static_cast<double>(buckets[i]);
+    if (here > 0 && below + here >= wanted) {
+      const double largest = static_cast<double>(max);
+      const double lower = i == 0 ? 0 : std::ldexp(1, static_cast<int>(i));
+      const double upper =
+          i + 1 == buckets.size() ? largest : std::min(std::ldexp(1, static_cast<int>(i) + 1), largest);
+      return lower + (upper - lower) * (wanted - below) / here;
+    }
+    below += here;
+  }
+  return 0;
+}
+
+void describe(Description<Histogram>& d) {
+  using H = Histogram;
+  d.about("Times counted by powers of two.");
+  d.internal<&H::buckets>(
+      "How many times lie in [2^i, 2^(i+1)) ns; bucket 0 also holds 0, the last one everything above.");
+  d.internal<&H::count>("How many times there are in all.");
+  d.internal<&H::max>(unit::ns, "The longest of them.");
+}
+
+void describe(Description<EngineFigures>& d) {
+  using F = EngineFigures;
+  d.about("The engine's own figures. All counts run from the start of the engine and never fall.");
+  d.internal<&F::cycle>("Cycle these figures belong to, 0 for the first after start.");
+  d.internal<&F::overruns>("Cycles that ended after the next one should have begun.");
+  d.internal<&F::commands_applied>("Commands the cycle has taken up.");
+  d.internal<&F::commands_refused>("Commands refused because the queue to the cycle was full.");
+  d.internal<&F::snapshots_dropped>("Axis states lost because their queue was full (a slow network or disk).");
+  d.internal<&F::feedback_dropped>("Feedback events lost because their queue was full.");
+  d.internal<&F::planner_second_scale>("Motions planned only at the second scale.");
+  d.internal<&F::planner_failures>("Motions that could not be planned: the one in progress was kept.");
+  d.internal<&F::state_hash>("Hash of the whole state after the cycle; 0: not made.");
+  d.internal<&F::execution>("Execution times of the cycle; real time only.");
+  d.internal<&F::latency>("Wake-up after the deadline; real time only.");
+}
+
+}  // namespace takt::engine

@@ -1,0 +1,65 @@
+// What the cycle hands to other threads: small copies through bounded queues.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "takt/axis/outputs.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/engine/command.h"
+
+namespace takt::engine {
+
+struct AxisSnapshot {
+  std::uint64_t cycle = 0;
+  std::uint32_t axis = 0;  // index in Machine::axes
+  bool due = true;         // at the rate of its channel; false only with EngineOptions::every_cycle
+  axis::Outputs outputs;
+};
+
+struct JournalEntry {  // a command as it was applied
+  std::uint64_t cycle = 0;
+  Command command;
+};
+
+struct HashEntry {
+  std::uint64_t cycle = 0;  // after this cycle ...
+  std::uint64_t hash = 0;   // ... the whole state had this hash
+};
+
+// Counts of nanoseconds by powers of two: bucket i holds values in [2^i, 2^(i+1)); bucket 0 also 0.
+struct Histogram {
+  std::array<std::uint64_t, 32> buckets{};
+  std::uint64_t count = 0;
+  std::uint64_t max = 0;
+
+  void Add(std::uint64_t ns) noexcept;
+  // The value below which `share` (0..1) of all lie, interpolated within its bucket.
+  double Quantile(double share) const noexcept;
+};
+
+// What the scheduler measured about the cycle before; all 0 in virtual time.
+struct CycleTiming {
+  std::uint64_t latency_ns = 0;    // wake-up after its deadline
+  std::uint64_t execution_ns = 0;  // of the whole cycle
+  bool overrun = false;            // it ended after the next deadline
+};
+
+struct EngineFigures {
+  std::uint64_t cycle = 0;
+  std::uint64_t overruns = 0;
+  std::uint64_t commands_applied = 0;
+  std::uint64_t commands_refused = 0;   // queue full
+  std::uint64_t snapshots_dropped = 0;  // a slow reader
+  std::uint64_t feedback_dropped = 0;
+  std::uint64_t planner_second_scale = 0;
+  std::uint64_t planner_failures = 0;
+  std::uint64_t state_hash = 0;  // 0 unless hashing is on
+  Histogram execution;
+  Histogram latency;
+};
+
+void describe(Description<Histogram>&);
+void describe(Description<EngineFigures>&);
+
+}  // namespace takt::engine

@@ -1,0 +1,98 @@
+// All that is known about clients and their commands: who is alive, which id became which ticket, what was answered
+// last (EN-22, EN-23). No LCM in here. Every method may be called from any thread; none of them is the cycle's.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "takt/engine/command.h"
+#include "takt/engine/machine.h"
+#include "takt/lcm/messages.h"
+
+namespace takt::lcm {
+
+struct ClientLimits {
+  std::size_t clients = 64;               // more are refused while all of these are alive
+  std::size_t ids_per_client = 1024;      // remembered; more unfinished ones are refused
+  std::size_t replies = 1 << 14;          // waiting to be published; more are dropped and counted
+  std::size_t arguments = 1 << 16;        // bytes of a command's arguments
+  std::int64_t alive_ns = 2'000'000'000;  // after the last sign of life; then the name is free for another session
+};
+
+struct ClientFigures {
+  std::uint64_t malformed = 0;
+  std::uint64_t replies_dropped = 0;
+  std::uint32_t alive = 0;  // clients
+};
+
+class Clients {
+ public:
+  // Hands a command to the engine: its ticket, or 0 if the queue is full. Called by one thread at a time.
+  using Submit = std::function<Ticket(const engine::Command&)>;
+
+  // `machine` must outlive this.
+  Clients(const engine::Machine& machine, Submit submit, const ClientLimits& limits = {});
+
+  // From the network. `now_ns` is any clock that only goes forward.
+  void OnCommand(const msgs::command& message, std::int64_t now_ns);
+  // Renews the lease of each of the client's level-sensitive commands. Answered (with id 0) only if the name belongs to
+  // another session.
+  void OnHeartbeat(const msgs::heartbeat& message, std::int64_t now_ns);
+  void OnMalformed();
+
+  // From the engine.
+  void OnFeedback(const FeedbackEvent& event);
+
+  // The next reply to publish. False: none.
+  bool TakeReply(msgs::feedback& reply);
+
+  ClientFigures figures(std::int64_t now_ns) const;
+
+ private:
+  struct Record {
+    msgs::feedback last;  // what was answered last
+    bool level_sensitive = false;
+    bool stays_in_force = false;  // after it is done, until released
+  };
+  struct Client {
+    std::int64_t session = 0;
+    std::int64_t last_seen_ns = 0;
+    std::int64_t forgotten_id = 0;  // ids up to this one that are not remembered were given, or may have been
+    std::unordered_map<std::int64_t, Record> records;
+    std::deque<std::int64_t> order;       // ids of the records, the oldest first
+    std::vector<Ticket> level_sensitive;  // those that heartbeats keep alive
+  };
+  struct Origin {
+    Client* client;
+    std::int64_t id;
+  };
+
+  // The client of this name and session, made if there is room, seen alive now. Null, and `refusal` says why, if it
+  // must be refused.
+  Client* Admit(const std::string& name, std::int64_t session, std::int64_t now_ns, msgs::feedback& refusal);
+  bool MakeRoomForClient(std::int64_t now_ns);
+  bool MakeRoomForId(Client& client);
+  void Forget(Client& client);
+  // Hands the command on, or makes `reply` a refusal.
+  void Give(Client& client, const msgs::command& message, msgs::feedback& reply);
+  void Reply(const msgs::feedback& reply);
+
+  const engine::Machine& machine_;
+  const Submit submit_;
+  const ClientLimits limits_;
+
+  mutable std::mutex mutex_;
+  std::map<std::string, Client> clients_;
+  std::unordered_map<Ticket, Origin> origins_;  // of tickets that are not final
+  std::deque<msgs::feedback> replies_;
+  std::uint64_t malformed_ = 0;
+  std::uint64_t replies_dropped_ = 0;
+};
+
+}  // namespace takt::lcm

@@ -1,0 +1,134 @@
+#include "takt/lcm/messages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace takt::lcm {
+namespace {
+
+std::int64_t Signed(std::uint64_t bits) {
+  return static_cast<std::int64_t>(bits);
+}
+
+std::int64_t TimeNs(std::uint64_t cycle, const engine::Machine& machine) {
+  return Signed(cycle) * std::llround(machine.cycle.period_s * 1e9);
+}
+
+// The fields behind the fingerprint: 'i' eight bytes, 's' a string.
+bool FitsLayout(std::span<const std::uint8_t> bytes, std::string_view layout) {
+  constexpr std::size_t kFingerprint = 8;
+  if (bytes.size() < kFingerprint) return false;
+  bytes = bytes.subspan(kFingerprint);
+  for (const char field : layout) {
+    std::size_t size = 8;
+    if (field == 's') {
+      if (bytes.size() < 4) return false;
+      size = std::size_t{bytes[0]} << 24 | std::size_t{bytes[1]} << 16 | std::size_t{bytes[2]} << 8 | bytes[3];
+      bytes = bytes.subspan(4);
+      if (size == 0 || size > bytes.size()) return false;
+      const auto* end = std::find(bytes.data(), bytes.data() + size, std::uint8_t{0});
+      if (end != bytes.data() + size - 1) return false;
+    }
+    if (size > bytes.size()) return false;
+    bytes = bytes.subspan(size);
+  }
+  return bytes.empty();
+}
+
+template <typename Message>
+std::optional<Message> Decode(std::span<const std::uint8_t> bytes, std::string_view layout) {
+  if (!FitsLayout(bytes, layout)) return {};
+  Message message{};
+  if (message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) < 0) return {};
+  return message;
+}
+
+}  // namespace
+
+msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::Machine& machine) {
+  const axis::Outputs& o = snapshot.outputs;
+  msgs::axis_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.axes[snapshot.axis].name;
+  m.set_position = o.set_position;
+  m.set_velocity = o.set_velocity;
+  m.set_acceleration = o.set_acceleration;
+  m.actual_position = o.actual_position;
+  m.actual_velocity = o.actual_velocity;
+  m.following_error = o.following_error;
+  m.voltage_v = o.voltage_v;
+  m.torque_nm = o.torque_nm;
+  m.active_command = Signed(o.active_command);
+  m.error = static_cast<std::int32_t>(o.error);
+  m.state = static_cast<std::int8_t>(o.state);
+  m.limited_by = static_cast<std::int8_t>(o.limited_by);
+  m.buffered_commands = o.buffered_commands;
+  m.loop_closed = o.loop_closed;
+  m.in_position = o.in_position;
+  m.limit_positive = o.limit_positive;
+  m.limit_negative = o.limit_negative;
+  m.reference = o.reference;
+  m.touch_probe = o.touch_probe;
+  return m;
+}
+
+msgs::histogram ToMessage(const engine::Histogram& histogram) {
+  msgs::histogram m{};
+  std::transform(histogram.buckets.begin(), histogram.buckets.end(), m.buckets, Signed);
+  m.count = Signed(histogram.count);
+  m.max = Signed(histogram.max);
+  return m;
+}
+
+msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine::Machine& machine) {
+  msgs::engine_state m{};
+  m.cycle = Signed(figures.cycle);
+  m.time_ns = TimeNs(figures.cycle, machine);
+  m.period_s = machine.cycle.period_s;
+  m.overruns = Signed(figures.overruns);
+  m.commands_applied = Signed(figures.commands_applied);
+  m.commands_refused = Signed(figures.commands_refused);
+  m.snapshots_dropped = Signed(figures.snapshots_dropped);
+  m.feedback_dropped = Signed(figures.feedback_dropped);
+  m.planner_second_scale = Signed(figures.planner_second_scale);
+  m.planner_failures = Signed(figures.planner_failures);
+  m.state_hash = Signed(figures.state_hash);
+  m.execution = ToMessage(figures.execution);
+  m.latency = ToMessage(figures.latency);
+  return m;
+}
+
+msgs::feedback ToMessage(const FeedbackEvent& event) {
+  msgs::feedback m{};
+  m.ticket = Signed(event.ticket);
+  m.cycle = Signed(event.cycle);
+  m.state = static_cast<std::int8_t>(event.state);
+  m.reached = event.reached;
+  m.error_id = static_cast<std::int32_t>(event.error);
+  if (event.error != ErrorId::kNone) m.sentence = ErrorText(event.error);
+  return m;
+}
+
+msgs::journal_command ToMessage(const engine::JournalEntry& entry, const engine::Machine& machine) {
+  engine::CommandText text = engine::ToText(machine, entry.command);
+  msgs::journal_command m{};
+  m.cycle = Signed(entry.cycle);
+  m.ticket = Signed(entry.command.ticket);
+  m.lease_s = entry.command.lease_s;
+  m.target = std::move(text.target);
+  m.verb = std::move(text.verb);
+  m.arguments = std::move(text.arguments);
+  return m;
+}
+
+std::optional<msgs::command> DecodeCommand(std::span<const std::uint8_t> bytes) {
+  return Decode<msgs::command>(bytes, "siisss");
+}
+
+std::optional<msgs::heartbeat> DecodeHeartbeat(std::span<const std::uint8_t> bytes) {
+  return Decode<msgs::heartbeat>(bytes, "si");
+}
+
+}  // namespace takt::lcm

@@ -1,0 +1,47 @@
+// Between the engine's structs and LCM messages. Pure functions; what only the sender knows (utime, sequence, run_id)
+// is left 0.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "takt/core/feedback.h"
+#include "takt/engine/machine.h"
+#include "takt/engine/snapshot.h"
+#include "takt/msgs/axis_state.hpp"
+#include "takt/msgs/command.hpp"
+#include "takt/msgs/engine_state.hpp"
+#include "takt/msgs/feedback.hpp"
+#include "takt/msgs/heartbeat.hpp"
+#include "takt/msgs/journal_command.hpp"
+#include "takt/msgs/journal_hashes.hpp"
+#include "takt/msgs/journal_start.hpp"
+#include "takt/msgs/machine_description.hpp"
+
+namespace takt::lcm {
+
+msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::Machine& machine);
+msgs::histogram ToMessage(const engine::Histogram& histogram);
+msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine::Machine& machine);
+// Client, session and id are left empty.
+msgs::feedback ToMessage(const FeedbackEvent& event);
+msgs::journal_command ToMessage(const engine::JournalEntry& entry, const engine::Machine& machine);
+
+// Bytes as they came from the network, whatever they are. Empty: they are no such message. The generated decode() alone
+// is not safe here: a negative length of a string makes it throw or read beyond the end.
+std::optional<msgs::command> DecodeCommand(std::span<const std::uint8_t> bytes);
+std::optional<msgs::heartbeat> DecodeHeartbeat(std::span<const std::uint8_t> bytes);
+
+// Encodes into `buffer`, whose memory is used again from message to message.
+template <typename Message>
+void Encode(const Message& message, std::vector<std::uint8_t>& buffer) {
+  const int size = message.getEncodedSize();
+  buffer.resize(static_cast<std::size_t>(size));
+  message.encode(buffer.data(), 0, size);
+}
+
+}  // namespace takt::lcm

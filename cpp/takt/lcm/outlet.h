@@ -1,0 +1,46 @@
+// Where encoded messages go: the network or a log file.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace lcm {
+class LCM;
+class LogFile;
+}  // namespace lcm
+
+namespace takt::lcm {
+
+class Outlet {
+ public:
+  virtual ~Outlet() = default;
+  // `utime` is the wall clock in µs. False: not taken. May block; never called by the cycle's thread.
+  virtual bool Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t utime) = 0;
+};
+
+class NetworkOutlet : public Outlet {
+ public:
+  // `network` must outlive this.
+  explicit NetworkOutlet(::lcm::LCM& network) : network_(network) {}
+  bool Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t utime) override;
+
+ private:
+  ::lcm::LCM& network_;
+};
+
+// An LCM log, as lcm-logger writes it. An existing file is written anew.
+class LogOutlet : public Outlet {
+ public:
+  explicit LogOutlet(const std::string& path);
+  ~LogOutlet() override;
+  // The file could be opened.
+  bool good() const;
+  bool Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t utime) override;
+
+ private:
+  std::unique_ptr<::lcm::LogFile> file_;
+};
+
+}  // namespace takt::lcm

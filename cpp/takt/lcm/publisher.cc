@@ -1,0 +1,164 @@
+#include "takt/lcm/publisher.h"
+
+#include <chrono>
+#include <utility>
+
+#include "takt/lcm/channels.h"
+#include "takt/lcm/clock.h"
+
+namespace takt::lcm {
+namespace {
+
+constexpr auto kIdleWait = std::chrono::milliseconds(1);
+constexpr std::int64_t kMachinePeriodNs = 1'000'000'000;
+constexpr std::size_t kHashesPerMessage = 1000;
+constexpr int kBatch = 4096;  // elements of one queue before the next has its turn
+
+template <typename T, typename Use>
+bool Take(SpscQueue<T>& queue, Use use) {
+  T element;
+  int taken = 0;
+  while (taken < kBatch && queue.TryPop(element)) {
+    use(element);
+    ++taken;
+  }
+  return taken > 0;
+}
+
+}  // namespace
+
+Publisher::Publisher(engine::Engine& engine, Clients& clients, Outlet* network, Outlet* log, RunInfo info)
+    : engine_(engine), clients_(clients), network_(network), log_(log), info_(std::move(info)), run_id_(WallClockUs()) {
+  engine_channel_.name = kEngineChannel;
+  machine_channel_.name = kMachineChannel;
+  feedback_channel_.name = kFeedbackChannel;
+  for (const axis::AxisParams& axis : engine_.machine().axes)
+    axis_channels_.push_back({.name = AxisChannel(axis.name)});
+  thread_ = std::thread([this] { Run(); });
+}
+
+void Publisher::Stop() {
+  stop_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void Publisher::Run() {
+  if (log_ != nullptr) StartJournal();
+  for (;;) {
+    const bool last = stop_;  // before the queues are looked at: what was put there earlier is not missed
+    if (SteadyNs() >= next_machine_ns_) PublishMachine();
+    if (Drain()) continue;
+    if (last) break;
+    std::this_thread::sleep_for(kIdleWait);
+  }
+  FlushHashes();
+}
+
+bool Publisher::Drain() {
+  bool any = Take(engine_.feedback(), [this](const FeedbackEvent& event) { clients_.OnFeedback(event); });
+  PublishReplies();
+  any |= Take(engine_.journal(), [this](const engine::JournalEntry& entry) {
+    if (log_ != nullptr) ToJournal(kJournalCommandChannel, ToMessage(entry, engine_.machine()));
+  });
+  any |= Take(engine_.hashes(), [this](const engine::HashEntry& entry) { AddHash(entry); });
+  any |= Take(engine_.figure_queue(), [this](const engine::EngineFigures& figures) { PublishFigures(figures); });
+  any |= Take(engine_.snapshots(), [this](const engine::AxisSnapshot& snapshot) {
+    Channel& channel = axis_channels_[snapshot.axis];
+    msgs::axis_state message = ToMessage(snapshot, engine_.machine());
+    if (snapshot.due) ToNetwork(channel, message);
+    ToLog(channel, message);
+  });
+  return any;
+}
+
+void Publisher::PublishReplies() {
+  msgs::feedback reply;
+  while (clients_.TakeReply(reply)) ToBoth(feedback_channel_, reply);
+}
+
+void Publisher::PublishMachine() {
+  msgs::machine_description message{};
+  message.run_id = run_id_;
+  message.name = engine_.machine().name;
+  message.version = info_.version;
+  message.period_s = engine_.machine().cycle.period_s;
+  message.text = info_.machine_text;
+  ToNetwork(machine_channel_, message);
+  if (next_machine_ns_ == 0) ToLog(machine_channel_, message);
+  next_machine_ns_ = SteadyNs() + kMachinePeriodNs;
+}
+
+void Publisher::PublishFigures(const engine::EngineFigures& figures) {
+  const ClientFigures clients = clients_.figures(SteadyNs());
+  msgs::engine_state message = ToMessage(figures, engine_.machine());
+  message.run_id = run_id_;
+  message.pace = info_.pace;
+  message.malformed = static_cast<std::int64_t>(clients.malformed);
+  message.send_failures = static_cast<std::int64_t>(send_failures());
+  message.replies_dropped = static_cast<std::int64_t>(clients.replies_dropped);
+  message.clients = static_cast<std::int32_t>(clients.alive);
+  ToBoth(engine_channel_, message);
+}
+
+void Publisher::StartJournal() {
+  msgs::journal_start message{};
+  message.utime = WallClockUs();
+  message.run_id = run_id_;
+  message.version = info_.version;
+  message.period_s = engine_.machine().cycle.period_s;
+  message.text = info_.machine_text;
+  ToJournal(kJournalStartChannel, message);
+}
+
+void Publisher::AddHash(const engine::HashEntry& entry) {
+  if (log_ == nullptr) return;
+  const auto cycle = static_cast<std::int64_t>(entry.cycle);
+  const auto count = static_cast<std::int64_t>(hashes_.hashes.size());
+  if (count != 0 && cycle != hashes_.first_cycle + count) FlushHashes();
+  if (hashes_.hashes.empty()) hashes_.first_cycle = cycle;
+  hashes_.hashes.push_back(static_cast<std::int64_t>(entry.hash));
+  if (hashes_.hashes.size() == kHashesPerMessage) FlushHashes();
+}
+
+void Publisher::FlushHashes() {
+  if (hashes_.hashes.empty()) return;
+  hashes_.count = static_cast<std::int32_t>(hashes_.hashes.size());
+  ToJournal(kJournalHashesChannel, hashes_);
+  hashes_.hashes.clear();
+}
+
+template <typename Message>
+void Publisher::ToNetwork(Channel& channel, Message& message) {
+  if (network_ == nullptr) return;
+  message.utime = WallClockUs();
+  message.sequence = channel.network_sequence++;
+  Encode(message, buffer_);
+  Send(*network_, channel.name, message.utime);
+}
+
+template <typename Message>
+void Publisher::ToLog(Channel& channel, Message& message) {
+  if (log_ == nullptr) return;
+  message.utime = WallClockUs();
+  message.sequence = channel.log_sequence++;
+  Encode(message, buffer_);
+  Send(*log_, channel.name, message.utime);
+}
+
+template <typename Message>
+void Publisher::ToBoth(Channel& channel, Message& message) {
+  ToNetwork(channel, message);
+  ToLog(channel, message);
+}
+
+template <typename Message>
+void Publisher::ToJournal(const char* channel, const Message& message) {
+  Encode(message, buffer_);
+  Send(*log_, channel, WallClockUs());
+}
+
+void Publisher::Send(Outlet& outlet, const std::string& channel, std::int64_t utime) {
+  if (!outlet.Send(channel, buffer_, utime)) send_failures_.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace takt::lcm

@@ -1,0 +1,84 @@
+// Takes what the engine put into its queues to the network and into a log file (EN-20, EN-21), on a thread of its own.
+// However slow those are, the cycle goes on: the queues fill up and the engine counts what does not fit.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "takt/engine/engine.h"
+#include "takt/lcm/clients.h"
+#include "takt/lcm/messages.h"
+#include "takt/lcm/outlet.h"
+
+namespace takt::lcm {
+
+struct RunInfo {
+  std::string machine_text;  // the machine file as it was read
+  std::string version;       // of the engine
+  std::int8_t pace = 0;      // one of engine_state's PACE_ constants
+};
+
+class Publisher {
+ public:
+  // Publishes from now on. `network` or `log` may be null; all others must outlive this. All states the engine
+  // hands over go to the log, those that are due to the network.
+  Publisher(engine::Engine& engine, Clients& clients, Outlet* network, Outlet* log, RunInfo info);
+  ~Publisher() { Stop(); }
+  Publisher(const Publisher&) = delete;
+  Publisher& operator=(const Publisher&) = delete;
+
+  // Publishes what is still queued, then ends the thread. The cycle must have ended.
+  void Stop();
+
+  // Messages the network or the log did not take.
+  std::uint64_t send_failures() const { return send_failures_.load(std::memory_order_relaxed); }
+
+ private:
+  struct Channel {
+    std::string name;
+    std::int64_t network_sequence = 0;
+    std::int64_t log_sequence = 0;
+  };
+
+  void Run();
+  // True if anything was there.
+  bool Drain();
+  void PublishReplies();
+  void PublishMachine();
+  void PublishFigures(const engine::EngineFigures& figures);
+  void StartJournal();
+  void AddHash(const engine::HashEntry& entry);
+  void FlushHashes();
+
+  template <typename Message>
+  void ToNetwork(Channel& channel, Message& message);
+  template <typename Message>
+  void ToLog(Channel& channel, Message& message);
+  template <typename Message>
+  void ToBoth(Channel& channel, Message& message);
+  template <typename Message>
+  void ToJournal(const char* channel, const Message& message);
+  void Send(Outlet& outlet, const std::string& channel, std::int64_t utime);
+
+  engine::Engine& engine_;
+  Clients& clients_;
+  Outlet* const network_;
+  Outlet* const log_;
+  const RunInfo info_;
+  const std::int64_t run_id_;
+
+  std::vector<Channel> axis_channels_;
+  Channel engine_channel_, machine_channel_, feedback_channel_;
+  std::int64_t next_machine_ns_ = 0;
+  msgs::journal_hashes hashes_{};
+  std::vector<std::uint8_t> buffer_;
+
+  std::atomic<std::uint64_t> send_failures_{0};
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace takt::lcm

@@ -1,0 +1,43 @@
+// Everything an engine needs to be reached over LCM: network, clients, gateway, publisher, log file.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "takt/engine/engine.h"
+#include "takt/lcm/clients.h"
+#include "takt/lcm/gateway.h"
+#include "takt/lcm/network.h"
+#include "takt/lcm/outlet.h"
+#include "takt/lcm/publisher.h"
+
+namespace takt::lcm {
+
+struct ServiceOptions {
+  std::string url{};       // empty: no network
+  std::string log_path{};  // empty: no log
+  RunInfo info{};
+};
+
+class Service {
+ public:
+  // Works from now on; the engine must outlive it, and its cycle must have ended before it goes. Null, and `problem`
+  // says in one line why, when the network cannot be joined or the log cannot be written.
+  static std::unique_ptr<Service> Open(engine::Engine& engine, const ServiceOptions& options, std::string& problem);
+
+  // Publishes what is still queued and closes the log. The number of messages that the network or the log did not take.
+  std::uint64_t Close();
+
+ private:
+  explicit Service(engine::Engine& engine);
+
+  Clients clients_;
+  // Two members of the same network: sending and receiving do not wait for each other.
+  Network sending_, receiving_;
+  std::unique_ptr<NetworkOutlet> network_;
+  std::unique_ptr<LogOutlet> log_;
+  std::unique_ptr<Publisher> publisher_;
+  std::unique_ptr<Gateway> gateway_;
+};
+
+}  // namespace takt::lcm

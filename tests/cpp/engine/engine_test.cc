@@ -1,0 +1,227 @@
+// The engine as a whole: order, determinism, journal, overruns, shutdown, queues.
+#include "takt/engine/engine.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "machines.h"
+#include "takt/axis/state.h"
+#include "takt/core/describe.h"
+#include "takt/core/verify.h"
+#include "takt/engine/cycle.h"
+
+namespace takt::engine {
+namespace {
+
+// EN-11: nothing of the machine file, the commands, the published state and the hashed state is left out of its
+// description.
+TEST(Descriptions, AreComplete) {
+  EXPECT_THAT(Verify(TypeOf<Machine>()), testing::IsEmpty());
+  EXPECT_THAT(Verify(TypeOf<axis::Outputs>()), testing::IsEmpty());
+  EXPECT_THAT(Verify(TypeOf<axis::State>()), testing::IsEmpty());
+  EXPECT_THAT(Verify(TypeOf<plant::ServoState>()), testing::IsEmpty());
+  for (const Verb& verb : Verbs()) EXPECT_THAT(Verify(*verb.arguments), testing::IsEmpty()) << verb.name;
+}
+
+// Runs the scenario and gives the hash after every cycle.
+std::vector<std::uint64_t> HashesOf(const Machine& machine, std::uint64_t cycles, const EngineOptions& options = {}) {
+  Engine engine(machine, options);
+  const auto commands = Scenario(machine);
+  std::vector<std::uint64_t> hashes;
+  for (std::uint64_t c = 0; c < cycles; ++c) {
+    for (const auto& [when, command] : commands) {
+      if (when == c) engine.Submit(command);
+    }
+    engine.RunCycle();
+    hashes.push_back(engine.StateHash());
+  }
+  return hashes;
+}
+
+// EN-06: the same commands give the same bits, with and without anybody looking on.
+TEST(Engine, IsBitForBitReproducible) {
+  const Machine machine = FullMachine();
+  const auto first = HashesOf(machine, 3000);
+  EXPECT_EQ(first, HashesOf(machine, 3000));
+  EXPECT_EQ(first, HashesOf(machine, 3000, {.publish = true, .every_cycle = true, .journal = true}));
+  Machine other = machine;
+  other.axes[3].loop.kp *= 1 + 1e-15;
+  EXPECT_NE(first, HashesOf(other, 3000));  // and the hash sees the smallest difference
+}
+
+// EN-07: commands taken from the journal, through their text, give the same hash in every cycle.
+TEST(Journal, ReplaysBitForBit) {
+  const Machine machine = FullMachine();
+  Engine engine(machine, {.journal = true, .snapshot_queue = 1 << 13});
+  const auto commands = Scenario(machine);
+  for (std::uint64_t c = 0; c < 3000; ++c) {
+    for (const auto& [when, command] : commands) {
+      if (when == c) engine.Submit(command);
+    }
+    if (c == 2700) engine.RequestShutdown();
+    engine.RunCycle();
+  }
+  Engine again(machine, {.journal = true, .snapshot_queue = 1 << 13});
+  std::vector<JournalEntry> entries;
+  for (JournalEntry entry; engine.journal().TryPop(entry);) entries.push_back(entry);
+  EXPECT_EQ(entries.size(), commands.size() + 1);  // and the stop of the shutdown
+  std::size_t next = 0;
+  HashEntry expected;
+  while (engine.hashes().TryPop(expected)) {
+    for (; next < entries.size() && entries[next].cycle == expected.cycle; ++next) {
+      const CommandText text = ToText(machine, entries[next].command);
+      ParsedCommand parsed = ParseCommand(machine, text.target, text.verb, text.arguments);
+      ASSERT_EQ(parsed.sentence, "");
+      parsed.command.lease_s = entries[next].command.lease_s;
+      again.Replay(parsed.command, entries[next].command.ticket);
+    }
+    again.RunCycle();
+    ASSERT_EQ(again.figures().state_hash, expected.hash) << expected.cycle;
+  }
+  EXPECT_EQ(next, entries.size());
+}
+
+// EN-03: the follower stands first in the file and still sees its master's set point of the same cycle, not of the one
+// before.
+TEST(Order, FollowersSeeTheirMastersValueOfTheSameCycle) {
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  const std::size_t master = AxisNamed(machine, "y1");
+  const std::size_t follower = AxisNamed(machine, "y2");
+  engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  engine.Submit(ToAxis(machine, "y2", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.outputs(follower).state, axis::PlcState::kSynchronizedMotion);
+  const double offset = engine.outputs(follower).set_position + engine.outputs(master).set_position;
+  engine.Submit(ToAxis(machine, "y1", axis::MoveAbsolute{.position = 100}));
+  double fastest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    engine.RunCycle();
+    fastest = std::max(fastest, engine.outputs(master).set_velocity);
+    ASSERT_EQ(engine.outputs(follower).set_velocity, -engine.outputs(master).set_velocity);
+    ASSERT_NEAR(engine.outputs(follower).set_position, offset - engine.outputs(master).set_position, 1e-9);
+  }
+  EXPECT_GT(fastest, 100);
+  // A motion command of its own is refused; a fault of the follower stops the master too.
+  engine.Submit(ToAxis(machine, "y2", axis::MoveAbsolute{.position = 0}));
+  engine.Submit(ToAxis(machine, "y1", axis::MoveVelocity{.velocity = 100, .direction = axis::Direction::kNegative}));
+  for (int i = 0; i < 200; ++i) engine.RunCycle();
+  engine.faults(follower).drive_fault = true;
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.outputs(master).state, axis::PlcState::kErrorStop);
+  EXPECT_EQ(engine.outputs(master).set_velocity, 0);
+}
+
+// EN-05: late cycles are counted; so many in a row as the machine allows stop everything along its ramps, with error
+// 3007, and the loops stay closed. One less does nothing.
+TEST(Overruns, InARowStopEverything) {
+  Machine machine = FullMachine();
+  machine.cycle.overruns_in_a_row = 5;
+  Engine engine(machine, {.publish = true});
+  const std::size_t y1 = AxisNamed(machine, "y1");
+  engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle({1000, 20000, false});
+  engine.Submit(ToAxis(machine, "y1", axis::MoveVelocity{.velocity = 400}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle({1000, 20000, false});
+  for (int i = 0; i < 4; ++i) engine.RunCycle({2'000'000, 30000, true});
+  engine.RunCycle({1000, 20000, false});
+  EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kContinuousMotion);
+  for (int i = 0; i < 5; ++i) engine.RunCycle({2'000'000, 30000, true});
+  EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kErrorStop);
+  EXPECT_EQ(engine.outputs(y1).error, ErrorId::kOverrun);
+  EXPECT_GT(engine.outputs(y1).set_velocity, 300);  // braking, not dropped
+  for (int i = 0; i < 300; ++i) engine.RunCycle({1000, 20000, false});
+  EXPECT_EQ(engine.outputs(y1).set_velocity, 0);
+  EXPECT_TRUE(engine.outputs(y1).loop_closed);
+  EXPECT_EQ(engine.figures().overruns, 9u);
+  EXPECT_EQ(engine.figures().latency.max, 2'000'000u);
+  EXPECT_EQ(engine.figures().execution.count, 910u);
+}
+
+// EN-08: shutdown brakes along the ramps, opens the loops, refuses what comes after.
+TEST(Shutdown, BrakesAndOpensTheLoops) {
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  const std::size_t y1 = AxisNamed(machine, "y1");
+  for (const auto& [when, command] : Scenario(machine)) {
+    if (when < 320) engine.Submit(command);
+    for (int i = 0; i < 40; ++i) engine.RunCycle();
+  }
+  EXPECT_FALSE(engine.all_disabled());
+  engine.RequestShutdown();
+  engine.RunCycle();
+  const Ticket late = engine.Submit(ToAxis(machine, "y1", axis::MoveAbsolute{.position = 0}));
+  double before = engine.outputs(y1).set_velocity;
+  int cycles = 0;
+  for (; cycles < 5000 && !engine.all_disabled(); ++cycles) {
+    engine.RunCycle();
+    ASSERT_LE(std::abs(engine.outputs(y1).set_velocity - before), 5000 * 0.001 * (1 + 1e-9));
+    before = engine.outputs(y1).set_velocity;
+  }
+  EXPECT_TRUE(engine.all_disabled());
+  FeedbackEvent event;
+  bool refused = false;
+  while (engine.feedback().TryPop(event)) refused |= event.ticket == late && event.error == ErrorId::kShutdown;
+  EXPECT_TRUE(refused);
+}
+
+// EN-21, EN-22: a full queue refuses; what was refused has no ticket, what was accepted is answered, in order.
+TEST(CommandQueue, RefusesWhenFullAndLosesNothing) {
+  const Machine machine = FullMachine();
+  Engine engine(machine, {.command_queue = 128});
+  std::vector<Ticket> accepted;
+  int refused = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Ticket ticket = engine.Submit(ToAxis(machine, "y1", axis::Halt{}));
+    ticket ? accepted.push_back(ticket) : void(++refused);
+  }
+  EXPECT_EQ(accepted.size(), 128u);
+  EXPECT_EQ(refused, 1000 - 128);
+  std::vector<Ticket> answered;
+  for (int i = 0; i < 10; ++i) {
+    engine.RunCycle();
+    FeedbackEvent event;
+    while (engine.feedback().TryPop(event)) answered.push_back(event.ticket);
+  }
+  EXPECT_EQ(answered, accepted);
+  EXPECT_EQ(engine.figures().commands_refused, 872u);
+}
+
+// EN-21: nobody empties the snapshot queue: counted drops, and the cycle goes on unchanged.
+TEST(Snapshots, AreDroppedAndCountedWhenNobodyReads) {
+  const Machine machine = FullMachine();
+  Engine engine(machine, {.publish = true, .every_cycle = true, .snapshot_queue = 64});
+  for (int i = 0; i < 1000; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.figures().snapshots_dropped, 4000u - 64u);
+}
+
+// EN-20: each axis at its own rate.
+TEST(Snapshots, ComeAtTheRateOfTheirChannel) {
+  Machine machine = FullMachine();
+  machine.lcm.axis_rate_hz = 100;
+  machine.lcm.rates = {{"c", 500}, {"z", 0}};
+  Engine engine(machine, {.publish = true});
+  for (int i = 0; i < 1000; ++i) engine.RunCycle();
+  std::vector<int> counts(4);
+  AxisSnapshot snapshot;
+  while (engine.snapshots().TryPop(snapshot)) ++counts[snapshot.axis];
+  EXPECT_EQ(counts[AxisNamed(machine, "y1")], 100);
+  EXPECT_EQ(counts[AxisNamed(machine, "c")], 500);
+  EXPECT_EQ(counts[AxisNamed(machine, "z")], 0);
+}
+
+// A command for a target that does not exist, handed in from C++ past the parser.
+TEST(CommandQueue, SurvivesAWrongTarget) {
+  Engine engine(FullMachine());
+  Command command;
+  command.target = 77;
+  command.body = axis::Command(axis::Halt{});
+  engine.Submit(command);
+  engine.RunCycle();
+  FeedbackEvent event;
+  ASSERT_TRUE(engine.feedback().TryPop(event));
+  EXPECT_EQ(event.error, ErrorId::kUnknownTarget);
+}
+
+}  // namespace
+}  // namespace takt::engine

@@ -1,0 +1,163 @@
+// Machine files: every problem with its place, nothing started.
+#include "takt/engine/load.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "machines.h"
+#include "takt/core/writer.h"
+#include "takt/engine/order.h"
+
+namespace takt::engine {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string With(const std::string& axes, const std::string& rest = "") {
+  return "name: m\n" + rest + "axes:\n" + axes;
+}
+
+// EN-10: written out and read again, a machine is the same.
+TEST(LoadMachine, ReadsWhatWasWritten) {
+  const Machine machine = FullMachine();
+  const LoadResult again = LoadMachine(WriteYaml(machine, Comments::kUnits), "again.yaml");
+  ASSERT_THAT(again.problems, testing::IsEmpty());
+  EXPECT_EQ(WriteYaml(*again.machine), WriteYaml(machine));
+}
+
+// EN-10: all errors of a file in one run, each with file:line:column, key path, what was expected, what was found, and
+// the nearest word.
+TEST(LoadMachine, ReportsEverythingAtOnceWithItsPlace) {
+  const LoadResult result = LoadMachine(
+      "name: m\n"
+      "cycle: {period_s: 5}\n"
+      "axes:\n"
+      "  - name: x\n"
+      "    limits: {velocty: 5, velocity: 500 mm/s, acceleration: -1, jerk: 0}\n"
+      "  - name: x\n"
+      "    kind: rotery\n"
+      "    limits: {velocity: 1, acceleration: 1, jerk: 1}\n"
+      "simulation:\n"
+      "  servos:\n"
+      "    - axis: xx\n",
+      "bad.yaml");
+  EXPECT_FALSE(result.machine);
+  EXPECT_THAT(
+      result.problems,
+      ElementsAre(
+          AllOf(HasSubstr("bad.yaml:2:19: cycle.period_s: "), HasSubstr("from 0.00025 to 0.02"), HasSubstr("5")),
+          AllOf(HasSubstr("bad.yaml:5:14: axes[0].limits: "), HasSubstr("velocty"), HasSubstr("did you mean velocity")),
+          AllOf(HasSubstr("bad.yaml:5:36: axes[0].limits.velocity: "), HasSubstr("u/s"), HasSubstr("500 mm/s")),
+          AllOf(HasSubstr("axes[0].limits.acceleration: "), HasSubstr("above 0"), HasSubstr("-1")),
+          AllOf(HasSubstr("bad.yaml:6:"), HasSubstr("axes[1].name: "), HasSubstr("x")),
+          AllOf(HasSubstr("bad.yaml:7:11: axes[1].kind: "), HasSubstr("did you mean rotary")),
+          AllOf(HasSubstr("bad.yaml:11:13: simulation.servos[0].axis: "), HasSubstr("xx"))));
+}
+
+// EN-03: a loop of followers is an error that names its members in order.
+TEST(LoadMachine, NamesTheMembersOfALoop) {
+  const std::string limits = "    limits: {velocity: 1, acceleration: 1, jerk: 1}\n";
+  const LoadResult result =
+      LoadMachine(With("  - name: a\n" + limits + "    follows: {axis: c}\n  - name: b\n" + limits +
+                       "    follows: {axis: a}\n  - name: c\n" + limits + "    follows: {axis: b}\n  - name: d\n" +
+                       limits + "    follows: {axis: a}\n"),
+                  "loop.yaml");
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_THAT(result.problems[0], HasSubstr("in no loop, found b -> c -> a -> b"));
+}
+
+// EN-03: a follower that could not keep up with its master's limits is refused at load.
+TEST(LoadMachine, RefusesAFollowerThatCannotKeepUp) {
+  const LoadResult result = LoadMachine(With("  - name: a\n    limits: {velocity: 10, acceleration: 1, jerk: 1}\n"
+                                             "  - name: b\n    limits: {velocity: 10, acceleration: 9, jerk: 9}\n"
+                                             "    follows: {axis: a, ratio: -2}\n"),
+                                        "m.yaml");
+  EXPECT_THAT(result.problems,
+              ElementsAre(AllOf(HasSubstr("m.yaml:7:21: axes[1].follows.axis"), HasSubstr("velocity"))));
+}
+
+TEST(LoadMachine, WantsAtLeastOneAxis) {
+  EXPECT_THAT(LoadMachine("name: m\naxes: []\n", "m.yaml").problems, ElementsAre(HasSubstr("at least one axis")));
+  EXPECT_FALSE(LoadMachine("", "m.yaml").problems.empty());
+}
+
+TEST(LoadMachine, RefusesNamesThatCannotBeAddressed) {
+  for (const char* name :
+       {"machine", "a b", "a/b", "\"\"", "äxis", "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"}) {
+    const std::string text =
+        With(std::string("  - name: ") + name + "\n    limits: {velocity: 1, acceleration: 1, jerk: 1}\n");
+    EXPECT_FALSE(LoadMachine(text, "m.yaml").problems.empty()) << name;
+  }
+}
+
+// AX-02: SW limits on an axis that goes round and round mean nothing.
+TEST(LoadMachine, RefusesSoftLimitsOnRotaryAxes) {
+  const LoadResult result = LoadMachine(
+      With("  - name: c\n    kind: rotary\n    limits: {velocity: 1, acceleration: 1, jerk: 1, lower: 0}\n"), "m.yaml");
+  EXPECT_THAT(result.problems, ElementsAre(HasSubstr("axes[0].limits")));
+}
+
+TEST(LoadMachineFile, SaysWhatCannotBeRead) {
+  EXPECT_THAT(LoadMachineFile("/nowhere/m.yaml").problems, ElementsAre(HasSubstr("/nowhere/m.yaml: ")));
+}
+
+// EN-22: what is wrong with a command is said in a sentence; the nearest word is offered.
+TEST(ParseCommand, SaysWhatIsWrong) {
+  const Machine machine = FullMachine();
+  EXPECT_EQ(ParseCommand(machine, "y1", "move_absolute", "{position: 10, velocity: 50}").sentence, "");
+  EXPECT_EQ(ParseCommand(machine, "y1", "halt", "").sentence, "");
+  const ParsedCommand target = ParseCommand(machine, "y3", "halt", "");
+  EXPECT_EQ(target.error, ErrorId::kUnknownTarget);
+  EXPECT_THAT(target.sentence, HasSubstr("'y3'"));
+  const ParsedCommand verb = ParseCommand(machine, "y1", "move_absolut", "");
+  EXPECT_EQ(verb.error, ErrorId::kUnknownVerb);
+  EXPECT_THAT(verb.sentence, HasSubstr("did you mean move_absolute"));
+  for (const char* bad : {"{position: .nan}", "{position: inf}", "{velocity: 5}", "{position: 1, velocity: 501}",
+                          "{position: 1, velocity: 0}", "{position: 1, sped: 1}", "{position: [1]}", "{", "position: 1",
+                          "{position: 1, direction: up}"}) {
+    const ParsedCommand parsed = ParseCommand(machine, "y1", "move_absolute", bad);
+    EXPECT_EQ(parsed.error, ErrorId::kParameter) << bad;
+    EXPECT_FALSE(parsed.sentence.empty()) << bad;
+  }
+}
+
+// EN-07: text and command are two forms of the same thing.
+TEST(ParseCommand, IsTheInverseOfToText) {
+  const Machine machine = FullMachine();
+  for (const auto& [when, command] : Scenario(machine)) {
+    const CommandText text = ToText(machine, command);
+    const ParsedCommand again = ParseCommand(machine, text.target, text.verb, text.arguments);
+    EXPECT_EQ(again.sentence, "");
+    const CommandText twice = ToText(machine, again.command);
+    EXPECT_EQ(text.target + text.verb + text.arguments, twice.target + twice.verb + twice.arguments);
+  }
+}
+
+// EN-03: the order itself, as a property over random graphs without loops.
+TEST(OrderByMasters, PutsMastersFirst) {
+  std::uint32_t seed = 1;
+  const auto random = [&](std::uint32_t n) { return (seed = seed * 1664525u + 1013904223u) / 65536u % n; };
+  for (int run = 0; run < 200; ++run) {
+    const std::uint32_t n = 1 + random(30);
+    std::vector<std::uint32_t> shuffled(n);
+    for (std::uint32_t i = 0; i < n; ++i) shuffled[i] = i;
+    for (std::uint32_t i = n; i > 1; --i) std::swap(shuffled[i - 1], shuffled[random(i)]);
+    std::vector<std::vector<std::uint32_t>> masters(n);
+    for (std::uint32_t i = 1; i < n; ++i) {
+      for (std::uint32_t k = random(3); k > 0; --k) masters[shuffled[i]].push_back(shuffled[random(i)]);
+    }
+    std::vector<std::uint32_t> loop;
+    const auto order = OrderByMasters(masters, loop);
+    ASSERT_TRUE(order);
+    std::vector<std::uint32_t> place(n);
+    for (std::uint32_t k = 0; k < n; ++k) place[(*order)[k]] = k;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      for (const std::uint32_t master : masters[i]) ASSERT_LT(place[master], place[i]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace takt::engine

@@ -1,0 +1,80 @@
+// Machines for the tests of this folder.
+#pragma once
+
+#include <string>
+
+#include "takt/engine/engine.h"
+#include "takt/engine/load.h"
+
+namespace takt::engine {
+
+// Linear and rotary, all three kinds of drives, an absolute encoder, a follower, switches and a real-looking servo.
+inline const char* kFullMachine = R"(
+name: full
+cycle: {period_s: 0.001}
+lcm: {axis_rate_hz: 1000}
+axes:
+  - name: y2
+    limits: {velocity: 500, acceleration: 5000, jerk: 100000}
+    follows: {axis: y1, ratio: -1}
+  - name: y1
+    limits: {velocity: 500, acceleration: 5000, jerk: 100000, lower: -500, upper: 500}
+    supervision: {deviation_moving: 5, in_position: 0.05}
+  - name: c
+    unit: deg
+    kind: rotary
+    limits: {velocity: 3600, acceleration: 36000, jerk: 0}
+    drive: {mode: cyclic_velocity}
+    loop: {kp: 0.05, velocity_at_10v: 4000}
+  - name: z
+    limits: {velocity: 200, acceleration: 2000, jerk: 20000}
+    encoder: {type: absolute_ssi, increments_per_unit: 2000, ssi_bits: 25, coding: gray}
+    drive: {mode: analog}
+    loop: {kp: 0.05, velocity_at_10v: 300}
+simulation:
+  servos:
+    - axis: z
+      drive: {velocity_at_10v: 300}
+      mechanics: {coulomb_friction: 0.5, viscous_friction: 0.001, backlash: 0.02, inertia: 0.001}
+      switches: {limit_positive: {from: 90}}
+      encoder: {type: absolute, increments_per_unit: 2000, ssi_bits: 25, coding: gray, noise_counts: 0.5}
+)";
+
+inline Machine FullMachine() {
+  LoadResult loaded = LoadMachine(kFullMachine, "full.yaml");
+  if (!loaded.machine) throw std::runtime_error(loaded.problems.front());
+  return *loaded.machine;
+}
+
+inline std::size_t AxisNamed(const Machine& machine, std::string_view name) {
+  std::size_t i = 0;
+  while (machine.axes[i].name != name) ++i;
+  return i;
+}
+
+inline Command ToAxis(const Machine& machine, std::string_view name, const axis::Command& body) {
+  Command command;
+  command.target = static_cast<std::uint32_t>(AxisNamed(machine, name) + 1);
+  command.body = body;
+  return command;
+}
+
+// Something for every axis to do, spread over the first seconds.
+inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m) {
+  using namespace axis;
+  std::vector<std::pair<std::uint64_t, Command>> commands;
+  for (const AxisParams& a : m.axes) commands.push_back({5, ToAxis(m, a.name, Power{})});
+  commands.push_back({300, ToAxis(m, "y1", MoveAbsolute{.position = 200})});
+  commands.push_back({300, ToAxis(m, "y1", MoveAbsolute{.position = 300, .buffer_mode = BufferMode::kBlendingNext})});
+  commands.push_back({310, ToAxis(m, "c", MoveVelocity{.velocity = 3000})});
+  commands.push_back({320, ToAxis(m, "z", MoveRelative{.distance = 50})});
+  commands.push_back({500, ToAxis(m, "y1", MoveAbsolute{.position = -100})});
+  commands.push_back({900, ToAxis(m, "z", Jog{.forward = true, .velocity = 100})});
+  commands.push_back({1500, ToAxis(m, "c", Halt{})});
+  commands.push_back({2000, ToAxis(m, "z", Reset{})});
+  commands.push_back({2100, ToAxis(m, "c", MoveAbsolute{.position = 90, .direction = Direction::kPositive})});
+  commands.push_back({2500, ToAxis(m, "y1", Stop{})});
+  return commands;
+}
+
+}  // namespace takt::engine

@@ -1,0 +1,298 @@
+#include "takt/lcm/clients.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "takt/core/describe.h"
+#include "test_machine.h"
+
+namespace takt::lcm {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+// An engine that only takes notes.
+class ClientsTest : public testing::Test {
+ protected:
+  Clients Make(const ClientLimits& limits = {}) {
+    return Clients(
+        machine_,
+        [this](const engine::Command& command) {
+          if (queue_is_full_) return Ticket{0};
+          submitted_.push_back(command);
+          return Ticket{submitted_.size()};
+        },
+        limits);
+  }
+
+  static msgs::command Command(std::int64_t id, const std::string& verb = "move_absolute",
+                               const std::string& arguments = "{position: 10}") {
+    msgs::command m{};
+    m.client = "anna";
+    m.session = 1;
+    m.id = id;
+    m.target = "x";
+    m.verb = verb;
+    m.arguments = arguments;
+    return m;
+  }
+  static msgs::command Jog(std::int64_t id) { return Command(id, "jog", "{forward: true}"); }
+  static msgs::heartbeat Heartbeat(std::int64_t session = 1) {
+    msgs::heartbeat m{};
+    m.client = "anna";
+    m.session = session;
+    return m;
+  }
+  static std::vector<msgs::feedback> Replies(Clients& clients) {
+    std::vector<msgs::feedback> replies;
+    for (msgs::feedback reply; clients.TakeReply(reply);) replies.push_back(reply);
+    return replies;
+  }
+  static msgs::feedback OneReply(Clients& clients) {
+    const auto replies = Replies(clients);
+    EXPECT_EQ(replies.size(), 1u);
+    return replies.empty() ? msgs::feedback{} : replies[0];
+  }
+  static void ExpectError(const msgs::feedback& reply, ErrorId error, const std::string& part_of_sentence) {
+    EXPECT_EQ(reply.state, msgs::feedback::STATE_ERROR);
+    EXPECT_EQ(reply.error_id, static_cast<int>(error)) << reply.sentence;
+    EXPECT_NE(reply.sentence.find(part_of_sentence), std::string::npos) << reply.sentence;
+  }
+  std::vector<Ticket> Renewed() const {
+    std::vector<Ticket> tickets;
+    for (const engine::Command& command : submitted_) {
+      if (const auto* body = std::get_if<engine::MachineCommand>(&command.body)) {
+        if (const auto* renew = std::get_if<engine::Renew>(body)) tickets.push_back(renew->ticket);
+      }
+    }
+    return tickets;
+  }
+
+  const engine::Machine machine_ = TestMachine();
+  std::vector<engine::Command> submitted_;
+  bool queue_is_full_ = false;
+};
+
+// EN-22
+TEST_F(ClientsTest, FeedbackGoesToTheCommandItIsAbout) {
+  Clients clients = Make();
+  clients.OnCommand(Command(5), 0);
+  EXPECT_TRUE(Replies(clients).empty());  // the cycle answers
+  clients.OnFeedback({1, 76, FeedbackState::kBusy, false, ErrorId::kNone});
+  const msgs::feedback busy = OneReply(clients);
+  EXPECT_EQ(busy.client, "anna");
+  EXPECT_EQ(busy.session, 1);
+  EXPECT_EQ(busy.id, 5);
+  EXPECT_EQ(busy.ticket, 1);
+  EXPECT_EQ(busy.cycle, 76);
+  EXPECT_EQ(busy.state, msgs::feedback::STATE_BUSY);
+  clients.OnFeedback({1, 77, FeedbackState::kDone, false, ErrorId::kNone});
+  const msgs::feedback done = OneReply(clients);
+  EXPECT_EQ(done.client, "anna");
+  EXPECT_EQ(done.id, 5);
+  EXPECT_EQ(done.cycle, 77);
+  EXPECT_EQ(done.state, msgs::feedback::STATE_DONE);
+}
+
+// EN-22
+TEST_F(ClientsTest, TheSameIdAgainIsAnsweredAgainAndNeverGivenTwice) {
+  Clients clients = Make();
+  clients.OnCommand(Command(1), 0);
+  clients.OnCommand(Command(1), 0);
+  const msgs::feedback not_there_yet = OneReply(clients);
+  EXPECT_EQ(not_there_yet.state, msgs::feedback::STATE_BUSY);
+  EXPECT_EQ(not_there_yet.cycle, -1);
+  clients.OnFeedback({1, 3, FeedbackState::kActive, false, ErrorId::kNone});
+  Replies(clients);
+  clients.OnCommand(Command(1), 0);
+  EXPECT_EQ(OneReply(clients).state, msgs::feedback::STATE_ACTIVE);
+  clients.OnFeedback({1, 4, FeedbackState::kAborted, false, ErrorId::kNone});
+  Replies(clients);
+  for (int i = 0; i < 100; ++i) clients.OnCommand(Command(1), 0);
+  const auto replies = Replies(clients);
+  ASSERT_EQ(replies.size(), 100u);
+  EXPECT_EQ(replies.back().state, msgs::feedback::STATE_ABORTED);
+  EXPECT_EQ(replies.back().cycle, 4);
+  EXPECT_EQ(submitted_.size(), 1u);
+}
+
+// EN-22
+TEST_F(ClientsTest, WhatIsUnknownOrWrongIsAnsweredWithASentence) {
+  Clients clients = Make();
+  msgs::command unknown_target = Command(1);
+  unknown_target.target = "nobody";
+  clients.OnCommand(unknown_target, 0);
+  ExpectError(OneReply(clients), ErrorId::kUnknownTarget, "nobody");
+  clients.OnCommand(Command(2, "move_absolut"), 0);
+  ExpectError(OneReply(clients), ErrorId::kUnknownVerb, "move_absolut");
+  clients.OnCommand(Command(3, "move_absolute", "{position: fast}"), 0);
+  ExpectError(OneReply(clients), ErrorId::kParameter, "position");
+  clients.OnCommand(Command(4, "move_absolute", "{"), 0);
+  EXPECT_FALSE(OneReply(clients).sentence.empty());
+  clients.OnCommand(Command(5, "move_absolute", std::string(100'000, ' ')), 0);
+  ExpectError(OneReply(clients), ErrorId::kParameter, "longer");
+  clients.OnCommand(Command(0), 0);
+  ExpectError(OneReply(clients), ErrorId::kParameter, "id");
+  clients.OnCommand(Command(-1), 0);
+  ExpectError(OneReply(clients), ErrorId::kParameter, "id");
+  EXPECT_TRUE(submitted_.empty());
+}
+
+// EN-22: every number of every command.
+TEST_F(ClientsTest, NotANumberAndInfinityAreRefusedEverywhere) {
+  Clients clients = Make();
+  std::int64_t id = 0;
+  for (const engine::Verb& verb : engine::Verbs()) {
+    for (const Field& field : verb.arguments->fields) {
+      const Type& type = field.type->kind == Kind::kOptional ? *field.type->element : *field.type;
+      if (type.kind != Kind::kReal) continue;
+      for (const char* value : {"nan", ".nan", "NaN", "inf", ".inf", "-.inf", "-inf", "Infinity", "1e999", "-1e999"}) {
+        clients.OnCommand(Command(++id, std::string(verb.name), "{" + std::string(field.name) + ": " + value + "}"), 0);
+        ExpectError(OneReply(clients), ErrorId::kParameter, std::string(field.name));
+      }
+    }
+  }
+  EXPECT_GT(id, 100);
+  EXPECT_TRUE(submitted_.empty());
+}
+
+// EN-22
+TEST_F(ClientsTest, AFullQueueRefusesForGood) {
+  Clients clients = Make();
+  queue_is_full_ = true;
+  clients.OnCommand(Command(1), 0);
+  ExpectError(OneReply(clients), ErrorId::kQueueFull, std::string(ErrorText(ErrorId::kQueueFull)));
+  queue_is_full_ = false;
+  clients.OnCommand(Command(1), 0);  // the client knows already that it failed
+  ExpectError(OneReply(clients), ErrorId::kQueueFull, "");
+  EXPECT_TRUE(submitted_.empty());
+  clients.OnCommand(Command(2), 0);
+  EXPECT_EQ(submitted_.size(), 1u);
+}
+
+// EN-22
+TEST_F(ClientsTest, TwoClientsWithOneName) {
+  Clients clients = Make();
+  msgs::command second = Command(1);
+  second.session = 2;
+  clients.OnHeartbeat(Heartbeat(1), 0);
+  EXPECT_TRUE(Replies(clients).empty());
+
+  clients.OnCommand(second, kSecond);
+  const msgs::feedback refused = OneReply(clients);
+  ExpectError(refused, ErrorId::kClientName, "anna");
+  EXPECT_EQ(refused.session, 2);
+  EXPECT_EQ(refused.id, 1);
+  clients.OnHeartbeat(Heartbeat(2), kSecond);
+  const msgs::feedback heartbeat = OneReply(clients);
+  ExpectError(heartbeat, ErrorId::kClientName, "anna");
+  EXPECT_EQ(heartbeat.id, 0);
+  EXPECT_TRUE(submitted_.empty());
+
+  clients.OnCommand(Command(1), 2 * kSecond);  // the first one is not disturbed
+  EXPECT_EQ(submitted_.size(), 1u);
+  clients.OnCommand(second, 4 * kSecond + 1);  // nothing heard of the first for 2 s
+  EXPECT_EQ(submitted_.size(), 2u);
+  EXPECT_TRUE(Replies(clients).empty());
+  clients.OnFeedback({1, 9, FeedbackState::kDone, false, ErrorId::kNone});  // of the session that is gone
+  EXPECT_TRUE(Replies(clients).empty());
+  clients.OnFeedback({2, 9, FeedbackState::kDone, false, ErrorId::kNone});
+  EXPECT_EQ(OneReply(clients).session, 2);
+}
+
+// EN-23
+TEST_F(ClientsTest, AHeartbeatRenewsWhatIsLevelSensitiveAndAlive) {
+  Clients clients = Make();
+  clients.OnCommand(Command(1), 0);
+  clients.OnCommand(Jog(2), 0);
+  clients.OnCommand(Jog(3), 0);
+  ASSERT_EQ(submitted_.size(), 3u);
+  EXPECT_EQ(submitted_[0].lease_s, 0);
+  EXPECT_EQ(submitted_[1].lease_s, machine_.lcm.dead_man_s);
+  clients.OnHeartbeat(Heartbeat(), 1);
+  EXPECT_EQ(Renewed(), (std::vector<Ticket>{2, 3}));
+  clients.OnFeedback({2, 5, FeedbackState::kAborted, false, ErrorId::kNone});
+  submitted_.clear();
+  clients.OnHeartbeat(Heartbeat(), 2);
+  EXPECT_EQ(Renewed(), (std::vector<Ticket>{3}));
+
+  msgs::heartbeat other = Heartbeat();
+  other.client = "berta";
+  submitted_.clear();
+  clients.OnHeartbeat(other, 3);
+  EXPECT_TRUE(submitted_.empty());
+}
+
+// EN-22: memory is bounded, and what was forgotten is not taken for new.
+TEST_F(ClientsTest, OldIdsAreForgottenAndStayHarmless) {
+  Clients clients = Make({.ids_per_client = 10});
+  for (std::int64_t id = 1; id <= 100; ++id) {
+    clients.OnCommand(Command(id), 0);
+    clients.OnFeedback({submitted_.size(), 1, FeedbackState::kDone, false, ErrorId::kNone});
+  }
+  Replies(clients);
+  ASSERT_EQ(submitted_.size(), 100u);
+  clients.OnCommand(Command(50), 0);
+  ExpectError(OneReply(clients), ErrorId::kParameter, "too old");
+  clients.OnCommand(Command(95), 0);
+  EXPECT_EQ(OneReply(clients).state, msgs::feedback::STATE_DONE);
+  EXPECT_EQ(submitted_.size(), 100u);
+}
+
+// EN-22
+TEST_F(ClientsTest, TooManyUnfinishedCommandsAreRefused) {
+  Clients clients = Make({.ids_per_client = 4});
+  for (std::int64_t id = 1; id <= 5; ++id) clients.OnCommand(Command(id), 0);
+  const auto replies = Replies(clients);
+  ASSERT_EQ(replies.size(), 1u);
+  EXPECT_EQ(replies[0].id, 5);
+  ExpectError(replies[0], ErrorId::kQueueFull, "not finished");
+  clients.OnFeedback({2, 1, FeedbackState::kDone, false, ErrorId::kNone});
+  Replies(clients);
+  clients.OnCommand(Command(5), 0);  // refused once, refused for good
+  EXPECT_EQ(OneReply(clients).state, msgs::feedback::STATE_ERROR);
+  clients.OnCommand(Command(6), 0);
+  EXPECT_EQ(submitted_.size(), 5u);
+}
+
+// EN-22
+TEST_F(ClientsTest, TheNumberOfClientsIsBounded) {
+  Clients clients = Make({.clients = 3});
+  for (const char* name : {"a", "b", "c", "d"}) {
+    msgs::command m = Command(1);
+    m.client = name;
+    clients.OnCommand(m, 0);
+  }
+  ExpectError(OneReply(clients), ErrorId::kQueueFull, "3 clients");
+  EXPECT_EQ(clients.figures(kSecond).alive, 3u);
+  EXPECT_EQ(clients.figures(3 * kSecond).alive, 0u);
+  msgs::command m = Command(1);
+  m.client = "d";
+  clients.OnCommand(m, 3 * kSecond);  // the longest silent one makes room
+  EXPECT_TRUE(Replies(clients).empty());
+  EXPECT_EQ(submitted_.size(), 4u);
+}
+
+// EN-22
+TEST_F(ClientsTest, RepliesNobodyTakesAreBoundedAndCounted) {
+  Clients clients = Make({.replies = 10});
+  for (int i = 0; i < 26; ++i) clients.OnCommand(Command(1), 0);  // all but the first are answered at once
+  EXPECT_EQ(Replies(clients).size(), 10u);
+  EXPECT_EQ(clients.figures(0).replies_dropped, 15u);
+}
+
+// EN-22
+TEST_F(ClientsTest, OddNamesAreRefused) {
+  Clients clients = Make();
+  for (const std::string& name : {std::string(), std::string(65, 'a'), std::string("a\nb"), std::string("\xff\xfe")}) {
+    msgs::command m = Command(1);
+    m.client = name;
+    clients.OnCommand(m, 0);
+    ExpectError(OneReply(clients), ErrorId::kParameter, "client");
+  }
+  EXPECT_EQ(clients.figures(0).alive, 0u);
+}
+
+}  // namespace
+}  // namespace takt::lcm

@@ -1,0 +1,173 @@
+// Holds lcmtypes/*.lcm against the descriptions of what they carry.
+
+#include <gtest/gtest.h>
+
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+#include "takt/axis/outputs.h"
+#include "takt/core/describe.h"
+#include "takt/core/feedback.h"
+#include "takt/engine/scheduler.h"
+#include "takt/engine/snapshot.h"
+#include "takt/msgs/engine_state.hpp"
+#include "takt/msgs/feedback.hpp"
+
+namespace takt::lcm {
+namespace {
+
+struct LcmField {
+  std::string type;
+  std::string unit;  // as in "// [u/s] ..."; empty: none
+  bool commented = false;
+};
+
+struct LcmType {
+  std::map<std::string, LcmField> fields;
+  std::map<std::string, int> constants;
+};
+
+LcmType Parse(const std::filesystem::path& path) {
+  static const std::regex comment(R"(^\s*//\s*(?:\[([^\]]+)\]\s*)?(\S.*)$)");
+  static const std::regex field(R"(^\s*(\w+)\s+(\w+)(?:\[\w+\])?;\s*$)");
+  static const std::regex constant(R"((\w+) = (\d+))");
+  LcmType type;
+  LcmField next;
+  std::ifstream file(path);
+  EXPECT_TRUE(file.good()) << path;
+  bool constants = false;
+  for (std::string line; std::getline(file, line);) {
+    std::smatch match;
+    if (line.find("const ") != std::string::npos) constants = true;
+    if (constants) {
+      for (std::sregex_iterator it(line.begin(), line.end(), constant), end; it != end; ++it) {
+        type.constants[(*it)[1]] = std::stoi((*it)[2]);
+      }
+    } else if (std::regex_match(line, match, comment)) {
+      if (!next.commented) next.unit = match[1];
+      next.commented = true;
+    } else if (line.find("package") == std::string::npos && std::regex_match(line, match, field)) {
+      next.type = match[1];
+      type.fields[match[2]] = next;
+      next.unit.clear();  // the sentence may speak for the fields that follow at once, its unit does not
+    }
+    if (line.empty() || line.find('{') != std::string::npos || std::regex_match(line, match, field)) next = {};
+  }
+  return type;
+}
+
+std::filesystem::path Folder() {
+  return std::filesystem::path(TAKT_SOURCE_DIR) / "lcmtypes";
+}
+
+bool Carries(const std::string& lcm_type, const Type& type) {
+  static const std::set<std::string> integers{"int8_t", "int16_t", "int32_t", "int64_t"};
+  switch (type.kind) {
+    case Kind::kBool:
+      return lcm_type == "boolean";
+    case Kind::kReal:
+      return lcm_type == "double";
+    case Kind::kInteger:
+    case Kind::kEnum:
+      return integers.contains(lcm_type);
+    case Kind::kArray:
+      return Carries(lcm_type, *type.element);
+    case Kind::kStruct: {
+      std::string name(type.name);
+      name[0] = static_cast<char>(std::tolower(name[0]));
+      return lcm_type == name;
+    }
+    default:
+      return false;
+  }
+}
+
+void ExpectSameFields(const std::string& file, const Type& described, const std::set<std::string>& of_the_message) {
+  const LcmType type = Parse(Folder() / file);
+  for (const Field& field : described.fields) {
+    const auto found = type.fields.find(std::string(field.name));
+    ASSERT_NE(found, type.fields.end()) << file << " lacks " << field.name;
+    EXPECT_EQ(found->second.unit, field.unit.text) << file << ": unit of " << field.name;
+    EXPECT_TRUE(Carries(found->second.type, *field.type)) << file << ": " << field.name << " as " << found->second.type;
+  }
+  for (const auto& [name, field] : type.fields) {
+    EXPECT_TRUE(described.FindField(name) != nullptr || of_the_message.contains(name))
+        << file << ": " << name << " is not described";
+  }
+}
+
+// ERROR_STOP and ErrorStop are the same name.
+std::string Letters(const std::string& name) {
+  std::string letters;
+  for (const char c : name) {
+    if (c != '_') letters += static_cast<char>(std::tolower(c));
+  }
+  return letters;
+}
+
+void ExpectSameConstants(const std::string& file, const std::string& prefix, const Type& enumeration) {
+  const LcmType type = Parse(Folder() / file);
+  std::size_t found = 0;
+  for (const auto& [name, value] : type.constants) {
+    if (!name.starts_with(prefix)) continue;
+    ++found;
+    const Enumerator* enumerator = enumeration.FindEnumerator(std::int64_t{value});
+    ASSERT_NE(enumerator, nullptr) << name;
+    EXPECT_EQ(Letters(name.substr(prefix.size())), Letters(std::string(enumerator->name)));
+  }
+  EXPECT_EQ(found, enumeration.enumerators.size()) << prefix;
+}
+
+// EN-11
+TEST(LcmTypes, AxisStateSaysWhatTheDescriptionOfOutputsSays) {
+  ExpectSameFields("axis_state.lcm", TypeOf<axis::Outputs>(), {"utime", "cycle", "time_ns", "sequence", "name"});
+}
+
+// EN-11
+TEST(LcmTypes, EngineStateSaysWhatTheDescriptionOfFiguresSays) {
+  ExpectSameFields("engine_state.lcm", TypeOf<engine::EngineFigures>(),
+                   {"utime", "time_ns", "sequence", "run_id", "pace", "period_s", "malformed", "send_failures",
+                    "replies_dropped", "clients"});
+  ExpectSameFields("histogram.lcm", TypeOf<engine::Histogram>(), {});
+}
+
+// EN-11
+TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
+  const Type& outputs = TypeOf<axis::Outputs>();
+  ExpectSameConstants("axis_state.lcm", "STATE_", *outputs.FindField("state")->type);
+  ExpectSameConstants("axis_state.lcm", "LIMITED_BY_", *outputs.FindField("limited_by")->type);
+
+  using F = msgs::feedback;
+  EXPECT_EQ(F::STATE_BUSY, static_cast<int>(FeedbackState::kBusy));
+  EXPECT_EQ(F::STATE_ACTIVE, static_cast<int>(FeedbackState::kActive));
+  EXPECT_EQ(F::STATE_DONE, static_cast<int>(FeedbackState::kDone));
+  EXPECT_EQ(F::STATE_ABORTED, static_cast<int>(FeedbackState::kAborted));
+  EXPECT_EQ(F::STATE_ERROR, static_cast<int>(FeedbackState::kError));
+
+  using E = msgs::engine_state;
+  EXPECT_EQ(E::PACE_REAL_TIME, static_cast<int>(engine::Pace::kRealTime));
+  EXPECT_EQ(E::PACE_PACED, static_cast<int>(engine::Pace::kPaced));
+  EXPECT_EQ(E::PACE_FAST, static_cast<int>(engine::Pace::kFast));
+}
+
+// EN-20
+TEST(LcmTypes, EveryFieldHasACommentAndEveryRealNumberAUnit) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(Folder())) {
+    if (entry.path().extension() != ".lcm") continue;
+    ++files;
+    for (const auto& [name, field] : Parse(entry.path()).fields) {
+      const bool needs_unit = field.type == "double" || name == "utime" || name.ends_with("_ns");
+      EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
+    }
+  }
+  EXPECT_EQ(files, 10);
+}
+
+}  // namespace
+}  // namespace takt::lcm

@@ -1,0 +1,25 @@
+// A small machine for the tests of this folder.
+#pragma once
+
+#include <string>
+
+#include "takt/engine/machine.h"
+
+namespace takt::lcm {
+
+inline engine::Machine TestMachine(int axes = 2) {
+  engine::Machine machine;
+  machine.name = "test";
+  machine.lcm.dead_man_s = 0.25;
+  for (int i = 0; i < axes; ++i) {
+    axis::AxisParams axis;
+    axis.name = std::string(1, static_cast<char>('x' + i));
+    axis.limits.velocity = 100;
+    axis.limits.acceleration = 1000;
+    axis.limits.jerk = 20000;
+    machine.axes.push_back(axis);
+  }
+  return machine;
+}
+
+}  // namespace takt::lcm
