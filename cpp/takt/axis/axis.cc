@@ -98,6 +98,7 @@ bool CanStopInside(const AxisParams& p, const State& s, const KinematicState& ne
 void BringBackTurns(const AxisParams& p, State& s) {
   const double turns = std::floor(s.setpoint.position / p.modulus) * p.modulus;
   s.setpoint.position -= turns;
+  s.due -= turns;
   s.actual.position -= turns;
   s.motion.profile.Shift(-turns);
   s.motion.target -= turns;
@@ -152,7 +153,8 @@ void Sense(const Context& c, const ServoInputs& in, State& s) noexcept {
   s.encoder_error = measured.error;
   s.encoder_line_error = in.encoder_error;
   s.actual = {measured.position - s.origin, measured.velocity, 0};
-  s.following_error = s.loop_closed ? s.setpoint.position - s.actual.position : 0;
+  s.due = s.setpoint.position;
+  s.following_error = s.loop_closed ? s.due - s.actual.position : 0;
   s.limit_positive_before = s.limit_positive;
   s.limit_negative_before = s.limit_negative;
   s.limit_positive = in.limit_positive != sense.invert_limit_positive;
@@ -184,9 +186,10 @@ void Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   const bool drive_closes = p.drive.mode == DriveMode::kCyclicPosition;
   const double sign = p.drive.invert ? -1 : 1;
   ControlLoopOutputs loop;
-  Step(p.loop,
-       {p.drive.mode, s.loop_closed && !drive_closes, p.drive.invert, s.setpoint.position, s.setpoint.velocity,
-        s.actual.position},
+  // The new set point is the one for the end of this cycle. What is measured now is held against the one before, and
+  // the speed fed forward is the one that leads from there to the new one.
+  const double mean_velocity = (s.setpoint.position - s.due) / c.cycle.period_s;
+  Step(p.loop, {p.drive.mode, s.loop_closed && !drive_closes, p.drive.invert, s.due, mean_velocity, s.actual.position},
        c.cycle, s.loop, loop);
   out.mode = p.drive.mode;
   out.position_counts = sign * CountsAt(p.encoder, s.setpoint.position + s.origin);

@@ -12,7 +12,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::set_acceleration>(unit::u_s2, "Acceleration of the set point.");
   d.internal<&O::actual_position>(unit::u, "Measured; rotary axes: in [0, modulus).");
   d.internal<&O::actual_velocity>(unit::u_s, "Measured.");
-  d.internal<&O::following_error>(unit::u, "Set point minus measured position.");
+  d.internal<&O::following_error>(unit::u, "Set point of the cycle before minus measured position.");
   d.internal<&O::voltage_v>(unit::volt, "Output of the position loop, analogue drives.");
   d.internal<&O::torque_nm>(unit::nm, "As the drive reports it.");
   d.internal<&O::active_command>("Ticket of the command in control; 0: none.");

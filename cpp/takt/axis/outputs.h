@@ -15,7 +15,7 @@ struct Outputs {
   double set_acceleration = 0;     // u/s²
   double actual_position = 0;      // u; rotary: in [0, modulus)
   double actual_velocity = 0;      // u/s
-  double following_error = 0;      // u, set minus actual
+  double following_error = 0;      // u, set point of the cycle before minus what is measured now
   double voltage_v = 0;            // V, output of the position loop
   double torque_nm = 0;            // Nm, as the drive reports it
   Ticket active_command = 0;       // 0: none

@@ -53,6 +53,7 @@ void describe(Description<State>& d) {
   d.internal<&S::encoder>("Encoder.");
   d.internal<&S::loop>("Position loop.");
   d.internal<&S::voltage_v>(unit::volt, "Output of the position loop.");
+  d.internal<&S::due>(unit::u, "Where the axis should be now.");
   d.internal<&S::following_error>(unit::u, "Set minus actual position.");
   d.internal<&S::illegal_transitions>("Always 0.");
   d.internal<&S::motion>("Motion in progress.");

@@ -74,7 +74,9 @@ struct State {
   EncoderState encoder;
   ControlLoopState loop;
   double voltage_v = 0;
-  double following_error = 0;             // u, set point of the cycle before minus what is measured now
+  double due =
+      0;  // u, where the axis should be now: the set point of the cycle before, which had this long to be reached
+  double following_error = 0;             // u, due minus what is measured
   std::uint64_t illegal_transitions = 0;  // always 0: the state table holds
 
   Motion motion;

@@ -19,11 +19,11 @@ enum class Pace : std::uint8_t {
 
 struct SchedulerOptions {
   Pace pace = Pace::kRealTime;
-  double duration_s =
-      std::numeric_limits<double>::infinity();  // s of the engine's time, then everything is stopped as by a signal
-  std::optional<int> cpu{};                     // real time: keep to this CPU
-  int priority = 80;                            // real time: of SCHED_FIFO
-  double stop_timeout_s = 5;                    // s of the engine's time for stopping along the ramps
+  // s of the engine's time, then everything is stopped as by a signal.
+  double duration_s = std::numeric_limits<double>::infinity();
+  std::optional<int> cpu{};      // real time: keep to this CPU
+  int priority = 80;             // real time: of SCHED_FIFO
+  double stop_timeout_s = 5;     // s of the engine's time for stopping along the ramps
   bool wait_for_reader = false;  // fast: do not run away from the thread that empties the engine's queues
 };
 

@@ -103,11 +103,19 @@ void Clients::Give(Client& client, const msgs::command& message, msgs::feedback&
       reply.ticket = static_cast<std::int64_t>(ticket);
       origins_[ticket] = {&client, message.id};
       if (parsed.level_sensitive) client.level_sensitive.push_back(ticket);
-      std::erase(client.level_sensitive, Released(parsed.command));
+      LetGo(client, Released(parsed.command));
     }
   }
   client.order.push_back(message.id);
   client.records[message.id] = {reply, parsed.level_sensitive, StaysInForce(parsed.command)};
+}
+
+void Clients::LetGo(Client& client, Ticket ticket) {
+  if (const auto running = origins_.find(ticket); running != origins_.end()) {
+    running->second.client->records.at(running->second.id).stays_in_force = false;
+  } else {
+    std::erase(client.level_sensitive, ticket);
+  }
 }
 
 void Clients::OnHeartbeat(const msgs::heartbeat& message, std::int64_t now_ns) {

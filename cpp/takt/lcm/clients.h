@@ -80,6 +80,9 @@ class Clients {
   bool MakeRoomForId(Client& client);
   void Forget(Client& client);
   // Hands the command on, or makes `reply` a refusal.
+  // After a release of this ticket: no heartbeat keeps it in force any more once it is done. Until then it is still on
+  // its way.
+  void LetGo(Client& client, Ticket ticket);
   void Give(Client& client, const msgs::command& message, msgs::feedback& reply);
   void Reply(const msgs::feedback& reply);
 

@@ -9,8 +9,8 @@
 namespace takt::lcm {
 namespace {
 
-constexpr int kQueueCapacity =
-    10'000;                  // messages; LCM's own default of 30 loses commands given at 100 times the cycle's rate
+// Messages. LCM's own default of 30 loses commands given at 100 times the cycle's rate.
+constexpr int kQueueCapacity = 10'000;
 constexpr int kWaitMs = 50;  // between looks at stop_
 
 std::span<const std::uint8_t> Bytes(const ::lcm::ReceiveBuffer* received) {
@@ -19,9 +19,9 @@ std::span<const std::uint8_t> Bytes(const ::lcm::ReceiveBuffer* received) {
 
 }  // namespace
 
-Gateway::Gateway(::lcm::LCM& network, Clients& clients) : network_(network), clients_(clients) {
-  subscriptions_[0] = network_.subscribe(kCommandChannel, &Gateway::OnCommand, this);
-  subscriptions_[1] = network_.subscribe(kHeartbeatChannel, &Gateway::OnHeartbeat, this);
+Gateway::Gateway(::lcm::LCM& network, Clients& clients) : network_(network) {
+  subscriptions_[0] = network_.subscribeFunction(kCommandChannel, &Gateway::OnCommand, &clients);
+  subscriptions_[1] = network_.subscribeFunction(kHeartbeatChannel, &Gateway::OnHeartbeat, &clients);
   for (::lcm::Subscription* subscription : subscriptions_) subscription->setQueueCapacity(kQueueCapacity);
   thread_ = std::thread([this] { Listen(); });
 }
@@ -36,19 +36,19 @@ void Gateway::Listen() {
   while (!stop_) network_.handleTimeout(kWaitMs);
 }
 
-void Gateway::OnCommand(const ::lcm::ReceiveBuffer* received, const std::string&) {
+void Gateway::OnCommand(const ::lcm::ReceiveBuffer* received, const std::string&, Clients* clients) {
   if (const auto message = DecodeCommand(Bytes(received))) {
-    clients_.OnCommand(*message, SteadyNs());
+    clients->OnCommand(*message, SteadyNs());
   } else {
-    clients_.OnMalformed();
+    clients->OnMalformed();
   }
 }
 
-void Gateway::OnHeartbeat(const ::lcm::ReceiveBuffer* received, const std::string&) {
+void Gateway::OnHeartbeat(const ::lcm::ReceiveBuffer* received, const std::string&, Clients* clients) {
   if (const auto message = DecodeHeartbeat(Bytes(received))) {
-    clients_.OnHeartbeat(*message, SteadyNs());
+    clients->OnHeartbeat(*message, SteadyNs());
   } else {
-    clients_.OnMalformed();
+    clients->OnMalformed();
   }
 }
 

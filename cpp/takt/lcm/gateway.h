@@ -19,12 +19,12 @@ class Gateway {
   Gateway& operator=(const Gateway&) = delete;
 
  private:
-  void OnCommand(const ::lcm::ReceiveBuffer* received, const std::string& channel);
-  void OnHeartbeat(const ::lcm::ReceiveBuffer* received, const std::string& channel);
+  // Plain functions: GCC 12's undefined-behaviour sanitizer breaks LCM's calls of member functions.
+  static void OnCommand(const ::lcm::ReceiveBuffer* received, const std::string& channel, Clients* clients);
+  static void OnHeartbeat(const ::lcm::ReceiveBuffer* received, const std::string& channel, Clients* clients);
   void Listen();
 
   ::lcm::LCM& network_;
-  Clients& clients_;
   ::lcm::Subscription* subscriptions_[2];
   std::atomic<bool> stop_{false};
   std::thread thread_;

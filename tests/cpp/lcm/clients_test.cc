@@ -224,6 +224,41 @@ TEST_F(ClientsTest, AHeartbeatRenewsWhatIsLevelSensitiveAndAlive) {
   EXPECT_TRUE(submitted_.empty());
 }
 
+// EN-23, AX-37: a held stop is done when the axis stands, and kept alive until it is released.
+TEST_F(ClientsTest, AHeldStopIsRenewedUntilItIsReleased) {
+  Clients clients = Make();
+  const auto release = [](std::int64_t id, const char* arguments) {
+    msgs::command m = Command(id, "release", arguments);
+    m.target = "machine";
+    return m;
+  };
+  const auto renewed = [&] {
+    submitted_.clear();
+    clients.OnHeartbeat(Heartbeat(), 1);
+    return Renewed();
+  };
+  clients.OnCommand(Command(1, "stop", "{hold: true}"), 0);
+  clients.OnFeedback({1, 5, FeedbackState::kDone, false, ErrorId::kNone});
+  EXPECT_EQ(renewed(), (std::vector<Ticket>{1}));
+  clients.OnCommand(release(2, "{ticket: 1}"), 0);
+  EXPECT_TRUE(renewed().empty());
+}
+
+// EN-23: letting go while the axis still brakes does not take the lease from the ramp.
+TEST_F(ClientsTest, AReleasedCommandIsRenewedUntilItIsDone) {
+  Clients clients = Make();
+  clients.OnCommand(Command(1, "stop", "{hold: true}"), 0);
+  msgs::command release = Command(2, "release", "{ticket: 1}");
+  release.target = "machine";
+  clients.OnCommand(release, 0);
+  clients.OnHeartbeat(Heartbeat(), 1);
+  EXPECT_EQ(Renewed(), (std::vector<Ticket>{1}));
+  clients.OnFeedback({1, 5, FeedbackState::kDone, false, ErrorId::kNone});
+  submitted_.clear();
+  clients.OnHeartbeat(Heartbeat(), 2);
+  EXPECT_TRUE(Renewed().empty());
+}
+
 // EN-22: memory is bounded, and what was forgotten is not taken for new.
 TEST_F(ClientsTest, OldIdsAreForgottenAndStayHarmless) {
   Clients clients = Make({.ids_per_client = 10});

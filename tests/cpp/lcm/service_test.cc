@@ -31,7 +31,24 @@ struct TemporaryFile {
   std::string path;
 };
 
-// EN-20, EN-22, EN-25: a client on the same host, over UDP, with the engine in real time.
+// What a client has heard.
+struct Received {
+  std::map<std::int64_t, msgs::feedback> last;  // by id
+  double position = 0;
+  std::set<std::string> channels;
+
+  static void OnFeedback(const ::lcm::ReceiveBuffer*, const std::string&, const msgs::feedback* m, Received* r) {
+    r->last[m->id] = *m;
+  }
+  static void OnAxis(const ::lcm::ReceiveBuffer*, const std::string&, const msgs::axis_state* m, Received* r) {
+    r->position = m->set_position;
+  }
+  static void OnAny(const ::lcm::ReceiveBuffer*, const std::string& channel, Received* r) {
+    r->channels.insert(channel);
+  }
+};
+
+// EN-20, EN-22, EN-25: a client on the same host, over UDP.
 TEST(Service, AClientMovesAnAxisOverTheNetwork) {
   engine::Engine engine(TestMachine(), {.publish = true});
   std::string problem;
@@ -43,22 +60,11 @@ TEST(Service, AClientMovesAnAxisOverTheNetwork) {
 
   const Network client = OpenNetwork(Url(7731));
   ASSERT_TRUE(client.lcm) << client.problem;
-  std::map<std::int64_t, msgs::feedback> last;
-  double position = 0;
-  std::set<std::string> channels;
-  struct Receiver {
-    std::map<std::int64_t, msgs::feedback>& last;
-    double& position;
-    std::set<std::string>& channels;
-    void OnFeedback(const ::lcm::ReceiveBuffer*, const std::string&, const msgs::feedback* m) { last[m->id] = *m; }
-    void OnAxis(const ::lcm::ReceiveBuffer*, const std::string&, const msgs::axis_state* m) {
-      position = m->set_position;
-    }
-    void OnAny(const ::lcm::ReceiveBuffer*, const std::string& channel) { channels.insert(channel); }
-  } receiver{last, position, channels};
-  client.lcm->subscribe(kFeedbackChannel, &Receiver::OnFeedback, &receiver);
-  client.lcm->subscribe("takt/axis/x", &Receiver::OnAxis, &receiver);
-  client.lcm->subscribe("takt/.*", &Receiver::OnAny, &receiver);
+  Received received;
+  client.lcm->subscribeFunction(kFeedbackChannel, &Received::OnFeedback, &received);
+  client.lcm->subscribeFunction("takt/axis/x", &Received::OnAxis, &received);
+  client.lcm->subscribeFunction("takt/.*", &Received::OnAny, &received);
+  auto& [last, position, channels] = received;
   std::int64_t id = 0;
   const auto give = [&](const std::string& verb, const std::string& arguments) {
     msgs::command m{};

@@ -1,0 +1,72 @@
+#include <pybind11/stl.h>
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "bindings.h"
+#include "takt/core/status.h"
+
+namespace takt::bindings {
+namespace {
+
+std::map<int, std::pair<std::string, std::string>> ErrorTexts() {
+  constexpr int kLast = 9999;
+  const std::string_view unknown = ErrorText(static_cast<ErrorId>(kLast));
+  std::map<int, std::pair<std::string, std::string>> texts;
+  for (int id = 1; id < kLast; ++id) {
+    const auto error = static_cast<ErrorId>(id);
+    if (ErrorText(error) != unknown) texts[id] = {std::string(ErrorName(error)), std::string(ErrorText(error))};
+  }
+  return texts;
+}
+
+}  // namespace
+
+py::object ScalarToPython(const Type& type, const void* object) {
+  switch (type.kind) {
+    case Kind::kBool:
+      return py::bool_(IntegerAt(type, object) != 0);
+    case Kind::kReal:
+      return py::float_(*static_cast<const double*>(object));
+    case Kind::kInteger:
+      if (!type.is_signed) return py::int_(static_cast<std::uint64_t>(IntegerAt(type, object)));
+      return py::int_(IntegerAt(type, object));
+    case Kind::kEnum:
+      return py::int_(IntegerAt(type, object));
+    default:
+      throw std::logic_error("not a number: " + std::string(type.name));
+  }
+}
+
+py::dtype LayoutOf(const std::vector<Column>& columns, std::size_t size) {
+  py::list names, formats, offsets;
+  for (const Column& column : columns) {
+    std::string format;
+    switch (column.type->kind) {
+      case Kind::kBool:
+        format = "?";
+        break;
+      case Kind::kReal:
+        format = "f8";
+        break;
+      case Kind::kInteger:
+      case Kind::kEnum:
+        format = (column.type->is_signed ? "i" : "u") + std::to_string(column.type->size);
+        break;
+      default:
+        throw std::logic_error("a recorded column must be a number: " + column.name);
+    }
+    names.append(column.name);
+    formats.append(format);
+    offsets.append(column.offset);
+  }
+  return py::dtype(names, formats, offsets, static_cast<py::ssize_t>(size));
+}
+
+void BindCore(py::module_& m) {
+  m.def("error_texts", &ErrorTexts, "Every error number with its short name and its sentence.");
+}
+
+}  // namespace takt::bindings

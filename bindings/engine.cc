@@ -1,0 +1,294 @@
+#include "takt/engine/engine.h"
+
+#include <pybind11/stl.h>
+#include <pybind11/typing.h>
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bindings.h"
+#include "recorder.h"
+#include "takt/core/schema.h"
+#include "takt/engine/load.h"
+
+namespace takt::bindings {
+namespace {
+
+[[noreturn]] void ThrowConfigError(const std::vector<std::string>& problems) {
+  const py::object error = py::module_::import("takt.errors").attr("ConfigError");
+  PyErr_SetObject(error.ptr(), error(problems).ptr());
+  throw py::error_already_set();
+}
+
+engine::Machine Load(const py::bytes& text, const std::string& file_name) {
+  engine::LoadResult result = engine::LoadMachine(static_cast<std::string_view>(text), file_name);
+  if (!result.machine) ThrowConfigError(result.problems);
+  return std::move(*result.machine);
+}
+
+std::string MachineJson(const engine::Machine& machine) {
+  return ToJson(TypeOf<engine::Machine>(), &machine).dump();
+}
+
+std::string LoadMachine(const py::bytes& text, const std::string& file_name) {
+  return MachineJson(Load(text, file_name));
+}
+
+// A described struct of numbers as dicts and lists, internal fields too.
+py::object ToPython(const Type& type, const void* object) {
+  switch (type.kind) {
+    case Kind::kStruct: {
+      py::dict dict;
+      for (const Field& field : type.fields) dict[py::str(field.name)] = ToPython(*field.type, FieldAt(field, object));
+      return dict;
+    }
+    case Kind::kArray: {
+      py::list list;
+      for (std::size_t i = 0; i < type.count; ++i) list.append(ToPython(*type.element, ElementAt(type, object, i)));
+      return list;
+    }
+    default:
+      return ScalarToPython(type, object);
+  }
+}
+
+using Submitted = py::typing::Tuple<Ticket, int, py::str>;                     // ticket, error number, sentence
+using FeedbackRow = py::typing::Tuple<Ticket, std::uint64_t, int, bool, int>;  // ticket, cycle, state, reached, error
+using JournalRow =
+    py::typing::Tuple<std::uint64_t, Ticket, double, py::str, py::str, py::str>;  // cycle, ticket, lease, command
+using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::uint64_t>>;  // cycles, hashes
+
+// An engine in virtual time. Stepping releases the GIL; what it collects is guarded by a mutex that is only ever waited
+// for without the GIL.
+class VirtualEngine {
+ public:
+  VirtualEngine(const py::bytes& text, const std::string& file_name, bool journal, std::optional<double> period_s)
+      : journaling_(journal), engine_(Prepared(text, file_name, period_s), {.journal = journal}) {}
+
+  // Steps up to `cycles` cycles, or until one reports feedback. How many it were.
+  std::uint64_t Step(std::uint64_t cycles, bool until_feedback) {
+    const std::lock_guard lock(mutex_);
+    for (std::uint64_t i = 0; i < cycles;) {
+      engine_.RunCycle();
+      ++i;
+      const bool news = Drain(engine_.feedback(), feedback_);
+      if (journaling_) {
+        Drain(engine_.journal(), journal_);
+        Drain(engine_.hashes(), hashes_);
+      }
+      for (const auto& recorder : recorders_) recorder->Append(engine_);
+      if (news && until_feedback) return i;
+    }
+    return cycles;
+  }
+
+  // Seconds that so many bare cycles take, nothing collected: what stepping is compared with.
+  double Measure(std::uint64_t cycles) {
+    const std::lock_guard lock(mutex_);
+    const auto start = std::chrono::steady_clock::now();
+    for (std::uint64_t i = 0; i < cycles; ++i) engine_.RunCycle();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  // (ticket, error number, sentence); ticket 0: refused.
+  Submitted Submit(const std::string& target, const std::string& verb, const std::string& arguments) {
+    const engine::ParsedCommand parsed = engine::ParseCommand(engine_.machine(), target, verb, arguments);
+    if (parsed.error != ErrorId::kNone) return Answer(0, parsed.error, parsed.sentence);
+    const Ticket ticket = engine_.Submit(parsed.command);
+    return ticket != 0 ? Answer(ticket, ErrorId::kNone, "")
+                       : Answer(0, ErrorId::kQueueFull, ErrorText(ErrorId::kQueueFull));
+  }
+
+  // The same for a command out of a journal.
+  Submitted Resubmit(const std::string& target, const std::string& verb, const std::string& arguments, Ticket ticket,
+                     double lease_s) {
+    engine::ParsedCommand parsed = engine::ParseCommand(engine_.machine(), target, verb, arguments);
+    if (parsed.error != ErrorId::kNone) return Answer(0, parsed.error, parsed.sentence);
+    parsed.command.ticket = ticket;
+    parsed.command.lease_s = lease_s;
+    const bool taken = engine_.Resubmit(parsed.command);
+    return taken ? Answer(ticket, ErrorId::kNone, "") : Answer(0, ErrorId::kQueueFull, ErrorText(ErrorId::kQueueFull));
+  }
+
+  py::typing::List<FeedbackRow> TakeFeedback() {
+    std::vector<FeedbackEvent> events;
+    {
+      const auto lock = Lock();
+      events.swap(feedback_);
+    }
+    py::typing::List<FeedbackRow> list;
+    for (const FeedbackEvent& e : events) {
+      list.append(py::make_tuple(e.ticket, e.cycle, static_cast<int>(e.state), e.reached, static_cast<int>(e.error)));
+    }
+    return list;
+  }
+
+  // Commands as they were applied since the last call: (cycle, ticket, lease, target, verb, arguments).
+  py::typing::List<JournalRow> TakeJournal() {
+    std::vector<engine::JournalEntry> entries;
+    {
+      const auto lock = Lock();
+      entries.swap(journal_);
+    }
+    py::typing::List<JournalRow> list;
+    for (const engine::JournalEntry& e : entries) {
+      const engine::CommandText text = engine::ToText(engine_.machine(), e.command);
+      list.append(py::make_tuple(e.cycle, e.command.ticket, e.command.lease_s, text.target, text.verb, text.arguments));
+    }
+    return list;
+  }
+
+  // State hashes since the last call: cycles and hashes.
+  Hashes TakeHashes() {
+    std::vector<engine::HashEntry> entries;
+    {
+      const auto lock = Lock();
+      entries.swap(hashes_);
+    }
+    py::array_t<std::uint64_t> cycles(static_cast<py::ssize_t>(entries.size())),
+        hashes(static_cast<py::ssize_t>(entries.size()));
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      cycles.mutable_data()[i] = entries[i].cycle;
+      hashes.mutable_data()[i] = entries[i].hash;
+    }
+    return py::make_tuple(cycles, hashes);
+  }
+
+  py::object Value(std::size_t axis, std::size_t field) {
+    const auto lock = Lock();
+    CheckAxis(axis);
+    const Column& column = columns_.at(field);
+    return ScalarToPython(*column.type, reinterpret_cast<const std::byte*>(&engine_.outputs(axis)) + column.offset);
+  }
+
+  std::shared_ptr<Recorder> StartRecorder(const std::vector<std::size_t>& axes, std::uint64_t every) {
+    for (const std::size_t axis : axes) CheckAxis(axis);
+    if (every == 0) throw std::invalid_argument("every must be at least 1");
+    const auto lock = Lock();
+    recorders_.push_back(std::make_shared<Recorder>(axes, every));
+    return recorders_.back();
+  }
+
+  void StopRecorder(const std::shared_ptr<Recorder>& recorder) {
+    const auto lock = Lock();
+    std::erase(recorders_, recorder);
+  }
+
+  py::typing::Dict<py::str, py::object> Figures() {
+    const auto lock = Lock();
+    return ToPython(TypeOf<engine::EngineFigures>(), &engine_.figures());
+  }
+
+  std::uint64_t StateHash() {
+    const auto lock = Lock();
+    return engine_.StateHash();
+  }
+  std::uint64_t cycle() {
+    const auto lock = Lock();
+    return engine_.cycle().count;
+  }
+  double period_s() const { return engine_.machine().cycle.period_s; }
+  bool at_rest() {
+    const auto lock = Lock();
+    return engine_.at_rest();
+  }
+  bool all_disabled() {
+    const auto lock = Lock();
+    return engine_.all_disabled();
+  }
+  std::string machine_json() const { return MachineJson(engine_.machine()); }
+  void RequestShutdown() { engine_.RequestShutdown(); }
+
+ private:
+  static engine::Machine Prepared(const py::bytes& text, const std::string& file_name, std::optional<double> period_s) {
+    engine::Machine machine = Load(text, file_name);
+    if (!period_s) return machine;
+    const Field& field = *TypeOf<engine::CycleParams>().FindField("period_s");
+    if (!field.range.Holds(*period_s)) ThrowConfigError({"the cycle's period must be " + Text(field.range) + " s"});
+    machine.cycle.period_s = *period_s;
+    return machine;
+  }
+
+  static Submitted Answer(Ticket ticket, ErrorId error, std::string_view sentence) {
+    return py::make_tuple(ticket, static_cast<int>(error), sentence);
+  }
+
+  template <typename T>
+  static bool Drain(SpscQueue<T>& queue, std::vector<T>& out) {
+    T value;
+    bool any = false;
+    while (queue.TryPop(value)) {
+      out.push_back(value);
+      any = true;
+    }
+    return any;
+  }
+
+  std::unique_lock<std::mutex> Lock() {
+    const py::gil_scoped_release release;
+    return std::unique_lock(mutex_);
+  }
+
+  void CheckAxis(std::size_t axis) const {
+    if (axis >= engine_.machine().axes.size()) throw std::out_of_range("no such axis");
+  }
+
+  const std::vector<Column> columns_ = ColumnsOf(TypeOf<axis::Outputs>());
+  const bool journaling_;
+  std::mutex mutex_;
+  engine::Engine engine_;
+  std::vector<FeedbackEvent> feedback_;
+  std::vector<engine::JournalEntry> journal_;
+  std::vector<engine::HashEntry> hashes_;
+  std::vector<std::shared_ptr<Recorder>> recorders_;
+};
+
+}  // namespace
+
+void BindEngine(py::module_& m) {
+  m.def("load_machine", &LoadMachine, py::arg("text"), py::arg("file_name"),
+        "Reads and checks a machine file: all its parameters with their defaults, as JSON. Raises takt.ConfigError "
+        "with every problem.");
+  m.def(
+      "schema", [] { return JsonSchema(TypeOf<engine::Machine>()).dump(2); }, "The JSON Schema of machine files.");
+
+  py::class_<Recorder, std::shared_ptr<Recorder>>(m, "Recorder", "Rows of what axes publish, one every so many cycles.")
+      .def_property_readonly("rows", &Recorder::rows)
+      .def("cycles", &Recorder::Cycles, "The cycle of every row.")
+      .def("table", &Recorder::Table, py::arg("index"),
+           "The rows of the axis at this place of the list it was started with.");
+
+  using E = VirtualEngine;
+  using Released = py::call_guard<py::gil_scoped_release>;
+  py::class_<E>(m, "Engine", "One machine in virtual time.")
+      .def(py::init<const py::bytes&, const std::string&, bool, std::optional<double>>(), py::arg("text"),
+           py::arg("file_name"), py::kw_only(), py::arg("journal") = false, py::arg("period_s") = py::none())
+      .def("step", &E::Step, py::arg("cycles"), py::arg("until_feedback") = false, Released())
+      .def("measure", &E::Measure, py::arg("cycles"), Released())
+      .def("submit", &E::Submit, py::arg("target"), py::arg("verb"), py::arg("arguments"))
+      .def("resubmit", &E::Resubmit, py::arg("target"), py::arg("verb"), py::arg("arguments"), py::arg("ticket"),
+           py::arg("lease_s"))
+      .def("take_feedback", &E::TakeFeedback)
+      .def("take_journal", &E::TakeJournal)
+      .def("take_hashes", &E::TakeHashes)
+      .def("value", &E::Value, py::arg("axis"), py::arg("field"))
+      .def("start_recorder", &E::StartRecorder, py::arg("axes"), py::arg("every") = 1)
+      .def("stop_recorder", &E::StopRecorder, py::arg("recorder"))
+      .def("figures", &E::Figures)
+      .def("state_hash", &E::StateHash)
+      .def_property_readonly("cycle", &E::cycle)
+      .def_property_readonly("period_s", &E::period_s)
+      .def_property_readonly("at_rest", &E::at_rest)
+      .def_property_readonly("all_disabled", &E::all_disabled)
+      .def_property_readonly("machine_json", &E::machine_json)
+      .def("request_shutdown", &E::RequestShutdown);
+}
+
+}  // namespace takt::bindings

@@ -1,0 +1,29 @@
+#include "app/machine_file.h"
+
+#include "takt/core/describe.h"
+#include "takt/core/yaml_reader.h"
+#include "takt/engine/load.h"
+
+namespace takt::app {
+
+MachineFile ReadMachineFile(const Options& options) {
+  MachineFile file;
+  std::string why;
+  const std::optional<std::string> text = LoadText(options.machine_file, why);
+  if (!text) {
+    file.problems.push_back(options.machine_file + ": " + why);
+    return file;
+  }
+  file.text = *text;
+  engine::LoadResult loaded = engine::LoadMachine(file.text, options.machine_file);
+  file.problems = std::move(loaded.problems);
+  if (options.cycle_time_s) {
+    const Range range = TypeOf<engine::CycleParams>().FindField("period_s")->range;
+    if (!range.Holds(*options.cycle_time_s)) file.problems.push_back("--cycle-time: expected seconds " + Text(range));
+    if (loaded.machine) loaded.machine->cycle.period_s = *options.cycle_time_s;
+  }
+  if (file.problems.empty()) file.machine = std::move(loaded.machine);
+  return file;
+}
+
+}  // namespace takt::app

@@ -1,0 +1,21 @@
+// The machine taktd runs: as its file says, and what the command line says instead.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/options.h"
+#include "takt/engine/machine.h"
+
+namespace takt::app {
+
+struct MachineFile {
+  std::optional<engine::Machine> machine;  // empty: see problems
+  std::string text;                        // as it was read
+  std::vector<std::string> problems;       // one line each
+};
+
+MachineFile ReadMachineFile(const Options& options);
+
+}  // namespace takt::app

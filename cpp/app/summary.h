@@ -1,0 +1,19 @@
+// What people read at the start and the end of a run.
+#pragma once
+
+#include <string>
+
+#include "app/options.h"
+#include "takt/engine/engine.h"
+#include "takt/engine/scheduler.h"
+
+namespace takt::app {
+
+// One line: machine, axes, cycle, pace.
+std::string Greeting(const engine::Machine& machine, engine::Pace pace);
+
+// One paragraph: how it ended, cycles, overruns, times, losses.
+std::string Summary(const engine::Engine& engine, const engine::RunResult& result, engine::Pace pace,
+                    std::uint64_t send_failures);
+
+}  // namespace takt::app

@@ -1,0 +1,35 @@
+"""Arguments of a command as the one-line text that the engine reads: {position: 100.0, direction: positive}."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from enum import Enum
+from numbers import Integral, Real
+from typing import Any
+
+_PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_NOT_TEXT = {"true", "false", "null", "yes", "no", "on", "off", "y", "n", "nan", "inf"}
+
+
+def to_text(arguments: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> str:
+    """Arguments that are None, or what they are anyway (`defaults`), are left out. Nothing is checked here: the engine
+    does, and says what is wrong."""
+    usual = {key: _value(value) for key, value in (defaults or {}).items()}
+    given = {key: _value(value) for key, value in arguments.items() if value is not None}
+    text = ", ".join(f"{key}: {value}" for key, value in given.items() if usual.get(key) != value)
+    return f"{{{text}}}" if text else ""
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, Enum):
+        return _value(value.value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, Integral):
+        return repr(int(value))
+    if isinstance(value, Real):
+        return repr(float(value))
+    text = str(value)
+    return text if _PLAIN.fullmatch(text) and text.lower() not in _NOT_TEXT else json.dumps(text)

@@ -1,0 +1,20 @@
+"""Motion checks: each looks at a recording and returns a `Verdict`, never raises because of what the motion
+did. `takt.expect` has the same functions in their asserting form."""
+
+from takt.checks.conditions import complete, never_both, stays, visits_states
+from takt.checks.limits import continuous, within_limits
+from takt.checks.pairs import in_sync, keeps_distance
+from takt.checks.targets import reaches, settles
+
+__all__ = [
+    "complete",
+    "continuous",
+    "in_sync",
+    "keeps_distance",
+    "never_both",
+    "reaches",
+    "settles",
+    "stays",
+    "visits_states",
+    "within_limits",
+]

@@ -1,0 +1,323 @@
+"""Is a motion within its limits, and is it continuous?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from takt.checks.series import Check, Mask, decided, extent, nearest, sibling, wrap
+from takt.recording import FloatArray, Recording
+from takt.verdict import Bound, Interval, Lane, Trace, Verdict, number, seconds
+
+_ABOVE: Literal["above"] = "above"
+_BELOW: Literal["below"] = "below"
+_TINY = 1e-300
+EPS = float(np.finfo(np.float64).eps)
+
+
+@dataclass(frozen=True)
+class _Limits:
+    position: tuple[float, float] | None
+    velocity: float | None
+    acceleration: float | None
+    jerk: float | None
+
+
+@dataclass(frozen=True)
+class _Measured:
+    """One quantity held against its bounds; excess > 0 breaks it."""
+
+    what: str  # "velocity"
+    unit: str
+    time_s: FloatArray
+    values: FloatArray
+    excess: FloatArray
+    scale: float  # what excesses of different quantities are compared by
+    bounds: tuple[Bound, ...]
+    label: str
+    says: str  # "velocity limit of 100 mm/s"
+
+    @property
+    def broken(self) -> Mask:
+        return self.excess > 0
+
+    def lane(self) -> Lane:
+        return Lane(self.what, self.unit, (Trace(self.label, self.time_s, self.values),), self.bounds)
+
+
+@decided
+def within_limits(
+    recording: Recording,
+    component: str,
+    *,
+    position: Sequence[float] | None = None,
+    velocity: float | None = None,
+    acceleration: float | None = None,
+    jerk: float | None = None,
+    signal: str = "set_position",
+    tolerance: float = 1e-9,
+    jerk_tolerance: float = 1e-6,
+    window: Interval | None = None,
+) -> Verdict:
+    """Position, velocity, acceleration and jerk stay within limits.
+
+    position: (lower, upper); the others are largest absolute values. What is not given is taken from the
+        component's `limits`; what is not known there either is not checked.
+    tolerance: relative to the limit, for rounding.
+    jerk_tolerance: relative. Jerk is not recorded; it is the difference of two accelerations over the time
+        between them, which is the mean jerk of that stretch. The mean of a jerk that keeps its limit keeps it
+        too, also over lost samples, so nothing has to be allowed for sampling. What has to be allowed is the
+        rounding of the numbers that are subtracted (accelerations and times), four units in the last place of
+        the largest; it is added by itself.
+    """
+    check = Check("within_limits", recording, (component,), window)
+    limits = _limits(recording, component, position, velocity, acceleration, jerk)
+    found: list[_Measured] = []
+    if limits.position is not None:
+        lower, upper = limits.position
+        s = check.series(component, signal)
+        sides = [limit for limit in (lower, upper) if math.isfinite(limit)]
+        scale = max((abs(limit) for limit in sides), default=0.0)
+        excess = np.maximum(s.values - upper, lower - s.values)
+        kept = excess <= tolerance * scale
+        excess[kept] = np.minimum(excess[kept], 0)
+        bounds = tuple(
+            Bound.level(f"{name} limit {number(limit, s.unit)}", limit, s.span, side)
+            for name, limit, side in (("upper", upper, _ABOVE), ("lower", lower, _BELOW))
+            if math.isfinite(limit)
+        )
+        says = f"position range {number(lower)} … {number(upper, s.unit)}"
+        if sides:
+            found.append(
+                _Measured("position", s.unit, s.time_s, s.values, excess, max(scale, _TINY), bounds, s.label, says)
+            )
+    for what, limit in (("velocity", limits.velocity), ("acceleration", limits.acceleration)):
+        if limit is not None:
+            s = check.series(component, sibling(signal, what))
+            found.append(_against(what, s.unit, s.time_s, s.values, limit, tolerance * limit, s.label))
+    if limits.jerk is not None:
+        s = check.series(component, sibling(signal, "acceleration"))
+        if len(s.values) > 1:
+            dt = np.diff(s.time_s)
+            rounding = 4 * EPS * (np.max(np.abs(s.values)) + limits.jerk * np.max(np.abs(s.time_s))) / dt
+            margin_j = limits.jerk * jerk_tolerance + rounding
+            label = f"{component}.{sibling(signal, 'jerk')} (by differences)"
+            found.append(
+                _against(
+                    "jerk",
+                    s.unit.replace("s²", "s³"),
+                    s.time_s[:-1],
+                    np.diff(s.values) / dt,
+                    limits.jerk,
+                    margin_j,
+                    label,
+                )
+            )
+    if not found:
+        raise ValueError(f"within_limits: no limit is given, and the recording knows none of '{component}'")
+    return _judge(check, component, found, f"stayed within its {', '.join(m.says for m in found)}", "left")
+
+
+@decided
+def continuous(
+    recording: Recording,
+    component: str,
+    *,
+    step: float | None = None,
+    velocity: float | None = None,
+    acceleration: float | None = None,
+    jerk: float | None = None,
+    signal: str = "set_position",
+    tolerance: float = 1e-6,
+    slack: float = 1e-8,
+    window: Interval | None = None,
+) -> Verdict:
+    """No step beyond what the bounds allow in one sample.
+
+    step: the largest change of the signal from one sample to the next, alone, for signals that are measured
+        (with noise and quantisation). Without it, bounds follow from the limits, given or known of the
+        component, over the time dt between two samples:
+
+    - position changes by at most velocity * dt, and by the mean of its two velocities times dt, give or take
+      jerk * dt³/12 (without a jerk limit: acceleration * dt²/4), the error of the trapezoidal rule;
+    - velocity changes by at most acceleration * dt, and by the mean of its two accelerations times dt, give
+      or take jerk * dt²/4;
+    - acceleration changes by at most jerk * dt.
+
+    So a jump of a micrometre is found in a set point, although the axis could have gone further in that time.
+    Velocities and accelerations that were not recorded are not asked. While its loop is open an axis has no set
+    point of its own (it is where the axis is measured), so a set point is asked only while the loop is closed.
+
+    tolerance: relative to the bound.
+    slack: added to it, in u, u/s and u/s²: the accuracy with which a planned move ends.
+    """
+    check = Check("continuous", recording, (component,), window)
+    p = check.series(component, signal)
+    if len(p.values) < 2:
+        return check.verdict(
+            False,
+            f"the recording has a single sample of {component}, which shows no steps",
+            when_s=float(p.time_s[0]),
+        )
+    dt, time_s = np.diff(p.time_s), p.time_s[1:]
+    step_p = wrap(np.diff(p.values), p.modulus)
+    own = _set_by_engine(check, component, signal)
+    if step is not None:
+        found = [_against("step of position", p.unit, time_s[own], step_p[own], step, tolerance * step, p.label)]
+        return _judge(check, component, found, "made no step", "went beyond")
+
+    limits = _limits(recording, component, None, velocity, acceleration, jerk)
+    v_max, a_max, j_max = limits.velocity, limits.acceleration, limits.jerk
+    there = recording.fields(component)
+    time_rounding = 4 * EPS * float(np.max(np.abs(p.time_s)))
+    found = []
+
+    def add(what: str, unit: str, change: FloatArray, bound: FloatArray, values: FloatArray, rate: float) -> None:
+        margin = tolerance * bound + slack + 8 * EPS * float(np.max(np.abs(values))) + time_rounding * rate
+        label = f"{component}: {what}"
+        found.append(_against(what, unit, time_s[own], change[own], bound[own], margin[own], label))
+
+    rate_p = v_max if v_max is not None else 0.0
+    if v_max is not None:
+        add("step of position", p.unit, step_p, v_max * dt, p.values, rate_p)
+    a: FloatArray | None = None
+    if a_max is not None or j_max is not None:
+        if (field_a := sibling(signal, "acceleration")) in there:
+            a = check.series(component, field_a).values
+        if (field_v := sibling(signal, "velocity")) in there:
+            v = check.series(component, field_v)
+            largest_v = float(np.max(np.abs(v.values)))
+            apart = step_p - (v.values[1:] + v.values[:-1]) / 2 * dt
+            bound = j_max * dt**3 / 12 if j_max is not None else (a_max or 0.0) * dt**2 / 4
+            add("position apart from its velocity", p.unit, apart, bound, p.values, largest_v)
+            step_v = np.diff(v.values)
+            if a_max is not None:
+                add("step of velocity", v.unit, step_v, a_max * dt, v.values, a_max)
+            if a is not None and j_max is not None:
+                apart = step_v - (a[1:] + a[:-1]) / 2 * dt
+                add(
+                    "velocity apart from its acceleration",
+                    v.unit,
+                    apart,
+                    j_max * dt**2 / 4,
+                    v.values,
+                    float(np.max(np.abs(a))),
+                )
+    if a is not None and j_max is not None:
+        unit_a = recording.unit(component, sibling(signal, "acceleration"))
+        add("step of acceleration", unit_a, np.diff(a), j_max * dt, a, j_max)
+    if not found:
+        raise ValueError(f"continuous: no bound is given, and the recording knows no limits of '{component}'")
+    return _judge(check, component, found, "made no step", "went beyond", (p.lane(),))
+
+
+def _set_by_engine(check: Check, component: str, signal: str) -> Mask:
+    """For each pair of neighbouring samples: whether the signal was the engine's to choose. All, where that is not
+    recorded or the loop never was closed."""
+    samples = len(check.series(component, signal).values)
+    everywhere = np.ones(samples - 1, dtype=np.bool_)
+    if not signal.startswith("set_") or "loop_closed" not in check.recording.fields(component):
+        return everywhere
+    closed = check.series(component, "loop_closed").values > 0
+    both: Mask = closed[1:] & closed[:-1]
+    return both if both.any() else everywhere
+
+
+def _limits(
+    recording: Recording,
+    component: str,
+    position: Sequence[float] | None,
+    velocity: float | None,
+    acceleration: float | None,
+    jerk: float | None,
+) -> _Limits:
+    """Given limits, else the component's own. A jerk of 0 means unlimited, as in commands. An own limit of
+    deceleration counts with that of acceleration: the larger of both bounds the absolute value."""
+    own: dict[str, Any] = dict(recording.info(component).get("limits") or {})
+    if own.get("acceleration") is not None and own.get("deceleration") is not None:
+        own["acceleration"] = max(own["acceleration"], own["deceleration"])
+    rotary = recording.info(component).get("modulus") is not None
+    if position is None and own.get("position") is not None and not rotary:
+        position = own["position"]
+    if position is not None and not (len(position) == 2 and position[0] <= position[1]):
+        raise ValueError(f"position limits are (lower, upper), not {position!r}")
+
+    def pick(name: str, given: float | None) -> float | None:
+        limit = given if given is not None else own.get(name)
+        if limit is not None and not limit >= 0:
+            raise ValueError(f"the {name} limit {limit} is not a positive number")
+        return None if limit is None else float(limit)
+
+    return _Limits(
+        (float(position[0]), float(position[1])) if position is not None else None,
+        pick("velocity", velocity),
+        pick("acceleration", acceleration),
+        pick("jerk", jerk) or None,
+    )
+
+
+def _against(
+    what: str,
+    unit: str,
+    time_s: FloatArray,
+    values: FloatArray,
+    limit: float | FloatArray,
+    margin: float | FloatArray,
+    label: str,
+) -> _Measured:
+    """Absolute values against a limit; within the margin above it counts as kept."""
+    levels = np.broadcast_to(np.asarray(limit, dtype=np.float64), values.shape)
+    excess = np.abs(values) - levels
+    kept = excess <= margin
+    excess[kept] = np.minimum(excess[kept], 0)
+    typical = float(np.median(levels))
+    amount = number(typical, unit)
+    says = f"limit of {amount} for the {what}" if " " in what else f"{what} limit of {amount}"
+    bounds = (
+        Bound(f"limit ±{number(typical, unit)}", time_s, levels, _ABOVE),
+        Bound("", time_s, -levels, _BELOW),
+    )
+    return _Measured(what, unit, time_s, values, excess, max(typical, _TINY), bounds, label, says)
+
+
+def _judge(
+    check: Check,
+    component: str,
+    found: Sequence[_Measured],
+    kept: str,
+    broke: str,
+    lanes: Sequence[Lane] = (),
+) -> Verdict:
+    worst = max(found, key=lambda m: float(np.max(m.excess)) / m.scale)
+    at = int(np.argmax(worst.excess))
+    amount, when = float(worst.excess[at]), float(worst.time_s[at])
+    if amount <= 0:
+        return check.verdict(
+            True,
+            f"{component} {kept}; {nearest(abs(amount), worst.unit, when)} ({worst.what})",
+            when_s=when,
+            by=abs(amount),
+            unit=worst.unit,
+            lanes=(*lanes, *(m.lane() for m in found)),
+        )
+    place, where = extent(worst.time_s, worst.broken)
+    others = [m.what for m in found if m is not worst and m.broken.any()]
+    sentence = (
+        f"{component} {broke} its {worst.says} by {number(amount, worst.unit)}: "
+        f"{number(float(worst.values[at]), worst.unit)} at {seconds(when)} ({where})"
+    )
+    if others:
+        sentence += f"; also {', '.join(others)}"
+    return check.verdict(
+        False,
+        sentence,
+        when_s=place[0],
+        by=amount,
+        unit=worst.unit,
+        place=place,
+        lanes=(*lanes, worst.lane()),
+    )

@@ -1,0 +1,125 @@
+"""Do two components move as they should beside each other?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from takt.checks.series import Check, Series, decided, extent, nearest, together, unwrapped, wrap
+from takt.recording import Recording
+from takt.verdict import Bound, Interval, Lane, Trace, Verdict, number, seconds
+
+
+@decided
+def in_sync(
+    recording: Recording,
+    master: str,
+    slave: str,
+    *,
+    ratio: float = 1.0,
+    offset: float | None = 0.0,
+    tolerance: float,
+    signal: str = "set_position",
+    master_signal: str | None = None,
+    window: Interval | None = None,
+) -> Verdict:
+    """slave = ratio · master + offset within `tolerance`, at every cycle that both have.
+
+    On rotary axes turns do not count: the master is followed over its turns, starting from the first value of
+    the window, and the error is taken the short way round the slave's modulus. offset=None takes the offset
+    from the first sample, so that only staying in step is asked. `signal` is the slave's, and the master's
+    unless `master_signal` says otherwise.
+    """
+    check = Check("in_sync", recording, (master, slave), window)
+    m = check.series(master, master_signal or signal)
+    s = check.series(slave, signal)
+    m, s = together(m, s)
+    if not len(m.values):
+        return check.verdict(False, f"{master} and {slave} have no cycle in common")
+    led = ratio * unwrapped(m)
+    shift = float(s.values[0] - led[0]) if offset is None else offset
+    error = wrap(s.values - (led + shift), s.modulus)
+    excess = np.abs(error) - tolerance
+    lanes = [
+        Lane(
+            "synchronisation error",
+            s.unit,
+            (Trace(f"{slave} - ({ratio:g} · {master} + {shift:g})", s.time_s, error),),
+            (
+                Bound.level(f"±{number(tolerance, s.unit)}", tolerance, s.span, "above"),
+                Bound.level("", -tolerance, s.span, "below"),
+            ),
+        ),
+        s.lane(),
+        m.lane(),
+    ]
+    worst = int(np.argmax(excess))
+    at, off = float(s.time_s[worst]), float(error[worst])
+    if excess[worst] <= 0:
+        room = float(-excess[worst])
+        kept = f"{slave} kept in step with {master} within {number(tolerance, s.unit)}"
+        text = f"{kept}; {nearest(room, s.unit, at)}"
+        return check.verdict(True, text, when_s=at, by=room, unit=s.unit, lanes=lanes)
+    place, where = extent(s.time_s, excess > 0)
+    text = (
+        f"{slave} was out of step with {master} by {number(off, s.unit)} at {seconds(at)}, "
+        f"{number(float(excess[worst]), s.unit)} more than the tolerance of {number(tolerance, s.unit)} "
+        f"({where})"
+    )
+    return check.verdict(False, text, when_s=place[0], by=float(excess[worst]), unit=s.unit, place=place, lanes=lanes)
+
+
+@decided
+def keeps_distance(
+    recording: Recording,
+    a: str,
+    b: str,
+    minimum: float,
+    *,
+    signal: str | Sequence[str] = "actual_position",
+    modulus: float | None = None,
+    tolerance: float = 1e-9,
+    window: Interval | None = None,
+) -> Verdict:
+    """The distance of two components never falls below `minimum`.
+
+    `signal` is one position along a common track, or several ("x", "y") for the straight distance of points.
+    On a closed track of length `modulus` (known where both components have the same) the shorter way round
+    counts. tolerance: relative, for rounding.
+    """
+    check = Check("keeps_distance", recording, (a, b), window)
+    fields = [signal] if isinstance(signal, str) else list(signal)
+    squares: list[np.ndarray[tuple[int], np.dtype[np.float64]]] = []
+    pairs: list[tuple[Series, Series]] = []
+    for field in fields:
+        pair = together(check.series(a, field), check.series(b, field))
+        pairs.append(pair)
+        if not len(pair[0].values):
+            return check.verdict(False, f"{a} and {b} have no cycle in common")
+        around = modulus
+        if around is None and len(fields) == 1 and pair[0].modulus == pair[1].modulus:
+            around = pair[0].modulus
+        squares.append(wrap(pair[1].values - pair[0].values, around) ** 2)
+    first = pairs[0][0]
+    distance = np.sqrt(np.sum(squares, axis=0))
+    excess = minimum - distance
+    bound = Bound.level(f"minimum {number(minimum, first.unit)}", minimum, first.span, "below")
+    lanes = [
+        Lane("distance", first.unit, (Trace(f"{a} to {b}", first.time_s, distance),), (bound,)),
+        *(Lane(p.lane().quantity, p.unit, (p.trace(), q.trace())) for p, q in pairs),
+    ]
+    worst = int(np.argmax(excess))
+    at = float(first.time_s[worst])
+    amount = float(excess[worst])
+    if amount <= tolerance * abs(minimum):
+        room = max(-amount, 0.0)
+        kept = f"{a} and {b} kept their distance of {number(minimum, first.unit)}"
+        text = f"{kept}; {nearest(room, first.unit, at)}"
+        return check.verdict(True, text, when_s=at, by=room, unit=first.unit, lanes=lanes)
+    place, where = extent(first.time_s, excess > tolerance * abs(minimum))
+    text = (
+        f"{a} and {b} came within {number(float(distance[worst]), first.unit)} at {seconds(at)}, "
+        f"{number(amount, first.unit)} less than the minimum of {number(minimum, first.unit)} ({where})"
+    )
+    return check.verdict(False, text, when_s=place[0], by=amount, unit=first.unit, place=place, lanes=lanes)

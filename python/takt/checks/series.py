@@ -1,0 +1,231 @@
+"""What all checks share: taking columns out of a recording and refusing what cannot be judged."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, ParamSpec
+
+import numpy as np
+import numpy.typing as npt
+
+from takt.recording import Array, FloatArray, Recording
+from takt.verdict import Interval, Lane, Trace, Verdict, number, seconds
+
+P = ParamSpec("P")
+Mask = npt.NDArray[np.bool_]
+
+QUANTITIES = ("position", "velocity", "acceleration", "jerk", "error", "torque", "voltage", "state")
+
+
+class UndecidedError(Exception):
+    """Raised inside a check when the data cannot be judged; carries the failing verdict."""
+
+    def __init__(self, verdict: Verdict) -> None:
+        super().__init__(verdict.sentence)
+        self.verdict = verdict
+
+
+def decided(check: Callable[P, Verdict]) -> Callable[P, Verdict]:
+    """Turns UndecidedError into the failing verdict it carries."""
+
+    @functools.wraps(check)
+    def wrapper(*args: P.args, **kwargs: P.kwargs) -> Verdict:
+        try:
+            return check(*args, **kwargs)
+        except UndecidedError as undecided:
+            return undecided.verdict
+
+    return wrapper
+
+
+@dataclass(frozen=True)
+class Series:
+    """One column within the window of a check, as numbers that are all finite."""
+
+    component: str
+    field: str
+    unit: str
+    time_s: FloatArray
+    cycle: Array
+    values: FloatArray
+    modulus: float | None
+
+    @property
+    def label(self) -> str:
+        return f"{self.component}.{self.field}"
+
+    @property
+    def span(self) -> Interval:
+        return float(self.time_s[0]), float(self.time_s[-1])
+
+    def trace(self) -> Trace:
+        return Trace(self.label, self.time_s, self.values, self.modulus)
+
+    def lane(self, **more: Any) -> Lane:
+        return Lane(quantity(self.field), self.unit, (self.trace(),), **more)
+
+    def error_to(self, target: float | FloatArray) -> FloatArray:
+        """values - target, the short way round on a rotary axis."""
+        return wrap(self.values - target, self.modulus)
+
+    def take(self, rows: Array) -> Series:
+        return Series(
+            self.component,
+            self.field,
+            self.unit,
+            self.time_s[rows],
+            self.cycle[rows],
+            self.values[rows],
+            self.modulus,
+        )
+
+
+class Check:
+    """One check being made: hands out series that can be judged, and makes the verdict."""
+
+    def __init__(self, name: str, recording: Recording, components: Sequence[str], window: Interval | None) -> None:
+        if window is not None and not window[0] <= window[1]:
+            raise ValueError(f"{name}: the window {window} does not run forward")
+        self.name = name
+        self.recording = recording
+        self.components = tuple(components)
+        self.window = window
+
+    def series(self, component: str, field: str) -> Series:
+        """The column in the window. Undecided, so failed, where there is no sample, where the recording does
+        not span the window, and where a value is not a number."""
+        column = self.recording.column(component, field)
+        table = self.recording[component]
+        time_s: FloatArray = table["time_s"]
+        inside = np.ones(len(time_s), dtype=np.bool_)
+        if self.window is not None:
+            inside = (time_s >= self.window[0]) & (time_s <= self.window[1])
+        if not inside.any():
+            where = "" if self.window is None else f" between {seconds(self.window[0])} and {seconds(self.window[1])}"
+            self._give_up(f"the recording has no sample of {component}{where}")
+        if self.window is not None:
+            self._spans(component, time_s, self.window)
+        info = self.recording.info(component)
+        values = column[inside].astype(np.float64)
+        taken = Series(
+            component,
+            field,
+            self.recording.unit(component, field),
+            time_s[inside],
+            table["cycle"][inside],
+            values,
+            float(info["modulus"]) if info.get("modulus") and quantity(field) == "position" else None,
+        )
+        broken = np.flatnonzero(~np.isfinite(values))
+        if len(broken):
+            when = float(taken.time_s[broken[0]])
+            count = f" ({len(broken)} samples)" if len(broken) > 1 else ""
+            lane = taken.lane(names=self.recording.names(component, field))
+            self._give_up(
+                f"{taken.label} is not a number ({values[broken[0]]}) at {seconds(when)}{count}",
+                when,
+                (lane,),
+            )
+        return taken
+
+    def verdict(
+        self,
+        passed: bool,
+        sentence: str,
+        *,
+        when_s: float | None = None,
+        by: float | None = None,
+        unit: str = "",
+        place: Interval | None = None,
+        lanes: Sequence[Lane] = (),
+    ) -> Verdict:
+        if place is None and when_s is not None and not passed:
+            place = (when_s, when_s)
+        return Verdict(self.name, self.components, passed, sentence, when_s, by, unit, place, tuple(lanes))
+
+    def _spans(self, component: str, time_s: FloatArray, window: Interval) -> None:
+        """A window is covered when at most one usual sample distance is missing at each end."""
+        slack = 1.5 * float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0
+        if time_s[-1] < window[1] - slack:
+            self._give_up(
+                f"the recording of {component} ends at {seconds(time_s[-1])}, before {seconds(window[1])}",
+                float(time_s[-1]),
+            )
+        if time_s[0] > window[0] + slack:
+            self._give_up(
+                f"the recording of {component} starts at {seconds(time_s[0])}, after {seconds(window[0])}",
+                float(time_s[0]),
+            )
+
+    def _give_up(self, sentence: str, when_s: float | None = None, lanes: Sequence[Lane] = ()) -> None:
+        raise UndecidedError(self.verdict(False, sentence, when_s=when_s, lanes=lanes))
+
+
+def words(field: str) -> str:
+    """ "torque_nm" -> "torque", "set_position" -> "set position": a field's name for people, who see the unit
+    beside it."""
+    for suffix in ("_nm", "_v", "_s", "_mm", "_deg"):
+        field = field.removesuffix(suffix)
+    return field.replace("_", " ")
+
+
+def quantity(field: str) -> str:
+    """ "set_position" -> "position"; the field's own name where it ends in nothing known."""
+    name = words(field)
+    if name == "following error":
+        return name
+    last = name.rsplit(" ", 1)[-1]
+    return last if last in QUANTITIES else name
+
+
+def sibling(position: str, wanted: str) -> str:
+    """ "set_position" -> "set_velocity": the field of the same source that holds another quantity."""
+    if not position.endswith("position"):
+        raise ValueError(f"'{position}' is not a position: its name does not end in 'position'")
+    return position.removesuffix("position") + wanted
+
+
+def wrap(difference: FloatArray, modulus: float | None) -> FloatArray:
+    """The short way round: into [-modulus/2, modulus/2)."""
+    if modulus is None:
+        return difference
+    return np.mod(difference + modulus / 2, modulus) - modulus / 2
+
+
+def unwrapped(series: Series) -> FloatArray:
+    """A rotary position as it would be without the modulus, starting from the value reported first."""
+    if series.modulus is None:
+        return series.values
+    return np.unwrap(series.values, period=series.modulus)
+
+
+def together(a: Series, b: Series) -> tuple[Series, Series]:
+    """The samples of both that belong to the same cycles."""
+    if np.array_equal(a.cycle, b.cycle):
+        return a, b
+    _, rows_a, rows_b = np.intersect1d(a.cycle, b.cycle, assume_unique=True, return_indices=True)
+    return a.take(rows_a), b.take(rows_b)
+
+
+def runs(mask: Mask) -> list[tuple[int, int]]:
+    """First and last index of each stretch of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
+    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def extent(time_s: FloatArray, mask: Mask) -> tuple[Interval, str]:
+    """Where a mask holds at first, and a text for "from … to …, n samples"."""
+    first, last = runs(mask)[0]
+    place = (float(time_s[first]), float(time_s[last]))
+    count = int(np.count_nonzero(mask))
+    if count == 1:
+        return place, f"at {seconds(place[0])}"
+    final = float(time_s[np.flatnonzero(mask)[-1]])
+    return place, f"from {seconds(place[0])} to {seconds(final)}, {count} samples"
+
+
+def nearest(value: float, unit: str, time_s: float) -> str:
+    """The closest call of a check that passed."""
+    return f"closest call {number(value, unit)} at {seconds(time_s)}"

@@ -1,0 +1,309 @@
+"""The command line `takt`."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import traceback
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, Progress, ProgressColumn, SpinnerColumn, Task, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
+
+from takt import _core
+from takt.engine import Engine, read_machine
+from takt.errors import ConfigError, TaktError
+from takt.lcmlog import AXIS_PREFIX, open_log, read_log
+from takt.lcmlog import Progress as Report
+from takt.recording import Recording, RecordingError
+from takt.remote import connect
+from takt.replay import replay as replay_log
+from takt.scenario import Outcome, load_scenario, run_scenario
+from takt.session import Session
+
+BAD_INPUT = 2
+FAILED = 1
+
+out = Console(highlight=False)
+err = Console(stderr=True, highlight=False)
+
+FILE = click.Path(path_type=Path)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(_core.__version__)
+@click.option("--traceback", is_flag=True, expose_value=False, help="Show where an error comes from.")
+def cli() -> None:
+    """Motion engine: check machines, run scenarios, look at what was recorded."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs the command line. 0: all is well; 1: something checked has failed; 2: bad input, said in one line."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    show_all = "--traceback" in given
+    given = [argument for argument in given if argument != "--traceback"]
+    try:
+        return int(cli.main(args=given, prog_name="takt", standalone_mode=False) or 0)
+    except click.exceptions.NoArgsIsHelpError as error:
+        print(error.format_message())
+        return 0
+    except click.ClickException as error:
+        return _complain(error.format_message())
+    except (click.Abort, KeyboardInterrupt):
+        return 130
+    except ConfigError as error:
+        if show_all:
+            traceback.print_exc()
+        print("\n".join(error.problems), file=sys.stderr)
+        return BAD_INPUT
+    except Exception as error:
+        if show_all:
+            traceback.print_exc()
+        return _complain(_sentence(error))
+
+
+def _complain(sentence: str) -> int:
+    print(f"takt: {' '.join(sentence.split())}", file=sys.stderr)
+    return BAD_INPUT
+
+
+def _sentence(error: Exception) -> str:
+    """One line: what this package raises on purpose speaks for itself; of the rest, kind and place are worth
+    knowing."""
+    if isinstance(error, (TaktError, RecordingError)):
+        return str(error)
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"{error.filename}: {error.strerror}"
+    if isinstance(error, SyntaxError):
+        return f"{error.filename}:{error.lineno}: {error.msg}"
+    frames = traceback.extract_tb(error.__traceback__)
+    package = str(Path(__file__).parent)
+    # A scenario's own line says more than one of ours.
+    theirs = [f for f in frames if not f.filename.startswith(package)] or frames
+    place = f" ({os.path.relpath(theirs[-1].filename)}:{theirs[-1].lineno})" if theirs else ""
+    return f"{type(error).__name__}: {error}{place}"
+
+
+# --- commands ---
+
+
+@cli.command()
+@click.argument("machines", nargs=-1, required=True, type=FILE)
+def check(machines: tuple[Path, ...]) -> int:
+    """Say everything that is wrong with machine files."""
+    bad = False
+    for machine in machines:
+        try:
+            _core.load_machine(*read_machine(machine))
+            print(f"{machine}: ok")
+        except ConfigError as error:
+            bad = True
+            print("\n".join(error.problems), file=sys.stderr)
+    return BAD_INPUT if bad else 0
+
+
+@cli.command()
+def schema() -> None:
+    """Print the JSON Schema of machine files."""
+    print(_core.schema())
+
+
+@cli.command()
+@click.argument("file", type=FILE)
+@click.option("--machine", type=FILE, help="Run on this machine in virtual time [machine.yaml beside FILE].")
+@click.option("--url", help="Run on the engine of this LCM network (taktd) instead.")
+@click.option("--report", type=FILE, help="Write report.html, pictures and the recording into this directory.")
+def run(file: Path, machine: Path | None, url: str | None, report: Path | None) -> int:
+    """Run a scenario FILE and verify what was recorded; the same on a running engine and in virtual time."""
+    if machine is not None and url is not None:
+        raise click.UsageError("--machine is for virtual time, --url for a running engine: give one of them")
+    scenario = load_scenario(file)
+    session: Session = connect(url) if url is not None else Engine(machine or scenario.machine)
+    with session, _watching(session, scenario.title):
+        outcome = run_scenario(scenario, session, report)
+        figures = session.figures
+    _show(outcome)
+    if report is not None:
+        from takt.report import write_report
+
+        counts = {name: value for name, value in figures.items() if isinstance(value, (int, float))}
+        page = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": counts}).html
+        print(f"report: {page}")
+    return 0 if outcome.passed else FAILED
+
+
+@cli.command()
+@click.argument("file", type=FILE)
+@click.option("--machine", type=FILE, help="The machine [machine.yaml beside FILE].")
+@click.option("--report", type=FILE, default=Path("reports/demo"), show_default=True, help="Where everything goes.")
+@click.option("--pace", type=click.Choice(["real", "paced"]), default="real", show_default=True, help="Of taktd.")
+def demo(file: Path, machine: Path | None, report: Path, pace: str) -> int:
+    """Run a scenario FILE on a taktd of its own, in real time over LCM; verify what lcm-logger recorded; report."""
+    from takt.demo import run_demo
+    from takt.report import write_report
+
+    scenario = load_scenario(file)
+    result = run_demo(scenario, machine or scenario.machine, report, print, pace)
+    _show(result.outcome)
+    timing = _timing(result.figures)
+    table = Table(box=None, show_header=False)
+    for name, value in timing.items():
+        table.add_row(name, str(value))
+    table.add_row("journal", result.replayed.sentence)
+    out.print(table)
+    page = write_report(result.outcome.recording, result.outcome.verdicts, report, scenario.title, {"engine": timing})
+    print(f"report: {page.html}")
+    return 0 if result.passed else FAILED
+
+
+@cli.command()
+@click.argument("log", type=FILE)
+@click.option("--run", "run_number", default=-1, help="Which start of the engine, of several [the last].")
+def replay(log: Path, run_number: int) -> int:
+    """Run the journal of a LOG of taktd again and compare every cycle, bit for bit."""
+    with _bar(f"replay {log.name}") as progress:
+        result = replay_log(log, run=run_number, progress=progress)
+    print(f"{log}: {result.sentence}")
+    return 0 if result.same else FAILED
+
+
+@cli.command()
+@click.argument("file", type=FILE)
+@click.argument("signals", nargs=-1)
+@click.option("-o", "--output", type=FILE, help="The picture (.png, .svg, .pdf) [FILE.png].")
+@click.option("--from", "start", type=float, help="s, where to begin.")
+@click.option("--to", "end", type=float, help="s, where to end.")
+@click.option("--title", help="Above the picture [FILE].")
+def plot(
+    file: Path, signals: tuple[str, ...], output: Path | None, start: float | None, end: float | None, title: str | None
+) -> None:
+    """Draw SIGNALS (x, x.set_position, "*.following_error") of a FILE: a recording (.npz) or an LCM log."""
+    from takt import plot as plotting
+
+    recording = _read(file)
+    window = None
+    if start is not None or end is not None:
+        window = (recording.start_s if start is None else start, recording.end_s if end is None else end)
+    figure = plotting.draw(recording, *signals, title=title or file.name, window=window)
+    print(plotting.save(figure, output or file.with_suffix(".png")))
+
+
+@cli.command("log")
+@click.argument("log", type=FILE)
+@click.option("--save", type=FILE, help="Keep the last run as a recording (.npz) or a table (.csv).")
+def show_log(log: Path, save: Path | None) -> int:
+    """Say what an LCM LOG holds."""
+    with _bar(f"read {log.name}") as progress:
+        content = open_log(log, progress)
+    table = Table("channel", "messages", "not decoded", box=None)
+    for channel, count in sorted(content.messages.items()):
+        table.add_row(channel, str(count), str(content.malformed[channel] or ""))
+    out.print(table)
+    for number, one in enumerate(content.runs):
+        name = getattr(one.machine, "name", "") or "a machine"
+        states = [s for states in one.states.values() for s in (states[0], states[-1])]
+        period = one.machine.period_s if one.machine else 0.0
+        span = (max(s.cycle for s in states) - min(s.cycle for s in states)) * period if states else 0.0
+        journal = f"journal of {len(one.journal)} commands" if one.start else "no journal"
+        print(f"run {number}: {name}, {len(one.states)} axes ({AXIS_PREFIX}*), {span:.3f} s, {journal}")
+    if save is not None:
+        recording = read_log(log)
+        print(recording.to_csv(save) if save.suffix == ".csv" else recording.save(save))
+    return 0
+
+
+@cli.command()
+@click.option("--machine", type=FILE, help="A machine file [made up].")
+@click.option("--axes", default=6, type=click.IntRange(1, 10_000), help="How many axes the made up machine has.")
+@click.option("--cycles", default=1_000_000, type=click.IntRange(1000), help="How many cycles to time.")
+def bench(machine: Path | None, axes: int, cycles: int) -> None:
+    """Time stepping in virtual time, idle and moving, beside the bare C++ loop."""
+    from takt.benchmark import measure
+
+    with _bar("bench") as progress:
+        results = measure(machine, axes, cycles, progress)
+    table = Table("axes", "cycles/s", "ns/cycle", "times real time", "to the C++ loop", box=None)
+    for r in results:
+        table.add_row(r.name, f"{r.cycles_s:,.0f}", f"{1e9 / r.cycles_s:.0f}", f"{r.pace:,.0f}", f"{r.ratio:.2f}")
+    out.print(table)
+
+
+# --- what they share ---
+
+
+def _read(file: Path) -> Recording:
+    """A recording, or an LCM log as one."""
+    if file.suffix == ".npz":
+        return Recording.load(file)
+    with _bar(f"read {file.name}") as progress:
+        return read_log(file, progress=progress)
+
+
+def _show(outcome: Outcome) -> None:
+    table = Table("", "check", "", box=None, show_header=False)
+    for verdict in outcome.verdicts:
+        mark = Text("passed", "green") if verdict.passed else Text("failed", "bold red")
+        table.add_row(mark, Text(verdict.title), Text(verdict.sentence))
+    if outcome.complaint:
+        table.add_row(Text("failed", "bold red"), Text("assert"), Text(outcome.complaint))
+    out.print(table)
+    passed = sum(verdict.passed for verdict in outcome.verdicts)
+    failed = len(outcome.verdicts) - passed + bool(outcome.complaint)
+    print(f"{passed} passed, {failed} failed; {outcome.recording.duration_s:.3f} s of engine time")
+
+
+def _timing(figures: Mapping[str, Any]) -> dict[str, str]:
+    """What the engine says of itself, in words."""
+    rows = {"cycles": f"{figures['cycle']:,}", "overruns": str(figures["overruns"])}
+    for name, title in (("execution", "execution of a cycle"), ("latency", "wake-up latency")):
+        histogram = figures[name]
+        if histogram["count"]:
+            median, late = (_quantile(histogram["buckets"], share) / 1e3 for share in (0.5, 0.99))
+            rows[title] = f"median {median:.0f} µs, 99 % below {late:.0f} µs, longest {histogram['max'] / 1e3:.0f} µs"
+    rows["commands"] = f"{figures['commands_applied']} applied, {figures['commands_refused']} refused"
+    rows["dropped"] = f"{figures['snapshots_dropped']} states, {figures['feedback_dropped']} feedbacks"
+    return rows
+
+
+def _quantile(buckets: Sequence[int], share: float) -> float:
+    """ns below which so many of the counted times lie; bucket i holds those in [2^i, 2^(i+1))."""
+    wanted = share * sum(buckets)
+    for i, count in enumerate(buckets):
+        if count >= wanted and count:
+            return float(2**i * (1 + wanted / count))
+        wanted -= count
+    return 0.0
+
+
+class _EngineTime(ProgressColumn):
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+
+    def render(self, task: Task) -> Text:
+        return Text(f"{self._session.now:.1f} s of engine time")
+
+
+@contextlib.contextmanager
+def _watching(session: Session, title: str) -> Iterator[None]:
+    """Shows how far engine time has come, on a terminal."""
+    columns: Any = (SpinnerColumn(), TextColumn("{task.description}"), _EngineTime(session), TimeElapsedColumn())
+    with Progress(*columns, console=err, transient=True, disable=not err.is_terminal) as progress:
+        progress.add_task(title, total=None)
+        yield
+
+
+@contextlib.contextmanager
+def _bar(title: str) -> Iterator[Report]:
+    """A progress bar, on a terminal; what it yields takes the share that is done."""
+    share = TextColumn("{task.percentage:3.0f} %")
+    columns: Any = (TextColumn("{task.description}"), BarColumn(), share, TimeElapsedColumn())
+    with Progress(*columns, console=err, transient=True, disable=not err.is_terminal) as progress:
+        task = progress.add_task(title, total=1.0)
+        yield lambda share: progress.update(task, completed=share)

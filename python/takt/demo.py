@@ -1,0 +1,122 @@
+"""A scenario on an engine of its own, in real time and over LCM, judged from what LCM's own logger recorded."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from takt.errors import TaktError
+from takt.lcmlog import read_log
+from takt.network import open_network
+from takt.remote import connect
+from takt.replay import ReplayResult, replay
+from takt.scenario import Outcome, Scenario, verify_recording
+
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class DemoResult:
+    """What became of it: the verdicts on the log, the engine's own figures, and whether its journal runs again bit for
+    bit."""
+
+    outcome: Outcome
+    figures: dict[str, Any]
+    replayed: ReplayResult
+    log: Path
+
+    @property
+    def passed(self) -> bool:
+        return self.outcome.passed and self.replayed.same
+
+
+def run_demo(scenario: Scenario, machine: Path, directory: Path, say: Say = print, pace: str = "real") -> DemoResult:
+    """Starts taktd on the machine and lcm-logger beside it, runs the scenario through a connection, ends both, and
+    judges what lcm-logger wrote. Everything is kept in `directory`."""
+    directory.mkdir(parents=True, exist_ok=True)
+    log, journal = directory / "lcm-logger.log", directory / "taktd.log"
+    for old in (log, journal):
+        old.unlink(missing_ok=True)
+    url = _free_url()
+    with _taktd(machine, url, journal, pace, directory) as engine, _logger(url, log):
+        say(f"taktd runs {machine} ({pace} time), lcm-logger records {url}")
+        with connect(url, timeout=15) as session:
+            started = time.monotonic()
+            scenario.scenario(session)
+            say(f"scenario done: {session.now:.1f} s of engine time in {time.monotonic() - started:.1f} s")
+            session.run(1.5 / _rate(session.machine["lcm"]["engine_rate_hz"]))  # the last figures count everything
+            figures = session.figures
+        engine.send_signal(signal.SIGINT)
+        if engine.wait(20):
+            raise TaktError(f"taktd ended with {engine.returncode}: see {directory / 'taktd.txt'}")
+    recording = read_log(log)
+    say(f"{log.name} read back: {len(recording.components)} axes, {recording.duration_s:.1f} s")
+    outcome = verify_recording(scenario, recording)
+    recording.save(directory / "recording.npz")
+    return DemoResult(outcome, figures, replay(journal), log)
+
+
+def _rate(hz: float) -> float:
+    return max(float(hz), 0.1)
+
+
+def _free_url() -> str:
+    """A network that stays on this host, on a port nobody else is likely to use, with room for a burst."""
+    url = f"udpm://239.255.76.67:{random.randint(20000, 60000)}?ttl=0&recv_buf_size=4194304"
+    open_network(url)  # says in one line what is wrong with the network, before anything is started
+    return url
+
+
+def _program(name: str, *places: Path) -> str:
+    for place in places:
+        if os.access(place / name, os.X_OK):
+            return str(place / name)
+    found = shutil.which(name)
+    if found is None:
+        raise TaktError(f"{name} is not installed (or not on PATH)")
+    return found
+
+
+@contextlib.contextmanager
+def _taktd(machine: Path, url: str, journal: Path, pace: str, directory: Path) -> Iterator[subprocess.Popen[bytes]]:
+    program = _program("taktd", Path(sys.executable).parent)
+    command = [program, str(machine), "--pace", pace, "--lcm-url", url, "--log", str(journal)]
+    with (
+        (directory / "taktd.txt").open("wb") as text,
+        _ended(subprocess.Popen(command, stdout=text, stderr=subprocess.STDOUT)) as process,
+    ):
+        yield process
+
+
+@contextlib.contextmanager
+def _logger(url: str, log: Path) -> Iterator[None]:
+    # PyPI's lcm brings a wrapper of the same name whose child survives it: the real one comes first.
+    program = _program("lcm-logger", Path("/usr/bin"))
+    with _ended(subprocess.Popen([program, f"--lcm-url={url}", "--quiet", log], stdout=subprocess.DEVNULL)):
+        time.sleep(0.3)  # until it listens
+        yield
+
+
+@contextlib.contextmanager
+def _ended(process: subprocess.Popen[bytes]) -> Iterator[subprocess.Popen[bytes]]:
+    """Ends it in order, whatever happens."""
+    try:
+        yield process
+    finally:
+        if process.poll() is None:
+            process.send_signal(signal.SIGINT)
+        try:
+            process.wait(10)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()

@@ -1,0 +1,160 @@
+"""The engine in process, in virtual time: steps as fast as it can, and bit for bit the same each time."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from takt import _core
+from takt.axis import Axis
+from takt.errors import ConfigError
+from takt.feedback import Feedback
+from takt.recording import Recording
+from takt.session import Recorder, Session
+from takt.tables import OUTPUT_FIELDS, make_recording, named
+
+CHUNK = 20_000  # cycles between two looks at Ctrl-C
+
+
+def read_machine(machine: str | os.PathLike[str]) -> tuple[bytes, str]:
+    """Text and file name of a machine given as a path, or as the text itself (which has more than one line). The text
+    stays as it is: the engine says where it is not UTF-8."""
+    if isinstance(machine, str) and "\n" in machine:
+        return machine.encode("utf-8", "surrogatepass"), "machine"
+    path = Path(machine)
+    try:
+        return path.read_bytes(), str(path)
+    except OSError as error:
+        raise ConfigError([f"{path}: cannot be read: {error.strerror}"]) from None
+
+
+class Engine(Session):
+    """A machine in virtual time.
+
+    machine: the path of a machine file, or its text.
+    period: s, instead of the machine file's.
+    journal: keep the journal and a hash of the whole state after every cycle (`take_journal`, `take_hashes`).
+    """
+
+    def __init__(self, machine: str | os.PathLike[str], *, period: float | None = None, journal: bool = False) -> None:
+        text, file_name = read_machine(machine)
+        self._core = _core.Engine(text, file_name, journal=journal, period_s=period)
+        self._unfinished: dict[int, Feedback] = {}
+        self._core_recorders: dict[Recorder, _core.Recorder] = {}
+        super().__init__(json.loads(self._core.machine_json), text.decode())
+
+    @property
+    def cycle(self) -> int:
+        return self._core.cycle
+
+    @property
+    def period(self) -> float:
+        return self._core.period_s
+
+    @property
+    def figures(self) -> dict[str, Any]:
+        return {**self._core.figures()}
+
+    @property
+    def state_hash(self) -> int:
+        """Hash of the whole state: equal in two runs that were the same so far."""
+        return self._core.state_hash()
+
+    def step(self, cycles: int = 1) -> None:
+        """Runs so many cycles."""
+        if cycles < 0:
+            raise ValueError(f"cannot step {cycles} cycles")
+        self._run(cycles)
+
+    def shut_down(self, timeout: float = 60.0) -> None:
+        """Stops everything along its ramps and opens the loops, as the end of taktd does; no command is accepted any
+        more."""
+        self._core.request_shutdown()
+        self.wait(lambda: self._core.all_disabled, timeout, what="every axis at rest with its loop open")
+
+    def take_journal(self) -> list[tuple[int, int, float, str, str, str]]:
+        """Commands applied since the last call: (cycle, ticket, lease in s, target, verb, arguments)."""
+        return self._core.take_journal()
+
+    def take_hashes(self) -> tuple[np.typing.NDArray[np.uint64], np.typing.NDArray[np.uint64]]:
+        """Cycles since the last call, and the hash of the state after each."""
+        return self._core.take_hashes()
+
+    def _submit(self, feedback: Feedback) -> None:
+        text = feedback.arguments
+        ticket, error_id, sentence = self._core.submit(feedback.target, feedback.verb, text)
+        feedback.ticket = ticket
+        if error_id:
+            self._report(feedback, 4, False, error_id, sentence, -1)
+        else:
+            self._unfinished[ticket] = feedback
+
+    def _value(self, axis: Axis, field: str) -> Any:
+        return named(field, self._core.value(axis.index, OUTPUT_FIELDS.index(field)))
+
+    def _step(self, cycles: int, until_feedback: bool) -> int:
+        """Runs one cycle at least and `cycles` at most; how many it were."""
+        self._check_open()
+        if self._programs:
+            self._scan()
+            cycles = 1
+        made: int = self._core.step(min(cycles, CHUNK), until_feedback)
+        self._take_feedback()
+        return made
+
+    def _take_feedback(self) -> None:
+        for ticket, cycle, state, reached, error_id in self._core.take_feedback():
+            feedback = self._unfinished.get(ticket)
+            if feedback is None:
+                continue
+            sentence = error_text(error_id) if error_id else ""
+            self._report(feedback, state, reached, error_id, sentence, cycle)
+            if feedback.final:
+                del self._unfinished[ticket]
+
+    def _run(self, cycles: int) -> None:
+        while cycles > 0:
+            cycles -= self._step(cycles, False)
+
+    def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
+        left = math.ceil(timeout / self.period) if timeout < math.inf else CHUNK
+        while not condition():
+            if left <= 0:
+                return False
+            made = self._step(left if on_feedback else 1, True)
+            left -= made if timeout < math.inf else 0
+        return True
+
+    def _begin(self, recorder: Recorder) -> None:
+        indices = [self._axes[name].index for name in recorder.axes]
+        self._core_recorders[recorder] = self._core.start_recorder(indices, recorder.every)
+
+    def _finish(self, recorder: Recorder) -> Recording:
+        core = self._core_recorders.pop(recorder)
+        self._core.stop_recorder(core)
+        cycles = core.cycles().astype(np.int64)
+        base = {"time_s": cycles * self.period, "cycle": cycles}
+        tables = {}
+        for i, name in enumerate(recorder.axes):
+            rows = core.table(i)
+            tables[name] = base | {f: rows[f] for f in OUTPUT_FIELDS}
+        return make_recording(self.machine, tables, recorder.events, {"source": "engine", "period_s": self.period})
+
+
+def error_text(error_id: int) -> str:
+    """What an error number means, for people."""
+    return _ERRORS.get(error_id, ("", "unknown error"))[1]
+
+
+def error_name(error_id: int) -> str:
+    """The short name of an error number ("Etime"), as lists of errors have it."""
+    return _ERRORS.get(error_id, ("", ""))[0]
+
+
+_ERRORS: dict[int, tuple[str, str]] = _core.error_texts()

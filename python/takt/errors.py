@@ -1,0 +1,43 @@
+"""What can go wrong, as exceptions. Each text is one sentence for people; ConfigError has one line for each problem."""
+
+from __future__ import annotations
+
+import builtins
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from takt.feedback import Feedback
+
+
+class TaktError(Exception):
+    """Everything that this package raises on purpose."""
+
+
+class ConfigError(TaktError, ValueError):
+    """A machine file is wrong. `problems` says where and what was expected, one line each."""
+
+    def __init__(self, problems: Sequence[str]) -> None:
+        self.problems = list(problems)
+        super().__init__("\n".join(self.problems))
+
+
+class CommandError(TaktError):
+    """A command was refused, failed or aborted. `feedback` has the details."""
+
+    def __init__(self, feedback: Feedback) -> None:
+        self.feedback = feedback
+        number = f" (error {feedback.error_id})" if feedback.error_id else ""
+        super().__init__(f"{feedback.text}: {feedback.sentence}{number}")
+
+
+class TimeoutError(TaktError, builtins.TimeoutError):
+    """Something did not happen in time."""
+
+
+class ConnectionError(TaktError, builtins.ConnectionError):
+    """The engine cannot be reached, or went away."""
+
+
+class ClosedError(TaktError):
+    """The session was closed."""

@@ -1,0 +1,132 @@
+"""What becomes of a command: Busy -> Active -> Done | Aborted | Error, once."""
+
+from __future__ import annotations
+
+import math
+from enum import IntEnum
+from typing import TYPE_CHECKING, Literal
+
+from takt.errors import CommandError, TimeoutError
+
+if TYPE_CHECKING:
+    from takt.session import Session
+
+Until = Literal["final", "done", "active", "reached"]
+
+DEFAULT_TIMEOUT_S = 60.0
+
+
+class FeedbackState(IntEnum):
+    BUSY = 0  # accepted, waiting for its turn
+    ACTIVE = 1  # in control
+    DONE = 2  # final: reached what it was for
+    ABORTED = 3  # final: another command or a fault took over
+    ERROR = 4  # final: refused or failed
+
+
+class Feedback:
+    """One command that was given. Changes while the session steps or receives; ends in exactly one of Done, Aborted,
+    Error."""
+
+    def __init__(self, session: Session, target: str, verb: str, arguments: str, *, level_sensitive: bool) -> None:
+        self._session = session
+        self.target = target  # the name of an axis, or "machine"
+        self.verb = verb
+        self.arguments = arguments  # as given to the engine
+        self.level_sensitive = level_sensitive  # acts until `release`d
+        self.ticket = 0  # the engine's number of the command; 0: refused
+        self.state = FeedbackState.BUSY
+        self.reached = False  # a command that never ends by itself has what it was given for
+        self.error_id = 0
+        self.sentence = ""  # what went wrong; empty while nothing has
+        self.cycle = -1  # of the last change; -1: before the command came to a cycle
+        self.released = False
+
+    @property
+    def busy(self) -> bool:
+        """Not final yet, in control or not."""
+        return self.state in (FeedbackState.BUSY, FeedbackState.ACTIVE)
+
+    @property
+    def active(self) -> bool:
+        return self.state is FeedbackState.ACTIVE
+
+    @property
+    def done(self) -> bool:
+        return self.state is FeedbackState.DONE
+
+    @property
+    def aborted(self) -> bool:
+        return self.state is FeedbackState.ABORTED
+
+    @property
+    def error(self) -> bool:
+        return self.state is FeedbackState.ERROR
+
+    @property
+    def final(self) -> bool:
+        return not self.busy
+
+    @property
+    def time_s(self) -> float:
+        """Engine time of the last change; NaN before the command came to a cycle."""
+        return self.cycle * self._session.period if self.cycle >= 0 else math.nan
+
+    @property
+    def text(self) -> str:
+        """The command for people: "x.move_absolute {position: 100.0}"."""
+        return f"{self.target}.{self.verb} {self.arguments}".rstrip()
+
+    def __repr__(self) -> str:
+        end = f", {self.sentence}" if self.sentence else ""
+        return f"<Feedback {self.text}: {self.state.name.lower()}{', reached' if self.reached else ''}{end}>"
+
+    def wait(self, timeout: float = DEFAULT_TIMEOUT_S, *, until: Until = "final") -> Feedback:
+        """Lets engine time pass until the command is final ("final", "done"), in control ("active") or has what it was
+        given for ("reached"), `timeout` in seconds of engine time. Raises CommandError on an error or when it is
+        aborted (an active command has been active: that is no error for "active"), TimeoutError when nothing of that
+        happens in time."""
+        if until not in ("final", "done", "active", "reached"):
+            raise ValueError(f"until is one of final, done, active, reached, not {until!r}")
+
+        def arrived() -> bool:
+            return self.final or (until == "active" and self.active) or (until == "reached" and self.reached)
+
+        self._wait(arrived, timeout, until)
+        if self.error or self.aborted:
+            raise CommandError(self)
+        return self
+
+    def wait_final(self, timeout: float = DEFAULT_TIMEOUT_S) -> Feedback:
+        """As `wait`, but an abort or an error is an answer like any other."""
+        self._wait(lambda: self.final, timeout, "final")
+        return self
+
+    def release(self) -> Feedback:
+        """Lets go of a level-sensitive command (jog, stop with hold). The feedback of the release itself."""
+        self.released = True
+        return self._session.command("machine", "release", {"ticket": self.ticket})
+
+    def _wait(self, arrived: Arrived, timeout: float, until: str) -> None:
+        if not self._session._wait_for(arrived, timeout, on_feedback=True):
+            what = self.state.name.lower() if until == "final" else f"{self.state.name.lower()}, not {until}"
+            raise TimeoutError(f"{self.text}: still {what} after {timeout:g} s")
+        self._session._catch_up(self.cycle)
+
+    def _update(self, state: int, reached: bool, error_id: int, sentence: str, cycle: int) -> bool:
+        """Takes over a report. False: it says nothing new (final states stay)."""
+        new = FeedbackState(state)
+        if self.final or new < self.state or (new, reached) == (self.state, self.reached):
+            return False
+        self.error_id = error_id
+        self.sentence = sentence or ("aborted by another command" if new is FeedbackState.ABORTED else "")
+        self.cycle = cycle
+        self.reached = reached or self.reached
+        self.state = new  # last: who sees it on another thread sees the rest too
+        return True
+
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Arrived = Callable[[], bool]

@@ -1,0 +1,212 @@
+"""LCM logs, those of taktd and those of lcm-logger, as recordings and journals."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import lcm
+import numpy as np
+
+from takt import _core, msgs
+from takt.errors import TaktError
+from takt.recording import Array, Recording
+from takt.tables import fields_of, make_recording, table_of
+
+AXIS_PREFIX = "takt/axis/"
+KINDS: dict[str, Any] = {
+    "takt/machine": msgs.machine_description,
+    "takt/engine": msgs.engine_state,
+    "takt/command": msgs.command,
+    "takt/feedback": msgs.feedback,
+    "takt/journal/start": msgs.journal_start,
+    "takt/journal/command": msgs.journal_command,
+    "takt/journal/hashes": msgs.journal_hashes,
+}
+STATES = ("busy", "active", "done", "aborted", "error")
+
+Progress = Callable[[float], None]
+
+
+class LogError(TaktError, ValueError):
+    """A file is no LCM log, or has not in it what is wanted."""
+
+
+@dataclass
+class Run:
+    """All that a log holds of one run of an engine, in the order it was written."""
+
+    machine: msgs.machine_description | msgs.journal_start | None = None
+    states: dict[str, list[msgs.axis_state]] = field(default_factory=dict)
+    engine_states: list[msgs.engine_state] = field(default_factory=list)
+    commands: list[msgs.command] = field(default_factory=list)
+    feedback: list[msgs.feedback] = field(default_factory=list)
+    start: msgs.journal_start | None = None
+    journal: list[msgs.journal_command] = field(default_factory=list)
+    hashes: list[msgs.journal_hashes] = field(default_factory=list)
+
+
+@dataclass
+class Log:
+    """A log that was read. An engine that was started anew while it was written makes another run."""
+
+    path: Path
+    runs: list[Run]
+    messages: Counter[str]  # by channel
+    malformed: Counter[str]  # by channel
+
+
+def read_events(path: str | os.PathLike[str], progress: Progress | None = None) -> Iterator[tuple[int, str, bytes]]:
+    """Every event of a log: wall clock in us, channel, bytes. A torn end, as a killed logger leaves it, just ends the
+    log."""
+    file = Path(path)
+    try:
+        size = file.stat().st_size
+        with file.open("rb") as probe:
+            magic = probe.read(4)
+    except OSError as error:
+        raise LogError(f"{file}: cannot be read: {error.strerror}") from None
+    if magic != b"\xed\xa1\xda\x01":
+        raise LogError(f"{file}: is not an LCM log")
+    log = lcm.EventLog(str(file), "r")
+    try:
+        for count, event in enumerate(log):
+            if progress is not None and count % 1024 == 0:
+                progress(log.tell() / size)
+            yield event.timestamp, event.channel, event.data
+    finally:
+        log.close()
+    if progress is not None:
+        progress(1.0)
+
+
+def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> Log:
+    """Reads all messages of a log that are Takt's."""
+    log = Log(Path(path), [Run()], Counter(), Counter())
+    for _, channel, data in read_events(path, progress):
+        log.messages[channel] += 1
+        kind = msgs.axis_state if channel.startswith(AXIS_PREFIX) else KINDS.get(channel)
+        if kind is None:
+            continue
+        try:
+            message = kind.decode(data)
+        except Exception:  # generated code raises whatever comes
+            log.malformed[channel] += 1
+            continue
+        _sort_in(log.runs, message)
+    return log
+
+
+def _sort_in(runs: list[Run], message: Any) -> None:
+    run = runs[-1]
+    if isinstance(message, (msgs.machine_description, msgs.journal_start)):
+        if run.machine is not None and run.machine.run_id != message.run_id:
+            run = Run()
+            runs.append(run)
+        if isinstance(message, msgs.journal_start):
+            run.start = message
+            run.machine = run.machine or message
+        else:
+            run.machine = message  # which also has the name
+    elif isinstance(message, msgs.axis_state):
+        run.states.setdefault(message.name, []).append(message)
+    elif isinstance(message, msgs.engine_state):
+        run.engine_states.append(message)
+    elif isinstance(message, msgs.command):
+        run.commands.append(message)
+    elif isinstance(message, msgs.feedback):
+        run.feedback.append(message)
+    elif isinstance(message, msgs.journal_command):
+        run.journal.append(message)
+    elif isinstance(message, msgs.journal_hashes):
+        run.hashes.append(message)
+
+
+def read_log(path: str | os.PathLike[str], *, run: int = -1, progress: Progress | None = None) -> Recording:
+    """An LCM log as a recording: every axis, with the commands as events. `run` picks one of several starts of the
+    engine, the last unless told."""
+    return to_recording(open_log(path, progress), run)
+
+
+def to_recording(log: Log, run: int = -1) -> Recording:
+    """One run of a log as a recording."""
+    try:
+        one = log.runs[run]
+    except IndexError:
+        raise LogError(f"{log.path}: holds {len(log.runs)} runs; there is no run {run}") from None
+    if one.machine is None:
+        raise LogError(f"{log.path}: holds no description of a machine (channel takt/machine)")
+    machine = json.loads(_core.load_machine(one.machine.text.encode(), str(log.path)))
+    period = one.machine.period_s
+    tables: dict[str, dict[str, Array]] = {
+        a["name"]: table_of(one.states[a["name"]], period) for a in machine["axes"] if a["name"] in one.states
+    }
+    meta = {
+        "source": str(log.path),
+        "period_s": period,
+        "version": one.machine.version,
+        "losses": _losses(one),
+        "engine": _figures(one.engine_states[-1]) if one.engine_states else {},
+    }
+    return make_recording(machine, tables, _events(one, period), meta)
+
+
+def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:
+    """Starts and ends of commands. What was asked is known of commands that the log holds, from clients or from the
+    journal."""
+    asked: dict[Any, tuple[str, str]] = {}
+    for command in run.commands:
+        asked[(command.client, command.session, command.id)] = (command.target, _text(command))
+    for entry in run.journal:
+        asked[entry.ticket] = (entry.target, _text(entry))
+        if entry.verb != "renew":
+            yield entry.cycle * period, _component(entry.target), _text(entry), "start"
+    journaled = bool(run.journal)
+    started: set[Any] = set()
+    ended: set[Any] = set()
+    for report in run.feedback:
+        key = (report.client, report.session, report.id)
+        if report.cycle < 0 or key in ended:
+            continue
+        target, text = asked.get(report.ticket) or asked.get(key) or ("", f"command {report.id} of {report.client}")
+        time_s, component = report.cycle * period, _component(target)
+        if key not in started:
+            started.add(key)
+            if not journaled:
+                yield time_s, component, text, "start"
+        if report.state >= STATES.index("done"):
+            ended.add(key)
+            if report.state == STATES.index("error"):
+                yield time_s, component, f"{text}: {report.sentence}", "error"
+            else:
+                yield time_s, component, f"{text}: {STATES[report.state]}", "end"
+
+
+def _text(command: msgs.command | msgs.journal_command) -> str:
+    return f"{command.target}.{command.verb} {command.arguments}".rstrip()
+
+
+def _component(target: str) -> str:
+    return "" if target == "machine" else target
+
+
+def _losses(run: Run) -> dict[str, int]:
+    """Messages missing by their sequence numbers, by channel."""
+    channels: dict[str, list[Any]] = {AXIS_PREFIX + name: list(states) for name, states in run.states.items()}
+    channels |= {"takt/engine": list(run.engine_states), "takt/feedback": list(run.feedback)}
+    losses = {}
+    for channel, messages in channels.items():
+        steps = np.diff([m.sequence for m in messages])
+        lost = int(np.sum(steps[steps > 1] - 1))
+        if lost:
+            losses[channel] = lost
+    return losses
+
+
+def _figures(state: msgs.engine_state) -> dict[str, Any]:
+    return {name: value for name, value in fields_of(state).items() if isinstance(value, (int, float))}

@@ -1,0 +1,463 @@
+"""Recordings: what was measured, as NumPy arrays with names and units.
+
+A recording holds one table per component ("x", "belt", "mover3" …). A table is a structured array: `time_s`
+and `cycle` first, then the published fields as they came. Components may have been sampled at different
+rates, so each has its own time base; `cycle` is what they share.
+
+    rec["x"]["actual_position"]          # values
+    rec.unit("x", "actual_position")     # "mm"
+    rec.slice(1.0, 2.0).save("part.npz")
+"""
+
+from __future__ import annotations
+
+import csv
+import difflib
+import importlib
+import json
+import math
+import zipfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from takt.errors import TaktError
+
+Array = npt.NDArray[Any]
+FloatArray = npt.NDArray[np.float64]
+Names = Mapping[int, str] | Sequence[str]
+
+FORMAT_VERSION = 1
+UNKNOWN_NAME = -1  # an enumerated value that was not a number when it was recorded
+
+
+class RecordingError(TaktError, ValueError):
+    """A recording cannot be made, read or asked as wanted; the text is one sentence for people."""
+
+
+class Event(NamedTuple):
+    """Something that happened at one time: a command's start or end, an error, a mark set by the user."""
+
+    time_s: float
+    component: str  # empty: concerns the whole machine
+    text: str
+    kind: str = "mark"  # "start", "end", "error" or "mark"
+
+
+class Gap(NamedTuple):
+    """Samples that are missing between two that are there."""
+
+    after_cycle: int
+    before_cycle: int
+    missing: int
+    time_s: float  # of the last sample before the gap
+
+
+class Recording:
+    """Columns over time, grouped by component. Not changed after it was made, but for `meta` and `events`."""
+
+    def __init__(
+        self,
+        components: Mapping[str, Mapping[str, npt.ArrayLike] | Array],
+        units: Mapping[str, Mapping[str, str]] | None = None,
+        *,
+        names: Mapping[str, Mapping[str, Names]] | None = None,
+        info: Mapping[str, Mapping[str, Any]] | None = None,
+        events: Iterable[Sequence[Any]] = (),
+        meta: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Makes a recording from plain arrays.
+
+        components: for each component its columns by name, all of one length. `time_s` (seconds, rising) must
+            be among them; `cycle` (integers, rising) is counted from 0 where it is missing. A structured
+            array does as well.
+        units: the unit of each field of each component; "" or nothing for pure numbers.
+        names: the texts of enumerated fields, by value; such a column is held as int8.
+        info: what else is known of a component. `modulus` (rotary axes) and `limits` (`position`: [lower,
+            upper], `velocity`, `acceleration`, `jerk`) are used by the assertions; the rest is carried along.
+        events: (time_s, component, text) or (time_s, component, text, kind).
+        meta: anything that JSON can hold (machine, versions, engine figures).
+        """
+        self._names = {c: {f: _name_table(t) for f, t in fields.items()} for c, fields in (names or {}).items()}
+        self._units = {c: dict(fields) for c, fields in (units or {}).items()}
+        self._info = {c: dict(i) for c, i in (info or {}).items()}
+        self._data = {c: _table(c, columns, self._names.get(c, {})) for c, columns in components.items()}
+        for what, given in (("units", self._units), ("names", self._names), ("info", self._info)):
+            for component in given:
+                if component not in self._data:
+                    raise RecordingError(f"{what} are given for '{component}', which is not among the components")
+        self.events: list[Event] = sorted((_event(e) for e in events), key=lambda e: e.time_s)
+        self.meta: dict[str, Any] = dict(meta or {})
+
+    @classmethod
+    def from_columns(
+        cls,
+        time_s: npt.ArrayLike,
+        cycle: npt.ArrayLike,
+        columns: Sequence[str],
+        values: npt.ArrayLike,
+        units: Sequence[str] | None = None,
+        *,
+        integers: Iterable[str] = ("error_id",),
+        names: Mapping[str, Mapping[str, Names]] | None = None,
+        info: Mapping[str, Mapping[str, Any]] | None = None,
+        events: Iterable[Sequence[Any]] = (),
+        meta: Mapping[str, Any] | None = None,
+    ) -> Recording:
+        """Makes a recording from one matrix, a row per sample and a column per "component.field", all on one
+        time base.
+
+        `integers` names fields (without component) whose columns are whole numbers.
+        """
+        matrix = np.asarray(values, dtype=np.float64)
+        if matrix.ndim != 2 or matrix.shape[1] != len(columns):
+            raise RecordingError(f"{len(columns)} columns are named, but the values have the shape {matrix.shape}")
+        if units is not None and len(units) != len(columns):
+            raise RecordingError(f"{len(columns)} columns are named, but {len(units)} units are given")
+        whole = set(integers)
+        data: dict[str, dict[str, npt.ArrayLike]] = {}
+        unit_table: dict[str, dict[str, str]] = {}
+        for i, column in enumerate(columns):
+            component, field = split_signal(column)
+            table = data.setdefault(component, {"time_s": time_s, "cycle": cycle})
+            if field in table:
+                raise RecordingError(f"column '{column}' is given twice")
+            numbers = matrix[:, i]
+            table[field] = numbers.astype(np.int64) if field in whole and np.all(np.isfinite(numbers)) else numbers
+            unit_table.setdefault(component, {})[field] = units[i] if units is not None else ""
+        return cls(data, unit_table, names=names, info=info, events=events, meta=meta)
+
+    @classmethod
+    def from_array(
+        cls, component: str, array: Array, unit: str, *, names: Mapping[str, Names] | None = None, **info: Any
+    ) -> Recording:
+        """Makes a recording of one structured array whose positions are in `unit` (velocities in unit/s and
+        so on)."""
+        powers = {"position": "", "velocity": "/s", "acceleration": "/s²", "jerk": "/s³"}
+        units = {}
+        for field in array.dtype.names or ():
+            last = "position" if field == "following_error" else field.rsplit("_", 1)[-1]
+            if last in powers:
+                units[field] = unit + powers[last]
+        return cls({component: array}, {component: units}, names={component: names or {}}, info={component: info})
+
+    # --- asking ---
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        return tuple(self._data)
+
+    def __getitem__(self, component: str) -> Array:
+        try:
+            return self._data[component]
+        except KeyError:
+            raise RecordingError(_nothing("component", component, self._data, "this recording")) from None
+
+    def __contains__(self, component: object) -> bool:
+        return component in self._data
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._data)
+
+    def __len__(self) -> int:
+        return len(self._data)
+
+    def __repr__(self) -> str:
+        parts = ", ".join(f"{c}: {len(a)} samples" for c, a in self._data.items())
+        return f"<Recording {self.duration_s:.3f} s; {parts or 'empty'}; {len(self.events)} events>"
+
+    def fields(self, component: str) -> tuple[str, ...]:
+        """The fields of a component, `time_s` and `cycle` first."""
+        return tuple(self[component].dtype.names or ())
+
+    def column(self, component: str, field: str) -> Array:
+        """One column; a sentence instead of NumPy's error where there is none."""
+        table = self[component]
+        if field not in (table.dtype.names or ()):
+            raise RecordingError(_nothing("field", field, table.dtype.names or (), f"'{component}'"))
+        column: Array = table[field]
+        return column
+
+    def unit(self, component: str, field: str) -> str:
+        """The unit as people write it, "" for pure numbers."""
+        self.column(component, field)
+        if field == "time_s":
+            return "s"
+        return self._units.get(component, {}).get(field, "")
+
+    def names(self, component: str, field: str) -> dict[int, str]:
+        """The texts of an enumerated field by value; empty where the field is not one."""
+        self.column(component, field)
+        return dict(self._names.get(component, {}).get(field, {}))
+
+    def text(self, component: str, field: str) -> npt.NDArray[np.str_]:
+        """An enumerated column as texts."""
+        table = self.names(component, field)
+        values, where = np.unique(self.column(component, field), return_inverse=True)
+        return np.array([table.get(int(v), f"?{int(v)}") for v in values], dtype=np.str_)[where]
+
+    def info(self, component: str) -> dict[str, Any]:
+        """What else is known of a component (`modulus`, `limits` …)."""
+        self[component]
+        return self._info.get(component, {})
+
+    @property
+    def start_s(self) -> float:
+        """Time of the first sample; NaN when there is none."""
+        return min((float(a["time_s"][0]) for a in self._data.values() if len(a)), default=math.nan)
+
+    @property
+    def end_s(self) -> float:
+        """Time of the last sample; NaN when there is none."""
+        return max((float(a["time_s"][-1]) for a in self._data.values() if len(a)), default=math.nan)
+
+    @property
+    def duration_s(self) -> float:
+        return 0.0 if math.isnan(self.start_s) else self.end_s - self.start_s
+
+    def gaps(self, component: str, step: int | None = None) -> list[Gap]:
+        """Where samples are missing. `step` is the distance of samples in cycles; unless given, the one met
+        most often."""
+        table = self[component]
+        if len(table) < 2:
+            return []
+        steps = np.diff(table["cycle"])
+        if step is None:
+            values, counts = np.unique(steps, return_counts=True)
+            step = int(values[np.argmax(counts)])
+        cycle, time_s = table["cycle"], table["time_s"]
+        return [
+            Gap(int(cycle[i]), int(cycle[i + 1]), math.ceil(int(steps[i]) / step) - 1, float(time_s[i]))
+            for i in np.flatnonzero(steps > step)
+        ]
+
+    def slice(self, t0: float, t1: float) -> Recording:
+        """The samples and events with t0 <= time_s <= t1."""
+        if not t0 <= t1:
+            raise RecordingError(f"a slice from {t0} s to {t1} s has no length")
+        part = {c: a[(a["time_s"] >= t0) & (a["time_s"] <= t1)] for c, a in self._data.items()}
+        events = [e for e in self.events if t0 <= e.time_s <= t1]
+        return Recording(part, self._units, names=self._names, info=self._info, events=events, meta=self.meta)
+
+    # --- keeping and handing on ---
+
+    def save(self, path: str | PathLike[str]) -> Path:
+        """Writes everything into one .npz file, which NumPy alone can read as well."""
+        target = Path(path)
+        header = {
+            "takt_recording": FORMAT_VERSION,
+            "components": list(self._data),
+            "units": self._units,
+            "names": {
+                c: {f: {str(v): t for v, t in n.items()} for f, n in fs.items()} for c, fs in self._names.items()
+            },
+            "info": self._info,
+            "events": [list(e) for e in self.events],
+            "meta": self.meta,
+        }
+        try:
+            text = json.dumps(header)
+        except TypeError as error:
+            raise RecordingError(f"info or meta hold something that JSON cannot: {error}") from None
+        arrays = {f"component{i}": a for i, a in enumerate(self._data.values())}
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with target.open("wb") as file:
+            np.savez_compressed(file, header=np.array(text), **arrays)  # type: ignore[arg-type]
+        return target
+
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> Recording:
+        """Reads what `save` wrote."""
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                header = json.loads(str(file["header"]))
+                if header["takt_recording"] != FORMAT_VERSION:
+                    raise RecordingError(
+                        f"{path} has recording format {header['takt_recording']}; this version reads {FORMAT_VERSION}"
+                    )
+                data = {c: file[f"component{i}"] for i, c in enumerate(header["components"])}
+            names = {
+                c: {f: {int(v): t for v, t in n.items()} for f, n in fs.items()} for c, fs in header["names"].items()
+            }
+            return cls(
+                data,
+                header["units"],
+                names=names,
+                info=header["info"],
+                events=header["events"],
+                meta=header["meta"],
+            )
+        except FileNotFoundError:
+            raise
+        except RecordingError:
+            raise
+        except (
+            OSError,
+            ValueError,
+            KeyError,
+            TypeError,
+            AttributeError,
+            zipfile.BadZipFile,
+            EOFError,
+        ) as error:
+            raise RecordingError(f"{path} is not a recording: {error}") from None
+
+    def to_csv(self, path: str | PathLike[str]) -> Path:
+        """Writes one wide table: a row per cycle, "component.field [unit]" columns, texts for enumerated
+        fields, empty where a component has no sample in that cycle."""
+        target = Path(path)
+        cycle, time_s, rows = self._joined()
+        header = ["cycle", "time_s"]
+        columns: list[list[Any]] = [cycle.tolist(), time_s.tolist()]
+        for component, field in self._signals():
+            unit = self.unit(component, field)
+            header.append(f"{component}.{field} [{unit}]" if unit else f"{component}.{field}")
+            values = self.text(component, field) if self.names(component, field) else self.column(component, field)
+            column: list[Any] = [""] * len(cycle)
+            for row, value in zip(rows[component].tolist(), values.tolist(), strict=True):
+                column[row] = value
+            columns.append(column)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with target.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(header)
+            writer.writerows(zip(*columns, strict=True))
+        return target
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame: index `time_s`, columns "component.field"; units and texts in `attrs`. Needs
+        pandas."""
+        pandas = _optional("pandas")
+        cycle, time_s, rows = self._joined()
+        columns: dict[str, Array] = {"cycle": cycle}
+        for component, field in self._signals():
+            columns[f"{component}.{field}"] = _spread(self.column(component, field), rows[component], len(cycle))
+        frame = pandas.DataFrame(columns, index=pandas.Index(time_s, name="time_s"))
+        frame.attrs.update(self._attributes())
+        return frame
+
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset: dimension `time_s`, a variable per "component.field" with its unit. Needs
+        xarray."""
+        xarray = _optional("xarray")
+        cycle, time_s, rows = self._joined()
+        variables: dict[str, Any] = {}
+        for component, field in self._signals():
+            attributes: dict[str, Any] = {"units": self.unit(component, field)}
+            if names := self.names(component, field):
+                attributes |= {"flag_values": list(names), "flag_meanings": " ".join(names.values())}
+            values = _spread(self.column(component, field), rows[component], len(cycle))
+            variables[f"{component}.{field}"] = ("time_s", values, attributes)
+        return xarray.Dataset(variables, coords={"time_s": time_s, "cycle": ("time_s", cycle)})
+
+    def _signals(self) -> Iterator[tuple[str, str]]:
+        for component in self._data:
+            for field in self.fields(component)[2:]:
+                yield component, field
+
+    def _attributes(self) -> dict[str, Any]:
+        units = {f"{c}.{f}": self.unit(c, f) for c, f in self._signals()}
+        names = {f"{c}.{f}": self.names(c, f) for c, f in self._signals() if self.names(c, f)}
+        return {"units": units, "names": names}
+
+    def _joined(self) -> tuple[Array, FloatArray, dict[str, Array]]:
+        """All cycles of all components, their times, and the row of each sample of each component among
+        them."""
+        tables = list(self._data.values())
+        if not tables:
+            return np.empty(0, np.int64), np.empty(0), {}
+        cycle, first = np.unique(np.concatenate([t["cycle"] for t in tables]), return_index=True)
+        time_s = np.concatenate([t["time_s"] for t in tables])[first]
+        return cycle, time_s, {c: np.searchsorted(cycle, t["cycle"]) for c, t in self._data.items()}
+
+
+def split_signal(signal: str) -> tuple[str, str]:
+    """ "x.set_position" -> ("x", "set_position"); component names may hold dots themselves."""
+    component, dot, field = signal.rpartition(".")
+    if not (dot and component and field):
+        raise RecordingError(f"'{signal}' is not of the form component.field")
+    return component, field
+
+
+def _table(
+    component: str, columns: Mapping[str, npt.ArrayLike] | Array, names: Mapping[str, Mapping[int, str]]
+) -> Array:
+    fields = (columns.dtype.names or ()) if isinstance(columns, np.ndarray) else tuple(columns)
+    if "time_s" not in fields:
+        raise RecordingError(f"'{component}' has no column time_s")
+    arrays = {f: np.asarray(columns[f]) for f in fields}
+    time_s = arrays["time_s"].astype(np.float64)
+    if time_s.ndim != 1:
+        raise RecordingError(f"time_s of '{component}' has {time_s.ndim} dimensions, not one")
+    for field, values in arrays.items():
+        if values.shape != time_s.shape:
+            raise RecordingError(f"'{component}.{field}' has the shape {values.shape}, but time_s has {time_s.shape}")
+    if not np.all(np.isfinite(time_s)):
+        raise RecordingError(f"time_s of '{component}' holds something that is not a number")
+    cycle = arrays["cycle"].astype(np.int64) if "cycle" in arrays else np.arange(len(time_s), dtype=np.int64)
+    for field, rising in (("time_s", time_s), ("cycle", cycle)):
+        falls = np.flatnonzero(np.diff(rising) <= 0)
+        if len(falls):
+            i = int(falls[0])
+            raise RecordingError(
+                f"{field} of '{component}' does not rise after sample {i}: {rising[i]}, {rising[i + 1]}"
+            )
+    arrays = {"time_s": time_s, "cycle": cycle} | {f: a for f, a in arrays.items() if f not in ("time_s", "cycle")}
+    for field in arrays:
+        if field in names:
+            arrays[field] = _enumerated(component, field, arrays[field])
+        elif arrays[field].dtype.kind == "u":
+            arrays[field] = arrays[field].astype(np.int64)
+        elif arrays[field].dtype.kind not in "bif":
+            raise RecordingError(f"'{component}.{field}' holds {arrays[field].dtype}, not numbers")
+    table = np.empty(len(time_s), dtype=[(f, a.dtype) for f, a in arrays.items()])
+    for field, values in arrays.items():
+        table[field] = values
+    table.flags.writeable = False
+    return table
+
+
+def _enumerated(component: str, field: str, values: Array) -> Array:
+    numbers = np.where(np.isnan(values), UNKNOWN_NAME, values) if values.dtype.kind == "f" else values
+    if len(numbers) and (np.any(numbers < -128) or np.any(numbers > 127)):
+        raise RecordingError(f"'{component}.{field}' is enumerated, but holds values outside -128 to 127")
+    return numbers.astype(np.int8)
+
+
+def _name_table(names: Names) -> dict[int, str]:
+    return {int(v): str(t) for v, t in (names.items() if isinstance(names, Mapping) else enumerate(names))}
+
+
+def _event(event: Sequence[Any]) -> Event:
+    if not 3 <= len(event) <= 4:
+        raise RecordingError(f"an event is (time_s, component, text) or (time_s, component, text, kind), not {event!r}")
+    time_s = float(event[0])
+    if not math.isfinite(time_s):
+        raise RecordingError(f"the event '{event[2]}' has no time")
+    return Event(time_s, *(str(part) for part in event[1:]))
+
+
+def _spread(values: Array, rows: Array, length: int) -> Array:
+    if len(values) == length:
+        return values
+    out: Array = np.full(length, np.nan)
+    out[rows] = values
+    return out
+
+
+def _optional(package: str) -> Any:
+    try:
+        return importlib.import_module(package)
+    except ImportError:
+        raise ImportError(f"to_{package}() needs the package {package}: pip install {package}") from None
+
+
+def _nothing(kind: str, wanted: str, there: Iterable[str], where: str) -> str:
+    known = list(there)
+    near = difflib.get_close_matches(wanted, known, n=1)
+    hint = f"; did you mean '{near[0]}'?" if near else ""
+    return f"{where} has no {kind} '{wanted}'{hint} (it has {', '.join(known) or 'none'})"

@@ -1,0 +1,359 @@
+"""A running engine (taktd), over LCM."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import random
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from takt import _core, msgs
+from takt.axis import Axis
+from takt.errors import ConnectionError, TaktError
+from takt.feedback import Feedback
+from takt.network import DEFAULT_URL, open_network
+from takt.recording import Recording
+from takt.session import Recorder, Session
+from takt.tables import fields_of, make_recording, named, table_of
+
+QUEUE = 100_000  # messages waiting to be received before LCM drops some
+SILENCE_S = 3.0  # without any message: the engine is gone (it sends its own state, and the machine every second)
+RESEND_S = 0.2  # between two tries of a command that is not answered
+ANSWER_S = 2.0  # after which a command that is not answered is given up
+LATE_S = 1.0  # how long published values may take to catch up with a feedback
+IDLE_BEAT_S = 0.5  # between heartbeats that hold nothing but the client's name
+POLL_S = 0.1  # longest wait before looking at clocks and Ctrl-C again
+
+
+@dataclass
+class _Sent:
+    message: msgs.command
+    feedback: Feedback
+    at: float
+    answered: bool = False
+
+
+class RemoteSession(Session):
+    """A session with a running engine. Made by `connect`."""
+
+    def __init__(self, url: str, client: str, timeout: float) -> None:
+        self.url = url
+        self.client = client
+        self.losses: dict[str, int] = {}  # messages lost on the way, by channel
+        self._session_id = random.SystemRandom().getrandbits(62) + 1
+        self._news = threading.Condition()  # guards all that follows
+        self._sequences: dict[str, int] = {}
+        self._states: dict[str, msgs.axis_state] = {}
+        self._engine_state: msgs.engine_state | None = None
+        self._description: msgs.machine_description | None = None
+        self._cycle = -1
+        self._heard = 0.0
+        self._trouble = ""  # why the session cannot go on
+        self._sent: dict[int, _Sent] = {}
+        self._held: list[Feedback] = []  # level-sensitive commands that need heartbeats
+        self._last_id = 0
+        self._recorded: dict[Recorder, dict[str, list[msgs.axis_state]]] = {}
+        self._stop = threading.Event()
+        self._beat_now = threading.Event()
+
+        self._lcm = open_network(url)
+        for channel, handler in (
+            ("takt/machine", self._on_machine),
+            ("takt/engine", self._on_engine),
+            ("takt/feedback", self._on_feedback),
+            ("takt/axis/.*", self._on_axis),
+        ):
+            self._lcm.subscribe(channel, handler).set_queue_capacity(QUEUE)
+        self._receiver = threading.Thread(target=self._receive, name="takt receiver", daemon=True)
+        self._receiver.start()
+        try:
+            description = self._first_description(timeout)
+            self._period = description.period_s
+            machine = json.loads(_core.load_machine(description.text.encode(), "machine"))
+            super().__init__(machine, description.text)
+            self._dead_man_s = float(machine["lcm"]["dead_man_s"])
+            self._beater = threading.Thread(target=self._beat, name="takt heartbeat", daemon=True)
+            self._beater.start()
+            self._first_states(timeout)
+        except BaseException:
+            self._stop.set()
+            self._beat_now.set()
+            self._receiver.join()
+            raise
+
+    # --- the machine ---
+
+    @property
+    def cycle(self) -> int:
+        return max(self._cycle, 0)
+
+    @property
+    def period(self) -> float:
+        return self._period
+
+    @property
+    def figures(self) -> dict[str, Any]:
+        state = self._engine_state
+        if state is None:
+            return {}
+        plain = fields_of(state)
+        plain["state_hash"] &= 2**64 - 1  # LCM has no unsigned numbers
+        for name in ("execution", "latency"):
+            histogram = plain[name]
+            plain[name] = {"count": histogram.count, "max": histogram.max, "buckets": list(histogram.buckets)}
+        return plain
+
+    def close(self) -> None:
+        """Releases what is held and leaves the network; the engine runs on."""
+        if self._closed:
+            return
+        with self._news:
+            held = [f for f in self._held if not f.released]
+        for feedback in held:
+            try:
+                feedback.release()
+            except TaktError:
+                break
+        super().close()
+        self._stop.set()
+        self._beat_now.set()
+        self._beater.join()
+        self._receiver.join()
+
+    # --- receiving, on a thread of its own ---
+
+    def _receive(self) -> None:
+        while not self._stop.is_set():
+            try:
+                self._lcm.handle_timeout(50)
+            except OSError as error:
+                with self._news:
+                    self._trouble = f"the LCM network {self.url} broke: {error}"
+                    self._news.notify_all()
+                return
+
+    def _hear(self, channel: str, sequence: int) -> None:
+        last = self._sequences.get(channel)
+        if last is not None and sequence > last + 1:
+            self.losses[channel] = self.losses.get(channel, 0) + sequence - last - 1
+            if channel == "takt/feedback":
+                for sent in self._sent.values():
+                    sent.answered = False  # asks again
+                self._beat_now.set()
+        self._sequences[channel] = sequence
+        self._heard = time.monotonic()
+        self._news.notify_all()
+
+    def _check_run(self, run_id: int) -> None:
+        if self._description is not None and run_id != self._description.run_id and not self._trouble:
+            self._trouble = "another engine runs on this network now: it was started again, or there are two"
+
+    def _on_machine(self, channel: str, data: bytes) -> None:
+        message = _decoded(msgs.machine_description, data)
+        if message is None:
+            return
+        with self._news:
+            self._check_run(message.run_id)
+            if self._description is None:
+                self._description = message
+            self._hear(channel, message.sequence)
+
+    def _on_engine(self, channel: str, data: bytes) -> None:
+        message = _decoded(msgs.engine_state, data)
+        if message is None:
+            return
+        with self._news:
+            self._check_run(message.run_id)
+            self._engine_state = message
+            self._cycle = max(self._cycle, message.cycle)
+            self._hear(channel, message.sequence)
+
+    def _on_axis(self, channel: str, data: bytes) -> None:
+        message = _decoded(msgs.axis_state, data)
+        if message is None:
+            return
+        with self._news:
+            self._states[message.name] = message
+            self._cycle = max(self._cycle, message.cycle)
+            for rows in self._recorded.values():
+                if message.name in rows:
+                    rows[message.name].append(message)
+            self._hear(channel, message.sequence)
+
+    def _on_feedback(self, channel: str, data: bytes) -> None:
+        message = _decoded(msgs.feedback, data)
+        if message is None:
+            return
+        with self._news:
+            if message.client == self.client and message.session == self._session_id:
+                self._take(message)
+            self._hear(channel, message.sequence)
+
+    def _take(self, message: msgs.feedback) -> None:
+        sent = self._sent.get(message.id)
+        if sent is None:
+            if message.id == 0 and message.error_id:
+                self._trouble = message.sentence
+            return
+        sent.answered = True
+        feedback = sent.feedback
+        feedback.ticket = message.ticket or feedback.ticket
+        self._report(feedback, message.state, message.reached, message.error_id, message.sentence, message.cycle)
+        if feedback.final:
+            del self._sent[message.id]
+        if feedback.error or feedback.aborted or (feedback.final and feedback.released):
+            self._let_go(feedback)
+
+    # --- heartbeats and second tries, on a thread of their own ---
+
+    def _beat(self) -> None:
+        beat = msgs.heartbeat()
+        beat.client, beat.session = self.client, self._session_id
+        while not self._stop.is_set():
+            self._publish("takt/heartbeat", beat.encode())
+            now = time.monotonic()
+            with self._news:
+                again = [s for s in self._sent.values() if not s.answered and now - s.at > RESEND_S]
+                for sent in again:
+                    sent.at = now
+                interval = self._dead_man_s / 4 if self._held else IDLE_BEAT_S
+                if any(not s.answered for s in self._sent.values()):
+                    interval = min(interval, RESEND_S / 2)
+            for sent in again:
+                self._publish("takt/command", sent.message.encode())
+            self._beat_now.wait(interval)
+            self._beat_now.clear()
+
+    def _publish(self, channel: str, data: bytes) -> None:
+        try:
+            self._lcm.publish(channel, data)
+        except OSError as error:
+            with self._news:
+                self._trouble = f"the LCM network {self.url} does not take messages: {error}"
+                self._news.notify_all()
+
+    # --- what the session is made of ---
+
+    def _submit(self, feedback: Feedback) -> None:
+        message = msgs.command()
+        message.client, message.session = self.client, self._session_id
+        message.target, message.verb, message.arguments = feedback.target, feedback.verb, feedback.arguments
+        with self._news:
+            self._check_alive()
+            self._last_id += 1
+            message.id = self._last_id
+            sent = self._sent[message.id] = _Sent(message, feedback, time.monotonic())
+            if feedback.level_sensitive:
+                self._held.append(feedback)
+        if feedback.level_sensitive:
+            self._beat_now.set()
+        self._publish("takt/command", message.encode())
+        with self._news:
+            if not self._news.wait_for(lambda: sent.answered or self._trouble, ANSWER_S):
+                del self._sent[message.id]
+                self._let_go(feedback)
+                raise ConnectionError(
+                    f"{feedback.text}: the engine on {self.url} does not answer within {ANSWER_S:g} s"
+                )
+            if not sent.answered:
+                raise ConnectionError(self._trouble)
+        if feedback.verb == "release" and feedback.target == "machine":
+            self._forget_released()
+
+    def _forget_released(self) -> None:
+        with self._news:
+            self._held = [f for f in self._held if f.busy or not f.released]  # on its ramp it needs its lease
+
+    def _let_go(self, feedback: Feedback) -> None:
+        if feedback in self._held:
+            self._held.remove(feedback)
+
+    def _value(self, axis: Axis, field: str) -> Any:
+        return named(field, getattr(self._states[axis.name], field))
+
+    def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
+        end = self.now + timeout
+        while True:
+            with self._news:
+                seen = self._sequences.copy()
+            if self._programs:
+                self._scan()
+            if condition():
+                return True
+            if self.now >= end:
+                return False
+            with self._news:
+                self._check_alive()
+                self._news.wait_for(lambda seen=seen: self._sequences != seen or self._trouble, POLL_S)  # type: ignore[misc]
+
+    def _run(self, cycles: int) -> None:
+        end = self.cycle + cycles
+        self._wait_for(lambda: self._cycle >= end, math.inf, on_feedback=False)
+        self._catch_up(end)
+
+    def _catch_up(self, cycle: int) -> None:
+        with self._news:
+            self._news.wait_for(lambda: all(s.cycle >= cycle for s in self._states.values()) or self._trouble, LATE_S)
+
+    def _begin(self, recorder: Recorder) -> None:
+        with self._news:
+            self._recorded[recorder] = {name: [] for name in recorder.axes}
+
+    def _finish(self, recorder: Recorder) -> Recording:
+        with self._news:
+            rows = self._recorded.pop(recorder)
+        tables = {name: table_of(messages, self.period, recorder.every) for name, messages in rows.items()}
+        meta = {"source": self.url, "period_s": self.period, "losses": dict(self.losses)}
+        return make_recording(self.machine, tables, recorder.events, meta)
+
+    # --- health ---
+
+    def _check_alive(self) -> None:
+        self._check_open()
+        if self._trouble:
+            raise ConnectionError(self._trouble)
+        silence = time.monotonic() - self._heard
+        if silence > SILENCE_S:
+            raise ConnectionError(f"the engine on {self.url} has been silent for {silence:.1f} s")
+
+    def _first_description(self, timeout: float) -> msgs.machine_description:
+        with self._news:
+            self._news.wait_for(lambda: self._description or self._trouble, timeout)
+            if self._trouble:
+                raise ConnectionError(self._trouble)
+            if self._description is None:
+                raise ConnectionError(f"no engine answers on {self.url} within {timeout:g} s; is taktd running there?")
+            return self._description
+
+    def _first_states(self, timeout: float) -> None:
+        with self._news:
+            self._news.wait_for(lambda: self._trouble or self._states.keys() >= self._axes.keys(), timeout)
+            if self._trouble:
+                raise ConnectionError(self._trouble)
+            silent = [name for name in self._axes if name not in self._states]
+        if silent:
+            raise ConnectionError(f"the engine on {self.url} does not publish its axis {silent[0]}")
+
+
+def connect(url: str | None = None, *, client: str | None = None, timeout: float = 5.0) -> RemoteSession:
+    """Joins the LCM network and waits until its engine has described itself, `timeout` seconds at most.
+
+    url: "udpm://239.255.76.67:7667?ttl=0" unless given here or in the environment (LCM_DEFAULT_URL).
+    client: a name of one's own; two clients of one name are refused by the engine. Made up unless given.
+    """
+    url = url or os.environ.get("LCM_DEFAULT_URL") or DEFAULT_URL
+    name = client if client is not None else f"python-{os.getpid()}-{random.SystemRandom().getrandbits(24):06x}"
+    return RemoteSession(url, name, timeout)
+
+
+def _decoded(kind: Any, data: bytes) -> Any:
+    """The message, or None where the bytes are something else."""
+    try:
+        return kind.decode(data)
+    except Exception:  # generated code raises whatever comes: ValueError, struct.error, UnicodeDecodeError, IndexError
+        return None

@@ -1,0 +1,108 @@
+"""Scenario files: a module with `scenario(session)`, what to do, and `verify(recording)`, what must then be true of it.
+
+They run unchanged in virtual time and on a running engine. The machine is the one the command line names, or
+machine.yaml beside the file.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from takt import expect
+from takt.errors import TaktError
+from takt.recording import Recording
+from takt.session import Session
+from takt.verdict import Verdict
+
+
+class ScenarioError(TaktError):
+    """A scenario file cannot be used."""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    path: Path
+    title: str  # the first line of its doc string, or the file's name
+    scenario: Callable[[Session], object]
+    verify: Callable[[Recording], object] | None
+
+    @property
+    def machine(self) -> Path:
+        """The machine file beside it."""
+        return self.path.parent / "machine.yaml"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    recording: Recording
+    verdicts: tuple[Verdict, ...]
+    complaint: str = ""  # a plain `assert` that failed
+
+    @property
+    def passed(self) -> bool:
+        return not self.complaint and all(verdict.passed for verdict in self.verdicts)
+
+
+def load_scenario(path: str | os.PathLike[str]) -> Scenario:
+    """Imports a scenario file."""
+    file = Path(path)
+    if not file.is_file():
+        raise ScenarioError(f"{file}: there is no such file")
+    spec = importlib.util.spec_from_file_location(f"takt_scenario_{file.stem}", file)
+    if spec is None or spec.loader is None:
+        raise ScenarioError(f"{file}: is no Python file")
+    module = importlib.util.module_from_spec(spec)
+    sys.path.insert(0, str(file.resolve().parent))
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        sys.path.pop(0)
+    scenario: Any = getattr(module, "scenario", None)
+    verify: Any = getattr(module, "verify", None)
+    if not callable(scenario):
+        raise ScenarioError(f"{file}: has no function scenario(session)")
+    if verify is not None and not callable(verify):
+        raise ScenarioError(f"{file}: verify is no function")
+    lines = (module.__doc__ or "").strip().splitlines()
+    return Scenario(file, lines[0].rstrip(".") if lines else file.stem, scenario, verify)
+
+
+def run_scenario(scenario: Scenario, session: Session, directory: Path | None = None) -> Outcome:
+    """Runs it with everything recorded, then asks `verify`. The recording is kept in `directory`, also when the
+    scenario breaks off."""
+    recorder = session.record()
+    complaint = ""
+    try:
+        scenario.scenario(session)
+    except AssertionError as error:
+        complaint = _complaint(error, scenario.path)
+    finally:
+        recording = recorder.stop()
+        if directory is not None:
+            recording.save(directory / "recording.npz")
+    return Outcome(recording, (), complaint) if complaint else verify_recording(scenario, recording)
+
+
+def verify_recording(scenario: Scenario, recording: Recording) -> Outcome:
+    """Asks `verify` of a recording, wherever it comes from."""
+    complaint = ""
+    with expect.collect() as verdicts:
+        if scenario.verify is not None:
+            try:
+                scenario.verify(recording)
+            except AssertionError as error:
+                complaint = _complaint(error, scenario.path)
+    return Outcome(recording, tuple(verdicts), complaint)
+
+
+def _complaint(error: AssertionError, path: Path) -> str:
+    """What a plain `assert` says, and where it stands."""
+    lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if Path(f.filename).name == path.name]
+    return f"{error or 'an assertion failed'} ({path.name}:{lines[-1] if lines else '?'})"

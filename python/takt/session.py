@@ -1,0 +1,243 @@
+"""What a scenario sees of an engine, in process or over LCM alike."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from abc import abstractmethod
+from collections.abc import Callable, Iterable, Mapping
+from types import MappingProxyType, TracebackType
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from takt._commands import DEFAULTS, LEVEL_SENSITIVE, MachineCommands
+from takt.arguments import to_text
+from takt.axis import Axis
+from takt.errors import ClosedError, TaktError, TimeoutError
+from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
+from takt.recording import Recording
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+Program = Callable[[], object]
+P = TypeVar("P", bound=Program)
+
+
+class Recorder:
+    """A recording in progress: `stop` makes it a Recording. Also a context manager, after which `recording` has it."""
+
+    def __init__(self, session: Session, axes: Iterable[str], every: int) -> None:
+        self._session = session
+        self._recording: Recording | None = None
+        self.axes = tuple(axes)
+        self.every = every
+        self.events: list[tuple[float, str, str, str]] = []
+
+    @property
+    def running(self) -> bool:
+        return self._recording is None
+
+    @property
+    def recording(self) -> Recording:
+        if self._recording is None:
+            raise TaktError("the recording is still in progress: stop it first")
+        return self._recording
+
+    def stop(self) -> Recording:
+        """Ends the recording, and again: returns it."""
+        if self._recording is None:
+            self._recording = self._session._finish(self)
+            self._session._recorders.remove(self)
+        return self._recording
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+
+class Session(MachineCommands):
+    """One engine. `axis("x")` gives an axis, whose commands return feedback objects; `wait` and `run` let engine time
+    pass."""
+
+    def __init__(self, machine: Mapping[str, Any], machine_text: str) -> None:
+        self.machine = machine  # all parameters of the machine file, with the defaults
+        self.machine_text = machine_text
+        self._axes = {a["name"]: Axis(self, i, a) for i, a in enumerate(machine["axes"])}
+        self._programs: list[Program] = []
+        self._scanning = False
+        self._recorders: list[Recorder] = []
+        self._closed = False
+
+    # --- the machine ---
+
+    @property
+    def name(self) -> str:
+        return str(self.machine["name"])
+
+    @property
+    def axes(self) -> Mapping[str, Axis]:
+        """All axes by name, in the order of the machine file."""
+        return MappingProxyType(self._axes)
+
+    def axis(self, name: str) -> Axis:
+        try:
+            return self._axes[name]
+        except KeyError:
+            near = difflib.get_close_matches(name, self._axes, n=1)
+            hint = f"; did you mean '{near[0]}'?" if near else ""
+            raise TaktError(f"the machine has no axis '{name}'{hint} (it has {', '.join(self._axes)})") from None
+
+    @property
+    @abstractmethod
+    def cycle(self) -> int:
+        """The cycle the engine is at, as far as is known here."""
+
+    @property
+    @abstractmethod
+    def period(self) -> float:
+        """s, length of a cycle."""
+
+    @property
+    def now(self) -> float:
+        """s, engine time."""
+        return self.cycle * self.period
+
+    @property
+    @abstractmethod
+    def figures(self) -> dict[str, Any]:
+        """The engine's own counts and histograms (times in ns)."""
+
+    # --- commands ---
+
+    def command(self, target: str, verb: str, arguments: Mapping[str, Any] | str = "") -> Feedback:
+        """Gives any command by its names; the methods of axes are made of this. What the engine refuses comes back as a
+        feedback in the state Error, with a sentence."""
+        self._check_open()
+        text = arguments if isinstance(arguments, str) else to_text(arguments, DEFAULTS.get(verb, {}))
+        level = (
+            not isinstance(arguments, str) and verb in LEVEL_SENSITIVE and any(v is True for v in arguments.values())
+        )
+        feedback = Feedback(self, _clean(target), _clean(verb), _clean(text), level_sensitive=level)
+        self._event(feedback.target, feedback.text, "start")
+        self._submit(feedback)
+        return feedback
+
+    def _command(self, verb: str, arguments: Mapping[str, Any]) -> Feedback:
+        return self.command("machine", verb, arguments)
+
+    # --- time ---
+
+    def wait(self, condition: Callable[[], object], timeout: float = DEFAULT_TIMEOUT_S, *, what: str = "") -> None:
+        """Lets engine time pass until `condition()` is true; takt.TimeoutError when it is not within `timeout` s of
+        engine time. In process it is asked after every cycle, over LCM whenever something new has come."""
+        if not self._wait_for(lambda: bool(condition()), timeout, on_feedback=False):
+            raise TimeoutError(f"{what or 'the condition'}: not met within {timeout:g} s")
+
+    def run(self, duration: float) -> None:
+        """Lets so many seconds of engine time pass."""
+        if not 0 <= duration < float("inf"):
+            raise ValueError(f"a duration is a number of seconds from 0 on, not {duration}")
+        self._run(round(duration / self.period))
+
+    def program(self, scan: P) -> P:
+        """Has `scan` called before every cycle, like a program in a PLC: the place for function blocks (takt.plcopen).
+        Over LCM it is called whenever the engine's state has come. Serves as a decorator."""
+        self._programs.append(scan)
+        return scan
+
+    def _scan(self) -> None:
+        if self._scanning:
+            raise TaktError("a program is called in every cycle: it cannot let time pass itself")
+        self._scanning = True
+        try:
+            for scan in self._programs:
+                scan()
+        finally:
+            self._scanning = False
+
+    # --- recording ---
+
+    def record(self, *axes: str, every: int = 1) -> Recorder:
+        """Starts recording these axes, or all; one sample every so many cycles (over LCM: of those that are
+        published)."""
+        self._check_open()
+        if every < 1:
+            raise ValueError(f"every is a number of cycles from 1 on, not {every}")
+        recorder = Recorder(self, [self.axis(a).name for a in axes] or self._axes, every)
+        self._begin(recorder)
+        self._recorders.append(recorder)
+        return recorder
+
+    def mark(self, text: str, axis: str = "") -> None:
+        """Puts a mark at this time into all recordings in progress."""
+        self._event(axis, text, "mark")
+
+    def _event(self, component: str, text: str, kind: str, time_s: float = math.nan) -> None:
+        if component not in self._axes:
+            component = ""  # concerns the whole machine
+        for recorder in self._recorders:
+            recorder.events.append((self.now if math.isnan(time_s) else time_s, component, text, kind))
+
+    def _report(self, feedback: Feedback, state: int, reached: bool, error_id: int, sentence: str, cycle: int) -> None:
+        """Passes on what the engine says of a command."""
+        if not feedback._update(state, reached, error_id, sentence, cycle) or not feedback.final:
+            return
+        if feedback.error:
+            self._event(feedback.target, f"{feedback.text}: {feedback.sentence}", "error", feedback.time_s)
+        else:
+            self._event(feedback.target, f"{feedback.text}: {feedback.state.name.lower()}", "end", feedback.time_s)
+
+    # --- the end ---
+
+    def close(self) -> None:
+        """Ends the session; what was recorded stays readable."""
+        for recorder in list(self._recorders):
+            recorder.stop()
+        self._closed = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _check_open(self) -> None:
+        if self._closed:
+            raise ClosedError("the session is closed")
+
+    # --- what the two kinds do in their own way ---
+
+    @abstractmethod
+    def _submit(self, feedback: Feedback) -> None:
+        """Gives the command to the engine; afterwards the feedback is Busy at least, or Error."""
+
+    @abstractmethod
+    def _value(self, axis: Axis, field: str) -> Any:
+        """A published value of an axis."""
+
+    @abstractmethod
+    def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
+        """Lets time pass until the condition holds, which changes only with feedback if `on_feedback`. False: timed
+        out."""
+
+    @abstractmethod
+    def _run(self, cycles: int) -> None:
+        """Lets so many cycles pass."""
+
+    def _catch_up(self, cycle: int) -> None:
+        """Makes sure that published values are not older than this cycle."""
+
+    @abstractmethod
+    def _begin(self, recorder: Recorder) -> None: ...
+
+    @abstractmethod
+    def _finish(self, recorder: Recorder) -> Recording: ...
+
+
+def _clean(text: str) -> str:
+    """What cannot be written as UTF-8 becomes a question mark, which the engine then complains about."""
+    return text.encode("utf-8", "replace").decode()

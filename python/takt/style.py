@@ -1,0 +1,59 @@
+"""Colours and names that pictures and reports share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+# One per component, told apart by hue and by lightness; readable on white and on dark grey.
+PALETTE = (
+    "#2f6fde",
+    "#d9682b",
+    "#2f9e6b",
+    "#9b59c6",
+    "#c2992b",
+    "#d1477f",
+    "#3aa6b9",
+    "#7a7f2e",
+    "#8c6a55",
+    "#6b7689",
+)
+
+STATES = {
+    "Disabled": "#9aa3ae",
+    "Standstill": "#7fb08a",
+    "DiscreteMotion": "#4f8fe0",
+    "ContinuousMotion": "#37a3b5",
+    "SynchronizedMotion": "#9b6fd0",
+    "Homing": "#d0a03a",
+    "Stopping": "#e08a3c",
+    "ErrorStop": "#d6453d",
+}
+
+GOOD = "#2f9e6b"
+BAD = "#d6453d"
+
+# From top to bottom; what is not named here follows in the order it comes.
+QUANTITY_ORDER = ("position", "velocity", "acceleration", "jerk", "following error", "torque", "voltage")
+
+# What is shown of a component unless other signals are asked for.
+USUAL_FIELDS = (
+    "set_position",
+    "actual_position",
+    "set_velocity",
+    "actual_velocity",
+    "set_acceleration",
+    "following_error",
+    "state",
+)
+
+
+def component_colour(component: str, components: Sequence[str]) -> str:
+    return PALETTE[list(components).index(component) % len(PALETTE)]
+
+
+def state_colour(name: str, value: int) -> str:
+    return STATES.get(name, PALETTE[value % len(PALETTE)])
+
+
+def is_set_point(field: str) -> bool:
+    return field.startswith(("set_", "commanded_", "target_"))

@@ -1,0 +1,96 @@
+"""What a motion assertion answers: passed or not, when, by how much, and the data needed to draw it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from takt.recording import Array, FloatArray
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One curve."""
+
+    label: str  # "x.set_position"
+    time_s: FloatArray
+    values: Array
+    modulus: float | None = None  # the curve is not joined where it wraps
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A line that must not be crossed towards `forbidden`; "none" for a line to aim at."""
+
+    label: str
+    time_s: FloatArray
+    values: FloatArray
+    forbidden: Literal["above", "below", "none"]
+
+    @classmethod
+    def level(cls, label: str, value: float, over: Interval, forbidden: Literal["above", "below", "none"]) -> Bound:
+        return cls(label, np.array(over, dtype=np.float64), np.full(2, value, dtype=np.float64), forbidden)
+
+
+@dataclass(frozen=True)
+class Lane:
+    """Curves and bounds that share one axis of values."""
+
+    quantity: str  # "position"
+    unit: str
+    traces: tuple[Trace, ...]
+    bounds: tuple[Bound, ...] = ()
+    names: dict[int, str] = field(default_factory=dict)  # texts of the values, for states
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The outcome of one motion assertion."""
+
+    name: str  # of the assertion: "reaches"
+    components: tuple[str, ...]
+    passed: bool
+    sentence: str  # for people; says when and by how much
+    when_s: float | None  # failed: the first moment that breaks it; passed: the closest call, where there is one
+    by_how_much: (
+        float | None
+    )  # failed: how far beyond the bound at its worst; passed: the room that was left; None: cannot be said
+    unit: str  # of by_how_much
+    place: Interval | None  # what to look at
+    lanes: tuple[Lane, ...] = ()
+    picture: Path | None = None
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    @property
+    def title(self) -> str:
+        return f"{self.name}({', '.join(self.components)})"
+
+
+class MotionAssertionError(AssertionError):
+    """A motion assertion failed. `verdict` says everything; the text is its sentence and where the picture
+    is."""
+
+    def __init__(self, verdict: Verdict, note: str = "") -> None:
+        self.verdict = verdict
+        super().__init__(f"{verdict.title}: {verdict.sentence}" + (f"\n{note}" if note else ""))
+
+
+def seconds(time_s: float) -> str:
+    """A time for people: "1.2345 s"."""
+    if not math.isfinite(time_s):
+        return f"{time_s} s"
+    text = f"{time_s:.4f}".rstrip("0").rstrip(".")
+    return ("0" if text == "-0" else text) + " s"
+
+
+def number(value: float, unit: str = "") -> str:
+    """A value for people: "12.3457 mm"."""
+    return f"{value:.6g} {unit}".rstrip()

@@ -1,0 +1,161 @@
+"""PY-07: the command line."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import takt
+from machines import MACHINE, new_url, running
+from takt.cli import main
+
+SCENARIO = '''"""Goes and comes back.
+
+More about it."""
+from takt import expect
+
+def scenario(session):
+    x = session.axis("x")
+    x.power().wait()
+    x.move_absolute(position=60.0, velocity=300.0).wait()
+    x.move_absolute(position=10.0).wait()
+    session.run(0.1)
+
+def verify(recording):
+    expect.within_limits(recording, "x")
+    expect.reaches(recording, "x", 60.0, tolerance=0.05, by=recording.start_s + 1.5)
+    expect.visits_states(recording, "x", ["Standstill", "DiscreteMotion"])
+'''
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> Path:
+    (tmp_path / "machine.yaml").write_text(MACHINE)
+    (tmp_path / "there.py").write_text(SCENARIO)
+    return tmp_path
+
+
+def test_check_and_schema(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-07, EN-10: all problems, one line each, exit code 2."""
+    good, bad = files / "machine.yaml", files / "bad.yaml"
+    assert main(["check", str(good)]) == 0
+    assert capsys.readouterr().out == f"{good}: ok\n"
+    bad.write_text(MACHINE.replace("unit: mm", "unitt: mm").replace("unit: deg", "unitt: deg"))
+    assert main(["check", str(good), str(bad)]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == f"{good}: ok\n"
+    assert [line.startswith(f"{bad}:") for line in captured.err.splitlines()] == [True, True]
+    assert main(["schema"]) == 0
+    assert json.loads(capsys.readouterr().out)["title"] == "Machine"
+
+
+@pytest.mark.parametrize("where", ["in process", "over LCM"])
+def test_run(where: str, files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-02, PY-06, PY-07: the same verdicts in virtual time and on a running engine; report and recording are
+    written."""
+    report = files / "report"
+    if where == "in process":
+        assert main(["run", str(files / "there.py"), "--report", str(report)]) == 0
+    else:
+        url = new_url()
+        with running(files, url):
+            assert main(["run", str(files / "there.py"), "--url", url, "--report", str(report)]) == 0
+    text = capsys.readouterr().out
+    assert "3 passed, 0 failed" in text
+    assert "within_limits(x)" in text
+    assert "Goes and comes back" in (report / "report.html").read_text()
+    assert takt.Recording.load(report / "recording.npz").duration_s > 0.2
+
+
+def test_run_fails(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-07: exit code 1 where something that was verified is not so."""
+    (files / "not.py").write_text(SCENARIO.replace('"x", 60.0', '"x", 61.0') + '    assert False, "plainly"\n')
+    assert main(["run", str(files / "not.py"), "--machine", str(files / "machine.yaml")]) == 1
+    text = capsys.readouterr().out
+    assert "plainly (not.py:17)" in text
+    assert "2 passed, 2 failed" in text
+    broken = SCENARIO.replace("    session.run(0.1)", "    assert x.actual_position > 1000")
+    (files / "broken.py").write_text(broken)
+    assert main(["run", str(files / "broken.py"), "--report", str(files / "report")]) == 1
+    assert "an assertion failed (broken.py:10)" in capsys.readouterr().out
+    assert takt.Recording.load(files / "report" / "recording.npz").duration_s > 0.2
+
+
+BAD = {
+    "no such file": (["run", "none.py"], "there is no such file"),
+    "no scenario": (["run", "empty.py"], "has no function scenario"),
+    "syntax": (["run", "syntax.py"], "syntax.py:1: "),
+    "mistake": (["run", "mistake.py"], "ZeroDivisionError: division by zero (mistake.py:2)"),
+    "refused": (["run", "refused.py"], "x.halt: the axis is not"),
+    "no engine": (["run", "there.py", "--url", "udpm://239.255.76.67:19999?ttl=0"], "no engine answers"),
+    "wrong url": (["run", "there.py", "--url", "tin can"], "expected one like udpm://"),
+    "both": (["run", "there.py", "--url", "a", "--machine", "b"], "give one of them"),
+    "machine": (["check", "none.yaml"], "none.yaml: cannot be read"),
+    "replay": (["replay", "there.py"], "is not an LCM log"),
+    "plot": (["plot", "none.npz"], "none.npz"),
+    "option": (["check", "--nonsense"], "No such option"),
+    "command": (["nonsense"], "No such command"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_mistakes_are_one_line(
+    case: str, files: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """PY-07: errors in one line with exit code 2."""
+    monkeypatch.chdir(files)
+    Path("empty.py").write_text("")
+    Path("syntax.py").write_text("def :\n")
+    Path("mistake.py").write_text("def scenario(session):\n    1 / 0\n")
+    Path("refused.py").write_text("def scenario(session):\n    session.axis('x').halt().wait()\n")
+    arguments, sentence = BAD[case]
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert sentence in captured.err
+    assert captured.err.count("\n") == 1
+
+
+def test_tracebacks_on_request(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-07."""
+    (files / "mistake.py").write_text("def scenario(session):\n    1 / 0\n")
+    assert main(["--traceback", "run", str(files / "mistake.py")]) == 2
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_logs(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-07, EN-07: log, replay and plot of what taktd wrote."""
+    url = new_url()
+    log = files / "run.lcm"
+    with running(files, url, "--log", str(log)):
+        assert main(["run", str(files / "there.py"), "--url", url]) == 0
+    capsys.readouterr()
+    assert main(["log", str(log), "--save", str(files / "run.csv")]) == 0
+    text = capsys.readouterr().out
+    assert "takt/axis/x" in text
+    assert "run 0: test, 2 axes" in text
+    assert (files / "run.csv").read_text().startswith("cycle,time_s,x.set_position [mm]")
+    assert main(["replay", str(log)]) == 0
+    assert "the same, bit for bit" in capsys.readouterr().out
+    assert main(["plot", str(log), "x", "--to", "0.5", "-o", str(files / "x.png")]) == 0
+    assert (files / "x.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_bench(capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-07, PY-08: prints what it measures; how fast it must be is for ./dev bench."""
+    assert main(["bench", "--axes", "2", "--cycles", "2000"]) == 0
+    text = capsys.readouterr().out
+    assert "idle" in text
+    assert "moving" in text
+
+
+def test_as_a_module(files: Path) -> None:
+    run = [sys.executable, "-m", "takt"]
+    done = subprocess.run([*run, "--help"], capture_output=True, text=True, check=True)
+    for command in ("check", "run", "replay", "plot", "bench", "schema", "log"):
+        assert f"  {command} " in done.stdout
+    done = subprocess.run([*run, "check", str(files / "none.yaml")], capture_output=True, text=True)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)

@@ -1,0 +1,212 @@
+"""EN-20 to EN-25, PY-02: a running engine over LCM."""
+
+from __future__ import annotations
+
+import os
+import random
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import lcm
+import pytest
+import takt
+from machines import machine_with, new_url, running
+from takt import msgs
+from takt.network import DEFAULT_URL, open_network
+
+CLIENT = """
+import sys, time, takt
+session = takt.connect(sys.argv[1], client="doomed")
+x = session.axis("x")
+x.power().wait()
+x.jog(forward=True, velocity=50.0).wait(until="active")
+print("jogging", flush=True)
+time.sleep(60)
+"""
+
+
+def test_a_killed_client_lets_go(tmp_path: Path) -> None:
+    """EN-23: a client killed in the middle of a jog: the axis stops."""
+    url = new_url()
+    with running(tmp_path, url), takt.connect(url) as session:
+        client = subprocess.Popen([sys.executable, "-c", CLIENT, url], stdout=subprocess.PIPE, text=True)
+        assert client.stdout is not None
+        assert client.stdout.readline() == "jogging\n"
+        x = session.axis("x")
+        session.run(1.2)  # twice the dead man's time: it lives
+        assert x.set_velocity == pytest.approx(50.0)
+        client.send_signal(signal.SIGKILL)
+        client.wait()
+        killed = session.now
+        session.wait(lambda: x.set_velocity == 0, 2.0, what="the axis at rest")
+        assert 0.2 < session.now - killed < 1.5
+        assert x.state is takt.PlcState.STANDSTILL
+
+
+def test_leaving_releases_what_is_held(tmp_path: Path) -> None:
+    """EN-23."""
+    url = new_url()
+    with running(tmp_path, url), takt.connect(url) as session:
+        with takt.connect(url) as other:
+            other.axis("x").power().wait()
+            other.axis("x").jog(forward=True).wait(until="active")
+        session.wait(lambda: session.axis("x").state is takt.PlcState.STANDSTILL, 0.25)
+
+
+def test_two_clients_of_one_name(tmp_path: Path) -> None:
+    """EN-22: the second is told so; the first works on. A name is free again when its owner is gone."""
+    url = new_url()
+    with running(tmp_path, url):
+        with takt.connect(url, client="me") as first:
+            with (
+                takt.connect(url, client="me") as second,
+                pytest.raises(takt.ConnectionError, match="uses the name me"),
+            ):
+                second.run(2.0)
+            assert first.axis("x").power().wait().done
+        time.sleep(2.2)
+        with takt.connect(url, client="me") as third:
+            assert third.axis("x").power().wait().done
+
+
+def test_clients_of_different_names_work_together(tmp_path: Path) -> None:
+    url = new_url()
+    with running(tmp_path, url), takt.connect(url) as one, takt.connect(url) as two:
+        one.axis("x").power().wait()
+        ever = one.axis("x").move_velocity(velocity=20.0).wait(until="reached")
+        two.axis("x").halt().wait()
+        assert ever.wait_final().aborted
+        assert one.client != two.client
+
+
+def test_no_engine_and_no_network() -> None:
+    """EN-25, bad input: one clear line each."""
+    assert DEFAULT_URL.endswith("ttl=0")
+    url = new_url()
+    with pytest.raises(takt.ConnectionError, match=r"^no engine answers on .* within 0.2 s; is taktd running there\?$"):
+        takt.connect(url, timeout=0.2)
+    for wrong in ("udpm://nowhere", "udpm://239.255.76.67:99999", "http://x", ""):
+        with pytest.raises(takt.ConnectionError, match="expected one like udpm://"):
+            open_network(wrong)
+
+
+def test_a_port_that_is_taken() -> None:
+    """Bad input."""
+    url = new_url()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("", int(url.split(":")[2].split("?")[0])))
+        with pytest.raises(takt.ConnectionError, match="cannot be joined"):
+            takt.connect(url, timeout=0.2)
+
+
+@pytest.mark.skipif(shutil.which("unshare") is None or os.geteuid() != 0, reason="needs a network namespace of its own")
+def test_the_network_absent() -> None:
+    """Bad input: the sentence has the command that helps."""
+    code = "import takt\ntry: takt.connect()\nexcept takt.ConnectionError as e: print(e)"
+    done = subprocess.run(["unshare", "-n", sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "not reachable" in done.stdout
+    assert "ip route add 224.0.0.0/4 dev lo" in done.stdout
+    assert done.stdout.count("\n") == 1
+    assert done.stderr == ""
+
+
+def test_the_engine_goes_away(tmp_path: Path) -> None:
+    """A session says within seconds that its engine is gone, and that another has come."""
+    url = new_url()
+    with running(tmp_path, url):
+        session = takt.connect(url)
+    with pytest.raises(takt.ConnectionError, match="silent"):
+        session.run(100.0)
+    with running(tmp_path, url), takt.connect(url), pytest.raises(takt.ConnectionError, match="started again"):
+        session.run(100.0)
+    session.close()
+
+
+def test_random_bytes_on_every_channel(tmp_path: Path) -> None:
+    """EN-22: neither engine nor client is impressed; the engine counts them."""
+    url = new_url()
+    source = random.Random(4711)
+    network = lcm.LCM(url)
+    with running(tmp_path, url), takt.connect(url) as session:
+        session.axis("x").power().wait()
+        channels = ["takt/command", "takt/heartbeat", "takt/feedback", "takt/machine", "takt/engine", "takt/axis/x"]
+        genuine = msgs.command()
+        genuine.client = "bytes"
+        for i in range(3000):
+            data = bytearray(genuine.encode() if i % 2 else source.randbytes(source.randrange(200)))
+            for _ in range(3 if i % 2 else 0):
+                data[source.randrange(8, len(data))] = source.randrange(256)
+            network.publish(source.choice(channels), bytes(data))
+        session.run(0.3)
+        assert session.axis("x").move_relative(distance=1.0).wait().done
+        assert session.figures["malformed"] > 0
+
+
+def test_the_same_id_again_is_harmless(tmp_path: Path) -> None:
+    """EN-22: sent three times, done once; each is answered."""
+    url = new_url()
+    network = lcm.LCM(url)
+    answers: list[msgs.feedback] = []
+    network.subscribe("takt/feedback", lambda _, data: answers.append(msgs.feedback.decode(data)))
+    with running(tmp_path, url), takt.connect(url) as session:
+        x = session.axis("x")
+        x.power().wait()
+        message = msgs.command()
+        message.client, message.session, message.id = "again", 7, 1
+        message.target, message.verb, message.arguments = "x", "move_relative", "{distance: 5}"
+        for _ in range(3):
+            network.publish("takt/command", message.encode())
+            session.run(0.3)
+        while network.handle_timeout(100):
+            pass
+        mine = [a for a in answers if a.client == "again"]
+        assert x.set_position == pytest.approx(5.0)
+        assert [a.state for a in mine].count(msgs.feedback.STATE_DONE) == 3
+        assert len({a.ticket for a in mine}) == 1
+
+
+def test_values_are_not_older_than_what_was_waited_for(tmp_path: Path) -> None:
+    """PY-02: also where states come seldom, what a scenario reads after a wait is what the axis then was."""
+    url = new_url()
+    machine = machine_with("{axis_rate_hz: 5}")
+    with running(tmp_path, url, machine=machine), takt.connect(url) as session:
+        x = session.axis("x")
+        x.power().wait()
+        assert x.powered
+        x.move_relative(distance=1.0).wait()
+        assert x.set_position == pytest.approx(1.0)
+        start = session.now
+        session.run(0.01)
+        assert all(state.cycle * session.period >= start + 0.01 for state in session._states.values())
+
+
+def test_losses_are_seen(tmp_path: Path) -> None:
+    """EN-20: a gap in the sequence numbers of a channel is a loss on the way."""
+    url = new_url()
+    with running(tmp_path, url), takt.connect(url) as session:
+        session.run(0.2)
+        assert session.losses == {}
+        late = session._states["x"]
+        late.sequence += 1000
+        lcm.LCM(url).publish("takt/axis/x", late.encode())
+        session.run(0.2)
+        assert session.losses.keys() == {"takt/axis/x"}
+        assert 900 < session.losses["takt/axis/x"] < 1000
+
+
+def test_rates_are_as_configured(tmp_path: Path) -> None:
+    """EN-20: states come at the rates of the machine file."""
+    url = new_url()
+    machine = machine_with("{axis_rate_hz: 50, rates: [{axis: r, rate_hz: 250}], engine_rate_hz: 20}")
+    with running(tmp_path, url, machine=machine), takt.connect(url) as session:
+        with session.record() as recorder:
+            session.run(1.0)
+        recording = recorder.recording
+        assert set((recording["x"]["cycle"][1:] - recording["x"]["cycle"][:-1]).tolist()) == {20}
+        assert set((recording["r"]["cycle"][1:] - recording["r"]["cycle"][:-1]).tolist()) == {4}
+        assert len(recording["r"]) == pytest.approx(250, abs=25)

@@ -1,0 +1,211 @@
+"""EN-07, PY-04: logs of taktd, read as recordings and run again bit for bit."""
+
+from __future__ import annotations
+
+import signal
+import time
+from pathlib import Path
+
+import lcm
+import numpy as np
+import pytest
+import takt
+from machines import MACHINE, new_url, running
+from takt import msgs
+from takt.lcmlog import open_log
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Of a run with every command, refused and aborted ones, a jog with heartbeats, a fault, and the stop at the
+    end."""
+    directory = tmp_path_factory.mktemp("log")
+    url = new_url()
+    file = directory / "run.lcm"
+    with running(directory, url, "--log", str(file)), takt.connect(url) as session:
+        x, r = session.axis("x"), session.axis("r")
+        x.power()
+        r.power().wait()
+        r.move_velocity(velocity=200.0, direction="negative")
+        x.move_absolute(position=100.0, velocity=300.0).wait()
+        x.move_absolute(position=0.1 + 0.2, acceleration=1234.5678901234567)
+        x.move_relative(distance=10.0, buffer_mode="buffered").wait()
+        x.move_absolute(position=5000.0).wait_final()
+        x.jog(backward=True, velocity=20.0).wait(until="active")
+        session.run(0.4)
+        x.stop(hold=True).wait().release()
+        session.run(0.1)
+        x.move_velocity(velocity=400.0, direction="negative").wait_final()
+        x.reset().wait_final()
+        x.halt()
+        r.halt()
+        r.move_absolute(position=359.0)
+    return file
+
+
+def changed(log: Path, target: Path, change: object) -> Path:
+    """A copy of the log whose messages `change` has had in its hands."""
+    out = lcm.EventLog(str(target), "w", overwrite=True)
+    for event in lcm.EventLog(str(log), "r"):
+        data = change(event.channel, event.data)  # type: ignore[operator]
+        if data is not None:
+            out.write_event(event.timestamp, event.channel, data)
+    out.close()
+    return target
+
+
+def test_a_run_is_reproduced(log: Path) -> None:
+    """EN-07: every cycle, down to the last one of the stop."""
+    shares: list[float] = []
+    result = takt.replay(log, progress=shares.append)
+    assert result.same, result.sentence
+    assert result.machine == "test"
+    assert result.cycles > 1500
+    assert result.commands > 12
+    assert result.sentence.endswith("the same, bit for bit")
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    cycles = takt.read_log(log)["x"]["cycle"]
+    assert result.cycles == len(cycles) == cycles[-1] + 1
+
+
+def test_the_slightest_change_is_found(log: Path, tmp_path: Path) -> None:
+    """EN-07: another last bit of one argument of one command, in the cycle in which it counts."""
+    wanted = open_log(log).runs[-1]
+    at = next(e.cycle for e in wanted.journal if "distance" in e.arguments)
+
+    def change(channel: str, data: bytes) -> bytes:
+        if channel != "takt/journal/command":
+            return data
+        command = msgs.journal_command.decode(data)
+        command.arguments = command.arguments.replace("distance: 10.0", "distance: 10.000000000000002")
+        return command.encode()
+
+    result = takt.replay(changed(log, tmp_path / "changed.lcm", change))
+    assert result.difference is not None
+    assert result.difference.cycle == at
+    assert "differs from cycle" in result.sentence
+
+
+def test_a_log_without_a_journal_says_so(log: Path, tmp_path: Path) -> None:
+    def change(channel: str, data: bytes) -> bytes | None:
+        return None if channel.startswith("takt/journal") else data
+
+    plain = changed(log, tmp_path / "plain.lcm", change)
+    with pytest.raises(takt.LogError, match="holds no journal"):
+        takt.replay(plain)
+    assert len(takt.read_log(plain)["x"]) > 1000
+
+
+def test_a_log_becomes_a_recording(log: Path) -> None:
+    """PY-04: every cycle, with units, names, commands as events."""
+    recording = takt.read_log(log)
+    x = recording["x"]
+    assert np.array_equal(x["cycle"], np.arange(len(x)))
+    assert recording.unit("x", "set_velocity") == "mm/s"
+    assert recording.meta["machine"] == "test"
+    assert recording.meta["losses"] == {}
+    assert recording.gaps("x") == []
+    starts = [e.text for e in recording.events if e.kind == "start" and e.component == "x"]
+    assert any(text.startswith("x.move_absolute {position: 100.0") for text in starts)
+    assert any("SW limit" in e.text for e in recording.events if e.kind == "error")
+    assert sum(e.text.endswith("aborted") for e in recording.events) >= 2
+    takt.expect.within_limits(recording, "r")
+    takt.expect.complete(recording, "x")
+    assert "ErrorStop" in recording.text("x", "state")
+
+
+def test_a_torn_log_is_read_as_far_as_it_goes(log: Path, tmp_path: Path) -> None:
+    """A logger that was killed leaves half a message."""
+    torn = tmp_path / "torn.lcm"
+    torn.write_bytes(log.read_bytes()[: log.stat().st_size // 2])
+    assert 100 < len(takt.read_log(torn)["x"]) < len(takt.read_log(log)["x"])
+    assert takt.replay(torn).same
+
+
+def test_a_run_with_overruns_is_reproduced(tmp_path: Path) -> None:
+    """EN-05, EN-07: what the engine did on its own when a cycle came too late is in the journal too, and disturbs no
+    ticket."""
+    url = new_url()
+    file = tmp_path / "late.lcm"
+    machine = MACHINE.replace("lcm:", "cycle: {overruns_in_a_row: 1}\nlcm:")
+    with (
+        running(tmp_path, url, "--log", str(file), machine=machine, pace="real") as process,
+        takt.connect(url) as session,
+    ):
+        x = session.axis("x")
+        x.power().wait_final()
+        process.send_signal(signal.SIGSTOP)
+        time.sleep(0.1)
+        process.send_signal(signal.SIGCONT)
+        session.wait(lambda: x.state is takt.PlcState.ERROR_STOP, 5.0)
+        for command in (x.reset, x.power, lambda: x.move_relative(distance=3.0)):
+            command().wait_final()  # done, unless this computer is late once more
+    log = open_log(file).runs[-1]
+    assert any(e.verb == "fail_all_axes" and e.ticket == 0 for e in log.journal)
+    assert takt.replay(file).same
+
+
+def test_a_burst_of_commands_is_reproduced(tmp_path: Path) -> None:
+    """EN-07, EN-22: commands at 100 times the rate of the cycle, more than one cycle takes up."""
+    url = new_url()
+    file = tmp_path / "burst.lcm"
+    network = lcm.LCM(url)
+    with running(tmp_path, url, "--log", str(file)), takt.connect(url) as session:
+        session.axis("r").power().wait()
+        message = msgs.command()
+        message.client, message.session, message.target, message.verb = "burst", 1, "r", "move_relative"
+        for message.id in range(1, 3001):
+            message.arguments = f"{{distance: {message.id % 7 - 3}.5}}"
+            network.publish("takt/command", message.encode())
+        session.run(1.0)
+        assert session.axis("r").halt().wait().done
+    journal = open_log(file).runs[-1].journal
+    assert sum(e.verb == "move_relative" for e in journal) > 500
+    assert takt.replay(file).same
+
+
+def test_files_that_are_no_logs(tmp_path: Path) -> None:
+    for name, content, sentence in (
+        ("text", b"hello", "is not an LCM log"),
+        ("empty", b"", "is not an LCM log"),
+    ):
+        file = tmp_path / name
+        file.write_bytes(content)
+        with pytest.raises(takt.LogError, match=sentence):
+            takt.read_log(file)
+    with pytest.raises(takt.LogError, match="cannot be read"):
+        takt.read_log(tmp_path / "none")
+    other = tmp_path / "other.lcm"
+    log = lcm.EventLog(str(other), "w", overwrite=True)
+    log.write_event(1, "takt/axis/x", b"\x00" * 20)
+    log.write_event(2, "LCM_SELF_TEST", b"")
+    log.close()
+    content = open_log(other)
+    assert content.malformed == {"takt/axis/x": 1}
+    with pytest.raises(takt.LogError, match="no description of a machine"):
+        takt.read_log(other)
+
+
+def test_two_runs_in_one_log(log: Path, tmp_path: Path) -> None:
+    """An engine that was started again makes another run; the last one is read unless told."""
+    both = tmp_path / "both.lcm"
+    out = lcm.EventLog(str(both), "w", overwrite=True)
+    for run in range(2):
+        for event in lcm.EventLog(str(log), "r"):
+            data = event.data
+            if event.channel == "takt/machine":
+                description = msgs.machine_description.decode(data)
+                description.run_id += run
+                data = description.encode()
+            elif event.channel == "takt/journal/start":
+                start = msgs.journal_start.decode(data)
+                start.run_id += run
+                data = start.encode()
+            out.write_event(event.timestamp, event.channel, data)
+    out.close()
+    assert len(open_log(both).runs) == 2
+    first, last = takt.read_log(both, run=0), takt.read_log(both)
+    assert np.array_equal(first["x"], last["x"])
+    with pytest.raises(takt.LogError, match="there is no run 2"):
+        takt.read_log(both, run=2)

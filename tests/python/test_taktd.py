@@ -1,0 +1,148 @@
+"""The command line of taktd, as a process of its own."""
+
+import json
+import random
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+MACHINE = """\
+name: two_axes
+axes:
+  - name: x
+    limits: {velocity: 100, acceleration: 1000, jerk: 20000}
+  - name: y
+    unit: deg
+    limits: {velocity: 100, acceleration: 1000, jerk: 20000}
+"""
+
+TAKTD = shutil.which("taktd")
+pytestmark = pytest.mark.skipif(TAKTD is None, reason="taktd is not on the PATH")
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Path:
+    path = tmp_path / "machine.yaml"
+    path.write_text(MACHINE)
+    return path
+
+
+def taktd(*arguments: object, prefix: tuple[str, ...] = ()) -> subprocess.CompletedProcess[str]:
+    command = [*prefix, str(TAKTD), *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+
+
+def wait_for_greeting(process: subprocess.Popen[str]) -> None:
+    assert process.stdout is not None
+    assert "two_axes" in process.stdout.readline()
+
+
+def test_check_says_ok(machine: Path) -> None:  # EN-01
+    result = taktd("--check", machine)
+    assert (result.returncode, result.stdout, result.stderr) == (0, "ok\n", "")
+
+
+def test_check_says_every_problem_with_its_place(machine: Path) -> None:  # EN-01, EN-10
+    machine.write_text(MACHINE.replace("jerk: 20000", "jrek: 20000").replace("unit: deg", "unit: 5s\n    colour: red"))
+    result = taktd("--check", machine)
+    assert result.returncode == 2
+    assert result.stdout == ""
+    lines = result.stderr.splitlines()
+    assert len(lines) >= 3
+    assert all(line.startswith(f"{machine}:") for line in lines)
+
+
+@pytest.mark.parametrize("size", [0, 1, 1000, 10_000_000])
+def test_random_bytes_as_machine_file(tmp_path: Path, size: int) -> None:  # EN-10
+    path = tmp_path / "random.yaml"
+    path.write_bytes(random.Random(size).randbytes(size))
+    result = taktd("--check", path)
+    assert result.returncode == 2
+    assert 1 <= len(result.stderr.splitlines()) <= 250
+
+
+def test_schema_and_reference_are_json() -> None:  # EN-01, EN-11
+    schema = json.loads(taktd("--schema").stdout)
+    assert "axes" in schema["properties"]
+    reference = json.loads(taktd("--reference").stdout)
+    verbs = {(verb["target_kind"], verb["name"]) for verb in reference["verbs"]}
+    assert {("axis", "move_absolute"), ("axis", "jog"), ("machine", "stop_all")} <= verbs
+    assert {error["id"] for error in reference["errors"]} >= {1, 13, 1000, 2001, 3012, 8001}
+    assert all(error["name"] and error["text"] for error in reference["errors"])
+
+
+def test_version_and_help() -> None:  # EN-01
+    assert taktd("--version").stdout.strip()[0].isdigit()
+    text = taktd("--help").stdout
+    for option in (
+        "--cycle-time",
+        "--pace",
+        "--duration",
+        "--lcm-url",
+        "--no-lcm",
+        "--log",
+        "--check",
+        "--schema",
+        "--version",
+    ):
+        assert option in text
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["no_such_file.yaml"],
+        ["MACHINE", "--no-such-option"],
+        ["MACHINE", "--pace", "warp"],
+        ["MACHINE", "--cycle-time", "5us"],
+        ["MACHINE", "--cycle-time", "nan"],
+        ["MACHINE", "--duration", "-1"],
+        ["MACHINE", "--lcm-url", "nonsense"],
+        ["MACHINE", "--lcm-url", "udpm://239.255.76.67"],
+        ["MACHINE", "--no-lcm", "--log", "/no/such/folder/run.lcmlog"],
+    ],
+)
+def test_mistakes_are_one_line_and_exit_code_2(machine: Path, arguments: list[str]) -> None:  # EN-01
+    result = taktd(*[machine if argument == "MACHINE" else argument for argument in arguments])
+    assert result.returncode == 2
+    assert result.stdout == ""
+    assert len(result.stderr.splitlines()) == 1
+
+
+@pytest.mark.skipif(
+    subprocess.run(["unshare", "-n", "true"], capture_output=True, check=False).returncode != 0,
+    reason="no right to make a network of one's own",
+)
+def test_absent_network_names_the_route_command(machine: Path) -> None:
+    result = taktd(machine, "--duration", 1, prefix=("unshare", "-n"))
+    assert result.returncode == 2
+    assert result.stdout == ""
+    assert len(result.stderr.splitlines()) == 1
+    assert "ip route add 224.0.0.0/4 dev lo" in result.stderr
+
+
+@pytest.mark.parametrize(("cycle_time", "cycles"), [("250us", 40_000), ("1ms", 10_000), ("0.02", 500)])
+def test_fast_runs_the_cycles_of_the_duration(machine: Path, cycle_time: str, cycles: int) -> None:  # EN-01
+    result = taktd(machine, "--no-lcm", "--pace", "fast", "--duration", 10, "--cycle-time", cycle_time)
+    assert result.returncode == 0, result.stderr
+    assert f" {cycles} cycles" in result.stdout
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_first_signal_ends_in_order(machine: Path, tmp_path: Path, number: signal.Signals) -> None:  # EN-08
+    log = tmp_path / "run.lcmlog"
+    with subprocess.Popen(
+        [str(TAKTD), str(machine), "--no-lcm", "--log", str(log)], stdout=subprocess.PIPE, text=True
+    ) as process:
+        wait_for_greeting(process)
+        time.sleep(0.3)
+        process.send_signal(number)
+        output, _ = process.communicate(timeout=10)
+    assert process.returncode == 0
+    assert "stopped, all loops open" in output
+    assert log.stat().st_size > 10_000
