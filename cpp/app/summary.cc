@@ -59,7 +59,7 @@ std::string Summary(const engine::Engine& engine, const engine::RunResult& resul
   }
   text << "; " << figures.commands_applied << " commands, " << figures.commands_refused
        << " refused; lost: " << figures.snapshots_dropped << " states, " << figures.feedback_dropped
-       << " feedback events, " << send_failures << " messages";
+       << " feedback events, " << figures.journal_dropped << " journal entries, " << send_failures << " messages";
   return text.str();
 }
 

@@ -24,6 +24,7 @@ from takt.tables import fields_of, make_recording, named, table_of
 QUEUE = 100_000  # messages waiting to be received before LCM drops some
 SILENCE_S = 3.0  # without any message: the engine is gone (it sends its own state, and the machine every second)
 RESEND_S = 0.2  # between two tries of a command that is not answered
+REFRESH_S = 2.0  # after which a command that is not finished is asked about: its last answer may have been lost
 ANSWER_S = 2.0  # after which a command that is not answered is given up
 LATE_S = 1.0  # how long published values may take to catch up with a feedback
 IDLE_BEAT_S = 0.5  # between heartbeats that hold nothing but the client's name
@@ -218,7 +219,7 @@ class RemoteSession(Session):
             self._publish("takt/heartbeat", beat.encode())
             now = time.monotonic()
             with self._news:
-                again = [s for s in self._sent.values() if not s.answered and now - s.at > RESEND_S]
+                again = [s for s in self._sent.values() if now - s.at > (REFRESH_S if s.answered else RESEND_S)]
                 for sent in again:
                     sent.at = now
                 interval = self._dead_man_s / 4 if self._held else IDLE_BEAT_S

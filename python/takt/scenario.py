@@ -104,5 +104,6 @@ def verify_recording(scenario: Scenario, recording: Recording) -> Outcome:
 
 def _complaint(error: AssertionError, path: Path) -> str:
     """What a plain `assert` says, and where it stands."""
-    lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if Path(f.filename).name == path.name]
-    return f"{error or 'an assertion failed'} ({path.name}:{lines[-1] if lines else '?'})"
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if Path(f.filename).name == path.name]
+    said = str(error) or (frames[-1].line if frames else "") or "an assertion failed"
+    return f"{said} ({path.name}:{frames[-1].lineno})" if frames else said

@@ -80,7 +80,7 @@ def test_run_fails(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
     broken = SCENARIO.replace("    session.run(0.1)", "    assert x.actual_position > 1000")
     (files / "broken.py").write_text(broken)
     assert main(["run", str(files / "broken.py"), "--report", str(files / "report")]) == 1
-    assert "an assertion failed (broken.py:10)" in capsys.readouterr().out
+    assert "assert x.actual_position > 1000 (broken.py:11)" in capsys.readouterr().out
     assert takt.Recording.load(files / "report" / "recording.npz").duration_s > 0.2
 
 

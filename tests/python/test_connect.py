@@ -185,6 +185,29 @@ def test_values_are_not_older_than_what_was_waited_for(tmp_path: Path) -> None:
         assert all(state.cycle * session.period >= start + 0.01 for state in session._states.values())
 
 
+@pytest.mark.parametrize("noticed", [True, False])
+def test_a_lost_answer_is_asked_for_again(noticed: bool, tmp_path: Path) -> None:
+    """EN-20, EN-22: at once where the sequence numbers have a gap, else after a while."""
+    url = new_url()
+    with running(tmp_path, url), takt.connect(url) as session:
+        session.axis("x").power().wait()
+        take, lost = session._take, []
+
+        def lossy(message: msgs.feedback) -> None:
+            if message.state == msgs.feedback.STATE_DONE and not lost:
+                lost.append(message)
+                session._sequences["takt/feedback"] -= 1 if noticed else 0
+            else:
+                take(message)
+
+        session._take = lossy  # type: ignore[method-assign]
+        move = session.axis("x").move_relative(distance=1.0)
+        start = session.now
+        assert move.wait(5.0).done
+        assert len(lost) == 1
+        assert (session.now - start < 1.5) == noticed
+
+
 def test_losses_are_seen(tmp_path: Path) -> None:
     """EN-20: a gap in the sequence numbers of a channel is a loss on the way."""
     url = new_url()

@@ -50,7 +50,7 @@ def test_usual_signals_in_lanes_with_units(tmp_path: Path) -> None:
     assert styles["actual position"] == "-"
     assert figure.axes[-1].get_xlabel() == "time [s]"
     texts = [t.get_text() for t in figure.axes[0].texts]
-    assert texts == ["x MoveAbsolute 100", "x done"]
+    assert texts == ["x: MoveAbsolute 100", "x: done"]
     assert [t.get_text() for t in figure.axes[-1].texts] == ["DiscreteMotion", "Standstill"]
     pixels(plot.save(figure, tmp_path / "new" / "a.png"))
 

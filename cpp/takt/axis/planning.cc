@@ -27,8 +27,12 @@ bool Inside(const AxisLimits& limits, double position) {
          !(limits.upper && position > *limits.upper + Rounding(*limits.upper));
 }
 
-// How far outside the SW limits a profile gets that started inside.
-bool StaysInside(const AxisLimits& limits, const KinematicState& from, const Profile& profile) {
+// Whether a profile keeps the SW limits and the axis' velocity, or at least leaves them no further than it began. One
+// planned with weak limits of a command, from the middle of a stronger motion, may not.
+bool Fits(const AxisLimits& limits, const KinematicState& from, const Profile& profile) {
+  const Profile::Range velocity = profile.VelocityRange();
+  const double fastest = std::max(limits.velocity, std::abs(from.velocity)) * (1 + 1e-9);
+  if (velocity.max > fastest || velocity.min < -fastest) return false;
   const Profile::Range range = profile.PositionRange();
   const double low = std::min(from.position, range.min);
   const double high = std::max(from.position, range.max);
@@ -128,20 +132,6 @@ Status PlanBlended(Planner& planner, const KinematicState& from, double target, 
   return low > 0 ? Status::Ok() : standing;
 }
 
-// Positions that must not leave the SW limits where a harder braking can help (AX-13).
-Status PlanToRest(const AxisParams& params, Planner& planner, const KinematicState& from, double target,
-                  const Limits& limits, Plan& out) {
-  Status status = planner.ToPosition(from, target, 0, limits, out.profile);
-  if (status.failed() || StaysInside(params.limits, from, out.profile)) return status;
-  Limits hardest = limits;
-  hardest.deceleration = params.planner_limits().deceleration;
-  hardest.acceleration = params.planner_limits().acceleration;
-  hardest.jerk = params.planner_limits().jerk;
-  status = planner.ToPosition(from, target, 0, hardest, out.profile);
-  out.limited_by = LimitedBy::kPosition;
-  return status;
-}
-
 // While a limit switch is on, no motion may go (further) towards it.
 Status CheckSwitches(const Surroundings& around, const KinematicState& from, const Profile& profile) {
   const Profile::Range velocity = profile.VelocityRange();
@@ -172,7 +162,7 @@ Status PlanTo(const AxisParams& params, const Surroundings& around, Planner& pla
   const double speed = next ? TakeOverSpeed(params, request, out.target, sense, *next, around.last_sense) : 0;
   if (next && speed == 0) out.limited_by = LimitedBy::kDistance;
   if (speed > 0) return PlanBlended(planner, from, out.target, sense, speed, limits, out);
-  return PlanToRest(params, planner, from, out.target, limits, out);
+  return planner.ToPosition(from, out.target, 0, limits, out.profile);
 }
 
 Status PlanPositioning(const AxisParams& params, const Surroundings& around, Planner& planner,
@@ -182,6 +172,39 @@ Status PlanPositioning(const AxisParams& params, const Surroundings& around, Pla
                    ? from.position + request.value
                    : ResolveTarget(params, from, limits, request.value, request.direction, around.last_sense);
   return PlanTo(params, around, planner, from, request, next, out);
+}
+
+Status PlanAsAsked(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                   const Request& request, const Request* next, Plan& out) {
+  out.limited_by = LimitedBy::kNothing;
+  Status status;
+  switch (request.kind) {
+    case RequestKind::kMoveAbsolute:
+    case RequestKind::kMoveRelative:
+      status = PlanPositioning(params, around, planner, from, request, next, out);
+      break;
+    case RequestKind::kMoveVelocity: {
+      const double velocity = SenseOf(request, around.last_sense) * request.velocity;
+      Limits limits = request.limits();
+      limits.velocity = params.limits.velocity;  // the request's own may be 0, which is no limit
+      status = CheckAtLimit(params.limits, from, velocity);
+      if (status.ok()) status = planner.ToVelocity(from, velocity, limits, out.profile);
+      break;
+    }
+    default:
+      return planner.Stop(from, request.limits(), out.profile);
+  }
+  return status.ok() ? CheckSwitches(around, from, out.profile) : status;
+}
+
+// The same request with all that the axis has for its ramps.
+Request Hardest(const AxisParams& params, const Request& request) {
+  const Limits own = params.planner_limits();
+  Request harder = request;
+  harder.acceleration = own.acceleration;
+  harder.deceleration = own.deceleration;
+  harder.jerk = own.jerk;
+  return harder;
 }
 
 }  // namespace
@@ -215,41 +238,29 @@ double ResolveTarget(const AxisParams& params, const KinematicState& from, const
 
 Status PlanRequest(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
                    const Request& request, const Request* next, Plan& out) noexcept {
-  out.limited_by = LimitedBy::kNothing;
-  Status status;
-  switch (request.kind) {
-    case RequestKind::kMoveAbsolute:
-    case RequestKind::kMoveRelative:
-      status = PlanPositioning(params, around, planner, from, request, next, out);
-      break;
-    case RequestKind::kMoveVelocity: {
-      const double velocity = SenseOf(request, around.last_sense) * request.velocity;
-      status = CheckAtLimit(params.limits, from, velocity);
-      Limits limits = request.limits();
-      limits.velocity = params.limits.velocity;  // the request's own may be 0, which is no limit
-      if (status.ok()) status = planner.ToVelocity(from, velocity, limits, out.profile);
-      break;
-    }
-    default:
-      status = PlanStop(params, planner, from, request.limits(), out.profile);
-      break;
+  Status status = PlanAsAsked(params, around, planner, from, request, next, out);
+  if (status.ok() && !Fits(params.limits, from, out.profile)) {
+    status = PlanAsAsked(params, around, planner, from, Hardest(params, request), next, out);
+    out.limited_by = LimitedBy::kPosition;
   }
-  if (status.failed()) return status;
-  if (request.kind == RequestKind::kHalt || request.kind == RequestKind::kStop) return status;
-  return CheckSwitches(around, from, out.profile);
-}
-
-Status PlanStop(const AxisParams& params, Planner& planner, const KinematicState& from, const Limits& limits,
-                Profile& out) noexcept {
-  const Status status = planner.Stop(from, limits, out);
-  if (status.failed() || StaysInside(params.limits, from, out)) return status;
-  return planner.Stop(from, params.planner_limits(), out);
+  return status;
 }
 
 Status Replan(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
               const Request& request, const Request* next, Plan& out) noexcept {
   out.limited_by = LimitedBy::kNothing;
-  return PlanTo(params, around, planner, from, request, next, out);
+  Status status = PlanTo(params, around, planner, from, request, next, out);
+  if (status.ok() && !Fits(params.limits, from, out.profile)) {
+    status = PlanTo(params, around, planner, from, Hardest(params, request), next, out);
+  }
+  return status;
+}
+
+Status PlanStop(const AxisParams& params, Planner& planner, const KinematicState& from, const Limits& limits,
+                Profile& out) noexcept {
+  const Status status = planner.Stop(from, limits, out);
+  if (status.failed() || Fits(params.limits, from, out)) return status;
+  return planner.Stop(from, params.planner_limits(), out);
 }
 
 }  // namespace takt::axis

@@ -58,7 +58,7 @@ struct Engine::Impl {
   void ApplyOne(const Command& command) noexcept {
     Apply(world, command);
     ++figures.commands_applied;
-    if (options.journal) journal.TryPush({world.cycle.count, command});
+    if (options.journal && !journal.TryPush({world.cycle.count, command})) ++figures.journal_dropped;
   }
 
   void ApplyCommands() noexcept {
@@ -87,7 +87,7 @@ struct Engine::Impl {
     world.feedback.Clear();
     if (options.journal) {
       figures.state_hash = world.StateHash();
-      hashes.TryPush({world.cycle.count, figures.state_hash});
+      if (!hashes.TryPush({world.cycle.count, figures.state_hash})) ++figures.journal_dropped;
     }
     if (!options.publish) return;
     for (std::size_t i = 0; i < axis_divisors.size(); ++i) {
@@ -142,13 +142,6 @@ Ticket Engine::Submit(const Command& command) noexcept {
 bool Engine::Resubmit(const Command& command) noexcept {
   impl_->next_ticket = std::max(impl_->next_ticket, command.ticket + 1);
   return impl_->commands.TryPush(command);
-}
-
-bool Engine::Replay(const Command& command, Ticket ticket) noexcept {
-  Command numbered = command;
-  numbered.ticket = ticket;
-  impl_->next_ticket = std::max(impl_->next_ticket, ticket + 1);
-  return impl_->commands.TryPush(numbered);
 }
 
 void Engine::RunCycle(const CycleTiming& timing) noexcept {

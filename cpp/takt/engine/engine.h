@@ -40,9 +40,6 @@ class Engine {
   // queue is full.
   bool Resubmit(const Command& command) noexcept;
 
-  // Queues a command of a journal under the ticket it had.
-  bool Replay(const Command& command, Ticket ticket) noexcept;
-
   // --- the cycle thread ---
   void RunCycle(const CycleTiming& timing = {}) noexcept;
   // From RunCycle's thread, or while it does not run.

@@ -50,6 +50,8 @@ void describe(Description<EngineFigures>& d) {
   d.internal<&F::commands_refused>("Commands refused because the queue to the cycle was full.");
   d.internal<&F::snapshots_dropped>("Axis states lost because their queue was full (a slow network or disk).");
   d.internal<&F::feedback_dropped>("Feedback events lost because their queue was full.");
+  d.internal<&F::journal_dropped>(
+      "Commands and hashes missing in the journal because their queue was full: it cannot be replayed.");
   d.internal<&F::planner_second_scale>("Motions planned only at the second scale.");
   d.internal<&F::planner_failures>("Motions that could not be planned: the one in progress was kept.");
   d.internal<&F::state_hash>("Hash of the whole state after the cycle; 0: not made.");

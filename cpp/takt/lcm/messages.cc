@@ -92,6 +92,7 @@ msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine:
   m.commands_refused = Signed(figures.commands_refused);
   m.snapshots_dropped = Signed(figures.snapshots_dropped);
   m.feedback_dropped = Signed(figures.feedback_dropped);
+  m.journal_dropped = Signed(figures.journal_dropped);
   m.planner_second_scale = Signed(figures.planner_second_scale);
   m.planner_failures = Signed(figures.planner_failures);
   m.state_hash = Signed(figures.state_hash);

@@ -89,6 +89,26 @@ TEST(SoftLimit, IsKeptByAWeakHalt) {
   EXPECT_LE(furthest, 100 + 1e-9);
 }
 
+// AX-13: a command with a weak jerk, given while the axis accelerates hard towards its largest velocity, does not carry
+// it beyond that.
+TEST(VelocityLimit, IsKeptByARampHarderThanAsked) {
+  for (const Command& weak :
+       {Command(MoveVelocity{.velocity = 400, .jerk = 5000}), Command(MoveAbsolute{.position = 2000, .jerk = 5000}),
+        Command(Halt{.jerk = 5000}), Command(Jog{.forward = true, .velocity = 500, .jerk = 5000})}) {
+    Rig rig(LinearParams());
+    ASSERT_TRUE(rig.PowerOn());
+    rig.Give(MoveVelocity{.velocity = 500});
+    while (rig.state.setpoint.velocity < 300) rig.Step();
+    const std::size_t from = rig.trace.size();
+    rig.Give(weak);
+    rig.Run(2);
+    const Worst worst = WorstOf(rig.trace, rig.params.planner_limits(), 0.001, from);
+    EXPECT_LE(worst.velocity, 1 + 1e-9);
+    EXPECT_LE(worst.acceleration, 1 + 1e-9);
+    EXPECT_LE(worst.jerk, 1 + 1e-6);
+  }
+}
+
 // An axis that stands outside may move back inside and only there.
 TEST(SoftLimit, LetsAnAxisOutsideComeBack) {
   Rig rig(Fenced());

@@ -73,7 +73,8 @@ TEST(Journal, ReplaysBitForBit) {
       ParsedCommand parsed = ParseCommand(machine, text.target, text.verb, text.arguments);
       ASSERT_EQ(parsed.sentence, "");
       parsed.command.lease_s = entries[next].command.lease_s;
-      again.Replay(parsed.command, entries[next].command.ticket);
+      parsed.command.ticket = entries[next].command.ticket;
+      again.Resubmit(parsed.command);
     }
     again.RunCycle();
     ASSERT_EQ(again.figures().state_hash, expected.hash) << expected.cycle;
@@ -193,6 +194,16 @@ TEST(Snapshots, AreDroppedAndCountedWhenNobodyReads) {
   Engine engine(machine, {.publish = true, .every_cycle = true, .snapshot_queue = 64});
   for (int i = 0; i < 1000; ++i) engine.RunCycle();
   EXPECT_EQ(engine.figures().snapshots_dropped, 4000u - 64u);
+}
+
+// EN-07: a journal that lost something says so.
+TEST(Journal, CountsWhatItLost) {
+  const Machine machine = FullMachine();
+  Engine engine(machine, {.journal = true, .snapshot_queue = 64});
+  for (int i = 0; i < 64; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.figures().journal_dropped, 0u);
+  for (int i = 0; i < 10; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.figures().journal_dropped, 10u);
 }
 
 // EN-20: each axis at its own rate.

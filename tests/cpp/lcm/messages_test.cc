@@ -88,6 +88,7 @@ TEST(Messages, EngineStateKeepsEveryNumber) {
   f.commands_refused = 3;
   f.snapshots_dropped = 4;
   f.feedback_dropped = 5;
+  f.journal_dropped = 15;
   f.planner_second_scale = 6;
   f.planner_failures = 7;
   f.state_hash = 0xffff'ffff'ffff'fffe;
@@ -102,6 +103,7 @@ TEST(Messages, EngineStateKeepsEveryNumber) {
   EXPECT_EQ(m.commands_refused, 3);
   EXPECT_EQ(m.snapshots_dropped, 4);
   EXPECT_EQ(m.feedback_dropped, 5);
+  EXPECT_EQ(m.journal_dropped, 15);
   EXPECT_EQ(m.planner_second_scale, 6);
   EXPECT_EQ(m.planner_failures, 7);
   EXPECT_EQ(m.state_hash, -2);
