@@ -1,7 +1,7 @@
 """AX-13, AX-14: random machines, start states, targets and limits: no set point ever exceeds a limit or steps.
 
-10,000 problems in the suite, 1,000,000 with TAKT_LONG=1 (`./dev bench --long`). The tolerances are the published ones of
-the planner: 1e-9 of a limit, 1e-6 of the jerk (its differences round), 2e-8 of a³/j² where a motion ends.
+10,000 problems in the suite, 1,000,000 with TAKT_LONG=1 (`./dev bench --long`). The tolerances are the published ones
+of the planner: 1e-9 of a limit, 1e-6 of the jerk (its differences round), 2e-8 of a³/j² where a motion ends.
 """
 
 from __future__ import annotations

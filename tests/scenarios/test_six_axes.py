@@ -1,4 +1,4 @@
-"""The six axes of the demo: the same scenario in virtual time and on taktd, with the same verdicts (PY-02, EN-06, EN-24)."""
+"""The six axes of the demo (PY-02, EN-06, EN-24): the same scenario and verdicts in virtual time and on taktd."""
 
 from __future__ import annotations
 
