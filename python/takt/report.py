@@ -56,7 +56,7 @@ def render(recording: Recording, verdicts: Sequence[Verdict], title: str, meta: 
     payload = {
         "title": title,
         "made": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
-        "meta": _plain(dict(meta or {})),
+        "meta": _plain({name: value for name, value in (meta or {}).items() if value not in ({}, [], "", None)}),
         "span": _plain([recording.start_s, recording.end_s]),
         **_columns(recording),
         "events": [[e.time_s, e.component, e.text, e.kind] for e in recording.events],
