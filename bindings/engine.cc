@@ -17,6 +17,7 @@
 #include "recorder.h"
 #include "takt/core/schema.h"
 #include "takt/engine/load.h"
+#include "takt/engine/reference.h"
 
 namespace takt::bindings {
 namespace {
@@ -256,8 +257,10 @@ void BindEngine(py::module_& m) {
   m.def("load_machine", &LoadMachine, py::arg("text"), py::arg("file_name"),
         "Reads and checks a machine file: all its parameters with their defaults, as JSON. Raises takt.ConfigError "
         "with every problem.");
+  m.def("schema", &engine::SchemaText, "The JSON Schema of machine files.");
   m.def(
-      "schema", [] { return JsonSchema(TypeOf<engine::Machine>()).dump(2); }, "The JSON Schema of machine files.");
+      "reference", [] { return engine::ReferenceText(TAKT_VERSION); },
+      "Everything that is described, as JSON: machine, verbs, outputs, figures, states, transitions, errors.");
 
   py::class_<Recorder, std::shared_ptr<Recorder>>(m, "Recorder", "Rows of what axes publish, one every so many cycles.")
       .def_property_readonly("rows", &Recorder::rows)

@@ -9,9 +9,7 @@ install(TARGETS ${folders} takt_lcmtypes EXPORT takt ARCHIVE DESTINATION "${CMAK
 install(DIRECTORY cpp/takt DESTINATION include COMPONENT cpp FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY "${TAKT_LCM_CPP_DIR}/takt" DESTINATION include COMPONENT cpp FILES_MATCHING PATTERN "*.hpp")
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT cpp)
-if(TARGET taktd)
-  install(TARGETS taktd RUNTIME DESTINATION bin COMPONENT cpp)
-endif()
+install(TARGETS taktd RUNTIME DESTINATION bin COMPONENT cpp)
 
 # Ruckig is an affair of ours: its archive comes along, so that nobody else has to find its wheel.
 get_target_property(archive takt::ruckig IMPORTED_LOCATION)

@@ -57,15 +57,11 @@ function(takt_generated_module name)
 endfunction()
 
 # --- Generated modules: one line each, here. -----------------------------------------------------------------------------------------
-if(TARGET taktd AND EXISTS "${PROJECT_SOURCE_DIR}/tools/generate_python.py")
-  takt_generated_module(_commands.py DEPENDS taktd "${PROJECT_SOURCE_DIR}/tools/generate_python.py"
-    COMMAND "${Python_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/tools/generate_python.py" "$<TARGET_FILE:taktd>")
-endif()
+takt_generated_module(_commands.py DEPENDS taktd "${PROJECT_SOURCE_DIR}/tools/generate_python.py"
+  COMMAND "${Python_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/tools/generate_python.py" "$<TARGET_FILE:taktd>")
 
 # The engine and the notices of what it is linked with go into the wheel too.
 if(SKBUILD)
-  if(TARGET taktd)
-    install(PROGRAMS "$<TARGET_FILE:taktd>" DESTINATION "${SKBUILD_SCRIPTS_DIR}" COMPONENT python)
-  endif()
+  install(PROGRAMS "$<TARGET_FILE:taktd>" DESTINATION "${SKBUILD_SCRIPTS_DIR}" COMPONENT python)
   install(FILES "${TAKT_RUCKIG_LICENSE}" DESTINATION takt RENAME LICENSE.ruckig COMPONENT python)
 endif()

@@ -7,8 +7,8 @@
 
 #include "app/machine_file.h"
 #include "app/options.h"
-#include "app/reference.h"
 #include "app/summary.h"
+#include "takt/engine/reference.h"
 #include "takt/lcm/service.h"
 
 namespace takt::app {
@@ -54,7 +54,7 @@ int Main(int argc, char** argv) {
   const std::optional<Options> options = ParseOptions(argc, argv, exit_code);
   if (!options) return exit_code;
   if (options->task == Task::kSchema || options->task == Task::kReference) {
-    std::cout << (options->task == Task::kSchema ? SchemaText() : ReferenceText()) << '\n';
+    std::cout << (options->task == Task::kSchema ? engine::SchemaText() : engine::ReferenceText(TAKT_VERSION)) << '\n';
     return 0;
   }
   const MachineFile file = ReadMachineFile(*options);

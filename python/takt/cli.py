@@ -115,6 +115,19 @@ def schema() -> None:
 
 
 @cli.command()
+@click.option("-o", "--output", type=FILE, help="Write it into this file (.md) instead.")
+def reference(output: Path | None) -> None:
+    """Print the reference page: machine file, commands, published values, states and errors, as Markdown."""
+    from takt.reference import reference_page
+
+    if output is None:
+        print(reference_page(), end="")
+    else:
+        output.write_text(reference_page(), encoding="utf-8")
+        print(output)
+
+
+@cli.command()
 @click.argument("file", type=FILE)
 @click.option("--machine", type=FILE, help="Run on this machine in virtual time [machine.yaml beside FILE].")
 @click.option("--url", help="Run on the engine of this LCM network (taktd) instead.")

@@ -185,8 +185,9 @@ TEST(Planning, FailureKeepsTheMotionInProgress) {
   for (const double target : {1e12, -1e12}) {
     hopeless = rig.Give(MoveAbsolute{.position = target, .velocity = 1e-300, .acceleration = 1e-300, .jerk = 1e-300});
     rig.Step();
-    EXPECT_TRUE(rig.lives[hopeless].error);
+    EXPECT_EQ(rig.lives[hopeless].error_id, ErrorId::kPlanning);
   }
+  EXPECT_EQ(rig.planner.counters().failures, 2u);
   ASSERT_TRUE(rig.RunToEnd(move, 60));
   EXPECT_TRUE(rig.lives[move].done);
   EXPECT_EQ(rig.position(), 0.01);

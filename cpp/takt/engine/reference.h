@@ -2,14 +2,16 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
-namespace takt::app {
+namespace takt::engine {
 
 // JSON Schema of the machine file.
 std::string SchemaText();
 
 // {version, machine, verbs: [{target_kind, name, level_sensitive, arguments}], outputs, figures, states,
-//  errors: [{id, name, text}], feedback_states: [name]}; types as ReferenceJson writes them.
-std::string ReferenceText();
+//  transitions: [{from, to, by}], errors: [{id, name, text}], feedback_states: [name]}; types as ReferenceJson writes
+//  them.
+std::string ReferenceText(std::string_view version);
 
-}  // namespace takt::app
+}  // namespace takt::engine

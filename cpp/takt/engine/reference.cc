@@ -1,0 +1,69 @@
+#include "takt/engine/reference.h"
+
+#include <nlohmann/json.hpp>
+
+#include "takt/axis/outputs.h"
+#include "takt/axis/state_table.h"
+#include "takt/core/describe.h"
+#include "takt/core/schema.h"
+#include "takt/core/status.h"
+#include "takt/engine/command.h"
+#include "takt/engine/snapshot.h"
+
+namespace takt::engine {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kIndent = 1;
+
+Json VerbsJson() {
+  Json verbs = Json::array();
+  for (const Verb& verb : Verbs()) {
+    verbs.push_back({{"target_kind", verb.target_kind},
+                     {"name", verb.name},
+                     {"level_sensitive", verb.level_sensitive},
+                     {"arguments", ReferenceJson(*verb.arguments)}});
+  }
+  return verbs;
+}
+
+Json ErrorsJson() {
+  Json errors = Json::array();
+  for (const ErrorInfo& error : Errors()) {
+    if (error.id == ErrorId::kNone) continue;
+    errors.push_back({{"id", static_cast<int>(error.id)}, {"name", error.name}, {"text", error.text}});
+  }
+  return errors;
+}
+
+Json TransitionsJson() {
+  const Type& states = TypeOf<axis::PlcState>();
+  const auto name = [&](axis::PlcState state) { return states.FindEnumerator(static_cast<std::int64_t>(state))->name; };
+  Json transitions = Json::array();
+  for (const axis::Transition& t : axis::kTransitions) {
+    transitions.push_back({{"from", name(t.from)}, {"to", name(t.to)}, {"by", t.by}});
+  }
+  return transitions;
+}
+
+}  // namespace
+
+std::string SchemaText() {
+  return JsonSchema(TypeOf<Machine>()).dump(kIndent);
+}
+
+std::string ReferenceText(std::string_view version) {
+  const Json reference = {{"version", version},
+                          {"machine", ReferenceJson(TypeOf<Machine>())},
+                          {"verbs", VerbsJson()},
+                          {"outputs", ReferenceJson(TypeOf<axis::Outputs>())},
+                          {"figures", ReferenceJson(TypeOf<EngineFigures>())},
+                          {"states", ReferenceJson(TypeOf<axis::PlcState>())},
+                          {"transitions", TransitionsJson()},
+                          {"errors", ErrorsJson()},
+                          {"feedback_states", {"busy", "active", "done", "aborted", "error"}}};
+  return reference.dump(kIndent);
+}
+
+}  // namespace takt::engine
