@@ -29,11 +29,13 @@ void ChangeJog(const Context& c, const Request& r, State& s) {
   const bool other_speed = r.velocity != s.active.velocity;
   const bool key_held = s.jog_sense > 0 ? r.forward : r.backward;
   Grant(c, r, s);
-  trajectory::Profile profile;
-  if (s.jog_sense != 0 && key_held && other_speed &&
-      c.planner.ToVelocity(s.setpoint, s.jog_sense * r.velocity, r.limits(), profile).ok()) {
-    StartMotion(profile, 0, FromCycleBefore(c), s);
-  }
+  if (s.jog_sense == 0 || !key_held || !other_speed) return;
+  Request held = r;  // the first key wins, whatever the other one does
+  held.forward = s.jog_sense > 0;
+  Plan plan;
+  if (PlanJog(c, held, s, plan).failed()) return;
+  s.limited_by = plan.limited_by;
+  StartMotion(plan.profile, 0, FromCycleBefore(c), s);
 }
 
 Status Jog(const Context& c, const Request& r, State& s) {
@@ -41,6 +43,9 @@ Status Jog(const Context& c, const Request& r, State& s) {
     ChangeJog(c, r, s);
     return Status::Ok();
   }
+  Plan plan;
+  const Status status = r.forward != r.backward ? PlanJog(c, r, s, plan) : Status::Ok();
+  if (status.failed()) return status;
   AbortAll(c, s);
   if (s.plc != PlcState::kStandstill) ComeToRest(c, r.limits(), FromCycleBefore(c), s);
   Grant(c, r, s);
@@ -79,7 +84,7 @@ Status SwitchOn(const Context& c, const Request& r, State& s) {
 
 Status SwitchOff(const Context& c, const Request& r, State& s) {
   const bool waits = r.buffer_mode == BufferMode::kBuffered && s.active.kind != RequestKind::kNone && !SwitchingOff(s);
-  if (waits && s.loop_closed && s.plc != PlcState::kErrorStop) return Enqueue(c, r, s);
+  if (waits && s.plc != PlcState::kErrorStop) return Enqueue(c, r, s);
   AbortAll(c, s);
   Grant(c, r, s);
   if (!s.loop_closed || AtRest(s)) {
@@ -103,7 +108,7 @@ Status Admit(const Context& c, const Request& r, State& s) {
   }
   if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
   if (buffered) return Enqueue(c, r, s);
-  if (s.plc == PlcState::kStopping && r.kind != RequestKind::kStop) return Status::Failed(ErrorId::kAxisStopping);
+  if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
   return r.kind == RequestKind::kJog ? Jog(c, r, s) : TakeOver(c, r, s);
 }
 
@@ -112,6 +117,16 @@ void BeginReset(const Context& c, Ticket ticket, State& s) {
   s.reset_pending = true;
   s.reset_ticket = ticket;
   Report(c, ticket, FeedbackState::kActive);
+}
+
+// The command with this ticket, in control or waiting; null: neither.
+Request* Find(Ticket ticket, State& s) {
+  if (ticket == 0) return nullptr;
+  if (s.active.ticket == ticket) return &s.active;
+  for (std::size_t i = 0; i < s.buffered; ++i) {
+    if (s.buffer[i].ticket == ticket) return &s.buffer[i];
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -129,16 +144,18 @@ void Apply(const Context& c, Ticket ticket, double lease_s, const Command& comma
 }
 
 bool Release(const Context&, Ticket ticket, State& s) noexcept {
-  if (ticket == 0 || s.active.ticket != ticket) return false;
-  s.active.hold = false;
-  s.active.forward = false;
-  s.active.backward = false;
+  Request* const request = Find(ticket, s);
+  if (request == nullptr) return false;
+  request->hold = false;
+  request->forward = false;
+  request->backward = false;
   return true;
 }
 
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept {
-  if (ticket == 0 || s.active.ticket != ticket || s.active.lease_s <= 0) return false;
-  s.lease_end_cycle = LeaseEnd(c, s.active.lease_s);
+  const Request* const request = Find(ticket, s);
+  if (request == nullptr || request->lease_s <= 0) return false;
+  if (request == &s.active) s.lease_end_cycle = LeaseEnd(c, request->lease_s);
   return true;
 }
 

@@ -11,12 +11,12 @@ namespace {
 
 // An axis whose measured position moves further than this many times its largest velocity allows has a broken encoder.
 constexpr double kJumpFactor = 4;
-constexpr double kJumpCounts = 4;  // and a few counts of noise
 // Rotary axes: positions are brought back once they are so many turns out.
 constexpr double kFarTurns = 1000;
 
 double LargestStep(const Context& c) {
-  return kJumpFactor * c.params.limits.velocity * c.cycle.period_s + kJumpCounts / c.params.encoder.increments_per_unit;
+  return kJumpFactor * c.params.limits.velocity * c.cycle.period_s +
+         c.params.supervision.encoder_noise_counts / c.params.encoder.increments_per_unit;
 }
 
 double Reported(const AxisParams& p, double position) {
@@ -73,6 +73,7 @@ void Supervise(const Context& c, State& s) {
 // Between power on and the drive's readiness.
 void AwaitDrive(const Context& c, State& s) {
   if (s.active.kind != RequestKind::kPower || !s.active.enable) return;
+  if (s.enable_cycle == c.cycle.count) return;  // it was open for a cycle at least
   if (s.drive_ready) {
     s.loop_closed = true;
     s.motion.profile = trajectory::Profile{s.setpoint};
@@ -86,12 +87,12 @@ void AwaitDrive(const Context& c, State& s) {
   }
 }
 
-// Invariant of motions without an end: braking now, from this set point, ends inside the SW limits. A set point that
-// would break it is not taken; the brake begins in its place, which the set point before allowed (AX-13).
-bool CanStopInside(const AxisParams& p, const State& s, const KinematicState& next) {
+// Invariant of motions that go on: braking now, from this set point, ends inside the SW limits. A set point that would
+// break it is not taken; the brake begins in its place, which the set point before allowed (AX-13).
+bool CanStopInside(const AxisParams& p, const KinematicState& before, const KinematicState& next) {
   const double stop = trajectory::StopPosition(next, p.planner_limits());
-  const bool too_high = p.limits.upper && stop > *p.limits.upper && stop > s.setpoint.position;
-  const bool too_low = p.limits.lower && stop < *p.limits.lower && stop < s.setpoint.position;
+  const bool too_high = p.limits.upper && stop > *p.limits.upper && stop > before.position;
+  const bool too_low = p.limits.lower && stop < *p.limits.lower && stop < before.position;
   return !too_high && !too_low;
 }
 
@@ -105,20 +106,38 @@ void BringBackTurns(const AxisParams& p, State& s) {
   s.origin += turns;
 }
 
+// Whether a motion has no end of its own, or is left with a velocity.
+bool GoesOn(const State& s) {
+  return s.plc == PlcState::kContinuousMotion || s.motion.profile.end().velocity != 0;
+}
+
+// Takes a set point back from which the axis could not stop in time, and brakes instead.
+void GuardLimits(const Context& c, const KinematicState& before, State& s) {
+  if (s.plc == PlcState::kErrorStop || !GoesOn(s) || CanStopInside(c.params, before, s.setpoint)) return;
+  const bool upwards = s.setpoint.velocity > 0;
+  s.setpoint = before;
+  Fail(c, upwards ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
+  s.setpoint = s.motion.profile.At(Elapsed(c, s));
+}
+
 void Advance(const Context& c, State& s) {
-  KinematicState next = s.motion.profile.At(Elapsed(c, s));
-  if (s.plc == PlcState::kContinuousMotion && !CanStopInside(c.params, s, next)) {
-    Fail(c, next.velocity > 0 ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
-    next = s.motion.profile.At(Elapsed(c, s));
+  const KinematicState before = s.setpoint;
+  s.setpoint = s.motion.profile.At(Elapsed(c, s));
+  GuardLimits(c, before, s);
+  // Blended moves may be shorter than a cycle: as many begin and end in this one as their times say.
+  for (int i = 0; i <= kBufferSize; ++i) {
+    const double late_s = Elapsed(c, s) - s.motion.profile.duration();
+    if (late_s < 0) break;
+    if (!s.motion.arrived) {
+      s.motion.arrived = true;
+      s.motion.arrived_cycle = c.cycle.count;
+    }
+    const Ticket active = s.active.ticket;
+    Conclude(c, late_s, s);
+    GuardLimits(c, before, s);
+    if (s.motion.arrived || s.active.ticket == active) break;
   }
-  s.setpoint = next;
-  if (next.velocity != 0) s.last_sense = next.velocity > 0 ? 1 : -1;
-  const double late_s = Elapsed(c, s) - s.motion.profile.duration();
-  if (late_s >= 0 && !s.motion.arrived) {
-    s.motion.arrived = true;
-    s.motion.arrived_cycle = c.cycle.count;
-  }
-  if (s.motion.arrived) Conclude(c, late_s, s);
+  if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 
 void FinishReset(const Context& c, State& s) {
@@ -131,8 +150,8 @@ void FinishReset(const Context& c, State& s) {
     return;
   }
   s.error = ErrorId::kNone;
+  Trust(s.encoder);
   if (s.plc == PlcState::kErrorStop) {
-    Trust(s.encoder);
     Enter(s, s.loop_closed ? PlcState::kStandstill : PlcState::kDisabled);
   }
   Report(c, s.reset_ticket, FeedbackState::kDone);
@@ -181,7 +200,7 @@ void Move(const Context& c, State& s) noexcept {
   if (c.params.rotary() && std::abs(s.setpoint.position) > kFarTurns * c.params.modulus) BringBackTurns(c.params, s);
 }
 
-void Control(const Context& c, State& s, ServoOutputs& out) noexcept {
+bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   const AxisParams& p = c.params;
   const bool drive_closes = p.drive.mode == DriveMode::kCyclicPosition;
   const double sign = p.drive.invert ? -1 : 1;
@@ -196,7 +215,8 @@ void Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   out.velocity_counts_s =
       drive_closes ? sign * CountRateAt(p.encoder, s.setpoint.velocity) : CountRateAt(p.encoder, loop.velocity);
   out.voltage_v = loop.voltage_v;
-  if (!std::isfinite(out.position_counts + out.velocity_counts_s + out.voltage_v)) {
+  const bool sound = std::isfinite(out.position_counts + out.velocity_counts_s + out.voltage_v);
+  if (!sound) {
     s.setpoint = {0, 0, 0};
     Fail(c, ErrorId::kInternal, true, s);
     s.loop = ControlLoopState{};
@@ -207,18 +227,22 @@ void Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   s.voltage_v = out.voltage_v;
   out.enable = s.enable;
   out.release_brake = s.loop_closed;
+  return sound;
 }
 
 void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
   if (s.error == ErrorId::kNone) s.error = error;
-  const bool in_use = s.loop_closed || s.enable;
-  if (in_use && s.plc != PlcState::kErrorStop) {
+  if (!s.loop_closed && !s.enable) return;
+  const bool opens = open_loop || !s.loop_closed;
+  if (s.plc != PlcState::kErrorStop) {
     EndActive(c, FeedbackState::kError, error, s);
     AbortBuffer(c, s);
     Enter(s, PlcState::kErrorStop);
-    if (!open_loop) Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);
+    if (!opens) Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);
   }
-  if (in_use && open_loop) OpenLoop(s);
+  if (!opens) return;
+  const bool switching_off = s.active.kind == RequestKind::kPower;  // while braking in ErrorStop: now it is off
+  switching_off ? SwitchedOff(c, s) : OpenLoop(s);
 }
 
 void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
@@ -236,7 +260,8 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.limited_by = s.limited_by;
   out.buffered_commands = s.buffered;
   out.loop_closed = s.loop_closed;
-  out.in_position = s.loop_closed && std::abs(s.following_error) <= p.supervision.in_position.value_or(HUGE_VAL);
+  out.in_position =
+      s.loop_closed && !InMotion(s) && std::abs(s.following_error) <= p.supervision.in_position.value_or(HUGE_VAL);
   out.limit_positive = s.limit_positive;
   out.limit_negative = s.limit_negative;
   out.reference = s.reference;

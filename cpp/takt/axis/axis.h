@@ -38,9 +38,9 @@ bool Renew(const Context& context, Ticket ticket, State& state) noexcept;
 // move: supervision, then the next set point.
 void Move(const Context& context, State& state) noexcept;
 
-// control and actuate: the position loop and what goes to the drive. Not finite: the axis opens its loop and says so
-// (AX-82).
-void Control(const Context& context, State& state, ServoOutputs& outputs) noexcept;
+// control and actuate: the position loop and what goes to the drive. False: a number was not finite; this axis has
+// opened its loop and puts out zeros, and so must all others (AX-82).
+bool Control(const Context& context, State& state, ServoOutputs& outputs) noexcept;
 
 // A fault from outside (overrun, internal): to ErrorStop; with `open_loop` the drive is switched off at once, else it
 // brakes.

@@ -17,7 +17,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::torque_nm>(unit::nm, "As the drive reports it.");
   d.internal<&O::active_command>("Ticket of the command in control; 0: none.");
   d.internal<&O::error>("Fault of the axis, not of a command; 0: none.");
-  d.internal<&O::state>("PLCopen state.");
+  d.internal<&O::state>("PLCopen state after the cycle; several transitions may lie in one.");
   d.internal<&O::limited_by>("What holds the motion in progress back from what was asked.");
   d.internal<&O::buffered_commands>("Commands waiting behind the one in control.");
   d.internal<&O::loop_closed>("The position loop is closed and the brake released.");

@@ -35,6 +35,9 @@ void describe(Description<Supervision>& d) {
   d.defaulted<&S::in_position>(
       unit::u, positive,
       "A positioning command is done when the following error is inside this window; unset: with its set point.");
+  d.defaulted<&S::encoder_noise_counts>(unit::count, not_negative,
+                                        "What a standing encoder may move from one cycle to the next; a change beyond "
+                                        "that and four times the axis' velocity is error 3001.");
   d.defaulted<&S::in_position_timeout_s>(unit::s, positive,
                                          "How long to wait for that; then the command fails with error 0003.");
 }

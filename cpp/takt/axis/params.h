@@ -28,7 +28,9 @@ struct Supervision {
   std::optional<double> deviation_moving{};      // u, largest following error in motion; unset: not watched
   std::optional<double> deviation_standstill{};  // u, the same at rest
   std::optional<double>
-      in_position{};  // u, window in which a positioning command is done; unset: set point alone decides
+      in_position{};                 // u, window in which a positioning command is done; unset: set point alone decides
+  double encoder_noise_counts = 16;  // counts a standing encoder may move from one cycle to the next; more than that
+                                     // and four times what the axis can move is a jump
   double in_position_timeout_s = 1.0;  // s after the set point's arrival; then the command fails with error 0003
 };
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "takt/axis/fit.h"
 
 namespace takt::axis {
 
@@ -11,33 +14,10 @@ using trajectory::Profile;
 
 namespace {
 
-constexpr int kBisections = 24;  // of a blending velocity: 1e-7 of the velocity asked for
+constexpr int kBisections = 12;  // of a blending velocity: to 1/4096 of the velocity asked for
 
 double Sense(double x) {
   return x < 0 ? -1.0 : 1.0;
-}
-
-// Rounding of positions of the size of `x`.
-double Rounding(double x) {
-  return 1e-9 * (1 + std::abs(x));
-}
-
-bool Inside(const AxisLimits& limits, double position) {
-  return !(limits.lower && position < *limits.lower - Rounding(*limits.lower)) &&
-         !(limits.upper && position > *limits.upper + Rounding(*limits.upper));
-}
-
-// Whether a profile keeps the SW limits and the axis' velocity, or at least leaves them no further than it began. One
-// planned with weak limits of a command, from the middle of a stronger motion, may not.
-bool Fits(const AxisLimits& limits, const KinematicState& from, const Profile& profile) {
-  const Profile::Range velocity = profile.VelocityRange();
-  const double fastest = std::max(limits.velocity, std::abs(from.velocity)) * (1 + 1e-9);
-  if (velocity.max > fastest || velocity.min < -fastest) return false;
-  const Profile::Range range = profile.PositionRange();
-  const double low = std::min(from.position, range.min);
-  const double high = std::max(from.position, range.max);
-  return !(limits.lower && low < std::min(*limits.lower, from.position) - Rounding(*limits.lower)) &&
-         !(limits.upper && high > std::max(*limits.upper, from.position) + Rounding(*limits.upper));
 }
 
 // Never backwards and never past the end: what a move that is to be left with a velocity must be.
@@ -48,10 +28,25 @@ bool RunsStraight(const Profile& profile, double sense) {
   return backwards <= allowed + 1e-9 * (1 + allowed);
 }
 
+// How far an axis at `position` may go on in this sense before its SW limit.
+double RoomToLimit(const AxisLimits& limits, double position, double sense) {
+  const std::optional<double>& limit = sense > 0 ? limits.upper : limits.lower;
+  return limit ? sense * (*limit - position) : std::numeric_limits<double>::infinity();
+}
+
+// How far the positioning command `next` goes on from `position` in this sense; 0 or less: it does not.
+double RoomToTarget(const AxisParams& params, double position, double sense, const Request& next) {
+  const double target = next.kind == RequestKind::kMoveRelative
+                            ? position + next.value
+                            : ResolveTarget(params, {position, 0, 0}, next.limits(), next.value, next.direction,
+                                            static_cast<std::int8_t>(sense));
+  return Inside(params.limits, target) ? sense * (target - position) : 0;
+}
+
 // The speed at which `next` may take over at the end of `request`, from what its buffer mode asks, lowered so far that
 // it can still end where it has to. 0: not at all (reversal).
-double TakeOverSpeed(const AxisParams& params, const Request& request, double target, double sense, const Request& next,
-                     std::int8_t last_sense) {
+double TakeOverSpeed(const AxisParams& params, const Request& request, double target, double sense,
+                     const Request& next) {
   double speed = 0;
   switch (next.buffer_mode) {
     case BufferMode::kBlendingLow:
@@ -69,17 +64,12 @@ double TakeOverSpeed(const AxisParams& params, const Request& request, double ta
     default:
       return 0;
   }
-  if (next.kind == RequestKind::kMoveVelocity) {
-    return SenseOf(next, last_sense) == static_cast<int>(sense) ? speed : 0;
-  }
-  const KinematicState at_target{target, 0, 0};
-  const double next_target = next.kind == RequestKind::kMoveRelative
-                                 ? target + next.value
-                                 : ResolveTarget(params, at_target, next.limits(), next.value, next.direction,
-                                                 static_cast<std::int8_t>(sense));
-  const double room = sense * (next_target - target);
-  if (room <= 0 || !Inside(params.limits, next_target)) return 0;
-  const auto stops_in_time = [&](double v) { return trajectory::StopPosition({0, v, 0}, next.limits()) <= room; };
+  const bool endless = next.kind == RequestKind::kMoveVelocity;
+  if (endless && SenseOf(next, static_cast<std::int8_t>(sense)) != static_cast<int>(sense)) return 0;
+  const Limits braking = endless ? params.planner_limits() : next.limits();
+  const double room = endless ? RoomToLimit(params.limits, target, sense) : RoomToTarget(params, target, sense, next);
+  if (room <= 0) return 0;
+  const auto stops_in_time = [&](double v) { return trajectory::StopPosition({0, v, 0}, braking) <= room; };
   if (stops_in_time(speed)) return speed;
   double low = 0;
   double high = speed;
@@ -132,6 +122,68 @@ Status PlanBlended(Planner& planner, const KinematicState& from, double target, 
   return low > 0 ? Status::Ok() : standing;
 }
 
+// From `from` on to what the request asks for, with its own limits; positions: to `out.target`.
+Status PlanOn(const AxisParams& params, Planner& planner, const KinematicState& from, const Request& request,
+              const Request* next, std::int8_t last_sense, Plan& out) {
+  const Limits limits = request.limits();
+  if (request.kind == RequestKind::kMoveVelocity) {
+    Limits ramps = limits;
+    ramps.velocity = params.limits.velocity;  // the request's own may be 0, which is no limit
+    return planner.ToVelocity(from, SenseOf(request, last_sense) * request.velocity, ramps, out.profile);
+  }
+  if (!request.positions()) return planner.Stop(from, limits, out.profile);
+  const double sense = Sense(out.target - from.position);
+  const double speed = next ? TakeOverSpeed(params, request, out.target, sense, *next) : 0;
+  if (next && speed == 0) out.limited_by = LimitedBy::kDistance;
+  if (speed > 0) return PlanBlended(planner, from, out.target, sense, speed, limits, out);
+  return planner.ToPosition(from, out.target, 0, limits, out.profile);
+}
+
+// How a plan begins, from nothing special to all that the axis can do. Only as much as is needed is taken from the
+// axis' own ramps; what follows keeps those of the command.
+enum class Opening : std::uint8_t {
+  kNone,  // with the ramps of the command at once
+  kEase,  // the acceleration there is ends with the axis' jerk
+  kStop,  // the axis brakes to standstill with all it has
+};
+
+Profile Open(const AxisParams& params, Planner& planner, const KinematicState& from, Opening opening) {
+  const Limits own = params.planner_limits();
+  Profile profile{from};
+  if (opening == Opening::kEase && own.jerk > 0) {
+    profile.Append(std::abs(from.acceleration) / own.jerk, -Sense(from.acceleration) * own.jerk);
+    profile.SnapEnd({profile.end().position, profile.end().velocity, 0});
+  } else if (opening == Opening::kStop) {
+    planner.Stop(from, own, profile);
+  }
+  return profile;
+}
+
+Demands DemandsOn(const Request& request) {
+  const bool endless = request.kind == RequestKind::kMoveVelocity;
+  return {.position = !endless, .straight = !endless && !request.positions()};
+}
+
+// The first opening with which the plan keeps what it must; if none does, the strongest.
+Status PlanOpened(const AxisParams& params, Planner& planner, const KinematicState& from, const Request& request,
+                  const Request* next, std::int8_t last_sense, Plan& out) {
+  const bool endless = request.kind == RequestKind::kMoveVelocity;
+  LimitedBy broken = LimitedBy::kNothing;
+  for (const Opening opening : {Opening::kNone, Opening::kEase, Opening::kStop}) {
+    if (opening == Opening::kStop && endless) break;
+    Plan plan{.profile = {}, .target = out.target, .limited_by = broken};
+    Profile whole = Open(params, planner, from, opening);
+    const Status status = PlanOn(params, planner, whole.end(), request, next, last_sense, plan);
+    if (opening == Opening::kNone && status.failed()) return status;
+    if (status.failed() || !whole.Append(plan.profile)) continue;
+    plan.profile = whole;
+    out = plan;
+    broken = Breaks(params, from, whole, DemandsOn(request));
+    if (broken == LimitedBy::kNothing) break;
+  }
+  return Status::Ok();
+}
+
 // While a limit switch is on, no motion may go (further) towards it.
 Status CheckSwitches(const Surroundings& around, const KinematicState& from, const Profile& profile) {
   const Profile::Range velocity = profile.VelocityRange();
@@ -146,65 +198,22 @@ Status CheckSwitches(const Surroundings& around, const KinematicState& from, con
 
 // Standing at a SW limit there is no way further out.
 Status CheckAtLimit(const AxisLimits& limits, const KinematicState& from, double velocity) {
-  const bool at_upper = limits.upper && from.position >= *limits.upper - Rounding(*limits.upper);
-  const bool at_lower = limits.lower && from.position <= *limits.lower + Rounding(*limits.lower);
-  if (from.velocity == 0 && ((velocity > 0 && at_upper) || (velocity < 0 && at_lower)))
-    return Status::Failed(ErrorId::kTargetBehindLimit);
-  return Status::Ok();
+  if (from.velocity != 0 || velocity == 0) return Status::Ok();
+  const bool stuck = RoomToLimit(limits, from.position, Sense(velocity)) <= Rounding(from.position);
+  return stuck ? Status::Failed(ErrorId::kTargetBehindLimit) : Status::Ok();
 }
 
-// To `out.target`.
-Status PlanTo(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-              const Request& request, const Request* next, Plan& out) {
-  const Limits limits = request.limits();
-  if (!Inside(params.limits, out.target)) return Status::Failed(ErrorId::kTargetBehindLimit);
-  const double sense = Sense(out.target - from.position);
-  const double speed = next ? TakeOverSpeed(params, request, out.target, sense, *next, around.last_sense) : 0;
-  if (next && speed == 0) out.limited_by = LimitedBy::kDistance;
-  if (speed > 0) return PlanBlended(planner, from, out.target, sense, speed, limits, out);
-  return planner.ToPosition(from, out.target, 0, limits, out.profile);
-}
-
-Status PlanPositioning(const AxisParams& params, const Surroundings& around, Planner& planner,
-                       const KinematicState& from, const Request& request, const Request* next, Plan& out) {
-  const Limits limits = request.limits();
+// Resolves the target, where there is one, and refuses what can be refused before planning.
+Status Check(const AxisParams& params, const KinematicState& from, const Request& request, std::int8_t last_sense,
+             Plan& out) {
+  if (request.kind == RequestKind::kMoveVelocity) {
+    return CheckAtLimit(params.limits, from, SenseOf(request, last_sense) * request.velocity);
+  }
+  if (!request.positions()) return Status::Ok();
   out.target = request.kind == RequestKind::kMoveRelative
                    ? from.position + request.value
-                   : ResolveTarget(params, from, limits, request.value, request.direction, around.last_sense);
-  return PlanTo(params, around, planner, from, request, next, out);
-}
-
-Status PlanAsAsked(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                   const Request& request, const Request* next, Plan& out) {
-  out.limited_by = LimitedBy::kNothing;
-  Status status;
-  switch (request.kind) {
-    case RequestKind::kMoveAbsolute:
-    case RequestKind::kMoveRelative:
-      status = PlanPositioning(params, around, planner, from, request, next, out);
-      break;
-    case RequestKind::kMoveVelocity: {
-      const double velocity = SenseOf(request, around.last_sense) * request.velocity;
-      Limits limits = request.limits();
-      limits.velocity = params.limits.velocity;  // the request's own may be 0, which is no limit
-      status = CheckAtLimit(params.limits, from, velocity);
-      if (status.ok()) status = planner.ToVelocity(from, velocity, limits, out.profile);
-      break;
-    }
-    default:
-      return planner.Stop(from, request.limits(), out.profile);
-  }
-  return status.ok() ? CheckSwitches(around, from, out.profile) : status;
-}
-
-// The same request with all that the axis has for its ramps.
-Request Hardest(const AxisParams& params, const Request& request) {
-  const Limits own = params.planner_limits();
-  Request harder = request;
-  harder.acceleration = own.acceleration;
-  harder.deceleration = own.deceleration;
-  harder.jerk = own.jerk;
-  return harder;
+                   : ResolveTarget(params, from, request.limits(), request.value, request.direction, last_sense);
+  return Inside(params.limits, out.target) ? Status::Ok() : Status::Failed(ErrorId::kTargetBehindLimit);
 }
 
 }  // namespace
@@ -238,29 +247,29 @@ double ResolveTarget(const AxisParams& params, const KinematicState& from, const
 
 Status PlanRequest(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
                    const Request& request, const Request* next, Plan& out) noexcept {
-  Status status = PlanAsAsked(params, around, planner, from, request, next, out);
-  if (status.ok() && !Fits(params.limits, from, out.profile)) {
-    status = PlanAsAsked(params, around, planner, from, Hardest(params, request), next, out);
-    out.limited_by = LimitedBy::kPosition;
-  }
-  return status;
+  Status status = Check(params, from, request, around.last_sense, out);
+  if (status.ok()) status = PlanOpened(params, planner, from, request, next, around.last_sense, out);
+  const bool brakes = !request.positions() && request.kind != RequestKind::kMoveVelocity;
+  return status.failed() || brakes ? status : CheckSwitches(around, from, out.profile);
 }
 
 Status Replan(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
               const Request& request, const Request* next, Plan& out) noexcept {
-  out.limited_by = LimitedBy::kNothing;
-  Status status = PlanTo(params, around, planner, from, request, next, out);
-  if (status.ok() && !Fits(params.limits, from, out.profile)) {
-    status = PlanTo(params, around, planner, from, Hardest(params, request), next, out);
-  }
-  return status;
+  return PlanOpened(params, planner, from, request, next, around.last_sense, out);
 }
 
 Status PlanStop(const AxisParams& params, Planner& planner, const KinematicState& from, const Limits& limits,
                 Profile& out) noexcept {
-  const Status status = planner.Stop(from, limits, out);
-  if (status.failed() || Fits(params.limits, from, out)) return status;
-  return planner.Stop(from, params.planner_limits(), out);
+  Request halt;
+  halt.kind = RequestKind::kHalt;
+  halt.velocity = limits.velocity;
+  halt.acceleration = limits.acceleration;
+  halt.deceleration = limits.deceleration;
+  halt.jerk = limits.jerk;
+  Plan plan;
+  const Status status = PlanOpened(params, planner, from, halt, nullptr, 1, plan);
+  if (status.ok()) out = plan.profile;
+  return status;
 }
 
 }  // namespace takt::axis

@@ -89,7 +89,8 @@ void ConcludeStop(const Context& c, State& s) {
     Report(c, s.active.ticket, FeedbackState::kDone);
     s.reported = true;
   }
-  if (s.active.hold) return;
+  // Stopping is seen for one cycle at least.
+  if (s.active.hold || c.cycle.count == s.motion.arrived_cycle) return;
   s.active = Request{};
   StartNext(c, 0, s);
 }
@@ -149,6 +150,12 @@ void ComeToRest(const Context& c, const trajectory::Limits& limits, const Motion
   Enter(s, PlcState::kDiscreteMotion);
 }
 
+void SwitchedOff(const Context& c, State& s) noexcept {
+  OpenLoop(s);
+  Enter(s, PlcState::kDisabled);
+  EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+}
+
 void OpenLoop(State& s) noexcept {
   s.enable = false;
   s.loop_closed = false;
@@ -175,7 +182,7 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
     const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, from, next, Follower(s), plan);
     if (status.ok()) {
       TakeControl(c, next, plan, {c.cycle.count, seamless ? late_s : 0}, s);
-      if (seamless) s.setpoint = s.motion.profile.At(late_s);
+      s.setpoint = s.motion.profile.At(Elapsed(c, s));
       return;
     }
     Report(c, next.ticket, FeedbackState::kError, status.error);
@@ -211,9 +218,7 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
       ConcludeStop(c, s);
       break;
     case RequestKind::kPower:
-      OpenLoop(s);
-      Enter(s, PlcState::kDisabled);
-      EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+      SwitchedOff(c, s);
       break;
     case RequestKind::kJog:
       if (s.jog_sense == 0 && !s.active.forward && !s.active.backward) {
@@ -237,20 +242,25 @@ void FollowKeys(const Context& c, State& s) noexcept {
   if (!up && !down) s.jog_armed = true;
   if (s.jog_sense != 0 || !s.jog_armed || up == down) return;
 
-  Request move = s.active;
-  move.kind = RequestKind::kMoveVelocity;
-  move.direction = up ? Direction::kPositive : Direction::kNegative;
   s.jog_armed = false;
   Plan plan;
-  const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, move, nullptr, plan);
+  const Status status = PlanJog(c, s.active, s, plan);
   if (status.failed()) {
     const trajectory::Limits limits = s.active.limits();
     EndActive(c, FeedbackState::kError, status.error, s);
     return ComeToRest(c, limits, FromCycleBefore(c), s);
   }
   s.jog_sense = up ? 1 : -1;
+  s.limited_by = plan.limited_by;
   StartMotion(plan.profile, 0, FromCycleBefore(c), s);
   Enter(s, PlcState::kContinuousMotion);
+}
+
+Status PlanJog(const Context& c, const Request& jog, const State& s, Plan& plan) noexcept {
+  Request move = jog;
+  move.kind = RequestKind::kMoveVelocity;
+  move.direction = jog.forward ? Direction::kPositive : Direction::kNegative;
+  return PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, move, nullptr, plan);
 }
 
 }  // namespace takt::axis

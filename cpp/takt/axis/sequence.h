@@ -43,6 +43,8 @@ void AbortAll(const Context& c, State& s) noexcept;
 void Brake(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s) noexcept;
 // The same, with nobody in control, to Standstill.
 void ComeToRest(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s) noexcept;
+// Power off has come to its end.
+void SwitchedOff(const Context& c, State& s) noexcept;
 // Makes the axis stand where it is measured: loops open, nothing in motion.
 void OpenLoop(State& s) noexcept;
 // Gives control to the next buffered command, `late_s` after the motion in progress ended; with none, the axis is in
@@ -52,6 +54,8 @@ void StartNext(const Context& c, double late_s, State& s) noexcept;
 void ReplanActive(const Context& c, State& s) noexcept;
 // What to do once the motion in progress is over, each cycle until its command ends.
 void Conclude(const Context& c, double late_s, State& s) noexcept;
+// The motion of a jog whose one key is held.
+Status PlanJog(const Context& c, const Request& jog, const State& s, Plan& plan) noexcept;
 // Follows the keys of a jog.
 void FollowKeys(const Context& c, State& s) noexcept;
 

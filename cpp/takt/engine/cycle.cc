@@ -23,6 +23,14 @@ std::vector<std::uint32_t> OrderOf(const Machine& machine) {
   return OrderByMasters(MastersOf(machine), loop).value();
 }
 
+// AX-82: after an internal fault nothing may move on: all loops open, all outputs are zero.
+void OpenAllLoops(World& w) {
+  for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
+    axis::Fail(ContextOf(w, i), ErrorId::kInternal, true, w.axis_states[i]);
+    axis::Control(ContextOf(w, i), w.axis_states[i], w.servo_outputs[i]);
+  }
+}
+
 struct MachineApplier {
   World& world;
   Ticket ticket;
@@ -69,7 +77,8 @@ World::World(const Machine& machine)
       axis_order(OrderOf(machine)),
       servo_inputs(machine.axes.size()),
       servo_outputs(machine.axes.size()),
-      feedback_storage(machine.axes.size() * kEventsPerAxis + kCommandsPerCycle * kEventsPerCommand),
+      feedback_storage(machine.axes.size() * kEventsPerAxis +
+                       (kCommandsPerCycle + kRenewalsPerCycle) * kEventsPerCommand),
       feedback(feedback_storage) {
   TypeOf<axis::State>();  // the first use of a type allocates
   TypeOf<plant::ServoState>();
@@ -120,8 +129,12 @@ void Move(World& w) noexcept {
 }
 
 void Control(World& w) noexcept {
+  bool sound = true;
   for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
-    axis::Control(ContextOf(w, i), w.axis_states[i], w.servo_outputs[i]);
+    sound &= axis::Control(ContextOf(w, i), w.axis_states[i], w.servo_outputs[i]);
+  }
+  if (!sound) OpenAllLoops(w);
+  for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
     axis::Publish(w.axis_params[i], w.axis_states[i], w.axis_outputs[i]);
   }
 }

@@ -230,8 +230,10 @@ TEST(Stop, WorksAtStandstill) {
   ASSERT_TRUE(rig.PowerOn());
   const Ticket stop = rig.Give(Stop{});
   rig.Step();
-  EXPECT_EQ(rig.trace.back().out.state, PlcState::kStandstill);  // at rest at once, not held
+  EXPECT_EQ(rig.out.state, PlcState::kStopping);
   EXPECT_TRUE(rig.lives[stop].done);
+  rig.Step();
+  EXPECT_EQ(rig.out.state, PlcState::kStandstill);
 }
 
 // AX-05: done only inside the in-position window; too late is error 0003, not a fault.

@@ -16,7 +16,7 @@ inline AxisParams LinearParams() {
   p.name = "x";
   p.limits = {.velocity = 500, .acceleration = 5000, .deceleration = 4000, .jerk = 100000, .lower = {}, .upper = {}};
   p.encoder.increments_per_unit = 1e6;
-  p.drive.ready_timeout_s = 0.05;
+  p.drive.ready_timeout_s = 0.5;
   return p;
 }
 

@@ -1,6 +1,7 @@
 // The state machine, power, faults and resets.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <random>
 #include <set>
 
@@ -314,6 +315,10 @@ Command RandomCommand(std::mt19937_64& random, const AxisParams& p) {
   std::uniform_real_distribution<double> any(-1.2, 1.2);
   const auto position = [&] { return p.rotary() ? std::abs(any(random)) * 300 : any(random) * 400; };
   const auto speed = [&] { return std::abs(any(random)) * p.limits.velocity; };
+  const auto ramp = [&](double limit) { return std::max(0.02, std::min(1.0, std::abs(any(random)))) * limit; };
+  const double acceleration = ramp(p.limits.acceleration);
+  const double deceleration = ramp(p.limits.deceleration.value());
+  const double jerk = ramp(p.limits.jerk);
   const auto mode = static_cast<BufferMode>(random() % 6);
   const auto direction = static_cast<Direction>(random() % 4);
   switch (random() % 10) {
@@ -323,33 +328,57 @@ Command RandomCommand(std::mt19937_64& random, const AxisParams& p) {
       return Reset{};
     case 2:
     case 3:
-      return MoveAbsolute{.position = position(), .velocity = speed(), .direction = direction, .buffer_mode = mode};
+      return MoveAbsolute{.position = position(),
+                          .velocity = speed(),
+                          .acceleration = acceleration,
+                          .deceleration = deceleration,
+                          .jerk = jerk,
+                          .direction = direction,
+                          .buffer_mode = mode};
     case 4:
-      return MoveRelative{.distance = position(), .velocity = speed(), .buffer_mode = mode};
+      return MoveRelative{.distance = random() % 5 ? position() : any(random),
+                          .velocity = speed(),
+                          .acceleration = acceleration,
+                          .deceleration = deceleration,
+                          .jerk = jerk,
+                          .buffer_mode = mode};
     case 5:
     case 6:
-      return MoveVelocity{.velocity = speed(), .direction = direction, .buffer_mode = mode};
+      return MoveVelocity{.velocity = speed(),
+                          .acceleration = acceleration,
+                          .deceleration = deceleration,
+                          .jerk = jerk,
+                          .direction = direction,
+                          .buffer_mode = mode};
     case 7:
-      return Halt{.buffer_mode = mode};
+      return Halt{.deceleration = deceleration, .jerk = jerk, .buffer_mode = mode};
     case 8:
-      return Stop{.hold = random() % 2 == 0, .buffer_mode = mode};
+      return Stop{.deceleration = deceleration, .jerk = jerk, .hold = random() % 2 == 0, .buffer_mode = mode};
     default:
-      return Jog{.forward = random() % 2 == 0, .backward = random() % 2 == 0, .velocity = speed()};
+      return Jog{.forward = random() % 2 == 0,
+                 .backward = random() % 2 == 0,
+                 .velocity = speed(),
+                 .acceleration = acceleration,
+                 .deceleration = deceleration,
+                 .jerk = jerk};
   }
 }
 
-class RandomWalk : public testing::TestWithParam<int> {};
+class RandomWalkProperty : public testing::TestWithParam<int> {};
 
 // AX-10: a random walk of commands and faults, 10,000 steps: no transition outside the table. AX-11: each command's
 // feedback is Busy, Active, then one final state, once. AX-13: every set point of powered motion holds the limits and
 // follows from the one before without a step, and stays inside the SW limits.
-TEST_P(RandomWalk, MeetsNoIllegalTransitionAndHoldsAllLimits) {
+TEST_P(RandomWalkProperty, MeetsNoIllegalTransitionAndHoldsAllLimits) {
   std::mt19937_64 random(static_cast<std::uint64_t>(GetParam()));
   AxisParams p = GetParam() % 2 ? LinearParams() : RotaryParams();
   if (!p.rotary()) p.limits.lower = -300, p.limits.upper = 300;
   p.supervision.in_position = 0.01;
   p.supervision.deviation_moving = 2;
-  Rig rig(p);
+  const auto seed = static_cast<std::size_t>(GetParam());
+  p.limits.deceleration = std::array{4000.0, 5000.0, 12000.0, 1500.0}[seed % 4];
+  p.limits.jerk = std::array{100000.0, 20000.0, 0.0}[seed / 2 % 3];
+  Rig rig(p, std::array{0.001, 0.004, 0.02, 0.00025}[seed / 3 % 4]);
   const trajectory::Limits limits = p.planner_limits();
   std::vector<Ticket> held;
   std::set<PlcState> seen;
@@ -399,7 +428,8 @@ TEST_P(RandomWalk, MeetsNoIllegalTransitionAndHoldsAllLimits) {
   }
   EXPECT_LE(open, 10);  // what is in control or waits at the end
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomWalk, testing::Range(1, 9));
+// More of them in the long run (`./dev bench --long`).
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomWalkProperty, testing::Range(1, std::getenv("TAKT_LONG") ? 2000 : 25));
 
 }  // namespace
 }  // namespace takt::axis

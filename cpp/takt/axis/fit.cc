@@ -1,0 +1,86 @@
+#include "takt/axis/fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace takt::axis {
+
+using trajectory::Piece;
+using trajectory::Profile;
+
+namespace {
+
+constexpr double kTolerance = 1e-9;  // of a limit
+// Slower than this share of the largest velocity is standing still, where speed neither grows nor falls.
+constexpr double kStanding = 1e-6;
+
+bool BreaksVelocity(const AxisLimits& limits, const KinematicState& from, const Profile& profile) {
+  const Profile::Range range = profile.VelocityRange();
+  const double fastest = std::max(limits.velocity, std::abs(from.velocity)) * (1 + kTolerance);
+  return range.max > fastest || range.min < -fastest;
+}
+
+// Within one piece and one sense of travel the acceleration is largest at one of both ends.
+bool BreaksRamp(const trajectory::Limits& own, const Piece& piece, double begin, double end) {
+  const KinematicState middle = piece.At(0.5 * (begin + end));
+  if (std::abs(middle.velocity) < kStanding * own.velocity) return false;
+  const double sense = middle.velocity < 0 ? -1 : 1;
+  for (const double t : {begin, end}) {
+    const double growing = sense * piece.At(t).acceleration;
+    const double limit = growing > 0 ? own.acceleration : own.deceleration;
+    if (std::abs(growing) > limit * (1 + kTolerance)) return true;
+  }
+  return false;
+}
+
+bool BreaksAcceleration(const AxisParams& params, const Profile& profile) {
+  const trajectory::Limits own = params.planner_limits();
+  double begin = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(profile.size()); ++i) {
+    const Piece& piece = profile.pieces[i];
+    const double duration = profile.piece_ends_s[i] - begin;
+    begin = profile.piece_ends_s[i];
+    std::array<double, 4> cuts = {0, 0, 0, duration};
+    const std::array<double, 2> zeros = piece.VelocityZeros();
+    for (std::size_t k = 0; k < 2; ++k) cuts[k + 1] = zeros[k] > cuts[k] && zeros[k] < duration ? zeros[k] : cuts[k];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (cuts[k + 1] > cuts[k] && BreaksRamp(own, piece, cuts[k], cuts[k + 1])) return true;
+    }
+  }
+  return false;
+}
+
+bool BreaksPosition(const AxisLimits& limits, const KinematicState& from, const Profile& profile) {
+  const Profile::Range range = profile.PositionRange();
+  return (limits.lower && range.min < std::min(*limits.lower, from.position) - Rounding(*limits.lower)) ||
+         (limits.upper && range.max > std::max(*limits.upper, from.position) + Rounding(*limits.upper));
+}
+
+bool TurnsRound(const AxisLimits& limits, const KinematicState& from, const Profile& profile) {
+  const Profile::Range range = profile.VelocityRange();
+  const double slack = kTolerance * limits.velocity;
+  return (from.velocity > slack && range.min < -slack) || (from.velocity < -slack && range.max > slack);
+}
+
+}  // namespace
+
+double Rounding(double x) noexcept {
+  return 1e-9 * (1 + std::abs(x));
+}
+
+bool Inside(const AxisLimits& limits, double position) noexcept {
+  return !(limits.lower && position < *limits.lower - Rounding(*limits.lower)) &&
+         !(limits.upper && position > *limits.upper + Rounding(*limits.upper));
+}
+
+LimitedBy Breaks(const AxisParams& params, const KinematicState& from, const Profile& profile,
+                 const Demands& demands) noexcept {
+  if (BreaksVelocity(params.limits, from, profile)) return LimitedBy::kVelocity;
+  if (BreaksAcceleration(params, profile)) return LimitedBy::kAcceleration;
+  if (demands.position && BreaksPosition(params.limits, from, profile)) return LimitedBy::kPosition;
+  if (demands.straight && TurnsRound(params.limits, from, profile)) return LimitedBy::kJerk;
+  return LimitedBy::kNothing;
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,29 @@
+// What a motion has to keep whatever a command asked for. A command may bring weaker ramps than the motion it
+// interrupts; planned with those alone, the rest of the stronger motion can carry the axis beyond its limits.
+#pragma once
+
+#include "takt/axis/params.h"
+#include "takt/core/kinematic_state.h"
+#include "takt/core/status.h"
+#include "takt/trajectory/profile.h"
+
+namespace takt::axis {
+
+struct Demands {
+  bool position = true;   // stays inside the SW limits (motions without an end are watched cycle by cycle instead)
+  bool straight = false;  // never turns round (braking)
+};
+
+// The first thing that `profile` breaks: the axis' velocity, acceleration or deceleration, the SW limits (kPosition),
+// or that it may not turn round (kJerk: too little of it). What `from` already is beyond a limit is no fault as long as
+// it gets no worse.
+LimitedBy Breaks(const AxisParams& params, const KinematicState& from, const trajectory::Profile& profile,
+                 const Demands& demands) noexcept;
+
+// Whether a position lies inside the SW limits.
+bool Inside(const AxisLimits& limits, double position) noexcept;
+
+// What counts as equal among positions of the size of `x`.
+double Rounding(double x) noexcept;
+
+}  // namespace takt::axis
