@@ -3,6 +3,7 @@
 #include "takt/core/describe.h"
 #include "takt/core/yaml_reader.h"
 #include "takt/engine/load.h"
+#include "takt/lcm/network.h"
 
 namespace takt::app {
 
@@ -21,6 +22,10 @@ MachineFile ReadMachineFile(const Options& options) {
     const Range range = TypeOf<engine::CycleParams>().FindField("period_s")->range;
     if (!range.Holds(*options.cycle_time_s)) file.problems.push_back("--cycle-time: expected seconds " + Text(range));
     if (loaded.machine) loaded.machine->cycle.period_s = *options.cycle_time_s;
+  }
+  if (loaded.machine) {
+    const std::string problem = lcm::WhyNotUrl(loaded.machine->lcm.url);
+    if (!problem.empty()) file.problems.push_back(options.machine_file + ": lcm.url: " + problem);
   }
   if (file.problems.empty()) file.machine = std::move(loaded.machine);
   return file;

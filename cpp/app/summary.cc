@@ -47,7 +47,7 @@ std::string Greeting(const engine::Machine& machine, engine::Pace pace) {
 }
 
 std::string Summary(const engine::Engine& engine, const engine::RunResult& result, engine::Pace pace,
-                    std::uint64_t send_failures) {
+                    const lcm::Losses& losses) {
   const engine::EngineFigures& figures = engine.figures();
   std::ostringstream text;
   text << Text(result.end) << ": " << result.cycles << " cycles";
@@ -59,7 +59,8 @@ std::string Summary(const engine::Engine& engine, const engine::RunResult& resul
   }
   text << "; " << figures.commands_applied << " commands, " << figures.commands_refused
        << " refused; lost: " << figures.snapshots_dropped << " states, " << figures.feedback_dropped
-       << " feedback events, " << figures.journal_dropped << " journal entries, " << send_failures << " messages";
+       << " feedback events, " << figures.journal_dropped << " journal entries, " << losses.messages << " messages";
+  if (losses.log) text << "; the log is incomplete";
   return text.str();
 }
 

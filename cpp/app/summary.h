@@ -6,6 +6,7 @@
 #include "app/options.h"
 #include "takt/engine/engine.h"
 #include "takt/engine/scheduler.h"
+#include "takt/lcm/service.h"
 
 namespace takt::app {
 
@@ -14,6 +15,6 @@ std::string Greeting(const engine::Machine& machine, engine::Pace pace);
 
 // One paragraph: how it ended, cycles, overruns, times, losses.
 std::string Summary(const engine::Engine& engine, const engine::RunResult& result, engine::Pace pace,
-                    std::uint64_t send_failures);
+                    const lcm::Losses& losses);
 
 }  // namespace takt::app

@@ -1,5 +1,7 @@
 // The standalone engine: taktd machine.yaml.
 
+#include <unistd.h>
+
 #include <atomic>
 #include <csignal>
 #include <iostream>
@@ -14,11 +16,31 @@
 namespace takt::app {
 namespace {
 
+constexpr int kLogIncomplete = 1;
 constexpr int kWrongInput = 2;
 constexpr int kEndedAtOnce = 130;
+constexpr unsigned kCloseWithinS = 1;  // s for closing the log after a second signal
 
 std::atomic<int> signals{0};
-static_assert(std::atomic<int>::is_always_lock_free, "counted in a signal handler");
+std::atomic<bool> cycle_runs{false};
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free, "for a signal handler");
+
+// The cycle looks at the count itself. Before and after it, whatever may hold the program up, a log that is not read
+// for instance, a signal after the first ends it.
+void OnSignal(int) {
+  if (signals.fetch_add(1, std::memory_order_relaxed) > 0 && !cycle_runs) _exit(kEndedAtOnce);
+}
+
+void HandleSignals() {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, OnSignal);
+  std::signal(SIGALRM, OnSignal);
+  std::signal(SIGPIPE, SIG_IGN);  // a reader of the log that has gone is an error of writing it
+}
+
+int ExitCode(engine::RunEnd end, const lcm::Losses& losses) {
+  if (end == engine::RunEnd::kSignal) return kEndedAtOnce;
+  return losses.log ? kLogIncomplete : 0;
+}
 
 int Run(const Options& options, const engine::Machine& machine, const std::string& text) {
   const bool log = !options.log_file.empty();
@@ -38,18 +60,19 @@ int Run(const Options& options, const engine::Machine& machine, const std::strin
     }
     scheduler.wait_for_reader = log;
   }
-  for (const int signal : {SIGINT, SIGTERM}) {
-    std::signal(signal, [](int) { signals.fetch_add(1, std::memory_order_relaxed); });
-  }
 
   std::cout << Greeting(machine, scheduler.pace) << std::endl;
+  cycle_runs = true;
   const engine::RunResult result = engine::Run(engine, scheduler, signals);
-  const std::uint64_t send_failures = service ? service->Close() : 0;
-  std::cout << Summary(engine, result, scheduler.pace, send_failures) << std::endl;
-  return result.end == engine::RunEnd::kSignal ? kEndedAtOnce : 0;
+  cycle_runs = false;
+  if (result.end == engine::RunEnd::kSignal) alarm(kCloseWithinS);
+  const lcm::Losses losses = service ? service->Close() : lcm::Losses{};
+  std::cout << Summary(engine, result, scheduler.pace, losses) << std::endl;
+  return ExitCode(result.end, losses);
 }
 
 int Main(int argc, char** argv) {
+  HandleSignals();
   int exit_code = 0;
   const std::optional<Options> options = ParseOptions(argc, argv, exit_code);
   if (!options) return exit_code;

@@ -14,8 +14,11 @@ _NOT_TEXT = {"true", "false", "null", "yes", "no", "on", "off", "y", "n", "nan",
 
 
 def to_text(arguments: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> str:
-    """Arguments that are None, or what they are anyway (`defaults`), are left out. Nothing is checked here: the engine
-    does, and says what is wrong."""
+    """Arguments that are None, or what they are anyway (`defaults`), are left out. Values are not checked here: the
+    engine does, and says what is wrong."""
+    for key in arguments:
+        if not isinstance(key, str) or not _PLAIN.fullmatch(key):
+            raise ValueError(f"{key!r} is no name of an argument")
     usual = {key: _value(value) for key, value in (defaults or {}).items()}
     given = {key: _value(value) for key, value in arguments.items() if value is not None}
     text = ", ".join(f"{key}: {value}" for key, value in given.items() if usual.get(key) != value)

@@ -199,12 +199,13 @@ def plot(
     """Draw SIGNALS (x, x.set_position, "*.following_error") of a FILE: a recording (.npz) or an LCM log."""
     from takt import plot as plotting
 
+    target = _writable(output or file.with_suffix(".png"), plotting.PICTURES)
     recording = _read(file)
     window = None
     if start is not None or end is not None:
         window = (recording.start_s if start is None else start, recording.end_s if end is None else end)
     figure = plotting.draw(recording, *signals, title=title or file.name, window=window)
-    print(plotting.save(figure, output or file.with_suffix(".png")))
+    print(plotting.save(figure, target))
 
 
 @cli.command("log")
@@ -212,6 +213,8 @@ def plot(
 @click.option("--save", type=FILE, help="Keep the last run as a recording (.npz) or a table (.csv).")
 def show_log(log: Path, save: Path | None) -> int:
     """Say what an LCM LOG holds."""
+    if save is not None:
+        _writable(save, (".npz", ".csv"))
     with _bar(f"read {log.name}") as progress:
         content = open_log(log, progress)
     table = Table("channel", "messages", "not decoded", box=None)
@@ -258,6 +261,15 @@ def _read(file: Path) -> Recording:
         return read_log(file, progress=progress)
 
 
+def _writable(target: Path, suffixes: Sequence[str]) -> Path:
+    """Refuses what could not be written, before the work for it is done."""
+    if target.suffix not in suffixes:
+        raise click.UsageError(f"{target}: expected a name that ends in {' or '.join(suffixes)}")
+    if not target.parent.is_dir():
+        raise click.UsageError(f"{target}: there is no directory {target.parent}")
+    return target
+
+
 def _show(outcome: Outcome) -> None:
     table = Table("", "check", "", box=None, show_header=False)
     for verdict in outcome.verdicts:
@@ -277,21 +289,23 @@ def _timing(figures: Mapping[str, Any]) -> dict[str, str]:
     for name, title in (("execution", "execution of a cycle"), ("latency", "wake-up latency")):
         histogram = figures[name]
         if histogram["count"]:
-            median, late = (_quantile(histogram["buckets"], share) / 1e3 for share in (0.5, 0.99))
+            median, late = (_quantile(histogram, share) / 1e3 for share in (0.5, 0.99))
             rows[title] = f"median {median:.0f} µs, 99 % below {late:.0f} µs, longest {histogram['max'] / 1e3:.0f} µs"
     rows["commands"] = f"{figures['commands_applied']} applied, {figures['commands_refused']} refused"
     rows["dropped"] = f"{figures['snapshots_dropped']} states, {figures['feedback_dropped']} feedbacks"
     return rows
 
 
-def _quantile(buckets: Sequence[int], share: float) -> float:
-    """ns below which so many of the counted times lie; bucket i holds those in [2^i, 2^(i+1))."""
-    wanted = share * sum(buckets)
-    for i, count in enumerate(buckets):
+def _quantile(histogram: Mapping[str, Any], share: float) -> float:
+    """ns below which so many of the counted times lie, the longest at most; bucket i holds those in [2^i, 2^(i+1)), the
+    last one all above."""
+    wanted = share * histogram["count"]
+    longest = float(histogram["max"])
+    for i, count in enumerate(histogram["buckets"][:-1]):
         if count >= wanted and count:
-            return float(2**i * (1 + wanted / count))
+            return min(2**i * (1 + wanted / count), longest)
         wanted -= count
-    return 0.0
+    return longest
 
 
 class _EngineTime(ProgressColumn):

@@ -15,10 +15,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from takt.errors import TaktError
+from takt import _core
+from takt.engine import read_machine
+from takt.errors import ConnectionError, TaktError
 from takt.lcmlog import read_log
 from takt.network import open_network
-from takt.remote import connect
+from takt.remote import RemoteSession, connect
 from takt.replay import ReplayResult, replay
 from takt.scenario import Outcome, Scenario, verify_recording
 
@@ -43,6 +45,7 @@ class DemoResult:
 def run_demo(scenario: Scenario, machine: Path, directory: Path, say: Say = print, pace: str = "real") -> DemoResult:
     """Starts taktd on the machine and lcm-logger beside it, runs the scenario through a connection, ends both, and
     judges what lcm-logger wrote. Everything is kept in `directory`."""
+    _core.load_machine(*read_machine(machine))  # says what is wrong with it
     directory.mkdir(parents=True, exist_ok=True)
     log, journal = directory / "lcm-logger.log", directory / "taktd.log"
     for old in (log, journal):
@@ -50,9 +53,9 @@ def run_demo(scenario: Scenario, machine: Path, directory: Path, say: Say = prin
     url = _free_url()
     with _taktd(machine, url, journal, pace, directory) as engine, _logger(url, log):
         say(f"taktd runs {machine} ({pace} time), lcm-logger records {url}")
-        with connect(url, timeout=15) as session:
+        with _connected(url, engine, directory / "taktd.txt") as session:
             started = time.monotonic()
-            scenario.scenario(session)
+            scenario.play(session)
             say(f"scenario done: {session.now:.1f} s of engine time in {time.monotonic() - started:.1f} s")
             session.run(1.5 / _rate(session.machine["lcm"]["engine_rate_hz"]))  # the last figures count everything
             figures = session.figures
@@ -64,6 +67,20 @@ def run_demo(scenario: Scenario, machine: Path, directory: Path, say: Say = prin
     outcome = verify_recording(scenario, recording)
     recording.save(directory / "recording.npz")
     return DemoResult(outcome, figures, replay(journal), log)
+
+
+def _connected(url: str, engine: subprocess.Popen[bytes], text: Path, timeout: float = 15.0) -> RemoteSession:
+    """A session as soon as the engine answers, unless it has ended by then."""
+    end = time.monotonic() + timeout
+    while True:
+        try:
+            return connect(url, timeout=0.5)
+        except ConnectionError:
+            if engine.poll() is not None:
+                said = text.read_text(errors="replace").strip() or f"it ended with {engine.returncode}"
+                raise TaktError(f"taktd does not start: {said}") from None
+            if time.monotonic() > end:
+                raise
 
 
 def _rate(hz: float) -> float:

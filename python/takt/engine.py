@@ -13,7 +13,7 @@ import numpy as np
 
 from takt import _core
 from takt.axis import Axis
-from takt.errors import ConfigError
+from takt.errors import ConfigError, seconds, whole
 from takt.feedback import Feedback
 from takt.recording import Recording
 from takt.session import Recorder, Session
@@ -27,6 +27,10 @@ def read_machine(machine: str | os.PathLike[str]) -> tuple[bytes, str]:
     stays as it is: the engine says where it is not UTF-8."""
     if isinstance(machine, str) and "\n" in machine:
         return machine.encode("utf-8", "surrogatepass"), "machine"
+    if not isinstance(machine, (str, os.PathLike)):
+        raise TypeError(f"a machine is the path of a file, or its text, not {machine!r}")
+    if not str(machine):
+        raise ConfigError(["the path of the machine file is empty"])
     path = Path(machine)
     try:
         return path.read_bytes(), str(path)
@@ -44,8 +48,11 @@ class Engine(Session):
 
     def __init__(self, machine: str | os.PathLike[str], *, period: float | None = None, journal: bool = False) -> None:
         text, file_name = read_machine(machine)
+        if period is not None:
+            period = seconds(period, "a period")
         self._core = _core.Engine(text, file_name, journal=journal, period_s=period)
         self._unfinished: dict[int, Feedback] = {}
+        self._unreleased: list[Feedback] = []  # their release was refused
         self._core_recorders: dict[Recorder, _core.Recorder] = {}
         super().__init__(json.loads(self._core.machine_json), text.decode())
 
@@ -68,9 +75,8 @@ class Engine(Session):
 
     def step(self, cycles: int = 1) -> None:
         """Runs so many cycles."""
-        if cycles < 0:
-            raise ValueError(f"cannot step {cycles} cycles")
-        self._run(cycles)
+        self._check_open()
+        self._run(whole(cycles, "a number of cycles", 0))
 
     def shut_down(self, timeout: float = 60.0) -> None:
         """Stops everything along its ramps and opens the loops, as the end of taktd does; no command is accepted any
@@ -95,14 +101,24 @@ class Engine(Session):
         else:
             self._unfinished[ticket] = feedback
 
+    def _release(self, feedback: Feedback) -> Feedback:
+        release = super()._release(feedback)
+        if feedback._release_is_refused:
+            self._unreleased.append(feedback)
+        return release
+
     def _value(self, axis: Axis, field: str) -> Any:
         return named(field, self._core.value(axis.index, OUTPUT_FIELDS.index(field)))
 
     def _step(self, cycles: int, until_feedback: bool) -> int:
         """Runs one cycle at least and `cycles` at most; how many it were."""
         self._check_open()
+        again, self._unreleased = self._unreleased, []
+        for feedback in again:
+            self._release(feedback)
         if self._programs:
             self._scan()
+        if self._programs or self._unreleased:
             cycles = 1
         made: int = self._core.step(min(cycles, CHUNK), until_feedback)
         self._take_feedback()

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import builtins
+import math
 from collections.abc import Sequence
+from numbers import Integral, Real
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -41,3 +43,21 @@ class ConnectionError(TaktError, builtins.ConnectionError):
 
 class ClosedError(TaktError):
     """The session was closed."""
+
+
+def whole(value: object, what: str, least: int) -> int:
+    """A whole number from `least` on, or a sentence."""
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise TypeError(f"{what} is a whole number, not {value!r}")
+    if value < least:
+        raise ValueError(f"{what} is a whole number from {least} on, not {value}")
+    return int(value)
+
+
+def seconds(value: object, what: str, most: float = math.inf) -> float:
+    """A number of seconds from 0 to `most`, or a sentence."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"{what} is a number of seconds, not {value!r}")
+    if not 0 <= value <= most:
+        raise ValueError(f"{what} is a number of seconds from 0 on, not {value}")
+    return float(value)

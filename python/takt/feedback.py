@@ -6,7 +6,7 @@ import math
 from enum import IntEnum
 from typing import TYPE_CHECKING, Literal
 
-from takt.errors import CommandError, TimeoutError
+from takt.errors import CommandError, TimeoutError, seconds
 
 if TYPE_CHECKING:
     from takt.session import Session
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 Until = Literal["final", "done", "active", "reached"]
 
 DEFAULT_TIMEOUT_S = 60.0
+QUEUE_FULL = 3012  # error number: the command may be given again
 
 
 class FeedbackState(IntEnum):
@@ -40,7 +41,8 @@ class Feedback:
         self.error_id = 0
         self.sentence = ""  # what went wrong; empty while nothing has
         self.cycle = -1  # of the last change; -1: before the command came to a cycle
-        self.released = False
+        self.released = False  # let go of, whether or not the engine has taken up the release yet
+        self._release: Feedback | None = None  # the last try to
 
     @property
     def busy(self) -> bool:
@@ -103,12 +105,21 @@ class Feedback:
         return self
 
     def release(self) -> Feedback:
-        """Lets go of a level-sensitive command (jog, stop with hold). The feedback of the release itself."""
-        self.released = True
-        return self._session.command("machine", "release", {"ticket": self.ticket})
+        """Lets go of a level-sensitive command (jog, stop with hold). The feedback of the release itself. While the
+        engine's queue is full it is refused, and given again by itself until the engine takes it."""
+        return self._session._release(self)
+
+    @property
+    def _release_is_settled(self) -> bool:
+        """The release has done what it can: it need not be given again."""
+        return self._release is not None and self._release.final and self._release.error_id != QUEUE_FULL
+
+    @property
+    def _release_is_refused(self) -> bool:
+        return self._release is not None and self._release.error_id == QUEUE_FULL
 
     def _wait(self, arrived: Arrived, timeout: float, until: str) -> None:
-        if not self._session._wait_for(arrived, timeout, on_feedback=True):
+        if not self._session._wait_for(arrived, seconds(timeout, "a timeout"), on_feedback=True):
             what = self.state.name.lower() if until == "final" else f"{self.state.name.lower()}, not {until}"
             raise TimeoutError(f"{self.text}: still {what} after {timeout:g} s")
         self._session._catch_up(self.cycle)

@@ -16,9 +16,10 @@ import numpy as np
 from takt import _core, msgs
 from takt.errors import TaktError
 from takt.recording import Array, Recording
-from takt.tables import fields_of, make_recording, table_of
+from takt.tables import fields_of, is_possible, make_recording, table_of
 
 AXIS_PREFIX = "takt/axis/"
+EVENT_HEADER = 28  # bytes of an event beside its channel and data
 KINDS: dict[str, Any] = {
     "takt/machine": msgs.machine_description,
     "takt/engine": msgs.engine_state,
@@ -59,6 +60,7 @@ class Log:
     runs: list[Run]
     messages: Counter[str]  # by channel
     malformed: Counter[str]  # by channel
+    damaged: bool = False  # some of the file is no event: it was torn off, or bytes were changed
 
 
 def read_events(path: str | os.PathLike[str], progress: Progress | None = None) -> Iterator[tuple[int, str, bytes]]:
@@ -88,7 +90,9 @@ def read_events(path: str | os.PathLike[str], progress: Progress | None = None) 
 def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> Log:
     """Reads all messages of a log that are Takt's."""
     log = Log(Path(path), [Run()], Counter(), Counter())
+    size = 0
     for _, channel, data in read_events(path, progress):
+        size += EVENT_HEADER + len(channel.encode()) + len(data)
         log.messages[channel] += 1
         kind = msgs.axis_state if channel.startswith(AXIS_PREFIX) else KINDS.get(channel)
         if kind is None:
@@ -99,6 +103,7 @@ def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> 
             log.malformed[channel] += 1
             continue
         _sort_in(log.runs, message)
+    log.damaged = size < log.path.stat().st_size
     return log
 
 
@@ -133,18 +138,26 @@ def read_log(path: str | os.PathLike[str], *, run: int = -1, progress: Progress 
     return to_recording(open_log(path, progress), run)
 
 
+def run_of(log: Log, run: int) -> Run:
+    """A run by number, from the end if negative."""
+    try:
+        return log.runs[run]
+    except IndexError:
+        runs = "1 run" if len(log.runs) == 1 else f"{len(log.runs)} runs"
+        raise LogError(f"{log.path}: holds {runs}; there is no run {run}") from None
+
+
 def to_recording(log: Log, run: int = -1) -> Recording:
     """One run of a log as a recording."""
-    try:
-        one = log.runs[run]
-    except IndexError:
-        raise LogError(f"{log.path}: holds {len(log.runs)} runs; there is no run {run}") from None
+    one = run_of(log, run)
     if one.machine is None:
         raise LogError(f"{log.path}: holds no description of a machine (channel takt/machine)")
     machine = json.loads(_core.load_machine(one.machine.text.encode(), str(log.path)))
     period = one.machine.period_s
     tables: dict[str, dict[str, Array]] = {
-        a["name"]: table_of(one.states[a["name"]], period) for a in machine["axes"] if a["name"] in one.states
+        a["name"]: table_of([s for s in one.states[a["name"]] if is_possible(s, period)], period)
+        for a in machine["axes"]
+        if a["name"] in one.states
     }
     meta = {
         "source": str(log.path),

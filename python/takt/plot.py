@@ -30,6 +30,7 @@ from takt.verdict import Bound, Interval, Lane, Verdict
 
 WIDTH_IN = 14.0  # 1400 pixels at 100 dpi
 DPI = 100
+PICTURES = (".png", ".svg", ".pdf")
 INK = "#23282f"
 FAINT = "#8b939e"
 GRID = "#e6e9ee"
@@ -152,10 +153,12 @@ def draw_verdict(verdict: Verdict) -> Figure:
 
 
 def save(figure: Figure, path: str | PathLike[str]) -> Path:
-    """Writes a PNG, 1400 pixels wide."""
+    """Writes a picture of the kind its name ends in (PICTURES); a PNG is 1400 pixels wide."""
     target = Path(path)
+    if target.suffix not in PICTURES:
+        raise ValueError(f"{target}: expected a name that ends in {', '.join(PICTURES)}")
     target.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(target, format="png", dpi=DPI)
+    figure.savefig(target, format=target.suffix[1:], dpi=DPI)
     return target
 
 

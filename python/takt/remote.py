@@ -18,8 +18,8 @@ from takt.errors import ConnectionError, TaktError
 from takt.feedback import Feedback
 from takt.network import DEFAULT_URL, open_network
 from takt.recording import Recording
-from takt.session import Recorder, Session
-from takt.tables import fields_of, make_recording, named, table_of
+from takt.session import Recorder, Session, release_of
+from takt.tables import fields_of, is_possible, make_recording, named, table_of
 
 QUEUE = 100_000  # messages waiting to be received before LCM drops some
 SILENCE_S = 3.0  # without any message: the engine is gone (it sends its own state, and the machine every second)
@@ -29,6 +29,8 @@ ANSWER_S = 2.0  # after which a command that is not answered is given up
 LATE_S = 1.0  # how long published values may take to catch up with a feedback
 IDLE_BEAT_S = 0.5  # between heartbeats that hold nothing but the client's name
 POLL_S = 0.1  # longest wait before looking at clocks and Ctrl-C again
+STILL_S = 10.0  # how long an engine that is heard may stay at one cycle
+JUMP_S = 3600.0  # of engine time between two messages: an axis that says more is not believed
 
 
 @dataclass
@@ -46,6 +48,7 @@ class RemoteSession(Session):
         self.url = url
         self.client = client
         self.losses: dict[str, int] = {}  # messages lost on the way, by channel
+        self.ignored = 0  # messages whose cycle cannot be true
         self._session_id = random.SystemRandom().getrandbits(62) + 1
         self._news = threading.Condition()  # guards all that follows
         self._sequences: dict[str, int] = {}
@@ -78,6 +81,7 @@ class RemoteSession(Session):
             machine = json.loads(_core.load_machine(description.text.encode(), "machine"))
             super().__init__(machine, description.text)
             self._dead_man_s = float(machine["lcm"]["dead_man_s"])
+            self._still_s = max(STILL_S, 3.0 / float(machine["lcm"]["engine_rate_hz"]))
             self._beater = threading.Thread(target=self._beat, name="takt heartbeat", daemon=True)
             self._beater.start()
             self._first_states(timeout)
@@ -120,6 +124,10 @@ class RemoteSession(Session):
                 feedback.release()
             except TaktError:
                 break
+        with self._news:  # what is still not released then ends without heartbeats
+            self._news.wait_for(
+                lambda: self._trouble or all(f._release_is_settled for f in self._held), self._dead_man_s
+            )
         super().close()
         self._stop.set()
         self._beat_now.set()
@@ -154,6 +162,18 @@ class RemoteSession(Session):
         if self._description is not None and run_id != self._description.run_id and not self._trouble:
             self._trouble = "another engine runs on this network now: it was started again, or there are two"
 
+    def _believable(self, message: msgs.engine_state | msgs.axis_state) -> bool:
+        """Cycle and time say the same. An axis besides cannot be far ahead of all that was heard; the engine's own
+        state, which has the run's number, can (this process may have slept)."""
+        if self._description is None:
+            return False
+        period = self._description.period_s
+        good = is_possible(message, period)
+        if good and isinstance(message, msgs.axis_state) and self._cycle >= 0:
+            good = (message.cycle - self._cycle) * period <= JUMP_S
+        self.ignored += not good
+        return good
+
     def _on_machine(self, channel: str, data: bytes) -> None:
         message = _decoded(msgs.machine_description, data)
         if message is None:
@@ -170,15 +190,19 @@ class RemoteSession(Session):
             return
         with self._news:
             self._check_run(message.run_id)
-            self._engine_state = message
-            self._cycle = max(self._cycle, message.cycle)
-            self._hear(channel, message.sequence)
+            if self._believable(message):
+                self._engine_state = message
+                self._cycle = max(self._cycle, message.cycle)
+                self._hear(channel, message.sequence)
+            self._news.notify_all()
 
     def _on_axis(self, channel: str, data: bytes) -> None:
         message = _decoded(msgs.axis_state, data)
         if message is None:
             return
         with self._news:
+            if not self._believable(message):
+                return
             self._states[message.name] = message
             self._cycle = max(self._cycle, message.cycle)
             for rows in self._recorded.values():
@@ -207,24 +231,31 @@ class RemoteSession(Session):
         self._report(feedback, message.state, message.reached, message.error_id, message.sentence, message.cycle)
         if feedback.final:
             del self._sent[message.id]
-        if feedback.error or feedback.aborted or (feedback.final and feedback.released):
-            self._let_go(feedback)
+        self._held = [f for f in self._held if not (f.error or f.aborted or (f.done and f._release_is_settled))]
 
     # --- heartbeats and second tries, on a thread of their own ---
 
     def _beat(self) -> None:
         beat = msgs.heartbeat()
         beat.client, beat.session = self.client, self._session_id
+        self._set_run(beat)
         while not self._stop.is_set():
-            self._publish("takt/heartbeat", beat.encode())
             now = time.monotonic()
             with self._news:
+                ending = [f for f in self._held if f.released and not f._release_is_settled]
+                for feedback in ending:
+                    if feedback.ticket and (feedback._release is None or feedback._release_is_refused):
+                        self._send(release_of(feedback))
+                # Beats renew whatever the client holds: without them the dead man ends what cannot be released.
+                beats = not ending or len(ending) < len(self._held)
                 again = [s for s in self._sent.values() if now - s.at > (REFRESH_S if s.answered else RESEND_S)]
                 for sent in again:
                     sent.at = now
                 interval = self._dead_man_s / 4 if self._held else IDLE_BEAT_S
-                if any(not s.answered for s in self._sent.values()):
+                if ending or any(not s.answered for s in self._sent.values()):
                     interval = min(interval, RESEND_S / 2)
+            if beats:
+                self._publish("takt/heartbeat", beat.encode())
             for sent in again:
                 self._publish("takt/command", sent.message.encode())
             self._beat_now.wait(interval)
@@ -240,45 +271,48 @@ class RemoteSession(Session):
 
     # --- what the session is made of ---
 
-    def _submit(self, feedback: Feedback) -> None:
+    def _send(self, feedback: Feedback) -> _Sent:
         message = msgs.command()
         message.client, message.session = self.client, self._session_id
         message.target, message.verb, message.arguments = feedback.target, feedback.verb, feedback.arguments
+        self._set_run(message)
         with self._news:
-            self._check_alive()
             self._last_id += 1
             message.id = self._last_id
             sent = self._sent[message.id] = _Sent(message, feedback, time.monotonic())
             if feedback.level_sensitive:
                 self._held.append(feedback)
-        if feedback.level_sensitive:
-            self._beat_now.set()
+                self._beat_now.set()
         self._publish("takt/command", message.encode())
+        return sent
+
+    def _set_run(self, message: msgs.command | msgs.heartbeat) -> None:
+        """For this start of the engine alone, not for another one, nor for one that a log is played back to."""
+        if hasattr(message, "run_id") and self._description is not None:
+            message.run_id = self._description.run_id
+
+    def _submit(self, feedback: Feedback) -> None:
+        with self._news:
+            self._check_alive()
+        sent = self._send(feedback)
         with self._news:
             if not self._news.wait_for(lambda: sent.answered or self._trouble, ANSWER_S):
-                del self._sent[message.id]
-                self._let_go(feedback)
+                if feedback.level_sensitive:
+                    feedback.released = True  # should the engine have taken it up: goes on until it answers
+                elif feedback.verb != "release":
+                    del self._sent[sent.message.id]
                 raise ConnectionError(
                     f"{feedback.text}: the engine on {self.url} does not answer within {ANSWER_S:g} s"
                 )
             if not sent.answered:
                 raise ConnectionError(self._trouble)
-        if feedback.verb == "release" and feedback.target == "machine":
-            self._forget_released()
-
-    def _forget_released(self) -> None:
-        with self._news:
-            self._held = [f for f in self._held if f.busy or not f.released]  # on its ramp it needs its lease
-
-    def _let_go(self, feedback: Feedback) -> None:
-        if feedback in self._held:
-            self._held.remove(feedback)
 
     def _value(self, axis: Axis, field: str) -> Any:
         return named(field, getattr(self._states[axis.name], field))
 
     def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
         end = self.now + timeout
+        cycle, since = self._cycle, time.monotonic()
         while True:
             with self._news:
                 seen = self._sequences.copy()
@@ -288,6 +322,10 @@ class RemoteSession(Session):
                 return True
             if self.now >= end:
                 return False
+            if self._cycle != cycle:
+                cycle, since = self._cycle, time.monotonic()
+            if time.monotonic() - since > self._still_s:
+                raise ConnectionError(f"the engine on {self.url} is there, but its time stands still at {self.now:g} s")
             with self._news:
                 self._check_alive()
                 self._news.wait_for(lambda seen=seen: self._sequences != seen or self._trouble, POLL_S)  # type: ignore[misc]
@@ -299,7 +337,7 @@ class RemoteSession(Session):
 
     def _catch_up(self, cycle: int) -> None:
         with self._news:
-            self._news.wait_for(lambda: all(s.cycle >= cycle for s in self._states.values()) or self._trouble, LATE_S)
+            self._news.wait_for(lambda: all(self._states[a].cycle >= cycle for a in self._axes) or self._trouble, LATE_S)
 
     def _begin(self, recorder: Recorder) -> None:
         with self._news:

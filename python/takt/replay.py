@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from takt import _core
-from takt.lcmlog import LogError, Progress, open_log
+from takt import _core, msgs
+from takt.lcmlog import LogError, Progress, Run, open_log, run_of
 
 CHUNK = 10_000  # cycles between two reports of progress
+
+Hashes = tuple[npt.NDArray[np.int64], npt.NDArray[np.uint64]]  # cycles, rising, and the hash after each
 
 
 @dataclass(frozen=True)
@@ -29,76 +31,120 @@ class Difference:
 class ReplayResult:
     machine: str
     cycles: int  # that were compared
+    of: int  # cycles from 0 to the last one that the log knows of
     commands: int
     period_s: float
     version: str  # of the engine that wrote the log
     difference: Difference | None
+    missing: str  # why not all of them could be compared; empty: all were
+
+    @property
+    def complete(self) -> bool:
+        """Nothing is missing in the journal, from the first cycle to the last the log knows of."""
+        return not self.missing
 
     @property
     def same(self) -> bool:
-        return self.difference is None
+        """Every cycle was compared, and equal."""
+        return self.complete and self.difference is None
 
     def __bool__(self) -> bool:
         return self.same
 
     @property
     def sentence(self) -> str:
-        what = f"{self.cycles} cycles ({self.cycles * self.period_s:.3f} s) with {self.commands} commands"
-        if self.difference is None:
-            return f"{what}: the same, bit for bit"
-        at = self.difference.cycle
-        return f"{what}: differs from cycle {at} ({at * self.period_s:.4f} s) on"
+        what = f"{self.cycles:,} cycles ({self.cycles * self.period_s:.3f} s) with {self.commands:,} commands"
+        if self.difference is not None:
+            at = self.difference.cycle
+            missing = f" ({self.missing})" if self.missing else ""
+            return f"{what}: differs from cycle {at} ({at * self.period_s:.4f} s) on{missing}"
+        if self.missing:
+            return f"{self.cycles:,} of {self.of:,} cycles compared and equal, so not proven the same: {self.missing}"
+        return f"{what}: the same, bit for bit"
 
 
 def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | None = None) -> ReplayResult:
     """Rebuilds the engine from a log that taktd wrote (--log), gives every command so that it is applied in the same
-    cycle, and compares the hash of the state after every cycle. Hashes are compared as far as the log has them."""
+    cycle, and compares the hash of the state after every cycle. The run is the same only if every cycle from the first
+    to the last one that the log knows of was compared; a hole in the journal ends the comparison."""
     content = open_log(log, (lambda share: progress(share / 2)) if progress else None)
-    one = content.runs[run]
+    one = run_of(content, run)
     if one.start is None:
         raise LogError(f"{content.path}: holds no journal; taktd writes one with --log")
-    recorded = _join((h.first_cycle, h.hashes) for h in one.hashes)
+    cycles, recorded = _hashes(one)
+    known = _last_cycle(one, cycles) + 1
+    missing = _missing(one, cycles, known)
+    if content.damaged:
+        missing = f"the log is cut off or damaged{', and ' + missing if missing else ''}"
+    comparable = _in_a_row(cycles)
     engine = _core.Engine(one.start.text.encode(), str(content.path), journal=True, period_s=one.start.period_s)
-    entries = iter(sorted(one.journal, key=lambda e: e.cycle))
-    entry = next(entries, None)
-    last = max(recorded, default=-1)
-    commands = 0
+    commands = sorted(one.journal, key=lambda entry: entry.cycle)
+    given = 0
     difference = None
-    compared = 0
-    while difference is None and engine.cycle <= last:
-        while entry is not None and entry.cycle <= engine.cycle:
-            _give(engine, entry.target, entry.verb, entry.arguments, entry.lease_s, entry.ticket)
-            commands += 1
-            entry = next(entries, None)
-        until = min(last + 1, engine.cycle + CHUNK, entry.cycle if entry is not None else last + 1)
-        engine.step(until - engine.cycle)
-        cycles, hashes = engine.take_hashes()
-        for cycle, value in zip(cycles.tolist(), hashes.tolist(), strict=True):
-            if cycle in recorded:
-                compared += 1
-                if recorded[cycle] != value:
-                    difference = Difference(cycle, recorded[cycle], value)
-                    break
+    while difference is None and engine.cycle < comparable:
+        while given < len(commands) and commands[given].cycle <= engine.cycle:
+            _give(engine, commands[given])
+            given += 1
+        first = engine.cycle
+        next_cycle = commands[given].cycle if given < len(commands) else comparable
+        engine.step(min(comparable, first + CHUNK, next_cycle) - first)
+        made = engine.take_hashes()[1]
+        wrong = np.flatnonzero(made != recorded[first : first + len(made)])
+        if len(wrong):
+            at = first + int(wrong[0])
+            difference = Difference(at, int(recorded[at]), int(made[wrong[0]]))
         engine.take_feedback()
         engine.take_journal()
         if progress is not None:
-            progress(0.5 + 0.5 * engine.cycle / (last + 1))
+            progress(0.5 + 0.5 * engine.cycle / comparable)
+    compared = comparable if difference is None else difference.cycle + 1
     name = json.loads(engine.machine_json)["name"]
-    return ReplayResult(name, compared, commands, one.start.period_s, one.start.version, difference)
+    return ReplayResult(
+        name, compared, known, given, one.start.period_s, one.start.version, difference, missing
+    )
 
 
-def _join(parts: Iterable[tuple[int, npt.ArrayLike]]) -> dict[int, int]:
-    """Hashes by cycle. LCM has no unsigned numbers."""
-    joined: dict[int, int] = {}
-    for first, hashes in parts:
-        values = np.asarray(hashes, dtype=np.int64).view(np.uint64).tolist()
-        joined.update(zip(range(first, first + len(values)), values, strict=True))
-    return joined
+def _hashes(run: Run) -> Hashes:
+    """All hashes of a run. LCM has no unsigned numbers."""
+    parts = sorted((h for h in run.hashes if h.count > 0 and 0 <= h.first_cycle < 2**62), key=lambda h: h.first_cycle)
+    if not parts:
+        return np.empty(0, np.int64), np.empty(0, np.uint64)
+    cycles = np.concatenate([np.arange(h.first_cycle, h.first_cycle + h.count, dtype=np.int64) for h in parts])
+    return cycles, np.concatenate([np.asarray(h.hashes, dtype=np.int64) for h in parts]).view(np.uint64)
 
 
-def _give(engine: _core.Engine, target: str, verb: str, arguments: str, lease_s: float, ticket: int) -> None:
-    _, error_id, sentence = engine.resubmit(target, verb, arguments, ticket, lease_s)
+def _in_a_row(cycles: npt.NDArray[np.int64]) -> int:
+    """How many cycles there are from 0 on without a hole."""
+    breaks = np.flatnonzero(cycles != np.arange(len(cycles)))
+    return int(breaks[0]) if len(breaks) else len(cycles)
+
+
+def _last_cycle(run: Run, cycles: npt.NDArray[np.int64]) -> int:
+    """The last cycle that anything in the log knows of; -1: none."""
+    known = [int(cycles[-1])] if len(cycles) else []
+    known += [entry.cycle for entry in run.journal]
+    known += [state.cycle for state in run.engine_states]
+    known += [states[-1].cycle for states in run.states.values()]
+    return max(known, default=-1)
+
+
+def _missing(run: Run, cycles: npt.NDArray[np.int64], known: int) -> str:
+    """What keeps the journal from being run again as a whole; empty: nothing."""
+    dropped = max((state.journal_dropped for state in run.engine_states), default=0)
+    if dropped > 0:
+        return f"the journal lost {dropped:,} entries"
+    if not len(cycles):
+        return "the journal holds no hashes"
+    row = _in_a_row(cycles)
+    if row < len(cycles):
+        return f"the journal has no hash of cycle {row:,}" if cycles[row] > row else f"cycle {row - 1:,} comes twice"
+    if row < known:
+        return f"the journal ends after cycle {row - 1:,}"
+    return ""
+
+
+def _give(engine: _core.Engine, entry: msgs.journal_command) -> None:
+    _, error_id, sentence = engine.resubmit(entry.target, entry.verb, entry.arguments, entry.ticket, entry.lease_s)
     if error_id:
-        raise LogError(
-            f"the journal's command {ticket} ({target}.{verb} {arguments}) cannot be given again: {sentence}"
-        )
+        command = f"{entry.target}.{entry.verb} {entry.arguments}"
+        raise LogError(f"the journal's command {entry.ticket} ({command}) cannot be given again: {sentence}")

@@ -6,11 +6,13 @@ machine.yaml beside the file.
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
+import inspect
 import os
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,6 +40,11 @@ class Scenario:
         """The machine file beside it."""
         return self.path.parent / "machine.yaml"
 
+    def play(self, session: Session) -> None:
+        """Does what the scenario does."""
+        with _no_exit(self.path):
+            self.scenario(session)
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -61,7 +68,8 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     module = importlib.util.module_from_spec(spec)
     sys.path.insert(0, str(file.resolve().parent))
     try:
-        spec.loader.exec_module(module)
+        with _no_exit(file):
+            spec.loader.exec_module(module)
     finally:
         sys.path.pop(0)
     scenario: Any = getattr(module, "scenario", None)
@@ -70,6 +78,9 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
         raise ScenarioError(f"{file}: has no function scenario(session)")
     if verify is not None and not callable(verify):
         raise ScenarioError(f"{file}: verify is no function")
+    for name, function, argument in (("scenario", scenario, "session"), ("verify", verify, "recording")):
+        if function is not None and not _takes_one(function):
+            raise ScenarioError(f"{file}: {name} must take one argument, {name}({argument})")
     lines = (module.__doc__ or "").strip().splitlines()
     return Scenario(file, lines[0].rstrip(".") if lines else file.stem, scenario, verify)
 
@@ -80,7 +91,7 @@ def run_scenario(scenario: Scenario, session: Session, directory: Path | None = 
     recorder = session.record()
     complaint = ""
     try:
-        scenario.scenario(session)
+        scenario.play(session)
     except AssertionError as error:
         complaint = _complaint(error, scenario.path)
     finally:
@@ -96,10 +107,28 @@ def verify_recording(scenario: Scenario, recording: Recording) -> Outcome:
     with expect.collect() as verdicts:
         if scenario.verify is not None:
             try:
-                scenario.verify(recording)
+                with _no_exit(scenario.path):
+                    scenario.verify(recording)
             except AssertionError as error:
                 complaint = _complaint(error, scenario.path)
     return Outcome(recording, tuple(verdicts), complaint)
+
+
+@contextlib.contextmanager
+def _no_exit(path: Path) -> Iterator[None]:
+    """A scenario that exits has not come to its end."""
+    try:
+        yield
+    except SystemExit as error:
+        raise ScenarioError(f"{path}: ended by exit({'' if error.code is None else error.code})") from None
+
+
+def _takes_one(function: Callable[..., object]) -> bool:
+    try:
+        inspect.signature(function).bind(None)
+    except TypeError:
+        return False
+    return True
 
 
 def _complaint(error: AssertionError, path: Path) -> str:

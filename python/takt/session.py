@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import sys
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType, TracebackType
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from takt._commands import DEFAULTS, LEVEL_SENSITIVE, MachineCommands
 from takt.arguments import to_text
 from takt.axis import Axis
-from takt.errors import ClosedError, TaktError, TimeoutError
+from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.recording import Recording
 
@@ -82,6 +83,8 @@ class Session(MachineCommands):
         return MappingProxyType(self._axes)
 
     def axis(self, name: str) -> Axis:
+        if not isinstance(name, str):
+            raise TypeError(f"an axis goes by its name, not by {name!r}")
         try:
             return self._axes[name]
         except KeyError:
@@ -115,14 +118,28 @@ class Session(MachineCommands):
         """Gives any command by its names; the methods of axes are made of this. What the engine refuses comes back as a
         feedback in the state Error, with a sentence."""
         self._check_open()
+        for what, text in (("target", target), ("verb", verb)):
+            if not isinstance(text, str):
+                raise TypeError(f"the {what} of a command is a text, not {text!r}")
+        if not isinstance(arguments, (str, Mapping)):
+            raise TypeError(f"the arguments of a command are a mapping or a text, not {arguments!r}")
         text = arguments if isinstance(arguments, str) else to_text(arguments, DEFAULTS.get(verb, {}))
         level = (
             not isinstance(arguments, str) and verb in LEVEL_SENSITIVE and any(v is True for v in arguments.values())
         )
         feedback = Feedback(self, _clean(target), _clean(verb), _clean(text), level_sensitive=level)
+        self._give(feedback)
+        return feedback
+
+    def _give(self, feedback: Feedback) -> None:
         self._event(feedback.target, feedback.text, "start")
         self._submit(feedback)
-        return feedback
+
+    def _release(self, feedback: Feedback) -> Feedback:
+        self._check_open()
+        release = release_of(feedback)
+        self._give(release)
+        return release
 
     def _command(self, verb: str, arguments: Mapping[str, Any]) -> Feedback:
         return self.command("machine", verb, arguments)
@@ -132,18 +149,24 @@ class Session(MachineCommands):
     def wait(self, condition: Callable[[], object], timeout: float = DEFAULT_TIMEOUT_S, *, what: str = "") -> None:
         """Lets engine time pass until `condition()` is true; takt.TimeoutError when it is not within `timeout` s of
         engine time. In process it is asked after every cycle, over LCM whenever something new has come."""
+        self._check_open()
+        if not callable(condition):
+            raise TypeError(f"a condition is a function, not {condition!r}")
+        timeout = seconds(timeout, "a timeout")
         if not self._wait_for(lambda: bool(condition()), timeout, on_feedback=False):
             raise TimeoutError(f"{what or 'the condition'}: not met within {timeout:g} s")
 
     def run(self, duration: float) -> None:
         """Lets so many seconds of engine time pass."""
-        if not 0 <= duration < float("inf"):
-            raise ValueError(f"a duration is a number of seconds from 0 on, not {duration}")
-        self._run(round(duration / self.period))
+        self._check_open()
+        self._run(round(seconds(duration, "a duration", sys.float_info.max) / self.period))
 
     def program(self, scan: P) -> P:
         """Has `scan` called before every cycle, like a program in a PLC: the place for function blocks (takt.plcopen).
         Over LCM it is called whenever the engine's state has come. Serves as a decorator."""
+        self._check_open()
+        if not callable(scan):
+            raise TypeError(f"a program is a function, not {scan!r}")
         self._programs.append(scan)
         return scan
 
@@ -163,15 +186,14 @@ class Session(MachineCommands):
         """Starts recording these axes, or all; one sample every so many cycles (over LCM: of those that are
         published)."""
         self._check_open()
-        if every < 1:
-            raise ValueError(f"every is a number of cycles from 1 on, not {every}")
-        recorder = Recorder(self, [self.axis(a).name for a in axes] or self._axes, every)
+        recorder = Recorder(self, [self.axis(a).name for a in axes] or self._axes, whole(every, "every", 1))
         self._begin(recorder)
         self._recorders.append(recorder)
         return recorder
 
     def mark(self, text: str, axis: str = "") -> None:
         """Puts a mark at this time into all recordings in progress."""
+        self._check_open()
         self._event(axis, text, "mark")
 
     def _event(self, component: str, text: str, kind: str, time_s: float = math.nan) -> None:
@@ -198,6 +220,7 @@ class Session(MachineCommands):
         self._closed = True
 
     def __enter__(self) -> Self:
+        self._check_open()
         return self
 
     def __exit__(
@@ -236,6 +259,15 @@ class Session(MachineCommands):
 
     @abstractmethod
     def _finish(self, recorder: Recorder) -> Recording: ...
+
+
+def release_of(feedback: Feedback) -> Feedback:
+    """The command that lets go of this one, not given yet."""
+    arguments = to_text({"ticket": feedback.ticket})
+    release = Feedback(feedback._session, "machine", "release", arguments, level_sensitive=False)
+    feedback._release = release
+    feedback.released = True
+    return release
 
 
 def _clean(text: str) -> str:

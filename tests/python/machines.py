@@ -11,6 +11,9 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
+import takt
+from takt import msgs
+
 _TEXT = """\
 name: test
 lcm: {LCM}
@@ -46,6 +49,15 @@ def taktd() -> str:
     found = shutil.which("taktd")
     assert found, "taktd is not on the PATH"
     return found
+
+
+def command_for(session: takt.RemoteSession) -> msgs.command:
+    """An empty command to the engine of this session, past the session."""
+    message = msgs.command()
+    assert session._description is not None
+    if hasattr(message, "run_id"):
+        message.run_id = session._description.run_id
+    return message
 
 
 @contextlib.contextmanager

@@ -335,6 +335,20 @@ def test_components_that_were_never_sampled_together() -> None:
     assert not checks.never_both(rec, "a.actual_position > 100", "b.actual_position > 100").passed
 
 
+def test_components_that_were_seldom_sampled_together() -> None:
+    """PY-05: cycles of which neither is a multiple of the other's prove little; single losses do not matter."""
+
+    def line(cycles: np.typing.NDArray[np.int64]) -> dict[str, np.typing.NDArray[np.float64]]:
+        return {"time_s": cycles * DT, "cycle": cycles, "set_position": 3.0 * cycles}
+
+    rec = Recording({"a": line(np.arange(0, 1000, 10)), "b": line(np.arange(0, 1000, 25))})
+    sentence = "a and b have only 20 of 40 cycles in common: publish both at one rate"
+    assert checks.in_sync(rec, "a", "b", tolerance=1.0).sentence.startswith(sentence)
+    assert not checks.never_both(rec, "a.set_position < -1", "b.set_position < -1").passed
+    rec = Recording({"a": line(np.delete(np.arange(0, 1000, 10), 7)), "b": line(np.arange(0, 1000, 10))})
+    assert checks.in_sync(rec, "a", "b", tolerance=1e-9).passed
+
+
 def test_different_rates_are_compared_where_both_are() -> None:
     t = np.arange(1000)
     line = 3.0 * t

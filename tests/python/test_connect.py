@@ -13,10 +13,12 @@ import time
 from pathlib import Path
 
 import lcm
+import numpy as np
 import pytest
 import takt
-from machines import machine_with, new_url, running
-from takt import msgs
+from machines import command_for, machine_with, new_url, running
+from takt import msgs, remote
+from takt.feedback import QUEUE_FULL, Feedback
 from takt.network import DEFAULT_URL, open_network
 
 CLIENT = """
@@ -58,14 +60,92 @@ def test_leaving_releases_what_is_held(tmp_path: Path) -> None:
         session.wait(lambda: session.axis("x").state is takt.PlcState.STANDSTILL, 0.25)
 
 
+def refuse_releases(session: takt.RemoteSession, count: int) -> list[msgs.feedback]:
+    """As if the engine's queue were full: so many releases go no further than the client. They are counted."""
+    send, refused = session._send, []
+
+    def refusing(feedback: Feedback) -> object:
+        if feedback.verb != "release" or len(refused) >= count:
+            return send(feedback)
+        answer = msgs.feedback()
+        answer.id = session._last_id = session._last_id + 1
+        answer.state, answer.error_id, answer.sentence, answer.cycle = 4, QUEUE_FULL, "too many", -1
+        refused.append(answer)
+        sent = session._sent[answer.id] = remote._Sent(msgs.command(), feedback, time.monotonic())
+        session._take(answer)
+        return sent
+
+    session._send = refusing  # type: ignore[method-assign,assignment]
+    return refused
+
+
+@pytest.mark.parametrize("how", ["released", "closed"])
+def test_a_refused_release_is_given_again(how: str, tmp_path: Path) -> None:
+    """EN-22, EN-23: an axis that was let go of stops, though the queue was full at that moment."""
+    url = new_url()
+    machine = machine_with("{dead_man_s: 5}")
+    with running(tmp_path, url, machine=machine), takt.connect(url) as session, takt.connect(url) as other:
+        other.axis("x").power().wait()
+        jog = other.axis("x").jog(forward=True, velocity=50.0).wait(until="active")
+        session.wait(lambda: session.axis("x").set_velocity == pytest.approx(50.0), 2.0)
+        refused = refuse_releases(other, 3)
+        if how == "released":
+            assert jog.release().error_id == QUEUE_FULL
+        else:
+            other.close()
+        session.wait(lambda: session.axis("x").set_velocity == 0, 2.0)
+        assert len(refused) == 3
+
+
+def test_no_heartbeat_keeps_what_was_let_go_of(tmp_path: Path) -> None:
+    """EN-23: where no release ever gets through, the dead man ends it."""
+    url = new_url()
+    with running(tmp_path, url), takt.connect(url) as session:
+        x = session.axis("x")
+        x.power().wait()
+        jog = x.jog(forward=True, velocity=50.0).wait(until="active")
+        refuse_releases(session, 1_000_000)
+        jog.release()
+        session.wait(lambda: x.set_velocity == 0, 2.0)
+        assert jog.wait_final(1.0).final
+
+
+def test_states_that_cannot_be_true(tmp_path: Path) -> None:
+    """EN-20, bad input: an absurd cycle is counted and ignored; the session's time is not spoilt."""
+    url = new_url()
+    network = lcm.LCM(url)
+    with running(tmp_path, url), takt.connect(url) as session:
+        session.run(0.1)
+        for cycle, time_ns in ((2**60, 0), (2**40, 2**40 * 10**6), (-1, 0)):
+            absurd = msgs.axis_state()
+            absurd.name, absurd.cycle, absurd.time_ns = "x", cycle, time_ns
+            network.publish("takt/axis/x", absurd.encode())
+        session.run(0.2)
+        assert session.now < 100
+        assert session.ignored == 3
+        assert session.losses == {}
+        assert session.axis("x").power().wait().done
+
+
+def test_an_engine_whose_time_stands_still(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """EN-25: that it is heard is not enough."""
+    url = new_url()
+    with running(tmp_path, url), takt.connect(url) as session:
+        session._still_s = 0.5
+        monkeypatch.setattr(session, "_believable", lambda _: False)
+        monkeypatch.setattr(remote, "SILENCE_S", 60.0)
+        with pytest.raises(takt.ConnectionError, match="its time stands still at"):
+            session.run(10.0)
+
+
 def test_two_clients_of_one_name(tmp_path: Path) -> None:
     """EN-22: the second is told so; the first works on. A name is free again when its owner is gone."""
     url = new_url()
     with running(tmp_path, url):
         with takt.connect(url, client="me") as first:
             with (
-                takt.connect(url, client="me") as second,
                 pytest.raises(takt.ConnectionError, match="uses the name me"),
+                takt.connect(url, client="me") as second,
             ):
                 second.run(2.0)
             assert first.axis("x").power().wait().done
@@ -135,7 +215,7 @@ def test_random_bytes_on_every_channel(tmp_path: Path) -> None:
     with running(tmp_path, url), takt.connect(url) as session:
         session.axis("x").power().wait()
         channels = ["takt/command", "takt/heartbeat", "takt/feedback", "takt/machine", "takt/engine", "takt/axis/x"]
-        genuine = msgs.command()
+        genuine = command_for(session)
         genuine.client = "bytes"
         for i in range(3000):
             data = bytearray(genuine.encode() if i % 2 else source.randbytes(source.randrange(200)))
@@ -156,7 +236,7 @@ def test_the_same_id_again_is_harmless(tmp_path: Path) -> None:
     with running(tmp_path, url), takt.connect(url) as session:
         x = session.axis("x")
         x.power().wait()
-        message = msgs.command()
+        message = command_for(session)
         message.client, message.session, message.id = "again", 7, 1
         message.target, message.verb, message.arguments = "x", "move_relative", "{distance: 5}"
         for _ in range(3):
@@ -233,3 +313,13 @@ def test_rates_are_as_configured(tmp_path: Path) -> None:
         assert set((recording["x"]["cycle"][1:] - recording["x"]["cycle"][:-1]).tolist()) == {20}
         assert set((recording["r"]["cycle"][1:] - recording["r"]["cycle"][:-1]).tolist()) == {4}
         assert len(recording["r"]) == pytest.approx(250, abs=25)
+
+
+def test_every_nth_published_sample(tmp_path: Path) -> None:
+    """PY-04: also where an axis is published in cycles that are no multiples of `every`."""
+    url = new_url()
+    with running(tmp_path, url, machine=machine_with("{axis_rate_hz: 40}")), takt.connect(url) as session:
+        with session.record(every=10) as recorder:
+            session.run(1.0)
+        for axis in ("x", "r"):
+            assert set(np.diff(recorder.recording[axis]["cycle"]).tolist()) == {250}

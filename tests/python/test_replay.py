@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import signal
 import time
+from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 
 import lcm
 import numpy as np
 import pytest
 import takt
-from machines import MACHINE, new_url, running
+from machines import MACHINE, command_for, new_url, running
 from takt import msgs
 from takt.lcmlog import open_log
 
@@ -120,7 +122,70 @@ def test_a_torn_log_is_read_as_far_as_it_goes(log: Path, tmp_path: Path) -> None
     torn = tmp_path / "torn.lcm"
     torn.write_bytes(log.read_bytes()[: log.stat().st_size // 2])
     assert 100 < len(takt.read_log(torn)["x"]) < len(takt.read_log(log)["x"])
-    assert takt.replay(torn).same
+    result = takt.replay(torn)
+    assert result.difference is None
+    assert not result.complete
+    assert not result.same
+    assert 100 < result.cycles < result.of
+    assert "not proven the same: the log is cut off or damaged" in result.sentence
+
+
+def _hashes_changed(log: Path, target: Path, change: Callable[[msgs.journal_hashes], bool]) -> takt.ReplayResult:
+    def changed_data(channel: str, data: bytes) -> bytes | None:
+        if channel != "takt/journal/hashes":
+            return data
+        hashes = msgs.journal_hashes.decode(data)
+        return hashes.encode() if change(hashes) else None
+
+    return takt.replay(changed(log, target, changed_data))
+
+
+def test_only_what_was_compared_is_the_same(log: Path, tmp_path: Path) -> None:
+    """EN-07: a journal with holes, however made, proves nothing beyond them, and ends."""
+
+    def far(hashes: msgs.journal_hashes) -> bool:
+        hashes.first_cycle += 10**12
+        return True
+
+    def twice(hashes: msgs.journal_hashes) -> bool:
+        hashes.first_cycle = 0
+        return True
+
+    number = count()
+    cases: list[tuple[Callable[[msgs.journal_hashes], bool], bool, str]] = [
+        (lambda _: False, False, "holds no hashes"),
+        (lambda _: next(number) != 0, False, "no hash of cycle 0"),
+        (lambda h: h.first_cycle == 0, True, "the journal ends after cycle"),
+        (lambda h: h.first_cycle != 0, False, "no hash of cycle 0"),
+        (far, False, "no hash of cycle 0"),
+        (twice, True, "comes twice"),
+    ]
+    for change, some, sentence in cases:
+        result = _hashes_changed(log, tmp_path / "holes.lcm", change)
+        assert not result.same
+        assert not result.complete
+        assert (result.cycles > 0) == some or sentence == "comes twice"
+        assert sentence in result.sentence
+
+
+def test_a_journal_that_lost_entries_says_so(log: Path, tmp_path: Path) -> None:
+    """EN-07."""
+
+    def change(channel: str, data: bytes) -> bytes:
+        if channel != "takt/engine":
+            return data
+        state = msgs.engine_state.decode(data)
+        state.journal_dropped = 11_412
+        return state.encode()
+
+    result = takt.replay(changed(log, tmp_path / "lost.lcm", change))
+    assert not result.same
+    assert result.sentence.endswith("not proven the same: the journal lost 11,412 entries")
+
+
+def test_runs_that_are_not_there(log: Path) -> None:
+    with pytest.raises(takt.LogError, match="holds 1 run; there is no run 5"):
+        takt.replay(log, run=5)
 
 
 def test_a_run_with_overruns_is_reproduced(tmp_path: Path) -> None:
@@ -153,7 +218,7 @@ def test_a_burst_of_commands_is_reproduced(tmp_path: Path) -> None:
     network = lcm.LCM(url)
     with running(tmp_path, url, "--log", str(file)), takt.connect(url) as session:
         session.axis("r").power().wait()
-        message = msgs.command()
+        message = command_for(session)
         message.client, message.session, message.target, message.verb = "burst", 1, "r", "move_relative"
         for message.id in range(1, 3001):
             message.arguments = f"{{distance: {message.id % 7 - 3}.5}}"

@@ -168,7 +168,16 @@ def test_a_closed_session_says_so(session: takt.Session) -> None:
     session.close()
     session.close()
     assert len(recorder.recording["x"]) > 0
-    for use in (lambda: session.run(1.0), lambda: session.axis("x").halt(), lambda: session.record()):
+    for use in (
+        lambda: session.run(1.0),
+        lambda: session.run(0),
+        lambda: session.axis("x").halt(),
+        lambda: session.record(),
+        lambda: session.mark("here"),
+        lambda: session.program(lambda: None),
+        lambda: session.wait(lambda: True),
+        session.__enter__,
+    ):
         with pytest.raises(takt.ClosedError):
             use()
 
@@ -248,6 +257,17 @@ def test_more_commands_than_fit_are_refused(engine: takt.Engine) -> None:
     engine.run(0.2)
     assert all(f.final for f in feedback)
     assert engine.figures["commands_refused"] == len(refused)
+
+
+def test_a_refused_release_is_given_again(engine: takt.Engine) -> None:
+    """EN-22: a jog that was let go of ends, though the queue was full at that moment."""
+    x = engine.axis("x")
+    x.power().wait()
+    jog = x.jog(forward=True, velocity=50.0).wait(until="active")
+    while not engine.axis("r").reset().error:
+        pass
+    assert jog.release().error
+    assert jog.wait(2.0).done
 
 
 def test_programs_must_not_let_time_pass(engine: takt.Engine) -> None:
@@ -387,3 +407,37 @@ def test_random_text_is_no_machine(text: str) -> None:
     """EN-10."""
     with pytest.raises(takt.ConfigError):
         takt.Engine(text + "\n")
+
+
+# --- misuse ---
+
+
+def test_what_is_no_number_or_name_is_said_in_a_sentence(engine: takt.Engine) -> None:
+    x = engine.axis("x")
+    wrong: list[tuple[Any, type[Exception], str]] = [
+        (lambda: takt.Engine(MACHINE, period="1"), TypeError, "a period is a number of seconds, not '1'"),  # type: ignore[arg-type]
+        (lambda: takt.Engine(""), takt.ConfigError, "the path of the machine file is empty"),
+        (lambda: takt.Engine(5), TypeError, "a machine is the path of a file, or its text, not 5"),  # type: ignore[arg-type]
+        (lambda: engine.axis(None), TypeError, "an axis goes by its name, not by None"),  # type: ignore[arg-type]
+        (lambda: engine.step(1.5), TypeError, "a number of cycles is a whole number, not 1.5"),  # type: ignore[arg-type]
+        (lambda: engine.step(-1), ValueError, "a number of cycles is a whole number from 0 on, not -1"),
+        (lambda: engine.run(math.nan), ValueError, "a duration is a number of seconds from 0 on, not nan"),
+        (lambda: engine.run("1"), TypeError, "a duration is a number of seconds, not '1'"),  # type: ignore[arg-type]
+        (lambda: engine.record(every=1.5), TypeError, "every is a whole number, not 1.5"),  # type: ignore[arg-type]
+        (lambda: engine.wait(lambda: False, math.nan), ValueError, "a timeout is a number of seconds from 0 on, not nan"),
+        (lambda: engine.wait(None), TypeError, "a condition is a function, not None"),  # type: ignore[arg-type]
+        (lambda: x.power().wait("active"), TypeError, "a timeout is a number of seconds, not 'active'"),  # type: ignore[arg-type]
+        (lambda: engine.program(None), TypeError, "a program is a function, not None"),  # type: ignore[type-var]
+        (lambda: engine.command(5, "halt"), TypeError, "the target of a command is a text, not 5"),  # type: ignore[arg-type]
+        (lambda: engine.command("x", 6), TypeError, "the verb of a command is a text, not 6"),  # type: ignore[arg-type]
+        (lambda: engine.command("x", "halt", 7), TypeError, "the arguments of a command are a mapping or a text, not 7"),  # type: ignore[arg-type]
+        (
+            lambda: engine.command("x", "move_absolute", {"position: 1, velocity": 3}),
+            ValueError,
+            "'position: 1, velocity' is no name of an argument",
+        ),
+    ]
+    for use, kind, sentence in wrong:
+        with pytest.raises(kind) as raised:
+            use()
+        assert str(raised.value) == sentence

@@ -1,6 +1,7 @@
 """The command line of taktd, as a process of its own."""
 
 import json
+import os
 import random
 import shutil
 import signal
@@ -102,6 +103,11 @@ def test_version_and_help() -> None:  # EN-01
         ["MACHINE", "--cycle-time", "5us"],
         ["MACHINE", "--cycle-time", "nan"],
         ["MACHINE", "--duration", "-1"],
+        ["MACHINE", "--duration", "0"],
+        ["MACHINE", "--duration", "nan"],
+        ["MACHINE", "--cpu", "-1"],
+        ["MACHINE", "--lcm-url", ""],
+        ["MACHINE", "--no-lcm", "--log", "MACHINE"],
         ["MACHINE", "--lcm-url", "nonsense"],
         ["MACHINE", "--lcm-url", "udpm://239.255.76.67"],
         ["MACHINE", "--no-lcm", "--log", "/no/such/folder/run.lcmlog"],
@@ -112,6 +118,19 @@ def test_mistakes_are_one_line_and_exit_code_2(machine: Path, arguments: list[st
     assert result.returncode == 2
     assert result.stdout == ""
     assert len(result.stderr.splitlines()) == 1
+    assert machine.read_text() == MACHINE
+
+
+@pytest.mark.parametrize(
+    ("name", "url"),
+    [("two_axes", "http://example"), ("two_axes", ""), ('""', "memq://"), (r'"a\nb"', "memq://"), ("a" * 65, "memq://")],
+)
+def test_check_refuses_names_and_urls_that_cannot_be(machine: Path, name: str, url: str) -> None:  # EN-10
+    machine.write_text(MACHINE.replace("two_axes", name) + f'lcm: {{url: "{url}"}}\n')
+    result = taktd("--check", machine)
+    assert result.returncode == 2
+    assert len(result.stderr.splitlines()) == 1
+    assert "name: expected" in result.stderr or "lcm.url: " in result.stderr
 
 
 @pytest.mark.skipif(
@@ -146,3 +165,62 @@ def test_the_first_signal_ends_in_order(machine: Path, tmp_path: Path, number: s
     assert process.returncode == 0
     assert "stopped, all loops open" in output
     assert log.stat().st_size > 10_000
+
+
+def start(machine: Path, *arguments: object) -> subprocess.Popen[str]:
+    command = [str(TAKTD), str(machine), "--no-lcm", *map(str, arguments)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+@pytest.mark.parametrize("pace", ["paced", "fast"])
+def test_a_second_signal_ends_although_the_log_blocks(machine: Path, tmp_path: Path, pace: str) -> None:  # EN-08
+    fifo = tmp_path / "fifo"
+    os.mkfifo(fifo)
+    reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)  # which never reads
+    try:
+        with start(machine, "--pace", pace, "--log", fifo) as process:
+            wait_for_greeting(process)
+            time.sleep(1)
+            process.send_signal(signal.SIGINT)
+            with pytest.raises(subprocess.TimeoutExpired):
+                process.wait(timeout=1)
+            process.send_signal(signal.SIGINT)
+            assert process.wait(timeout=3) == 130
+    finally:
+        os.close(reader)
+
+
+def test_a_signal_before_the_first_cycle_ends_in_order(machine: Path, tmp_path: Path) -> None:  # EN-08
+    fifo = tmp_path / "fifo"
+    os.mkfifo(fifo)
+    with start(machine, "--log", fifo) as process:
+        time.sleep(0.5)  # waits for somebody to read the log
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.2)
+        assert process.poll() is None
+        with fifo.open("rb") as reader:
+            log = reader.read()
+        output, _ = process.communicate(timeout=10)
+    assert process.returncode == 0
+    assert "stopped, all loops open" in output
+    assert log.startswith(b"\xed\xa1\xda\x01")
+
+
+def test_a_full_disk_is_an_error(machine: Path) -> None:  # EN-07, EN-20
+    result = taktd(machine, "--no-lcm", "--pace", "fast", "--duration", 1, "--log", "/dev/full")
+    assert result.returncode == 1
+    assert result.stderr.splitlines() == ["log file /dev/full is incomplete: No space left on device"]
+    assert "the log is incomplete" in result.stdout
+    assert "1 the log is incomplete" in taktd("--help").stdout
+
+
+def test_a_reader_that_goes_is_an_error(machine: Path, tmp_path: Path) -> None:
+    fifo = tmp_path / "fifo"
+    os.mkfifo(fifo)
+    with start(machine, "--pace", "paced", "--duration", 1, "--log", fifo) as process:
+        with fifo.open("rb") as reader:
+            reader.read(1000)
+        output, problem = process.communicate(timeout=10)
+    assert process.returncode == 1
+    assert problem.splitlines() == [f"log file {fifo} is incomplete: Broken pipe"]
+    assert "stopped, all loops open" in output

@@ -120,23 +120,28 @@ void GuardLimits(const Context& c, const KinematicState& before, State& s) {
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
 }
 
-void Advance(const Context& c, State& s) {
-  const KinematicState before = s.setpoint;
-  s.setpoint = s.motion.profile.At(Elapsed(c, s));
-  GuardLimits(c, before, s);
-  // Blended moves may be shorter than a cycle: as many begin and end in this one as their times say.
+// The motion in progress is over. Blended moves may be shorter than a cycle: as many begin and end in this one as their
+// times say.
+void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
   for (int i = 0; i <= kBufferSize; ++i) {
     const double late_s = Elapsed(c, s) - s.motion.profile.duration();
-    if (late_s < 0) break;
+    if (late_s < 0) return;
     if (!s.motion.arrived) {
       s.motion.arrived = true;
       s.motion.arrived_cycle = c.cycle.count;
     }
-    const Ticket active = s.active.ticket;
     Conclude(c, late_s, s);
+    if (s.motion.arrived) return;  // no other motion has begun
     GuardLimits(c, before, s);
-    if (s.motion.arrived || s.active.ticket == active) break;
   }
+}
+
+void Advance(const Context& c, State& s) {
+  const KinematicState before = s.setpoint;
+  const double t = Elapsed(c, s);
+  s.setpoint = s.motion.profile.At(t);
+  GuardLimits(c, before, s);
+  if (t >= s.motion.profile.duration()) ConcludeDue(c, before, s);
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 

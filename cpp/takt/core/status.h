@@ -53,6 +53,7 @@ enum class ErrorId : std::uint16_t {
   kLeaseExpired = 3014,       // the client's heartbeat is missing: a level-sensitive command was released
   kShutdown = 3015,           // the engine is stopping
   kInternal = 3016,           // the engine found its own numbers broken; outputs are zero, all loops open
+  kOtherRun = 3017,           // the command was meant for another start of the engine
   kGroupDeviation = 8001,
 };
 

@@ -93,6 +93,15 @@ ParsedCommand UnknownVerb(std::string_view kind, std::string_view verb) {
 
 }  // namespace
 
+bool LetsGo(const Command& command) noexcept {
+  if (const auto* machine = std::get_if<MachineCommand>(&command.body)) {
+    return std::holds_alternative<Release>(*machine) || std::holds_alternative<StopAll>(*machine);
+  }
+  const auto& body = std::get<axis::Command>(command.body);
+  const auto* power = std::get_if<axis::Power>(&body);
+  return std::holds_alternative<axis::Stop>(body) || (power && !power->enable);
+}
+
 std::span<const Verb> Verbs() {
   static const std::vector<Verb> verbs = [] {
     std::vector<Verb> all;

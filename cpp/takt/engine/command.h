@@ -45,6 +45,9 @@ struct Command {
   CommandBody body;
 };
 
+// Lets go of something or stops it: release, stop_all, stop, power(enable: false).
+bool LetsGo(const Command& command) noexcept;
+
 // One verb a kind of component understands; `arguments` describes its struct.
 struct Verb {
   std::string_view target_kind;  // "machine" or "axis"

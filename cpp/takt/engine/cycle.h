@@ -19,8 +19,11 @@
 
 namespace takt::engine {
 
-// So many commands are applied in one cycle at most; the others wait in the queue.
-inline constexpr std::size_t kCommandsPerCycle = 64;
+// So many commands are applied in one cycle at most; the others wait in the queue. Each may plan a motion, which takes
+// some µs.
+inline constexpr std::size_t kCommandsPerCycle = 16;
+// The same for renewals, which plan nothing and wait in a queue of their own.
+inline constexpr std::size_t kRenewalsPerCycle = 64;
 
 // Everything the cycle works on, in arrays by component; index i is axis i of the machine.
 struct World {

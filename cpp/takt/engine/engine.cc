@@ -27,6 +27,16 @@ std::vector<std::uint64_t> AxisDivisors(const Machine& m) {
   return divisors;
 }
 
+// Of the command queue, for commands that let go.
+constexpr std::size_t kKeptShare = 16;
+// As many commands as a cycle can write into a journal: besides those of the queues one each of overruns and shutdown.
+constexpr std::size_t kJournalledPerCycle = kCommandsPerCycle + kRenewalsPerCycle + 2;
+
+bool IsRenewal(const Command& command) {
+  const auto* machine = std::get_if<MachineCommand>(&command.body);
+  return machine && std::holds_alternative<Renew>(*machine);
+}
+
 }  // namespace
 
 struct Engine::Impl {
@@ -35,6 +45,8 @@ struct Engine::Impl {
         options(o),
         world(machine),
         commands(o.command_queue),
+        renewals(kRenewalsPerCycle * 4),
+        journalled(kJournalledPerCycle),
         feedback(4 * world.feedback_storage.size()),
         snapshots(o.publish ? o.snapshot_queue : 2),
         figure_queue(16),
@@ -64,10 +76,21 @@ struct Engine::Impl {
   void ApplyCommands() noexcept {
     if (shutdown.load(std::memory_order_relaxed) && !shutting_down) {
       shutting_down = true;
+      const std::size_t before = world.feedback.events().size();
       ApplyOne({0, kMachineTarget, 0, MachineCommand(StopAll{.open_loops = true})});
+      for (std::size_t i = before; i < world.feedback.events().size(); ++i) {
+        FeedbackEvent& event = world.feedback_storage[i];
+        if (event.state == FeedbackState::kAborted) event.error = ErrorId::kShutdown;
+      }
     }
+    ApplyFrom(journalled, journalled.capacity());
+    ApplyFrom(renewals, kRenewalsPerCycle);
+    ApplyFrom(commands, kCommandsPerCycle);
+  }
+
+  void ApplyFrom(SpscQueue<Command>& queue, std::size_t at_most) noexcept {
     Command command;
-    for (std::size_t i = 0; i < kCommandsPerCycle && commands.TryPop(command); ++i) {
+    for (std::size_t i = 0; i < at_most && queue.TryPop(command); ++i) {
       if (shutting_down) {
         world.feedback.Report({command.ticket, world.cycle.count, FeedbackState::kError, false, ErrorId::kShutdown});
       } else {
@@ -76,14 +99,22 @@ struct Engine::Impl {
     }
   }
 
+  // Producing thread.
+  bool Queue(const Command& command) noexcept {
+    if (IsRenewal(command)) return renewals.TryPush(command);
+    const std::size_t room = commands.capacity() - commands.size();
+    return (LetsGo(command) || room > commands.capacity() / kKeptShare) && commands.TryPush(command);
+  }
+
   void Publish() noexcept {
     figures.cycle = world.cycle.count;
     figures.commands_refused = refused.load(std::memory_order_relaxed);
     figures.planner_second_scale = world.planner.counters().second_scale;
     figures.planner_failures = world.planner.counters().failures;
     for (const FeedbackEvent& event : world.feedback.events()) {
-      if (!feedback.TryPush(event)) ++figures.feedback_dropped;
+      if (!feedback.TryPush(event)) ++feedback_dropped;
     }
+    figures.feedback_dropped = feedback_dropped + world.feedback.lost();
     world.feedback.Clear();
     if (options.journal) {
       figures.state_hash = world.StateHash();
@@ -91,8 +122,8 @@ struct Engine::Impl {
     }
     if (!options.publish) return;
     for (std::size_t i = 0; i < axis_divisors.size(); ++i) {
-      // Axes of the same rate are spread over the cycles, so that no cycle carries them all.
-      const bool due = axis_divisors[i] != 0 && (world.cycle.count + i) % axis_divisors[i] == 0;
+      // All axes of a rate in the same cycle, so that a receiver can hold them against one another.
+      const bool due = axis_divisors[i] != 0 && world.cycle.count % axis_divisors[i] == 0;
       if (!due && !options.every_cycle) continue;
       if (!snapshots.TryPush({world.cycle.count, static_cast<std::uint32_t>(i), due, world.axis_outputs[i]}))
         ++figures.snapshots_dropped;
@@ -106,6 +137,8 @@ struct Engine::Impl {
   EngineFigures figures;
 
   SpscQueue<Command> commands;
+  SpscQueue<Command> renewals;
+  SpscQueue<Command> journalled;
   SpscQueue<FeedbackEvent> feedback;
   SpscQueue<AxisSnapshot> snapshots;
   SpscQueue<EngineFigures> figure_queue;
@@ -114,6 +147,7 @@ struct Engine::Impl {
 
   std::vector<std::uint64_t> axis_divisors;
   std::uint64_t figures_divisor;
+  std::uint64_t feedback_dropped = 0;  // by the queue
   std::uint32_t overruns_in_a_row = 0;
   bool shutting_down = false;
   std::atomic<bool> shutdown{false};
@@ -132,7 +166,7 @@ const Machine& Engine::machine() const {
 Ticket Engine::Submit(const Command& command) noexcept {
   Command numbered = command;
   numbered.ticket = impl_->next_ticket;
-  if (!impl_->commands.TryPush(numbered)) {
+  if (!impl_->Queue(numbered)) {
     impl_->refused.fetch_add(1, std::memory_order_relaxed);
     return 0;
   }
@@ -141,7 +175,7 @@ Ticket Engine::Submit(const Command& command) noexcept {
 
 bool Engine::Resubmit(const Command& command) noexcept {
   impl_->next_ticket = std::max(impl_->next_ticket, command.ticket + 1);
-  return impl_->commands.TryPush(command);
+  return impl_->journalled.TryPush(command);
 }
 
 void Engine::RunCycle(const CycleTiming& timing) noexcept {

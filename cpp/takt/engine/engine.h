@@ -34,10 +34,12 @@ class Engine {
   const Machine& machine() const;
 
   // --- one producing thread ---
-  // Queues a command for the next cycle. Its ticket, or 0: the queue is full.
+  // Queues a command for the next cycle. Its ticket, or 0: the queue is full. The last sixteenth of the queue is kept
+  // for commands that let go or stop: a flood of others does not keep them out. Commands are applied in the order they
+  // were given, a few in each cycle; renewals overtake the others, so that a lease does not run out in the queue.
   Ticket Submit(const Command& command) noexcept;
-  // The same for a command out of a journal, which keeps its ticket (0: one that the engine gave itself). False: the
-  // queue is full.
+  // Takes a command out of a journal, which keeps its ticket (0: one that the engine gave itself). The next cycle
+  // applies all of these, in the order given. False: more than a cycle ever writes into a journal.
   bool Resubmit(const Command& command) noexcept;
 
   // --- the cycle thread ---

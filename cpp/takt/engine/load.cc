@@ -19,6 +19,13 @@ bool GoodName(std::string_view name) {
   return !name.empty() && name.size() <= 40 && std::all_of(name.begin(), name.end(), good);
 }
 
+// People read it; everything but control characters.
+bool GoodMachineName(std::string_view name) {
+  return !name.empty() && name.size() <= 64 && std::none_of(name.begin(), name.end(), [](char c) {
+    return static_cast<unsigned char>(c) < ' ' || c == '\x7f';
+  });
+}
+
 // What the reader cannot know: how parts of the file refer to one another.
 class CrossCheck {
  public:
@@ -26,6 +33,9 @@ class CrossCheck {
 
   std::vector<Problem> Run() {
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) names_.push_back(machine_.axes[i].name);
+    if (!GoodMachineName(machine_.name) && !(machine_.name.empty() && !Written("", "name"))) {
+      Add("name", "expected 1 to 64 bytes without control characters, found " + Quoted(machine_.name));
+    }
     CheckAxes();
     CheckMasters();
     std::vector<std::string_view> servos;

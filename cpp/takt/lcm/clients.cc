@@ -56,13 +56,50 @@ bool IsFinalReply(const msgs::feedback& reply) {
 
 }  // namespace
 
-Clients::Clients(const engine::Machine& machine, Submit submit, const ClientLimits& limits)
-    : machine_(machine), submit_(std::move(submit)), limits_(limits) {}
+Clients::Clients(const engine::Machine& machine, std::int64_t run_id, Submit submit, const ClientLimits& limits)
+    : machine_(machine), run_id_(run_id), submit_(std::move(submit)), limits_(limits) {}
+
+template <typename Message>
+Clients::Client* Clients::Admit(const Message& message, std::int64_t now_ns, msgs::feedback& refusal) {
+  const std::string& name = message.client;
+  const std::int64_t session = message.session;
+  if (!IsGoodName(name)) {
+    Refuse(refusal, ErrorId::kParameter,
+           "client: expected a name of 1 to " + std::to_string(kLongestName) + " printable ASCII characters");
+    return nullptr;
+  }
+  if (message.run_id != run_id_) {
+    Refuse(refusal, ErrorId::kOtherRun, std::string(ErrorText(ErrorId::kOtherRun)));
+    return nullptr;
+  }
+  auto found = clients_.find(name);
+  if (found == clients_.end()) {
+    if (!MakeRoomForClient(now_ns)) {
+      Refuse(refusal, ErrorId::kQueueFull, "there are " + std::to_string(limits_.clients) + " clients already");
+      return nullptr;
+    }
+    found = clients_.try_emplace(name).first;
+    found->second.session = session;
+  }
+  Client& client = found->second;
+  if (client.session != session) {
+    if (now_ns - client.last_seen_ns <= limits_.alive_ns) {
+      Refuse(refusal, ErrorId::kClientName,
+             "another client uses the name " + name + "; take another one, or wait 2 s after it has gone");
+      return nullptr;
+    }
+    Forget(client);
+    client = {};
+    client.session = session;
+  }
+  client.last_seen_ns = now_ns;
+  return &client;
+}
 
 void Clients::OnCommand(const msgs::command& message, std::int64_t now_ns) {
   const std::lock_guard lock(mutex_);
   msgs::feedback reply = EmptyReply(message.client, message.session, message.id);
-  Client* client = Admit(message.client, message.session, now_ns, reply);
+  Client* client = Admit(message, now_ns, reply);
   if (client == nullptr) return Reply(reply);
 
   if (const auto known = client->records.find(message.id); known != client->records.end()) {
@@ -103,25 +140,25 @@ void Clients::Give(Client& client, const msgs::command& message, msgs::feedback&
       reply.ticket = static_cast<std::int64_t>(ticket);
       origins_[ticket] = {&client, message.id};
       if (parsed.level_sensitive) client.level_sensitive.push_back(ticket);
-      LetGo(client, Released(parsed.command));
+      LetGo(Released(parsed.command));
     }
   }
   client.order.push_back(message.id);
   client.records[message.id] = {reply, parsed.level_sensitive, StaysInForce(parsed.command)};
 }
 
-void Clients::LetGo(Client& client, Ticket ticket) {
+void Clients::LetGo(Ticket ticket) {
   if (const auto running = origins_.find(ticket); running != origins_.end()) {
     running->second.client->records.at(running->second.id).stays_in_force = false;
   } else {
-    std::erase(client.level_sensitive, ticket);
+    for (auto& [name, client] : clients_) std::erase(client.level_sensitive, ticket);
   }
 }
 
 void Clients::OnHeartbeat(const msgs::heartbeat& message, std::int64_t now_ns) {
   const std::lock_guard lock(mutex_);
   msgs::feedback reply = EmptyReply(message.client, message.session, 0);
-  Client* client = Admit(message.client, message.session, now_ns, reply);
+  Client* client = Admit(message, now_ns, reply);
   if (client == nullptr) return Reply(reply);
   for (const Ticket ticket : client->level_sensitive) {
     // A full queue is no harm: the next heartbeat tries again.
@@ -167,37 +204,6 @@ ClientFigures Clients::figures(std::int64_t now_ns) const {
     return now_ns - entry.second.last_seen_ns <= limits_.alive_ns;
   });
   return {malformed_, replies_dropped_, static_cast<std::uint32_t>(alive)};
-}
-
-Clients::Client* Clients::Admit(const std::string& name, std::int64_t session, std::int64_t now_ns,
-                                msgs::feedback& refusal) {
-  if (!IsGoodName(name)) {
-    Refuse(refusal, ErrorId::kParameter,
-           "client: expected a name of 1 to " + std::to_string(kLongestName) + " printable ASCII characters");
-    return nullptr;
-  }
-  auto found = clients_.find(name);
-  if (found == clients_.end()) {
-    if (!MakeRoomForClient(now_ns)) {
-      Refuse(refusal, ErrorId::kQueueFull, "there are " + std::to_string(limits_.clients) + " clients already");
-      return nullptr;
-    }
-    found = clients_.try_emplace(name).first;
-    found->second.session = session;
-  }
-  Client& client = found->second;
-  if (client.session != session) {
-    if (now_ns - client.last_seen_ns <= limits_.alive_ns) {
-      Refuse(refusal, ErrorId::kClientName,
-             "another client uses the name " + name + "; take another one, or wait 2 s after it has gone");
-      return nullptr;
-    }
-    Forget(client);
-    client = {};
-    client.session = session;
-  }
-  client.last_seen_ns = now_ns;
-  return &client;
 }
 
 bool Clients::MakeRoomForClient(std::int64_t now_ns) {

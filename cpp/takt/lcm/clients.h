@@ -36,13 +36,12 @@ class Clients {
   // Hands a command to the engine: its ticket, or 0 if the queue is full. Called by one thread at a time.
   using Submit = std::function<Ticket(const engine::Command&)>;
 
-  // `machine` must outlive this.
-  Clients(const engine::Machine& machine, Submit submit, const ClientLimits& limits = {});
+  // `machine` must outlive this. Commands and heartbeats with another `run_id` are refused.
+  Clients(const engine::Machine& machine, std::int64_t run_id, Submit submit, const ClientLimits& limits = {});
 
   // From the network. `now_ns` is any clock that only goes forward.
   void OnCommand(const msgs::command& message, std::int64_t now_ns);
-  // Renews the lease of each of the client's level-sensitive commands. Answered (with id 0) only if the name belongs to
-  // another session.
+  // Renews the lease of each of the client's level-sensitive commands. Answered (with id 0) only if it is refused.
   void OnHeartbeat(const msgs::heartbeat& message, std::int64_t now_ns);
   void OnMalformed();
 
@@ -74,19 +73,21 @@ class Clients {
   };
 
   // The client of this name and session, made if there is room, seen alive now. Null, and `refusal` says why, if it
-  // must be refused.
-  Client* Admit(const std::string& name, std::int64_t session, std::int64_t now_ns, msgs::feedback& refusal);
+  // must be refused. `Message`: command or heartbeat.
+  template <typename Message>
+  Client* Admit(const Message& message, std::int64_t now_ns, msgs::feedback& refusal);
   bool MakeRoomForClient(std::int64_t now_ns);
   bool MakeRoomForId(Client& client);
   void Forget(Client& client);
+  // After a release of this ticket, whoever gave it: no heartbeat keeps it in force any more once it is done. Until
+  // then it is still on its way.
+  void LetGo(Ticket ticket);
   // Hands the command on, or makes `reply` a refusal.
-  // After a release of this ticket: no heartbeat keeps it in force any more once it is done. Until then it is still on
-  // its way.
-  void LetGo(Client& client, Ticket ticket);
   void Give(Client& client, const msgs::command& message, msgs::feedback& reply);
   void Reply(const msgs::feedback& reply);
 
   const engine::Machine& machine_;
+  const std::int64_t run_id_;
   const Submit submit_;
   const ClientLimits limits_;
 

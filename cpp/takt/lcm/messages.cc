@@ -125,11 +125,11 @@ msgs::journal_command ToMessage(const engine::JournalEntry& entry, const engine:
 }
 
 std::optional<msgs::command> DecodeCommand(std::span<const std::uint8_t> bytes) {
-  return Decode<msgs::command>(bytes, "siisss");
+  return Decode<msgs::command>(bytes, "isiisss");
 }
 
 std::optional<msgs::heartbeat> DecodeHeartbeat(std::span<const std::uint8_t> bytes) {
-  return Decode<msgs::heartbeat>(bytes, "si");
+  return Decode<msgs::heartbeat>(bytes, "isi");
 }
 
 }  // namespace takt::lcm

@@ -9,13 +9,12 @@
 #include <charconv>
 #include <cstring>
 #include <string_view>
+#include <utility>
+
+#include "takt/core/problem.h"
 
 namespace takt::lcm {
 namespace {
-
-std::string WrongUrl(const std::string& url) {
-  return "LCM URL \"" + url + "\": expected one like udpm://239.255.76.67:7667?ttl=0";
-}
 
 bool ParseMulticast(std::string_view url, sockaddr_in& address) {
   url.remove_prefix(std::string_view("udpm://").size());
@@ -43,16 +42,21 @@ bool HasRoute(const sockaddr_in& address) {
 
 }  // namespace
 
+std::string WhyNotUrl(const std::string& url) {
+  sockaddr_in address{};
+  const bool good = url.starts_with("udpm://") ? ParseMulticast(url, address)
+                                               : url.starts_with("tcpq://") || url.starts_with("memq://");
+  return good ? "" : "LCM URL " + Quoted(url) + ": expected one like udpm://239.255.76.67:7667?ttl=0";
+}
+
 Network OpenNetwork(const std::string& url) {
-  if (url.starts_with("udpm://")) {
-    sockaddr_in address{};
-    if (!ParseMulticast(url, address)) return {nullptr, WrongUrl(url)};
+  if (std::string problem = WhyNotUrl(url); !problem.empty()) return {nullptr, std::move(problem)};
+  sockaddr_in address{};
+  if (url.starts_with("udpm://") && ParseMulticast(url, address)) {
     if (!HasRoute(address)) {
       return {nullptr, "LCM network " + url + " is not reachable (" + std::strerror(errno) +
                            "); with the loopback interface alone it needs: ip route add 224.0.0.0/4 dev lo"};
     }
-  } else if (!url.starts_with("tcpq://") && !url.starts_with("memq://")) {
-    return {nullptr, WrongUrl(url)};
   }
   Network network{std::make_unique<::lcm::LCM>(url), {}};
   // Without a file descriptor LCM sends but cannot receive, and its handle() aborts.

@@ -12,6 +12,9 @@ struct Network {
   std::string problem;              // one line
 };
 
+// Why this cannot be the URL of an LCM network, in one line; empty: it can.
+std::string WhyNotUrl(const std::string& url);
+
 // "udpm://239.255.76.67:7667?ttl=0"; also tcpq:// and memq://.
 Network OpenNetwork(const std::string& url);
 

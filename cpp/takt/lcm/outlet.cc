@@ -1,5 +1,11 @@
 #include "takt/lcm/outlet.h"
 
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <lcm/lcm-cpp.hpp>
 
 namespace takt::lcm {
@@ -8,7 +14,7 @@ bool NetworkOutlet::Send(const std::string& channel, std::span<const std::uint8_
   return network_.publish(channel, bytes.data(), static_cast<unsigned int>(bytes.size())) == 0;
 }
 
-LogOutlet::LogOutlet(const std::string& path) : file_(std::make_unique<::lcm::LogFile>(path, "w")) {}
+LogOutlet::LogOutlet(const std::string& path) : path_(path), file_(std::make_unique<::lcm::LogFile>(path, "w")) {}
 
 LogOutlet::~LogOutlet() = default;
 
@@ -22,7 +28,29 @@ bool LogOutlet::Send(const std::string& channel, std::span<const std::uint8_t> b
   event.channel = channel;
   event.datalen = static_cast<std::int32_t>(bytes.size());
   event.data = const_cast<std::uint8_t*>(bytes.data());  // only read
-  return file_->writeEvent(&event) == 0;
+  if (file_->writeEvent(&event) == 0) return true;
+  Fail();
+  return false;
+}
+
+void LogOutlet::Flush() {
+  std::FILE* file = file_->getFilePtr();
+  if (std::fflush(file) != 0 || std::ferror(file) != 0) Fail();
+}
+
+void LogOutlet::Fail() {
+  if (!failed_) std::fprintf(stderr, "log file %s is incomplete: %s\n", path_.c_str(), std::strerror(errno));
+  failed_ = true;
+}
+
+bool MayBecomeLog(const std::string& path) {
+  constexpr std::array<char, 4> kSyncWord = {'\xED', '\xA1', '\xDA', '\x01'};  // before every event of a log
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return true;
+  std::array<char, 4> begin{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), begin.size());
+  return file.gcount() == 0 || begin == kSyncWord;
 }
 
 }  // namespace takt::lcm

@@ -30,7 +30,8 @@ class NetworkOutlet : public Outlet {
   ::lcm::LCM& network_;
 };
 
-// An LCM log, as lcm-logger writes it. An existing file is written anew.
+// An LCM log, as lcm-logger writes it. An existing log is written anew. The first thing that cannot be written is said
+// in one line on stderr.
 class LogOutlet : public Outlet {
  public:
   explicit LogOutlet(const std::string& path);
@@ -38,9 +39,20 @@ class LogOutlet : public Outlet {
   // The file could be opened.
   bool good() const;
   bool Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t utime) override;
+  // Writes what is still held back.
+  void Flush();
+  // Something could not be written.
+  bool failed() const { return failed_; }
 
  private:
+  void Fail();
+
+  const std::string path_;
   std::unique_ptr<::lcm::LogFile> file_;
+  bool failed_ = false;
 };
+
+// Whether a log may be written there: nothing is there yet, or an LCM log, or something that is no plain file.
+bool MayBecomeLog(const std::string& path);
 
 }  // namespace takt::lcm

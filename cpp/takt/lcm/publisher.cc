@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "takt/lcm/channels.h"
-#include "takt/lcm/clock.h"
 
 namespace takt::lcm {
 namespace {
@@ -28,7 +27,7 @@ bool Take(SpscQueue<T>& queue, Use use) {
 }  // namespace
 
 Publisher::Publisher(engine::Engine& engine, Clients& clients, Outlet* network, Outlet* log, RunInfo info)
-    : engine_(engine), clients_(clients), network_(network), log_(log), info_(std::move(info)), run_id_(WallClockUs()) {
+    : engine_(engine), clients_(clients), network_(network), log_(log), info_(std::move(info)) {
   engine_channel_.name = kEngineChannel;
   machine_channel_.name = kMachineChannel;
   feedback_channel_.name = kFeedbackChannel;
@@ -78,7 +77,7 @@ void Publisher::PublishReplies() {
 
 void Publisher::PublishMachine() {
   msgs::machine_description message{};
-  message.run_id = run_id_;
+  message.run_id = info_.run_id;
   message.name = engine_.machine().name;
   message.version = info_.version;
   message.period_s = engine_.machine().cycle.period_s;
@@ -91,7 +90,7 @@ void Publisher::PublishMachine() {
 void Publisher::PublishFigures(const engine::EngineFigures& figures) {
   const ClientFigures clients = clients_.figures(SteadyNs());
   msgs::engine_state message = ToMessage(figures, engine_.machine());
-  message.run_id = run_id_;
+  message.run_id = info_.run_id;
   message.pace = info_.pace;
   message.malformed = static_cast<std::int64_t>(clients.malformed);
   message.send_failures = static_cast<std::int64_t>(send_failures());
@@ -103,7 +102,7 @@ void Publisher::PublishFigures(const engine::EngineFigures& figures) {
 void Publisher::StartJournal() {
   msgs::journal_start message{};
   message.utime = WallClockUs();
-  message.run_id = run_id_;
+  message.run_id = info_.run_id;
   message.version = info_.version;
   message.period_s = engine_.machine().cycle.period_s;
   message.text = info_.machine_text;

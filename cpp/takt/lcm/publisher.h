@@ -10,15 +10,17 @@
 
 #include "takt/engine/engine.h"
 #include "takt/lcm/clients.h"
+#include "takt/lcm/clock.h"
 #include "takt/lcm/messages.h"
 #include "takt/lcm/outlet.h"
 
 namespace takt::lcm {
 
 struct RunInfo {
-  std::string machine_text;  // the machine file as it was read
-  std::string version;       // of the engine
-  std::int8_t pace = 0;      // one of engine_state's PACE_ constants
+  std::string machine_text{};           // the machine file as it was read
+  std::string version{};                // of the engine
+  std::int8_t pace = 0;                 // one of engine_state's PACE_ constants
+  std::int64_t run_id = WallClockUs();  // tells one start of an engine from the next
 };
 
 class Publisher {
@@ -68,7 +70,6 @@ class Publisher {
   Outlet* const network_;
   Outlet* const log_;
   const RunInfo info_;
-  const std::int64_t run_id_;
 
   std::vector<Channel> axis_channels_;
   Channel engine_channel_, machine_channel_, feedback_channel_;

@@ -2,11 +2,12 @@
 
 namespace takt::lcm {
 
-Service::Service(engine::Engine& engine)
-    : clients_(engine.machine(), [&engine](const engine::Command& command) { return engine.Submit(command); }) {}
+Service::Service(engine::Engine& engine, std::int64_t run_id)
+    : clients_(engine.machine(), run_id, [&engine](const engine::Command& command) { return engine.Submit(command); }) {
+}
 
 std::unique_ptr<Service> Service::Open(engine::Engine& engine, const ServiceOptions& options, std::string& problem) {
-  std::unique_ptr<Service> service(new Service(engine));
+  std::unique_ptr<Service> service(new Service(engine, options.info.run_id));
   if (!options.url.empty()) {
     service->sending_ = OpenNetwork(options.url);
     if (service->sending_.lcm) service->receiving_ = OpenNetwork(options.url);
@@ -15,6 +16,10 @@ std::unique_ptr<Service> Service::Open(engine::Engine& engine, const ServiceOpti
     service->network_ = std::make_unique<NetworkOutlet>(*service->sending_.lcm);
   }
   if (!options.log_path.empty()) {
+    if (!MayBecomeLog(options.log_path)) {
+      problem = "log file " + options.log_path + " exists and is no LCM log; it is left as it is";
+      return nullptr;
+    }
     service->log_ = std::make_unique<LogOutlet>(options.log_path);
     if (!service->log_->good()) {
       problem = "log file " + options.log_path + " cannot be written";
@@ -28,11 +33,16 @@ std::unique_ptr<Service> Service::Open(engine::Engine& engine, const ServiceOpti
   return service;
 }
 
-std::uint64_t Service::Close() {
+Losses Service::Close() {
   gateway_.reset();
   publisher_->Stop();
-  log_.reset();
-  return publisher_->send_failures();
+  Losses losses{.messages = publisher_->send_failures()};
+  if (log_) {
+    log_->Flush();
+    losses.log = log_->failed();
+    log_.reset();
+  }
+  return losses;
 }
 
 }  // namespace takt::lcm

@@ -13,6 +13,11 @@
 
 namespace takt::lcm {
 
+struct Losses {
+  std::uint64_t messages = 0;  // that the network or the log did not take
+  bool log = false;            // the log is incomplete
+};
+
 struct ServiceOptions {
   std::string url{};       // empty: no network
   std::string log_path{};  // empty: no log
@@ -22,14 +27,15 @@ struct ServiceOptions {
 class Service {
  public:
   // Works from now on; the engine must outlive it, and its cycle must have ended before it goes. Null, and `problem`
-  // says in one line why, when the network cannot be joined or the log cannot be written.
+  // says in one line why, when the network cannot be joined or the log cannot be written,
+  // or is a file that is no log.
   static std::unique_ptr<Service> Open(engine::Engine& engine, const ServiceOptions& options, std::string& problem);
 
-  // Publishes what is still queued and closes the log. The number of messages that the network or the log did not take.
-  std::uint64_t Close();
+  // Publishes what is still queued and closes the log. Takes as long as the log takes to be written.
+  Losses Close();
 
  private:
-  explicit Service(engine::Engine& engine);
+  Service(engine::Engine& engine, std::int64_t run_id);
 
   Clients clients_;
   // Two members of the same network: sending and receiving do not wait for each other.

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from takt.checks.series import Check, Mask, Series, decided, extent, nearest, together
+from takt.checks.series import Check, Mask, Series, decided, extent, nearest
 from takt.recording import FloatArray, Recording, RecordingError, split_signal
 from takt.verdict import Bound, Interval, Lane, Verdict, number, seconds
 
@@ -87,10 +87,7 @@ def never_both(recording: Recording, a: str, b: str, *, window: Interval | None 
     check = Check("never_both", recording, _components([*terms_a, *terms_b]), window)
     all_a, all_b = ([_evaluate(check, *t) for t in terms] for terms in (terms_a, terms_b))
     lanes = list({t.series.label: _without_sides(t.lane) for t in (*all_a, *all_b)}.values())
-    holds_a, holds_b = _all_hold(all_a), _all_hold(all_b)
-    holds_a, holds_b = together(holds_a, holds_b)
-    if not len(holds_a.values):
-        return check.verdict(False, f"'{a}' and '{b}' have no cycle in common")
+    holds_a, holds_b = check.together(_all_hold(check, all_a), _all_hold(check, all_b))
     both = (holds_a.values > 0) & (holds_b.values > 0)
     if not both.any():
         return check.verdict(True, f"'{a}' and '{b}' never held together", lanes=lanes)
@@ -208,14 +205,14 @@ def _evaluate(check: Check, text: str, signal: str, op: str, value: str, absolut
     return _Term(text, s, holds, excess, s.lane(bounds=bounds, names=names))
 
 
-def _all_hold(terms: Sequence[_Term]) -> Series:
+def _all_hold(check: Check, terms: Sequence[_Term]) -> Series:
     """Where all terms hold, as a series of 0 and 1 over the cycles that all have."""
     result: Series | None = None
     for term in terms:
         s = term.series
         held = Series(s.component, s.field, "", s.time_s, s.cycle, term.holds.astype(np.float64), None)
         if result is not None:
-            result, held = together(result, held)
+            result, held = check.together(result, held)
             held = Series(s.component, s.field, "", held.time_s, held.cycle, result.values * held.values, None)
         result = held
     assert result is not None

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from takt.checks.series import Check, Series, decided, extent, nearest, together, unwrapped, wrap
+from takt.checks.series import Check, Series, decided, extent, nearest, unwrapped, wrap
 from takt.recording import Recording
 from takt.verdict import Bound, Interval, Lane, Trace, Verdict, number, seconds
 
@@ -34,9 +34,7 @@ def in_sync(
     check = Check("in_sync", recording, (master, slave), window)
     m = check.series(master, master_signal or signal)
     s = check.series(slave, signal)
-    m, s = together(m, s)
-    if not len(m.values):
-        return check.verdict(False, f"{master} and {slave} have no cycle in common")
+    m, s = check.together(m, s)
     led = ratio * unwrapped(m)
     shift = float(s.values[0] - led[0]) if offset is None else offset
     error = wrap(s.values - (led + shift), s.modulus)
@@ -93,10 +91,8 @@ def keeps_distance(
     squares: list[np.ndarray[tuple[int], np.dtype[np.float64]]] = []
     pairs: list[tuple[Series, Series]] = []
     for field in fields:
-        pair = together(check.series(a, field), check.series(b, field))
+        pair = check.together(check.series(a, field), check.series(b, field))
         pairs.append(pair)
-        if not len(pair[0].values):
-            return check.verdict(False, f"{a} and {b} have no cycle in common")
         around = modulus
         if around is None and len(fields) == 1 and pair[0].modulus == pair[1].modulus:
             around = pair[0].modulus

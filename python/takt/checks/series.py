@@ -16,6 +16,8 @@ from takt.verdict import Interval, Lane, Trace, Verdict, number, seconds
 P = ParamSpec("P")
 Mask = npt.NDArray[np.bool_]
 
+SHARE_IN_COMMON = 0.9  # of the samples of two components; the rest may have got lost
+
 QUANTITIES = ("position", "velocity", "acceleration", "jerk", "error", "torque", "voltage", "state")
 
 
@@ -145,6 +147,23 @@ class Check:
             place = (when_s, when_s)
         return Verdict(self.name, self.components, passed, sentence, when_s, by, unit, place, tuple(lanes))
 
+    def together(self, a: Series, b: Series) -> tuple[Series, Series]:
+        """The samples of both that belong to the same cycles. Undecided where these are too few: of the one that was
+        sampled more seldom, nearly all samples must be among them."""
+        if np.array_equal(a.cycle, b.cycle):
+            return a, b
+        _, rows_a, rows_b = np.intersect1d(a.cycle, b.cycle, assume_unique=True, return_indices=True)
+        first, last = max(a.cycle[0], b.cycle[0]), min(a.cycle[-1], b.cycle[-1])
+        wanted = min(int(np.count_nonzero((s.cycle >= first) & (s.cycle <= last))) for s in (a, b))
+        advice = "publish both at one rate, or one at a multiple of the other's"
+        if not len(rows_a):
+            self._give_up(f"{a.component} and {b.component} have no cycle in common: {advice}")
+        if len(rows_a) < SHARE_IN_COMMON * wanted:
+            self._give_up(
+                f"{a.component} and {b.component} have only {len(rows_a)} of {wanted} cycles in common: {advice}"
+            )
+        return a.take(rows_a), b.take(rows_b)
+
     def _spans(self, component: str, time_s: FloatArray, window: Interval) -> None:
         """A window is covered when at most one usual sample distance is missing at each end."""
         slack = 1.5 * float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0
@@ -199,14 +218,6 @@ def unwrapped(series: Series) -> FloatArray:
     if series.modulus is None:
         return series.values
     return np.unwrap(series.values, period=series.modulus)
-
-
-def together(a: Series, b: Series) -> tuple[Series, Series]:
-    """The samples of both that belong to the same cycles."""
-    if np.array_equal(a.cycle, b.cycle):
-        return a, b
-    _, rows_a, rows_b = np.intersect1d(a.cycle, b.cycle, assume_unique=True, return_indices=True)
-    return a.take(rows_a), b.take(rows_b)
 
 
 def runs(mask: Mask) -> list[tuple[int, int]]:

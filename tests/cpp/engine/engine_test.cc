@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "machines.h"
 #include "takt/axis/state.h"
 #include "takt/core/describe.h"
@@ -49,7 +51,33 @@ TEST(Engine, IsBitForBitReproducible) {
   EXPECT_NE(first, HashesOf(other, 3000));  // and the hash sees the smallest difference
 }
 
-// EN-07: commands taken from the journal, through their text, give the same hash in every cycle.
+// Gives what is in the journal of `engine` to another one, through its text, and compares the hash of every cycle. The
+// journalled commands.
+std::vector<JournalEntry> ExpectReplayBitForBit(Engine& engine) {
+  const Machine& machine = engine.machine();
+  Engine again(machine, {.journal = true, .snapshot_queue = 1 << 13});
+  std::vector<JournalEntry> entries;
+  for (JournalEntry entry; engine.journal().TryPop(entry);) entries.push_back(entry);
+  std::size_t next = 0;
+  HashEntry expected;
+  while (engine.hashes().TryPop(expected)) {
+    for (; next < entries.size() && entries[next].cycle == expected.cycle; ++next) {
+      const CommandText text = ToText(machine, entries[next].command);
+      ParsedCommand parsed = ParseCommand(machine, text.target, text.verb, text.arguments);
+      EXPECT_EQ(parsed.sentence, "");
+      parsed.command.lease_s = entries[next].command.lease_s;
+      parsed.command.ticket = entries[next].command.ticket;
+      EXPECT_TRUE(again.Resubmit(parsed.command));
+    }
+    again.RunCycle();
+    EXPECT_EQ(again.figures().state_hash, expected.hash) << expected.cycle;
+    if (again.figures().state_hash != expected.hash) break;
+  }
+  EXPECT_EQ(next, entries.size());
+  return entries;
+}
+
+// EN-07: commands taken from the journal give the same hash in every cycle.
 TEST(Journal, ReplaysBitForBit) {
   const Machine machine = FullMachine();
   Engine engine(machine, {.journal = true, .snapshot_queue = 1 << 13});
@@ -61,25 +89,52 @@ TEST(Journal, ReplaysBitForBit) {
     if (c == 2700) engine.RequestShutdown();
     engine.RunCycle();
   }
-  Engine again(machine, {.journal = true, .snapshot_queue = 1 << 13});
-  std::vector<JournalEntry> entries;
-  for (JournalEntry entry; engine.journal().TryPop(entry);) entries.push_back(entry);
-  EXPECT_EQ(entries.size(), commands.size() + 1);  // and the stop of the shutdown
-  std::size_t next = 0;
-  HashEntry expected;
-  while (engine.hashes().TryPop(expected)) {
-    for (; next < entries.size() && entries[next].cycle == expected.cycle; ++next) {
-      const CommandText text = ToText(machine, entries[next].command);
-      ParsedCommand parsed = ParseCommand(machine, text.target, text.verb, text.arguments);
-      ASSERT_EQ(parsed.sentence, "");
-      parsed.command.lease_s = entries[next].command.lease_s;
-      parsed.command.ticket = entries[next].command.ticket;
-      again.Resubmit(parsed.command);
-    }
-    again.RunCycle();
-    ASSERT_EQ(again.figures().state_hash, expected.hash) << expected.cycle;
-  }
-  EXPECT_EQ(next, entries.size());
+  EXPECT_EQ(ExpectReplayBitForBit(engine).size(), commands.size() + 1);  // and the stop of the shutdown
+}
+
+// EN-05, EN-07: also a cycle that applies all it can of everything: overruns, renewals, commands, shutdown.
+TEST(Journal, ReplaysTheFullestCycleBitForBit) {
+  Machine machine = FullMachine();
+  machine.cycle.overruns_in_a_row = 1;
+  Engine engine(machine, {.journal = true, .snapshot_queue = 1 << 13});
+  engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  Command jog = ToAxis(machine, "y1", axis::Jog{.forward = true, .velocity = 100});
+  jog.lease_s = 0.1;
+  const Ticket jogging = engine.Submit(jog);
+  for (int i = 0; i < 90; ++i) engine.RunCycle();
+  const auto fill = [&] {
+    for (std::size_t i = 0; i < kCommandsPerCycle - 1; ++i) engine.Submit(ToAxis(machine, "z", axis::Reset{}));
+    engine.Submit(ToAxis(machine, "y1", axis::Reset{}));  // one cycle later it would act in another state
+    for (std::size_t i = 0; i < kRenewalsPerCycle; ++i) engine.Submit({.body = MachineCommand(Renew{jogging})});
+  };
+  fill();
+  engine.RunCycle();  // the jog is renewed before its lease is over
+  for (int i = 0; i < 50; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.outputs(AxisNamed(machine, "y1")).set_velocity, 100);
+  fill();
+  engine.RequestShutdown();
+  engine.RunCycle({0, 0, true});
+  for (int i = 0; i < 200; ++i) engine.RunCycle();
+  fill();
+  engine.RunCycle({0, 0, true});
+  ExpectReplayBitForBit(engine);
+}
+
+// EN-05, EN-07
+TEST(Journal, ReplaysAnOverrunInACycleFullOfCommandsBitForBit) {
+  Machine machine = FullMachine();
+  machine.cycle.overruns_in_a_row = 1;
+  Engine engine(machine, {.journal = true, .snapshot_queue = 1 << 13});
+  engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  for (std::size_t i = 0; i < kCommandsPerCycle - 1; ++i) engine.Submit(ToAxis(machine, "z", axis::Reset{}));
+  engine.Submit(ToAxis(machine, "y1", axis::Reset{}));  // the last one the cycle takes
+  engine.RunCycle({0, 0, true});
+  for (int i = 0; i < 50; ++i) engine.RunCycle();
+  const auto entries = ExpectReplayBitForBit(engine);
+  EXPECT_EQ(entries.size(), 1 + kCommandsPerCycle + 1);
+  EXPECT_EQ(entries.back().cycle, 300u);
 }
 
 // EN-03: the follower stands first in the file and still sees its master's set point of the same cycle, not of the one
@@ -162,8 +217,14 @@ TEST(Shutdown, BrakesAndOpensTheLoops) {
   EXPECT_TRUE(engine.all_disabled());
   FeedbackEvent event;
   bool refused = false;
-  while (engine.feedback().TryPop(event)) refused |= event.ticket == late && event.error == ErrorId::kShutdown;
+  int aborted = 0;
+  while (engine.feedback().TryPop(event)) {
+    refused |= event.ticket == late && event.error == ErrorId::kShutdown;
+    // What was under way says why it ended.
+    aborted += event.state == FeedbackState::kAborted && event.error == ErrorId::kShutdown ? 1 : 0;
+  }
   EXPECT_TRUE(refused);
+  EXPECT_GE(aborted, 3);  // a move and one buffered behind it on y1, a move_velocity on c
 }
 
 // EN-21, EN-22: a full queue refuses; what was refused has no ticket, what was accepted is answered, in order.
@@ -176,8 +237,8 @@ TEST(CommandQueue, RefusesWhenFullAndLosesNothing) {
     const Ticket ticket = engine.Submit(ToAxis(machine, "y1", axis::Halt{}));
     ticket ? accepted.push_back(ticket) : void(++refused);
   }
-  EXPECT_EQ(accepted.size(), 128u);
-  EXPECT_EQ(refused, 1000 - 128);
+  EXPECT_EQ(accepted.size(), 120u);  // the rest is kept for what lets go
+  EXPECT_EQ(refused, 1000 - 120);
   std::vector<Ticket> answered;
   for (int i = 0; i < 10; ++i) {
     engine.RunCycle();
@@ -185,7 +246,60 @@ TEST(CommandQueue, RefusesWhenFullAndLosesNothing) {
     while (engine.feedback().TryPop(event)) answered.push_back(event.ticket);
   }
   EXPECT_EQ(answered, accepted);
-  EXPECT_EQ(engine.figures().commands_refused, 872u);
+  EXPECT_EQ(engine.figures().commands_refused, 880u);
+}
+
+// EN-22, EN-23: a flood of commands keeps out neither heartbeats nor what lets go or stops. At the longest cycle the
+// queue alone would hold a heartbeat up for longer than its lease.
+TEST(CommandQueue, AFloodKeepsOutNeitherRenewalsNorStops) {
+  Machine machine = FullMachine();
+  machine.cycle.period_s = 0.02;
+  Engine engine(machine);
+  const std::size_t z = AxisNamed(machine, "z");
+  const std::size_t y1 = AxisNamed(machine, "y1");
+  engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  engine.Submit(ToAxis(machine, "z", axis::Power{}));
+  for (int i = 0; i < 50; ++i) engine.RunCycle();
+  Command jog = ToAxis(machine, "z", axis::Jog{.forward = true, .velocity = 5});
+  jog.lease_s = 0.25;
+  const Ticket jogging = engine.Submit(jog);
+  const auto flood = [&] {
+    while (engine.Submit(ToAxis(machine, "c", axis::Reset{}))) {
+    }
+  };
+  const auto run = [&](int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      flood();
+      if (i % 5 == 0) {
+        EXPECT_NE(engine.Submit({.body = MachineCommand(Renew{jogging})}), 0u);
+      }
+      engine.RunCycle();
+    }
+  };
+  run(200);
+  EXPECT_NEAR(engine.outputs(z).set_velocity, 5, 1e-9);
+  flood();
+  EXPECT_NE(engine.Submit({.body = MachineCommand(Release{jogging})}), 0u);
+  EXPECT_NE(engine.Submit({.body = MachineCommand(StopAll{})}), 0u);
+  EXPECT_NE(engine.Submit(ToAxis(machine, "z", axis::Stop{})), 0u);
+  EXPECT_NE(engine.Submit(ToAxis(machine, "y1", axis::Power{.enable = false})), 0u);
+  EXPECT_EQ(engine.Submit(ToAxis(machine, "y1", axis::Power{})), 0u);
+  run(100);
+  EXPECT_EQ(engine.outputs(z).set_velocity, 0);
+  EXPECT_FALSE(engine.outputs(y1).loop_closed);
+}
+
+// What lets go keeps its place behind what was given before it.
+TEST(CommandQueue, KeepsTheOrder) {
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  engine.Submit(ToAxis(machine, "y1", axis::MoveAbsolute{.position = 100}));
+  engine.Submit(ToAxis(machine, "y1", axis::Stop{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.outputs(AxisNamed(machine, "y1")).set_velocity, 0);
+  EXPECT_LT(std::abs(engine.outputs(AxisNamed(machine, "y1")).set_position), 1);
 }
 
 // EN-21: nobody empties the snapshot queue: counted drops, and the cycle goes on unchanged.
@@ -219,6 +333,19 @@ TEST(Snapshots, ComeAtTheRateOfTheirChannel) {
   EXPECT_EQ(counts[AxisNamed(machine, "y1")], 100);
   EXPECT_EQ(counts[AxisNamed(machine, "c")], 500);
   EXPECT_EQ(counts[AxisNamed(machine, "z")], 0);
+}
+
+// EN-20: axes of one rate come in the same cycles.
+TEST(Snapshots, OfOneRateComeTogether) {
+  Machine machine = FullMachine();
+  machine.lcm.axis_rate_hz = 100;
+  Engine engine(machine, {.publish = true});
+  for (int i = 0; i < 1000; ++i) engine.RunCycle();
+  std::map<std::uint64_t, int> axes;  // by cycle
+  AxisSnapshot snapshot;
+  while (engine.snapshots().TryPop(snapshot)) ++axes[snapshot.cycle];
+  EXPECT_EQ(axes.size(), 100u);
+  for (const auto& [cycle, count] : axes) EXPECT_EQ(count, 4) << cycle;
 }
 
 // A command for a target that does not exist, handed in from C++ past the parser.

@@ -17,7 +17,7 @@ class ClientsTest : public testing::Test {
  protected:
   Clients Make(const ClientLimits& limits = {}) {
     return Clients(
-        machine_,
+        machine_, kRunId,
         [this](const engine::Command& command) {
           if (queue_is_full_) return Ticket{0};
           submitted_.push_back(command);
@@ -29,6 +29,7 @@ class ClientsTest : public testing::Test {
   static msgs::command Command(std::int64_t id, const std::string& verb = "move_absolute",
                                const std::string& arguments = "{position: 10}") {
     msgs::command m{};
+    m.run_id = kRunId;
     m.client = "anna";
     m.session = 1;
     m.id = id;
@@ -40,6 +41,7 @@ class ClientsTest : public testing::Test {
   static msgs::command Jog(std::int64_t id) { return Command(id, "jog", "{forward: true}"); }
   static msgs::heartbeat Heartbeat(std::int64_t session = 1) {
     msgs::heartbeat m{};
+    m.run_id = kRunId;
     m.client = "anna";
     m.session = session;
     return m;
@@ -242,6 +244,40 @@ TEST_F(ClientsTest, AHeldStopIsRenewedUntilItIsReleased) {
   EXPECT_EQ(renewed(), (std::vector<Ticket>{1}));
   clients.OnCommand(release(2, "{ticket: 1}"), 0);
   EXPECT_TRUE(renewed().empty());
+}
+
+// EN-23: another client may let go of it, too.
+TEST_F(ClientsTest, AHeldStopReleasedByAnotherClientIsNotRenewed) {
+  Clients clients = Make();
+  clients.OnCommand(Command(1, "stop", "{hold: true}"), 0);
+  clients.OnFeedback({1, 5, FeedbackState::kDone, false, ErrorId::kNone});
+  msgs::command release = Command(1, "release", "{ticket: 1}");
+  release.client = "berta";
+  release.target = "machine";
+  clients.OnCommand(release, 0);
+  clients.OnHeartbeat(Heartbeat(), 1);
+  EXPECT_TRUE(Renewed().empty());
+}
+
+// EN-22, EN-24: what was meant for another start of the engine, as in a log that is played into the network, does
+// nothing.
+TEST_F(ClientsTest, WhatIsMeantForAnotherStartIsRefused) {
+  Clients clients = Make();
+  clients.OnCommand(Jog(1), 0);
+  submitted_.clear();
+  msgs::command command = Command(2);
+  command.run_id = kRunId - 1;
+  clients.OnCommand(command, 0);
+  const msgs::feedback refused = OneReply(clients);
+  ExpectError(refused, ErrorId::kOtherRun, "another start");
+  EXPECT_EQ(refused.id, 2);
+  msgs::heartbeat heartbeat = Heartbeat();
+  heartbeat.run_id = 0;
+  clients.OnHeartbeat(heartbeat, 1);
+  ExpectError(OneReply(clients), ErrorId::kOtherRun, "another start");
+  EXPECT_TRUE(submitted_.empty());
+  clients.OnCommand(Command(2), 2);  // the refusal used up no id
+  EXPECT_EQ(submitted_.size(), 1u);
 }
 
 // EN-23: letting go while the axis still brakes does not take the lease from the ramp.

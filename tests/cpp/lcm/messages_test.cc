@@ -23,6 +23,7 @@ Message ThroughBytes(const Message& message) {
 
 msgs::command Command() {
   msgs::command m{};
+  m.run_id = 4711;
   m.client = "test";
   m.session = 1;
   m.id = 2;
@@ -163,6 +164,7 @@ TEST(Messages, CommandAndHeartbeatDecode) {
   Encode(Command(), bytes);
   const auto command = DecodeCommand(bytes);
   ASSERT_TRUE(command);
+  EXPECT_EQ(command->run_id, 4711);
   EXPECT_EQ(command->client, "test");
   EXPECT_EQ(command->session, 1);
   EXPECT_EQ(command->id, 2);
@@ -172,11 +174,13 @@ TEST(Messages, CommandAndHeartbeatDecode) {
   EXPECT_FALSE(DecodeHeartbeat(bytes));
 
   msgs::heartbeat heartbeat{};
+  heartbeat.run_id = 4711;
   heartbeat.client = "test";
   heartbeat.session = -3;
   Encode(heartbeat, bytes);
   ASSERT_TRUE(DecodeHeartbeat(bytes));
   EXPECT_EQ(DecodeHeartbeat(bytes)->session, -3);
+  EXPECT_EQ(DecodeHeartbeat(bytes)->run_id, 4711);
   EXPECT_FALSE(DecodeCommand(bytes));
 }
 
@@ -190,7 +194,7 @@ TEST(Messages, WrongLengthsAreRefused) {
   std::vector<std::uint8_t> longer = good;
   longer.push_back(0);
   EXPECT_FALSE(DecodeCommand(longer));
-  constexpr std::size_t kClientLength = 8;  // behind the fingerprint
+  constexpr std::size_t kClientLength = 16;  // behind the fingerprint and run_id
   for (const std::uint32_t length : {0u, 1u, 4u, 6u, 0x7fff'ffffu, 0x8000'0000u, 0x8000'0001u, 0xffff'ffffu}) {
     std::vector<std::uint8_t> bad = good;
     for (std::size_t i = 0; i < 4; ++i) bad[kClientLength + i] = static_cast<std::uint8_t>(length >> (24 - 8 * i));

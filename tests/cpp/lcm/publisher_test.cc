@@ -64,7 +64,7 @@ class TestOutlet : public Outlet {
 struct TestRun {
   explicit TestRun(const engine::EngineOptions& options, engine::Machine machine = TestMachine())
       : engine(std::move(machine), options),
-        clients(engine.machine(), [this](const engine::Command& c) { return engine.Submit(c); }) {}
+        clients(engine.machine(), kRunId, [this](const engine::Command& c) { return engine.Submit(c); }) {}
 
   // Steps without running away from the publisher.
   void Step(int cycles) {
@@ -84,6 +84,7 @@ struct TestRun {
 msgs::command Command(std::int64_t id, const std::string& target, const std::string& verb,
                       const std::string& arguments = "") {
   msgs::command m{};
+  m.run_id = kRunId;
   m.client = "test";
   m.session = 1;
   m.id = id;

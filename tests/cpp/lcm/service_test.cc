@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
 #include <thread>
@@ -52,7 +53,7 @@ struct Received {
 TEST(Service, AClientMovesAnAxisOverTheNetwork) {
   engine::Engine engine(TestMachine(), {.publish = true});
   std::string problem;
-  const auto service = Service::Open(engine, {.url = Url(7731)}, problem);
+  const auto service = Service::Open(engine, {.url = Url(7731), .info = {.run_id = kRunId}}, problem);
   ASSERT_TRUE(service) << problem;
   std::atomic<int> signals{0};
   engine::RunResult result;
@@ -68,6 +69,7 @@ TEST(Service, AClientMovesAnAxisOverTheNetwork) {
   std::int64_t id = 0;
   const auto give = [&](const std::string& verb, const std::string& arguments) {
     msgs::command m{};
+    m.run_id = kRunId;
     m.client = "test";
     m.session = 1;
     m.id = ++id;
@@ -107,7 +109,9 @@ TEST(Service, TheLogReadsBack) {
   ASSERT_TRUE(service) << problem;
   const std::atomic<int> signals{0};
   takt::engine::Run(engine, {.pace = engine::Pace::kFast, .duration_s = 20, .wait_for_reader = true}, signals);
-  EXPECT_EQ(service->Close(), 0u);
+  const Losses losses = service->Close();
+  EXPECT_EQ(losses.messages, 0u);
+  EXPECT_FALSE(losses.log);
   EXPECT_EQ(engine.figures().snapshots_dropped, 0u);
 
   ::lcm::LogFile file(log.path, "r");
@@ -136,6 +140,41 @@ TEST(Service, ALogThatCannotBeWrittenIsSaidInOneLine) {
   std::string problem;
   EXPECT_FALSE(Service::Open(engine, {.log_path = "/no/such/folder/log"}, problem));
   EXPECT_EQ(problem, "log file /no/such/folder/log cannot be written");
+}
+
+// EN-07, EN-20: a log that lost something is an error, said in one line when it happens first.
+TEST(Service, ADiskThatIsFullIsSaidInOneLine) {
+  engine::Engine engine(TestMachine(), {.publish = true, .every_cycle = true, .journal = true});
+  std::string problem;
+  testing::internal::CaptureStderr();
+  const auto service = Service::Open(engine, {.log_path = "/dev/full"}, problem);
+  ASSERT_TRUE(service) << problem;
+  for (int i = 0; i < 1000; ++i) engine.RunCycle();
+  EXPECT_TRUE(service->Close().log);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "log file /dev/full is incomplete: No space left on device\n");
+}
+
+// The little that fits into the buffer is lost at the end only.
+TEST(Service, ADiskThatIsFullAtTheEndIsSaid) {
+  engine::Engine engine(TestMachine());
+  std::string problem;
+  const auto service = Service::Open(engine, {.log_path = "/dev/full"}, problem);
+  ASSERT_TRUE(service) << problem;
+  EXPECT_TRUE(service->Close().log);
+}
+
+TEST(Service, AFileThatIsNoLogIsNotOverwritten) {
+  engine::Engine engine(TestMachine());
+  const TemporaryFile file("takt_service_test.yaml");
+  std::string problem;
+  std::ofstream(file.path) << "name: test\n";
+  EXPECT_FALSE(Service::Open(engine, {.log_path = file.path}, problem));
+  EXPECT_EQ(problem, "log file " + file.path + " exists and is no LCM log; it is left as it is");
+  EXPECT_EQ(std::filesystem::file_size(file.path), 11u);
+  std::filesystem::resize_file(file.path, 0);
+  EXPECT_TRUE(Service::Open(engine, {.log_path = file.path}, problem));
+  EXPECT_GT(std::filesystem::file_size(file.path), 100u);
+  EXPECT_TRUE(Service::Open(engine, {.log_path = file.path}, problem));  // now it is one
 }
 
 TEST(Network, WrongUrlsAreSaidInOneLine) {

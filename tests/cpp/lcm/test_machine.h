@@ -1,11 +1,14 @@
 // A small machine for the tests of this folder.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "takt/engine/machine.h"
 
 namespace takt::lcm {
+
+constexpr std::int64_t kRunId = 4711;
 
 inline engine::Machine TestMachine(int axes = 2) {
   engine::Machine machine;
