@@ -150,8 +150,9 @@ enum class Opening : std::uint8_t {
 Profile Open(const AxisParams& params, Planner& planner, const KinematicState& from, Opening opening) {
   const Limits own = params.planner_limits();
   Profile profile{from};
-  if (opening == Opening::kEase && own.jerk > 0) {
-    profile.Append(std::abs(from.acceleration) / own.jerk, -Sense(from.acceleration) * own.jerk);
+  if (opening == Opening::kEase) {
+    // Without a jerk limit the acceleration may step to 0 at once.
+    if (own.jerk > 0) profile.Append(std::abs(from.acceleration) / own.jerk, -Sense(from.acceleration) * own.jerk);
     profile.SnapEnd({profile.end().position, profile.end().velocity, 0});
   } else if (opening == Opening::kStop) {
     planner.Stop(from, own, profile);

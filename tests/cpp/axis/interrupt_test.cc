@@ -87,6 +87,24 @@ TEST(Interrupt, OnlyTheBeginningIsHarderThanAsked) {
   EXPECT_LE(worst.jerk, 1 + 1e-6);
 }
 
+// AX-13: the same on an axis without a jerk limit, interrupted by a command with one.
+TEST(Interrupt, AJerkOfItsOwnOnAnAxisWithoutAJerkLimit) {
+  for (const Command& weak :
+       {Command(MoveVelocity{.velocity = 400, .jerk = 500}), Command(Jog{.backward = true, .jerk = 500}),
+        Command(MoveAbsolute{.position = 3000, .acceleration = 800, .jerk = 500}), Command(Halt{.jerk = 500})}) {
+    Rig rig(Fenced(100000, 5000, 15000, 0));
+    rig.params.limits.lower = -100000;
+    ASSERT_TRUE(rig.PowerOn());
+    rig.Give(MoveVelocity{.velocity = 500});
+    while (rig.state.setpoint.velocity < 300) rig.Step();
+    rig.Give(weak);
+    rig.Run(10);
+    const Worst worst = WorstOf(rig.trace, rig.params.planner_limits(), 0.001);
+    EXPECT_LE(worst.velocity, 1 + 1e-9);
+    EXPECT_LE(worst.acceleration, 1 + 1e-9);
+  }
+}
+
 // AX-39, AX-13: another speed with a weaker jerk, while a jog accelerates.
 TEST(Interrupt, AJogWithLessJerkKeepsTheVelocity) {
   Rig rig(Fenced(100000));

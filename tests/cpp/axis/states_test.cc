@@ -318,7 +318,8 @@ Command RandomCommand(std::mt19937_64& random, const AxisParams& p) {
   const auto ramp = [&](double limit) { return std::max(0.02, std::min(1.0, std::abs(any(random)))) * limit; };
   const double acceleration = ramp(p.limits.acceleration);
   const double deceleration = ramp(p.limits.deceleration.value());
-  const double jerk = ramp(p.limits.jerk);
+  const double jerk =
+      p.limits.jerk > 0 ? ramp(p.limits.jerk) : std::abs(any(random)) * 1e5;  // own jerk without a limit too
   const auto mode = static_cast<BufferMode>(random() % 6);
   const auto direction = static_cast<Direction>(random() % 4);
   switch (random() % 10) {
