@@ -39,6 +39,8 @@ class Clients {
   // `machine` must outlive this. Commands and heartbeats with another `run_id` are refused.
   Clients(const engine::Machine& machine, std::int64_t run_id, Submit submit, const ClientLimits& limits = {});
 
+  std::int64_t run_id() const { return run_id_; }
+
   // From the network. `now_ns` is any clock that only goes forward.
   void OnCommand(const msgs::command& message, std::int64_t now_ns);
   // Renews the lease of each of the client's level-sensitive commands. Answered (with id 0) only if it is refused.

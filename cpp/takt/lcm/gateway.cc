@@ -1,7 +1,9 @@
 #include "takt/lcm/gateway.h"
 
+#include <cstdio>
 #include <span>
 
+#include "takt/core/problem.h"
 #include "takt/lcm/channels.h"
 #include "takt/lcm/clock.h"
 #include "takt/lcm/messages.h"
@@ -19,10 +21,11 @@ std::span<const std::uint8_t> Bytes(const ::lcm::ReceiveBuffer* received) {
 
 }  // namespace
 
-Gateway::Gateway(::lcm::LCM& network, Clients& clients) : network_(network) {
+Gateway::Gateway(::lcm::LCM& network, Clients& clients) : network_(network), clients_(clients) {
   subscriptions_[0] = network_.subscribeFunction(kCommandChannel, &Gateway::OnCommand, &clients);
   subscriptions_[1] = network_.subscribeFunction(kHeartbeatChannel, &Gateway::OnHeartbeat, &clients);
-  for (::lcm::Subscription* subscription : subscriptions_) subscription->setQueueCapacity(kQueueCapacity);
+  for (int i = 0; i < 2; ++i) subscriptions_[i]->setQueueCapacity(kQueueCapacity);
+  subscriptions_[2] = network_.subscribeFunction(kMachineChannel, &Gateway::OnMachine, this);
   thread_ = std::thread([this] { Listen(); });
 }
 
@@ -50,6 +53,14 @@ void Gateway::OnHeartbeat(const ::lcm::ReceiveBuffer* received, const std::strin
   } else {
     clients->OnMalformed();
   }
+}
+
+void Gateway::OnMachine(const ::lcm::ReceiveBuffer* received, const std::string&, Gateway* gateway) {
+  if (gateway->met_another_engine_) return;
+  const auto message = DecodeMachine(Bytes(received));
+  if (!message || message->run_id == gateway->clients_.run_id()) return;
+  gateway->met_another_engine_ = true;
+  std::fprintf(stderr, "another engine runs on this LCM network, machine %s\n", Quoted(message->name).c_str());
 }
 
 }  // namespace takt::lcm

@@ -1,4 +1,5 @@
-// Commands and heartbeats from the network (EN-22, EN-23), on a thread of its own.
+// Commands and heartbeats from the network (EN-22, EN-23), on a thread of its own. Another engine on the same network
+// is said in one line on stderr: nobody can tell the two engines' states from one another.
 #pragma once
 
 #include <atomic>
@@ -22,10 +23,13 @@ class Gateway {
   // Plain functions: GCC 12's undefined-behaviour sanitizer breaks LCM's calls of member functions.
   static void OnCommand(const ::lcm::ReceiveBuffer* received, const std::string& channel, Clients* clients);
   static void OnHeartbeat(const ::lcm::ReceiveBuffer* received, const std::string& channel, Clients* clients);
+  static void OnMachine(const ::lcm::ReceiveBuffer* received, const std::string& channel, Gateway* gateway);
   void Listen();
 
   ::lcm::LCM& network_;
-  ::lcm::Subscription* subscriptions_[2];
+  const Clients& clients_;
+  ::lcm::Subscription* subscriptions_[3];
+  bool met_another_engine_ = false;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

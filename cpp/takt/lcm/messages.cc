@@ -15,7 +15,7 @@ std::int64_t TimeNs(std::uint64_t cycle, const engine::Machine& machine) {
   return Signed(cycle) * std::llround(machine.cycle.period_s * 1e9);
 }
 
-// The fields behind the fingerprint: 'i' eight bytes, 's' a string.
+// The fields behind the fingerprint: 'i' eight bytes of whatever kind, 's' a string.
 bool FitsLayout(std::span<const std::uint8_t> bytes, std::string_view layout) {
   constexpr std::size_t kFingerprint = 8;
   if (bytes.size() < kFingerprint) return false;
@@ -130,6 +130,10 @@ std::optional<msgs::command> DecodeCommand(std::span<const std::uint8_t> bytes) 
 
 std::optional<msgs::heartbeat> DecodeHeartbeat(std::span<const std::uint8_t> bytes) {
   return Decode<msgs::heartbeat>(bytes, "isi");
+}
+
+std::optional<msgs::machine_description> DecodeMachine(std::span<const std::uint8_t> bytes) {
+  return Decode<msgs::machine_description>(bytes, "iiissis");
 }
 
 }  // namespace takt::lcm

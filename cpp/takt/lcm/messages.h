@@ -35,6 +35,7 @@ msgs::journal_command ToMessage(const engine::JournalEntry& entry, const engine:
 // is not safe here: a negative length of a string makes it throw or read beyond the end.
 std::optional<msgs::command> DecodeCommand(std::span<const std::uint8_t> bytes);
 std::optional<msgs::heartbeat> DecodeHeartbeat(std::span<const std::uint8_t> bytes);
+std::optional<msgs::machine_description> DecodeMachine(std::span<const std::uint8_t> bytes);
 
 // Encodes into `buffer`, whose memory is used again from message to message.
 template <typename Message>

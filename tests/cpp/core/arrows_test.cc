@@ -42,6 +42,10 @@ TEST(Arrows, PointOneWay) {
     for (std::string line; std::getline(file, line);) {
       std::smatch match;
       if (!std::regex_match(line, match, include) || match[1] == folder) continue;
+      if (match[1] == "msgs") {  // made from lcmtypes: the affair of one folder
+        EXPECT_EQ(folder, "lcm") << entry.path();
+        continue;
+      }
       ++seen;
       EXPECT_TRUE(dependencies.at(folder).contains(match[1])) << entry.path() << ": " << line;
     }

@@ -133,6 +133,29 @@ TEST_F(GatewayTest, CommandsAndHeartbeatsArriveMalformedBytesAreCounted) {
   EXPECT_TRUE(Eventually([&] { return clients.figures(SteadyNs()).alive == 2; }));
 }
 
+TEST_F(GatewayTest, AnotherEngineOnTheNetworkIsSaidOnceInOneLine) {
+  ::lcm::LCM network("memq://");
+  testing::internal::CaptureStderr();
+  {
+    Gateway gateway(network, clients);
+    msgs::machine_description machine{};
+    machine.name = "other\nmachine";
+    machine.run_id = kRunId;
+    const char garbage[] = "garbage";
+    network.publish(kMachineChannel, garbage, sizeof garbage);
+    network.publish(kMachineChannel, &machine);  // its own
+    machine.run_id = kRunId + 1;
+    network.publish(kMachineChannel, &machine);
+    network.publish(kMachineChannel, &machine);
+    const Bytes command = Encoded(Command(1, "no_such_verb"));
+    network.publish(kCommandChannel, command.data(), static_cast<unsigned>(command.size()));
+    EXPECT_TRUE(Eventually([&] { return !Replies().empty(); }));  // all before has arrived
+  }
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  EXPECT_TRUE(said.starts_with("another engine runs on this LCM network, machine 'other")) << said;
+}
+
 // EN-22: nothing crashes, nothing grows without bound, and what comes afterwards is still served.
 TEST_F(GatewayTest, Fuzz) {
   Fuzz fuzz;
