@@ -22,6 +22,9 @@
 namespace takt::bindings {
 namespace {
 
+// In virtual time a scenario may command a thousand axes before it lets time pass.
+constexpr std::size_t kCommandQueue = 1 << 16;
+
 [[noreturn]] void ThrowConfigError(const std::vector<std::string>& problems) {
   const py::object error = py::module_::import("takt.errors").attr("ConfigError");
   PyErr_SetObject(error.ptr(), error(problems).ptr());
@@ -71,7 +74,8 @@ using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::ui
 class VirtualEngine {
  public:
   VirtualEngine(const py::bytes& text, const std::string& file_name, bool journal, std::optional<double> period_s)
-      : journaling_(journal), engine_(Prepared(text, file_name, period_s), {.journal = journal}) {}
+      : journaling_(journal),
+        engine_(Prepared(text, file_name, period_s), {.journal = journal, .command_queue = kCommandQueue}) {}
 
   // Steps up to `cycles` cycles, or until one reports feedback. How many it were.
   std::uint64_t Step(std::uint64_t cycles, bool until_feedback) {

@@ -303,7 +303,7 @@ def _quantile(histogram: Mapping[str, Any], share: float) -> float:
     longest = float(histogram["max"])
     for i, count in enumerate(histogram["buckets"][:-1]):
         if count >= wanted and count:
-            return min(2**i * (1 + wanted / count), longest)
+            return min(float(2**i * (1 + wanted / count)), longest)
         wanted -= count
     return longest
 

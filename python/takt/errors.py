@@ -58,6 +58,6 @@ def seconds(value: object, what: str, most: float = math.inf) -> float:
     """A number of seconds from 0 to `most`, or a sentence."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(f"{what} is a number of seconds, not {value!r}")
-    if not 0 <= value <= most:
+    if not 0 <= float(value) <= most:
         raise ValueError(f"{what} is a number of seconds from 0 on, not {value}")
     return float(value)

@@ -78,6 +78,7 @@ class RemoteSession(Session):
         try:
             description = self._first_description(timeout)
             self._period = description.period_s
+            self._run_id = description.run_id
             machine = json.loads(_core.load_machine(description.text.encode(), "machine"))
             super().__init__(machine, description.text)
             self._dead_man_s = float(machine["lcm"]["dead_man_s"])
@@ -238,7 +239,7 @@ class RemoteSession(Session):
     def _beat(self) -> None:
         beat = msgs.heartbeat()
         beat.client, beat.session = self.client, self._session_id
-        self._set_run(beat)
+        beat.run_id = self._run_id
         while not self._stop.is_set():
             now = time.monotonic()
             with self._news:
@@ -275,7 +276,7 @@ class RemoteSession(Session):
         message = msgs.command()
         message.client, message.session = self.client, self._session_id
         message.target, message.verb, message.arguments = feedback.target, feedback.verb, feedback.arguments
-        self._set_run(message)
+        message.run_id = self._run_id
         with self._news:
             self._last_id += 1
             message.id = self._last_id
@@ -285,11 +286,6 @@ class RemoteSession(Session):
                 self._beat_now.set()
         self._publish("takt/command", message.encode())
         return sent
-
-    def _set_run(self, message: msgs.command | msgs.heartbeat) -> None:
-        """For this start of the engine alone, not for another one, nor for one that a log is played back to."""
-        if hasattr(message, "run_id") and self._description is not None:
-            message.run_id = self._description.run_id
 
     def _submit(self, feedback: Feedback) -> None:
         with self._news:
@@ -337,7 +333,9 @@ class RemoteSession(Session):
 
     def _catch_up(self, cycle: int) -> None:
         with self._news:
-            self._news.wait_for(lambda: all(self._states[a].cycle >= cycle for a in self._axes) or self._trouble, LATE_S)
+            self._news.wait_for(
+                lambda: all(self._states[a].cycle >= cycle for a in self._axes) or self._trouble, LATE_S
+            )
 
     def _begin(self, recorder: Recorder) -> None:
         with self._news:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,9 +98,7 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
             progress(0.5 + 0.5 * engine.cycle / comparable)
     compared = comparable if difference is None else difference.cycle + 1
     name = json.loads(engine.machine_json)["name"]
-    return ReplayResult(
-        name, compared, known, given, one.start.period_s, one.start.version, difference, missing
-    )
+    return ReplayResult(name, compared, known, given, one.start.period_s, one.start.version, difference, missing)
 
 
 def _hashes(run: Run) -> Hashes:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from takt import _core, msgs
-from takt.recording import Array, Recording
+from takt.recording import Array, Recording, RecordingError
 
 OUTPUT_FIELDS = tuple(name for name, _, _, _ in _core.output_fields())
 _UNITS = {name: unit for name, unit, _, _ in _core.output_fields()}
@@ -37,8 +37,9 @@ def fields_of(message: Any) -> dict[str, Any]:
 
 
 def is_possible(message: msgs.axis_state | msgs.engine_state, period: float) -> bool:
-    """Cycle and time say the same, as they do unless bytes were changed or made up."""
-    return bool(message.cycle >= 0 and abs(message.time_ns * 1e-9 - message.cycle * period) <= period)
+    """Cycle and time say the same, as they do unless bytes were changed or made up. The engine's period is one of whole
+    nanoseconds."""
+    return bool(message.cycle >= 0 and abs(message.time_ns - message.cycle * period * 1e9) <= message.cycle)
 
 
 def table_of(messages: Sequence[msgs.axis_state], period: float, every: int = 1) -> dict[str, Array]:
@@ -51,8 +52,16 @@ def table_of(messages: Sequence[msgs.axis_state], period: float, every: int = 1)
             last = message.cycle
     rows = rows[::every]
     cycle = np.array([m.cycle for m in rows], dtype=np.int64)
-    columns = {f: np.array([getattr(m, f) for m in rows], dtype=_DTYPES[f]) for f in OUTPUT_FIELDS}
-    return {"time_s": cycle * period, "cycle": cycle} | columns
+    return {"time_s": cycle * period, "cycle": cycle} | {f: _column(rows, f) for f in OUTPUT_FIELDS}
+
+
+def _column(messages: Sequence[msgs.axis_state], field: str) -> Array:
+    try:
+        return np.array([getattr(m, field) for m in messages], dtype=_DTYPES[field])
+    except OverflowError:
+        raise RecordingError(
+            f"{messages[0].name}.{field} holds a number that no engine publishes: bytes of the log were changed"
+        ) from None
 
 
 def make_recording(

@@ -54,9 +54,7 @@ def taktd() -> str:
 def command_for(session: takt.RemoteSession) -> msgs.command:
     """An empty command to the engine of this session, past the session."""
     message = msgs.command()
-    assert session._description is not None
-    if hasattr(message, "run_id"):
-        message.run_id = session._description.run_id
+    message.run_id = session._run_id
     return message
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -338,7 +339,7 @@ def test_components_that_were_never_sampled_together() -> None:
 def test_components_that_were_seldom_sampled_together() -> None:
     """PY-05: cycles of which neither is a multiple of the other's prove little; single losses do not matter."""
 
-    def line(cycles: np.typing.NDArray[np.int64]) -> dict[str, np.typing.NDArray[np.float64]]:
+    def line(cycles: np.typing.NDArray[np.int64]) -> dict[str, np.typing.NDArray[Any]]:
         return {"time_s": cycles * DT, "cycle": cycles, "set_position": 3.0 * cycles}
 
     rec = Recording({"a": line(np.arange(0, 1000, 10)), "b": line(np.arange(0, 1000, 25))})

@@ -13,6 +13,7 @@ import takt
 from machines import MACHINE, new_url, running
 from takt import demo, msgs
 from takt.cli import _quantile, main
+from takt.tables import is_possible
 
 SCENARIO = '''"""Goes and comes back.
 
@@ -178,6 +179,30 @@ def test_a_log_with_changed_bytes_is_drawn(files: Path) -> None:
     assert takt.read_log(files / "changed.lcm")["x"]["cycle"].tolist() == [0, 1, 3]
     assert main(["plot", str(files / "changed.lcm"), "-o", str(files / "a.svg")]) == 0
     assert (files / "a.svg").read_text().startswith("<?xml")
+
+
+def test_states_of_a_period_that_is_no_whole_number_of_ns() -> None:
+    """Cycles and times of the engine differ by what its period was rounded; after a day that is many cycles."""
+    state = msgs.axis_state()
+    state.cycle = 3000 * 86_400
+    state.time_ns = state.cycle * 333_333
+    assert is_possible(state, 1 / 3000)
+    state.cycle += 1000
+    assert not is_possible(state, 1 / 3000)
+
+
+def test_a_log_with_changed_numbers_says_so(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Bad input."""
+    log = lcm.EventLog(str(files / "changed.lcm"), "w", overwrite=True)
+    machine = msgs.machine_description()
+    machine.text, machine.period_s = MACHINE, 0.001
+    log.write_event(1, "takt/machine", machine.encode())
+    state = msgs.axis_state()
+    state.name, state.buffered_commands = "x", -9
+    log.write_event(1, "takt/axis/x", state.encode())
+    log.close()
+    assert main(["plot", str(files / "changed.lcm")]) == 2
+    assert "x.buffered_commands holds a number that no engine publishes" in capsys.readouterr().err
 
 
 def test_quantiles() -> None:

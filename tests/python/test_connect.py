@@ -62,7 +62,8 @@ def test_leaving_releases_what_is_held(tmp_path: Path) -> None:
 
 def refuse_releases(session: takt.RemoteSession, count: int) -> list[msgs.feedback]:
     """As if the engine's queue were full: so many releases go no further than the client. They are counted."""
-    send, refused = session._send, []
+    send = session._send
+    refused: list[msgs.feedback] = []
 
     def refusing(feedback: Feedback) -> object:
         if feedback.verb != "release" or len(refused) >= count:
@@ -225,6 +226,21 @@ def test_random_bytes_on_every_channel(tmp_path: Path) -> None:
         session.run(0.3)
         assert session.axis("x").move_relative(distance=1.0).wait().done
         assert session.figures["malformed"] > 0
+
+
+def test_all_that_is_sent_is_for_this_engine_alone(tmp_path: Path) -> None:
+    """EN-22: a log of it, played into another engine's network, moves nothing."""
+    url = new_url()
+    network = lcm.LCM(url)
+    sent: list[msgs.command | msgs.heartbeat] = []
+    network.subscribe("takt/command", lambda _, data: sent.append(msgs.command.decode(data)))
+    network.subscribe("takt/heartbeat", lambda _, data: sent.append(msgs.heartbeat.decode(data)))
+    with running(tmp_path, url), takt.connect(url) as session:
+        assert session.axis("x").power().wait().done
+        while network.handle_timeout(100):
+            pass
+        assert {type(message) for message in sent} == {msgs.command, msgs.heartbeat}
+        assert {message.run_id for message in sent} == {session.figures["run_id"]}
 
 
 def test_the_same_id_again_is_harmless(tmp_path: Path) -> None:

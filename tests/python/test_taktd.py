@@ -123,7 +123,13 @@ def test_mistakes_are_one_line_and_exit_code_2(machine: Path, arguments: list[st
 
 @pytest.mark.parametrize(
     ("name", "url"),
-    [("two_axes", "http://example"), ("two_axes", ""), ('""', "memq://"), (r'"a\nb"', "memq://"), ("a" * 65, "memq://")],
+    [
+        ("two_axes", "http://example"),
+        ("two_axes", ""),
+        ('""', "memq://"),
+        (r'"a\nb"', "memq://"),
+        ("a" * 65, "memq://"),
+    ],
 )
 def test_check_refuses_names_and_urls_that_cannot_be(machine: Path, name: str, url: str) -> None:  # EN-10
     machine.write_text(MACHINE.replace("two_axes", name) + f'lcm: {{url: "{url}"}}\n')

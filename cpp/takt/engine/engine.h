@@ -16,10 +16,10 @@
 namespace takt::engine {
 
 struct EngineOptions {
-  bool publish = false;      // hand axis snapshots and figures to the queues (a reader must drain them)
-  bool every_cycle = false;  // snapshots of every axis in every cycle, whatever the machine's rates say
-  bool journal = false;      // journal entries and a state hash every cycle
-  std::size_t command_queue = 1024;
+  bool publish = false;             // hand axis snapshots and figures to the queues (a reader must drain them)
+  bool every_cycle = false;         // snapshots of every axis in every cycle, whatever the machine's rates say
+  bool journal = false;             // journal entries and a state hash every cycle
+  std::size_t command_queue = 256;  // a stop behind a flood waits for this many, kCommandsPerCycle a cycle
   std::size_t snapshot_queue = 1 << 14;
 };
 
