@@ -23,7 +23,7 @@ namespace takt::bindings {
 namespace {
 
 // In virtual time a scenario may command a thousand axes before it lets time pass.
-constexpr std::size_t kCommandQueue = 1 << 16;
+constexpr std::size_t kCommandQueue = 1 << 12;
 
 [[noreturn]] void ThrowConfigError(const std::vector<std::string>& problems) {
   const py::object error = py::module_::import("takt.errors").attr("ConfigError");

@@ -667,6 +667,7 @@ def test_outputs_exclude_one_another(events: list[tuple[str, int, dict[str, Any]
         for kind, i in watches:
             level = kind == "power"
             press(kind, i, 1, **{INPUT.get(kind, "Execute"): level}, **({"JogNeg": False} if kind == "jog" else {}))
+        press("halt", 0, 150, Execute=False)  # perhaps the drive is still getting ready
         press("halt", 0, 200, Execute=True, BufferMode=takt.BufferMode.ABORTING)
         press("halt", 0, 1, Execute=False)
         assert press("reset", 0, 300, Execute=True)["Done"]
