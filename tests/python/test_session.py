@@ -254,7 +254,7 @@ def test_more_commands_than_fit_are_refused(engine: takt.Engine) -> None:
     refused = [f for f in feedback if f.error]
     assert refused
     assert {f.error_id for f in refused} == {3012}
-    engine.run(0.2)
+    engine.run(0.4)
     assert all(f.final for f in feedback)
     assert engine.figures["commands_refused"] == len(refused)
 
