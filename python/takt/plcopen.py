@@ -263,6 +263,12 @@ class MC_MoveRelative(MotionBlock):  # noqa: N801
     Done = Output(False)
 
 
+class MC_MoveAdditive(MC_MoveRelative):  # noqa: N801
+    """Moves by a distance from where the move in progress was to end."""
+
+    VERB = "move_additive"
+
+
 class MC_MoveVelocity(MotionBlock):  # noqa: N801
     """Moves on and on. Never done: InVelocity says that the velocity is reached."""
 
@@ -516,6 +522,7 @@ BLOCKS: tuple[type[FunctionBlock], ...] = (
     MC_ReadActualTorque,
     MC_MoveAbsolute,
     MC_MoveRelative,
+    MC_MoveAdditive,
     MC_MoveVelocity,
     MC_Halt,
     MC_Stop,

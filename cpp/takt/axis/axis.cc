@@ -250,6 +250,13 @@ void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
   switching_off ? SwitchedOff(c, s) : OpenLoop(s);
 }
 
+void EmergencyStop(const Context& c, State& s) noexcept {
+  AbortAll(c, s);
+  OpenLoop(s);
+  s.error = ErrorId::kNone;
+  Enter(s, PlcState::kDisabled);
+}
+
 void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.set_position = Reported(p, s.setpoint.position);
   out.set_velocity = s.setpoint.velocity;

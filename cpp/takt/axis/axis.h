@@ -46,6 +46,9 @@ bool Control(const Context& context, State& state, ServoOutputs& outputs) noexce
 // brakes.
 void Fail(const Context& context, ErrorId error, bool open_loop, State& state) noexcept;
 
+// GT_EStop: the drive is switched off and the brake falls at once; faults are cleared, the axis is Disabled (AX-38).
+void EmergencyStop(const Context& context, State& state) noexcept;
+
 void Publish(const AxisParams& params, const State& state, Outputs& outputs) noexcept;
 
 // At rest: the set point stands.

@@ -72,6 +72,17 @@ void describe(Description<MoveRelative>& d) {
   d.defaulted<&M::buffer_mode>(kBufferMode);
 }
 
+void describe(Description<MoveAdditive>& d) {
+  using M = MoveAdditive;
+  d.about(
+      "Moves by a distance from where the move in progress was to end, or from the set position where there is none "
+      "(MC_MoveAdditive).");
+  d.required<&M::distance>(unit::u, "How much further; negative: less far.");
+  d.defaulted<&M::velocity>(unit::u_s, positive, "Largest velocity on the way; unset: the axis' limit.");
+  DescribeRamps(d);
+  d.defaulted<&M::buffer_mode>(kBufferMode);
+}
+
 void describe(Description<MoveVelocity>& d) {
   using M = MoveVelocity;
   d.about("Moves on and on at a velocity (MC_MoveVelocity). Reached when the velocity is; never done by itself.");

@@ -39,6 +39,11 @@ struct MoveRelative {  // MC_MoveRelative
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
 };
+struct MoveAdditive {  // MC_MoveAdditive
+  double distance = 0;
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
+};
 struct MoveVelocity {  // MC_MoveVelocity
   double velocity = 0;
   std::optional<double> acceleration{}, deceleration{}, jerk{};
@@ -60,7 +65,7 @@ struct Jog {  // GT_Jog: level-sensitive; give it again to change the levels, bo
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
 };
 
-using Command = std::variant<Power, Reset, MoveAbsolute, MoveRelative, MoveVelocity, Halt, Stop, Jog>;
+using Command = std::variant<Power, Reset, MoveAbsolute, MoveRelative, MoveAdditive, MoveVelocity, Halt, Stop, Jog>;
 
 void describe(Enumeration<Direction>&);
 void describe(Enumeration<BufferMode>&);
@@ -68,6 +73,7 @@ void describe(Description<Power>&);
 void describe(Description<Reset>&);
 void describe(Description<MoveAbsolute>&);
 void describe(Description<MoveRelative>&);
+void describe(Description<MoveAdditive>&);
 void describe(Description<MoveVelocity>&);
 void describe(Description<Halt>&);
 void describe(Description<Stop>&);

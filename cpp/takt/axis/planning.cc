@@ -36,10 +36,9 @@ double RoomToLimit(const AxisLimits& limits, double position, double sense) {
 
 // How far the positioning command `next` goes on from `position` in this sense; 0 or less: it does not.
 double RoomToTarget(const AxisParams& params, double position, double sense, const Request& next) {
-  const double target = next.kind == RequestKind::kMoveRelative
-                            ? position + next.value
-                            : ResolveTarget(params, {position, 0, 0}, next.limits(), next.value, next.direction,
-                                            static_cast<std::int8_t>(sense));
+  const double target = next.by_distance() ? position + next.value
+                                           : ResolveTarget(params, {position, 0, 0}, next.limits(), next.value,
+                                                           next.direction, static_cast<std::int8_t>(sense));
   return Inside(params.limits, target) ? sense * (target - position) : 0;
 }
 
@@ -204,16 +203,21 @@ Status CheckAtLimit(const AxisLimits& limits, const KinematicState& from, double
   return stuck ? Status::Failed(ErrorId::kTargetBehindLimit) : Status::Ok();
 }
 
+double TargetOf(const AxisParams& params, const Surroundings& around, const KinematicState& from,
+                const Request& request) {
+  if (request.kind == RequestKind::kMoveAdditive) return around.promised.value_or(from.position) + request.value;
+  if (request.kind == RequestKind::kMoveRelative) return from.position + request.value;
+  return ResolveTarget(params, from, request.limits(), request.value, request.direction, around.last_sense);
+}
+
 // Resolves the target, where there is one, and refuses what can be refused before planning.
-Status Check(const AxisParams& params, const KinematicState& from, const Request& request, std::int8_t last_sense,
+Status Check(const AxisParams& params, const Surroundings& around, const KinematicState& from, const Request& request,
              Plan& out) {
   if (request.kind == RequestKind::kMoveVelocity) {
-    return CheckAtLimit(params.limits, from, SenseOf(request, last_sense) * request.velocity);
+    return CheckAtLimit(params.limits, from, SenseOf(request, around.last_sense) * request.velocity);
   }
   if (!request.positions()) return Status::Ok();
-  out.target = request.kind == RequestKind::kMoveRelative
-                   ? from.position + request.value
-                   : ResolveTarget(params, from, request.limits(), request.value, request.direction, last_sense);
+  out.target = TargetOf(params, around, from, request);
   return Inside(params.limits, out.target) ? Status::Ok() : Status::Failed(ErrorId::kTargetBehindLimit);
 }
 
@@ -248,7 +252,7 @@ double ResolveTarget(const AxisParams& params, const KinematicState& from, const
 
 Status PlanRequest(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
                    const Request& request, const Request* next, Plan& out) noexcept {
-  Status status = Check(params, from, request, around.last_sense, out);
+  Status status = Check(params, around, from, request, out);
   if (status.ok()) status = PlanOpened(params, planner, from, request, next, around.last_sense, out);
   const bool brakes = !request.positions() && request.kind != RequestKind::kMoveVelocity;
   return status.failed() || brakes ? status : CheckSwitches(around, from, out.profile);

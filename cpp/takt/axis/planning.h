@@ -2,6 +2,8 @@
 // the axis changes.
 #pragma once
 
+#include <optional>
+
 #include "takt/axis/params.h"
 #include "takt/axis/request.h"
 #include "takt/core/kinematic_state.h"
@@ -15,6 +17,7 @@ struct Surroundings {
   bool limit_positive = false;
   bool limit_negative = false;
   std::int8_t last_sense = 1;
+  std::optional<double> promised;  // u, unwrapped: where the positioning command in control ends, if there is one
 };
 
 struct Plan {

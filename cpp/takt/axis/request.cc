@@ -17,6 +17,7 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kPower, true, false, true, PlcState::kStopping},
     RequestRules{RequestKind::kMoveAbsolute, true, true, true, PlcState::kDiscreteMotion},
     RequestRules{RequestKind::kMoveRelative, true, true, true, PlcState::kDiscreteMotion},
+    RequestRules{RequestKind::kMoveAdditive, true, true, true, PlcState::kDiscreteMotion},
     RequestRules{RequestKind::kMoveVelocity, true, true, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kHalt, true, false, true, PlcState::kDiscreteMotion},
     RequestRules{RequestKind::kStop, true, false, true, PlcState::kStopping},
@@ -76,13 +77,16 @@ struct Maker {
     return In("position", c.position, low, high) && Take("velocity", c.velocity, params.limits.velocity, r.velocity) &&
            Ramps(c);
   }
-  bool operator()(const MoveRelative& c) const {
-    r.kind = RequestKind::kMoveRelative;
+  template <typename T>
+  bool ByDistance(RequestKind kind, const T& c) const {
+    r.kind = kind;
     r.value = c.distance;
     r.buffer_mode = c.buffer_mode;
     return In("distance", c.distance, -kMaxPosition, kMaxPosition) &&
            Take("velocity", c.velocity, params.limits.velocity, r.velocity) && Ramps(c);
   }
+  bool operator()(const MoveRelative& c) const { return ByDistance(RequestKind::kMoveRelative, c); }
+  bool operator()(const MoveAdditive& c) const { return ByDistance(RequestKind::kMoveAdditive, c); }
   bool operator()(const MoveVelocity& c) const {
     r.kind = RequestKind::kMoveVelocity;
     r.velocity = c.velocity;
@@ -160,6 +164,7 @@ void describe(Enumeration<RequestKind>& e) {
   e.value(RequestKind::kPower, "power", "Power.");
   e.value(RequestKind::kMoveAbsolute, "move_absolute", "MoveAbsolute.");
   e.value(RequestKind::kMoveRelative, "move_relative", "MoveRelative.");
+  e.value(RequestKind::kMoveAdditive, "move_additive", "MoveAdditive.");
   e.value(RequestKind::kMoveVelocity, "move_velocity", "MoveVelocity.");
   e.value(RequestKind::kHalt, "halt", "Halt.");
   e.value(RequestKind::kStop, "stop", "Stop.");

@@ -17,6 +17,7 @@ enum class RequestKind : std::uint8_t {
   kPower,
   kMoveAbsolute,
   kMoveRelative,
+  kMoveAdditive,
   kMoveVelocity,
   kHalt,
   kStop,
@@ -40,7 +41,8 @@ struct Request {
   bool backward = false;
 
   trajectory::Limits limits() const { return {velocity, acceleration, deceleration, jerk}; }
-  bool positions() const { return kind == RequestKind::kMoveAbsolute || kind == RequestKind::kMoveRelative; }
+  bool positions() const { return kind == RequestKind::kMoveAbsolute || by_distance(); }
+  bool by_distance() const { return kind == RequestKind::kMoveRelative || kind == RequestKind::kMoveAdditive; }
   bool blends() const { return buffer_mode >= BufferMode::kBlendingLow; }
 };
 

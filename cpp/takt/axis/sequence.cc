@@ -16,7 +16,9 @@ void Enter(State& s, PlcState to) noexcept {
 }
 
 Surroundings SurroundingsOf(const State& s) noexcept {
-  return {s.limit_positive, s.limit_negative, s.last_sense};
+  Surroundings around{s.limit_positive, s.limit_negative, s.last_sense, {}};
+  if (s.active.positions()) around.promised = s.motion.target;
+  return around;
 }
 
 double Elapsed(const Context& c, const State& s) noexcept {
@@ -205,6 +207,7 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
   switch (s.active.kind) {
     case RequestKind::kMoveAbsolute:
     case RequestKind::kMoveRelative:
+    case RequestKind::kMoveAdditive:
       ConcludePositioning(c, late_s, s);
       break;
     case RequestKind::kMoveVelocity:

@@ -42,6 +42,7 @@ Entry Make(std::string_view target_kind, std::string_view name, bool level_sensi
 const std::vector<Entry>& Entries() {
   static const std::vector<Entry> entries = {
       Make<MachineCommand, StopAll>(kMachine, "stop_all"),
+      Make<MachineCommand, EmergencyStop>(kMachine, "emergency_stop"),
       Make<MachineCommand, FailAllAxes>(kMachine, "fail_all_axes"),
       Make<MachineCommand, Release>(kMachine, "release"),
       Make<MachineCommand, Renew>(kMachine, "renew"),
@@ -49,6 +50,7 @@ const std::vector<Entry>& Entries() {
       Make<axis::Command, axis::Reset>(kAxis, "reset"),
       Make<axis::Command, axis::MoveAbsolute>(kAxis, "move_absolute"),
       Make<axis::Command, axis::MoveRelative>(kAxis, "move_relative"),
+      Make<axis::Command, axis::MoveAdditive>(kAxis, "move_additive"),
       Make<axis::Command, axis::MoveVelocity>(kAxis, "move_velocity"),
       Make<axis::Command, axis::Halt>(kAxis, "halt"),
       Make<axis::Command, axis::Stop>(kAxis, "stop", true),
@@ -95,7 +97,8 @@ ParsedCommand UnknownVerb(std::string_view kind, std::string_view verb) {
 
 bool LetsGo(const Command& command) noexcept {
   if (const auto* machine = std::get_if<MachineCommand>(&command.body)) {
-    return std::holds_alternative<Release>(*machine) || std::holds_alternative<StopAll>(*machine);
+    return std::holds_alternative<Release>(*machine) || std::holds_alternative<StopAll>(*machine) ||
+           std::holds_alternative<EmergencyStop>(*machine);
   }
   const auto& body = std::get<axis::Command>(command.body);
   const auto* power = std::get_if<axis::Power>(&body);
@@ -148,6 +151,12 @@ CommandText ToText(const Machine& machine, const Command& command) {
 void describe(Description<StopAll>& d) {
   d.about("Stops every axis along its ramp.");
   d.defaulted<&StopAll::open_loops>("True: and opens its loop.");
+}
+
+void describe(Description<EmergencyStop>& d) {
+  d.about(
+      "Switches every drive off and lets every brake fall at once, without a ramp; faults are cleared, every axis is "
+      "Disabled (GT_EStop).");
 }
 
 void describe(Description<FailAllAxes>& d) {

@@ -19,6 +19,8 @@ namespace takt::engine {
 struct StopAll {            // every axis stops along its ramp
   bool open_loops = false;  // and then opens its loop
 };
+struct EmergencyStop {  // GT_EStop: every drive off and every brake on at once
+};
 struct FailAllAxes {  // every axis brakes and goes to ErrorStop with error 3007 (overruns)
 };
 struct Release {  // lets go of a level-sensitive command (jog, stop with hold): Execute falls
@@ -29,11 +31,12 @@ struct Renew {  // a heartbeat: extends the lease of a level-sensitive command
 };
 
 void describe(Description<StopAll>&);
+void describe(Description<EmergencyStop>&);
 void describe(Description<FailAllAxes>&);
 void describe(Description<Release>&);
 void describe(Description<Renew>&);
 
-using MachineCommand = std::variant<StopAll, FailAllAxes, Release, Renew>;
+using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
 using CommandBody = std::variant<MachineCommand, axis::Command>;
 
 inline constexpr std::uint32_t kMachineTarget = 0;  // axis i is target i + 1

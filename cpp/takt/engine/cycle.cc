@@ -49,6 +49,12 @@ struct MachineApplier {
     }
     Report(FeedbackState::kDone);
   }
+  void operator()(const EmergencyStop&) const {
+    for (std::size_t i = 0; i < world.axis_states.size(); ++i) {
+      axis::EmergencyStop(ContextOf(world, i), world.axis_states[i]);
+    }
+    Report(FeedbackState::kDone);
+  }
   void operator()(const FailAllAxes&) const {
     for (std::size_t i = 0; i < world.axis_states.size(); ++i) {
       axis::Fail(ContextOf(world, i), ErrorId::kOverrun, false, world.axis_states[i]);

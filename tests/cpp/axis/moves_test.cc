@@ -66,6 +66,34 @@ TEST(MoveRelative, CountsFromTheSetPositionWhenItStarts) {
   EXPECT_NEAR(rig.position(), here - 150, 1e-9);
 }
 
+// AX-32: adds to where the move in progress was to end; that is what tells it from MoveRelative. Without one it adds to
+// the set position, and buffered to the end of the move before.
+TEST(MoveAdditive, AddsToThePromisedEnd) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveAbsolute{.position = 100});
+  rig.Run(0.1);
+  ASSERT_GT(rig.position(), 1);
+  const Ticket more = rig.Give(MoveAdditive{.distance = 20});
+  ASSERT_TRUE(rig.RunToEnd(more));
+  EXPECT_NEAR(rig.position(), 120, 1e-9);
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveAdditive{.distance = -20})));
+  EXPECT_NEAR(rig.position(), 100, 1e-9);
+
+  rig.Give(MoveVelocity{.velocity = 100});
+  rig.Run(0.3);
+  const double here = rig.position();
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveAdditive{.distance = 50})));
+  EXPECT_NEAR(rig.position(), here + 50, 1e-9);
+
+  rig.Give(MoveAbsolute{.position = 0});
+  const Ticket buffered = rig.Give(MoveAdditive{.distance = 7, .buffer_mode = BufferMode::kBuffered});
+  const Ticket blended = rig.Give(MoveAdditive{.distance = 3, .buffer_mode = BufferMode::kBlendingLow});
+  ASSERT_TRUE(rig.RunToEnd(blended));
+  EXPECT_TRUE(rig.lives[buffered].done);
+  EXPECT_NEAR(rig.position(), 10, 1e-9);
+}
+
 // AX-33: reached once, Active for good; only another command ends it.
 TEST(MoveVelocity, IsReachedAndGoesOn) {
   Rig rig(LinearParams());

@@ -227,6 +227,40 @@ TEST(Shutdown, BrakesAndOpensTheLoops) {
   EXPECT_GE(aborted, 3);  // a move and one buffered behind it on y1, a move_velocity on c
 }
 
+// AX-38: every drive off and every brake on in the same cycle, commands aborted, faults cleared, state Disabled; power
+// on works at once.
+TEST(EmergencyStop, SwitchesEverythingOffAtOnce) {
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  for (const auto& [when, command] : Scenario(machine)) {
+    if (when < 320) engine.Submit(command);
+    for (int i = 0; i < 40; ++i) engine.RunCycle();
+  }
+  const std::size_t y1 = AxisNamed(machine, "y1");
+  engine.Submit(ToAxis(machine, "y1", axis::MoveVelocity{.velocity = 300}));
+  engine.faults(AxisNamed(machine, "z")).drive_fault = true;
+  for (int i = 0; i < 100; ++i) engine.RunCycle();
+  ASSERT_EQ(engine.outputs(AxisNamed(machine, "z")).state, axis::PlcState::kErrorStop);
+  ASSERT_GT(engine.outputs(y1).set_velocity, 100);
+  engine.faults(AxisNamed(machine, "z")).drive_fault = false;
+  engine.RunCycle();
+  Command stop;
+  stop.body = MachineCommand(EmergencyStop{});
+  engine.Submit(stop);
+  engine.RunCycle();
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    EXPECT_EQ(engine.outputs(i).state, axis::PlcState::kDisabled);
+    EXPECT_FALSE(engine.outputs(i).loop_closed);
+    EXPECT_EQ(engine.outputs(i).error, ErrorId::kNone);
+    EXPECT_EQ(engine.outputs(i).active_command, 0u);
+  }
+  for (int i = 0; i < 500; ++i) engine.RunCycle();
+  EXPECT_NEAR(engine.outputs(y1).actual_velocity, 0, 1);  // the brake holds
+  engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kStandstill);
+}
+
 // EN-21, EN-22: a full queue refuses; what was refused has no ticket, what was accepted is answered, in order.
 TEST(CommandQueue, RefusesWhenFullAndLosesNothing) {
   const Machine machine = FullMachine();
