@@ -75,7 +75,8 @@ Status SwitchOn(const Context& c, const Request& r, State& s) {
     Enter(s, PlcState::kErrorStop);
     return Status::Failed(ErrorId::kErrorStop);
   }
-  AbortAll(c, s);
+  EndActive(c, FeedbackState::kAborted, ErrorId::kNone,
+            s);  // an earlier power on; what waits behind it goes on waiting
   Grant(c, r, s);
   if (!s.enable) s.enable_cycle = c.cycle.count;
   s.enable = true;

@@ -1,5 +1,6 @@
 #include "takt/axis/axis.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "takt/axis/following.h"
@@ -91,8 +92,10 @@ void AwaitDrive(const Context& c, State& s) {
 // break it is not taken; the brake begins in its place, which the set point before allowed (AX-13).
 bool CanStopInside(const AxisParams& p, const KinematicState& before, const KinematicState& next) {
   const double stop = trajectory::StopPosition(next, p.planner_limits());
-  const bool too_high = p.limits.upper && stop > *p.limits.upper && stop > before.position;
-  const bool too_low = p.limits.lower && stop < *p.limits.lower && stop < before.position;
+  const double highest = std::max(stop, next.position);  // it may have turned round since the set point before
+  const double lowest = std::min(stop, next.position);
+  const bool too_high = p.limits.upper && highest > *p.limits.upper && highest > before.position;
+  const bool too_low = p.limits.lower && lowest < *p.limits.lower && lowest < before.position;
   return !too_high && !too_low;
 }
 
@@ -114,10 +117,19 @@ bool GoesOn(const State& s) {
 // Takes a set point back from which the axis could not stop in time, and brakes instead.
 void GuardLimits(const Context& c, const KinematicState& before, State& s) {
   if (s.plc == PlcState::kErrorStop || !GoesOn(s) || CanStopInside(c.params, before, s.setpoint)) return;
-  const bool upwards = s.setpoint.velocity > 0;
+  const bool upwards = s.setpoint.position > before.position;
   s.setpoint = before;
   Fail(c, upwards ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
+}
+
+// The sense in which a motion came to its end; `otherwise` if it did not move at all.
+std::int8_t SenseAtEnd(const trajectory::Profile& profile, std::int8_t otherwise) {
+  if (profile.size() == 0) return otherwise;
+  const std::size_t last = static_cast<std::size_t>(profile.size()) - 1;
+  const double begin = last > 0 ? profile.piece_ends_s[last - 1] : 0;
+  const double velocity = profile.At(0.5 * (begin + profile.duration())).velocity;
+  return velocity == 0 ? otherwise : static_cast<std::int8_t>(velocity > 0 ? 1 : -1);
 }
 
 // The motion in progress is over. Blended moves may be shorter than a cycle: as many begin and end in this one as their
@@ -129,6 +141,7 @@ void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
     if (!s.motion.arrived) {
       s.motion.arrived = true;
       s.motion.arrived_cycle = c.cycle.count;
+      s.last_sense = SenseAtEnd(s.motion.profile, s.last_sense);
     }
     Conclude(c, late_s, s);
     if (s.motion.arrived) return;  // no other motion has begun
@@ -140,8 +153,10 @@ void Advance(const Context& c, State& s) {
   const KinematicState before = s.setpoint;
   const double t = Elapsed(c, s);
   s.setpoint = s.motion.profile.At(t);
-  GuardLimits(c, before, s);
-  if (t >= s.motion.profile.duration()) ConcludeDue(c, before, s);
+  const bool over = t >= s.motion.profile.duration();
+  // A move that ends in this cycle hands over first: what it is left with is another command's set point.
+  if (!over || s.plc == PlcState::kContinuousMotion) GuardLimits(c, before, s);
+  if (over) ConcludeDue(c, before, s);
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 

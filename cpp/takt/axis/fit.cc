@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "takt/trajectory/planner.h"
+
 namespace takt::axis {
 
 using trajectory::Piece;
@@ -14,6 +16,9 @@ namespace {
 constexpr double kTolerance = 1e-9;  // of a limit
 // Slower than this share of the largest velocity is standing still, where speed neither grows nor falls.
 constexpr double kStanding = 1e-6;
+// Instants of a motion that turns round at which a stop is tried. Between them its end changes little: it is stationary
+// where it is furthest.
+constexpr int kStopsLookedAt = 128;
 
 bool BreaksVelocity(const AxisLimits& limits, const KinematicState& from, const Profile& profile) {
   const Profile::Range range = profile.VelocityRange();
@@ -51,10 +56,28 @@ bool BreaksAcceleration(const AxisParams& params, const Profile& profile) {
   return false;
 }
 
-bool BreaksPosition(const AxisLimits& limits, const KinematicState& from, const Profile& profile) {
-  const Profile::Range range = profile.PositionRange();
-  return (limits.lower && range.min < std::min(*limits.lower, from.position) - Rounding(*limits.lower)) ||
-         (limits.upper && range.max > std::max(*limits.upper, from.position) + Rounding(*limits.upper));
+// How far a motion gets, or would get if the axis were stopped on its way. A motion that turns round passes standstill
+// with acceleration left, which a stop from just before has to end first, and so goes further.
+Profile::Range Reach(const AxisParams& params, const Profile& profile) {
+  const Profile::Range velocity = profile.VelocityRange();
+  Profile::Range reach = profile.PositionRange();
+  if (velocity.min >= 0 || velocity.max <= 0) return reach;
+  const trajectory::Limits own = params.planner_limits();
+  const double step = profile.duration() / kStopsLookedAt;
+  for (int i = 0; i < kStopsLookedAt; ++i) {
+    const double stop = trajectory::StopPosition(profile.At(i * step), own);
+    reach.min = std::min(reach.min, stop);
+    reach.max = std::max(reach.max, stop);
+  }
+  return reach;
+}
+
+bool BreaksPosition(const AxisParams& params, const KinematicState& from, const Profile& profile) {
+  const AxisLimits& limits = params.limits;
+  if (!limits.lower && !limits.upper) return false;
+  const Profile::Range reach = Reach(params, profile);
+  return (limits.lower && reach.min < std::min(*limits.lower, from.position) - Rounding(*limits.lower)) ||
+         (limits.upper && reach.max > std::max(*limits.upper, from.position) + Rounding(*limits.upper));
 }
 
 bool TurnsRound(const AxisLimits& limits, const KinematicState& from, const Profile& profile) {
@@ -78,7 +101,7 @@ LimitedBy Breaks(const AxisParams& params, const KinematicState& from, const Pro
                  const Demands& demands) noexcept {
   if (BreaksVelocity(params.limits, from, profile)) return LimitedBy::kVelocity;
   if (BreaksAcceleration(params, profile)) return LimitedBy::kAcceleration;
-  if (demands.position && BreaksPosition(params.limits, from, profile)) return LimitedBy::kPosition;
+  if (demands.position && BreaksPosition(params, from, profile)) return LimitedBy::kPosition;
   if (demands.straight && TurnsRound(params.limits, from, profile)) return LimitedBy::kJerk;
   return LimitedBy::kNothing;
 }

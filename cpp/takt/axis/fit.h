@@ -10,7 +10,8 @@
 namespace takt::axis {
 
 struct Demands {
-  bool position = true;   // stays inside the SW limits (motions without an end are watched cycle by cycle instead)
+  // It, and a stop at any time of it, stays inside the SW limits. (Motions without an end are watched cycle by cycle.)
+  bool position = true;
   bool straight = false;  // never turns round (braking)
 };
 

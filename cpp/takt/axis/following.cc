@@ -23,6 +23,9 @@ std::string CannotFollow(const AxisParams& follower, const AxisParams& master) {
   const double ratio = follower.follows->ratio;
   const trajectory::Limits own = follower.planner_limits();
   const trajectory::Limits its = master.planner_limits();
+  if (follower.limits.lower || follower.limits.upper) {
+    return "expected no lower and upper: an axis that follows goes where its master goes";
+  }
   const char* what = nullptr;
   if (!Reaches(own.velocity, ratio, its.velocity)) what = "velocity";
   if (!Reaches(own.acceleration, ratio, its.acceleration)) what = "acceleration";

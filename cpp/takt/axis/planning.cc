@@ -112,8 +112,13 @@ Status PlanBlended(Planner& planner, const KinematicState& from, double target, 
   out.limited_by = LimitedBy::kDistance;
   double low = 0;
   double high = std::min(speed, limits.velocity);
-  if (PlanLeaving(planner, from, target, sense, high, limits, out.profile)) return Status::Ok();
-  const Status standing = planner.ToPosition(from, target, 0, limits, out.profile);
+  const bool at_own_velocity = PlanLeaving(planner, from, target, sense, high, limits, out.profile);
+  if (at_own_velocity && speed <= high) return Status::Ok();
+  if (at_own_velocity) {  // more than its own velocity, if not all of what was asked
+    low = high;
+    high = speed;
+  }
+  const Status standing = at_own_velocity ? Status::Ok() : planner.ToPosition(from, target, 0, limits, out.profile);
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (low + high);
     (PlanLeaving(planner, from, target, sense, middle, limits, out.profile) ? low : high) = middle;
@@ -135,7 +140,18 @@ Status PlanOn(const AxisParams& params, Planner& planner, const KinematicState& 
   const double speed = next ? TakeOverSpeed(params, request, out.target, sense, *next) : 0;
   if (next && speed == 0) out.limited_by = LimitedBy::kDistance;
   if (speed > 0) return PlanBlended(planner, from, out.target, sense, speed, limits, out);
-  return planner.ToPosition(from, out.target, 0, limits, out.profile);
+  const Status status = planner.ToPosition(from, out.target, 0, limits, out.profile);
+  if (status.ok() && sense * from.velocity > limits.velocity && !RunsStraight(out.profile, sense)) {
+    // Faster than asked, and too near to slow down to that first: brake to the target in one go, if that is straight.
+    Limits at_speed = limits;
+    at_speed.velocity = std::abs(from.velocity);
+    Profile straight;
+    if (planner.ToPosition(from, out.target, 0, at_speed, straight).ok() && RunsStraight(straight, sense)) {
+      out.profile = straight;
+      out.limited_by = LimitedBy::kDistance;
+    }
+  }
+  return status;
 }
 
 // How a plan begins, from nothing special to all that the axis can do. Only as much as is needed is taken from the

@@ -140,7 +140,7 @@ void AbortAll(const Context& c, State& s) noexcept {
 }
 
 void Brake(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s) noexcept {
-  Profile profile;
+  Profile profile{s.setpoint};
   PlanStop(c.params, c.planner, s.setpoint, limits, profile);
   StartMotion(profile, profile.end().position, start, s);
 }

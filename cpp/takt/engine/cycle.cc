@@ -124,7 +124,6 @@ void Apply(World& w, const Command& command) noexcept {
 }
 
 void Move(World& w) noexcept {
-  for (const std::uint32_t i : w.axis_order) axis::Move(ContextOf(w, i), w.axis_states[i]);
   // A master does not go on without a follower that has failed.
   for (const std::uint32_t i : w.axis_order) {
     const std::optional<std::uint32_t> master = w.axis_masters[i];
@@ -132,6 +131,7 @@ void Move(World& w) noexcept {
       axis::Fail(ContextOf(w, *master), ErrorId::kAxisFault, false, w.axis_states[*master]);
     }
   }
+  for (const std::uint32_t i : w.axis_order) axis::Move(ContextOf(w, i), w.axis_states[i]);
 }
 
 void Control(World& w) noexcept {

@@ -12,6 +12,8 @@ namespace takt::trajectory {
 
 namespace {
 
+constexpr double kOnCurve = 1e-6;  // of the way to standstill
+
 bool IsFinite(const KinematicState& s) noexcept {
   return std::isfinite(s.position) && std::isfinite(s.velocity) && std::isfinite(s.acceleration);
 }
@@ -209,7 +211,10 @@ Status Planner::ToPosition(const KinematicState& from, double position, double e
 
   Bounds bounds{limits.acceleration, limits.deceleration, limits.jerk};
   if (limits.acceleration != limits.deceleration) {
-    bounds = DirectedBounds(from, position - StopPosition(from, limits), limits);
+    // A motion on its braking curve stops at the target but for rounding: it does not reverse.
+    const double stop = StopPosition(from, limits);
+    const bool on_curve = std::abs(position - stop) <= kOnCurve * std::abs(stop - from.position);
+    bounds = DirectedBounds(from, on_curve ? from.velocity : position - stop, limits);
   }
   // A plan that reverses where none was expected shows it by itself; each round can only lower a bound.
   for (int round = 0; round < 3; ++round) {

@@ -205,11 +205,13 @@ TEST(Blending, ChainsOfManyMoves) {
     ASSERT_TRUE(rig.PowerOn());
     std::uniform_real_distribution<double> distance(-80, 120), speed(20, 500);
     std::vector<Ticket> moves;
+    std::vector<double> distances;
     double end = 0;
     const std::size_t from = rig.trace.size();
     for (int i = 0; i < 9; ++i) {
       const double d = distance(random);
       end += d;
+      distances.push_back(d);
       const auto mode = static_cast<BufferMode>(2 + run % 4);
       moves.push_back(rig.Give(
           MoveRelative{.distance = d, .velocity = speed(random), .buffer_mode = i ? mode : BufferMode::kAborting}));
@@ -217,11 +219,186 @@ TEST(Blending, ChainsOfManyMoves) {
     ASSERT_TRUE(rig.RunToEnd(moves.back())) << run;
     for (const Ticket t : moves) ASSERT_TRUE(rig.lives[t].done) << run;
     ASSERT_NEAR(rig.position(), end, 1e-6);
+    for (std::size_t i = 0; i + 1 < moves.size(); ++i) {
+      const double passed = rig.trace[rig.lives[moves[i]].final_cycle].setpoint.velocity;
+      ASSERT_EQ(passed == 0, distances[i] * distances[i + 1] < 0) << run << ' ' << i;
+    }
     const Worst worst = WorstOf(rig.trace, rig.params.planner_limits(), 0.001, from);
     ASSERT_LE(worst.velocity, 1 + 1e-9) << run;
     ASSERT_LE(worst.acceleration, 1 + 1e-9) << run;
     ASSERT_LE(worst.jerk, 1 + 1e-6) << run;
     ASSERT_LE(worst.position_step, 1 + 1e-6) << run;
+  }
+}
+
+// AX-12: a relative move behind another is known for what it is: no stop between two in the same sense.
+TEST(Blending, RelativeMovesDoNotStopBetween) {
+  for (const double sense : {1.0, -1.0}) {
+    Rig rig(LinearParams());
+    ASSERT_TRUE(rig.PowerOn());
+    const Ticket first = rig.Give(MoveRelative{.distance = sense * 150, .velocity = 300});
+    const Ticket second =
+        rig.Give(MoveRelative{.distance = sense * 150, .velocity = 300, .buffer_mode = BufferMode::kBlendingPrevious});
+    ASSERT_TRUE(rig.RunToEnd(first));
+    EXPECT_NEAR(rig.state.setpoint.velocity, sense * 300, 1e-6);
+    ASSERT_TRUE(rig.RunToEnd(second));
+    EXPECT_NEAR(rig.position(), sense * 300, 1e-9);
+  }
+}
+
+// AX-12: into a motion without an end, in the same sense with its speed, else from standstill.
+TEST(Blending, IntoAMotionWithoutAnEnd) {
+  for (const Direction direction : {Direction::kPositive, Direction::kNegative, Direction::kCurrent}) {
+    Rig rig(LinearParams());
+    ASSERT_TRUE(rig.PowerOn());
+    const Ticket first = rig.Give(MoveAbsolute{.position = 150, .velocity = 300});
+    const Ticket second =
+        rig.Give(MoveVelocity{.velocity = 200, .direction = direction, .buffer_mode = BufferMode::kBlendingNext});
+    ASSERT_TRUE(rig.RunToEnd(first));
+    EXPECT_TRUE(rig.lives[second].active);
+    EXPECT_NEAR(rig.state.setpoint.velocity, direction == Direction::kNegative ? 0 : 200, 1e-6);
+    double furthest = 0;
+    for (const Sample& s : rig.trace) furthest = std::max(furthest, s.setpoint.position);
+    if (direction == Direction::kNegative) {
+      EXPECT_EQ(furthest, 150);
+    }
+  }
+}
+
+// AX-12: also where the axis has to turn round before the first move; that is no reversal between the two.
+TEST(Blending, MayBeginInTheOtherSense) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 200, .direction = Direction::kNegative});
+  rig.Run(0.3);
+  const Ticket first = rig.Give(MoveAbsolute{.position = 100, .velocity = 300});
+  rig.Give(MoveAbsolute{.position = 300, .velocity = 300, .buffer_mode = BufferMode::kBlendingPrevious});
+  ASSERT_TRUE(rig.RunToEnd(first));
+  EXPECT_NEAR(rig.state.setpoint.velocity, 300, 1e-6);
+  EXPECT_EQ(rig.out.limited_by, LimitedBy::kNothing);
+}
+
+// AX-12: a first move too short for the speed asked for never runs back to gain a run-up; it passes its end as fast as
+// it can and says what holds it.
+TEST(Blending, TakesNoRunUp) {
+  for (const double own : {400.0, 20.0}) {
+    Rig rig(LinearParams());
+    ASSERT_TRUE(rig.PowerOn());
+    const std::size_t from = rig.trace.size();
+    const Ticket first = rig.Give(MoveAbsolute{.position = 1, .velocity = own});
+    const Ticket second =
+        rig.Give(MoveAbsolute{.position = 300, .velocity = 400, .buffer_mode = BufferMode::kBlendingHigh});
+    rig.Step();
+    EXPECT_EQ(rig.out.limited_by, LimitedBy::kDistance);
+    ASSERT_TRUE(rig.RunToEnd(first));
+    EXPECT_GT(rig.state.setpoint.velocity, 10);
+    ASSERT_TRUE(rig.RunToEnd(second));
+    for (std::size_t i = from; i < rig.trace.size(); ++i) ASSERT_GE(rig.trace[i].setpoint.velocity, 0);
+  }
+}
+
+// AX-12: what the second move can brake with decides, not what the first one could.
+TEST(Blending, LeavesRoomForAWeakSecondMove) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveAbsolute{.position = 200, .velocity = 400});
+  const Ticket second = rig.Give(MoveAbsolute{
+      .position = 220, .velocity = 400, .deceleration = 500, .buffer_mode = BufferMode::kBlendingPrevious});
+  ASSERT_TRUE(rig.RunToEnd(second));
+  double furthest = 0;
+  for (const Sample& s : rig.trace) furthest = std::max(furthest, s.setpoint.position);
+  EXPECT_LE(furthest, 220 + 1e-9);
+}
+
+// AX-12: on a rotary axis the current sense of the second move is the sense of the first.
+TEST(Blending, TheCurrentSenseIsThatOfTheMoveBefore) {
+  Rig rig(RotaryParams());
+  ASSERT_TRUE(rig.PowerOn());
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveAbsolute{.position = 300, .direction = Direction::kPositive})));
+  const double start = rig.position();
+  const Ticket first = rig.Give(MoveAbsolute{.position = 200, .velocity = 300, .direction = Direction::kNegative});
+  const Ticket second = rig.Give(MoveAbsolute{.position = 100,
+                                              .velocity = 300,
+                                              .direction = Direction::kCurrent,
+                                              .buffer_mode = BufferMode::kBlendingPrevious});
+  ASSERT_TRUE(rig.RunToEnd(first));
+  EXPECT_NEAR(rig.state.setpoint.velocity, -300, 1e-6);
+  ASSERT_TRUE(rig.RunToEnd(second));
+  EXPECT_NEAR(rig.position() - start, -200, 1e-9);
+}
+
+// AX-12, AX-83: a second move that will be refused does not let the first one run through its end; it is told when its
+// turn comes, what waits behind it is aborted, and the axis stands.
+TEST(Buffered, RefusedWhenItsTurnComes) {
+  for (const BufferMode mode : {BufferMode::kBuffered, BufferMode::kBlendingPrevious}) {
+    AxisParams p = LinearParams();
+    p.limits.upper = 100;
+    Rig rig(p);
+    ASSERT_TRUE(rig.PowerOn());
+    const Ticket first = rig.Give(MoveAbsolute{.position = 50});
+    const Ticket wrong = rig.Give(MoveAbsolute{.position = 101, .buffer_mode = mode});
+    const Ticket behind = rig.Give(MoveAbsolute{.position = 60, .buffer_mode = BufferMode::kBuffered});
+    ASSERT_TRUE(rig.RunToEnd(behind));
+    EXPECT_TRUE(rig.lives[first].done);
+    EXPECT_EQ(rig.lives[wrong].error_id, ErrorId::kTargetBehindLimit);
+    EXPECT_TRUE(rig.lives[behind].aborted);
+    rig.Run(0.5);
+    double furthest = 0;
+    for (const Sample& s : rig.trace) furthest = std::max(furthest, s.setpoint.position);
+    EXPECT_EQ(furthest, 50);
+    EXPECT_EQ(rig.out.state, PlcState::kStandstill);
+  }
+}
+
+// The same out of a motion without an end: nobody is in control any more, so the axis comes to rest.
+TEST(Buffered, RefusedInMotionTheAxisComesToRest) {
+  AxisParams p = LinearParams();
+  p.limits.upper = 1000;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket endless = rig.Give(MoveVelocity{.velocity = 300});
+  const Ticket wrong = rig.Give(MoveAbsolute{.position = 1001, .buffer_mode = BufferMode::kBuffered});
+  const std::size_t from = rig.trace.size();
+  ASSERT_TRUE(rig.RunToEnd(wrong));
+  EXPECT_EQ(rig.lives[wrong].error_id, ErrorId::kTargetBehindLimit);
+  EXPECT_TRUE(rig.lives[endless].aborted);
+  EXPECT_EQ(rig.out.state, PlcState::kDiscreteMotion);
+  rig.Run(0.5);
+  EXPECT_EQ(rig.out.state, PlcState::kStandstill);
+  EXPECT_EQ(rig.out.set_velocity, 0);
+  const Worst worst = WorstOf(rig.trace, rig.params.planner_limits(), 0.001, from);
+  EXPECT_LE(worst.acceleration, 1 + 1e-9);
+  EXPECT_LE(worst.jerk, 1 + 1e-6);
+  EXPECT_LE(worst.position_step, 1 + 1e-6);
+}
+
+// What holds a motion back is forgotten with it: by the command that takes over, at its end, by an open loop.
+TEST(LimitedBy, EndsWithItsMotion) {
+  for (const int end : {0, 1, 2}) {
+    Rig rig(LinearParams());
+    ASSERT_TRUE(rig.PowerOn());
+    rig.Give(MoveAbsolute{.position = 100});
+    const Ticket back = rig.Give(MoveAbsolute{.position = 50, .buffer_mode = BufferMode::kBlendingHigh});
+    rig.Run(0.05);
+    ASSERT_EQ(rig.out.limited_by, LimitedBy::kDistance);
+    if (end == 0) rig.Give(MoveAbsolute{.position = 0});
+    if (end == 1) rig.RunToEnd(back);
+    if (end == 2) rig.inputs.drive_fault = true;
+    rig.Step();
+    EXPECT_EQ(rig.out.limited_by, LimitedBy::kNothing) << end;
+  }
+}
+
+// AX-12: where the first move is too short to reach the higher speed of the second, its end is passed as fast as the
+// ramp from its own velocity allows, not with its own velocity.
+TEST(Blending, HighRampsUpAsFarAsItCan) {
+  for (const double distance : {10.0, 25.0}) {
+    Rig rig(LinearParams());
+    ASSERT_TRUE(rig.PowerOn());
+    const Ticket first = rig.Give(MoveAbsolute{.position = distance, .velocity = 50});
+    rig.Give(MoveAbsolute{.position = 300, .velocity = 400, .buffer_mode = BufferMode::kBlendingHigh});
+    ASSERT_TRUE(rig.RunToEnd(first));
+    EXPECT_GT(rig.state.setpoint.velocity, 100);
   }
 }
 

@@ -35,9 +35,10 @@ TEST(Jog, TheFirstKeyWinsAndBothMustBeLetGo) {
   rig.Give(Jog{.forward = true, .backward = true, .velocity = 50});
   rig.Run(0.2);
   EXPECT_EQ(rig.out.set_velocity, 50);
-  rig.Give(Jog{.backward = true, .velocity = 50});  // forward let go, backward still held
+  const Ticket held = rig.Give(Jog{.backward = true, .velocity = 50});  // forward let go, backward still held
   rig.Run(0.5);
   EXPECT_EQ(rig.out.set_velocity, 0);
+  EXPECT_FALSE(rig.Ended(held));
   rig.Give(Jog{});
   rig.Step();
   const Ticket other = rig.Give(Jog{.backward = true, .velocity = 50});
@@ -72,6 +73,38 @@ TEST(Jog, ChangesItsSpeed) {
   EXPECT_LE(worst.jerk, 1 + 1e-6);
 }
 
+// AX-39: the same downwards; its own ramps hold.
+TEST(Jog, ChangesItsSpeedDownwardsWithItsOwnRamps) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(Jog{.backward = true, .velocity = 50});
+  rig.Run(0.3);
+  const std::size_t from = rig.trace.size();
+  rig.Give(Jog{.backward = true, .velocity = 200, .acceleration = 1000, .jerk = 20000});
+  rig.Run(0.5);
+  EXPECT_EQ(rig.out.set_velocity, -200);
+  const Worst worst = WorstOf(rig.trace, {200, 1000, 4000, 20000}, 0.001, from);
+  EXPECT_LE(worst.velocity, 1 + 1e-9);
+  EXPECT_LE(worst.acceleration, 1 + 1e-9);
+  EXPECT_LE(worst.jerk, 1 + 1e-6);
+}
+
+// AX-39: a jog without a key that takes over from a move brakes it along its own ramp.
+TEST(Jog, BrakesWhatItTakesOverWithItsOwnRamp) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 400});
+  rig.Run(0.5);
+  const std::size_t from = rig.trace.size();
+  const Ticket jog = rig.Give(Jog{.velocity = 100, .deceleration = 500, .jerk = 20000});
+  ASSERT_TRUE(rig.RunToEnd(jog));
+  EXPECT_EQ(rig.out.set_velocity, 0);
+  EXPECT_EQ(rig.out.state, PlcState::kStandstill);
+  const Worst worst = WorstOf(rig.trace, {500, 5000, 500, 20000}, 0.001, from);
+  EXPECT_LE(worst.acceleration, 1 + 1e-9);
+  EXPECT_LE(worst.jerk, 1 + 1e-6);
+}
+
 // EN-23: a leased jog releases itself when its lease is not renewed, and says why.
 TEST(Lease, ReleasesAJogThatIsNotRenewed) {
   Rig rig(LinearParams());
@@ -102,6 +135,19 @@ TEST(Lease, ReleasesAHeldStop) {
   EXPECT_TRUE(rig.lives[stop].done);
   rig.Run(0.02);
   EXPECT_EQ(rig.out.state, PlcState::kStandstill);
+}
+
+// EN-23: the lease ends so many cycles after it was given as are not shorter than it; what is said of it is said once.
+TEST(Lease, EndsInItsCycle) {
+  for (const auto& [lease_s, cycles] : {std::pair{0.1, 100u}, std::pair{0.1005, 101u}}) {
+    Rig rig(LinearParams());
+    ASSERT_TRUE(rig.PowerOn());
+    const Ticket jog = rig.Give(Jog{.forward = true, .velocity = 100}, lease_s);
+    rig.Run(1);
+    EXPECT_EQ(rig.lives[jog].final_cycle - rig.lives[jog].active_cycle, cycles);
+    EXPECT_EQ(rig.lives[jog].events.size(), 2u);  // Active, Aborted
+    EXPECT_FALSE(rig.lives[jog].done);
+  }
 }
 
 }  // namespace

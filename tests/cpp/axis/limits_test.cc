@@ -222,5 +222,179 @@ TEST(Units, DoNotMatter) {
   }
 }
 
+// AX-83, AX-13: what holds at the upper SW limit holds at the lower one.
+TEST(SoftLimit, HoldsBelowAsAbove) {
+  Rig rig(Fenced());
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket move = rig.Give(MoveVelocity{.velocity = 300, .direction = Direction::kNegative});
+  ASSERT_TRUE(rig.RunToEnd(move, 60));
+  EXPECT_EQ(rig.lives[move].error_id, ErrorId::kSoftLimitNegative);
+  rig.Run(1);
+  EXPECT_GE(rig.position(), -100 - 1e-9);
+  EXPECT_LT(rig.position(), -99);
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(Reset{})));
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveAbsolute{.position = -100})));
+  const Ticket out = rig.Give(MoveVelocity{.velocity = 1, .direction = Direction::kNegative});
+  rig.Step();
+  EXPECT_EQ(rig.lives[out].error_id, ErrorId::kTargetBehindLimit);
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveAbsolute{.position = 50})));
+  rig.Give(MoveVelocity{.velocity = 500, .direction = Direction::kNegative});
+  while (rig.position() > -50) rig.Step();
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveAbsolute{.position = -60, .deceleration = 100, .jerk = 1000})));
+  for (const Sample& s : rig.trace) ASSERT_GE(s.setpoint.position, -100 - 1e-9);
+}
+
+// An axis that stands outside below comes back in like one above, with the ramps asked for.
+TEST(SoftLimit, LetsAnAxisBelowComeBack) {
+  for (const double side : {1.0, -1.0}) {
+    Rig rig(Fenced());
+    rig.frozen = true;
+    for (int i = 0; i < 600; ++i) {
+      rig.inputs.counts += static_cast<std::uint32_t>(static_cast<std::int32_t>(side * 200'000));
+      rig.Step();
+    }
+    rig.frozen = false;
+    ASSERT_TRUE(rig.PowerOn());
+    ASSERT_NEAR(rig.position(), side * 120, 1e-6);
+    const std::size_t from = rig.trace.size();
+    const Ticket back = rig.Give(MoveVelocity{.velocity = 100,
+                                              .acceleration = 1000,
+                                              .jerk = 20000,
+                                              .direction = side > 0 ? Direction::kNegative : Direction::kPositive});
+    rig.Run(0.5);
+    EXPECT_TRUE(rig.lives[back].reached);
+    EXPECT_LT(side * rig.position(), 100);
+    EXPECT_EQ(rig.out.limited_by, LimitedBy::kNothing);
+    EXPECT_LE(WorstOf(rig.trace, {100, 1000, 4000, 20000}, 0.001, from).acceleration, 1 + 1e-9);
+  }
+}
+
+// AX-13: a way back with weak acceleration, which also weakens the brake where the motion reverses.
+TEST(SoftLimit, IsKeptWhereTheWayBackIsWeak) {
+  Rig rig(Fenced());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 500});
+  while (rig.position() < 50) rig.Step();
+  const Ticket back = rig.Give(MoveAbsolute{.position = 0, .acceleration = 100});
+  rig.Step();
+  EXPECT_EQ(rig.out.limited_by, LimitedBy::kPosition);
+  ASSERT_TRUE(rig.RunToEnd(back));
+  EXPECT_EQ(rig.out.limited_by, LimitedBy::kNothing);
+  for (const Sample& s : rig.trace) ASSERT_LE(s.setpoint.position, 100 + 1e-9);
+}
+
+// AX-13: a weak move that had to be made harder stays so when a blending move joins it.
+TEST(SoftLimit, IsKeptWhenAMoveIsPlannedAnew) {
+  Rig rig(Fenced());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 500});
+  while (rig.position() < 50) rig.Step();
+  rig.Give(MoveAbsolute{.position = 60, .deceleration = 100, .jerk = 1000});
+  rig.Step();
+  const Ticket second = rig.Give(MoveAbsolute{.position = 20, .buffer_mode = BufferMode::kBlendingLow});
+  ASSERT_TRUE(rig.RunToEnd(second));
+  EXPECT_EQ(rig.position(), 20);
+  for (const Sample& s : rig.trace) ASSERT_LE(s.setpoint.position, 100 + 1e-9);
+}
+
+// AX-13, AX-39: nor does a jog that is let go carry the axis over a limit, however weak its ramp.
+TEST(SoftLimit, IsKeptByAWeakJog) {
+  Rig rig(Fenced());
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket jog = rig.Give(Jog{.forward = true, .velocity = 500, .deceleration = 100, .jerk = 100000});
+  while (rig.position() < 50) rig.Step();
+  rig.Let(jog);
+  ASSERT_TRUE(rig.RunToEnd(jog));
+  for (const Sample& s : rig.trace) ASSERT_LE(s.setpoint.position, 100 + 1e-9);
+}
+
+// AX-13: the same downwards.
+TEST(VelocityLimit, IsKeptDownwardsToo) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 500, .direction = Direction::kNegative});
+  while (rig.state.setpoint.velocity > -300) rig.Step();
+  const std::size_t from = rig.trace.size();
+  rig.Give(MoveVelocity{.velocity = 400, .jerk = 5000, .direction = Direction::kNegative});
+  rig.Run(2);
+  EXPECT_LE(WorstOf(rig.trace, rig.params.planner_limits(), 0.001, from).velocity, 1 + 1e-9);
+}
+
+// AX-06: positions a double cannot tell apart any more; on rotary axes anything but a position of the turn; a motion
+// without an end in no sense.
+TEST(Commands, OutsideWhatPositionsAndSensesThereAreAreRefused) {
+  Rig linear(LinearParams());
+  Rig rotary(RotaryParams());
+  ASSERT_TRUE(linear.PowerOn());
+  ASSERT_TRUE(rotary.PowerOn());
+  std::vector<std::pair<Rig*, Command>> bad = {
+      {&linear, MoveAbsolute{.position = 1.001e12}},
+      {&linear, MoveRelative{.distance = -1.001e12}},
+      {&linear, MoveVelocity{.velocity = 1, .direction = Direction::kShortest}},
+      {&rotary, MoveAbsolute{.position = -0.001}},
+      {&rotary, MoveAbsolute{.position = 360.001}},
+  };
+  for (const auto& [rig, command] : bad) {
+    const Ticket t = rig->Give(command);
+    rig->Step();
+    EXPECT_EQ(rig->lives[t].error_id, ErrorId::kParameter);
+    EXPECT_NE(WhyNot(command, rig->params), "");
+  }
+  EXPECT_EQ(WhyNot(MoveVelocity{.velocity = 1, .direction = Direction::kShortest}, LinearParams()),
+            "direction: expected another value, this command has no such direction");
+}
+
+// AX-13: an axis without a jerk limit takes any jerk, and keeps it.
+TEST(Commands, MayHaveAJerkWhereTheAxisHasNone) {
+  AxisParams p = LinearParams();
+  p.limits.jerk = 0;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  const std::size_t from = rig.trace.size();
+  const Ticket move = rig.Give(MoveAbsolute{.position = 50, .jerk = 30000});
+  ASSERT_TRUE(rig.RunToEnd(move));
+  EXPECT_TRUE(rig.lives[move].done);
+  EXPECT_LE(WorstOf(rig.trace, {500, 5000, 4000, 30000}, 0.001, from).jerk, 1 + 1e-6);
+}
+
+// AX-33, AX-83: no speed is none towards a limit either; but on the way to it a weak ramp is not waited for.
+TEST(SoftLimit, AndAVelocityOfZero) {
+  Rig rig(Fenced());
+  ASSERT_TRUE(rig.PowerOn());
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveAbsolute{.position = 100})));
+  const Ticket none = rig.Give(MoveVelocity{.velocity = 0});
+  rig.Run(0.01);
+  EXPECT_TRUE(rig.lives[none].reached);
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveAbsolute{.position = -100})));
+  rig.Give(MoveVelocity{.velocity = 500});
+  while (rig.position() < 50) rig.Step();
+  const Ticket weak = rig.Give(MoveVelocity{.velocity = 0, .deceleration = 100});
+  ASSERT_TRUE(rig.RunToEnd(weak));
+  EXPECT_EQ(rig.lives[weak].error_id, ErrorId::kSoftLimitPositive);
+  rig.Run(1);
+  for (const Sample& s : rig.trace) ASSERT_LE(s.setpoint.position, 100 + 1e-9);
+}
+
+// A move that leads an axis back inside is made with the ramps asked for.
+TEST(SoftLimit, DoesNotHardenTheWayBackInside) {
+  for (const double side : {1.0, -1.0}) {
+    Rig rig(Fenced());
+    rig.frozen = true;
+    for (int i = 0; i < 600; ++i) {
+      rig.inputs.counts += static_cast<std::uint32_t>(static_cast<std::int32_t>(side * 200'000));
+      rig.Step();
+    }
+    rig.frozen = false;
+    ASSERT_TRUE(rig.PowerOn());
+    const std::size_t from = rig.trace.size();
+    const Ticket back = rig.Give(MoveAbsolute{.position = side * 50, .acceleration = 500, .deceleration = 500});
+    rig.Step();
+    EXPECT_EQ(rig.out.limited_by, LimitedBy::kNothing);
+    ASSERT_TRUE(rig.RunToEnd(back));
+    EXPECT_EQ(rig.position(), side * 50);
+    EXPECT_LE(WorstOf(rig.trace, {500, 500, 500, 100000}, 0.001, from).acceleration, 1 + 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace takt::axis

@@ -152,6 +152,54 @@ TEST(MoveAbsolute, GoesOnToTheNextTurnWithAFixedSense) {
   }
 }
 
+// AX-14: the same downwards.
+TEST(MoveAbsolute, GoesOnToTheNextTurnDownwards) {
+  Rig rig(RotaryParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 500, .direction = Direction::kNegative});
+  rig.Run(0.5);
+  const double before = rig.position();
+  const double target = before - 1 - 360 * std::floor((before - 1) / 360);
+  const Ticket move = rig.Give(MoveAbsolute{.position = target, .direction = Direction::kCurrent});
+  ASSERT_TRUE(rig.RunToEnd(move));
+  EXPECT_NEAR(rig.position(), before - 361, 1e-6);
+}
+
+// AX-30: in motion the shortest way is the one from where the axis could stand.
+TEST(MoveAbsolute, TheShortestWayCountsFromWhereItCouldStop) {
+  Rig rig(RotaryParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 500});
+  rig.Run(0.5);
+  const double before = rig.position();
+  const Ticket move = rig.Give(MoveAbsolute{.position = std::fmod(before + 200, 360)});
+  ASSERT_TRUE(rig.RunToEnd(move));
+  EXPECT_NEAR(rig.position(), before + 200, 1e-6);
+}
+
+// AX-30: rounding of the place it stands at is no reason for a turn.
+TEST(MoveAbsolute, DoesNotTurnRoundForARounding) {
+  Rig rig(RotaryParams());
+  ASSERT_TRUE(rig.PowerOn());
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveRelative{.distance = 0.1})));
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveRelative{.distance = 0.2})));
+  ASSERT_NE(rig.position(), 0.3);
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveAbsolute{.position = 0.3, .direction = Direction::kPositive})));
+  EXPECT_NEAR(rig.position(), 0.3, 1e-9);
+}
+
+// AX-33: the current sense is that of the last motion, also after it.
+TEST(MoveVelocity, TheCurrentSenseIsThatOfTheLastMotion) {
+  for (const double last : {-10.0, 10.0}) {
+    Rig rig(LinearParams());
+    ASSERT_TRUE(rig.PowerOn());
+    ASSERT_TRUE(rig.RunToEnd(rig.Give(MoveRelative{.distance = last})));
+    rig.Give(MoveVelocity{.velocity = 50, .direction = Direction::kCurrent});
+    rig.Run(0.2);
+    EXPECT_EQ(rig.out.set_velocity, last > 0 ? 50 : -50);
+  }
+}
+
 struct TurnCase {
   double from, to;
   Direction direction;
@@ -203,6 +251,46 @@ TEST(RotaryAxis, ReportsWithinOneTurnOverThousandsOfTurns) {
   ASSERT_TRUE(rig.RunToEnd(home));
   EXPECT_NEAR(rig.out.set_position, 123.25, 1e-6);
   EXPECT_NEAR(rig.out.actual_position, 123.25, 0.011);
+}
+
+// AX-02: the same downwards, and for what the position loop of a velocity drive sees: no cycle in which the turns that
+// were taken out show.
+TEST(RotaryAxis, TurnsTakenOutAreNotSeen) {
+  for (const Direction direction : {Direction::kPositive, Direction::kNegative}) {
+    AxisParams p = RotaryParams();
+    p.limits = {
+        .velocity = 36000, .acceleration = 360000, .deceleration = 360000, .jerk = 36000000, .lower = {}, .upper = {}};
+    p.encoder.increments_per_unit = 100;
+    p.drive.mode = DriveMode::kCyclicVelocity;
+    p.loop.kp = 0.05;
+    p.loop.ff = 1;
+    p.loop.velocity_at_10v = 72000;
+    Rig rig(p);
+    ASSERT_TRUE(rig.PowerOn());
+    rig.Give(MoveVelocity{.velocity = 36000, .direction = direction});
+    rig.Run(1);
+    for (int i = 0; i < 20000; ++i) {
+      rig.Step();
+      ASSERT_NEAR(rig.commanded.velocity_counts_s, direction == Direction::kPositive ? 3.6e6 : -3.6e6, 1e3) << i;
+      ASSERT_LT(std::abs(rig.state.setpoint.position), 360 * 1002.0);
+      if (i % 1000 == 0) rig.trace.clear();
+    }
+  }
+}
+
+// AX-02, AX-12: nor in a move of so many turns that a blending move joins on the way.
+TEST(RotaryAxis, TurnsTakenOutDoNotMoveATarget) {
+  AxisParams p = RotaryParams();
+  p.limits = {
+      .velocity = 36000, .acceleration = 360000, .deceleration = 360000, .jerk = 36000000, .lower = {}, .upper = {}};
+  p.encoder.increments_per_unit = 100;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveRelative{.distance = 360 * 1500.0 + 10});
+  while (rig.state.origin == 0) rig.Step();
+  const Ticket second = rig.Give(MoveRelative{.distance = 20, .buffer_mode = BufferMode::kBlendingLow});
+  ASSERT_TRUE(rig.RunToEnd(second));
+  EXPECT_NEAR(rig.position() + rig.state.origin, 360 * 1500.0 + 30, 1e-6);
 }
 
 // AX-36: halt brakes as asked and another command may take over on the way.
@@ -285,6 +373,31 @@ TEST(InPosition, DecidesWhenAMoveIsDone) {
   EXPECT_EQ(rig.out.error, ErrorId::kNone);
 }
 
+// AX-05: so it is in the other sense; what waits behind is aborted, and what is to blend into it meanwhile neither
+// starts nor gives it more time.
+TEST(InPosition, TooLateAbortsWhatWaits) {
+  for (const double target : {-10.0, 10.0}) {
+    AxisParams p = LinearParams();
+    p.supervision.in_position = 0.01;
+    p.supervision.in_position_timeout_s = 0.2;
+    Rig rig(p);
+    ASSERT_TRUE(rig.PowerOn());
+    const Ticket stuck = rig.Give(MoveAbsolute{.position = target});
+    rig.Run(0.02);
+    rig.frozen = true;
+    while (rig.position() != target) rig.Step();
+    const std::uint64_t arrived = rig.cycle.count;
+    rig.Run(0.1);
+    const Ticket next = rig.Give(MoveAbsolute{.position = 2 * target, .buffer_mode = BufferMode::kBlendingHigh});
+    ASSERT_TRUE(rig.RunToEnd(stuck));
+    EXPECT_EQ(rig.lives[stuck].error_id, ErrorId::kDeviationLimit);
+    EXPECT_NEAR(static_cast<double>(rig.cycle.count - arrived) * 0.001, 0.2, 0.003);
+    EXPECT_TRUE(rig.lives[next].aborted);
+    EXPECT_EQ(rig.out.buffered_commands, 0);
+    EXPECT_EQ(rig.position(), target);
+  }
+}
+
 // AX-24: what is published of position, velocity and torque is what the wires say.
 TEST(Outputs, SayWhatIsMeasured) {
   Rig rig(LinearParams());
@@ -296,6 +409,82 @@ TEST(Outputs, SayWhatIsMeasured) {
   EXPECT_NEAR(rig.out.actual_position, rig.trace[rig.trace.size() - 2].out.set_position, 1e-6);
   EXPECT_NEAR(rig.out.following_error, 0, 1e-6);
   EXPECT_EQ(rig.out.torque_nm, 1.25);
+}
+
+// AX-24: with an open loop there is no following error, and no position to be in.
+TEST(Outputs, SayNothingOfALoopThatIsOpen) {
+  Rig rig(LinearParams());
+  rig.frozen = true;
+  for (int i = 0; i < 10; ++i) {
+    rig.inputs.counts += 1000;
+    rig.Step();
+    EXPECT_EQ(rig.out.following_error, 0);
+    EXPECT_FALSE(rig.out.in_position);
+  }
+}
+
+// AX-02: a position below 0 by less than it can be told from a turn is 0, not the modulus.
+TEST(Outputs, StayBelowTheModulus) {
+  State state;
+  state.setpoint.position = -1e-17;
+  state.actual.position = -1e-17;
+  Outputs out;
+  Publish(RotaryParams(), state, out);
+  EXPECT_EQ(out.set_position, 0);
+  EXPECT_EQ(out.actual_position, 0);
+}
+
+// AX-03: an inverted control sense turns position and speed round that a position drive gets.
+TEST(Outputs, InvertTurnsThePositionDriveRound) {
+  AxisParams p = LinearParams();
+  p.drive.invert = true;
+  p.encoder.invert = true;
+  Rig rig(p);
+  rig.frozen = true;
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 100});
+  rig.Run(0.2);
+  EXPECT_NEAR(rig.commanded.position_counts, rig.position() * 1e6, 1e-3);
+  EXPECT_NEAR(rig.commanded.velocity_counts_s, 100e6, 1e-3);
+}
+
+// The way of the data: a velocity drive is fed the speed that leads from the set point before to this one, so that an
+// ideal one has no following error while it accelerates either.
+TEST(Outputs, AnIdealVelocityDriveHasNoFollowingError) {
+  AxisParams p = LinearParams();
+  p.drive.mode = DriveMode::kCyclicVelocity;
+  p.loop.kp = 0;
+  p.loop.ff = 1;
+  p.loop.velocity_at_10v = 1000;
+  Rig rig(p);
+  rig.frozen = true;
+  double counts = 0;
+  const auto step = [&] {
+    counts += rig.commanded.velocity_counts_s * 0.001;
+    rig.inputs.counts = static_cast<std::uint32_t>(std::llround(counts));
+    rig.Step();
+    EXPECT_LT(std::abs(rig.out.following_error), 1e-4);
+  };
+  rig.Give(Power{});
+  for (int i = 0; i < 20; ++i) step();
+  const Ticket move = rig.Give(MoveAbsolute{.position = 100});
+  for (int i = 0; i < 2000 && !rig.Ended(move); ++i) step();
+  EXPECT_TRUE(rig.lives[move].done);
+}
+
+// AX-05: in position is an axis that has arrived.
+TEST(Outputs, InPositionIsNotSaidInMotion) {
+  AxisParams p = LinearParams();
+  p.supervision.in_position = 0.01;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  EXPECT_TRUE(rig.out.in_position);
+  const Ticket move = rig.Give(MoveAbsolute{.position = 50});
+  rig.Run(0.05);
+  EXPECT_LT(std::abs(rig.out.following_error), 0.01);
+  EXPECT_FALSE(rig.out.in_position);
+  ASSERT_TRUE(rig.RunToEnd(move));
+  EXPECT_TRUE(rig.out.in_position);
 }
 
 }  // namespace

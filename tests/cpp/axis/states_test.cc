@@ -6,6 +6,7 @@
 #include <set>
 
 #include "rig.h"
+#include "takt/axis/sequence.h"
 
 namespace takt::axis {
 namespace {
@@ -116,6 +117,90 @@ TEST(Power, FailsWhenTheDriveDoesNotGetReady) {
   EXPECT_EQ(rig.lives[on].error_id, ErrorId::kDrive);
   EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
   EXPECT_FALSE(rig.commanded.enable);
+}
+
+// AX-20: on again while the drive gets ready takes the place of the first one, but gives the drive no more time.
+TEST(Power, OnAgainGivesTheDriveNoMoreTime) {
+  AxisParams p = LinearParams();
+  p.drive.ready_timeout_s = 0.05;
+  Rig rig(p);
+  rig.drive_delay = 1000;
+  const Ticket first = rig.Give(Power{});
+  rig.Run(0.04);
+  const Ticket second = rig.Give(Power{});
+  rig.Run(0.02);
+  EXPECT_TRUE(rig.lives[first].aborted);
+  EXPECT_EQ(rig.lives[second].error_id, ErrorId::kDrive);
+}
+
+// AX-12, AX-20: on while it is on is done at once, or, buffered, behind the move.
+TEST(Power, OnMayWaitBehindAMove) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket move = rig.Give(MoveAbsolute{.position = 20});
+  const Ticket on = rig.Give(Power{.buffer_mode = BufferMode::kBuffered});
+  rig.Step();
+  EXPECT_FALSE(rig.lives[on].active);
+  ASSERT_TRUE(rig.RunToEnd(on));
+  EXPECT_TRUE(rig.lives[on].done);
+  EXPECT_EQ(rig.lives[on].final_cycle, rig.lives[move].final_cycle);
+}
+
+// AX-20: while it brakes for power off nothing else is accepted, but off once more, in whatever buffer mode.
+TEST(Power, OffCannotBeTakenBack) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 400});
+  rig.Run(0.5);
+  const Ticket off = rig.Give(Power{.enable = false});
+  rig.Run(0.01);
+  for (const Command& c :
+       {Command(Power{}), Command(Stop{.hold = true}), Command(Halt{}), Command(MoveAbsolute{.position = 1}),
+        Command(MoveAbsolute{.position = 1, .buffer_mode = BufferMode::kBuffered}), Command(Jog{.forward = true})}) {
+    const Ticket t = rig.Give(c);
+    rig.Step();
+    EXPECT_EQ(rig.lives[t].error_id, ErrorId::kAxisStopping) << c.index();
+  }
+  EXPECT_FALSE(rig.Ended(off));
+  const Ticket again = rig.Give(Power{.enable = false, .buffer_mode = BufferMode::kBuffered});
+  ASSERT_TRUE(rig.RunToEnd(again));
+  EXPECT_TRUE(rig.lives[off].aborted);
+  EXPECT_TRUE(rig.lives[again].done);
+  EXPECT_EQ(rig.out.state, PlcState::kDisabled);
+}
+
+// AX-12: nothing can wait behind a power off that waits itself.
+TEST(Power, OffCannotBeFollowed) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveAbsolute{.position = 100});
+  const Ticket off = rig.Give(Power{.enable = false, .buffer_mode = BufferMode::kBuffered});
+  const Ticket behind = rig.Give(MoveAbsolute{.position = 50, .buffer_mode = BufferMode::kBuffered});
+  ASSERT_TRUE(rig.RunToEnd(off));
+  EXPECT_EQ(rig.lives[behind].error_id, ErrorId::kState);
+  EXPECT_NEAR(rig.position(), 100, 1e-3);
+}
+
+// AX-20: also an axis that brakes because of a fault comes to rest before power off opens its loop.
+TEST(Power, OffInErrorStopWaitsForTheBrake) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 400});
+  rig.Run(0.5);
+  const std::size_t from = rig.trace.size();
+  rig.inputs.limit_positive = true;
+  rig.Run(0.01);
+  const Ticket off = rig.Give(Power{.enable = false});
+  rig.Step();
+  EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
+  EXPECT_TRUE(rig.out.loop_closed);
+  ASSERT_TRUE(rig.RunToEnd(off));
+  EXPECT_EQ(rig.out.state, PlcState::kDisabled);
+  rig.trace.pop_back();  // the loop is open: the axis is where it is measured
+  const Worst worst = WorstOf(rig.trace, rig.params.planner_limits(), 0.001, from);
+  EXPECT_LE(worst.acceleration, 1 + 1e-9);
+  EXPECT_LE(worst.jerk, 1 + 1e-6);
+  EXPECT_LE(worst.position_step, 1 + 1e-6);
 }
 
 // Motion needs power (error 0010).
@@ -260,6 +345,113 @@ TEST(Fault, Encoder) {
   EXPECT_EQ(rig.out.error, ErrorId::kEncoder);
 }
 
+// AX-04: after a jump reset believes the encoder again, wherever it is.
+TEST(Fault, ResetBelievesTheEncoderAfterAJump) {
+  for (const bool powered : {true, false}) {
+    Rig rig(LinearParams());
+    rig.Step();
+    if (powered) rig.PowerOn();
+    rig.frozen = true;
+    rig.inputs.counts += 50'000'000;
+    rig.Step();
+    ASSERT_EQ(rig.out.error, ErrorId::kEncoder);
+    ASSERT_TRUE(rig.RunToEnd(rig.Give(Reset{})));
+    rig.Step();
+    EXPECT_EQ(rig.out.error, ErrorId::kNone);
+    EXPECT_TRUE(rig.PowerOn());
+  }
+}
+
+// AX-04: a jump is what is more than four times the largest velocity (and the noise).
+TEST(Fault, FastIsNoJump) {
+  for (const std::uint32_t step : {1'999'000u, 2'001'000u}) {  // 500 mm/s are 500,000 counts a cycle
+    AxisParams p = LinearParams();
+    p.supervision.encoder_noise_counts = 4;
+    Rig rig(p);
+    rig.frozen = true;
+    rig.Step();
+    rig.inputs.counts += step;
+    rig.Step();
+    EXPECT_EQ(rig.out.error, step < 2'000'004 ? ErrorId::kNone : ErrorId::kEncoder) << step;
+  }
+}
+
+// A drive that is no longer ready, without saying why.
+TEST(Fault, DriveThatDropsOutSilently) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.drive_delay = 1'000'000;
+  rig.Run(0.002);
+  EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
+  EXPECT_EQ(rig.out.error, ErrorId::kDrive);
+  EXPECT_FALSE(rig.out.loop_closed);
+}
+
+// AX-21: no reset while the drive still reports its fault.
+TEST(Fault, ResetWantsAWellDrive) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.inputs.drive_fault = true;
+  rig.Step();
+  const Ticket early = rig.Give(Reset{});
+  rig.Step();
+  EXPECT_EQ(rig.lives[early].error_id, ErrorId::kAxisFault);
+  EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
+  EXPECT_EQ(rig.out.error, ErrorId::kDrive);
+  rig.inputs.drive_fault = false;
+  const Ticket reset = rig.Give(Reset{});
+  rig.Step();
+  EXPECT_TRUE(rig.lives[reset].done);
+}
+
+// The first fault is the one that is told; a worse one still opens the loop.
+TEST(Fault, TheFirstOneIsTold) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 300});
+  rig.Run(0.5);
+  rig.inputs.limit_positive = true;
+  rig.Run(0.01);
+  EXPECT_TRUE(rig.out.loop_closed);
+  rig.inputs.drive_fault = true;
+  rig.Step();
+  EXPECT_EQ(rig.out.error, ErrorId::kLimitSwitchPositive);
+  EXPECT_FALSE(rig.out.loop_closed);
+}
+
+// AX-05: the narrower limit at rest holds a while after power on only, as after a move.
+TEST(Fault, DeviationAtRestWaitsAfterPowerOn) {
+  AxisParams p = LinearParams();
+  p.supervision.deviation_moving = 5;
+  p.supervision.deviation_standstill = 0.1;
+  p.supervision.in_position_timeout_s = 0.05;
+  Rig rig(p);
+  rig.Run(0.2);
+  ASSERT_TRUE(rig.PowerOn());
+  rig.frozen = true;
+  rig.inputs.counts += 200'000;
+  rig.Run(0.04);
+  EXPECT_EQ(rig.out.state, PlcState::kStandstill);
+  rig.Run(0.03);
+  EXPECT_EQ(rig.out.error, ErrorId::kDeviation);
+}
+
+// AX-05: nor does it hold in motion, however long that is.
+TEST(Fault, DeviationAtRestDoesNotHoldInMotion) {
+  AxisParams p = LinearParams();
+  p.supervision.deviation_moving = 5;
+  p.supervision.deviation_standstill = 0.1;
+  p.supervision.in_position_timeout_s = 0.05;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 10});
+  rig.Run(0.3);
+  rig.frozen = true;
+  rig.Run(0.1);  // 1 mm behind
+  EXPECT_EQ(rig.out.state, PlcState::kContinuousMotion);
+  EXPECT_GT(rig.out.following_error, 0.9);
+}
+
 // A drive that drops out while the loop is closed.
 TEST(Fault, Drive) {
   Rig rig(LinearParams());
@@ -311,6 +503,41 @@ TEST(Fault, InternalOpensTheLoopWithZeroOutputs) {
   EXPECT_TRUE(std::isfinite(rig.commanded.position_counts));
 }
 
+// AX-10: a transition outside the table would be seen.
+TEST(StateTable, IllegalTransitionsAreCounted) {
+  State state;
+  Enter(state, PlcState::kStandstill);
+  EXPECT_EQ(state.illegal_transitions, 0u);
+  Enter(state, PlcState::kDisabled);
+  Enter(state, PlcState::kHoming);
+  EXPECT_EQ(state.illegal_transitions, 1u);
+}
+
+// AX-11: Busy while it waits, Active, Done; a command that need not wait is Active at once. InVelocity is told once.
+TEST(Feedback, IsBusyActiveDone) {
+  using S = FeedbackState;
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket first = rig.Give(MoveAbsolute{.position = 10});
+  const Ticket second = rig.Give(MoveAbsolute{.position = 20, .buffer_mode = BufferMode::kBuffered});
+  ASSERT_TRUE(rig.RunToEnd(second));
+  const Ticket endless = rig.Give(MoveVelocity{.velocity = 10});
+  rig.Run(0.5);
+  const Ticket halt = rig.Give(Halt{.buffer_mode = BufferMode::kBuffered});
+  ASSERT_TRUE(rig.RunToEnd(halt));
+  const auto states = [&](Ticket t) {
+    std::vector<S> all;
+    for (const FeedbackEvent& e : rig.lives[t].events) all.push_back(e.state);
+    return all;
+  };
+  EXPECT_EQ(states(first), (std::vector<S>{S::kActive, S::kDone}));
+  EXPECT_EQ(states(second), (std::vector<S>{S::kBusy, S::kActive, S::kDone}));
+  EXPECT_EQ(states(endless), (std::vector<S>{S::kActive, S::kActive, S::kAborted}));
+  EXPECT_FALSE(rig.lives[endless].events[0].reached);
+  EXPECT_TRUE(rig.lives[endless].events[1].reached);
+  EXPECT_TRUE(rig.lives[endless].events[2].reached);
+}
+
 Command RandomCommand(std::mt19937_64& random, const AxisParams& p) {
   std::uniform_real_distribution<double> any(-1.2, 1.2);
   const auto position = [&] { return p.rotary() ? std::abs(any(random)) * 300 : any(random) * 400; };
@@ -337,6 +564,14 @@ Command RandomCommand(std::mt19937_64& random, const AxisParams& p) {
                           .direction = direction,
                           .buffer_mode = mode};
     case 4:
+      if (random() % 2) {
+        return MoveAdditive{.distance = random() % 5 ? position() : any(random),
+                            .velocity = speed(),
+                            .acceleration = acceleration,
+                            .deceleration = deceleration,
+                            .jerk = jerk,
+                            .buffer_mode = mode};
+      }
       return MoveRelative{.distance = random() % 5 ? position() : any(random),
                           .velocity = speed(),
                           .acceleration = acceleration,
@@ -431,6 +666,19 @@ TEST_P(RandomWalkProperty, MeetsNoIllegalTransitionAndHoldsAllLimits) {
 }
 // More of them in the long run (`./dev bench --long`).
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomWalkProperty, testing::Range(1, std::getenv("TAKT_LONG") ? 2000 : 25));
+
+// A fault from outside while the drive gets ready: there is nothing to brake yet, it is switched off.
+TEST(Fault, WhileTheDriveGetsReadySwitchesItOff) {
+  Rig rig(LinearParams());
+  const Ticket on = rig.Give(Power{});
+  rig.Step();
+  ASSERT_TRUE(rig.commanded.enable);
+  Fail(rig.Now(), ErrorId::kOverrun, false, rig.state);
+  rig.Step();
+  EXPECT_EQ(rig.lives[on].error_id, ErrorId::kOverrun);
+  EXPECT_EQ(rig.out.state, PlcState::kErrorStop);
+  EXPECT_FALSE(rig.commanded.enable);
+}
 
 }  // namespace
 }  // namespace takt::axis

@@ -77,6 +77,32 @@ std::vector<JournalEntry> ExpectReplayBitForBit(Engine& engine) {
   return entries;
 }
 
+// EN-06: the hash is one of axes and of servos, and another one every cycle.
+TEST(Engine, HashesEverything) {
+  const Machine machine = FullMachine();
+  World one(machine), axis(machine), servo(machine);
+  axis.axis_states[3].follow_offset = 1e-300;
+  servo.servo_states[0].torque = 1e-300;
+  EXPECT_NE(one.StateHash(), axis.StateHash());
+  EXPECT_NE(one.StateHash(), servo.StateHash());
+  Engine engine(machine, {.journal = true});
+  for (int i = 0; i < 3; ++i) engine.RunCycle();
+  HashEntry first, second;
+  ASSERT_TRUE(engine.hashes().TryPop(first));
+  ASSERT_TRUE(engine.hashes().TryPop(second));
+  EXPECT_NE(first.hash, second.hash);
+}
+
+// EN-07: a replay's own commands are numbered behind those of the journal.
+TEST(Journal, TicketsGoOnBehindIt) {
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  Command command = ToAxis(machine, "y1", axis::Halt{});
+  command.ticket = 5;
+  EXPECT_TRUE(engine.Resubmit(command));
+  EXPECT_EQ(engine.Submit(command), 6u);
+}
+
 // EN-07: commands taken from the journal give the same hash in every cycle.
 TEST(Journal, ReplaysBitForBit) {
   const Machine machine = FullMachine();
@@ -182,7 +208,9 @@ TEST(Overruns, InARowStopEverything) {
   for (int i = 0; i < 4; ++i) engine.RunCycle({2'000'000, 30000, true});
   engine.RunCycle({1000, 20000, false});
   EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kContinuousMotion);
-  for (int i = 0; i < 5; ++i) engine.RunCycle({2'000'000, 30000, true});
+  for (int i = 0; i < 4; ++i) engine.RunCycle({2'000'000, 30000, true});
+  EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kContinuousMotion);
+  engine.RunCycle({2'000'000, 30000, true});
   EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kErrorStop);
   EXPECT_EQ(engine.outputs(y1).error, ErrorId::kOverrun);
   EXPECT_GT(engine.outputs(y1).set_velocity, 300);  // braking, not dropped
@@ -192,6 +220,143 @@ TEST(Overruns, InARowStopEverything) {
   EXPECT_EQ(engine.figures().overruns, 9u);
   EXPECT_EQ(engine.figures().latency.max, 2'000'000u);
   EXPECT_EQ(engine.figures().execution.count, 910u);
+}
+
+// EN-05: after they stopped everything overruns are counted anew; 0 means never.
+TEST(Overruns, CountAnewAfterAStopOrNever) {
+  for (const std::uint32_t allowed : {5u, 0u}) {
+    Machine machine = FullMachine();
+    machine.cycle.overruns_in_a_row = allowed;
+    Engine engine(machine);
+    const std::size_t y1 = AxisNamed(machine, "y1");
+    engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+    for (int i = 0; i < 300; ++i) engine.RunCycle();
+    for (int i = 0; i < 5; ++i) engine.RunCycle({0, 30000, true});
+    EXPECT_EQ(engine.outputs(y1).error, allowed ? ErrorId::kOverrun : ErrorId::kNone);
+    engine.Submit(ToAxis(machine, "y1", axis::Reset{}));
+    for (int i = 0; i < 4; ++i) engine.RunCycle({0, 30000, true});
+    EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kStandstill);
+    EXPECT_EQ(engine.figures().latency.count, 9u);  // on time is a latency too
+  }
+}
+
+// What became of one command, from the queue of an engine.
+struct Answers {
+  std::vector<FeedbackEvent> events;
+  void Take(Engine& engine) {
+    for (FeedbackEvent event; engine.feedback().TryPop(event);) events.push_back(event);
+  }
+  bool Has(Ticket ticket, FeedbackState state) const {
+    return std::any_of(events.begin(), events.end(),
+                       [&](const FeedbackEvent& e) { return e.ticket == ticket && e.state == state; });
+  }
+};
+
+Ticket GiveMachine(Engine& engine, const MachineCommand& body, double lease_s = 0) {
+  return engine.Submit({.target = kMachineTarget, .lease_s = lease_s, .body = body});
+}
+
+// Stops every axis along its ramp, keeps or opens the loops; those in ErrorStop or without power are left alone. Done
+// at once.
+TEST(Machine, StopAll) {
+  for (const bool open : {false, true}) {
+    const Machine machine = FullMachine();
+    Engine engine(machine);
+    Answers answers;
+    const std::size_t y1 = AxisNamed(machine, "y1");
+    const std::size_t c = AxisNamed(machine, "c");
+    engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+    engine.Submit(ToAxis(machine, "c", axis::Power{}));
+    for (int i = 0; i < 300; ++i) engine.RunCycle();
+    const Ticket move = engine.Submit(ToAxis(machine, "y1", axis::MoveVelocity{.velocity = 400}));
+    for (int i = 0; i < 300; ++i) engine.RunCycle();
+    const Ticket stop = GiveMachine(engine, StopAll{.open_loops = open});
+    engine.RunCycle();
+    EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kStopping);
+    EXPECT_GT(engine.outputs(y1).set_velocity, 300);
+    for (int i = 0; i < 300; ++i) engine.RunCycle();
+    answers.Take(engine);
+    EXPECT_TRUE(answers.Has(stop, FeedbackState::kDone));
+    EXPECT_TRUE(answers.Has(move, FeedbackState::kAborted));
+    for (const std::size_t i : {y1, c}) {
+      EXPECT_EQ(engine.outputs(i).state, open ? axis::PlcState::kDisabled : axis::PlcState::kStandstill);
+      EXPECT_EQ(engine.outputs(i).error, ErrorId::kNone);
+    }
+    EXPECT_EQ(engine.outputs(AxisNamed(machine, "z")).state, axis::PlcState::kDisabled);
+  }
+}
+
+TEST(Machine, FailAllAxes) {
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  Answers answers;
+  engine.Submit(ToAxis(machine, "z", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  const Ticket fail = GiveMachine(engine, FailAllAxes{});
+  engine.RunCycle();
+  answers.Take(engine);
+  EXPECT_TRUE(answers.Has(fail, FeedbackState::kDone));
+  EXPECT_EQ(engine.outputs(AxisNamed(machine, "z")).error, ErrorId::kOverrun);
+  EXPECT_TRUE(engine.outputs(AxisNamed(machine, "z")).loop_closed);
+}
+
+// EN-23: the owner of a level-sensitive command is found on whatever axis it is; renewing keeps it, releasing ends it;
+// what is over already, or never was, is no error.
+TEST(Machine, RenewsAndReleases) {
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  Answers answers;
+  const std::size_t z = AxisNamed(machine, "z");
+  engine.Submit(ToAxis(machine, "z", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  Command jog = ToAxis(machine, "z", axis::Jog{.forward = true, .velocity = 50});
+  jog.lease_s = 0.2;
+  const Ticket first = engine.Submit(jog);
+  for (int k = 0; k < 5; ++k) {
+    for (int i = 0; i < 150; ++i) engine.RunCycle();
+    const Ticket renew = GiveMachine(engine, Renew{first});
+    engine.RunCycle();
+    answers.Take(engine);
+    EXPECT_TRUE(answers.Has(renew, FeedbackState::kDone));
+    EXPECT_NEAR(engine.outputs(z).set_velocity, 50, 1e-9);
+  }
+  const Ticket release = GiveMachine(engine, Release{first});
+  engine.RunCycle();
+  EXPECT_EQ(engine.outputs(z).state, axis::PlcState::kDiscreteMotion);
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  const Ticket second = engine.Submit(jog);
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  const Ticket over = GiveMachine(engine, Release{second});
+  const Ticket never = GiveMachine(engine, Renew{12345});
+  engine.RunCycle();
+  answers.Take(engine);
+  EXPECT_TRUE(answers.Has(release, FeedbackState::kDone));
+  EXPECT_TRUE(answers.Has(first, FeedbackState::kDone));
+  EXPECT_TRUE(answers.Has(second, FeedbackState::kAborted));
+  EXPECT_TRUE(answers.Has(over, FeedbackState::kDone));
+  EXPECT_TRUE(answers.Has(never, FeedbackState::kDone));
+}
+
+// An axis that was told to switch on is not disabled, though its drive is not ready yet.
+TEST(Engine, IsNotDisabledWhileADriveGetsReady) {
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  EXPECT_TRUE(engine.all_disabled());
+  engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  engine.RunCycle();
+  EXPECT_FALSE(engine.outputs(AxisNamed(machine, "y1")).loop_closed);
+  EXPECT_FALSE(engine.all_disabled());
+}
+
+// The first cycle sees what the machine is like, not zeros.
+TEST(Engine, SeesTheMachineInItsFirstCycle) {
+  Machine machine = FullMachine();
+  machine.simulation.servos[0].switches.limit_positive.from = -1;
+  machine.simulation.servos[0].mechanics.start_position = 10;
+  Engine engine(machine);
+  engine.RunCycle();
+  EXPECT_TRUE(engine.outputs(AxisNamed(machine, "z")).limit_positive);
+  EXPECT_NEAR(engine.outputs(AxisNamed(machine, "z")).actual_position, 10, 0.01);
 }
 
 // EN-08: shutdown brakes along the ramps, opens the loops, refuses what comes after.
@@ -261,6 +426,25 @@ TEST(EmergencyStop, SwitchesEverythingOffAtOnce) {
   EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kStandstill);
 }
 
+// EN-08: what an overrun ended in the same cycle was not ended by the shutdown.
+TEST(Shutdown, IsNotTheReasonForWhatEndedBeforeIt) {
+  Machine machine = FullMachine();
+  machine.cycle.overruns_in_a_row = 1;
+  Engine engine(machine);
+  Answers answers;
+  engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  engine.Submit(ToAxis(machine, "y1", axis::MoveAbsolute{.position = 100}));
+  const Ticket waits = engine.Submit(
+      ToAxis(machine, "y1", axis::MoveAbsolute{.position = 0, .buffer_mode = axis::BufferMode::kBuffered}));
+  for (int i = 0; i < 50; ++i) engine.RunCycle();
+  engine.RequestShutdown();
+  engine.RunCycle({0, 0, true});
+  answers.Take(engine);
+  ASSERT_TRUE(answers.Has(waits, FeedbackState::kAborted));
+  for (const FeedbackEvent& event : answers.events) EXPECT_NE(event.error, ErrorId::kShutdown);
+}
+
 // EN-21, EN-22: a full queue refuses; what was refused has no ticket, what was accepted is answered, in order.
 TEST(CommandQueue, RefusesWhenFullAndLosesNothing) {
   const Machine machine = FullMachine();
@@ -278,7 +462,11 @@ TEST(CommandQueue, RefusesWhenFullAndLosesNothing) {
     engine.RunCycle();
     FeedbackEvent event;
     while (engine.feedback().TryPop(event)) answered.push_back(event.ticket);
+    if (i == 0) {
+      EXPECT_EQ(answered.size(), kCommandsPerCycle);  // a cycle takes so many at most
+    }
   }
+  EXPECT_EQ(engine.figures().commands_applied, 120u);
   EXPECT_EQ(answered, accepted);
   EXPECT_EQ(engine.figures().commands_refused, 880u);
 }
@@ -352,6 +540,66 @@ TEST(Journal, CountsWhatItLost) {
   EXPECT_EQ(engine.figures().journal_dropped, 0u);
   for (int i = 0; i < 10; ++i) engine.RunCycle();
   EXPECT_EQ(engine.figures().journal_dropped, 10u);
+}
+
+// EN-07: lost commands count like lost hashes.
+TEST(Journal, CountsLostCommands) {
+  const Machine machine = FullMachine();
+  Engine engine(machine, {.journal = true, .snapshot_queue = 64});
+  for (int i = 0; i < 100; ++i) engine.Submit(ToAxis(machine, "y1", axis::Halt{}));
+  for (int i = 0; i < 10; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.figures().journal_dropped, 36u);
+}
+
+// EN-21: nobody takes the feedback: what is lost is counted.
+TEST(FeedbackQueue, CountsWhatItLost) {
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  std::uint64_t given = 0;
+  for (int i = 0; i < 400; ++i) {
+    for (std::size_t k = 0; k < kCommandsPerCycle; ++k) given += engine.Submit(ToAxis(machine, "y1", axis::Halt{})) > 0;
+    engine.RunCycle();
+  }
+  std::uint64_t taken = 0;
+  for (FeedbackEvent event; engine.feedback().TryPop(event);) ++taken;
+  EXPECT_LT(taken, given);
+  EXPECT_EQ(taken + engine.figures().feedback_dropped, given);
+}
+
+// EN-20: the engine's own figures, at their rate, each of its cycle; nothing where nobody asked for it.
+TEST(Figures, ComeAtTheirRate) {
+  Machine machine = FullMachine();
+  machine.lcm.engine_rate_hz = 20;
+  Engine engine(machine, {.publish = true});
+  Engine silent(machine);
+  engine.Submit(ToAxis(machine, "z", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  engine.Submit(ToAxis(
+      machine, "z", axis::MoveAbsolute{.position = 1e12, .velocity = 1e-300, .acceleration = 1e-300, .jerk = 1e-300}));
+  for (int i = 0; i < 200; ++i) engine.RunCycle();
+  for (int i = 0; i < 500; ++i) silent.RunCycle();
+  std::vector<std::uint64_t> cycles;
+  EngineFigures figures;
+  while (engine.figure_queue().TryPop(figures)) cycles.push_back(figures.cycle);
+  EXPECT_THAT(cycles, testing::ElementsAre(0, 50, 100, 150, 200, 250, 300, 350, 400, 450));
+  EXPECT_EQ(figures.planner_failures, 1u);
+  EXPECT_FALSE(silent.figure_queue().TryPop(figures));
+}
+
+// EN-20: a rate that is no divisor is rounded; every_cycle adds the others, which are not due.
+TEST(Snapshots, SayWhetherTheyAreDue) {
+  Machine machine = FullMachine();
+  machine.lcm.axis_rate_hz = 150;  // every 7th cycle
+  Engine engine(machine, {.publish = true, .every_cycle = true});
+  for (int i = 0; i < 700; ++i) engine.RunCycle();
+  std::vector<int> due(4), all(4);
+  AxisSnapshot snapshot;
+  while (engine.snapshots().TryPop(snapshot)) {
+    ++all[snapshot.axis];
+    due[snapshot.axis] += snapshot.due;
+  }
+  EXPECT_THAT(all, testing::Each(700));
+  EXPECT_THAT(due, testing::Each(100));
 }
 
 // EN-20: each axis at its own rate.

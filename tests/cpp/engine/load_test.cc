@@ -78,6 +78,70 @@ TEST(LoadMachine, RefusesAFollowerThatCannotKeepUp) {
               ElementsAre(AllOf(HasSubstr("m.yaml:7:21: axes[1].follows.axis"), HasSubstr("velocity"))));
 }
 
+// EN-03: each limit of its own counts, and a jerk limit is none that a master without one could keep.
+TEST(LoadMachine, LooksAtEveryLimitOfAFollower) {
+  const auto problems = [](const std::string& master, const std::string& follower) {
+    return LoadMachine(With("  - name: a\n    limits: " + master + "\n  - name: b\n    limits: " + follower +
+                            "\n    follows: {axis: a, ratio: -2}\n"),
+                       "m.yaml")
+        .problems;
+  };
+  const std::string master = "{velocity: 1, acceleration: 1, deceleration: 1, jerk: 1}";
+  EXPECT_THAT(problems(master, "{velocity: 2, acceleration: 2, deceleration: 2, jerk: 2}"), testing::IsEmpty());
+  EXPECT_THAT(problems(master, "{velocity: 2, acceleration: 2, deceleration: 2, jerk: 0}"), testing::IsEmpty());
+  EXPECT_THAT(problems(master, "{velocity: 1.9, acceleration: 2, deceleration: 2, jerk: 2}"),
+              ElementsAre(HasSubstr("limit of velocity")));
+  EXPECT_THAT(problems(master, "{velocity: 2, acceleration: 1.9, deceleration: 2, jerk: 2}"),
+              ElementsAre(HasSubstr("limit of acceleration")));
+  EXPECT_THAT(problems(master, "{velocity: 2, acceleration: 2, deceleration: 1.9, jerk: 2}"),
+              ElementsAre(HasSubstr("limit of deceleration")));
+  EXPECT_THAT(problems(master, "{velocity: 2, acceleration: 2, deceleration: 2, jerk: 1.9}"),
+              ElementsAre(HasSubstr("limit of jerk")));
+  EXPECT_THAT(problems("{velocity: 1, acceleration: 1, jerk: 0}", "{velocity: 2, acceleration: 2, jerk: 100}"),
+              ElementsAre(HasSubstr("limit of jerk")));
+}
+
+// Whatever names an axis must name one that is there, each once; problems come in the order of the file.
+TEST(LoadMachine, ChecksWhatRefersToAxes) {
+  const std::string limits = "    limits: {velocity: 1, acceleration: 1, jerk: 1}\n";
+  const LoadResult result =
+      LoadMachine(With("  - name: machine\n" + limits + "  - name: x\n" + limits + "    follows: {axis: y}\n" +
+                           "  - name: z\n    limits: {velocity: 0, acceleration: 1, jerk: 1}\n" +
+                           "simulation: {servos: [{axis: x}, {axis: x}]}\n",
+                       "lcm: {rates: [{axis: w, rate_hz: 1}, {axis: x, rate_hz: 1}, {axis: x, rate_hz: 2}]}\n"),
+                  "m.yaml");
+  EXPECT_THAT(
+      result.problems,
+      ElementsAre(AllOf(HasSubstr("lcm.rates[0].axis"), HasSubstr("'w'")),
+                  AllOf(HasSubstr("lcm.rates[2].axis"), HasSubstr("again")), HasSubstr("axes[0].name"),
+                  AllOf(HasSubstr("axes[1].follows.axis"), HasSubstr("'y'")), HasSubstr("axes[2].limits.velocity"),
+                  AllOf(HasSubstr("simulation.servos[1].axis"), HasSubstr("again"))));
+}
+
+// A name that is missing is one problem, not two.
+TEST(LoadMachine, ReportsAMissingNameOnce) {
+  EXPECT_THAT(LoadMachine(With("  - limits: {velocity: 1, acceleration: 1, jerk: 1}\n"), "m.yaml").problems,
+              ElementsAre(HasSubstr("name")));
+}
+
+TEST(LoadMachine, TakesEveryGoodName) {
+  for (const char* name : {"a.b", "A-b_9", "aaaaaaaaaabbbbbbbbbbccccccccccdddddddddd"}) {
+    const std::string text =
+        With(std::string("  - name: ") + name + "\n    limits: {velocity: 1, acceleration: 1, jerk: 1}\n");
+    EXPECT_THAT(LoadMachine(text, "m.yaml").problems, testing::IsEmpty()) << name;
+  }
+}
+
+// AX-83: nor has a follower SW limits of its own, which its master would lead it out of.
+TEST(LoadMachine, RefusesAFollowerWithSoftLimits) {
+  const LoadResult result =
+      LoadMachine(With("  - name: a\n    limits: {velocity: 10, acceleration: 1, jerk: 1}\n"
+                       "  - name: b\n    limits: {velocity: 10, acceleration: 9, jerk: 9, upper: 50}\n"
+                       "    follows: {axis: a}\n"),
+                  "m.yaml");
+  EXPECT_THAT(result.problems, ElementsAre(AllOf(HasSubstr("axes[1].follows.axis"), HasSubstr("no lower and upper"))));
+}
+
 TEST(LoadMachine, WantsAtLeastOneAxis) {
   EXPECT_THAT(LoadMachine("name: m\naxes: []\n", "m.yaml").problems, ElementsAre(HasSubstr("at least one axis")));
   EXPECT_FALSE(LoadMachine("", "m.yaml").problems.empty());
@@ -123,6 +187,26 @@ TEST(ParseCommand, SaysWhatIsWrong) {
   }
 }
 
+// EN-22: the machine has verbs of its own, and only them; the sentence lists what this target has.
+TEST(ParseCommand, KnowsWhoseVerbItIs) {
+  const Machine machine = FullMachine();
+  const ParsedCommand axis = ParseCommand(machine, "y1", "stop_all", "");
+  EXPECT_EQ(axis.error, ErrorId::kUnknownVerb);
+  EXPECT_THAT(axis.sentence, AllOf(HasSubstr("jog"), testing::Not(HasSubstr("renew"))));
+  const ParsedCommand whole = ParseCommand(machine, "machine", "halt", "");
+  EXPECT_EQ(whole.error, ErrorId::kUnknownVerb);
+  EXPECT_THAT(whole.sentence, AllOf(HasSubstr("stop_all"), testing::Not(HasSubstr("jog"))));
+  EXPECT_THAT(ParseCommand(machine, "y11", "halt", "").sentence, HasSubstr("did you mean y1"));
+}
+
+// EN-23: what needs a heartbeat over LCM.
+TEST(ParseCommand, SaysWhatIsLevelSensitive) {
+  const Machine machine = FullMachine();
+  EXPECT_TRUE(ParseCommand(machine, "y1", "jog", "{forward: true}").level_sensitive);
+  EXPECT_TRUE(ParseCommand(machine, "y1", "stop", "{hold: true}").level_sensitive);
+  EXPECT_FALSE(ParseCommand(machine, "y1", "halt", "").level_sensitive);
+}
+
 // EN-07: text and command are two forms of the same thing.
 TEST(ParseCommand, IsTheInverseOfToText) {
   const Machine machine = FullMachine();
@@ -157,6 +241,29 @@ TEST(OrderByMasters, PutsMastersFirst) {
       for (const std::uint32_t master : masters[i]) ASSERT_LT(place[master], place[i]);
     }
   }
+}
+
+// EN-03: only the members of the loop are named, not what lies on the way to it or was done before.
+TEST(OrderByMasters, GivesTheMembersOfALoopOnly) {
+  const std::vector<std::vector<std::uint32_t>> masters = {{2}, {}, {3}, {1, 4}, {2}};
+  std::vector<std::uint32_t> loop;
+  EXPECT_FALSE(OrderByMasters(masters, loop));
+  EXPECT_THAT(loop, ElementsAre(4, 3, 2));  // each a master of the next, the last one of the first
+}
+
+// The machine's own name: anything people can read, not too long; missing is one problem.
+TEST(LoadMachine, ChecksTheNameOfTheMachine) {
+  const auto problems = [](const std::string& name) {
+    return LoadMachine(name + "axes: [{name: x, limits: {velocity: 1, acceleration: 1, jerk: 1}}]\n", "m.yaml")
+        .problems;
+  };
+  EXPECT_THAT(problems("name: Große Säge 1\n"), testing::IsEmpty());
+  EXPECT_THAT(problems("name: " + std::string(64, 'a') + "\n"), testing::IsEmpty());
+  EXPECT_THAT(problems("name: " + std::string(65, 'a') + "\n"), ElementsAre(HasSubstr("m.yaml:1:7: name: ")));
+  EXPECT_THAT(problems("name: \"a\\x7f\"\n"), ElementsAre(HasSubstr("control characters")));
+  EXPECT_THAT(problems("name: \"a\\n\"\n"), ElementsAre(HasSubstr("control characters")));
+  EXPECT_THAT(problems("name: \"\"\n"), ElementsAre(HasSubstr("1 to 64 bytes")));
+  EXPECT_THAT(problems(""), ElementsAre(HasSubstr("name")));
 }
 
 }  // namespace
