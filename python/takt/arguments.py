@@ -36,3 +36,8 @@ def _value(value: Any) -> str:
         return repr(float(value))
     text = str(value)
     return text if _PLAIN.fullmatch(text) and text.lower() not in _NOT_TEXT else json.dumps(text)
+
+
+def without_arguments(text: str) -> str:
+    """ "x.move_absolute" of "x.move_absolute {position: 40.0}": enough where its end is told."""
+    return text.split(" {", 1)[0]

@@ -55,7 +55,8 @@ def run_demo(scenario: Scenario, machine: Path, directory: Path, say: Say = prin
         say(f"taktd runs {machine} ({pace} time), lcm-logger records {url}")
         with _connected(url, engine, directory / "taktd.txt") as session:
             started = time.monotonic()
-            scenario.play(session)
+            with session.record(every=1000) as notes:  # for its marks, which do not travel over LCM
+                scenario.play(session)
             say(f"scenario done: {session.now:.1f} s of engine time in {time.monotonic() - started:.1f} s")
             session.run(1.5 / _rate(session.machine["lcm"]["engine_rate_hz"]))  # the last figures count everything
             figures = session.figures
@@ -64,6 +65,8 @@ def run_demo(scenario: Scenario, machine: Path, directory: Path, say: Say = prin
             raise TaktError(f"taktd ended with {engine.returncode}: see {directory / 'taktd.txt'}")
     recording = read_log(log)
     say(f"{log.name} read back: {len(recording.components)} axes, {recording.duration_s:.1f} s")
+    marks = [event for event in notes.recording.events if event.kind == "mark"]
+    recording.events = sorted([*recording.events, *marks], key=lambda event: event.time_s)
     outcome = verify_recording(scenario, recording)
     recording.save(directory / "recording.npz")
     return DemoResult(outcome, figures, replay(journal), log)

@@ -14,6 +14,7 @@ import lcm
 import numpy as np
 
 from takt import _core, msgs
+from takt.arguments import without_arguments
 from takt.errors import TaktError
 from takt.recording import Array, Recording
 from takt.tables import fields_of, is_possible, make_recording, table_of
@@ -195,9 +196,9 @@ def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:
         if report.state >= STATES.index("done"):
             ended.add(key)
             if report.state == STATES.index("error"):
-                yield time_s, component, f"{text}: {report.sentence}", "error"
+                yield time_s, component, f"{without_arguments(text)}: {report.sentence}", "error"
             else:
-                yield time_s, component, f"{text}: {STATES[report.state]}", "end"
+                yield time_s, component, f"{without_arguments(text)}: {STATES[report.state]}", "end"
 
 
 def _text(command: msgs.command | msgs.journal_command) -> str:

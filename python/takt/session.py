@@ -11,7 +11,7 @@ from types import MappingProxyType, TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from takt._commands import DEFAULTS, LEVEL_SENSITIVE, MachineCommands
-from takt.arguments import to_text
+from takt.arguments import to_text, without_arguments
 from takt.axis import Axis
 from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
@@ -206,10 +206,11 @@ class Session(MachineCommands):
         """Passes on what the engine says of a command."""
         if not feedback._update(state, reached, error_id, sentence, cycle) or not feedback.final:
             return
+        name = without_arguments(feedback.text)
         if feedback.error:
-            self._event(feedback.target, f"{feedback.text}: {feedback.sentence}", "error", feedback.time_s)
+            self._event(feedback.target, f"{name}: {feedback.sentence}", "error", feedback.time_s)
         else:
-            self._event(feedback.target, f"{feedback.text}: {feedback.state.name.lower()}", "end", feedback.time_s)
+            self._event(feedback.target, f"{name}: {feedback.state.name.lower()}", "end", feedback.time_s)
 
     # --- the end ---
 
