@@ -23,13 +23,12 @@ Status Enqueue(const Context& c, const Request& r, State& s) {
   return Status::Ok();
 }
 
-// The same jog with other keys or another speed: the motion goes on.
+// The same jog with other keys, another speed or other ramps: the motion goes on.
 void ChangeJog(const Context& c, const Request& r, State& s) {
   Report(c, s.active.ticket, FeedbackState::kAborted);
-  const bool other_speed = r.velocity != s.active.velocity;
   const bool key_held = s.jog_sense > 0 ? r.forward : r.backward;
   Grant(c, r, s);
-  if (s.jog_sense == 0 || !key_held || !other_speed) return;
+  if (s.jog_sense == 0 || !key_held) return;
   Request held = r;  // the first key wins, whatever the other one does
   held.forward = s.jog_sense > 0;
   Plan plan;

@@ -38,7 +38,7 @@ struct State {
   bool reported =
       false;  // its final feedback is out although it stays in control (held stop), or `reached` is (velocity)
   std::int8_t jog_sense = 0;   // 1, -1: jogging that way; 0: not
-  bool jog_armed = false;      // both keys were seen up since the last jog
+  bool jog_armed = false;      // a key may start a motion: a new jog, or both keys were seen up since the last one
   std::int8_t last_sense = 1;  // sense of the last motion, for Direction::kCurrent
   std::uint64_t lease_end_cycle = 0;
   Ticket reset_ticket = 0;

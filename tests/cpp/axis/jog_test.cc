@@ -105,6 +105,18 @@ TEST(Jog, BrakesWhatItTakesOverWithItsOwnRamp) {
   EXPECT_LE(worst.jerk, 1 + 1e-6);
 }
 
+// AX-39: other ramps for the same speed are taken at once too.
+TEST(Jog, ChangesItsRamps) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(Jog{.forward = true, .velocity = 400, .acceleration = 100});
+  rig.Run(0.5);
+  ASSERT_LT(rig.state.setpoint.velocity, 60);
+  rig.Give(Jog{.forward = true, .velocity = 400, .acceleration = 4000});
+  rig.Run(0.3);
+  EXPECT_EQ(rig.out.set_velocity, 400);
+}
+
 // EN-23: a leased jog releases itself when its lease is not renewed, and says why.
 TEST(Lease, ReleasesAJogThatIsNotRenewed) {
   Rig rig(LinearParams());
