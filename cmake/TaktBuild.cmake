@@ -30,7 +30,8 @@ endif()
 # nothing remains for whoever links with us.
 function(takt_folder name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;LINK;HEADERS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/takt/${name}/*.cc")
+  file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/takt/${name}/*.cc"
+       "${CMAKE_CURRENT_SOURCE_DIR}/takt/${name}/*/*.cc")
   add_library(takt_${name} STATIC ${sources})
   add_library(takt::${name} ALIAS takt_${name})
   set_property(GLOBAL APPEND PROPERTY TAKT_FOLDERS ${name})

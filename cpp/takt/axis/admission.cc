@@ -119,6 +119,17 @@ void BeginReset(const Context& c, Ticket ticket, State& s) {
   Report(c, ticket, FeedbackState::kActive);
 }
 
+// Commands that take no control of the axis: carried out beside what is in progress. An error is reported by whoever
+// calls; the rest they report themselves.
+Status CarryOut(const Context& c, Ticket ticket, const Reset&, State& s) {
+  BeginReset(c, ticket, s);
+  return Status::Ok();
+}
+template <typename T>
+Status CarryOut(const Context&, Ticket, const T&, State&) {
+  return Status::Failed(ErrorId::kState);
+}
+
 // The command with this ticket, in control or waiting; null: neither.
 Request* Find(Ticket ticket, State& s) {
   if (ticket == 0) return nullptr;
@@ -132,10 +143,11 @@ Request* Find(Ticket ticket, State& s) {
 }  // namespace
 
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept {
-  if (std::holds_alternative<Reset>(command)) return BeginReset(c, ticket, s);
   Request request;
   Status status = MakeRequest(command, c.params, request);
-  if (status.ok()) {
+  if (status.ok() && request.kind == RequestKind::kNone) {
+    status = std::visit([&](const auto& body) { return CarryOut(c, ticket, body, s); }, command);
+  } else if (status.ok()) {
     request.ticket = ticket;
     request.lease_s = lease_s;
     status = Admit(c, request, s);

@@ -2,6 +2,8 @@
 // reads a clock.
 #pragma once
 
+#include <span>
+
 #include "takt/axis/commands.h"
 #include "takt/axis/outputs.h"
 #include "takt/axis/params.h"
@@ -15,11 +17,14 @@ namespace takt::axis {
 
 // What every stage gets besides the axis itself.
 struct Context {
-  const AxisParams& params;
+  AxisParams& params;  // changed by settings (GT_SetConstant, MC_WriteParameter) alone
   Cycle cycle;
   trajectory::Planner& planner;
   FeedbackSink& feedback;
-  const State* master = nullptr;  // of an axis that follows another: its state of the same cycle
+  const State* master = nullptr;  // of an axis that follows another from load on: its state of the same cycle
+  // All axes of the machine, to look up masters: those that step before this one are of the same cycle.
+  std::span<const State> axes{};
+  std::span<const AxisParams> axes_params{};
 };
 
 // As it stands when power comes on.

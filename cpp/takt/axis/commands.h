@@ -1,82 +1,24 @@
 // The commands an axis understands: each a described struct, the same for YAML, Python, LCM and function blocks.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <variant>
 
-#include "takt/core/describe_fwd.h"
+#include "takt/axis/commands/coupling.h"
+#include "takt/axis/commands/homing.h"
+#include "takt/axis/commands/moves.h"
+#include "takt/axis/commands/overlay.h"
+#include "takt/axis/commands/probe.h"
+#include "takt/axis/commands/settings.h"
 
 namespace takt::axis {
 
-// Sense of travel on a rotary axis; linear axes have no choice.
-enum class Direction : std::uint8_t { kCurrent, kPositive, kShortest, kNegative };
-
-// When a command takes over from the one before it, and with what speed (PLCopen's MC_BufferMode; AX-12).
-enum class BufferMode : std::uint8_t {
-  kAborting,
-  kBuffered,
-  kBlendingLow,
-  kBlendingPrevious,
-  kBlendingNext,
-  kBlendingHigh
-};
-
-// Unset velocities, accelerations and jerks are the axis' own limits.
-struct Power {  // MC_Power
-  bool enable = true;
-  BufferMode buffer_mode = BufferMode::kAborting;
-};
-struct Reset {};       // MC_Reset
-struct MoveAbsolute {  // MC_MoveAbsolute
-  double position = 0;
-  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
-  Direction direction = Direction::kShortest;
-  BufferMode buffer_mode = BufferMode::kAborting;
-};
-struct MoveRelative {  // MC_MoveRelative
-  double distance = 0;
-  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
-  BufferMode buffer_mode = BufferMode::kAborting;
-};
-struct MoveAdditive {  // MC_MoveAdditive
-  double distance = 0;
-  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
-  BufferMode buffer_mode = BufferMode::kAborting;
-};
-struct MoveVelocity {  // MC_MoveVelocity
-  double velocity = 0;
-  std::optional<double> acceleration{}, deceleration{}, jerk{};
-  Direction direction = Direction::kPositive;  // positive, negative or current
-  BufferMode buffer_mode = BufferMode::kAborting;
-};
-struct Halt {  // MC_Halt
-  std::optional<double> deceleration{}, jerk{};
-  BufferMode buffer_mode = BufferMode::kAborting;
-};
-struct Stop {  // MC_Stop
-  std::optional<double> deceleration{}, jerk{};
-  bool hold = false;                               // stay in Stopping until released (Execute kept true)
-  BufferMode buffer_mode = BufferMode::kAborting;  // aborting or buffered
-};
-struct Jog {  // GT_Jog: level-sensitive; give it again to change the levels, both false (or a release) to let go
-  bool forward = false;
-  bool backward = false;
-  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
-};
-
-using Command = std::variant<Power, Reset, MoveAbsolute, MoveRelative, MoveAdditive, MoveVelocity, Halt, Stop, Jog>;
-
-void describe(Enumeration<Direction>&);
-void describe(Enumeration<BufferMode>&);
-void describe(Description<Power>&);
-void describe(Description<Reset>&);
-void describe(Description<MoveAbsolute>&);
-void describe(Description<MoveRelative>&);
-void describe(Description<MoveAdditive>&);
-void describe(Description<MoveVelocity>&);
-void describe(Description<Halt>&);
-void describe(Description<Stop>&);
-void describe(Description<Jog>&);
+using Command =
+    std::variant<Power, Reset, MoveAbsolute, MoveRelative, MoveAdditive, MoveVelocity, MoveContinuousAbsolute,
+                 MoveContinuousRelative, Inch, Halt, Stop, Jog, MoveSuperimposed, HaltSuperimposed, PositionProfile,
+                 VelocityProfile, AccelerationProfile, TorqueControl, GearIn, GearOut, GearInPos, PhasingAbsolute,
+                 PhasingRelative, CombineAxes, CamIn, CamOut, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse,
+                 StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch, StepRefFlyingRefPulse, SetConstants,
+                 WriteParameter, SetSoftLimits, DirectOutput, SetPosition, SetOverride, TouchProbe, AbortTrigger, Touch,
+                 DigitalCamSwitch>;
 
 }  // namespace takt::axis

@@ -1,16 +1,14 @@
 #include "takt/axis/request.h"
 
 #include <array>
-#include <limits>
 #include <sstream>
 
+#include "takt/axis/request_maker.h"
 #include "takt/core/describe.h"
 
 namespace takt::axis {
 
 namespace {
-
-constexpr double kMaxPosition = 1e12;  // u; beyond it a double no longer tells thousandths apart
 
 constexpr std::array kRules = {
     RequestRules{RequestKind::kNone, false, false, true, PlcState::kStandstill},
@@ -22,102 +20,95 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kHalt, true, false, true, PlcState::kDiscreteMotion},
     RequestRules{RequestKind::kStop, true, false, true, PlcState::kStopping},
     RequestRules{RequestKind::kJog, false, false, false, PlcState::kContinuousMotion},
-};
-
-struct Maker {
-  const AxisParams& params;
-  Request& r;
-  Refusal& why;
-
-  // NaN is in no range.
-  bool In(const char* field, double value, double low, double high) const {
-    const bool inside = value >= low && value <= high;
-    if (!inside) why = {field, value, low, high};
-    return inside;
-  }
-  // One of a command's limits: what is asked for, else the axis' own, and never beyond that.
-  bool Take(const char* field, std::optional<double> asked, double own, double& out) const {
-    out = asked.value_or(own);
-    return In(field, out, std::numeric_limits<double>::min(), own);
-  }
-  // Jerk 0 is unlimited, and so beyond any limit of the axis.
-  bool TakeJerk(std::optional<double> asked, double own, double& out) const {
-    out = asked.value_or(own);
-    return own == 0 ? In("jerk", out, 0, std::numeric_limits<double>::max()) : Take("jerk", asked, own, out);
-  }
-
-  template <typename T>
-  bool Ramps(const T& c) const {
-    const trajectory::Limits own = params.planner_limits();
-    return Take("acceleration", c.acceleration, own.acceleration, r.acceleration) &&
-           Take("deceleration", c.deceleration, own.deceleration, r.deceleration) && TakeJerk(c.jerk, own.jerk, r.jerk);
-  }
-  template <typename T>
-  bool Braking(const T& c) const {
-    const trajectory::Limits own = params.planner_limits();
-    r.velocity = own.velocity;
-    r.acceleration = own.acceleration;
-    return Take("deceleration", c.deceleration, own.deceleration, r.deceleration) && TakeJerk(c.jerk, own.jerk, r.jerk);
-  }
-
-  bool operator()(const Power& c) const {
-    r.kind = RequestKind::kPower;
-    r.enable = c.enable;
-    r.buffer_mode = c.buffer_mode;
-    return Braking(Halt{});
-  }
-  bool operator()(const Reset&) const { return false; }  // no request: handled where it arrives
-  bool operator()(const MoveAbsolute& c) const {
-    r.kind = RequestKind::kMoveAbsolute;
-    r.value = c.position;
-    r.direction = c.direction;
-    r.buffer_mode = c.buffer_mode;
-    const double low = params.rotary() ? 0 : -kMaxPosition;
-    const double high = params.rotary() ? params.modulus : kMaxPosition;
-    return In("position", c.position, low, high) && Take("velocity", c.velocity, params.limits.velocity, r.velocity) &&
-           Ramps(c);
-  }
-  template <typename T>
-  bool ByDistance(RequestKind kind, const T& c) const {
-    r.kind = kind;
-    r.value = c.distance;
-    r.buffer_mode = c.buffer_mode;
-    return In("distance", c.distance, -kMaxPosition, kMaxPosition) &&
-           Take("velocity", c.velocity, params.limits.velocity, r.velocity) && Ramps(c);
-  }
-  bool operator()(const MoveRelative& c) const { return ByDistance(RequestKind::kMoveRelative, c); }
-  bool operator()(const MoveAdditive& c) const { return ByDistance(RequestKind::kMoveAdditive, c); }
-  bool operator()(const MoveVelocity& c) const {
-    r.kind = RequestKind::kMoveVelocity;
-    r.velocity = c.velocity;
-    r.direction = c.direction;
-    r.buffer_mode = c.buffer_mode;
-    if (c.direction == Direction::kShortest) {
-      why.field = "direction";
-      return false;
-    }
-    return In("velocity", c.velocity, 0, params.limits.velocity) && Ramps(c);
-  }
-  bool operator()(const Halt& c) const {
-    r.kind = RequestKind::kHalt;
-    r.buffer_mode = c.buffer_mode;
-    return Braking(c);
-  }
-  bool operator()(const Stop& c) const {
-    r.kind = RequestKind::kStop;
-    r.hold = c.hold;
-    r.buffer_mode = c.buffer_mode;
-    return Braking(c);
-  }
-  bool operator()(const Jog& c) const {
-    r.kind = RequestKind::kJog;
-    r.forward = c.forward;
-    r.backward = c.backward;
-    return Take("velocity", c.velocity, params.limits.velocity, r.velocity) && Ramps(c);
-  }
+    RequestRules{RequestKind::kMoveContinuousAbsolute, true, true, true, PlcState::kContinuousMotion},
+    RequestRules{RequestKind::kMoveContinuousRelative, true, true, true, PlcState::kContinuousMotion},
+    RequestRules{RequestKind::kInch, false, false, false, PlcState::kDiscreteMotion},
+    RequestRules{RequestKind::kPositionProfile, true, false, true, PlcState::kDiscreteMotion},
+    RequestRules{RequestKind::kVelocityProfile, true, false, true, PlcState::kContinuousMotion},
+    RequestRules{RequestKind::kAccelerationProfile, true, false, true, PlcState::kContinuousMotion},
+    RequestRules{RequestKind::kTorqueControl, true, false, true, PlcState::kContinuousMotion},
+    RequestRules{RequestKind::kGearIn, true, false, true, PlcState::kSynchronizedMotion},
+    RequestRules{RequestKind::kGearInPos, true, false, true, PlcState::kSynchronizedMotion},
+    RequestRules{RequestKind::kCombineAxes, true, false, true, PlcState::kSynchronizedMotion},
+    RequestRules{RequestKind::kCamIn, true, false, true, PlcState::kSynchronizedMotion},
+    RequestRules{RequestKind::kLetGo, false, false, true, PlcState::kContinuousMotion},
+    RequestRules{RequestKind::kStepAbsSwitch, true, false, true, PlcState::kHoming},
+    RequestRules{RequestKind::kStepLimitSwitch, true, false, true, PlcState::kHoming},
+    RequestRules{RequestKind::kStepBlock, true, false, true, PlcState::kHoming},
+    RequestRules{RequestKind::kStepRefPulse, true, false, true, PlcState::kHoming},
+    RequestRules{RequestKind::kStepDirect, true, false, true, PlcState::kHoming},
+    RequestRules{RequestKind::kStepAbsolute, true, false, true, PlcState::kHoming},
+    RequestRules{RequestKind::kFinishHoming, true, false, true, PlcState::kHoming},
+    RequestRules{RequestKind::kTouch, false, false, false, PlcState::kDiscreteMotion},
 };
 
 }  // namespace
+
+bool Fill(const Maker& m, const Power& c) {
+  m.r.kind = RequestKind::kPower;
+  m.r.enable = c.enable;
+  m.r.buffer_mode = c.buffer_mode;
+  return m.Braking(Halt{});
+}
+bool Fill(const Maker&, const Reset&) {
+  return true;
+}
+bool Fill(const Maker& m, const MoveAbsolute& c) {
+  m.r.kind = RequestKind::kMoveAbsolute;
+  m.r.value = c.position;
+  m.r.direction = c.direction;
+  m.r.buffer_mode = c.buffer_mode;
+  const double low = m.params.rotary() ? 0 : -kMaxPosition;
+  const double high = m.params.rotary() ? m.params.modulus : kMaxPosition;
+  return m.In("position", c.position, low, high) &&
+         m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
+}
+namespace {
+
+template <typename T>
+bool ByDistance(const Maker& m, RequestKind kind, const T& c) {
+  m.r.kind = kind;
+  m.r.value = c.distance;
+  m.r.buffer_mode = c.buffer_mode;
+  return m.In("distance", c.distance, -kMaxPosition, kMaxPosition) &&
+         m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
+}
+}  // namespace
+
+bool Fill(const Maker& m, const MoveRelative& c) {
+  return ByDistance(m, RequestKind::kMoveRelative, c);
+}
+bool Fill(const Maker& m, const MoveAdditive& c) {
+  return ByDistance(m, RequestKind::kMoveAdditive, c);
+}
+bool Fill(const Maker& m, const MoveVelocity& c) {
+  m.r.kind = RequestKind::kMoveVelocity;
+  m.r.velocity = c.velocity;
+  m.r.direction = c.direction;
+  m.r.buffer_mode = c.buffer_mode;
+  if (c.direction == Direction::kShortest) {
+    m.why.field = "direction";
+    return false;
+  }
+  return m.In("velocity", c.velocity, 0, m.params.limits.velocity) && m.Ramps(c);
+}
+bool Fill(const Maker& m, const Halt& c) {
+  m.r.kind = RequestKind::kHalt;
+  m.r.buffer_mode = c.buffer_mode;
+  return m.Braking(c);
+}
+bool Fill(const Maker& m, const Stop& c) {
+  m.r.kind = RequestKind::kStop;
+  m.r.hold = c.hold;
+  m.r.buffer_mode = c.buffer_mode;
+  return m.Braking(c);
+}
+bool Fill(const Maker& m, const Jog& c) {
+  m.r.kind = RequestKind::kJog;
+  m.r.forward = c.forward;
+  m.r.backward = c.backward;
+  return m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
+}
 
 const RequestRules& RulesOf(RequestKind kind) noexcept {
   return kRules[static_cast<std::size_t>(kind)];
@@ -126,7 +117,8 @@ const RequestRules& RulesOf(RequestKind kind) noexcept {
 Status MakeRequest(const Command& command, const AxisParams& params, Request& out, Refusal* why) noexcept {
   Request request;
   Refusal refusal;
-  const bool good = std::visit(Maker{params, request, refusal}, command);
+  const bool good =
+      std::visit([maker = Maker{params, request, refusal}](const auto& c) { return Fill(maker, c); }, command);
   if (why) *why = refusal;
   if (!good) return Status::Failed(ErrorId::kParameter);
   const RequestRules& rules = RulesOf(request.kind);
@@ -143,7 +135,7 @@ Status MakeRequest(const Command& command, const AxisParams& params, Request& ou
 std::string WhyNot(const Command& command, const AxisParams& params) {
   Request request;
   Refusal why;
-  if (std::holds_alternative<Reset>(command) || MakeRequest(command, params, request, &why).ok()) return {};
+  if (MakeRequest(command, params, request, &why).ok()) return {};
   const std::string field = why.field;
   if (why.high == 0) return field + ": expected another value, this command has no such " + field;
   std::ostringstream text;
@@ -169,6 +161,26 @@ void describe(Enumeration<RequestKind>& e) {
   e.value(RequestKind::kHalt, "halt", "Halt.");
   e.value(RequestKind::kStop, "stop", "Stop.");
   e.value(RequestKind::kJog, "jog", "Jog.");
+  e.value(RequestKind::kMoveContinuousAbsolute, "move_continuous_absolute", "MoveContinuousAbsolute.");
+  e.value(RequestKind::kMoveContinuousRelative, "move_continuous_relative", "MoveContinuousRelative.");
+  e.value(RequestKind::kInch, "inch", "Inch.");
+  e.value(RequestKind::kPositionProfile, "position_profile", "PositionProfile.");
+  e.value(RequestKind::kVelocityProfile, "velocity_profile", "VelocityProfile.");
+  e.value(RequestKind::kAccelerationProfile, "acceleration_profile", "AccelerationProfile.");
+  e.value(RequestKind::kTorqueControl, "torque_control", "TorqueControl.");
+  e.value(RequestKind::kGearIn, "gear_in", "GearIn.");
+  e.value(RequestKind::kGearInPos, "gear_in_pos", "GearInPos.");
+  e.value(RequestKind::kCombineAxes, "combine_axes", "CombineAxes.");
+  e.value(RequestKind::kCamIn, "cam_in", "CamIn.");
+  e.value(RequestKind::kLetGo, "let_go", "LetGo.");
+  e.value(RequestKind::kStepAbsSwitch, "step_abs_switch", "StepAbsSwitch.");
+  e.value(RequestKind::kStepLimitSwitch, "step_limit_switch", "StepLimitSwitch.");
+  e.value(RequestKind::kStepBlock, "step_block", "StepBlock.");
+  e.value(RequestKind::kStepRefPulse, "step_ref_pulse", "StepRefPulse.");
+  e.value(RequestKind::kStepDirect, "step_direct", "StepDirect.");
+  e.value(RequestKind::kStepAbsolute, "step_absolute", "StepAbsolute.");
+  e.value(RequestKind::kFinishHoming, "finish_homing", "FinishHoming.");
+  e.value(RequestKind::kTouch, "touch", "Touch.");
 }
 
 void describe(Description<Request>& d) {
@@ -188,6 +200,8 @@ void describe(Description<Request>& d) {
   d.internal<&R::hold>("Stop: until released.");
   d.internal<&R::forward>("Jog: key for upwards.");
   d.internal<&R::backward>("Jog: key for downwards.");
+  d.internal<&R::coupling>("Of commands that couple axes.");
+  d.internal<&R::homing>("Of homing steps.");
 }
 
 }  // namespace takt::axis

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "takt/axis/commands.h"
+#include "takt/axis/coupling_request.h"
+#include "takt/axis/homing_request.h"
 #include "takt/axis/params.h"
 #include "takt/axis/state_table.h"
 #include "takt/core/feedback.h"
@@ -21,7 +23,27 @@ enum class RequestKind : std::uint8_t {
   kMoveVelocity,
   kHalt,
   kStop,
-  kJog
+  kJog,
+  kMoveContinuousAbsolute,
+  kMoveContinuousRelative,
+  kInch,
+  kPositionProfile,
+  kVelocityProfile,
+  kAccelerationProfile,
+  kTorqueControl,
+  kGearIn,
+  kGearInPos,
+  kCombineAxes,
+  kCamIn,
+  kLetGo,  // MC_GearOut, MC_CamOut
+  kStepAbsSwitch,
+  kStepLimitSwitch,
+  kStepBlock,
+  kStepRefPulse,
+  kStepDirect,
+  kStepAbsolute,
+  kFinishHoming,
+  kTouch,
 };
 
 struct Request {
@@ -40,6 +62,10 @@ struct Request {
   bool forward = false;  // jog
   bool backward = false;
 
+  // Of the groups of commands that need more.
+  CouplingRequest coupling;
+  HomingRequest homing;
+
   trajectory::Limits limits() const { return {velocity, acceleration, deceleration, jerk}; }
   bool positions() const { return kind == RequestKind::kMoveAbsolute || by_distance(); }
   bool by_distance() const { return kind == RequestKind::kMoveRelative || kind == RequestKind::kMoveAdditive; }
@@ -56,6 +82,9 @@ struct RequestRules {
 };
 const RequestRules& RulesOf(RequestKind kind) noexcept;
 
+// Commands that do not take control of the axis (settings, probes, what comes on top of a motion) are checked likewise
+// and leave kind kNone.
+//
 // kParameter where a value is not finite, out of its range, beyond the axis' limits (AX-06) or the buffer mode is not
 // one of the command's. `why`, where given, says what was wrong.
 struct Refusal {

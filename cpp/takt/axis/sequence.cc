@@ -229,7 +229,7 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
         Enter(s, PlcState::kStandstill);
       }
       break;
-    case RequestKind::kNone:
+    default:
       break;
   }
 }

@@ -333,7 +333,11 @@ void Binder::Read(const Slot& slot, Place place, std::string_view text, bool quo
             "expected text, found " + Quoted(text) + ", which is not read as text; write it in double quotes");
         return;
       }
-      static_cast<std::string*>(slot.object)->assign(text);
+      if (!type.set_text(slot.object, text)) {
+        problems_.Add(place, Path(),
+                      "expected at most " + std::to_string(type.longest) + " bytes, found " + Quoted(text));
+        return;
+      }
       if (slot.field && slot.field->name == "name") CheckName(place, text);
       return;
     case Kind::kEnum: {

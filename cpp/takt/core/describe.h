@@ -12,7 +12,7 @@
 //     d.defaulted<&M::direction>("Sense of travel.");
 //   }
 //
-// A described struct is an aggregate whose members are bool, integers, double, std::string, described enums and
+// A described struct is an aggregate whose members are bool, integers, double, std::string, Name, described enums and
 // structs, or std::array, std::vector, std::optional of these. Texts are literals: the tables keep views of them.
 #pragma once
 
@@ -28,6 +28,7 @@
 
 #include "takt/core/describe_fwd.h"
 #include "takt/core/describe_internal.h"
+#include "takt/core/name.h"
 #include "takt/core/unit.h"
 
 namespace takt {
@@ -86,6 +87,11 @@ struct Type {
   const void* defaults = nullptr;  // an object as its initialisers make it
 
   std::vector<Enumerator> enumerators;
+
+  // Texts.
+  std::string_view (*text)(const void* object) noexcept = nullptr;
+  bool (*set_text)(void* object, std::string_view text) = nullptr;  // false: too long
+  std::size_t longest = 0;                                          // bytes; 0: any length
 
   // Arrays, vectors, optionals.
   const Type* element = nullptr;
@@ -235,6 +241,19 @@ struct TypeMaker {
       type.kind = Kind::kReal;
     } else if constexpr (std::is_same_v<T, std::string>) {
       type.kind = Kind::kString;
+      type.text = [](const void* o) noexcept -> std::string_view { return *static_cast<const std::string*>(o); };
+      type.set_text = [](void* o, std::string_view text) {
+        *static_cast<std::string*>(o) = text;
+        return true;
+      };
+    } else if constexpr (std::is_same_v<T, Name>) {
+      type.kind = Kind::kString;
+      type.text = [](const void* o) noexcept { return static_cast<const Name*>(o)->view(); };
+      type.set_text = [](void* o, std::string_view text) {
+        *static_cast<Name*>(o) = Name::Of(text);
+        return text.size() <= Name::kCapacity;
+      };
+      type.longest = Name::kCapacity;
     } else if constexpr (std::is_enum_v<T>) {
       Enumeration<T> enumeration;
       describe(enumeration);

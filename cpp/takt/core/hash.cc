@@ -95,7 +95,7 @@ void MakeHashSteps(Type& type) {
 std::uint64_t HashOf(const Type& type, const void* object, std::uint64_t seed) noexcept {
   switch (type.kind) {
     case Kind::kString: {
-      const auto& text = *static_cast<const std::string*>(object);
+      const std::string_view text = type.text(object);
       return XXH3_64bits_withSeed(text.data(), text.size(), Mix(seed, text.size()));
     }
     case Kind::kOptional: {
@@ -117,7 +117,7 @@ std::uint64_t HashOf(const Type& type, const void* object, std::uint64_t seed) n
 bool Equal(const Type& type, const void* a, const void* b) noexcept {
   switch (type.kind) {
     case Kind::kString:
-      return *static_cast<const std::string*>(a) == *static_cast<const std::string*>(b);
+      return type.text(a) == type.text(b);
     case Kind::kOptional: {
       const void* value_a = type.optional_value(a);
       const void* value_b = type.optional_value(b);

@@ -36,7 +36,7 @@ class SchemaMaker {
       case Kind::kReal:
         return Number("number", type, field);
       case Kind::kString:
-        return {{"type", "string"}};
+        return type.longest ? Json{{"type", "string"}, {"maxLength", type.longest}} : Json{{"type", "string"}};
       case Kind::kVector:
         return {{"type", "array"}, {"items", Value(*type.element, field)}};
       case Kind::kArray:
@@ -190,7 +190,7 @@ Json ToJson(const Type& type, const void* object, const Field* field) {
       return std::isfinite(written) ? Json(written) : Json();
     }
     case Kind::kString:
-      return *static_cast<const std::string*>(object);
+      return type.text(object);
     case Kind::kEnum: {
       const Enumerator* enumerator = type.FindEnumerator(IntegerAt(type, object));
       return enumerator ? Json(enumerator->name) : Json();

@@ -68,7 +68,7 @@ std::string ScalarText(const Type& type, const void* object, const Field* field)
       return enumerator ? TextOf(enumerator->name) : std::to_string(IntegerAt(type, object));
     }
     default:
-      return TextOf(*static_cast<const std::string*>(object));
+      return TextOf(std::string(type.text(object)));
   }
 }
 

@@ -15,7 +15,7 @@ constexpr std::size_t kEventsPerCommand = 4;
 
 axis::Context ContextOf(World& w, std::size_t i) {
   const axis::State* master = w.axis_masters[i] ? &w.axis_states[*w.axis_masters[i]] : nullptr;
-  return {w.axis_params[i], w.cycle, w.planner, w.feedback, master};
+  return {w.axis_params[i], w.cycle, w.planner, w.feedback, master, w.axis_states, w.axis_params};
 }
 
 std::vector<std::uint32_t> OrderOf(const Machine& machine) {

@@ -1,6 +1,6 @@
-#include "takt/axis/commands.h"
+#include "takt/axis/commands/moves.h"
 
-#include "takt/core/describe.h"
+#include "takt/axis/commands/texts.h"
 
 namespace takt::axis {
 
@@ -22,22 +22,6 @@ void describe(Enumeration<BufferMode>& e) {
   e.value(BufferMode::kBlendingNext, "blending_next", "At that position, at the velocity of this move.");
   e.value(BufferMode::kBlendingHigh, "blending_high", "At that position, at the higher of both velocities.");
 }
-
-namespace {
-
-constexpr std::string_view kAcceleration = "Largest acceleration; unset: the axis' limit.";
-constexpr std::string_view kDeceleration = "Largest deceleration; unset: the axis' limit.";
-constexpr std::string_view kJerk = "Largest jerk; 0: unlimited, where the axis allows it; unset: the axis' limit.";
-constexpr std::string_view kBufferMode = "How the command follows the one before it.";
-
-template <typename T>
-void DescribeRamps(Description<T>& d) {
-  d.template defaulted<&T::acceleration>(unit::u_s2, positive, kAcceleration);
-  d.template defaulted<&T::deceleration>(unit::u_s2, positive, kDeceleration);
-  d.template defaulted<&T::jerk>(unit::u_s3, not_negative, kJerk);
-}
-
-}  // namespace
 
 void describe(Description<Power>& d) {
   d.about(
@@ -90,6 +74,36 @@ void describe(Description<MoveVelocity>& d) {
   DescribeRamps(d);
   d.defaulted<&M::direction>("positive, negative or current.");
   d.defaulted<&M::buffer_mode>(kBufferMode);
+}
+
+void describe(Description<MoveContinuousAbsolute>& d) {
+  using M = MoveContinuousAbsolute;
+  d.about("Moves to a position and goes on from there with a set velocity (MC_MoveContinuousAbsolute).");
+  d.required<&M::position>(unit::u, "Where the end velocity is reached. Rotary axes: 0 to the modulus.");
+  d.required<&M::end_velocity>(unit::u_s, not_negative, "How fast to go on from there, in the sense of travel.");
+  d.defaulted<&M::velocity>(unit::u_s, positive, "Largest velocity on the way; unset: the axis' limit.");
+  DescribeRamps(d);
+  d.defaulted<&M::direction>("Sense of travel of a rotary axis.");
+  d.defaulted<&M::buffer_mode>(kBufferMode);
+}
+
+void describe(Description<MoveContinuousRelative>& d) {
+  using M = MoveContinuousRelative;
+  d.about(
+      "Moves by a distance from the set position at the moment it starts, and goes on from there with a set velocity "
+      "(MC_MoveContinuousRelative).");
+  d.required<&M::distance>(unit::u, "How far to where the end velocity is reached; negative: downwards.");
+  d.required<&M::end_velocity>(unit::u_s, not_negative, "How fast to go on from there, in the sense of travel.");
+  d.defaulted<&M::velocity>(unit::u_s, positive, "Largest velocity on the way; unset: the axis' limit.");
+  DescribeRamps(d);
+  d.defaulted<&M::buffer_mode>(kBufferMode);
+}
+
+void describe(Description<Inch>& d) {
+  d.about("Moves by one increment from standstill (MC_Inch); refused while the axis moves.");
+  d.required<&Inch::distance>(unit::u, "The increment; negative: downwards.");
+  d.defaulted<&Inch::velocity>(unit::u_s, positive, "Largest velocity on the way; unset: the axis' limit.");
+  DescribeRamps(d);
 }
 
 void describe(Description<Halt>& d) {

@@ -1,0 +1,98 @@
+// Commands that tie an axis to one or two masters.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "takt/axis/commands/moves.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/name.h"
+
+namespace takt::axis {
+
+// Which position of a master counts.
+enum class MasterSource : std::uint8_t { kSetValue, kActualValue };
+// How a rotary axis reaches its place in a coupling.
+enum class SyncMode : std::uint8_t { kShortest, kCatchUp, kSlowDown };
+// What becomes of two masters.
+enum class CombineMode : std::uint8_t { kAdd, kSubtract };
+// How a slave gets onto its cam.
+enum class CamStart : std::uint8_t { kAbsolute, kRelative, kRampIn };
+
+struct GearIn {  // MC_GearIn
+  Name master;
+  double ratio_numerator = 1;
+  double ratio_denominator = 1;
+  MasterSource source = MasterSource::kSetValue;
+  std::optional<double> acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
+};
+struct GearOut {  // MC_GearOut
+};
+struct GearInPos {  // MC_GearInPos
+  Name master;
+  double ratio_numerator = 1;
+  double ratio_denominator = 1;
+  MasterSource source = MasterSource::kSetValue;
+  double master_sync_position = 0;
+  double slave_sync_position = 0;
+  SyncMode sync_mode = SyncMode::kShortest;
+  std::optional<double> master_start_distance{};
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
+};
+struct PhasingAbsolute {  // MC_PhasingAbsolute
+  double phase_shift = 0;
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+};
+struct PhasingRelative {  // MC_PhasingRelative
+  double phase_shift = 0;
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+};
+struct CombineAxes {  // MC_CombineAxes
+  Name master1;
+  Name master2;
+  CombineMode mode = CombineMode::kAdd;
+  double ratio_numerator1 = 1;
+  double ratio_denominator1 = 1;
+  double ratio_numerator2 = 1;
+  double ratio_denominator2 = 1;
+  MasterSource source1 = MasterSource::kSetValue;
+  MasterSource source2 = MasterSource::kSetValue;
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
+};
+struct CamIn {  // MC_CamIn
+  Name master;
+  Name cam;
+  MasterSource source = MasterSource::kSetValue;
+  double master_offset = 0;
+  double slave_offset = 0;
+  double master_scaling = 1;
+  double slave_scaling = 1;
+  bool master_absolute = true;
+  bool slave_absolute = true;
+  bool periodic = true;
+  CamStart start_mode = CamStart::kRampIn;
+  std::optional<double> master_sync_position{};
+  std::optional<double> master_start_distance{};
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
+};
+struct CamOut {  // MC_CamOut
+};
+
+void describe(Enumeration<MasterSource>&);
+void describe(Enumeration<SyncMode>&);
+void describe(Enumeration<CombineMode>&);
+void describe(Enumeration<CamStart>&);
+void describe(Description<GearIn>&);
+void describe(Description<GearOut>&);
+void describe(Description<GearInPos>&);
+void describe(Description<PhasingAbsolute>&);
+void describe(Description<PhasingRelative>&);
+void describe(Description<CombineAxes>&);
+void describe(Description<CamIn>&);
+void describe(Description<CamOut>&);
+
+}  // namespace takt::axis

@@ -1,0 +1,84 @@
+// Commands that find an axis' reference (PLCopen Part 5).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "takt/axis/commands/moves.h"
+#include "takt/core/describe_fwd.h"
+
+namespace takt::axis {
+
+// Where a search goes first.
+enum class HomingDirection : std::uint8_t { kPositive, kNegative, kSwitchPositive, kSwitchNegative };
+// What of a switch ends a search.
+enum class SwitchMode : std::uint8_t { kOn, kOff, kEdgeOn, kEdgeOff, kEdgeSwitchPositive, kEdgeSwitchNegative };
+
+struct StepAbsSwitch {  // MC_StepAbsSwitch
+  HomingDirection direction = HomingDirection::kSwitchNegative;
+  SwitchMode switch_mode = SwitchMode::kEdgeOn;
+  double velocity = 0;
+  std::optional<double> acceleration{}, deceleration{}, jerk{};
+  double time_limit = 0;
+  double distance_limit = 0;
+};
+struct StepLimitSwitch {  // MC_StepLimitSwitch
+  HomingDirection direction = HomingDirection::kSwitchNegative;
+  SwitchMode switch_mode = SwitchMode::kEdgeOn;
+  double velocity = 0;
+  std::optional<double> acceleration{}, deceleration{}, jerk{};
+  double time_limit = 0;
+  double distance_limit = 0;
+};
+struct StepBlock {  // MC_StepBlock
+  HomingDirection direction = HomingDirection::kNegative;
+  double velocity = 0;
+  double deviation = 0;
+  double set_position = 0;
+  std::optional<double> acceleration{}, deceleration{}, jerk{};
+  double time_limit = 0;
+  double distance_limit = 0;
+};
+struct StepRefPulse {  // MC_StepRefPulse
+  HomingDirection direction = HomingDirection::kPositive;
+  double velocity = 0;
+  double set_position = 0;
+  std::optional<double> acceleration{}, deceleration{}, jerk{};
+  double time_limit = 0;
+  double distance_limit = 0;
+};
+struct StepDirect {  // MC_StepDirect
+  double set_position = 0;
+};
+struct StepAbsolute {  // MC_StepAbsolute
+};
+struct FinishHoming {  // MC_FinishHoming
+  double distance = 0;
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
+};
+struct StepRefFlyingSwitch {  // MC_StepRefFlyingSwitch
+  SwitchMode switch_mode = SwitchMode::kEdgeOn;
+  double set_position = 0;
+  double time_limit = 0;
+  double distance_limit = 0;
+};
+struct StepRefFlyingRefPulse {  // MC_StepRefFlyingRefPulse
+  double set_position = 0;
+  double time_limit = 0;
+  double distance_limit = 0;
+};
+
+void describe(Enumeration<HomingDirection>&);
+void describe(Enumeration<SwitchMode>&);
+void describe(Description<StepAbsSwitch>&);
+void describe(Description<StepLimitSwitch>&);
+void describe(Description<StepBlock>&);
+void describe(Description<StepRefPulse>&);
+void describe(Description<StepDirect>&);
+void describe(Description<StepAbsolute>&);
+void describe(Description<FinishHoming>&);
+void describe(Description<StepRefFlyingSwitch>&);
+void describe(Description<StepRefFlyingRefPulse>&);
+
+}  // namespace takt::axis

@@ -1,0 +1,52 @@
+// Commands that watch positions: touch probe and cam switches; and the torque mode.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "takt/axis/commands/moves.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/name.h"
+
+namespace takt::axis {
+
+// Which edge of the probe counts.
+enum class ProbeEdge : std::uint8_t { kRising, kFalling };
+// What GT_Touch does.
+enum class TouchMode : std::uint8_t { kCapture, kSlow };
+
+struct TouchProbe {  // MC_TouchProbe
+  ProbeEdge edge = ProbeEdge::kRising;
+  bool window_only = false;
+  double first_position = 0;
+  double last_position = 0;
+};
+struct AbortTrigger {  // MC_AbortTrigger
+};
+struct Touch {  // GT_Touch
+  TouchMode mode = TouchMode::kCapture;
+  ProbeEdge edge = ProbeEdge::kRising;
+  double velocity = 0;
+  std::optional<double> acceleration{}, deceleration{}, jerk{};
+};
+struct DigitalCamSwitch {  // MC_DigitalCamSwitch
+  Name switches;
+  std::uint32_t enable_mask = 0xffffffff;
+  bool enable = true;
+};
+struct TorqueControl {  // MC_TorqueControl
+  double torque = 0;
+  std::optional<double> torque_ramp{};
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
+};
+
+void describe(Enumeration<ProbeEdge>&);
+void describe(Enumeration<TouchMode>&);
+void describe(Description<TouchProbe>&);
+void describe(Description<AbortTrigger>&);
+void describe(Description<Touch>&);
+void describe(Description<DigitalCamSwitch>&);
+void describe(Description<TorqueControl>&);
+
+}  // namespace takt::axis

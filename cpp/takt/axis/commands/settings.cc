@@ -1,0 +1,57 @@
+#include "takt/axis/commands/settings.h"
+
+#include "takt/axis/commands/texts.h"
+
+namespace takt::axis {
+
+void describe(Description<SetConstants>& d) {
+  using C = SetConstants;
+  d.about("Sets the constants of the position loop and the SW limits; what is left out stays (GT_SetConstant).");
+  d.defaulted<&C::kp>(not_negative, "Gain of P.");
+  d.defaulted<&C::ki>(not_negative, "Gain of I.");
+  d.defaulted<&C::kd>(not_negative, "Gain of D.");
+  d.defaulted<&C::kc>(not_negative, "Anti-windup, at most 1.");
+  d.defaulted<&C::ff>(not_negative, "Share of the velocity that is fed forward.");
+  d.defaulted<&C::velocity_at_10v>(unit::u_s, positive, "Vmax.");
+  d.defaulted<&C::lower>(unit::u, "LimNeg.");
+  d.defaulted<&C::upper>(unit::u, "LimPos.");
+}
+
+void describe(Description<WriteParameter>& d) {
+  using C = WriteParameter;
+  d.about("Sets a parameter by PLCopen's number (MC_WriteParameter).");
+  d.required<&C::number>(at_least(1), "PLCopen's number.");
+  d.required<&C::value>("In the parameter's unit; 0 and 1 of yes and no.");
+}
+
+void describe(Description<SetSoftLimits>& d) {
+  using C = SetSoftLimits;
+  d.about("Sets the SW limits or switches them off at run time (GT_SWLim).");
+  d.defaulted<&C::enable_lower>("Whether the lower one holds.");
+  d.defaulted<&C::enable_upper>("Whether the upper one holds.");
+  d.defaulted<&C::lower>(unit::u, "LimNeg; unset: as it is.");
+  d.defaulted<&C::upper>(unit::u, "LimPos; unset: as it is.");
+}
+
+void describe(Description<DirectOutput>& d) {
+  using C = DirectOutput;
+  d.about("Puts a voltage out while the axis is Disabled (GT_Analog); analogue drives only.");
+  d.required<&C::voltage>(unit::volt, "-10 to 10 V.");
+}
+
+void describe(Description<SetPosition>& d) {
+  using C = SetPosition;
+  d.about("Calls the position the axis is at by another number, without any motion (MC_SetPosition).");
+  d.required<&C::position>(unit::u, "The new number, or what is added to the old one.");
+  d.defaulted<&C::relative>("True: added.");
+}
+
+void describe(Description<SetOverride>& d) {
+  using C = SetOverride;
+  d.about("Scales the velocities and ramps of all motion of the axis, that in progress too (MC_SetOverride).");
+  d.defaulted<&C::velocity_factor>(not_negative, "0 to 1; 0: the axis waits.");
+  d.defaulted<&C::acceleration_factor>(positive, "More than 0, at most 1.");
+  d.defaulted<&C::jerk_factor>(positive, "More than 0, at most 1.");
+}
+
+}  // namespace takt::axis

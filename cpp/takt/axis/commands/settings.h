@@ -1,0 +1,45 @@
+// Commands that change what an axis works with.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "takt/core/describe_fwd.h"
+
+namespace takt::axis {
+
+struct SetConstants {  // GT_SetConstant
+  std::optional<double> kp{}, ki{}, kd{}, kc{}, ff{};
+  std::optional<double> velocity_at_10v{};
+  std::optional<double> lower{}, upper{};
+};
+struct WriteParameter {  // MC_WriteParameter, MC_WriteBoolParameter
+  std::int32_t number = 0;
+  double value = 0;
+};
+struct SetSoftLimits {  // GT_SWLim
+  bool enable_lower = true;
+  bool enable_upper = true;
+  std::optional<double> lower{}, upper{};
+};
+struct DirectOutput {  // GT_Analog
+  double voltage = 0;
+};
+struct SetPosition {  // MC_SetPosition
+  double position = 0;
+  bool relative = false;
+};
+struct SetOverride {  // MC_SetOverride
+  double velocity_factor = 1;
+  double acceleration_factor = 1;
+  double jerk_factor = 1;
+};
+
+void describe(Description<SetConstants>&);
+void describe(Description<WriteParameter>&);
+void describe(Description<SetSoftLimits>&);
+void describe(Description<DirectOutput>&);
+void describe(Description<SetPosition>&);
+void describe(Description<SetOverride>&);
+
+}  // namespace takt::axis

@@ -1,0 +1,21 @@
+// What many commands say of the same inputs.
+#pragma once
+
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+inline constexpr std::string_view kAcceleration = "Largest acceleration; unset: the axis' limit.";
+inline constexpr std::string_view kDeceleration = "Largest deceleration; unset: the axis' limit.";
+inline constexpr std::string_view kJerk =
+    "Largest jerk; 0: unlimited, where the axis allows it; unset: the axis' limit.";
+inline constexpr std::string_view kBufferMode = "How the command follows the one before it.";
+
+template <typename T>
+void DescribeRamps(Description<T>& d) {
+  d.template defaulted<&T::acceleration>(unit::u_s2, positive, kAcceleration);
+  d.template defaulted<&T::deceleration>(unit::u_s2, positive, kDeceleration);
+  d.template defaulted<&T::jerk>(unit::u_s3, not_negative, kJerk);
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,65 @@
+// How a command becomes a request: one Fill for each command, which checks its values and copies what is needed. False:
+// refused, `why` says what. A command that takes no control leaves kind kNone.
+#pragma once
+
+#include <limits>
+
+#include "takt/axis/request.h"
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+inline constexpr double kMaxPosition = 1e12;  // u; beyond it a double no longer tells thousandths apart
+
+struct Maker {
+  const AxisParams& params;
+  Request& r;
+  Refusal& why;
+
+  // NaN is in no range.
+  bool In(const char* field, double value, double low, double high) const {
+    const bool inside = value >= low && value <= high;
+    if (!inside) why = {field, value, low, high};
+    return inside;
+  }
+  // One of a command's limits: what is asked for, else the axis' own, and never beyond that.
+  bool Take(const char* field, std::optional<double> asked, double own, double& out) const {
+    out = asked.value_or(own);
+    return In(field, out, std::numeric_limits<double>::min(), own);
+  }
+  // Jerk 0 is unlimited, and so beyond any limit of the axis.
+  bool TakeJerk(std::optional<double> asked, double own, double& out) const {
+    out = asked.value_or(own);
+    return own == 0 ? In("jerk", out, 0, std::numeric_limits<double>::max()) : Take("jerk", asked, own, out);
+  }
+
+  template <typename T>
+  bool Ramps(const T& c) const {
+    const trajectory::Limits own = params.planner_limits();
+    return Take("acceleration", c.acceleration, own.acceleration, r.acceleration) &&
+           Take("deceleration", c.deceleration, own.deceleration, r.deceleration) && TakeJerk(c.jerk, own.jerk, r.jerk);
+  }
+  template <typename T>
+  bool Braking(const T& c) const {
+    const trajectory::Limits own = params.planner_limits();
+    r.velocity = own.velocity;
+    r.acceleration = own.acceleration;
+    return Take("deceleration", c.deceleration, own.deceleration, r.deceleration) && TakeJerk(c.jerk, own.jerk, r.jerk);
+  }
+};
+
+bool Fill(const Maker& m, const Power& c);
+bool Fill(const Maker& m, const Reset& c);
+bool Fill(const Maker& m, const MoveAbsolute& c);
+bool Fill(const Maker& m, const MoveRelative& c);
+bool Fill(const Maker& m, const MoveAdditive& c);
+bool Fill(const Maker& m, const MoveVelocity& c);
+bool Fill(const Maker& m, const Halt& c);
+bool Fill(const Maker& m, const Stop& c);
+bool Fill(const Maker& m, const Jog& c);
+template <typename T>
+bool Fill(const Maker&, const T&) {
+  return true;
+}
+
+}  // namespace takt::axis

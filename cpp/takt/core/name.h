@@ -1,0 +1,29 @@
+// A short text that lives where it stands: names inside commands, which cross to the cycle without allocating.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace takt {
+
+// Up to 40 bytes; what is longer is cut by the constructor function and refused where people write it.
+struct Name {
+  static constexpr std::size_t kCapacity = 40;
+
+  std::array<char, kCapacity> bytes{};  // zero behind `size`
+  std::uint8_t size = 0;
+
+  static constexpr Name Of(std::string_view text) noexcept {
+    Name name;
+    name.size = static_cast<std::uint8_t>(std::min(text.size(), kCapacity));
+    std::copy_n(text.begin(), name.size, name.bytes.begin());
+    return name;
+  }
+  constexpr std::string_view view() const noexcept { return {bytes.data(), size}; }
+  constexpr bool empty() const noexcept { return size == 0; }
+  constexpr bool operator==(const Name&) const = default;
+};
+
+}  // namespace takt
