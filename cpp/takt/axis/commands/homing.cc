@@ -16,8 +16,8 @@ void describe(Enumeration<HomingDirection>& e) {
 
 void describe(Enumeration<SwitchMode>& e) {
   e.about("What of a switch ends a search.");
-  e.value(SwitchMode::kOn, "on", "It is on.");
-  e.value(SwitchMode::kOff, "off", "It is off.");
+  e.value(SwitchMode::kOn, "is_on", "It is on.");
+  e.value(SwitchMode::kOff, "is_off", "It is off.");
   e.value(SwitchMode::kEdgeOn, "edge_on", "It goes on.");
   e.value(SwitchMode::kEdgeOff, "edge_off", "It goes off.");
   e.value(SwitchMode::kEdgeSwitchPositive, "edge_switch_positive", "Upwards: it goes on; downwards: it goes off.");
