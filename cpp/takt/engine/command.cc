@@ -119,14 +119,13 @@ ParsedCommand UnknownTarget(const Machine& machine, std::string_view target) {
 
 ParsedCommand UnknownVerb(std::string_view kind, std::string_view verb) {
   std::vector<std::string_view> names;
-  std::string list;
   for (const Entry& entry : Entries()) {
-    if (entry.verb.target_kind != kind) continue;
-    names.push_back(entry.verb.name);
-    list += (list.empty() ? "" : ", ") + std::string(entry.verb.name);
+    if (entry.verb.target_kind == kind) names.push_back(entry.verb.name);
   }
-  return Refused(ErrorId::kUnknownVerb,
-                 "verb: expected one of " + list + ", found " + Quoted(verb) + DidYouMean(verb, names));
+  return Refused(ErrorId::kUnknownVerb, "verb: expected a command of " +
+                                            std::string(kind == kMachine ? "the machine" : "an axis") +
+                                            " (takt reference lists them), found " + Quoted(verb) +
+                                            DidYouMean(verb, names));
 }
 
 }  // namespace
