@@ -1,0 +1,138 @@
+#include "takt/axis/chase.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+using trajectory::Limits;
+using trajectory::Profile;
+
+namespace {
+
+constexpr double kTolerance = 1e-9;  // of a limit
+// Less room than this share of the axis' own limits is none: a chase would take forever.
+constexpr double kLeastRoom = 0.02;
+
+// The extreme velocity that is still reached from here when the acceleration ends with this jerk.
+double Peak(const KinematicState& x, double jerk) {
+  return jerk > 0 ? x.velocity + x.acceleration * std::abs(x.acceleration) / (2 * jerk) : x.velocity;
+}
+
+bool KeepsVelocity(const KinematicState& x, const Limits& own) {
+  const double limit = own.velocity * (1 + kTolerance);
+  return std::abs(x.velocity) <= limit && std::abs(Peak(x, own.jerk)) <= limit;
+}
+
+bool KeepsAcceleration(const KinematicState& before, const KinematicState& x, const Limits& own) {
+  const bool growing = x.velocity * x.acceleration > 0;
+  const double limit = growing ? own.acceleration : own.deceleration;
+  const double allowed = std::max(limit, x.acceleration * before.acceleration > 0 ? std::abs(before.acceleration) : 0);
+  return std::abs(x.acceleration) <= allowed * (1 + kTolerance);
+}
+
+// Whether a motion within the axis' jerk leads from one to the other in `t` seconds. Of the motions between two samples
+// with given accelerations the velocity can differ by the area of a triangle of jerks, the position by less than
+// jerk t^3 / 16.
+bool Continues(const KinematicState& before, const KinematicState& x, const Limits& own, double t) {
+  if (own.jerk == 0) {
+    const double mean = (x.velocity - before.velocity) / t;
+    const double largest = std::max(own.acceleration, own.deceleration) * (1 + kTolerance);
+    const double position = before.position + 0.5 * t * (before.velocity + x.velocity);
+    return std::abs(mean) <= largest && std::abs(x.position - position) <= 0.25 * largest * t * t;
+  }
+  const double step = x.acceleration - before.acceleration;
+  const double largest = own.jerk * t * (1 + 1e-6);
+  if (std::abs(step) > largest) return false;
+  const double velocity = before.velocity + 0.5 * t * (before.acceleration + x.acceleration);
+  const double bend = 0.25 * (largest * largest - step * step) / own.jerk + kTolerance * own.velocity;
+  if (std::abs(x.velocity - velocity) > bend) return false;
+  const double position =
+      before.position + 0.5 * t * (before.velocity + x.velocity) + t * t / 12 * (before.acceleration - x.acceleration);
+  const double slack = own.jerk * t * t * t / 16 + kTolerance * (own.velocity * t + std::abs(position) * 1e-3);
+  return std::abs(x.position - position) <= slack;
+}
+
+// Towards a velocity with the axis' own ramps: keeps the invariant from any state that has it.
+KinematicState TowardsVelocity(const Chaser& c, const KinematicState& before, double velocity) {
+  const Limits own = c.params.planner_limits();
+  Profile profile{before};
+  c.planner.ToVelocity(before, std::clamp(velocity, -own.velocity, own.velocity), own, profile);
+  return profile.At(c.period_s);
+}
+
+// One cycle of the chase in the frame of the demand. False: the limits leave no room there, or there is no such plan.
+bool InFrame(const Chaser& c, ChaseMode mode, const KinematicState& before, const KinematicState& demand,
+             KinematicState& next, bool& arrives) {
+  const Limits own = c.params.planner_limits();
+  const double t = c.period_s;
+  const double speed = std::abs(demand.velocity);
+  const double fastest = c.catching_up.velocity > speed ? c.catching_up.velocity : own.velocity;
+  const double used = std::abs(demand.acceleration);
+  const Limits room = {fastest - speed, std::min(c.catching_up.acceleration, c.catching_up.deceleration) - used,
+                       std::min(c.catching_up.acceleration, c.catching_up.deceleration) - used, c.catching_up.jerk};
+  if (!(room.acceleration > kLeastRoom * std::min(own.acceleration, own.deceleration))) return false;
+  if (mode == ChaseMode::kPosition && !(room.velocity > kLeastRoom * own.velocity)) return false;
+  // The demand a cycle earlier, had it had its acceleration then already.
+  const double begin_velocity = demand.velocity - t * demand.acceleration;
+  const double begin_position = demand.position - t * (demand.velocity - 0.5 * t * demand.acceleration);
+  KinematicState from = {before.position - begin_position, before.velocity - begin_velocity,
+                         before.acceleration - demand.acceleration};
+  Profile profile{from};
+  if (mode == ChaseMode::kPosition) {
+    if (c.planner.ToPosition(from, 0, 0, room, profile).failed()) return false;
+  } else {
+    Limits ramps = room;
+    ramps.velocity = 2 * own.velocity;  // whatever is lost
+    if (c.planner.ToVelocity(from, 0, ramps, profile).failed()) return false;
+  }
+  const KinematicState relative = profile.At(t);
+  next = {demand.position + relative.position, demand.velocity + relative.velocity,
+          demand.acceleration + relative.acceleration};
+  arrives = profile.duration() <= t;
+  return true;
+}
+
+bool Sound(const KinematicState& x) {
+  return std::isfinite(x.position + x.velocity + x.acceleration);
+}
+
+}  // namespace
+
+KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& before, const KinematicState& demand,
+                     ChaseState& state) noexcept {
+  const Limits own = c.params.planner_limits();
+  const auto keeps = [&](const KinematicState& x) {
+    return KeepsVelocity(x, own) && KeepsAcceleration(before, x, own) && Continues(before, x, own, c.period_s);
+  };
+  const bool was_in_step = state.in_step;
+  state.in_step = false;
+  if (!Sound(demand)) return TowardsVelocity(c, before, 0);
+  KinematicState wanted = demand;
+  if (mode == ChaseMode::kVelocity) wanted.position += state.offset;
+  if ((mode == ChaseMode::kPosition || was_in_step) && keeps(wanted)) {
+    state.in_step = true;
+    return wanted;
+  }
+  KinematicState next;
+  bool arrives = false;
+  if (!InFrame(c, mode, before, demand, next, arrives) || !KeepsVelocity(next, own) ||
+      !KeepsAcceleration(before, next, own)) {
+    return TowardsVelocity(c, before, demand.velocity);
+  }
+  if (arrives) {  // the demand itself, in velocity mode at another place
+    state.offset = next.position - demand.position;
+    state.in_step = true;
+  }
+  return next;
+}
+
+void describe(Description<ChaseState>& d) {
+  d.about("Following a demand.");
+  d.internal<&ChaseState::offset>(unit::u, "Own position minus the demand's, in velocity mode.");
+  d.internal<&ChaseState::in_step>("The last set point was the demand itself.");
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,46 @@
+// Following something that moves: the one way in which an axis gets onto, and stays on, a demand that comes anew in
+// each cycle (a geared master, a cam, a table over time, a motion on top of another).
+#pragma once
+
+#include <cstdint>
+
+#include "takt/axis/params.h"
+#include "takt/core/kinematic_state.h"
+#include "takt/trajectory/planner.h"
+
+namespace takt::axis {
+
+// What the axis shall agree with.
+enum class ChaseMode : std::uint8_t {
+  kVelocity,  // the demand's velocity: the distance lost on the way is not made up, and stays what it is once in step
+  kPosition,  // its position
+};
+
+struct ChaseState {
+  double offset = 0;     // u, velocity mode: own position minus the demand's, fixed while in step
+  bool in_step = false;  // the last set point was the demand itself
+};
+
+struct Chaser {
+  const AxisParams& params;
+  trajectory::Planner& planner;
+  trajectory::Limits catching_up;  // of the command: how fast to get into step; within the axis' own
+  double period_s;
+};
+
+// The set point that follows `before`, one cycle later, for a demand of that same instant.
+//
+// Invariant S(x): the speed of x stays within the axis' velocity even while its acceleration ends with the axis' jerk:
+// |v + a|a| / 2j| <= vmax. With S(before), for every demand whatsoever:
+//   - S(next) holds, and so |v| <= vmax;
+//   - |a| <= acceleration while the speed grows, deceleration while it falls, or no more than before had of it;
+//   - |a - a_before| <= jerk * period; position and velocity are those of a motion with that jerk.
+// A demand that keeps all this, and continues `before`, is taken bit for bit: in step. Any other is chased: planned
+// anew in each cycle in the frame of the demand as if it kept its acceleration; where limits leave no room for that,
+// towards its velocity as far as the axis' own goes. SW limits are the caller's affair.
+KinematicState Chase(const Chaser& chaser, ChaseMode mode, const KinematicState& before, const KinematicState& demand,
+                     ChaseState& state) noexcept;
+
+void describe(Description<ChaseState>&);
+
+}  // namespace takt::axis
