@@ -53,6 +53,11 @@ Status Jog(const Context& c, const Request& r, State& s) {
 }
 
 Status TakeOver(const Context& c, const Request& r, State& s) {
+  if (Couples(r.kind)) {
+    AbortAll(c, s);
+    Couple(c, r, s);
+    return Status::Ok();
+  }
   Plan plan;
   const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, r, nullptr, plan);
   if (status.failed()) return status;
@@ -109,6 +114,7 @@ Status Admit(const Context& c, const Request& r, State& s) {
   if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
   if (buffered) return Enqueue(c, r, s);
   if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
+  if (r.kind == RequestKind::kLetGo) return LetGo(c, r, s);
   return r.kind == RequestKind::kJog ? Jog(c, r, s) : TakeOver(c, r, s);
 }
 
@@ -150,7 +156,8 @@ void Apply(const Context& c, Ticket ticket, double lease_s, const Command& comma
   } else if (status.ok()) {
     request.ticket = ticket;
     request.lease_s = lease_s;
-    status = Admit(c, request, s);
+    status = FindMasters(c, request);
+    if (status.ok()) status = Admit(c, request, s);
   }
   if (status.failed()) Report(c, ticket, FeedbackState::kError, status.error);
 }

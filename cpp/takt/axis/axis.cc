@@ -111,7 +111,8 @@ void BringBackTurns(const AxisParams& p, State& s) {
 
 // Whether a motion has no end of its own, or is left with a velocity.
 bool GoesOn(const State& s) {
-  return s.plc == PlcState::kContinuousMotion || s.motion.profile.end().velocity != 0;
+  return s.plc == PlcState::kContinuousMotion || s.plc == PlcState::kSynchronizedMotion ||
+         s.motion.profile.end().velocity != 0;
 }
 
 // Takes a set point back from which the axis could not stop in time, and brakes instead.
@@ -157,6 +158,14 @@ void Advance(const Context& c, State& s) {
   // A move that ends in this cycle hands over first: what it is left with is another command's set point.
   if (!over || s.plc == PlcState::kContinuousMotion) GuardLimits(c, before, s);
   if (over) ConcludeDue(c, before, s);
+  if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
+}
+
+void FollowCoupling(const Context& c, State& s) {
+  const KinematicState before = s.setpoint;
+  if (!FollowMasters(c, s)) return Advance(c, s);
+  GuardLimits(c, before, s);
+  if (s.coupling.chase.in_step) Conclude(c, 0, s);
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 
@@ -210,6 +219,8 @@ void Move(const Context& c, State& s) noexcept {
   if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
   if (s.loop_closed && Follow(c, s)) {
     // The master's set point is this axis' too.
+  } else if (s.loop_closed && Couples(s.active.kind)) {
+    FollowCoupling(c, s);
   } else if (s.loop_closed) {
     Advance(c, s);
   } else {
@@ -285,6 +296,10 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.error = s.error;
   out.state = s.plc;
   out.limited_by = s.limited_by;
+  out.in_step = s.coupling.chase.in_step;
+  const auto& terms = s.coupling.law.terms;
+  out.master1 = terms[0].master + 1;  // none: 0
+  out.master2 = terms[1].master + 1;
   out.buffered_commands = s.buffered;
   out.loop_closed = s.loop_closed;
   out.in_position =

@@ -57,6 +57,12 @@ bool Fill(const Maker& m, const MoveVelocity& c);
 bool Fill(const Maker& m, const Halt& c);
 bool Fill(const Maker& m, const Stop& c);
 bool Fill(const Maker& m, const Jog& c);
+bool Fill(const Maker& m, const GearIn& c);
+bool Fill(const Maker& m, const GearOut& c);
+bool Fill(const Maker& m, const GearInPos& c);
+bool Fill(const Maker& m, const CombineAxes& c);
+bool Fill(const Maker& m, const PhasingAbsolute& c);
+bool Fill(const Maker& m, const PhasingRelative& c);
 template <typename T>
 bool Fill(const Maker&, const T&) {
   return true;

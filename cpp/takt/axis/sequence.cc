@@ -73,7 +73,8 @@ void ConcludePositioning(const Context& c, double late_s, State& s) {
   }
 }
 
-void ConcludeVelocity(const Context& c, State& s) {
+// A command that never ends by itself has reached what it is for.
+void ConcludeReached(const Context& c, State& s) {
   if (!s.reported) {
     Report(c, s.active.ticket, FeedbackState::kActive, ErrorId::kNone, true);
     s.reported = true;
@@ -121,6 +122,7 @@ std::uint64_t LeaseEnd(const Context& c, double lease_s) noexcept {
 void EndActive(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
   const bool final_is_out = s.active.kind == RequestKind::kStop && s.reported;
   if (s.active.kind != RequestKind::kNone && !final_is_out) Report(c, s.active.ticket, feedback, error);
+  if (Couples(s.active.kind)) Uncouple(c, feedback == FeedbackState::kError, s);
   s.active = Request{};
   s.reported = false;
   s.jog_sense = 0;
@@ -180,6 +182,7 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
     }
     const bool seamless = s.motion.profile.end().velocity != 0 && late_s > 0;
     const KinematicState from = seamless ? s.motion.profile.end() : s.setpoint;
+    if (Couples(next.kind)) return Couple(c, next, s);
     Plan plan;
     const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, from, next, Follower(s), plan);
     if (status.ok()) {
@@ -211,7 +214,12 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
       ConcludePositioning(c, late_s, s);
       break;
     case RequestKind::kMoveVelocity:
-      ConcludeVelocity(c, s);
+      ConcludeReached(c, s);
+      break;
+    case RequestKind::kGearIn:
+    case RequestKind::kGearInPos:
+    case RequestKind::kCombineAxes:
+      ConcludeReached(c, s);
       break;
     case RequestKind::kHalt:
       EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);

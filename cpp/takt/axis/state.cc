@@ -57,6 +57,7 @@ void describe(Description<State>& d) {
   d.internal<&S::following_error>(unit::u, "Set minus actual position.");
   d.internal<&S::illegal_transitions>("Always 0.");
   d.internal<&S::motion>("Motion in progress.");
+  d.internal<&S::coupling>("Masters it follows.");
 }
 
 }  // namespace takt::axis

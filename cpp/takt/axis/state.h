@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "takt/axis/control_loop.h"
+#include "takt/axis/coupling.h"
 #include "takt/axis/encoder.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
@@ -80,6 +81,7 @@ struct State {
   std::uint64_t illegal_transitions = 0;  // always 0: the state table holds
 
   Motion motion;
+  CouplingState coupling;
 };
 
 void describe(Description<Motion>&);

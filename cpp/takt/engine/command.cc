@@ -122,10 +122,9 @@ ParsedCommand UnknownVerb(std::string_view kind, std::string_view verb) {
   for (const Entry& entry : Entries()) {
     if (entry.verb.target_kind == kind) names.push_back(entry.verb.name);
   }
-  return Refused(ErrorId::kUnknownVerb, "verb: expected a command of " +
-                                            std::string(kind == kMachine ? "the machine" : "an axis") +
-                                            " (takt reference lists them), found " + Quoted(verb) +
-                                            DidYouMean(verb, names));
+  return Refused(ErrorId::kUnknownVerb,
+                 "verb: expected a command of " + std::string(kind == kMachine ? "the machine" : "an axis") +
+                     " (takt reference lists them), found " + Quoted(verb) + DidYouMean(verb, names));
 }
 
 }  // namespace
