@@ -1,5 +1,6 @@
 // Commands as they arrive: carried out, buffered or refused.
 #include "takt/axis/sequence.h"
+#include "takt/axis/settings.h"
 
 namespace takt::axis {
 
@@ -84,6 +85,7 @@ Status SwitchOn(const Context& c, const Request& r, State& s) {
   Grant(c, r, s);
   if (!s.enable) s.enable_cycle = c.cycle.count;
   s.enable = true;
+  s.direct_voltage_v = 0;
   return Status::Ok();
 }
 
@@ -106,6 +108,7 @@ Status SwitchOff(const Context& c, const Request& r, State& s) {
 Status Admit(const Context& c, const Request& r, State& s) {
   if (r.kind == RequestKind::kPower) return r.enable ? SwitchOn(c, r, s) : SwitchOff(c, r, s);
   if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
+  if (c.params.await_constants && !s.constants_set) return Status::Failed(ErrorId::kNoConstants);
   if (c.params.follows) return Status::Failed(ErrorId::kState);
   const bool buffered = r.buffer_mode != BufferMode::kAborting && s.active.kind != RequestKind::kNone;
   if (!s.loop_closed) {
@@ -114,6 +117,7 @@ Status Admit(const Context& c, const Request& r, State& s) {
   if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
   if (buffered) return Enqueue(c, r, s);
   if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
+  if (r.kind == RequestKind::kInch && s.plc != PlcState::kStandstill) return Status::Failed(ErrorId::kState);
   if (r.kind == RequestKind::kLetGo) return LetGo(c, r, s);
   return r.kind == RequestKind::kJog ? Jog(c, r, s) : TakeOver(c, r, s);
 }

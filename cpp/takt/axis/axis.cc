@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/axis/coordinates.h"
 #include "takt/axis/following.h"
 #include "takt/axis/sequence.h"
 
@@ -101,12 +102,7 @@ bool CanStopInside(const AxisParams& p, const KinematicState& before, const Kine
 
 void BringBackTurns(const AxisParams& p, State& s) {
   const double turns = std::floor(s.setpoint.position / p.modulus) * p.modulus;
-  s.setpoint.position -= turns;
-  s.due -= turns;
-  s.actual.position -= turns;
-  s.motion.profile.Shift(-turns);
-  s.motion.target -= turns;
-  s.origin += turns;
+  ShiftCoordinates(-turns, s);
 }
 
 // Whether a motion has no end of its own, or is left with a velocity.
@@ -255,6 +251,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
     out.velocity_counts_s = 0;
     out.voltage_v = 0;
   }
+  if (s.plc == PlcState::kDisabled && !s.enable) out.voltage_v = s.direct_voltage_v;
   s.voltage_v = out.voltage_v;
   out.enable = s.enable;
   out.release_brake = s.loop_closed;
@@ -279,6 +276,7 @@ void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
 void EmergencyStop(const Context& c, State& s) noexcept {
   AbortAll(c, s);
   OpenLoop(s);
+  s.direct_voltage_v = 0;
   s.error = ErrorId::kNone;
   Enter(s, PlcState::kDisabled);
 }

@@ -6,8 +6,9 @@ namespace takt::axis {
 
 using trajectory::Profile;
 
-void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error, bool reached) noexcept {
-  c.feedback.Report({ticket, c.cycle.count, feedback, reached, error});
+void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error, bool reached,
+            double value) noexcept {
+  c.feedback.Report({ticket, c.cycle.count, feedback, reached, error, value});
 }
 
 void Enter(State& s, PlcState to) noexcept {
@@ -100,16 +101,16 @@ void ConcludeStop(const Context& c, State& s) {
 
 }  // namespace
 
-void Grant(const Context& c, const Request& request, State& s) noexcept {
+void Grant(const Context& c, const Request& request, State& s, double travel_s) noexcept {
   s.active = request;
   s.reported = false;
   s.lease_end_cycle = LeaseEnd(c, request.lease_s);
-  Report(c, request.ticket, FeedbackState::kActive);
+  Report(c, request.ticket, FeedbackState::kActive, ErrorId::kNone, false, travel_s);
 }
 
 void TakeControl(const Context& c, const Request& request, const Plan& plan, const MotionStart& start,
                  State& s) noexcept {
-  Grant(c, request, s);
+  Grant(c, request, s, plan.profile.duration() - start.offset_s);
   s.limited_by = plan.limited_by;
   StartMotion(plan.profile, plan.target, start, s);
   Enter(s, RulesOf(request.kind).state);
@@ -211,9 +212,12 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
     case RequestKind::kMoveAbsolute:
     case RequestKind::kMoveRelative:
     case RequestKind::kMoveAdditive:
+    case RequestKind::kInch:
       ConcludePositioning(c, late_s, s);
       break;
     case RequestKind::kMoveVelocity:
+    case RequestKind::kMoveContinuousAbsolute:
+    case RequestKind::kMoveContinuousRelative:
       ConcludeReached(c, s);
       break;
     case RequestKind::kGearIn:

@@ -66,6 +66,9 @@ struct State {
   bool encoder_line_error = false;  // because the encoder says so
   double torque_nm = 0;
 
+  bool constants_set = false;   // by GT_SetConstant
+  double direct_voltage_v = 0;  // V, put out while the axis is Disabled (GT_Analog)
+
   // Axes that follow a master.
   bool coupled = false;
   double follow_offset = 0;  // u, own position minus ratio times the master's when they were coupled

@@ -69,7 +69,7 @@ struct MachineApplier {
   Ticket ticket;
 
   void Report(FeedbackState state, ErrorId error = ErrorId::kNone) const {
-    world.feedback.Report({ticket, world.cycle.count, state, false, error});
+    world.feedback.Report({ticket, world.cycle.count, state, false, error, 0});
   }
   void operator()(const StopAll& c) const {
     for (std::size_t i = 0; i < world.axis_states.size(); ++i) {
@@ -136,6 +136,7 @@ World::World(const Machine& machine)
 std::uint64_t World::StateHash() const noexcept {
   std::uint64_t hash = cycle.count;
   for (const axis::State& state : axis_states) hash = HashOf(state, hash);
+  for (const axis::AxisParams& params : axis_params) hash = HashOf(params, hash);  // settings change them
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
   return hash;
 }
@@ -153,12 +154,12 @@ void Apply(World& w, const Command& command) noexcept {
     const axis::Command& body = std::get<axis::Command>(command.body);
     axis::CouplingRequest coupling;
     if (axis::CouplingOf(ContextOf(w, i), body, coupling) && !MakeOrder(w, &coupling, command.target - 1)) {
-      w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, ErrorId::kCouplingLoop});
+      w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, ErrorId::kCouplingLoop, 0});
       return;
     }
     axis::Apply(ContextOf(w, i), command.ticket, command.lease_s, body, w.axis_states[i]);
   } else {
-    w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, ErrorId::kUnknownTarget});
+    w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, ErrorId::kUnknownTarget, 0});
   }
 }
 

@@ -116,6 +116,7 @@ msgs::feedback ToMessage(const FeedbackEvent& event) {
   m.state = static_cast<std::int8_t>(event.state);
   m.reached = event.reached;
   m.error_id = static_cast<std::int32_t>(event.error);
+  m.value = event.value;
   if (event.error != ErrorId::kNone) m.sentence = ErrorText(event.error);
   return m;
 }
