@@ -245,6 +245,8 @@ Status Check(const AxisParams& params, const Surroundings& around, const Kinemat
     return CheckAtLimit(params.limits, from, SenseOf(request, around.last_sense) * request.velocity);
   }
   if (!request.positions()) return Status::Ok();
+  if (params.requires_reference && !around.homed && !request.by_distance())
+    return Status::Failed(ErrorId::kNoReference);
   out.target = TargetOf(params, around, from, request);
   return Inside(params.limits, out.target) ? Status::Ok() : Status::Failed(ErrorId::kTargetBehindLimit);
 }

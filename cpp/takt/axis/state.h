@@ -7,6 +7,7 @@
 #include "takt/axis/control_loop.h"
 #include "takt/axis/coupling.h"
 #include "takt/axis/encoder.h"
+#include "takt/axis/homing.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
 #include "takt/core/kinematic_state.h"
@@ -58,6 +59,9 @@ struct State {
   bool limit_negative = false;
   bool reference = false;
   bool touch_probe = false;
+  bool index_pulse = false;  // one came since the cycle before ...
+  std::uint32_t index_pulses = 0;
+  std::uint32_t index_counts = 0;  // ... at this count
   bool limit_positive_before = false;
   bool limit_negative_before = false;
   bool drive_ready = false;
@@ -85,6 +89,7 @@ struct State {
 
   Motion motion;
   CouplingState coupling;
+  HomingState homing;
 };
 
 void describe(Description<Motion>&);
