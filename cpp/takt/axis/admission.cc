@@ -1,4 +1,6 @@
 // Commands as they arrive: carried out, buffered or refused.
+#include "takt/axis/cam_switch.h"
+#include "takt/axis/probe.h"
 #include "takt/axis/sequence.h"
 
 namespace takt::axis {

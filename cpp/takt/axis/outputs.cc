@@ -26,6 +26,9 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::limit_negative>("LIM- after inversion.");
   d.internal<&O::reference>("REF after inversion.");
   d.internal<&O::touch_probe>("TP after inversion.");
+  d.internal<&O::probe_position>(unit::u, "Of the last capture of the touch probe; rotary axes: in [0, modulus).");
+  d.internal<&O::probe_captures>("How many captures there were, wraps at 2^32.");
+  d.internal<&O::cam_outputs>("Outputs of the cam switches: bit 0 is track 1.");
 }
 
 }  // namespace takt::axis

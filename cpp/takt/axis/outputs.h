@@ -29,6 +29,9 @@ struct Outputs {
   bool limit_negative = false;
   bool reference = false;
   bool touch_probe = false;
+  double probe_position = 0;         // u, of the last capture; rotary: in [0, modulus)
+  std::uint32_t probe_captures = 0;  // how many there were, wraps
+  std::uint32_t cam_outputs = 0;     // cam switches: bit track - 1
 };
 
 void describe(Description<Outputs>&);

@@ -39,7 +39,7 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kStepDirect, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepAbsolute, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kFinishHoming, true, false, true, PlcState::kHoming},
-    RequestRules{RequestKind::kTouch, false, false, false, PlcState::kDiscreteMotion},
+    RequestRules{RequestKind::kTouch, false, false, true, PlcState::kDiscreteMotion},
 };
 
 }  // namespace
@@ -192,6 +192,7 @@ void describe(Description<Request>& d) {
   d.internal<&R::acceleration>(unit::u_s2, "Largest acceleration.");
   d.internal<&R::deceleration>(unit::u_s2, "Largest deceleration.");
   d.internal<&R::jerk>(unit::u_s3, "Largest jerk; 0: unlimited.");
+  d.internal<&R::torque_ramp>("Torque control: Nm/s; 0: at once.");
   d.internal<&R::lease_s>(unit::s, "Dead man's lease; 0: none.");
   d.internal<&R::kind>("Which command.");
   d.internal<&R::direction>("Sense of travel.");

@@ -53,7 +53,8 @@ struct Request {
   double acceleration = 0;
   double deceleration = 0;
   double jerk = 0;
-  double lease_s = 0;  // > 0: level-sensitive command under a dead man's lease
+  double torque_ramp = 0;  // Nm/s, torque control; 0: at once
+  double lease_s = 0;      // > 0: level-sensitive command under a dead man's lease
   RequestKind kind = RequestKind::kNone;
   Direction direction = Direction::kShortest;
   BufferMode buffer_mode = BufferMode::kAborting;
@@ -67,7 +68,7 @@ struct Request {
   HomingRequest homing;
 
   trajectory::Limits limits() const { return {velocity, acceleration, deceleration, jerk}; }
-  bool positions() const { return kind == RequestKind::kMoveAbsolute || by_distance(); }
+  bool positions() const { return kind == RequestKind::kMoveAbsolute || kind == RequestKind::kTouch || by_distance(); }
   bool by_distance() const { return kind == RequestKind::kMoveRelative || kind == RequestKind::kMoveAdditive; }
   bool blends() const { return buffer_mode >= BufferMode::kBlendingLow; }
 };

@@ -57,6 +57,9 @@ bool Fill(const Maker& m, const MoveVelocity& c);
 bool Fill(const Maker& m, const Halt& c);
 bool Fill(const Maker& m, const Stop& c);
 bool Fill(const Maker& m, const Jog& c);
+bool Fill(const Maker& m, const TouchProbe& c);
+bool Fill(const Maker& m, const Touch& c);
+bool Fill(const Maker& m, const TorqueControl& c);
 template <typename T>
 bool Fill(const Maker&, const T&) {
   return true;

@@ -208,9 +208,11 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
     case RequestKind::kMoveAbsolute:
     case RequestKind::kMoveRelative:
     case RequestKind::kMoveAdditive:
+    case RequestKind::kTouch:
       ConcludePositioning(c, late_s, s);
       break;
     case RequestKind::kMoveVelocity:
+    case RequestKind::kTorqueControl:
       ConcludeVelocity(c, s);
       break;
     case RequestKind::kHalt:

@@ -57,6 +57,10 @@ void describe(Description<State>& d) {
   d.internal<&S::following_error>(unit::u, "Set minus actual position.");
   d.internal<&S::illegal_transitions>("Always 0.");
   d.internal<&S::motion>("Motion in progress.");
+  d.internal<&S::probe>("Touch probe.");
+  d.internal<&S::torque>("Torque control.");
+  d.internal<&S::cam_switch>("Cam switches.");
+  d.internal<&S::cam_outputs>("Their outputs.");
 }
 
 }  // namespace takt::axis

@@ -4,10 +4,13 @@
 #include <array>
 #include <cstdint>
 
+#include "takt/axis/cam_switch.h"
 #include "takt/axis/control_loop.h"
 #include "takt/axis/encoder.h"
+#include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
+#include "takt/axis/torque.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
 #include "takt/trajectory/profile.h"
@@ -80,6 +83,11 @@ struct State {
   std::uint64_t illegal_transitions = 0;  // always 0: the state table holds
 
   Motion motion;
+
+  ProbeState probe;
+  TorqueState torque;
+  CamSwitchState cam_switch;
+  std::uint32_t cam_outputs = 0;
 };
 
 void describe(Description<Motion>&);

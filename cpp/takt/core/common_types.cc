@@ -67,7 +67,8 @@ void describe(Description<ServoOutputs>& d) {
   using S = ServoOutputs;
   d.about("What goes to a drive in a cycle.");
   d.internal<&S::position_counts>(unit::count, "Position set point (csp).");
-  d.internal<&S::velocity_counts_s>(unit::count_s, "Velocity: feed-forward (csp), set point (csv) or largest speed (cst).");
+  d.internal<&S::velocity_counts_s>(unit::count_s,
+                                    "Velocity: feed-forward (csp), set point (csv) or largest speed (cst).");
   d.internal<&S::voltage_v>(unit::volt, "Analogue set point.");
   d.internal<&S::torque_nm>(unit::nm, "Torque set point (cst); a force in N on linear motors.");
   d.internal<&S::mode>("Which of these the drive follows.");

@@ -71,6 +71,9 @@ msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::M
   m.limit_negative = o.limit_negative;
   m.reference = o.reference;
   m.touch_probe = o.touch_probe;
+  m.probe_position = o.probe_position;
+  m.probe_captures = Signed(o.probe_captures);
+  m.cam_outputs = Signed(o.cam_outputs);
   return m;
 }
 

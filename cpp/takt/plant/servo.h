@@ -125,7 +125,7 @@ struct ServoState {
   std::uint32_t probe_falls = 0;
   double probe_rise_age_s = 0;  // s before the end of the cycle in which it came
   double probe_fall_age_s = 0;
-  std::uint64_t noise = 0;   // state of the noise generator
+  std::uint64_t noise = 0;  // state of the noise generator
   // An exponential that is the same every cycle while nothing changes, kept for its price: that of (rate, time).
   double reach_rate = 0;         // 1/s
   double reach_time = 0;         // s
