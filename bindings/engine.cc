@@ -63,8 +63,9 @@ py::object ToPython(const Type& type, const void* object) {
   }
 }
 
-using Submitted = py::typing::Tuple<Ticket, int, py::str>;                     // ticket, error number, sentence
-using FeedbackRow = py::typing::Tuple<Ticket, std::uint64_t, int, bool, int>;  // ticket, cycle, state, reached, error
+using Submitted = py::typing::Tuple<Ticket, int, py::str>;  // ticket, error number, sentence
+using FeedbackRow =
+    py::typing::Tuple<Ticket, std::uint64_t, int, bool, int, double>;  // ticket, cycle, state, reached, error, value
 using JournalRow =
     py::typing::Tuple<std::uint64_t, Ticket, double, py::str, py::str, py::str>;  // cycle, ticket, lease, command
 using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::uint64_t>>;  // cycles, hashes
@@ -130,7 +131,8 @@ class VirtualEngine {
     }
     py::typing::List<FeedbackRow> list;
     for (const FeedbackEvent& e : events) {
-      list.append(py::make_tuple(e.ticket, e.cycle, static_cast<int>(e.state), e.reached, static_cast<int>(e.error)));
+      list.append(
+          py::make_tuple(e.ticket, e.cycle, static_cast<int>(e.state), e.reached, static_cast<int>(e.error), e.value));
     }
     return list;
   }

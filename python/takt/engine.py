@@ -125,12 +125,12 @@ class Engine(Session):
         return made
 
     def _take_feedback(self) -> None:
-        for ticket, cycle, state, reached, error_id in self._core.take_feedback():
+        for ticket, cycle, state, reached, error_id, value in self._core.take_feedback():
             feedback = self._unfinished.get(ticket)
             if feedback is None:
                 continue
             sentence = error_text(error_id) if error_id else ""
-            self._report(feedback, state, reached, error_id, sentence, cycle)
+            self._report(feedback, state, reached, error_id, sentence, cycle, value)
             if feedback.final:
                 del self._unfinished[ticket]
 

@@ -41,6 +41,8 @@ class Feedback:
         self.error_id = 0
         self.sentence = ""  # what went wrong; empty while nothing has
         self.cycle = -1  # of the last change; -1: before the command came to a cycle
+        self.travel_time_s = 0.0  # s, how long the motion takes as planned when it began; 0: not known (AX-96)
+        self.value = 0.0  # what a command was to read or capture, once done
         self.released = False  # let go of, whether or not the engine has taken up the release yet
         self._release: Feedback | None = None  # the last try to
 
@@ -124,7 +126,7 @@ class Feedback:
             raise TimeoutError(f"{self.text}: still {what} after {timeout:g} s")
         self._session._catch_up(self.cycle)
 
-    def _update(self, state: int, reached: bool, error_id: int, sentence: str, cycle: int) -> bool:
+    def _update(self, state: int, reached: bool, error_id: int, sentence: str, cycle: int, value: float = 0.0) -> bool:
         """Takes over a report. False: it says nothing new (final states stay)."""
         new = FeedbackState(state)
         if self.final or new < self.state or (new, reached) == (self.state, self.reached):
@@ -133,6 +135,10 @@ class Feedback:
         self.sentence = sentence or ("aborted by another command" if new is FeedbackState.ABORTED else "")
         self.cycle = cycle
         self.reached = reached or self.reached
+        if new is FeedbackState.ACTIVE and not math.isnan(value) and not reached:
+            self.travel_time_s = value
+        elif new is FeedbackState.DONE:
+            self.value = value
         self.state = new  # last: who sees it on another thread sees the rest too
         return True
 

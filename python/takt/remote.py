@@ -229,7 +229,9 @@ class RemoteSession(Session):
         sent.answered = True
         feedback = sent.feedback
         feedback.ticket = message.ticket or feedback.ticket
-        self._report(feedback, message.state, message.reached, message.error_id, message.sentence, message.cycle)
+        self._report(
+            feedback, message.state, message.reached, message.error_id, message.sentence, message.cycle, message.value
+        )
         if feedback.final:
             del self._sent[message.id]
         self._held = [f for f in self._held if not (f.error or f.aborted or (f.done and f._release_is_settled))]

@@ -202,9 +202,18 @@ class Session(MachineCommands):
         for recorder in self._recorders:
             recorder.events.append((self.now if math.isnan(time_s) else time_s, component, text, kind))
 
-    def _report(self, feedback: Feedback, state: int, reached: bool, error_id: int, sentence: str, cycle: int) -> None:
+    def _report(
+        self,
+        feedback: Feedback,
+        state: int,
+        reached: bool,
+        error_id: int,
+        sentence: str,
+        cycle: int,
+        value: float = 0.0,
+    ) -> None:
         """Passes on what the engine says of a command."""
-        if not feedback._update(state, reached, error_id, sentence, cycle) or not feedback.final:
+        if not feedback._update(state, reached, error_id, sentence, cycle, value) or not feedback.final:
             return
         name = without_arguments(feedback.text)
         if feedback.error:

@@ -2,6 +2,7 @@
 #include "takt/axis/cam_switch.h"
 #include "takt/axis/probe.h"
 #include "takt/axis/sequence.h"
+#include "takt/axis/settings.h"
 
 namespace takt::axis {
 
@@ -55,6 +56,11 @@ Status Jog(const Context& c, const Request& r, State& s) {
 }
 
 Status TakeOver(const Context& c, const Request& r, State& s) {
+  if (Couples(r.kind)) {
+    AbortAll(c, s);
+    Couple(c, r, s);
+    return Status::Ok();
+  }
   Plan plan;
   const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, r, nullptr, plan);
   if (status.failed()) return status;
@@ -81,6 +87,7 @@ Status SwitchOn(const Context& c, const Request& r, State& s) {
   Grant(c, r, s);
   if (!s.enable) s.enable_cycle = c.cycle.count;
   s.enable = true;
+  s.direct_voltage_v = 0;
   return Status::Ok();
 }
 
@@ -103,6 +110,7 @@ Status SwitchOff(const Context& c, const Request& r, State& s) {
 Status Admit(const Context& c, const Request& r, State& s) {
   if (r.kind == RequestKind::kPower) return r.enable ? SwitchOn(c, r, s) : SwitchOff(c, r, s);
   if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
+  if (c.params.await_constants && !s.constants_set) return Status::Failed(ErrorId::kNoConstants);
   if (c.params.follows) return Status::Failed(ErrorId::kState);
   const bool buffered = r.buffer_mode != BufferMode::kAborting && s.active.kind != RequestKind::kNone;
   if (!s.loop_closed) {
@@ -111,6 +119,8 @@ Status Admit(const Context& c, const Request& r, State& s) {
   if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
   if (buffered) return Enqueue(c, r, s);
   if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
+  if (r.kind == RequestKind::kInch && s.plc != PlcState::kStandstill) return Status::Failed(ErrorId::kState);
+  if (r.kind == RequestKind::kLetGo) return LetGo(c, r, s);
   return r.kind == RequestKind::kJog ? Jog(c, r, s) : TakeOver(c, r, s);
 }
 
@@ -152,7 +162,8 @@ void Apply(const Context& c, Ticket ticket, double lease_s, const Command& comma
   } else if (status.ok()) {
     request.ticket = ticket;
     request.lease_s = lease_s;
-    status = Admit(c, request, s);
+    status = FindMasters(c, request);
+    if (status.ok()) status = Admit(c, request, s);
   }
   if (status.failed()) Report(c, ticket, FeedbackState::kError, status.error);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/axis/coordinates.h"
 #include "takt/axis/fit.h"
 #include "takt/axis/following.h"
 #include "takt/axis/sequence.h"
@@ -84,17 +85,13 @@ void AwaitDrive(const Context& c, State& s) {
 
 void BringBackTurns(const AxisParams& p, State& s) {
   const double turns = std::floor(s.setpoint.position / p.modulus) * p.modulus;
-  s.setpoint.position -= turns;
-  s.due -= turns;
-  s.actual.position -= turns;
-  s.motion.profile.Shift(-turns);
-  s.motion.target -= turns;
-  s.origin += turns;
+  ShiftCoordinates(-turns, s);
 }
 
 // Whether a motion has no end of its own, or is left with a velocity.
 bool GoesOn(const State& s) {
-  return s.plc == PlcState::kContinuousMotion || s.motion.profile.end().velocity != 0;
+  return s.plc == PlcState::kContinuousMotion || s.plc == PlcState::kSynchronizedMotion ||
+         s.motion.profile.end().velocity != 0;
 }
 
 // Takes a set point back from which the axis could not stop in time, and brakes instead.
@@ -140,6 +137,14 @@ void Advance(const Context& c, State& s) {
   // A move that ends in this cycle hands over first: what it is left with is another command's set point.
   if (!over || s.plc == PlcState::kContinuousMotion) GuardLimits(c, before, s);
   if (over) ConcludeDue(c, before, s);
+  if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
+}
+
+void FollowCoupling(const Context& c, State& s) {
+  const KinematicState before = s.setpoint;
+  if (!FollowMasters(c, s)) return Advance(c, s);
+  GuardLimits(c, before, s);
+  if (s.coupling.chase.in_step) Conclude(c, 0, s);
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 
@@ -198,6 +203,8 @@ void Move(const Context& c, State& s) noexcept {
     // The master's set point is this axis' too.
   } else if (MoveTorque(c, s)) {
     // The drive follows a torque, the set point the axis.
+  } else if (s.loop_closed && Couples(s.active.kind)) {
+    FollowCoupling(c, s);
   } else if (s.loop_closed) {
     Advance(c, s);
   } else {
@@ -240,6 +247,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
     out.voltage_v = 0;
     out.torque_nm = 0;
   }
+  if (s.plc == PlcState::kDisabled && !s.enable) out.voltage_v = s.direct_voltage_v;
   s.voltage_v = out.voltage_v;
   out.enable = s.enable;
   out.release_brake = s.loop_closed;
@@ -264,6 +272,7 @@ void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
 void EmergencyStop(const Context& c, State& s) noexcept {
   AbortAll(c, s);
   OpenLoop(s);
+  s.direct_voltage_v = 0;
   s.error = ErrorId::kNone;
   Enter(s, PlcState::kDisabled);
 }
@@ -281,6 +290,10 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.error = s.error;
   out.state = s.plc;
   out.limited_by = s.limited_by;
+  out.in_step = s.coupling.chase.in_step;
+  const auto& terms = s.coupling.law.terms;
+  out.master1 = terms[0].master + 1;  // none: 0
+  out.master2 = terms[1].master + 1;
   out.buffered_commands = s.buffered;
   out.loop_closed = s.loop_closed;
   out.in_position =

@@ -60,7 +60,7 @@ bool IsOn(const CamSwitch& sw, const CamTrack& track, const CamSwitchInputs& in,
   const std::uint64_t bit = std::uint64_t{1} << i;
   const bool that_way = RunsThatWay(sw, in.sense);
   const Sight sight = Look(sw, track, in, s);
-  const bool was = (s.on & bit) != 0;
+  const bool was = (s.closed & bit) != 0;
   if (sw.mode == CamSwitchMode::kTime) {
     const auto now = static_cast<double>(in.cycle);
     if (that_way && sight.entered) {
@@ -95,7 +95,7 @@ std::uint32_t Step(const CamSwitches& list, const CamSwitchInputs& in, CamSwitch
     on |= std::uint64_t{1} << i;
     outputs |= std::uint32_t{1} << (sw.track - 1);
   }
-  s.on = on;
+  s.closed = on;
   s.velocity_before = in.velocity;
   s.started = true;
   return outputs;
@@ -199,7 +199,7 @@ void describe(Description<CamSwitchState>& d) {
   d.internal<&S::source>("Set point or measured position.");
   d.internal<&S::started>("There was a cycle before.");
   d.internal<&S::velocity_before>(unit::u_s, "In the cycle before.");
-  d.internal<&S::on>("A bit for each switch.");
+  d.internal<&S::closed>("A bit for each switch.");
   d.internal<&S::marked>("A bit for each switch that has switched.");
   d.internal<&S::mark>("Where each switched, or in which cycle it goes off.");
 }

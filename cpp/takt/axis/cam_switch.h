@@ -70,7 +70,7 @@ struct CamSwitchState {
 
   bool started = false;                        // there was a cycle before
   double velocity_before = 0;                  // u/s
-  std::uint64_t on = 0;                        // a bit for each switch
+  std::uint64_t closed = 0;                    // a bit for each switch
   std::uint64_t marked = 0;                    // a bit for each switch: it has switched, at `mark`
   std::array<double, kMaxCamSwitches> mark{};  // u, where it last switched; time mode: the cycle in which it goes off
 };

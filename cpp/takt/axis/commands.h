@@ -18,7 +18,7 @@ using Command =
                  VelocityProfile, AccelerationProfile, TorqueControl, GearIn, GearOut, GearInPos, PhasingAbsolute,
                  PhasingRelative, CombineAxes, CamIn, CamOut, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse,
                  StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch, StepRefFlyingRefPulse, SetConstants,
-                 WriteParameter, SetSoftLimits, DirectOutput, SetPosition, SetOverride, TouchProbe, AbortTrigger, Touch,
-                 DigitalCamSwitch>;
+                 WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, SetPosition, SetOverride, TouchProbe,
+                 AbortTrigger, Touch, DigitalCamSwitch>;
 
 }  // namespace takt::axis

@@ -4,9 +4,115 @@
 
 namespace takt::axis {
 
+namespace {
+
+bool Ratio(const Maker& m, const char* field, double numerator, double denominator, double& out) {
+  out = numerator / denominator;
+  return m.In(field, out, -kMaxPosition, kMaxPosition);
+}
+
+bool Term(const Maker& m, const Name& name, MasterSource source, double ratio, CouplingTerm& out) {
+  out = {name, kNoAxis, source, ratio};
+  if (name.empty() || name.view() == m.params.name || source > MasterSource::kActualValue) {
+    m.why.field = name.empty()                   ? "master"
+                  : name.view() == m.params.name ? "master, which is the axis itself"
+                                                 : "source";
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool Fill(const Maker& m, const GearIn& c) {
+  m.r.kind = RequestKind::kGearIn;
+  m.r.buffer_mode = c.buffer_mode;
+  m.r.velocity = m.params.limits.velocity;
+  double ratio = 0;
+  return Ratio(m, "ratio", c.ratio_numerator, c.ratio_denominator, ratio) &&
+         Term(m, c.master, c.source, ratio, m.r.coupling.terms[0]) && m.Ramps(c);
+}
+
+bool Fill(const Maker& m, const GearInPos& c) {
+  m.r.kind = RequestKind::kGearInPos;
+  m.r.buffer_mode = c.buffer_mode;
+  CouplingRequest& out = m.r.coupling;
+  out.master_sync_position = c.master_sync_position;
+  out.slave_sync_position = c.slave_sync_position;
+  out.master_start_distance = c.master_start_distance.value_or(-1);
+  out.sync_mode = c.sync_mode;
+  double ratio = 0;
+  if (c.sync_mode > SyncMode::kSlowDown) {
+    m.why.field = "sync_mode";
+    return false;
+  }
+  return m.In("master_sync_position", c.master_sync_position, -kMaxPosition, kMaxPosition) &&
+         m.In("slave_sync_position", c.slave_sync_position, -kMaxPosition, kMaxPosition) &&
+         m.In("master_start_distance", c.master_start_distance.value_or(0), 0, kMaxPosition) &&
+         Ratio(m, "ratio", c.ratio_numerator, c.ratio_denominator, ratio) &&
+         Term(m, c.master, c.source, ratio, out.terms[0]) &&
+         m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
+}
+
+bool Fill(const Maker& m, const CombineAxes& c) {
+  m.r.kind = RequestKind::kCombineAxes;
+  m.r.buffer_mode = c.buffer_mode;
+  double first = 0;
+  double second = 0;
+  if (c.mode > CombineMode::kSubtract) {
+    m.why.field = "mode";
+    return false;
+  }
+  return Ratio(m, "ratio1", c.ratio_numerator1, c.ratio_denominator1, first) &&
+         Ratio(m, "ratio2", c.ratio_numerator2, c.ratio_denominator2, second) &&
+         Term(m, c.master1, c.source1, first, m.r.coupling.terms[0]) &&
+         Term(m, c.master2, c.source2, c.mode == CombineMode::kAdd ? second : -second, m.r.coupling.terms[1]) &&
+         m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
+}
+
+bool Fill(const Maker& m, const GearOut&) {
+  m.r.kind = RequestKind::kLetGo;
+  return m.Braking(Halt{});
+}
+
+namespace {
+
+// The limits of a shift are in the master's unit: the axis' own say nothing about them but that they are finite.
+template <typename T>
+bool Shift(const Maker& m, const T& c) {
+  const auto above_zero = [&](const char* field, const std::optional<double>& value) {
+    return !value || m.In(field, *value, std::numeric_limits<double>::min(), kMaxPosition);
+  };
+  return m.In("phase_shift", c.phase_shift, -kMaxPosition, kMaxPosition) && above_zero("velocity", c.velocity) &&
+         above_zero("acceleration", c.acceleration) && above_zero("deceleration", c.deceleration) &&
+         m.In("jerk", c.jerk.value_or(0), 0, std::numeric_limits<double>::max());
+}
+
+}  // namespace
+
+bool Fill(const Maker& m, const PhasingAbsolute& c) {
+  return Shift(m, c);
+}
+bool Fill(const Maker& m, const PhasingRelative& c) {
+  return Shift(m, c);
+}
+
+void describe(Description<CouplingTerm>& d) {
+  d.about("One master and how it is followed.");
+  d.internal<&CouplingTerm::name>("Of the master.");
+  d.internal<&CouplingTerm::master>("Its index.");
+  d.internal<&CouplingTerm::source>("Which of its positions.");
+  d.internal<&CouplingTerm::ratio>("Own units per master's unit.");
+}
+
 void describe(Description<CouplingRequest>& d) {
-  d.about("What a coupling command carries.");
-  d.internal<&CouplingRequest::placeholder>("Nothing yet.");
+  using C = CouplingRequest;
+  d.about("What a command that couples axes carries.");
+  d.internal<&C::terms>("Its masters.");
+  d.internal<&C::master_sync_position>("Where the master is, in its unit, when both are in step.");
+  d.internal<&C::slave_sync_position>(unit::u, "Where this axis is then.");
+  d.internal<&C::master_start_distance>("How far before that it begins; negative: at once.");
+  d.internal<&C::sync_mode>("How a rotary axis gets there.");
 }
 
 }  // namespace takt::axis

@@ -1,15 +1,32 @@
-// What a coupling command carries beyond the common part of a request: its masters.
+// What a command that couples axes carries beyond the common part of a request: its masters and how they are followed.
 #pragma once
+
+#include <array>
+#include <cstdint>
 
 #include "takt/axis/commands/coupling.h"
 #include "takt/core/describe_fwd.h"
 
 namespace takt::axis {
 
-struct CouplingRequest {
-  double placeholder = 0;
+inline constexpr std::uint32_t kNoAxis = 0xffffffff;
+
+struct CouplingTerm {
+  Name name;                       // of the master; empty: no such term
+  std::uint32_t master = kNoAxis;  // its index in the machine, found when the command arrives
+  MasterSource source = MasterSource::kSetValue;
+  double ratio = 1;  // own u per master's u; with its sign in a difference
 };
 
+struct CouplingRequest {
+  std::array<CouplingTerm, 2> terms;
+  double master_sync_position = 0;    // master's u (GearInPos)
+  double slave_sync_position = 0;     // u
+  double master_start_distance = -1;  // master's u; negative: at once
+  SyncMode sync_mode = SyncMode::kShortest;
+};
+
+void describe(Description<CouplingTerm>&);
 void describe(Description<CouplingRequest>&);
 
 }  // namespace takt::axis

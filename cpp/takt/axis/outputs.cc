@@ -15,20 +15,25 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::following_error>(unit::u, "Set point of the cycle before minus measured position.");
   d.internal<&O::voltage_v>(unit::volt, "Output of the position loop, analogue drives.");
   d.internal<&O::torque_nm>(unit::nm, "As the drive reports it.");
+  d.internal<&O::superimposed>(unit::u, "Covered by the last motion on top of another.");
+  d.internal<&O::probe_position>(unit::u, "Where the touch probe was captured last.");
   d.internal<&O::active_command>("Ticket of the command in control; 0: none.");
   d.internal<&O::error>("Fault of the axis, not of a command; 0: none.");
   d.internal<&O::state>("PLCopen state after the cycle; several transitions may lie in one.");
   d.internal<&O::limited_by>("What holds the motion in progress back from what was asked.");
+  d.internal<&O::master1>("Number of the axis that it follows, from 1; 0: none.");
+  d.internal<&O::master2>("The same of a second one.");
   d.internal<&O::buffered_commands>("Commands waiting behind the one in control.");
   d.internal<&O::loop_closed>("The position loop is closed and the brake released.");
   d.internal<&O::in_position>("The following error is inside the in-position window.");
+  d.internal<&O::in_step>("Follows its masters exactly.");
+  d.internal<&O::homed>("Its position is known: it has a reference.");
   d.internal<&O::limit_positive>("LIM+ after inversion.");
   d.internal<&O::limit_negative>("LIM- after inversion.");
   d.internal<&O::reference>("REF after inversion.");
   d.internal<&O::touch_probe>("TP after inversion.");
-  d.internal<&O::probe_position>(unit::u, "Of the last capture of the touch probe; rotary axes: in [0, modulus).");
-  d.internal<&O::probe_captures>("How many captures there were, wraps at 2^32.");
-  d.internal<&O::cam_outputs>("Outputs of the cam switches: bit 0 is track 1.");
+  d.internal<&O::probe_captures>("How often the touch probe was captured.");
+  d.internal<&O::cam_outputs>("Outputs of the cam switches, a bit for each track.");
 }
 
 }  // namespace takt::axis

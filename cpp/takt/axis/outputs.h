@@ -18,20 +18,25 @@ struct Outputs {
   double following_error = 0;      // u, set point of the cycle before minus what is measured now
   double voltage_v = 0;            // V, output of the position loop
   double torque_nm = 0;            // Nm, as the drive reports it
+  double superimposed = 0;         // u, covered by the last motion on top of another
+  double probe_position = 0;       // u, where the touch probe was captured last
   Ticket active_command = 0;       // 0: none
   ErrorId error = ErrorId::kNone;  // fault of the axis (not of a command)
   PlcState state = PlcState::kDisabled;
   LimitedBy limited_by = LimitedBy::kNothing;  // what holds the motion in progress back
+  std::uint32_t master1 = 0;                   // numbers of the axes that it follows, from 1; 0: none
+  std::uint32_t master2 = 0;
+  std::uint32_t probe_captures = 0;
+  std::uint32_t cam_outputs = 0;  // of the cam switches, a bit for each track
   std::uint8_t buffered_commands = 0;
   bool loop_closed = false;
   bool in_position = false;
+  bool in_step = false;         // follows its masters exactly
+  bool homed = false;           // has a reference
   bool limit_positive = false;  // switches after inversion
   bool limit_negative = false;
   bool reference = false;
   bool touch_probe = false;
-  double probe_position = 0;         // u, of the last capture; rotary: in [0, modulus)
-  std::uint32_t probe_captures = 0;  // how many there were, wraps
-  std::uint32_t cam_outputs = 0;     // cam switches: bit track - 1
 };
 
 void describe(Description<Outputs>&);

@@ -65,6 +65,7 @@ struct AxisParams {
   Drive drive;
   InputSense inputs;
   ControlLoop loop;
+  bool await_constants = false;  // no motion before GT_SetConstant: error 0012 (AX-27)
   std::optional<Following> follows;
 
   bool rotary() const { return kind == AxisKind::kRotary; }

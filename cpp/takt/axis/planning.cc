@@ -42,6 +42,19 @@ double RoomToTarget(const AxisParams& params, double position, double sense, con
   return Inside(params.limits, target) ? sense * (target - position) : 0;
 }
 
+// The highest speed up to `speed` from which a stop takes no more than `room`.
+double FastestThatStops(double speed, const Limits& braking, double room) {
+  const auto stops_in_time = [&](double v) { return trajectory::StopPosition({0, v, 0}, braking) <= room; };
+  if (stops_in_time(speed)) return speed;
+  double low = 0;
+  double high = speed;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = 0.5 * (low + high);
+    (stops_in_time(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
 // The speed at which `next` may take over at the end of `request`, from what its buffer mode asks, lowered so far that
 // it can still end where it has to. 0: not at all (reversal).
 double TakeOverSpeed(const AxisParams& params, const Request& request, double target, double sense,
@@ -68,15 +81,7 @@ double TakeOverSpeed(const AxisParams& params, const Request& request, double ta
   const Limits braking = endless ? params.planner_limits() : next.limits();
   const double room = endless ? RoomToLimit(params.limits, target, sense) : RoomToTarget(params, target, sense, next);
   if (room <= 0) return 0;
-  const auto stops_in_time = [&](double v) { return trajectory::StopPosition({0, v, 0}, braking) <= room; };
-  if (stops_in_time(speed)) return speed;
-  double low = 0;
-  double high = speed;
-  for (int i = 0; i < kBisections; ++i) {
-    const double middle = 0.5 * (low + high);
-    (stops_in_time(middle) ? low : high) = middle;
-  }
-  return low;
+  return FastestThatStops(speed, braking, room);
 }
 
 // To `target`, left with `speed` in the sense of travel: at the request's velocity first, then up to a higher `speed`
@@ -137,8 +142,15 @@ Status PlanOn(const AxisParams& params, Planner& planner, const KinematicState& 
   }
   if (!request.positions()) return planner.Stop(from, limits, out.profile);
   const double sense = Sense(out.target - from.position);
-  const double speed = next ? TakeOverSpeed(params, request, out.target, sense, *next) : 0;
-  if (next && speed == 0) out.limited_by = LimitedBy::kDistance;
+  double speed = 0;
+  if (request.continuous()) {
+    const double room = RoomToLimit(params.limits, out.target, sense);
+    speed = room > 0 ? FastestThatStops(request.end_velocity, params.planner_limits(), room) : 0;
+    if (speed < request.end_velocity) out.limited_by = LimitedBy::kPosition;
+  } else if (next) {
+    speed = TakeOverSpeed(params, request, out.target, sense, *next);
+    if (speed == 0) out.limited_by = LimitedBy::kDistance;
+  }
   if (speed > 0) return PlanBlended(planner, from, out.target, sense, speed, limits, out);
   const Status status = planner.ToPosition(from, out.target, 0, limits, out.profile);
   if (status.ok() && sense * from.velocity > limits.velocity && !RunsStraight(out.profile, sense)) {
@@ -230,7 +242,7 @@ Status CheckTorque(const AxisParams& params, const Surroundings& around, const K
 double TargetOf(const AxisParams& params, const Surroundings& around, const KinematicState& from,
                 const Request& request) {
   if (request.kind == RequestKind::kMoveAdditive) return around.promised.value_or(from.position) + request.value;
-  if (request.kind == RequestKind::kMoveRelative) return from.position + request.value;
+  if (request.by_distance()) return from.position + request.value;
   return ResolveTarget(params, from, request.limits(), request.value, request.direction, around.last_sense);
 }
 

@@ -38,7 +38,7 @@ void Capture(const Context& c, double position, State& s) {
     probe.touch_position = position;
   } else {
     probe.watch = ProbeWatch::kNothing;
-    Report(c, probe.ticket, FeedbackState::kDone);
+    Report(c, probe.ticket, FeedbackState::kDone, ErrorId::kNone, false, reported);
   }
 }
 
@@ -78,7 +78,7 @@ void PlanAgain(const Context& c, State& s) {
   StartMotion(plan.profile, 0, FromCycleBefore(c), s);
 }
 
-void LetGo(const Context& c, State& s) {
+void Restore(const Context& c, State& s) {
   ProbeState& probe = s.probe;
   if (!probe.slowing) return;
   probe.slowing = false;
@@ -89,7 +89,7 @@ void LetGo(const Context& c, State& s) {
 
 void Slow(const Context& c, State& s) {
   ProbeState& probe = s.probe;
-  if (s.touch_probe != (probe.edge == ProbeEdge::kRising)) return LetGo(c, s);
+  if (s.touch_probe != (probe.edge == ProbeEdge::kRising)) return Restore(c, s);
   if (!s.loop_closed || !CanBeSlowed(s.active) || s.active.velocity <= probe.velocity) return;
   probe.slowing = true;
   probe.slowed = s.active.ticket;
@@ -129,7 +129,7 @@ Status TakeTouch(const Context& c, State& s) {
 
 // Puts another command in the place of the one that waits.
 void Supersede(const Context& c, ProbeWatch watch, ProbeEdge edge, Ticket ticket, State& s) {
-  LetGo(c, s);
+  Restore(c, s);
   ProbeState& probe = s.probe;
   if (probe.watch != ProbeWatch::kNothing) Report(c, probe.ticket, FeedbackState::kAborted);
   probe.watch = watch;

@@ -81,6 +81,27 @@ bool Fill(const Maker& m, const MoveRelative& c) {
 bool Fill(const Maker& m, const MoveAdditive& c) {
   return ByDistance(m, RequestKind::kMoveAdditive, c);
 }
+bool Fill(const Maker& m, const MoveContinuousAbsolute& c) {
+  const MoveAbsolute move = {c.position, c.velocity,  c.acceleration, c.deceleration,
+                             c.jerk,     c.direction, c.buffer_mode};
+  if (!Fill(m, move)) return false;
+  m.r.kind = RequestKind::kMoveContinuousAbsolute;
+  m.r.end_velocity = c.end_velocity;
+  return m.In("end_velocity", c.end_velocity, 0, m.params.limits.velocity);
+}
+
+bool Fill(const Maker& m, const MoveContinuousRelative& c) {
+  m.r.end_velocity = c.end_velocity;
+  return ByDistance(m, RequestKind::kMoveContinuousRelative, c) &&
+         m.In("end_velocity", c.end_velocity, 0, m.params.limits.velocity);
+}
+
+bool Fill(const Maker& m, const Inch& c) {
+  return ByDistance(
+      m, RequestKind::kInch,
+      MoveRelative{c.distance, c.velocity, c.acceleration, c.deceleration, c.jerk, BufferMode::kAborting});
+}
+
 bool Fill(const Maker& m, const MoveVelocity& c) {
   m.r.kind = RequestKind::kMoveVelocity;
   m.r.velocity = c.velocity;
@@ -193,6 +214,7 @@ void describe(Description<Request>& d) {
   d.internal<&R::deceleration>(unit::u_s2, "Largest deceleration.");
   d.internal<&R::jerk>(unit::u_s3, "Largest jerk; 0: unlimited.");
   d.internal<&R::torque_ramp>("Torque control: Nm/s; 0: at once.");
+  d.internal<&R::end_velocity>(unit::u_s, "With which a continuous move goes on.");
   d.internal<&R::lease_s>(unit::s, "Dead man's lease; 0: none.");
   d.internal<&R::kind>("Which command.");
   d.internal<&R::direction>("Sense of travel.");

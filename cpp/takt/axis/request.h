@@ -53,8 +53,9 @@ struct Request {
   double acceleration = 0;
   double deceleration = 0;
   double jerk = 0;
-  double torque_ramp = 0;  // Nm/s, torque control; 0: at once
-  double lease_s = 0;      // > 0: level-sensitive command under a dead man's lease
+  double torque_ramp = 0;   // Nm/s, of torque control; 0: at once
+  double end_velocity = 0;  // u/s, of continuous moves, in the sense of travel
+  double lease_s = 0;       // > 0: level-sensitive command under a dead man's lease
   RequestKind kind = RequestKind::kNone;
   Direction direction = Direction::kShortest;
   BufferMode buffer_mode = BufferMode::kAborting;
@@ -68,8 +69,18 @@ struct Request {
   HomingRequest homing;
 
   trajectory::Limits limits() const { return {velocity, acceleration, deceleration, jerk}; }
-  bool positions() const { return kind == RequestKind::kMoveAbsolute || kind == RequestKind::kTouch || by_distance(); }
-  bool by_distance() const { return kind == RequestKind::kMoveRelative || kind == RequestKind::kMoveAdditive; }
+  bool positions() const {
+    return kind == RequestKind::kMoveAbsolute || kind == RequestKind::kMoveContinuousAbsolute ||
+           kind == RequestKind::kTouch || by_distance();
+  }
+  bool by_distance() const {
+    return kind == RequestKind::kMoveRelative || kind == RequestKind::kMoveAdditive || kind == RequestKind::kInch ||
+           kind == RequestKind::kMoveContinuousRelative;
+  }
+  // Goes on with `end_velocity` from its position.
+  bool continuous() const {
+    return kind == RequestKind::kMoveContinuousAbsolute || kind == RequestKind::kMoveContinuousRelative;
+  }
   bool blends() const { return buffer_mode >= BufferMode::kBlendingLow; }
 };
 

@@ -60,6 +60,21 @@ bool Fill(const Maker& m, const Jog& c);
 bool Fill(const Maker& m, const TouchProbe& c);
 bool Fill(const Maker& m, const Touch& c);
 bool Fill(const Maker& m, const TorqueControl& c);
+bool Fill(const Maker& m, const GearIn& c);
+bool Fill(const Maker& m, const GearOut& c);
+bool Fill(const Maker& m, const GearInPos& c);
+bool Fill(const Maker& m, const CombineAxes& c);
+bool Fill(const Maker& m, const PhasingAbsolute& c);
+bool Fill(const Maker& m, const PhasingRelative& c);
+bool Fill(const Maker& m, const MoveContinuousAbsolute& c);
+bool Fill(const Maker& m, const MoveContinuousRelative& c);
+bool Fill(const Maker& m, const Inch& c);
+bool Fill(const Maker& m, const SetConstants& c);
+bool Fill(const Maker& m, const WriteParameter& c);
+bool Fill(const Maker& m, const ReadParameter& c);
+bool Fill(const Maker& m, const SetSoftLimits& c);
+bool Fill(const Maker& m, const DirectOutput& c);
+bool Fill(const Maker& m, const SetPosition& c);
 template <typename T>
 bool Fill(const Maker&, const T&) {
   return true;

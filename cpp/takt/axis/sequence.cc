@@ -6,8 +6,9 @@ namespace takt::axis {
 
 using trajectory::Profile;
 
-void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error, bool reached) noexcept {
-  c.feedback.Report({ticket, c.cycle.count, feedback, reached, error});
+void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error, bool reached,
+            double value) noexcept {
+  c.feedback.Report({ticket, c.cycle.count, feedback, reached, error, value});
 }
 
 void Enter(State& s, PlcState to) noexcept {
@@ -73,7 +74,8 @@ void ConcludePositioning(const Context& c, double late_s, State& s) {
   }
 }
 
-void ConcludeVelocity(const Context& c, State& s) {
+// A command that never ends by itself has reached what it is for.
+void ConcludeReached(const Context& c, State& s) {
   if (!s.reported) {
     Report(c, s.active.ticket, FeedbackState::kActive, ErrorId::kNone, true);
     s.reported = true;
@@ -99,16 +101,16 @@ void ConcludeStop(const Context& c, State& s) {
 
 }  // namespace
 
-void Grant(const Context& c, const Request& request, State& s) noexcept {
+void Grant(const Context& c, const Request& request, State& s, double travel_s) noexcept {
   s.active = request;
   s.reported = false;
   s.lease_end_cycle = LeaseEnd(c, request.lease_s);
-  Report(c, request.ticket, FeedbackState::kActive);
+  Report(c, request.ticket, FeedbackState::kActive, ErrorId::kNone, false, travel_s);
 }
 
 void TakeControl(const Context& c, const Request& request, const Plan& plan, const MotionStart& start,
                  State& s) noexcept {
-  Grant(c, request, s);
+  Grant(c, request, s, plan.profile.duration() - start.offset_s);
   s.limited_by = plan.limited_by;
   StartMotion(plan.profile, plan.target, start, s);
   Enter(s, RulesOf(request.kind).state);
@@ -121,6 +123,7 @@ std::uint64_t LeaseEnd(const Context& c, double lease_s) noexcept {
 void EndActive(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
   const bool final_is_out = s.active.kind == RequestKind::kStop && s.reported;
   if (s.active.kind != RequestKind::kNone && !final_is_out) Report(c, s.active.ticket, feedback, error);
+  if (Couples(s.active.kind)) Uncouple(c, feedback == FeedbackState::kError, s);
   s.active = Request{};
   s.reported = false;
   s.jog_sense = 0;
@@ -180,6 +183,7 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
     }
     const bool seamless = s.motion.profile.end().velocity != 0 && late_s > 0;
     const KinematicState from = seamless ? s.motion.profile.end() : s.setpoint;
+    if (Couples(next.kind)) return Couple(c, next, s);
     Plan plan;
     const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, from, next, Follower(s), plan);
     if (status.ok()) {
@@ -208,12 +212,20 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
     case RequestKind::kMoveAbsolute:
     case RequestKind::kMoveRelative:
     case RequestKind::kMoveAdditive:
+    case RequestKind::kInch:
     case RequestKind::kTouch:
       ConcludePositioning(c, late_s, s);
       break;
     case RequestKind::kMoveVelocity:
+    case RequestKind::kMoveContinuousAbsolute:
+    case RequestKind::kMoveContinuousRelative:
     case RequestKind::kTorqueControl:
-      ConcludeVelocity(c, s);
+      ConcludeReached(c, s);
+      break;
+    case RequestKind::kGearIn:
+    case RequestKind::kGearInPos:
+    case RequestKind::kCombineAxes:
+      ConcludeReached(c, s);
       break;
     case RequestKind::kHalt:
       EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);

@@ -21,7 +21,7 @@ inline MotionStart FromThisCycle(const Context& c) {
 }
 
 void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error = ErrorId::kNone,
-            bool reached = false) noexcept;
+            bool reached = false, double value = 0) noexcept;
 void Enter(State& s, PlcState to) noexcept;
 Surroundings SurroundingsOf(const State& s) noexcept;
 // Seconds of the motion in progress at this cycle.
@@ -31,7 +31,7 @@ void StartMotion(const trajectory::Profile& profile, double target, const Motion
 std::uint64_t LeaseEnd(const Context& c, double lease_s) noexcept;
 
 // Puts a request in control of the motion there is ...
-void Grant(const Context& c, const Request& request, State& s) noexcept;
+void Grant(const Context& c, const Request& request, State& s, double travel_s = 0) noexcept;
 // ... or with a motion of its own.
 void TakeControl(const Context& c, const Request& request, const Plan& plan, const MotionStart& start,
                  State& s) noexcept;

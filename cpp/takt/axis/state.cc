@@ -47,6 +47,8 @@ void describe(Description<State>& d) {
   d.internal<&S::encoder_error>("The measured position is not to be believed.");
   d.internal<&S::encoder_line_error>("Because the encoder says so.");
   d.internal<&S::torque_nm>(unit::nm, "As the drive says.");
+  d.internal<&S::constants_set>("GT_SetConstant was given.");
+  d.internal<&S::direct_voltage_v>(unit::volt, "Put out while Disabled.");
   d.internal<&S::coupled>("Follows its master.");
   d.internal<&S::follow_offset>(unit::u, "Distance to the master's position times the ratio.");
   d.internal<&S::origin>(unit::u, "Whole turns taken out of all positions.");
@@ -57,6 +59,7 @@ void describe(Description<State>& d) {
   d.internal<&S::following_error>(unit::u, "Set minus actual position.");
   d.internal<&S::illegal_transitions>("Always 0.");
   d.internal<&S::motion>("Motion in progress.");
+  d.internal<&S::coupling>("Masters it follows.");
   d.internal<&S::probe>("Touch probe.");
   d.internal<&S::torque>("Torque control.");
   d.internal<&S::cam_switch>("Cam switches.");

@@ -6,6 +6,7 @@
 
 #include "takt/axis/cam_switch.h"
 #include "takt/axis/control_loop.h"
+#include "takt/axis/coupling.h"
 #include "takt/axis/encoder.h"
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
@@ -68,6 +69,9 @@ struct State {
   bool encoder_line_error = false;  // because the encoder says so
   double torque_nm = 0;
 
+  bool constants_set = false;   // by GT_SetConstant
+  double direct_voltage_v = 0;  // V, put out while the axis is Disabled (GT_Analog)
+
   // Axes that follow a master.
   bool coupled = false;
   double follow_offset = 0;  // u, own position minus ratio times the master's when they were coupled
@@ -83,6 +87,7 @@ struct State {
   std::uint64_t illegal_transitions = 0;  // always 0: the state table holds
 
   Motion motion;
+  CouplingState coupling;
 
   ProbeState probe;
   TorqueState torque;

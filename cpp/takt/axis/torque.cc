@@ -48,7 +48,7 @@ bool Fill(const Maker& m, const TorqueControl& c) {
 }
 
 bool FollowsTorque(const State& s) noexcept {
-  return InControl(s) && s.torque.on;
+  return InControl(s) && s.torque.engaged;
 }
 
 void SenseTorque(State& s) noexcept {
@@ -61,7 +61,7 @@ bool MoveTorque(const Context& c, State& s) noexcept {
     t = TorqueState{};
     return false;
   }
-  if (!t.on) t = {true, s.torque_nm, s.actual.velocity};
+  if (!t.engaged) t = {true, s.torque_nm, s.actual.velocity};
   const KinematicState foreseen = Foreseen(c, s);
   t.velocity_before = s.actual.velocity;
   if (!CanStopInside(c.params, s.setpoint, foreseen)) {
@@ -81,7 +81,7 @@ bool MoveTorque(const Context& c, State& s) noexcept {
 void describe(Description<TorqueState>& d) {
   using T = TorqueState;
   d.about("Torque control.");
-  d.internal<&T::on>("The drive is told a torque.");
+  d.internal<&T::engaged>("The drive is told a torque.");
   d.internal<&T::set_torque_nm>(unit::nm, "Torque of this cycle.");
   d.internal<&T::velocity_before>(unit::u_s, "Measured in the cycle before.");
 }

@@ -14,7 +14,7 @@ struct Context;
 struct State;
 
 struct TorqueState {
-  bool on = false;             // the drive is told a torque
+  bool engaged = false;        // the drive is told a torque
   double set_torque_nm = 0;    // on its ramp, from the measured torque on
   double velocity_before = 0;  // u/s, measured in the cycle before
 };

@@ -31,6 +31,7 @@ void describe(Description<FeedbackEvent>& d) {
   d.internal<&F::state>("What became of it.");
   d.internal<&F::reached>("A command that never ends by itself has what it was given for.");
   d.internal<&F::error>("Why it failed.");
+  d.internal<&F::value>("What it found out; active: s its motion takes.");
 }
 
 void describe(Enumeration<DriveMode>& e) {

@@ -34,6 +34,8 @@ struct FeedbackEvent {
   FeedbackState state = FeedbackState::kBusy;
   bool reached = false;
   ErrorId error = ErrorId::kNone;
+  // What the command found out: done: what it was to read or capture; active: s its motion takes as planned (AX-96).
+  double value = 0;
 };
 
 // Where components report during a cycle. Storage is given from outside and sized so that it cannot overflow in normal

@@ -54,6 +54,7 @@ enum class ErrorId : std::uint16_t {
   kShutdown = 3015,           // the engine is stopping
   kInternal = 3016,           // the engine found its own numbers broken; outputs are zero, all loops open
   kOtherRun = 3017,           // the command was meant for another start of the engine
+  kCouplingLoop = 3018,       // the axis would follow itself, through others
   kGroupDeviation = 8001,
 };
 

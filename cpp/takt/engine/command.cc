@@ -83,6 +83,7 @@ const std::vector<Entry>& Entries() {
       Make<axis::Command, axis::StepRefFlyingRefPulse>(kAxis, "step_ref_flying_ref_pulse"),
       Make<axis::Command, axis::SetConstants>(kAxis, "set_constants"),
       Make<axis::Command, axis::WriteParameter>(kAxis, "write_parameter"),
+      Make<axis::Command, axis::ReadParameter>(kAxis, "read_parameter"),
       Make<axis::Command, axis::SetSoftLimits>(kAxis, "set_soft_limits"),
       Make<axis::Command, axis::DirectOutput>(kAxis, "direct_output"),
       Make<axis::Command, axis::SetPosition>(kAxis, "define_position"),
@@ -122,10 +123,9 @@ ParsedCommand UnknownVerb(std::string_view kind, std::string_view verb) {
   for (const Entry& entry : Entries()) {
     if (entry.verb.target_kind == kind) names.push_back(entry.verb.name);
   }
-  return Refused(ErrorId::kUnknownVerb, "verb: expected a command of " +
-                                            std::string(kind == kMachine ? "the machine" : "an axis") +
-                                            " (takt reference lists them), found " + Quoted(verb) +
-                                            DidYouMean(verb, names));
+  return Refused(ErrorId::kUnknownVerb,
+                 "verb: expected a command of " + std::string(kind == kMachine ? "the machine" : "an axis") +
+                     " (takt reference lists them), found " + Quoted(verb) + DidYouMean(verb, names));
 }
 
 }  // namespace

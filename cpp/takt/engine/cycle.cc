@@ -18,9 +18,27 @@ axis::Context ContextOf(World& w, std::size_t i) {
   return {w.axis_params[i], w.cycle, w.planner, w.feedback, master, w.axis_states, w.axis_params, w.cam_switches};
 }
 
-std::vector<std::uint32_t> OrderOf(const Machine& machine) {
-  std::vector<std::uint32_t> loop;
-  return OrderByMasters(MastersOf(machine), loop).value();
+// The k-th axis that axis i must not step before: the one it follows from load on, those it is coupled to, those it
+// will be coupled to by buffered commands. Last come those of `wanted`, a command for axis `of`.
+std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k,
+                                      const axis::CouplingRequest* wanted, std::uint32_t of) {
+  const axis::State& s = w.axis_states[i];
+  const auto of_request = [](const axis::CouplingRequest& r, std::uint32_t& n) -> std::optional<std::uint32_t> {
+    for (const axis::CouplingTerm& term : r.terms) {
+      if (term.master != axis::kNoAxis && n-- == 0) return term.master;
+    }
+    return std::nullopt;
+  };
+  if (w.axis_masters[i] && k-- == 0) return w.axis_masters[i];
+  if (const auto master = of_request(s.active.coupling, k)) return master;
+  for (std::size_t b = 0; b < s.buffered; ++b) {
+    if (const auto master = of_request(s.buffer[b].coupling, k)) return master;
+  }
+  return wanted && i == of ? of_request(*wanted, k) : std::nullopt;
+}
+
+bool MakeOrder(World& w, const axis::CouplingRequest* wanted = nullptr, std::uint32_t of = 0) {
+  return w.axis_order.Make([&](std::uint32_t i, std::uint32_t k) { return MasterOf(w, i, k, wanted, of); });
 }
 
 // AX-82: after an internal fault nothing may move on: all loops open, all outputs are zero.
@@ -31,12 +49,27 @@ void OpenAllLoops(World& w) {
   }
 }
 
+// A master does not go on without a follower that has failed (AX-55). A coupling made at run time is over once its
+// follower has failed, so it is told once; one made at load holds.
+void StopMasters(World& w, std::uint32_t follower) {
+  axis::State& s = w.axis_states[follower];
+  const auto stop = [&](std::uint32_t master) {
+    axis::State& its = w.axis_states[master];
+    if (!axis::AtRest(its)) axis::Fail(ContextOf(w, master), ErrorId::kAxisFault, false, its);
+  };
+  if (w.axis_masters[follower]) stop(*w.axis_masters[follower]);
+  for (axis::CouplingTerm& term : s.coupling.law.terms) {
+    if (term.master != axis::kNoAxis) stop(term.master);
+    term.master = axis::kNoAxis;
+  }
+}
+
 struct MachineApplier {
   World& world;
   Ticket ticket;
 
   void Report(FeedbackState state, ErrorId error = ErrorId::kNone) const {
-    world.feedback.Report({ticket, world.cycle.count, state, false, error});
+    world.feedback.Report({ticket, world.cycle.count, state, false, error, 0});
   }
   void operator()(const StopAll& c) const {
     for (std::size_t i = 0; i < world.axis_states.size(); ++i) {
@@ -81,7 +114,7 @@ World::World(const Machine& machine)
       axis_params(machine.axes),
       cam_switches(machine.cam_switches),
       axis_outputs(machine.axes.size()),
-      axis_order(OrderOf(machine)),
+      axis_order(machine.axes.size()),
       servo_inputs(machine.axes.size()),
       servo_outputs(machine.axes.size()),
       feedback_storage(machine.axes.size() * kEventsPerAxis +
@@ -96,13 +129,15 @@ World::World(const Machine& machine)
     plant::Step(servo_params[i], servo_outputs[i], cycle.period_s, servo_states[i], servo_inputs[i]);
   }
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    axis_masters.push_back(MasterOf(machine, i));
+    axis_masters.push_back(engine::MasterOf(machine, i));
   }
+  MakeOrder(*this);
 }
 
 std::uint64_t World::StateHash() const noexcept {
   std::uint64_t hash = cycle.count;
   for (const axis::State& state : axis_states) hash = HashOf(state, hash);
+  for (const axis::AxisParams& params : axis_params) hash = HashOf(params, hash);  // settings change them
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
   return hash;
 }
@@ -117,22 +152,24 @@ void Apply(World& w, const Command& command) noexcept {
     std::visit(MachineApplier{w, command.ticket}, *machine);
   } else if (command.target > 0 && command.target <= w.axis_states.size()) {
     const std::size_t i = command.target - 1;
-    axis::Apply(ContextOf(w, i), command.ticket, command.lease_s, std::get<axis::Command>(command.body),
-                w.axis_states[i]);
+    const axis::Command& body = std::get<axis::Command>(command.body);
+    axis::CouplingRequest coupling;
+    if (axis::CouplingOf(ContextOf(w, i), body, coupling) && !MakeOrder(w, &coupling, command.target - 1)) {
+      w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, ErrorId::kCouplingLoop, 0});
+      return;
+    }
+    axis::Apply(ContextOf(w, i), command.ticket, command.lease_s, body, w.axis_states[i]);
   } else {
-    w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, ErrorId::kUnknownTarget});
+    w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, ErrorId::kUnknownTarget, 0});
   }
 }
 
 void Move(World& w) noexcept {
   // A master does not go on without a follower that has failed.
-  for (const std::uint32_t i : w.axis_order) {
-    const std::optional<std::uint32_t> master = w.axis_masters[i];
-    if (master && w.axis_states[i].plc == axis::PlcState::kErrorStop && !axis::AtRest(w.axis_states[*master])) {
-      axis::Fail(ContextOf(w, *master), ErrorId::kAxisFault, false, w.axis_states[*master]);
-    }
+  for (const std::uint32_t i : w.axis_order.sequence()) {
+    if (w.axis_states[i].plc == axis::PlcState::kErrorStop) StopMasters(w, i);
   }
-  for (const std::uint32_t i : w.axis_order) axis::Move(ContextOf(w, i), w.axis_states[i]);
+  for (const std::uint32_t i : w.axis_order.sequence()) axis::Move(ContextOf(w, i), w.axis_states[i]);
 }
 
 void Control(World& w) noexcept {

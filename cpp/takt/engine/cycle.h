@@ -14,6 +14,7 @@
 #include "takt/core/ports.h"
 #include "takt/engine/command.h"
 #include "takt/engine/machine.h"
+#include "takt/engine/order.h"
 #include "takt/plant/servo.h"
 #include "takt/trajectory/planner.h"
 
@@ -38,7 +39,7 @@ struct World {
   std::vector<axis::CamSwitches> cam_switches;
   std::vector<axis::State> axis_states;
   std::vector<axis::Outputs> axis_outputs;
-  std::vector<std::uint32_t> axis_order;                   // masters before followers
+  Order axis_order;                                        // masters before followers
   std::vector<std::optional<std::uint32_t>> axis_masters;  // which axis each follows, if any
 
   std::vector<ServoInputs> servo_inputs;

@@ -92,7 +92,7 @@ struct Engine::Impl {
     Command command;
     for (std::size_t i = 0; i < at_most && queue.TryPop(command); ++i) {
       if (shutting_down) {
-        world.feedback.Report({command.ticket, world.cycle.count, FeedbackState::kError, false, ErrorId::kShutdown});
+        world.feedback.Report({command.ticket, world.cycle.count, FeedbackState::kError, false, ErrorId::kShutdown, 0});
       } else {
         ApplyOne(command);
       }

@@ -89,9 +89,13 @@ class CrossCheck {
         Add(path, why);
       }
     }
-    std::vector<std::uint32_t> loop;
-    if (OrderByMasters(MastersOf(machine_), loop)) return;
+    Order order(machine_.axes.size());
+    const auto master_of = [&](std::uint32_t i, std::uint32_t k) {
+      return k == 0 ? MasterOf(machine_, i) : std::nullopt;
+    };
+    if (order.Make(master_of)) return;
     std::string members;
+    const std::span<const std::uint32_t> loop = order.loop();
     for (const std::uint32_t i : loop) members += machine_.axes[i].name + " -> ";
     Add("axes[" + std::to_string(loop.front()) + "].follows.axis",
         "expected axes that follow one another in no loop, found " + members + machine_.axes[loop.front()].name);

@@ -1,63 +1,37 @@
 #include "takt/engine/order.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace takt::engine {
 
-namespace {
-
-enum class Mark : std::uint8_t { kNew, kOpen, kDone };
-
-// Depth first; `path` holds the components between the first one asked and the one at hand.
-class Sorter {
- public:
-  explicit Sorter(std::span<const std::vector<std::uint32_t>> masters)
-      : masters_(masters), marks_(masters.size(), Mark::kNew) {}
-
-  bool Visit(std::uint32_t i) {
-    if (marks_[i] == Mark::kDone) return true;
-    path.push_back(i);
-    if (marks_[i] == Mark::kOpen) return false;
-    marks_[i] = Mark::kOpen;
-    for (const std::uint32_t master : masters_[i]) {
-      if (!Visit(master)) return false;
-    }
-    path.pop_back();
-    marks_[i] = Mark::kDone;
-    order.push_back(i);
-    return true;
-  }
-
-  std::vector<std::uint32_t> order;
-  std::vector<std::uint32_t> path;
-
- private:
-  std::span<const std::vector<std::uint32_t>> masters_;
-  std::vector<Mark> marks_;
-};
-
-}  // namespace
-
-std::optional<std::vector<std::uint32_t>> OrderByMasters(std::span<const std::vector<std::uint32_t>> masters,
-                                                         std::vector<std::uint32_t>& loop) {
-  Sorter sorter(masters);
-  for (std::uint32_t i = 0; i < masters.size(); ++i) {
-    if (sorter.Visit(i)) continue;
-    // The path ends with the component that was met a second time; the loop begins where it was met first.
-    const auto first = std::find(sorter.path.begin(), sorter.path.end(), sorter.path.back());
-    loop.assign(first, sorter.path.end() - 1);
-    std::reverse(loop.begin(), loop.end());
-    return std::nullopt;
-  }
-  return sorter.order;
+Order::Order(std::size_t count) : marks_(count), path_(count), sequence_(count), made_(count), loop_(count) {
+  std::iota(sequence_.begin(), sequence_.end(), 0u);
 }
 
-std::vector<std::vector<std::uint32_t>> MastersOf(const Machine& machine) {
-  std::vector<std::vector<std::uint32_t>> masters(machine.axes.size());
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    if (const std::optional<std::uint32_t> master = MasterOf(machine, i)) masters[i].push_back(*master);
+void Order::Begin() noexcept {
+  std::fill(marks_.begin(), marks_.end(), Mark::kNew);
+  depth_ = made_size_ = loop_size_ = 0;
+}
+
+void Order::Open(std::uint32_t component) noexcept {
+  marks_[component] = Mark::kOpen;
+  path_[depth_++] = {component, 0};
+}
+
+void Order::Close() noexcept {
+  const std::uint32_t component = path_[--depth_].component;
+  marks_[component] = Mark::kDone;
+  made_[made_size_++] = component;
+}
+
+// The path goes from followers to masters; it comes to `again` a second time.
+void Order::NoteLoop(std::uint32_t again) noexcept {
+  while (depth_ > 0) {
+    const std::uint32_t member = path_[--depth_].component;
+    loop_[loop_size_++] = member;
+    if (member == again) break;
   }
-  return masters;
 }
 
 std::optional<std::uint32_t> MasterOf(const Machine& machine, std::size_t axis) {

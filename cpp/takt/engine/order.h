@@ -11,15 +11,60 @@
 
 namespace takt::engine {
 
-// The order of `count` components such that each comes behind all its masters; otherwise as they stand. `masters[i]`
-// lists those of i. Nothing where there is a loop; `loop` then gets its members, each a master of the next, the last
-// one of the first.
-std::optional<std::vector<std::uint32_t>> OrderByMasters(std::span<const std::vector<std::uint32_t>> masters,
-                                                         std::vector<std::uint32_t>& loop);
+// An order of `count` components such that each comes behind all its masters. All memory is taken when it is made, so
+// that it can be made anew within a cycle.
+class Order {
+ public:
+  explicit Order(std::size_t count);
 
-// Index of the axis that this one follows, if any.
+  // `master_of(i, k)` is the k-th master of i, or nothing where i has no more. False: there is a loop; the order stays
+  // as it was.
+  template <typename MasterOf>
+  bool Make(const MasterOf& master_of) noexcept {
+    Begin();
+    for (std::uint32_t first = 0; first < marks_.size(); ++first) {
+      if (marks_[first] == Mark::kNew) Open(first);
+      while (depth_ > 0) {
+        Visit& visit = path_[depth_ - 1];
+        const std::optional<std::uint32_t> master = master_of(visit.component, visit.next++);
+        if (!master) {
+          Close();
+        } else if (marks_[*master] == Mark::kOpen) {
+          NoteLoop(*master);
+          return false;
+        } else if (marks_[*master] == Mark::kNew) {
+          Open(*master);
+        }
+      }
+    }
+    sequence_.swap(made_);
+    return true;
+  }
+
+  std::span<const std::uint32_t> sequence() const noexcept { return sequence_; }
+  // The members of the loop that the last Make found, each a master of the next, the last one of the first.
+  std::span<const std::uint32_t> loop() const noexcept { return {loop_.data(), loop_size_}; }
+
+ private:
+  enum class Mark : std::uint8_t { kNew, kOpen, kDone };
+  struct Visit {
+    std::uint32_t component;
+    std::uint32_t next;  // which of its masters is looked at next
+  };
+
+  void Begin() noexcept;
+  void Open(std::uint32_t component) noexcept;
+  void Close() noexcept;
+  void NoteLoop(std::uint32_t again) noexcept;
+
+  std::vector<Mark> marks_;
+  std::vector<Visit> path_;  // from the component first asked to the one at hand
+  std::size_t depth_ = 0;
+  std::vector<std::uint32_t> sequence_, made_, loop_;
+  std::size_t made_size_ = 0, loop_size_ = 0;
+};
+
+// Index of the axis that this one follows from load on, if any.
 std::optional<std::uint32_t> MasterOf(const Machine& machine, std::size_t axis);
-// The same for all axes, as OrderByMasters takes it.
-std::vector<std::vector<std::uint32_t>> MastersOf(const Machine& machine);
 
 }  // namespace takt::engine

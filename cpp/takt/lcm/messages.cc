@@ -67,13 +67,18 @@ msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::M
   m.buffered_commands = o.buffered_commands;
   m.loop_closed = o.loop_closed;
   m.in_position = o.in_position;
+  m.in_step = o.in_step;
+  m.homed = o.homed;
+  m.master1 = static_cast<std::int32_t>(o.master1);
+  m.master2 = static_cast<std::int32_t>(o.master2);
+  m.superimposed = o.superimposed;
+  m.probe_position = o.probe_position;
+  m.probe_captures = static_cast<std::int32_t>(o.probe_captures);
+  m.cam_outputs = static_cast<std::int32_t>(o.cam_outputs);
   m.limit_positive = o.limit_positive;
   m.limit_negative = o.limit_negative;
   m.reference = o.reference;
   m.touch_probe = o.touch_probe;
-  m.probe_position = o.probe_position;
-  m.probe_captures = Signed(o.probe_captures);
-  m.cam_outputs = Signed(o.cam_outputs);
   return m;
 }
 
@@ -111,6 +116,7 @@ msgs::feedback ToMessage(const FeedbackEvent& event) {
   m.state = static_cast<std::int8_t>(event.state);
   m.reached = event.reached;
   m.error_id = static_cast<std::int32_t>(event.error);
+  m.value = event.value;
   if (event.error != ErrorId::kNone) m.sentence = ErrorText(event.error);
   return m;
 }

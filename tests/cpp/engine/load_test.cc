@@ -219,8 +219,15 @@ TEST(ParseCommand, IsTheInverseOfToText) {
   }
 }
 
+auto From(const std::vector<std::vector<std::uint32_t>>& masters) {
+  return [&](std::uint32_t i, std::uint32_t k) -> std::optional<std::uint32_t> {
+    if (k >= masters[i].size()) return std::nullopt;
+    return masters[i][k];
+  };
+}
+
 // EN-03: the order itself, as a property over random graphs without loops.
-TEST(OrderByMasters, PutsMastersFirst) {
+TEST(Order, PutsMastersFirst) {
   std::uint32_t seed = 1;
   const auto random = [&](std::uint32_t n) { return (seed = seed * 1664525u + 1013904223u) / 65536u % n; };
   for (int run = 0; run < 200; ++run) {
@@ -232,11 +239,10 @@ TEST(OrderByMasters, PutsMastersFirst) {
     for (std::uint32_t i = 1; i < n; ++i) {
       for (std::uint32_t k = random(3); k > 0; --k) masters[shuffled[i]].push_back(shuffled[random(i)]);
     }
-    std::vector<std::uint32_t> loop;
-    const auto order = OrderByMasters(masters, loop);
-    ASSERT_TRUE(order);
+    Order order(n);
+    ASSERT_TRUE(order.Make(From(masters)));
     std::vector<std::uint32_t> place(n);
-    for (std::uint32_t k = 0; k < n; ++k) place[(*order)[k]] = k;
+    for (std::uint32_t k = 0; k < n; ++k) place[order.sequence()[k]] = k;
     for (std::uint32_t i = 0; i < n; ++i) {
       for (const std::uint32_t master : masters[i]) ASSERT_LT(place[master], place[i]);
     }
@@ -244,11 +250,12 @@ TEST(OrderByMasters, PutsMastersFirst) {
 }
 
 // EN-03: only the members of the loop are named, not what lies on the way to it or was done before.
-TEST(OrderByMasters, GivesTheMembersOfALoopOnly) {
+TEST(Order, GivesTheMembersOfALoopOnly) {
   const std::vector<std::vector<std::uint32_t>> masters = {{2}, {}, {3}, {1, 4}, {2}};
-  std::vector<std::uint32_t> loop;
-  EXPECT_FALSE(OrderByMasters(masters, loop));
-  EXPECT_THAT(loop, ElementsAre(4, 3, 2));  // each a master of the next, the last one of the first
+  Order order(masters.size());
+  EXPECT_FALSE(order.Make(From(masters)));
+  EXPECT_THAT(order.sequence(), ElementsAre(0, 1, 2, 3, 4));  // as it was
+  EXPECT_THAT(order.loop(), ElementsAre(4, 3, 2));            // each a master of the next, the last one of the first
 }
 
 // The machine's own name: anything people can read, not too long; missing is one problem.

@@ -116,14 +116,14 @@ TEST(Messages, EngineStateKeepsEveryNumber) {
 
 TEST(Messages, FeedbackSaysItsErrorInASentence) {
   const msgs::feedback error =
-      ThroughBytes(ToMessage(FeedbackEvent{7, 8, FeedbackState::kError, false, ErrorId::kTargetBehindLimit}));
+      ThroughBytes(ToMessage(FeedbackEvent{7, 8, FeedbackState::kError, false, ErrorId::kTargetBehindLimit, 0}));
   EXPECT_EQ(error.ticket, 7);
   EXPECT_EQ(error.cycle, 8);
   EXPECT_EQ(error.state, msgs::feedback::STATE_ERROR);
   EXPECT_EQ(error.error_id, 8);
   EXPECT_EQ(error.sentence, ErrorText(ErrorId::kTargetBehindLimit));
   const msgs::feedback reached =
-      ThroughBytes(ToMessage(FeedbackEvent{7, 8, FeedbackState::kActive, true, ErrorId::kNone}));
+      ThroughBytes(ToMessage(FeedbackEvent{7, 8, FeedbackState::kActive, true, ErrorId::kNone, 2.5}));
   EXPECT_EQ(reached.reached, 1);
   EXPECT_EQ(reached.sentence, "");
 }

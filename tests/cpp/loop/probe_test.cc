@@ -46,6 +46,7 @@ TEST(Probe, CapturesWithinTwentyMicrosecondsOfTravel) {  // AX-49
       return rig.Done(probe);
     })) << run;
     ASSERT_EQ(rig.out.probe_captures, 1U);
+    ASSERT_EQ(rig.ends[probe].value, rig.out.probe_position);
     const double error = std::abs(rig.out.probe_position - edge);
     worst = std::max(worst, error / speed);
     ASSERT_LT(error, speed * 20e-6) << run << ": period " << rig.cycle.period_s << ", speed " << speed;

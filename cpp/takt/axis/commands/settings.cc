@@ -24,6 +24,12 @@ void describe(Description<WriteParameter>& d) {
   d.required<&C::value>("In the parameter's unit; 0 and 1 of yes and no.");
 }
 
+void describe(Description<ReadParameter>& d) {
+  using C = ReadParameter;
+  d.about("Reads a parameter by PLCopen's number (MC_ReadParameter); the value of the feedback once done.");
+  d.required<&C::number>(at_least(1), "PLCopen's number.");
+}
+
 void describe(Description<SetSoftLimits>& d) {
   using C = SetSoftLimits;
   d.about("Sets the SW limits or switches them off at run time (GT_SWLim).");

@@ -17,6 +17,9 @@ struct WriteParameter {  // MC_WriteParameter, MC_WriteBoolParameter
   std::int32_t number = 0;
   double value = 0;
 };
+struct ReadParameter {  // MC_ReadParameter, MC_ReadBoolParameter
+  std::int32_t number = 0;
+};
 struct SetSoftLimits {  // GT_SWLim
   bool enable_lower = true;
   bool enable_upper = true;
@@ -37,6 +40,7 @@ struct SetOverride {  // MC_SetOverride
 
 void describe(Description<SetConstants>&);
 void describe(Description<WriteParameter>&);
+void describe(Description<ReadParameter>&);
 void describe(Description<SetSoftLimits>&);
 void describe(Description<DirectOutput>&);
 void describe(Description<SetPosition>&);

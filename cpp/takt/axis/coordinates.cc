@@ -1,0 +1,14 @@
+#include "takt/axis/coordinates.h"
+
+namespace takt::axis {
+
+void ShiftCoordinates(double by, State& s) noexcept {
+  s.setpoint.position += by;
+  s.due += by;
+  s.actual.position += by;
+  s.motion.profile.Shift(by);
+  s.motion.target += by;
+  s.origin -= by;
+}
+
+}  // namespace takt::axis

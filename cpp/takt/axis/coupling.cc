@@ -1,0 +1,321 @@
+#include "takt/axis/coupling.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/axis/sequence.h"
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+using trajectory::Limits;
+
+namespace {
+
+KinematicState PhaseAt(const Context& c, const CouplingState& k) {
+  return k.phase.At(static_cast<double>(c.cycle.count - k.phase_start) * c.cycle.period_s);
+}
+
+// A master as this axis sees it: over all turns, with the phase.
+KinematicState Seen(const Context& c, const CouplingTerm& term, const KinematicState& phase) {
+  const State& master = c.axes[term.master];
+  const KinematicState& its = term.source == MasterSource::kSetValue ? master.setpoint : master.actual;
+  return {its.position + master.origin + phase.position, its.velocity + phase.velocity,
+          its.acceleration + phase.acceleration};
+}
+
+// The sum of all terms, as a demand over all own turns.
+KinematicState Sum(const Context& c, const CouplingState& k, const KinematicState& phase) {
+  KinematicState sum;
+  for (const CouplingTerm& term : k.law.terms) {
+    if (term.master == kNoAxis) continue;
+    const KinematicState master = Seen(c, term, &term == &k.law.terms[0] ? phase : KinematicState{});
+    sum.position += term.ratio * master.position;
+    sum.velocity += term.ratio * master.velocity;
+    sum.acceleration += term.ratio * master.acceleration;
+  }
+  return sum;
+}
+
+// The turn of `position` that lies next ahead of `from` in this sense; linear axes: as it is.
+double NextAhead(const AxisParams& p, double position, double from, double sense) {
+  if (!p.rotary()) return position;
+  const double turns = (from - position) / p.modulus;
+  return position + p.modulus * (sense < 0 ? std::floor(turns) : std::ceil(turns));
+}
+
+// Where the slave is to be when both are in step, over all turns, if it goes on to about `expected` meanwhile.
+double SlaveSync(const AxisParams& p, double position, double expected, SyncMode mode) {
+  if (!p.rotary()) return position;
+  const double turns = (expected - position) / p.modulus;
+  switch (mode) {
+    case SyncMode::kCatchUp:
+      return position + p.modulus * std::ceil(turns);
+    case SyncMode::kSlowDown:
+      return position + p.modulus * std::floor(turns);
+    default:
+      return position + p.modulus * std::round(turns);
+  }
+}
+
+// Speeds below this are standstill: there is no slope over the master's position then.
+double Standing(const AxisParams& p) {
+  return 1e-6 * p.limits.velocity;
+}
+
+// The curve over the share x = 0..1 of the master's way that begins as the slave moves now and ends in step.
+void BeginCurve(const Context& c, const KinematicState& master, State& s) {
+  CouplingState& k = s.coupling;
+  k.joining = Joining::kOnCurve;
+  k.curve_begin = master.position;
+  const double way = k.master_sync - master.position;
+  const double ratio = k.law.terms[0].ratio;
+  const double own = s.setpoint.position + s.origin;
+  double slope = 0;
+  double bend = 0;
+  if (std::abs(master.velocity) > Standing(c.axes_params[k.law.terms[0].master])) {
+    slope = s.setpoint.velocity / master.velocity;
+    bend = (s.setpoint.acceleration - slope * master.acceleration) / (master.velocity * master.velocity);
+  }
+  k.slave_sync = SlaveSync(c.params, k.slave_sync, own + 0.5 * (slope + ratio) * way, k.law.sync_mode);
+  const double y1 = k.slave_sync - own;
+  const double d0 = slope * way;
+  const double d1 = ratio * way;
+  const double b0 = bend * way * way;
+  k.curve = {own,
+             d0,
+             0.5 * b0,
+             10 * y1 - 6 * d0 - 4 * d1 - 1.5 * b0,
+             -15 * y1 + 8 * d0 + 7 * d1 + 1.5 * b0,
+             6 * y1 - 3 * d0 - 3 * d1 - 0.5 * b0};
+}
+
+KinematicState OnCurve(const CouplingState& k, const KinematicState& master) {
+  const double way = k.master_sync - k.curve_begin;
+  const double x = (master.position - k.curve_begin) / way;
+  const auto& q = k.curve;
+  const double y = q[0] + x * (q[1] + x * (q[2] + x * (q[3] + x * (q[4] + x * q[5]))));
+  const double slope = (q[1] + x * (2 * q[2] + x * (3 * q[3] + x * (4 * q[4] + x * 5 * q[5])))) / way;
+  const double bend = (2 * q[2] + x * (6 * q[3] + x * (12 * q[4] + x * 20 * q[5]))) / (way * way);
+  return {y, slope * master.velocity, bend * master.velocity * master.velocity + slope * master.acceleration};
+}
+
+// GearInPos: waits for the place where it begins, goes along the curve, then stays in step.
+bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, KinematicState& demand) {
+  CouplingState& k = s.coupling;
+  const CouplingTerm& term = k.law.terms[0];
+  const KinematicState master = Seen(c, term, phase);
+  if (k.joining == Joining::kWaiting) {
+    const double side = master.position - k.curve_begin;
+    const bool passed = side == 0 || (side > 0) != (k.begin_side > 0);
+    if (!passed) return false;
+    BeginCurve(c, master, s);
+  }
+  if (k.joining == Joining::kOnCurve) {
+    const double way = k.master_sync - k.curve_begin;
+    const double share = way == 0 ? 1 : (master.position - k.curve_begin) / way;
+    if (share < 1) {
+      // A master that goes back before the curve finds the slave where the curve began.
+      demand = share >= 0 ? OnCurve(k, master) : KinematicState{k.curve[0], 0, 0};
+      return true;
+    }
+    k.joining = Joining::kJoined;
+  }
+  demand = {k.slave_sync + term.ratio * (master.position - k.master_sync), term.ratio * master.velocity,
+            term.ratio * master.acceleration};
+  return true;
+}
+
+// What of a demand is more than the axis can.
+LimitedBy Beyond(const Limits& own, const KinematicState& demand) {
+  if (std::abs(demand.velocity) > own.velocity) return LimitedBy::kVelocity;
+  const double ramp = demand.velocity * demand.acceleration > 0 ? own.acceleration : own.deceleration;
+  return std::abs(demand.acceleration) > ramp ? LimitedBy::kAcceleration : LimitedBy::kNothing;
+}
+
+void BeginJoining(const Context& c, const Request& r, State& s) {
+  CouplingState& k = s.coupling;
+  const CouplingTerm& term = k.law.terms[0];
+  const State& master = c.axes[term.master];
+  const KinematicState seen = Seen(c, term, {});
+  const double sense = seen.velocity < 0 ? -1 : 1;
+  const double distance = std::max(0.0, r.coupling.master_start_distance);
+  k.master_sync = NextAhead(c.axes_params[term.master], r.coupling.master_sync_position + master.origin,
+                            seen.position + sense * distance, sense);
+  k.slave_sync = r.coupling.slave_sync_position + s.origin;
+  if (r.coupling.master_start_distance < 0) {
+    const double own = s.setpoint.position + s.origin;
+    k.slave_sync =
+        SlaveSync(c.params, k.slave_sync, own + term.ratio * (k.master_sync - seen.position), k.law.sync_mode);
+    k.joining = Joining::kJoined;
+    return;
+  }
+  const double side = k.master_sync < seen.position ? -1 : 1;
+  k.curve_begin = k.master_sync - side * distance;
+  k.begin_side = seen.position - k.curve_begin;
+  k.joining = Joining::kWaiting;
+}
+
+bool MastersStand(const Context& c, const CouplingState& k) {
+  return std::all_of(k.law.terms.begin(), k.law.terms.end(), [&](const CouplingTerm& term) {
+    return term.master == kNoAxis || c.axes[term.master].loop_closed || term.source == MasterSource::kActualValue;
+  });
+}
+
+void EndPhase(const Context& c, FeedbackState feedback, State& s) {
+  if (!s.coupling.phase_moves) return;
+  s.coupling.phase_moves = false;
+  Report(c, s.coupling.phase_ticket, feedback);
+  s.coupling.phase_ticket = 0;
+}
+
+Status ShiftPhase(const Context& c, Ticket ticket, bool relative, double shift, const std::optional<double>& velocity,
+                  const std::optional<double>& acceleration, const std::optional<double>& deceleration,
+                  const std::optional<double>& jerk, State& s) {
+  CouplingState& k = s.coupling;
+  const bool one_master = Couples(s.active.kind) && s.active.kind != RequestKind::kCombineAxes;
+  if (!one_master) return Status::Failed(ErrorId::kState);
+  const double ratio = std::max(std::abs(k.law.terms[0].ratio), 1e-6);
+  const Limits own = c.params.planner_limits();
+  const Limits limits = {velocity.value_or(own.velocity / ratio), acceleration.value_or(own.acceleration / ratio),
+                         deceleration.value_or(acceleration.value_or(own.deceleration / ratio)),
+                         jerk.value_or(own.jerk / ratio)};
+  const KinematicState from = k.phase.At(static_cast<double>(c.cycle.count - 1 - k.phase_start) * c.cycle.period_s);
+  trajectory::Profile profile;
+  const double target = relative ? k.phase.end().position + shift : shift;
+  if (const Status status = c.planner.ToPosition(from, target, 0, limits, profile); status.failed()) return status;
+  EndPhase(c, FeedbackState::kAborted, s);
+  k.phase = profile;
+  k.phase_start = c.cycle.count - 1;
+  k.phase_ticket = ticket;
+  k.phase_moves = true;
+  Report(c, ticket, FeedbackState::kActive);
+  return Status::Ok();
+}
+
+}  // namespace
+
+bool Couples(RequestKind kind) noexcept {
+  return kind == RequestKind::kGearIn || kind == RequestKind::kGearInPos || kind == RequestKind::kCombineAxes;
+}
+
+Status FindMasters(const Context& c, Request& r) noexcept {
+  for (CouplingTerm& term : r.coupling.terms) {
+    if (term.name.empty()) continue;
+    for (std::size_t i = 0; i < c.axes_params.size() && term.master == kNoAxis; ++i) {
+      if (c.axes_params[i].name == term.name.view()) term.master = static_cast<std::uint32_t>(i);
+    }
+    if (term.master == kNoAxis) return Status::Failed(ErrorId::kUnknownTarget);
+  }
+  return Status::Ok();
+}
+
+void Couple(const Context& c, const Request& r, State& s) noexcept {
+  Grant(c, r, s);
+  CouplingState& k = s.coupling;
+  k = CouplingState{};
+  k.law = r.coupling;
+  s.limited_by = LimitedBy::kNothing;
+  s.motion.profile = trajectory::Profile{s.setpoint};
+  s.motion.target = s.setpoint.position;
+  s.motion.arrived = false;
+  if (r.kind == RequestKind::kGearInPos) BeginJoining(c, r, s);
+  Enter(s, PlcState::kSynchronizedMotion);
+}
+
+bool FollowMasters(const Context& c, State& s) noexcept {
+  if (!Couples(s.active.kind)) return false;
+  CouplingState& k = s.coupling;
+  if (!MastersStand(c, k)) {  // nothing to follow any more
+    const Limits ramps = c.params.planner_limits();
+    EndActive(c, FeedbackState::kError, ErrorId::kAxisFault, s);
+    s.coupling.law = CouplingRequest{};
+    AbortBuffer(c, s);
+    ComeToRest(c, ramps, FromCycleBefore(c), s);
+    return false;
+  }
+  const KinematicState phase = PhaseAt(c, k);
+  const bool by_velocity = s.active.kind != RequestKind::kGearInPos && !k.phase_moves;
+  KinematicState demand;
+  const bool begun =
+      s.active.kind != RequestKind::kGearInPos ? (demand = Sum(c, k, phase), true) : JoinedDemand(c, phase, s, demand);
+  if (!begun) {  // keeps its velocity until it begins
+    demand = {s.setpoint.position + s.origin + s.setpoint.velocity * c.cycle.period_s, s.setpoint.velocity, 0};
+  }
+  demand.position -= s.origin;
+  const Chaser chaser = {c.params, c.planner, s.active.limits(), c.cycle.period_s};
+  if (by_velocity) {
+    s.setpoint = Chase(chaser, ChaseMode::kVelocity, s.setpoint, demand, k.chase);
+  } else {
+    demand.position += k.chase.offset;
+    s.setpoint = Chase(chaser, ChaseMode::kPosition, s.setpoint, demand, k.chase);
+  }
+  if (!begun || k.joining == Joining::kOnCurve) k.chase.in_step = false;
+  s.limited_by = Beyond(c.params.planner_limits(), demand);
+  const bool phase_over = static_cast<double>(c.cycle.count - k.phase_start) * c.cycle.period_s >= k.phase.duration();
+  if (k.phase_moves && phase_over && k.chase.in_step) EndPhase(c, FeedbackState::kDone, s);
+  if (!AtRest(s)) s.motion.arrived_cycle = c.cycle.count;
+  return true;
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const PhasingAbsolute& p, State& s) noexcept {
+  return ShiftPhase(c, ticket, false, p.phase_shift, p.velocity, p.acceleration, p.deceleration, p.jerk, s);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const PhasingRelative& p, State& s) noexcept {
+  return ShiftPhase(c, ticket, true, p.phase_shift, p.velocity, p.acceleration, p.deceleration, p.jerk, s);
+}
+
+Status LetGo(const Context& c, const Request& r, State& s) noexcept {
+  if (s.plc != PlcState::kSynchronizedMotion || !Couples(s.active.kind)) return Status::Failed(ErrorId::kState);
+  trajectory::Profile profile{s.setpoint};
+  const Limits own = c.params.planner_limits();
+  const double velocity = std::clamp(s.setpoint.velocity, -own.velocity, own.velocity);
+  if (const Status status = c.planner.ToVelocity(s.setpoint, velocity, own, profile); status.failed()) return status;
+  AbortAll(c, s);
+  Grant(c, r, s);
+  StartMotion(profile, 0, FromCycleBefore(c), s);
+  Enter(s, PlcState::kContinuousMotion);
+  EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+  return Status::Ok();
+}
+
+void Uncouple(const Context& c, bool after_fault, State& s) noexcept {
+  EndPhase(c, FeedbackState::kAborted, s);
+  s.coupling.chase.in_step = false;
+  if (!after_fault) s.coupling.law = CouplingRequest{};
+}
+
+bool CouplingOf(const Context& c, const Command& command, CouplingRequest& out) noexcept {
+  Request request;
+  if (MakeRequest(command, c.params, request).failed() || !Couples(request.kind)) return false;
+  if (FindMasters(c, request).failed()) return false;
+  out = request.coupling;
+  return true;
+}
+
+void describe(Enumeration<Joining>& e) {
+  e.about("How far the way into step has come.");
+  e.value(Joining::kWaiting, "waiting", "The master is not yet where it begins.");
+  e.value(Joining::kOnCurve, "on_curve", "On the curve that ends in step.");
+  e.value(Joining::kJoined, "joined", "In step, as far as the limits allow.");
+}
+
+void describe(Description<CouplingState>& d) {
+  using S = CouplingState;
+  d.about("An axis that follows masters.");
+  d.internal<&S::law>("What it follows.");
+  d.internal<&S::chase>("The catching up.");
+  d.internal<&S::joining>("How far the way into step has come.");
+  d.internal<&S::master_sync>("Where the master is when both are in step, over all turns.");
+  d.internal<&S::slave_sync>(unit::u, "Where this axis is then.");
+  d.internal<&S::curve_begin>("Where the curve begins.");
+  d.internal<&S::begin_side>("On which side of that the master was.");
+  d.internal<&S::curve>("Coefficients over the share of the way.");
+  d.internal<&S::phase>("Added to the master's position.");
+  d.internal<&S::phase_start>("Cycle its time counts from.");
+  d.internal<&S::phase_ticket>("Of the command that shifts it.");
+  d.internal<&S::phase_moves>("It is being shifted.");
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,63 @@
+// Axes coupled at run time: gears, their phase, sums of two masters.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "takt/axis/chase.h"
+#include "takt/axis/request.h"
+#include "takt/core/cycle.h"
+#include "takt/core/feedback.h"
+#include "takt/core/status.h"
+#include "takt/trajectory/profile.h"
+
+namespace takt::axis {
+
+struct Context;
+struct State;
+
+// How far the way into step has come (GearInPos).
+enum class Joining : std::uint8_t {
+  kWaiting,  // the master is not yet where it begins
+  kOnCurve,  // on a curve over the master's position that ends in step
+  kJoined,
+};
+
+struct CouplingState {
+  CouplingRequest law;  // in force
+  ChaseState chase;
+  Joining joining = Joining::kJoined;
+  double master_sync = 0;         // master's u over all turns, where both are in step ...
+  double slave_sync = 0;          // ... with the slave here (u over all turns)
+  double curve_begin = 0;         // master's u, where the curve begins
+  double begin_side = 0;          // on which side of that the master was when it was last looked at
+  std::array<double, 6> curve{};  // u, coefficients over the share of the way
+
+  // The phase: a motion in the master's unit on top of its position.
+  trajectory::Profile phase;
+  std::uint64_t phase_start = 0;
+  Ticket phase_ticket = 0;
+  bool phase_moves = false;
+};
+
+bool Couples(RequestKind kind) noexcept;
+// Finds the masters of a request. kUnknownTarget: there is no such axis, or it is the axis itself.
+Status FindMasters(const Context& c, Request& r) noexcept;
+// Puts a request that couples in control. What was in control must have been ended.
+void Couple(const Context& c, const Request& r, State& s) noexcept;
+// The next set point of a coupled axis; false: it is not (any more) coupled.
+bool FollowMasters(const Context& c, State& s) noexcept;
+// Shifts what the axis takes for its master's position. kState: not coupled to one master.
+Status CarryOut(const Context& c, Ticket ticket, const PhasingAbsolute& command, State& s) noexcept;
+Status CarryOut(const Context& c, Ticket ticket, const PhasingRelative& command, State& s) noexcept;
+// GearOut, CamOut: on with the velocity there is.
+Status LetGo(const Context& c, const Request& r, State& s) noexcept;
+// The coupling is over, and its phase with it. After a fault its masters are kept until they were stopped, too (AX-55).
+void Uncouple(const Context& c, bool after_fault, State& s) noexcept;
+// The masters that a command for this axis asks for. False: it asks for none, or is refused anyway.
+bool CouplingOf(const Context& c, const Command& command, CouplingRequest& out) noexcept;
+
+void describe(Enumeration<Joining>&);
+void describe(Description<CouplingState>&);
+
+}  // namespace takt::axis

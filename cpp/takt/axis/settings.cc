@@ -1,0 +1,203 @@
+#include "takt/axis/settings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/axis/coordinates.h"
+#include "takt/axis/fit.h"
+#include "takt/axis/request_maker.h"
+#include "takt/axis/sequence.h"
+
+namespace takt::axis {
+
+namespace {
+
+Status Done(const Context& c, Ticket ticket, double value = 0) {
+  Report(c, ticket, FeedbackState::kActive);
+  Report(c, ticket, FeedbackState::kDone, ErrorId::kNone, false, value);
+  return Status::Ok();
+}
+
+// Whether an axis could work within these limits from where it is now: it can stop inside, and what it promised lies
+// inside.
+bool Fits(const AxisParams& p, const AxisLimits& limits, const State& s) {
+  if (!s.loop_closed) return true;
+  const double stop = trajectory::StopPosition(s.setpoint, p.planner_limits());
+  const bool promised = s.active.positions() && !s.motion.arrived;
+  return Inside(limits, stop) && Inside(limits, s.setpoint.position) && (!promised || Inside(limits, s.motion.target));
+}
+
+Status CheckLimits(const AxisParams& p, const AxisLimits& limits, const State& s) {
+  if (p.rotary() && (limits.lower || limits.upper)) return Status::Failed(ErrorId::kParameter);
+  if (limits.lower && limits.upper && !(*limits.lower < *limits.upper)) return Status::Failed(ErrorId::kParameter);
+  return Fits(p, limits, s) ? Status::Ok() : Status::Failed(ErrorId::kTargetBehindLimit);
+}
+
+Status SetLimits(const Context& c, Ticket ticket, std::optional<double> lower, std::optional<double> upper, State& s) {
+  AxisLimits limits = c.params.limits;
+  limits.lower = lower;
+  limits.upper = upper;
+  if (const Status status = CheckLimits(c.params, limits, s); status.failed()) return status;
+  c.params.limits = limits;
+  return Done(c, ticket);
+}
+
+double OrInfinity(const std::optional<double>& limit) {
+  return limit.value_or(HUGE_VAL);
+}
+
+}  // namespace
+
+std::optional<double> ValueOf(const AxisParams& p, const State& s, std::int32_t number) noexcept {
+  const trajectory::Limits own = p.planner_limits();
+  switch (static_cast<Parameter>(number)) {
+    case Parameter::kCommandedPosition:
+      return s.setpoint.position;
+    case Parameter::kLimitPositive:
+      return OrInfinity(p.limits.upper);
+    case Parameter::kLimitNegative:
+      return p.limits.lower.value_or(-HUGE_VAL);
+    case Parameter::kEnableLimitPositive:
+      return p.limits.upper ? 1 : 0;
+    case Parameter::kEnableLimitNegative:
+      return p.limits.lower ? 1 : 0;
+    case Parameter::kEnableLagMonitoring:
+      return p.supervision.deviation_moving ? 1 : 0;
+    case Parameter::kMaxPositionLag:
+      return OrInfinity(p.supervision.deviation_moving);
+    case Parameter::kMaxVelocitySystem:
+    case Parameter::kMaxVelocity:
+      return own.velocity;
+    case Parameter::kActualVelocity:
+      return s.actual.velocity;
+    case Parameter::kCommandedVelocity:
+      return s.setpoint.velocity;
+    case Parameter::kMaxAccelerationSystem:
+    case Parameter::kMaxAcceleration:
+      return own.acceleration;
+    case Parameter::kMaxDecelerationSystem:
+    case Parameter::kMaxDeceleration:
+      return own.deceleration;
+    case Parameter::kMaxJerkSystem:
+    case Parameter::kMaxJerk:
+      return own.jerk;
+  }
+  return std::nullopt;
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const SetConstants& k, State& s) noexcept {
+  AxisLimits limits = c.params.limits;
+  if (k.lower) limits.lower = k.lower;
+  if (k.upper) limits.upper = k.upper;
+  if (const Status status = CheckLimits(c.params, limits, s); status.failed()) return status;
+  c.params.limits = limits;
+  ControlLoop& loop = c.params.loop;
+  loop.kp = k.kp.value_or(loop.kp);
+  loop.ki = k.ki.value_or(loop.ki);
+  loop.kd = k.kd.value_or(loop.kd);
+  loop.kc = k.kc.value_or(loop.kc);
+  loop.ff = k.ff.value_or(loop.ff);
+  loop.velocity_at_10v = k.velocity_at_10v.value_or(loop.velocity_at_10v);
+  s.constants_set = true;
+  return Done(c, ticket);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const WriteParameter& w, State& s) noexcept {
+  const AxisLimits& limits = c.params.limits;
+  switch (static_cast<Parameter>(w.number)) {
+    case Parameter::kLimitPositive:
+      return SetLimits(c, ticket, limits.lower, w.value, s);
+    case Parameter::kLimitNegative:
+      return SetLimits(c, ticket, w.value, limits.upper, s);
+    case Parameter::kEnableLimitPositive:
+      if (w.value != 0) return limits.upper ? Done(c, ticket) : Status::Failed(ErrorId::kParameter);
+      return SetLimits(c, ticket, limits.lower, std::nullopt, s);
+    case Parameter::kEnableLimitNegative:
+      if (w.value != 0) return limits.lower ? Done(c, ticket) : Status::Failed(ErrorId::kParameter);
+      return SetLimits(c, ticket, std::nullopt, limits.upper, s);
+    case Parameter::kMaxPositionLag:
+      if (!(w.value > 0)) return Status::Failed(ErrorId::kParameter);
+      c.params.supervision.deviation_moving = w.value;
+      return Done(c, ticket);
+    case Parameter::kEnableLagMonitoring:
+      if (w.value != 0)
+        return c.params.supervision.deviation_moving ? Done(c, ticket) : Status::Failed(ErrorId::kParameter);
+      c.params.supervision.deviation_moving.reset();
+      return Done(c, ticket);
+    default:
+      return Status::Failed(ErrorId::kParameter);
+  }
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const ReadParameter& r, State& s) noexcept {
+  const std::optional<double> value = ValueOf(c.params, s, r.number);
+  return value ? Done(c, ticket, *value) : Status::Failed(ErrorId::kParameter);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const SetSoftLimits& l, State& s) noexcept {
+  const auto chosen = [](bool enable, std::optional<double> wanted, std::optional<double> there) {
+    return !enable ? std::nullopt : wanted ? wanted : there;
+  };
+  return SetLimits(c, ticket, chosen(l.enable_lower, l.lower, c.params.limits.lower),
+                   chosen(l.enable_upper, l.upper, c.params.limits.upper), s);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const DirectOutput& d, State& s) noexcept {
+  if (c.params.drive.mode != DriveMode::kAnalog) return Status::Failed(ErrorId::kState);
+  if (s.plc != PlcState::kDisabled || s.enable) return Status::Failed(ErrorId::kPowerOn);
+  s.direct_voltage_v = d.voltage;
+  return Done(c, ticket);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const SetPosition& p, State& s) noexcept {
+  if (s.plc == PlcState::kHoming || s.plc == PlcState::kStopping || s.plc == PlcState::kErrorStop) {
+    return Status::Failed(ErrorId::kState);
+  }
+  // Where the axis is: its set point, and with the loop open what is measured.
+  const double by = p.relative ? p.position : p.position - s.setpoint.position;
+  State shifted = s;
+  ShiftCoordinates(by, shifted);
+  if (!Fits(c.params, c.params.limits, shifted)) return Status::Failed(ErrorId::kTargetBehindLimit);
+  s = shifted;
+  return Done(c, ticket);
+}
+
+bool Fill(const Maker& m, const SetConstants& k) {
+  const auto not_negative_if = [&](const char* field, const std::optional<double>& value, double high) {
+    return !value || m.In(field, *value, 0, high);
+  };
+  const auto position_if = [&](const char* field, const std::optional<double>& value) {
+    return !value || m.In(field, *value, -kMaxPosition, kMaxPosition);
+  };
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  return not_negative_if("kp", k.kp, kLargest) && not_negative_if("ki", k.ki, kLargest) &&
+         not_negative_if("kd", k.kd, kLargest) && not_negative_if("kc", k.kc, 1) &&
+         not_negative_if("ff", k.ff, kLargest) &&
+         (!k.velocity_at_10v ||
+          m.In("velocity_at_10v", *k.velocity_at_10v, std::numeric_limits<double>::min(), kMaxPosition)) &&
+         position_if("lower", k.lower) && position_if("upper", k.upper);
+}
+
+bool Fill(const Maker& m, const WriteParameter& w) {
+  return m.In("value", w.value, -kMaxPosition, kMaxPosition) && m.In("number", w.number, 1, 17);
+}
+
+bool Fill(const Maker& m, const ReadParameter& r) {
+  return m.In("number", r.number, 1, 17);
+}
+
+bool Fill(const Maker& m, const SetSoftLimits& l) {
+  return m.In("lower", l.lower.value_or(0), -kMaxPosition, kMaxPosition) &&
+         m.In("upper", l.upper.value_or(0), -kMaxPosition, kMaxPosition);
+}
+
+bool Fill(const Maker& m, const DirectOutput& d) {
+  return m.In("voltage", d.voltage, -kVoltageLimit, kVoltageLimit);
+}
+
+bool Fill(const Maker& m, const SetPosition& p) {
+  const bool within_turn = m.params.rotary() && !p.relative;
+  return m.In("position", p.position, within_turn ? 0 : -kMaxPosition, within_turn ? m.params.modulus : kMaxPosition);
+}
+
+}  // namespace takt::axis

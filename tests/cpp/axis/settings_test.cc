@@ -1,0 +1,190 @@
+// Settings at run time: AX-27, AX-28, AX-29, AX-52, AX-53.
+#include <gtest/gtest.h>
+
+#include "rig.h"
+
+namespace takt::axis {
+namespace {
+
+double Read(Rig& rig, int number) {
+  const Ticket ticket = rig.Give(ReadParameter{number});
+  rig.Step();
+  EXPECT_TRUE(rig.lives[ticket].done) << number;
+  return rig.lives[ticket].events.back().value;
+}
+
+ErrorId ErrorOf(Rig& rig, const Command& command) {
+  const Ticket ticket = rig.Give(command);
+  rig.Step();
+  EXPECT_TRUE(rig.Ended(ticket));
+  return rig.lives[ticket].error_id;
+}
+
+// AX-27: no motion before the constants, where the machine asks for that.
+TEST(Constants, AreAwaited) {
+  AxisParams p = LinearParams();
+  p.await_constants = true;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  EXPECT_EQ(ErrorOf(rig, MoveRelative{.distance = 1}), ErrorId::kNoConstants);
+  EXPECT_EQ(ErrorOf(rig, Jog{.forward = true}), ErrorId::kNoConstants);
+  EXPECT_EQ(
+      ErrorOf(
+          rig,
+          SetConstants{
+              .kp = 0.1, .ki = {}, .kd = 0.02, .kc = {}, .ff = {}, .velocity_at_10v = 800, .lower = -5, .upper = 50}),
+      ErrorId::kNone);
+  EXPECT_EQ(rig.params.loop.kp, 0.1);
+  EXPECT_EQ(rig.params.loop.kd, 0.02);
+  EXPECT_EQ(rig.params.loop.velocity_at_10v, 800);
+  EXPECT_EQ(rig.params.loop.ff, 1);  // left out: as it was
+  EXPECT_EQ(ErrorOf(rig, MoveAbsolute{.position = 51}), ErrorId::kTargetBehindLimit);
+  EXPECT_TRUE(rig.RunToEnd(rig.Give(MoveAbsolute{.position = 50})));
+}
+
+// AX-28: PLCopen's numbers.
+TEST(Parameters, AreReadAndWritten) {
+  AxisParams p = LinearParams();
+  p.limits.upper = 100;
+  p.supervision.deviation_moving = 5;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  rig.RunToEnd(rig.Give(MoveAbsolute{.position = 10}));
+  EXPECT_EQ(Read(rig, 1), 10);
+  EXPECT_EQ(Read(rig, 2), 100);
+  EXPECT_EQ(Read(rig, 4), 1);
+  EXPECT_EQ(Read(rig, 5), 0);
+  EXPECT_EQ(Read(rig, 7), 5);
+  EXPECT_EQ(Read(rig, 9), 500);
+  EXPECT_EQ(Read(rig, 13), 5000);
+  EXPECT_EQ(Read(rig, 15), 4000);
+  EXPECT_EQ(Read(rig, 17), 100000);
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{2, 20}), ErrorId::kNone);
+  EXPECT_EQ(Read(rig, 2), 20);
+  EXPECT_EQ(ErrorOf(rig, MoveAbsolute{.position = 21}), ErrorId::kTargetBehindLimit);
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{2, 9}), ErrorId::kTargetBehindLimit);  // the axis is beyond it
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{4, 0}), ErrorId::kNone);
+  EXPECT_EQ(Read(rig, 4), 0);
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{10, 1}), ErrorId::kParameter);  // cannot be written
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{18, 1}), ErrorId::kParameter);
+  EXPECT_EQ(ErrorOf(rig, ReadParameter{0}), ErrorId::kParameter);
+}
+
+// AX-52: new limits hold at once; those that a motion could not keep are refused, and it goes on.
+TEST(SoftLimits, ChangeAtRunTime) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket move = rig.Give(MoveAbsolute{.position = 100});
+  rig.Run(0.1);
+  EXPECT_EQ(ErrorOf(rig, SetSoftLimits{.lower = {}, .upper = 99}), ErrorId::kTargetBehindLimit);
+  EXPECT_EQ(ErrorOf(rig, SetSoftLimits{.lower = -10, .upper = 100}), ErrorId::kNone);
+  EXPECT_TRUE(rig.RunToEnd(move));
+  EXPECT_TRUE(rig.lives[move].done);
+  EXPECT_EQ(ErrorOf(rig, MoveRelative{.distance = 1}), ErrorId::kTargetBehindLimit);
+  EXPECT_EQ(ErrorOf(rig, SetSoftLimits{.enable_lower = true, .enable_upper = false, .lower = {}, .upper = {}}),
+            ErrorId::kNone);
+  EXPECT_TRUE(rig.RunToEnd(rig.Give(MoveRelative{.distance = 1})));
+  EXPECT_EQ(ErrorOf(rig, SetSoftLimits{.lower = 200, .upper = 100}), ErrorId::kParameter);
+  Rig rotary(RotaryParams());
+  EXPECT_EQ(ErrorOf(rotary, SetSoftLimits{.lower = 0, .upper = 10}), ErrorId::kParameter);
+}
+
+// A limit that comes into the way of an endless motion stops it before it.
+TEST(SoftLimits, StopAnEndlessMotion) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveVelocity{.velocity = 100});
+  rig.Run(0.5);
+  const double limit = rig.position() + 20;
+  EXPECT_EQ(ErrorOf(rig, SetSoftLimits{.lower = {}, .upper = limit}), ErrorId::kNone);
+  rig.Run(1);
+  EXPECT_EQ(rig.out.error, ErrorId::kSoftLimitPositive);
+  EXPECT_LE(rig.position(), limit + 1e-9);
+}
+
+// AX-53: while the axis is Disabled only, on analogue drives only.
+TEST(DirectOutput, IsForDisabledAnalogueAxes) {
+  AxisParams p = LinearParams();
+  Rig csp(p);
+  EXPECT_EQ(ErrorOf(csp, DirectOutput{1}), ErrorId::kState);
+  p.drive.mode = DriveMode::kAnalog;
+  Rig rig(p);
+  EXPECT_EQ(ErrorOf(rig, DirectOutput{2.5}), ErrorId::kNone);
+  EXPECT_EQ(rig.commanded.voltage_v, 2.5);
+  EXPECT_FALSE(rig.commanded.release_brake);
+  EXPECT_EQ(ErrorOf(rig, DirectOutput{10.1}), ErrorId::kParameter);
+  ASSERT_TRUE(rig.PowerOn());
+  EXPECT_NEAR(rig.commanded.voltage_v, 0, 0.01);
+  EXPECT_EQ(ErrorOf(rig, DirectOutput{1}), ErrorId::kPowerOn);
+  EXPECT_TRUE(rig.RunToEnd(rig.Give(Power{.enable = false})));
+  rig.Run(0.01);
+  EXPECT_EQ(rig.commanded.voltage_v, 0);  // not the old one again
+}
+
+// AX-29: only the numbers change.
+TEST(SetPosition, MovesNothing) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.RunToEnd(rig.Give(MoveAbsolute{.position = 10}));
+  const double counts = rig.commanded.position_counts;
+  EXPECT_EQ(ErrorOf(rig, SetPosition{.position = 100}), ErrorId::kNone);
+  EXPECT_EQ(rig.out.set_position, 100);
+  EXPECT_NEAR(rig.out.actual_position, 100, 1e-5);
+  EXPECT_NEAR(rig.out.following_error, 0, 1e-5);
+  EXPECT_EQ(rig.commanded.position_counts, counts);
+  EXPECT_EQ(ErrorOf(rig, SetPosition{.position = -1, .relative = true}), ErrorId::kNone);
+  EXPECT_EQ(rig.out.set_position, 99);
+  rig.RunToEnd(rig.Give(MoveAbsolute{.position = 0}));
+  EXPECT_NEAR(rig.commanded.position_counts, counts - 99e6, 1);
+}
+
+// In motion: on to where it went, by its new name; without a step.
+TEST(SetPosition, LeavesAMotionAsItIs) {
+  Rig rig(LinearParams());
+  Rig twin(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  ASSERT_TRUE(twin.PowerOn());
+  const Ticket move = rig.Give(MoveAbsolute{.position = 100});
+  twin.Give(MoveAbsolute{.position = 100});
+  rig.Run(0.1);
+  twin.Run(0.1);
+  rig.Give(SetPosition{.position = 1000, .relative = true});
+  while (!rig.Ended(move)) {
+    rig.Step();
+    twin.Step();
+    ASSERT_NEAR(rig.position(), twin.position() + 1000, 1e-9);
+    ASSERT_EQ(rig.out.set_velocity, twin.out.set_velocity);
+  }
+  EXPECT_EQ(rig.position(), 1100);
+}
+
+TEST(SetPosition, KeepsTheSoftLimits) {
+  AxisParams p = LinearParams();
+  p.limits.upper = 100;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  EXPECT_EQ(ErrorOf(rig, SetPosition{.position = 101}), ErrorId::kTargetBehindLimit);
+  EXPECT_EQ(rig.position(), 0);
+  const Ticket move = rig.Give(MoveAbsolute{.position = 90});
+  rig.Run(0.05);
+  EXPECT_EQ(ErrorOf(rig, SetPosition{.position = 11, .relative = true}), ErrorId::kTargetBehindLimit);
+  EXPECT_TRUE(rig.RunToEnd(move));
+  EXPECT_EQ(rig.position(), 90);
+  rig.Give(Stop{.hold = true});
+  rig.Step();
+  EXPECT_EQ(ErrorOf(rig, SetPosition{.position = 0}), ErrorId::kState);
+}
+
+// On a rotary axis positions stay within a turn.
+TEST(SetPosition, KnowsTurns) {
+  Rig rig(RotaryParams());
+  ASSERT_TRUE(rig.PowerOn());
+  EXPECT_EQ(ErrorOf(rig, SetPosition{.position = 350}), ErrorId::kNone);
+  EXPECT_EQ(ErrorOf(rig, SetPosition{.position = 361}), ErrorId::kParameter);
+  rig.RunToEnd(rig.Give(MoveAbsolute{.position = 10}));
+  EXPECT_NEAR(rig.out.set_position, 10, 1e-9);
+  EXPECT_NEAR(rig.commanded.position_counts, 20e6, 1);
+}
+
+}  // namespace
+}  // namespace takt::axis

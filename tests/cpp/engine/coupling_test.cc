@@ -1,0 +1,388 @@
+// Gears between axes, made at run time: AX-43 to AX-47, AX-55.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "line.h"
+
+namespace takt::engine {
+namespace {
+
+using axis::PlcState;
+
+// AX-43: the velocity is locked; what is lost until then is not made up, and from then on nothing is lost.
+TEST(Gear, LocksTheVelocityAndKeepsWhatWasLost) {
+  Line line(WithStrong(LineOf(2), 1, 2));
+  line.Give(0, axis::MoveVelocity{.velocity = 100});
+  line.Run(200);
+  axis::GearIn weak = Gear("a0", 2);
+  weak.acceleration = 5000;
+  weak.deceleration = 5000;
+  weak.jerk = 100000;
+  const Ticket gear = line.Give(1, weak);
+  const double begin = line.At(0).set_position;
+  line.Step();
+  EXPECT_EQ(line.At(1).state, PlcState::kSynchronizedMotion);
+  int cycles = 1;
+  while (!line.reached[gear] && cycles < 1000) {
+    line.Step();
+    ++cycles;
+  }
+  // Closed form: from 0 to 200 u/s with 5000 u/s2 and 100000 u/s3 takes v/a + a/j.
+  EXPECT_NEAR(cycles * 0.001, 200.0 / 5000 + 5000.0 / 100000, 0.003);
+  EXPECT_TRUE(line.At(1).in_step);
+  EXPECT_EQ(line.At(1).master1, 1u);
+  const double offset = line.At(1).set_position - 2 * line.At(0).set_position;
+  EXPECT_LT(line.At(1).set_position, 2 * (line.At(0).set_position - begin) - 5);
+  line.Give(0, axis::MoveVelocity{.velocity = 40});
+  for (int i = 0; i < 2000; ++i) {
+    line.Step();
+    ASSERT_NEAR(line.At(1).set_position - 2 * line.At(0).set_position, offset, 1e-9);
+    ASSERT_DOUBLE_EQ(line.At(1).set_velocity, 2 * line.At(0).set_velocity);
+  }
+}
+
+// AX-43: another ratio on the fly takes over without a step.
+TEST(Gear, ChangesItsRatioOnTheFly) {
+  Line line(LineOf(2));
+  line.Give(0, axis::MoveVelocity{.velocity = 100});
+  const Ticket first = line.Give(1, Gear("a0", 1));
+  line.Run(500);
+  const Ticket second = line.Give(1, Gear("a0", -0.5));
+  line.Run(1000);
+  EXPECT_EQ(line.last[first].state, FeedbackState::kAborted);
+  EXPECT_TRUE(line.reached[second]);
+  EXPECT_NEAR(line.At(1).set_velocity, -50, 1e-9);
+}
+
+// A master beyond what the slave can do: as fast as it can, and in step again once it can.
+TEST(Gear, FallsOutOfStepWithinItsLimitsOnly) {
+  Line line(LineOf(2));
+  line.Give(1, Gear("a0", 2));
+  line.Give(0, axis::MoveVelocity{.velocity = 400});
+  line.Run(1000);
+  EXPECT_NEAR(line.At(1).set_velocity, 500, 1e-6);
+  EXPECT_FALSE(line.At(1).in_step);
+  EXPECT_EQ(line.At(1).limited_by, LimitedBy::kVelocity);
+  line.Give(0, axis::MoveVelocity{.velocity = 100});
+  line.Run(1000);
+  EXPECT_NEAR(line.At(1).set_velocity, 200, 1e-9);
+  EXPECT_TRUE(line.At(1).in_step);
+  EXPECT_EQ(line.At(1).limited_by, LimitedBy::kNothing);
+}
+
+// AX-44: the axis goes on with the velocity it has, and belongs to no one.
+TEST(Gear, LetsGo) {
+  Line line(LineOf(2));
+  line.Give(0, axis::MoveVelocity{.velocity = 100});
+  const Ticket gear = line.Give(1, Gear("a0"));
+  line.Run(500);
+  const Ticket out = line.Give(1, axis::GearOut{});
+  line.Run(5);
+  EXPECT_EQ(line.last[gear].state, FeedbackState::kAborted);
+  EXPECT_EQ(line.last[out].state, FeedbackState::kDone);
+  EXPECT_EQ(line.At(1).state, PlcState::kContinuousMotion);
+  EXPECT_EQ(line.At(1).master1, 0u);
+  line.Give(0, axis::Halt{});
+  line.Run(500);
+  EXPECT_NEAR(line.At(1).set_velocity, 100, 1e-9);
+  EXPECT_EQ(line.At(0).set_velocity, 0);
+}
+
+TEST(Gear, CannotBeLetGoWhereThereIsNone) {
+  Line line(LineOf(1));
+  const Ticket out = line.Give(0, axis::GearOut{});
+  line.Run(2);
+  EXPECT_EQ(line.last[out].error, ErrorId::kState);
+}
+
+// A buffered gear waits for its turn; what waits behind a gear begins when it is in step.
+TEST(Gear, TakesItsTurn) {
+  Line line(LineOf(2));
+  line.Give(0, axis::MoveVelocity{.velocity = 50});
+  const Ticket move = line.Give(1, axis::MoveAbsolute{.position = 10});
+  axis::GearIn buffered = Gear("a0");
+  buffered.buffer_mode = axis::BufferMode::kBuffered;
+  const Ticket gear = line.Give(1, buffered);
+  const Ticket last = line.Give(1, axis::MoveRelative{.distance = 5, .buffer_mode = axis::BufferMode::kBuffered});
+  line.Run(2);
+  EXPECT_EQ(line.last[gear].state, FeedbackState::kBusy);
+  line.Run(3000);
+  EXPECT_EQ(line.last[move].state, FeedbackState::kDone);
+  EXPECT_TRUE(line.reached[gear]);
+  EXPECT_EQ(line.last[last].state, FeedbackState::kDone);
+  EXPECT_EQ(line.At(1).state, PlcState::kStandstill);
+}
+
+// AX-45, the diagram of PLCopen Part 1 in numbers: the master passes 150 with 100 u/s; the slave begins at 150 - 100
+// and is at 40 with 50 u/s when the master is at 150, and in step from there.
+TEST(GearInPos, IsInStepAtTheSyncPosition) {
+  Line line(LineOf(2));
+  line.Give(0, axis::MoveVelocity{.velocity = 100});
+  axis::GearInPos gear;
+  gear.master = Name::Of("a0");
+  gear.ratio_numerator = 1;
+  gear.ratio_denominator = 2;
+  gear.master_sync_position = 150;
+  gear.slave_sync_position = 40;
+  gear.master_start_distance = 100;
+  const Ticket ticket = line.Give(1, gear);
+  bool moved_early = false;
+  while (line.At(0).set_velocity > 0 || line.At(0).set_position == 0) {
+    if (line.At(0).set_position >= 149.9) break;
+    line.Step();
+    moved_early |= line.At(0).set_position < 49.9 && line.At(1).set_position != 0;
+    ASSERT_FALSE(line.reached[ticket]) << line.At(0).set_position;
+    ASSERT_FALSE(line.At(1).in_step);
+  }
+  EXPECT_FALSE(moved_early);
+  line.Run(3);
+  EXPECT_TRUE(line.reached[ticket]);
+  for (int i = 0; i < 1000; ++i) {
+    line.Step();
+    ASSERT_TRUE(line.At(1).in_step);
+    ASSERT_NEAR(line.At(1).set_position, 40 + 0.5 * (line.At(0).set_position - 150), 1e-9);
+  }
+}
+
+// On rotary axes the next turn ahead counts; the sync mode says which turn of the slave.
+TEST(GearInPos, ChoosesTheTurn) {
+  for (const axis::SyncMode mode : {axis::SyncMode::kShortest, axis::SyncMode::kCatchUp, axis::SyncMode::kSlowDown}) {
+    Line line(LineOf(2, axis::AxisKind::kRotary));
+    line.Give(0, axis::MoveVelocity{.velocity = 200});
+    line.Give(1, axis::MoveVelocity{.velocity = 200});
+    line.Run(1000);
+    axis::GearInPos gear;
+    gear.master = Name::Of("a0");
+    gear.master_sync_position = 30;
+    gear.slave_sync_position = 100;
+    gear.master_start_distance = 300;
+    gear.sync_mode = mode;
+    const Ticket ticket = line.Give(1, gear);
+    double fastest = 0;
+    double slowest = 1000;
+    for (int i = 0; i < 4000; ++i) {
+      line.Step();
+      fastest = std::max(fastest, line.At(1).set_velocity);
+      slowest = std::min(slowest, line.At(1).set_velocity);
+    }
+    EXPECT_TRUE(line.reached[ticket]);
+    EXPECT_NEAR(std::fmod(line.At(1).set_position - line.At(0).set_position + 720, 360), 70, 1e-6);
+    if (mode == axis::SyncMode::kCatchUp) {
+      EXPECT_GT(fastest, 210);
+    }
+    if (mode == axis::SyncMode::kSlowDown) {
+      EXPECT_LT(slowest, 190);
+    }
+  }
+}
+
+// AX-46: the slave goes by the shift times the ratio, and keeps it.
+TEST(Phasing, ShiftsTheSlaveByTheRatio) {
+  Line line(WithStrong(LineOf(2), 1, 2));
+  line.Give(0, axis::MoveVelocity{.velocity = 50});
+  line.Give(1, Gear("a0", 2));
+  line.Run(1000);
+  const auto lead = [&] { return line.At(1).set_position - 2 * line.At(0).set_position; };
+  const double before = lead();
+  axis::PhasingRelative shift;
+  shift.phase_shift = 7;
+  shift.velocity = 20;
+  const Ticket first = line.Give(1, shift);
+  line.Run(2);
+  EXPECT_EQ(line.last[first].state, FeedbackState::kActive);
+  line.Run(1000);
+  EXPECT_EQ(line.last[first].state, FeedbackState::kDone);
+  EXPECT_NEAR(lead() - before, 14, 1e-9);
+  line.Give(1, shift);
+  line.Run(1000);
+  EXPECT_NEAR(lead() - before, 28, 1e-9);
+  axis::PhasingAbsolute back;
+  back.phase_shift = -1;
+  const Ticket last = line.Give(1, back);
+  line.Run(1000);
+  EXPECT_EQ(line.last[last].state, FeedbackState::kDone);
+  EXPECT_NEAR(lead() - before, -2, 1e-9);
+  EXPECT_TRUE(line.At(1).in_step);
+}
+
+TEST(Phasing, NeedsAMaster) {
+  Line line(LineOf(1));
+  const Ticket shift = line.Give(0, axis::PhasingRelative{.phase_shift = 1});
+  line.Run(2);
+  EXPECT_EQ(line.last[shift].error, ErrorId::kState);
+}
+
+// AX-47.
+TEST(CombineAxes, AddsAndSubtracts) {
+  for (const axis::CombineMode mode : {axis::CombineMode::kAdd, axis::CombineMode::kSubtract}) {
+    Line line(WithStrong(LineOf(3), 2, 5));
+    axis::CombineAxes combine;
+    combine.master1 = Name::Of("a0");
+    combine.master2 = Name::Of("a1");
+    combine.mode = mode;
+    combine.ratio_numerator2 = 3;
+    const Ticket ticket = line.Give(2, combine);
+    line.Run(5);
+    EXPECT_TRUE(line.reached[ticket]);
+    const double sign = mode == axis::CombineMode::kAdd ? 3 : -3;
+    line.Give(0, axis::MoveAbsolute{.position = 30, .velocity = 100});
+    line.Give(1, axis::MoveAbsolute{.position = 20, .velocity = 50, .acceleration = 500, .jerk = 10000});
+    for (int i = 0; i < 1500; ++i) {
+      line.Step();
+      ASSERT_NEAR(line.At(2).set_position, line.At(0).set_position + sign * line.At(1).set_position, 1e-6);
+    }
+    EXPECT_NEAR(line.At(2).set_position, 30 + sign * 20, 1e-6);
+    EXPECT_THAT((std::vector{line.At(2).master1, line.At(2).master2}), testing::ElementsAre(1u, 2u));
+  }
+}
+
+// AX-55: a chain against the order of the axes has no lag, though it was made at run time and from its end.
+TEST(Chain, HasNoLag) {
+  Line line(LineOf(5));
+  for (std::size_t i = 0; i < 4; ++i) line.Give(i, Gear(("a" + std::to_string(i + 1)).c_str(), -1));
+  line.Run(10);
+  line.Give(4, axis::MoveAbsolute{.position = 100});
+  for (int i = 0; i < 600; ++i) {
+    line.Step();
+    for (std::size_t k = 0; k < 4; ++k) ASSERT_EQ(line.At(k).set_position, -line.At(k + 1).set_position) << i;
+  }
+  EXPECT_EQ(line.At(0).set_position, 100);
+}
+
+// AX-55: nobody follows himself, neither at once nor through others, nor through what still waits.
+TEST(Chain, MakesNoLoop) {
+  Line line(LineOf(3));
+  line.Give(1, Gear("a0"));
+  axis::GearIn buffered = Gear("a1");
+  buffered.buffer_mode = axis::BufferMode::kBuffered;
+  line.Give(2, axis::MoveVelocity{.velocity = 0.1, .acceleration = 1, .jerk = 1});
+  line.Give(2, buffered);
+  const Ticket loop = line.Give(0, Gear("a2"));
+  const Ticket itself = line.Give(0, Gear("a0"));
+  const Ticket nobody = line.Give(0, Gear("b"));
+  line.Run(3);
+  EXPECT_EQ(line.last[loop].error, ErrorId::kCouplingLoop);
+  EXPECT_EQ(line.last[itself].error, ErrorId::kParameter);
+  EXPECT_EQ(line.last[nobody].error, ErrorId::kUnknownTarget);
+  EXPECT_EQ(line.At(0).state, PlcState::kStandstill);
+  line.Give(1, axis::Halt{});  // now there is no loop any more
+  line.Run(50);
+  const Ticket good = line.Give(0, Gear("a2"));
+  line.Run(3);
+  EXPECT_EQ(line.last[good].state, FeedbackState::kActive);
+}
+
+// AX-55: what is coupled stops together, whoever fails.
+TEST(Chain, StopsTogether) {
+  for (std::size_t failing = 0; failing < 3; ++failing) {
+    SCOPED_TRACE(failing);
+    Line line(LineOf(3));
+    line.Give(1, Gear("a0"));
+    line.Give(2, Gear("a1"));
+    line.Give(0, axis::MoveVelocity{.velocity = 100});
+    line.Run(500);
+    line.engine.faults(failing).drive_fault = true;
+    line.Run(500);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(line.At(i).set_velocity, 0) << i;
+    EXPECT_EQ(line.At(failing).state, PlcState::kErrorStop);
+  }
+}
+
+// AX-13, AX-55: random couplings, moves, stops and faults: no step, no limit exceeded.
+TEST(Coupling, KeepsTheLimitsInARandomWalk) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+    const auto any = [&](unsigned n) { return std::uniform_int_distribution(0u, n - 1)(random); };
+    Machine machine = LineOf(5, seed % 2 == 0 ? axis::AxisKind::kLinear : axis::AxisKind::kRotary);
+    for (axis::AxisParams& a : machine.axes) {
+      a.limits.velocity = between(100, 800);
+      a.limits.acceleration = between(1000, 10000);
+      a.limits.jerk = between(2e4, 4e5);
+      if (seed % 4 == 0) {
+        a.limits.lower = -300;
+        a.limits.upper = 400;
+      }
+    }
+    Line line(machine);
+    std::vector<axis::Outputs> before;
+    for (std::size_t i = 0; i < 5; ++i) before.push_back(line.At(i));
+    for (int cycle = 0; cycle < 8000; ++cycle) {
+      if (any(20) == 0) {
+        const std::size_t who = any(5);
+        const std::string master = "a" + std::to_string(any(5));
+        axis::GearInPos in_pos;
+        in_pos.master = Name::Of(master);
+        in_pos.ratio_numerator = between(-2, 2);
+        in_pos.master_sync_position = between(0, 300);
+        in_pos.slave_sync_position = between(0, 300);
+        if (any(2) == 0) in_pos.master_start_distance = between(0, 100);
+        axis::CombineAxes combine;
+        combine.master1 = Name::Of(master);
+        combine.master2 = Name::Of("a" + std::to_string(any(5)));
+        axis::PhasingRelative phase;
+        phase.phase_shift = between(-20, 20);
+        switch (any(11)) {
+          case 0:
+          case 1:
+            line.Give(who, Gear(master.c_str(), between(-3, 3)));
+            break;
+          case 2:
+            line.Give(who, in_pos);
+            break;
+          case 3:
+            line.Give(who, combine);
+            break;
+          case 4:
+            line.Give(who, phase);
+            break;
+          case 5:
+            line.Give(who, axis::GearOut{});
+            break;
+          case 6:
+            line.Give(who, axis::MoveAbsolute{.position = between(0, 300)});
+            break;
+          case 7:
+            line.Give(who, axis::MoveVelocity{.velocity = between(0, 100)});
+            break;
+          case 8:
+            line.Give(who, axis::Stop{});
+            break;
+          case 9:
+            if (any(10) == 0) line.engine.Submit({0, 0, 0, MachineCommand{FailAllAxes{}}});
+            break;
+          default:
+            line.Give(who, axis::Reset{});
+            line.Give(who, axis::Power{});
+        }
+      }
+      line.Step();
+      for (std::size_t i = 0; i < 5; ++i) {
+        const axis::AxisLimits& own = machine.axes[i].limits;
+        const axis::Outputs& out = line.At(i);
+        ASSERT_LE(std::abs(out.set_velocity), own.velocity * (1 + 1e-8)) << cycle << " " << i;
+        ASSERT_LE(std::abs(out.set_acceleration), own.acceleration * (1 + 1e-8)) << cycle << " " << i;
+        if (own.upper) {
+          ASSERT_LE(out.set_position, *own.upper + 1e-6) << cycle << " " << i;
+        }
+        if (own.lower) {
+          ASSERT_GE(out.set_position, *own.lower - 1e-6) << cycle << " " << i;
+        }
+        const double step = out.set_acceleration - before[i].set_acceleration;
+        ASSERT_LE(std::abs(step), own.jerk * 0.001 * (1 + 1e-5) + 1e-6) << cycle << " " << i;
+        double way = out.set_position - before[i].set_position;
+        if (machine.axes[i].rotary()) way -= 360 * std::round(way / 360);
+        ASSERT_LE(std::abs(way - 0.0005 * (out.set_velocity + before[i].set_velocity)), own.jerk * 1e-9 + 1e-6)
+            << cycle << " " << i;
+        before[i] = out;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace takt::engine
