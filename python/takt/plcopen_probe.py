@@ -10,8 +10,8 @@ from takt.plcopen import ExecuteBlock, Input, Output
 
 
 class MC_TouchProbe(ExecuteBlock):  # noqa: N801
-    """Captures the position of the axis at the next edge of its touch probe. TriggerInput is the edge; each axis has one
-    probe. A second block that waits for the same probe takes over from the first."""
+    """Captures the position of the axis at the next edge of its touch probe. TriggerInput is the edge; each axis has
+    one probe. A second block that waits for the same probe takes over from the first."""
 
     VERB = "arm_probe"
     TriggerInput = Input(_commands.ProbeEdge.RISING, "edge")
@@ -36,9 +36,9 @@ class MC_AbortTrigger(ExecuteBlock):  # noqa: N801
 
 
 class GT_Touch(ExecuteBlock):  # noqa: N801
-    """Waits for the touch probe, then ends the motion in progress, stops and goes to where the probe was touched. Active
-    says that it does so. With Mode SLOW it slows down whatever moves while the probe is on instead, no longer than Execute
-    is true, and is never done."""
+    """Waits for the touch probe, then ends the motion in progress, stops and goes to where the probe was touched.
+    Active says that it does so. With Mode SLOW it slows down whatever moves while the probe is on instead, no longer
+    than Execute is true, and is never done."""
 
     VERB = "touch"
     Mode = Input(_commands.TouchMode.CAPTURE, "mode")

@@ -11,7 +11,7 @@ from takt.plcopen import Input, MotionBlock, Output
 
 class MC_TorqueControl(MotionBlock):  # noqa: N801
     """Drives with a torque, no faster than Velocity. Never done: InTorque says that the set point of the torque is what
-    was asked for. Direction NEGATIVE turns the torque round. How fast the axis accelerates is what the torque makes it."""
+    was asked for. Direction NEGATIVE turns the torque round. The axis accelerates as the torque makes it."""
 
     VERB = "torque_control"
     Torque = Input(0.0, "torque")

@@ -56,11 +56,13 @@ def until(axis: takt.Axis, condition: Callable[[], bool], *blocks: Callable[[], 
 def test_touch_probe_records_the_position(x: takt.Axis) -> None:  # AX-49
     probe, move = MC_TouchProbe(x), MC_MoveAbsolute(x)
     probe(Execute=True)
-    assert probe.Busy and not probe.Done
+    assert probe.Busy
+    assert not probe.Done
     move(Execute=True, Position=100, Velocity=200)
     until(x, lambda: probe.Done, probe, move)
     assert probe.RecordedPosition == pytest.approx(60, abs=200 * 20e-6 + 0.001)
-    assert not probe.Busy and move.Busy
+    assert not probe.Busy
+    assert move.Busy
     until(x, lambda: move.Done, probe, move)
     probe(Execute=False)
     assert not probe.Done
@@ -96,7 +98,8 @@ def test_touch_slows_down_as_long_as_execute_is_true(x: takt.Axis) -> None:  # A
     move(Execute=True, Position=100, Velocity=100)
     until(x, lambda: x.set_position > 68, slow, move)
     assert x.set_velocity == pytest.approx(20)
-    assert slow.Busy and slow.Active
+    assert slow.Busy
+    assert slow.Active
     slow(Execute=False)
     until(x, lambda: move.Done, slow, move)
     x.move_absolute(position=0).wait()
@@ -118,19 +121,24 @@ def test_cam_switch_works_while_enabled(x: takt.Axis) -> None:  # AX-50
                 positions.append(x.set_position)
 
     until(x, lambda: x.set_position > 130, cams, move, note)
-    assert cams.InOperation and cams.Busy
-    assert min(seen[1]) == pytest.approx(10, abs=0.2) and max(seen[1]) == pytest.approx(20, abs=0.2)
-    assert min(seen[2]) == pytest.approx(96, abs=0.2) and len(seen[2]) == 50
+    assert cams.InOperation
+    assert cams.Busy
+    assert min(seen[1]) == pytest.approx(10, abs=0.2)
+    assert max(seen[1]) == pytest.approx(20, abs=0.2)
+    assert min(seen[2]) == pytest.approx(96, abs=0.2)
+    assert len(seen[2]) == 50
     cams(Enable=False)
     step(x)
-    assert not cams().InOperation and x.cam_outputs == 0
+    assert not cams().InOperation
+    assert x.cam_outputs == 0
 
 
 def test_cam_switch_says_what_is_wrong(x: takt.Axis) -> None:  # AX-50
     cams = MC_DigitalCamSwitch(x, Switches="doors")
     cams(Enable=True)
     until(x, lambda: cams.Error, cams)
-    assert cams.ErrorID == 3010 and not cams.Busy
+    assert cams.ErrorID == 3010
+    assert not cams.Busy
     cams(Enable=False)
     assert not cams.Error
 
@@ -139,7 +147,8 @@ def test_torque_control_presses(x: takt.Axis) -> None:  # AX-42
     press = MC_TorqueControl(x)
     press(Execute=True, Torque=3, TorqueRamp=30, Velocity=100)
     until(x, lambda: press.InTorque, press)
-    assert press.Busy and press.Active
+    assert press.Busy
+    assert press.Active
     until(x, lambda: x.actual_position > 149.999, press)
     step(x, 50)
     assert x.torque_nm == pytest.approx(3)
