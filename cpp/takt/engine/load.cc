@@ -38,6 +38,7 @@ class CrossCheck {
     }
     CheckAxes();
     CheckMasters();
+    CheckCamSwitches();
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
       CheckReference("simulation.servos[" + std::to_string(i) + "].axis", machine_.simulation.servos[i].axis, servos);
@@ -98,6 +99,21 @@ class CrossCheck {
     for (const std::uint32_t i : loop) members += machine_.axes[i].name + " -> ";
     Add("axes[" + std::to_string(loop.front()) + "].follows.axis",
         "expected axes that follow one another in no loop, found " + members + machine_.axes[loop.front()].name);
+  }
+
+  void CheckCamSwitches() {
+    std::vector<std::string_view> seen;
+    for (std::size_t i = 0; i < machine_.cam_switches.size(); ++i) {
+      const std::string path = "cam_switches[" + std::to_string(i) + "]";
+      const std::string& name = machine_.cam_switches[i].name;
+      if (name.empty() && !Written(path, ".name")) continue;
+      if (!GoodName(name)) {
+        Add(path + ".name", "expected 1 to 40 letters, digits, _ - or ., found " + Quoted(name));
+      } else if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
+        Add(path + ".name", "expected each name once, found " + Quoted(name) + " again");
+      }
+      seen.push_back(name);
+    }
   }
 
   // A name that must be an axis', each at most once.

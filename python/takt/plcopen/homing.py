@@ -1,0 +1,113 @@
+"""Blocks that find the reference of an axis (PLCopen Part 5)."""
+
+from __future__ import annotations
+
+from takt import _commands
+from takt.feedback import Feedback
+from takt.plcopen.base import ExecuteBlock, Input, MotionBlock, Output
+
+
+class HomingBlock(MotionBlock):
+    """A step of homing."""
+
+    Done = Output(False)
+
+
+class SearchBlock(HomingBlock):
+    """A step that searches. TimeLimit in s and DistanceLimit in u end it with errors 1 and 2; 0: no limit."""
+
+    Velocity = Input(0.0, "velocity")
+    Acceleration = Input[float | None](None, "acceleration")
+    Deceleration = Input[float | None](None, "deceleration")
+    Jerk = Input[float | None](None, "jerk")
+    TimeLimit = Input(0.0, "time_limit")
+    DistanceLimit = Input(0.0, "distance_limit")
+
+
+class MC_StepAbsSwitch(SearchBlock):  # noqa: N801
+    """Searches the reference switch and returns to where it was found. The axis stays in Homing for the next step."""
+
+    VERB = "step_abs_switch"
+    Direction = Input(_commands.HomingDirection.SWITCH_NEGATIVE, "direction")
+    SwitchMode = Input(_commands.SwitchMode.EDGE_ON, "switch_mode")
+    SetPosition = Input[float | None](None, "set_position")
+
+
+class MC_StepLimitSwitch(SearchBlock):  # noqa: N801
+    """Searches a limit switch and returns to where it was found. The axis stays in Homing for the next step."""
+
+    VERB = "step_limit_switch"
+    Direction = Input(_commands.HomingDirection.NEGATIVE, "direction")
+    SwitchMode = Input(_commands.SwitchMode.EDGE_ON, "switch_mode")
+    SetPosition = Input[float | None](None, "set_position")
+
+
+class MC_StepBlock(SearchBlock):  # noqa: N801
+    """Searches an end stop, where the axis hardly moves and lags behind by DevRef. Ends homing."""
+
+    VERB = "step_block"
+    Direction = Input(_commands.HomingDirection.NEGATIVE, "direction")
+    DevRef = Input(0.0, "deviation")
+    SetPosition = Input(0.0, "set_position")
+
+
+class MC_StepRefPulse(SearchBlock):  # noqa: N801
+    """Searches the next index pulse of the encoder; stops behind it and does not return. Ends homing."""
+
+    VERB = "step_ref_pulse"
+    Direction = Input(_commands.HomingDirection.POSITIVE, "direction")
+    SetPosition = Input(0.0, "set_position")
+
+
+class MC_StepDirect(HomingBlock):  # noqa: N801
+    """Where the axis stands is SetPosition. Ends homing."""
+
+    VERB = "step_direct"
+    SetPosition = Input(0.0, "set_position")
+
+
+class MC_StepAbsolute(HomingBlock):  # noqa: N801
+    """Takes the position of the absolute encoder as it is. Ends homing."""
+
+    VERB = "step_absolute"
+
+
+class MC_FinishHoming(HomingBlock):  # noqa: N801
+    """Moves off by Distance and ends homing."""
+
+    VERB = "finish_homing"
+    Distance = Input(0.0, "distance")
+    Velocity = Input[float | None](None, "velocity")
+    Acceleration = Input[float | None](None, "acceleration")
+    Deceleration = Input[float | None](None, "deceleration")
+    Jerk = Input[float | None](None, "jerk")
+
+
+class FlyingBlock(ExecuteBlock):
+    """A reference taken while another motion goes on."""
+
+    SetPosition = Input(0.0, "set_position")
+    TimeLimit = Input(0.0, "time_limit")
+    DistanceLimit = Input(0.0, "distance_limit")
+    Done = Output(False)
+    CommandAborted = Output(False)
+    Aborted = Output(False, alias="CommandAborted")
+    RecordedPosition = Output(0.0)
+
+    def _follow(self, feedback: Feedback) -> None:
+        super()._follow(feedback)
+        if self.Done:
+            self._show(RecordedPosition=feedback.value)
+
+
+class MC_StepRefFlyingSwitch(FlyingBlock):  # noqa: N801
+    """Takes the reference from the reference switch in passing."""
+
+    VERB = "step_ref_flying_switch"
+    SwitchMode = Input(_commands.SwitchMode.EDGE_ON, "switch_mode")
+
+
+class MC_StepRefFlyingRefPulse(FlyingBlock):  # noqa: N801
+    """Takes the reference from the index pulse of the encoder in passing."""
+
+    VERB = "step_ref_flying_ref_pulse"
