@@ -41,6 +41,7 @@ void ChangeJog(const Context& c, const Request& r, State& s) {
 }
 
 Status Jog(const Context& c, const Request& r, State& s) {
+  if (s.plc == PlcState::kHoming) return Status::Failed(ErrorId::kState);
   if (s.active.kind == RequestKind::kJog) {
     ChangeJog(c, r, s);
     return Status::Ok();
@@ -56,6 +57,8 @@ Status Jog(const Context& c, const Request& r, State& s) {
 }
 
 Status TakeOver(const Context& c, const Request& r, State& s) {
+  if (Homes(r.kind)) return BeginHoming(c, r, true, s);
+  if (s.plc == PlcState::kHoming && r.kind != RequestKind::kStop) return Status::Failed(ErrorId::kState);
   if (Couples(r.kind)) {
     AbortAll(c, s);
     Couple(c, r, s);

@@ -37,7 +37,7 @@ void WatchDeviation(const Context& c, State& s) {
 
 // On a new edge, or when the axis moves further out.
 void WatchSwitches(const Context& c, State& s) {
-  if (s.plc == PlcState::kErrorStop) return;
+  if (s.plc == PlcState::kErrorStop || OwnsLimitSwitches(s)) return;
   if (s.limit_positive && (!s.limit_positive_before || s.setpoint.velocity > 0)) {
     Fail(c, ErrorId::kLimitSwitchPositive, false, s);
   } else if (s.limit_negative && (!s.limit_negative_before || s.setpoint.velocity < 0)) {
@@ -96,7 +96,8 @@ bool GoesOn(const State& s) {
 
 // Takes a set point back from which the axis could not stop in time, and brakes instead.
 void GuardLimits(const Context& c, const KinematicState& before, State& s) {
-  if (s.plc == PlcState::kErrorStop || !GoesOn(s) || CanStopInside(c.params, before, s.setpoint)) return;
+  const bool positions_count = s.plc != PlcState::kErrorStop && s.plc != PlcState::kHoming;
+  if (!positions_count || !GoesOn(s) || CanStopInside(c.params, before, s.setpoint)) return;
   const bool upwards = s.setpoint.position > before.position;
   s.setpoint = before;
   Fail(c, upwards ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
@@ -167,8 +168,9 @@ void FinishReset(const Context& c, State& s) {
 
 }  // namespace
 
-State MakeState(const AxisParams&) noexcept {
+State MakeState(const AxisParams& params) noexcept {
   State s;
+  s.homing.homed = params.encoder.type == EncoderType::kAbsoluteSsi;
   s.motion.arrived = true;
   return s;
 }
@@ -189,6 +191,10 @@ void Sense(const Context& c, const ServoInputs& in, State& s) noexcept {
   s.limit_negative = in.limit_negative != sense.invert_limit_negative;
   s.reference = in.reference != sense.invert_reference;
   s.touch_probe = in.touch_probe != sense.invert_touch_probe;
+  s.index_pulse = in.index_pulses != s.index_pulses;
+  s.index_pulses = in.index_pulses;
+  s.index_counts = in.index_counts;
+  if (in.encoder_error && c.params.encoder.type == EncoderType::kIncremental) s.homing.homed = false;
   s.drive_ready = in.drive_ready;
   s.drive_fault = in.drive_fault;
   s.torque_nm = in.torque_nm;
@@ -207,10 +213,12 @@ void Move(const Context& c, State& s) noexcept {
     FollowCoupling(c, s);
   } else if (s.loop_closed) {
     Advance(c, s);
+    StepHoming(c, s);
   } else {
     s.setpoint = {s.actual.position, 0, 0};
     AwaitDrive(c, s);
   }
+  WatchFlying(c, s);
   FinishReset(c, s);
   if (c.params.rotary() && std::abs(s.setpoint.position) > kFarTurns * c.params.modulus) BringBackTurns(c.params, s);
   s.cam_outputs = SwitchCams(c, s);
@@ -290,6 +298,7 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.error = s.error;
   out.state = s.plc;
   out.limited_by = s.limited_by;
+  out.homed = s.homing.homed;
   out.in_step = s.coupling.chase.in_step;
   const auto& terms = s.coupling.law.terms;
   out.master1 = terms[0].master + 1;  // none: 0

@@ -4,9 +4,120 @@
 
 namespace takt::axis {
 
+namespace {
+
+template <typename T>
+bool Search(const Maker& m, RequestKind kind, const T& c) {
+  m.r.kind = kind;
+  m.r.homing.direction = c.direction;
+  m.r.homing.time_limit = c.time_limit;
+  m.r.homing.distance_limit = c.distance_limit;
+  if (c.direction > HomingDirection::kSwitchNegative) {
+    m.why.field = "direction";
+    return false;
+  }
+  m.r.buffer_mode = c.buffer_mode;
+  return m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c) &&
+         m.In("time_limit", c.time_limit, 0, kMaxPosition) && m.In("distance_limit", c.distance_limit, 0, kMaxPosition);
+}
+
+template <typename T>
+bool SwitchSearch(const Maker& m, RequestKind kind, const T& c) {
+  m.r.homing.switch_mode = c.switch_mode;
+  m.r.homing.sets_position = c.set_position.has_value();
+  m.r.homing.set_position = c.set_position.value_or(0);
+  if (c.switch_mode > SwitchMode::kEdgeSwitchNegative) {
+    m.why.field = "switch_mode";
+    return false;
+  }
+  return Search(m, kind, c) && m.In("set_position", c.set_position.value_or(0), -kMaxPosition, kMaxPosition);
+}
+
+// Without a switch there is nothing that could choose the direction.
+bool OneWay(const Maker& m, HomingDirection direction) {
+  const bool good = direction == HomingDirection::kPositive || direction == HomingDirection::kNegative;
+  if (!good) m.why.field = "direction";
+  return good;
+}
+
+bool Position(const Maker& m, double position) {
+  m.r.homing.set_position = position;
+  return m.In("set_position", position, -kMaxPosition, kMaxPosition);
+}
+
+}  // namespace
+
+bool Fill(const Maker& m, const StepAbsSwitch& c) {
+  return SwitchSearch(m, RequestKind::kStepAbsSwitch, c);
+}
+
+bool Fill(const Maker& m, const StepLimitSwitch& c) {
+  return SwitchSearch(m, RequestKind::kStepLimitSwitch, c);
+}
+
+bool Fill(const Maker& m, const StepBlock& c) {
+  m.r.homing.deviation = c.deviation;
+  const double largest = m.params.supervision.deviation_moving.value_or(kMaxPosition);
+  return OneWay(m, c.direction) && m.In("deviation", c.deviation, std::numeric_limits<double>::min(), largest) &&
+         Position(m, c.set_position) && Search(m, RequestKind::kStepBlock, c);
+}
+
+bool Fill(const Maker& m, const StepRefPulse& c) {
+  return OneWay(m, c.direction) && Position(m, c.set_position) && Search(m, RequestKind::kStepRefPulse, c);
+}
+
+bool Fill(const Maker& m, const StepDirect& c) {
+  m.r.kind = RequestKind::kStepDirect;
+  m.r.buffer_mode = c.buffer_mode;
+  return Position(m, c.set_position);
+}
+
+bool Fill(const Maker& m, const StepAbsolute& c) {
+  m.r.kind = RequestKind::kStepAbsolute;
+  m.r.buffer_mode = c.buffer_mode;
+  return true;
+}
+
+bool Fill(const Maker& m, const FinishHoming& c) {
+  m.r.kind = RequestKind::kFinishHoming;
+  m.r.buffer_mode = c.buffer_mode;
+  m.r.value = c.distance;
+  return m.In("distance", c.distance, -kMaxPosition, kMaxPosition) &&
+         m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
+}
+
+namespace {
+
+template <typename T>
+bool Flying(const Maker& m, const T& c) {
+  return m.In("set_position", c.set_position, -kMaxPosition, kMaxPosition) &&
+         m.In("time_limit", c.time_limit, 0, kMaxPosition) && m.In("distance_limit", c.distance_limit, 0, kMaxPosition);
+}
+
+}  // namespace
+
+bool Fill(const Maker& m, const StepRefFlyingSwitch& c) {
+  if (c.switch_mode > SwitchMode::kEdgeSwitchNegative) {
+    m.why.field = "switch_mode";
+    return false;
+  }
+  return Flying(m, c);
+}
+
+bool Fill(const Maker& m, const StepRefFlyingRefPulse& c) {
+  return Flying(m, c);
+}
+
 void describe(Description<HomingRequest>& d) {
-  d.about("What a homing command carries.");
-  d.internal<&HomingRequest::placeholder>("Nothing yet.");
+  using H = HomingRequest;
+  d.about("What a homing step carries.");
+  d.internal<&H::direction>("Where the search goes first.");
+  d.internal<&H::switch_mode>("What of the switch ends it.");
+  d.internal<&H::set_position>(unit::u, "What the found place is called.");
+  d.internal<&H::sets_position>("Whether it is called anything.");
+  d.internal<&H::deviation>(unit::u, "Following error at an end stop.");
+  d.internal<&H::time_limit>(unit::s, "Longest search; 0: any.");
+  d.internal<&H::distance_limit>(unit::u, "Longest way; 0: any.");
 }
 
 }  // namespace takt::axis

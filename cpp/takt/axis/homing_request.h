@@ -1,4 +1,4 @@
-// What a homing command carries beyond the common part of a request: its search.
+// What a homing step carries beyond the common part of a request: its search.
 #pragma once
 
 #include "takt/axis/commands/homing.h"
@@ -7,7 +7,13 @@
 namespace takt::axis {
 
 struct HomingRequest {
-  double placeholder = 0;
+  HomingDirection direction = HomingDirection::kPositive;
+  SwitchMode switch_mode = SwitchMode::kEdgeOn;
+  double set_position = 0;    // u, what the found place is called ...
+  bool sets_position = true;  // ... or the numbers stay as they are
+  double deviation = 0;       // u, DevRef: following error at an end stop
+  double time_limit = 0;      // s; 0: none
+  double distance_limit = 0;  // u; 0: none
 };
 
 void describe(Description<HomingRequest>&);

@@ -93,6 +93,7 @@ void describe(Description<AxisParams>& d) {
   d.defaulted<&A::drive>("The drive.");
   d.defaulted<&A::inputs>("The switch inputs.");
   d.defaulted<&A::loop>("The position loop, for drives that do not close it themselves.");
+  d.defaulted<&A::requires_reference>("Refuse absolute moves with error 0009 until the axis is homed.");
   d.defaulted<&A::await_constants>("Refuse motion with error 0012 until GT_SetConstant was given.");
   d.defaulted<&A::follows>("The axis it follows, if any.");
   d.rule<&A::limits>("must have no lower and upper on a rotary axis",

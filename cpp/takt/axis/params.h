@@ -65,7 +65,8 @@ struct AxisParams {
   Drive drive;
   InputSense inputs;
   ControlLoop loop;
-  bool await_constants = false;  // no motion before GT_SetConstant: error 0012 (AX-27)
+  bool requires_reference = false;  // absolute moves need a reference: error 0009 without one (AX-71)
+  bool await_constants = false;     // no motion before GT_SetConstant: error 0012 (AX-27)
   std::optional<Following> follows;
 
   bool rotary() const { return kind == AxisKind::kRotary; }

@@ -254,6 +254,8 @@ Status Check(const AxisParams& params, const Surroundings& around, const Kinemat
   }
   if (request.kind == RequestKind::kTorqueControl) return CheckTorque(params, around, from, request.value);
   if (!request.positions()) return Status::Ok();
+  if (params.requires_reference && !around.homed && !request.by_distance())
+    return Status::Failed(ErrorId::kNoReference);
   out.target = TargetOf(params, around, from, request);
   return Inside(params.limits, out.target) ? Status::Ok() : Status::Failed(ErrorId::kTargetBehindLimit);
 }

@@ -16,6 +16,7 @@ namespace takt::axis {
 struct Surroundings {
   bool limit_positive = false;
   bool limit_negative = false;
+  bool homed = true;
   std::int8_t last_sense = 1;
   std::optional<double> promised;  // u, unwrapped: where the positioning command in control ends, if there is one
 };

@@ -75,6 +75,15 @@ bool Fill(const Maker& m, const ReadParameter& c);
 bool Fill(const Maker& m, const SetSoftLimits& c);
 bool Fill(const Maker& m, const DirectOutput& c);
 bool Fill(const Maker& m, const SetPosition& c);
+bool Fill(const Maker& m, const StepAbsSwitch& c);
+bool Fill(const Maker& m, const StepLimitSwitch& c);
+bool Fill(const Maker& m, const StepBlock& c);
+bool Fill(const Maker& m, const StepRefPulse& c);
+bool Fill(const Maker& m, const StepDirect& c);
+bool Fill(const Maker& m, const StepAbsolute& c);
+bool Fill(const Maker& m, const FinishHoming& c);
+bool Fill(const Maker& m, const StepRefFlyingSwitch& c);
+bool Fill(const Maker& m, const StepRefFlyingRefPulse& c);
 template <typename T>
 bool Fill(const Maker&, const T&) {
   return true;

@@ -17,7 +17,7 @@ void Enter(State& s, PlcState to) noexcept {
 }
 
 Surroundings SurroundingsOf(const State& s) noexcept {
-  Surroundings around{s.limit_positive, s.limit_negative, s.last_sense, {}};
+  Surroundings around{s.limit_positive, s.limit_negative, s.homing.homed, s.last_sense, {}};
   if (s.active.positions()) around.promised = s.motion.target;
   return around;
 }
@@ -164,6 +164,7 @@ void SwitchedOff(const Context& c, State& s) noexcept {
 void OpenLoop(State& s) noexcept {
   s.enable = false;
   s.loop_closed = false;
+  s.homing.stage = HomingStage::kNone;
   s.voltage_v = 0;
   s.limited_by = LimitedBy::kNothing;
   s.setpoint = {s.actual.position, 0, 0};
@@ -173,7 +174,8 @@ void OpenLoop(State& s) noexcept {
 
 void StartNext(const Context& c, double late_s, State& s) noexcept {
   s.limited_by = LimitedBy::kNothing;
-  if (AtRest(s) && IsLegal(s.plc, PlcState::kStandstill)) Enter(s, PlcState::kStandstill);
+  const bool homes_on = s.plc == PlcState::kHoming && s.buffered > 0 && Homes(s.buffer[0].kind);
+  if (AtRest(s) && IsLegal(s.plc, PlcState::kStandstill) && !homes_on) Enter(s, PlcState::kStandstill);
   while (s.buffered > 0) {
     const Request next = TakeFirst(s);
     if (next.kind == RequestKind::kPower && next.enable) {  // it is on already
@@ -185,7 +187,10 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
     const KinematicState from = seamless ? s.motion.profile.end() : s.setpoint;
     if (Couples(next.kind)) return Couple(c, next, s);
     Plan plan;
-    const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, from, next, Follower(s), plan);
+    const bool homes = Homes(next.kind);
+    const Status status = homes ? BeginHoming(c, next, false, s)
+                                : PlanRequest(c.params, SurroundingsOf(s), c.planner, from, next, Follower(s), plan);
+    if (status.ok() && homes) return;
     if (status.ok()) {
       TakeControl(c, next, plan, {c.cycle.count, seamless ? late_s : 0}, s);
       s.setpoint = s.motion.profile.At(Elapsed(c, s));

@@ -40,6 +40,9 @@ void describe(Description<State>& d) {
   d.internal<&S::limit_negative>("LIM-.");
   d.internal<&S::reference>("REF.");
   d.internal<&S::touch_probe>("TP.");
+  d.internal<&S::index_pulse>("NI came since the cycle before.");
+  d.internal<&S::index_pulses>("How many came.");
+  d.internal<&S::index_counts>("Count at the last one.");
   d.internal<&S::limit_positive_before>("LIM+ a cycle before.");
   d.internal<&S::limit_negative_before>("LIM- a cycle before.");
   d.internal<&S::drive_ready>("Drive says ready.");
@@ -60,6 +63,7 @@ void describe(Description<State>& d) {
   d.internal<&S::illegal_transitions>("Always 0.");
   d.internal<&S::motion>("Motion in progress.");
   d.internal<&S::coupling>("Masters it follows.");
+  d.internal<&S::homing>("Its reference.");
   d.internal<&S::probe>("Touch probe.");
   d.internal<&S::torque>("Torque control.");
   d.internal<&S::cam_switch>("Cam switches.");

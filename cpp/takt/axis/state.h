@@ -8,6 +8,7 @@
 #include "takt/axis/control_loop.h"
 #include "takt/axis/coupling.h"
 #include "takt/axis/encoder.h"
+#include "takt/axis/homing.h"
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
@@ -61,6 +62,9 @@ struct State {
   bool limit_negative = false;
   bool reference = false;
   bool touch_probe = false;
+  bool index_pulse = false;  // one came since the cycle before ...
+  std::uint32_t index_pulses = 0;
+  std::uint32_t index_counts = 0;  // ... at this count
   bool limit_positive_before = false;
   bool limit_negative_before = false;
   bool drive_ready = false;
@@ -88,6 +92,7 @@ struct State {
 
   Motion motion;
   CouplingState coupling;
+  HomingState homing;
 
   ProbeState probe;
   TorqueState torque;

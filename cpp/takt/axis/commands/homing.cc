@@ -31,9 +31,11 @@ void describe(Description<StepAbsSwitch>& d) {
   d.defaulted<&C::direction>("Where to search first.");
   d.defaulted<&C::switch_mode>("Which state or edge of the switch ends the search.");
   d.required<&C::velocity>(unit::u_s, positive, "How fast to search.");
+  d.defaulted<&C::set_position>(unit::u, "What the place is called; unset: positions keep their numbers.");
   DescribeRamps(d);
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.defaulted<&C::buffer_mode>("aborting or buffered.");
 }
 
 void describe(Description<StepLimitSwitch>& d) {
@@ -42,9 +44,11 @@ void describe(Description<StepLimitSwitch>& d) {
   d.defaulted<&C::direction>("Where to search first.");
   d.defaulted<&C::switch_mode>("Which state or edge of the switch ends the search.");
   d.required<&C::velocity>(unit::u_s, positive, "How fast to search.");
+  d.defaulted<&C::set_position>(unit::u, "What the place is called; unset: positions keep their numbers.");
   DescribeRamps(d);
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.defaulted<&C::buffer_mode>("aborting or buffered.");
 }
 
 void describe(Description<StepBlock>& d) {
@@ -57,6 +61,7 @@ void describe(Description<StepBlock>& d) {
   DescribeRamps(d);
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.defaulted<&C::buffer_mode>("aborting or buffered.");
 }
 
 void describe(Description<StepRefPulse>& d) {
@@ -69,16 +74,20 @@ void describe(Description<StepRefPulse>& d) {
   DescribeRamps(d);
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.defaulted<&C::buffer_mode>("aborting or buffered.");
 }
 
 void describe(Description<StepDirect>& d) {
   using C = StepDirect;
   d.about("The axis stands at its reference (MC_StepDirect). Ends homing.");
   d.defaulted<&C::set_position>(unit::u, "What the position is called there.");
+  d.defaulted<&C::buffer_mode>("aborting or buffered.");
 }
 
 void describe(Description<StepAbsolute>& d) {
+  using C = StepAbsolute;
   d.about("Takes the position of the absolute encoder as it is (MC_StepAbsolute). Ends homing.");
+  d.defaulted<&C::buffer_mode>("aborting or buffered.");
 }
 
 void describe(Description<FinishHoming>& d) {

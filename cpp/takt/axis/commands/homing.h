@@ -18,7 +18,9 @@ struct StepAbsSwitch {  // MC_StepAbsSwitch
   HomingDirection direction = HomingDirection::kSwitchNegative;
   SwitchMode switch_mode = SwitchMode::kEdgeOn;
   double velocity = 0;
+  std::optional<double> set_position{};  // unset: positions keep their numbers
   std::optional<double> acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
   double time_limit = 0;
   double distance_limit = 0;
 };
@@ -26,7 +28,9 @@ struct StepLimitSwitch {  // MC_StepLimitSwitch
   HomingDirection direction = HomingDirection::kSwitchNegative;
   SwitchMode switch_mode = SwitchMode::kEdgeOn;
   double velocity = 0;
+  std::optional<double> set_position{};  // unset: positions keep their numbers
   std::optional<double> acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
   double time_limit = 0;
   double distance_limit = 0;
 };
@@ -36,6 +40,7 @@ struct StepBlock {  // MC_StepBlock
   double deviation = 0;
   double set_position = 0;
   std::optional<double> acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
   double time_limit = 0;
   double distance_limit = 0;
 };
@@ -44,13 +49,16 @@ struct StepRefPulse {  // MC_StepRefPulse
   double velocity = 0;
   double set_position = 0;
   std::optional<double> acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
   double time_limit = 0;
   double distance_limit = 0;
 };
 struct StepDirect {  // MC_StepDirect
   double set_position = 0;
+  BufferMode buffer_mode = BufferMode::kAborting;
 };
 struct StepAbsolute {  // MC_StepAbsolute
+  BufferMode buffer_mode = BufferMode::kAborting;
 };
 struct FinishHoming {  // MC_FinishHoming
   double distance = 0;

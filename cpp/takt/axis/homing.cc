@@ -1,0 +1,336 @@
+#include "takt/axis/homing.h"
+
+#include <cmath>
+#include <optional>
+
+#include "takt/axis/coordinates.h"
+#include "takt/axis/fit.h"
+#include "takt/axis/sequence.h"
+
+namespace takt::axis {
+
+using trajectory::Profile;
+
+namespace {
+
+constexpr double kBlockedShare = 0.05;  // of the search velocity: slower than that an axis is held up
+constexpr int kMostTurns = 3;           // then both ways were searched, and there is nothing
+
+bool BySwitch(RequestKind kind) {
+  return kind == RequestKind::kStepAbsSwitch || kind == RequestKind::kStepLimitSwitch;
+}
+
+HomingScope ScopeOf(RequestKind kind) {
+  if (BySwitch(kind)) return HomingScope::kSwitches;
+  return kind == RequestKind::kStepBlock ? HomingScope::kBlock : HomingScope::kPulse;
+}
+
+// The side whose limit switch StepLimitSwitch searches.
+bool Upper(const Request& r) {
+  return r.homing.direction == HomingDirection::kPositive || r.homing.direction == HomingDirection::kSwitchPositive;
+}
+
+bool SwitchOf(const Request& r, const State& s) {
+  if (r.kind == RequestKind::kStepAbsSwitch) return s.reference;
+  return Upper(r) ? s.limit_positive : s.limit_negative;
+}
+
+// The limit switch ahead in this sense.
+bool LimitAhead(const State& s, int sense) {
+  return sense > 0 ? s.limit_positive : s.limit_negative;
+}
+
+std::int8_t FirstSense(const Request& r, const State& s) {
+  const bool on = SwitchOf(r, s);
+  int sense = 1;
+  switch (r.homing.direction) {
+    case HomingDirection::kPositive:
+      break;
+    case HomingDirection::kNegative:
+      sense = -1;
+      break;
+    case HomingDirection::kSwitchPositive:
+      sense = on ? -1 : 1;
+      break;
+    case HomingDirection::kSwitchNegative:
+      sense = on ? 1 : -1;
+      break;
+  }
+  if (BySwitch(r.kind) && LimitAhead(s, sense)) sense = -sense;  // that way is shut
+  return static_cast<std::int8_t>(sense);
+}
+
+struct Edge {
+  bool on, off;  // the switch went on, went off
+};
+
+bool Ends(SwitchMode mode, bool on, const Edge& edge, int sense) {
+  switch (mode) {
+    case SwitchMode::kOn:
+      return on;
+    case SwitchMode::kOff:
+      return !on;
+    case SwitchMode::kEdgeOn:
+      return edge.on;
+    case SwitchMode::kEdgeOff:
+      return edge.off;
+    case SwitchMode::kEdgeSwitchPositive:
+      return sense > 0 ? edge.on : edge.off;
+    case SwitchMode::kEdgeSwitchNegative:
+      return sense < 0 ? edge.on : edge.off;
+  }
+  return false;
+}
+
+bool Reverses(SwitchMode mode, const Edge& edge) {
+  return (mode == SwitchMode::kEdgeOn && edge.off) || (mode == SwitchMode::kEdgeOff && edge.on);
+}
+
+// Where the encoder was at its last index pulse.
+double PulsePosition(const Context& c, const State& s) {
+  return LatchedPosition(c.params.encoder, s.encoder, s.index_counts) - s.origin;
+}
+
+bool OnTheWay(HomingStage stage) {
+  return stage == HomingStage::kSearching || stage == HomingStage::kTurning;
+}
+
+// What happened in this cycle, the weightiest first.
+std::optional<HomingEvent> EventOf(const Context& c, State& s) {
+  HomingState& h = s.homing;
+  const Request& r = s.active;
+  if (h.stage == HomingStage::kSearching) {
+    if (BySwitch(r.kind)) {
+      const bool on = SwitchOf(r, s);
+      const Edge edge = {on && !h.switch_before, !on && h.switch_before};
+      h.switch_before = on;
+      if (Ends(r.homing.switch_mode, on, edge, h.sense)) {
+        h.captured = s.actual.position;
+        return HomingEvent::kFound;
+      }
+      if (Reverses(r.homing.switch_mode, edge)) return HomingEvent::kWrongEdge;
+      if (LimitAhead(s, h.sense)) return HomingEvent::kLimit;
+    } else if (r.kind == RequestKind::kStepRefPulse && s.index_pulse) {
+      h.captured = PulsePosition(c, s);
+      return HomingEvent::kFound;
+    } else if (r.kind == RequestKind::kStepBlock && std::abs(s.actual.velocity) < kBlockedShare * r.velocity &&
+               h.sense * s.following_error > r.homing.deviation) {
+      h.captured = s.actual.position;
+      return HomingEvent::kFound;
+    }
+  }
+  if (OnTheWay(h.stage)) {
+    if (h.stage == HomingStage::kTurning && BySwitch(r.kind)) h.switch_before = SwitchOf(r, s);
+    const double elapsed_s = static_cast<double>(c.cycle.count - h.begin_cycle) * c.cycle.period_s;
+    if (r.homing.time_limit > 0 && elapsed_s > r.homing.time_limit) return HomingEvent::kTimeOver;
+    if (r.homing.distance_limit > 0 && h.way > r.homing.distance_limit) return HomingEvent::kTooFar;
+    if (h.turns > kMostTurns) return HomingEvent::kTooFar;
+  }
+  if (h.stage != HomingStage::kSearching && s.motion.arrived && AtRest(s)) return HomingEvent::kStopped;
+  return std::nullopt;
+}
+
+void Search(const Context& c, const MotionStart& start, State& s) {
+  Profile profile{s.setpoint};
+  c.planner.ToVelocity(s.setpoint, s.homing.sense * s.active.velocity, s.active.limits(), profile);
+  StartMotion(profile, 0, start, s);
+}
+
+void Finish(const Context& c, State& s) {
+  s.homing.homed = true;
+  s.homing.stage = HomingStage::kNone;
+  EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+  StartNext(c, 0, s);
+}
+
+void GoBack(const Context& c, State& s) {
+  Profile profile{s.setpoint};
+  c.planner.ToPosition(s.setpoint, s.homing.captured, 0, s.active.limits(), profile);
+  StartMotion(profile, s.homing.captured, FromThisCycle(c), s);
+}
+
+// The found place gets its name. Braking and the way back go on under the new numbers.
+void GiveName(State& s) {
+  if (!s.active.homing.sets_position) return;
+  const double by = s.active.homing.set_position - s.homing.captured;
+  ShiftCoordinates(by, s);
+  s.homing.captured += by;
+}
+
+void Act(const Context& c, const HomingRow& row, State& s) {
+  HomingState& h = s.homing;
+  h.stage = row.to;
+  switch (row.action) {
+    case HomingAction::kBrake: {
+      if (row.event == HomingEvent::kFound) GiveName(s);
+      Profile profile{s.setpoint};
+      c.planner.Stop(s.setpoint, c.params.planner_limits(), profile);
+      StartMotion(profile, profile.end().position, FromThisCycle(c), s);
+      break;
+    }
+    case HomingAction::kTurnRound:
+      h.sense = static_cast<std::int8_t>(-h.sense);
+      ++h.turns;
+      Search(c, FromThisCycle(c), s);
+      break;
+    case HomingAction::kGoBack:
+      GoBack(c, s);
+      break;
+    case HomingAction::kPause:
+      EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+      if (s.buffered > 0) StartNext(c, 0, s);
+      break;
+    case HomingAction::kFinish:
+      Finish(c, s);
+      break;
+    case HomingAction::kGiveUp: {
+      const bool late = row.event == HomingEvent::kTimeOver;
+      EndActive(c, FeedbackState::kError, late ? ErrorId::kTimeLimit : ErrorId::kDistanceLimit, s);
+      AbortBuffer(c, s);
+      s.active.kind = RequestKind::kHalt;  // nobody's: to Standstill once at rest
+      Profile profile{s.setpoint};
+      c.planner.Stop(s.setpoint, c.params.planner_limits(), profile);
+      StartMotion(profile, profile.end().position, FromThisCycle(c), s);
+      break;
+    }
+  }
+}
+
+Status BeginFlying(const Context& c, Ticket ticket, bool pulse, const HomingRequest& request, State& s) {
+  if (!s.loop_closed || s.plc == PlcState::kHoming) return Status::Failed(ErrorId::kState);
+  HomingState& h = s.homing;
+  if (h.flying_ticket != 0) Report(c, h.flying_ticket, FeedbackState::kAborted);
+  h.flying_ticket = ticket;
+  h.flying_pulse = pulse;
+  h.flying = request;
+  h.flying_way = 0;
+  h.flying_begin = c.cycle.count;
+  h.reference_before = s.reference;
+  Report(c, ticket, FeedbackState::kActive);
+  return Status::Ok();
+}
+
+void EndFlying(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
+  Report(c, s.homing.flying_ticket, feedback, error, false, s.homing.captured);
+  s.homing.flying_ticket = 0;
+}
+
+}  // namespace
+
+bool Homes(RequestKind kind) noexcept {
+  return kind >= RequestKind::kStepAbsSwitch && kind <= RequestKind::kFinishHoming;
+}
+
+bool OwnsLimitSwitches(const State& s) noexcept {
+  return s.plc == PlcState::kHoming && BySwitch(s.active.kind);
+}
+
+Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) noexcept {
+  const bool from_here = s.plc == PlcState::kStandstill || s.plc == PlcState::kHoming;
+  if (!from_here || !AtRest(s)) return Status::Failed(ErrorId::kState);
+  if (r.kind == RequestKind::kFinishHoming && s.plc != PlcState::kHoming) return Status::Failed(ErrorId::kState);
+  if (r.kind == RequestKind::kStepAbsolute && c.params.encoder.type != EncoderType::kAbsoluteSsi) {
+    return Status::Failed(ErrorId::kState);
+  }
+  HomingState& h = s.homing;
+  const MotionStart start = aborts ? FromCycleBefore(c) : FromThisCycle(c);  // a buffered one: this cycle is done
+  Plan plan;
+  if (r.kind == RequestKind::kFinishHoming && r.value != 0) {
+    Request leave = r;
+    leave.kind = RequestKind::kMoveRelative;
+    const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, leave, nullptr, plan);
+    if (status.failed()) return status;
+  }
+  if (aborts) AbortAll(c, s);
+  Grant(c, r, s);
+  Enter(s, PlcState::kHoming);
+  s.limited_by = LimitedBy::kNothing;
+  h.begin_cycle = c.cycle.count;
+  h.way = 0;
+  h.turns = 0;
+  switch (r.kind) {
+    case RequestKind::kFinishHoming:
+      h.stage = HomingStage::kLeaving;
+      if (r.value == 0) {
+        Finish(c, s);
+      } else {
+        StartMotion(plan.profile, plan.target, start, s);
+      }
+      break;
+    case RequestKind::kStepDirect:
+      h.captured = s.setpoint.position;
+      GiveName(s);
+      Finish(c, s);
+      break;
+    case RequestKind::kStepAbsolute:
+      ShiftCoordinates(s.origin, s);
+      Finish(c, s);
+      break;
+    default:
+      h.homed = false;
+      h.stage = HomingStage::kSearching;
+      h.sense = FirstSense(r, s);
+      h.switch_before = SwitchOf(r, s);
+      Search(c, start, s);
+  }
+  return Status::Ok();
+}
+
+void StepHoming(const Context& c, State& s) noexcept {
+  HomingState& h = s.homing;
+  if (s.plc != PlcState::kHoming) h.stage = HomingStage::kNone;
+  if (h.stage == HomingStage::kNone || h.stage == HomingStage::kWaiting) return;
+  h.way += std::abs(s.setpoint.velocity) * c.cycle.period_s;
+  const std::optional<HomingEvent> event = EventOf(c, s);
+  if (!event) return;
+  const HomingScope scope = ScopeOf(s.active.kind);
+  for (const HomingRow& row : kHomingTable) {
+    const bool holds = row.scope == HomingScope::kAll || row.scope == scope;
+    if (row.from == h.stage && row.event == *event && holds) return Act(c, row, s);
+  }
+}
+
+void WatchFlying(const Context& c, State& s) noexcept {
+  HomingState& h = s.homing;
+  if (h.flying_ticket == 0) return;
+  if (!s.loop_closed || s.plc == PlcState::kErrorStop || s.plc == PlcState::kHoming) {
+    return EndFlying(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  }
+  h.flying_way += std::abs(s.setpoint.velocity) * c.cycle.period_s;
+  const Edge edge = {s.reference && !h.reference_before, !s.reference && h.reference_before};
+  h.reference_before = s.reference;
+  const int sense = s.actual.velocity < 0 ? -1 : 1;
+  const bool found = h.flying_pulse ? s.index_pulse : Ends(h.flying.switch_mode, s.reference, edge, sense);
+  if (found) {
+    h.captured = h.flying_pulse ? PulsePosition(c, s) : s.actual.position;
+    ShiftCoordinates(h.flying.set_position - h.captured, s);
+    h.captured = h.flying.set_position;
+    h.homed = true;
+    return EndFlying(c, FeedbackState::kDone, ErrorId::kNone, s);
+  }
+  const double elapsed_s = static_cast<double>(c.cycle.count - h.flying_begin) * c.cycle.period_s;
+  if (h.flying.time_limit > 0 && elapsed_s > h.flying.time_limit) {
+    EndFlying(c, FeedbackState::kError, ErrorId::kTimeLimit, s);
+  } else if (h.flying.distance_limit > 0 && h.flying_way > h.flying.distance_limit) {
+    EndFlying(c, FeedbackState::kError, ErrorId::kDistanceLimit, s);
+  }
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const StepRefFlyingSwitch& f, State& s) noexcept {
+  HomingRequest request;
+  request.switch_mode = f.switch_mode;
+  request.set_position = f.set_position;
+  request.time_limit = f.time_limit;
+  request.distance_limit = f.distance_limit;
+  return BeginFlying(c, ticket, false, request, s);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const StepRefFlyingRefPulse& f, State& s) noexcept {
+  HomingRequest request;
+  request.set_position = f.set_position;
+  request.time_limit = f.time_limit;
+  request.distance_limit = f.distance_limit;
+  return BeginFlying(c, ticket, true, request, s);
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,123 @@
+// Finding the reference of an axis (PLCopen Part 5): a search in stages, as one table says.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "takt/axis/request.h"
+#include "takt/core/feedback.h"
+
+namespace takt::axis {
+
+struct Context;
+struct State;
+
+enum class HomingStage : std::uint8_t {
+  kNone,       // not homing
+  kSearching,  // on the way, at the search velocity
+  kTurning,    // brakes, to search the other way
+  kBraking,    // found: brakes
+  kReturning,  // goes back to what was found
+  kLeaving,    // finishing: moves off
+  kWaiting,    // for the next step; the axis stays in Homing
+};
+
+enum class HomingEvent : std::uint8_t {
+  kFound,      // what the step is looking for
+  kWrongEdge,  // the switch changed the other way
+  kLimit,      // a limit switch lies ahead (StepAbsSwitch)
+  kStopped,    // the motion of the stage is over
+  kTimeOver,   // TimeLimit
+  kTooFar,     // DistanceLimit
+};
+
+enum class HomingAction : std::uint8_t {
+  kBrake,      // with the axis' full ramp
+  kTurnRound,  // search in the other direction
+  kGoBack,     // to the captured position
+  kPause,      // done, but the axis stays in Homing
+  kFinish,     // done, Standstill, the axis has its reference
+  kGiveUp,     // error, brake to Standstill
+};
+
+// Which steps a row holds for.
+enum class HomingScope : std::uint8_t { kAll, kSwitches, kBlock, kPulse };
+
+struct HomingRow {
+  HomingStage from;
+  HomingEvent event;
+  HomingScope scope;
+  HomingAction action;
+  HomingStage to;
+};
+
+inline constexpr std::array kHomingTable = {
+    HomingRow{HomingStage::kSearching, HomingEvent::kFound, HomingScope::kAll, HomingAction::kBrake,
+              HomingStage::kBraking},
+    HomingRow{HomingStage::kSearching, HomingEvent::kWrongEdge, HomingScope::kSwitches, HomingAction::kBrake,
+              HomingStage::kTurning},
+    HomingRow{HomingStage::kSearching, HomingEvent::kLimit, HomingScope::kSwitches, HomingAction::kBrake,
+              HomingStage::kTurning},
+    HomingRow{HomingStage::kSearching, HomingEvent::kTimeOver, HomingScope::kAll, HomingAction::kGiveUp,
+              HomingStage::kNone},
+    HomingRow{HomingStage::kSearching, HomingEvent::kTooFar, HomingScope::kAll, HomingAction::kGiveUp,
+              HomingStage::kNone},
+    HomingRow{HomingStage::kTurning, HomingEvent::kStopped, HomingScope::kSwitches, HomingAction::kTurnRound,
+              HomingStage::kSearching},
+    HomingRow{HomingStage::kTurning, HomingEvent::kTimeOver, HomingScope::kSwitches, HomingAction::kGiveUp,
+              HomingStage::kNone},
+    HomingRow{HomingStage::kTurning, HomingEvent::kTooFar, HomingScope::kSwitches, HomingAction::kGiveUp,
+              HomingStage::kNone},
+    HomingRow{HomingStage::kBraking, HomingEvent::kStopped, HomingScope::kSwitches, HomingAction::kGoBack,
+              HomingStage::kReturning},
+    HomingRow{HomingStage::kBraking, HomingEvent::kStopped, HomingScope::kBlock, HomingAction::kGoBack,
+              HomingStage::kReturning},
+    HomingRow{HomingStage::kBraking, HomingEvent::kStopped, HomingScope::kPulse, HomingAction::kFinish,
+              HomingStage::kNone},
+    HomingRow{HomingStage::kReturning, HomingEvent::kStopped, HomingScope::kSwitches, HomingAction::kPause,
+              HomingStage::kWaiting},
+    HomingRow{HomingStage::kReturning, HomingEvent::kStopped, HomingScope::kBlock, HomingAction::kFinish,
+              HomingStage::kNone},
+    HomingRow{HomingStage::kLeaving, HomingEvent::kStopped, HomingScope::kAll, HomingAction::kFinish,
+              HomingStage::kNone},
+};
+
+struct HomingState {
+  HomingStage stage = HomingStage::kNone;
+  bool homed = false;          // the axis has its reference
+  std::int8_t sense = 1;       // of the search
+  bool switch_before = false;  // the switch that is searched, a cycle ago
+  double captured = 0;         // u, where it was found
+  std::uint8_t turns = 0;      // how often it turned round
+  double way = 0;              // u, gone since the step began
+  std::uint64_t begin_cycle = 0;
+
+  // References taken while another motion goes on.
+  Ticket flying_ticket = 0;   // 0: none is awaited
+  bool flying_pulse = false;  // the index pulse; else the reference switch
+  HomingRequest flying;
+  double flying_way = 0;
+  std::uint64_t flying_begin = 0;
+  bool reference_before = false;
+};
+
+bool Homes(RequestKind kind) noexcept;
+// Begins a step from rest; `aborts`: what is in control and what waits is aborted first. kState: not from here.
+Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) noexcept;
+// Each cycle after the set point was made: events of the step in control.
+void StepHoming(const Context& c, State& s) noexcept;
+// Each cycle: references that are taken in passing.
+void WatchFlying(const Context& c, State& s) noexcept;
+// The limit switches belong to the search for now: no fault.
+bool OwnsLimitSwitches(const State& s) noexcept;
+
+Status CarryOut(const Context& c, Ticket ticket, const StepRefFlyingSwitch& command, State& s) noexcept;
+Status CarryOut(const Context& c, Ticket ticket, const StepRefFlyingRefPulse& command, State& s) noexcept;
+
+void describe(Enumeration<HomingStage>&);
+void describe(Enumeration<HomingEvent>&);
+void describe(Enumeration<HomingAction>&);
+void describe(Enumeration<HomingScope>&);
+void describe(Description<HomingState>&);
+
+}  // namespace takt::axis
