@@ -143,11 +143,11 @@ void Supersede(const Context& c, ProbeWatch watch, ProbeEdge edge, Ticket ticket
 }  // namespace
 
 bool Fill(const Maker& m, const TouchProbe& c) {
-  if (!c.window_only) return true;
-  const double low = m.params.rotary() ? 0 : -kMaxPosition;
-  const double high = m.params.rotary() ? m.params.modulus : kMaxPosition;
+  const bool turns = m.params.rotary();
+  const double low = turns ? 0 : -kMaxPosition;
+  const double high = turns ? m.params.modulus : kMaxPosition;
   return m.In("first_position", c.first_position, low, high) &&
-         m.In("last_position", c.last_position, m.params.rotary() ? low : c.first_position, high);
+         m.In("last_position", c.last_position, c.window_only && !turns ? c.first_position : low, high);
 }
 
 bool Fill(const Maker& m, const Touch& c) {
