@@ -61,8 +61,8 @@ def until(axis: takt.Axis, condition: Callable[[], bool], *blocks: Callable[[], 
 def test_touch_probe_records_the_position(x: takt.Axis) -> None:  # AX-49
     probe, move = MC_TouchProbe(x), MC_MoveAbsolute(x)
     probe(Execute=True)
-    assert probe.Busy
-    assert not probe.Done
+    assert probe.outputs["Busy"]
+    assert not probe.outputs["Done"]
     move(Execute=True, Position=100, Velocity=200)
     until(x, lambda: probe.Done, probe, move)
     assert probe.RecordedPosition == pytest.approx(60, abs=200 * 20e-6 + 0.001)

@@ -102,17 +102,12 @@ class CrossCheck {
   }
 
   void CheckCamSwitches() {
-    std::vector<std::string_view> seen;
     for (std::size_t i = 0; i < machine_.cam_switches.size(); ++i) {
       const std::string path = "cam_switches[" + std::to_string(i) + "]";
       const std::string& name = machine_.cam_switches[i].name;
-      if (name.empty() && !Written(path, ".name")) continue;
-      if (!GoodName(name)) {
+      if (!GoodName(name) && !(name.empty() && !Written(path, ".name"))) {
         Add(path + ".name", "expected 1 to 40 letters, digits, _ - or ., found " + Quoted(name));
-      } else if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
-        Add(path + ".name", "expected each name once, found " + Quoted(name) + " again");
       }
-      seen.push_back(name);
     }
   }
 

@@ -133,18 +133,20 @@ TEST(CamSwitch, RangeJumpedOverIsOnForOneCycle) {  // AX-50
 
 TEST(CamSwitch, TimeIsCountedFromEachEntryWhateverTheSpeed) {  // AX-50
   // Lead time under acceleration: x + v * lead moves on in each cycle, and meets the edge in one of them only.
-  const CamSwitches list{.name = "l",
-                         .tracks = {{1, 0.03, 0, 0}},
-                         .switches = {{1, 50, {}, CamDirection::kBoth, CamSwitchMode::kTime, 0.02}}};
   const Way way = [](double t) { return KinematicState{500 * t * t, 1000 * t, 1000}; };
-  const auto outputs = Outputs(list, way, 500);
-  int first = 0;
-  while (outputs[first] == 0) ++first;
-  // 500 t² + 1000 t lead = 50
-  const double met = -0.03 + std::sqrt(0.03 * 0.03 + 0.1);
-  EXPECT_EQ(first, static_cast<int>(std::ceil(met / 0.001)));
-  EXPECT_EQ(std::count(outputs.begin(), outputs.end(), 1U), 20);
-  EXPECT_EQ(outputs[first + 19], 1U);
+  for (double edge = 31; edge < 100; edge += 0.37) {
+    const CamSwitches list{.name = "l",
+                           .tracks = {{1, 0.03, 0, 0}},
+                           .switches = {{1, edge, {}, CamDirection::kBoth, CamSwitchMode::kTime, 0.02}}};
+    const auto outputs = Outputs(list, way, 500);
+    // 500 t² + 1000 t lead = edge
+    const double met = -0.03 + std::sqrt(0.03 * 0.03 + edge / 500);
+    const auto first = static_cast<std::size_t>(std::ceil(met / 0.001));
+    EXPECT_EQ(std::count(outputs.begin(), outputs.end(), 1U), 20) << edge;
+    EXPECT_EQ(outputs[first - 1], 0U) << edge;
+    EXPECT_EQ(outputs[first], 1U) << edge;
+    EXPECT_EQ(outputs[first + 19], 1U) << edge;
+  }
 }
 
 TEST(CamSwitch, HysteresisKeepsATremblingAxisFromSwitching) {  // AX-50
