@@ -199,6 +199,10 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
     Report(c, next.ticket, FeedbackState::kError, status.error);
     AbortBuffer(c, s);
   }
+  if (s.plc == PlcState::kHoming && AtRest(s)) {  // the step that waited was refused
+    if (s.homing.stage != HomingStage::kWaiting) Enter(s, PlcState::kStandstill);
+    return;
+  }
   // Nobody takes over (any more): come to rest, if there is still anything to come to rest from.
   if (s.plc != PlcState::kStandstill) ComeToRest(c, c.params.planner_limits(), FromThisCycle(c), s);
 }
