@@ -54,33 +54,37 @@ def ended(block: Any) -> bool:
     return any(block.outputs[name] for name in ("Done", "Error", "CommandAborted"))
 
 
+def homed(axis: takt.Axis) -> bool:
+    return bool(axis.homed)
+
+
 def test_a_scenario_from_power_on_to_the_first_absolute_move(x: takt.Axis) -> None:  # AX-60, AX-63, AX-71
     move = MC_MoveAbsolute(x)
-    move(Execute=True, Position=5.0, Velocity=50.0)
+    move(Execute=True, Position=90.0, Velocity=50.0)
     until(x, lambda: ended(move), move)
     assert move.outputs["ErrorID"] == NO_REFERENCE
-    assert not x.homed
+    assert not homed(x)
 
     search = homing.MC_StepAbsSwitch(x, Velocity=50.0, Direction=HomingDirection.POSITIVE)
     search(Execute=True)
     until(x, lambda: ended(search), search)
     assert search.outputs["Done"]
-    assert x.state is takt.PlcState.HOMING
+    assert x.state.value == "Homing"
     assert x.set_position == pytest.approx(40, abs=0.11)
 
     pulse = homing.MC_StepRefPulse(x, Velocity=10.0, SetPosition=100.0)
     pulse(Execute=True)
     until(x, lambda: ended(pulse), pulse)
     assert pulse.outputs["Done"]
-    assert x.state is takt.PlcState.STANDSTILL
-    assert x.homed
+    assert x.state.value == "Standstill"
+    assert homed(x)
     assert 100 < x.set_position < 100.5
 
     move(Execute=False)
     move(Execute=True)
     until(x, lambda: ended(move), move)
     assert move.outputs["Done"]
-    assert x.set_position == pytest.approx(5.0)
+    assert x.set_position == pytest.approx(90.0)
 
 
 def test_limit_switch_and_finish(x: takt.Axis) -> None:  # AX-61, AX-66
@@ -90,7 +94,7 @@ def test_limit_switch_and_finish(x: takt.Axis) -> None:  # AX-61, AX-66
     finish(Execute=True)
     until(x, lambda: ended(finish), search, finish)
     assert finish.outputs["Done"]
-    assert x.homed
+    assert homed(x)
     assert x.set_position == pytest.approx(0, abs=1e-6)
     assert x.error == 0
 
@@ -131,5 +135,5 @@ def test_in_passing(x: takt.Axis, kind: type[homing.FlyingBlock], place: float) 
     until(x, lambda: ended(move), move, flying)
     assert move.outputs["Done"]
     assert flying.outputs["Done"]
-    assert x.homed
+    assert homed(x)
     assert x.set_position == pytest.approx(500 + 70 - place, abs=0.06)
