@@ -279,7 +279,7 @@ TEST(Search, IsNotEndedByABufferedMove) {
   EXPECT_NEAR(bench.place(), 10, 0.1);
 }
 
-// AX-62: however fast the search, braking on the end stop is no deviation; running the wrong way still is.
+// AX-62: however fast the search, braking on the end stop is no deviation.
 TEST(Block, MayLagAsLongAsItPushes) {
   Bench bench(-20);
   bench.params.supervision.deviation_moving = 1.5;

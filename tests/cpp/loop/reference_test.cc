@@ -30,6 +30,18 @@ TEST(Reference, IsTakenOnTheSpotAndIsNeeded) {
   EXPECT_FALSE(bench.seen.homed);
 }
 
+TEST(Reference, IsLostWithAJumpOfTheEncoder) {  // AX-71
+  Bench bench(7);
+  bench.On();
+  bench.Give(StepDirect{});
+  bench.Run(0.01);
+  ASSERT_TRUE(bench.seen.homed);
+  bench.in.counts += 1000000;  // 100 mm in a cycle
+  bench.Step();
+  EXPECT_FALSE(bench.seen.homed);
+  EXPECT_EQ(bench.seen.error, ErrorId::kEncoder);
+}
+
 TEST(Reference, ComesFromAnAbsoluteEncoder) {  // AX-65
   Bench bench(7);
   bench.params.encoder.type = EncoderType::kAbsoluteSsi;
