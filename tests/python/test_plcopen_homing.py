@@ -8,9 +8,8 @@ from typing import Any
 import pytest
 import takt
 from machines import MACHINE
-from takt import plcopen_homing as homing
 from takt._commands import BufferMode, HomingDirection, SwitchMode
-from takt.plcopen import MC_MoveAbsolute, MC_MoveRelative
+from takt.plcopen import MC_MoveAbsolute, MC_MoveRelative, homing
 
 NO_REFERENCE = 9
 

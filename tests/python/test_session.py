@@ -373,7 +373,10 @@ def test_what_is_not_finite_is_refused(verb: str, bad: float, engine: takt.Engin
     fields = VERBS[verb]["arguments"]["fields"]
     axis = engine.axis("x")
     axis.power().wait()
-    good = {f["name"]: 1.0 for f in fields if f["presence"] == "required"}
+    samples = {"real": 1.0, "integer": 1, "text": "r"}
+    good: dict[str, object] = {
+        f["name"]: samples.get(f["type"]["kind"], 1.0) for f in fields if f["presence"] == "required"
+    }
     if verb == "jog":
         good["forward"] = True
     for field in filter(numbers, fields):

@@ -1,4 +1,6 @@
 // Commands as they arrive: carried out, buffered or refused.
+#include "takt/axis/cam_switch.h"
+#include "takt/axis/probe.h"
 #include "takt/axis/sequence.h"
 #include "takt/axis/settings.h"
 
@@ -138,9 +140,10 @@ Status CarryOut(const Context& c, Ticket ticket, const Reset&, State& s) {
   BeginReset(c, ticket, s);
   return Status::Ok();
 }
+// What asks for control never comes here.
 template <typename T>
 Status CarryOut(const Context&, Ticket, const T&, State&) {
-  return Status::Failed(ErrorId::kState);
+  return Status::Failed(ErrorId::kInternal);
 }
 
 // The command with this ticket, in control or waiting; null: neither.

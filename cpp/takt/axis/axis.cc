@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/axis/coordinates.h"
+#include "takt/axis/fit.h"
 #include "takt/axis/following.h"
 #include "takt/axis/sequence.h"
 
@@ -19,13 +20,6 @@ constexpr double kFarTurns = 1000;
 double LargestStep(const Context& c) {
   return kJumpFactor * c.params.limits.velocity * c.cycle.period_s +
          c.params.supervision.encoder_noise_counts / c.params.encoder.increments_per_unit;
-}
-
-double Reported(const AxisParams& p, double position) {
-  if (!p.rotary()) return position;
-  const double turns = std::floor(position / p.modulus);
-  const double inside = position - turns * p.modulus;
-  return inside >= 0 && inside < p.modulus ? inside : 0;
 }
 
 bool InMotion(const State& s) {
@@ -88,17 +82,6 @@ void AwaitDrive(const Context& c, State& s) {
   } else if (static_cast<double>(c.cycle.count - s.enable_cycle) * c.cycle.period_s > c.params.drive.ready_timeout_s) {
     Fail(c, ErrorId::kDrive, true, s);
   }
-}
-
-// Invariant of motions that go on: braking now, from this set point, ends inside the SW limits. A set point that would
-// break it is not taken; the brake begins in its place, which the set point before allowed (AX-13).
-bool CanStopInside(const AxisParams& p, const KinematicState& before, const KinematicState& next) {
-  const double stop = trajectory::StopPosition(next, p.planner_limits());
-  const double highest = std::max(stop, next.position);  // it may have turned round since the set point before
-  const double lowest = std::min(stop, next.position);
-  const bool too_high = p.limits.upper && highest > *p.limits.upper && highest > before.position;
-  const bool too_low = p.limits.lower && lowest < *p.limits.lower && lowest < before.position;
-  return !too_high && !too_low;
 }
 
 void BringBackTurns(const AxisParams& p, State& s) {
@@ -200,6 +183,7 @@ void Sense(const Context& c, const ServoInputs& in, State& s) noexcept {
   s.encoder_error = measured.error;
   s.encoder_line_error = in.encoder_error;
   s.actual = {measured.position - s.origin, measured.velocity, 0};
+  SenseTorque(s);
   s.due = s.setpoint.position;
   s.following_error = s.loop_closed ? s.due - s.actual.position : 0;
   s.limit_positive_before = s.limit_positive;
@@ -215,14 +199,18 @@ void Sense(const Context& c, const ServoInputs& in, State& s) noexcept {
   s.drive_ready = in.drive_ready;
   s.drive_fault = in.drive_fault;
   s.torque_nm = in.torque_nm;
+  SenseProbe(c, in, s);
 }
 
 void Move(const Context& c, State& s) noexcept {
   Supervise(c, s);
   WatchFlying(c, s);
+  FollowProbe(c, s);
   if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
   if (s.loop_closed && Follow(c, s)) {
     // The master's set point is this axis' too.
+  } else if (MoveTorque(c, s)) {
+    // The drive follows a torque, the set point the axis.
   } else if (s.loop_closed && Couples(s.active.kind)) {
     FollowCoupling(c, s);
   } else if (s.loop_closed) {
@@ -234,31 +222,39 @@ void Move(const Context& c, State& s) noexcept {
   }
   FinishReset(c, s);
   if (c.params.rotary() && std::abs(s.setpoint.position) > kFarTurns * c.params.modulus) BringBackTurns(c.params, s);
+  s.cam_outputs = SwitchCams(c, s);
 }
 
 bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   const AxisParams& p = c.params;
-  const bool drive_closes = p.drive.mode == DriveMode::kCyclicPosition;
+  const bool torque = FollowsTorque(s);
+  const DriveMode mode = torque ? DriveMode::kCyclicTorque : p.drive.mode;
+  const bool engine_closes = mode == DriveMode::kCyclicVelocity || mode == DriveMode::kAnalog;
   const double sign = p.drive.invert ? -1 : 1;
   ControlLoopOutputs loop;
   // The new set point is the one for the end of this cycle. What is measured now is held against the one before, and
   // the speed fed forward is the one that leads from there to the new one.
   const double mean_velocity = (s.setpoint.position - s.due) / c.cycle.period_s;
-  Step(p.loop, {p.drive.mode, s.loop_closed && !drive_closes, p.drive.invert, s.due, mean_velocity, s.actual.position},
+  Step(p.loop, {p.drive.mode, s.loop_closed && engine_closes, p.drive.invert, s.due, mean_velocity, s.actual.position},
        c.cycle, s.loop, loop);
-  out.mode = p.drive.mode;
+  out.mode = mode;
   out.position_counts = sign * CountsAt(p.encoder, s.setpoint.position + s.origin);
-  out.velocity_counts_s =
-      drive_closes ? sign * CountRateAt(p.encoder, s.setpoint.velocity) : CountRateAt(p.encoder, loop.velocity);
+  out.velocity_counts_s = torque          ? std::abs(CountRateAt(p.encoder, s.active.velocity))
+                          : engine_closes ? CountRateAt(p.encoder, loop.velocity)
+                                          : sign * CountRateAt(p.encoder, s.setpoint.velocity);
   out.voltage_v = loop.voltage_v;
-  const bool sound = std::isfinite(out.position_counts + out.velocity_counts_s + out.voltage_v);
+  out.torque_nm = torque ? sign * s.torque.set_torque_nm : 0;
+  const bool sound =
+      std::isfinite(out.position_counts + out.velocity_counts_s + out.voltage_v) && std::isfinite(out.torque_nm);
   if (!sound) {
     s.setpoint = {0, 0, 0};
     Fail(c, ErrorId::kInternal, true, s);
     s.loop = ControlLoopState{};
     out.position_counts = CountsAt(p.encoder, s.actual.position + s.origin);
+    out.mode = p.drive.mode;
     out.velocity_counts_s = 0;
     out.voltage_v = 0;
+    out.torque_nm = 0;
   }
   if (s.plc == PlcState::kDisabled && !s.enable) out.voltage_v = s.direct_voltage_v;
   s.voltage_v = out.voltage_v;
@@ -316,6 +312,9 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.limit_negative = s.limit_negative;
   out.reference = s.reference;
   out.touch_probe = s.touch_probe;
+  out.probe_position = s.probe.position;
+  out.probe_captures = s.probe.captures;
+  out.cam_outputs = s.cam_outputs;
 }
 
 }  // namespace takt::axis

@@ -25,6 +25,7 @@ struct Context {
   // All axes of the machine, to look up masters: those that step before this one are of the same cycle.
   std::span<const State> axes{};
   std::span<const AxisParams> axes_params{};
+  std::span<const CamSwitches> cam_switches{};
 };
 
 // As it stands when power comes on.

@@ -6,10 +6,21 @@ namespace takt::axis {
 
 namespace {
 
-bool Ratio(const Maker& m, const char* field, double numerator, double denominator, double& out) {
+struct RatioFields {
+  const char* numerator;
+  const char* denominator;
+};
+
+bool Ratio(const Maker& m, const RatioFields& names, double numerator, double denominator, double& out) {
   out = numerator / denominator;
-  return m.In(field, out, -kMaxPosition, kMaxPosition);
+  return m.In(names.numerator, numerator, -kMaxPosition, kMaxPosition) &&
+         m.In(names.denominator, denominator, std::numeric_limits<double>::min(), kMaxPosition) &&
+         m.In(names.numerator, out, -kMaxPosition, kMaxPosition);
 }
+
+constexpr RatioFields kRatio = {"ratio_numerator", "ratio_denominator"};
+constexpr RatioFields kRatio1 = {"ratio_numerator1", "ratio_denominator1"};
+constexpr RatioFields kRatio2 = {"ratio_numerator2", "ratio_denominator2"};
 
 bool Term(const Maker& m, const Name& name, MasterSource source, double ratio, CouplingTerm& out) {
   out = {name, kNoAxis, source, ratio};
@@ -29,7 +40,7 @@ bool Fill(const Maker& m, const GearIn& c) {
   m.r.buffer_mode = c.buffer_mode;
   m.r.velocity = m.params.limits.velocity;
   double ratio = 0;
-  return Ratio(m, "ratio", c.ratio_numerator, c.ratio_denominator, ratio) &&
+  return Ratio(m, kRatio, c.ratio_numerator, c.ratio_denominator, ratio) &&
          Term(m, c.master, c.source, ratio, m.r.coupling.terms[0]) && m.Ramps(c);
 }
 
@@ -49,7 +60,7 @@ bool Fill(const Maker& m, const GearInPos& c) {
   return m.In("master_sync_position", c.master_sync_position, -kMaxPosition, kMaxPosition) &&
          m.In("slave_sync_position", c.slave_sync_position, -kMaxPosition, kMaxPosition) &&
          m.In("master_start_distance", c.master_start_distance.value_or(0), 0, kMaxPosition) &&
-         Ratio(m, "ratio", c.ratio_numerator, c.ratio_denominator, ratio) &&
+         Ratio(m, kRatio, c.ratio_numerator, c.ratio_denominator, ratio) &&
          Term(m, c.master, c.source, ratio, out.terms[0]) &&
          m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
 }
@@ -63,8 +74,8 @@ bool Fill(const Maker& m, const CombineAxes& c) {
     m.why.field = "mode";
     return false;
   }
-  return Ratio(m, "ratio1", c.ratio_numerator1, c.ratio_denominator1, first) &&
-         Ratio(m, "ratio2", c.ratio_numerator2, c.ratio_denominator2, second) &&
+  return Ratio(m, kRatio1, c.ratio_numerator1, c.ratio_denominator1, first) &&
+         Ratio(m, kRatio2, c.ratio_numerator2, c.ratio_denominator2, second) &&
          Term(m, c.master1, c.source1, first, m.r.coupling.terms[0]) &&
          Term(m, c.master2, c.source2, c.mode == CombineMode::kAdd ? second : -second, m.r.coupling.terms[1]) &&
          m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);

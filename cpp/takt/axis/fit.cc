@@ -88,6 +88,15 @@ bool TurnsRound(const AxisLimits& limits, const KinematicState& from, const Prof
 
 }  // namespace
 
+bool CanStopInside(const AxisParams& p, const KinematicState& before, const KinematicState& next) noexcept {
+  const double stop = trajectory::StopPosition(next, p.planner_limits());
+  const double highest = std::max(stop, next.position);  // it may have turned round since the set point before
+  const double lowest = std::min(stop, next.position);
+  const bool too_high = p.limits.upper && highest > *p.limits.upper && highest > before.position;
+  const bool too_low = p.limits.lower && lowest < *p.limits.lower && lowest < before.position;
+  return !too_high && !too_low;
+}
+
 double Rounding(double x) noexcept {
   return 1e-9 * (1 + std::abs(x));
 }

@@ -15,7 +15,6 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::following_error>(unit::u, "Set point of the cycle before minus measured position.");
   d.internal<&O::voltage_v>(unit::volt, "Output of the position loop, analogue drives.");
   d.internal<&O::torque_nm>(unit::nm, "As the drive reports it.");
-  d.internal<&O::superimposed>(unit::u, "Covered by the last motion on top of another.");
   d.internal<&O::probe_position>(unit::u, "Where the touch probe was captured last.");
   d.internal<&O::active_command>("Ticket of the command in control; 0: none.");
   d.internal<&O::error>("Fault of the axis, not of a command; 0: none.");

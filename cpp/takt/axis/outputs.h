@@ -18,7 +18,6 @@ struct Outputs {
   double following_error = 0;      // u, set point of the cycle before minus what is measured now
   double voltage_v = 0;            // V, output of the position loop
   double torque_nm = 0;            // Nm, as the drive reports it
-  double superimposed = 0;         // u, covered by the last motion on top of another
   double probe_position = 0;       // u, where the touch probe was captured last
   Ticket active_command = 0;       // 0: none
   ErrorId error = ErrorId::kNone;  // fault of the axis (not of a command)

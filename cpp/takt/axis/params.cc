@@ -1,11 +1,20 @@
 #include "takt/axis/params.h"
 
+#include <cmath>
+
 #include "takt/core/describe.h"
 
 namespace takt::axis {
 
 trajectory::Limits AxisParams::planner_limits() const {
   return {limits.velocity, limits.acceleration, limits.deceleration.value_or(limits.acceleration), limits.jerk};
+}
+
+double Reported(const AxisParams& p, double position) noexcept {
+  if (!p.rotary()) return position;
+  const double turns = std::floor(position / p.modulus);
+  const double inside = position - turns * p.modulus;
+  return inside >= 0 && inside < p.modulus ? inside : 0;
 }
 
 void describe(Enumeration<AxisKind>& e) {
@@ -45,6 +54,8 @@ void describe(Description<Supervision>& d) {
 void describe(Description<Drive>& d) {
   d.about("The drive behind the axis.");
   d.defaulted<&Drive::mode>("What the drive is commanded by.");
+  d.rule<&Drive::mode>("must not be cyclic_torque, which only torque control uses",
+                       [](const Drive& drive) { return drive.mode != DriveMode::kCyclicTorque; });
   d.defaulted<&Drive::invert>("Inverts the control sense.");
   d.defaulted<&Drive::ready_timeout_s>(unit::s, positive,
                                        "How long the drive may take to get ready; then ErrorStop 3002.");

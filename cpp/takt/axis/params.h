@@ -74,6 +74,9 @@ struct AxisParams {
   trajectory::Limits planner_limits() const;
 };
 
+// A position as it is reported: rotary axes in [0, modulus).
+double Reported(const AxisParams& params, double position) noexcept;
+
 void describe(Enumeration<AxisKind>&);
 void describe(Description<AxisLimits>&);
 void describe(Description<Supervision>&);

@@ -231,6 +231,14 @@ Status CheckAtLimit(const AxisLimits& limits, const KinematicState& from, double
   return stuck ? Status::Failed(ErrorId::kTargetBehindLimit) : Status::Ok();
 }
 
+// A torque is to push neither onto a limit switch that is on nor through a SW limit.
+Status CheckTorque(const AxisParams& params, const Surroundings& around, const KinematicState& from, double torque) {
+  if (params.drive.mode == DriveMode::kAnalog) return Status::Failed(ErrorId::kState);  // it takes no torque
+  if ((around.limit_positive && torque > 0) || (around.limit_negative && torque < 0))
+    return Status::Failed(ErrorId::kAwayFromLimitOnly);
+  return CheckAtLimit(params.limits, from, torque);
+}
+
 double TargetOf(const AxisParams& params, const Surroundings& around, const KinematicState& from,
                 const Request& request) {
   if (request.kind == RequestKind::kMoveAdditive) return around.promised.value_or(from.position) + request.value;
@@ -244,6 +252,7 @@ Status Check(const AxisParams& params, const Surroundings& around, const Kinemat
   if (request.kind == RequestKind::kMoveVelocity) {
     return CheckAtLimit(params.limits, from, SenseOf(request, around.last_sense) * request.velocity);
   }
+  if (request.kind == RequestKind::kTorqueControl) return CheckTorque(params, around, from, request.value);
   if (!request.positions()) return Status::Ok();
   if (params.requires_reference && !around.homed && !request.by_distance())
     return Status::Failed(ErrorId::kNoReference);

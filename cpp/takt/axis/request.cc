@@ -23,14 +23,10 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kMoveContinuousAbsolute, true, true, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kMoveContinuousRelative, true, true, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kInch, false, false, false, PlcState::kDiscreteMotion},
-    RequestRules{RequestKind::kPositionProfile, true, false, true, PlcState::kDiscreteMotion},
-    RequestRules{RequestKind::kVelocityProfile, true, false, true, PlcState::kContinuousMotion},
-    RequestRules{RequestKind::kAccelerationProfile, true, false, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kTorqueControl, true, false, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kGearIn, true, false, true, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kGearInPos, true, false, true, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kCombineAxes, true, false, true, PlcState::kSynchronizedMotion},
-    RequestRules{RequestKind::kCamIn, true, false, true, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kLetGo, false, false, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kStepAbsSwitch, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepLimitSwitch, true, false, true, PlcState::kHoming},
@@ -39,7 +35,7 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kStepDirect, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepAbsolute, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kFinishHoming, true, false, true, PlcState::kHoming},
-    RequestRules{RequestKind::kTouch, false, false, false, PlcState::kDiscreteMotion},
+    RequestRules{RequestKind::kTouch, false, false, true, PlcState::kDiscreteMotion},
 };
 
 }  // namespace
@@ -185,14 +181,10 @@ void describe(Enumeration<RequestKind>& e) {
   e.value(RequestKind::kMoveContinuousAbsolute, "move_continuous_absolute", "MoveContinuousAbsolute.");
   e.value(RequestKind::kMoveContinuousRelative, "move_continuous_relative", "MoveContinuousRelative.");
   e.value(RequestKind::kInch, "inch", "Inch.");
-  e.value(RequestKind::kPositionProfile, "position_profile", "PositionProfile.");
-  e.value(RequestKind::kVelocityProfile, "velocity_profile", "VelocityProfile.");
-  e.value(RequestKind::kAccelerationProfile, "acceleration_profile", "AccelerationProfile.");
   e.value(RequestKind::kTorqueControl, "torque_control", "TorqueControl.");
   e.value(RequestKind::kGearIn, "gear_in", "GearIn.");
   e.value(RequestKind::kGearInPos, "gear_in_pos", "GearInPos.");
   e.value(RequestKind::kCombineAxes, "combine_axes", "CombineAxes.");
-  e.value(RequestKind::kCamIn, "cam_in", "CamIn.");
   e.value(RequestKind::kLetGo, "let_go", "LetGo.");
   e.value(RequestKind::kStepAbsSwitch, "step_abs_switch", "StepAbsSwitch.");
   e.value(RequestKind::kStepLimitSwitch, "step_limit_switch", "StepLimitSwitch.");
@@ -213,6 +205,7 @@ void describe(Description<Request>& d) {
   d.internal<&R::acceleration>(unit::u_s2, "Largest acceleration.");
   d.internal<&R::deceleration>(unit::u_s2, "Largest deceleration.");
   d.internal<&R::jerk>(unit::u_s3, "Largest jerk; 0: unlimited.");
+  d.internal<&R::torque_ramp>("Torque control: Nm/s; 0: at once.");
   d.internal<&R::end_velocity>(unit::u_s, "With which a continuous move goes on.");
   d.internal<&R::lease_s>(unit::s, "Dead man's lease; 0: none.");
   d.internal<&R::kind>("Which command.");

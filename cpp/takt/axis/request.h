@@ -27,14 +27,10 @@ enum class RequestKind : std::uint8_t {
   kMoveContinuousAbsolute,
   kMoveContinuousRelative,
   kInch,
-  kPositionProfile,
-  kVelocityProfile,
-  kAccelerationProfile,
   kTorqueControl,
   kGearIn,
   kGearInPos,
   kCombineAxes,
-  kCamIn,
   kLetGo,  // MC_GearOut, MC_CamOut
   kStepAbsSwitch,
   kStepLimitSwitch,
@@ -53,6 +49,7 @@ struct Request {
   double acceleration = 0;
   double deceleration = 0;
   double jerk = 0;
+  double torque_ramp = 0;   // Nm/s, of torque control; 0: at once
   double end_velocity = 0;  // u/s, of continuous moves, in the sense of travel
   double lease_s = 0;       // > 0: level-sensitive command under a dead man's lease
   RequestKind kind = RequestKind::kNone;
@@ -69,7 +66,8 @@ struct Request {
 
   trajectory::Limits limits() const { return {velocity, acceleration, deceleration, jerk}; }
   bool positions() const {
-    return kind == RequestKind::kMoveAbsolute || kind == RequestKind::kMoveContinuousAbsolute || by_distance();
+    return kind == RequestKind::kMoveAbsolute || kind == RequestKind::kMoveContinuousAbsolute ||
+           kind == RequestKind::kTouch || by_distance();
   }
   bool by_distance() const {
     return kind == RequestKind::kMoveRelative || kind == RequestKind::kMoveAdditive || kind == RequestKind::kInch ||

@@ -222,11 +222,13 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
     case RequestKind::kMoveRelative:
     case RequestKind::kMoveAdditive:
     case RequestKind::kInch:
+    case RequestKind::kTouch:
       ConcludePositioning(c, late_s, s);
       break;
     case RequestKind::kMoveVelocity:
     case RequestKind::kMoveContinuousAbsolute:
     case RequestKind::kMoveContinuousRelative:
+    case RequestKind::kTorqueControl:
       ConcludeReached(c, s);
       break;
     case RequestKind::kGearIn:

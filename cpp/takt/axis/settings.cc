@@ -169,10 +169,10 @@ bool Fill(const Maker& m, const SetConstants& k) {
   const auto position_if = [&](const char* field, const std::optional<double>& value) {
     return !value || m.In(field, *value, -kMaxPosition, kMaxPosition);
   };
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  return not_negative_if("kp", k.kp, kLargest) && not_negative_if("ki", k.ki, kLargest) &&
-         not_negative_if("kd", k.kd, kLargest) && not_negative_if("kc", k.kc, 1) &&
-         not_negative_if("ff", k.ff, kLargest) &&
+  constexpr double kLargestGain = 1e9;
+  return not_negative_if("kp", k.kp, kLargestGain) && not_negative_if("ki", k.ki, kLargestGain) &&
+         not_negative_if("kd", k.kd, kLargestGain) && not_negative_if("kc", k.kc, 1) &&
+         not_negative_if("ff", k.ff, kLargestGain) &&
          (!k.velocity_at_10v ||
           m.In("velocity_at_10v", *k.velocity_at_10v, std::numeric_limits<double>::min(), kMaxPosition)) &&
          position_if("lower", k.lower) && position_if("upper", k.upper);

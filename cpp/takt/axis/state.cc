@@ -64,6 +64,10 @@ void describe(Description<State>& d) {
   d.internal<&S::motion>("Motion in progress.");
   d.internal<&S::coupling>("Masters it follows.");
   d.internal<&S::homing>("Its reference.");
+  d.internal<&S::probe>("Touch probe.");
+  d.internal<&S::torque>("Torque control.");
+  d.internal<&S::cam_switch>("Cam switches.");
+  d.internal<&S::cam_outputs>("Their outputs.");
 }
 
 }  // namespace takt::axis

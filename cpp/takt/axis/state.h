@@ -4,12 +4,15 @@
 #include <array>
 #include <cstdint>
 
+#include "takt/axis/cam_switch.h"
 #include "takt/axis/control_loop.h"
 #include "takt/axis/coupling.h"
 #include "takt/axis/encoder.h"
 #include "takt/axis/homing.h"
+#include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
+#include "takt/axis/torque.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
 #include "takt/trajectory/profile.h"
@@ -90,6 +93,11 @@ struct State {
   Motion motion;
   CouplingState coupling;
   HomingState homing;
+
+  ProbeState probe;
+  TorqueState torque;
+  CamSwitchState cam_switch;
+  std::uint32_t cam_outputs = 0;
 };
 
 void describe(Description<Motion>&);

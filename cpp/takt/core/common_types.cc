@@ -41,6 +41,7 @@ void describe(Enumeration<DriveMode>& e) {
   e.value(DriveMode::kCyclicVelocity, "cyclic_velocity",
           "A velocity every cycle (csv); the position loop is closed here.");
   e.value(DriveMode::kAnalog, "analog", "A voltage of -10 to 10 V; the position loop is closed here.");
+  e.value(DriveMode::kCyclicTorque, "cyclic_torque", "A torque every cycle (cst) and a largest speed.");
 }
 
 void describe(Description<ServoInputs>& d) {
@@ -54,6 +55,10 @@ void describe(Description<ServoInputs>& d) {
   d.internal<&S::limit_negative>("Negative limit switch.");
   d.internal<&S::reference>("Reference switch.");
   d.internal<&S::touch_probe>("Touch probe.");
+  d.internal<&S::probe_rises>("Rising edges of the touch probe, wraps.");
+  d.internal<&S::probe_falls>("Falling edges of the touch probe, wraps.");
+  d.internal<&S::probe_rise_age_s>(unit::s, "How long before this sample the last rising edge came.");
+  d.internal<&S::probe_fall_age_s>(unit::s, "The same of the last falling edge.");
   d.internal<&S::drive_ready>("Power stage on and following its set point.");
   d.internal<&S::drive_fault>("The drive reports a fault.");
   d.internal<&S::torque_nm>(unit::nm, "Torque; the force in N on linear motors.");
@@ -63,8 +68,10 @@ void describe(Description<ServoOutputs>& d) {
   using S = ServoOutputs;
   d.about("What goes to a drive in a cycle.");
   d.internal<&S::position_counts>(unit::count, "Position set point (csp).");
-  d.internal<&S::velocity_counts_s>(unit::count_s, "Velocity: feed-forward (csp) or set point (csv).");
+  d.internal<&S::velocity_counts_s>(unit::count_s,
+                                    "Velocity: feed-forward (csp), set point (csv) or largest speed (cst).");
   d.internal<&S::voltage_v>(unit::volt, "Analogue set point.");
+  d.internal<&S::torque_nm>(unit::nm, "Torque set point (cst); a force in N on linear motors.");
   d.internal<&S::mode>("Which of these the drive follows.");
   d.internal<&S::enable>("Power stage on.");
   d.internal<&S::release_brake>("Brake relay energised.");

@@ -12,6 +12,7 @@ enum class DriveMode : std::uint8_t {
   kCyclicPosition,  // csp: the drive closes the position loop
   kCyclicVelocity,  // csv: the engine's position loop commands a speed
   kAnalog,          // the engine's position loop commands ±10 V
+  kCyclicTorque,    // cst: a torque, no faster than a speed; only while MC_TorqueControl is in control
 };
 
 // From the machine, sampled once a cycle. Positions are raw counts: what a count means is the axis' business.
@@ -24,6 +25,12 @@ struct ServoInputs {
   bool limit_negative = false;
   bool reference = false;
   bool touch_probe = false;
+  // Edges of the touch probe's wire since the start, wrap; where they never count, edges are those of the samples.
+  std::uint32_t probe_rises = 0;
+  std::uint32_t probe_falls = 0;
+  // How long before this sample the last of each came; only looked at in a cycle in which it was counted.
+  double probe_rise_age_s = 0;
+  double probe_fall_age_s = 0;
   bool drive_ready = false;  // power stage on and following its set point
   bool drive_fault = false;
   double torque_nm = 0;  // Nm; N on linear motors
@@ -32,8 +39,9 @@ struct ServoInputs {
 // To the machine, written once a cycle.
 struct ServoOutputs {
   double position_counts = 0;    // csp: set point in encoder counts
-  double velocity_counts_s = 0;  // csp: feed-forward; csv: set point
+  double velocity_counts_s = 0;  // csp: feed-forward; csv: set point; cst: largest speed either way, >= 0
   double voltage_v = 0;          // analogue: -10 to 10 V
+  double torque_nm = 0;          // cst: set point; N on linear motors
   DriveMode mode = DriveMode::kCyclicPosition;
   bool enable = false;         // power stage on
   bool release_brake = false;  // brake relay energised

@@ -15,7 +15,7 @@ constexpr std::size_t kEventsPerCommand = 4;
 
 axis::Context ContextOf(World& w, std::size_t i) {
   const axis::State* master = w.axis_masters[i] ? &w.axis_states[*w.axis_masters[i]] : nullptr;
-  return {w.axis_params[i], w.cycle, w.planner, w.feedback, master, w.axis_states, w.axis_params};
+  return {w.axis_params[i], w.cycle, w.planner, w.feedback, master, w.axis_states, w.axis_params, w.cam_switches};
 }
 
 // The k-th axis that axis i must not step before: the one it follows from load on, those it is coupled to, those it
@@ -112,6 +112,7 @@ struct MachineApplier {
 World::World(const Machine& machine)
     : cycle{0, machine.cycle.period_s},
       axis_params(machine.axes),
+      cam_switches(machine.cam_switches),
       axis_outputs(machine.axes.size()),
       axis_order(machine.axes.size()),
       servo_inputs(machine.axes.size()),

@@ -36,6 +36,7 @@ struct World {
   trajectory::Planner planner;
 
   std::vector<axis::AxisParams> axis_params;
+  std::vector<axis::CamSwitches> cam_switches;
   std::vector<axis::State> axis_states;
   std::vector<axis::Outputs> axis_outputs;
   Order axis_order;                                        // masters before followers

@@ -38,6 +38,7 @@ class CrossCheck {
     }
     CheckAxes();
     CheckMasters();
+    CheckCamSwitches();
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
       CheckReference("simulation.servos[" + std::to_string(i) + "].axis", machine_.simulation.servos[i].axis, servos);
@@ -98,6 +99,16 @@ class CrossCheck {
     for (const std::uint32_t i : loop) members += machine_.axes[i].name + " -> ";
     Add("axes[" + std::to_string(loop.front()) + "].follows.axis",
         "expected axes that follow one another in no loop, found " + members + machine_.axes[loop.front()].name);
+  }
+
+  void CheckCamSwitches() {
+    for (std::size_t i = 0; i < machine_.cam_switches.size(); ++i) {
+      const std::string path = "cam_switches[" + std::to_string(i) + "]";
+      const std::string& name = machine_.cam_switches[i].name;
+      if (!GoodName(name) && !(name.empty() && !Written(path, ".name"))) {
+        Add(path + ".name", "expected 1 to 40 letters, digits, _ - or ., found " + Quoted(name));
+      }
+    }
   }
 
   // A name that must be an axis', each at most once.

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "takt/axis/cam_switch.h"
 #include "takt/axis/params.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/plant/servo.h"
@@ -49,6 +50,7 @@ struct Machine {
   CycleParams cycle;
   LcmParams lcm;
   std::vector<axis::AxisParams> axes;
+  std::vector<axis::CamSwitches> cam_switches;
   Simulation simulation;
 };
 

@@ -69,12 +69,11 @@ msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::M
   m.in_position = o.in_position;
   m.in_step = o.in_step;
   m.homed = o.homed;
-  m.master1 = static_cast<std::int32_t>(o.master1);
-  m.master2 = static_cast<std::int32_t>(o.master2);
-  m.superimposed = o.superimposed;
+  m.master1 = o.master1;
+  m.master2 = o.master2;
   m.probe_position = o.probe_position;
-  m.probe_captures = static_cast<std::int32_t>(o.probe_captures);
-  m.cam_outputs = static_cast<std::int32_t>(o.cam_outputs);
+  m.probe_captures = o.probe_captures;
+  m.cam_outputs = o.cam_outputs;
   m.limit_positive = o.limit_positive;
   m.limit_negative = o.limit_negative;
   m.reference = o.reference;

@@ -10,6 +10,7 @@ namespace takt::plant {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr int kProbeBisections = 24;  // of a step of the drive: to less than a ns
 
 // How far a first-order motion v' = slope - rate (v - v0) gets in a time: v - v0 = slope * to_velocity, x - x0 - v0 t =
 // slope * to_distance.
@@ -34,18 +35,19 @@ double TimeToReach(double rate, double to_velocity) noexcept {
 }
 
 // What moves the axis during one step of the drive, per unit of inertia:
-// v' = clamp(gain (target - v) + bias, ±limit) - load - viscous v - friction sign(v)
+// v' = clamp(gain (target - v) + bias, low, high) - load - viscous v - friction sign(v)
 struct Law {
   double gain = 0;      // 1/s; 0: no power
   double lag = 0;       // s, 1 / gain
   double target = 0;    // u/s
   double bias = 0;      // u/s²
-  double limit = 0;     // u/s²
+  double low = 0;       // u/s²
+  double high = 0;      // u/s²
   double viscous = 0;   // 1/s
   double friction = 0;  // u/s²
   double load = 0;      // u/s²
 
-  double DriveAt(double v) const noexcept { return std::clamp(gain * (target - v) + bias, -limit, limit); }
+  double DriveAt(double v) const noexcept { return std::clamp(gain * (target - v) + bias, low, high); }
 };
 
 struct Motion {
@@ -59,8 +61,8 @@ struct Motion {
 // reach of an undisturbed piece that lasts the whole time.
 void Advance(const Law& law, double time, const Reach& whole, Motion& m) noexcept {
   const bool powered = law.gain > 0;
-  const double full_below = powered ? law.target + (law.bias - law.limit) * law.lag : -kInfinite;
-  const double full_above = powered ? law.target + (law.bias + law.limit) * law.lag : kInfinite;
+  const double full_below = powered ? law.target + (law.bias - law.high) * law.lag : -kInfinite;
+  const double full_above = powered ? law.target + (law.bias - law.low) * law.lag : kInfinite;
   double left = time;
   for (int piece = 0; piece < 4; ++piece) {
     const double v = m.velocity;
@@ -182,12 +184,55 @@ bool MoveLoad(const ServoMechanics& mechanics, Motion& m) noexcept {
   return hit;
 }
 
+bool Reads(const ServoSwitch& sw, double position, double revolution) noexcept {
+  bool on = sw.from || sw.to;
+  if (sw.from && sw.to && revolution > 0) {
+    const double past = position - *sw.from;
+    on = past - revolution * std::floor(past / revolution) <= *sw.to - *sw.from;
+  } else {
+    on = on && (!sw.from || position >= *sw.from) && (!sw.to || position <= *sw.to);
+  }
+  return on != sw.normally_closed;
+}
+
+// The wire of the touch probe over one step of the drive that ended `rest` before the end of the cycle. Where it
+// changed, the instant is looked for in the exact motion.
+void WatchProbe(const ServoParams& p, const Law& law, const Motion& begin, double time, double rest, const Motion& end,
+                ServoState& s) noexcept {
+  const ServoSwitch& probe = p.switches.touch_probe;
+  const auto reads = [&](const Motion& m) { return Reads(probe, m.load, p.switches.revolution); };
+  const bool on = reads(end);
+  if (on == s.probe) return;
+  s.probe = on;
+  double before = 0;
+  double after = time;
+  for (int i = 0; i < kProbeBisections; ++i) {
+    const double middle = 0.5 * (before + after);
+    Motion m = begin;
+    Advance(law, middle, ReachAfter(law.viscous + law.gain, middle), m);
+    MoveLoad(p.mechanics, m);
+    (reads(m) == on ? after : before) = middle;
+  }
+  ++(on ? s.probe_rises : s.probe_falls);
+  (on ? s.probe_rise_age_s : s.probe_fall_age_s) = rest + time - after;
+}
+
+// The law of a torque set point: that torque, but for what a velocity loop at the largest speed takes from it; pushed
+// beyond that speed against it, the drive brakes with all it has.
+void FollowTorque(double most, double set_torque, double largest_speed, double v, Law& law) noexcept {
+  const bool up = set_torque >= 0 ? v >= -largest_speed : v > largest_speed;
+  law.target = up ? largest_speed : -largest_speed;
+  law.low = up ? -most : set_torque;
+  law.high = up ? set_torque : most;
+}
+
 void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, bool powered, ServoState& s) noexcept {
   const ServoDrive& drive = p.drive;
   const ServoMechanics& mechanics = p.mechanics;
   const double sense = drive.inverted ? -1 : 1;
   const double per_inertia = 1 / mechanics.inertia;
   const bool csp = powered && commanded.mode == DriveMode::kCyclicPosition;
+  const bool cst = powered && commanded.mode == DriveMode::kCyclicTorque;
   const bool compensates = powered && drive.load_compensation_s > 0;
 
   Law law;
@@ -197,7 +242,8 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   if (powered) {
     law.lag = drive.velocity_time_constant_s;
     law.gain = 1 / law.lag;
-    law.limit = drive.max_torque * per_inertia;
+    law.high = drive.max_torque * per_inertia;
+    law.low = -law.high;
     law.target = SetVelocity(p, commanded, sense);
   }
 
@@ -210,7 +256,7 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   s.set_velocity = end_velocity;
 
   // The motion itself is exact over any time; steps in between only where the drive's own loops are sampled.
-  const int steps = csp || compensates ? std::max(1, static_cast<int>(period_s / drive.loop_period_s + 0.5)) : 1;
+  const int steps = csp || cst || compensates ? std::max(1, static_cast<int>(period_s / drive.loop_period_s + 0.5)) : 1;
   const double time = period_s / steps;
   const double rate = law.viscous + law.gain;
   if (s.reach_rate != rate || s.reach_time != time) {
@@ -220,6 +266,9 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
     s.reach_to_velocity = reach.to_velocity;
     s.reach_to_distance = reach.to_distance;
   }
+  const double most = law.high;
+  const double set_torque = cst ? std::clamp(sense * FiniteOrZero(commanded.torque_nm) * per_inertia, -most, most) : 0;
+  const double largest_speed = std::abs(law.target);
   const Reach whole{s.reach_to_velocity, s.reach_to_distance};
   const Reach model = law.viscous > 0 ? ReachAfter(law.gain, time) : whole;
   const double learning = compensates ? time / ((drive.load_compensation_s + time) * model.to_velocity) : 0;
@@ -237,18 +286,22 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
       const double error = set - (motor_encoder ? motion.position : motion.load);
       law.target = drive.position_gain * error + drive.velocity_feed_forward * feed_forward;
     }
+    if (cst) FollowTorque(most, set_torque, largest_speed, motion.velocity, law);
+    const Motion begin = motion;
     const double before = motion.velocity;
     bool hit = false;
     if (!s.faults.stuck) {
       Advance(law, time, whole, motion);
       hit = MoveLoad(mechanics, motion);
     }
+    WatchProbe(p, law, begin, time, time * (steps - 1 - i), motion, s);
     // What the speed lacks against the bare first-order model is load: the drive learns to add it. Not while the torque
     // is at its limit or the axis is knocked to a halt, where the model says nothing.
     const double lag = law.target - before;
-    if (compensates && !hit && std::abs(law.gain * lag + law.bias) <= law.limit) {
+    const double asked = law.gain * lag + law.bias;
+    if (compensates && !hit && asked >= law.low && asked <= law.high) {
       const double expected = before + lag * (law.gain * model.to_velocity);
-      law.bias = std::clamp(law.bias + learning * (expected - motion.velocity), -law.limit, law.limit);
+      law.bias = std::clamp(law.bias + learning * (expected - motion.velocity), -most, most);
     }
   }
   s.motor_position = motion.position;
@@ -256,6 +309,11 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   s.load_position = motion.load;
   s.compensation = law.bias;
   s.torque = law.DriveAt(s.velocity) * mechanics.inertia;
+  if (cst) {  // the position loop will take over from where the axis is
+    s.following = true;
+    s.set_position = EncoderPosition(p.encoder, s);
+    s.set_velocity = s.velocity;
+  }
 }
 
 // SplitMix64: a counter and a mixing of its bits.
@@ -293,17 +351,6 @@ void ReadEncoder(const ServoEncoder& encoder, ServoState& s) noexcept {
   s.index_cell = cell;
 }
 
-bool Reads(const ServoSwitch& sw, double position, double revolution) noexcept {
-  bool on = sw.from || sw.to;
-  if (sw.from && sw.to && revolution > 0) {
-    const double past = position - *sw.from;
-    on = past - revolution * std::floor(past / revolution) <= *sw.to - *sw.from;
-  } else {
-    on = on && (!sw.from || position >= *sw.from) && (!sw.to || position <= *sw.to);
-  }
-  return on != sw.normally_closed;
-}
-
 }  // namespace
 
 ServoState MakeServoState(const ServoParams& p) noexcept {
@@ -317,6 +364,7 @@ ServoState MakeServoState(const ServoParams& p) noexcept {
   s.index_cell = IndexCell(p.encoder, s.motor_position);
   s.noise = static_cast<std::uint64_t>(p.encoder.noise_seed);
   s.counts = OnTheWire(p.encoder, CounterAt(p.encoder, s, s.motor_position, 0));
+  s.probe = Reads(p.switches.touch_probe, s.load_position, p.switches.revolution);
   return s;
 }
 
@@ -333,7 +381,11 @@ void Step(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   measured.limit_positive = Reads(p.switches.limit_positive, s.load_position, 0);
   measured.limit_negative = Reads(p.switches.limit_negative, s.load_position, 0);
   measured.reference = Reads(p.switches.reference, s.load_position, p.switches.revolution);
-  measured.touch_probe = Reads(p.switches.touch_probe, s.load_position, p.switches.revolution);
+  measured.touch_probe = s.probe;
+  measured.probe_rises = s.probe_rises;
+  measured.probe_falls = s.probe_falls;
+  measured.probe_rise_age_s = s.probe_rise_age_s;
+  measured.probe_fall_age_s = s.probe_fall_age_s;
   measured.drive_ready = powered;
   measured.drive_fault = s.faults.drive_fault;
   measured.torque_nm = s.torque;

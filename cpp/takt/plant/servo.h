@@ -120,7 +120,12 @@ struct ServoState {
   std::uint32_t index_counts = 0;
   std::uint32_t index_pulses = 0;
   std::uint32_t counts = 0;  // as last read
-  std::uint64_t noise = 0;   // state of the noise generator
+  bool probe = false;        // the touch probe's wire
+  std::uint32_t probe_rises = 0;
+  std::uint32_t probe_falls = 0;
+  double probe_rise_age_s = 0;  // s before the end of the cycle in which it came
+  double probe_fall_age_s = 0;
+  std::uint64_t noise = 0;  // state of the noise generator
   // An exponential that is the same every cycle while nothing changes, kept for its price: that of (rate, time).
   double reach_rate = 0;         // 1/s
   double reach_time = 0;         // s

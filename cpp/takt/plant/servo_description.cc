@@ -147,6 +147,11 @@ void describe(Description<ServoState>& d) {
   d.internal<&S::index_counts>(unit::count, "Counter at the last index pulse.");
   d.internal<&S::index_pulses>("Index pulses since the start.");
   d.internal<&S::counts>(unit::count, "Counter as last read.");
+  d.internal<&S::probe>("The touch probe's wire.");
+  d.internal<&S::probe_rises>("Rising edges of the touch probe.");
+  d.internal<&S::probe_falls>("Falling edges of the touch probe.");
+  d.internal<&S::probe_rise_age_s>(unit::s, "How long before the end of its cycle the last rising edge came.");
+  d.internal<&S::probe_fall_age_s>(unit::s, "The same of the last falling edge.");
   d.internal<&S::noise>("State of the noise generator.");
   d.internal<&S::reach_rate>(unit::one_s, "What the exponential below belongs to: its rate.");
   d.internal<&S::reach_time>(unit::s, "What the exponential below belongs to: its time.");

@@ -90,10 +90,15 @@ class Rig {
     const Life& life = lives[t];
     return life.done || life.aborted || life.error;
   }
-  Context Now() { return {params, cycle, planner, sink_}; }
+  Context Now() {
+    Context context{params, cycle, planner, sink_};
+    context.cam_switches = cam_switches;
+    return context;
+  }
   double position() const { return state.setpoint.position; }
 
   AxisParams params;
+  std::vector<CamSwitches> cam_switches;
   Cycle cycle;
   trajectory::Planner planner;
   State state;

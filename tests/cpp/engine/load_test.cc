@@ -273,5 +273,31 @@ TEST(LoadMachine, ChecksTheNameOfTheMachine) {
   EXPECT_THAT(problems(""), ElementsAre(HasSubstr("name")));
 }
 
+// AX-50: lists of cam switches.
+TEST(LoadMachine, ChecksListsOfCamSwitches) {
+  const auto problems = [](const std::string& lists) {
+    return LoadMachine(
+               "name: m\naxes: [{name: x, limits: {velocity: 1, acceleration: 1, jerk: 1}}]\ncam_switches:\n" + lists,
+               "m.yaml")
+        .problems;
+  };
+  const std::string good = "switches: [{track: 32, first_on_position: 350, last_on_position: 10}]}\n";
+  EXPECT_THAT(problems("  - {name: a, " + good + "  - {name: b, " + good), testing::IsEmpty());
+  EXPECT_THAT(problems("  - {name: a, " + good + "  - {name: a, " + good),
+              ElementsAre(HasSubstr("m.yaml:5:12: cam_switches[1].name: expected each name once")));
+  EXPECT_THAT(problems("  - {name: a b, " + good), ElementsAre(HasSubstr("1 to 40 letters")));
+  EXPECT_THAT(problems("  - {name: a, switches: [{track: 33, first_on_position: 1, last_on_position: 2}]}\n"),
+              ElementsAre(HasSubstr("track")));
+  EXPECT_THAT(problems("  - {name: a, switches: [{track: 1, first_on_position: 1}]}\n"),
+              ElementsAre(HasSubstr("must be given, but in time mode")));
+  EXPECT_THAT(problems("  - {name: a, switches: [{track: 1, first_on_position: 1, mode: time}]}\n"),
+              ElementsAre(HasSubstr("must be above 0 in time mode")));
+  EXPECT_THAT(LoadMachine("name: m\naxes: [{name: x, limits: {velocity: 1, acceleration: 1, jerk: 1}, "
+                          "drive: {mode: cyclic_torque}}]\n",
+                          "m.yaml")
+                  .problems,
+              ElementsAre(HasSubstr("must not be cyclic_torque")));
+}
+
 }  // namespace
 }  // namespace takt::engine

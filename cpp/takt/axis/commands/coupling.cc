@@ -23,13 +23,6 @@ void describe(Enumeration<CombineMode>& e) {
   e.value(CombineMode::kSubtract, "subtract", "The first less the second.");
 }
 
-void describe(Enumeration<CamStart>& e) {
-  e.about("How a slave gets onto its cam.");
-  e.value(CamStart::kAbsolute, "absolute", "At once; it must stand there already.");
-  e.value(CamStart::kRelative, "relative", "From where it stands.");
-  e.value(CamStart::kRampIn, "ramp_in", "It catches up, within its limits.");
-}
-
 void describe(Description<GearIn>& d) {
   using C = GearIn;
   d.about(
@@ -101,31 +94,6 @@ void describe(Description<CombineAxes>& d) {
   d.defaulted<&C::velocity>(unit::u_s, positive, "Largest velocity of the catching up; unset: the axis' limit.");
   DescribeRamps(d);
   d.defaulted<&C::buffer_mode>(kBufferMode);
-}
-
-void describe(Description<CamIn>& d) {
-  using C = CamIn;
-  d.about("Follows a cam table over a master's position (MC_CamIn). Reached when it is on the cam.");
-  d.required<&C::master>("Name of the master axis.");
-  d.required<&C::cam>("Name of a table of the machine.");
-  d.defaulted<&C::source>("Which of the master's positions is followed.");
-  d.defaulted<&C::master_offset>("Added to the master's position, in its unit.");
-  d.defaulted<&C::slave_offset>(unit::u, "Added to what the table says.");
-  d.defaulted<&C::master_scaling>(positive, "Stretches the table along the master.");
-  d.defaulted<&C::slave_scaling>("Stretches it along this axis.");
-  d.defaulted<&C::master_absolute>("False: the table begins where the master is now.");
-  d.defaulted<&C::slave_absolute>("False: it begins where this axis is now.");
-  d.defaulted<&C::periodic>("True: again and again. False: once, then done.");
-  d.defaulted<&C::start_mode>("How the axis gets onto the cam.");
-  d.defaulted<&C::master_sync_position>("Where the master is when the axis is on the cam; unset: as soon as can be.");
-  d.defaulted<&C::master_start_distance>(not_negative, "How far before that getting there begins.");
-  d.defaulted<&C::velocity>(unit::u_s, positive, "Largest velocity of the catching up; unset: the axis' limit.");
-  DescribeRamps(d);
-  d.defaulted<&C::buffer_mode>(kBufferMode);
-}
-
-void describe(Description<CamOut>& d) {
-  d.about("Leaves the cam; the axis goes on with the velocity it has (MC_CamOut).");
 }
 
 }  // namespace takt::axis

@@ -16,8 +16,6 @@ enum class MasterSource : std::uint8_t { kSetValue, kActualValue };
 enum class SyncMode : std::uint8_t { kShortest, kCatchUp, kSlowDown };
 // What becomes of two masters.
 enum class CombineMode : std::uint8_t { kAdd, kSubtract };
-// How a slave gets onto its cam.
-enum class CamStart : std::uint8_t { kAbsolute, kRelative, kRampIn };
 
 struct GearIn {  // MC_GearIn
   Name master;
@@ -62,37 +60,15 @@ struct CombineAxes {  // MC_CombineAxes
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
 };
-struct CamIn {  // MC_CamIn
-  Name master;
-  Name cam;
-  MasterSource source = MasterSource::kSetValue;
-  double master_offset = 0;
-  double slave_offset = 0;
-  double master_scaling = 1;
-  double slave_scaling = 1;
-  bool master_absolute = true;
-  bool slave_absolute = true;
-  bool periodic = true;
-  CamStart start_mode = CamStart::kRampIn;
-  std::optional<double> master_sync_position{};
-  std::optional<double> master_start_distance{};
-  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
-  BufferMode buffer_mode = BufferMode::kAborting;
-};
-struct CamOut {  // MC_CamOut
-};
 
 void describe(Enumeration<MasterSource>&);
 void describe(Enumeration<SyncMode>&);
 void describe(Enumeration<CombineMode>&);
-void describe(Enumeration<CamStart>&);
 void describe(Description<GearIn>&);
 void describe(Description<GearOut>&);
 void describe(Description<GearInPos>&);
 void describe(Description<PhasingAbsolute>&);
 void describe(Description<PhasingRelative>&);
 void describe(Description<CombineAxes>&);
-void describe(Description<CamIn>&);
-void describe(Description<CamOut>&);
 
 }  // namespace takt::axis

@@ -12,8 +12,9 @@ void describe(Enumeration<ProbeEdge>& e) {
 
 void describe(Enumeration<TouchMode>& e) {
   e.about("What GT_Touch does.");
-  e.value(TouchMode::kCapture, "capture", "Captures, stops and returns to the captured position.");
-  e.value(TouchMode::kSlow, "slow", "Slows down while the probe is on.");
+  e.value(TouchMode::kCapture, "capture",
+          "Waits for the edge, then ends the motion in progress and stops at the position captured.");
+  e.value(TouchMode::kSlow, "slow", "Slows any move, velocity motion or jog down while the probe is on.");
 }
 
 void describe(Description<TouchProbe>& d) {
@@ -21,8 +22,8 @@ void describe(Description<TouchProbe>& d) {
   d.about("Captures the position at the touch probe's next edge (MC_TouchProbe).");
   d.defaulted<&C::edge>("Which edge.");
   d.defaulted<&C::window_only>("True: only within the window.");
-  d.defaulted<&C::first_position>(unit::u, "Where the window begins.");
-  d.defaulted<&C::last_position>(unit::u, "Where it ends.");
+  d.defaulted<&C::first_position>(unit::u, "Lower end of the window.");
+  d.defaulted<&C::last_position>(unit::u, "Upper end; below the first on rotary axes: across 0.");
 }
 
 void describe(Description<AbortTrigger>& d) {
@@ -35,8 +36,9 @@ void describe(Description<Touch>& d) {
       "Captures the position at the touch probe's edge, stops and returns there; or slows down while the probe is on "
       "(GT_Touch).");
   d.defaulted<&C::mode>("Which of both.");
-  d.defaulted<&C::edge>("Which edge.");
-  d.defaulted<&C::velocity>(unit::u_s, not_negative, "Of the way back, or while the probe is on.");
+  d.defaulted<&C::edge>("Which edge; slow: rising is while the probe is on, falling while it is off.");
+  d.defaulted<&C::velocity>(unit::u_s, positive,
+                            "Largest velocity of the way back, or while the probe is on; unset: the axis' limit.");
   DescribeRamps(d);
 }
 
@@ -48,15 +50,17 @@ void describe(Description<DigitalCamSwitch>& d) {
   d.required<&C::switches>("Name of a list of switches of the machine.");
   d.defaulted<&C::enable_mask>("A bit for each track.");
   d.defaulted<&C::enable>("False: all outputs off.");
+  d.defaulted<&C::source>("Set point or measured position.");
 }
 
 void describe(Description<TorqueControl>& d) {
   using C = TorqueControl;
-  d.about("Drives with a torque, no faster than a velocity (MC_TorqueControl). Reached when the torque is.");
+  d.about(
+      "Drives with a torque, no faster than a velocity (MC_TorqueControl). Reached when the set point of the torque "
+      "is.");
   d.required<&C::torque>(unit::nm, "Signed.");
   d.defaulted<&C::torque_ramp>(positive, "Nm/s; unset: at once.");
-  d.defaulted<&C::velocity>(unit::u_s, positive, "Largest velocity; unset: the axis' limit.");
-  DescribeRamps(d);
+  d.defaulted<&C::velocity>(unit::u_s, positive, "Largest velocity, either way; unset: the axis' limit.");
   d.defaulted<&C::buffer_mode>(kBufferMode);
 }
 

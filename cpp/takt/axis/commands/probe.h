@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "takt/axis/commands/coupling.h"
 #include "takt/axis/commands/moves.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/name.h"
@@ -26,18 +27,18 @@ struct AbortTrigger {  // MC_AbortTrigger
 struct Touch {  // GT_Touch
   TouchMode mode = TouchMode::kCapture;
   ProbeEdge edge = ProbeEdge::kRising;
-  double velocity = 0;
-  std::optional<double> acceleration{}, deceleration{}, jerk{};
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
 };
 struct DigitalCamSwitch {  // MC_DigitalCamSwitch
   Name switches;
   std::uint32_t enable_mask = 0xffffffff;
   bool enable = true;
+  MasterSource source = MasterSource::kSetValue;
 };
 struct TorqueControl {  // MC_TorqueControl
   double torque = 0;
   std::optional<double> torque_ramp{};
-  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+  std::optional<double> velocity{};
   BufferMode buffer_mode = BufferMode::kAborting;
 };
 

@@ -52,12 +52,4 @@ void describe(Description<SetPosition>& d) {
   d.defaulted<&C::relative>("True: added.");
 }
 
-void describe(Description<SetOverride>& d) {
-  using C = SetOverride;
-  d.about("Scales the velocities and ramps of all motion of the axis, that in progress too (MC_SetOverride).");
-  d.defaulted<&C::velocity_factor>(not_negative, "0 to 1; 0: the axis waits.");
-  d.defaulted<&C::acceleration_factor>(positive, "More than 0, at most 1.");
-  d.defaulted<&C::jerk_factor>(positive, "More than 0, at most 1.");
-}
-
 }  // namespace takt::axis

@@ -1,0 +1,252 @@
+#include "takt/axis/probe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/axis/fit.h"
+#include "takt/axis/request_maker.h"
+#include "takt/axis/sequence.h"
+
+namespace takt::axis {
+
+namespace {
+
+bool InWindow(const AxisParams& p, const ProbeState& probe, double position) {
+  if (!probe.window_only) return true;
+  const bool across_zero = p.rotary() && probe.last_position < probe.first_position;
+  const bool above = position >= probe.first_position;
+  const bool below = position <= probe.last_position;
+  return across_zero ? above || below : above && below;
+}
+
+// Where the axis was `age_s` before this sample.
+double PositionBefore(const Context& c, const State& s, double age_s) {
+  const double period = c.cycle.period_s;
+  const double age = std::clamp(age_s, 0.0, period);
+  const double acceleration = s.loop_closed ? (s.setpoint.velocity - s.probe.set_velocity) / period : 0;
+  return s.actual.position - s.probe.step * age / period - 0.5 * acceleration * age * (period - age);
+}
+
+void Capture(const Context& c, double position, State& s) {
+  ProbeState& probe = s.probe;
+  const double reported = Reported(c.params, position);
+  if (!InWindow(c.params, probe, reported)) return;
+  probe.position = reported;
+  ++probe.captures;
+  if (probe.watch == ProbeWatch::kTouch) {
+    probe.touched = true;
+    probe.touch_position = position;
+  } else {
+    probe.watch = ProbeWatch::kNothing;
+    Report(c, probe.ticket, FeedbackState::kDone, ErrorId::kNone, false, reported);
+  }
+}
+
+void LookForEdge(const Context& c, const ServoInputs& in, State& s) {
+  ProbeState& probe = s.probe;
+  const bool waits = probe.watch == ProbeWatch::kCapture || (probe.watch == ProbeWatch::kTouch && !probe.touched);
+  if (!waits || s.encoder_error) return;
+  const bool rise = (probe.edge == ProbeEdge::kRising) != c.params.inputs.invert_touch_probe;
+  const bool counted = rise ? in.probe_rises != probe.rises : in.probe_falls != probe.falls;
+  const bool counts = in.probe_rises != 0 || in.probe_falls != 0;
+  if (counted) {
+    Capture(c, PositionBefore(c, s, rise ? in.probe_rise_age_s : in.probe_fall_age_s), s);
+  } else if (!counts && in.touch_probe == rise && probe.wire != rise) {
+    Capture(c, s.actual.position, s);
+  }
+}
+
+bool CanBeSlowed(const Request& r) {
+  return r.positions() || r.kind == RequestKind::kMoveVelocity || r.kind == RequestKind::kJog;
+}
+
+// Plans the motion in progress anew because its velocity changed.
+void PlanAgain(const Context& c, State& s) {
+  if (s.active.positions()) return ReplanActive(c, s);
+  Plan plan;
+  Status status;
+  if (s.active.kind == RequestKind::kJog) {
+    if (s.jog_sense == 0) return;
+    Request held = s.active;
+    held.forward = s.jog_sense > 0;
+    status = PlanJog(c, held, s, plan);
+  } else {
+    status = PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, s.active, nullptr, plan);
+  }
+  if (status.failed()) return;
+  s.limited_by = plan.limited_by;
+  StartMotion(plan.profile, 0, FromCycleBefore(c), s);
+}
+
+void Restore(const Context& c, State& s) {
+  ProbeState& probe = s.probe;
+  if (!probe.slowing) return;
+  probe.slowing = false;
+  if (s.active.kind == RequestKind::kNone || s.active.ticket != probe.slowed) return;
+  s.active.velocity = probe.own_velocity;
+  PlanAgain(c, s);
+}
+
+void Slow(const Context& c, State& s) {
+  ProbeState& probe = s.probe;
+  if (s.touch_probe != (probe.edge == ProbeEdge::kRising)) return Restore(c, s);
+  if (!s.loop_closed || !CanBeSlowed(s.active) || s.active.velocity <= probe.velocity) return;
+  probe.slowing = true;
+  probe.slowed = s.active.ticket;
+  probe.own_velocity = s.active.velocity;
+  s.active.velocity = probe.velocity;
+  PlanAgain(c, s);
+  if (!probe.reported) Report(c, probe.ticket, FeedbackState::kActive);
+  probe.reported = true;
+}
+
+Status MayTouch(const Context& c, const State& s) {
+  if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
+  if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
+  return c.params.follows ? Status::Failed(ErrorId::kState) : Status::Ok();
+}
+
+Status TakeTouch(const Context& c, State& s) {
+  const ProbeState& probe = s.probe;
+  if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
+  if (s.plc == PlcState::kHoming) return Status::Failed(ErrorId::kState);
+  if (!Inside(c.params.limits, probe.touch_position)) return Status::Failed(ErrorId::kTargetBehindLimit);
+  Request request;
+  request.kind = RequestKind::kTouch;
+  request.ticket = probe.ticket;
+  request.velocity = probe.velocity;
+  request.acceleration = probe.acceleration;
+  request.deceleration = probe.deceleration;
+  request.jerk = probe.jerk;
+  Plan plan;
+  plan.target = probe.touch_position;
+  const Status status = Replan(c.params, SurroundingsOf(s), c.planner, s.setpoint, request, nullptr, plan);
+  if (status.failed()) return status;
+  AbortAll(c, s);
+  TakeControl(c, request, plan, FromCycleBefore(c), s);
+  return Status::Ok();
+}
+
+// Puts another command in the place of the one that waits.
+void Supersede(const Context& c, ProbeWatch watch, ProbeEdge edge, Ticket ticket, State& s) {
+  Restore(c, s);
+  ProbeState& probe = s.probe;
+  if (probe.watch != ProbeWatch::kNothing) Report(c, probe.ticket, FeedbackState::kAborted);
+  probe.watch = watch;
+  probe.edge = edge;
+  probe.ticket = ticket;
+  probe.window_only = false;
+  probe.touched = false;
+  probe.reported = false;
+}
+
+}  // namespace
+
+bool Fill(const Maker& m, const TouchProbe& c) {
+  const double low = m.params.rotary() ? 0 : -kMaxPosition;
+  const double high = m.params.rotary() ? m.params.modulus : kMaxPosition;
+  const bool ordered = c.window_only && !m.params.rotary();  // a turn has no beginning
+  return m.In("first_position", c.first_position, low, high) &&
+         m.In("last_position", c.last_position, ordered ? c.first_position : low, high);
+}
+
+bool Fill(const Maker& m, const Touch& c) {
+  return m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
+}
+
+void SenseProbe(const Context& c, const ServoInputs& in, State& s) noexcept {
+  ProbeState& probe = s.probe;
+  const bool good = !s.encoder_error;
+  const double before =
+      probe.sampled && good ? LatchedPosition(c.params.encoder, s.encoder, probe.counts) - s.origin : 0;
+  probe.step = probe.sampled && good ? s.actual.position - before : s.actual.velocity * c.cycle.period_s;
+  LookForEdge(c, in, s);
+  probe.sampled = good;
+  probe.counts = in.counts;
+  probe.wire = in.touch_probe;
+  probe.rises = in.probe_rises;
+  probe.falls = in.probe_falls;
+  probe.set_velocity = s.setpoint.velocity;
+}
+
+void FollowProbe(const Context& c, State& s) noexcept {
+  ProbeState& probe = s.probe;
+  if (probe.watch == ProbeWatch::kSlow) return Slow(c, s);
+  if (probe.watch != ProbeWatch::kTouch) return;
+  Status status = MayTouch(c, s);
+  if (status.ok() && probe.touched) status = TakeTouch(c, s);
+  if (status.ok() && !probe.touched) return;
+  probe.watch = ProbeWatch::kNothing;
+  if (status.failed()) Report(c, probe.ticket, FeedbackState::kError, status.error);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const TouchProbe& command, State& s) noexcept {
+  Supersede(c, ProbeWatch::kCapture, command.edge, ticket, s);
+  s.probe.window_only = command.window_only;
+  s.probe.first_position = command.first_position;
+  s.probe.last_position = command.last_position;
+  Report(c, ticket, FeedbackState::kActive);
+  return Status::Ok();
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const AbortTrigger&, State& s) noexcept {
+  Supersede(c, ProbeWatch::kNothing, s.probe.edge, 0, s);
+  Report(c, ticket, FeedbackState::kActive);
+  Report(c, ticket, FeedbackState::kDone);
+  return Status::Ok();
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const Touch& command, State& s) noexcept {
+  const bool captures = command.mode == TouchMode::kCapture;
+  if (const Status status = MayTouch(c, s); captures && status.failed()) return status;
+  Request limits;
+  Refusal why;
+  Fill(Maker{c.params, limits, why}, command);
+  Supersede(c, captures ? ProbeWatch::kTouch : ProbeWatch::kSlow, command.edge, ticket, s);
+  s.probe.velocity = limits.velocity;
+  s.probe.acceleration = limits.acceleration;
+  s.probe.deceleration = limits.deceleration;
+  s.probe.jerk = limits.jerk;
+  Report(c, ticket, FeedbackState::kBusy);
+  return Status::Ok();
+}
+
+void describe(Enumeration<ProbeWatch>& e) {
+  e.about("What waits for the touch probe.");
+  e.value(ProbeWatch::kNothing, "nothing", "Nothing.");
+  e.value(ProbeWatch::kCapture, "capture", "MC_TouchProbe.");
+  e.value(ProbeWatch::kTouch, "touch", "GT_Touch, to capture, stop and return.");
+  e.value(ProbeWatch::kSlow, "slow", "GT_Touch, to slow down while the probe is on.");
+}
+
+void describe(Description<ProbeState>& d) {
+  using P = ProbeState;
+  d.about("The touch probe.");
+  d.internal<&P::watch>("What waits for it.");
+  d.internal<&P::edge>("For which edge.");
+  d.internal<&P::window_only>("Only within a window.");
+  d.internal<&P::touched>("GT_Touch: the edge came.");
+  d.internal<&P::touch_position>(unit::u, "GT_Touch: where, unwrapped.");
+  d.internal<&P::first_position>(unit::u, "Where the window begins.");
+  d.internal<&P::last_position>(unit::u, "Where it ends.");
+  d.internal<&P::ticket>("Of what waits.");
+  d.internal<&P::velocity>(unit::u_s, "GT_Touch: largest velocity.");
+  d.internal<&P::acceleration>(unit::u_s2, "GT_Touch: largest acceleration.");
+  d.internal<&P::deceleration>(unit::u_s2, "GT_Touch: largest deceleration.");
+  d.internal<&P::jerk>(unit::u_s3, "GT_Touch: largest jerk; 0: unlimited.");
+  d.internal<&P::slowing>("GT_Touch: slows a motion down.");
+  d.internal<&P::reported>("GT_Touch: it did so before.");
+  d.internal<&P::slowed>("GT_Touch: ticket of the motion.");
+  d.internal<&P::own_velocity>(unit::u_s, "GT_Touch: what the motion had before.");
+  d.internal<&P::position>(unit::u, "Of the last capture.");
+  d.internal<&P::captures>("How many there were.");
+  d.internal<&P::sampled>("The sample before was good.");
+  d.internal<&P::wire>("The input in the sample before.");
+  d.internal<&P::counts>(unit::count, "The encoder in the sample before.");
+  d.internal<&P::rises>("Rising edges by the sample before.");
+  d.internal<&P::falls>("Falling edges by the sample before.");
+  d.internal<&P::set_velocity>(unit::u_s, "Of the set point for the sample before.");
+  d.internal<&P::step>(unit::u, "From that sample to this one.");
+}
+
+}  // namespace takt::axis

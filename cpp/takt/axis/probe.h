@@ -1,0 +1,74 @@
+// The touch probe: MC_TouchProbe, GT_Touch and MC_AbortTrigger (AX-49). They take no control of the axis while they
+// wait.
+//
+// One of them waits at a time; another one, of whatever kind, supersedes it. MC_TouchProbe is Active until its edge
+// comes, whatever state the axis is in. GT_Touch needs an axis in its loop: capturing, it is Busy until the edge, then
+// ends the motion in progress, brakes and is Done at the captured position; slowing, it is Active from the first time
+// it slows a motion down, and never done.
+#pragma once
+
+#include <cstdint>
+
+#include "takt/axis/commands/probe.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/feedback.h"
+#include "takt/core/ports.h"
+#include "takt/core/status.h"
+#include "takt/trajectory/limits.h"
+
+namespace takt::axis {
+
+struct Context;
+struct State;
+
+enum class ProbeWatch : std::uint8_t { kNothing, kCapture, kTouch, kSlow };
+
+struct ProbeState {
+  ProbeWatch watch = ProbeWatch::kNothing;
+  ProbeEdge edge = ProbeEdge::kRising;
+  bool window_only = false;
+  bool touched = false;       // GT_Touch: the edge came in this cycle ...
+  double touch_position = 0;  // u, unwrapped: ... here
+  double first_position = 0;  // u
+  double last_position = 0;   // u
+  Ticket ticket = 0;
+  // GT_Touch: its limits.
+  double velocity = 0;
+  double acceleration = 0;
+  double deceleration = 0;
+  double jerk = 0;
+  // GT_Touch, slowing: which motion, and what it had before.
+  bool slowing = false;
+  bool reported = false;  // Active is out
+  Ticket slowed = 0;
+  double own_velocity = 0;
+
+  double position = 0;         // u, of the last capture; rotary axes: in [0, modulus)
+  std::uint32_t captures = 0;  // how many there were, wraps
+
+  // The sample before.
+  bool sampled = false;      // there is one, and it was good
+  bool wire = false;         // the input, before inversion
+  std::uint32_t counts = 0;  // raw
+  std::uint32_t rises = 0;   // of the wire
+  std::uint32_t falls = 0;
+  double set_velocity = 0;  // u/s, of the set point for that sample
+  double step = 0;          // u, from there to this one
+};
+
+// sense, once the position is known: looks for the edge and captures. Where between its two samples the axis was at the
+// edge follows from the edge's time, along the curve of the set point.
+void SenseProbe(const Context& context, const ServoInputs& inputs, State& state) noexcept;
+
+// move, before the set point: lets a GT_Touch take control, or slows down.
+void FollowProbe(const Context& context, State& state) noexcept;
+
+// Errors: kPowerOff, kErrorStop (GT_Touch).
+Status CarryOut(const Context& context, Ticket ticket, const TouchProbe& command, State& state) noexcept;
+Status CarryOut(const Context& context, Ticket ticket, const AbortTrigger& command, State& state) noexcept;
+Status CarryOut(const Context& context, Ticket ticket, const Touch& command, State& state) noexcept;
+
+void describe(Enumeration<ProbeWatch>&);
+void describe(Description<ProbeState>&);
+
+}  // namespace takt::axis

@@ -1,0 +1,45 @@
+"""Function blocks with PLCopen's names, inputs and outputs, for those who think in them.
+
+A block is an instance that is called once a cycle, usually in a program of the session:
+
+    move = MC_MoveAbsolute(session.axis("x"))
+
+    @session.program
+    def scan() -> None:
+        move(Execute=start, Position=100.0, Velocity=50.0)
+        if move.Done: ...
+
+The rules that all blocks keep: an input that is not given keeps its value from the call before. Inputs count on the
+rising edge of Execute. While Execute is true, exactly one of Busy, Done, CommandAborted and Error is, of those that the
+block has. Active is as Busy, but for a buffered command, where it says that the command is in control. Done,
+CommandAborted, Error and the like are cleared with the falling edge of Execute, but are seen in one call at least. A
+new rising edge before the end starts the command again; of the one before nothing more is heard. Velocity,
+acceleration, deceleration and jerk are never negative; the engine refuses them. An input that is None is left to the
+engine: the axis' own limit.
+"""
+
+from __future__ import annotations
+
+from takt.plcopen import administration, cam_switch, coupling, homing, jog, moves, probe, settings, torque
+from takt.plcopen.administration import *  # noqa: F403
+from takt.plcopen.base import FunctionBlock
+from takt.plcopen.cam_switch import *  # noqa: F403
+from takt.plcopen.coupling import *  # noqa: F403
+from takt.plcopen.homing import *  # noqa: F403
+from takt.plcopen.jog import *  # noqa: F403
+from takt.plcopen.moves import *  # noqa: F403
+from takt.plcopen.probe import *  # noqa: F403
+from takt.plcopen.settings import *  # noqa: F403
+from takt.plcopen.torque import *  # noqa: F403
+
+_GROUPS = (administration, moves, jog, coupling, homing, settings, probe, cam_switch, torque)
+
+BLOCKS: tuple[type[FunctionBlock], ...] = tuple(
+    block
+    for group in _GROUPS
+    for name, block in vars(group).items()
+    if name.startswith(("MC_", "GT_")) and block.__module__ == group.__name__
+)
+
+__all__ = ["BLOCKS", "FunctionBlock"]
+__all__ += [block.__name__ for block in BLOCKS]

@@ -1,0 +1,239 @@
+"""Blocks that switch an axis, clear its faults and show its state."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from takt import _commands
+from takt.axis import Axis
+from takt.engine import error_text
+from takt.feedback import Feedback
+from takt.plcopen.base import ExecuteBlock, FunctionBlock, Input, Output, ReadBlock, in_control
+
+AXIS_FAULT = 7  # error of a command: the fault of the axis is still there
+
+
+class MC_Reset(ExecuteBlock):  # noqa: N801
+    """Clears the fault of an axis. There is no CommandAborted: a reset that another one supersedes follows the axis. It
+    is Busy while the axis still brakes, then Done when the fault is cleared, and Error when it is not."""
+
+    VERB = "reset"
+    Done = Output(False)
+
+    def _end(self, feedback: Feedback) -> tuple[str, int] | None:
+        if not feedback.aborted:
+            return super()._end(feedback)
+        axis = self.Axis
+        axis.session._catch_up(feedback.cycle)
+        if axis.state is not _commands.PlcState.ERROR_STOP and not axis.error:
+            return "Done", 0
+        braking = axis.loop_closed and (axis.set_velocity != 0 or axis.set_acceleration != 0)
+        return None if braking else ("Error", AXIS_FAULT)
+
+
+class MC_Power(FunctionBlock):  # noqa: N801
+    """Keeps power stage and position loop as the level of Enable says, whoever switched them: gives a command whenever
+    the axis is Disabled and Enable true, or the other way round. Status: the loop is closed.
+
+    A fault that opened the loop is shown by Error until the axis is reset; then the loop is closed again. Enable true
+    on a Disabled axis with a fault leads to ErrorStop. A command that is refused is given again once the axis is in
+    another state. One instance an axis: two with different Enable switch it to and fro."""
+
+    Enable = Input(False)
+    BufferMode = Input(_commands.BufferMode.ABORTING, "buffer_mode")
+    Status = Output(False)
+    Valid = Output(False)
+    Busy = Output(False)
+    Active = Output(False)
+    CommandAborted = Output(False)
+    Aborted = Output(False, alias="CommandAborted")
+
+    def __init__(self, axis: Axis, **inputs: Any) -> None:
+        self._level: bool | None = None  # Enable in the call before
+        self._feedback: Feedback | None = None  # of the command in progress ...
+        self._given: dict[str, Any] = {}  # ... and its arguments
+        self._refusal: tuple[_commands.PlcState, int] | None = None  # of the last command: the axis' state, the error
+        super().__init__(axis, **inputs)
+
+    def _scan(self) -> None:
+        enable = bool(self.Enable)
+        ended = self._end(enable)
+        state = self.Axis.state
+        if enable is not self._level or (self._refusal and self._refusal[0] is not state):
+            self._refusal = None
+        self._level = enable
+        if self._is_due(enable, state):
+            self._given = {"enable": enable, **self._arguments()}
+            self._feedback = self.Axis.session.command(self.Axis.name, "power", self._given)
+            ended = self._end(enable) or ended
+        self._show_all(enable, state, ended)
+
+    def _end(self, enable: bool) -> Feedback | None:
+        """The command that has ended since the call before."""
+        ended = self._feedback
+        if ended is None or ended.busy:
+            return None
+        self._feedback = None
+        self.Axis.session._catch_up(ended.cycle)
+        refused = ended.error and (ended.ticket == 0 or not enable)
+        if self._given["enable"] is enable and (refused or (ended.aborted and not enable)):
+            self._refusal = (self.Axis.state, ended.error_id)
+        return ended
+
+    def _is_due(self, enable: bool, state: _commands.PlcState) -> bool:
+        """Whether a command is to be given now."""
+        if self._refusal is not None:
+            return False
+        if self._feedback is not None:
+            return bool(self._given["enable"]) and not enable
+        disabled = state is _commands.PlcState.DISABLED
+        return disabled and not self.Axis.active_command if enable else not disabled
+
+    def _show_all(self, enable: bool, state: _commands.PlcState, ended: Feedback | None) -> None:
+        status = self.Axis.loop_closed
+        error_id = ended.error_id if ended is not None and ended.error else 0
+        if self._refusal is not None:
+            error_id = self._refusal[1]
+        if enable and not status and state is _commands.PlcState.ERROR_STOP:
+            error_id = self.Axis.error
+        self._show(Status=status, Valid=enable and not error_id)
+        if ended is not None and ended.aborted:
+            self._show(CommandAborted=True)
+        elif error_id:
+            self._show_error(error_id)
+        elif self._feedback is not None or (enable and not status):
+            self._show(Busy=True, Active=self._feedback is None or in_control(self._feedback, self._given))
+
+
+class MC_ReadStatus(ReadBlock):  # noqa: N801
+    """The state of the axis, one output for each; Ref: it has its reference."""
+
+    ErrorStop = Output(False)
+    Disabled = Output(False)
+    Stopping = Output(False)
+    Homing = Output(False)
+    Standstill = Output(False)
+    DiscreteMotion = Output(False)
+    ContinuousMotion = Output(False)
+    SynchronizedMotion = Output(False)
+    Ref = Output(False)
+
+    def _read(self) -> None:
+        self._show(**{self.Axis.state.value: True}, Ref=self.Axis.homed)
+
+
+class MC_ReadAxisError(ReadBlock):  # noqa: N801
+    """The fault of the axis by number; 0: none. Error and ErrorID say that of the axis, too: the block itself has none,
+    and what it shows is valid."""
+
+    AxisErrorID = Output(0)
+
+    def _read(self) -> None:
+        error_id = self.Axis.error
+        self._show(AxisErrorID=error_id, Error=error_id != 0, ErrorID=error_id)
+
+    @property
+    def text(self) -> str:
+        """The fault for people; empty without one."""
+        return error_text(self.AxisErrorID) if self.AxisErrorID else ""
+
+
+class MC_ReadActualPosition(ReadBlock):  # noqa: N801
+    """The measured position, in u."""
+
+    Position = Output(0.0)
+
+    def _read(self) -> None:
+        self._show(Position=self.Axis.actual_position)
+
+
+class MC_ReadActualVelocity(ReadBlock):  # noqa: N801
+    """The measured velocity, in u/s."""
+
+    Velocity = Output(0.0)
+
+    def _read(self) -> None:
+        self._show(Velocity=self.Axis.actual_velocity)
+
+
+class MC_ReadActualTorque(ReadBlock):  # noqa: N801
+    """The torque in Nm as the drive reports it; the force in N on linear motors."""
+
+    Torque = Output(0.0)
+
+    def _read(self) -> None:
+        self._show(Torque=self.Axis.torque_nm)
+
+
+class MC_ReadMotionState(ReadBlock):  # noqa: N801
+    """How the axis moves, by its set point (Source SET_VALUE) or as measured, where acceleration is not known."""
+
+    Source = Input(_commands.MasterSource.SET_VALUE)
+    ConstantVelocity = Output(False)
+    Accelerating = Output(False)
+    Decelerating = Output(False)
+    DirectionPositive = Output(False)
+    DirectionNegative = Output(False)
+
+    def _read(self) -> None:
+        by_set_value = self.Source == _commands.MasterSource.SET_VALUE
+        velocity = self.Axis.set_velocity if by_set_value else self.Axis.actual_velocity
+        growing = self.Axis.set_acceleration * (self.Axis.set_velocity or self.Axis.set_acceleration)
+        self._show(
+            ConstantVelocity=growing == 0,
+            Accelerating=growing > 0,
+            Decelerating=growing < 0,
+            DirectionPositive=velocity > 0,
+            DirectionNegative=velocity < 0,
+        )
+
+
+class MC_ReadAxisInfo(ReadBlock):  # noqa: N801
+    """The inputs of the axis and what it is ready for."""
+
+    HomeAbsSwitch = Output(False)
+    LimitSwitchPos = Output(False)
+    LimitSwitchNeg = Output(False)
+    Simulation = Output(False)
+    CommunicationReady = Output(False)
+    ReadyForPowerOn = Output(False)
+    PowerOn = Output(False)
+    IsHomed = Output(False)
+    AxisWarning = Output(False)
+
+    def _read(self) -> None:
+        axis = self.Axis
+        self._show(
+            HomeAbsSwitch=axis.reference,
+            LimitSwitchPos=axis.limit_positive,
+            LimitSwitchNeg=axis.limit_negative,
+            Simulation=True,  # every drive is a simulated one for now
+            CommunicationReady=True,
+            ReadyForPowerOn=axis.error == 0,
+            PowerOn=axis.loop_closed,
+            IsHomed=axis.homed,
+            AxisWarning=axis.limited_by is not _commands.LimitedBy.NOTHING,
+        )
+
+
+class GT_SInfo(ReadBlock):  # noqa: N801
+    """The input signals of the axis."""
+
+    LIMpos = Output(False)
+    LIMneg = Output(False)
+    REF = Output(False)
+    TP = Output(False)
+
+    def _read(self) -> None:
+        axis = self.Axis
+        self._show(LIMpos=axis.limit_positive, LIMneg=axis.limit_negative, REF=axis.reference, TP=axis.touch_probe)
+
+
+class GT_EStop(ExecuteBlock):  # noqa: N801
+    """All drives of the machine off and all brakes on at once; faults are cleared, every axis is Disabled."""
+
+    VERB = "emergency_stop"
+    Done = Output(False)
+
+    def _command(self) -> Feedback:
+        return self.Axis.session.command("machine", self.VERB, self._given)

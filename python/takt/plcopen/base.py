@@ -1,0 +1,226 @@
+"""What all function blocks are made of: inputs and outputs, edges of Execute, levels of Enable."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, Generic, TypeVar, overload
+
+from takt import _commands
+from takt.axis import Axis
+from takt.feedback import Feedback, FeedbackState
+
+ENDINGS = {FeedbackState.DONE: "Done", FeedbackState.ABORTED: "CommandAborted", FeedbackState.ERROR: "Error"}
+
+T = TypeVar("T")
+
+
+class Input(Generic[T]):
+    """An input of a block; `argument` is its name among the command's arguments, where it is one."""
+
+    def __init__(self, initial: T, argument: str = "") -> None:
+        self.initial = initial
+        self.argument = argument
+        self.name = ""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    @overload
+    def __get__(self, block: None, owner: type) -> Input[T]: ...
+    @overload
+    def __get__(self, block: FunctionBlock, owner: type) -> T: ...
+    def __get__(self, block: FunctionBlock | None, owner: type) -> T | Input[T]:
+        if block is None:
+            return self
+        value: T = block._inputs.get(self.name, self.initial)
+        return value
+
+    def __set__(self, block: FunctionBlock, value: T) -> None:
+        block._inputs[self.name] = value
+
+
+class Output(Generic[T]):
+    """An output of a block; only the block itself sets it. `alias` is another name of the same output."""
+
+    def __init__(self, initial: T, alias: str = "") -> None:
+        self.initial = initial
+        self.alias = alias
+        self.name = ""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    @overload
+    def __get__(self, block: None, owner: type) -> Output[T]: ...
+    @overload
+    def __get__(self, block: FunctionBlock, owner: type) -> T: ...
+    def __get__(self, block: FunctionBlock | None, owner: type) -> T | Output[T]:
+        if block is None:
+            return self
+        value: T = block._outputs.get(self.alias or self.name, self.initial)
+        return value
+
+    def __set__(self, block: FunctionBlock, value: T) -> None:
+        raise AttributeError(f"{self.name} is an output of {type(block).__name__}")
+
+
+class FunctionBlock:
+    """What all blocks have: the axis, inputs, outputs."""
+
+    INPUTS: ClassVar[Mapping[str, Input[Any]]] = {}
+    OUTPUTS: ClassVar[Mapping[str, Output[Any]]] = {}
+
+    Error = Output(False)
+    ErrorID = Output(0)
+
+    def __init_subclass__(cls) -> None:
+        members = [(n, m) for base in reversed(cls.__mro__) for n, m in vars(base).items()]
+        cls.INPUTS = {n: m for n, m in members if isinstance(m, Input)}
+        cls.OUTPUTS = {n: m for n, m in members if isinstance(m, Output)}
+
+    def __init__(self, axis: Axis, **inputs: Any) -> None:
+        self._inputs: dict[str, Any] = {}
+        self._outputs: dict[str, Any] = {}
+        self.Axis = axis
+        self._assign(inputs)
+
+    def __call__(self, **inputs: Any) -> Any:
+        """One call of the block, with new values of some inputs. Returns the block, its outputs up to date."""
+        self._assign(inputs)
+        self._outputs = {}
+        self._scan()
+        return self
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not name.startswith("_") and name != "Axis" and name not in self.INPUTS and name not in self.OUTPUTS:
+            raise AttributeError(self._no_input(name))
+        super().__setattr__(name, value)
+
+    @property
+    def outputs(self) -> dict[str, Any]:
+        """All outputs by name."""
+        return {name: getattr(self, name) for name in self.OUTPUTS}
+
+    def _assign(self, inputs: Mapping[str, Any]) -> None:
+        for name, value in inputs.items():
+            if name not in self.INPUTS and name != "Axis":
+                raise TypeError(self._no_input(name))
+            setattr(self, name, value)
+
+    def _no_input(self, name: str) -> str:
+        return f"{type(self).__name__} has no input '{name}' (it has {', '.join(self.INPUTS)})"
+
+    def _arguments(self) -> dict[str, Any]:
+        """The inputs that are arguments of the command."""
+        return {i.argument: getattr(self, n) for n, i in self.INPUTS.items() if i.argument}
+
+    def _show(self, **outputs: Any) -> None:
+        for name in outputs:
+            if name not in self.OUTPUTS:
+                raise AttributeError(f"{type(self).__name__} has no output '{name}'")
+        self._outputs.update(outputs)
+
+    def _show_error(self, error_id: int) -> None:
+        self._show(Error=True, ErrorID=error_id)
+
+    def _scan(self) -> None:
+        raise NotImplementedError
+
+
+def in_control(feedback: Feedback, arguments: Mapping[str, Any]) -> bool:
+    """Active of a command in progress; one that does not wait for others is as soon as it is given."""
+    return feedback.active or arguments["buffer_mode"] == _commands.BufferMode.ABORTING
+
+
+class ExecuteBlock(FunctionBlock):
+    """A block that gives a command on the rising edge of Execute."""
+
+    VERB: ClassVar[str]
+
+    Execute = Input(False)
+    Busy = Output(False)
+
+    def __init__(self, axis: Axis, **inputs: Any) -> None:
+        self._edge = False  # Execute in the call before
+        self._given: dict[str, Any] = {}  # the arguments of the command
+        self._feedback: Feedback | None = None
+        self._ending: tuple[str, int] | None = None  # of the command: the output that says so, the error's number
+        self._seen: set[str] = set()  # outputs that were shown for this command
+        super().__init__(axis, **inputs)
+
+    def _scan(self) -> None:
+        execute = bool(self.Execute)
+        if execute and not self._edge:
+            self._given = self._arguments()
+            self._feedback = self._command()
+            self._ending = None
+            self._seen = set()
+        elif self._edge and not execute:
+            self._fall()
+        self._edge = execute
+        if self._feedback is not None:
+            self._follow(self._feedback)
+
+    def _command(self) -> Feedback:
+        """Gives the command."""
+        return self.Axis.session.command(self.Axis.name, self.VERB, self._given)
+
+    def _fall(self) -> None:
+        """The falling edge of Execute. The command goes on all the same."""
+
+    def _follow(self, feedback: Feedback) -> None:
+        self._ending = self._ending or self._end(feedback)
+        if self._ending is None:
+            self._run(feedback)
+        elif self._is_due(self._ending[0]):
+            name, error_id = self._ending
+            self._show_error(error_id) if name == "Error" else self._show(**{name: True})
+
+    def _end(self, feedback: Feedback) -> tuple[str, int] | None:
+        """How the command ended; None: it has not."""
+        return (ENDINGS[feedback.state], feedback.error_id) if feedback.final else None
+
+    def _run(self, feedback: Feedback) -> None:
+        """Shows the outputs of a command in progress."""
+        self._show(Busy=True)
+
+    def _is_due(self, name: str) -> bool:
+        """Whether an output that Execute clears is to be shown: while Execute is true, and in one call at least."""
+        due = self._edge or name not in self._seen
+        self._seen.add(name)
+        return due
+
+
+class SettingBlock(ExecuteBlock):
+    """A block whose command takes no control of the axis: done at once, or refused."""
+
+    Done = Output(False)
+
+
+class MotionBlock(ExecuteBlock):
+    """A block whose command moves the axis: others can abort it, and it can wait for others."""
+
+    BufferMode = Input(_commands.BufferMode.ABORTING, "buffer_mode")
+    Active = Output(False)
+    CommandAborted = Output(False)
+    Aborted = Output(False, alias="CommandAborted")
+
+    def _run(self, feedback: Feedback) -> None:
+        super()._run(feedback)
+        self._show(Active=in_control(feedback, self._given))
+
+
+class ReadBlock(FunctionBlock):
+    """A block that shows something as long as Enable is true."""
+
+    Enable = Input(False)
+    Valid = Output(False)
+    Busy = Output(False)
+
+    def _scan(self) -> None:
+        if self.Enable:
+            self._show(Valid=True, Busy=True)
+            self._read()
+
+    def _read(self) -> None:
+        raise NotImplementedError

@@ -1,0 +1,131 @@
+"""Blocks that tie an axis to one or two masters. Master is an axis or its name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from takt import _commands
+from takt.axis import Axis
+from takt.feedback import Feedback
+from takt.plcopen.base import ExecuteBlock, Input, MotionBlock, Output
+
+
+def _name(axis: Axis | str) -> str:
+    return axis if isinstance(axis, str) else axis.name
+
+
+class CouplingBlock(MotionBlock):
+    """A block whose axis, the slave, follows others. Never done: one output is true while it is in step."""
+
+    IN_STEP = "InGear"
+
+    def _arguments(self) -> dict[str, Any]:
+        arguments = super()._arguments()
+        return arguments | {n: _name(v) for n, v in arguments.items() if n.startswith("master") and isinstance(v, Axis)}
+
+    def _run(self, feedback: Feedback) -> None:
+        super()._run(feedback)
+        self._show(**{self.IN_STEP: feedback.reached and self.Axis.in_step})
+
+
+class MC_GearIn(CouplingBlock):  # noqa: N801
+    """Follows the velocity of Master times RatioNumerator / RatioDenominator. InGear falls where the axis cannot."""
+
+    VERB = "gear_in"
+    Master = Input[Axis | str]("", "master")
+    RatioNumerator = Input(1.0, "ratio_numerator")
+    RatioDenominator = Input(1.0, "ratio_denominator")
+    MasterValueSource = Input(_commands.MasterSource.SET_VALUE, "source")
+    Acceleration = Input[float | None](None, "acceleration")
+    Deceleration = Input[float | None](None, "deceleration")
+    Jerk = Input[float | None](None, "jerk")
+    InGear = Output(False)
+
+
+class MC_GearInPos(CouplingBlock):  # noqa: N801
+    """Follows the position of Master times the ratio, in step from MasterSyncPosition and SlaveSyncPosition on.
+    StartSync: getting into step has begun."""
+
+    VERB = "gear_in_pos"
+    IN_STEP = "InSync"
+    Master = Input[Axis | str]("", "master")
+    RatioNumerator = Input(1.0, "ratio_numerator")
+    RatioDenominator = Input(1.0, "ratio_denominator")
+    MasterValueSource = Input(_commands.MasterSource.SET_VALUE, "source")
+    MasterSyncPosition = Input(0.0, "master_sync_position")
+    SlaveSyncPosition = Input(0.0, "slave_sync_position")
+    SyncMode = Input(_commands.SyncMode.SHORTEST, "sync_mode")
+    MasterStartDistance = Input[float | None](None, "master_start_distance")
+    Velocity = Input[float | None](None, "velocity")
+    Acceleration = Input[float | None](None, "acceleration")
+    Deceleration = Input[float | None](None, "deceleration")
+    Jerk = Input[float | None](None, "jerk")
+    StartSync = Output(False)
+    InSync = Output(False)
+
+    def _run(self, feedback: Feedback) -> None:
+        super()._run(feedback)
+        moves = self.Axis.set_velocity != 0 or self.Axis.set_acceleration != 0
+        self._show(StartSync=feedback.active and not feedback.reached and moves)
+
+
+class MC_GearOut(ExecuteBlock):  # noqa: N801
+    """Lets go of the master; the axis goes on with the velocity it has."""
+
+    VERB = "gear_out"
+    Done = Output(False)
+
+
+class PhasingBlock(ExecuteBlock):
+    """Shifts what the axis takes for its master's position. A newer shift takes over from this one."""
+
+    PhaseShift = Input(0.0, "phase_shift")
+    Velocity = Input[float | None](None, "velocity")
+    Acceleration = Input[float | None](None, "acceleration")
+    Deceleration = Input[float | None](None, "deceleration")
+    Jerk = Input[float | None](None, "jerk")
+    Done = Output(False)
+    Active = Output(False)
+    CommandAborted = Output(False)
+    Aborted = Output(False, alias="CommandAborted")
+
+    def _run(self, feedback: Feedback) -> None:
+        super()._run(feedback)
+        self._show(Active=feedback.active)
+
+
+class MC_PhasingAbsolute(PhasingBlock):  # noqa: N801
+    """Shifts the phase to an amount."""
+
+    VERB = "phasing_absolute"
+
+
+class MC_PhasingRelative(PhasingBlock):  # noqa: N801
+    """Shifts the phase by an amount."""
+
+    VERB = "phasing_relative"
+
+
+class MC_Phasing(MC_PhasingAbsolute):  # noqa: N801
+    """The GT-775x's name of MC_PhasingAbsolute."""
+
+
+class MC_CombineAxes(CouplingBlock):  # noqa: N801
+    """Follows the sum or the difference of two masters, each times its ratio."""
+
+    VERB = "combine_axes"
+    IN_STEP = "InSync"
+    Master1 = Input[Axis | str]("", "master1")
+    Master2 = Input[Axis | str]("", "master2")
+    CombineMode = Input(_commands.CombineMode.ADD, "mode")
+    GearRatioNumeratorM1 = Input(1.0, "ratio_numerator1")
+    GearRatioDenominatorM1 = Input(1.0, "ratio_denominator1")
+    GearRatioNumeratorM2 = Input(1.0, "ratio_numerator2")
+    GearRatioDenominatorM2 = Input(1.0, "ratio_denominator2")
+    MasterValueSourceM1 = Input(_commands.MasterSource.SET_VALUE, "source1")
+    MasterValueSourceM2 = Input(_commands.MasterSource.SET_VALUE, "source2")
+    Velocity = Input[float | None](None, "velocity")
+    Acceleration = Input[float | None](None, "acceleration")
+    Deceleration = Input[float | None](None, "deceleration")
+    Jerk = Input[float | None](None, "jerk")
+    InSync = Output(False)

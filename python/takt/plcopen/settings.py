@@ -1,0 +1,109 @@
+"""Blocks that change and show what an axis works with."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from takt.axis import Axis
+from takt.feedback import Feedback
+from takt.plcopen.base import FunctionBlock, Input, Output, SettingBlock
+
+
+class GT_SetConstant(SettingBlock):  # noqa: N801
+    """The constants of the position loop and the SW limits; an input that is None leaves what there is."""
+
+    VERB = "set_constants"
+    Kp = Input[float | None](None, "kp")
+    Ki = Input[float | None](None, "ki")
+    Kd = Input[float | None](None, "kd")
+    Ff = Input[float | None](None, "ff")
+    Kc = Input[float | None](None, "kc")
+    Vmax = Input[float | None](None, "velocity_at_10v")
+    LimPos = Input[float | None](None, "upper")
+    LimNeg = Input[float | None](None, "lower")
+
+
+class GT_SWLim(SettingBlock):  # noqa: N801
+    """The SW limits: where they are and whether they hold."""
+
+    VERB = "set_soft_limits"
+    EnablePos = Input(True, "enable_upper")
+    EnableNeg = Input(True, "enable_lower")
+    LimPos = Input[float | None](None, "upper")
+    LimNeg = Input[float | None](None, "lower")
+
+
+class GT_Analog(SettingBlock):  # noqa: N801
+    """Puts a voltage out, -10 to 10 V, while the axis is Disabled."""
+
+    VERB = "direct_output"
+    Voltage = Input(0.0, "voltage")
+
+
+class MC_SetPosition(SettingBlock):  # noqa: N801
+    """Calls where the axis is by another number; nothing moves."""
+
+    VERB = "define_position"
+    Position = Input(0.0, "position")
+    Relative = Input(False, "relative")
+
+
+class MC_WriteParameter(SettingBlock):  # noqa: N801
+    """Sets a parameter by PLCopen's number."""
+
+    VERB = "write_parameter"
+    ParameterNumber = Input(0, "number")
+    Value = Input(0.0, "value")
+
+
+class MC_WriteBoolParameter(SettingBlock):  # noqa: N801
+    """Sets a parameter that is a yes or no."""
+
+    VERB = "write_parameter"
+    ParameterNumber = Input(0, "number")
+    Value = Input(False)
+
+    def _arguments(self) -> dict[str, Any]:
+        return super()._arguments() | {"value": 1.0 if self.Value else 0.0}
+
+
+class MC_ReadParameter(FunctionBlock):  # noqa: N801
+    """A parameter by PLCopen's number, asked for again and again as long as Enable is true. Value is valid from the
+    first answer on, one or more cycles after Enable."""
+
+    Enable = Input(False)
+    ParameterNumber = Input(0, "number")
+    Valid = Output(False)
+    Busy = Output(False)
+    Value: Output[Any] = Output(0.0)
+
+    def __init__(self, axis: Axis, **inputs: Any) -> None:
+        self._asked: Feedback | None = None
+        self._answer: Feedback | None = None
+        super().__init__(axis, **inputs)
+
+    def _scan(self) -> None:
+        if not self.Enable:
+            self._asked = self._answer = None
+            return
+        if self._asked is not None and self._asked.final:
+            self._answer, self._asked = self._asked, None
+        if self._asked is None:
+            self._asked = self.Axis.session.command(self.Axis.name, "read_parameter", self._arguments())
+        self._show(Busy=True)
+        if self._answer is not None and self._answer.error:
+            self._show_error(self._answer.error_id)
+        elif self._answer is not None:
+            self._show(Valid=True, Value=self._value(self._answer.value))
+
+    def _value(self, value: float) -> Any:
+        return value
+
+
+class MC_ReadBoolParameter(MC_ReadParameter):  # noqa: N801
+    """A parameter that is a yes or no."""
+
+    Value: Output[Any] = Output(False)
+
+    def _value(self, value: float) -> Any:
+        return value != 0

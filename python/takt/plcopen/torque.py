@@ -1,0 +1,29 @@
+"""Function block of torque control."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from takt import _commands
+from takt.feedback import Feedback
+from takt.plcopen.base import Input, MotionBlock, Output
+
+
+class MC_TorqueControl(MotionBlock):  # noqa: N801
+    """Drives with a torque, no faster than Velocity. Never done: InTorque says that the set point of the torque is what
+    was asked for. Direction NEGATIVE turns the torque round. The axis accelerates as the torque makes it."""
+
+    VERB = "torque_control"
+    Torque = Input(0.0, "torque")
+    TorqueRamp = Input[float | None](None, "torque_ramp")
+    Velocity = Input[float | None](None, "velocity")
+    Direction = Input(_commands.Direction.POSITIVE)
+    InTorque = Output(False)
+
+    def _arguments(self) -> dict[str, Any]:
+        sense = -1 if self.Direction == _commands.Direction.NEGATIVE else 1
+        return super()._arguments() | {"torque": sense * self.Torque}
+
+    def _run(self, feedback: Feedback) -> None:
+        super()._run(feedback)
+        self._show(InTorque=feedback.reached and self._is_due("InTorque"))

@@ -1,0 +1,165 @@
+"""Touch probe, cam switches and torque control as function blocks (AX-42, AX-49, AX-50)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+import takt
+from machines import MACHINE
+from takt._commands import Direction, TouchMode
+from takt.plcopen import (
+    GT_Touch,
+    MC_AbortTrigger,
+    MC_DigitalCamSwitch,
+    MC_MoveAbsolute,
+    MC_MoveVelocity,
+    MC_TorqueControl,
+    MC_TouchProbe,
+)
+
+WITH_PROBE = (
+    MACHINE
+    + """\
+cam_switches:
+  - name: gates
+    tracks: [{track: 2, on_lead_s: 0.02}]
+    switches:
+      - {track: 1, first_on_position: 10, last_on_position: 20}
+      - {track: 2, first_on_position: 100, mode: time, duration_s: 0.05}
+simulation:
+  servos:
+    - {axis: x, mechanics: {inertia: 0.001, upper_stop: 150}, switches: {touch_probe: {from: 60, to: 70}}}
+"""
+)
+
+
+@pytest.fixture
+def x() -> Iterator[takt.Axis]:
+    with takt.Engine(WITH_PROBE) as engine:
+        engine.axis("x").power().wait()
+        yield engine.axis("x")
+
+
+def step(axis: takt.Axis, cycles: int = 1) -> None:
+    assert isinstance(axis.session, takt.Engine)
+    axis.session.step(cycles)
+
+
+def until(axis: takt.Axis, condition: Callable[[], bool], *blocks: Callable[[], Any]) -> None:
+    """Calls the blocks before every cycle until the condition holds."""
+    for _ in range(5000):
+        for block in blocks:
+            block()
+        if condition():
+            return
+        step(axis)
+    raise AssertionError("it never came")
+
+
+def test_touch_probe_records_the_position(x: takt.Axis) -> None:  # AX-49
+    probe, move = MC_TouchProbe(x), MC_MoveAbsolute(x)
+    probe(Execute=True)
+    assert probe.outputs["Busy"]
+    assert not probe.outputs["Done"]
+    move(Execute=True, Position=100, Velocity=200)
+    until(x, lambda: probe.Done, probe, move)
+    assert probe.RecordedPosition == pytest.approx(60, abs=200 * 20e-6 + 0.001)
+    assert not probe.Busy
+    assert move.Busy
+    until(x, lambda: move.Done, probe, move)
+    probe(Execute=False)
+    assert not probe.Done
+
+
+def test_abort_trigger_and_a_second_block_end_the_wait(x: takt.Axis) -> None:  # AX-49
+    first, second, abort = MC_TouchProbe(x), MC_TouchProbe(x), MC_AbortTrigger(x)
+    first(Execute=True)
+    step(x)
+    second(Execute=True)
+    until(x, lambda: first.CommandAborted, first, second)
+    assert second.Busy
+    abort(Execute=True)
+    until(x, lambda: second.CommandAborted, second, abort)
+    assert abort().Done
+
+
+def test_touch_returns_to_the_position(x: takt.Axis) -> None:  # AX-49
+    touch, move = GT_Touch(x), MC_MoveVelocity(x)
+    touch(Execute=True, Velocity=50)
+    move(Execute=True, Velocity=300)
+    until(x, lambda: touch.Active, touch, move)
+    assert x.set_position > 60
+    until(x, lambda: touch.Done, touch, move)
+    assert move.CommandAborted
+    assert touch.RecordedPosition == pytest.approx(60, abs=0.01)
+    assert x.set_position == pytest.approx(touch.RecordedPosition)
+
+
+def test_touch_slows_down_as_long_as_execute_is_true(x: takt.Axis) -> None:  # AX-49
+    slow, move = GT_Touch(x, Mode=TouchMode.SLOW, Velocity=20), MC_MoveAbsolute(x)
+    slow(Execute=True)
+    move(Execute=True, Position=100, Velocity=100)
+    until(x, lambda: x.set_position > 68, slow, move)
+    assert x.set_velocity == pytest.approx(20)
+    assert slow.Busy
+    assert slow.Active
+    slow(Execute=False)
+    until(x, lambda: move.Done, slow, move)
+    x.move_absolute(position=0).wait()
+    fast = MC_MoveAbsolute(x)
+    fast(Execute=True, Position=100, Velocity=100)
+    until(x, lambda: x.set_position > 68, fast)
+    assert x.set_velocity == pytest.approx(100)
+
+
+def test_cam_switch_works_while_enabled(x: takt.Axis) -> None:  # AX-50
+    cams, move = MC_DigitalCamSwitch(x, Switches="gates"), MC_MoveVelocity(x)
+    cams(Enable=True)
+    move(Execute=True, Velocity=200)
+    seen: dict[int, list[float]] = {1: [], 2: []}
+
+    def note() -> None:
+        for track, positions in seen.items():
+            if cams.Outputs >> (track - 1) & 1:
+                positions.append(x.set_position)
+
+    until(x, lambda: x.set_position > 130, cams, move, note)
+    assert cams.InOperation
+    assert cams.Busy
+    assert min(seen[1]) == pytest.approx(10, abs=0.2)
+    assert max(seen[1]) == pytest.approx(20, abs=0.2)
+    assert min(seen[2]) == pytest.approx(96, abs=0.2)
+    assert len(seen[2]) == 50
+    cams(Enable=False)
+    step(x)
+    assert not cams().InOperation
+    assert x.cam_outputs == 0
+
+
+def test_cam_switch_says_what_is_wrong(x: takt.Axis) -> None:  # AX-50
+    cams = MC_DigitalCamSwitch(x, Switches="doors")
+    cams(Enable=True)
+    until(x, lambda: cams.Error, cams)
+    assert cams.ErrorID == 3010
+    assert not cams.Busy
+    cams(Enable=False)
+    assert not cams.Error
+
+
+def test_torque_control_presses(x: takt.Axis) -> None:  # AX-42
+    press = MC_TorqueControl(x)
+    press(Execute=True, Torque=3, TorqueRamp=30, Velocity=100)
+    until(x, lambda: press.InTorque, press)
+    assert press.Busy
+    assert press.Active
+    until(x, lambda: x.actual_position > 149.999, press)
+    step(x, 50)
+    assert x.torque_nm == pytest.approx(3)
+    back = MC_TorqueControl(x)
+    back(Execute=True, Torque=1, Velocity=50, Direction=Direction.NEGATIVE)
+    until(x, lambda: x.actual_position < 50, press, back)
+    assert press.CommandAborted
+    assert abs(x.actual_velocity) <= 51
+    x.halt().wait()
