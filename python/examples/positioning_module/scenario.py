@@ -1,4 +1,4 @@
-"""A positioning module comes to life: six axes find their references, measure, run geared, stop at once and come back.
+"""A positioning module finds its references, measures an edge, runs geared, stops at once and comes back.
 
 takt run python/examples/positioning_module/scenario.py       in process, in virtual time
 takt demo python/examples/positioning_module/scenario.py      on taktd in real time, over LCM
