@@ -1,11 +1,10 @@
-"""Function blocks of gears, homing, settings and continuous moves in a cyclic program, as a control engineer uses them."""
+"""Function blocks of gears, homing, settings and continuous moves in cyclic programs, as engineers use them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 import pytest
-
 import takt
 from takt import plcopen as plc
 
