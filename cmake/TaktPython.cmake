@@ -17,6 +17,10 @@ foreach(entry IN LISTS sources)
   file(CREATE_LINK "${PROJECT_SOURCE_DIR}/python/takt/${entry}" "${package}/${entry}" SYMBOLIC)
 endforeach()
 
+# The tables of function blocks are read by takt.plcopen, too.
+file(CREATE_LINK "${PROJECT_SOURCE_DIR}/spec" "${package}/spec" SYMBOLIC)
+install(DIRECTORY spec/ DESTINATION takt/spec COMPONENT python)
+
 set_target_properties(_core PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${package}")
 install(TARGETS _core LIBRARY DESTINATION takt COMPONENT python)
 

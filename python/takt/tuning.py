@@ -28,7 +28,7 @@ SETTLED = 0.02  # share of the step, peak to peak
 RINGS = 3  # turning points of that size after the arrival
 GAINS = ("kp", "ki", "kd")
 HALVINGS = 5
-MOST_STEPS = 14  # doublings
+LEAST_KD = 1e-4
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,11 @@ def tune(
             gains["kp"] /= 2
         gains["kd"] = _largest(0.001, lambda kd: response({**gains, "kd": kd}).turns < RINGS, 4.0)
         gains["kd"] /= 2  # a margin: at the edge it rings a little
-        gains["kp"] = _largest(gains["kp"] / 4, lambda kp: _damped(response({**gains, "kp": kp})), 1.0)
+        first_kp = gains["kp"] / 4
+        gains["kp"] = 0.0
+        while not gains["kp"] and gains["kd"] > LEAST_KD:  # so much D that it overshoots alone: less of it
+            gains["kp"] = _largest(first_kp, lambda kp: _damped(response({**gains, "kp": kp})), 1.0)
+            gains["kd"] *= 1.0 if gains["kp"] else 0.5
         after = response(gains)
         while not _damped(after) and gains["kp"] > 1e-6:  # friction and play make the edge uncertain
             gains["kp"] *= 0.8

@@ -20,7 +20,7 @@ engine: the axis' own limit.
 
 from __future__ import annotations
 
-from takt.plcopen import administration, cam_switch, coupling, homing, jog, moves, probe, settings, torque
+from takt.plcopen import administration, cam_switch, coupling, homing, jog, moves, probe, settings, statement, torque
 from takt.plcopen.administration import *  # noqa: F403
 from takt.plcopen.base import FunctionBlock
 from takt.plcopen.cam_switch import *  # noqa: F403
@@ -41,5 +41,11 @@ BLOCKS: tuple[type[FunctionBlock], ...] = tuple(
     if name.startswith(("MC_", "GT_")) and block.__module__ == group.__name__
 )
 
-__all__ = ["BLOCKS", "FunctionBlock"]
+
+def compliance() -> str:
+    """The compliance statement: what there is of PLCopen's blocks, inputs and outputs, as Markdown."""
+    return statement.page({block.__name__: block for block in BLOCKS})
+
+
+__all__ = ["BLOCKS", "FunctionBlock", "compliance"]
 __all__ += [block.__name__ for block in BLOCKS]

@@ -8,8 +8,10 @@ from takt import _commands
 from takt.axis import Axis
 from takt.engine import error_text
 from takt.feedback import Feedback
-from takt.plcopen.base import ExecuteBlock, FunctionBlock, Input, Output, ReadBlock, in_control
+from takt.plcopen.base import AxisName, ExecuteBlock, FunctionBlock, Input, Output, ReadBlock, in_control
 
+PARAMETER = 5  # error of a command: an input is out of its range
+CAM_OUTPUTS = 32
 AXIS_FAULT = 7  # error of a command: the fault of the axis is still there
 
 
@@ -113,6 +115,7 @@ class MC_ReadStatus(ReadBlock):  # noqa: N801
     Stopping = Output(False)
     Homing = Output(False)
     Standstill = Output(False)
+    StandStill = Output(False, alias="Standstill")
     DiscreteMotion = Output(False)
     ContinuousMotion = Output(False)
     SynchronizedMotion = Output(False)
@@ -229,10 +232,44 @@ class GT_SInfo(ReadBlock):  # noqa: N801
         self._show(LIMpos=axis.limit_positive, LIMneg=axis.limit_negative, REF=axis.reference, TP=axis.touch_probe)
 
 
+class MC_ReadDigitalInput(ReadBlock):  # noqa: N801
+    """An input of the axis. InputNumber: 1 LIM+, 2 LIM-, 3 REF, 4 TP."""
+
+    InputNumber = Input(1)
+    Value = Output(False)
+    Input = AxisName()
+
+    def _read(self) -> None:
+        axis = self.Axis
+        inputs = (axis.limit_positive, axis.limit_negative, axis.reference, axis.touch_probe)
+        if 1 <= self.InputNumber <= len(inputs):
+            self._show(Value=inputs[self.InputNumber - 1])
+        else:
+            self._show(Valid=False, Busy=False)
+            self._show_error(PARAMETER)
+
+
+class MC_ReadDigitalOutput(ReadBlock):  # noqa: N801
+    """An output that the cam switches of the axis switch. OutputNumber: its track, from 1 to 32."""
+
+    OutputNumber = Input(1)
+    Value = Output(False)
+    Output = AxisName()
+
+    def _read(self) -> None:
+        if 1 <= self.OutputNumber <= CAM_OUTPUTS:
+            self._show(Value=bool(self.Axis.cam_outputs >> (self.OutputNumber - 1) & 1))
+        else:
+            self._show(Valid=False, Busy=False)
+            self._show_error(PARAMETER)
+
+
 class GT_EStop(ExecuteBlock):  # noqa: N801
-    """All drives of the machine off and all brakes on at once; faults are cleared, every axis is Disabled."""
+    """All drives of the machine off and all brakes on at once; faults are cleared, every axis is Disabled. Enable is
+    another name of Execute."""
 
     VERB = "emergency_stop"
+    Enable = Input(False, alias="Execute")
     Done = Output(False)
 
     def _command(self) -> Feedback:

@@ -15,11 +15,13 @@ T = TypeVar("T")
 
 
 class Input(Generic[T]):
-    """An input of a block; `argument` is its name among the command's arguments, where it is one."""
+    """An input of a block; `argument` is its name among the command's arguments, where it is one. `alias` is another
+    name of the same input."""
 
-    def __init__(self, initial: T, argument: str = "") -> None:
+    def __init__(self, initial: T, argument: str = "", *, alias: str = "") -> None:
         self.initial = initial
         self.argument = argument
+        self.alias = alias
         self.name = ""
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -32,11 +34,11 @@ class Input(Generic[T]):
     def __get__(self, block: FunctionBlock | None, owner: type) -> T | Input[T]:
         if block is None:
             return self
-        value: T = block._inputs.get(self.name, self.initial)
+        value: T = block._inputs.get(self.alias or self.name, self.initial)
         return value
 
     def __set__(self, block: FunctionBlock, value: T) -> None:
-        block._inputs[self.name] = value
+        block._inputs[self.alias or self.name] = value
 
 
 class Output(Generic[T]):
@@ -64,9 +66,24 @@ class Output(Generic[T]):
         raise AttributeError(f"{self.name} is an output of {type(block).__name__}")
 
 
+class AxisName:
+    """Another name of the axis: where it follows others, PLCopen calls it Slave."""
+
+    @overload
+    def __get__(self, block: None, owner: type) -> AxisName: ...
+    @overload
+    def __get__(self, block: FunctionBlock, owner: type) -> Axis: ...
+    def __get__(self, block: FunctionBlock | None, owner: type) -> Axis | AxisName:
+        return self if block is None else block.Axis
+
+    def __set__(self, block: FunctionBlock, axis: Axis) -> None:
+        block.Axis = axis
+
+
 class FunctionBlock:
     """What all blocks have: the axis, inputs, outputs."""
 
+    AXES: ClassVar[frozenset[str]] = frozenset({"Axis"})  # what the axis is called
     INPUTS: ClassVar[Mapping[str, Input[Any]]] = {}
     OUTPUTS: ClassVar[Mapping[str, Output[Any]]] = {}
 
@@ -77,6 +94,7 @@ class FunctionBlock:
         members = [(n, m) for base in reversed(cls.__mro__) for n, m in vars(base).items()]
         cls.INPUTS = {n: m for n, m in members if isinstance(m, Input)}
         cls.OUTPUTS = {n: m for n, m in members if isinstance(m, Output)}
+        cls.AXES = frozenset({"Axis", *(n for n, m in members if isinstance(m, AxisName))})
 
     def __init__(self, axis: Axis, **inputs: Any) -> None:
         self._inputs: dict[str, Any] = {}
@@ -92,7 +110,7 @@ class FunctionBlock:
         return self
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if not name.startswith("_") and name != "Axis" and name not in self.INPUTS and name not in self.OUTPUTS:
+        if not name.startswith("_") and name not in {*self.AXES, *self.INPUTS, *self.OUTPUTS}:
             raise AttributeError(self._no_input(name))
         super().__setattr__(name, value)
 
@@ -103,7 +121,7 @@ class FunctionBlock:
 
     def _assign(self, inputs: Mapping[str, Any]) -> None:
         for name, value in inputs.items():
-            if name not in self.INPUTS and name != "Axis":
+            if name not in self.INPUTS and name not in self.AXES:
                 raise TypeError(self._no_input(name))
             setattr(self, name, value)
 

@@ -7,7 +7,7 @@ from typing import Any
 from takt import _commands
 from takt.axis import Axis
 from takt.feedback import Feedback
-from takt.plcopen.base import ExecuteBlock, Input, MotionBlock, Output
+from takt.plcopen.base import AxisName, ExecuteBlock, Input, MotionBlock, Output
 
 
 def _name(axis: Axis | str) -> str:
@@ -18,6 +18,7 @@ class CouplingBlock(MotionBlock):
     """A block whose axis, the slave, follows others. Never done: one output is true while it is in step."""
 
     IN_STEP = "InGear"
+    Slave = AxisName()
 
     def _arguments(self) -> dict[str, Any]:
         arguments = super()._arguments()
@@ -73,12 +74,16 @@ class MC_GearOut(ExecuteBlock):  # noqa: N801
     """Lets go of the master; the axis goes on with the velocity it has."""
 
     VERB = "gear_out"
+    Slave = AxisName()
     Done = Output(False)
 
 
 class PhasingBlock(ExecuteBlock):
-    """Shifts what the axis takes for its master's position. A newer shift takes over from this one."""
+    """Shifts what the axis takes for its master's position. A newer shift takes over from this one. The axis has its
+    master already: Master is not looked at."""
 
+    Master = Input[Axis | str]("")
+    Slave = AxisName()
     PhaseShift = Input(0.0, "phase_shift")
     Velocity = Input[float | None](None, "velocity")
     Acceleration = Input[float | None](None, "acceleration")

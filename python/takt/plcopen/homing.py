@@ -39,6 +39,7 @@ class MC_StepLimitSwitch(SearchBlock):  # noqa: N801
     VERB = "step_limit_switch"
     Direction = Input(_commands.HomingDirection.NEGATIVE, "direction")
     SwitchMode = Input(_commands.SwitchMode.EDGE_ON, "switch_mode")
+    LimitSwitchMode = Input(_commands.SwitchMode.EDGE_ON, alias="SwitchMode")
     SetPosition = Input[float | None](None, "set_position")
 
 
@@ -111,3 +112,27 @@ class MC_StepRefFlyingRefPulse(FlyingBlock):  # noqa: N801
     """Takes the reference from the index pulse of the encoder in passing."""
 
     VERB = "step_ref_flying_ref_pulse"
+
+
+class MC_StepAbsoluteSwitch(MC_StepAbsSwitch):  # noqa: N801
+    """The name of MC_StepAbsSwitch in version 2 of PLCopen's Part 5."""
+
+
+class MC_StepReferencePulse(MC_StepRefPulse):  # noqa: N801
+    """The name of MC_StepRefPulse in version 2 of PLCopen's Part 5."""
+
+
+class MC_HomeDirect(MC_StepDirect):  # noqa: N801
+    """The name of MC_StepDirect in version 2 of PLCopen's Part 5."""
+
+
+class MC_HomeAbsolute(MC_StepAbsolute):  # noqa: N801
+    """The name of MC_StepAbsolute in version 2 of PLCopen's Part 5."""
+
+
+class MC_StepReferenceFlyingSwitch(MC_StepRefFlyingSwitch):  # noqa: N801
+    """The name of MC_StepRefFlyingSwitch in version 2 of PLCopen's Part 5."""
+
+
+class MC_StepReferenceFlyingRefPulse(MC_StepRefFlyingRefPulse):  # noqa: N801
+    """The name of MC_StepRefFlyingRefPulse in version 2 of PLCopen's Part 5."""
