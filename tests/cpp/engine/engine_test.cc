@@ -365,9 +365,11 @@ TEST(Shutdown, BrakesAndOpensTheLoops) {
   Engine engine(machine);
   const std::size_t y1 = AxisNamed(machine, "y1");
   for (const auto& [when, command] : Scenario(machine)) {
-    if (when < 320) engine.Submit(command);
+    if (when >= 320) break;
+    engine.Submit(command);
     for (int i = 0; i < 40; ++i) engine.RunCycle();
   }
+  for (int i = 0; i < 320; ++i) engine.RunCycle();
   EXPECT_FALSE(engine.all_disabled());
   engine.RequestShutdown();
   engine.RunCycle();

@@ -70,9 +70,16 @@ inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m)
   commands.push_back({320, ToAxis(m, "z", MoveRelative{.distance = 50})});
   commands.push_back({500, ToAxis(m, "y1", MoveAbsolute{.position = -100})});
   commands.push_back({900, ToAxis(m, "z", Jog{.forward = true, .velocity = 100})});
+  GearIn gear;
+  gear.master = Name::Of("y1");
+  gear.ratio_numerator = 2;
+  commands.push_back({1200, ToAxis(m, "c", gear)});
+  commands.push_back({1210, ToAxis(m, "c", PhasingRelative{.phase_shift = 3})});
   commands.push_back({1500, ToAxis(m, "c", Halt{})});
   commands.push_back({2000, ToAxis(m, "z", Reset{})});
   commands.push_back({2100, ToAxis(m, "c", MoveAbsolute{.position = 90, .direction = Direction::kPositive})});
+  commands.push_back({2300, ToAxis(m, "z", StepDirect{.set_position = 1})});
+  commands.push_back({2310, ToAxis(m, "z", SetPosition{.position = 2})});
   commands.push_back({2500, ToAxis(m, "y1", Stop{})});
   return commands;
 }
