@@ -94,8 +94,8 @@ def page(blocks: Blocks) -> str:
 def _page(blocks: Blocks) -> Iterator[str]:
     known = tables()
     yield "# Function blocks: what there is of the standard\n"
-    yield "`takt.plcopen` against the lists of the standard and of the GT-775x modules in `spec/`. **Bold**: basic, what"
-    yield "a block of this name must have. The others are extended: what it may have. Made by `tools/compliance.py`.\n"
+    yield "`takt.plcopen` against the lists of the standard and of the GT-775x modules in `spec/`. **Bold**: basic,"
+    yield "what a block of this name must have; the others it may have. Made by `tools/compliance.py`.\n"
     yield "| type | in Python |\n|---|---|"
     for name, here in TYPES.items():
         yield f"| {name} | {here} |"
