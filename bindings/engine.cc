@@ -266,7 +266,7 @@ void BindEngine(py::module_& m) {
   m.def("schema", &engine::SchemaText, "The JSON Schema of machine files.");
   m.def(
       "reference", [] { return engine::ReferenceText(TAKT_VERSION); },
-      "Everything that is described, as JSON: machine, verbs, outputs, figures, states, transitions, errors.");
+      "Everything that is described, as JSON: machine, verbs, outputs, figures, states, transitions, homing, errors.");
 
   py::class_<Recorder, std::shared_ptr<Recorder>>(m, "Recorder", "Rows of what axes publish, one every so many cycles.")
       .def_property_readonly("rows", &Recorder::rows)

@@ -176,6 +176,33 @@ def demo(file: Path, machine: Path | None, report: Path, pace: str) -> int:
 
 
 @cli.command()
+@click.argument("axis")
+@click.option("--machine", type=FILE, help="Tune on this machine in virtual time.")
+@click.option("--url", type=str, help="Tune on the engine of this LCM network (taktd): the axis moves!")
+@click.option("--distance", type=float, required=True, help="Size of the steps, in the axis' unit; keep it small.")
+@click.option("--watch", type=float, default=0.5, show_default=True, help="s to look at each step.")
+@click.option("--picture", "target", type=FILE, help="Draw the step responses before and after.")
+def tune(axis: str, machine: Path | None, url: str | None, distance: float, watch: float, target: Path | None) -> int:
+    """Find the gains of the position loop of AXIS with small steps around where it stands."""
+    from takt import tuning
+
+    if (machine is None) == (url is None):
+        raise click.UsageError("give either --machine or --url")
+    session: Session = Engine(machine) if machine else connect(url)
+    with session:
+        found = session.axis(axis)
+        if not found.powered:
+            found.power().wait()
+        result = tuning.tune(session, found, distance, watch, out.print)
+    print(f"before: {result.before.text}")
+    print(f"after {result.steps} steps: {result.after.text}")
+    print(result.yaml)
+    if target:
+        print(f"picture: {tuning.picture(result, _writable(target, ('.png', '.svg')))}")
+    return 0
+
+
+@cli.command()
 @click.argument("log", type=FILE)
 @click.option("--run", "run_number", default=-1, help="Which start of the engine, of several [the last].")
 def replay(log: Path, run_number: int) -> int:

@@ -40,9 +40,26 @@ def _page(reference: dict[str, Any]) -> Iterator[str]:
     for t in reference["transitions"]:
         yield f"  {t['from']} --> {t['to']}: {t['by']}"
     yield "```\n"
+    yield "## Homing\n"
+    yield from _homing(reference["homing"])
     yield "## Errors\n\n| number | name | meaning |\n|---|---|---|"
     for error in reference["errors"]:
         yield f"| {error['id']:04} | {error['name']} | {error['text']} |"
+
+
+def _homing(homing: dict[str, Any]) -> Iterator[str]:
+    """The stages of a homing step, drawn from the table that the engine runs."""
+    for title in ("stages", "events", "actions", "steps"):
+        yield f"{title.capitalize()}:\n"
+        for value in homing[title]["values"]:
+            yield f"- **{value['name']}**: {value['about']}"
+        yield ""
+    yield "```mermaid\nstateDiagram-v2\n  [*] --> searching\n  [*] --> leaving"
+    for row in homing["rows"]:
+        to = "[*]" if row["to"] == "none" else row["to"]
+        only = "" if row["steps"] == "all" else f" ({row['steps']})"
+        yield f"  {row['from']} --> {to}: {row['event']} / {row['action']}{only}"
+    yield "```\n"
 
 
 def _structs(kind: Type, found: dict[str, Type]) -> dict[str, Type]:

@@ -1,4 +1,4 @@
-"""Function blocks of gears, homing, settings and continuous moves in cyclic programs, as engineers use them."""
+"""Function blocks of gears, homing, settings and continuous moves in a cyclic program, as an engineer uses them."""
 
 from __future__ import annotations
 

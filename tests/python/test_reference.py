@@ -21,6 +21,10 @@ def test_everything_described_is_on_the_page() -> None:
         assert field["about"] in page
     for error in reference["errors"]:
         assert f"| {error['id']:04} | {error['name']} | {error['text']} |" in page
+    for row in reference["homing"]["rows"]:
+        to = "[*]" if row["to"] == "none" else row["to"]
+        assert f"  {row['from']} --> {to}: {row['event']} / {row['action']}" in page
+    assert "  returning --> waiting: stopped / pause (switches)\n" in page
     assert "| position | real | u |  | required | Where to stop." in page
     assert "| period_s | real | s | from 0.00025 to 0.02 | 0.001 |" in page
     assert "  Standstill --> DiscreteMotion: " in page

@@ -58,7 +58,7 @@ Status Jog(const Context& c, const Request& r, State& s) {
 
 Status TakeOver(const Context& c, const Request& r, State& s) {
   if (Homes(r.kind)) return BeginHoming(c, r, true, s);
-  if (s.plc == PlcState::kHoming && r.kind != RequestKind::kStop) return Status::Failed(ErrorId::kState);
+  if (s.plc == PlcState::kHoming && !MayFollowStep(r.kind)) return Status::Failed(ErrorId::kState);
   if (Couples(r.kind)) {
     AbortAll(c, s);
     Couple(c, r, s);

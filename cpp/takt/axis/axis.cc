@@ -27,6 +27,7 @@ bool InMotion(const State& s) {
 }
 
 void WatchDeviation(const Context& c, State& s) {
+  if (OwnsLag(s)) return;
   const Supervision& limits = c.params.supervision;
   const double deviation = std::abs(s.following_error);
   const bool settled = !InMotion(s) && static_cast<double>(c.cycle.count - s.motion.arrived_cycle) * c.cycle.period_s >
@@ -194,7 +195,7 @@ void Sense(const Context& c, const ServoInputs& in, State& s) noexcept {
   s.index_pulse = in.index_pulses != s.index_pulses;
   s.index_pulses = in.index_pulses;
   s.index_counts = in.index_counts;
-  if (in.encoder_error && c.params.encoder.type == EncoderType::kIncremental) s.homing.homed = false;
+  if (measured.error && c.params.encoder.type == EncoderType::kIncremental) s.homing.homed = false;
   s.drive_ready = in.drive_ready;
   s.drive_fault = in.drive_fault;
   s.torque_nm = in.torque_nm;
@@ -203,6 +204,7 @@ void Sense(const Context& c, const ServoInputs& in, State& s) noexcept {
 
 void Move(const Context& c, State& s) noexcept {
   Supervise(c, s);
+  WatchFlying(c, s);
   FollowProbe(c, s);
   if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
   if (s.loop_closed && Follow(c, s)) {
@@ -218,7 +220,6 @@ void Move(const Context& c, State& s) noexcept {
     s.setpoint = {s.actual.position, 0, 0};
     AwaitDrive(c, s);
   }
-  WatchFlying(c, s);
   FinishReset(c, s);
   if (c.params.rotary() && std::abs(s.setpoint.position) > kFarTurns * c.params.modulus) BringBackTurns(c.params, s);
   s.cam_outputs = SwitchCams(c, s);

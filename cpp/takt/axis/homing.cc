@@ -20,6 +20,10 @@ bool BySwitch(RequestKind kind) {
   return kind == RequestKind::kStepAbsSwitch || kind == RequestKind::kStepLimitSwitch;
 }
 
+bool Searches(RequestKind kind) {
+  return BySwitch(kind) || kind == RequestKind::kStepBlock || kind == RequestKind::kStepRefPulse;
+}
+
 HomingScope ScopeOf(RequestKind kind) {
   if (BySwitch(kind)) return HomingScope::kSwitches;
   return kind == RequestKind::kStepBlock ? HomingScope::kBlock : HomingScope::kPulse;
@@ -132,7 +136,9 @@ std::optional<HomingEvent> EventOf(const Context& c, State& s) {
 
 void Search(const Context& c, const MotionStart& start, State& s) {
   Profile profile{s.setpoint};
-  c.planner.ToVelocity(s.setpoint, s.homing.sense * s.active.velocity, s.active.limits(), profile);
+  if (c.planner.ToVelocity(s.setpoint, s.homing.sense * s.active.velocity, s.active.limits(), profile).failed()) {
+    return Fail(c, ErrorId::kPlanning, false, s);
+  }
   StartMotion(profile, 0, start, s);
 }
 
@@ -145,7 +151,9 @@ void Finish(const Context& c, State& s) {
 
 void GoBack(const Context& c, State& s) {
   Profile profile{s.setpoint};
-  c.planner.ToPosition(s.setpoint, s.homing.captured, 0, s.active.limits(), profile);
+  if (c.planner.ToPosition(s.setpoint, s.homing.captured, 0, s.active.limits(), profile).failed()) {
+    return Fail(c, ErrorId::kPlanning, false, s);
+  }
   StartMotion(profile, s.homing.captured, FromThisCycle(c), s);
 }
 
@@ -197,7 +205,8 @@ void Act(const Context& c, const HomingRow& row, State& s) {
 }
 
 Status BeginFlying(const Context& c, Ticket ticket, bool pulse, const HomingRequest& request, State& s) {
-  if (!s.loop_closed || s.plc == PlcState::kHoming) return Status::Failed(ErrorId::kState);
+  if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
+  if (s.plc == PlcState::kHoming || s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kState);
   HomingState& h = s.homing;
   if (h.flying_ticket != 0) Report(c, h.flying_ticket, FeedbackState::kAborted);
   h.flying_ticket = ticket;
@@ -208,6 +217,16 @@ Status BeginFlying(const Context& c, Ticket ticket, bool pulse, const HomingRequ
   h.reference_before = s.reference;
   Report(c, ticket, FeedbackState::kActive);
   return Status::Ok();
+}
+
+// Under its new numbers a motion with an end may lead out of the SW limits. (Those without one are watched cycle by
+// cycle.)
+void KeepInside(const Context& c, State& s) {
+  const double end = s.motion.profile.end().position;
+  if (s.motion.arrived || Inside(c.params.limits, end)) return;
+  const bool above = c.params.limits.upper && end > *c.params.limits.upper;
+  if (above ? end < s.setpoint.position : end > s.setpoint.position) return;  // it comes back
+  Fail(c, above ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
 }
 
 void EndFlying(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
@@ -221,16 +240,30 @@ bool Homes(RequestKind kind) noexcept {
   return kind >= RequestKind::kStepAbsSwitch && kind <= RequestKind::kFinishHoming;
 }
 
+bool MayFollowStep(RequestKind kind) noexcept {
+  return Homes(kind) || kind == RequestKind::kStop || kind == RequestKind::kPower;
+}
+
 bool OwnsLimitSwitches(const State& s) noexcept {
-  return s.plc == PlcState::kHoming && BySwitch(s.active.kind);
+  return s.plc == PlcState::kHoming && (BySwitch(s.active.kind) || s.homing.stage == HomingStage::kWaiting);
+}
+
+bool OwnsLag(const State& s) noexcept {
+  const bool pushes = s.plc == PlcState::kHoming && s.active.kind == RequestKind::kStepBlock;
+  return pushes && s.homing.sense * s.following_error > 0;
 }
 
 Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) noexcept {
-  const bool from_here = s.plc == PlcState::kStandstill || s.plc == PlcState::kHoming;
+  // A search that turns round is at rest for a moment, too.
+  const bool between = s.homing.stage == HomingStage::kNone || s.homing.stage == HomingStage::kWaiting;
+  const bool from_here = s.plc == PlcState::kStandstill || (s.plc == PlcState::kHoming && between);
   if (!from_here || !AtRest(s)) return Status::Failed(ErrorId::kState);
   if (r.kind == RequestKind::kFinishHoming && s.plc != PlcState::kHoming) return Status::Failed(ErrorId::kState);
   if (r.kind == RequestKind::kStepAbsolute && c.params.encoder.type != EncoderType::kAbsoluteSsi) {
     return Status::Failed(ErrorId::kState);
+  }
+  if (Searches(r.kind) && !BySwitch(r.kind) && LimitAhead(s, FirstSense(r, s))) {
+    return Status::Failed(ErrorId::kAwayFromLimitOnly);
   }
   HomingState& h = s.homing;
   const MotionStart start = aborts ? FromCycleBefore(c) : FromThisCycle(c);  // a buffered one: this cycle is done
@@ -306,7 +339,8 @@ void WatchFlying(const Context& c, State& s) noexcept {
     ShiftCoordinates(h.flying.set_position - h.captured, s);
     h.captured = h.flying.set_position;
     h.homed = true;
-    return EndFlying(c, FeedbackState::kDone, ErrorId::kNone, s);
+    EndFlying(c, FeedbackState::kDone, ErrorId::kNone, s);
+    return KeepInside(c, s);
   }
   const double elapsed_s = static_cast<double>(c.cycle.count - h.flying_begin) * c.cycle.period_s;
   if (h.flying.time_limit > 0 && elapsed_s > h.flying.time_limit) {

@@ -102,14 +102,19 @@ struct HomingState {
 };
 
 bool Homes(RequestKind kind) noexcept;
-// Begins a step from rest; `aborts`: what is in control and what waits is aborted first. kState: not from here.
+// Between two steps nothing else takes over but a further step, stop and power.
+bool MayFollowStep(RequestKind kind) noexcept;
+// Begins a step from rest, in Standstill or between two steps; `aborts`: what is in control and what waits is aborted
+// first. kState: not from here. kAwayFromLimitOnly: that way is a limit switch, and the step searches none.
 Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) noexcept;
 // Each cycle after the set point was made: events of the step in control.
 void StepHoming(const Context& c, State& s) noexcept;
-// Each cycle: references that are taken in passing.
+// Each cycle before the set point is made: references that are taken in passing.
 void WatchFlying(const Context& c, State& s) noexcept;
 // The limit switches belong to the search for now: no fault.
 bool OwnsLimitSwitches(const State& s) noexcept;
+// The axis is meant to lag behind, pushing against an end stop: no fault.
+bool OwnsLag(const State& s) noexcept;
 
 Status CarryOut(const Context& c, Ticket ticket, const StepRefFlyingSwitch& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const StepRefFlyingRefPulse& command, State& s) noexcept;

@@ -174,6 +174,10 @@ void OpenLoop(State& s) noexcept {
 
 void StartNext(const Context& c, double late_s, State& s) noexcept {
   s.limited_by = LimitedBy::kNothing;
+  if (s.homing.stage == HomingStage::kWaiting && s.buffered > 0 && !MayFollowStep(s.buffer[0].kind)) {
+    Report(c, TakeFirst(s).ticket, FeedbackState::kError, ErrorId::kState);
+    return AbortBuffer(c, s);
+  }
   const bool homes_on = s.plc == PlcState::kHoming && s.buffered > 0 && Homes(s.buffer[0].kind);
   if (AtRest(s) && IsLegal(s.plc, PlcState::kStandstill) && !homes_on) Enter(s, PlcState::kStandstill);
   while (s.buffered > 0) {
@@ -198,6 +202,10 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
     }
     Report(c, next.ticket, FeedbackState::kError, status.error);
     AbortBuffer(c, s);
+  }
+  if (s.plc == PlcState::kHoming && AtRest(s)) {  // the step that waited was refused
+    if (s.homing.stage != HomingStage::kWaiting) Enter(s, PlcState::kStandstill);
+    return;
   }
   // Nobody takes over (any more): come to rest, if there is still anything to come to rest from.
   if (s.plc != PlcState::kStandstill) ComeToRest(c, c.params.planner_limits(), FromThisCycle(c), s);

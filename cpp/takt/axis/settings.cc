@@ -18,26 +18,29 @@ Status Done(const Context& c, Ticket ticket, double value = 0) {
   return Status::Ok();
 }
 
-// Whether an axis could work within these limits from where it is now: it can stop inside, and what it promised lies
-// inside.
-bool Fits(const AxisParams& p, const AxisLimits& limits, const State& s) {
+// Whether an axis could work within these limits from where it is now: it can stop inside, and what is planned of its
+// motion lies inside.
+bool Fits(const Context& c, const AxisLimits& limits, const State& s) {
   if (!s.loop_closed) return true;
-  const double stop = trajectory::StopPosition(s.setpoint, p.planner_limits());
-  const bool promised = s.active.positions() && !s.motion.arrived;
-  return Inside(limits, stop) && Inside(limits, s.setpoint.position) && (!promised || Inside(limits, s.motion.target));
+  const double stop = trajectory::StopPosition(s.setpoint, c.params.planner_limits());
+  if (!Inside(limits, stop) || !Inside(limits, s.setpoint.position)) return false;
+  const bool planned = !s.motion.arrived && !Couples(s.active.kind) && s.motion.profile.end().velocity == 0;
+  if (!planned) return true;
+  const trajectory::Profile::Range range = s.motion.profile.PositionRange(Elapsed(c, s) - c.cycle.period_s);
+  return Inside(limits, range.min) && Inside(limits, range.max);
 }
 
-Status CheckLimits(const AxisParams& p, const AxisLimits& limits, const State& s) {
-  if (p.rotary() && (limits.lower || limits.upper)) return Status::Failed(ErrorId::kParameter);
+Status CheckLimits(const Context& c, const AxisLimits& limits, const State& s) {
+  if (c.params.rotary() && (limits.lower || limits.upper)) return Status::Failed(ErrorId::kParameter);
   if (limits.lower && limits.upper && !(*limits.lower < *limits.upper)) return Status::Failed(ErrorId::kParameter);
-  return Fits(p, limits, s) ? Status::Ok() : Status::Failed(ErrorId::kTargetBehindLimit);
+  return Fits(c, limits, s) ? Status::Ok() : Status::Failed(ErrorId::kTargetBehindLimit);
 }
 
 Status SetLimits(const Context& c, Ticket ticket, std::optional<double> lower, std::optional<double> upper, State& s) {
   AxisLimits limits = c.params.limits;
   limits.lower = lower;
   limits.upper = upper;
-  if (const Status status = CheckLimits(c.params, limits, s); status.failed()) return status;
+  if (const Status status = CheckLimits(c, limits, s); status.failed()) return status;
   c.params.limits = limits;
   return Done(c, ticket);
 }
@@ -89,7 +92,7 @@ Status CarryOut(const Context& c, Ticket ticket, const SetConstants& k, State& s
   AxisLimits limits = c.params.limits;
   if (k.lower) limits.lower = k.lower;
   if (k.upper) limits.upper = k.upper;
-  if (const Status status = CheckLimits(c.params, limits, s); status.failed()) return status;
+  if (const Status status = CheckLimits(c, limits, s); status.failed()) return status;
   c.params.limits = limits;
   ControlLoop& loop = c.params.loop;
   loop.kp = k.kp.value_or(loop.kp);
@@ -157,7 +160,7 @@ Status CarryOut(const Context& c, Ticket ticket, const SetPosition& p, State& s)
   const double by = p.relative ? p.position : p.position - s.setpoint.position;
   State shifted = s;
   ShiftCoordinates(by, shifted);
-  if (!Fits(c.params, c.params.limits, shifted)) return Status::Failed(ErrorId::kTargetBehindLimit);
+  if (!Fits(c, c.params.limits, shifted)) return Status::Failed(ErrorId::kTargetBehindLimit);
   s = shifted;
   return Done(c, ticket);
 }

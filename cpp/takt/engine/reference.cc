@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "takt/axis/homing.h"
 #include "takt/axis/outputs.h"
 #include "takt/axis/state_table.h"
 #include "takt/core/describe.h"
@@ -16,6 +17,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kIndent = 1;
+
+template <typename T>
+std::string_view NameOf(T value) {
+  return TypeOf<T>().FindEnumerator(static_cast<std::int64_t>(value))->name;
+}
 
 Json VerbsJson() {
   Json verbs = Json::array();
@@ -38,13 +44,27 @@ Json ErrorsJson() {
 }
 
 Json TransitionsJson() {
-  const Type& states = TypeOf<axis::PlcState>();
-  const auto name = [&](axis::PlcState state) { return states.FindEnumerator(static_cast<std::int64_t>(state))->name; };
   Json transitions = Json::array();
   for (const axis::Transition& t : axis::kTransitions) {
-    transitions.push_back({{"from", name(t.from)}, {"to", name(t.to)}, {"by", t.by}});
+    transitions.push_back({{"from", NameOf(t.from)}, {"to", NameOf(t.to)}, {"by", t.by}});
   }
   return transitions;
+}
+
+Json HomingJson() {
+  Json rows = Json::array();
+  for (const axis::HomingRow& row : axis::kHomingTable) {
+    rows.push_back({{"from", NameOf(row.from)},
+                    {"event", NameOf(row.event)},
+                    {"steps", NameOf(row.scope)},
+                    {"action", NameOf(row.action)},
+                    {"to", NameOf(row.to)}});
+  }
+  return {{"stages", ReferenceJson(TypeOf<axis::HomingStage>())},
+          {"events", ReferenceJson(TypeOf<axis::HomingEvent>())},
+          {"steps", ReferenceJson(TypeOf<axis::HomingScope>())},
+          {"actions", ReferenceJson(TypeOf<axis::HomingAction>())},
+          {"rows", rows}};
 }
 
 }  // namespace
@@ -61,6 +81,7 @@ std::string ReferenceText(std::string_view version) {
                           {"figures", ReferenceJson(TypeOf<EngineFigures>())},
                           {"states", ReferenceJson(TypeOf<axis::PlcState>())},
                           {"transitions", TransitionsJson()},
+                          {"homing", HomingJson()},
                           {"errors", ErrorsJson()},
                           {"feedback_states", {"busy", "active", "done", "aborted", "error"}}};
   return reference.dump(kIndent);

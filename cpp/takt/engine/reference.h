@@ -10,8 +10,8 @@ namespace takt::engine {
 std::string SchemaText();
 
 // {version, machine, verbs: [{target_kind, name, level_sensitive, arguments}], outputs, figures, states,
-//  transitions: [{from, to, by}], errors: [{id, name, text}], feedback_states: [name]}; types as ReferenceJson writes
-//  them.
+//  transitions: [{from, to, by}], homing: {stages, events, steps, actions, rows: [{from, event, steps, action, to}]},
+//  errors: [{id, name, text}], feedback_states: [name]}; types as ReferenceJson writes them.
 std::string ReferenceText(std::string_view version);
 
 }  // namespace takt::engine

@@ -43,14 +43,17 @@ bool Profile::Append(const Profile& other) noexcept {
   return true;
 }
 
-Profile::Range Profile::PositionRange() const noexcept {
-  Range range{start_state.position, start_state.position};
+Profile::Range Profile::PositionRange(double begin_s) const noexcept {
+  const double first = At(begin_s).position;
+  Range range{first, first};
   for (int i = 0; i < piece_count; ++i) {
     const Piece& q = pieces[Index(i)];
     const double length = Length(i);
+    const double gone = begin_s - (piece_ends_s[Index(i)] - length);
+    if (gone >= length) continue;
     Include(range, q.At(length).position);
     for (const double t : q.VelocityZeros()) {
-      if (t > 0 && t < length) Include(range, q.At(t).position);
+      if (t > std::max(0.0, gone) && t < length) Include(range, q.At(t).position);
     }
   }
   Include(range, end_state.position);

@@ -60,7 +60,9 @@ struct Profile {
   struct Range {
     double min, max;
   };
-  Range PositionRange() const noexcept;
+  Range PositionRange() const noexcept { return PositionRange(0); }
+  // From `begin_s` on.
+  Range PositionRange(double begin_s) const noexcept;
   Range VelocityRange() const noexcept;
   Range AccelerationRange() const noexcept;
 

@@ -40,6 +40,7 @@ struct Life {
 struct Sample {
   Outputs out;
   KinematicState setpoint;  // unwrapped
+  double origin = 0;        // of its numbers
 };
 
 class Rig {
@@ -73,7 +74,7 @@ class Rig {
     Publish(params, state, out);
     for (const FeedbackEvent& event : sink_.events()) Note(event);
     sink_.Clear();
-    trace.push_back({out, state.setpoint});
+    trace.push_back({out, state.setpoint, state.origin});
     ++cycle.count;
   }
   void Run(double seconds) {

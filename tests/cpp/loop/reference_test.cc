@@ -1,0 +1,135 @@
+// The reference of an axis: taken on the spot, in passing, needed and lost (AX-64 to AX-68, AX-71).
+#include "homing_bench.h"
+
+namespace takt::axis {
+namespace {
+
+// AX-64, AX-65, AX-71.
+TEST(Reference, IsTakenOnTheSpotAndIsNeeded) {
+  Bench bench(7);
+  bench.params.requires_reference = true;
+  bench.On();
+  const Ticket early = bench.Give(MoveAbsolute{.position = 1});
+  const Ticket relative = bench.Give(MoveRelative{.distance = 1});
+  ASSERT_TRUE(bench.RunToEnd(relative));
+  EXPECT_EQ(bench.last[early].error, ErrorId::kNoReference);
+  EXPECT_EQ(bench.last[relative].state, FeedbackState::kDone);
+  const Ticket absolute = bench.Give(StepAbsolute{});
+  bench.Run(0.01);
+  EXPECT_EQ(bench.last[absolute].error, ErrorId::kState);  // no absolute encoder
+  const Ticket direct = bench.Give(StepDirect{.set_position = 50});
+  bench.Run(0.01);
+  EXPECT_EQ(bench.last[direct].state, FeedbackState::kDone);
+  EXPECT_EQ(bench.seen.set_position, 50);
+  EXPECT_TRUE(bench.seen.homed);
+  ASSERT_TRUE(bench.RunToEnd(bench.Give(MoveAbsolute{.position = 48})));
+  bench.Run(0.1);
+  EXPECT_NEAR(bench.place(), 6, 0.001);
+  bench.plant.faults.encoder_error = true;  // a lost signal loses the reference
+  bench.Run(0.01);
+  EXPECT_FALSE(bench.seen.homed);
+}
+
+TEST(Reference, IsLostWithAJumpOfTheEncoder) {  // AX-71
+  Bench bench(7);
+  bench.On();
+  bench.Give(StepDirect{});
+  bench.Run(0.01);
+  ASSERT_TRUE(bench.seen.homed);
+  bench.in.counts += 1000000;  // 100 mm in a cycle
+  bench.Step();
+  EXPECT_FALSE(bench.seen.homed);
+  EXPECT_EQ(bench.seen.error, ErrorId::kEncoder);
+}
+
+TEST(Reference, ComesFromAnAbsoluteEncoder) {  // AX-65
+  Bench bench(7);
+  bench.params.encoder.type = EncoderType::kAbsoluteSsi;
+  bench.params.requires_reference = true;
+  bench.servo.encoder.type = plant::ServoEncoderType::kAbsolute;
+  bench.On();
+  EXPECT_TRUE(bench.seen.homed);
+  EXPECT_NEAR(bench.seen.actual_position, 7, 0.001);
+  bench.Give(SetPosition{.position = 100});
+  const Ticket step = bench.Give(StepAbsolute{});
+  bench.Run(0.01);
+  EXPECT_EQ(bench.last[step].state, FeedbackState::kDone);
+  EXPECT_NEAR(bench.seen.set_position, 7, 0.001);
+}
+
+// AX-66: moves off, and ends homing; not without a step before.
+TEST(FinishHoming, MovesOff) {
+  Bench bench(0);
+  bench.On();
+  const Ticket early = bench.Give(FinishHoming{});
+  bench.Run(0.01);
+  EXPECT_EQ(bench.last[early].error, ErrorId::kState);
+  StepAbsSwitch step;
+  step.direction = HomingDirection::kPositive;
+  step.velocity = 50;
+  step.set_position = 0;
+  bench.Give(step);
+  FinishHoming finish;
+  finish.distance = -5;
+  finish.velocity = 10;
+  finish.buffer_mode = BufferMode::kBuffered;
+  const Ticket ticket = bench.Give(finish);
+  const Ticket move = bench.Give(MoveAbsolute{.position = 1, .buffer_mode = BufferMode::kBuffered});
+  ASSERT_TRUE(bench.RunToEnd(ticket));
+  EXPECT_NEAR(bench.seen.set_position, -5, 1e-6);
+  EXPECT_NEAR(bench.place(), 5, 0.1);
+  ASSERT_TRUE(bench.RunToEnd(move));
+  EXPECT_EQ(bench.last[move].state, FeedbackState::kDone);
+}
+
+// AX-67, AX-13: a reference taken in passing may show that a move leads out of the SW limits; then it does not go
+// there.
+TEST(Flying, DoesNotLeadOutOfTheLimits) {
+  Bench bench(-50);
+  bench.params.limits.upper = 200;
+  bench.On();
+  const Ticket move = bench.Give(MoveRelative{.distance = 110, .velocity = 100});  // to 110: inside, as far as is known
+  const Ticket reference = bench.Give(StepRefFlyingSwitch{.set_position = 160});  // where REF begins, 50 before the end
+  ASSERT_TRUE(bench.RunToEnd(move));
+  bench.Run(0.5);
+  EXPECT_EQ(bench.last[reference].state, FeedbackState::kDone);
+  EXPECT_EQ(bench.last[move].error, ErrorId::kSoftLimitPositive);
+  EXPECT_EQ(bench.state.plc, PlcState::kErrorStop);
+  EXPECT_LT(bench.seen.set_position, 200);
+}
+
+// AX-67, AX-68: in passing; the motion goes on to where it went.
+TEST(Flying, TakesTheReferenceInPassing) {
+  for (const bool pulse : {false, true}) {
+    Bench bench(-5);
+    bench.On();
+    const Ticket move = bench.Give(MoveRelative{.distance = 60, .velocity = 100});
+    StepRefFlyingSwitch by_switch;
+    by_switch.set_position = 200;
+    StepRefFlyingRefPulse by_pulse;
+    by_pulse.set_position = 200;
+    const Ticket reference = pulse ? bench.Give(by_pulse) : bench.Give(by_switch);
+    ASSERT_TRUE(bench.RunToEnd(move));
+    EXPECT_EQ(bench.last[move].state, FeedbackState::kDone);
+    EXPECT_EQ(bench.last[reference].state, FeedbackState::kDone);
+    EXPECT_TRUE(bench.seen.homed);
+    bench.Run(0.1);
+    EXPECT_NEAR(bench.place(), 55, 0.001);
+    EXPECT_NEAR(bench.seen.actual_position - 200, bench.place() - (pulse ? 3 : 10), pulse ? 0.0003 : 0.11);
+  }
+}
+
+TEST(Flying, GivesUp) {
+  Bench bench(40);
+  bench.On();
+  bench.Give(MoveRelative{.distance = 50, .velocity = 50});
+  StepRefFlyingSwitch step;
+  step.distance_limit = 20;
+  const Ticket ticket = bench.Give(step);
+  ASSERT_TRUE(bench.RunToEnd(ticket));
+  EXPECT_EQ(bench.last[ticket].error, ErrorId::kDistanceLimit);
+  EXPECT_EQ(bench.state.plc, PlcState::kDiscreteMotion);
+}
+
+}  // namespace
+}  // namespace takt::axis

@@ -1,0 +1,26 @@
+"""The positioning module (AX-43, AX-45, AX-49, AX-60 to AX-66, AX-71, AX-38): in virtual time and on taktd."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import takt
+from takt.demo import run_demo
+from takt.scenario import load_scenario, run_scenario
+
+SCENARIO = Path(__file__).parents[2] / "python/examples/positioning_module/scenario.py"
+
+
+def test_in_virtual_time() -> None:
+    scenario = load_scenario(SCENARIO)
+    with takt.Engine(scenario.machine) as session:
+        outcome = run_scenario(scenario, session)
+    assert outcome.passed, [v.sentence for v in outcome.verdicts if not v.passed]
+    assert len(outcome.verdicts) >= 20
+
+
+def test_on_taktd(tmp_path: Path) -> None:
+    scenario = load_scenario(SCENARIO)
+    result = run_demo(scenario, scenario.machine, tmp_path, pace="paced")
+    assert result.passed, [v.sentence for v in result.outcome.verdicts if not v.passed]
+    assert result.replayed.same
