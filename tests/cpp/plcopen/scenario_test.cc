@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "../core/allocations.h"
 #include "bench.h"
 #include "takt/engine/scheduler.h"
 
@@ -80,6 +81,25 @@ TEST(Scenario, TransferStoppedOnTheWayBack) {
   transfer.operator_stops = false;
   ASSERT_TRUE(cycles(10, [&] { return transfer.read.Standstill(); }));
   EXPECT_FALSE(transfer.stop.Done());
+}
+
+// Blocks belong to the cycle's thread.
+TEST(Scenario, AllocatesNothing) {
+  engine::Engine engine(TheMachine());
+  Program program(engine);
+  Transfer transfer(program);
+  GT_Jog jog(program.Axis("y"));
+  jog.Enable = true;
+  const long before = AllocationsOfThisThread();
+  for (int i = 0; i < 3000; ++i) {
+    transfer.operator_stops = i > 1000;
+    transfer.Scan();
+    jog.JogPos = i / 100 % 2 == 1;
+    jog();
+    engine.RunCycle();
+  }
+  EXPECT_EQ(AllocationsOfThisThread(), before);
+  EXPECT_TRUE(transfer.stop.Done());
 }
 
 // The same program in the cycle's own thread, as in real time.
