@@ -5,8 +5,7 @@ namespace takt::plcopen {
 void MC_Stop::operator()() noexcept {
   hold = true;
   Block::operator()();
-  const bool holds = feedback().given() && !feedback().failed() && !feedback().aborted();
-  if (!Execute && holds) feedback().Release();
+  if (!Execute) feedback().Release();
 }
 
 void GT_Jog::operator()() noexcept {

@@ -22,9 +22,7 @@ AxisRef Program::Axis(std::string_view name) {
 void Program::Update() noexcept {
   for (FeedbackEvent event; engine_.feedback().TryPop(event);) {
     const auto waiting = Find(event.ticket);
-    if (waiting == waiting_.end()) continue;
-    waiting->feedback->Take(event);
-    if (IsFinal(event.state)) waiting_.erase(waiting);
+    if (waiting != waiting_.end()) waiting->feedback->Take(event);
   }
 }
 

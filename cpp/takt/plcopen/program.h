@@ -74,7 +74,7 @@ class Program {
   void Remove(Ticket ticket) noexcept;
 
   engine::Engine& engine_;
-  std::size_t feedbacks_ = 0;     // that there are; each waits for one command at most
+  std::size_t feedbacks_ = 0;     // that there are; each has one command at most
   std::vector<Waiting> waiting_;  // by ticket
 };
 

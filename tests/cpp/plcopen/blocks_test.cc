@@ -262,6 +262,12 @@ TEST_F(Blocks, ErrorsAndReset) {
   EXPECT_EQ(At(x).state, axis::PlcState::kStandstill);
   read();
   EXPECT_TRUE(!read.Error() && read.Valid());
+  ever.Execute = false;
+  ever();
+  ever.Execute = true;
+  ASSERT_TRUE(Until(ever, [&] { return At(x).state == axis::PlcState::kErrorStop; }));
+  superseded();
+  EXPECT_TRUE(superseded.Done());  // of a fault that came later it says nothing
 }
 
 // AX-22, AX-24, AX-25, AX-26: valid while Enable is true.
@@ -314,6 +320,16 @@ TEST_F(Blocks, Parameters) {
   read.Enable = false;
   read();
   EXPECT_FALSE(read.Error() || read.Valid() || read.Busy());
+  // An answer to what was asked before Enable fell is not taken for one of what is asked now.
+  read.ParameterNumber = 2;
+  read.Enable = true;
+  ASSERT_TRUE(Until(read, [&] { return read.Valid(); }));
+  read.Enable = false;
+  read();
+  read.ParameterNumber = 3;
+  read.Enable = true;
+  ASSERT_TRUE(Until(read, [&] { return read.Valid(); }));
+  EXPECT_EQ(read.Value(), -10);
   MC_MoveAbsolute move(x);
   move.position = 51;
   move.Execute = true;
@@ -335,10 +351,17 @@ TEST_F(Blocks, Gears) {
   ASSERT_TRUE(Until(gear, [&] { return gear.InGear() && At(x).set_velocity == 40; }));
   EXPECT_DOUBLE_EQ(At(bench.y).set_velocity, 80);
   EXPECT_TRUE(gear.Busy() && gear.Active());
-  out.Execute = true;
-  ASSERT_TRUE(Until(out, [&] { return out.Done(); }));
+  MC_GearIn same(bench.y);
+  same.master = Name::Of("x");
+  same.ratio_numerator = 2;
+  same.Execute = true;
+  ASSERT_TRUE(Until(same, [&] { return same.InGear(); }));
   gear();
   EXPECT_TRUE(gear.CommandAborted() && !gear.InGear());
+  out.Execute = true;
+  ASSERT_TRUE(Until(out, [&] { return out.Done(); }));
+  same();
+  EXPECT_TRUE(same.CommandAborted() && !same.InGear());
 }
 
 // AX-38: every axis of the machine.

@@ -59,6 +59,16 @@ TEST_F(JogTest, EndsWhereItCannotGoOn) {
   EXPECT_FALSE(jog.Error());
 }
 
+// AX-39: also when the keys change twice before the engine has answered.
+TEST_F(JogTest, EndsWhereItCannotGoOnTwice) {
+  EXPECT_DOUBLE_EQ(Press(true, true, false), 50);
+  jog.velocity = -1;
+  Press(true, true, true, 0);
+  jog();
+  EXPECT_EQ(Press(true, true, false), 0);
+  EXPECT_EQ(jog.ErrorID(), ErrorId::kParameter);
+}
+
 // AX-11, AX-39: the key is let go before the answer is there; the error is shown in one call.
 TEST_F(JogTest, TheErrorOfAShortJogIsSeen) {
   GT_Jog unpowered(bench.r);

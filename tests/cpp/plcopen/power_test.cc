@@ -135,6 +135,32 @@ TEST_F(Power, BufferedAndRefused) {
   power.Enable = true;
   power();
   EXPECT_FALSE(power.Error());
+
+  // Once the axis is in another state it is given again.
+  power.Enable = false;
+  ASSERT_TRUE(Until(power, [&] { return power.Error(); }));
+  power.buffer_mode = axis::BufferMode::kAborting;
+  bench.Step(5);
+  power();
+  EXPECT_TRUE(power.Error());
+  move.Execute = false;
+  move();
+  move.Execute = true;
+  move();
+  ASSERT_TRUE(Until(power, [&] { return !power.Status(); }));
+  EXPECT_FALSE(power.Error());
+}
+
+// The same when switching on.
+TEST_F(Power, RefusedWhenSwitchingOn) {
+  MC_Power power(bench.x);
+  power.Enable = true;
+  power.buffer_mode = axis::BufferMode::kBlendingLow;
+  ASSERT_TRUE(Until(power, [&] { return power.Error(); }));
+  bench.Step(20);
+  power();
+  EXPECT_EQ(power.ErrorID(), ErrorId::kParameter);
+  EXPECT_EQ(bench.engine.figures().commands_applied, 1u);
 }
 
 // AX-11: both wait for the same drive; the one that was superseded says so once and follows the axis.
@@ -151,6 +177,18 @@ TEST_F(Power, TwoInstances) {
     EXPECT_FALSE(second.CommandAborted() || second.Error());
     return first.Status() && second.Status();
   }));
+  // Both switch off an axis that moves: each gives one command, instead of aborting the other's for ever.
+  MC_MoveVelocity ever(bench.x);
+  ever.velocity = 300;
+  ever.Execute = true;
+  ASSERT_TRUE(Until(ever, [&] { return ever.InVelocity(); }));
+  const std::uint64_t applied = bench.engine.figures().commands_applied;
+  first.Enable = second.Enable = false;
+  ASSERT_TRUE(Until(first, [&] {
+    second();
+    return !first.Status() && !second.Status();
+  }));
+  EXPECT_EQ(bench.engine.figures().commands_applied, applied + 2);
 }
 
 }  // namespace
