@@ -72,14 +72,19 @@ class EndJudge {
   bool stopping_ = false;
 };
 
-RunResult RunRealTime(Engine& engine, EndJudge& judge, std::int64_t period_ns) {
+void RunOne(Engine& engine, const SchedulerOptions& options, const CycleTiming& timing = {}) {
+  if (options.program) options.program();
+  engine.RunCycle(timing);
+}
+
+RunResult RunRealTime(Engine& engine, const SchedulerOptions& options, EndJudge& judge, std::int64_t period_ns) {
   RunResult result;
   CycleTiming timing;
   std::int64_t deadline = NowNs() + period_ns;
   while (!judge.Ended(result)) {
     SleepUntil(deadline);
     const std::int64_t woken = NowNs();
-    engine.RunCycle(timing);
+    RunOne(engine, options, timing);
     ++result.cycles;
     const std::int64_t end = NowNs();
     const std::int64_t next = deadline + period_ns;
@@ -93,12 +98,12 @@ RunResult RunRealTime(Engine& engine, EndJudge& judge, std::int64_t period_ns) {
   return result;
 }
 
-RunResult RunPaced(Engine& engine, EndJudge& judge, std::int64_t period_ns) {
+RunResult RunPaced(Engine& engine, const SchedulerOptions& options, EndJudge& judge, std::int64_t period_ns) {
   RunResult result;
   const std::int64_t start = NowNs();
   while (!judge.Ended(result)) {
     SleepUntil(start + static_cast<std::int64_t>(result.cycles) * period_ns);
-    engine.RunCycle();
+    RunOne(engine, options);
     ++result.cycles;
   }
   return result;
@@ -114,14 +119,14 @@ bool ReaderIsBehind(Engine& engine) {
          IsHalfFull(engine.hashes()) || IsHalfFull(engine.figure_queue());
 }
 
-RunResult RunFast(Engine& engine, EndJudge& judge, bool wait_for_reader) {
+RunResult RunFast(Engine& engine, const SchedulerOptions& options, EndJudge& judge) {
   RunResult result;
   while (!judge.Ended(result)) {
-    if (wait_for_reader && ReaderIsBehind(engine)) {
+    if (options.wait_for_reader && ReaderIsBehind(engine)) {
       SleepUntil(NowNs() + kReaderWaitNs);
       continue;
     }
-    engine.RunCycle();
+    RunOne(engine, options);
     ++result.cycles;
   }
   return result;
@@ -138,12 +143,12 @@ RunResult Run(Engine& engine, const SchedulerOptions& options, const std::atomic
       if (!thread.refused().empty()) {
         std::fprintf(stderr, "not permitted, running without: %s\n", thread.refused().c_str());
       }
-      return RunRealTime(engine, judge, period_ns);
+      return RunRealTime(engine, options, judge, period_ns);
     }
     case Pace::kPaced:
-      return RunPaced(engine, judge, period_ns);
+      return RunPaced(engine, options, judge, period_ns);
     case Pace::kFast:
-      return RunFast(engine, judge, options.wait_for_reader);
+      return RunFast(engine, options, judge);
   }
   return {};
 }

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -25,6 +26,8 @@ struct SchedulerOptions {
   int priority = 80;             // real time: of SCHED_FIFO
   double stop_timeout_s = 5;     // s of the engine's time for stopping along the ramps
   bool wait_for_reader = false;  // fast: do not run away from the thread that empties the engine's queues
+  // A cyclic program: called in the cycle's thread before every cycle, and part of its time (takt/plcopen/program.h).
+  std::function<void()> program{};
 };
 
 enum class RunEnd : std::uint8_t {

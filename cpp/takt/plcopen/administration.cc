@@ -1,0 +1,80 @@
+#include "takt/plcopen/administration.h"
+
+namespace takt::plcopen {
+
+namespace {
+
+bool Brakes(const axis::Outputs& axis) {
+  return axis.loop_closed && (axis.set_velocity != 0 || axis.set_acceleration != 0);
+}
+
+}  // namespace
+
+void MC_Power::operator()() noexcept {
+  const axis::Outputs& axis = axis_.outputs();
+  out_ = {};
+  TakeEnd();
+  if (Enable != level_ || (refusal_ && refusal_->state != axis.state)) refusal_.reset();
+  level_ = Enable;
+  if (IsDue()) {
+    given_ = {.enable = Enable, .buffer_mode = buffer_mode};
+    feedback_.Give(axis_.target(), axis::Command(given_));
+    TakeEnd();
+  }
+  out_.status = axis.loop_closed;
+  if (refusal_) out_.error = refusal_->error;
+  if (Enable && !axis.loop_closed && axis.state == axis::PlcState::kErrorStop) out_.error = axis.error;
+  if (out_.aborted) {
+    out_.error = ErrorId::kNone;
+  } else if (out_.error == ErrorId::kNone) {
+    const bool waits = feedback_.given() && !feedback_.active() && given_.buffer_mode != axis::BufferMode::kAborting;
+    out_.busy = feedback_.given() || (Enable && !axis.loop_closed);
+    out_.active = out_.busy && !waits;
+  }
+}
+
+// What the command that has ended since the call before says: seen in this call.
+void MC_Power::TakeEnd() noexcept {
+  if (!feedback_.given() || feedback_.busy()) return;
+  out_.aborted = feedback_.aborted();
+  out_.error = feedback_.error();
+  const bool hopeless = out_.error == ErrorId::kParameter || !given_.enable;
+  const bool refused = feedback_.failed() && out_.error != ErrorId::kQueueFull && hopeless;
+  if (given_.enable == Enable && (refused || (out_.aborted && !Enable))) {
+    refusal_ = {axis_.outputs().state, out_.error};
+  }
+  feedback_.Forget();
+}
+
+bool MC_Power::IsDue() const noexcept {
+  if (refusal_) return false;
+  if (feedback_.given()) return given_.enable && !Enable;
+  const axis::Outputs& axis = axis_.outputs();
+  const bool disabled = axis.state == axis::PlcState::kDisabled;
+  return Enable ? disabled && axis.active_command == 0 : !disabled;
+}
+
+void MC_Reset::operator()() noexcept {
+  if (Rises()) Start(axis().target(), axis::Command(axis::Reset{}), false);
+  Show(feedback().aborted() ? EndOfReset() : EndOf(feedback()));
+}
+
+ExecuteBlock::End MC_Reset::EndOfReset() noexcept {
+  const axis::Outputs& now = axis().outputs();
+  if (now.state != axis::PlcState::kErrorStop && now.error == ErrorId::kNone) return {FeedbackState::kDone};
+  return Brakes(now) ? End{} : End{FeedbackState::kError, ErrorId::kAxisFault};
+}
+
+void GT_EStop::operator()() noexcept {
+  if (Rises()) Start(engine::kMachineTarget, engine::MachineCommand(engine::EmergencyStop{}), false);
+  Show();
+}
+
+void MC_DigitalCamSwitch::operator()() noexcept {
+  if (Enable == level_) return;
+  level_ = enable = Enable;
+  const axis::Command command = static_cast<const axis::DigitalCamSwitch&>(*this);
+  feedback_.Give(axis_.target(), command);
+}
+
+}  // namespace takt::plcopen

@@ -1,0 +1,97 @@
+// Blocks that switch an axis, clear its faults and change its settings.
+#pragma once
+
+#include <optional>
+
+#include "takt/plcopen/block.h"
+
+namespace takt::plcopen {
+
+// Keeps power stage and position loop as the level of Enable says, whoever switched them: gives a command whenever the
+// axis is Disabled and Enable true, or the other way round. Status: the loop is closed.
+//
+// A fault that opened the loop is shown by Error until the axis is reset; then the loop is closed again. Enable true on
+// a Disabled axis with a fault leads to ErrorStop. A command that is refused is given again once the axis is in another
+// state. One instance an axis: two with different Enable switch it to and fro.
+class MC_Power {
+ public:
+  bool Enable = false;
+  axis::BufferMode buffer_mode = axis::BufferMode::kAborting;
+
+  explicit MC_Power(AxisRef axis) : axis_(axis), feedback_(axis.program()) {}
+  void operator()() noexcept;
+
+  bool Status() const noexcept { return out_.status; }
+  bool Valid() const noexcept { return Enable && !Error(); }
+  bool Busy() const noexcept { return out_.busy; }
+  bool Active() const noexcept { return out_.active; }
+  bool CommandAborted() const noexcept { return out_.aborted; }
+  bool Aborted() const noexcept { return CommandAborted(); }
+  bool Error() const noexcept { return out_.error != ErrorId::kNone; }
+  ErrorId ErrorID() const noexcept { return out_.error; }
+
+ private:
+  struct Refusal {  // of a command, and the axis' state then
+    axis::PlcState state;
+    ErrorId error;
+  };
+  struct Outputs {
+    bool status = false;
+    bool busy = false;
+    bool active = false;
+    bool aborted = false;
+    ErrorId error = ErrorId::kNone;
+  };
+  bool IsDue() const noexcept;
+  void TakeEnd() noexcept;
+
+  AxisRef axis_;
+  Feedback feedback_;   // of the command in progress ...
+  axis::Power given_;   // ... and that command
+  bool level_ = false;  // Enable in the call before
+  std::optional<Refusal> refusal_;
+  Outputs out_;
+};
+
+// Clears the fault of an axis. A reset that another one supersedes follows the axis: it is Busy while the axis still
+// brakes, then Done when the fault is cleared, and Error when it is not.
+class MC_Reset : public ExecuteBlock {
+ public:
+  explicit MC_Reset(AxisRef axis) : ExecuteBlock(axis) {}
+  void operator()() noexcept;
+
+ private:
+  End EndOfReset() noexcept;
+};
+
+// All drives of the machine off and all brakes on at once; faults are cleared, every axis is Disabled.
+class GT_EStop : public ExecuteBlock {
+ public:
+  explicit GT_EStop(AxisRef axis) : ExecuteBlock(axis) {}
+  void operator()() noexcept;
+};
+
+// Switches outputs by the position of the axis as long as Enable is true; the other inputs count when it rises.
+class MC_DigitalCamSwitch : private axis::DigitalCamSwitch {
+ public:
+  using axis::DigitalCamSwitch::enable_mask;
+  using axis::DigitalCamSwitch::source;
+  using axis::DigitalCamSwitch::switches;
+  bool Enable = false;
+
+  explicit MC_DigitalCamSwitch(AxisRef axis) : axis_(axis), feedback_(axis.program()) {}
+  void operator()() noexcept;
+
+  bool InOperation() const noexcept { return feedback_.active(); }
+  bool Busy() const noexcept { return feedback_.busy(); }
+  bool Error() const noexcept { return feedback_.failed(); }
+  ErrorId ErrorID() const noexcept { return feedback_.error(); }
+  std::uint32_t Outputs() const noexcept { return InOperation() ? axis_.outputs().cam_outputs : 0; }
+
+ private:
+  AxisRef axis_;
+  Feedback feedback_;
+  bool level_ = false;  // Enable in the call before
+};
+
+}  // namespace takt::plcopen

@@ -1,0 +1,93 @@
+// The interface rules that all function blocks with Execute keep (AX-11). A block is called once a cycle.
+//
+// Inputs count on the rising edge of Execute, and keep their values from call to call. While Execute is true, exactly
+// one of Busy, Done, CommandAborted and Error is. Active is as Busy, but for a command that may have to wait, where it
+// says that the command is in control. Done, CommandAborted and Error are cleared with the falling edge of Execute, but
+// are seen in one call at least. A new rising edge before the end starts the command again; of the one before nothing
+// more is heard. Velocity, acceleration, deceleration and jerk are never negative; the engine refuses them, which shows
+// one cycle later.
+#pragma once
+
+#include "takt/axis/commands.h"
+#include "takt/plcopen/feedback.h"
+#include "takt/plcopen/program.h"
+
+namespace takt::plcopen {
+
+// What is the same whatever the command.
+class ExecuteBlock {
+ public:
+  bool Execute = false;
+
+  bool Busy() const noexcept { return busy_; }
+  bool Active() const noexcept { return active_; }
+  bool Done() const noexcept { return end_shown_ == FeedbackState::kDone; }
+  bool CommandAborted() const noexcept { return end_shown_ == FeedbackState::kAborted; }
+  bool Aborted() const noexcept { return CommandAborted(); }
+  bool Error() const noexcept { return end_shown_ == FeedbackState::kError; }
+  ErrorId ErrorID() const noexcept { return Error() ? end_error_ : ErrorId::kNone; }
+  // A command that never ends by itself has what it was given for: InVelocity and the like. Cleared with Execute.
+  bool Reached() const noexcept { return reached_; }
+  // What the command was to read or capture, once done.
+  double Value() const noexcept { return Done() ? feedback_.value() : 0; }
+
+  AxisRef axis() const noexcept { return axis_; }
+
+ protected:
+  explicit ExecuteBlock(AxisRef axis) : axis_(axis), feedback_(axis.program()) {}
+
+  // How a command ended; kBusy: it has not.
+  struct End {
+    FeedbackState state = FeedbackState::kBusy;
+    ErrorId error = ErrorId::kNone;
+  };
+
+  // One call has these parts, in this order. True: a rising edge, so the command is to be given.
+  bool Rises() noexcept;
+  void Start(std::uint32_t target, const engine::CommandBody& body, bool may_wait) noexcept;
+  void Show() noexcept { Show(EndOf(feedback_)); }
+  void Show(End end) noexcept;
+
+  static End EndOf(const Feedback& feedback) noexcept;
+  Feedback& feedback() noexcept { return feedback_; }
+  // Reached once, whatever Execute does.
+  bool EverReached() const noexcept { return busy_ && feedback_.reached(); }
+
+ private:
+  // Whether an output that Execute clears is to be shown: while it is true, and in one call at least.
+  bool IsDue(bool& seen) const noexcept;
+
+  AxisRef axis_;
+  Feedback feedback_;
+  End end_;                // of the command
+  bool edge_ = false;      // Execute in this call
+  bool may_wait_ = false;  // the command; else it is in control from the first moment on
+  bool end_seen_ = false;  // outputs that were shown for this command
+  bool reached_seen_ = false;
+  bool busy_ = false;  // outputs
+  bool active_ = false;
+  bool reached_ = false;
+  FeedbackState end_shown_ = FeedbackState::kBusy;
+  ErrorId end_error_ = ErrorId::kNone;
+};
+
+// The block of a command of axes: the command's own fields are its inputs.
+template <typename C>
+class Block : public ExecuteBlock, public C {
+ public:
+  explicit Block(AxisRef axis) : ExecuteBlock(axis) {}
+
+  void operator()() noexcept {
+    if (Rises()) StartWith(static_cast<const C&>(*this));
+    Show();
+  }
+
+ protected:
+  void StartWith(const C& command) noexcept {
+    bool may_wait = true;
+    if constexpr (requires { command.buffer_mode; }) may_wait = command.buffer_mode != axis::BufferMode::kAborting;
+    Start(axis().target(), axis::Command(command), may_wait);
+  }
+};
+
+}  // namespace takt::plcopen

@@ -1,0 +1,39 @@
+// All function blocks, by PLCopen's names and those of the GT-775x modules. A block of a new command is one line here;
+// without one it is Block<axis::NewCommand>.
+#pragma once
+
+#include "takt/plcopen/administration.h"
+#include "takt/plcopen/block.h"
+#include "takt/plcopen/moves.h"
+#include "takt/plcopen/program.h"
+#include "takt/plcopen/reading.h"
+
+namespace takt::plcopen {
+
+using MC_MoveAbsolute = Block<axis::MoveAbsolute>;
+using MC_MoveRelative = Block<axis::MoveRelative>;
+using MC_MoveAdditive = Block<axis::MoveAdditive>;
+using MC_Halt = Block<axis::Halt>;
+
+using MC_GearOut = Block<axis::GearOut>;
+using MC_PhasingAbsolute = Block<axis::PhasingAbsolute>;
+using MC_PhasingRelative = Block<axis::PhasingRelative>;
+
+using MC_StepAbsSwitch = Block<axis::StepAbsSwitch>;
+using MC_StepLimitSwitch = Block<axis::StepLimitSwitch>;
+using MC_StepBlock = Block<axis::StepBlock>;
+using MC_StepRefPulse = Block<axis::StepRefPulse>;
+using MC_StepDirect = Block<axis::StepDirect>;
+using MC_StepAbsolute = Block<axis::StepAbsolute>;
+using MC_FinishHoming = Block<axis::FinishHoming>;
+using MC_StepRefFlyingSwitch = Block<axis::StepRefFlyingSwitch>;
+using MC_StepRefFlyingRefPulse = Block<axis::StepRefFlyingRefPulse>;
+
+using GT_SetConstant = Block<axis::SetConstants>;
+using GT_SWLim = Block<axis::SetSoftLimits>;
+using GT_Analog = Block<axis::DirectOutput>;
+using MC_SetPosition = Block<axis::SetPosition>;
+using MC_WriteParameter = Block<axis::WriteParameter>;
+using MC_AbortTrigger = Block<axis::AbortTrigger>;
+
+}  // namespace takt::plcopen

@@ -1,0 +1,132 @@
+// Blocks of motions that are more than their command: a stop that holds, a jog by keys, a touch that slows down; and
+// those of commands that never end, with the standard's name for having reached what they are for.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "takt/plcopen/block.h"
+
+namespace takt::plcopen {
+
+// Brakes to standstill. The axis stays in Stopping, and takes no other motion, as long as Execute is true; another stop
+// is refused then.
+class MC_Stop : public Block<axis::Stop> {
+ public:
+  using Block::Block;
+  void operator()() noexcept;
+};
+
+// Moves as long as JogPos or JogNeg is held, while Enable is true. The direction pressed first wins; both must be let
+// go before the next jog, so a key that is held while Enable becomes true does nothing. Velocities and ramps count when
+// a key is pressed or let go; a jog that cannot go on with them ends.
+class GT_Jog : private axis::Jog {
+ public:
+  using axis::Jog::acceleration;
+  using axis::Jog::deceleration;
+  using axis::Jog::jerk;
+  using axis::Jog::velocity;
+  bool Enable = false;
+  bool JogPos = false;
+  bool JogNeg = false;
+
+  explicit GT_Jog(AxisRef axis) : axis_(axis), feedbacks_{{Feedback(axis.program()), Feedback(axis.program())}} {}
+  void operator()() noexcept;
+
+  bool Error() const noexcept { return error_ != ErrorId::kNone; }
+  ErrorId ErrorID() const noexcept { return error_; }
+
+ private:
+  void Press() noexcept;
+  Feedback& current() noexcept { return feedbacks_[current_]; }
+  Feedback& before() noexcept { return feedbacks_[1 - current_]; }
+
+  AxisRef axis_;
+  std::array<Feedback, 2> feedbacks_;  // of the jog in progress, and of the one before until that is accepted
+  std::size_t current_ = 0;
+  bool up_ = true;    // both keys were, Enable or not
+  bool seen_ = true;  // the error of the one in progress, if any
+  ErrorId error_ = ErrorId::kNone;
+};
+using MC_Jog = GT_Jog;
+
+// Moves a standing axis by one increment on each rising edge of Execute.
+class MC_Inch : public Block<axis::Inch> {
+ public:
+  using Block::Block;
+  bool Active() const noexcept { return Busy(); }
+};
+
+class MC_MoveVelocity : public Block<axis::MoveVelocity> {
+ public:
+  using Block::Block;
+  bool InVelocity() const noexcept { return Reached(); }
+};
+
+class MC_MoveContinuousAbsolute : public Block<axis::MoveContinuousAbsolute> {
+ public:
+  using Block::Block;
+  bool InEndVelocity() const noexcept { return Reached(); }
+};
+
+class MC_MoveContinuousRelative : public Block<axis::MoveContinuousRelative> {
+ public:
+  using Block::Block;
+  bool InEndVelocity() const noexcept { return Reached(); }
+};
+
+class MC_TorqueControl : public Block<axis::TorqueControl> {
+ public:
+  using Block::Block;
+  bool InTorque() const noexcept { return Reached(); }
+};
+
+// Couplings. The axis of the block is the slave; its masters go by their names: gear.master = Name::Of("x"). In step as
+// long as it follows exactly.
+template <typename C>
+class CouplingBlock : public Block<C> {
+ public:
+  using Block<C>::Block;
+
+ protected:
+  bool InStep() const noexcept { return this->EverReached() && this->axis().outputs().in_step; }
+};
+
+class MC_GearIn : public CouplingBlock<axis::GearIn> {
+ public:
+  using CouplingBlock::CouplingBlock;
+  bool InGear() const noexcept { return InStep(); }
+};
+
+class MC_GearInPos : public CouplingBlock<axis::GearInPos> {
+ public:
+  using CouplingBlock::CouplingBlock;
+  bool InSync() const noexcept { return InStep(); }
+};
+
+class MC_CombineAxes : public CouplingBlock<axis::CombineAxes> {
+ public:
+  using CouplingBlock::CouplingBlock;
+  bool InSync() const noexcept { return InStep(); }
+};
+
+class MC_TouchProbe : public Block<axis::TouchProbe> {
+ public:
+  using Block::Block;
+  double RecordedPosition() const noexcept { return Value(); }
+};
+
+// Waits for the touch probe, then ends the motion in progress, stops and goes to where the probe was touched. With mode
+// kSlow it slows down whatever moves while the probe is on instead, no longer than Execute is true.
+class GT_Touch : public Block<axis::Touch> {
+ public:
+  explicit GT_Touch(AxisRef axis) : Block(axis), abort_(axis.program()) {}
+  void operator()() noexcept;
+  double RecordedPosition() const noexcept { return Done() ? axis().outputs().probe_position : 0; }
+
+ private:
+  Feedback abort_;      // of the command that ends slowing down
+  bool slows_ = false;  // the command given
+};
+
+}  // namespace takt::plcopen

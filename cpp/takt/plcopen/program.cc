@@ -1,0 +1,43 @@
+#include "takt/plcopen/program.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "takt/plcopen/feedback.h"
+
+namespace takt::plcopen {
+
+const axis::Outputs& AxisRef::outputs() const noexcept {
+  return program_->engine().outputs(index_);
+}
+
+AxisRef Program::Axis(std::string_view name) {
+  const auto& axes = engine_.machine().axes;
+  const auto found = std::ranges::find(axes, name, &axis::AxisParams::name);
+  if (found == axes.end()) throw std::invalid_argument("the machine has no axis '" + std::string(name) + "'");
+  return {*this, static_cast<std::uint32_t>(found - axes.begin())};
+}
+
+void Program::Update() noexcept {
+  for (FeedbackEvent event; engine_.feedback().TryPop(event);) {
+    const auto waiting = Find(event.ticket);
+    if (waiting != waiting_.end()) waiting->feedback->Take(event);
+  }
+}
+
+std::vector<Program::Waiting>::iterator Program::Find(Ticket ticket) noexcept {
+  const auto found = std::ranges::lower_bound(waiting_, ticket, {}, &Waiting::ticket);
+  return found != waiting_.end() && found->ticket == ticket ? found : waiting_.end();
+}
+
+// Tickets only grow, so the newest goes to the end; there is room for one of each feedback.
+void Program::Add(Ticket ticket, Feedback& feedback) noexcept {
+  waiting_.push_back({ticket, &feedback});
+}
+
+void Program::Remove(Ticket ticket) noexcept {
+  if (const auto found = Find(ticket); found != waiting_.end()) waiting_.erase(found);
+}
+
+}  // namespace takt::plcopen

@@ -1,0 +1,137 @@
+// Blocks that show something as long as Enable is true.
+#pragma once
+
+#include "takt/plcopen/feedback.h"
+
+namespace takt::plcopen {
+
+// What they show is what the axis published in the cycle before the call; default values while not Valid.
+class ReadBlock {
+ public:
+  bool Enable = false;
+
+  explicit ReadBlock(AxisRef axis) : axis_(axis) {}
+  void operator()() noexcept {
+    valid_ = Enable;
+    shown_ = Enable ? axis_.outputs() : axis::Outputs{};
+  }
+
+  bool Valid() const noexcept { return valid_; }
+  bool Busy() const noexcept { return valid_; }
+  bool Error() const noexcept { return false; }
+  ErrorId ErrorID() const noexcept { return ErrorId::kNone; }
+
+ protected:
+  const axis::Outputs& shown() const noexcept { return shown_; }
+  bool Is(axis::PlcState state) const noexcept { return valid_ && shown_.state == state; }
+
+ private:
+  AxisRef axis_;
+  axis::Outputs shown_;
+  bool valid_ = false;
+};
+
+class MC_ReadStatus : public ReadBlock {
+ public:
+  using ReadBlock::ReadBlock;
+  bool ErrorStop() const noexcept { return Is(axis::PlcState::kErrorStop); }
+  bool Disabled() const noexcept { return Is(axis::PlcState::kDisabled); }
+  bool Stopping() const noexcept { return Is(axis::PlcState::kStopping); }
+  bool Homing() const noexcept { return Is(axis::PlcState::kHoming); }
+  bool Standstill() const noexcept { return Is(axis::PlcState::kStandstill); }
+  bool DiscreteMotion() const noexcept { return Is(axis::PlcState::kDiscreteMotion); }
+  bool ContinuousMotion() const noexcept { return Is(axis::PlcState::kContinuousMotion); }
+  bool SynchronizedMotion() const noexcept { return Is(axis::PlcState::kSynchronizedMotion); }
+  bool Ref() const noexcept { return shown().homed; }
+};
+
+// The fault of the axis. The block itself has none; Error and ErrorID say that of the axis, too.
+class MC_ReadAxisError : public ReadBlock {
+ public:
+  using ReadBlock::ReadBlock;
+  bool Error() const noexcept { return AxisErrorID() != ErrorId::kNone; }
+  ErrorId ErrorID() const noexcept { return AxisErrorID(); }
+  ErrorId AxisErrorID() const noexcept { return shown().error; }
+};
+
+class MC_ReadActualPosition : public ReadBlock {
+ public:
+  using ReadBlock::ReadBlock;
+  double Position() const noexcept { return shown().actual_position; }  // u
+};
+
+class MC_ReadActualVelocity : public ReadBlock {
+ public:
+  using ReadBlock::ReadBlock;
+  double Velocity() const noexcept { return shown().actual_velocity; }  // u/s
+};
+
+class MC_ReadActualTorque : public ReadBlock {
+ public:
+  using ReadBlock::ReadBlock;
+  double Torque() const noexcept { return shown().torque_nm; }  // Nm; N on linear motors
+};
+
+// How the set point of the axis moves.
+class MC_ReadMotionState : public ReadBlock {
+ public:
+  using ReadBlock::ReadBlock;
+  bool ConstantVelocity() const noexcept { return Valid() && shown().set_acceleration == 0; }
+  bool Accelerating() const noexcept { return Growth() > 0; }
+  bool Decelerating() const noexcept { return Growth() < 0; }
+  bool DirectionPositive() const noexcept { return shown().set_velocity > 0; }
+  bool DirectionNegative() const noexcept { return shown().set_velocity < 0; }
+
+ private:
+  double Growth() const noexcept {
+    const double towards = shown().set_velocity != 0 ? shown().set_velocity : shown().set_acceleration;
+    return shown().set_acceleration * towards;
+  }
+};
+
+// The inputs of the axis and what it is ready for. GT_SInfo's LIMpos, LIMneg, REF and TP are here, too.
+class MC_ReadAxisInfo : public ReadBlock {
+ public:
+  using ReadBlock::ReadBlock;
+  bool HomeAbsSwitch() const noexcept { return shown().reference; }
+  bool LimitSwitchPos() const noexcept { return shown().limit_positive; }
+  bool LimitSwitchNeg() const noexcept { return shown().limit_negative; }
+  bool TouchProbe() const noexcept { return shown().touch_probe; }
+  bool ReadyForPowerOn() const noexcept { return Valid() && shown().error == ErrorId::kNone; }
+  bool PowerOn() const noexcept { return shown().loop_closed; }
+  bool IsHomed() const noexcept { return shown().homed; }
+  bool AxisWarning() const noexcept { return shown().limited_by != LimitedBy::kNothing; }
+};
+
+// A parameter by PLCopen's number, asked for again and again as long as Enable is true. Value is valid from the first
+// answer on, one or more cycles after Enable.
+class MC_ReadParameter {
+ public:
+  bool Enable = false;
+  std::int32_t ParameterNumber = 0;
+
+  explicit MC_ReadParameter(AxisRef axis) : axis_(axis), feedback_(axis.program()) {}
+  void operator()() noexcept;
+
+  bool Valid() const noexcept { return answer_ == FeedbackState::kDone; }
+  bool Busy() const noexcept { return Enable; }
+  bool Error() const noexcept { return error_ != ErrorId::kNone; }
+  ErrorId ErrorID() const noexcept { return error_; }
+  double Value() const noexcept { return Valid() ? value_ : 0; }
+
+ private:
+  AxisRef axis_;
+  Feedback feedback_;
+  FeedbackState answer_ = FeedbackState::kBusy;  // the last one since Enable
+  ErrorId error_ = ErrorId::kNone;
+  double value_ = 0;
+};
+
+// One that is a yes or no.
+class MC_ReadBoolParameter : public MC_ReadParameter {
+ public:
+  using MC_ReadParameter::MC_ReadParameter;
+  bool Value() const noexcept { return MC_ReadParameter::Value() != 0; }
+};
+
+}  // namespace takt::plcopen

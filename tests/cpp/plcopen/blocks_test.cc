@@ -1,0 +1,398 @@
+// The interface rules of table 8.3 (AX-11), as for the blocks of Python.
+#include "takt/plcopen/blocks.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "bench.h"
+
+namespace takt::plcopen {
+namespace {
+
+using axis::BufferMode;
+
+// AX-11, AX-30: Busy with the rising edge, Active in control, Done while Execute is true, cleared on the falling edge.
+TEST_F(Blocks, AnAbsoluteMove) {
+  MC_MoveAbsolute move(x);
+  move();
+  EXPECT_EQ(Shown(move), 0);
+  move.position = 20;
+  move.velocity = 100;
+  move.Execute = true;
+  move();
+  EXPECT_TRUE(move.Busy() && move.Active());  // table 8.3: not buffered, Active is as Busy
+  Step();
+  move();
+  EXPECT_TRUE(move.Active());
+  ASSERT_TRUE(Until(move, [&] { return move.Done(); }));
+  EXPECT_FALSE(move.Busy() || move.Active());
+  EXPECT_DOUBLE_EQ(At(x).set_position, 20);
+  Step(10);
+  move();
+  EXPECT_TRUE(move.Done());
+  move.Execute = false;
+  move();
+  EXPECT_EQ(Shown(move), 0);
+}
+
+// AX-11: Execute falls before the end; the command goes on and its end is still seen, once.
+TEST_F(Blocks, OutputsAreSeenInOneCallAtLeast) {
+  MC_MoveRelative move(x);
+  move.distance = 5;
+  move.Execute = true;
+  move();
+  Step();
+  move.Execute = false;
+  move();
+  EXPECT_TRUE(move.Busy());
+  ASSERT_TRUE(Until(move, [&] { return move.Done(); }));
+  EXPECT_DOUBLE_EQ(At(x).set_position, 5);
+  move();
+  EXPECT_EQ(Shown(move), 0);
+}
+
+// AX-11: a change of an input while Execute stays true does nothing; what is not set again keeps its value.
+TEST_F(Blocks, InputsCountOnTheRisingEdge) {
+  MC_MoveAbsolute move(x);
+  move.velocity = 200;
+  move.position = 10;
+  move.Execute = true;
+  move();
+  Step(3);
+  move.position = 50;
+  ASSERT_TRUE(Until(move, [&] { return move.Done(); }));
+  EXPECT_DOUBLE_EQ(At(x).set_position, 10);
+  move.Execute = false;
+  move();
+  move.Execute = true;
+  double fastest = 0;
+  ASSERT_TRUE(Until(move, [&] {
+    fastest = std::max(fastest, At(x).set_velocity);
+    return move.Done();
+  }));
+  EXPECT_DOUBLE_EQ(At(x).set_position, 50);
+  EXPECT_DOUBLE_EQ(fastest, 200);
+}
+
+// AX-11: of the first action of the instance nothing is heard any more.
+TEST_F(Blocks, ANewRisingEdgeSupersedes) {
+  MC_MoveAbsolute move(x);
+  move.position = 300;
+  move.Execute = true;
+  move();
+  Step(50);
+  move.Execute = false;
+  move();
+  move.position = 5;
+  move.Execute = true;
+  ASSERT_TRUE(Until(move, [&] {
+    EXPECT_FALSE(move.CommandAborted());
+    EXPECT_EQ(Shown(move), 1);
+    return move.Done();
+  }));
+  EXPECT_DOUBLE_EQ(At(x).set_position, 5);
+}
+
+// AX-11, AX-12: Active says that the command is in control.
+TEST_F(Blocks, ABufferedMoveIsActiveWhenItsTurnComes) {
+  MC_MoveRelative first(x), second(x);
+  first.distance = 10;
+  second.distance = 5;
+  second.buffer_mode = BufferMode::kBuffered;
+  first.Execute = second.Execute = true;
+  first();
+  second();
+  EXPECT_TRUE(second.Busy() && !second.Active());
+  ASSERT_TRUE(Until(first, [&] {
+    second();
+    EXPECT_NE(first.Active(), second.Active());
+    return first.Done();
+  }));
+  ASSERT_TRUE(Until(second, [&] { return second.Done(); }));
+  EXPECT_DOUBLE_EQ(At(x).set_position, 15);
+}
+
+// AX-11, AX-33, AX-36: CommandAborted excludes Done and InVelocity, and is cleared with Execute.
+TEST_F(Blocks, AnotherBlockAborts) {
+  MC_MoveVelocity ever(x);
+  MC_Halt halt(x);
+  ever.velocity = 80;
+  ever.Execute = true;
+  ASSERT_TRUE(Until(ever, [&] { return ever.InVelocity(); }));
+  EXPECT_TRUE(ever.Busy() && ever.Active());
+  halt.Execute = true;
+  halt();
+  Step();
+  ever();
+  EXPECT_TRUE(ever.CommandAborted() && ever.Aborted());
+  EXPECT_FALSE(ever.InVelocity() || ever.Busy() || ever.Active());
+  ASSERT_TRUE(Until(halt, [&] { return halt.Done(); }));
+  ever.Execute = false;
+  ever();
+  EXPECT_EQ(Shown(ever), 0);
+}
+
+// AX-11: the falling edge clears InVelocity and disturbs nothing.
+TEST_F(Blocks, InVelocityIsClearedWithExecute) {
+  MC_MoveVelocity ever(x);
+  ever.velocity = 80;
+  ever.Execute = true;
+  ASSERT_TRUE(Until(ever, [&] { return ever.InVelocity(); }));
+  ever.Execute = false;
+  ever();
+  EXPECT_TRUE(!ever.InVelocity() && ever.Busy());
+  Step(5);
+  EXPECT_DOUBLE_EQ(At(x).set_velocity, 80);
+}
+
+// AX-11: and such an error does not by itself move the axis to ErrorStop.
+TEST_F(Blocks, NegativeValuesAreErrors) {
+  using Limit = std::optional<double> axis::MoveAbsolute::*;
+  for (const Limit limit : {&axis::MoveAbsolute::velocity, &axis::MoveAbsolute::acceleration,
+                            &axis::MoveAbsolute::deceleration, &axis::MoveAbsolute::jerk}) {
+    MC_MoveAbsolute move(x);
+    move.position = 1;
+    move.*limit = -1;
+    move.Execute = true;
+    ASSERT_TRUE(Until(move, [&] { return move.Error(); }));
+    EXPECT_EQ(move.ErrorID(), ErrorId::kParameter);
+    EXPECT_EQ(Shown(move), 1);
+    EXPECT_EQ(At(x).state, axis::PlcState::kStandstill);
+    move.Execute = false;
+    move();
+    EXPECT_EQ(move.ErrorID(), ErrorId::kNone);
+  }
+  EXPECT_DOUBLE_EQ(At(x).set_position, 0);
+}
+
+// AX-11: the engine has no room for the command, which is said at once; the next rising edge tries again.
+TEST_F(Blocks, AFullQueueIsAnError) {
+  MC_MoveAbsolute move(x);
+  engine::Command flood;
+  flood.target = 2;
+  flood.body = axis::Command(axis::MoveVelocity{});
+  while (bench.engine.Submit(flood) != 0) {
+  }
+  move.Execute = true;
+  move();
+  EXPECT_EQ(move.ErrorID(), ErrorId::kQueueFull);
+  EXPECT_EQ(Shown(move), 1);
+  Step(100);
+  move.Execute = false;
+  move();
+  move.Execute = true;
+  EXPECT_TRUE(Until(move, [&] { return move.Done(); }));
+}
+
+// AX-37: Stopping lasts as long as Execute; another stop is refused meanwhile (figure 8.1, note 1).
+TEST_F(Blocks, StopHolds) {
+  MC_MoveVelocity ever(x);
+  MC_Stop stop(x), second(x);
+  MC_MoveRelative other(x);
+  ever.velocity = 100;
+  ever.Execute = true;
+  ASSERT_TRUE(Until(ever, [&] { return ever.InVelocity(); }));
+  stop.Execute = true;
+  ASSERT_TRUE(Until(stop, [&] { return stop.Done(); }));
+  Step(500);
+  EXPECT_EQ(At(x).state, axis::PlcState::kStopping);
+  other.distance = 1;
+  other.Execute = second.Execute = true;
+  ASSERT_TRUE(Until(other, [&] { return other.Error(); }));
+  ASSERT_TRUE(Until(second, [&] { return second.Error(); }));
+  EXPECT_EQ(other.ErrorID(), ErrorId::kAxisStopping);
+  EXPECT_EQ(second.ErrorID(), ErrorId::kAxisStopping);
+  second.Execute = false;
+  second();
+  Step(5);
+  stop();
+  EXPECT_TRUE(stop.Done());
+  EXPECT_EQ(At(x).state, axis::PlcState::kStopping);
+  stop.Execute = false;
+  stop();
+  Step(5);
+  EXPECT_EQ(At(x).state, axis::PlcState::kStandstill);
+  stop();
+  EXPECT_EQ(Shown(stop), 0);
+}
+
+// AX-37: let go on the way, the ramp goes on to standstill; Done is seen once.
+TEST_F(Blocks, StopReleasedOnTheWay) {
+  MC_MoveVelocity ever(x);
+  MC_Stop stop(x);
+  ever.velocity = 150;
+  ever.Execute = true;
+  ASSERT_TRUE(Until(ever, [&] { return ever.InVelocity(); }));
+  stop.Execute = true;
+  stop();
+  Step(5);
+  stop.Execute = false;
+  ASSERT_TRUE(Until(stop, [&] { return stop.Done(); }));
+  Step(3);
+  EXPECT_EQ(At(x).state, axis::PlcState::kStandstill);
+  stop();
+  EXPECT_EQ(Shown(stop), 0);
+}
+
+// AX-21, AX-23, AX-83: running onto a SW limit, its number, reset.
+TEST_F(Blocks, ErrorsAndReset) {
+  MC_ReadAxisError read(x);
+  MC_Reset reset(x), superseded(x);
+  MC_MoveVelocity ever(x);
+  ever.velocity = 190;
+  ever.direction = axis::Direction::kNegative;
+  ever.Execute = true;
+  ASSERT_TRUE(Until(ever, [&] { return At(x).state == axis::PlcState::kErrorStop; }));
+  read.Enable = true;
+  read();
+  EXPECT_EQ(read.AxisErrorID(), ErrorId::kSoftLimitNegative);
+  EXPECT_TRUE(read.Error() && read.Valid());
+  superseded.Execute = reset.Execute = true;
+  superseded();
+  // A reset that another one supersedes is busy until the axis has left ErrorStop.
+  ASSERT_TRUE(Until(reset, [&] {
+    superseded();
+    EXPECT_EQ(Shown(superseded), 1);
+    EXPECT_EQ(Shown(reset), 1);
+    EXPECT_EQ(superseded.Busy(), At(x).error != ErrorId::kNone);
+    return reset.Done();
+  }));
+  EXPECT_TRUE(superseded.Done());
+  EXPECT_EQ(At(x).state, axis::PlcState::kStandstill);
+  read();
+  EXPECT_TRUE(!read.Error() && read.Valid());
+  ever.Execute = false;
+  ever();
+  ever.Execute = true;
+  ASSERT_TRUE(Until(ever, [&] { return At(x).state == axis::PlcState::kErrorStop; }));
+  superseded();
+  EXPECT_TRUE(superseded.Done());  // of a fault that came later it says nothing
+}
+
+// AX-22, AX-24, AX-25, AX-26: valid while Enable is true.
+TEST_F(Blocks, Reading) {
+  MC_ReadStatus status(x);
+  MC_ReadActualPosition position(x);
+  MC_ReadActualVelocity velocity(x);
+  MC_ReadMotionState motion(x);
+  MC_ReadAxisInfo info(x);
+  const auto read = [&](bool enable) {
+    status.Enable = position.Enable = velocity.Enable = motion.Enable = info.Enable = enable;
+    status(), position(), velocity(), motion(), info();
+  };
+  MC_MoveVelocity ever(x);
+  ever.velocity = 50;
+  ever.Execute = true;
+  ever();
+  Step(5);
+  read(true);
+  EXPECT_TRUE(motion.Accelerating() && motion.DirectionPositive() && !motion.ConstantVelocity());
+  ASSERT_TRUE(Until(ever, [&] { return ever.InVelocity(); }));
+  Step(100);
+  read(true);
+  EXPECT_TRUE(status.ContinuousMotion() && !status.Standstill() && !status.Disabled());
+  EXPECT_EQ(position.Position(), At(x).actual_position);
+  EXPECT_GT(position.Position(), 0);
+  EXPECT_NEAR(velocity.Velocity(), 50, 1);
+  EXPECT_TRUE(motion.ConstantVelocity() && info.PowerOn() && info.ReadyForPowerOn());
+  read(false);
+  EXPECT_FALSE(status.Valid() || status.Disabled() || info.ReadyForPowerOn() || motion.ConstantVelocity());
+  EXPECT_EQ(position.Position(), 0);
+}
+
+// AX-28, AX-52: parameters are read as long as Enable is true; settings are done at once or refused.
+TEST_F(Blocks, Parameters) {
+  MC_WriteParameter write(x);
+  MC_ReadParameter read(x);
+  write.number = 2;
+  write.value = 50;
+  write.Execute = true;
+  ASSERT_TRUE(Until(write, [&] { return write.Done(); }));
+  read.Enable = true;
+  read.ParameterNumber = 2;
+  ASSERT_TRUE(Until(read, [&] { return read.Valid(); }));
+  EXPECT_EQ(read.Value(), 50);
+  read.ParameterNumber = 99;
+  ASSERT_TRUE(Until(read, [&] { return read.Error(); }));
+  EXPECT_EQ(read.ErrorID(), ErrorId::kParameter);
+  EXPECT_FALSE(read.Valid());
+  read.Enable = false;
+  read();
+  EXPECT_FALSE(read.Error() || read.Valid() || read.Busy());
+  // An answer to what was asked before Enable fell is not taken for one of what is asked now.
+  read.ParameterNumber = 2;
+  read.Enable = true;
+  ASSERT_TRUE(Until(read, [&] { return read.Valid(); }));
+  read.Enable = false;
+  read();
+  read.ParameterNumber = 3;
+  read.Enable = true;
+  ASSERT_TRUE(Until(read, [&] { return read.Valid(); }));
+  EXPECT_EQ(read.Value(), -10);
+  MC_MoveAbsolute move(x);
+  move.position = 51;
+  move.Execute = true;
+  ASSERT_TRUE(Until(move, [&] { return move.Error(); }));
+  EXPECT_EQ(move.ErrorID(), ErrorId::kTargetBehindLimit);
+}
+
+// AX-43, AX-44: masters go by their names; in gear as long as the axis follows.
+TEST_F(Blocks, Gears) {
+  bench.PowerOn(bench.y);
+  MC_MoveVelocity drive(x);
+  MC_GearIn gear(bench.y);
+  MC_GearOut out(bench.y);
+  drive.velocity = 40;
+  gear.master = Name::Of("x");
+  gear.ratio_numerator = 2;
+  drive.Execute = gear.Execute = true;
+  drive();
+  ASSERT_TRUE(Until(gear, [&] { return gear.InGear() && At(x).set_velocity == 40; }));
+  EXPECT_DOUBLE_EQ(At(bench.y).set_velocity, 80);
+  EXPECT_TRUE(gear.Busy() && gear.Active());
+  MC_GearIn same(bench.y);
+  same.master = Name::Of("x");
+  same.ratio_numerator = 2;
+  same.Execute = true;
+  ASSERT_TRUE(Until(same, [&] { return same.InGear(); }));
+  gear();
+  EXPECT_TRUE(gear.CommandAborted() && !gear.InGear());
+  out.Execute = true;
+  ASSERT_TRUE(Until(out, [&] { return out.Done(); }));
+  same();
+  EXPECT_TRUE(same.CommandAborted() && !same.InGear());
+}
+
+// AX-38: every axis of the machine.
+TEST_F(Blocks, EmergencyStop) {
+  MC_MoveVelocity ever(x);
+  GT_EStop stop(bench.y);
+  ever.velocity = 100;
+  ever.Execute = true;
+  ASSERT_TRUE(Until(ever, [&] { return ever.InVelocity(); }));
+  stop.Execute = true;
+  ASSERT_TRUE(Until(stop, [&] { return stop.Done(); }));
+  EXPECT_EQ(At(x).state, axis::PlcState::kDisabled);
+  EXPECT_FALSE(At(x).loop_closed);
+}
+
+// Commands without a block of their own have one all the same: everything an axis understands can be given.
+template <typename C>
+bool IsTaken(AxisRef axis) {
+  Block<C> block(axis);
+  block.Execute = true;
+  block();
+  return block.Busy();
+}
+template <typename... C>
+int CountTaken(const std::variant<C...>&, AxisRef axis) {
+  return (0 + ... + IsTaken<C>(axis));
+}
+TEST_F(Blocks, ThereIsOneForEveryCommand) {
+  EXPECT_EQ(CountTaken(axis::Command(), x), std::variant_size_v<axis::Command>);
+  Step(10);  // what was given by blocks that are gone by now is nobody's news
+}
+
+}  // namespace
+}  // namespace takt::plcopen
