@@ -63,7 +63,7 @@ void Supervise(const Context& c, State& s) {
   if (s.drive_fault || (s.loop_closed && !s.drive_ready)) Fail(c, ErrorId::kDrive, true, s);
   if (!s.loop_closed) return;
   WatchDeviation(c, s);
-  WatchSwitches(c, s);
+  if (s.limit_positive || s.limit_negative) WatchSwitches(c, s);
   WatchLease(c, s);
 }
 
@@ -204,25 +204,26 @@ void Sense(const Context& c, const ServoInputs& in, State& s) noexcept {
 
 void Move(const Context& c, State& s) noexcept {
   Supervise(c, s);
-  WatchFlying(c, s);
-  FollowProbe(c, s);
+  // What seldom happens is asked for here: a call that finds nothing to do would cost as much as the set point.
+  if (s.homing.flying_ticket != 0) WatchFlying(c, s);
+  if (s.probe.watch != ProbeWatch::kNothing) FollowProbe(c, s);
   if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
-  if (s.loop_closed && Follow(c, s)) {
+  if (s.loop_closed && c.params.follows && Follow(c, s)) {
     // The master's set point is this axis' too.
-  } else if (MoveTorque(c, s)) {
+  } else if ((s.active.kind == RequestKind::kTorqueControl || s.torque.engaged) && MoveTorque(c, s)) {
     // The drive follows a torque, the set point the axis.
   } else if (s.loop_closed && Couples(s.active.kind)) {
     FollowCoupling(c, s);
   } else if (s.loop_closed) {
     Advance(c, s);
-    StepHoming(c, s);
+    if (s.homing.stage != HomingStage::kNone) StepHoming(c, s);
   } else {
     s.setpoint = {s.actual.position, 0, 0};
     AwaitDrive(c, s);
   }
   FinishReset(c, s);
   if (c.params.rotary() && std::abs(s.setpoint.position) > kFarTurns * c.params.modulus) BringBackTurns(c.params, s);
-  s.cam_outputs = SwitchCams(c, s);
+  s.cam_outputs = s.cam_switch.list < 0 ? 0 : SwitchCams(c, s);
 }
 
 bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {

@@ -195,10 +195,6 @@ Status ShiftPhase(const Context& c, Ticket ticket, bool relative, double shift, 
 
 }  // namespace
 
-bool Couples(RequestKind kind) noexcept {
-  return kind == RequestKind::kGearIn || kind == RequestKind::kGearInPos || kind == RequestKind::kCombineAxes;
-}
-
 Status FindMasters(const Context& c, Request& r) noexcept {
   for (CouplingTerm& term : r.coupling.terms) {
     if (term.name.empty()) continue;

@@ -40,7 +40,9 @@ struct CouplingState {
   bool phase_moves = false;
 };
 
-bool Couples(RequestKind kind) noexcept;
+inline bool Couples(RequestKind kind) noexcept {
+  return kind == RequestKind::kGearIn || kind == RequestKind::kGearInPos || kind == RequestKind::kCombineAxes;
+}
 // Finds the masters of a request. kUnknownTarget: there is no such axis, or it is the axis itself.
 Status FindMasters(const Context& c, Request& r) noexcept;
 // Puts a request that couples in control. What was in control must have been ended.

@@ -22,10 +22,6 @@ Surroundings SurroundingsOf(const State& s) noexcept {
   return around;
 }
 
-double Elapsed(const Context& c, const State& s) noexcept {
-  return static_cast<double>(c.cycle.count - s.motion.start_cycle) * c.cycle.period_s + s.motion.start_offset_s;
-}
-
 void StartMotion(const Profile& profile, double target, const MotionStart& start, State& s) noexcept {
   s.motion.profile = profile;
   s.motion.target = target;

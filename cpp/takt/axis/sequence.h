@@ -25,7 +25,9 @@ void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId err
 void Enter(State& s, PlcState to) noexcept;
 Surroundings SurroundingsOf(const State& s) noexcept;
 // Seconds of the motion in progress at this cycle.
-double Elapsed(const Context& c, const State& s) noexcept;
+inline double Elapsed(const Context& c, const State& s) noexcept {
+  return static_cast<double>(c.cycle.count - s.motion.start_cycle) * c.cycle.period_s + s.motion.start_offset_s;
+}
 
 void StartMotion(const trajectory::Profile& profile, double target, const MotionStart& start, State& s) noexcept;
 std::uint64_t LeaseEnd(const Context& c, double lease_s) noexcept;
