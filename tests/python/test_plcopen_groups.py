@@ -136,6 +136,8 @@ def test_a_loop_of_gears(engine: takt.Engine) -> None:
     x, y = engine.axis("x"), engine.axis("y")
     call(engine, plc.MC_GearIn(y, Master=x), 0.01, Execute=True)
     assert call(engine, plc.MC_GearIn(x, Master=y), 0.01, Execute=True).ErrorID == 3018
+    with pytest.raises(takt.CommandError, match="x would follow itself: x follows y, y follows x"):
+        x.gear_in(master="y").wait()
 
 
 def test_parameters(engine: takt.Engine) -> None:
