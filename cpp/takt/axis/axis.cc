@@ -301,10 +301,11 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.state = s.plc;
   out.limited_by = s.limited_by;
   out.homed = s.homing.homed;
-  out.in_step = s.coupling.chase.in_step;
+  const bool coupled = Couples(s.active.kind);
   const auto& terms = s.coupling.law.terms;
-  out.master1 = terms[0].master + 1;  // none: 0
-  out.master2 = terms[1].master + 1;
+  out.in_step = coupled && s.coupling.chase.in_step;
+  out.master1 = coupled ? terms[0].master + 1 : 0;  // none: 0
+  out.master2 = coupled ? terms[1].master + 1 : 0;
   out.buffered_commands = s.buffered;
   out.loop_closed = s.loop_closed;
   out.in_position =

@@ -85,11 +85,11 @@ struct State {
   TorqueState torque;
   HomingState homing;
   ProbeState probe;
+  CamSwitchState cam_switch;
 
   Request active;  // in control; kind none: nothing is
   Motion motion;
   CouplingState coupling;
-  CamSwitchState cam_switch;
 
   Ticket reset_ticket = 0;
   std::array<Request, kBufferSize> buffer;  // [0] is next
