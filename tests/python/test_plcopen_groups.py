@@ -215,3 +215,13 @@ def test_how_long_a_move_takes_is_known_when_it_begins(engine: takt.Engine) -> N
     begin = move.time_s
     move.wait()
     assert move.travel_time_s == pytest.approx(move.time_s - begin, abs=2.1 * engine.period)
+
+
+def test_only_a_yes_or_no_is_written_as_one(engine: takt.Engine) -> None:
+    """AX-28."""
+    y = engine.axis("y")
+    write = plc.MC_WriteBoolParameter(y, ParameterNumber=2, Value=True)
+    assert call(engine, write, 0.01, Execute=True).ErrorID == 5
+    assert plc.MC_WriteBoolParameter(y, ParameterNumber=4, Value=False)(Execute=True).Busy
+    engine.run(0.01)
+    assert y.move_absolute(position=1e4).error_id == 0

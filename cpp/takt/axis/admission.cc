@@ -98,6 +98,7 @@ Status SwitchOff(const Context& c, const Request& r, State& s) {
   const bool waits = r.buffer_mode == BufferMode::kBuffered && s.active.kind != RequestKind::kNone && !SwitchingOff(s);
   if (waits && s.plc != PlcState::kErrorStop) return Enqueue(c, r, s);
   AbortAll(c, s);
+  s.direct_voltage_v = 0;
   Grant(c, r, s);
   if (!s.loop_closed || AtRest(s)) {
     Conclude(c, 0, s);

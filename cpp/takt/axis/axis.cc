@@ -257,7 +257,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
     out.voltage_v = 0;
     out.torque_nm = 0;
   }
-  if (s.plc == PlcState::kDisabled && !s.enable) out.voltage_v = s.direct_voltage_v;
+  if (s.plc == PlcState::kDisabled && !s.enable) out.voltage_v = sign * InConverterSteps(s.direct_voltage_v);
   s.voltage_v = out.voltage_v;
   out.enable = s.enable;
   out.release_brake = s.loop_closed;
@@ -266,6 +266,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
 
 void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
   if (s.error == ErrorId::kNone) s.error = error;
+  s.direct_voltage_v = 0;
   if (!s.loop_closed && !s.enable) return;
   const bool opens = open_loop || !s.loop_closed;
   if (s.plc != PlcState::kErrorStop) {

@@ -25,9 +25,7 @@ constexpr RatioFields kRatio2 = {"ratio_numerator2", "ratio_denominator2"};
 bool Term(const Maker& m, const Name& name, MasterSource source, double ratio, CouplingTerm& out) {
   out = {name, kNoAxis, source, ratio};
   if (name.empty() || name.view() == m.params.name || source > MasterSource::kActualValue) {
-    m.why.field = name.empty()                   ? "master"
-                  : name.view() == m.params.name ? "master, which is the axis itself"
-                                                 : "source";
+    m.why.field = source > MasterSource::kActualValue ? "source" : "master";
     return false;
   }
   return true;

@@ -154,15 +154,22 @@ std::string WhyNot(const Command& command, const AxisParams& params) {
   Refusal why;
   if (MakeRequest(command, params, request, &why).ok()) return {};
   const std::string field = why.field;
+  if (field == "master" && why.high == 0) return "master: expected the name of another axis than " + params.name;
   if (why.high == 0) return field + ": expected another value, this command has no such " + field;
+  const bool of_axis = field == "velocity" || field == "acceleration" || field == "deceleration" || field == "jerk" ||
+                       field == "end_velocity";
+  const bool open = why.high > kMaxPosition;
   std::ostringstream text;
   text << field << ": expected ";
-  if (field == "position" || field == "distance") {
-    text << "a finite number from " << why.low << " to " << why.high;
+  if (why.low == std::numeric_limits<double>::min()) {
+    text << "more than 0";
+    if (!open) text << " and at most " << why.high;
+  } else if (open) {
+    text << "at least " << why.low;
   } else {
-    text << (why.low > 0 ? "more than 0 and " : "0 or more and ") << "at most " << why.high << ", the limit of axis "
-         << params.name;
+    text << "a number from " << why.low << " to " << why.high;
   }
+  if (of_axis && !open) text << ", the limit of axis " << params.name;
   text << ", found " << why.found;
   return text.str();
 }

@@ -15,6 +15,13 @@ void describe(Description<Motion>& d) {
   d.internal<&M::arrived_cycle>("Since when.");
 }
 
+void describe(Description<Dormant>& d) {
+  d.about("Supervision that was switched off at run time, with the values it comes back with.");
+  d.internal<&Dormant::lower>(unit::u, "SW limit LimNeg.");
+  d.internal<&Dormant::upper>(unit::u, "SW limit LimPos.");
+  d.internal<&Dormant::lag>(unit::u, "Largest following error in motion.");
+}
+
 void describe(Description<State>& d) {
   using S = State;
   d.about("All memory of an axis.");
@@ -51,6 +58,7 @@ void describe(Description<State>& d) {
   d.internal<&S::encoder_line_error>("Because the encoder says so.");
   d.internal<&S::torque_nm>(unit::nm, "As the drive says.");
   d.internal<&S::constants_set>("GT_SetConstant was given.");
+  d.internal<&S::dormant>("Supervision switched off.");
   d.internal<&S::direct_voltage_v>(unit::volt, "Put out while Disabled.");
   d.internal<&S::coupled>("Follows its master.");
   d.internal<&S::follow_offset>(unit::u, "Distance to the master's position times the ratio.");

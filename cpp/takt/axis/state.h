@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "takt/axis/cam_switch.h"
 #include "takt/axis/control_loop.h"
@@ -29,6 +30,12 @@ struct Motion {
   double target = 0;              // u, unwrapped: where a positioning command ends
   bool arrived = false;           // the profile is over
   std::uint64_t arrived_cycle = 0;
+};
+
+// Supervision that was switched off at run time, to be switched on again.
+struct Dormant {
+  std::optional<double> lower{}, upper{};  // u, SW limits
+  std::optional<double> lag{};             // u, largest following error in motion
 };
 
 struct State {
@@ -91,12 +98,14 @@ struct State {
   Motion motion;
   CouplingState coupling;
 
+  Dormant dormant;
   Ticket reset_ticket = 0;
   std::array<Request, kBufferSize> buffer;  // [0] is next
   std::uint64_t illegal_transitions = 0;    // always 0: the state table holds
 };
 
 void describe(Description<Motion>&);
+void describe(Description<Dormant>&);
 void describe(Description<State>&);
 
 }  // namespace takt::axis
