@@ -70,6 +70,11 @@ def tune(
                 f"end stop, friction, a brake), or it pulls harder than the drive"
             )
         remarks = []
+        if bench.sampled_s > 1.5 * session.period and not after.rise_s > 10 * bench.sampled_s:
+            remarks.append(
+                f"the engine publishes the axis only every {1000 * bench.sampled_s:g} ms: overshoot may be larger than what "
+                f"was seen (lcm.axis_rate_hz in the machine file)"
+            )
         if abs(after.rest) > SETTLED / 2:
             remarks.append(
                 f"{100 * after.rest:.1f} % of a step is left at rest (friction, load, a dead band or the drive's offset): "
@@ -171,8 +176,10 @@ def picture(tuning: Tuning, path: Path) -> Path:
 
     figure = Figure(figsize=(9, 6), layout="constrained")
     axes = figure.subplots(2, 1, sharex=True, sharey=True)
+    lowest, highest = 0.0, 1.0
     for ax, title, step in zip(axes, ("before", "after"), (tuning.before, tuning.after), strict=True):
         end = 1 - step.rest
+        lowest, highest = min(lowest, float(step.response.min())), max(highest, float(step.response.max()))
         ax.axhline(1, color="#444", linewidth=0.8)
         if step.settling_s == step.settling_s:
             ax.axhspan(end - SETTLED / 2, end + SETTLED / 2, color=style.GOOD, alpha=0.2, linewidth=0)
@@ -181,15 +188,11 @@ def picture(tuning: Tuning, path: Path) -> Path:
         ax.set_title(f"{title}: {step.text}", loc="left", fontsize=10)
         ax.set_ylabel("share of the step")
         ax.grid(alpha=0.3)
-    axes[0].set_ylim(-0.1, 1.0 + max(0.1, 1.1 * min(1.0, _highest(tuning) - 1)))
+    axes[0].set_ylim(max(lowest, -1.0) - 0.1, min(highest, 2.0) + 0.1)  # one that runs away leaves the picture
     axes[0].set_xlim(0, 1000 * _shown_s(tuning))
     axes[1].set_xlabel("time [ms]")
     figure.suptitle(f"{tuning.axis}: {tuning.yaml}", fontweight="bold")
     return save(figure, path)
-
-
-def _highest(tuning: Tuning) -> float:
-    return max(float(step.response.max()) for step in (tuning.before, tuning.after))
 
 
 def _shown_s(tuning: Tuning) -> float:

@@ -73,8 +73,10 @@ class Bench:
         self._safe: Mapping[str, float] = self.found  # those that held it best
         self._safe_rest = math.inf  # share of a step
         self._homed = axis.homed
+        self.sampled_s = session.period  # s from one published sample to the next
         self._noise = 0.0  # u, peak to peak
         self._backwards = False
+        self._unruly = False  # with the gains it was found with it rings
 
     def __enter__(self) -> Bench:
         try:
@@ -106,6 +108,8 @@ class Bench:
             self._safe, self._safe_rest = dict(gains), abs(response.rest)
         elif gains == self._safe:
             self._safe = {**NO_GAINS, "kp": self.base_kp}
+        if gains == self.found and not steady(response):
+            self._unruly = True
         self._say(", ".join(f"{n} {v:.4g}" for n, v in gains.items()) + f": {response.text}")
         return response
 
@@ -195,6 +199,7 @@ class Bench:
         samples = recorder.recording[axis.name]
         time_s = np.asarray(samples["time_s"] - samples["time_s"][0])
         places = np.asarray(relative(axis, samples["actual_position"] - begin))
+        self.sampled_s = float(np.median(np.diff(time_s)))
         trembling = places - np.polyval(np.polyfit(time_s, places, 2), time_s)
         return float((places[-1] - places[0]) / time_s[-1]), float(np.ptp(trembling))
 
@@ -230,7 +235,7 @@ class Bench:
         try:
             if not self._backwards:
                 self._go_home()
-            if self._backwards or self._is_far_out():  # for the gains as they were: from no error on
+            if self._backwards or self._unruly or self._is_far_out():  # what any error would set off begins without one
                 axis.power(enable=False).wait()
         finally:
             self._set(self.found, self._ff)
