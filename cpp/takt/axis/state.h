@@ -12,6 +12,7 @@
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
+#include "takt/axis/time_table.h"
 #include "takt/axis/torque.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
@@ -92,6 +93,7 @@ struct State {
 
   Motion motion;
   CouplingState coupling;
+  TimeTableState time_table;
   HomingState homing;
 
   ProbeState probe;
