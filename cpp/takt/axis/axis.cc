@@ -92,7 +92,7 @@ void BringBackTurns(const AxisParams& p, State& s) {
 // Whether a motion has no end of its own, or is left with a velocity.
 bool GoesOn(const State& s) {
   return s.plc == PlcState::kContinuousMotion || s.plc == PlcState::kSynchronizedMotion ||
-         s.motion.profile.end().velocity != 0;
+         FollowsTable(s.active.kind) || s.motion.profile.end().velocity != 0;
 }
 
 // Takes a set point back from which the axis could not stop in time, and brakes instead.
@@ -146,7 +146,15 @@ void FollowCoupling(const Context& c, State& s) {
   const KinematicState before = s.setpoint;
   if (!FollowMasters(c, s)) return Advance(c, s);
   GuardLimits(c, before, s);
-  if (s.coupling.chase.in_step) Conclude(c, 0, s);
+  if (s.coupling.chase.in_step || s.coupling.cam.over) Conclude(c, 0, s);
+  if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
+}
+
+void FollowTable(const Context& c, State& s) {
+  const KinematicState before = s.setpoint;
+  if (!FollowTime(c, s)) return Advance(c, s);
+  GuardLimits(c, before, s);
+  if (s.time_table.over) ConcludeDue(c, before, s);
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 
@@ -203,6 +211,7 @@ void Sense(const Context& c, const ServoInputs& in, State& s) noexcept {
 }
 
 void Move(const Context& c, State& s) noexcept {
+  s.end_of_profile = false;
   Supervise(c, s);
   // What seldom happens is asked for here: a call that finds nothing to do would cost as much as the set point.
   if (s.homing.flying_ticket != 0) WatchFlying(c, s);
@@ -214,6 +223,8 @@ void Move(const Context& c, State& s) noexcept {
     // The drive follows a torque, the set point the axis.
   } else if (s.loop_closed && Couples(s.active.kind)) {
     FollowCoupling(c, s);
+  } else if (s.loop_closed && FollowsTable(s.active.kind)) {
+    FollowTable(c, s);
   } else if (s.loop_closed) {
     Advance(c, s);
     if (s.homing.stage != HomingStage::kNone) StepHoming(c, s);
@@ -302,6 +313,8 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.state = s.plc;
   out.limited_by = s.limited_by;
   out.homed = s.homing.homed;
+  out.end_of_profile = s.end_of_profile;
+  out.profile_ends = s.profile_ends;
   const bool coupled = Couples(s.active.kind);
   const auto& terms = s.coupling.law.terms;
   out.in_step = coupled && s.coupling.chase.in_step;

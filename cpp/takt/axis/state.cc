@@ -38,6 +38,8 @@ void describe(Description<State>& d) {
   d.internal<&S::lease_end_cycle>("When the dead man's lease ends.");
   d.internal<&S::reset_ticket>("Of the reset in progress.");
   d.internal<&S::reset_pending>("A reset waits for standstill.");
+  d.internal<&S::end_of_profile>("The end of a cam was passed.");
+  d.internal<&S::profile_ends>("How often.");
   d.internal<&S::buffer>("Buffered commands, the next one first.");
   d.internal<&S::buffered>("How many.");
   d.internal<&S::enable>("Drive told to be on.");
@@ -71,6 +73,7 @@ void describe(Description<State>& d) {
   d.internal<&S::illegal_transitions>("Always 0.");
   d.internal<&S::motion>("Motion in progress.");
   d.internal<&S::coupling>("Masters it follows.");
+  d.internal<&S::time_table>("Table over time that it follows.");
   d.internal<&S::homing>("Its reference.");
   d.internal<&S::probe>("Touch probe.");
   d.internal<&S::torque>("Torque control.");

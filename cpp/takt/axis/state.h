@@ -13,6 +13,7 @@
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
+#include "takt/axis/time_table.h"
 #include "takt/axis/torque.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
@@ -56,8 +57,9 @@ struct State {
   bool jog_armed = false;      // a key may start a motion: a new jog, or both keys were seen up since the last one
   std::int8_t last_sense = 1;  // sense of the last motion, for Direction::kCurrent
   bool reset_pending = false;
-  bool constants_set = false;  // by GT_SetConstant
-  bool coupled = false;        // follows a master from load on
+  bool constants_set = false;   // by GT_SetConstant
+  bool coupled = false;         // follows a master from load on
+  bool end_of_profile = false;  // the end of a cam was passed in this cycle
   std::uint8_t buffered = 0;
 
   // Power.
@@ -79,6 +81,7 @@ struct State {
   std::uint32_t index_pulses = 0;
   std::uint32_t index_counts = 0;  // ... at this count
   std::uint32_t cam_outputs = 0;
+  std::uint32_t profile_ends = 0;  // how often the end of a cam was passed
   std::uint64_t enable_cycle = 0;
   std::uint64_t lease_end_cycle = 0;
 
@@ -97,6 +100,7 @@ struct State {
   Request active;  // in control; kind none: nothing is
   Motion motion;
   CouplingState coupling;
+  TimeTableState time_table;
 
   Dormant dormant;
   Ticket reset_ticket = 0;
