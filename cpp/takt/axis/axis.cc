@@ -126,7 +126,7 @@ void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
       s.last_sense = SenseAtEnd(s.motion.profile, s.last_sense);
     }
     Conclude(c, late_s, s);
-    if (s.motion.arrived) return;  // no other motion has begun
+    if (s.motion.arrived || FollowsDemand(s.active.kind)) return;  // no other motion with an end has begun
     GuardLimits(c, before, s);
   }
 }

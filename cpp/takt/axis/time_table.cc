@@ -151,6 +151,7 @@ void BeginTable(const Context& c, const Request& r, const MotionStart& start, St
   const double turn = c.params.rotary() ? c.params.modulus : 0;
   k.turns = s.origin + (turn == 0 ? 0 : turn * std::round((own - s.origin - curve.At(0).y) / turn));
   k.demand = {own, s.setpoint.velocity, s.setpoint.acceleration};
+  k.chase.in_step = true;  // until the first demand shows otherwise
   Enter(s, RulesOf(r.kind).state);
 }
 
