@@ -102,6 +102,7 @@ bool JumpsInAcceleration(Law law, double sine_share) noexcept {
 
 PeakFactors PeakFactorsOf(Law law, double sine_share, double cosine_share) {
   PeakFactors factors;
+  if (law == Law::kDwell) return factors;
   const std::vector<LawPiece> pieces = PiecesOf(law, sine_share, cosine_share);
   double before = 0;
   bool jumps = false;

@@ -56,9 +56,9 @@ struct CamParams {
   std::string y_unit = "u";
   bool cyclic = false;  // the end goes over into the beginning, raised by the stroke
   Interpolation interpolation = Interpolation::kQuintic;
-  std::vector<CamPoint> points;
-  std::vector<CamSegment> segments;  // instead of points
-  std::string file;                  // of points, instead; once read they are in `points`, and this is empty
+  std::vector<CamPoint> points{};
+  std::vector<CamSegment> segments{};  // instead of points
+  std::string file{};                  // of points, instead; once read they are in `points`, and this is empty
 };
 
 void describe(Enumeration<Interpolation>&);
