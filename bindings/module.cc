@@ -6,4 +6,5 @@ PYBIND11_MODULE(_core, m) {
   takt::bindings::BindCore(m);
   takt::bindings::BindAxis(m);
   takt::bindings::BindEngine(m);
+  takt::bindings::BindServo(m);
 }

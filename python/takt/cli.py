@@ -17,6 +17,7 @@ from rich.table import Table
 from rich.text import Text
 
 from takt import _core
+from takt.drive import WATCHDOG, simulate
 from takt.engine import Engine, read_machine
 from takt.errors import ConfigError, TaktError
 from takt.lcmlog import AXIS_PREFIX, open_log, read_log
@@ -173,6 +174,18 @@ def demo(file: Path, machine: Path | None, report: Path, pace: str) -> int:
     page = write_report(result.outcome.recording, result.outcome.verdicts, report, scenario.title, {"engine": timing})
     print(f"report: {page.html}")
     return 0 if result.passed else FAILED
+
+
+@cli.command()
+@click.argument("machine", type=FILE)
+@click.option("--url", help="LCM network of the engine [machine file].")
+@click.option("--axis", "axes", multiple=True, help="Only this axis; may be given again [all external drives].")
+@click.option(
+    "--watchdog", default=WATCHDOG, show_default=True, type=click.IntRange(1), help="Periods without a set point: off."
+)
+def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int) -> int:
+    """Simulate the external drives of a MACHINE in this process, for an engine in another one."""
+    return simulate(machine, url, axes, watchdog)
 
 
 @cli.command()

@@ -164,6 +164,7 @@ void SwitchedOff(const Context& c, State& s) noexcept {
 void OpenLoop(State& s) noexcept {
   s.enable = false;
   s.loop_closed = false;
+  s.blind = false;
   s.homing.stage = HomingStage::kNone;
   s.voltage_v = 0;
   s.limited_by = LimitedBy::kNothing;

@@ -14,6 +14,7 @@
 #include "takt/axis/state_table.h"
 #include "takt/axis/torque.h"
 #include "takt/core/kinematic_state.h"
+#include "takt/core/ports.h"
 #include "takt/core/status.h"
 #include "takt/trajectory/profile.h"
 
@@ -51,6 +52,10 @@ struct State {
 
   std::array<Request, kBufferSize> buffer;  // [0] is next
   std::uint8_t buffered = 0;
+
+  // A drive in another process.
+  Sampling sampling;   // of what is measured
+  bool blind = false;  // it was lost with the loop closed: stops as if the drive did what it is told
 
   // Power.
   bool enable = false;       // the drive is told to be on
