@@ -63,10 +63,10 @@ void Supervise(const Context& c, State& s) {
   if (s.encoder_error) Fail(c, ErrorId::kEncoder, true, s);
   const bool off = s.drive_fault || (s.loop_closed && !s.drive_ready);
   if (off && s.sampling.link == DriveLink::kHeard) Fail(c, ErrorId::kDrive, true, s);
-  WatchLink(c, s);
+  if (s.blind || s.sampling.link == DriveLink::kLost) WatchLink(c, s);
   if (!s.loop_closed) return;
   WatchDeviation(c, s);
-  WatchSwitches(c, s);
+  if (s.limit_positive || s.limit_negative) WatchSwitches(c, s);
   WatchLease(c, s);
 }
 
@@ -95,7 +95,7 @@ void BringBackTurns(const AxisParams& p, State& s) {
 // Whether a motion has no end of its own, or is left with a velocity.
 bool GoesOn(const State& s) {
   return s.plc == PlcState::kContinuousMotion || s.plc == PlcState::kSynchronizedMotion ||
-         s.motion.profile.end().velocity != 0;
+         FollowsTable(s.active.kind) || s.motion.profile.end().velocity != 0;
 }
 
 // Takes a set point back from which the axis could not stop in time, and brakes instead.
@@ -129,7 +129,7 @@ void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
       s.last_sense = SenseAtEnd(s.motion.profile, s.last_sense);
     }
     Conclude(c, late_s, s);
-    if (s.motion.arrived) return;  // no other motion has begun
+    if (s.motion.arrived || FollowsDemand(s.active.kind)) return;  // no other motion with an end has begun
     GuardLimits(c, before, s);
   }
 }
@@ -149,7 +149,15 @@ void FollowCoupling(const Context& c, State& s) {
   const KinematicState before = s.setpoint;
   if (!FollowMasters(c, s)) return Advance(c, s);
   GuardLimits(c, before, s);
-  if (s.coupling.chase.in_step) Conclude(c, 0, s);
+  if (s.coupling.chase.in_step || s.coupling.cam.over) Conclude(c, 0, s);
+  if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
+}
+
+void FollowTable(const Context& c, State& s) {
+  const KinematicState before = s.setpoint;
+  if (!FollowTime(c, s)) return Advance(c, s);
+  GuardLimits(c, before, s);
+  if (s.time_table.over) ConcludeDue(c, before, s);
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 
@@ -188,7 +196,12 @@ void Sense(const Context& c, const ServoInputs& in, State& s, const Sampling& sa
   Step(c.params.encoder, {in.counts, in.encoder_error, LargestStep(c), sampling.step}, c.cycle, s.encoder, measured);
   s.encoder_error = measured.error;
   s.encoder_line_error = in.encoder_error;
-  Locate(c, {measured.position - s.origin, measured.velocity, 0}, s);
+  const KinematicState sampled{measured.position - s.origin, measured.velocity, 0};
+  if (s.blind || lost || sampling.age > 0) {
+    Locate(c, sampled, s);
+  } else {
+    s.actual = sampled;
+  }
   SenseTorque(s);
   s.due = s.setpoint.position;
   s.following_error = s.loop_closed ? s.due - s.actual.position : 0;
@@ -210,26 +223,30 @@ void Sense(const Context& c, const ServoInputs& in, State& s, const Sampling& sa
 }
 
 void Move(const Context& c, State& s) noexcept {
+  s.end_of_profile = false;
   Supervise(c, s);
-  WatchFlying(c, s);
-  FollowProbe(c, s);
+  // What seldom happens is asked for here: a call that finds nothing to do would cost as much as the set point.
+  if (s.homing.flying_ticket != 0) WatchFlying(c, s);
+  if (s.probe.watch != ProbeWatch::kNothing) FollowProbe(c, s);
   if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
-  if (s.loop_closed && Follow(c, s)) {
+  if (s.loop_closed && c.params.follows && Follow(c, s)) {
     // The master's set point is this axis' too.
-  } else if (MoveTorque(c, s)) {
+  } else if ((s.active.kind == RequestKind::kTorqueControl || s.torque.engaged) && MoveTorque(c, s)) {
     // The drive follows a torque, the set point the axis.
   } else if (s.loop_closed && Couples(s.active.kind)) {
     FollowCoupling(c, s);
+  } else if (s.loop_closed && FollowsTable(s.active.kind)) {
+    FollowTable(c, s);
   } else if (s.loop_closed) {
     Advance(c, s);
-    StepHoming(c, s);
+    if (s.homing.stage != HomingStage::kNone) StepHoming(c, s);
   } else {
     s.setpoint = {s.actual.position, 0, 0};
     AwaitDrive(c, s);
   }
   FinishReset(c, s);
   if (c.params.rotary() && std::abs(s.setpoint.position) > kFarTurns * c.params.modulus) BringBackTurns(c.params, s);
-  s.cam_outputs = SwitchCams(c, s);
+  s.cam_outputs = s.cam_switch.list < 0 ? 0 : SwitchCams(c, s);
 }
 
 bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
@@ -242,9 +259,13 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   // The new set point is the one for the end of this cycle. What is measured now is held against the one before, and
   // the speed fed forward is the one that leads from there to the new one.
   const double mean_velocity = (s.setpoint.position - s.due) / c.cycle.period_s;
-  Step(s.blind ? SpeedAlone(p.loop) : p.loop,
-       {p.drive.mode, s.loop_closed && engine_closes, p.drive.invert, s.due, mean_velocity, s.actual.position},
-       c.cycle, s.loop, loop);
+  const ControlLoopInputs inputs{p.drive.mode, s.loop_closed && engine_closes, p.drive.invert, s.due, mean_velocity,
+                                 s.actual.position};
+  if (s.blind) {
+    Step(SpeedAlone(p.loop), inputs, c.cycle, s.loop, loop);
+  } else {
+    Step(p.loop, inputs, c.cycle, s.loop, loop);
+  }
   out.mode = mode;
   out.position_counts = sign * CountsAt(p.encoder, s.setpoint.position + s.origin);
   out.velocity_counts_s = torque          ? std::abs(CountRateAt(p.encoder, s.active.velocity))
@@ -264,7 +285,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
     out.voltage_v = 0;
     out.torque_nm = 0;
   }
-  if (s.plc == PlcState::kDisabled && !s.enable) out.voltage_v = s.direct_voltage_v;
+  if (s.plc == PlcState::kDisabled && !s.enable) out.voltage_v = sign * InConverterSteps(s.direct_voltage_v);
   s.voltage_v = out.voltage_v;
   out.enable = s.enable;
   out.release_brake = s.loop_closed;
@@ -273,6 +294,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
 
 void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
   if (s.error == ErrorId::kNone) s.error = error;
+  s.direct_voltage_v = 0;
   if (!s.loop_closed && !s.enable) return;
   const bool opens = open_loop || !s.loop_closed;
   if (s.plc != PlcState::kErrorStop) {
@@ -308,10 +330,13 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.state = s.plc;
   out.limited_by = s.limited_by;
   out.homed = s.homing.homed;
-  out.in_step = s.coupling.chase.in_step;
+  out.end_of_profile = s.end_of_profile;
+  out.profile_ends = s.profile_ends;
+  const bool coupled = Couples(s.active.kind);
   const auto& terms = s.coupling.law.terms;
-  out.master1 = terms[0].master + 1;  // none: 0
-  out.master2 = terms[1].master + 1;
+  out.in_step = coupled && s.coupling.chase.in_step;
+  out.master1 = coupled ? terms[0].master + 1 : 0;  // none: 0
+  out.master2 = coupled ? terms[1].master + 1 : 0;
   out.buffered_commands = s.buffered;
   out.loop_closed = s.loop_closed;
   out.in_position =

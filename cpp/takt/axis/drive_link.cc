@@ -2,7 +2,7 @@
 
 namespace takt::axis {
 
-void Locate(const Context& c, const KinematicState& measured, State& s) noexcept {
+void Locate(const Context& c, const KinematicState& sampled, State& s) noexcept {
   const bool lost = s.sampling.link == DriveLink::kLost;
   if (lost && s.loop_closed && !s.blind) {
     s.blind = true;
@@ -13,8 +13,8 @@ void Locate(const Context& c, const KinematicState& measured, State& s) noexcept
   } else if (lost) {
     s.actual.velocity = 0;
   } else {
-    s.actual = measured;
-    if (s.sampling.age > 0) s.actual.position += measured.velocity * s.sampling.age * c.cycle.period_s;
+    s.actual = sampled;
+    s.actual.position += sampled.velocity * s.sampling.age * c.cycle.period_s;
   }
   if (lost && c.params.encoder.type == EncoderType::kIncremental) s.homing.homed = false;
 }

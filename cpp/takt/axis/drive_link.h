@@ -14,10 +14,11 @@
 
 namespace takt::axis {
 
-// sense: `measured` is what the last sample said. Older samples are carried on with the speed they had.
-void Locate(const Context& context, const KinematicState& measured, State& state) noexcept;
+// sense: where the axis counts as being, when its last sample does not say so. An older one is carried on with the speed
+// it had.
+void Locate(const Context& context, const KinematicState& sampled, State& state) noexcept;
 
-// move: supervision.
+// move: supervision of an axis that is lost or stops blind.
 void WatchLink(const Context& context, State& state) noexcept;
 
 // The position loop of an axis that stops blind: the set speed alone.
