@@ -333,6 +333,10 @@ def _timing(figures: Mapping[str, Any]) -> dict[str, str]:
             rows[title] = f"median {median:.0f} µs, 99 % below {late:.0f} µs, longest {histogram['max'] / 1e3:.0f} µs"
     rows["commands"] = f"{figures['commands_applied']} applied, {figures['commands_refused']} refused"
     rows["dropped"] = f"{figures['snapshots_dropped']} states, {figures['feedback_dropped']} feedbacks"
+    if figures["set_points_dropped"] or figures["samples_refused"]:
+        rows["drives"] = (
+            f"{figures['set_points_dropped']} set points lost, {figures['samples_refused']} answers refused"
+        )
     return rows
 
 

@@ -1,4 +1,4 @@
-"""AX-82, AX-87, EN-26: drives in other processes, through the network, with engines that run in process and in taktd."""
+"""AX-82, AX-87, EN-26: drives in other processes, over the network, with engines that run in process and in taktd."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import time
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import lcm
 import numpy as np
@@ -173,7 +174,7 @@ def test_a_journal_needs_no_plant(tmp_path: Path) -> None:
 
 
 class Lag(drive.Drive):
-    """What the documentation shows: a drive of the first order."""
+    """Of the first order."""
 
     def __init__(self) -> None:
         self.counts = 0.0
@@ -221,6 +222,23 @@ def test_a_plant_of_ones_own() -> None:
         assert x.actual_position == pytest.approx(-30.0, abs=0.002)
         assert lag.counts == pytest.approx(-30_000.0, abs=2.0)
         engine.shut_down()
+
+
+def test_what_the_documentation_shows() -> None:
+    """EN-26: its machine and its drive."""
+    page = (Path(__file__).parents[2] / "docs" / "real_drives.md").read_text()
+    machine = page.partition("```yaml\n")[2].partition("```")[0]
+    code, call, _ = page.partition("```python\n")[2].partition("```")[0].partition("drive.Plant(")
+    assert call
+    shown: dict[str, Any] = {}
+    exec(code, shown)
+    url = new_url()
+    with served(url, shown["Lag"]()), takt.Engine(machine, url=url) as engine:
+        x = engine.axis("x")
+        x.power().wait()
+        x.move_absolute(position=50.0).wait()
+        engine.run(0.1)
+        assert x.actual_position == pytest.approx(50.0, abs=0.002)
 
 
 def answer(url: str, **changes: object) -> None:
@@ -310,8 +328,7 @@ def test_messages_of_another_version_are_refused() -> None:
 
     with served(url, Other()), takt.Engine(only_x(url)) as engine:
         with pytest.warns(takt.DriveWarning, match="no drive_feedback of this version of Takt"):
-            engine.run(0.05)
-            eventually(lambda: engine.figures["samples_refused"] or engine.run(0.001))
+            eventually(lambda: engine.figures["samples_refused"] or engine.run(0.05))
         assert engine.axis("x").error == 0
 
 
@@ -323,8 +340,9 @@ def test_two_plants_for_one_axis() -> None:
     with served(url, first), takt.Engine(only_x(url)) as engine:
         x = engine.axis("x")
         x.power().wait()
-        with served(url, second), pytest.warns(takt.DriveWarning, match="a second plant answers for this axis"):
-            eventually(lambda: engine.figures["samples_refused"] or engine.run(0.01))
+        with served(url, second):
+            with pytest.warns(takt.DriveWarning, match="a second plant answers for this axis"):
+                eventually(lambda: engine.figures["samples_refused"] or engine.run(0.01))
             x.move_absolute(position=10.0).wait()
         engine.run(0.1)
         assert x.actual_position == pytest.approx(10.0, abs=0.002)
@@ -387,6 +405,7 @@ def test_an_engine_that_dies(tmp_path: Path) -> None:
         with takt.connect(url) as session:
             session.axis("x").power().wait(timeout=LONG_S)
             assert lag.told.enable
+            eventually(lambda: lag.told.release_brake)  # told in the cycle after
             assert lag.told.release_brake
         engine.kill()
         engine.wait()
@@ -443,7 +462,9 @@ def test_lost_set_points_are_made_up_for(tmp_path: Path) -> None:
     file = tmp_path / "machine.yaml"
     file.write_text(inside(new_url()))
     all_, some = (drive.SimulatedServo(file, "x") for _ in range(2))
-    told = [drive.SetPoint(enable=True, release_brake=True, position_counts=10.0 * i, period_s=0.001) for i in range(300)]
+    told = [
+        drive.SetPoint(enable=True, release_brake=True, position_counts=10.0 * i, period_s=0.001) for i in range(300)
+    ]
     for i in range(100):
         all_.step(told[i], 0.001)
         some.step(told[i], 0.001)

@@ -259,7 +259,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   // The new set point is the one for the end of this cycle. What is measured now is held against the one before, and
   // the speed fed forward is the one that leads from there to the new one.
   const double mean_velocity = (s.setpoint.position - s.due) / c.cycle.period_s;
-  const ControlLoopInputs inputs{p.drive.mode, s.loop_closed && engine_closes, p.drive.invert, s.due, mean_velocity,
+  const ControlLoopInputs inputs{p.drive.mode,     s.loop_closed && engine_closes, p.drive.invert, s.due, mean_velocity,
                                  s.actual.position};
   if (s.blind) {
     Step(SpeedAlone(p.loop), inputs, c.cycle, s.loop, loop);

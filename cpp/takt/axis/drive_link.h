@@ -14,8 +14,8 @@
 
 namespace takt::axis {
 
-// sense: where the axis counts as being, when its last sample does not say so. An older one is carried on with the speed
-// it had.
+// sense: where the axis counts as being, when its last sample does not say so. An older one is carried on with the
+// speed it had.
 void Locate(const Context& context, const KinematicState& sampled, State& state) noexcept;
 
 // move: supervision of an axis that is lost or stops blind.

@@ -168,6 +168,37 @@ TEST(LostDrives, WhatIsCoupledStopsToo) {
   }
 }
 
+// AX-87, CV-01: an encoder alone that others follow, as that of a belt: with it lost, they come to rest.
+TEST(LostDrives, WhatFollowsALostEncoderComesToRest) {
+  DriveRig rig;
+  double counts = 0;
+  rig.plant.change = [&](DriveSample& s) {
+    if (s.axis == 3) s.inputs.counts = static_cast<std::uint32_t>(counts += 100);  // 100 u/s
+  };
+  rig.PowerOn();
+  rig.Done(3, axis::Power{.enable = false});
+  axis::GearIn gear;
+  gear.master = Name::Of("other");
+  gear.source = axis::MasterSource::kActualValue;
+  rig.Give(0, gear);
+  rig.Run(300);
+  ASSERT_EQ(rig.At(3).state, axis::PlcState::kDisabled);
+  ASSERT_TRUE(rig.At(0).in_step);
+  ASSERT_NEAR(rig.At(0).set_velocity, 100, 1e-6);
+  rig.Silence(3);
+  axis::Outputs before = rig.At(0);
+  for (int c = 0; c < 300; ++c) {
+    rig.Step();
+    const axis::Outputs& o = rig.At(0);
+    ASSERT_LE(std::abs(o.set_acceleration), 5000 * (1 + 1e-6)) << c;
+    ASSERT_LE(std::abs(o.set_acceleration - before.set_acceleration), 100 * (1 + 1e-6)) << c;
+    before = o;
+  }
+  EXPECT_EQ(rig.At(3).error, ErrorId::kDrive);
+  EXPECT_EQ(rig.At(0).error, ErrorId::kNone);
+  EXPECT_NEAR(rig.At(0).set_velocity, 0, 1e-9);
+}
+
 // AX-87: heard again while it brakes, it is stopped and switched off all the same; a fault it reports ends that at
 // once, and so does the emergency stop.
 TEST(LostDrives, WhatComesDuringTheStop) {
