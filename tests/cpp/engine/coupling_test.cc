@@ -459,7 +459,7 @@ TEST(Coupling, KeepsTheLimitsInARandomWalk) {
     const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     const auto any = [&](unsigned n) { return std::uniform_int_distribution(0u, n - 1)(random); };
     Machine machine = WithCams(LineOf(5, seed % 2 == 0 ? axis::AxisKind::kLinear : axis::AxisKind::kRotary));
-    machine.cams.push_back({.name = "rough", .points = {}, .file = {}});
+    machine.cams.push_back({.name = "rough"});
     for (int i = 0; i < 6; ++i) machine.cams.back().points.push_back({50.0 * i, between(-100, 100), {}, {}});
     for (axis::AxisParams& a : machine.axes) {
       a.limits.velocity = between(100, 800);
