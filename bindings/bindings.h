@@ -12,7 +12,7 @@
 
 #include "takt/core/columns.h"
 #include "takt/core/describe.h"
-#include "takt/engine/machine.h"
+#include "takt/engine/load.h"
 
 namespace takt::bindings {
 
@@ -29,10 +29,15 @@ py::object ToPython(const Type& type, const void* object);
 // And back, for structs of nothing but numbers; integers are taken modulo their size, what is not given stays.
 void FromPython(const Type& type, const py::dict& values, void* object);
 
-// A machine file, or takt.ConfigError with every problem.
-engine::Machine Load(const py::bytes& text, const std::string& file_name);
+// Raises an exception of takt.errors.
+[[noreturn]] void Throw(const char* kind, const py::object& about);
+[[noreturn]] void ThrowConfigError(const std::vector<std::string>& problems);
+
+// A machine file: there is a machine in it, or takt.ConfigError says every problem.
+engine::LoadResult Load(const py::bytes& text, const std::string& file_name);
 
 void BindCore(py::module_& m);
+void BindCam(py::module_& m);
 void BindAxis(py::module_& m);
 void BindEngine(py::module_& m);
 void BindServo(py::module_& m);

@@ -29,6 +29,16 @@ std::map<int, std::pair<std::string, std::string>> ErrorTexts() {
 
 }  // namespace
 
+void Throw(const char* kind, const py::object& about) {
+  const py::object error = py::module_::import("takt.errors").attr(kind);
+  PyErr_SetObject(error.ptr(), error(about).ptr());
+  throw py::error_already_set();
+}
+
+void ThrowConfigError(const std::vector<std::string>& problems) {
+  Throw("ConfigError", py::cast(problems));
+}
+
 py::object ScalarToPython(const Type& type, const void* object) {
   switch (type.kind) {
     case Kind::kBool:
