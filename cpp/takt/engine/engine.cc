@@ -185,7 +185,7 @@ struct Engine::Impl {
   std::atomic<bool> shutdown{false};
   std::atomic<std::uint64_t> refused{0};
   std::atomic<std::uint64_t> samples_refused{0};  // before they came to the cycle
-  Ticket next_ticket = 1;  // producing thread
+  Ticket next_ticket = 1;                         // producing thread
 };
 
 Engine::Engine(Machine machine, const EngineOptions& options)

@@ -102,7 +102,8 @@ void describe(Description<ExternalDrive>& d) {
 void describe(Description<External>& d) {
   using E = External;
   d.about("What lives in other processes.");
-  d.defaulted<&E::drives>("Drives. Their axes are simulated no more; takt plant puts the simulation in another process.");
+  d.defaulted<&E::drives>(
+      "Drives. Their axes are simulated no more; takt plant puts the simulation in another process.");
   d.defaulted<&E::answer_within_s>(unit::s, between(0.001, 3600),
                                    "Simulated time waits so long for the answers to one cycle, by the wall clock; then "
                                    "the cycle goes on without them.");
