@@ -16,7 +16,7 @@ using Command =
                  MoveContinuousRelative, Inch, Halt, Stop, Jog, TorqueControl, GearIn, GearOut, GearInPos,
                  PhasingAbsolute, PhasingRelative, CombineAxes, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse,
                  StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch, StepRefFlyingRefPulse, SetConstants,
-                 WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, SetPosition, TouchProbe, AbortTrigger,
-                 Touch, DigitalCamSwitch>;
+                 WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, SetPosition, SetOverride, TouchProbe,
+                 AbortTrigger, Touch, DigitalCamSwitch>;
 
 }  // namespace takt::axis

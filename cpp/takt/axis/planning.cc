@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "takt/axis/fit.h"
+#include "takt/axis/promise.h"
 
 namespace takt::axis {
 
@@ -131,14 +132,31 @@ Status PlanBlended(Planner& planner, const KinematicState& from, double target, 
   return low > 0 ? Status::Ok() : standing;
 }
 
+// Too fast to be left as planned: on beyond the target, still on the way to `speed`. False: it does not get there.
+bool PlanPast(Planner& planner, const KinematicState& from, double target, double sense, double speed,
+              const Limits& limits, Profile& out) {
+  if (sense * from.velocity <= 0) return false;
+  Limits ramps = limits;
+  ramps.velocity = std::max(limits.velocity, speed);
+  Profile ramp;
+  if (planner.ToVelocity(from, sense * speed, ramps, ramp).failed()) return false;
+  const double t = ramp.TimeAt(target);
+  if (std::isnan(t)) return false;
+  ramp.Cut(t);
+  ramp.SnapEnd({target, ramp.end().velocity, ramp.end().acceleration});
+  if (sense * ramp.end().velocity <= 0) return false;
+  out = ramp;
+  return true;
+}
+
 // From `from` on to what the request asks for, with its own limits; positions: to `out.target`.
-Status PlanOn(const AxisParams& params, Planner& planner, const KinematicState& from, const Request& request,
-              const Request* next, std::int8_t last_sense, Plan& out) {
+Status PlanOn(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+              const Request& request, const Request* next, Plan& out) {
   const Limits limits = request.limits();
   if (request.kind == RequestKind::kMoveVelocity) {
     Limits ramps = limits;
     ramps.velocity = params.limits.velocity;  // the request's own may be 0, which is no limit
-    return planner.ToVelocity(from, SenseOf(request, last_sense) * request.velocity, ramps, out.profile);
+    return planner.ToVelocity(from, SenseOf(request, around.last_sense) * request.velocity, ramps, out.profile);
   }
   if (!request.positions()) return planner.Stop(from, limits, out.profile);
   const double sense = Sense(out.target - from.position);
@@ -151,8 +169,13 @@ Status PlanOn(const AxisParams& params, Planner& planner, const KinematicState& 
     speed = TakeOverSpeed(params, request, out.target, sense, *next);
     if (speed == 0) out.limited_by = LimitedBy::kDistance;
   }
-  if (speed > 0) return PlanBlended(planner, from, out.target, sense, speed, limits, out);
-  const Status status = planner.ToPosition(from, out.target, 0, limits, out.profile);
+  const Status status = speed > 0 ? PlanBlended(planner, from, out.target, sense, speed, limits, out)
+                                  : planner.ToPosition(from, out.target, 0, limits, out.profile);
+  if (around.passes && (status.failed() || Overshoots(out.profile, out.target)) &&
+      PlanPast(planner, from, out.target, sense, speed, limits, out.profile)) {
+    return Status::Ok();
+  }
+  if (speed > 0) return status;
   if (status.ok() && sense * from.velocity > limits.velocity && !RunsStraight(out.profile, sense)) {
     // Faster than asked, and too near to slow down to that first: brake to the target in one go, if that is straight.
     Limits at_speed = limits;
@@ -193,15 +216,15 @@ Demands DemandsOn(const Request& request) {
 }
 
 // The first opening with which the plan keeps what it must; if none does, the strongest.
-Status PlanOpened(const AxisParams& params, Planner& planner, const KinematicState& from, const Request& request,
-                  const Request* next, std::int8_t last_sense, Plan& out) {
+Status PlanOpened(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                  const Request& request, const Request* next, Plan& out) {
   const bool endless = request.kind == RequestKind::kMoveVelocity;
   LimitedBy broken = LimitedBy::kNothing;
   for (const Opening opening : {Opening::kNone, Opening::kEase, Opening::kStop}) {
     if (opening == Opening::kStop && endless) break;
     Plan plan{.profile = {}, .target = out.target, .limited_by = broken};
     Profile whole = Open(params, planner, from, opening);
-    const Status status = PlanOn(params, planner, whole.end(), request, next, last_sense, plan);
+    const Status status = PlanOn(params, around, planner, whole.end(), request, next, plan);
     if (opening == Opening::kNone && status.failed()) return status;
     if (status.failed() || !whole.Append(plan.profile)) continue;
     plan.profile = whole;
@@ -210,6 +233,71 @@ Status PlanOpened(const AxisParams& params, Planner& planner, const KinematicSta
     if (broken == LimitedBy::kNothing) break;
   }
   return Status::Ok();
+}
+
+// How far a motion may get from `from` so that a promise is kept; nothing: as far as it likes.
+std::optional<double> KeptFor(const Surroundings& around, const KinematicState& from, const Request& request,
+                              double target) {
+  if (around.committed && request.positions()) return target;
+  const bool ends = request.positions() || request.kind == RequestKind::kHalt || request.kind == RequestKind::kStop;
+  if (!around.furthest || !ends) return std::nullopt;
+  const bool beyond = request.positions() && SenseOfTravel(from) * (target - *around.furthest) > Rounding(target);
+  return beyond ? std::nullopt : around.furthest;
+}
+
+// With ramps that keep what was promised: those of the request, or stronger ones.
+Status PlanKept(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                const Request& request, const Request* next, const std::optional<double>& furthest, Plan& out) {
+  const Status status = PlanOpened(params, around, planner, from, request, next, out);
+  const double sense = SenseOfTravel(from);
+  if (status.failed() || !furthest || !Passes(out.profile, sense, *furthest)) return status;
+  const Request stronger = Strengthened(params, from, request, *furthest);
+  Plan plan{.profile = {}, .target = out.target};
+  if (PlanOpened(params, around, planner, from, stronger, next, plan).failed()) return status;
+  out = plan;
+  out.limited_by = Passes(out.profile, sense, *furthest) ? LimitedBy::kOvershoot : LimitedBy::kDistance;
+  return status;
+}
+
+// `request` is scaled, and moves.
+Status PlanMoving(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                  const Request& request, const Request* next, Plan& out) {
+  const std::optional<double> furthest = KeptFor(around, from, request, out.target);
+  const Status status = PlanKept(params, around, planner, from, request, next, furthest, out);
+  if (status.ok() && request.positions() && Overshoots(out.profile, out.target)) {
+    out.limited_by = LimitedBy::kOvershoot;
+  }
+  return status;
+}
+
+// To rest where the override holds the request; beyond its target where the next one goes on.
+Status PlanHeld(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                const Request& request, Plan& out) {
+  const double sense = Sense(out.target - from.position);
+  out.limited_by = LimitedBy::kOverride;
+  if (around.passes && PlanPast(planner, from, out.target, sense, 0, request.limits(), out.profile)) {
+    return Status::Ok();
+  }
+  const std::optional<double> furthest = KeptFor(around, from, request, out.target);
+  Request braking = request;
+  braking.kind = RequestKind::kHalt;
+  const Status status = PlanKept(params, around, planner, from, braking, nullptr, furthest, out);
+  out.held = true;
+  if (out.limited_by == LimitedBy::kNothing) out.limited_by = LimitedBy::kOverride;
+  return status;
+}
+
+// `request` and `next` as commanded; positions: to `out.target`.
+Status PlanScaled(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                  const Request& request, const Request* next, Plan& out) {
+  LimitedBy clamped = LimitedBy::kNothing;
+  const Request scaled = Scaled(params, around.factors, request, clamped);
+  if (Held(around.factors, request.kind)) return PlanHeld(params, around, planner, from, scaled, out);
+  LimitedBy next_clamped = LimitedBy::kNothing;
+  const Request scaled_next = next ? Scaled(params, around.factors, *next, next_clamped) : Request{};
+  const Status status = PlanMoving(params, around, planner, from, scaled, next ? &scaled_next : nullptr, out);
+  if (out.limited_by == LimitedBy::kNothing) out.limited_by = clamped;
+  return status;
 }
 
 // While a limit switch is on, no motion may go (further) towards it.
@@ -243,7 +331,13 @@ double TargetOf(const AxisParams& params, const Surroundings& around, const Kine
                 const Request& request) {
   if (request.kind == RequestKind::kMoveAdditive) return around.promised.value_or(from.position) + request.value;
   if (request.by_distance()) return from.position + request.value;
-  return ResolveTarget(params, from, request.limits(), request.value, request.direction, around.last_sense);
+  const auto resolved = [&](const Limits& limits) {
+    return ResolveTarget(params, from, limits, request.value, request.direction, around.last_sense);
+  };
+  const double at_its_best = resolved(params.planner_limits());
+  if (around.committed) return at_its_best;
+  const bool again = around.promised && std::abs(at_its_best - *around.promised) <= Rounding(at_its_best);
+  return again ? *around.promised : resolved(request.limits());
 }
 
 // Resolves the target, where there is one, and refuses what can be refused before planning.
@@ -291,19 +385,25 @@ double ResolveTarget(const AxisParams& params, const KinematicState& from, const
 
 Status PlanRequest(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
                    const Request& request, const Request* next, Plan& out) noexcept {
-  Status status = Check(params, around, from, request, out);
-  if (status.ok()) status = PlanOpened(params, planner, from, request, next, around.last_sense, out);
+  LimitedBy clamped = LimitedBy::kNothing;
+  const Request scaled = Scaled(params, around.factors, request, clamped);
+  Status status = Check(params, around, from, scaled, out);
+  if (status.ok()) status = PlanScaled(params, around, planner, from, request, next, out);
   const bool brakes = !request.positions() && request.kind != RequestKind::kMoveVelocity;
-  return status.failed() || brakes ? status : CheckSwitches(around, from, out.profile);
+  if (status.failed() || brakes) return status;
+  if (!out.held) return CheckSwitches(around, from, out.profile);
+  Plan released{.profile = {}, .target = out.target};  // what it is held back from must be allowed, too
+  status = PlanMoving(params, around, planner, from, scaled, nullptr, released);
+  return status.failed() ? status : CheckSwitches(around, from, released.profile);
 }
 
 Status Replan(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
               const Request& request, const Request* next, Plan& out) noexcept {
-  return PlanOpened(params, planner, from, request, next, around.last_sense, out);
+  return PlanScaled(params, around, planner, from, request, next, out);
 }
 
 Status PlanStop(const AxisParams& params, Planner& planner, const KinematicState& from, const Limits& limits,
-                Profile& out) noexcept {
+                std::optional<double> furthest, Profile& out) noexcept {
   Request halt;
   halt.kind = RequestKind::kHalt;
   halt.velocity = limits.velocity;
@@ -311,7 +411,7 @@ Status PlanStop(const AxisParams& params, Planner& planner, const KinematicState
   halt.deceleration = limits.deceleration;
   halt.jerk = limits.jerk;
   Plan plan;
-  const Status status = PlanOpened(params, planner, from, halt, nullptr, 1, plan);
+  const Status status = PlanKept(params, {}, planner, from, halt, nullptr, furthest, plan);
   if (status.ok()) out = plan.profile;
   return status;
 }

@@ -157,7 +157,7 @@ std::string WhyNot(const Command& command, const AxisParams& params) {
   if (why.high == 0) return field + ": expected another value, this command has no such " + field;
   std::ostringstream text;
   text << field << ": expected ";
-  if (field == "position" || field == "distance") {
+  if (field == "position" || field == "distance" || field.ends_with("_factor")) {
     text << "a finite number from " << why.low << " to " << why.high;
   } else {
     text << (why.low > 0 ? "more than 0 and " : "0 or more and ") << "at most " << why.high << ", the limit of axis "

@@ -9,6 +9,7 @@
 #include "takt/axis/coupling.h"
 #include "takt/axis/encoder.h"
 #include "takt/axis/homing.h"
+#include "takt/axis/override.h"
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
@@ -27,6 +28,7 @@ struct Motion {
   std::uint64_t start_cycle = 0;  // profile time 0 lies ...
   double start_offset_s = 0;      // ... so long before this cycle
   double target = 0;              // u, unwrapped: where a positioning command ends
+  bool held = false;              // the profile ends where an override stops it, not where its command does
   bool arrived = false;           // the profile is over
   std::uint64_t arrived_cycle = 0;
 };
@@ -51,6 +53,8 @@ struct State {
 
   std::array<Request, kBufferSize> buffer;  // [0] is next
   std::uint8_t buffered = 0;
+
+  Override override_factors;  // of commands in control and waiting
 
   // Power.
   bool enable = false;       // the drive is told to be on
