@@ -21,6 +21,11 @@ double Sense(double x) {
   return x < 0 ? -1.0 : 1.0;
 }
 
+// u/s, what the acceleration there is still adds to the speed in this sense until it is taken away.
+double Gained(const KinematicState& from, double sense, double jerk) {
+  return jerk > 0 && sense * from.acceleration > 0 ? from.acceleration * from.acceleration / (2 * jerk) : 0;
+}
+
 // Never backwards and never past the end: what a move that is to be left with a velocity must be.
 bool RunsStraight(const Profile& profile, double sense) {
   const Profile::Range velocity = profile.VelocityRange();
@@ -132,7 +137,8 @@ Status PlanBlended(Planner& planner, const KinematicState& from, double target, 
   return low > 0 ? Status::Ok() : standing;
 }
 
-// Too fast to be left as planned: on beyond the target, still on the way to `speed`. False: it does not get there.
+// Left otherwise than planned: to `speed`, and on beyond the target however far that has come. False: it does not get
+// there.
 bool PlanPast(Planner& planner, const KinematicState& from, double target, double sense, double speed,
               const Limits& limits, Profile& out) {
   if (sense * from.velocity <= 0) return false;
@@ -141,8 +147,12 @@ bool PlanPast(Planner& planner, const KinematicState& from, double target, doubl
   Profile ramp;
   if (planner.ToVelocity(from, sense * speed, ramps, ramp).failed()) return false;
   const double t = ramp.TimeAt(target);
-  if (std::isnan(t)) return false;
-  ramp.Cut(t);
+  const double left = sense * (target - ramp.end().position);
+  if (!std::isnan(t)) {
+    ramp.Cut(t);
+  } else if (speed == 0 || !ramp.Append(left / speed, 0)) {
+    return false;
+  }
   ramp.SnapEnd({target, ramp.end().velocity, ramp.end().acceleration});
   if (sense * ramp.end().velocity <= 0) return false;
   out = ramp;
@@ -176,10 +186,11 @@ Status PlanOn(const AxisParams& params, const Surroundings& around, Planner& pla
     return Status::Ok();
   }
   if (speed > 0) return status;
-  if (status.ok() && sense * from.velocity > limits.velocity && !RunsStraight(out.profile, sense)) {
+  const double fastest = sense * from.velocity + Gained(from, sense, limits.jerk);
+  if (status.ok() && fastest > limits.velocity && Overshoots(out.profile, out.target)) {
     // Faster than asked, and too near to slow down to that first: brake to the target in one go, if that is straight.
     Limits at_speed = limits;
-    at_speed.velocity = std::abs(from.velocity);
+    at_speed.velocity = fastest;
     Profile straight;
     if (planner.ToPosition(from, out.target, 0, at_speed, straight).ok() && RunsStraight(straight, sense)) {
       out.profile = straight;
@@ -235,35 +246,66 @@ Status PlanOpened(const AxisParams& params, const Surroundings& around, Planner&
   return Status::Ok();
 }
 
-// How far a motion may get from `from` so that a promise is kept; nothing: as far as it likes.
-std::optional<double> KeptFor(const Surroundings& around, const KinematicState& from, const Request& request,
-                              double target) {
-  if (around.committed && request.positions()) return target;
-  const bool ends = request.positions() || request.kind == RequestKind::kHalt || request.kind == RequestKind::kStop;
-  if (!around.furthest || !ends) return std::nullopt;
-  const bool beyond = request.positions() && SenseOfTravel(from) * (target - *around.furthest) > Rounding(target);
-  return beyond ? std::nullopt : around.furthest;
+// What of the motion in progress a request must keep.
+Promises KeptFor(const Surroundings& around, const KinematicState& from, const Request& request, double target) {
+  const double sense = SenseOfTravel(from);
+  const bool stops = request.kind == RequestKind::kHalt || request.kind == RequestKind::kStop;
+  const bool onwards =
+      request.positions() ? sense * (target - from.position) >= 0 : SenseOf(request, around.last_sense) == int(sense);
+  Promises kept;
+  kept.straight = (around.again || around.committed || around.furthest) && onwards;
+  if (around.committed && request.positions()) kept.furthest = target;
+  const bool beyond = around.furthest && sense * (target - *around.furthest) > Rounding(target);
+  if (around.furthest && (stops || (request.positions() && !beyond))) kept.furthest = around.furthest;
+  return kept;
 }
 
 // With ramps that keep what was promised: those of the request, or stronger ones.
 Status PlanKept(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                const Request& request, const Request* next, const std::optional<double>& furthest, Plan& out) {
+                const Request& request, const Request* next, const Promises& kept, Plan& out) {
   const Status status = PlanOpened(params, around, planner, from, request, next, out);
-  const double sense = SenseOfTravel(from);
-  if (status.failed() || !furthest || !Passes(out.profile, sense, *furthest)) return status;
-  const Request stronger = Strengthened(params, from, request, *furthest);
+  if (status.failed() || !BreaksPromise(params, kept, out.profile)) return status;
+  const Request stronger = Strengthened(params, from, request, kept);
   Plan plan{.profile = {}, .target = out.target};
   if (PlanOpened(params, around, planner, from, stronger, next, plan).failed()) return status;
   out = plan;
-  out.limited_by = Passes(out.profile, sense, *furthest) ? LimitedBy::kOvershoot : LimitedBy::kDistance;
+  out.limited_by = LimitedBy::kDistance;
   return status;
+}
+
+// Where the move behind the one in control ends, if the motion in progress already runs on towards that.
+std::optional<double> PassingTo(const AxisParams& params, const Surroundings& around, const KinematicState& from,
+                                double target, const Request* next) {
+  if (!around.passes || !next || !next->positions()) return std::nullopt;
+  const double sense = Sense(target - from.position);
+  const double room = RoomToTarget(params, target, sense, *next);
+  return room > 0 ? std::optional(target + sense * room) : std::nullopt;
+}
+
+// Past the target so that the move behind it can still stop where it was promised to.
+void PlanPassing(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                 const Request& request, const Request& next, const Promises& kept, Plan& out) {
+  const Request stronger = Strengthened(params, from, request, kept);
+  Plan plan{.profile = {}, .target = out.target};
+  if (PlanOpened(params, around, planner, from, stronger, &next, plan).ok() &&
+      StopsBy(plan.profile.end(), params.planner_limits(), *kept.furthest)) {
+    out = plan;
+  } else {
+    const double sense = Sense(out.target - from.position);
+    PlanPast(planner, from, out.target, sense, 0, stronger.limits(), out.profile);
+  }
+  out.limited_by = LimitedBy::kDistance;
 }
 
 // `request` is scaled, and moves.
 Status PlanMoving(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
                   const Request& request, const Request* next, Plan& out) {
-  const std::optional<double> furthest = KeptFor(around, from, request, out.target);
-  const Status status = PlanKept(params, around, planner, from, request, next, furthest, out);
+  Promises kept = KeptFor(around, from, request, out.target);
+  const Status status = PlanKept(params, around, planner, from, request, next, kept, out);
+  kept.furthest = PassingTo(params, around, from, out.target, next);
+  if (status.ok() && kept.furthest && !StopsBy(out.profile.end(), next->limits(), *kept.furthest)) {
+    PlanPassing(params, around, planner, from, request, *next, kept, out);
+  }
   if (status.ok() && request.positions() && Overshoots(out.profile, out.target)) {
     out.limited_by = LimitedBy::kOvershoot;
   }
@@ -272,16 +314,18 @@ Status PlanMoving(const AxisParams& params, const Surroundings& around, Planner&
 
 // To rest where the override holds the request; beyond its target where the next one goes on.
 Status PlanHeld(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                const Request& request, Plan& out) {
+                const Request& request, const Request* next, Plan& out) {
   const double sense = Sense(out.target - from.position);
   out.limited_by = LimitedBy::kOverride;
-  if (around.passes && PlanPast(planner, from, out.target, sense, 0, request.limits(), out.profile)) {
-    return Status::Ok();
+  Promises kept = KeptFor(around, from, request, out.target);
+  if (around.passes) {
+    kept.furthest = PassingTo(params, around, from, out.target, next);
+    const Request enough = Strengthened(params, from, request, kept);
+    if (PlanPast(planner, from, out.target, sense, 0, enough.limits(), out.profile)) return Status::Ok();
   }
-  const std::optional<double> furthest = KeptFor(around, from, request, out.target);
   Request braking = request;
   braking.kind = RequestKind::kHalt;
-  const Status status = PlanKept(params, around, planner, from, braking, nullptr, furthest, out);
+  const Status status = PlanKept(params, around, planner, from, braking, nullptr, kept, out);
   out.held = true;
   if (out.limited_by == LimitedBy::kNothing) out.limited_by = LimitedBy::kOverride;
   return status;
@@ -292,10 +336,11 @@ Status PlanScaled(const AxisParams& params, const Surroundings& around, Planner&
                   const Request& request, const Request* next, Plan& out) {
   LimitedBy clamped = LimitedBy::kNothing;
   const Request scaled = Scaled(params, around.factors, request, clamped);
-  if (Held(around.factors, request.kind)) return PlanHeld(params, around, planner, from, scaled, out);
   LimitedBy next_clamped = LimitedBy::kNothing;
   const Request scaled_next = next ? Scaled(params, around.factors, *next, next_clamped) : Request{};
-  const Status status = PlanMoving(params, around, planner, from, scaled, next ? &scaled_next : nullptr, out);
+  const Request* const then = next ? &scaled_next : nullptr;
+  if (Held(around.factors, request.kind)) return PlanHeld(params, around, planner, from, scaled, then, out);
+  const Status status = PlanMoving(params, around, planner, from, scaled, then, out);
   if (out.limited_by == LimitedBy::kNothing) out.limited_by = clamped;
   return status;
 }
@@ -411,7 +456,7 @@ Status PlanStop(const AxisParams& params, Planner& planner, const KinematicState
   halt.deceleration = limits.deceleration;
   halt.jerk = limits.jerk;
   Plan plan;
-  const Status status = PlanKept(params, {}, planner, from, halt, nullptr, furthest, plan);
+  const Status status = PlanKept(params, {}, planner, from, halt, nullptr, {furthest}, plan);
   if (status.ok()) out = plan.profile;
   return status;
 }

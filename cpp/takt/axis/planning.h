@@ -23,7 +23,8 @@ struct Surroundings {
   // u, unwrapped: the end of the motion in progress, or further out where it passes that. Nothing that does not itself
   // go beyond is to go beyond (AX-97).
   std::optional<double> furthest;
-  bool passes = false;     // the motion in progress goes on beyond its target
+  bool again = false;      // the request is the one in control, planned anew
+  bool passes = false;     // and the motion in progress goes on beyond its target
   bool committed = false;  // the target of the request is a promise already: the move before was left towards it
   Override factors;
 };

@@ -25,6 +25,26 @@ double Slack(double position, double way) {
   return Rounding(position) + 1e-8 * std::abs(way);
 }
 
+// Whether a motion that sets out in this sense gets beyond `furthest`.
+bool Passes(const Profile& profile, double sense, double furthest) {
+  const Profile::Range range = profile.PositionRange();
+  const double slack = Slack(furthest, furthest - profile.start().position);
+  return sense > 0 ? range.max > furthest + slack : range.min < furthest - slack;
+}
+
+bool TurnsRound(const AxisParams& params, const Profile& profile) {
+  const Profile::Range velocity = profile.VelocityRange();
+  const double slack = 1e-9 * params.limits.velocity;
+  const double start = profile.start().velocity;
+  return (start > 0 && velocity.min < -slack) || (start < 0 && velocity.max > slack);
+}
+
+// Whether the deceleration there is outlasts the speed, so that a stop must swing back.
+bool SwingsBack(const KinematicState& from, double jerk) {
+  const bool brakes = from.velocity * from.acceleration < 0;
+  return brakes && jerk > 0 && from.acceleration * from.acceleration > 2 * jerk * std::abs(from.velocity) * (1 + 1e-9);
+}
+
 }  // namespace
 
 double SenseOfTravel(const KinematicState& from) noexcept {
@@ -32,18 +52,23 @@ double SenseOfTravel(const KinematicState& from) noexcept {
   return running < 0 ? -1 : 1;
 }
 
-bool Passes(const Profile& profile, double sense, double furthest) noexcept {
-  const Profile::Range range = profile.PositionRange();
-  const double slack = Slack(furthest, furthest - profile.start().position);
-  return sense > 0 ? range.max > furthest + slack : range.min < furthest - slack;
-}
-
 bool Overshoots(const Profile& profile, double target) noexcept {
   return Passes(profile, target < profile.start().position ? -1 : 1, target);
 }
 
+bool BreaksPromise(const AxisParams& params, const Promises& promises, const Profile& profile) noexcept {
+  const double sense = SenseOfTravel(profile.start());
+  return (promises.furthest && Passes(profile, sense, *promises.furthest)) ||
+         (promises.straight && TurnsRound(params, profile));
+}
+
+bool StopsBy(const KinematicState& state, const trajectory::Limits& limits, double furthest) noexcept {
+  const double over = trajectory::StopPosition(state, limits) - furthest;
+  return SenseOfTravel(state) * over <= Slack(furthest, furthest - state.position);
+}
+
 Request Strengthened(const AxisParams& params, const KinematicState& from, const Request& request,
-                     double furthest) noexcept {
+                     const Promises& promises) noexcept {
   const trajectory::Limits own = params.planner_limits();
   const double sense = SenseOfTravel(from);
   const auto with = [&](double share) {
@@ -52,14 +77,16 @@ Request Strengthened(const AxisParams& params, const KinematicState& from, const
     r.jerk = Between(request.jerk, own.jerk, share);
     return r;
   };
-  const auto stops = [&](double share) {
-    return sense * (trajectory::StopPosition(from, with(share).limits()) - furthest) <= 0;
+  const auto keeps = [&](double share) {
+    const trajectory::Limits limits = with(share).limits();
+    if (promises.straight && SwingsBack(from, limits.jerk)) return false;
+    return !promises.furthest || sense * (trajectory::StopPosition(from, limits) - *promises.furthest) <= 0;
   };
   double low = 0;
   double high = 1;
-  for (int i = 0; stops(1) && i < kBisections; ++i) {
+  for (int i = 0; keeps(1) && i < kBisections; ++i) {
     const double middle = 0.5 * (low + high);
-    (stops(middle) ? high : low) = middle;
+    (keeps(middle) ? high : low) = middle;
   }
   return with(high);
 }

@@ -281,6 +281,7 @@ void StartNext(const Context& c, double late_s, State& s, bool committed) noexce
 void ReplanActive(const Context& c, State& s) noexcept {
   if (!s.active.positions() || HasPassed(s) || (s.motion.arrived && !s.motion.held)) return;
   Surroundings around = SurroundingsOf(c, s);
+  around.again = true;
   around.passes = s.motion.profile.end().velocity != 0;
   Plan plan;
   plan.target = s.motion.target;
@@ -299,7 +300,9 @@ void PlanAgain(const Context& c, State& s) noexcept {
     status = PlanJog(c, held, s, plan);
   } else if (s.active.kind == RequestKind::kMoveVelocity || HasPassed(s)) {
     const Request velocity = HasPassed(s) ? Onward(s) : s.active;
-    status = PlanRequest(c.params, SurroundingsOf(c, s), c.planner, s.setpoint, velocity, nullptr, plan);
+    Surroundings around = SurroundingsOf(c, s);
+    around.again = true;
+    status = PlanRequest(c.params, around, c.planner, s.setpoint, velocity, nullptr, plan);
   } else {
     return ReplanActive(c, s);
   }
