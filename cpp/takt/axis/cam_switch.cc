@@ -103,7 +103,6 @@ std::uint32_t Step(const CamSwitches& list, const CamSwitchInputs& in, CamSwitch
 
 std::uint32_t SwitchCams(const Context& c, State& s) noexcept {
   CamSwitchState& cams = s.cam_switch;
-  if (cams.list < 0) return 0;
   const bool set = cams.source == MasterSource::kSetValue;
   CamSwitchInputs in;
   in.position = set ? s.setpoint.position : s.actual.position;

@@ -33,9 +33,17 @@ bool KeepsAcceleration(const KinematicState& before, const KinematicState& x, co
   return std::abs(x.acceleration) <= allowed * (1 + kTolerance);
 }
 
+// Braking that is stronger than the axis may speed up has to be eased before it passes standstill.
+bool KeepsReversal(const KinematicState& x, const Limits& own) {
+  const double strongest = own.acceleration * (1 + kTolerance);
+  const double excess = x.acceleration * x.acceleration - strongest * strongest;
+  if (excess <= 0) return true;
+  return x.velocity * x.acceleration < 0 && 2 * own.jerk * std::abs(x.velocity) >= (own.jerk > 0 ? excess : 0);
+}
+
 // Whether a motion within the axis' jerk leads from one to the other in `t` seconds. Of the motions between two samples
 // with given accelerations the velocity can differ by the area of a triangle of jerks, the position by less than
-// jerk t^3 / 16.
+// jerk t^3 / 16; from the mean velocity's way it never differs by more than jerk t^3 / 12.
 bool Continues(const KinematicState& before, const KinematicState& x, const Limits& own, double t) {
   if (own.jerk == 0) {
     const double mean = (x.velocity - before.velocity) / t;
@@ -49,10 +57,11 @@ bool Continues(const KinematicState& before, const KinematicState& x, const Limi
   const double velocity = before.velocity + 0.5 * t * (before.acceleration + x.acceleration);
   const double bend = 0.25 * (largest * largest - step * step) / own.jerk + kTolerance * own.velocity;
   if (std::abs(x.velocity - velocity) > bend) return false;
-  const double position =
-      before.position + 0.5 * t * (before.velocity + x.velocity) + t * t / 12 * (before.acceleration - x.acceleration);
-  const double slack = own.jerk * t * t * t / 16 + kTolerance * (own.velocity * t + std::abs(position) * 1e-3);
-  return std::abs(x.position - position) <= slack;
+  const double away = x.position - before.position - 0.5 * t * (before.velocity + x.velocity);
+  const double expected = t * t / 12 * (before.acceleration - x.acceleration);
+  const double cube = own.jerk * t * t * t;
+  const double rounding = kTolerance * (own.velocity * t + std::abs(x.position) * 1e-3);
+  return std::abs(away) <= cube / 12 + rounding && std::abs(away - expected) <= cube / 16 + rounding;
 }
 
 // Towards a velocity with the axis' own ramps: keeps the invariant from any state that has it.
@@ -105,7 +114,8 @@ KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& befo
                      ChaseState& state) noexcept {
   const Limits own = c.params.planner_limits();
   const auto keeps = [&](const KinematicState& x) {
-    return KeepsVelocity(x, own) && KeepsAcceleration(before, x, own) && Continues(before, x, own, c.period_s);
+    return KeepsVelocity(x, own) && KeepsAcceleration(before, x, own) && KeepsReversal(x, own) &&
+           Continues(before, x, own, c.period_s);
   };
   const bool was_in_step = state.in_step;
   state.in_step = false;
@@ -127,6 +137,12 @@ KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& befo
     state.in_step = true;
   }
   return next;
+}
+
+LimitedBy Beyond(const Limits& own, const KinematicState& demand) noexcept {
+  if (std::abs(demand.velocity) > own.velocity) return LimitedBy::kVelocity;
+  const double ramp = demand.velocity * demand.acceleration > 0 ? own.acceleration : own.deceleration;
+  return std::abs(demand.acceleration) > ramp ? LimitedBy::kAcceleration : LimitedBy::kNothing;
 }
 
 void describe(Description<ChaseState>& d) {

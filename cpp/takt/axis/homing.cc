@@ -328,7 +328,6 @@ void StepHoming(const Context& c, State& s) noexcept {
 
 void WatchFlying(const Context& c, State& s) noexcept {
   HomingState& h = s.homing;
-  if (h.flying_ticket == 0) return;
   if (!s.loop_closed || s.plc == PlcState::kErrorStop || s.plc == PlcState::kHoming) {
     return EndFlying(c, FeedbackState::kAborted, ErrorId::kNone, s);
   }

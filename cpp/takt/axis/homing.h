@@ -109,7 +109,7 @@ bool MayFollowStep(RequestKind kind) noexcept;
 Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) noexcept;
 // Each cycle after the set point was made: events of the step in control.
 void StepHoming(const Context& c, State& s) noexcept;
-// Each cycle before the set point is made: references that are taken in passing.
+// Each cycle in which a reference is awaited in passing (flying_ticket), before the set point is made.
 void WatchFlying(const Context& c, State& s) noexcept;
 // The limit switches belong to the search for now: no fault.
 bool OwnsLimitSwitches(const State& s) noexcept;

@@ -47,10 +47,6 @@ Surroundings SurroundingsOf(const Context& c, const State& s) noexcept {
   return around;
 }
 
-double Elapsed(const Context& c, const State& s) noexcept {
-  return static_cast<double>(c.cycle.count - s.motion.start_cycle) * c.cycle.period_s + s.motion.start_offset_s;
-}
-
 void StartMotion(const Profile& profile, double target, const MotionStart& start, State& s) noexcept {
   s.motion.profile = profile;
   s.motion.target = target;
@@ -106,6 +102,28 @@ void ConcludePositioning(const Context& c, double late_s, State& s) {
   }
 }
 
+void NoteReached(const Context& c, State& s) {
+  if (s.reported) return;
+  Report(c, s.active.ticket, FeedbackState::kActive, ErrorId::kNone, true);
+  s.reported = true;
+}
+
+// A command that never ends by itself gives way to the one behind it.
+void GiveWay(const Context& c, State& s) {
+  if (s.buffered == 0) return;
+  const Ticket ticket = s.active.ticket;
+  if (Couples(s.active.kind)) Uncouple(c, false, s);
+  s.active = Request{};
+  Report(c, ticket, FeedbackState::kAborted, ErrorId::kNone, s.reported);
+  StartNext(c, 0, s);
+}
+
+// A command that never ends by itself has reached what it is for.
+void ConcludeReached(const Context& c, State& s) {
+  NoteReached(c, s);
+  GiveWay(c, s);
+}
+
 // The velocity with which a continuous move goes on from its position.
 Request Onward(const State& s) {
   Request onward = s.active;
@@ -128,20 +146,22 @@ void GoOn(const Context& c, double late_s, State& s) {
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
 }
 
-// A command that never ends by itself has reached what it is for.
-void ConcludeReached(const Context& c, double late_s, State& s) {
-  if (!s.reported) {
-    Report(c, s.active.ticket, FeedbackState::kActive, ErrorId::kNone, true);
-    s.reported = true;
-    if (s.active.continuous()) s.active.direction = s.last_sense < 0 ? Direction::kNegative : Direction::kPositive;
-  }
-  if (s.active.continuous() && s.motion.profile.end().acceleration != 0) GoOn(c, late_s, s);
-  if (s.buffered > 0) {
-    const Ticket ticket = s.active.ticket;
-    s.active = Request{};
-    Report(c, ticket, FeedbackState::kAborted, ErrorId::kNone, true);
-    StartNext(c, 0, s);
-  }
+void ConcludeContinuous(const Context& c, double late_s, State& s) {
+  if (!s.reported) s.active.direction = s.last_sense < 0 ? Direction::kNegative : Direction::kPositive;
+  NoteReached(c, s);
+  if (s.motion.profile.end().acceleration != 0) GoOn(c, late_s, s);
+  GiveWay(c, s);
+}
+
+void ConcludeCam(const Context& c, State& s) {
+  if (s.coupling.chase.in_step) NoteReached(c, s);
+  if (s.coupling.cam.over) GiveWay(c, s);
+}
+
+// The last velocity stays.
+void ConcludeVelocityProfile(const Context& c, double late_s, State& s) {
+  EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+  if (s.buffered > 0) StartNext(c, late_s, s);
 }
 
 void ConcludeStop(const Context& c, State& s) {
@@ -177,6 +197,18 @@ void TakeControl(const Context& c, const Request& request, const Plan& plan, con
 
 std::uint64_t LeaseEnd(const Context& c, double lease_s) noexcept {
   return c.cycle.count + static_cast<std::uint64_t>(std::ceil(lease_s / c.cycle.period_s));
+}
+
+bool FollowsDemand(RequestKind kind) noexcept {
+  return Couples(kind) || FollowsTable(kind);
+}
+
+Status MayFollow(const Context& c, const Request& request, const State& s) noexcept {
+  return Couples(request.kind) ? MayCouple(c, request, s) : MayFollowTable(c, request, s);
+}
+
+void BeginFollowing(const Context& c, const Request& request, const MotionStart& start, State& s) noexcept {
+  Couples(request.kind) ? Couple(c, request, s) : BeginTable(c, request, start, s);
 }
 
 void EndActive(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
@@ -253,12 +285,14 @@ void StartNext(const Context& c, double late_s, State& s, bool committed) noexce
       continue;
     }
     const KinematicState from = seamless ? s.motion.profile.end() : s.setpoint;
-    if (Couples(next.kind)) return Couple(c, next, s);
     Plan plan;
     const bool homes = Homes(next.kind);
-    const Status status = homes ? BeginHoming(c, next, false, s)
-                                : PlanRequest(c.params, around, c.planner, from, next, Follower(s), plan);
+    const bool follows = FollowsDemand(next.kind);
+    const Status status = homes     ? BeginHoming(c, next, false, s)
+                          : follows ? MayFollow(c, next, s)
+                                    : PlanRequest(c.params, around, c.planner, from, next, Follower(s), plan);
     if (status.ok() && homes) return;
+    if (status.ok() && follows) return BeginFollowing(c, next, FromThisCycle(c), s);
     if (status.ok()) {
       TakeControl(c, next, plan, {c.cycle.count, seamless ? late_s : 0}, s);
       s.setpoint = s.motion.profile.At(Elapsed(c, s));
@@ -318,16 +352,26 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
     case RequestKind::kMoveAdditive:
     case RequestKind::kInch:
     case RequestKind::kTouch:
+    case RequestKind::kPositionProfile:
       ConcludePositioning(c, late_s, s);
       break;
-    case RequestKind::kMoveVelocity:
     case RequestKind::kMoveContinuousAbsolute:
     case RequestKind::kMoveContinuousRelative:
+      ConcludeContinuous(c, late_s, s);
+      break;
+    case RequestKind::kMoveVelocity:
     case RequestKind::kTorqueControl:
     case RequestKind::kGearIn:
     case RequestKind::kGearInPos:
     case RequestKind::kCombineAxes:
-      ConcludeReached(c, late_s, s);
+      ConcludeReached(c, s);
+      break;
+    case RequestKind::kCamIn:
+      ConcludeCam(c, s);
+      break;
+    case RequestKind::kVelocityProfile:
+    case RequestKind::kAccelerationProfile:
+      ConcludeVelocityProfile(c, late_s, s);
       break;
     case RequestKind::kHalt:
       EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);

@@ -25,7 +25,9 @@ void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId err
 void Enter(State& s, PlcState to) noexcept;
 Surroundings SurroundingsOf(const Context& c, const State& s) noexcept;
 // Seconds of the motion in progress at this cycle.
-double Elapsed(const Context& c, const State& s) noexcept;
+inline double Elapsed(const Context& c, const State& s) noexcept {
+  return static_cast<double>(c.cycle.count - s.motion.start_cycle) * c.cycle.period_s + s.motion.start_offset_s;
+}
 
 void StartMotion(const trajectory::Profile& profile, double target, const MotionStart& start, State& s) noexcept;
 void StartMotion(const Plan& plan, const MotionStart& start, State& s) noexcept;
@@ -36,6 +38,12 @@ void Grant(const Context& c, const Request& request, State& s, double travel_s =
 // ... or with a motion of its own.
 void TakeControl(const Context& c, const Request& request, const Plan& plan, const MotionStart& start,
                  State& s) noexcept;
+// Commands that follow something that moves, a master or a table over time, instead of a plan.
+bool FollowsDemand(RequestKind kind) noexcept;
+// Whether such a command may take control now: MayCouple, MayFollowTable.
+Status MayFollow(const Context& c, const Request& request, const State& s) noexcept;
+// Puts it in control. What was in control must have been ended.
+void BeginFollowing(const Context& c, const Request& request, const MotionStart& start, State& s) noexcept;
 // Ends the command in control; the motion goes on until something replaces it.
 void EndActive(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
 void AbortBuffer(const Context& c, State& s) noexcept;

@@ -16,6 +16,13 @@ void describe(Description<Motion>& d) {
   d.internal<&M::arrived_cycle>("Since when.");
 }
 
+void describe(Description<Dormant>& d) {
+  d.about("Supervision that was switched off at run time, with the values it comes back with.");
+  d.internal<&Dormant::lower>(unit::u, "SW limit LimNeg.");
+  d.internal<&Dormant::upper>(unit::u, "SW limit LimPos.");
+  d.internal<&Dormant::lag>(unit::u, "Largest following error in motion.");
+}
+
 void describe(Description<State>& d) {
   using S = State;
   d.about("All memory of an axis.");
@@ -32,6 +39,8 @@ void describe(Description<State>& d) {
   d.internal<&S::lease_end_cycle>("When the dead man's lease ends.");
   d.internal<&S::reset_ticket>("Of the reset in progress.");
   d.internal<&S::reset_pending>("A reset waits for standstill.");
+  d.internal<&S::end_of_profile>("The end of a cam was passed.");
+  d.internal<&S::profile_ends>("How often.");
   d.internal<&S::buffer>("Buffered commands, the next one first.");
   d.internal<&S::buffered>("How many.");
   d.internal<&S::override_factors>("Factors of velocity, ramps and jerk.");
@@ -53,6 +62,7 @@ void describe(Description<State>& d) {
   d.internal<&S::encoder_line_error>("Because the encoder says so.");
   d.internal<&S::torque_nm>(unit::nm, "As the drive says.");
   d.internal<&S::constants_set>("GT_SetConstant was given.");
+  d.internal<&S::dormant>("Supervision switched off.");
   d.internal<&S::direct_voltage_v>(unit::volt, "Put out while Disabled.");
   d.internal<&S::coupled>("Follows its master.");
   d.internal<&S::follow_offset>(unit::u, "Distance to the master's position times the ratio.");
@@ -65,6 +75,7 @@ void describe(Description<State>& d) {
   d.internal<&S::illegal_transitions>("Always 0.");
   d.internal<&S::motion>("Motion in progress.");
   d.internal<&S::coupling>("Masters it follows.");
+  d.internal<&S::time_table>("Table over time that it follows.");
   d.internal<&S::homing>("Its reference.");
   d.internal<&S::probe>("Touch probe.");
   d.internal<&S::torque>("Torque control.");

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "takt/axis/cam_switch.h"
 #include "takt/axis/control_loop.h"
@@ -13,6 +14,7 @@
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
+#include "takt/axis/time_table.h"
 #include "takt/axis/torque.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
@@ -33,33 +35,38 @@ struct Motion {
   std::uint64_t arrived_cycle = 0;
 };
 
+// Supervision that was switched off at run time, to be switched on again.
+struct Dormant {
+  std::optional<double> lower{}, upper{};  // u, SW limits
+  std::optional<double> lag{};             // u, largest following error in motion
+};
+
 struct State {
+  // In the order of use: what every cycle reads comes first and lies close together.
   // Positions here are unwrapped; only the outputs are taken modulo.
   KinematicState setpoint;
   KinematicState actual;  // acceleration is not measured: 0
+  double due =
+      0;  // u, where the axis should be now: the set point of the cycle before, which had this long to be reached
+  double following_error = 0;  // u, due minus what is measured
+
   PlcState plc = PlcState::kDisabled;
   ErrorId error = ErrorId::kNone;
   LimitedBy limited_by = LimitedBy::kNothing;
-
-  Request active;  // in control; kind none: nothing is
   bool reported =
       false;  // its final feedback is out although it stays in control (held stop), or `reached` is (velocity)
   std::int8_t jog_sense = 0;   // 1, -1: jogging that way; 0: not
   bool jog_armed = false;      // a key may start a motion: a new jog, or both keys were seen up since the last one
   std::int8_t last_sense = 1;  // sense of the last motion, for Direction::kCurrent
-  std::uint64_t lease_end_cycle = 0;
-  Ticket reset_ticket = 0;
   bool reset_pending = false;
-
-  std::array<Request, kBufferSize> buffer;  // [0] is next
+  bool constants_set = false;   // by GT_SetConstant
+  bool coupled = false;         // follows a master from load on
+  bool end_of_profile = false;  // the end of a cam was passed in this cycle
   std::uint8_t buffered = 0;
-
-  Override override_factors;  // of commands in control and waiting
 
   // Power.
   bool enable = false;       // the drive is told to be on
   bool loop_closed = false;  // and the position loop is closed, the brake released
-  std::uint64_t enable_cycle = 0;
 
   // Switches after inversion, and as they were in the cycle before.
   bool limit_positive = false;
@@ -67,44 +74,45 @@ struct State {
   bool reference = false;
   bool touch_probe = false;
   bool index_pulse = false;  // one came since the cycle before ...
-  std::uint32_t index_pulses = 0;
-  std::uint32_t index_counts = 0;  // ... at this count
   bool limit_positive_before = false;
   bool limit_negative_before = false;
   bool drive_ready = false;
   bool drive_fault = false;
   bool encoder_error = false;       // not to be believed this cycle
   bool encoder_line_error = false;  // because the encoder says so
+  std::uint32_t index_pulses = 0;
+  std::uint32_t index_counts = 0;  // ... at this count
+  std::uint32_t cam_outputs = 0;
+  std::uint32_t profile_ends = 0;  // how often the end of a cam was passed
+  std::uint64_t enable_cycle = 0;
+  std::uint64_t lease_end_cycle = 0;
+
   double torque_nm = 0;
-
-  bool constants_set = false;   // by GT_SetConstant
+  double voltage_v = 0;
   double direct_voltage_v = 0;  // V, put out while the axis is Disabled (GT_Analog)
-
-  // Axes that follow a master.
-  bool coupled = false;
-  double follow_offset = 0;  // u, own position minus ratio times the master's when they were coupled
-
-  // Rotary axes: whole turns taken out of all positions, so that they stay small (counted in u).
-  double origin = 0;
+  double origin = 0;            // rotary axes: whole turns taken out of all positions, so that they stay small (in u)
+  double follow_offset = 0;     // u, own position minus ratio times the master's when they were coupled
+  Override override_factors;    // of commands in control and waiting
   EncoderState encoder;
   ControlLoopState loop;
-  double voltage_v = 0;
-  double due =
-      0;  // u, where the axis should be now: the set point of the cycle before, which had this long to be reached
-  double following_error = 0;             // u, due minus what is measured
-  std::uint64_t illegal_transitions = 0;  // always 0: the state table holds
+  TorqueState torque;
+  HomingState homing;
+  ProbeState probe;
+  CamSwitchState cam_switch;
 
+  Request active;  // in control; kind none: nothing is
   Motion motion;
   CouplingState coupling;
-  HomingState homing;
+  TimeTableState time_table;
 
-  ProbeState probe;
-  TorqueState torque;
-  CamSwitchState cam_switch;
-  std::uint32_t cam_outputs = 0;
+  Dormant dormant;
+  Ticket reset_ticket = 0;
+  std::array<Request, kBufferSize> buffer;  // [0] is next
+  std::uint64_t illegal_transitions = 0;    // always 0: the state table holds
 };
 
 void describe(Description<Motion>&);
+void describe(Description<Dormant>&);
 void describe(Description<State>&);
 
 }  // namespace takt::axis
