@@ -90,49 +90,74 @@ double TakeOverSpeed(const AxisParams& params, const Request& request, double ta
   return FastestThatStops(speed, braking, room);
 }
 
+// To `target`, left with `speed` of this sense. An axis that is faster than asked the planner brakes to that velocity
+// first, as hard as it may, even where that takes it backwards: then gently, or, too near for that, to the target in
+// one go (`limited_by`).
+Status PlanTo(Planner& planner, const KinematicState& from, double target, double sense, double speed,
+              const Limits& limits, Plan& out) {
+  const Status status = planner.ToPosition(from, target, sense * speed, limits, out.profile);
+  const double fastest = sense * from.velocity + Gained(from, sense, limits.jerk);
+  if (status.failed() || fastest <= limits.velocity || RunsStraight(out.profile, sense)) return status;
+  Profile gently;
+  Profile rest;
+  if (planner.ToVelocity(from, sense * limits.velocity, limits, gently).ok() &&
+      planner.ToPosition(gently.end(), target, sense * speed, limits, rest).ok() && gently.Append(rest) &&
+      RunsStraight(gently, sense)) {
+    out.profile = gently;
+    return status;
+  }
+  Limits at_speed = limits;
+  at_speed.velocity = fastest;
+  Profile at_once;
+  if (planner.ToPosition(from, target, sense * speed, at_speed, at_once).ok() && RunsStraight(at_once, sense)) {
+    out.profile = at_once;
+    out.limited_by = LimitedBy::kDistance;
+  }
+  return status;
+}
+
 // To `target`, left with `speed` in the sense of travel: at the request's velocity first, then up to a higher `speed`
 // so late that it is reached at the target.
 bool PlanLeaving(Planner& planner, const KinematicState& from, double target, double sense, double speed,
-                 const Limits& limits, Profile& out) {
-  Profile profile;
-  if (speed <= limits.velocity) {
-    if (planner.ToPosition(from, target, sense * speed, limits, profile).failed() || !RunsStraight(profile, sense))
-      return false;
-    out = profile;
-    return true;
-  }
-  Limits faster = limits;
-  faster.velocity = speed;
+                 const Limits& limits, Plan& out) {
+  const double first = std::min(speed, limits.velocity);
   Profile ramp;
-  if (planner.ToVelocity({0, sense * limits.velocity, 0}, sense * speed, faster, ramp).failed()) return false;
+  if (speed > first) {
+    Limits faster = limits;
+    faster.velocity = speed;
+    if (planner.ToVelocity({0, sense * first, 0}, sense * speed, faster, ramp).failed()) return false;
+  }
   const double begin = target - ramp.end().position;
-  if (planner.ToPosition(from, begin, sense * limits.velocity, limits, profile).failed() ||
-      !RunsStraight(profile, sense))
+  Plan plan = out;
+  if (PlanTo(planner, from, begin, sense, first, limits, plan).failed() || !RunsStraight(plan.profile, sense)) {
     return false;
-  ramp.Shift(begin);
-  if (!profile.Append(ramp)) return false;
-  profile.SnapEnd({target, sense * speed, 0});
-  out = profile;
+  }
+  if (speed > first) {
+    ramp.Shift(begin);
+    if (!plan.profile.Append(ramp)) return false;
+    plan.profile.SnapEnd({target, sense * speed, 0});
+  }
+  out = plan;
   return true;
 }
 
 // The plan with the highest speed at its end not above `speed`; standing still at the end is always one.
 Status PlanBlended(Planner& planner, const KinematicState& from, double target, double sense, double speed,
                    const Limits& limits, Plan& out) {
-  if (PlanLeaving(planner, from, target, sense, speed, limits, out.profile)) return Status::Ok();
+  if (PlanLeaving(planner, from, target, sense, speed, limits, out)) return Status::Ok();
   out.limited_by = LimitedBy::kDistance;
   double low = 0;
   double high = std::min(speed, limits.velocity);
-  const bool at_own_velocity = PlanLeaving(planner, from, target, sense, high, limits, out.profile);
+  const bool at_own_velocity = PlanLeaving(planner, from, target, sense, high, limits, out);
   if (at_own_velocity && speed <= high) return Status::Ok();
   if (at_own_velocity) {  // more than its own velocity, if not all of what was asked
     low = high;
     high = speed;
   }
-  const Status standing = at_own_velocity ? Status::Ok() : planner.ToPosition(from, target, 0, limits, out.profile);
+  const Status standing = at_own_velocity ? Status::Ok() : PlanTo(planner, from, target, sense, 0, limits, out);
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (low + high);
-    (PlanLeaving(planner, from, target, sense, middle, limits, out.profile) ? low : high) = middle;
+    (PlanLeaving(planner, from, target, sense, middle, limits, out) ? low : high) = middle;
   }
   return low > 0 ? Status::Ok() : standing;
 }
@@ -180,22 +205,10 @@ Status PlanOn(const AxisParams& params, const Surroundings& around, Planner& pla
     if (speed == 0) out.limited_by = LimitedBy::kDistance;
   }
   const Status status = speed > 0 ? PlanBlended(planner, from, out.target, sense, speed, limits, out)
-                                  : planner.ToPosition(from, out.target, 0, limits, out.profile);
+                                  : PlanTo(planner, from, out.target, sense, 0, limits, out);
   if (around.passes && (status.failed() || Overshoots(out.profile, out.target)) &&
       PlanPast(planner, from, out.target, sense, speed, limits, out.profile)) {
     return Status::Ok();
-  }
-  if (speed > 0) return status;
-  const double fastest = sense * from.velocity + Gained(from, sense, limits.jerk);
-  if (status.ok() && fastest > limits.velocity && Overshoots(out.profile, out.target)) {
-    // Faster than asked, and too near to slow down to that first: brake to the target in one go, if that is straight.
-    Limits at_speed = limits;
-    at_speed.velocity = fastest;
-    Profile straight;
-    if (planner.ToPosition(from, out.target, 0, at_speed, straight).ok() && RunsStraight(straight, sense)) {
-      out.profile = straight;
-      out.limited_by = LimitedBy::kDistance;
-    }
   }
   return status;
 }
