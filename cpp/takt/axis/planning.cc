@@ -206,7 +206,7 @@ Status PlanOn(const AxisParams& params, const Surroundings& around, Planner& pla
   }
   const Status status = speed > 0 ? PlanBlended(planner, from, out.target, sense, speed, limits, out)
                                   : PlanTo(planner, from, out.target, sense, 0, limits, out);
-  if (around.passes && (status.failed() || Overshoots(out.profile, out.target)) &&
+  if (around.passes && (status.failed() || !RunsStraight(out.profile, sense)) &&
       PlanPast(planner, from, out.target, sense, speed, limits, out.profile)) {
     return Status::Ok();
   }
@@ -329,17 +329,20 @@ Status PlanMoving(const AxisParams& params, const Surroundings& around, Planner&
 Status PlanHeld(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
                 const Request& request, const Request* next, Plan& out) {
   const double sense = Sense(out.target - from.position);
-  out.limited_by = LimitedBy::kOverride;
   Promises kept = KeptFor(around, from, request, out.target);
-  if (around.passes) {
-    kept.furthest = PassingTo(params, around, from, out.target, next);
-    const Request enough = Strengthened(params, from, request, kept);
-    if (PlanPast(planner, from, out.target, sense, 0, enough.limits(), out.profile)) return Status::Ok();
-  }
   Request braking = request;
+  if (around.passes) {
+    Promises passing = kept;
+    passing.furthest = PassingTo(params, around, from, out.target, next);
+    braking = Strengthened(params, from, request, passing);
+    out.limited_by = LimitedBy::kOverride;
+    if (PlanPast(planner, from, out.target, sense, 0, braking.limits(), out.profile)) return Status::Ok();
+  }
   braking.kind = RequestKind::kHalt;
   const Status status = PlanKept(params, around, planner, from, braking, nullptr, kept, out);
-  out.held = true;
+  const KinematicState end = out.profile.end();
+  out.held = !request.positions() || std::abs(end.position - out.target) > 10 * Rounding(out.target);
+  if (!out.held) out.profile.SnapEnd({out.target, end.velocity, end.acceleration});
   if (out.limited_by == LimitedBy::kNothing) out.limited_by = LimitedBy::kOverride;
   return status;
 }

@@ -13,6 +13,7 @@ using trajectory::Profile;
 namespace {
 
 constexpr int kBisections = 48;
+constexpr double kSwing = 1e-6;  // share of a speed that counts as none
 
 // Between two limits so that what takes time (stopping) grows evenly. 0: unlimited.
 double Between(double weak, double strong, double share) {
@@ -39,10 +40,11 @@ bool TurnsRound(const AxisParams& params, const Profile& profile) {
   return (start > 0 && velocity.min < -slack) || (start < 0 && velocity.max > slack);
 }
 
-// Whether the deceleration there is outlasts the speed, so that a stop must swing back.
-bool SwingsBack(const KinematicState& from, double jerk) {
+// Whether the deceleration there is outlasts the speed, so that a stop must swing back. `margin`: by how little.
+bool SwingsBack(const KinematicState& from, double jerk, double margin) {
   const bool brakes = from.velocity * from.acceleration < 0;
-  return brakes && jerk > 0 && from.acceleration * from.acceleration > 2 * jerk * std::abs(from.velocity) * (1 + 1e-9);
+  return brakes && jerk > 0 &&
+         from.acceleration * from.acceleration > 2 * jerk * std::abs(from.velocity) * (1 + margin);
 }
 
 }  // namespace
@@ -63,6 +65,7 @@ bool BreaksPromise(const AxisParams& params, const Promises& promises, const Pro
 }
 
 bool StopsBy(const KinematicState& state, const trajectory::Limits& limits, double furthest) noexcept {
+  if (SwingsBack(state, limits.jerk, kSwing)) return false;
   const double over = trajectory::StopPosition(state, limits) - furthest;
   return SenseOfTravel(state) * over <= Slack(furthest, furthest - state.position);
 }
@@ -79,7 +82,7 @@ Request Strengthened(const AxisParams& params, const KinematicState& from, const
   };
   const auto keeps = [&](double share) {
     const trajectory::Limits limits = with(share).limits();
-    if (promises.straight && SwingsBack(from, limits.jerk)) return false;
+    if (promises.straight && SwingsBack(from, limits.jerk, -kSwing)) return false;
     return !promises.furthest || sense * (trajectory::StopPosition(from, limits) - *promises.furthest) <= 0;
   };
   double low = 0;

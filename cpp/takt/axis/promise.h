@@ -26,7 +26,7 @@ struct Promises {
 // Whether `profile` breaks one of them.
 bool BreaksPromise(const AxisParams& params, const Promises& promises, const trajectory::Profile& profile) noexcept;
 
-// Whether an axis in `state` stops no further than at `furthest`.
+// Whether an axis in `state` stops no further than at `furthest`, and without turning round.
 bool StopsBy(const KinematicState& state, const trajectory::Limits& limits, double furthest) noexcept;
 
 // The request with as much more deceleration and jerk, up to the axis' own, as it takes to keep them.
