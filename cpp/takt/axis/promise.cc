@@ -23,7 +23,7 @@ double Between(double weak, double strong, double share) {
 
 // Planned anew on its braking curve a motion ends at its target but for rounding.
 double Slack(double position, double way) {
-  return Rounding(position) + 1e-8 * std::abs(way);
+  return Rounding(position) + 2e-8 * std::abs(way);
 }
 
 // Whether a motion that sets out in this sense gets beyond `furthest`.

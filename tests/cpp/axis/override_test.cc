@@ -306,7 +306,8 @@ TEST(Override, ABlendIsPassedBrakingAndGoesOn) {
       const double held = rig.position();
       EXPECT_GT(held, 100 - 0.3 * late);
       if (factor == 0) {
-        EXPECT_EQ(rig.out.state, PlcState::kDiscreteMotion);
+        // Where a stop takes all the way there is nothing left to wait for.
+        EXPECT_EQ(rig.out.state, held == 130 ? PlcState::kStandstill : PlcState::kDiscreteMotion);
         EXPECT_EQ(rig.out.set_velocity, 0);
       }
       rig.Give(Factors(1));
