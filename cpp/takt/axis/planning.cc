@@ -162,25 +162,52 @@ Status PlanBlended(Planner& planner, const KinematicState& from, double target, 
   return low > 0 ? Status::Ok() : standing;
 }
 
+// How a plan begins, from nothing special to all that the axis can do. Only as much as is needed is taken from the
+// axis' own ramps; what follows keeps those of the command.
+enum class Opening : std::uint8_t {
+  kNone,  // with the ramps of the command at once
+  kEase,  // the acceleration there is ends with the axis' jerk
+  kStop,  // the axis brakes to standstill with all it has
+};
+
+Profile Open(const AxisParams& params, Planner& planner, const KinematicState& from, Opening opening) {
+  const Limits own = params.planner_limits();
+  Profile profile{from};
+  if (opening == Opening::kEase) {
+    // Without a jerk limit the acceleration may step to 0 at once.
+    if (own.jerk > 0) profile.Append(std::abs(from.acceleration) / own.jerk, -Sense(from.acceleration) * own.jerk);
+    profile.SnapEnd({profile.end().position, profile.end().velocity, 0});
+  } else if (opening == Opening::kStop) {
+    planner.Stop(from, own, profile);
+  }
+  return profile;
+}
+
 // Left otherwise than planned: to `speed`, and on beyond the target however far that has come. False: it does not get
 // there.
-bool PlanPast(Planner& planner, const KinematicState& from, double target, double sense, double speed,
-              const Limits& limits, Profile& out) {
+bool PlanPast(const AxisParams& params, Planner& planner, const KinematicState& from, double target, double sense,
+              double speed, const Limits& limits, Profile& out) {
   if (sense * from.velocity <= 0) return false;
   Limits ramps = limits;
   ramps.velocity = std::max(limits.velocity, speed);
-  Profile ramp;
-  if (planner.ToVelocity(from, sense * speed, ramps, ramp).failed()) return false;
-  const double t = ramp.TimeAt(target);
-  const double left = sense * (target - ramp.end().position);
+  Profile whole;
+  for (const Opening opening : {Opening::kNone, Opening::kEase}) {
+    whole = Open(params, planner, from, opening);
+    Profile ramp;
+    if (planner.ToVelocity(whole.end(), sense * speed, ramps, ramp).failed() || !whole.Append(ramp)) return false;
+    // Beyond the target, too: there it goes on with the acceleration that it has.
+    if (Breaks(params, from, whole, {.position = false}) == LimitedBy::kNothing) break;
+  }
+  const double t = whole.TimeAt(target);
+  const double left = sense * (target - whole.end().position);
   if (!std::isnan(t)) {
-    ramp.Cut(t);
-  } else if (speed == 0 || !ramp.Append(left / speed, 0)) {
+    whole.Cut(t);
+  } else if (speed == 0 || !whole.Append(left / speed, 0)) {
     return false;
   }
-  ramp.SnapEnd({target, ramp.end().velocity, ramp.end().acceleration});
-  if (sense * ramp.end().velocity <= 0) return false;
-  out = ramp;
+  whole.SnapEnd({target, whole.end().velocity, whole.end().acceleration});
+  if (sense * whole.end().velocity <= 0) return false;
+  out = whole;
   return true;
 }
 
@@ -207,31 +234,10 @@ Status PlanOn(const AxisParams& params, const Surroundings& around, Planner& pla
   const Status status = speed > 0 ? PlanBlended(planner, from, out.target, sense, speed, limits, out)
                                   : PlanTo(planner, from, out.target, sense, 0, limits, out);
   if (around.passes && (status.failed() || !RunsStraight(out.profile, sense)) &&
-      PlanPast(planner, from, out.target, sense, speed, limits, out.profile)) {
+      PlanPast(params, planner, from, out.target, sense, speed, limits, out.profile)) {
     return Status::Ok();
   }
   return status;
-}
-
-// How a plan begins, from nothing special to all that the axis can do. Only as much as is needed is taken from the
-// axis' own ramps; what follows keeps those of the command.
-enum class Opening : std::uint8_t {
-  kNone,  // with the ramps of the command at once
-  kEase,  // the acceleration there is ends with the axis' jerk
-  kStop,  // the axis brakes to standstill with all it has
-};
-
-Profile Open(const AxisParams& params, Planner& planner, const KinematicState& from, Opening opening) {
-  const Limits own = params.planner_limits();
-  Profile profile{from};
-  if (opening == Opening::kEase) {
-    // Without a jerk limit the acceleration may step to 0 at once.
-    if (own.jerk > 0) profile.Append(std::abs(from.acceleration) / own.jerk, -Sense(from.acceleration) * own.jerk);
-    profile.SnapEnd({profile.end().position, profile.end().velocity, 0});
-  } else if (opening == Opening::kStop) {
-    planner.Stop(from, own, profile);
-  }
-  return profile;
 }
 
 Demands DemandsOn(const Request& request) {
@@ -305,7 +311,7 @@ void PlanPassing(const AxisParams& params, const Surroundings& around, Planner& 
     out = plan;
   } else {
     const double sense = Sense(out.target - from.position);
-    PlanPast(planner, from, out.target, sense, 0, stronger.limits(), out.profile);
+    PlanPast(params, planner, from, out.target, sense, 0, stronger.limits(), out.profile);
   }
   out.limited_by = LimitedBy::kDistance;
 }
@@ -336,7 +342,7 @@ Status PlanHeld(const AxisParams& params, const Surroundings& around, Planner& p
     passing.furthest = PassingTo(params, around, from, out.target, next);
     braking = Strengthened(params, from, request, passing);
     out.limited_by = LimitedBy::kOverride;
-    if (PlanPast(planner, from, out.target, sense, 0, braking.limits(), out.profile)) return Status::Ok();
+    if (PlanPast(params, planner, from, out.target, sense, 0, braking.limits(), out.profile)) return Status::Ok();
   }
   braking.kind = RequestKind::kHalt;
   const Status status = PlanKept(params, around, planner, from, braking, nullptr, kept, out);
