@@ -128,6 +128,7 @@ void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
       s.motion.arrived_cycle = c.cycle.count;
       s.last_sense = SenseAtEnd(s.motion.profile, s.last_sense);
     }
+    if (s.motion.held) return;
     Conclude(c, late_s, s);
     if (s.motion.arrived || FollowsDemand(s.active.kind)) return;  // no other motion with an end has begun
     GuardLimits(c, before, s);
@@ -325,6 +326,7 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.following_error = s.following_error;
   out.voltage_v = s.voltage_v;
   out.torque_nm = s.torque_nm;
+  out.override_factor = s.override_factors.velocity;
   out.active_command = s.active.ticket;
   out.error = s.error;
   out.state = s.plc;

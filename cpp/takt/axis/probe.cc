@@ -63,24 +63,6 @@ bool CanBeSlowed(const Request& r) {
   return r.positions() || r.kind == RequestKind::kMoveVelocity || r.kind == RequestKind::kJog;
 }
 
-// Plans the motion in progress anew because its velocity changed.
-void PlanAgain(const Context& c, State& s) {
-  if (s.active.positions()) return ReplanActive(c, s);
-  Plan plan;
-  Status status;
-  if (s.active.kind == RequestKind::kJog) {
-    if (s.jog_sense == 0) return;
-    Request held = s.active;
-    held.forward = s.jog_sense > 0;
-    status = PlanJog(c, held, s, plan);
-  } else {
-    status = PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, s.active, nullptr, plan);
-  }
-  if (status.failed()) return;
-  s.limited_by = plan.limited_by;
-  StartMotion(plan.profile, 0, FromCycleBefore(c), s);
-}
-
 void Restore(const Context& c, State& s) {
   ProbeState& probe = s.probe;
   if (!probe.slowing) return;
@@ -123,7 +105,7 @@ Status TakeTouch(const Context& c, State& s) {
   request.jerk = probe.jerk;
   Plan plan;
   plan.target = probe.touch_position;
-  const Status status = Replan(c.params, SurroundingsOf(s), c.planner, s.setpoint, request, nullptr, plan);
+  const Status status = Replan(c.params, SurroundingsOf(c, s), c.planner, s.setpoint, request, nullptr, plan);
   if (status.failed()) return status;
   AbortAll(c, s);
   TakeControl(c, request, plan, FromCycleBefore(c), s);

@@ -10,6 +10,7 @@
 #include "takt/axis/coupling.h"
 #include "takt/axis/encoder.h"
 #include "takt/axis/homing.h"
+#include "takt/axis/override.h"
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
@@ -30,6 +31,7 @@ struct Motion {
   std::uint64_t start_cycle = 0;  // profile time 0 lies ...
   double start_offset_s = 0;      // ... so long before this cycle
   double target = 0;              // u, unwrapped: where a positioning command ends
+  bool held = false;              // the profile ends where an override stops it, not where its command does
   bool arrived = false;           // the profile is over
   std::uint64_t arrived_cycle = 0;
 };
@@ -95,6 +97,7 @@ struct State {
   double direct_voltage_v = 0;  // V, put out while the axis is Disabled (GT_Analog)
   double origin = 0;            // rotary axes: whole turns taken out of all positions, so that they stay small (in u)
   double follow_offset = 0;     // u, own position minus ratio times the master's when they were coupled
+  Override override_factors;    // of commands in control and waiting
   EncoderState encoder;
   ControlLoopState loop;
   TorqueState torque;
