@@ -19,7 +19,7 @@ using Command =
                  PhasingAbsolute, PhasingRelative, CombineAxes, CamTableSelect, CamIn, CamOut, PositionProfile,
                  VelocityProfile, AccelerationProfile, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse,
                  StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch, StepRefFlyingRefPulse, SetConstants,
-                 WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, SetPosition, TouchProbe, AbortTrigger,
-                 Touch, DigitalCamSwitch>;
+                 WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, SetPosition, SetOverride, TouchProbe,
+                 AbortTrigger, Touch, DigitalCamSwitch>;
 
 }  // namespace takt::axis

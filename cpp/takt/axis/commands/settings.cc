@@ -35,7 +35,8 @@ void describe(Description<SetSoftLimits>& d) {
   d.about("Sets the SW limits or switches them off at run time (GT_SWLim).");
   d.defaulted<&C::enable_lower>("Whether the lower one holds.");
   d.defaulted<&C::enable_upper>("Whether the upper one holds.");
-  d.defaulted<&C::lower>(unit::u, "LimNeg; unset: as it is, or was when it was switched off; none, where there never was one.");
+  d.defaulted<&C::lower>(unit::u,
+                         "LimNeg; unset: as it is, or was when it was switched off; none, where there never was one.");
   d.defaulted<&C::upper>(unit::u, "LimPos; unset: likewise.");
 }
 
@@ -50,6 +51,15 @@ void describe(Description<SetPosition>& d) {
   d.about("Calls the position the axis is at by another number, without any motion (MC_SetPosition).");
   d.required<&C::position>(unit::u, "The new number, or what is added to the old one.");
   d.defaulted<&C::relative>("True: added.");
+}
+
+void describe(Description<SetOverride>& d) {
+  using C = SetOverride;
+  d.about("Scales velocity, ramps and jerk of the motion in progress and of those to come (MC_SetOverride).");
+  d.defaulted<&C::velocity_factor>(not_negative,
+                                   "Of velocities; 0 holds the axis until the factor is more. Up to the axis' limits.");
+  d.defaulted<&C::acceleration_factor>(positive, "Of accelerations and decelerations.");
+  d.defaulted<&C::jerk_factor>(positive, "Of the jerk.");
 }
 
 }  // namespace takt::axis
