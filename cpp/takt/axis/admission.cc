@@ -1,5 +1,6 @@
 // Commands as they arrive: carried out, buffered or refused.
 #include "takt/axis/cam_switch.h"
+#include "takt/axis/override.h"
 #include "takt/axis/probe.h"
 #include "takt/axis/sequence.h"
 #include "takt/axis/settings.h"
@@ -36,8 +37,7 @@ void ChangeJog(const Context& c, const Request& r, State& s) {
   held.forward = s.jog_sense > 0;
   Plan plan;
   if (PlanJog(c, held, s, plan).failed()) return;
-  s.limited_by = plan.limited_by;
-  StartMotion(plan.profile, 0, FromCycleBefore(c), s);
+  StartMotion(plan, FromCycleBefore(c), s);
 }
 
 Status Jog(const Context& c, const Request& r, State& s) {
@@ -49,8 +49,9 @@ Status Jog(const Context& c, const Request& r, State& s) {
   Plan plan;
   const Status status = r.forward != r.backward ? PlanJog(c, r, s, plan) : Status::Ok();
   if (status.failed()) return status;
+  const std::optional<double> furthest = SurroundingsOf(c, s).furthest;
   AbortAll(c, s);
-  if (s.plc != PlcState::kStandstill) ComeToRest(c, r.limits(), FromCycleBefore(c), s);
+  if (s.plc != PlcState::kStandstill) ComeToRest(c, r.limits(), FromCycleBefore(c), s, furthest);
   Grant(c, r, s);
   s.jog_armed = true;
   return Status::Ok();
@@ -59,13 +60,15 @@ Status Jog(const Context& c, const Request& r, State& s) {
 Status TakeOver(const Context& c, const Request& r, State& s) {
   if (Homes(r.kind)) return BeginHoming(c, r, true, s);
   if (s.plc == PlcState::kHoming && !MayFollowStep(r.kind)) return Status::Failed(ErrorId::kState);
-  if (Couples(r.kind)) {
+  if (FollowsDemand(r.kind)) {
+    const Status status = MayFollow(c, r, s);
+    if (status.failed()) return status;
     AbortAll(c, s);
-    Couple(c, r, s);
+    BeginFollowing(c, r, FromCycleBefore(c), s);
     return Status::Ok();
   }
   Plan plan;
-  const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, r, nullptr, plan);
+  const Status status = PlanRequest(c.params, SurroundingsOf(c, s), c.planner, s.setpoint, r, nullptr, plan);
   if (status.failed()) return status;
   AbortAll(c, s);
   TakeControl(c, r, plan, FromCycleBefore(c), s);
@@ -141,6 +144,11 @@ Status CarryOut(const Context& c, Ticket ticket, const Reset&, State& s) {
   BeginReset(c, ticket, s);
   return Status::Ok();
 }
+// That there is such a cam has been found already.
+Status CarryOut(const Context& c, Ticket ticket, const CamTableSelect&, State&) {
+  Report(c, ticket, FeedbackState::kDone);
+  return Status::Ok();
+}
 // What asks for control never comes here.
 template <typename T>
 Status CarryOut(const Context&, Ticket, const T&, State&) {
@@ -162,13 +170,13 @@ Request* Find(Ticket ticket, State& s) {
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept {
   Request request;
   Status status = MakeRequest(command, c.params, request);
+  if (status.ok()) status = FindNamed(c, request);
   if (status.ok() && request.kind == RequestKind::kNone) {
     status = std::visit([&](const auto& body) { return CarryOut(c, ticket, body, s); }, command);
   } else if (status.ok()) {
     request.ticket = ticket;
     request.lease_s = lease_s;
-    status = FindMasters(c, request);
-    if (status.ok()) status = Admit(c, request, s);
+    status = Admit(c, request, s);
   }
   if (status.failed()) Report(c, ticket, FeedbackState::kError, status.error);
 }

@@ -8,6 +8,7 @@
 #include "takt/axis/outputs.h"
 #include "takt/axis/params.h"
 #include "takt/axis/state.h"
+#include "takt/cam/table.h"
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
 #include "takt/core/ports.h"
@@ -26,13 +27,14 @@ struct Context {
   std::span<const State> axes{};
   std::span<const AxisParams> axes_params{};
   std::span<const CamSwitches> cam_switches{};
+  std::span<const cam::Table> cams{};
 };
 
 // As it stands when power comes on.
 State MakeState(const AxisParams& params) noexcept;
 
-// sense: raw inputs become positions and switches.
-void Sense(const Context& context, const ServoInputs& inputs, State& state) noexcept;
+// sense: raw inputs become positions and switches. Of a drive in another process they may be older ones.
+void Sense(const Context& context, const ServoInputs& inputs, State& state, const Sampling& sampling = {}) noexcept;
 
 // command: carries a command out, buffers it or refuses it; reports either way. `lease_s` > 0: see Renew.
 void Apply(const Context& context, Ticket ticket, double lease_s, const Command& command, State& state) noexcept;

@@ -3,10 +3,12 @@
 
 #include <variant>
 
+#include "takt/axis/commands/cam.h"
 #include "takt/axis/commands/coupling.h"
 #include "takt/axis/commands/homing.h"
 #include "takt/axis/commands/moves.h"
 #include "takt/axis/commands/probe.h"
+#include "takt/axis/commands/profiles.h"
 #include "takt/axis/commands/settings.h"
 
 namespace takt::axis {
@@ -14,9 +16,10 @@ namespace takt::axis {
 using Command =
     std::variant<Power, Reset, MoveAbsolute, MoveRelative, MoveAdditive, MoveVelocity, MoveContinuousAbsolute,
                  MoveContinuousRelative, Inch, Halt, Stop, Jog, TorqueControl, GearIn, GearOut, GearInPos,
-                 PhasingAbsolute, PhasingRelative, CombineAxes, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse,
+                 PhasingAbsolute, PhasingRelative, CombineAxes, CamTableSelect, CamIn, CamOut, PositionProfile,
+                 VelocityProfile, AccelerationProfile, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse,
                  StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch, StepRefFlyingRefPulse, SetConstants,
-                 WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, SetPosition, TouchProbe, AbortTrigger,
-                 Touch, DigitalCamSwitch>;
+                 WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, SetPosition, SetOverride, TouchProbe,
+                 AbortTrigger, Touch, DigitalCamSwitch>;
 
 }  // namespace takt::axis

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/axis/fit.h"
 #include "takt/axis/sequence.h"
 #include "takt/core/describe.h"
 
@@ -11,6 +12,8 @@ namespace takt::axis {
 using trajectory::Limits;
 
 namespace {
+
+constexpr double kBlurredIncrements = 8;
 
 KinematicState PhaseAt(const Context& c, const CouplingState& k) {
   return k.phase.At(static_cast<double>(c.cycle.count - k.phase_start) * c.cycle.period_s);
@@ -37,11 +40,14 @@ KinematicState Sum(const Context& c, const CouplingState& k, const KinematicStat
   return sum;
 }
 
-// The turn of `position` that lies next ahead of `from` in this sense; linear axes: as it is.
-double NextAhead(const AxisParams& p, double position, double from, double sense) {
-  if (!p.rotary()) return position;
-  const double turns = (from - position) / p.modulus;
-  return position + p.modulus * (sense < 0 ? std::floor(turns) : std::ceil(turns));
+// Of the places every `turn` from `position` on the next one ahead of `from` in this sense; no turn: as it is.
+double NextAhead(double turn, double position, double from, double sense) {
+  if (turn == 0) return position;
+  const double turns = (from - position) / turn;
+  return position + turn * (sense < 0 ? std::floor(turns) : std::ceil(turns));
+}
+double Turn(const AxisParams& p) {
+  return p.rotary() ? p.modulus : 0;
 }
 
 // Where the slave is to be when both are in step, over all turns, if it goes on to about `expected` meanwhile.
@@ -63,13 +69,48 @@ double Standing(const AxisParams& p) {
   return 1e-6 * p.limits.velocity;
 }
 
+// By place from the beginning, not from when they are in step.
+bool Joins(RequestKind kind) {
+  return kind == RequestKind::kGearInPos || kind == RequestKind::kCamIn;
+}
+
+CamLaw CamOf(const Context& c, const Request& r) {
+  const CouplingRequest& q = r.coupling;
+  return {c.cams[r.table.index], q.terms[0].ratio, q.periodic.value_or(false), r.table.scale};
+}
+
+// Where an axis that is in step has its place for a master here; derivatives over the master's position.
+cam::Value InStep(const Context& c, double master, const State& s) {
+  const CouplingState& k = s.coupling;
+  if (s.active.kind == RequestKind::kCamIn) return ValueAt(CamOf(c, s.active), k.cam, master);
+  const double ratio = k.law.terms[0].ratio;
+  return {k.slave_sync + ratio * (master - k.master_sync), ratio, 0, 0};
+}
+
+KinematicState DemandOf(const cam::Value& at, const KinematicState& master) {
+  return {at.y, at.dy * master.velocity, at.ddy * master.velocity * master.velocity + at.dy * master.acceleration};
+}
+
+// Moves the place where both are in step to the turn, or for a relative cam the place, that lies at hand if the slave
+// goes on to about `expected` meanwhile.
+void PlaceSlave(const Context& c, double expected, State& s) {
+  CouplingState& k = s.coupling;
+  if (s.active.kind != RequestKind::kCamIn) {
+    k.slave_sync = SlaveSync(c.params, k.slave_sync, expected, k.law.sync_mode);
+    return;
+  }
+  const double place = InStep(c, k.master_sync, s).y;
+  const double wanted =
+      k.law.slave_absolute ? SlaveSync(c.params, place, expected, k.law.sync_mode) : expected + s.active.table.offset;
+  k.cam.slave += wanted - place;
+}
+
 // The curve over the share x = 0..1 of the master's way that begins as the slave moves now and ends in step.
 void BeginCurve(const Context& c, const KinematicState& master, State& s) {
   CouplingState& k = s.coupling;
   k.joining = Joining::kOnCurve;
   k.curve_begin = master.position;
   const double way = k.master_sync - master.position;
-  const double ratio = k.law.terms[0].ratio;
   const double own = s.setpoint.position + s.origin;
   double slope = 0;
   double bend = 0;
@@ -77,17 +118,19 @@ void BeginCurve(const Context& c, const KinematicState& master, State& s) {
     slope = s.setpoint.velocity / master.velocity;
     bend = (s.setpoint.acceleration - slope * master.acceleration) / (master.velocity * master.velocity);
   }
-  k.slave_sync = SlaveSync(c.params, k.slave_sync, own + 0.5 * (slope + ratio) * way, k.law.sync_mode);
-  const double y1 = k.slave_sync - own;
+  PlaceSlave(c, own + 0.5 * (slope + InStep(c, k.master_sync, s).dy) * way, s);
+  const cam::Value end = InStep(c, k.master_sync, s);
+  const double y1 = end.y - own;
   const double d0 = slope * way;
-  const double d1 = ratio * way;
+  const double d1 = end.dy * way;
   const double b0 = bend * way * way;
+  const double b1 = end.ddy * way * way;
   k.curve = {own,
              d0,
              0.5 * b0,
-             10 * y1 - 6 * d0 - 4 * d1 - 1.5 * b0,
-             -15 * y1 + 8 * d0 + 7 * d1 + 1.5 * b0,
-             6 * y1 - 3 * d0 - 3 * d1 - 0.5 * b0};
+             10 * y1 - 6 * d0 - 4 * d1 - 1.5 * b0 + 0.5 * b1,
+             -15 * y1 + 8 * d0 + 7 * d1 + 1.5 * b0 - b1,
+             6 * y1 - 3 * d0 - 3 * d1 - 0.5 * b0 + 0.5 * b1};
 }
 
 KinematicState OnCurve(const CouplingState& k, const KinematicState& master) {
@@ -97,18 +140,44 @@ KinematicState OnCurve(const CouplingState& k, const KinematicState& master) {
   const double y = q[0] + x * (q[1] + x * (q[2] + x * (q[3] + x * (q[4] + x * q[5]))));
   const double slope = (q[1] + x * (2 * q[2] + x * (3 * q[3] + x * (4 * q[4] + x * 5 * q[5])))) / way;
   const double bend = (2 * q[2] + x * (6 * q[3] + x * (12 * q[4] + x * 20 * q[5]))) / (way * way);
-  return {y, slope * master.velocity, bend * master.velocity * master.velocity + slope * master.acceleration};
+  return DemandOf({y, slope, bend, 0}, master);
 }
 
-// GearInPos: waits for the place where it begins, goes along the curve, then stays in step.
+// From where on a waiting slave gets into step.
+void Wait(double master, double distance, CouplingState& k) {
+  const double side = k.master_sync < master ? -1 : 1;
+  k.curve_begin = k.master_sync - side * distance;
+  k.begin_side = master - k.curve_begin;
+  k.joining = Joining::kWaiting;
+}
+
+// Whether the master is where the waiting ends: past the beginning, or already behind it on its way to the place. One
+// that turns round on a circle meets the place from the other side.
+bool HasBegun(const AxisParams& its, const KinematicState& master, CouplingState& k) {
+  const double way = k.master_sync - k.curve_begin;
+  if (std::abs(master.velocity) > Standing(its)) {
+    const double sense = master.velocity < 0 ? -1 : 1;
+    const double left = k.master_sync - master.position;
+    if (left * way > 0 && std::abs(left) <= std::abs(way) && left * sense > 0) return true;
+    if (k.turn != 0 && left * sense < 0) {
+      const double place = NextAhead(k.turn, k.master_sync, master.position + sense * std::abs(way), sense);
+      k.cam.master += place - k.master_sync;
+      k.master_sync = place;
+      Wait(master.position, std::abs(way), k);
+      return false;
+    }
+  }
+  const double side = master.position - k.curve_begin;
+  return side == 0 || (side > 0) != (k.begin_side > 0);
+}
+
+// GearInPos, CamIn: waits for the place where it begins, goes along the curve, then stays in step.
 bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, KinematicState& demand) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
   const KinematicState master = Seen(c, term, phase);
   if (k.joining == Joining::kWaiting) {
-    const double side = master.position - k.curve_begin;
-    const bool passed = side == 0 || (side > 0) != (k.begin_side > 0);
-    if (!passed) return false;
+    if (!HasBegun(c.axes_params[term.master], master, k)) return false;
     BeginCurve(c, master, s);
   }
   if (k.joining == Joining::kOnCurve) {
@@ -121,16 +190,8 @@ bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, Kinem
     }
     k.joining = Joining::kJoined;
   }
-  demand = {k.slave_sync + term.ratio * (master.position - k.master_sync), term.ratio * master.velocity,
-            term.ratio * master.acceleration};
+  demand = DemandOf(InStep(c, master.position, s), master);
   return true;
-}
-
-// What of a demand is more than the axis can.
-LimitedBy Beyond(const Limits& own, const KinematicState& demand) {
-  if (std::abs(demand.velocity) > own.velocity) return LimitedBy::kVelocity;
-  const double ramp = demand.velocity * demand.acceleration > 0 ? own.acceleration : own.deceleration;
-  return std::abs(demand.acceleration) > ramp ? LimitedBy::kAcceleration : LimitedBy::kNothing;
 }
 
 void BeginJoining(const Context& c, const Request& r, State& s) {
@@ -140,8 +201,9 @@ void BeginJoining(const Context& c, const Request& r, State& s) {
   const KinematicState seen = Seen(c, term, {});
   const double sense = seen.velocity < 0 ? -1 : 1;
   const double distance = std::max(0.0, r.coupling.master_start_distance);
-  k.master_sync = NextAhead(c.axes_params[term.master], r.coupling.master_sync_position + master.origin,
-                            seen.position + sense * distance, sense);
+  k.turn = Turn(c.axes_params[term.master]);
+  k.master_sync =
+      NextAhead(k.turn, r.coupling.master_sync_position + master.origin, seen.position + sense * distance, sense);
   k.slave_sync = r.coupling.slave_sync_position + s.origin;
   if (r.coupling.master_start_distance < 0) {
     const double own = s.setpoint.position + s.origin;
@@ -150,14 +212,75 @@ void BeginJoining(const Context& c, const Request& r, State& s) {
     k.joining = Joining::kJoined;
     return;
   }
-  const double side = k.master_sync < seen.position ? -1 : 1;
-  k.curve_begin = k.master_sync - side * distance;
-  k.begin_side = seen.position - k.curve_begin;
-  k.joining = Joining::kWaiting;
+  Wait(seen.position, distance, k);
 }
 
-bool MastersStand(const Context& c, const CouplingState& k) {
-  return std::all_of(k.law.terms.begin(), k.law.terms.end(), [&](const CouplingTerm& term) {
+// Lays a cam over the master's way. One that takes over at the end of another begins exactly there.
+void BeginCam(const Context& c, const Request& r, State& s) {
+  CouplingState& k = s.coupling;
+  const CouplingTerm& term = k.law.terms[0];
+  const AxisParams& its = c.axes_params[term.master];
+  const State& master = c.axes[term.master];
+  const CamLaw law = CamOf(c, r);
+  const KinematicState seen = Seen(c, term, {});
+  const bool takes_over = s.end_of_profile && k.cam.end_axis == term.master;
+  const double sense = seen.velocity < 0 ? -1 : 1;
+  const bool waits = k.law.master_start_distance >= 0;
+  const double distance = std::max(0.0, k.law.master_start_distance);
+  double at = takes_over ? k.cam.end_master : seen.position;  // the place that counts, over all turns ...
+  double zero = at - Reported(its, at - master.origin);       // ... and the master's zero in that turn
+  const double begin = (law.table.begin() - k.law.master_offset) / law.ratio;  // from zero
+  if (k.law.at_sync_position) {
+    k.turn = Turn(its);
+    at = NextAhead(k.turn, k.law.master_sync_position + master.origin, seen.position + sense * distance, sense);
+    zero = at - k.law.master_sync_position;
+  } else if (waits && !k.law.master_absolute) {
+    at = seen.position + sense * distance;
+  } else if (waits) {
+    k.turn = law.periodic ? std::abs(law.way()) : Turn(its);
+    at = NextAhead(k.turn, zero + begin, seen.position + sense * distance, sense);
+    zero = at - begin;
+  }
+  k.cam.master = k.law.master_absolute ? zero + begin : at - k.law.master_offset / law.ratio;
+  BeginCycles(law, at, k.cam);
+  k.cam.slave = s.origin + r.table.offset;
+  k.cam.share = ShareOf(law, k.cam, at);
+  k.master_sync = at;
+  if (waits) return Wait(seen.position, distance, k);
+  PlaceSlave(c, takes_over ? k.cam.end_slave : s.setpoint.position + s.origin, s);
+}
+
+// A master that is measured is known to its increments only: what lies within so many is one place.
+double Blur(const Context& c, const State& s) {
+  double blur = 0;
+  for (const CouplingTerm& term : s.coupling.law.terms) {
+    if (term.master == kNoAxis || term.source == MasterSource::kSetValue) continue;
+    const double slope =
+        Joins(s.active.kind) ? InStep(c, Seen(c, term, PhaseAt(c, s.coupling)).position, s).dy : term.ratio;
+    blur += std::abs(slope) * kBlurredIncrements / c.axes_params[term.master].encoder.increments_per_unit;
+  }
+  return blur;
+}
+
+// Looks whether the master has passed the end of the cam.
+void NoteEnd(const Context& c, const KinematicState& phase, State& s) {
+  CouplingState& k = s.coupling;
+  if (s.active.kind != RequestKind::kCamIn || k.joining != Joining::kJoined) return;
+  const CamLaw law = CamOf(c, s.active);
+  const double share = ShareOf(law, k.cam, Seen(c, k.law.terms[0], phase).position);
+  const std::optional<double> end = EndPassed(k.cam.share, share);
+  k.cam.share = share;
+  s.end_of_profile = end.has_value();
+  k.cam.over = end || (k.cam.over && !law.periodic && (share == 0 || share == 1));
+  if (!end) return;
+  ++s.profile_ends;
+  k.cam.end_axis = k.law.terms[0].master;
+  k.cam.end_master = k.cam.master + *end * law.way() - phase.position;
+  k.cam.end_slave = k.cam.slave + law.scale * (law.table.At(law.table.begin()).y + *end * law.table.stroke());
+}
+
+bool MastersStand(const Context& c, const CouplingRequest& law) {
+  return std::all_of(law.terms.begin(), law.terms.end(), [&](const CouplingTerm& term) {
     return term.master == kNoAxis || c.axes[term.master].loop_closed || term.source == MasterSource::kActualValue;
   });
 }
@@ -195,7 +318,7 @@ Status ShiftPhase(const Context& c, Ticket ticket, bool relative, double shift, 
 
 }  // namespace
 
-Status FindMasters(const Context& c, Request& r) noexcept {
+Status FindNamed(const Context& c, Request& r) noexcept {
   for (CouplingTerm& term : r.coupling.terms) {
     if (term.name.empty()) continue;
     for (std::size_t i = 0; i < c.axes_params.size() && term.master == kNoAxis; ++i) {
@@ -203,26 +326,48 @@ Status FindMasters(const Context& c, Request& r) noexcept {
     }
     if (term.master == kNoAxis) return Status::Failed(ErrorId::kUnknownTarget);
   }
+  if (r.table.name.empty()) return Status::Ok();
+  for (std::size_t i = 0; i < c.cams.size() && r.table.index == kNoTable; ++i) {
+    if (c.cams[i].name() == r.table.name.view()) r.table.index = static_cast<std::uint32_t>(i);
+  }
+  if (r.table.index == kNoTable) return Status::Failed(ErrorId::kUnknownTarget);
+  if (!r.coupling.periodic) r.coupling.periodic = c.cams[r.table.index].cyclic();
+  return Status::Ok();
+}
+
+Status MayCouple(const Context& c, const Request& r, const State& s) noexcept {
+  if (!MastersStand(c, r.coupling)) return Status::Failed(ErrorId::kMasterOff);
+  if (r.kind == RequestKind::kGearInPos && !c.params.rotary() &&
+      !Inside(c.params.limits, r.coupling.slave_sync_position)) {
+    return Status::Failed(ErrorId::kTargetBehindLimit);
+  }
+  const bool absolute = r.kind == RequestKind::kCamIn && r.coupling.slave_absolute;
+  if (absolute && c.params.requires_reference && !s.homing.homed) return Status::Failed(ErrorId::kNoReference);
   return Status::Ok();
 }
 
 void Couple(const Context& c, const Request& r, State& s) noexcept {
   Grant(c, r, s);
   CouplingState& k = s.coupling;
+  const CamState cam = k.cam;  // the end of one cam is the beginning of the next
   k = CouplingState{};
   k.law = r.coupling;
+  k.cam = cam;
+  k.cam.over = false;
   s.limited_by = LimitedBy::kNothing;
   s.motion.profile = trajectory::Profile{s.setpoint};
   s.motion.target = s.setpoint.position;
   s.motion.arrived = false;
+  k.locked = Joins(r.kind);
   if (r.kind == RequestKind::kGearInPos) BeginJoining(c, r, s);
+  if (r.kind == RequestKind::kCamIn) BeginCam(c, r, s);
   Enter(s, PlcState::kSynchronizedMotion);
 }
 
 bool FollowMasters(const Context& c, State& s) noexcept {
   if (!Couples(s.active.kind)) return false;
   CouplingState& k = s.coupling;
-  if (!MastersStand(c, k)) {  // nothing to follow any more
+  if (!MastersStand(c, k.law)) {  // nothing to follow any more
     const Limits ramps = c.params.planner_limits();
     EndActive(c, FeedbackState::kError, ErrorId::kAxisFault, s);
     s.coupling.law = CouplingRequest{};
@@ -230,26 +375,34 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     ComeToRest(c, ramps, FromCycleBefore(c), s);
     return false;
   }
-  const KinematicState phase = PhaseAt(c, k);
-  const bool by_velocity = s.active.kind != RequestKind::kGearInPos && !k.phase_moves;
+  KinematicState phase = PhaseAt(c, k);
+  NoteEnd(c, phase, s);
+  if (s.end_of_profile && s.buffered > 0 && Couples(s.buffer[0].kind)) {  // takes over in this very cycle
+    Conclude(c, 0, s);
+    if (!Couples(s.active.kind)) return false;
+    phase = PhaseAt(c, k);
+  }
+  // A phase counts from the lock on: on the way there it would be lost in part.
   KinematicState demand;
-  const bool begun =
-      s.active.kind != RequestKind::kGearInPos ? (demand = Sum(c, k, phase), true) : JoinedDemand(c, phase, s, demand);
+  const bool begun = Joins(s.active.kind) ? JoinedDemand(c, phase, s, demand)
+                                          : (demand = Sum(c, k, k.locked ? phase : KinematicState{}), true);
   if (!begun) {  // keeps its velocity until it begins
     demand = {s.setpoint.position + s.origin + s.setpoint.velocity * c.cycle.period_s, s.setpoint.velocity, 0};
   }
   demand.position -= s.origin;
   const Chaser chaser = {c.params, c.planner, s.active.limits(), c.cycle.period_s};
-  if (by_velocity) {
-    s.setpoint = Chase(chaser, ChaseMode::kVelocity, s.setpoint, demand, k.chase);
-  } else {
+  if (k.locked) {
     demand.position += k.chase.offset;
     s.setpoint = Chase(chaser, ChaseMode::kPosition, s.setpoint, demand, k.chase);
+  } else {
+    s.setpoint = Chase(chaser, ChaseMode::kVelocity, s.setpoint, demand, k.chase);
+    k.locked = k.chase.in_step;
   }
-  if (!begun || k.joining == Joining::kOnCurve) k.chase.in_step = false;
-  s.limited_by = Beyond(c.params.planner_limits(), demand);
+  const bool near = k.locked && std::abs(s.setpoint.position - demand.position) <= Blur(c, s);
+  k.in_step = begun && k.joining != Joining::kOnCurve && (k.chase.in_step || near);
+  s.limited_by = Beyond(c.params.planner_limits(), demand, k.in_step);
   const bool phase_over = static_cast<double>(c.cycle.count - k.phase_start) * c.cycle.period_s >= k.phase.duration();
-  if (k.phase_moves && phase_over && k.chase.in_step) EndPhase(c, FeedbackState::kDone, s);
+  if (k.phase_moves && phase_over && k.in_step) EndPhase(c, FeedbackState::kDone, s);
   if (!AtRest(s)) s.motion.arrived_cycle = c.cycle.count;
   return true;
 }
@@ -278,14 +431,14 @@ Status LetGo(const Context& c, const Request& r, State& s) noexcept {
 
 void Uncouple(const Context& c, bool after_fault, State& s) noexcept {
   EndPhase(c, FeedbackState::kAborted, s);
-  s.coupling.chase.in_step = false;
+  s.coupling.in_step = false;
   if (!after_fault) s.coupling.law = CouplingRequest{};
 }
 
 bool CouplingOf(const Context& c, const Command& command, CouplingRequest& out) noexcept {
   Request request;
   if (MakeRequest(command, c.params, request).failed() || !Couples(request.kind)) return false;
-  if (FindMasters(c, request).failed()) return false;
+  if (FindNamed(c, request).failed()) return false;
   out = request.coupling;
   return true;
 }
@@ -302,12 +455,16 @@ void describe(Description<CouplingState>& d) {
   d.about("An axis that follows masters.");
   d.internal<&S::law>("What it follows.");
   d.internal<&S::chase>("The catching up.");
+  d.internal<&S::in_step>("With the masters, as far as they are known.");
+  d.internal<&S::locked>("By place.");
   d.internal<&S::joining>("How far the way into step has come.");
   d.internal<&S::master_sync>("Where the master is when both are in step, over all turns.");
   d.internal<&S::slave_sync>(unit::u, "Where this axis is then.");
   d.internal<&S::curve_begin>("Where the curve begins.");
   d.internal<&S::begin_side>("On which side of that the master was.");
   d.internal<&S::curve>("Coefficients over the share of the way.");
+  d.internal<&S::cam>("The cam that it follows.");
+  d.internal<&S::turn>("After how far there is the next such place of the master.");
   d.internal<&S::phase>("Added to the master's position.");
   d.internal<&S::phase_start>("Cycle its time counts from.");
   d.internal<&S::phase_ticket>("Of the command that shifts it.");

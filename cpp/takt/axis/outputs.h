@@ -19,6 +19,7 @@ struct Outputs {
   double voltage_v = 0;            // V, output of the position loop
   double torque_nm = 0;            // Nm, as the drive reports it
   double probe_position = 0;       // u, where the touch probe was captured last
+  double override_factor = 1;      // of the velocity; 0: held
   Ticket active_command = 0;       // 0: none
   ErrorId error = ErrorId::kNone;  // fault of the axis (not of a command)
   PlcState state = PlcState::kDisabled;
@@ -26,11 +27,14 @@ struct Outputs {
   std::uint32_t master1 = 0;                   // numbers of the axes that it follows, from 1; 0: none
   std::uint32_t master2 = 0;
   std::uint32_t probe_captures = 0;
-  std::uint32_t cam_outputs = 0;  // of the cam switches, a bit for each track
+  std::uint32_t profile_ends = 0;  // how often the end of its cam was passed
+  std::uint32_t cam_outputs = 0;   // of the cam switches, a bit for each track
   std::uint8_t buffered_commands = 0;
   bool loop_closed = false;
   bool in_position = false;
-  bool in_step = false;         // follows its masters exactly
+  bool in_step = false;         // follows its masters exactly; measured ones as far as they are known
+  bool synchronizing = false;   // is getting into step
+  bool end_of_profile = false;  // the end of its cam was passed in this cycle
   bool homed = false;           // has a reference
   bool limit_positive = false;  // switches after inversion
   bool limit_negative = false;

@@ -24,9 +24,13 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kMoveContinuousRelative, true, true, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kInch, false, false, false, PlcState::kDiscreteMotion},
     RequestRules{RequestKind::kTorqueControl, true, false, true, PlcState::kContinuousMotion},
-    RequestRules{RequestKind::kGearIn, true, false, true, PlcState::kSynchronizedMotion},
+    RequestRules{RequestKind::kGearIn, true, false, false, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kGearInPos, true, false, true, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kCombineAxes, true, false, true, PlcState::kSynchronizedMotion},
+    RequestRules{RequestKind::kCamIn, true, false, true, PlcState::kSynchronizedMotion},
+    RequestRules{RequestKind::kPositionProfile, true, false, true, PlcState::kDiscreteMotion},
+    RequestRules{RequestKind::kVelocityProfile, true, false, true, PlcState::kContinuousMotion},
+    RequestRules{RequestKind::kAccelerationProfile, true, false, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kLetGo, false, false, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kStepAbsSwitch, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepLimitSwitch, true, false, true, PlcState::kHoming},
@@ -192,6 +196,10 @@ void describe(Enumeration<RequestKind>& e) {
   e.value(RequestKind::kGearIn, "gear_in", "GearIn.");
   e.value(RequestKind::kGearInPos, "gear_in_pos", "GearInPos.");
   e.value(RequestKind::kCombineAxes, "combine_axes", "CombineAxes.");
+  e.value(RequestKind::kCamIn, "cam_in", "CamIn.");
+  e.value(RequestKind::kPositionProfile, "position_profile", "PositionProfile.");
+  e.value(RequestKind::kVelocityProfile, "velocity_profile", "VelocityProfile.");
+  e.value(RequestKind::kAccelerationProfile, "acceleration_profile", "AccelerationProfile.");
   e.value(RequestKind::kLetGo, "let_go", "LetGo.");
   e.value(RequestKind::kStepAbsSwitch, "step_abs_switch", "StepAbsSwitch.");
   e.value(RequestKind::kStepLimitSwitch, "step_limit_switch", "StepLimitSwitch.");
@@ -223,6 +231,7 @@ void describe(Description<Request>& d) {
   d.internal<&R::forward>("Jog: key for upwards.");
   d.internal<&R::backward>("Jog: key for downwards.");
   d.internal<&R::coupling>("Of commands that couple axes.");
+  d.internal<&R::table>("Of commands that follow a table.");
   d.internal<&R::homing>("Of homing steps.");
 }
 

@@ -24,6 +24,7 @@ bool Fits(const Context& c, const AxisLimits& limits, const State& s) {
   if (!s.loop_closed) return true;
   const double stop = trajectory::StopPosition(s.setpoint, c.params.planner_limits());
   if (!Inside(limits, stop) || !Inside(limits, s.setpoint.position)) return false;
+  if (s.motion.held && s.active.positions() && !Inside(limits, s.motion.target)) return false;
   const bool planned = !s.motion.arrived && !Couples(s.active.kind) && s.motion.profile.end().velocity == 0;
   if (!planned) return true;
   const trajectory::Profile::Range range = s.motion.profile.PositionRange(Elapsed(c, s) - c.cycle.period_s);

@@ -10,11 +10,14 @@
 #include "takt/axis/coupling.h"
 #include "takt/axis/encoder.h"
 #include "takt/axis/homing.h"
+#include "takt/axis/override.h"
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
+#include "takt/axis/time_table.h"
 #include "takt/axis/torque.h"
 #include "takt/core/kinematic_state.h"
+#include "takt/core/ports.h"
 #include "takt/core/status.h"
 #include "takt/trajectory/profile.h"
 
@@ -28,6 +31,7 @@ struct Motion {
   std::uint64_t start_cycle = 0;  // profile time 0 lies ...
   double start_offset_s = 0;      // ... so long before this cycle
   double target = 0;              // u, unwrapped: where a positioning command ends
+  bool held = false;              // the profile ends where an override stops it, not where its command does
   bool arrived = false;           // the profile is over
   std::uint64_t arrived_cycle = 0;
 };
@@ -56,9 +60,14 @@ struct State {
   bool jog_armed = false;      // a key may start a motion: a new jog, or both keys were seen up since the last one
   std::int8_t last_sense = 1;  // sense of the last motion, for Direction::kCurrent
   bool reset_pending = false;
-  bool constants_set = false;  // by GT_SetConstant
-  bool coupled = false;        // follows a master from load on
+  bool constants_set = false;   // by GT_SetConstant
+  bool coupled = false;         // follows a master from load on
+  bool end_of_profile = false;  // the end of a cam was passed in this cycle
   std::uint8_t buffered = 0;
+
+  // A drive in another process.
+  Sampling sampling;   // of what is measured
+  bool blind = false;  // it was lost with the loop closed: stops as if the drive did what it is told
 
   // Power.
   bool enable = false;       // the drive is told to be on
@@ -79,6 +88,7 @@ struct State {
   std::uint32_t index_pulses = 0;
   std::uint32_t index_counts = 0;  // ... at this count
   std::uint32_t cam_outputs = 0;
+  std::uint32_t profile_ends = 0;  // how often the end of a cam was passed
   std::uint64_t enable_cycle = 0;
   std::uint64_t lease_end_cycle = 0;
 
@@ -87,6 +97,7 @@ struct State {
   double direct_voltage_v = 0;  // V, put out while the axis is Disabled (GT_Analog)
   double origin = 0;            // rotary axes: whole turns taken out of all positions, so that they stay small (in u)
   double follow_offset = 0;     // u, own position minus ratio times the master's when they were coupled
+  Override override_factors;    // of commands in control and waiting
   EncoderState encoder;
   ControlLoopState loop;
   TorqueState torque;
@@ -97,6 +108,7 @@ struct State {
   Request active;  // in control; kind none: nothing is
   Motion motion;
   CouplingState coupling;
+  TimeTableState time_table;
 
   Dormant dormant;
   Ticket reset_ticket = 0;

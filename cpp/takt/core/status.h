@@ -55,6 +55,7 @@ enum class ErrorId : std::uint16_t {
   kInternal = 3016,           // the engine found its own numbers broken; outputs are zero, all loops open
   kOtherRun = 3017,           // the command was meant for another start of the engine
   kCouplingLoop = 3018,       // the axis would follow itself, through others
+  kMasterOff = 3019,          // a master has no set position that means anything: its loop is open
   kGroupDeviation = 8001,
 };
 
@@ -70,7 +71,16 @@ std::string_view ErrorText(ErrorId id) noexcept;
 std::string_view ErrorName(ErrorId id) noexcept;
 
 // What held a motion back although it was carried out.
-enum class LimitedBy : std::uint8_t { kNothing, kVelocity, kAcceleration, kJerk, kPosition, kDistance };
+enum class LimitedBy : std::uint8_t {
+  kNothing,
+  kVelocity,
+  kAcceleration,
+  kJerk,
+  kPosition,
+  kDistance,
+  kOvershoot,
+  kOverride
+};
 
 // ok, limited (done, but held back by something) or failed.
 struct Status {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "line.h"
+#include "cam_rig.h"
 #include "takt/core/describe.h"
 
 namespace takt::engine {
@@ -34,6 +34,10 @@ std::vector<Command> GoodCommands() {
           axis::PhasingAbsolute{.phase_shift = 1},
           axis::PhasingRelative{.phase_shift = 1},
           axis::CombineAxes{.master1 = master, .master2 = Name::Of("a2")},
+          Cam("a0", "lift"),
+          axis::PositionProfile{.profile = Name::Of("lift")},
+          axis::VelocityProfile{.profile = Name::Of("lift")},
+          axis::AccelerationProfile{.profile = Name::Of("lift")},
           axis::StepAbsSwitch{.velocity = 5},
           axis::StepLimitSwitch{.velocity = 5},
           axis::StepBlock{.velocity = 5, .deviation = 1},
@@ -47,6 +51,7 @@ std::vector<Command> GoodCommands() {
           axis::SetSoftLimits{},
           axis::DirectOutput{},
           axis::SetPosition{.position = 1},
+          axis::SetOverride{},
           axis::TouchProbe{},
           axis::Touch{}};
 }
@@ -139,8 +144,8 @@ class BadInput : public testing::TestWithParam<Situation> {};
 
 // AX-06, AX-11, AX-13
 TEST_P(BadInput, IsRefusedAndLeavesTheMachineLikeItsTwin) {
-  Line asked(LineOf(3));
-  Line twin(LineOf(3));
+  Line asked(WithCams(LineOf(3)));
+  Line twin(WithCams(LineOf(3)));
   for (Line* line : {&asked, &twin}) GetParam().bring(*line);
   ASSERT_EQ(asked.At(1).state, GetParam().state);
   ASSERT_EQ(asked.engine.StateHash(), twin.engine.StateHash());
@@ -169,7 +174,8 @@ TEST(BadInput, KnowsEveryCommand) {
   for (const Command& good : GoodCommands()) known.insert(good.index());
   const auto without_numbers = [](std::size_t index) {
     return index == Command(axis::Power{}).index() || index == Command(axis::Reset{}).index() ||
-           index == Command(axis::GearOut{}).index() || index == Command(axis::StepAbsolute{}).index() ||
+           index == Command(axis::GearOut{}).index() || index == Command(axis::CamTableSelect{}).index() ||
+           index == Command(axis::CamOut{}).index() || index == Command(axis::StepAbsolute{}).index() ||
            index == Command(axis::ReadParameter{}).index() || index == Command(axis::AbortTrigger{}).index() ||
            index == Command(axis::DigitalCamSwitch{}).index();
   };
