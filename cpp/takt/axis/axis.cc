@@ -126,9 +126,11 @@ void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
       s.last_sense = SenseAtEnd(s.motion.profile, s.last_sense);
     }
     if (s.motion.held) return;
+    const double origin = s.origin;
     Conclude(c, late_s, s);
     if (s.motion.arrived || FollowsDemand(s.active.kind)) return;  // no other motion with an end has begun
-    GuardLimits(c, before, s);
+    const double renumbered = before.position + origin - s.origin;
+    GuardLimits(c, {renumbered, before.velocity, before.acceleration}, s);
   }
 }
 
