@@ -7,6 +7,7 @@
 
 namespace takt::axis {
 
+using trajectory::Bounds;
 using trajectory::Limits;
 using trajectory::Profile;
 
@@ -72,31 +73,41 @@ KinematicState TowardsVelocity(const Chaser& c, const KinematicState& before, do
   return profile.At(c.period_s);
 }
 
-// One cycle of the chase in the frame of the demand. False: the limits leave no room there, or there is no such plan.
-bool InFrame(const Chaser& c, ChaseMode mode, const KinematicState& before, const KinematicState& demand,
+// Which sign of the acceleration has which limit while the speed keeps the sense of `velocity`; 0: it may turn round.
+Bounds BoundsInSense(double velocity, const Limits& limits) {
+  const double weaker = std::min(limits.acceleration, limits.deceleration);
+  if (velocity == 0) return {weaker, weaker, limits.jerk};
+  return velocity > 0 ? Bounds{limits.acceleration, limits.deceleration, limits.jerk}
+                      : Bounds{limits.deceleration, limits.acceleration, limits.jerk};
+}
+
+// The demand as it has to be a cycle earlier to get where it is with the acceleration it has.
+KinematicState CycleBefore(const KinematicState& demand, double t) {
+  return {demand.position - t * (demand.velocity - 0.5 * t * demand.acceleration),
+          demand.velocity - t * demand.acceleration, demand.acceleration};
+}
+
+// One cycle of the chase in the frame of the demand, with the ramps of an axis that moves in this sense. False: the
+// limits leave no room there, or there is no such plan.
+bool InFrame(const Chaser& c, ChaseMode mode, const KinematicState& before, const KinematicState& demand, double sense,
              KinematicState& next, bool& arrives) {
   const Limits own = c.params.planner_limits();
   const double t = c.period_s;
   const double speed = std::abs(demand.velocity);
   const double fastest = c.catching_up.velocity > speed ? c.catching_up.velocity : own.velocity;
   const double used = std::abs(demand.acceleration);
-  const Limits room = {fastest - speed, std::min(c.catching_up.acceleration, c.catching_up.deceleration) - used,
-                       std::min(c.catching_up.acceleration, c.catching_up.deceleration) - used, c.catching_up.jerk};
-  if (!(room.acceleration > kLeastRoom * std::min(own.acceleration, own.deceleration))) return false;
-  if (mode == ChaseMode::kPosition && !(room.velocity > kLeastRoom * own.velocity)) return false;
-  // The demand a cycle earlier, had it had its acceleration then already.
-  const double begin_velocity = demand.velocity - t * demand.acceleration;
-  const double begin_position = demand.position - t * (demand.velocity - 0.5 * t * demand.acceleration);
-  KinematicState from = {before.position - begin_position, before.velocity - begin_velocity,
-                         before.acceleration - demand.acceleration};
+  Bounds room = BoundsInSense(sense, c.catching_up);
+  room.up -= used;
+  room.down -= used;
+  if (!(std::min(room.up, room.down) > kLeastRoom * std::min(own.acceleration, own.deceleration))) return false;
+  if (mode == ChaseMode::kPosition && !(fastest - speed > kLeastRoom * own.velocity)) return false;
+  const KinematicState begin = CycleBefore(demand, t);
+  const KinematicState from = {before.position - begin.position, before.velocity - begin.velocity,
+                               before.acceleration - begin.acceleration};
   Profile profile{from};
-  if (mode == ChaseMode::kPosition) {
-    if (c.planner.ToPosition(from, 0, 0, room, profile).failed()) return false;
-  } else {
-    Limits ramps = room;
-    ramps.velocity = 2 * own.velocity;  // whatever is lost
-    if (c.planner.ToVelocity(from, 0, ramps, profile).failed()) return false;
-  }
+  const Status status = mode == ChaseMode::kPosition ? c.planner.ToPosition(from, 0, fastest - speed, room, profile)
+                                                     : c.planner.ToVelocity(from, 0, room, profile);
+  if (status.failed()) return false;
   const KinematicState relative = profile.At(t);
   next = {demand.position + relative.position, demand.velocity + relative.velocity,
           demand.acceleration + relative.acceleration};
@@ -128,10 +139,13 @@ KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& befo
   }
   KinematicState next;
   bool arrives = false;
-  if (!InFrame(c, mode, before, demand, next, arrives) || !KeepsVelocity(next, own) ||
-      !KeepsAcceleration(before, next, own)) {
-    return TowardsVelocity(c, before, demand.velocity);
-  }
+  const auto chases = [&](double sense) {
+    return InFrame(c, mode, before, demand, sense, next, arrives) && KeepsVelocity(next, own) &&
+           KeepsAcceleration(before, next, own) && KeepsReversal(next, own);
+  };
+  double sense = demand.velocity * before.velocity < 0 ? 0 : demand.velocity + before.velocity;
+  if (demand.velocity == 0 && before.velocity == 0) sense = demand.position - before.position;
+  if (!(sense != 0 && chases(sense)) && !chases(0)) return TowardsVelocity(c, before, demand.velocity);
   if (arrives) {  // the demand itself, in velocity mode at another place
     state.offset = next.position - demand.position;
     state.in_step = true;
@@ -139,8 +153,9 @@ KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& befo
   return next;
 }
 
-LimitedBy Beyond(const Limits& own, const KinematicState& demand) noexcept {
-  if (std::abs(demand.velocity) > own.velocity) return LimitedBy::kVelocity;
+LimitedBy Beyond(const Limits& own, const KinematicState& demand, bool in_step) noexcept {
+  const double left = in_step ? 0 : kLeastRoom * own.velocity;
+  if (std::abs(demand.velocity) > own.velocity - left) return LimitedBy::kVelocity;
   const double ramp = demand.velocity * demand.acceleration > 0 ? own.acceleration : own.deceleration;
   return std::abs(demand.acceleration) > ramp ? LimitedBy::kAcceleration : LimitedBy::kNothing;
 }

@@ -22,6 +22,9 @@ bool InWindow(const AxisParams& p, const ProbeState& probe, double position) {
 // Where the axis was `age_s` before this sample.
 double PositionBefore(const Context& c, const State& s, double age_s) {
   const double period = c.cycle.period_s;
+  if (s.sampling.age > 0 || s.sampling.step > 1) {  // samples that are not a cycle apart: by the speed
+    return s.actual.position - s.actual.velocity * (age_s + s.sampling.age * period);
+  }
   const double age = std::clamp(age_s, 0.0, period);
   const double acceleration = s.loop_closed ? (s.setpoint.velocity - s.probe.set_velocity) / period : 0;
   return s.actual.position - s.probe.step * age / period - 0.5 * acceleration * age * (period - age);
@@ -151,6 +154,13 @@ void SenseProbe(const Context& c, const ServoInputs& in, State& s) noexcept {
   probe.rises = in.probe_rises;
   probe.falls = in.probe_falls;
   probe.set_velocity = s.setpoint.velocity;
+}
+
+void ForgetSample(const ServoInputs& in, ProbeState& probe) noexcept {
+  probe.sampled = false;
+  probe.wire = in.touch_probe;
+  probe.rises = in.probe_rises;
+  probe.falls = in.probe_falls;
 }
 
 void FollowProbe(const Context& c, State& s) noexcept {

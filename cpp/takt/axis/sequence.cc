@@ -154,7 +154,7 @@ void ConcludeContinuous(const Context& c, double late_s, State& s) {
 }
 
 void ConcludeCam(const Context& c, State& s) {
-  if (s.coupling.chase.in_step) NoteReached(c, s);
+  if (s.coupling.in_step) NoteReached(c, s);
   if (s.coupling.cam.over) GiveWay(c, s);
 }
 
@@ -258,6 +258,7 @@ void SwitchedOff(const Context& c, State& s) noexcept {
 void OpenLoop(State& s) noexcept {
   s.enable = false;
   s.loop_closed = false;
+  s.blind = false;
   s.homing.stage = HomingStage::kNone;
   s.voltage_v = 0;
   s.limited_by = LimitedBy::kNothing;

@@ -44,6 +44,8 @@ void describe(Description<State>& d) {
   d.internal<&S::buffer>("Buffered commands, the next one first.");
   d.internal<&S::buffered>("How many.");
   d.internal<&S::override_factors>("Factors of velocity, ramps and jerk.");
+  d.internal<&S::sampling>("When what is measured was sampled.");
+  d.internal<&S::blind>("The drive is not heard any more: stops by set points alone.");
   d.internal<&S::enable>("Drive told to be on.");
   d.internal<&S::loop_closed>("Loop closed, brake released.");
   d.internal<&S::enable_cycle>("Since when.");

@@ -17,6 +17,7 @@
 #include "takt/axis/time_table.h"
 #include "takt/axis/torque.h"
 #include "takt/core/kinematic_state.h"
+#include "takt/core/ports.h"
 #include "takt/core/status.h"
 #include "takt/trajectory/profile.h"
 
@@ -63,6 +64,10 @@ struct State {
   bool coupled = false;         // follows a master from load on
   bool end_of_profile = false;  // the end of a cam was passed in this cycle
   std::uint8_t buffered = 0;
+
+  // A drive in another process.
+  Sampling sampling;   // of what is measured
+  bool blind = false;  // it was lost with the loop closed: stops as if the drive did what it is told
 
   // Power.
   bool enable = false;       // the drive is told to be on

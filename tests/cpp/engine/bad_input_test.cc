@@ -51,6 +51,7 @@ std::vector<Command> GoodCommands() {
           axis::SetSoftLimits{},
           axis::DirectOutput{},
           axis::SetPosition{.position = 1},
+          axis::SetOverride{.velocity_factor = 0.5},
           axis::TouchProbe{},
           axis::Touch{}};
 }
