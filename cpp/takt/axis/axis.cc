@@ -345,7 +345,7 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.buffered_commands = s.buffered;
   out.loop_closed = s.loop_closed;
   out.in_position =
-      s.loop_closed && !InMotion(s) && std::abs(s.following_error) <= p.supervision.in_position.value_or(HUGE_VAL);
+      s.loop_closed && !InMotion(s) && !s.motion.held && std::abs(s.following_error) <= p.supervision.in_position.value_or(HUGE_VAL);
   out.limit_positive = s.limit_positive;
   out.limit_negative = s.limit_negative;
   out.reference = s.reference;
