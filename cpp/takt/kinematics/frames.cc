@@ -69,6 +69,11 @@ GreatArc ArcBetween(const KDL::Rotation& from, const KDL::Rotation& to) noexcept
   return arc;
 }
 
+KDL::Vector TurnBetween(const KDL::Rotation& from, const KDL::Rotation& to) noexcept {
+  const GreatArc arc = ArcBetween(from, to);
+  return arc.axis * arc.angle;
+}
+
 KDL::RotationAcc Along(const GreatArc& arc, const Share& share) noexcept {
   return {KDL::Rotation::Rot2(arc.axis, arc.angle * share.value) * arc.start, arc.axis * (arc.angle * share.rate),
           arc.axis * (arc.angle * share.acceleration)};

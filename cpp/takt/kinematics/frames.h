@@ -51,6 +51,9 @@ struct GreatArc {
 // Half a turn has two shortest ways: the same one is taken each time.
 GreatArc ArcBetween(const KDL::Rotation& from, const KDL::Rotation& to) noexcept;
 
+// The turn from one orientation to another as axis times angle, rad. (KDL::diff takes small turns for none.)
+KDL::Vector TurnBetween(const KDL::Rotation& from, const KDL::Rotation& to) noexcept;
+
 // A share of the way with its first and second derivative by time: 0 is at the start, 1 at the end.
 struct Share {
   double value = 0;

@@ -79,11 +79,19 @@ Joints ToAxes(const Kinematics& k, const Joints& joints) {
   return out;
 }
 
-Joints FilledIn(const Kinematics& k, const Joints& near) {
+Joints Middles(const Kinematics& k) {
   Joints out{};
   for (std::size_t i = 0; i < k.count; ++i) {
     const double middle = (k.ranges[i].lower + k.ranges[i].upper) / 2;
-    out[i] = std::isfinite(near[i]) ? near[i] : std::isfinite(middle) ? middle : 0;
+    out[i] = std::isfinite(middle) ? middle : 0;
+  }
+  return out;
+}
+
+Joints FilledIn(const Kinematics& k, const Joints& near) {
+  Joints out = Middles(k);
+  for (std::size_t i = 0; i < k.count; ++i) {
+    if (std::isfinite(near[i])) out[i] = near[i];
   }
   return out;
 }
@@ -118,10 +126,14 @@ Configuration ConfigurationOf(const Kinematics& k, const Joints& joints) noexcep
 Reason Inverse(const Kinematics& k, const Frame& tool, const Configuration& wanted, const Joints& near,
                Joints& joints) noexcept {
   if (!Finite(tool)) return Reason::kNotFinite;
-  const Joints own_near = ToMechanism(k, FilledIn(k, near));
+  const Joints present = ToMechanism(k, FilledIn(k, near));
   Joints own{};
   const Reason reason = std::visit(
-      [&](const auto& m) { return Inverse(m, tool, Resolve(wanted, ConfigurationOf(m, own_near)), own_near, own); },
+      [&](const auto& m) {
+        const Configuration branch = ConfigurationOf(m, present);
+        const Configuration resolved = Resolve(wanted, branch);
+        return Inverse(m, tool, resolved, resolved == branch ? present : ToMechanism(k, Middles(k)), own);
+      },
       k.mechanism);
   if (reason != Reason::kNone) return reason;
   const Joints found = ToAxes(k, own);

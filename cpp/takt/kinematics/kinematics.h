@@ -65,7 +65,8 @@ Configuration ConfigurationOf(const Kinematics& kinematics, const Joints& joints
 
 // Where the axes must be. What `wanted` keeps is as in `near`; an axis that turns comes as near to `near` as whole
 // turns take it, so that a path followed point by point never jumps, and is refused (kAxisLimit) rather than turned
-// back. Where `near` is NaN it is the middle of the axis' range, or 0 without a range: for targets out of nowhere.
+// back. For targets out of nowhere (`near` is NaN, or another branch than its own is wanted) axes come as near as can
+// be to the middle of their range, or to 0 without one.
 Reason Inverse(const Kinematics& kinematics, const Frame& tool, const Configuration& wanted, const Joints& near,
                Joints& joints) noexcept;
 // The same with velocities and accelerations of the axes. Nothing is said about their limits.

@@ -48,7 +48,7 @@ Columns ScaledJacobian(const Chain& chain, const Joints& joints) {
 
 Six ErrorOf(const Chain& chain, const Joints& joints, const Frame& tool) {
   const Frame present = Forward(chain, joints);
-  return Scaled(KDL::diff(present, tool), chain.length);
+  return Scaled({tool.p - present.p, TurnBetween(present.M, tool.M)}, chain.length);
 }
 
 // Newton-Raphson: with damping that vanishes with the error, so that the last steps are exact.

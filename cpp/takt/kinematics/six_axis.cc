@@ -61,12 +61,11 @@ Reason Inverse(const SixAxis& arm, const Frame& tool, const Configuration& confi
   if (sine < kSingularSine) return Reason::kSingular;
   const double sign = configuration.wrist == Wrist::kPositive ? 1 : -1;
 
-  const std::array<double, 6> angles{first,
-                                     links.first,
-                                     third,
-                                     std::atan2(sign * turn(1, 2), sign * turn(0, 2)),
-                                     std::atan2(sign * sine, turn(2, 2)),
-                                     std::atan2(sign * turn(2, 1), -sign * turn(2, 0))};
+  // Axis 4 may be known badly; axes 5 and 6 make up for it.
+  const double fourth = std::atan2(sign * turn(1, 2), sign * turn(0, 2));
+  const KDL::Rotation rest = KDL::Rotation::RotZ(-fourth) * turn;
+  const std::array<double, 6> angles{
+      first, links.first, third, fourth, std::atan2(rest(0, 2), rest(2, 2)), std::atan2(rest(1, 0), rest(1, 1))};
   for (std::size_t i = 0; i < angles.size(); ++i) joints[i] = NearestTurn(angles[i], near[i]);
   return Reason::kNone;
 }
