@@ -20,6 +20,15 @@ std::string Quoted(const std::string& name) {
   return "'" + name + "'";
 }
 
+// Null when it cannot be read; the reader has then said why on stderr.
+urdf::ModelInterfaceSharedPtr Parsed(const std::string& xml) {
+  try {
+    return urdf::parseURDF(xml);
+  } catch (const std::exception&) {
+    return nullptr;
+  }
+}
+
 // The joints from base to tip; empty, and why, when there is no way.
 std::vector<urdf::JointConstSharedPtr> Way(const urdf::ModelInterface& model, const std::string& base,
                                            const std::string& tip, std::string& why) {
@@ -59,7 +68,7 @@ std::string OnlyEnd(const urdf::ModelInterface& model, std::string& why) {
 std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& base, const std::string& tip,
                                   std::string& why) {
   why.clear();
-  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(xml);
+  const urdf::ModelInterfaceSharedPtr model = Parsed(xml);
   if (!model) {
     why = "this is no URDF that can be read";
     return std::nullopt;
@@ -79,9 +88,10 @@ std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& bas
     } else if (out.chain.count == kMaxJoints) {
       why = "the chain has more than " + std::to_string(kMaxJoints) + " axes";
     }
-    if (!why.empty()) return std::nullopt;
     KDL::Vector axis(joint->axis.x, joint->axis.y, joint->axis.z);
-    axis.Normalize();
+    if (why.empty() && !(axis.Normalize() > 1e-9))
+      why = "joint " + Quoted(joint->name) + " has an axis without a direction";
+    if (!why.empty()) return std::nullopt;
     if (joint->limits && joint->type != urdf::Joint::CONTINUOUS) {
       const double unit = slides ? kMetre : 1;
       out.limits[out.chain.count] = {joint->limits->lower * unit, joint->limits->upper * unit};

@@ -121,10 +121,9 @@ TEST(Serial, RefusesFromTheBorderOn) {
   EXPECT_NE(ask(600), Reason::kNone);
   EXPECT_EQ(ask(599.9), Reason::kNone);
   EXPECT_EQ(ask(599), Reason::kNone);
-  EXPECT_NEAR(joints[1],
-              2 * std::acos((599.0 * 599 + 325.0 * 325 - 275.0 * 275) / (2 * 599 * 325)) / kDegree * 0.5 * 2 / 2 +
-                  std::acos((599.0 * 599 + 275.0 * 275 - 325.0 * 325) / (2 * 599 * 275)) / kDegree,
-              1e-6);
+  // By the law of cosines.
+  const double cosine = (599.0 * 599 - 325.0 * 325 - 275.0 * 275) / (2 * 325.0 * 275);
+  EXPECT_NEAR(joints[1], std::acos(cosine) / kDegree, 1e-6);
 }
 
 // GR-11: a stretched arm, the zero position of many URDFs, finds its way out of it.
@@ -171,6 +170,9 @@ std::string WhyNot(const std::string& xml, const std::string& base = "", const s
 TEST(Serial, SaysWhatIsWrongWithAUrdf) {
   const std::string cobra = TextOf("cobra.urdf");
   EXPECT_EQ(WhyNot("nonsense"), "this is no URDF that can be read");
+  EXPECT_EQ(WhyNot("<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='fixed'><parent link='a'/>"
+                   "<child link='b'/><origin xyz='1 two 3'/></joint></robot>"),
+            "this is no URDF that can be read");
   EXPECT_EQ(WhyNot(cobra), "the URDF has several ends (camera, tool ...): say which one is the tip");
   EXPECT_EQ(WhyNot(cobra, "", "hand"), "the URDF has no link 'hand'");
   EXPECT_EQ(WhyNot(cobra, "foot", "tool"), "the URDF has no link 'foot'");
@@ -180,6 +182,9 @@ TEST(Serial, SaysWhatIsWrongWithAUrdf) {
   std::string floating = cobra;
   floating.replace(floating.find("prismatic"), 9, "floating");
   EXPECT_EQ(WhyNot(floating, "", "tool"), "joint 'j3' neither slides nor turns about one axis");
+  std::string idle = cobra;
+  idle.replace(idle.find("axis xyz=\"0 0 1\""), 16, "axis xyz=\"0 0 0\"");
+  EXPECT_EQ(WhyNot(idle, "", "tool"), "joint 'j1' has an axis without a direction");
   std::string mimic = cobra;
   mimic.replace(mimic.find("<limit"), 0, "<mimic joint=\"j2\"/>");
   EXPECT_EQ(WhyNot(mimic, "", "tool"), "joint 'j1' copies another one, which a chain cannot");
