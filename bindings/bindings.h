@@ -5,6 +5,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <string>
 #include <vector>
 
 #include "takt/core/columns.h"
@@ -14,6 +15,9 @@ namespace takt::bindings {
 
 namespace py = pybind11;
 
+// Raises takt.ConfigError with these sentences.
+[[noreturn]] void ThrowConfigError(const std::vector<std::string>& problems);
+
 // A single number, bool or enum (as its number).
 py::object ScalarToPython(const Type& type, const void* object);
 
@@ -21,6 +25,7 @@ py::object ScalarToPython(const Type& type, const void* object);
 py::dtype LayoutOf(const std::vector<Column>& columns, std::size_t size);
 
 void BindCore(py::module_& m);
+void BindKinematics(py::module_& m);
 void BindAxis(py::module_& m);
 void BindEngine(py::module_& m);
 

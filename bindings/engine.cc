@@ -25,12 +25,6 @@ namespace {
 // In virtual time a scenario may command a thousand axes before it lets time pass.
 constexpr std::size_t kCommandQueue = 1 << 12;
 
-[[noreturn]] void ThrowConfigError(const std::vector<std::string>& problems) {
-  const py::object error = py::module_::import("takt.errors").attr("ConfigError");
-  PyErr_SetObject(error.ptr(), error(problems).ptr());
-  throw py::error_already_set();
-}
-
 engine::Machine Load(const py::bytes& text, const std::string& file_name) {
   engine::LoadResult result = engine::LoadMachine(static_cast<std::string_view>(text), file_name);
   if (!result.machine) ThrowConfigError(result.problems);
