@@ -6,9 +6,9 @@ robot = kin.Kinematics(delta={"base_radius": 200, "platform_radius": 45, "upper_
 robot.forward([10, 20, 30])                    # [x, y, z, a, b, c]
 robot.inverse([[0, 0, -700, 0, 0, 0]]).joints  # one row a pose
 
-A pose is six numbers: X, Y, Z in mm and A, B, C in degrees. A, B, C turn about X, then Y, then Z of the frame the pose is
-given in, which stand still. Positions of axes are in their own units, mm or deg. Wherever an array with a row a pose goes
-in, a single row may, and single rows come out.
+A pose is six numbers: X, Y, Z in mm and A, B, C in degrees. A, B, C turn about X, then Y, then Z of the frame the pose
+is given in, which stand still. Positions of axes are in their own units, mm or deg. Wherever an array with a row a pose
+goes in, a single row may.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Shoulder = Literal["keep", "front", "back"]
 Bend = Literal["keep", "positive", "negative"]
 
 _REASONS = tuple(_core.reason_names())
-assert _REASONS == get_args(Reason)
+assert get_args(Reason) == _REASONS
 
 
 class KinematicsError(TaktError, ValueError):
@@ -81,10 +81,10 @@ class ToolMotion(NamedTuple):
 
 
 class Kinematics:
-    """One mechanism, with the parameters that a machine file would give it: Kinematics(scara={"first_arm": 325, ...}).
+    """One mechanism, with the parameters a machine file would give it: Kinematics(scara={"first_arm": 325, ...}).
 
-    Exactly one of gantry, core_xy, scara, delta, six_axis, serial; `joints` may say for each axis its zero and whether it
-    counts the other way round; files (`serial`) are looked for in `folder`. Raises takt.ConfigError."""
+    Exactly one of gantry, core_xy, scara, delta, six_axis, serial; `joints` may say for each axis its zero and whether
+    it counts the other way round; files (`serial`) are looked for in `folder`. Raises takt.ConfigError."""
 
     def __init__(
         self,
@@ -118,8 +118,8 @@ class Kinematics:
         self._core.ranges = np.asarray(ranges, float)
 
     def forward(self, joints: npt.ArrayLike) -> Array:
-        """The poses (n, 6) in mm and deg of positions (n, axes) in mm or deg. Raises KinematicsError where a Delta's arms
-        do not meet."""
+        """The poses (n, 6) in mm and deg of positions (n, axes) in mm or deg. Raises KinematicsError where a Delta's
+        arms do not meet."""
         rows, single = _rows(joints, self.axes)
         poses, reasons = self._core.forward(rows)
         _raise_first(reasons)
@@ -149,8 +149,8 @@ class Kinematics:
     ) -> Solution:
         """Where the axes must be for poses (n, 6) in mm and deg.
 
-        `near`: where the axes are, (axes,) or (n, axes); without it they come into the middle of their ranges. `path`: the
-        poses are one path, each is solved from the one before and no axis jumps. The rest says which branch."""
+        `near`: where the axes are, (axes,) or (n, axes); without it they come near the middle of their ranges. `path`:
+        the poses are one path, each is solved from the one before and no axis jumps. The rest says which branch."""
         rows, _ = _rows(poses, 6)
         wanted = _configuration(shoulder, elbow, wrist)
         joints, reasons = self._core.inverse(rows, self._near(near), wanted, path)
@@ -168,7 +168,7 @@ class Kinematics:
         elbow: Bend = "keep",
         wrist: Bend = "keep",
     ) -> MotionSolution:
-        """The same with velocities (n, 6) in mm/s and deg/s and accelerations (n, 6) in mm/s² and deg/s² of the tool."""
+        """The same with velocities (n, 6; mm/s, deg/s) and accelerations (n, 6; mm/s², deg/s²) of the tool."""
         rows, _ = _rows(poses, 6)
         wanted = _configuration(shoulder, elbow, wrist)
         joints, rates, changes, reasons = self._core.inverse_motion(
@@ -205,8 +205,8 @@ def matrix_to_pose(matrices: npt.ArrayLike) -> Array:
 
 
 def interpolate(start: npt.ArrayLike, end: npt.ArrayLike, shares: npt.ArrayLike) -> Array:
-    """Poses (n, 6) on the straight line from one pose (6,) to another, turning along the great arc: `shares` (n,) of the
-    way, 0 to 1."""
+    """Poses (n, 6) on the straight line from one pose (6,) to another, turning along the great arc: `shares` (n,) of
+    the way, 0 to 1."""
     ends = np.concatenate([_rows(start, 6)[0], _rows(end, 6)[0]])
     return _core.poses_between(ends, np.atleast_1d(np.asarray(shares, float)))
 

@@ -45,7 +45,7 @@ Configuration ConfigurationOf(const auto&, const Joints&) noexcept {
   return {};
 }
 
-bool Finite(const Kinematics& k, const Joints& joints) {
+bool AllFinite(const Kinematics& k, const Joints& joints) {
   return std::all_of(joints.begin(), joints.begin() + static_cast<std::ptrdiff_t>(k.count),
                      [](double q) { return std::isfinite(q); });
 }
@@ -103,19 +103,23 @@ bool InRange(const Kinematics& k, const Joints& joints) {
   return true;
 }
 
+template <typename From, typename To>
+Reason ForwardOfAny(const Kinematics& k, const From& own, To& tool) {
+  const Reason reason = std::visit([&](const auto& m) { return ForwardOf(Mover(m), own, tool); }, k.mechanism);
+  return reason == Reason::kNone && !Finite(tool) ? Reason::kOutOfReach : reason;  // numbers too large to multiply
+}
+
 }  // namespace
 
 Reason Forward(const Kinematics& k, const Joints& joints, Frame& tool) noexcept {
-  if (!Finite(k, joints)) return Reason::kNotFinite;
-  const Joints own = ToMechanism(k, joints);
-  return std::visit([&](const auto& m) { return ForwardOf(Mover(m), own, tool); }, k.mechanism);
+  if (!AllFinite(k, joints)) return Reason::kNotFinite;
+  return ForwardOfAny(k, ToMechanism(k, joints), tool);
 }
 
 Reason Forward(const Kinematics& k, const JointMotion& motion, MovingFrame& tool) noexcept {
-  if (!Finite(k, motion.position) || !Finite(k, motion.velocity) || !Finite(k, motion.acceleration))
+  if (!AllFinite(k, motion.position) || !AllFinite(k, motion.velocity) || !AllFinite(k, motion.acceleration))
     return Reason::kNotFinite;
-  const JointMotion own = ToMechanism(k, motion);
-  return std::visit([&](const auto& m) { return ForwardOf(Mover(m), own, tool); }, k.mechanism);
+  return ForwardOfAny(k, ToMechanism(k, motion), tool);
 }
 
 Configuration ConfigurationOf(const Kinematics& k, const Joints& joints) noexcept {
@@ -137,7 +141,7 @@ Reason Inverse(const Kinematics& k, const Frame& tool, const Configuration& want
       k.mechanism);
   if (reason != Reason::kNone) return reason;
   const Joints found = ToAxes(k, own);
-  if (!Finite(k, found)) return Reason::kOutOfReach;
+  if (!AllFinite(k, found)) return Reason::kOutOfReach;
   if (!InRange(k, found)) return Reason::kAxisLimit;
   joints = found;
   return Reason::kNone;
@@ -154,13 +158,13 @@ Reason Inverse(const Kinematics& k, const MovingFrame& tool, const Configuration
   if (reason != Reason::kNone) return reason;
   found.velocity = RatesToAxes(k, own.velocity);
   found.acceleration = RatesToAxes(k, own.acceleration);
-  if (!Finite(k, found.velocity) || !Finite(k, found.acceleration)) return Reason::kSingular;
+  if (!AllFinite(k, found.velocity) || !AllFinite(k, found.acceleration)) return Reason::kSingular;
   motion = found;
   return Reason::kNone;
 }
 
 Reason JacobianAt(const Kinematics& k, const Joints& joints, Jacobian& columns) noexcept {
-  if (!Finite(k, joints)) return Reason::kNotFinite;
+  if (!AllFinite(k, joints)) return Reason::kNotFinite;
   const Joints own = ToMechanism(k, joints);
   const Reason reason = std::visit([&](const auto& m) { return JacobianOf(Mover(m), own, columns); }, k.mechanism);
   if (reason != Reason::kNone) return reason;
