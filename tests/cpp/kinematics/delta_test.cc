@@ -174,6 +174,11 @@ TEST(Delta, RefusesPositionsWithoutAPose) {
   EXPECT_EQ(Forward(flat, JointMotion{}, moving), Reason::kSingular);
   Joints joints{};
   EXPECT_EQ(Inverse(flat, Frame::Identity(), {}, {}, joints), Reason::kSingular);
+  // Knees 150 mm down and 700 mm out: lower arms of 700 mm are all level there.
+  const Kinematics level =
+      FromYaml("{delta: {base_radius: 440.1923788646684, platform_radius: 0, upper_arm: 300, lower_arm: 700}}");
+  EXPECT_EQ(Inverse(level, ToFrame({.z = -150}), {}, {}, joints), Reason::kSingular);
+  EXPECT_EQ(Inverse(level, ToFrame({.z = -160}), {}, {}, joints), Reason::kNone);
 }
 
 }  // namespace

@@ -248,6 +248,7 @@ TEST_P(Every, PropertyAnswersEverything) {
     Joints joints{};
     joints.fill(7);
     const Reason reason = Inverse(c.kinematics, pose, {}, near, joints);
+    ASSERT_EQ(reason == Reason::kNotFinite, !Finite(pose));
     for (std::size_t k = 0; k < kMaxJoints; ++k) {
       if (reason == Reason::kNone) {
         ASSERT_TRUE(std::isfinite(joints[k]));

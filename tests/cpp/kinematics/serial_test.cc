@@ -145,6 +145,45 @@ TEST(Serial, StartsFromAStretchedArm) {
   EXPECT_GT(solved, 30);  // the others run against the ends of axes
 }
 
+// GR-11: stretched towards the place it is to go to, no axis says which way: it bends nevertheless.
+TEST(Serial, BendsAnArmThatPointsAtItsTarget) {
+  const Kinematics k = FromYaml("{serial: {urdf: cobra.urdf, tip: tool}}");
+  const Frame pose = ToFrame({.x = 500, .z = 300});
+  Joints joints{};
+  ASSERT_EQ(Inverse(k, pose, {}, {0, 0, -87, 0}, joints), Reason::kNone);
+  EXPECT_LT((ForwardOrFail(k, joints).p - pose.p).Norm(), 1e-9);
+}
+
+// GR-12: a pose just on the other side of a singularity is never answered with a position there: of the wrist of six
+// axes, of the elbow of four.
+TEST(Serial, PropertyStaysOnItsSide) {
+  Random random(65);
+  const testing::Case& six = CaseOf("SerialPuma");
+  const testing::Case& four = CaseOf("SerialScara");
+  int refused = 0;
+  for (int i = 0; i < Trials(500); ++i) {
+    Joints near = random.In(six), target = near, found{};
+    near[4] = random.Between(1, 5);
+    target[4] = random.Between(-5, -1);
+    Reason reason = Inverse(six.kinematics, ForwardOrFail(six.kinematics, target), {}, near, found);
+    if (reason == Reason::kNone) {
+      ASSERT_GT(found[4], 0);
+    }
+    refused += reason == Reason::kSingular;
+
+    near = target = random.In(four);
+    near[1] = 5 + random.Between(1, 5);  // its zero is at 5
+    target[1] = 5 - random.Between(1, 5);
+    target[0] += random.Between(-3, 3);
+    reason = Inverse(four.kinematics, ForwardOrFail(four.kinematics, target), {}, near, found);
+    if (reason == Reason::kNone) {
+      ASSERT_GT(found[1], 5);
+    }
+    refused += reason == Reason::kSingular;
+  }
+  EXPECT_GT(refused, 100);
+}
+
 // GR-11: limits of the URDF become the axes', in deg and mm, with the axis' own zero and sense.
 TEST(Serial, TakesRangesFromUrdf) {
   const Kinematics k =
