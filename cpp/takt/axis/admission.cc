@@ -34,6 +34,7 @@ void ChangeJog(const Context& c, const Request& r, State& s) {
   if (s.jog_sense == 0 || !key_held) return;
   Request held = r;  // the first key wins, whatever the other one does
   held.forward = s.jog_sense > 0;
+  const Beneath base(s);
   Plan plan;
   if (PlanJog(c, held, s, plan).failed()) return;
   s.limited_by = plan.limited_by;
@@ -95,7 +96,8 @@ Status SwitchOn(const Context& c, const Request& r, State& s) {
 }
 
 Status SwitchOff(const Context& c, const Request& r, State& s) {
-  const bool waits = r.buffer_mode == BufferMode::kBuffered && s.active.kind != RequestKind::kNone && !SwitchingOff(s);
+  const bool moves = s.active.kind != RequestKind::kNone || s.superimposed;
+  const bool waits = r.buffer_mode == BufferMode::kBuffered && moves && !SwitchingOff(s);
   if (waits && s.plc != PlcState::kErrorStop) return Enqueue(c, r, s);
   AbortAll(c, s);
   Grant(c, r, s);
@@ -115,7 +117,8 @@ Status Admit(const Context& c, const Request& r, State& s) {
   if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
   if (c.params.await_constants && !s.constants_set) return Status::Failed(ErrorId::kNoConstants);
   if (c.params.follows) return Status::Failed(ErrorId::kState);
-  const bool buffered = r.buffer_mode != BufferMode::kAborting && s.active.kind != RequestKind::kNone;
+  const bool moves = s.active.kind != RequestKind::kNone || s.superimposed;
+  const bool buffered = r.buffer_mode != BufferMode::kAborting && moves;
   if (!s.loop_closed) {
     return buffered && SwitchingOn(s) ? Enqueue(c, r, s) : Status::Failed(ErrorId::kPowerOff);
   }

@@ -129,6 +129,12 @@ KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& befo
   return next;
 }
 
+LimitedBy Beyond(const Limits& own, const KinematicState& demand) noexcept {
+  if (std::abs(demand.velocity) > own.velocity) return LimitedBy::kVelocity;
+  const double ramp = demand.velocity * demand.acceleration > 0 ? own.acceleration : own.deceleration;
+  return std::abs(demand.acceleration) > ramp ? LimitedBy::kAcceleration : LimitedBy::kNothing;
+}
+
 void describe(Description<ChaseState>& d) {
   d.about("Following a demand.");
   d.internal<&ChaseState::offset>(unit::u, "Own position minus the demand's, in velocity mode.");

@@ -6,6 +6,7 @@
 
 #include "takt/axis/params.h"
 #include "takt/core/kinematic_state.h"
+#include "takt/core/status.h"
 #include "takt/trajectory/planner.h"
 
 namespace takt::axis {
@@ -40,6 +41,9 @@ struct Chaser {
 // towards its velocity as far as the axis' own goes. SW limits are the caller's affair.
 KinematicState Chase(const Chaser& chaser, ChaseMode mode, const KinematicState& before, const KinematicState& demand,
                      ChaseState& state) noexcept;
+
+// What of a demand is more than the axis can.
+LimitedBy Beyond(const trajectory::Limits& own, const KinematicState& demand) noexcept;
 
 void describe(Description<ChaseState>&);
 

@@ -126,13 +126,6 @@ bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, Kinem
   return true;
 }
 
-// What of a demand is more than the axis can.
-LimitedBy Beyond(const Limits& own, const KinematicState& demand) {
-  if (std::abs(demand.velocity) > own.velocity) return LimitedBy::kVelocity;
-  const double ramp = demand.velocity * demand.acceleration > 0 ? own.acceleration : own.deceleration;
-  return std::abs(demand.acceleration) > ramp ? LimitedBy::kAcceleration : LimitedBy::kNothing;
-}
-
 void BeginJoining(const Context& c, const Request& r, State& s) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];

@@ -222,8 +222,8 @@ Status BeginFlying(const Context& c, Ticket ticket, bool pulse, const HomingRequ
 // Under its new numbers a motion with an end may lead out of the SW limits. (Those without one are watched cycle by
 // cycle.)
 void KeepInside(const Context& c, State& s) {
-  const double end = s.motion.profile.end().position;
-  if (s.motion.arrived || Inside(c.params.limits, end)) return;
+  const double end = s.motion.profile.end().position + AddedAtEnd(s);
+  if ((s.motion.arrived && !s.superimposed) || Inside(c.params.limits, end)) return;
   const bool above = c.params.limits.upper && end > *c.params.limits.upper;
   if (above ? end < s.setpoint.position : end > s.setpoint.position) return;  // it comes back
   Fail(c, above ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);

@@ -16,6 +16,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::voltage_v>(unit::volt, "Output of the position loop, analogue drives.");
   d.internal<&O::torque_nm>(unit::nm, "As the drive reports it.");
   d.internal<&O::probe_position>(unit::u, "Where the touch probe was captured last.");
+  d.internal<&O::covered_distance>(unit::u, "By the motion on top of the one in progress; 0: there is none.");
   d.internal<&O::active_command>("Ticket of the command in control; 0: none.");
   d.internal<&O::error>("Fault of the axis, not of a command; 0: none.");
   d.internal<&O::state>("PLCopen state after the cycle; several transitions may lie in one.");
@@ -26,6 +27,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::loop_closed>("The position loop is closed and the brake released.");
   d.internal<&O::in_position>("The following error is inside the in-position window.");
   d.internal<&O::in_step>("Follows its masters exactly.");
+  d.internal<&O::superimposed>("Another motion is on top of the one in progress.");
   d.internal<&O::homed>("Its position is known: it has a reference.");
   d.internal<&O::limit_positive>("LIM+ after inversion.");
   d.internal<&O::limit_negative>("LIM- after inversion.");

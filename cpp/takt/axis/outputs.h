@@ -19,6 +19,7 @@ struct Outputs {
   double voltage_v = 0;            // V, output of the position loop
   double torque_nm = 0;            // Nm, as the drive reports it
   double probe_position = 0;       // u, where the touch probe was captured last
+  double covered_distance = 0;     // u, by the motion on top of the one in progress; 0: there is none
   Ticket active_command = 0;       // 0: none
   ErrorId error = ErrorId::kNone;  // fault of the axis (not of a command)
   PlcState state = PlcState::kDisabled;
@@ -31,6 +32,7 @@ struct Outputs {
   bool loop_closed = false;
   bool in_position = false;
   bool in_step = false;         // follows its masters exactly
+  bool superimposed = false;    // another motion is on top of the one in progress
   bool homed = false;           // has a reference
   bool limit_positive = false;  // switches after inversion
   bool limit_negative = false;

@@ -63,6 +63,7 @@ bool CanBeSlowed(const Request& r) {
 // Plans the motion in progress anew because its velocity changed.
 void PlanAgain(const Context& c, State& s) {
   if (s.active.positions()) return ReplanActive(c, s);
+  const Beneath base(s);
   Plan plan;
   Status status;
   if (s.active.kind == RequestKind::kJog) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "takt/axis/fit.h"
+
 namespace takt::axis {
 
 using trajectory::Profile;
@@ -18,7 +20,9 @@ void Enter(State& s, PlcState to) noexcept {
 
 Surroundings SurroundingsOf(const State& s) noexcept {
   Surroundings around{s.limit_positive, s.limit_negative, s.homing.homed, s.last_sense, {}};
-  if (s.active.positions()) around.promised = s.motion.target;
+  if (!s.active.positions()) return around;
+  around.promised = s.motion.target;
+  if (s.superimposed) *around.promised += s.setpoint.position - s.overlay.base.position;  // covered so far
   return around;
 }
 
@@ -28,6 +32,10 @@ void StartMotion(const Profile& profile, double target, const MotionStart& start
   s.motion.start_cycle = start.cycle;
   s.motion.start_offset_s = start.offset_s;
   s.motion.arrived = false;
+}
+
+bool InPosition(const AxisParams& p, const State& s) noexcept {
+  return !p.supervision.in_position || std::abs(s.setpoint.position - s.actual.position) <= *p.supervision.in_position;
 }
 
 bool AtRest(const State& s) noexcept {
@@ -49,9 +57,9 @@ Request TakeFirst(State& s) {
   return first;
 }
 
-// Whether a positioning command may call itself done although the set point has arrived already.
-bool InPosition(const AxisParams& p, const State& s) {
-  return !p.supervision.in_position || std::abs(s.setpoint.position - s.actual.position) <= *p.supervision.in_position;
+// The motion in control has come to its end; what is on top of it, if anything is, has not.
+void EnterRest(State& s) {
+  Enter(s, s.superimposed ? PlcState::kDiscreteMotion : PlcState::kStandstill);
 }
 
 double ArrivedFor(const Context& c, const State& s) {
@@ -60,7 +68,8 @@ double ArrivedFor(const Context& c, const State& s) {
 
 void ConcludePositioning(const Context& c, double late_s, State& s) {
   const bool leaves_moving = s.motion.profile.end().velocity != 0;
-  if (leaves_moving || InPosition(c.params, s)) {
+  // Beneath another motion the axis is not to stand there.
+  if (leaves_moving || s.superimposed || InPosition(c.params, s)) {
     EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
     StartNext(c, leaves_moving ? late_s : 0, s);
   } else if (ArrivedFor(c, s) > c.params.supervision.in_position_timeout_s) {
@@ -136,6 +145,7 @@ void AbortBuffer(const Context& c, State& s) noexcept {
 void AbortAll(const Context& c, State& s) noexcept {
   EndActive(c, FeedbackState::kAborted, ErrorId::kNone, s);
   AbortBuffer(c, s);
+  AbortOverlay(c, FeedbackState::kAborted, ErrorId::kNone, s);
 }
 
 void Brake(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s) noexcept {
@@ -175,8 +185,9 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
     return AbortBuffer(c, s);
   }
   const bool homes_on = s.plc == PlcState::kHoming && s.buffered > 0 && Homes(s.buffer[0].kind);
-  if (AtRest(s) && IsLegal(s.plc, PlcState::kStandstill) && !homes_on) Enter(s, PlcState::kStandstill);
+  if (AtRest(s) && IsLegal(s.plc, PlcState::kStandstill) && !homes_on) EnterRest(s);
   while (s.buffered > 0) {
+    if (s.superimposed && !Carries(s.buffer[0])) return;
     const Request next = TakeFirst(s);
     if (next.kind == RequestKind::kPower && next.enable) {  // it is on already
       Report(c, next.ticket, FeedbackState::kActive);
@@ -188,8 +199,10 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
     if (Couples(next.kind)) return Couple(c, next, s);
     Plan plan;
     const bool homes = Homes(next.kind);
-    const Status status = homes ? BeginHoming(c, next, false, s)
-                                : PlanRequest(c.params, SurroundingsOf(s), c.planner, from, next, Follower(s), plan);
+    Status status = homes ? BeginHoming(c, next, false, s)
+                          : PlanRequest(c.params, SurroundingsOf(s), c.planner, from, next, Follower(s), plan);
+    if (status.ok() && next.positions() && !Inside(c.params.limits, plan.target + AddedAtEnd(s)))
+      status = Status::Failed(ErrorId::kTargetBehindLimit);
     if (status.ok() && homes) return;
     if (status.ok()) {
       TakeControl(c, next, plan, {c.cycle.count, seamless ? late_s : 0}, s);
@@ -204,10 +217,12 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
     return;
   }
   // Nobody takes over (any more): come to rest, if there is still anything to come to rest from.
-  if (s.plc != PlcState::kStandstill) ComeToRest(c, c.params.planner_limits(), FromThisCycle(c), s);
+  const bool stands = s.plc == PlcState::kStandstill || (s.superimposed && AtRest(s));
+  if (!stands) ComeToRest(c, c.params.planner_limits(), FromThisCycle(c), s);
 }
 
 void ReplanActive(const Context& c, State& s) noexcept {
+  const Beneath base(s);
   if (!s.active.positions() || s.motion.arrived) return;
   Plan plan;
   plan.target = s.motion.target;
@@ -249,7 +264,7 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
     case RequestKind::kJog:
       if (s.jog_sense == 0 && !s.active.forward && !s.active.backward) {
         EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
-        Enter(s, PlcState::kStandstill);
+        EnterRest(s);
       }
       break;
     default:

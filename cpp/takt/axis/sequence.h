@@ -20,6 +20,8 @@ inline MotionStart FromThisCycle(const Context& c) {
   return {c.cycle.count, 0};
 }
 
+// Whether a positioning command may call itself done although the set point has arrived already.
+bool InPosition(const AxisParams& params, const State& s) noexcept;
 void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error = ErrorId::kNone,
             bool reached = false, double value = 0) noexcept;
 void Enter(State& s, PlcState to) noexcept;
@@ -52,7 +54,7 @@ void OpenLoop(State& s) noexcept;
 // Gives control to the next buffered command, `late_s` after the motion in progress ended; with none, the axis is in
 // Standstill.
 void StartNext(const Context& c, double late_s, State& s) noexcept;
-// Plans the positioning command in control anew because what follows it changed.
+// Plans the positioning command in control anew because what follows it changed. Not to be called Beneath.
 void ReplanActive(const Context& c, State& s) noexcept;
 // What to do once the motion in progress is over, each cycle until its command ends.
 void Conclude(const Context& c, double late_s, State& s) noexcept;

@@ -27,7 +27,8 @@ bool Fits(const Context& c, const AxisLimits& limits, const State& s) {
   const bool planned = !s.motion.arrived && !Couples(s.active.kind) && s.motion.profile.end().velocity == 0;
   if (!planned) return true;
   const trajectory::Profile::Range range = s.motion.profile.PositionRange(Elapsed(c, s) - c.cycle.period_s);
-  return Inside(limits, range.min) && Inside(limits, range.max);
+  const double added = AddedAtEnd(s);
+  return Inside(limits, range.min + std::min(0.0, added)) && Inside(limits, range.max + std::max(0.0, added));
 }
 
 Status CheckLimits(const Context& c, const AxisLimits& limits, const State& s) {

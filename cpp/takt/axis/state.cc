@@ -52,6 +52,7 @@ void describe(Description<State>& d) {
   d.internal<&S::torque_nm>(unit::nm, "As the drive says.");
   d.internal<&S::constants_set>("GT_SetConstant was given.");
   d.internal<&S::direct_voltage_v>(unit::volt, "Put out while Disabled.");
+  d.internal<&S::superimposed>("Something is on top of the motion in progress.");
   d.internal<&S::coupled>("Follows its master.");
   d.internal<&S::follow_offset>(unit::u, "Distance to the master's position times the ratio.");
   d.internal<&S::origin>(unit::u, "Whole turns taken out of all positions.");
@@ -63,6 +64,7 @@ void describe(Description<State>& d) {
   d.internal<&S::illegal_transitions>("Always 0.");
   d.internal<&S::motion>("Motion in progress.");
   d.internal<&S::coupling>("Masters it follows.");
+  d.internal<&S::overlay>("What is on top of it.");
   d.internal<&S::homing>("Its reference.");
   d.internal<&S::probe>("Touch probe.");
   d.internal<&S::torque>("Torque control.");

@@ -1,0 +1,306 @@
+#include "takt/axis/overlay.h"
+
+#include <cmath>
+#include <utility>
+
+#include "takt/axis/fit.h"
+#include "takt/axis/overlay_plan.h"
+#include "takt/axis/request_maker.h"
+#include "takt/axis/sequence.h"
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+using trajectory::Limits;
+using trajectory::Profile;
+
+namespace {
+
+KinematicState Plus(const KinematicState& a, const KinematicState& b) {
+  return {a.position + b.position, a.velocity + b.velocity, a.acceleration + b.acceleration};
+}
+
+KinematicState Minus(const KinematicState& a, const KinematicState& b) {
+  return {a.position - b.position, a.velocity - b.velocity, a.acceleration - b.acceleration};
+}
+
+bool Stands(const KinematicState& x) {
+  return x.velocity == 0 && x.acceleration == 0;
+}
+
+double OverlayTime(const Context& c, const OverlayState& o) {
+  return static_cast<double>(c.cycle.count - o.start_cycle) * c.cycle.period_s;
+}
+
+// What has been added up to the set point of the cycle before: in step what was planned, else what came of it.
+KinematicState Added(const Context& c, const State& s) {
+  if (!s.superimposed) return {};
+  const OverlayState& o = s.overlay;
+  return o.chase.in_step ? o.profile.At(OverlayTime(c, o) - c.cycle.period_s) : Minus(s.setpoint, o.base);
+}
+
+// The motion beneath has no end that is known: it is the sum of masters, or goes on with a velocity.
+bool IsEndless(const State& s) {
+  return Couples(s.active.kind) || s.motion.profile.end().velocity != 0;
+}
+
+BaseAhead AheadOf(const Context& c, double late_s, const State& s) {
+  const KinematicState& now = s.superimposed ? s.overlay.base : s.setpoint;
+  if (Couples(s.active.kind)) return {nullptr, 0, now};
+  return {&s.motion.profile, Elapsed(c, s) - late_s, now};
+}
+
+// Where everything together would end, as far as that is known now.
+double EndWith(double added, const State& s) {
+  const KinematicState& now = s.superimposed ? s.overlay.base : s.setpoint;
+  return (IsEndless(s) ? now.position : s.motion.profile.end().position) + added;
+}
+
+// An axis that moves on without an end is watched cycle by cycle.
+bool EndsInside(const Context& c, double added, const State& s) {
+  const KinematicState& now = s.superimposed ? s.overlay.base : s.setpoint;
+  return (IsEndless(s) && !Stands(now)) || Inside(c.params.limits, EndWith(added, s));
+}
+
+Limits LimitsOf(const OverlayState& o) {
+  return {o.velocity, o.acceleration, o.deceleration, o.jerk};
+}
+
+Status MayBeOnTop(const Context& c, const State& s) {
+  if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
+  if (c.params.await_constants && !s.constants_set) return Status::Failed(ErrorId::kNoConstants);
+  if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
+  if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
+  const bool wrong = c.params.follows || s.plc == PlcState::kHoming || !Carries(s.active);
+  return wrong ? Status::Failed(ErrorId::kState) : Status::Ok();
+}
+
+Status CheckSwitches(double way, const State& s) {
+  const bool onto = (s.limit_positive && way > 0) || (s.limit_negative && way < 0);
+  return onto ? Status::Failed(ErrorId::kAwayFromLimitOnly) : Status::Ok();
+}
+
+void RememberBase(State& s) {
+  s.overlay.base_start_cycle = s.motion.start_cycle;
+  s.overlay.base_start_offset_s = s.motion.start_offset_s;
+}
+
+void Begin(const Context& c, Ticket ticket, const KinematicState& from, const Profile& profile, State& s) {
+  OverlayState& o = s.overlay;
+  if (s.superimposed) {
+    Report(c, o.ticket, FeedbackState::kAborted, ErrorId::kNone, false, o.covered);
+  } else {
+    o = OverlayState{};
+    o.base = s.setpoint;
+  }
+  s.superimposed = true;
+  o.profile = profile;
+  o.start_cycle = c.cycle.count - 1;
+  o.ticket = ticket;
+  o.begin = from.position;
+  o.covered = 0;
+  RememberBase(s);
+  if (s.plc == PlcState::kStandstill) Enter(s, PlcState::kDiscreteMotion);
+  Report(c, ticket, FeedbackState::kActive, ErrorId::kNone, false, profile.duration());
+}
+
+// The motion beneath became another one: what is left to add is planned for that.
+void PlanAgain(const Context& c, const KinematicState& added, State& s) {
+  OverlayState& o = s.overlay;
+  RememberBase(s);
+  if (o.halting || Couples(s.active.kind)) return;
+  const Status status =
+      PlanOverlay(c.params, c.planner, AheadOf(c, 0, s), added, o.profile.end().position, LimitsOf(o), o.profile);
+  if (status.ok()) o.start_cycle = c.cycle.count;
+}
+
+// Makes what was added part of the motion beneath.
+void Fold(double added, State& s) {
+  s.motion.profile.Shift(added);
+  s.motion.target += added;
+  if (Couples(s.active.kind)) s.coupling.chase.offset += added;
+  s.superimposed = false;
+}
+
+void End(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
+  OverlayState& o = s.overlay;
+  Fold(o.chase.in_step ? o.profile.end().position : s.setpoint.position - o.base.position, s);
+  Report(c, o.ticket, feedback, error, false, o.covered);
+  if (s.motion.arrived) s.motion.arrived_cycle = c.cycle.count;
+  if (error != ErrorId::kNone) AbortBuffer(c, s);
+  if (s.active.kind == RequestKind::kNone && (AtRest(s) || s.buffered > 0)) StartNext(c, 0, s);
+}
+
+// All is planned to be added: whether it is.
+void EndWhenDue(const Context& c, State& s) {
+  const OverlayState& o = s.overlay;
+  const double over_s = OverlayTime(c, o) - o.profile.duration();
+  if (over_s < 0) return;
+  const bool alone = s.active.kind == RequestKind::kNone && Stands(o.base);
+  if (o.chase.in_step) {
+    if (!alone || InPosition(c.params, s)) return End(c, FeedbackState::kDone, ErrorId::kNone, s);
+    if (over_s > c.params.supervision.in_position_timeout_s) End(c, FeedbackState::kError, ErrorId::kDeviationLimit, s);
+  } else if (AtRest(s) && Stands(o.base) && !IsEndless(s) && !Inside(c.params.limits, EndWith(AddedAtEnd(s), s))) {
+    End(c, FeedbackState::kError, ErrorId::kTargetBehindLimit, s);  // the motion beneath ended elsewhere than promised
+  }
+}
+
+// A buffered command on which nothing can lie takes over from a moving axis.
+bool NextEndsOverlay(const State& s) {
+  return s.active.kind == RequestKind::kNone && s.buffered > 0 && !Carries(s.buffer[0]) && !Stands(s.overlay.base);
+}
+
+// Why the axis lags behind the sum. Once the sum itself is within the limits again, it is what it was.
+LimitedBy WhatHoldsBack(const Limits& own, const KinematicState& demand, const OverlayState& o) {
+  if (o.chase.in_step) return LimitedBy::kNothing;
+  const LimitedBy beyond = Beyond(own, demand);
+  if (beyond != LimitedBy::kNothing) return beyond;
+  return o.limited_by != LimitedBy::kNothing ? o.limited_by : LimitedBy::kJerk;
+}
+
+// The next set point, before the SW limits are looked at.
+KinematicState NextSetpoint(const Context& c, const KinematicState& before, State& s) {
+  OverlayState& o = s.overlay;
+  const KinematicState added = o.profile.At(OverlayTime(c, o));
+  const KinematicState demand = Plus(o.base, added);
+  const Limits own = c.params.planner_limits();
+  const KinematicState next =
+      Chase({c.params, c.planner, own, c.cycle.period_s}, ChaseMode::kPosition, before, demand, o.chase);
+  o.limited_by = WhatHoldsBack(own, demand, o);
+  const bool other = o.base_start_cycle != s.motion.start_cycle || o.base_start_offset_s != s.motion.start_offset_s;
+  if (other) PlanAgain(c, added, s);
+  return next;
+}
+
+}  // namespace
+
+Beneath::Beneath(State& state) noexcept : state_(state) {
+  Swap();
+}
+
+Beneath::~Beneath() {
+  Swap();
+}
+
+void Beneath::Swap() noexcept {
+  if (state_.superimposed) std::swap(state_.setpoint, state_.overlay.base);
+}
+
+void Superimpose(const Context& c, State& s) noexcept {
+  OverlayState& o = s.overlay;
+  const KinematicState before = s.setpoint;
+  KinematicState next = NextSetpoint(c, before, s);
+  if (!CanStopInside(c.params, before, next)) {
+    if (s.plc != PlcState::kDiscreteMotion) {
+      const bool upwards = next.position > before.position;
+      Fail(c, upwards ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
+      s.setpoint = s.motion.profile.At(Elapsed(c, s));
+      return;
+    }
+    Profile brake{before};
+    c.planner.Stop(before, c.params.planner_limits(), brake);
+    next = brake.At(c.cycle.period_s);
+    o.chase.in_step = false;
+    o.limited_by = LimitedBy::kPosition;
+  }
+  s.setpoint = next;
+  o.covered = next.position - o.base.position - o.begin;
+  if (next.velocity != 0) s.last_sense = next.velocity > 0 ? 1 : -1;
+  if (NextEndsOverlay(s)) {
+    AbortOverlay(c, FeedbackState::kAborted, ErrorId::kNone, s);
+    return StartNext(c, 0, s);
+  }
+  EndWhenDue(c, s);
+}
+
+void AbortOverlay(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
+  if (!s.superimposed) return;
+  s.superimposed = false;
+  Report(c, s.overlay.ticket, feedback, error, false, s.overlay.covered);
+}
+
+bool Carries(const Request& r) noexcept {
+  const bool switches_off = r.kind == RequestKind::kPower && !r.enable;
+  return !switches_off && !Homes(r.kind) && r.kind != RequestKind::kStop && r.kind != RequestKind::kTorqueControl &&
+         r.kind != RequestKind::kTouch;
+}
+
+double AddedAtEnd(const State& s) noexcept {
+  return s.superimposed ? s.overlay.profile.end().position : 0;
+}
+
+bool Fill(const Maker& m, const MoveSuperimposed& c) {
+  return m.In("distance", c.distance, -kMaxPosition, kMaxPosition) &&
+         m.Take("velocity_difference", c.velocity_difference, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
+}
+
+bool Fill(const Maker& m, const HaltSuperimposed& c) {
+  return m.Braking(c);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const MoveSuperimposed& command, State& s) noexcept {
+  if (const Status status = MayBeOnTop(c, s); status.failed()) return status;
+  if (const Status status = CheckSwitches(command.distance, s); status.failed()) return status;
+  const KinematicState from = Added(c, s);
+  const double target = from.position + command.distance;
+  if (!EndsInside(c, target, s)) return Status::Failed(ErrorId::kTargetBehindLimit);
+  Request r;
+  Refusal why;
+  Fill(Maker{c.params, r, why}, command);
+  Profile profile;
+  const Status status =
+      PlanOverlay(c.params, c.planner, AheadOf(c, c.cycle.period_s, s), from, target, r.limits(), profile);
+  if (status.failed()) return status;
+  Begin(c, ticket, from, profile, s);
+  OverlayState& o = s.overlay;
+  o.velocity = r.velocity;
+  o.acceleration = r.acceleration;
+  o.deceleration = r.deceleration;
+  o.jerk = r.jerk;
+  o.halting = false;
+  return Status::Ok();
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const HaltSuperimposed& command, State& s) noexcept {
+  if (const Status status = MayBeOnTop(c, s); status.failed()) return status;
+  if (!s.superimposed) {
+    Report(c, ticket, FeedbackState::kActive);
+    Report(c, ticket, FeedbackState::kDone);
+    return Status::Ok();
+  }
+  Request r;
+  Refusal why;
+  Fill(Maker{c.params, r, why}, command);
+  const KinematicState from = Added(c, s);
+  Profile profile{from};
+  Status status = c.planner.Stop(from, r.limits(), profile);
+  if (status.ok() && !EndsInside(c, profile.end().position, s)) {
+    status = c.planner.Stop(from, c.params.planner_limits(), profile);
+  }
+  if (status.failed()) return status;
+  Begin(c, ticket, from, profile, s);
+  s.overlay.halting = true;
+  return Status::Ok();
+}
+
+void describe(Description<OverlayState>& d) {
+  using O = OverlayState;
+  d.about("What is on top of the motion in progress.");
+  d.internal<&O::base>("Set point of the motion beneath, unwrapped.");
+  d.internal<&O::profile>("What is added.");
+  d.internal<&O::start_cycle>("Cycle its time counts from.");
+  d.internal<&O::base_start_cycle>("When the motion began for which it was planned ...");
+  d.internal<&O::base_start_offset_s>(unit::s, "... and how long before that.");
+  d.internal<&O::chase>("The following of the sum.");
+  d.internal<&O::ticket>("Of the command.");
+  d.internal<&O::begin>(unit::u, "What had been added before the command.");
+  d.internal<&O::covered>(unit::u, "What was added by the command.");
+  d.internal<&O::velocity>(unit::u_s, "Largest velocity added.");
+  d.internal<&O::acceleration>(unit::u_s2, "Largest acceleration added.");
+  d.internal<&O::deceleration>(unit::u_s2, "Largest deceleration added.");
+  d.internal<&O::jerk>(unit::u_s3, "Largest jerk added; 0: unlimited.");
+  d.internal<&O::halting>("It is being halted.");
+  d.internal<&O::limited_by>("What holds the axis back from the sum.");
+}
+
+}  // namespace takt::axis
