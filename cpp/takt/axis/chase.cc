@@ -26,11 +26,24 @@ bool KeepsVelocity(const KinematicState& x, const Limits& own) {
   return std::abs(x.velocity) <= limit && std::abs(Peak(x, own.jerk)) <= limit;
 }
 
+bool IsGrowing(const KinematicState& x) {
+  return x.velocity * x.acceleration > 0;
+}
+
+// Falling speed may use more than growing speed, but has to be back at that before the axis turns round.
+bool KeepsTurning(const KinematicState& x, const Limits& own) {
+  const double strength = std::abs(x.acceleration);
+  if (IsGrowing(x) || strength <= own.acceleration || own.jerk == 0) return true;
+  const double needed = (strength * strength - own.acceleration * own.acceleration) / (2 * own.jerk);
+  return std::abs(x.velocity) >= needed * (1 - kTolerance);
+}
+
 bool KeepsAcceleration(const KinematicState& before, const KinematicState& x, const Limits& own) {
-  const bool growing = x.velocity * x.acceleration > 0;
+  const bool growing = IsGrowing(x);
   const double limit = growing ? own.acceleration : own.deceleration;
-  const double allowed = std::max(limit, x.acceleration * before.acceleration > 0 ? std::abs(before.acceleration) : 0);
-  return std::abs(x.acceleration) <= allowed * (1 + kTolerance);
+  const bool goes_on = x.acceleration * before.acceleration > 0 && growing == IsGrowing(before);
+  const double allowed = std::max(limit, goes_on ? std::abs(before.acceleration) : 0);
+  return std::abs(x.acceleration) <= allowed * (1 + kTolerance) && (KeepsTurning(x, own) || !KeepsTurning(before, own));
 }
 
 // Whether a motion within the axis' jerk leads from one to the other in `t` seconds. Of the motions between two samples

@@ -62,6 +62,14 @@ bool EndsInside(const Context& c, double added, const State& s) {
   return (IsEndless(s) && !Stands(now)) || Inside(c.params.limits, EndWith(added, s));
 }
 
+// Not so weakly that it would turn round or go further than without the halt.
+bool Halts(const KinematicState& from, double promised, const Profile& profile) {
+  const Profile::Range velocity = profile.VelocityRange();
+  const double backwards = from.velocity < 0 ? velocity.max : -velocity.min;
+  const double further = from.velocity < 0 ? promised - profile.end().position : profile.end().position - promised;
+  return backwards <= Rounding(0) && further <= Rounding(promised);
+}
+
 Limits LimitsOf(const OverlayState& o) {
   return {o.velocity, o.acceleration, o.deceleration, o.jerk};
 }
@@ -274,7 +282,7 @@ Status CarryOut(const Context& c, Ticket ticket, const HaltSuperimposed& command
   const KinematicState from = Added(c, s);
   Profile profile{from};
   Status status = c.planner.Stop(from, r.limits(), profile);
-  if (status.ok() && !EndsInside(c, profile.end().position, s)) {
+  if (status.ok() && !Halts(from, AddedAtEnd(s), profile)) {
     status = c.planner.Stop(from, c.params.planner_limits(), profile);
   }
   if (status.failed()) return status;

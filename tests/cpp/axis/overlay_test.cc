@@ -373,11 +373,12 @@ TEST_P(OverlayProperty, LimitsHoldAndBothEndsAreReached) {
       alone.Give(ReadParameter{1});
       tops.push_back(both.Give(halt));
     }
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 100000; ++i) {
       alone.Step();
       both.Step();
       if (both.out.state == PlcState::kStandstill && alone.out.state == PlcState::kStandstill) break;
     }
+    const Worst worst = WorstOf(both.trace, p.planner_limits(), both.cycle.period_s);
     ASSERT_EQ(both.out.state, PlcState::kStandstill);
     for (const Ticket ticket : moves) {
       EXPECT_TRUE(both.lives[ticket].done);
@@ -389,7 +390,6 @@ TEST_P(OverlayProperty, LimitsHoldAndBothEndsAreReached) {
     if (both.lives[tops.back()].done && tops.size() == 1) {
       EXPECT_NEAR(added, distances[0], 1e-8);
     }
-    const Worst worst = WorstOf(both.trace, p.planner_limits(), both.cycle.period_s);
     EXPECT_LE(worst.velocity, 1 + 1e-8);
     EXPECT_LE(worst.acceleration, 1 + 1e-8);
     EXPECT_LE(worst.jerk, 1 + 1e-5);
