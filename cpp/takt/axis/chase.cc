@@ -64,8 +64,12 @@ bool Continues(const KinematicState& before, const KinematicState& x, const Limi
   if (std::abs(x.velocity - velocity) > bend) return false;
   const double position =
       before.position + 0.5 * t * (before.velocity + x.velocity) + t * t / 12 * (before.acceleration - x.acceleration);
-  const double slack = own.jerk * t * t * t / 16 + kTolerance * (own.velocity * t + std::abs(position) * 1e-3);
-  return std::abs(x.position - position) <= slack;
+  const double rounding = kTolerance * (own.velocity * t + std::abs(position) * 1e-3);
+  const double cube = own.jerk * t * t * t;
+  // Nor can it leave the mean of both velocities by more than jerk t^3 / 12.
+  const double mean = before.position + 0.5 * t * (before.velocity + x.velocity);
+  return std::abs(x.position - position) <= cube / 16 + rounding &&
+         std::abs(x.position - mean) <= cube / 12 * (1 + 1e-6) + rounding;
 }
 
 // Towards a velocity with the axis' own ramps: keeps the invariant from any state that has it.

@@ -1,6 +1,6 @@
 #include "takt/axis/overlay.h"
 
-#include <cmath>
+#include <algorithm>
 #include <utility>
 
 #include "takt/axis/fit.h"
@@ -20,10 +20,6 @@ KinematicState Plus(const KinematicState& a, const KinematicState& b) {
   return {a.position + b.position, a.velocity + b.velocity, a.acceleration + b.acceleration};
 }
 
-KinematicState Minus(const KinematicState& a, const KinematicState& b) {
-  return {a.position - b.position, a.velocity - b.velocity, a.acceleration - b.acceleration};
-}
-
 bool Stands(const KinematicState& x) {
   return x.velocity == 0 && x.acceleration == 0;
 }
@@ -32,11 +28,14 @@ double OverlayTime(const Context& c, const OverlayState& o) {
   return static_cast<double>(c.cycle.count - o.start_cycle) * c.cycle.period_s;
 }
 
-// What has been added up to the set point of the cycle before: in step what was planned, else what came of it.
+// What has been added up to the set point of the cycle before. Where the axis lags behind the sum, what is planned goes
+// on from what came of it: the lag is forgotten.
 KinematicState Added(const Context& c, const State& s) {
   if (!s.superimposed) return {};
   const OverlayState& o = s.overlay;
-  return o.chase.in_step ? o.profile.At(OverlayTime(c, o) - c.cycle.period_s) : Minus(s.setpoint, o.base);
+  KinematicState added = o.profile.At(OverlayTime(c, o) - c.cycle.period_s);
+  if (!o.chase.in_step) added.position = s.setpoint.position - o.base.position;
+  return added;
 }
 
 // The motion beneath has no end that is known: it is the sum of masters, or goes on with a velocity.
@@ -62,12 +61,19 @@ bool EndsInside(const Context& c, double added, const State& s) {
   return (IsEndless(s) && !Stands(now)) || Inside(c.params.limits, EndWith(added, s));
 }
 
-// Not so weakly that it would turn round or go further than without the halt.
-bool Halts(const KinematicState& from, double promised, const Profile& profile) {
-  const Profile::Range velocity = profile.VelocityRange();
-  const double backwards = from.velocity < 0 ? velocity.max : -velocity.min;
-  const double further = from.velocity < 0 ? promised - profile.end().position : profile.end().position - promised;
-  return backwards <= Rounding(0) && further <= Rounding(promised);
+// Brakes what is added as the command asks, but not so weakly that it would turn round or go further than without the
+// halt: then with all the axis has.
+Status PlanHalt(const Context& c, const KinematicState& from, double promised, const Limits& limits, Profile& out) {
+  Profile strongest{from};
+  if (const Status status = c.planner.Stop(from, c.params.planner_limits(), strongest); status.failed()) return status;
+  const double sense = from.velocity < 0 ? -1 : 1;
+  const double furthest = std::max(sense * strongest.end().position, sense * promised);
+  const Status status = c.planner.Stop(from, limits, out);
+  if (status.failed()) return status;
+  const Profile::Range velocity = out.VelocityRange();
+  const double backwards = sense < 0 ? velocity.max : -velocity.min;
+  if (backwards > Rounding(0) || sense * out.end().position > furthest + Rounding(furthest)) out = strongest;
+  return Status::Ok();
 }
 
 Limits LimitsOf(const OverlayState& o) {
@@ -96,7 +102,7 @@ void RememberBase(State& s) {
 void Begin(const Context& c, Ticket ticket, const KinematicState& from, const Profile& profile, State& s) {
   OverlayState& o = s.overlay;
   if (s.superimposed) {
-    Report(c, o.ticket, FeedbackState::kAborted, ErrorId::kNone, false, o.covered);
+    Report(c, o.ticket, FeedbackState::kAborted, ErrorId::kNone, false, from.position - o.begin);
   } else {
     o = OverlayState{};
     o.base = s.setpoint;
@@ -139,6 +145,13 @@ void End(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
   if (s.active.kind == RequestKind::kNone && (AtRest(s) || s.buffered > 0)) StartNext(c, 0, s);
 }
 
+// Whether the motion beneath, with all that was added, stays inside the SW limits to its end.
+bool StaysInside(const Context& c, const State& s) {
+  if (IsEndless(s)) return true;
+  const Profile::Range range = s.motion.profile.PositionRange(Elapsed(c, s));
+  return Inside(c.params.limits, range.min + AddedAtEnd(s)) && Inside(c.params.limits, range.max + AddedAtEnd(s));
+}
+
 // All is planned to be added: whether it is.
 void EndWhenDue(const Context& c, State& s) {
   const OverlayState& o = s.overlay;
@@ -146,6 +159,7 @@ void EndWhenDue(const Context& c, State& s) {
   if (over_s < 0) return;
   const bool alone = s.active.kind == RequestKind::kNone && Stands(o.base);
   if (o.chase.in_step) {
+    if (!StaysInside(c, s)) return;
     if (!alone || InPosition(c.params, s)) return End(c, FeedbackState::kDone, ErrorId::kNone, s);
     if (over_s > c.params.supervision.in_position_timeout_s) End(c, FeedbackState::kError, ErrorId::kDeviationLimit, s);
   } else if (AtRest(s) && Stands(o.base) && !IsEndless(s) && !Inside(c.params.limits, EndWith(AddedAtEnd(s), s))) {
@@ -280,12 +294,8 @@ Status CarryOut(const Context& c, Ticket ticket, const HaltSuperimposed& command
   Refusal why;
   Fill(Maker{c.params, r, why}, command);
   const KinematicState from = Added(c, s);
-  Profile profile{from};
-  Status status = c.planner.Stop(from, r.limits(), profile);
-  if (status.ok() && !Halts(from, AddedAtEnd(s), profile)) {
-    status = c.planner.Stop(from, c.params.planner_limits(), profile);
-  }
-  if (status.failed()) return status;
+  Profile profile;
+  if (const Status status = PlanHalt(c, from, AddedAtEnd(s), r.limits(), profile); status.failed()) return status;
   Begin(c, ticket, from, profile, s);
   s.overlay.halting = true;
   return Status::Ok();
