@@ -1,6 +1,7 @@
 #include "app/machine_file.h"
 
 #include "takt/core/describe.h"
+#include "takt/core/writer.h"
 #include "takt/core/yaml_reader.h"
 #include "takt/engine/load.h"
 #include "takt/lcm/network.h"
@@ -18,6 +19,9 @@ MachineFile ReadMachineFile(const Options& options) {
   file.text = *text;
   engine::LoadResult loaded = engine::LoadMachine(file.text, options.machine_file);
   file.problems = std::move(loaded.problems);
+  file.warnings = std::move(loaded.warnings);
+  // Whoever gets the text over the network or finds it in a log has not the files it names.
+  if (loaded.machine && loaded.names_files) file.text = WriteYaml(*loaded.machine);
   if (options.cycle_time_s) {
     const Range range = TypeOf<engine::CycleParams>().FindField("period_s")->range;
     if (!range.Holds(*options.cycle_time_s)) file.problems.push_back("--cycle-time: expected seconds " + Text(range));

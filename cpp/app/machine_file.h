@@ -12,8 +12,9 @@ namespace takt::app {
 
 struct MachineFile {
   std::optional<engine::Machine> machine;  // empty: see problems
-  std::string text;                        // as it was read
+  std::string text;                        // as it was read; with files it names written out
   std::vector<std::string> problems;       // one line each
+  std::vector<std::string> warnings;       // likewise
 };
 
 MachineFile ReadMachineFile(const Options& options);

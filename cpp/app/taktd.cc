@@ -82,6 +82,7 @@ int Main(int argc, char** argv) {
   }
   const MachineFile file = ReadMachineFile(*options);
   for (const std::string& problem : file.problems) std::cerr << problem << '\n';
+  for (const std::string& warning : file.warnings) std::cerr << warning << '\n';
   if (!file.machine) return kWrongInput;
   if (options->task == Task::kCheck) {
     std::cout << "ok\n";

@@ -31,7 +31,7 @@ struct Axes {
       if (!states[i].loop_closed) std::abort();
     }
   }
-  Context At(std::size_t i) { return {params[i], cycle, planner, sink, nullptr}; }
+  Context At(std::size_t i) { return {params[i], cycle, planner, sink, nullptr, states, params, {}}; }
   void Give(const Command& command) {
     for (std::size_t i = 0; i < states.size(); ++i) Apply(At(i), 2, 0, command, states[i]);
   }
@@ -83,6 +83,20 @@ void MoveContinuous(benchmark::State& state) {
   Report(state);
 }
 
+// All in gear with one master on its way, in step with it.
+void MoveGeared(benchmark::State& state) {
+  Axes axes(static_cast<std::size_t>(state.range(0)) + 1, Params(false));
+  Apply(axes.At(0), 2, 0, MoveVelocity{.velocity = 200}, axes.states[0]);
+  GearIn gear;
+  axes.params[0].name = "master";
+  gear.master = Name::Of("master");
+  for (std::size_t i = 1; i < axes.states.size(); ++i) Apply(axes.At(i), 2, 0, gear, axes.states[i]);
+  for (int i = 0; i < 2000; ++i) axes.MoveAll();
+  if (!axes.states.back().coupling.chase.in_step) std::abort();
+  for (auto _ : state) axes.MoveAll();
+  Report(state);
+}
+
 // As many trajectories of the same move, evaluated at the same instants.
 void AtTimeRuckig(benchmark::State& state) {
   ruckig::InputParameter<1> input;
@@ -112,6 +126,7 @@ void AtTimeRuckig(benchmark::State& state) {
 BENCHMARK(MoveStandstill)->Name("MoveStandstill/takt")->Arg(1)->Arg(100)->Arg(1000);
 BENCHMARK(MoveMoving)->Name("MoveMoving/takt")->Arg(1)->Arg(100)->Arg(1000);
 BENCHMARK(MoveContinuous)->Name("MoveContinuous/takt")->Arg(1)->Arg(100)->Arg(1000);
+BENCHMARK(MoveGeared)->Name("MoveGeared/takt")->Arg(1)->Arg(100)->Arg(1000);
 BENCHMARK(AtTimeRuckig)->Name("MoveMoving/ruckig")->Arg(1)->Arg(100)->Arg(1000);
 
 }  // namespace

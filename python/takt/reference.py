@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from takt import _core
@@ -25,10 +25,7 @@ def _page(reference: dict[str, Any]) -> Iterator[str]:
         yield from _struct(one, "###")
     yield "## Commands\n"
     for verb in reference["verbs"]:
-        needs = " Needs a heartbeat over LCM." if verb["level_sensitive"] else ""
-        yield f"### {verb['target_kind']}: {verb['name']}\n"
-        yield f"{verb['arguments']['about']}{needs}\n"
-        yield from _fields(verb["arguments"])
+        yield from _verb(verb)
     yield "## Published\n"
     for name, title in (("outputs", "An axis"), ("figures", "The engine")):
         yield f"### {title}\n"
@@ -42,8 +39,37 @@ def _page(reference: dict[str, Any]) -> Iterator[str]:
     yield "```\n"
     yield "## Homing\n"
     yield from _homing(reference["homing"])
-    yield "## Errors\n\n| number | name | meaning |\n|---|---|---|"
-    for error in reference["errors"]:
+    yield "## Errors\n"
+    yield from _errors(reference["errors"])
+
+
+def commands(names: Sequence[str]) -> str:
+    """What the reference page says of these commands."""
+    verbs = {verb["name"]: verb for verb in json.loads(_core.reference())["verbs"]}
+    return "\n".join(line for name in names for line in _verb(verbs[name]))
+
+
+def errors(numbers: Sequence[int]) -> str:
+    """The table of these error numbers."""
+    known = {error["id"]: error for error in json.loads(_core.reference())["errors"]}
+    return "\n".join(_errors([known[number] for number in numbers]))
+
+
+def verbs() -> list[str]:
+    """All commands, of the machine and of axes."""
+    return [verb["name"] for verb in json.loads(_core.reference())["verbs"]]
+
+
+def _verb(verb: dict[str, Any]) -> Iterator[str]:
+    needs = " Needs a heartbeat over LCM." if verb["level_sensitive"] else ""
+    yield f"### {verb['target_kind']}: {verb['name']}\n"
+    yield f"{verb['arguments']['about']}{needs}\n"
+    yield from _fields(verb["arguments"])
+
+
+def _errors(errors: Sequence[dict[str, Any]]) -> Iterator[str]:
+    yield "| number | name | meaning |\n|---|---|---|"
+    for error in errors:
         yield f"| {error['id']:04} | {error['name']} | {error['text']} |"
 
 

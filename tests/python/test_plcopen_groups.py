@@ -136,6 +136,8 @@ def test_a_loop_of_gears(engine: takt.Engine) -> None:
     x, y = engine.axis("x"), engine.axis("y")
     call(engine, plc.MC_GearIn(y, Master=x), 0.01, Execute=True)
     assert call(engine, plc.MC_GearIn(x, Master=y), 0.01, Execute=True).ErrorID == 3018
+    with pytest.raises(takt.CommandError, match="x would follow itself: x follows y, y follows x"):
+        x.gear_in(master="y").wait()
 
 
 def test_parameters(engine: takt.Engine) -> None:
@@ -168,7 +170,7 @@ def test_constants_and_direct_output(engine: takt.Engine) -> None:
     assert call(engine, plc.GT_Analog(a, Voltage=1.0), 0.01, Execute=True).ErrorID == 13
     a.power(enable=False).wait()
     assert call(engine, plc.GT_Analog(a, Voltage=1.0), 0.01, Execute=True).Done
-    assert a.voltage_v == 1.0
+    assert a.voltage_v == pytest.approx(1.0, abs=0.0013)  # a step of the converter
 
 
 def test_continuous_moves_and_what_the_axis_does(engine: takt.Engine) -> None:
@@ -213,3 +215,13 @@ def test_how_long_a_move_takes_is_known_when_it_begins(engine: takt.Engine) -> N
     begin = move.time_s
     move.wait()
     assert move.travel_time_s == pytest.approx(move.time_s - begin, abs=2.1 * engine.period)
+
+
+def test_only_a_yes_or_no_is_written_as_one(engine: takt.Engine) -> None:
+    """AX-28."""
+    y = engine.axis("y")
+    write = plc.MC_WriteBoolParameter(y, ParameterNumber=2, Value=True)
+    assert call(engine, write, 0.01, Execute=True).ErrorID == 5
+    assert plc.MC_WriteBoolParameter(y, ParameterNumber=4, Value=False)(Execute=True).Busy
+    engine.run(0.01)
+    assert y.move_absolute(position=1e4).error_id == 0

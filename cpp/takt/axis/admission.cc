@@ -60,9 +60,11 @@ Status Jog(const Context& c, const Request& r, State& s) {
 Status TakeOver(const Context& c, const Request& r, State& s) {
   if (Homes(r.kind)) return BeginHoming(c, r, true, s);
   if (s.plc == PlcState::kHoming && !MayFollowStep(r.kind)) return Status::Failed(ErrorId::kState);
-  if (Couples(r.kind)) {
+  if (FollowsDemand(r.kind)) {
+    const Status status = MayFollow(c, r, s);
+    if (status.failed()) return status;
     AbortAll(c, s);
-    Couple(c, r, s);
+    BeginFollowing(c, r, FromCycleBefore(c), s);
     return Status::Ok();
   }
   Plan plan;
@@ -100,6 +102,7 @@ Status SwitchOff(const Context& c, const Request& r, State& s) {
   const bool waits = r.buffer_mode == BufferMode::kBuffered && moves && !SwitchingOff(s);
   if (waits && s.plc != PlcState::kErrorStop) return Enqueue(c, r, s);
   AbortAll(c, s);
+  s.direct_voltage_v = 0;
   Grant(c, r, s);
   if (!s.loop_closed || AtRest(s)) {
     Conclude(c, 0, s);
@@ -143,6 +146,11 @@ Status CarryOut(const Context& c, Ticket ticket, const Reset&, State& s) {
   BeginReset(c, ticket, s);
   return Status::Ok();
 }
+// That there is such a cam has been found already.
+Status CarryOut(const Context& c, Ticket ticket, const CamTableSelect&, State&) {
+  Report(c, ticket, FeedbackState::kDone);
+  return Status::Ok();
+}
 // What asks for control never comes here.
 template <typename T>
 Status CarryOut(const Context&, Ticket, const T&, State&) {
@@ -164,13 +172,13 @@ Request* Find(Ticket ticket, State& s) {
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept {
   Request request;
   Status status = MakeRequest(command, c.params, request);
+  if (status.ok()) status = FindNamed(c, request);
   if (status.ok() && request.kind == RequestKind::kNone) {
     status = std::visit([&](const auto& body) { return CarryOut(c, ticket, body, s); }, command);
   } else if (status.ok()) {
     request.ticket = ticket;
     request.lease_s = lease_s;
-    status = FindMasters(c, request);
-    if (status.ok()) status = Admit(c, request, s);
+    status = Admit(c, request, s);
   }
   if (status.failed()) Report(c, ticket, FeedbackState::kError, status.error);
 }

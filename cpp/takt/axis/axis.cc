@@ -92,7 +92,7 @@ void BringBackTurns(const AxisParams& p, State& s) {
 // Whether a motion has no end of its own, or is left with a velocity.
 bool GoesOn(const State& s) {
   return s.plc == PlcState::kContinuousMotion || s.plc == PlcState::kSynchronizedMotion ||
-         s.motion.profile.end().velocity != 0;
+         FollowsTable(s.active.kind) || s.motion.profile.end().velocity != 0;
 }
 
 // Takes a set point back from which the axis could not stop in time, and brakes instead.
@@ -127,7 +127,7 @@ void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
       s.last_sense = SenseAtEnd(s.motion.profile, s.last_sense);
     }
     Conclude(c, late_s, s);
-    if (s.motion.arrived) return;  // no other motion has begun
+    if (s.motion.arrived || FollowsDemand(s.active.kind)) return;  // no other motion with an end has begun
     GuardLimits(c, before, s);
   }
 }
@@ -147,7 +147,15 @@ void FollowCoupling(const Context& c, State& s) {
   const KinematicState before = s.setpoint;
   if (!FollowMasters(c, s)) return Advance(c, s);
   GuardLimits(c, before, s);
-  if (s.coupling.chase.in_step) Conclude(c, 0, s);
+  if (s.coupling.chase.in_step || s.coupling.cam.over) Conclude(c, 0, s);
+  if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
+}
+
+void FollowTable(const Context& c, State& s) {
+  const KinematicState before = s.setpoint;
+  if (!FollowTime(c, s)) return Advance(c, s);
+  GuardLimits(c, before, s);
+  if (s.time_table.over) ConcludeDue(c, before, s);
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 
@@ -160,6 +168,8 @@ void MoveOne(const Context& c, State& s) {
     // The drive follows a torque, the set point the axis.
   } else if (s.loop_closed && Couples(s.active.kind)) {
     FollowCoupling(c, s);
+  } else if (s.loop_closed && FollowsTable(s.active.kind)) {
+    FollowTable(c, s);
   } else if (s.loop_closed) {
     Advance(c, s);
     if (s.homing.stage != HomingStage::kNone) StepHoming(c, s);
@@ -231,6 +241,7 @@ void Sense(const Context& c, const ServoInputs& in, State& s) noexcept {
 }
 
 void Move(const Context& c, State& s) noexcept {
+  s.end_of_profile = false;
   Supervise(c, s);
   // What seldom happens is asked for here: a call that finds nothing to do would cost as much as the set point.
   if (s.homing.flying_ticket != 0) WatchFlying(c, s);
@@ -272,7 +283,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
     out.voltage_v = 0;
     out.torque_nm = 0;
   }
-  if (s.plc == PlcState::kDisabled && !s.enable) out.voltage_v = s.direct_voltage_v;
+  if (s.plc == PlcState::kDisabled && !s.enable) out.voltage_v = sign * InConverterSteps(s.direct_voltage_v);
   s.voltage_v = out.voltage_v;
   out.enable = s.enable;
   out.release_brake = s.loop_closed;
@@ -281,6 +292,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
 
 void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
   if (s.error == ErrorId::kNone) s.error = error;
+  s.direct_voltage_v = 0;
   if (!s.loop_closed && !s.enable) return;
   const bool opens = open_loop || !s.loop_closed;
   if (s.plc != PlcState::kErrorStop) {
@@ -323,10 +335,13 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
     if (s.overlay.limited_by != LimitedBy::kNothing) out.limited_by = s.overlay.limited_by;
   }
   out.homed = s.homing.homed;
-  out.in_step = s.coupling.chase.in_step;
+  out.end_of_profile = s.end_of_profile;
+  out.profile_ends = s.profile_ends;
+  const bool coupled = Couples(s.active.kind);
   const auto& terms = s.coupling.law.terms;
-  out.master1 = terms[0].master + 1;  // none: 0
-  out.master2 = terms[1].master + 1;
+  out.in_step = coupled && s.coupling.chase.in_step;
+  out.master1 = coupled ? terms[0].master + 1 : 0;  // none: 0
+  out.master2 = coupled ? terms[1].master + 1 : 0;
   out.buffered_commands = s.buffered;
   out.loop_closed = s.loop_closed;
   out.in_position =

@@ -8,6 +8,7 @@
 #include "takt/axis/outputs.h"
 #include "takt/axis/params.h"
 #include "takt/axis/state.h"
+#include "takt/cam/table.h"
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
 #include "takt/core/ports.h"
@@ -26,6 +27,7 @@ struct Context {
   std::span<const State> axes{};
   std::span<const AxisParams> axes_params{};
   std::span<const CamSwitches> cam_switches{};
+  std::span<const cam::Table> cams{};
 };
 
 // As it stands when power comes on.

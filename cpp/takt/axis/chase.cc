@@ -48,7 +48,7 @@ bool KeepsAcceleration(const KinematicState& before, const KinematicState& x, co
 
 // Whether a motion within the axis' jerk leads from one to the other in `t` seconds. Of the motions between two samples
 // with given accelerations the velocity can differ by the area of a triangle of jerks, the position by less than
-// jerk t^3 / 16.
+// jerk t^3 / 16; from the mean velocity's way it never differs by more than jerk t^3 / 12.
 bool Continues(const KinematicState& before, const KinematicState& x, const Limits& own, double t) {
   if (own.jerk == 0) {
     const double mean = (x.velocity - before.velocity) / t;
@@ -62,14 +62,11 @@ bool Continues(const KinematicState& before, const KinematicState& x, const Limi
   const double velocity = before.velocity + 0.5 * t * (before.acceleration + x.acceleration);
   const double bend = 0.25 * (largest * largest - step * step) / own.jerk + kTolerance * own.velocity;
   if (std::abs(x.velocity - velocity) > bend) return false;
-  const double position =
-      before.position + 0.5 * t * (before.velocity + x.velocity) + t * t / 12 * (before.acceleration - x.acceleration);
-  const double rounding = kTolerance * (own.velocity * t + std::abs(position) * 1e-3);
+  const double away = x.position - before.position - 0.5 * t * (before.velocity + x.velocity);
+  const double expected = t * t / 12 * (before.acceleration - x.acceleration);
   const double cube = own.jerk * t * t * t;
-  // Nor can it leave the mean of both velocities by more than jerk t^3 / 12.
-  const double mean = before.position + 0.5 * t * (before.velocity + x.velocity);
-  return std::abs(x.position - position) <= cube / 16 + rounding &&
-         std::abs(x.position - mean) <= cube / 12 * (1 + 1e-6) + rounding;
+  const double rounding = kTolerance * (own.velocity * t + std::abs(x.position) * 1e-3);
+  return std::abs(away) <= cube / 12 + rounding && std::abs(away - expected) <= cube / 16 + rounding;
 }
 
 // Towards a velocity with the axis' own ramps: keeps the invariant from any state that has it.
@@ -140,7 +137,7 @@ KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& befo
     return TowardsVelocity(c, before, demand.velocity);
   }
   if (arrives) {  // the demand itself, in velocity mode at another place
-    state.offset = next.position - demand.position;
+    if (mode == ChaseMode::kVelocity) state.offset = next.position - demand.position;
     state.in_step = true;
   }
   return next;

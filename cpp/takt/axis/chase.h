@@ -18,7 +18,8 @@ enum class ChaseMode : std::uint8_t {
 };
 
 struct ChaseState {
-  double offset = 0;     // u, velocity mode: own position minus the demand's, fixed while in step
+  // u. Velocity mode: own position minus the demand's, fixed while in step. Position mode: the caller's own.
+  double offset = 0;
   bool in_step = false;  // the last set point was the demand itself
 };
 

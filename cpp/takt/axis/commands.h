@@ -3,11 +3,13 @@
 
 #include <variant>
 
+#include "takt/axis/commands/cam.h"
 #include "takt/axis/commands/coupling.h"
 #include "takt/axis/commands/homing.h"
 #include "takt/axis/commands/moves.h"
 #include "takt/axis/commands/overlay.h"
 #include "takt/axis/commands/probe.h"
+#include "takt/axis/commands/profiles.h"
 #include "takt/axis/commands/settings.h"
 
 namespace takt::axis {
@@ -15,8 +17,9 @@ namespace takt::axis {
 using Command =
     std::variant<Power, Reset, MoveAbsolute, MoveRelative, MoveAdditive, MoveVelocity, MoveContinuousAbsolute,
                  MoveContinuousRelative, Inch, Halt, Stop, Jog, MoveSuperimposed, HaltSuperimposed, TorqueControl,
-                 GearIn, GearOut, GearInPos, PhasingAbsolute, PhasingRelative, CombineAxes, StepAbsSwitch,
-                 StepLimitSwitch, StepBlock, StepRefPulse, StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch,
+                 GearIn, GearOut, GearInPos, PhasingAbsolute, PhasingRelative, CombineAxes, CamTableSelect, CamIn,
+                 CamOut, PositionProfile, VelocityProfile, AccelerationProfile, StepAbsSwitch, StepLimitSwitch,
+                 StepBlock, StepRefPulse, StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch,
                  StepRefFlyingRefPulse, SetConstants, WriteParameter, ReadParameter, SetSoftLimits, DirectOutput,
                  SetPosition, TouchProbe, AbortTrigger, Touch, DigitalCamSwitch>;
 

@@ -15,12 +15,12 @@ double WithDeadBand(const ControlLoop& p, double volts) noexcept {
   return volts;
 }
 
+}  // namespace
+
 double InConverterSteps(double volts) noexcept {
   constexpr double kLargestCode = kVoltageSteps / 2 - 1;
   return std::min(std::round(volts / kVoltageStep), kLargestCode) * kVoltageStep;
 }
-
-}  // namespace
 
 void Step(const ControlLoop& p, const ControlLoopInputs& in, Cycle cycle, ControlLoopState& s,
           ControlLoopOutputs& out) noexcept {
@@ -40,7 +40,7 @@ void Step(const ControlLoop& p, const ControlLoopInputs& in, Cycle cycle, Contro
   const double last_error = s.error;
   s.error = in.model_position - in.feedback;
   s.p = p.kp * s.error;
-  s.i = s.integral + p.ki * s.error;
+  s.i = p.ki > 0 ? s.integral + p.ki * s.error : 0;  // without integration nothing of it stays
   s.d = s.closed ? p.kd * (s.error - last_error) : 0;
 
   s.sum = s.p + s.i + s.d;

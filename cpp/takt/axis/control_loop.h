@@ -61,6 +61,8 @@ struct ControlLoopOutputs {
 inline constexpr double kVoltageLimit = 10;  // V
 inline constexpr int kVoltageSteps = 8192;
 inline constexpr double kVoltageStep = 2 * kVoltageLimit / kVoltageSteps;  // V
+// The voltage that the converter can put out and that is nearest.
+double InConverterSteps(double volts) noexcept;
 
 // Closing begins without a bump: in the first closed cycle D is 0, and I starts from the state's `integral`, which an
 // open loop sets to 0. With inputs that are not finite the outputs are not finite either: the caller opens the loop.

@@ -37,11 +37,14 @@ KinematicState Sum(const Context& c, const CouplingState& k, const KinematicStat
   return sum;
 }
 
-// The turn of `position` that lies next ahead of `from` in this sense; linear axes: as it is.
+// Of the places every `turn` from `position` on the next one ahead of `from` in this sense; no turn: as it is.
+double NextAhead(double turn, double position, double from, double sense) {
+  if (turn == 0) return position;
+  const double turns = (from - position) / turn;
+  return position + turn * (sense < 0 ? std::floor(turns) : std::ceil(turns));
+}
 double NextAhead(const AxisParams& p, double position, double from, double sense) {
-  if (!p.rotary()) return position;
-  const double turns = (from - position) / p.modulus;
-  return position + p.modulus * (sense < 0 ? std::floor(turns) : std::ceil(turns));
+  return NextAhead(p.rotary() ? p.modulus : 0, position, from, sense);
 }
 
 // Where the slave is to be when both are in step, over all turns, if it goes on to about `expected` meanwhile.
@@ -63,13 +66,48 @@ double Standing(const AxisParams& p) {
   return 1e-6 * p.limits.velocity;
 }
 
+// Followed by position, not by velocity.
+bool ByPosition(RequestKind kind) {
+  return kind == RequestKind::kGearInPos || kind == RequestKind::kCamIn;
+}
+
+CamLaw CamOf(const Context& c, const Request& r) {
+  const CouplingRequest& q = r.coupling;
+  return {c.cams[r.table.index], q.terms[0].ratio, q.periodic.value_or(false), r.table.scale};
+}
+
+// Where an axis that is in step has its place for a master here; derivatives over the master's position.
+cam::Value InStep(const Context& c, double master, const State& s) {
+  const CouplingState& k = s.coupling;
+  if (s.active.kind == RequestKind::kCamIn) return ValueAt(CamOf(c, s.active), k.cam, master);
+  const double ratio = k.law.terms[0].ratio;
+  return {k.slave_sync + ratio * (master - k.master_sync), ratio, 0, 0};
+}
+
+KinematicState DemandOf(const cam::Value& at, const KinematicState& master) {
+  return {at.y, at.dy * master.velocity, at.ddy * master.velocity * master.velocity + at.dy * master.acceleration};
+}
+
+// Moves the place where both are in step to the turn, or for a relative cam the place, that lies at hand if the slave
+// goes on to about `expected` meanwhile.
+void PlaceSlave(const Context& c, double expected, State& s) {
+  CouplingState& k = s.coupling;
+  if (s.active.kind != RequestKind::kCamIn) {
+    k.slave_sync = SlaveSync(c.params, k.slave_sync, expected, k.law.sync_mode);
+    return;
+  }
+  const double place = InStep(c, k.master_sync, s).y;
+  const double wanted =
+      k.law.slave_absolute ? SlaveSync(c.params, place, expected, k.law.sync_mode) : expected + s.active.table.offset;
+  k.cam.slave += wanted - place;
+}
+
 // The curve over the share x = 0..1 of the master's way that begins as the slave moves now and ends in step.
 void BeginCurve(const Context& c, const KinematicState& master, State& s) {
   CouplingState& k = s.coupling;
   k.joining = Joining::kOnCurve;
   k.curve_begin = master.position;
   const double way = k.master_sync - master.position;
-  const double ratio = k.law.terms[0].ratio;
   const double own = s.setpoint.position + s.origin;
   double slope = 0;
   double bend = 0;
@@ -77,17 +115,19 @@ void BeginCurve(const Context& c, const KinematicState& master, State& s) {
     slope = s.setpoint.velocity / master.velocity;
     bend = (s.setpoint.acceleration - slope * master.acceleration) / (master.velocity * master.velocity);
   }
-  k.slave_sync = SlaveSync(c.params, k.slave_sync, own + 0.5 * (slope + ratio) * way, k.law.sync_mode);
-  const double y1 = k.slave_sync - own;
+  PlaceSlave(c, own + 0.5 * (slope + InStep(c, k.master_sync, s).dy) * way, s);
+  const cam::Value end = InStep(c, k.master_sync, s);
+  const double y1 = end.y - own;
   const double d0 = slope * way;
-  const double d1 = ratio * way;
+  const double d1 = end.dy * way;
   const double b0 = bend * way * way;
+  const double b1 = end.ddy * way * way;
   k.curve = {own,
              d0,
              0.5 * b0,
-             10 * y1 - 6 * d0 - 4 * d1 - 1.5 * b0,
-             -15 * y1 + 8 * d0 + 7 * d1 + 1.5 * b0,
-             6 * y1 - 3 * d0 - 3 * d1 - 0.5 * b0};
+             10 * y1 - 6 * d0 - 4 * d1 - 1.5 * b0 + 0.5 * b1,
+             -15 * y1 + 8 * d0 + 7 * d1 + 1.5 * b0 - b1,
+             6 * y1 - 3 * d0 - 3 * d1 - 0.5 * b0 + 0.5 * b1};
 }
 
 KinematicState OnCurve(const CouplingState& k, const KinematicState& master) {
@@ -97,10 +137,10 @@ KinematicState OnCurve(const CouplingState& k, const KinematicState& master) {
   const double y = q[0] + x * (q[1] + x * (q[2] + x * (q[3] + x * (q[4] + x * q[5]))));
   const double slope = (q[1] + x * (2 * q[2] + x * (3 * q[3] + x * (4 * q[4] + x * 5 * q[5])))) / way;
   const double bend = (2 * q[2] + x * (6 * q[3] + x * (12 * q[4] + x * 20 * q[5]))) / (way * way);
-  return {y, slope * master.velocity, bend * master.velocity * master.velocity + slope * master.acceleration};
+  return DemandOf({y, slope, bend, 0}, master);
 }
 
-// GearInPos: waits for the place where it begins, goes along the curve, then stays in step.
+// GearInPos, CamIn: waits for the place where it begins, goes along the curve, then stays in step.
 bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, KinematicState& demand) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
@@ -121,9 +161,16 @@ bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, Kinem
     }
     k.joining = Joining::kJoined;
   }
-  demand = {k.slave_sync + term.ratio * (master.position - k.master_sync), term.ratio * master.velocity,
-            term.ratio * master.acceleration};
+  demand = DemandOf(InStep(c, master.position, s), master);
   return true;
+}
+
+// From where on a waiting slave gets into step.
+void Wait(double master, double distance, CouplingState& k) {
+  const double side = k.master_sync < master ? -1 : 1;
+  k.curve_begin = k.master_sync - side * distance;
+  k.begin_side = master - k.curve_begin;
+  k.joining = Joining::kWaiting;
 }
 
 void BeginJoining(const Context& c, const Request& r, State& s) {
@@ -143,10 +190,59 @@ void BeginJoining(const Context& c, const Request& r, State& s) {
     k.joining = Joining::kJoined;
     return;
   }
-  const double side = k.master_sync < seen.position ? -1 : 1;
-  k.curve_begin = k.master_sync - side * distance;
-  k.begin_side = seen.position - k.curve_begin;
-  k.joining = Joining::kWaiting;
+  Wait(seen.position, distance, k);
+}
+
+// Lays a cam over the master's way. One that takes over at the end of another begins exactly there.
+void BeginCam(const Context& c, const Request& r, State& s) {
+  CouplingState& k = s.coupling;
+  const CouplingTerm& term = k.law.terms[0];
+  const AxisParams& its = c.axes_params[term.master];
+  const State& master = c.axes[term.master];
+  const CamLaw law = CamOf(c, r);
+  const KinematicState seen = Seen(c, term, {});
+  const bool takes_over = s.end_of_profile && k.cam.end_axis == term.master;
+  const double sense = seen.velocity < 0 ? -1 : 1;
+  const bool waits = k.law.master_start_distance >= 0;
+  const double distance = std::max(0.0, k.law.master_start_distance);
+  double at = takes_over ? k.cam.end_master : seen.position;  // the place that counts, over all turns ...
+  double zero = at - Reported(its, at - master.origin);       // ... and the master's zero in that turn
+  const double begin = (law.table.begin() - k.law.master_offset) / law.ratio;  // from zero
+  if (k.law.at_sync_position) {
+    at = NextAhead(its, k.law.master_sync_position + master.origin, seen.position + sense * distance, sense);
+    zero = at - k.law.master_sync_position;
+  } else if (waits && !k.law.master_absolute) {
+    at = seen.position + sense * distance;
+  } else if (waits) {
+    const double turn = law.periodic ? std::abs(law.way()) : its.rotary() ? its.modulus : 0;
+    at = NextAhead(turn, zero + begin, seen.position + sense * distance, sense);
+    zero = at - begin;
+  }
+  k.cam.master = k.law.master_absolute ? zero + begin : at - k.law.master_offset / law.ratio;
+  BeginCycles(law, at, k.cam);
+  k.cam.slave = s.origin + r.table.offset;
+  k.cam.share = ShareOf(law, k.cam, at);
+  k.master_sync = at;
+  if (waits) return Wait(seen.position, distance, k);
+  PlaceSlave(c, takes_over ? k.cam.end_slave : s.setpoint.position + s.origin, s);
+}
+
+// Looks whether the master has passed the end of the cam.
+void NoteEnd(const Context& c, const KinematicState& phase, State& s) {
+  CouplingState& k = s.coupling;
+  if (s.active.kind != RequestKind::kCamIn || k.joining != Joining::kJoined) return;
+  const CamLaw law = CamOf(c, s.active);
+  const double share = ShareOf(law, k.cam, Seen(c, k.law.terms[0], phase).position);
+  const std::optional<double> end = EndPassed(k.cam.share, share);
+  k.cam.share = share;
+  s.end_of_profile = end.has_value();
+  k.cam.over = end || (k.cam.over && !law.periodic && (share == 0 || share == 1));
+  if (!end) return;
+  ++s.profile_ends;
+  k.cam.end_axis = k.law.terms[0].master;
+  k.cam.end_master = k.cam.master + *end * law.way() - phase.position;
+  k.cam.end_slave =
+      k.cam.slave + k.chase.offset + law.scale * (law.table.At(law.table.begin()).y + *end * law.table.stroke());
 }
 
 bool MastersStand(const Context& c, const CouplingState& k) {
@@ -188,7 +284,7 @@ Status ShiftPhase(const Context& c, Ticket ticket, bool relative, double shift, 
 
 }  // namespace
 
-Status FindMasters(const Context& c, Request& r) noexcept {
+Status FindNamed(const Context& c, Request& r) noexcept {
   for (CouplingTerm& term : r.coupling.terms) {
     if (term.name.empty()) continue;
     for (std::size_t i = 0; i < c.axes_params.size() && term.master == kNoAxis; ++i) {
@@ -196,19 +292,35 @@ Status FindMasters(const Context& c, Request& r) noexcept {
     }
     if (term.master == kNoAxis) return Status::Failed(ErrorId::kUnknownTarget);
   }
+  if (r.table.name.empty()) return Status::Ok();
+  for (std::size_t i = 0; i < c.cams.size() && r.table.index == kNoTable; ++i) {
+    if (c.cams[i].name() == r.table.name.view()) r.table.index = static_cast<std::uint32_t>(i);
+  }
+  if (r.table.index == kNoTable) return Status::Failed(ErrorId::kUnknownTarget);
+  if (!r.coupling.periodic) r.coupling.periodic = c.cams[r.table.index].cyclic();
+  return Status::Ok();
+}
+
+Status MayCouple(const Context& c, const Request& r, const State& s) noexcept {
+  const bool absolute = r.kind == RequestKind::kCamIn && r.coupling.slave_absolute;
+  if (absolute && c.params.requires_reference && !s.homing.homed) return Status::Failed(ErrorId::kNoReference);
   return Status::Ok();
 }
 
 void Couple(const Context& c, const Request& r, State& s) noexcept {
   Grant(c, r, s);
   CouplingState& k = s.coupling;
+  const CamState cam = k.cam;  // the end of one cam is the beginning of the next
   k = CouplingState{};
   k.law = r.coupling;
+  k.cam = cam;
+  k.cam.over = false;
   s.limited_by = LimitedBy::kNothing;
   s.motion.profile = trajectory::Profile{s.setpoint};
   s.motion.target = s.setpoint.position;
   s.motion.arrived = false;
   if (r.kind == RequestKind::kGearInPos) BeginJoining(c, r, s);
+  if (r.kind == RequestKind::kCamIn) BeginCam(c, r, s);
   Enter(s, PlcState::kSynchronizedMotion);
 }
 
@@ -223,11 +335,17 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     ComeToRest(c, ramps, FromCycleBefore(c), s);
     return false;
   }
-  const KinematicState phase = PhaseAt(c, k);
-  const bool by_velocity = s.active.kind != RequestKind::kGearInPos && !k.phase_moves;
+  KinematicState phase = PhaseAt(c, k);
+  NoteEnd(c, phase, s);
+  if (s.end_of_profile && s.buffered > 0 && Couples(s.buffer[0].kind)) {  // takes over in this very cycle
+    Conclude(c, 0, s);
+    if (!Couples(s.active.kind)) return false;
+    phase = PhaseAt(c, k);
+  }
+  const bool by_position = ByPosition(s.active.kind);
+  const bool by_velocity = !by_position && !k.phase_moves;
   KinematicState demand;
-  const bool begun =
-      s.active.kind != RequestKind::kGearInPos ? (demand = Sum(c, k, phase), true) : JoinedDemand(c, phase, s, demand);
+  const bool begun = by_position ? JoinedDemand(c, phase, s, demand) : (demand = Sum(c, k, phase), true);
   if (!begun) {  // keeps its velocity until it begins
     demand = {s.setpoint.position + s.origin + s.setpoint.velocity * c.cycle.period_s, s.setpoint.velocity, 0};
   }
@@ -278,7 +396,7 @@ void Uncouple(const Context& c, bool after_fault, State& s) noexcept {
 bool CouplingOf(const Context& c, const Command& command, CouplingRequest& out) noexcept {
   Request request;
   if (MakeRequest(command, c.params, request).failed() || !Couples(request.kind)) return false;
-  if (FindMasters(c, request).failed()) return false;
+  if (FindNamed(c, request).failed()) return false;
   out = request.coupling;
   return true;
 }
@@ -301,6 +419,7 @@ void describe(Description<CouplingState>& d) {
   d.internal<&S::curve_begin>("Where the curve begins.");
   d.internal<&S::begin_side>("On which side of that the master was.");
   d.internal<&S::curve>("Coefficients over the share of the way.");
+  d.internal<&S::cam>("The cam that it follows.");
   d.internal<&S::phase>("Added to the master's position.");
   d.internal<&S::phase_start>("Cycle its time counts from.");
   d.internal<&S::phase_ticket>("Of the command that shifts it.");

@@ -1,9 +1,10 @@
-// Axes coupled at run time: gears, their phase, sums of two masters.
+// Axes coupled at run time: gears, their phase, sums of two masters, cams.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
+#include "takt/axis/cam_law.h"
 #include "takt/axis/chase.h"
 #include "takt/axis/request.h"
 #include "takt/core/cycle.h"
@@ -16,7 +17,7 @@ namespace takt::axis {
 struct Context;
 struct State;
 
-// How far the way into step has come (GearInPos).
+// How far the way into step has come (GearInPos, CamIn).
 enum class Joining : std::uint8_t {
   kWaiting,  // the master is not yet where it begins
   kOnCurve,  // on a curve over the master's position that ends in step
@@ -32,6 +33,7 @@ struct CouplingState {
   double curve_begin = 0;         // master's u, where the curve begins
   double begin_side = 0;          // on which side of that the master was when it was last looked at
   std::array<double, 6> curve{};  // u, coefficients over the share of the way
+  CamState cam;
 
   // The phase: a motion in the master's unit on top of its position.
   trajectory::Profile phase;
@@ -41,10 +43,13 @@ struct CouplingState {
 };
 
 inline bool Couples(RequestKind kind) noexcept {
-  return kind == RequestKind::kGearIn || kind == RequestKind::kGearInPos || kind == RequestKind::kCombineAxes;
+  return kind == RequestKind::kGearIn || kind == RequestKind::kGearInPos || kind == RequestKind::kCombineAxes ||
+         kind == RequestKind::kCamIn;
 }
-// Finds the masters of a request. kUnknownTarget: there is no such axis, or it is the axis itself.
-Status FindMasters(const Context& c, Request& r) noexcept;
+// Finds the masters and the table of a request. kUnknownTarget: there is no such axis, or no such table.
+Status FindNamed(const Context& c, Request& r) noexcept;
+// kNoReference: positions of this axis mean nothing yet.
+Status MayCouple(const Context& c, const Request& r, const State& s) noexcept;
 // Puts a request that couples in control. What was in control must have been ended.
 void Couple(const Context& c, const Request& r, State& s) noexcept;
 // The next set point of a coupled axis; false: it is not (any more) coupled.

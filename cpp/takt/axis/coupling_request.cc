@@ -1,5 +1,7 @@
 #include "takt/axis/coupling_request.h"
 
+#include <cmath>
+
 #include "takt/axis/request_maker.h"
 
 namespace takt::axis {
@@ -25,9 +27,7 @@ constexpr RatioFields kRatio2 = {"ratio_numerator2", "ratio_denominator2"};
 bool Term(const Maker& m, const Name& name, MasterSource source, double ratio, CouplingTerm& out) {
   out = {name, kNoAxis, source, ratio};
   if (name.empty() || name.view() == m.params.name || source > MasterSource::kActualValue) {
-    m.why.field = name.empty()                   ? "master"
-                  : name.view() == m.params.name ? "master, which is the axis itself"
-                                                 : "source";
+    m.why.field = source > MasterSource::kActualValue ? "source" : "master";
     return false;
   }
   return true;
@@ -81,9 +81,47 @@ bool Fill(const Maker& m, const CombineAxes& c) {
          m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
 }
 
+bool Fill(const Maker& m, const CamTableSelect& c) {
+  m.r.table.name = c.cam;
+  if (c.cam.empty()) m.why.field = "cam";
+  return !c.cam.empty();
+}
+
+bool Fill(const Maker& m, const CamIn& c) {
+  m.r.kind = RequestKind::kCamIn;
+  m.r.buffer_mode = c.buffer_mode;
+  if (c.start_mode > CamStart::kRampIn || c.cam.empty()) {
+    m.why.field = c.cam.empty() ? "cam" : "start_mode";
+    return false;
+  }
+  const bool waits = c.master_sync_position || c.master_start_distance;
+  CouplingRequest& out = m.r.coupling;
+  out.master_sync_position = c.master_sync_position.value_or(0);
+  out.at_sync_position = c.master_sync_position.has_value();
+  out.master_start_distance = waits ? c.master_start_distance.value_or(0) : -1;
+  out.master_offset = c.master_offset;
+  out.master_absolute = c.master_absolute;
+  out.slave_absolute = c.slave_absolute && c.start_mode != CamStart::kRelative;
+  m.r.table = {.name = c.cam, .index = kNoTable, .time_scale = 1, .scale = c.slave_scaling, .offset = c.slave_offset};
+  out.periodic = c.periodic;
+  const CamIn ramps = c.start_mode == CamStart::kRampIn ? c : CamIn{};
+  return m.In("master_offset", c.master_offset, -kMaxPosition, kMaxPosition) &&
+         m.In("slave_offset", c.slave_offset, -kMaxPosition, kMaxPosition) &&
+         m.In("master_scaling", std::abs(c.master_scaling), 1 / kMaxPosition, kMaxPosition) &&
+         m.In("slave_scaling", c.slave_scaling, -kMaxPosition, kMaxPosition) &&
+         m.In("master_sync_position", out.master_sync_position, -kMaxPosition, kMaxPosition) &&
+         m.In("master_start_distance", c.master_start_distance.value_or(0), 0, kMaxPosition) &&
+         Term(m, c.master, c.source, c.master_scaling, out.terms[0]) &&
+         m.Take("velocity", ramps.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(ramps);
+}
+
 bool Fill(const Maker& m, const GearOut&) {
   m.r.kind = RequestKind::kLetGo;
   return m.Braking(Halt{});
+}
+
+bool Fill(const Maker& m, const CamOut&) {
+  return Fill(m, GearOut{});
 }
 
 namespace {
@@ -124,6 +162,11 @@ void describe(Description<CouplingRequest>& d) {
   d.internal<&C::slave_sync_position>(unit::u, "Where this axis is then.");
   d.internal<&C::master_start_distance>("How far before that it begins; negative: at once.");
   d.internal<&C::sync_mode>("How a rotary axis gets there.");
+  d.internal<&C::master_offset>("Cams: added to x.");
+  d.internal<&C::master_absolute>("Cams: x counts from the master's zero.");
+  d.internal<&C::slave_absolute>("Cams: y counts from this axis' zero.");
+  d.internal<&C::at_sync_position>("Cams: a master's position was given.");
+  d.internal<&C::periodic>("Cams: over and over.");
 }
 
 }  // namespace takt::axis

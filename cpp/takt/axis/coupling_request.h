@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
+#include "takt/axis/commands/cam.h"
 #include "takt/axis/commands/coupling.h"
 #include "takt/core/describe_fwd.h"
 
@@ -15,7 +17,7 @@ struct CouplingTerm {
   Name name;                       // of the master; empty: no such term
   std::uint32_t master = kNoAxis;  // its index in the machine, found when the command arrives
   MasterSource source = MasterSource::kSetValue;
-  double ratio = 1;  // own u per master's u; with its sign in a difference
+  double ratio = 1;  // own u (cams: x) per master's u; with its sign in a difference
 };
 
 struct CouplingRequest {
@@ -24,6 +26,13 @@ struct CouplingRequest {
   double slave_sync_position = 0;     // u
   double master_start_distance = -1;  // master's u; negative: at once
   SyncMode sync_mode = SyncMode::kShortest;
+
+  // Cams.
+  double master_offset = 0;  // in x
+  bool master_absolute = true;
+  bool slave_absolute = true;
+  bool at_sync_position = false;   // a master's position was given, else the beginning of the cam counts
+  std::optional<bool> periodic{};  // unset: as the table is, until that is found
 };
 
 void describe(Description<CouplingTerm>&);

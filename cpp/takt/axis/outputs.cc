@@ -28,6 +28,8 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::in_position>("The following error is inside the in-position window.");
   d.internal<&O::in_step>("Follows its masters exactly.");
   d.internal<&O::superimposed>("Another motion is on top of the one in progress.");
+  d.internal<&O::end_of_profile>("The end of its cam was passed in this cycle.");
+  d.internal<&O::profile_ends>("How often the end of its cam was passed.");
   d.internal<&O::homed>("Its position is known: it has a reference.");
   d.internal<&O::limit_positive>("LIM+ after inversion.");
   d.internal<&O::limit_negative>("LIM- after inversion.");

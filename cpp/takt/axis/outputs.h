@@ -27,12 +27,14 @@ struct Outputs {
   std::uint32_t master1 = 0;                   // numbers of the axes that it follows, from 1; 0: none
   std::uint32_t master2 = 0;
   std::uint32_t probe_captures = 0;
-  std::uint32_t cam_outputs = 0;  // of the cam switches, a bit for each track
+  std::uint32_t profile_ends = 0;  // how often the end of its cam was passed
+  std::uint32_t cam_outputs = 0;   // of the cam switches, a bit for each track
   std::uint8_t buffered_commands = 0;
   bool loop_closed = false;
   bool in_position = false;
   bool in_step = false;         // follows its masters exactly
   bool superimposed = false;    // another motion is on top of the one in progress
+  bool end_of_profile = false;  // the end of its cam was passed in this cycle
   bool homed = false;           // has a reference
   bool limit_positive = false;  // switches after inversion
   bool limit_negative = false;

@@ -1,6 +1,7 @@
 #include "takt/axis/overlay.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "takt/axis/fit.h"
@@ -38,14 +39,19 @@ KinematicState Added(const Context& c, const State& s) {
   return added;
 }
 
-// The motion beneath has no end that is known: it is the sum of masters, or goes on with a velocity.
+// The motion beneath follows masters or a table over time, not a profile.
+bool FollowsNow(const State& s) {
+  return Couples(s.active.kind) || (FollowsTable(s.active.kind) && !s.time_table.over);
+}
+
+// The motion beneath has no end that is known: it follows something, or goes on with a velocity.
 bool IsEndless(const State& s) {
-  return Couples(s.active.kind) || s.motion.profile.end().velocity != 0;
+  return FollowsNow(s) || s.motion.profile.end().velocity != 0;
 }
 
 BaseAhead AheadOf(const Context& c, double late_s, const State& s) {
   const KinematicState& now = s.superimposed ? s.overlay.base : s.setpoint;
-  if (Couples(s.active.kind)) return {nullptr, 0, now};
+  if (FollowsNow(s)) return {nullptr, 0, now};
   return {&s.motion.profile, Elapsed(c, s) - late_s, now};
 }
 
@@ -62,10 +68,13 @@ bool EndsInside(const Context& c, double added, const State& s) {
 }
 
 // Brakes what is added as the command asks, but not so weakly that it would turn round or go further than without the
-// halt: then with all the axis has.
-Status PlanHalt(const Context& c, const KinematicState& from, double promised, const Limits& limits, Profile& out) {
+// halt: then with all the axis has. An axis that lags behind the sum may stand before a SW limit already while what is
+// added would come to rest behind it: then it ends there.
+Status PlanHalt(const Context& c, const KinematicState& from, const Limits& limits, const State& s, Profile& out) {
+  const Limits own = c.params.planner_limits();
+  const double promised = AddedAtEnd(s);
   Profile strongest{from};
-  if (const Status status = c.planner.Stop(from, c.params.planner_limits(), strongest); status.failed()) return status;
+  if (const Status status = c.planner.Stop(from, own, strongest); status.failed()) return status;
   const double sense = from.velocity < 0 ? -1 : 1;
   const double furthest = std::max(sense * strongest.end().position, sense * promised);
   const Status status = c.planner.Stop(from, limits, out);
@@ -73,7 +82,12 @@ Status PlanHalt(const Context& c, const KinematicState& from, double promised, c
   const Profile::Range velocity = out.VelocityRange();
   const double backwards = sense < 0 ? velocity.max : -velocity.min;
   if (backwards > Rounding(0) || sense * out.end().position > furthest + Rounding(furthest)) out = strongest;
-  return Status::Ok();
+  const double end = out.end().position;
+  if (EndsInside(c, end, s)) return Status::Ok();
+  const double base = EndWith(0, s);
+  const AxisLimits& sw = c.params.limits;
+  const double inside = std::min(std::max(base + end, sw.lower.value_or(-HUGE_VAL)), sw.upper.value_or(HUGE_VAL));
+  return c.planner.ToPosition(from, inside - base, 0, own, out);
 }
 
 Limits LimitsOf(const OverlayState& o) {
@@ -122,7 +136,7 @@ void Begin(const Context& c, Ticket ticket, const KinematicState& from, const Pr
 void PlanAgain(const Context& c, const KinematicState& added, State& s) {
   OverlayState& o = s.overlay;
   RememberBase(s);
-  if (o.halting || Couples(s.active.kind)) return;
+  if (o.halting || FollowsNow(s)) return;
   const Status status =
       PlanOverlay(c.params, c.planner, AheadOf(c, 0, s), added, o.profile.end().position, LimitsOf(o), o.profile);
   if (status.ok()) o.start_cycle = c.cycle.count;
@@ -133,6 +147,7 @@ void Fold(double added, State& s) {
   s.motion.profile.Shift(added);
   s.motion.target += added;
   if (Couples(s.active.kind)) s.coupling.chase.offset += added;
+  if (FollowsTable(s.active.kind)) s.time_table.chase.offset += added;
   s.superimposed = false;
 }
 
@@ -295,7 +310,7 @@ Status CarryOut(const Context& c, Ticket ticket, const HaltSuperimposed& command
   Fill(Maker{c.params, r, why}, command);
   const KinematicState from = Added(c, s);
   Profile profile;
-  if (const Status status = PlanHalt(c, from, AddedAtEnd(s), r.limits(), profile); status.failed()) return status;
+  if (const Status status = PlanHalt(c, from, r.limits(), s, profile); status.failed()) return status;
   Begin(c, ticket, from, profile, s);
   s.overlay.halting = true;
   return Status::Ok();

@@ -158,10 +158,12 @@ bool Fill(const Maker& m, const Touch& c) {
 void SenseProbe(const Context& c, const ServoInputs& in, State& s) noexcept {
   ProbeState& probe = s.probe;
   const bool good = !s.encoder_error;
-  const double before =
-      probe.sampled && good ? LatchedPosition(c.params.encoder, s.encoder, probe.counts) - s.origin : 0;
-  probe.step = probe.sampled && good ? s.actual.position - before : s.actual.velocity * c.cycle.period_s;
-  LookForEdge(c, in, s);
+  if (probe.watch != ProbeWatch::kNothing || s.cam_switch.list >= 0) {  // somebody asks for the step
+    const bool known = probe.sampled && good;
+    const double before = known ? LatchedPosition(c.params.encoder, s.encoder, probe.counts) - s.origin : 0;
+    probe.step = known ? s.actual.position - before : s.actual.velocity * c.cycle.period_s;
+    LookForEdge(c, in, s);
+  }
   probe.sampled = good;
   probe.counts = in.counts;
   probe.wire = in.touch_probe;

@@ -27,6 +27,10 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kGearIn, true, false, true, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kGearInPos, true, false, true, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kCombineAxes, true, false, true, PlcState::kSynchronizedMotion},
+    RequestRules{RequestKind::kCamIn, true, false, true, PlcState::kSynchronizedMotion},
+    RequestRules{RequestKind::kPositionProfile, true, false, true, PlcState::kDiscreteMotion},
+    RequestRules{RequestKind::kVelocityProfile, true, false, true, PlcState::kContinuousMotion},
+    RequestRules{RequestKind::kAccelerationProfile, true, false, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kLetGo, false, false, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kStepAbsSwitch, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepLimitSwitch, true, false, true, PlcState::kHoming},
@@ -154,15 +158,22 @@ std::string WhyNot(const Command& command, const AxisParams& params) {
   Refusal why;
   if (MakeRequest(command, params, request, &why).ok()) return {};
   const std::string field = why.field;
+  if (field == "master" && why.high == 0) return "master: expected the name of another axis than " + params.name;
   if (why.high == 0) return field + ": expected another value, this command has no such " + field;
+  const bool of_axis = field == "velocity" || field == "acceleration" || field == "deceleration" || field == "jerk" ||
+                       field == "end_velocity";
+  const bool open = why.high > kMaxPosition;
   std::ostringstream text;
   text << field << ": expected ";
-  if (field == "position" || field == "distance") {
-    text << "a finite number from " << why.low << " to " << why.high;
+  if (why.low == std::numeric_limits<double>::min()) {
+    text << "more than 0";
+    if (!open) text << " and at most " << why.high;
+  } else if (open) {
+    text << "at least " << why.low;
   } else {
-    text << (why.low > 0 ? "more than 0 and " : "0 or more and ") << "at most " << why.high << ", the limit of axis "
-         << params.name;
+    text << "a number from " << why.low << " to " << why.high;
   }
+  if (of_axis && !open) text << ", the limit of axis " << params.name;
   text << ", found " << why.found;
   return text.str();
 }
@@ -185,6 +196,10 @@ void describe(Enumeration<RequestKind>& e) {
   e.value(RequestKind::kGearIn, "gear_in", "GearIn.");
   e.value(RequestKind::kGearInPos, "gear_in_pos", "GearInPos.");
   e.value(RequestKind::kCombineAxes, "combine_axes", "CombineAxes.");
+  e.value(RequestKind::kCamIn, "cam_in", "CamIn.");
+  e.value(RequestKind::kPositionProfile, "position_profile", "PositionProfile.");
+  e.value(RequestKind::kVelocityProfile, "velocity_profile", "VelocityProfile.");
+  e.value(RequestKind::kAccelerationProfile, "acceleration_profile", "AccelerationProfile.");
   e.value(RequestKind::kLetGo, "let_go", "LetGo.");
   e.value(RequestKind::kStepAbsSwitch, "step_abs_switch", "StepAbsSwitch.");
   e.value(RequestKind::kStepLimitSwitch, "step_limit_switch", "StepLimitSwitch.");
@@ -216,6 +231,7 @@ void describe(Description<Request>& d) {
   d.internal<&R::forward>("Jog: key for upwards.");
   d.internal<&R::backward>("Jog: key for downwards.");
   d.internal<&R::coupling>("Of commands that couple axes.");
+  d.internal<&R::table>("Of commands that follow a table.");
   d.internal<&R::homing>("Of homing steps.");
 }
 

@@ -9,6 +9,7 @@
 #include "takt/axis/homing_request.h"
 #include "takt/axis/params.h"
 #include "takt/axis/state_table.h"
+#include "takt/axis/table_request.h"
 #include "takt/core/feedback.h"
 #include "takt/core/status.h"
 
@@ -31,6 +32,10 @@ enum class RequestKind : std::uint8_t {
   kGearIn,
   kGearInPos,
   kCombineAxes,
+  kCamIn,
+  kPositionProfile,
+  kVelocityProfile,
+  kAccelerationProfile,
   kLetGo,  // MC_GearOut, MC_CamOut
   kStepAbsSwitch,
   kStepLimitSwitch,
@@ -62,6 +67,7 @@ struct Request {
 
   // Of the groups of commands that need more.
   CouplingRequest coupling;
+  TableRequest table;
   HomingRequest homing;
 
   trajectory::Limits limits() const { return {velocity, acceleration, deceleration, jerk}; }

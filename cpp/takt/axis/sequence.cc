@@ -79,18 +79,37 @@ void ConcludePositioning(const Context& c, double late_s, State& s) {
   }
 }
 
+void NoteReached(const Context& c, State& s) {
+  if (s.reported) return;
+  Report(c, s.active.ticket, FeedbackState::kActive, ErrorId::kNone, true);
+  s.reported = true;
+}
+
+// A command that never ends by itself gives way to the one behind it.
+void GiveWay(const Context& c, State& s) {
+  if (s.buffered == 0) return;
+  const Ticket ticket = s.active.ticket;
+  if (Couples(s.active.kind)) Uncouple(c, false, s);
+  s.active = Request{};
+  Report(c, ticket, FeedbackState::kAborted, ErrorId::kNone, s.reported);
+  StartNext(c, 0, s);
+}
+
 // A command that never ends by itself has reached what it is for.
 void ConcludeReached(const Context& c, State& s) {
-  if (!s.reported) {
-    Report(c, s.active.ticket, FeedbackState::kActive, ErrorId::kNone, true);
-    s.reported = true;
-  }
-  if (s.buffered > 0) {
-    const Ticket ticket = s.active.ticket;
-    s.active = Request{};
-    Report(c, ticket, FeedbackState::kAborted, ErrorId::kNone, true);
-    StartNext(c, 0, s);
-  }
+  NoteReached(c, s);
+  GiveWay(c, s);
+}
+
+void ConcludeCam(const Context& c, State& s) {
+  if (s.coupling.chase.in_step) NoteReached(c, s);
+  if (s.coupling.cam.over) GiveWay(c, s);
+}
+
+// The last velocity stays.
+void ConcludeVelocityProfile(const Context& c, double late_s, State& s) {
+  EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+  if (s.buffered > 0) StartNext(c, late_s, s);
 }
 
 void ConcludeStop(const Context& c, State& s) {
@@ -123,6 +142,18 @@ void TakeControl(const Context& c, const Request& request, const Plan& plan, con
 
 std::uint64_t LeaseEnd(const Context& c, double lease_s) noexcept {
   return c.cycle.count + static_cast<std::uint64_t>(std::ceil(lease_s / c.cycle.period_s));
+}
+
+bool FollowsDemand(RequestKind kind) noexcept {
+  return Couples(kind) || FollowsTable(kind);
+}
+
+Status MayFollow(const Context& c, const Request& request, const State& s) noexcept {
+  return Couples(request.kind) ? MayCouple(c, request, s) : MayFollowTable(c, request, s);
+}
+
+void BeginFollowing(const Context& c, const Request& request, const MotionStart& start, State& s) noexcept {
+  Couples(request.kind) ? Couple(c, request, s) : BeginTable(c, request, start, s);
 }
 
 void EndActive(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
@@ -196,14 +227,16 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
     }
     const bool seamless = s.motion.profile.end().velocity != 0 && late_s > 0;
     const KinematicState from = seamless ? s.motion.profile.end() : s.setpoint;
-    if (Couples(next.kind)) return Couple(c, next, s);
     Plan plan;
     const bool homes = Homes(next.kind);
-    Status status = homes ? BeginHoming(c, next, false, s)
-                          : PlanRequest(c.params, SurroundingsOf(s), c.planner, from, next, Follower(s), plan);
+    const bool follows = FollowsDemand(next.kind);
+    Status status = homes     ? BeginHoming(c, next, false, s)
+                    : follows ? MayFollow(c, next, s)
+                              : PlanRequest(c.params, SurroundingsOf(s), c.planner, from, next, Follower(s), plan);
     if (status.ok() && next.positions() && !Inside(c.params.limits, plan.target + AddedAtEnd(s)))
       status = Status::Failed(ErrorId::kTargetBehindLimit);
     if (status.ok() && homes) return;
+    if (status.ok() && follows) return BeginFollowing(c, next, FromThisCycle(c), s);
     if (status.ok()) {
       TakeControl(c, next, plan, {c.cycle.count, seamless ? late_s : 0}, s);
       s.setpoint = s.motion.profile.At(Elapsed(c, s));
@@ -238,6 +271,7 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
     case RequestKind::kMoveAdditive:
     case RequestKind::kInch:
     case RequestKind::kTouch:
+    case RequestKind::kPositionProfile:
       ConcludePositioning(c, late_s, s);
       break;
     case RequestKind::kMoveVelocity:
@@ -250,6 +284,13 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
     case RequestKind::kGearInPos:
     case RequestKind::kCombineAxes:
       ConcludeReached(c, s);
+      break;
+    case RequestKind::kCamIn:
+      ConcludeCam(c, s);
+      break;
+    case RequestKind::kVelocityProfile:
+    case RequestKind::kAccelerationProfile:
+      ConcludeVelocityProfile(c, late_s, s);
       break;
     case RequestKind::kHalt:
       EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);

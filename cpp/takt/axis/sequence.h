@@ -39,6 +39,12 @@ void Grant(const Context& c, const Request& request, State& s, double travel_s =
 // ... or with a motion of its own.
 void TakeControl(const Context& c, const Request& request, const Plan& plan, const MotionStart& start,
                  State& s) noexcept;
+// Commands that follow something that moves, a master or a table over time, instead of a plan.
+bool FollowsDemand(RequestKind kind) noexcept;
+// Whether such a command may take control now: MayCouple, MayFollowTable.
+Status MayFollow(const Context& c, const Request& request, const State& s) noexcept;
+// Puts it in control. What was in control must have been ended.
+void BeginFollowing(const Context& c, const Request& request, const MotionStart& start, State& s) noexcept;
 // Ends the command in control; the motion goes on until something replaces it.
 void EndActive(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
 void AbortBuffer(const Context& c, State& s) noexcept;

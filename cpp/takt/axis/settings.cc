@@ -37,13 +37,31 @@ Status CheckLimits(const Context& c, const AxisLimits& limits, const State& s) {
   return Fits(c, limits, s) ? Status::Ok() : Status::Failed(ErrorId::kTargetBehindLimit);
 }
 
-Status SetLimits(const Context& c, Ticket ticket, std::optional<double> lower, std::optional<double> upper, State& s) {
+// A value that supervision works with and that may sleep: switched off it is kept, switched on it comes back.
+struct Watch {
+  std::optional<double> value;
+  std::optional<double> asleep;
+
+  void Choose(bool enable, const std::optional<double>& wanted) {
+    const std::optional<double> known = wanted ? wanted : value ? value : asleep;
+    value = enable ? known : std::nullopt;
+    asleep = enable ? std::nullopt : known;
+  }
+};
+
+Status SetLimits(const Context& c, Ticket ticket, const Watch& lower, const Watch& upper, State& s) {
   AxisLimits limits = c.params.limits;
-  limits.lower = lower;
-  limits.upper = upper;
+  limits.lower = lower.value;
+  limits.upper = upper.value;
   if (const Status status = CheckLimits(c, limits, s); status.failed()) return status;
   c.params.limits = limits;
+  s.dormant.lower = lower.asleep;
+  s.dormant.upper = upper.asleep;
   return Done(c, ticket);
+}
+
+bool IsYesOrNo(double value) {
+  return value == 0 || value == 1;
 }
 
 double OrInfinity(const std::optional<double>& limit) {
@@ -107,30 +125,46 @@ Status CarryOut(const Context& c, Ticket ticket, const SetConstants& k, State& s
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const WriteParameter& w, State& s) noexcept {
-  const AxisLimits& limits = c.params.limits;
-  switch (static_cast<Parameter>(w.number)) {
+  const auto parameter = static_cast<Parameter>(w.number);
+  Watch lower{c.params.limits.lower, s.dormant.lower};
+  Watch upper{c.params.limits.upper, s.dormant.upper};
+  Watch lag{c.params.supervision.deviation_moving, s.dormant.lag};
+  const auto enable = [&](Watch& watch) {
+    const bool possible = IsYesOrNo(w.value) && (w.value == 0 || watch.value || watch.asleep);
+    if (possible) watch.Choose(w.value != 0, std::nullopt);
+    return possible;
+  };
+  bool good = true;
+  switch (parameter) {
     case Parameter::kLimitPositive:
-      return SetLimits(c, ticket, limits.lower, w.value, s);
+      upper.Choose(true, w.value);
+      break;
     case Parameter::kLimitNegative:
-      return SetLimits(c, ticket, w.value, limits.upper, s);
+      lower.Choose(true, w.value);
+      break;
     case Parameter::kEnableLimitPositive:
-      if (w.value != 0) return limits.upper ? Done(c, ticket) : Status::Failed(ErrorId::kParameter);
-      return SetLimits(c, ticket, limits.lower, std::nullopt, s);
+      good = enable(upper);
+      break;
     case Parameter::kEnableLimitNegative:
-      if (w.value != 0) return limits.lower ? Done(c, ticket) : Status::Failed(ErrorId::kParameter);
-      return SetLimits(c, ticket, std::nullopt, limits.upper, s);
+      good = enable(lower);
+      break;
     case Parameter::kMaxPositionLag:
-      if (!(w.value > 0)) return Status::Failed(ErrorId::kParameter);
-      c.params.supervision.deviation_moving = w.value;
-      return Done(c, ticket);
+      good = w.value > 0;
+      lag.Choose(true, w.value);
+      break;
     case Parameter::kEnableLagMonitoring:
-      if (w.value != 0)
-        return c.params.supervision.deviation_moving ? Done(c, ticket) : Status::Failed(ErrorId::kParameter);
-      c.params.supervision.deviation_moving.reset();
-      return Done(c, ticket);
+      good = enable(lag);
+      break;
     default:
-      return Status::Failed(ErrorId::kParameter);
+      good = false;
   }
+  if (!good) return Status::Failed(ErrorId::kParameter);
+  if (parameter != Parameter::kMaxPositionLag && parameter != Parameter::kEnableLagMonitoring) {
+    return SetLimits(c, ticket, lower, upper, s);
+  }
+  c.params.supervision.deviation_moving = lag.value;
+  s.dormant.lag = lag.asleep;
+  return Done(c, ticket);
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const ReadParameter& r, State& s) noexcept {
@@ -139,11 +173,11 @@ Status CarryOut(const Context& c, Ticket ticket, const ReadParameter& r, State& 
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const SetSoftLimits& l, State& s) noexcept {
-  const auto chosen = [](bool enable, std::optional<double> wanted, std::optional<double> there) {
-    return !enable ? std::nullopt : wanted ? wanted : there;
-  };
-  return SetLimits(c, ticket, chosen(l.enable_lower, l.lower, c.params.limits.lower),
-                   chosen(l.enable_upper, l.upper, c.params.limits.upper), s);
+  Watch lower{c.params.limits.lower, s.dormant.lower};
+  Watch upper{c.params.limits.upper, s.dormant.upper};
+  lower.Choose(l.enable_lower, l.lower);
+  upper.Choose(l.enable_upper, l.upper);
+  return SetLimits(c, ticket, lower, upper, s);
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const DirectOutput& d, State& s) noexcept {
@@ -173,10 +207,10 @@ bool Fill(const Maker& m, const SetConstants& k) {
   const auto position_if = [&](const char* field, const std::optional<double>& value) {
     return !value || m.In(field, *value, -kMaxPosition, kMaxPosition);
   };
-  constexpr double kLargestGain = 1e9;
+  constexpr double kLargestGain = 1e6;  // as in a machine file
   return not_negative_if("kp", k.kp, kLargestGain) && not_negative_if("ki", k.ki, kLargestGain) &&
          not_negative_if("kd", k.kd, kLargestGain) && not_negative_if("kc", k.kc, 1) &&
-         not_negative_if("ff", k.ff, kLargestGain) &&
+         not_negative_if("ff", k.ff, 10) &&
          (!k.velocity_at_10v ||
           m.In("velocity_at_10v", *k.velocity_at_10v, std::numeric_limits<double>::min(), kMaxPosition)) &&
          position_if("lower", k.lower) && position_if("upper", k.upper);

@@ -15,6 +15,13 @@ void describe(Description<Motion>& d) {
   d.internal<&M::arrived_cycle>("Since when.");
 }
 
+void describe(Description<Dormant>& d) {
+  d.about("Supervision that was switched off at run time, with the values it comes back with.");
+  d.internal<&Dormant::lower>(unit::u, "SW limit LimNeg.");
+  d.internal<&Dormant::upper>(unit::u, "SW limit LimPos.");
+  d.internal<&Dormant::lag>(unit::u, "Largest following error in motion.");
+}
+
 void describe(Description<State>& d) {
   using S = State;
   d.about("All memory of an axis.");
@@ -31,6 +38,8 @@ void describe(Description<State>& d) {
   d.internal<&S::lease_end_cycle>("When the dead man's lease ends.");
   d.internal<&S::reset_ticket>("Of the reset in progress.");
   d.internal<&S::reset_pending>("A reset waits for standstill.");
+  d.internal<&S::end_of_profile>("The end of a cam was passed.");
+  d.internal<&S::profile_ends>("How often.");
   d.internal<&S::buffer>("Buffered commands, the next one first.");
   d.internal<&S::buffered>("How many.");
   d.internal<&S::enable>("Drive told to be on.");
@@ -51,6 +60,7 @@ void describe(Description<State>& d) {
   d.internal<&S::encoder_line_error>("Because the encoder says so.");
   d.internal<&S::torque_nm>(unit::nm, "As the drive says.");
   d.internal<&S::constants_set>("GT_SetConstant was given.");
+  d.internal<&S::dormant>("Supervision switched off.");
   d.internal<&S::direct_voltage_v>(unit::volt, "Put out while Disabled.");
   d.internal<&S::superimposed>("Something is on top of the motion in progress.");
   d.internal<&S::coupled>("Follows its master.");
@@ -64,6 +74,7 @@ void describe(Description<State>& d) {
   d.internal<&S::illegal_transitions>("Always 0.");
   d.internal<&S::motion>("Motion in progress.");
   d.internal<&S::coupling>("Masters it follows.");
+  d.internal<&S::time_table>("Table over time that it follows.");
   d.internal<&S::overlay>("What is on top of it.");
   d.internal<&S::homing>("Its reference.");
   d.internal<&S::probe>("Touch probe.");

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "takt/axis/cam_switch.h"
 #include "takt/axis/control_loop.h"
@@ -13,6 +14,7 @@
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
+#include "takt/axis/time_table.h"
 #include "takt/axis/torque.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
@@ -30,6 +32,12 @@ struct Motion {
   double target = 0;              // u, unwrapped: where a positioning command ends
   bool arrived = false;           // the profile is over
   std::uint64_t arrived_cycle = 0;
+};
+
+// Supervision that was switched off at run time, to be switched on again.
+struct Dormant {
+  std::optional<double> lower{}, upper{};  // u, SW limits
+  std::optional<double> lag{};             // u, largest following error in motion
 };
 
 struct State {
@@ -50,9 +58,10 @@ struct State {
   bool jog_armed = false;      // a key may start a motion: a new jog, or both keys were seen up since the last one
   std::int8_t last_sense = 1;  // sense of the last motion, for Direction::kCurrent
   bool reset_pending = false;
-  bool constants_set = false;  // by GT_SetConstant
-  bool coupled = false;        // follows a master from load on
-  bool superimposed = false;   // something is on top of the motion in progress: see `overlay`
+  bool constants_set = false;   // by GT_SetConstant
+  bool coupled = false;         // follows a master from load on
+  bool end_of_profile = false;  // the end of a cam was passed in this cycle
+  bool superimposed = false;    // something is on top of the motion in progress: see `overlay`
   std::uint8_t buffered = 0;
 
   // Power.
@@ -74,6 +83,7 @@ struct State {
   std::uint32_t index_pulses = 0;
   std::uint32_t index_counts = 0;  // ... at this count
   std::uint32_t cam_outputs = 0;
+  std::uint32_t profile_ends = 0;  // how often the end of a cam was passed
   std::uint64_t enable_cycle = 0;
   std::uint64_t lease_end_cycle = 0;
 
@@ -87,12 +97,14 @@ struct State {
   TorqueState torque;
   HomingState homing;
   ProbeState probe;
+  CamSwitchState cam_switch;
 
   Request active;  // in control; kind none: nothing is
   Motion motion;
   CouplingState coupling;
-  CamSwitchState cam_switch;
+  TimeTableState time_table;
 
+  Dormant dormant;
   Ticket reset_ticket = 0;
   std::array<Request, kBufferSize> buffer;  // [0] is next
   std::uint64_t illegal_transitions = 0;    // always 0: the state table holds
@@ -100,6 +112,7 @@ struct State {
 };
 
 void describe(Description<Motion>&);
+void describe(Description<Dormant>&);
 void describe(Description<State>&);
 
 }  // namespace takt::axis

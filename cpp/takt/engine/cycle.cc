@@ -1,6 +1,7 @@
 #include "takt/engine/cycle.h"
 
 #include "takt/axis/axis.h"
+#include "takt/cam/build.h"
 #include "takt/core/describe.h"
 #include "takt/core/hash.h"
 #include "takt/engine/order.h"
@@ -15,7 +16,7 @@ constexpr std::size_t kEventsPerCommand = 4;
 
 axis::Context ContextOf(World& w, std::size_t i) {
   const axis::State* master = w.axis_masters[i] ? &w.axis_states[*w.axis_masters[i]] : nullptr;
-  return {w.axis_params[i], w.cycle, w.planner, w.feedback, master, w.axis_states, w.axis_params, w.cam_switches};
+  return {w.axis_params[i], w.cycle, w.planner, w.feedback, master, w.axis_states, w.axis_params, w.cam_switches, w.cams};
 }
 
 // The k-th axis that axis i must not step before: the one it follows from load on, those it is coupled to, those it
@@ -122,6 +123,7 @@ World::World(const Machine& machine)
       feedback(feedback_storage) {
   TypeOf<axis::State>();  // the first use of a type allocates
   TypeOf<plant::ServoState>();
+  for (const cam::CamParams& cam : machine.cams) cams.push_back(cam::Build(cam).table.value());
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axis_states.push_back(axis::MakeState(axis_params[i]));
     servo_params.push_back(ServoOf(machine, i));

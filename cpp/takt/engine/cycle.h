@@ -9,6 +9,7 @@
 #include "takt/axis/outputs.h"
 #include "takt/axis/params.h"
 #include "takt/axis/state.h"
+#include "takt/cam/table.h"
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
 #include "takt/core/ports.h"
@@ -37,6 +38,7 @@ struct World {
 
   std::vector<axis::AxisParams> axis_params;
   std::vector<axis::CamSwitches> cam_switches;
+  std::vector<cam::Table> cams;
   std::vector<axis::State> axis_states;
   std::vector<axis::Outputs> axis_outputs;
   Order axis_order;                                        // masters before followers

@@ -1,9 +1,11 @@
 #include "takt/engine/load.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "takt/axis/following.h"
 #include "takt/core/yaml_reader.h"
+#include "takt/engine/load_cams.h"
 #include "takt/engine/order.h"
 
 namespace takt::engine {
@@ -38,7 +40,8 @@ class CrossCheck {
     }
     CheckAxes();
     CheckMasters();
-    CheckCamSwitches();
+    CheckNames("cams", machine_.cams);
+    CheckNames("cam_switches", machine_.cam_switches);
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
       CheckReference("simulation.servos[" + std::to_string(i) + "].axis", machine_.simulation.servos[i].axis, servos);
@@ -101,10 +104,11 @@ class CrossCheck {
         "expected axes that follow one another in no loop, found " + members + machine_.axes[loop.front()].name);
   }
 
-  void CheckCamSwitches() {
-    for (std::size_t i = 0; i < machine_.cam_switches.size(); ++i) {
-      const std::string path = "cam_switches[" + std::to_string(i) + "]";
-      const std::string& name = machine_.cam_switches[i].name;
+  template <typename T>
+  void CheckNames(const std::string& list, const std::vector<T>& elements) {
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      const std::string path = list + "[" + std::to_string(i) + "]";
+      const std::string& name = elements[i].name;
       if (!GoodName(name) && !(name.empty() && !Written(path, ".name"))) {
         Add(path + ".name", "expected 1 to 40 letters, digits, _ - or ., found " + Quoted(name));
       }
@@ -135,17 +139,22 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name) {
   SourceMap source(file_name);
   std::vector<Problem> problems = ReadYaml(TypeOf<Machine>(), &machine, text, file_name, source);
   const bool readable = problems.size() < kMaxProblems;
+  CamLoading cams;
+  if (problems.empty()) cams = LoadCams(source, machine);
   if (readable && !machine.axes.empty()) {
     std::vector<Problem> more = CrossCheck(machine, source).Run();
     problems.insert(problems.end(), more.begin(), more.end());
   } else if (problems.empty()) {
     problems = CrossCheck(machine, source).Run();
   }
-  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
-    return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
-  });
+  problems.insert(problems.end(), cams.problems.begin(), cams.problems.end());
+  const auto key = [&](const Problem& p) { return std::tuple(p.source != file_name, p.place.line, p.place.column); };
+  std::stable_sort(problems.begin(), problems.end(),
+                   [&](const Problem& a, const Problem& b) { return key(a) < key(b); });
   LoadResult result;
+  result.names_files = cams.files;
   for (const Problem& problem : problems) result.problems.push_back(problem.Text());
+  for (const Problem& warning : cams.warnings) result.warnings.push_back(warning.Text());
   if (problems.empty()) result.machine = std::move(machine);
   return result;
 }
@@ -153,7 +162,7 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name) {
 LoadResult LoadMachineFile(const std::string& path) {
   std::string why;
   const std::optional<std::string> text = LoadText(path, why);
-  if (!text) return {std::nullopt, {path + ": " + why}};
+  if (!text) return {.machine = std::nullopt, .problems = {path + ": " + why}, .warnings = {}};
   return LoadMachine(*text, path);
 }
 

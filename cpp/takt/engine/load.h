@@ -13,6 +13,8 @@ namespace takt::engine {
 struct LoadResult {
   std::optional<Machine> machine;
   std::vector<std::string> problems;  // "file:line:column: key.path: expected ..., found ..."
+  std::vector<std::string> warnings;  // in the same form; nothing that hinders
+  bool names_files = false;           // the text alone does not say everything; WriteYaml(machine) does
 };
 
 LoadResult LoadMachine(std::string_view text, std::string_view file_name);

@@ -91,6 +91,7 @@ void describe(Description<Machine>& d) {
   d.defaulted<&M::cycle>("The cycle.");
   d.defaulted<&M::lcm>("Messages.");
   d.required<&M::axes>("The axes.");
+  d.defaulted<&M::cams>("Cams, for any axis.");
   d.defaulted<&M::cam_switches>("Lists of cam switches.");
   d.defaulted<&M::simulation>("What stands in for the metal.");
 }

@@ -9,6 +9,7 @@
 
 #include "takt/axis/cam_switch.h"
 #include "takt/axis/params.h"
+#include "takt/cam/params.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/plant/servo.h"
 
@@ -50,6 +51,7 @@ struct Machine {
   CycleParams cycle;
   LcmParams lcm;
   std::vector<axis::AxisParams> axes;
+  std::vector<cam::CamParams> cams;
   std::vector<axis::CamSwitches> cam_switches;
   Simulation simulation;
 };

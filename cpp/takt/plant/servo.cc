@@ -58,8 +58,8 @@ struct Motion {
 
 // Solved exactly, piece by piece. v' depends on v alone and falls with it, so v runs straight towards its resting value
 // and meets each border (full torque, friction turning round) once at most: four pieces at the most. `whole` is the
-// reach of an undisturbed piece that lasts the whole time.
-void Advance(const Law& law, double time, const Reach& whole, Motion& m) noexcept {
+// reach of an undisturbed piece that lasts the whole time. Inlined where every cycle needs it: a fifth of the servo.
+[[gnu::always_inline]] inline void Advance(const Law& law, double time, const Reach& whole, Motion& m) noexcept {
   const bool powered = law.gain > 0;
   const double full_below = powered ? law.target + (law.bias - law.high) * law.lag : -kInfinite;
   const double full_above = powered ? law.target + (law.bias - law.low) * law.lag : kInfinite;
@@ -197,8 +197,8 @@ bool Reads(const ServoSwitch& sw, double position, double revolution) noexcept {
 
 // The wire of the touch probe over one step of the drive that ended `rest` before the end of the cycle. Where it
 // changed, the instant is looked for in the exact motion.
-void WatchProbe(const ServoParams& p, const Law& law, const Motion& begin, double time, double rest, const Motion& end,
-                ServoState& s) noexcept {
+[[gnu::noinline]] void WatchProbe(const ServoParams& p, const Law& law, const Motion& begin, double time, double rest,
+                                  const Motion& end, ServoState& s) noexcept {
   const ServoSwitch& probe = p.switches.touch_probe;
   const auto reads = [&](const Motion& m) { return Reads(probe, m.load, p.switches.revolution); };
   const bool on = reads(end);
@@ -274,6 +274,7 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   const double learning = compensates ? time / ((drive.load_compensation_s + time) * model.to_velocity) : 0;
 
   const bool motor_encoder = p.encoder.place == ServoEncoderPlace::kMotor;
+  const bool probe_wired = p.switches.touch_probe.from || p.switches.touch_probe.to;
   const double set_step = (end_position - start_position) / steps;
   const double feed_forward_step = (end_velocity - start_velocity) / steps;
   law.bias = s.compensation;
@@ -288,19 +289,18 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
     }
     if (cst) FollowTorque(most, set_torque, largest_speed, motion.velocity, law);
     const Motion begin = motion;
-    const double before = motion.velocity;
     bool hit = false;
     if (!s.faults.stuck) {
       Advance(law, time, whole, motion);
       hit = MoveLoad(mechanics, motion);
     }
-    WatchProbe(p, law, begin, time, time * (steps - 1 - i), motion, s);
+    if (probe_wired) WatchProbe(p, law, begin, time, time * (steps - 1 - i), motion, s);
     // What the speed lacks against the bare first-order model is load: the drive learns to add it. Not while the torque
     // is at its limit or the axis is knocked to a halt, where the model says nothing.
-    const double lag = law.target - before;
+    const double lag = law.target - begin.velocity;
     const double asked = law.gain * lag + law.bias;
     if (compensates && !hit && asked >= law.low && asked <= law.high) {
-      const double expected = before + lag * (law.gain * model.to_velocity);
+      const double expected = begin.velocity + lag * (law.gain * model.to_velocity);
       law.bias = std::clamp(law.bias + learning * (expected - motion.velocity), -most, most);
     }
   }

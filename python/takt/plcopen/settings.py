@@ -8,6 +8,8 @@ from takt.axis import Axis
 from takt.feedback import Feedback
 from takt.plcopen.base import FunctionBlock, Input, Output, SettingBlock
 
+YES_OR_NO = (4, 5, 6)  # parameters: EnableLimitPos, EnableLimitNeg, EnablePosLagMonitoring
+
 
 class GT_SetConstant(SettingBlock):  # noqa: N801
     """The constants of the position loop and the SW limits; an input that is None leaves what there is."""
@@ -57,14 +59,15 @@ class MC_WriteParameter(SettingBlock):  # noqa: N801
 
 
 class MC_WriteBoolParameter(SettingBlock):  # noqa: N801
-    """Sets a parameter that is a yes or no."""
+    """Sets a parameter that is a yes or no: 4, 5 and 6. Any other one is error 5."""
 
     VERB = "write_parameter"
     ParameterNumber = Input(0, "number")
     Value = Input(False)
 
     def _arguments(self) -> dict[str, Any]:
-        return super()._arguments() | {"value": 1.0 if self.Value else 0.0}
+        number = self.ParameterNumber if self.ParameterNumber in YES_OR_NO else 0
+        return super()._arguments() | {"number": number, "value": 1.0 if self.Value else 0.0}
 
 
 class MC_ReadParameter(FunctionBlock):  # noqa: N801

@@ -260,6 +260,17 @@ TEST(ControlLoop, AntiWindupLeavesAnEmptyIntegratorEmpty) {  // AX-80: Ki = 0 me
   EXPECT_EQ(loop.Volts(0, 0), 0);
 }
 
+TEST(ControlLoop, WithoutIntegrationNothingOfItStays) {  // AX-80, AX-27: Ki set to 0 at run time
+  ControlLoop p = Silent();
+  p.ki = 0.01;
+  Loop loop(p);
+  for (int k = 0; k < 100; ++k) loop.Run(1, 0, 0);
+  EXPECT_GT(loop.state.integral, 0.5);
+  loop.params.ki = 0;
+  EXPECT_EQ(loop.Volts(0, 0), 0);
+  EXPECT_EQ(loop.state.integral, 0);
+}
+
 TEST(ControlLoop, OpenLoopGivesNothingAndForgets) {  // AX-80, AX-82: outputs 0 V while the loop is open
   ControlLoop p;
   p.ki = 0.01;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "rig.h"
+#include "takt/cam/build.h"
 
 namespace takt::axis {
 namespace {
@@ -55,6 +56,33 @@ Command RandomHoming(std::mt19937_64& random, const AxisParams& p) {
       return FinishHoming{.distance = -3, .buffer_mode = buffer};
     default:
       return StepRefFlyingSwitch{.switch_mode = mode, .set_position = 1};
+  }
+}
+
+// A table over time whose values are between -1 and 1, of so rough a kind that no axis can follow it everywhere.
+std::vector<cam::Table> RandomTable(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> share(-1, 1);
+  cam::CamParams params;
+  params.name = "table";
+  params.interpolation = random() % 2 ? cam::Interpolation::kLinear : cam::Interpolation::kQuintic;
+  for (int i = 0; i < 8; ++i) params.points.push_back({0.1 * i, share(random), {}, {}});
+  return {cam::Build(params).table.value()};
+}
+
+Command RandomTableCommand(std::mt19937_64& random, const AxisParams& p) {
+  std::uniform_real_distribution<double> share(-1, 1);
+  const Name name = Name::Of("table");
+  const double time = 0.5 + std::abs(share(random)) * (random() % 4 ? 1 : 0.1);
+  const auto mode = random() % 4 ? BufferMode::kAborting : BufferMode::kBuffered;
+  const double offset = 0.2 * share(random);
+  switch (random() % 3) {
+    case 0:
+      return PositionProfile{name, time, 300 * share(random), 100 * offset, mode};
+    case 1:
+      return VelocityProfile{name, time, p.limits.velocity * share(random), p.limits.velocity * offset, mode};
+    default:
+      return AccelerationProfile{name, time, p.limits.acceleration * share(random), p.limits.acceleration * offset,
+                                 mode};
   }
 }
 
@@ -143,6 +171,12 @@ Command RandomCommand(std::mt19937_64& random, const AxisParams& p) {
   }
 }
 
+Command AnyCommand(std::mt19937_64& random, const AxisParams& p, bool homes) {
+  if (homes && random() % 4 == 0) return RandomHoming(random, p);
+  if (random() % 12 == 0) return RandomTableCommand(random, p);
+  return RandomCommand(random, p);
+}
+
 class RandomWalkProperty : public testing::TestWithParam<int> {};
 
 // AX-10: a random walk of commands and faults, 10,000 steps: no transition outside the table. AX-11: each command's
@@ -158,13 +192,14 @@ TEST_P(RandomWalkProperty, MeetsNoIllegalTransitionAndHoldsAllLimits) {
   p.limits.deceleration = std::array{4000.0, 5000.0, 12000.0, 1500.0}[seed % 4];
   p.limits.jerk = std::array{100000.0, 20000.0, 0.0}[seed / 2 % 3];
   Rig rig(p, std::array{0.001, 0.004, 0.02, 0.00025}[seed / 3 % 4]);
+  rig.cams = RandomTable(random);
   const trajectory::Limits limits = p.planner_limits();
   const bool homes = seed % 3 == 2;
   std::vector<Ticket> held;
   std::set<PlcState> seen;
   for (int step = 0; step < 10000; ++step) {
     for (auto n = random() % 4; n > 0; --n) {
-      held.push_back(rig.Give(homes && random() % 4 == 0 ? RandomHoming(random, p) : RandomCommand(random, p)));
+      held.push_back(rig.Give(AnyCommand(random, p, homes)));
     }
     if (homes && random() % 8 == 0) rig.inputs.reference = !rig.inputs.reference;
     if (homes && random() % 8 == 0) {

@@ -94,12 +94,14 @@ class Rig {
   Context Now() {
     Context context{params, cycle, planner, sink_};
     context.cam_switches = cam_switches;
+    context.cams = cams;
     return context;
   }
   double position() const { return state.setpoint.position; }
 
   AxisParams params;
   std::vector<CamSwitches> cam_switches;
+  std::vector<cam::Table> cams;
   Cycle cycle;
   trajectory::Planner planner;
   State state;

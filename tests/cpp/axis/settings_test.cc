@@ -89,6 +89,30 @@ TEST(SoftLimits, ChangeAtRunTime) {
   EXPECT_EQ(ErrorOf(rotary, SetSoftLimits{.lower = 0, .upper = 10}), ErrorId::kParameter);
 }
 
+// AX-52, AX-28: what was switched off comes back with its value; a yes or no is 0 or 1.
+TEST(SoftLimits, AreSwitchedOffAndOnAgain) {
+  AxisParams p = LinearParams();
+  p.limits.upper = 100;
+  p.supervision.deviation_moving = 5;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  EXPECT_EQ(ErrorOf(rig, SetSoftLimits{.enable_upper = false, .lower = {}, .upper = {}}), ErrorId::kNone);
+  EXPECT_EQ(Read(rig, 4), 0);
+  EXPECT_EQ(ErrorOf(rig, SetSoftLimits{}), ErrorId::kNone);
+  EXPECT_EQ(Read(rig, 2), 100);
+  EXPECT_EQ(ErrorOf(rig, MoveAbsolute{.position = 101}), ErrorId::kTargetBehindLimit);
+  for (const int number : {4, 6}) {
+    EXPECT_EQ(ErrorOf(rig, WriteParameter{number, 0}), ErrorId::kNone);
+    EXPECT_EQ(Read(rig, number), 0);
+    EXPECT_EQ(ErrorOf(rig, WriteParameter{number, 7.5}), ErrorId::kParameter);
+    EXPECT_EQ(ErrorOf(rig, WriteParameter{number, 1}), ErrorId::kNone);
+    EXPECT_EQ(Read(rig, number), 1);
+  }
+  EXPECT_EQ(Read(rig, 2), 100);
+  EXPECT_EQ(Read(rig, 7), 5);
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{5, 1}), ErrorId::kParameter);  // there never was a lower one
+}
+
 // A limit that comes into the way of an endless motion stops it before it.
 TEST(SoftLimits, StopAnEndlessMotion) {
   Rig rig(LinearParams());
@@ -100,6 +124,29 @@ TEST(SoftLimits, StopAnEndlessMotion) {
   rig.Run(1);
   EXPECT_EQ(rig.out.error, ErrorId::kSoftLimitPositive);
   EXPECT_LE(rig.position(), limit + 1e-9);
+}
+
+// AX-53, AX-82: it is gone with any fault, also one that finds the loop open, and with power off.
+TEST(DirectOutput, DoesNotSurviveAFault) {
+  AxisParams p = LinearParams();
+  p.drive.mode = DriveMode::kAnalog;
+  p.loop.velocity_at_10v = 1000;
+  Rig rig(p);
+  rig.Step();
+  const auto put_out = [&] {
+    EXPECT_EQ(ErrorOf(rig, DirectOutput{2}), ErrorId::kNone);
+    EXPECT_NEAR(rig.commanded.voltage_v, 2, kVoltageStep / 2);
+    EXPECT_EQ(std::remainder(rig.commanded.voltage_v, kVoltageStep), 0);  // of the converter
+  };
+  put_out();
+  Fail(rig.Now(), ErrorId::kOverrun, false, rig.state);
+  rig.Step();
+  EXPECT_EQ(rig.commanded.voltage_v, 0);
+  rig.RunToEnd(rig.Give(Reset{}));
+  put_out();
+  rig.Give(Power{.enable = false});
+  rig.Step();
+  EXPECT_EQ(rig.commanded.voltage_v, 0);
 }
 
 // AX-53: while the axis is Disabled only, on analogue drives only.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "line.h"
+#include "cam_rig.h"
 
 namespace takt::engine {
 namespace {
@@ -291,14 +291,16 @@ TEST(Chain, StopsTogether) {
   }
 }
 
-// AX-13, AX-55: random couplings, moves, stops and faults: no step, no limit exceeded.
+// AX-13, AX-55: random couplings, cams, moves, stops and faults: no step, no limit exceeded.
 TEST(Coupling, KeepsTheLimitsInARandomWalk) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     const auto any = [&](unsigned n) { return std::uniform_int_distribution(0u, n - 1)(random); };
-    Machine machine = LineOf(5, seed % 2 == 0 ? axis::AxisKind::kLinear : axis::AxisKind::kRotary);
+    Machine machine = WithCams(LineOf(5, seed % 2 == 0 ? axis::AxisKind::kLinear : axis::AxisKind::kRotary));
+    machine.cams.push_back({.name = "rough", .points = {}, .file = {}});
+    for (int i = 0; i < 6; ++i) machine.cams.back().points.push_back({50.0 * i, between(-100, 100), {}, {}});
     for (axis::AxisParams& a : machine.axes) {
       a.limits.velocity = between(100, 800);
       a.limits.acceleration = between(1000, 10000);
@@ -326,7 +328,25 @@ TEST(Coupling, KeepsTheLimitsInARandomWalk) {
         combine.master2 = Name::Of("a" + std::to_string(any(5)));
         axis::PhasingRelative phase;
         phase.phase_shift = between(-20, 20);
-        switch (any(11)) {
+        axis::CamIn cam = Cam(master.c_str(), machine.cams[any(4)].name.c_str());
+        cam.master_scaling = between(-2, 2);
+        cam.slave_scaling = between(-2, 2);
+        cam.slave_offset = between(-50, 50);
+        cam.master_absolute = any(2) == 0;
+        cam.slave_absolute = any(2) == 0;
+        if (any(2) == 0) cam.periodic = any(2) == 0;
+        if (any(3) == 0) cam.master_start_distance = between(0, 100);
+        if (any(3) == 0) cam.master_sync_position = between(0, 300);
+        if (any(2) == 0) cam.buffer_mode = axis::BufferMode::kBuffered;
+        switch (any(15)) {
+          case 11:
+          case 12:
+          case 13:
+            line.Give(who, cam);
+            break;
+          case 14:
+            line.Give(who, axis::CamOut{});
+            break;
           case 0:
           case 1:
             line.Give(who, Gear(master.c_str(), between(-3, 3)));

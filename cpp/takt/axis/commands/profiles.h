@@ -1,0 +1,37 @@
+// Commands that follow tables over time. The tables are cams of the machine whose x is the time in s.
+#pragma once
+
+#include "takt/axis/commands/moves.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/name.h"
+
+namespace takt::axis {
+
+// t seconds after the start, at x = begin of the table + t / time_scale: scale * y(x) + offset.
+struct PositionProfile {  // MC_PositionProfile
+  Name profile;
+  double time_scale = 1;
+  double position_scale = 1;
+  double offset = 0;
+  BufferMode buffer_mode = BufferMode::kAborting;
+};
+struct VelocityProfile {  // MC_VelocityProfile
+  Name profile;
+  double time_scale = 1;
+  double velocity_scale = 1;
+  double offset = 0;
+  BufferMode buffer_mode = BufferMode::kAborting;
+};
+struct AccelerationProfile {  // MC_AccelerationProfile
+  Name profile;
+  double time_scale = 1;
+  double acceleration_scale = 1;
+  double offset = 0;
+  BufferMode buffer_mode = BufferMode::kAborting;
+};
+
+void describe(Description<PositionProfile>&);
+void describe(Description<VelocityProfile>&);
+void describe(Description<AccelerationProfile>&);
+
+}  // namespace takt::axis

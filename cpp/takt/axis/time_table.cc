@@ -1,0 +1,197 @@
+#include "takt/axis/time_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "takt/axis/fit.h"
+#include "takt/axis/request_maker.h"
+#include "takt/axis/sequence.h"
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+using trajectory::Limits;
+using trajectory::Profile;
+
+namespace {
+
+constexpr int kPlaces = 256;  // where a table is looked at before it is followed
+
+// A request's table over the time since its start, scaled.
+struct Curve {
+  const cam::Table& table;
+  const TableRequest& request;
+
+  double duration() const { return request.time_scale * table.length(); }  // s
+  cam::Value At(double t) const {
+    const cam::Value at = table.At(table.begin() + t / request.time_scale);
+    const double slope = request.scale / request.time_scale;
+    return {request.scale * at.y + request.offset, slope * at.dy, slope / request.time_scale * at.ddy,
+            slope / (request.time_scale * request.time_scale) * at.dddy};
+  }
+};
+
+Curve CurveOf(const Context& c, const Request& r) {
+  return {c.cams[r.table.index], r.table};
+}
+
+struct Range {
+  double low, high;
+};
+
+Range RangeOf(const Curve& curve) {
+  Range range = {curve.At(0).y, curve.At(0).y};
+  for (int i = 1; i <= kPlaces; ++i) {
+    const double y = curve.At(curve.duration() * i / kPlaces).y;
+    range = {std::min(range.low, y), std::max(range.high, y)};
+  }
+  return range;
+}
+
+// Gauss' formula of four points: exact for tables of the fifth degree, and for their second integral.
+struct Node {
+  double at, weight;  // over 0 to 1
+};
+constexpr std::array kNodes = {
+    Node{0.06943184420297371239, 0.17392742256872692869}, Node{0.33000947820757186760, 0.32607257743127307131},
+    Node{0.66999052179242813240, 0.32607257743127307131}, Node{0.93056815579702628761, 0.17392742256872692869}};
+
+// What velocity and position a table of velocities (accelerations) adds from `from` to `to`, both within it.
+struct Added {
+  double velocity, position;
+};
+Added Integral(const Curve& curve, bool accelerations, double from, double to) {
+  Added sum = {0, 0};
+  const double h = to - from;
+  for (const Node& node : kNodes) {
+    const double y = curve.At(from + node.at * h).y;
+    sum.velocity += accelerations ? node.weight * h * y : 0;
+    sum.position += node.weight * h * (accelerations ? (1 - node.at) * h : 1) * y;
+  }
+  return sum;
+}
+
+KinematicState PositionDemand(const Curve& curve, double t, const State& s) {
+  const cam::Value at = curve.At(std::min(t, curve.duration()));
+  const double position = s.time_table.turns + at.y;
+  return t < curve.duration() ? KinematicState{position, at.dy, at.ddy} : KinematicState{position, 0, 0};
+}
+
+// From the demand of the cycle before.
+KinematicState SummedDemand(const Context& c, const Curve& curve, double t, const State& s) {
+  const KinematicState& before = s.time_table.demand;
+  const bool accelerations = s.active.kind == RequestKind::kAccelerationProfile;
+  const double end = curve.duration();
+  const double from = std::clamp(t - c.cycle.period_s, 0.0, end);
+  const double to = std::min(t, end);
+  const double rest = std::min(t - to, c.cycle.period_s);  // behind the end
+  const Added added = Integral(curve, accelerations, from, to);
+  KinematicState demand;
+  const cam::Value at = curve.At(to);
+  demand.velocity = accelerations ? before.velocity + added.velocity : at.y;
+  demand.acceleration = t >= end ? 0 : accelerations ? at.y : at.dy;
+  demand.position = before.position + (accelerations ? before.velocity * (to - from) : 0) + added.position;
+  if (t >= end) demand.velocity = std::clamp(demand.velocity, -c.params.limits.velocity, c.params.limits.velocity);
+  demand.position += rest * demand.velocity;
+  return demand;
+}
+
+template <typename T>
+bool Table(const Maker& m, RequestKind kind, const T& c, const char* scale_field, double scale) {
+  m.r.kind = kind;
+  m.r.buffer_mode = c.buffer_mode;
+  m.r.velocity = m.params.limits.velocity;
+  m.r.table = {.name = c.profile, .index = kNoTable, .time_scale = c.time_scale, .scale = scale, .offset = c.offset};
+  if (c.profile.empty()) m.why.field = "profile";
+  return !c.profile.empty() && m.In("time_scale", c.time_scale, 1 / kMaxPosition, kMaxPosition) &&
+         m.In(scale_field, scale, -kMaxPosition, kMaxPosition) &&
+         m.In("offset", c.offset, -kMaxPosition, kMaxPosition) && m.Ramps(MoveVelocity{});
+}
+
+}  // namespace
+
+bool Fill(const Maker& m, const PositionProfile& c) {
+  return Table(m, RequestKind::kPositionProfile, c, "position_scale", c.position_scale);
+}
+bool Fill(const Maker& m, const VelocityProfile& c) {
+  return Table(m, RequestKind::kVelocityProfile, c, "velocity_scale", c.velocity_scale);
+}
+bool Fill(const Maker& m, const AccelerationProfile& c) {
+  return Table(m, RequestKind::kAccelerationProfile, c, "acceleration_scale", c.acceleration_scale);
+}
+
+bool FollowsTable(RequestKind kind) noexcept {
+  return kind == RequestKind::kPositionProfile || kind == RequestKind::kVelocityProfile ||
+         kind == RequestKind::kAccelerationProfile;
+}
+
+Status MayFollowTable(const Context& c, const Request& r, const State& s) noexcept {
+  const Range range = RangeOf(CurveOf(c, r));
+  if (r.kind == RequestKind::kPositionProfile) {
+    if (c.params.requires_reference && !s.homing.homed) return Status::Failed(ErrorId::kNoReference);
+    const bool inside = Inside(c.params.limits, range.low) && Inside(c.params.limits, range.high);
+    return inside ? Status::Ok() : Status::Failed(ErrorId::kTargetBehindLimit);
+  }
+  const Limits own = c.params.planner_limits();
+  const double limit =
+      r.kind == RequestKind::kVelocityProfile ? own.velocity : std::max(own.acceleration, own.deceleration);
+  const bool inside = range.low >= -limit && range.high <= limit;
+  return inside ? Status::Ok() : Status::Failed(ErrorId::kParameter);
+}
+
+void BeginTable(const Context& c, const Request& r, const MotionStart& start, State& s) noexcept {
+  const Curve curve = CurveOf(c, r);
+  Grant(c, r, s, curve.duration());
+  StartMotion(Profile{s.setpoint}, s.setpoint.position, start, s);
+  s.limited_by = LimitedBy::kNothing;
+  TimeTableState& k = s.time_table;
+  k = TimeTableState{};
+  const double own = s.setpoint.position + s.origin;
+  const double turn = c.params.rotary() ? c.params.modulus : 0;
+  k.turns = s.origin + (turn == 0 ? 0 : turn * std::round((own - s.origin - curve.At(0).y) / turn));
+  k.demand = {own, s.setpoint.velocity, s.setpoint.acceleration};
+  k.chase.in_step = true;  // until the first demand shows otherwise
+  Enter(s, RulesOf(r.kind).state);
+}
+
+bool FollowTime(const Context& c, State& s) noexcept {
+  TimeTableState& k = s.time_table;
+  if (k.over) return false;
+  const Curve curve = CurveOf(c, s.active);
+  const double t = Elapsed(c, s);
+  const bool positions = s.active.kind == RequestKind::kPositionProfile;
+  KinematicState demand = positions ? PositionDemand(curve, t, s) : SummedDemand(c, curve, t, s);
+  k.demand = demand;
+  demand.position -= s.origin;
+  if (positions) demand.position += k.chase.offset;
+  const Chaser chaser = {c.params, c.planner, s.active.limits(), c.cycle.period_s};
+  s.setpoint = Chase(chaser, positions ? ChaseMode::kPosition : ChaseMode::kVelocity, s.setpoint, demand, k.chase);
+  s.limited_by = Beyond(c.params.planner_limits(), demand);
+  if (t >= curve.duration() && k.chase.in_step) {
+    k.over = true;
+    StartMotion(Profile{s.setpoint}, s.setpoint.position, FromThisCycle(c), s);
+  }
+  return true;
+}
+
+void describe(Description<TimeTableState>& d) {
+  using T = TimeTableState;
+  d.about("A table over time that an axis follows.");
+  d.internal<&T::chase>("The catching up.");
+  d.internal<&T::turns>(unit::u, "Where its position 0 is, over all turns.");
+  d.internal<&T::demand>("What it asks for.");
+  d.internal<&T::over>("Its end was reached.");
+}
+
+void describe(Description<TableRequest>& d) {
+  using T = TableRequest;
+  d.about("A table and how it is scaled.");
+  d.internal<&T::name>("Of the table.");
+  d.internal<&T::index>("Among the machine's cams.");
+  d.internal<&T::time_scale>("How many times as long it takes.");
+  d.internal<&T::scale>("Of its values.");
+  d.internal<&T::offset>("Added to them.");
+}
+
+}  // namespace takt::axis

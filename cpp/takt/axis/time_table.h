@@ -1,0 +1,37 @@
+// Tables over time: MC_PositionProfile, MC_VelocityProfile, MC_AccelerationProfile.
+#pragma once
+
+#include "takt/axis/chase.h"
+#include "takt/axis/request.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/kinematic_state.h"
+#include "takt/core/status.h"
+
+namespace takt::axis {
+
+struct Context;
+struct MotionStart;
+struct State;
+
+// The time counts as that of the motion in progress does.
+struct TimeTableState {
+  ChaseState chase;
+  double turns = 0;       // u over all turns: where position 0 of the table's turn is
+  KinematicState demand;  // of the cycle before; tables of velocity and acceleration: summed up, u over all turns
+  bool over = false;      // its end was reached; the motion in progress goes on from there
+};
+
+bool FollowsTable(RequestKind kind) noexcept;
+// Refuses what can be told from the table's own values, looked at in 257 places: kTargetBehindLimit for positions
+// outside the SW limits, kParameter for velocities or accelerations beyond the axis' own. What follows from them (the
+// velocity of a table of positions, ...) is held against the limits on the way. kNoReference: positions mean nothing
+// yet.
+Status MayFollowTable(const Context& c, const Request& r, const State& s) noexcept;
+// Puts a request that follows a table in control. What was in control must have been ended.
+void BeginTable(const Context& c, const Request& r, const MotionStart& start, State& s) noexcept;
+// The next set point; false: the table is over, the motion in progress counts.
+bool FollowTime(const Context& c, State& s) noexcept;
+
+void describe(Description<TimeTableState>&);
+
+}  // namespace takt::axis

@@ -1,0 +1,31 @@
+// Cams as CSV (CAM-04). Not for the cycle.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "takt/cam/params.h"
+#include "takt/core/problem.h"
+
+namespace takt::cam {
+
+struct CsvPoints {
+  std::vector<CamPoint> points;
+  std::vector<int> lines;         // 1-based, of each point
+  std::vector<Problem> problems;  // 20 at most
+};
+
+// A line with the names of the columns, x and y, perhaps v and a, in any order; then a line for each point. Between the
+// columns stands a comma, a semicolon or a tabulator. An empty v or a is free. Empty lines and those that begin with #
+// are skipped; decimals have a point.
+CsvPoints ReadCsv(std::string_view text, std::string_view file_name);
+
+// Where a finding about "points[3].x" stands in the file.
+Place PlaceInCsv(const CsvPoints& csv, std::string_view path);
+
+// v and a have a column where any point gives them. Reads back as the very same points.
+std::string WriteCsv(std::span<const CamPoint> points);
+
+}  // namespace takt::cam

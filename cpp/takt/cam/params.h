@@ -1,0 +1,47 @@
+// How a cam is written down: a list of points, a list of segments, or a file of points (CAM-01, CAM-02, CAM-04).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "takt/core/describe_fwd.h"
+
+namespace takt::cam {
+
+inline constexpr std::size_t kMinPoints = 2;
+inline constexpr std::size_t kMaxPoints = 100'000;
+
+// What lies between the points of a list.
+enum class Interpolation : std::uint8_t {
+  kLinear,       // straight lines; the velocity jumps at the points
+  kQuintic,      // polynomials of the fifth degree; position, velocity and acceleration have no jump
+  kCubicSpline,  // polynomials of the third degree; position, velocity and acceleration have no jump
+};
+
+// Velocity is dy/dx, acceleration d²y/dx². What is not given is free: see Interpolate.
+struct CamPoint {
+  double x = 0;  // master's unit
+  double y = 0;  // slave's unit
+  std::optional<double> v{};
+  std::optional<double> a{};
+};
+
+struct CamParams {
+  std::string name;
+  std::string x_unit = "u";  // for people
+  std::string y_unit = "u";
+  bool cyclic = false;  // the end goes over into the beginning, raised by the stroke
+  Interpolation interpolation = Interpolation::kQuintic;
+  std::vector<CamPoint> points;
+  std::string file;  // of points; once read they are in `points`, and this is empty
+};
+
+void describe(Enumeration<Interpolation>&);
+void describe(Description<CamPoint>&);
+void describe(Description<CamParams>&);
+
+}  // namespace takt::cam

@@ -1,0 +1,98 @@
+#include "takt/cam/table.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace takt::cam {
+
+namespace {
+
+constexpr std::size_t kBucketsPerPiece = 2;
+
+}  // namespace
+
+Table::Table(CamParams source, std::span<const double> begins, std::span<const Curve> curves, double end)
+    : begin_(begins.front()), end_(end), source_(std::move(source)) {
+  for (std::size_t i = 0; i < begins.size(); ++i) {
+    const Curve& curve = curves[i];
+    Piece piece;
+    piece.x = begins[i];
+    std::copy_n(curve.c.begin(), 6, piece.c);
+    const More more{curve.c[6], curve.c[7], curve.amplitude, curve.frequency, curve.phase};
+    if (more.c6 != 0 || more.c7 != 0 || more.amplitude != 0) {
+      piece.more = static_cast<std::uint32_t>(more_.size());
+      more_.push_back(more);
+    }
+    pieces_.push_back(piece);
+  }
+  const std::size_t buckets = kBucketsPerPiece * pieces_.size();
+  buckets_per_x_ = static_cast<double>(buckets) / (end_ - begin_);
+  before_.assign(BucketOf(end_) + 2, 0);
+  for (const Piece& piece : pieces_) ++before_[BucketOf(piece.x) + 1];
+  for (std::size_t i = 1; i < before_.size(); ++i) before_[i] += before_[i - 1];
+  first_ = ValueOf(curves.front(), 0);
+  last_ = ValueOf(curves.back(), end - begins.back());
+}
+
+std::size_t Table::PieceAt(double x) const noexcept {
+  if (!(x > begin_)) return 0;
+  if (x >= end_) return pieces_.size() - 1;
+  // BucketOf never falls, so that pieces of earlier buckets begin before x and those of later ones behind it.
+  const std::size_t bucket = BucketOf(x);
+  std::size_t low = std::max<std::size_t>(before_[bucket], 1) - 1;
+  std::size_t high = before_[bucket + 1] - 1;
+  while (low < high) {
+    const std::size_t middle = (low + high + 1) / 2;
+    if (pieces_[middle].x <= x) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
+  }
+  return low;
+}
+
+Value Table::At(double x) const noexcept {
+  if (!(x > begin_)) return first_;
+  if (x >= end_) return last_;
+  const Piece& piece = pieces_[PieceAt(x)];
+  const double d = x - piece.x;
+  const auto& c = piece.c;
+  Value value{c[0] + d * (c[1] + d * (c[2] + d * (c[3] + d * (c[4] + d * c[5])))),
+              c[1] + d * (2 * c[2] + d * (3 * c[3] + d * (4 * c[4] + d * 5 * c[5]))),
+              2 * c[2] + d * (6 * c[3] + d * (12 * c[4] + d * 20 * c[5])), 6 * c[3] + d * (24 * c[4] + d * 60 * c[5])};
+  if (piece.more != kPlain) Add(more_[piece.more], d, value);
+  return value;
+}
+
+void Table::Add(const More& m, double d, Value& value) noexcept {
+  const double d2 = d * d, d4 = d2 * d2;
+  value.y += d4 * d2 * (m.c6 + d * m.c7);
+  value.dy += d4 * d * (6 * m.c6 + d * 7 * m.c7);
+  value.ddy += d4 * (30 * m.c6 + d * 42 * m.c7);
+  value.dddy += d2 * d * (120 * m.c6 + d * 210 * m.c7);
+  if (m.amplitude == 0) return;
+  const double sine = m.amplitude * std::sin(m.frequency * d + m.phase);
+  const double cosine = m.amplitude * std::cos(m.frequency * d + m.phase);
+  const double f = m.frequency, f2 = f * f;
+  value.y += sine;
+  value.dy += f * cosine;
+  value.ddy -= f2 * sine;
+  value.dddy -= f2 * f * cosine;
+}
+
+Curve Table::CurveOf(std::size_t i) const noexcept {
+  const Piece& piece = pieces_[i];
+  Curve curve;
+  std::copy_n(piece.c, 6, curve.c.begin());
+  if (piece.more == kPlain) return curve;
+  const More& more = more_[piece.more];
+  curve.c[6] = more.c6;
+  curve.c[7] = more.c7;
+  curve.amplitude = more.amplitude;
+  curve.frequency = more.frequency;
+  curve.phase = more.phase;
+  return curve;
+}
+
+}  // namespace takt::cam

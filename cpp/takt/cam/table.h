@@ -1,0 +1,70 @@
+// A cam, ready to be looked up: immutable, swapped as a whole (CAM-05). Made by Build (build.h).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "takt/cam/curve.h"
+#include "takt/cam/params.h"
+
+namespace takt::cam {
+
+class Table {
+ public:
+  // The pieces, `begins` growing, the last one up to `end`. Numbers must be finite; Build sees to it.
+  Table(CamParams source, std::span<const double> begins, std::span<const Curve> curves, double end);
+
+  const std::string& name() const noexcept { return source_.name; }
+  // As it was written down, points of a file included (CAM-71).
+  const CamParams& source() const noexcept { return source_; }
+  bool cyclic() const noexcept { return source_.cyclic; }
+
+  double begin() const noexcept { return begin_; }               // x, master's unit
+  double end() const noexcept { return end_; }                   // x
+  double length() const noexcept { return end_ - begin_; }       // of a cycle, master's unit
+  double stroke() const noexcept { return last_.y - first_.y; }  // slave's unit, At(end()).y - At(begin()).y
+
+  // O(1): what it costs does not depend on the number of points, as long as they do not crowd together (CAM-04). No
+  // allocation. At a joint: the piece behind it; at the end: the last piece. Outside the cam: as at the near end,
+  // derivatives too (whoever holds the last position there must say so himself); NaN: as at begin().
+  Value At(double x) const noexcept;
+
+  // The pieces.
+  std::size_t size() const noexcept { return pieces_.size(); }
+  std::size_t PieceAt(double x) const noexcept;
+  double BeginOf(std::size_t piece) const noexcept { return pieces_[piece].x; }
+  double EndOf(std::size_t piece) const noexcept { return piece + 1 < size() ? pieces_[piece + 1].x : end_; }
+  Curve CurveOf(std::size_t piece) const noexcept;  // over the distance from BeginOf
+
+ private:
+  static constexpr std::uint32_t kPlain = 0xffffffff;
+
+  // One line of the processor's cache.
+  struct alignas(64) Piece {
+    double x = 0;
+    double c[6] = {};
+    std::uint32_t more = kPlain;  // index into more_
+  };
+  // What few laws need.
+  struct More {
+    double c6 = 0, c7 = 0;
+    double amplitude = 0, frequency = 0, phase = 0;
+  };
+
+  std::size_t BucketOf(double x) const noexcept { return static_cast<std::size_t>((x - begin_) * buckets_per_x_); }
+  static void Add(const More& more, double d, Value& value) noexcept;
+
+  double begin_ = 0;
+  double end_ = 0;
+  double buckets_per_x_ = 0;
+  Value first_, last_;
+  std::vector<Piece> pieces_;
+  std::vector<std::uint32_t> before_;  // for each bucket: how many pieces begin in buckets before it
+  std::vector<More> more_;
+  CamParams source_;
+};
+
+}  // namespace takt::cam

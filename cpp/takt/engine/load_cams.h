@@ -1,0 +1,20 @@
+// The cams of a machine file: reads their files, checks them.
+#pragma once
+
+#include <vector>
+
+#include "takt/core/problem.h"
+#include "takt/engine/machine.h"
+
+namespace takt::engine {
+
+struct CamLoading {
+  std::vector<Problem> problems;
+  std::vector<Problem> warnings;
+  bool files = false;  // some cam came from a file
+};
+
+// Puts the points of files into the machine. A file's path counts from the machine file's folder.
+CamLoading LoadCams(const SourceMap& source, Machine& machine);
+
+}  // namespace takt::engine

@@ -1,0 +1,187 @@
+// Every number of every command an axis understands, made wrong, in every state an axis can be in: refused, and nothing
+// of the machine is different from its twin that was never asked.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cam_rig.h"
+#include "takt/core/describe.h"
+
+namespace takt::engine {
+namespace {
+
+using axis::Command;
+
+// One command of each kind that would be fine by itself.
+std::vector<Command> GoodCommands() {
+  const Name master = Name::Of("a0");
+  return {axis::MoveAbsolute{.position = 10},
+          axis::MoveRelative{.distance = 10},
+          axis::MoveAdditive{.distance = 10},
+          axis::MoveVelocity{.velocity = 10},
+          axis::MoveContinuousAbsolute{.position = 10, .end_velocity = 1},
+          axis::MoveContinuousRelative{.distance = 10, .end_velocity = 1},
+          axis::Inch{.distance = 1},
+          axis::Halt{},
+          axis::Stop{},
+          axis::Jog{.forward = true},
+          axis::TorqueControl{.torque = 1},
+          Gear("a0"),
+          axis::GearInPos{.master = master},
+          axis::PhasingAbsolute{.phase_shift = 1},
+          axis::PhasingRelative{.phase_shift = 1},
+          axis::CombineAxes{.master1 = master, .master2 = Name::Of("a2")},
+          Cam("a0", "lift"),
+          axis::PositionProfile{.profile = Name::Of("lift")},
+          axis::VelocityProfile{.profile = Name::Of("lift")},
+          axis::AccelerationProfile{.profile = Name::Of("lift")},
+          axis::StepAbsSwitch{.velocity = 5},
+          axis::StepLimitSwitch{.velocity = 5},
+          axis::StepBlock{.velocity = 5, .deviation = 1},
+          axis::StepRefPulse{.velocity = 5},
+          axis::StepDirect{.set_position = 1},
+          axis::FinishHoming{},
+          axis::StepRefFlyingSwitch{},
+          axis::StepRefFlyingRefPulse{},
+          axis::SetConstants{.kp = 1},
+          axis::WriteParameter{.number = 2, .value = 1},
+          axis::SetSoftLimits{},
+          axis::DirectOutput{},
+          axis::SetPosition{.position = 1},
+          axis::TouchProbe{},
+          axis::Touch{}};
+}
+
+struct Wrong {
+  Command command;
+  std::string what;
+};
+
+// All numbers of a command, one at a time, as none may be: not a number, infinite, outside what its description allows.
+std::vector<Wrong> WrongVersionsOf(const Command& good) {
+  std::vector<Wrong> all;
+  std::visit(
+      [&]<typename T>(const T& body) {
+        for (const Field& field : TypeOf<T>().fields) {
+          const bool optional = field.type->kind == Kind::kOptional;
+          const Type& number = optional ? *field.type->element : *field.type;
+          if (number.kind != Kind::kReal) continue;
+          std::vector<double> values = {std::numeric_limits<double>::quiet_NaN(),
+                                        std::numeric_limits<double>::infinity(),
+                                        -std::numeric_limits<double>::infinity(), 1e300, -1e300};
+          if (field.range.bounded_below()) values.push_back(field.range.min - 1);
+          if (field.range.without_min) values.push_back(field.range.min);
+          if (field.range.bounded_above()) values.push_back(field.range.max + 1);
+          for (const double value : values) {
+            T wrong = body;
+            auto* const member = reinterpret_cast<std::byte*>(&wrong) + field.offset;
+            void* const at = optional ? field.type->optional_emplace(member) : member;
+            *static_cast<double*>(at) = value;
+            all.push_back(
+                {wrong, std::string(TypeOf<T>().name) + "." + std::string(field.name) + " = " + std::to_string(value)});
+          }
+        }
+      },
+      good);
+  return all;
+}
+
+struct Situation {
+  const char* name;
+  axis::PlcState state;
+  void (*bring)(Line&);
+};
+
+// Axis 1 is the one that is asked.
+const Situation kSituations[] = {
+    {"disabled", axis::PlcState::kDisabled,
+     [](Line& l) {
+       l.Give(1, axis::Power{.enable = false});
+       l.Run(50);
+     }},
+    {"standstill", axis::PlcState::kStandstill, [](Line&) {}},
+    {"discrete", axis::PlcState::kDiscreteMotion,
+     [](Line& l) {
+       l.Give(1, axis::MoveAbsolute{.position = 1e5, .velocity = 20});
+       l.Give(1, axis::MoveAbsolute{.position = 2e5, .buffer_mode = axis::BufferMode::kBlendingLow});
+       l.Run(50);
+     }},
+    {"continuous", axis::PlcState::kContinuousMotion,
+     [](Line& l) {
+       l.Give(1, axis::MoveVelocity{.velocity = 20});
+       l.Run(50);
+     }},
+    {"synchronized", axis::PlcState::kSynchronizedMotion,
+     [](Line& l) {
+       l.Give(0, axis::MoveVelocity{.velocity = 20});
+       l.Give(1, Gear("a0", 2));
+       l.Run(50);
+     }},
+    {"homing", axis::PlcState::kHoming,
+     [](Line& l) {
+       l.Give(1, axis::StepAbsSwitch{.velocity = 1});
+       l.Run(50);
+     }},
+    {"stopping", axis::PlcState::kStopping,
+     [](Line& l) {
+       l.Give(1, axis::MoveVelocity{.velocity = 400});
+       l.Run(300);
+       l.Give(1, axis::Stop{.deceleration = 20, .hold = true});
+       l.Run(50);
+     }},
+    {"error_stop", axis::PlcState::kErrorStop, [](Line& l) {
+       l.Give(1, axis::MoveVelocity{.velocity = 20});
+       l.Run(50);
+       l.engine.faults(1).drive_fault = true;
+       l.Run(50);
+     }}};
+
+class BadInput : public testing::TestWithParam<Situation> {};
+
+// AX-06, AX-11, AX-13
+TEST_P(BadInput, IsRefusedAndLeavesTheMachineLikeItsTwin) {
+  Line asked(WithCams(LineOf(3)));
+  Line twin(WithCams(LineOf(3)));
+  for (Line* line : {&asked, &twin}) GetParam().bring(*line);
+  ASSERT_EQ(asked.At(1).state, GetParam().state);
+  ASSERT_EQ(asked.engine.StateHash(), twin.engine.StateHash());
+  int refused = 0;
+  for (const Command& good : GoodCommands()) {
+    for (const Wrong& wrong : WrongVersionsOf(good)) {
+      const Ticket ticket = asked.Give(1, wrong.command);
+      asked.Step();
+      twin.Step();
+      ASSERT_EQ(asked.last[ticket].state, FeedbackState::kError) << wrong.what;
+      ASSERT_NE(asked.last[ticket].error, ErrorId::kNone) << wrong.what;
+      ASSERT_EQ(asked.engine.StateHash(), twin.engine.StateHash()) << wrong.what;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 300);
+  EXPECT_EQ(asked.At(1).state, GetParam().state);  // the situation held to the end
+}
+
+INSTANTIATE_TEST_SUITE_P(AllStates, BadInput, testing::ValuesIn(kSituations),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+// Every command is among those that are made wrong, or has no number to be wrong.
+TEST(BadInput, KnowsEveryCommand) {
+  std::set<std::size_t> known;
+  for (const Command& good : GoodCommands()) known.insert(good.index());
+  const auto without_numbers = [](std::size_t index) {
+    return index == Command(axis::Power{}).index() || index == Command(axis::Reset{}).index() ||
+           index == Command(axis::GearOut{}).index() || index == Command(axis::CamTableSelect{}).index() ||
+           index == Command(axis::CamOut{}).index() || index == Command(axis::StepAbsolute{}).index() ||
+           index == Command(axis::ReadParameter{}).index() || index == Command(axis::AbortTrigger{}).index() ||
+           index == Command(axis::DigitalCamSwitch{}).index();
+  };
+  for (std::size_t i = 0; i < std::variant_size_v<Command>; ++i) {
+    EXPECT_TRUE(known.count(i) == 1 || without_numbers(i)) << "command " << i << " of axis::Command";
+  }
+}
+
+}  // namespace
+}  // namespace takt::engine

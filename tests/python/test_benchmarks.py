@@ -1,0 +1,41 @@
+"""Every figure that is promised has a benchmark that measures it. Whether it is good enough is read off by people:
+nothing here depends on how fast this machine is."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+BENCH = Path(os.environ.get("TAKT_BUILD_DIR", "build/release")) / "bench"
+
+pytestmark = pytest.mark.skipif(not BENCH.is_dir(), reason="built without benchmarks")
+
+
+def rows(program: str, only: str, into: Path) -> dict[str, dict[str, float]]:
+    """The rows of a very short run."""
+    out = into / f"{program}.json"
+    options = [f"--benchmark_filter={only}", "--benchmark_min_time=0.001", "--benchmark_out_format=json"]
+    subprocess.run([BENCH / program, f"--benchmark_out={out}", *options], check=True, capture_output=True, timeout=120)
+    return {row["run_name"]: row for row in json.loads(out.read_text())["benchmarks"]}
+
+
+def test_one_axis_in_each_state(tmp_path: Path) -> None:
+    """AX-90: the cost of an axis by state and number of axes, Ruckig in the same run."""
+    found = rows("bench_axis", ".", tmp_path)
+    for state in ("MoveStandstill/takt", "MoveMoving/takt", "MoveGeared/takt", "MoveMoving/ruckig"):
+        for axes in (1, 100, 1000):
+            assert found[f"{state}/{axes}"]["per_axis"] > 0
+    planning = rows("bench_trajectory", "Plan", tmp_path)
+    for plan in ("PlanFromRest", "PlanFromMotion", "PlanToVelocity"):
+        assert {f"{plan}/takt", f"{plan}/ruckig"} <= planning.keys()
+
+
+def test_whole_cycles_by_number_of_axes(tmp_path: Path) -> None:
+    """AX-91, AX-01: cycles with position loop and servo; what grows with the axes grows with nothing else."""
+    found = rows("bench_engine", "CycleMovingLoop", tmp_path)
+    assert {f"CycleMovingLoop/{axes}" for axes in (1, 6, 64, 100, 1000)} <= found.keys()
+    assert found["CycleMovingLoop/1000"]["cpu_time"] > found["CycleMovingLoop/1"]["cpu_time"]
