@@ -86,6 +86,15 @@ Command RandomTableCommand(std::mt19937_64& random, const AxisParams& p) {
   }
 }
 
+Command RandomOverlay(std::mt19937_64& random, const AxisParams& p) {
+  std::uniform_real_distribution<double> any(-1.2, 1.2);
+  if (random() % 4 == 0) return HaltSuperimposed{.deceleration = std::abs(any(random)) * *p.limits.deceleration};
+  return MoveSuperimposed{.distance = any(random) * (random() % 4 ? 50 : 1),
+                          .velocity_difference = std::abs(any(random)) * p.limits.velocity,
+                          .acceleration = std::abs(any(random)) * p.limits.acceleration,
+                          .deceleration = std::abs(any(random)) * *p.limits.deceleration};
+}
+
 Command RandomCommand(std::mt19937_64& random, const AxisParams& p) {
   std::uniform_real_distribution<double> any(-1.2, 1.2);
   const auto position = [&] { return p.rotary() ? std::abs(any(random)) * 300 : any(random) * 400; };
@@ -174,6 +183,7 @@ Command RandomCommand(std::mt19937_64& random, const AxisParams& p) {
 Command AnyCommand(std::mt19937_64& random, const AxisParams& p, bool homes) {
   if (homes && random() % 4 == 0) return RandomHoming(random, p);
   if (random() % 12 == 0) return RandomTableCommand(random, p);
+  if (random() % 8 == 0) return RandomOverlay(random, p);
   return RandomCommand(random, p);
 }
 
