@@ -160,11 +160,13 @@ void End(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
   if (s.active.kind == RequestKind::kNone && (AtRest(s) || s.buffered > 0)) StartNext(c, 0, s);
 }
 
-// Whether the motion beneath, with all that was added, stays inside the SW limits to its end.
+// Whether the motion beneath, with all that was added, stays inside the SW limits to its end, and could stop there.
 bool StaysInside(const Context& c, const State& s) {
-  if (IsEndless(s)) return true;
+  if (FollowsNow(s) || s.plc == PlcState::kContinuousMotion) return true;  // watched cycle by cycle
   const Profile::Range range = s.motion.profile.PositionRange(Elapsed(c, s));
-  return Inside(c.params.limits, range.min + AddedAtEnd(s)) && Inside(c.params.limits, range.max + AddedAtEnd(s));
+  const double end = trajectory::StopPosition(s.motion.profile.end(), c.params.planner_limits());
+  return Inside(c.params.limits, std::min(range.min, end) + AddedAtEnd(s)) &&
+         Inside(c.params.limits, std::max(range.max, end) + AddedAtEnd(s));
 }
 
 // All is planned to be added: whether it is.
