@@ -24,6 +24,12 @@ std::map<int, std::pair<std::string, std::string>> ErrorTexts() {
 
 }  // namespace
 
+void ThrowConfigError(const std::vector<std::string>& problems) {
+  const py::object error = py::module_::import("takt.errors").attr("ConfigError");
+  PyErr_SetObject(error.ptr(), error(problems).ptr());
+  throw py::error_already_set();
+}
+
 py::object ScalarToPython(const Type& type, const void* object) {
   switch (type.kind) {
     case Kind::kBool:

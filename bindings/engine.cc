@@ -25,24 +25,22 @@ namespace {
 // In virtual time a scenario may command a thousand axes before it lets time pass.
 constexpr std::size_t kCommandQueue = 1 << 12;
 
-[[noreturn]] void ThrowConfigError(const std::vector<std::string>& problems) {
-  const py::object error = py::module_::import("takt.errors").attr("ConfigError");
-  PyErr_SetObject(error.ptr(), error(problems).ptr());
-  throw py::error_already_set();
-}
-
-engine::Machine Load(const py::bytes& text, const std::string& file_name) {
+engine::LoadResult Load(const py::bytes& text, const std::string& file_name) {
   engine::LoadResult result = engine::LoadMachine(static_cast<std::string_view>(text), file_name);
   if (!result.machine) ThrowConfigError(result.problems);
-  return std::move(*result.machine);
+  return result;
 }
 
 std::string MachineJson(const engine::Machine& machine) {
   return ToJson(TypeOf<engine::Machine>(), &machine).dump();
 }
 
+std::vector<std::string> CheckMachine(const py::bytes& text, const std::string& file_name) {
+  return Load(text, file_name).warnings;
+}
+
 std::string LoadMachine(const py::bytes& text, const std::string& file_name) {
-  return MachineJson(Load(text, file_name));
+  return MachineJson(*Load(text, file_name).machine);
 }
 
 // A described struct of numbers as dicts and lists, internal fields too.
@@ -215,12 +213,16 @@ class VirtualEngine {
 
  private:
   static engine::Machine Prepared(const py::bytes& text, const std::string& file_name, std::optional<double> period_s) {
-    engine::Machine machine = Load(text, file_name);
-    if (!period_s) return machine;
+    engine::LoadResult loaded = Load(text, file_name);
+    for (const std::string& warning : loaded.warnings) {
+      if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 2) != 0) throw py::error_already_set();
+    }
+    engine::Machine& machine = *loaded.machine;
+    if (!period_s) return std::move(machine);
     const Field& field = *TypeOf<engine::CycleParams>().FindField("period_s");
     if (!field.range.Holds(*period_s)) ThrowConfigError({"the cycle's period must be " + Text(field.range) + " s"});
     machine.cycle.period_s = *period_s;
-    return machine;
+    return std::move(machine);
   }
 
   static Submitted Answer(Ticket ticket, ErrorId error, std::string_view sentence) {
@@ -263,6 +265,8 @@ void BindEngine(py::module_& m) {
   m.def("load_machine", &LoadMachine, py::arg("text"), py::arg("file_name"),
         "Reads and checks a machine file: all its parameters with their defaults, as JSON. Raises takt.ConfigError "
         "with every problem.");
+  m.def("check_machine", &CheckMachine, py::arg("text"), py::arg("file_name"),
+        "Reads and checks a machine file: its warnings. Raises takt.ConfigError with every problem.");
   m.def("schema", &engine::SchemaText, "The JSON Schema of machine files.");
   m.def(
       "reference", [] { return engine::ReferenceText(TAKT_VERSION); },

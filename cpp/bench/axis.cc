@@ -92,7 +92,7 @@ void MoveGeared(benchmark::State& state) {
   gear.master = Name::Of("master");
   for (std::size_t i = 1; i < axes.states.size(); ++i) Apply(axes.At(i), 2, 0, gear, axes.states[i]);
   for (int i = 0; i < 2000; ++i) axes.MoveAll();
-  if (!axes.states.back().coupling.chase.in_step) std::abort();
+  if (!axes.states.back().coupling.in_step) std::abort();
   for (auto _ : state) axes.MoveAll();
   Report(state);
 }

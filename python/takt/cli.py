@@ -96,11 +96,12 @@ def _sentence(error: Exception) -> str:
 @cli.command()
 @click.argument("machines", nargs=-1, required=True, type=FILE)
 def check(machines: tuple[Path, ...]) -> int:
-    """Say everything that is wrong with machine files."""
+    """Say everything that is wrong with machine files, and what is worth knowing."""
     bad = False
     for machine in machines:
         try:
-            _core.load_machine(*read_machine(machine))
+            for warning in _core.check_machine(*read_machine(machine)):
+                print(warning)
             print(f"{machine}: ok")
         except ConfigError as error:
             bad = True
@@ -233,6 +234,28 @@ def plot(
         window = (recording.start_s if start is None else start, recording.end_s if end is None else end)
     figure = plotting.draw(recording, *signals, title=title or file.name, window=window)
     print(plotting.save(figure, target))
+
+
+@cli.command("cam")
+@click.argument("file", type=FILE)
+@click.option("--name", help="Which cam of a machine file [all].")
+@click.option("--interpolation", type=click.Choice(["linear", "quintic", "cubic_spline"]), help="CSV only [quintic].")
+@click.option("--cyclic", is_flag=True, help="CSV only: the end goes over into the beginning.")
+@click.option("--units", nargs=2, metavar="X Y", help="CSV only: the master's and the slave's, for people.")
+@click.option("--master-speed", type=float, help="Largest velocity of the master, its unit/s.")
+@click.option("--master-acceleration", type=float, default=0.0, help="Largest acceleration of the master, its unit/s².")
+@click.option("--axis", help="Hold the cam against the limits of this axis.")
+@click.option("--machine", type=FILE, help="The machine file with the axis [FILE].")
+@click.option("--plot", "target", type=FILE, help="Draw y and its derivatives into this file (.png, .svg, .pdf).")
+@click.option("--csv", type=FILE, help="Write the points into this file.")
+@click.option("--count", type=click.IntRange(2, 100_000), help="With --csv: so many points at even distances.")
+@click.option("--yaml", "yaml_file", type=FILE, help="Write the cam into this file, as it stands in a machine file.")
+def show_cam(file: Path, name: str | None, **options: Any) -> int:
+    """Check the cam of a FILE: points (.csv), one cam (.yaml) or the cams of a machine file. Says how smooth it is and
+    what its slave meets; draws and converts it. Exit code 1: a limit of the axis is exceeded."""
+    from takt import cam_command
+
+    return cam_command.run(file, name, cam_command.Options(**options), out)
 
 
 @cli.command("log")

@@ -198,7 +198,7 @@ def _stack(sizes: Sequence[float], title: str | None) -> tuple[Figure, list[Axes
 
 
 def _curves(ax: Axes, recording: Recording, name: str, signals: Sequence[Signal], components: Sequence[str]) -> None:
-    _dress(ax)
+    dress(ax)
     kinds = {style.is_set_point(f) for _, f in signals}
     for component, field in signals:
         table = recording[component]
@@ -221,7 +221,7 @@ def _curves(ax: Axes, recording: Recording, name: str, signals: Sequence[Signal]
 
 
 def _band_lane(ax: Axes, recording: Recording, signals: Sequence[Signal], several: bool) -> None:
-    _dress(ax)
+    dress(ax)
     ax.grid(visible=False)
     total = len(signals)
     span = (_or_zero(recording.start_s), _or_zero(recording.end_s))
@@ -341,7 +341,7 @@ def _mark(ax: Axes, events: Sequence[Event]) -> None:
 
 
 def _verdict_lane(ax: Axes, lane: Lane, view: Interval, dots: bool) -> None:
-    _dress(ax)
+    dress(ax)
     ax.set_xlim(*view)
     if lane.names:
         ax.grid(visible=False)
@@ -429,7 +429,8 @@ def _around(verdict: Verdict, lanes: Sequence[Lane], whole: Interval) -> Interva
 # --- the look ---
 
 
-def _dress(ax: Axes) -> None:
+def dress(ax: Axes) -> None:
+    """The look of a lane."""
     ax.set_facecolor("white")
     ax.grid(visible=True, color=GRID, lw=0.8, zorder=0)
     ax.set_axisbelow(True)

@@ -43,3 +43,11 @@ def overrun(engine: takt.Engine, x: takt.Axis) -> None:
     x.move_velocity(velocity=400.0)
     engine.wait(lambda: x.state is takt.PlcState.ERROR_STOP, 5.0)
     assert not x.loop_closed
+
+
+def call(engine: takt.Engine, block: plc.FunctionBlock, seconds: float, **inputs: object) -> Any:
+    """Calls a block each cycle for so long."""
+    for _ in range(round(seconds / engine.period)):
+        block(**inputs)
+        engine.run(engine.period)
+    return block(**inputs)

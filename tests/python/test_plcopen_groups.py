@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 import takt
+from blocks import call
 from takt import plcopen as plc
 
 MACHINE = """
@@ -41,14 +42,6 @@ def engine() -> Iterator[takt.Engine]:
             session.axis(name).power()
         session.run(0.5)
         yield session
-
-
-def call(engine: takt.Engine, block: plc.FunctionBlock, seconds: float, **inputs: object) -> plc.FunctionBlock:
-    """Calls a block each cycle for so long."""
-    for _ in range(round(seconds / engine.period)):
-        block(**inputs)
-        engine.run(engine.period)
-    return block(**inputs)
 
 
 def test_homing_as_a_sequence_of_steps(engine: takt.Engine) -> None:

@@ -147,7 +147,7 @@ void FollowCoupling(const Context& c, State& s) {
   const KinematicState before = s.setpoint;
   if (!FollowMasters(c, s)) return Advance(c, s);
   GuardLimits(c, before, s);
-  if (s.coupling.chase.in_step || s.coupling.cam.over) Conclude(c, 0, s);
+  if (s.coupling.in_step || s.coupling.cam.over) Conclude(c, 0, s);
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 
@@ -339,7 +339,8 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.profile_ends = s.profile_ends;
   const bool coupled = Couples(s.active.kind);
   const auto& terms = s.coupling.law.terms;
-  out.in_step = coupled && s.coupling.chase.in_step;
+  out.in_step = coupled && s.coupling.in_step;
+  out.synchronizing = coupled && !out.in_step && s.coupling.joining != Joining::kWaiting;
   out.master1 = coupled ? terms[0].master + 1 : 0;  // none: 0
   out.master2 = coupled ? terms[1].master + 1 : 0;
   out.buffered_commands = s.buffered;

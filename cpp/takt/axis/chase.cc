@@ -7,6 +7,7 @@
 
 namespace takt::axis {
 
+using trajectory::Bounds;
 using trajectory::Limits;
 using trajectory::Profile;
 
@@ -26,24 +27,19 @@ bool KeepsVelocity(const KinematicState& x, const Limits& own) {
   return std::abs(x.velocity) <= limit && std::abs(Peak(x, own.jerk)) <= limit;
 }
 
-bool IsGrowing(const KinematicState& x) {
-  return x.velocity * x.acceleration > 0;
-}
-
-// Falling speed may use more than growing speed, but has to be back at that before the axis turns round.
-bool KeepsTurning(const KinematicState& x, const Limits& own) {
-  const double strength = std::abs(x.acceleration);
-  if (IsGrowing(x) || strength <= own.acceleration || own.jerk == 0) return true;
-  const double needed = (strength * strength - own.acceleration * own.acceleration) / (2 * own.jerk);
-  return std::abs(x.velocity) >= needed * (1 - kTolerance);
-}
-
 bool KeepsAcceleration(const KinematicState& before, const KinematicState& x, const Limits& own) {
-  const bool growing = IsGrowing(x);
+  const bool growing = x.velocity * x.acceleration > 0;
   const double limit = growing ? own.acceleration : own.deceleration;
-  const bool goes_on = x.acceleration * before.acceleration > 0 && growing == IsGrowing(before);
-  const double allowed = std::max(limit, goes_on ? std::abs(before.acceleration) : 0);
-  return std::abs(x.acceleration) <= allowed * (1 + kTolerance) && (KeepsTurning(x, own) || !KeepsTurning(before, own));
+  const double allowed = std::max(limit, x.acceleration * before.acceleration > 0 ? std::abs(before.acceleration) : 0);
+  return std::abs(x.acceleration) <= allowed * (1 + kTolerance);
+}
+
+// Braking that is stronger than the axis may speed up has to be eased before it passes standstill.
+bool KeepsReversal(const KinematicState& x, const Limits& own) {
+  const double strongest = own.acceleration * (1 + kTolerance);
+  const double excess = x.acceleration * x.acceleration - strongest * strongest;
+  if (excess <= 0) return true;
+  return x.velocity * x.acceleration < 0 && 2 * own.jerk * std::abs(x.velocity) >= (own.jerk > 0 ? excess : 0);
 }
 
 // Whether a motion within the axis' jerk leads from one to the other in `t` seconds. Of the motions between two samples
@@ -77,31 +73,41 @@ KinematicState TowardsVelocity(const Chaser& c, const KinematicState& before, do
   return profile.At(c.period_s);
 }
 
-// One cycle of the chase in the frame of the demand. False: the limits leave no room there, or there is no such plan.
-bool InFrame(const Chaser& c, ChaseMode mode, const KinematicState& before, const KinematicState& demand,
+// Which sign of the acceleration has which limit while the speed keeps the sense of `velocity`; 0: it may turn round.
+Bounds BoundsInSense(double velocity, const Limits& limits) {
+  const double weaker = std::min(limits.acceleration, limits.deceleration);
+  if (velocity == 0) return {weaker, weaker, limits.jerk};
+  return velocity > 0 ? Bounds{limits.acceleration, limits.deceleration, limits.jerk}
+                      : Bounds{limits.deceleration, limits.acceleration, limits.jerk};
+}
+
+// The demand as it has to be a cycle earlier to get where it is with the acceleration it has.
+KinematicState CycleBefore(const KinematicState& demand, double t) {
+  return {demand.position - t * (demand.velocity - 0.5 * t * demand.acceleration),
+          demand.velocity - t * demand.acceleration, demand.acceleration};
+}
+
+// One cycle of the chase in the frame of the demand, with the ramps of an axis that moves in this sense. False: the
+// limits leave no room there, or there is no such plan.
+bool InFrame(const Chaser& c, ChaseMode mode, const KinematicState& before, const KinematicState& demand, double sense,
              KinematicState& next, bool& arrives) {
   const Limits own = c.params.planner_limits();
   const double t = c.period_s;
   const double speed = std::abs(demand.velocity);
   const double fastest = c.catching_up.velocity > speed ? c.catching_up.velocity : own.velocity;
   const double used = std::abs(demand.acceleration);
-  const Limits room = {fastest - speed, std::min(c.catching_up.acceleration, c.catching_up.deceleration) - used,
-                       std::min(c.catching_up.acceleration, c.catching_up.deceleration) - used, c.catching_up.jerk};
-  if (!(room.acceleration > kLeastRoom * std::min(own.acceleration, own.deceleration))) return false;
-  if (mode == ChaseMode::kPosition && !(room.velocity > kLeastRoom * own.velocity)) return false;
-  // The demand a cycle earlier, had it had its acceleration then already.
-  const double begin_velocity = demand.velocity - t * demand.acceleration;
-  const double begin_position = demand.position - t * (demand.velocity - 0.5 * t * demand.acceleration);
-  KinematicState from = {before.position - begin_position, before.velocity - begin_velocity,
-                         before.acceleration - demand.acceleration};
+  Bounds room = BoundsInSense(sense, c.catching_up);
+  room.up -= used;
+  room.down -= used;
+  if (!(std::min(room.up, room.down) > kLeastRoom * std::min(own.acceleration, own.deceleration))) return false;
+  if (mode == ChaseMode::kPosition && !(fastest - speed > kLeastRoom * own.velocity)) return false;
+  const KinematicState begin = CycleBefore(demand, t);
+  const KinematicState from = {before.position - begin.position, before.velocity - begin.velocity,
+                               before.acceleration - begin.acceleration};
   Profile profile{from};
-  if (mode == ChaseMode::kPosition) {
-    if (c.planner.ToPosition(from, 0, 0, room, profile).failed()) return false;
-  } else {
-    Limits ramps = room;
-    ramps.velocity = 2 * own.velocity;  // whatever is lost
-    if (c.planner.ToVelocity(from, 0, ramps, profile).failed()) return false;
-  }
+  const Status status = mode == ChaseMode::kPosition ? c.planner.ToPosition(from, 0, fastest - speed, room, profile)
+                                                     : c.planner.ToVelocity(from, 0, room, profile);
+  if (status.failed()) return false;
   const KinematicState relative = profile.At(t);
   next = {demand.position + relative.position, demand.velocity + relative.velocity,
           demand.acceleration + relative.acceleration};
@@ -119,7 +125,8 @@ KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& befo
                      ChaseState& state) noexcept {
   const Limits own = c.params.planner_limits();
   const auto keeps = [&](const KinematicState& x) {
-    return KeepsVelocity(x, own) && KeepsAcceleration(before, x, own) && Continues(before, x, own, c.period_s);
+    return KeepsVelocity(x, own) && KeepsAcceleration(before, x, own) && KeepsReversal(x, own) &&
+           Continues(before, x, own, c.period_s);
   };
   const bool was_in_step = state.in_step;
   state.in_step = false;
@@ -132,10 +139,13 @@ KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& befo
   }
   KinematicState next;
   bool arrives = false;
-  if (!InFrame(c, mode, before, demand, next, arrives) || !KeepsVelocity(next, own) ||
-      !KeepsAcceleration(before, next, own)) {
-    return TowardsVelocity(c, before, demand.velocity);
-  }
+  const auto chases = [&](double sense) {
+    return InFrame(c, mode, before, demand, sense, next, arrives) && KeepsVelocity(next, own) &&
+           KeepsAcceleration(before, next, own) && KeepsReversal(next, own);
+  };
+  double sense = demand.velocity * before.velocity < 0 ? 0 : demand.velocity + before.velocity;
+  if (demand.velocity == 0 && before.velocity == 0) sense = demand.position - before.position;
+  if (!(sense != 0 && chases(sense)) && !chases(0)) return TowardsVelocity(c, before, demand.velocity);
   if (arrives) {  // the demand itself, in velocity mode at another place
     if (mode == ChaseMode::kVelocity) state.offset = next.position - demand.position;
     state.in_step = true;
@@ -143,8 +153,9 @@ KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& befo
   return next;
 }
 
-LimitedBy Beyond(const Limits& own, const KinematicState& demand) noexcept {
-  if (std::abs(demand.velocity) > own.velocity) return LimitedBy::kVelocity;
+LimitedBy Beyond(const Limits& own, const KinematicState& demand, bool in_step) noexcept {
+  const double left = in_step ? 0 : kLeastRoom * own.velocity;
+  if (std::abs(demand.velocity) > own.velocity - left) return LimitedBy::kVelocity;
   const double ramp = demand.velocity * demand.acceleration > 0 ? own.acceleration : own.deceleration;
   return std::abs(demand.acceleration) > ramp ? LimitedBy::kAcceleration : LimitedBy::kNothing;
 }

@@ -44,8 +44,8 @@ struct Chaser {
 KinematicState Chase(const Chaser& chaser, ChaseMode mode, const KinematicState& before, const KinematicState& demand,
                      ChaseState& state) noexcept;
 
-// What of a demand is more than the axis can.
-LimitedBy Beyond(const trajectory::Limits& own, const KinematicState& demand) noexcept;
+// What of a demand is more than the axis can; out of step: more than leaves it room to catch up.
+LimitedBy Beyond(const trajectory::Limits& own, const KinematicState& demand, bool in_step) noexcept;
 
 void describe(Description<ChaseState>&);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/axis/fit.h"
 #include "takt/axis/sequence.h"
 #include "takt/core/describe.h"
 
@@ -11,6 +12,8 @@ namespace takt::axis {
 using trajectory::Limits;
 
 namespace {
+
+constexpr double kBlurredIncrements = 8;
 
 KinematicState PhaseAt(const Context& c, const CouplingState& k) {
   return k.phase.At(static_cast<double>(c.cycle.count - k.phase_start) * c.cycle.period_s);
@@ -43,8 +46,8 @@ double NextAhead(double turn, double position, double from, double sense) {
   const double turns = (from - position) / turn;
   return position + turn * (sense < 0 ? std::floor(turns) : std::ceil(turns));
 }
-double NextAhead(const AxisParams& p, double position, double from, double sense) {
-  return NextAhead(p.rotary() ? p.modulus : 0, position, from, sense);
+double Turn(const AxisParams& p) {
+  return p.rotary() ? p.modulus : 0;
 }
 
 // Where the slave is to be when both are in step, over all turns, if it goes on to about `expected` meanwhile.
@@ -66,8 +69,8 @@ double Standing(const AxisParams& p) {
   return 1e-6 * p.limits.velocity;
 }
 
-// Followed by position, not by velocity.
-bool ByPosition(RequestKind kind) {
+// By place from the beginning, not from when they are in step.
+bool Joins(RequestKind kind) {
   return kind == RequestKind::kGearInPos || kind == RequestKind::kCamIn;
 }
 
@@ -108,7 +111,7 @@ void BeginCurve(const Context& c, const KinematicState& master, State& s) {
   k.joining = Joining::kOnCurve;
   k.curve_begin = master.position;
   const double way = k.master_sync - master.position;
-  const double own = s.setpoint.position + s.origin;
+  const double own = s.setpoint.position + s.origin - k.chase.offset;
   double slope = 0;
   double bend = 0;
   if (std::abs(master.velocity) > Standing(c.axes_params[k.law.terms[0].master])) {
@@ -140,15 +143,41 @@ KinematicState OnCurve(const CouplingState& k, const KinematicState& master) {
   return DemandOf({y, slope, bend, 0}, master);
 }
 
+// From where on a waiting slave gets into step.
+void Wait(double master, double distance, CouplingState& k) {
+  const double side = k.master_sync < master ? -1 : 1;
+  k.curve_begin = k.master_sync - side * distance;
+  k.begin_side = master - k.curve_begin;
+  k.joining = Joining::kWaiting;
+}
+
+// Whether the master is where the waiting ends: past the beginning, or already behind it on its way to the place. One
+// that turns round on a circle meets the place from the other side.
+bool HasBegun(const AxisParams& its, const KinematicState& master, CouplingState& k) {
+  const double way = k.master_sync - k.curve_begin;
+  if (std::abs(master.velocity) > Standing(its)) {
+    const double sense = master.velocity < 0 ? -1 : 1;
+    const double left = k.master_sync - master.position;
+    if (left * way > 0 && std::abs(left) <= std::abs(way) && left * sense > 0) return true;
+    if (k.turn != 0 && left * sense < 0) {
+      const double place = NextAhead(k.turn, k.master_sync, master.position + sense * std::abs(way), sense);
+      k.cam.master += place - k.master_sync;
+      k.master_sync = place;
+      Wait(master.position, std::abs(way), k);
+      return false;
+    }
+  }
+  const double side = master.position - k.curve_begin;
+  return side == 0 || (side > 0) != (k.begin_side > 0);
+}
+
 // GearInPos, CamIn: waits for the place where it begins, goes along the curve, then stays in step.
 bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, KinematicState& demand) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
   const KinematicState master = Seen(c, term, phase);
   if (k.joining == Joining::kWaiting) {
-    const double side = master.position - k.curve_begin;
-    const bool passed = side == 0 || (side > 0) != (k.begin_side > 0);
-    if (!passed) return false;
+    if (!HasBegun(c.axes_params[term.master], master, k)) return false;
     BeginCurve(c, master, s);
   }
   if (k.joining == Joining::kOnCurve) {
@@ -165,14 +194,6 @@ bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, Kinem
   return true;
 }
 
-// From where on a waiting slave gets into step.
-void Wait(double master, double distance, CouplingState& k) {
-  const double side = k.master_sync < master ? -1 : 1;
-  k.curve_begin = k.master_sync - side * distance;
-  k.begin_side = master - k.curve_begin;
-  k.joining = Joining::kWaiting;
-}
-
 void BeginJoining(const Context& c, const Request& r, State& s) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
@@ -180,8 +201,9 @@ void BeginJoining(const Context& c, const Request& r, State& s) {
   const KinematicState seen = Seen(c, term, {});
   const double sense = seen.velocity < 0 ? -1 : 1;
   const double distance = std::max(0.0, r.coupling.master_start_distance);
-  k.master_sync = NextAhead(c.axes_params[term.master], r.coupling.master_sync_position + master.origin,
-                            seen.position + sense * distance, sense);
+  k.turn = Turn(c.axes_params[term.master]);
+  k.master_sync =
+      NextAhead(k.turn, r.coupling.master_sync_position + master.origin, seen.position + sense * distance, sense);
   k.slave_sync = r.coupling.slave_sync_position + s.origin;
   if (r.coupling.master_start_distance < 0) {
     const double own = s.setpoint.position + s.origin;
@@ -209,13 +231,14 @@ void BeginCam(const Context& c, const Request& r, State& s) {
   double zero = at - Reported(its, at - master.origin);       // ... and the master's zero in that turn
   const double begin = (law.table.begin() - k.law.master_offset) / law.ratio;  // from zero
   if (k.law.at_sync_position) {
-    at = NextAhead(its, k.law.master_sync_position + master.origin, seen.position + sense * distance, sense);
+    k.turn = Turn(its);
+    at = NextAhead(k.turn, k.law.master_sync_position + master.origin, seen.position + sense * distance, sense);
     zero = at - k.law.master_sync_position;
   } else if (waits && !k.law.master_absolute) {
     at = seen.position + sense * distance;
   } else if (waits) {
-    const double turn = law.periodic ? std::abs(law.way()) : its.rotary() ? its.modulus : 0;
-    at = NextAhead(turn, zero + begin, seen.position + sense * distance, sense);
+    k.turn = law.periodic ? std::abs(law.way()) : Turn(its);
+    at = NextAhead(k.turn, zero + begin, seen.position + sense * distance, sense);
     zero = at - begin;
   }
   k.cam.master = k.law.master_absolute ? zero + begin : at - k.law.master_offset / law.ratio;
@@ -225,6 +248,18 @@ void BeginCam(const Context& c, const Request& r, State& s) {
   k.master_sync = at;
   if (waits) return Wait(seen.position, distance, k);
   PlaceSlave(c, takes_over ? k.cam.end_slave : s.setpoint.position + s.origin, s);
+}
+
+// A master that is measured is known to its increments only: what lies within so many is one place.
+double Blur(const Context& c, const State& s) {
+  double blur = 0;
+  for (const CouplingTerm& term : s.coupling.law.terms) {
+    if (term.master == kNoAxis || term.source == MasterSource::kSetValue) continue;
+    const double slope =
+        Joins(s.active.kind) ? InStep(c, Seen(c, term, PhaseAt(c, s.coupling)).position, s).dy : term.ratio;
+    blur += std::abs(slope) * kBlurredIncrements / c.axes_params[term.master].encoder.increments_per_unit;
+  }
+  return blur;
 }
 
 // Looks whether the master has passed the end of the cam.
@@ -245,8 +280,8 @@ void NoteEnd(const Context& c, const KinematicState& phase, State& s) {
       k.cam.slave + k.chase.offset + law.scale * (law.table.At(law.table.begin()).y + *end * law.table.stroke());
 }
 
-bool MastersStand(const Context& c, const CouplingState& k) {
-  return std::all_of(k.law.terms.begin(), k.law.terms.end(), [&](const CouplingTerm& term) {
+bool MastersStand(const Context& c, const CouplingRequest& law) {
+  return std::all_of(law.terms.begin(), law.terms.end(), [&](const CouplingTerm& term) {
     return term.master == kNoAxis || c.axes[term.master].loop_closed || term.source == MasterSource::kActualValue;
   });
 }
@@ -302,6 +337,11 @@ Status FindNamed(const Context& c, Request& r) noexcept {
 }
 
 Status MayCouple(const Context& c, const Request& r, const State& s) noexcept {
+  if (!MastersStand(c, r.coupling)) return Status::Failed(ErrorId::kMasterOff);
+  if (r.kind == RequestKind::kGearInPos && !c.params.rotary() &&
+      !Inside(c.params.limits, r.coupling.slave_sync_position)) {
+    return Status::Failed(ErrorId::kTargetBehindLimit);
+  }
   const bool absolute = r.kind == RequestKind::kCamIn && r.coupling.slave_absolute;
   if (absolute && c.params.requires_reference && !s.homing.homed) return Status::Failed(ErrorId::kNoReference);
   return Status::Ok();
@@ -319,6 +359,7 @@ void Couple(const Context& c, const Request& r, State& s) noexcept {
   s.motion.profile = trajectory::Profile{s.setpoint};
   s.motion.target = s.setpoint.position;
   s.motion.arrived = false;
+  k.locked = Joins(r.kind);
   if (r.kind == RequestKind::kGearInPos) BeginJoining(c, r, s);
   if (r.kind == RequestKind::kCamIn) BeginCam(c, r, s);
   Enter(s, PlcState::kSynchronizedMotion);
@@ -327,7 +368,7 @@ void Couple(const Context& c, const Request& r, State& s) noexcept {
 bool FollowMasters(const Context& c, State& s) noexcept {
   if (!Couples(s.active.kind)) return false;
   CouplingState& k = s.coupling;
-  if (!MastersStand(c, k)) {  // nothing to follow any more
+  if (!MastersStand(c, k.law)) {  // nothing to follow any more
     const Limits ramps = c.params.planner_limits();
     EndActive(c, FeedbackState::kError, ErrorId::kAxisFault, s);
     s.coupling.law = CouplingRequest{};
@@ -342,25 +383,27 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     if (!Couples(s.active.kind)) return false;
     phase = PhaseAt(c, k);
   }
-  const bool by_position = ByPosition(s.active.kind);
-  const bool by_velocity = !by_position && !k.phase_moves;
+  // A phase counts from the lock on: on the way there it would be lost in part.
   KinematicState demand;
-  const bool begun = by_position ? JoinedDemand(c, phase, s, demand) : (demand = Sum(c, k, phase), true);
+  const bool begun = Joins(s.active.kind) ? JoinedDemand(c, phase, s, demand)
+                                          : (demand = Sum(c, k, k.locked ? phase : KinematicState{}), true);
   if (!begun) {  // keeps its velocity until it begins
     demand = {s.setpoint.position + s.origin + s.setpoint.velocity * c.cycle.period_s, s.setpoint.velocity, 0};
   }
   demand.position -= s.origin;
   const Chaser chaser = {c.params, c.planner, s.active.limits(), c.cycle.period_s};
-  if (by_velocity) {
-    s.setpoint = Chase(chaser, ChaseMode::kVelocity, s.setpoint, demand, k.chase);
-  } else {
-    demand.position += k.chase.offset;
+  if (k.locked) {
+    if (begun) demand.position += k.chase.offset;
     s.setpoint = Chase(chaser, ChaseMode::kPosition, s.setpoint, demand, k.chase);
+  } else {
+    s.setpoint = Chase(chaser, ChaseMode::kVelocity, s.setpoint, demand, k.chase);
+    k.locked = k.chase.in_step;
   }
-  if (!begun || k.joining == Joining::kOnCurve) k.chase.in_step = false;
-  s.limited_by = Beyond(c.params.planner_limits(), demand);
+  const bool near = k.locked && std::abs(s.setpoint.position - demand.position) <= Blur(c, s);
+  k.in_step = begun && k.joining != Joining::kOnCurve && (k.chase.in_step || near);
+  s.limited_by = Beyond(c.params.planner_limits(), demand, k.in_step);
   const bool phase_over = static_cast<double>(c.cycle.count - k.phase_start) * c.cycle.period_s >= k.phase.duration();
-  if (k.phase_moves && phase_over && k.chase.in_step) EndPhase(c, FeedbackState::kDone, s);
+  if (k.phase_moves && phase_over && k.in_step) EndPhase(c, FeedbackState::kDone, s);
   if (!AtRest(s)) s.motion.arrived_cycle = c.cycle.count;
   return true;
 }
@@ -389,7 +432,7 @@ Status LetGo(const Context& c, const Request& r, State& s) noexcept {
 
 void Uncouple(const Context& c, bool after_fault, State& s) noexcept {
   EndPhase(c, FeedbackState::kAborted, s);
-  s.coupling.chase.in_step = false;
+  s.coupling.in_step = false;
   if (!after_fault) s.coupling.law = CouplingRequest{};
 }
 
@@ -413,6 +456,8 @@ void describe(Description<CouplingState>& d) {
   d.about("An axis that follows masters.");
   d.internal<&S::law>("What it follows.");
   d.internal<&S::chase>("The catching up.");
+  d.internal<&S::in_step>("With the masters, as far as they are known.");
+  d.internal<&S::locked>("By place.");
   d.internal<&S::joining>("How far the way into step has come.");
   d.internal<&S::master_sync>("Where the master is when both are in step, over all turns.");
   d.internal<&S::slave_sync>(unit::u, "Where this axis is then.");
@@ -420,6 +465,7 @@ void describe(Description<CouplingState>& d) {
   d.internal<&S::begin_side>("On which side of that the master was.");
   d.internal<&S::curve>("Coefficients over the share of the way.");
   d.internal<&S::cam>("The cam that it follows.");
+  d.internal<&S::turn>("After how far there is the next such place of the master.");
   d.internal<&S::phase>("Added to the master's position.");
   d.internal<&S::phase_start>("Cycle its time counts from.");
   d.internal<&S::phase_ticket>("Of the command that shifts it.");

@@ -26,7 +26,8 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::buffered_commands>("Commands waiting behind the one in control.");
   d.internal<&O::loop_closed>("The position loop is closed and the brake released.");
   d.internal<&O::in_position>("The following error is inside the in-position window.");
-  d.internal<&O::in_step>("Follows its masters exactly.");
+  d.internal<&O::in_step>("Follows its masters exactly; measured ones as far as they are known.");
+  d.internal<&O::synchronizing>("Is getting into step with its masters; not while it waits for them.");
   d.internal<&O::superimposed>("Another motion is on top of the one in progress.");
   d.internal<&O::end_of_profile>("The end of its cam was passed in this cycle.");
   d.internal<&O::profile_ends>("How often the end of its cam was passed.");

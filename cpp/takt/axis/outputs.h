@@ -32,7 +32,8 @@ struct Outputs {
   std::uint8_t buffered_commands = 0;
   bool loop_closed = false;
   bool in_position = false;
-  bool in_step = false;         // follows its masters exactly
+  bool in_step = false;         // follows its masters exactly; measured ones as far as they are known
+  bool synchronizing = false;   // is getting into step
   bool superimposed = false;    // another motion is on top of the one in progress
   bool end_of_profile = false;  // the end of its cam was passed in this cycle
   bool homed = false;           // has a reference

@@ -24,7 +24,7 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kMoveContinuousRelative, true, true, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kInch, false, false, false, PlcState::kDiscreteMotion},
     RequestRules{RequestKind::kTorqueControl, true, false, true, PlcState::kContinuousMotion},
-    RequestRules{RequestKind::kGearIn, true, false, true, PlcState::kSynchronizedMotion},
+    RequestRules{RequestKind::kGearIn, true, false, false, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kGearInPos, true, false, true, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kCombineAxes, true, false, true, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kCamIn, true, false, true, PlcState::kSynchronizedMotion},

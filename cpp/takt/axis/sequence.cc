@@ -102,7 +102,7 @@ void ConcludeReached(const Context& c, State& s) {
 }
 
 void ConcludeCam(const Context& c, State& s) {
-  if (s.coupling.chase.in_step) NoteReached(c, s);
+  if (s.coupling.in_step) NoteReached(c, s);
   if (s.coupling.cam.over) GiveWay(c, s);
 }
 

@@ -167,7 +167,7 @@ bool FollowTime(const Context& c, State& s) noexcept {
   if (positions) demand.position += k.chase.offset;
   const Chaser chaser = {c.params, c.planner, s.active.limits(), c.cycle.period_s};
   s.setpoint = Chase(chaser, positions ? ChaseMode::kPosition : ChaseMode::kVelocity, s.setpoint, demand, k.chase);
-  s.limited_by = Beyond(c.params.planner_limits(), demand);
+  s.limited_by = Beyond(c.params.planner_limits(), demand, k.chase.in_step);
   if (t >= curve.duration() && k.chase.in_step) {
     k.over = true;
     StartMotion(Profile{s.setpoint}, s.setpoint.position, FromThisCycle(c), s);

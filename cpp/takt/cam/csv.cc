@@ -46,8 +46,8 @@ class Reader {
       if (content.empty() || content.front() == '#') continue;
       if (!std::exchange(header, true)) {
         if (!ReadHeader(line)) return;
-      } else if (csv_.points.size() > kMaxPoints) {
-        continue;  // too many: Build says so
+      } else if (csv_.points.size() == kMaxPoints) {
+        return Add(0, "expected 100,000 points at most, found one more");
       } else {
         ReadRow(line);
       }

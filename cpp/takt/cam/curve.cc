@@ -13,6 +13,30 @@ Curve Derivative(const Curve& curve) noexcept {
   return result;
 }
 
+Curve Scaled(const Curve& curve, double length, double height) noexcept {
+  Curve result = curve;
+  double factor = height;
+  for (double& c : result.c) {
+    c *= factor;
+    factor /= length;
+  }
+  result.amplitude *= height;
+  result.frequency /= length;
+  return result;
+}
+
+Curve Combined(double p, const Curve& first, double q, const Curve& second) noexcept {
+  Curve result;
+  for (std::size_t i = 0; i < result.c.size(); ++i) result.c[i] = p * first.c[i] + q * second.c[i];
+  const double a = p * first.amplitude, b = q * second.amplitude;
+  const double sine = a * std::sin(first.phase) + b * std::sin(second.phase);
+  const double cosine = a * std::cos(first.phase) + b * std::cos(second.phase);
+  result.amplitude = std::hypot(sine, cosine);
+  result.frequency = a != 0 ? first.frequency : second.frequency;
+  result.phase = std::atan2(sine, cosine);
+  return result;
+}
+
 Value ValueOf(const Curve& curve, double d) noexcept {
   const Curve first = Derivative(curve);
   const Curve second = Derivative(first);

@@ -33,6 +33,10 @@ struct Curve {
 };
 
 Curve Derivative(const Curve& curve) noexcept;
+// height * curve(d / length)
+Curve Scaled(const Curve& curve, double length, double height) noexcept;
+// p * first + q * second. If both have a sine, then of the same frequency.
+Curve Combined(double p, const Curve& first, double q, const Curve& second) noexcept;
 // y and its derivatives at d.
 Value ValueOf(const Curve& curve, double d) noexcept;
 

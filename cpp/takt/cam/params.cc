@@ -11,15 +11,20 @@ constexpr Unit kY{"y", "the slave's unit"};
 constexpr Unit kV{"y/x", "the slave's unit per master's unit"};
 constexpr Unit kA{"y/x2", "the slave's unit per master's unit squared"};
 
+int Sources(const CamParams& p) {
+  return (p.points.empty() ? 0 : 1) + (p.segments.empty() ? 0 : 1) + (p.file.empty() ? 0 : 1);
+}
+
 }  // namespace
 
 void describe(Enumeration<Interpolation>& e) {
   e.about("What lies between the points of a cam.");
   e.value(Interpolation::kLinear, "linear", "Straight lines; the velocity jumps at the points.");
   e.value(Interpolation::kQuintic, "quintic", "Polynomials of the fifth degree; nothing up to the acceleration jumps.");
-  e.value(Interpolation::kCubicSpline, "cubic_spline",
-          "Polynomials of the third degree; nothing up to the acceleration jumps. Its ends are natural, or periodic "
-          "where the cam is cyclic.");
+  e.value(
+      Interpolation::kCubicSpline, "cubic_spline",
+      "Polynomials of the third degree; the acceleration jumps only where a velocity is given. Its ends are natural, "
+      "or periodic where the cam is cyclic.");
 }
 
 void describe(Description<CamPoint>& d) {
@@ -28,6 +33,28 @@ void describe(Description<CamPoint>& d) {
   d.required<&CamPoint::y>(kY, "Where the slave is then.");
   d.defaulted<&CamPoint::v>(kV, "Velocity, dy/dx.");
   d.defaulted<&CamPoint::a>(kA, "Acceleration, d2y/dx2; quintic only.");
+}
+
+void describe(Description<CamPlace>& d) {
+  d.about("An end of a segment.");
+  d.required<&CamPlace::x>(kX, "Where the master is.");
+  d.required<&CamPlace::y>(kY, "Where the slave is then.");
+}
+
+void describe(Description<CamSegment>& d) {
+  using S = CamSegment;
+  d.about("A stretch of a cam under one law of motion.");
+  d.defaulted<&S::from>("Where it begins; unset: where the one before ends, the first one at 0, 0.");
+  d.required<&S::to>("Where it ends.");
+  d.defaulted<&S::law>("The law of motion.");
+  d.defaulted<&S::begin_v>(kV, "Quintic: velocity at its beginning; unset: as the segment before has it, else 0.");
+  d.defaulted<&S::begin_a>(kA, "Quintic: acceleration at its beginning; unset: likewise.");
+  d.defaulted<&S::end_v>(kV, "Quintic: velocity at its end; unset: as the next segment has it, else 0.");
+  d.defaulted<&S::end_a>(kA, "Quintic: acceleration at its end; unset: likewise.");
+  d.defaulted<&S::sine_share>(between(0, 1), "Sine-constant-cosine combination: share of the way along the sine.");
+  d.defaulted<&S::cosine_share>(between(0, 1), "Likewise along the cosine; what is left has constant acceleration.");
+  d.rule<&S::cosine_share>("must leave sine_share and cosine_share 1 at most together",
+                           [](const S& s) { return s.sine_share + s.cosine_share <= 1; });
 }
 
 void describe(Description<CamParams>& d) {
@@ -39,10 +66,10 @@ void describe(Description<CamParams>& d) {
   d.defaulted<&P::cyclic>("Whether the end goes over into the beginning, raised by the stroke.");
   d.defaulted<&P::interpolation>("What lies between the points.");
   d.defaulted<&P::points>("Points, x growing: 2 to 100,000.");
+  d.defaulted<&P::segments>("Segments instead, one behind the other: up to 20,000.");
   d.defaulted<&P::file>("A CSV file of points instead, with columns x, y and perhaps v, a; beside the machine file.");
-  d.rule<&P::points>("must be given, or a file", [](const P& p) { return !p.points.empty() || !p.file.empty(); });
-  d.rule<&P::file>("must not be given together with points",
-                   [](const P& p) { return p.points.empty() || p.file.empty(); });
+  d.rule<&P::points>("must be given, or segments, or a file", [](const P& p) { return Sources(p) > 0; });
+  d.rule<&P::file>("must be the only one of points, segments and file", [](const P& p) { return Sources(p) < 2; });
 }
 
 }  // namespace takt::cam

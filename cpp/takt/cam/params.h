@@ -1,25 +1,26 @@
 // How a cam is written down: a list of points, a list of segments, or a file of points (CAM-01, CAM-02, CAM-04).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "takt/cam/laws.h"
 #include "takt/core/describe_fwd.h"
 
 namespace takt::cam {
 
 inline constexpr std::size_t kMinPoints = 2;
 inline constexpr std::size_t kMaxPoints = 100'000;
+inline constexpr std::size_t kMaxSegments = 20'000;
 
 // What lies between the points of a list.
 enum class Interpolation : std::uint8_t {
   kLinear,       // straight lines; the velocity jumps at the points
   kQuintic,      // polynomials of the fifth degree; position, velocity and acceleration have no jump
-  kCubicSpline,  // polynomials of the third degree; position, velocity and acceleration have no jump
+  kCubicSpline,  // polynomials of the third degree; the acceleration jumps only where a velocity is given
 };
 
 // Velocity is dy/dx, acceleration d²y/dx². What is not given is free: see Interpolate.
@@ -30,18 +31,40 @@ struct CamPoint {
   std::optional<double> a{};
 };
 
+struct CamPlace {
+  double x = 0;  // master's unit
+  double y = 0;  // slave's unit
+};
+
+// One law of motion. Of a quintic's ends, what is not given is as the neighbour has it; 0 where the neighbour is a
+// quintic that does not say so either, and at the ends of a cam that is not cyclic.
+struct CamSegment {
+  std::optional<CamPlace> from{};  // unset: where the segment before ends; the first one: (0, 0)
+  CamPlace to;
+  Law law = Law::kQuintic;
+  std::optional<double> begin_v{};
+  std::optional<double> begin_a{};
+  std::optional<double> end_v{};
+  std::optional<double> end_a{};
+  double sine_share = 0.25;  // sine-constant-cosine combination only
+  double cosine_share = 0.5;
+};
+
 struct CamParams {
   std::string name;
   std::string x_unit = "u";  // for people
   std::string y_unit = "u";
   bool cyclic = false;  // the end goes over into the beginning, raised by the stroke
   Interpolation interpolation = Interpolation::kQuintic;
-  std::vector<CamPoint> points;
-  std::string file;  // of points; once read they are in `points`, and this is empty
+  std::vector<CamPoint> points{};
+  std::vector<CamSegment> segments{};  // instead of points
+  std::string file{};                  // of points, instead; once read they are in `points`, and this is empty
 };
 
 void describe(Enumeration<Interpolation>&);
 void describe(Description<CamPoint>&);
+void describe(Description<CamPlace>&);
+void describe(Description<CamSegment>&);
 void describe(Description<CamParams>&);
 
 }  // namespace takt::cam

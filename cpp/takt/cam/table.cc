@@ -32,6 +32,7 @@ Table::Table(CamParams source, std::span<const double> begins, std::span<const C
   for (std::size_t i = 1; i < before_.size(); ++i) before_[i] += before_[i - 1];
   first_ = ValueOf(curves.front(), 0);
   last_ = ValueOf(curves.back(), end - begins.back());
+  last_.y = source_.segments.empty() ? source_.points.back().y : source_.segments.back().to.y;
 }
 
 std::size_t Table::PieceAt(double x) const noexcept {

@@ -16,7 +16,8 @@ constexpr std::size_t kEventsPerCommand = 4;
 
 axis::Context ContextOf(World& w, std::size_t i) {
   const axis::State* master = w.axis_masters[i] ? &w.axis_states[*w.axis_masters[i]] : nullptr;
-  return {w.axis_params[i], w.cycle, w.planner, w.feedback, master, w.axis_states, w.axis_params, w.cam_switches, w.cams};
+  return {w.axis_params[i], w.cycle,       w.planner,      w.feedback, master,
+          w.axis_states,    w.axis_params, w.cam_switches, w.cams};
 }
 
 // The k-th axis that axis i must not step before: the one it follows from load on, those it is coupled to, those it

@@ -21,7 +21,9 @@ class CamLoader {
     if (!cam_.file.empty() && !ReadFile()) return;
     const cam::Built built = cam::Build(cam_);
     for (const cam::Finding& finding : built.errors) loading_.problems.push_back(ProblemOf(finding));
-    for (const cam::Finding& finding : built.warnings) loading_.warnings.push_back(ProblemOf(finding));
+    for (const cam::Finding& finding : built.warnings) {
+      loading_.warnings.push_back(ProblemOf({finding.path, "warning: " + finding.message}));
+    }
   }
 
  private:

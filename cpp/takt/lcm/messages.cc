@@ -68,6 +68,9 @@ msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::M
   m.loop_closed = o.loop_closed;
   m.in_position = o.in_position;
   m.in_step = o.in_step;
+  m.synchronizing = o.synchronizing;
+  m.end_of_profile = o.end_of_profile;
+  m.profile_ends = o.profile_ends;
   m.homed = o.homed;
   m.master1 = o.master1;
   m.master2 = o.master2;

@@ -15,6 +15,12 @@ using MC_MoveRelative = Block<axis::MoveRelative>;
 using MC_MoveAdditive = Block<axis::MoveAdditive>;
 using MC_Halt = Block<axis::Halt>;
 
+using MC_PositionProfile = Block<axis::PositionProfile>;
+using MC_VelocityProfile = Block<axis::VelocityProfile>;
+using MC_AccelerationProfile = Block<axis::AccelerationProfile>;
+
+using MC_CamTableSelect = Block<axis::CamTableSelect>;
+using MC_CamOut = Block<axis::CamOut>;
 using MC_GearOut = Block<axis::GearOut>;
 using MC_PhasingAbsolute = Block<axis::PhasingAbsolute>;
 using MC_PhasingRelative = Block<axis::PhasingRelative>;

@@ -52,4 +52,12 @@ void GT_Touch::operator()() noexcept {
   }
 }
 
+void MC_CamIn::operator()() noexcept {
+  const std::uint32_t ends = axis().outputs().profile_ends;
+  if (!Busy()) ends_ = ends;
+  CouplingBlock::operator()();
+  end_of_profile_ = Active() && ends != ends_;
+  ends_ = ends;
+}
+
 }  // namespace takt::plcopen

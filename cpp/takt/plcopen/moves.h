@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "takt/plcopen/block.h"
@@ -63,16 +64,21 @@ class MC_MoveVelocity : public Block<axis::MoveVelocity> {
   bool InVelocity() const noexcept { return Reached(); }
 };
 
+// A SW limit behind the place may leave a continuous move less than its end velocity.
+inline bool HasSpeed(AxisRef axis, double speed) noexcept {
+  return std::abs(axis.outputs().set_velocity) >= speed * (1 - 1e-9);
+}
+
 class MC_MoveContinuousAbsolute : public Block<axis::MoveContinuousAbsolute> {
  public:
   using Block::Block;
-  bool InEndVelocity() const noexcept { return Reached(); }
+  bool InEndVelocity() const noexcept { return Reached() && HasSpeed(axis(), end_velocity); }
 };
 
 class MC_MoveContinuousRelative : public Block<axis::MoveContinuousRelative> {
  public:
   using Block::Block;
-  bool InEndVelocity() const noexcept { return Reached(); }
+  bool InEndVelocity() const noexcept { return Reached() && HasSpeed(axis(), end_velocity); }
 };
 
 class MC_TorqueControl : public Block<axis::TorqueControl> {
@@ -101,7 +107,23 @@ class MC_GearIn : public CouplingBlock<axis::GearIn> {
 class MC_GearInPos : public CouplingBlock<axis::GearInPos> {
  public:
   using CouplingBlock::CouplingBlock;
+  // Getting into step has begun.
+  bool StartSync() const noexcept { return Active() && !EverReached() && axis().outputs().synchronizing; }
   bool InSync() const noexcept { return InStep(); }
+};
+
+// cam.master and cam.cam are names, of an axis and of a cam of the machine.
+class MC_CamIn : public CouplingBlock<axis::CamIn> {
+ public:
+  using CouplingBlock::CouplingBlock;
+  void operator()() noexcept;
+  bool InSync() const noexcept { return InStep(); }
+  // The end of the cam was passed since the call before.
+  bool EndOfProfile() const noexcept { return end_of_profile_; }
+
+ private:
+  std::uint32_t ends_ = 0;  // passed until the last call
+  bool end_of_profile_ = false;
 };
 
 class MC_CombineAxes : public CouplingBlock<axis::CombineAxes> {

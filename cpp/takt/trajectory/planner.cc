@@ -20,6 +20,9 @@ bool IsFinite(const KinematicState& s) noexcept {
 bool IsPositive(double x) noexcept {
   return x > 0 && std::isfinite(x);
 }
+bool IsSound(const Bounds& b) noexcept {
+  return IsPositive(b.up) && IsPositive(b.down) && b.jerk >= 0 && std::isfinite(b.jerk);
+}
 bool CanStop(const Limits& l) noexcept {
   return IsPositive(l.deceleration) && l.jerk >= 0 && std::isfinite(l.jerk);
 }
@@ -173,11 +176,11 @@ Status Follow(const KinematicState& from, const Ramp& ramp, double velocity, Pro
 
 }  // namespace
 
-bool Planner::Solve(const KinematicState& from, double position, double end_velocity, const Limits& limits, double up,
-                    double down, Profile& out) noexcept {
+bool Planner::Solve(const KinematicState& from, double position, double end_velocity, double velocity_limit,
+                    const Bounds& bounds, Profile& out) noexcept {
   PositionProblem problem{
-      position - from.position, from.velocity,          limits.jerk > 0 ? from.acceleration : 0, end_velocity,
-      limits.velocity,          {up, down, limits.jerk}};
+      position - from.position, from.velocity, bounds.jerk > 0 ? from.acceleration : 0, end_velocity,
+      velocity_limit,           bounds};
   const KinematicState target{position, end_velocity, 0};
   const Scale first = ScaleOf(MotionTime(problem), problem);
   if (!IsUsable(first)) return false;
@@ -219,7 +222,7 @@ Status Planner::ToPosition(const KinematicState& from, double position, double e
   // A plan that reverses where none was expected shows it by itself; each round can only lower a bound.
   for (int round = 0; round < 3; ++round) {
     Profile plan;
-    if (!Solve(from, position, end_velocity, limits, bounds.up, bounds.down, plan)) break;
+    if (!Solve(from, position, end_velocity, limits.velocity, bounds, plan)) break;
     if (LowerWhereExceeded(plan, limits, bounds)) continue;
     out = plan;
     return Status::Ok();
@@ -234,6 +237,30 @@ Status Planner::ToVelocity(const KinematicState& from, double velocity, const Li
     return Status::Failed(ErrorId::kParameter);
   }
   const Bounds bounds = VelocityBounds(from, velocity, limits);
+  return Follow(from, QuickestRamp(from.velocity, from.acceleration, velocity, bounds), velocity, out);
+}
+
+Status Planner::ToPosition(const KinematicState& from, double position, double velocity_limit, const Bounds& bounds,
+                           Profile& out) noexcept {
+  ++counters_.plans;
+  const bool sound =
+      IsFinite(from) && IsSound(bounds) && IsPositive(velocity_limit) && std::isfinite(position - from.position);
+  if (!sound) return Status::Failed(ErrorId::kParameter);
+  Profile plan{from};
+  const bool there = position == from.position && from.velocity == 0 && (from.acceleration == 0 || bounds.jerk == 0);
+  if (there) {
+    plan.SnapEnd({position, 0, 0});
+  } else if (!Solve(from, position, 0, velocity_limit, bounds, plan)) {
+    ++counters_.failures;
+    return Status::Failed(ErrorId::kPlanning);
+  }
+  out = plan;
+  return Status::Ok();
+}
+
+Status Planner::ToVelocity(const KinematicState& from, double velocity, const Bounds& bounds, Profile& out) noexcept {
+  ++counters_.plans;
+  if (!IsFinite(from) || !IsSound(bounds) || !std::isfinite(velocity)) return Status::Failed(ErrorId::kParameter);
   return Follow(from, QuickestRamp(from.velocity, from.acceleration, velocity, bounds), velocity, out);
 }
 

@@ -6,6 +6,7 @@
 #include "takt/core/status.h"
 #include "takt/trajectory/limits.h"
 #include "takt/trajectory/profile.h"
+#include "takt/trajectory/ramp.h"
 
 namespace takt::trajectory {
 
@@ -42,6 +43,11 @@ class Planner {
                     Profile& out) noexcept;
   // To a velocity and no acceleration, wherever that is. Closed form.
   Status ToVelocity(const KinematicState& from, double velocity, const Limits& limits, Profile& out) noexcept;
+  // The same for a motion seen from something that moves itself: there the sign of an acceleration, not the speed, says
+  // which limit it has to keep. `velocity_limit` holds between both ends.
+  Status ToPosition(const KinematicState& from, double position, double velocity_limit, const Bounds& bounds,
+                    Profile& out) noexcept;
+  Status ToVelocity(const KinematicState& from, double velocity, const Bounds& bounds, Profile& out) noexcept;
   // To standstill as soon as limits.deceleration and limits.jerk allow; the other limits are not looked at. Closed
   // form, the last resort: it does not fail on sound input.
   Status Stop(const KinematicState& from, const Limits& limits, Profile& out) noexcept;
@@ -50,8 +56,8 @@ class Planner {
 
  private:
   // False: not at any scale; `out` is of no use then.
-  bool Solve(const KinematicState& from, double position, double end_velocity, const Limits& limits, double up,
-             double down, Profile& out) noexcept;
+  bool Solve(const KinematicState& from, double position, double end_velocity, double velocity_limit,
+             const Bounds& bounds, Profile& out) noexcept;
 
   PlannerCounters counters_;
 };

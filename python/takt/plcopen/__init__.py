@@ -20,19 +20,34 @@ engine: the axis' own limit.
 
 from __future__ import annotations
 
-from takt.plcopen import administration, cam_switch, coupling, homing, jog, moves, probe, settings, statement, torque
+from takt.plcopen import (
+    administration,
+    cam,
+    cam_switch,
+    coupling,
+    homing,
+    jog,
+    moves,
+    probe,
+    profiles,
+    settings,
+    statement,
+    torque,
+)
 from takt.plcopen.administration import *  # noqa: F403
 from takt.plcopen.base import FunctionBlock
+from takt.plcopen.cam import *  # noqa: F403
 from takt.plcopen.cam_switch import *  # noqa: F403
 from takt.plcopen.coupling import *  # noqa: F403
 from takt.plcopen.homing import *  # noqa: F403
 from takt.plcopen.jog import *  # noqa: F403
 from takt.plcopen.moves import *  # noqa: F403
 from takt.plcopen.probe import *  # noqa: F403
+from takt.plcopen.profiles import *  # noqa: F403
 from takt.plcopen.settings import *  # noqa: F403
 from takt.plcopen.torque import *  # noqa: F403
 
-_GROUPS = (administration, moves, jog, coupling, homing, settings, probe, cam_switch, torque)
+_GROUPS = (administration, moves, profiles, jog, coupling, cam, homing, settings, probe, cam_switch, torque)
 
 BLOCKS: tuple[type[FunctionBlock], ...] = tuple(
     block

@@ -10,7 +10,7 @@ from takt.feedback import Feedback
 from takt.plcopen.base import AxisName, ExecuteBlock, Input, MotionBlock, Output
 
 
-def _name(axis: Axis | str) -> str:
+def axis_name(axis: Axis | str) -> str:
     return axis if isinstance(axis, str) else axis.name
 
 
@@ -22,7 +22,7 @@ class CouplingBlock(MotionBlock):
 
     def _arguments(self) -> dict[str, Any]:
         arguments = super()._arguments()
-        return arguments | {n: _name(v) for n, v in arguments.items() if n.startswith("master") and isinstance(v, Axis)}
+        return arguments | {n: axis_name(v) for n, v in arguments.items() if isinstance(v, Axis)}
 
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
@@ -66,8 +66,7 @@ class MC_GearInPos(CouplingBlock):  # noqa: N801
 
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
-        moves = self.Axis.set_velocity != 0 or self.Axis.set_acceleration != 0
-        self._show(StartSync=feedback.active and not feedback.reached and moves)
+        self._show(StartSync=feedback.active and not feedback.reached and self.Axis.synchronizing)
 
 
 class MC_GearOut(ExecuteBlock):  # noqa: N801

@@ -97,7 +97,8 @@ class MC_MoveContinuousAbsolute(MotionBlock):  # noqa: N801
 
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
-        self._show(InEndVelocity=feedback.reached and self._is_due("InEndVelocity"))
+        there = feedback.reached and abs(self.Axis.set_velocity) >= self._given["end_velocity"] * (1 - 1e-9)
+        self._show(InEndVelocity=there and self._is_due("InEndVelocity"))
 
 
 class MC_MoveContinuousRelative(MotionBlock):  # noqa: N801
@@ -114,7 +115,8 @@ class MC_MoveContinuousRelative(MotionBlock):  # noqa: N801
 
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
-        self._show(InEndVelocity=feedback.reached and self._is_due("InEndVelocity"))
+        there = feedback.reached and abs(self.Axis.set_velocity) >= self._given["end_velocity"] * (1 - 1e-9)
+        self._show(InEndVelocity=there and self._is_due("InEndVelocity"))
 
 
 class MC_MoveContinue(MC_MoveContinuousAbsolute):  # noqa: N801

@@ -67,11 +67,46 @@ TEST(LoadCams, NamesFilePlaceAndValue) {
       ElementsAre(AllOf(StartsWith("m.yaml:4:23: cams[0].points: "), HasSubstr("2 to 100,000 points, found 1"))));
   EXPECT_THAT(Problems("  - {name: a, points: [{x: 0, y: .nan}, {x: 1, y: 1}]}\n"),
               ElementsAre(HasSubstr("points[0].y: expected a finite number")));
-  EXPECT_THAT(Problems("  - {name: a}\n"), ElementsAre(HasSubstr("must be given, or a file")));
+  EXPECT_THAT(Problems("  - {name: a}\n"), ElementsAre(HasSubstr("must be given, or segments, or a file")));
   EXPECT_THAT(Problems("  - {name: a b, points: [{x: 0, y: 0}, {x: 1, y: 0}]}\n"),
               ElementsAre(HasSubstr("1 to 40 letters")));
   EXPECT_THAT(Problems("  - {name: a, interpolation: linear, points: [{x: 0, y: 0, v: 1}, {x: 1, y: 0}]}\n"),
               ElementsAre(HasSubstr("points[0].v: expected no velocity in a linear cam, found 1")));
+}
+
+// CAM-01: segments as YAML.
+TEST(LoadCams, ReadsSegments) {
+  const LoadResult loaded = LoadMachine(kAxis + R"(  - name: press
+    cyclic: true
+    segments:
+      - {to: {x: 120, y: 50}, law: modified_sine}
+      - {to: {x: 180, y: 50}, law: dwell}
+      - {to: {x: 240, y: 20}, end_v: -0.4, end_a: 0}
+      - {to: {x: 360, y: 0}}
+)",
+                                        "m.yaml");
+  ASSERT_THAT(loaded.problems, IsEmpty());
+  EXPECT_THAT(loaded.warnings, IsEmpty());
+  const World world(*loaded.machine);
+  EXPECT_NEAR(world.cams[0].At(60).y, 25, 1e-12);
+  EXPECT_NEAR(world.cams[0].At(240).dy, -0.4, 1e-12);
+  const LoadResult again = LoadMachine(WriteYaml(*loaded.machine), "again.yaml");
+  EXPECT_THAT(again.problems, IsEmpty());
+  EXPECT_EQ(World(*again.machine).cams[0].At(200), world.cams[0].At(200));
+  EXPECT_THAT(Problems("  - {name: a, segments: [{to: {x: 1, y: 1}}, {to: {x: 1, y: 2}}]}\n"),
+              ElementsAre(HasSubstr("m.yaml:4:55: cams[0].segments[1].to.x: expected x above 1 of its beginning")));
+  EXPECT_THAT(Problems("  - {name: a, segments: [{to: {x: 1, y: 1}, law: cycloidal}]}\n"),
+              ElementsAre(HasSubstr("did you mean cycloid?")));
+  EXPECT_THAT(Problems("  - {name: a, points: [{x: 0, y: 0}], segments: [{to: {x: 1, y: 1}}]}\n"),
+              ElementsAre(HasSubstr("must be the only one of points, segments and file")));
+}
+
+// CAM-03: a warning hinders nothing.
+TEST(LoadCams, WarnsOfLinearCams) {
+  const LoadResult loaded = LoadMachine(
+      kAxis + "  - {name: a, interpolation: linear, points: [{x: 0, y: 0}, {x: 1, y: 1}, {x: 2, y: 0}]}\n", "m.yaml");
+  EXPECT_TRUE(loaded.machine);
+  EXPECT_THAT(loaded.warnings, ElementsAre(StartsWith("m.yaml:4:61: cams[0].points[1]: warning: straight lines meet")));
 }
 
 TEST_F(LoadCamFiles, ReadsFilesBesideTheMachineFile) {

@@ -31,6 +31,8 @@ axes:
     limits: {velocity: 500, acceleration: 5000, jerk: 100000}
     encoder: {increments_per_unit: 1000}
     supervision: {deviation_moving: 2}
+cams:
+  - {name: lift, cyclic: true, points: [{x: 0, y: 0, v: 0, a: 0}, {x: 40, y: 10, v: 0, a: 0}]}
 simulation:
   servos:
     - {axis: w, drive: {velocity_feed_forward: 0, position_gain: 100}}

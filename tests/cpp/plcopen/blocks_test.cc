@@ -364,6 +364,33 @@ TEST_F(Blocks, Gears) {
   EXPECT_TRUE(same.CommandAborted() && !same.InGear());
 }
 
+// AX-48: on a cam that goes up by 10 every 40 of the master's.
+TEST_F(Blocks, Cams) {
+  bench.PowerOn(bench.y);
+  MC_CamTableSelect select(bench.y);
+  select.cam = Name::Of("lift");
+  select.Execute = true;
+  ASSERT_TRUE(Until(select, [&] { return select.Done(); }));
+  MC_CamIn cam(bench.y);
+  cam.master = Name::Of("x");
+  cam.cam = select.cam;
+  cam.Execute = true;
+  ASSERT_TRUE(Until(cam, [&] { return cam.InSync(); }));
+  MC_MoveVelocity drive(x);
+  drive.velocity = 80;
+  drive.Execute = true;
+  drive();
+  int ends = 0;
+  ASSERT_TRUE(Until(cam, [&] { return (ends += cam.EndOfProfile()) == 3; }));
+  EXPECT_NEAR(At(bench.y).set_position, 30, 1e-3);
+  EXPECT_NEAR(At(x).set_position, 120, 0.1);
+  MC_CamOut out(bench.y);
+  out.Execute = true;
+  ASSERT_TRUE(Until(out, [&] { return out.Done(); }));
+  cam();
+  EXPECT_TRUE(cam.CommandAborted() && !cam.InSync() && !cam.EndOfProfile());
+}
+
 // AX-38: every axis of the machine.
 TEST_F(Blocks, EmergencyStop) {
   MC_MoveVelocity ever(x);

@@ -27,7 +27,8 @@ void describe(Description<GearIn>& d) {
   using C = GearIn;
   d.about(
       "Follows a master's velocity times a ratio (MC_GearIn). What is lost on the way to that velocity is not made up. "
-      "Reached when it is; given again it changes the ratio.");
+      "Reached when it is, and locked from there: what the axis' limits make it lose later is made up. Given again it "
+      "changes the ratio. Nothing can be buffered behind it.");
   d.required<&C::master>("Name of the master axis.");
   d.defaulted<&C::ratio_numerator>("Own units ...");
   d.defaulted<&C::ratio_denominator>(positive, "... per so many of the master's.");
@@ -44,7 +45,8 @@ void describe(Description<GearInPos>& d) {
   using C = GearInPos;
   d.about(
       "Follows a master's position times a ratio, in step from a given pair of positions on (MC_GearInPos). Reached "
-      "when it is in step.");
+      "when it is in step. A master that is already past where getting into step begins leaves less way for it; one "
+      "that has passed the place has to come back (on rotary axes: to come round again).");
   d.required<&C::master>("Name of the master axis.");
   d.defaulted<&C::ratio_numerator>("Own units ...");
   d.defaulted<&C::ratio_denominator>(positive, "... per so many of the master's.");

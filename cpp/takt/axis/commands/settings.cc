@@ -35,7 +35,8 @@ void describe(Description<SetSoftLimits>& d) {
   d.about("Sets the SW limits or switches them off at run time (GT_SWLim).");
   d.defaulted<&C::enable_lower>("Whether the lower one holds.");
   d.defaulted<&C::enable_upper>("Whether the upper one holds.");
-  d.defaulted<&C::lower>(unit::u, "LimNeg; unset: as it is, or was when it was switched off; none, where there never was one.");
+  d.defaulted<&C::lower>(unit::u,
+                         "LimNeg; unset: as it is, or was when it was switched off; none, where there never was one.");
   d.defaulted<&C::upper>(unit::u, "LimPos; unset: likewise.");
 }
 

@@ -1,0 +1,112 @@
+#include "takt/cam/extremes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/cam/roots.h"
+
+namespace takt::cam {
+
+namespace {
+
+double LengthOf(const Table& table, std::size_t i) {
+  return table.EndOf(i) - table.BeginOf(i);
+}
+
+void Include(const Curve& curve, double begin, double h, Bounds& bounds) {
+  for (const double d : ExtremePlaces(curve, h).all()) {
+    const Extreme here{begin + d, curve.At(d)};
+    if (here.value < bounds.least.value) bounds.least = here;
+    if (here.value > bounds.greatest.value) bounds.greatest = here;
+  }
+}
+
+// The largest |curve|, times `factor`.
+void Include(const Curve& curve, double begin, double h, double factor, Extreme& largest) {
+  for (const double d : ExtremePlaces(curve, h).all()) {
+    const double magnitude = factor * std::abs(curve.At(d));
+    if (magnitude > largest.value) largest = {begin + d, magnitude};
+  }
+}
+
+// Where a piece has this y.
+Roots Places(const Table& table, std::size_t i, double y) {
+  Curve curve = table.CurveOf(i);
+  const double h = LengthOf(table, i);
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * (std::abs(y) + std::abs(curve.c[0]));
+  curve.c[0] -= y;
+  double reach = std::abs(curve.amplitude) + rounding;
+  for (std::size_t k = curve.c.size(); k-- > 1;) reach += std::abs(curve.c[k]) * std::pow(h, static_cast<double>(k));
+  if (std::abs(curve.c[0]) > reach) return {};
+  return RootsOf(curve, h, rounding);
+}
+
+}  // namespace
+
+Extremes ExtremesOf(const Table& table) noexcept {
+  Extremes extremes;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double begin = table.BeginOf(i), h = LengthOf(table, i);
+    Curve curve = table.CurveOf(i);
+    for (Bounds* bounds : {&extremes.y, &extremes.dy, &extremes.ddy, &extremes.dddy}) {
+      Include(curve, begin, h, *bounds);
+      curve = Derivative(curve);
+    }
+  }
+  return extremes;
+}
+
+void Include(const Table& table, std::size_t i, double master_velocity, double master_acceleration,
+             SlavePeaks& peaks) noexcept {
+  const double begin = table.BeginOf(i), h = LengthOf(table, i);
+  const Curve y = table.CurveOf(i), dy = Derivative(y), ddy = Derivative(dy);
+  Include(y, begin, h, peaks.position);
+  Include(dy, begin, h, master_velocity, peaks.velocity);
+  // The sum of two magnitudes is the greater one of the magnitudes of sum and difference.
+  const double v2 = master_velocity * master_velocity;
+  for (const double a : {master_acceleration, -master_acceleration}) {
+    Include(Combined(v2, ddy, a, dy), begin, h, 1, peaks.acceleration);
+  }
+}
+
+SlavePeaks SlavePeaksOf(const Table& table, double master_velocity, double master_acceleration) noexcept {
+  SlavePeaks peaks;
+  for (std::size_t i = 0; i < table.size(); ++i) Include(table, i, master_velocity, master_acceleration, peaks);
+  return peaks;
+}
+
+std::vector<double> AllX(const Table& table, double y) {
+  std::vector<double> all;
+  const double same = 1e-12 * table.length();  // a joint is found from both sides
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    for (const double d : Places(table, i, y).all()) {
+      const double x = table.BeginOf(i) + d;
+      if (all.empty() || x - all.back() > same) all.push_back(x);
+    }
+  }
+  return all;
+}
+
+std::optional<double> NearestX(const Table& table, double y, double near) noexcept {
+  std::optional<double> nearest;
+  const auto look = [&](std::size_t i) {
+    for (const double d : Places(table, i, y).all()) {
+      const double x = table.BeginOf(i) + d;
+      if (!nearest || std::abs(x - near) < std::abs(*nearest - near)) nearest = x;
+    }
+  };
+  const std::size_t middle = table.PieceAt(near);
+  look(middle);
+  // Outwards on both sides, as long as something nearer can come.
+  for (std::size_t i = middle + 1; i < table.size(); ++i) {
+    if (nearest && table.BeginOf(i) - near >= std::abs(*nearest - near)) break;
+    look(i);
+  }
+  for (std::size_t i = middle; i-- > 0;) {
+    if (nearest && near - table.EndOf(i) >= std::abs(*nearest - near)) break;
+    look(i);
+  }
+  return nearest;
+}
+
+}  // namespace takt::cam

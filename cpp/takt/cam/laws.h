@@ -1,0 +1,58 @@
+// Laws of motion (CAM-02), as curves from (0, 0) to (1, 1).
+//
+// Parabola, modified trapezoid, modified sine, cycloid and harmonic are members of one family: the acceleration rises
+// along a sine over half of the share b of the way, stays over half of 1 - b - d, falls along a cosine over the share d
+// to its opposite, and returns to 0 as it came. The sine-constant-cosine combination is that family with b and d free.
+//
+// Peak factors of each: docs/cams.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "takt/cam/curve.h"
+#include "takt/core/describe_fwd.h"
+
+namespace takt::cam {
+
+enum class Law : std::uint8_t {
+  kDwell,
+  kLine,
+  kQuintic,  // with velocity and acceleration at both ends
+  // From rest to rest.
+  kParabola,           // constant acceleration, then constant deceleration
+  kModifiedTrapezoid,  // b = 1/4, d = 1/4
+  kModifiedSine,       // b = 1/4, d = 3/4
+  kCycloid,            // b = 1/2, d = 1/2; inclined sine
+  kHarmonic,           // b = 0, d = 1; simple harmonic motion
+  kPolynomial345,
+  kPolynomial4567,
+  kSineConstantCosine,
+};
+
+// A piece of a law: from `begin` to the next piece, or 1.
+struct LawPiece {
+  double begin = 0;
+  Curve curve;  // over the distance from `begin`
+};
+
+// `sine_share` (b) and `cosine_share` (d) are for the sine-constant-cosine combination, both in [0, 1], b + d <= 1. Not
+// for kDwell; kQuintic is that without velocity and acceleration at the ends.
+std::vector<LawPiece> PiecesOf(Law law, double sine_share = 0, double cosine_share = 0);
+
+// Whether its acceleration jumps at the ends when a dwell is on either side.
+bool JumpsInAcceleration(Law law, double sine_share) noexcept;
+
+// The largest |y'|, |y''|, |y'''| on the way; the jerk is infinite where the acceleration jumps.
+struct PeakFactors {
+  double velocity = 0;
+  double acceleration = 0;
+  double jerk = 0;
+};
+PeakFactors PeakFactorsOf(Law law, double sine_share = 0, double cosine_share = 0);
+
+void describe(Enumeration<Law>&);
+
+}  // namespace takt::cam

@@ -1,0 +1,106 @@
+#include "takt/cam/roots.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+namespace takt::cam {
+
+namespace {
+
+constexpr int kMaxSteps = 100;
+
+std::size_t DegreeOf(const Curve& curve) {
+  std::size_t degree = curve.c.size() - 1;
+  while (degree > 0 && curve.c[degree] == 0) --degree;
+  return degree;
+}
+
+void Append(double root, Roots& roots) {
+  if (roots.count == kMaxRoots) return;
+  if (roots.count > 0 && root <= roots.at[roots.count - 1]) return;
+  roots.at[roots.count++] = root;
+}
+
+// What is lost to rounding when the curve is evaluated in [0, h].
+double RoundingOf(const Curve& curve, double h) {
+  double sum = 0;
+  for (std::size_t i = curve.c.size(); i-- > 0;) sum = sum * h + std::abs(curve.c[i]);
+  return 4 * std::numeric_limits<double>::epsilon() * (sum + std::abs(curve.amplitude));
+}
+
+// The zero between low and high, where the curve has different signs: Newton, or halving where that leads away.
+double Between(const Curve& curve, const Curve& slope, double low, double high) {
+  const bool rises = curve.At(low) < 0;
+  double x = 0.5 * (low + high);
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const double f = curve.At(x);
+    if (f == 0) return x;
+    ((f < 0) == rises ? low : high) = x;
+    const double newton = x - f / slope.At(x);
+    const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+    if (next == x || next <= low || next >= high) return next;
+    x = next;
+  }
+  return x;
+}
+
+Roots OfSine(const Curve& curve, double h) {
+  Roots roots;
+  constexpr double kPi = std::numbers::pi;
+  const double from = std::ceil(curve.phase / kPi - 1e-9);
+  for (double k = from; roots.count < kMaxRoots; ++k) {
+    const double x = (k * kPi - curve.phase) / curve.frequency;
+    if (x > h * (1 + 1e-9)) break;
+    Append(std::clamp(x, 0.0, h), roots);
+  }
+  return roots;
+}
+
+}  // namespace
+
+Roots RootsOf(const Curve& curve, double h, double rounding_before) noexcept {
+  // The curve and its derivatives, down to the one whose zeros are known; each is monotonic between those of the next.
+  std::array<Curve, 9> chain;
+  chain[0] = curve;
+  const bool sine = curve.amplitude != 0 && curve.frequency > 0;
+  const std::size_t last = DegreeOf(curve) + (sine ? 1 : 0);
+  for (std::size_t i = 1; i <= std::max<std::size_t>(last, 1); ++i) chain[i] = Derivative(chain[i - 1]);
+  Roots roots;
+  if (sine) roots = OfSine(chain[last], h);
+  // A constant goes through the loop, too.
+  for (std::size_t k = std::max<std::size_t>(last, 1); k-- > 0;) {
+    const double rounding = RoundingOf(chain[k], h) + (k == 0 ? rounding_before : 0);
+    Roots found;
+    double before = 0;
+    int sign_before = 0;
+    for (std::size_t i = 0; i < roots.count + 2; ++i) {
+      const double x = i == 0 ? 0 : i <= roots.count ? roots.at[i - 1] : h;
+      if (i > 0 && x <= before) continue;
+      const double f = chain[k].At(x);
+      const int sign = f > rounding ? 1 : f < -rounding ? -1 : 0;
+      if (i > 0 && sign * sign_before < 0) Append(Between(chain[k], chain[k + 1], before, x), found);
+      if (sign == 0) Append(x, found);
+      before = x;
+      sign_before = sign;
+    }
+    roots = found;
+  }
+  return roots;
+}
+
+Roots ExtremePlaces(const Curve& curve, double h) noexcept {
+  Roots places;
+  Append(0, places);
+  for (const double x : RootsOf(Derivative(curve), h).all()) Append(x, places);
+  Append(h, places);
+  return places;
+}
+
+double LargestMagnitude(const Curve& curve, double h) noexcept {
+  double largest = 0;
+  for (const double x : ExtremePlaces(curve, h).all()) largest = std::max(largest, std::abs(curve.At(x)));
+  return largest;
+}
+
+}  // namespace takt::cam

@@ -1,0 +1,19 @@
+// Numbers in sentences.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "takt/core/scalar.h"
+
+namespace takt::cam {
+
+// As people write it: without ".0" behind a whole number; NaN and infinity, too.
+inline std::string Text(double value) {
+  if (!std::isfinite(value)) return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
+  std::string text = FormatReal(value);
+  if (text.ends_with(".0")) text.resize(text.size() - 2);
+  return text;
+}
+
+}  // namespace takt::cam

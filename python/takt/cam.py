@@ -1,0 +1,324 @@
+"""Cams: where a slave is for every place of its master.
+
+    table = cam.Table.from_points([0, 90, 180, 360], [0, 10, 40, 0], cyclic=True)
+    table = cam.Table.from_segments([{"to": {"x": 180, "y": 40}, "law": "modified_sine"}, {"to": {"x": 360, "y": 0}}])
+    table = cam.Table.from_csv("press.csv", cyclic=True)
+    y, dy, ddy, dddy = table.at(np.linspace(0, 360, 1000))
+
+x is in the master's unit, y in the slave's; velocity, acceleration and jerk of a cam are derivatives over x: y/x, y/x²,
+y/x³. What is wrong with a cam is told as `takt.ConfigError`, what is only worth knowing in `Table.warnings`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
+
+import numpy as np
+import yaml
+
+from takt import _core
+from takt.engine import read_machine
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    FloatArray = NDArray[np.float64]
+
+Interpolation = Literal["linear", "quintic", "cubic_spline"]
+
+
+class Value(NamedTuple):
+    """What a cam says at one x."""
+
+    y: float
+    dy: float  # velocity, y/x
+    ddy: float  # acceleration, y/x²
+    dddy: float  # jerk, y/x³
+
+
+class Values(NamedTuple):
+    """What a cam says at many x; each has the shape of x."""
+
+    y: FloatArray
+    dy: FloatArray  # velocity, y/x
+    ddy: FloatArray  # acceleration, y/x²
+    dddy: FloatArray  # jerk, y/x³
+
+
+class Points(NamedTuple):
+    """The points a cam was made from, shape (n,) each; NaN: free."""
+
+    x: FloatArray
+    y: FloatArray
+    v: FloatArray  # velocity, y/x
+    a: FloatArray  # acceleration, y/x²
+
+
+class Extreme(NamedTuple):
+    """A value, and the first x that has it."""
+
+    x: float
+    value: float
+
+
+class Bounds(NamedTuple):
+    """The least and the greatest."""
+
+    least: Extreme
+    greatest: Extreme
+
+
+class Extremes(NamedTuple):
+    """Of a whole cam; where something jumps, both sides count."""
+
+    y: Bounds
+    dy: Bounds  # velocity, y/x
+    ddy: Bounds  # acceleration, y/x²
+    dddy: Bounds  # jerk, y/x³
+
+
+@dataclass(frozen=True)
+class SlavePeaks:
+    """What a slave meets behind a master with given limits."""
+
+    position: Bounds  # slave's unit
+    velocity: Extreme  # largest, slave's unit/s
+    acceleration: Extreme  # largest, slave's unit/s²
+
+
+class Factors(NamedTuple):
+    """The peaks of a law of motion from (0, 0) to (1, 1)."""
+
+    velocity: float
+    acceleration: float
+    jerk: float  # infinite where the acceleration jumps
+
+
+class Table:
+    """A cam. It never changes; make another one instead."""
+
+    def __init__(self, core: _core.CamTable, warnings: Sequence[str] = ()) -> None:
+        """For the functions below, which make tables."""
+        self._core = core
+        self.warnings = tuple(warnings)
+        """Sentences about what may surprise: jumps of velocity in linear cams."""
+
+    @classmethod
+    def from_points(
+        cls,
+        x: ArrayLike,
+        y: ArrayLike,
+        v: ArrayLike | None = None,
+        a: ArrayLike | None = None,
+        *,
+        name: str = "cam",
+        interpolation: Interpolation = "quintic",
+        cyclic: bool = False,
+        x_unit: str = "u",
+        y_unit: str = "u",
+    ) -> Table:
+        """A curve through points: 2 to 100,000, x growing, each array of shape (n,).
+
+        v, a: velocity (y/x) and acceleration (y/x²) at the points; NaN or None leaves them free, and the curve becomes
+        as smooth as it can.
+        cyclic: the end goes over into the beginning, raised by the stroke.
+        x_unit, y_unit: the master's and the slave's, for people.
+        """
+        px, py = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
+        pv, pa = (None if one is None else np.asarray(one, dtype=np.float64) for one in (v, a))
+        return cls(*_core.cam_from_points(px, py, pv, pa, name, interpolation, cyclic, x_unit, y_unit))
+
+    @classmethod
+    def from_segments(
+        cls,
+        segments: Sequence[Mapping[str, Any]],
+        *,
+        name: str = "cam",
+        cyclic: bool = False,
+        x_unit: str = "u",
+        y_unit: str = "u",
+    ) -> Table:
+        """Laws of motion one behind the other, each as in a machine file: {"to": {"x": 90, "y": 10}, "law": "cycloid"},
+        perhaps with "from", and for quintics with "begin_v", "begin_a", "end_v", "end_a"."""
+        units = {"x_unit": x_unit, "y_unit": y_unit}
+        return cls.from_dict({"name": name, "cyclic": cyclic, **units, "segments": list(segments)})
+
+    @classmethod
+    def from_dict(cls, cam: Mapping[str, Any]) -> Table:
+        """A cam as it stands in a machine file, and in `source`."""
+        text = json.dumps(_plain(cam))  # which is YAML, too
+        return cls(*_core.cam_from_yaml(text.encode(), "cam"))
+
+    @classmethod
+    def from_yaml(cls, file: str | os.PathLike[str]) -> Table:
+        """One cam, as it stands in a machine file: the path of a file, or the text itself (of more than one line)."""
+        text, file_name = read_machine(file)
+        return cls(*_core.cam_from_yaml(text, file_name))
+
+    @classmethod
+    def from_csv(
+        cls,
+        file: str | os.PathLike[str],
+        *,
+        name: str | None = None,
+        interpolation: Interpolation = "quintic",
+        cyclic: bool = False,
+        x_unit: str = "u",
+        y_unit: str = "u",
+    ) -> Table:
+        """Points from a file with the columns x, y and perhaps v, a; called like the file unless `name` says
+        otherwise."""
+        path = Path(file)
+        how = (name or path.stem, interpolation, cyclic, x_unit, y_unit)
+        return cls(*_core.cam_from_csv(path.read_bytes(), str(path), *how))
+
+    @property
+    def name(self) -> str:
+        return self._core.name
+
+    @property
+    def cyclic(self) -> bool:
+        return self._core.cyclic
+
+    @property
+    def x_unit(self) -> str:
+        """The master's unit, for people."""
+        return self._core.x_unit
+
+    @property
+    def y_unit(self) -> str:
+        """The slave's unit, for people."""
+        return self._core.y_unit
+
+    @property
+    def begin(self) -> float:
+        """First x, master's unit."""
+        return self._core.begin
+
+    @property
+    def end(self) -> float:
+        """Last x, master's unit."""
+        return self._core.end
+
+    @property
+    def stroke(self) -> float:
+        """y at the end less y at the beginning, slave's unit."""
+        return self._core.stroke
+
+    @property
+    def joints(self) -> FloatArray:
+        """Where the pieces of the curve meet, ends included; x, shape (pieces + 1,)."""
+        return self._core.joints
+
+    @property
+    def points(self) -> Points:
+        """The points it was made from; empty for segments."""
+        return Points(*self._core.points)
+
+    @property
+    def source(self) -> dict[str, Any]:
+        """What it was made from, as it stands in a machine file (CAM-71)."""
+        source: dict[str, Any] = json.loads(self._core.source)
+        return source
+
+    @overload
+    def at(self, x: float) -> Value: ...
+    @overload
+    def at(self, x: ArrayLike) -> Values: ...
+    def at(self, x: ArrayLike) -> Value | Values:
+        """y and its derivatives at x (master's unit): floats for a number, arrays of the same shape for an array.
+        Outside the cam as at its nearer end."""
+        places = np.asarray(x, dtype=np.float64)
+        arrays = self._core.at(places)
+        if places.ndim == 0:
+            return Value(*(float(one) for one in arrays))
+        return Values(*arrays)
+
+    def extremes(self) -> Extremes:
+        """Least and greatest y, velocity, acceleration and jerk, from roots, not from samples (CAM-24)."""
+        return Extremes(*(Bounds(Extreme(*low), Extreme(*high)) for low, high in self._core.extremes()))
+
+    def slave_peaks(self, master_velocity: float, master_acceleration: float = 0.0) -> SlavePeaks:
+        """What the slave meets whose master goes up to these (master's unit/s, unit/s²; both at least 0): |dy| V and
+        |ddy| V² + |dy| A at most (CAM-24)."""
+        least, greatest, velocity, acceleration = self._core.slave_peaks(master_velocity, master_acceleration)
+        return SlavePeaks(Bounds(Extreme(*least), Extreme(*greatest)), Extreme(*velocity), Extreme(*acceleration))
+
+    def inverse(self, y: float) -> FloatArray:
+        """Every x at which the cam has this y, growing; both ends of a stretch that stays there (CAM-71)."""
+        return self._core.all_x(y)
+
+    def nearest(self, y: float, near: float) -> float | None:
+        """The x nearest to `near` at which the cam has this y; None: it never has."""
+        return self._core.nearest_x(y, near)
+
+    def to_csv(self, file: str | os.PathLike[str] | None = None, *, count: int | None = None) -> str:
+        """The points as CSV, also written to a file where one is named; reads back as the very same cam (its
+        interpolation and whether it is cyclic are told when reading).
+
+        count: so many points of the curve at even distances with velocity and acceleration instead, as quintic point
+        tables of other systems take them; for cams of segments that is the only way.
+        """
+        if count is not None:
+            x = np.linspace(self.begin, self.end, count)
+            y, v, a, _ = self.at(x)
+            text = Table.from_points(x, y, v, a).to_csv()
+        elif len(self.points.x):
+            text = self._core.to_csv()
+        else:
+            raise ValueError("a cam of segments has no points; say how many the file is to have (count)")
+        if file is not None:
+            Path(file).write_text(text, encoding="utf-8")
+        return text
+
+    def to_yaml(self, file: str | os.PathLike[str] | None = None) -> str:
+        """The cam as it stands in a machine file, also written to a file where one is named."""
+        text = self._core.to_yaml()
+        if file is not None:
+            Path(file).write_text(text, encoding="utf-8")
+        return text
+
+    def __repr__(self) -> str:
+        kind = "cyclic cam" if self.cyclic else "cam"
+        return f"<{kind} {self.name}: x {self.begin:g} to {self.end:g}, stroke {self.stroke:g}>"
+
+
+def of_machine(machine: str | os.PathLike[str]) -> list[Table]:
+    """The cams of a machine file, given as a path or as its text."""
+    return [Table(core, warnings) for core, warnings in _core.cams_of_machine(*read_machine(machine))]
+
+
+def is_machine(text: bytes) -> bool:
+    """Whether a text of YAML is a machine file rather than a cam: whose keys it has."""
+    depth, key = 0, True  # of mappings and lists; whether a key comes next
+    try:
+        for event in yaml.parse(text, Loader=yaml.SafeLoader):
+            depth -= isinstance(event, yaml.CollectionEndEvent)
+            if depth == 1 and isinstance(event, (yaml.ScalarEvent, yaml.AliasEvent, yaml.CollectionEndEvent)):
+                name = event.value if key and isinstance(event, yaml.ScalarEvent) else None
+                if name in ("points", "segments", "file", "axes", "cams"):
+                    return name in ("axes", "cams")
+                key = not key
+            depth += isinstance(event, yaml.CollectionStartEvent)
+    except (yaml.YAMLError, UnicodeError):
+        pass  # whoever reads it says where it is wrong
+    return False
+
+
+def law_factors(law: str, *, sine_share: float = 0.25, cosine_share: float = 0.5) -> Factors:
+    """The largest velocity, acceleration and jerk of a law of motion (CAM-02)."""
+    return Factors(*_core.law_factors(law, sine_share, cosine_share))
+
+
+def _plain(value: Any) -> Any:
+    """As JSON has it: without NumPy's numbers and without what is None."""
+    if isinstance(value, Mapping):
+        return {key: _plain(one) for key, one in value.items() if one is not None}
+    if isinstance(value, (list, tuple)):
+        return [_plain(one) for one in value]
+    return value.item() if isinstance(value, np.generic) else value

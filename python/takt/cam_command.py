@@ -1,0 +1,158 @@
+"""The command `takt cam`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+from rich.console import Console
+from rich.table import Table as Grid
+from rich.text import Text
+
+from takt import cam
+from takt.cam_check import TOUCHING, Check, Limits, check, figure
+from takt.engine import read_machine
+
+FAILED = 1
+NAMES = (("y", ""), ("y'", ""), ("y''", "²"), ("y'''", "³"))
+
+
+@dataclass(frozen=True)
+class Options:
+    """Those of the command line, by their names there."""
+
+    interpolation: cam.Interpolation | None = None
+    cyclic: bool = False
+    units: tuple[str, str] | None = None
+    master_speed: float | None = None
+    master_acceleration: float = 0.0
+    axis: str | None = None
+    machine: Path | None = None
+    target: Path | None = None
+    csv: Path | None = None
+    count: int | None = None
+    yaml_file: Path | None = None
+
+
+def run(file: Path, name: str | None, options: Options, out: Console) -> int:
+    """Reads, checks, says, draws, writes. 1: a limit is exceeded."""
+    _refuse_nonsense(options)
+    tables = _read(file, name, options)
+    writes = options.target or options.csv or options.yaml_file
+    if writes and len(tables) > 1:
+        names = ", ".join(table.name for table in tables)
+        raise click.UsageError(f"{file} has the cams {names}: choose one with --name")
+    limits = None
+    if options.axis is not None:
+        limits = Limits.of_axis(options.machine or file, options.axis)
+    passed = True
+    for table in tables:
+        result = check(table, options.master_speed, options.master_acceleration, limits)
+        _say(table, result, options, out)
+        passed &= result.passed
+    if writes:
+        _write(tables[0], options, limits)
+    return 0 if passed else FAILED
+
+
+def _refuse_nonsense(options: Options) -> None:
+    from takt.plot import PICTURES
+
+    for value, option in ((options.master_speed, "speed"), (options.master_acceleration, "acceleration")):
+        if value is not None and not 0 <= value < math.inf:
+            raise click.UsageError(f"--master-{option}: expected a number of at least 0, found {value:g}")
+    if options.machine is not None and options.axis is None:
+        raise click.UsageError("--machine is where the limits come from: say of which --axis")
+    if options.count is not None and options.csv is None:
+        raise click.UsageError("--count is for --csv")
+    for path, suffixes in ((options.target, PICTURES), (options.csv, None), (options.yaml_file, None)):
+        if path is None:
+            continue
+        if suffixes and path.suffix not in suffixes:
+            raise click.UsageError(f"{path}: expected a name that ends in {' or '.join(suffixes)}")
+        if not path.parent.is_dir():
+            raise click.UsageError(f"{path}: there is no directory {path.parent}")
+
+
+def _read(file: Path, name: str | None, options: Options) -> list[cam.Table]:
+    if file.suffix == ".csv":
+        x_unit, y_unit = options.units or ("u", "u")
+        how = options.interpolation or "quintic"
+        return [
+            cam.Table.from_csv(file, name=name, interpolation=how, cyclic=options.cyclic, x_unit=x_unit, y_unit=y_unit)
+        ]
+    if options.interpolation or options.cyclic or options.units:
+        raise click.UsageError("--interpolation, --cyclic and --units are for CSV files; a YAML file says them itself")
+    text, _ = read_machine(file)
+    tables = cam.of_machine(file) if cam.is_machine(text) else [cam.Table.from_yaml(file)]
+    if not tables:
+        raise click.UsageError(f"{file}: expected a cam, found a machine without cams")
+    chosen = [table for table in tables if name in (None, table.name)]
+    if not chosen:
+        raise click.UsageError(f"{file}: expected a cam of {', '.join(t.name for t in tables)}, found '{name}'")
+    return chosen
+
+
+def _say(table: cam.Table, result: Check, options: Options, out: Console) -> None:
+    u = table.x_unit
+    source = f"{len(table.points.x)} points, {table.source['interpolation'].replace('_', ' ')}"
+    if not len(table.points.x):
+        source = f"{len(table.source['segments'])} segments"
+    kind = "cyclic cam" if table.cyclic else "cam"
+    span = f"x {table.begin:g} to {table.end:g} {u}, stroke {table.stroke:g} {table.y_unit}"
+    print(f"{table.name}: {kind} of {source}; {span}")
+    print(result.continuity)
+    for warning in table.warnings:
+        print(f"warning: {warning}")
+    grid = Grid("", "unit", "least", "at x", "greatest", "at x", box=None)
+    for (name, power), bounds in zip(NAMES, table.extremes(), strict=True):
+        unit = table.y_unit if name == "y" else f"{table.y_unit}/{u}{power}"
+        scale = max(abs(bounds.least.value), abs(bounds.greatest.value))
+        cells = [figure(value, scale) for one in bounds for value in (one.value, one.x)]
+        grid.add_row(name, unit, cells[0], figure(bounds.least.x), cells[2], figure(bounds.greatest.x))
+    out.print(grid)
+    if options.master_speed is not None:
+        moving = f" and {options.master_acceleration:g} {u}/s²" if options.master_acceleration else ""
+        print(f"slave, with its master at up to {options.master_speed:g} {u}/s{moving}:")
+    elif options.axis is not None:
+        print("slave:")
+    if options.master_speed is not None or options.axis is not None:
+        out.print(_peaks(result))
+    if options.axis is not None:
+        print(_fastest(result, u))
+
+
+def _peaks(result: Check) -> Grid:
+    grid = Grid("", "most", "unit", "at x", "limit", "", box=None)
+    for peak in result.peaks:
+        verdict = Text("")
+        if peak.limit is not None:
+            verdict = Text("ok", "green") if peak.passed else Text("exceeded", "bold red")
+        value = "a jump" if math.isinf(peak.value) else figure(peak.value, peak.slack / TOUCHING)
+        limit = "" if peak.limit is None else figure(peak.limit)
+        grid.add_row(peak.what, value, peak.unit, figure(peak.x), limit, verdict)
+    return grid
+
+
+def _fastest(result: Check, unit: str) -> str:
+    if result.fastest is not None:
+        found = result.fastest
+        return f"the master may go up to {found.value:.6g} {unit}/s at constant velocity; x {found.x:.6g} decides"
+    return "no velocity of the master suits the limits: " + result.continuity
+
+
+def _write(table: cam.Table, options: Options, limits: Limits | None) -> None:
+    if options.target is not None:
+        from takt.cam_picture import picture
+
+        print(f"picture: {picture(table, options.target, options.master_speed, limits)}")
+    if options.csv is not None:
+        if options.count is None and not len(table.points.x):
+            raise click.UsageError("a cam of segments has no points: say how many the CSV file is to have (--count)")
+        table.to_csv(options.csv, count=options.count)
+        print(f"points: {options.csv}")
+    if options.yaml_file is not None:
+        table.to_yaml(options.yaml_file)
+        print(f"cam: {options.yaml_file}")

@@ -1,0 +1,114 @@
+"""Function blocks of cams and of tables over time in cyclic programs: AX-41, AX-48."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+import takt
+from blocks import call
+from takt import plcopen as plc
+
+MACHINE = """
+name: press
+axes:
+  - name: x
+    limits: {velocity: 500, acceleration: 5000, jerk: 100000}
+  - name: y
+    limits: {velocity: 1000, acceleration: 20000, jerk: 500000}
+cams:
+  - name: stroke
+    points: [{x: 0, y: 0, v: 0, a: 0}, {x: 50, y: 20, v: 0, a: 0}, {x: 100, y: 0, v: 0, a: 0}]
+  - name: ramp
+    points: [{x: 0, y: 0, v: 0, a: 0}, {x: 0.5, y: 1, v: 0, a: 0}]
+"""
+
+
+def polynomial345(s: float) -> float:
+    """The motion law that points at rest, joined by quintics, make."""
+    return s**3 * (10 - 15 * s + 6 * s**2)
+
+
+@pytest.fixture
+def engine() -> Iterator[takt.Engine]:
+    with takt.Engine(MACHINE) as session:
+        for name in ("x", "y"):
+            session.axis(name).power()
+        session.run(0.2)
+        yield session
+
+
+def test_a_cam_again_and_again(engine: takt.Engine) -> None:
+    """AX-48: selected, followed, its end seen once a turn, left."""
+    x, y = engine.axis("x"), engine.axis("y")
+    select = plc.MC_CamTableSelect(y, CamTable="stroke", Periodic=True)
+    call(engine, select, 0.01, Execute=True)
+    assert select.Done
+    assert select.CamTableID is not None
+    cam = plc.MC_CamIn(y, Master=x, CamTableID=select.CamTableID, SlaveScaling=2.0)
+    ends = []
+    engine.program(lambda: ends.append(cam(Execute=True).EndOfProfile))
+    engine.run(0.01)
+    assert (cam.InSync, cam.Busy, cam.Active) == (True, True, True)
+    drive = plc.MC_MoveVelocity(x, Velocity=100.0)
+    drive(Execute=True)
+    for _ in range(3500):
+        engine.step()
+        s = (x.set_position % 100) / 50
+        assert y.set_position == pytest.approx(40 * polynomial345(min(s, 2 - s)), abs=1e-9)
+    assert ends.count(True) == int(x.set_position // 100)
+    out = plc.MC_CamOut(y)
+    call(engine, out, 0.01, Execute=True)
+    assert out.Done
+    assert cam.CommandAborted
+    assert not cam.InSync
+
+
+def test_a_cam_once_from_where_the_axis_is(engine: takt.Engine) -> None:
+    """AX-48: relative to both axes, and not over and over: the axis waits at its end."""
+    x, y = engine.axis("x"), engine.axis("y")
+    engine.run(0.1)
+    y.move_absolute(position=7).wait()
+    x.move_absolute(position=30).wait()
+    select = plc.MC_CamTableSelect(y, CamTable="stroke", MasterAbsolute=False, SlaveAbsolute=False)
+    call(engine, select, 0.01, Execute=True)
+    cam = plc.MC_CamIn(y, Master=x, CamTableID=select.CamTableID, StartMode=takt.CamStart.RELATIVE)
+    call(engine, cam, 0.01, Execute=True)
+    x.move_absolute(position=80).wait()
+    assert y.set_position == pytest.approx(27)
+    x.move_absolute(position=200).wait()
+    assert y.set_position == pytest.approx(7)
+
+
+def test_what_is_no_cam(engine: takt.Engine) -> None:
+    x, y = engine.axis("x"), engine.axis("y")
+    select = plc.MC_CamTableSelect(y, CamTable="strike")
+    call(engine, select, 0.01, Execute=True)
+    assert (select.Error, select.ErrorID, select.CamTableID) == (True, 3010, None)
+    cam = call(engine, plc.MC_CamIn(y, Master=x), 0.01, Execute=True)
+    assert (cam.Error, cam.ErrorID) == (True, 5)
+    assert y.state is takt.PlcState.STANDSTILL
+
+
+def test_tables_over_time(engine: takt.Engine) -> None:
+    """AX-41: positions, velocities and accelerations against the integrals of the law."""
+    y = engine.axis("y")
+    by_position = plc.MC_PositionProfile(y, TimePosition="ramp", PositionScale=30.0, TimeScale=2.0)
+    call(engine, by_position, 0.5, Execute=True)
+    assert by_position.Busy
+    assert y.set_position == pytest.approx(30 * polynomial345(0.5), abs=0.2)
+    call(engine, by_position, 0.6, Execute=True)
+    assert by_position.Done
+    assert y.set_position == pytest.approx(30)
+    assert y.state is takt.PlcState.STANDSTILL
+    by_velocity = plc.MC_VelocityProfile(y, TimeVelocity="ramp", VelocityScale=80.0)
+    call(engine, by_velocity, 0.505, Execute=True)
+    assert by_velocity.ProfileCompleted
+    assert by_velocity.Done
+    assert y.set_velocity == pytest.approx(80)
+    assert y.state is takt.PlcState.CONTINUOUS_MOTION
+    begun_at = y.set_velocity
+    by_acceleration = plc.MC_AccelerationProfile(y, TimeAcceleration="ramp", AccelerationScale=100.0)
+    call(engine, by_acceleration, 0.505, Execute=True)
+    assert by_acceleration.ProfileCompleted
+    assert y.set_velocity - begun_at == pytest.approx(100 * 0.25, rel=0.02)
