@@ -181,6 +181,10 @@ void MoveOne(const Context& c, State& s) {
 
 // The same of a motion with another one on top.
 void MoveBoth(const Context& c, State& s) {
+  if (LostMasters(c, s)) {
+    AbortOverlay(c, FeedbackState::kError, ErrorId::kAxisFault, s);
+    return MoveOne(c, s);
+  }
   {
     const Beneath base(s);
     MoveOne(c, s);

@@ -365,10 +365,14 @@ void Couple(const Context& c, const Request& r, State& s) noexcept {
   Enter(s, PlcState::kSynchronizedMotion);
 }
 
+bool LostMasters(const Context& c, const State& s) noexcept {
+  return Couples(s.active.kind) && !MastersStand(c, s.coupling.law);
+}
+
 bool FollowMasters(const Context& c, State& s) noexcept {
   if (!Couples(s.active.kind)) return false;
   CouplingState& k = s.coupling;
-  if (!MastersStand(c, k.law)) {  // nothing to follow any more
+  if (LostMasters(c, s)) {
     const Limits ramps = c.params.planner_limits();
     EndActive(c, FeedbackState::kError, ErrorId::kAxisFault, s);
     s.coupling.law = CouplingRequest{};

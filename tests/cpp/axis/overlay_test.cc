@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "rig.h"
+#include "takt/cam/build.h"
 
 namespace takt::axis {
 namespace {
@@ -250,6 +251,49 @@ TEST_F(Overlay, WaitsWhereNothingIsLeft) {
   rig.Give(MoveSuperimposed{.distance = -10, .velocity_difference = 100});
   rig.Run(1);
   EXPECT_FALSE(rig.out.superimposed);
+  ExpectLimits();
+}
+
+// Tables over time are shifted as a whole: of positions, and what velocities add up to.
+TEST_F(Overlay, ShiftsATableOverTime) {
+  cam::CamParams bump;
+  bump.name = "bump";
+  bump.points = {{0, 0, 0.0, 0.0}, {1, 1, 0.0, 0.0}, {2, 0, 0.0, 0.0}};
+  rig.cams = {cam::Build(bump).table.value()};
+  const MoveSuperimposed shift = {.distance = -7, .velocity_difference = 50, .acceleration = 500, .deceleration = 500};
+  const Ticket positions = rig.Give(PositionProfile{.profile = Name::Of("bump"), .position_scale = 40});
+  rig.Run(0.3);
+  const Ticket top = rig.Give(shift);
+  EXPECT_TRUE(rig.RunToEnd(top));
+  EXPECT_NEAR(Seconds(top), 7.0 / 50 + 50.0 / 500, 1e-3 + 1e-9);
+  rig.Run(0.3);
+  const double t = static_cast<double>(rig.cycle.count - rig.lives[positions].active_cycle) * rig.cycle.period_s;
+  EXPECT_NEAR(rig.position(), 40 * rig.cams[0].At(t).y - 7, 1e-9);
+  EXPECT_TRUE(rig.RunToEnd(positions));
+  EXPECT_TRUE(rig.lives[positions].done);
+  EXPECT_NEAR(rig.position(), -7, 1e-9);
+  const Ticket velocities = rig.Give(VelocityProfile{.profile = Name::Of("bump"), .velocity_scale = 40});
+  rig.Run(0.5);
+  EXPECT_TRUE(rig.RunToEnd(rig.Give(shift)));
+  EXPECT_TRUE(rig.RunToEnd(velocities));
+  EXPECT_NEAR(rig.position(), -7 - 7 + 40 * 1, 1e-9);  // the mean of the table is 1/2, over 2 s
+  ExpectLimits();
+}
+
+// A move that passes its velocity on must be able to stop inside the SW limits wherever that happens: what is on top
+// stays there until that is so.
+TEST_F(Overlay, StaysOnTopUntilTheNextMoveFits) {
+  rig.params.limits.upper = 130;
+  const Ticket base = rig.Give(MoveAbsolute{.position = 100, .velocity = 200});
+  const Ticket next = rig.Give(MoveAbsolute{.position = 110, .velocity = 200, .buffer_mode = BufferMode::kBlendingLow});
+  rig.Step();
+  const Ticket top = rig.Give(MoveSuperimposed{.distance = 15});
+  EXPECT_TRUE(rig.RunToEnd(base));
+  EXPECT_TRUE(rig.RunToEnd(next));
+  EXPECT_TRUE(rig.RunToEnd(top));
+  EXPECT_TRUE(rig.lives[next].done);
+  EXPECT_TRUE(rig.lives[top].done);
+  EXPECT_LE(rig.position(), 130);
   ExpectLimits();
 }
 
