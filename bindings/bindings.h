@@ -5,11 +5,14 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <pybind11/typing.h>
+
 #include <string>
 #include <vector>
 
 #include "takt/core/columns.h"
 #include "takt/core/describe.h"
+#include "takt/engine/load.h"
 
 namespace takt::bindings {
 
@@ -21,12 +24,22 @@ py::object ScalarToPython(const Type& type, const void* object);
 // The NumPy layout of an object of `size` bytes with these columns: numbers, bools and enums.
 py::dtype LayoutOf(const std::vector<Column>& columns, std::size_t size);
 
-// Raises takt.ConfigError.
+// A described struct of numbers as dicts and lists, internal fields too.
+py::object ToPython(const Type& type, const void* object);
+// And back, for structs of nothing but numbers; integers are taken modulo their size, what is not given stays.
+void FromPython(const Type& type, const py::dict& values, void* object);
+
+// Raises an exception of takt.errors.
+[[noreturn]] void Throw(const char* kind, const py::object& about);
 [[noreturn]] void ThrowConfigError(const std::vector<std::string>& problems);
+
+// A machine file: there is a machine in it, or takt.ConfigError says every problem.
+engine::LoadResult Load(const py::bytes& text, const std::string& file_name);
 
 void BindCore(py::module_& m);
 void BindCam(py::module_& m);
 void BindAxis(py::module_& m);
 void BindEngine(py::module_& m);
+void BindServo(py::module_& m);
 
 }  // namespace takt::bindings

@@ -1,5 +1,7 @@
 #include <pybind11/stl.h>
 
+#include <bit>
+#include <cstring>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -9,6 +11,9 @@
 #include "takt/core/status.h"
 
 namespace takt::bindings {
+
+static_assert(std::endian::native == std::endian::little);
+
 namespace {
 
 std::map<int, std::pair<std::string, std::string>> ErrorTexts() {
@@ -24,10 +29,14 @@ std::map<int, std::pair<std::string, std::string>> ErrorTexts() {
 
 }  // namespace
 
-void ThrowConfigError(const std::vector<std::string>& problems) {
-  const py::object error = py::module_::import("takt.errors").attr("ConfigError");
-  PyErr_SetObject(error.ptr(), error(problems).ptr());
+void Throw(const char* kind, const py::object& about) {
+  const py::object error = py::module_::import("takt.errors").attr(kind);
+  PyErr_SetObject(error.ptr(), error(about).ptr());
   throw py::error_already_set();
+}
+
+void ThrowConfigError(const std::vector<std::string>& problems) {
+  Throw("ConfigError", py::cast(problems));
 }
 
 py::object ScalarToPython(const Type& type, const void* object) {
@@ -43,6 +52,48 @@ py::object ScalarToPython(const Type& type, const void* object) {
       return py::int_(IntegerAt(type, object));
     default:
       throw std::logic_error("not a number: " + std::string(type.name));
+  }
+}
+
+py::object ToPython(const Type& type, const void* object) {
+  switch (type.kind) {
+    case Kind::kStruct: {
+      py::dict dict;
+      for (const Field& field : type.fields) dict[py::str(field.name)] = ToPython(*field.type, FieldAt(field, object));
+      return dict;
+    }
+    case Kind::kArray: {
+      py::list list;
+      for (std::size_t i = 0; i < type.count; ++i) list.append(ToPython(*type.element, ElementAt(type, object, i)));
+      return list;
+    }
+    default:
+      return ScalarToPython(type, object);
+  }
+}
+
+void FromPython(const Type& type, const py::dict& values, void* object) {
+  for (const Field& field : type.fields) {
+    const py::str name(field.name.data(), field.name.size());
+    if (!values.contains(name)) continue;
+    const py::object value = values[name];
+    void* member = static_cast<std::byte*>(object) + field.offset;
+    switch (field.type->kind) {
+      case Kind::kReal:
+        *static_cast<double*>(member) = value.cast<double>();
+        break;
+      case Kind::kBool:
+        *static_cast<bool*>(member) = value.cast<bool>();
+        break;
+      case Kind::kInteger:
+      case Kind::kEnum: {
+        const auto bits = static_cast<std::uint64_t>(value.cast<std::int64_t>());
+        std::memcpy(member, &bits, field.type->size);  // the low bytes come first
+        break;
+      }
+      default:
+        throw std::logic_error("not a number: " + std::string(field.name));
+    }
   }
 }
 

@@ -18,6 +18,8 @@
 #include "takt/core/schema.h"
 #include "takt/engine/load.h"
 #include "takt/engine/reference.h"
+#include "takt/lcm/clock.h"
+#include "takt/lcm/drives.h"
 
 namespace takt::bindings {
 namespace {
@@ -25,11 +27,15 @@ namespace {
 // In virtual time a scenario may command a thousand axes before it lets time pass.
 constexpr std::size_t kCommandQueue = 1 << 12;
 
+}  // namespace
+
 engine::LoadResult Load(const py::bytes& text, const std::string& file_name) {
   engine::LoadResult result = engine::LoadMachine(static_cast<std::string_view>(text), file_name);
   if (!result.machine) ThrowConfigError(result.problems);
   return result;
 }
+
+namespace {
 
 std::string MachineJson(const engine::Machine& machine) {
   return ToJson(TypeOf<engine::Machine>(), &machine).dump();
@@ -43,48 +49,46 @@ std::string LoadMachine(const py::bytes& text, const std::string& file_name) {
   return MachineJson(*Load(text, file_name).machine);
 }
 
-// A described struct of numbers as dicts and lists, internal fields too.
-py::object ToPython(const Type& type, const void* object) {
-  switch (type.kind) {
-    case Kind::kStruct: {
-      py::dict dict;
-      for (const Field& field : type.fields) dict[py::str(field.name)] = ToPython(*field.type, FieldAt(field, object));
-      return dict;
-    }
-    case Kind::kArray: {
-      py::list list;
-      for (std::size_t i = 0; i < type.count; ++i) list.append(ToPython(*type.element, ElementAt(type, object, i)));
-      return list;
-    }
-    default:
-      return ScalarToPython(type, object);
-  }
-}
-
 using Submitted = py::typing::Tuple<Ticket, int, py::str>;  // ticket, error number, sentence
 using FeedbackRow =
     py::typing::Tuple<Ticket, std::uint64_t, int, bool, int, double>;  // ticket, cycle, state, reached, error, value
 using JournalRow =
     py::typing::Tuple<std::uint64_t, Ticket, double, py::str, py::str, py::str>;  // cycle, ticket, lease, command
+using Wires = py::typing::Dict<py::str, py::object>;
+using DriveRow = py::typing::Tuple<std::uint64_t, std::uint32_t, std::int64_t, Wires>;  // cycle, axis, answers, wires
 using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::uint64_t>>;  // cycles, hashes
 
 // An engine in virtual time. Stepping releases the GIL; what it collects is guarded by a mutex that is only ever waited
 // for without the GIL.
 class VirtualEngine {
  public:
-  VirtualEngine(const py::bytes& text, const std::string& file_name, bool journal, std::optional<double> period_s)
+  // With `drives_url` external drives are reached there; without, they are what Hear says.
+  VirtualEngine(const py::bytes& text, const std::string& file_name, bool journal, std::optional<double> period_s,
+                const std::optional<std::string>& drives_url)
       : journaling_(journal),
-        engine_(Prepared(text, file_name, period_s), {.journal = journal, .command_queue = kCommandQueue}) {}
+        engine_(Prepared(text, file_name, period_s),
+                {.drives = drives_url.has_value(), .journal = journal, .command_queue = kCommandQueue}) {
+    if (!drives_url || engine_.machine().external.drives.empty()) return;
+    std::string problem;
+    drives_ = lcm::Drives::Open(engine_,
+                                {.url = *drives_url,
+                                 .run_id = lcm::WallClockUs(),
+                                 .complain = [this](const std::string& text) { complaints_.push_back(text); }},
+                                problem);
+    if (!drives_) Throw("ConnectionError", py::str(problem));
+  }
 
-  // Steps up to `cycles` cycles, or until one reports feedback. How many it were.
+  // Steps up to `cycles` cycles, or until one reports feedback, or until external drives let it wait. How many it were.
   std::uint64_t Step(std::uint64_t cycles, bool until_feedback) {
     const std::lock_guard lock(mutex_);
     for (std::uint64_t i = 0; i < cycles;) {
+      if (drives_ && !drives_->Ready()) return i;
       engine_.RunCycle();
       ++i;
       const bool news = Drain(engine_.feedback(), feedback_);
       if (journaling_) {
         Drain(engine_.journal(), journal_);
+        Drain(engine_.drive_journal(), drive_journal_);
         Drain(engine_.hashes(), hashes_);
       }
       for (const auto& recorder : recorders_) recorder->Append(engine_);
@@ -119,6 +123,36 @@ class VirtualEngine {
     parsed.command.lease_s = lease_s;
     const bool taken = engine_.Resubmit(parsed.command);
     return taken ? Answer(ticket, ErrorId::kNone, "") : Answer(0, ErrorId::kQueueFull, ErrorText(ErrorId::kQueueFull));
+  }
+
+  // What an external drive had measured, out of a journal. False: too much for one cycle.
+  bool Hear(std::uint32_t axis, std::int64_t answers, const Wires& wires) {
+    CheckAxis(axis);
+    engine::DriveSample sample{answers, axis, {}};
+    FromPython(TypeOf<ServoInputs>(), wires, &sample.inputs);
+    const auto lock = Lock();
+    return engine_.drive_samples().TryPush(sample);
+  }
+
+  // What external drives had measured, as it was taken since the last call: (cycle, axis, cycle it answers, wires).
+  py::typing::List<DriveRow> TakeDriveJournal() {
+    std::vector<engine::DriveEntry> entries;
+    {
+      const auto lock = Lock();
+      entries.swap(drive_journal_);
+    }
+    py::typing::List<DriveRow> list;
+    for (const engine::DriveEntry& e : entries) {
+      const Wires wires = ToPython(TypeOf<ServoInputs>(), &e.sample.inputs);
+      list.append(py::make_tuple(e.cycle, e.sample.axis, e.sample.cycle, wires));
+    }
+    return list;
+  }
+
+  // What is wrong with messages of external drives, since the last call.
+  std::vector<std::string> TakeComplaints() {
+    const auto lock = Lock();
+    return std::exchange(complaints_, {});
   }
 
   py::typing::List<FeedbackRow> TakeFeedback() {
@@ -253,9 +287,12 @@ class VirtualEngine {
   const bool journaling_;
   std::mutex mutex_;
   engine::Engine engine_;
+  std::unique_ptr<lcm::Drives> drives_;
   std::vector<FeedbackEvent> feedback_;
   std::vector<engine::JournalEntry> journal_;
   std::vector<engine::HashEntry> hashes_;
+  std::vector<engine::DriveEntry> drive_journal_;
+  std::vector<std::string> complaints_;
   std::vector<std::shared_ptr<Recorder>> recorders_;
 };
 
@@ -281,13 +318,18 @@ void BindEngine(py::module_& m) {
   using E = VirtualEngine;
   using Released = py::call_guard<py::gil_scoped_release>;
   py::class_<E>(m, "Engine", "One machine in virtual time.")
-      .def(py::init<const py::bytes&, const std::string&, bool, std::optional<double>>(), py::arg("text"),
-           py::arg("file_name"), py::kw_only(), py::arg("journal") = false, py::arg("period_s") = py::none())
+      .def(py::init<const py::bytes&, const std::string&, bool, std::optional<double>,
+                    const std::optional<std::string>&>(),
+           py::arg("text"), py::arg("file_name"), py::kw_only(), py::arg("journal") = false,
+           py::arg("period_s") = py::none(), py::arg("drives_url") = py::none())
       .def("step", &E::Step, py::arg("cycles"), py::arg("until_feedback") = false, Released())
       .def("measure", &E::Measure, py::arg("cycles"), Released())
       .def("submit", &E::Submit, py::arg("target"), py::arg("verb"), py::arg("arguments"))
       .def("resubmit", &E::Resubmit, py::arg("target"), py::arg("verb"), py::arg("arguments"), py::arg("ticket"),
            py::arg("lease_s"))
+      .def("hear", &E::Hear, py::arg("axis"), py::arg("answers"), py::arg("wires"))
+      .def("take_drive_journal", &E::TakeDriveJournal)
+      .def("take_complaints", &E::TakeComplaints)
       .def("take_feedback", &E::TakeFeedback)
       .def("take_journal", &E::TakeJournal)
       .def("take_hashes", &E::TakeHashes)

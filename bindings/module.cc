@@ -7,4 +7,5 @@ PYBIND11_MODULE(_core, m) {
   takt::bindings::BindCam(m);
   takt::bindings::BindAxis(m);
   takt::bindings::BindEngine(m);
+  takt::bindings::BindServo(m);
 }

@@ -60,6 +60,10 @@ std::string Summary(const engine::Engine& engine, const engine::RunResult& resul
   text << "; " << figures.commands_applied << " commands, " << figures.commands_refused
        << " refused; lost: " << figures.snapshots_dropped << " states, " << figures.feedback_dropped
        << " feedback events, " << figures.journal_dropped << " journal entries, " << losses.messages << " messages";
+  if (!engine.machine().external.drives.empty()) {
+    text << "; drives: " << figures.set_points_dropped << " set points lost, " << figures.samples_refused
+         << " answers refused";
+  }
   if (losses.log) text << "; the log is incomplete";
   return text.str();
 }

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <iostream>
 #include <memory>
 
@@ -11,6 +12,7 @@
 #include "app/options.h"
 #include "app/summary.h"
 #include "takt/engine/reference.h"
+#include "takt/lcm/drives.h"
 #include "takt/lcm/service.h"
 
 namespace takt::app {
@@ -42,23 +44,38 @@ int ExitCode(engine::RunEnd end, const lcm::Losses& losses) {
   return losses.log ? kLogIncomplete : 0;
 }
 
+int Refuse(const std::string& problem) {
+  std::cerr << "taktd: " << problem << '\n';
+  return kWrongInput;
+}
+
+void SayOnStderr(const std::string& sentence) {
+  std::fprintf(stderr, "%s\n", sentence.c_str());
+}
+
 int Run(const Options& options, const engine::Machine& machine, const std::string& text) {
   const bool log = !options.log_file.empty();
-  engine::Engine engine(machine, {.publish = options.lcm || log, .every_cycle = log, .journal = log});
+  const bool has_drives = !machine.external.drives.empty();
+  if (has_drives && !options.lcm) return Refuse("the machine has external drives, which --no-lcm leaves out of reach");
+  engine::Engine engine(machine,
+                        {.publish = options.lcm || log, .every_cycle = log, .drives = has_drives, .journal = log});
   engine::SchedulerOptions scheduler = options.scheduler;
+  const std::string url = options.lcm ? options.lcm_url.value_or(machine.lcm.url) : "";
+  const lcm::RunInfo info{text, TAKT_VERSION, static_cast<std::int8_t>(scheduler.pace)};
+  std::string problem;
   std::unique_ptr<lcm::Service> service;
   if (options.lcm || log) {
-    std::string problem;
-    service = lcm::Service::Open(engine,
-                                 {.url = options.lcm ? options.lcm_url.value_or(machine.lcm.url) : "",
-                                  .log_path = options.log_file,
-                                  .info = {text, TAKT_VERSION, static_cast<std::int8_t>(scheduler.pace)}},
-                                 problem);
-    if (!service) {
-      std::cerr << "taktd: " << problem << '\n';
-      return kWrongInput;
-    }
+    service = lcm::Service::Open(engine, {.url = url, .log_path = options.log_file, .info = info}, problem);
+    if (!service) return Refuse(problem);
     scheduler.wait_for_reader = log;
+  }
+  std::unique_ptr<lcm::Drives> drives;
+  if (has_drives) {
+    const bool real_time = scheduler.pace == engine::Pace::kRealTime;
+    drives = lcm::Drives::Open(
+        engine, {.url = url, .run_id = info.run_id, .real_time = real_time, .complain = SayOnStderr}, problem);
+    if (!drives) return Refuse(problem);
+    if (!real_time) scheduler.ready = [&] { return drives->Ready(); };
   }
 
   std::cout << Greeting(machine, scheduler.pace) << std::endl;
@@ -66,6 +83,7 @@ int Run(const Options& options, const engine::Machine& machine, const std::strin
   const engine::RunResult result = engine::Run(engine, scheduler, signals);
   cycle_runs = false;
   if (result.end == engine::RunEnd::kSignal) alarm(kCloseWithinS);
+  drives.reset();
   const lcm::Losses losses = service ? service->Close() : lcm::Losses{};
   std::cout << Summary(engine, result, scheduler.pace, losses) << std::endl;
   return ExitCode(result.end, losses);

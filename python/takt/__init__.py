@@ -14,7 +14,7 @@ from takt._commands import __all__ as _names
 from takt._core import __version__
 from takt.axis import Axis
 from takt.engine import Engine, error_name, error_text, read_machine
-from takt.errors import ClosedError, CommandError, ConfigError, ConnectionError, TaktError, TimeoutError
+from takt.errors import ClosedError, CommandError, ConfigError, ConnectionError, DriveWarning, TaktError, TimeoutError
 from takt.feedback import Feedback, FeedbackState
 from takt.lcmlog import LogError, read_log
 from takt.recording import Recording, RecordingError
@@ -28,6 +28,7 @@ __all__ = [
     "CommandError",
     "ConfigError",
     "ConnectionError",
+    "DriveWarning",
     "Engine",
     "Feedback",
     "FeedbackState",

@@ -17,6 +17,7 @@ from rich.table import Table
 from rich.text import Text
 
 from takt import _core
+from takt.drive import WATCHDOG, simulate
 from takt.engine import Engine, read_machine
 from takt.errors import ConfigError, TaktError
 from takt.lcmlog import AXIS_PREFIX, open_log, read_log
@@ -174,6 +175,18 @@ def demo(file: Path, machine: Path | None, report: Path, pace: str) -> int:
     page = write_report(result.outcome.recording, result.outcome.verdicts, report, scenario.title, {"engine": timing})
     print(f"report: {page.html}")
     return 0 if result.passed else FAILED
+
+
+@cli.command()
+@click.argument("machine", type=FILE)
+@click.option("--url", help="LCM network of the engine [machine file].")
+@click.option("--axis", "axes", multiple=True, help="Only this axis; may be given again [all external drives].")
+@click.option(
+    "--watchdog", default=WATCHDOG, show_default=True, type=click.IntRange(1), help="Periods without a set point: off."
+)
+def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int) -> int:
+    """Simulate the external drives of a MACHINE in this process, for an engine in another one."""
+    return simulate(machine, url, axes, watchdog)
 
 
 @cli.command()
@@ -343,6 +356,10 @@ def _timing(figures: Mapping[str, Any]) -> dict[str, str]:
             rows[title] = f"median {median:.0f} µs, 99 % below {late:.0f} µs, longest {histogram['max'] / 1e3:.0f} µs"
     rows["commands"] = f"{figures['commands_applied']} applied, {figures['commands_refused']} refused"
     rows["dropped"] = f"{figures['snapshots_dropped']} states, {figures['feedback_dropped']} feedbacks"
+    if figures["set_points_dropped"] or figures["samples_refused"]:
+        rows["drives"] = (
+            f"{figures['set_points_dropped']} set points lost, {figures['samples_refused']} answers refused"
+        )
     return rows
 
 

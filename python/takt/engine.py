@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ import numpy as np
 
 from takt import _core
 from takt.axis import Axis
-from takt.errors import ConfigError, seconds, whole
+from takt.errors import ConfigError, DriveWarning, seconds, whole
 from takt.feedback import Feedback
 from takt.recording import Recording
 from takt.session import Recorder, Session
@@ -44,13 +45,23 @@ class Engine(Session):
     machine: the path of a machine file, or its text.
     period: s, instead of the machine file's.
     journal: keep the journal and a hash of the whole state after every cycle (`take_journal`, `take_hashes`).
+    url: LCM network of external drives, instead of the machine file's. Time stands still until they have answered.
     """
 
-    def __init__(self, machine: str | os.PathLike[str], *, period: float | None = None, journal: bool = False) -> None:
+    def __init__(
+        self,
+        machine: str | os.PathLike[str],
+        *,
+        period: float | None = None,
+        journal: bool = False,
+        url: str | None = None,
+    ) -> None:
         text, file_name = read_machine(machine)
         if period is not None:
             period = seconds(period, "a period")
-        self._core = _core.Engine(text, file_name, journal=journal, period_s=period)
+        described = json.loads(_core.load_machine(text, file_name))
+        drives_url = (url or described["lcm"]["url"]) if described["external"]["drives"] else None
+        self._core = _core.Engine(text, file_name, journal=journal, period_s=period, drives_url=drives_url)
         self._unfinished: dict[int, Feedback] = {}
         self._unreleased: list[Feedback] = []  # their release was refused
         self._core_recorders: dict[Recorder, _core.Recorder] = {}
@@ -88,6 +99,11 @@ class Engine(Session):
         """Commands applied since the last call: (cycle, ticket, lease in s, target, verb, arguments)."""
         return self._core.take_journal()
 
+    def take_drive_journal(self) -> list[tuple[int, int, int, dict[str, Any]]]:
+        """What external drives had measured, as it was taken since the last call: (cycle, number of the axis from 0,
+        cycle whose set point it answers, wires)."""
+        return self._core.take_drive_journal()
+
     def take_hashes(self) -> tuple[np.typing.NDArray[np.uint64], np.typing.NDArray[np.uint64]]:
         """Cycles since the last call, and the hash of the state after each."""
         return self._core.take_hashes()
@@ -120,9 +136,15 @@ class Engine(Session):
             self._scan()
         if self._programs or self._unreleased:
             cycles = 1
-        made: int = self._core.step(min(cycles, CHUNK), until_feedback)
+        while not (made := self._core.step(min(cycles, CHUNK), until_feedback)):
+            self._warn()  # external drives let it wait: time for a look at Ctrl-C, too
+        self._warn()
         self._take_feedback()
         return made
+
+    def _warn(self) -> None:
+        for sentence in self._core.take_complaints():
+            warnings.warn(sentence, DriveWarning, stacklevel=2)
 
     def _take_feedback(self) -> None:
         for ticket, cycle, state, reached, error_id, value in self._core.take_feedback():

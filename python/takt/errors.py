@@ -41,6 +41,10 @@ class ConnectionError(TaktError, builtins.ConnectionError):
     """The engine cannot be reached, or went away."""
 
 
+class DriveWarning(UserWarning):
+    """An external drive sent what cannot be used, or is not heard."""
+
+
 class ClosedError(TaktError):
     """The session was closed."""
 

@@ -28,6 +28,7 @@ KINDS: dict[str, Any] = {
     "takt/feedback": msgs.feedback,
     "takt/journal/start": msgs.journal_start,
     "takt/journal/command": msgs.journal_command,
+    "takt/journal/drive": msgs.journal_drive,
     "takt/journal/hashes": msgs.journal_hashes,
 }
 STATES = ("busy", "active", "done", "aborted", "error")
@@ -50,6 +51,7 @@ class Run:
     feedback: list[msgs.feedback] = field(default_factory=list)
     start: msgs.journal_start | None = None
     journal: list[msgs.journal_command] = field(default_factory=list)
+    drives: list[msgs.journal_drive] = field(default_factory=list)
     hashes: list[msgs.journal_hashes] = field(default_factory=list)
 
 
@@ -129,6 +131,8 @@ def _sort_in(runs: list[Run], message: Any) -> None:
         run.feedback.append(message)
     elif isinstance(message, msgs.journal_command):
         run.journal.append(message)
+    elif isinstance(message, msgs.journal_drive):
+        run.drives.append(message)
     elif isinstance(message, msgs.journal_hashes):
         run.hashes.append(message)
 

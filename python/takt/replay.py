@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from takt import _core, msgs
 from takt.lcmlog import LogError, Progress, Run, open_log, run_of
 
 CHUNK = 10_000  # cycles between two reports of progress
+WIRES = tuple(_core.servo_inputs())
 
 Hashes = tuple[npt.NDArray[np.int64], npt.NDArray[np.uint64]]  # cycles, rising, and the hash after each
 
@@ -78,6 +80,7 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
     comparable = _in_a_row(cycles)
     engine = _core.Engine(one.start.text.encode(), str(content.path), journal=True, period_s=one.start.period_s)
     commands = sorted(one.journal, key=lambda entry: entry.cycle)
+    drives = _Drives(engine, one)
     given = 0
     difference = None
     while difference is None and engine.cycle < comparable:
@@ -86,6 +89,7 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
             given += 1
         first = engine.cycle
         next_cycle = commands[given].cycle if given < len(commands) else comparable
+        next_cycle = min(next_cycle, drives.give(first))
         engine.step(min(comparable, first + CHUNK, next_cycle) - first)
         made = engine.take_hashes()[1]
         wrong = np.flatnonzero(made != recorded[first : first + len(made)])
@@ -94,11 +98,34 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
             difference = Difference(at, int(recorded[at]), int(made[wrong[0]]))
         engine.take_feedback()
         engine.take_journal()
+        engine.take_drive_journal()
         if progress is not None:
             progress(0.5 + 0.5 * engine.cycle / comparable)
     compared = comparable if difference is None else difference.cycle + 1
     name = json.loads(engine.machine_json)["name"]
     return ReplayResult(name, compared, known, given, one.start.period_s, one.start.version, difference, missing)
+
+
+class _Drives:
+    """Says what external drives had measured, without them."""
+
+    def __init__(self, engine: _core.Engine, run: Run) -> None:
+        self._engine = engine
+        axes = [axis["name"] for axis in json.loads(engine.machine_json)["axes"]]
+        self._axes = {name: index for index, name in enumerate(axes)}
+        self._entries = sorted(run.drives, key=lambda entry: entry.cycle)
+        self._given = 0
+
+    def give(self, cycle: int) -> int:
+        """Gives what this cycle took. The next cycle that took anything."""
+        while self._given < len(self._entries) and self._entries[self._given].cycle <= cycle:
+            feedback = self._entries[self._given].feedback
+            if feedback.axis not in self._axes:
+                raise LogError(f"the journal has a drive of axis {feedback.axis!r}, which the machine does not have")
+            wires = {name: getattr(feedback, name) for name in WIRES}
+            self._engine.hear(self._axes[feedback.axis], feedback.cycle, wires)
+            self._given += 1
+        return self._entries[self._given].cycle if self._given < len(self._entries) else sys.maxsize
 
 
 def _hashes(run: Run) -> Hashes:

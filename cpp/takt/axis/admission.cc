@@ -1,5 +1,6 @@
 // Commands as they arrive: carried out, buffered or refused.
 #include "takt/axis/cam_switch.h"
+#include "takt/axis/override.h"
 #include "takt/axis/probe.h"
 #include "takt/axis/sequence.h"
 #include "takt/axis/settings.h"
@@ -37,8 +38,7 @@ void ChangeJog(const Context& c, const Request& r, State& s) {
   const Beneath base(s);
   Plan plan;
   if (PlanJog(c, held, s, plan).failed()) return;
-  s.limited_by = plan.limited_by;
-  StartMotion(plan.profile, 0, FromCycleBefore(c), s);
+  StartMotion(plan, FromCycleBefore(c), s);
 }
 
 Status Jog(const Context& c, const Request& r, State& s) {
@@ -50,8 +50,9 @@ Status Jog(const Context& c, const Request& r, State& s) {
   Plan plan;
   const Status status = r.forward != r.backward ? PlanJog(c, r, s, plan) : Status::Ok();
   if (status.failed()) return status;
+  const std::optional<double> furthest = SurroundingsOfBoth(c, s).furthest;
   AbortAll(c, s);
-  if (s.plc != PlcState::kStandstill) ComeToRest(c, r.limits(), FromCycleBefore(c), s);
+  if (s.plc != PlcState::kStandstill) ComeToRest(c, r.limits(), FromCycleBefore(c), s, furthest);
   Grant(c, r, s);
   s.jog_armed = true;
   return Status::Ok();
@@ -68,7 +69,7 @@ Status TakeOver(const Context& c, const Request& r, State& s) {
     return Status::Ok();
   }
   Plan plan;
-  const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, r, nullptr, plan);
+  const Status status = PlanRequest(c.params, SurroundingsOfBoth(c, s), c.planner, s.setpoint, r, nullptr, plan);
   if (status.failed()) return status;
   AbortAll(c, s);
   TakeControl(c, r, plan, FromCycleBefore(c), s);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/axis/coordinates.h"
+#include "takt/axis/drive_link.h"
 #include "takt/axis/fit.h"
 #include "takt/axis/following.h"
 #include "takt/axis/sequence.h"
@@ -60,7 +61,9 @@ void WatchLease(const Context& c, State& s) {
 
 void Supervise(const Context& c, State& s) {
   if (s.encoder_error) Fail(c, ErrorId::kEncoder, true, s);
-  if (s.drive_fault || (s.loop_closed && !s.drive_ready)) Fail(c, ErrorId::kDrive, true, s);
+  const bool off = s.drive_fault || (s.loop_closed && !s.drive_ready);
+  if (off && s.sampling.link == DriveLink::kHeard) Fail(c, ErrorId::kDrive, true, s);
+  if (s.blind || s.sampling.link == DriveLink::kLost) WatchLink(c, s);
   if (!s.loop_closed) return;
   WatchDeviation(c, s);
   if (s.limit_positive || s.limit_negative) WatchSwitches(c, s);
@@ -126,6 +129,7 @@ void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
       s.motion.arrived_cycle = c.cycle.count;
       s.last_sense = SenseAtEnd(s.motion.profile, s.last_sense);
     }
+    if (s.motion.held) return;
     Conclude(c, late_s, s);
     if (s.motion.arrived || FollowsDemand(s.active.kind)) return;  // no other motion with an end has begun
     GuardLimits(c, before, s);
@@ -194,7 +198,7 @@ void MoveBoth(const Context& c, State& s) {
 
 void FinishReset(const Context& c, State& s) {
   if (!s.reset_pending) return;
-  const bool stopped = !s.loop_closed || AtRest(s);
+  const bool stopped = !s.loop_closed || (AtRest(s) && !s.blind);
   if (s.plc == PlcState::kErrorStop && !stopped) return;
   s.reset_pending = false;
   if (s.drive_fault || s.encoder_line_error) {
@@ -218,13 +222,21 @@ State MakeState(const AxisParams& params) noexcept {
   return s;
 }
 
-void Sense(const Context& c, const ServoInputs& in, State& s) noexcept {
+void Sense(const Context& c, const ServoInputs& in, State& s, const Sampling& sampling) noexcept {
   const InputSense& sense = c.params.inputs;
+  const bool resumes = sampling.link == DriveLink::kHeard && s.sampling.link != DriveLink::kHeard;
+  const bool lost = sampling.link == DriveLink::kLost;
+  s.sampling = sampling;
   EncoderOutputs measured;
-  Step(c.params.encoder, {in.counts, in.encoder_error, LargestStep(c)}, c.cycle, s.encoder, measured);
+  Step(c.params.encoder, {in.counts, in.encoder_error, LargestStep(c), sampling.step}, c.cycle, s.encoder, measured);
   s.encoder_error = measured.error;
   s.encoder_line_error = in.encoder_error;
-  s.actual = {measured.position - s.origin, measured.velocity, 0};
+  const KinematicState sampled{measured.position - s.origin, measured.velocity, 0};
+  if (s.blind || lost || sampling.age > 0) {
+    Locate(c, sampled, s);
+  } else {
+    s.actual = sampled;
+  }
   SenseTorque(s);
   s.due = s.setpoint.position;
   s.following_error = s.loop_closed ? s.due - s.actual.position : 0;
@@ -238,10 +250,11 @@ void Sense(const Context& c, const ServoInputs& in, State& s) noexcept {
   s.index_pulses = in.index_pulses;
   s.index_counts = in.index_counts;
   if (measured.error && c.params.encoder.type == EncoderType::kIncremental) s.homing.homed = false;
-  s.drive_ready = in.drive_ready;
-  s.drive_fault = in.drive_fault;
+  s.drive_ready = in.drive_ready && !lost;
+  s.drive_fault = in.drive_fault || lost;
   s.torque_nm = in.torque_nm;
-  SenseProbe(c, in, s);
+  if (resumes) ForgetSample(in, s.probe);
+  if (sampling.step > 0) SenseProbe(c, in, s);
 }
 
 void Move(const Context& c, State& s) noexcept {
@@ -266,8 +279,13 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   // The new set point is the one for the end of this cycle. What is measured now is held against the one before, and
   // the speed fed forward is the one that leads from there to the new one.
   const double mean_velocity = (s.setpoint.position - s.due) / c.cycle.period_s;
-  Step(p.loop, {p.drive.mode, s.loop_closed && engine_closes, p.drive.invert, s.due, mean_velocity, s.actual.position},
-       c.cycle, s.loop, loop);
+  const ControlLoopInputs inputs{p.drive.mode,     s.loop_closed && engine_closes, p.drive.invert, s.due, mean_velocity,
+                                 s.actual.position};
+  if (s.blind) {
+    Step(SpeedAlone(p.loop), inputs, c.cycle, s.loop, loop);
+  } else {
+    Step(p.loop, inputs, c.cycle, s.loop, loop);
+  }
   out.mode = mode;
   out.position_counts = sign * CountsAt(p.encoder, s.setpoint.position + s.origin);
   out.velocity_counts_s = torque          ? std::abs(CountRateAt(p.encoder, s.active.velocity))
@@ -328,6 +346,7 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.following_error = s.following_error;
   out.voltage_v = s.voltage_v;
   out.torque_nm = s.torque_nm;
+  out.override_factor = s.override_factors.velocity;
   out.active_command = s.active.ticket;
   out.error = s.error;
   out.state = s.plc;

@@ -33,8 +33,8 @@ struct Context {
 // As it stands when power comes on.
 State MakeState(const AxisParams& params) noexcept;
 
-// sense: raw inputs become positions and switches.
-void Sense(const Context& context, const ServoInputs& inputs, State& state) noexcept;
+// sense: raw inputs become positions and switches. Of a drive in another process they may be older ones.
+void Sense(const Context& context, const ServoInputs& inputs, State& state, const Sampling& sampling = {}) noexcept;
 
 // command: carries a command out, buffers it or refuses it; reports either way. `lease_s` > 0: see Renew.
 void Apply(const Context& context, Ticket ticket, double lease_s, const Command& command, State& state) noexcept;

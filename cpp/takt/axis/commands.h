@@ -21,6 +21,6 @@ using Command =
                  CamOut, PositionProfile, VelocityProfile, AccelerationProfile, StepAbsSwitch, StepLimitSwitch,
                  StepBlock, StepRefPulse, StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch,
                  StepRefFlyingRefPulse, SetConstants, WriteParameter, ReadParameter, SetSoftLimits, DirectOutput,
-                 SetPosition, TouchProbe, AbortTrigger, Touch, DigitalCamSwitch>;
+                 SetPosition, SetOverride, TouchProbe, AbortTrigger, Touch, DigitalCamSwitch>;
 
 }  // namespace takt::axis

@@ -41,7 +41,7 @@ bool Take(const Encoder& p, const EncoderInputs& in, EncoderState& s, double& di
   } else {
     const std::int64_t step = Difference(p, s.word, word);
     distance = static_cast<double>(p.invert ? -step : step) / p.increments_per_unit;
-    const double largest = in.largest_step * (static_cast<double>(s.missed) + 1);
+    const double largest = in.largest_step * static_cast<double>(s.missed + in.cycles);
     if (!s.trusting && in.largest_step > 0 && std::abs(distance) > largest) return false;
     s.count += step;
     if (s.trusting) distance = 0;
@@ -56,11 +56,12 @@ bool Take(const Encoder& p, const EncoderInputs& in, EncoderState& s, double& di
 
 void Step(const Encoder& p, const EncoderInputs& in, Cycle cycle, EncoderState& s, EncoderOutputs& out) noexcept {
   double distance = 0;
-  out.error = in.error || !Take(p, in, s, distance);
+  const bool fresh = in.cycles > 0;
+  out.error = fresh ? in.error || !Take(p, in, s, distance) : s.missed > 0;
   if (out.error) {
-    ++s.missed;
-  } else {
-    const double time = cycle.period_s * (static_cast<double>(s.missed) + 1);
+    s.missed += in.cycles;
+  } else if (fresh) {
+    const double time = cycle.period_s * static_cast<double>(s.missed + in.cycles);
     const double share = p.velocity_filter_s > 0 ? -std::expm1(-time / p.velocity_filter_s) : 1;
     s.velocity += (distance / time - s.velocity) * share;
     s.missed = 0;

@@ -28,6 +28,7 @@ struct EncoderInputs {
   std::uint32_t counts = 0;  // as they come
   bool error = false;        // ERR line, or no answer
   double largest_step = 0;   // u the axis can move in one cycle at most; 0: any step is believed
+  std::uint32_t cycles = 1;  // since the sample before; 0: there is no new one
 };
 
 struct EncoderState {

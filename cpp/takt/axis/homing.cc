@@ -222,8 +222,9 @@ Status BeginFlying(const Context& c, Ticket ticket, bool pulse, const HomingRequ
 // Under its new numbers a motion with an end may lead out of the SW limits. (Those without one are watched cycle by
 // cycle.)
 void KeepInside(const Context& c, State& s) {
-  const double end = s.motion.profile.end().position + AddedAtEnd(s);
-  if ((s.motion.arrived && !s.superimposed) || Inside(c.params.limits, end)) return;
+  const bool waits = s.motion.held && s.active.positions();  // the override holds it back from there
+  const double end = (waits ? s.motion.target : s.motion.profile.end().position) + AddedAtEnd(s);
+  if ((s.motion.arrived && !waits && !s.superimposed) || Inside(c.params.limits, end)) return;
   const bool above = c.params.limits.upper && end > *c.params.limits.upper;
   if (above ? end < s.setpoint.position : end > s.setpoint.position) return;  // it comes back
   Fail(c, above ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
@@ -271,7 +272,9 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
   if (r.kind == RequestKind::kFinishHoming && r.value != 0) {
     Request leave = r;
     leave.kind = RequestKind::kMoveRelative;
-    const Status status = PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, leave, nullptr, plan);
+    Surroundings around = SurroundingsOf(c, s);
+    around.factors = {};
+    const Status status = PlanRequest(c.params, around, c.planner, s.setpoint, leave, nullptr, plan);
     if (status.failed()) return status;
   }
   if (aborts) AbortAll(c, s);

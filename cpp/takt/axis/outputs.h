@@ -20,6 +20,7 @@ struct Outputs {
   double torque_nm = 0;            // Nm, as the drive reports it
   double probe_position = 0;       // u, where the touch probe was captured last
   double covered_distance = 0;     // u, by the motion on top of the one in progress; 0: there is none
+  double override_factor = 1;      // of the velocity; 0: held
   Ticket active_command = 0;       // 0: none
   ErrorId error = ErrorId::kNone;  // fault of the axis (not of a command)
   PlcState state = PlcState::kDisabled;

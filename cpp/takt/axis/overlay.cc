@@ -6,6 +6,7 @@
 
 #include "takt/axis/fit.h"
 #include "takt/axis/overlay_plan.h"
+#include "takt/axis/promise.h"
 #include "takt/axis/request_maker.h"
 #include "takt/axis/sequence.h"
 #include "takt/core/describe.h"
@@ -55,10 +56,15 @@ BaseAhead AheadOf(const Context& c, double late_s, const State& s) {
   return {&s.motion.profile, Elapsed(c, s) - late_s, now};
 }
 
+// Where the motion beneath ends that has an end: an override may hold it back from there.
+double BaseEnd(const State& s) {
+  return s.motion.held && s.active.positions() ? s.motion.target : s.motion.profile.end().position;
+}
+
 // Where everything together would end, as far as that is known now.
 double EndWith(double added, const State& s) {
   const KinematicState& now = s.superimposed ? s.overlay.base : s.setpoint;
-  return (IsEndless(s) ? now.position : s.motion.profile.end().position) + added;
+  return (IsEndless(s) ? now.position : BaseEnd(s)) + added;
 }
 
 // An axis that moves on without an end is watched cycle by cycle.
@@ -90,8 +96,27 @@ Status PlanHalt(const Context& c, const KinematicState& from, const Limits& limi
   return c.planner.ToPosition(from, inside - base, 0, own, out);
 }
 
-Limits LimitsOf(const OverlayState& o) {
-  return {o.velocity, o.acceleration, o.deceleration, o.jerk};
+// The command as the overrides let it be.
+Request Overridden(const Context& c, const OverlayState& o) {
+  Request r;
+  r.kind = RequestKind::kMoveRelative;
+  r.velocity = o.velocity;
+  r.acceleration = o.acceleration;
+  r.deceleration = o.deceleration;
+  r.jerk = o.jerk;
+  LimitedBy clamped = LimitedBy::kNothing;
+  return Scaled(c.params, o.factors, r, clamped);
+}
+
+bool IsHeld(const OverlayState& o) {
+  return o.factors.velocity == 0 && !o.halting;
+}
+
+// Plans what is still to be added, from `from` on, `late_s` before this cycle; held, that it comes to rest.
+Status PlanRest(const Context& c, const OverlayState& o, const KinematicState& from, const Limits& limits,
+                double late_s, const State& s, Profile& out) {
+  if (IsHeld(o)) return c.planner.Stop(from, limits, out);
+  return PlanOverlay(c.params, c.planner, AheadOf(c, late_s, s), from, o.target, limits, out);
 }
 
 Status MayBeOnTop(const Context& c, const State& s) {
@@ -113,33 +138,39 @@ void RememberBase(State& s) {
   s.overlay.base_start_offset_s = s.motion.start_offset_s;
 }
 
-void Begin(const Context& c, Ticket ticket, const KinematicState& from, const Profile& profile, State& s) {
+// Puts a planned motion on top, in the place of what is there.
+void Begin(const Context& c, Ticket ticket, const KinematicState& from, OverlayState planned, State& s) {
   OverlayState& o = s.overlay;
   if (s.superimposed) {
     Report(c, o.ticket, FeedbackState::kAborted, ErrorId::kNone, false, from.position - o.begin);
-  } else {
-    o = OverlayState{};
-    o.base = s.setpoint;
+    planned.chase = o.chase;
+    planned.limited_by = o.limited_by;
   }
+  planned.base = s.superimposed ? o.base : s.setpoint;
+  planned.start_cycle = c.cycle.count - 1;
+  planned.ticket = ticket;
+  planned.begin = from.position;
+  o = planned;
   s.superimposed = true;
-  o.profile = profile;
-  o.start_cycle = c.cycle.count - 1;
-  o.ticket = ticket;
-  o.begin = from.position;
-  o.covered = 0;
   RememberBase(s);
   if (s.plc == PlcState::kStandstill) Enter(s, PlcState::kDiscreteMotion);
-  Report(c, ticket, FeedbackState::kActive, ErrorId::kNone, false, profile.duration());
+  Report(c, ticket, FeedbackState::kActive, ErrorId::kNone, false, o.profile.duration());
 }
 
-// The motion beneath became another one: what is left to add is planned for that.
+// The motion beneath became another one, or the overrides: what is left to add is planned for that. Ramps that became
+// weaker do not take it beyond its target.
 void PlanAgain(const Context& c, const KinematicState& added, State& s) {
   OverlayState& o = s.overlay;
+  const bool overridden = o.factors != s.override_factors;
   RememberBase(s);
-  if (o.halting || FollowsNow(s)) return;
-  const Status status =
-      PlanOverlay(c.params, c.planner, AheadOf(c, 0, s), added, o.profile.end().position, LimitsOf(o), o.profile);
-  if (status.ok()) o.start_cycle = c.cycle.count;
+  o.factors = s.override_factors;
+  if (o.halting || (FollowsNow(s) && !overridden)) return;
+  Request r = Overridden(c, o);
+  const bool ahead = added.velocity * (o.target - added.position) > 0;
+  if (overridden && ahead && !StopsBy(added, r.limits(), o.target)) {
+    r = Strengthened(c.params, added, r, {o.target, true});
+  }
+  if (PlanRest(c, o, added, r.limits(), 0, s, o.profile).ok()) o.start_cycle = c.cycle.count;
 }
 
 // Makes what was added part of the motion beneath.
@@ -164,16 +195,16 @@ void End(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
 bool StaysInside(const Context& c, const State& s) {
   if (FollowsNow(s) || s.plc == PlcState::kContinuousMotion) return true;  // watched cycle by cycle
   const Profile::Range range = s.motion.profile.PositionRange(Elapsed(c, s));
-  const double end = trajectory::StopPosition(s.motion.profile.end(), c.params.planner_limits());
-  return Inside(c.params.limits, std::min(range.min, end) + AddedAtEnd(s)) &&
-         Inside(c.params.limits, std::max(range.max, end) + AddedAtEnd(s));
+  const double stop = trajectory::StopPosition(s.motion.profile.end(), c.params.planner_limits());
+  return Inside(c.params.limits, std::min({range.min, stop, BaseEnd(s)}) + AddedAtEnd(s)) &&
+         Inside(c.params.limits, std::max({range.max, stop, BaseEnd(s)}) + AddedAtEnd(s));
 }
 
 // All is planned to be added: whether it is.
 void EndWhenDue(const Context& c, State& s) {
   const OverlayState& o = s.overlay;
   const double over_s = OverlayTime(c, o) - o.profile.duration();
-  if (over_s < 0) return;
+  if (over_s < 0 || IsHeld(o)) return;
   const bool alone = s.active.kind == RequestKind::kNone && Stands(o.base);
   if (o.chase.in_step) {
     if (!StaysInside(c, s)) return;
@@ -207,7 +238,7 @@ KinematicState NextSetpoint(const Context& c, const KinematicState& before, Stat
       Chase({c.params, c.planner, own, c.cycle.period_s}, ChaseMode::kPosition, before, demand, o.chase);
   o.limited_by = WhatHoldsBack(own, demand, o);
   const bool other = o.base_start_cycle != s.motion.start_cycle || o.base_start_offset_s != s.motion.start_offset_s;
-  if (other) PlanAgain(c, added, s);
+  if (other || o.factors != s.override_factors) PlanAgain(c, added, s);
   return next;
 }
 
@@ -265,7 +296,7 @@ bool Carries(const Request& r) noexcept {
 }
 
 double AddedAtEnd(const State& s) noexcept {
-  return s.superimposed ? s.overlay.profile.end().position : 0;
+  return s.superimposed ? s.overlay.target : 0;
 }
 
 bool Fill(const Maker& m, const MoveSuperimposed& c) {
@@ -286,17 +317,17 @@ Status CarryOut(const Context& c, Ticket ticket, const MoveSuperimposed& command
   Request r;
   Refusal why;
   Fill(Maker{c.params, r, why}, command);
-  Profile profile;
-  const Status status =
-      PlanOverlay(c.params, c.planner, AheadOf(c, c.cycle.period_s, s), from, target, r.limits(), profile);
+  OverlayState planned;
+  planned.factors = s.override_factors;
+  planned.target = target;
+  planned.velocity = r.velocity;
+  planned.acceleration = r.acceleration;
+  planned.deceleration = r.deceleration;
+  planned.jerk = r.jerk;
+  const Limits limits = Overridden(c, planned).limits();
+  const Status status = PlanRest(c, planned, from, limits, c.cycle.period_s, s, planned.profile);
   if (status.failed()) return status;
-  Begin(c, ticket, from, profile, s);
-  OverlayState& o = s.overlay;
-  o.velocity = r.velocity;
-  o.acceleration = r.acceleration;
-  o.deceleration = r.deceleration;
-  o.jerk = r.jerk;
-  o.halting = false;
+  Begin(c, ticket, from, planned, s);
   return Status::Ok();
 }
 
@@ -311,10 +342,12 @@ Status CarryOut(const Context& c, Ticket ticket, const HaltSuperimposed& command
   Refusal why;
   Fill(Maker{c.params, r, why}, command);
   const KinematicState from = Added(c, s);
-  Profile profile;
-  if (const Status status = PlanHalt(c, from, r.limits(), s, profile); status.failed()) return status;
-  Begin(c, ticket, from, profile, s);
-  s.overlay.halting = true;
+  OverlayState planned;
+  if (const Status status = PlanHalt(c, from, r.limits(), s, planned.profile); status.failed()) return status;
+  planned.factors = s.override_factors;
+  planned.target = planned.profile.end().position;
+  planned.halting = true;
+  Begin(c, ticket, from, planned, s);
   return Status::Ok();
 }
 
@@ -328,6 +361,8 @@ void describe(Description<OverlayState>& d) {
   d.internal<&O::base_start_offset_s>(unit::s, "... and how long before that.");
   d.internal<&O::chase>("The following of the sum.");
   d.internal<&O::ticket>("Of the command.");
+  d.internal<&O::factors>("Overrides for which it was planned.");
+  d.internal<&O::target>(unit::u, "What is to be added in all.");
   d.internal<&O::begin>(unit::u, "What had been added before the command.");
   d.internal<&O::covered>(unit::u, "What was added by the command.");
   d.internal<&O::velocity>(unit::u_s, "Largest velocity added.");

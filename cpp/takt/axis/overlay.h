@@ -12,6 +12,7 @@
 //   - The distance is done when all of it is added and the axis is in step with the sum. It is then made part of the
 //     motion beneath, which ends so much further on: the axis ends at its end + distance, exactly. Commands that
 //     begin while it is in progress end so much further on, too; those that begin afterwards do not.
+//   - Overrides (AX-51) act on both. One that holds the axis holds what lies on top, too, until it goes on.
 //   - What aborts the motion in progress begins from the set point of the axis, and aborts what lies on top: what was
 //     covered stays.
 //
@@ -24,6 +25,7 @@
 
 #include "takt/axis/chase.h"
 #include "takt/axis/commands/overlay.h"
+#include "takt/axis/override.h"
 #include "takt/core/feedback.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
@@ -43,6 +45,8 @@ struct OverlayState {
   double base_start_offset_s = 0;      // ... and s
   ChaseState chase;
   Ticket ticket = 0;
+  Override factors;    // for which it was planned
+  double target = 0;   // u, what is to be added in all
   double begin = 0;    // u, what had been added before the command
   double covered = 0;  // u, by the command
   // u/s ...: the limits of the command.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "takt/axis/fit.h"
+#include "takt/axis/promise.h"
 
 namespace takt::axis {
 
@@ -18,6 +19,11 @@ constexpr int kBisections = 12;  // of a blending velocity: to 1/4096 of the vel
 
 double Sense(double x) {
   return x < 0 ? -1.0 : 1.0;
+}
+
+// u/s, what the acceleration there is still adds to the speed in this sense until it is taken away.
+double Gained(const KinematicState& from, double sense, double jerk) {
+  return jerk > 0 && sense * from.acceleration > 0 ? from.acceleration * from.acceleration / (2 * jerk) : 0;
 }
 
 // Never backwards and never past the end: what a move that is to be left with a velocity must be.
@@ -84,86 +90,76 @@ double TakeOverSpeed(const AxisParams& params, const Request& request, double ta
   return FastestThatStops(speed, braking, room);
 }
 
+// To `target`, left with `speed` of this sense. An axis that is faster than asked the planner brakes to that velocity
+// first, as hard as it may, even where that takes it backwards: then gently, or, too near for that, to the target in
+// one go (`limited_by`).
+Status PlanTo(Planner& planner, const KinematicState& from, double target, double sense, double speed,
+              const Limits& limits, Plan& out) {
+  const Status status = planner.ToPosition(from, target, sense * speed, limits, out.profile);
+  const double fastest = sense * from.velocity + Gained(from, sense, limits.jerk);
+  if (status.failed() || fastest <= limits.velocity || RunsStraight(out.profile, sense)) return status;
+  Profile gently;
+  Profile rest;
+  if (planner.ToVelocity(from, sense * limits.velocity, limits, gently).ok() &&
+      planner.ToPosition(gently.end(), target, sense * speed, limits, rest).ok() && gently.Append(rest) &&
+      RunsStraight(gently, sense)) {
+    out.profile = gently;
+    return status;
+  }
+  Limits at_speed = limits;
+  at_speed.velocity = fastest;
+  Profile at_once;
+  if (planner.ToPosition(from, target, sense * speed, at_speed, at_once).ok() && RunsStraight(at_once, sense)) {
+    out.profile = at_once;
+    out.limited_by = LimitedBy::kDistance;
+  }
+  return status;
+}
+
 // To `target`, left with `speed` in the sense of travel: at the request's velocity first, then up to a higher `speed`
 // so late that it is reached at the target.
 bool PlanLeaving(Planner& planner, const KinematicState& from, double target, double sense, double speed,
-                 const Limits& limits, Profile& out) {
-  Profile profile;
-  if (speed <= limits.velocity) {
-    if (planner.ToPosition(from, target, sense * speed, limits, profile).failed() || !RunsStraight(profile, sense))
-      return false;
-    out = profile;
-    return true;
-  }
-  Limits faster = limits;
-  faster.velocity = speed;
+                 const Limits& limits, Plan& out) {
+  const double first = std::min(speed, limits.velocity);
   Profile ramp;
-  if (planner.ToVelocity({0, sense * limits.velocity, 0}, sense * speed, faster, ramp).failed()) return false;
+  if (speed > first) {
+    Limits faster = limits;
+    faster.velocity = speed;
+    if (planner.ToVelocity({0, sense * first, 0}, sense * speed, faster, ramp).failed()) return false;
+  }
   const double begin = target - ramp.end().position;
-  if (planner.ToPosition(from, begin, sense * limits.velocity, limits, profile).failed() ||
-      !RunsStraight(profile, sense))
+  Plan plan = out;
+  if (PlanTo(planner, from, begin, sense, first, limits, plan).failed() || !RunsStraight(plan.profile, sense)) {
     return false;
-  ramp.Shift(begin);
-  if (!profile.Append(ramp)) return false;
-  profile.SnapEnd({target, sense * speed, 0});
-  out = profile;
+  }
+  if (speed > first) {
+    ramp.Shift(begin);
+    if (!plan.profile.Append(ramp)) return false;
+    plan.profile.SnapEnd({target, sense * speed, 0});
+  }
+  out = plan;
   return true;
 }
 
 // The plan with the highest speed at its end not above `speed`; standing still at the end is always one.
 Status PlanBlended(Planner& planner, const KinematicState& from, double target, double sense, double speed,
                    const Limits& limits, Plan& out) {
-  if (PlanLeaving(planner, from, target, sense, speed, limits, out.profile)) return Status::Ok();
+  if (PlanLeaving(planner, from, target, sense, speed, limits, out)) return Status::Ok();
   out.limited_by = LimitedBy::kDistance;
   double low = 0;
   double high = std::min(speed, limits.velocity);
-  const bool at_own_velocity = PlanLeaving(planner, from, target, sense, high, limits, out.profile);
+  const bool at_own_velocity = PlanLeaving(planner, from, target, sense, high, limits, out);
   if (at_own_velocity && speed <= high) return Status::Ok();
   if (at_own_velocity) {  // more than its own velocity, if not all of what was asked
     low = high;
     high = speed;
   }
-  const Status standing = at_own_velocity ? Status::Ok() : planner.ToPosition(from, target, 0, limits, out.profile);
+  const Status standing = at_own_velocity ? Status::Ok() : PlanTo(planner, from, target, sense, 0, limits, out);
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (low + high);
-    (PlanLeaving(planner, from, target, sense, middle, limits, out.profile) ? low : high) = middle;
+    (PlanLeaving(planner, from, target, sense, middle, limits, out) ? low : high) = middle;
   }
   return low > 0 ? Status::Ok() : standing;
-}
-
-// From `from` on to what the request asks for, with its own limits; positions: to `out.target`.
-Status PlanOn(const AxisParams& params, Planner& planner, const KinematicState& from, const Request& request,
-              const Request* next, std::int8_t last_sense, Plan& out) {
-  const Limits limits = request.limits();
-  if (request.kind == RequestKind::kMoveVelocity) {
-    Limits ramps = limits;
-    ramps.velocity = params.limits.velocity;  // the request's own may be 0, which is no limit
-    return planner.ToVelocity(from, SenseOf(request, last_sense) * request.velocity, ramps, out.profile);
-  }
-  if (!request.positions()) return planner.Stop(from, limits, out.profile);
-  const double sense = Sense(out.target - from.position);
-  double speed = 0;
-  if (request.continuous()) {
-    const double room = RoomToLimit(params.limits, out.target, sense);
-    speed = room > 0 ? FastestThatStops(request.end_velocity, params.planner_limits(), room) : 0;
-    if (speed < request.end_velocity) out.limited_by = LimitedBy::kPosition;
-  } else if (next) {
-    speed = TakeOverSpeed(params, request, out.target, sense, *next);
-    if (speed == 0) out.limited_by = LimitedBy::kDistance;
-  }
-  if (speed > 0) return PlanBlended(planner, from, out.target, sense, speed, limits, out);
-  const Status status = planner.ToPosition(from, out.target, 0, limits, out.profile);
-  if (status.ok() && sense * from.velocity > limits.velocity && !RunsStraight(out.profile, sense)) {
-    // Faster than asked, and too near to slow down to that first: brake to the target in one go, if that is straight.
-    Limits at_speed = limits;
-    at_speed.velocity = std::abs(from.velocity);
-    Profile straight;
-    if (planner.ToPosition(from, out.target, 0, at_speed, straight).ok() && RunsStraight(straight, sense)) {
-      out.profile = straight;
-      out.limited_by = LimitedBy::kDistance;
-    }
-  }
-  return status;
 }
 
 // How a plan begins, from nothing special to all that the axis can do. Only as much as is needed is taken from the
@@ -187,21 +183,78 @@ Profile Open(const AxisParams& params, Planner& planner, const KinematicState& f
   return profile;
 }
 
+// Left otherwise than planned: to `speed`, and on beyond the target however far that has come. False: it does not get
+// there.
+bool PlanPast(const AxisParams& params, Planner& planner, const KinematicState& from, double target, double sense,
+              double speed, const Limits& limits, Profile& out) {
+  if (sense * from.velocity <= 0) return false;
+  Limits ramps = limits;
+  ramps.velocity = std::max(limits.velocity, speed);
+  Profile whole;
+  for (const Opening opening : {Opening::kNone, Opening::kEase}) {
+    whole = Open(params, planner, from, opening);
+    Profile ramp;
+    if (planner.ToVelocity(whole.end(), sense * speed, ramps, ramp).failed() || !whole.Append(ramp)) return false;
+    // Beyond the target, too: there it goes on with the acceleration that it has.
+    if (Breaks(params, from, whole, {.position = false}) == LimitedBy::kNothing) break;
+  }
+  const double t = whole.TimeAt(target);
+  const double left = sense * (target - whole.end().position);
+  if (!std::isnan(t)) {
+    whole.Cut(t);
+  } else if (speed == 0 || !whole.Append(left / speed, 0)) {
+    return false;
+  }
+  whole.SnapEnd({target, whole.end().velocity, whole.end().acceleration});
+  if (sense * whole.end().velocity <= 0) return false;
+  out = whole;
+  return true;
+}
+
+// From `from` on to what the request asks for, with its own limits; positions: to `out.target`.
+Status PlanOn(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+              const Request& request, const Request* next, Plan& out) {
+  const Limits limits = request.limits();
+  if (request.kind == RequestKind::kMoveVelocity) {
+    Limits ramps = limits;
+    ramps.velocity = params.limits.velocity;  // the request's own may be 0, which is no limit
+    return planner.ToVelocity(from, SenseOf(request, around.last_sense) * request.velocity, ramps, out.profile);
+  }
+  if (!request.positions()) return planner.Stop(from, limits, out.profile);
+  const double sense = Sense(out.target - from.position);
+  double speed = 0;
+  if (request.continuous()) {
+    const double room = RoomToLimit(params.limits, out.target, sense);
+    speed = room > 0 ? FastestThatStops(request.end_velocity, params.planner_limits(), room) : 0;
+    if (speed < request.end_velocity) out.limited_by = LimitedBy::kPosition;
+  } else if (next) {
+    speed = TakeOverSpeed(params, request, out.target, sense, *next);
+    if (speed == 0) out.limited_by = LimitedBy::kDistance;
+  }
+  const Status status = speed > 0 ? PlanBlended(planner, from, out.target, sense, speed, limits, out)
+                                  : PlanTo(planner, from, out.target, sense, 0, limits, out);
+  if (around.passes && (status.failed() || !RunsStraight(out.profile, sense)) &&
+      PlanPast(params, planner, from, out.target, sense, speed, limits, out.profile)) {
+    return Status::Ok();
+  }
+  return status;
+}
+
 Demands DemandsOn(const Request& request) {
   const bool endless = request.kind == RequestKind::kMoveVelocity;
   return {.position = !endless, .straight = !endless && !request.positions()};
 }
 
 // The first opening with which the plan keeps what it must; if none does, the strongest.
-Status PlanOpened(const AxisParams& params, Planner& planner, const KinematicState& from, const Request& request,
-                  const Request* next, std::int8_t last_sense, Plan& out) {
+Status PlanOpened(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                  const Request& request, const Request* next, Plan& out) {
   const bool endless = request.kind == RequestKind::kMoveVelocity;
   LimitedBy broken = LimitedBy::kNothing;
   for (const Opening opening : {Opening::kNone, Opening::kEase, Opening::kStop}) {
     if (opening == Opening::kStop && endless) break;
     Plan plan{.profile = {}, .target = out.target, .limited_by = broken};
     Profile whole = Open(params, planner, from, opening);
-    const Status status = PlanOn(params, planner, whole.end(), request, next, last_sense, plan);
+    const Status status = PlanOn(params, around, planner, whole.end(), request, next, plan);
     if (opening == Opening::kNone && status.failed()) return status;
     if (status.failed() || !whole.Append(plan.profile)) continue;
     plan.profile = whole;
@@ -210,6 +263,108 @@ Status PlanOpened(const AxisParams& params, Planner& planner, const KinematicSta
     if (broken == LimitedBy::kNothing) break;
   }
   return Status::Ok();
+}
+
+// What of the motion in progress a request must keep.
+Promises KeptFor(const Surroundings& around, const KinematicState& from, const Request& request, double target) {
+  const double sense = SenseOfTravel(from);
+  const bool stops = request.kind == RequestKind::kHalt || request.kind == RequestKind::kStop;
+  const bool onwards =
+      request.positions() ? sense * (target - from.position) >= 0 : SenseOf(request, around.last_sense) == int(sense);
+  Promises kept;
+  kept.straight = (around.again || around.committed || around.furthest) && onwards;
+  if (around.committed && request.positions()) kept.furthest = target;
+  const bool beyond = around.furthest && sense * (target - *around.furthest) > Rounding(target);
+  if (around.furthest && (stops || (request.positions() && !beyond))) kept.furthest = around.furthest;
+  return kept;
+}
+
+// With ramps that keep what was promised: those of the request, or stronger ones.
+Status PlanKept(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                const Request& request, const Request* next, const Promises& kept, Plan& out) {
+  const Status status = PlanOpened(params, around, planner, from, request, next, out);
+  if (status.failed() || !BreaksPromise(params, kept, out.profile)) return status;
+  const Request stronger = Strengthened(params, from, request, kept);
+  Plan plan{.profile = {}, .target = out.target};
+  if (PlanOpened(params, around, planner, from, stronger, next, plan).failed()) return status;
+  out = plan;
+  out.limited_by = LimitedBy::kDistance;
+  return status;
+}
+
+// Where the move behind the one in control ends, if the motion in progress already runs on towards that.
+std::optional<double> PassingTo(const AxisParams& params, const Surroundings& around, const KinematicState& from,
+                                double target, const Request* next) {
+  if (!around.passes || !next || !next->positions()) return std::nullopt;
+  const double sense = Sense(target - from.position);
+  const double room = RoomToTarget(params, target, sense, *next);
+  return room > 0 ? std::optional(target + sense * room) : std::nullopt;
+}
+
+// Past the target so that the move behind it can still stop where it was promised to.
+void PlanPassing(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                 const Request& request, const Request& next, const Promises& kept, Plan& out) {
+  const Request stronger = Strengthened(params, from, request, kept);
+  Plan plan{.profile = {}, .target = out.target};
+  if (PlanOpened(params, around, planner, from, stronger, &next, plan).ok() &&
+      StopsBy(plan.profile.end(), params.planner_limits(), *kept.furthest)) {
+    out = plan;
+  } else {
+    const double sense = Sense(out.target - from.position);
+    PlanPast(params, planner, from, out.target, sense, 0, stronger.limits(), out.profile);
+  }
+  out.limited_by = LimitedBy::kDistance;
+}
+
+// `request` is scaled, and moves.
+Status PlanMoving(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                  const Request& request, const Request* next, Plan& out) {
+  Promises kept = KeptFor(around, from, request, out.target);
+  const Status status = PlanKept(params, around, planner, from, request, next, kept, out);
+  kept.furthest = PassingTo(params, around, from, out.target, next);
+  if (status.ok() && kept.furthest && !StopsBy(out.profile.end(), next->limits(), *kept.furthest)) {
+    PlanPassing(params, around, planner, from, request, *next, kept, out);
+  }
+  if (status.ok() && request.positions() && Overshoots(out.profile, out.target)) {
+    out.limited_by = LimitedBy::kOvershoot;
+  }
+  return status;
+}
+
+// To rest where the override holds the request; beyond its target where the next one goes on.
+Status PlanHeld(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                const Request& request, const Request* next, Plan& out) {
+  const double sense = Sense(out.target - from.position);
+  Promises kept = KeptFor(around, from, request, out.target);
+  Request braking = request;
+  if (around.passes) {
+    Promises passing = kept;
+    passing.furthest = PassingTo(params, around, from, out.target, next);
+    braking = Strengthened(params, from, request, passing);
+    out.limited_by = LimitedBy::kOverride;
+    if (PlanPast(params, planner, from, out.target, sense, 0, braking.limits(), out.profile)) return Status::Ok();
+  }
+  braking.kind = RequestKind::kHalt;
+  const Status status = PlanKept(params, around, planner, from, braking, nullptr, kept, out);
+  const KinematicState end = out.profile.end();
+  out.held = !request.positions() || std::abs(end.position - out.target) > 10 * Rounding(out.target);
+  if (!out.held) out.profile.SnapEnd({out.target, end.velocity, end.acceleration});
+  if (out.limited_by == LimitedBy::kNothing) out.limited_by = LimitedBy::kOverride;
+  return status;
+}
+
+// `request` and `next` as commanded; positions: to `out.target`.
+Status PlanScaled(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+                  const Request& request, const Request* next, Plan& out) {
+  LimitedBy clamped = LimitedBy::kNothing;
+  const Request scaled = Scaled(params, around.factors, request, clamped);
+  LimitedBy next_clamped = LimitedBy::kNothing;
+  const Request scaled_next = next ? Scaled(params, around.factors, *next, next_clamped) : Request{};
+  const Request* const then = next ? &scaled_next : nullptr;
+  if (Held(around.factors, request.kind)) return PlanHeld(params, around, planner, from, scaled, then, out);
+  const Status status = PlanMoving(params, around, planner, from, scaled, then, out);
+  if (out.limited_by == LimitedBy::kNothing) out.limited_by = clamped;
+  return status;
 }
 
 // While a limit switch is on, no motion may go (further) towards it.
@@ -243,7 +398,13 @@ double TargetOf(const AxisParams& params, const Surroundings& around, const Kine
                 const Request& request) {
   if (request.kind == RequestKind::kMoveAdditive) return around.promised.value_or(from.position) + request.value;
   if (request.by_distance()) return from.position + request.value;
-  return ResolveTarget(params, from, request.limits(), request.value, request.direction, around.last_sense);
+  const auto resolved = [&](const Limits& limits) {
+    return ResolveTarget(params, from, limits, request.value, request.direction, around.last_sense);
+  };
+  const double at_its_best = resolved(params.planner_limits());
+  if (around.committed) return at_its_best;
+  const bool again = around.promised && std::abs(at_its_best - *around.promised) <= Rounding(at_its_best);
+  return again ? *around.promised : resolved(request.limits());
 }
 
 // Resolves the target, where there is one, and refuses what can be refused before planning.
@@ -291,19 +452,25 @@ double ResolveTarget(const AxisParams& params, const KinematicState& from, const
 
 Status PlanRequest(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
                    const Request& request, const Request* next, Plan& out) noexcept {
-  Status status = Check(params, around, from, request, out);
-  if (status.ok()) status = PlanOpened(params, planner, from, request, next, around.last_sense, out);
+  LimitedBy clamped = LimitedBy::kNothing;
+  const Request scaled = Scaled(params, around.factors, request, clamped);
+  Status status = Check(params, around, from, scaled, out);
+  if (status.ok()) status = PlanScaled(params, around, planner, from, request, next, out);
   const bool brakes = !request.positions() && request.kind != RequestKind::kMoveVelocity;
-  return status.failed() || brakes ? status : CheckSwitches(around, from, out.profile);
+  if (status.failed() || brakes) return status;
+  if (!out.held) return CheckSwitches(around, from, out.profile);
+  Plan released{.profile = {}, .target = out.target};  // what it is held back from must be allowed, too
+  status = PlanMoving(params, around, planner, from, scaled, nullptr, released);
+  return status.failed() ? status : CheckSwitches(around, from, released.profile);
 }
 
 Status Replan(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
               const Request& request, const Request* next, Plan& out) noexcept {
-  return PlanOpened(params, planner, from, request, next, around.last_sense, out);
+  return PlanScaled(params, around, planner, from, request, next, out);
 }
 
 Status PlanStop(const AxisParams& params, Planner& planner, const KinematicState& from, const Limits& limits,
-                Profile& out) noexcept {
+                std::optional<double> furthest, Profile& out) noexcept {
   Request halt;
   halt.kind = RequestKind::kHalt;
   halt.velocity = limits.velocity;
@@ -311,7 +478,7 @@ Status PlanStop(const AxisParams& params, Planner& planner, const KinematicState
   halt.deceleration = limits.deceleration;
   halt.jerk = limits.jerk;
   Plan plan;
-  const Status status = PlanOpened(params, planner, from, halt, nullptr, 1, plan);
+  const Status status = PlanKept(params, {}, planner, from, halt, nullptr, {furthest}, plan);
   if (status.ok()) out = plan.profile;
   return status;
 }

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "takt/axis/override.h"
 #include "takt/axis/params.h"
 #include "takt/axis/request.h"
 #include "takt/core/kinematic_state.h"
@@ -19,17 +20,25 @@ struct Surroundings {
   bool homed = true;
   std::int8_t last_sense = 1;
   std::optional<double> promised;  // u, unwrapped: where the positioning command in control ends, if there is one
+  // u, unwrapped: the end of the motion in progress, or further out where it passes that. Nothing that does not itself
+  // go beyond is to go beyond (AX-97).
+  std::optional<double> furthest;
+  bool again = false;      // the request is the one in control, planned anew
+  bool passes = false;     // and the motion in progress goes on beyond its target
+  bool committed = false;  // the target of the request is a promise already: the move before was left towards it
+  Override factors;
 };
 
 struct Plan {
   trajectory::Profile profile;
   double target = 0;  // unwrapped end of a positioning request
   LimitedBy limited_by = LimitedBy::kNothing;
+  bool held = false;  // by the override: the profile ends where that stops it
 };
 
-// Plans `request` from `from`. `next`, where not null, is the blending command behind it: the profile then ends with
-// the highest velocity that `next` allows and both can keep (AX-12). Errors: kTargetBehindLimit, kAwayFromLimitOnly,
-// kPlanning.
+// Plans `request`, scaled by the override, from `from`. `next`, where not null, is the blending command behind it: the
+// profile then ends with the highest velocity that `next` allows and both can keep (AX-12). Errors: kTargetBehindLimit,
+// kAwayFromLimitOnly, kPlanning.
 Status PlanRequest(const AxisParams& params, const Surroundings& around, trajectory::Planner& planner,
                    const KinematicState& from, const Request& request, const Request* next, Plan& out) noexcept;
 
@@ -37,9 +46,9 @@ Status PlanRequest(const AxisParams& params, const Surroundings& around, traject
 Status Replan(const AxisParams& params, const Surroundings& around, trajectory::Planner& planner,
               const KinematicState& from, const Request& request, const Request* next, Plan& out) noexcept;
 
-// To standstill as `limits` say, or harder where the SW limits want it.
+// To standstill as `limits` say, or harder where the SW limits want it, or a promise (Surroundings).
 Status PlanStop(const AxisParams& params, trajectory::Planner& planner, const KinematicState& from,
-                const trajectory::Limits& limits, trajectory::Profile& out) noexcept;
+                const trajectory::Limits& limits, std::optional<double> furthest, trajectory::Profile& out) noexcept;
 
 // +1 or -1: where a velocity request goes.
 int SenseOf(const Request& request, std::int8_t last_sense) noexcept;

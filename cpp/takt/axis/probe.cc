@@ -22,6 +22,9 @@ bool InWindow(const AxisParams& p, const ProbeState& probe, double position) {
 // Where the axis was `age_s` before this sample.
 double PositionBefore(const Context& c, const State& s, double age_s) {
   const double period = c.cycle.period_s;
+  if (s.sampling.age > 0 || s.sampling.step > 1) {  // samples that are not a cycle apart: by the speed
+    return s.actual.position - s.actual.velocity * (age_s + s.sampling.age * period);
+  }
   const double age = std::clamp(age_s, 0.0, period);
   const double acceleration = s.loop_closed ? (s.setpoint.velocity - s.probe.set_velocity) / period : 0;
   return s.actual.position - s.probe.step * age / period - 0.5 * acceleration * age * (period - age);
@@ -58,25 +61,6 @@ void LookForEdge(const Context& c, const ServoInputs& in, State& s) {
 
 bool CanBeSlowed(const Request& r) {
   return r.positions() || r.kind == RequestKind::kMoveVelocity || r.kind == RequestKind::kJog;
-}
-
-// Plans the motion in progress anew because its velocity changed.
-void PlanAgain(const Context& c, State& s) {
-  if (s.active.positions()) return ReplanActive(c, s);
-  const Beneath base(s);
-  Plan plan;
-  Status status;
-  if (s.active.kind == RequestKind::kJog) {
-    if (s.jog_sense == 0) return;
-    Request held = s.active;
-    held.forward = s.jog_sense > 0;
-    status = PlanJog(c, held, s, plan);
-  } else {
-    status = PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, s.active, nullptr, plan);
-  }
-  if (status.failed()) return;
-  s.limited_by = plan.limited_by;
-  StartMotion(plan.profile, 0, FromCycleBefore(c), s);
 }
 
 void Restore(const Context& c, State& s) {
@@ -121,7 +105,7 @@ Status TakeTouch(const Context& c, State& s) {
   request.jerk = probe.jerk;
   Plan plan;
   plan.target = probe.touch_position;
-  const Status status = Replan(c.params, SurroundingsOf(s), c.planner, s.setpoint, request, nullptr, plan);
+  const Status status = Replan(c.params, SurroundingsOfBoth(c, s), c.planner, s.setpoint, request, nullptr, plan);
   if (status.failed()) return status;
   AbortAll(c, s);
   TakeControl(c, request, plan, FromCycleBefore(c), s);
@@ -170,6 +154,13 @@ void SenseProbe(const Context& c, const ServoInputs& in, State& s) noexcept {
   probe.rises = in.probe_rises;
   probe.falls = in.probe_falls;
   probe.set_velocity = s.setpoint.velocity;
+}
+
+void ForgetSample(const ServoInputs& in, ProbeState& probe) noexcept {
+  probe.sampled = false;
+  probe.wire = in.touch_probe;
+  probe.rises = in.probe_rises;
+  probe.falls = in.probe_falls;
 }
 
 void FollowProbe(const Context& c, State& s) noexcept {

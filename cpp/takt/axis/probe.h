@@ -60,6 +60,9 @@ struct ProbeState {
 // edge follows from the edge's time, along the curve of the set point.
 void SenseProbe(const Context& context, const ServoInputs& inputs, State& state) noexcept;
 
+// The sample before is too long ago: edges since then are not looked for.
+void ForgetSample(const ServoInputs& inputs, ProbeState& probe) noexcept;
+
 // move, before the set point: lets a GT_Touch take control, or slows down.
 void FollowProbe(const Context& context, State& state) noexcept;
 

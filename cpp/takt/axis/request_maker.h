@@ -83,6 +83,7 @@ bool Fill(const Maker& m, const ReadParameter& c);
 bool Fill(const Maker& m, const SetSoftLimits& c);
 bool Fill(const Maker& m, const DirectOutput& c);
 bool Fill(const Maker& m, const SetPosition& c);
+bool Fill(const Maker& m, const SetOverride& c);
 bool Fill(const Maker& m, const StepAbsSwitch& c);
 bool Fill(const Maker& m, const StepLimitSwitch& c);
 bool Fill(const Maker& m, const StepBlock& c);

@@ -1,8 +1,10 @@
 #include "takt/axis/sequence.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "takt/axis/fit.h"
+#include "takt/axis/promise.h"
 
 namespace takt::axis {
 
@@ -18,11 +20,39 @@ void Enter(State& s, PlcState to) noexcept {
   s.plc = to;
 }
 
-Surroundings SurroundingsOf(const State& s) noexcept {
-  Surroundings around{s.limit_positive, s.limit_negative, s.homing.homed, s.last_sense, {}};
+namespace {
+
+// A continuous move that has passed its position is a velocity.
+bool HasPassed(const State& s) {
+  return s.active.continuous() && s.reported;
+}
+
+// How far the positioning command in control has promised to get at most.
+double FurthestOf(const Context& c, const State& s) {
+  const trajectory::Profile::Range range = s.motion.profile.PositionRange(Elapsed(c, s) - c.cycle.period_s);
+  return SenseOfTravel(s.setpoint) > 0 ? std::max(range.max, s.motion.target) : std::min(range.min, s.motion.target);
+}
+
+}  // namespace
+
+Surroundings SurroundingsOf(const Context& c, const State& s) noexcept {
+  Surroundings around;
+  around.limit_positive = s.limit_positive;
+  around.limit_negative = s.limit_negative;
+  around.homed = s.homing.homed;
+  around.last_sense = s.last_sense;
+  around.factors = s.override_factors;
   if (!s.active.positions()) return around;
   around.promised = s.motion.target;
-  if (s.superimposed) *around.promised += s.setpoint.position - s.overlay.base.position;  // covered so far
+  if (!HasPassed(s) && s.motion.profile.end().velocity == 0) around.furthest = FurthestOf(c, s);
+  return around;
+}
+
+Surroundings SurroundingsOfBoth(const Context& c, const State& s) noexcept {
+  Surroundings around = SurroundingsOf(c, s);
+  if (!s.superimposed) return around;
+  if (around.promised) *around.promised += s.setpoint.position - s.overlay.base.position;  // covered so far
+  around.furthest.reset();                                                                 // of the one alone
   return around;
 }
 
@@ -31,7 +61,14 @@ void StartMotion(const Profile& profile, double target, const MotionStart& start
   s.motion.target = target;
   s.motion.start_cycle = start.cycle;
   s.motion.start_offset_s = start.offset_s;
+  s.motion.held = false;
   s.motion.arrived = false;
+}
+
+void StartMotion(const Plan& plan, const MotionStart& start, State& s) noexcept {
+  s.limited_by = plan.limited_by;
+  StartMotion(plan.profile, plan.target, start, s);
+  s.motion.held = plan.held;
 }
 
 bool InPosition(const AxisParams& p, const State& s) noexcept {
@@ -71,7 +108,7 @@ void ConcludePositioning(const Context& c, double late_s, State& s) {
   // Beneath another motion the axis is not to stand there.
   if (leaves_moving || s.superimposed || InPosition(c.params, s)) {
     EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
-    StartNext(c, leaves_moving ? late_s : 0, s);
+    StartNext(c, leaves_moving ? late_s : 0, s, leaves_moving);
   } else if (ArrivedFor(c, s) > c.params.supervision.in_position_timeout_s) {
     EndActive(c, FeedbackState::kError, ErrorId::kDeviationLimit, s);
     AbortBuffer(c, s);
@@ -98,6 +135,35 @@ void GiveWay(const Context& c, State& s) {
 // A command that never ends by itself has reached what it is for.
 void ConcludeReached(const Context& c, State& s) {
   NoteReached(c, s);
+  GiveWay(c, s);
+}
+
+// The velocity with which a continuous move goes on from its position.
+Request Onward(const State& s) {
+  Request onward = s.active;
+  onward.kind = RequestKind::kMoveVelocity;
+  onward.velocity = s.active.end_velocity;
+  return onward;
+}
+
+// On from the position of a continuous move that got there faster than it was to.
+void GoOn(const Context& c, double late_s, State& s) {
+  const KinematicState from = s.motion.profile.end();
+  Plan plan;
+  if (PlanRequest(c.params, SurroundingsOf(c, s), c.planner, from, Onward(s), nullptr, plan).failed()) {
+    s.setpoint = from;
+    Brake(c, c.params.planner_limits(), {c.cycle.count, late_s}, s);
+  } else {
+    plan.target = s.motion.target;
+    StartMotion(plan, {c.cycle.count, late_s}, s);
+  }
+  s.setpoint = s.motion.profile.At(Elapsed(c, s));
+}
+
+void ConcludeContinuous(const Context& c, double late_s, State& s) {
+  if (!s.reported) s.active.direction = s.last_sense < 0 ? Direction::kNegative : Direction::kPositive;
+  NoteReached(c, s);
+  if (s.motion.profile.end().acceleration != 0) GoOn(c, late_s, s);
   GiveWay(c, s);
 }
 
@@ -134,9 +200,12 @@ void Grant(const Context& c, const Request& request, State& s, double travel_s) 
 
 void TakeControl(const Context& c, const Request& request, const Plan& plan, const MotionStart& start,
                  State& s) noexcept {
-  Grant(c, request, s, plan.profile.duration() - start.offset_s);
-  s.limited_by = plan.limited_by;
-  StartMotion(plan.profile, plan.target, start, s);
+  Grant(c, request, s, plan.held ? 0 : plan.profile.duration() - start.offset_s);
+  StartMotion(plan, start, s);
+  // The sense of now, also when it is planned anew later.
+  if (request.kind == RequestKind::kMoveVelocity && request.direction == Direction::kCurrent) {
+    s.active.direction = s.last_sense < 0 ? Direction::kNegative : Direction::kPositive;
+  }
   Enter(s, RulesOf(request.kind).state);
 }
 
@@ -162,6 +231,7 @@ void EndActive(const Context& c, FeedbackState feedback, ErrorId error, State& s
   if (Couples(s.active.kind)) Uncouple(c, feedback == FeedbackState::kError, s);
   s.active = Request{};
   s.reported = false;
+  s.motion.held = false;
   s.jog_sense = 0;
 }
 
@@ -179,16 +249,18 @@ void AbortAll(const Context& c, State& s) noexcept {
   AbortOverlay(c, FeedbackState::kAborted, ErrorId::kNone, s);
 }
 
-void Brake(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s) noexcept {
+void Brake(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s,
+           std::optional<double> furthest) noexcept {
   Profile profile{s.setpoint};
-  PlanStop(c.params, c.planner, s.setpoint, limits, profile);
+  PlanStop(c.params, c.planner, s.setpoint, limits, furthest, profile);
   StartMotion(profile, profile.end().position, start, s);
 }
 
-void ComeToRest(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s) noexcept {
+void ComeToRest(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s,
+                std::optional<double> furthest) noexcept {
   s.active = Request{};
   s.active.kind = RequestKind::kHalt;
-  Brake(c, limits, start, s);
+  Brake(c, limits, start, s, furthest);
   Enter(s, PlcState::kDiscreteMotion);
 }
 
@@ -201,6 +273,7 @@ void SwitchedOff(const Context& c, State& s) noexcept {
 void OpenLoop(State& s) noexcept {
   s.enable = false;
   s.loop_closed = false;
+  s.blind = false;
   s.homing.stage = HomingStage::kNone;
   s.voltage_v = 0;
   s.limited_by = LimitedBy::kNothing;
@@ -209,7 +282,7 @@ void OpenLoop(State& s) noexcept {
   s.motion.arrived = true;
 }
 
-void StartNext(const Context& c, double late_s, State& s) noexcept {
+void StartNext(const Context& c, double late_s, State& s, bool committed) noexcept {
   s.limited_by = LimitedBy::kNothing;
   if (s.homing.stage == HomingStage::kWaiting && s.buffered > 0 && !MayFollowStep(s.buffer[0].kind)) {
     Report(c, TakeFirst(s).ticket, FeedbackState::kError, ErrorId::kState);
@@ -217,6 +290,9 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
   }
   const bool homes_on = s.plc == PlcState::kHoming && s.buffered > 0 && Homes(s.buffer[0].kind);
   if (AtRest(s) && IsLegal(s.plc, PlcState::kStandstill) && !homes_on) EnterRest(s);
+  const bool seamless = s.motion.profile.end().velocity != 0 && late_s > 0;
+  Surroundings around = SurroundingsOf(c, s);
+  around.committed = committed;
   while (s.buffered > 0) {
     if (s.superimposed && !Carries(s.buffer[0])) return;
     const Request next = TakeFirst(s);
@@ -225,14 +301,13 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
       Report(c, next.ticket, FeedbackState::kDone);
       continue;
     }
-    const bool seamless = s.motion.profile.end().velocity != 0 && late_s > 0;
     const KinematicState from = seamless ? s.motion.profile.end() : s.setpoint;
     Plan plan;
     const bool homes = Homes(next.kind);
     const bool follows = FollowsDemand(next.kind);
     Status status = homes     ? BeginHoming(c, next, false, s)
                     : follows ? MayFollow(c, next, s)
-                              : PlanRequest(c.params, SurroundingsOf(s), c.planner, from, next, Follower(s), plan);
+                              : PlanRequest(c.params, around, c.planner, from, next, Follower(s), plan);
     if (status.ok() && next.positions() && !Inside(c.params.limits, plan.target + AddedAtEnd(s)))
       status = Status::Failed(ErrorId::kTargetBehindLimit);
     if (status.ok() && homes) return;
@@ -251,17 +326,53 @@ void StartNext(const Context& c, double late_s, State& s) noexcept {
   }
   // Nobody takes over (any more): come to rest, if there is still anything to come to rest from.
   const bool stands = s.plc == PlcState::kStandstill || (s.superimposed && AtRest(s));
-  if (!stands) ComeToRest(c, c.params.planner_limits(), FromThisCycle(c), s);
+  if (stands) return;
+  if (seamless) s.setpoint = s.motion.profile.end();
+  ComeToRest(c, c.params.planner_limits(), {c.cycle.count, seamless ? late_s : 0}, s);
+  if (seamless) s.setpoint = s.motion.profile.At(late_s);
 }
+
+namespace {
+
+void ReplanPositioning(const Context& c, State& s) {
+  if (!s.active.positions() || HasPassed(s) || (s.motion.arrived && !s.motion.held)) return;
+  Surroundings around = SurroundingsOf(c, s);
+  around.again = true;
+  around.passes = s.motion.profile.end().velocity != 0;
+  Plan plan;
+  plan.target = s.motion.target;
+  if (Replan(c.params, around, c.planner, s.setpoint, s.active, Follower(s), plan).failed()) return;
+  StartMotion(plan, FromCycleBefore(c), s);
+}
+
+}  // namespace
 
 void ReplanActive(const Context& c, State& s) noexcept {
   const Beneath base(s);
-  if (!s.active.positions() || s.motion.arrived) return;
+  ReplanPositioning(c, s);
+}
+
+void PlanAgain(const Context& c, State& s) noexcept {
+  if (!s.loop_closed || !Overridden(s.active.kind) || s.plc == PlcState::kErrorStop) return;
+  const Beneath base(s);
   Plan plan;
+  Status status;
+  if (s.active.kind == RequestKind::kJog) {
+    if (s.jog_sense == 0) return;
+    Request held = s.active;  // the first key, whatever the other one does
+    held.forward = s.jog_sense > 0;
+    status = PlanJog(c, held, s, plan);
+  } else if (s.active.kind == RequestKind::kMoveVelocity || HasPassed(s)) {
+    const Request velocity = HasPassed(s) ? Onward(s) : s.active;
+    Surroundings around = SurroundingsOf(c, s);
+    around.again = true;
+    status = PlanRequest(c.params, around, c.planner, s.setpoint, velocity, nullptr, plan);
+  } else {
+    return ReplanPositioning(c, s);
+  }
+  if (status.failed()) return;
   plan.target = s.motion.target;
-  if (Replan(c.params, SurroundingsOf(s), c.planner, s.setpoint, s.active, Follower(s), plan).failed()) return;
-  s.limited_by = plan.limited_by;
-  StartMotion(plan.profile, plan.target, FromCycleBefore(c), s);
+  StartMotion(plan, FromCycleBefore(c), s);
 }
 
 void Conclude(const Context& c, double late_s, State& s) noexcept {
@@ -274,12 +385,12 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
     case RequestKind::kPositionProfile:
       ConcludePositioning(c, late_s, s);
       break;
-    case RequestKind::kMoveVelocity:
     case RequestKind::kMoveContinuousAbsolute:
     case RequestKind::kMoveContinuousRelative:
-    case RequestKind::kTorqueControl:
-      ConcludeReached(c, s);
+      ConcludeContinuous(c, late_s, s);
       break;
+    case RequestKind::kMoveVelocity:
+    case RequestKind::kTorqueControl:
     case RequestKind::kGearIn:
     case RequestKind::kGearInPos:
     case RequestKind::kCombineAxes:
@@ -333,8 +444,7 @@ void FollowKeys(const Context& c, State& s) noexcept {
     return ComeToRest(c, limits, FromCycleBefore(c), s);
   }
   s.jog_sense = up ? 1 : -1;
-  s.limited_by = plan.limited_by;
-  StartMotion(plan.profile, 0, FromCycleBefore(c), s);
+  StartMotion(plan, FromCycleBefore(c), s);
   Enter(s, PlcState::kContinuousMotion);
 }
 
@@ -342,7 +452,7 @@ Status PlanJog(const Context& c, const Request& jog, const State& s, Plan& plan)
   Request move = jog;
   move.kind = RequestKind::kMoveVelocity;
   move.direction = jog.forward ? Direction::kPositive : Direction::kNegative;
-  return PlanRequest(c.params, SurroundingsOf(s), c.planner, s.setpoint, move, nullptr, plan);
+  return PlanRequest(c.params, SurroundingsOf(c, s), c.planner, s.setpoint, move, nullptr, plan);
 }
 
 }  // namespace takt::axis

@@ -25,13 +25,17 @@ bool InPosition(const AxisParams& params, const State& s) noexcept;
 void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error = ErrorId::kNone,
             bool reached = false, double value = 0) noexcept;
 void Enter(State& s, PlcState to) noexcept;
-Surroundings SurroundingsOf(const State& s) noexcept;
+// What a plan has to know besides. For what goes on beneath another motion ...
+Surroundings SurroundingsOf(const Context& c, const State& s) noexcept;
+// ... and for what takes over from both.
+Surroundings SurroundingsOfBoth(const Context& c, const State& s) noexcept;
 // Seconds of the motion in progress at this cycle.
 inline double Elapsed(const Context& c, const State& s) noexcept {
   return static_cast<double>(c.cycle.count - s.motion.start_cycle) * c.cycle.period_s + s.motion.start_offset_s;
 }
 
 void StartMotion(const trajectory::Profile& profile, double target, const MotionStart& start, State& s) noexcept;
+void StartMotion(const Plan& plan, const MotionStart& start, State& s) noexcept;
 std::uint64_t LeaseEnd(const Context& c, double lease_s) noexcept;
 
 // Puts a request in control of the motion there is ...
@@ -49,19 +53,24 @@ void BeginFollowing(const Context& c, const Request& request, const MotionStart&
 void EndActive(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
 void AbortBuffer(const Context& c, State& s) noexcept;
 void AbortAll(const Context& c, State& s) noexcept;
-// Brakes as `limits` say. Never fails.
-void Brake(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s) noexcept;
+// Brakes as `limits` say, and no further than `furthest` where the axis can. Never fails.
+void Brake(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s,
+           std::optional<double> furthest = {}) noexcept;
 // The same, with nobody in control, to Standstill.
-void ComeToRest(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s) noexcept;
+void ComeToRest(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s,
+                std::optional<double> furthest = {}) noexcept;
 // Power off has come to its end.
 void SwitchedOff(const Context& c, State& s) noexcept;
 // Makes the axis stand where it is measured: loops open, nothing in motion.
 void OpenLoop(State& s) noexcept;
 // Gives control to the next buffered command, `late_s` after the motion in progress ended; with none, the axis is in
-// Standstill.
-void StartNext(const Context& c, double late_s, State& s) noexcept;
+// Standstill. `committed`: the motion was left towards that command's target.
+void StartNext(const Context& c, double late_s, State& s, bool committed = false) noexcept;
 // Plans the positioning command in control anew because what follows it changed. Not to be called Beneath.
 void ReplanActive(const Context& c, State& s) noexcept;
+// Plans the motion in progress anew because its limits changed: a positioning command to where it was promised to end,
+// a velocity or jog to its velocity. Other motions go on as they are. Not to be called Beneath.
+void PlanAgain(const Context& c, State& s) noexcept;
 // What to do once the motion in progress is over, each cycle until its command ends.
 void Conclude(const Context& c, double late_s, State& s) noexcept;
 // The motion of a jog whose one key is held.

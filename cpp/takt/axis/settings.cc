@@ -24,6 +24,7 @@ bool Fits(const Context& c, const AxisLimits& limits, const State& s) {
   if (!s.loop_closed) return true;
   const double stop = trajectory::StopPosition(s.setpoint, c.params.planner_limits());
   if (!Inside(limits, stop) || !Inside(limits, s.setpoint.position)) return false;
+  if (s.motion.held && s.active.positions() && !Inside(limits, s.motion.target + AddedAtEnd(s))) return false;
   // What goes on with a velocity is watched cycle by cycle, but not where one move passes it to the next.
   const bool watched = s.plc == PlcState::kContinuousMotion || FollowsDemand(s.active.kind);
   if (s.motion.arrived || watched) return true;

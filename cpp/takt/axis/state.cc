@@ -11,6 +11,7 @@ void describe(Description<Motion>& d) {
   d.internal<&M::start_cycle>("Cycle its time counts from.");
   d.internal<&M::start_offset_s>(unit::s, "How long before that cycle it began.");
   d.internal<&M::target>(unit::u, "Where a positioning command ends, unwrapped.");
+  d.internal<&M::held>("It ends where an override stops it.");
   d.internal<&M::arrived>("The profile is over.");
   d.internal<&M::arrived_cycle>("Since when.");
 }
@@ -42,6 +43,9 @@ void describe(Description<State>& d) {
   d.internal<&S::profile_ends>("How often.");
   d.internal<&S::buffer>("Buffered commands, the next one first.");
   d.internal<&S::buffered>("How many.");
+  d.internal<&S::sampling>("When what is measured was sampled.");
+  d.internal<&S::blind>("The drive is not heard any more: stops by set points alone.");
+  d.internal<&S::override_factors>("Factors of velocity, ramps and jerk.");
   d.internal<&S::enable>("Drive told to be on.");
   d.internal<&S::loop_closed>("Loop closed, brake released.");
   d.internal<&S::enable_cycle>("Since when.");

@@ -11,12 +11,14 @@
 #include "takt/axis/encoder.h"
 #include "takt/axis/homing.h"
 #include "takt/axis/overlay.h"
+#include "takt/axis/override.h"
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
 #include "takt/axis/time_table.h"
 #include "takt/axis/torque.h"
 #include "takt/core/kinematic_state.h"
+#include "takt/core/ports.h"
 #include "takt/core/status.h"
 #include "takt/trajectory/profile.h"
 
@@ -30,6 +32,7 @@ struct Motion {
   std::uint64_t start_cycle = 0;  // profile time 0 lies ...
   double start_offset_s = 0;      // ... so long before this cycle
   double target = 0;              // u, unwrapped: where a positioning command ends
+  bool held = false;              // the profile ends where an override stops it, not where its command does
   bool arrived = false;           // the profile is over
   std::uint64_t arrived_cycle = 0;
 };
@@ -64,6 +67,10 @@ struct State {
   bool superimposed = false;    // something is on top of the motion in progress: see `overlay`
   std::uint8_t buffered = 0;
 
+  // A drive in another process.
+  Sampling sampling;   // of what is measured
+  bool blind = false;  // it was lost with the loop closed: stops as if the drive did what it is told
+
   // Power.
   bool enable = false;       // the drive is told to be on
   bool loop_closed = false;  // and the position loop is closed, the brake released
@@ -92,6 +99,7 @@ struct State {
   double direct_voltage_v = 0;  // V, put out while the axis is Disabled (GT_Analog)
   double origin = 0;            // rotary axes: whole turns taken out of all positions, so that they stay small (in u)
   double follow_offset = 0;     // u, own position minus ratio times the master's when they were coupled
+  Override override_factors;    // of commands in control and waiting
   EncoderState encoder;
   ControlLoopState loop;
   TorqueState torque;

@@ -14,8 +14,8 @@ namespace takt::cam {
 
 class Table {
  public:
-  // The pieces, `begins` growing, the last one up to `end`. Numbers must be finite; Build sees to it. The last y is that
-  // of the source, without rounding, so that the stroke adds up to no drift (CAM-21).
+  // The pieces, `begins` growing, the last one up to `end`. Numbers must be finite; Build sees to it. The last y is
+  // that of the source, without rounding, so that the stroke adds up to no drift (CAM-21).
   Table(CamParams source, std::span<const double> begins, std::span<const Curve> curves, double end);
 
   const std::string& name() const noexcept { return source_.name; }

@@ -44,6 +44,21 @@ void describe(Enumeration<DriveMode>& e) {
   e.value(DriveMode::kCyclicTorque, "cyclic_torque", "A torque every cycle (cst) and a largest speed.");
 }
 
+void describe(Enumeration<DriveLink>& e) {
+  e.about("Whether a drive in another process is heard.");
+  e.value(DriveLink::kHeard, "heard", "It is.");
+  e.value(DriveLink::kAwaited, "awaited", "Not yet.");
+  e.value(DriveLink::kLost, "lost", "Not any more.");
+}
+
+void describe(Description<Sampling>& d) {
+  using S = Sampling;
+  d.about("When the inputs of an axis were sampled.");
+  d.internal<&S::link>("Whether its drive is heard.");
+  d.internal<&S::age>(unit::cycles, "How much older they are than they should be.");
+  d.internal<&S::step>(unit::cycles, "Since the sample before; 0: they are that one still.");
+}
+
 void describe(Description<ServoInputs>& d) {
   using S = ServoInputs;
   d.about("What comes from a drive, its encoder and switches in a cycle.");

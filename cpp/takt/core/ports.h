@@ -47,7 +47,22 @@ struct ServoOutputs {
   bool release_brake = false;  // brake relay energised
 };
 
+enum class DriveLink : std::uint8_t {
+  kHeard,    // drives in this process always are
+  kAwaited,  // nothing has come from the drive yet
+  kLost,     // nothing has come from it for too long
+};
+
+// When inputs were sampled. As it is here: just now, as those of a drive in this process are.
+struct Sampling {
+  DriveLink link = DriveLink::kHeard;
+  std::uint32_t age = 0;   // cycles that they are older than they should be
+  std::uint32_t step = 1;  // cycles since the sample before; 0: they are that sample still
+};
+
 void describe(Enumeration<DriveMode>&);
+void describe(Enumeration<DriveLink>&);
+void describe(Description<Sampling>&);
 void describe(Description<ServoInputs>&);
 void describe(Description<ServoOutputs>&);
 

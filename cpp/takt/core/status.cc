@@ -89,7 +89,10 @@ void describe(Enumeration<LimitedBy>& e) {
   e.value(LimitedBy::kAcceleration, "acceleration", "The largest acceleration or deceleration.");
   e.value(LimitedBy::kJerk, "jerk", "The largest jerk.");
   e.value(LimitedBy::kPosition, "position", "A position limit.");
-  e.value(LimitedBy::kDistance, "distance", "Too little room, for instance to blend at the velocity asked for.");
+  e.value(LimitedBy::kDistance, "distance",
+          "Too little room, for instance to blend at the velocity asked for, or to stop with the command's ramps.");
+  e.value(LimitedBy::kOvershoot, "overshoot", "The target is too near to stop at: the axis passes it and comes back.");
+  e.value(LimitedBy::kOverride, "override", "The velocity factor of the override is 0: the axis waits.");
 }
 
 void describe(Description<Status>& d) {

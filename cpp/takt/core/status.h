@@ -71,7 +71,16 @@ std::string_view ErrorText(ErrorId id) noexcept;
 std::string_view ErrorName(ErrorId id) noexcept;
 
 // What held a motion back although it was carried out.
-enum class LimitedBy : std::uint8_t { kNothing, kVelocity, kAcceleration, kJerk, kPosition, kDistance };
+enum class LimitedBy : std::uint8_t {
+  kNothing,
+  kVelocity,
+  kAcceleration,
+  kJerk,
+  kPosition,
+  kDistance,
+  kOvershoot,
+  kOverride
+};
 
 // ok, limited (done, but held back by something) or failed.
 struct Status {

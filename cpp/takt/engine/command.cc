@@ -88,6 +88,7 @@ const std::vector<Entry>& Entries() {
       Make<axis::Command, axis::SetSoftLimits>(kAxis, "set_soft_limits"),
       Make<axis::Command, axis::DirectOutput>(kAxis, "direct_output"),
       Make<axis::Command, axis::SetPosition>(kAxis, "define_position"),
+      Make<axis::Command, axis::SetOverride>(kAxis, "set_override"),
       Make<axis::Command, axis::TouchProbe>(kAxis, "arm_probe"),
       Make<axis::Command, axis::AbortTrigger>(kAxis, "abort_trigger"),
       Make<axis::Command, axis::Touch>(kAxis, "touch"),

@@ -119,17 +119,26 @@ World::World(const Machine& machine)
       axis_order(machine.axes.size()),
       servo_inputs(machine.axes.size()),
       servo_outputs(machine.axes.size()),
+      samplings(machine.axes.size()),
       feedback_storage(machine.axes.size() * kEventsPerAxis +
                        (kCommandsPerCycle + kRenewalsPerCycle) * kEventsPerCommand),
       feedback(feedback_storage) {
   TypeOf<axis::State>();  // the first use of a type allocates
   TypeOf<plant::ServoState>();
+  TypeOf<HeardDrive>();
+  TypeOf<ServoInputs>();
   for (const cam::CamParams& cam : machine.cams) cams.push_back(cam::Build(cam).table.value());
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axis_states.push_back(axis::MakeState(axis_params[i]));
     servo_params.push_back(ServoOf(machine, i));
     servo_states.push_back(plant::MakeServoState(servo_params[i]));
-    plant::Step(servo_params[i], servo_outputs[i], cycle.period_s, servo_states[i], servo_inputs[i]);
+    const auto index = static_cast<std::uint32_t>(i);
+    if (const ExternalDrive* external = ExternalOf(machine, i)) {
+      drives.push_back({.axis = index, .missing_cycles = external->missing_cycles});
+    } else {
+      simulated.push_back(index);
+      plant::Step(servo_params[i], servo_outputs[i], cycle.period_s, servo_states[i], servo_inputs[i]);
+    }
   }
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axis_masters.push_back(engine::MasterOf(machine, i));
@@ -142,12 +151,21 @@ std::uint64_t World::StateHash() const noexcept {
   for (const axis::State& state : axis_states) hash = HashOf(state, hash);
   for (const axis::AxisParams& params : axis_params) hash = HashOf(params, hash);  // settings change them
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
+  for (const HeardDrive& drive : drives) hash = HashOf(servo_inputs[drive.axis], HashOf(drive, hash));
   return hash;
 }
 
+bool Take(World& w, const DriveSample& sample) noexcept {
+  for (HeardDrive& drive : w.drives) {
+    if (drive.axis == sample.axis) return Take(w.cycle, sample, drive, w.servo_inputs[drive.axis]);
+  }
+  return false;
+}
+
 void Sense(World& w) noexcept {
+  for (HeardDrive& drive : w.drives) w.samplings[drive.axis] = SamplingIn(w.cycle, drive);
   for (std::size_t i = 0; i < w.axis_states.size(); ++i)
-    axis::Sense(ContextOf(w, i), w.servo_inputs[i], w.axis_states[i]);
+    axis::Sense(ContextOf(w, i), w.servo_inputs[i], w.axis_states[i], w.samplings[i]);
 }
 
 void Apply(World& w, const Command& command) noexcept {
@@ -187,7 +205,7 @@ void Control(World& w) noexcept {
 }
 
 void Actuate(World& w) noexcept {
-  for (std::size_t i = 0; i < w.servo_states.size(); ++i) {
+  for (const std::uint32_t i : w.simulated) {
     plant::Step(w.servo_params[i], w.servo_outputs[i], w.cycle.period_s, w.servo_states[i], w.servo_inputs[i]);
   }
 }

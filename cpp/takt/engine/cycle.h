@@ -14,6 +14,7 @@
 #include "takt/core/feedback.h"
 #include "takt/core/ports.h"
 #include "takt/engine/command.h"
+#include "takt/engine/drives.h"
 #include "takt/engine/machine.h"
 #include "takt/engine/order.h"
 #include "takt/plant/servo.h"
@@ -48,6 +49,9 @@ struct World {
   std::vector<ServoOutputs> servo_outputs;
   std::vector<plant::ServoParams> servo_params;
   std::vector<plant::ServoState> servo_states;
+  std::vector<std::uint32_t> simulated;  // axes whose drive is a servo here ...
+  std::vector<HeardDrive> drives;        // ... and those of the others
+  std::vector<Sampling> samplings;
 
   std::vector<FeedbackEvent> feedback_storage;
   FeedbackSink feedback;
@@ -56,6 +60,8 @@ struct World {
 };
 
 // The stages, in the order of the cycle. Commands come between sense and move (Apply).
+// What a drive in another process has sent. False: nothing to go by.
+bool Take(World& world, const DriveSample& sample) noexcept;
 void Sense(World& world) noexcept;
 void Apply(World& world, const Command& command) noexcept;
 void Move(World& world) noexcept;

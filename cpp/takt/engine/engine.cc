@@ -32,6 +32,10 @@ constexpr std::size_t kKeptShare = 16;
 // As many commands as a cycle can write into a journal: besides those of the queues one each of overruns and shutdown.
 constexpr std::size_t kJournalledPerCycle = kCommandsPerCycle + kRenewalsPerCycle + 2;
 
+// Cycles that may pass before the set points for external drives are fetched; and samples of a drive that one cycle
+// looks at.
+constexpr std::size_t kDriveQueue = 16;
+
 bool IsRenewal(const Command& command) {
   const auto* machine = std::get_if<MachineCommand>(&command.body);
   return machine && std::holds_alternative<Renew>(*machine);
@@ -52,8 +56,31 @@ struct Engine::Impl {
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
         hashes(o.journal ? o.snapshot_queue : 2),
+        set_points(o.drives ? kDriveQueue * world.drives.size() : 2),
+        drive_samples(kDriveQueue * world.drives.size()),
+        drive_journal(o.journal && !world.drives.empty() ? o.snapshot_queue : 2),
         axis_divisors(AxisDivisors(machine)),
-        figures_divisor(Divisor(machine.lcm.engine_rate_hz, machine.cycle.period_s)) {}
+        figures_divisor(Divisor(machine.lcm.engine_rate_hz, machine.cycle.period_s)) {
+    SendSetPoints(-1);
+  }
+
+  void SendSetPoints(std::int64_t cycle) noexcept {
+    if (!options.drives) return;
+    for (const HeardDrive& drive : world.drives) {
+      if (!set_points.TryPush({cycle, drive.axis, world.servo_outputs[drive.axis]})) ++figures.set_points_dropped;
+    }
+  }
+
+  void TakeSamples() noexcept {
+    DriveSample sample;
+    for (std::size_t i = 0; i < drive_samples.capacity() && drive_samples.TryPop(sample); ++i) {
+      if (!Take(world, sample)) {
+        ++samples_unused;
+      } else if (options.journal && !drive_journal.TryPush({world.cycle.count, sample})) {
+        ++figures.journal_dropped;
+      }
+    }
+  }
 
   void TakeTiming(const CycleTiming& timing) noexcept {
     if (timing.execution_ns > 0) figures.execution.Add(timing.execution_ns);
@@ -109,6 +136,7 @@ struct Engine::Impl {
   void Publish() noexcept {
     figures.cycle = world.cycle.count;
     figures.commands_refused = refused.load(std::memory_order_relaxed);
+    figures.samples_refused = samples_unused + samples_refused.load(std::memory_order_relaxed);
     figures.planner_second_scale = world.planner.counters().second_scale;
     figures.planner_failures = world.planner.counters().failures;
     for (const FeedbackEvent& event : world.feedback.events()) {
@@ -144,15 +172,20 @@ struct Engine::Impl {
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
   SpscQueue<HashEntry> hashes;
+  SpscQueue<DriveSetPoint> set_points;
+  SpscQueue<DriveSample> drive_samples;
+  SpscQueue<DriveEntry> drive_journal;
 
   std::vector<std::uint64_t> axis_divisors;
   std::uint64_t figures_divisor;
   std::uint64_t feedback_dropped = 0;  // by the queue
+  std::uint64_t samples_unused = 0;    // by the cycle
   std::uint32_t overruns_in_a_row = 0;
   bool shutting_down = false;
   std::atomic<bool> shutdown{false};
   std::atomic<std::uint64_t> refused{0};
-  Ticket next_ticket = 1;  // producing thread
+  std::atomic<std::uint64_t> samples_refused{0};  // before they came to the cycle
+  Ticket next_ticket = 1;                         // producing thread
 };
 
 Engine::Engine(Machine machine, const EngineOptions& options)
@@ -180,12 +213,14 @@ bool Engine::Resubmit(const Command& command) noexcept {
 
 void Engine::RunCycle(const CycleTiming& timing) noexcept {
   World& world = impl_->world;
+  impl_->TakeSamples();
   Sense(world);
   impl_->TakeTiming(timing);
   impl_->ApplyCommands();
   Move(world);
   Control(world);
   Actuate(world);
+  impl_->SendSetPoints(static_cast<std::int64_t>(world.cycle.count));
   impl_->Publish();
   ++world.cycle.count;
 }
@@ -223,6 +258,19 @@ void Engine::RequestShutdown() noexcept {
   impl_->shutdown.store(true, std::memory_order_relaxed);
 }
 
+void Engine::CountRefusedSample() noexcept {
+  impl_->samples_refused.fetch_add(1, std::memory_order_relaxed);
+}
+
+SpscQueue<DriveSample>& Engine::drive_samples() noexcept {
+  return impl_->drive_samples;
+}
+SpscQueue<DriveSetPoint>& Engine::set_points() noexcept {
+  return impl_->set_points;
+}
+SpscQueue<DriveEntry>& Engine::drive_journal() noexcept {
+  return impl_->drive_journal;
+}
 SpscQueue<FeedbackEvent>& Engine::feedback() noexcept {
   return impl_->feedback;
 }

@@ -10,6 +10,7 @@
 #include "takt/core/cycle.h"
 #include "takt/core/spsc_queue.h"
 #include "takt/engine/command.h"
+#include "takt/engine/drives.h"
 #include "takt/engine/machine.h"
 #include "takt/engine/snapshot.h"
 
@@ -18,6 +19,7 @@ namespace takt::engine {
 struct EngineOptions {
   bool publish = false;             // hand axis snapshots and figures to the queues (a reader must drain them)
   bool every_cycle = false;         // snapshots of every axis in every cycle, whatever the machine's rates say
+  bool drives = false;              // hand the set points of external drives to a queue (a reader must drain it)
   bool journal = false;             // journal entries and a state hash every cycle
   std::size_t command_queue = 256;  // a stop behind a flood waits for this many, kCommandsPerCycle a cycle
   std::size_t snapshot_queue = 1 << 14;
@@ -42,6 +44,10 @@ class Engine {
   // applies all of these, in the order given. False: more than a cycle ever writes into a journal.
   bool Resubmit(const Command& command) noexcept;
 
+  // --- one thread that feeds in what external drives send ---
+  // The next cycle takes the newest of each drive.
+  SpscQueue<DriveSample>& drive_samples() noexcept;
+
   // --- the cycle thread ---
   void RunCycle(const CycleTiming& timing = {}) noexcept;
   // From RunCycle's thread, or while it does not run.
@@ -59,12 +65,19 @@ class Engine {
   // --- any thread ---
   // Stops everything along its ramps, opens the loops; further commands are refused.
   void RequestShutdown() noexcept;
+  // Counts what an external drive sent and nobody could use.
+  void CountRefusedSample() noexcept;
+
+  // --- one consuming thread ---
+  // For external drives, with EngineOptions::drives: those of cycle -1 (all off) from the start, then of every cycle.
+  SpscQueue<DriveSetPoint>& set_points() noexcept;
 
   // --- one consuming thread ---
   SpscQueue<FeedbackEvent>& feedback() noexcept;
   SpscQueue<AxisSnapshot>& snapshots() noexcept;
   SpscQueue<EngineFigures>& figure_queue() noexcept;
   SpscQueue<JournalEntry>& journal() noexcept;
+  SpscQueue<DriveEntry>& drive_journal() noexcept;
   SpscQueue<HashEntry>& hashes() noexcept;
 
  private:

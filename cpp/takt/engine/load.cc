@@ -46,6 +46,10 @@ class CrossCheck {
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
       CheckReference("simulation.servos[" + std::to_string(i) + "].axis", machine_.simulation.servos[i].axis, servos);
     }
+    std::vector<std::string_view> external;
+    for (std::size_t i = 0; i < machine_.external.drives.size(); ++i) {
+      CheckReference("external.drives[" + std::to_string(i) + "].axis", machine_.external.drives[i].axis, external);
+    }
     std::vector<std::string_view> rates;
     for (std::size_t i = 0; i < machine_.lcm.rates.size(); ++i) {
       CheckReference("lcm.rates[" + std::to_string(i) + "].axis", machine_.lcm.rates[i].axis, rates);

@@ -45,6 +45,13 @@ plant::ServoParams ServoOf(const Machine& machine, std::size_t index) {
   return servo;
 }
 
+const ExternalDrive* ExternalOf(const Machine& machine, std::size_t axis) {
+  for (const ExternalDrive& drive : machine.external.drives) {
+    if (drive.axis == machine.axes[axis].name) return &drive;
+  }
+  return nullptr;
+}
+
 void describe(Description<CycleParams>& d) {
   d.about("The engine's cycle.");
   d.defaulted<&CycleParams::period_s>(unit::s, between(0.00025, 0.02), "How long a cycle lasts.");
@@ -84,6 +91,24 @@ void describe(Description<Simulation>& d) {
   d.defaulted<&Simulation::servos>("Servos.");
 }
 
+void describe(Description<ExternalDrive>& d) {
+  using E = ExternalDrive;
+  d.about("A drive with its encoder and switches that lives in another process and is reached over LCM.");
+  d.required<&E::axis>("Name of the axis.");
+  d.defaulted<&E::missing_cycles>(unit::cycles, between(1, 100000),
+                                  "So many answers of the drive missing in a row are a drive error (ErrorStop 3002).");
+}
+
+void describe(Description<External>& d) {
+  using E = External;
+  d.about("What lives in other processes.");
+  d.defaulted<&E::drives>(
+      "Drives. Their axes are simulated no more; takt plant puts the simulation in another process.");
+  d.defaulted<&E::answer_within_s>(unit::s, between(0.001, 3600),
+                                   "Simulated time waits so long for the answers to one cycle, by the wall clock; then "
+                                   "the cycle goes on without them.");
+}
+
 void describe(Description<Machine>& d) {
   using M = Machine;
   d.about("A machine: everything an engine is made from.");
@@ -94,6 +119,7 @@ void describe(Description<Machine>& d) {
   d.defaulted<&M::cams>("Cams, for any axis.");
   d.defaulted<&M::cam_switches>("Lists of cam switches.");
   d.defaulted<&M::simulation>("What stands in for the metal.");
+  d.defaulted<&M::external>("What lives in other processes.");
 }
 
 }  // namespace takt::engine

@@ -46,6 +46,17 @@ struct Simulation {
   std::vector<SimulatedServo> servos;
 };
 
+// A drive with its encoder and switches that lives in another process, instead of a simulated one.
+struct ExternalDrive {
+  std::string axis;                  // name of the axis
+  std::uint32_t missing_cycles = 5;  // so many answers missing in a row are a drive error
+};
+
+struct External {
+  std::vector<ExternalDrive> drives;
+  double answer_within_s = 2;  // simulated time: s of the wall clock to wait for the answers to one cycle
+};
+
 struct Machine {
   std::string name;
   CycleParams cycle;
@@ -54,7 +65,11 @@ struct Machine {
   std::vector<cam::CamParams> cams;
   std::vector<axis::CamSwitches> cam_switches;
   Simulation simulation;
+  External external;
 };
+
+// The drive of this axis that lives in another process; null: it does not.
+const ExternalDrive* ExternalOf(const Machine& machine, std::size_t axis);
 
 // The servo behind `axis` in this machine.
 plant::ServoParams ServoOf(const Machine& machine, std::size_t axis);
@@ -64,6 +79,8 @@ void describe(Description<LcmParams>&);
 void describe(Description<ChannelRate>&);
 void describe(Description<SimulatedServo>&);
 void describe(Description<Simulation>&);
+void describe(Description<ExternalDrive>&);
+void describe(Description<External>&);
 void describe(Description<Machine>&);
 
 }  // namespace takt::engine

@@ -72,6 +72,10 @@ class EndJudge {
   bool stopping_ = false;
 };
 
+bool IsReady(const SchedulerOptions& options) {
+  return !options.ready || options.ready();
+}
+
 void RunOne(Engine& engine, const SchedulerOptions& options, const CycleTiming& timing = {}) {
   if (options.program) options.program();
   engine.RunCycle(timing);
@@ -103,6 +107,7 @@ RunResult RunPaced(Engine& engine, const SchedulerOptions& options, EndJudge& ju
   const std::int64_t start = NowNs();
   while (!judge.Ended(result)) {
     SleepUntil(start + static_cast<std::int64_t>(result.cycles) * period_ns);
+    if (!IsReady(options)) continue;
     RunOne(engine, options);
     ++result.cycles;
   }
@@ -116,7 +121,7 @@ bool IsHalfFull(const SpscQueue<T>& queue) {
 
 bool ReaderIsBehind(Engine& engine) {
   return IsHalfFull(engine.snapshots()) || IsHalfFull(engine.feedback()) || IsHalfFull(engine.journal()) ||
-         IsHalfFull(engine.hashes()) || IsHalfFull(engine.figure_queue());
+         IsHalfFull(engine.drive_journal()) || IsHalfFull(engine.hashes()) || IsHalfFull(engine.figure_queue());
 }
 
 RunResult RunFast(Engine& engine, const SchedulerOptions& options, EndJudge& judge) {
@@ -126,6 +131,7 @@ RunResult RunFast(Engine& engine, const SchedulerOptions& options, EndJudge& jud
       SleepUntil(NowNs() + kReaderWaitNs);
       continue;
     }
+    if (!IsReady(options)) continue;
     RunOne(engine, options);
     ++result.cycles;
   }

@@ -26,6 +26,9 @@ struct SchedulerOptions {
   int priority = 80;             // real time: of SCHED_FIFO
   double stop_timeout_s = 5;     // s of the engine's time for stopping along the ramps
   bool wait_for_reader = false;  // fast: do not run away from the thread that empties the engine's queues
+  // Paced and fast: asked before every cycle. False: what it needs has not come yet (lcm/drives.h); after a little
+  // waiting, so that the signals can be looked at, too.
+  std::function<bool()> ready{};
   // A cyclic program: called in the cycle's thread before every cycle, and part of its time (takt/plcopen/program.h).
   std::function<void()> program{};
 };

@@ -52,6 +52,8 @@ void describe(Description<EngineFigures>& d) {
   d.internal<&F::feedback_dropped>("Feedback events lost because their queue was full.");
   d.internal<&F::journal_dropped>(
       "Commands and hashes missing in the journal because their queue was full: it cannot be replayed.");
+  d.internal<&F::set_points_dropped>("Set points for external drives lost because their queue was full.");
+  d.internal<&F::samples_refused>("Messages of external drives that were wrong, old or not asked for.");
   d.internal<&F::planner_second_scale>("Motions planned only at the second scale.");
   d.internal<&F::planner_failures>("Motions that could not be planned: the one in progress was kept.");
   d.internal<&F::state_hash>("Hash of the whole state after the cycle; 0: not made.");

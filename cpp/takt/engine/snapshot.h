@@ -52,7 +52,9 @@ struct EngineFigures {
   std::uint64_t commands_refused = 0;   // queue full
   std::uint64_t snapshots_dropped = 0;  // a slow reader
   std::uint64_t feedback_dropped = 0;
-  std::uint64_t journal_dropped = 0;  // commands or hashes the journal's reader was too slow for: no replay
+  std::uint64_t journal_dropped = 0;     // commands or hashes the journal's reader was too slow for: no replay
+  std::uint64_t set_points_dropped = 0;  // of external drives: a slow reader
+  std::uint64_t samples_refused = 0;     // that external drives sent and nobody could use
   std::uint64_t planner_second_scale = 0;
   std::uint64_t planner_failures = 0;
   std::uint64_t state_hash = 0;  // 0 unless hashing is on

@@ -15,9 +15,20 @@ inline constexpr char kHeartbeatChannel[] = "takt/heartbeat";
 inline constexpr char kJournalStartChannel[] = "takt/journal/start";
 inline constexpr char kJournalCommandChannel[] = "takt/journal/command";
 inline constexpr char kJournalHashesChannel[] = "takt/journal/hashes";
+inline constexpr char kJournalDriveChannel[] = "takt/journal/drive";
 
 inline std::string AxisChannel(std::string_view name) {
   return "takt/axis/" + std::string(name);
 }
+
+// Of an axis whose drive lives in another process.
+inline std::string SetPointChannel(std::string_view name) {
+  return "takt/drive/" + std::string(name) + "/setpoint";
+}
+inline std::string DriveFeedbackChannel(std::string_view name) {
+  return "takt/drive/" + std::string(name) + "/feedback";
+}
+// As a regular expression: all of the latter.
+inline constexpr char kDriveFeedbackChannels[] = "takt/drive/[^/]*/feedback";
 
 }  // namespace takt::lcm

@@ -15,13 +15,13 @@ std::int64_t TimeNs(std::uint64_t cycle, const engine::Machine& machine) {
   return Signed(cycle) * std::llround(machine.cycle.period_s * 1e9);
 }
 
-// The fields behind the fingerprint: 'i' eight bytes of whatever kind, 's' a string.
+// The fields behind the fingerprint: 'i' eight bytes of whatever kind, 'b' one byte, 's' a string.
 bool FitsLayout(std::span<const std::uint8_t> bytes, std::string_view layout) {
   constexpr std::size_t kFingerprint = 8;
   if (bytes.size() < kFingerprint) return false;
   bytes = bytes.subspan(kFingerprint);
   for (const char field : layout) {
-    std::size_t size = 8;
+    std::size_t size = field == 'b' ? 1 : 8;
     if (field == 's') {
       if (bytes.size() < 4) return false;
       size = std::size_t{bytes[0]} << 24 | std::size_t{bytes[1]} << 16 | std::size_t{bytes[2]} << 8 | bytes[3];
@@ -79,6 +79,7 @@ msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::M
   m.probe_position = o.probe_position;
   m.probe_captures = o.probe_captures;
   m.cam_outputs = o.cam_outputs;
+  m.override_factor = o.override_factor;
   m.limit_positive = o.limit_positive;
   m.limit_negative = o.limit_negative;
   m.reference = o.reference;
@@ -105,6 +106,8 @@ msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine:
   m.snapshots_dropped = Signed(figures.snapshots_dropped);
   m.feedback_dropped = Signed(figures.feedback_dropped);
   m.journal_dropped = Signed(figures.journal_dropped);
+  m.set_points_dropped = Signed(figures.set_points_dropped);
+  m.samples_refused = Signed(figures.samples_refused);
   m.planner_second_scale = Signed(figures.planner_second_scale);
   m.planner_failures = Signed(figures.planner_failures);
   m.state_hash = Signed(figures.state_hash);
@@ -137,6 +140,75 @@ msgs::journal_command ToMessage(const engine::JournalEntry& entry, const engine:
   return m;
 }
 
+msgs::drive_setpoint ToMessage(const engine::DriveSetPoint& set_point, const engine::Machine& machine) {
+  const ServoOutputs& o = set_point.outputs;
+  msgs::drive_setpoint m{};
+  m.cycle = set_point.cycle;
+  m.axis = machine.axes[set_point.axis].name;
+  m.period_s = machine.cycle.period_s;
+  m.mode = static_cast<std::int8_t>(o.mode);
+  m.enable = o.enable;
+  m.release_brake = o.release_brake;
+  m.position_counts = o.position_counts;
+  m.velocity_counts_s = o.velocity_counts_s;
+  m.voltage_v = o.voltage_v;
+  m.torque_nm = o.torque_nm;
+  return m;
+}
+
+msgs::drive_feedback ToMessage(const engine::DriveSample& sample, const engine::Machine& machine) {
+  const ServoInputs& in = sample.inputs;
+  msgs::drive_feedback m{};
+  m.cycle = sample.cycle;
+  m.axis = machine.axes[sample.axis].name;
+  m.counts = in.counts;
+  m.index_counts = in.index_counts;
+  m.index_pulses = in.index_pulses;
+  m.encoder_error = in.encoder_error;
+  m.limit_positive = in.limit_positive;
+  m.limit_negative = in.limit_negative;
+  m.reference = in.reference;
+  m.touch_probe = in.touch_probe;
+  m.probe_rises = in.probe_rises;
+  m.probe_falls = in.probe_falls;
+  m.probe_rise_age_s = in.probe_rise_age_s;
+  m.probe_fall_age_s = in.probe_fall_age_s;
+  m.drive_ready = in.drive_ready;
+  m.drive_fault = in.drive_fault;
+  m.torque_nm = in.torque_nm;
+  return m;
+}
+
+msgs::journal_drive ToMessage(const engine::DriveEntry& entry, const engine::Machine& machine) {
+  msgs::journal_drive m{};
+  m.cycle = Signed(entry.cycle);
+  m.feedback = ToMessage(entry.sample, machine);
+  return m;
+}
+
+engine::DriveSample ToSample(const msgs::drive_feedback& m, std::uint32_t axis) {
+  engine::DriveSample sample;
+  sample.cycle = m.cycle;
+  sample.axis = axis;
+  ServoInputs& in = sample.inputs;
+  in.counts = static_cast<std::uint32_t>(m.counts);
+  in.index_counts = static_cast<std::uint32_t>(m.index_counts);
+  in.index_pulses = static_cast<std::uint32_t>(m.index_pulses);
+  in.encoder_error = m.encoder_error != 0;
+  in.limit_positive = m.limit_positive != 0;
+  in.limit_negative = m.limit_negative != 0;
+  in.reference = m.reference != 0;
+  in.touch_probe = m.touch_probe != 0;
+  in.probe_rises = static_cast<std::uint32_t>(m.probe_rises);
+  in.probe_falls = static_cast<std::uint32_t>(m.probe_falls);
+  in.probe_rise_age_s = m.probe_rise_age_s;
+  in.probe_fall_age_s = m.probe_fall_age_s;
+  in.drive_ready = m.drive_ready != 0;
+  in.drive_fault = m.drive_fault != 0;
+  in.torque_nm = m.torque_nm;
+  return sample;
+}
+
 std::optional<msgs::command> DecodeCommand(std::span<const std::uint8_t> bytes) {
   return Decode<msgs::command>(bytes, "isiisss");
 }
@@ -147,6 +219,10 @@ std::optional<msgs::heartbeat> DecodeHeartbeat(std::span<const std::uint8_t> byt
 
 std::optional<msgs::machine_description> DecodeMachine(std::span<const std::uint8_t> bytes) {
   return Decode<msgs::machine_description>(bytes, "iiissis");
+}
+
+std::optional<msgs::drive_feedback> DecodeDriveFeedback(std::span<const std::uint8_t> bytes) {
+  return Decode<msgs::drive_feedback>(bytes, "iiiiisiiibbbbbiiiibbi");
 }
 
 }  // namespace takt::lcm

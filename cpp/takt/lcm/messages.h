@@ -10,14 +10,18 @@
 #include <vector>
 
 #include "takt/core/feedback.h"
+#include "takt/engine/drives.h"
 #include "takt/engine/machine.h"
 #include "takt/engine/snapshot.h"
 #include "takt/msgs/axis_state.hpp"
 #include "takt/msgs/command.hpp"
+#include "takt/msgs/drive_feedback.hpp"
+#include "takt/msgs/drive_setpoint.hpp"
 #include "takt/msgs/engine_state.hpp"
 #include "takt/msgs/feedback.hpp"
 #include "takt/msgs/heartbeat.hpp"
 #include "takt/msgs/journal_command.hpp"
+#include "takt/msgs/journal_drive.hpp"
 #include "takt/msgs/journal_hashes.hpp"
 #include "takt/msgs/journal_start.hpp"
 #include "takt/msgs/machine_description.hpp"
@@ -30,12 +34,19 @@ msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine:
 // Client, session and id are left empty.
 msgs::feedback ToMessage(const FeedbackEvent& event);
 msgs::journal_command ToMessage(const engine::JournalEntry& entry, const engine::Machine& machine);
+msgs::drive_setpoint ToMessage(const engine::DriveSetPoint& set_point, const engine::Machine& machine);
+// Plant is left empty, too.
+msgs::drive_feedback ToMessage(const engine::DriveSample& sample, const engine::Machine& machine);
+msgs::journal_drive ToMessage(const engine::DriveEntry& entry, const engine::Machine& machine);
+// Axis, plant and sequence are not looked at.
+engine::DriveSample ToSample(const msgs::drive_feedback& message, std::uint32_t axis);
 
 // Bytes as they came from the network, whatever they are. Empty: they are no such message. The generated decode() alone
 // is not safe here: a negative length of a string makes it throw or read beyond the end.
 std::optional<msgs::command> DecodeCommand(std::span<const std::uint8_t> bytes);
 std::optional<msgs::heartbeat> DecodeHeartbeat(std::span<const std::uint8_t> bytes);
 std::optional<msgs::machine_description> DecodeMachine(std::span<const std::uint8_t> bytes);
+std::optional<msgs::drive_feedback> DecodeDriveFeedback(std::span<const std::uint8_t> bytes);
 
 // Encodes into `buffer`, whose memory is used again from message to message.
 template <typename Message>

@@ -59,6 +59,9 @@ bool Publisher::Drain() {
   any |= Take(engine_.journal(), [this](const engine::JournalEntry& entry) {
     if (log_ != nullptr) ToJournal(kJournalCommandChannel, ToMessage(entry, engine_.machine()));
   });
+  any |= Take(engine_.drive_journal(), [this](const engine::DriveEntry& entry) {
+    if (log_ != nullptr) ToJournal(kJournalDriveChannel, ToMessage(entry, engine_.machine()));
+  });
   any |= Take(engine_.hashes(), [this](const engine::HashEntry& entry) { AddHash(entry); });
   any |= Take(engine_.figure_queue(), [this](const engine::EngineFigures& figures) { PublishFigures(figures); });
   any |= Take(engine_.snapshots(), [this](const engine::AxisSnapshot& snapshot) {

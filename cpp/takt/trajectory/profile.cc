@@ -1,6 +1,8 @@
 #include "takt/trajectory/profile.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include "takt/core/describe.h"
@@ -14,6 +16,20 @@ namespace {
 void Include(Profile::Range& range, double value) noexcept {
   range.min = std::min(range.min, value);
   range.max = std::max(range.max, value);
+}
+
+// When a piece that does not turn round between `left` and `right` is at `position`; NaN: not there.
+double MonotoneTime(const Piece& piece, double position, double left, double right) noexcept {
+  const double begin = piece.At(left).position - position;
+  const double end = piece.At(right).position - position;
+  if (begin == 0) return left;
+  if (begin * end > 0) return std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (left + right);
+    if (middle <= left || middle >= right) break;
+    ((piece.At(middle).position - position) * begin > 0 ? left : right) = middle;
+  }
+  return right;
 }
 
 }  // namespace
@@ -41,6 +57,41 @@ bool Profile::Append(const Profile& other) noexcept {
   }
   end_state = other.end_state;
   return true;
+}
+
+void Profile::Cut(double t) noexcept {
+  if (t >= duration()) return;
+  end_state = At(t);
+  while (piece_count > 0) {
+    const auto last = Index(piece_count - 1);
+    const double begin = piece_count > 1 ? piece_ends_s[last - 1] : 0;
+    if (begin < t) {
+      piece_ends_s[last] = t;
+      return;
+    }
+    pieces[last] = {};
+    piece_ends_s[last] = 0;
+    --piece_count;
+  }
+}
+
+double Profile::TimeAt(double position, double begin_s) const noexcept {
+  for (int i = 0; i < piece_count; ++i) {
+    const Piece& q = pieces[Index(i)];
+    const double begin = i == 0 ? 0 : piece_ends_s[Index(i - 1)];
+    const double length = piece_ends_s[Index(i)] - begin;
+    double left = std::max(0.0, begin_s - begin);
+    if (left > length) continue;
+    const std::array<double, 2> zeros = q.VelocityZeros();
+    for (const double cut : {zeros[0], zeros[1], length}) {
+      if (!(cut >= left && cut <= length)) continue;
+      const double at = MonotoneTime(q, position, left, cut);
+      if (!std::isnan(at)) return begin + at;
+      left = cut;
+    }
+  }
+  if (begin_s <= duration() && position == end_state.position) return duration();
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 Profile::Range Profile::PositionRange(double begin_s) const noexcept {

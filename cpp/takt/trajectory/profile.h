@@ -33,6 +33,9 @@ struct Profile {
   // Replaces the computed end by the exact one (they differ by rounding only).
   void SnapEnd(const KinematicState& exact) noexcept { end_state = exact; }
 
+  // Ends the motion at `t`, with what it is there.
+  void Cut(double t) noexcept;
+
   // Moves the whole motion by `distance`.
   void Shift(double distance) noexcept {
     start_state.position += distance;
@@ -55,6 +58,9 @@ struct Profile {
   const KinematicState& start() const noexcept { return start_state; }
   const KinematicState& end() const noexcept { return end_state; }
   int size() const noexcept { return piece_count; }
+
+  // s, when the motion is first at `position`, from `begin_s` on until its end; NaN: never.
+  double TimeAt(double position, double begin_s = 0) const noexcept;
 
   // Extreme values over [0, duration()], exact (roots of the pieces' derivatives), not sampled.
   struct Range {

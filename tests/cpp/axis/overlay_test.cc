@@ -297,6 +297,52 @@ TEST_F(Overlay, StaysOnTopUntilTheNextMoveFits) {
   ExpectLimits();
 }
 
+// AX-51: both are held, and go on to where they went; what moves anew while they are waits, too.
+TEST_F(Overlay, IsHeldByAnOverride) {
+  const Ticket base = rig.Give(MoveAbsolute{.position = 100, .velocity = 100});
+  const Ticket top = rig.Give(MoveSuperimposed{.distance = 50, .velocity_difference = 50});
+  rig.Run(0.2);
+  rig.Give(SetOverride{.velocity_factor = 0});
+  rig.Run(2);
+  EXPECT_EQ(rig.out.set_velocity, 0);
+  EXPECT_EQ(rig.out.state, PlcState::kDiscreteMotion);
+  EXPECT_TRUE(rig.out.superimposed);
+  EXPECT_FALSE(rig.Ended(base) || rig.Ended(top));
+  const double held = rig.position();
+  const Ticket other = rig.Give(MoveSuperimposed{.distance = -20, .velocity_difference = 50});
+  rig.Run(1);
+  EXPECT_EQ(rig.position(), held);
+  EXPECT_TRUE(rig.lives[top].aborted);
+  rig.Give(SetOverride{.velocity_factor = 1});
+  EXPECT_TRUE(rig.RunToEnd(base));
+  EXPECT_TRUE(rig.RunToEnd(other));
+  EXPECT_TRUE(rig.lives[base].done && rig.lives[other].done);
+  EXPECT_NEAR(rig.position(), 100 + rig.lives[top].events.back().value - 20, 1e-9);
+  ExpectLimits();
+}
+
+// AX-51, AX-97: half as fast at once, with weak ramps no further than before. Also on top of what is not overridden.
+TEST_F(Overlay, IsOverriddenOnTopOfAGoingMotion) {
+  rig.Give(MoveVelocity{.velocity = 100});
+  rig.Run(0.5);
+  const Ticket top = rig.Give(MoveSuperimposed{.distance = 60, .velocity_difference = 80});
+  rig.Run(0.5);
+  EXPECT_NEAR(rig.out.set_velocity, 180, 1e-9);
+  rig.Give(SetOverride{.velocity_factor = 0.5});
+  rig.Run(0.2);
+  EXPECT_NEAR(rig.out.set_velocity, 50 + 40, 1e-9);
+  rig.Run(0.2);
+  rig.Give(SetOverride{.velocity_factor = 0.5, .acceleration_factor = 1e-3});
+  double furthest = 0;
+  while (!rig.Ended(top)) {
+    rig.Step();
+    furthest = std::max(furthest, rig.out.covered_distance);
+  }
+  EXPECT_TRUE(rig.lives[top].done);
+  EXPECT_LE(furthest, 60 + 1e-6);
+  ExpectLimits();
+}
+
 // Other numbers for where the axis is change neither motion.
 TEST_F(Overlay, KeepsItsWayUnderOtherNumbers) {
   rig.Give(MoveAbsolute{.position = 100, .velocity = 100});

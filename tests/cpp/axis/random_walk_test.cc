@@ -95,6 +95,17 @@ Command RandomOverlay(std::mt19937_64& random, const AxisParams& p) {
                           .deceleration = std::abs(any(random)) * *p.limits.deceleration};
 }
 
+// Mostly between 0.01 and 1; now and then held, or beyond what the axis can do.
+SetOverride RandomOverride(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> share(-2, 0.5);
+  const auto factor = [&] { return std::pow(10, share(random)); };
+  return {.velocity_factor = random() % 6   ? factor()
+                             : random() % 2 ? 0
+                                            : 1,
+          .acceleration_factor = factor(),
+          .jerk_factor = factor()};
+}
+
 Command RandomCommand(std::mt19937_64& random, const AxisParams& p) {
   std::uniform_real_distribution<double> any(-1.2, 1.2);
   const auto position = [&] { return p.rotary() ? std::abs(any(random)) * 300 : any(random) * 400; };
@@ -184,6 +195,7 @@ Command AnyCommand(std::mt19937_64& random, const AxisParams& p, bool homes) {
   if (homes && random() % 4 == 0) return RandomHoming(random, p);
   if (random() % 12 == 0) return RandomTableCommand(random, p);
   if (random() % 8 == 0) return RandomOverlay(random, p);
+  if (random() % 12 == 0) return RandomOverride(random);
   return RandomCommand(random, p);
 }
 

@@ -53,6 +53,7 @@ std::vector<Command> GoodCommands() {
           axis::SetSoftLimits{},
           axis::DirectOutput{},
           axis::SetPosition{.position = 1},
+          axis::SetOverride{},
           axis::TouchProbe{},
           axis::Touch{}};
 }

@@ -19,7 +19,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "machines.h"
+#include "remote_plant.h"
 
 namespace {
 
@@ -96,9 +96,15 @@ void EndThread() {
 }
 
 TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
-  const Machine machine = FullMachine();
+  Machine machine = FullMachine();
+  machine.external.drives = {{.axis = "z"}, {.axis = "y1"}};
   const auto commands = Scenario(machine);
-  Engine engine(machine, {.publish = true, .every_cycle = true, .journal = true, .snapshot_queue = 4096});
+  Engine engine(machine,
+                {.publish = true, .every_cycle = true, .drives = true, .journal = true, .snapshot_queue = 4096});
+  RemotePlant plant(machine);
+  bool silent = false;
+  plant.answers = [&](const DriveSample& s) { return !(silent && machine.axes[s.axis].name == "z"); };
+  bool lost = false;
   bool filtered = false;
   bool moved = false;
   bool failed = false;
@@ -117,6 +123,9 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
         }
       }
       if (c == 3800) engine.RequestShutdown();
+      silent = c >= 920 && c < 1200;                  // an external drive is lost in motion ...
+      if (c < 4000 || c > 4100) plant.Serve(engine);  // ... and its set points find no reader
+      lost |= engine.outputs(AxisNamed(machine, "z")).error == ErrorId::kDrive;
       const bool late = c >= 2800 && c < 2800 + machine.cycle.overruns_in_a_row;
       engine.RunCycle({500, 5000, late});
       moved |= engine.outputs(AxisNamed(machine, "c")).set_velocity > 1000;
@@ -131,6 +140,8 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
   EXPECT_TRUE(filtered) << "the kernel refused the filter: system calls were not watched";
   EXPECT_TRUE(moved);
   EXPECT_TRUE(failed);
+  EXPECT_TRUE(lost);
+  EXPECT_GT(engine.figures().set_points_dropped, 0u);
   EXPECT_TRUE(engine.all_disabled());
   EXPECT_GT(engine.figures().snapshots_dropped, 0u);
   EXPECT_GT(engine.figures().feedback_dropped, 0u);

@@ -15,6 +15,7 @@
 #include "takt/axis/outputs.h"
 #include "takt/core/describe.h"
 #include "takt/core/feedback.h"
+#include "takt/core/ports.h"
 #include "takt/engine/scheduler.h"
 #include "takt/engine/snapshot.h"
 #include "takt/msgs/engine_state.hpp"
@@ -138,6 +139,15 @@ TEST(LcmTypes, EngineStateSaysWhatTheDescriptionOfFiguresSays) {
   ExpectSameFields("histogram.lcm", TypeOf<engine::Histogram>(), {});
 }
 
+// EN-26, AX-87
+TEST(LcmTypes, DriveMessagesSayWhatTheDescriptionsOfThePortsSay) {
+  ExpectSameFields("drive_setpoint.lcm", TypeOf<ServoOutputs>(),
+                   {"utime", "run_id", "cycle", "sequence", "axis", "period_s", "real_time"});
+  ExpectSameFields("drive_feedback.lcm", TypeOf<ServoInputs>(),
+                   {"utime", "run_id", "cycle", "sequence", "axis", "plant"});
+  ExpectSameConstants("drive_setpoint.lcm", "MODE_", TypeOf<DriveMode>());
+}
+
 // EN-11
 TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   const Type& outputs = TypeOf<axis::Outputs>();
@@ -168,7 +178,7 @@ TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
       EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
     }
   }
-  EXPECT_EQ(files, 10);
+  EXPECT_EQ(files, 13);
 }
 
 }  // namespace

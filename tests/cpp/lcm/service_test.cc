@@ -21,10 +21,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::string Url(int port) {
-  return "udpm://239.255.76.67:" + std::to_string(port) + "?ttl=0";
-}
-
 struct TemporaryFile {
   explicit TemporaryFile(const std::string& name)
       : path((std::filesystem::temp_directory_path() / (name + std::to_string(getpid()))).string()) {}
@@ -53,13 +49,14 @@ struct Received {
 TEST(Service, AClientMovesAnAxisOverTheNetwork) {
   engine::Engine engine(TestMachine(), {.publish = true});
   std::string problem;
-  const auto service = Service::Open(engine, {.url = Url(7731), .info = {.run_id = kRunId}}, problem);
+  const std::string url = NewUrl();
+  const auto service = Service::Open(engine, {.url = url, .info = {.run_id = kRunId}}, problem);
   ASSERT_TRUE(service) << problem;
   std::atomic<int> signals{0};
   engine::RunResult result;
   std::thread cycle([&] { result = takt::engine::Run(engine, {.pace = engine::Pace::kPaced}, signals); });
 
-  const Network client = OpenNetwork(Url(7731));
+  const Network client = OpenNetwork(url);
   ASSERT_TRUE(client.lcm) << client.problem;
   Received received;
   client.lcm->subscribeFunction(kFeedbackChannel, &Received::OnFeedback, &received);
@@ -194,7 +191,7 @@ TEST(Network, AnAbsentNetworkNamesTheRouteCommand) {
   const pid_t child = fork();
   if (child == 0) {
     if (unshare(CLONE_NEWNET) != 0) _exit(77);
-    const Network network = OpenNetwork(Url(7732));
+    const Network network = OpenNetwork(NewUrl());
     _exit(!network.lcm && network.problem.find("ip route add 224.0.0.0/4 dev lo") != std::string::npos &&
                   network.problem.find('\n') == std::string::npos
               ? 0

@@ -1,5 +1,7 @@
-// A small machine for the tests of this folder.
+// A small machine and networks for the tests of this folder.
 #pragma once
+
+#include <unistd.h>
 
 #include <cstdint>
 #include <string>
@@ -23,6 +25,12 @@ inline engine::Machine TestMachine(int axes = 2) {
     machine.axes.push_back(axis);
   }
   return machine;
+}
+
+// An LCM network that no other test uses; its port is below those that systems give away by themselves.
+inline std::string NewUrl() {
+  static int port = 10'000 + getpid() % 500 * 4;
+  return "udpm://239.255.76.67:" + std::to_string(port++) + "?ttl=0";
 }
 
 }  // namespace takt::lcm

@@ -53,4 +53,13 @@ void describe(Description<SetPosition>& d) {
   d.defaulted<&C::relative>("True: added.");
 }
 
+void describe(Description<SetOverride>& d) {
+  using C = SetOverride;
+  d.about("Scales velocity, ramps and jerk of the motion in progress and of those to come (MC_SetOverride).");
+  d.defaulted<&C::velocity_factor>(not_negative,
+                                   "Of velocities; 0 holds the axis until the factor is more. Up to the axis' limits.");
+  d.defaulted<&C::acceleration_factor>(positive, "Of accelerations and decelerations.");
+  d.defaulted<&C::jerk_factor>(positive, "Of the jerk.");
+}
+
 }  // namespace takt::axis

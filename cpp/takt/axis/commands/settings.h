@@ -32,6 +32,11 @@ struct SetPosition {  // MC_SetPosition
   double position = 0;
   bool relative = false;
 };
+struct SetOverride {  // MC_SetOverride
+  double velocity_factor = 1;
+  double acceleration_factor = 1;
+  double jerk_factor = 1;
+};
 
 void describe(Description<SetConstants>&);
 void describe(Description<WriteParameter>&);
@@ -39,5 +44,6 @@ void describe(Description<ReadParameter>&);
 void describe(Description<SetSoftLimits>&);
 void describe(Description<DirectOutput>&);
 void describe(Description<SetPosition>&);
+void describe(Description<SetOverride>&);
 
 }  // namespace takt::axis

@@ -1,0 +1,80 @@
+// What drives in other processes send, looked at before the engine gets it: who sent it, to what it is the answer,
+// whether its numbers are numbers. No LCM in here.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "takt/engine/drives.h"
+#include "takt/engine/machine.h"
+#include "takt/lcm/messages.h"
+
+namespace takt::lcm {
+
+class DriveGate {
+ public:
+  // Called for every message that is refused, with a sentence the first time for each channel and reason, else empty.
+  using Refuse = std::function<void(const std::string& sentence)>;
+
+  // `machine` must outlive this.
+  DriveGate(const engine::Machine& machine, std::int64_t run_id, Refuse refuse);
+
+  std::size_t size() const { return drives_.size(); }  // drives; they have the order of the axes
+
+  // A set point went out: any thread.
+  void OnSent(const engine::DriveSetPoint& set_point);
+  // A message as it came: the sample in it, or nothing. One thread at a time.
+  std::optional<engine::DriveSample> Take(std::string_view channel, std::span<const std::uint8_t> bytes);
+
+  // The number of the drive of this axis, which is an external one.
+  std::size_t DriveOf(std::uint32_t axis) const;
+  std::uint32_t AxisOf(std::size_t drive) const { return drives_[drive].axis; }
+  std::uint32_t missing_cycles(std::size_t drive) const { return drives_[drive].missing_cycles; }
+  // Cycle of the newest set point that the drive has answered; less than -1: none.
+  std::int64_t answered(std::size_t drive) const { return drives_[drive].answered; }
+
+ private:
+  static constexpr std::int64_t kNothing = -2;  // no cycle yet
+
+  struct Drive {
+    std::uint32_t axis = 0;
+    std::uint32_t missing_cycles = 0;
+    std::string channel;
+    std::int64_t answered = kNothing;
+    std::int64_t sequence = 0;  // of that answer ...
+    std::int64_t plant = 0;     // ... and who gave it
+  };
+
+  // Newest set point that went out; how it was given before.
+  struct Sent {
+    std::atomic<std::int64_t> cycle{kNothing};
+    std::atomic<std::int64_t> again{kNothing};  // this cycle's went out more than once: its answer may, too
+  };
+  enum class Reason : std::uint8_t { kChannel, kType, kAxis, kRun, kFuture, kNumber, kPlant, kOld };
+  struct Refusal {
+    Reason reason{};
+    std::string sentence;
+  };
+
+  // Why this message must not reach the engine.
+  std::optional<Refusal> WhyNot(const msgs::drive_feedback& message, std::size_t drive) const;
+  std::string UnknownChannel(std::string_view channel) const;
+  void Say(std::string_view channel, const Refusal& refusal);
+
+  const engine::Machine& machine_;
+  const std::int64_t run_id_;
+  const Refuse refuse_;
+  std::vector<Drive> drives_;
+  std::vector<Sent> sent_;  // by drive
+  std::set<std::pair<std::string, Reason>> said_;
+};
+
+}  // namespace takt::lcm

@@ -1,0 +1,90 @@
+// Drives in other processes over LCM (EN-26, AX-87): takes the engine's set points to them and brings back what they
+// measured. Sockets are touched by threads of its own, or between the cycles of simulated time; never by the cycle.
+//
+// Real time: two threads. The newest set point of each drive goes out, what comes in waits for the next cycle; the
+// engine goes by how old it is.
+//
+// Simulated time: a lock step, so that a run comes out the same each time. No thread; who calls the cycle asks Ready
+// before each. Set points whose answer is missing are sent again after a while, so that messages lost on the way and
+// plants that start later do no harm. A cycle is waited for as long as the machine file says, then it goes on without
+// the answer; once a drive is lost for that, it is waited for no more until something comes from it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <lcm/lcm-cpp.hpp>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "takt/engine/engine.h"
+#include "takt/lcm/drive_gate.h"
+#include "takt/lcm/network.h"
+
+namespace takt::lcm {
+
+struct DrivesOptions {
+  std::string url{};
+  std::int64_t run_id = 0;
+  bool real_time = false;
+  // Takes one sentence for people; from any thread.
+  std::function<void(const std::string&)> complain = [](const std::string&) {};
+};
+
+class Drives {
+ public:
+  // For an engine made with EngineOptions::drives, which must outlive this. Null, and `problem` says in one line why,
+  // when the network cannot be joined.
+  static std::unique_ptr<Drives> Open(engine::Engine& engine, const DrivesOptions& options, std::string& problem);
+  // Sends what is left: the cycle must have ended.
+  ~Drives();
+  Drives(const Drives&) = delete;
+  Drives& operator=(const Drives&) = delete;
+
+  // Simulated time, between two cycles. False: not all drives have answered yet; it has waited a little.
+  bool Ready();
+
+ private:
+  // One drive.
+  struct Line {
+    std::string channel;
+    engine::DriveSetPoint newest;
+    bool due = false;  // the newest one has not gone out yet
+    std::int64_t sequence = 0;
+    std::uint32_t misses = 0;  // simulated time: cycles in a row that went on without its answer
+    bool given_up = false;     // simulated time: not waited for
+  };
+
+  Drives(engine::Engine& engine, const DrivesOptions& options);
+  static void OnFeedback(const ::lcm::ReceiveBuffer* received, const std::string& channel, Drives* drives);
+  void Receive(const ::lcm::ReceiveBuffer* received, const std::string& channel);
+  // True: something went out.
+  bool SendNewest();
+  void Send(Line& line);
+  void SendThread();
+  void ReceiveThread();
+  bool Answered(std::size_t drive) const;
+  bool AllAnswered() const;
+  void GoOnWithout();
+
+  engine::Engine& engine_;
+  const DrivesOptions options_;
+  DriveGate gate_;
+  Network sending_, receiving_;
+  ::lcm::Subscription* subscription_ = nullptr;
+  std::vector<Line> lines_;
+  std::vector<std::uint8_t> buffer_;
+
+  // Simulated time.
+  bool waiting_ = false;
+  std::int64_t give_up_ns_ = 0;
+  std::int64_t send_again_ns_ = 0;
+
+  // Real time.
+  std::atomic<bool> stop_{false};
+  std::thread sender_, receiver_;
+};
+
+}  // namespace takt::lcm

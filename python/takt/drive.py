@@ -1,0 +1,284 @@
+"""Drives in a process of their own: what a motor, a field bus or another simulation is to an engine (EN-26, AX-87).
+
+A `Plant` listens for the set points of an engine and has a `Drive` of yours carry them out, one for each axis that the
+machine file lists under `external: drives:`. What the drive measured goes back as the answer.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import select
+import signal
+import sys
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from functools import partial
+from typing import Any, Final
+
+from takt import _core, msgs
+from takt.errors import TaktError
+from takt.network import DEFAULT_URL, open_network
+
+CYCLIC_POSITION: Final = msgs.drive_setpoint.MODE_CYCLIC_POSITION
+CYCLIC_VELOCITY: Final = msgs.drive_setpoint.MODE_CYCLIC_VELOCITY
+ANALOG: Final = msgs.drive_setpoint.MODE_ANALOG
+CYCLIC_TORQUE: Final = msgs.drive_setpoint.MODE_CYCLIC_TORQUE
+
+WATCHDOG = 100  # periods
+_REST_S = 0.01  # real time: between two steps of drives that the watchdog has switched off
+_MOST_WAIT_S = 0.1
+
+
+@dataclass(frozen=True)
+class SetPoint:
+    """What a drive is told for one cycle. As it is here: off."""
+
+    mode: int = CYCLIC_POSITION  # which of the set points it follows
+    enable: bool = False  # power stage on
+    release_brake: bool = False  # brake relay energised
+    position_counts: float = 0.0  # csp: where to be at the end of the cycle, unwrapped, in the encoder's sense
+    velocity_counts_s: float = 0.0  # csp: fed forward; csv: set point; cst: largest speed either way
+    voltage_v: float = 0.0  # analogue, -10 to 10 V
+    torque_nm: float = 0.0  # cst; N on linear motors
+    period_s: float = 0.001  # length of a cycle
+
+
+@dataclass
+class Measured:
+    """What a drive says at the end of a cycle: wires before any inversion, counts modulo 2^32."""
+
+    counts: int = 0  # incremental: quadrature counter; absolute: the SSI word
+    index_counts: int = 0  # the counter at the last index pulse
+    index_pulses: int = 0  # how many there were
+    encoder_error: bool = False
+    limit_positive: bool = False
+    limit_negative: bool = False
+    reference: bool = False
+    touch_probe: bool = False
+    probe_rises: int = 0  # edges of the touch probe; where none ever counts, the engine looks at the wire
+    probe_falls: int = 0
+    probe_rise_age_s: float = 0.0  # how long before the end of the cycle the last one came
+    probe_fall_age_s: float = 0.0
+    drive_ready: bool = False  # power stage on and following its set point
+    drive_fault: bool = False
+    torque_nm: float = 0.0
+
+
+class Drive(ABC):
+    """One drive with its encoder and switches."""
+
+    def start(self) -> None:  # noqa: B027 (may be left as it is)
+        """An engine has started, and this drive is its own from now on."""
+
+    @abstractmethod
+    def step(self, told: SetPoint, elapsed_s: float) -> Measured:
+        """Carries a set point out and says what the wires read at the end of its cycle, `elapsed_s` after the one
+        before (more than a period where set points were lost on the way). When the engine is not heard any more in real
+        time, it is called with a set point that says off, again and again."""
+
+
+class SimulatedServo(Drive):
+    """The servo that the engine itself would simulate for this axis: the very same motion, bit for bit."""
+
+    MOST_CYCLES = 1000  # of lost set points that are made up for
+
+    def __init__(self, machine: str | os.PathLike[str], axis: str) -> None:
+        from takt.engine import read_machine
+
+        self._servo = _core.Servo(*read_machine(machine), axis)
+        self._told: dict[str, Any] = _core.servo_outputs()
+
+    def start(self) -> None:
+        self._servo.restart()
+        self._told = _core.servo_outputs()
+
+    def step(self, told: SetPoint, elapsed_s: float) -> Measured:
+        for _ in range(min(round(elapsed_s / told.period_s) - 1, self.MOST_CYCLES)):
+            self._servo.step(told.period_s, self._told)
+        self._told = {name: getattr(told, name) for name in self._told}
+        return Measured(**self._servo.step(told.period_s, self._told))
+
+
+_TOLD: Final = [f.name for f in fields(SetPoint)]
+_MEASURED: Final = [f.name for f in fields(Measured)]
+_COUNTERS: Final = ("counts", "index_counts", "index_pulses", "probe_rises", "probe_falls")
+
+
+@dataclass
+class _Line:
+    """One axis between the network and its drive."""
+
+    axis: str
+    drive: Drive
+    run_id: int = -1
+    cycle: int = -1  # carried out last
+    sequence: int = 0  # of the next answer
+    answer: bytes = b""
+    real_time: bool = False
+    period_s: float = 0.001
+    heard_s: float = 0.0  # when, by the clock
+    off_since_s: float | None = None  # by the watchdog; None: it has not bitten
+    stepped_s: float = 0.0
+    latched: bool = False  # the engine has not switched the drive off since the watchdog bit
+    subscription: Any = field(default=None, repr=False)
+
+
+class Plant:
+    """Connects drives with an engine.
+
+    drives: by the names of their axes.
+    watchdog: in real time, drives that hear no set point for so many periods are told to be off: 0 V, power stage off,
+        brake fallen. They stay off until the engine has switched them off and on again. Simulated time stands still
+        until the drives have answered: there is nothing to watch.
+    say: takes a sentence when an engine starts, when it is not heard any more, when it is back.
+    """
+
+    def __init__(
+        self,
+        drives: Mapping[str, Drive],
+        url: str = DEFAULT_URL,
+        *,
+        watchdog: int = WATCHDOG,
+        say: Callable[[str], None] | None = None,
+    ) -> None:
+        if not drives:
+            raise TaktError("a plant needs at least one drive")
+        if watchdog < 1:
+            raise TaktError(f"a watchdog needs at least one period, not {watchdog}")
+        self._watchdog = watchdog
+        self._say = say or (lambda sentence: print(sentence, file=sys.stderr, flush=True))
+        self._network = open_network(url)
+        self._id = random.SystemRandom().getrandbits(62)
+        self._lines = {axis: _Line(axis, drive) for axis, drive in drives.items()}
+        self._running = False
+        self.malformed = 0  # messages that were no set points
+        for line in self._lines.values():
+            # Channels are regular expressions here; a point is the only such sign that a name may have.
+            channel = f"takt/drive/{line.axis}/setpoint".replace(".", "\\.")
+            line.subscription = self._network.subscribe(channel, partial(self._receive, line))
+            line.subscription.set_queue_capacity(1000)
+
+    def run(self, duration_s: float | None = None) -> None:
+        """Serves until `stop`, or for so long."""
+        end_s = None if duration_s is None else time.monotonic() + duration_s
+        self._running = True
+        while self._running and (end_s is None or time.monotonic() < end_s):
+            left_s = _MOST_WAIT_S if end_s is None else max(0.0, min(_MOST_WAIT_S, end_s - time.monotonic()))
+            self.handle(left_s)
+
+    def stop(self) -> None:
+        """Ends `run`; from a drive, or from another thread."""
+        self._running = False
+
+    def handle(self, timeout_s: float = 0.0) -> None:
+        """Carries out what has come, waiting so long for the first of it at most, and sees to the watchdog."""
+        # Waiting with select, not with LCM, which fails when a signal comes.
+        if select.select([self._network.fileno()], [], [], max(0.0, min(timeout_s, self._wait_s())))[0]:
+            self._network.handle()
+        now_s = time.monotonic()
+        for line in self._lines.values():
+            self._watch(line, now_s)
+
+    def _wait_s(self) -> float:
+        """How long until the watchdog of some drive wants to be looked at."""
+        waits = [_MOST_WAIT_S]
+        for line in self._lines.values():
+            if line.real_time:
+                waits.append(_REST_S if line.off_since_s is not None else self._watchdog * line.period_s / 4)
+        return max(0.001, min(waits))
+
+    def _watch(self, line: _Line, now_s: float) -> None:
+        if not line.real_time or now_s - line.heard_s < self._watchdog * line.period_s:
+            return
+        if line.off_since_s is None:
+            line.off_since_s = line.stepped_s = now_s
+            line.latched = True
+            self._say(f"{line.axis}: no set point for {self._watchdog} periods: off, brake on")
+            line.drive.step(SetPoint(period_s=line.period_s), line.period_s)
+        elif now_s - line.stepped_s >= _REST_S:
+            line.drive.step(SetPoint(period_s=line.period_s), now_s - line.stepped_s)
+            line.stepped_s = now_s
+
+    def _receive(self, line: _Line, _: str, data: bytes) -> None:
+        try:
+            message = msgs.drive_setpoint.decode(data)
+        except Exception:  # generated code raises whatever comes
+            self.malformed += 1
+            return
+        if message.axis != line.axis or message.run_id < line.run_id or not message.period_s > 0:
+            return  # not for this drive, or from an engine that another one came after
+        if message.run_id > line.run_id:
+            self._begin(line, message)
+        elif message.cycle == line.cycle:
+            self._network.publish(_feedback_channel(line), line.answer)
+            return
+        elif message.cycle < line.cycle:
+            return
+        self._carry_out(line, message)
+
+    def _begin(self, line: _Line, message: msgs.drive_setpoint) -> None:
+        line.run_id, line.sequence, line.cycle = message.run_id, 0, message.cycle - 1
+        line.latched = False
+        line.off_since_s = None
+        line.drive.start()
+        self._say(f"{line.axis}: an engine has started" + ("" if message.real_time else ", in simulated time"))
+
+    def _carry_out(self, line: _Line, message: msgs.drive_setpoint) -> None:
+        told = SetPoint(**{name: getattr(message, name) for name in _TOLD})
+        elapsed_s = (message.cycle - line.cycle) * message.period_s
+        line.real_time, line.period_s, line.heard_s = message.real_time, message.period_s, time.monotonic()
+        if line.off_since_s is not None:
+            self._say(f"{line.axis}: the engine is heard again" + ("; off until it is switched on anew" * told.enable))
+            line.off_since_s, elapsed_s = None, message.period_s
+        line.latched = line.latched and told.enable
+        if line.latched:
+            told = SetPoint(period_s=message.period_s)
+        measured = line.drive.step(told, elapsed_s)
+        line.cycle = message.cycle
+        line.answer = self._encode(line, measured)
+        self._network.publish(_feedback_channel(line), line.answer)
+
+    def _encode(self, line: _Line, measured: Measured) -> bytes:
+        answer = msgs.drive_feedback()
+        answer.utime = time.time_ns() // 1000
+        answer.run_id, answer.cycle, answer.plant = line.run_id, line.cycle, self._id
+        answer.axis, answer.sequence = line.axis, line.sequence
+        line.sequence += 1
+        for name in _MEASURED:
+            setattr(answer, name, getattr(measured, name))
+        for name in _COUNTERS:
+            setattr(answer, name, int(getattr(measured, name)) & 0xFFFF_FFFF)
+        data: bytes = answer.encode()
+        return data
+
+
+def _feedback_channel(line: _Line) -> str:
+    return f"takt/drive/{line.axis}/feedback"
+
+
+def simulate(
+    machine: str | os.PathLike[str], url: str | None = None, axes: Sequence[str] = (), watchdog: int = WATCHDOG
+) -> int:
+    """Serves the external drives of a machine, or those of these axes, until SIGINT or SIGTERM."""
+    from takt.engine import read_machine
+
+    text, file_name = read_machine(machine)
+    described = json.loads(_core.load_machine(text, file_name))
+    external = [drive["axis"] for drive in described["external"]["drives"]]
+    for axis in axes:
+        if axis not in external:
+            raise TaktError(f"{file_name}: external.drives has no axis {axis}; it has {', '.join(external) or 'none'}")
+    if not external:
+        raise TaktError(f"{file_name}: has no external drives (external: drives: - axis: NAME)")
+    drives = {axis: SimulatedServo(machine, axis) for axis in axes or external}
+    plant = Plant(drives, url or described["lcm"]["url"], watchdog=watchdog)
+    before = [signal.signal(number, lambda *_: plant.stop()) for number in (signal.SIGINT, signal.SIGTERM)]
+    print(f"simulating {', '.join(drives)}", file=sys.stderr, flush=True)
+    plant.run()
+    for number, handler in zip((signal.SIGINT, signal.SIGTERM), before, strict=True):
+        signal.signal(number, handler)
+    return 0
