@@ -24,8 +24,8 @@ class Forecast:
         self._core = core
         self.error_id: int = core.error_id  # the command would be refused, or would fail before its turn
         self.sentence = sentence  # why
-        # There is a plan: the axis follows nothing (a master, a table, a torque, a switch), and the turn of the command
-        # comes within ten minutes. Otherwise the rest says nothing.
+        # There is a plan: the axis follows nothing (a master, a table, a torque, a switch), nothing lies on top of its
+        # motion, and the turn of the command comes within ten minutes. Otherwise the rest says nothing.
         self.known: bool = core.known
         self.held: bool = core.held  # by an override: it goes as far as where that stops it
         self.limited_by: str = named("limited_by", core.limited_by)

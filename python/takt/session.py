@@ -258,7 +258,7 @@ class Session(MachineCommands):
         """A published value of an axis."""
 
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
-        raise TaktError("forecasts are made in process only; over LCM travel_time_s of a feedback says how long it takes")
+        raise TaktError("forecasts are made in process only; over LCM a feedback has travel_time_s")
 
     @abstractmethod
     def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:

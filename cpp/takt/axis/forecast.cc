@@ -16,7 +16,7 @@ constexpr Ticket kAsked = std::numeric_limits<Ticket>::max();
 constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 
 bool IsPlanned(const AxisParams& p, const State& s) {
-  return !p.follows && !FollowsDemand(s.active.kind) && !Homes(s.active.kind) &&
+  return !p.follows && !s.superimposed && !FollowsDemand(s.active.kind) && !Homes(s.active.kind) &&
          s.active.kind != RequestKind::kTorqueControl && !s.torque.engaged;
 }
 

@@ -14,8 +14,8 @@ namespace takt::axis {
 // are not in it: each is asked for by itself.
 struct Forecast {
   ErrorId error = ErrorId::kNone;  // the command would be refused, or would fail before its turn has come
-  // There is a plan. False: the axis follows something (a master, a table, a torque, a switch), or the turn of the
-  // command does not come within kLongestWait_s. The rest says nothing then.
+  // There is a plan. False: the axis follows something (a master, a table, a torque, a switch), something lies on top
+  // of its motion, or the turn of the command does not come within kLongestWait_s. The rest says nothing then.
   bool known = false;
   bool held = false;     // by an override: it goes as far as where that stops it
   bool goes_on = false;  // with the velocity at its end; else another command takes over there, or it is at rest

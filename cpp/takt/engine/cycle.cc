@@ -11,7 +11,7 @@ namespace takt::engine {
 namespace {
 
 // Feedback of one cycle: each live command of an axis may start and end in it, and so may each newly arrived one.
-constexpr std::size_t kEventsPerAxis = 4 * (axis::kBufferSize + 4);
+constexpr std::size_t kEventsPerAxis = 4 * (axis::kBufferSize + 5);
 constexpr std::size_t kEventsPerCommand = 4;
 
 axis::Context ContextOf(World& w, std::size_t i) {

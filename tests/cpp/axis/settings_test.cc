@@ -70,6 +70,22 @@ TEST(Parameters, AreReadAndWritten) {
   EXPECT_EQ(ErrorOf(rig, ReadParameter{0}), ErrorId::kParameter);
 }
 
+// AX-28: what PLCopen has no number for: the loop's constants, and supervision at rest.
+TEST(Parameters, OfTaktsOwn) {
+  AxisParams p = LinearParams();
+  p.loop = {.kp = 0.1, .ki = 0.2, .kd = 0.3, .kc = 0.4, .ff = 0.5, .velocity_at_10v = 600};
+  Rig rig(p);
+  for (const int i : {1, 2, 3, 4, 5}) EXPECT_EQ(Read(rig, 1000 + i), i / 10.0);
+  EXPECT_EQ(Read(rig, 1006), 600);
+  EXPECT_EQ(Read(rig, 1007), HUGE_VAL);
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{1007, 2}), ErrorId::kNone);
+  EXPECT_EQ(Read(rig, 1007), 2);
+  EXPECT_EQ(rig.params.supervision.deviation_standstill, 2);
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{1007, 0}), ErrorId::kParameter);
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{1001, 1}), ErrorId::kParameter);  // GT_SetConstant does that
+  for (const int number : {18, 1000, 1008}) EXPECT_EQ(ErrorOf(rig, ReadParameter{number}), ErrorId::kParameter);
+}
+
 // AX-52: new limits hold at once; those that a motion could not keep are refused, and it goes on.
 TEST(SoftLimits, ChangeAtRunTime) {
   Rig rig(LinearParams());
@@ -104,6 +120,8 @@ TEST(SoftLimits, AreSwitchedOffAndOnAgain) {
   for (const int number : {4, 6}) {
     EXPECT_EQ(ErrorOf(rig, WriteParameter{number, 0}), ErrorId::kNone);
     EXPECT_EQ(Read(rig, number), 0);
+    EXPECT_EQ(Read(rig, 2), 100);
+    EXPECT_EQ(Read(rig, 7), 5);
     EXPECT_EQ(ErrorOf(rig, WriteParameter{number, 7.5}), ErrorId::kParameter);
     EXPECT_EQ(ErrorOf(rig, WriteParameter{number, 1}), ErrorId::kNone);
     EXPECT_EQ(Read(rig, number), 1);
@@ -114,6 +132,26 @@ TEST(SoftLimits, AreSwitchedOffAndOnAgain) {
 }
 
 // A limit that comes into the way of an endless motion stops it before it.
+TEST(SoftLimits, LeaveRoomWhereOneMovePassesItsVelocityOn) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveAbsolute{.position = 100, .velocity = 200});
+  const Ticket next =
+      rig.Give(MoveAbsolute{.position = 200, .velocity = 200, .buffer_mode = BufferMode::kBlendingHigh});
+  rig.Run(0.2);
+  const Ticket close = rig.Give(SetSoftLimits{.lower = -10, .upper = 103});
+  rig.Step();
+  EXPECT_EQ(rig.lives[close].error_id, ErrorId::kTargetBehindLimit);
+  const Ticket further = rig.Give(SetSoftLimits{.lower = -10, .upper = 130});
+  rig.RunToEnd(next);
+  EXPECT_TRUE(rig.lives[further].done);
+  EXPECT_EQ(rig.lives[next].error_id, ErrorId::kTargetBehindLimit);
+  rig.Run(1);
+  EXPECT_GT(rig.position(), 100);
+  EXPECT_LT(rig.position(), 130);
+  EXPECT_EQ(rig.out.state, PlcState::kStandstill);
+}
+
 TEST(SoftLimits, StopAnEndlessMotion) {
   Rig rig(LinearParams());
   ASSERT_TRUE(rig.PowerOn());
