@@ -35,6 +35,7 @@ void ChangeJog(const Context& c, const Request& r, State& s) {
   if (s.jog_sense == 0 || !key_held) return;
   Request held = r;  // the first key wins, whatever the other one does
   held.forward = s.jog_sense > 0;
+  const Beneath base(s);
   Plan plan;
   if (PlanJog(c, held, s, plan).failed()) return;
   StartMotion(plan, FromCycleBefore(c), s);
@@ -49,7 +50,7 @@ Status Jog(const Context& c, const Request& r, State& s) {
   Plan plan;
   const Status status = r.forward != r.backward ? PlanJog(c, r, s, plan) : Status::Ok();
   if (status.failed()) return status;
-  const std::optional<double> furthest = SurroundingsOf(c, s).furthest;
+  const std::optional<double> furthest = SurroundingsOfBoth(c, s).furthest;
   AbortAll(c, s);
   if (s.plc != PlcState::kStandstill) ComeToRest(c, r.limits(), FromCycleBefore(c), s, furthest);
   Grant(c, r, s);
@@ -68,7 +69,7 @@ Status TakeOver(const Context& c, const Request& r, State& s) {
     return Status::Ok();
   }
   Plan plan;
-  const Status status = PlanRequest(c.params, SurroundingsOf(c, s), c.planner, s.setpoint, r, nullptr, plan);
+  const Status status = PlanRequest(c.params, SurroundingsOfBoth(c, s), c.planner, s.setpoint, r, nullptr, plan);
   if (status.failed()) return status;
   AbortAll(c, s);
   TakeControl(c, r, plan, FromCycleBefore(c), s);
@@ -98,7 +99,8 @@ Status SwitchOn(const Context& c, const Request& r, State& s) {
 }
 
 Status SwitchOff(const Context& c, const Request& r, State& s) {
-  const bool waits = r.buffer_mode == BufferMode::kBuffered && s.active.kind != RequestKind::kNone && !SwitchingOff(s);
+  const bool moves = s.active.kind != RequestKind::kNone || s.superimposed;
+  const bool waits = r.buffer_mode == BufferMode::kBuffered && moves && !SwitchingOff(s);
   if (waits && s.plc != PlcState::kErrorStop) return Enqueue(c, r, s);
   AbortAll(c, s);
   s.direct_voltage_v = 0;
@@ -119,7 +121,8 @@ Status Admit(const Context& c, const Request& r, State& s) {
   if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
   if (c.params.await_constants && !s.constants_set) return Status::Failed(ErrorId::kNoConstants);
   if (c.params.follows) return Status::Failed(ErrorId::kState);
-  const bool buffered = r.buffer_mode != BufferMode::kAborting && s.active.kind != RequestKind::kNone;
+  const bool moves = s.active.kind != RequestKind::kNone || s.superimposed;
+  const bool buffered = r.buffer_mode != BufferMode::kAborting && moves;
   if (!s.loop_closed) {
     return buffered && SwitchingOn(s) ? Enqueue(c, r, s) : Status::Failed(ErrorId::kPowerOff);
   }

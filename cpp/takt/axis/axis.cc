@@ -24,7 +24,7 @@ double LargestStep(const Context& c) {
 }
 
 bool InMotion(const State& s) {
-  return !s.motion.arrived || !AtRest(s);
+  return !s.motion.arrived || s.superimposed || !AtRest(s);
 }
 
 void WatchDeviation(const Context& c, State& s) {
@@ -100,6 +100,7 @@ bool GoesOn(const State& s) {
 
 // Takes a set point back from which the axis could not stop in time, and brakes instead.
 void GuardLimits(const Context& c, const KinematicState& before, State& s) {
+  if (s.superimposed) return;  // the limits are those of both motions together
   const bool positions_count = s.plc != PlcState::kErrorStop && s.plc != PlcState::kHoming;
   if (!positions_count || !GoesOn(s) || CanStopInside(c.params, before, s.setpoint)) return;
   const bool upwards = s.setpoint.position > before.position;
@@ -129,9 +130,11 @@ void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
       s.last_sense = SenseAtEnd(s.motion.profile, s.last_sense);
     }
     if (s.motion.held) return;
+    const double origin = s.origin;
     Conclude(c, late_s, s);
     if (s.motion.arrived || FollowsDemand(s.active.kind)) return;  // no other motion with an end has begun
-    GuardLimits(c, before, s);
+    const double renumbered = before.position + origin - s.origin;
+    GuardLimits(c, {renumbered, before.velocity, before.acceleration}, s);
   }
 }
 
@@ -160,6 +163,39 @@ void FollowTable(const Context& c, State& s) {
   GuardLimits(c, before, s);
   if (s.time_table.over) ConcludeDue(c, before, s);
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
+}
+
+// The next set point of the motion in progress.
+void MoveOne(const Context& c, State& s) {
+  if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
+  if (s.loop_closed && c.params.follows && Follow(c, s)) {
+    // The master's set point is this axis' too.
+  } else if ((s.active.kind == RequestKind::kTorqueControl || s.torque.engaged) && MoveTorque(c, s)) {
+    // The drive follows a torque, the set point the axis.
+  } else if (s.loop_closed && Couples(s.active.kind)) {
+    FollowCoupling(c, s);
+  } else if (s.loop_closed && FollowsTable(s.active.kind)) {
+    FollowTable(c, s);
+  } else if (s.loop_closed) {
+    Advance(c, s);
+    if (s.homing.stage != HomingStage::kNone) StepHoming(c, s);
+  } else {
+    s.setpoint = {s.actual.position, 0, 0};
+    AwaitDrive(c, s);
+  }
+}
+
+// The same of a motion with another one on top.
+void MoveBoth(const Context& c, State& s) {
+  if (LostMasters(c, s)) {
+    AbortOverlay(c, FeedbackState::kError, ErrorId::kAxisFault, s);
+    return MoveOne(c, s);
+  }
+  {
+    const Beneath base(s);
+    MoveOne(c, s);
+  }
+  Superimpose(c, s);
 }
 
 void FinishReset(const Context& c, State& s) {
@@ -229,22 +265,7 @@ void Move(const Context& c, State& s) noexcept {
   // What seldom happens is asked for here: a call that finds nothing to do would cost as much as the set point.
   if (s.homing.flying_ticket != 0) WatchFlying(c, s);
   if (s.probe.watch != ProbeWatch::kNothing) FollowProbe(c, s);
-  if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
-  if (s.loop_closed && c.params.follows && Follow(c, s)) {
-    // The master's set point is this axis' too.
-  } else if ((s.active.kind == RequestKind::kTorqueControl || s.torque.engaged) && MoveTorque(c, s)) {
-    // The drive follows a torque, the set point the axis.
-  } else if (s.loop_closed && Couples(s.active.kind)) {
-    FollowCoupling(c, s);
-  } else if (s.loop_closed && FollowsTable(s.active.kind)) {
-    FollowTable(c, s);
-  } else if (s.loop_closed) {
-    Advance(c, s);
-    if (s.homing.stage != HomingStage::kNone) StepHoming(c, s);
-  } else {
-    s.setpoint = {s.actual.position, 0, 0};
-    AwaitDrive(c, s);
-  }
+  s.superimposed ? MoveBoth(c, s) : MoveOne(c, s);
   FinishReset(c, s);
   if (c.params.rotary() && std::abs(s.setpoint.position) > kFarTurns * c.params.modulus) BringBackTurns(c.params, s);
   s.cam_outputs = s.cam_switch.list < 0 ? 0 : SwitchCams(c, s);
@@ -301,6 +322,7 @@ void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
   if (s.plc != PlcState::kErrorStop) {
     EndActive(c, FeedbackState::kError, error, s);
     AbortBuffer(c, s);
+    AbortOverlay(c, FeedbackState::kError, error, s);
     Enter(s, PlcState::kErrorStop);
     if (!opens) Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);
   }
@@ -330,7 +352,13 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.active_command = s.active.ticket;
   out.error = s.error;
   out.state = s.plc;
+  out.superimposed = s.superimposed;
   out.limited_by = s.limited_by;
+  out.covered_distance = 0;
+  if (s.superimposed) {
+    out.covered_distance = s.overlay.covered;
+    if (s.overlay.limited_by != LimitedBy::kNothing) out.limited_by = s.overlay.limited_by;
+  }
   out.homed = s.homing.homed;
   out.end_of_profile = s.end_of_profile;
   out.profile_ends = s.profile_ends;
@@ -343,7 +371,7 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.buffered_commands = s.buffered;
   out.loop_closed = s.loop_closed;
   out.in_position =
-      s.loop_closed && !InMotion(s) && std::abs(s.following_error) <= p.supervision.in_position.value_or(HUGE_VAL);
+      s.loop_closed && !InMotion(s) && !s.motion.held && std::abs(s.following_error) <= p.supervision.in_position.value_or(HUGE_VAL);
   out.limit_positive = s.limit_positive;
   out.limit_negative = s.limit_negative;
   out.reference = s.reference;

@@ -147,7 +147,7 @@ KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& befo
   if (demand.velocity == 0 && before.velocity == 0) sense = demand.position - before.position;
   if (!(sense != 0 && chases(sense)) && !chases(0)) return TowardsVelocity(c, before, demand.velocity);
   if (arrives) {  // the demand itself, in velocity mode at another place
-    state.offset = next.position - demand.position;
+    if (mode == ChaseMode::kVelocity) state.offset = next.position - demand.position;
     state.in_step = true;
   }
   return next;

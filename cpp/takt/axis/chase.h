@@ -18,7 +18,8 @@ enum class ChaseMode : std::uint8_t {
 };
 
 struct ChaseState {
-  double offset = 0;     // u, velocity mode: own position minus the demand's, fixed while in step
+  // u. Velocity mode: own position minus the demand's, fixed while in step. Position mode: the caller's own.
+  double offset = 0;
   bool in_step = false;  // the last set point was the demand itself
 };
 
@@ -34,7 +35,8 @@ struct Chaser {
 // Invariant S(x): the speed of x stays within the axis' velocity even while its acceleration ends with the axis' jerk:
 // |v + a|a| / 2j| <= vmax. With S(before), for every demand whatsoever:
 //   - S(next) holds, and so |v| <= vmax;
-//   - |a| <= acceleration while the speed grows, deceleration while it falls, or no more than before had of it;
+//   - |a| <= acceleration while the speed grows, deceleration while it falls, or no more than before had of it; what
+//     only falling speed may have is gone before the axis turns round;
 //   - |a - a_before| <= jerk * period; position and velocity are those of a motion with that jerk.
 // A demand that keeps all this, and continues `before`, is taken bit for bit: in step. Any other is chased: planned
 // anew in each cycle in the frame of the demand as if it kept its acceleration; where limits leave no room for that,

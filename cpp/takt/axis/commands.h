@@ -7,6 +7,7 @@
 #include "takt/axis/commands/coupling.h"
 #include "takt/axis/commands/homing.h"
 #include "takt/axis/commands/moves.h"
+#include "takt/axis/commands/overlay.h"
 #include "takt/axis/commands/probe.h"
 #include "takt/axis/commands/profiles.h"
 #include "takt/axis/commands/settings.h"
@@ -15,11 +16,11 @@ namespace takt::axis {
 
 using Command =
     std::variant<Power, Reset, MoveAbsolute, MoveRelative, MoveAdditive, MoveVelocity, MoveContinuousAbsolute,
-                 MoveContinuousRelative, Inch, Halt, Stop, Jog, TorqueControl, GearIn, GearOut, GearInPos,
-                 PhasingAbsolute, PhasingRelative, CombineAxes, CamTableSelect, CamIn, CamOut, PositionProfile,
-                 VelocityProfile, AccelerationProfile, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse,
-                 StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch, StepRefFlyingRefPulse, SetConstants,
-                 WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, SetPosition, SetOverride, TouchProbe,
-                 AbortTrigger, Touch, DigitalCamSwitch>;
+                 MoveContinuousRelative, Inch, Halt, Stop, Jog, MoveSuperimposed, HaltSuperimposed, TorqueControl,
+                 GearIn, GearOut, GearInPos, PhasingAbsolute, PhasingRelative, CombineAxes, CamTableSelect, CamIn,
+                 CamOut, PositionProfile, VelocityProfile, AccelerationProfile, StepAbsSwitch, StepLimitSwitch,
+                 StepBlock, StepRefPulse, StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch,
+                 StepRefFlyingRefPulse, SetConstants, WriteParameter, ReadParameter, SetSoftLimits, DirectOutput,
+                 SetPosition, SetOverride, TouchProbe, AbortTrigger, Touch, DigitalCamSwitch>;
 
 }  // namespace takt::axis

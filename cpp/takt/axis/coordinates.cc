@@ -4,6 +4,7 @@ namespace takt::axis {
 
 void ShiftCoordinates(double by, State& s) noexcept {
   s.setpoint.position += by;
+  if (s.superimposed) s.overlay.base.position += by;
   s.due += by;
   s.actual.position += by;
   s.motion.profile.Shift(by);

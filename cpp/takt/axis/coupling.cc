@@ -111,7 +111,7 @@ void BeginCurve(const Context& c, const KinematicState& master, State& s) {
   k.joining = Joining::kOnCurve;
   k.curve_begin = master.position;
   const double way = k.master_sync - master.position;
-  const double own = s.setpoint.position + s.origin;
+  const double own = s.setpoint.position + s.origin - k.chase.offset;
   double slope = 0;
   double bend = 0;
   if (std::abs(master.velocity) > Standing(c.axes_params[k.law.terms[0].master])) {
@@ -276,7 +276,8 @@ void NoteEnd(const Context& c, const KinematicState& phase, State& s) {
   ++s.profile_ends;
   k.cam.end_axis = k.law.terms[0].master;
   k.cam.end_master = k.cam.master + *end * law.way() - phase.position;
-  k.cam.end_slave = k.cam.slave + law.scale * (law.table.At(law.table.begin()).y + *end * law.table.stroke());
+  k.cam.end_slave =
+      k.cam.slave + k.chase.offset + law.scale * (law.table.At(law.table.begin()).y + *end * law.table.stroke());
 }
 
 bool MastersStand(const Context& c, const CouplingRequest& law) {
@@ -364,10 +365,14 @@ void Couple(const Context& c, const Request& r, State& s) noexcept {
   Enter(s, PlcState::kSynchronizedMotion);
 }
 
+bool LostMasters(const Context& c, const State& s) noexcept {
+  return Couples(s.active.kind) && !MastersStand(c, s.coupling.law);
+}
+
 bool FollowMasters(const Context& c, State& s) noexcept {
   if (!Couples(s.active.kind)) return false;
   CouplingState& k = s.coupling;
-  if (!MastersStand(c, k.law)) {  // nothing to follow any more
+  if (LostMasters(c, s)) {
     const Limits ramps = c.params.planner_limits();
     EndActive(c, FeedbackState::kError, ErrorId::kAxisFault, s);
     s.coupling.law = CouplingRequest{};
@@ -392,7 +397,7 @@ bool FollowMasters(const Context& c, State& s) noexcept {
   demand.position -= s.origin;
   const Chaser chaser = {c.params, c.planner, s.active.limits(), c.cycle.period_s};
   if (k.locked) {
-    demand.position += k.chase.offset;
+    if (begun) demand.position += k.chase.offset;
     s.setpoint = Chase(chaser, ChaseMode::kPosition, s.setpoint, demand, k.chase);
   } else {
     s.setpoint = Chase(chaser, ChaseMode::kVelocity, s.setpoint, demand, k.chase);

@@ -57,6 +57,8 @@ Status MayCouple(const Context& c, const Request& r, const State& s) noexcept;
 void Couple(const Context& c, const Request& r, State& s) noexcept;
 // The next set point of a coupled axis; false: it is not (any more) coupled.
 bool FollowMasters(const Context& c, State& s) noexcept;
+// Whether it is coupled to a master that was switched off or has failed: it cannot follow any more (AX-55).
+bool LostMasters(const Context& c, const State& s) noexcept;
 // Shifts what the axis takes for its master's position. kState: not coupled to one master.
 Status CarryOut(const Context& c, Ticket ticket, const PhasingAbsolute& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const PhasingRelative& command, State& s) noexcept;

@@ -43,15 +43,9 @@ bool BreaksAcceleration(const AxisParams& params, const Profile& profile) {
   const trajectory::Limits own = params.planner_limits();
   double begin = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(profile.size()); ++i) {
-    const Piece& piece = profile.pieces[i];
     const double duration = profile.piece_ends_s[i] - begin;
     begin = profile.piece_ends_s[i];
-    std::array<double, 4> cuts = {0, 0, 0, duration};
-    const std::array<double, 2> zeros = piece.VelocityZeros();
-    for (std::size_t k = 0; k < 2; ++k) cuts[k + 1] = zeros[k] > cuts[k] && zeros[k] < duration ? zeros[k] : cuts[k];
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (cuts[k + 1] > cuts[k] && BreaksRamp(own, piece, cuts[k], cuts[k + 1])) return true;
-    }
+    if (BreaksRamps(own, profile.pieces[i], duration)) return true;
   }
   return false;
 }
@@ -99,6 +93,16 @@ bool CanStopInside(const AxisParams& p, const KinematicState& before, const Kine
 
 double Rounding(double x) noexcept {
   return 1e-9 * (1 + std::abs(x));
+}
+
+bool BreaksRamps(const trajectory::Limits& own, const Piece& piece, double duration) noexcept {
+  std::array<double, 4> cuts = {0, 0, 0, duration};
+  const std::array<double, 2> zeros = piece.VelocityZeros();
+  for (std::size_t k = 0; k < 2; ++k) cuts[k + 1] = zeros[k] > cuts[k] && zeros[k] < duration ? zeros[k] : cuts[k];
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (cuts[k + 1] > cuts[k] && BreaksRamp(own, piece, cuts[k], cuts[k + 1])) return true;
+  }
+  return false;
 }
 
 bool Inside(const AxisLimits& limits, double position) noexcept {

@@ -25,6 +25,9 @@ LimitedBy Breaks(const AxisParams& params, const KinematicState& from, const tra
 // break it is not taken; the brake begins in its place, which the set point before allowed (AX-13).
 bool CanStopInside(const AxisParams& params, const KinematicState& before, const KinematicState& next) noexcept;
 
+// Whether the acceleration of a piece is beyond what the axis allows while its speed grows, or falls.
+bool BreaksRamps(const trajectory::Limits& own, const trajectory::Piece& piece, double duration) noexcept;
+
 // Whether a position lies inside the SW limits.
 bool Inside(const AxisLimits& limits, double position) noexcept;
 

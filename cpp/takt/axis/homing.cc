@@ -223,8 +223,8 @@ Status BeginFlying(const Context& c, Ticket ticket, bool pulse, const HomingRequ
 // cycle.)
 void KeepInside(const Context& c, State& s) {
   const bool waits = s.motion.held && s.active.positions();  // the override holds it back from there
-  const double end = waits ? s.motion.target : s.motion.profile.end().position;
-  if ((s.motion.arrived && !waits) || Inside(c.params.limits, end)) return;
+  const double end = (waits ? s.motion.target : s.motion.profile.end().position) + AddedAtEnd(s);
+  if ((s.motion.arrived && !waits && !s.superimposed) || Inside(c.params.limits, end)) return;
   const bool above = c.params.limits.upper && end > *c.params.limits.upper;
   if (above ? end < s.setpoint.position : end > s.setpoint.position) return;  // it comes back
   Fail(c, above ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);

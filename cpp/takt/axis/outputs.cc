@@ -16,7 +16,8 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::voltage_v>(unit::volt, "Output of the position loop, analogue drives.");
   d.internal<&O::torque_nm>(unit::nm, "As the drive reports it.");
   d.internal<&O::probe_position>(unit::u, "Where the touch probe was captured last.");
-  d.internal<&O::override_factor>("Velocity factor of the override; 0: held.");
+  d.internal<&O::covered_distance>(unit::u, "By the motion on top of the one in progress; 0: there is none.");
+  d.internal<&O::override_factor>(unit::one, "Velocity factor of the override; 0: held.");
   d.internal<&O::active_command>("Ticket of the command in control; 0: none.");
   d.internal<&O::error>("Fault of the axis, not of a command; 0: none.");
   d.internal<&O::state>("PLCopen state after the cycle; several transitions may lie in one.");
@@ -28,6 +29,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::in_position>("The following error is inside the in-position window.");
   d.internal<&O::in_step>("Follows its masters exactly; measured ones as far as they are known.");
   d.internal<&O::synchronizing>("Is getting into step with its masters; not while it waits for them.");
+  d.internal<&O::superimposed>("Another motion is on top of the one in progress.");
   d.internal<&O::end_of_profile>("The end of its cam was passed in this cycle.");
   d.internal<&O::profile_ends>("How often the end of its cam was passed.");
   d.internal<&O::homed>("Its position is known: it has a reference.");

@@ -19,6 +19,7 @@ struct Outputs {
   double voltage_v = 0;            // V, output of the position loop
   double torque_nm = 0;            // Nm, as the drive reports it
   double probe_position = 0;       // u, where the touch probe was captured last
+  double covered_distance = 0;     // u, by the motion on top of the one in progress; 0: there is none
   double override_factor = 1;      // of the velocity; 0: held
   Ticket active_command = 0;       // 0: none
   ErrorId error = ErrorId::kNone;  // fault of the axis (not of a command)
@@ -34,6 +35,7 @@ struct Outputs {
   bool in_position = false;
   bool in_step = false;         // follows its masters exactly; measured ones as far as they are known
   bool synchronizing = false;   // is getting into step
+  bool superimposed = false;    // another motion is on top of the one in progress
   bool end_of_profile = false;  // the end of its cam was passed in this cycle
   bool homed = false;           // has a reference
   bool limit_positive = false;  // switches after inversion

@@ -105,7 +105,7 @@ Status TakeTouch(const Context& c, State& s) {
   request.jerk = probe.jerk;
   Plan plan;
   plan.target = probe.touch_position;
-  const Status status = Replan(c.params, SurroundingsOf(c, s), c.planner, s.setpoint, request, nullptr, plan);
+  const Status status = Replan(c.params, SurroundingsOfBoth(c, s), c.planner, s.setpoint, request, nullptr, plan);
   if (status.failed()) return status;
   AbortAll(c, s);
   TakeControl(c, request, plan, FromCycleBefore(c), s);

@@ -75,6 +75,8 @@ bool Fill(const Maker& m, const PhasingRelative& c);
 bool Fill(const Maker& m, const MoveContinuousAbsolute& c);
 bool Fill(const Maker& m, const MoveContinuousRelative& c);
 bool Fill(const Maker& m, const Inch& c);
+bool Fill(const Maker& m, const MoveSuperimposed& c);
+bool Fill(const Maker& m, const HaltSuperimposed& c);
 bool Fill(const Maker& m, const SetConstants& c);
 bool Fill(const Maker& m, const WriteParameter& c);
 bool Fill(const Maker& m, const ReadParameter& c);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/axis/fit.h"
 #include "takt/axis/promise.h"
 
 namespace takt::axis {
@@ -47,6 +48,14 @@ Surroundings SurroundingsOf(const Context& c, const State& s) noexcept {
   return around;
 }
 
+Surroundings SurroundingsOfBoth(const Context& c, const State& s) noexcept {
+  Surroundings around = SurroundingsOf(c, s);
+  if (!s.superimposed) return around;
+  if (around.promised) *around.promised += s.setpoint.position - s.overlay.base.position;  // covered so far
+  around.furthest.reset();                                                                 // of the one alone
+  return around;
+}
+
 void StartMotion(const Profile& profile, double target, const MotionStart& start, State& s) noexcept {
   s.motion.profile = profile;
   s.motion.target = target;
@@ -60,6 +69,10 @@ void StartMotion(const Plan& plan, const MotionStart& start, State& s) noexcept 
   s.limited_by = plan.limited_by;
   StartMotion(plan.profile, plan.target, start, s);
   s.motion.held = plan.held;
+}
+
+bool InPosition(const AxisParams& p, const State& s) noexcept {
+  return !p.supervision.in_position || std::abs(s.setpoint.position - s.actual.position) <= *p.supervision.in_position;
 }
 
 bool AtRest(const State& s) noexcept {
@@ -81,9 +94,9 @@ Request TakeFirst(State& s) {
   return first;
 }
 
-// Whether a positioning command may call itself done although the set point has arrived already.
-bool InPosition(const AxisParams& p, const State& s) {
-  return !p.supervision.in_position || std::abs(s.setpoint.position - s.actual.position) <= *p.supervision.in_position;
+// The motion in control has come to its end; what is on top of it, if anything is, has not.
+void EnterRest(State& s) {
+  Enter(s, s.superimposed ? PlcState::kDiscreteMotion : PlcState::kStandstill);
 }
 
 double ArrivedFor(const Context& c, const State& s) {
@@ -92,7 +105,8 @@ double ArrivedFor(const Context& c, const State& s) {
 
 void ConcludePositioning(const Context& c, double late_s, State& s) {
   const bool leaves_moving = s.motion.profile.end().velocity != 0;
-  if (leaves_moving || InPosition(c.params, s)) {
+  // Beneath another motion the axis is not to stand there.
+  if (leaves_moving || s.superimposed || InPosition(c.params, s)) {
     EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
     StartNext(c, leaves_moving ? late_s : 0, s, leaves_moving);
   } else if (ArrivedFor(c, s) > c.params.supervision.in_position_timeout_s) {
@@ -232,6 +246,7 @@ void AbortBuffer(const Context& c, State& s) noexcept {
 void AbortAll(const Context& c, State& s) noexcept {
   EndActive(c, FeedbackState::kAborted, ErrorId::kNone, s);
   AbortBuffer(c, s);
+  AbortOverlay(c, FeedbackState::kAborted, ErrorId::kNone, s);
 }
 
 void Brake(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s,
@@ -274,11 +289,12 @@ void StartNext(const Context& c, double late_s, State& s, bool committed) noexce
     return AbortBuffer(c, s);
   }
   const bool homes_on = s.plc == PlcState::kHoming && s.buffered > 0 && Homes(s.buffer[0].kind);
-  if (AtRest(s) && IsLegal(s.plc, PlcState::kStandstill) && !homes_on) Enter(s, PlcState::kStandstill);
+  if (AtRest(s) && IsLegal(s.plc, PlcState::kStandstill) && !homes_on) EnterRest(s);
   const bool seamless = s.motion.profile.end().velocity != 0 && late_s > 0;
   Surroundings around = SurroundingsOf(c, s);
   around.committed = committed;
   while (s.buffered > 0) {
+    if (s.superimposed && !Carries(s.buffer[0])) return;
     const Request next = TakeFirst(s);
     if (next.kind == RequestKind::kPower && next.enable) {  // it is on already
       Report(c, next.ticket, FeedbackState::kActive);
@@ -289,9 +305,11 @@ void StartNext(const Context& c, double late_s, State& s, bool committed) noexce
     Plan plan;
     const bool homes = Homes(next.kind);
     const bool follows = FollowsDemand(next.kind);
-    const Status status = homes     ? BeginHoming(c, next, false, s)
-                          : follows ? MayFollow(c, next, s)
-                                    : PlanRequest(c.params, around, c.planner, from, next, Follower(s), plan);
+    Status status = homes     ? BeginHoming(c, next, false, s)
+                    : follows ? MayFollow(c, next, s)
+                              : PlanRequest(c.params, around, c.planner, from, next, Follower(s), plan);
+    if (status.ok() && next.positions() && !Inside(c.params.limits, plan.target + AddedAtEnd(s)))
+      status = Status::Failed(ErrorId::kTargetBehindLimit);
     if (status.ok() && homes) return;
     if (status.ok() && follows) return BeginFollowing(c, next, FromThisCycle(c), s);
     if (status.ok()) {
@@ -307,13 +325,16 @@ void StartNext(const Context& c, double late_s, State& s, bool committed) noexce
     return;
   }
   // Nobody takes over (any more): come to rest, if there is still anything to come to rest from.
-  if (s.plc == PlcState::kStandstill) return;
+  const bool stands = s.plc == PlcState::kStandstill || (s.superimposed && AtRest(s));
+  if (stands) return;
   if (seamless) s.setpoint = s.motion.profile.end();
   ComeToRest(c, c.params.planner_limits(), {c.cycle.count, seamless ? late_s : 0}, s);
   if (seamless) s.setpoint = s.motion.profile.At(late_s);
 }
 
-void ReplanActive(const Context& c, State& s) noexcept {
+namespace {
+
+void ReplanPositioning(const Context& c, State& s) {
   if (!s.active.positions() || HasPassed(s) || (s.motion.arrived && !s.motion.held)) return;
   Surroundings around = SurroundingsOf(c, s);
   around.again = true;
@@ -324,8 +345,16 @@ void ReplanActive(const Context& c, State& s) noexcept {
   StartMotion(plan, FromCycleBefore(c), s);
 }
 
+}  // namespace
+
+void ReplanActive(const Context& c, State& s) noexcept {
+  const Beneath base(s);
+  ReplanPositioning(c, s);
+}
+
 void PlanAgain(const Context& c, State& s) noexcept {
   if (!s.loop_closed || !Overridden(s.active.kind) || s.plc == PlcState::kErrorStop) return;
+  const Beneath base(s);
   Plan plan;
   Status status;
   if (s.active.kind == RequestKind::kJog) {
@@ -339,7 +368,7 @@ void PlanAgain(const Context& c, State& s) noexcept {
     around.again = true;
     status = PlanRequest(c.params, around, c.planner, s.setpoint, velocity, nullptr, plan);
   } else {
-    return ReplanActive(c, s);
+    return ReplanPositioning(c, s);
   }
   if (status.failed()) return;
   plan.target = s.motion.target;
@@ -387,7 +416,7 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
     case RequestKind::kJog:
       if (s.jog_sense == 0 && !s.active.forward && !s.active.backward) {
         EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
-        Enter(s, PlcState::kStandstill);
+        EnterRest(s);
       }
       break;
     default:

@@ -20,10 +20,15 @@ inline MotionStart FromThisCycle(const Context& c) {
   return {c.cycle.count, 0};
 }
 
+// Whether a positioning command may call itself done although the set point has arrived already.
+bool InPosition(const AxisParams& params, const State& s) noexcept;
 void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error = ErrorId::kNone,
             bool reached = false, double value = 0) noexcept;
 void Enter(State& s, PlcState to) noexcept;
+// What a plan has to know besides. For what goes on beneath another motion ...
 Surroundings SurroundingsOf(const Context& c, const State& s) noexcept;
+// ... and for what takes over from both.
+Surroundings SurroundingsOfBoth(const Context& c, const State& s) noexcept;
 // Seconds of the motion in progress at this cycle.
 inline double Elapsed(const Context& c, const State& s) noexcept {
   return static_cast<double>(c.cycle.count - s.motion.start_cycle) * c.cycle.period_s + s.motion.start_offset_s;
@@ -61,10 +66,10 @@ void OpenLoop(State& s) noexcept;
 // Gives control to the next buffered command, `late_s` after the motion in progress ended; with none, the axis is in
 // Standstill. `committed`: the motion was left towards that command's target.
 void StartNext(const Context& c, double late_s, State& s, bool committed = false) noexcept;
-// Plans the positioning command in control anew because what follows it changed.
+// Plans the positioning command in control anew because what follows it changed. Not to be called Beneath.
 void ReplanActive(const Context& c, State& s) noexcept;
 // Plans the motion in progress anew because its limits changed: a positioning command to where it was promised to end,
-// a velocity or jog to its velocity. Other motions go on as they are.
+// a velocity or jog to its velocity. Other motions go on as they are. Not to be called Beneath.
 void PlanAgain(const Context& c, State& s) noexcept;
 // What to do once the motion in progress is over, each cycle until its command ends.
 void Conclude(const Context& c, double late_s, State& s) noexcept;

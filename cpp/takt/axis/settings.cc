@@ -24,11 +24,15 @@ bool Fits(const Context& c, const AxisLimits& limits, const State& s) {
   if (!s.loop_closed) return true;
   const double stop = trajectory::StopPosition(s.setpoint, c.params.planner_limits());
   if (!Inside(limits, stop) || !Inside(limits, s.setpoint.position)) return false;
-  if (s.motion.held && s.active.positions() && !Inside(limits, s.motion.target)) return false;
-  const bool planned = !s.motion.arrived && !Couples(s.active.kind) && s.motion.profile.end().velocity == 0;
-  if (!planned) return true;
+  if (s.motion.held && s.active.positions() && !Inside(limits, s.motion.target + AddedAtEnd(s))) return false;
+  // What goes on with a velocity is watched cycle by cycle, but not where one move passes it to the next.
+  const bool watched = s.plc == PlcState::kContinuousMotion || FollowsDemand(s.active.kind);
+  if (s.motion.arrived || watched) return true;
   const trajectory::Profile::Range range = s.motion.profile.PositionRange(Elapsed(c, s) - c.cycle.period_s);
-  return Inside(limits, range.min) && Inside(limits, range.max);
+  const double added = AddedAtEnd(s);
+  const double end = trajectory::StopPosition(s.motion.profile.end(), c.params.planner_limits());
+  return Inside(limits, std::min(range.min, end) + std::min(0.0, added)) &&
+         Inside(limits, std::max(range.max, end) + std::max(0.0, added));
 }
 
 Status CheckLimits(const Context& c, const AxisLimits& limits, const State& s) {

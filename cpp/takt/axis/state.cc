@@ -66,6 +66,7 @@ void describe(Description<State>& d) {
   d.internal<&S::constants_set>("GT_SetConstant was given.");
   d.internal<&S::dormant>("Supervision switched off.");
   d.internal<&S::direct_voltage_v>(unit::volt, "Put out while Disabled.");
+  d.internal<&S::superimposed>("Something is on top of the motion in progress.");
   d.internal<&S::coupled>("Follows its master.");
   d.internal<&S::follow_offset>(unit::u, "Distance to the master's position times the ratio.");
   d.internal<&S::origin>(unit::u, "Whole turns taken out of all positions.");
@@ -78,6 +79,7 @@ void describe(Description<State>& d) {
   d.internal<&S::motion>("Motion in progress.");
   d.internal<&S::coupling>("Masters it follows.");
   d.internal<&S::time_table>("Table over time that it follows.");
+  d.internal<&S::overlay>("What is on top of it.");
   d.internal<&S::homing>("Its reference.");
   d.internal<&S::probe>("Touch probe.");
   d.internal<&S::torque>("Torque control.");

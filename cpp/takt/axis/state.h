@@ -10,6 +10,7 @@
 #include "takt/axis/coupling.h"
 #include "takt/axis/encoder.h"
 #include "takt/axis/homing.h"
+#include "takt/axis/overlay.h"
 #include "takt/axis/override.h"
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
@@ -63,6 +64,7 @@ struct State {
   bool constants_set = false;   // by GT_SetConstant
   bool coupled = false;         // follows a master from load on
   bool end_of_profile = false;  // the end of a cam was passed in this cycle
+  bool superimposed = false;    // something is on top of the motion in progress: see `overlay`
   std::uint8_t buffered = 0;
 
   // A drive in another process.
@@ -114,6 +116,7 @@ struct State {
   Ticket reset_ticket = 0;
   std::array<Request, kBufferSize> buffer;  // [0] is next
   std::uint64_t illegal_transitions = 0;    // always 0: the state table holds
+  OverlayState overlay;
 };
 
 void describe(Description<Motion>&);

@@ -58,6 +58,8 @@ const std::vector<Entry>& Entries() {
       Make<axis::Command, axis::MoveContinuousAbsolute>(kAxis, "move_continuous_absolute"),
       Make<axis::Command, axis::MoveContinuousRelative>(kAxis, "move_continuous_relative"),
       Make<axis::Command, axis::Inch>(kAxis, "inch"),
+      Make<axis::Command, axis::MoveSuperimposed>(kAxis, "move_superimposed"),
+      Make<axis::Command, axis::HaltSuperimposed>(kAxis, "halt_superimposed"),
       Make<axis::Command, axis::TorqueControl>(kAxis, "torque_control"),
       Make<axis::Command, axis::GearIn>(kAxis, "gear_in"),
       Make<axis::Command, axis::GearOut>(kAxis, "gear_out"),

@@ -11,7 +11,7 @@ namespace takt::engine {
 namespace {
 
 // Feedback of one cycle: each live command of an axis may start and end in it, and so may each newly arrived one.
-constexpr std::size_t kEventsPerAxis = 4 * (axis::kBufferSize + 4);
+constexpr std::size_t kEventsPerAxis = 4 * (axis::kBufferSize + 5);
 constexpr std::size_t kEventsPerCommand = 4;
 
 axis::Context ContextOf(World& w, std::size_t i) {
@@ -160,6 +160,14 @@ bool Take(World& w, const DriveSample& sample) noexcept {
     if (drive.axis == sample.axis) return Take(w.cycle, sample, drive, w.servo_inputs[drive.axis]);
   }
   return false;
+}
+
+axis::Forecast Foresee(World& w, std::size_t axis) {
+  return axis::Foresee(ContextOf(w, axis), w.axis_states.at(axis));
+}
+
+axis::Forecast Foresee(World& w, std::size_t axis, const axis::Command& command) {
+  return axis::Foresee(ContextOf(w, axis), command, w.axis_states.at(axis));
 }
 
 void Sense(World& w) noexcept {

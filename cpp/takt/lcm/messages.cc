@@ -69,6 +69,8 @@ msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::M
   m.in_position = o.in_position;
   m.in_step = o.in_step;
   m.synchronizing = o.synchronizing;
+  m.superimposed = o.superimposed;
+  m.covered_distance = o.covered_distance;
   m.end_of_profile = o.end_of_profile;
   m.profile_ends = o.profile_ends;
   m.homed = o.homed;

@@ -30,6 +30,8 @@ class ExecuteBlock {
   bool Reached() const noexcept { return reached_; }
   // What the command was to read or capture, once done.
   double Value() const noexcept { return Done() ? feedback_.value() : 0; }
+  // The same however it ended.
+  double ValueAtEnd() const noexcept { return IsFinal(end_shown_) ? feedback_.value() : 0; }
 
   AxisRef axis() const noexcept { return axis_; }
 

@@ -14,6 +14,7 @@ using MC_MoveAbsolute = Block<axis::MoveAbsolute>;
 using MC_MoveRelative = Block<axis::MoveRelative>;
 using MC_MoveAdditive = Block<axis::MoveAdditive>;
 using MC_Halt = Block<axis::Halt>;
+using MC_HaltSuperimposed = Block<axis::HaltSuperimposed>;
 
 using MC_PositionProfile = Block<axis::PositionProfile>;
 using MC_VelocityProfile = Block<axis::VelocityProfile>;

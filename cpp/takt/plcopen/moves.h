@@ -64,6 +64,13 @@ class MC_MoveVelocity : public Block<axis::MoveVelocity> {
   bool InVelocity() const noexcept { return Reached(); }
 };
 
+class MC_MoveSuperimposed : public Block<axis::MoveSuperimposed> {
+ public:
+  using Block::Block;
+  // How much of it was added so far, or at last.
+  double CoveredDistance() const noexcept { return Active() ? axis().outputs().covered_distance : ValueAtEnd(); }
+};
+
 // A SW limit behind the place may leave a continuous move less than its end velocity.
 inline bool HasSpeed(AxisRef axis, double speed) noexcept {
   return std::abs(axis.outputs().set_velocity) >= speed * (1 - 1e-9);

@@ -32,6 +32,7 @@ from takt.plcopen import (
     profiles,
     settings,
     statement,
+    superimposed,
     torque,
 )
 from takt.plcopen.administration import *  # noqa: F403
@@ -45,9 +46,11 @@ from takt.plcopen.moves import *  # noqa: F403
 from takt.plcopen.probe import *  # noqa: F403
 from takt.plcopen.profiles import *  # noqa: F403
 from takt.plcopen.settings import *  # noqa: F403
+from takt.plcopen.superimposed import *  # noqa: F403
 from takt.plcopen.torque import *  # noqa: F403
 
-_GROUPS = (administration, moves, profiles, jog, coupling, cam, homing, settings, probe, cam_switch, torque)
+_GROUPS = (administration, moves, superimposed, profiles, jog, coupling, cam, homing, settings, probe, cam_switch)
+_GROUPS += (torque,)
 
 BLOCKS: tuple[type[FunctionBlock], ...] = tuple(
     block

@@ -132,6 +132,26 @@ TEST(SoftLimits, AreSwitchedOffAndOnAgain) {
 }
 
 // A limit that comes into the way of an endless motion stops it before it.
+TEST(SoftLimits, LeaveRoomWhereOneMovePassesItsVelocityOn) {
+  Rig rig(LinearParams());
+  ASSERT_TRUE(rig.PowerOn());
+  rig.Give(MoveAbsolute{.position = 100, .velocity = 200});
+  const Ticket next =
+      rig.Give(MoveAbsolute{.position = 200, .velocity = 200, .buffer_mode = BufferMode::kBlendingHigh});
+  rig.Run(0.2);
+  const Ticket close = rig.Give(SetSoftLimits{.lower = -10, .upper = 103});
+  rig.Step();
+  EXPECT_EQ(rig.lives[close].error_id, ErrorId::kTargetBehindLimit);
+  const Ticket further = rig.Give(SetSoftLimits{.lower = -10, .upper = 130});
+  rig.RunToEnd(next);
+  EXPECT_TRUE(rig.lives[further].done);
+  EXPECT_EQ(rig.lives[next].error_id, ErrorId::kTargetBehindLimit);
+  rig.Run(1);
+  EXPECT_GT(rig.position(), 100);
+  EXPECT_LT(rig.position(), 130);
+  EXPECT_EQ(rig.out.state, PlcState::kStandstill);
+}
+
 TEST(SoftLimits, StopAnEndlessMotion) {
   Rig rig(LinearParams());
   ASSERT_TRUE(rig.PowerOn());

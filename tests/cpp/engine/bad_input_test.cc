@@ -28,6 +28,8 @@ std::vector<Command> GoodCommands() {
           axis::Halt{},
           axis::Stop{},
           axis::Jog{.forward = true},
+          axis::MoveSuperimposed{.distance = 1},
+          axis::HaltSuperimposed{},
           axis::TorqueControl{.torque = 1},
           Gear("a0"),
           axis::GearInPos{.master = master},
@@ -108,6 +110,12 @@ const Situation kSituations[] = {
      [](Line& l) {
        l.Give(1, axis::MoveAbsolute{.position = 1e5, .velocity = 20});
        l.Give(1, axis::MoveAbsolute{.position = 2e5, .buffer_mode = axis::BufferMode::kBlendingLow});
+       l.Run(50);
+     }},
+    {"superimposed", axis::PlcState::kDiscreteMotion,
+     [](Line& l) {
+       l.Give(1, axis::MoveAbsolute{.position = 1e5, .velocity = 20});
+       l.Give(1, axis::MoveSuperimposed{.distance = 1e5, .velocity_difference = 10});
        l.Run(50);
      }},
     {"continuous", axis::PlcState::kContinuousMotion,

@@ -451,7 +451,8 @@ TEST(Chain, StopsTogether) {
   }
 }
 
-// AX-13, AX-55: random couplings, cams, moves, stops and faults: no step, no limit exceeded.
+// AX-13, AX-35, AX-55: random couplings, cams, moves, what lies on top of them, stops and faults: no step, no limit
+// exceeded.
 TEST(Coupling, KeepsTheLimitsInARandomWalk) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -498,7 +499,15 @@ TEST(Coupling, KeepsTheLimitsInARandomWalk) {
         if (any(3) == 0) cam.master_start_distance = between(0, 100);
         if (any(3) == 0) cam.master_sync_position = between(0, 300);
         if (any(2) == 0) cam.buffer_mode = axis::BufferMode::kBuffered;
-        switch (any(15)) {
+        switch (any(18)) {
+          case 15:
+          case 16:
+            line.Give(who,
+                      axis::MoveSuperimposed{.distance = between(-30, 30), .velocity_difference = between(1, 100)});
+            break;
+          case 17:
+            line.Give(who, axis::HaltSuperimposed{});
+            break;
           case 11:
           case 12:
           case 13:

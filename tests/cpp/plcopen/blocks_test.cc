@@ -391,6 +391,46 @@ TEST_F(Blocks, Cams) {
   EXPECT_TRUE(cam.CommandAborted() && !cam.InSync() && !cam.EndOfProfile());
 }
 
+// AX-35: on top of a move, which is done where it would be done alone; halted, that goes on.
+TEST_F(Blocks, MotionsOnTopOfOthers) {
+  MC_MoveAbsolute move(x);
+  move.position = 200;
+  move.velocity = 100;
+  MC_MoveSuperimposed top(x);
+  top.distance = 30;
+  top.velocity_difference = 50;
+  move.Execute = top.Execute = true;
+  move();
+  ASSERT_TRUE(Until(top, [&] { return top.CoveredDistance() > 10; }));
+  EXPECT_TRUE(top.Busy() && top.Active());
+  EXPECT_EQ(Shown(top), 1);
+  ASSERT_TRUE(Until(top, [&] { return top.Done(); }));
+  EXPECT_NEAR(top.CoveredDistance(), 30, 1e-9);
+  EXPECT_EQ(Shown(top), 1);
+  move();
+  EXPECT_TRUE(move.Busy());
+  top.Execute = false;
+  top();
+  EXPECT_EQ(top.CoveredDistance(), 0);
+  top.Execute = true;
+  ASSERT_TRUE(Until(top, [&] { return top.CoveredDistance() > 5; }));
+  MC_HaltSuperimposed halt(x);
+  halt.Execute = true;
+  ASSERT_TRUE(Until(halt, [&] { return halt.Done(); }));
+  top();
+  EXPECT_TRUE(top.CommandAborted());
+  const double covered = top.CoveredDistance() + halt.ValueAtEnd();
+  ASSERT_TRUE(Until(move, [&] { return move.Done(); }));
+  EXPECT_NEAR(At(x).set_position, 200 + 30 + covered, 1e-9);
+  top.distance = 2000;
+  top.Execute = false;
+  top();
+  top.Execute = true;
+  ASSERT_TRUE(Until(top, [&] { return top.Error(); }));
+  EXPECT_EQ(top.ErrorID(), ErrorId::kTargetBehindLimit);
+  EXPECT_EQ(top.CoveredDistance(), 0);
+}
+
 // AX-38: every axis of the machine.
 TEST_F(Blocks, EmergencyStop) {
   MC_MoveVelocity ever(x);

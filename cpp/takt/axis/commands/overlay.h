@@ -1,0 +1,21 @@
+// Commands that move on top of another motion.
+#pragma once
+
+#include <optional>
+
+#include "takt/core/describe_fwd.h"
+
+namespace takt::axis {
+
+struct MoveSuperimposed {  // MC_MoveSuperimposed
+  double distance = 0;
+  std::optional<double> velocity_difference{}, acceleration{}, deceleration{}, jerk{};
+};
+struct HaltSuperimposed {  // MC_HaltSuperimposed
+  std::optional<double> deceleration{}, jerk{};
+};
+
+void describe(Description<MoveSuperimposed>&);
+void describe(Description<HaltSuperimposed>&);
+
+}  // namespace takt::axis

@@ -1,0 +1,376 @@
+#include "takt/axis/overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "takt/axis/fit.h"
+#include "takt/axis/overlay_plan.h"
+#include "takt/axis/promise.h"
+#include "takt/axis/request_maker.h"
+#include "takt/axis/sequence.h"
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+using trajectory::Limits;
+using trajectory::Profile;
+
+namespace {
+
+KinematicState Plus(const KinematicState& a, const KinematicState& b) {
+  return {a.position + b.position, a.velocity + b.velocity, a.acceleration + b.acceleration};
+}
+
+bool Stands(const KinematicState& x) {
+  return x.velocity == 0 && x.acceleration == 0;
+}
+
+double OverlayTime(const Context& c, const OverlayState& o) {
+  return static_cast<double>(c.cycle.count - o.start_cycle) * c.cycle.period_s;
+}
+
+// What has been added up to the set point of the cycle before. Where the axis lags behind the sum, what is planned goes
+// on from what came of it: the lag is forgotten.
+KinematicState Added(const Context& c, const State& s) {
+  if (!s.superimposed) return {};
+  const OverlayState& o = s.overlay;
+  KinematicState added = o.profile.At(OverlayTime(c, o) - c.cycle.period_s);
+  if (!o.chase.in_step) added.position = s.setpoint.position - o.base.position;
+  return added;
+}
+
+// The motion beneath follows masters or a table over time, not a profile.
+bool FollowsNow(const State& s) {
+  return Couples(s.active.kind) || (FollowsTable(s.active.kind) && !s.time_table.over);
+}
+
+// The motion beneath has no end that is known: it follows something, or goes on with a velocity.
+bool IsEndless(const State& s) {
+  return FollowsNow(s) || s.motion.profile.end().velocity != 0;
+}
+
+BaseAhead AheadOf(const Context& c, double late_s, const State& s) {
+  const KinematicState& now = s.superimposed ? s.overlay.base : s.setpoint;
+  if (FollowsNow(s)) return {nullptr, 0, now};
+  return {&s.motion.profile, Elapsed(c, s) - late_s, now};
+}
+
+// Where the motion beneath ends that has an end: an override may hold it back from there.
+double BaseEnd(const State& s) {
+  return s.motion.held && s.active.positions() ? s.motion.target : s.motion.profile.end().position;
+}
+
+// Where everything together would end, as far as that is known now.
+double EndWith(double added, const State& s) {
+  const KinematicState& now = s.superimposed ? s.overlay.base : s.setpoint;
+  return (IsEndless(s) ? now.position : BaseEnd(s)) + added;
+}
+
+// An axis that moves on without an end is watched cycle by cycle.
+bool EndsInside(const Context& c, double added, const State& s) {
+  const KinematicState& now = s.superimposed ? s.overlay.base : s.setpoint;
+  return (IsEndless(s) && !Stands(now)) || Inside(c.params.limits, EndWith(added, s));
+}
+
+// Brakes what is added as the command asks, but not so weakly that it would turn round or go further than without the
+// halt: then with all the axis has. An axis that lags behind the sum may stand before a SW limit already while what is
+// added would come to rest behind it: then it ends there.
+Status PlanHalt(const Context& c, const KinematicState& from, const Limits& limits, const State& s, Profile& out) {
+  const Limits own = c.params.planner_limits();
+  const double promised = AddedAtEnd(s);
+  Profile strongest{from};
+  if (const Status status = c.planner.Stop(from, own, strongest); status.failed()) return status;
+  const double sense = from.velocity < 0 ? -1 : 1;
+  const double furthest = std::max(sense * strongest.end().position, sense * promised);
+  const Status status = c.planner.Stop(from, limits, out);
+  if (status.failed()) return status;
+  const Profile::Range velocity = out.VelocityRange();
+  const double backwards = sense < 0 ? velocity.max : -velocity.min;
+  if (backwards > Rounding(0) || sense * out.end().position > furthest + Rounding(furthest)) out = strongest;
+  const double end = out.end().position;
+  if (EndsInside(c, end, s)) return Status::Ok();
+  const double base = EndWith(0, s);
+  const AxisLimits& sw = c.params.limits;
+  const double inside = std::min(std::max(base + end, sw.lower.value_or(-HUGE_VAL)), sw.upper.value_or(HUGE_VAL));
+  return c.planner.ToPosition(from, inside - base, 0, own, out);
+}
+
+// The command as the overrides let it be.
+Request Overridden(const Context& c, const OverlayState& o) {
+  Request r;
+  r.kind = RequestKind::kMoveRelative;
+  r.velocity = o.velocity;
+  r.acceleration = o.acceleration;
+  r.deceleration = o.deceleration;
+  r.jerk = o.jerk;
+  LimitedBy clamped = LimitedBy::kNothing;
+  return Scaled(c.params, o.factors, r, clamped);
+}
+
+bool IsHeld(const OverlayState& o) {
+  return o.factors.velocity == 0 && !o.halting;
+}
+
+// Plans what is still to be added, from `from` on, `late_s` before this cycle; held, that it comes to rest.
+Status PlanRest(const Context& c, const OverlayState& o, const KinematicState& from, const Limits& limits,
+                double late_s, const State& s, Profile& out) {
+  if (IsHeld(o)) return c.planner.Stop(from, limits, out);
+  return PlanOverlay(c.params, c.planner, AheadOf(c, late_s, s), from, o.target, limits, out);
+}
+
+Status MayBeOnTop(const Context& c, const State& s) {
+  if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
+  if (c.params.await_constants && !s.constants_set) return Status::Failed(ErrorId::kNoConstants);
+  if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
+  if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
+  const bool wrong = c.params.follows || s.plc == PlcState::kHoming || !Carries(s.active);
+  return wrong ? Status::Failed(ErrorId::kState) : Status::Ok();
+}
+
+Status CheckSwitches(double way, const State& s) {
+  const bool onto = (s.limit_positive && way > 0) || (s.limit_negative && way < 0);
+  return onto ? Status::Failed(ErrorId::kAwayFromLimitOnly) : Status::Ok();
+}
+
+void RememberBase(State& s) {
+  s.overlay.base_start_cycle = s.motion.start_cycle;
+  s.overlay.base_start_offset_s = s.motion.start_offset_s;
+}
+
+// Puts a planned motion on top, in the place of what is there.
+void Begin(const Context& c, Ticket ticket, const KinematicState& from, OverlayState planned, State& s) {
+  OverlayState& o = s.overlay;
+  if (s.superimposed) {
+    Report(c, o.ticket, FeedbackState::kAborted, ErrorId::kNone, false, from.position - o.begin);
+    planned.chase = o.chase;
+    planned.limited_by = o.limited_by;
+  }
+  planned.base = s.superimposed ? o.base : s.setpoint;
+  planned.start_cycle = c.cycle.count - 1;
+  planned.ticket = ticket;
+  planned.begin = from.position;
+  o = planned;
+  s.superimposed = true;
+  RememberBase(s);
+  if (s.plc == PlcState::kStandstill) Enter(s, PlcState::kDiscreteMotion);
+  Report(c, ticket, FeedbackState::kActive, ErrorId::kNone, false, o.profile.duration());
+}
+
+// The motion beneath became another one, or the overrides: what is left to add is planned for that. Ramps that became
+// weaker do not take it beyond its target.
+void PlanAgain(const Context& c, const KinematicState& added, State& s) {
+  OverlayState& o = s.overlay;
+  const bool overridden = o.factors != s.override_factors;
+  RememberBase(s);
+  o.factors = s.override_factors;
+  if (o.halting || (FollowsNow(s) && !overridden)) return;
+  Request r = Overridden(c, o);
+  const bool ahead = added.velocity * (o.target - added.position) > 0;
+  if (overridden && ahead && !StopsBy(added, r.limits(), o.target)) {
+    r = Strengthened(c.params, added, r, {o.target, true});
+  }
+  if (PlanRest(c, o, added, r.limits(), 0, s, o.profile).ok()) o.start_cycle = c.cycle.count;
+}
+
+// Makes what was added part of the motion beneath.
+void Fold(double added, State& s) {
+  s.motion.profile.Shift(added);
+  s.motion.target += added;
+  if (Couples(s.active.kind)) s.coupling.chase.offset += added;
+  if (FollowsTable(s.active.kind)) s.time_table.chase.offset += added;
+  s.superimposed = false;
+}
+
+void End(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
+  OverlayState& o = s.overlay;
+  Fold(o.chase.in_step ? o.profile.end().position : s.setpoint.position - o.base.position, s);
+  Report(c, o.ticket, feedback, error, false, o.covered);
+  if (s.motion.arrived) s.motion.arrived_cycle = c.cycle.count;
+  if (error != ErrorId::kNone) AbortBuffer(c, s);
+  if (s.active.kind == RequestKind::kNone && (AtRest(s) || s.buffered > 0)) StartNext(c, 0, s);
+}
+
+// Whether the motion beneath, with all that was added, stays inside the SW limits to its end, and could stop there.
+bool StaysInside(const Context& c, const State& s) {
+  if (FollowsNow(s) || s.plc == PlcState::kContinuousMotion) return true;  // watched cycle by cycle
+  const Profile::Range range = s.motion.profile.PositionRange(Elapsed(c, s));
+  const double stop = trajectory::StopPosition(s.motion.profile.end(), c.params.planner_limits());
+  return Inside(c.params.limits, std::min({range.min, stop, BaseEnd(s)}) + AddedAtEnd(s)) &&
+         Inside(c.params.limits, std::max({range.max, stop, BaseEnd(s)}) + AddedAtEnd(s));
+}
+
+// All is planned to be added: whether it is.
+void EndWhenDue(const Context& c, State& s) {
+  const OverlayState& o = s.overlay;
+  const double over_s = OverlayTime(c, o) - o.profile.duration();
+  if (over_s < 0 || IsHeld(o)) return;
+  const bool alone = s.active.kind == RequestKind::kNone && Stands(o.base);
+  if (o.chase.in_step) {
+    if (!StaysInside(c, s)) return;
+    if (!alone || InPosition(c.params, s)) return End(c, FeedbackState::kDone, ErrorId::kNone, s);
+    if (over_s > c.params.supervision.in_position_timeout_s) End(c, FeedbackState::kError, ErrorId::kDeviationLimit, s);
+  } else if (AtRest(s) && Stands(o.base) && !IsEndless(s) && !Inside(c.params.limits, EndWith(AddedAtEnd(s), s))) {
+    End(c, FeedbackState::kError, ErrorId::kTargetBehindLimit, s);  // the motion beneath ended elsewhere than promised
+  }
+}
+
+// A buffered command on which nothing can lie takes over from a moving axis.
+bool NextEndsOverlay(const State& s) {
+  return s.active.kind == RequestKind::kNone && s.buffered > 0 && !Carries(s.buffer[0]) && !Stands(s.overlay.base);
+}
+
+// Why the axis lags behind the sum. Once the sum itself is within the limits again, it is what it was.
+LimitedBy WhatHoldsBack(const Limits& own, const KinematicState& demand, const OverlayState& o) {
+  if (o.chase.in_step) return LimitedBy::kNothing;
+  const LimitedBy beyond = Beyond(own, demand, false);
+  if (beyond != LimitedBy::kNothing) return beyond;
+  return o.limited_by != LimitedBy::kNothing ? o.limited_by : LimitedBy::kJerk;
+}
+
+// The next set point, before the SW limits are looked at.
+KinematicState NextSetpoint(const Context& c, const KinematicState& before, State& s) {
+  OverlayState& o = s.overlay;
+  const KinematicState added = o.profile.At(OverlayTime(c, o));
+  const KinematicState demand = Plus(o.base, added);
+  const Limits own = c.params.planner_limits();
+  const KinematicState next =
+      Chase({c.params, c.planner, own, c.cycle.period_s}, ChaseMode::kPosition, before, demand, o.chase);
+  o.limited_by = WhatHoldsBack(own, demand, o);
+  const bool other = o.base_start_cycle != s.motion.start_cycle || o.base_start_offset_s != s.motion.start_offset_s;
+  if (other || o.factors != s.override_factors) PlanAgain(c, added, s);
+  return next;
+}
+
+}  // namespace
+
+Beneath::Beneath(State& state) noexcept : state_(state) {
+  Swap();
+}
+
+Beneath::~Beneath() {
+  Swap();
+}
+
+void Beneath::Swap() noexcept {
+  if (state_.superimposed) std::swap(state_.setpoint, state_.overlay.base);
+}
+
+void Superimpose(const Context& c, State& s) noexcept {
+  OverlayState& o = s.overlay;
+  const KinematicState before = s.setpoint;
+  KinematicState next = NextSetpoint(c, before, s);
+  if (!CanStopInside(c.params, before, next)) {
+    if (s.plc != PlcState::kDiscreteMotion) {
+      const bool upwards = next.position > before.position;
+      Fail(c, upwards ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
+      s.setpoint = s.motion.profile.At(Elapsed(c, s));
+      return;
+    }
+    Profile brake{before};
+    c.planner.Stop(before, c.params.planner_limits(), brake);
+    next = brake.At(c.cycle.period_s);
+    o.chase.in_step = false;
+    o.limited_by = LimitedBy::kPosition;
+  }
+  s.setpoint = next;
+  o.covered = next.position - o.base.position - o.begin;
+  if (next.velocity != 0) s.last_sense = next.velocity > 0 ? 1 : -1;
+  if (NextEndsOverlay(s)) {
+    AbortOverlay(c, FeedbackState::kAborted, ErrorId::kNone, s);
+    return StartNext(c, 0, s);
+  }
+  EndWhenDue(c, s);
+}
+
+void AbortOverlay(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
+  if (!s.superimposed) return;
+  s.superimposed = false;
+  Report(c, s.overlay.ticket, feedback, error, false, s.overlay.covered);
+}
+
+bool Carries(const Request& r) noexcept {
+  const bool switches_off = r.kind == RequestKind::kPower && !r.enable;
+  return !switches_off && !Homes(r.kind) && r.kind != RequestKind::kStop && r.kind != RequestKind::kTorqueControl &&
+         r.kind != RequestKind::kTouch;
+}
+
+double AddedAtEnd(const State& s) noexcept {
+  return s.superimposed ? s.overlay.target : 0;
+}
+
+bool Fill(const Maker& m, const MoveSuperimposed& c) {
+  return m.In("distance", c.distance, -kMaxPosition, kMaxPosition) &&
+         m.Take("velocity_difference", c.velocity_difference, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
+}
+
+bool Fill(const Maker& m, const HaltSuperimposed& c) {
+  return m.Braking(c);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const MoveSuperimposed& command, State& s) noexcept {
+  if (const Status status = MayBeOnTop(c, s); status.failed()) return status;
+  if (const Status status = CheckSwitches(command.distance, s); status.failed()) return status;
+  const KinematicState from = Added(c, s);
+  const double target = from.position + command.distance;
+  if (!EndsInside(c, target, s)) return Status::Failed(ErrorId::kTargetBehindLimit);
+  Request r;
+  Refusal why;
+  Fill(Maker{c.params, r, why}, command);
+  OverlayState planned;
+  planned.factors = s.override_factors;
+  planned.target = target;
+  planned.velocity = r.velocity;
+  planned.acceleration = r.acceleration;
+  planned.deceleration = r.deceleration;
+  planned.jerk = r.jerk;
+  const Limits limits = Overridden(c, planned).limits();
+  const Status status = PlanRest(c, planned, from, limits, c.cycle.period_s, s, planned.profile);
+  if (status.failed()) return status;
+  Begin(c, ticket, from, planned, s);
+  return Status::Ok();
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const HaltSuperimposed& command, State& s) noexcept {
+  if (const Status status = MayBeOnTop(c, s); status.failed()) return status;
+  if (!s.superimposed) {
+    Report(c, ticket, FeedbackState::kActive);
+    Report(c, ticket, FeedbackState::kDone);
+    return Status::Ok();
+  }
+  Request r;
+  Refusal why;
+  Fill(Maker{c.params, r, why}, command);
+  const KinematicState from = Added(c, s);
+  OverlayState planned;
+  if (const Status status = PlanHalt(c, from, r.limits(), s, planned.profile); status.failed()) return status;
+  planned.factors = s.override_factors;
+  planned.target = planned.profile.end().position;
+  planned.halting = true;
+  Begin(c, ticket, from, planned, s);
+  return Status::Ok();
+}
+
+void describe(Description<OverlayState>& d) {
+  using O = OverlayState;
+  d.about("What is on top of the motion in progress.");
+  d.internal<&O::base>("Set point of the motion beneath, unwrapped.");
+  d.internal<&O::profile>("What is added.");
+  d.internal<&O::start_cycle>("Cycle its time counts from.");
+  d.internal<&O::base_start_cycle>("When the motion began for which it was planned ...");
+  d.internal<&O::base_start_offset_s>(unit::s, "... and how long before that.");
+  d.internal<&O::chase>("The following of the sum.");
+  d.internal<&O::ticket>("Of the command.");
+  d.internal<&O::factors>("Overrides for which it was planned.");
+  d.internal<&O::target>(unit::u, "What is to be added in all.");
+  d.internal<&O::begin>(unit::u, "What had been added before the command.");
+  d.internal<&O::covered>(unit::u, "What was added by the command.");
+  d.internal<&O::velocity>(unit::u_s, "Largest velocity added.");
+  d.internal<&O::acceleration>(unit::u_s2, "Largest acceleration added.");
+  d.internal<&O::deceleration>(unit::u_s2, "Largest deceleration added.");
+  d.internal<&O::jerk>(unit::u_s3, "Largest jerk added; 0: unlimited.");
+  d.internal<&O::halting>("It is being halted.");
+  d.internal<&O::limited_by>("What holds the axis back from the sum.");
+}
+
+}  // namespace takt::axis
