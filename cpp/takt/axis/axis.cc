@@ -370,8 +370,8 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.master2 = coupled ? terms[1].master + 1 : 0;
   out.buffered_commands = s.buffered;
   out.loop_closed = s.loop_closed;
-  out.in_position =
-      s.loop_closed && !InMotion(s) && !s.motion.held && std::abs(s.following_error) <= p.supervision.in_position.value_or(HUGE_VAL);
+  out.in_position = s.loop_closed && !InMotion(s) && !s.motion.held &&
+                    std::abs(s.following_error) <= p.supervision.in_position.value_or(HUGE_VAL);
   out.limit_positive = s.limit_positive;
   out.limit_negative = s.limit_negative;
   out.reference = s.reference;
