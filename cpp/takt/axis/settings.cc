@@ -22,8 +22,8 @@ Status Done(const Context& c, Ticket ticket, double value = 0) {
 // motion lies inside.
 bool Fits(const Context& c, const AxisLimits& limits, const State& s) {
   if (!s.loop_closed) return true;
-  const double stop = trajectory::StopPosition(s.setpoint, c.params.planner_limits());
-  if (!Inside(limits, stop) || !Inside(limits, s.setpoint.position)) return false;
+  const trajectory::Profile::Range braking = RangeOfStop(c.params, s.setpoint);
+  if (!Inside(limits, braking.min) || !Inside(limits, braking.max)) return false;
   if (s.motion.held && s.active.positions() && !Inside(limits, s.motion.target + AddedAtEnd(s))) return false;
   // What goes on with a velocity is watched cycle by cycle, but not where one move passes it to the next.
   const bool watched = s.plc == PlcState::kContinuousMotion || FollowsDemand(s.active.kind);

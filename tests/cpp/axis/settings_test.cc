@@ -134,6 +134,30 @@ TEST(SoftLimits, LeaveRoomWhereOneMovePassesItsVelocityOn) {
   EXPECT_EQ(rig.out.state, PlcState::kStandstill);
 }
 
+// An axis that is turning round gets further before it comes back.
+TEST(SoftLimits, LeaveRoomForTurningRound) {
+  Rig rig(LinearParams());
+  Rig twin(LinearParams());
+  for (Rig* each : {&rig, &twin}) {
+    ASSERT_TRUE(each->PowerOn());
+    each->Give(MoveVelocity{.velocity = 100});
+    each->Run(0.5);
+    each->Give(MoveVelocity{.velocity = 100, .direction = Direction::kNegative});
+    while (each->out.set_velocity > 20) each->Step();
+  }
+  const double here = rig.position();
+  double furthest = here;
+  for (int i = 0; i < 200; ++i) {
+    twin.Step();
+    furthest = std::max(furthest, twin.position());
+  }
+  ASSERT_GT(furthest, here + 0.01);
+  const Ticket close = rig.Give(SetSoftLimits{.lower = -1000, .upper = 0.5 * (here + furthest)});
+  rig.Step();
+  EXPECT_EQ(rig.lives[close].error_id, ErrorId::kTargetBehindLimit);
+  EXPECT_EQ(rig.out.state, PlcState::kContinuousMotion);
+}
+
 TEST(SoftLimits, StopAnEndlessMotion) {
   Rig rig(LinearParams());
   ASSERT_TRUE(rig.PowerOn());
