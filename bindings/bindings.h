@@ -18,6 +18,9 @@ namespace takt::bindings {
 
 namespace py = pybind11;
 
+// Raises takt.ConfigError with these sentences.
+[[noreturn]] void ThrowConfigError(const std::vector<std::string>& problems);
+
 // A single number, bool or enum (as its number).
 py::object ScalarToPython(const Type& type, const void* object);
 
@@ -38,6 +41,7 @@ engine::LoadResult Load(const py::bytes& text, const std::string& file_name);
 
 void BindCore(py::module_& m);
 void BindCam(py::module_& m);
+void BindKinematics(py::module_& m);
 void BindAxis(py::module_& m);
 void BindEngine(py::module_& m);
 void BindServo(py::module_& m);

@@ -56,6 +56,8 @@ using JournalRow =
     py::typing::Tuple<std::uint64_t, Ticket, double, py::str, py::str, py::str>;  // cycle, ticket, lease, command
 using Wires = py::typing::Dict<py::str, py::object>;
 using DriveRow = py::typing::Tuple<std::uint64_t, std::uint32_t, std::int64_t, Wires>;  // cycle, axis, answers, wires
+using Foreseen = py::typing::Tuple<axis::Forecast, py::str>;
+using State = py::typing::Tuple<double, double, double>;  // position, velocity, acceleration
 using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::uint64_t>>;  // cycles, hashes
 
 // An engine in virtual time. Stepping releases the GIL; what it collects is guarded by a mutex that is only ever waited
@@ -207,6 +209,25 @@ class VirtualEngine {
     return ScalarToPython(*column.type, reinterpret_cast<const std::byte*>(&engine_.outputs(axis)) + column.offset);
   }
 
+  axis::Forecast Foresee(std::size_t axis) {
+    CheckAxis(axis);
+    const auto lock = Lock();
+    return engine_.Foresee(axis);
+  }
+
+  // Of a command if it were given now, and the sentence that says why it would be refused.
+  Foreseen ForeseeCommand(const std::string& target, const std::string& verb, const std::string& arguments) {
+    const engine::ParsedCommand parsed = engine::ParseCommand(engine_.machine(), target, verb, arguments);
+    axis::Forecast forecast;
+    forecast.error = parsed.error;
+    if (parsed.error != ErrorId::kNone) return py::make_tuple(forecast, parsed.sentence);
+    {
+      const auto lock = Lock();
+      forecast = engine_.Foresee(parsed.command.target - 1, std::get<axis::Command>(parsed.command.body));
+    }
+    return py::make_tuple(forecast, ErrorText(forecast.error));
+  }
+
   std::shared_ptr<Recorder> StartRecorder(const std::vector<std::size_t>& axes, std::uint64_t every) {
     for (const std::size_t axis : axes) CheckAxis(axis);
     if (every == 0) throw std::invalid_argument("every must be at least 1");
@@ -315,6 +336,23 @@ void BindEngine(py::module_& m) {
       .def("table", &Recorder::Table, py::arg("index"),
            "The rows of the axis at this place of the list it was started with.");
 
+  using F = axis::Forecast;
+  py::class_<F>(m, "Forecast", "What a motion is going to do.")
+      .def_property_readonly("error_id", [](const F& f) { return static_cast<int>(f.error); })
+      .def_readonly("known", &F::known)
+      .def_readonly("held", &F::held)
+      .def_property_readonly("limited_by", [](const F& f) { return static_cast<int>(f.limited_by); })
+      .def_readonly("start_s", &F::start_s)
+      .def_property_readonly("duration_s", &F::duration_s)
+      .def("time_to", &F::TimeTo, py::arg("position"))
+      .def(
+          "at",
+          [](const F& f, double in_s) -> State {
+            const KinematicState s = f.At(in_s);
+            return py::make_tuple(s.position, s.velocity, s.acceleration);
+          },
+          py::arg("in_s"));
+
   using E = VirtualEngine;
   using Released = py::call_guard<py::gil_scoped_release>;
   py::class_<E>(m, "Engine", "One machine in virtual time.")
@@ -334,6 +372,8 @@ void BindEngine(py::module_& m) {
       .def("take_journal", &E::TakeJournal)
       .def("take_hashes", &E::TakeHashes)
       .def("value", &E::Value, py::arg("axis"), py::arg("field"))
+      .def("foresee", &E::Foresee, py::arg("axis"))
+      .def("foresee_command", &E::ForeseeCommand, py::arg("target"), py::arg("verb"), py::arg("arguments"))
       .def("start_recorder", &E::StartRecorder, py::arg("axes"), py::arg("every") = 1)
       .def("stop_recorder", &E::StopRecorder, py::arg("recorder"))
       .def("figures", &E::Figures)

@@ -5,6 +5,7 @@ PYBIND11_MODULE(_core, m) {
   m.attr("__version__") = TAKT_VERSION;
   takt::bindings::BindCore(m);
   takt::bindings::BindCam(m);
+  takt::bindings::BindKinematics(m);
   takt::bindings::BindAxis(m);
   takt::bindings::BindEngine(m);
   takt::bindings::BindServo(m);

@@ -8,7 +8,11 @@ find_package(Threads REQUIRED)
 find_package(yaml-cpp CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
 find_package(CLI11 CONFIG REQUIRED)
+# Of these two the packages only say that they are there: their libraries lie where the linker looks.
+find_package(Eigen3 3.4 CONFIG REQUIRED)
+find_package(orocos_kdl 1.5 CONFIG REQUIRED)
 find_package(PkgConfig REQUIRED)
+pkg_check_modules(URDFDOM REQUIRED urdfdom)
 pkg_check_modules(LCM REQUIRED IMPORTED_TARGET lcm)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 

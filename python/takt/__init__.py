@@ -16,6 +16,7 @@ from takt.axis import Axis
 from takt.engine import Engine, error_name, error_text, read_machine
 from takt.errors import ClosedError, CommandError, ConfigError, ConnectionError, DriveWarning, TaktError, TimeoutError
 from takt.feedback import Feedback, FeedbackState
+from takt.forecast import Forecast, Moment
 from takt.lcmlog import LogError, read_log
 from takt.recording import Recording, RecordingError
 from takt.remote import RemoteSession, connect
@@ -32,7 +33,9 @@ __all__ = [
     "Engine",
     "Feedback",
     "FeedbackState",
+    "Forecast",
     "LogError",
+    "Moment",
     "Recorder",
     "Recording",
     "RecordingError",

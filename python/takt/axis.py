@@ -9,6 +9,7 @@ from takt._commands import AxisCommands, AxisOutputs
 
 if TYPE_CHECKING:
     from takt.feedback import Feedback
+    from takt.forecast import Forecast
     from takt.session import Session
 
 
@@ -33,6 +34,11 @@ class Axis(AxisCommands, AxisOutputs):
     def powered(self) -> bool:
         """The position loop is closed."""
         return self.loop_closed
+
+    def forecast(self, verb: str = "", **arguments: Any) -> Forecast:
+        """What the motion in progress is going to do, or with a verb and its arguments what that command would if it
+        were given now: a dry run, nothing changes. In process only."""
+        return self.session._foresee(self, verb, arguments)
 
     def _command(self, verb: str, arguments: Mapping[str, Any]) -> Feedback:
         return self.session.command(self.name, verb, arguments)

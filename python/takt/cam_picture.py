@@ -18,7 +18,7 @@ from takt.cam import Extreme, Table
 from takt.cam_check import Limits, figure
 
 EVENLY = 2000  # x, besides the joints
-MOST_MARKS = 150  # points or ends of segments
+MOST_POINTS, MOST_SEGMENTS = 150, 40  # that can be told apart
 NAMES = (("y", "position"), ("y'", "velocity"), ("y''", "acceleration"), ("y'''", "jerk"))
 POWERS = ("", "", "²", "³")
 
@@ -34,7 +34,8 @@ def picture(
     master is given: on the right what that is for the slave in seconds, with limits that are near as lines."""
     x = _places(table)
     values, extremes = table.at(x), table.extremes()
-    marks = _marks(table)
+    ends = [segment["to"]["x"] for segment in table.source["segments"]]
+    points = table.points if len(table.points.x) <= MOST_POINTS else None
     drawing = Figure(figsize=(plot.WIDTH_IN, 9.5), dpi=plot.DPI, facecolor="white", layout="constrained")
     FigureCanvasAgg(drawing)
     lanes: list[Axes] = list(drawing.subplots(4, 1, sharex=True, height_ratios=[1.35, 1, 1, 1]))
@@ -42,8 +43,8 @@ def picture(
         plot.dress(ax)
         ax.plot(x, values[power], color=style.PALETTE[power], lw=1.8, zorder=3)
         _frame(ax, [bounds.least.value, bounds.greatest.value], _limits_at(limits, power, master_velocity))
-        for place in marks:
-            ax.axvline(place, color=plot.FAINT, lw=0.7, alpha=0.45, zorder=1)
+        for end in ends if len(ends) <= MOST_SEGMENTS else ():
+            ax.axvline(end, color=plot.FAINT, lw=0.7, alpha=0.45, zorder=1)
         if bounds.greatest.value > bounds.least.value:
             scale = bounds.greatest.value - bounds.least.value
             _label(ax, bounds.greatest, scale, 1)
@@ -53,8 +54,8 @@ def picture(
         ax.set_ylabel(f"{symbol}  {name}\n{unit}", color=plot.INK, size=10)
         if master_velocity and power:
             _for_slave(ax, table, power, master_velocity)
-    if len(table.points.x) and len(marks):
-        lanes[0].plot(table.points.x, table.points.y, "o", ms=4, color=plot.INK, zorder=4)
+    if points:
+        lanes[0].plot(points.x, points.y, "o", ms=4, color=plot.INK, zorder=4)
     _name_laws(lanes[0], table)
     lanes[-1].set_xlabel(f"x  master [{table.x_unit}]", color=plot.INK, size=10)
     drawing.align_ylabels(lanes)
@@ -68,12 +69,6 @@ def _places(table: Table) -> Any:
     joints = table.joints
     evenly = np.linspace(table.begin, table.end, EVENLY)
     return np.unique(np.concatenate([evenly, joints, np.nextafter(joints[1:], -math.inf)]))
-
-
-def _marks(table: Table) -> list[float]:
-    """Where points lie, or segments meet; none where they are too many to be told apart."""
-    places = [*table.points.x] or [segment["to"]["x"] for segment in table.source["segments"]]
-    return places if len(places) <= MOST_MARKS else []
 
 
 def _limits_at(limits: Limits | None, power: int, master_velocity: float | None) -> list[float]:

@@ -192,27 +192,33 @@ def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int) 
 @cli.command()
 @click.argument("axis")
 @click.option("--machine", type=FILE, help="Tune on this machine in virtual time.")
-@click.option("--url", type=str, help="Tune on the engine of this LCM network (taktd): the axis moves!")
+@click.option("--url", type=str, help="Tune on the engine of this LCM network (taktd): the axis, which is on, moves!")
 @click.option("--distance", type=float, required=True, help="Size of the steps, in the axis' unit; keep it small.")
-@click.option("--watch", type=float, default=0.5, show_default=True, help="s to look at each step.")
+@click.option("--watch", type=float, default=0.5, show_default=True, help="s to look at each step, at least.")
+@click.option("--keep", is_flag=True, help="Leave the axis with the new gains [with those that it had].")
 @click.option("--picture", "target", type=FILE, help="Draw the step responses before and after.")
-def tune(axis: str, machine: Path | None, url: str | None, distance: float, watch: float, target: Path | None) -> int:
-    """Find the gains of the position loop of AXIS with small steps around where it stands."""
+def tune(
+    axis: str, machine: Path | None, url: str | None, distance: float, watch: float, keep: bool, target: Path | None
+) -> int:
+    """Find the gains of the position loop of AXIS with small steps beside where it stands."""
     from takt import tuning
 
     if (machine is None) == (url is None):
         raise click.UsageError("give either --machine or --url")
+    drawing = target and _writable(target, (".png", ".svg"))
     session: Session = Engine(machine) if machine else connect(url)
     with session:
         found = session.axis(axis)
-        if not found.powered:
+        if machine:
             found.power().wait()
-        result = tuning.tune(session, found, distance, watch, out.print)
+        result = tuning.tune(session, found, distance, watch, out.print, keep=keep)
     print(f"before: {result.before.text}")
     print(f"after {result.steps} steps: {result.after.text}")
+    if result.remark:
+        print(f"but {result.remark}")
     print(result.yaml)
-    if target:
-        print(f"picture: {tuning.picture(result, _writable(target, ('.png', '.svg')))}")
+    if drawing:
+        print(f"picture: {tuning.picture(result, drawing)}")
     return 0
 
 

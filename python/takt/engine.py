@@ -6,16 +6,19 @@ import json
 import math
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from takt import _core
+from takt._commands import DEFAULTS
+from takt.arguments import to_text
 from takt.axis import Axis
 from takt.errors import ConfigError, DriveWarning, seconds, whole
 from takt.feedback import Feedback
+from takt.forecast import Forecast
 from takt.recording import Recording
 from takt.session import Recorder, Session
 from takt.tables import OUTPUT_FIELDS, make_recording, named
@@ -125,6 +128,14 @@ class Engine(Session):
 
     def _value(self, axis: Axis, field: str) -> Any:
         return named(field, self._core.value(axis.index, OUTPUT_FIELDS.index(field)))
+
+    def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
+        self._check_open()
+        if not verb:
+            return Forecast(self._core.foresee(axis.index), "")
+        text = to_text(arguments, DEFAULTS.get(verb, {}))
+        core, sentence = self._core.foresee_command(axis.name, verb, text)
+        return Forecast(core, sentence if core.error_id else "")
 
     def _step(self, cycles: int, until_feedback: bool) -> int:
         """Runs one cycle at least and `cycles` at most; how many it were."""

@@ -21,6 +21,8 @@ from takt.recording import Recording
 if TYPE_CHECKING:
     from typing_extensions import Self
 
+    from takt.forecast import Forecast
+
 Program = Callable[[], object]
 P = TypeVar("P", bound=Program)
 
@@ -254,6 +256,9 @@ class Session(MachineCommands):
     @abstractmethod
     def _value(self, axis: Axis, field: str) -> Any:
         """A published value of an axis."""
+
+    def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
+        raise TaktError("forecasts are made in process only; over LCM a feedback has travel_time_s")
 
     @abstractmethod
     def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:

@@ -39,3 +39,10 @@ def test_whole_cycles_by_number_of_axes(tmp_path: Path) -> None:
     found = rows("bench_engine", "CycleMovingLoop", tmp_path)
     assert {f"CycleMovingLoop/{axes}" for axes in (1, 6, 64, 100, 1000)} <= found.keys()
     assert found["CycleMovingLoop/1000"]["cpu_time"] > found["CycleMovingLoop/1"]["cpu_time"]
+
+
+def test_cams_by_number_of_points(tmp_path: Path) -> None:
+    """CAM-04, CAM-60: a look-up by the number of points, beside a cubic polynomial as the floor."""
+    found = rows("bench_cam", "Cam(Walk|Floor)", tmp_path)
+    assert {f"CamWalk/{kind}/{n}" for kind in ("quintic", "linear") for n in (10, 100, 1000, 100_000)} <= found.keys()
+    assert {"CamWalk/modified_sine", "CamFloor/cubic_polynomial"} <= found.keys()

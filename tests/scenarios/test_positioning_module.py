@@ -1,4 +1,4 @@
-"""The positioning module (AX-43, AX-45, AX-49, AX-60 to AX-66, AX-71, AX-38): in virtual time and on taktd."""
+"""The positioning module (AX-43, AX-45, AX-48, AX-49, AX-60 to AX-66, AX-71, AX-38): in virtual time and on taktd."""
 
 from __future__ import annotations
 

@@ -130,9 +130,11 @@ void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
       s.last_sense = SenseAtEnd(s.motion.profile, s.last_sense);
     }
     if (s.motion.held) return;
+    const double origin = s.origin;
     Conclude(c, late_s, s);
     if (s.motion.arrived || FollowsDemand(s.active.kind)) return;  // no other motion with an end has begun
-    GuardLimits(c, before, s);
+    const double renumbered = before.position + origin - s.origin;
+    GuardLimits(c, {renumbered, before.velocity, before.acceleration}, s);
   }
 }
 
@@ -369,7 +371,7 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.buffered_commands = s.buffered;
   out.loop_closed = s.loop_closed;
   out.in_position =
-      s.loop_closed && !InMotion(s) && std::abs(s.following_error) <= p.supervision.in_position.value_or(HUGE_VAL);
+      s.loop_closed && !InMotion(s) && !s.motion.held && std::abs(s.following_error) <= p.supervision.in_position.value_or(HUGE_VAL);
   out.limit_positive = s.limit_positive;
   out.limit_negative = s.limit_negative;
   out.reference = s.reference;

@@ -17,7 +17,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::torque_nm>(unit::nm, "As the drive reports it.");
   d.internal<&O::probe_position>(unit::u, "Where the touch probe was captured last.");
   d.internal<&O::covered_distance>(unit::u, "By the motion on top of the one in progress; 0: there is none.");
-  d.internal<&O::override_factor>("Velocity factor of the override; 0: held.");
+  d.internal<&O::override_factor>(unit::one, "Velocity factor of the override; 0: held.");
   d.internal<&O::active_command>("Ticket of the command in control; 0: none.");
   d.internal<&O::error>("Fault of the axis, not of a command; 0: none.");
   d.internal<&O::state>("PLCopen state after the cycle; several transitions may lie in one.");

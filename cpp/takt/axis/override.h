@@ -3,7 +3,7 @@
 // They act on the moves with a position (their blending velocities, too), on continuous moves, MC_MoveVelocity, jog,
 // inch, GT_Touch and what lies on top of a motion: on the one in progress, which is planned anew from where it is, and
 // on those that wait. They do not act on what brings an axis to rest (halt, stop, power off, a jog's key let go,
-// faults), on homing, torque control, nor on axes that follow others: their masters decide.
+// faults), on homing, torque control, tables over time, nor on axes that follow others: their masters decide.
 //
 // Velocity factor 0 holds the axis: it comes to rest with its (scaled) ramps, stays in its state, and goes on to where
 // it went once the factor is more. Factors above 1 count as far as the axis' own limits; `limited_by` then names the

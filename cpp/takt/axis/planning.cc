@@ -183,10 +183,10 @@ Profile Open(const AxisParams& params, Planner& planner, const KinematicState& f
   return profile;
 }
 
-// Left otherwise than planned: to `speed`, and on beyond the target however far that has come. False: it does not get
-// there.
-bool PlanPast(const AxisParams& params, Planner& planner, const KinematicState& from, double target, double sense,
-              double speed, const Limits& limits, Profile& out) {
+// To `speed`, and on beyond the target however far that has come there. False: it does not get there, or could not stop
+// inside the SW limits from there.
+bool PassAt(const AxisParams& params, Planner& planner, const KinematicState& from, double target, double sense,
+            double speed, const Limits& limits, Profile& out) {
   if (sense * from.velocity <= 0) return false;
   Limits ramps = limits;
   ramps.velocity = std::max(limits.velocity, speed);
@@ -206,9 +206,17 @@ bool PlanPast(const AxisParams& params, Planner& planner, const KinematicState& 
     return false;
   }
   whole.SnapEnd({target, whole.end().velocity, whole.end().acceleration});
-  if (sense * whole.end().velocity <= 0) return false;
+  const bool stops = Inside(params.limits, trajectory::StopPosition(whole.end(), params.planner_limits()));
+  if (sense * whole.end().velocity <= 0 || !stops) return false;
   out = whole;
   return true;
+}
+
+// Left otherwise than planned: at `speed` if it can be, else braking.
+bool PlanPast(const AxisParams& params, Planner& planner, const KinematicState& from, double target, double sense,
+              double speed, const Limits& limits, Profile& out) {
+  return PassAt(params, planner, from, target, sense, speed, limits, out) ||
+         PassAt(params, planner, from, target, sense, 0, params.planner_limits(), out);
 }
 
 // From `from` on to what the request asks for, with its own limits; positions: to `out.target`.

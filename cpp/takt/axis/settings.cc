@@ -68,8 +68,8 @@ bool IsYesOrNo(double value) {
   return value == 0 || value == 1;
 }
 
-double OrInfinity(const std::optional<double>& limit) {
-  return limit.value_or(HUGE_VAL);
+double OrInfinity(const std::optional<double>& limit, const std::optional<double>& asleep = {}) {
+  return limit ? *limit : asleep.value_or(HUGE_VAL);
 }
 
 }  // namespace
@@ -80,9 +80,9 @@ std::optional<double> ValueOf(const AxisParams& p, const State& s, std::int32_t 
     case Parameter::kCommandedPosition:
       return s.setpoint.position;
     case Parameter::kLimitPositive:
-      return OrInfinity(p.limits.upper);
+      return OrInfinity(p.limits.upper, s.dormant.upper);
     case Parameter::kLimitNegative:
-      return p.limits.lower.value_or(-HUGE_VAL);
+      return p.limits.lower ? *p.limits.lower : s.dormant.lower.value_or(-HUGE_VAL);
     case Parameter::kEnableLimitPositive:
       return p.limits.upper ? 1 : 0;
     case Parameter::kEnableLimitNegative:
@@ -90,7 +90,7 @@ std::optional<double> ValueOf(const AxisParams& p, const State& s, std::int32_t 
     case Parameter::kEnableLagMonitoring:
       return p.supervision.deviation_moving ? 1 : 0;
     case Parameter::kMaxPositionLag:
-      return OrInfinity(p.supervision.deviation_moving);
+      return OrInfinity(p.supervision.deviation_moving, s.dormant.lag);
     case Parameter::kMaxVelocitySystem:
     case Parameter::kMaxVelocity:
       return own.velocity;
@@ -107,6 +107,20 @@ std::optional<double> ValueOf(const AxisParams& p, const State& s, std::int32_t 
     case Parameter::kMaxJerkSystem:
     case Parameter::kMaxJerk:
       return own.jerk;
+    case Parameter::kLoopKp:
+      return p.loop.kp;
+    case Parameter::kLoopKi:
+      return p.loop.ki;
+    case Parameter::kLoopKd:
+      return p.loop.kd;
+    case Parameter::kLoopKc:
+      return p.loop.kc;
+    case Parameter::kLoopFf:
+      return p.loop.ff;
+    case Parameter::kLoopVmax:
+      return p.loop.velocity_at_10v;
+    case Parameter::kMaxPositionLagStandstill:
+      return OrInfinity(p.supervision.deviation_standstill);
   }
   return std::nullopt;
 }
@@ -159,6 +173,10 @@ Status CarryOut(const Context& c, Ticket ticket, const WriteParameter& w, State&
     case Parameter::kEnableLagMonitoring:
       good = enable(lag);
       break;
+    case Parameter::kMaxPositionLagStandstill:
+      if (!(w.value > 0)) return Status::Failed(ErrorId::kParameter);
+      c.params.supervision.deviation_standstill = w.value;
+      return Done(c, ticket);
     default:
       good = false;
   }
@@ -220,12 +238,14 @@ bool Fill(const Maker& m, const SetConstants& k) {
          position_if("lower", k.lower) && position_if("upper", k.upper);
 }
 
+constexpr auto kLastParameter = static_cast<std::int32_t>(Parameter::kMaxPositionLagStandstill);
+
 bool Fill(const Maker& m, const WriteParameter& w) {
-  return m.In("value", w.value, -kMaxPosition, kMaxPosition) && m.In("number", w.number, 1, 17);
+  return m.In("value", w.value, -kMaxPosition, kMaxPosition) && m.In("number", w.number, 1, kLastParameter);
 }
 
 bool Fill(const Maker& m, const ReadParameter& r) {
-  return m.In("number", r.number, 1, 17);
+  return m.In("number", r.number, 1, kLastParameter);
 }
 
 bool Fill(const Maker& m, const SetSoftLimits& l) {

@@ -26,10 +26,19 @@ enum class Parameter : std::int32_t {
   kMaxDeceleration = 15,
   kMaxJerkSystem = 16,
   kMaxJerk = 17,
+  // Numbers from 1000 on are the maker's own.
+  kLoopKp = 1001,
+  kLoopKi = 1002,
+  kLoopKd = 1003,
+  kLoopKc = 1004,
+  kLoopFf = 1005,
+  kLoopVmax = 1006,
+  kMaxPositionLagStandstill = 1007,
 };
 
 // In the parameter's unit, 0 and 1 for no and yes. Nothing: there is no such parameter. The limits of the system are
-// those of the machine file; those of the application may lie below them.
+// those of the machine file; those of the application may lie below them. What is switched off keeps its value; what
+// there never was is infinite.
 std::optional<double> ValueOf(const AxisParams& params, const State& state, std::int32_t number) noexcept;
 
 // kTargetBehindLimit: a SW limit would lie before where the axis is, or before the end of a move that was promised.

@@ -95,11 +95,13 @@ class Reader {
   }
 
   void ReadRow(std::string_view line) {
+    const std::size_t fields = 1 + static_cast<std::size_t>(std::count(line.begin(), line.end(), separator_));
+    if (fields != columns_) {
+      return Add(0, "expected " + std::to_string(columns_) + " columns, found " + std::to_string(fields));
+    }
     CamPoint point;
-    std::size_t fields = 0;
     bool good = true;
     Split(line, [&](std::size_t index, std::string_view field, std::size_t at) {
-      ++fields;
       const auto column = std::find(of_.begin(), of_.end(), static_cast<int>(index));
       if (column == of_.end()) return;
       const auto k = static_cast<std::size_t>(column - of_.begin());
@@ -114,10 +116,6 @@ class Reader {
       if (k == 2) point.v = value;
       if (k == 3) point.a = value;
     });
-    if (fields != columns_) {
-      Add(0, "expected " + std::to_string(columns_) + " columns, found " + std::to_string(fields));
-      return;
-    }
     if (!good) return;
     csv_.points.push_back(point);
     csv_.lines.push_back(line_);

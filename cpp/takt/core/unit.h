@@ -17,6 +17,7 @@ struct Unit {
 namespace unit {
 
 inline constexpr Unit none{"", ""};
+inline constexpr Unit one{"1", "a factor"};
 // The axis' own unit: mm, deg, ..., whatever its description says.
 inline constexpr Unit u{"u", "the axis' own unit"};
 inline constexpr Unit u_s{"u/s", "the axis' unit per second"};

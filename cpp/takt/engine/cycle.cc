@@ -162,6 +162,14 @@ bool Take(World& w, const DriveSample& sample) noexcept {
   return false;
 }
 
+axis::Forecast Foresee(World& w, std::size_t axis) {
+  return axis::Foresee(ContextOf(w, axis), w.axis_states.at(axis));
+}
+
+axis::Forecast Foresee(World& w, std::size_t axis, const axis::Command& command) {
+  return axis::Foresee(ContextOf(w, axis), command, w.axis_states.at(axis));
+}
+
 void Sense(World& w) noexcept {
   for (HeardDrive& drive : w.drives) w.samplings[drive.axis] = SamplingIn(w.cycle, drive);
   for (std::size_t i = 0; i < w.axis_states.size(); ++i)

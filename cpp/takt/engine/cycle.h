@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "takt/axis/forecast.h"
 #include "takt/axis/outputs.h"
 #include "takt/axis/params.h"
 #include "takt/axis/state.h"
@@ -58,6 +59,10 @@ struct World {
 
   std::uint64_t StateHash() const noexcept;
 };
+
+// Not for the cycle (axis/forecast.h).
+axis::Forecast Foresee(World& world, std::size_t axis);
+axis::Forecast Foresee(World& world, std::size_t axis, const axis::Command& command);
 
 // The stages, in the order of the cycle. Commands come between sense and move (Apply).
 // What a drive in another process has sent. False: nothing to go by.

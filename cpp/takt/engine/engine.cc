@@ -231,6 +231,14 @@ const Cycle& Engine::cycle() const noexcept {
 const axis::Outputs& Engine::outputs(std::size_t axis) const noexcept {
   return impl_->world.axis_outputs[axis];
 }
+axis::Forecast Engine::Foresee(std::size_t axis) const {
+  return engine::Foresee(impl_->world, axis);
+}
+
+axis::Forecast Engine::Foresee(std::size_t axis, const axis::Command& command) const {
+  return engine::Foresee(impl_->world, axis, command);
+}
+
 std::uint64_t Engine::StateHash() const noexcept {
   return impl_->world.StateHash();
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "takt/axis/forecast.h"
 #include "takt/core/cycle.h"
 #include "takt/core/spsc_queue.h"
 #include "takt/engine/command.h"
@@ -55,6 +56,10 @@ class Engine {
   const axis::Outputs& outputs(std::size_t axis) const noexcept;
   const EngineFigures& figures() const noexcept;
   std::uint64_t StateHash() const noexcept;
+  // What the motion of an axis is going to do, and what that of a command would if it were given now (AX-96). Nothing
+  // changes; takes memory and time, so not between two cycles that have a deadline.
+  axis::Forecast Foresee(std::size_t axis) const;
+  axis::Forecast Foresee(std::size_t axis, const axis::Command& command) const;
   // Every axis at rest with its loop open.
   bool all_disabled() const noexcept;
   bool at_rest() const noexcept;

@@ -71,6 +71,30 @@ class GT_EStop : public ExecuteBlock {
   void operator()() noexcept;
 };
 
+// Keeps the factors of the override as they are at the inputs as long as Enable is true; false, the last ones stay.
+// Enabled: they are those of the axis. Several instances an axis: the one whose inputs changed last counts.
+class MC_SetOverride {
+ public:
+  bool Enable = false;
+  double VelFactor = 1;
+  double AccFactor = 1;
+  double JerkFactor = 1;
+
+  explicit MC_SetOverride(AxisRef axis) : axis_(axis), feedback_(axis.program()) {}
+  void operator()() noexcept;
+
+  bool Enabled() const noexcept { return Enable && feedback_.state() == FeedbackState::kDone; }
+  bool Busy() const noexcept { return Enable && !Error(); }
+  bool Error() const noexcept { return Enable && feedback_.failed(); }
+  ErrorId ErrorID() const noexcept { return Error() ? feedback_.error() : ErrorId::kNone; }
+
+ private:
+  AxisRef axis_;
+  Feedback feedback_;
+  axis::SetOverride given_;
+  bool level_ = false;  // Enable in the call before
+};
+
 // Switches outputs by the position of the axis as long as Enable is true; the other inputs count when it rises.
 class MC_DigitalCamSwitch : private axis::DigitalCamSwitch {
  public:

@@ -1,4 +1,4 @@
-"""A positioning module finds its references, measures an edge, runs geared, stops at once and comes back.
+"""A positioning module finds its references, measures an edge, runs coupled, stops at once and comes back.
 
 takt run python/examples/positioning_module/scenario.py       in process, in virtual time
 takt demo python/examples/positioning_module/scenario.py      on taktd in real time, over LCM
@@ -46,7 +46,7 @@ def scenario(session: takt.Session) -> None:
     probe.wait()
     assert abs(probe.value - 83.25) < 0.01, probe.value
 
-    session.mark("b runs geared to x, c gets into step at a place")
+    session.mark("b runs geared to x, c gets into step at a place, a makes room by its cam")
     gear = b.gear_in(master="x", ratio_numerator=2)
     place = c.gear_in_pos(
         master="x",
@@ -55,10 +55,15 @@ def scenario(session: takt.Session) -> None:
         slave_sync_position=40,
         master_start_distance=60,
     )
+    raised = a.set_position
+    room = a.cam_in(master="x", cam="make_room", slave_absolute=False)
     start = b.set_position
-    lift = a.move_absolute(position=-50)
+    x.move_absolute(position=125, velocity=150).wait()
+    assert abs(a.set_position - (raised - 50)) < 1e-6
     x.move_absolute(position=220, velocity=150).wait()
-    lift.wait()
+    assert abs(a.set_position - raised) < 1e-6
+    assert a.profile_ends == 1
+    assert room.reached
     assert gear.reached
     assert place.reached
     assert abs(c.set_position - (40 + (220 - 120) / 2)) < 1e-6
@@ -90,5 +95,6 @@ def verify(recording: takt.Recording) -> None:
     for axis in "xyz":
         expect.visits_states(recording, axis, ["Standstill", "Homing", "Standstill"])
     expect.stays(recording, "x.homed and y.homed and z.homed and a.homed", window=(ready, recording.end_s))
-    expect.visits_states(recording, "b", ["SynchronizedMotion", "Disabled"])
+    for axis in "abc":
+        expect.visits_states(recording, axis, ["Standstill", "SynchronizedMotion", "Disabled"])
     expect.stays(recording, "x.error < 0.5")

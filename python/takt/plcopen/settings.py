@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from takt.axis import Axis
-from takt.feedback import Feedback
+from takt.feedback import QUEUE_FULL, Feedback
 from takt.plcopen.base import FunctionBlock, Input, Output, SettingBlock
 
 YES_OR_NO = (4, 5, 6)  # parameters: EnableLimitPos, EnableLimitNeg, EnablePosLagMonitoring
@@ -48,6 +48,37 @@ class MC_SetPosition(SettingBlock):  # noqa: N801
     VERB = "define_position"
     Position = Input(0.0, "position")
     Relative = Input(False, "relative")
+
+
+class MC_SetOverride(FunctionBlock):  # noqa: N801
+    """Keeps the factors of the override as they are at the inputs as long as Enable is true; false, the last ones stay.
+    Enabled: they are those of the axis. VelFactor 0 holds the axis in its state until it is more."""
+
+    Enable = Input(False)
+    VelFactor = Input(1.0, "velocity_factor")
+    AccFactor = Input(1.0, "acceleration_factor")
+    JerkFactor = Input(1.0, "jerk_factor")
+    Enabled = Output(False)
+    Busy = Output(False)
+
+    def __init__(self, axis: Axis, **inputs: Any) -> None:
+        self._given: dict[str, Any] | None = None
+        self._feedback: Feedback | None = None
+        super().__init__(axis, **inputs)
+
+    def _scan(self) -> None:
+        if not self.Enable:
+            self._given = self._feedback = None
+            return
+        wanted = self._arguments()
+        full = self._feedback is not None and self._feedback.error_id == QUEUE_FULL  # then it is tried again
+        if self._feedback is None or wanted != self._given or full:
+            self._given = wanted
+            self._feedback = self.Axis.session.command(self.Axis.name, "set_override", wanted)
+        if self._feedback.error:
+            self._show_error(self._feedback.error_id)
+        else:
+            self._show(Busy=True, Enabled=self._feedback.done)
 
 
 class MC_WriteParameter(SettingBlock):  # noqa: N801

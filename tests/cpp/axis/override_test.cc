@@ -113,6 +113,7 @@ TEST(Override, ZeroHoldsTheAxisInItsState) {
       EXPECT_EQ(rig.out.state, PlcState::kDiscreteMotion);
       EXPECT_EQ(rig.out.limited_by, LimitedBy::kOverride);
       EXPECT_FALSE(rig.Ended(move));
+      EXPECT_FALSE(rig.out.in_position);
       EXPECT_LT(rig.position(), 99);
     }
     rig.Give(Factors(0.5));

@@ -70,6 +70,22 @@ TEST(Parameters, AreReadAndWritten) {
   EXPECT_EQ(ErrorOf(rig, ReadParameter{0}), ErrorId::kParameter);
 }
 
+// AX-28: what PLCopen has no number for: the loop's constants, and supervision at rest.
+TEST(Parameters, OfTaktsOwn) {
+  AxisParams p = LinearParams();
+  p.loop = {.kp = 0.1, .ki = 0.2, .kd = 0.3, .kc = 0.4, .ff = 0.5, .velocity_at_10v = 600};
+  Rig rig(p);
+  for (const int i : {1, 2, 3, 4, 5}) EXPECT_EQ(Read(rig, 1000 + i), i / 10.0);
+  EXPECT_EQ(Read(rig, 1006), 600);
+  EXPECT_EQ(Read(rig, 1007), HUGE_VAL);
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{1007, 2}), ErrorId::kNone);
+  EXPECT_EQ(Read(rig, 1007), 2);
+  EXPECT_EQ(rig.params.supervision.deviation_standstill, 2);
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{1007, 0}), ErrorId::kParameter);
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{1001, 1}), ErrorId::kParameter);  // GT_SetConstant does that
+  for (const int number : {18, 1000, 1008}) EXPECT_EQ(ErrorOf(rig, ReadParameter{number}), ErrorId::kParameter);
+}
+
 // AX-52: new limits hold at once; those that a motion could not keep are refused, and it goes on.
 TEST(SoftLimits, ChangeAtRunTime) {
   Rig rig(LinearParams());
@@ -104,6 +120,8 @@ TEST(SoftLimits, AreSwitchedOffAndOnAgain) {
   for (const int number : {4, 6}) {
     EXPECT_EQ(ErrorOf(rig, WriteParameter{number, 0}), ErrorId::kNone);
     EXPECT_EQ(Read(rig, number), 0);
+    EXPECT_EQ(Read(rig, 2), 100);
+    EXPECT_EQ(Read(rig, 7), 5);
     EXPECT_EQ(ErrorOf(rig, WriteParameter{number, 7.5}), ErrorId::kParameter);
     EXPECT_EQ(ErrorOf(rig, WriteParameter{number, 1}), ErrorId::kNone);
     EXPECT_EQ(Read(rig, number), 1);

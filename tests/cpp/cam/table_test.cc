@@ -44,6 +44,21 @@ TEST(Table, KeepsItsSource) {
   EXPECT_EQ(Made(segments).source().segments.front().law, Law::kCycloid);
 }
 
+// CAM-21: rounding inside the last piece does not get into the stroke, which is added up turn by turn.
+TEST(Table, HasTheStrokeOfItsSource) {
+  Dice dice(4);
+  for (int run = 0; run < 200; ++run) {
+    CamParams params = RandomCam(dice);
+    double& last = params.segments.empty() ? params.points.back().y : params.segments.back().to.y;
+    if (!params.segments.empty() && params.segments.back().law == Law::kDwell) continue;
+    const double first = Made(params).At(-1e300).y;
+    last = first + 0.1;
+    const Built built = Build(params);
+    if (!built.table) continue;
+    ASSERT_EQ(built.table->stroke(), last - first);
+  }
+}
+
 // CAM-04: the piece is found wherever the points lie: evenly, crowded, at distances a million times apart.
 TEST(Table, FindsThePieceOfEveryX) {
   Dice dice(1);

@@ -134,6 +134,11 @@ TEST_F(LoadCamFiles, NameFileRowAndValue) {
   EXPECT_THAT(problems("x,y\n0,0\n1,abc\n"), ElementsAre(file + ":3:3: expected a finite number for y, found 'abc'"));
   EXPECT_THAT(problems("x,y\n0,nan\n1,1\n"), ElementsAre(HasSubstr(":2:3: expected a finite number for y")));
   EXPECT_THAT(problems("x,y\n0,0,0\n1,1\n"), ElementsAre(HasSubstr(":2:1: expected 2 columns, found 3")));
+  EXPECT_THAT(problems("x,y\n0;0\n"), ElementsAre(HasSubstr(":2:1: expected 2 columns, found 1")));
+  std::string long_file = "x,y\n";
+  for (std::size_t i = 0; i < cam::kMaxPoints + 5; ++i) long_file += std::to_string(i) + ",0\n";
+  EXPECT_THAT(problems(long_file),
+              ElementsAre(HasSubstr(":100002:1: expected 100,000 points at most, found one more")));
   EXPECT_THAT(problems("x,z\n0,0\n"),
               ElementsAre(HasSubstr(":1:3: expected the columns x, y and perhaps v, a, found 'z'")));
   EXPECT_THAT(problems("x\n0\n"), ElementsAre(HasSubstr("expected the columns x and y, found 'x'")));

@@ -3,6 +3,7 @@
 #include <takt/msgs/axis_state.hpp>
 
 #include "takt/engine/load.h"
+#include "takt/kinematics/kinematics.h"
 #include "takt/plcopen/blocks.h"
 #include "takt/trajectory/planner.h"
 
@@ -29,13 +30,22 @@ double Move() {
   return program.Axis("x").outputs().set_position;
 }
 
+// How far the level arms of a Delta reach down: lower arms of 650 with 390 sideways.
+double Reach() {
+  const takt::kinematics::MakeResult made =
+      takt::kinematics::Make({.delta = takt::kinematics::DeltaParams{200, 45, 235, 650}, .joints = {}});
+  takt::kinematics::Frame tool;
+  if (takt::kinematics::Forward(*made.kinematics, {}, tool) != takt::kinematics::Reason::kNone) return 0;
+  return -tool.p.z();
+}
+
 int main() {
   takt::trajectory::Planner planner;
   takt::trajectory::Profile profile;
   const takt::trajectory::Limits limits{.velocity = 1, .acceleration = 1, .deceleration = 1, .jerk = 0};
   const takt::Status status = planner.ToPosition({}, 1.0, 0.0, limits, profile);
   const takt::msgs::axis_state message{};
-  std::printf("%.1f s, %s, at %.1f\n", profile.duration(), message.getEncodedSize() > 0 ? "message" : "nothing",
-              Move());
+  std::printf("%.1f s, %s, at %.1f, %.1f mm\n", profile.duration(),
+              message.getEncodedSize() > 0 ? "message" : "nothing", Move(), Reach());
   return status.ok() ? 0 : 1;
 }

@@ -19,15 +19,18 @@ void describe(Description<SetConstants>& d) {
 
 void describe(Description<WriteParameter>& d) {
   using C = WriteParameter;
-  d.about("Sets a parameter by PLCopen's number (MC_WriteParameter).");
-  d.required<&C::number>(at_least(1), "PLCopen's number.");
+  d.about("Sets a parameter by its number (MC_WriteParameter).");
+  d.required<&C::number>(at_least(1), "PLCopen's number, 2 to 7; or 1007: largest following error at rest.");
   d.required<&C::value>("In the parameter's unit; 0 and 1 of yes and no.");
 }
 
 void describe(Description<ReadParameter>& d) {
   using C = ReadParameter;
-  d.about("Reads a parameter by PLCopen's number (MC_ReadParameter); the value of the feedback once done.");
-  d.required<&C::number>(at_least(1), "PLCopen's number.");
+  d.about("Reads a parameter by its number (MC_ReadParameter); the value of the feedback once done.");
+  d.required<&C::number>(
+      at_least(1),
+      "PLCopen's number, 1 to 17; or 1001 to 1006: kp, ki, kd, kc, ff and Vmax of the position loop; "
+      "1007: largest following error at rest.");
 }
 
 void describe(Description<SetSoftLimits>& d) {

@@ -36,6 +36,8 @@ struct SetOverride {  // MC_SetOverride
   double velocity_factor = 1;
   double acceleration_factor = 1;
   double jerk_factor = 1;
+
+  bool operator==(const SetOverride&) const = default;
 };
 
 void describe(Description<SetConstants>&);

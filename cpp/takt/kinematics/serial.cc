@@ -1,0 +1,143 @@
+#include "takt/kinematics/serial.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace takt::kinematics {
+namespace {
+
+constexpr int kMost = static_cast<int>(kMaxJoints);
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMost, kMost>;
+using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMost>;
+using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMost, 1>;
+using Six = Eigen::Matrix<double, 6, 1>;
+
+constexpr int kSteps = 100;
+// Of the error, made comparable: below it is rounding.
+constexpr double kArrived = 1e-13;
+// Rounding of long chains, tried when no step makes it better.
+constexpr double kGoodEnough = 2e-12;
+// What a step may turn an axis at most, so that the first steps do not throw the arm about. rad, or parts of the
+// length.
+constexpr double kLongestStep = 0.5;
+// Keeps the equations solvable in singular positions; too small to slow the last steps down.
+constexpr double kLeastDamping = 1e-12;
+// Axes that moved no further than this did so along a path: they stay on their side of every singularity.
+constexpr double kAlongPath = 0.5;
+// Of the smallest to the largest pivot.
+constexpr double kSingularPivot = 1e-6;
+
+Six Scaled(const KDL::Twist& twist, double length) {
+  Six six;
+  for (int i = 0; i < 3; ++i) {
+    six(i) = twist.vel(i) / length;
+    six(i + 3) = twist.rot(i);
+  }
+  return six;
+}
+
+Columns ScaledJacobian(const Chain& chain, const Joints& joints) {
+  const Jacobian jacobian = JacobianAt(chain, joints);
+  Columns columns(6, static_cast<int>(chain.count));
+  for (std::size_t i = 0; i < chain.count; ++i) {
+    const double unit = chain.links[i].kind == JointKind::kLinear ? chain.length : 1;
+    columns.col(static_cast<int>(i)) = Scaled(jacobian[i], chain.length) * unit;
+  }
+  return columns;
+}
+
+Six ErrorOf(const Chain& chain, const Joints& joints, const Frame& tool) {
+  const Frame present = Forward(chain, joints);
+  return Scaled({tool.p - present.p, TurnBetween(present.M, tool.M)}, chain.length);
+}
+
+// Newton-Raphson: with damping that vanishes with the error, so that the last steps are exact.
+bool Approach(const Chain& chain, const Frame& tool, Joints& joints) {
+  const auto axes = static_cast<int>(chain.count);
+  Six error = ErrorOf(chain, joints, tool);
+  double size = error.norm();
+  double boost = 1;
+  for (int step = 0; step < kSteps && size > kArrived; ++step) {
+    const Columns jacobian = ScaledJacobian(chain, joints);
+    Square normal = jacobian.transpose() * jacobian;
+    normal.diagonal().array() += boost * size * size + kLeastDamping;
+    Column move = normal.llt().solve(jacobian.transpose() * error);
+    const double largest = move.cwiseAbs().maxCoeff();
+    if (largest > kLongestStep) move *= kLongestStep / largest;
+    Joints next = joints;
+    for (int i = 0; i < axes; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      next[k] += move(i) * (chain.links[k].kind == JointKind::kLinear ? chain.length : 1);
+    }
+    const Six next_error = ErrorOf(chain, next, tool);
+    const double next_size = next_error.norm();
+    if (next_size < size) {
+      joints = next;
+      error = next_error;
+      size = next_size;
+      boost = std::max(boost * 0.5, 1e-3);
+    } else if (size <= kGoodEnough) {
+      break;
+    } else {
+      boost = boost * 8 + kLeastDamping / (size * size);
+    }
+  }
+  return size <= kGoodEnough;
+}
+
+// Positive when two positions are on the same side of all singularities, 0 when one of them is singular. Seen from the
+// tool, so that turning the whole arm does not matter.
+double SameSide(const Chain& chain, const Joints& from, const Joints& to) {
+  const auto seen_from_tool = [&](const Joints& joints) {
+    const KDL::Rotation back = Forward(chain, joints).M.Inverse();
+    const Jacobian jacobian = JacobianAt(chain, joints);
+    Columns columns(6, static_cast<int>(chain.count));
+    for (std::size_t i = 0; i < chain.count; ++i)
+      columns.col(static_cast<int>(i)) = Scaled(back * jacobian[i], chain.length).normalized();
+    return columns;
+  };
+  const Columns a = seen_from_tool(from);
+  const Columns b = seen_from_tool(to);
+  if (chain.count > 6) return Square(a * b.transpose()).determinant();
+  if (chain.count == 6) return Square(a).determinant() * Square(b).determinant();
+  return Square(a.transpose() * b).determinant();
+}
+
+bool Singular(const Chain& chain, const Joints& joints) {
+  const Columns jacobian = ScaledJacobian(chain, joints);
+  Eigen::ColPivHouseholderQR<Square> qr;
+  qr.setThreshold(kSingularPivot);
+  qr.compute(chain.count > 6 ? Square(jacobian.transpose()) : Square(jacobian));
+  return qr.rank() < std::min<Eigen::Index>(6, jacobian.cols());
+}
+
+double LargestMove(const Chain& chain, const Joints& from, const Joints& to) {
+  double largest = 0;
+  for (std::size_t i = 0; i < chain.count; ++i) {
+    if (chain.links[i].kind == JointKind::kRotary) largest = std::max(largest, std::abs(to[i] - from[i]));
+  }
+  return largest;
+}
+
+}  // namespace
+
+Reason Inverse(const Serial& serial, const Frame& tool, const Configuration&, const Joints& near,
+               Joints& joints) noexcept {
+  const Chain& chain = serial.chain;
+  joints = near;
+  if (!Approach(chain, tool, joints)) {
+    // A stretched arm does not know which way to bend.
+    if (!Singular(chain, near)) return Reason::kOutOfReach;
+    joints = near;
+    for (std::size_t i = 0; i < chain.count; ++i) {
+      if (chain.links[i].kind == JointKind::kRotary) joints[i] += i % 2 == 0 ? 0.1 : 0.15;
+    }
+    if (!Approach(chain, tool, joints)) return Reason::kOutOfReach;
+  }
+  if (Singular(chain, joints)) return Reason::kSingular;
+  const bool comparable = chain.count == 6 || LargestMove(chain, near, joints) < kAlongPath;
+  if (comparable && !Singular(chain, near) && SameSide(chain, near, joints) < 0) return Reason::kSingular;
+  return Reason::kNone;
+}
+
+}  // namespace takt::kinematics

@@ -1,0 +1,109 @@
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "takt/kinematics/serial.h"
+
+namespace takt::kinematics {
+namespace {
+
+constexpr double kMetre = 1000;  // mm: URDF counts in metres
+
+Frame ToFrame(const urdf::Pose& pose) {
+  const urdf::Rotation& q = pose.rotation;
+  const urdf::Vector3& p = pose.position;
+  return {KDL::Rotation::Quaternion(q.x, q.y, q.z, q.w), KDL::Vector(p.x, p.y, p.z) * kMetre};
+}
+
+std::string Quoted(const std::string& name) {
+  return "'" + name + "'";
+}
+
+// Null when it cannot be read; the reader has then said why on stderr.
+urdf::ModelInterfaceSharedPtr Parsed(const std::string& xml) {
+  try {
+    return urdf::parseURDF(xml);
+  } catch (const std::exception&) {
+    return nullptr;
+  }
+}
+
+// The joints from base to tip; empty, and why, when there is no way.
+std::vector<urdf::JointConstSharedPtr> Way(const urdf::ModelInterface& model, const std::string& base,
+                                           const std::string& tip, std::string& why) {
+  std::vector<urdf::JointConstSharedPtr> way;
+  urdf::LinkConstSharedPtr link = model.getLink(tip);
+  if (!link) why = "the URDF has no link " + Quoted(tip);
+  while (link && link->name != base) {
+    if (!link->parent_joint) {
+      why = model.getLink(base) ? "no joints lead from " + Quoted(base) + " to " + Quoted(tip)
+                                : "the URDF has no link " + Quoted(base);
+      return {};
+    }
+    way.push_back(link->parent_joint);
+    link = model.getLink(link->parent_joint->parent_link_name);
+  }
+  std::reverse(way.begin(), way.end());
+  if (why.empty() && way.empty()) why = "base and tip are the same link";
+  return way;
+}
+
+// The only link nothing hangs on.
+std::string OnlyEnd(const urdf::ModelInterface& model, std::string& why) {
+  std::string end;
+  for (const auto& [name, link] : model.links_) {
+    if (!link->child_joints.empty()) continue;
+    if (!end.empty()) {
+      why = "the URDF has several ends (" + end + ", " + name + " ...): say which one is the tip";
+      return {};
+    }
+    end = name;
+  }
+  return end;
+}
+
+}  // namespace
+
+std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& base, const std::string& tip,
+                                  std::string& why) {
+  why.clear();
+  const urdf::ModelInterfaceSharedPtr model = Parsed(xml);
+  if (!model) {
+    why = "this is no URDF that can be read";
+    return std::nullopt;
+  }
+  const std::string end = tip.empty() ? OnlyEnd(*model, why) : tip;
+  if (!why.empty()) return std::nullopt;
+  UrdfChain out;
+  Frame rest;  // behind the last axis
+  for (const urdf::JointConstSharedPtr& joint : Way(*model, base.empty() ? model->getRoot()->name : base, end, why)) {
+    rest = rest * ToFrame(joint->parent_to_joint_origin_transform);
+    if (joint->type == urdf::Joint::FIXED) continue;
+    const bool slides = joint->type == urdf::Joint::PRISMATIC;
+    if (!slides && joint->type != urdf::Joint::REVOLUTE && joint->type != urdf::Joint::CONTINUOUS) {
+      why = "joint " + Quoted(joint->name) + " neither slides nor turns about one axis";
+    } else if (joint->mimic) {
+      why = "joint " + Quoted(joint->name) + " copies another one, which a chain cannot";
+    } else if (out.chain.count == kMaxJoints) {
+      why = "the chain has more than " + std::to_string(kMaxJoints) + " axes";
+    }
+    KDL::Vector axis(joint->axis.x, joint->axis.y, joint->axis.z);
+    if (why.empty() && !(axis.Normalize() > 1e-9))
+      why = "joint " + Quoted(joint->name) + " has an axis without a direction";
+    if (!why.empty()) return std::nullopt;
+    if (joint->limits && joint->type != urdf::Joint::CONTINUOUS) {
+      const double unit = slides ? kMetre : 1;
+      out.limits[out.chain.count] = {joint->limits->lower * unit, joint->limits->upper * unit};
+    }
+    Append(out.chain, {rest, axis, slides ? JointKind::kLinear : JointKind::kRotary});
+    rest = Frame::Identity();
+  }
+  if (why.empty() && out.chain.count == 0) why = "the chain has no axes";
+  if (!why.empty()) return std::nullopt;
+  out.chain.tool = rest;
+  out.chain.length += rest.p.Norm();
+  return out;
+}
+
+}  // namespace takt::kinematics

@@ -1,0 +1,262 @@
+"""An axis while its position loop is tuned: looked over first, kept near where it stands, and left as it was found."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from types import TracebackType
+
+import numpy as np
+
+from takt.axis import Axis
+from takt.engine import error_text
+from takt.errors import CommandError, TaktError
+from takt.session import Session
+from takt.step_response import SETTLED, StepResponse, relative, rest, there_and_back
+
+GAINS = ("kp", "ki", "kd")
+NO_GAINS = dict.fromkeys(GAINS, 0.0)
+CRITICAL = 1.0  # % of overshoot that still counts as critically damped
+RINGS = 3  # turning points of the band's size after the arrival
+HUMS = 8  # turning points of the encoder's size in the second half
+LEAST_COUNTS = 100  # of a step: 1 % of overshoot is a count
+MOST_NOISE = 0.01  # share of the step, peak to peak
+GUARD = 3.0  # steps between set point and axis at which the engine opens the loop
+FEED = 0.5  # share of a step that is fed forward to see which way the axis moves
+DEVIATION, ENCODER = 2001, 3001  # error numbers that ringing leads to: too far off, too fast for the encoder
+ROOM = 1.0  # steps of room behind the start and beyond the target
+LOOK_S = 0.05  # s to look at what the axis does without a set point
+LEAST_SPEED_GAIN = 5.0  # 1/s, where the search begins
+AS_GOOD_AS_NONE = 1e9  # u
+MOST_DRIFT = 5.0  # steps per s that the axis may run with nothing commanded
+
+# Numbers of parameters: of PLCopen, and of Takt.
+LIMIT_POSITIVE, LIMIT_NEGATIVE, LIMIT_POSITIVE_ON, LIMIT_NEGATIVE_ON, LAG_ON, LAG = 2, 3, 4, 5, 6, 7
+KP, KI, KD, FF, LAG_AT_REST = 1001, 1002, 1003, 1005, 1007
+
+
+def damped(response: StepResponse) -> bool:
+    return steady(response) and response.overshoot < CRITICAL
+
+
+def steady(response: StepResponse) -> bool:
+    """It does not ring."""
+    return not response.error and response.turns < RINGS and response.hum < HUMS
+
+
+def worse(one: StepResponse, other: StepResponse) -> StepResponse:
+    def badness(r: StepResponse) -> tuple[bool, bool, bool, float]:
+        return not steady(r), not damped(r), math.isnan(r.settling_s), r.settling_s
+
+    return max(one, other, key=badness)
+
+
+class Bench:
+    """Entered, it has looked the axis over and holds its supervision as wide as steps of `distance` [u] need; left, for
+    whatever reason, the axis has the gains, the supervision and the place that it had, and is powered.
+
+    Raises TaktError, with the axis untouched or as found, where it cannot be tuned."""
+
+    def __init__(
+        self, session: Session, axis: Axis, distance: float, watch_s: float, say: Callable[[str], object]
+    ) -> None:
+        self._session, self._axis, self._watch_s, self._say = session, axis, watch_s, say
+        self._check_axis(distance)
+        self.distance = self._with_room(distance)
+        self.name = axis.name
+        self.steps = 0  # that were made
+        self.base_kp = LEAST_SPEED_GAIN * session.period  # a gain to begin with
+        self.found = {name: self._read(number) for name, number in zip(GAINS, (KP, KI, KD), strict=True)}
+        self._ff = self._read(FF)
+        self._lag, self._lag_at_rest, self._lag_on = self._read(LAG), self._read(LAG_AT_REST), self._read(LAG_ON)
+        self._origin = axis.set_position
+        self._safe: Mapping[str, float] = self.found  # those that held it best
+        self._safe_rest = math.inf  # share of a step
+        self._homed = axis.homed
+        self.sampled_s = session.period  # s from one published sample to the next
+        self._noise = 0.0  # u, peak to peak
+        self._backwards = False
+        self._unruly = False  # with the gains it was found with it rings
+
+    def __enter__(self) -> Bench:
+        try:
+            guard = GUARD * abs(self.distance) + abs(self._axis.following_error)
+            self._write(LAG, guard)
+            if self._lag_at_rest < math.inf:
+                self._write(LAG_AT_REST, guard)
+            self._look()
+        except BaseException:
+            self._restore()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._restore()
+
+    def step(self, gains: Mapping[str, float]) -> StepResponse:
+        """The worse of a step there and one back with these gains, without feed-forward."""
+        self.steps += 1
+        self._go_home()
+        self._set(gains)
+        self._rest()
+        response = worse(*there_and_back(self._session, self._axis, self.distance, self._watch_s, self._noise))
+        if response.error not in (0, DEVIATION, ENCODER):
+            raise TaktError(f"{self.name}: a step ended in error {response.error}: {error_text(response.error)}")
+        if damped(response) and abs(response.rest) < self._safe_rest:
+            self._safe, self._safe_rest = dict(gains), abs(response.rest)
+        elif gains == self._safe:
+            self._safe = {**NO_GAINS, "kp": self.base_kp}
+        if gains == self.found and not steady(response):
+            self._unruly = True
+        self._say(", ".join(f"{n} {v:.4g}" for n, v in gains.items()) + f": {response.text}")
+        return response
+
+    @property
+    def reference_lost(self) -> bool:
+        return self._homed and not self._axis.homed
+
+    # --- looking the axis over ---
+
+    def _check_axis(self, distance: float) -> None:
+        axis, name = self._axis, self._axis.name
+        if axis.parameters["drive"]["mode"] == "cyclic_position":
+            raise TaktError(f"{name}: its drive closes the position loop itself; there is nothing to tune here")
+        if axis.state.value != "Standstill":
+            raise TaktError(f"{name}: expected an axis in Standstill, found {axis.state.value}")
+        for other in self._session.axes.values():
+            if axis.index + 1 in (other.master1, other.master2):
+                raise TaktError(f"{name}: {other.name} follows it and would make the steps, too; uncouple it first")
+        if not math.isfinite(distance) or distance == 0:
+            raise TaktError(f"{name}: a step has a length; {distance:g} {axis.unit} is none")
+        counts = abs(distance) * axis.parameters["encoder"]["increments_per_unit"]
+        if counts < LEAST_COUNTS * (1 - 1e-9):
+            least = abs(distance) * LEAST_COUNTS / counts
+            raise TaktError(
+                f"{name}: steps of {abs(distance):g} {axis.unit} are only {counts:.3g} increments of the encoder; "
+                f"take {least:g} {axis.unit} at least"
+            )
+        if axis.rotary and abs(distance) > axis.parameters["modulus"] / (4 * GUARD):
+            raise TaktError(f"{name}: steps of {distance:g} {axis.unit} are too large a part of a turn")
+
+    def _with_room(self, distance: float) -> float:
+        """The distance, or the other way round where only there is room between the SW limits."""
+        axis, size = self._axis, abs(distance)
+        lower = self._read(LIMIT_NEGATIVE) if self._read(LIMIT_NEGATIVE_ON) else -math.inf
+        upper = self._read(LIMIT_POSITIVE) if self._read(LIMIT_POSITIVE_ON) else math.inf
+        below, above = axis.set_position - lower, upper - axis.set_position
+        for way in (distance, -distance):
+            ahead, behind = (above, below) if way > 0 else (below, above)
+            if ahead >= (1 + ROOM) * size and behind >= ROOM * size:
+                return way
+        nearest = min(below, above)
+        raise TaktError(
+            f"{axis.name}: it stands {nearest:.4g} {axis.unit} from a SW limit, and steps of {size:g} {axis.unit} need "
+            f"{ROOM * size:g} {axis.unit} of room on one side and {(1 + ROOM) * size:g} {axis.unit} on the other"
+        )
+
+    def _look(self) -> None:
+        """What the axis does with an open loop: how it drifts, how its encoder trembles, and which way it moves when it
+        is fed forward, which no wrong sense can make run away."""
+        axis, size = self._axis, abs(self.distance)
+        self._set(NO_GAINS)
+        self._watch_idle()  # what was swinging comes to rest
+        drift, self._noise = self._watch_idle()
+        if abs(drift) > MOST_DRIFT * size:
+            raise TaktError(
+                f"{axis.name}: it moves at {drift:.3g} {axis.unit}/s when nothing is commanded; trim the drive's offset, "
+                f"have the drive hold the load, or, where it swings with the gains it has, take a smaller kp first"
+            )
+        if self._noise > MOST_NOISE * size:
+            least = self._noise / MOST_NOISE
+            raise TaktError(
+                f"{axis.name}: its encoder trembles by {self._noise:.3g} {axis.unit} at rest, too much for steps of "
+                f"{size:g} {axis.unit}; take {least:.2g} {axis.unit} at least"
+            )
+        self.base_kp = max(self.base_kp, 20 * abs(drift) / size * self._session.period)
+        self._set(NO_GAINS, ff=FEED)
+        there = self._feed(self.distance, drift)
+        back = self._feed(-self.distance, drift)
+        moved = (there - back) / 2 / self.distance
+        self._set(NO_GAINS)
+        self._backwards = moved < -FEED / 10
+        if self._backwards:
+            raise TaktError(
+                f"{axis.name}: it moves down when it is told to move up; "
+                f"turn round drive.invert (or encoder.invert, if it is the encoder that counts the wrong way)"
+            )
+
+    def _watch_idle(self) -> tuple[float, float]:
+        """How fast the axis drifts [u/s], and how much its measured position trembles [u]."""
+        axis, session = self._axis, self._session
+        begin = axis.actual_position
+        with session.record(axis.name) as recorder:
+            for _ in range(10):
+                session.run(LOOK_S / 10)
+                if abs(relative(axis, axis.actual_position - begin)) > abs(self.distance) / 4:
+                    break
+        samples = recorder.recording[axis.name]
+        time_s = np.asarray(samples["time_s"] - samples["time_s"][0])
+        places = np.asarray(relative(axis, samples["actual_position"] - begin))
+        self.sampled_s = float(np.median(np.diff(time_s)))
+        trembling = places - np.polyval(np.polyfit(time_s, places, 2), time_s)
+        return float((places[-1] - places[0]) / time_s[-1]), float(np.ptp(trembling))
+
+    def _feed(self, distance: float, drift: float) -> float:
+        """How far the axis moves when a step is fed forward only."""
+        axis, session = self._axis, self._session
+        start, begin = axis.actual_position, session.now
+        if not axis.error:
+            session.run(axis.move_relative(distance=distance).wait(until="active").travel_time_s + self._watch_s / 5)
+        return float(relative(axis, axis.actual_position - start)) - drift * (session.now - begin)
+
+    # --- working with it ---
+
+    def _rest(self) -> None:
+        rest(self._session, self._axis, self._watch_s / 2, max(abs(self.distance) * SETTLED / 8, 2 * self._noise))
+
+    def _go_home(self) -> None:
+        """To where it was found, powered, whatever happened; with gains that hold it."""
+        axis = self._axis
+        if axis.error:
+            axis.reset().wait()
+        if not axis.powered:
+            axis.power().wait()
+        self._set(self._safe)
+        away = relative(axis, self._origin - axis.set_position)
+        if abs(away) > 1e-9 * abs(self.distance):
+            self._session.run(axis.move_relative(distance=float(away)).wait(until="active").travel_time_s)
+        self._rest()
+
+    def _restore(self) -> None:
+        """What goes wrong here does not keep the rest from being put back."""
+        axis = self._axis
+        try:
+            if not self._backwards:
+                self._go_home()
+            if self._backwards or self._unruly or self._is_far_out():  # what any error would set off begins without one
+                axis.power(enable=False).wait()
+        finally:
+            self._set(self.found, self._ff)
+            self._write(LAG, min(self._lag, AS_GOOD_AS_NONE))
+            if not self._lag_on:
+                self._write(LAG_ON, 0.0)
+            if self._lag_at_rest < math.inf:
+                self._write(LAG_AT_REST, self._lag_at_rest)
+            if axis.error:
+                axis.reset().wait()
+            if not axis.powered:
+                axis.power().wait()
+
+    def _is_far_out(self) -> bool:
+        return abs(self._axis.following_error) > min(self._lag, self._lag_at_rest) / 2
+
+    def _set(self, gains: Mapping[str, float], ff: float = 0.0) -> None:
+        self._axis.set_constants(**gains, ff=ff).wait()
+
+    def _read(self, number: int) -> float:
+        return self._axis.read_parameter(number=number).wait().value
+
+    def _write(self, number: int, value: float) -> None:
+        self._axis.write_parameter(number=number, value=value).wait()

@@ -1,0 +1,66 @@
+// The mechanisms that the tests try, as a machine file says them, and random positions of their axes.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "takt/kinematics/kinematics.h"
+
+namespace takt::kinematics {
+
+inline void PrintTo(Reason reason, std::ostream* stream) {
+  *stream << '"' << (reason == Reason::kNone ? "none" : Text(reason)) << '"';
+}
+
+namespace testing {
+
+// From {delta: {...}}; fails the test with the reader's own sentence. Files are those of this folder.
+Kinematics FromYaml(const std::string& text);
+
+struct Case {
+  std::string name;
+  Kinematics kinematics;
+  std::vector<JointRange> sample;  // u, of each axis: no singularity lies inside but for single points
+  bool closed_form = true;
+};
+
+const std::vector<Case>& Cases();
+const Case& CaseOf(const std::string& name);
+
+// The Delta of a published article on the kinematics of such robots (metres and millimetres apart).
+extern const char* const kFlexPicker;
+extern const char* const kPuma;
+extern const char* const kAgilus;
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double Between(double lower, double upper) { return std::uniform_real_distribution<>(lower, upper)(engine_); }
+  // Positions of the axes with a pose.
+  Joints In(const Case& c);
+  KDL::Vector Direction();
+
+ private:
+  std::mt19937 engine_;
+};
+
+Frame ForwardOrFail(const Kinematics& k, const Joints& joints);
+
+// Largest to smallest of what a unit of motion of the axes does to the tool, with parts of `length` (mm) beside rad.
+double ConditionOf(const Kinematics& kinematics, const Joints& joints, double length = 500);
+
+// The angle between two orientations, deg.
+double DegreesBetween(const KDL::Rotation& a, const KDL::Rotation& b);
+
+// What a tool moves and turns from one frame to another, mm and rad.
+KDL::Twist Difference(const Frame& from, const Frame& to);
+
+// How many random trials: many with TAKT_LONG=1.
+int Trials(int usual);
+
+}  // namespace testing
+}  // namespace takt::kinematics
