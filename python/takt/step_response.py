@@ -157,7 +157,7 @@ def _one_way(session: Session, axis: Axis, distance: float, watch_s: float, tole
             if not axis.error and step.error_id != STANDS_STILL_TOO_SOON:
                 raise
         session.run(step.travel_time_s)
-        rest(session, axis, watch_s, tolerance)
+        come_to_rest(session, axis, watch_s, tolerance)
         error = axis.error
     samples = recorder.recording[axis.name]
     moved = np.flatnonzero(samples["set_position"] != samples["set_position"][0])
@@ -167,11 +167,11 @@ def _one_way(session: Session, axis: Axis, distance: float, watch_s: float, tole
     return _OneWay(time_s, share[first:], float(np.mean(share[: first + 1])), error)
 
 
-def rest(session: Session, axis: Axis, watch_s: float, tolerance: float) -> None:
+def come_to_rest(session: Session, axis: Axis, watch_s: float, tolerance: float) -> None:
     """Lets time pass until the axis rests within `tolerance` [u], or falls into a fault."""
     errors: deque[float] = deque(maxlen=STILL)
     for i in range(1, LONGEST * SLICES + 1):
-        session.run(watch_s / SLICES)
+        session.run(max(watch_s / SLICES, session.period))
         errors.append(axis.following_error)
         if axis.error or (i >= SLICES and max(errors) - min(errors) <= tolerance):
             return

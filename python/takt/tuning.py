@@ -69,22 +69,27 @@ def tune(
                 f"{axis.name}: with the best gains {100 * after.rest:.0f} % of a step are left: something holds it (an "
                 f"end stop, friction, a brake), or it pulls harder than the drive"
             )
-        remarks = []
-        if bench.sampled_s > 1.5 * session.period and not after.rise_s > 10 * bench.sampled_s:
-            remarks.append(
-                f"the engine publishes the axis only every {1000 * bench.sampled_s:g} ms: overshoot may be larger than what "
-                f"was seen (lcm.axis_rate_hz in the machine file)"
-            )
-        if abs(after.rest) > SETTLED / 2:
-            remarks.append(
-                f"{100 * after.rest:.1f} % of a step is left at rest (friction, load, a dead band or the drive's offset): "
-                f"more of an integral gain would overshoot"
-            )
-        if bench.reference_lost:
-            remarks.append("the ringing was too fast for the encoder: the axis lost its reference and has to be homed")
+        remark = _remark(bench, after)
     if keep:
         axis.set_constants(**gains).wait()
-    return Tuning(axis.name, gains, before, after, bench.steps, "; ".join(remarks))
+    return Tuning(axis.name, gains, before, after, bench.steps, remark)
+
+
+def _remark(bench: Bench, after: StepResponse) -> str:
+    remarks = []
+    if bench.sampled_s > 1.5 * bench.period_s and not after.rise_s > 10 * bench.sampled_s:
+        remarks.append(
+            f"the engine publishes the axis only every {1000 * bench.sampled_s:g} ms: overshoot may be larger than "
+            f"what was seen (lcm.axis_rate_hz in the machine file)"
+        )
+    if abs(after.rest) > SETTLED / 2:
+        remarks.append(
+            f"{100 * after.rest:.1f} % of a step is left at rest (friction, load, a dead band or the drive's "
+            f"offset): more of an integral gain would overshoot"
+        )
+    if bench.reference_lost:
+        remarks.append("the ringing was too fast for the encoder: the axis lost its reference and has to be homed")
+    return "; ".join(remarks)
 
 
 def _least(bench: Bench) -> dict[str, float]:
@@ -101,8 +106,8 @@ def _least(bench: Bench) -> dict[str, float]:
 
 
 def _with_damping(bench: Bench, gains: Mapping[str, float]) -> dict[str, float]:
-    """Half the largest kd with which it does not ring (at the edge it rings a little), and the largest kp that is damped
-    with it; where so much kd overshoots alone, less of it."""
+    """Half the largest kd with which it does not ring (at the edge it rings a little), and the largest kp that is
+    damped with it; where so much kd overshoots alone, less of it."""
     kd = _largest(FIRST_KD, lambda kd: steady(bench.step({**gains, "kd": kd})), MOST_KD)
     while kd > FIRST_KD / 2:
         kd /= 2
@@ -123,7 +128,8 @@ def _with_margin(bench: Bench, gains: Mapping[str, float]) -> dict[str, float]:
 
 
 def _verified(bench: Bench, gains: Mapping[str, float]) -> tuple[dict[str, float], StepResponse]:
-    """These gains, or with a smaller kp (friction and play make the edge uncertain), and the worst of some responses."""
+    """These gains, or with a smaller kp (friction and play make the edge uncertain), and the worst of their
+    responses."""
     tried = dict(gains)
     while True:
         after = reduce(worse, (bench.step(tried) for _ in range(VERIFICATIONS)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from types import TracebackType
 
 import numpy as np
@@ -12,13 +13,13 @@ from takt.axis import Axis
 from takt.engine import error_text
 from takt.errors import CommandError, TaktError
 from takt.session import Session
-from takt.step_response import SETTLED, StepResponse, relative, rest, there_and_back
+from takt.step_response import SETTLED, StepResponse, come_to_rest, relative, there_and_back
 
 GAINS = ("kp", "ki", "kd")
 NO_GAINS = dict.fromkeys(GAINS, 0.0)
 CRITICAL = 1.0  # % of overshoot that still counts as critically damped
 RINGS = 3  # turning points of the band's size after the arrival
-HUMS = 8  # turning points of the encoder's size in the second half
+HUMS = 8  # smaller turning points in the second half, where it should rest
 LEAST_COUNTS = 100  # of a step: 1 % of overshoot is a count
 MOST_NOISE = 0.01  # share of the step, peak to peak
 GUARD = 3.0  # steps between set point and axis at which the engine opens the loop
@@ -61,9 +62,9 @@ class Bench:
         self, session: Session, axis: Axis, distance: float, watch_s: float, say: Callable[[str], object]
     ) -> None:
         self._session, self._axis, self._watch_s, self._say = session, axis, watch_s, say
+        self.name = axis.name
         self._check_axis(distance)
         self.distance = self._with_room(distance)
-        self.name = axis.name
         self.steps = 0  # that were made
         self.base_kp = LEAST_SPEED_GAIN * session.period  # a gain to begin with
         self.found = {name: self._read(number) for name, number in zip(GAINS, (KP, KI, KD), strict=True)}
@@ -73,10 +74,10 @@ class Bench:
         self._safe: Mapping[str, float] = self.found  # those that held it best
         self._safe_rest = math.inf  # share of a step
         self._homed = axis.homed
-        self.sampled_s = session.period  # s from one published sample to the next
+        self.period_s = self.sampled_s = session.period  # s from one published sample to the next
         self._noise = 0.0  # u, peak to peak
         self._backwards = False
-        self._unruly = False  # with the gains it was found with it rings
+        self._unruly = False  # with the gains it was found with it rings on and on
 
     def __enter__(self) -> Bench:
         try:
@@ -98,18 +99,22 @@ class Bench:
     def step(self, gains: Mapping[str, float]) -> StepResponse:
         """The worse of a step there and one back with these gains, without feed-forward."""
         self.steps += 1
-        self._go_home()
-        self._set(gains)
-        self._rest()
-        response = worse(*there_and_back(self._session, self._axis, self.distance, self._watch_s, self._noise))
+        try:
+            self._go_home()
+            self._set(gains)
+            self._rest()
+            response = worse(*there_and_back(self._session, self._axis, self.distance, self._watch_s, self._noise))
+        except CommandError:
+            self._check_power()
+            raise
         if response.error not in (0, DEVIATION, ENCODER):
             raise TaktError(f"{self.name}: a step ended in error {response.error}: {error_text(response.error)}")
         if damped(response) and abs(response.rest) < self._safe_rest:
             self._safe, self._safe_rest = dict(gains), abs(response.rest)
-        elif gains == self._safe:
+        elif gains == self._safe and not steady(response):
             self._safe = {**NO_GAINS, "kp": self.base_kp}
-        if gains == self.found and not steady(response):
-            self._unruly = True
+        if gains == self.found:
+            self._unruly = response.error != 0 or (not steady(response) and math.isnan(response.settling_s))
         self._say(", ".join(f"{n} {v:.4g}" for n, v in gains.items()) + f": {response.text}")
         return response
 
@@ -120,7 +125,7 @@ class Bench:
     # --- looking the axis over ---
 
     def _check_axis(self, distance: float) -> None:
-        axis, name = self._axis, self._axis.name
+        axis, name = self._axis, self.name
         if axis.parameters["drive"]["mode"] == "cyclic_position":
             raise TaktError(f"{name}: its drive closes the position loop itself; there is nothing to tune here")
         if axis.state.value != "Standstill":
@@ -152,7 +157,7 @@ class Bench:
                 return way
         nearest = min(below, above)
         raise TaktError(
-            f"{axis.name}: it stands {nearest:.4g} {axis.unit} from a SW limit, and steps of {size:g} {axis.unit} need "
+            f"{self.name}: it stands {nearest:.4g} {axis.unit} from a SW limit, and steps of {size:g} {axis.unit} need "
             f"{ROOM * size:g} {axis.unit} of room on one side and {(1 + ROOM) * size:g} {axis.unit} on the other"
         )
 
@@ -165,16 +170,16 @@ class Bench:
         drift, self._noise = self._watch_idle()
         if abs(drift) > MOST_DRIFT * size:
             raise TaktError(
-                f"{axis.name}: it moves at {drift:.3g} {axis.unit}/s when nothing is commanded; trim the drive's offset, "
-                f"have the drive hold the load, or, where it swings with the gains it has, take a smaller kp first"
+                f"{self.name}: it moves at {drift:.3g} {axis.unit}/s when nothing is commanded; trim the drive's "
+                f"offset, have the drive hold the load, or, where it swings with the gains it has, lower kp first"
             )
         if self._noise > MOST_NOISE * size:
             least = self._noise / MOST_NOISE
             raise TaktError(
-                f"{axis.name}: its encoder trembles by {self._noise:.3g} {axis.unit} at rest, too much for steps of "
+                f"{self.name}: its encoder trembles by {self._noise:.3g} {axis.unit} at rest, too much for steps of "
                 f"{size:g} {axis.unit}; take {least:.2g} {axis.unit} at least"
             )
-        self.base_kp = max(self.base_kp, 20 * abs(drift) / size * self._session.period)
+        self.base_kp = max(self.base_kp, 20 * abs(drift) / size * self.period_s)
         self._set(NO_GAINS, ff=FEED)
         there = self._feed(self.distance, drift)
         back = self._feed(-self.distance, drift)
@@ -183,7 +188,7 @@ class Bench:
         self._backwards = moved < -FEED / 10
         if self._backwards:
             raise TaktError(
-                f"{axis.name}: it moves down when it is told to move up; "
+                f"{self.name}: it moves down when it is told to move up; "
                 f"turn round drive.invert (or encoder.invert, if it is the encoder that counts the wrong way)"
             )
 
@@ -191,17 +196,21 @@ class Bench:
         """How fast the axis drifts [u/s], and how much its measured position trembles [u]."""
         axis, session = self._axis, self._session
         begin = axis.actual_position
+        start_s = session.now
         with session.record(axis.name) as recorder:
-            for _ in range(10):
-                session.run(LOOK_S / 10)
-                if abs(relative(axis, axis.actual_position - begin)) > abs(self.distance) / 4:
+            while session.now < start_s + max(LOOK_S, 5 * self.period_s):
+                session.run(max(LOOK_S / 10, self.period_s))
+                moved = relative(axis, axis.actual_position - begin)
+                if abs(moved) > abs(self.distance) / 4:
                     break
+        drift = float(moved / (session.now - start_s))
         samples = recorder.recording[axis.name]
-        time_s = np.asarray(samples["time_s"] - samples["time_s"][0])
-        places = np.asarray(relative(axis, samples["actual_position"] - begin))
+        if len(samples) < 4:
+            return drift, 0.0
+        time_s = samples["time_s"] - samples["time_s"][0]
         self.sampled_s = float(np.median(np.diff(time_s)))
-        trembling = places - np.polyval(np.polyfit(time_s, places, 2), time_s)
-        return float((places[-1] - places[0]) / time_s[-1]), float(np.ptp(trembling))
+        places = relative(axis, samples["actual_position"] - begin)
+        return drift, float(np.ptp(places - np.polyval(np.polyfit(time_s, places, 2), time_s)))
 
     def _feed(self, distance: float, drift: float) -> float:
         """How far the axis moves when a step is fed forward only."""
@@ -214,29 +223,41 @@ class Bench:
     # --- working with it ---
 
     def _rest(self) -> None:
-        rest(self._session, self._axis, self._watch_s / 2, max(abs(self.distance) * SETTLED / 8, 2 * self._noise))
+        come_to_rest(
+            self._session, self._axis, self._watch_s / 2, max(abs(self.distance) * SETTLED / 8, 2 * self._noise)
+        )
 
     def _go_home(self) -> None:
         """To where it was found, powered, whatever happened; with gains that hold it."""
         axis = self._axis
         if axis.error:
+            rang = axis.error in (DEVIATION, ENCODER)
             axis.reset().wait()
-        if not axis.powered:
-            axis.power().wait()
+            if rang:
+                axis.power().wait()
+        self._check_power()
         self._set(self._safe)
         away = relative(axis, self._origin - axis.set_position)
         if abs(away) > 1e-9 * abs(self.distance):
             self._session.run(axis.move_relative(distance=float(away)).wait(until="active").travel_time_s)
         self._rest()
 
+    def _check_power(self) -> None:
+        if not self._axis.powered:
+            raise TaktError(f"{self.name}: it was switched off meanwhile")
+
     def _restore(self) -> None:
-        """What goes wrong here does not keep the rest from being put back."""
+        """As far as the axis lets it: what goes wrong on the way home does not keep the rest from being put back."""
         axis = self._axis
+        powered = axis.powered or axis.error in (DEVIATION, ENCODER)  # not switched off by others
+        longest_s = axis.parameters["supervision"]["in_position_timeout_s"] + 1
         try:
-            if not self._backwards:
-                self._go_home()
-            if self._backwards or self._unruly or self._is_far_out():  # what any error would set off begins without one
-                axis.power(enable=False).wait()
+            with suppress(TaktError):
+                if not self._backwards:
+                    self._go_home()
+                    self._session.wait(lambda: axis.state.value != "DiscreteMotion", longest_s)
+                if self._backwards or self._unruly or self._is_far_out():  # what any error would set off: without one
+                    axis.power(enable=False).wait()
         finally:
             self._set(self.found, self._ff)
             self._write(LAG, min(self._lag, AS_GOOD_AS_NONE))
@@ -245,9 +266,9 @@ class Bench:
             if self._lag_at_rest < math.inf:
                 self._write(LAG_AT_REST, self._lag_at_rest)
             if axis.error:
-                axis.reset().wait()
-            if not axis.powered:
-                axis.power().wait()
+                axis.reset().wait_final()
+            if powered and not axis.powered and not axis.error:
+                axis.power().wait_final()
 
     def _is_far_out(self) -> bool:
         return abs(self._axis.following_error) > min(self._lag, self._lag_at_rest) / 2

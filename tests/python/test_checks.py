@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from motion_curves import DT, LIMITS, one_axis, positions
+from numpy.lib import recfunctions
 from takt import checks
 from takt.recording import Recording
 from takt.verdict import Verdict
@@ -110,12 +111,26 @@ def test_deceleration_counts_and_jerk_zero_is_no_limit() -> None:
 
 
 # PY-05
+def test_the_set_point_of_an_open_loop_has_no_jerk() -> None:
+    """An emergency stop while the axis speeds up: from that sample on the set point is what is measured."""
+    array = one_axis()["x"].copy()
+    fastest = int(np.argmax(array["set_acceleration"]))
+    array["set_acceleration"][fastest:] = array["set_velocity"][fastest:] = 0
+    assert not checks.within_limits(Recording({"x": array}, info={"x": {"limits": LIMITS}}), "x").passed
+    closed = np.arange(len(array)) < fastest
+    table = recfunctions.append_fields(array, "loop_closed", closed, usemask=False)
+    assert checks.within_limits(Recording({"x": table}, info={"x": {"limits": LIMITS}}), "x").passed
+
+
+# PY-05
 def test_lost_samples_do_not_spoil_the_jerk() -> None:
     array = one_axis()["x"]
     rng = np.random.default_rng(3)
-    rec = Recording({"x": array[np.sort(rng.choice(len(array), 1500, replace=False))]}, info={"x": {"limits": LIMITS}})
-    assert checks.within_limits(rec, "x").passed
-    assert checks.continuous(rec, "x").passed
+    lossy = Recording(
+        {"x": array[np.sort(rng.choice(len(array), 1500, replace=False))]}, info={"x": {"limits": LIMITS}}
+    )
+    assert checks.within_limits(lossy, "x").passed
+    assert checks.continuous(lossy, "x").passed
 
 
 # PY-05

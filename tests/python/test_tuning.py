@@ -1,5 +1,5 @@
-"""AX-86, AX-28: step responses and the tuning of position loops. What the tuner says of its gains is not believed here: they are
-put into fresh machines, and the measured positions are looked at."""
+"""AX-86, AX-28: step responses and the tuning of position loops. What the tuner says of its gains is not believed here:
+they are put into fresh machines, and the measured positions are looked at."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ import takt
 from numpy.typing import NDArray
 from takt import tuning
 from takt.cli import main
+from takt.tuning_bench import worse
 
 STEP = 0.2  # mm
 
@@ -167,7 +168,21 @@ def test_the_gains_it_had_do_not_matter(gains: str) -> None:
         machine(axis="supervision: {deviation_moving: 0.01, deviation_standstill: 0.004, in_position_timeout_s: 0.05}"),
         machine(axis="supervision: {in_position: 0.0005, in_position_timeout_s: 0.1}"),
     ],
-    ids="csv slow-drive fast-drive dead-band offset noise load-encoder load stiction unreferenced slow lag window".split(),
+    ids=[
+        "csv",
+        "slow drive",
+        "fast drive",
+        "dead band",
+        "offset",
+        "noise",
+        "encoder on the load",
+        "load",
+        "stiction",
+        "no reference",
+        "slow axis",
+        "lag supervised",
+        "window",
+    ],
 )
 def test_all_kinds_of_axes(text: str) -> None:
     # Names that are given twice: the drive's own speed.
@@ -175,6 +190,15 @@ def test_all_kinds_of_axes(text: str) -> None:
     assert found.after.overshoot < 1
     assert abs(found.after.rest) < 0.01
     assert found.after.settling_s < (found.before.settling_s if found.before.settling_s > 0 else 2)
+
+
+@pytest.mark.parametrize("period", [0.00025, 0.004, 0.02])
+def test_all_lengths_of_cycles(period: float) -> None:
+    with takt.Engine(machine(), period=period) as engine:
+        found = tuning.tune(engine, powered(engine), STEP)
+    assert found.after.overshoot < 1
+    assert abs(found.after.rest) < 0.01
+    assert found.after.settling_s < (0.1 if period < 0.01 else 1)
 
 
 def test_a_rotary_axis_at_zero() -> None:
@@ -255,6 +279,16 @@ def test_it_is_left_as_it_was_found(text: str, ends: int | str) -> None:
         assert abs(x.actual_position) < near * STEP
 
 
+def test_who_switches_it_off_meanwhile_is_obeyed() -> None:
+    with takt.Engine(machine(axis=SUPERVISION)) as engine:
+        x = powered(engine)
+        before = state(engine)
+        steps = iter(range(1, 1000))
+        with pytest.raises(takt.TaktError, match="it was switched off meanwhile"):
+            tuning.tune(engine, x, STEP, say=lambda _: engine.emergency_stop() if next(steps) == 5 else None)
+        assert state(engine) == {**before, "powered": False, "state": "Disabled"}
+
+
 def test_supervision_that_sleeps_is_not_woken() -> None:
     with takt.Engine(machine(axis="supervision: {deviation_moving: 0.05}")) as engine:
         x = powered(engine)
@@ -301,7 +335,7 @@ def test_it_keeps_off_the_limits() -> None:
         (
             machine(limits="velocity: 1000, acceleration: 20000, jerk: 0, lower: -0.1, upper: 9"),
             STEP,
-            "stands 0.1 mm from a SW limit, and steps of 0.2 mm need 0.2 mm of room on one side and 0.4 mm on the other",
+            "stands 0.1 mm from a SW limit, and steps .* need 0.2 mm of room on one side and 0.4 mm on the other",
         ),
     ],
 )
@@ -368,6 +402,19 @@ def test_figures_of_responses_that_end_elsewhere() -> None:
     assert short.rest == pytest.approx(0.5)
 
 
+def test_the_worse_way_counts() -> None:
+    t = np.arange(0, 1, 1e-3)
+    good = tuning.analyse(t, np.minimum(1, 10 * t))
+    for bad in (
+        tuning.analyse(t, np.minimum(1.1, 10 * t)),
+        tuning.analyse(t, 1 - np.cos(50 * t)),
+        tuning.analyse(t, -t, error=2001),
+        tuning.analyse(t, np.minimum(1, 5 * t)),
+    ):
+        assert worse(good, bad) is bad
+        assert worse(bad, good) is bad
+
+
 def test_steps_of_an_axis_whose_drive_closes_the_loop() -> None:
     with takt.Engine(machine(mode="cyclic_position")) as engine:
         x = powered(engine)
@@ -393,7 +440,8 @@ def test_the_command_line_draws_it(tmp_path: Path, capsys: pytest.CaptureFixture
     assert rise < settling < 45
     line = re.search(r"^loop: {kp: (.*), ki: (.*), kd: (.*)}$", said, re.MULTILINE)
     assert line
-    assert share_of_step(machine("soft"), dict(zip(("kp", "ki", "kd"), map(float, line.groups()), strict=True))).max() < 1.01
+    gains = dict(zip(("kp", "ki", "kd"), map(float, line.groups()), strict=True))
+    assert share_of_step(machine("soft"), gains).max() < 1.01
     assert target.stat().st_size > 10_000
     assert main(["tune", "x", "--distance", "0.2"]) == 2
     assert main(["tune", "x", "--machine", str(file), "--distance", "0.2", "--picture", "tuned.txt"]) == 2

@@ -59,7 +59,7 @@ def scenario(session: takt.Session) -> None:
     room = a.cam_in(master="x", cam="make_room", slave_absolute=False)
     start = b.set_position
     x.move_absolute(position=125, velocity=150).wait()
-    assert abs(a.set_position - (raised - 50)) < 1e-6
+    assert abs(a.set_position - (raised - 30)) < 1e-6
     x.move_absolute(position=220, velocity=150).wait()
     assert abs(a.set_position - raised) < 1e-6
     assert a.profile_ends == 1

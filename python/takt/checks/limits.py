@@ -72,7 +72,8 @@ def within_limits(
         between them, which is the mean jerk of that stretch. The mean of a jerk that keeps its limit keeps it
         too, also over lost samples, so nothing has to be allowed for sampling. What has to be allowed is the
         rounding of the numbers that are subtracted (accelerations and times), four units in the last place of
-        the largest; it is added by itself.
+        the largest; it is added by itself. Where the loop opens there is no jerk: the set point becomes what is
+        measured.
     """
     check = Check("within_limits", recording, (component,), window)
     limits = _limits(recording, component, position, velocity, acceleration, jerk)
@@ -111,7 +112,7 @@ def within_limits(
                     "jerk",
                     s.unit.replace("s²", "s³"),
                     s.time_s[:-1],
-                    np.diff(s.values) / dt,
+                    np.where(_set_by_engine(check, component, signal), np.diff(s.values) / dt, 0),
                     limits.jerk,
                     margin_j,
                     label,

@@ -49,8 +49,8 @@ from takt.plcopen.settings import *  # noqa: F403
 from takt.plcopen.superimposed import *  # noqa: F403
 from takt.plcopen.torque import *  # noqa: F403
 
-_GROUPS = (administration, moves, superimposed, profiles, jog, coupling, cam, homing, settings, probe, cam_switch)
-_GROUPS += (torque,)
+_MOVING = (moves, superimposed, profiles, jog, coupling, cam, homing, torque)
+_GROUPS = (administration, *_MOVING, settings, probe, cam_switch)
 
 BLOCKS: tuple[type[FunctionBlock], ...] = tuple(
     block

@@ -78,6 +78,8 @@ inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m)
   commands.push_back({1500, ToAxis(m, "c", Halt{})});
   commands.push_back({2000, ToAxis(m, "z", Reset{})});
   commands.push_back({2100, ToAxis(m, "c", MoveAbsolute{.position = 90, .direction = Direction::kPositive})});
+  commands.push_back({2120, ToAxis(m, "c", SetOverride{.velocity_factor = 0})});
+  commands.push_back({2150, ToAxis(m, "c", SetOverride{.acceleration_factor = 0.1, .jerk_factor = 0.1})});
   commands.push_back({2300, ToAxis(m, "z", StepDirect{.set_position = 1})});
   commands.push_back({2310, ToAxis(m, "z", SetPosition{.position = 2})});
   commands.push_back({2500, ToAxis(m, "y1", Stop{})});
