@@ -39,8 +39,11 @@ def scenario(session: takt.Session) -> None:
     session.mark("all at once", axis="x")
     x.home(position=0).wait()
     assert x.homed
+    session.run(0.1)
 
 
 def verify(recording: takt.Recording) -> None:
     expect.within_limits(recording, "x")
-    expect.visits_states(recording, "x", ["Standstill", "Homing", "Standstill", "DiscreteMotion", "Standstill", "Homing", "Standstill"])
+    expect.visits_states(
+        recording, "x", ["Standstill", "Homing", "Standstill", "DiscreteMotion", "Standstill", "Homing", "Standstill"]
+    )
