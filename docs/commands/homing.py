@@ -1,13 +1,15 @@
 """Finding the reference.
 
 Step by step: search a switch or an index pulse, then finish. Each step is Done with the axis still Homing, until a
-finishing step gives it its numbers. References may also be taken in passing, during another move.
+finishing step gives it its numbers. References may also be taken in passing, during another move. And home does all of
+it at once, as the section `homing` of the axis says.
 """
 
 import takt
 from takt import expect
 
 COMMANDS = (
+    "home",
     "step_abs_switch",
     "step_limit_switch",
     "step_block",
@@ -34,8 +36,14 @@ def scenario(session: takt.Session) -> None:
     flying = x.step_ref_flying_switch(switch_mode="edge_on", set_position=6)
     x.move_relative(distance=40, velocity=60).wait()
     assert flying.done
+    session.mark("all at once", axis="x")
+    x.home(position=0).wait()
+    assert x.homed
+    session.run(0.1)
 
 
 def verify(recording: takt.Recording) -> None:
     expect.within_limits(recording, "x")
-    expect.visits_states(recording, "x", ["Standstill", "Homing", "Standstill", "DiscreteMotion", "Standstill"])
+    expect.visits_states(
+        recording, "x", ["Standstill", "Homing", "Standstill", "DiscreteMotion", "Standstill", "Homing", "Standstill"]
+    )

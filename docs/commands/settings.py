@@ -14,6 +14,7 @@ COMMANDS = (
     "set_soft_limits",
     "define_position",
     "direct_output",
+    "pulse_output",
 )
 ERRORS = (5, 8, 12, 13, 2006, 2007, 3005)
 SIGNALS = ("x.set_position", "x.set_velocity", "x.state")

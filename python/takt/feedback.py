@@ -42,7 +42,7 @@ class Feedback:
         self.sentence = ""  # what went wrong; empty while nothing has
         self.cycle = -1  # of the last change; -1: before the command came to a cycle
         self.travel_time_s = 0.0  # s, how long the motion takes as planned when it began; 0: not known (AX-96)
-        self.value = 0.0  # what a command was to read or capture, once done
+        self.value = 0.0  # what a command was to read or capture, or has covered, once it has ended
         self.released = False  # let go of, whether or not the engine has taken up the release yet
         self._release: Feedback | None = None  # the last try to
 
@@ -137,7 +137,7 @@ class Feedback:
         self.reached = reached or self.reached
         if new is FeedbackState.ACTIVE and not math.isnan(value) and not reached:
             self.travel_time_s = value
-        elif new is FeedbackState.DONE:
+        elif new > FeedbackState.ACTIVE:
             self.value = value
         self.state = new  # last: who sees it on another thread sees the rest too
         return True

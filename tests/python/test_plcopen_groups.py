@@ -164,6 +164,26 @@ def test_constants_and_direct_output(engine: takt.Engine) -> None:
     a.power(enable=False).wait()
     assert call(engine, plc.GT_Analog(a, Voltage=1.0), 0.01, Execute=True).Done
     assert a.voltage_v == pytest.approx(1.0, abs=0.0013)  # a step of the converter
+    pulse = plc.GT_Pulse(a, Voltage=2.0, Duration=0.05)
+    show = plc.GT_Show(a, Enable=True)
+    call(engine, pulse, 0.03, Execute=True)
+    assert pulse.Busy
+    assert (show().Voltage, show.Valid) == (pytest.approx(2.0, abs=0.0013), True)
+    call(engine, pulse, 0.03, Execute=True)
+    assert pulse.Done
+    assert show().Voltage == 0
+
+
+def test_what_the_position_loop_works_with(engine: takt.Engine) -> None:
+    """GT_Show."""
+    y = engine.axis("y")
+    y.move_velocity(velocity=50.0).wait(until="reached")
+    show = plc.GT_Show(y, Enable=True)()
+    assert show.ModelVelocity == 50.0
+    assert show.Velocity == pytest.approx(50.0, rel=0.05)
+    assert show.Deviation == y.following_error
+    assert show.ModelPosition - show.Position == pytest.approx(show.Deviation + 0.05, abs=0.01)  # a cycle's way ahead
+    assert show(Enable=False).ModelPosition == 0.0
 
 
 def test_continuous_moves_and_what_the_axis_does(engine: takt.Engine) -> None:

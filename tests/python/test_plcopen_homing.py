@@ -136,3 +136,49 @@ def test_in_passing(x: takt.Axis, kind: type[homing.FlyingBlock], place: float) 
     assert flying.outputs["Done"]
     assert homed(x)
     assert x.set_position == pytest.approx(500 + 70 - place, abs=0.06)
+
+
+HOMES = "homing: {method: switch, direction: positive, velocity: 50, pulse_velocity: 5, pulse_direction: negative}"
+
+
+def test_as_the_axis_says() -> None:  # MC_Home
+    machine = WITH_SWITCHES.replace("requires_reference: true\n", f"requires_reference: true\n    {HOMES}\n")
+    with takt.Engine(machine) as engine:
+        x = engine.axis("x")
+        x.power().wait()
+        home = homing.MC_Home(x, Position=-7.0)
+        move = MC_MoveAbsolute(x, Position=0.0, BufferMode=BufferMode.BUFFERED)
+        home(Execute=True)
+        until(x, lambda: x.state is takt.PlcState.HOMING, home)
+        assert home.outputs["Active"]
+        until(x, lambda: home.Done, home)
+        assert homed(x)
+        move(Execute=True)
+        until(x, lambda: move.Done, move)
+        engine.run(0.1)
+        assert x.actual_position == pytest.approx(0, abs=2e-3)  # the pulse is at 33, so this is place 40
+        assert x.reference
+
+
+def test_home_where_it_stands(x: takt.Axis) -> None:  # MC_Home without a section `homing`
+    home = homing.MC_Home(x, Position=12.0)
+    home(Execute=True)
+    until(x, lambda: home.Done, home)
+    assert x.set_position == 12.0
+
+
+@pytest.mark.parametrize(
+    ("section", "why"),
+    [
+        ("{method: switch}", "must be more than 0 for a search"),
+        ("{method: pulse, velocity: 1, direction: switch_positive}", "must be positive or negative"),
+        ("{method: pulse, velocity: 1, pulse_velocity: 1}", "methods that search a switch"),
+        ("{method: block, velocity: 1}", "must be more than 0 for an end stop"),
+        ("{method: switch, velocity: 501}", "no faster than the axis"),
+        ("{method: absolute}", "absolute encoder"),
+    ],
+)
+def test_a_section_that_cannot_work_is_refused(section: str, why: str) -> None:
+    machine = WITH_SWITCHES.replace("requires_reference: true\n", f"requires_reference: true\n    homing: {section}\n")
+    with pytest.raises(takt.ConfigError, match=why):
+        takt.Engine(machine)

@@ -25,7 +25,7 @@ def test_on_top_of_a_move(engine: takt.Engine) -> None:
     alone.wait()
     move = plc.MC_MoveRelative(x, Distance=100.0, Velocity=50.0)
     top = plc.MC_MoveSuperimposed(x, Distance=10.0, VelocityDiff=20.0)
-    begin = engine.time_s
+    begin = engine.now
 
     def both(**inputs: object) -> None:
         move(Execute=True)
@@ -41,7 +41,7 @@ def test_on_top_of_a_move(engine: takt.Engine) -> None:
     assert top.CoveredDistance == pytest.approx(10.0)
     assert move.Busy
     until(engine, both, lambda: move.Done)
-    assert engine.time_s - begin == pytest.approx(alone.travel_time_s, abs=3 * engine.period)
+    assert engine.now - begin == pytest.approx(alone.travel_time_s, abs=3 * engine.period)
     assert x.set_position == pytest.approx(210.0)
 
 

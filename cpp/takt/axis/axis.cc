@@ -8,6 +8,7 @@
 #include "takt/axis/fit.h"
 #include "takt/axis/following.h"
 #include "takt/axis/sequence.h"
+#include "takt/axis/settings.h"
 
 namespace takt::axis {
 
@@ -265,6 +266,7 @@ void Move(const Context& c, State& s) noexcept {
   // What seldom happens is asked for here: a call that finds nothing to do would cost as much as the set point.
   if (s.homing.flying_ticket != 0) WatchFlying(c, s);
   if (s.probe.watch != ProbeWatch::kNothing) FollowProbe(c, s);
+  if (s.pulsing) WatchPulse(c, s);
   s.superimposed ? MoveBoth(c, s) : MoveOne(c, s);
   FinishReset(c, s);
   if (c.params.rotary() && std::abs(s.setpoint.position) > kFarTurns * c.params.modulus) BringBackTurns(c.params, s);

@@ -18,9 +18,9 @@ using Command =
     std::variant<Power, Reset, MoveAbsolute, MoveRelative, MoveAdditive, MoveVelocity, MoveContinuousAbsolute,
                  MoveContinuousRelative, Inch, Halt, Stop, Jog, MoveSuperimposed, HaltSuperimposed, TorqueControl,
                  GearIn, GearOut, GearInPos, PhasingAbsolute, PhasingRelative, CombineAxes, CamTableSelect, CamIn,
-                 CamOut, PositionProfile, VelocityProfile, AccelerationProfile, StepAbsSwitch, StepLimitSwitch,
+                 CamOut, PositionProfile, VelocityProfile, AccelerationProfile, Home, StepAbsSwitch, StepLimitSwitch,
                  StepBlock, StepRefPulse, StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch,
                  StepRefFlyingRefPulse, SetConstants, WriteParameter, ReadParameter, SetSoftLimits, DirectOutput,
-                 SetPosition, SetOverride, TouchProbe, AbortTrigger, Touch, DigitalCamSwitch>;
+                 PulseOutput, SetPosition, SetOverride, TouchProbe, AbortTrigger, Touch, DigitalCamSwitch>;
 
 }  // namespace takt::axis

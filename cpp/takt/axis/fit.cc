@@ -82,12 +82,22 @@ bool TurnsRound(const AxisLimits& limits, const KinematicState& from, const Prof
 
 }  // namespace
 
+Profile::Range RangeOfStop(const AxisParams& p, const KinematicState& x) noexcept {
+  const trajectory::Limits own = p.planner_limits();
+  const double stop = trajectory::StopPosition(x, own);
+  double turn = x.position;
+  const double rest = x.acceleration * x.acceleration - 2 * own.jerk * std::abs(x.velocity);
+  if (x.velocity * x.acceleration < 0 && own.jerk > 0 && rest > 0) {
+    const double t = (std::abs(x.acceleration) - std::sqrt(rest)) / own.jerk;
+    turn = Piece{x.position, x.velocity, x.acceleration, std::copysign(own.jerk, x.velocity)}.At(t).position;
+  }
+  return {std::min({stop, turn, x.position}), std::max({stop, turn, x.position})};
+}
+
 bool CanStopInside(const AxisParams& p, const KinematicState& before, const KinematicState& next) noexcept {
-  const double stop = trajectory::StopPosition(next, p.planner_limits());
-  const double highest = std::max(stop, next.position);  // it may have turned round since the set point before
-  const double lowest = std::min(stop, next.position);
-  const bool too_high = p.limits.upper && highest > *p.limits.upper && highest > before.position;
-  const bool too_low = p.limits.lower && lowest < *p.limits.lower && lowest < before.position;
+  const Profile::Range range = RangeOfStop(p, next);
+  const bool too_high = p.limits.upper && range.max > *p.limits.upper && range.max > before.position;
+  const bool too_low = p.limits.lower && range.min < *p.limits.lower && range.min < before.position;
   return !too_high && !too_low;
 }
 

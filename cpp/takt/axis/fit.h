@@ -21,6 +21,10 @@ struct Demands {
 LimitedBy Breaks(const AxisParams& params, const KinematicState& from, const trajectory::Profile& profile,
                  const Demands& demands) noexcept;
 
+// All positions, from `x` on, that braking with all the axis has leads through. It swings back where the deceleration
+// there is outlasts the speed.
+trajectory::Profile::Range RangeOfStop(const AxisParams& params, const KinematicState& x) noexcept;
+
 // Invariant of motions that go on: braking now, from this set point, ends inside the SW limits. A set point that would
 // break it is not taken; the brake begins in its place, which the set point before allowed (AX-13).
 bool CanStopInside(const AxisParams& params, const KinematicState& before, const KinematicState& next) noexcept;

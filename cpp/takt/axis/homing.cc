@@ -165,6 +165,18 @@ void GiveName(State& s) {
   s.homing.captured += by;
 }
 
+// On from the switch to the index pulse.
+void SearchPulse(const Context& c, State& s) {
+  Request& r = s.active;
+  r.kind = RequestKind::kStepRefPulse;
+  r.velocity = r.homing.pulse_velocity;
+  r.homing.direction = r.homing.pulse_direction;
+  r.homing.sets_position = true;
+  s.homing.stage = HomingStage::kSearching;
+  s.homing.sense = FirstSense(r, s);
+  Search(c, FromThisCycle(c), s);
+}
+
 void Act(const Context& c, const HomingRow& row, State& s) {
   HomingState& h = s.homing;
   h.stage = row.to;
@@ -185,6 +197,8 @@ void Act(const Context& c, const HomingRow& row, State& s) {
       GoBack(c, s);
       break;
     case HomingAction::kPause:
+      if (s.active.homing.pulse_velocity > 0) return SearchPulse(c, s);
+      if (s.active.homing.ends) return Finish(c, s);
       EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
       if (s.buffered > 0) StartNext(c, 0, s);
       break;

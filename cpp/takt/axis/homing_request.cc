@@ -47,6 +47,58 @@ bool Position(const Maker& m, double position) {
 
 }  // namespace
 
+namespace {
+
+template <typename Step>
+Step StepOf(const HomingParams& h, const Home& c) {
+  Step step;
+  step.direction = h.direction;
+  step.velocity = h.velocity;
+  step.set_position = c.position;
+  step.buffer_mode = c.buffer_mode;
+  step.time_limit = h.time_limit;
+  step.distance_limit = h.distance_limit;
+  return step;
+}
+
+template <typename Step>
+bool HomeBySwitch(const Maker& m, const Home& c) {
+  const HomingParams& h = m.params.homing;
+  Step step = StepOf<Step>(h, c);
+  step.switch_mode = h.switch_mode;
+  if (!Fill(m, step)) return false;
+  m.r.homing.ends = true;
+  m.r.homing.sets_position = !h.pulse_velocity;
+  m.r.homing.pulse_velocity = h.pulse_velocity.value_or(0);
+  m.r.homing.pulse_direction = h.pulse_direction;
+  return true;
+}
+
+}  // namespace
+
+bool Fill(const Maker& m, const Home& c) {
+  const HomingParams& h = m.params.homing;
+  if (!Position(m, c.position)) return false;
+  switch (h.method) {
+    case HomingMethod::kDirect:
+      return Fill(m, StepDirect{c.position, c.buffer_mode});
+    case HomingMethod::kAbsolute:
+      return Fill(m, StepAbsolute{c.buffer_mode});
+    case HomingMethod::kSwitch:
+      return HomeBySwitch<StepAbsSwitch>(m, c);
+    case HomingMethod::kLimitSwitch:
+      return HomeBySwitch<StepLimitSwitch>(m, c);
+    case HomingMethod::kBlock: {
+      StepBlock step = StepOf<StepBlock>(h, c);
+      step.deviation = h.deviation;
+      return Fill(m, step);
+    }
+    case HomingMethod::kPulse:
+      return Fill(m, StepOf<StepRefPulse>(h, c));
+  }
+  return false;
+}
+
 bool Fill(const Maker& m, const StepAbsSwitch& c) {
   return SwitchSearch(m, RequestKind::kStepAbsSwitch, c);
 }
@@ -118,6 +170,9 @@ void describe(Description<HomingRequest>& d) {
   d.internal<&H::deviation>(unit::u, "Following error at an end stop.");
   d.internal<&H::time_limit>(unit::s, "Longest search; 0: any.");
   d.internal<&H::distance_limit>(unit::u, "Longest way; 0: any.");
+  d.internal<&H::ends>("The search of a switch ends homing.");
+  d.internal<&H::pulse_velocity>(unit::u_s, "Of the search of the index pulse after it; 0: none.");
+  d.internal<&H::pulse_direction>("Of that.");
 }
 
 }  // namespace takt::axis

@@ -14,6 +14,11 @@ struct HomingRequest {
   double deviation = 0;       // u, DevRef: following error at an end stop
   double time_limit = 0;      // s; 0: none
   double distance_limit = 0;  // u; 0: none
+
+  // MC_Home: a step that ends homing, where it was to end the search of a switch after one of the index pulse.
+  bool ends = false;
+  double pulse_velocity = 0;  // u/s; 0: the switch itself is the reference
+  HomingDirection pulse_direction = HomingDirection::kPositive;
 };
 
 void describe(Description<HomingRequest>&);

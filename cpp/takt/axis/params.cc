@@ -96,6 +96,16 @@ void describe(Description<AxisParams>& d) {
   d.defaulted<&A::requires_reference>("Refuse absolute moves with error 0009 until the axis is homed.");
   d.defaulted<&A::await_constants>("Refuse motion with error 0012 until GT_SetConstant was given.");
   d.defaulted<&A::follows>("The axis it follows, if any.");
+  d.defaulted<&A::homing>("What MC_Home does.");
+  d.rule<&A::homing>("must search no faster than the axis' largest velocity", [](const A& a) {
+    return a.homing.velocity <= a.limits.velocity && a.homing.pulse_velocity.value_or(0) <= a.limits.velocity;
+  });
+  d.rule<&A::homing>("must lag behind at its end stop by no more than supervision.deviation_moving", [](const A& a) {
+    return a.homing.deviation <= a.supervision.deviation_moving.value_or(a.homing.deviation);
+  });
+  d.rule<&A::homing>("must have an absolute encoder for method absolute", [](const A& a) {
+    return a.homing.method != HomingMethod::kAbsolute || a.encoder.type == EncoderType::kAbsoluteSsi;
+  });
   d.rule<&A::limits>("must have no lower and upper on a rotary axis",
                      [](const A& a) { return !a.rotary() || (!a.limits.lower && !a.limits.upper); });
 }

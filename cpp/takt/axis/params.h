@@ -6,6 +6,7 @@
 
 #include "takt/axis/control_loop.h"
 #include "takt/axis/encoder.h"
+#include "takt/axis/homing_params.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/ports.h"
 #include "takt/trajectory/limits.h"
@@ -68,6 +69,7 @@ struct AxisParams {
   bool requires_reference = false;  // absolute moves need a reference: error 0009 without one (AX-71)
   bool await_constants = false;     // no motion before GT_SetConstant: error 0012 (AX-27)
   std::optional<Following> follows;
+  HomingParams homing;
 
   bool rotary() const { return kind == AxisKind::kRotary; }
   // The limits as the planner takes them.

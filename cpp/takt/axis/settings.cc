@@ -22,8 +22,8 @@ Status Done(const Context& c, Ticket ticket, double value = 0) {
 // motion lies inside.
 bool Fits(const Context& c, const AxisLimits& limits, const State& s) {
   if (!s.loop_closed) return true;
-  const double stop = trajectory::StopPosition(s.setpoint, c.params.planner_limits());
-  if (!Inside(limits, stop) || !Inside(limits, s.setpoint.position)) return false;
+  const trajectory::Profile::Range braking = RangeOfStop(c.params, s.setpoint);
+  if (!Inside(limits, braking.min) || !Inside(limits, braking.max)) return false;
   if (s.motion.held && s.active.positions() && !Inside(limits, s.motion.target + AddedAtEnd(s))) return false;
   // What goes on with a velocity is watched cycle by cycle, but not where one move passes it to the next.
   const bool watched = s.plc == PlcState::kContinuousMotion || FollowsDemand(s.active.kind);
@@ -33,6 +33,17 @@ bool Fits(const Context& c, const AxisLimits& limits, const State& s) {
   const double end = trajectory::StopPosition(s.motion.profile.end(), c.params.planner_limits());
   return Inside(limits, std::min(range.min, end) + std::min(0.0, added)) &&
          Inside(limits, std::max(range.max, end) + std::max(0.0, added));
+}
+
+Status MayPutOut(const Context& c, const State& s) {
+  if (c.params.drive.mode != DriveMode::kAnalog) return Status::Failed(ErrorId::kState);
+  return s.plc != PlcState::kDisabled || s.enable ? Status::Failed(ErrorId::kPowerOn) : Status::Ok();
+}
+
+void EndPulse(const Context& c, FeedbackState feedback, State& s) {
+  if (!s.pulsing) return;
+  s.pulsing = false;
+  Report(c, s.pulse.ticket, feedback);
 }
 
 Status CheckLimits(const Context& c, const AxisLimits& limits, const State& s) {
@@ -203,10 +214,28 @@ Status CarryOut(const Context& c, Ticket ticket, const SetSoftLimits& l, State& 
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const DirectOutput& d, State& s) noexcept {
-  if (c.params.drive.mode != DriveMode::kAnalog) return Status::Failed(ErrorId::kState);
-  if (s.plc != PlcState::kDisabled || s.enable) return Status::Failed(ErrorId::kPowerOn);
+  if (const Status status = MayPutOut(c, s); status.failed()) return status;
+  EndPulse(c, FeedbackState::kAborted, s);
   s.direct_voltage_v = d.voltage;
   return Done(c, ticket);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const PulseOutput& p, State& s) noexcept {
+  if (const Status status = MayPutOut(c, s); status.failed()) return status;
+  EndPulse(c, FeedbackState::kAborted, s);
+  const double cycles = std::max(1.0, std::round(p.duration / c.cycle.period_s));
+  s.direct_voltage_v = p.voltage;
+  s.pulse = {ticket, p.voltage, c.cycle.count + static_cast<std::uint64_t>(cycles)};
+  s.pulsing = true;
+  Report(c, ticket, FeedbackState::kActive);
+  return Status::Ok();
+}
+
+void WatchPulse(const Context& c, State& s) noexcept {
+  const bool cut_off = s.plc != PlcState::kDisabled || s.enable || s.direct_voltage_v != s.pulse.voltage;
+  if (!cut_off && c.cycle.count < s.pulse.end_cycle) return;
+  if (!cut_off) s.direct_voltage_v = 0;
+  EndPulse(c, cut_off ? FeedbackState::kAborted : FeedbackState::kDone, s);
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const SetPosition& p, State& s) noexcept {
@@ -255,6 +284,12 @@ bool Fill(const Maker& m, const SetSoftLimits& l) {
 
 bool Fill(const Maker& m, const DirectOutput& d) {
   return m.In("voltage", d.voltage, -kVoltageLimit, kVoltageLimit);
+}
+
+bool Fill(const Maker& m, const PulseOutput& p) {
+  constexpr double kLongest = 1e6;  // s
+  return m.In("voltage", p.voltage, -kVoltageLimit, kVoltageLimit) &&
+         m.In("duration", p.duration, std::numeric_limits<double>::min(), kLongest);
 }
 
 bool Fill(const Maker& m, const SetPosition& p) {

@@ -23,6 +23,14 @@ void describe(Description<Dormant>& d) {
   d.internal<&Dormant::lag>(unit::u, "Largest following error in motion.");
 }
 
+void describe(Description<Pulse>& d) {
+  using P = Pulse;
+  d.about("A voltage that is put out for a time.");
+  d.internal<&P::ticket>("Of the command.");
+  d.internal<&P::voltage>(unit::volt, "What is put out.");
+  d.internal<&P::end_cycle>("When it is over.");
+}
+
 void describe(Description<State>& d) {
   using S = State;
   d.about("All memory of an axis.");
@@ -66,6 +74,8 @@ void describe(Description<State>& d) {
   d.internal<&S::constants_set>("GT_SetConstant was given.");
   d.internal<&S::dormant>("Supervision switched off.");
   d.internal<&S::direct_voltage_v>(unit::volt, "Put out while Disabled.");
+  d.internal<&S::pulsing>("A voltage is put out for a time.");
+  d.internal<&S::pulse>("Which, and how long.");
   d.internal<&S::superimposed>("Something is on top of the motion in progress.");
   d.internal<&S::coupled>("Follows its master.");
   d.internal<&S::follow_offset>(unit::u, "Distance to the master's position times the ratio.");

@@ -43,6 +43,13 @@ struct Dormant {
   std::optional<double> lag{};             // u, largest following error in motion
 };
 
+// A voltage that is put out for a time (GT_Pulse).
+struct Pulse {
+  Ticket ticket = 0;
+  double voltage = 0;           // V
+  std::uint64_t end_cycle = 0;  // in which it is 0 V again
+};
+
 struct State {
   // In the order of use: what every cycle reads comes first and lies close together.
   // Positions here are unwrapped; only the outputs are taken modulo.
@@ -64,6 +71,7 @@ struct State {
   bool constants_set = false;   // by GT_SetConstant
   bool coupled = false;         // follows a master from load on
   bool end_of_profile = false;  // the end of a cam was passed in this cycle
+  bool pulsing = false;         // a voltage is put out for a time: see `pulse`
   bool superimposed = false;    // something is on top of the motion in progress: see `overlay`
   std::uint8_t buffered = 0;
 
@@ -113,6 +121,7 @@ struct State {
   TimeTableState time_table;
 
   Dormant dormant;
+  Pulse pulse;
   Ticket reset_ticket = 0;
   std::array<Request, kBufferSize> buffer;  // [0] is next
   std::uint64_t illegal_transitions = 0;    // always 0: the state table holds
@@ -121,6 +130,7 @@ struct State {
 
 void describe(Description<Motion>&);
 void describe(Description<Dormant>&);
+void describe(Description<Pulse>&);
 void describe(Description<State>&);
 
 }  // namespace takt::axis

@@ -35,7 +35,7 @@ inline constexpr std::array kTransitions = {
                "MC_MoveAbsolute, MC_MoveRelative, MC_MoveAdditive, MC_Halt"},
     Transition{PlcState::kStandstill, PlcState::kContinuousMotion, "MC_MoveVelocity, MC_Jog"},
     Transition{PlcState::kStandstill, PlcState::kSynchronizedMotion, "MC_GearIn, MC_CamIn"},
-    Transition{PlcState::kStandstill, PlcState::kHoming, "MC_Step..."},
+    Transition{PlcState::kStandstill, PlcState::kHoming, "MC_Home, MC_Step..."},
     Transition{PlcState::kStandstill, PlcState::kStopping, "MC_Stop"},
     Transition{PlcState::kStandstill, PlcState::kErrorStop, "fault"},
     Transition{PlcState::kDiscreteMotion, PlcState::kStandstill, "done"},

@@ -26,6 +26,7 @@ using MC_GearOut = Block<axis::GearOut>;
 using MC_PhasingAbsolute = Block<axis::PhasingAbsolute>;
 using MC_PhasingRelative = Block<axis::PhasingRelative>;
 
+using MC_Home = Block<axis::Home>;
 using MC_StepAbsSwitch = Block<axis::StepAbsSwitch>;
 using MC_StepLimitSwitch = Block<axis::StepLimitSwitch>;
 using MC_StepBlock = Block<axis::StepBlock>;
@@ -39,6 +40,7 @@ using MC_StepRefFlyingRefPulse = Block<axis::StepRefFlyingRefPulse>;
 using GT_SetConstant = Block<axis::SetConstants>;
 using GT_SWLim = Block<axis::SetSoftLimits>;
 using GT_Analog = Block<axis::DirectOutput>;
+using GT_Pulse = Block<axis::PulseOutput>;
 using MC_SetPosition = Block<axis::SetPosition>;
 using MC_WriteParameter = Block<axis::WriteParameter>;
 using MC_AbortTrigger = Block<axis::AbortTrigger>;

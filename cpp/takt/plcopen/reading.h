@@ -103,6 +103,19 @@ class MC_ReadAxisInfo : public ReadBlock {
   bool AxisWarning() const noexcept { return shown().limited_by != LimitedBy::kNothing; }
 };
 
+// What the position loop works with: where the axis should be and is.
+class GT_Show : public ReadBlock {
+ public:
+  using ReadBlock::ReadBlock;
+  double ModelPosition() const noexcept { return shown().set_position; }  // u
+  double Position() const noexcept { return shown().actual_position; }    // u
+  double Deviation() const noexcept { return shown().following_error; }   // u
+  double ModelVelocity() const noexcept { return shown().set_velocity; }  // u/s
+  double Velocity() const noexcept { return shown().actual_velocity; }    // u/s
+  double Voltage() const noexcept { return shown().voltage_v; }           // V
+  double Torque() const noexcept { return shown().torque_nm; }            // Nm; N on linear motors
+};
+
 // A parameter by PLCopen's number, asked for again and again as long as Enable is true. Value is valid from the first
 // answer on, one or more cycles after Enable.
 class MC_ReadParameter {

@@ -232,6 +232,30 @@ class GT_SInfo(ReadBlock):  # noqa: N801
         self._show(LIMpos=axis.limit_positive, LIMneg=axis.limit_negative, REF=axis.reference, TP=axis.touch_probe)
 
 
+class GT_Show(ReadBlock):  # noqa: N801
+    """What the position loop works with: where the axis should be (the model) and is, and what is put out."""
+
+    ModelPosition = Output(0.0)
+    Position = Output(0.0)
+    Deviation = Output(0.0)
+    ModelVelocity = Output(0.0)
+    Velocity = Output(0.0)
+    Voltage = Output(0.0)
+    Torque = Output(0.0)
+
+    def _read(self) -> None:
+        axis = self.Axis
+        self._show(
+            ModelPosition=axis.set_position,
+            Position=axis.actual_position,
+            Deviation=axis.following_error,
+            ModelVelocity=axis.set_velocity,
+            Velocity=axis.actual_velocity,
+            Voltage=axis.voltage_v,
+            Torque=axis.torque_nm,
+        )
+
+
 class MC_ReadDigitalInput(ReadBlock):  # noqa: N801
     """An input of the axis. InputNumber: 1 LIM+, 2 LIM-, 3 REF, 4 TP."""
 

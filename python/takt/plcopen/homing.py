@@ -13,6 +13,13 @@ class HomingBlock(MotionBlock):
     Done = Output(False)
 
 
+class MC_Home(HomingBlock):  # noqa: N801
+    """Finds the reference as the section `homing` of the axis says, and ends homing. Position: what it is called."""
+
+    VERB = "home"
+    Position = Input(0.0, "position")
+
+
 class SearchBlock(HomingBlock):
     """A step that searches. TimeLimit in s and DistanceLimit in u end it with errors 1 and 2; 0: no limit."""
 

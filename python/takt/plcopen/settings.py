@@ -42,6 +42,16 @@ class GT_Analog(SettingBlock):  # noqa: N801
     Voltage = Input(0.0, "voltage")
 
 
+class GT_Pulse(SettingBlock):  # noqa: N801
+    """Puts a voltage out for Duration s while the axis is Disabled, and 0 V after it."""
+
+    VERB = "pulse_output"
+    Voltage = Input(0.0, "voltage")
+    Duration = Input(0.0, "duration")
+    CommandAborted = Output(False)
+    Aborted = Output(False, alias="CommandAborted")
+
+
 class MC_SetPosition(SettingBlock):  # noqa: N801
     """Calls where the axis is by another number; nothing moves."""
 

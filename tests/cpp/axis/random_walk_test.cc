@@ -38,7 +38,9 @@ Command RandomHoming(std::mt19937_64& random, const AxisParams& p) {
   const auto one_way = static_cast<HomingDirection>(random() % 2);
   const auto mode = static_cast<SwitchMode>(random() % 6);
   const auto buffer = static_cast<BufferMode>(random() % 2);
-  switch (random() % 6) {
+  switch (random() % 7) {
+    case 6:
+      return Home{.position = 3, .buffer_mode = buffer};
     case 0:
       return StepAbsSwitch{.direction = direction,
                            .switch_mode = mode,
@@ -213,6 +215,8 @@ TEST_P(RandomWalkProperty, MeetsNoIllegalTransitionAndHoldsAllLimits) {
   const auto seed = static_cast<std::size_t>(GetParam());
   p.limits.deceleration = std::array{4000.0, 5000.0, 12000.0, 1500.0}[seed % 4];
   p.limits.jerk = std::array{100000.0, 20000.0, 0.0}[seed / 2 % 3];
+  p.homing = {.method = seed % 2 ? HomingMethod::kSwitch : HomingMethod::kPulse, .velocity = 100, .distance_limit = 60};
+  if (seed % 4 == 1) p.homing.pulse_velocity = 30;
   Rig rig(p, std::array{0.001, 0.004, 0.02, 0.00025}[seed / 3 % 4]);
   rig.cams = RandomTable(random);
   const trajectory::Limits limits = p.planner_limits();

@@ -1,6 +1,8 @@
 // Settings at run time: AX-27, AX-28, AX-29, AX-52, AX-53.
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "rig.h"
 
 namespace takt::axis {
@@ -152,6 +154,30 @@ TEST(SoftLimits, LeaveRoomWhereOneMovePassesItsVelocityOn) {
   EXPECT_EQ(rig.out.state, PlcState::kStandstill);
 }
 
+// An axis that is turning round gets further before it comes back.
+TEST(SoftLimits, LeaveRoomForTurningRound) {
+  Rig rig(LinearParams());
+  Rig twin(LinearParams());
+  for (Rig* each : {&rig, &twin}) {
+    ASSERT_TRUE(each->PowerOn());
+    each->Give(MoveVelocity{.velocity = 100});
+    each->Run(0.5);
+    each->Give(MoveVelocity{.velocity = 100, .direction = Direction::kNegative});
+    while (each->out.set_velocity > 20) each->Step();
+  }
+  const double here = rig.position();
+  double furthest = here;
+  for (int i = 0; i < 200; ++i) {
+    twin.Step();
+    furthest = std::max(furthest, twin.position());
+  }
+  ASSERT_GT(furthest, here + 0.01);
+  const Ticket close = rig.Give(SetSoftLimits{.lower = -1000, .upper = 0.5 * (here + furthest)});
+  rig.Step();
+  EXPECT_EQ(rig.lives[close].error_id, ErrorId::kTargetBehindLimit);
+  EXPECT_EQ(rig.out.state, PlcState::kContinuousMotion);
+}
+
 TEST(SoftLimits, StopAnEndlessMotion) {
   Rig rig(LinearParams());
   ASSERT_TRUE(rig.PowerOn());
@@ -204,6 +230,58 @@ TEST(DirectOutput, IsForDisabledAnalogueAxes) {
   EXPECT_TRUE(rig.RunToEnd(rig.Give(Power{.enable = false})));
   rig.Run(0.01);
   EXPECT_EQ(rig.commanded.voltage_v, 0);  // not the old one again
+}
+
+// GT_Pulse: so many cycles, then 0 V.
+TEST(PulseOutput, LastsAsLongAsItSays) {
+  AxisParams p = LinearParams();
+  p.drive.mode = DriveMode::kAnalog;
+  Rig rig(p);
+  rig.Step();
+  const Ticket pulse = rig.Give(PulseOutput{.voltage = -2.5, .duration = 0.007});
+  for (int i = 0; i < 7; ++i) {
+    rig.Step();
+    EXPECT_EQ(rig.commanded.voltage_v, -2.5) << i;
+    EXPECT_FALSE(rig.Ended(pulse));
+  }
+  rig.Step();
+  EXPECT_EQ(rig.commanded.voltage_v, 0);
+  EXPECT_TRUE(rig.lives[pulse].done);
+  const Ticket shortest = rig.Give(PulseOutput{.voltage = 1, .duration = 1e-9});
+  rig.Step();
+  EXPECT_EQ(std::round(rig.commanded.voltage_v), 1);
+  rig.Step();
+  EXPECT_EQ(rig.commanded.voltage_v, 0);
+  EXPECT_TRUE(rig.lives[shortest].done);
+}
+
+// ... and is cut off by another output, a fault, power on.
+TEST(PulseOutput, IsCutOff) {
+  AxisParams p = LinearParams();
+  EXPECT_EQ(ErrorOf(*std::make_unique<Rig>(p), PulseOutput{.voltage = 1, .duration = 1}), ErrorId::kState);
+  p.drive.mode = DriveMode::kAnalog;
+  Rig rig(p);
+  rig.Step();
+  const auto is_cut_off_by = [&](const auto& what) {
+    const Ticket pulse = rig.Give(PulseOutput{.voltage = 5, .duration = 1});
+    rig.Run(0.1);
+    EXPECT_EQ(rig.commanded.voltage_v, 5);
+    what();
+    rig.Run(0.002);
+    return rig.lives[pulse].aborted;
+  };
+  EXPECT_TRUE(is_cut_off_by([&] { rig.Give(DirectOutput{.voltage = 5}); }));
+  EXPECT_EQ(rig.commanded.voltage_v, 5);
+  rig.Run(2);
+  EXPECT_EQ(rig.commanded.voltage_v, 5);
+  EXPECT_TRUE(is_cut_off_by([&] { rig.Give(PulseOutput{.voltage = 0, .duration = 0.01}); }));
+  EXPECT_EQ(rig.commanded.voltage_v, 0);
+  EXPECT_TRUE(is_cut_off_by([&] { Fail(rig.Now(), ErrorId::kOverrun, false, rig.state); }));
+  EXPECT_EQ(rig.commanded.voltage_v, 0);
+  EXPECT_TRUE(rig.RunToEnd(rig.Give(Reset{})));
+  EXPECT_TRUE(is_cut_off_by([&] { rig.Give(Power{}); }));
+  rig.Run(0.1);
+  EXPECT_EQ(ErrorOf(rig, PulseOutput{.voltage = 1, .duration = 1}), ErrorId::kPowerOn);
 }
 
 // AX-29: only the numbers change.

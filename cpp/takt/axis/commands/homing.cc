@@ -24,6 +24,14 @@ void describe(Enumeration<SwitchMode>& e) {
   e.value(SwitchMode::kEdgeSwitchNegative, "edge_switch_negative", "Downwards: it goes on; upwards: it goes off.");
 }
 
+void describe(Description<Home>& d) {
+  using C = Home;
+  d.about("Finds the reference as the section `homing` of the axis says, and ends homing (MC_Home).");
+  d.defaulted<&C::position>(unit::u,
+                            "What the place of the reference is called; method absolute knows that by itself.");
+  d.defaulted<&C::buffer_mode>("aborting or buffered.");
+}
+
 void describe(Description<StepAbsSwitch>& d) {
   using C = StepAbsSwitch;
   d.about(

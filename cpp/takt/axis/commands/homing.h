@@ -14,6 +14,10 @@ enum class HomingDirection : std::uint8_t { kPositive, kNegative, kSwitchPositiv
 // What of a switch ends a search.
 enum class SwitchMode : std::uint8_t { kOn, kOff, kEdgeOn, kEdgeOff, kEdgeSwitchPositive, kEdgeSwitchNegative };
 
+struct Home {  // MC_Home
+  double position = 0;
+  BufferMode buffer_mode = BufferMode::kAborting;
+};
 struct StepAbsSwitch {  // MC_StepAbsSwitch
   HomingDirection direction = HomingDirection::kSwitchNegative;
   SwitchMode switch_mode = SwitchMode::kEdgeOn;
@@ -79,6 +83,7 @@ struct StepRefFlyingRefPulse {  // MC_StepRefFlyingRefPulse
 
 void describe(Enumeration<HomingDirection>&);
 void describe(Enumeration<SwitchMode>&);
+void describe(Description<Home>&);
 void describe(Description<StepAbsSwitch>&);
 void describe(Description<StepLimitSwitch>&);
 void describe(Description<StepBlock>&);

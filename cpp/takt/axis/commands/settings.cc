@@ -49,6 +49,15 @@ void describe(Description<DirectOutput>& d) {
   d.required<&C::voltage>(unit::volt, "-10 to 10 V.");
 }
 
+void describe(Description<PulseOutput>& d) {
+  using C = PulseOutput;
+  d.about(
+      "Puts a voltage out for a time while the axis is Disabled, and 0 V after it (GT_Pulse); analogue drives only. "
+      "Aborted by whatever else puts out a voltage, by power on and by faults.");
+  d.required<&C::voltage>(unit::volt, "-10 to 10 V.");
+  d.required<&C::duration>(unit::s, positive, "How long, to the nearest cycle, one at least.");
+}
+
 void describe(Description<SetPosition>& d) {
   using C = SetPosition;
   d.about("Calls the position the axis is at by another number, without any motion (MC_SetPosition).");

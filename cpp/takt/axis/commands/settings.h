@@ -28,6 +28,10 @@ struct SetSoftLimits {  // GT_SWLim
 struct DirectOutput {  // GT_Analog
   double voltage = 0;
 };
+struct PulseOutput {  // GT_Pulse
+  double voltage = 0;
+  double duration = 0;
+};
 struct SetPosition {  // MC_SetPosition
   double position = 0;
   bool relative = false;
@@ -45,6 +49,7 @@ void describe(Description<WriteParameter>&);
 void describe(Description<ReadParameter>&);
 void describe(Description<SetSoftLimits>&);
 void describe(Description<DirectOutput>&);
+void describe(Description<PulseOutput>&);
 void describe(Description<SetPosition>&);
 void describe(Description<SetOverride>&);
 

@@ -1,0 +1,54 @@
+#include "takt/axis/homing_params.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+namespace {
+
+bool IsOneWay(HomingDirection direction) {
+  return direction == HomingDirection::kPositive || direction == HomingDirection::kNegative;
+}
+
+bool FindsSwitch(HomingMethod method) {
+  return method == HomingMethod::kSwitch || method == HomingMethod::kLimitSwitch;
+}
+
+}  // namespace
+
+void describe(Enumeration<HomingMethod>& e) {
+  e.about("What MC_Home does.");
+  e.value(HomingMethod::kDirect, "direct", "Where the axis stands is the reference.");
+  e.value(HomingMethod::kAbsolute, "absolute", "Takes the position of the absolute encoder as it is.");
+  e.value(HomingMethod::kSwitch, "switch", "Searches the reference switch.");
+  e.value(HomingMethod::kLimitSwitch, "limit_switch", "Searches a limit switch.");
+  e.value(HomingMethod::kBlock, "block", "Searches an end stop.");
+  e.value(HomingMethod::kPulse, "pulse", "Searches the next index pulse.");
+}
+
+void describe(Description<HomingParams>& d) {
+  using H = HomingParams;
+  d.about("What MC_Home does on this axis.");
+  d.defaulted<&H::method>("What is the reference.");
+  d.defaulted<&H::direction>("Where to search first.");
+  d.defaulted<&H::switch_mode>("Which state or edge of the switch ends the search.");
+  d.defaulted<&H::velocity>(unit::u_s, not_negative, "How fast to search.");
+  d.defaulted<&H::pulse_velocity>(unit::u_s, positive,
+                                  "How fast to go on from the switch to the next index pulse, which then is the "
+                                  "reference; unset: the switch is.");
+  d.defaulted<&H::pulse_direction>("Which way to that.");
+  d.defaulted<&H::deviation>(unit::u, not_negative, "The following error that says that the axis is at its end stop.");
+  d.defaulted<&H::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
+  d.defaulted<&H::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.rule<&H::velocity>("must be more than 0 for a search",
+                       [](const H& h) { return !Searches(h.method) || h.velocity > 0; });
+  d.rule<&H::direction>("must be positive or negative where there is no switch",
+                        [](const H& h) { return FindsSwitch(h.method) || IsOneWay(h.direction); });
+  d.rule<&H::pulse_velocity>("is for methods that search a switch",
+                             [](const H& h) { return !h.pulse_velocity || FindsSwitch(h.method); });
+  d.rule<&H::pulse_direction>("must be positive or negative", [](const H& h) { return IsOneWay(h.pulse_direction); });
+  d.rule<&H::deviation>("must be more than 0 for an end stop",
+                        [](const H& h) { return h.method != HomingMethod::kBlock || h.deviation > 0; });
+}
+
+}  // namespace takt::axis
