@@ -214,7 +214,8 @@ def test_the_inputs_of_an_axis(engine: takt.Engine) -> None:
     begin = x.set_position + 40  # the mechanics stand at -40
 
     def signals() -> set[str]:
-        return {name for name in ("LIMpos", "LIMneg", "REF", "TP") if info().outputs[name]}
+        outputs = info().outputs
+        return {name for name in ("LIMpos", "LIMneg", "REF", "TP") if outputs[name]}
 
     assert signals() == set()
     x.move_relative(distance=60, velocity=100).wait()
