@@ -205,7 +205,29 @@ def test_continuous_moves_and_what_the_axis_does(engine: takt.Engine) -> None:
     assert y.set_position == pytest.approx(position + 0.5)
     info = plc.MC_ReadAxisInfo(engine.axis("x"), Enable=True)()
     assert (info.PowerOn, info.IsHomed, info.LimitSwitchPos) == (True, False, False)
-    assert plc.GT_SInfo(engine.axis("x"), Enable=True)().outputs["REF"] is False
+
+
+def test_the_inputs_of_an_axis(engine: takt.Engine) -> None:
+    """AX-54: each switch where it lies, and nowhere else."""
+    x = engine.axis("x")
+    info = plc.GT_SInfo(x, Enable=True)
+    begin = x.set_position + 40  # the mechanics stand at -40
+
+    def signals() -> set[str]:
+        return {name for name in ("LIMpos", "LIMneg", "REF", "TP") if info().outputs[name]}
+
+    assert signals() == set()
+    x.move_relative(distance=60, velocity=100).wait()
+    assert signals() == {"REF"}
+    x.move_relative(distance=20, velocity=100).wait()
+    assert signals() == set()
+    for distance, name in ((100, "LIMpos"), (-300, "LIMneg")):
+        x.move_relative(distance=distance, velocity=100).wait_final()
+        assert signals() == {name}
+        assert x.set_position - begin == pytest.approx(100 if distance > 0 else -100, abs=8)  # where it came to rest
+        x.reset().wait()
+    info(Enable=False)
+    assert signals() == set()
 
 
 def test_emergency_stop(engine: takt.Engine) -> None:

@@ -341,6 +341,40 @@ def test_published_fields_are_as_described(engine: takt.Engine) -> None:
         assert type(getattr(engine.axis("x"), name)).__name__ in ("float", "int", "bool", "PlcState", "LimitedBy")
 
 
+# The list of the GT-775x modules, appendix 12.1.
+MODULE_ERRORS = {
+    "ETime": 1,
+    "EDistance": 2,
+    "EDev": 3,
+    "EBlanding": 4,
+    "EParam": 5,
+    "EAxStop": 6,
+    "EAxis": 7,
+    "Ecil": 8,
+    "Ehome": 9,
+    "Epower": 10,
+    "Eerrstop": 11,
+    "Econst": 12,
+    "EpowerOff": 13,
+    "ERRPOS": 2001,
+    "ERRLIP": 2004,
+    "ERRLIN": 2005,
+    "ERRSWP": 2006,
+    "ERRSWN": 2007,
+    "ERRPOSG": 8001,
+}
+
+
+def test_errors_are_those_of_the_modules() -> None:
+    """AX-84: their numbers and names; those of groups have no names there."""
+    found = {error["name"]: error["id"] for error in REFERENCE["errors"]}
+    assert {name: found.get(name) for name in MODULE_ERRORS} == MODULE_ERRORS
+    assert {1000, 1001, 1003, 1004, 1005} <= set(found.values())
+    numbers = [error["id"] for error in REFERENCE["errors"]]
+    assert numbers == sorted(set(numbers))
+    assert all(number in MODULE_ERRORS.values() or 3000 < number < 4000 or number < 1006 for number in numbers)
+
+
 def test_errors_have_texts() -> None:
     """AX-84, AX-23."""
     for error in REFERENCE["errors"]:
