@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "takt/axis/coordinates.h"
 #include "takt/axis/drive_link.h"
@@ -186,19 +187,6 @@ void MoveOne(const Context& c, State& s) {
   }
 }
 
-// The same of a motion with another one on top.
-void MoveBoth(const Context& c, State& s) {
-  if (LostMasters(c, s)) {
-    AbortOverlay(c, FeedbackState::kError, ErrorId::kAxisFault, s);
-    return MoveOne(c, s);
-  }
-  {
-    const Beneath base(s);
-    MoveOne(c, s);
-  }
-  Superimpose(c, s);
-}
-
 void FinishReset(const Context& c, State& s) {
   if (!s.reset_pending) return;
   const bool stopped = !s.loop_closed || (AtRest(s) && !s.blind);
@@ -267,7 +255,14 @@ void Move(const Context& c, State& s) noexcept {
   if (s.homing.flying_ticket != 0) WatchFlying(c, s);
   if (s.probe.watch != ProbeWatch::kNothing) FollowProbe(c, s);
   if (s.pulsing) WatchPulse(c, s);
-  s.superimposed ? MoveBoth(c, s) : MoveOne(c, s);
+  if (s.superimposed && LostMasters(c, s)) AbortOverlay(c, FeedbackState::kError, ErrorId::kAxisFault, s);
+  std::optional<Beneath> base;
+  if (s.superimposed) base.emplace(s);
+  MoveOne(c, s);
+  if (base) {
+    base.reset();
+    Superimpose(c, s);
+  }
   FinishReset(c, s);
   if (c.params.rotary() && std::abs(s.setpoint.position) > kFarTurns * c.params.modulus) BringBackTurns(c.params, s);
   s.cam_outputs = s.cam_switch.list < 0 ? 0 : SwitchCams(c, s);
