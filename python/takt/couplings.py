@@ -1,4 +1,4 @@
-"""Who follows whom, from what the axes publish: so that a refused loop can be told with its members."""
+"""Who follows whom, from what the axes publish: so that a refused coupling can be told with its names."""
 
 from __future__ import annotations
 
@@ -11,7 +11,27 @@ import yaml
 if TYPE_CHECKING:
     from takt.axis import Axis
 
-COUPLING_LOOP = 3018  # error number: the axis would follow itself
+COUPLING_LOOP = 3018  # error numbers: the axis would follow itself ...
+UNKNOWN_TARGET = 3010  # ... there is no such component
+
+
+def why_refused(error_id: int, target: str, arguments: str, axes: Mapping[str, Axis]) -> str:
+    """Why a command for an axis was refused, with the names it is about. Empty: there is nothing to add."""
+    if error_id == COUPLING_LOOP:
+        return loop_sentence(target, arguments, axes)
+    return unknown_sentence(arguments, axes) if error_id == UNKNOWN_TARGET and target in axes else ""
+
+
+def unknown_sentence(arguments: str, axes: Mapping[str, Axis]) -> str:
+    """Which name among the arguments nobody has."""
+    asked = yaml.safe_load(arguments) or {}
+    for key in ("master", "master1", "master2"):
+        if asked.get(key) and asked[key] not in axes:
+            return f"{key}: there is no axis '{asked[key]}'; there are {', '.join(axes)}"
+    for key, what in (("cam", "cam"), ("profile", "cam"), ("switches", "list of cam switches")):
+        if asked.get(key):
+            return f"{key}: the machine has no {what} '{asked[key]}'"
+    return ""
 
 
 def masters_of(axis: Axis, axes: Mapping[str, Axis]) -> list[str]:

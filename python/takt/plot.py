@@ -231,6 +231,7 @@ def _band_lane(ax: Axes, recording: Recording, signals: Sequence[Signal], severa
         _band(ax, total - 1 - row, table["time_s"], table[field], names, span)
     ax.set_ylim(-0.5, total - 0.5)
     labels = [f"{c} {words(f)}" if several else words(f) for c, f in reversed(signals)]
+    labels = [textwrap.fill(label, 14) for label in labels]  # wider ones leave the picture
     ax.set_yticks(range(total), labels, size=9.5, color=INK)
     ax.tick_params(axis="y", length=0)
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from takt._commands import DEFAULTS, LEVEL_SENSITIVE, MachineCommands
 from takt.arguments import to_text, without_arguments
 from takt.axis import Axis
-from takt.couplings import COUPLING_LOOP, loop_sentence
+from takt.couplings import why_refused
 from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.recording import Recording
@@ -216,8 +216,8 @@ class Session(MachineCommands):
         value: float = 0.0,
     ) -> None:
         """Passes on what the engine says of a command."""
-        if error_id == COUPLING_LOOP:
-            sentence = loop_sentence(feedback.target, feedback.arguments, self._axes) or sentence
+        if error_id:
+            sentence = why_refused(error_id, feedback.target, feedback.arguments, self._axes) or sentence
         if not feedback._update(state, reached, error_id, sentence, cycle, value) or not feedback.final:
             return
         name = without_arguments(feedback.text)

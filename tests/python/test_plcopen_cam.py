@@ -85,6 +85,11 @@ def test_what_is_no_cam(engine: takt.Engine) -> None:
     select = plc.MC_CamTableSelect(y, CamTable="strike")
     call(engine, select, 0.01, Execute=True)
     assert (select.Error, select.ErrorID, select.CamTableID) == (True, 3010, None)
+    refused = y.cam_in(master="x", cam="strike").wait_final()
+    assert refused.sentence == "cam: the machine has no cam 'strike'"
+    assert y.gear_in(master="z").wait_final().sentence == "master: there is no axis 'z'; there are x, y"
+    assert "expected the name of a cam" in y.cam_in(master="x", cam="").wait_final().sentence
+    assert "other than 0" in y.cam_in(master="x", cam="stroke", master_scaling=0).wait_final().sentence
     cam = call(engine, plc.MC_CamIn(y, Master=x), 0.01, Execute=True)
     assert (cam.Error, cam.ErrorID) == (True, 5)
     assert y.state is takt.PlcState.STANDSTILL

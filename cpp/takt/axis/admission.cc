@@ -16,6 +16,10 @@ bool SwitchingOn(const State& s) {
   return s.active.kind == RequestKind::kPower && s.active.enable;
 }
 
+bool Stands(const KinematicState& x) {
+  return x.velocity == 0 && x.acceleration == 0;
+}
+
 Status Enqueue(const Context& c, const Request& r, State& s) {
   const Request& last = s.buffered > 0 ? s.buffer[s.buffered - 1u] : s.active;
   const bool last_switches_off = last.kind == RequestKind::kPower && !last.enable;
@@ -24,6 +28,11 @@ Status Enqueue(const Context& c, const Request& r, State& s) {
   s.buffer[s.buffered++] = r;
   Report(c, r.ticket, FeedbackState::kBusy);
   if (s.buffered == 1 && r.blends()) ReplanActive(c, s);
+  // Beneath what is superimposed nothing is in control: its turn has come.
+  if (s.buffered == 1 && s.active.kind == RequestKind::kNone && Carries(r) && Stands(s.overlay.base)) {
+    const Beneath beneath(s);
+    StartNext(c, 0, s);
+  }
   return Status::Ok();
 }
 

@@ -22,7 +22,9 @@ KinematicState PhaseAt(const Context& c, const CouplingState& k) {
 // A master as this axis sees it: over all turns, with the phase.
 KinematicState Seen(const Context& c, const CouplingTerm& term, const KinematicState& phase) {
   const State& master = c.axes[term.master];
-  const KinematicState& its = term.source == MasterSource::kSetValue ? master.setpoint : master.actual;
+  const bool measured = term.source == MasterSource::kActualValue;
+  KinematicState its = measured ? master.actual : master.setpoint;
+  if (measured && master.loop_closed) its.acceleration = master.setpoint.acceleration;  // it is not measured
   return {its.position + master.origin + phase.position, its.velocity + phase.velocity,
           its.acceleration + phase.acceleration};
 }
@@ -280,9 +282,17 @@ void NoteEnd(const Context& c, const KinematicState& phase, State& s) {
       k.cam.slave + k.chase.offset + law.scale * (law.table.At(law.table.begin()).y + *end * law.table.stroke());
 }
 
+// Whether that position of a master means anything. What is measured does without power, but not with a fault until it
+// was reset: nobody knows how far the master goes meanwhile.
+bool Stands(const State& master, MasterSource source) {
+  if (source == MasterSource::kSetValue) return master.loop_closed;
+  const bool heard = !master.blind && !master.encoder_error;
+  return heard && (master.loop_closed || master.error == ErrorId::kNone);
+}
+
 bool MastersStand(const Context& c, const CouplingRequest& law) {
   return std::all_of(law.terms.begin(), law.terms.end(), [&](const CouplingTerm& term) {
-    return term.master == kNoAxis || c.axes[term.master].loop_closed || term.source == MasterSource::kActualValue;
+    return term.master == kNoAxis || Stands(c.axes[term.master], term.source);
   });
 }
 

@@ -36,6 +36,8 @@ Forecast ForecastOf(const Context& c, const State& s, double waited_s) {
   f.goes_on = s.plc == PlcState::kContinuousMotion;
   f.limited_by = s.limited_by;
   f.modulus = c.params.rotary() ? c.params.modulus : 0;
+  f.lower = c.params.limits.lower.value_or(-HUGE_VAL);
+  f.upper = c.params.limits.upper.value_or(HUGE_VAL);
   const bool stands = !s.loop_closed || (s.motion.arrived && AtRest(s));
   f.profile = stands ? trajectory::Profile{s.setpoint} : s.motion.profile;
   f.start_s = stands ? waited_s : waited_s - (Elapsed(c, s) - c.cycle.period_s);
@@ -66,6 +68,7 @@ double Forecast::duration_s() const noexcept {
 }
 
 double Forecast::TimeTo(double position) const noexcept {
+  if (goes_on && (position < lower || position > upper)) return kNever;
   const double begin = std::max(0.0, -start_s);
   const KinematicState from = profile.At(begin);
   double t = kNever;
@@ -80,6 +83,8 @@ double Forecast::TimeTo(double position) const noexcept {
 
 KinematicState Forecast::At(double in_s) const noexcept {
   KinematicState at = profile.At(std::max(0.0, in_s) - start_s);
+  if (goes_on && (at.position < lower || at.position > upper))
+    at = {std::min(std::max(at.position, lower), upper), 0, 0};
   if (modulus > 0) at.position -= modulus * std::floor(at.position / modulus);
   return at;
 }

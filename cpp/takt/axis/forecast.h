@@ -2,6 +2,8 @@
 // nothing of the axis changes. Not for the cycle: it takes memory, and for a command that waits some time.
 #pragma once
 
+#include <cmath>
+
 #include "takt/axis/axis.h"
 #include "takt/axis/commands.h"
 #include "takt/core/kinematic_state.h"
@@ -20,8 +22,10 @@ struct Forecast {
   bool held = false;     // by an override: it goes as far as where that stops it
   bool goes_on = false;  // with the velocity at its end; else another command takes over there, or it is at rest
   LimitedBy limited_by = LimitedBy::kNothing;
-  double start_s = 0;             // begin of the motion; negative: it is under way
-  double modulus = 0;             // u, of a rotary axis
+  double start_s = 0;  // begin of the motion; negative: it is under way
+  double modulus = 0;  // u, of a rotary axis
+  // SW limits: a motion that goes on ends there with a fault. How it brakes before is not foreseen.
+  double lower = -HUGE_VAL, upper = HUGE_VAL;
   trajectory::Profile profile{};  // time 0 at start_s
 
   // Until it has come to its end. Infinity: held.

@@ -222,6 +222,7 @@ bool NextEndsOverlay(const State& s) {
 
 // Why the axis lags behind the sum. Once the sum itself is within the limits again, it is what it was.
 LimitedBy WhatHoldsBack(const Limits& own, const KinematicState& demand, const OverlayState& o) {
+  if (IsHeld(o)) return LimitedBy::kOverride;
   if (o.chase.in_step) return LimitedBy::kNothing;
   const LimitedBy beyond = Beyond(own, demand, false);
   if (beyond != LimitedBy::kNothing) return beyond;

@@ -159,6 +159,8 @@ std::string WhyNot(const Command& command, const AxisParams& params) {
   if (MakeRequest(command, params, request, &why).ok()) return {};
   const std::string field = why.field;
   if (field == "master" && why.high == 0) return "master: expected the name of another axis than " + params.name;
+  if (why.high == 0 && (field == "cam" || field == "profile")) return field + ": expected the name of a cam";
+  if (field == "master_scaling") return "master_scaling: expected a number other than 0, at most 1e12 either way";
   if (why.high == 0) return field + ": expected another value, this command has no such " + field;
   const bool of_axis = field == "velocity" || field == "acceleration" || field == "deceleration" || field == "jerk" ||
                        field == "end_velocity";

@@ -52,7 +52,7 @@ constexpr std::array kErrors = {
               "a number of the engine was not finite; outputs are zero and the loop is open"},
     ErrorInfo{ErrorId::kOtherRun, "OtherRun", "the command was meant for another start of the engine"},
     ErrorInfo{ErrorId::kCouplingLoop, "CouplingLoop", "the axis would follow itself, through the axes that follow it"},
-    ErrorInfo{ErrorId::kMasterOff, "MasterOff", "an axis that is to be followed is not powered"},
+    ErrorInfo{ErrorId::kMasterOff, "MasterOff", "an axis that is to be followed is not powered, or has a fault"},
     ErrorInfo{ErrorId::kGroupDeviation, "ERRPOSG", "an axis of the group had too large a following error"},
 };
 

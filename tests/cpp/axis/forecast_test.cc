@@ -88,6 +88,20 @@ TEST(Forecast, OfAVelocityGoesOn) {
   }
 }
 
+// AX-96: a SW limit ends it.
+TEST(Forecast, OfAVelocityEndsAtALimit) {
+  AxisParams p = Trapezoid();
+  p.limits.upper = 400;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  const Forecast f = Foresee(rig.Now(), MoveVelocity{.velocity = 100}, rig.state);
+  EXPECT_TRUE(f.known);
+  EXPECT_NEAR(f.TimeTo(305), 3.1, 1e-6);
+  EXPECT_TRUE(std::isnan(f.TimeTo(401)));
+  EXPECT_EQ(f.At(60).position, 400);
+  EXPECT_EQ(f.At(60).velocity, 0);
+}
+
 // AX-96, AX-14: rotary positions are those of the turn; the next one on the way counts.
 TEST(Forecast, OfARotaryAxisKnowsTurns) {
   AxisParams p = Trapezoid();

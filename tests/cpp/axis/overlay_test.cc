@@ -123,6 +123,27 @@ TEST_F(Overlay, StaysOnTopOfABufferedMove) {
   ExpectLimits();
 }
 
+// A buffered command begins when nothing is in control beneath, whenever it was given.
+TEST_F(Overlay, KeepsNoOneWaiting) {
+  for (const bool late : {false, true}) {
+    SCOPED_TRACE(late);
+    const double begin = rig.position();
+    const Ticket base = rig.Give(MoveRelative{.distance = 50});
+    const Ticket top = rig.Give(MoveSuperimposed{.distance = 20, .velocity_difference = 1});
+    rig.Step();
+    if (late) {
+      ASSERT_TRUE(rig.RunToEnd(base));
+    }
+    const Ticket next = rig.Give(MoveRelative{.distance = -50, .buffer_mode = BufferMode::kBuffered});
+    rig.Run(3);
+    EXPECT_TRUE(rig.lives[next].done);
+    EXPECT_FALSE(rig.Ended(top));
+    EXPECT_TRUE(rig.RunToEnd(top, 30));
+    EXPECT_NEAR(rig.position(), begin + 20, 1e-9);
+    ExpectLimits();
+  }
+}
+
 // An aborting one aborts both; what was covered stays.
 TEST_F(Overlay, IsAbortedWithTheMotionBeneath) {
   const Ticket base = rig.Give(MoveAbsolute{.position = 200, .velocity = 100});
@@ -307,6 +328,7 @@ TEST_F(Overlay, IsHeldByAnOverride) {
   EXPECT_EQ(rig.out.set_velocity, 0);
   EXPECT_EQ(rig.out.state, PlcState::kDiscreteMotion);
   EXPECT_TRUE(rig.out.superimposed);
+  EXPECT_EQ(rig.out.limited_by, LimitedBy::kOverride);
   EXPECT_FALSE(rig.Ended(base) || rig.Ended(top));
   const double held = rig.position();
   const Ticket other = rig.Give(MoveSuperimposed{.distance = -20, .velocity_difference = 50});

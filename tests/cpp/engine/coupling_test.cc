@@ -131,6 +131,61 @@ TEST(Gear, KeepsItsPlaceBehindAMeasuredMaster) {
   }
 }
 
+// AX-55: what is measured of a master with a fault means nothing, until it was reset and someone couples anew.
+TEST(Gear, LeavesAMeasuredMasterThatFails) {
+  for (const bool powered : {true, false}) {
+    SCOPED_TRACE(powered);
+    Line line(LineOf(2));
+    axis::GearIn gear = Gear("a0");
+    gear.source = axis::MasterSource::kActualValue;
+    const Ticket ticket = line.Give(1, gear);
+    line.Run(5);
+    line.Give(0, axis::MoveVelocity{.velocity = 100});
+    line.Run(500);
+    ASSERT_TRUE(line.At(1).in_step);
+    if (!powered) {
+      line.Give(0, axis::Power{.enable = false});
+      line.Run(500);
+      ASSERT_EQ(line.At(0).state, PlcState::kDisabled);
+      ASSERT_EQ(line.At(1).state, PlcState::kSynchronizedMotion);  // a hand wheel
+    }
+    line.engine.faults(0).drive_fault = true;
+    line.Run(3);
+    EXPECT_EQ(line.last[ticket].state, FeedbackState::kError);
+    EXPECT_EQ(line.last[ticket].error, ErrorId::kAxisFault);
+    line.engine.faults(0).drive_fault = false;
+    line.Run(500);
+    EXPECT_EQ(line.At(1).state, PlcState::kStandstill);
+    EXPECT_EQ(line.At(1).set_velocity, 0);
+    const Ticket refused = line.Give(1, gear);
+    line.Run(2);
+    EXPECT_EQ(line.last[refused].error, ErrorId::kMasterOff);
+    line.Give(0, axis::Reset{});
+    line.Run(50);
+    const Ticket good = line.Give(1, gear);
+    line.Run(5);
+    EXPECT_EQ(line.last[good].state, FeedbackState::kActive);
+  }
+}
+
+// AX-43: a slave no stronger than its measured master does not run past where that stops by more than it must.
+TEST(Gear, StopsWithAMeasuredMaster) {
+  Line line(LineOf(2));
+  axis::GearIn gear = Gear("a0");
+  gear.source = axis::MasterSource::kActualValue;
+  line.Give(1, gear);
+  line.Run(100);
+  line.Give(0, axis::MoveAbsolute{.position = 50, .velocity = 300});
+  double furthest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    line.Step();
+    furthest = std::max(furthest, line.At(1).set_position);
+  }
+  EXPECT_LT(furthest, 50.3);
+  EXPECT_NEAR(line.At(1).set_position, 50, 0.01);
+  EXPECT_TRUE(line.At(1).in_step);
+}
+
 // A master whose set position means nothing is none, and what the axis does goes on.
 TEST(Gear, NeedsAMasterThatIsOn) {
   Line line(LineOf(2));

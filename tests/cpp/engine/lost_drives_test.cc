@@ -197,6 +197,12 @@ TEST(LostDrives, WhatFollowsALostEncoderComesToRest) {
   EXPECT_EQ(rig.At(3).error, ErrorId::kDrive);
   EXPECT_EQ(rig.At(0).error, ErrorId::kNone);
   EXPECT_NEAR(rig.At(0).set_velocity, 0, 1e-9);
+  // Heard again it is followed by nobody: that needs a reset and a new command.
+  const double at_rest = rig.At(0).set_position;
+  rig.HearAll();
+  rig.Run(500);
+  EXPECT_EQ(rig.At(0).set_position, at_rest);
+  EXPECT_EQ(rig.At(0).state, axis::PlcState::kStandstill);
 }
 
 // AX-87: heard again while it brakes, it is stopped and switched off all the same; a fault it reports ends that at
