@@ -1,8 +1,4 @@
 // Axes coupled at run time: gears, their phase, sums of two masters, cams.
-//
-// Gears and sums follow velocities until they are in step first, and places from then on: what is lost on the way into
-// step stays lost, what limits or a measured master cost later is made up. GearInPos and cams follow places throughout.
-// Masters whose position means nothing (no power, a fault) are not followed: the axis comes to rest (AX-55).
 #pragma once
 
 #include <array>

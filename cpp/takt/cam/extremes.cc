@@ -14,7 +14,7 @@ double LengthOf(const Table& table, std::size_t i) {
 }
 
 void Include(const Curve& curve, double begin, double h, Bounds& bounds) {
-  for (const double d : ExtremePlaces(curve, h).all()) {
+  for (const double d : ExtremePlaces(curve, h)) {
     const Extreme here{begin + d, curve.At(d)};
     if (here.value < bounds.least.value) bounds.least = here;
     if (here.value > bounds.greatest.value) bounds.greatest = here;
@@ -23,7 +23,7 @@ void Include(const Curve& curve, double begin, double h, Bounds& bounds) {
 
 // The largest |curve|, times `factor`.
 void Include(const Curve& curve, double begin, double h, double factor, Extreme& largest) {
-  for (const double d : ExtremePlaces(curve, h).all()) {
+  for (const double d : ExtremePlaces(curve, h)) {
     const double magnitude = factor * std::abs(curve.At(d));
     if (magnitude > largest.value) largest = {begin + d, magnitude};
   }
@@ -79,7 +79,7 @@ std::vector<double> AllX(const Table& table, double y) {
   std::vector<double> all;
   const double same = 1e-12 * table.length();  // a joint is found from both sides
   for (std::size_t i = 0; i < table.size(); ++i) {
-    for (const double d : Places(table, i, y).all()) {
+    for (const double d : Places(table, i, y)) {
       const double x = table.BeginOf(i) + d;
       if (all.empty() || x - all.back() > same) all.push_back(x);
     }
@@ -90,7 +90,7 @@ std::vector<double> AllX(const Table& table, double y) {
 std::optional<double> NearestX(const Table& table, double y, double near) noexcept {
   std::optional<double> nearest;
   const auto look = [&](std::size_t i) {
-    for (const double d : Places(table, i, y).all()) {
+    for (const double d : Places(table, i, y)) {
       const double x = table.BeginOf(i) + d;
       if (!nearest || std::abs(x - near) < std::abs(*nearest - near)) nearest = x;
     }

@@ -92,14 +92,14 @@ Roots RootsOf(const Curve& curve, double h, double rounding_before) noexcept {
 Roots ExtremePlaces(const Curve& curve, double h) noexcept {
   Roots places;
   Append(0, places);
-  for (const double x : RootsOf(Derivative(curve), h).all()) Append(x, places);
+  for (const double x : RootsOf(Derivative(curve), h)) Append(x, places);
   Append(h, places);
   return places;
 }
 
 double LargestMagnitude(const Curve& curve, double h) noexcept {
   double largest = 0;
-  for (const double x : ExtremePlaces(curve, h).all()) largest = std::max(largest, std::abs(curve.At(x)));
+  for (const double x : ExtremePlaces(curve, h)) largest = std::max(largest, std::abs(curve.At(x)));
   return largest;
 }
 

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
 
 #include "takt/cam/curve.h"
 
@@ -16,7 +15,8 @@ struct Roots {
   std::array<double, kMaxRoots> at{};  // growing
   std::size_t count = 0;
 
-  std::span<const double> all() const noexcept { return {at.data(), count}; }
+  const double* begin() const noexcept { return at.data(); }
+  const double* end() const noexcept { return at.data() + count; }
 };
 
 // The zeros in [0, h], to the last digits. One where the curve only touches zero counts, within rounding; a curve that

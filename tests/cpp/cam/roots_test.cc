@@ -17,7 +17,7 @@ using testing::IsEmpty;
 
 std::vector<double> All(const Curve& curve, double h) {
   const Roots roots = RootsOf(curve, h);
-  return {roots.all().begin(), roots.all().end()};
+  return {roots.begin(), roots.end()};
 }
 
 // The polynomial with these zeros.
