@@ -22,9 +22,11 @@ using MC_AccelerationProfile = Block<axis::AccelerationProfile>;
 
 using MC_CamTableSelect = Block<axis::CamTableSelect>;
 using MC_CamOut = Block<axis::CamOut>;
+using MC_MoveContinue = MC_MoveContinuousAbsolute;
 using MC_GearOut = Block<axis::GearOut>;
 using MC_PhasingAbsolute = Block<axis::PhasingAbsolute>;
 using MC_PhasingRelative = Block<axis::PhasingRelative>;
+using MC_Phasing = MC_PhasingAbsolute;
 
 using MC_Home = Block<axis::Home>;
 using MC_StepAbsSwitch = Block<axis::StepAbsSwitch>;
@@ -43,6 +45,27 @@ using GT_Analog = Block<axis::DirectOutput>;
 using GT_Pulse = Block<axis::PulseOutput>;
 using MC_SetPosition = Block<axis::SetPosition>;
 using MC_WriteParameter = Block<axis::WriteParameter>;
+// A parameter that is a yes or no: 4, 5 or 6; others are refused.
+class MC_WriteBoolParameter : public Block<axis::WriteParameter> {
+ public:
+  using Block::Block;
+  bool on = false;
+  void operator()() noexcept {
+    axis::WriteParameter command = *this;
+    command.value = on ? 1 : 0;
+    if (number < 4 || number > 6) command.number = 0;
+    if (Rises()) StartWith(command);
+    Show();
+  }
+};
 using MC_AbortTrigger = Block<axis::AbortTrigger>;
+
+// The names of PLCopen Part 5.
+using MC_StepAbsoluteSwitch = MC_StepAbsSwitch;
+using MC_StepReferencePulse = MC_StepRefPulse;
+using MC_HomeDirect = MC_StepDirect;
+using MC_HomeAbsolute = MC_StepAbsolute;
+using MC_StepReferenceFlyingSwitch = MC_StepRefFlyingSwitch;
+using MC_StepReferenceFlyingRefPulse = MC_StepRefFlyingRefPulse;
 
 }  // namespace takt::plcopen

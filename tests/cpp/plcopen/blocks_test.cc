@@ -364,6 +364,24 @@ TEST_F(Blocks, Gears) {
   EXPECT_TRUE(same.CommandAborted() && !same.InGear());
 }
 
+// AX-28: a yes or no is no number.
+TEST_F(Blocks, WriteBoolParameter) {
+  MC_WriteBoolParameter write(x);
+  write.number = 4;  // the SW limit at the positive end
+  write.Execute = true;
+  ASSERT_TRUE(Until(write, [&] { return write.Done(); }));
+  MC_ReadParameter read(x);
+  read.ParameterNumber = 4;
+  read.Enable = true;
+  ASSERT_TRUE(Until(read, [&] { return read.Valid(); }));
+  EXPECT_EQ(read.Value(), 0);
+  MC_WriteBoolParameter other(x);
+  other.number = 2;
+  other.on = other.Execute = true;
+  ASSERT_TRUE(Until(other, [&] { return other.Error(); }));
+  EXPECT_EQ(other.ErrorID(), ErrorId::kParameter);
+}
+
 // AX-48: on a cam that goes up by 10 every 40 of the master's.
 TEST_F(Blocks, Cams) {
   bench.PowerOn(bench.y);
