@@ -132,10 +132,10 @@ def test_a_plant_in_another_process_is_the_built_in_one(tmp_path: Path) -> None:
     assert np.ptp(expected["x"]["actual_position"]) > 90
     assert expected["y.2"]["probe_captures"][-1] == 1
     with plant(tmp_path, outside(url)):
-        for _ in range(2):
+        for late in (0, 2):  # the second engine may still hear an answer for each drive to the first, and refuses it
             with takt.Engine(outside(url)) as engine:
                 assert same(work(engine), expected)
-                assert engine.figures["samples_refused"] == 0
+                assert engine.figures["samples_refused"] <= late
 
 
 def test_engine_and_plant_may_come_in_any_order(tmp_path: Path) -> None:
