@@ -16,10 +16,6 @@ bool SwitchingOn(const State& s) {
   return s.active.kind == RequestKind::kPower && s.active.enable;
 }
 
-bool Stands(const KinematicState& x) {
-  return x.velocity == 0 && x.acceleration == 0;
-}
-
 Status Enqueue(const Context& c, const Request& r, State& s) {
   const Request& last = s.buffered > 0 ? s.buffer[s.buffered - 1u] : s.active;
   const bool last_switches_off = last.kind == RequestKind::kPower && !last.enable;
@@ -29,7 +25,7 @@ Status Enqueue(const Context& c, const Request& r, State& s) {
   Report(c, r.ticket, FeedbackState::kBusy);
   if (s.buffered == 1 && r.blends()) ReplanActive(c, s);
   // Beneath what is superimposed nothing is in control: its turn has come.
-  if (s.buffered == 1 && s.active.kind == RequestKind::kNone && Carries(r) && Stands(s.overlay.base)) {
+  if (s.buffered == 1 && s.active.kind == RequestKind::kNone && Carries(r) && StandsBeneath(s)) {
     const Beneath beneath(s);
     StartNext(c, 0, s);
   }

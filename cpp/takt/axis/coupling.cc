@@ -282,9 +282,9 @@ void NoteEnd(const Context& c, const KinematicState& phase, State& s) {
       k.cam.slave + k.chase.offset + law.scale * (law.table.At(law.table.begin()).y + *end * law.table.stroke());
 }
 
-// Whether that position of a master means anything. What is measured does without power, but not with a fault until it
+// Whether that position of a master is known. What is measured does without power, but not with a fault until it
 // was reset: nobody knows how far the master goes meanwhile.
-bool Stands(const State& master, MasterSource source) {
+bool IsKnown(const State& master, MasterSource source) {
   if (source == MasterSource::kSetValue) return master.loop_closed;
   const bool heard = !master.blind && !master.encoder_error;
   return heard && (master.loop_closed || master.error == ErrorId::kNone);
@@ -292,7 +292,7 @@ bool Stands(const State& master, MasterSource source) {
 
 bool MastersStand(const Context& c, const CouplingRequest& law) {
   return std::all_of(law.terms.begin(), law.terms.end(), [&](const CouplingTerm& term) {
-    return term.master == kNoAxis || Stands(c.axes[term.master], term.source);
+    return term.master == kNoAxis || IsKnown(c.axes[term.master], term.source);
   });
 }
 

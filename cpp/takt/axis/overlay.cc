@@ -290,6 +290,10 @@ void AbortOverlay(const Context& c, FeedbackState feedback, ErrorId error, State
   Report(c, s.overlay.ticket, feedback, error, false, s.overlay.covered);
 }
 
+bool StandsBeneath(const State& s) noexcept {
+  return Stands(s.overlay.base);
+}
+
 bool Carries(const Request& r) noexcept {
   const bool switches_off = r.kind == RequestKind::kPower && !r.enable;
   return !switches_off && !Homes(r.kind) && r.kind != RequestKind::kStop && r.kind != RequestKind::kTorqueControl &&

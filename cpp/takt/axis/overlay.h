@@ -77,6 +77,8 @@ class Beneath {
 void Superimpose(const Context& c, State& s) noexcept;
 // Ends what is on top, if anything is; its motion is the caller's to replace.
 void AbortOverlay(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
+// Whether the motion beneath stands.
+bool StandsBeneath(const State& s) noexcept;
 // Whether something can lie on top of this command. One that cannot waits for what lies on top of a standing axis, and
 // aborts what lies on top of a moving one.
 bool Carries(const Request& r) noexcept;

@@ -87,4 +87,12 @@ void MC_DigitalCamSwitch::operator()() noexcept {
   feedback_.Give(axis_.target(), command);
 }
 
+void MC_WriteBoolParameter::operator()() noexcept {
+  axis::WriteParameter command = *this;
+  command.value = on ? 1 : 0;
+  if (number < 4 || number > 6) command.number = 0;  // there is no such parameter
+  if (Rises()) StartWith(command);
+  Show();
+}
+
 }  // namespace takt::plcopen

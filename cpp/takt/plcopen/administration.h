@@ -118,4 +118,12 @@ class MC_DigitalCamSwitch : private axis::DigitalCamSwitch {
   bool level_ = false;  // Enable in the call before
 };
 
+// Writes a parameter that is a yes or no: 4, 5 or 6. Others are refused, whatever `value` is.
+class MC_WriteBoolParameter : public Block<axis::WriteParameter> {
+ public:
+  using Block::Block;
+  bool on = false;
+  void operator()() noexcept;
+};
+
 }  // namespace takt::plcopen

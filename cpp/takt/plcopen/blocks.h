@@ -15,6 +15,7 @@ using MC_MoveRelative = Block<axis::MoveRelative>;
 using MC_MoveAdditive = Block<axis::MoveAdditive>;
 using MC_Halt = Block<axis::Halt>;
 using MC_HaltSuperimposed = Block<axis::HaltSuperimposed>;
+using MC_MoveContinue = MC_MoveContinuousAbsolute;
 
 using MC_PositionProfile = Block<axis::PositionProfile>;
 using MC_VelocityProfile = Block<axis::VelocityProfile>;
@@ -22,7 +23,6 @@ using MC_AccelerationProfile = Block<axis::AccelerationProfile>;
 
 using MC_CamTableSelect = Block<axis::CamTableSelect>;
 using MC_CamOut = Block<axis::CamOut>;
-using MC_MoveContinue = MC_MoveContinuousAbsolute;
 using MC_GearOut = Block<axis::GearOut>;
 using MC_PhasingAbsolute = Block<axis::PhasingAbsolute>;
 using MC_PhasingRelative = Block<axis::PhasingRelative>;
@@ -45,19 +45,6 @@ using GT_Analog = Block<axis::DirectOutput>;
 using GT_Pulse = Block<axis::PulseOutput>;
 using MC_SetPosition = Block<axis::SetPosition>;
 using MC_WriteParameter = Block<axis::WriteParameter>;
-// A parameter that is a yes or no: 4, 5 or 6; others are refused.
-class MC_WriteBoolParameter : public Block<axis::WriteParameter> {
- public:
-  using Block::Block;
-  bool on = false;
-  void operator()() noexcept {
-    axis::WriteParameter command = *this;
-    command.value = on ? 1 : 0;
-    if (number < 4 || number > 6) command.number = 0;
-    if (Rises()) StartWith(command);
-    Show();
-  }
-};
 using MC_AbortTrigger = Block<axis::AbortTrigger>;
 
 // The names of PLCopen Part 5.

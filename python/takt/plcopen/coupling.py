@@ -30,7 +30,8 @@ class CouplingBlock(MotionBlock):
 
 
 class MC_GearIn(CouplingBlock):  # noqa: N801
-    """Follows the velocity of Master times RatioNumerator / RatioDenominator. InGear falls where the axis cannot."""
+    """Follows the velocity of Master times RatioNumerator / RatioDenominator, from InGear on its place, too. InGear
+    falls where the axis cannot."""
 
     VERB = "gear_in"
     Master = Input[Axis | str]("", "master")
