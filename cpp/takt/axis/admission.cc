@@ -201,7 +201,7 @@ bool Release(const Context&, Ticket ticket, State& s) noexcept {
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept {
   const Request* const request = Find(ticket, s);
   if (request == nullptr || request->lease_s <= 0) return false;
-  if (request == &s.active) s.lease_end_cycle = LeaseEnd(c, request->lease_s);
+  if (request == &s.active) s.lease_end_cycle = CycleIn(c.cycle, request->lease_s);
   return true;
 }
 

@@ -8,6 +8,7 @@
 #include "takt/axis/drive_link.h"
 #include "takt/axis/fit.h"
 #include "takt/axis/following.h"
+#include "takt/axis/guidance.h"
 #include "takt/axis/sequence.h"
 #include "takt/axis/settings.h"
 
@@ -167,6 +168,13 @@ void FollowTable(const Context& c, State& s) {
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 
+void FollowGuide(const Context& c, State& s) {
+  const KinematicState before = s.setpoint;
+  FollowGuidance(c, s);
+  GuardLimits(c, before, s);
+  if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
+}
+
 // The next set point of the motion in progress.
 void MoveOne(const Context& c, State& s) {
   if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
@@ -178,6 +186,8 @@ void MoveOne(const Context& c, State& s) {
     FollowCoupling(c, s);
   } else if (s.loop_closed && FollowsTable(s.active.kind)) {
     FollowTable(c, s);
+  } else if (s.loop_closed && IsGuided(s)) {
+    FollowGuide(c, s);
   } else if (s.loop_closed) {
     Advance(c, s);
     if (s.homing.stage != HomingStage::kNone) StepHoming(c, s);
@@ -361,7 +371,7 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.profile_ends = s.profile_ends;
   const bool coupled = Couples(s.active.kind);
   const auto& terms = s.coupling.law.terms;
-  out.in_step = coupled && s.coupling.in_step;
+  out.in_step = (coupled && s.coupling.in_step) || (IsGuided(s) && s.guidance.chase.in_step);
   out.synchronizing = coupled && !out.in_step && s.coupling.joining != Joining::kWaiting;
   out.master1 = coupled ? terms[0].master + 1 : 0;  // none: 0
   out.master2 = coupled ? terms[1].master + 1 : 0;

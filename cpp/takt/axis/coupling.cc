@@ -282,14 +282,6 @@ void NoteEnd(const Context& c, const KinematicState& phase, State& s) {
       k.cam.slave + k.chase.offset + law.scale * (law.table.At(law.table.begin()).y + *end * law.table.stroke());
 }
 
-// Whether that position of a master is known. What is measured does without power, but not with a fault until it
-// was reset: nobody knows how far the master goes meanwhile.
-bool IsKnown(const State& master, MasterSource source) {
-  if (source == MasterSource::kSetValue) return master.loop_closed;
-  const bool heard = !master.blind && !master.encoder_error;
-  return heard && (master.loop_closed || master.error == ErrorId::kNone);
-}
-
 bool MastersStand(const Context& c, const CouplingRequest& law) {
   return std::all_of(law.terms.begin(), law.terms.end(), [&](const CouplingTerm& term) {
     return term.master == kNoAxis || IsKnown(c.axes[term.master], term.source);
@@ -328,6 +320,12 @@ Status ShiftPhase(const Context& c, Ticket ticket, bool relative, double shift, 
 }
 
 }  // namespace
+
+bool IsKnown(const State& master, MasterSource source) noexcept {
+  if (source == MasterSource::kSetValue) return master.loop_closed;
+  const bool heard = !master.blind && !master.encoder_error;
+  return heard && (master.loop_closed || master.error == ErrorId::kNone);
+}
 
 Status FindNamed(const Context& c, Request& r) noexcept {
   for (CouplingTerm& term : r.coupling.terms) {

@@ -49,6 +49,9 @@ inline bool Couples(RequestKind kind) noexcept {
   return kind == RequestKind::kGearIn || kind == RequestKind::kGearInPos || kind == RequestKind::kCombineAxes ||
          kind == RequestKind::kCamIn;
 }
+// Whether that position of a master is known. What is measured does without power, but not with a fault until it was
+// reset: nobody knows how far the master goes meanwhile.
+bool IsKnown(const State& master, MasterSource source) noexcept;
 // Finds the masters and the table of a request. kUnknownTarget: there is no such axis, or no such table.
 Status FindNamed(const Context& c, Request& r) noexcept;
 // kNoReference: positions of this axis mean nothing yet.

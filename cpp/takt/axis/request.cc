@@ -40,6 +40,7 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kStepAbsolute, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kFinishHoming, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kTouch, false, false, true, PlcState::kDiscreteMotion},
+    RequestRules{RequestKind::kGuided, false, false, false, PlcState::kSynchronizedMotion},
 };
 
 }  // namespace
@@ -211,6 +212,7 @@ void describe(Enumeration<RequestKind>& e) {
   e.value(RequestKind::kStepAbsolute, "step_absolute", "StepAbsolute.");
   e.value(RequestKind::kFinishHoming, "finish_homing", "FinishHoming.");
   e.value(RequestKind::kTouch, "touch", "Touch.");
+  e.value(RequestKind::kGuided, "guided", "Set points of another component of the machine.");
 }
 
 void describe(Description<Request>& d) {

@@ -45,6 +45,7 @@ enum class RequestKind : std::uint8_t {
   kStepAbsolute,
   kFinishHoming,
   kTouch,
+  kGuided,  // by another component of the machine, not by a command
 };
 
 struct Request {

@@ -194,7 +194,7 @@ void ConcludeStop(const Context& c, State& s) {
 void Grant(const Context& c, const Request& request, State& s, double travel_s) noexcept {
   s.active = request;
   s.reported = false;
-  s.lease_end_cycle = LeaseEnd(c, request.lease_s);
+  s.lease_end_cycle = CycleIn(c.cycle, request.lease_s);
   Report(c, request.ticket, FeedbackState::kActive, ErrorId::kNone, false, travel_s);
 }
 
@@ -209,12 +209,8 @@ void TakeControl(const Context& c, const Request& request, const Plan& plan, con
   Enter(s, RulesOf(request.kind).state);
 }
 
-std::uint64_t LeaseEnd(const Context& c, double lease_s) noexcept {
-  return c.cycle.count + static_cast<std::uint64_t>(std::ceil(lease_s / c.cycle.period_s));
-}
-
 bool FollowsDemand(RequestKind kind) noexcept {
-  return Couples(kind) || FollowsTable(kind);
+  return Couples(kind) || FollowsTable(kind) || kind == RequestKind::kGuided;
 }
 
 Status MayFollow(const Context& c, const Request& request, const State& s) noexcept {

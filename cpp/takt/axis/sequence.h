@@ -36,14 +36,13 @@ inline double Elapsed(const Context& c, const State& s) noexcept {
 
 void StartMotion(const trajectory::Profile& profile, double target, const MotionStart& start, State& s) noexcept;
 void StartMotion(const Plan& plan, const MotionStart& start, State& s) noexcept;
-std::uint64_t LeaseEnd(const Context& c, double lease_s) noexcept;
 
 // Puts a request in control of the motion there is ...
 void Grant(const Context& c, const Request& request, State& s, double travel_s = 0) noexcept;
 // ... or with a motion of its own.
 void TakeControl(const Context& c, const Request& request, const Plan& plan, const MotionStart& start,
                  State& s) noexcept;
-// Commands that follow something that moves, a master or a table over time, instead of a plan.
+// What follows something that moves, a master, a table over time, another component, instead of a plan.
 bool FollowsDemand(RequestKind kind) noexcept;
 // Whether such a command may take control now: MayCouple, MayFollowTable.
 Status MayFollow(const Context& c, const Request& request, const State& s) noexcept;

@@ -9,6 +9,7 @@
 #include "takt/axis/control_loop.h"
 #include "takt/axis/coupling.h"
 #include "takt/axis/encoder.h"
+#include "takt/axis/guidance.h"
 #include "takt/axis/homing.h"
 #include "takt/axis/overlay.h"
 #include "takt/axis/override.h"
@@ -118,6 +119,7 @@ struct State {
   Request active;  // in control; kind none: nothing is
   Motion motion;
   CouplingState coupling;
+  GuidanceState guidance;
   TimeTableState time_table;
 
   Dormant dormant;

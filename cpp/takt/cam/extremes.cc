@@ -87,26 +87,46 @@ std::vector<double> AllX(const Table& table, double y) {
   return all;
 }
 
-std::optional<double> NearestX(const Table& table, double y, double near) noexcept {
+namespace {
+
+// The place nearest to `near` among those that `places(piece)` gives, no more than `most` pieces away.
+template <typename PlacesOf>
+std::optional<double> Nearest(const Table& table, double near, std::size_t most, const PlacesOf& places) {
   std::optional<double> nearest;
   const auto look = [&](std::size_t i) {
-    for (const double d : Places(table, i, y)) {
+    for (const double d : places(i)) {
       const double x = table.BeginOf(i) + d;
       if (!nearest || std::abs(x - near) < std::abs(*nearest - near)) nearest = x;
     }
   };
   const std::size_t middle = table.PieceAt(near);
+  const std::size_t end = table.size() - middle > most ? middle + most + 1 : table.size();
+  const std::size_t begin = middle > most ? middle - most : 0;
   look(middle);
   // Outwards on both sides, as long as something nearer can come.
-  for (std::size_t i = middle + 1; i < table.size(); ++i) {
+  for (std::size_t i = middle + 1; i < end; ++i) {
     if (nearest && table.BeginOf(i) - near >= std::abs(*nearest - near)) break;
     look(i);
   }
-  for (std::size_t i = middle; i-- > 0;) {
+  for (std::size_t i = middle; i-- > begin;) {
     if (nearest && near - table.EndOf(i) >= std::abs(*nearest - near)) break;
     look(i);
   }
   return nearest;
+}
+
+}  // namespace
+
+std::optional<double> NearestX(const Table& table, double y, double near) noexcept {
+  return Nearest(table, near, table.size(), [&](std::size_t i) { return Places(table, i, y); });
+}
+
+std::optional<double> NearestSlope(const Table& table, double slope, double near, std::size_t most) noexcept {
+  return Nearest(table, near, most, [&](std::size_t i) {
+    Curve difference = Derivative(table.CurveOf(i));
+    difference.c[0] -= slope;
+    return RootsOf(difference, LengthOf(table, i));
+  });
 }
 
 }  // namespace takt::cam

@@ -44,5 +44,7 @@ void Include(const Table& table, std::size_t piece, double master_velocity, doub
 std::vector<double> AllX(const Table& table, double y);
 // The one nearest to `near`. What it costs grows with the number of pieces between.
 std::optional<double> NearestX(const Table& table, double y, double near) noexcept;
+// The x nearest to `near` at which the cam has this slope, no more than `most` pieces away.
+std::optional<double> NearestSlope(const Table& table, double slope, double near, std::size_t most) noexcept;
 
 }  // namespace takt::cam

@@ -1,6 +1,7 @@
 // The one notion of time below the scheduler: which cycle this is and how long a cycle lasts.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 namespace takt {
@@ -12,5 +13,10 @@ struct Cycle {
   // Seconds from the start to the beginning of this cycle. A product, not a sum: no error builds up.
   constexpr double time_s() const { return static_cast<double>(count) * period_s; }
 };
+
+// The cycle `seconds` from now, or the first one behind that.
+inline std::uint64_t CycleIn(const Cycle& now, double seconds) {
+  return now.count + static_cast<std::uint64_t>(std::ceil(seconds / now.period_s));
+}
 
 }  // namespace takt

@@ -154,6 +154,8 @@ class Description {
     type_.about = text;
     type_.arity = internal::Arity<T>();
   }
+  // What templates are called; other structs have their own name.
+  void named(std::string_view name) { type_.name = name; }
   template <auto Member, typename... Details>
   void required(Details... details) {
     Add<Member>(Presence::kRequired, details...);
@@ -266,7 +268,7 @@ struct TypeMaker {
       describe(description);
       type = std::move(description.type_);
       type.kind = Kind::kStruct;
-      type.name = TypeName<T>();
+      if (type.name.empty()) type.name = TypeName<T>();
       type.defaults = &Description<T>::Defaults();
     }
     return type;

@@ -53,7 +53,16 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kOtherRun, "OtherRun", "the command was meant for another start of the engine"},
     ErrorInfo{ErrorId::kCouplingLoop, "CouplingLoop", "the axis would follow itself, through the axes that follow it"},
     ErrorInfo{ErrorId::kMasterOff, "MasterOff", "an axis that is to be followed is not powered, or has a fault"},
+    ErrorInfo{ErrorId::kWouldReverse, "WouldReverse", "the clutch cannot close without reversing the slave"},
     ErrorInfo{ErrorId::kGroupDeviation, "ERRPOSG", "an axis of the group had too large a following error"},
+    ErrorInfo{ErrorId::kModuleSoftLimitPositive, "SWLimitPos",
+              "the slave of the module was stopped by its upper SW limit"},
+    ErrorInfo{ErrorId::kModuleSoftLimitNegative, "SWLimitNeg",
+              "the slave of the module was stopped by its lower SW limit"},
+    ErrorInfo{ErrorId::kModuleLimitSwitchPositive, "HWLimitPos",
+              "the slave of the module is on its positive limit switch"},
+    ErrorInfo{ErrorId::kModuleLimitSwitchNegative, "HWLimitNeg",
+              "the slave of the module is on its negative limit switch"},
 };
 
 constexpr ErrorInfo kUnknown{ErrorId::kNone, "unknown", "unknown error"};

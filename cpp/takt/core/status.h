@@ -10,7 +10,8 @@
 namespace takt {
 
 // Error numbers. Those up to 2007 and 8001 are those of the TECOMAT GT-775x modules (appendix 12.1 of their manual),
-// kept as they are; from 3001 on they are ours. A text for each: ErrorText().
+// kept as they are; from 3001 on they are ours, from 20000 on those of Lenze's FAST technology modules. A text for
+// each: ErrorText().
 enum class ErrorId : std::uint16_t {
   kNone = 0,
   // A command was refused or failed; the axis itself is well.
@@ -56,7 +57,13 @@ enum class ErrorId : std::uint16_t {
   kOtherRun = 3017,           // the command was meant for another start of the engine
   kCouplingLoop = 3018,       // the axis would follow itself, through others
   kMasterOff = 3019,          // a master has no set position that means anything: its loop is open
+  kWouldReverse = 3020,       // a clutch that may not reverse its slave finds no way to close
   kGroupDeviation = 8001,
+  // A cam module is in error; the numbers are its seed's.
+  kModuleSoftLimitPositive = 20306,
+  kModuleSoftLimitNegative = 20307,
+  kModuleLimitSwitchPositive = 20500,
+  kModuleLimitSwitchNegative = 20501,
 };
 
 struct ErrorInfo {

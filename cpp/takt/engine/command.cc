@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::string_view kMachine = "machine";
 constexpr std::string_view kAxis = "axis";
+constexpr std::string_view kFlexCam = "flex_cam";
 
 // A verb together with how its struct gets in and out of a command.
 struct Entry {
@@ -95,6 +96,12 @@ const std::vector<Entry>& Entries() {
       Make<axis::Command, axis::AbortTrigger>(kAxis, "abort_trigger"),
       Make<axis::Command, axis::Touch>(kAxis, "touch"),
       Make<axis::Command, axis::DigitalCamSwitch>(kAxis, "digital_cam_switch"),
+      Make<flexcam::Command, flexcam::Control>(kFlexCam, "control"),
+      Make<flexcam::Command, flexcam::Jog>(kFlexCam, "jog", true),
+      Make<flexcam::Command, flexcam::Configure>(kFlexCam, "configure"),
+      Make<flexcam::Command, flexcam::SetCam>(kFlexCam, "set_cam"),
+      Make<flexcam::Command, flexcam::ChangeCam>(kFlexCam, "change_cam"),
+      Make<flexcam::Command, flexcam::WithdrawChanges>(kFlexCam, "withdraw_changes"),
   };
   return entries;
 }
@@ -104,7 +111,32 @@ std::optional<std::uint32_t> FindTarget(const Machine& machine, std::string_view
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     if (machine.axes[i].name == name) return static_cast<std::uint32_t>(i + 1);
   }
+  for (std::size_t i = 0; i < machine.flex_cams.size(); ++i) {
+    if (machine.flex_cams[i].name == name) return static_cast<std::uint32_t>(machine.axes.size() + i + 1);
+  }
   return std::nullopt;
+}
+
+std::string_view KindOf(const Machine& machine, std::uint32_t target) {
+  if (target == kMachineTarget) return kMachine;
+  return target <= machine.axes.size() ? kAxis : kFlexCam;
+}
+
+std::string_view NameOf(const Machine& machine, std::uint32_t target) {
+  if (target == kMachineTarget) return kMachine;
+  const std::size_t index = target - 1;
+  return index < machine.axes.size() ? machine.axes[index].name : machine.flex_cams[index - machine.axes.size()].name;
+}
+
+// Why this component cannot do it, as far as its description tells; empty: it can.
+std::string WhyNot(const Machine& machine, const Command& command) {
+  if (const auto* body = std::get_if<axis::Command>(&command.body)) {
+    return axis::WhyNot(*body, machine.axes[command.target - 1]);
+  }
+  if (const auto* body = std::get_if<flexcam::Command>(&command.body)) {
+    return flexcam::WhyNot(*body, machine.cams);
+  }
+  return {};
 }
 
 ParsedCommand Refused(ErrorId error, std::string sentence) {
@@ -117,8 +149,9 @@ ParsedCommand Refused(ErrorId error, std::string sentence) {
 ParsedCommand UnknownTarget(const Machine& machine, std::string_view target) {
   std::vector<std::string_view> names{kMachine};
   for (const axis::AxisParams& axis : machine.axes) names.push_back(axis.name);
-  return Refused(ErrorId::kUnknownTarget, "target: expected the name of an axis or machine, found " + Quoted(target) +
-                                              DidYouMean(target, names));
+  for (const flexcam::FlexCamParams& module : machine.flex_cams) names.push_back(module.name);
+  return Refused(ErrorId::kUnknownTarget, "target: expected the name of an axis, a cam module or machine, found " +
+                                              Quoted(target) + DidYouMean(target, names));
 }
 
 ParsedCommand UnknownVerb(std::string_view kind, std::string_view verb) {
@@ -126,9 +159,12 @@ ParsedCommand UnknownVerb(std::string_view kind, std::string_view verb) {
   for (const Entry& entry : Entries()) {
     if (entry.verb.target_kind == kind) names.push_back(entry.verb.name);
   }
-  return Refused(ErrorId::kUnknownVerb,
-                 "verb: expected a command of " + std::string(kind == kMachine ? "the machine" : "an axis") +
-                     " (takt reference lists them), found " + Quoted(verb) + DidYouMean(verb, names));
+  return Refused(ErrorId::kUnknownVerb, "verb: expected a command of " +
+                                            std::string(kind == kMachine ? "the machine"
+                                                        : kind == kAxis  ? "an axis"
+                                                                         : "a cam module") +
+                                            " (takt reference lists them), found " + Quoted(verb) +
+                                            DidYouMean(verb, names));
 }
 
 }  // namespace
@@ -137,6 +173,13 @@ bool LetsGo(const Command& command) noexcept {
   if (const auto* machine = std::get_if<MachineCommand>(&command.body)) {
     return std::holds_alternative<Release>(*machine) || std::holds_alternative<StopAll>(*machine) ||
            std::holds_alternative<EmergencyStop>(*machine);
+  }
+  if (const auto* module = std::get_if<flexcam::Command>(&command.body)) {
+    const auto* control = std::get_if<flexcam::Control>(module);
+    const auto* jog = std::get_if<flexcam::Jog>(module);
+    const bool stops = control && (control->stop.value_or(false) || control->halt.value_or(false) ||
+                                   control->sync_out_instant.value_or(false) || !control->regulator_on.value_or(true));
+    return stops || (jog && !jog->positive && !jog->negative);
   }
   const auto& body = std::get<axis::Command>(command.body);
   const auto* power = std::get_if<axis::Power>(&body);
@@ -156,7 +199,7 @@ ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std:
                            std::string_view arguments) {
   const std::optional<std::uint32_t> found = FindTarget(machine, target);
   if (!found) return UnknownTarget(machine, target);
-  const std::string_view kind = *found == kMachineTarget ? kMachine : kAxis;
+  const std::string_view kind = KindOf(machine, *found);
   for (const Entry& entry : Entries()) {
     if (entry.verb.target_kind != kind || entry.verb.name != verb) continue;
     ParsedCommand parsed;
@@ -164,11 +207,8 @@ ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std:
     parsed.level_sensitive = entry.verb.level_sensitive;
     Problem problem;
     if (!entry.read(arguments, parsed.command.body, problem)) return Refused(ErrorId::kParameter, problem.Text());
-    if (*found != kMachineTarget) {
-      const axis::AxisParams& axis = machine.axes[*found - 1];
-      if (std::string sentence = axis::WhyNot(std::get<axis::Command>(parsed.command.body), axis); !sentence.empty()) {
-        return Refused(ErrorId::kParameter, std::move(sentence));
-      }
+    if (std::string sentence = WhyNot(machine, parsed.command); !sentence.empty()) {
+      return Refused(ErrorId::kParameter, std::move(sentence));
     }
     return parsed;
   }
@@ -176,8 +216,7 @@ ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std:
 }
 
 CommandText ToText(const Machine& machine, const Command& command) {
-  const std::string target =
-      command.target == kMachineTarget ? std::string(kMachine) : machine.axes[command.target - 1].name;
+  const std::string target(NameOf(machine, command.target));
   for (const Entry& entry : Entries()) {
     if (const void* arguments = entry.find(command.body)) {
       return {target, std::string(entry.verb.name), WriteFlow(*entry.verb.arguments, arguments)};

@@ -12,6 +12,7 @@
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
 #include "takt/engine/machine.h"
+#include "takt/flexcam/commands.h"
 
 namespace takt::engine {
 
@@ -37,9 +38,10 @@ void describe(Description<Release>&);
 void describe(Description<Renew>&);
 
 using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
-using CommandBody = std::variant<MachineCommand, axis::Command>;
+using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command>;
 
-inline constexpr std::uint32_t kMachineTarget = 0;  // axis i is target i + 1
+// Axis i is target i + 1; cam modules come behind the axes.
+inline constexpr std::uint32_t kMachineTarget = 0;
 
 struct Command {
   Ticket ticket = 0;
@@ -53,7 +55,7 @@ bool LetsGo(const Command& command) noexcept;
 
 // One verb a kind of component understands; `arguments` describes its struct.
 struct Verb {
-  std::string_view target_kind;  // "machine" or "axis"
+  std::string_view target_kind;  // "machine", "axis" or "flex_cam"
   std::string_view name;         // "move_absolute"
   const Type* arguments;
   bool level_sensitive;  // needs a heartbeat over LCM

@@ -1,5 +1,8 @@
 #include "takt/engine/cycle.h"
 
+#include <algorithm>
+#include <array>
+
 #include "takt/axis/axis.h"
 #include "takt/cam/build.h"
 #include "takt/core/describe.h"
@@ -20,8 +23,12 @@ axis::Context ContextOf(World& w, std::size_t i) {
           w.axis_states,    w.axis_params, w.cam_switches, w.cams};
 }
 
-// The k-th axis that axis i must not step before: the one it follows from load on, those it is coupled to, those it
-// will be coupled to by buffered commands. Last come those of `wanted`, a command for axis `of`.
+flexcam::Context ContextOf(World& w, const FlexCam& module) {
+  return {module.params, ContextOf(w, module.slave), module.master, module.homing};
+}
+
+// The k-th axis that axis i must not step before: the one it follows from load on or by a cam module, those it is
+// coupled to, those it will be coupled to by buffered commands. Last come those of `wanted`, a command for axis `of`.
 std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k,
                                       const axis::CouplingRequest* wanted, std::uint32_t of) {
   const axis::State& s = w.axis_states[i];
@@ -32,6 +39,8 @@ std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint
     return std::nullopt;
   };
   if (w.axis_masters[i] && k-- == 0) return w.axis_masters[i];
+  const std::optional<std::uint32_t> led = w.module_of[i] ? w.flex_cams[w.module_of[i] - 1].master : std::nullopt;
+  if (led && k-- == 0) return led;
   if (const auto master = of_request(s.active.coupling, k)) return master;
   for (std::size_t b = 0; b < s.buffered; ++b) {
     if (const auto master = of_request(s.buffer[b].coupling, k)) return master;
@@ -96,14 +105,17 @@ struct MachineApplier {
     }
     Report(FeedbackState::kDone);
   }
-  void operator()(const Release& c) const { ToOwner(c.ticket, axis::Release); }
-  void operator()(const Renew& c) const { ToOwner(c.ticket, axis::Renew); }
+  void operator()(const Release& c) const { ToOwner(c.ticket, axis::Release, flexcam::Release); }
+  void operator()(const Renew& c) const { ToOwner(c.ticket, axis::Renew, flexcam::Renew); }
 
-  template <typename F>
-  void ToOwner(Ticket of, F change) const {
+  template <typename OfAxis, typename OfModule>
+  void ToOwner(Ticket of, OfAxis change, OfModule of_module) const {
     bool found = false;
     for (std::size_t i = 0; i < world.axis_states.size() && !found; ++i) {
       found = change(ContextOf(world, i), of, world.axis_states[i]);
+    }
+    for (std::size_t i = 0; i < world.flex_cams.size() && !found; ++i) {
+      found = of_module(ContextOf(world, world.flex_cams[i]), of, world.flex_cam_states[i]);
     }
     Report(FeedbackState::kDone);  // letting go of what is over already is no error
   }
@@ -143,13 +155,39 @@ World::World(const Machine& machine)
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axis_masters.push_back(engine::MasterOf(machine, i));
   }
+  MakeModules(machine);
   MakeOrder(*this);
+}
+
+void World::MakeModules(const Machine& machine) {
+  TypeOf<flexcam::State>();
+  TypeOf<flexcam::Settings>();
+  TypeOf<flexcam::Configure>();
+  TypeOf<flexcam::Inputs>();
+  TypeOf<flexcam::Control>();
+  module_of.assign(machine.axes.size(), 0);
+  const auto index_of = [](const auto& list, const std::string& name) {
+    return static_cast<std::uint32_t>(std::ranges::find(list, name, [](const auto& x) { return x.name; }) -
+                                      list.begin());
+  };
+  for (const flexcam::FlexCamParams& params : machine.flex_cams) {
+    FlexCam module{params, index_of(machine.axes, params.slave), {}, {}};
+    if (params.master) module.master = index_of(machine.axes, *params.master);
+    module.homing = machine.axes[module.slave].homing;
+    std::array<std::uint32_t, flexcam::kSlots> slots{};
+    for (std::size_t i = 0; i < params.cams.size(); ++i) slots[i] = index_of(machine.cams, params.cams[i]) + 1;
+    flex_cams.push_back(module);
+    flex_cam_states.push_back(flexcam::MakeState(params, slots));
+    module_of[module.slave] = static_cast<std::uint32_t>(flex_cams.size());
+  }
+  flex_cam_outputs.resize(flex_cams.size());
 }
 
 std::uint64_t World::StateHash() const noexcept {
   std::uint64_t hash = cycle.count;
   for (const axis::State& state : axis_states) hash = HashOf(state, hash);
   for (const axis::AxisParams& params : axis_params) hash = HashOf(params, hash);  // settings change them
+  for (const flexcam::State& state : flex_cam_states) hash = HashOf(state, hash);
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
   for (const HeardDrive& drive : drives) hash = HashOf(servo_inputs[drive.axis], HashOf(drive, hash));
   return hash;
@@ -188,6 +226,11 @@ void Apply(World& w, const Command& command) noexcept {
       return;
     }
     axis::Apply(ContextOf(w, i), command.ticket, command.lease_s, body, w.axis_states[i]);
+  } else if (command.target > 0 && command.target <= w.axis_states.size() + w.flex_cams.size()) {
+    const std::size_t i = command.target - 1 - w.axis_states.size();
+    const FlexCam& module = w.flex_cams[i];
+    flexcam::Apply(ContextOf(w, module), command.ticket, command.lease_s, std::get<flexcam::Command>(command.body),
+                   w.axis_states[module.slave], w.flex_cam_states[i]);
   } else {
     w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, ErrorId::kUnknownTarget, 0});
   }
@@ -198,7 +241,12 @@ void Move(World& w) noexcept {
   for (const std::uint32_t i : w.axis_order.sequence()) {
     if (w.axis_states[i].plc == axis::PlcState::kErrorStop) StopMasters(w, i);
   }
-  for (const std::uint32_t i : w.axis_order.sequence()) axis::Move(ContextOf(w, i), w.axis_states[i]);
+  for (const std::uint32_t i : w.axis_order.sequence()) {
+    if (const std::uint32_t module = w.module_of[i]; module != 0) {
+      flexcam::Step(ContextOf(w, w.flex_cams[module - 1]), w.axis_states[i], w.flex_cam_states[module - 1]);
+    }
+    axis::Move(ContextOf(w, i), w.axis_states[i]);
+  }
 }
 
 void Control(World& w) noexcept {
@@ -209,6 +257,10 @@ void Control(World& w) noexcept {
   if (!sound) OpenAllLoops(w);
   for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
     axis::Publish(w.axis_params[i], w.axis_states[i], w.axis_outputs[i]);
+  }
+  for (std::size_t i = 0; i < w.flex_cams.size(); ++i) {
+    const FlexCam& module = w.flex_cams[i];
+    flexcam::Publish(ContextOf(w, module), w.axis_states[module.slave], w.flex_cam_states[i], w.flex_cam_outputs[i]);
   }
 }
 

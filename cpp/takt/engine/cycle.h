@@ -18,6 +18,7 @@
 #include "takt/engine/drives.h"
 #include "takt/engine/machine.h"
 #include "takt/engine/order.h"
+#include "takt/flexcam/module.h"
 #include "takt/plant/servo.h"
 #include "takt/trajectory/planner.h"
 
@@ -28,6 +29,14 @@ namespace takt::engine {
 inline constexpr std::size_t kCommandsPerCycle = 16;
 // The same for renewals, which plan nothing and wait in a queue of their own.
 inline constexpr std::size_t kRenewalsPerCycle = 64;
+
+// What a cam module is made from, with its names looked up.
+struct FlexCam {
+  flexcam::FlexCamParams params;
+  std::uint32_t slave = 0;
+  std::optional<std::uint32_t> master{};
+  axis::HomingParams homing;  // of the slave, as the machine file has it
+};
 
 // Everything the cycle works on, in arrays by component; index i is axis i of the machine.
 struct World {
@@ -46,6 +55,11 @@ struct World {
   Order axis_order;                                        // masters before followers
   std::vector<std::optional<std::uint32_t>> axis_masters;  // which axis each follows, if any
 
+  std::vector<FlexCam> flex_cams;
+  std::vector<flexcam::State> flex_cam_states;
+  std::vector<flexcam::Outputs> flex_cam_outputs;
+  std::vector<std::uint32_t> module_of;  // the cam module that moves each axis, from 1; 0: none
+
   std::vector<ServoInputs> servo_inputs;
   std::vector<ServoOutputs> servo_outputs;
   std::vector<plant::ServoParams> servo_params;
@@ -58,6 +72,9 @@ struct World {
   FeedbackSink feedback;
 
   std::uint64_t StateHash() const noexcept;
+
+ private:
+  void MakeModules(const Machine& machine);
 };
 
 // Not for the cycle (axis/forecast.h).

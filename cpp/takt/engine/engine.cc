@@ -231,6 +231,9 @@ const Cycle& Engine::cycle() const noexcept {
 const axis::Outputs& Engine::outputs(std::size_t axis) const noexcept {
   return impl_->world.axis_outputs[axis];
 }
+const flexcam::Outputs& Engine::flex_cam_outputs(std::size_t module) const noexcept {
+  return impl_->world.flex_cam_outputs[module];
+}
 axis::Forecast Engine::Foresee(std::size_t axis) const {
   return engine::Foresee(impl_->world, axis);
 }

@@ -14,6 +14,7 @@
 #include "takt/engine/drives.h"
 #include "takt/engine/machine.h"
 #include "takt/engine/snapshot.h"
+#include "takt/flexcam/outputs.h"
 
 namespace takt::engine {
 
@@ -54,6 +55,7 @@ class Engine {
   // From RunCycle's thread, or while it does not run.
   const Cycle& cycle() const noexcept;
   const axis::Outputs& outputs(std::size_t axis) const noexcept;
+  const flexcam::Outputs& flex_cam_outputs(std::size_t module) const noexcept;
   const EngineFigures& figures() const noexcept;
   std::uint64_t StateHash() const noexcept;
   // What the motion of an axis is going to do, and what that of a command would if it were given now (AX-96). Nothing

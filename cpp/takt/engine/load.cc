@@ -42,6 +42,8 @@ class CrossCheck {
     CheckMasters();
     CheckNames("cams", machine_.cams);
     CheckNames("cam_switches", machine_.cam_switches);
+    CheckNames("flex_cams", machine_.flex_cams);
+    CheckModules();
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
       CheckReference("simulation.servos[" + std::to_string(i) + "].axis", machine_.simulation.servos[i].axis, servos);
@@ -97,15 +99,45 @@ class CrossCheck {
       }
     }
     Order order(machine_.axes.size());
-    const auto master_of = [&](std::uint32_t i, std::uint32_t k) {
-      return k == 0 ? MasterOf(machine_, i) : std::nullopt;
+    const auto master_of = [&](std::uint32_t i, std::uint32_t k) -> std::optional<std::uint32_t> {
+      const std::optional<std::uint32_t> followed = MasterOf(machine_, i);
+      if (followed && k-- == 0) return followed;
+      const std::optional<std::uint32_t> led = MasterOfModule(machine_, i);
+      return led && k == 0 ? led : std::nullopt;
     };
     if (order.Make(master_of)) return;
     std::string members;
     const std::span<const std::uint32_t> loop = order.loop();
     for (const std::uint32_t i : loop) members += machine_.axes[i].name + " -> ";
-    Add("axes[" + std::to_string(loop.front()) + "].follows.axis",
+    Add("axes[" + std::to_string(loop.front()) + "]",
         "expected axes that follow one another in no loop, found " + members + machine_.axes[loop.front()].name);
+  }
+
+  // Cam modules and the axes and cams that they name.
+  void CheckModules() {
+    std::vector<std::string_view> slaves;
+    std::vector<std::string_view> cams;
+    for (const cam::CamParams& cam : machine_.cams) cams.push_back(cam.name);
+    for (std::size_t i = 0; i < machine_.flex_cams.size(); ++i) {
+      const flexcam::FlexCamParams& module = machine_.flex_cams[i];
+      const std::string path = "flex_cams[" + std::to_string(i) + "]";
+      if (module.name == "machine" || std::ranges::find(names_, module.name) != names_.end()) {
+        Add(path + ".name", "expected a name that no axis has, and not machine, found " + Quoted(module.name));
+      }
+      CheckReference(path + ".slave", module.slave, slaves);
+      std::vector<std::string_view> any;
+      if (module.master) CheckReference(path + ".master", *module.master, any);
+      for (const axis::AxisParams& axis : machine_.axes) {
+        if (axis.name == module.slave && axis.follows) {
+          Add(path + ".slave", "expected an axis that does not follow another, found " + Quoted(module.slave));
+        }
+      }
+      for (std::size_t k = 0; k < module.cams.size(); ++k) {
+        if (std::ranges::find(cams, module.cams[k]) != cams.end()) continue;
+        Add(path + ".cams[" + std::to_string(k) + "]",
+            "expected the name of a cam, found " + Quoted(module.cams[k]) + DidYouMean(module.cams[k], cams));
+      }
+    }
   }
 
   template <typename T>

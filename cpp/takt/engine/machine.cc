@@ -118,6 +118,7 @@ void describe(Description<Machine>& d) {
   d.required<&M::axes>("The axes.");
   d.defaulted<&M::cams>("Cams, for any axis.");
   d.defaulted<&M::cam_switches>("Lists of cam switches.");
+  d.defaulted<&M::flex_cams>("Cam modules.");
   d.defaulted<&M::simulation>("What stands in for the metal.");
   d.defaulted<&M::external>("What lives in other processes.");
 }

@@ -11,6 +11,7 @@
 #include "takt/axis/params.h"
 #include "takt/cam/params.h"
 #include "takt/core/describe_fwd.h"
+#include "takt/flexcam/params.h"
 #include "takt/plant/servo.h"
 
 namespace takt::engine {
@@ -64,6 +65,7 @@ struct Machine {
   std::vector<axis::AxisParams> axes;
   std::vector<cam::CamParams> cams;
   std::vector<axis::CamSwitches> cam_switches;
+  std::vector<flexcam::FlexCamParams> flex_cams;
   Simulation simulation;
   External external;
 };

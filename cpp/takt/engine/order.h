@@ -66,5 +66,7 @@ class Order {
 
 // Index of the axis that this one follows from load on, if any.
 std::optional<std::uint32_t> MasterOf(const Machine& machine, std::size_t axis);
+// Index of the axis that the cam module which moves this one follows, if any.
+std::optional<std::uint32_t> MasterOfModule(const Machine& machine, std::size_t axis);
 
 }  // namespace takt::engine

@@ -1,0 +1,65 @@
+#include "takt/axis/guidance.h"
+
+#include "takt/axis/sequence.h"
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+namespace {
+
+Status MayGuide(const Context& c, const State& s) {
+  if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
+  if (c.params.await_constants && !s.constants_set) return Status::Failed(ErrorId::kNoConstants);
+  if (c.params.follows || s.plc == PlcState::kHoming) return Status::Failed(ErrorId::kState);
+  if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
+  if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
+  return Status::Ok();
+}
+
+}  // namespace
+
+Status Guide(const Context& c, State& s) noexcept {
+  if (const Status status = MayGuide(c, s); status.failed()) return status;
+  AbortAll(c, s);
+  Request guided;
+  guided.kind = RequestKind::kGuided;
+  Grant(c, guided, s);
+  s.guidance = {{s.setpoint.position + s.origin, s.setpoint.velocity, s.setpoint.acceleration}, {}};
+  s.limited_by = LimitedBy::kNothing;
+  s.motion.profile = trajectory::Profile{s.setpoint};
+  s.motion.target = s.setpoint.position;
+  s.motion.arrived = false;
+  Enter(s, PlcState::kSynchronizedMotion);
+  return Status::Ok();
+}
+
+bool IsGuided(const State& s) noexcept {
+  return s.active.kind == RequestKind::kGuided;
+}
+
+void LetGoOfGuidance(const Context& c, State& s) noexcept {
+  if (!IsGuided(s)) return;
+  EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+  if (!AtRest(s)) return ComeToRest(c, c.params.planner_limits(), FromCycleBefore(c), s);
+  s.motion.arrived = true;
+  s.motion.arrived_cycle = c.cycle.count;
+  Enter(s, PlcState::kStandstill);
+}
+
+void FollowGuidance(const Context& c, State& s) noexcept {
+  const trajectory::Limits own = c.params.planner_limits();
+  KinematicState demand = s.guidance.demand;
+  demand.position -= s.origin;
+  ChaseState& chase = s.guidance.chase;
+  s.setpoint = Chase({c.params, c.planner, own, c.cycle.period_s}, ChaseMode::kPosition, s.setpoint, demand, chase);
+  s.limited_by = Beyond(own, demand, chase.in_step);
+  if (!AtRest(s)) s.motion.arrived_cycle = c.cycle.count;
+}
+
+void describe(Description<GuidanceState>& d) {
+  d.about("Set points of another component of the machine.");
+  d.internal<&GuidanceState::demand>("Where it wants the axis, over all turns.");
+  d.internal<&GuidanceState::chase>("Following that.");
+}
+
+}  // namespace takt::axis

@@ -1,0 +1,33 @@
+// An axis whose set points come from another component of the machine, cycle by cycle: a cam module, a group.
+#pragma once
+
+#include "takt/axis/chase.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/feedback.h"
+#include "takt/core/kinematic_state.h"
+#include "takt/core/status.h"
+
+namespace takt::axis {
+
+struct Context;
+struct State;
+
+// The component writes `demand` before the axis moves; the axis follows it within its limits (axis/chase.h). A demand
+// that they allow is taken bit for bit.
+struct GuidanceState {
+  KinematicState demand;  // over all turns: position + origin
+  ChaseState chase;
+};
+
+// Puts the component in control; what was in control is aborted. From the next Move on the axis follows `demand`, which
+// begins as the axis moves now. Refuses like a command: kErrorStop, kPowerOff, kAxisStopping, kNoConstants, kState.
+Status Guide(const Context& c, State& s) noexcept;
+bool IsGuided(const State& s) noexcept;
+// The component lets go: an axis that moves comes to rest.
+void LetGoOfGuidance(const Context& c, State& s) noexcept;
+// The next set point of a guided axis.
+void FollowGuidance(const Context& c, State& s) noexcept;
+
+void describe(Description<GuidanceState>&);
+
+}  // namespace takt::axis

@@ -1,0 +1,38 @@
+// The extreme values of the slave (the seed's 3.19 and 3.25), a few pieces of the cams in each cycle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "takt/cam/extremes.h"
+#include "takt/cam/table.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/flexcam/commands.h"
+
+namespace takt::flexcam {
+
+// For what they are worked out.
+struct BoundsOf {
+  std::array<std::uint32_t, kSlots> cams{};  // indices among the machine's cams
+  std::uint32_t count = 0;                   // of them
+  double velocity = 0;                       // of X
+  double acceleration = 0;
+
+  bool operator==(const BoundsOf&) const = default;
+};
+
+struct BoundsState {
+  BoundsOf of;
+  std::uint32_t cam = 0;    // at which of them the work is ...
+  std::uint32_t piece = 0;  // ... and at which of its pieces
+  bool valid = false;       // the work is done
+  double max_position = 0, min_position = 0, max_velocity = 0, max_acceleration = 0;  // of y
+};
+
+void WorkOut(const BoundsOf& of, std::span<const cam::Table> cams, BoundsState& state) noexcept;
+
+void describe(Description<BoundsOf>&);
+void describe(Description<BoundsState>&);
+
+}  // namespace takt::flexcam

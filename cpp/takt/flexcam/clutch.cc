@@ -1,0 +1,413 @@
+#include "takt/flexcam/clutch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/cam/roots.h"
+#include "takt/core/describe.h"
+
+namespace takt::flexcam {
+
+namespace {
+
+using trajectory::Quintic;
+
+constexpr int kBisections = 40;
+constexpr int kTurnsAhead = 3;
+constexpr double kNear = 1e-9;
+
+double TurnOf(const axis::AxisParams& p) {
+  return p.rotary() ? p.modulus : 0;
+}
+
+bool KeepsSense(const ClutchContext& c) {
+  return c.settings.position_control == PositionControl::kMasterDirection;
+}
+
+// The curve over its length, as one of a cam's.
+cam::Curve CurveOf(const Quintic& q) {
+  cam::Curve curve;
+  double power = 1;
+  for (std::size_t i = 0; i < q.c.size(); ++i, power *= q.length) curve.c[i] = q.c[i] / power;
+  return curve;
+}
+
+double LeastSlope(const Quintic& q) {
+  const cam::Curve slope = cam::Derivative(CurveOf(q));
+  double least = HUGE_VAL;
+  for (const double x : cam::ExtremePlaces(slope, q.length)) least = std::min(least, slope.At(x));
+  return least;
+}
+
+// Whether it never turns round. What rounding makes of a slope of zero is none.
+bool Monotone(const Quintic& q) {
+  return LeastSlope(q) >= -kNear * (std::abs(q.c[1]) + std::abs(q.At(q.length).position - q.c[0])) / q.length;
+}
+
+// Whether the slave can do it while the master keeps its speed.
+bool WithinLimits(const ClutchContext& c, const Quintic& q) {
+  const cam::Curve slope = cam::Derivative(CurveOf(q));
+  const double v = std::abs(c.master.velocity);
+  const trajectory::Limits own = c.slave.planner_limits();
+  return cam::LargestMagnitude(slope, q.length) * v <= own.velocity &&
+         cam::LargestMagnitude(cam::Derivative(slope), q.length) * v * v <=
+             std::min(own.acceleration, own.deceleration);
+}
+
+// Place and slope over the master's way -> over the way in its sense.
+KinematicState InSense(const KinematicState& over, double sense) {
+  return {over.position, sense * over.velocity, over.acceleration};
+}
+
+// How the slave moves over the master's way.
+KinematicState OwnOver(const ClutchContext& c) {
+  const KinematicState& m = c.master_before;
+  const KinematicState& own = c.own_before;
+  if (m.velocity == 0 || (own.velocity == 0 && own.acceleration == 0)) return {own.position, 0, 0};
+  const double slope = own.velocity / m.velocity;
+  return {own.position, slope, (own.acceleration - slope * m.acceleration) / (m.velocity * m.velocity)};
+}
+
+// Of the places every `turn` from `position` on the next one ahead of `from` in this sense; no turn: as it is.
+double NextAhead(double turn, double position, double from, double sense) {
+  if (turn == 0) return position;
+  const double turns = (from - position) / turn;
+  return position + turn * (sense < 0 ? std::floor(turns) : std::ceil(turns));
+}
+
+double SyncPlace(const ClutchContext& c, double distance, double sense) {
+  const double place = c.settings.master_sync_in_position + c.master_zero;
+  const double from = c.master_before.position + sense * distance * (1 - kNear);
+  return NextAhead(c.master_turn, place, from, sense);
+}
+
+// In which the master goes, or will have to go; 0: nobody knows yet.
+double SenseOf(const ClutchContext& c) {
+  if (c.master.velocity != 0) return c.master.velocity > 0 ? 1 : -1;
+  if (c.settings.sync_direction == SyncDirection::kCurrent) return 0;
+  return c.settings.sync_direction == SyncDirection::kPositive ? 1 : -1;
+}
+
+bool RightDirection(const ClutchContext& c, double velocity) {
+  switch (c.settings.sync_direction) {
+    case SyncDirection::kPositive:
+      return velocity > 0;
+    case SyncDirection::kNegative:
+      return velocity < 0;
+    default:
+      return true;
+  }
+}
+
+// Brings the place that the cam means to the turn of a rotary slave that is nearest to `position`.
+void NearestTurn(const ClutchContext& c, double wanted, double position, Way& way) {
+  const double turn = TurnOf(c.slave);
+  if (turn != 0) way.to_slave.out_zero += turn * std::round((position - wanted) / turn);
+}
+
+// Finds turn and way such that the curve keeps its sense. False: there is none.
+bool KeepSense(const ClutchContext& c, const KinematicState& own, double place, double sense, Way& way,
+               ClutchState& s) {
+  const double full = c.settings.master_sync_in_distance;
+  const double turn = TurnOf(c.slave);
+  const auto curve = [&](double distance, double shift) {
+    KinematicState end = PlaceAt(way, c.table, place);
+    end.position += shift;
+    return trajectory::Connect(distance, InSense(own, sense), InSense(end, sense));
+  };
+  const double ahead = sense * (own.position - PlaceAt(way, c.table, place).position);
+  const double first = turn == 0 ? 0 : sense * turn * std::ceil(ahead / turn - kNear);
+  for (int k = 0; k < (turn == 0 ? 1 : kTurnsAhead); ++k) {
+    const double shift = first + k * sense * turn;
+    if (const Quintic whole = curve(full, shift); Monotone(whole)) {
+      way.to_slave.out_zero += shift;
+      s.distance = full;
+      return true;
+    }
+    double low = 0, high = full;
+    for (int i = 0; i < kBisections; ++i) {
+      const double middle = 0.5 * (low + high);
+      (Monotone(curve(middle, shift)) ? low : high) = middle;
+    }
+    if (low <= kNear * full || !WithinLimits(c, curve(low, shift))) continue;
+    way.to_slave.out_zero += shift;
+    s.distance = low;
+    return true;
+  }
+  return false;
+}
+
+// Where a curve over the master's way begins, and in which turn of the slave it ends.
+bool PlanWay(const ClutchContext& c, double sense, Way& way, ClutchState& s) {
+  const double full = c.settings.master_sync_in_distance;
+  const KinematicState own = OwnOver(c);
+  const double place = SyncPlace(c, full, sense);
+  s.planned_sense = sense;
+  if (KeepsSense(c)) return KeepSense(c, own, place, sense, way, s);
+  s.distance = full;
+  if (!c.settings.slave_absolute) return true;
+  const KinematicState end = PlaceAt(way, c.table, place);
+  NearestTurn(c, end.position, own.position + 0.5 * sense * (own.velocity + end.velocity) * full, way);
+  return true;
+}
+
+void BeginCurve(const ClutchContext& c, double length, double sense, const KinematicState& end, ClutchState& s) {
+  s.end = end;
+  s.sense = sense;
+  s.curve_begin = c.master_before.position;
+  s.curve = trajectory::Connect(length, InSense(OwnOver(c), sense), InSense(end, sense));
+}
+
+KinematicState OnCurve(const ClutchContext& c, const ClutchState& s) {
+  const double x = s.sense * (c.master.position - s.curve_begin);
+  if (x < 0) return {s.curve.At(0).position, 0, 0};
+  return trajectory::AlongWay(InSense(s.curve.At(x), s.sense), c.master);
+}
+
+double OnCurveBy(const ClutchContext& c, const ClutchState& s) {
+  return s.sense * (c.master.position - s.curve_begin);
+}
+
+KinematicState Sum(const KinematicState& a, const KinematicState& b) {
+  return {a.position + b.position, a.velocity + b.velocity, a.acceleration + b.acceleration};
+}
+
+KinematicState Shift(const KinematicState& own, const KinematicState& wanted) {
+  return {own.position - wanted.position, own.velocity - wanted.velocity, own.acceleration - wanted.acceleration};
+}
+
+trajectory::Limits ClutchLimits(const ClutchContext& c) {
+  const trajectory::Limits own = c.slave.planner_limits();
+  const Settings& s = c.settings;
+  return {std::min(s.sync_velocity, own.velocity), std::min(s.sync_acceleration, own.acceleration),
+          std::min(s.sync_deceleration, own.deceleration),
+          own.jerk > 0 ? std::min(s.sync_jerk, own.jerk) : s.sync_jerk};
+}
+
+// Begins to bring what lies between the slave and Y to zero.
+void BeginShift(const ClutchContext& c, const KinematicState& shift, ClutchState& s) {
+  if (s.mode == SyncMode::kRampTime) {
+    BeginTime(shift, c.settings.sync_in_time_s, c.cycle, s.ramp);
+  } else if (!BeginProfile(shift, ClutchLimits(c), c.cycle, c.planner, s.ramp)) {
+    s.mode = SyncMode::kAbsolute;
+  }
+}
+
+void StartClosing(const ClutchContext& c, Way& way, ClutchState& s) {
+  s.phase = ClutchPhase::kClosing;
+  KinematicState wanted = c.wanted_before;
+  if (s.mode == SyncMode::kRelative) {
+    way.to_slave.out_zero += c.own_before.position - wanted.position;
+  } else if (c.settings.slave_absolute) {
+    const double before = way.to_slave.out_zero;
+    NearestTurn(c, wanted.position, c.own_before.position, way);
+    wanted.position += way.to_slave.out_zero - before;
+  }
+  if (s.mode == SyncMode::kRampTime || s.mode == SyncMode::kRampVelAcc) BeginShift(c, Shift(c.own_before, wanted), s);
+}
+
+// The master has come to where the curve begins, or is on its way from there to the sync position already.
+bool AtBegin(const ClutchContext& c, double sense, const ClutchState& s, double& place) {
+  place = SyncPlace(c, s.distance, sense);
+  const double left = sense * (place - c.master.position);
+  return left <= s.distance && sense * (place - c.master_before.position) > 0 && c.master.velocity != 0;
+}
+
+Status WaitForWay(const ClutchContext& c, Way& way, ClutchState& s) {
+  const double sense = SenseOf(c);
+  if (sense == 0 || !RightDirection(c, sense)) return Status::Ok();
+  if (s.planned_sense != sense && !PlanWay(c, sense, way, s)) return Status::Failed(ErrorId::kWouldReverse);
+  double place = 0;
+  if (!AtBegin(c, sense, s, place)) return Status::Ok();
+  const double length = sense * (place - c.master_before.position);
+  const KinematicState end = PlaceAt(way, c.table, place);
+  BeginCurve(c, length, sense, end, s);
+  if (KeepsSense(c) && !Monotone(s.curve)) {  // something has changed since it was planned
+    if (!PlanWay(c, sense, way, s)) return Status::Failed(ErrorId::kWouldReverse);
+    return Status::Ok();
+  }
+  s.phase = ClutchPhase::kClosing;
+  return Status::Ok();
+}
+
+// The end of the curve over the master's way: what the cam says there now may differ from what it was to say.
+void EndCurve(const ClutchContext& c, const Way& way, ClutchState& s) {
+  const double place = s.curve_begin + s.sense * s.curve.length;
+  const KinematicState now = PlaceAt(way, c.table, place);
+  const KinematicState left = Shift(s.end, now);
+  const double size = 1 + std::abs(now.position);
+  s.phase = ClutchPhase::kClosed;
+  if (std::abs(left.position) < kNear * size && std::abs(left.velocity) < kNear * (1 + std::abs(now.velocity))) return;
+  s.phase = ClutchPhase::kClosing;
+  s.mode = SyncMode::kRampVelAcc;
+  BeginShift(c, trajectory::AlongWay(left, c.master), s);
+}
+
+KinematicState Closing(const ClutchContext& c, const KinematicState& wanted, const Way& way, ClutchState& s) {
+  if (s.mode == SyncMode::kRampPos) {
+    if (OnCurveBy(c, s) < s.curve.length) return OnCurve(c, s);
+    EndCurve(c, way, s);
+    if (s.phase == ClutchPhase::kClosed) return wanted;
+  }
+  if (s.mode == SyncMode::kRampTime || s.mode == SyncMode::kRampVelAcc) {
+    if (IsOver(s.ramp, c.cycle, c.master)) s.phase = ClutchPhase::kClosed;
+    return Sum(wanted, At(s.ramp, c.cycle, c.master));
+  }
+  if (c.in_step) s.phase = ClutchPhase::kClosed;
+  return wanted;
+}
+
+// The turn of the sync-out position that lies nearest to where the slave comes.
+double OutPlace(const ClutchContext& c, double expected) {
+  const double place = c.settings.slave_sync_out_position + c.slave_zero;
+  const double turn = TurnOf(c.slave);
+  return turn == 0 ? place : place + turn * std::round((expected - place) / turn);
+}
+
+bool BeginOut(const ClutchContext& c, ClutchState& s) {
+  if (c.master.velocity == 0 || c.master_before.velocity == 0) return false;
+  const double sense = c.master.velocity > 0 ? 1 : -1;
+  const double length = c.settings.master_sync_out_distance;
+  const KinematicState own = OwnOver(c);
+  s.out = OutPlace(c, own.position + 0.5 * sense * own.velocity * length);
+  const double turn = TurnOf(c.slave);
+  for (int k = 0; k < kTurnsAhead; ++k, s.out += sense * turn) {
+    BeginCurve(c, length, sense, {s.out, 0, 0}, s);
+    if (!KeepsSense(c) || Monotone(s.curve)) {
+      s.phase = ClutchPhase::kOpening;
+      return true;
+    }
+    if (turn == 0) break;
+  }
+  return false;
+}
+
+KinematicState Opening(const ClutchContext& c, const KinematicState& wanted, ClutchState& s) {
+  const KinematicState rest = {s.out, 0, 0};
+  bool there = true;
+  KinematicState demand = rest;
+  if (s.mode == SyncMode::kRampPos) {
+    const double x = OnCurveBy(c, s);
+    if (x < 0) return wanted;  // the master went back to before the opening began
+    there = x >= s.curve.length;
+    if (!there) demand = OnCurve(c, s);
+  } else if (s.mode == SyncMode::kRampTime || s.mode == SyncMode::kRampVelAcc) {
+    there = IsOver(s.ramp, c.cycle, c.master);
+    demand = Sum(rest, At(s.ramp, c.cycle, c.master));
+  }
+  if (there && c.at_rest && c.in_step) s.phase = ClutchPhase::kOpen;
+  return demand;
+}
+
+}  // namespace
+
+bool IsCoupled(const ClutchState& s) noexcept {
+  return s.phase != ClutchPhase::kOpen && s.phase != ClutchPhase::kReleased;
+}
+
+bool IsFrozen(const ClutchState& s) noexcept {
+  return s.phase == ClutchPhase::kWaitingIn || s.phase == ClutchPhase::kClosing;
+}
+
+void BeginClosing(const ClutchContext& c, Way&, ClutchState& s) noexcept {
+  s.phase = ClutchPhase::kWaitingIn;
+  s.mode = c.settings.sync_mode;
+  if (s.mode == SyncMode::kRampPos && c.settings.master_sync_in_distance == 0) s.mode = SyncMode::kAbsolute;
+  s.planned_sense = 0;
+  s.distance = c.settings.master_sync_in_distance;
+  s.out = trajectory::StopPosition(c.own_before, c.slave.planner_limits());
+}
+
+void BeginOpening(const ClutchContext& c, ClutchState& s) noexcept {
+  const KinematicState& own = c.own_before;
+  if (s.phase == ClutchPhase::kWaitingIn) {  // it was never on the cam
+    s.phase = ClutchPhase::kOpening;
+    s.mode = SyncMode::kAbsolute;
+    return;
+  }
+  s.mode = c.settings.sync_mode;
+  if (s.mode == SyncMode::kRampPos && c.settings.master_sync_out_distance > 0) {
+    s.phase = s.phase == ClutchPhase::kClosed ? ClutchPhase::kWaitingOut : ClutchPhase::kOpening;
+    if (s.phase == ClutchPhase::kWaitingOut || BeginOut(c, s)) return;
+    s.mode = SyncMode::kRampVelAcc;  // there is no cam to wait on
+  }
+  s.phase = ClutchPhase::kOpening;
+  if (s.mode == SyncMode::kAbsolute || s.mode == SyncMode::kRelative) {
+    s.out = own.position;
+    return;
+  }
+  s.out = OutPlace(c, own.position);
+  const KinematicState shift = Shift(own, {s.out, 0, 0});
+  if (s.mode == SyncMode::kRampTime) {
+    BeginTime(shift, c.settings.sync_out_time_s, c.cycle, s.ramp);
+  } else if (s.mode == SyncMode::kRampVelAcc && !BeginProfile(shift, ClutchLimits(c), c.cycle, c.planner, s.ramp)) {
+    s.mode = SyncMode::kAbsolute;
+  }
+}
+
+Status StepClutch(const ClutchContext& c, const KinematicState& wanted, Way& way, ClutchState& s,
+                  KinematicState& demand) noexcept {
+  const double zero = way.to_slave.out_zero;
+  const auto shifted = [&] {
+    return KinematicState{wanted.position + way.to_slave.out_zero - zero, wanted.velocity, wanted.acceleration};
+  };
+  if (s.phase == ClutchPhase::kWaitingIn) {
+    if (s.mode == SyncMode::kRampPos) {
+      if (const Status status = WaitForWay(c, way, s); status.failed()) return status;
+    } else if (RightDirection(c, c.master.velocity)) {
+      StartClosing(c, way, s);
+    }
+    demand = {s.out, 0, 0};
+  }
+  if (s.phase == ClutchPhase::kWaitingOut) BeginOut(c, s);
+  switch (s.phase) {
+    case ClutchPhase::kClosing:
+      demand = Closing(c, shifted(), way, s);
+      break;
+    case ClutchPhase::kClosed:
+    case ClutchPhase::kWaitingOut:
+      demand = wanted;
+      break;
+    case ClutchPhase::kOpening:
+      demand = Opening(c, wanted, s);
+      break;
+    default:
+      break;
+  }
+  return Status::Ok();
+}
+
+void describe(Enumeration<ClutchPhase>& e) {
+  e.about("How far the clutch is.");
+  e.value(ClutchPhase::kOpen, "open", "The slave is on its own.");
+  e.value(ClutchPhase::kWaitingIn, "waiting_in", "The master is not yet where it begins to close.");
+  e.value(ClutchPhase::kClosing, "closing", "On the way onto the cam.");
+  e.value(ClutchPhase::kClosed, "closed", "On the cam.");
+  e.value(ClutchPhase::kWaitingOut, "waiting_out", "On the cam, and waits to leave it.");
+  e.value(ClutchPhase::kOpening, "opening", "On the way to where the slave is to rest.");
+  e.value(ClutchPhase::kReleased, "released", "Opened at once; the slave comes to rest.");
+}
+
+void describe(Description<ClutchState>& d) {
+  using S = ClutchState;
+  d.about("The clutch.");
+  d.internal<&S::phase>("How far it is.");
+  d.internal<&S::mode>("In which it closes or opens.");
+  d.internal<&S::ramp>("Over time.");
+  d.internal<&S::curve>("Over the master's way.");
+  d.internal<&S::curve_begin>("Master's position where the curve begins.");
+  d.internal<&S::sense>("In which the master goes on it.");
+  d.internal<&S::end>("Where it ends, over the master's way.");
+  d.internal<&S::distance>("Before the sync position: where it begins.");
+  d.internal<&S::planned_sense>("For which that was planned.");
+  d.internal<&S::out>(unit::u, "Where the slave is to rest.");
+}
+
+void describe(Description<Way>& d) {
+  d.about("The way from the master to the slave.");
+  d.internal<&Way::to_x>("Scaling and offset of the master.");
+  d.internal<&Way::profiler>("The cam.");
+  d.internal<&Way::to_slave>("Scaling and offset of the slave.");
+}
+
+}  // namespace takt::flexcam

@@ -1,0 +1,88 @@
+// What a cam module understands. Its inputs are levels, as those of the seed's block: they stay until they are changed.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "takt/cam/params.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/given.h"
+#include "takt/core/name.h"
+#include "takt/flexcam/settings.h"
+
+namespace takt::flexcam {
+
+inline constexpr std::size_t kSlots = 4;
+
+// The inputs of the seed's 3.3.2; "Seed:" in the doc strings is the name there.
+template <template <typename> class Of>
+struct InputsOf {
+  Of<bool> enable = Preset<Of>(true);
+  Of<bool> internal_control = Preset<Of>(false);
+  Of<bool> reset_error = Preset<Of>(false);
+  Of<bool> regulator_on = Preset<Of>(false);
+  Of<bool> stop = Preset<Of>(false);
+  Of<bool> halt = Preset<Of>(false);
+  Of<bool> home_execute = Preset<Of>(false);
+  Of<bool> home_abs_switch = Preset<Of>(false);
+  Of<bool> enable_hw_limit = Preset<Of>(false);
+  Of<bool> hw_limit_positive = Preset<Of>(false);
+  Of<bool> hw_limit_negative = Preset<Of>(false);
+  Of<bool> sync_cam = Preset<Of>(false);
+  Of<bool> sync_out_instant = Preset<Of>(false);
+  Of<bool> cam_change_instant = Preset<Of>(false);
+  Of<bool> cam_sequencer = Preset<Of>(false);
+  Of<double> offset_master = Preset<Of>(0.0);   // x
+  Of<double> offset_slave = Preset<Of>(0.0);    // u
+  Of<double> scaling_master = Preset<Of>(1.0);  // x per master's u
+  Of<double> scaling_slave = Preset<Of>(1.0);   // u per y
+  Of<std::uint32_t> cam_table = Preset<Of>(std::uint32_t{1});
+  Of<double> virtual_velocity = Preset<Of>(0.0);  // master's u/s
+};
+using Inputs = InputsOf<Plain>;
+
+// Changes inputs. Where it closes or opens the clutch or starts homing, it is done when that is.
+using Control = InputsOf<std::optional>;
+
+// Level-sensitive: give it again to change the levels, both false (or a release) to let go.
+struct Jog {
+  bool positive = false;
+  bool negative = false;
+};
+
+struct SetCam {  // another cam in a slot
+  std::uint32_t slot = 1;
+  Name cam;
+};
+
+// When a change of cam takes place.
+enum class ChangeWhen : std::uint8_t { kAtOnce, kMasterPosition, kCamPosition, kNextCycle, kWithoutJump };
+// What is shifted so that both cams meet.
+enum class ChangeAlign : std::uint8_t { kNothing, kPosition, kVelocity };
+
+struct ChangeCam {
+  std::uint32_t cam_table = 1;
+  ChangeWhen when = ChangeWhen::kNextCycle;
+  double position = 0;  // master's u or x, where `when` needs one
+  ChangeAlign align = ChangeAlign::kNothing;
+};
+struct WithdrawChanges {};  // of those that have not taken place
+
+using Command = std::variant<Control, Jog, Configure, SetCam, ChangeCam, WithdrawChanges>;
+
+// What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
+std::string WhyNot(const Command& command, std::span<const cam::CamParams> cams);
+
+void describe(Enumeration<ChangeWhen>&);
+void describe(Enumeration<ChangeAlign>&);
+void describe(Description<Inputs>&);
+void describe(Description<Control>&);
+void describe(Description<Jog>&);
+void describe(Description<SetCam>&);
+void describe(Description<ChangeCam>&);
+void describe(Description<WithdrawChanges>&);
+
+}  // namespace takt::flexcam

@@ -1,0 +1,51 @@
+// Scaling and offset, on the way from the master to X and from Y to the slave (the seed's 3.17 and 3.18): pure, but for
+// the ramps it plans.
+//
+//   out = factor * (in - in_zero) + out_zero + offset + ramp
+#pragma once
+
+#include "takt/core/cycle.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/kinematic_state.h"
+#include "takt/flexcam/ramp.h"
+#include "takt/flexcam/settings.h"
+#include "takt/trajectory/planner.h"
+
+namespace takt::flexcam {
+
+struct Conversion {
+  double factor = 1;  // > 0 on the master's side, >= 0 on the slave's
+  double offset = 0;
+  double in_zero = 0;
+  double out_zero = 0;
+  Ramp ramp;
+};
+
+// What is wanted of it, and how it gets there.
+struct ConversionTarget {
+  double factor = 1;
+  double offset = 0;
+  ScalingMode scaling_mode = ScalingMode::kXZero;
+  OffsetMode offset_mode = OffsetMode::kXZero;
+  trajectory::Limits ramps;  // of the output
+  bool with_master = false;  // ramps go by the way of the input, never against it ...
+  double speed = 1;          // ... with limits for this speed of it, > 0
+  bool at_once = false;      // nothing follows the output: no modes, no ramps
+  double absolute_zero = 0;  // input that absolute scaling counts from
+};
+
+KinematicState Convert(const Conversion& conversion, const Cycle& cycle, const KinematicState& in) noexcept;
+// The input at which the output is `out`, while no ramp is in progress.
+double InverseOf(const Conversion& conversion, double out) noexcept;
+// Counts from another input; the output stays what it is.
+void CountFrom(double in_zero, Conversion& conversion) noexcept;
+
+// Each cycle: takes over what has changed and may be taken over anywhere; `before` is the input of the cycle before.
+void Approach(const ConversionTarget& target, const Cycle& cycle, const KinematicState& before,
+              trajectory::Planner& planner, Conversion& conversion) noexcept;
+// Where the cam begins or ends, at the input `at`: takes over what waits for that (x_zero).
+void ApproachAtZero(const ConversionTarget& target, double at, Conversion& conversion) noexcept;
+
+void describe(Description<Conversion>&);
+
+}  // namespace takt::flexcam

@@ -1,0 +1,551 @@
+#include "takt/flexcam/module.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/axis/coupling.h"
+#include "takt/axis/guidance.h"
+#include "takt/axis/homing.h"
+#include "takt/flexcam/run.h"
+
+namespace takt::flexcam {
+
+namespace {
+
+// A ramp of the module's, no stronger than the slave's own.
+double Within(double asked, double own) {
+  return own > 0 ? std::min(asked, own) : asked;
+}
+
+// Gives the slave a command; why it was refused, if it was.
+ErrorId Tell(const Context& c, const axis::Command& command, axis::State& slave) {
+  const std::size_t before = c.slave.feedback.events().size();
+  axis::Apply(c.slave, 0, 0, command, slave);
+  for (const FeedbackEvent& event : c.slave.feedback.events().subspan(before)) {
+    if (event.ticket == 0 && event.state == FeedbackState::kError) return event.error;
+  }
+  return ErrorId::kNone;
+}
+
+bool IsOn(const axis::State& slave) {
+  return slave.loop_closed && slave.plc != axis::PlcState::kErrorStop;
+}
+
+void EndAction(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
+  if (feedback == FeedbackState::kError) s.warning = error;
+  if (s.action == Action::kNone) return;
+  Report(c, s.action_ticket, feedback, error);
+  s.done = feedback == FeedbackState::kDone;
+  s.action = Action::kNone;
+  s.action_ticket = 0;
+}
+
+void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
+  if (s.jog.ticket != 0) Report(c, s.jog.ticket, feedback, error);
+  s.jog = {};
+}
+
+void Brake(const Context& c, double deceleration, double jerk, bool hold, axis::State& slave) {
+  const trajectory::Limits own = c.slave.params.planner_limits();
+  const double within = Within(deceleration, own.deceleration);
+  const double within_jerk = Within(jerk, own.jerk);
+  if (hold) {
+    Tell(c, axis::Stop{.deceleration = within, .jerk = within_jerk, .hold = true}, slave);
+  } else {
+    Tell(c, axis::Halt{.deceleration = within, .jerk = within_jerk}, slave);
+  }
+}
+
+// The clutch is open, however it came to that; the slave is somebody else's.
+void Abandon(const Context& c, State& s) {
+  s.clutch = {};
+  s.sequencer = {};
+  s.master.coasts = false;
+  AbortChanges(c, s);
+  EndAction(c, FeedbackState::kAborted, ErrorId::kNone, s);
+}
+
+// The number of the seed for what stopped the slave, where it has one.
+ErrorId ErrorOf(ErrorId axis_error) {
+  switch (axis_error) {
+    case ErrorId::kLimitSwitchPositive:
+      return ErrorId::kModuleLimitSwitchPositive;
+    case ErrorId::kLimitSwitchNegative:
+      return ErrorId::kModuleLimitSwitchNegative;
+    case ErrorId::kSoftLimitPositive:
+      return ErrorId::kModuleSoftLimitPositive;
+    case ErrorId::kSoftLimitNegative:
+      return ErrorId::kModuleSoftLimitNegative;
+    default:
+      return axis_error;
+  }
+}
+
+void Fail(const Context& c, ErrorId error, axis::State& slave, State& s) {
+  if (s.error == ErrorId::kNone) s.error = error;
+  if (s.state == ModuleState::kError) return;
+  s.state = ModuleState::kError;
+  EndAction(c, FeedbackState::kError, error, s);
+  EndJog(c, FeedbackState::kError, error, s);
+  Abandon(c, s);
+  if (IsOn(slave)) Brake(c, s.settings.stop_deceleration, s.settings.stop_jerk, true, slave);
+}
+
+void WatchLimits(const Context& c, axis::State& slave, State& s) {
+  if (slave.error != ErrorId::kNone) return Fail(c, ErrorOf(slave.error), slave, s);
+  if (!s.inputs.enable_hw_limit) return;
+  // On a new edge, or when the slave moves further out.
+  const double v = slave.setpoint.velocity;
+  const auto hits = [&](bool now, bool before, double sense) { return now && (!before || sense * v > 0); };
+  const bool on = s.before.enable_hw_limit;
+  if (hits(s.inputs.hw_limit_positive, on && s.before.hw_limit_positive, 1)) {
+    Fail(c, ErrorId::kModuleLimitSwitchPositive, slave, s);
+  } else if (hits(s.inputs.hw_limit_negative, on && s.before.hw_limit_negative, -1)) {
+    Fail(c, ErrorId::kModuleLimitSwitchNegative, slave, s);
+  }
+}
+
+void SwitchPower(const Context& c, axis::State& slave, State& s) {
+  const bool rises = s.inputs.regulator_on && (!s.before.regulator_on || !s.before.enable);
+  const bool falls = !s.inputs.regulator_on && s.before.regulator_on;
+  if (rises && !slave.enable) Tell(c, axis::Power{.enable = true}, slave);
+  if (falls) Tell(c, axis::Power{.enable = false}, slave);
+}
+
+// What the slave does without the module.
+bool IsBusyItself(const axis::State& slave) {
+  using K = axis::RequestKind;
+  const K kind = slave.active.kind;
+  const bool power = kind == K::kPower;
+  return (kind != K::kNone && kind != K::kGuided && !power) || slave.superimposed ||
+         slave.plc == axis::PlcState::kHoming || slave.plc == axis::PlcState::kContinuousMotion;
+}
+
+void TellJog(const Context& c, axis::State& slave, const State& s) {
+  const axis::AxisLimits& own = c.slave.params.limits;
+  const trajectory::Limits limits = c.slave.params.planner_limits();
+  Tell(c,
+       axis::Jog{.forward = s.jog.keys.positive,
+                 .backward = s.jog.keys.negative,
+                 .velocity = Within(s.settings.jog_velocity, own.velocity),
+                 .acceleration = Within(s.settings.jog_acceleration, limits.acceleration),
+                 .deceleration = Within(s.settings.jog_deceleration, limits.deceleration),
+                 .jerk = Within(s.settings.jog_jerk, limits.jerk)},
+       slave);
+}
+
+ClutchContext ClutchOf(const Context& c, const axis::State& slave, const KinematicState& wanted_before,
+                       const State& s) {
+  return {.cycle = c.slave.cycle,
+          .planner = c.slave.planner,
+          .settings = s.settings,
+          .slave = c.slave.params,
+          .table = TableOf(c, s),
+          .master_turn = TurnOf(c.slave, c.master),
+          .master_zero = ZeroOf(c.slave, c.master),
+          .slave_zero = slave.origin,
+          .master = s.master.now,
+          .master_before = s.master.before,
+          .own_before = {slave.setpoint.position + slave.origin, slave.setpoint.velocity, slave.setpoint.acceleration},
+          .wanted_before = wanted_before,
+          .in_step = slave.guidance.chase.in_step,
+          .at_rest = axis::AtRest(slave)};
+}
+
+void BeginHoming(const Context& c, axis::State& slave, State& s) {
+  const bool own = s.settings.home_by_module && c.params.homing.has_value();
+  c.slave.params.homing = own ? *c.params.homing : c.homing;
+  const ErrorId error = Tell(c, axis::Home{.position = s.settings.home_position}, slave);
+  if (error != ErrorId::kNone) return EndAction(c, FeedbackState::kError, error, s);
+  s.state = ModuleState::kHoming;
+}
+
+void BeginSync(const Context& c, axis::State& slave, State& s) {
+  if (c.master && !axis::IsKnown(c.slave.axes[*c.master], c.params.source)) {
+    return EndAction(c, FeedbackState::kError, ErrorId::kMasterOff, s);
+  }
+  if (s.settings.slave_absolute && c.slave.params.requires_reference && !slave.homing.homed) {
+    return EndAction(c, FeedbackState::kError, ErrorId::kNoReference, s);
+  }
+  if (const Status status = axis::Guide(c.slave, slave); status.failed()) {
+    return EndAction(c, FeedbackState::kError, status.error, s);
+  }
+  s.state = ModuleState::kSync;
+  s.master.coasts = false;
+  TakeUp(c, slave, s);
+  BeginClosing(ClutchOf(c, slave, s.wanted, s), s.way, s.clutch);
+}
+
+bool Rises(bool now, bool before) {
+  return now && !before;
+}
+
+// Where a request finds the module: off, it has to be made again once the slave is on.
+void Requests(const Context& c, axis::State& slave, State& s) {
+  const bool sync = Rises(s.inputs.sync_cam, s.before.sync_cam);
+  const bool home = Rises(s.inputs.home_execute, s.before.home_execute);
+  if (!sync && !home) return;
+  const bool ready = s.state == ModuleState::kReady;
+  if (!IsOn(slave)) return EndAction(c, FeedbackState::kError, ErrorId::kPowerOff, s);
+  if (home && ready) return BeginHoming(c, slave, s);
+  if (sync && ready && !s.inputs.sync_out_instant) return BeginSync(c, slave, s);
+  if (sync && s.state == ModuleState::kSync) return;  // the clutch was opening
+  EndAction(c, FeedbackState::kError, ErrorId::kState, s);
+}
+
+void BeginStop(const Context& c, axis::State& slave, State& s) {
+  const bool stop = s.inputs.stop;
+  if (IsOn(slave)) {
+    stop ? Brake(c, s.settings.stop_deceleration, s.settings.stop_jerk, true, slave)
+         : Brake(c, s.settings.halt_deceleration, s.settings.jerk, false, slave);
+  }
+  EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  Abandon(c, s);
+  s.state = ModuleState::kStop;
+}
+
+void InStop(const Context& c, axis::State& slave, State& s) {
+  if (Rises(s.inputs.stop, s.before.stop)) return BeginStop(c, slave, s);
+  if (s.inputs.stop || s.inputs.halt) return;
+  if (slave.active.kind == axis::RequestKind::kStop) slave.active.hold = false;
+  if (!slave.loop_closed || slave.active.kind == axis::RequestKind::kNone) s.state = ModuleState::kReady;
+}
+
+void InReady(const Context& c, axis::State& slave, State& s) {
+  if (s.jog.ticket == 0 || !IsOn(slave)) return;
+  TellJog(c, slave, s);
+  s.state = s.jog.keys.positive ? ModuleState::kJogPos : ModuleState::kJogNeg;
+}
+
+void InJog(const Context& c, axis::State& slave, State& s) {
+  const bool held = s.jog.keys.positive || s.jog.keys.negative;
+  if (slave.active.kind == axis::RequestKind::kJog) {
+    if (!held) {
+      slave.active.forward = slave.active.backward = false;
+      return;
+    }
+    if (s.jog.keys.positive != slave.active.forward || s.jog.keys.negative != slave.active.backward) {
+      TellJog(c, slave, s);
+    }
+    if (slave.jog_sense != 0) s.state = slave.jog_sense > 0 ? ModuleState::kJogPos : ModuleState::kJogNeg;
+    return;
+  }
+  EndJog(c, held ? FeedbackState::kAborted : FeedbackState::kDone, ErrorId::kNone, s);
+  s.state = ModuleState::kReady;
+}
+
+void InHoming(const Context& c, const axis::State& slave, State& s) {
+  if (slave.plc == axis::PlcState::kHoming || IsBusyItself(slave)) return;
+  s.state = ModuleState::kReady;
+  if (slave.homing.homed) return EndAction(c, FeedbackState::kDone, ErrorId::kNone, s);
+  EndAction(c, FeedbackState::kError, slave.error == ErrorId::kNone ? ErrorId::kNoReference : slave.error, s);
+}
+
+void InSync(const Context& c, axis::State& slave, State& s) {
+  if (s.clutch.phase == ClutchPhase::kReleased) {
+    if (slave.active.kind != axis::RequestKind::kNone) return;
+    Abandon(c, s);
+    s.state = ModuleState::kReady;
+    return;
+  }
+  if (!axis::IsGuided(slave)) {  // a command of its own has taken the slave away
+    Abandon(c, s);
+    s.state = ModuleState::kReady;
+    return;
+  }
+  if (!s.master.known && !s.master.coasts) return Fail(c, ErrorId::kMasterOff, slave, s);
+  if (s.inputs.sync_out_instant) {
+    Brake(c, s.settings.sync_out_instant_deceleration, s.settings.jerk, false, slave);
+    s.clutch.phase = ClutchPhase::kReleased;
+    return;
+  }
+  const KinematicState wanted_before = s.wanted;
+  RunWay(c, s);
+  ClutchContext clutch = ClutchOf(c, slave, wanted_before, s);
+  if (!s.inputs.sync_cam && s.before.sync_cam) BeginOpening(clutch, s.clutch);
+  if (Rises(s.inputs.sync_cam, s.before.sync_cam)) BeginClosing(clutch, s.way, s.clutch);
+  const double zero = s.way.to_slave.out_zero;
+  KinematicState demand = {clutch.own_before.position, 0, 0};
+  if (const Status status = StepClutch(clutch, s.wanted, s.way, s.clutch, demand); status.failed()) {
+    EndAction(c, FeedbackState::kError, status.error, s);
+    s.clutch.phase = ClutchPhase::kOpen;
+  }
+  s.wanted.position += s.way.to_slave.out_zero - zero;
+  slave.guidance.demand = demand;
+  if (s.clutch.phase == ClutchPhase::kOpen) {
+    axis::LetGoOfGuidance(c.slave, slave);
+    if (s.action == Action::kSyncOut) EndAction(c, FeedbackState::kDone, ErrorId::kNone, s);
+    Abandon(c, s);
+    s.state = ModuleState::kReady;
+  } else if (s.clutch.phase == ClutchPhase::kClosed && slave.guidance.chase.in_step && s.action == Action::kSyncIn) {
+    EndAction(c, FeedbackState::kDone, ErrorId::kNone, s);
+  }
+}
+
+void InError(const Context& c, axis::State& slave, State& s) {
+  if (Rises(s.inputs.reset_error, s.before.reset_error)) {
+    if (slave.active.kind == axis::RequestKind::kStop) slave.active.hold = false;
+    Tell(c, axis::Reset{}, slave);
+    s.error = ErrorId::kNone;
+    s.warning = ErrorId::kNone;
+  }
+  const bool stands = !slave.loop_closed || axis::AtRest(slave);
+  if (s.error == ErrorId::kNone && slave.error == ErrorId::kNone && stands && !slave.reset_pending) {
+    s.state = ModuleState::kReady;
+    if (s.inputs.regulator_on && !slave.enable) Tell(c, axis::Power{.enable = true}, slave);
+  }
+}
+
+void WatchLease(const Context& c, State& s) {
+  if (s.jog.lease_s <= 0 || c.slave.cycle.count < s.jog.lease_end_cycle) return;
+  s.jog.keys = {};
+  s.jog.lease_s = 0;
+}
+
+// READY and SERVICE are one another's: what the slave does by itself is a service.
+void ReadyOrService(const axis::State& slave, State& s) {
+  if (s.state != ModuleState::kReady && s.state != ModuleState::kService) return;
+  const bool service = s.inputs.internal_control || IsBusyItself(slave);
+  s.state = service ? ModuleState::kService : ModuleState::kReady;
+}
+
+void Disable(const Context& c, axis::State& slave, State& s) {
+  EndAction(c, s.state == ModuleState::kInit ? FeedbackState::kError : FeedbackState::kAborted, ErrorId::kState, s);
+  if (s.state == ModuleState::kInit) return;
+  axis::LetGoOfGuidance(c.slave, slave);
+  if (slave.active.kind == axis::RequestKind::kJog) slave.active.forward = slave.active.backward = false;
+  if (slave.active.kind == axis::RequestKind::kStop) slave.active.hold = false;
+  EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  Abandon(c, s);
+  s.error = ErrorId::kNone;
+  s.state = ModuleState::kInit;
+}
+
+void RunStates(const Context& c, axis::State& slave, State& s) {
+  if (s.state == ModuleState::kInit) s.state = ModuleState::kReady;
+  WatchLimits(c, slave, s);
+  if (s.state != ModuleState::kError && s.state != ModuleState::kStop && (s.inputs.stop || s.inputs.halt)) {
+    BeginStop(c, slave, s);
+  }
+  ReadyOrService(slave, s);
+  Requests(c, slave, s);
+  switch (s.state) {
+    case ModuleState::kReady:
+      return InReady(c, slave, s);
+    case ModuleState::kJogPos:
+    case ModuleState::kJogNeg:
+      return InJog(c, slave, s);
+    case ModuleState::kHoming:
+      return InHoming(c, slave, s);
+    case ModuleState::kSync:
+      return InSync(c, slave, s);
+    case ModuleState::kStop:
+      return InStop(c, slave, s);
+    case ModuleState::kError:
+      return InError(c, slave, s);
+    default:
+      return;
+  }
+}
+
+BoundsOf WhatToBound(const State& s) {
+  BoundsOf of;
+  const auto add = [&](std::uint32_t slot) {
+    if (s.slots[slot - 1] != 0 && of.count < kSlots) of.cams[of.count++] = s.slots[slot - 1] - 1;
+  };
+  if (s.inputs.cam_sequencer) {
+    for (const SequencePart part : {SequencePart::kIn, SequencePart::kOut}) {
+      for (const SequenceStep& step : StepsOf(s.settings.cam_sequence_mode, part)) add(step.slot);
+    }
+  } else {
+    add(s.inputs.cam_table);
+  }
+  of.velocity = s.inputs.scaling_master * s.settings.master_max_velocity;
+  of.acceleration = s.inputs.scaling_master * s.settings.master_max_acceleration;
+  return of;
+}
+
+// --- commands ---
+
+void CarryOut(const Context& c, Ticket ticket, double, const Control& command, axis::State&, State& s) {
+  const Inputs was = s.inputs;
+  TakeGiven(command, s.inputs);
+  Report(c, ticket, FeedbackState::kActive);
+  Action action = Action::kNone;
+  if (s.inputs.sync_cam != was.sync_cam) action = s.inputs.sync_cam ? Action::kSyncIn : Action::kSyncOut;
+  if (s.inputs.home_execute && !was.home_execute) action = Action::kHome;
+  const bool opens = action == Action::kSyncOut && s.state != ModuleState::kSync;
+  if (action == Action::kNone || opens) return Report(c, ticket, FeedbackState::kDone);
+  EndAction(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  s.action = action;
+  s.action_ticket = ticket;
+  s.warning = ErrorId::kNone;
+}
+
+void CarryOut(const Context& c, Ticket ticket, double, const Configure& command, axis::State&, State& s) {
+  TakeGiven(command, s.settings);
+  Report(c, ticket, FeedbackState::kActive);
+  Report(c, ticket, FeedbackState::kDone);
+}
+
+void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& command, axis::State& slave, State& s) {
+  const bool held = command.positive || command.negative;
+  const bool jogs = s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg;
+  const bool opposite = s.jog.ticket == 0 && command.positive && command.negative;
+  ErrorId error = ErrorId::kNone;
+  if (s.state != ModuleState::kReady && !jogs) error = ErrorId::kState;
+  if (opposite) error = ErrorId::kParameter;  // nobody knows which key was first
+  if (!IsOn(slave)) error = ErrorId::kPowerOff;
+  if (held && error != ErrorId::kNone) return Report(c, ticket, FeedbackState::kError, error);
+  Report(c, ticket, FeedbackState::kActive);
+  if (s.jog.ticket != 0) Report(c, s.jog.ticket, FeedbackState::kAborted);
+  s.jog = {ticket, command, lease_s, CycleIn(c.slave.cycle, lease_s)};
+  if (!held && !jogs) EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
+}
+
+void CarryOut(const Context& c, Ticket ticket, double, const SetCam& command, axis::State&, State& s) {
+  for (std::size_t i = 0; i < c.slave.cams.size(); ++i) {
+    if (c.slave.cams[i].name() != command.cam.view()) continue;
+    s.slots[command.slot - 1] = static_cast<std::uint32_t>(i) + 1;
+    Report(c, ticket, FeedbackState::kActive);
+    return Report(c, ticket, FeedbackState::kDone);
+  }
+  Report(c, ticket, FeedbackState::kError, ErrorId::kUnknownTarget);
+}
+
+void CarryOut(const Context& c, Ticket ticket, double, const ChangeCam& command, axis::State&, State& s) {
+  const bool empty = s.slots[command.cam_table - 1] == 0;
+  ErrorId error = ErrorId::kNone;
+  if (empty) error = ErrorId::kUnknownTarget;
+  if (s.state != ModuleState::kSync) error = ErrorId::kState;
+  if (error == ErrorId::kNone && !Enqueue(ticket, command, s)) error = ErrorId::kBufferFull;
+  Report(c, ticket, error == ErrorId::kNone ? FeedbackState::kActive : FeedbackState::kError, error);
+}
+
+void CarryOut(const Context& c, Ticket ticket, double, const WithdrawChanges&, axis::State&, State& s) {
+  AbortChanges(c, s);
+  Report(c, ticket, FeedbackState::kActive);
+  Report(c, ticket, FeedbackState::kDone);
+}
+
+}  // namespace
+
+State MakeState(const FlexCamParams& params, const std::array<std::uint32_t, kSlots>& slots) noexcept {
+  State s;
+  s.settings = params.settings;
+  s.slots = slots;
+  s.way.profiler.cam = slots[0] - 1;
+  return s;
+}
+
+void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, axis::State& slave,
+           State& s) noexcept {
+  std::visit([&](const auto& body) { CarryOut(c, ticket, lease_s, body, slave, s); }, command);
+}
+
+bool Release(const Context&, Ticket ticket, State& s) noexcept {
+  if (ticket == 0 || s.jog.ticket != ticket) return false;
+  s.jog.keys = {};
+  return true;
+}
+
+bool Renew(const Context& c, Ticket ticket, State& s) noexcept {
+  if (ticket == 0 || s.jog.ticket != ticket || s.jog.lease_s <= 0) return false;
+  s.jog.lease_end_cycle = CycleIn(c.slave.cycle, s.jog.lease_s);
+  return true;
+}
+
+void Step(const Context& c, axis::State& slave, State& s) noexcept {
+  const bool coast = s.state == ModuleState::kSync && s.settings.on_master_fault == MasterFault::kCoast;
+  if (s.state != ModuleState::kSync) s.master.coasts = false;
+  Follow(c.slave, c.master, c.params.source, s.settings, s.inputs.virtual_velocity, coast, s.master);
+  slave.reference |= s.inputs.home_abs_switch;
+  if (s.inputs.enable) {
+    SwitchPower(c, slave, s);
+    WatchLease(c, s);
+    RunStates(c, slave, s);
+  } else {
+    Disable(c, slave, s);
+  }
+  if (s.state != ModuleState::kSync) ShowWay(c, slave, s);
+  if (s.settings.calculate_bounds) {
+    WorkOut(WhatToBound(s), c.slave.cams, s.bounds);
+  } else if (s.bounds.valid) {
+    s.bounds = {};
+  }
+  s.before = s.inputs;
+}
+
+void Publish(const Context& c, const axis::State& slave, const State& s, Outputs& out) noexcept {
+  const axis::AxisParams& p = c.slave.params;
+  const double ky = s.inputs.scaling_slave;
+  out.set_offset_master = s.way.to_x.offset;
+  out.set_offset_slave = s.way.to_slave.offset;
+  out.set_scaling_master = s.way.to_x.factor;
+  out.set_scaling_slave = s.way.to_slave.factor;
+  out.set_x_position = s.at.x;
+  out.set_x_velocity = s.x.velocity;
+  out.set_x_acceleration = s.x.acceleration;
+  out.set_y_position = s.at.y_in_cam;
+  out.set_y_velocity = s.y.velocity;
+  out.set_y_acceleration = s.y.acceleration;
+  out.actual_slave_position = axis::Reported(p, slave.actual.position);
+  out.actual_slave_velocity = slave.actual.velocity;
+  out.bounds_valid = s.bounds.valid;
+  if (s.bounds.valid) {
+    out.slave_max_position = ky * s.bounds.max_position + s.inputs.offset_slave;
+    out.slave_min_position = ky * s.bounds.min_position + s.inputs.offset_slave;
+    out.slave_max_velocity = ky * s.bounds.max_velocity;
+    out.slave_max_acceleration = ky * s.bounds.max_acceleration;
+  }
+  SignalFlow& f = out.flow;
+  f.ip01_set_scaling_master = s.inputs.scaling_master;
+  f.ip02_scaling_mode_master = s.settings.scaling_mode_master;
+  f.ip03_set_offset_master = s.inputs.offset_master;
+  f.ip04_set_offset_slave = s.inputs.offset_slave;
+  f.ip05_offset_mode_slave = s.settings.offset_mode_slave;
+  f.ip06_set_scaling_slave = s.inputs.scaling_slave;
+  f.ip07_scaling_mode_slave = s.settings.scaling_mode_slave;
+  f.ip08_cam_table1 = s.slots[0];
+  f.ip09_cam_table2 = s.slots[1];
+  f.ip10_cam_table3 = s.slots[2];
+  f.ip11_cam_table4 = s.slots[3];
+  const double master = s.master.now.position - ZeroOf(c.slave, c.master);
+  f.mp01_set_master_position = c.master ? axis::Reported(c.slave.axes_params[*c.master], master) : master;
+  f.mp02_set_slave_position = axis::Reported(p, slave.setpoint.position);
+  f.mp03_master_to_x_position = s.x.position;
+  f.mp04_cam_profiler_position_out = s.at.y_in_cam;
+  f.mp05_set_y_position = s.at.y;
+  f.mp06_y_to_slave_position = axis::Reported(p, s.wanted.position - slave.origin);
+  f.op01_set_x_position_out = s.at.x;
+  f.op02_set_y_position_out = s.at.y_in_cam;
+  out.error = s.error;
+  out.warning = s.warning;
+  out.state = s.state;
+  const std::uint32_t running = s.way.profiler.slot;
+  const std::uint32_t next = s.pending_count > 0 ? s.pending[0].change.cam_table : s.inputs.cam_table;
+  out.cam_table = running;
+  out.next_cam_table = next == running || s.state != ModuleState::kSync ? 0 : next;
+  out.pending_changes = s.pending_count;
+  out.cam_ends = s.cam_ends;
+  out.internal_control_active = s.inputs.internal_control;
+  out.axis_enabled = slave.loop_closed;
+  out.done = s.done;
+  out.busy = s.action != Action::kNone;
+  out.is_homed = slave.homing.homed;
+  out.hw_limit_switch_positive = slave.limit_positive || s.inputs.hw_limit_positive;
+  out.hw_limit_switch_negative = slave.limit_negative || s.inputs.hw_limit_negative;
+  out.sw_limit_enabled = p.limits.lower.has_value() || p.limits.upper.has_value();
+  out.sw_limit_switch_active =
+      s.error == ErrorId::kModuleSoftLimitPositive || s.error == ErrorId::kModuleSoftLimitNegative;
+  const bool sync = s.state == ModuleState::kSync;
+  const ClutchPhase phase = s.clutch.phase;
+  const bool on_cam = phase == ClutchPhase::kClosed || phase == ClutchPhase::kWaitingOut;
+  out.cam_synchronised = sync && on_cam && slave.guidance.chase.in_step;
+  out.acc_dec_sync =
+      sync && (phase == ClutchPhase::kClosing || phase == ClutchPhase::kOpening || phase == ClutchPhase::kReleased);
+  out.end_of_profile = sync && s.end_of_profile;
+  out.sequencer_active = sync && IsActive(SequencerOf(s), s.sequencer);
+}
+
+}  // namespace takt::flexcam

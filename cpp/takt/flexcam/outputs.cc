@@ -1,0 +1,87 @@
+#include "takt/flexcam/outputs.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::flexcam {
+
+void describe(Enumeration<ModuleState>& e) {
+  e.about("State of a cam module.");
+  e.value(ModuleState::kInit, "Init", "Not enabled.");
+  e.value(ModuleState::kReady, "Ready", "Waits for a request.");
+  e.value(ModuleState::kService, "Service", "The slave carries out commands of its own.");
+  e.value(ModuleState::kJogPos, "JogPos", "Jogs upwards.");
+  e.value(ModuleState::kJogNeg, "JogNeg", "Jogs downwards.");
+  e.value(ModuleState::kHoming, "Homing", "Looks for the reference.");
+  e.value(ModuleState::kSync, "Sync", "The clutch is closed, closes or opens.");
+  e.value(ModuleState::kStop, "Stop", "Stops or halts, or is kept so.");
+  e.value(ModuleState::kError, "Error", "Waits for a reset.");
+}
+
+void describe(Description<SignalFlow>& d) {
+  using F = SignalFlow;
+  d.about("The way from the master to the slave, point by point.");
+  d.internal<&F::ip01_set_scaling_master>(unit::one, "Factor of the master, as set.");
+  d.internal<&F::ip02_scaling_mode_master>("Its mode.");
+  d.internal<&F::ip03_set_offset_master>("Offset of the master, as set.");
+  d.internal<&F::ip04_set_offset_slave>(unit::u, "Offset of the slave, as set.");
+  d.internal<&F::ip05_offset_mode_slave>("Its mode.");
+  d.internal<&F::ip06_set_scaling_slave>(unit::one, "Factor of the slave, as set.");
+  d.internal<&F::ip07_scaling_mode_slave>("Its mode.");
+  d.internal<&F::ip08_cam_table1>("Number of the machine's cam in slot 1, from 1; 0: none.");
+  d.internal<&F::ip09_cam_table2>("In slot 2.");
+  d.internal<&F::ip10_cam_table3>("In slot 3.");
+  d.internal<&F::ip11_cam_table4>("In slot 4.");
+  d.internal<&F::mp01_set_master_position>("Master's position in its turn, as the module takes it.");
+  d.internal<&F::mp02_set_slave_position>(unit::u, "Set point of the slave.");
+  d.internal<&F::mp03_master_to_x_position>("Master's position on the X axis.");
+  d.internal<&F::mp04_cam_profiler_position_out>("What the cam says for it.");
+  d.internal<&F::mp05_set_y_position>("The same with the strokes of earlier cycles.");
+  d.internal<&F::mp06_y_to_slave_position>(unit::u, "Where Y wants the slave.");
+  d.internal<&F::op01_set_x_position_out>("X in the cycle of the cam.");
+  d.internal<&F::op02_set_y_position_out>("Y.");
+}
+
+void describe(Description<Outputs>& d) {
+  using O = Outputs;
+  d.about("What a cam module publishes.");
+  d.internal<&O::set_offset_master>("Master offset in force, in the unit of X. Seed: lrSetOffsetMasterOut.");
+  d.internal<&O::set_offset_slave>(unit::u, "Slave offset in force. Seed: lrSetOffsetSlaveOut.");
+  d.internal<&O::set_scaling_master>(unit::one, "Master factor in force.");
+  d.internal<&O::set_scaling_slave>(unit::one, "Slave factor in force.");
+  d.internal<&O::set_x_position>("X in the cycle of the cam. Seed: lrSetXPosOut.");
+  d.internal<&O::set_x_velocity>("Per second. Seed: lrSetXVelOut.");
+  d.internal<&O::set_x_acceleration>("Per second squared. Seed: lrSetXAccOut.");
+  d.internal<&O::set_y_position>("Y. Seed: lrSetYPosOut.");
+  d.internal<&O::set_y_velocity>("Per second. Seed: lrSetYVelOut.");
+  d.internal<&O::set_y_acceleration>("Per second squared. Seed: lrSetYAccOut.");
+  d.internal<&O::actual_slave_position>(unit::u, "As measured. Seed: lrActSlavePos.");
+  d.internal<&O::actual_slave_velocity>(unit::u_s, "As measured. Seed: lrActSlaveVel.");
+  d.internal<&O::slave_max_position>(unit::u, "Extreme value. Seed: lrSlaveMaxPos.");
+  d.internal<&O::slave_min_position>(unit::u, "Extreme value. Seed: lrSlaveMinPos.");
+  d.internal<&O::slave_max_velocity>(unit::u_s, "Extreme value. Seed: lrSlaveMaxVel.");
+  d.internal<&O::slave_max_acceleration>(unit::u_s2, "Extreme value. Seed: lrSlaveMaxAcc.");
+  d.internal<&O::flow>("The way from the master to the slave. Seed: scSignalFlow.");
+  d.internal<&O::error>("Why the module is in error. Seed: xError, eErrorID.");
+  d.internal<&O::warning>("What was not done as asked last. Seed: xWarning, eErrorID.");
+  d.internal<&O::state>("State of the module. Seed: eTMState.");
+  d.internal<&O::cam_table>("Slot of the cam that runs. Seed: eSetCamTableOut.");
+  d.internal<&O::next_cam_table>("Slot of the cam that is to run next; 0: the same.");
+  d.internal<&O::pending_changes>("Changes of cam that wait.");
+  d.internal<&O::cam_ends>("How often the end of a cam was passed.");
+  d.internal<&O::internal_control_active>("The slave takes commands of its own. Seed: xInternalControlActive.");
+  d.internal<&O::axis_enabled>("The slave is switched on. Seed: xAxisEnabled.");
+  d.internal<&O::done>("What was asked for last is done. Seed: xDone.");
+  d.internal<&O::busy>("It is being done. Seed: xBusy.");
+  d.internal<&O::is_homed>("The slave has a reference. Seed: xIsHomed.");
+  d.internal<&O::hw_limit_switch_positive>("On the positive limit switch. Seed: xHwLimitSwitchPos.");
+  d.internal<&O::hw_limit_switch_negative>("On the negative limit switch. Seed: xHwLimitSwitchNeg.");
+  d.internal<&O::sw_limit_enabled>("The slave has SW limits. Seed: xSwLimitEnabled.");
+  d.internal<&O::sw_limit_switch_active>("It was stopped by one. Seed: xSwLimitSwitchActive.");
+  d.internal<&O::cam_synchronised>("The slave is where the cam wants it. Seed: xCamSynchronised.");
+  d.internal<&O::acc_dec_sync>("The clutch closes or opens. Seed: xAccDecSync.");
+  d.internal<&O::end_of_profile>("The last cycle of the cam. Seed: xEndOfProfile.");
+  d.internal<&O::sequencer_active>("A sequence of cams is being run. Seed: xCamSequencerActive.");
+  d.internal<&O::bounds_valid>("The extreme values are those of what is set.");
+}
+
+}  // namespace takt::flexcam

@@ -1,0 +1,28 @@
+// What a machine file says about one cam module (Flex Cam).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "takt/axis/commands/coupling.h"
+#include "takt/axis/homing_params.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/flexcam/commands.h"
+#include "takt/flexcam/settings.h"
+
+namespace takt::flexcam {
+
+struct FlexCamParams {
+  std::string name;
+  std::string slave;                                          // name of the axis
+  std::optional<std::string> master{};                        // name of the axis; unset: a virtual one
+  axis::MasterSource source = axis::MasterSource::kSetValue;  // which position of it counts
+  std::vector<std::string> cams;                              // for slots 1 to 4
+  Settings settings;                                          // at the start
+  std::optional<axis::HomingParams> homing{};                 // for home_by_module
+};
+
+void describe(Description<FlexCamParams>&);
+
+}  // namespace takt::flexcam

@@ -1,0 +1,318 @@
+#include "takt/flexcam/run.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace takt::flexcam {
+
+namespace {
+
+// A change with equal slopes looks so many pieces of the cam to either side: some 20 µs at most.
+constexpr std::size_t kPiecesToLookAt = 64;
+
+trajectory::Limits MasterRamps(const Settings& s) {
+  return {s.offset_scaling_master_velocity, s.offset_scaling_master_acceleration, s.offset_scaling_master_deceleration,
+          s.jerk};
+}
+
+trajectory::Limits SlaveRamps(const Settings& s) {
+  return {s.offset_scaling_slave_velocity, s.offset_scaling_slave_acceleration, s.offset_scaling_slave_deceleration,
+          s.jerk};
+}
+
+// Y where the cam's own y is 0 in its present cycle.
+double ZeroOfY(const Context& c, const State& s) {
+  return s.way.profiler.base + static_cast<double>(s.way.profiler.cycle) * TableOf(c, s).stroke();
+}
+
+// The master's position that absolute scaling counts from: its own zero as long as X is its position, else where X is 0
+// in the present cycle of the cam.
+double ZeroOfMaster(const Context& c, const State& s) {
+  const double zero = ZeroOf(c.slave, c.master);
+  const double turn = TurnOf(c.slave, c.master);
+  if (s.assigned) return turn == 0 ? zero : zero + turn * std::floor((s.master.before.position - zero) / turn);
+  const cam::Table& table = TableOf(c, s);
+  const ProfilerState& p = s.way.profiler;
+  return InverseOf(s.way.to_x, p.laid + static_cast<double>(p.cycle) * table.length() - table.begin());
+}
+
+ConversionTarget MasterTarget(const Context& c, const State& s) {
+  ConversionTarget t;
+  t.factor = s.inputs.scaling_master;
+  t.offset = s.inputs.offset_master;
+  t.scaling_mode = s.settings.scaling_mode_master;
+  t.offset_mode = s.settings.offset_mode_master;
+  t.ramps = MasterRamps(s.settings);
+  t.with_master = s.settings.position_control == PositionControl::kMasterDirection;
+  // Ways are made for the master's speed of now, but not for a creeping one.
+  t.speed = std::max({std::abs(s.master.before.velocity), 0.1 * s.settings.master_max_velocity, 1e-6});
+  t.absolute_zero = ZeroOfMaster(c, s);
+  return t;
+}
+
+ConversionTarget SlaveTarget(const Context& c, const State& s) {
+  ConversionTarget t;
+  t.factor = s.inputs.scaling_slave;
+  t.offset = s.inputs.offset_slave;
+  t.scaling_mode = s.settings.scaling_mode_slave;
+  t.offset_mode = s.settings.offset_mode_slave;
+  t.ramps = SlaveRamps(s.settings);
+  t.absolute_zero = ZeroOfY(c, s);
+  return t;
+}
+
+void TakeY(const Context& c, State& s) {
+  s.at = ValueAt(TableOf(c, s), s.way.profiler, s.x.position);
+  s.y = {s.at.y, s.at.dy * s.x.velocity, s.at.ddy * s.x.velocity * s.x.velocity + s.at.dy * s.x.acceleration};
+}
+
+bool IsEmpty(const State& s, std::uint32_t slot) {
+  return slot == 0 || slot > kSlots || s.slots[slot - 1] == 0;
+}
+
+void Take(const SequenceStep& next, State& s) {
+  s.way.profiler.slot = next.slot;
+  s.way.profiler.cam = s.slots[next.slot - 1] - 1;
+}
+
+const PendingChange* Due(const State& s, ChangeWhen when) {
+  return s.pending_count > 0 && s.pending[0].change.when == when ? &s.pending[0] : nullptr;
+}
+
+void EndChange(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
+  Report(c, s.pending[0].ticket, feedback, error);
+  for (std::size_t i = 1; i < s.pending_count; ++i) s.pending[i - 1] = s.pending[i];
+  s.pending[--s.pending_count] = {};
+  s.gap_known = false;
+}
+
+// The other cam at the same place of X, or at one with the same slope; at the instant of the cycle before.
+bool ChangeHere(const Context& c, std::uint32_t slot, ChangeAlign align, double x_before, State& s) {
+  const cam::Table& to = c.slave.cams[s.slots[slot - 1] - 1];
+  const ProfilerValue was = ValueAt(TableOf(c, s), s.way.profiler, x_before);
+  const double zero = ZeroOfY(c, s);
+  double x = was.x;
+  if (align == ChangeAlign::kVelocity) {
+    const std::optional<double> same = cam::NearestSlope(to, was.dy, x, kPiecesToLookAt);
+    if (!same) return false;
+    x = *same;
+  }
+  ProfilerState& p = s.way.profiler;
+  Take({slot, true}, s);
+  Lay(to, x_before, x, p.once, p);
+  const bool meets = align != ChangeAlign::kNothing || !s.settings.slave_absolute;
+  p.base = meets ? was.y - ValueAt(to, p, x_before).y : zero;
+  s.inputs.cam_table = slot;
+  return true;
+}
+
+// The master's position where X was at `x`, on the way from the cycle before to this one.
+double MasterAt(const State& s, double x, double x_before) {
+  if (s.way.to_x.ramp.kind == RampKind::kNone) return InverseOf(s.way.to_x, x);
+  const double way = s.x.position - x_before;
+  const double share = way == 0 ? 1 : (x - x_before) / way;
+  return s.master.before.position + share * (s.master.now.position - s.master.before.position);
+}
+
+bool Passes(double place, double turn, double before, double now) {
+  if (before == now) return false;
+  if (turn == 0) return (before - place) * (now - place) <= 0 && before != place;
+  const double up = std::floor((std::max(before, now) - place) / turn);
+  return up > std::floor((std::min(before, now) - place) / turn);
+}
+
+// What lies between this cam and the next one: in place, or where Y is shifted anyway, in slope.
+double GapTo(const Context& c, const PendingChange& change, bool in_place, const State& s) {
+  const cam::Table& to = c.slave.cams[s.slots[change.change.cam_table - 1] - 1];
+  const cam::Value there = to.At(s.at.x);
+  return in_place ? ZeroOfY(c, s) + there.y - s.at.y : there.dy - s.at.dy;
+}
+
+bool MeetsNow(const Context& c, const PendingChange& change, State& s) {
+  if (change.change.align == ChangeAlign::kVelocity) return true;
+  const bool in_place = change.change.align == ChangeAlign::kNothing && s.settings.slave_absolute;
+  const double gap = GapTo(c, change, in_place, s);
+  const bool meets = s.gap_known && s.gap * gap <= 0;
+  s.gap = gap;
+  s.gap_known = true;
+  if (!meets || !in_place) return meets;
+  // The slave can get from one slope to the other in a few cycles.
+  const double step = std::abs(GapTo(c, change, false, s) * s.x.velocity * s.way.to_slave.factor);
+  const trajectory::Limits own = c.slave.params.planner_limits();
+  return step <= 4 * std::min(own.acceleration, own.deceleration) * c.slave.cycle.period_s;
+}
+
+bool IsDue(const Context& c, const PendingChange& change, double x_before, State& s) {
+  const ProfilerState& p = s.way.profiler;
+  switch (change.change.when) {
+    case ChangeWhen::kAtOnce:
+      return true;
+    case ChangeWhen::kMasterPosition:
+      return Passes(change.change.position + ZeroOf(c.slave, c.master), TurnOf(c.slave, c.master),
+                    s.master.before.position, s.master.now.position);
+    case ChangeWhen::kCamPosition: {
+      const cam::Table& table = TableOf(c, s);
+      return Passes(p.laid + change.change.position - table.begin(), p.once ? 0 : table.length(), x_before,
+                    s.x.position);
+    }
+    case ChangeWhen::kWithoutJump:
+      return MeetsNow(c, change, s);
+    default:
+      return false;
+  }
+}
+
+void TakeChanges(const Context& c, double x_before, State& s) {
+  if (s.inputs.cam_change_instant && !s.before.cam_change_instant && !IsEmpty(s, s.inputs.cam_table)) {
+    ChangeHere(c, s.inputs.cam_table, ChangeAlign::kNothing, x_before, s);
+    s.sequencer = {};
+  }
+  while (s.pending_count > 0 && IsDue(c, s.pending[0], x_before, s)) {
+    const ChangeCam change = s.pending[0].change;
+    if (!ChangeHere(c, change.cam_table, change.align, x_before, s)) {
+      if (change.when == ChangeWhen::kWithoutJump) return;
+      EndChange(c, FeedbackState::kError, ErrorId::kPlanning, s);
+      continue;
+    }
+    EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
+  }
+}
+
+// X stays in the cycle in which it is, for good.
+void Hold(const cam::Table& table, ProfilerState& p) {
+  const auto cycle = static_cast<double>(p.cycle);
+  p.laid += cycle * table.length();
+  p.base += cycle * table.stroke();
+  p.cycle = 0;
+  p.once = p.held = true;
+}
+
+void PassEnd(const Context& c, const Passed& passed, double x_before, State& s) {
+  ProfilerState& p = s.way.profiler;
+  const double master = MasterAt(s, passed.x_total, x_before);
+  const cam::Table& from = TableOf(c, s);
+  ++s.cam_ends;
+  SequenceStep next;
+  if (const PendingChange* change = Due(s, ChangeWhen::kNextCycle)) {
+    next = {change->change.cam_table, s.settings.cam_cyclic};
+    s.inputs.cam_table = next.slot;
+    EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
+  } else {
+    next = Next(SequencerOf(s), s.sequencer);
+  }
+  if (IsEmpty(s, next.slot)) {
+    s.warning = ErrorId::kUnknownTarget;
+    next = {p.slot, true};
+  }
+  const bool same = next.slot == p.slot && s.slots[next.slot - 1] - 1 == p.cam;
+  if (same && next.cyclic) {
+    p.once = false;
+  } else if (same && !p.once) {
+    Hold(from, p);
+  } else if (!same) {
+    Take(next, s);
+    Change(from, TableOf(c, s), passed, !s.settings.slave_absolute, !next.cyclic, p);
+  }
+  const double turn = TurnOf(c.slave, c.master);
+  if (turn == 0 || std::abs(TableOf(c, s).length() - turn) > 1e-9 * turn) s.assigned = false;
+  ApproachAtZero(MasterTarget(c, s), master, s.way.to_x);
+  if (!IsFrozen(s.clutch)) ApproachAtZero(SlaveTarget(c, s), ZeroOfY(c, s), s.way.to_slave);
+  s.x = Convert(s.way.to_x, c.slave.cycle, s.master.now);
+  GoOn(TableOf(c, s), s.x.position, p);
+}
+
+// The end of a cam that is run once is held until another one is to be run.
+void HoldOn(const Context& c, State& s) {
+  const std::optional<SequenceStep> next = FromHeld(SequencerOf(s), s.sequencer);
+  if (!next || IsEmpty(s, next->slot)) return GoOn(TableOf(c, s), s.x.position, s.way.profiler);
+  ProfilerState& p = s.way.profiler;
+  const double was = s.y.position;
+  Take(*next, s);
+  const cam::Table& table = TableOf(c, s);
+  const double back = s.x.velocity < 0 ? table.length() : 0;
+  Lay(table, s.x.position, table.begin() + back, !next->cyclic, p);
+  if (!s.settings.slave_absolute) p.base = was - ValueAt(table, p, s.x.position).y;
+}
+
+}  // namespace
+
+void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error) noexcept {
+  c.slave.feedback.Report({ticket, c.slave.cycle.count, feedback, false, error, 0});
+}
+
+const cam::Table& TableOf(const Context& c, const State& s) noexcept {
+  return c.slave.cams[s.way.profiler.cam];
+}
+
+SequencerInputs SequencerOf(const State& s) noexcept {
+  const ProfilerState& p = s.way.profiler;
+  return {s.inputs.cam_sequencer,
+          s.settings.cam_sequence_mode,
+          {s.inputs.cam_table, s.settings.cam_cyclic},
+          {p.slot, !p.once}};
+}
+
+void TakeUp(const Context& c, const axis::State& slave, State& s) noexcept {
+  SequenceStep first = First(SequencerOf(s), s.sequencer);
+  if (IsEmpty(s, first.slot)) first = {s.way.profiler.slot, s.settings.cam_cyclic};
+  Take(first, s);
+  const cam::Table& table = TableOf(c, s);
+  const double master = s.master.before.position;
+  Conversion& to_x = s.way.to_x;
+  to_x = {s.inputs.scaling_master, s.inputs.offset_master, master, table.begin(), {}};
+  s.assigned = s.settings.master_absolute;
+  if (s.assigned) {
+    to_x.in_zero = ZeroOfMaster(c, s);
+    to_x.out_zero = 0;
+  }
+  s.x = Convert(to_x, c.slave.cycle, s.master.before);
+  const double x = s.assigned ? s.x.position : table.begin() + to_x.offset;
+  Lay(table, s.x.position, x, !first.cyclic, s.way.profiler);
+  if (s.way.profiler.once) GoOn(table, s.x.position, s.way.profiler);
+  TakeY(c, s);
+  Conversion& to_slave = s.way.to_slave;
+  to_slave = {s.inputs.scaling_slave, s.inputs.offset_slave, 0, 0, {}};
+  s.wanted = Convert(to_slave, c.slave.cycle, s.y);
+  const double own = slave.setpoint.position + slave.origin;
+  to_slave.out_zero = s.settings.slave_absolute ? slave.origin : own - s.wanted.position;
+  s.wanted.position += to_slave.out_zero;
+}
+
+void ShowWay(const Context& c, const axis::State& slave, State& s) noexcept {
+  TakeUp(c, slave, s);
+  s.x = Convert(s.way.to_x, c.slave.cycle, s.master.now);
+  TakeY(c, s);
+  s.wanted = Convert(s.way.to_slave, c.slave.cycle, s.y);
+  s.end_of_profile = false;
+}
+
+void RunWay(const Context& c, State& s) noexcept {
+  const Cycle& cycle = c.slave.cycle;
+  const double x_before = s.x.position;
+  const KinematicState y_before = s.y;
+  Approach(MasterTarget(c, s), cycle, s.master.before, c.slave.planner, s.way.to_x);
+  s.x = Convert(s.way.to_x, cycle, s.master.now);
+  TakeChanges(c, x_before, s);
+  const std::optional<Passed> passed = PassedEnd(TableOf(c, s), s.way.profiler, s.x.position);
+  if (passed) {
+    PassEnd(c, *passed, x_before, s);
+  } else if (s.way.profiler.held) {
+    HoldOn(c, s);
+  }
+  s.end_of_profile = AnnouncesEnd(TableOf(c, s), cycle, s.x, passed.has_value(), s.way.profiler);
+  TakeY(c, s);
+  if (!IsFrozen(s.clutch)) Approach(SlaveTarget(c, s), cycle, y_before, c.slave.planner, s.way.to_slave);
+  s.wanted = Convert(s.way.to_slave, cycle, s.y);
+}
+
+bool Enqueue(Ticket ticket, const ChangeCam& change, State& s) noexcept {
+  if (s.pending_count == kPendingChanges) return false;
+  s.pending[s.pending_count++] = {ticket, change};
+  return true;
+}
+
+void AbortChanges(const Context& c, State& s) noexcept {
+  while (s.pending_count > 0) EndChange(c, FeedbackState::kAborted, ErrorId::kNone, s);
+}
+
+}  // namespace takt::flexcam

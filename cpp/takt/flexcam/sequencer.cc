@@ -1,0 +1,103 @@
+#include "takt/flexcam/sequencer.h"
+
+#include <array>
+
+#include "takt/core/describe.h"
+
+namespace takt::flexcam {
+
+namespace {
+
+constexpr std::array<SequenceStep, 3> kIn123 = {{{1, false}, {2, false}, {3, true}}};
+constexpr std::array<SequenceStep, 2> kIn13 = {{{1, false}, {3, true}}};
+constexpr std::array<SequenceStep, 1> kIn1 = {{{1, true}}};
+constexpr std::array<SequenceStep, 1> kIn3 = {{{3, true}}};
+constexpr std::array<SequenceStep, 1> kOut1 = {{{1, false}}};
+constexpr std::array<SequenceStep, 2> kOut41 = {{{4, false}, {1, true}}};
+
+// Begins a part with the cam in progress where that is its first one already.
+SequenceStep Begin(const SequencerInputs& in, SequencePart part, SequencerState& s) {
+  const std::span<const SequenceStep> steps = StepsOf(in.mode, part);
+  s.part = part;
+  s.step = 0;
+  if (steps.front().slot == in.running.slot && steps.size() > 1) s.step = 1;
+  return steps[s.step];
+}
+
+}  // namespace
+
+std::span<const SequenceStep> StepsOf(SequenceMode mode, SequencePart part) noexcept {
+  if (part == SequencePart::kNone) return {};
+  const bool in = part == SequencePart::kIn;
+  switch (mode) {
+    case SequenceMode::kCam1:
+      return in ? std::span<const SequenceStep>(kIn1) : std::span<const SequenceStep>();
+    case SequenceMode::kCam3:
+      return in ? std::span<const SequenceStep>(kIn3) : std::span<const SequenceStep>();
+    case SequenceMode::kCam1Cam3:
+      return in ? std::span<const SequenceStep>(kIn13) : std::span<const SequenceStep>(kOut1);
+    case SequenceMode::kCam1Cam2Cam3:
+      return in ? std::span<const SequenceStep>(kIn123) : std::span<const SequenceStep>(kOut41);
+  }
+  return {};
+}
+
+bool IsActive(const SequencerInputs& in, const SequencerState& s) noexcept {
+  const std::span<const SequenceStep> steps = StepsOf(in.mode, s.part);
+  // What is run again and again on the way out is no sequence any more.
+  return s.part == SequencePart::kIn ||
+         (s.part == SequencePart::kOut && s.step < steps.size() && !steps[s.step].cyclic);
+}
+
+SequenceStep First(const SequencerInputs& in, SequencerState& s) noexcept {
+  s = {};
+  if (!in.on) return in.selected;
+  s.part = SequencePart::kIn;
+  return StepsOf(in.mode, s.part).front();
+}
+
+SequenceStep Next(const SequencerInputs& in, SequencerState& s) noexcept {
+  if (in.on && s.part != SequencePart::kIn) return Begin(in, SequencePart::kIn, s);
+  if (!in.on && s.part == SequencePart::kIn) {
+    if (StepsOf(in.mode, SequencePart::kOut).empty()) {
+      s = {};
+      return in.selected;
+    }
+    return Begin(in, SequencePart::kOut, s);
+  }
+  const std::span<const SequenceStep> steps = StepsOf(in.mode, s.part);
+  if (s.part == SequencePart::kNone || s.step >= steps.size()) return in.selected;
+  const SequenceStep now = steps[s.step];
+  if (!now.cyclic) {
+    ++s.step;  // beyond the last one: its end is held
+    return s.step < steps.size() ? steps[s.step] : now;
+  }
+  if (s.part == SequencePart::kOut && in.selected.slot != now.slot) {
+    s = {};
+    return in.selected;
+  }
+  return now;
+}
+
+std::optional<SequenceStep> FromHeld(const SequencerInputs& in, SequencerState& s) noexcept {
+  const bool in_sequence = IsActive(in, s) && s.part == SequencePart::kIn;
+  if (in.on) return in_sequence ? std::nullopt : std::optional(Next(in, s));
+  if (in.selected.slot == in.running.slot) return std::nullopt;
+  s = {};
+  return in.selected;
+}
+
+void describe(Enumeration<SequencePart>& e) {
+  e.about("What of a sequence of cams is being run.");
+  e.value(SequencePart::kNone, "none", "None.");
+  e.value(SequencePart::kIn, "in", "What is run while the sequencer is on.");
+  e.value(SequencePart::kOut, "out", "What follows it.");
+}
+
+void describe(Description<SequencerState>& d) {
+  d.about("A sequence of cams.");
+  d.internal<&SequencerState::part>("Which part of it.");
+  d.internal<&SequencerState::step>("Which cam of the part, from 0.");
+}
+
+}  // namespace takt::flexcam

@@ -1,0 +1,100 @@
+// What a cam module's user sets and may change at any time: the parameters of the seed's 3.3.4. In doc strings "Seed:"
+// is the name there. A change takes effect where the setting is next looked at: modes of a clutch, for instance, when
+// it next closes or opens.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/given.h"
+
+namespace takt::flexcam {
+
+enum class SyncMode : std::uint8_t { kAbsolute, kRelative, kRampPos, kRampTime, kRampVelAcc };
+// Of the master, in which the clutch may close.
+enum class SyncDirection : std::uint8_t { kNegative, kCurrent, kPositive };
+enum class OffsetMode : std::uint8_t { kXZero, kDirect, kRampIn };
+enum class ScalingMode : std::uint8_t { kXZero, kAbsolute, kRelative, kRampAbsolute, kRampRelative };
+// How ramps of the X axis and a clutch over the master's way may move.
+enum class PositionControl : std::uint8_t { kBoth, kMasterDirection };
+enum class SequenceMode : std::uint8_t { kCam1, kCam3, kCam1Cam3, kCam1Cam2Cam3 };
+// What the slave does when its master's position is no longer known.
+enum class MasterFault : std::uint8_t { kStop, kCoast };
+
+template <template <typename> class Of>
+struct SettingsOf {
+  // Ramps, u/s² and u/s³; taken no larger than the slave's own limits.
+  Of<double> stop_deceleration = Preset<Of>(10'000.0);
+  Of<double> stop_jerk = Preset<Of>(100'000.0);
+  Of<double> halt_deceleration = Preset<Of>(3'600.0);
+  Of<double> jerk = Preset<Of>(100'000.0);
+  Of<double> jog_velocity = Preset<Of>(10.0);
+  Of<double> jog_acceleration = Preset<Of>(100.0);
+  Of<double> jog_deceleration = Preset<Of>(100.0);
+  Of<double> jog_jerk = Preset<Of>(10'000.0);
+
+  Of<double> home_position = Preset<Of>(0.0);  // u
+  Of<bool> home_by_module = Preset<Of>(false);
+
+  // The clutch.
+  Of<SyncMode> sync_mode = Preset<Of>(SyncMode::kAbsolute);
+  Of<SyncDirection> sync_direction = Preset<Of>(SyncDirection::kCurrent);
+  Of<double> master_sync_in_distance = Preset<Of>(100.0);   // master's u
+  Of<double> master_sync_in_position = Preset<Of>(0.0);     // master's u
+  Of<double> master_sync_out_distance = Preset<Of>(100.0);  // master's u
+  Of<double> slave_sync_out_position = Preset<Of>(0.0);     // u
+  Of<double> sync_in_time_s = Preset<Of>(5.0);
+  Of<double> sync_out_time_s = Preset<Of>(5.0);
+  Of<double> sync_out_instant_deceleration = Preset<Of>(10'000.0);  // u/s²
+  Of<double> sync_velocity = Preset<Of>(100.0);                     // u/s
+  Of<double> sync_acceleration = Preset<Of>(1'000.0);
+  Of<double> sync_deceleration = Preset<Of>(1'000.0);
+  Of<double> sync_jerk = Preset<Of>(1'000'000.0);
+
+  // The cam.
+  Of<bool> cam_cyclic = Preset<Of>(true);
+  Of<bool> master_absolute = Preset<Of>(true);
+  Of<bool> slave_absolute = Preset<Of>(false);
+  Of<SequenceMode> cam_sequence_mode = Preset<Of>(SequenceMode::kCam1);
+
+  // Scaling and offset.
+  Of<OffsetMode> offset_mode_master = Preset<Of>(OffsetMode::kXZero);
+  Of<OffsetMode> offset_mode_slave = Preset<Of>(OffsetMode::kXZero);
+  Of<ScalingMode> scaling_mode_master = Preset<Of>(ScalingMode::kXZero);
+  Of<ScalingMode> scaling_mode_slave = Preset<Of>(ScalingMode::kXZero);
+  Of<double> offset_scaling_master_velocity = Preset<Of>(100.0);  // x per s ...
+  Of<double> offset_scaling_master_acceleration = Preset<Of>(1'000.0);
+  Of<double> offset_scaling_master_deceleration = Preset<Of>(1'000.0);
+  Of<double> offset_scaling_slave_velocity = Preset<Of>(100.0);  // u/s ...
+  Of<double> offset_scaling_slave_acceleration = Preset<Of>(1'000.0);
+  Of<double> offset_scaling_slave_deceleration = Preset<Of>(1'000.0);
+  Of<PositionControl> position_control = Preset<Of>(PositionControl::kBoth);
+
+  // Extreme values.
+  Of<bool> calculate_bounds = Preset<Of>(false);
+  Of<double> master_max_velocity = Preset<Of>(100.0);        // master's u/s
+  Of<double> master_max_acceleration = Preset<Of>(1'000.0);  // master's u/s²
+
+  // The master. Beyond the seed.
+  Of<double> master_filter_s = Preset<Of>(0.0);     // of measured positions; 0: none
+  Of<double> master_dead_time_s = Preset<Of>(0.0);  // measured positions are so old
+  Of<MasterFault> on_master_fault = Preset<Of>(MasterFault::kStop);
+  Of<double> virtual_acceleration = Preset<Of>(1'000.0);  // of a master without an axis, master's u/s²
+  Of<double> virtual_jerk = Preset<Of>(10'000.0);
+};
+using Settings = SettingsOf<Plain>;
+// The command that changes what is given of them.
+using Configure = SettingsOf<std::optional>;
+
+void describe(Enumeration<SyncMode>&);
+void describe(Enumeration<SyncDirection>&);
+void describe(Enumeration<OffsetMode>&);
+void describe(Enumeration<ScalingMode>&);
+void describe(Enumeration<PositionControl>&);
+void describe(Enumeration<SequenceMode>&);
+void describe(Enumeration<MasterFault>&);
+void describe(Description<Settings>&);
+void describe(Description<Configure>&);
+
+}  // namespace takt::flexcam

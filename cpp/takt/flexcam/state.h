@@ -1,0 +1,73 @@
+// All memory of a cam module: plain, so that it can be copied, compared, hashed and replayed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/feedback.h"
+#include "takt/core/status.h"
+#include "takt/flexcam/bounds.h"
+#include "takt/flexcam/clutch.h"
+#include "takt/flexcam/commands.h"
+#include "takt/flexcam/master.h"
+#include "takt/flexcam/outputs.h"
+#include "takt/flexcam/sequencer.h"
+#include "takt/flexcam/way.h"
+
+namespace takt::flexcam {
+
+inline constexpr int kPendingChanges = 8;
+
+struct PendingChange {
+  Ticket ticket = 0;
+  ChangeCam change;
+};
+
+struct JogKeys {
+  Ticket ticket = 0;  // 0: none is held
+  Jog keys;
+  double lease_s = 0;  // > 0: a dead man's lease ...
+  std::uint64_t lease_end_cycle = 0;
+};
+
+// What Control started and whose end is to be told.
+enum class Action : std::uint8_t { kNone, kSyncIn, kSyncOut, kHome };
+
+struct State {
+  Inputs inputs;
+  Inputs before;  // inputs of the cycle before, for their edges
+  Settings settings;
+  std::array<std::uint32_t, kSlots> slots{};  // number of the machine's cam in each, from 1; 0: none
+  ModuleState state = ModuleState::kInit;
+  ErrorId error = ErrorId::kNone;
+  ErrorId warning = ErrorId::kNone;
+  Action action = Action::kNone;
+  Ticket action_ticket = 0;
+  bool done = false;
+  JogKeys jog;
+
+  MasterState master;
+  Way way;
+  KinematicState x;       // over all cycles
+  KinematicState wanted;  // of the slave by Y, over all turns
+  ProfilerValue at;
+  KinematicState y;       // Y and its derivatives over time
+  bool assigned = false;  // X is the master's position
+  ClutchState clutch;
+  SequencerState sequencer;
+  BoundsState bounds;
+  std::array<PendingChange, kPendingChanges> pending;  // [0] is next
+  std::uint8_t pending_count = 0;
+  bool gap_known = false;  // between this cam and the next, in the cycle before (without_jump)
+  double gap = 0;          // in place or slope
+  std::uint32_t cam_ends = 0;
+  bool end_of_profile = false;
+};
+
+void describe(Description<PendingChange>&);
+void describe(Description<JogKeys>&);
+void describe(Enumeration<Action>&);
+void describe(Description<State>&);
+
+}  // namespace takt::flexcam
