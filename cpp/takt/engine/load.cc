@@ -42,6 +42,7 @@ class CrossCheck {
     CheckMasters();
     CheckNames("cams", machine_.cams);
     CheckNames("cam_switches", machine_.cam_switches);
+    CheckCamSwitches();
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
       CheckReference("simulation.servos[" + std::to_string(i) + "].axis", machine_.simulation.servos[i].axis, servos);
@@ -106,6 +107,17 @@ class CrossCheck {
     for (const std::uint32_t i : loop) members += machine_.axes[i].name + " -> ";
     Add("axes[" + std::to_string(loop.front()) + "].follows.axis",
         "expected axes that follow one another in no loop, found " + members + machine_.axes[loop.front()].name);
+  }
+
+  // Lists that no axis of the machine can have.
+  void CheckCamSwitches() {
+    for (std::size_t i = 0; i < machine_.cam_switches.size(); ++i) {
+      const axis::CamSwitches& list = machine_.cam_switches[i];
+      const auto cannot = [&](const axis::AxisParams& axis) { return !axis::CannotSwitch(list, axis).empty(); };
+      if (machine_.axes.empty() || !std::ranges::all_of(machine_.axes, cannot)) continue;
+      Add("cam_switches[" + std::to_string(i) + "].switches",
+          "no axis can have this list: " + axis::CannotSwitch(list, machine_.axes.front()));
+    }
   }
 
   template <typename T>
