@@ -55,7 +55,7 @@ enum class ErrorId : std::uint16_t {
   kInternal = 3016,           // the engine found its own numbers broken; outputs are zero, all loops open
   kOtherRun = 3017,           // the command was meant for another start of the engine
   kCouplingLoop = 3018,       // the axis would follow itself, through others
-  kMasterOff = 3019,          // a master has no set position that means anything: its loop is open
+  kMasterOff = 3019,          // a master has no set position that means anything: its loop is open, or it has a fault
   kGroupDeviation = 8001,
 };
 
