@@ -1,4 +1,4 @@
-"""Touch probe, cam switches and torque control as function blocks (AX-42, AX-49, AX-50)."""
+"""Touch probe and torque control as function blocks (AX-42, AX-49)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from takt._commands import Direction, TouchMode
 from takt.plcopen import (
     GT_Touch,
     MC_AbortTrigger,
-    MC_DigitalCamSwitch,
     MC_MoveAbsolute,
     MC_MoveVelocity,
     MC_TorqueControl,
@@ -22,12 +21,6 @@ from takt.plcopen import (
 WITH_PROBE = (
     MACHINE
     + """\
-cam_switches:
-  - name: gates
-    tracks: [{track: 2, on_lead_s: 0.02}]
-    switches:
-      - {track: 1, first_on_position: 10, last_on_position: 20}
-      - {track: 2, first_on_position: 100, mode: time, duration_s: 0.05}
 simulation:
   servos:
     - {axis: x, mechanics: {inertia: 0.001, upper_stop: 150}, switches: {touch_probe: {from: 60, to: 70}}}
@@ -112,40 +105,6 @@ def test_touch_slows_down_as_long_as_execute_is_true(x: takt.Axis) -> None:  # A
     fast(Execute=True, Position=100, Velocity=100)
     until(x, lambda: x.set_position > 68, fast)
     assert x.set_velocity == pytest.approx(100)
-
-
-def test_cam_switch_works_while_enabled(x: takt.Axis) -> None:  # AX-50
-    cams, move = MC_DigitalCamSwitch(x, Switches="gates"), MC_MoveVelocity(x)
-    cams(Enable=True)
-    move(Execute=True, Velocity=200)
-    seen: dict[int, list[float]] = {1: [], 2: []}
-
-    def note() -> None:
-        for track, positions in seen.items():
-            if cams.Outputs >> (track - 1) & 1:
-                positions.append(x.set_position)
-
-    until(x, lambda: x.set_position > 130, cams, move, note)
-    assert cams.InOperation
-    assert cams.Busy
-    assert min(seen[1]) == pytest.approx(10, abs=0.2)
-    assert max(seen[1]) == pytest.approx(20, abs=0.2)
-    assert min(seen[2]) == pytest.approx(96, abs=0.2)
-    assert len(seen[2]) == 50
-    cams(Enable=False)
-    step(x)
-    assert not cams().InOperation
-    assert x.cam_outputs == 0
-
-
-def test_cam_switch_says_what_is_wrong(x: takt.Axis) -> None:  # AX-50
-    cams = MC_DigitalCamSwitch(x, Switches="doors")
-    cams(Enable=True)
-    until(x, lambda: cams.Error, cams)
-    assert cams.ErrorID == 3010
-    assert not cams.Busy
-    cams(Enable=False)
-    assert not cams.Error
 
 
 def test_torque_control_presses(x: takt.Axis) -> None:  # AX-42

@@ -1,6 +1,8 @@
 #include "takt/axis/cam_switch.h"
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "takt/axis/fit.h"
 #include "takt/axis/sequence.h"
@@ -12,68 +14,127 @@ namespace {
 
 constexpr double kCycleRounding = 1e-6;  // of a cycle: a duration of whole cycles is that many
 
-// How far `x` is past `edge` in this sense; rotary: in [0, modulus), but for rounding.
-double Past(const CamSwitchInputs& in, double edge, double x) {
-  const double past = in.sense * (x - edge);
-  if (in.modulus <= 0) return past;
-  const double slack = Rounding(x);
-  return past - in.modulus * std::floor((past + slack) / in.modulus);
+// A way of the place compared, in one sense of travel; of no length: none.
+struct Way {
+  double from = 0, to = 0;
+  int sense = 1;
+
+  double length() const { return sense * (to - from); }
+};
+
+// What the axis did between two cycles.
+struct Travel {
+  int sense = 1;
+  double velocity = 0;  // u/s, that way: against it is none
+  bool turned = false;
+  double turning_point = 0;
+};
+
+Travel Follow(const CamSwitchInputs& in, CamSwitchState& s) {
+  if (!s.started) {
+    s.sense = in.sense < 0 ? -1 : 1;
+    s.extreme = in.position;
+  }
+  Travel travel;
+  travel.turning_point = s.extreme;
+  const double way = s.sense * (in.position - s.extreme);
+  travel.turned = way < -Rounding(in.position);
+  if (travel.turned) {
+    s.sense = static_cast<std::int8_t>(-s.sense);
+    s.turned = ~std::uint64_t{0};
+  }
+  if (travel.turned || way > 0) s.extreme = in.position;
+  travel.sense = s.sense;
+  travel.velocity = s.sense * in.velocity > 0 ? in.velocity : 0;
+  return travel;
+}
+
+// One and the same for a switch in all cycles, so that what is short of an edge in one cycle is so in the next, too.
+double Slack(const CamSwitchInputs& in, const CamSwitch& sw) {
+  const double last = sw.last_on_position.value_or(0);
+  return Rounding(std::max({in.modulus, std::abs(sw.first_on_position), std::abs(last)}));
+}
+
+// How far `x` is past the end of the range at which it is entered in this sense; where positions repeat: in [0,
+// modulus), but for rounding.
+double Past(const CamSwitchInputs& in, const CamSwitch& sw, int sense, double x) {
+  const double entry = sense > 0 ? sw.first_on_position : sw.last_on_position.value_or(sw.first_on_position);
+  const double past = sense * (x - entry);
+  return in.modulus > 0 ? past - in.modulus * std::floor((past + Slack(in, sw)) / in.modulus) : past;
 }
 
 double Width(const CamSwitchInputs& in, const CamSwitch& sw) {
   const double width = *sw.last_on_position - sw.first_on_position;
-  return in.modulus > 0 && width < 0 ? width + in.modulus : width;
+  return in.modulus > 0 && width < 0 ? width - in.modulus * std::floor(width / in.modulus) : width;
 }
 
 double Apart(const CamSwitchInputs& in, double a, double b) {
   return std::abs(in.modulus > 0 ? std::remainder(a - b, in.modulus) : a - b);
 }
 
-// Where the axis stands to a switch, with the track's lead time.
-struct Sight {
-  double past = 0;       // u behind the end at which it enters
-  bool entered = false;  // in this cycle
-};
-
-Sight Look(const CamSwitch& sw, const CamTrack& track, const CamSwitchInputs& in, const CamSwitchState& s) {
-  const double x = in.position + in.velocity * track.on_lead_s;
-  const double before = in.position - in.step + s.velocity_before * track.on_lead_s;
-  const double entry = in.sense > 0 ? sw.first_on_position : sw.last_on_position.value_or(sw.first_on_position);
-  const double past = Past(in, entry, x);
-  const double travelled = in.sense * (x - before);
-  const double slack = Rounding(x);
-  return {past, s.started && travelled > 0 && past >= -slack && past < travelled - slack};
-}
-
-bool PositionSwitch(const CamSwitch& sw, const CamTrack& track, const CamSwitchInputs& in, const Sight& sight) {
-  const double width = Width(in, sw) + in.sense * in.velocity * (track.on_lead_s - track.off_lead_s);
-  const double slack = Rounding(in.position);
-  const bool inside = sight.past >= -slack && sight.past <= width + slack;
-  return inside || (sight.entered && width >= 0);
-}
-
 bool RunsThatWay(const CamSwitch& sw, int sense) {
   return sw.direction == CamDirection::kBoth || (sw.direction == CamDirection::kPositive) == (sense > 0);
 }
 
-bool IsOn(const CamSwitch& sw, const CamTrack& track, const CamSwitchInputs& in, std::size_t i, CamSwitchState& s) {
+bool Enters(const CamSwitchInputs& in, const CamSwitch& sw, const Way& way) {
+  if (way.length() <= 0 || !RunsThatWay(sw, way.sense)) return false;
+  const double past = Past(in, sw, way.sense, way.to);
+  const double slack = Slack(in, sw);
+  return past >= -slack && past < way.length() - slack;
+}
+
+// Further, but never back.
+Way Advance(double to, int sense, double& reach) {
+  const Way way{reach, to, sense};
+  if (way.length() > 0) reach = to;
+  return way;
+}
+
+// Whether the axis entered the range since the cycle before.
+bool Enters(const CamSwitchInputs& in, const CamSwitch& sw, const Travel& travel, double x, bool started,
+            double& reach) {
+  if (!started) {
+    reach = x;
+    return false;
+  }
+  bool enters = false;
+  if (travel.turned) {
+    enters = Enters(in, sw, Advance(travel.turning_point, -travel.sense, reach));
+    reach = travel.turning_point;
+  }
+  return Enters(in, sw, Advance(x, travel.sense, reach)) || enters;
+}
+
+bool Inside(const CamSwitchInputs& in, const CamSwitch& sw, int sense, double x, double width) {
+  const double past = Past(in, sw, sense, x);
+  const double slack = Slack(in, sw);
+  return RunsThatWay(sw, sense) && past >= -slack && past <= width + slack;
+}
+
+bool IsOn(const CamSwitch& sw, const CamTrack& track, const CamSwitchInputs& in, const Travel& travel, std::size_t i,
+          CamSwitchState& s) {
   const std::uint64_t bit = std::uint64_t{1} << i;
-  const bool that_way = RunsThatWay(sw, in.sense);
-  const Sight sight = Look(sw, track, in, s);
+  const double x = in.position + travel.velocity * track.on_lead_s;
+  const bool enters = Enters(in, sw, travel, x, s.started, s.reach[i]);
+  if (Apart(in, in.position, s.mark[i]) >= track.hysteresis) s.marked &= ~bit;
+  const bool held = (s.marked & s.turned & bit) != 0;
   const bool was = (s.closed & bit) != 0;
+  const auto mark = [&] {
+    s.mark[i] = in.position;
+    s.marked |= bit;
+    s.turned &= ~bit;
+  };
   if (sw.mode == CamSwitchMode::kTime) {
     const auto now = static_cast<double>(in.cycle);
-    if (that_way && sight.entered) {
-      s.mark[i] = now + std::ceil(sw.duration_s / in.period_s - kCycleRounding);
-      return true;
-    }
-    return was && now < s.mark[i];
+    if (!enters || held) return was && now < s.end_cycle[i];
+    mark();
+    s.end_cycle[i] = now + std::ceil(sw.duration_s / in.period_s - kCycleRounding);
+    return true;
   }
-  const bool on = that_way && PositionSwitch(sw, track, in, sight);
-  if (on == was) return on;
-  if ((s.marked & bit) != 0 && Apart(in, in.position, s.mark[i]) < track.hysteresis) return was;
-  s.marked |= bit;
-  s.mark[i] = in.position;
+  const double width = Width(in, sw) + travel.sense * travel.velocity * (track.on_lead_s - track.off_lead_s);
+  const bool on = Inside(in, sw, travel.sense, x, width) || (enters && width >= 0);
+  if (on == was || held) return was;
+  mark();
   return on;
 }
 
@@ -84,35 +145,66 @@ CamTrack OptionsOf(const CamSwitches& list, std::int32_t track) {
   return {.track = track};
 }
 
+// The first switch whose range ends below its beginning; none: null.
+const CamSwitch* EndsBelow(const CamSwitches& list) {
+  const auto backwards = [](const CamSwitch& sw) {
+    return sw.last_on_position.value_or(sw.first_on_position) < sw.first_on_position;
+  };
+  const auto found = std::ranges::find_if(list.switches, backwards);
+  return found == list.switches.end() ? nullptr : &*found;
+}
+
+// A list without one of its own repeats as its axis does.
+bool FitsTurn(const CamSwitches& list, const AxisParams& params) {
+  if (!params.rotary() || !list.modulus) return true;
+  const double times = params.modulus / *list.modulus;
+  return std::round(times) >= 1 && std::abs(times - std::round(times)) <= Rounding(times);
+}
+
+bool CanSwitch(const CamSwitches& list, const AxisParams& params) {
+  const bool repeats = params.rotary() || list.modulus;
+  return FitsTurn(list, params) && (repeats || !EndsBelow(list));
+}
+
 }  // namespace
 
 std::uint32_t Step(const CamSwitches& list, const CamSwitchInputs& in, CamSwitchState& s) noexcept {
   std::uint32_t outputs = 0;
   std::uint64_t on = 0;
+  const Travel travel = Follow(in, s);
   for (std::size_t i = 0; i < list.switches.size() && i < kMaxCamSwitches; ++i) {
     const CamSwitch& sw = list.switches[i];
-    if (!IsOn(sw, OptionsOf(list, sw.track), in, i, s)) continue;
+    if (!IsOn(sw, OptionsOf(list, sw.track), in, travel, i, s)) continue;
     on |= std::uint64_t{1} << i;
     outputs |= std::uint32_t{1} << (sw.track - 1);
   }
   s.closed = on;
-  s.velocity_before = in.velocity;
   s.started = true;
   return outputs;
 }
 
 std::uint32_t SwitchCams(const Context& c, State& s) noexcept {
   CamSwitchState& cams = s.cam_switch;
-  const bool set = cams.source == MasterSource::kSetValue;
+  const CamSwitches& list = c.cam_switches[static_cast<std::size_t>(cams.list)];
+  const KinematicState& x = cams.source == MasterSource::kSetValue ? s.setpoint : s.actual;
   CamSwitchInputs in;
-  in.position = set ? s.setpoint.position : s.actual.position;
-  in.step = set ? s.setpoint.position - s.due : s.probe.step;
-  in.velocity = set ? s.setpoint.velocity : s.actual.velocity;
-  in.sense = in.velocity == 0 ? s.last_sense : in.velocity > 0 ? 1 : -1;
-  in.modulus = c.params.rotary() ? c.params.modulus : 0;
+  in.position = x.position;
+  in.velocity = x.velocity;
+  in.sense = s.last_sense;
+  in.modulus = list.modulus.value_or(c.params.turn());
   in.cycle = c.cycle.count;
   in.period_s = c.cycle.period_s;
-  return Step(c.cam_switches[static_cast<std::size_t>(cams.list)], in, cams) & cams.enable_mask;
+  const std::uint32_t outputs = Step(list, in, cams) & cams.enable_mask;
+  // Where it is next has nothing to do with where it seemed to be.
+  const bool measured = cams.source == MasterSource::kActualValue || !s.loop_closed;
+  if (measured && s.encoder_error) cams.started = false;
+  return outputs;
+}
+
+void Shift(double by, CamSwitchState& s) noexcept {
+  s.extreme += by;
+  for (double& mark : s.mark) mark += by;
+  for (double& reach : s.reach) reach += by;
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const DigitalCamSwitch& command, State& s) noexcept {
@@ -121,6 +213,9 @@ Status CarryOut(const Context& c, Ticket ticket, const DigitalCamSwitch& command
     if (c.cam_switches[i].name == command.switches.view()) list = static_cast<std::int32_t>(i);
   }
   if (list < 0) return Status::Failed(ErrorId::kUnknownTarget);
+  if (!CanSwitch(c.cam_switches[static_cast<std::size_t>(list)], c.params)) {
+    return Status::Failed(ErrorId::kParameter);
+  }
   CamSwitchState& cams = s.cam_switch;
   if (cams.list >= 0) Report(c, cams.ticket, FeedbackState::kAborted);
   Report(c, ticket, FeedbackState::kActive);
@@ -135,6 +230,21 @@ Status CarryOut(const Context& c, Ticket ticket, const DigitalCamSwitch& command
   cams.enable_mask = command.enable_mask;
   cams.source = command.source;
   return Status::Ok();
+}
+
+std::string CannotSwitch(const CamSwitches& list, const AxisParams& params) {
+  if (CanSwitch(list, params)) return {};
+  std::ostringstream text;
+  if (!FitsTurn(list, params)) {
+    text << "expected a modulus that a turn of axis " << params.name << " (" << params.modulus
+         << ") is a whole number of, found " << *list.modulus;
+  } else {
+    const CamSwitch& sw = *EndsBelow(list);
+    text << "expected last_on_position not below first_on_position, as axis " << params.name
+         << " is linear and the list has no modulus, found " << *sw.last_on_position << " below "
+         << sw.first_on_position;
+  }
+  return text.str();
 }
 
 void describe(Enumeration<CamDirection>& e) {
@@ -156,9 +266,9 @@ void describe(Description<CamSwitch>& d) {
   d.required<&S::track>(between(1, kMaxTracks), "Which track: bit track - 1 of cam_outputs.");
   d.required<&S::first_on_position>(unit::u, "Lower end of the range.");
   d.defaulted<&S::last_on_position>(unit::u,
-                                    "Upper end of the range; below the first on rotary axes: across 0. In time mode "
-                                    "where it begins downwards; unset: "
-                                    "at first_on_position too.");
+                                    "Upper end of the range; below the first, on rotary axes or with a modulus: "
+                                    "across 0. In time mode where it begins downwards; unset: at first_on_position "
+                                    "too.");
   d.defaulted<&S::direction>("In which sense of travel.");
   d.defaulted<&S::mode>("What ends it.");
   d.defaulted<&S::duration_s>(unit::s, not_negative, "Time mode: how long it is on.");
@@ -177,13 +287,17 @@ void describe(Description<CamTrack>& d) {
                               "Switches off so much earlier; negative: later. Not in time mode.");
   d.defaulted<&T::hysteresis>(
       unit::u, not_negative,
-      "Having switched, a switch stays as it is until the axis is so far from there. Not in time mode.");
+      "Where the axis turns round after a switch has switched, it stays as it is until the axis is so far from there. "
+      "In time mode: the time does not begin again until then.");
 }
 
 void describe(Description<CamSwitches>& d) {
   using L = CamSwitches;
   d.about("A list of cam switches, for any axis (MC_DigitalCamSwitch).");
   d.required<&L::name>("How commands call it.");
+  d.defaulted<&L::modulus>(unit::u, positive,
+                           "Positions repeat every so many; unset: as those of the axis. For linear axes, or for "
+                           "several times a turn.");
   d.defaulted<&L::tracks>("Options of tracks, where they have any.");
   d.required<&L::switches>("The switches, 64 at most.");
   d.rule<&L::switches>("must be 64 at most", [](const L& l) { return l.switches.size() <= kMaxCamSwitches; });
@@ -197,10 +311,14 @@ void describe(Description<CamSwitchState>& d) {
   d.internal<&S::enable_mask>("A bit for each track.");
   d.internal<&S::source>("Set point or measured position.");
   d.internal<&S::started>("There was a cycle before.");
-  d.internal<&S::velocity_before>(unit::u_s, "In the cycle before.");
+  d.internal<&S::sense>("Of travel.");
+  d.internal<&S::extreme>(unit::u, "How far it got that way.");
   d.internal<&S::closed>("A bit for each switch.");
-  d.internal<&S::marked>("A bit for each switch that has switched.");
-  d.internal<&S::mark>("Where each switched, or in which cycle it goes off.");
+  d.internal<&S::marked>("A bit for each switch that has switched not far from where the axis is.");
+  d.internal<&S::turned>("A bit for each switch after which the axis has turned round.");
+  d.internal<&S::mark>("Where each switched.");
+  d.internal<&S::reach>("The furthest place compared in this sense of travel.");
+  d.internal<&S::end_cycle>("In which cycle each goes off.");
 }
 
 }  // namespace takt::axis

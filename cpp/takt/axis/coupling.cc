@@ -48,9 +48,6 @@ double NextAhead(double turn, double position, double from, double sense) {
   const double turns = (from - position) / turn;
   return position + turn * (sense < 0 ? std::floor(turns) : std::ceil(turns));
 }
-double Turn(const AxisParams& p) {
-  return p.rotary() ? p.modulus : 0;
-}
 
 // Where the slave is to be when both are in step, over all turns, if it goes on to about `expected` meanwhile.
 double SlaveSync(const AxisParams& p, double position, double expected, SyncMode mode) {
@@ -203,7 +200,7 @@ void BeginJoining(const Context& c, const Request& r, State& s) {
   const KinematicState seen = Seen(c, term, {});
   const double sense = seen.velocity < 0 ? -1 : 1;
   const double distance = std::max(0.0, r.coupling.master_start_distance);
-  k.turn = Turn(c.axes_params[term.master]);
+  k.turn = c.axes_params[term.master].turn();
   k.master_sync =
       NextAhead(k.turn, r.coupling.master_sync_position + master.origin, seen.position + sense * distance, sense);
   k.slave_sync = r.coupling.slave_sync_position + s.origin;
@@ -233,13 +230,13 @@ void BeginCam(const Context& c, const Request& r, State& s) {
   double zero = at - Reported(its, at - master.origin);       // ... and the master's zero in that turn
   const double begin = (law.table.begin() - k.law.master_offset) / law.ratio;  // from zero
   if (k.law.at_sync_position) {
-    k.turn = Turn(its);
+    k.turn = its.turn();
     at = NextAhead(k.turn, k.law.master_sync_position + master.origin, seen.position + sense * distance, sense);
     zero = at - k.law.master_sync_position;
   } else if (waits && !k.law.master_absolute) {
     at = seen.position + sense * distance;
   } else if (waits) {
-    k.turn = law.periodic ? std::abs(law.way()) : Turn(its);
+    k.turn = law.periodic ? std::abs(law.way()) : its.turn();
     at = NextAhead(k.turn, zero + begin, seen.position + sense * distance, sense);
     zero = at - begin;
   }

@@ -35,7 +35,7 @@ Forecast ForecastOf(const Context& c, const State& s, double waited_s) {
   f.held = s.motion.held;
   f.goes_on = s.plc == PlcState::kContinuousMotion;
   f.limited_by = s.limited_by;
-  f.modulus = c.params.rotary() ? c.params.modulus : 0;
+  f.modulus = c.params.turn();
   f.lower = c.params.limits.lower.value_or(-HUGE_VAL);
   f.upper = c.params.limits.upper.value_or(HUGE_VAL);
   const bool stands = !s.loop_closed || (s.motion.arrived && AtRest(s));

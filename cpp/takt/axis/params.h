@@ -72,6 +72,8 @@ struct AxisParams {
   HomingParams homing;
 
   bool rotary() const { return kind == AxisKind::kRotary; }
+  // u, after which positions repeat; linear axes: 0.
+  double turn() const { return rotary() ? modulus : 0; }
   // The limits as the planner takes them.
   trajectory::Limits planner_limits() const;
 };

@@ -142,7 +142,7 @@ bool Fill(const Maker& m, const Touch& c) {
 void SenseProbe(const Context& c, const ServoInputs& in, State& s) noexcept {
   ProbeState& probe = s.probe;
   const bool good = !s.encoder_error;
-  if (probe.watch != ProbeWatch::kNothing || s.cam_switch.list >= 0) {  // somebody asks for the step
+  if (probe.watch != ProbeWatch::kNothing) {
     const bool known = probe.sampled && good;
     const double before = known ? LatchedPosition(c.params.encoder, s.encoder, probe.counts) - s.origin : 0;
     probe.step = known ? s.actual.position - before : s.actual.velocity * c.cycle.period_s;

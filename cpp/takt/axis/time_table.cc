@@ -148,7 +148,7 @@ void BeginTable(const Context& c, const Request& r, const MotionStart& start, St
   TimeTableState& k = s.time_table;
   k = TimeTableState{};
   const double own = s.setpoint.position + s.origin;
-  const double turn = c.params.rotary() ? c.params.modulus : 0;
+  const double turn = c.params.turn();
   k.turns = s.origin + (turn == 0 ? 0 : turn * std::round((own - s.origin - curve.At(0).y) / turn));
   k.demand = {own, s.setpoint.velocity, s.setpoint.acceleration};
   k.chase.in_step = true;  // until the first demand shows otherwise

@@ -146,6 +146,22 @@ ParsedCommand Refused(ErrorId error, std::string sentence) {
   return refused;
 }
 
+// What is wrong with a list of cam switches that this axis is to have. An unknown one is found in the cycle.
+std::string CannotSwitch(const Machine& machine, const axis::DigitalCamSwitch& command, const axis::AxisParams& axis) {
+  for (const axis::CamSwitches& list : machine.cam_switches) {
+    if (list.name != command.switches.view()) continue;
+    std::string why = axis::CannotSwitch(list, axis);
+    return why.empty() ? why : "switches: " + Quoted(list.name) + ": " + why;
+  }
+  return {};
+}
+
+std::string WhyNot(const Machine& machine, const axis::Command& command, const axis::AxisParams& axis) {
+  std::string why = axis::WhyNot(command, axis);
+  const auto* switches = std::get_if<axis::DigitalCamSwitch>(&command);
+  return why.empty() && switches ? CannotSwitch(machine, *switches, axis) : why;
+}
+
 ParsedCommand UnknownTarget(const Machine& machine, std::string_view target) {
   std::vector<std::string_view> names{kMachine};
   for (const axis::AxisParams& axis : machine.axes) names.push_back(axis.name);
@@ -207,8 +223,15 @@ ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std:
     parsed.level_sensitive = entry.verb.level_sensitive;
     Problem problem;
     if (!entry.read(arguments, parsed.command.body, problem)) return Refused(ErrorId::kParameter, problem.Text());
+<<<<<<< HEAD
     if (std::string sentence = WhyNot(machine, parsed.command); !sentence.empty()) {
       return Refused(ErrorId::kParameter, std::move(sentence));
+=======
+    if (*found != kMachineTarget) {
+      const auto& command = std::get<axis::Command>(parsed.command.body);
+      std::string sentence = WhyNot(machine, command, machine.axes[*found - 1]);
+      if (!sentence.empty()) return Refused(ErrorId::kParameter, std::move(sentence));
+>>>>>>> switches
     }
     return parsed;
   }

@@ -1,5 +1,6 @@
 #include "allocations.h"
 
+#include <cstddef>
 #include <cstdlib>
 #include <new>
 
@@ -11,6 +12,13 @@ long AllocationsOfThisThread() {
   return allocations;
 }
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+#else  // these have a malloc of their own: then calls of new are counted
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size)) return memory;
@@ -22,3 +30,4 @@ void operator delete(void* memory) noexcept {
 void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
+#endif

@@ -1,4 +1,5 @@
-// Counts what the calling thread allocates, for tests of code that must not.
+// Counts what the calling thread allocates, for tests of code that must not: calls of malloc, which new makes too and
+// Eigen makes without it.
 #pragma once
 
 long AllocationsOfThisThread();

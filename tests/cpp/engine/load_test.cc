@@ -273,6 +273,24 @@ TEST(LoadMachine, ChecksTheNameOfTheMachine) {
   EXPECT_THAT(problems(""), ElementsAre(HasSubstr("name")));
 }
 
+// CAM-72: the list is good for another axis.
+TEST(ParseCommand, SaysWhichListsOfCamSwitchesAnAxisCannotHave) {
+  const LoadResult loaded = LoadMachine(
+      "name: m\naxes:\n  - {name: x, limits: {velocity: 1, acceleration: 1, jerk: 1}}\n"
+      "  - {name: c, kind: rotary, limits: {velocity: 1, acceleration: 1, jerk: 1}}\n"
+      "cam_switches:\n  - {name: a, switches: [{track: 1, first_on_position: 350, last_on_position: 10}]}\n",
+      "m.yaml");
+  ASSERT_TRUE(loaded.machine);
+  const auto refused = [&](const char* axis, const char* list) {
+    return ParseCommand(*loaded.machine, axis, "digital_cam_switch", list).sentence;
+  };
+  EXPECT_EQ(refused("c", "{switches: a}"), "");
+  EXPECT_EQ(refused("x", "{switches: a}"),
+            "switches: 'a': expected last_on_position not below first_on_position, as axis x is linear and the list "
+            "has no modulus, found 10 below 350");
+  EXPECT_EQ(refused("x", "{switches: b}"), "");  // the cycle says that there is none
+}
+
 // AX-50: lists of cam switches.
 TEST(LoadMachine, ChecksListsOfCamSwitches) {
   const auto problems = [](const std::string& lists) {
@@ -281,7 +299,7 @@ TEST(LoadMachine, ChecksListsOfCamSwitches) {
                "m.yaml")
         .problems;
   };
-  const std::string good = "switches: [{track: 32, first_on_position: 350, last_on_position: 10}]}\n";
+  const std::string good = "switches: [{track: 32, first_on_position: 10, last_on_position: 350}]}\n";
   EXPECT_THAT(problems("  - {name: a, " + good + "  - {name: b, " + good), testing::IsEmpty());
   EXPECT_THAT(problems("  - {name: a, " + good + "  - {name: a, " + good),
               ElementsAre(HasSubstr("m.yaml:5:12: cam_switches[1].name: expected each name once")));
@@ -290,6 +308,11 @@ TEST(LoadMachine, ChecksListsOfCamSwitches) {
               ElementsAre(HasSubstr("track")));
   EXPECT_THAT(problems("  - {name: a, switches: [{track: 1, first_on_position: 1}]}\n"),
               ElementsAre(HasSubstr("must be given, but in time mode")));
+  const std::string across = "switches: [{track: 1, first_on_position: 350, last_on_position: 10}]}\n";
+  EXPECT_THAT(problems("  - {name: a, modulus: 360, " + across), testing::IsEmpty());
+  EXPECT_THAT(problems("  - {name: a, " + across),  // CAM-72
+              ElementsAre(HasSubstr("m.yaml:4:25: cam_switches[0].switches: no axis can have this list: expected "
+                                    "last_on_position not below first_on_position")));
   EXPECT_THAT(problems("  - {name: a, switches: [{track: 1, first_on_position: 1, mode: time}]}\n"),
               ElementsAre(HasSubstr("must be above 0 in time mode")));
   EXPECT_THAT(LoadMachine("name: m\naxes: [{name: x, limits: {velocity: 1, acceleration: 1, jerk: 1}, "

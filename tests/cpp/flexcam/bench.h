@@ -116,7 +116,10 @@ class Bench {
   bool Sync(int most = 20000) {
     const Ticket ticket = Tell(Control{.sync_cam = true});
     Step();
-    return Until([&] { return IsFinal(Of(ticket)); }, most) && Of(ticket) == FeedbackState::kDone;
+    const bool done = Until([&] { return IsFinal(Of(ticket)); }, most) && Of(ticket) == FeedbackState::kDone;
+    EXPECT_TRUE(done) << "state " << int(Module().state) << " error " << int(ErrorOf(ticket)) << " synchronised "
+                      << Module().cam_synchronised;
+    return done;
   }
 
   Machine machine;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mallocs.h"
+#include "../core/allocations.h"
 #include "mechanisms.h"
 
 namespace takt::kinematics {
@@ -303,7 +303,7 @@ TEST_P(Every, AllocatesNothing) {
   const Case& c = tried();
   const JointMotion motion = SomeMotion(random, c);
   const Joints near = Nudged(random, c, motion.position, 1);
-  const long before = MallocsOfThisThread();
+  const long before = AllocationsOfThisThread();
   Frame frame;
   MovingFrame tool;
   Jacobian columns;
@@ -315,7 +315,7 @@ TEST_P(Every, AllocatesNothing) {
   worst = std::max(worst, JacobianAt(c.kinematics, near, columns));
   worst = std::max(worst, Inverse(c.kinematics, frame, branch, near, joints));
   worst = std::max(worst, Inverse(c.kinematics, tool, branch, near, found));
-  EXPECT_EQ(MallocsOfThisThread() - before, 0);
+  EXPECT_EQ(AllocationsOfThisThread() - before, 0);
   EXPECT_EQ(worst, Reason::kNone);
 }
 

@@ -3,29 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <new>
 #include <vector>
 
+#include "../core/allocations.h"
 #include "problems.h"
-
-namespace {
-std::size_t allocations = 0;
-}  // namespace
-
-// Not inlined: GCC would then see a `delete` that frees.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace takt::trajectory {
 namespace {
@@ -202,7 +184,7 @@ TEST(Planner, CallsDoNotAllocate) {
   Planner planner;
   Profile plan;
   double sum = 0;
-  const std::size_t before = allocations;
+  const long before = AllocationsOfThisThread();
   for (const testing::Problem& p : some) {
     (void)planner.ToPosition(p.from, p.position, p.end_velocity, p.limits, plan);
     sum += plan.At(0.1).position + plan.PositionRange().max + plan.VelocityRange().max + plan.AccelerationRange().max;
@@ -210,7 +192,7 @@ TEST(Planner, CallsDoNotAllocate) {
     (void)planner.Stop(p.from, p.limits, plan);
     sum += StopPosition(p.from, p.limits);
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(AllocationsOfThisThread(), before);
   EXPECT_TRUE(std::isfinite(sum));
 }
 

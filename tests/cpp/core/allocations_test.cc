@@ -1,0 +1,12 @@
+#include "allocations.h"
+
+#include <gtest/gtest.h>
+
+#include <new>
+
+// The helper of other tests: it would prove nothing if it saw nothing.
+TEST(Allocations, AreSeen) {
+  const long before = AllocationsOfThisThread();
+  ::operator delete(::operator new(64));
+  EXPECT_EQ(AllocationsOfThisThread(), before + 1);
+}

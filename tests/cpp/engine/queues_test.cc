@@ -1,0 +1,195 @@
+// What comes in and goes out over queues, each of which may be full: commands, feedback, snapshots, figures.
+#include "takt/engine/engine.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "machines.h"
+#include "takt/engine/cycle.h"
+
+namespace takt::engine {
+namespace {
+
+// EN-21, EN-22: a full queue refuses; what was refused has no ticket, what was accepted is answered, in order.
+TEST(CommandQueue, RefusesWhenFullAndLosesNothing) {
+  const Machine machine = FullMachine();
+  Engine engine(machine, {.command_queue = 128});
+  std::vector<Ticket> accepted;
+  int refused = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Ticket ticket = engine.Submit(ToAxis(machine, "y1", axis::Halt{}));
+    ticket ? accepted.push_back(ticket) : void(++refused);
+  }
+  EXPECT_EQ(accepted.size(), 120u);  // the rest is kept for what lets go
+  EXPECT_EQ(refused, 1000 - 120);
+  std::vector<Ticket> answered;
+  for (int i = 0; i < 10; ++i) {
+    engine.RunCycle();
+    FeedbackEvent event;
+    while (engine.feedback().TryPop(event)) answered.push_back(event.ticket);
+    if (i == 0) {
+      EXPECT_EQ(answered.size(), kCommandsPerCycle);  // a cycle takes so many at most
+    }
+  }
+  EXPECT_EQ(engine.figures().commands_applied, 120u);
+  EXPECT_EQ(answered, accepted);
+  EXPECT_EQ(engine.figures().commands_refused, 880u);
+}
+
+// EN-22, EN-23: a flood of commands keeps out neither heartbeats nor what lets go or stops. At the longest cycle the
+// queue alone would hold a heartbeat up for longer than its lease.
+TEST(CommandQueue, AFloodKeepsOutNeitherRenewalsNorStops) {
+  Machine machine = FullMachine();
+  machine.cycle.period_s = 0.02;
+  Engine engine(machine);
+  const std::size_t z = AxisNamed(machine, "z");
+  const std::size_t y1 = AxisNamed(machine, "y1");
+  engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  engine.Submit(ToAxis(machine, "z", axis::Power{}));
+  for (int i = 0; i < 50; ++i) engine.RunCycle();
+  Command jog = ToAxis(machine, "z", axis::Jog{.forward = true, .velocity = 5});
+  jog.lease_s = 0.25;
+  const Ticket jogging = engine.Submit(jog);
+  const auto flood = [&] {
+    while (engine.Submit(ToAxis(machine, "c", axis::Reset{}))) {
+    }
+  };
+  const auto run = [&](int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      flood();
+      if (i % 5 == 0) {
+        EXPECT_NE(engine.Submit({.body = MachineCommand(Renew{jogging})}), 0u);
+      }
+      engine.RunCycle();
+    }
+  };
+  run(200);
+  EXPECT_NEAR(engine.outputs(z).set_velocity, 5, 1e-9);
+  flood();
+  EXPECT_NE(engine.Submit({.body = MachineCommand(Release{jogging})}), 0u);
+  EXPECT_NE(engine.Submit({.body = MachineCommand(StopAll{})}), 0u);
+  EXPECT_NE(engine.Submit(ToAxis(machine, "z", axis::Stop{})), 0u);
+  EXPECT_NE(engine.Submit(ToAxis(machine, "y1", axis::Power{.enable = false})), 0u);
+  EXPECT_EQ(engine.Submit(ToAxis(machine, "y1", axis::Power{})), 0u);
+  run(100);
+  EXPECT_EQ(engine.outputs(z).set_velocity, 0);
+  EXPECT_FALSE(engine.outputs(y1).loop_closed);
+}
+
+// What lets go keeps its place behind what was given before it.
+TEST(CommandQueue, KeepsTheOrder) {
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  engine.Submit(ToAxis(machine, "y1", axis::MoveAbsolute{.position = 100}));
+  engine.Submit(ToAxis(machine, "y1", axis::Stop{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.outputs(AxisNamed(machine, "y1")).set_velocity, 0);
+  EXPECT_LT(std::abs(engine.outputs(AxisNamed(machine, "y1")).set_position), 1);
+}
+
+// EN-21: nobody empties the snapshot queue: counted drops, and the cycle goes on unchanged.
+TEST(Snapshots, AreDroppedAndCountedWhenNobodyReads) {
+  const Machine machine = FullMachine();
+  Engine engine(machine, {.publish = true, .every_cycle = true, .snapshot_queue = 64});
+  for (int i = 0; i < 1000; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.figures().snapshots_dropped, 4000u - 64u);
+}
+
+// EN-21: nobody takes the feedback: what is lost is counted.
+TEST(FeedbackQueue, CountsWhatItLost) {
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  std::uint64_t given = 0;
+  for (int i = 0; i < 400; ++i) {
+    for (std::size_t k = 0; k < kCommandsPerCycle; ++k) given += engine.Submit(ToAxis(machine, "y1", axis::Halt{})) > 0;
+    engine.RunCycle();
+  }
+  std::uint64_t taken = 0;
+  for (FeedbackEvent event; engine.feedback().TryPop(event);) ++taken;
+  EXPECT_LT(taken, given);
+  EXPECT_EQ(taken + engine.figures().feedback_dropped, given);
+}
+
+// EN-20: the engine's own figures, at their rate, each of its cycle; nothing where nobody asked for it.
+TEST(Figures, ComeAtTheirRate) {
+  Machine machine = FullMachine();
+  machine.lcm.engine_rate_hz = 20;
+  Engine engine(machine, {.publish = true});
+  Engine silent(machine);
+  engine.Submit(ToAxis(machine, "z", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  engine.Submit(ToAxis(
+      machine, "z", axis::MoveAbsolute{.position = 1e12, .velocity = 1e-300, .acceleration = 1e-300, .jerk = 1e-300}));
+  for (int i = 0; i < 200; ++i) engine.RunCycle();
+  for (int i = 0; i < 500; ++i) silent.RunCycle();
+  std::vector<std::uint64_t> cycles;
+  EngineFigures figures;
+  while (engine.figure_queue().TryPop(figures)) cycles.push_back(figures.cycle);
+  EXPECT_THAT(cycles, testing::ElementsAre(0, 50, 100, 150, 200, 250, 300, 350, 400, 450));
+  EXPECT_EQ(figures.planner_failures, 1u);
+  EXPECT_FALSE(silent.figure_queue().TryPop(figures));
+}
+
+// EN-20: a rate that is no divisor is rounded; every_cycle adds the others, which are not due.
+TEST(Snapshots, SayWhetherTheyAreDue) {
+  Machine machine = FullMachine();
+  machine.lcm.axis_rate_hz = 150;  // every 7th cycle
+  Engine engine(machine, {.publish = true, .every_cycle = true});
+  for (int i = 0; i < 700; ++i) engine.RunCycle();
+  std::vector<int> due(4), all(4);
+  AxisSnapshot snapshot;
+  while (engine.snapshots().TryPop(snapshot)) {
+    ++all[snapshot.axis];
+    due[snapshot.axis] += snapshot.due;
+  }
+  EXPECT_THAT(all, testing::Each(700));
+  EXPECT_THAT(due, testing::Each(100));
+}
+
+// EN-20: each axis at its own rate.
+TEST(Snapshots, ComeAtTheRateOfTheirChannel) {
+  Machine machine = FullMachine();
+  machine.lcm.axis_rate_hz = 100;
+  machine.lcm.rates = {{"c", 500}, {"z", 0}};
+  Engine engine(machine, {.publish = true});
+  for (int i = 0; i < 1000; ++i) engine.RunCycle();
+  std::vector<int> counts(4);
+  AxisSnapshot snapshot;
+  while (engine.snapshots().TryPop(snapshot)) ++counts[snapshot.axis];
+  EXPECT_EQ(counts[AxisNamed(machine, "y1")], 100);
+  EXPECT_EQ(counts[AxisNamed(machine, "c")], 500);
+  EXPECT_EQ(counts[AxisNamed(machine, "z")], 0);
+}
+
+// EN-20: axes of one rate come in the same cycles.
+TEST(Snapshots, OfOneRateComeTogether) {
+  Machine machine = FullMachine();
+  machine.lcm.axis_rate_hz = 100;
+  Engine engine(machine, {.publish = true});
+  for (int i = 0; i < 1000; ++i) engine.RunCycle();
+  std::map<std::uint64_t, int> axes;  // by cycle
+  AxisSnapshot snapshot;
+  while (engine.snapshots().TryPop(snapshot)) ++axes[snapshot.cycle];
+  EXPECT_EQ(axes.size(), 100u);
+  for (const auto& [cycle, count] : axes) EXPECT_EQ(count, 4) << cycle;
+}
+
+// A command for a target that does not exist, handed in from C++ past the parser.
+TEST(CommandQueue, SurvivesAWrongTarget) {
+  Engine engine(FullMachine());
+  Command command;
+  command.target = 77;
+  command.body = axis::Command(axis::Halt{});
+  engine.Submit(command);
+  engine.RunCycle();
+  FeedbackEvent event;
+  ASSERT_TRUE(engine.feedback().TryPop(event));
+  EXPECT_EQ(event.error, ErrorId::kUnknownTarget);
+}
+
+}  // namespace
+}  // namespace takt::engine
