@@ -56,12 +56,8 @@ enum class ErrorId : std::uint16_t {
   kInternal = 3016,           // the engine found its own numbers broken; outputs are zero, all loops open
   kOtherRun = 3017,           // the command was meant for another start of the engine
   kCouplingLoop = 3018,       // the axis would follow itself, through others
-<<<<<<< HEAD
-  kMasterOff = 3019,          // a master has no set position that means anything: its loop is open
-  kWouldReverse = 3020,       // a clutch that may not reverse its slave finds no way to close
-=======
   kMasterOff = 3019,          // a master has no set position that means anything: its loop is open, or it has a fault
->>>>>>> switches
+  kWouldReverse = 3020,       // a clutch that may not reverse its slave finds no way to close
   kGroupDeviation = 8001,
   // A cam module is in error; the numbers are its seed's.
   kModuleSoftLimitPositive = 20306,

@@ -128,24 +128,6 @@ std::string_view NameOf(const Machine& machine, std::uint32_t target) {
   return index < machine.axes.size() ? machine.axes[index].name : machine.flex_cams[index - machine.axes.size()].name;
 }
 
-// Why this component cannot do it, as far as its description tells; empty: it can.
-std::string WhyNot(const Machine& machine, const Command& command) {
-  if (const auto* body = std::get_if<axis::Command>(&command.body)) {
-    return axis::WhyNot(*body, machine.axes[command.target - 1]);
-  }
-  if (const auto* body = std::get_if<flexcam::Command>(&command.body)) {
-    return flexcam::WhyNot(*body, machine.cams);
-  }
-  return {};
-}
-
-ParsedCommand Refused(ErrorId error, std::string sentence) {
-  ParsedCommand refused;
-  refused.error = error;
-  refused.sentence = std::move(sentence);
-  return refused;
-}
-
 // What is wrong with a list of cam switches that this axis is to have. An unknown one is found in the cycle.
 std::string CannotSwitch(const Machine& machine, const axis::DigitalCamSwitch& command, const axis::AxisParams& axis) {
   for (const axis::CamSwitches& list : machine.cam_switches) {
@@ -160,6 +142,24 @@ std::string WhyNot(const Machine& machine, const axis::Command& command, const a
   std::string why = axis::WhyNot(command, axis);
   const auto* switches = std::get_if<axis::DigitalCamSwitch>(&command);
   return why.empty() && switches ? CannotSwitch(machine, *switches, axis) : why;
+}
+
+// Why this component cannot do it, as far as its description tells; empty: it can.
+std::string WhyNot(const Machine& machine, const Command& command) {
+  if (const auto* body = std::get_if<axis::Command>(&command.body)) {
+    return WhyNot(machine, *body, machine.axes[command.target - 1]);
+  }
+  if (const auto* body = std::get_if<flexcam::Command>(&command.body)) {
+    return flexcam::WhyNot(*body, machine.cams);
+  }
+  return {};
+}
+
+ParsedCommand Refused(ErrorId error, std::string sentence) {
+  ParsedCommand refused;
+  refused.error = error;
+  refused.sentence = std::move(sentence);
+  return refused;
 }
 
 ParsedCommand UnknownTarget(const Machine& machine, std::string_view target) {
@@ -223,15 +223,8 @@ ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std:
     parsed.level_sensitive = entry.verb.level_sensitive;
     Problem problem;
     if (!entry.read(arguments, parsed.command.body, problem)) return Refused(ErrorId::kParameter, problem.Text());
-<<<<<<< HEAD
     if (std::string sentence = WhyNot(machine, parsed.command); !sentence.empty()) {
       return Refused(ErrorId::kParameter, std::move(sentence));
-=======
-    if (*found != kMachineTarget) {
-      const auto& command = std::get<axis::Command>(parsed.command.body);
-      std::string sentence = WhyNot(machine, command, machine.axes[*found - 1]);
-      if (!sentence.empty()) return Refused(ErrorId::kParameter, std::move(sentence));
->>>>>>> switches
     }
     return parsed;
   }

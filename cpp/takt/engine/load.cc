@@ -42,12 +42,9 @@ class CrossCheck {
     CheckMasters();
     CheckNames("cams", machine_.cams);
     CheckNames("cam_switches", machine_.cam_switches);
-<<<<<<< HEAD
     CheckNames("flex_cams", machine_.flex_cams);
     CheckModules();
-=======
     CheckCamSwitches();
->>>>>>> switches
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
       CheckReference("simulation.servos[" + std::to_string(i) + "].axis", machine_.simulation.servos[i].axis, servos);
@@ -117,7 +114,6 @@ class CrossCheck {
         "expected axes that follow one another in no loop, found " + members + machine_.axes[loop.front()].name);
   }
 
-<<<<<<< HEAD
   // Cam modules and the axes and cams that they name.
   void CheckModules() {
     std::vector<std::string_view> slaves;
@@ -142,7 +138,9 @@ class CrossCheck {
         Add(path + ".cams[" + std::to_string(k) + "]",
             "expected the name of a cam, found " + Quoted(module.cams[k]) + DidYouMean(module.cams[k], cams));
       }
-=======
+    }
+  }
+
   // Lists that no axis of the machine can have.
   void CheckCamSwitches() {
     for (std::size_t i = 0; i < machine_.cam_switches.size(); ++i) {
@@ -151,7 +149,6 @@ class CrossCheck {
       if (machine_.axes.empty() || !std::ranges::all_of(machine_.axes, cannot)) continue;
       Add("cam_switches[" + std::to_string(i) + "].switches",
           "no axis can have this list: " + axis::CannotSwitch(list, machine_.axes.front()));
->>>>>>> switches
     }
   }
 

@@ -77,7 +77,7 @@ class Bench {
   explicit Bench(const Machine& m) : machine(m), engine(machine) {
     Give(kWeb, axis::Power{});
     Tell(Control{.regulator_on = true});
-    Run(50);
+    Run(200);
   }
 
   Ticket Give(std::size_t axis, const axis::Command& body) {
