@@ -41,6 +41,7 @@ void LetGoOfGuidance(const Context& c, State& s) noexcept {
   if (!IsGuided(s)) return;
   EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
   if (!AtRest(s)) return ComeToRest(c, c.params.planner_limits(), FromCycleBefore(c), s);
+  StartMotion(trajectory::Profile{s.setpoint}, s.setpoint.position, FromCycleBefore(c), s);
   s.motion.arrived = true;
   s.motion.arrived_cycle = c.cycle.count;
   Enter(s, PlcState::kStandstill);

@@ -75,10 +75,10 @@ double NextAhead(double turn, double position, double from, double sense) {
   return position + turn * (sense < 0 ? std::floor(turns) : std::ceil(turns));
 }
 
-double SyncPlace(const ClutchContext& c, double distance, double sense) {
+// The next sync position ahead of a master at `from` that leaves room for this way.
+double SyncPlace(const ClutchContext& c, double from, double distance, double sense) {
   const double place = c.settings.master_sync_in_position + c.master_zero;
-  const double from = c.master_before.position + sense * distance * (1 - kNear);
-  return NextAhead(c.master_turn, place, from, sense);
+  return NextAhead(c.master_turn, place, from + sense * distance * (1 - kNear), sense);
 }
 
 // In which the master goes, or will have to go; 0: nobody knows yet.
@@ -141,7 +141,7 @@ bool KeepSense(const ClutchContext& c, const KinematicState& own, double place, 
 bool PlanWay(const ClutchContext& c, double sense, Way& way, ClutchState& s) {
   const double full = c.settings.master_sync_in_distance;
   const KinematicState own = OwnOver(c);
-  const double place = SyncPlace(c, full, sense);
+  const double place = SyncPlace(c, c.master_before.position, full, sense);
   s.planned_sense = sense;
   if (KeepsSense(c)) return KeepSense(c, own, place, sense, way, s);
   s.distance = full;
@@ -195,6 +195,7 @@ void BeginShift(const ClutchContext& c, const KinematicState& shift, ClutchState
 
 void StartClosing(const ClutchContext& c, Way& way, ClutchState& s) {
   s.phase = ClutchPhase::kClosing;
+  s.mode = s.next;
   KinematicState wanted = c.wanted_before;
   if (s.mode == SyncMode::kRelative) {
     way.to_slave.out_zero += c.own_before.position - wanted.position;
@@ -206,11 +207,14 @@ void StartClosing(const ClutchContext& c, Way& way, ClutchState& s) {
   if (s.mode == SyncMode::kRampTime || s.mode == SyncMode::kRampVelAcc) BeginShift(c, Shift(c.own_before, wanted), s);
 }
 
-// The master has come to where the curve begins, or is on its way from there to the sync position already.
-bool AtBegin(const ClutchContext& c, double sense, const ClutchState& s, double& place) {
-  place = SyncPlace(c, s.distance, sense);
-  const double left = sense * (place - c.master.position);
-  return left <= s.distance && sense * (place - c.master_before.position) > 0 && c.master.velocity != 0;
+// The master came to where the curve begins in the cycle before, or is on its way from there to the sync position
+// already. The curve is never longer than it was planned.
+bool AtBegin(const ClutchContext& c, double sense, const Way& way, const ClutchState& s, double& place) {
+  if (way.to_x.ramp.kind != RampKind::kNone) return false;  // nobody knows where X will be
+  const double step = c.master.position - c.master_before.position;
+  place = SyncPlace(c, c.master_before.position - step, s.distance, sense);
+  const double left = sense * (place - c.master_before.position);
+  return left <= s.distance && left > 0 && c.master.velocity != 0 && c.master_before.velocity != 0;
 }
 
 Status WaitForWay(const ClutchContext& c, Way& way, ClutchState& s) {
@@ -218,7 +222,7 @@ Status WaitForWay(const ClutchContext& c, Way& way, ClutchState& s) {
   if (sense == 0 || !RightDirection(c, sense)) return Status::Ok();
   if (s.planned_sense != sense && !PlanWay(c, sense, way, s)) return Status::Failed(ErrorId::kWouldReverse);
   double place = 0;
-  if (!AtBegin(c, sense, s, place)) return Status::Ok();
+  if (!AtBegin(c, sense, way, s, place)) return Status::Ok();
   const double length = sense * (place - c.master_before.position);
   const KinematicState end = PlaceAt(way, c.table, place);
   BeginCurve(c, length, sense, end, s);
@@ -227,6 +231,7 @@ Status WaitForWay(const ClutchContext& c, Way& way, ClutchState& s) {
     return Status::Ok();
   }
   s.phase = ClutchPhase::kClosing;
+  s.mode = SyncMode::kRampPos;
   return Status::Ok();
 }
 
@@ -272,9 +277,14 @@ bool BeginOut(const ClutchContext& c, ClutchState& s) {
   s.out = OutPlace(c, own.position + 0.5 * sense * own.velocity * length);
   const double turn = TurnOf(c.slave);
   for (int k = 0; k < kTurnsAhead; ++k, s.out += sense * turn) {
-    BeginCurve(c, length, sense, {s.out, 0, 0}, s);
-    if (!KeepsSense(c) || Monotone(s.curve)) {
+    ClutchState tried = s;
+    BeginCurve(c, length, sense, {s.out, 0, 0}, tried);
+    if (!KeepsSense(c) || Monotone(tried.curve)) {
+      s = tried;
+      s.mode = SyncMode::kRampPos;
+      s.from_cam = s.phase == ClutchPhase::kWaitingOut;
       s.phase = ClutchPhase::kOpening;
+      s.leaves = false;
       return true;
     }
     if (turn == 0) break;
@@ -282,20 +292,20 @@ bool BeginOut(const ClutchContext& c, ClutchState& s) {
   return false;
 }
 
-KinematicState Opening(const ClutchContext& c, const KinematicState& wanted, ClutchState& s) {
+// `there` comes back true where nothing is left to do but to come to rest.
+KinematicState Opening(const ClutchContext& c, const KinematicState& wanted, const ClutchState& s, bool& there) {
   const KinematicState rest = {s.out, 0, 0};
-  bool there = true;
+  there = true;
   KinematicState demand = rest;
   if (s.mode == SyncMode::kRampPos) {
     const double x = OnCurveBy(c, s);
-    if (x < 0) return wanted;  // the master went back to before the opening began
     there = x >= s.curve.length;
+    if (x < 0 && s.from_cam) return wanted;  // the master went back to before the opening began
     if (!there) demand = OnCurve(c, s);
   } else if (s.mode == SyncMode::kRampTime || s.mode == SyncMode::kRampVelAcc) {
     there = IsOver(s.ramp, c.cycle, c.master);
     demand = Sum(rest, At(s.ramp, c.cycle, c.master));
   }
-  if (there && c.at_rest && c.in_step) s.phase = ClutchPhase::kOpen;
   return demand;
 }
 
@@ -305,33 +315,44 @@ bool IsCoupled(const ClutchState& s) noexcept {
   return s.phase != ClutchPhase::kOpen && s.phase != ClutchPhase::kReleased;
 }
 
+bool IsOnCurve(const ClutchState& s) noexcept {
+  return s.phase == ClutchPhase::kClosing && s.mode == SyncMode::kRampPos;
+}
+
 bool IsFrozen(const ClutchState& s) noexcept {
   return s.phase == ClutchPhase::kWaitingIn || s.phase == ClutchPhase::kClosing;
 }
 
 void BeginClosing(const ClutchContext& c, Way&, ClutchState& s) noexcept {
+  if (s.leaves || s.phase == ClutchPhase::kWaitingOut) {  // it is on the cam still, or on its way there
+    if (s.phase == ClutchPhase::kWaitingOut) s.phase = ClutchPhase::kClosed;
+    s.leaves = false;
+    return;
+  }
+  s.opens_still = s.phase == ClutchPhase::kOpening;
   s.phase = ClutchPhase::kWaitingIn;
-  s.mode = c.settings.sync_mode;
-  if (s.mode == SyncMode::kRampPos && c.settings.master_sync_in_distance == 0) s.mode = SyncMode::kAbsolute;
+  s.next = c.settings.sync_mode;
+  if (s.next == SyncMode::kRampPos && c.settings.master_sync_in_distance == 0) s.next = SyncMode::kAbsolute;
   s.planned_sense = 0;
   s.distance = c.settings.master_sync_in_distance;
-  s.out = trajectory::StopPosition(c.own_before, c.slave.planner_limits());
+  if (!s.opens_still) s.out = c.own_before.position;
 }
 
 void BeginOpening(const ClutchContext& c, ClutchState& s) noexcept {
   const KinematicState& own = c.own_before;
   if (s.phase == ClutchPhase::kWaitingIn) {  // it was never on the cam
     s.phase = ClutchPhase::kOpening;
-    s.mode = SyncMode::kAbsolute;
+    if (!s.opens_still) s.mode = SyncMode::kAbsolute;
+    return;
+  }
+  if (c.settings.sync_mode == SyncMode::kRampPos && c.settings.master_sync_out_distance > 0) {
+    if (s.phase == ClutchPhase::kClosed) s.phase = ClutchPhase::kWaitingOut;
+    s.leaves = s.phase == ClutchPhase::kClosing;
     return;
   }
   s.mode = c.settings.sync_mode;
-  if (s.mode == SyncMode::kRampPos && c.settings.master_sync_out_distance > 0) {
-    s.phase = s.phase == ClutchPhase::kClosed ? ClutchPhase::kWaitingOut : ClutchPhase::kOpening;
-    if (s.phase == ClutchPhase::kWaitingOut || BeginOut(c, s)) return;
-    s.mode = SyncMode::kRampVelAcc;  // there is no cam to wait on
-  }
   s.phase = ClutchPhase::kOpening;
+  s.from_cam = true;
   if (s.mode == SyncMode::kAbsolute || s.mode == SyncMode::kRelative) {
     s.out = own.position;
     return;
@@ -351,25 +372,33 @@ Status StepClutch(const ClutchContext& c, const KinematicState& wanted, Way& way
   const auto shifted = [&] {
     return KinematicState{wanted.position + way.to_slave.out_zero - zero, wanted.velocity, wanted.acceleration};
   };
+  bool there = false;
   if (s.phase == ClutchPhase::kWaitingIn) {
-    if (s.mode == SyncMode::kRampPos) {
+    if (s.next == SyncMode::kRampPos) {
       if (const Status status = WaitForWay(c, way, s); status.failed()) return status;
     } else if (RightDirection(c, c.master.velocity)) {
       StartClosing(c, way, s);
     }
-    demand = {s.out, 0, 0};
   }
-  if (s.phase == ClutchPhase::kWaitingOut) BeginOut(c, s);
+  if (s.phase == ClutchPhase::kWaitingOut || s.leaves) BeginOut(c, s);
   switch (s.phase) {
+    case ClutchPhase::kWaitingIn:
+      demand = s.opens_still ? Opening(c, wanted, s, there) : KinematicState{s.out, 0, 0};
+      break;
     case ClutchPhase::kClosing:
       demand = Closing(c, shifted(), way, s);
+      if (s.phase == ClutchPhase::kClosed && s.leaves) {
+        s.phase = ClutchPhase::kWaitingOut;
+        s.leaves = false;
+      }
       break;
     case ClutchPhase::kClosed:
     case ClutchPhase::kWaitingOut:
       demand = wanted;
       break;
     case ClutchPhase::kOpening:
-      demand = Opening(c, wanted, s);
+      demand = Opening(c, wanted, s, there);
+      if (there && c.at_rest && c.in_step) s.phase = ClutchPhase::kOpen;
       break;
     default:
       break;
@@ -401,6 +430,10 @@ void describe(Description<ClutchState>& d) {
   d.internal<&S::distance>("Before the sync position: where it begins.");
   d.internal<&S::planned_sense>("For which that was planned.");
   d.internal<&S::out>(unit::u, "Where the slave is to rest.");
+  d.internal<&S::next>("Mode in which it is to close.");
+  d.internal<&S::opens_still>("It opens until it begins to close.");
+  d.internal<&S::leaves>("It is to open as soon as it can.");
+  d.internal<&S::from_cam>("The opening began on the cam.");
 }
 
 void describe(Description<Way>& d) {

@@ -45,6 +45,10 @@ struct ClutchState {
   double distance = 0;                  // master's u, before the sync position: where it begins
   double planned_sense = 0;             // for which that was planned; 0: not yet
   double out = 0;                       // u over all turns, where the slave is to rest
+  SyncMode next = SyncMode::kAbsolute;  // waiting: in which it is to close; `mode` is that of an opening still
+  bool opens_still = false;             // waiting: it had not come to its end when it was told to close
+  bool leaves = false;                  // closing: it is to open as soon as it can
+  bool from_cam = true;                 // opening: it began on the cam
 };
 
 // All that is not the clutch's own. Positions are over all turns.
@@ -66,6 +70,8 @@ struct ClutchContext {
 
 bool IsCoupled(const ClutchState& state) noexcept;  // the slave goes by the clutch
 bool IsFrozen(const ClutchState& state) noexcept;   // scaling and offset of the slave stay (CAM-38)
+// On the way to a place that was foreseen: the cam, and scaling and offset of the master, stay, too.
+bool IsOnCurve(const ClutchState& state) noexcept;
 
 // Whether a curve over the master's way can be found at all; the turn of a rotary slave and the way it needs are chosen
 // then. Without a sense of the master there is nothing to say yet.

@@ -110,11 +110,11 @@ void CountFrom(double in_zero, Conversion& c) noexcept {
 }
 
 void Approach(const ConversionTarget& target, const Cycle& cycle, const KinematicState& before,
-              trajectory::Planner& planner, Conversion& c) noexcept {
-  if (c.ramp.kind == RampKind::kWay) TurnRound(WayRampOf(target, before, c), before.position, planner, c.ramp);
+              const KinematicState& now, trajectory::Planner& planner, Conversion& c) noexcept {
   if (c.ramp.kind != RampKind::kNone && IsOver(c.ramp, cycle, before)) c.ramp.kind = RampKind::kNone;
   if (target.factor != c.factor) TakeFactor(target, cycle, before, planner, c);
   if (target.offset != c.offset) TakeOffset(target, cycle, before, planner, c);
+  if (c.ramp.kind == RampKind::kWay) TurnRound(WayRampOf(target, before, c), now.position, planner, c.ramp);
 }
 
 void ApproachAtZero(const ConversionTarget& target, double at, Conversion& c) noexcept {

@@ -40,9 +40,9 @@ double InverseOf(const Conversion& conversion, double out) noexcept;
 // Counts from another input; the output stays what it is.
 void CountFrom(double in_zero, Conversion& conversion) noexcept;
 
-// Each cycle: takes over what has changed and may be taken over anywhere; `before` is the input of the cycle before.
+// Each cycle: takes over what has changed and may be taken over anywhere, from the input of the cycle before on.
 void Approach(const ConversionTarget& target, const Cycle& cycle, const KinematicState& before,
-              trajectory::Planner& planner, Conversion& conversion) noexcept;
+              const KinematicState& now, trajectory::Planner& planner, Conversion& conversion) noexcept;
 // Where the cam begins or ends, at the input `at`: takes over what waits for that (x_zero).
 void ApproachAtZero(const ConversionTarget& target, double at, Conversion& conversion) noexcept;
 

@@ -192,8 +192,10 @@ void PassEnd(const Context& c, const Passed& passed, double x_before, State& s) 
   const double master = MasterAt(s, passed.x_total, x_before);
   const cam::Table& from = TableOf(c, s);
   ++s.cam_ends;
-  SequenceStep next;
-  if (const PendingChange* change = Due(s, ChangeWhen::kNextCycle)) {
+  SequenceStep next = {p.slot, !p.once};
+  if (IsOnCurve(s.clutch)) {
+    // A curve that ends on this cam finds it there.
+  } else if (const PendingChange* change = Due(s, ChangeWhen::kNextCycle)) {
     next = {change->change.cam_table, s.settings.cam_cyclic};
     s.inputs.cam_table = next.slot;
     EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
@@ -204,7 +206,7 @@ void PassEnd(const Context& c, const Passed& passed, double x_before, State& s) 
     s.warning = ErrorId::kUnknownTarget;
     next = {p.slot, true};
   }
-  const bool same = next.slot == p.slot && s.slots[next.slot - 1] - 1 == p.cam;
+  const bool same = IsOnCurve(s.clutch) || (next.slot == p.slot && s.slots[next.slot - 1] - 1 == p.cam);
   if (same && next.cyclic) {
     p.once = false;
   } else if (same && !p.once) {
@@ -215,7 +217,7 @@ void PassEnd(const Context& c, const Passed& passed, double x_before, State& s) 
   }
   const double turn = TurnOf(c.slave, c.master);
   if (turn == 0 || std::abs(TableOf(c, s).length() - turn) > 1e-9 * turn) s.assigned = false;
-  ApproachAtZero(MasterTarget(c, s), master, s.way.to_x);
+  if (!IsOnCurve(s.clutch)) ApproachAtZero(MasterTarget(c, s), master, s.way.to_x);
   if (!IsFrozen(s.clutch)) ApproachAtZero(SlaveTarget(c, s), ZeroOfY(c, s), s.way.to_slave);
   s.x = Convert(s.way.to_x, c.slave.cycle, s.master.now);
   GoOn(TableOf(c, s), s.x.position, p);
@@ -290,9 +292,10 @@ void RunWay(const Context& c, State& s) noexcept {
   const Cycle& cycle = c.slave.cycle;
   const double x_before = s.x.position;
   const KinematicState y_before = s.y;
-  Approach(MasterTarget(c, s), cycle, s.master.before, c.slave.planner, s.way.to_x);
+  if (!IsOnCurve(s.clutch))
+    Approach(MasterTarget(c, s), cycle, s.master.before, s.master.now, c.slave.planner, s.way.to_x);
   s.x = Convert(s.way.to_x, cycle, s.master.now);
-  TakeChanges(c, x_before, s);
+  if (!IsOnCurve(s.clutch)) TakeChanges(c, x_before, s);
   const std::optional<Passed> passed = PassedEnd(TableOf(c, s), s.way.profiler, s.x.position);
   if (passed) {
     PassEnd(c, *passed, x_before, s);
@@ -301,7 +304,7 @@ void RunWay(const Context& c, State& s) noexcept {
   }
   s.end_of_profile = AnnouncesEnd(TableOf(c, s), cycle, s.x, passed.has_value(), s.way.profiler);
   TakeY(c, s);
-  if (!IsFrozen(s.clutch)) Approach(SlaveTarget(c, s), cycle, y_before, c.slave.planner, s.way.to_slave);
+  if (!IsFrozen(s.clutch)) Approach(SlaveTarget(c, s), cycle, y_before, s.y, c.slave.planner, s.way.to_slave);
   s.wanted = Convert(s.way.to_slave, cycle, s.y);
 }
 

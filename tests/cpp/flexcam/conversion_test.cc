@@ -30,10 +30,10 @@ TEST_P(Tables, AreThoseOfTheSeed) {
   target.scaling_mode = row.mode;
   target.absolute_zero = row.absolute_zero;
   target.factor = 2;
-  Approach(target, {1, 0.001}, {100, 1000, 0}, planner, c);
+  Approach(target, {1, 0.001}, {100, 1000, 0}, {101, 1000, 0}, planner, c);
   EXPECT_EQ(Convert(c, {}, {101, 1000, 0}), (KinematicState{row.second, 2000, 0}));
   target.factor = 1;
-  Approach(target, {2, 0.001}, {101, 1000, 0}, planner, c);
+  Approach(target, {2, 0.001}, {101, 1000, 0}, {102, 1000, 0}, planner, c);
   EXPECT_EQ(Convert(c, {}, {102, 1000, 0}), (KinematicState{row.third, 1000, 0}));
 }
 
@@ -69,8 +69,8 @@ std::vector<Placed> ThreeCycles(const Settings& settings, double offset, bool ma
   for (const double factor : {1.0, 2.0, 1.0}) {
     b.Tell(master ? Control{.scaling_master = factor} : Control{.scaling_slave = factor});
     b.Step();
-    rows.push_back({b.TheWeb().set_position, b.Module().flow.mp03_master_to_x_position,
-                    b.Module().flow.mp06_y_to_slave_position});
+    rows.push_back(
+        {b.TheWeb().set_position, b.Module().flow.mp03_master_to_x_position, b.Module().flow.mp06_y_to_slave_position});
   }
   return rows;
 }
