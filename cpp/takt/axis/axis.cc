@@ -30,13 +30,13 @@ bool InMotion(const State& s) {
 }
 
 void WatchDeviation(const Context& c, State& s) {
-  if (OwnsLag(s)) return;
   const Supervision& limits = c.params.supervision;
-  const double deviation = std::abs(s.following_error);
-  const bool settled = !InMotion(s) && static_cast<double>(c.cycle.count - s.motion.arrived_cycle) * c.cycle.period_s >
-                                           limits.in_position_timeout_s;
-  const auto& limit = settled && limits.deviation_standstill ? limits.deviation_standstill : limits.deviation_moving;
-  if (limit && deviation > *limit) Fail(c, ErrorId::kDeviation, true, s);
+  const auto settled = [&] {
+    return !InMotion(s) && static_cast<double>(c.cycle.count - s.motion.arrived_cycle) * c.cycle.period_s >
+                               limits.in_position_timeout_s;
+  };
+  const auto& limit = limits.deviation_standstill && settled() ? limits.deviation_standstill : limits.deviation_moving;
+  if (limit && std::abs(s.following_error) > *limit && !OwnsLag(s)) Fail(c, ErrorId::kDeviation, true, s);
 }
 
 // On a new edge, or when the axis moves further out.

@@ -60,6 +60,8 @@ void EmergencyStop(const Context& context, State& state) noexcept;
 void Publish(const AxisParams& params, const State& state, Outputs& outputs) noexcept;
 
 // At rest: the set point stands.
-bool AtRest(const State& state) noexcept;
+inline bool AtRest(const State& state) noexcept {
+  return state.setpoint.velocity == 0 && state.setpoint.acceleration == 0;
+}
 
 }  // namespace takt::axis

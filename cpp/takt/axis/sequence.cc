@@ -75,10 +75,6 @@ bool InPosition(const AxisParams& p, const State& s) noexcept {
   return !p.supervision.in_position || std::abs(s.setpoint.position - s.actual.position) <= *p.supervision.in_position;
 }
 
-bool AtRest(const State& s) noexcept {
-  return s.setpoint.velocity == 0 && s.setpoint.acceleration == 0;
-}
-
 namespace {
 
 // The blending command behind the one in control, if any.

@@ -121,11 +121,6 @@ bool Fill(const Maker& m, const AccelerationProfile& c) {
   return Table(m, RequestKind::kAccelerationProfile, c, "acceleration_scale", c.acceleration_scale);
 }
 
-bool FollowsTable(RequestKind kind) noexcept {
-  return kind == RequestKind::kPositionProfile || kind == RequestKind::kVelocityProfile ||
-         kind == RequestKind::kAccelerationProfile;
-}
-
 Status MayFollowTable(const Context& c, const Request& r, const State& s) noexcept {
   const Range range = RangeOf(CurveOf(c, r));
   if (r.kind == RequestKind::kPositionProfile) {
