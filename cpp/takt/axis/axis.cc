@@ -141,13 +141,18 @@ void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
 }
 
 void Advance(const Context& c, State& s) {
-  const KinematicState before = s.setpoint;
   const double t = Elapsed(c, s);
-  s.setpoint = s.motion.profile.At(t);
-  const bool over = t >= s.motion.profile.duration();
-  // A move that ends in this cycle hands over first: what it is left with is another command's set point.
-  if (!over || s.plc == PlcState::kContinuousMotion) GuardLimits(c, before, s);
-  if (over) ConcludeDue(c, before, s);
+  const trajectory::Profile& profile = s.motion.profile;
+  const bool over = t >= profile.duration();
+  if (!over && !GoesOn(s)) {
+    s.setpoint = profile.At(t);
+  } else {
+    const KinematicState before = s.setpoint;
+    s.setpoint = profile.At(t);
+    // A move that ends in this cycle hands over first: what it is left with is another command's set point.
+    if (!over || s.plc == PlcState::kContinuousMotion) GuardLimits(c, before, s);
+    if (over) ConcludeDue(c, before, s);
+  }
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 
@@ -167,24 +172,24 @@ void FollowTable(const Context& c, State& s) {
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 
+void FollowDemand(const Context& c, State& s) {
+  Couples(s.active.kind) ? FollowCoupling(c, s) : FollowTable(c, s);
+}
+
 // The next set point of the motion in progress.
 void MoveOne(const Context& c, State& s) {
   if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
-  if (s.loop_closed && c.params.follows && Follow(c, s)) {
-    // The master's set point is this axis' too.
-  } else if ((s.active.kind == RequestKind::kTorqueControl || s.torque.engaged) && MoveTorque(c, s)) {
-    // The drive follows a torque, the set point the axis.
-  } else if (s.loop_closed && Couples(s.active.kind)) {
-    FollowCoupling(c, s);
-  } else if (s.loop_closed && FollowsTable(s.active.kind)) {
-    FollowTable(c, s);
-  } else if (s.loop_closed) {
-    Advance(c, s);
-    if (s.homing.stage != HomingStage::kNone) StepHoming(c, s);
-  } else {
+  // The master's set point is this axis' too.
+  if (s.loop_closed && c.params.follows && Follow(c, s)) return;
+  // The drive follows a torque, the set point the axis.
+  if ((s.active.kind == RequestKind::kTorqueControl || s.torque.engaged) && MoveTorque(c, s)) return;
+  if (!s.loop_closed) {
     s.setpoint = {s.actual.position, 0, 0};
-    AwaitDrive(c, s);
+    return AwaitDrive(c, s);
   }
+  if (FollowsDemand(s.active.kind)) return FollowDemand(c, s);
+  Advance(c, s);
+  if (s.homing.stage != HomingStage::kNone) StepHoming(c, s);
 }
 
 void FinishReset(const Context& c, State& s) {

@@ -209,10 +209,6 @@ std::uint64_t LeaseEnd(const Context& c, double lease_s) noexcept {
   return c.cycle.count + static_cast<std::uint64_t>(std::ceil(lease_s / c.cycle.period_s));
 }
 
-bool FollowsDemand(RequestKind kind) noexcept {
-  return Couples(kind) || FollowsTable(kind);
-}
-
 Status MayFollow(const Context& c, const Request& request, const State& s) noexcept {
   return Couples(request.kind) ? MayCouple(c, request, s) : MayFollowTable(c, request, s);
 }

@@ -44,7 +44,9 @@ void Grant(const Context& c, const Request& request, State& s, double travel_s =
 void TakeControl(const Context& c, const Request& request, const Plan& plan, const MotionStart& start,
                  State& s) noexcept;
 // Commands that follow something that moves, a master or a table over time, instead of a plan.
-bool FollowsDemand(RequestKind kind) noexcept;
+inline bool FollowsDemand(RequestKind kind) noexcept {
+  return Couples(kind) || FollowsTable(kind);
+}
 // Whether such a command may take control now: MayCouple, MayFollowTable.
 Status MayFollow(const Context& c, const Request& request, const State& s) noexcept;
 // Puts it in control. What was in control must have been ended.
