@@ -151,7 +151,9 @@ void Advance(const Context& c, State& s) {
     s.setpoint = profile.At(t);
     // A move that ends in this cycle hands over first: what it is left with is another command's set point.
     if (!over || s.plc == PlcState::kContinuousMotion) GuardLimits(c, before, s);
-    if (over) ConcludeDue(c, before, s);
+    // Nobody waits for the end of a motion that is over and done with.
+    const bool rests = s.motion.arrived && s.active.kind == RequestKind::kNone;
+    if (over && !rests) ConcludeDue(c, before, s);
   }
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }

@@ -413,8 +413,8 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     s.setpoint = Chase(chaser, ChaseMode::kVelocity, s.setpoint, demand, k.chase);
     k.locked = k.chase.in_step;
   }
-  const bool near = k.locked && std::abs(s.setpoint.position - demand.position) <= Blur(c, s);
-  k.in_step = begun && k.joining != Joining::kOnCurve && (k.chase.in_step || near);
+  const auto near = [&] { return k.locked && std::abs(s.setpoint.position - demand.position) <= Blur(c, s); };
+  k.in_step = begun && k.joining != Joining::kOnCurve && (k.chase.in_step || near());
   s.limited_by = Beyond(c.params.planner_limits(), demand, k.in_step);
   const bool phase_over = static_cast<double>(c.cycle.count - k.phase_start) * c.cycle.period_s >= k.phase.duration();
   if (k.phase_moves && phase_over && k.in_step) EndPhase(c, FeedbackState::kDone, s);

@@ -87,8 +87,9 @@ bool StopsFarInside(const AxisParams& p, const KinematicState& x) {
   const AxisLimits& l = p.limits;
   if (!l.lower && !l.upper) return true;
   const double deceleration = l.deceleration.value_or(l.acceleration);
-  const double speed = std::abs(x.velocity) + 0.5 * x.acceleration * x.acceleration / l.jerk;
-  const double reach = speed * ((std::abs(x.acceleration) + deceleration) / l.jerk + speed / deceleration);
+  const double per_jerk = 1 / l.jerk;
+  const double speed = std::abs(x.velocity) + 0.5 * x.acceleration * x.acceleration * per_jerk;
+  const double reach = speed * ((std::abs(x.acceleration) + deceleration) * per_jerk + speed / deceleration);
   return (!l.lower || x.position - reach > *l.lower + Rounding(*l.lower)) &&
          (!l.upper || x.position + reach < *l.upper - Rounding(*l.upper));
 }
@@ -113,10 +114,6 @@ bool CanStopInside(const AxisParams& p, const KinematicState& before, const Kine
   const bool too_high = p.limits.upper && range.max > *p.limits.upper && range.max > before.position;
   const bool too_low = p.limits.lower && range.min < *p.limits.lower && range.min < before.position;
   return !too_high && !too_low;
-}
-
-double Rounding(double x) noexcept {
-  return 1e-9 * (1 + std::abs(x));
 }
 
 bool BreaksRamps(const trajectory::Limits& own, const Piece& piece, double duration) noexcept {

@@ -6,10 +6,6 @@
 
 namespace takt::axis {
 
-trajectory::Limits AxisParams::planner_limits() const {
-  return {limits.velocity, limits.acceleration, limits.deceleration.value_or(limits.acceleration), limits.jerk};
-}
-
 double Reported(const AxisParams& p, double position) noexcept {
   if (!p.rotary()) return position;
   const double turns = std::floor(position / p.modulus);

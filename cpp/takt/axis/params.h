@@ -73,7 +73,9 @@ struct AxisParams {
 
   bool rotary() const { return kind == AxisKind::kRotary; }
   // The limits as the planner takes them.
-  trajectory::Limits planner_limits() const;
+  trajectory::Limits planner_limits() const {
+    return {limits.velocity, limits.acceleration, limits.deceleration.value_or(limits.acceleration), limits.jerk};
+  }
 };
 
 // A position as it is reported: rotary axes in [0, modulus).
