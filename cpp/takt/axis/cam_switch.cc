@@ -112,13 +112,13 @@ std::uint32_t SwitchCams(const Context& c, State& s) noexcept {
   in.modulus = c.params.rotary() ? c.params.modulus : 0;
   in.cycle = c.cycle.count;
   in.period_s = c.cycle.period_s;
-  return Step(c.cam_switches[static_cast<std::size_t>(cams.list)], in, cams) & cams.enable_mask;
+  return Step(c.machine.cam_switches[static_cast<std::size_t>(cams.list)], in, cams) & cams.enable_mask;
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const DigitalCamSwitch& command, State& s) noexcept {
   std::int32_t list = -1;
-  for (std::size_t i = 0; i < c.cam_switches.size(); ++i) {
-    if (c.cam_switches[i].name == command.switches.view()) list = static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < c.machine.cam_switches.size(); ++i) {
+    if (c.machine.cam_switches[i].name == command.switches.view()) list = static_cast<std::int32_t>(i);
   }
   if (list < 0) return Status::Failed(ErrorId::kUnknownTarget);
   CamSwitchState& cams = s.cam_switch;

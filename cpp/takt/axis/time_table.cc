@@ -33,7 +33,7 @@ struct Curve {
 };
 
 Curve CurveOf(const Context& c, const Request& r) {
-  return {c.cams[r.table.index], r.table};
+  return {c.machine.cams[r.table.index], r.table};
 }
 
 struct Range {

@@ -1,6 +1,5 @@
 #include "takt/engine/cycle.h"
 
-#include "takt/axis/axis.h"
 #include "takt/cam/build.h"
 #include "takt/core/describe.h"
 #include "takt/core/hash.h"
@@ -16,8 +15,7 @@ constexpr std::size_t kEventsPerCommand = 4;
 
 axis::Context ContextOf(World& w, std::size_t i) {
   const axis::State* master = w.axis_masters[i] ? &w.axis_states[*w.axis_masters[i]] : nullptr;
-  return {w.axis_params[i], w.cycle,       w.planner,      w.feedback, master,
-          w.axis_states,    w.axis_params, w.cam_switches, w.cams};
+  return {w.axis_params[i], w.cycle, w.planner, w.feedback, master, w.surrounding};
 }
 
 // The k-th axis that axis i must not step before: the one it follows from load on, those it is coupled to, those it
@@ -143,6 +141,7 @@ World::World(const Machine& machine)
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axis_masters.push_back(engine::MasterOf(machine, i));
   }
+  surrounding = {axis_states, axis_params, cam_switches, cams};
   MakeOrder(*this);
 }
 
