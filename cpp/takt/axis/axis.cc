@@ -235,7 +235,7 @@ void Sense(const Context& c, const ServoInputs& in, State& s, const Sampling& sa
   } else {
     s.actual = sampled;
   }
-  SenseTorque(s);
+  if (s.torque.engaged) SenseTorque(s);
   s.due = s.setpoint.position;
   s.following_error = s.loop_closed ? s.due - s.actual.position : 0;
   s.limit_positive_before = s.limit_positive;
@@ -277,7 +277,7 @@ void Move(const Context& c, State& s) noexcept {
 
 bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   const AxisParams& p = c.params;
-  const bool torque = FollowsTorque(s);
+  const bool torque = s.torque.engaged && FollowsTorque(s);
   const DriveMode mode = torque ? DriveMode::kCyclicTorque : p.drive.mode;
   const bool engine_closes = mode == DriveMode::kCyclicVelocity || mode == DriveMode::kAnalog;
   const double sign = p.drive.invert ? -1 : 1;

@@ -1,17 +1,8 @@
 #include "takt/axis/params.h"
 
-#include <cmath>
-
 #include "takt/core/describe.h"
 
 namespace takt::axis {
-
-double Reported(const AxisParams& p, double position) noexcept {
-  if (!p.rotary()) return position;
-  const double turns = std::floor(position / p.modulus);
-  const double inside = position - turns * p.modulus;
-  return inside >= 0 && inside < p.modulus ? inside : 0;
-}
 
 void describe(Enumeration<AxisKind>& e) {
   e.about("How positions of an axis are counted.");
