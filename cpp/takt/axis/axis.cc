@@ -178,18 +178,23 @@ void FollowDemand(const Context& c, State& s) {
   NoteSense(s);
 }
 
-// The next set point of the motion in progress.
+void StayOpen(const Context& c, State& s) {
+  s.torque = TorqueState{};
+  s.setpoint = {s.actual.position, 0, 0};
+  AwaitDrive(c, s);
+}
+
+// The next set point of the motion in progress. What is unlikely is laid out of the way of a move with an end.
 void MoveOne(const Context& c, State& s) {
+  if (!s.loop_closed) [[unlikely]]
+    return StayOpen(c, s);
   if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
   // The master's set point is this axis' too.
-  if (s.loop_closed && c.params.follows && Follow(c, s)) return;
+  if (c.params.follows && Follow(c, s)) return;
   // The drive follows a torque, the set point the axis.
   if ((s.active.kind == RequestKind::kTorqueControl || s.torque.engaged) && MoveTorque(c, s)) return;
-  if (!s.loop_closed) {
-    s.setpoint = {s.actual.position, 0, 0};
-    return AwaitDrive(c, s);
-  }
-  if (FollowsDemand(s.active.kind)) return FollowDemand(c, s);
+  if (FollowsDemand(s.active.kind)) [[unlikely]]
+    return FollowDemand(c, s);
   Advance(c, s);
   if (s.homing.stage != HomingStage::kNone) StepHoming(c, s);
 }
