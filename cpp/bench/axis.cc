@@ -23,6 +23,7 @@ AxisParams Params(bool limits) {
 // Many powered axes, each given the same command.
 struct Axes {
   Axes(std::size_t n, const AxisParams& p) : params(n, p), states(n, MakeState(p)), storage(16 * n), sink(storage) {
+    machine.states = states, machine.params = params;
     for (std::size_t i = 0; i < n; ++i) Apply(At(i), 1, 0, Power{}, states[i]);
     ++cycle.count;  // the loop closes in a later cycle
     for (std::size_t i = 0; i < n; ++i) {
@@ -31,7 +32,7 @@ struct Axes {
       if (!states[i].loop_closed) std::abort();
     }
   }
-  Context At(std::size_t i) { return {params[i], cycle, planner, sink, nullptr, states, params, {}}; }
+  Context At(std::size_t i) { return {params[i], cycle, planner, sink, nullptr, machine}; }
   void Give(const Command& command) {
     for (std::size_t i = 0; i < states.size(); ++i) Apply(At(i), 2, 0, command, states[i]);
   }
@@ -46,6 +47,7 @@ struct Axes {
 
   std::vector<AxisParams> params;
   std::vector<State> states;
+  Surrounding machine;
   std::vector<FeedbackEvent> storage;
   FeedbackSink sink;
   trajectory::Planner planner;

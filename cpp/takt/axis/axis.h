@@ -16,18 +16,24 @@
 
 namespace takt::axis {
 
-// What every stage gets besides the axis itself.
+// What there is in a machine besides one axis, to be looked up by number or name.
+struct Surrounding {
+  // Of all axes. Masters that step before an axis are of the same cycle.
+  std::span<const State> states{};
+  std::span<const AxisParams> params{};
+  std::span<const CamSwitches> cam_switches{};
+  std::span<const cam::Table> cams{};
+};
+inline constexpr Surrounding kAlone{};
+
+// What every stage gets besides the axis itself. It is made anew for every axis and stage, so it holds little.
 struct Context {
   AxisParams& params;  // changed by settings (GT_SetConstant, MC_WriteParameter) alone
   Cycle cycle;
   trajectory::Planner& planner;
   FeedbackSink& feedback;
   const State* master = nullptr;  // of an axis that follows another from load on: its state of the same cycle
-  // All axes of the machine, to look up masters: those that step before this one are of the same cycle.
-  std::span<const State> axes{};
-  std::span<const AxisParams> axes_params{};
-  std::span<const CamSwitches> cam_switches{};
-  std::span<const cam::Table> cams{};
+  const Surrounding& machine = kAlone;
 };
 
 // As it stands when power comes on.
@@ -60,6 +66,8 @@ void EmergencyStop(const Context& context, State& state) noexcept;
 void Publish(const AxisParams& params, const State& state, Outputs& outputs) noexcept;
 
 // At rest: the set point stands.
-bool AtRest(const State& state) noexcept;
+inline bool AtRest(const State& state) noexcept {
+  return state.setpoint.velocity == 0 && state.setpoint.acceleration == 0;
+}
 
 }  // namespace takt::axis

@@ -185,7 +185,7 @@ std::uint32_t Step(const CamSwitches& list, const CamSwitchInputs& in, CamSwitch
 
 std::uint32_t SwitchCams(const Context& c, State& s) noexcept {
   CamSwitchState& cams = s.cam_switch;
-  const CamSwitches& list = c.cam_switches[static_cast<std::size_t>(cams.list)];
+  const CamSwitches& list = c.machine.cam_switches[static_cast<std::size_t>(cams.list)];
   const KinematicState& x = cams.source == MasterSource::kSetValue ? s.setpoint : s.actual;
   CamSwitchInputs in;
   in.position = x.position;
@@ -209,11 +209,11 @@ void Shift(double by, CamSwitchState& s) noexcept {
 
 Status CarryOut(const Context& c, Ticket ticket, const DigitalCamSwitch& command, State& s) noexcept {
   std::int32_t list = -1;
-  for (std::size_t i = 0; i < c.cam_switches.size(); ++i) {
-    if (c.cam_switches[i].name == command.switches.view()) list = static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < c.machine.cam_switches.size(); ++i) {
+    if (c.machine.cam_switches[i].name == command.switches.view()) list = static_cast<std::int32_t>(i);
   }
   if (list < 0) return Status::Failed(ErrorId::kUnknownTarget);
-  if (!CanSwitch(c.cam_switches[static_cast<std::size_t>(list)], c.params)) {
+  if (!CanSwitch(c.machine.cam_switches[static_cast<std::size_t>(list)], c.params)) {
     return Status::Failed(ErrorId::kParameter);
   }
   CamSwitchState& cams = s.cam_switch;

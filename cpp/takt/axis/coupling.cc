@@ -21,7 +21,7 @@ KinematicState PhaseAt(const Context& c, const CouplingState& k) {
 
 // A master as this axis sees it: over all turns, with the phase.
 KinematicState Seen(const Context& c, const CouplingTerm& term, const KinematicState& phase) {
-  const State& master = c.axes[term.master];
+  const State& master = c.machine.states[term.master];
   const bool measured = term.source == MasterSource::kActualValue;
   KinematicState its = measured ? master.actual : master.setpoint;
   if (measured && master.loop_closed) its.acceleration = master.setpoint.acceleration;  // it is not measured
@@ -75,7 +75,7 @@ bool Joins(RequestKind kind) {
 
 CamLaw CamOf(const Context& c, const Request& r) {
   const CouplingRequest& q = r.coupling;
-  return {c.cams[r.table.index], q.terms[0].ratio, q.periodic.value_or(false), r.table.scale};
+  return {c.machine.cams[r.table.index], q.terms[0].ratio, q.periodic.value_or(false), r.table.scale};
 }
 
 // Where an axis that is in step has its place for a master here; derivatives over the master's position.
@@ -113,7 +113,7 @@ void BeginCurve(const Context& c, const KinematicState& master, State& s) {
   const double own = s.setpoint.position + s.origin - k.chase.offset;
   double slope = 0;
   double bend = 0;
-  if (std::abs(master.velocity) > Standing(c.axes_params[k.law.terms[0].master])) {
+  if (std::abs(master.velocity) > Standing(c.machine.params[k.law.terms[0].master])) {
     slope = s.setpoint.velocity / master.velocity;
     bend = (s.setpoint.acceleration - slope * master.acceleration) / (master.velocity * master.velocity);
   }
@@ -176,7 +176,7 @@ bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, Kinem
   const CouplingTerm& term = k.law.terms[0];
   const KinematicState master = Seen(c, term, phase);
   if (k.joining == Joining::kWaiting) {
-    if (!HasBegun(c.axes_params[term.master], master, k)) return false;
+    if (!HasBegun(c.machine.params[term.master], master, k)) return false;
     BeginCurve(c, master, s);
   }
   if (k.joining == Joining::kOnCurve) {
@@ -196,11 +196,11 @@ bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, Kinem
 void BeginJoining(const Context& c, const Request& r, State& s) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
-  const State& master = c.axes[term.master];
+  const State& master = c.machine.states[term.master];
   const KinematicState seen = Seen(c, term, {});
   const double sense = seen.velocity < 0 ? -1 : 1;
   const double distance = std::max(0.0, r.coupling.master_start_distance);
-  k.turn = c.axes_params[term.master].turn();
+  k.turn = c.machine.params[term.master].turn();
   k.master_sync =
       NextAhead(k.turn, r.coupling.master_sync_position + master.origin, seen.position + sense * distance, sense);
   k.slave_sync = r.coupling.slave_sync_position + s.origin;
@@ -218,8 +218,8 @@ void BeginJoining(const Context& c, const Request& r, State& s) {
 void BeginCam(const Context& c, const Request& r, State& s) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
-  const AxisParams& its = c.axes_params[term.master];
-  const State& master = c.axes[term.master];
+  const AxisParams& its = c.machine.params[term.master];
+  const State& master = c.machine.states[term.master];
   const CamLaw law = CamOf(c, r);
   const KinematicState seen = Seen(c, term, {});
   const bool takes_over = s.end_of_profile && k.cam.end_axis == term.master;
@@ -256,7 +256,7 @@ double Blur(const Context& c, const State& s) {
     if (term.master == kNoAxis || term.source == MasterSource::kSetValue) continue;
     const double slope =
         Joins(s.active.kind) ? InStep(c, Seen(c, term, PhaseAt(c, s.coupling)).position, s).dy : term.ratio;
-    blur += std::abs(slope) * kBlurredIncrements / c.axes_params[term.master].encoder.increments_per_unit;
+    blur += std::abs(slope) * kBlurredIncrements / c.machine.params[term.master].encoder.increments_per_unit;
   }
   return blur;
 }
@@ -281,7 +281,7 @@ void NoteEnd(const Context& c, const KinematicState& phase, State& s) {
 
 bool MastersStand(const Context& c, const CouplingRequest& law) {
   return std::all_of(law.terms.begin(), law.terms.end(), [&](const CouplingTerm& term) {
-    return term.master == kNoAxis || IsKnown(c.axes[term.master], term.source);
+    return term.master == kNoAxis || IsKnown(c.machine.states[term.master], term.source);
   });
 }
 
@@ -327,17 +327,17 @@ bool IsKnown(const State& master, MasterSource source) noexcept {
 Status FindNamed(const Context& c, Request& r) noexcept {
   for (CouplingTerm& term : r.coupling.terms) {
     if (term.name.empty()) continue;
-    for (std::size_t i = 0; i < c.axes_params.size() && term.master == kNoAxis; ++i) {
-      if (c.axes_params[i].name == term.name.view()) term.master = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < c.machine.params.size() && term.master == kNoAxis; ++i) {
+      if (c.machine.params[i].name == term.name.view()) term.master = static_cast<std::uint32_t>(i);
     }
     if (term.master == kNoAxis) return Status::Failed(ErrorId::kUnknownTarget);
   }
   if (r.table.name.empty()) return Status::Ok();
-  for (std::size_t i = 0; i < c.cams.size() && r.table.index == kNoTable; ++i) {
-    if (c.cams[i].name() == r.table.name.view()) r.table.index = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < c.machine.cams.size() && r.table.index == kNoTable; ++i) {
+    if (c.machine.cams[i].name() == r.table.name.view()) r.table.index = static_cast<std::uint32_t>(i);
   }
   if (r.table.index == kNoTable) return Status::Failed(ErrorId::kUnknownTarget);
-  if (!r.coupling.periodic) r.coupling.periodic = c.cams[r.table.index].cyclic();
+  if (!r.coupling.periodic) r.coupling.periodic = c.machine.cams[r.table.index].cyclic();
   return Status::Ok();
 }
 
@@ -408,8 +408,8 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     s.setpoint = Chase(chaser, ChaseMode::kVelocity, s.setpoint, demand, k.chase);
     k.locked = k.chase.in_step;
   }
-  const bool near = k.locked && std::abs(s.setpoint.position - demand.position) <= Blur(c, s);
-  k.in_step = begun && k.joining != Joining::kOnCurve && (k.chase.in_step || near);
+  const auto near = [&] { return k.locked && std::abs(s.setpoint.position - demand.position) <= Blur(c, s); };
+  k.in_step = begun && k.joining != Joining::kOnCurve && (k.chase.in_step || near());
   s.limited_by = Beyond(c.params.planner_limits(), demand, k.in_step);
   const bool phase_over = static_cast<double>(c.cycle.count - k.phase_start) * c.cycle.period_s >= k.phase.duration();
   if (k.phase_moves && phase_over && k.in_step) EndPhase(c, FeedbackState::kDone, s);

@@ -78,16 +78,6 @@ double LatchedPosition(const Encoder& p, const EncoderState& s, std::uint32_t co
   return PositionOf(p, s.count + Difference(p, s.word, Decode(p, counts)));
 }
 
-double CountsAt(const Encoder& p, double position) noexcept {
-  const double counts = (position - p.offset) * p.increments_per_unit;
-  return p.invert ? -counts : counts;
-}
-
-double CountRateAt(const Encoder& p, double velocity) noexcept {
-  const double rate = velocity * p.increments_per_unit;
-  return p.invert ? -rate : rate;
-}
-
 void describe(Enumeration<EncoderType>& e) {
   e.about("What an encoder sends.");
   e.value(EncoderType::kIncremental, "incremental", "A 32-bit counter of quadrature increments.");

@@ -63,9 +63,15 @@ void Trust(EncoderState& state) noexcept;
 double LatchedPosition(const Encoder& params, const EncoderState& state, std::uint32_t counts) noexcept;
 
 // What a position is in counts without wraps: csp set points.
-double CountsAt(const Encoder& params, double position) noexcept;
+inline double CountsAt(const Encoder& params, double position) noexcept {
+  const double counts = (position - params.offset) * params.increments_per_unit;
+  return params.invert ? -counts : counts;
+}
 // And a velocity, in counts/s.
-double CountRateAt(const Encoder& params, double velocity) noexcept;
+inline double CountRateAt(const Encoder& params, double velocity) noexcept {
+  const double rate = velocity * params.increments_per_unit;
+  return params.invert ? -rate : rate;
+}
 
 void describe(Enumeration<EncoderType>&);
 void describe(Enumeration<SsiCoding>&);

@@ -80,6 +80,20 @@ bool TurnsRound(const AxisLimits& limits, const KinematicState& from, const Prof
   return (from.velocity > slack && range.min < -slack) || (from.velocity < -slack && range.max > slack);
 }
 
+// Whether SW limits are further away than any stop can lead: its largest speed for as long as it takes to end the
+// acceleration and to brake then. That is half of what planning the stop costs, and says all there is to know on nearly
+// all of the way.
+bool StopsFarInside(const AxisParams& p, const KinematicState& x) {
+  const AxisLimits& l = p.limits;
+  if (!l.lower && !l.upper) return true;
+  const double deceleration = l.deceleration.value_or(l.acceleration);
+  const double per_jerk = 1 / l.jerk;
+  const double speed = std::abs(x.velocity) + 0.5 * x.acceleration * x.acceleration * per_jerk;
+  const double reach = speed * ((std::abs(x.acceleration) + deceleration) * per_jerk + speed / deceleration);
+  return (!l.lower || x.position - reach > *l.lower + Rounding(*l.lower)) &&
+         (!l.upper || x.position + reach < *l.upper - Rounding(*l.upper));
+}
+
 }  // namespace
 
 Profile::Range RangeOfStop(const AxisParams& p, const KinematicState& x) noexcept {
@@ -95,14 +109,11 @@ Profile::Range RangeOfStop(const AxisParams& p, const KinematicState& x) noexcep
 }
 
 bool CanStopInside(const AxisParams& p, const KinematicState& before, const KinematicState& next) noexcept {
+  if (StopsFarInside(p, next)) return true;
   const Profile::Range range = RangeOfStop(p, next);
   const bool too_high = p.limits.upper && range.max > *p.limits.upper && range.max > before.position;
   const bool too_low = p.limits.lower && range.min < *p.limits.lower && range.min < before.position;
   return !too_high && !too_low;
-}
-
-double Rounding(double x) noexcept {
-  return 1e-9 * (1 + std::abs(x));
 }
 
 bool BreaksRamps(const trajectory::Limits& own, const Piece& piece, double duration) noexcept {

@@ -2,6 +2,8 @@
 // interrupts; planned with those alone, the rest of the stronger motion can carry the axis beyond its limits.
 #pragma once
 
+#include <cmath>
+
 #include "takt/axis/params.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
@@ -36,6 +38,8 @@ bool BreaksRamps(const trajectory::Limits& own, const trajectory::Piece& piece, 
 bool Inside(const AxisLimits& limits, double position) noexcept;
 
 // What counts as equal among positions of the size of `x`.
-double Rounding(double x) noexcept;
+inline double Rounding(double x) noexcept {
+  return 1e-9 * (1 + std::abs(x));
+}
 
 }  // namespace takt::axis

@@ -99,15 +99,7 @@ Forecast Foresee(const Context& context, const Command& command, const State& st
   trajectory::Planner planner;
   std::array<FeedbackEvent, 8 * (kBufferSize + 4)> storage;
   FeedbackSink sink(storage);
-  Context c = {params,
-               context.cycle,
-               planner,
-               sink,
-               context.master,
-               context.axes,
-               context.axes_params,
-               context.cam_switches,
-               context.cams};
+  Context c = {params, context.cycle, planner, sink, context.master, context.machine};
   Apply(c, kAsked, 0, command, s);
   const std::uint64_t begin = c.cycle.count;
   const auto waited_s = [&] { return static_cast<double>(c.cycle.count - begin) * c.cycle.period_s; };

@@ -1,21 +1,8 @@
 #include "takt/axis/params.h"
 
-#include <cmath>
-
 #include "takt/core/describe.h"
 
 namespace takt::axis {
-
-trajectory::Limits AxisParams::planner_limits() const {
-  return {limits.velocity, limits.acceleration, limits.deceleration.value_or(limits.acceleration), limits.jerk};
-}
-
-double Reported(const AxisParams& p, double position) noexcept {
-  if (!p.rotary()) return position;
-  const double turns = std::floor(position / p.modulus);
-  const double inside = position - turns * p.modulus;
-  return inside >= 0 && inside < p.modulus ? inside : 0;
-}
 
 void describe(Enumeration<AxisKind>& e) {
   e.about("How positions of an axis are counted.");

@@ -1,6 +1,7 @@
 // What a machine file says about one axis.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -75,11 +76,18 @@ struct AxisParams {
   // u, after which positions repeat; linear axes: 0.
   double turn() const { return rotary() ? modulus : 0; }
   // The limits as the planner takes them.
-  trajectory::Limits planner_limits() const;
+  trajectory::Limits planner_limits() const {
+    return {limits.velocity, limits.acceleration, limits.deceleration.value_or(limits.acceleration), limits.jerk};
+  }
 };
 
 // A position as it is reported: rotary axes in [0, modulus).
-double Reported(const AxisParams& params, double position) noexcept;
+inline double Reported(const AxisParams& params, double position) noexcept {
+  if (!params.rotary()) return position;
+  const double turns = std::floor(position / params.modulus);
+  const double inside = position - turns * params.modulus;
+  return inside >= 0 && inside < params.modulus ? inside : 0;
+}
 
 void describe(Enumeration<AxisKind>&);
 void describe(Description<AxisLimits>&);

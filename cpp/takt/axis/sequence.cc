@@ -75,10 +75,6 @@ bool InPosition(const AxisParams& p, const State& s) noexcept {
   return !p.supervision.in_position || std::abs(s.setpoint.position - s.actual.position) <= *p.supervision.in_position;
 }
 
-bool AtRest(const State& s) noexcept {
-  return s.setpoint.velocity == 0 && s.setpoint.acceleration == 0;
-}
-
 namespace {
 
 // The blending command behind the one in control, if any.
@@ -207,10 +203,6 @@ void TakeControl(const Context& c, const Request& request, const Plan& plan, con
     s.active.direction = s.last_sense < 0 ? Direction::kNegative : Direction::kPositive;
   }
   Enter(s, RulesOf(request.kind).state);
-}
-
-bool FollowsDemand(RequestKind kind) noexcept {
-  return Couples(kind) || FollowsTable(kind) || kind == RequestKind::kGuided;
 }
 
 Status MayFollow(const Context& c, const Request& request, const State& s) noexcept {

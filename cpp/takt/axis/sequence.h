@@ -43,7 +43,9 @@ void Grant(const Context& c, const Request& request, State& s, double travel_s =
 void TakeControl(const Context& c, const Request& request, const Plan& plan, const MotionStart& start,
                  State& s) noexcept;
 // What follows something that moves, a master, a table over time, another component, instead of a plan.
-bool FollowsDemand(RequestKind kind) noexcept;
+inline bool FollowsDemand(RequestKind kind) noexcept {
+  return Couples(kind) || FollowsTable(kind) || kind == RequestKind::kGuided;
+}
 // Whether such a command may take control now: MayCouple, MayFollowTable.
 Status MayFollow(const Context& c, const Request& request, const State& s) noexcept;
 // Puts it in control. What was in control must have been ended.

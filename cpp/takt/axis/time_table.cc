@@ -33,7 +33,7 @@ struct Curve {
 };
 
 Curve CurveOf(const Context& c, const Request& r) {
-  return {c.cams[r.table.index], r.table};
+  return {c.machine.cams[r.table.index], r.table};
 }
 
 struct Range {
@@ -119,11 +119,6 @@ bool Fill(const Maker& m, const VelocityProfile& c) {
 }
 bool Fill(const Maker& m, const AccelerationProfile& c) {
   return Table(m, RequestKind::kAccelerationProfile, c, "acceleration_scale", c.acceleration_scale);
-}
-
-bool FollowsTable(RequestKind kind) noexcept {
-  return kind == RequestKind::kPositionProfile || kind == RequestKind::kVelocityProfile ||
-         kind == RequestKind::kAccelerationProfile;
 }
 
 Status MayFollowTable(const Context& c, const Request& r, const State& s) noexcept {

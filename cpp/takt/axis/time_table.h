@@ -21,7 +21,10 @@ struct TimeTableState {
   bool over = false;      // its end was reached; the motion in progress goes on from there
 };
 
-bool FollowsTable(RequestKind kind) noexcept;
+inline bool FollowsTable(RequestKind kind) noexcept {
+  return kind == RequestKind::kPositionProfile || kind == RequestKind::kVelocityProfile ||
+         kind == RequestKind::kAccelerationProfile;
+}
 // Refuses what can be told from the table's own values, looked at in 257 places: kTargetBehindLimit for positions
 // outside the SW limits, kParameter for velocities or accelerations beyond the axis' own. What follows from them (the
 // velocity of a table of positions, ...) is held against the limits on the way. kNoReference: positions mean nothing

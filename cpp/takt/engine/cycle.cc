@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "takt/axis/axis.h"
 #include "takt/cam/build.h"
 #include "takt/core/describe.h"
 #include "takt/core/hash.h"
@@ -19,8 +18,7 @@ constexpr std::size_t kEventsPerCommand = 4;
 
 axis::Context ContextOf(World& w, std::size_t i) {
   const axis::State* master = w.axis_masters[i] ? &w.axis_states[*w.axis_masters[i]] : nullptr;
-  return {w.axis_params[i], w.cycle,       w.planner,      w.feedback, master,
-          w.axis_states,    w.axis_params, w.cam_switches, w.cams};
+  return {w.axis_params[i], w.cycle, w.planner, w.feedback, master, w.surrounding};
 }
 
 flexcam::Context ContextOf(World& w, const FlexCam& module) {
@@ -156,6 +154,7 @@ World::World(const Machine& machine)
     axis_masters.push_back(engine::MasterOf(machine, i));
   }
   MakeModules(machine);
+  surrounding = {axis_states, axis_params, cam_switches, cams};
   MakeOrder(*this);
 }
 

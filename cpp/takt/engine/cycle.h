@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "takt/axis/axis.h"
 #include "takt/axis/forecast.h"
 #include "takt/axis/outputs.h"
 #include "takt/axis/params.h"
@@ -41,7 +42,7 @@ struct FlexCam {
 // Everything the cycle works on, in arrays by component; index i is axis i of the machine.
 struct World {
   explicit World(const Machine& machine);
-  World(const World&) = delete;  // the sink points into the storage
+  World(const World&) = delete;  // the sink and what surrounds an axis point into the storage
   World& operator=(const World&) = delete;
 
   Cycle cycle;
@@ -52,6 +53,7 @@ struct World {
   std::vector<cam::Table> cams;
   std::vector<axis::State> axis_states;
   std::vector<axis::Outputs> axis_outputs;
+  axis::Surrounding surrounding;                           // all axes, as each of them sees it
   Order axis_order;                                        // masters before followers
   std::vector<std::optional<std::uint32_t>> axis_masters;  // which axis each follows, if any
 

@@ -48,7 +48,7 @@ void Follow(const axis::Context& c, std::optional<std::uint32_t> index, axis::Ma
             const Settings& settings, double virtual_velocity, bool coast, MasterState& m) noexcept {
   m.before = m.now;
   if (!index) return FollowVirtual(c, settings, virtual_velocity, m);
-  const axis::State& master = c.axes[*index];
+  const axis::State& master = c.machine.states[*index];
   m.known = axis::IsKnown(master, source);
   if (!m.known) m.coasts = coast;
   if (m.coasts) {
@@ -62,11 +62,11 @@ void Follow(const axis::Context& c, std::optional<std::uint32_t> index, axis::Ma
 }
 
 double ZeroOf(const axis::Context& c, std::optional<std::uint32_t> master) noexcept {
-  return master ? c.axes[*master].origin : 0;
+  return master ? c.machine.states[*master].origin : 0;
 }
 
 double TurnOf(const axis::Context& c, std::optional<std::uint32_t> master) noexcept {
-  return master && c.axes_params[*master].rotary() ? c.axes_params[*master].modulus : 0;
+  return master && c.machine.params[*master].rotary() ? c.machine.params[*master].modulus : 0;
 }
 
 void describe(Description<MasterState>& d) {

@@ -161,7 +161,7 @@ void BeginHoming(const Context& c, axis::State& slave, State& s) {
 }
 
 void BeginSync(const Context& c, axis::State& slave, State& s) {
-  if (c.master && !axis::IsKnown(c.slave.axes[*c.master], c.params.source)) {
+  if (c.master && !axis::IsKnown(c.slave.machine.states[*c.master], c.params.source)) {
     return EndAction(c, FeedbackState::kError, ErrorId::kMasterOff, s);
   }
   if (s.settings.slave_absolute && c.slave.params.requires_reference && !slave.homing.homed) {
@@ -404,8 +404,8 @@ void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& comman
 }
 
 void CarryOut(const Context& c, Ticket ticket, double, const SetCam& command, axis::State&, State& s) {
-  for (std::size_t i = 0; i < c.slave.cams.size(); ++i) {
-    if (c.slave.cams[i].name() != command.cam.view()) continue;
+  for (std::size_t i = 0; i < c.slave.machine.cams.size(); ++i) {
+    if (c.slave.machine.cams[i].name() != command.cam.view()) continue;
     s.slots[command.slot - 1] = static_cast<std::uint32_t>(i) + 1;
     Report(c, ticket, FeedbackState::kActive);
     return Report(c, ticket, FeedbackState::kDone);
@@ -469,7 +469,7 @@ void Step(const Context& c, axis::State& slave, State& s) noexcept {
   }
   if (s.state != ModuleState::kSync) ShowWay(c, slave, s);
   if (s.settings.calculate_bounds) {
-    WorkOut(WhatToBound(s), c.slave.cams, s.bounds);
+    WorkOut(WhatToBound(s), c.slave.machine.cams, s.bounds);
   } else if (s.bounds.valid) {
     s.bounds = {};
   }
@@ -511,7 +511,7 @@ void Publish(const Context& c, const axis::State& slave, const State& s, Outputs
   f.ip10_cam_table3 = s.slots[2];
   f.ip11_cam_table4 = s.slots[3];
   const double master = s.master.now.position - ZeroOf(c.slave, c.master);
-  f.mp01_set_master_position = c.master ? axis::Reported(c.slave.axes_params[*c.master], master) : master;
+  f.mp01_set_master_position = c.master ? axis::Reported(c.slave.machine.params[*c.master], master) : master;
   f.mp02_set_slave_position = axis::Reported(p, slave.setpoint.position);
   f.mp03_master_to_x_position = s.x.position;
   f.mp04_cam_profiler_position_out = s.at.y_in_cam;

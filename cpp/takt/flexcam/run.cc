@@ -88,7 +88,7 @@ void EndChange(const Context& c, FeedbackState feedback, ErrorId error, State& s
 
 // The other cam at the same place of X, or at one with the same slope; at the instant of the cycle before.
 bool ChangeHere(const Context& c, std::uint32_t slot, ChangeAlign align, double x_before, State& s) {
-  const cam::Table& to = c.slave.cams[s.slots[slot - 1] - 1];
+  const cam::Table& to = c.slave.machine.cams[s.slots[slot - 1] - 1];
   const ProfilerValue was = ValueAt(TableOf(c, s), s.way.profiler, x_before);
   const double zero = ZeroOfY(c, s);
   double x = was.x;
@@ -123,7 +123,7 @@ bool Passes(double place, double turn, double before, double now) {
 
 // What lies between this cam and the next one: in place, or where Y is shifted anyway, in slope.
 double GapTo(const Context& c, const PendingChange& change, bool in_place, const State& s) {
-  const cam::Table& to = c.slave.cams[s.slots[change.change.cam_table - 1] - 1];
+  const cam::Table& to = c.slave.machine.cams[s.slots[change.change.cam_table - 1] - 1];
   const cam::Value there = to.At(s.at.x);
   return in_place ? ZeroOfY(c, s) + there.y - s.at.y : there.dy - s.at.dy;
 }
@@ -243,7 +243,7 @@ void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId err
 }
 
 const cam::Table& TableOf(const Context& c, const State& s) noexcept {
-  return c.slave.cams[s.way.profiler.cam];
+  return c.slave.machine.cams[s.way.profiler.cam];
 }
 
 SequencerInputs SequencerOf(const State& s) noexcept {

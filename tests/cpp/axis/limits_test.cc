@@ -5,6 +5,7 @@
 #include <random>
 
 #include "rig.h"
+#include "takt/axis/fit.h"
 #include "takt/axis/request.h"
 
 namespace takt::axis {
@@ -394,6 +395,32 @@ TEST(SoftLimit, DoesNotHardenTheWayBackInside) {
     EXPECT_EQ(rig.position(), side * 50);
     EXPECT_LE(WorstOf(rig.trace, {500, 500, 500, 100000}, 0.001, from).acceleration, 1 + 1e-9);
   }
+}
+
+// AX-13: what is said of a set point near SW limits or far from them, at whatever speed and acceleration, is what the
+// stop from there does when it is planned.
+TEST(SoftLimitProperty, CanStopInsideIsWhatAPlannedStopDoes) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  trajectory::Planner planner;
+  int inside = 0;
+  for (int i = 0; i < 200000; ++i) {
+    AxisParams p = Fenced();
+    p.limits.deceleration = 1000 * std::pow(10, any(random));
+    p.limits.jerk = i % 5 ? 100000 * std::pow(10, 2 * any(random)) : 0;
+    const KinematicState x{110 * any(random), 500 * any(random) * std::pow(10, -2 + 2 * any(random)),
+                           i % 3 ? 5000 * any(random) : 0};
+    trajectory::Profile stop{x};
+    ASSERT_TRUE(planner.Stop(x, p.planner_limits(), stop).ok());
+    const trajectory::Profile::Range range = stop.PositionRange();
+    const double margin = std::min(100 - range.max, range.min + 100);
+    if (std::abs(margin) < 1e-6) continue;  // rounding may say either
+    const KinematicState middle{0, 0, 0};
+    ASSERT_EQ(CanStopInside(p, middle, x), margin > 0) << i;
+    inside += margin > 0 ? 1 : 0;
+  }
+  EXPECT_GT(inside, 50000);
+  EXPECT_LT(inside, 180000);
 }
 
 }  // namespace

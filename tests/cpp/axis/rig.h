@@ -92,10 +92,8 @@ class Rig {
     return life.done || life.aborted || life.error;
   }
   Context Now() {
-    Context context{params, cycle, planner, sink_};
-    context.cam_switches = cam_switches;
-    context.cams = cams;
-    return context;
+    machine_ = {.states = {}, .params = {}, .cam_switches = cam_switches, .cams = cams};
+    return {params, cycle, planner, sink_, nullptr, machine_};
   }
   double position() const { return state.setpoint.position; }
 
@@ -130,6 +128,7 @@ class Rig {
     }
   }
 
+  Surrounding machine_;
   std::vector<FeedbackEvent> storage_;
   FeedbackSink sink_;
   std::vector<std::function<void()>> pending_;

@@ -1,0 +1,396 @@
+// The module's state machine (CAM-10, CAM-12) and its masters (CAM-50, CAM-51).
+#include <gtest/gtest.h>
+
+#include "bench.h"
+#include "watch.h"
+
+namespace takt::flexcam {
+namespace {
+
+using axis::AxisKind;
+
+Settings Quick() {
+  Settings s;
+  s.sync_mode = SyncMode::kRampTime;
+  s.sync_in_time_s = 0.1;
+  s.sync_out_time_s = 0.1;
+  s.slave_absolute = true;
+  return s;
+}
+
+Machine Hill(const Settings& s = Quick()) {
+  return MachineOf({UpAndDown("hill", 50)}, s);
+}
+
+// CAM-10
+TEST(States, ReadyNeedsEnableAlone) {
+  Machine m = Hill();
+  Bench b(m);
+  EXPECT_EQ(b.Module().state, ModuleState::kReady);
+  b.Tell(Control{.enable = false});
+  b.Run(2);
+  EXPECT_EQ(b.Module().state, ModuleState::kInit);
+  const Ticket ticket = b.Tell(Control{.sync_cam = true});
+  b.Run(2);
+  EXPECT_EQ(b.ErrorOf(ticket), ErrorId::kState);
+  b.Tell(Control{.enable = true, .regulator_on = false});
+  b.Run(200);
+  EXPECT_EQ(b.Module().state, ModuleState::kReady);
+  EXPECT_FALSE(b.Module().axis_enabled);
+}
+
+// CAM-10: what was asked for while the axis was off has to be asked for again.
+TEST(States, AnEdgeBeforeTheAxisIsOnDoesNotCount) {
+  Bench b(Hill());
+  b.Tell(Control{.regulator_on = false});
+  b.Run(200);
+  const Ticket early = b.Tell(Control{.sync_cam = true});
+  b.Run(2);
+  EXPECT_EQ(b.ErrorOf(early), ErrorId::kPowerOff);
+  const Ticket jog = b.Tell(Jog{.positive = true});
+  b.Run(2);
+  EXPECT_EQ(b.ErrorOf(jog), ErrorId::kPowerOff);
+  b.Tell(Control{.regulator_on = true});
+  b.Run(400);
+  EXPECT_TRUE(b.Module().axis_enabled);
+  EXPECT_EQ(b.Module().state, ModuleState::kReady);
+  b.Tell(Control{.sync_cam = false});
+  b.Run(2);
+  EXPECT_TRUE(b.Sync());
+  EXPECT_EQ(b.Module().state, ModuleState::kSync);
+}
+
+// CAM-10
+TEST(States, StopAndHaltLastAsLongAsTheyAreHeld) {
+  for (const bool stop : {true, false}) {
+    Settings s = Quick();
+    s.stop_deceleration = 4000;
+    s.halt_deceleration = 3000;
+    Bench b(Hill(s));
+    b.Web(720);
+    b.Run(200);
+    ASSERT_TRUE(b.Sync());
+    b.Run(117);
+    Watch watch(b);
+    b.Tell(stop ? Control{.stop = true} : Control{.halt = true});
+    b.Run(500);
+    EXPECT_EQ(b.Module().state, ModuleState::kStop);
+    EXPECT_EQ(b.Knife().set_velocity, 0);
+    b.Tell(Control{.sync_cam = false});
+    b.Tell(Control{.sync_cam = true});
+    b.Run(20);
+    EXPECT_EQ(b.Module().state, ModuleState::kStop);
+    b.Tell(stop ? Control{.stop = false} : Control{.halt = false});
+    b.Run(5);
+    EXPECT_EQ(b.Module().state, ModuleState::kReady);
+    watch.ExpectSmooth();
+  }
+}
+
+// CAM-10: the first key counts, and the module is ready again when none is held.
+TEST(States, Jogging) {
+  Bench b(Hill());
+  const Ticket up = b.Tell(Jog{.positive = true});
+  b.Run(300);
+  EXPECT_EQ(b.Module().state, ModuleState::kJogPos);
+  EXPECT_NEAR(b.Knife().set_velocity, 10, 1e-9);  // the seed's initial lrJogVel
+  b.Tell(Jog{.positive = true, .negative = true});
+  b.Run(100);
+  EXPECT_EQ(b.Module().state, ModuleState::kJogPos);
+  EXPECT_EQ(b.Of(up), FeedbackState::kAborted);
+  const Ticket sync = b.Tell(Control{.sync_cam = true});
+  b.Run(2);
+  EXPECT_EQ(b.ErrorOf(sync), ErrorId::kState);  // only when ready
+  const Ticket none = b.Tell(Jog{});
+  b.Run(300);
+  EXPECT_EQ(b.Module().state, ModuleState::kReady);
+  EXPECT_EQ(b.Of(none), FeedbackState::kDone);
+  EXPECT_EQ(b.Knife().set_velocity, 0);
+  b.Tell(Configure{.jog_velocity = 20.0});
+  b.Tell(Jog{.negative = true});
+  b.Run(300);
+  EXPECT_EQ(b.Module().state, ModuleState::kJogNeg);
+  EXPECT_NEAR(b.Knife().set_velocity, -20, 1e-9);
+}
+
+// A key whose client is gone.
+TEST(States, AJogEndsWithItsLease) {
+  Bench b(Hill());
+  const Ticket jog = b.Tell(Jog{.positive = true}, 0.1);
+  b.Run(90);
+  EXPECT_EQ(b.Module().state, ModuleState::kJogPos);
+  b.engine.Submit({0, 0, 0, engine::MachineCommand(engine::Renew{jog})});
+  b.Run(60);
+  EXPECT_EQ(b.Module().state, ModuleState::kJogPos);
+  b.Run(400);
+  EXPECT_EQ(b.Module().state, ModuleState::kReady);
+  const Ticket again = b.Tell(Jog{.positive = true}, 0.1);
+  b.Run(20);
+  b.engine.Submit({0, 0, 0, engine::MachineCommand(engine::Release{again})});
+  b.Run(300);
+  EXPECT_EQ(b.Module().state, ModuleState::kReady);
+}
+
+// CAM-10
+TEST(States, Homing) {
+  Settings s = Quick();
+  s.home_position = 77;
+  Bench b(Hill(s));
+  const Ticket home = b.Tell(Control{.home_execute = true});
+  b.Run(20);
+  EXPECT_EQ(b.Of(home), FeedbackState::kDone);
+  EXPECT_TRUE(b.Module().is_homed);
+  EXPECT_EQ(b.Module().state, ModuleState::kReady);
+  EXPECT_NEAR(b.Knife().actual_position, 77, 1e-3);
+}
+
+// CAM-10: homing by the module's own section; taking the input back does not break it off, a stop does.
+TEST(States, HomingByTheModule) {
+  Machine m = Hill();
+  m.flex_cams[0].settings.home_by_module = true;
+  axis::HomingParams homing;
+  homing.method = axis::HomingMethod::kSwitch;
+  homing.direction = axis::HomingDirection::kPositive;
+  homing.velocity = 50;
+  m.flex_cams[0].homing = homing;
+  Bench b(m);
+  b.Tell(Control{.home_execute = true});
+  b.Run(300);
+  EXPECT_EQ(b.Module().state, ModuleState::kHoming);
+  b.Tell(Control{.home_execute = false});
+  b.Run(200);
+  EXPECT_EQ(b.Module().state, ModuleState::kHoming);
+  EXPECT_GT(b.Knife().set_position, 10);
+  b.Tell(Control{.home_abs_switch = true});
+  ASSERT_TRUE(b.Until([&] { return b.Module().state == ModuleState::kReady; }, 3000));
+  EXPECT_TRUE(b.Module().is_homed);
+  const Ticket again = b.Tell(Control{.home_execute = true, .home_abs_switch = false});
+  b.Run(100);
+  b.Tell(Control{.stop = true});
+  b.Run(300);
+  EXPECT_EQ(b.Module().state, ModuleState::kStop);
+  EXPECT_EQ(b.Of(again), FeedbackState::kAborted);
+}
+
+// CAM-10: commands of the axis' own.
+TEST(States, Service) {
+  Bench b(Hill());
+  b.Give(Bench::kKnife, axis::MoveAbsolute{.position = 20, .velocity = 50});
+  b.Run(20);
+  EXPECT_EQ(b.Module().state, ModuleState::kService);
+  const Ticket sync = b.Tell(Control{.sync_cam = true});
+  b.Run(2);
+  EXPECT_EQ(b.ErrorOf(sync), ErrorId::kState);
+  b.Run(1000);
+  EXPECT_EQ(b.Module().state, ModuleState::kReady);
+  EXPECT_EQ(b.Knife().set_position, 20);
+  b.Tell(Control{.internal_control = true});
+  b.Run(2);
+  EXPECT_TRUE(b.Module().internal_control_active);
+  EXPECT_EQ(b.Module().state, ModuleState::kService);
+  b.Tell(Control{.stop = true});  // works on
+  b.Run(2);
+  EXPECT_EQ(b.Module().state, ModuleState::kStop);
+}
+
+// One that comes in the middle of a cam takes the slave away, without a jump.
+TEST(States, ACommandOfTheAxisTakesTheSlaveAway) {
+  Bench b(Hill());
+  b.Web(360);
+  b.Run(200);
+  ASSERT_TRUE(b.Sync());
+  Watch watch(b);
+  b.Give(Bench::kKnife, axis::MoveAbsolute{.position = -10});
+  b.Run(1500);
+  EXPECT_EQ(b.Knife().set_position, -10);
+  EXPECT_EQ(b.Module().state, ModuleState::kReady);
+  EXPECT_FALSE(b.Module().cam_synchronised);
+  watch.ExpectSmooth();
+}
+
+// CAM-12: with the numbers of the seed; only a reset ends it.
+TEST(Limits, SwitchesAtTheModule) {
+  struct Case {
+    Control on, off;
+    ErrorId error;
+  };
+  const Case cases[] = {
+      {Control{.hw_limit_positive = true}, Control{.hw_limit_positive = false}, ErrorId::kModuleLimitSwitchPositive},
+      {Control{.hw_limit_negative = true}, Control{.hw_limit_negative = false}, ErrorId::kModuleLimitSwitchNegative}};
+  for (const Case& c : cases) {
+    Settings s = Quick();
+    s.stop_deceleration = 2500;
+    s.stop_jerk = 200000;
+    Bench b(Hill(s));
+    b.Web(720);
+    b.Run(200);
+    ASSERT_TRUE(b.Sync());
+    b.Tell(c.on);  // not looked at
+    b.Run(5);
+    EXPECT_EQ(b.Module().state, ModuleState::kSync);
+    b.Tell(c.off);
+    b.Tell(Control{.enable_hw_limit = true});
+    b.Run(50);
+    Watch watch(b);
+    b.Tell(c.on);
+    b.Run(2);
+    EXPECT_EQ(b.Module().state, ModuleState::kError);
+    EXPECT_EQ(b.Module().error, c.error);
+    b.Run(300);
+    EXPECT_EQ(b.Knife().set_velocity, 0);
+    EXPECT_LE(watch.jerk, 5e6 * (1 + 1e-6));
+    b.Tell(c.off);
+    b.Run(10);
+    EXPECT_EQ(b.Module().state, ModuleState::kError);
+    b.Tell(Control{.reset_error = true});
+    b.Run(5);
+    EXPECT_EQ(b.Module().state, ModuleState::kReady);
+    EXPECT_EQ(b.Module().error, ErrorId::kNone);
+    watch.ExpectSmooth();
+  }
+}
+
+// CAM-12
+TEST(Limits, SoftLimitsOfTheSlave) {
+  for (const double sense : {1.0, -1.0}) {
+    Machine m = MachineOf({UpAndDown("hill", 50 * sense)}, Quick());
+    m.axes[Bench::kKnife].limits.lower = -40;
+    m.axes[Bench::kKnife].limits.upper = 40;
+    Bench b(m);
+    b.Web(360);
+    b.Run(200);
+    ASSERT_TRUE(b.Sync());
+    Watch watch(b);
+    ASSERT_TRUE(b.Until([&] { return b.Module().state == ModuleState::kError; }, 3000));
+    b.Run(300);
+    EXPECT_EQ(b.Module().error, sense > 0 ? ErrorId::kModuleSoftLimitPositive : ErrorId::kModuleSoftLimitNegative);
+    EXPECT_EQ(static_cast<int>(b.Module().error), sense > 0 ? 20306 : 20307);
+    EXPECT_TRUE(b.Module().sw_limit_enabled);
+    EXPECT_TRUE(b.Module().sw_limit_switch_active);
+    EXPECT_LE(std::abs(b.Knife().set_position), 40);
+    EXPECT_EQ(b.Knife().set_velocity, 0);
+    watch.ExpectSmooth();
+  }
+}
+
+// CAM-12: the switches of the axis itself.
+TEST(Limits, SwitchesOfTheSlave) {
+  Machine m = Hill();
+  engine::SimulatedServo servo;
+  servo.axis = "knife";
+  servo.switches.limit_positive.from = 30;
+  const plant::ServoParams ideal = engine::ServoOf(m, Bench::kKnife);
+  servo.drive = ideal.drive;
+  servo.mechanics = ideal.mechanics;
+  m.simulation.servos = {servo};
+  Bench b(m);
+  b.Web(360);
+  b.Run(200);
+  ASSERT_TRUE(b.Sync());
+  ASSERT_TRUE(b.Until([&] { return b.Module().state == ModuleState::kError; }, 3000));
+  EXPECT_EQ(static_cast<int>(b.Module().error), 20500);
+  EXPECT_TRUE(b.Module().hw_limit_switch_positive);
+}
+
+// CAM-50: a virtual master, which has no axis.
+TEST(Masters, Virtual) {
+  Machine m = Hill();
+  m.flex_cams[0].master.reset();
+  Bench b(m);
+  b.Tell(Control{.virtual_velocity = 360.0});
+  b.Run(300);
+  ASSERT_TRUE(b.Sync());
+  double before = b.Module().set_x_position;
+  for (int i = 0; i < 2000; ++i) {
+    b.Step();
+    const double way = b.Module().set_x_position - before;
+    ASSERT_NEAR(way - 360 * std::round(way / 360), 0.36, 1e-9);
+    ASSERT_TRUE(b.Module().cam_synchronised);
+    before = b.Module().set_x_position;
+  }
+}
+
+// CAM-50: what is measured of the master, with filter and dead time: at constant speed it lies where the master is.
+TEST(Masters, MeasuredWithAFilterAndDeadTime) {
+  Settings s = Quick();
+  s.master_filter_s = 0.02;
+  s.master_dead_time_s = 0.005;
+  Machine m = Hill(s);
+  m.flex_cams[0].source = axis::MasterSource::kActualValue;
+  m.axes[Bench::kWeb].encoder.increments_per_unit = 20;  // a coarse encoder
+  Bench b(m);
+  b.Web(360);
+  b.Run(500);
+  ASSERT_TRUE(b.Sync());
+  Watch watch(b);
+  double worst = 0;
+  for (int i = 0; i < 2000; ++i) {
+    b.Step();
+    const double measured = b.TheWeb().actual_position + 360 * 0.005;
+    const double away = b.Module().flow.mp01_set_master_position - measured;
+    worst = std::max(worst, std::abs(away - 360 * std::round(away / 360)));
+  }
+  EXPECT_LE(worst, 3 * 1.0 / 20);  // no lag, and no more than a few increments of noise
+  watch.ExpectSmooth();
+  EXPECT_LE(watch.acceleration, 3000);  // of the cam alone: 1155; unfiltered it would be that of the increments
+}
+
+// CAM-50: an encoder without a drive is a master, too.
+TEST(Masters, AnEncoderAlone) {
+  Machine m = Hill();
+  m.flex_cams[0].source = axis::MasterSource::kActualValue;
+  Bench b(m);
+  b.Give(Bench::kWeb, axis::Power{.enable = false});
+  b.Run(100);
+  EXPECT_TRUE(b.Sync());
+}
+
+// CAM-51
+TEST(Masters, AFaultStopsTheSlave) {
+  Bench b(Hill());
+  b.Web(360);
+  b.Run(200);
+  ASSERT_TRUE(b.Sync());
+  Watch watch(b);
+  b.engine.faults(Bench::kWeb).drive_fault = true;
+  b.Run(300);
+  EXPECT_EQ(b.Module().state, ModuleState::kError);
+  EXPECT_EQ(b.Module().error, ErrorId::kMasterOff);
+  EXPECT_EQ(b.Knife().set_velocity, 0);
+  watch.ExpectSmooth();
+}
+
+// CAM-51
+TEST(Masters, OrTheSlaveGoesOn) {
+  Settings s = Quick();
+  s.on_master_fault = MasterFault::kCoast;
+  Bench b(Hill(s));
+  b.Web(360);
+  b.Run(400);
+  ASSERT_TRUE(b.Sync());
+  Watch watch(b);
+  b.engine.faults(Bench::kWeb).drive_fault = true;
+  b.Run(10);
+  const double x = b.Module().set_x_position;
+  b.Run(1000);
+  EXPECT_EQ(b.Module().state, ModuleState::kSync);
+  EXPECT_TRUE(b.Module().cam_synchronised);
+  EXPECT_NEAR(b.Module().set_x_velocity, 360, 1e-9);
+  EXPECT_NEAR(b.Module().set_x_position, x, 1e-6);  // a turn further on
+  b.Tell(Control{.sync_cam = false});
+  ASSERT_TRUE(b.Until([&] { return b.Module().state == ModuleState::kReady; }, 3000));
+  watch.ExpectSmooth();
+}
+
+TEST(Masters, OneThatIsOffIsNotFollowed) {
+  Bench b(Hill());
+  b.Give(Bench::kWeb, axis::Power{.enable = false});
+  b.Run(50);
+  const Ticket sync = b.Tell(Control{.sync_cam = true});
+  b.Run(2);
+  EXPECT_EQ(b.ErrorOf(sync), ErrorId::kMasterOff);
+  EXPECT_EQ(b.Module().state, ModuleState::kReady);
+}
+
+}  // namespace
+}  // namespace takt::flexcam
