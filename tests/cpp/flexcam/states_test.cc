@@ -278,7 +278,7 @@ TEST(Limits, SwitchesOfTheSlave) {
   Machine m = Hill();
   engine::SimulatedServo servo;
   servo.axis = "knife";
-  servo.switches.limit_positive.from = 30;
+  servo.switches.limit_positive.from = 49;
   const plant::ServoParams ideal = engine::ServoOf(m, Bench::kKnife);
   servo.drive = ideal.drive;
   servo.mechanics = ideal.mechanics;
@@ -298,7 +298,7 @@ TEST(Masters, Virtual) {
   m.flex_cams[0].master.reset();
   Bench b(m);
   b.Tell(Control{.virtual_velocity = 360.0});
-  b.Run(300);
+  b.Run(600);
   ASSERT_TRUE(b.Sync());
   double before = b.Module().set_x_position;
   for (int i = 0; i < 2000; ++i) {
@@ -313,7 +313,7 @@ TEST(Masters, Virtual) {
 // CAM-50: what is measured of the master, with filter and dead time: at constant speed it lies where the master is.
 TEST(Masters, MeasuredWithAFilterAndDeadTime) {
   Settings s = Quick();
-  s.master_filter_s = 0.02;
+  s.master_filter_s = 0.05;
   s.master_dead_time_s = 0.005;
   Machine m = Hill(s);
   m.flex_cams[0].source = axis::MasterSource::kActualValue;

@@ -1,0 +1,531 @@
+// How cams are run: cycles, ends, changes, sequences (CAM-20 to CAM-24, CAM-41, CAM-42).
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "bench.h"
+#include "takt/cam/build.h"
+#include "takt/flexcam/profiler.h"
+#include "watch.h"
+
+namespace takt::flexcam {
+namespace {
+
+using axis::AxisKind;
+
+Settings Quick() {
+  Settings s;
+  s.sync_mode = SyncMode::kRampTime;
+  s.sync_in_time_s = 0.1;
+  s.slave_absolute = true;
+  return s;
+}
+
+double Hill(double x, double height = 50, double length = 360) {
+  const double in = x - length * std::floor(x / length);
+  return height * engine::Polynomial345::Y(in < length / 2 ? in / (length / 2) : (length - in) / (length / 2));
+}
+
+double Apart(double a, double b, double turn = 360) {
+  return std::abs(a - b - turn * std::round((a - b) / turn));
+}
+
+// CAM-20
+TEST(Cyclic, BothWaysAndOverMasterTurns) {
+  Bench b(MachineOf({UpAndDown("hill", 50)}, Quick()));
+  b.Web(720);
+  b.Run(300);
+  ASSERT_TRUE(b.Sync());
+  Watch watch(b);
+  for (const double velocity : {720.0, -720.0, 100.0}) {
+    b.Web(velocity);
+    for (int i = 0; i < 3000; ++i) {
+      b.Step();
+      ASSERT_NEAR(b.Knife().set_position, Hill(b.TheWeb().set_position), 1e-8);
+    }
+  }
+  watch.ExpectSmooth();
+}
+
+// CAM-20: outside a cam that is run once its end is held, and it is left again where it was entered.
+TEST(Once, HoldsItsEnds) {
+  Settings s = Quick();
+  s.cam_cyclic = false;
+  cam::CamParams lift = Onward("lift", 40, 100);
+  lift.cyclic = false;
+  Bench b(MachineOf({lift}, s, AxisKind::kLinear));
+  ASSERT_TRUE(b.Sync());
+  const auto at = [&](double position) {
+    b.Give(Bench::kWeb, axis::MoveAbsolute{.position = position, .velocity = 400});
+    b.Run(3000);
+    return b.Knife().set_position;
+  };
+  Watch watch(b);
+  EXPECT_NEAR(at(300), 40, 1e-9);
+  EXPECT_NEAR(at(50), 20, 1e-9);
+  EXPECT_NEAR(at(-200), 0, 1e-9);
+  EXPECT_NEAR(at(75), 40 * engine::Polynomial345::Y(0.75), 1e-9);
+  watch.ExpectSmooth();
+}
+
+// CAM-21: a cam shorter than the master's turn: its place relative to the master is lost after the first cycle ...
+TEST(Lengths, ShorterThanTheMastersTurn) {
+  Bench b(MachineOf({UpAndDown("hill", 50, 250)}, Quick()));
+  b.Web(500);
+  b.Run(300);
+  ASSERT_TRUE(b.Sync());
+  double total = b.Module().set_x_position;
+  double before = b.TheWeb().set_position;
+  for (int i = 0; i < 5000; ++i) {
+    b.Step();
+    const double way = b.TheWeb().set_position - before;
+    total += way - 360 * std::round(way / 360);
+    before = b.TheWeb().set_position;
+    ASSERT_LT(Apart(b.Module().set_x_position, total, 250), 1e-6);
+    ASSERT_NEAR(b.Knife().set_position, Hill(b.Module().set_x_position, 50, 250), 1e-8);
+  }
+}
+
+// CAM-21: ... one as long as the turn keeps it, and a relative one begins where the master is.
+TEST(Lengths, AsLongAsTheMastersTurn) {
+  for (const bool absolute : {true, false}) {
+    Settings s = Quick();
+    s.master_absolute = absolute;
+    Bench b(MachineOf({UpAndDown("hill", 50)}, s));
+    b.Give(Bench::kWeb, axis::MoveAbsolute{.position = 100});
+    b.Run(1000);
+    ASSERT_TRUE(b.Sync());
+    b.Web(2000);
+    b.Run(20000);
+    EXPECT_LT(Apart(b.Module().set_x_position, b.TheWeb().set_position - (absolute ? 0 : 100)), 1e-6);
+  }
+}
+
+// CAM-21: a slave whose turn is the stroke keeps its place; another one goes on from cycle to cycle.
+TEST(Lengths, OfTheSlave) {
+  for (const double stroke : {360.0, 100.0}) {
+    Bench b(MachineOf({Onward("index", stroke)}, Quick(), AxisKind::kRotary, AxisKind::kRotary));
+    b.Web(720);
+    b.Run(300);
+    ASSERT_TRUE(b.Sync());
+    const std::uint32_t ends = b.Module().cam_ends;
+    b.Run(5000);
+    const double cycles = b.Module().cam_ends - ends;
+    EXPECT_NEAR(cycles, 10, 1);
+    const double in_cycle = stroke * engine::Polynomial345::Y(b.Module().set_x_position / 360);
+    EXPECT_LT(Apart(b.Knife().set_position, b.Module().cam_ends * stroke + in_cycle), 1e-6);
+  }
+}
+
+// CAM-21: after a million cycles the error is below a millionth of a cycle, with lengths that no double holds.
+TEST(Lengths, NoDriftInAMillionCycles) {
+  const double length = 360.0 / 7, stroke = 100.0 / 3;
+  const cam::Table table = cam::Build(Onward("index", stroke, length)).table.value();
+  ProfilerState p;
+  Lay(table, 0.1, 0.1, false, p);
+  const double velocity = 0.37;  // of a cycle per step
+  std::int64_t ends = 0;
+  double x = 0;
+  for (std::int64_t i = 1; ends < 1'000'000; ++i) {
+    x = 0.1 + static_cast<double>(i) * velocity * length;
+    if (PassedEnd(table, p, x)) ++ends;
+    GoOn(table, x, p);
+  }
+  EXPECT_EQ(p.cycle, 1'000'000);
+  const ProfilerValue at = ValueAt(table, p, x);
+  const long double cycles = static_cast<long double>(x) / static_cast<long double>(length);
+  const auto share = static_cast<double>(cycles - std::floor(cycles));
+  EXPECT_NEAR(at.x / length, share, 1e-6);
+  EXPECT_NEAR(at.y / stroke, 1e6 + engine::Polynomial345::Y(share), 1e-6);
+}
+
+// CAM-22: true for exactly one cycle, the last one of the cam, at any speed and either way.
+TEST(EndOfProfile, IsSeenForOneCycle) {
+  for (const double velocity : {100.0, 1234.5, -700.0}) {
+    Bench b(MachineOf({UpAndDown("hill", 50)}, Quick()));
+    b.Web(velocity);
+    b.Run(400);
+    ASSERT_TRUE(b.Sync());
+    int seen = 0, ends = 0;
+    std::uint32_t before = b.Module().cam_ends;
+    for (int i = 0; i < 20000; ++i) {
+      const bool announced = b.Module().end_of_profile;
+      b.Step();
+      const bool passed = b.Module().cam_ends != before;
+      before = b.Module().cam_ends;
+      EXPECT_EQ(announced, passed) << velocity;
+      seen += announced;
+      ends += passed;
+    }
+    EXPECT_GE(ends, 5);
+    EXPECT_EQ(seen, ends);
+  }
+}
+
+// CAM-22: a master that turns round in the last cycle makes no second end.
+TEST(EndOfProfile, OnceForEachEndWhateverTheMasterDoes) {
+  for (int turn = 0; turn < 60; ++turn) {
+    Bench b(MachineOf({UpAndDown("hill", 50)}, Quick()));
+    b.Give(Bench::kWeb, axis::MoveAbsolute{.position = 300});
+    b.Run(600);
+    ASSERT_TRUE(b.Sync());
+    int seen = 0;
+    const std::uint32_t before = b.Module().cam_ends;
+    b.each = [&] { seen += b.Module().end_of_profile; };
+    b.Give(Bench::kWeb, axis::MoveAbsolute{.position = 359.5 + 0.02 * turn - (turn > 25 ? 360 : 0),
+                                           .velocity = 500,
+                                           .direction = axis::Direction::kPositive});
+    b.Run(800);
+    b.Give(Bench::kWeb, axis::MoveAbsolute{.position = 200, .velocity = 500, .direction = axis::Direction::kNegative});
+    b.Run(800);
+    EXPECT_GE(seen, static_cast<int>(b.Module().cam_ends - before));
+    EXPECT_LE(seen, static_cast<int>(b.Module().cam_ends - before) + 1);
+  }
+}
+
+// CAM-22: the cam that is set takes over at the end of the one that runs, also with an X offset, without the clutch.
+TEST(Change, TakesPlaceAtTheEndOfTheCam) {
+  for (const double offset : {0.0, 77.0}) {
+    for (const double velocity : {500.0, -500.0}) {
+      Bench b(MachineOf({UpAndDown("hill", 50), UpAndDown("dip", -30)}, Quick()));
+      b.Tell(Control{.offset_master = offset});
+      b.Web(velocity);
+      b.Run(300);
+      ASSERT_TRUE(b.Sync());
+      Watch watch(b);
+      b.Tell(Control{.cam_table = std::uint32_t{2}});
+      b.Run(2);
+      EXPECT_EQ(b.Module().cam_table, 1u);
+      EXPECT_EQ(b.Module().next_cam_table, 2u);
+      double last = b.Module().set_x_position;
+      ASSERT_TRUE(b.Until(
+          [&] {
+            if (b.Module().cam_table == 1) last = b.Module().set_x_position;
+            EXPECT_TRUE(b.Module().cam_synchronised);
+            return b.Module().cam_table == 2;
+          },
+          2000));
+      EXPECT_NEAR(last, velocity > 0 ? 360 : 0, 0.51);
+      EXPECT_EQ(b.Module().next_cam_table, 0u);
+      for (int i = 0; i < 500; ++i) {
+        b.Step();
+        ASSERT_NEAR(b.Knife().set_position, -Hill(b.Module().set_x_position, 30), 1e-8);
+        ASSERT_LT(Apart(b.Module().set_x_position, b.TheWeb().set_position + offset), 1e-6);
+      }
+      watch.ExpectSmooth();
+    }
+  }
+}
+
+// CAM-22, CAM-05: another cam in the slot that runs is taken over at the end, too; the one that runs stays what it is.
+TEST(Change, OfTheCamInTheSlot) {
+  Machine m = MachineOf({UpAndDown("hill", 50), UpAndDown("dip", -30)}, Quick());
+  m.flex_cams[0].cams = {"hill"};
+  Bench b(m);
+  b.Web(500);
+  b.Run(300);
+  ASSERT_TRUE(b.Sync());
+  b.Tell(SetCam{1, Name::Of("dip")});
+  const std::uint32_t ends = b.Module().cam_ends;
+  while (b.Module().cam_ends == ends) {
+    ASSERT_NEAR(b.Knife().set_position, Hill(b.Module().set_x_position), 1e-8);
+    b.Step();
+  }
+  for (int i = 0; i < 500; ++i) {
+    b.Step();
+    ASSERT_NEAR(b.Knife().set_position, -Hill(b.Module().set_x_position, 30), 1e-8);
+  }
+}
+
+// CAM-22: at once; what does not fit is chased within the limits.
+TEST(Change, AtOnce) {
+  Bench b(MachineOf({UpAndDown("hill", 50), UpAndDown("high", 80)}, Quick()));
+  b.Web(360);
+  b.Run(300);
+  ASSERT_TRUE(b.Sync());
+  ASSERT_TRUE(b.Until([&] { return std::abs(b.Module().set_x_position - 90) < 1; }));
+  Watch watch(b);
+  b.Tell(Control{.cam_change_instant = true, .cam_table = std::uint32_t{2}});
+  b.Run(2);
+  EXPECT_EQ(b.Module().cam_table, 2u);
+  EXPECT_EQ(b.Module().state, ModuleState::kSync);
+  EXPECT_NEAR(b.Module().set_y_position, Hill(b.Module().set_x_position, 80), 1e-9);
+  b.Run(300);
+  EXPECT_TRUE(b.Module().cam_synchronised);
+  EXPECT_NEAR(b.Knife().set_position, Hill(b.Module().set_x_position, 80), 1e-8);
+  watch.ExpectSmooth();
+}
+
+// The order in which the slots are run, and whether the sequencer says so.
+struct Ran {
+  std::vector<std::uint32_t> slots;
+  std::vector<bool> active;
+};
+
+Ran RunSequence(SequenceMode mode, int cycles_on, int cycles_off) {
+  Settings s = Quick();
+  s.cam_sequence_mode = mode;
+  Bench b(MachineOf({UpAndDown("a", 10), UpAndDown("b", 20), UpAndDown("c", 30), UpAndDown("d", 40)}, s));
+  b.Tell(Control{.cam_sequencer = true, .cam_table = std::uint32_t{2}});
+  b.Step();
+  EXPECT_TRUE(b.Sync());
+  b.Web(1200);
+  Ran ran;
+  std::uint32_t ends = b.Module().cam_ends;
+  for (int i = 0; i < cycles_on + cycles_off; ++i) {
+    if (i == cycles_on) b.Tell(Control{.cam_sequencer = false});
+    b.Step();
+    ran.slots.push_back(b.Module().cam_table);
+    ran.active.push_back(b.Module().sequencer_active);
+    for (int k = 0; k < 600 && b.Module().cam_ends == ends; ++k) b.Step();
+    ends = b.Module().cam_ends;
+  }
+  return ran;
+}
+
+using Slots = std::vector<std::uint32_t>;
+using Flags = std::vector<bool>;
+
+// CAM-23: the table of the seed's 3.24, in both positions of the input.
+TEST(Sequencer, Mode0RunsCam1) {
+  const Ran ran = RunSequence(SequenceMode::kCam1, 4, 3);
+  EXPECT_EQ(ran.slots, (Slots{1, 1, 1, 1, 1, 2, 2}));  // then what is set
+  EXPECT_EQ(ran.active, (Flags{1, 1, 1, 1, 1, 0, 0}));
+}
+TEST(Sequencer, Mode1RunsCam3) {
+  const Ran ran = RunSequence(SequenceMode::kCam3, 3, 3);
+  EXPECT_EQ(ran.slots, (Slots{3, 3, 3, 3, 2, 2}));
+  EXPECT_EQ(ran.active, (Flags{1, 1, 1, 1, 0, 0}));
+}
+TEST(Sequencer, Mode2RunsCam1OnceThenCam3AndCam1OnceAtTheEnd) {
+  const Ran ran = RunSequence(SequenceMode::kCam1Cam3, 4, 4);
+  EXPECT_EQ(Slots(ran.slots.begin(), ran.slots.begin() + 6), (Slots{1, 3, 3, 3, 3, 1}));
+  EXPECT_EQ(Flags(ran.active.begin(), ran.active.begin() + 6), (Flags{1, 1, 1, 1, 1, 1}));
+  EXPECT_FALSE(ran.active.back());
+}
+TEST(Sequencer, Mode3RunsCams1And2OnceThenCam3AndCams4And1AtTheEnd) {
+  const Ran ran = RunSequence(SequenceMode::kCam1Cam2Cam3, 5, 5);
+  EXPECT_EQ(Slots(ran.slots.begin(), ran.slots.begin() + 8), (Slots{1, 2, 3, 3, 3, 3, 4, 1}));
+  EXPECT_EQ(Flags(ran.active.begin(), ran.active.begin() + 8), (Flags{1, 1, 1, 1, 1, 1, 1, 0}));
+}
+
+// CAM-24: of the cam that is set, and of a whole sequence, as dense sampling finds them, scaling included.
+TEST(Bounds, AreThoseOfDenseSampling) {
+  for (const bool sequence : {false, true}) {
+    Settings s = Quick();
+    s.calculate_bounds = true;
+    s.master_max_velocity = 700;
+    s.master_max_acceleration = 4000;
+    s.cam_sequence_mode = SequenceMode::kCam1Cam3;
+    Machine m = MachineOf({UpAndDown("a", 10), UpAndDown("b", 99), UpAndDown("c", -30)}, s);
+    Bench b(m);
+    b.Tell(Control{.cam_sequencer = sequence, .scaling_master = 1.5, .scaling_slave = 2.0});
+    b.Run(50);
+    ASSERT_TRUE(b.Module().bounds_valid);
+    double high = -1e9, low = 1e9, velocity = 0, acceleration = 0;
+    for (const char* name : {"a", "c"}) {
+      if (!sequence && *name == 'c') continue;
+      const cam::Table table = cam::Build(UpAndDown(name, *name == 'a' ? 10 : -30)).table.value();
+      for (double x = 0; x <= 360; x += 0.001) {
+        const cam::Value at = table.At(x);
+        high = std::max(high, 2 * at.y);
+        low = std::min(low, 2 * at.y);
+        velocity = std::max(velocity, 2 * std::abs(at.dy) * 1.5 * 700);
+        acceleration =
+            std::max(acceleration, 2 * (std::abs(at.ddy) * std::pow(1.5 * 700, 2) + std::abs(at.dy) * 1.5 * 4000));
+      }
+    }
+    EXPECT_NEAR(b.Module().slave_max_position, high, 1e-6);
+    EXPECT_NEAR(b.Module().slave_min_position, low, 1e-6);
+    EXPECT_NEAR(b.Module().slave_max_velocity, velocity, 1e-4 * velocity);
+    EXPECT_NEAR(b.Module().slave_max_acceleration, acceleration, 1e-4 * acceleration);
+  }
+}
+
+// CAM-40, CAM-41: x_zero takes effect where the cam begins, going backwards where it ends.
+TEST(XZero, TakesEffectAtTheBeginning) {
+  for (const double velocity : {400.0, -400.0}) {
+    Bench b(MachineOf({UpAndDown("hill", 50)}, Quick()));
+    b.Web(velocity);
+    b.Run(300);
+    ASSERT_TRUE(b.Sync());
+    b.Tell(Control{.offset_slave = 4.0, .scaling_slave = 0.5});
+    b.Step();
+    const std::uint32_t ends = b.Module().cam_ends;
+    double last = 0;
+    while (b.Module().cam_ends == ends) {
+      ASSERT_EQ(b.Module().set_scaling_slave, 1);
+      ASSERT_EQ(b.Module().set_offset_slave, 0);
+      last = b.Module().set_x_position;
+      b.Step();
+    }
+    EXPECT_NEAR(last, velocity > 0 ? 360 : 0, 0.41);
+    EXPECT_EQ(b.Module().set_scaling_slave, 0.5);
+    EXPECT_EQ(b.Module().set_offset_slave, 4);
+  }
+}
+
+// CAM-40: with the ramp's velocity, and without a jump; CAM-41: retargeted on the way, and not ended by a change of
+// cam.
+TEST(Ramps, GoToTheNewOffsetWithTheirOwnLimits) {
+  Settings s = Quick();
+  s.offset_mode_slave = OffsetMode::kRampIn;
+  s.offset_scaling_slave_velocity = 40;
+  s.offset_scaling_slave_acceleration = s.offset_scaling_slave_deceleration = 400;
+  s.jerk = 40000;
+  Bench b(MachineOf({UpAndDown("hill", 50), UpAndDown("dip", -30)}, s));
+  b.Web(720);
+  b.Run(300);
+  ASSERT_TRUE(b.Sync());
+  Watch watch(b);
+  double fastest = 0;
+  b.each = [&] {
+    watch.Look();
+    fastest = std::max(fastest, std::abs(b.Knife().set_velocity - b.Module().set_y_velocity));
+  };
+  b.Tell(Control{.offset_slave = 60.0});
+  b.Run(300);
+  b.Tell(Control{.cam_table = std::uint32_t{2}});  // in the middle of the ramp
+  b.Run(700);
+  EXPECT_EQ(b.Module().cam_table, 2u);
+  const auto away = [&] { return b.Knife().set_position + Hill(b.Module().set_x_position, 30); };
+  EXPECT_LT(away(), 50);  // still on its way
+  b.Tell(Control{.offset_slave = 20.0});
+  b.Run(2500);
+  EXPECT_NEAR(away(), 20, 1e-8);
+  EXPECT_NEAR(fastest, 40, 1e-3);
+  watch.ExpectSmooth();
+}
+
+// CAM-40: after a ramp of the factor the whole position is scaled, or what was moved since.
+TEST(Ramps, OfFactorsAbsoluteAndRelative) {
+  for (const ScalingMode mode : {ScalingMode::kRampAbsolute, ScalingMode::kRampRelative}) {
+    Settings s = Quick();
+    s.scaling_mode_slave = mode;
+    Bench b(MachineOf({UpAndDown("hill", 50)}, s));
+    b.Web(720);
+    b.Run(300);
+    ASSERT_TRUE(b.Sync());
+    Watch watch(b);
+    b.Tell(Control{.scaling_slave = 0.4});
+    b.Run(3000);
+    const double base = b.Knife().set_position - 0.4 * Hill(b.Module().set_x_position);
+    if (mode == ScalingMode::kRampAbsolute) {
+      EXPECT_NEAR(base, 0, 1e-8);
+    }
+    b.Run(333);
+    EXPECT_NEAR(b.Knife().set_position - 0.4 * Hill(b.Module().set_x_position), base, 1e-8);
+    watch.ExpectSmooth();
+  }
+}
+
+// CAM-42
+TEST(Factors, DoNotChangeTheCycleLength) {
+  Settings s = Quick();
+  s.scaling_mode_master = ScalingMode::kRampRelative;
+  Bench b(MachineOf({UpAndDown("hill", 50)}, s));
+  b.Web(720);
+  b.Run(300);
+  ASSERT_TRUE(b.Sync());
+  b.Tell(Control{.scaling_master = 2.0, .scaling_slave = 3.0});
+  b.Run(2000);
+  const std::uint32_t ends = b.Module().cam_ends;
+  b.Run(10000);
+  EXPECT_NEAR(b.Module().cam_ends - ends, 40, 1);  // 2 * 720 x a second, 360 a cycle
+  EXPECT_LE(b.Module().set_x_position, 360);
+}
+
+// CAM-70
+TEST(ChangeCam, AtAPositionOfTheMasterOrOfX) {
+  for (const ChangeWhen when : {ChangeWhen::kMasterPosition, ChangeWhen::kCamPosition}) {
+    Bench b(MachineOf({UpAndDown("hill", 50), UpAndDown("dip", -30)}, Quick()));
+    b.Tell(Control{.offset_master = 40.0});
+    b.Web(360);
+    b.Run(300);
+    ASSERT_TRUE(b.Sync());
+    Watch watch(b);
+    const Ticket change = b.Tell(ChangeCam{2, when, 123, ChangeAlign::kPosition});
+    b.Run(2);
+    EXPECT_EQ(b.Of(change), FeedbackState::kActive);
+    EXPECT_EQ(b.Module().pending_changes, 1u);
+    EXPECT_EQ(b.Module().next_cam_table, 2u);
+    ASSERT_TRUE(b.Until([&] { return b.Module().cam_table == 2; }, 3000));
+    const double place = when == ChangeWhen::kMasterPosition ? b.TheWeb().set_position : b.Module().set_x_position;
+    EXPECT_NEAR(place, 123, 0.37);
+    EXPECT_EQ(b.Of(change), FeedbackState::kDone);
+    EXPECT_EQ(b.Module().pending_changes, 0u);
+    watch.ExpectSmooth();
+  }
+}
+
+// CAM-70: with X shifted to a place of the same slope, too, the slave is in step all the way.
+TEST(ChangeCam, WithPositionAndVelocityMet) {
+  Bench b(MachineOf({UpAndDown("hill", 50), UpAndDown("high", 80)}, Quick()));
+  b.Web(360);
+  b.Run(300);
+  ASSERT_TRUE(b.Sync());
+  ASSERT_TRUE(b.Until([&] { return std::abs(b.Module().set_x_position - 60) < 1; }));
+  const double slope = b.Module().set_y_velocity;
+  Watch watch(b);
+  const Ticket change = b.Tell(ChangeCam{2, ChangeWhen::kAtOnce, 0, ChangeAlign::kVelocity});
+  b.Run(1);
+  EXPECT_EQ(b.Of(change), FeedbackState::kDone);
+  EXPECT_NEAR(b.Module().set_y_velocity, slope, 3);
+  for (int i = 0; i < 500; ++i) {
+    b.Step();
+    ASSERT_LT(std::abs(b.Knife().set_position - b.Module().flow.mp06_y_to_slave_position), 0.02);
+  }
+  EXPECT_TRUE(b.Module().cam_synchronised);
+  watch.ExpectSmooth();
+}
+
+// CAM-70: as soon as both meet by themselves.
+TEST(ChangeCam, WithoutAJump) {
+  Settings s = Quick();
+  cam::CamParams other = UpAndDown("other", 50);
+  other.points = {engine::Rest(0, 0), engine::Rest(90, 0), engine::Rest(180, 50), engine::Rest(360, 0)};
+  Bench b(MachineOf({UpAndDown("hill", 50), other}, s));
+  b.Web(360);
+  b.Run(300);
+  ASSERT_TRUE(b.Sync());
+  ASSERT_TRUE(b.Until([&] { return std::abs(b.Module().set_x_position - 30) < 1; }));
+  Watch watch(b);
+  b.Tell(ChangeCam{2, ChangeWhen::kWithoutJump, 0, ChangeAlign::kNothing});
+  double place = 0;
+  ASSERT_TRUE(b.Until(
+      [&] {
+        place = b.Module().set_x_position;
+        EXPECT_LT(std::abs(b.Knife().set_position - b.Module().flow.mp06_y_to_slave_position), 1e-3);
+        return b.Module().cam_table == 2;
+      },
+      3000));
+  EXPECT_NEAR(place, 180, 1);  // the first place where they meet
+  watch.ExpectSmooth();
+}
+
+// CAM-70
+TEST(ChangeCam, CanBeWithdrawn) {
+  Bench b(MachineOf({UpAndDown("hill", 50), UpAndDown("dip", -30)}, Quick()));
+  b.Web(360);
+  b.Run(300);
+  const Ticket early = b.Tell(ChangeCam{2});
+  b.Run(2);
+  EXPECT_EQ(b.ErrorOf(early), ErrorId::kState);  // no cam runs
+  ASSERT_TRUE(b.Sync());
+  std::vector<Ticket> changes;
+  for (int i = 0; i < 9; ++i) changes.push_back(b.Tell(ChangeCam{2, ChangeWhen::kMasterPosition, 1.0 + i}));
+  const Ticket empty = b.Tell(ChangeCam{3});
+  b.Run(3);
+  EXPECT_EQ(b.Module().pending_changes, 8u);
+  EXPECT_EQ(b.ErrorOf(changes.back()), ErrorId::kBufferFull);
+  EXPECT_EQ(b.ErrorOf(empty), ErrorId::kUnknownTarget);
+  b.Tell(WithdrawChanges{});
+  b.Run(2);
+  EXPECT_EQ(b.Module().pending_changes, 0u);
+  EXPECT_EQ(b.Of(changes.front()), FeedbackState::kAborted);
+  b.Run(3000);
+  EXPECT_EQ(b.Module().cam_table, 1u);
+}
+
+}  // namespace
+}  // namespace takt::flexcam
