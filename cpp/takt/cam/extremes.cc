@@ -13,7 +13,16 @@ double LengthOf(const Table& table, std::size_t i) {
   return table.EndOf(i) - table.BeginOf(i);
 }
 
+// The curve stays this near to its value at 0: cheap, and mostly enough to see that a piece has no extreme.
+double ReachOf(const Curve& curve, double h) {
+  double reach = std::abs(curve.c[7]);
+  for (std::size_t k = 7; k-- > 1;) reach = reach * h + std::abs(curve.c[k]);
+  return reach * h + std::abs(curve.amplitude);
+}
+
 void Include(const Curve& curve, double begin, double h, Bounds& bounds) {
+  const double reach = ReachOf(curve, h);
+  if (curve.c[0] - reach >= bounds.least.value && curve.c[0] + reach <= bounds.greatest.value) return;
   for (const double d : ExtremePlaces(curve, h)) {
     const Extreme here{begin + d, curve.At(d)};
     if (here.value < bounds.least.value) bounds.least = here;
@@ -23,6 +32,7 @@ void Include(const Curve& curve, double begin, double h, Bounds& bounds) {
 
 // The largest |curve|, times `factor`.
 void Include(const Curve& curve, double begin, double h, double factor, Extreme& largest) {
+  if (factor * (std::abs(curve.c[0]) + ReachOf(curve, h)) <= largest.value) return;
   for (const double d : ExtremePlaces(curve, h)) {
     const double magnitude = factor * std::abs(curve.At(d));
     if (magnitude > largest.value) largest = {begin + d, magnitude};

@@ -1,7 +1,7 @@
 #include "takt/flexcam/bounds.h"
 
-#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "takt/core/describe.h"
 
@@ -9,8 +9,16 @@ namespace takt::flexcam {
 
 namespace {
 
-// Some 0.3 µs each.
+// Some 0.1 µs each; ten times that where a piece goes further than those before it.
 constexpr int kPiecesPerCycle = 4;
+
+// Pieces are taken in leaps all over the cam: so the great ones come early, and most of those that follow are seen at
+// once to go no further.
+std::size_t LeapOf(std::size_t pieces) {
+  std::size_t leap = std::max<std::size_t>(1, pieces * 5 / 8);
+  while (std::gcd(leap, pieces) != 1) ++leap;
+  return leap;
+}
 
 }  // namespace
 
@@ -28,13 +36,18 @@ void WorkOut(const BoundsOf& of, std::span<const cam::Table> cams, BoundsState& 
     }
     const cam::Table& table = cams[of.cams[s.cam]];
     cam::SlavePeaks peaks;
-    cam::Include(table, s.piece, of.velocity, of.acceleration, peaks);
-    s.max_position = std::max(s.max_position, peaks.position.greatest.value);
-    s.min_position = std::min(s.min_position, peaks.position.least.value);
-    s.max_velocity = std::max(s.max_velocity, peaks.velocity.value);
-    s.max_acceleration = std::max(s.max_acceleration, peaks.acceleration.value);
+    peaks.position = {{0, s.min_position}, {0, s.max_position}};
+    peaks.velocity.value = s.max_velocity;
+    peaks.acceleration.value = s.max_acceleration;
+    if (s.leap == 0) s.leap = static_cast<std::uint32_t>(LeapOf(table.size()));
+    const std::size_t piece = std::size_t{s.piece} * s.leap % table.size();
+    cam::Include(table, piece, of.velocity, of.acceleration, peaks);
+    s.max_position = peaks.position.greatest.value;
+    s.min_position = peaks.position.least.value;
+    s.max_velocity = peaks.velocity.value;
+    s.max_acceleration = peaks.acceleration.value;
     if (++s.piece == table.size()) {
-      s.piece = 0;
+      s.piece = s.leap = 0;
       ++s.cam;
     }
   }
@@ -55,6 +68,7 @@ void describe(Description<BoundsState>& d) {
   d.internal<&B::of>("For what they are.");
   d.internal<&B::cam>("At which cam the work is.");
   d.internal<&B::piece>("At which of its pieces.");
+  d.internal<&B::leap>("From one piece to the next.");
   d.internal<&B::valid>("The work is done.");
   d.internal<&B::max_position>("Of Y.");
   d.internal<&B::min_position>("Of Y.");

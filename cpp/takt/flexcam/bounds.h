@@ -25,7 +25,8 @@ struct BoundsOf {
 struct BoundsState {
   BoundsOf of;
   std::uint32_t cam = 0;    // at which of them the work is ...
-  std::uint32_t piece = 0;  // ... and at which of its pieces
+  std::uint32_t piece = 0;  // ... and how many of its pieces are done
+  std::uint32_t leap = 0;   // from one piece to the next; 0: not yet known
   bool valid = false;       // the work is done
   double max_position = 0, min_position = 0, max_velocity = 0, max_acceleration = 0;  // of y
 };

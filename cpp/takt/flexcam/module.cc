@@ -6,6 +6,7 @@
 #include "takt/axis/coupling.h"
 #include "takt/axis/guidance.h"
 #include "takt/axis/homing.h"
+#include "takt/core/describe.h"
 #include "takt/flexcam/run.h"
 
 namespace takt::flexcam {

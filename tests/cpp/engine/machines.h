@@ -8,7 +8,8 @@
 
 namespace takt::engine {
 
-// Linear and rotary, all three kinds of drives, an absolute encoder, a follower, switches and a real-looking servo.
+// Linear and rotary, all three kinds of drives, an absolute encoder, a follower, a cam module, switches and a
+// real-looking servo.
 inline const char* kFullMachine = R"(
 name: full
 cycle: {period_s: 0.001}
@@ -31,6 +32,23 @@ axes:
     encoder: {type: absolute_ssi, increments_per_unit: 2000, ssi_bits: 25, coding: gray}
     drive: {mode: analog}
     loop: {kp: 0.05, velocity_at_10v: 300}
+  - name: knife
+    limits: {velocity: 5000, acceleration: 100000, jerk: 10000000}
+cams:
+  - name: hill
+    cyclic: true
+    points: [{x: 0, y: 0, v: 0, a: 0}, {x: 180, y: 20, v: 0, a: 0}, {x: 360, y: 0, v: 0, a: 0}]
+  - name: valley
+    cyclic: true
+    points: [{x: 0, y: 0, v: 0, a: 0}, {x: 180, y: -9, v: 0, a: 0}, {x: 360, y: 0, v: 0, a: 0}]
+flex_cams:
+  - name: cutter
+    slave: knife
+    master: c
+    source: actual_value
+    cams: [hill, valley]
+    settings: {sync_mode: ramp_time, sync_in_time_s: 0.1, calculate_bounds: true, master_filter_s: 0.01,
+               offset_mode_master: ramp_in, scaling_mode_slave: ramp_absolute, position_control: master_direction}
 simulation:
   servos:
     - axis: z
@@ -59,6 +77,13 @@ inline Command ToAxis(const Machine& machine, std::string_view name, const axis:
   return command;
 }
 
+inline Command ToModule(const Machine& machine, const flexcam::Command& body) {
+  Command command;
+  command.target = static_cast<std::uint32_t>(machine.axes.size() + 1);
+  command.body = body;
+  return command;
+}
+
 // Something for every axis to do, spread over the first seconds.
 inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m) {
   using namespace axis;
@@ -83,6 +108,15 @@ inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m)
   commands.push_back({2300, ToAxis(m, "z", StepDirect{.set_position = 1})});
   commands.push_back({2310, ToAxis(m, "z", SetPosition{.position = 2})});
   commands.push_back({2500, ToAxis(m, "y1", Stop{})});
+  using flexcam::Control;
+  commands.push_back({6, ToModule(m, Control{.regulator_on = true})});
+  commands.push_back({330, ToModule(m, Control{.sync_cam = true, .cam_table = 2u})});
+  commands.push_back({600, ToModule(m, Control{.offset_master = 30.0, .scaling_slave = 0.5})});
+  commands.push_back({700, ToModule(m, flexcam::ChangeCam{1, flexcam::ChangeWhen::kCamPosition, 20,
+                                                          flexcam::ChangeAlign::kVelocity})});
+  commands.push_back({800, ToModule(m, flexcam::Configure{.sync_mode = flexcam::SyncMode::kRampPos})});
+  commands.push_back({1000, ToModule(m, Control{.sync_cam = false})});
+  commands.push_back({1100, ToModule(m, Control{.sync_cam = true})});
   return commands;
 }
 
