@@ -1,8 +1,14 @@
+#include <pybind11/stl.h>
 #include <pybind11/typing.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "bindings.h"
 #include "takt/axis/outputs.h"
 #include "takt/axis/state_table.h"
+#include "takt/engine/snapshot.h"
 
 namespace takt::bindings {
 namespace {
@@ -10,9 +16,16 @@ namespace {
 using FieldRow = py::typing::Tuple<py::str, py::str, py::str, py::typing::Dict<int, py::str>>;
 using TransitionRow = py::typing::Tuple<py::str, py::str, py::str>;
 
-py::typing::List<FieldRow> OutputFields() {
+const Type& OutputsOf(const std::string& kind) {
+  for (const engine::ComponentKind& k : engine::ComponentKinds()) {
+    if (k.name == kind) return *k.outputs;
+  }
+  throw std::invalid_argument("no such kind of component: " + kind);
+}
+
+py::typing::List<FieldRow> OutputFields(const std::string& kind) {
   py::typing::List<FieldRow> list;
-  for (const Column& column : ColumnsOf(TypeOf<axis::Outputs>())) {
+  for (const Column& column : ColumnsOf(OutputsOf(kind))) {
     py::dict names;
     for (const Enumerator& e : column.type->enumerators) names[py::int_(e.value)] = py::str(e.name);
     list.append(py::make_tuple(column.name, column.unit.text, column.about, names));
@@ -20,8 +33,9 @@ py::typing::List<FieldRow> OutputFields() {
   return list;
 }
 
-py::dtype OutputLayout() {
-  return LayoutOf(ColumnsOf(TypeOf<axis::Outputs>()), sizeof(axis::Outputs));
+py::dtype OutputLayout(const std::string& kind) {
+  const Type& type = OutputsOf(kind);
+  return LayoutOf(ColumnsOf(type), type.size);
 }
 
 py::typing::List<TransitionRow> Transitions() {
@@ -37,9 +51,17 @@ py::typing::List<TransitionRow> Transitions() {
 }  // namespace
 
 void BindAxis(py::module_& m) {
-  m.def("output_fields", &OutputFields,
-        "What an axis publishes: (name, unit, meaning, names by value) of every field.");
-  m.def("output_layout", &OutputLayout, "The NumPy type of what an axis publishes.");
+  m.def("output_fields", &OutputFields, py::arg("kind"),
+        "What a kind of component publishes: (name, unit, meaning, names by value) of every field.");
+  m.def("output_layout", &OutputLayout, py::arg("kind"), "The NumPy type of what a kind of component publishes.");
+  m.def(
+      "component_kinds",
+      [] {
+        std::vector<std::string> names;
+        for (const engine::ComponentKind& kind : engine::ComponentKinds()) names.emplace_back(kind.name);
+        return names;
+      },
+      "The kinds of components, in the order of their numbers.");
   m.def("transitions", &Transitions, "Every legal change of an axis' state: (from, to, by).");
 }
 

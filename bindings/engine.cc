@@ -4,6 +4,7 @@
 #include <pybind11/typing.h>
 
 #include <chrono>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -202,11 +203,12 @@ class VirtualEngine {
     return py::make_tuple(cycles, hashes);
   }
 
-  py::object Value(std::size_t axis, std::size_t field) {
+  py::object Value(std::size_t component, std::size_t field) {
     const auto lock = Lock();
-    CheckAxis(axis);
-    const Column& column = columns_.at(field);
-    return ScalarToPython(*column.type, reinterpret_cast<const std::byte*>(&engine_.outputs(axis)) + column.offset);
+    CheckComponent(component);
+    const engine::Engine::Published published = engine_.published(component);
+    const Column& column = columns_.at(published.type).at(field);
+    return ScalarToPython(*column.type, static_cast<const std::byte*>(published.outputs) + column.offset);
   }
 
   axis::Forecast Foresee(std::size_t axis) {
@@ -223,16 +225,17 @@ class VirtualEngine {
     if (parsed.error != ErrorId::kNone) return py::make_tuple(forecast, parsed.sentence);
     {
       const auto lock = Lock();
+      CheckAxis(parsed.command.target - 1);
       forecast = engine_.Foresee(parsed.command.target - 1, std::get<axis::Command>(parsed.command.body));
     }
     return py::make_tuple(forecast, ErrorText(forecast.error));
   }
 
-  std::shared_ptr<Recorder> StartRecorder(const std::vector<std::size_t>& axes, std::uint64_t every) {
-    for (const std::size_t axis : axes) CheckAxis(axis);
+  std::shared_ptr<Recorder> StartRecorder(const std::vector<std::size_t>& components, std::uint64_t every) {
+    for (const std::size_t component : components) CheckComponent(component);
     if (every == 0) throw std::invalid_argument("every must be at least 1");
     const auto lock = Lock();
-    recorders_.push_back(std::make_shared<Recorder>(axes, every));
+    recorders_.push_back(std::make_shared<Recorder>(engine_, components, every));
     return recorders_.back();
   }
 
@@ -304,7 +307,17 @@ class VirtualEngine {
     if (axis >= engine_.machine().axes.size()) throw std::out_of_range("no such axis");
   }
 
-  const std::vector<Column> columns_ = ColumnsOf(TypeOf<axis::Outputs>());
+  void CheckComponent(std::size_t component) const {
+    if (component >= engine_.components()) throw std::out_of_range("no such component");
+  }
+
+  static std::map<const Type*, std::vector<Column>> ColumnsOfAll() {
+    std::map<const Type*, std::vector<Column>> columns;
+    for (const engine::ComponentKind& kind : engine::ComponentKinds()) columns[kind.outputs] = ColumnsOf(*kind.outputs);
+    return columns;
+  }
+
+  const std::map<const Type*, std::vector<Column>> columns_ = ColumnsOfAll();
   const bool journaling_;
   std::mutex mutex_;
   engine::Engine engine_;
@@ -330,11 +343,12 @@ void BindEngine(py::module_& m) {
       "reference", [] { return engine::ReferenceText(TAKT_VERSION); },
       "Everything that is described, as JSON: machine, verbs, outputs, figures, states, transitions, homing, errors.");
 
-  py::class_<Recorder, std::shared_ptr<Recorder>>(m, "Recorder", "Rows of what axes publish, one every so many cycles.")
+  py::class_<Recorder, std::shared_ptr<Recorder>>(m, "Recorder",
+                                                  "Rows of what components publish, one every so many cycles.")
       .def_property_readonly("rows", &Recorder::rows)
       .def("cycles", &Recorder::Cycles, "The cycle of every row.")
       .def("table", &Recorder::Table, py::arg("index"),
-           "The rows of the axis at this place of the list it was started with.");
+           "The rows of the component at this place of the list it was started with.");
 
   using F = axis::Forecast;
   py::class_<F>(m, "Forecast", "What a motion is going to do.")
@@ -371,10 +385,10 @@ void BindEngine(py::module_& m) {
       .def("take_feedback", &E::TakeFeedback)
       .def("take_journal", &E::TakeJournal)
       .def("take_hashes", &E::TakeHashes)
-      .def("value", &E::Value, py::arg("axis"), py::arg("field"))
+      .def("value", &E::Value, py::arg("component"), py::arg("field"))
       .def("foresee", &E::Foresee, py::arg("axis"))
       .def("foresee_command", &E::ForeseeCommand, py::arg("target"), py::arg("verb"), py::arg("arguments"))
-      .def("start_recorder", &E::StartRecorder, py::arg("axes"), py::arg("every") = 1)
+      .def("start_recorder", &E::StartRecorder, py::arg("components"), py::arg("every") = 1)
       .def("stop_recorder", &E::StopRecorder, py::arg("recorder"))
       .def("figures", &E::Figures)
       .def("state_hash", &E::StateHash)

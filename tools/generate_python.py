@@ -21,10 +21,12 @@ WIDTH = 120
 SCALARS = {"bool": "bool", "integer": "int", "real": "float", "text": "str"}
 # Commands that are no methods of a session: the engine gives them to itself, or feedback objects and heartbeats do.
 INTERNAL = {("machine", verb) for verb in ("fail_all_axes", "release", "renew")}
+# What a kind of component is called in sentences.
+KINDS = {"axis": "an axis", "flex_cam": "a cam module"}
 # Error numbers are plain numbers in Python; takt.error_text() tells what they mean.
 NUMBERS = {"ErrorId"}
 
-HEAD = '''"""Commands, published fields and enumerations of axes. Made by tools/generate_python.py."""
+HEAD = '''"""Commands, published fields and enumerations of components. Made by tools/generate_python.py."""
 
 from __future__ import annotations
 
@@ -41,6 +43,11 @@ NAME = '''class Name(str, Enum):
 
     def __str__(self) -> str:
         return str(self.value)'''
+
+
+def class_name(kind: str) -> str:
+    """flex_cam -> FlexCam."""
+    return "".join(word.capitalize() for word in kind.split("_"))
 
 
 def member(name: str) -> str:
@@ -138,11 +145,14 @@ def method(verb: Json) -> str:
 
 def defaults(verbs: list[Json]) -> str:
     """The table of what arguments are when they are not given."""
-    lines = ["# What arguments are when they are not given, by verb.", "DEFAULTS: Mapping[str, Mapping[str, Any]] = {"]
+    lines = [
+        "# What arguments are when they are not given, by kind of component and verb.",
+        "DEFAULTS: Mapping[tuple[str, str], Mapping[str, Any]] = {",
+    ]
     for verb in verbs:
         given = [f for f in verb["arguments"]["fields"] if f.get("default") is not None]
         pairs = ", ".join(f'"{f["name"]}": {default_text(f)}' for f in given)
-        lines.append(f'    "{verb["name"]}": {{{pairs}}},')
+        lines.append(f'    ("{verb["target_kind"]}", "{verb["name"]}"): {{{pairs}}},')
     return "\n".join([*lines, "}"])
 
 
@@ -166,9 +176,9 @@ def property_text(field: Json) -> str:
     return "\n".join(lines)
 
 
-def outputs_class(outputs: Json) -> str:
+def outputs_class(name: str, outputs: Json) -> str:
     """A mixin with a property for each published field."""
-    head = f"""class AxisOutputs:
+    head = f"""class {name}:
 {doc(outputs["about"], "    ")}
 
     def _value(self, field: str) -> Any:
@@ -180,7 +190,7 @@ def outputs_class(outputs: Json) -> str:
 def module(reference: Json) -> str:
     """The whole module."""
     verbs = [v for v in reference["verbs"] if (v["target_kind"], v["name"]) not in INTERNAL]
-    of = {kind: [v for v in verbs if v["target_kind"] == kind] for kind in ("axis", "machine")}
+    of = {kind: [v for v in verbs if v["target_kind"] == kind] for kind in ("machine", *reference["outputs"])}
     level = sorted(v["name"] for v in verbs if v["level_sensitive"])
     enums = enumerations([reference["verbs"], reference["outputs"]], {})
     parts = [
@@ -188,10 +198,12 @@ def module(reference: Json) -> str:
         f"LEVEL_SENSITIVE = frozenset({{{', '.join(json.dumps(name) for name in level)}}})\n\n{defaults(verbs)}",
         NAME,
         *map(enum_class, enums.values()),
-        commands_class("AxisCommands", "What an axis can be told. Quantities are in the axis' own unit u.", of["axis"]),
         commands_class("MachineCommands", "What the machine as a whole can be told.", of["machine"]),
-        outputs_class(reference["outputs"]),
     ]
+    for kind, outputs in reference["outputs"].items():
+        name = class_name(kind)
+        about = f"What {KINDS[kind]} can be told. Quantities are in the axis' own unit u."
+        parts += [commands_class(f"{name}Commands", about, of[kind]), outputs_class(f"{name}Outputs", outputs)]
     return "\n\n\n".join(parts)
 
 

@@ -16,6 +16,7 @@ from takt.axis import Axis
 from takt.engine import Engine, error_name, error_text, read_machine
 from takt.errors import ClosedError, CommandError, ConfigError, ConnectionError, DriveWarning, TaktError, TimeoutError
 from takt.feedback import Feedback, FeedbackState
+from takt.flex_cam import FlexCam
 from takt.forecast import Forecast, Moment
 from takt.lcmlog import LogError, read_log
 from takt.recording import Recording, RecordingError
@@ -33,6 +34,7 @@ __all__ = [
     "Engine",
     "Feedback",
     "FeedbackState",
+    "FlexCam",
     "Forecast",
     "LogError",
     "Moment",

@@ -20,7 +20,7 @@ from takt import _core
 from takt.drive import WATCHDOG, simulate
 from takt.engine import Engine, read_machine
 from takt.errors import ConfigError, TaktError
-from takt.lcmlog import AXIS_PREFIX, open_log, read_log
+from takt.lcmlog import open_log, read_log
 from takt.lcmlog import Progress as Report
 from takt.recording import Recording, RecordingError
 from takt.remote import connect
@@ -296,7 +296,7 @@ def show_log(log: Path, save: Path | None) -> int:
         period = one.machine.period_s if one.machine else 0.0
         span = (max(s.cycle for s in states) - min(s.cycle for s in states)) * period if states else 0.0
         journal = f"journal of {len(one.journal)} commands" if one.start else "no journal"
-        print(f"run {number}: {name}, {len(one.states)} axes ({AXIS_PREFIX}*), {span:.3f} s, {journal}")
+        print(f"run {number}: {name}, {len(one.states)} components, {span:.3f} s, {journal}")
     if save is not None:
         recording = read_log(log)
         print(recording.to_csv(save) if save.suffix == ".csv" else recording.save(save))

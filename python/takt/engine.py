@@ -13,15 +13,15 @@ from typing import Any
 import numpy as np
 
 from takt import _core
-from takt._commands import DEFAULTS
 from takt.arguments import to_text
 from takt.axis import Axis
+from takt.component import Component
 from takt.errors import ConfigError, DriveWarning, seconds, whole
 from takt.feedback import Feedback
 from takt.forecast import Forecast
 from takt.recording import Recording
 from takt.session import Recorder, Session
-from takt.tables import OUTPUT_FIELDS, make_recording, named
+from takt.tables import fields_of_kind, make_recording, named
 
 CHUNK = 20_000  # cycles between two looks at Ctrl-C
 
@@ -126,14 +126,15 @@ class Engine(Session):
             self._unreleased.append(feedback)
         return release
 
-    def _value(self, axis: Axis, field: str) -> Any:
-        return named(field, self._core.value(axis.index, OUTPUT_FIELDS.index(field)))
+    def _value(self, component: Component, field: str) -> Any:
+        place = fields_of_kind(component.KIND).index(field)
+        return named(component.KIND, field, self._core.value(component.index, place))
 
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
         self._check_open()
         if not verb:
             return Forecast(self._core.foresee(axis.index), "")
-        text = to_text(arguments, DEFAULTS.get(verb, {}))
+        text = to_text(arguments, self._defaults(axis.name, verb))
         core, sentence = self._core.foresee_command(axis.name, verb, text)
         return Forecast(core, sentence if core.error_id else "")
 
@@ -181,7 +182,7 @@ class Engine(Session):
         return True
 
     def _begin(self, recorder: Recorder) -> None:
-        indices = [self._axes[name].index for name in recorder.axes]
+        indices = [self._components[name].index for name in recorder.components]
         self._core_recorders[recorder] = self._core.start_recorder(indices, recorder.every)
 
     def _finish(self, recorder: Recorder) -> Recording:
@@ -190,9 +191,9 @@ class Engine(Session):
         cycles = core.cycles().astype(np.int64)
         base = {"time_s": cycles * self.period, "cycle": cycles}
         tables = {}
-        for i, name in enumerate(recorder.axes):
+        for i, name in enumerate(recorder.components):
             rows = core.table(i)
-            tables[name] = base | {f: rows[f] for f in OUTPUT_FIELDS}
+            tables[name] = base | {f: rows[f] for f in fields_of_kind(self._components[name].KIND)}
         return make_recording(self.machine, tables, recorder.events, {"source": "engine", "period_s": self.period})
 
 

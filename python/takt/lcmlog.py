@@ -17,11 +17,11 @@ from takt import _core, msgs
 from takt.arguments import without_arguments
 from takt.errors import TaktError
 from takt.recording import Array, Recording
-from takt.tables import fields_of, is_possible, make_recording, table_of
+from takt.tables import KINDS, PREFIXES, components_of, fields_of, is_possible, kind_of_channel, make_recording, table_of
 
-AXIS_PREFIX = "takt/axis/"
+STATE_TYPES = tuple(kind.message for kind in KINDS.values())
 EVENT_HEADER = 28  # bytes of an event beside its channel and data
-KINDS: dict[str, Any] = {
+MESSAGES: dict[str, Any] = {
     "takt/machine": msgs.machine_description,
     "takt/engine": msgs.engine_state,
     "takt/command": msgs.command,
@@ -45,7 +45,7 @@ class Run:
     """All that a log holds of one run of an engine, in the order it was written."""
 
     machine: msgs.machine_description | msgs.journal_start | None = None
-    states: dict[str, list[msgs.axis_state]] = field(default_factory=dict)
+    states: dict[str, list[Any]] = field(default_factory=dict)  # of components, by name
     engine_states: list[msgs.engine_state] = field(default_factory=list)
     commands: list[msgs.command] = field(default_factory=list)
     feedback: list[msgs.feedback] = field(default_factory=list)
@@ -97,7 +97,8 @@ def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> 
     for _, channel, data in read_events(path, progress):
         size += EVENT_HEADER + len(channel.encode()) + len(data)
         log.messages[channel] += 1
-        kind = msgs.axis_state if channel.startswith(AXIS_PREFIX) else KINDS.get(channel)
+        component = kind_of_channel(channel)
+        kind = component.message if component else MESSAGES.get(channel)
         if kind is None:
             continue
         try:
@@ -121,7 +122,7 @@ def _sort_in(runs: list[Run], message: Any) -> None:
             run.machine = run.machine or message
         else:
             run.machine = message  # which also has the name
-    elif isinstance(message, msgs.axis_state):
+    elif isinstance(message, STATE_TYPES):
         run.states.setdefault(message.name, []).append(message)
     elif isinstance(message, msgs.engine_state):
         run.engine_states.append(message)
@@ -160,9 +161,9 @@ def to_recording(log: Log, run: int = -1) -> Recording:
     machine = json.loads(_core.load_machine(one.machine.text.encode(), str(log.path)))
     period = one.machine.period_s
     tables: dict[str, dict[str, Array]] = {
-        a["name"]: table_of([s for s in one.states[a["name"]] if is_possible(s, period)], period)
-        for a in machine["axes"]
-        if a["name"] in one.states
+        name: table_of(kind.name, [s for s in one.states[name] if is_possible(s, period)], period)
+        for name, (kind, _) in components_of(machine).items()
+        if name in one.states
     }
     meta = {
         "source": str(log.path),
@@ -213,9 +214,15 @@ def _component(target: str) -> str:
     return "" if target == "machine" else target
 
 
+def _channel(state: Any) -> str:
+    """On which a state was published."""
+    kind = next(kind for kind in KINDS.values() if isinstance(state, kind.message))
+    return PREFIXES[kind.name] + str(state.name)
+
+
 def _losses(run: Run) -> dict[str, int]:
     """Messages missing by their sequence numbers, by channel."""
-    channels: dict[str, list[Any]] = {AXIS_PREFIX + name: list(states) for name, states in run.states.items()}
+    channels: dict[str, list[Any]] = {_channel(states[0]): list(states) for states in run.states.values()}
     channels |= {"takt/engine": list(run.engine_states), "takt/feedback": list(run.feedback)}
     losses = {}
     for channel, messages in channels.items():

@@ -27,9 +27,10 @@ def _page(reference: dict[str, Any]) -> Iterator[str]:
     for verb in reference["verbs"]:
         yield from _verb(verb)
     yield "## Published\n"
-    for name, title in (("outputs", "An axis"), ("figures", "The engine")):
-        yield f"### {title}\n"
-        yield from _fields(reference[name])
+    published = {**reference["outputs"], "engine": reference["figures"]}
+    for name, fields in published.items():
+        yield f"### {name}\n"
+        yield from _fields(fields)
     yield "## States of an axis\n"
     for state in reference["states"]["values"]:
         yield f"- **{state['name']}**: {state['about']}"
@@ -44,8 +45,8 @@ def _page(reference: dict[str, Any]) -> Iterator[str]:
 
 
 def commands(names: Sequence[str]) -> str:
-    """What the reference page says of these commands."""
-    verbs = {verb["name"]: verb for verb in json.loads(_core.reference())["verbs"]}
+    """What the reference page says of these commands; those of other components than axes are called "flex_cam.jog"."""
+    verbs = {_called(verb): verb for verb in json.loads(_core.reference())["verbs"]}
     return "\n".join(line for name in names for line in _verb(verbs[name]))
 
 
@@ -56,8 +57,13 @@ def errors(numbers: Sequence[int]) -> str:
 
 
 def verbs() -> list[str]:
-    """All commands, of the machine and of axes."""
-    return [verb["name"] for verb in json.loads(_core.reference())["verbs"]]
+    """All commands, of the machine, of axes and of other components, as `commands` calls them."""
+    return [_called(verb) for verb in json.loads(_core.reference())["verbs"]]
+
+
+def _called(verb: dict[str, Any]) -> str:
+    of = verb["target_kind"]
+    return str(verb["name"] if of in ("machine", "axis") else f"{of}.{verb['name']}")
 
 
 def _verb(verb: dict[str, Any]) -> Iterator[str]:

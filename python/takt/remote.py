@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from takt import _core, msgs
-from takt.axis import Axis
+from takt.component import Component
 from takt.errors import ConnectionError, TaktError
 from takt.feedback import Feedback
 from takt.network import DEFAULT_URL, open_network
 from takt.recording import Recording
 from takt.session import Recorder, Session, release_of
-from takt.tables import fields_of, is_possible, make_recording, named, table_of
+from takt.tables import PREFIXES, State, fields_of, is_possible, kind_of_channel, make_recording, named, table_of
 
 QUEUE = 100_000  # messages waiting to be received before LCM drops some
 SILENCE_S = 3.0  # without any message: the engine is gone (it sends its own state, and the machine every second)
@@ -52,7 +52,7 @@ class RemoteSession(Session):
         self._session_id = random.SystemRandom().getrandbits(62) + 1
         self._news = threading.Condition()  # guards all that follows
         self._sequences: dict[str, int] = {}
-        self._states: dict[str, msgs.axis_state] = {}
+        self._states: dict[str, State] = {}
         self._engine_state: msgs.engine_state | None = None
         self._description: msgs.machine_description | None = None
         self._cycle = -1
@@ -61,7 +61,7 @@ class RemoteSession(Session):
         self._sent: dict[int, _Sent] = {}
         self._held: list[Feedback] = []  # level-sensitive commands that need heartbeats
         self._last_id = 0
-        self._recorded: dict[Recorder, dict[str, list[msgs.axis_state]]] = {}
+        self._recorded: dict[Recorder, dict[str, list[State]]] = {}
         self._stop = threading.Event()
         self._beat_now = threading.Event()
 
@@ -70,7 +70,7 @@ class RemoteSession(Session):
             ("takt/machine", self._on_machine),
             ("takt/engine", self._on_engine),
             ("takt/feedback", self._on_feedback),
-            ("takt/axis/.*", self._on_axis),
+            *((f"{prefix}.*", self._on_state) for prefix in PREFIXES.values()),
         ):
             self._lcm.subscribe(channel, handler).set_queue_capacity(QUEUE)
         self._receiver = threading.Thread(target=self._receive, name="takt receiver", daemon=True)
@@ -163,14 +163,14 @@ class RemoteSession(Session):
         if self._description is not None and run_id != self._description.run_id and not self._trouble:
             self._trouble = "another engine runs on this network now: it was started again, or there are two"
 
-    def _believable(self, message: msgs.engine_state | msgs.axis_state) -> bool:
-        """Cycle and time say the same. An axis besides cannot be far ahead of all that was heard; the engine's own
+    def _believable(self, message: msgs.engine_state | State) -> bool:
+        """Cycle and time say the same. A component besides cannot be far ahead of all that was heard; the engine's own
         state, which has the run's number, can (this process may have slept)."""
         if self._description is None:
             return False
         period = self._description.period_s
         good = is_possible(message, period)
-        if good and isinstance(message, msgs.axis_state) and self._cycle >= 0:
+        if good and not isinstance(message, msgs.engine_state) and self._cycle >= 0:
             good = (message.cycle - self._cycle) * period <= JUMP_S
         self.ignored += not good
         return good
@@ -197,8 +197,9 @@ class RemoteSession(Session):
                 self._hear(channel, message.sequence)
             self._news.notify_all()
 
-    def _on_axis(self, channel: str, data: bytes) -> None:
-        message = _decoded(msgs.axis_state, data)
+    def _on_state(self, channel: str, data: bytes) -> None:
+        kind = kind_of_channel(channel)
+        message = _decoded(kind.message, data) if kind else None
         if message is None:
             return
         with self._news:
@@ -305,8 +306,8 @@ class RemoteSession(Session):
             if not sent.answered:
                 raise ConnectionError(self._trouble)
 
-    def _value(self, axis: Axis, field: str) -> Any:
-        return named(field, getattr(self._states[axis.name], field))
+    def _value(self, component: Component, field: str) -> Any:
+        return named(component.KIND, field, getattr(self._states[component.name], field))
 
     def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
         end = self.now + timeout
@@ -336,17 +337,20 @@ class RemoteSession(Session):
     def _catch_up(self, cycle: int) -> None:
         with self._news:
             self._news.wait_for(
-                lambda: all(self._states[a].cycle >= cycle for a in self._axes) or self._trouble, LATE_S
+                lambda: all(self._states[c].cycle >= cycle for c in self._components) or self._trouble, LATE_S
             )
 
     def _begin(self, recorder: Recorder) -> None:
         with self._news:
-            self._recorded[recorder] = {name: [] for name in recorder.axes}
+            self._recorded[recorder] = {name: [] for name in recorder.components}
 
     def _finish(self, recorder: Recorder) -> Recording:
         with self._news:
             rows = self._recorded.pop(recorder)
-        tables = {name: table_of(messages, self.period, recorder.every) for name, messages in rows.items()}
+        tables = {
+            name: table_of(self._components[name].KIND, messages, self.period, recorder.every)
+            for name, messages in rows.items()
+        }
         meta = {"source": self.url, "period_s": self.period, "losses": dict(self.losses)}
         return make_recording(self.machine, tables, recorder.events, meta)
 
@@ -371,12 +375,12 @@ class RemoteSession(Session):
 
     def _first_states(self, timeout: float) -> None:
         with self._news:
-            self._news.wait_for(lambda: self._trouble or self._states.keys() >= self._axes.keys(), timeout)
+            self._news.wait_for(lambda: self._trouble or self._states.keys() >= self._components.keys(), timeout)
             if self._trouble:
                 raise ConnectionError(self._trouble)
-            silent = [name for name in self._axes if name not in self._states]
+            silent = [name for name in self._components if name not in self._states]
         if silent:
-            raise ConnectionError(f"the engine on {self.url} does not publish its axis {silent[0]}")
+            raise ConnectionError(f"the engine on {self.url} does not publish its component {silent[0]}")
 
 
 def connect(url: str | None = None, *, client: str | None = None, timeout: float = 5.0) -> RemoteSession:

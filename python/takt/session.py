@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from takt._commands import DEFAULTS, LEVEL_SENSITIVE, MachineCommands
 from takt.arguments import to_text, without_arguments
 from takt.axis import Axis
+from takt.component import Component
 from takt.couplings import why_refused
 from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
+from takt.flex_cam import FlexCam
 from takt.recording import Recording
 
 if TYPE_CHECKING:
@@ -25,15 +27,16 @@ if TYPE_CHECKING:
 
 Program = Callable[[], object]
 P = TypeVar("P", bound=Program)
+C = TypeVar("C", bound=Component)
 
 
 class Recorder:
     """A recording in progress: `stop` makes it a Recording. Also a context manager, after which `recording` has it."""
 
-    def __init__(self, session: Session, axes: Iterable[str], every: int) -> None:
+    def __init__(self, session: Session, components: Iterable[str], every: int) -> None:
         self._session = session
         self._recording: Recording | None = None
-        self.axes = tuple(axes)
+        self.components = tuple(components)
         self.every = every
         self.events: list[tuple[float, str, str, str]] = []
 
@@ -69,6 +72,8 @@ class Session(MachineCommands):
         self.machine = machine  # all parameters of the machine file, with the defaults
         self.machine_text = machine_text
         self._axes = {a["name"]: Axis(self, i, a) for i, a in enumerate(machine["axes"])}
+        self._flex_cams = {m["name"]: FlexCam(self, len(self._axes) + i, m) for i, m in enumerate(machine["flex_cams"])}
+        self._components: dict[str, Component] = {**self._axes, **self._flex_cams}
         self._programs: list[Program] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
@@ -86,14 +91,20 @@ class Session(MachineCommands):
         return MappingProxyType(self._axes)
 
     def axis(self, name: str) -> Axis:
-        if not isinstance(name, str):
-            raise TypeError(f"an axis goes by its name, not by {name!r}")
-        try:
-            return self._axes[name]
-        except KeyError:
-            near = difflib.get_close_matches(name, self._axes, n=1)
-            hint = f"; did you mean '{near[0]}'?" if near else ""
-            raise TaktError(f"the machine has no axis '{name}'{hint} (it has {', '.join(self._axes)})") from None
+        return _named(self._axes, name, "axis")
+
+    @property
+    def flex_cams(self) -> Mapping[str, FlexCam]:
+        """All cam modules by name, in the order of the machine file."""
+        return MappingProxyType(self._flex_cams)
+
+    def flex_cam(self, name: str) -> FlexCam:
+        return _named(self._flex_cams, name, "cam module")
+
+    @property
+    def components(self) -> Mapping[str, Component]:
+        """All axes and all other components that publish something, by name."""
+        return MappingProxyType(self._components)
 
     @property
     @abstractmethod
@@ -126,13 +137,17 @@ class Session(MachineCommands):
                 raise TypeError(f"the {what} of a command is a text, not {text!r}")
         if not isinstance(arguments, (str, Mapping)):
             raise TypeError(f"the arguments of a command are a mapping or a text, not {arguments!r}")
-        text = arguments if isinstance(arguments, str) else to_text(arguments, DEFAULTS.get(verb, {}))
+        text = arguments if isinstance(arguments, str) else to_text(arguments, self._defaults(target, verb))
         level = (
             not isinstance(arguments, str) and verb in LEVEL_SENSITIVE and any(v is True for v in arguments.values())
         )
         feedback = Feedback(self, _clean(target), _clean(verb), _clean(text), level_sensitive=level)
         self._give(feedback)
         return feedback
+
+    def _defaults(self, target: str, verb: str) -> Mapping[str, Any]:
+        component = self._components.get(target)
+        return DEFAULTS.get((component.KIND if component else "machine", verb), {})
 
     def _give(self, feedback: Feedback) -> None:
         self._event(feedback.target, feedback.text, "start")
@@ -185,11 +200,12 @@ class Session(MachineCommands):
 
     # --- recording ---
 
-    def record(self, *axes: str, every: int = 1) -> Recorder:
-        """Starts recording these axes, or all; one sample every so many cycles (over LCM: of those that are
-        published)."""
+    def record(self, *components: str, every: int = 1) -> Recorder:
+        """Starts recording these axes and other components, or all; one sample every so many cycles (over LCM: of those
+        that are published)."""
         self._check_open()
-        recorder = Recorder(self, [self.axis(a).name for a in axes] or self._axes, whole(every, "every", 1))
+        names = [_named(self._components, name, "axis or other component").name for name in components]
+        recorder = Recorder(self, names or self._components, whole(every, "every", 1))
         self._begin(recorder)
         self._recorders.append(recorder)
         return recorder
@@ -200,7 +216,7 @@ class Session(MachineCommands):
         self._event(axis, text, "mark")
 
     def _event(self, component: str, text: str, kind: str, time_s: float = math.nan) -> None:
-        if component not in self._axes:
+        if component not in self._components:
             component = ""  # concerns the whole machine
         for recorder in self._recorders:
             recorder.events.append((self.now if math.isnan(time_s) else time_s, component, text, kind))
@@ -254,8 +270,8 @@ class Session(MachineCommands):
         """Gives the command to the engine; afterwards the feedback is Busy at least, or Error."""
 
     @abstractmethod
-    def _value(self, axis: Axis, field: str) -> Any:
-        """A published value of an axis."""
+    def _value(self, component: Component, field: str) -> Any:
+        """A published value of a component."""
 
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
         raise TaktError("forecasts are made in process only; over LCM a feedback has travel_time_s")
@@ -277,6 +293,20 @@ class Session(MachineCommands):
 
     @abstractmethod
     def _finish(self, recorder: Recorder) -> Recording: ...
+
+
+def _named(components: Mapping[str, C], name: str, what: str) -> C:
+    """The component of this name, or a sentence that says which there are."""
+    article = "an" if what[0] in "aeiou" else "a"
+    if not isinstance(name, str):
+        raise TypeError(f"{article} {what} goes by its name, not by {name!r}")
+    try:
+        return components[name]
+    except KeyError:
+        near = difflib.get_close_matches(name, components, n=1)
+        hint = f"; did you mean '{near[0]}'?" if near else ""
+        has = f" (it has {', '.join(components)})" if components else ""
+        raise TaktError(f"the machine has no {what} '{name}'{hint}{has}") from None
 
 
 def release_of(feedback: Feedback) -> Feedback:

@@ -1,9 +1,10 @@
-"""From what axes publish to recordings: columns, units and names as the engine describes them."""
+"""From what components publish to recordings: columns, units and names as the engine describes them."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,23 +12,65 @@ import numpy as np
 from takt import _core, msgs
 from takt.recording import Array, Recording, RecordingError
 
-OUTPUT_FIELDS = tuple(name for name, _, _, _ in _core.output_fields())
-_UNITS = {name: unit for name, unit, _, _ in _core.output_fields()}
-_NAMES = {name: names for name, _, _, names in _core.output_fields() if names}
-_DTYPES = {name: dtype for name, (dtype, *_) in (_core.output_layout().fields or {}).items()}
+State = Any  # a message with the state of a component: axis_state, flex_cam_state
 
 
-def unit_of(field: str, u: str) -> str:
-    """The unit of a published field of an axis with the unit `u`: u/s2 -> mm/s²."""
-    text = _UNITS[field]
+@dataclass(frozen=True)
+class Kind:
+    """What components of one kind publish, by field."""
+
+    name: str
+    units: Mapping[str, str]
+    names: Mapping[str, Mapping[int, str]]  # of enumerations
+    dtypes: Mapping[str, Any]
+    message: Any  # the LCM type
+
+    @staticmethod
+    def of(name: str) -> Kind:
+        fields = _core.output_fields(name)
+        return Kind(
+            name,
+            units={field: unit for field, unit, _, _ in fields},
+            names={field: names for field, _, _, names in fields if names and field not in NUMBERS},
+            dtypes={field: dtype for field, (dtype, *_) in (_core.output_layout(name).fields or {}).items()},
+            message=getattr(msgs, f"{name}_state"),
+        )
+
+
+NUMBERS = ("error", "warning")  # enumerations that people know by number
+KINDS = {name: Kind.of(name) for name in _core.component_kinds()}
+# Where the components of a kind stand in a machine file.
+SECTIONS = {"axis": "axes", "flex_cam": "flex_cams"}
+# Where they publish: this and their name.
+PREFIXES = {name: f"takt/{name}/" for name in KINDS}
+
+
+def fields_of_kind(kind: str) -> tuple[str, ...]:
+    """What components of this kind publish."""
+    return tuple(KINDS[kind].units)
+
+
+def components_of(machine: Mapping[str, Any]) -> dict[str, tuple[Kind, Mapping[str, Any]]]:
+    """Kind and parameters of every component of a machine, by name."""
+    return {c["name"]: (kind, c) for kind in KINDS.values() for c in machine[SECTIONS[kind.name]]}
+
+
+def kind_of_channel(channel: str) -> Kind | None:
+    """Whose state is published there."""
+    return next((KINDS[kind] for kind, prefix in PREFIXES.items() if channel.startswith(prefix)), None)
+
+
+def unit_of(kind: str, field: str, u: str) -> str:
+    """The unit of a published field of a component with the unit `u`: u/s2 -> mm/s²."""
+    text = KINDS[kind].units[field]
     if text == "u" or text.startswith("u/"):
         text = u + text[1:]
     return text.replace("s2", "s²").replace("s3", "s³")
 
 
-def named(field: str, value: Any) -> Any:
+def named(kind: str, field: str, value: Any) -> Any:
     """A published value as people see it: enumerations by the name of their member, but errors by number."""
-    names = _NAMES.get(field) if field != "error" else None
+    names = KINDS[kind].names.get(field)
     return names[value] if names else value
 
 
@@ -36,14 +79,14 @@ def fields_of(message: Any) -> dict[str, Any]:
     return {f: getattr(message, f) for f in message.__slots__ if f not in ("utime", "sequence")}
 
 
-def is_possible(message: msgs.axis_state | msgs.engine_state, period: float) -> bool:
+def is_possible(message: State | msgs.engine_state, period: float) -> bool:
     """Cycle and time say the same, as they do unless bytes were changed or made up. The engine's period is one of whole
     nanoseconds."""
     return bool(message.cycle >= 0 and abs(message.time_ns - message.cycle * period * 1e9) <= message.cycle)
 
 
-def table_of(messages: Sequence[msgs.axis_state], period: float, every: int = 1) -> dict[str, Array]:
-    """The columns of messages of one axis, of every n-th message (`every`). A repeated or late message counts once."""
+def table_of(kind: str, messages: Sequence[State], period: float, every: int = 1) -> dict[str, Array]:
+    """The columns of messages of one component, of every n-th message (`every`). A repeated or late message counts once."""
     rows = []
     last = -1
     for message in messages:
@@ -52,12 +95,12 @@ def table_of(messages: Sequence[msgs.axis_state], period: float, every: int = 1)
             last = message.cycle
     rows = rows[::every]
     cycle = np.array([m.cycle for m in rows], dtype=np.int64)
-    return {"time_s": cycle * period, "cycle": cycle} | {f: _column(rows, f) for f in OUTPUT_FIELDS}
+    return {"time_s": cycle * period, "cycle": cycle} | {f: _column(kind, rows, f) for f in fields_of_kind(kind)}
 
 
-def _column(messages: Sequence[msgs.axis_state], field: str) -> Array:
+def _column(kind: str, messages: Sequence[State], field: str) -> Array:
     try:
-        return np.array([getattr(m, field) for m in messages], dtype=_DTYPES[field])
+        return np.array([getattr(m, field) for m in messages], dtype=KINDS[kind].dtypes[field])
     except OverflowError:
         raise RecordingError(
             f"{messages[0].name}.{field} holds a number that no engine publishes: bytes of the log were changed"
@@ -70,22 +113,31 @@ def make_recording(
     events: Iterable[tuple[float, str, str, str]],
     meta: Mapping[str, Any],
 ) -> Recording:
-    """A recording of axes of `machine`; each table has time_s, cycle and published fields."""
-    axes = {a["name"]: a for a in machine["axes"] if a["name"] in tables}
-    names = {f: n for f, n in _NAMES.items() if f != "error"}
+    """A recording of components of `machine`; each table has time_s, cycle and published fields."""
+    found = {name: of for name, of in components_of(machine).items() if name in tables}
+    units = {name: _unit(machine, kind, parameters) for name, (kind, parameters) in found.items()}
     return Recording(
         tables,
-        {name: {f: unit_of(f, a["unit"]) for f in OUTPUT_FIELDS} for name, a in axes.items()},
-        names={name: {f: n for f, n in names.items() if f in tables[name]} for name in axes},
-        info={name: _info(a) for name, a in axes.items()},
+        {name: {f: unit_of(k.name, f, units[name]) for f in k.units} for name, (k, _) in found.items()},
+        names={name: {f: n for f, n in k.names.items() if f in tables[name]} for name, (k, _) in found.items()},
+        info={name: _info(machine, k, parameters) for name, (k, parameters) in found.items()},
         events=events,
         meta={"machine": machine["name"], **meta},
     )
 
 
-def _info(axis: Mapping[str, Any]) -> dict[str, Any]:
+def _unit(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]) -> str:
+    """The unit u of what a component publishes: an axis' own, else that of the slave."""
+    if kind.name != "axis":
+        parameters = next(a for a in machine["axes"] if a["name"] == parameters["slave"])
+    return str(parameters["unit"])
+
+
+def _info(machine: Mapping[str, Any], kind: Kind, axis: Mapping[str, Any]) -> dict[str, Any]:
+    info: dict[str, Any] = {"unit": _unit(machine, kind, axis), "limits": {}}
+    if kind.name != "axis":
+        return info
     limits = axis["limits"]
-    info: dict[str, Any] = {"unit": axis["unit"], "limits": {}}
     if axis["kind"] == "rotary":
         info["modulus"] = axis["modulus"]
     for what in ("velocity", "acceleration", "deceleration", "jerk"):

@@ -335,10 +335,11 @@ def test_misspelt_arguments_are_type_errors(engine: takt.Engine) -> None:
 
 def test_published_fields_are_as_described(engine: takt.Engine) -> None:
     """EN-11: properties, columns and the C++ description name the same fields."""
-    names = [f["name"] for f in REFERENCE["outputs"]["fields"]]
-    assert [f[0] for f in _core.output_fields()] == names
-    for name in names:
-        assert type(getattr(engine.axis("x"), name)).__name__ in ("float", "int", "bool", "PlcState", "LimitedBy")
+    for kind, outputs in REFERENCE["outputs"].items():
+        assert [f[0] for f in _core.output_fields(kind)] == [f["name"] for f in outputs["fields"]]
+    for field in REFERENCE["outputs"]["axis"]["fields"]:
+        value = getattr(engine.axis("x"), field["name"])
+        assert type(value).__name__ in ("float", "int", "bool", "PlcState", "LimitedBy")
 
 
 # The list of the GT-775x modules, appendix 12.1.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/core/describe.h"
 #include "takt/engine/cycle.h"
 
 namespace takt::engine {
@@ -15,12 +16,14 @@ std::uint64_t Divisor(double rate_hz, double period_s) {
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(1 / (rate_hz * period_s))));
 }
 
-std::vector<std::uint64_t> AxisDivisors(const Machine& m) {
+// Of components of a kind.
+template <typename Params>
+std::vector<std::uint64_t> Divisors(const Machine& m, const std::vector<Params>& components) {
   std::vector<std::uint64_t> divisors;
-  for (const axis::AxisParams& axis : m.axes) {
+  for (const Params& component : components) {
     double rate = m.lcm.axis_rate_hz;
     for (const ChannelRate& own : m.lcm.rates) {
-      if (own.axis == axis.name) rate = own.rate_hz;
+      if (own.axis == component.name) rate = own.rate_hz;
     }
     divisors.push_back(Divisor(rate, m.cycle.period_s));
   }
@@ -53,13 +56,15 @@ struct Engine::Impl {
         journalled(kJournalledPerCycle),
         feedback(4 * world.feedback_storage.size()),
         snapshots(o.publish ? o.snapshot_queue : 2),
+        flex_cam_snapshots(o.publish && !machine.flex_cams.empty() ? o.snapshot_queue : 2),
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
         hashes(o.journal ? o.snapshot_queue : 2),
         set_points(o.drives ? kDriveQueue * world.drives.size() : 2),
         drive_samples(kDriveQueue * world.drives.size()),
         drive_journal(o.journal && !world.drives.empty() ? o.snapshot_queue : 2),
-        axis_divisors(AxisDivisors(machine)),
+        axis_divisors(Divisors(machine, machine.axes)),
+        flex_cam_divisors(Divisors(machine, machine.flex_cams)),
         figures_divisor(Divisor(machine.lcm.engine_rate_hz, machine.cycle.period_s)) {
     SendSetPoints(-1);
   }
@@ -133,6 +138,18 @@ struct Engine::Impl {
     return (LetsGo(command) || room > commands.capacity() / kKeptShare) && commands.TryPush(command);
   }
 
+  template <typename Outputs>
+  void PublishAll(const std::vector<std::uint64_t>& divisors, const std::vector<Outputs>& outputs,
+                  SpscQueue<SnapshotOf<Outputs>>& queue) noexcept {
+    for (std::size_t i = 0; i < divisors.size(); ++i) {
+      // All components of a rate in the same cycle, so that a receiver can hold them against one another.
+      const bool due = divisors[i] != 0 && world.cycle.count % divisors[i] == 0;
+      if (!due && !options.every_cycle) continue;
+      if (!queue.TryPush({world.cycle.count, static_cast<std::uint32_t>(i), due, outputs[i]}))
+        ++figures.snapshots_dropped;
+    }
+  }
+
   void Publish() noexcept {
     figures.cycle = world.cycle.count;
     figures.commands_refused = refused.load(std::memory_order_relaxed);
@@ -149,13 +166,8 @@ struct Engine::Impl {
       if (!hashes.TryPush({world.cycle.count, figures.state_hash})) ++figures.journal_dropped;
     }
     if (!options.publish) return;
-    for (std::size_t i = 0; i < axis_divisors.size(); ++i) {
-      // All axes of a rate in the same cycle, so that a receiver can hold them against one another.
-      const bool due = axis_divisors[i] != 0 && world.cycle.count % axis_divisors[i] == 0;
-      if (!due && !options.every_cycle) continue;
-      if (!snapshots.TryPush({world.cycle.count, static_cast<std::uint32_t>(i), due, world.axis_outputs[i]}))
-        ++figures.snapshots_dropped;
-    }
+    PublishAll(axis_divisors, world.axis_outputs, snapshots);
+    PublishAll(flex_cam_divisors, world.flex_cam_outputs, flex_cam_snapshots);
     if (figures_divisor > 0 && world.cycle.count % figures_divisor == 0) figure_queue.TryPush(figures);
   }
 
@@ -169,6 +181,7 @@ struct Engine::Impl {
   SpscQueue<Command> journalled;
   SpscQueue<FeedbackEvent> feedback;
   SpscQueue<AxisSnapshot> snapshots;
+  SpscQueue<FlexCamSnapshot> flex_cam_snapshots;
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
   SpscQueue<HashEntry> hashes;
@@ -177,6 +190,7 @@ struct Engine::Impl {
   SpscQueue<DriveEntry> drive_journal;
 
   std::vector<std::uint64_t> axis_divisors;
+  std::vector<std::uint64_t> flex_cam_divisors;
   std::uint64_t figures_divisor;
   std::uint64_t feedback_dropped = 0;  // by the queue
   std::uint64_t samples_unused = 0;    // by the cycle
@@ -234,6 +248,15 @@ const axis::Outputs& Engine::outputs(std::size_t axis) const noexcept {
 const flexcam::Outputs& Engine::flex_cam_outputs(std::size_t module) const noexcept {
   return impl_->world.flex_cam_outputs[module];
 }
+std::size_t Engine::components() const noexcept {
+  return impl_->world.axis_outputs.size() + impl_->world.flex_cam_outputs.size();
+}
+Engine::Published Engine::published(std::size_t component) const noexcept {
+  const World& world = impl_->world;
+  const std::size_t axes = world.axis_outputs.size();
+  if (component < axes) return {&TypeOf<axis::Outputs>(), &world.axis_outputs[component]};
+  return {&TypeOf<flexcam::Outputs>(), &world.flex_cam_outputs[component - axes]};
+}
 axis::Forecast Engine::Foresee(std::size_t axis) const {
   return engine::Foresee(impl_->world, axis);
 }
@@ -287,6 +310,9 @@ SpscQueue<FeedbackEvent>& Engine::feedback() noexcept {
 }
 SpscQueue<AxisSnapshot>& Engine::snapshots() noexcept {
   return impl_->snapshots;
+}
+SpscQueue<FlexCamSnapshot>& Engine::flex_cam_snapshots() noexcept {
+  return impl_->flex_cam_snapshots;
 }
 SpscQueue<EngineFigures>& Engine::figure_queue() noexcept {
   return impl_->figure_queue;

@@ -56,6 +56,13 @@ class Engine {
   const Cycle& cycle() const noexcept;
   const axis::Outputs& outputs(std::size_t axis) const noexcept;
   const flexcam::Outputs& flex_cam_outputs(std::size_t module) const noexcept;
+  // The same for components of any kind, by the number that is their target, less one.
+  struct Published {
+    const Type* type;
+    const void* outputs;
+  };
+  std::size_t components() const noexcept;
+  Published published(std::size_t component) const noexcept;
   const EngineFigures& figures() const noexcept;
   std::uint64_t StateHash() const noexcept;
   // What the motion of an axis is going to do, and what that of a command would if it were given now (AX-96). Nothing
@@ -82,6 +89,7 @@ class Engine {
   // --- one consuming thread ---
   SpscQueue<FeedbackEvent>& feedback() noexcept;
   SpscQueue<AxisSnapshot>& snapshots() noexcept;
+  SpscQueue<FlexCamSnapshot>& flex_cam_snapshots() noexcept;
   SpscQueue<EngineFigures>& figure_queue() noexcept;
   SpscQueue<JournalEntry>& journal() noexcept;
   SpscQueue<DriveEntry>& drive_journal() noexcept;

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "takt/axis/homing.h"
-#include "takt/axis/outputs.h"
 #include "takt/axis/state_table.h"
 #include "takt/core/describe.h"
 #include "takt/core/schema.h"
@@ -32,6 +31,12 @@ Json VerbsJson() {
                      {"arguments", ReferenceJson(*verb.arguments)}});
   }
   return verbs;
+}
+
+Json OutputsJson() {
+  Json outputs = Json::object();
+  for (const ComponentKind& kind : ComponentKinds()) outputs[std::string(kind.name)] = ReferenceJson(*kind.outputs);
+  return outputs;
 }
 
 Json ErrorsJson() {
@@ -77,7 +82,7 @@ std::string ReferenceText(std::string_view version) {
   const Json reference = {{"version", version},
                           {"machine", ReferenceJson(TypeOf<Machine>())},
                           {"verbs", VerbsJson()},
-                          {"outputs", ReferenceJson(TypeOf<axis::Outputs>())},
+                          {"outputs", OutputsJson()},
                           {"figures", ReferenceJson(TypeOf<EngineFigures>())},
                           {"states", ReferenceJson(TypeOf<axis::PlcState>())},
                           {"transitions", TransitionsJson()},

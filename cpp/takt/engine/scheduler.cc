@@ -120,8 +120,9 @@ bool IsHalfFull(const SpscQueue<T>& queue) {
 }
 
 bool ReaderIsBehind(Engine& engine) {
-  return IsHalfFull(engine.snapshots()) || IsHalfFull(engine.feedback()) || IsHalfFull(engine.journal()) ||
-         IsHalfFull(engine.drive_journal()) || IsHalfFull(engine.hashes()) || IsHalfFull(engine.figure_queue());
+  return IsHalfFull(engine.snapshots()) || IsHalfFull(engine.flex_cam_snapshots()) || IsHalfFull(engine.feedback()) ||
+         IsHalfFull(engine.journal()) || IsHalfFull(engine.drive_journal()) || IsHalfFull(engine.hashes()) ||
+         IsHalfFull(engine.figure_queue());
 }
 
 RunResult RunFast(Engine& engine, const SchedulerOptions& options, EndJudge& judge) {

@@ -3,19 +3,34 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <string_view>
 
 #include "takt/axis/outputs.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/engine/command.h"
+#include "takt/flexcam/outputs.h"
 
 namespace takt::engine {
 
-struct AxisSnapshot {
+// What a component published.
+template <typename Outputs>
+struct SnapshotOf {
   std::uint64_t cycle = 0;
-  std::uint32_t axis = 0;  // index in Machine::axes
-  bool due = true;         // at the rate of its channel; false only with EngineOptions::every_cycle
-  axis::Outputs outputs;
+  std::uint32_t index = 0;  // among the components of its kind, in the order of the machine file
+  bool due = true;          // at the rate of its channel; false only with EngineOptions::every_cycle
+  Outputs outputs;
 };
+using AxisSnapshot = SnapshotOf<axis::Outputs>;
+using FlexCamSnapshot = SnapshotOf<flexcam::Outputs>;
+
+// A kind of components and what they publish.
+struct ComponentKind {
+  std::string_view name;  // as in Verb::target_kind
+  const Type* outputs;
+};
+// All of them, in the order of their numbers. The first call takes memory.
+std::span<const ComponentKind> ComponentKinds();
 
 struct JournalEntry {  // a command as it was applied
   std::uint64_t cycle = 0;

@@ -84,15 +84,15 @@ double SyncPlace(const ClutchContext& c, double from, double distance, double se
 // In which the master goes, or will have to go; 0: nobody knows yet.
 double SenseOf(const ClutchContext& c) {
   if (c.master.velocity != 0) return c.master.velocity > 0 ? 1 : -1;
-  if (c.settings.sync_direction == SyncDirection::kCurrent) return 0;
-  return c.settings.sync_direction == SyncDirection::kPositive ? 1 : -1;
+  if (c.settings.sync_direction == ClutchDirection::kCurrent) return 0;
+  return c.settings.sync_direction == ClutchDirection::kPositive ? 1 : -1;
 }
 
 bool RightDirection(const ClutchContext& c, double velocity) {
   switch (c.settings.sync_direction) {
-    case SyncDirection::kPositive:
+    case ClutchDirection::kPositive:
       return velocity > 0;
-    case SyncDirection::kNegative:
+    case ClutchDirection::kNegative:
       return velocity < 0;
     default:
       return true;
@@ -186,10 +186,10 @@ trajectory::Limits ClutchLimits(const ClutchContext& c) {
 
 // Begins to bring what lies between the slave and Y to zero.
 void BeginShift(const ClutchContext& c, const KinematicState& shift, ClutchState& s) {
-  if (s.mode == SyncMode::kRampTime) {
+  if (s.mode == ClutchMode::kRampTime) {
     BeginTime(shift, c.settings.sync_in_time_s, c.cycle, s.ramp);
   } else if (!BeginProfile(shift, ClutchLimits(c), c.cycle, c.planner, s.ramp)) {
-    s.mode = SyncMode::kAbsolute;
+    s.mode = ClutchMode::kAbsolute;
   }
 }
 
@@ -197,14 +197,15 @@ void StartClosing(const ClutchContext& c, Way& way, ClutchState& s) {
   s.phase = ClutchPhase::kClosing;
   s.mode = s.next;
   KinematicState wanted = c.wanted_before;
-  if (s.mode == SyncMode::kRelative) {
+  if (s.mode == ClutchMode::kRelative) {
     way.to_slave.out_zero += c.own_before.position - wanted.position;
   } else if (c.settings.slave_absolute) {
     const double before = way.to_slave.out_zero;
     NearestTurn(c, wanted.position, c.own_before.position, way);
     wanted.position += way.to_slave.out_zero - before;
   }
-  if (s.mode == SyncMode::kRampTime || s.mode == SyncMode::kRampVelAcc) BeginShift(c, Shift(c.own_before, wanted), s);
+  if (s.mode == ClutchMode::kRampTime || s.mode == ClutchMode::kRampVelAcc)
+    BeginShift(c, Shift(c.own_before, wanted), s);
 }
 
 // The master came to where the curve begins in the cycle before, or is on its way from there to the sync position
@@ -231,7 +232,7 @@ Status WaitForWay(const ClutchContext& c, Way& way, ClutchState& s) {
     return Status::Ok();
   }
   s.phase = ClutchPhase::kClosing;
-  s.mode = SyncMode::kRampPos;
+  s.mode = ClutchMode::kRampPos;
   return Status::Ok();
 }
 
@@ -244,17 +245,17 @@ void EndCurve(const ClutchContext& c, const Way& way, ClutchState& s) {
   s.phase = ClutchPhase::kClosed;
   if (std::abs(left.position) < kNear * size && std::abs(left.velocity) < kNear * (1 + std::abs(now.velocity))) return;
   s.phase = ClutchPhase::kClosing;
-  s.mode = SyncMode::kRampVelAcc;
+  s.mode = ClutchMode::kRampVelAcc;
   BeginShift(c, trajectory::AlongWay(left, c.master), s);
 }
 
 KinematicState Closing(const ClutchContext& c, const KinematicState& wanted, const Way& way, ClutchState& s) {
-  if (s.mode == SyncMode::kRampPos) {
+  if (s.mode == ClutchMode::kRampPos) {
     if (OnCurveBy(c, s) < s.curve.length) return OnCurve(c, s);
     EndCurve(c, way, s);
     if (s.phase == ClutchPhase::kClosed) return wanted;
   }
-  if (s.mode == SyncMode::kRampTime || s.mode == SyncMode::kRampVelAcc) {
+  if (s.mode == ClutchMode::kRampTime || s.mode == ClutchMode::kRampVelAcc) {
     if (IsOver(s.ramp, c.cycle, c.master)) s.phase = ClutchPhase::kClosed;
     return Sum(wanted, At(s.ramp, c.cycle, c.master));
   }
@@ -281,7 +282,7 @@ bool BeginOut(const ClutchContext& c, ClutchState& s) {
     BeginCurve(c, length, sense, {s.out, 0, 0}, tried);
     if (!KeepsSense(c) || Monotone(tried.curve)) {
       s = tried;
-      s.mode = SyncMode::kRampPos;
+      s.mode = ClutchMode::kRampPos;
       s.from_cam = s.phase == ClutchPhase::kWaitingOut;
       s.phase = ClutchPhase::kOpening;
       s.leaves = false;
@@ -297,12 +298,12 @@ KinematicState Opening(const ClutchContext& c, const KinematicState& wanted, con
   const KinematicState rest = {s.out, 0, 0};
   there = true;
   KinematicState demand = rest;
-  if (s.mode == SyncMode::kRampPos) {
+  if (s.mode == ClutchMode::kRampPos) {
     const double x = OnCurveBy(c, s);
     there = x >= s.curve.length;
     if (x < 0 && s.from_cam) return wanted;  // the master went back to before the opening began
     if (!there) demand = OnCurve(c, s);
-  } else if (s.mode == SyncMode::kRampTime || s.mode == SyncMode::kRampVelAcc) {
+  } else if (s.mode == ClutchMode::kRampTime || s.mode == ClutchMode::kRampVelAcc) {
     there = IsOver(s.ramp, c.cycle, c.master);
     demand = Sum(rest, At(s.ramp, c.cycle, c.master));
   }
@@ -316,7 +317,7 @@ bool IsCoupled(const ClutchState& s) noexcept {
 }
 
 bool IsOnCurve(const ClutchState& s) noexcept {
-  return s.phase == ClutchPhase::kClosing && s.mode == SyncMode::kRampPos;
+  return s.phase == ClutchPhase::kClosing && s.mode == ClutchMode::kRampPos;
 }
 
 bool IsFrozen(const ClutchState& s) noexcept {
@@ -332,7 +333,7 @@ void BeginClosing(const ClutchContext& c, Way&, ClutchState& s) noexcept {
   s.opens_still = s.phase == ClutchPhase::kOpening;
   s.phase = ClutchPhase::kWaitingIn;
   s.next = c.settings.sync_mode;
-  if (s.next == SyncMode::kRampPos && c.settings.master_sync_in_distance == 0) s.next = SyncMode::kAbsolute;
+  if (s.next == ClutchMode::kRampPos && c.settings.master_sync_in_distance == 0) s.next = ClutchMode::kAbsolute;
   s.planned_sense = 0;
   s.distance = c.settings.master_sync_in_distance;
   if (!s.opens_still) s.out = c.own_before.position;
@@ -342,10 +343,10 @@ void BeginOpening(const ClutchContext& c, ClutchState& s) noexcept {
   const KinematicState& own = c.own_before;
   if (s.phase == ClutchPhase::kWaitingIn) {  // it was never on the cam
     s.phase = ClutchPhase::kOpening;
-    if (!s.opens_still) s.mode = SyncMode::kAbsolute;
+    if (!s.opens_still) s.mode = ClutchMode::kAbsolute;
     return;
   }
-  if (c.settings.sync_mode == SyncMode::kRampPos && c.settings.master_sync_out_distance > 0) {
+  if (c.settings.sync_mode == ClutchMode::kRampPos && c.settings.master_sync_out_distance > 0) {
     if (s.phase == ClutchPhase::kClosed) s.phase = ClutchPhase::kWaitingOut;
     s.leaves = s.phase == ClutchPhase::kClosing;
     return;
@@ -353,16 +354,16 @@ void BeginOpening(const ClutchContext& c, ClutchState& s) noexcept {
   s.mode = c.settings.sync_mode;
   s.phase = ClutchPhase::kOpening;
   s.from_cam = true;
-  if (s.mode == SyncMode::kAbsolute || s.mode == SyncMode::kRelative) {
+  if (s.mode == ClutchMode::kAbsolute || s.mode == ClutchMode::kRelative) {
     s.out = own.position;
     return;
   }
   s.out = OutPlace(c, own.position);
   const KinematicState shift = Shift(own, {s.out, 0, 0});
-  if (s.mode == SyncMode::kRampTime) {
+  if (s.mode == ClutchMode::kRampTime) {
     BeginTime(shift, c.settings.sync_out_time_s, c.cycle, s.ramp);
-  } else if (s.mode == SyncMode::kRampVelAcc && !BeginProfile(shift, ClutchLimits(c), c.cycle, c.planner, s.ramp)) {
-    s.mode = SyncMode::kAbsolute;
+  } else if (s.mode == ClutchMode::kRampVelAcc && !BeginProfile(shift, ClutchLimits(c), c.cycle, c.planner, s.ramp)) {
+    s.mode = ClutchMode::kAbsolute;
   }
 }
 
@@ -374,7 +375,7 @@ Status StepClutch(const ClutchContext& c, const KinematicState& wanted, Way& way
   };
   bool there = false;
   if (s.phase == ClutchPhase::kWaitingIn) {
-    if (s.next == SyncMode::kRampPos) {
+    if (s.next == ClutchMode::kRampPos) {
       if (const Status status = WaitForWay(c, way, s); status.failed()) return status;
     } else if (RightDirection(c, c.master.velocity)) {
       StartClosing(c, way, s);

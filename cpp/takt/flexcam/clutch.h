@@ -36,19 +36,19 @@ enum class ClutchPhase : std::uint8_t {
 
 struct ClutchState {
   ClutchPhase phase = ClutchPhase::kOpen;
-  SyncMode mode = SyncMode::kAbsolute;  // in which it closes or opens
-  Ramp ramp;                            // of the modes over time
-  trajectory::Quintic curve;            // of the mode over the master's way
-  double curve_begin = 0;               // master's u, where the curve begins
-  double sense = 1;                     // in which the master goes on it
-  KinematicState end;                   // of the curve, over the master's way
-  double distance = 0;                  // master's u, before the sync position: where it begins
-  double planned_sense = 0;             // for which that was planned; 0: not yet
-  double out = 0;                       // u over all turns, where the slave is to rest
-  SyncMode next = SyncMode::kAbsolute;  // waiting: in which it is to close; `mode` is that of an opening still
-  bool opens_still = false;             // waiting: it had not come to its end when it was told to close
-  bool leaves = false;                  // closing: it is to open as soon as it can
-  bool from_cam = true;                 // opening: it began on the cam
+  ClutchMode mode = ClutchMode::kAbsolute;  // in which it closes or opens
+  Ramp ramp;                                // of the modes over time
+  trajectory::Quintic curve;                // of the mode over the master's way
+  double curve_begin = 0;                   // master's u, where the curve begins
+  double sense = 1;                         // in which the master goes on it
+  KinematicState end;                       // of the curve, over the master's way
+  double distance = 0;                      // master's u, before the sync position: where it begins
+  double planned_sense = 0;                 // for which that was planned; 0: not yet
+  double out = 0;                           // u over all turns, where the slave is to rest
+  ClutchMode next = ClutchMode::kAbsolute;  // waiting: in which it is to close; `mode` is that of an opening still
+  bool opens_still = false;                 // waiting: it had not come to its end when it was told to close
+  bool leaves = false;                      // closing: it is to open as soon as it can
+  bool from_cam = true;                     // opening: it began on the cam
 };
 
 // All that is not the clutch's own. Positions are over all turns.

@@ -17,30 +17,6 @@ void describe(Enumeration<ModuleState>& e) {
   e.value(ModuleState::kError, "Error", "Waits for a reset.");
 }
 
-void describe(Description<SignalFlow>& d) {
-  using F = SignalFlow;
-  d.about("The way from the master to the slave, point by point.");
-  d.internal<&F::ip01_set_scaling_master>(unit::one, "Factor of the master, as set.");
-  d.internal<&F::ip02_scaling_mode_master>("Its mode.");
-  d.internal<&F::ip03_set_offset_master>("Offset of the master, as set.");
-  d.internal<&F::ip04_set_offset_slave>(unit::u, "Offset of the slave, as set.");
-  d.internal<&F::ip05_offset_mode_slave>("Its mode.");
-  d.internal<&F::ip06_set_scaling_slave>(unit::one, "Factor of the slave, as set.");
-  d.internal<&F::ip07_scaling_mode_slave>("Its mode.");
-  d.internal<&F::ip08_cam_table1>("Number of the machine's cam in slot 1, from 1; 0: none.");
-  d.internal<&F::ip09_cam_table2>("In slot 2.");
-  d.internal<&F::ip10_cam_table3>("In slot 3.");
-  d.internal<&F::ip11_cam_table4>("In slot 4.");
-  d.internal<&F::mp01_set_master_position>("Master's position in its turn, as the module takes it.");
-  d.internal<&F::mp02_set_slave_position>(unit::u, "Set point of the slave.");
-  d.internal<&F::mp03_master_to_x_position>("Master's position on the X axis.");
-  d.internal<&F::mp04_cam_profiler_position_out>("What the cam says for it.");
-  d.internal<&F::mp05_set_y_position>("The same with the strokes of earlier cycles.");
-  d.internal<&F::mp06_y_to_slave_position>(unit::u, "Where Y wants the slave.");
-  d.internal<&F::op01_set_x_position_out>("X in the cycle of the cam.");
-  d.internal<&F::op02_set_y_position_out>("Y.");
-}
-
 void describe(Description<Outputs>& d) {
   using O = Outputs;
   d.about("What a cam module publishes.");
@@ -60,7 +36,25 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::slave_min_position>(unit::u, "Extreme value. Seed: lrSlaveMinPos.");
   d.internal<&O::slave_max_velocity>(unit::u_s, "Extreme value. Seed: lrSlaveMaxVel.");
   d.internal<&O::slave_max_acceleration>(unit::u_s2, "Extreme value. Seed: lrSlaveMaxAcc.");
-  d.internal<&O::flow>("The way from the master to the slave. Seed: scSignalFlow.");
+  d.internal<&O::ip01_set_scaling_master>(unit::one, "Factor of the master, as set.");
+  d.internal<&O::ip02_scaling_mode_master>("Its mode.");
+  d.internal<&O::ip03_set_offset_master>("Offset of the master, as set.");
+  d.internal<&O::ip04_set_offset_slave>(unit::u, "Offset of the slave, as set.");
+  d.internal<&O::ip05_offset_mode_slave>("Its mode.");
+  d.internal<&O::ip06_set_scaling_slave>(unit::one, "Factor of the slave, as set.");
+  d.internal<&O::ip07_scaling_mode_slave>("Its mode.");
+  d.internal<&O::ip08_cam_table1>("Number of the machine's cam in slot 1, from 1; 0: none.");
+  d.internal<&O::ip09_cam_table2>("In slot 2.");
+  d.internal<&O::ip10_cam_table3>("In slot 3.");
+  d.internal<&O::ip11_cam_table4>("In slot 4.");
+  d.internal<&O::mp01_set_master_position>("Master's position in its turn, as the module takes it.");
+  d.internal<&O::mp02_set_slave_position>(unit::u, "Set point of the slave.");
+  d.internal<&O::mp03_master_to_x_position>("Master's position on the X axis.");
+  d.internal<&O::mp04_cam_profiler_position_out>("What the cam says for it.");
+  d.internal<&O::mp05_set_y_position>("The same with the strokes of earlier cycles.");
+  d.internal<&O::mp06_y_to_slave_position>(unit::u, "Where Y wants the slave.");
+  d.internal<&O::op01_set_x_position_out>("X in the cycle of the cam.");
+  d.internal<&O::op02_set_y_position_out>("Y.");
   d.internal<&O::error>("Why the module is in error. Seed: xError, eErrorID.");
   d.internal<&O::warning>("What was not done as asked last. Seed: xWarning, eErrorID.");
   d.internal<&O::state>("State of the module. Seed: eTMState.");

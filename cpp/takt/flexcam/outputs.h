@@ -11,8 +11,24 @@ namespace takt::flexcam {
 
 enum class ModuleState : std::uint8_t { kInit, kReady, kService, kJogPos, kJogNeg, kHoming, kSync, kStop, kError };
 
-// Inputs (IP), intermediate points (MP) and outputs (OP) of the way from the master to the slave.
-struct SignalFlow {
+struct Outputs {
+  double set_offset_master = 0;   // x, in force
+  double set_offset_slave = 0;    // u, in force
+  double set_scaling_master = 1;  // in force
+  double set_scaling_slave = 1;   // in force
+  double set_x_position = 0;      // x
+  double set_x_velocity = 0;      // x per s
+  double set_x_acceleration = 0;  // x per s²
+  double set_y_position = 0;      // y
+  double set_y_velocity = 0;      // y per s
+  double set_y_acceleration = 0;  // y per s²
+  double actual_slave_position = 0;
+  double actual_slave_velocity = 0;
+  double slave_max_position = 0;
+  double slave_min_position = 0;
+  double slave_max_velocity = 0;
+  double slave_max_acceleration = 0;
+  // The signal flow: inputs (IP), intermediate points (MP) and outputs (OP) of the way from the master to the slave.
   double ip01_set_scaling_master = 1;
   ScalingMode ip02_scaling_mode_master = ScalingMode::kXZero;
   double ip03_set_offset_master = 0;  // x
@@ -32,26 +48,6 @@ struct SignalFlow {
   double mp06_y_to_slave_position = 0;        // u, where Y wants the slave
   double op01_set_x_position_out = 0;         // x, in the cam's cycle
   double op02_set_y_position_out = 0;         // y
-};
-
-struct Outputs {
-  double set_offset_master = 0;   // x, in force
-  double set_offset_slave = 0;    // u, in force
-  double set_scaling_master = 1;  // in force
-  double set_scaling_slave = 1;   // in force
-  double set_x_position = 0;      // x
-  double set_x_velocity = 0;      // x per s
-  double set_x_acceleration = 0;  // x per s²
-  double set_y_position = 0;      // y
-  double set_y_velocity = 0;      // y per s
-  double set_y_acceleration = 0;  // y per s²
-  double actual_slave_position = 0;
-  double actual_slave_velocity = 0;
-  double slave_max_position = 0;
-  double slave_min_position = 0;
-  double slave_max_velocity = 0;
-  double slave_max_acceleration = 0;
-  SignalFlow flow;
   ErrorId error = ErrorId::kNone;
   ErrorId warning = ErrorId::kNone;
   ModuleState state = ModuleState::kInit;
@@ -76,7 +72,6 @@ struct Outputs {
 };
 
 void describe(Enumeration<ModuleState>&);
-void describe(Description<SignalFlow>&);
 void describe(Description<Outputs>&);
 
 }  // namespace takt::flexcam

@@ -109,21 +109,21 @@ void describe(Description<Configure>& d) {
   DescribeSettings(d);
 }
 
-void describe(Enumeration<SyncMode>& e) {
+void describe(Enumeration<ClutchMode>& e) {
   e.about("How the clutch between a cam and its slave closes and opens.");
-  e.value(SyncMode::kAbsolute, "absolute", "At once: the slave gets to Y as fast as its limits allow.");
-  e.value(SyncMode::kRelative, "relative", "At once, with what lies between the slave and Y as an offset.");
-  e.value(SyncMode::kRampPos, "ramp_pos", "On a curve of the fifth degree over a way of the master.");
-  e.value(SyncMode::kRampTime, "ramp_time", "On a curve of the fifth degree over a time.");
-  e.value(SyncMode::kRampVelAcc, "ramp_vel_acc",
+  e.value(ClutchMode::kAbsolute, "absolute", "At once: the slave gets to Y as fast as its limits allow.");
+  e.value(ClutchMode::kRelative, "relative", "At once, with what lies between the slave and Y as an offset.");
+  e.value(ClutchMode::kRampPos, "ramp_pos", "On a curve of the fifth degree over a way of the master.");
+  e.value(ClutchMode::kRampTime, "ramp_time", "On a curve of the fifth degree over a time.");
+  e.value(ClutchMode::kRampVelAcc, "ramp_vel_acc",
           "With velocity, ramps and jerk of its own on top of the cam's motion.");
 }
 
-void describe(Enumeration<SyncDirection>& e) {
+void describe(Enumeration<ClutchDirection>& e) {
   e.about("A direction of the master.");
-  e.value(SyncDirection::kNegative, "negative", "Downwards only.");
-  e.value(SyncDirection::kCurrent, "current", "The one in which it moves.");
-  e.value(SyncDirection::kPositive, "positive", "Upwards only.");
+  e.value(ClutchDirection::kNegative, "negative", "Downwards only.");
+  e.value(ClutchDirection::kCurrent, "current", "The one in which it moves.");
+  e.value(ClutchDirection::kPositive, "positive", "Upwards only.");
 }
 
 void describe(Enumeration<OffsetMode>& e) {

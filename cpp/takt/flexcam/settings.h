@@ -11,9 +11,9 @@
 
 namespace takt::flexcam {
 
-enum class SyncMode : std::uint8_t { kAbsolute, kRelative, kRampPos, kRampTime, kRampVelAcc };
+enum class ClutchMode : std::uint8_t { kAbsolute, kRelative, kRampPos, kRampTime, kRampVelAcc };
 // Of the master, in which the clutch may close.
-enum class SyncDirection : std::uint8_t { kNegative, kCurrent, kPositive };
+enum class ClutchDirection : std::uint8_t { kNegative, kCurrent, kPositive };
 enum class OffsetMode : std::uint8_t { kXZero, kDirect, kRampIn };
 enum class ScalingMode : std::uint8_t { kXZero, kAbsolute, kRelative, kRampAbsolute, kRampRelative };
 // How ramps of the X axis and a clutch over the master's way may move.
@@ -38,8 +38,8 @@ struct SettingsOf {
   Of<bool> home_by_module = Preset<Of>(false);
 
   // The clutch.
-  Of<SyncMode> sync_mode = Preset<Of>(SyncMode::kAbsolute);
-  Of<SyncDirection> sync_direction = Preset<Of>(SyncDirection::kCurrent);
+  Of<ClutchMode> sync_mode = Preset<Of>(ClutchMode::kAbsolute);
+  Of<ClutchDirection> sync_direction = Preset<Of>(ClutchDirection::kCurrent);
   Of<double> master_sync_in_distance = Preset<Of>(100.0);   // master's u
   Of<double> master_sync_in_position = Preset<Of>(0.0);     // master's u
   Of<double> master_sync_out_distance = Preset<Of>(100.0);  // master's u
@@ -87,8 +87,8 @@ using Settings = SettingsOf<Plain>;
 // The command that changes what is given of them.
 using Configure = SettingsOf<std::optional>;
 
-void describe(Enumeration<SyncMode>&);
-void describe(Enumeration<SyncDirection>&);
+void describe(Enumeration<ClutchMode>&);
+void describe(Enumeration<ClutchDirection>&);
 void describe(Enumeration<OffsetMode>&);
 void describe(Enumeration<ScalingMode>&);
 void describe(Enumeration<PositionControl>&);

@@ -21,6 +21,10 @@ inline std::string AxisChannel(std::string_view name) {
   return "takt/axis/" + std::string(name);
 }
 
+inline std::string FlexCamChannel(std::string_view name) {
+  return "takt/flex_cam/" + std::string(name);
+}
+
 // Of an axis whose drive lives in another process.
 inline std::string SetPointChannel(std::string_view name) {
   return "takt/drive/" + std::string(name) + "/setpoint";

@@ -33,6 +33,8 @@ Publisher::Publisher(engine::Engine& engine, Clients& clients, Outlet* network, 
   feedback_channel_.name = kFeedbackChannel;
   for (const axis::AxisParams& axis : engine_.machine().axes)
     axis_channels_.push_back({.name = AxisChannel(axis.name)});
+  for (const flexcam::FlexCamParams& module : engine_.machine().flex_cams)
+    flex_cam_channels_.push_back({.name = FlexCamChannel(module.name)});
   thread_ = std::thread([this] { Run(); });
 }
 
@@ -64,13 +66,19 @@ bool Publisher::Drain() {
   });
   any |= Take(engine_.hashes(), [this](const engine::HashEntry& entry) { AddHash(entry); });
   any |= Take(engine_.figure_queue(), [this](const engine::EngineFigures& figures) { PublishFigures(figures); });
-  any |= Take(engine_.snapshots(), [this](const engine::AxisSnapshot& snapshot) {
-    Channel& channel = axis_channels_[snapshot.axis];
-    msgs::axis_state message = ToMessage(snapshot, engine_.machine());
+  any |= DrainStates(engine_.snapshots(), axis_channels_);
+  any |= DrainStates(engine_.flex_cam_snapshots(), flex_cam_channels_);
+  return any;
+}
+
+template <typename Snapshot>
+bool Publisher::DrainStates(SpscQueue<Snapshot>& queue, std::vector<Channel>& channels) {
+  return Take(queue, [&](const Snapshot& snapshot) {
+    Channel& channel = channels[snapshot.index];
+    auto message = ToMessage(snapshot, engine_.machine());
     if (snapshot.due) ToNetwork(channel, message);
     ToLog(channel, message);
   });
-  return any;
 }
 
 void Publisher::PublishReplies() {

@@ -48,6 +48,9 @@ class Publisher {
   void Run();
   // True if anything was there.
   bool Drain();
+  // Whatever a component published: all of it to the log, what is due to the network.
+  template <typename Snapshot>
+  bool DrainStates(SpscQueue<Snapshot>& queue, std::vector<Channel>& channels);
   void PublishReplies();
   void PublishMachine();
   void PublishFigures(const engine::EngineFigures& figures);
@@ -71,7 +74,7 @@ class Publisher {
   Outlet* const log_;
   const RunInfo info_;
 
-  std::vector<Channel> axis_channels_;
+  std::vector<Channel> axis_channels_, flex_cam_channels_;
   Channel engine_channel_, machine_channel_, feedback_channel_;
   std::int64_t next_machine_ns_ = 0;
   msgs::journal_hashes hashes_{};

@@ -114,7 +114,7 @@ inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m)
   commands.push_back({600, ToModule(m, Control{.offset_master = 30.0, .scaling_slave = 0.5})});
   commands.push_back({700, ToModule(m, flexcam::ChangeCam{1, flexcam::ChangeWhen::kCamPosition, 20,
                                                           flexcam::ChangeAlign::kVelocity})});
-  commands.push_back({800, ToModule(m, flexcam::Configure{.sync_mode = flexcam::SyncMode::kRampPos})});
+  commands.push_back({800, ToModule(m, flexcam::Configure{.sync_mode = flexcam::ClutchMode::kRampPos})});
   commands.push_back({1000, ToModule(m, Control{.sync_cam = false})});
   commands.push_back({1100, ToModule(m, Control{.sync_cam = true})});
   return commands;

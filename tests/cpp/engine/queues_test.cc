@@ -143,8 +143,8 @@ TEST(Snapshots, SayWhetherTheyAreDue) {
   std::vector<int> due(4), all(4);
   AxisSnapshot snapshot;
   while (engine.snapshots().TryPop(snapshot)) {
-    ++all[snapshot.axis];
-    due[snapshot.axis] += snapshot.due;
+    ++all[snapshot.index];
+    due[snapshot.index] += snapshot.due;
   }
   EXPECT_THAT(all, testing::Each(700));
   EXPECT_THAT(due, testing::Each(100));
@@ -159,7 +159,7 @@ TEST(Snapshots, ComeAtTheRateOfTheirChannel) {
   for (int i = 0; i < 1000; ++i) engine.RunCycle();
   std::vector<int> counts(4);
   AxisSnapshot snapshot;
-  while (engine.snapshots().TryPop(snapshot)) ++counts[snapshot.axis];
+  while (engine.snapshots().TryPop(snapshot)) ++counts[snapshot.index];
   EXPECT_EQ(counts[AxisNamed(machine, "y1")], 100);
   EXPECT_EQ(counts[AxisNamed(machine, "c")], 500);
   EXPECT_EQ(counts[AxisNamed(machine, "z")], 0);

@@ -15,7 +15,7 @@ double YAt(double x, double height) {
   return height * engine::Polynomial345::Y(x < 180 ? x / 180 : (360 - x) / 180);
 }
 
-Settings Absolute(SyncMode mode) {
+Settings Absolute(ClutchMode mode) {
   Settings s;
   s.slave_absolute = true;
   s.sync_mode = mode;
@@ -32,7 +32,7 @@ void ExpectOnCam(Bench& b, double height, int cycles = 1000) {
 
 // CAM-30
 TEST(Absolute, PutsASlaveThatIsThereOnTheCam) {
-  Bench b(MachineOf({UpAndDown("hill", 50)}, Absolute(SyncMode::kAbsolute)));
+  Bench b(MachineOf({UpAndDown("hill", 50)}, Absolute(ClutchMode::kAbsolute)));
   b.Give(Bench::kWeb, axis::MoveAbsolute{.position = 90});
   b.Give(Bench::kKnife, axis::MoveAbsolute{.position = YAt(90, 50)});
   b.Run(500);
@@ -46,7 +46,7 @@ TEST(Absolute, PutsASlaveThatIsThereOnTheCam) {
 
 // CAM-30: one that is not there gets there as fast as its limits allow, without a jump.
 TEST(Absolute, ChasesWhatIsElsewhere) {
-  Bench b(MachineOf({UpAndDown("hill", 50)}, Absolute(SyncMode::kAbsolute)));
+  Bench b(MachineOf({UpAndDown("hill", 50)}, Absolute(ClutchMode::kAbsolute)));
   b.Web(360);
   b.Run(250);
   Watch watch(b);
@@ -58,7 +58,7 @@ TEST(Absolute, ChasesWhatIsElsewhere) {
 
 // CAM-31
 TEST(Relative, KeepsWhatLiesBetween) {
-  Settings s = Absolute(SyncMode::kRelative);
+  Settings s = Absolute(ClutchMode::kRelative);
   Bench b(MachineOf({UpAndDown("hill", 50)}, s));
   b.Give(Bench::kKnife, axis::MoveAbsolute{.position = 123});
   b.Run(500);
@@ -80,7 +80,7 @@ class RampPos : public testing::TestWithParam<PathCase> {};
 // CAM-32: closed exactly where the master is at the sync position, after the way asked for, also if that takes turns.
 TEST_P(RampPos, IsClosedAtTheSyncPosition) {
   const PathCase& p = GetParam();
-  Settings s = Absolute(SyncMode::kRampPos);
+  Settings s = Absolute(ClutchMode::kRampPos);
   s.master_sync_in_distance = p.distance;
   s.master_sync_in_position = p.position;
   Bench b(MachineOf({UpAndDown("hill", 50)}, s));
@@ -114,8 +114,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, RampPos,
 
 // CAM-32: the filter for the master's direction.
 TEST(RampPos, WaitsForTheDirectionAskedFor) {
-  Settings s = Absolute(SyncMode::kRampPos);
-  s.sync_direction = SyncDirection::kPositive;
+  Settings s = Absolute(ClutchMode::kRampPos);
+  s.sync_direction = ClutchDirection::kPositive;
   Bench b(MachineOf({UpAndDown("hill", 50)}, s));
   b.Tell(Control{.sync_cam = true});
   b.Web(-360);
@@ -128,7 +128,7 @@ TEST(RampPos, WaitsForTheDirectionAskedFor) {
 
 // CAM-32: a master that stops on the way holds the slave, one that goes back takes it back.
 TEST(RampPos, GoesWithTheMasterAlone) {
-  Settings s = Absolute(SyncMode::kRampPos);
+  Settings s = Absolute(ClutchMode::kRampPos);
   s.master_sync_in_position = 200;
   s.master_sync_in_distance = 150;
   Bench b(MachineOf({UpAndDown("hill", 50)}, s));
@@ -154,7 +154,7 @@ TEST(RampPos, GoesWithTheMasterAlone) {
 // CAM-33: after exactly the time asked for, with the master at rest or moving whichever way.
 TEST(RampTime, TakesItsTimeWhateverTheMasterDoes) {
   for (const double velocity : {0.0, 360.0, -1000.0}) {
-    Settings s = Absolute(SyncMode::kRampTime);
+    Settings s = Absolute(ClutchMode::kRampTime);
     s.sync_in_time_s = 0.4;
     Bench b(MachineOf({UpAndDown("hill", 50)}, s));
     b.Give(Bench::kKnife, axis::MoveAbsolute{.position = -40});
@@ -175,7 +175,7 @@ TEST(RampTime, TakesItsTimeWhateverTheMasterDoes) {
 
 // CAM-34: what is between slave and cam moves with velocity and ramps of its own, on top of the cam.
 TEST(RampVelAcc, IsOnTopOfTheCam) {
-  Settings s = Absolute(SyncMode::kRampVelAcc);
+  Settings s = Absolute(ClutchMode::kRampVelAcc);
   s.sync_velocity = 80;
   s.sync_acceleration = 500;
   s.sync_deceleration = 500;
@@ -204,14 +204,14 @@ TEST(RampVelAcc, IsOnTopOfTheCam) {
   EXPECT_NEAR(rest.acceleration, 500, 1);
 }
 
-class Opening : public testing::TestWithParam<SyncMode> {};
+class Opening : public testing::TestWithParam<ClutchMode> {};
 
 // CAM-35
 TEST_P(Opening, EndsWhereItIsToEnd) {
-  const SyncMode mode = GetParam();
-  const bool frozen = mode == SyncMode::kAbsolute || mode == SyncMode::kRelative;
+  const ClutchMode mode = GetParam();
+  const bool frozen = mode == ClutchMode::kAbsolute || mode == ClutchMode::kRelative;
   for (const double velocity : {360.0, -500.0}) {
-    Settings s = Absolute(SyncMode::kRampTime);
+    Settings s = Absolute(ClutchMode::kRampTime);
     s.sync_in_time_s = 0.1;
     Bench b(MachineOf({UpAndDown("hill", 50)}, s));
     b.Web(velocity);
@@ -239,10 +239,10 @@ TEST_P(Opening, EndsWhereItIsToEnd) {
     EXPECT_EQ(b.Of(ticket), FeedbackState::kDone);
     EXPECT_NEAR(b.Knife().set_position, frozen ? from : -25, 1e-9);
     EXPECT_EQ(b.Knife().set_velocity, 0);
-    if (mode == SyncMode::kRampTime) {
+    if (mode == ClutchMode::kRampTime) {
       EXPECT_NEAR(static_cast<double>(b.engine.cycle().count - begin), 300, 3);
     }
-    if (mode == SyncMode::kRampPos) {
+    if (mode == ClutchMode::kRampPos) {
       EXPECT_NEAR(std::abs(way), 120, 3 * std::abs(velocity) * 0.001);
     }
     watch.ExpectSmooth();
@@ -251,12 +251,12 @@ TEST_P(Opening, EndsWhereItIsToEnd) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, Opening,
-                         testing::Values(SyncMode::kAbsolute, SyncMode::kRelative, SyncMode::kRampPos,
-                                         SyncMode::kRampTime, SyncMode::kRampVelAcc));
+                         testing::Values(ClutchMode::kAbsolute, ClutchMode::kRelative, ClutchMode::kRampPos,
+                                         ClutchMode::kRampTime, ClutchMode::kRampVelAcc));
 
 // CAM-36
 TEST(ImmediateOpening, StopsWithItsOwnDecelerationAndKeepsOpen) {
-  Settings s = Absolute(SyncMode::kRampTime);
+  Settings s = Absolute(ClutchMode::kRampTime);
   s.sync_in_time_s = 0.1;
   s.sync_out_instant_deceleration = 2000;
   Bench b(MachineOf({UpAndDown("hill", 50)}, s));
@@ -287,7 +287,7 @@ TEST(ImmediateOpening, StopsWithItsOwnDecelerationAndKeepsOpen) {
 
 // CAM-38
 TEST(Closing, FreezesTheSlavesOffsetAndFactor) {
-  Settings s = Absolute(SyncMode::kRampTime);
+  Settings s = Absolute(ClutchMode::kRampTime);
   s.sync_in_time_s = 0.3;
   s.offset_mode_slave = OffsetMode::kDirect;
   s.scaling_mode_slave = ScalingMode::kAbsolute;
@@ -314,7 +314,7 @@ TEST(Closing, FreezesTheSlavesOffsetAndFactor) {
 
 // CAM-37
 TEST(WithoutReversing, ATurnAheadIsTakenOnARotarySlave) {
-  Settings s = Absolute(SyncMode::kRampPos);
+  Settings s = Absolute(ClutchMode::kRampPos);
   s.position_control = PositionControl::kMasterDirection;
   s.master_sync_in_distance = 100;
   s.master_sync_in_position = 180;
@@ -338,7 +338,7 @@ TEST(WithoutReversing, ATurnAheadIsTakenOnARotarySlave) {
 
 // CAM-37: a slave that would have to go back is told so when it is asked.
 TEST(WithoutReversing, IsRefusedWhereItCannotBe) {
-  Settings s = Absolute(SyncMode::kRampPos);
+  Settings s = Absolute(ClutchMode::kRampPos);
   s.position_control = PositionControl::kMasterDirection;
   s.master_sync_in_position = 180;
   Bench b(MachineOf({UpAndDown("hill", 50)}, s));

@@ -70,7 +70,7 @@ std::vector<Placed> ThreeCycles(const Settings& settings, double offset, bool ma
     b.Tell(master ? Control{.scaling_master = factor} : Control{.scaling_slave = factor});
     b.Step();
     rows.push_back(
-        {b.TheWeb().set_position, b.Module().flow.mp03_master_to_x_position, b.Module().flow.mp06_y_to_slave_position});
+        {b.TheWeb().set_position, b.Module().mp03_master_to_x_position, b.Module().mp06_y_to_slave_position});
   }
   return rows;
 }

@@ -50,10 +50,10 @@ void Drive(Dice& dice, Bench& b) {
 
 Settings RandomSettings(Dice& dice) {
   Settings s;
-  s.sync_mode = static_cast<SyncMode>(dice.Upto(4));
+  s.sync_mode = static_cast<ClutchMode>(dice.Upto(4));
   s.slave_absolute = dice.Coin();
   s.master_absolute = dice.Coin();
-  s.sync_direction = static_cast<SyncDirection>(dice.Upto(2));
+  s.sync_direction = static_cast<ClutchDirection>(dice.Upto(2));
   s.master_sync_in_distance = dice.Between(5, 500);
   s.master_sync_in_position = dice.Between(0, 359);
   s.master_sync_out_distance = dice.Between(5, 500);
@@ -151,8 +151,8 @@ TEST(Property, TheClutchAsksForNoStep) {
   for (unsigned seed = 100; seed < 160; ++seed) {
     Dice dice(seed);
     Settings s = RandomSettings(dice);
-    s.sync_mode = static_cast<SyncMode>(2 + dice.Upto(2));
-    s.sync_direction = SyncDirection::kCurrent;
+    s.sync_mode = static_cast<ClutchMode>(2 + dice.Upto(2));
+    s.sync_direction = ClutchDirection::kCurrent;
     s.position_control = PositionControl::kBoth;
     s.master_sync_in_distance = dice.Between(100, 600);
     s.master_sync_out_distance = dice.Between(100, 600);
@@ -187,7 +187,7 @@ TEST(Property, NothingReversesTheSlave) {
   for (unsigned seed = 200; seed < 280; ++seed) {
     Dice dice(seed);
     Settings s = RandomSettings(dice);
-    s.sync_mode = SyncMode::kRampPos;
+    s.sync_mode = ClutchMode::kRampPos;
     s.slave_absolute = true;
     s.position_control = PositionControl::kMasterDirection;
     s.scaling_mode_master = dice.Coin() ? ScalingMode::kRampAbsolute : ScalingMode::kRampRelative;
@@ -197,14 +197,14 @@ TEST(Property, NothingReversesTheSlave) {
         .velocity = 1e5, .acceleration = 1e8, .deceleration = {}, .jerk = 1e10, .lower = {}, .upper = {}};
     Bench b(m);
     axis::Outputs web = b.TheWeb(), knife = b.Knife();
-    double x = b.Module().flow.mp03_master_to_x_position;
+    double x = b.Module().mp03_master_to_x_position;
     bool synced = false;
     double worst = 0, worst_x = 0;
     b.each = [&] {
       const auto way = [](double now, double before) { return now - before - 360 * std::round((now - before) / 360); };
       const double master = way(b.TheWeb().set_position, web.set_position);
       const double slave = way(b.Knife().set_position, knife.set_position);
-      const double shift = b.Module().flow.mp03_master_to_x_position - x;
+      const double shift = b.Module().mp03_master_to_x_position - x;
       const bool sync = b.Module().state == ModuleState::kSync;
       const double sense = master > 0 ? 1 : master < 0 ? -1 : 0;
       if (sync && synced) {
@@ -214,7 +214,7 @@ TEST(Property, NothingReversesTheSlave) {
       synced = sync;
       web = b.TheWeb();
       knife = b.Knife();
-      x = b.Module().flow.mp03_master_to_x_position;
+      x = b.Module().mp03_master_to_x_position;
     };
     for (int i = 0; i < 30; ++i) {
       if (dice.Upto(2) != 0) Drive(dice, b);

@@ -15,7 +15,7 @@ using axis::AxisKind;
 
 Settings Quick() {
   Settings s;
-  s.sync_mode = SyncMode::kRampTime;
+  s.sync_mode = ClutchMode::kRampTime;
   s.sync_in_time_s = 0.1;
   s.slave_absolute = true;
   return s;
@@ -473,7 +473,7 @@ TEST(ChangeCam, WithPositionAndVelocityMet) {
   EXPECT_NEAR(b.Module().set_y_velocity, slope, 3);
   for (int i = 0; i < 500; ++i) {
     b.Step();
-    ASSERT_LT(std::abs(b.Knife().set_position - b.Module().flow.mp06_y_to_slave_position), 0.02);
+    ASSERT_LT(std::abs(b.Knife().set_position - b.Module().mp06_y_to_slave_position), 0.02);
   }
   EXPECT_TRUE(b.Module().cam_synchronised);
   watch.ExpectSmooth();
@@ -495,7 +495,7 @@ TEST(ChangeCam, WithoutAJump) {
   ASSERT_TRUE(b.Until(
       [&] {
         place = b.Module().set_x_position;
-        EXPECT_LT(std::abs(b.Knife().set_position - b.Module().flow.mp06_y_to_slave_position), 1e-3);
+        EXPECT_LT(std::abs(b.Knife().set_position - b.Module().mp06_y_to_slave_position), 1e-3);
         return b.Module().cam_table == 2;
       },
       3000));

@@ -11,7 +11,7 @@ using axis::AxisKind;
 
 Settings Quick() {
   Settings s;
-  s.sync_mode = SyncMode::kRampTime;
+  s.sync_mode = ClutchMode::kRampTime;
   s.sync_in_time_s = 0.1;
   s.sync_out_time_s = 0.1;
   s.slave_absolute = true;
@@ -327,7 +327,7 @@ TEST(Masters, MeasuredWithAFilterAndDeadTime) {
   for (int i = 0; i < 2000; ++i) {
     b.Step();
     const double measured = b.TheWeb().actual_position + 360 * 0.005;
-    const double away = b.Module().flow.mp01_set_master_position - measured;
+    const double away = b.Module().mp01_set_master_position - measured;
     worst = std::max(worst, std::abs(away - 360 * std::round(away / 360)));
   }
   EXPECT_LE(worst, 3 * 1.0 / 20);  // no lag, and no more than a few increments of noise

@@ -39,7 +39,7 @@ TEST(Messages, AxisStateKeepsEveryNumber) {
   machine.cycle.period_s = 0.00025;
   engine::AxisSnapshot s;
   s.cycle = 4'000'001;
-  s.axis = 1;
+  s.index = 1;
   axis::Outputs& o = s.outputs;
   o.set_position = 1.25;
   o.set_velocity = -2.5;
