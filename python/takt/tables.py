@@ -60,11 +60,11 @@ def kind_of_channel(channel: str) -> Kind | None:
     return next((KINDS[kind] for kind, prefix in PREFIXES.items() if channel.startswith(prefix)), None)
 
 
-def unit_of(kind: str, field: str, u: str) -> str:
-    """The unit of a published field of a component with the unit `u`: u/s2 -> mm/s²."""
+def unit_of(kind: str, field: str, own: Mapping[str, str]) -> str:
+    """The unit of a published field of a component whose own units are called so: u/s2 -> mm/s²."""
     text = KINDS[kind].units[field]
-    if text == "u" or text.startswith("u/"):
-        text = u + text[1:]
+    first, slash, rest = text.partition("/")
+    text = own.get(first, first) + slash + rest
     return text.replace("s2", "s²").replace("s3", "s³")
 
 
@@ -115,7 +115,7 @@ def make_recording(
 ) -> Recording:
     """A recording of components of `machine`; each table has time_s, cycle and published fields."""
     found = {name: of for name, of in components_of(machine).items() if name in tables}
-    units = {name: _unit(machine, kind, parameters) for name, (kind, parameters) in found.items()}
+    units = {name: _units(machine, kind, parameters) for name, (kind, parameters) in found.items()}
     return Recording(
         tables,
         {name: {f: unit_of(k.name, f, units[name]) for f in k.units} for name, (k, _) in found.items()},
@@ -126,15 +126,18 @@ def make_recording(
     )
 
 
-def _unit(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]) -> str:
-    """The unit u of what a component publishes: an axis' own, else that of the slave."""
-    if kind.name != "axis":
-        parameters = next(a for a in machine["axes"] if a["name"] == parameters["slave"])
-    return str(parameters["unit"])
+def _units(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]) -> dict[str, str]:
+    """What the units in the descriptions stand for. A cam module has the slave's, the master's and those of its cams."""
+    if kind.name == "axis":
+        return {"u": parameters["unit"]}
+    of_axes = {a["name"]: str(a["unit"]) for a in machine["axes"]}
+    cam = next(c for c in machine["cams"] if c["name"] == parameters["cams"][0])
+    master = of_axes.get(parameters["master"], cam["x_unit"])
+    return {"u": of_axes[parameters["slave"]], "u_m": master, "x": cam["x_unit"], "y": cam["y_unit"]}
 
 
 def _info(machine: Mapping[str, Any], kind: Kind, axis: Mapping[str, Any]) -> dict[str, Any]:
-    info: dict[str, Any] = {"unit": _unit(machine, kind, axis), "limits": {}}
+    info: dict[str, Any] = {"unit": _units(machine, kind, axis)["u"], "limits": {}}
     if kind.name != "axis":
         return info
     limits = axis["limits"]

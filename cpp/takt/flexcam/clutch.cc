@@ -59,11 +59,20 @@ KinematicState InSense(const KinematicState& over, double sense) {
   return {over.position, sense * over.velocity, over.acceleration};
 }
 
-// How the slave moves over the master's way.
+// Whether the slave moves as the master lets it, or not at all: only then its motion has a slope over the master's way.
+bool IsTied(const ClutchContext& c, const ClutchState& s) {
+  if (c.at_rest) return true;
+  const bool on_cam = s.phase == ClutchPhase::kWaitingOut || s.phase == ClutchPhase::kClosed;
+  const bool opens = s.phase == ClutchPhase::kOpening || (s.phase == ClutchPhase::kWaitingIn && s.opens_still);
+  const bool on_curve = s.mode == ClutchMode::kRampPos && (opens || s.phase == ClutchPhase::kClosing);
+  return c.in_step && (on_cam || on_curve) && c.master_before.velocity != 0;
+}
+
+// How the slave moves over the master's way; it is tied to that.
 KinematicState OwnOver(const ClutchContext& c) {
   const KinematicState& m = c.master_before;
   const KinematicState& own = c.own_before;
-  if (m.velocity == 0 || (own.velocity == 0 && own.acceleration == 0)) return {own.position, 0, 0};
+  if (c.at_rest || m.velocity == 0) return {own.position, 0, 0};
   const double slope = own.velocity / m.velocity;
   return {own.position, slope, (own.acceleration - slope * m.acceleration) / (m.velocity * m.velocity)};
 }
@@ -82,8 +91,9 @@ double SyncPlace(const ClutchContext& c, double from, double distance, double se
 }
 
 // In which the master goes, or will have to go; 0: nobody knows yet.
-double SenseOf(const ClutchContext& c) {
+double SenseOf(const ClutchContext& c, const ClutchState& s) {
   if (c.master.velocity != 0) return c.master.velocity > 0 ? 1 : -1;
+  if (s.planned_sense != 0) return s.planned_sense;
   if (c.settings.sync_direction == ClutchDirection::kCurrent) return 0;
   return c.settings.sync_direction == ClutchDirection::kPositive ? 1 : -1;
 }
@@ -152,20 +162,35 @@ bool PlanWay(const ClutchContext& c, double sense, Way& way, ClutchState& s) {
 }
 
 void BeginCurve(const ClutchContext& c, double length, double sense, const KinematicState& end, ClutchState& s) {
+  const bool on_cam = s.phase == ClutchPhase::kWaitingOut || s.phase == ClutchPhase::kClosed;
+  const bool on_curve = !on_cam && !c.at_rest;
+  s.origin = on_cam ? CurveOrigin::kCam : on_curve ? CurveOrigin::kCurve : CurveOrigin::kRest;
+  if (on_curve) {
+    s.before = s.curve;
+    s.before_begin = s.curve_begin;
+    s.before_sense = s.sense;
+  }
   s.end = end;
   s.sense = sense;
   s.curve_begin = c.master_before.position;
   s.curve = trajectory::Connect(length, InSense(OwnOver(c), sense), InSense(end, sense));
 }
 
-KinematicState OnCurve(const ClutchContext& c, const ClutchState& s) {
-  const double x = s.sense * (c.master.position - s.curve_begin);
-  if (x < 0) return {s.curve.At(0).position, 0, 0};
-  return trajectory::AlongWay(InSense(s.curve.At(x), s.sense), c.master);
+// `x` of the way done on a curve.
+KinematicState At(const Quintic& curve, double x, double sense, const KinematicState& master) {
+  if (x < 0) return {curve.At(0).position, 0, 0};
+  return trajectory::AlongWay(InSense(curve.At(x), sense), master);
 }
 
 double OnCurveBy(const ClutchContext& c, const ClutchState& s) {
   return s.sense * (c.master.position - s.curve_begin);
+}
+
+KinematicState OnCurve(const ClutchContext& c, const KinematicState& wanted, const ClutchState& s) {
+  const double x = OnCurveBy(c, s);
+  if (x >= 0 || s.origin == CurveOrigin::kRest) return At(s.curve, x, s.sense, c.master);
+  if (s.origin == CurveOrigin::kCam) return wanted;
+  return At(s.before, s.before_sense * (c.master.position - s.before_begin), s.before_sense, c.master);
 }
 
 KinematicState Sum(const KinematicState& a, const KinematicState& b) {
@@ -210,17 +235,22 @@ void StartClosing(const ClutchContext& c, Way& way, ClutchState& s) {
 
 // The master came to where the curve begins in the cycle before, or is on its way from there to the sync position
 // already. The curve is never longer than it was planned.
-bool AtBegin(const ClutchContext& c, double sense, const Way& way, const ClutchState& s, double& place) {
-  if (way.to_x.ramp.kind != RampKind::kNone) return false;  // nobody knows where X will be
-  const double step = c.master.position - c.master_before.position;
-  place = SyncPlace(c, c.master_before.position - step, s.distance, sense);
+bool AtBegin(const ClutchContext& c, double sense, const Way& way, ClutchState& s, double& place) {
+  place = SyncPlace(c, s.looked_from, s.distance, sense);
+  s.looked_from = c.master_before.position;
+  // Nobody knows where X and the slave will be at the end of ramps.
+  const Ramp& own = way.to_slave.ramp;
+  if (way.to_x.ramp.kind != RampKind::kNone || !IsOver(own, c.cycle, c.master) || !IsTied(c, s)) return false;
   const double left = sense * (place - c.master_before.position);
-  return left <= s.distance && left > 0 && c.master.velocity != 0 && c.master_before.velocity != 0;
+  return left <= s.distance && left > 0;
 }
 
 Status WaitForWay(const ClutchContext& c, Way& way, ClutchState& s) {
-  const double sense = SenseOf(c);
-  if (sense == 0 || !RightDirection(c, sense)) return Status::Ok();
+  const double sense = SenseOf(c, s);
+  if (sense == 0 || !RightDirection(c, sense)) {
+    s.looked_from = c.master_before.position;
+    return Status::Ok();
+  }
   if (s.planned_sense != sense && !PlanWay(c, sense, way, s)) return Status::Failed(ErrorId::kWouldReverse);
   double place = 0;
   if (!AtBegin(c, sense, way, s, place)) return Status::Ok();
@@ -251,7 +281,7 @@ void EndCurve(const ClutchContext& c, const Way& way, ClutchState& s) {
 
 KinematicState Closing(const ClutchContext& c, const KinematicState& wanted, const Way& way, ClutchState& s) {
   if (s.mode == ClutchMode::kRampPos) {
-    if (OnCurveBy(c, s) < s.curve.length) return OnCurve(c, s);
+    if (OnCurveBy(c, s) < s.curve.length) return OnCurve(c, wanted, s);
     EndCurve(c, way, s);
     if (s.phase == ClutchPhase::kClosed) return wanted;
   }
@@ -271,7 +301,7 @@ double OutPlace(const ClutchContext& c, double expected) {
 }
 
 bool BeginOut(const ClutchContext& c, ClutchState& s) {
-  if (c.master.velocity == 0 || c.master_before.velocity == 0) return false;
+  if (c.master.velocity == 0 || c.master_before.velocity == 0 || !IsTied(c, s)) return false;
   const double sense = c.master.velocity > 0 ? 1 : -1;
   const double length = c.settings.master_sync_out_distance;
   const KinematicState own = OwnOver(c);
@@ -283,7 +313,6 @@ bool BeginOut(const ClutchContext& c, ClutchState& s) {
     if (!KeepsSense(c) || Monotone(tried.curve)) {
       s = tried;
       s.mode = ClutchMode::kRampPos;
-      s.from_cam = s.phase == ClutchPhase::kWaitingOut;
       s.phase = ClutchPhase::kOpening;
       s.leaves = false;
       return true;
@@ -299,10 +328,8 @@ KinematicState Opening(const ClutchContext& c, const KinematicState& wanted, con
   there = true;
   KinematicState demand = rest;
   if (s.mode == ClutchMode::kRampPos) {
-    const double x = OnCurveBy(c, s);
-    there = x >= s.curve.length;
-    if (x < 0 && s.from_cam) return wanted;  // the master went back to before the opening began
-    if (!there) demand = OnCurve(c, s);
+    there = OnCurveBy(c, s) >= s.curve.length;
+    if (!there) demand = OnCurve(c, wanted, s);
   } else if (s.mode == ClutchMode::kRampTime || s.mode == ClutchMode::kRampVelAcc) {
     there = IsOver(s.ramp, c.cycle, c.master);
     demand = Sum(rest, At(s.ramp, c.cycle, c.master));
@@ -317,11 +344,12 @@ bool IsCoupled(const ClutchState& s) noexcept {
 }
 
 bool IsOnCurve(const ClutchState& s) noexcept {
-  return s.phase == ClutchPhase::kClosing && s.mode == ClutchMode::kRampPos;
+  const bool moves = s.phase == ClutchPhase::kClosing || s.phase == ClutchPhase::kOpening;
+  return moves && s.mode == ClutchMode::kRampPos;
 }
 
 bool IsFrozen(const ClutchState& s) noexcept {
-  return s.phase == ClutchPhase::kWaitingIn || s.phase == ClutchPhase::kClosing;
+  return s.phase == ClutchPhase::kWaitingIn || s.phase == ClutchPhase::kClosing || IsOnCurve(s);
 }
 
 void BeginClosing(const ClutchContext& c, Way&, ClutchState& s) noexcept {
@@ -335,6 +363,7 @@ void BeginClosing(const ClutchContext& c, Way&, ClutchState& s) noexcept {
   s.next = c.settings.sync_mode;
   if (s.next == ClutchMode::kRampPos && c.settings.master_sync_in_distance == 0) s.next = ClutchMode::kAbsolute;
   s.planned_sense = 0;
+  s.looked_from = c.master_before.position;
   s.distance = c.settings.master_sync_in_distance;
   if (!s.opens_still) s.out = c.own_before.position;
 }
@@ -349,11 +378,11 @@ void BeginOpening(const ClutchContext& c, ClutchState& s) noexcept {
   if (c.settings.sync_mode == ClutchMode::kRampPos && c.settings.master_sync_out_distance > 0) {
     if (s.phase == ClutchPhase::kClosed) s.phase = ClutchPhase::kWaitingOut;
     s.leaves = s.phase == ClutchPhase::kClosing;
+    s.waits_since = c.master.position;
     return;
   }
   s.mode = c.settings.sync_mode;
   s.phase = ClutchPhase::kOpening;
-  s.from_cam = true;
   if (s.mode == ClutchMode::kAbsolute || s.mode == ClutchMode::kRelative) {
     s.out = own.position;
     return;
@@ -374,14 +403,22 @@ Status StepClutch(const ClutchContext& c, const KinematicState& wanted, Way& way
     return KinematicState{wanted.position + way.to_slave.out_zero - zero, wanted.velocity, wanted.acceleration};
   };
   bool there = false;
+  Status status = Status::Ok();
   if (s.phase == ClutchPhase::kWaitingIn) {
     if (s.next == ClutchMode::kRampPos) {
-      if (const Status status = WaitForWay(c, way, s); status.failed()) return status;
+      if (status = WaitForWay(c, way, s); status.failed()) {
+        s.phase = ClutchPhase::kOpening;
+        if (!s.opens_still) s.mode = ClutchMode::kAbsolute;
+      }
     } else if (RightDirection(c, c.master.velocity)) {
       StartClosing(c, way, s);
     }
   }
-  if (s.phase == ClutchPhase::kWaitingOut || s.leaves) BeginOut(c, s);
+  if ((s.phase == ClutchPhase::kWaitingOut || s.leaves) && !BeginOut(c, s) && s.phase == ClutchPhase::kWaitingOut &&
+      std::abs(c.master.position - s.waits_since) > c.table.length() / way.to_x.factor) {
+    status = Status::Failed(ErrorId::kWouldReverse);
+    s.phase = ClutchPhase::kClosed;
+  }
   switch (s.phase) {
     case ClutchPhase::kWaitingIn:
       demand = s.opens_still ? Opening(c, wanted, s, there) : KinematicState{s.out, 0, 0};
@@ -390,6 +427,7 @@ Status StepClutch(const ClutchContext& c, const KinematicState& wanted, Way& way
       demand = Closing(c, shifted(), way, s);
       if (s.phase == ClutchPhase::kClosed && s.leaves) {
         s.phase = ClutchPhase::kWaitingOut;
+        s.waits_since = c.master.position;
         s.leaves = false;
       }
       break;
@@ -404,7 +442,7 @@ Status StepClutch(const ClutchContext& c, const KinematicState& wanted, Way& way
     default:
       break;
   }
-  return Status::Ok();
+  return status;
 }
 
 void describe(Enumeration<ClutchPhase>& e) {
@@ -416,6 +454,13 @@ void describe(Enumeration<ClutchPhase>& e) {
   e.value(ClutchPhase::kWaitingOut, "waiting_out", "On the cam, and waits to leave it.");
   e.value(ClutchPhase::kOpening, "opening", "On the way to where the slave is to rest.");
   e.value(ClutchPhase::kReleased, "released", "Opened at once; the slave comes to rest.");
+}
+
+void describe(Enumeration<CurveOrigin>& e) {
+  e.about("What a slave was on when a curve began.");
+  e.value(CurveOrigin::kRest, "rest", "It stood.");
+  e.value(CurveOrigin::kCam, "cam", "The cam.");
+  e.value(CurveOrigin::kCurve, "curve", "Another curve.");
 }
 
 void describe(Description<ClutchState>& d) {
@@ -434,7 +479,12 @@ void describe(Description<ClutchState>& d) {
   d.internal<&S::next>("Mode in which it is to close.");
   d.internal<&S::opens_still>("It opens until it begins to close.");
   d.internal<&S::leaves>("It is to open as soon as it can.");
-  d.internal<&S::from_cam>("The opening began on the cam.");
+  d.internal<&S::looked_from>("Where the master was before it was looked at last.");
+  d.internal<&S::waits_since>("Where the master was when the waiting to open began.");
+  d.internal<&S::origin>("What the slave was on before the curve.");
+  d.internal<&S::before>("The curve before.");
+  d.internal<&S::before_begin>("Where that began.");
+  d.internal<&S::before_sense>("In which the master went on it.");
 }
 
 void describe(Description<Way>& d) {

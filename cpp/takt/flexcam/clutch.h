@@ -34,6 +34,9 @@ enum class ClutchPhase : std::uint8_t {
   kReleased,  // opened at once; the slave comes to rest by itself
 };
 
+// What the slave was on when a curve over the master's way began.
+enum class CurveOrigin : std::uint8_t { kRest, kCam, kCurve };
+
 struct ClutchState {
   ClutchPhase phase = ClutchPhase::kOpen;
   ClutchMode mode = ClutchMode::kAbsolute;  // in which it closes or opens
@@ -44,11 +47,17 @@ struct ClutchState {
   KinematicState end;                       // of the curve, over the master's way
   double distance = 0;                      // master's u, before the sync position: where it begins
   double planned_sense = 0;                 // for which that was planned; 0: not yet
+  double looked_from = 0;                   // waiting: where the master was before it was looked at last
   double out = 0;                           // u over all turns, where the slave is to rest
   ClutchMode next = ClutchMode::kAbsolute;  // waiting: in which it is to close; `mode` is that of an opening still
   bool opens_still = false;                 // waiting: it had not come to its end when it was told to close
+  double waits_since = 0;                   // waiting to open: master's u, where that began
   bool leaves = false;                      // closing: it is to open as soon as it can
-  bool from_cam = true;                     // opening: it began on the cam
+  // What the slave did before the curve: where a master that goes back behind its begin finds it.
+  CurveOrigin origin = CurveOrigin::kRest;
+  trajectory::Quintic before;
+  double before_begin = 0;
+  double before_sense = 1;
 };
 
 // All that is not the clutch's own. Positions are over all turns.
@@ -70,7 +79,8 @@ struct ClutchContext {
 
 bool IsCoupled(const ClutchState& state) noexcept;  // the slave goes by the clutch
 bool IsFrozen(const ClutchState& state) noexcept;   // scaling and offset of the slave stay (CAM-38)
-// On the way to a place that was foreseen: the cam, and scaling and offset of the master, stay, too.
+// On the way to a place that was foreseen, or back to where that way began: the cam, and scaling and offset of the
+// master, stay, too.
 bool IsOnCurve(const ClutchState& state) noexcept;
 
 // Whether a curve over the master's way can be found at all; the turn of a rotary slave and the way it needs are chosen
@@ -78,11 +88,13 @@ bool IsOnCurve(const ClutchState& state) noexcept;
 void BeginClosing(const ClutchContext& c, Way& way, ClutchState& state) noexcept;
 void BeginOpening(const ClutchContext& c, ClutchState& state) noexcept;
 
-// Each cycle: what the slave is to do, `wanted` being what Y says. Answers kWouldReverse where the closing is refused.
+// Each cycle: what the slave is to do, `wanted` being what Y says. Answers kWouldReverse where the closing is refused,
+// and where the opening found no way within a whole cycle of the cam: then the slave stays on the cam.
 Status StepClutch(const ClutchContext& c, const KinematicState& wanted, Way& way, ClutchState& state,
                   KinematicState& demand) noexcept;
 
 void describe(Enumeration<ClutchPhase>&);
+void describe(Enumeration<CurveOrigin>&);
 void describe(Description<ClutchState>&);
 
 }  // namespace takt::flexcam

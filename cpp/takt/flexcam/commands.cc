@@ -14,7 +14,9 @@ template <template <typename> class Of>
 void DescribeInputs(Description<InputsOf<Of>>& d) {
   using I = InputsOf<Of>;
   const Range position = between(-1e12, 1e12);
-  d.template defaulted<&I::enable>("The module works; false: the slave is left alone. Flex Cam: xEnable.");
+  d.template defaulted<&I::enable>(
+      "The module works; false: it takes the slave off the cam, lets it come to rest and leaves it alone. Flex Cam: "
+      "xEnable.");
   d.template defaulted<&I::internal_control>(
       "The slave takes commands of its own, the module waits; stop works on. Flex Cam: xEnableInternalControl.");
   d.template defaulted<&I::reset_error>(

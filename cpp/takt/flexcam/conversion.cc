@@ -56,6 +56,11 @@ void RampSpeed(const ConversionTarget& target, const Cycle& cycle, const Kinemat
   c.out_zero += was.position - begin - Law(c, before).position;
 }
 
+// A ramp over the way of the master counts on the slope beneath it: a smaller one has to wait for its end.
+bool MustWait(const Conversion& c, double factor) {
+  return c.ramp.kind == RampKind::kWay && factor < c.factor;
+}
+
 void TakeFactor(const ConversionTarget& target, const Cycle& cycle, const KinematicState& before,
                 trajectory::Planner& planner, Conversion& c) {
   const Conversion old = c;
@@ -64,10 +69,12 @@ void TakeFactor(const ConversionTarget& target, const Cycle& cycle, const Kinema
     case ScalingMode::kXZero:
       return;
     case ScalingMode::kAbsolute:
+      if (MustWait(c, target.factor)) return;
       CountFrom(target.absolute_zero, c);
       c.factor = target.factor;
       return;
     case ScalingMode::kRelative:
+      if (MustWait(c, target.factor)) return;
       CountFrom(before.position, c);
       c.factor = target.factor;
       return;
@@ -118,7 +125,7 @@ void Approach(const ConversionTarget& target, const Cycle& cycle, const Kinemati
 }
 
 void ApproachAtZero(const ConversionTarget& target, double at, Conversion& c) noexcept {
-  if (target.scaling_mode == ScalingMode::kXZero && target.factor != c.factor) {
+  if (target.scaling_mode == ScalingMode::kXZero && target.factor != c.factor && !MustWait(c, target.factor)) {
     CountFrom(at, c);
     c.factor = target.factor;
   }

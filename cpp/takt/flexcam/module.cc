@@ -46,6 +46,21 @@ void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
   s.jog = {};
 }
 
+// The running action gives way to another one, or a request is refused; what runs is not touched by that.
+void Accept(const Context& c, State& s) {
+  EndAction(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  s.action = s.request;
+  s.action_ticket = s.request_ticket;
+  s.request = Action::kNone;
+  s.warning = ErrorId::kNone;
+}
+void Refuse(const Context& c, ErrorId error, State& s) {
+  if (s.request == Action::kNone) return;
+  Report(c, s.request_ticket, FeedbackState::kError, error);
+  s.request = Action::kNone;
+  s.warning = error;
+}
+
 void Brake(const Context& c, double deceleration, double jerk, bool hold, axis::State& slave) {
   const trajectory::Limits own = c.slave.params.planner_limits();
   const double within = Within(deceleration, own.deceleration);
@@ -57,10 +72,21 @@ void Brake(const Context& c, double deceleration, double jerk, bool hold, axis::
   }
 }
 
+// Stops the slave and keeps it so until the module lets go of that.
+void HoldStopped(const Context& c, axis::State& slave, State& s) {
+  Brake(c, s.settings.stop_deceleration, s.settings.stop_jerk, true, slave);
+  s.holds = slave.active.kind == axis::RequestKind::kStop && slave.active.ticket == 0;
+}
+void LetGoOfStop(axis::State& slave, State& s) {
+  if (s.holds && slave.active.kind == axis::RequestKind::kStop) slave.active.hold = false;
+  s.holds = false;
+}
+
 // The clutch is open, however it came to that; the slave is somebody else's.
 void Abandon(const Context& c, State& s) {
   s.clutch = {};
   s.sequencer = {};
+  s.instant = false;
   s.master.coasts = false;
   AbortChanges(c, s);
   EndAction(c, FeedbackState::kAborted, ErrorId::kNone, s);
@@ -89,7 +115,7 @@ void Fail(const Context& c, ErrorId error, axis::State& slave, State& s) {
   EndAction(c, FeedbackState::kError, error, s);
   EndJog(c, FeedbackState::kError, error, s);
   Abandon(c, s);
-  if (IsOn(slave)) Brake(c, s.settings.stop_deceleration, s.settings.stop_jerk, true, slave);
+  if (IsOn(slave)) HoldStopped(c, slave, s);
 }
 
 void WatchLimits(const Context& c, axis::State& slave, State& s) {
@@ -107,7 +133,7 @@ void WatchLimits(const Context& c, axis::State& slave, State& s) {
 }
 
 void SwitchPower(const Context& c, axis::State& slave, State& s) {
-  const bool rises = s.inputs.regulator_on && (!s.before.regulator_on || !s.before.enable);
+  const bool rises = s.inputs.enable && s.inputs.regulator_on && (!s.before.regulator_on || !s.before.enable);
   const bool falls = !s.inputs.regulator_on && s.before.regulator_on;
   if (rises && !slave.enable) Tell(c, axis::Power{.enable = true}, slave);
   if (falls) Tell(c, axis::Power{.enable = false}, slave);
@@ -122,17 +148,17 @@ bool IsBusyItself(const axis::State& slave) {
          slave.plc == axis::PlcState::kHoming || slave.plc == axis::PlcState::kContinuousMotion;
 }
 
-void TellJog(const Context& c, axis::State& slave, const State& s) {
+ErrorId TellJog(const Context& c, axis::State& slave, const State& s) {
   const axis::AxisLimits& own = c.slave.params.limits;
   const trajectory::Limits limits = c.slave.params.planner_limits();
-  Tell(c,
-       axis::Jog{.forward = s.jog.keys.positive,
-                 .backward = s.jog.keys.negative,
-                 .velocity = Within(s.settings.jog_velocity, own.velocity),
-                 .acceleration = Within(s.settings.jog_acceleration, limits.acceleration),
-                 .deceleration = Within(s.settings.jog_deceleration, limits.deceleration),
-                 .jerk = Within(s.settings.jog_jerk, limits.jerk)},
-       slave);
+  return Tell(c,
+              axis::Jog{.forward = s.jog.keys.positive,
+                        .backward = s.jog.keys.negative,
+                        .velocity = Within(s.settings.jog_velocity, own.velocity),
+                        .acceleration = Within(s.settings.jog_acceleration, limits.acceleration),
+                        .deceleration = Within(s.settings.jog_deceleration, limits.deceleration),
+                        .jerk = Within(s.settings.jog_jerk, limits.jerk)},
+              slave);
 }
 
 ClutchContext ClutchOf(const Context& c, const axis::State& slave, const KinematicState& wanted_before,
@@ -154,23 +180,26 @@ ClutchContext ClutchOf(const Context& c, const axis::State& slave, const Kinemat
 }
 
 void BeginHoming(const Context& c, axis::State& slave, State& s) {
-  const bool own = s.settings.home_by_module && c.params.homing.has_value();
-  c.slave.params.homing = own ? *c.params.homing : c.homing;
+  if (s.settings.home_by_module && c.params.homing) c.slave.params.homing = *c.params.homing;
   const ErrorId error = Tell(c, axis::Home{.position = s.settings.home_position}, slave);
-  if (error != ErrorId::kNone) return EndAction(c, FeedbackState::kError, error, s);
+  if (error != ErrorId::kNone) {
+    c.slave.params.homing = c.homing;
+    return Refuse(c, error, s);
+  }
+  Accept(c, s);
   s.state = ModuleState::kHoming;
 }
 
+ErrorId MaySync(const Context& c, const axis::State& slave, const State& s) {
+  if (c.master && !axis::IsKnown(c.slave.machine.states[*c.master], c.params.source)) return ErrorId::kMasterOff;
+  const bool no_reference = c.slave.params.requires_reference && !slave.homing.homed;
+  return s.settings.slave_absolute && no_reference ? ErrorId::kNoReference : ErrorId::kNone;
+}
+
 void BeginSync(const Context& c, axis::State& slave, State& s) {
-  if (c.master && !axis::IsKnown(c.slave.machine.states[*c.master], c.params.source)) {
-    return EndAction(c, FeedbackState::kError, ErrorId::kMasterOff, s);
-  }
-  if (s.settings.slave_absolute && c.slave.params.requires_reference && !slave.homing.homed) {
-    return EndAction(c, FeedbackState::kError, ErrorId::kNoReference, s);
-  }
-  if (const Status status = axis::Guide(c.slave, slave); status.failed()) {
-    return EndAction(c, FeedbackState::kError, status.error, s);
-  }
+  if (const ErrorId error = MaySync(c, slave, s); error != ErrorId::kNone) return Refuse(c, error, s);
+  if (const Status status = axis::Guide(c.slave, slave); status.failed()) return Refuse(c, status.error, s);
+  Accept(c, s);
   s.state = ModuleState::kSync;
   s.master.coasts = false;
   TakeUp(c, slave, s);
@@ -181,24 +210,22 @@ bool Rises(bool now, bool before) {
   return now && !before;
 }
 
-// Where a request finds the module: off, it has to be made again once the slave is on.
+// What is asked for off has to be asked for again once the slave is on. In SYNC the clutch looks at requests itself.
 void Requests(const Context& c, axis::State& slave, State& s) {
-  const bool sync = Rises(s.inputs.sync_cam, s.before.sync_cam);
-  const bool home = Rises(s.inputs.home_execute, s.before.home_execute);
-  if (!sync && !home) return;
-  const bool ready = s.state == ModuleState::kReady;
-  if (!IsOn(slave)) return EndAction(c, FeedbackState::kError, ErrorId::kPowerOff, s);
-  if (home && ready) return BeginHoming(c, slave, s);
-  if (sync && ready && !s.inputs.sync_out_instant) return BeginSync(c, slave, s);
-  if (sync && s.state == ModuleState::kSync) return;  // the clutch was opening
-  EndAction(c, FeedbackState::kError, ErrorId::kState, s);
+  if (s.request == Action::kNone) return;
+  const bool sync = s.request == Action::kSyncIn || s.request == Action::kSyncOut;
+  if (!IsOn(slave)) return Refuse(c, ErrorId::kPowerOff, s);
+  if (s.state == ModuleState::kSync && sync) return;
+  if (s.state != ModuleState::kReady) return Refuse(c, ErrorId::kState, s);
+  if (s.request == Action::kHome) return BeginHoming(c, slave, s);
+  if (s.request == Action::kSyncIn && !s.inputs.sync_out_instant) return BeginSync(c, slave, s);
+  Refuse(c, ErrorId::kState, s);
 }
 
 void BeginStop(const Context& c, axis::State& slave, State& s) {
   const bool stop = s.inputs.stop;
   if (IsOn(slave)) {
-    stop ? Brake(c, s.settings.stop_deceleration, s.settings.stop_jerk, true, slave)
-         : Brake(c, s.settings.halt_deceleration, s.settings.jerk, false, slave);
+    stop ? HoldStopped(c, slave, s) : Brake(c, s.settings.halt_deceleration, s.settings.jerk, false, slave);
   }
   EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
   Abandon(c, s);
@@ -207,14 +234,25 @@ void BeginStop(const Context& c, axis::State& slave, State& s) {
 
 void InStop(const Context& c, axis::State& slave, State& s) {
   if (Rises(s.inputs.stop, s.before.stop)) return BeginStop(c, slave, s);
-  if (s.inputs.stop || s.inputs.halt) return;
-  if (slave.active.kind == axis::RequestKind::kStop) slave.active.hold = false;
+  if (s.inputs.stop || s.inputs.halt) {
+    // Nothing else moves it meanwhile.
+    using K = axis::RequestKind;
+    const K kind = slave.active.kind;
+    const bool strays = kind != K::kNone && kind != K::kStop && kind != K::kHalt && kind != K::kPower;
+    if (strays || (s.inputs.stop && !s.holds && IsOn(slave))) BeginStop(c, slave, s);
+    return;
+  }
+  LetGoOfStop(slave, s);
   if (!slave.loop_closed || slave.active.kind == axis::RequestKind::kNone) s.state = ModuleState::kReady;
 }
 
 void InReady(const Context& c, axis::State& slave, State& s) {
   if (s.jog.ticket == 0 || !IsOn(slave)) return;
-  TellJog(c, slave, s);
+  if (!s.jog.keys.positive && !s.jog.keys.negative) return EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
+  if (const ErrorId error = TellJog(c, slave, s); error != ErrorId::kNone) {
+    s.warning = error;
+    return EndJog(c, FeedbackState::kError, error, s);
+  }
   s.state = s.jog.keys.positive ? ModuleState::kJogPos : ModuleState::kJogNeg;
 }
 
@@ -238,6 +276,7 @@ void InJog(const Context& c, axis::State& slave, State& s) {
 void InHoming(const Context& c, const axis::State& slave, State& s) {
   if (slave.plc == axis::PlcState::kHoming || IsBusyItself(slave)) return;
   s.state = ModuleState::kReady;
+  c.slave.params.homing = c.homing;
   if (slave.homing.homed) return EndAction(c, FeedbackState::kDone, ErrorId::kNone, s);
   EndAction(c, FeedbackState::kError, slave.error == ErrorId::kNone ? ErrorId::kNoReference : slave.error, s);
 }
@@ -263,13 +302,14 @@ void InSync(const Context& c, axis::State& slave, State& s) {
   const KinematicState wanted_before = s.wanted;
   RunWay(c, s);
   ClutchContext clutch = ClutchOf(c, slave, wanted_before, s);
-  if (!s.inputs.sync_cam && s.before.sync_cam) BeginOpening(clutch, s.clutch);
-  if (Rises(s.inputs.sync_cam, s.before.sync_cam)) BeginClosing(clutch, s.way, s.clutch);
+  if (s.request != Action::kNone) {
+    s.request == Action::kSyncIn ? BeginClosing(clutch, s.way, s.clutch) : BeginOpening(clutch, s.clutch);
+    Accept(c, s);
+  }
   const double zero = s.way.to_slave.out_zero;
   KinematicState demand = {clutch.own_before.position, 0, 0};
   if (const Status status = StepClutch(clutch, s.wanted, s.way, s.clutch, demand); status.failed()) {
     EndAction(c, FeedbackState::kError, status.error, s);
-    s.clutch.phase = ClutchPhase::kOpen;
   }
   s.wanted.position += s.way.to_slave.out_zero - zero;
   slave.guidance.demand = demand;
@@ -285,7 +325,7 @@ void InSync(const Context& c, axis::State& slave, State& s) {
 
 void InError(const Context& c, axis::State& slave, State& s) {
   if (Rises(s.inputs.reset_error, s.before.reset_error)) {
-    if (slave.active.kind == axis::RequestKind::kStop) slave.active.hold = false;
+    LetGoOfStop(slave, s);
     Tell(c, axis::Reset{}, slave);
     s.error = ErrorId::kNone;
     s.warning = ErrorId::kNone;
@@ -310,26 +350,22 @@ void ReadyOrService(const axis::State& slave, State& s) {
   s.state = service ? ModuleState::kService : ModuleState::kReady;
 }
 
+// Takes the slave off the cam and leaves it alone. An error stays one.
 void Disable(const Context& c, axis::State& slave, State& s) {
-  EndAction(c, s.state == ModuleState::kInit ? FeedbackState::kError : FeedbackState::kAborted, ErrorId::kState, s);
+  Refuse(c, ErrorId::kState, s);
   if (s.state == ModuleState::kInit) return;
   axis::LetGoOfGuidance(c.slave, slave);
-  if (slave.active.kind == axis::RequestKind::kJog) slave.active.forward = slave.active.backward = false;
-  if (slave.active.kind == axis::RequestKind::kStop) slave.active.hold = false;
+  if (s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg) {
+    slave.active.forward = slave.active.backward = false;
+  }
+  if (s.state == ModuleState::kHoming) c.slave.params.homing = c.homing;
+  LetGoOfStop(slave, s);
   EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
   Abandon(c, s);
-  s.error = ErrorId::kNone;
   s.state = ModuleState::kInit;
 }
 
-void RunStates(const Context& c, axis::State& slave, State& s) {
-  if (s.state == ModuleState::kInit) s.state = ModuleState::kReady;
-  WatchLimits(c, slave, s);
-  if (s.state != ModuleState::kError && s.state != ModuleState::kStop && (s.inputs.stop || s.inputs.halt)) {
-    BeginStop(c, slave, s);
-  }
-  ReadyOrService(slave, s);
-  Requests(c, slave, s);
+void StepState(const Context& c, axis::State& slave, State& s) {
   switch (s.state) {
     case ModuleState::kReady:
       return InReady(c, slave, s);
@@ -347,6 +383,24 @@ void RunStates(const Context& c, axis::State& slave, State& s) {
     default:
       return;
   }
+}
+
+void RunStates(const Context& c, axis::State& slave, State& s) {
+  if (s.state == ModuleState::kInit) s.state = s.error == ErrorId::kNone ? ModuleState::kReady : ModuleState::kError;
+  const bool homed = s.state == ModuleState::kHoming;
+  WatchLimits(c, slave, s);
+  if (s.state != ModuleState::kError && s.state != ModuleState::kStop && (s.inputs.stop || s.inputs.halt)) {
+    BeginStop(c, slave, s);
+  }
+  if (homed && s.state != ModuleState::kHoming) c.slave.params.homing = c.homing;
+  ReadyOrService(slave, s);
+  Requests(c, slave, s);
+  StepState(c, slave, s);
+  Refuse(c, ErrorId::kState, s);
+  // A key that was pressed when something else began does not move anything later.
+  const bool jogs =
+      s.state == ModuleState::kReady || s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg;
+  if (!jogs && s.jog.ticket != 0) EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
 }
 
 BoundsOf WhatToBound(const State& s) {
@@ -368,19 +422,38 @@ BoundsOf WhatToBound(const State& s) {
 
 // --- commands ---
 
+// What a change of inputs asks for. A level that is there already asks for nothing: it needs a new edge.
+Action AskedBy(const Control& command, const Inputs& was, const State& s) {
+  if (command.sync_cam) {
+    if (*command.sync_cam != was.sync_cam) return *command.sync_cam ? Action::kSyncIn : Action::kSyncOut;
+    if (*command.sync_cam && s.state != ModuleState::kSync) return Action::kSyncIn;  // and is refused
+  }
+  return command.home_execute.value_or(false) && !was.home_execute ? Action::kHome : Action::kNone;
+}
+
 void CarryOut(const Context& c, Ticket ticket, double, const Control& command, axis::State&, State& s) {
+  if (command.cam_table && s.slots[*command.cam_table - 1] == 0) {
+    return Report(c, ticket, FeedbackState::kError, ErrorId::kUnknownTarget);
+  }
   const Inputs was = s.inputs;
   TakeGiven(command, s.inputs);
+  s.instant |= s.inputs.cam_change_instant && !was.cam_change_instant && s.state == ModuleState::kSync;
   Report(c, ticket, FeedbackState::kActive);
-  Action action = Action::kNone;
-  if (s.inputs.sync_cam != was.sync_cam) action = s.inputs.sync_cam ? Action::kSyncIn : Action::kSyncOut;
-  if (s.inputs.home_execute && !was.home_execute) action = Action::kHome;
-  const bool opens = action == Action::kSyncOut && s.state != ModuleState::kSync;
-  if (action == Action::kNone || opens) return Report(c, ticket, FeedbackState::kDone);
-  EndAction(c, FeedbackState::kAborted, ErrorId::kNone, s);
-  s.action = action;
-  s.action_ticket = ticket;
-  s.warning = ErrorId::kNone;
+  const Action asked = AskedBy(command, was, s);
+  const bool no_edge = asked == Action::kSyncIn && was.sync_cam;
+  if (no_edge) {
+    s.warning = ErrorId::kState;
+    return Report(c, ticket, FeedbackState::kError, ErrorId::kState);
+  }
+  const bool nothing_to_open = asked == Action::kSyncOut && s.state != ModuleState::kSync;
+  if (asked == Action::kSyncOut && s.request == Action::kSyncIn) {  // both edges within one cycle
+    Report(c, s.request_ticket, FeedbackState::kAborted);
+    s.request = Action::kNone;
+  }
+  if (asked == Action::kNone || nothing_to_open) return Report(c, ticket, FeedbackState::kDone);
+  if (s.request != Action::kNone) Report(c, s.request_ticket, FeedbackState::kAborted);
+  s.request = asked;
+  s.request_ticket = ticket;
 }
 
 void CarryOut(const Context& c, Ticket ticket, double, const Configure& command, axis::State&, State& s) {
@@ -418,7 +491,8 @@ void CarryOut(const Context& c, Ticket ticket, double, const ChangeCam& command,
   const bool empty = s.slots[command.cam_table - 1] == 0;
   ErrorId error = ErrorId::kNone;
   if (empty) error = ErrorId::kUnknownTarget;
-  if (s.state != ModuleState::kSync) error = ErrorId::kState;
+  // A sequence decides itself what comes next.
+  if (s.state != ModuleState::kSync || s.inputs.cam_sequencer) error = ErrorId::kState;
   if (error == ErrorId::kNone && !Enqueue(ticket, command, s)) error = ErrorId::kBufferFull;
   Report(c, ticket, error == ErrorId::kNone ? FeedbackState::kActive : FeedbackState::kError, error);
 }
@@ -461,8 +535,8 @@ void Step(const Context& c, axis::State& slave, State& s) noexcept {
   if (s.state != ModuleState::kSync) s.master.coasts = false;
   Follow(c.slave, c.master, c.params.source, s.settings, s.inputs.virtual_velocity, coast, s.master);
   slave.reference |= s.inputs.home_abs_switch;
+  SwitchPower(c, slave, s);
   if (s.inputs.enable) {
-    SwitchPower(c, slave, s);
     WatchLease(c, s);
     RunStates(c, slave, s);
   } else {

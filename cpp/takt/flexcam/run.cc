@@ -163,7 +163,8 @@ bool IsDue(const Context& c, const PendingChange& change, double x_before, State
 }
 
 void TakeChanges(const Context& c, double x_before, State& s) {
-  if (s.inputs.cam_change_instant && !s.before.cam_change_instant && !IsEmpty(s, s.inputs.cam_table)) {
+  if (s.instant) {
+    s.instant = false;
     ChangeHere(c, s.inputs.cam_table, ChangeAlign::kNothing, x_before, s);
     s.sequencer = {};
   }
@@ -187,47 +188,86 @@ void Hold(const cam::Table& table, ProfilerState& p) {
   p.once = p.held = true;
 }
 
+// Another cam is run from the end of this one on.
+void ChangeAtEnd(const Context& c, const Passed& passed, const SequenceStep& next, bool relative, State& s) {
+  const cam::Table& from = TableOf(c, s);
+  Take(next, s);
+  Change(from, TableOf(c, s), passed, relative, !next.cyclic, s.way.profiler);
+}
+
+// The cam that a command wants from this end on. False: there is none.
+bool TakePending(const Context& c, const Passed& passed, State& s) {
+  const PendingChange* pending = Due(s, ChangeWhen::kNextCycle);
+  if (pending == nullptr) return false;
+  const ChangeCam change = pending->change;
+  // With equal slopes it goes on somewhere within the other cam, else at its beginning.
+  if (change.align == ChangeAlign::kVelocity) {
+    if (!ChangeHere(c, change.cam_table, change.align, passed.x_total, s)) {
+      EndChange(c, FeedbackState::kError, ErrorId::kPlanning, s);
+      return false;
+    }
+  } else {
+    const bool relative = change.align == ChangeAlign::kPosition || !s.settings.slave_absolute;
+    ChangeAtEnd(c, passed, {change.cam_table, s.settings.cam_cyclic}, relative, s);
+  }
+  s.inputs.cam_table = change.cam_table;
+  EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
+  return true;
+}
+
+void TakeNext(const Context& c, const Passed& passed, State& s) {
+  ProfilerState& p = s.way.profiler;
+  SequenceStep next = Next(SequencerOf(s), s.sequencer);
+  if (IsEmpty(s, next.slot)) {
+    s.warning = ErrorId::kUnknownTarget;
+    next = {p.slot, !p.once};
+  }
+  const bool same = next.slot == p.slot && s.slots[next.slot - 1] - 1 == p.cam;
+  if (!same) return ChangeAtEnd(c, passed, next, !s.settings.slave_absolute, s);
+  if (next.cyclic) {
+    p.once = false;
+  } else if (!p.once) {
+    Hold(TableOf(c, s), p);
+  }
+}
+
 void PassEnd(const Context& c, const Passed& passed, double x_before, State& s) {
   ProfilerState& p = s.way.profiler;
   const double master = MasterAt(s, passed.x_total, x_before);
-  const cam::Table& from = TableOf(c, s);
   ++s.cam_ends;
-  SequenceStep next = {p.slot, !p.once};
-  if (IsOnCurve(s.clutch)) {
-    // A curve that ends on this cam finds it there.
-  } else if (const PendingChange* change = Due(s, ChangeWhen::kNextCycle)) {
-    next = {change->change.cam_table, s.settings.cam_cyclic};
-    s.inputs.cam_table = next.slot;
-    EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
-  } else {
-    next = Next(SequencerOf(s), s.sequencer);
-  }
-  if (IsEmpty(s, next.slot)) {
-    s.warning = ErrorId::kUnknownTarget;
-    next = {p.slot, true};
-  }
-  const bool same = IsOnCurve(s.clutch) || (next.slot == p.slot && s.slots[next.slot - 1] - 1 == p.cam);
-  if (same && next.cyclic) {
-    p.once = false;
-  } else if (same && !p.once) {
-    Hold(from, p);
-  } else if (!same) {
-    Take(next, s);
-    Change(from, TableOf(c, s), passed, !s.settings.slave_absolute, !next.cyclic, p);
-  }
+  // A curve of the clutch that ends on this cam finds it there.
+  const bool stays = IsOnCurve(s.clutch);
+  if (!stays && !TakePending(c, passed, s)) TakeNext(c, passed, s);
   const double turn = TurnOf(c.slave, c.master);
   if (turn == 0 || std::abs(TableOf(c, s).length() - turn) > 1e-9 * turn) s.assigned = false;
-  if (!IsOnCurve(s.clutch)) ApproachAtZero(MasterTarget(c, s), master, s.way.to_x);
-  if (!IsFrozen(s.clutch)) ApproachAtZero(SlaveTarget(c, s), ZeroOfY(c, s), s.way.to_slave);
+  if (!stays) ApproachAtZero(MasterTarget(c, s), master, s.way.to_x);
   s.x = Convert(s.way.to_x, c.slave.cycle, s.master.now);
   GoOn(TableOf(c, s), s.x.position, p);
+  // Counted from where Y is: the end of a cam that is held there or entered backwards, else its beginning.
+  const bool at_end = p.held ? passed.sense > 0 : passed.sense < 0;
+  const double entered = ZeroOfY(c, s) + (at_end ? TableOf(c, s).stroke() : 0);
+  if (!IsFrozen(s.clutch)) ApproachAtZero(SlaveTarget(c, s), entered, s.way.to_slave);
+}
+
+// What is to be run instead of the end of a cam that is held, if anything: what a command wants, a sequence, or what is
+// set, be it another slot, another cam in this one, or this one again and again.
+std::optional<SequenceStep> AfterHeld(const Context& c, State& s) {
+  const ProfilerState& p = s.way.profiler;
+  if (const PendingChange* pending = Due(s, ChangeWhen::kNextCycle)) {
+    s.inputs.cam_table = pending->change.cam_table;
+    EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
+    return SequenceStep{s.inputs.cam_table, s.settings.cam_cyclic};
+  }
+  if (const std::optional<SequenceStep> next = FromHeld(SequencerOf(s), s.sequencer)) return next;
+  const bool other = s.slots[p.slot - 1] - 1 != p.cam;
+  return other ? std::optional(SequenceStep{p.slot, s.settings.cam_cyclic}) : std::nullopt;
 }
 
 // The end of a cam that is run once is held until another one is to be run.
 void HoldOn(const Context& c, State& s) {
-  const std::optional<SequenceStep> next = FromHeld(SequencerOf(s), s.sequencer);
-  if (!next || IsEmpty(s, next->slot)) return GoOn(TableOf(c, s), s.x.position, s.way.profiler);
   ProfilerState& p = s.way.profiler;
+  const std::optional<SequenceStep> next = IsOnCurve(s.clutch) ? std::nullopt : AfterHeld(c, s);
+  if (!next || IsEmpty(s, next->slot)) return GoOn(TableOf(c, s), s.x.position, p);
   const double was = s.y.position;
   Take(*next, s);
   const cam::Table& table = TableOf(c, s);

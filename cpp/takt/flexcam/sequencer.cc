@@ -20,8 +20,9 @@ SequenceStep Begin(const SequencerInputs& in, SequencePart part, SequencerState&
   const std::span<const SequenceStep> steps = StepsOf(in.mode, part);
   s.part = part;
   s.step = 0;
-  if (steps.front().slot == in.running.slot && steps.size() > 1) s.step = 1;
-  return steps[s.step];
+  if (steps.front().slot != in.running.slot || steps.front().cyclic) return steps.front();
+  s.step = 1;
+  return steps.size() > 1 ? steps[1] : steps[0];  // its end is held
 }
 
 }  // namespace
@@ -81,8 +82,9 @@ SequenceStep Next(const SequencerInputs& in, SequencerState& s) noexcept {
 
 std::optional<SequenceStep> FromHeld(const SequencerInputs& in, SequencerState& s) noexcept {
   const bool in_sequence = IsActive(in, s) && s.part == SequencePart::kIn;
-  if (in.on) return in_sequence ? std::nullopt : std::optional(Next(in, s));
-  if (in.selected.slot == in.running.slot) return std::nullopt;
+  if (in.on) return in_sequence ? std::nullopt : std::optional(First(in, s));
+  const bool same = in.selected.slot == in.running.slot;
+  if (same && (!in.selected.cyclic || s.part == SequencePart::kOut)) return std::nullopt;
   s = {};
   return in.selected;
 }

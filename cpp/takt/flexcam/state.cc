@@ -38,6 +38,10 @@ void describe(Description<State>& d) {
   d.internal<&S::warning>("What was not done as asked.");
   d.internal<&S::action>("What was started last.");
   d.internal<&S::action_ticket>("Of the command that did.");
+  d.internal<&S::request>("What was asked for in this cycle.");
+  d.internal<&S::request_ticket>("Of the command that did.");
+  d.internal<&S::holds>("The slave's stop is the module's.");
+  d.internal<&S::instant>("The cam that is set is to be taken at once.");
   d.internal<&S::done>("It is done.");
   d.internal<&S::jog>("Jogging.");
   d.internal<&S::master>("What is followed.");

@@ -42,9 +42,13 @@ struct State {
   ModuleState state = ModuleState::kInit;
   ErrorId error = ErrorId::kNone;
   ErrorId warning = ErrorId::kNone;
-  Action action = Action::kNone;
+  Action action = Action::kNone;  // in progress
   Ticket action_ticket = 0;
+  Action request = Action::kNone;  // asked for in this cycle
+  Ticket request_ticket = 0;
   bool done = false;
+  bool holds = false;    // the slave's stop is the module's
+  bool instant = false;  // the cam that is set is to be taken at once
   JogKeys jog;
 
   MasterState master;

@@ -127,8 +127,11 @@ void ExpectSameConstants(const std::string& file, const std::string& prefix, con
 }
 
 // EN-11
-TEST(LcmTypes, AxisStateSaysWhatTheDescriptionOfOutputsSays) {
-  ExpectSameFields("axis_state.lcm", TypeOf<axis::Outputs>(), {"utime", "cycle", "time_ns", "sequence", "name"});
+TEST(LcmTypes, StatesSayWhatTheDescriptionsOfOutputsSay) {
+  const std::set<std::string> own = {"utime", "cycle", "time_ns", "sequence", "name"};
+  for (const engine::ComponentKind& kind : engine::ComponentKinds()) {
+    ExpectSameFields(std::string(kind.name) + "_state.lcm", *kind.outputs, own);
+  }
 }
 
 // EN-11
@@ -152,6 +155,7 @@ TEST(LcmTypes, DriveMessagesSayWhatTheDescriptionsOfThePortsSay) {
 TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   const Type& outputs = TypeOf<axis::Outputs>();
   ExpectSameConstants("axis_state.lcm", "STATE_", *outputs.FindField("state")->type);
+  ExpectSameConstants("flex_cam_state.lcm", "STATE_", TypeOf<flexcam::ModuleState>());
   ExpectSameConstants("axis_state.lcm", "LIMITED_BY_", *outputs.FindField("limited_by")->type);
 
   using F = msgs::feedback;
@@ -178,7 +182,7 @@ TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
       EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
     }
   }
-  EXPECT_EQ(files, 13);
+  EXPECT_EQ(files, 14);
 }
 
 }  // namespace
