@@ -164,8 +164,10 @@ bool PlanWay(const ClutchContext& c, double sense, Way& way, ClutchState& s) {
 void BeginCurve(const ClutchContext& c, double length, double sense, const KinematicState& end, ClutchState& s) {
   const bool on_cam = s.phase == ClutchPhase::kWaitingOut || s.phase == ClutchPhase::kClosed;
   const bool on_curve = !on_cam && !c.at_rest;
+  const CurveOrigin origin = s.origin;
   s.origin = on_cam ? CurveOrigin::kCam : on_curve ? CurveOrigin::kCurve : CurveOrigin::kRest;
   if (on_curve) {
+    s.before_origin = origin;
     s.before = s.curve;
     s.before_begin = s.curve_begin;
     s.before_sense = s.sense;
@@ -190,7 +192,9 @@ KinematicState OnCurve(const ClutchContext& c, const KinematicState& wanted, con
   const double x = OnCurveBy(c, s);
   if (x >= 0 || s.origin == CurveOrigin::kRest) return At(s.curve, x, s.sense, c.master);
   if (s.origin == CurveOrigin::kCam) return wanted;
-  return At(s.before, s.before_sense * (c.master.position - s.before_begin), s.before_sense, c.master);
+  const double x_before = s.before_sense * (c.master.position - s.before_begin);
+  if (x_before < 0 && s.before_origin == CurveOrigin::kCam) return wanted;
+  return At(s.before, x_before, s.before_sense, c.master);
 }
 
 KinematicState Sum(const KinematicState& a, const KinematicState& b) {
@@ -484,6 +488,7 @@ void describe(Description<ClutchState>& d) {
   d.internal<&S::origin>("What the slave was on before the curve.");
   d.internal<&S::before>("The curve before.");
   d.internal<&S::before_begin>("Where that began.");
+  d.internal<&S::before_origin>("What the slave was on before that.");
   d.internal<&S::before_sense>("In which the master went on it.");
 }
 

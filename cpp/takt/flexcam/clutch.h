@@ -58,6 +58,7 @@ struct ClutchState {
   trajectory::Quintic before;
   double before_begin = 0;
   double before_sense = 1;
+  CurveOrigin before_origin = CurveOrigin::kRest;
 };
 
 // All that is not the clutch's own. Positions are over all turns.
