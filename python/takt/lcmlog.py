@@ -148,7 +148,7 @@ def _sort_in(runs: list[Run], message: Any) -> None:
 
 
 def read_log(path: str | os.PathLike[str], *, run: int = -1, progress: Progress | None = None) -> Recording:
-    """An LCM log as a recording: every axis, with the commands as events. `run` picks one of several starts of the
+    """An LCM log as a recording: every component, with the commands as events. `run` picks one of several starts of the
     engine, the last unless told."""
     return to_recording(open_log(path, progress), run)
 
