@@ -96,7 +96,7 @@ TEST(Snapshots, AreDroppedAndCountedWhenNobodyReads) {
   const Machine machine = FullMachine();
   Engine engine(machine, {.publish = true, .every_cycle = true, .snapshot_queue = 64});
   for (int i = 0; i < 1000; ++i) engine.RunCycle();
-  EXPECT_EQ(engine.figures().snapshots_dropped, 4000u - 64u);
+  EXPECT_EQ(engine.figures().snapshots_dropped, 5000u - 64u + 1000u - 64u);  // of the axes, of the module
 }
 
 // EN-21: nobody takes the feedback: what is lost is counted.
@@ -140,7 +140,7 @@ TEST(Snapshots, SayWhetherTheyAreDue) {
   machine.lcm.axis_rate_hz = 150;  // every 7th cycle
   Engine engine(machine, {.publish = true, .every_cycle = true});
   for (int i = 0; i < 700; ++i) engine.RunCycle();
-  std::vector<int> due(4), all(4);
+  std::vector<int> due(machine.axes.size()), all(machine.axes.size());
   AxisSnapshot snapshot;
   while (engine.snapshots().TryPop(snapshot)) {
     ++all[snapshot.index];
@@ -150,19 +150,22 @@ TEST(Snapshots, SayWhetherTheyAreDue) {
   EXPECT_THAT(due, testing::Each(100));
 }
 
-// EN-20: each axis at its own rate.
+// EN-20: each axis and each module at its own rate.
 TEST(Snapshots, ComeAtTheRateOfTheirChannel) {
   Machine machine = FullMachine();
   machine.lcm.axis_rate_hz = 100;
-  machine.lcm.rates = {{"c", 500}, {"z", 0}};
+  machine.lcm.rates = {{"c", 500}, {"z", 0}, {"cutter", 250}};
   Engine engine(machine, {.publish = true});
   for (int i = 0; i < 1000; ++i) engine.RunCycle();
-  std::vector<int> counts(4);
+  std::vector<int> counts(machine.axes.size());
   AxisSnapshot snapshot;
   while (engine.snapshots().TryPop(snapshot)) ++counts[snapshot.index];
   EXPECT_EQ(counts[AxisNamed(machine, "y1")], 100);
   EXPECT_EQ(counts[AxisNamed(machine, "c")], 500);
   EXPECT_EQ(counts[AxisNamed(machine, "z")], 0);
+  int of_module = 0;
+  for (FlexCamSnapshot of; engine.flex_cam_snapshots().TryPop(of);) ++of_module;
+  EXPECT_EQ(of_module, 250);
 }
 
 // EN-20: axes of one rate come in the same cycles.
@@ -175,7 +178,7 @@ TEST(Snapshots, OfOneRateComeTogether) {
   AxisSnapshot snapshot;
   while (engine.snapshots().TryPop(snapshot)) ++axes[snapshot.cycle];
   EXPECT_EQ(axes.size(), 100u);
-  for (const auto& [cycle, count] : axes) EXPECT_EQ(count, 4) << cycle;
+  for (const auto& [cycle, count] : axes) EXPECT_EQ(count, 5) << cycle;
 }
 
 // A command for a target that does not exist, handed in from C++ past the parser.
