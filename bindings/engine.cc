@@ -269,6 +269,12 @@ class VirtualEngine {
   std::string machine_json() const { return MachineJson(engine_.machine()); }
   void RequestShutdown() { engine_.RequestShutdown(); }
 
+  // External drives hear nothing more of this engine, whenever Python takes it away.
+  void LeaveNetwork() {
+    const auto lock = Lock();
+    drives_.reset();
+  }
+
  private:
   static engine::Machine Prepared(const py::bytes& text, const std::string& file_name, std::optional<double> period_s) {
     engine::LoadResult loaded = Load(text, file_name);
@@ -397,7 +403,8 @@ void BindEngine(py::module_& m) {
       .def_property_readonly("at_rest", &E::at_rest)
       .def_property_readonly("all_disabled", &E::all_disabled)
       .def_property_readonly("machine_json", &E::machine_json)
-      .def("request_shutdown", &E::RequestShutdown);
+      .def("request_shutdown", &E::RequestShutdown)
+      .def("leave_network", &E::LeaveNetwork);
 }
 
 }  // namespace takt::bindings

@@ -1,5 +1,5 @@
-"""Prints the module takt._commands: the commands and published fields of axes as typed, documented Python, from what
-the engine says of itself.
+"""Prints the module takt._commands: the commands and published fields of components as typed, documented Python, from
+what the engine says of itself.
 
 Usage: generate_python.py TAKTD    (asks `TAKTD --reference`)
        generate_python.py FILE.json

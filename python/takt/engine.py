@@ -98,6 +98,11 @@ class Engine(Session):
         self._core.request_shutdown()
         self.wait(lambda: self._core.all_disabled, timeout, what="every axis at rest with its loop open")
 
+    def close(self) -> None:
+        """Ends the session, and what external drives hear of it; what was recorded stays readable."""
+        super().close()
+        self._core.leave_network()
+
     def take_journal(self) -> list[tuple[int, int, float, str, str, str]]:
         """Commands applied since the last call: (cycle, ticket, lease in s, target, verb, arguments)."""
         return self._core.take_journal()

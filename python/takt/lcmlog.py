@@ -17,7 +17,16 @@ from takt import _core, msgs
 from takt.arguments import without_arguments
 from takt.errors import TaktError
 from takt.recording import Array, Recording
-from takt.tables import KINDS, PREFIXES, components_of, fields_of, is_possible, kind_of_channel, make_recording, table_of
+from takt.tables import (
+    KINDS,
+    PREFIXES,
+    components_of,
+    fields_of,
+    is_possible,
+    kind_of_channel,
+    make_recording,
+    table_of,
+)
 
 STATE_TYPES = tuple(kind.message for kind in KINDS.values())
 EVENT_HEADER = 28  # bytes of an event beside its channel and data
@@ -139,7 +148,7 @@ def _sort_in(runs: list[Run], message: Any) -> None:
 
 
 def read_log(path: str | os.PathLike[str], *, run: int = -1, progress: Progress | None = None) -> Recording:
-    """An LCM log as a recording: every axis, with the commands as events. `run` picks one of several starts of the
+    """An LCM log as a recording: every component, with the commands as events. `run` picks one of several starts of the
     engine, the last unless told."""
     return to_recording(open_log(path, progress), run)
 

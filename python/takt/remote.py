@@ -30,7 +30,7 @@ LATE_S = 1.0  # how long published values may take to catch up with a feedback
 IDLE_BEAT_S = 0.5  # between heartbeats that hold nothing but the client's name
 POLL_S = 0.1  # longest wait before looking at clocks and Ctrl-C again
 STILL_S = 10.0  # how long an engine that is heard may stay at one cycle
-JUMP_S = 3600.0  # of engine time between two messages: an axis that says more is not believed
+JUMP_S = 3600.0  # of engine time between two messages: a component that says more is not believed
 
 
 @dataclass

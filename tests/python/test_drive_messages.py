@@ -120,3 +120,17 @@ def test_two_plants_for_one_axis() -> None:
         engine.run(0.1)
         assert x.actual_position == pytest.approx(10.0, abs=0.002)
         assert x.error == 0
+
+
+def test_a_closed_engine_is_silent() -> None:
+    """AX-87: drives hear no more of it, though Python may not have taken it away yet."""
+    url = new_url()
+    network, heard = lcm.LCM(url), []
+    network.subscribe("takt/drive/x/setpoint", lambda _, data: heard.append(data))
+    with served(url, Lag()), takt.Engine(only_x(url)) as engine:
+        engine.run(0.2)
+    while network.handle_timeout(100):
+        pass
+    assert heard
+    assert network.handle_timeout(300) == 0
+    assert engine.cycle >= 200

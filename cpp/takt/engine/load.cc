@@ -53,10 +53,7 @@ class CrossCheck {
     for (std::size_t i = 0; i < machine_.external.drives.size(); ++i) {
       CheckReference("external.drives[" + std::to_string(i) + "].axis", machine_.external.drives[i].axis, external);
     }
-    std::vector<std::string_view> rates;
-    for (std::size_t i = 0; i < machine_.lcm.rates.size(); ++i) {
-      CheckReference("lcm.rates[" + std::to_string(i) + "].axis", machine_.lcm.rates[i].axis, rates);
-    }
+    CheckRates();
     return std::move(problems_);
   }
 
@@ -104,7 +101,7 @@ class CrossCheck {
       const std::optional<std::uint32_t> followed = MasterOf(machine_, i);
       if (followed && k-- == 0) return followed;
       const std::optional<std::uint32_t> led = MasterOfModule(machine_, i);
-      return led && k == 0 ? led : std::nullopt;
+      return led && led != i && k == 0 ? led : std::nullopt;  // one that leads itself is reported for itself
     };
     if (order.Make(master_of)) return;
     std::string members;
@@ -163,13 +160,30 @@ class CrossCheck {
     }
   }
 
+  // Of axes and of cam modules.
+  void CheckRates() {
+    std::vector<std::string_view> components = names_;
+    for (const flexcam::FlexCamParams& module : machine_.flex_cams) components.push_back(module.name);
+    std::vector<std::string_view> seen;
+    for (std::size_t i = 0; i < machine_.lcm.rates.size(); ++i) {
+      CheckReference("lcm.rates[" + std::to_string(i) + "].axis", machine_.lcm.rates[i].axis, seen, components,
+                     machine_.flex_cams.empty() ? "axis" : "axis or cam module");
+    }
+  }
+
   // A name that must be an axis', each at most once.
   void CheckReference(const std::string& path, std::string_view name, std::vector<std::string_view>& seen) {
+    CheckReference(path, name, seen, names_, "axis");
+  }
+
+  // A name that must be one of `names`, each at most once.
+  void CheckReference(const std::string& path, std::string_view name, std::vector<std::string_view>& seen,
+                      const std::vector<std::string_view>& names, const std::string& what) {
     if (name.empty()) return;
-    if (std::find(names_.begin(), names_.end(), name) == names_.end()) {
-      Add(path, "expected the name of an axis, found " + Quoted(name) + DidYouMean(name, names_));
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      Add(path, "expected the name of an " + what + ", found " + Quoted(name) + DidYouMean(name, names));
     } else if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
-      Add(path, "expected each axis once, found " + Quoted(name) + " again");
+      Add(path, "expected each " + what + " once, found " + Quoted(name) + " again");
     }
     seen.push_back(name);
   }

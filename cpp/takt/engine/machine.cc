@@ -59,8 +59,8 @@ void describe(Description<CycleParams>& d) {
 }
 
 void describe(Description<ChannelRate>& d) {
-  d.about("How often one axis is published.");
-  d.required<&ChannelRate::axis>("Name of the axis.");
+  d.about("How often one axis or cam module is published.");
+  d.required<&ChannelRate::axis>("Name of the axis or cam module.");
   d.required<&ChannelRate::rate_hz>(unit::hz, between(0, 4000), "How often; 0: never.");
 }
 
@@ -68,9 +68,10 @@ void describe(Description<LcmParams>& d) {
   using L = LcmParams;
   d.about("What goes out and comes in over LCM.");
   d.defaulted<&L::url>("LCM's provider; as it is, messages stay on this host (ttl 0).");
-  d.defaulted<&L::axis_rate_hz>(unit::hz, between(0, 4000),
-                                "How often each axis is published, at most once a cycle; 0: never.");
-  d.defaulted<&L::rates>("Axes with a rate of their own.");
+  d.defaulted<&L::axis_rate_hz>(
+      unit::hz, between(0, 4000),
+      "How often each axis and each cam module is published, at most once a cycle; 0: never.");
+  d.defaulted<&L::rates>("Axes and cam modules with a rate of their own.");
   d.defaulted<&L::engine_rate_hz>(unit::hz, between(0.1, 1000), "How often the engine's own figures are published.");
   d.defaulted<&L::dead_man_s>(unit::s, between(0.02, 60),
                               "Without a heartbeat for so long, a client's level-sensitive commands are released.");

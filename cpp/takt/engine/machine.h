@@ -22,16 +22,16 @@ struct CycleParams {
 };
 
 struct ChannelRate {
-  std::string axis;  // name of the axis
+  std::string axis;  // name of the axis or cam module
   double rate_hz = 100;
 };
 
 struct LcmParams {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";  // EN-25: stays on this host
-  double axis_rate_hz = 100;                            // of each axis' state channel; at most once a cycle
-  std::vector<ChannelRate> rates;                       // axes with a rate of their own
-  double engine_rate_hz = 10;                           // of the engine's own channel
-  double dead_man_s = 0.25;  // s without a heartbeat after which a level-sensitive command is released
+  double axis_rate_hz = 100;       // of each axis' and module's state channel; at most once a cycle
+  std::vector<ChannelRate> rates;  // axes and modules with a rate of their own
+  double engine_rate_hz = 10;      // of the engine's own channel
+  double dead_man_s = 0.25;        // s without a heartbeat after which a level-sensitive command is released
 };
 
 // The simulated servo behind an axis. Axes without one get an ideal servo that fits their own parameters.

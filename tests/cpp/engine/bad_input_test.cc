@@ -2,13 +2,12 @@
 // of the machine is different from its twin that was never asked.
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "cam_rig.h"
-#include "takt/core/describe.h"
+#include "wrong.h"
 
 namespace takt::engine {
 namespace {
@@ -58,40 +57,6 @@ std::vector<Command> GoodCommands() {
           axis::SetOverride{},
           axis::TouchProbe{},
           axis::Touch{}};
-}
-
-struct Wrong {
-  Command command;
-  std::string what;
-};
-
-// All numbers of a command, one at a time, as none may be: not a number, infinite, outside what its description allows.
-std::vector<Wrong> WrongVersionsOf(const Command& good) {
-  std::vector<Wrong> all;
-  std::visit(
-      [&]<typename T>(const T& body) {
-        for (const Field& field : TypeOf<T>().fields) {
-          const bool optional = field.type->kind == Kind::kOptional;
-          const Type& number = optional ? *field.type->element : *field.type;
-          if (number.kind != Kind::kReal) continue;
-          std::vector<double> values = {std::numeric_limits<double>::quiet_NaN(),
-                                        std::numeric_limits<double>::infinity(),
-                                        -std::numeric_limits<double>::infinity(), 1e300, -1e300};
-          if (field.range.bounded_below()) values.push_back(field.range.min - 1);
-          if (field.range.without_min) values.push_back(field.range.min);
-          if (field.range.bounded_above()) values.push_back(field.range.max + 1);
-          for (const double value : values) {
-            T wrong = body;
-            auto* const member = reinterpret_cast<std::byte*>(&wrong) + field.offset;
-            void* const at = optional ? field.type->optional_emplace(member) : member;
-            *static_cast<double*>(at) = value;
-            all.push_back(
-                {wrong, std::string(TypeOf<T>().name) + "." + std::string(field.name) + " = " + std::to_string(value)});
-          }
-        }
-      },
-      good);
-  return all;
 }
 
 struct Situation {
@@ -161,7 +126,7 @@ TEST_P(BadInput, IsRefusedAndLeavesTheMachineLikeItsTwin) {
   ASSERT_EQ(asked.engine.StateHash(), twin.engine.StateHash());
   int refused = 0;
   for (const Command& good : GoodCommands()) {
-    for (const Wrong& wrong : WrongVersionsOf(good)) {
+    for (const Wrong<Command>& wrong : WrongVersionsOf(good)) {
       const Ticket ticket = asked.Give(1, wrong.command);
       asked.Step();
       twin.Step();

@@ -96,7 +96,7 @@ TEST(Snapshots, AreDroppedAndCountedWhenNobodyReads) {
   const Machine machine = FullMachine();
   Engine engine(machine, {.publish = true, .every_cycle = true, .snapshot_queue = 64});
   for (int i = 0; i < 1000; ++i) engine.RunCycle();
-  EXPECT_EQ(engine.figures().snapshots_dropped, 1000u * (machine.axes.size() + machine.flex_cams.size()) - 2 * 64u);
+  EXPECT_EQ(engine.figures().snapshots_dropped, 5000u - 64u + 1000u - 64u);  // of the axes, of the module
 }
 
 // EN-21: nobody takes the feedback: what is lost is counted.
@@ -150,11 +150,11 @@ TEST(Snapshots, SayWhetherTheyAreDue) {
   EXPECT_THAT(due, testing::Each(100));
 }
 
-// EN-20: each axis at its own rate.
+// EN-20: each axis and each module at its own rate.
 TEST(Snapshots, ComeAtTheRateOfTheirChannel) {
   Machine machine = FullMachine();
   machine.lcm.axis_rate_hz = 100;
-  machine.lcm.rates = {{"c", 500}, {"z", 0}};
+  machine.lcm.rates = {{"c", 500}, {"z", 0}, {"cutter", 250}};
   Engine engine(machine, {.publish = true});
   for (int i = 0; i < 1000; ++i) engine.RunCycle();
   std::vector<int> counts(machine.axes.size());
@@ -163,6 +163,9 @@ TEST(Snapshots, ComeAtTheRateOfTheirChannel) {
   EXPECT_EQ(counts[AxisNamed(machine, "y1")], 100);
   EXPECT_EQ(counts[AxisNamed(machine, "c")], 500);
   EXPECT_EQ(counts[AxisNamed(machine, "z")], 0);
+  int of_module = 0;
+  for (FlexCamSnapshot of; engine.flex_cam_snapshots().TryPop(of);) ++of_module;
+  EXPECT_EQ(of_module, 250);
 }
 
 // EN-20: axes of one rate come in the same cycles.
@@ -171,11 +174,11 @@ TEST(Snapshots, OfOneRateComeTogether) {
   machine.lcm.axis_rate_hz = 100;
   Engine engine(machine, {.publish = true});
   for (int i = 0; i < 1000; ++i) engine.RunCycle();
-  std::map<std::uint64_t, std::size_t> axes;  // by cycle
+  std::map<std::uint64_t, int> axes;  // by cycle
   AxisSnapshot snapshot;
   while (engine.snapshots().TryPop(snapshot)) ++axes[snapshot.cycle];
   EXPECT_EQ(axes.size(), 100u);
-  for (const auto& [cycle, count] : axes) EXPECT_EQ(count, machine.axes.size()) << cycle;
+  for (const auto& [cycle, count] : axes) EXPECT_EQ(count, 5) << cycle;
 }
 
 // A command for a target that does not exist, handed in from C++ past the parser.

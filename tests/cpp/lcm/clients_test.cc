@@ -13,6 +13,13 @@ namespace {
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 // An engine that only takes notes.
+engine::Machine WithModule(engine::Machine machine) {
+  machine.flex_cams.emplace_back();
+  machine.flex_cams.back().name = "cutter";
+  machine.flex_cams.back().slave = "y";
+  return machine;
+}
+
 class ClientsTest : public testing::Test {
  protected:
   Clients Make(const ClientLimits& limits = {}) {
@@ -71,7 +78,7 @@ class ClientsTest : public testing::Test {
     return tickets;
   }
 
-  const engine::Machine machine_ = TestMachine();
+  const engine::Machine machine_ = WithModule(TestMachine());
   std::vector<engine::Command> submitted_;
   bool queue_is_full_ = false;
 };
@@ -151,7 +158,10 @@ TEST_F(ClientsTest, NotANumberAndInfinityAreRefusedEverywhere) {
       const Type& type = field.type->kind == Kind::kOptional ? *field.type->element : *field.type;
       if (type.kind != Kind::kReal) continue;
       for (const char* value : {"nan", ".nan", "NaN", "inf", ".inf", "-.inf", "-inf", "Infinity", "1e999", "-1e999"}) {
-        clients.OnCommand(Command(++id, std::string(verb.name), "{" + std::string(field.name) + ": " + value + "}"), 0);
+        msgs::command command =
+            Command(++id, std::string(verb.name), "{" + std::string(field.name) + ": " + value + "}");
+        if (verb.target_kind == "flex_cam") command.target = "cutter";
+        clients.OnCommand(command, 0);
         ExpectError(OneReply(clients), ErrorId::kParameter, std::string(field.name));
       }
     }

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <random>
 
+#include "takt/core/describe.h"
 #include "test_machine.h"
 
 namespace takt::lcm {
@@ -78,6 +80,127 @@ TEST(Messages, AxisStateKeepsEveryNumber) {
   EXPECT_EQ(m.limit_negative, 0);
   EXPECT_EQ(m.reference, 1);
   EXPECT_EQ(m.touch_probe, 0);
+}
+
+// A number in a type of any size.
+void Put(const Type& type, std::int64_t value, void* at) {
+  switch (type.kind) {
+    case Kind::kReal:
+      *static_cast<double*>(at) = static_cast<double>(value) + 0.25;
+      return;
+    case Kind::kBool:
+      *static_cast<bool*>(at) = true;
+      return;
+    default:
+      ASSERT_TRUE(type.kind == Kind::kInteger || type.kind == Kind::kEnum);
+      std::memcpy(at, &value, type.size);  // little-endian, as all this runs on
+  }
+}
+
+struct FlexCamField {
+  std::string_view name;
+  double (*in_message)(const msgs::flex_cam_state&);
+};
+
+// EN-20, CAM-10: each output has its own field of the same name, and changes no other.
+TEST(Messages, FlexCamStateKeepsEveryNumber) {
+#define FIELD(field)                                                                   \
+  {                                                                                    \
+#field, [](const msgs::flex_cam_state& m) { return static_cast<double>(m.field); } \
+  }
+  const std::vector<FlexCamField> fields = {
+      FIELD(set_offset_master),
+      FIELD(set_offset_slave),
+      FIELD(set_scaling_master),
+      FIELD(set_scaling_slave),
+      FIELD(set_x_position),
+      FIELD(set_x_velocity),
+      FIELD(set_x_acceleration),
+      FIELD(set_y_position),
+      FIELD(set_y_velocity),
+      FIELD(set_y_acceleration),
+      FIELD(actual_slave_position),
+      FIELD(actual_slave_velocity),
+      FIELD(slave_max_position),
+      FIELD(slave_min_position),
+      FIELD(slave_max_velocity),
+      FIELD(slave_max_acceleration),
+      FIELD(ip01_set_scaling_master),
+      FIELD(ip02_scaling_mode_master),
+      FIELD(ip03_set_offset_master),
+      FIELD(ip04_set_offset_slave),
+      FIELD(ip05_offset_mode_slave),
+      FIELD(ip06_set_scaling_slave),
+      FIELD(ip07_scaling_mode_slave),
+      FIELD(ip08_cam_table1),
+      FIELD(ip09_cam_table2),
+      FIELD(ip10_cam_table3),
+      FIELD(ip11_cam_table4),
+      FIELD(mp01_set_master_position),
+      FIELD(mp02_set_slave_position),
+      FIELD(mp03_master_to_x_position),
+      FIELD(mp04_cam_profiler_position_out),
+      FIELD(mp05_set_y_position),
+      FIELD(mp06_y_to_slave_position),
+      FIELD(op01_set_x_position_out),
+      FIELD(op02_set_y_position_out),
+      FIELD(error),
+      FIELD(warning),
+      FIELD(state),
+      FIELD(cam_table),
+      FIELD(next_cam_table),
+      FIELD(pending_changes),
+      FIELD(cam_ends),
+      FIELD(internal_control_active),
+      FIELD(axis_enabled),
+      FIELD(done),
+      FIELD(busy),
+      FIELD(is_homed),
+      FIELD(hw_limit_switch_positive),
+      FIELD(hw_limit_switch_negative),
+      FIELD(sw_limit_enabled),
+      FIELD(sw_limit_switch_active),
+      FIELD(cam_synchronised),
+      FIELD(acc_dec_sync),
+      FIELD(end_of_profile),
+      FIELD(sequencer_active),
+      FIELD(bounds_valid),
+  };
+#undef FIELD
+  engine::Machine machine = TestMachine();
+  machine.flex_cams.resize(2);
+  machine.flex_cams[0].name = "other";
+  machine.flex_cams[1].name = "cutter";
+  machine.cycle.period_s = 0.00025;
+  const Type& outputs = TypeOf<flexcam::Outputs>();
+  ASSERT_EQ(fields.size(), outputs.fields.size());
+  engine::FlexCamSnapshot plain;
+  plain.cycle = 4'000'001;
+  plain.index = 1;
+  const msgs::flex_cam_state before = ThroughBytes(ToMessage(plain, machine));
+  EXPECT_EQ(before.cycle, 4'000'001);
+  EXPECT_EQ(before.time_ns, 1'000'000'250'000);
+  EXPECT_EQ(before.name, "cutter");
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const Field& field = outputs.fields[i];
+    ASSERT_EQ(field.name, fields[i].name);
+    const bool is_enum = field.type->kind == Kind::kEnum;
+    const std::int64_t value =
+        is_enum ? field.type->enumerators.back().value : 4'000'000'000 + static_cast<std::int64_t>(i);
+    engine::FlexCamSnapshot changed = plain;
+    Put(*field.type, value, reinterpret_cast<std::byte*>(&changed.outputs) + field.offset);
+    const msgs::flex_cam_state after = ThroughBytes(ToMessage(changed, machine));
+    double wanted = static_cast<double>(value);
+    if (field.type->kind == Kind::kReal) wanted += 0.25;
+    if (field.type->kind == Kind::kBool) wanted = 1;
+    EXPECT_EQ(fields[i].in_message(after), wanted) << field.name;
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      if (k == i) continue;
+      EXPECT_EQ(fields[k].in_message(after), fields[k].in_message(before)) << field.name << " " << fields[k].name;
+    }
+  }
+  EXPECT_EQ(static_cast<int>(flexcam::ModuleState::kError), msgs::flex_cam_state::STATE_ERROR);
+  EXPECT_EQ(static_cast<int>(flexcam::ModuleState::kSync), msgs::flex_cam_state::STATE_SYNC);
 }
 
 // EN-05, EN-20
