@@ -1,7 +1,7 @@
 """3-6: running a cam cyclically.
 
-The cam is 240° long, the master's turn 360°. Each cycle of the cam begins where the one before ends, wherever the master
-is then.
+The cam is 240° long, the master's turn 360°. Each cycle of the cam begins where the one before ends, wherever the
+master is then.
 """
 
 import numpy as np

@@ -6,13 +6,20 @@ The slave stands 30 mm below Y, and stays so far below it.
 import takt
 from figure import SPEED, mark, meets, ready, stroke, turns
 
-SIGNALS = ("master.set_position", "slave.set_position", "slave.set_velocity", "flex.cam_synchronised")
+SIGNALS = (
+    "master.set_position",
+    "slave.set_position",
+    "flex.set_y_position",
+    "slave.set_velocity",
+    "flex.cam_synchronised",
+)
 
 
 def scenario(session: takt.Session) -> None:
     ready(session, "flex")
     master, slave, cam = session.axis("master"), session.axis("slave"), session.flex_cam("flex")
     master.move_absolute(position=90, velocity=180).wait()
+    session.mark("the slave goes anywhere")
     slave.move_absolute(position=20, velocity=100).wait()
     session.run(0.3)
     session.mark("clutch: relative")

@@ -23,6 +23,7 @@ def scenario(session: takt.Session) -> None:
     master, cam = session.axis("master"), session.flex_cam("flex")
     cam.configure(sync_mode="ramp_time", sync_in_time_s=2).wait()
     master.move_absolute(position=90, velocity=180).wait()
+    session.mark("at rest")
     session.run(0.3)
     session.mark("clutch: ramp_time")
     closing = cam.control(sync_cam=True)

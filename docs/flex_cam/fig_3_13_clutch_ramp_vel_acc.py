@@ -1,6 +1,7 @@
 """3-13: closing the clutch with velocity and ramps of its own (ramp_vel_acc).
 
-What lies between the slave and Y goes to zero at 40 mm/s; that comes on top of the cam's velocity once the master turns.
+What lies between the slave and Y goes to zero at 40 mm/s; once the master turns, that comes on top of
+the cam's velocity.
 """
 
 import takt
@@ -25,6 +26,7 @@ def scenario(session: takt.Session) -> None:
     ).wait()
     master.move_absolute(position=90, velocity=180).wait()
     slave.move_absolute(position=-50, velocity=200).wait()
+    session.mark("at rest")
     session.run(0.3)
     session.mark("clutch: ramp_vel_acc")
     closing = cam.control(sync_cam=True)

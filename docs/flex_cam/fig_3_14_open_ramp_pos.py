@@ -21,6 +21,7 @@ def scenario(session: takt.Session) -> None:
     ready(session, "flex")
     master, cam = session.axis("master"), session.flex_cam("flex")
     cam.control(sync_cam=True).wait()
+    session.mark("the master turns")
     master.move_velocity(velocity=SPEED)
     session.run(2.5)
     cam.configure(sync_mode="ramp_pos", master_sync_out_distance=200, slave_sync_out_position=-50).wait()

@@ -22,6 +22,7 @@ def scenario(session: takt.Session) -> None:
     ready(session, "flex")
     master, cam = session.axis("master"), session.flex_cam("flex")
     cam.control(sync_cam=True).wait()
+    session.mark("the master turns")
     master.move_velocity(velocity=SPEED)
     session.run(2.5)
     cam.configure(sync_mode="ramp_time", sync_out_time_s=2, slave_sync_out_position=-50).wait()

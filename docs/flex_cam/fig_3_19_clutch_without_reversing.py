@@ -1,7 +1,7 @@
 """3-19: closing the clutch over a way of the master, with and without reversing.
 
-Both slaves stand at 90° and are to be on the cam at the master's 360°, where Y is 0°. The one that may reverse takes the
-short way back; the other one goes up to the next turn.
+Both slaves stand at 90° and are to be on the cam at the master's 360°, where Y is 0°. The one that may reverse takes
+the short way back; the other one goes up to the next turn.
 """
 
 import numpy as np
