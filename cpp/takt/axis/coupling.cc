@@ -87,7 +87,7 @@ cam::Value InStep(const Context& c, double master, const State& s) {
 }
 
 KinematicState DemandOf(const cam::Value& at, const KinematicState& master) {
-  return {at.y, at.dy * master.velocity, at.ddy * master.velocity * master.velocity + at.dy * master.acceleration};
+  return trajectory::AlongWay({at.y, at.dy, at.ddy}, master);
 }
 
 // Moves the place where both are in step to the turn, or for a relative cam the place, that lies at hand if the slave
@@ -104,7 +104,7 @@ void PlaceSlave(const Context& c, double expected, State& s) {
   k.cam.slave += wanted - place;
 }
 
-// The curve over the share x = 0..1 of the master's way that begins as the slave moves now and ends in step.
+// The curve over the master's way that begins as the slave moves now and ends in step.
 void BeginCurve(const Context& c, const KinematicState& master, State& s) {
   CouplingState& k = s.coupling;
   k.joining = Joining::kOnCurve;
@@ -119,27 +119,11 @@ void BeginCurve(const Context& c, const KinematicState& master, State& s) {
   }
   PlaceSlave(c, own + 0.5 * (slope + InStep(c, k.master_sync, s).dy) * way, s);
   const cam::Value end = InStep(c, k.master_sync, s);
-  const double y1 = end.y - own;
-  const double d0 = slope * way;
-  const double d1 = end.dy * way;
-  const double b0 = bend * way * way;
-  const double b1 = end.ddy * way * way;
-  k.curve = {own,
-             d0,
-             0.5 * b0,
-             10 * y1 - 6 * d0 - 4 * d1 - 1.5 * b0 + 0.5 * b1,
-             -15 * y1 + 8 * d0 + 7 * d1 + 1.5 * b0 - b1,
-             6 * y1 - 3 * d0 - 3 * d1 - 0.5 * b0 + 0.5 * b1};
+  k.curve = trajectory::Connect(way, {own, slope, bend}, {end.y, end.dy, end.ddy});
 }
 
 KinematicState OnCurve(const CouplingState& k, const KinematicState& master) {
-  const double way = k.master_sync - k.curve_begin;
-  const double x = (master.position - k.curve_begin) / way;
-  const auto& q = k.curve;
-  const double y = q[0] + x * (q[1] + x * (q[2] + x * (q[3] + x * (q[4] + x * q[5]))));
-  const double slope = (q[1] + x * (2 * q[2] + x * (3 * q[3] + x * (4 * q[4] + x * 5 * q[5])))) / way;
-  const double bend = (2 * q[2] + x * (6 * q[3] + x * (12 * q[4] + x * 20 * q[5]))) / (way * way);
-  return DemandOf({y, slope, bend, 0}, master);
+  return trajectory::AlongWay(k.curve.At(master.position - k.curve_begin), master);
 }
 
 // From where on a waiting slave gets into step.
@@ -184,7 +168,7 @@ bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, Kinem
     const double share = way == 0 ? 1 : (master.position - k.curve_begin) / way;
     if (share < 1) {
       // A master that goes back before the curve finds the slave where the curve began.
-      demand = share >= 0 ? OnCurve(k, master) : KinematicState{k.curve[0], 0, 0};
+      demand = share >= 0 ? OnCurve(k, master) : KinematicState{k.curve.At(0).position, 0, 0};
       return true;
     }
     k.joining = Joining::kJoined;
@@ -472,7 +456,7 @@ void describe(Description<CouplingState>& d) {
   d.internal<&S::slave_sync>(unit::u, "Where this axis is then.");
   d.internal<&S::curve_begin>("Where the curve begins.");
   d.internal<&S::begin_side>("On which side of that the master was.");
-  d.internal<&S::curve>("Coefficients over the share of the way.");
+  d.internal<&S::curve>("Over the master's way from there on.");
   d.internal<&S::cam>("The cam that it follows.");
   d.internal<&S::turn>("After how far there is the next such place of the master.");
   d.internal<&S::phase>("Added to the master's position.");

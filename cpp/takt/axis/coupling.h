@@ -1,7 +1,6 @@
 // Axes coupled at run time: gears, their phase, sums of two masters, cams.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "takt/axis/cam_law.h"
@@ -11,6 +10,7 @@
 #include "takt/core/feedback.h"
 #include "takt/core/status.h"
 #include "takt/trajectory/profile.h"
+#include "takt/trajectory/quintic.h"
 
 namespace takt::axis {
 
@@ -30,12 +30,12 @@ struct CouplingState {
   bool in_step = false;  // with the masters, as far as they are known
   bool locked = false;   // followed by place: gears and sums are from when they were in step first
   Joining joining = Joining::kJoined;
-  double master_sync = 0;         // master's u over all turns, where both are in step ...
-  double slave_sync = 0;          // ... with the slave here (u over all turns)
-  double turn = 0;                // after so far there is the next such place of the master; 0: there is none
-  double curve_begin = 0;         // master's u, where the curve begins
-  double begin_side = 0;          // on which side of that the master was when it was last looked at
-  std::array<double, 6> curve{};  // u, coefficients over the share of the way
+  double master_sync = 0;     // master's u over all turns, where both are in step ...
+  double slave_sync = 0;      // ... with the slave here (u over all turns)
+  double turn = 0;            // after so far there is the next such place of the master; 0: there is none
+  double curve_begin = 0;     // master's u, where the curve begins
+  double begin_side = 0;      // on which side of that the master was when it was last looked at
+  trajectory::Quintic curve;  // u, over the master's way from there on
   CamState cam;
 
   // The phase: a motion in the master's unit on top of its position.

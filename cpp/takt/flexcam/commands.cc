@@ -14,30 +14,31 @@ template <template <typename> class Of>
 void DescribeInputs(Description<InputsOf<Of>>& d) {
   using I = InputsOf<Of>;
   const Range position = between(-1e12, 1e12);
-  d.template defaulted<&I::enable>("The module works; false: the slave is left alone. Seed: xEnable.");
+  d.template defaulted<&I::enable>("The module works; false: the slave is left alone. Flex Cam: xEnable.");
   d.template defaulted<&I::internal_control>(
-      "The slave takes commands of its own, the module waits; stop works on. Seed: xEnableInternalControl.");
-  d.template defaulted<&I::reset_error>("A rising edge acknowledges errors of module and slave. Seed: xResetError.");
-  d.template defaulted<&I::regulator_on>("The slave is switched on. Seed: xRegulatorOn.");
-  d.template defaulted<&I::stop>("Stops the slave and keeps it so. Seed: xStop.");
-  d.template defaulted<&I::halt>("Brings the slave to rest and keeps it so. Seed: xHalt.");
-  d.template defaulted<&I::home_execute>("A rising edge starts homing. Seed: xHomeExecute.");
-  d.template defaulted<&I::home_abs_switch>("A reference switch beside that of the slave. Seed: xHomeAbsSwitch.");
-  d.template defaulted<&I::enable_hw_limit>("The two inputs below are looked at. Seed: xEnableHWLimit.");
-  d.template defaulted<&I::hw_limit_positive>("A limit switch beside those of the slave. Seed: xHWLimitPos.");
-  d.template defaulted<&I::hw_limit_negative>("A limit switch beside those of the slave. Seed: xHWLimitNeg.");
-  d.template defaulted<&I::sync_cam>("A rising edge closes the clutch, a falling one opens it. Seed: xSyncCam.");
+      "The slave takes commands of its own, the module waits; stop works on. Flex Cam: xEnableInternalControl.");
+  d.template defaulted<&I::reset_error>(
+      "A rising edge acknowledges errors of module and slave. Flex Cam: xResetError.");
+  d.template defaulted<&I::regulator_on>("The slave is switched on. Flex Cam: xRegulatorOn.");
+  d.template defaulted<&I::stop>("Stops the slave and keeps it so. Flex Cam: xStop.");
+  d.template defaulted<&I::halt>("Brings the slave to rest and keeps it so. Flex Cam: xHalt.");
+  d.template defaulted<&I::home_execute>("A rising edge starts homing. Flex Cam: xHomeExecute.");
+  d.template defaulted<&I::home_abs_switch>("A reference switch beside that of the slave. Flex Cam: xHomeAbsSwitch.");
+  d.template defaulted<&I::enable_hw_limit>("The two inputs below are looked at. Flex Cam: xEnableHWLimit.");
+  d.template defaulted<&I::hw_limit_positive>("A limit switch beside those of the slave. Flex Cam: xHWLimitPos.");
+  d.template defaulted<&I::hw_limit_negative>("A limit switch beside those of the slave. Flex Cam: xHWLimitNeg.");
+  d.template defaulted<&I::sync_cam>("A rising edge closes the clutch, a falling one opens it. Flex Cam: xSyncCam.");
   d.template defaulted<&I::sync_out_instant>(
-      "Opens the clutch at once and stops the slave; it stays open as long. Seed: xSyncOutInstant.");
+      "Opens the clutch at once and stops the slave; it stays open as long. Flex Cam: xSyncOutInstant.");
   d.template defaulted<&I::cam_change_instant>(
-      "A rising edge changes to the cam that is set at once. Seed: xCamChangeInstant.");
-  d.template defaulted<&I::cam_sequencer>("Runs the sequence of cam_sequence_mode. Seed: xCamSequencer.");
-  d.template defaulted<&I::offset_master>(position, "Added to X, in its unit. Seed: lrSetOffsetMaster.");
-  d.template defaulted<&I::offset_slave>(unit::u, position, "Added to Y. Seed: lrSetOffsetSlave.");
+      "A rising edge changes to the cam that is set at once. Flex Cam: xCamChangeInstant.");
+  d.template defaulted<&I::cam_sequencer>("Runs the sequence of cam_sequence_mode. Flex Cam: xCamSequencer.");
+  d.template defaulted<&I::offset_master>(position, "Added to X, in its unit. Flex Cam: lrSetOffsetMaster.");
+  d.template defaulted<&I::offset_slave>(unit::u, position, "Added to Y. Flex Cam: lrSetOffsetSlave.");
   d.template defaulted<&I::scaling_master>(unit::one, between(1e-9, 1e9),
-                                           "X per the master's unit. Seed: lrSetScalingMaster.");
-  d.template defaulted<&I::scaling_slave>(unit::one, between(0, 1e9), "Of Y. Seed: lrSetScalingSlave.");
-  d.template defaulted<&I::cam_table>(between(1, kSlots), "The slot of the cam to run. Seed: eSetCamTable.");
+                                           "X per the master's unit. Flex Cam: lrSetScalingMaster.");
+  d.template defaulted<&I::scaling_slave>(unit::one, between(0, 1e9), "Of Y. Flex Cam: lrSetScalingSlave.");
+  d.template defaulted<&I::cam_table>(between(1, kSlots), "The slot of the cam to run. Flex Cam: eSetCamTable.");
   d.template defaulted<&I::virtual_velocity>(position, "Of a master without an axis, in its unit per second.");
 }
 
@@ -69,7 +70,7 @@ void describe(Description<Control>& d) {
 }
 
 void describe(Description<Jog>& d) {
-  d.about("Jogs the slave as long as a key is held; the first of two keys counts. Seed: xJogPos, xJogNeg.");
+  d.about("Jogs the slave as long as a key is held; the first of two keys counts. Flex Cam: xJogPos, xJogNeg.");
   d.defaulted<&Jog::positive>("The key for upwards.");
   d.defaulted<&Jog::negative>("The key for downwards.");
 }
@@ -77,7 +78,7 @@ void describe(Description<Jog>& d) {
 void describe(Description<SetCam>& d) {
   d.about("Puts another cam into a slot. The cam that runs there is changed as when another slot is set.");
   d.required<&SetCam::slot>(between(1, kSlots), "Which one.");
-  d.required<&SetCam::cam>("Name of a cam of the machine. Seed: CamTable1 to CamTable4.");
+  d.required<&SetCam::cam>("Name of a cam of the machine. Flex Cam: CamTable1 to CamTable4.");
 }
 
 void describe(Description<ChangeCam>& d) {

@@ -17,7 +17,7 @@ namespace takt::flexcam {
 
 inline constexpr std::size_t kSlots = 4;
 
-// The inputs of the seed's 3.3.2; "Seed:" in the doc strings is the name there.
+// The inputs of the seed's 3.3.2; "Flex Cam:" in the doc strings is the name there.
 template <template <typename> class Of>
 struct InputsOf {
   Of<bool> enable = Preset<Of>(true);

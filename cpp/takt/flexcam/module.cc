@@ -468,7 +468,7 @@ void Step(const Context& c, axis::State& slave, State& s) noexcept {
   } else {
     Disable(c, slave, s);
   }
-  if (s.state != ModuleState::kSync) ShowWay(c, slave, s);
+  if (s.state != ModuleState::kSync || s.clutch.phase == ClutchPhase::kReleased) ShowWay(c, slave, s);
   if (s.settings.calculate_bounds) {
     WorkOut(WhatToBound(s), c.slave.machine.cams, s.bounds);
   } else if (s.bounds.valid) {

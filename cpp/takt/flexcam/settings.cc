@@ -11,79 +11,80 @@ template <template <typename> class Of>
 void DescribeSettings(Description<SettingsOf<Of>>& d) {
   using S = SettingsOf<Of>;
   const Range factor = between(1e-9, 1e12);
-  d.template defaulted<&S::stop_deceleration>(unit::u_s2, factor, "Of a stop. Seed: lrStopDec.");
-  d.template defaulted<&S::stop_jerk>(unit::u_s3, factor, "Of a stop. Seed: lrStopJerk.");
-  d.template defaulted<&S::halt_deceleration>(unit::u_s2, factor, "Of a halt. Seed: lrHaltDec.");
+  d.template defaulted<&S::stop_deceleration>(unit::u_s2, factor, "Of a stop. Flex Cam: lrStopDec.");
+  d.template defaulted<&S::stop_jerk>(unit::u_s3, factor, "Of a stop. Flex Cam: lrStopJerk.");
+  d.template defaulted<&S::halt_deceleration>(unit::u_s2, factor, "Of a halt. Flex Cam: lrHaltDec.");
   d.template defaulted<&S::jerk>(unit::u_s3, factor,
-                                 "Of offset and scaling ramps, the immediate opening and a halt. Seed: lrJerk.");
-  d.template defaulted<&S::jog_velocity>(unit::u_s, factor, "Of a jog. Seed: lrJogVel.");
-  d.template defaulted<&S::jog_acceleration>(unit::u_s2, factor, "Of a jog. Seed: lrJogAcc.");
-  d.template defaulted<&S::jog_deceleration>(unit::u_s2, factor, "Of a jog. Seed: lrJogDec.");
-  d.template defaulted<&S::jog_jerk>(unit::u_s3, factor, "Of a jog. Seed: lrJogJerk.");
+                                 "Of offset and scaling ramps, the immediate opening and a halt. Flex Cam: lrJerk.");
+  d.template defaulted<&S::jog_velocity>(unit::u_s, factor, "Of a jog. Flex Cam: lrJogVel.");
+  d.template defaulted<&S::jog_acceleration>(unit::u_s2, factor, "Of a jog. Flex Cam: lrJogAcc.");
+  d.template defaulted<&S::jog_deceleration>(unit::u_s2, factor, "Of a jog. Flex Cam: lrJogDec.");
+  d.template defaulted<&S::jog_jerk>(unit::u_s3, factor, "Of a jog. Flex Cam: lrJogJerk.");
   d.template defaulted<&S::home_position>(unit::u, between(-1e12, 1e12),
-                                          "What the reference is called. Seed: lrHomePosition.");
+                                          "What the reference is called. Flex Cam: lrHomePosition.");
   d.template defaulted<&S::home_by_module>(
-      "True: homing goes by the module's homing section, not by the axis' own. Seed: xUseHomeExtParameter.");
-  d.template defaulted<&S::sync_mode>("How the clutch closes and opens. Seed: eSyncMode.");
+      "True: homing goes by the module's homing section, not by the axis' own. Flex Cam: xUseHomeExtParameter.");
+  d.template defaulted<&S::sync_mode>("How the clutch closes and opens. Flex Cam: eSyncMode.");
   d.template defaulted<&S::sync_direction>(
-      "In which direction of the master the clutch may begin to close. Seed: eSyncDirection.");
+      "In which direction of the master the clutch may begin to close. Flex Cam: eSyncDirection.");
   d.template defaulted<&S::master_sync_in_distance>(
       between(0, 1e12),
       "Way of the master over which the clutch closes (ramp_pos), in its unit; 0: at once, as fast as "
-      "the slave's limits allow. Seed: lrMasterSyncInDist.");
+      "the slave's limits allow. Flex Cam: lrMasterSyncInDist.");
   d.template defaulted<&S::master_sync_in_position>(
       between(-1e12, 1e12),
-      "Master's position at which the clutch is closed (ramp_pos), in its unit. Seed: "
+      "Master's position at which the clutch is closed (ramp_pos), in its unit. Flex Cam: "
       "lrMasterSyncInPos.");
   d.template defaulted<&S::master_sync_out_distance>(
       between(0, 1e12),
-      "Way of the master over which the clutch opens (ramp_pos), in its unit; 0: at once. Seed: "
+      "Way of the master over which the clutch opens (ramp_pos), in its unit; 0: at once. Flex Cam: "
       "lrMasterSyncOutDist.");
-  d.template defaulted<&S::slave_sync_out_position>(
-      unit::u, between(-1e12, 1e12),
-      "Where the slave stands once the clutch is open (ramp_pos, ramp_time, ramp_vel_acc). Seed: lrSlaveSyncOutPos.");
+  d.template defaulted<&S::slave_sync_out_position>(unit::u, between(-1e12, 1e12),
+                                                    "Where the slave stands once the clutch is open (ramp_pos, "
+                                                    "ramp_time, ramp_vel_acc). Flex Cam: lrSlaveSyncOutPos.");
   d.template defaulted<&S::sync_in_time_s>(unit::s, between(1e-3, 1e6),
-                                           "How long the clutch takes to close (ramp_time). Seed: lrSyncInTime.");
+                                           "How long the clutch takes to close (ramp_time). Flex Cam: lrSyncInTime.");
   d.template defaulted<&S::sync_out_time_s>(unit::s, between(1e-3, 1e6),
-                                            "How long the clutch takes to open (ramp_time). Seed: lrSyncOutTime.");
+                                            "How long the clutch takes to open (ramp_time). Flex Cam: lrSyncOutTime.");
   d.template defaulted<&S::sync_out_instant_deceleration>(unit::u_s2, factor,
-                                                          "Of the immediate opening. Seed: lrSyncOutInstantDec.");
-  d.template defaulted<&S::sync_velocity>(unit::u_s, factor, "Of the clutch (ramp_vel_acc). Seed: lrSyncVel.");
-  d.template defaulted<&S::sync_acceleration>(unit::u_s2, factor, "Of the clutch (ramp_vel_acc). Seed: lrSyncAcc.");
-  d.template defaulted<&S::sync_deceleration>(unit::u_s2, factor, "Of the clutch (ramp_vel_acc). Seed: lrSyncDec.");
-  d.template defaulted<&S::sync_jerk>(unit::u_s3, factor, "Of the clutch (ramp_vel_acc). Seed: lrSyncJerk.");
-  d.template defaulted<&S::cam_cyclic>("True: cams are run again and again; false: once. Seed: xCamCyclic.");
+                                                          "Of the immediate opening. Flex Cam: lrSyncOutInstantDec.");
+  d.template defaulted<&S::sync_velocity>(unit::u_s, factor, "Of the clutch (ramp_vel_acc). Flex Cam: lrSyncVel.");
+  d.template defaulted<&S::sync_acceleration>(unit::u_s2, factor, "Of the clutch (ramp_vel_acc). Flex Cam: lrSyncAcc.");
+  d.template defaulted<&S::sync_deceleration>(unit::u_s2, factor, "Of the clutch (ramp_vel_acc). Flex Cam: lrSyncDec.");
+  d.template defaulted<&S::sync_jerk>(unit::u_s3, factor, "Of the clutch (ramp_vel_acc). Flex Cam: lrSyncJerk.");
+  d.template defaulted<&S::cam_cyclic>("True: cams are run again and again; false: once. Flex Cam: xCamCyclic.");
   d.template defaulted<&S::master_absolute>(
-      "True: X is the master's position when a cam is taken up; false: X begins at the cam's beginning. Seed: "
+      "True: X is the master's position when a cam is taken up; false: X begins at the cam's beginning. Flex Cam: "
       "xMasterAbsolute.");
   d.template defaulted<&S::slave_absolute>(
-      "True: the slave's position is Y when a cam is taken up; false: Y begins where the slave is. Seed: "
+      "True: the slave's position is Y when a cam is taken up; false: Y begins where the slave is. Flex Cam: "
       "xSlaveAbsolute.");
-  d.template defaulted<&S::cam_sequence_mode>("Which cams the sequencer runs. Seed: eCamSequenceMode.");
-  d.template defaulted<&S::offset_mode_master>("When a master offset is taken over. Seed: eOffsetModeMaster.");
-  d.template defaulted<&S::offset_mode_slave>("When a slave offset is taken over. Seed: eOffsetModeSlave.");
+  d.template defaulted<&S::cam_sequence_mode>("Which cams the sequencer runs. Flex Cam: eCamSequenceMode.");
+  d.template defaulted<&S::offset_mode_master>("When a master offset is taken over. Flex Cam: eOffsetModeMaster.");
+  d.template defaulted<&S::offset_mode_slave>("When a slave offset is taken over. Flex Cam: eOffsetModeSlave.");
   d.template defaulted<&S::scaling_mode_master>(
-      "When and how a master factor is taken over. Seed: eScalingModeMaster.");
-  d.template defaulted<&S::scaling_mode_slave>("When and how a slave factor is taken over. Seed: eScalingModeSlave.");
+      "When and how a master factor is taken over. Flex Cam: eScalingModeMaster.");
+  d.template defaulted<&S::scaling_mode_slave>(
+      "When and how a slave factor is taken over. Flex Cam: eScalingModeSlave.");
   d.template defaulted<&S::offset_scaling_master_velocity>(
-      factor, "Of the ramps of X, in its unit per second. Seed: lrOffsetScalingMasterVel.");
+      factor, "Of the ramps of X, in its unit per second. Flex Cam: lrOffsetScalingMasterVel.");
   d.template defaulted<&S::offset_scaling_master_acceleration>(
-      factor, "Of the ramps of X, in its unit per second squared. Seed: lrOffsetScalingMasterAcc.");
+      factor, "Of the ramps of X, in its unit per second squared. Flex Cam: lrOffsetScalingMasterAcc.");
   d.template defaulted<&S::offset_scaling_master_deceleration>(
-      factor, "Of the ramps of X, in its unit per second squared. Seed: lrOffsetScalingMasterDec.");
+      factor, "Of the ramps of X, in its unit per second squared. Flex Cam: lrOffsetScalingMasterDec.");
   d.template defaulted<&S::offset_scaling_slave_velocity>(unit::u_s, factor,
-                                                          "Of the slave's ramps. Seed: lrOffsetScalingSlaveVel.");
-  d.template defaulted<&S::offset_scaling_slave_acceleration>(unit::u_s2, factor,
-                                                              "Of the slave's ramps. Seed: lrOffsetScalingSlaveAcc.");
-  d.template defaulted<&S::offset_scaling_slave_deceleration>(unit::u_s2, factor,
-                                                              "Of the slave's ramps. Seed: lrOffsetScalingSlaveDec.");
+                                                          "Of the slave's ramps. Flex Cam: lrOffsetScalingSlaveVel.");
+  d.template defaulted<&S::offset_scaling_slave_acceleration>(
+      unit::u_s2, factor, "Of the slave's ramps. Flex Cam: lrOffsetScalingSlaveAcc.");
+  d.template defaulted<&S::offset_scaling_slave_deceleration>(
+      unit::u_s2, factor, "Of the slave's ramps. Flex Cam: lrOffsetScalingSlaveDec.");
   d.template defaulted<&S::position_control>(
-      "Whether ramps of X and a clutch over the master's way may move against it. Seed: ePosCtrlDirection.");
-  d.template defaulted<&S::calculate_bounds>("True: the extreme values are worked out. Seed: xCalcCamBounds.");
+      "Whether ramps of X and a clutch over the master's way may move against it. Flex Cam: ePosCtrlDirection.");
+  d.template defaulted<&S::calculate_bounds>("True: the extreme values are worked out. Flex Cam: xCalcCamBounds.");
   d.template defaulted<&S::master_max_velocity>(
-      between(0, 1e12), "Largest speed of the master for the extreme values. Seed: lrMasterMaxVel.");
+      between(0, 1e12), "Largest speed of the master for the extreme values. Flex Cam: lrMasterMaxVel.");
   d.template defaulted<&S::master_max_acceleration>(
-      between(0, 1e12), "Largest acceleration of the master for the extreme values. Seed: lrMasterMaxAcc.");
+      between(0, 1e12), "Largest acceleration of the master for the extreme values. Flex Cam: lrMasterMaxAcc.");
   d.template defaulted<&S::master_filter_s>(
       unit::s, between(0, 10),
       "Time constant of the filter for measured masters; a constant speed passes without lag. 0: no filter.");

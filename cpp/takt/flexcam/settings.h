@@ -1,4 +1,4 @@
-// What a cam module's user sets and may change at any time: the parameters of the seed's 3.3.4. In doc strings "Seed:"
+// What a cam module's user sets and may change at any time: the parameters of the seed's 3.3.4. In doc strings "Flex Cam:"
 // is the name there. A change takes effect where the setting is next looked at: modes of a clutch, for instance, when
 // it next closes or opens.
 #pragma once

@@ -11,7 +11,7 @@ namespace takt::trajectory {
 // Positions, velocities and accelerations are those over x: per s for a time, per master's unit for a way.
 struct Quintic {
   std::array<double, 6> c{};  // over the share x / length, from the lowest power on
-  double length = 1;          // > 0
+  double length = 1;          // not 0; negative where x falls on the way
 
   // Not only between both ends: the curve goes on beyond them.
   KinematicState At(double x) const noexcept {
