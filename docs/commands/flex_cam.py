@@ -3,9 +3,9 @@
 A cam module has one slave follow its master through a cam: over scaling and offset to the X axis, through the cam to
 the Y axis, over scaling and offset to the slave, and through a clutch.
 
-The figures, numbered as in the seed, are runs in virtual time of [one machine](../../docs/flex_cam/machine.yaml). Its
-cams are `stroke`, up and down within a turn of the master, in slot 1, `short_stroke`, the same within 240°, in slot 2,
-and `feed`, 180 mm per 180°, in slot 3.
+The figures, numbered as those of Flex Cam, are runs in virtual time of [one machine](../../docs/flex_cam/machine.yaml).
+Its cams are `stroke`, up and down within a turn of the master, in slot 1, `short_stroke`, the same within 240°, in slot
+2, and `feed`, 180 mm per 180°, in slot 3.
 """
 
 COMMANDS = (

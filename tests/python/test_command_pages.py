@@ -36,7 +36,7 @@ def test_a_page_is_made(group: Path, tmp_path: Path) -> None:
 
 
 def test_no_figure_is_missing() -> None:
-    """The seed's 3-6 to 3-20."""
+    """Those of Flex Cam, 3-6 to 3-20."""
     assert [name.split("_")[2] for name in FIGURES] == [f"{number:02}" for number in range(6, 21)]
 
 
