@@ -2,8 +2,9 @@
 
 Usage: build/venv/bin/python tools/command_pages.py [DIRECTORY]        (./dev docs calls it; without one: build/docs)
 
-A group is a scenario file in docs/commands/ that also says COMMANDS, ERRORS (their numbers) and SIGNALS (to draw). Its
-doc string is the page's introduction.
+A group is a file in docs/commands/ that says COMMANDS and ERRORS (their numbers); its doc string is the page's
+introduction. It is a scenario file with SIGNALS to draw, or has a folder of such files for more pictures than one:
+docs/commands/flex_cam.py has docs/flex_cam/. A picture begins at the first mark.
 """
 
 from __future__ import annotations
@@ -17,27 +18,24 @@ import takt
 from takt import plot, reference
 from takt.scenario import load_scenario, run_scenario
 
-ROOT = Path(__file__).resolve().parent.parent
-GROUPS = sorted((ROOT / "docs" / "commands").glob("*.py"))
+DOCS = Path(__file__).resolve().parent.parent / "docs"
+GROUPS = sorted((DOCS / "commands").glob("*.py"))
+
+
+def figures(group: Path) -> list[Path]:
+    """The scenario files of a group that has a folder of them."""
+    return sorted((DOCS / group.stem).glob("fig_*.py"))
 
 
 def write(group: Path, directory: Path) -> Path:
-    """Runs the scenario of a group, draws it, writes its page. Raises when one of its assertions fails."""
-    scenario = load_scenario(group)
+    """Runs the scenarios of a group, draws them, writes its page. Raises when one of their assertions fails."""
+    parts = [*heading("#", group)]
+    for figure in figures(group):
+        parts += [*heading("##", figure), *drawn(figure, directory)]
+    if not figures(group):
+        parts += drawn(group, directory)
     said = about(group)
-    with takt.Engine(scenario.machine) as engine:
-        outcome = run_scenario(scenario, engine)
-    if not outcome.passed:
-        failed = [verdict.sentence for verdict in outcome.verdicts if not verdict.passed]
-        raise RuntimeError(f"{group.name}: {outcome.complaint or failed[0]}")
-    picture = plot.save(plot.draw(outcome.recording, *said.SIGNALS), directory / f"{group.stem}.png")
-    title, _, text = (said.__doc__ or "").strip().partition("\n")
-    parts = [
-        f"# {title.rstrip('.')}",
-        text.strip(),
-        f"![{title.rstrip('.')}]({picture.name})",
-        "The picture is what this does:",
-        f"```python\n{body(group)}\n```",
+    parts += [
         "## Commands",
         reference.commands(said.COMMANDS),
         "## Errors they can end with",
@@ -48,19 +46,44 @@ def write(group: Path, directory: Path) -> Path:
     return page
 
 
-def about(group: Path) -> ModuleType:
-    """The module of a group."""
-    spec = importlib.util.spec_from_file_location(f"commands_{group.stem}", group)
+def heading(level: str, file: Path) -> tuple[str, str]:
+    """Title and text of a file's doc string."""
+    title, _, text = (about(file).__doc__ or "").strip().partition("\n")
+    return f"{level} {title.rstrip('.')}", text.strip()
+
+
+def drawn(file: Path, directory: Path) -> tuple[str, str, str]:
+    """Runs a scenario; its picture, and what was run. Raises when one of its assertions fails."""
+    scenario = load_scenario(file)
+    with takt.Engine(scenario.machine) as engine:
+        outcome = run_scenario(scenario, engine)
+    if not outcome.passed:
+        failed = [verdict.sentence for verdict in outcome.verdicts if not verdict.passed]
+        raise RuntimeError(f"{file.name}: {outcome.complaint or failed[0]}")
+    recording = outcome.recording
+    begin = min(event.time_s for event in recording.events if event.kind == "mark")
+    picture = plot.draw(recording, *about(file).SIGNALS, window=(begin, recording.end_s))
+    path = plot.save(picture, directory / f"{file.stem}.png")
+    return f"![{scenario.title}]({path.name})", "The picture is what this does:", f"```python\n{body(file)}\n```"
+
+
+def about(file: Path) -> ModuleType:
+    """The module of a group or of a figure."""
+    spec = importlib.util.spec_from_file_location(f"commands_{file.stem}", file)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    sys.path.insert(0, str(file.parent))  # for what the figures of a folder share
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        sys.path.pop(0)
     return module
 
 
-def body(group: Path) -> str:
-    """The function `scenario` of a group, as it stands in the file."""
-    text = group.read_text(encoding="utf-8")
+def body(file: Path) -> str:
+    """The function `scenario` of a file, as it stands there."""
+    text = file.read_text(encoding="utf-8")
     begin = text.index("def scenario(")
     return text[begin : text.index("\n\n\n", begin)]
 
@@ -73,6 +96,6 @@ def main(directory: Path) -> None:
 
 
 if __name__ == "__main__":
-    where = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "build" / "docs"
+    where = Path(sys.argv[1]) if len(sys.argv) > 1 else DOCS.parent / "build" / "docs"
     where.mkdir(parents=True, exist_ok=True)
     main(where)

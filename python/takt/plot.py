@@ -211,6 +211,7 @@ def _curves(ax: Axes, recording: Recording, name: str, signals: Sequence[Signal]
         )
         label = f"{component}  {words(field)}" if len(components) > 1 else words(field)
         modulus = recording.info(component).get("modulus") if name == "position" else None
+        label = textwrap.fill(label, 24, subsequent_indent="  ")  # longer ones leave the picture
         ax.plot(*unjoined(table["time_s"], table[field], modulus), label=label, **look)
     _calm_limits(ax)
     handles, labels = ax.get_legend_handles_labels()
