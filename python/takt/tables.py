@@ -127,7 +127,7 @@ def make_recording(
 
 
 def _units(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]) -> dict[str, str]:
-    """What the units in the descriptions stand for. A cam module has the slave's, the master's and those of its cams."""
+    """What the units in the descriptions stand for. A cam module has those of slave, master and its first cam."""
     if kind.name == "axis":
         return {"u": parameters["unit"]}
     of_axes = {a["name"]: str(a["unit"]) for a in machine["axes"]}

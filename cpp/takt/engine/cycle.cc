@@ -164,6 +164,10 @@ void World::MakeModules(const Machine& machine) {
   TypeOf<flexcam::Configure>();
   TypeOf<flexcam::Inputs>();
   TypeOf<flexcam::Control>();
+  TypeOf<flexcam::Jog>();
+  TypeOf<flexcam::SetCam>();
+  TypeOf<flexcam::ChangeCam>();
+  TypeOf<flexcam::WithdrawChanges>();
   module_of.assign(machine.axes.size(), 0);
   const auto index_of = [](const auto& list, const std::string& name) {
     return static_cast<std::uint32_t>(std::ranges::find(list, name, [](const auto& x) { return x.name; }) -

@@ -7,6 +7,7 @@
 #include "takt/axis/guidance.h"
 #include "takt/axis/homing.h"
 #include "takt/core/describe.h"
+#include "takt/core/in_range.h"
 #include "takt/flexcam/run.h"
 
 namespace takt::flexcam {
@@ -515,7 +516,11 @@ State MakeState(const FlexCamParams& params, const std::array<std::uint32_t, kSl
 
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, axis::State& slave,
            State& s) noexcept {
-  std::visit([&](const auto& body) { CarryOut(c, ticket, lease_s, body, slave, s); }, command);
+  const auto carry_out = [&](const auto& body) {
+    if (!InRange(body)) return Report(c, ticket, FeedbackState::kError, ErrorId::kParameter);
+    CarryOut(c, ticket, lease_s, body, slave, s);
+  };
+  std::visit(carry_out, command);
 }
 
 bool Release(const Context&, Ticket ticket, State& s) noexcept {

@@ -164,5 +164,44 @@ TEST(FlexCamBadInput, KnowsEveryCommand) {
   EXPECT_EQ(known.size(), std::variant_size_v<Command>);
 }
 
+// CAM-10, EN-22: a slot that no module has is refused, and nothing is different from a twin that was never asked.
+TEST(FlexCamBadInput, RefusesSlotsThatAreNotThere) {
+  Line asked(BadMachine());
+  Line twin(BadMachine());
+  Synchronise(asked);
+  Synchronise(twin);
+  std::vector<Command> wrong;
+  for (const std::uint32_t slot : {0u, 5u, 4'000'000'000u}) {
+    wrong.push_back(flexcam::SetCam{.slot = slot, .cam = Name::Of("hill")});
+    wrong.push_back(flexcam::ChangeCam{.cam_table = slot});
+    wrong.push_back(flexcam::Control{.cam_table = slot});
+  }
+  for (const Command& command : wrong) {
+    const Ticket ticket = asked.engine.Submit(ToModule(asked.machine, command));
+    asked.Step();
+    twin.Step();
+    EXPECT_EQ(asked.last[ticket].state, FeedbackState::kError) << command.index();
+    EXPECT_EQ(asked.last[ticket].error, ErrorId::kParameter) << command.index();
+    ASSERT_EQ(asked.engine.StateHash(), twin.engine.StateHash()) << command.index();
+  }
+}
+
+// The same for numbers that no text could give: refused as axes refuse them.
+TEST(FlexCamBadInput, RefusesNumbersThatAreNone) {
+  Line asked(BadMachine());
+  Line twin(BadMachine());
+  Synchronise(asked);
+  Synchronise(twin);
+  for (const Command& good : GoodCommands()) {
+    for (const Wrong<Command>& wrong : WrongVersionsOf(good)) {
+      const Ticket ticket = asked.engine.Submit(ToModule(asked.machine, wrong.command));
+      asked.Step();
+      twin.Step();
+      EXPECT_EQ(asked.last[ticket].error, ErrorId::kParameter) << wrong.what;
+      ASSERT_EQ(asked.engine.StateHash(), twin.engine.StateHash()) << wrong.what;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace takt::engine
