@@ -354,5 +354,75 @@ TEST(WithoutReversing, IsRefusedWhereItCannotBe) {
   EXPECT_EQ(b.Knife().set_position, 80);
 }
 
+// A slave that moves for other reasons than its master has no slope over the master's way: no curve begins from that.
+TEST(RampPos, BeginsNoCurveFromAMotionThatTheMasterDoesNotGive) {
+  for (const double velocity : {1.0, 5.0, 50.0}) {
+    Bench b(MachineOf({UpAndDown("hill", 50)}, Absolute(ClutchMode::kAbsolute)));
+    b.Give(Bench::kWeb, axis::MoveAbsolute{.position = 170});
+    b.Run(1500);
+    b.Web(velocity);
+    b.Run(200);
+    Watch watch(b);
+    double high = 0, low = 0;
+    b.each = [&] {
+      watch.Look();
+      high = std::max(high, b.Knife().set_position);
+      low = std::min(low, b.Knife().set_position);
+    };
+    b.Tell(Control{.sync_cam = true});
+    b.Run(15);
+    EXPECT_GT(b.Knife().set_velocity, 100);  // on its way to where the cam is
+    b.Tell(Configure{.sync_mode = ClutchMode::kRampPos});
+    b.Tell(Control{.sync_cam = false});
+    b.Run(1000);
+    b.Tell(Control{.sync_cam = true});
+    b.Run(20000);
+    EXPECT_LE(high, 55);
+    EXPECT_GE(low, -5);
+    watch.ExpectSmooth();
+  }
+}
+
+// CAM-37: an opening that finds no way says so, and the slave stays on its cam.
+TEST(WithoutReversing, AnOpeningThatIsImpossibleSaysSo) {
+  Settings s = Absolute(ClutchMode::kRampTime);
+  s.sync_in_time_s = 0.1;
+  s.position_control = PositionControl::kMasterDirection;
+  Bench b(MachineOf({Straight("gear", 1)}, s));
+  b.Web(200);
+  b.Run(300);
+  ASSERT_TRUE(b.Sync());
+  b.Run(100);
+  b.Tell(Configure{.sync_mode = ClutchMode::kRampPos, .slave_sync_out_position = 0.0});
+  const Ticket ticket = b.Tell(Control{.sync_cam = false});
+  b.Run(2200);  // more than a cycle of the cam
+  EXPECT_EQ(b.ErrorOf(ticket), ErrorId::kWouldReverse);
+  EXPECT_EQ(b.Module().warning, ErrorId::kWouldReverse);
+  EXPECT_TRUE(b.Module().cam_synchronised);
+  EXPECT_EQ(b.Module().state, ModuleState::kSync);
+}
+
+// CAM-37: a smaller factor waits for the end of a ramp that counts on the greater one.
+TEST(WithoutReversing, AFactorWaitsForTheRampOfX) {
+  Settings s = Absolute(ClutchMode::kRampTime);
+  s.sync_in_time_s = 0.1;
+  s.position_control = PositionControl::kMasterDirection;
+  s.offset_mode_master = OffsetMode::kRampIn;
+  s.scaling_mode_master = ScalingMode::kRelative;
+  Bench b(MachineOf({UpAndDown("hill", 50)}, s));
+  b.Tell(Control{.scaling_master = 2.0});
+  b.Web(200);
+  b.Run(300);
+  ASSERT_TRUE(b.Sync());
+  b.Tell(Control{.offset_master = -300.0});
+  b.Run(200);
+  b.Tell(Control{.scaling_master = 0.5});
+  double least = 1e9;
+  b.each = [&] { least = std::min(least, b.Module().set_x_velocity); };
+  b.Run(20000);
+  EXPECT_GE(least, 0);
+  EXPECT_EQ(b.Module().set_scaling_master, 0.5);
+}
+
 }  // namespace
 }  // namespace takt::flexcam

@@ -161,7 +161,7 @@ TEST(Property, TheClutchAsksForNoStep) {
     Machine m = MachineOf({RandomCam(dice, "a", dice.Coin())}, s, axis::AxisKind::kRotary,
                           dice.Coin() ? axis::AxisKind::kLinear : axis::AxisKind::kRotary);
     m.axes[Bench::kKnife].limits = {
-        .velocity = 1e5, .acceleration = 1e8, .deceleration = {}, .jerk = 1e10, .lower = {}, .upper = {}};
+        .velocity = 1e5, .acceleration = 1e6, .deceleration = {}, .jerk = 2e7, .lower = {}, .upper = {}};
     Bench b(m);
     Drive(dice, b);
     b.Run(dice.Upto(600));

@@ -527,5 +527,96 @@ TEST(ChangeCam, CanBeWithdrawn) {
   EXPECT_EQ(b.Module().cam_table, 1u);
 }
 
+// CAM-70: at the end of the cam, too, what is shifted makes both meet.
+TEST(ChangeCam, AtTheEndWithWhatIsShifted) {
+  cam::CamParams high = UpAndDown("high", 50);
+  for (cam::CamPoint& point : high.points) point.y += 30;
+  for (const ChangeAlign align : {ChangeAlign::kPosition, ChangeAlign::kVelocity}) {
+    Bench b(MachineOf({UpAndDown("hill", 50), high}, Quick()));
+    b.Web(360);
+    b.Run(300);
+    ASSERT_TRUE(b.Sync());
+    Watch watch(b);
+    const Ticket change = b.Tell(ChangeCam{2, ChangeWhen::kNextCycle, 0, align});
+    ASSERT_TRUE(b.Until(
+        [&] {
+          EXPECT_TRUE(b.Module().cam_synchronised);
+          return b.Module().cam_table == 2;
+        },
+        3000));
+    EXPECT_EQ(b.Of(change), FeedbackState::kDone);
+    EXPECT_NEAR(b.Knife().set_position, 0, 0.01);
+    watch.ExpectSmooth();
+  }
+}
+
+// CAM-40: at the beginning of a cam that goes on from cycle to cycle a factor moves nothing.
+TEST(XZero, MovesNothingOnACamWithAStroke) {
+  for (const double velocity : {400.0, -400.0}) {
+    Bench b(MachineOf({Onward("index", 100)}, Quick()));
+    b.Web(velocity);
+    b.Run(300);
+    ASSERT_TRUE(b.Sync());
+    Watch watch(b);
+    b.Run(2000);
+    b.Tell(Control{.scaling_slave = 3.0});
+    b.each = [&] {
+      watch.Look();
+      ASSERT_TRUE(b.Knife().in_step);
+    };
+    b.Run(3000);
+    EXPECT_EQ(b.Module().set_scaling_slave, 3);
+    watch.ExpectSmooth();
+  }
+}
+
+// A cam whose end is held goes on as soon as anything else is asked for.
+TEST(Once, IsLeftByWhateverIsAskedFor) {
+  Settings s = Quick();
+  s.cam_cyclic = false;
+  const auto held = [&](Bench& b) {
+    ASSERT_TRUE(b.Sync());
+    b.Web(360);
+    ASSERT_TRUE(b.Until([&] { return b.Module().cam_ends == 1; }, 3000));
+    b.Run(100);
+    ASSERT_EQ(b.Module().set_y_velocity, 0);
+  };
+  const Command ways[] = {Configure{.cam_cyclic = true}, SetCam{1, Name::Of("dip")},
+                          Control{.cam_table = std::uint32_t{2}}, ChangeCam{2}};
+  for (const Command& way : ways) {
+    Bench b(MachineOf({UpAndDown("hill", 50), UpAndDown("dip", -30)}, s));
+    held(b);
+    const Ticket ticket = b.Tell(way);
+    b.Run(100);
+    EXPECT_EQ(b.Of(ticket), FeedbackState::kDone) << way.index();
+    EXPECT_NE(b.Module().set_y_velocity, 0) << way.index();
+  }
+}
+
+// CAM-23: switched off during its first cam, and on again after the way out.
+TEST(Sequencer, ItsFirstCamIsNotRunTwice) {
+  Settings s = Quick();
+  s.cam_sequence_mode = SequenceMode::kCam1Cam3;
+  Bench b(MachineOf({UpAndDown("a", 10), UpAndDown("b", 20), UpAndDown("c", 30)}, s));
+  b.Tell(Control{.cam_sequencer = true});
+  b.Step();
+  ASSERT_TRUE(b.Sync());
+  b.Web(1200);
+  b.Run(150);
+  b.Tell(Control{.cam_sequencer = false});
+  b.Run(1000);
+  EXPECT_EQ(b.Module().cam_table, 1u);
+  EXPECT_EQ(b.Module().cam_ends, 1u);  // held
+  EXPECT_FALSE(b.Module().sequencer_active);
+  b.Tell(Control{.cam_sequencer = true});
+  b.Run(200);
+  EXPECT_EQ(b.Module().cam_table, 1u);  // once more, then cam 3
+  b.Run(300);
+  EXPECT_EQ(b.Module().cam_table, 3u);
+  const Ticket change = b.Tell(ChangeCam{2});
+  b.Run(2);
+  EXPECT_EQ(b.ErrorOf(change), ErrorId::kState);  // the sequence says what comes next
+}
+
 }  // namespace
 }  // namespace takt::flexcam

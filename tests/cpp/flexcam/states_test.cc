@@ -392,5 +392,104 @@ TEST(Masters, OneThatIsOffIsNotFollowed) {
   EXPECT_EQ(b.Module().state, ModuleState::kReady);
 }
 
+// Every ticket ends, once, whatever comes in the same cycle; what is refused does not touch what runs.
+TEST(Tickets, End) {
+  Bench b(Hill());
+  b.Web(360);
+  b.Run(200);
+  const Ticket in = b.Tell(Control{.sync_cam = true});
+  const Ticket out = b.Tell(Control{.sync_cam = false});
+  b.Run(3);
+  EXPECT_EQ(b.Of(in), FeedbackState::kAborted);
+  EXPECT_EQ(b.Of(out), FeedbackState::kDone);
+  EXPECT_FALSE(b.Module().busy);
+  const Ticket again = b.Tell(Control{.sync_cam = true});
+  b.Run(20);
+  const Ticket home = b.Tell(Control{.home_execute = true});
+  b.Run(2);
+  EXPECT_EQ(b.ErrorOf(home), ErrorId::kState);
+  EXPECT_EQ(b.Of(again), FeedbackState::kActive);
+  b.Run(300);
+  EXPECT_EQ(b.Of(again), FeedbackState::kDone);
+  b.Tell(Control{.stop = true});
+  b.Run(200);
+  b.Tell(Control{.stop = false});
+  b.Run(10);
+  const Ticket no_edge = b.Tell(Control{.sync_cam = true});
+  b.Run(2);
+  EXPECT_EQ(b.ErrorOf(no_edge), ErrorId::kState);  // the level is there since before the stop
+}
+
+// A key that was pressed when something else began moves nothing later.
+TEST(States, AJogDoesNotWait) {
+  Bench b(Hill());
+  const Ticket jog = b.Tell(Jog{.positive = true});
+  b.Give(Bench::kKnife, axis::MoveAbsolute{.position = 20, .velocity = 50});
+  b.Run(1500);
+  EXPECT_EQ(b.Of(jog), FeedbackState::kAborted);
+  EXPECT_EQ(b.Knife().set_velocity, 0);
+  EXPECT_EQ(b.Module().state, ModuleState::kReady);
+}
+
+// Switching off works always, and an error is not forgotten by disabling.
+TEST(States, DisablingForgetsNothing) {
+  Bench b(Hill());
+  b.Tell(Control{.enable = false});
+  b.Run(2);
+  b.Tell(Control{.regulator_on = false});
+  b.Run(50);
+  EXPECT_FALSE(b.Module().axis_enabled);
+  b.Tell(Control{.enable = true, .regulator_on = true, .enable_hw_limit = true});
+  b.Run(200);
+  b.Tell(Control{.hw_limit_positive = true});
+  b.Run(5);
+  ASSERT_EQ(b.Module().state, ModuleState::kError);
+  b.Tell(Control{.enable = false});
+  b.Run(5);
+  b.Tell(Control{.enable = true});
+  b.Run(5);
+  EXPECT_EQ(b.Module().state, ModuleState::kError);
+  EXPECT_EQ(b.Module().error, ErrorId::kModuleLimitSwitchPositive);
+}
+
+// Held means that nothing else moves the slave either; and what others hold is theirs.
+TEST(States, HeldIsHeld) {
+  for (const Control& hold : {Control{.halt = true}, Control{.stop = true}}) {
+    Bench b(Hill());
+    b.Tell(hold);
+    b.Run(20);
+    b.Give(Bench::kKnife, axis::MoveAbsolute{.position = 20});
+    b.Run(1000);
+    EXPECT_LT(std::abs(b.Knife().set_position), 0.1);
+    EXPECT_EQ(b.Module().state, ModuleState::kStop);
+  }
+  Bench b(Hill());
+  b.Give(Bench::kKnife, axis::Stop{.hold = true});
+  b.Run(10);
+  b.Tell(Control{.enable = false});
+  b.Run(10);
+  EXPECT_EQ(b.Knife().state, axis::PlcState::kStopping);
+}
+
+// The section of the module is for its own homing alone.
+TEST(States, HomingByTheModuleLeavesTheAxisItsOwn) {
+  Machine m = Hill();
+  m.flex_cams[0].settings.home_by_module = true;
+  axis::HomingParams homing;
+  homing.method = axis::HomingMethod::kSwitch;
+  homing.velocity = 50;
+  m.flex_cams[0].homing = homing;
+  Bench b(m);
+  b.Tell(Control{.home_execute = true});
+  b.Run(200);
+  b.Tell(Control{.stop = true});
+  b.Run(100);
+  b.Tell(Control{.stop = false});
+  b.Run(20);
+  const Ticket home = b.Give(Bench::kKnife, axis::Home{.position = 5});
+  b.Run(20);
+  EXPECT_EQ(b.Of(home), FeedbackState::kDone);  // on the spot, as the axis says
+}
+
 }  // namespace
 }  // namespace takt::flexcam
