@@ -64,7 +64,7 @@ def run_demo(scenario: Scenario, machine: Path, directory: Path, say: Say = prin
         if engine.wait(20):
             raise TaktError(f"taktd ended with {engine.returncode}: see {directory / 'taktd.txt'}")
     recording = read_log(log)
-    say(f"{log.name} read back: {len(recording.components)} axes, {recording.duration_s:.1f} s")
+    say(f"{log.name} read back: {len(recording.components)} components, {recording.duration_s:.1f} s")
     marks = [event for event in notes.recording.events if event.kind == "mark"]
     recording.events = sorted([*recording.events, *marks], key=lambda event: event.time_s)
     outcome = verify_recording(scenario, recording)

@@ -31,7 +31,7 @@ class Feedback:
 
     def __init__(self, session: Session, target: str, verb: str, arguments: str, *, level_sensitive: bool) -> None:
         self._session = session
-        self.target = target  # the name of an axis, or "machine"
+        self.target = target  # the name of a component, or "machine"
         self.verb = verb
         self.arguments = arguments  # as given to the engine
         self.level_sensitive = level_sensitive  # acts until `release`d

@@ -17,7 +17,16 @@ from takt import _core, msgs
 from takt.arguments import without_arguments
 from takt.errors import TaktError
 from takt.recording import Array, Recording
-from takt.tables import KINDS, PREFIXES, components_of, fields_of, is_possible, kind_of_channel, make_recording, table_of
+from takt.tables import (
+    KINDS,
+    PREFIXES,
+    components_of,
+    fields_of,
+    is_possible,
+    kind_of_channel,
+    make_recording,
+    table_of,
+)
 
 STATE_TYPES = tuple(kind.message for kind in KINDS.values())
 EVENT_HEADER = 28  # bytes of an event beside its channel and data

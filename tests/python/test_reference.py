@@ -17,8 +17,10 @@ def test_everything_described_is_on_the_page() -> None:
         for field in verb["arguments"]["fields"]:
             assert f"| {field['name']} | " in page
             assert field["about"] in page
-    for field in reference["outputs"]["fields"] + reference["figures"]["fields"]:
-        assert field["about"] in page
+    for name, published in {**reference["outputs"], "engine": reference["figures"]}.items():
+        assert f"### {name}\n" in page
+        for field in published["fields"]:
+            assert field["about"] in page
     for error in reference["errors"]:
         assert f"| {error['id']:04} | {error['name']} | {error['text']} |" in page
     for row in reference["homing"]["rows"]:
