@@ -17,12 +17,10 @@ static_assert(std::endian::native == std::endian::little);
 namespace {
 
 std::map<int, std::pair<std::string, std::string>> ErrorTexts() {
-  constexpr int kLast = 9999;
-  const std::string_view unknown = ErrorText(static_cast<ErrorId>(kLast));
   std::map<int, std::pair<std::string, std::string>> texts;
-  for (int id = 1; id < kLast; ++id) {
-    const auto error = static_cast<ErrorId>(id);
-    if (ErrorText(error) != unknown) texts[id] = {std::string(ErrorName(error)), std::string(ErrorText(error))};
+  for (const ErrorInfo& error : Errors()) {
+    if (error.id == ErrorId::kNone) continue;
+    texts[static_cast<int>(error.id)] = {std::string(error.name), std::string(error.text)};
   }
   return texts;
 }

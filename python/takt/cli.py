@@ -20,8 +20,8 @@ from takt import _core
 from takt.drive import WATCHDOG, simulate
 from takt.engine import Engine, read_machine
 from takt.errors import ConfigError, TaktError
-from takt.lcmlog import open_log, read_log
 from takt.lcmlog import Progress as Report
+from takt.lcmlog import open_log, read_log
 from takt.recording import Recording, RecordingError
 from takt.remote import connect
 from takt.replay import replay as replay_log

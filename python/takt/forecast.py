@@ -28,7 +28,7 @@ class Forecast:
         # motion, and the turn of the command comes within ten minutes. Otherwise the rest says nothing.
         self.known: bool = core.known
         self.held: bool = core.held  # by an override: it goes as far as where that stops it
-        self.limited_by: str = named("limited_by", core.limited_by)
+        self.limited_by: str = named("axis", "limited_by", core.limited_by)
         self.start_s: float = core.start_s  # begin of the motion; negative: it is under way
 
     def __repr__(self) -> str:

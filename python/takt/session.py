@@ -135,8 +135,8 @@ class Session(MachineCommands):
     # --- commands ---
 
     def command(self, target: str, verb: str, arguments: Mapping[str, Any] | str = "") -> Feedback:
-        """Gives any command by its names; those of components are made of this. What the engine refuses comes back as a
-        feedback in the state Error, with a sentence."""
+        """Gives any command by its names; the methods of components are made of this. What the engine refuses comes
+        back as a feedback in the state Error, with a sentence."""
         self._check_open()
         for what, text in (("target", target), ("verb", verb)):
             if not isinstance(text, str):

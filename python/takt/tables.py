@@ -88,7 +88,7 @@ def is_possible(message: State | msgs.engine_state, period: float) -> bool:
 
 
 def table_of(kind: str, messages: Sequence[State], period: float, every: int = 1) -> dict[str, Array]:
-    """The columns of messages of one component, of every n-th message (`every`). A late or repeated one counts once."""
+    """The columns of messages of one component, of every n-th message (`every`). A repeated or late one counts once."""
     rows = []
     last = -1
     for message in messages:

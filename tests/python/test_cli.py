@@ -157,7 +157,7 @@ def test_logs(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["log", str(log), "--save", str(files / "run.csv")]) == 0
     text = capsys.readouterr().out
     assert "takt/axis/x" in text
-    assert "run 0: test, 2 axes" in text
+    assert "run 0: test, 2 components" in text
     assert (files / "run.csv").read_text().startswith("cycle,time_s,x.set_position [mm]")
     assert main(["replay", str(log)]) == 0
     assert "the same, bit for bit" in capsys.readouterr().out

@@ -5,7 +5,6 @@ takt demo python/examples/flying_saw/scenario.py      on taktd in real time, ove
 """
 
 import numpy as np
-
 import takt
 from takt import expect
 
