@@ -24,7 +24,8 @@ def test_every_command_is_in_one_group() -> None:
 def test_a_page_is_made(group: Path, tmp_path: Path) -> None:
     page = command_pages.write(group, tmp_path).read_text(encoding="utf-8")
     for name in command_pages.about(group).COMMANDS:
-        assert f": {name}\n" in page
+        kind, _, verb = name.rpartition(".")
+        assert f"{kind}: {verb}\n" in page
     picture = tmp_path / f"{group.stem}.png"
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert picture.name in page
