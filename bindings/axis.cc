@@ -1,19 +1,18 @@
-#include <pybind11/stl.h>
 #include <pybind11/typing.h>
 
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "bindings.h"
 #include "takt/axis/outputs.h"
 #include "takt/axis/state_table.h"
-#include "takt/engine/snapshot.h"
+#include "takt/engine/components.h"
 
 namespace takt::bindings {
 namespace {
 
 using FieldRow = py::typing::Tuple<py::str, py::str, py::str, py::typing::Dict<int, py::str>>;
+using KindRow = py::typing::Tuple<py::str, py::str>;
 using TransitionRow = py::typing::Tuple<py::str, py::str, py::str>;
 
 const Type& OutputsOf(const std::string& kind) {
@@ -57,11 +56,12 @@ void BindAxis(py::module_& m) {
   m.def(
       "component_kinds",
       [] {
-        std::vector<std::string> names;
-        for (const engine::ComponentKind& kind : engine::ComponentKinds()) names.emplace_back(kind.name);
-        return names;
+        py::typing::List<KindRow> list;
+        for (const engine::ComponentKind& kind : engine::ComponentKinds())
+          list.append(py::make_tuple(kind.name, kind.section));
+        return list;
       },
-      "The kinds of components, in the order of their numbers.");
+      "The kinds of components, in the order of their numbers: (name, section of the machine file).");
   m.def("transitions", &Transitions, "Every legal change of an axis' state: (from, to, by).");
 }
 

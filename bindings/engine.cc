@@ -17,6 +17,7 @@
 #include "bindings.h"
 #include "recorder.h"
 #include "takt/core/schema.h"
+#include "takt/engine/components.h"
 #include "takt/engine/load.h"
 #include "takt/engine/reference.h"
 #include "takt/lcm/clock.h"

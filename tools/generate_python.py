@@ -21,8 +21,6 @@ WIDTH = 120
 SCALARS = {"bool": "bool", "integer": "int", "real": "float", "text": "str"}
 # Commands that are no methods of a session: the engine gives them to itself, or feedback objects and heartbeats do.
 INTERNAL = {("machine", verb) for verb in ("fail_all_axes", "release", "renew")}
-# What a kind of component is called in sentences.
-KINDS = {"axis": "an axis", "flex_cam": "a cam module"}
 # Error numbers are plain numbers in Python; takt.error_text() tells what they mean.
 NUMBERS = {"ErrorId"}
 
@@ -68,8 +66,9 @@ def doc(text: str, indent: str) -> str:
 def enumerations(node: Any, found: dict[str, Json]) -> dict[str, Json]:
     """All enumerations below a piece of the reference, by name, in the order of their first use."""
     if isinstance(node, dict):
-        if node.get("kind") == "enum" and node["name"] not in NUMBERS:
-            found.setdefault(node["name"], node)
+        is_class = node.get("kind") == "enum" and node["name"] not in NUMBERS
+        if is_class and found.setdefault(node["name"], node) != node:
+            raise ValueError(f"there are two enumerations {node['name']}")
         for child in node.values():
             enumerations(child, found)
     elif isinstance(node, list):
@@ -137,10 +136,15 @@ def method(verb: Json) -> str:
     call = f'        return self._command("{verb["name"]}", {{{", ".join(pairs)}}})'
     if len(call) > WIDTH:
         lines += ["        return self._command(", f'            "{verb["name"]}",', "            {"]
-        lines += [f"                {pair}," for pair in pairs]
+        lines += [f"                {argument}," for argument in pairs]
         call = "            },\n        )"
     lines.append(call)
     return "\n".join(lines)
+
+
+def pair(texts: tuple[str, str]) -> str:
+    """A pair as Python writes it."""
+    return f'("{texts[0]}", "{texts[1]}")'
 
 
 def defaults(verbs: list[Json]) -> str:
@@ -152,7 +156,7 @@ def defaults(verbs: list[Json]) -> str:
     for verb in verbs:
         given = [f for f in verb["arguments"]["fields"] if f.get("default") is not None]
         pairs = ", ".join(f'"{f["name"]}": {default_text(f)}' for f in given)
-        lines.append(f'    ("{verb["target_kind"]}", "{verb["name"]}"): {{{pairs}}},')
+        lines.append(f"    {pair((verb['target_kind'], verb['name']))}: {{{pairs}}},")
     return "\n".join([*lines, "}"])
 
 
@@ -191,19 +195,22 @@ def module(reference: Json) -> str:
     """The whole module."""
     verbs = [v for v in reference["verbs"] if (v["target_kind"], v["name"]) not in INTERNAL]
     of = {kind: [v for v in verbs if v["target_kind"] == kind] for kind in ("machine", *reference["outputs"])}
-    level = sorted(v["name"] for v in verbs if v["level_sensitive"])
+    level = sorted((v["target_kind"], v["name"]) for v in verbs if v["level_sensitive"])
     enums = enumerations([reference["verbs"], reference["outputs"]], {})
     parts = [
         HEAD.rstrip() + f"\n\n__all__ = {json.dumps(sorted(enums))}\n\n# Commands that act until they are released.\n"
-        f"LEVEL_SENSITIVE = frozenset({{{', '.join(json.dumps(name) for name in level)}}})\n\n{defaults(verbs)}",
+        f"LEVEL_SENSITIVE = frozenset({{{', '.join(map(pair, level))}}})\n\n{defaults(verbs)}",
         NAME,
         *map(enum_class, enums.values()),
         commands_class("MachineCommands", "What the machine as a whole can be told.", of["machine"]),
     ]
-    for kind, outputs in reference["outputs"].items():
-        name = class_name(kind)
-        about = f"What {KINDS[kind]} can be told. Quantities are in the axis' own unit u."
-        parts += [commands_class(f"{name}Commands", about, of[kind]), outputs_class(f"{name}Outputs", outputs)]
+    for kind in reference["kinds"]:
+        name = class_name(kind["name"])
+        about = f"What {kind['one']} can be told. Quantities are in the axis' own unit u."
+        parts += [
+            commands_class(f"{name}Commands", about, of[kind["name"]]),
+            outputs_class(f"{name}Outputs", reference["outputs"][kind["name"]]),
+        ]
     return "\n\n\n".join(parts)
 
 

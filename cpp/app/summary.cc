@@ -3,6 +3,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "takt/engine/components.h"
+
 namespace takt::app {
 namespace {
 
@@ -41,8 +43,12 @@ double Us(std::uint64_t ns) {
 
 std::string Greeting(const engine::Machine& machine, engine::Pace pace) {
   std::ostringstream text;
-  text << machine.name << ": " << machine.axes.size() << (machine.axes.size() == 1 ? " axis" : " axes") << ", cycle "
-       << machine.cycle.period_s * 1000 << " ms, " << Text(pace);
+  text << machine.name << ": ";
+  for (const engine::ComponentKind& kind : engine::ComponentKinds()) {
+    const std::size_t count = kind.count(machine);
+    if (count > 0) text << count << ' ' << (count == 1 ? kind.one.substr(kind.one.find(' ') + 1) : kind.many) << ", ";
+  }
+  text << "cycle " << machine.cycle.period_s * 1000 << " ms, " << Text(pace);
   return text.str();
 }
 

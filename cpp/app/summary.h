@@ -10,7 +10,7 @@
 
 namespace takt::app {
 
-// One line: machine, axes, cycle, pace.
+// One line: machine, axes and other components, cycle, pace.
 std::string Greeting(const engine::Machine& machine, engine::Pace pace);
 
 // One paragraph: how it ended, cycles, overruns, times, losses.

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from takt import _core
+from takt._commands import DEFAULTS
 from takt.arguments import to_text
 from takt.axis import Axis
 from takt.component import Component
@@ -21,7 +22,7 @@ from takt.feedback import Feedback
 from takt.forecast import Forecast
 from takt.recording import Recording
 from takt.session import Recorder, Session
-from takt.tables import fields_of_kind, make_recording, named
+from takt.tables import KINDS, fields_of_kind, make_recording, named
 
 CHUNK = 20_000  # cycles between two looks at Ctrl-C
 
@@ -132,14 +133,14 @@ class Engine(Session):
         return release
 
     def _value(self, component: Component, field: str) -> Any:
-        place = fields_of_kind(component.KIND).index(field)
+        place = KINDS[component.KIND].places[field]
         return named(component.KIND, field, self._core.value(component.index, place))
 
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
         self._check_open()
         if not verb:
             return Forecast(self._core.foresee(axis.index), "")
-        text = to_text(arguments, self._defaults(axis.name, verb))
+        text = to_text(arguments, DEFAULTS.get((axis.KIND, verb)))
         core, sentence = self._core.foresee_command(axis.name, verb, text)
         return Forecast(core, sentence if core.error_id else "")
 

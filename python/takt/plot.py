@@ -176,7 +176,7 @@ def _is_band(recording: Recording, signal: Signal) -> bool:
 
 
 def _lane_inches(name: str) -> float:
-    return 2.3 if name == "position" else 1.7
+    return 2.3 if name.endswith("position") else 1.7
 
 
 def _stack(sizes: Sequence[float], title: str | None) -> tuple[Figure, list[Axes]]:

@@ -22,6 +22,9 @@ from takt.checks.series import quantity, words
 from takt.recording import Array, Recording
 from takt.verdict import Verdict, seconds
 
+# What says where a component is, the best first: its own measured position, or the Y of a cam module.
+POSITIONS = ("actual_position", "position", "set_position", "set_y_position")
+
 
 class Report(NamedTuple):
     html: Path
@@ -190,7 +193,7 @@ def _summary(recording: Recording) -> dict[str, Any]:
                 return "—"
             return f"{float(np.nanmax(values)):.5g} {recording.unit(_component, field)}".rstrip()
 
-        position = next((f for f in ("actual_position", "position", "set_position") if f in fields), None)
+        position = next((f for f in POSITIONS if f in fields), None)
         travelled = "—"
         if position is not None and len(table) and np.any(np.isfinite(table[position])):
             p, unit = table[position], recording.unit(component, position)
@@ -205,8 +208,8 @@ def _summary(recording: Recording) -> dict[str, Any]:
                 component,
                 f"{len(table)}",
                 travelled,
-                largest("actual_velocity", "velocity", "set_velocity"),
-                largest("set_acceleration", "acceleration", "actual_acceleration"),
+                largest("actual_velocity", "velocity", "set_velocity", "set_y_velocity"),
+                largest("set_acceleration", "acceleration", "actual_acceleration", "set_y_acceleration"),
                 largest("following_error"),
                 state,
                 f"{errors}",
@@ -244,7 +247,11 @@ def _plain(value: Any) -> Any:
 def _pictures(recording: Recording, verdicts: Sequence[Verdict], directory: Path, title: str) -> list[Path]:
     pictures = []
     if len(recording.components) > 1:
-        overview = [s for s in ("*.actual_position", "*.following_error", "*.state") if _matches(recording, s)]
+        overview = [
+            s
+            for s in ("*.actual_position", "*.set_y_position", "*.following_error", "*.state")
+            if _matches(recording, s)
+        ]
         if overview:
             pictures.append(plot.save(plot.draw(recording, *overview, title=title), directory / "overview.png"))
     for component in recording.components:

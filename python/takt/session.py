@@ -19,6 +19,7 @@ from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.flex_cam import FlexCam
 from takt.recording import Recording
+from takt.tables import components_of
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 Program = Callable[[], object]
 P = TypeVar("P", bound=Program)
 C = TypeVar("C", bound=Component)
+
+CLASSES: dict[str, type[Component]] = {component.KIND: component for component in (Axis, FlexCam)}
 
 
 class Recorder:
@@ -71,9 +74,12 @@ class Session(MachineCommands):
     def __init__(self, machine: Mapping[str, Any], machine_text: str) -> None:
         self.machine = machine  # all parameters of the machine file, with the defaults
         self.machine_text = machine_text
-        self._axes = {a["name"]: Axis(self, i, a) for i, a in enumerate(machine["axes"])}
-        self._flex_cams = {m["name"]: FlexCam(self, len(self._axes) + i, m) for i, m in enumerate(machine["flex_cams"])}
-        self._components: dict[str, Component] = {**self._axes, **self._flex_cams}
+        self._components: dict[str, Component] = {
+            name: CLASSES[kind.name](self, number, parameters)
+            for number, (name, (kind, parameters)) in enumerate(components_of(machine).items())
+        }
+        self._axes = {name: c for name, c in self._components.items() if isinstance(c, Axis)}
+        self._flex_cams = {name: c for name, c in self._components.items() if isinstance(c, FlexCam)}
         self._programs: list[Program] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
@@ -137,17 +143,18 @@ class Session(MachineCommands):
                 raise TypeError(f"the {what} of a command is a text, not {text!r}")
         if not isinstance(arguments, (str, Mapping)):
             raise TypeError(f"the arguments of a command are a mapping or a text, not {arguments!r}")
-        text = arguments if isinstance(arguments, str) else to_text(arguments, self._defaults(target, verb))
+        asked = (self._kind(target), verb)
+        text = arguments if isinstance(arguments, str) else to_text(arguments, DEFAULTS.get(asked))
         level = (
-            not isinstance(arguments, str) and verb in LEVEL_SENSITIVE and any(v is True for v in arguments.values())
+            not isinstance(arguments, str) and asked in LEVEL_SENSITIVE and any(v is True for v in arguments.values())
         )
         feedback = Feedback(self, _clean(target), _clean(verb), _clean(text), level_sensitive=level)
         self._give(feedback)
         return feedback
 
-    def _defaults(self, target: str, verb: str) -> Mapping[str, Any]:
+    def _kind(self, target: str) -> str:
         component = self._components.get(target)
-        return DEFAULTS.get((component.KIND if component else "machine", verb), {})
+        return component.KIND if component else "machine"
 
     def _give(self, feedback: Feedback) -> None:
         self._event(feedback.target, feedback.text, "start")

@@ -27,13 +27,27 @@ STATES = {
     "Homing": "#d0a03a",
     "Stopping": "#e08a3c",
     "ErrorStop": "#d6453d",
+    # Of a cam module.
+    "Init": "#9aa3ae",
+    "Ready": "#7fb08a",
+    "Service": "#6b7689",
+    "JogPos": "#37a3b5",
+    "JogNeg": "#3a86a3",
+    "Sync": "#9b6fd0",
+    "Stop": "#e08a3c",
+    "Error": "#d6453d",
 }
 
 GOOD = "#2f9e6b"
 BAD = "#d6453d"
 
 # From top to bottom; what is not named here follows in the order it comes.
-QUANTITY_ORDER = ("position", "velocity", "acceleration", "jerk", "following error", "torque", "voltage")
+QUANTITY_ORDER = (
+    *("position", "x position", "y position"),
+    *("velocity", "x velocity", "y velocity"),
+    *("acceleration", "x acceleration", "y acceleration"),
+    *("jerk", "following error", "torque", "voltage"),
+)
 
 # What is shown of a component unless other signals are asked for.
 USUAL_FIELDS = (
@@ -43,7 +57,11 @@ USUAL_FIELDS = (
     "actual_velocity",
     "set_acceleration",
     "following_error",
+    "set_x_position",
+    "set_y_position",
+    "set_y_velocity",
     "state",
+    "cam_synchronised",
 )
 
 

@@ -20,16 +20,20 @@ class Kind:
     """What components of one kind publish, by field."""
 
     name: str
+    section: str  # of the machine file
+    places: Mapping[str, int]  # number of each field, from 0
     units: Mapping[str, str]
     names: Mapping[str, Mapping[int, str]]  # of enumerations
     dtypes: Mapping[str, Any]
     message: Any  # the LCM type
 
     @staticmethod
-    def of(name: str) -> Kind:
+    def of(name: str, section: str) -> Kind:
         fields = _core.output_fields(name)
         return Kind(
             name,
+            section,
+            places={field: place for place, (field, *_) in enumerate(fields)},
             units={field: unit for field, unit, _, _ in fields},
             names={field: names for field, _, _, names in fields if names and field not in NUMBERS},
             dtypes={field: dtype for field, (dtype, *_) in (_core.output_layout(name).fields or {}).items()},
@@ -38,9 +42,7 @@ class Kind:
 
 
 NUMBERS = ("error", "warning")  # enumerations that people know by number
-KINDS = {name: Kind.of(name) for name in _core.component_kinds()}
-# Where the components of a kind stand in a machine file.
-SECTIONS = {"axis": "axes", "flex_cam": "flex_cams"}
+KINDS = {name: Kind.of(name, section) for name, section in _core.component_kinds()}
 # Where they publish: this and their name.
 PREFIXES = {name: f"takt/{name}/" for name in KINDS}
 
@@ -52,7 +54,7 @@ def fields_of_kind(kind: str) -> tuple[str, ...]:
 
 def components_of(machine: Mapping[str, Any]) -> dict[str, tuple[Kind, Mapping[str, Any]]]:
     """Kind and parameters of every component of a machine, by name."""
-    return {c["name"]: (kind, c) for kind in KINDS.values() for c in machine[SECTIONS[kind.name]]}
+    return {c["name"]: (kind, c) for kind in KINDS.values() for c in machine[kind.section]}
 
 
 def kind_of_channel(channel: str) -> Kind | None:

@@ -28,7 +28,8 @@ def test_every_command_is_in_one_group() -> None:
 def test_a_page_is_made(group: Path, tmp_path: Path) -> None:
     page = command_pages.write(group, tmp_path).read_text(encoding="utf-8")
     for name in command_pages.about(group).COMMANDS:
-        assert f": {name.rpartition('.')[2]}\n" in page
+        kind, _, verb = name.rpartition(".")
+        assert f"{kind}: {verb}\n" in page
     for file in command_pages.figures(group) or [group]:
         picture = tmp_path / f"{file.stem}.png"
         assert picture.read_bytes().startswith(b"\x89PNG")

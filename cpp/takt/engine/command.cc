@@ -8,6 +8,7 @@
 #include "takt/core/describe.h"
 #include "takt/core/problem.h"
 #include "takt/core/writer.h"
+#include "takt/engine/components.h"
 
 namespace takt::engine {
 
@@ -108,24 +109,26 @@ const std::vector<Entry>& Entries() {
 
 std::optional<std::uint32_t> FindTarget(const Machine& machine, std::string_view name) {
   if (name == kMachine) return kMachineTarget;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    if (machine.axes[i].name == name) return static_cast<std::uint32_t>(i + 1);
-  }
-  for (std::size_t i = 0; i < machine.flex_cams.size(); ++i) {
-    if (machine.flex_cams[i].name == name) return static_cast<std::uint32_t>(machine.axes.size() + i + 1);
-  }
-  return std::nullopt;
+  const std::optional<std::uint32_t> component = FindComponent(machine, name);
+  return component ? std::optional(*component + 1) : std::nullopt;
 }
 
 std::string_view KindOf(const Machine& machine, std::uint32_t target) {
-  if (target == kMachineTarget) return kMachine;
-  return target <= machine.axes.size() ? kAxis : kFlexCam;
+  return target == kMachineTarget ? kMachine : PlaceOf(machine, target - 1).kind->name;
 }
 
 std::string_view NameOf(const Machine& machine, std::uint32_t target) {
   if (target == kMachineTarget) return kMachine;
-  const std::size_t index = target - 1;
-  return index < machine.axes.size() ? machine.axes[index].name : machine.flex_cams[index - machine.axes.size()].name;
+  const auto [kind, index] = PlaceOf(machine, target - 1);
+  return kind->name_of(machine, index);
+}
+
+// "an axis", "the machine".
+std::string_view PhraseOf(std::string_view target_kind) {
+  for (const ComponentKind& kind : ComponentKinds()) {
+    if (kind.name == target_kind) return kind.one;
+  }
+  return "the machine";
 }
 
 // What is wrong with a list of cam switches that this axis is to have. An unknown one is found in the cycle.
@@ -163,10 +166,11 @@ ParsedCommand Refused(ErrorId error, std::string sentence) {
 }
 
 ParsedCommand UnknownTarget(const Machine& machine, std::string_view target) {
-  std::vector<std::string_view> names{kMachine};
-  for (const axis::AxisParams& axis : machine.axes) names.push_back(axis.name);
-  for (const flexcam::FlexCamParams& module : machine.flex_cams) names.push_back(module.name);
-  return Refused(ErrorId::kUnknownTarget, "target: expected the name of an axis, a cam module or machine, found " +
+  std::vector<std::string_view> names = ComponentNames(machine);
+  names.push_back(kMachine);
+  std::string kinds;
+  for (const ComponentKind& kind : ComponentKinds()) kinds += (kinds.empty() ? "" : ", ") + std::string(kind.one);
+  return Refused(ErrorId::kUnknownTarget, "target: expected the name of " + kinds + " or machine, found " +
                                               Quoted(target) + DidYouMean(target, names));
 }
 
@@ -175,10 +179,7 @@ ParsedCommand UnknownVerb(std::string_view kind, std::string_view verb) {
   for (const Entry& entry : Entries()) {
     if (entry.verb.target_kind == kind) names.push_back(entry.verb.name);
   }
-  return Refused(ErrorId::kUnknownVerb, "verb: expected a command of " +
-                                            std::string(kind == kMachine ? "the machine"
-                                                        : kind == kAxis  ? "an axis"
-                                                                         : "a cam module") +
+  return Refused(ErrorId::kUnknownVerb, "verb: expected a command of " + std::string(PhraseOf(kind)) +
                                             " (takt reference lists them), found " + Quoted(verb) +
                                             DidYouMean(verb, names));
 }

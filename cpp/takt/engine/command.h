@@ -40,7 +40,7 @@ void describe(Description<Renew>&);
 using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
 using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command>;
 
-// Axis i is target i + 1; cam modules come behind the axes.
+// Component i (components.h) is target i + 1.
 inline constexpr std::uint32_t kMachineTarget = 0;
 
 struct Command {
@@ -55,7 +55,7 @@ bool LetsGo(const Command& command) noexcept;
 
 // One verb a kind of component understands; `arguments` describes its struct.
 struct Verb {
-  std::string_view target_kind;  // "machine", "axis" or "flex_cam"
+  std::string_view target_kind;  // "machine", or the name of a ComponentKind
   std::string_view name;         // "move_absolute"
   const Type* arguments;
   bool level_sensitive;  // needs a heartbeat over LCM

@@ -218,24 +218,26 @@ void Sense(World& w) noexcept {
 }
 
 void Apply(World& w, const Command& command) noexcept {
-  if (const auto* machine = std::get_if<MachineCommand>(&command.body)) {
-    std::visit(MachineApplier{w, command.ticket}, *machine);
-  } else if (command.target > 0 && command.target <= w.axis_states.size()) {
-    const std::size_t i = command.target - 1;
-    const axis::Command& body = std::get<axis::Command>(command.body);
+  const auto refuse = [&](ErrorId error) {
+    w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, error, 0});
+  };
+  const std::uint32_t component = command.target - 1;  // none has the machine's number less one
+  const std::size_t axes = w.axis_states.size();
+  if (const auto* for_machine = std::get_if<MachineCommand>(&command.body)) {
+    std::visit(MachineApplier{w, command.ticket}, *for_machine);
+  } else if (const auto* for_axis = std::get_if<axis::Command>(&command.body)) {
+    if (component >= axes) return refuse(ErrorId::kUnknownTarget);
     axis::CouplingRequest coupling;
-    if (axis::CouplingOf(ContextOf(w, i), body, coupling) && !MakeOrder(w, &coupling, command.target - 1)) {
-      w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, ErrorId::kCouplingLoop, 0});
-      return;
+    if (axis::CouplingOf(ContextOf(w, component), *for_axis, coupling) && !MakeOrder(w, &coupling, component)) {
+      return refuse(ErrorId::kCouplingLoop);
     }
-    axis::Apply(ContextOf(w, i), command.ticket, command.lease_s, body, w.axis_states[i]);
-  } else if (command.target > 0 && command.target <= w.axis_states.size() + w.flex_cams.size()) {
-    const std::size_t i = command.target - 1 - w.axis_states.size();
+    axis::Apply(ContextOf(w, component), command.ticket, command.lease_s, *for_axis, w.axis_states[component]);
+  } else if (const auto* for_module = std::get_if<flexcam::Command>(&command.body)) {
+    const std::size_t i = component - axes;  // of an axis: beyond all
+    if (i >= w.flex_cams.size()) return refuse(ErrorId::kUnknownTarget);
     const FlexCam& module = w.flex_cams[i];
-    flexcam::Apply(ContextOf(w, module), command.ticket, command.lease_s, std::get<flexcam::Command>(command.body),
-                   w.axis_states[module.slave], w.flex_cam_states[i]);
-  } else {
-    w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, ErrorId::kUnknownTarget, 0});
+    flexcam::Apply(ContextOf(w, module), command.ticket, command.lease_s, *for_module, w.axis_states[module.slave],
+                   w.flex_cam_states[i]);
   }
 }
 

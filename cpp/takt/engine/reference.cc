@@ -8,6 +8,7 @@
 #include "takt/core/schema.h"
 #include "takt/core/status.h"
 #include "takt/engine/command.h"
+#include "takt/engine/components.h"
 #include "takt/engine/snapshot.h"
 
 namespace takt::engine {
@@ -31,6 +32,14 @@ Json VerbsJson() {
                      {"arguments", ReferenceJson(*verb.arguments)}});
   }
   return verbs;
+}
+
+Json KindsJson() {
+  Json kinds = Json::array();
+  for (const ComponentKind& kind : ComponentKinds()) {
+    kinds.push_back({{"name", kind.name}, {"section", kind.section}, {"one", kind.one}, {"many", kind.many}});
+  }
+  return kinds;
 }
 
 Json OutputsJson() {
@@ -82,6 +91,7 @@ std::string ReferenceText(std::string_view version) {
   const Json reference = {{"version", version},
                           {"machine", ReferenceJson(TypeOf<Machine>())},
                           {"verbs", VerbsJson()},
+                          {"kinds", KindsJson()},
                           {"outputs", OutputsJson()},
                           {"figures", ReferenceJson(TypeOf<EngineFigures>())},
                           {"states", ReferenceJson(TypeOf<axis::PlcState>())},

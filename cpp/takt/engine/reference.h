@@ -9,9 +9,10 @@ namespace takt::engine {
 // JSON Schema of the machine file.
 std::string SchemaText();
 
-// {version, machine, verbs: [{target_kind, name, level_sensitive, arguments}], outputs, figures, states,
-//  transitions: [{from, to, by}], homing: {stages, events, steps, actions, rows: [{from, event, steps, action, to}]},
-//  errors: [{id, name, text}], feedback_states: [name]}; types as ReferenceJson writes them.
+// {version, machine, verbs: [{target_kind, name, level_sensitive, arguments}], kinds: [{name, section, one, many}],
+//  outputs: {kind: type}, figures, states, transitions: [{from, to, by}],
+//  homing: {stages, events, steps, actions, rows: [{from, event, steps, action, to}]}, errors: [{id, name, text}],
+//  feedback_states: [name]}; types as ReferenceJson writes them.
 std::string ReferenceText(std::string_view version);
 
 }  // namespace takt::engine

@@ -8,12 +8,6 @@
 
 namespace takt::engine {
 
-std::span<const ComponentKind> ComponentKinds() {
-  static const std::array kinds = {ComponentKind{"axis", &TypeOf<axis::Outputs>()},
-                                   ComponentKind{"flex_cam", &TypeOf<flexcam::Outputs>()}};
-  return kinds;
-}
-
 void Histogram::Add(std::uint64_t ns) noexcept {
   const auto bucket = static_cast<std::size_t>(std::bit_width(ns | 1) - 1);
   ++buckets[std::min(bucket, buckets.size() - 1)];

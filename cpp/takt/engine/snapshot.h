@@ -3,8 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
-#include <string_view>
 
 #include "takt/axis/outputs.h"
 #include "takt/core/describe_fwd.h"
@@ -23,14 +21,6 @@ struct SnapshotOf {
 };
 using AxisSnapshot = SnapshotOf<axis::Outputs>;
 using FlexCamSnapshot = SnapshotOf<flexcam::Outputs>;
-
-// A kind of components and what they publish.
-struct ComponentKind {
-  std::string_view name;  // as in Verb::target_kind
-  const Type* outputs;
-};
-// All of them, in the order of their numbers. The first call takes memory.
-std::span<const ComponentKind> ComponentKinds();
 
 struct JournalEntry {  // a command as it was applied
   std::uint64_t cycle = 0;

@@ -18,6 +18,7 @@ Mask = npt.NDArray[np.bool_]
 
 SHARE_IN_COMMON = 0.9  # of the samples of two components; the rest may have got lost
 
+CAM_AXES = ("x", "y")  # in units of their own
 QUANTITIES = ("position", "velocity", "acceleration", "jerk", "error", "torque", "voltage", "state")
 
 
@@ -191,12 +192,15 @@ def words(field: str) -> str:
 
 
 def quantity(field: str) -> str:
-    """ "set_position" -> "position"; the field's own name where it ends in nothing known."""
+    """ "set_position" -> "position", "set_x_position" -> "x position"; the field's own name where it ends in nothing
+    known."""
     name = words(field)
     if name == "following error":
         return name
-    last = name.rsplit(" ", 1)[-1]
-    return last if last in QUANTITIES else name
+    *before, last = name.split(" ")
+    if last not in QUANTITIES:
+        return name
+    return f"{before[-1]} {last}" if before and before[-1] in CAM_AXES else last
 
 
 def sibling(position: str, wanted: str) -> str:

@@ -96,7 +96,8 @@ TEST(Snapshots, AreDroppedAndCountedWhenNobodyReads) {
   const Machine machine = FullMachine();
   Engine engine(machine, {.publish = true, .every_cycle = true, .snapshot_queue = 64});
   for (int i = 0; i < 1000; ++i) engine.RunCycle();
-  EXPECT_EQ(engine.figures().snapshots_dropped, 5000u - 64u + 1000u - 64u);  // of the axes, of the module
+  const std::size_t kept = 2 * 64;  // a queue for axes, one for cam modules
+  EXPECT_EQ(engine.figures().snapshots_dropped, 1000 * engine.components() - kept);
 }
 
 // EN-21: nobody takes the feedback: what is lost is counted.
@@ -140,7 +141,7 @@ TEST(Snapshots, SayWhetherTheyAreDue) {
   machine.lcm.axis_rate_hz = 150;  // every 7th cycle
   Engine engine(machine, {.publish = true, .every_cycle = true});
   for (int i = 0; i < 700; ++i) engine.RunCycle();
-  std::vector<int> due(machine.axes.size()), all(machine.axes.size());
+  std::vector<int> due(machine.axes.size()), all(due);
   AxisSnapshot snapshot;
   while (engine.snapshots().TryPop(snapshot)) {
     ++all[snapshot.index];
@@ -148,9 +149,17 @@ TEST(Snapshots, SayWhetherTheyAreDue) {
   }
   EXPECT_THAT(all, testing::Each(700));
   EXPECT_THAT(due, testing::Each(100));
+  int due_of_module = 0, all_of_module = 0;
+  FlexCamSnapshot of_module;
+  while (engine.flex_cam_snapshots().TryPop(of_module)) {
+    ++all_of_module;
+    due_of_module += of_module.due;
+  }
+  EXPECT_EQ(all_of_module, 700);
+  EXPECT_EQ(due_of_module, 100);
 }
 
-// EN-20: each axis and each module at its own rate.
+// EN-20: each component at its own rate.
 TEST(Snapshots, ComeAtTheRateOfTheirChannel) {
   Machine machine = FullMachine();
   machine.lcm.axis_rate_hz = 100;
@@ -164,7 +173,8 @@ TEST(Snapshots, ComeAtTheRateOfTheirChannel) {
   EXPECT_EQ(counts[AxisNamed(machine, "c")], 500);
   EXPECT_EQ(counts[AxisNamed(machine, "z")], 0);
   int of_module = 0;
-  for (FlexCamSnapshot of; engine.flex_cam_snapshots().TryPop(of);) ++of_module;
+  FlexCamSnapshot module;
+  while (engine.flex_cam_snapshots().TryPop(module)) ++of_module;
   EXPECT_EQ(of_module, 250);
 }
 
@@ -174,24 +184,28 @@ TEST(Snapshots, OfOneRateComeTogether) {
   machine.lcm.axis_rate_hz = 100;
   Engine engine(machine, {.publish = true});
   for (int i = 0; i < 1000; ++i) engine.RunCycle();
-  std::map<std::uint64_t, int> axes;  // by cycle
+  std::map<std::uint64_t, std::size_t> axes;  // by cycle
   AxisSnapshot snapshot;
   while (engine.snapshots().TryPop(snapshot)) ++axes[snapshot.cycle];
   EXPECT_EQ(axes.size(), 100u);
-  for (const auto& [cycle, count] : axes) EXPECT_EQ(count, 5) << cycle;
+  for (const auto& [cycle, count] : axes) EXPECT_EQ(count, machine.axes.size()) << cycle;
 }
 
 // A command for a target that does not exist, handed in from C++ past the parser.
 TEST(CommandQueue, SurvivesAWrongTarget) {
-  Engine engine(FullMachine());
-  Command command;
-  command.target = 77;
-  command.body = axis::Command(axis::Halt{});
-  engine.Submit(command);
-  engine.RunCycle();
-  FeedbackEvent event;
-  ASSERT_TRUE(engine.feedback().TryPop(event));
-  EXPECT_EQ(event.error, ErrorId::kUnknownTarget);
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  const auto axes = static_cast<std::uint32_t>(machine.axes.size());
+  const CommandBody to_axis = axis::Command(axis::Halt{}), to_module = flexcam::Command(flexcam::Control{});
+  const std::pair<std::uint32_t, CommandBody> wrong[] = {{77, to_axis},   {0, to_axis},   {axes + 1, to_axis},
+                                                         {77, to_module}, {0, to_module}, {axes, to_module}};
+  for (const auto& [target, body] : wrong) {
+    engine.Submit({.target = target, .body = body});
+    engine.RunCycle();
+    FeedbackEvent event;
+    ASSERT_TRUE(engine.feedback().TryPop(event));
+    EXPECT_EQ(event.error, ErrorId::kUnknownTarget) << target;
+  }
 }
 
 }  // namespace

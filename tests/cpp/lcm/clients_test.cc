@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "takt/core/describe.h"
+#include "takt/engine/components.h"
 #include "test_machine.h"
 
 namespace takt::lcm {
@@ -13,13 +14,6 @@ namespace {
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 // An engine that only takes notes.
-engine::Machine WithModule(engine::Machine machine) {
-  machine.flex_cams.emplace_back();
-  machine.flex_cams.back().name = "cutter";
-  machine.flex_cams.back().slave = "y";
-  return machine;
-}
-
 class ClientsTest : public testing::Test {
  protected:
   Clients Make(const ClientLimits& limits = {}) {
@@ -67,6 +61,13 @@ class ClientsTest : public testing::Test {
     EXPECT_EQ(reply.state, msgs::feedback::STATE_ERROR);
     EXPECT_EQ(reply.error_id, static_cast<int>(error)) << reply.sentence;
     EXPECT_NE(reply.sentence.find(part_of_sentence), std::string::npos) << reply.sentence;
+  }
+  // The first component that understands it.
+  std::string TargetOf(const engine::Verb& verb) const {
+    for (const engine::ComponentKind& kind : engine::ComponentKinds()) {
+      if (kind.name == verb.target_kind) return std::string(kind.name_of(machine_, 0));
+    }
+    return "machine";
   }
   std::vector<Ticket> Renewed() const {
     std::vector<Ticket> tickets;
@@ -153,20 +154,19 @@ TEST_F(ClientsTest, NotANumberAndInfinityAreRefusedEverywhere) {
   Clients clients = Make();
   std::int64_t id = 0;
   for (const engine::Verb& verb : engine::Verbs()) {
-    if (verb.target_kind != "axis") continue;  // the machine here has nothing else that takes numbers
+    const std::string target = TargetOf(verb);
     for (const Field& field : verb.arguments->fields) {
       const Type& type = field.type->kind == Kind::kOptional ? *field.type->element : *field.type;
       if (type.kind != Kind::kReal) continue;
       for (const char* value : {"nan", ".nan", "NaN", "inf", ".inf", "-.inf", "-inf", "Infinity", "1e999", "-1e999"}) {
-        msgs::command command =
-            Command(++id, std::string(verb.name), "{" + std::string(field.name) + ": " + value + "}");
-        if (verb.target_kind == "flex_cam") command.target = "cutter";
-        clients.OnCommand(command, 0);
+        msgs::command m = Command(++id, std::string(verb.name), "{" + std::string(field.name) + ": " + value + "}");
+        m.target = target;
+        clients.OnCommand(m, 0);
         ExpectError(OneReply(clients), ErrorId::kParameter, std::string(field.name));
       }
     }
   }
-  EXPECT_GT(id, 100);
+  EXPECT_GT(id, 1000);
   EXPECT_TRUE(submitted_.empty());
 }
 
@@ -212,6 +212,20 @@ TEST_F(ClientsTest, TwoClientsWithOneName) {
   EXPECT_TRUE(Replies(clients).empty());
   clients.OnFeedback({2, 9, FeedbackState::kDone, false, ErrorId::kNone});
   EXPECT_EQ(OneReply(clients).session, 2);
+}
+
+// EN-23: of a module's commands its jog alone.
+TEST_F(ClientsTest, AHeartbeatRenewsTheJogOfAModule) {
+  Clients clients = Make();
+  msgs::command control = Command(1, "control", "{stop: true}"), jog = Command(2, "jog", "{positive: true}");
+  control.target = jog.target = "cutter";
+  clients.OnCommand(control, 0);
+  clients.OnCommand(jog, 0);
+  ASSERT_EQ(submitted_.size(), 2u);
+  EXPECT_EQ(submitted_[0].lease_s, 0);
+  EXPECT_EQ(submitted_[1].lease_s, machine_.lcm.dead_man_s);
+  clients.OnHeartbeat(Heartbeat(), 1);
+  EXPECT_EQ(Renewed(), (std::vector<Ticket>{2}));
 }
 
 // EN-23

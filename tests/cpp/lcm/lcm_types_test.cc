@@ -17,6 +17,7 @@
 #include "takt/core/feedback.h"
 #include "takt/core/ports.h"
 #include "takt/engine/scheduler.h"
+#include "takt/engine/components.h"
 #include "takt/engine/snapshot.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/msgs/engine_state.hpp"

@@ -146,6 +146,40 @@ TEST(Publisher, EveryKindIsPublishedAtItsRateWithoutGaps) {
   EXPECT_EQ(network.Channels().count("takt/journal/start"), 0u);
 }
 
+// EN-20, CAM-11: a module is published beside the axes, at a rate of its own; the log holds every cycle of it.
+TEST(Publisher, ModulesArePublishedAsAxesAre) {
+  engine::Machine machine = WithModule(TestMachine());
+  machine.lcm.axis_rate_hz = 100;
+  machine.lcm.rates = {{"cutter", 250}};
+  TestRun run({.publish = true, .every_cycle = true, .journal = true}, machine);
+  TestOutlet network, log;
+  {
+    Publisher publisher(run.engine, run.clients, &network, &log, {});
+    run.clients.OnCommand(Command(1, "x", "power"), SteadyNs());
+    run.clients.OnCommand(Command(2, "cutter", "control", "{regulator_on: true}"), SteadyNs());
+    run.Step(500);
+    run.clients.OnCommand(Command(3, "cutter", "control", "{sync_cam: true}"), SteadyNs());
+    run.Step(500);
+  }
+  const auto sent = network.On<msgs::flex_cam_state>("takt/flex_cam/cutter");
+  const auto kept = log.On<msgs::flex_cam_state>("takt/flex_cam/cutter");
+  ASSERT_EQ(sent.size(), 250u);
+  ASSERT_EQ(kept.size(), 1000u);
+  ExpectNoGaps(sent);
+  ExpectNoGaps(kept);
+  for (std::size_t i = 0; i < sent.size(); ++i) EXPECT_EQ(sent[i].cycle, static_cast<std::int64_t>(4 * i));
+  EXPECT_EQ(network.On<msgs::axis_state>("takt/axis/x").size(), 100u);
+  EXPECT_EQ(kept.back().name, "cutter");
+  EXPECT_EQ(kept[499].state, msgs::flex_cam_state::STATE_READY);
+  EXPECT_EQ(kept.back().state, msgs::flex_cam_state::STATE_SYNC);
+  EXPECT_TRUE(kept.back().cam_synchronised);
+  const auto commands = log.On<msgs::journal_command>("takt/journal/command");
+  ASSERT_EQ(commands.size(), 3u);
+  EXPECT_EQ(commands[2].target, "cutter");
+  EXPECT_EQ(commands[2].verb, "control");
+  EXPECT_EQ(commands[2].arguments, "{sync_cam: true}");
+}
+
 // EN-07, EN-20: the log holds every cycle, every command and every hash; the network goes on at its own rate.
 TEST(Publisher, TheLogHoldsEverything) {
   constexpr int kCycles = 2500;

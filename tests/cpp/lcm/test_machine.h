@@ -27,6 +27,21 @@ inline engine::Machine TestMachine(int axes = 2) {
   return machine;
 }
 
+// With a module "cutter" that leads y after x.
+inline engine::Machine WithModule(engine::Machine machine) {
+  cam::CamParams cam;
+  cam.name = "line";
+  cam.points = {{0, 0, 1.0, {}}, {100, 100, 1.0, {}}};
+  machine.cams = {cam};
+  flexcam::FlexCamParams module;
+  module.name = "cutter";
+  module.slave = "y";
+  module.master = "x";
+  module.cams = {"line"};
+  machine.flex_cams = {module};
+  return machine;
+}
+
 // An LCM network that no other test uses; its port is below those that systems give away by themselves.
 inline std::string NewUrl() {
   static int port = 10'000 + getpid() % 500 * 4;

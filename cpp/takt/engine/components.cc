@@ -1,0 +1,63 @@
+#include "takt/engine/components.h"
+
+#include <array>
+
+#include "takt/axis/outputs.h"
+#include "takt/core/describe.h"
+#include "takt/flexcam/outputs.h"
+
+namespace takt::engine {
+
+namespace {
+
+template <typename Outputs, auto List>
+ComponentKind Make(std::string_view name, std::string_view section, std::string_view one, std::string_view many) {
+  return {name,
+          section,
+          one,
+          many,
+          &TypeOf<Outputs>(),
+          [](const Machine& machine) { return (machine.*List).size(); },
+          [](const Machine& machine, std::size_t index) -> std::string_view { return (machine.*List)[index].name; }};
+}
+
+}  // namespace
+
+std::span<const ComponentKind> ComponentKinds() {
+  static const std::array kinds = {
+      Make<axis::Outputs, &Machine::axes>("axis", "axes", "an axis", "axes"),
+      Make<flexcam::Outputs, &Machine::flex_cams>("flex_cam", "flex_cams", "a cam module", "cam modules"),
+  };
+  return kinds;
+}
+
+ComponentPlace PlaceOf(const Machine& machine, std::size_t component) {
+  for (const ComponentKind& kind : ComponentKinds()) {
+    const std::size_t count = kind.count(machine);
+    if (component < count) return {&kind, component};
+    component -= count;
+  }
+  return {};
+}
+
+std::optional<std::uint32_t> FindComponent(const Machine& machine, std::string_view name) {
+  std::uint32_t before = 0;
+  for (const ComponentKind& kind : ComponentKinds()) {
+    const auto count = static_cast<std::uint32_t>(kind.count(machine));
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (kind.name_of(machine, i) == name) return before + i;
+    }
+    before += count;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string_view> ComponentNames(const Machine& machine) {
+  std::vector<std::string_view> names;
+  for (const ComponentKind& kind : ComponentKinds()) {
+    for (std::size_t i = 0; i < kind.count(machine); ++i) names.push_back(kind.name_of(machine, i));
+  }
+  return names;
+}
+
+}  // namespace takt::engine
