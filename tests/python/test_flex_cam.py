@@ -448,7 +448,7 @@ def test_a_recording_with_a_module_is_drawn(engine: takt.Engine, tmp_path: Path)
     recording = recorder.recording
     figure = takt.plot.draw(recording, "cutter.set_x_position", "cutter.set_y_position", "knife.set_position")
     labels = [ax.get_ylabel() for ax in figure.axes]
-    assert [label for label in labels if label] == ["position\n[deg]", "position\n[mm]"]  # as the cam says
+    assert [label for label in labels if label] == ["position\n[mm]", "x position\n[deg]", "y position\n[mm]"]
     figure.canvas.draw()
     takt.plot.draw(recording).canvas.draw()
     takt.plot.draw(recording, "cutter.*").canvas.draw()
