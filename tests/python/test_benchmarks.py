@@ -46,3 +46,12 @@ def test_cams_by_number_of_points(tmp_path: Path) -> None:
     found = rows("bench_cam", "Cam(Walk|Floor)", tmp_path)
     assert {f"CamWalk/{kind}/{n}" for kind in ("quintic", "linear") for n in (10, 100, 1000, 100_000)} <= found.keys()
     assert {"CamWalk/modified_sine", "CamFloor/cubic_polynomial"} <= found.keys()
+
+
+def test_a_cam_module_with_everything_on(tmp_path: Path) -> None:
+    """CAM-60: module and slave, coupled alone and with all ramps, filter, sequence and extreme values."""
+    found = rows("bench_flexcam", ".", tmp_path)
+    assert {f"FlexCamCoupled/{points}" for points in (10, 10_000)} <= found.keys()
+    for points in (10, 10_000):
+        row = found[f"FlexCamWithEverything/{points}/manual_time"]
+        assert 0 < row["p99.9_ns"] <= row["max_ns"]
