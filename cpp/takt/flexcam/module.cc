@@ -6,8 +6,6 @@
 #include "takt/axis/coupling.h"
 #include "takt/axis/guidance.h"
 #include "takt/axis/homing.h"
-#include "takt/core/describe.h"
-#include "takt/core/in_range.h"
 #include "takt/flexcam/run.h"
 
 namespace takt::flexcam {
@@ -29,10 +27,6 @@ ErrorId Tell(const Context& c, const axis::Command& command, axis::State& slave)
   return ErrorId::kNone;
 }
 
-bool IsOn(const axis::State& slave) {
-  return slave.loop_closed && slave.plc != axis::PlcState::kErrorStop;
-}
-
 void EndAction(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
   if (feedback == FeedbackState::kError) s.warning = error;
   if (s.action == Action::kNone) return;
@@ -40,11 +34,6 @@ void EndAction(const Context& c, FeedbackState feedback, ErrorId error, State& s
   s.done = feedback == FeedbackState::kDone;
   s.action = Action::kNone;
   s.action_ticket = 0;
-}
-
-void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
-  if (s.jog.ticket != 0) Report(c, s.jog.ticket, feedback, error);
-  s.jog = {};
 }
 
 // The running action gives way to another one, or a request is refused; what runs is not touched by that.
@@ -421,90 +410,16 @@ BoundsOf WhatToBound(const State& s) {
   return of;
 }
 
-// --- commands ---
-
-// What a change of inputs asks for. A level that is there already asks for nothing: it needs a new edge.
-Action AskedBy(const Control& command, const Inputs& was, const State& s) {
-  if (command.sync_cam) {
-    if (*command.sync_cam != was.sync_cam) return *command.sync_cam ? Action::kSyncIn : Action::kSyncOut;
-    if (*command.sync_cam && s.state != ModuleState::kSync) return Action::kSyncIn;  // and is refused
-  }
-  return command.home_execute.value_or(false) && !was.home_execute ? Action::kHome : Action::kNone;
-}
-
-void CarryOut(const Context& c, Ticket ticket, double, const Control& command, axis::State&, State& s) {
-  if (command.cam_table && s.slots[*command.cam_table - 1] == 0) {
-    return Report(c, ticket, FeedbackState::kError, ErrorId::kUnknownTarget);
-  }
-  const Inputs was = s.inputs;
-  TakeGiven(command, s.inputs);
-  s.instant |= s.inputs.cam_change_instant && !was.cam_change_instant && s.state == ModuleState::kSync;
-  Report(c, ticket, FeedbackState::kActive);
-  const Action asked = AskedBy(command, was, s);
-  const bool no_edge = asked == Action::kSyncIn && was.sync_cam;
-  if (no_edge) {
-    s.warning = ErrorId::kState;
-    return Report(c, ticket, FeedbackState::kError, ErrorId::kState);
-  }
-  const bool nothing_to_open = asked == Action::kSyncOut && s.state != ModuleState::kSync;
-  if (asked == Action::kSyncOut && s.request == Action::kSyncIn) {  // both edges within one cycle
-    Report(c, s.request_ticket, FeedbackState::kAborted);
-    s.request = Action::kNone;
-  }
-  if (asked == Action::kNone || nothing_to_open) return Report(c, ticket, FeedbackState::kDone);
-  if (s.request != Action::kNone) Report(c, s.request_ticket, FeedbackState::kAborted);
-  s.request = asked;
-  s.request_ticket = ticket;
-}
-
-void CarryOut(const Context& c, Ticket ticket, double, const Configure& command, axis::State&, State& s) {
-  TakeGiven(command, s.settings);
-  Report(c, ticket, FeedbackState::kActive);
-  Report(c, ticket, FeedbackState::kDone);
-}
-
-void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& command, axis::State& slave, State& s) {
-  const bool held = command.positive || command.negative;
-  const bool jogs = s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg;
-  const bool opposite = s.jog.ticket == 0 && command.positive && command.negative;
-  ErrorId error = ErrorId::kNone;
-  if (s.state != ModuleState::kReady && !jogs) error = ErrorId::kState;
-  if (opposite) error = ErrorId::kParameter;  // nobody knows which key was first
-  if (!IsOn(slave)) error = ErrorId::kPowerOff;
-  if (held && error != ErrorId::kNone) return Report(c, ticket, FeedbackState::kError, error);
-  Report(c, ticket, FeedbackState::kActive);
-  if (s.jog.ticket != 0) Report(c, s.jog.ticket, FeedbackState::kAborted);
-  s.jog = {ticket, command, lease_s, CycleIn(c.slave.cycle, lease_s)};
-  if (!held && !jogs) EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
-}
-
-void CarryOut(const Context& c, Ticket ticket, double, const SetCam& command, axis::State&, State& s) {
-  for (std::size_t i = 0; i < c.slave.machine.cams.size(); ++i) {
-    if (c.slave.machine.cams[i].name() != command.cam.view()) continue;
-    s.slots[command.slot - 1] = static_cast<std::uint32_t>(i) + 1;
-    Report(c, ticket, FeedbackState::kActive);
-    return Report(c, ticket, FeedbackState::kDone);
-  }
-  Report(c, ticket, FeedbackState::kError, ErrorId::kUnknownTarget);
-}
-
-void CarryOut(const Context& c, Ticket ticket, double, const ChangeCam& command, axis::State&, State& s) {
-  const bool empty = s.slots[command.cam_table - 1] == 0;
-  ErrorId error = ErrorId::kNone;
-  if (empty) error = ErrorId::kUnknownTarget;
-  // A sequence decides itself what comes next.
-  if (s.state != ModuleState::kSync || s.inputs.cam_sequencer) error = ErrorId::kState;
-  if (error == ErrorId::kNone && !Enqueue(ticket, command, s)) error = ErrorId::kBufferFull;
-  Report(c, ticket, error == ErrorId::kNone ? FeedbackState::kActive : FeedbackState::kError, error);
-}
-
-void CarryOut(const Context& c, Ticket ticket, double, const WithdrawChanges&, axis::State&, State& s) {
-  AbortChanges(c, s);
-  Report(c, ticket, FeedbackState::kActive);
-  Report(c, ticket, FeedbackState::kDone);
-}
-
 }  // namespace
+
+bool IsOn(const axis::State& slave) noexcept {
+  return slave.loop_closed && slave.plc != axis::PlcState::kErrorStop;
+}
+
+void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
+  if (s.jog.ticket != 0) Report(c, s.jog.ticket, feedback, error);
+  s.jog = {};
+}
 
 State MakeState(const FlexCamParams& params, const std::array<std::uint32_t, kSlots>& slots) noexcept {
   State s;
@@ -512,27 +427,6 @@ State MakeState(const FlexCamParams& params, const std::array<std::uint32_t, kSl
   s.slots = slots;
   s.way.profiler.cam = slots[0] - 1;
   return s;
-}
-
-void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, axis::State& slave,
-           State& s) noexcept {
-  const auto carry_out = [&](const auto& body) {
-    if (!InRange(body)) return Report(c, ticket, FeedbackState::kError, ErrorId::kParameter);
-    CarryOut(c, ticket, lease_s, body, slave, s);
-  };
-  std::visit(carry_out, command);
-}
-
-bool Release(const Context&, Ticket ticket, State& s) noexcept {
-  if (ticket == 0 || s.jog.ticket != ticket) return false;
-  s.jog.keys = {};
-  return true;
-}
-
-bool Renew(const Context& c, Ticket ticket, State& s) noexcept {
-  if (ticket == 0 || s.jog.ticket != ticket || s.jog.lease_s <= 0) return false;
-  s.jog.lease_end_cycle = CycleIn(c.slave.cycle, s.jog.lease_s);
-  return true;
 }
 
 void Step(const Context& c, axis::State& slave, State& s) noexcept {
@@ -554,77 +448,6 @@ void Step(const Context& c, axis::State& slave, State& s) noexcept {
     s.bounds = {};
   }
   s.before = s.inputs;
-}
-
-void Publish(const Context& c, const axis::State& slave, const State& s, Outputs& out) noexcept {
-  const axis::AxisParams& p = c.slave.params;
-  const double ky = s.inputs.scaling_slave;
-  out.set_offset_master = s.way.to_x.offset;
-  out.set_offset_slave = s.way.to_slave.offset;
-  out.set_scaling_master = s.way.to_x.factor;
-  out.set_scaling_slave = s.way.to_slave.factor;
-  out.set_x_position = s.at.x;
-  out.set_x_velocity = s.x.velocity;
-  out.set_x_acceleration = s.x.acceleration;
-  out.set_y_position = s.at.y_in_cam;
-  out.set_y_velocity = s.y.velocity;
-  out.set_y_acceleration = s.y.acceleration;
-  out.actual_slave_position = axis::Reported(p, slave.actual.position);
-  out.actual_slave_velocity = slave.actual.velocity;
-  out.bounds_valid = s.bounds.valid;
-  if (s.bounds.valid) {
-    out.slave_max_position = ky * s.bounds.max_position + s.inputs.offset_slave;
-    out.slave_min_position = ky * s.bounds.min_position + s.inputs.offset_slave;
-    out.slave_max_velocity = ky * s.bounds.max_velocity;
-    out.slave_max_acceleration = ky * s.bounds.max_acceleration;
-  }
-  out.ip01_set_scaling_master = s.inputs.scaling_master;
-  out.ip02_scaling_mode_master = s.settings.scaling_mode_master;
-  out.ip03_set_offset_master = s.inputs.offset_master;
-  out.ip04_set_offset_slave = s.inputs.offset_slave;
-  out.ip05_offset_mode_slave = s.settings.offset_mode_slave;
-  out.ip06_set_scaling_slave = s.inputs.scaling_slave;
-  out.ip07_scaling_mode_slave = s.settings.scaling_mode_slave;
-  out.ip08_cam_table1 = s.slots[0];
-  out.ip09_cam_table2 = s.slots[1];
-  out.ip10_cam_table3 = s.slots[2];
-  out.ip11_cam_table4 = s.slots[3];
-  const double master = s.master.now.position - ZeroOf(c.slave, c.master);
-  out.mp01_set_master_position = c.master ? axis::Reported(c.slave.machine.params[*c.master], master) : master;
-  out.mp02_set_slave_position = axis::Reported(p, slave.setpoint.position);
-  out.mp03_master_to_x_position = s.x.position;
-  out.mp04_cam_profiler_position_out = s.at.y_in_cam;
-  out.mp05_set_y_position = s.at.y;
-  out.mp06_y_to_slave_position = axis::Reported(p, s.wanted.position - slave.origin);
-  out.op01_set_x_position_out = s.at.x;
-  out.op02_set_y_position_out = s.at.y_in_cam;
-  out.error = s.error;
-  out.warning = s.warning;
-  out.state = s.state;
-  const std::uint32_t running = s.way.profiler.slot;
-  const std::uint32_t next = s.pending_count > 0 ? s.pending[0].change.cam_table : s.inputs.cam_table;
-  out.cam_table = running;
-  out.next_cam_table = next == running || s.state != ModuleState::kSync ? 0 : next;
-  out.pending_changes = s.pending_count;
-  out.cam_ends = s.cam_ends;
-  out.internal_control_active = s.inputs.internal_control;
-  out.axis_enabled = slave.loop_closed;
-  out.done = s.done;
-  out.busy = s.action != Action::kNone;
-  out.is_homed = slave.homing.homed;
-  out.hw_limit_switch_positive = slave.limit_positive || s.inputs.hw_limit_positive;
-  out.hw_limit_switch_negative = slave.limit_negative || s.inputs.hw_limit_negative;
-  out.sw_limit_enabled = p.limits.lower.has_value() || p.limits.upper.has_value();
-  out.sw_limit_switch_active =
-      s.error == ErrorId::kModuleSoftLimitPositive || s.error == ErrorId::kModuleSoftLimitNegative;
-  const bool sync = s.state == ModuleState::kSync;
-  const ClutchPhase phase = s.clutch.phase;
-  const bool on_cam = phase == ClutchPhase::kClosed || phase == ClutchPhase::kWaitingOut;
-  out.cam_synchronised = sync && on_cam && slave.guidance.chase.in_step;
-  out.acc_dec_sync =
-      sync && (phase == ClutchPhase::kClosing || phase == ClutchPhase::kOpening || phase == ClutchPhase::kReleased);
-  out.end_of_profile = sync && s.end_of_profile;
-  out.sequencer_active = sync && IsActive(SequencerOf(s), s.sequencer);
 }
 
 }  // namespace takt::flexcam

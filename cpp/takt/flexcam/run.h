@@ -1,4 +1,5 @@
-// The way from the master to Y, cycle by cycle, and the changes of cam on it. Used by the stages of the module only.
+// The way from the master to Y, cycle by cycle, the changes of cam on it, and what else the stages of a module share.
+// Used by them only.
 #pragma once
 
 #include "takt/flexcam/module.h"
@@ -18,6 +19,9 @@ bool Enqueue(Ticket ticket, const ChangeCam& change, State& s) noexcept;
 void AbortChanges(const Context& c, State& s) noexcept;
 
 SequencerInputs SequencerOf(const State& s) noexcept;
+// The slave is powered and takes commands.
+bool IsOn(const axis::State& slave) noexcept;
+void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
 void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error = ErrorId::kNone) noexcept;
 
 }  // namespace takt::flexcam

@@ -1,0 +1,78 @@
+// What everybody sees of a module.
+#include "takt/axis/axis.h"
+#include "takt/flexcam/run.h"
+
+namespace takt::flexcam {
+
+void Publish(const Context& c, const axis::State& slave, const State& s, Outputs& out) noexcept {
+  const axis::AxisParams& p = c.slave.params;
+  const double ky = s.inputs.scaling_slave;
+  out.set_offset_master = s.way.to_x.offset;
+  out.set_offset_slave = s.way.to_slave.offset;
+  out.set_scaling_master = s.way.to_x.factor;
+  out.set_scaling_slave = s.way.to_slave.factor;
+  out.set_x_position = s.at.x;
+  out.set_x_velocity = s.x.velocity;
+  out.set_x_acceleration = s.x.acceleration;
+  out.set_y_position = s.at.y_in_cam;
+  out.set_y_velocity = s.y.velocity;
+  out.set_y_acceleration = s.y.acceleration;
+  out.actual_slave_position = axis::Reported(p, slave.actual.position);
+  out.actual_slave_velocity = slave.actual.velocity;
+  out.bounds_valid = s.bounds.valid;
+  if (s.bounds.valid) {
+    out.slave_max_position = ky * s.bounds.max_position + s.inputs.offset_slave;
+    out.slave_min_position = ky * s.bounds.min_position + s.inputs.offset_slave;
+    out.slave_max_velocity = ky * s.bounds.max_velocity;
+    out.slave_max_acceleration = ky * s.bounds.max_acceleration;
+  }
+  out.ip01_set_scaling_master = s.inputs.scaling_master;
+  out.ip02_scaling_mode_master = s.settings.scaling_mode_master;
+  out.ip03_set_offset_master = s.inputs.offset_master;
+  out.ip04_set_offset_slave = s.inputs.offset_slave;
+  out.ip05_offset_mode_slave = s.settings.offset_mode_slave;
+  out.ip06_set_scaling_slave = s.inputs.scaling_slave;
+  out.ip07_scaling_mode_slave = s.settings.scaling_mode_slave;
+  out.ip08_cam_table1 = s.slots[0];
+  out.ip09_cam_table2 = s.slots[1];
+  out.ip10_cam_table3 = s.slots[2];
+  out.ip11_cam_table4 = s.slots[3];
+  const double master = s.master.now.position - ZeroOf(c.slave, c.master);
+  out.mp01_set_master_position = c.master ? axis::Reported(c.slave.machine.params[*c.master], master) : master;
+  out.mp02_set_slave_position = axis::Reported(p, slave.setpoint.position);
+  out.mp03_master_to_x_position = s.x.position;
+  out.mp04_cam_profiler_position_out = s.at.y_in_cam;
+  out.mp05_set_y_position = s.at.y;
+  out.mp06_y_to_slave_position = axis::Reported(p, s.wanted.position - slave.origin);
+  out.op01_set_x_position_out = s.at.x;
+  out.op02_set_y_position_out = s.at.y_in_cam;
+  out.error = s.error;
+  out.warning = s.warning;
+  out.state = s.state;
+  const std::uint32_t running = s.way.profiler.slot;
+  const std::uint32_t next = s.pending_count > 0 ? s.pending[0].change.cam_table : s.inputs.cam_table;
+  out.cam_table = running;
+  out.next_cam_table = next == running || s.state != ModuleState::kSync ? 0 : next;
+  out.pending_changes = s.pending_count;
+  out.cam_ends = s.cam_ends;
+  out.internal_control_active = s.inputs.internal_control;
+  out.axis_enabled = slave.loop_closed;
+  out.done = s.done;
+  out.busy = s.action != Action::kNone;
+  out.is_homed = slave.homing.homed;
+  out.hw_limit_switch_positive = slave.limit_positive || s.inputs.hw_limit_positive;
+  out.hw_limit_switch_negative = slave.limit_negative || s.inputs.hw_limit_negative;
+  out.sw_limit_enabled = p.limits.lower.has_value() || p.limits.upper.has_value();
+  out.sw_limit_switch_active =
+      s.error == ErrorId::kModuleSoftLimitPositive || s.error == ErrorId::kModuleSoftLimitNegative;
+  const bool sync = s.state == ModuleState::kSync;
+  const ClutchPhase phase = s.clutch.phase;
+  const bool on_cam = phase == ClutchPhase::kClosed || phase == ClutchPhase::kWaitingOut;
+  out.cam_synchronised = sync && on_cam && slave.guidance.chase.in_step;
+  out.acc_dec_sync =
+      sync && (phase == ClutchPhase::kClosing || phase == ClutchPhase::kOpening || phase == ClutchPhase::kReleased);
+  out.end_of_profile = sync && s.end_of_profile;
+  out.sequencer_active = sync && IsActive(SequencerOf(s), s.sequencer);
+}
+
+}  // namespace takt::flexcam
