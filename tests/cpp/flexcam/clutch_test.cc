@@ -424,5 +424,47 @@ TEST(WithoutReversing, AFactorWaitsForTheRampOfX) {
   EXPECT_EQ(b.Module().set_scaling_master, 0.5);
 }
 
+// CAM-39: no way at all to close or open over: at once, as fast as the slave's limits allow, and without a jump.
+TEST(RampPos, WithADistanceOfZero) {
+  Settings s = Absolute(ClutchMode::kRampPos);
+  s.master_sync_in_distance = 0;
+  s.master_sync_out_distance = 0;
+  s.slave_sync_out_position = -30;
+  Bench b(MachineOf({UpAndDown("hill", 50)}, s));
+  b.Web(360);
+  b.Run(400);
+  Watch watch(b);
+  ASSERT_TRUE(b.Sync(200));
+  ExpectOnCam(b, 50);
+  const Ticket out = b.Tell(Control{.sync_cam = false});
+  ASSERT_TRUE(b.Until([&] { return b.Module().state == ModuleState::kReady; }, 300));
+  EXPECT_EQ(b.Of(out), FeedbackState::kDone);
+  EXPECT_NEAR(b.Knife().set_position, -30, 1e-9);
+  watch.ExpectSmooth();
+}
+
+// CAM-39: other numbers for where master and slave are move nothing, and a master that is lost by its encoder for a
+// while is no jump either.
+TEST(Closed, OtherNumbersMoveNothing) {
+  Bench b(MachineOf({UpAndDown("hill", 50)}, Absolute(ClutchMode::kAbsolute)));
+  b.Give(Bench::kWeb, axis::MoveVelocity{.velocity = 360});
+  b.Run(400);
+  ASSERT_TRUE(b.Sync(400));
+  double jump = 0;
+  double x = b.Module().set_x_position;
+  b.each = [&] {
+    const double way = b.Module().set_x_position - x;
+    jump = std::max(jump, std::abs(way - 360 * std::round(way / 360)));
+    x = b.Module().set_x_position;
+    ASSERT_TRUE(b.Module().cam_synchronised);
+  };
+  b.Run(50);
+  b.Give(Bench::kWeb, axis::SetPosition{.position = 17});
+  b.Run(50);
+  b.Give(Bench::kKnife, axis::SetPosition{.position = 1000});
+  b.Run(2000);
+  EXPECT_NEAR(jump, 0.36, 1e-6);
+}
+
 }  // namespace
 }  // namespace takt::flexcam
