@@ -87,7 +87,7 @@ struct Request {
   bool blends() const { return buffer_mode >= BufferMode::kBlendingLow; }
 };
 
-// What the seed's second table 8.3 says of each command, and the state it puts the axis in.
+// What the second table 8.3 of the GT-775x manual says of each command, and the state it puts the axis in.
 struct RequestRules {
   RequestKind kind;
   bool may_be_buffered;

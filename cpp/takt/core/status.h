@@ -59,7 +59,7 @@ enum class ErrorId : std::uint16_t {
   kMasterOff = 3019,          // a master has no set position that means anything: its loop is open, or it has a fault
   kWouldReverse = 3020,       // a clutch that may not reverse its slave finds no way to close
   kGroupDeviation = 8001,
-  // A cam module is in error; the numbers are its seed's.
+  // A cam module is in error; numbers of the Flex Cam manual.
   kModuleSoftLimitPositive = 20306,
   kModuleSoftLimitNegative = 20307,
   kModuleLimitSwitchPositive = 20500,

@@ -1,4 +1,4 @@
-// The extreme values of the slave (the seed's 3.19 and 3.25), a few pieces of the cams in each cycle.
+// The extreme values of the slave (the manual's 3.19 and 3.25), a few pieces of the cams in each cycle.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The clutch between Y and the slave (the seed's 3.14 to 3.16, 3.20, 3.21).
+// The clutch between Y and the slave (the manual's 3.14 to 3.16, 3.20, 3.21).
 //
 // Closing over the master's way the slave goes on a quintic from where it is to where the cam wants it at the sync
 // position; over time, or with limits of its own, what lies between the slave and Y is brought to zero while Y moves as

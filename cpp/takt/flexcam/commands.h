@@ -1,4 +1,5 @@
-// What a cam module understands. Its inputs are levels, as those of the seed's block: they stay until they are changed.
+// What a cam module understands. Its inputs are levels, as those of the Flex Cam block: they stay until they are
+// changed.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@ namespace takt::flexcam {
 
 inline constexpr std::size_t kSlots = 4;
 
-// The inputs of the seed's 3.3.2; "Flex Cam:" in the doc strings is the name there.
+// The inputs of the manual's 3.3.2; "Flex Cam:" in the doc strings is the name there.
 template <template <typename> class Of>
 struct InputsOf {
   Of<bool> enable = Preset<Of>(true);

@@ -1,5 +1,5 @@
-// Scaling and offset, on the way from the master to X and from Y to the slave (the seed's 3.17 and 3.18): pure, but for
-// the ramps it plans.
+// Scaling and offset, on the way from the master to X and from Y to the slave (the manual's 3.17 and 3.18): pure, but
+// for the ramps it plans.
 //
 //   out = factor * (in - in_zero) + out_zero + offset + ramp
 #pragma once

@@ -82,7 +82,7 @@ void Abandon(const Context& c, State& s) {
   EndAction(c, FeedbackState::kAborted, ErrorId::kNone, s);
 }
 
-// The number of the seed for what stopped the slave, where it has one.
+// The manual's number for what stopped the slave, where it has one.
 ErrorId ErrorOf(ErrorId axis_error) {
   switch (axis_error) {
     case ErrorId::kLimitSwitchPositive:

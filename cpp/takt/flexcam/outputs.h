@@ -1,4 +1,4 @@
-// What a cam module publishes every cycle: the outputs of the seed's 3.3.3 and its signal flow (3.5.1).
+// What a cam module publishes every cycle: the outputs of the manual's 3.3.3 and its signal flow (3.5.1).
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The cam on the X axis: which one, where it lies, in which of its cycles X is, and what it says for Y (the seed's 3.9,
-// 3.10 and 3.13). Pure.
+// The cam on the X axis: which one, where it lies, in which of its cycles X is, and what it says for Y (the
+// manual's 3.9, 3.10 and 3.13). Pure.
 #pragma once
 
 #include <cstdint>

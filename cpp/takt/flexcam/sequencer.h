@@ -1,4 +1,4 @@
-// Which cam comes next (the seed's 3.24, and the slot that is set).
+// Which cam comes next (the manual's 3.24, and the slot that is set).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What a cam module's user sets and may change at any time: the parameters of the seed's 3.3.4. In doc strings "Flex
+// What a cam module's user sets and may change at any time: the parameters of the manual's 3.3.4. In doc strings "Flex
 // Cam:" is the name there. A change takes effect where the setting is next looked at: modes of a clutch, for instance,
 // when it next closes or opens.
 #pragma once
@@ -76,7 +76,7 @@ struct SettingsOf {
   Of<double> master_max_velocity = Preset<Of>(100.0);        // master's u/s
   Of<double> master_max_acceleration = Preset<Of>(1'000.0);  // master's u/s²
 
-  // The master. Beyond the seed.
+  // The master. Beyond the manual.
   Of<double> master_filter_s = Preset<Of>(0.0);     // of measured positions; 0: none
   Of<double> master_dead_time_s = Preset<Of>(0.0);  // measured positions are so old
   Of<MasterFault> on_master_fault = Preset<Of>(MasterFault::kStop);

@@ -127,7 +127,7 @@ Ran RunSequence(SequenceMode mode, int cycles_on, int cycles_off) {
 using Slots = std::vector<std::uint32_t>;
 using Flags = std::vector<bool>;
 
-// CAM-23: the table of the seed's 3.24, in both positions of the input.
+// CAM-23: the table of the manual's 3.24, in both positions of the input.
 TEST(Sequencer, Mode0RunsCam1) {
   const Ran ran = RunSequence(SequenceMode::kCam1, 4, 3);
   EXPECT_EQ(ran.slots, (Slots{1, 1, 1, 1, 1, 2, 2}));  // then what is set

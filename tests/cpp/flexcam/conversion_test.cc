@@ -7,8 +7,8 @@
 namespace takt::flexcam {
 namespace {
 
-// One of the seed's arithmetic tables (3.17.1, 3.17.2): factor 1, 2, 1 in three cycles, the input at 100, 101, 102 with
-// a velocity of 1000.
+// One of the manual's arithmetic tables (3.17.1, 3.17.2): factor 1, 2, 1 in three cycles, the input at 100, 101, 102
+// with a velocity of 1000.
 struct Row {
   ScalingMode mode;
   double out_at_start;
@@ -19,7 +19,7 @@ struct Row {
 class Tables : public testing::TestWithParam<Row> {};
 
 // CAM-40: number for number.
-TEST_P(Tables, AreThoseOfTheSeed) {
+TEST_P(Tables, AreThoseOfTheManual) {
   const Row& row = GetParam();
   trajectory::Planner planner;
   Conversion c;

@@ -1,4 +1,4 @@
-// CAM-11: every input, output and parameter of the seed's 3.3.2 to 3.3.4 and its signal flow has a counterpart.
+// CAM-11: every input, output and parameter of the manual's 3.3.2 to 3.3.4 and its signal flow has a counterpart.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -10,7 +10,7 @@
 namespace takt::flexcam {
 namespace {
 
-// The names of the seed that the fields of a type say they stand for.
+// The names of the manual that the fields of a type say they stand for.
 void Collect(const Type& type, std::set<std::string>& names) {
   const auto take = [&](std::string_view about) {
     const std::string_view key = "Flex Cam: ";
@@ -36,7 +36,7 @@ std::set<std::string> Named() {
   return names;
 }
 
-TEST(Names, OfTheSeedAreAllThere) {
+TEST(Names, OfTheManualAreAllThere) {
   const std::set<std::string> named = Named();
   for (const char* name :
        {// Inputs. scCtrlABC: commands of the slave itself (SERVICE); scPar: the settings; eSetCamTable and four tables.
@@ -71,7 +71,7 @@ TEST(Names, OfTheSeedAreAllThere) {
 }
 
 // CAM-11: initial values.
-TEST(Names, InitialValuesAreThoseOfTheSeed) {
+TEST(Names, InitialValuesAreThoseOfTheManual) {
   const Settings s;
   EXPECT_EQ(s.stop_deceleration, 10000);
   EXPECT_EQ(s.stop_jerk, 100000);

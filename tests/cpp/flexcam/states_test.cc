@@ -93,7 +93,7 @@ TEST(States, Jogging) {
   const Ticket up = b.Tell(Jog{.positive = true});
   b.Run(300);
   EXPECT_EQ(b.Module().state, ModuleState::kJogPos);
-  EXPECT_NEAR(b.Knife().set_velocity, 10, 1e-9);  // the seed's initial lrJogVel
+  EXPECT_NEAR(b.Knife().set_velocity, 10, 1e-9);  // the manual's initial lrJogVel
   b.Tell(Jog{.positive = true, .negative = true});
   b.Run(100);
   EXPECT_EQ(b.Module().state, ModuleState::kJogPos);
@@ -208,7 +208,7 @@ TEST(States, ACommandOfTheAxisTakesTheSlaveAway) {
   watch.ExpectSmooth();
 }
 
-// CAM-12: with the numbers of the seed; only a reset ends it.
+// CAM-12: with the numbers of the manual; only a reset ends it.
 TEST(Limits, SwitchesAtTheModule) {
   struct Case {
     Control on, off;
