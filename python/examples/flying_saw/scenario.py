@@ -82,15 +82,18 @@ def scenario(session: takt.Session) -> None:
 
 def cuts(recording: takt.Recording, cam: int, middle: float, begin_s: float, end_s: float) -> np.ndarray:
     """Where on the web the saw is each time it rides along, in mm."""
-    time = recording["cutter"]["time_s"]
-    x = recording["cutter"]["set_x_position"]
+    time, x = recording["cutter"]["time_s"], recording["cutter"]["set_x_position"]
     rides = (recording["cutter"]["cam_table"] == cam) & recording["cutter"]["cam_synchronised"].astype(bool)
     rides &= (time >= begin_s) & (time < end_s)
     passes = np.flatnonzero(rides[1:] & rides[:-1] & (x[:-1] < middle) & (x[1:] >= middle))
-    speeds = recording["saw"]["set_velocity"][passes] - recording["web"]["set_velocity"][passes]
     assert len(passes) > 2
+
+    def then(axis: str, field: str) -> np.ndarray:  # each component has times of its own: messages may get lost
+        return np.interp(time[passes], recording[axis]["time_s"], recording[axis][field])
+
+    speeds = then("saw", "set_velocity") - then("web", "set_velocity")
     assert np.max(np.abs(speeds)) < 1e-3 * SPEED, speeds
-    return np.asarray(recording["web"]["set_position"][passes] - recording["saw"]["set_position"][passes] - SENSOR)
+    return then("web", "set_position") - then("saw", "set_position") - SENSOR
 
 
 def verify(recording: takt.Recording) -> None:
