@@ -1,0 +1,112 @@
+#include "takt/trajectory/path_limits.h"
+
+#include <algorithm>
+
+#include "takt/core/describe.h"
+
+namespace takt::trajectory {
+
+namespace {
+
+// First slopes that differ by more, in relation to both, are a corner.
+constexpr double kSameSlope = 1e-6;
+
+double AccelerationOf(const CoordinateLimits::One& own, double build_up_s, double share) {
+  return share * std::min(own.acceleration, own.jerk * build_up_s);
+}
+
+}  // namespace
+
+AlongPath Least(const AlongPath& a, const AlongPath& b) noexcept {
+  return {std::min(a.velocity, b.velocity), std::min(a.acceleration, b.acceleration),
+          std::min(a.deceleration, b.deceleration), std::min(a.jerk, b.jerk)};
+}
+
+double AccelerationBounds::Least(double square) const noexcept {
+  double least = -deceleration;
+  for (std::size_t k = 0; k < count; ++k) least = std::max(least, tilt[k] * square - reach[k]);
+  return least;
+}
+
+double AccelerationBounds::Most(double square) const noexcept {
+  double most = acceleration;
+  for (std::size_t k = 0; k < count; ++k) most = std::min(most, tilt[k] * square + reach[k]);
+  return most;
+}
+
+AccelerationBounds BoundsAt(const PathSlopes& slopes, const AlongPath& along, const CoordinateLimits& limits,
+                            double build_up_s, double share) noexcept {
+  AccelerationBounds bounds;
+  bounds.acceleration = std::min(along.acceleration, along.jerk * build_up_s);
+  bounds.deceleration = std::min(along.deceleration, along.jerk * build_up_s);
+  const double largest = std::max(bounds.acceleration, bounds.deceleration);
+  for (std::size_t k = 0; k < limits.count; ++k) {
+    const double own = AccelerationOf(limits.of[k], build_up_s, share);
+    // Where a coordinate hardly moves with the way, only the square of the speed counts (SquareAt).
+    if (own == CoordinateLimits::kNone || std::abs(slopes.first[k]) * largest <= 1e-6 * own) continue;
+    const double inverse = 1 / slopes.first[k];
+    bounds.tilt[bounds.count] = -slopes.second[k] * inverse;
+    bounds.reach[bounds.count] = own * std::abs(inverse);
+    ++bounds.count;
+  }
+  return bounds;
+}
+
+double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double build_up_s, double share) noexcept {
+  double square = point.limits.velocity * point.limits.velocity;
+  for (std::size_t k = 0; k < limits.count; ++k) {
+    const double slope = std::abs(point.slopes.first[k]);
+    const double bend = std::abs(point.slopes.second[k]);
+    const CoordinateLimits::One& own = limits.of[k];
+    if (slope * slope * square > own.velocity * own.velocity) square = own.velocity * own.velocity / (slope * slope);
+    const double acceleration = AccelerationOf(own, build_up_s, share);
+    if (bend * square > acceleration) square = acceleration / bend;
+  }
+  return square;
+}
+
+double SquareBefore(const AccelerationBounds& bounds, double length, double later, double highest) noexcept {
+  // The least square to which a square leads is convex over it, made of lines: from above, steps along them come to the
+  // largest that is good.
+  double square = highest;
+  for (int i = 0; i < 2 * static_cast<int>(kPathCoordinates); ++i) {
+    double least = -bounds.deceleration;
+    double tilt = 0;
+    for (std::size_t k = 0; k < bounds.count; ++k) {
+      const double one = bounds.tilt[k] * square - bounds.reach[k];
+      if (one <= least) continue;
+      least = one;
+      tilt = bounds.tilt[k];
+    }
+    const double over = square + 2 * length * least - later;
+    const double slope = 1 + 2 * length * tilt;
+    if (over <= 1e-12 * square) break;
+    if (slope <= 0) return 0;
+    square = std::max(0.0, square - over / slope);
+    if (square == 0) break;
+  }
+  return square;
+}
+
+double JointSquare(const PathSlopes& before, const PathSlopes& after, const CoordinateLimits& limits,
+                   double time) noexcept {
+  double square = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < limits.count; ++k) {
+    const double corner = std::abs(after.first[k] - before.first[k]);
+    if (corner > kSameSlope * (std::abs(after.first[k]) + std::abs(before.first[k]) + kSameSlope)) return 0;
+    const double bend = std::abs(after.second[k] - before.second[k]);
+    const double step = std::min(limits.of[k].jerk * time, 0.5 * limits.of[k].acceleration);
+    if (bend * square > step) square = step / bend;
+  }
+  return square;
+}
+
+void describe(Description<AlongPath>& d) {
+  d.about("Limits along a path.");
+  d.internal<&AlongPath::velocity>("mm/s.");
+  d.internal<&AlongPath::acceleration>("mm/s².");
+  d.internal<&AlongPath::deceleration>("mm/s².");
+  d.internal<&AlongPath::jerk>("mm/s³.");
+}
+
+}  // namespace takt::trajectory

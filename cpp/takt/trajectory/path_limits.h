@@ -1,0 +1,84 @@
+// What limits of coordinates and of the way itself say about the motion along a path, at one place of it.
+//
+// A coordinate q that depends on the way s has the velocity q' v and the acceleration q' a + q'' v². So with w = v²,
+// the limits of acceleration at one place are straight lines over w, one to either side of each coordinate.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "takt/core/describe_fwd.h"
+
+namespace takt::trajectory {
+
+inline constexpr std::size_t kPathCoordinates = 14;
+
+// Largest velocity, acceleration and jerk of each coordinate; infinite: without a limit.
+struct CoordinateLimits {
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  struct One {
+    double velocity = kNone;
+    double acceleration = kNone;
+    double jerk = kNone;
+  };
+  std::array<One, kPathCoordinates> of{};
+  std::size_t count = 0;  // of coordinates in use
+};
+
+// Along the way; all above 0 and finite.
+struct AlongPath {
+  double velocity = 0;
+  double acceleration = 0;
+  double deceleration = 0;
+  double jerk = 0;
+
+  bool operator==(const AlongPath&) const = default;
+};
+AlongPath Least(const AlongPath& a, const AlongPath& b) noexcept;
+
+// How each coordinate changes with the way; 0 where it does not.
+struct PathSlopes {
+  std::array<double, kPathCoordinates> first{};
+  std::array<double, kPathCoordinates> second{};
+};
+
+struct PathPoint {
+  double s = 0;  // along the way
+  PathSlopes slopes;
+  AlongPath limits;
+};
+
+// The limits of acceleration of one place, those of coordinates as lines over the square of the speed.
+struct AccelerationBounds {
+  std::size_t count = 0;
+  std::array<double, kPathCoordinates> tilt{};   // of the acceleration along the way, per square of the speed
+  std::array<double, kPathCoordinates> reach{};  // at standstill, to both sides
+  double acceleration = 0;                       // along the way
+  double deceleration = 0;
+
+  double Least(double square) const noexcept;
+  double Most(double square) const noexcept;
+};
+
+// With `share` of each coordinate's acceleration, but no more than its jerk builds up within `build_up_s`.
+AccelerationBounds BoundsAt(const PathSlopes& slopes, const AlongPath& along, const CoordinateLimits& limits,
+                            double build_up_s, double share) noexcept;
+
+// The largest square of the speed at this place: for velocities, and so that there is an acceleration within the
+// bounds.
+double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double build_up_s, double share) noexcept;
+
+// The largest square of the speed up to `highest` from which an acceleration within the bounds leads to `later` at
+// most, `length` further on.
+double SquareBefore(const AccelerationBounds& bounds, double length, double later, double highest) noexcept;
+
+// Whether two points at the same place can be passed without a stop, and how fast: the square of the speed at which the
+// accelerations of the coordinates change by no more than their jerk makes them within `time`; 0: a stop is needed.
+double JointSquare(const PathSlopes& before, const PathSlopes& after, const CoordinateLimits& limits,
+                   double time) noexcept;
+
+void describe(Description<AlongPath>&);
+
+}  // namespace takt::trajectory

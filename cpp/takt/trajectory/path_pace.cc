@@ -1,0 +1,162 @@
+#include "takt/trajectory/path_pace.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/core/describe.h"
+
+namespace takt::trajectory {
+
+namespace {
+
+constexpr double kOnNode = 1e-9;   // mm
+constexpr double kLanding = 0.99;  // of the deceleration: the rest is for landing exactly
+
+struct RawLimits {
+  double low = 0;
+  double high = 0;
+};
+
+// The largest acceleration with which, a cycle later, a stop `left` ahead can still be made with `deceleration`, after
+// the speed was held for `hold_s`.
+double BeforeStop(double v, double left, double deceleration, double hold_s, double period_s) {
+  // With u = v + a h: (v + u) h / 2 + u hold + u² / (2 d) = left.
+  const double linear = deceleration * (0.5 * period_s + hold_s);
+  const double room = 2 * deceleration * (left - 0.5 * v * period_s);
+  const double later = room > 0 ? std::sqrt(linear * linear + room) - linear : 0;
+  return (later - v) / period_s;
+}
+
+// What the acceleration may be on the way to the next node. Whoever is beneath the ceiling of a node and takes an
+// acceleration from these comes beneath that of the next one.
+RawLimits RawLimitsOf(const PathWindow& window, const PathPace& pace, double period_s) {
+  const PathNode& node = window[pace.node];
+  const PathNode& next = window[pace.node + 1];
+  const double v = pace.raw.velocity;
+  const double left = std::max(next.at.s - pace.raw.position, kOnNode);
+  RawLimits limits{node.bounds.Least(pace.entered), node.bounds.Most(pace.entered)};
+  const auto to_reach = [&](double square) { return (square - v * v) / (2 * left); };
+  double ahead = to_reach(next.ceiling);
+  double coasting = to_reach(next.coast);
+  if (next.ceiling == 0 && ahead > kLanding * limits.low) {  // there is time before it has to brake
+    ahead = BeforeStop(v, left, -kLanding * limits.low, 0, period_s);
+    coasting = BeforeStop(v, left, -kLanding * limits.low, node.build_up_s, period_s);
+  }
+  limits.high = std::min({limits.high, ahead, std::max(0.0, coasting)});
+  limits.low = std::min(limits.low, limits.high);
+  return limits;
+}
+
+double NextAcceleration(const PathWindow& window, double wish, double period_s, const PathPace& pace) {
+  const RawLimits limits = RawLimitsOf(window, pace, period_s);
+  // Against the acceleration that leaves the mean in this cycle.
+  const double change = window[pace.node].at.limits.jerk * window[pace.node].build_up_s;
+  const double before = pace.last[pace.oldest].acceleration;
+  const double wanted = (wish - pace.raw.velocity) / period_s;
+  const double high = std::min(limits.high, before + change);
+  return std::clamp(std::min(high, wanted), std::min(std::max(limits.low, before - change), high), high);
+}
+
+// One cycle of the raw motion: an acceleration holds to the next node at most.
+PathCycle StepRaw(const PathWindow& window, double wish, double period_s, PathPace& pace) {
+  const auto at_end = [&] { return pace.node + 1 >= window.known() || window[pace.node].stop; };
+  PathCycle cycle{pace.raw.position, pace.raw.velocity, 0, 0};
+  double left_s = period_s;
+  double sum = 0;  // of the position ahead of that at the beginning, over time
+  while (left_s > 0 && !at_end()) {
+    const double s = pace.raw.position;
+    const double v = pace.raw.velocity;
+    const double a = NextAcceleration(window, wish, period_s, pace);
+    const double way = window[pace.node + 1].at.s - s;
+    // When it is at the next node, or at rest.
+    double time = left_s;
+    bool arrives = false;
+    const double square = v * v + 2 * a * way;
+    if (square >= 0) {
+      const double speed_sum = v + std::sqrt(square);
+      const double arrival = speed_sum > 0 ? 2 * way / speed_sum : left_s * 2;
+      arrives = arrival <= left_s;
+      if (arrives) time = arrival;
+    } else if (a < 0 && -v / a < left_s) {
+      time = -v / a;
+    }
+    sum += time * (s - cycle.position + time * (0.5 * v + time * a * (1.0 / 6)));
+    left_s -= time;
+    pace.raw = {s + time * (v + 0.5 * time * a), std::max(0.0, v + time * a), a};
+    if (arrives) {
+      pace.raw.position = window[pace.node + 1].at.s;
+      pace.raw.velocity = std::sqrt(std::max(0.0, square));
+      do {
+        ++pace.node;
+      } while (!at_end() && window[pace.node + 1].at.s <= pace.raw.position);
+      pace.entered = pace.raw.velocity * pace.raw.velocity;
+    } else if (pace.raw.velocity == 0) {
+      // At rest on the way, or on the stop but for rounding.
+      if (window[pace.node + 1].ceiling == 0 && way - time * 0.5 * v < kOnNode) ++pace.node;
+      break;
+    }
+  }
+  if (at_end()) pace.raw = {window[pace.node].at.s, 0, 0};
+  pace.raw_stands = at_end();
+  sum += left_s * (pace.raw.position - cycle.position);
+  cycle.acceleration = (pace.raw.velocity - cycle.velocity) / period_s;
+  cycle.ahead = sum / period_s;
+  return cycle;
+}
+
+// The mean of the raw motion.
+KinematicState Mean(const PathPace& pace, double period_s) {
+  double sum = 0;
+  for (std::uint32_t i = 0; i < pace.cycles; ++i) {
+    sum += pace.last[i].position - pace.raw.position + pace.last[i].ahead;
+  }
+  const double time = pace.cycles * period_s;
+  const PathCycle& oldest = pace.last[pace.oldest];
+  return {pace.raw.position + sum / pace.cycles, (pace.raw.position - oldest.position) / time,
+          (pace.raw.velocity - oldest.velocity) / time};
+}
+
+}  // namespace
+
+void BeginAt(const PathWindow& window, std::uint64_t node, double period_s, PathPace& pace) noexcept {
+  pace = {};
+  pace.node = node;
+  pace.now = pace.raw = {window[node].at.s, 0, 0};
+  pace.raw_stands = false;
+  const double cycles = std::round(window[node].build_up_s / period_s);
+  pace.cycles = static_cast<std::uint32_t>(std::clamp(cycles, 1.0, static_cast<double>(kMostBuildUpCycles)));
+  std::fill_n(pace.last.begin(), pace.cycles, PathCycle{pace.raw.position, 0, 0, 0});
+}
+
+void Advance(const PathWindow& window, double wish, double period_s, PathPace& pace) noexcept {
+  pace.last[pace.oldest] = StepRaw(window, wish, period_s, pace);
+  pace.oldest = (pace.oldest + 1) % pace.cycles;
+  pace.now = Mean(pace, period_s);
+}
+
+bool Stands(const PathPace& pace) noexcept {
+  return pace.raw.velocity == 0 && pace.now.velocity == 0 && pace.now.acceleration == 0;
+}
+
+void describe(Description<PathCycle>& d) {
+  d.about("The raw motion in one cycle.");
+  d.internal<&PathCycle::position>("At its beginning.");
+  d.internal<&PathCycle::velocity>("The same.");
+  d.internal<&PathCycle::acceleration>("Its mean.");
+  d.internal<&PathCycle::ahead>("Mean of the position less that at the beginning.");
+}
+
+void describe(Description<PathPace>& d) {
+  using P = PathPace;
+  d.about("Motion along a path.");
+  d.internal<&P::now>("Along the path.");
+  d.internal<&P::raw>("What that is the mean of.");
+  d.internal<&P::node>("Of the window.");
+  d.internal<&P::entered>("Square of its speed there.");
+  d.internal<&P::raw_stands>("At a stop.");
+  d.internal<&P::cycles>("Of the mean.");
+  d.internal<&P::oldest>("Of them.");
+  d.internal<&P::last>("The raw motion in them.");
+}
+
+}  // namespace takt::trajectory

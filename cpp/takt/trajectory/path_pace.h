@@ -1,0 +1,48 @@
+// Going along a path as fast as its window allows, cycle by cycle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/kinematic_state.h"
+#include "takt/trajectory/path_window.h"
+
+namespace takt::trajectory {
+
+// The mean is over so many cycles at most.
+inline constexpr std::size_t kMostBuildUpCycles = 200;
+
+// The raw motion in one cycle.
+struct PathCycle {
+  double position = 0;      // at its beginning
+  double velocity = 0;      // the same
+  double acceleration = 0;  // its mean
+  double ahead = 0;         // the mean of the position less that at the beginning
+};
+
+struct PathPace {
+  KinematicState now;        // along the path
+  KinematicState raw;        // what that is the mean of; ahead of it
+  std::uint64_t node = 0;    // of the window: the last one that the raw motion has reached
+  double entered = 0;        // the square of its speed there
+  bool raw_stands = true;    // at a stop, or at the end of what is known
+  std::uint32_t cycles = 1;  // the mean is over these
+  std::uint32_t oldest = 0;
+  std::array<PathCycle, kMostBuildUpCycles> last{};  // a ring
+};
+
+// At rest on a node of the window.
+void BeginAt(const PathWindow& window, std::uint64_t node, double period_s, PathPace& pace) noexcept;
+
+// Where it is at the end of the next cycle. `wish`: the speed wanted, kept as soon as the limits allow; 0: come to rest
+// on the path. At a stop that stays the motion waits for BeginAt.
+void Advance(const PathWindow& window, double wish, double period_s, PathPace& pace) noexcept;
+
+// It stands, and so does the raw motion.
+bool Stands(const PathPace& pace) noexcept;
+
+void describe(Description<PathCycle>&);
+void describe(Description<PathPace>&);
+
+}  // namespace takt::trajectory

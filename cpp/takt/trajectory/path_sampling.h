@@ -1,0 +1,82 @@
+// How long accelerations along a path take to build up, and where it gets its nodes: so near to one another that
+// everything between two of them may be taken for linear, and no nearer than a motion within the limits can tell.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/trajectory/path_limits.h"
+
+namespace takt::trajectory {
+
+namespace sampling {
+// Of the time in which accelerations build up, to be passed between two nodes.
+inline constexpr double kTimeShare = 0.35;
+// Cycles between two nodes at least, so far as the path allows.
+inline constexpr double kCycles = 2;
+// How far an acceleration between two nodes may be from the line, as a share of its limit.
+inline constexpr double kBend = 0.02;
+inline constexpr int kHalvings = 12;
+}  // namespace sampling
+
+// Finds T for a motion from one stop to the next, from samples of what is known of its path.
+class BuildUp {
+ public:
+  void Add(const PathPoint& point, const CoordinateLimits& limits) noexcept {
+    double acceleration = std::max(point.limits.acceleration, point.limits.deceleration);
+    double jerk = point.limits.jerk;
+    for (std::size_t k = 0; k < limits.count; ++k) {
+      const double slope = std::abs(point.slopes.first[k]);
+      if (slope * acceleration > limits.of[k].acceleration) acceleration = limits.of[k].acceleration / slope;
+      if (slope * jerk > limits.of[k].jerk) jerk = limits.of[k].jerk / slope;
+    }
+    ++count_;
+    time_ += acceleration / jerk;
+    jerk_ += jerk;
+  }
+
+  // Whole cycles. Longer than it takes to build up what may be is of no use, nor, on a short way, longer than it takes
+  // to build up what can be used: a quarter of the least time from rest to rest with that jerk.
+  double For(double length, double period_s, double most_cycles) const noexcept {
+    const double n = std::max(count_, 1);
+    const double time = std::min(time_ / n, std::cbrt(0.5 * length * n / jerk_));
+    return period_s * std::clamp(std::ceil(time / period_s), 2.0, most_cycles);
+  }
+
+ private:
+  int count_ = 0;
+  double time_ = 0;
+  double jerk_ = 0;
+};
+
+// The node behind `before`, at `end` at most. `slopes_at(s, slopes)` answers false where there is no path; then this
+// does, too. The limits along the way are those of `before`.
+template <typename SlopesAt>
+bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limits, double build_up_s, double period_s,
+               const SlopesAt& slopes_at, PathPoint& next) {
+  namespace c = sampling;
+  const auto square_at = [&](const PathPoint& point) { return SquareAt(point, limits, build_up_s, 1); };
+  const double time = std::max(c::kTimeShare * build_up_s, c::kCycles * period_s);
+  const double left = end - before.s;
+  const double here = square_at(before);
+  double step = std::sqrt(here) * time;
+  if (left < 1.5 * step) step = left;
+  next = before;
+  PathPoint middle = before;
+  for (int i = 0;; ++i) {
+    next.s = step < left ? before.s + step : end;
+    middle.s = before.s + 0.5 * step;
+    if (!slopes_at(next.s, next.slopes) || !slopes_at(middle.s, middle.slopes)) return false;
+    const double there = square_at(next);
+    bool linear = step <= 2 * std::sqrt(there) * time;
+    const double square = std::min(here, there);
+    for (std::size_t k = 0; k < limits.count && linear; ++k) {
+      const double line = 0.5 * (before.slopes.second[k] + next.slopes.second[k]);
+      linear = std::abs(middle.slopes.second[k] - line) * square <= c::kBend * limits.of[k].acceleration;
+    }
+    if (linear || i == c::kHalvings) return true;
+    step *= 0.5;
+  }
+}
+
+}  // namespace takt::trajectory

@@ -1,0 +1,151 @@
+#include "takt/trajectory/path_window.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace takt::trajectory {
+
+namespace {
+
+// Between nodes everything is taken for linear, and the mean of accelerations for the acceleration of the mean: so much
+// of the coordinates' limits is used.
+constexpr double kShare = 0.97;
+constexpr double kDriftShare = 0.9;
+
+// Up to which bends alone do not ask for more than a share of the coordinates' jerk.
+double DriftSquare(const PathPoint& before, const PathPoint& after, const CoordinateLimits& limits) {
+  const double length = after.s - before.s;
+  double cube = CoordinateLimits::kNone;
+  for (std::size_t k = 0; k < limits.count && length > 0; ++k) {
+    const double bend = std::abs(after.slopes.second[k] - before.slopes.second[k]) / length;
+    if (bend * cube > kDriftShare * limits.of[k].jerk) cube = kDriftShare * limits.of[k].jerk / bend;
+  }
+  const double v = std::cbrt(cube);
+  return v * v;
+}
+
+}  // namespace
+
+PathWindow::PathWindow(std::size_t capacity, const CoordinateLimits& limits, double period_s)
+    : nodes_(capacity), limits_(limits), period_s_(period_s), build_up_s_(period_s) {}
+
+void PathWindow::Clear() noexcept {
+  begin_ = known_ = next_ = low_ = lowest_ = end_;
+}
+
+void PathWindow::Append(const PathPoint& point) noexcept {
+  PathNode& node = Node(end_);
+  node = {};
+  node.at = point;
+  node.build_up_s = build_up_s_;
+  node.bounds = BoundsAt(point.slopes, point.limits, limits_, build_up_s_, kShare);
+  node.own = node.cap = SquareAt(point, limits_, build_up_s_, kShare);
+  if (!IsFirst(end_)) {
+    PathNode& before = Node(end_ - 1);
+    const double square = DriftSquare(before.at, point, limits_);
+    node.own = std::min(node.own, square);
+    if (square < before.own) {
+      before.own = square;
+      before.cap = std::min(before.cap, square);
+      Spread(end_ - 1);
+    }
+  }
+  Spread(end_++);
+}
+
+// Slow places hold for all from which, or to which, the mean reaches.
+void PathWindow::Spread(std::uint64_t i) noexcept {
+  PathNode& node = Node(i);
+  const double half = 0.5 * node.build_up_s;
+  const double reach = half * std::sqrt(node.own);
+  double slowest = std::min(node.own, node.cap);
+  for (std::uint64_t k = i; !IsFirst(k); --k) {
+    PathNode& before = Node(k - 1);
+    const double distance = node.at.s - before.at.s;
+    if (distance > reach) break;
+    if (before.cap > node.own) {
+      before.cap = node.own;
+      lowest_ = std::min(lowest_, k - 1);
+    }
+  }
+  // No place further back than the fastest one reaches is slower and reaches as far.
+  for (std::uint64_t k = i; !IsFirst(k); --k) {
+    const PathNode& before = Node(k - 1);
+    const double distance = node.at.s - before.at.s;
+    if (distance > reach) break;
+    if (distance <= half * std::sqrt(before.own)) slowest = std::min(slowest, before.own);
+  }
+  node.cap = slowest;
+}
+
+void PathWindow::Close(bool stays) noexcept {
+  if (known_ == end_) return;
+  const std::uint64_t last = end_ - 1;
+  std::uint64_t first = std::max(known_, begin_ + 1) - 1;  // what led to the old end goes on now
+  if (known_ > begin_ && Node(known_ - 1).stop) first = known_;
+  low_ = std::max(begin_, std::min(first, lowest_));
+  known_ = lowest_ = end_;
+  PathNode& end = Node(last);
+  end.stop = stays;
+  end.ceiling = end.coast = 0;
+  next_ = last;
+  if (low_ > next_) low_ = next_;
+}
+
+bool PathWindow::Sweep(std::size_t nodes) noexcept {
+  for (; nodes > 0 && next_ > low_; --nodes) Raise(--next_);
+  // Beyond what had to be done: as long as something changes.
+  for (; nodes > 0 && next_ == low_ && low_ > begin_ && !Node(low_ - 1).stop; --nodes) {
+    if (!Raise(low_ - 1)) break;
+    next_ = --low_;
+  }
+  return swept();
+}
+
+// True: its ceiling has changed.
+bool PathWindow::Raise(std::uint64_t i) noexcept {
+  PathNode& node = Node(i);
+  if (node.stop) {
+    node.ceiling = node.coast = 0;
+    return false;
+  }
+  const PathNode& next = Node(i + 1);
+  const double length = next.at.s - node.at.s;
+  const double before = node.ceiling;
+  const double coast_before = node.coast;
+  if (length > 0) {
+    node.ceiling = SquareBefore(node.bounds, length, next.ceiling, node.cap);
+  } else {
+    node.ceiling = std::min({node.cap, next.ceiling, JointSquare(node.at.slopes, next.at.slopes, limits_, period_s_)});
+  }
+  node.coast = CoastFrom(i);
+  return node.ceiling != before || node.coast != coast_before;
+}
+
+// The largest square of the speed that may be held for the time T from there without getting above a ceiling.
+double PathWindow::CoastFrom(std::uint64_t i) const noexcept {
+  const double s = (*this)[i].at.s;
+  double square = (*this)[i].ceiling;
+  for (std::uint64_t k = i; k + 1 < known_; ++k) {
+    const PathNode& node = (*this)[k];
+    const PathNode& next = (*this)[k + 1];
+    const double way = std::sqrt(square) * node.build_up_s;
+    if (s + way <= next.at.s) {
+      const double length = next.at.s - node.at.s;
+      const double share = length > 0 ? (s + way - node.at.s) / length : 1;
+      return std::min(square, std::lerp(node.ceiling, next.ceiling, share));
+    }
+    square = std::min(square, next.ceiling);
+    if (node.stop) break;
+  }
+  return square;
+}
+
+void PathWindow::DropBefore(std::uint64_t node) noexcept {
+  begin_ = std::clamp(node, begin_, end_);
+  low_ = std::max(low_, begin_);
+  next_ = std::max(next_, begin_);
+  lowest_ = std::max(lowest_, begin_);
+}
+
+}  // namespace takt::trajectory

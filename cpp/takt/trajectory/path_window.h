@@ -1,0 +1,85 @@
+// How fast something may go along a path of which a window is known: never so fast that a limit ahead could not be
+// kept.
+//
+// The motion is made in two steps. A raw motion, with accelerations that may step, keeps all limits of velocity and
+// acceleration; what is gone is its mean over the time T in which accelerations build up. So the acceleration takes at
+// least T from one value to another, and with accelerations of at most jerk times T no jerk is exceeded: neither along
+// the way nor, since theirs are averaged just so, of any coordinate. The mean comes to rest T after the raw motion
+// does.
+//
+// From the end of the window backwards each node gets its ceiling: the largest speed of the raw motion from which the
+// rest of the window can still be gone within all limits, down to a stop at its end. Whoever is beneath the ceiling in
+// one cycle finds an acceleration within the limits that leads beneath it in the next one. Where more of the path
+// becomes known ceilings rise, so a node that has not been looked at again is only too careful.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "takt/trajectory/path_limits.h"
+
+namespace takt::trajectory {
+
+struct PathNode {
+  PathPoint at;
+  AccelerationBounds bounds;
+  double build_up_s = 0;  // T
+  // Squares of speeds.
+  double own = 0;      // what the limits at this place say
+  double cap = 0;      // and those of places so near that the mean is taken over them, too
+  double ceiling = 0;  // from where all that is ahead can be kept
+  double coast = 0;    // from where there is time to take an acceleration back before
+  bool stop = false;   // the motion stops here; what comes behind begins with a node at the same place
+};
+
+// A queue of nodes. Takes memory only when it is made.
+class PathWindow {
+ public:
+  // `capacity` >= 2.
+  PathWindow(std::size_t capacity, const CoordinateLimits& limits, double period_s);
+
+  void Clear() noexcept;
+  // T for what is appended from now on, behind a stop.
+  void SetBuildUp(double build_up_s) noexcept { build_up_s_ = build_up_s; }
+  double build_up_s() const noexcept { return build_up_s_; }
+  void SetLimits(const CoordinateLimits& limits) noexcept { limits_ = limits; }
+  const CoordinateLimits& limits() const noexcept { return limits_; }
+
+  // Nodes are numbered through from the first one ever appended.
+  std::uint64_t begin() const noexcept { return begin_; }
+  std::uint64_t end() const noexcept { return end_; }
+  // Behind the last node that ceilings know of.
+  std::uint64_t known() const noexcept { return known_; }
+  std::size_t room() const noexcept { return nodes_.size() - static_cast<std::size_t>(end_ - begin_); }
+  const PathNode& operator[](std::uint64_t i) const noexcept { return nodes_[i % nodes_.size()]; }
+
+  // There must be room, s must not fall. No ceiling knows of the node yet.
+  void Append(const PathPoint& point) noexcept;
+  // Takes everything appended into the ceilings, with a stop at the last node. If that `stays`, the next node begins
+  // another motion, at the same place; else the path goes on from there without one. Only once Sweep is through.
+  void Close(bool stays) noexcept;
+  // Works on the ceilings of so many nodes at most. True: it is through.
+  bool Sweep(std::size_t nodes) noexcept;
+  bool swept() const noexcept { return next_ == low_; }
+  void DropBefore(std::uint64_t node) noexcept;
+
+ private:
+  PathNode& Node(std::uint64_t i) noexcept { return nodes_[i % nodes_.size()]; }
+  bool IsFirst(std::uint64_t i) const noexcept { return i == begin_ || (*this)[i - 1].stop; }
+  void Spread(std::uint64_t i) noexcept;
+  bool Raise(std::uint64_t i) noexcept;
+  double CoastFrom(std::uint64_t i) const noexcept;
+
+  std::vector<PathNode> nodes_;
+  CoordinateLimits limits_;
+  double period_s_;
+  double build_up_s_ = 0;
+  std::uint64_t begin_ = 0, end_ = 0;
+  std::uint64_t known_ = 0;
+  std::uint64_t next_ = 0;    // behind the node that Sweep looks at next, going down to ...
+  std::uint64_t low_ = 0;     // ... this one, unless nothing changes any more
+  std::uint64_t lowest_ = 0;  // the first node that what was appended since has lowered
+};
+
+}  // namespace takt::trajectory
