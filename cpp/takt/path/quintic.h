@@ -1,0 +1,22 @@
+// Polynomials of the fifth degree as places, by arc length.
+#pragma once
+
+#include "takt/path/segment.h"
+#include "takt/path/vectors.h"
+
+namespace takt::path {
+
+// mm of the way between two parameters, which lie close enough together: Gauss and Legendre's rule.
+double LengthBetween(const VectorPolynomial& place, double from, double to) noexcept;
+
+// Makes `place` the place of the segment, and `length` what it is long. The cells become smaller where the speed over
+// the parameter changes fast.
+void SetQuintic(Segment& segment, const VectorPolynomial& place) noexcept;
+
+// The parameter after s mm, 0 <= s <= length.
+double ParameterAt(const Segment& segment, double s) noexcept;
+
+// Place, tangent and curvature there.
+Derivatives<Vector> ByLength(const VectorPolynomial& place, double parameter) noexcept;
+
+}  // namespace takt::path
