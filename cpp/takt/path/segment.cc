@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "takt/core/describe.h"
-#include "takt/path/quintic.h"
+#include "takt/path/place.h"
 #include "takt/path/turn.h"
 #include "takt/path/vectors.h"
 
@@ -13,25 +13,6 @@ namespace {
 
 double Within(const Segment& segment, double s) {
   return s > 0 ? std::min(s, segment.length) : 0;
-}
-
-Derivatives<Vector> PlaceAt(const Segment& segment, double s) {
-  const VectorPolynomial& c = segment.place;
-  if (segment.shape == Shape::kLine) return {ToVector(c[0]) + s * ToVector(c[1]), ToVector(c[1]), Vector::Zero()};
-  if (segment.shape == Shape::kQuintic) return ByLength(c, ParameterAt(segment, s));
-  // From the start, not from the centre, which may be far away. 1 - cos = 2 sin².
-  const double half = segment.rate * s / 2;
-  const double sine_half = std::sin(half);
-  const double cosine_half = std::cos(half);
-  const double sine = 2 * sine_half * cosine_half;
-  const double less = 2 * sine_half * sine_half;
-  const Vector radius = ToVector(c[1]);
-  const Vector side = ToVector(c[2]);
-  const Vector rise = ToVector(c[3]);
-  const Vector along = (1 - less) * side - sine * radius;
-  const Vector outward = (1 - less) * radius + sine * side;
-  return {ToVector(c[0]) + sine * side - less * radius + s * rise, segment.rate * along + rise,
-          -segment.rate * segment.rate * outward};
 }
 
 KDL::Rotation ToKdl(const Eigen::Quaterniond& q) {
@@ -47,7 +28,7 @@ KDL::RotationAcc TurnAt(const Segment& segment, double s) {
   const double share = s / segment.length;
   if (segment.turning == Course::kEven) {  // about an axis that stands still
     const Vector whole = ToVector(segment.turn[1]);
-    const Vector turn = ToVector(segment.turn[0]) + share * whole;
+    const Vector turn = share * whole;
     const double half = turn.norm() / 2;
     Eigen::Quaterniond by;
     by.w() = std::cos(half);
@@ -109,6 +90,10 @@ std::string_view Text(Problem problem) noexcept {
       return "there is no blend between a motion of the tool and a turn on the spot";
     case Problem::kReversal:
       return "the path goes back the way it came: there is no blend";
+    case Problem::kTooSharp:
+      return "the path bends too much within the blend, which would make a loop";
+    case Problem::kApart:
+      return "a segment does not begin where the one before it ends";
     case Problem::kOutside:
       return "the blend begins or ends outside of its segments";
     case Problem::kTooFew:
@@ -131,6 +116,8 @@ void describe(Enumeration<Problem>& e) {
   e.value(Problem::kChoice, "choice", "The choice of the arc does not belong to its mode.");
   e.value(Problem::kMeasure, "measure", "One moves the tool, the other does not.");
   e.value(Problem::kReversal, "reversal", "The path goes back the way it came.");
+  e.value(Problem::kTooSharp, "too_sharp", "The segments bend too much within a blend.");
+  e.value(Problem::kApart, "apart", "One segment does not begin where the other ends.");
   e.value(Problem::kOutside, "outside", "A blend begins or ends outside of its segments.");
   e.value(Problem::kTooFew, "too_few", "A spline of fewer than two points.");
 }

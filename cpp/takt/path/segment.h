@@ -43,6 +43,8 @@ enum class Problem : std::uint8_t {
   kChoice,       // a choice of the arc that does not belong to its mode
   kMeasure,      // one moves the tool, the other only turns it or only moves auxiliary axes
   kReversal,     // the path goes back the way it came
+  kTooSharp,     // the segments bend too much within a blend: it would make a loop
+  kApart,        // one segment does not begin where the other ends
   kOutside,      // a place lies before the beginning or behind the end of its segment
   kTooFew,       // a spline needs at least two points
 };
@@ -65,7 +67,7 @@ enum class Measure : std::uint8_t {
 // How the orientation runs over the length.
 enum class Course : std::uint8_t {
   kStill,   // not at all
-  kEven,    // evenly about an axis that stands still: the first two coefficients
+  kEven,    // evenly, about an axis that stands still: the second coefficient
   kCurved,  // by all six
 };
 

@@ -10,23 +10,31 @@ struct Factors {
   double a, b, da, db;
 };
 
-// Sum of (-1)^k x^k f(k) / (2 k + n)!, good to the last bit for x <= 1.
-template <int kN, typename Factor>
-constexpr double Series(double x, Factor factor) {
-  double sum = 0;
-  for (int k = 9; k >= 0; --k) {
-    double factorial = 1;
-    for (int i = 2; i <= 2 * k + kN; ++i) factorial *= i;
-    sum = factor(k) / factorial - x * sum;
+// The same as series in t²: good to the last bit up to 1. Factor k of the first is 1 / (2 k + 2)!, with changing signs.
+constexpr int kTerms = 9;
+constexpr auto kSeries = [] {
+  std::array<Factors, kTerms> out{};
+  double factorial = 2;
+  for (int k = 0; k < kTerms; ++k) {
+    const double sign = k % 2 == 0 ? 1 : -1;
+    const double even = sign / factorial;             // (2 k + 2)!
+    const double odd = even / (2 * k + 3);            // (2 k + 3)!
+    const double next_even = odd / (2 * k + 4);       // (2 k + 4)!
+    const double next_odd = next_even / (2 * k + 5);  // (2 k + 5)!
+    out[static_cast<std::size_t>(k)] = {even, odd, -2 * (k + 1) * next_even, -2 * (k + 1) * next_odd};
+    factorial *= (2 * k + 3) * (2 * k + 4);
   }
-  return sum;
-}
+  return out;
+}();
 
 Factors FactorsOf(double squared) {
-  constexpr auto kOne = [](int) { return 1.0; };
-  constexpr auto kSlope = [](int k) { return -2.0 * (k + 1); };
   if (squared <= 1) {
-    return {Series<2>(squared, kOne), Series<3>(squared, kOne), Series<4>(squared, kSlope), Series<5>(squared, kSlope)};
+    Factors sum = kSeries[kTerms - 1];
+    for (std::size_t k = kTerms - 1; k-- > 0;) {
+      sum = {kSeries[k].a + squared * sum.a, kSeries[k].b + squared * sum.b, kSeries[k].da + squared * sum.da,
+             kSeries[k].db + squared * sum.db};
+    }
+    return sum;
   }
   const double t = std::sqrt(squared);
   const double sine = std::sin(t);

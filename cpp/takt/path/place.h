@@ -1,4 +1,4 @@
-// Polynomials of the fifth degree as places, by arc length.
+// Places by arc length.
 #pragma once
 
 #include "takt/path/segment.h"
@@ -13,10 +13,7 @@ double LengthBetween(const VectorPolynomial& place, double from, double to) noex
 // the parameter changes fast.
 void SetQuintic(Segment& segment, const VectorPolynomial& place) noexcept;
 
-// The parameter after s mm, 0 <= s <= length.
-double ParameterAt(const Segment& segment, double s) noexcept;
-
-// Place, tangent and curvature there.
-Derivatives<Vector> ByLength(const VectorPolynomial& place, double parameter) noexcept;
+// Place, tangent and curvature, 0 <= s <= length.
+Derivatives<Vector> PlaceAt(const Segment& segment, double s) noexcept;
 
 }  // namespace takt::path
