@@ -1,0 +1,342 @@
+#include "takt/path/blend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "takt/path/ends.h"
+#include "takt/path/make.h"
+#include "takt/path/place.h"
+#include "takt/path/turn.h"
+
+namespace takt::path {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+// Cosine of half the angle by which the path turns: less is a way back.
+constexpr double kReversal = 1e-4;
+// rad, that a curve may turn within a blend.
+constexpr double kMostSweep = 1;
+// How much of the deviation allowed the search for a distance may leave unused.
+constexpr double kUnused = 0.01;
+// Part of the deviation that is kept free for what lies between the samples.
+constexpr double kMargin = 1e-3;
+constexpr int kSamples = 12;
+
+// Tangent length of a blend over its distance, by the cosine of half the angle.
+double TangentShare(double q) {
+  return q / (0.2067 + q * (0.393 - 0.0345 * q));
+}
+
+struct Joint {
+  Derivatives<Vector> first;
+  Derivatives<Vector> second;
+};
+
+Joint JointAt(const Segment& first, double s_first, const Segment& second, double s_second) {
+  return {PlaceAt(first, s_first), PlaceAt(second, s_second)};
+}
+
+// Of one side of the derivative, as a Bezier polynomial: control vectors all in one half space make no loop.
+bool Onward(const Vector& way, const Vector& derivative, const Vector& second) {
+  return way.dot(derivative + second / 4) > 0;
+}
+
+Problem Places(const Segment& first, double s_first, const Segment& second, double s_second, VectorPolynomial& out) {
+  const auto [a, b] = JointAt(first, s_first, second, s_second);
+  const Vector way = a.first + b.first;
+  const double q = way.norm() / 2;
+  if (q < kReversal) return Problem::kReversal;
+  const double before = first.length - s_first;
+  const double third = (1 - 0.4 * TangentShare(q)) * std::min(before, s_second);
+  const double u = 2.5 * (before - third);
+  const double v = 2.5 * (s_second - third);
+  const Derivatives<Vector> begin{a.value, a.first * u, a.second * (u * u)};
+  const Derivatives<Vector> end{b.value, b.first * v, b.second * (v * v)};
+  const Vector middle =
+      end.value - 0.4 * end.first + end.second / 20 - (begin.value + 0.4 * begin.first + begin.second / 20);
+  if (!(Onward(way, begin.first, begin.second) && Onward(way, end.first, -end.second) && way.dot(middle) > 0)) {
+    return Problem::kTooSharp;
+  }
+  out = VectorHermite(begin, end);
+  return Problem::kNone;
+}
+
+double DistanceTo(const Segment& segment, const Vector& point, double near) {
+  if (segment.shape == Shape::kLine) {
+    const Vector start = ToVector(segment.place[0]);
+    const Vector tangent = ToVector(segment.place[1]);
+    return (start + std::clamp(tangent.dot(point - start), 0.0, segment.length) * tangent - point).norm();
+  }
+  double s = std::clamp(near, 0.0, segment.length);
+  for (int i = 0; i < 2; ++i) {
+    const auto p = PlaceAt(segment, s);
+    const Vector off = point - p.value;
+    const double slope = std::max(1 - off.dot(p.second), 0.1);
+    s = std::clamp(s + off.dot(p.first) / slope, 0.0, segment.length);
+  }
+  return (PlaceAt(segment, s).value - point).norm();
+}
+
+// What a blend replaces: the end of one segment, the beginning of the next.
+class Corner {
+ public:
+  Corner(const Segment& first, const Segment& second) : first_(first), second_(second) {
+    const auto [a, b] = JointAt(first, first.length, second, 0);
+    place_ = a.value;
+    way_ = a.first + b.first;
+  }
+
+  double half_cosine() const { return way_.norm() / 2; }
+
+  double Deviation(const VectorPolynomial& blend) const {
+    std::array<double, kSamples + 1> distances{};
+    double nearest = 0;
+    double least = INFINITY;
+    double side_before = -1;
+    double at_change = 0;  // there the distance may have a peak
+    for (int i = 1; i < kSamples; ++i) {
+      const double u = static_cast<double>(i) / kSamples;
+      const Vector p = Place(blend, u);
+      const double side = SideOf(p);
+      if (side_before < 0 && side >= 0) {
+        at_change = FromBoth(Place(blend, Change(blend, u - 1.0 / kSamples, u)));
+      }
+      side_before = side;
+      distances[static_cast<std::size_t>(i)] = FromPath(p);
+      const double squared = (p - place_).squaredNorm();
+      if (squared < least) {
+        least = squared;
+        nearest = u;
+      }
+    }
+    // The top of the parabola through the largest and its neighbours.
+    const auto most = std::max_element(distances.begin(), distances.end());
+    const auto i = std::clamp<std::ptrdiff_t>(most - distances.begin(), 1, kSamples - 1);
+    const double* d = &distances[static_cast<std::size_t>(i)];
+    const double bend = d[-1] - 2 * d[0] + d[1];
+    const double shift = bend < 0 ? std::clamp((d[-1] - d[1]) / (2 * bend), -1.0, 1.0) : 0;
+    const double between = FromPath(Place(blend, (static_cast<double>(i) + shift) / kSamples));
+    return std::max({*most, between, at_change, FromCorner(blend, nearest)});
+  }
+
+ private:
+  // Below 0 before the corner, above it behind.
+  double SideOf(const Vector& p) const { return way_.dot(p - place_); }
+
+  // On its side of the corner; beginning with the place on the segment that is as far from the corner.
+  double FromPath(const Vector& p) const { return SideOf(p) < 0 ? FromFirst(p) : FromSecond(p); }
+  double FromBoth(const Vector& p) const { return std::max(FromFirst(p), FromSecond(p)); }
+  double FromFirst(const Vector& p) const { return DistanceTo(first_, p, first_.length - (p - place_).norm()); }
+  double FromSecond(const Vector& p) const { return DistanceTo(second_, p, (p - place_).norm()); }
+
+  // Where a blend changes sides, by two steps of the secant.
+  double Change(const VectorPolynomial& blend, double from, double to) const {
+    double a = SideOf(Place(blend, from));
+    double b = SideOf(Place(blend, to));
+    double u = to;
+    for (int i = 0; i < 2; ++i) {
+      u = (from * b - to * a) / (b - a);
+      const double side = SideOf(Place(blend, u));
+      (side < 0 ? from : to) = u;
+      (side < 0 ? a : b) = side;
+    }
+    return u;
+  }
+
+  // By Newton's steps from the nearest sample.
+  double FromCorner(const VectorPolynomial& blend, double u) const {
+    for (int i = 0; i < 3; ++i) {
+      const auto p = Evaluate(blend, u);
+      const Vector off = p.value - place_;
+      const double slope = std::max(p.first.squaredNorm() + off.dot(p.second), 0.1 * p.first.squaredNorm());
+      u = std::clamp(u - off.dot(p.first) / slope, 0.0, 1.0);
+    }
+    return (Place(blend, u) - place_).norm();
+  }
+
+  const Segment& first_;
+  const Segment& second_;
+  Vector place_;
+  Vector way_;
+};
+
+// By s, from the orientation of the corner.
+Derivatives<Vector> TurnFrom(const KDL::Rotation& corner, const MovingFrame& frame, bool before) {
+  Vector turn = ToVector(kinematics::TurnBetween(corner, frame.M.R));
+  const Vector velocity = ToVector(frame.M.w);
+  // Half a turn has two ways: the one that the segment goes.
+  const double outward = turn.dot(velocity);
+  if (turn.norm() > std::numbers::pi - 1e-6 && (before ? outward > 0 : outward < 0)) {
+    turn -= turn.normalized() * (2 * std::numbers::pi);
+  }
+  return TurnOf(turn, velocity, ToVector(frame.M.dw));
+}
+
+bool Near(const Vector& a, const Vector& b, double relative, double absolute) {
+  return (a - b).norm() <= absolute + relative * std::max(a.norm(), b.norm());
+}
+
+bool SameOrientation(const KDL::Rotation& a, const KDL::Rotation& b) {
+  return ToVector(kinematics::TurnBetween(a, b)).norm() <= kSameTurn * kDegree;
+}
+
+// How far apart the derivatives of turns or auxiliary axes are at the corner, in what the length counts.
+double Bend(const Segment& first, const Segment& second) {
+  if (first.measure == Measure::kTurn) {
+    const Vector a = ToVector(At(first, first.length).M.w);
+    const Vector b = ToVector(At(second, 0).M.w);
+    return (b - a).norm() / kDegree;
+  }
+  const AuxiliaryMotion a = AuxiliariesAt(first, first.length);
+  const AuxiliaryMotion b = AuxiliariesAt(second, 0);
+  double most = 0;
+  for (std::size_t i = 0; i < kMaxAuxiliaries; ++i) most = std::max(most, std::abs(b.velocity[i] - a.velocity[i]));
+  return most;
+}
+
+double Apart(Measure measure, const Point& a, const Point& b) {
+  if (measure == Measure::kTurn) return ToVector(kinematics::TurnBetween(a.frame.M, b.frame.M)).norm() / kDegree;
+  double most = 0;
+  for (std::size_t i = 0; i < kMaxAuxiliaries; ++i) {
+    most = std::max(most, std::abs(b.auxiliaries[i] - a.auxiliaries[i]));
+  }
+  return most;
+}
+
+// Of a function with one valley between 0 and 1.
+template <typename Function>
+double Least(Function function) {
+  double lower = 0;
+  double upper = 1;
+  for (int i = 0; i < 40; ++i) {
+    const double third = (upper - lower) / 3;
+    if (function(lower + third) < function(upper - third)) {
+      upper -= third;
+    } else {
+      lower += third;
+    }
+  }
+  return function((lower + upper) / 2);
+}
+
+// The most of a curve that may be blended: up to kMostSweep.
+double Sweep(const Derivatives<Vector>& place) {
+  const double curvature = place.second.norm();
+  return curvature > 0 ? kMostSweep / curvature : INFINITY;
+}
+
+// The longest distance whose blend stays within the deviation: `guess` is where to begin.
+double Search(const Segment& first, const Segment& second, const Corner& corner, double deviation, double guess,
+              double most) {
+  double good = 0;
+  double bad = INFINITY;
+  double d = std::min(guess, most);
+  for (int i = 0; i < 20; ++i) {
+    VectorPolynomial blend;
+    double found = INFINITY;
+    if (Places(first, first.length - d, second, d, blend) == Problem::kNone) {
+      found = corner.Deviation(blend) * (1 + kMargin);
+    }
+    if (found <= deviation) {
+      good = d;
+      if (d >= most || found >= (1 - kUnused) * deviation) break;
+    } else {
+      bad = d;
+    }
+    double next = std::isfinite(found) ? d * std::clamp((1 - kUnused / 2) * deviation / found, 0.1, 4.0) : d / 2;
+    if (good > 0 && std::isfinite(bad)) {
+      if (bad - good < 1e-3 * good) break;
+      if (!(next > good && next < bad)) next = (good + bad) / 2;
+    }
+    d = std::min(next, most);
+  }
+  return good;
+}
+
+}  // namespace
+
+Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, Segment& out) noexcept {
+  if (first.measure != second.measure) return Problem::kMeasure;
+  const bool inside = s_first >= 0 && s_first < first.length && s_second > 0 && s_second <= second.length;
+  if (!inside) return Problem::kOutside;
+  const Point corner = PointAt(second, 0);
+  const Point end = PointAt(first, first.length);
+  if ((ToVector(end.frame.p) - ToVector(corner.frame.p)).norm() > kSame ||
+      !SameOrientation(end.frame.M, corner.frame.M)) {
+    return Problem::kApart;
+  }
+  Segment blend;
+  blend.measure = first.measure;
+  if (first.measure == Measure::kWay) {
+    VectorPolynomial place;
+    const Problem problem = Places(first, s_first, second, s_second, place);
+    if (problem != Problem::kNone) return problem;
+    SetQuintic(blend, place);
+  } else {
+    blend.length = first.length - s_first + s_second;
+    const Vector begin = PlaceAt(first, s_first).value;
+    blend.place[0] = ToTriple(begin);
+    blend.place[1] = ToTriple((PlaceAt(second, s_second).value - begin) / blend.length);
+  }
+  const auto along = [&](const Segment& segment, double s, bool before) -> Along {
+    return {TurnFrom(corner.frame.M, At(segment, s), before), AuxiliariesAt(segment, s)};
+  };
+  SetCurved(blend, corner.frame.M, along(first, s_first, true), along(second, s_second, false));
+  out = blend;
+  return Problem::kNone;
+}
+
+Room HalfOf(const Segment& first, const Segment& second) noexcept {
+  return {first.length / 2, second.length / 2};
+}
+
+double CornerDistance(const Segment& first, const Segment& second, double deviation, const Room& room) noexcept {
+  if (first.measure != second.measure || !(deviation > 0) || Smooth(first, second)) return 0;
+  double most = std::min({room.first, room.second, first.length, second.length});
+  if (!(most > 0)) return 0;
+  if (first.measure != Measure::kWay) {
+    const double bend = Bend(first, second);
+    return bend > 0 ? std::min(most, deviation / (bend * 3 / 16)) : most;
+  }
+  const auto [a, b] = JointAt(first, first.length, second, 0);
+  const Corner corner(first, second);
+  const double q = corner.half_cosine();
+  if (q < kReversal) return 0;
+  const double sine = (b.first - a.first).norm() / 2;
+  const double guess = deviation / (sine * (1 - 5.0 / 16 * TangentShare(q)));
+  if (first.shape == Shape::kLine && second.shape == Shape::kLine) return std::min(guess, most);
+  most = std::min({most, Sweep(a), Sweep(b)});
+  return Search(first, second, corner, deviation, guess, most);
+}
+
+double Deviation(const Segment& first, const Segment& second, const Segment& blend) noexcept {
+  if (blend.measure == Measure::kWay) return Corner(first, second).Deviation(blend.place);
+  const Point corner = PointAt(second, 0);
+  return Least([&](double share) { return Apart(blend.measure, corner, PointAt(blend, share * blend.length)); });
+}
+
+bool Smooth(const Segment& first, const Segment& second) noexcept {
+  if (first.measure != second.measure) return false;
+  constexpr double kTangent = 1e-9;
+  constexpr double kRelative = 1e-6;
+  constexpr double kNone = 1e-12;
+  const MovingFrame a = At(first, first.length);
+  const MovingFrame b = At(second, 0);
+  const bool along = first.measure != Measure::kWay || Near(ToVector(a.p.v), ToVector(b.p.v), 0, kTangent);
+  if (!along || !Near(ToVector(a.p.dv), ToVector(b.p.dv), kRelative, kNone)) return false;
+  if (!Near(ToVector(a.M.w), ToVector(b.M.w), kTangent, kNone)) return false;
+  if (!Near(ToVector(a.M.dw), ToVector(b.M.dw), kRelative, kNone)) return false;
+  const AuxiliaryMotion c = AuxiliariesAt(first, first.length);
+  const AuxiliaryMotion d = AuxiliariesAt(second, 0);
+  for (std::size_t i = 0; i < kMaxAuxiliaries; ++i) {
+    const auto near = [](double x, double y, double relative) {
+      return std::abs(x - y) <= kNone + relative * std::max(std::abs(x), std::abs(y));
+    };
+    if (!near(c.velocity[i], d.velocity[i], kTangent)) return false;
+    if (!near(c.acceleration[i], d.acceleration[i], kRelative)) return false;
+  }
+  return true;
+}
+
+}  // namespace takt::path

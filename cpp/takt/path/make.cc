@@ -1,0 +1,209 @@
+#include "takt/path/make.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "takt/core/describe.h"
+#include "takt/path/ends.h"
+#include "takt/path/turn.h"
+#include "takt/path/vectors.h"
+
+namespace takt::path {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kWholeTurn = 2 * std::numbers::pi;
+constexpr double kSameAuxiliary = 1e-9;
+// Sine of the angle between two sides of a triangle: less, and its points lie on a line.
+constexpr double kOnALine = 1e-7;
+// The same where start, centre and end shall say what plane they are in: less, and it would be that of their errors.
+constexpr double kPlaneSine = kCircleSlack;
+
+// An arc without orientations: its angle is counterclockwise about the normal, which has length 1, and above 0.
+struct Round {
+  Vector normal = Vector::UnitZ();
+  Vector center = Vector::Zero();
+  double angle = 0;
+};
+
+// Counterclockwise from one radius to the other, above 0, at most a whole turn.
+double AngleBetween(const Vector& normal, const Vector& from, const Vector& to) {
+  const double angle = std::atan2(normal.dot(from.cross(to)), from.dot(to));
+  return angle > 0 ? angle : angle + kWholeTurn;
+}
+
+Vector InPlane(const Vector& normal, const Vector& v) {
+  return v - normal * normal.dot(v);
+}
+
+Problem ThroughBorder(const Vector& from, const Vector& border, const Vector& to, Round& out) {
+  const Vector a = border - from;
+  const Vector b = to - from;
+  const double longest = std::max({a.norm(), b.norm(), (to - border).norm()});
+  const double shortest = std::min({a.norm(), b.norm(), (to - border).norm()});
+  if (shortest < kSame) return Problem::kCoincide;
+  const Vector cross = a.cross(b);
+  if (cross.norm() <= kOnALine * longest * longest) return Problem::kCollinear;
+  out.normal = cross.normalized();
+  out.center = from + (b.squaredNorm() * cross.cross(a) + a.squaredNorm() * b.cross(cross)) / (2 * cross.squaredNorm());
+  out.angle = AngleBetween(out.normal, from - out.center, to - out.center);
+  return Problem::kNone;
+}
+
+// A normal for start and end seen from the centre, where none is given.
+Problem FindNormal(const Vector& from, const Vector& to, Vector& normal) {
+  const double radius = from.norm();
+  const Vector cross = from.cross(to);
+  if (cross.norm() > kPlaneSine * radius * to.norm()) {
+    normal = cross.normalized();
+    constexpr double kNone = 1e-9;
+    const double sign = std::abs(normal.z()) > kNone   ? normal.z()
+                        : std::abs(normal.y()) > kNone ? normal.y()
+                                                       : normal.x();
+    if (sign < 0) normal = -normal;
+    return Problem::kNone;
+  }
+  if (std::abs(from.z()) > kPlaneSine * radius) return Problem::kNoPlane;
+  normal = Vector::UnitZ();
+  return Problem::kNone;
+}
+
+Problem AboutCenter(const Vector& from, const Circle& circle, const Vector& to, Round& out) {
+  if (circle.choice != PathChoice::kCounterclockwise && circle.choice != PathChoice::kClockwise) {
+    return Problem::kChoice;
+  }
+  const Vector center = ToVector(circle.auxiliary_point);
+  Vector normal = ToVector(circle.normal);
+  if (normal.norm() > 0) {
+    normal.normalize();
+  } else if ((from - center).norm() < kSame) {
+    return Problem::kRadiusZero;
+  } else if (const Problem p = FindNormal(from - center, to - center, normal); p != Problem::kNone) {
+    return p;
+  }
+  out.normal = circle.choice == PathChoice::kClockwise ? Vector(-normal) : normal;
+  out.center = from + InPlane(normal, center - from);
+  const double radius = (from - out.center).norm();
+  if (radius < kSame) return Problem::kRadiusZero;
+  const Vector chord = InPlane(normal, to - from);
+  if (chord.norm() < kSame) {
+    out.angle = kWholeTurn;
+    return Problem::kNone;
+  }
+  // Along the chord to where both ends are equally far away.
+  const double off = chord.dot(from + chord / 2 - out.center) / chord.squaredNorm();
+  if (std::abs(off) * chord.norm() > kCircleSlack * radius) return Problem::kNotOnCircle;
+  out.center += off * chord;
+  out.angle = AngleBetween(out.normal, from - out.center, from + chord - out.center);
+  return Problem::kNone;
+}
+
+Problem WithRadius(const Vector& from, const Circle& circle, const Vector& to, Round& out) {
+  if (circle.choice != PathChoice::kShort && circle.choice != PathChoice::kLong) return Problem::kChoice;
+  const double radius = ToVector(circle.auxiliary_point).norm();
+  if (radius < kSame) return Problem::kRadiusZero;
+  out.normal = ToVector(circle.auxiliary_point) / radius;
+  const Vector chord = InPlane(out.normal, to - from);
+  const double half = chord.norm() / 2;
+  if (2 * half < kSame) return Problem::kCoincide;
+  if (half > radius * (1 + kCircleSlack)) return Problem::kNotOnCircle;
+  const double height = half < radius ? std::sqrt((radius - half) * (radius + half)) : 0;
+  const Vector left = out.normal.cross(chord) / (2 * half);
+  const bool is_short = circle.choice == PathChoice::kShort;
+  out.center = from + chord / 2 + (is_short ? height : -height) * left;
+  const double small = 2 * std::atan2(half, height);
+  out.angle = is_short ? small : kWholeTurn - small;
+  return Problem::kNone;
+}
+
+bool Finite(const Circle& circle) {
+  return ToVector(circle.auxiliary_point).allFinite() && ToVector(circle.normal).allFinite();
+}
+
+}  // namespace
+
+Problem MakeLine(const Point& from, const Point& to, Segment& out) noexcept {
+  if (!Sound(from) || !Sound(to)) return Problem::kNotFinite;
+  Segment segment;
+  const Vector start = ToVector(from.frame.p);
+  const Vector way = ToVector(to.frame.p) - start;
+  const double turn = kinematics::ArcBetween(from.frame.M, to.frame.M).angle / kDegree;
+  double furthest = 0;
+  for (std::size_t i = 0; i < kMaxAuxiliaries; ++i) {
+    furthest = std::max(furthest, std::abs(to.auxiliaries[i] - from.auxiliaries[i]));
+  }
+  if (way.norm() >= kSame) {
+    segment.length = way.norm();
+  } else if (turn >= kSameTurn) {
+    segment.measure = Measure::kTurn;
+    segment.length = turn;
+  } else if (furthest >= kSameAuxiliary) {
+    segment.measure = Measure::kAuxiliaries;
+    segment.length = furthest;
+  } else {
+    return Problem::kLengthZero;
+  }
+  if (!std::isfinite(segment.length)) return Problem::kNotFinite;
+  segment.place[0] = ToTriple(start);
+  segment.place[1] = ToTriple(way / segment.length);
+  SetEven(segment, from, to);
+  out = segment;
+  return Problem::kNone;
+}
+
+Problem MakeArc(const Point& from, const Circle& circle, const Point& to, Segment& out) noexcept {
+  if (!Sound(from) || !Sound(to) || !Finite(circle)) return Problem::kNotFinite;
+  if (!(circle.turns >= 0) || circle.turns != std::floor(circle.turns) || circle.turns > kMostTurns) {
+    return Problem::kTurns;
+  }
+  const Vector start = ToVector(from.frame.p);
+  const Vector end = ToVector(to.frame.p);
+  Round round;
+  Problem problem = Problem::kNone;
+  switch (circle.mode) {
+    case CircMode::kBorder:
+      problem = ThroughBorder(start, ToVector(circle.auxiliary_point), end, round);
+      break;
+    case CircMode::kCenter:
+      problem = AboutCenter(start, circle, end, round);
+      break;
+    case CircMode::kRadius:
+      problem = WithRadius(start, circle, end, round);
+      break;
+  }
+  if (problem != Problem::kNone) return problem;
+  const double angle = round.angle + circle.turns * kWholeTurn;
+  const Vector radius = InPlane(round.normal, start - round.center);
+  const Vector rise = round.normal * round.normal.dot(end - start);
+  Segment segment;
+  segment.shape = Shape::kArc;
+  segment.length = std::hypot(radius.norm() * angle, rise.norm());
+  if (!std::isfinite(segment.length)) return Problem::kNotFinite;
+  segment.rate = angle / segment.length;
+  segment.place[0] = ToTriple(start);
+  segment.place[1] = ToTriple(radius);
+  segment.place[2] = ToTriple(round.normal.cross(radius));
+  segment.place[3] = ToTriple(rise / segment.length);
+  SetEven(segment, from, to);
+  out = segment;
+  return Problem::kNone;
+}
+
+void describe(Enumeration<CircMode>& e) {
+  e.about("How a circular arc is given.");
+  e.value(CircMode::kBorder, "border", "By a point that it goes through.");
+  e.value(CircMode::kCenter, "center", "By its centre.");
+  e.value(CircMode::kRadius, "radius", "By a vector normal to its plane that is as long as its radius.");
+}
+
+void describe(Enumeration<PathChoice>& e) {
+  e.about("Which of several arcs.");
+  e.value(PathChoice::kCounterclockwise, "counterclockwise", "Counterclockwise, seen with the normal at the eye.");
+  e.value(PathChoice::kClockwise, "clockwise", "Clockwise, seen with the normal at the eye.");
+  e.value(PathChoice::kShort, "short", "Up to half a turn, where a radius is given.");
+  e.value(PathChoice::kLong, "long", "Half a turn or more, where a radius is given.");
+}
+
+}  // namespace takt::path
