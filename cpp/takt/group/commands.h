@@ -1,0 +1,206 @@
+// What an axes group understands (PLCopen Part 4).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "takt/axis/commands/moves.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/name.h"
+#include "takt/path/make.h"
+
+namespace takt::group {
+
+inline constexpr std::size_t kMaxAxes = 8;
+inline constexpr std::size_t kProductSystems = 16;
+
+using axis::BufferMode;
+
+enum class CoordinateSystem : std::uint8_t { kAcs, kMcs, kWcs, kPcs };
+
+// How one move goes over into the next (with a blending buffer mode).
+enum class TransitionMode : std::uint8_t {
+  kNone,
+  kStartVelocity,
+  kConstantVelocity,
+  kCornerDistance,
+  kMaxCornerDeviation,
+};
+
+enum class Reference : std::uint8_t { kAbsolute, kRelative };
+
+// Where to, or how far: x to c of the tool in Cartesian coordinate systems, a1 to a8 of axes in ACS; of auxiliary axes
+// in all. What is not given stays. Unset velocities, accelerations and jerks are the group's.
+
+template <Reference kReference>
+struct MoveLinear {  // MC_MoveLinearAbsolute, MC_MoveLinearRelative
+  std::optional<double> x{}, y{}, z{}, a{}, b{}, c{};
+  std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
+  CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
+  std::uint32_t pcs = 1;
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
+  TransitionMode transition_mode = TransitionMode::kNone;
+  double transition_parameter = 0;  // mm, or mm/s for transitions by velocity
+};
+using MoveLinearAbsolute = MoveLinear<Reference::kAbsolute>;
+using MoveLinearRelative = MoveLinear<Reference::kRelative>;
+
+template <Reference kReference>
+struct MoveCircular {  // MC_MoveCircularAbsolute, MC_MoveCircularRelative
+  path::CircMode circ_mode = path::CircMode::kBorder;
+  double aux_x = 0, aux_y = 0, aux_z = 0;  // mm, what they are says the mode
+  path::PathChoice path_choice = path::PathChoice::kCounterclockwise;
+  double normal_x = 0, normal_y = 0, normal_z = 0;
+  std::uint32_t turns = 0;
+  std::optional<double> x{}, y{}, z{}, a{}, b{}, c{};
+  std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
+  CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
+  std::uint32_t pcs = 1;
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
+  TransitionMode transition_mode = TransitionMode::kNone;
+  double transition_parameter = 0;
+};
+using MoveCircularAbsolute = MoveCircular<Reference::kAbsolute>;
+using MoveCircularRelative = MoveCircular<Reference::kRelative>;
+
+template <Reference kReference>
+struct MoveDirect {  // MC_MoveDirectAbsolute, MC_MoveDirectRelative
+  std::optional<double> x{}, y{}, z{}, a{}, b{}, c{};
+  std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
+  CoordinateSystem coordinate_system = CoordinateSystem::kAcs;
+  std::uint32_t pcs = 1;
+  double velocity_factor = 1;      // of the axes' own limits
+  double acceleration_factor = 1;  // the same
+  double jerk_factor = 1;          // the same
+  BufferMode buffer_mode = BufferMode::kAborting;
+  TransitionMode transition_mode = TransitionMode::kNone;
+  double transition_parameter = 0;
+};
+using MoveDirectAbsolute = MoveDirect<Reference::kAbsolute>;
+using MoveDirectRelative = MoveDirect<Reference::kRelative>;
+
+struct MovePath {  // MC_MovePath, with the path that MC_PathSelect names
+  Name path;
+  CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
+  std::uint32_t pcs = 1;
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
+  TransitionMode transition_mode = TransitionMode::kNone;  // at the corners of the path, and into it
+  double transition_parameter = 0;
+};
+
+struct MovePathSynchronized {  // MC_MovePathSynchronized
+  Name path;
+  Name master;           // an axis
+  double ratio = 1;      // mm of the path per u of the master
+  CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
+  std::uint32_t pcs = 1;
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+  TransitionMode transition_mode = TransitionMode::kNone;
+  double transition_parameter = 0;
+};
+
+struct SyncAxis {  // MC_SyncAxisToGroup
+  Name axis;                     // no member
+  double ratio_numerator = 1;    // u of the axis ...
+  double ratio_denominator = 1;  // ... per mm of the path
+};
+
+struct Stop {  // MC_GroupStop
+  std::optional<double> deceleration{}, jerk{};
+  bool hold = false;  // stay in Stopping until released (Execute kept true)
+};
+struct Halt {  // MC_GroupHalt
+  std::optional<double> deceleration{}, jerk{};
+};
+struct Interrupt {  // MC_GroupInterrupt: comes to rest on the path, which Continue goes on with
+  std::optional<double> deceleration{}, jerk{};
+};
+struct Continue {};  // MC_GroupContinue
+
+struct AddAxis {  // MC_AddAxisToGroup
+  Name axis;
+  std::uint32_t ident = 1;  // its place, from 1
+};
+struct RemoveAxis {  // MC_RemoveAxisFromGroup
+  std::uint32_t ident = 1;
+};
+struct UngroupAllAxes {};  // MC_UngroupAllAxes
+struct Enable {};          // MC_GroupEnable
+struct Disable {};         // MC_GroupDisable
+struct Reset {};           // MC_GroupReset
+struct Power {             // MC_Power of every member
+  bool enable = true;
+};
+struct Home {};         // MC_GroupHome: every member as its `homing` says
+struct SetPosition {  // MC_GroupSetPosition: other numbers for where the group is
+  std::optional<double> x{}, y{}, z{}, a{}, b{}, c{};
+  std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
+  CoordinateSystem coordinate_system = CoordinateSystem::kAcs;
+  std::uint32_t pcs = 1;
+};
+struct SetOverride {  // MC_GroupSetOverride
+  double velocity_factor = 1;
+  double acceleration_factor = 1;  // of what is commanded from now on
+  double jerk_factor = 1;          // the same
+};
+struct SetKinTransform {  // MC_SetKinTransform
+  bool enable = true;  // false: axes only, without a tool
+};
+struct SetCartesianTransform {  // MC_SetCartesianTransform: a PCS in the MCS
+  std::uint32_t pcs = 1;
+  double x = 0, y = 0, z = 0;  // mm
+  double a = 0, b = 0, c = 0;  // deg
+};
+struct SetCoordinateTransform {  // MC_SetCoordinateTransform: a PCS in any other coordinate system
+  std::uint32_t pcs = 1;
+  double x = 0, y = 0, z = 0;
+  double a = 0, b = 0, c = 0;
+  CoordinateSystem reference = CoordinateSystem::kMcs;  // not ACS
+  std::uint32_t reference_pcs = 1;
+};
+
+using Command = std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircularAbsolute, MoveCircularRelative,
+                             MoveDirectAbsolute, MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop,
+                             Halt, Interrupt, Continue, AddAxis, RemoveAxis, UngroupAllAxes, Enable, Disable, Reset,
+                             Power, Home, SetPosition, SetOverride, SetKinTransform, SetCartesianTransform,
+                             SetCoordinateTransform>;
+
+// What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
+std::string WhyNot(const Command& command);
+
+void describe(Enumeration<CoordinateSystem>&);
+void describe(Enumeration<TransitionMode>&);
+void describe(Description<MoveLinearAbsolute>&);
+void describe(Description<MoveLinearRelative>&);
+void describe(Description<MoveCircularAbsolute>&);
+void describe(Description<MoveCircularRelative>&);
+void describe(Description<MoveDirectAbsolute>&);
+void describe(Description<MoveDirectRelative>&);
+void describe(Description<MovePath>&);
+void describe(Description<MovePathSynchronized>&);
+void describe(Description<SyncAxis>&);
+void describe(Description<Stop>&);
+void describe(Description<Halt>&);
+void describe(Description<Interrupt>&);
+void describe(Description<Continue>&);
+void describe(Description<AddAxis>&);
+void describe(Description<RemoveAxis>&);
+void describe(Description<UngroupAllAxes>&);
+void describe(Description<Enable>&);
+void describe(Description<Disable>&);
+void describe(Description<Reset>&);
+void describe(Description<Power>&);
+void describe(Description<Home>&);
+void describe(Description<SetPosition>&);
+void describe(Description<SetOverride>&);
+void describe(Description<SetKinTransform>&);
+void describe(Description<SetCartesianTransform>&);
+void describe(Description<SetCoordinateTransform>&);
+
+}  // namespace takt::group

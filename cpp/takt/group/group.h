@@ -1,0 +1,60 @@
+// One axes group, stage by stage of the cycle. Free functions over plain state; nothing here allocates, locks, throws
+// or reads a clock.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "takt/axis/axis.h"
+#include "takt/core/feedback.h"
+#include "takt/group/commands.h"
+#include "takt/group/look_ahead.h"
+#include "takt/group/outputs.h"
+#include "takt/group/params.h"
+#include "takt/group/path_table.h"
+#include "takt/group/state.h"
+#include "takt/kinematics/kinematics.h"
+
+namespace takt::group {
+
+// The axes of the machine, to be told what to do.
+struct Axes {
+  std::span<axis::State> states{};
+  axis::Context (*context)(void* owner, std::size_t axis) noexcept = nullptr;
+  void* owner = nullptr;
+};
+
+// What every stage gets besides the group itself.
+struct Context {
+  const GroupParams& params;
+  const kinematics::Kinematics* kinematics = nullptr;  // null: none
+  std::span<const PathTable> paths{};
+  // For each axis of the machine the group that it is a member of, from 1; 0: none.
+  std::span<std::uint32_t> group_of{};
+  std::uint32_t number = 0;  // of this group, from 1
+  Axes axes;
+  Cycle cycle;
+  FeedbackSink& feedback;
+  LookAhead& ahead;
+};
+
+// As it stands when power comes on. `axes`: index of each member.
+State MakeState(const GroupParams& params, std::span<const std::uint32_t> axes) noexcept;
+
+// command: carries a command out, queues it or refuses it; reports either way. `lease_s` > 0: of a held stop.
+void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept;
+// Lets go of a held stop with this ticket, and extends its lease. False: there is none.
+bool Release(const Context& c, Ticket ticket, State& s) noexcept;
+bool Renew(const Context& c, Ticket ticket, State& s) noexcept;
+
+// move: before the members, behind the axis that a path follows.
+void Step(const Context& c, State& s) noexcept;
+
+void Publish(const Context& c, const State& s, Outputs& out) noexcept;
+
+// The member may not be moved by itself (error 1000).
+bool Owns(const State& s) noexcept;
+
+}  // namespace takt::group

@@ -1,0 +1,55 @@
+// What an axes group publishes every cycle.
+#pragma once
+
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/status.h"
+#include "takt/group/state_table.h"
+#include "takt/kinematics/joints.h"
+#include "takt/path/segment.h"
+
+namespace takt::group {
+
+struct Outputs {
+  GroupState state = GroupState::kDisabled;
+  ErrorId error = ErrorId::kNone;
+  // The tool centre point in the machine coordinate system as commanded; NaN without kinematics.
+  double x = 0;  // mm
+  double y = 0;  // mm
+  double z = 0;  // mm
+  double a = 0;  // deg
+  double b = 0;  // deg
+  double c = 0;  // deg
+  // The same as measured.
+  double actual_x = 0;
+  double actual_y = 0;
+  double actual_z = 0;
+  double actual_a = 0;
+  double actual_b = 0;
+  double actual_c = 0;
+  double velocity = 0;       // mm/s, of the commanded place: the length of its vector
+  double acceleration = 0;   // mm/s², the same
+  double actual_velocity = 0;  // mm/s
+  // Along the path, since the group began to move from rest.
+  double path_position = 0;      // mm
+  double path_velocity = 0;      // mm/s
+  double path_acceleration = 0;  // mm/s²
+  double path_left = 0;          // mm, of what is known
+  double path_error = 0;         // mm, between the place commanded for this cycle and the measured one
+  double override_factor = 1;
+  std::uint64_t command = 0;    // ticket of the move in control; 0: none
+  std::uint32_t buffered = 0;   // moves that wait
+  std::uint32_t axes = 0;       // members
+  bool in_position = false;     // stands, and has nothing to do
+  bool interrupted = false;     // rests on the path until it is continued
+  bool synchronized = false;    // a path that follows a master is in step with it
+  // Why the last move was refused or ended.
+  kinematics::Reason reason = kinematics::Reason::kNone;  // no position of the axes
+  path::Problem problem = path::Problem::kNone;           // no such path
+  double blocked_at = 0;                                  // mm from the beginning of that move
+};
+
+void describe(Description<Outputs>&);
+
+}  // namespace takt::group

@@ -1,0 +1,73 @@
+// What a machine file says about one axes group, and about paths for groups.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/kinematics/frames.h"
+#include "takt/kinematics/params.h"
+
+namespace takt::group {
+
+// Along the path; what a move does not say itself.
+struct PathLimits {
+  double velocity = 0;      // mm/s
+  double acceleration = 0;  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²; unset: as acceleration
+  double jerk = 0;          // mm/s³
+};
+
+// Of the tool along X, Y and Z and about them, seen from the world; unset: none but those of the axes.
+struct ToolLimits {
+  std::optional<double> velocity{};              // mm/s
+  std::optional<double> acceleration{};          // mm/s²
+  std::optional<double> jerk{};                  // mm/s³
+  std::optional<double> angular_velocity{};      // deg/s
+  std::optional<double> angular_acceleration{};  // deg/s²
+  std::optional<double> angular_jerk{};          // deg/s³
+};
+
+struct GroupParams {
+  std::string name;
+  std::vector<std::string> axes;  // names: those of the kinematics first, in its order, then auxiliary ones
+  std::optional<kinematics::KinematicsParams> kinematics{};
+  PathLimits path;
+  ToolLimits tool_limits;
+  kinematics::Pose base;  // of the machine coordinate system in the world
+  kinematics::Pose tool;  // of the tool centre point on the flange
+};
+
+// A place on a path of the machine file.
+struct PathPose {
+  double x = 0, y = 0, z = 0;  // mm
+  std::optional<double> a{}, b{}, c{};  // deg; unset: as before
+};
+
+enum class ElementShape : std::uint8_t { kLine, kArc, kSpline };
+
+// From where the element before it ends.
+struct PathElement {
+  ElementShape shape = ElementShape::kLine;
+  PathPose to;                                  // where it ends; splines: see points
+  std::optional<double> via_x{}, via_y{}, via_z{};  // arc: a point that it goes through
+  std::vector<PathPose> points;                 // spline: what it goes through, the last one is its end
+  std::optional<double> velocity{};             // mm/s, on this element; unset: that of the command
+};
+
+struct PathParams {
+  std::string name;
+  std::string file;                   // CSV of elements instead, seen from the machine file
+  std::vector<PathElement> elements;  // the first one begins where the group is, but for a spline's
+};
+
+void describe(Description<PathLimits>&);
+void describe(Description<ToolLimits>&);
+void describe(Description<GroupParams>&);
+void describe(Description<PathPose>&);
+void describe(Enumeration<ElementShape>&);
+void describe(Description<PathElement>&);
+void describe(Description<PathParams>&);
+
+}  // namespace takt::group

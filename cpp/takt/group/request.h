@@ -1,0 +1,48 @@
+// A checked move of a group.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/feedback.h"
+#include "takt/core/status.h"
+#include "takt/group/commands.h"
+#include "takt/group/params.h"
+#include "takt/kinematics/frames.h"
+#include "takt/trajectory/path_limits.h"
+
+namespace takt::group {
+
+enum class MoveKind : std::uint8_t { kNone, kLinear, kCircular, kDirect, kPath };
+
+// Six numbers of the tool, then those of the axes; NaN: not given.
+inline constexpr std::size_t kToolNumbers = 6;
+using Numbers = std::array<double, kToolNumbers + kMaxAxes>;
+
+struct Request {
+  Ticket ticket = 0;
+  MoveKind kind = MoveKind::kNone;
+  bool relative = false;
+  CoordinateSystem system = CoordinateSystem::kMcs;
+  std::uint32_t pcs = 0;  // from 0
+  Numbers to{};
+  path::Circle circle;
+  std::uint32_t path = 0;    // index of the machine's
+  std::uint32_t master = 0;  // axis + 1 that gives the way along the path; 0: time does
+  double ratio = 1;          // mm per u of it
+  trajectory::AlongPath limits;
+  double velocity_factor = 1;  // direct moves: of the axes' limits
+  double acceleration_factor = 1;
+  double jerk_factor = 1;
+  BufferMode buffer_mode = BufferMode::kAborting;
+  TransitionMode transition_mode = TransitionMode::kNone;
+  double transition_parameter = 0;
+
+  bool blends() const noexcept { return buffer_mode >= BufferMode::kBlendingLow; }
+};
+
+void describe(Enumeration<MoveKind>&);
+void describe(Description<Request>&);
+
+}  // namespace takt::group
