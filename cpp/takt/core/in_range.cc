@@ -23,7 +23,7 @@ bool InRange(const Field& field, const Type& type, const void* value) {
 
 }  // namespace
 
-bool InRange(const Type& type, const void* object) noexcept {
+const Field* FirstOutOfRange(const Type& type, const void* object) noexcept {
   for (const Field& field : type.fields) {
     const void* value = FieldAt(field, object);
     const Type* inner = field.type;
@@ -31,9 +31,9 @@ bool InRange(const Type& type, const void* object) noexcept {
       value = inner->optional_value(value);
       inner = inner->element;
     }
-    if (value != nullptr && !InRange(field, *inner, value)) return false;
+    if (value != nullptr && !InRange(field, *inner, value)) return &field;
   }
-  return true;
+  return nullptr;
 }
 
 }  // namespace takt

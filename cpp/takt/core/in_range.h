@@ -6,13 +6,13 @@
 
 namespace takt {
 
-// Every number of a flat struct is finite and in its range, every enum one of its values; of optionals, where they hold
-// something. Fit for the cycle.
-bool InRange(const Type& type, const void* object) noexcept;
+// The first field of a flat struct whose number is not finite or not in its range, or whose enum is none of its values;
+// of optionals, where they hold something. Null: all is well. Fit for the cycle.
+const Field* FirstOutOfRange(const Type& type, const void* object) noexcept;
 
 template <typename T>
 bool InRange(const T& object) noexcept {
-  return InRange(TypeOf<T>(), static_cast<const void*>(&object));
+  return FirstOutOfRange(TypeOf<T>(), &object) == nullptr;
 }
 
 }  // namespace takt

@@ -58,6 +58,12 @@ enum class ErrorId : std::uint16_t {
   kCouplingLoop = 3018,       // the axis would follow itself, through others
   kMasterOff = 3019,          // a master has no set position that means anything: its loop is open, or it has a fault
   kWouldReverse = 3020,       // a clutch that may not reverse its slave finds no way to close
+  kUnreachable = 3021,        // no position of the axes there: out of reach, not turned so, or beyond an axis' range
+  kSingular = 3022,           // the axes cannot move the tool in every direction there
+  kPathGeometry = 3023,       // the points do not make such a path
+  kCollision = 3024,          // on the way parts would touch, or something that stands there
+  kGroupDisabled = 3025,      // the group is not enabled
+  kPathUnknown = 3026,        // no such path
   kGroupDeviation = 8001,
   // A cam module is in error; numbers of the Flex Cam manual.
   kModuleSoftLimitPositive = 20306,

@@ -37,6 +37,10 @@ inline constexpr Unit mm_s2{"mm/s2", ""};
 inline constexpr Unit mm_s3{"mm/s3", ""};
 inline constexpr Unit deg{"deg", ""};
 inline constexpr Unit deg_s{"deg/s", ""};
+inline constexpr Unit deg_s2{"deg/s2", ""};
+inline constexpr Unit deg_s3{"deg/s3", ""};
+inline constexpr Unit mm_u_m{"mm/u_m", "mm per the master's own unit"};
+inline constexpr Unit u_mm{"u/mm", "the axis' own unit per mm"};
 // Written in degrees, held in radians.
 inline constexpr Unit deg_as_rad{"deg", "", std::numbers::pi / 180};
 inline constexpr Unit deg_s_as_rad_s{"deg/s", "", std::numbers::pi / 180};

@@ -13,10 +13,10 @@ namespace takt::group {
 
 // Along the path; what a move does not say itself.
 struct PathLimits {
-  double velocity = 0;      // mm/s
-  double acceleration = 0;  // mm/s²
+  double velocity = 0;                   // mm/s
+  double acceleration = 0;               // mm/s²
   std::optional<double> deceleration{};  // mm/s²; unset: as acceleration
-  double jerk = 0;          // mm/s³
+  double jerk = 0;                       // mm/s³
 };
 
 // Of the tool along X, Y and Z and about them, seen from the world; unset: none but those of the axes.
@@ -41,7 +41,7 @@ struct GroupParams {
 
 // A place on a path of the machine file.
 struct PathPose {
-  double x = 0, y = 0, z = 0;  // mm
+  double x = 0, y = 0, z = 0;           // mm
   std::optional<double> a{}, b{}, c{};  // deg; unset: as before
 };
 
@@ -50,10 +50,10 @@ enum class ElementShape : std::uint8_t { kLine, kArc, kSpline };
 // From where the element before it ends.
 struct PathElement {
   ElementShape shape = ElementShape::kLine;
-  PathPose to;                                  // where it ends; splines: see points
+  std::optional<PathPose> to{};                     // where it ends; splines: see points
   std::optional<double> via_x{}, via_y{}, via_z{};  // arc: a point that it goes through
-  std::vector<PathPose> points;                 // spline: what it goes through, the last one is its end
-  std::optional<double> velocity{};             // mm/s, on this element; unset: that of the command
+  std::vector<PathPose> points;                     // spline: what it goes through, the last one is its end
+  std::optional<double> velocity{};                 // mm/s, on this element; unset: that of the command
 };
 
 struct PathParams {

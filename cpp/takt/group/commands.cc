@@ -1,0 +1,417 @@
+#include "takt/group/commands.h"
+
+#include <array>
+#include <string_view>
+
+#include "takt/core/in_range.h"
+#include "takt/core/problem.h"
+#include "takt/group/texts.h"
+
+namespace takt::group {
+
+namespace {
+
+constexpr Range kFactor{.min = 0, .max = 1, .without_min = true};
+
+template <typename T>
+void DescribeNumbers(Description<T>& d) {
+  d.template defaulted<&T::x>(unit::mm, kPlaces, "X of the tool. Not in ACS, as all of x to c.");
+  d.template defaulted<&T::y>(unit::mm, kPlaces, "Y of the tool.");
+  d.template defaulted<&T::z>(unit::mm, kPlaces, "Z of the tool.");
+  d.template defaulted<&T::a>(unit::deg, kAngles, "Turned about X.");
+  d.template defaulted<&T::b>(unit::deg, kAngles, "Turned about Y.");
+  d.template defaulted<&T::c>(unit::deg, kAngles, "Turned about Z.");
+  d.template defaulted<&T::a1>(unit::u, kAxisPositions, "Axis 1: any in ACS, else those beyond the kinematics.");
+  d.template defaulted<&T::a2>(unit::u, kAxisPositions, "Axis 2.");
+  d.template defaulted<&T::a3>(unit::u, kAxisPositions, "Axis 3.");
+  d.template defaulted<&T::a4>(unit::u, kAxisPositions, "Axis 4.");
+  d.template defaulted<&T::a5>(unit::u, kAxisPositions, "Axis 5.");
+  d.template defaulted<&T::a6>(unit::u, kAxisPositions, "Axis 6.");
+  d.template defaulted<&T::a7>(unit::u, kAxisPositions, "Axis 7.");
+  d.template defaulted<&T::a8>(unit::u, kAxisPositions, "Axis 8.");
+}
+
+template <typename T>
+void DescribeSystem(Description<T>& d) {
+  d.template defaulted<&T::coordinate_system>("What the numbers are seen from (CoordSystem).");
+  d.template defaulted<&T::pcs>(between(1, kProductSystems), "Which product coordinate system; with pcs.");
+}
+
+template <typename T>
+void DescribeRamps(Description<T>& d) {
+  d.template defaulted<&T::velocity>(unit::mm_s, positive, "Largest speed along the path; unset: the group's limit.");
+  d.template defaulted<&T::acceleration>(unit::mm_s2, positive, "Largest acceleration along it; unset: the limit.");
+  d.template defaulted<&T::deceleration>(unit::mm_s2, positive, "Largest deceleration along it; unset: the limit.");
+  d.template defaulted<&T::jerk>(unit::mm_s3, positive, "Largest jerk along it; unset: the limit.");
+}
+
+template <typename T>
+void DescribeTransition(Description<T>& d, std::string_view mode) {
+  d.template defaulted<&T::transition_mode>(mode);
+  d.template defaulted<&T::transition_parameter>(
+      not_negative, "TransitionParameter: mm from the corner, mm of deviation, or mm/s at it, as the mode says.");
+}
+
+constexpr std::string_view kIntoThis = "How the move before goes over into this one, with a blending buffer mode.";
+
+template <typename T>
+void DescribeBuffering(Description<T>& d) {
+  d.template defaulted<&T::buffer_mode>("How the move follows the one before it.");
+  DescribeTransition(d, kIntoThis);
+}
+
+template <Reference kReference>
+void DescribeLinear(Description<MoveLinear<kReference>>& d) {
+  DescribeNumbers(d);
+  DescribeSystem(d);
+  DescribeRamps(d);
+  DescribeBuffering(d);
+}
+
+template <Reference kReference>
+void DescribeCircular(Description<MoveCircular<kReference>>& d) {
+  using M = MoveCircular<kReference>;
+  d.template defaulted<&M::circ_mode>("How the circle is given (CircMode).");
+  d.template defaulted<&M::aux_x>(unit::mm, kPlaces, "AuxPoint: a point on the way, the centre, or a vector; X.");
+  d.template defaulted<&M::aux_y>(unit::mm, kPlaces, "Y of it.");
+  d.template defaulted<&M::aux_z>(unit::mm, kPlaces, "Z of it.");
+  d.template defaulted<&M::path_choice>("Which of several arcs (PathChoice); none where a point on the way is given.");
+  d.template defaulted<&M::normal_x>(kPlaces, "Normal of the plane, of any length, with a centre; all 0: by itself.");
+  d.template defaulted<&M::normal_y>(kPlaces, "Y of it.");
+  d.template defaulted<&M::normal_z>(kPlaces, "Z of it.");
+  d.template defaulted<&M::turns>(at_most(path::kMostTurns), "Whole turns on top.");
+  DescribeNumbers(d);
+  DescribeSystem(d);
+  DescribeRamps(d);
+  DescribeBuffering(d);
+}
+
+template <Reference kReference>
+void DescribeDirect(Description<MoveDirect<kReference>>& d) {
+  using M = MoveDirect<kReference>;
+  DescribeNumbers(d);
+  DescribeSystem(d);
+  d.template defaulted<&M::velocity_factor>(kFactor, "Of the axes' largest velocities.");
+  d.template defaulted<&M::acceleration_factor>(kFactor, "Of their largest accelerations.");
+  d.template defaulted<&M::jerk_factor>(kFactor, "Of their largest jerks.");
+  DescribeBuffering(d);
+}
+
+template <typename T>
+void DescribeBrake(Description<T>& d) {
+  d.template defaulted<&T::deceleration>(unit::mm_s2, positive, "Largest deceleration; unset: that of the move.");
+  d.template defaulted<&T::jerk>(unit::mm_s3, positive, "Largest jerk; unset: that of the move.");
+}
+
+template <typename T>
+void DescribePose(Description<T>& d) {
+  d.template defaulted<&T::x>(unit::mm, kPlaces, "X of its origin.");
+  d.template defaulted<&T::y>(unit::mm, kPlaces, "Y of it.");
+  d.template defaulted<&T::z>(unit::mm, kPlaces, "Z of it.");
+  d.template defaulted<&T::a>(unit::deg, kAngles, "Turned about X.");
+  d.template defaulted<&T::b>(unit::deg, kAngles, "Turned about Y.");
+  d.template defaulted<&T::c>(unit::deg, kAngles, "Turned about Z.");
+}
+
+// The first of the tool's numbers that is given; empty: none.
+template <typename T>
+std::string_view GivenOfTool(const T& c) {
+  constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "a", "b", "c"};
+  const std::array given{c.x.has_value(), c.y.has_value(), c.z.has_value(),
+                         c.a.has_value(), c.b.has_value(), c.c.has_value()};
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (given[i]) return kNames[i];
+  }
+  return {};
+}
+
+template <typename T>
+bool GivesAxis(const T& c) {
+  return c.a1 || c.a2 || c.a3 || c.a4 || c.a5 || c.a6 || c.a7 || c.a8;
+}
+
+template <typename T>
+std::string WhyNotInAcs(const T& c) {
+  const std::string_view given = GivenOfTool(c);
+  if (c.coordinate_system != CoordinateSystem::kAcs || given.empty()) return {};
+  return std::string(given) + ": expected a1 to a8 only, with coordinate_system acs";
+}
+
+template <typename T>
+std::string WhyNotTransition(const T& c) {
+  const bool place =
+      c.transition_mode == TransitionMode::kCornerDistance || c.transition_mode == TransitionMode::kMaxCornerDeviation;
+  if (!place || c.transition_parameter > 0) return {};
+  return "transition_parameter: expected mm above 0 with this transition_mode, found 0";
+}
+
+template <typename T>
+std::string WhyNotAPlace(const T& c) {
+  if (c.coordinate_system != CoordinateSystem::kAcs) return {};
+  return "coordinate_system: expected mcs, wcs or pcs, found acs: axes alone make no such path";
+}
+
+template <typename T>
+std::string WhyNotNamed(const char* field, const T& name, const char* of) {
+  if (!name.empty()) return {};
+  return std::string(field) + ": expected the name of " + of + ", found ''";
+}
+
+std::string FirstOf(std::string a, std::string b) {
+  return a.empty() ? std::move(b) : std::move(a);
+}
+
+template <Reference kReference>
+std::string WhyNotThis(const MoveLinear<kReference>& c) {
+  return FirstOf(WhyNotInAcs(c), WhyNotTransition(c));
+}
+
+template <Reference kReference>
+std::string WhyNotThis(const MoveDirect<kReference>& c) {
+  return FirstOf(WhyNotInAcs(c), WhyNotTransition(c));
+}
+
+template <Reference kReference>
+std::string WhyNotThis(const MoveCircular<kReference>& c) {
+  const bool short_or_long = c.path_choice == path::PathChoice::kShort || c.path_choice == path::PathChoice::kLong;
+  if (c.circ_mode == path::CircMode::kRadius && !short_or_long) {
+    return "path_choice: expected short or long with circ_mode radius";
+  }
+  if (c.circ_mode == path::CircMode::kCenter && short_or_long) {
+    return "path_choice: expected counterclockwise or clockwise with circ_mode center";
+  }
+  return FirstOf(WhyNotAPlace(c), WhyNotTransition(c));
+}
+
+std::string WhyNotThis(const MovePath& c) {
+  return FirstOf(WhyNotNamed("path", c.path, "a path"), FirstOf(WhyNotAPlace(c), WhyNotTransition(c)));
+}
+
+std::string WhyNotThis(const MovePathSynchronized& c) {
+  if (c.ratio == 0) return "ratio: expected a number other than 0";
+  return FirstOf(FirstOf(WhyNotNamed("path", c.path, "a path"), WhyNotNamed("master", c.master, "an axis")),
+                 FirstOf(WhyNotAPlace(c), WhyNotTransition(c)));
+}
+
+std::string WhyNotThis(const SyncAxis& c) {
+  if (c.ratio_denominator == 0) return "ratio_denominator: expected a number other than 0";
+  return WhyNotNamed("axis", c.axis, "an axis");
+}
+
+std::string WhyNotThis(const AddAxis& c) {
+  return WhyNotNamed("axis", c.axis, "an axis");
+}
+
+std::string WhyNotThis(const SetPosition& c) {
+  if (GivenOfTool(c).empty() && !GivesAxis(c)) return "x: expected at least one of x to c or a1 to a8";
+  return WhyNotInAcs(c);
+}
+
+std::string WhyNotThis(const SetCoordinateTransform& c) {
+  if (c.reference == CoordinateSystem::kAcs) return "reference: expected mcs, wcs or pcs, found acs";
+  if (c.reference == CoordinateSystem::kPcs && c.reference_pcs == c.pcs) {
+    return "reference_pcs: expected another coordinate system than pcs itself";
+  }
+  return {};
+}
+
+template <typename T>
+std::string WhyNotThis(const T&) {
+  return {};
+}
+
+}  // namespace
+
+std::string WhyNot(const Command& command) {
+  return std::visit(
+      []<typename T>(const T& c) {
+        const Field* wrong = FirstOutOfRange(TypeOf<T>(), &c);
+        if (wrong == nullptr) return WhyNotThis(c);
+        const std::string range = Text(wrong->range);
+        return std::string(wrong->name) + ": expected " + (range.empty() ? "a value of its kind" : "a number " + range);
+      },
+      command);
+}
+
+void describe(Enumeration<CoordinateSystem>& e) {
+  e.about("What numbers are seen from.");
+  e.value(CoordinateSystem::kAcs, "acs", "Axes: a1 to a8, each in its own unit.");
+  e.value(CoordinateSystem::kMcs, "mcs", "The machine coordinate system: the kinematics' own.");
+  e.value(CoordinateSystem::kWcs, "wcs", "The world, in which `base` of the group says where the machine stands.");
+  e.value(CoordinateSystem::kPcs, "pcs", "One of 16 product coordinate systems, see set_cartesian_transform.");
+}
+
+void describe(Enumeration<TransitionMode>& e) {
+  e.about("How one move goes over into the next.");
+  e.value(TransitionMode::kNone, "none", "Through the corner itself.");
+  e.value(TransitionMode::kStartVelocity, "start_velocity", "Rounded; the corner begins at the given speed.");
+  e.value(TransitionMode::kConstantVelocity, "constant_velocity", "Rounded so that the given speed can be kept.");
+  e.value(TransitionMode::kCornerDistance, "corner_distance", "Rounded from so many mm before the corner on.");
+  e.value(TransitionMode::kMaxCornerDeviation, "max_corner_deviation", "Rounded, at most so many mm from the corner.");
+}
+
+void describe(Description<MoveLinearAbsolute>& d) {
+  d.named("MoveLinearAbsolute");
+  d.about("Moves straight to a place (MC_MoveLinearAbsolute). What is not given stays.");
+  DescribeLinear(d);
+}
+
+void describe(Description<MoveLinearRelative>& d) {
+  d.named("MoveLinearRelative");
+  d.about("Moves straight on by a distance from where the move before ends (MC_MoveLinearRelative).");
+  DescribeLinear(d);
+}
+
+void describe(Description<MoveCircularAbsolute>& d) {
+  d.named("MoveCircularAbsolute");
+  d.about("Moves along a circle or a helix to a place (MC_MoveCircularAbsolute). What is not given stays.");
+  DescribeCircular(d);
+}
+
+void describe(Description<MoveCircularRelative>& d) {
+  d.named("MoveCircularRelative");
+  d.about(
+      "Moves along a circle or a helix by a distance (MC_MoveCircularRelative). Points count from where it begins, "
+      "too.");
+  DescribeCircular(d);
+}
+
+void describe(Description<MoveDirectAbsolute>& d) {
+  d.named("MoveDirectAbsolute");
+  d.about(
+      "Moves all axes to where the place is, each by itself, so that they arrive together (MC_MoveDirectAbsolute). "
+      "What is not given stays.");
+  DescribeDirect(d);
+}
+
+void describe(Description<MoveDirectRelative>& d) {
+  d.named("MoveDirectRelative");
+  d.about("Moves all axes by distances, so that they arrive together (MC_MoveDirectRelative).");
+  DescribeDirect(d);
+}
+
+void describe(Description<MovePath>& d) {
+  using M = MovePath;
+  d.about("Moves along a path of the machine file (MC_PathSelect, MC_MovePath).");
+  d.required<&M::path>("Its name.");
+  DescribeSystem(d);
+  DescribeRamps(d);
+  d.defaulted<&M::buffer_mode>("How the move follows the one before it.");
+  DescribeTransition(d, "How corners of the path are passed, and the one into it with a blending buffer mode.");
+}
+
+void describe(Description<MovePathSynchronized>& d) {
+  using M = MovePathSynchronized;
+  d.about(
+      "Moves along a path of the machine file as a master axis moves (MC_MovePathSynchronized). Never faster than the "
+      "limits: what is lost is made up.");
+  d.required<&M::path>("Its name.");
+  d.required<&M::master>("Name of the axis that gives the way.");
+  d.defaulted<&M::ratio>(unit::mm_u_m, between(-1e9, 1e9), "Way along the path per way of the master, not 0.");
+  DescribeSystem(d);
+  DescribeRamps(d);
+  DescribeTransition(d, "How corners of the path are passed.");
+}
+
+void describe(Description<SyncAxis>& d) {
+  using C = SyncAxis;
+  d.about(
+      "Lets an axis that is no member follow the way along the path (MC_SyncAxisToGroup), until it gets a command of "
+      "its own.");
+  d.required<&C::axis>("Its name.");
+  d.defaulted<&C::ratio_numerator>(unit::u, between(-1e9, 1e9), "So much of the axis ...");
+  d.defaulted<&C::ratio_denominator>(unit::mm, between(-1e9, 1e9), "... per so much of the path, not 0.");
+}
+
+void describe(Description<Stop>& d) {
+  d.about("Brakes to standstill on the path; nothing may take over until it is released (MC_GroupStop).");
+  DescribeBrake(d);
+  d.defaulted<&Stop::hold>("True: stay in GroupStopping until released (Execute kept true). False: until at rest.");
+}
+
+void describe(Description<Halt>& d) {
+  d.about("Brakes to standstill on the path; another move may take over on the way (MC_GroupHalt).");
+  DescribeBrake(d);
+}
+
+void describe(Description<Interrupt>& d) {
+  d.about("Brakes to standstill on the path, where continue_path goes on (MC_GroupInterrupt).");
+  DescribeBrake(d);
+}
+
+void describe(Description<Continue>& d) {
+  d.about("Goes on with the path that was interrupted (MC_GroupContinue).");
+}
+
+void describe(Description<AddAxis>& d) {
+  d.about("Takes an axis into a group that is not enabled (MC_AddAxisToGroup).");
+  d.required<&AddAxis::axis>("Its name.");
+  d.defaulted<&AddAxis::ident>(between(1, kMaxAxes), "Its place in the group (IdentInGroup): 1 is a1.");
+}
+
+void describe(Description<RemoveAxis>& d) {
+  d.about("Takes an axis out of a group that is not enabled (MC_RemoveAxisFromGroup).");
+  d.defaulted<&RemoveAxis::ident>(between(1, kMaxAxes), "Its place in the group (IdentInGroup).");
+}
+
+void describe(Description<UngroupAllAxes>& d) {
+  d.about("Takes all axes out of the group, which is then disabled (MC_UngroupAllAxes).");
+}
+
+void describe(Description<Enable>& d) {
+  d.about("Enables the group: from GroupDisabled to GroupStandby (MC_GroupEnable).");
+}
+
+void describe(Description<Disable>& d) {
+  d.about("Disables the group; its axes take commands of their own again (MC_GroupDisable).");
+}
+
+void describe(Description<Reset>& d) {
+  d.about("Clears the faults of the group and of its axes and leaves GroupErrorStop (MC_GroupReset).");
+}
+
+void describe(Description<Power>& d) {
+  d.about("Switches the drives of all axes of the group on or off (MC_Power of each).");
+  d.defaulted<&Power::enable>("True: on. False: off; a moving group stops first.");
+}
+
+void describe(Description<Home>& d) {
+  d.about("Every axis looks for its reference as its `homing` says (MC_GroupHome).");
+}
+
+void describe(Description<SetPosition>& d) {
+  d.about("Gives where the group stands other numbers, without a motion (MC_GroupSetPosition).");
+  DescribeNumbers(d);
+  DescribeSystem(d);
+}
+
+void describe(Description<SetOverride>& d) {
+  using C = SetOverride;
+  d.about("Scales the speed of the motion in progress and of those to come (MC_GroupSetOverride).");
+  d.defaulted<&C::velocity_factor>(between(0, 1), "Of velocities; 0 holds the group on its path.");
+  d.defaulted<&C::acceleration_factor>(kFactor, "Of accelerations and decelerations commanded from now on.");
+  d.defaulted<&C::jerk_factor>(kFactor, "Of jerks commanded from now on.");
+}
+
+void describe(Description<SetKinTransform>& d) {
+  d.about("Switches the kinematics on or off (MC_SetKinTransform).");
+  d.defaulted<&SetKinTransform::enable>("False: the group knows its axes only, no tool.");
+}
+
+void describe(Description<SetCartesianTransform>& d) {
+  using C = SetCartesianTransform;
+  d.about("Says where a product coordinate system is in the machine coordinate system (MC_SetCartesianTransform).");
+  d.defaulted<&C::pcs>(between(1, kProductSystems), "Which one.");
+  DescribePose(d);
+}
+
+void describe(Description<SetCoordinateTransform>& d) {
+  using C = SetCoordinateTransform;
+  d.about("Says where a product coordinate system is in another coordinate system (MC_SetCoordinateTransform).");
+  d.defaulted<&C::pcs>(between(1, kProductSystems), "Which one.");
+  DescribePose(d);
+  d.defaulted<&C::reference>("In which one it is: mcs, wcs or pcs.");
+  d.defaulted<&C::reference_pcs>(between(1, kProductSystems), "Which product coordinate system that is; with pcs.");
+}
+
+}  // namespace takt::group

@@ -1,0 +1,45 @@
+#include "takt/group/outputs.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::group {
+
+void describe(Description<Outputs>& d) {
+  using O = Outputs;
+  d.about(
+      "What a group of axes publishes. Places are those of the tool centre point in the machine coordinate system.");
+  d.internal<&O::state>("State of the group.");
+  d.internal<&O::error>("Why it is in GroupErrorStop.");
+  d.internal<&O::x>(unit::mm, "X as commanded; nan without kinematics, as all that follows.");
+  d.internal<&O::y>(unit::mm, "Y as commanded.");
+  d.internal<&O::z>(unit::mm, "Z as commanded.");
+  d.internal<&O::a>(unit::deg, "A as commanded: about X.");
+  d.internal<&O::b>(unit::deg, "B as commanded: about Y.");
+  d.internal<&O::c>(unit::deg, "C as commanded: about Z.");
+  d.internal<&O::actual_x>(unit::mm, "X as measured.");
+  d.internal<&O::actual_y>(unit::mm, "Y as measured.");
+  d.internal<&O::actual_z>(unit::mm, "Z as measured.");
+  d.internal<&O::actual_a>(unit::deg, "A as measured.");
+  d.internal<&O::actual_b>(unit::deg, "B as measured.");
+  d.internal<&O::actual_c>(unit::deg, "C as measured.");
+  d.internal<&O::velocity>(unit::mm_s, "Speed of the commanded place.");
+  d.internal<&O::acceleration>(unit::mm_s2, "Its acceleration: the length of the vector.");
+  d.internal<&O::actual_velocity>(unit::mm_s, "Speed as measured.");
+  d.internal<&O::path_position>(unit::mm, "Way along the path since the group began to move from rest.");
+  d.internal<&O::path_velocity>(unit::mm_s, "Speed along the path.");
+  d.internal<&O::path_acceleration>(unit::mm_s2, "Acceleration along the path.");
+  d.internal<&O::path_left>(unit::mm, "How much of the path is left, as far as it is known.");
+  d.internal<&O::path_error>(unit::mm, "From the place commanded for this cycle to the measured one.");
+  d.internal<&O::override_factor>(unit::one, "Velocity factor of the override.");
+  d.internal<&O::command>("Ticket of the move in control; 0: none.");
+  d.internal<&O::buffered>("Moves that wait behind it.");
+  d.internal<&O::axes>("Members.");
+  d.internal<&O::in_position>("It stands and has nothing to do.");
+  d.internal<&O::interrupted>("It rests on the path until it is continued.");
+  d.internal<&O::synchronized>("A path that follows a master is in step with it.");
+  d.internal<&O::reason>("Why no position of the axes was found, where the last move was refused or ended for that.");
+  d.internal<&O::problem>("Why there is no such path, where the last move was refused for that.");
+  d.internal<&O::blocked_at>(unit::mm, "Where on that move, from its beginning.");
+}
+
+}  // namespace takt::group
