@@ -235,11 +235,13 @@ struct Applier {
   void operator()(const SetCoordinateTransform& m) const {
     if (m.reference == CoordinateSystem::kAcs) return Refuse(ErrorId::kParameter);
     const Frame reference = SystemFrame(c, s, m.reference, m.reference_pcs - 1);
-    s.product_systems[m.pcs - 1] =
-        kinematics::ToPose(reference * kinematics::ToFrame({m.x, m.y, m.z, m.a, m.b, m.c}));
+    s.product_systems[m.pcs - 1] = kinematics::ToPose(reference * kinematics::ToFrame({m.x, m.y, m.z, m.a, m.b, m.c}));
     Finish(ErrorId::kNone);
   }
-  void operator()(const SyncAxis& m) const { (void)m; Refuse(ErrorId::kUnknownVerb); }
+  void operator()(const SyncAxis& m) const {
+    (void)m;
+    Refuse(ErrorId::kUnknownVerb);
+  }
   template <typename T>
   void operator()(const T&) const {}  // moves: see Apply
 };

@@ -17,7 +17,8 @@ constexpr int kHalvings = 8;
 constexpr double kLeastJointSpeed = 1;
 constexpr double kNoEnd = 1e12;  // mm
 
-// How a path goes on at this element: that of the move, but for the first element of a path, which is joined as the move.
+// How a path goes on at this element: that of the move, but for the first element of a path, which is joined as the
+// move.
 bool Blends(const Request& move, std::uint32_t element) {
   return move.transition_mode != TransitionMode::kNone && (move.blends() || element > 0);
 }

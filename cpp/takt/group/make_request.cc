@@ -40,8 +40,9 @@ struct Maker {
     r.pcs = m.pcs - 1;
     r.limits.velocity = m.velocity.value_or(own.velocity);
     r.limits.acceleration = s.acceleration_factor * m.acceleration.value_or(own.acceleration);
-    r.limits.deceleration = s.acceleration_factor *
-                            m.deceleration.value_or(m.acceleration.value_or(own.deceleration.value_or(own.acceleration)));
+    r.limits.deceleration =
+        s.acceleration_factor *
+        m.deceleration.value_or(m.acceleration.value_or(own.deceleration.value_or(own.acceleration)));
     r.limits.jerk = s.jerk_factor * m.jerk.value_or(own.jerk);
     r.transition_mode = m.transition_mode;
     r.transition_parameter = m.transition_parameter;
@@ -73,7 +74,10 @@ struct Maker {
     r.relative = kReference == Reference::kRelative;
     r.to = NumbersOf(m);
     r.buffer_mode = m.buffer_mode;
-    r.circle = {m.circ_mode, {m.aux_x, m.aux_y, m.aux_z}, m.path_choice, {m.normal_x, m.normal_y, m.normal_z},
+    r.circle = {m.circ_mode,
+                {m.aux_x, m.aux_y, m.aux_z},
+                m.path_choice,
+                {m.normal_x, m.normal_y, m.normal_z},
                 static_cast<double>(m.turns)};
     TakeManner(m);
     return m.coordinate_system == CoordinateSystem::kAcs ? ErrorId::kParameter : ErrorId::kNone;
@@ -111,7 +115,9 @@ struct Maker {
 };
 
 template <typename T>
-concept IsMove = requires(const Maker& maker, const T& command) { maker.Fill(command); };
+concept IsMove = requires(const Maker& maker, const T& command) {
+  maker.Fill(command);
+};
 
 }  // namespace
 

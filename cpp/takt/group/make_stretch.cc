@@ -79,7 +79,8 @@ ErrorId AlongTool(const Context& c, const Request& move, const Frame& to, const 
   const path::Point end{to, auxiliaries};
   Stretch& stretch = ahead.next;
   stretch.limits = move.limits;
-  s.problem = circle ? path::MakeArc(begin, *circle, end, stretch.segment) : path::MakeLine(begin, end, stretch.segment);
+  s.problem =
+      circle ? path::MakeArc(begin, *circle, end, stretch.segment) : path::MakeLine(begin, end, stretch.segment);
   return s.problem == path::Problem::kNone ? ErrorId::kNone : ErrorId::kPathGeometry;
 }
 

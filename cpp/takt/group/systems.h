@@ -1,7 +1,7 @@
 // Coordinate systems of a group: where each is in that of the machine, and numbers of people in them.
 //
-// ACS: the axes themselves. MCS: that of the kinematics. WCS: the world, in which the machine file places the MCS. PCS 1
-// to 16: products, placed in the MCS at run time. The tool centre point (TCP) lies on the flange as the machine file
+// ACS: the axes themselves. MCS: that of the kinematics. WCS: the world, in which the machine file places the MCS. PCS
+// 1 to 16: products, placed in the MCS at run time. The tool centre point (TCP) lies on the flange as the machine file
 // says.
 #pragma once
 
