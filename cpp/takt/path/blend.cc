@@ -18,9 +18,9 @@ constexpr double kReversal = 1e-4;
 // rad, that a curve may turn within a blend.
 constexpr double kMostSweep = 1;
 // How much of the deviation allowed the search for a distance may leave unused.
-constexpr double kUnused = 0.01;
+constexpr double kUnused = 0.02;
 // Part of the deviation that is kept free for what lies between the samples.
-constexpr double kMargin = 1e-3;
+constexpr double kMargin = 5e-3;
 constexpr int kSamples = 12;
 
 // Tangent length of a blend over its distance, by the cosine of half the angle.
