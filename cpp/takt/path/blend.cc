@@ -21,7 +21,7 @@ constexpr double kMostSweep = 1;
 constexpr double kUnused = 0.02;
 // Part of the deviation that is kept free for what lies between the samples.
 constexpr double kMargin = 5e-3;
-constexpr int kSamples = 12;
+constexpr int kSamples = 16;
 
 // Tangent length of a blend over its distance, by the cosine of half the angle.
 double TangentShare(double q) {
