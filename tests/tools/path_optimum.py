@@ -1,15 +1,16 @@
 """The least time along a path under limits of speed, acceleration and jerk: what path timing is held against (GR-23).
 
-Given q_k(s) with exact derivatives, limits of |dq_k/dt|, |d2q_k/dt2| and |d3q_k/dt3|, and limits of the path itself (speed,
-acceleration, deceleration, jerk), from rest to rest with no acceleration at either end.
+Given q_k(s) with exact derivatives, limits of |dq_k/dt|, |d2q_k/dt2| and |d3q_k/dt3|, and limits of the path itself
+(speed, acceleration, deceleration, jerk), from rest to rest with no acceleration at either end.
 
-How: time is cut into intervals, whose lengths keep their ratios; in each, the path's jerk is a straight line with a value of its own
-at either end, so that s, v and a are exact polynomials. Coordinates are limited at the ends of the intervals and at points within, and Ipopt minimises the time over s, v, a, jerk and the time itself. Every solution is then sampled 20 times finer
-against every limit: slowed evenly until all hold, it is a motion anybody could make, thus never faster than the optimum.
+How: time is cut into intervals, whose lengths keep their ratios; in each, the path's jerk is a straight line with a
+value of its own at either end, so that s, v and a are exact polynomials. Coordinates are limited at the ends of the
+intervals and at points within, and Ipopt minimises the time over s, v, a, jerk and the time itself. A motion found is
+the best of its surroundings only: several starts are tried, and the fastest refined. It is then sampled 20 times finer
+against every limit: slowed evenly until all hold, it is a motion within all limits, thus never faster than the optimum.
 Without limits of jerk the optimum is a linear programme in h(s) = v * v; it bounds the time from below.
 
-A motion found is the best of its surroundings only: several starts are tried, and the fastest refined. path_problems.py tells how
-to run this; neither is part of the package or run by the tests.
+path_problems.py tells how to run this; neither is part of the package or run by the tests.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Protocol
 
 import casadi as ca
@@ -124,9 +126,9 @@ def acceleration_only(problem: Problem, intervals: int = 2000) -> tuple[float, A
 def backward_forward(problem: Problem, intervals: int) -> tuple[float, Array, Array]:
     """The same on one grid: what a backward and a forward pass would find.
 
-    Of two feasible h the larger of both at every s is feasible too: the greatest sum of h is the fastest everywhere. Between the
-    points of the grid the acceleration is constant; limits hold at both ends of each interval, which makes it slower by about 1 /
-    intervals.
+    Of two feasible h the larger of both at every s is feasible too: the greatest sum of h is the fastest everywhere.
+    Between the points of the grid the acceleration is constant; limits hold at both ends of each interval, which makes
+    it slower by about 1 / intervals.
     """
     # Finer towards both ends, where h starts like s.
     grid = np.linspace(0.0, 1.0, intervals + 1)
@@ -176,8 +178,8 @@ def piecewise(coordinate: Coordinate, order: int, s: Array, piece: NDArray[np.in
 # --- With limits of jerk ------------------------------------------------------------------------------------------
 
 
-def solve(problem: Problem, start: Solution, verbose: bool = False) -> Solution:
-    """The optimum near `start`, on its intervals."""
+def solve(problem: Problem, start: Solution, close: bool = False) -> Solution:
+    """The optimum near `start`, on its intervals. `close`: the start is the optimum of a coarser grid."""
     length, unit = problem.length, start.time
     to_v, to_a, to_j = unit / length, unit**2 / length, unit**3 / length
     n = len(start.steps)
@@ -220,6 +222,7 @@ def solve(problem: Problem, start: Solution, verbose: bool = False) -> Solution:
             continue
         rows = [
             ca.vec(speed.map(last - first + 1)(s[first : last + 1].T, v[first : last + 1].T)),
+            ca.vec(speed.map(last - first)(*(x[first:last].T for x in within[1][:2]))),
             ca.vec(acceleration.map(last - first + 1)(*(x[first : last + 1].T for x in (s, v, a)))),
             *(ca.vec(acceleration.map(last - first)(*(x[first:last].T for x in point[:3]))) for point in within),
             ca.vec(jerk.map(last - first)(*(x[first:last].T for x in (s, v, a, left)))),
@@ -263,7 +266,7 @@ def solve(problem: Problem, start: Solution, verbose: bool = False) -> Solution:
         low_s[node] = high_s[node] = borders[k]
     options = {
         "print_time": False,
-        "ipopt.print_level": 5 if verbose else 0,
+        "ipopt.print_level": 0,
         "ipopt.sb": "yes",
         "ipopt.max_iter": 1500,
         "ipopt.tol": 1e-7,
@@ -271,6 +274,10 @@ def solve(problem: Problem, start: Solution, verbose: bool = False) -> Solution:
         "ipopt.mu_strategy": "adaptive",
         "ipopt.bound_relax_factor": 1e-9,
     }
+    if close:
+        options |= {"ipopt.mu_strategy": "monotone", "ipopt.mu_init": 1e-5}
+        pushes = ("bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac")
+        options |= {f"ipopt.{push}": 1e-6 for push in pushes}
     programme = {"x": ca.vertcat(s, v, a, left, right, times), "f": ca.sum1(times), "g": ca.vertcat(*constraints)}
     solver = ca.nlpsol("solver", "ipopt", programme, options)
     low, high, begin = (np.concatenate([bound[i] for bound in bounds]) for i in range(3))
@@ -329,13 +336,13 @@ def loads(problem: Problem, solution: Solution, fine: int = 21) -> tuple[Array, 
 
 
 def on_grid(problem: Problem, t: Array, s: Array, density: Array, intervals: int) -> Solution:
-    """The motion s(t) on a new grid: about `intervals` of them, lying closer where `density` (per point of t) is high."""
+    """The motion s(t) on a new grid: about `intervals` of them, closer where `density` (per point of t) is high."""
     measure = np.concatenate(([0.0], np.cumsum((density[1:] + density[:-1]) / 2 * np.diff(t))))
     at_borders = np.interp(problem.borders, s, measure)
     at_borders[[0, -1]] = measure[[0, -1]]
     nodes = [np.zeros(1)]
     piece: list[int] = []
-    for k, (begin, end) in enumerate(zip(at_borders[:-1], at_borders[1:], strict=True)):
+    for k, (begin, end) in enumerate(pairwise(at_borders)):
         count = max(8, round(intervals * (end - begin) / measure[-1]))
         nodes.append(np.linspace(begin, end, count + 1)[1:])
         piece += [k] * count
@@ -385,11 +392,11 @@ def halved(solution: Solution) -> Solution:
 
 @dataclass
 class Optimum:
-    """`time` as extrapolated from two grids; `feasible` is the time of a motion that breaks no limit anywhere.
+    """`time` of the finest solution; `feasible`: that of a motion that breaks no limit anywhere.
 
-    `acceleration_only` the least time without limits of jerk. `violation`: how far the finest solution breaks a limit between the
-    points of its grid. `doubling`: by how much its time changed with the last halving. `shares` of time with a speed, acceleration,
-    jerk at its limit. Times of all `starts`.
+    `acceleration_only`: the least time without limits of jerk. `violation`: how far the finest solution breaks a limit
+    between the points of its grid. `doubling`: by how much its time changed when the intervals were cut in two.
+    `shares` of time with a speed, an acceleration, a jerk at its limit. Times of all `starts`.
     """
 
     time: float
@@ -402,19 +409,22 @@ class Optimum:
     solution: Solution
 
 
-def optimum(problem: Problem, intervals: int = 500, stretches: Sequence[float] = (1.1, 1.3, 1.8, 3.0)) -> Optimum:
+def optimum(problem: Problem, intervals: int = 450) -> Optimum:
     lower, s, h = acceleration_only(problem)
-    starts = []
-    for stretch in stretches:
+    starts: list[Solution] = []
+    for stretch in (1.1, 1.4, 2.5, 1.2, 1.8, 4.0):
+        times = [solution.time for solution in starts]
+        if len(times) >= 3 and max(times) < 1.0005 * min(times):
+            break  # wherever one begins, one comes to the same motion
         try:
-            starts.append(solve(problem, first_guess(problem, s, h, stretch, intervals // 2)))
+            starts.append(solve(problem, first_guess(problem, s, h, stretch, intervals * 4 // 9)))
         except RuntimeError as error:
             print(f"{problem.name}, start {stretch}: {error}", flush=True)
     best = min(starts, key=lambda solution: solution.time)
     coarse = solve(problem, adapted(problem, best, intervals))
-    fine = solve(problem, halved(coarse))
+    fine = solve(problem, halved(coarse), close=True)
     if fine.time / coarse.time - 1 > 0.001 or max(load.max() for load in loads(problem, fine)) > 1.01:
-        coarse, fine = fine, solve(problem, halved(fine))
+        coarse, fine = fine, solve(problem, halved(fine), close=True)
     speed, acceleration, jerk = loads(problem, fine)
     slowing = max(1.0, speed.max(), acceleration.max() ** (1 / 2), jerk.max() ** (1 / 3))
     weights = np.repeat(fine.steps[:, None] / 21, 21, axis=1) / fine.time

@@ -1,10 +1,10 @@
-"""Paths and limits for tests of path timing, with the least time of each: makes tests/data/path_optimum.json (see path_optimum.py).
+"""Paths and limits for tests of path timing, with the least time of each: makes tests/data/path_optimum.json.
 
 Not part of the package, not run by the tests. In an environment of its own:
 
     python3 -m venv build/optimum && build/optimum/bin/pip install numpy scipy casadi ruckig
     build/optimum/bin/python tests/tools/path_problems.py check             # solver against closed forms and Ruckig
-    build/optimum/bin/python tests/tools/path_problems.py make [NAME...]    # all problems, or those named again (a minute each)
+    build/optimum/bin/python tests/tools/path_problems.py make [NAME...]    # all, or those named; a minute each
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def zigzag(
 def burst(
     name: str, length: float, wave: float, order: int, path: tuple[float, float, float, float], slack: float
 ) -> Problem:
-    """Straight but for the middle, which winds at wave length `wave`: sin(s) * cos(s)**(2 * order), as a sum of sines."""
+    """Straight but for the middle, which winds at wave length `wave`: sin(s) * cos(s)**(2 * order) as sines."""
     carrier, envelope = 2 * math.pi / wave, math.pi / length
     v, a, _, j = (x * slack for x in path)
     shapes = []
@@ -273,7 +273,8 @@ def write(entries: list[dict[str, Any]]) -> None:
 def summary(given: Problem, found: Optimum) -> str:
     speed, acceleration, jerk = (round(100 * share) for share in found.shares)
     return (
-        f"{given.name:32} {found.acceleration_only:8.4f} {found.time:9.5f} s  slowed {100 * (found.feasible / found.time - 1):.2f} %"
+        f"{given.name:32} {found.acceleration_only:8.4f} {found.time:9.5f} s"
+        f"  slowed {100 * (found.feasible / found.time - 1):.2f} %"
         f"  violation {100 * found.violation:.2f} %  doubling {100 * found.doubling:+.3f} %"
         f"  at limit v {speed} a {acceleration} j {jerk} %  fastest {found.solution.v.max():.0f}"
         f"  starts {' '.join(f'{time:.4f}' for time in found.starts)}"
