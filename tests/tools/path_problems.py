@@ -169,7 +169,7 @@ def problems() -> list[Problem]:
         winding("winding speed 1", 21, 300, **speed),
         winding("winding speed 2", 22, 500, **speed, waves=3),
         winding("winding speed 3", 23, 150, **speed, waves=2),
-        winding("winding speed 4", 24, 800, **speed),
+        winding("winding speed 4", 24, 400, **speed),
         winding("winding mixed 1", 31, 300, **mixed),
         winding("winding mixed 2", 32, 700, **mixed),
         winding("winding mixed asymmetric", 33, 1000, **mixed, deceleration=2.5),
