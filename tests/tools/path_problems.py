@@ -177,7 +177,7 @@ def problems() -> list[Problem]:
         zigzag("zigzag rounded", 600, 4, 0.2, (1000, 1e4, 1e4, 5e5), 0.9),
         zigzag("zigzag sharp", 1200, 3, 0.06, (2000, 6e3, 6e3, 1e6), 0.9),
         burst("burst", 800, 60, 6, (1500, 5e3, 5e3, 2e5), 0.9),
-        burst("burst sharp", 1500, 25, 20, (2500, 1e4, 1e4, 1e6), 0.9),
+        burst("burst sharp", 800, 30, 8, (2000, 1e4, 1e4, 1e6), 0.9),
         burst("ripple", 400, 16, 1, (800, 2e4, 2e4, 2e5), 1.0),
         circle("circle", 80, 1, (1000, 1e4, 1e4, 2e5), 0.8),
         circle("circle twice asymmetric", 50, 2, (800, 8e3, 4e3, 1e5), 1.2),
