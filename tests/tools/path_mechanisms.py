@@ -5,7 +5,7 @@ those of takt.kinematics, q3 the derivative of a Chebyshev polynomial through q2
 s stands twice, with the values of either side. There the jerk of the joints is without bounds at any speed above 0:
 limits hold within the pieces only.
 
-Run like path_problems.py, with takt to be found:
+Run like path_problems.py, after ./dev build; takt needs more (pip install lcm==1.5.3 click rich matplotlib PyYAML):
 
     PYTHONPATH=build/release/python build/optimum/bin/python tests/tools/path_mechanisms.py [NAME...]
 """
