@@ -34,7 +34,7 @@ Kinematics Of(const ScaraParams& p) {
 }
 
 Kinematics Of(const DeltaParams& p) {
-  const DeltaLengths lengths{p.base_radius, p.platform_radius, p.upper_arm, p.lower_arm};
+  const DeltaLengths lengths{p.base_radius, p.platform_radius, p.upper_arm, p.lower_arm, p.rod_spacing};
   Kinematics k{.mechanism = MakeDelta(lengths, p.first_arm_deg * kDegree, p.rotary), .count = p.rotary ? 4u : 3u};
   k.kinds.fill(JointKind::kRotary);
   return k;
