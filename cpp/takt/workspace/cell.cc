@@ -166,7 +166,8 @@ class Maker {
         const bool ignored = Ignored([&](const std::string& name) { return Called(name, a); },
                                      [&](const std::string& name) { return Called(name, b); });
         if (Neighbours(link_a, link_b) || ignored) continue;
-        const bool near = at_rest && cell_.scene.Between(a, frames[link_a], b, frames[link_b]) < cell_.margin;
+        const bool near =
+            at_rest && cell_.scene.Between(a, frames[link_a], b, frames[link_b], cell_.margin) < cell_.margin;
         (near ? cell_.near_at_rest : cell_.pairs).push_back({a, b});
       }
     }

@@ -18,7 +18,9 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 // Out of the bounds by rounding. mm
 constexpr double kRounding = 1e-6;
 // Where not even so small a part of the way between two samples can be bounded, the mechanism is singular.
-constexpr double kSmallestShare = 1e-6;
+constexpr double kSmallestShare = 1e-7;
+// What is further away than the margin and this is only known to be. mm
+constexpr double kLookAhead = 100;
 
 // On the path: behind sample `index` by a share of the way to the next.
 struct Place {
@@ -201,7 +203,7 @@ class Run {
     }
     std::size_t nearest = 0;
     const auto distance = [&](const LinkFrameArray& frames) {
-      const Scene::Nearest found = cell_.scene.NearestObstacle(index, frames[body.link]);
+      const Scene::Nearest found = cell_.scene.NearestObstacle(index, frames[body.link], cell_.margin + kLookAhead);
       nearest = found.obstacle;
       return found.distance;
     };
@@ -218,7 +220,7 @@ class Run {
         Swallows(b.shape, start[b.link], a.shape, start[a.link]))
       Take(Hit{}, Trouble::kCollision, a.name, b.name);
     const auto distance = [&](const LinkFrameArray& frames) {
-      return cell_.scene.Between(first, frames[a.link], second, frames[b.link]);
+      return cell_.scene.Between(first, frames[a.link], second, frames[b.link], cell_.margin + kLookAhead);
     };
     Take(walker_.Follow({a.link, b.link, a.shape.points, a.shape.radius}, cell_.margin, distance), Trouble::kCollision,
          a.name, b.name);

@@ -9,7 +9,6 @@
 #include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
-#include <limits>
 #include <set>
 #include <vector>
 
@@ -19,8 +18,6 @@ namespace {
 using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
 using Object = fcl::CollisionObjectd;
 using kinematics::Frame;
-
-constexpr double kFar = std::numeric_limits<double>::infinity();
 
 Geometry GeometryOf(const BoxParams& box) {
   return std::make_shared<fcl::Boxd>(box.x, box.y, box.z);
@@ -54,15 +51,16 @@ fcl::Transform3d TransformOf(const Frame& frame) {
   return transform;
 }
 
-double DistanceOf(const Object& a, const Object& b) {
+// What is as far as `within` is not looked at closely, and is `within`.
+double DistanceOf(const Object& a, const Object& b, double within) {
   // FCL's other solver is now and then wrong by many mm, and both are by more with metres than with mm.
   fcl::DistanceRequestd request;
   request.enable_nearest_points = false;
   request.enable_signed_distance = false;
   request.gjk_solver_type = fcl::GST_LIBCCD;
-  fcl::DistanceResultd result;
+  fcl::DistanceResultd result(within);
   try {
-    return std::max(0.0, fcl::distance(&a, &b, request, result));
+    return std::clamp(fcl::distance(&a, &b, request, result), 0.0, within);
   } catch (const std::exception&) {
     return 0;  // it could not find out: what is not known to be free is not
   }
@@ -112,7 +110,7 @@ void Scene::Ignore(std::size_t body, std::size_t obstacle) {
   inside_->bodies[body].ignored.insert(inside_->obstacles[obstacle].get());
 }
 
-Scene::Nearest Scene::NearestObstacle(std::size_t body, const Frame& at) {
+Scene::Nearest Scene::NearestObstacle(std::size_t body, const Frame& at, double within) {
   Inside::Body& moved = inside_->bodies[body];
   moved.MoveTo(at);
   if (!inside_->ready) inside_->tree.setup();
@@ -120,14 +118,14 @@ Scene::Nearest Scene::NearestObstacle(std::size_t body, const Frame& at) {
 
   struct Query {
     const Inside::Body& body;
-    double distance = kFar;
+    double distance;
     const Object* nearest = nullptr;
-  } query{moved};
+  } query{moved, within};
   const auto look = [](Object* a, Object* b, void* data, double& nearest) {
     Query& q = *static_cast<Query*>(data);
     const Object* other = a == &q.body.object ? b : a;
     if (!q.body.ignored.contains(other)) {
-      const double distance = DistanceOf(q.body.object, *other);
+      const double distance = DistanceOf(q.body.object, *other, q.distance);
       if (distance < q.distance) {
         q.distance = distance;
         q.nearest = other;
@@ -143,10 +141,10 @@ Scene::Nearest Scene::NearestObstacle(std::size_t body, const Frame& at) {
   return nearest;
 }
 
-double Scene::Between(std::size_t a, const Frame& a_at, std::size_t b, const Frame& b_at) {
+double Scene::Between(std::size_t a, const Frame& a_at, std::size_t b, const Frame& b_at, double within) {
   inside_->bodies[a].MoveTo(a_at);
   inside_->bodies[b].MoveTo(b_at);
-  return DistanceOf(inside_->bodies[a].object, inside_->bodies[b].object);
+  return DistanceOf(inside_->bodies[a].object, inside_->bodies[b].object, within);
 }
 
 }  // namespace takt::workspace

@@ -27,12 +27,13 @@ class Scene {
   void Ignore(std::size_t body, std::size_t obstacle);
 
   struct Nearest {
-    double distance = 0;  // mm, 0: they touch or overlap; infinite without obstacles
-    std::size_t obstacle = 0;
+    double distance = 0;       // mm, 0: they touch or overlap; at most `within`
+    std::size_t obstacle = 0;  // which, if nearer than `within`
   };
-  // `at`: the frame of what the body is fixed to.
-  Nearest NearestObstacle(std::size_t body, const kinematics::Frame& at);
-  double Between(std::size_t a, const kinematics::Frame& a_at, std::size_t b, const kinematics::Frame& b_at);
+  // `at`: the frame of what the body is fixed to. Looking no further than `within` saves time.
+  Nearest NearestObstacle(std::size_t body, const kinematics::Frame& at, double within);
+  double Between(std::size_t a, const kinematics::Frame& a_at, std::size_t b, const kinematics::Frame& b_at,
+                 double within);
 
  private:
   struct Inside;

@@ -59,8 +59,8 @@ TEST(Scene, MeasuresAsWellAsItSays) {
     scene.AddBody(b);
     scene.AddObstacle(b);
     const double expected = testing::ReferenceDistance(a.form, a.pose, b.form, b.pose);
-    EXPECT_NEAR(scene.Between(0, {}, 1, {}), expected, kDistanceError) << text;
-    EXPECT_NEAR(scene.NearestObstacle(0, {}).distance, expected, kDistanceError) << text;
+    EXPECT_NEAR(scene.Between(0, {}, 1, {}, 1e4), expected, kDistanceError) << text;
+    EXPECT_NEAR(scene.NearestObstacle(0, {}, 1e4).distance, expected, kDistanceError) << text;
   }
 }
 
