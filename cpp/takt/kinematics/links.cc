@@ -10,6 +10,8 @@ namespace {
 
 using KDL::Vector;
 
+const char* const kBase = "base";
+const char* const kTool = "tool";
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 double Distance(const Vector& point, const Vector& on_axis, const Vector& direction) {
@@ -133,8 +135,14 @@ std::vector<LinkInfo> Describe(const SixAxis& arm) {
   return Describe(arm.chain);
 }
 
+// URDF's own names, but for those that mean something else here.
 std::vector<LinkInfo> Describe(const Serial& serial) {
-  return Describe(serial.chain);
+  std::vector<LinkInfo> all = Describe(serial.chain);
+  for (std::size_t i = 0; i < serial.chain.count; ++i) {
+    const std::string name(serial.links[i].view());
+    if (!name.empty() && name != kBase && name != kTool) all[i + 1].name = name;
+  }
+  return all;
 }
 
 Reason FramesOf(const Chain& chain, const Joints& joints, LinkFrameArray& out) {
@@ -309,8 +317,8 @@ const Chain& Parts(const Arm& arm) {
 
 std::vector<LinkInfo> LinksOf(const Kinematics& k) {
   std::vector<LinkInfo> links = std::visit([](const auto& m) { return Describe(m); }, k.mechanism);
-  links.front().name = "base";
-  links.back().name = "tool";
+  links.front().name = kBase;
+  links.back().name = kTool;
   return links;
 }
 

@@ -5,7 +5,8 @@
 //   SCARA            arm_1, arm_2 (X along the arm, at its axis), spindle (goes up and down), flange (turns, too)
 //   Delta            upper_arm_1 to 3 (X along the arm, at the motor), lower_arm_1_a to 3_b (X along the rod, at the
 //                    knee; b is the rod on the other side of the arm), platform (level)
-//   six axes, URDF   link_1 to link_N; each at its axis, as the axis has turned it
+//   six axes         link_1 to link_6; each at its axis, as the axis has turned it
+//   URDF             the same; their names are those of URDF
 //
 // In front of them stands base, behind them tool: the frame that Forward gives.
 #pragma once

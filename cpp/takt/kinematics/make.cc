@@ -109,7 +109,7 @@ MakeResult Make(const KinematicsParams& params, std::string_view folder) {
     std::string why;
     urdf = ReadUrdf(*text, params.serial->base, params.serial->tip, why);
     if (!urdf) return Refused("serial", path.string() + ": " + why);
-    k.mechanism = Serial{urdf->chain};
+    k.mechanism = Serial{urdf->chain, urdf->links};
     TakeKinds(urdf->chain, k);
   }
   if (std::string why = TakeScales(params.joints, k); !why.empty()) return Refused("joints", std::move(why));

@@ -19,6 +19,8 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-6;
 // Where not even so small a part of the way between two samples can be bounded, the mechanism is singular.
 constexpr double kSmallestShare = 1e-7;
+// Steps as small as this part of the way between two samples do not lead to its end.
+constexpr double kNoProgress = 1e-12;
 // What is further away than the margin and this is only known to be. mm
 constexpr double kLookAhead = 100;
 
@@ -90,6 +92,7 @@ class Walker {
 
   // As far as no point of the mover moves by more than `budget`, to the end of the path at most.
   Reason GoOn(const Mover& mover, double budget, Place& at) {
+    const Place start = at;
     const Sweep* sweep = at.share == 0 ? &sweeps_[at.index] : &ahead_;
     double move = MoveOf(mover, *sweep);
     while (move <= budget) {
@@ -100,13 +103,14 @@ class Walker {
       move = MoveOf(mover, *sweep);
     }
     double part = 1 - at.share;
-    while (move == kFar) {
+    while (!std::isfinite(move)) {
       part /= 4;
       if (part < kSmallestShare) return Reason::kSingular;
       if (const Reason reason = SweepFrom(at, part); reason != Reason::kNone) return reason;
       move = MoveOf(mover, ahead_);
     }
     if (move > budget) part *= budget / move;
+    if (at == start && part < kNoProgress) return Reason::kOutOfReach;
     at.share += part;
     return SweepFrom(at, 1 - at.share);
   }

@@ -60,10 +60,12 @@ double DistanceOf(const Object& a, const Object& b, double within) {
   request.gjk_solver_type = fcl::GST_LIBCCD;
   fcl::DistanceResultd result(within);
   try {
-    return std::clamp(fcl::distance(&a, &b, request, result), 0.0, within);
+    const double distance = fcl::distance(&a, &b, request, result);
+    if (distance > 0) return std::min(distance, within);
   } catch (const std::exception&) {
-    return 0;  // it could not find out: what is not known to be free is not
+    // It could not find out: what is not known to be free is not.
   }
+  return 0;
 }
 
 }  // namespace

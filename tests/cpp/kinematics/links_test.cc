@@ -50,8 +50,11 @@ TEST(Links, HaveNames) {
   EXPECT_THAT(NamesOf(testing::CaseOf("Delta").kinematics),
               ElementsAre("base", "upper_arm_1", "upper_arm_2", "upper_arm_3", "lower_arm_1_a", "lower_arm_1_b",
                           "lower_arm_2_a", "lower_arm_2_b", "lower_arm_3_a", "lower_arm_3_b", "platform", "tool"));
-  EXPECT_THAT(NamesOf(testing::CaseOf("SerialSeven").kinematics),
-              ElementsAre("base", "link_1", "link_2", "link_3", "link_4", "link_5", "link_6", "link_7", "tool"));
+  EXPECT_THAT(NamesOf(testing::CaseOf("Puma").kinematics),
+              ElementsAre("base", "link_1", "link_2", "link_3", "link_4", "link_5", "link_6", "tool"));
+  // URDF's own; what it calls tool is not what Takt does.
+  EXPECT_THAT(NamesOf(testing::CaseOf("SerialScara").kinematics),
+              ElementsAre("base", "arm1", "arm2", "quill", "link_4", "tool"));
 }
 
 // GR-13: the last link is the tool, of every mechanism in any position; what meets is told by both.

@@ -157,6 +157,13 @@ TEST(Checker, TellsTheFirstOfMany) {
   EXPECT_EQ(found.first + "/" + found.second, "left/last");
   ExpectAt(found, 275);
   EXPECT_EQ(Say(checker, Line({0, -200}, {1200, -200}, 1200)), "free");
+
+  // One after the other within the resolution.
+  Checker both = Among(
+      "{name: near, sphere: {radius: 10}, pose: {x: 600, y: -50}}, "
+      "{name: nearly, sphere: {radius: 10}, pose: {x: 600.06, y: 50}}",
+      gripper);
+  EXPECT_EQ(Found(both, Line({0}, {1200}, 1200)).first, "left");
 }
 
 // GR-13: pairs that may meet, by the names of links, of several links at once, of parts and of obstacles.
@@ -230,6 +237,7 @@ TEST(Checker, SaysWhereThereIsNoPosition) {
   EXPECT_EQ(Say(gantry, path), "ball meets post 165.1 mm along the path (5 mm are to be kept)");
   path[0].joints[0] = std::numeric_limits<double>::infinity();
   EXPECT_EQ(Found(gantry, path).index, 0u);
+  EXPECT_TRUE(gantry.Check(Line({-1e300}, {1e300}, 400)));
 
   // Short lower arms do not reach from one knee to the other. Between two positions that are good the knees meet, at
   // cos = -155/235 of the arms.

@@ -61,6 +61,7 @@ TEST(Scene, MeasuresAsWellAsItSays) {
     const double expected = testing::ReferenceDistance(a.form, a.pose, b.form, b.pose);
     EXPECT_NEAR(scene.Between(0, {}, 1, {}, 1e4), expected, kDistanceError) << text;
     EXPECT_NEAR(scene.NearestObstacle(0, {}, 1e4).distance, expected, kDistanceError) << text;
+    EXPECT_NEAR(scene.NearestObstacle(0, {}, 50).distance, std::min(expected, 50.0), kDistanceError) << text;
   }
 }
 
