@@ -12,8 +12,9 @@ namespace {
 
 // A path is in step with its master when the tool is nearer than this to where it should be, mm.
 constexpr double kInStep = 0.01;
-// In so many cycles a small distance to the master is made up.
-constexpr double kCatchUpCycles = 4;
+// In so many times of building up accelerations the distance to the master is made up: an acceleration can be taken
+// back only after such a time.
+constexpr double kCatchUpTimes = 3;
 
 // Of the master, as the path counts it.
 KinematicState WayOf(const Context& c, const State& s) {
@@ -47,9 +48,7 @@ double WishOfMaster(const Context& c, const State& s) noexcept {
   const double half = 0.5 * node.build_up_s;
   const double wanted = way.position + half * (way.velocity + 2.0 / 3.0 * half * way.acceleration);
   const double behind = wanted - s.pace.raw.position;
-  const double strong = node.bounds.deceleration;
-  const double closing =
-      std::min(std::abs(behind) / (kCatchUpCycles * c.cycle.period_s), std::sqrt(strong * std::abs(behind)));
+  const double closing = std::abs(behind) / (kCatchUpTimes * node.build_up_s);
   const double velocity = way.velocity + half * way.acceleration + std::copysign(closing, behind);
   return std::clamp(velocity, 0.0, node.at.limits.velocity);
 }
