@@ -338,6 +338,8 @@ void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
   s.direct_voltage_v = 0;
   if (!s.loop_closed && !s.enable) return;
   const bool opens = open_loop || !s.loop_closed;
+  const bool soft_limit = error == ErrorId::kSoftLimitPositive || error == ErrorId::kSoftLimitNegative;
+  if (IsGuided(s) && s.guidance.brakes_with_others && !opens && !soft_limit) return Enter(s, PlcState::kErrorStop);
   if (s.plc != PlcState::kErrorStop) {
     EndActive(c, FeedbackState::kError, error, s);
     AbortBuffer(c, s);
@@ -346,6 +348,7 @@ void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
     if (!opens) Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);
   }
   if (!opens) return;
+  if (IsGuided(s)) s.active = Request{};
   const bool switching_off = s.active.kind == RequestKind::kPower;  // while braking in ErrorStop: now it is off
   switching_off ? SwitchedOff(c, s) : OpenLoop(s);
 }

@@ -24,7 +24,7 @@ Status Guide(const Context& c, State& s) noexcept {
   Request guided;
   guided.kind = RequestKind::kGuided;
   Grant(c, guided, s);
-  s.guidance = {{s.setpoint.position + s.origin, s.setpoint.velocity, s.setpoint.acceleration}, {}};
+  s.guidance = {{s.setpoint.position + s.origin, s.setpoint.velocity, s.setpoint.acceleration}, {}, false};
   s.limited_by = LimitedBy::kNothing;
   s.motion.profile = trajectory::Profile{s.setpoint};
   s.motion.target = s.setpoint.position;
@@ -40,6 +40,10 @@ bool IsGuided(const State& s) noexcept {
 void LetGoOfGuidance(const Context& c, State& s) noexcept {
   if (!IsGuided(s)) return;
   EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+  if (s.plc == PlcState::kErrorStop) {
+    s.active = {};
+    return Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);
+  }
   if (!AtRest(s)) return ComeToRest(c, c.params.planner_limits(), FromCycleBefore(c), s);
   StartMotion(trajectory::Profile{s.setpoint}, s.setpoint.position, FromCycleBefore(c), s);
   s.motion.arrived = true;
@@ -61,6 +65,7 @@ void describe(Description<GuidanceState>& d) {
   d.about("Set points of another component of the machine.");
   d.internal<&GuidanceState::demand>("Where it wants the axis, over all turns.");
   d.internal<&GuidanceState::chase>("Following that.");
+  d.internal<&GuidanceState::brakes_with_others>("The component brings it to rest in a fault.");
 }
 
 }  // namespace takt::axis

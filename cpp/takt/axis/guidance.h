@@ -17,6 +17,9 @@ struct State;
 struct GuidanceState {
   KinematicState demand;  // over all turns: position + origin
   ChaseState chase;
+  // In a fault with the loop closed the axis goes on by the set points, which the component brings to rest; else it
+  // brakes by itself.
+  bool brakes_with_others = false;
 };
 
 // Puts the component in control; what was in control is aborted. From the next Move on the axis follows `demand`, which

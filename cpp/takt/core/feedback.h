@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "takt/core/describe_fwd.h"
 #include "takt/core/status.h"
@@ -45,7 +46,10 @@ class FeedbackSink {
   explicit FeedbackSink(std::span<FeedbackEvent> storage) : storage_(storage) {}
 
   void Report(const FeedbackEvent& event) noexcept {
-    if (event.ticket == 0) return;
+    if (event.ticket == 0) {
+      if (event.state == FeedbackState::kError) own_error_ = event.error;
+      return;
+    }
     if (size_ < storage_.size()) {
       storage_[size_++] = event;
     } else {
@@ -55,11 +59,14 @@ class FeedbackSink {
   std::span<const FeedbackEvent> events() const noexcept { return storage_.first(size_); }
   std::uint64_t lost() const noexcept { return lost_; }
   void Clear() noexcept { size_ = 0; }
+  // Why the last command that the engine gave itself (ticket 0) was refused or failed; asking forgets it.
+  ErrorId TakeOwnError() noexcept { return std::exchange(own_error_, ErrorId::kNone); }
 
  private:
   std::span<FeedbackEvent> storage_;
   std::size_t size_ = 0;
   std::uint64_t lost_ = 0;
+  ErrorId own_error_ = ErrorId::kNone;
 };
 
 void describe(Enumeration<FeedbackState>&);

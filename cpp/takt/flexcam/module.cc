@@ -19,12 +19,9 @@ double Within(double asked, double own) {
 
 // Gives the slave a command; why it was refused, if it was.
 ErrorId Tell(const Context& c, const axis::Command& command, axis::State& slave) {
-  const std::size_t before = c.slave.feedback.events().size();
+  c.slave.feedback.TakeOwnError();
   axis::Apply(c.slave, 0, 0, command, slave);
-  for (const FeedbackEvent& event : c.slave.feedback.events().subspan(before)) {
-    if (event.ticket == 0 && event.state == FeedbackState::kError) return event.error;
-  }
-  return ErrorId::kNone;
+  return c.slave.feedback.TakeOwnError();
 }
 
 void EndAction(const Context& c, FeedbackState feedback, ErrorId error, State& s) {

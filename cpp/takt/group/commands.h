@@ -96,8 +96,8 @@ struct MovePath {  // MC_MovePath, with the path that MC_PathSelect names
 
 struct MovePathSynchronized {  // MC_MovePathSynchronized
   Name path;
-  Name master;           // an axis
-  double ratio = 1;      // mm of the path per u of the master
+  Name master;       // an axis
+  double ratio = 1;  // mm of the path per u of the master
   CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
   std::uint32_t pcs = 1;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
@@ -105,7 +105,7 @@ struct MovePathSynchronized {  // MC_MovePathSynchronized
   double transition_parameter = 0;
 };
 
-struct SyncAxis {  // MC_SyncAxisToGroup
+struct SyncAxis {                // MC_SyncAxisToGroup
   Name axis;                     // no member
   double ratio_numerator = 1;    // u of the axis ...
   double ratio_denominator = 1;  // ... per mm of the path
@@ -137,7 +137,7 @@ struct Reset {};           // MC_GroupReset
 struct Power {             // MC_Power of every member
   bool enable = true;
 };
-struct Home {};         // MC_GroupHome: every member as its `homing` says
+struct Home {};       // MC_GroupHome: every member as its `homing` says
 struct SetPosition {  // MC_GroupSetPosition: other numbers for where the group is
   std::optional<double> x{}, y{}, z{}, a{}, b{}, c{};
   std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
@@ -150,7 +150,7 @@ struct SetOverride {  // MC_GroupSetOverride
   double jerk_factor = 1;          // the same
 };
 struct SetKinTransform {  // MC_SetKinTransform
-  bool enable = true;  // false: axes only, without a tool
+  bool enable = true;     // false: axes only, without a tool
 };
 struct SetCartesianTransform {  // MC_SetCartesianTransform: a PCS in the MCS
   std::uint32_t pcs = 1;
@@ -165,11 +165,11 @@ struct SetCoordinateTransform {  // MC_SetCoordinateTransform: a PCS in any othe
   std::uint32_t reference_pcs = 1;
 };
 
-using Command = std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircularAbsolute, MoveCircularRelative,
-                             MoveDirectAbsolute, MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop,
-                             Halt, Interrupt, Continue, AddAxis, RemoveAxis, UngroupAllAxes, Enable, Disable, Reset,
-                             Power, Home, SetPosition, SetOverride, SetKinTransform, SetCartesianTransform,
-                             SetCoordinateTransform>;
+using Command =
+    std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircularAbsolute, MoveCircularRelative, MoveDirectAbsolute,
+                 MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop, Halt, Interrupt, Continue, AddAxis,
+                 RemoveAxis, UngroupAllAxes, Enable, Disable, Reset, Power, Home, SetPosition, SetOverride,
+                 SetKinTransform, SetCartesianTransform, SetCoordinateTransform>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
 std::string WhyNot(const Command& command);

@@ -7,6 +7,7 @@
 
 #include "takt/group/request.h"
 #include "takt/path/segment.h"
+#include "takt/trajectory/path_sampling.h"
 #include "takt/trajectory/path_window.h"
 
 namespace takt::group {
@@ -14,15 +15,19 @@ namespace takt::group {
 inline constexpr std::size_t kStretches = 512;
 inline constexpr std::size_t kNodes = 4096;
 
+// A piece of path in the MCS.
 struct Stretch {
   path::Segment segment;
-  double from = 0;   // of the segment ...
-  double to = 0;     // ... is gone
-  double begin = 0;  // along the path
-  std::uint64_t move = 0;
-  bool joints = false;        // its auxiliaries are all axes; else the tool moves
-  kinematics::Frame to_base;  // from its coordinate system to that of the kinematics
+  double from = 0;         // of the segment ...
+  double to = 0;           // ... is gone
+  double begin = 0;        // along the path
+  std::uint64_t move = 0;  // number of the move that it belongs to
+  bool joints = false;     // its auxiliaries are all members; else those behind the kinematics
+  bool last = false;       // of its move
+  bool stops = false;      // the motion stops at its end
+  bool begun = false;      // its first node is there
   trajectory::AlongPath limits;
+  double build_up_s = 0;  // of accelerations, from one stop to the next
 
   double end() const noexcept { return begin + to - from; }
 };
@@ -35,6 +40,20 @@ struct LookAhead {
   std::vector<Stretch> stretches;  // a ring
   std::uint64_t first = 0;         // number of the oldest one
   std::uint64_t count = 0;
+
+  // The stretch being planned: not yet joined to the others.
+  Stretch next;
+  trajectory::BuildUp build_up;
+  // Where the plan ends, as the next move finds it; and with the next stretch.
+  kinematics::Joints end_joints{};
+  kinematics::Frame end_tool;
+  kinematics::Joints next_joints{};
+  kinematics::Frame next_tool;
+  bool known = false;          // whether it is more than where the members stand
+  kinematics::Joints near{};   // of the node sampled last
+  trajectory::PathPoint last;  // that node
+  std::uint64_t sampling = 0;  // the stretch being sampled
+  bool cut_short = false;      // the path ends where it could not be gone on with; `reason` says why
 
   Stretch& operator[](std::uint64_t number) noexcept { return stretches[number % stretches.size()]; }
   const Stretch& operator[](std::uint64_t number) const noexcept { return stretches[number % stretches.size()]; }

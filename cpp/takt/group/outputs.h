@@ -28,8 +28,8 @@ struct Outputs {
   double actual_a = 0;
   double actual_b = 0;
   double actual_c = 0;
-  double velocity = 0;       // mm/s, of the commanded place: the length of its vector
-  double acceleration = 0;   // mm/s², the same
+  double velocity = 0;         // mm/s, of the commanded place: the length of its vector
+  double acceleration = 0;     // mm/s², the same
   double actual_velocity = 0;  // mm/s
   // Along the path, since the group began to move from rest.
   double path_position = 0;      // mm
@@ -38,12 +38,12 @@ struct Outputs {
   double path_left = 0;          // mm, of what is known
   double path_error = 0;         // mm, between the place commanded for this cycle and the measured one
   double override_factor = 1;
-  std::uint64_t command = 0;    // ticket of the move in control; 0: none
-  std::uint32_t buffered = 0;   // moves that wait
-  std::uint32_t axes = 0;       // members
-  bool in_position = false;     // stands, and has nothing to do
-  bool interrupted = false;     // rests on the path until it is continued
-  bool synchronized = false;    // a path that follows a master is in step with it
+  std::uint64_t command = 0;   // ticket of the move in control; 0: none
+  std::uint32_t buffered = 0;  // moves that wait
+  std::uint32_t axes = 0;      // members
+  bool in_position = false;    // stands, and has nothing to do
+  bool interrupted = false;    // rests on the path until it is continued
+  bool synchronized = false;   // a path that follows a master is in step with it
   // Why the last move was refused or ended.
   kinematics::Reason reason = kinematics::Reason::kNone;  // no position of the axes
   path::Problem problem = path::Problem::kNone;           // no such path

@@ -25,16 +25,18 @@ struct Queue {
 };
 
 // Where the planning of a move has got to.
-enum class Stage : std::uint8_t { kIdle, kVerify, kCheck, kJoin, kSample, kSweep };
+enum class Stage : std::uint8_t { kIdle, kVerify, kJoin, kSample, kSweep };
 
 struct Planning {
   Stage stage = Stage::kIdle;
-  std::uint64_t move = 0;       // number of the move that is planned, from 0 since the start
-  std::uint32_t element = 0;    // of a path
-  std::uint32_t sampled = 0;    // so many samples are verified
-  double s = 0;                 // so far it is sampled
-  std::uint64_t digest = 0;     // of what was planned: the window itself is not part of the state
+  std::uint64_t move = 0;      // number of the move that is planned, from 0 since the start
+  std::uint32_t element = 0;   // of a path
+  std::uint32_t verified = 0;  // so many places
+  std::uint64_t nodes = 0;     // so many were made: the window itself is no part of the state
 };
+
+// What a group is doing besides moves.
+enum class Task : std::uint8_t { kNone, kStop, kHalt, kInterrupt, kHome, kPower };
 
 struct SyncedAxis {
   Ticket ticket = 0;
@@ -53,30 +55,39 @@ struct State {
   double acceleration_factor = 1;
   double jerk_factor = 1;
 
-  Queue queue;           // [first] is the one planned or moved along now
+  Queue queue;             // [first] is the one planned or moved along now
   std::uint64_t done = 0;  // number of the move at queue.first
+  Ticket active = 0;       // of the move being gone
   Planning planning;
   trajectory::PathPace pace;
-  bool guides = false;        // the members go by the group's set points
-  bool interrupted = false;   // rests, or comes to rest, on the path until it is continued
-  bool ends = false;          // comes to rest and forgets what is left of the path
+  bool guides = false;          // the members go by the group's set points
+  bool begun = false;           // a motion along the path is in progress
+  bool interrupted = false;     // rests, or comes to rest, on the path until it is continued
+  bool ends = false;            // comes to rest and forgets what is left of the path
   trajectory::AlongPath brake;  // how strongly then; 0: as the path says
-  bool hold = false;          // stop: until released
-  Ticket ticket = 0;          // of stop, halt, interrupt, home
+  bool hold = false;            // stop: until released
+  Ticket ticket = 0;            // of the task
+  Task task = Task::kNone;
   double lease_s = 0;
   std::uint64_t lease_end_cycle = 0;
-  kinematics::Joints joints{};  // where the members are told to be, u over all turns
+  kinematics::Joints joints{};   // where the members are told to be
+  kinematics::Joints origins{};  // whole turns and zeros taken out of their positions when they began to be guided
+  bool stop_reported = false;
+  bool power_on = false;  // what power asked for
   bool resetting = false;
+  bool reset_asked = false;  // of the members
   Ticket reset_ticket = 0;
   std::array<SyncedAxis, kSynced> synced;
   kinematics::Reason reason = kinematics::Reason::kNone;
   path::Problem problem = path::Problem::kNone;
   double blocked_at = 0;
+  std::uint64_t illegal_transitions = 0;  // always 0: the state table holds
 };
 
 void describe(Description<Queue>&);
 void describe(Enumeration<Stage>&);
 void describe(Description<Planning>&);
+void describe(Enumeration<Task>&);
 void describe(Description<SyncedAxis>&);
 void describe(Description<State>&);
 

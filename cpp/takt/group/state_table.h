@@ -28,7 +28,8 @@ struct Transition {
 inline constexpr std::array kTransitions = {
     Transition{GroupState::kDisabled, GroupState::kStandby, "MC_GroupEnable"},
     Transition{GroupState::kStandby, GroupState::kDisabled, "MC_GroupDisable, MC_UngroupAllAxes"},
-    Transition{GroupState::kStandby, GroupState::kMoving, "MC_MoveLinear..., MC_MoveDirect..., MC_MovePath, MC_GroupHalt"},
+    Transition{GroupState::kStandby, GroupState::kMoving,
+               "MC_MoveLinear..., MC_MoveDirect..., MC_MovePath, MC_GroupHalt"},
     Transition{GroupState::kStandby, GroupState::kHoming, "MC_GroupHome"},
     Transition{GroupState::kStandby, GroupState::kStopping, "MC_GroupStop"},
     Transition{GroupState::kStandby, GroupState::kErrorStop, "fault of a member"},

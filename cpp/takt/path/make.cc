@@ -21,10 +21,13 @@ constexpr double kOnALine = 1e-7;
 // The same where start, centre and end shall say what plane they are in: less, and it would be that of their errors.
 constexpr double kPlaneSine = kCircleSlack;
 
+// mm: about a centre further away nobody can say what lies on the circle.
+constexpr double kFarthest = 1e9;
+
 // An arc without orientations: its angle is counterclockwise about the normal, which has length 1, and above 0.
 struct Round {
   Vector normal = Vector::UnitZ();
-  Vector center = Vector::Zero();
+  Vector radius = Vector::Zero();  // from the centre to the start: the centre may be far away
   double angle = 0;
 };
 
@@ -47,8 +50,8 @@ Problem ThroughBorder(const Vector& from, const Vector& border, const Vector& to
   const Vector cross = a.cross(b);
   if (cross.norm() <= kOnALine * longest * longest) return Problem::kCollinear;
   out.normal = cross.normalized();
-  out.center = from + (b.squaredNorm() * cross.cross(a) + a.squaredNorm() * b.cross(cross)) / (2 * cross.squaredNorm());
-  out.angle = AngleBetween(out.normal, from - out.center, to - out.center);
+  out.radius = (b.squaredNorm() * a.cross(cross) + a.squaredNorm() * cross.cross(b)) / (2 * cross.squaredNorm());
+  out.angle = AngleBetween(out.normal, out.radius, out.radius + b);
   return Problem::kNone;
 }
 
@@ -84,19 +87,20 @@ Problem AboutCenter(const Vector& from, const Circle& circle, const Vector& to, 
     return p;
   }
   out.normal = circle.choice == PathChoice::kClockwise ? Vector(-normal) : normal;
-  out.center = from + InPlane(normal, center - from);
-  const double radius = (from - out.center).norm();
+  out.radius = InPlane(normal, from - center);
+  const double radius = out.radius.norm();
   if (radius < kSame) return Problem::kRadiusZero;
+  if (!(radius <= kFarthest)) return Problem::kNotOnCircle;
   const Vector chord = InPlane(normal, to - from);
   if (chord.norm() < kSame) {
     out.angle = kWholeTurn;
     return Problem::kNone;
   }
   // Along the chord to where both ends are equally far away.
-  const double off = chord.dot(from + chord / 2 - out.center) / chord.squaredNorm();
+  const double off = chord.dot(out.radius + chord / 2) / chord.squaredNorm();
   if (std::abs(off) * chord.norm() > kCircleSlack * radius) return Problem::kNotOnCircle;
-  out.center += off * chord;
-  out.angle = AngleBetween(out.normal, from - out.center, from + chord - out.center);
+  out.radius -= off * chord;
+  out.angle = AngleBetween(out.normal, out.radius, out.radius + chord);
   return Problem::kNone;
 }
 
@@ -112,7 +116,7 @@ Problem WithRadius(const Vector& from, const Circle& circle, const Vector& to, R
   const double height = half < radius ? std::sqrt((radius - half) * (radius + half)) : 0;
   const Vector left = out.normal.cross(chord) / (2 * half);
   const bool is_short = circle.choice == PathChoice::kShort;
-  out.center = from + chord / 2 + (is_short ? height : -height) * left;
+  out.radius = (is_short ? -height : height) * left - chord / 2;
   const double small = 2 * std::atan2(half, height);
   out.angle = is_short ? small : kWholeTurn - small;
   return Problem::kNone;
@@ -175,16 +179,15 @@ Problem MakeArc(const Point& from, const Circle& circle, const Point& to, Segmen
   }
   if (problem != Problem::kNone) return problem;
   const double angle = round.angle + circle.turns * kWholeTurn;
-  const Vector radius = InPlane(round.normal, start - round.center);
   const Vector rise = round.normal * round.normal.dot(end - start);
   Segment segment;
   segment.shape = Shape::kArc;
-  segment.length = std::hypot(radius.norm() * angle, rise.norm());
+  segment.length = std::hypot(round.radius.norm() * angle, rise.norm());
   if (!std::isfinite(segment.length)) return Problem::kNotFinite;
   segment.rate = angle / segment.length;
   segment.place[0] = ToTriple(start);
-  segment.place[1] = ToTriple(radius);
-  segment.place[2] = ToTriple(round.normal.cross(radius));
+  segment.place[1] = ToTriple(round.radius);
+  segment.place[2] = ToTriple(round.normal.cross(round.radius));
   segment.place[3] = ToTriple(rise / segment.length);
   SetEven(segment, from, to);
   out = segment;

@@ -33,10 +33,11 @@ void PathWindow::Clear() noexcept {
   begin_ = known_ = next_ = low_ = lowest_ = end_;
 }
 
-void PathWindow::Append(const PathPoint& point) noexcept {
+void PathWindow::Append(const PathPoint& point, bool stop) noexcept {
   PathNode& node = Node(end_);
   node = {};
   node.at = point;
+  node.stop = stop;
   node.build_up_s = build_up_s_;
   node.bounds = BoundsAt(point.slopes, point.limits, limits_, build_up_s_, kShare);
   node.own = node.cap = SquareAt(point, limits_, build_up_s_, kShare);
@@ -78,7 +79,7 @@ void PathWindow::Spread(std::uint64_t i) noexcept {
   node.cap = slowest;
 }
 
-void PathWindow::Close(bool stays) noexcept {
+void PathWindow::Close() noexcept {
   if (known_ == end_) return;
   const std::uint64_t last = end_ - 1;
   std::uint64_t first = std::max(known_, begin_ + 1) - 1;  // what led to the old end goes on now
@@ -86,7 +87,6 @@ void PathWindow::Close(bool stays) noexcept {
   low_ = std::max(begin_, std::min(first, lowest_));
   known_ = lowest_ = end_;
   PathNode& end = Node(last);
-  end.stop = stays;
   end.ceiling = end.coast = 0;
   next_ = last;
   if (low_ > next_) low_ = next_;
@@ -146,6 +146,19 @@ void PathWindow::DropBefore(std::uint64_t node) noexcept {
   low_ = std::max(low_, begin_);
   next_ = std::max(next_, begin_);
   lowest_ = std::max(lowest_, begin_);
+}
+
+void PathWindow::Stay() noexcept {
+  if (known_ > begin_) Node(known_ - 1).stop = true;
+}
+
+void PathWindow::CutBehind(std::uint64_t node) noexcept {
+  end_ = node + 1;
+  known_ = std::min(known_, node);
+  lowest_ = std::min(lowest_, node);
+  next_ = low_ = std::max(begin_, std::min(low_, node));
+  Close();
+  Sweep(nodes_.size());
 }
 
 }  // namespace takt::trajectory

@@ -54,15 +54,20 @@ class PathWindow {
   std::size_t room() const noexcept { return nodes_.size() - static_cast<std::size_t>(end_ - begin_); }
   const PathNode& operator[](std::uint64_t i) const noexcept { return nodes_[i % nodes_.size()]; }
 
-  // There must be room, s must not fall. No ceiling knows of the node yet.
-  void Append(const PathPoint& point) noexcept;
-  // Takes everything appended into the ceilings, with a stop at the last node. If that `stays`, the next node begins
-  // another motion, at the same place; else the path goes on from there without one. Only once Sweep is through.
-  void Close(bool stays) noexcept;
+  // There must be room, s must not fall. No ceiling knows of the node yet. `stop`: the motion stops there, the next node
+  // begins another one at the same place.
+  void Append(const PathPoint& point, bool stop = false) noexcept;
+  // Takes everything appended into the ceilings, with a stop at the last node for as long as nothing comes behind it.
+  // Only once Sweep is through.
+  void Close() noexcept;
   // Works on the ceilings of so many nodes at most. True: it is through.
   bool Sweep(std::size_t nodes) noexcept;
   bool swept() const noexcept { return next_ == low_; }
   void DropBefore(std::uint64_t node) noexcept;
+  // The end that is known is a stop for good.
+  void Stay() noexcept;
+  // Forgets everything behind this node, at which the path stops now: ceilings there are lowered at once.
+  void CutBehind(std::uint64_t node) noexcept;
 
  private:
   PathNode& Node(std::uint64_t i) noexcept { return nodes_[i % nodes_.size()]; }

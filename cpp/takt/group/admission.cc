@@ -1,0 +1,259 @@
+// Commands as they arrive: moves queued, settings changed, or refused.
+#include "takt/core/describe.h"
+#include "takt/core/in_range.h"
+#include "takt/group/group.h"
+#include "takt/group/make_request.h"
+#include "takt/group/members.h"
+#include "takt/group/plan.h"
+#include "takt/group/queue.h"
+#include "takt/group/run.h"
+#include "takt/group/systems.h"
+
+namespace takt::group {
+
+namespace {
+
+struct Applier {
+  const Context& c;
+  Ticket ticket;
+  double lease_s;
+  State& s;
+
+  void Refuse(ErrorId error) const { Report(c, ticket, FeedbackState::kError, error); }
+  void Finish(ErrorId error) const {
+    if (error != ErrorId::kNone) return Refuse(error);
+    Report(c, ticket, FeedbackState::kActive);
+    Report(c, ticket, FeedbackState::kDone);
+  }
+  bool Is(GroupState state) const { return s.state == state; }
+  bool stands() const { return Is(GroupState::kDisabled) || Is(GroupState::kStandby); }
+
+  ErrorId MayMove() const {
+    if (Is(GroupState::kDisabled)) return ErrorId::kGroupDisabled;
+    if (Is(GroupState::kErrorStop)) return ErrorId::kErrorStop;
+    if (Is(GroupState::kStopping)) return ErrorId::kAxisStopping;
+    if (Is(GroupState::kHoming)) return ErrorId::kState;
+    if (CountOf(s) == 0) return ErrorId::kGroupEmpty;
+    for (std::size_t k = 0; k < kMaxAxes; ++k) {
+      if (s.members[k] == 0) continue;
+      const axis::State& member = MemberOf(c, s, k);
+      if (!member.loop_closed) return ErrorId::kPowerOff;
+      if (ContextOf(c, s, k).params.requires_reference && !member.homing.homed) return ErrorId::kNoReference;
+    }
+    return ErrorId::kNone;
+  }
+
+  void EndTask(FeedbackState feedback) const {
+    if (s.task != Task::kNone) Report(c, s.ticket, feedback);
+    s.task = Task::kNone;
+    s.ticket = 0;
+  }
+
+  // Everything that is planned or waits gives way.
+  void AbortAll(const trajectory::AlongPath& brake) const {
+    EndTask(FeedbackState::kAborted);
+    AbortMoves(c, ErrorId::kNone, s);
+    if (s.begun || s.planning.stage != Stage::kIdle || c.ahead.known) EndMotion(brake, s);
+    s.interrupted = false;
+  }
+
+  void Move(const MadeRequest& made) const {
+    if (made.error != ErrorId::kNone) return Refuse(made.error);
+    if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
+    if (made.move.buffer_mode != BufferMode::kAborting && s.task == Task::kHalt) return Refuse(ErrorId::kState);
+    if (made.move.buffer_mode == BufferMode::kAborting) AbortAll({});
+    if (!c.ahead.known && !s.begun) c.ahead.window.SetLimits(LimitsOf(c, s));
+    Request move = made.move;
+    move.ticket = ticket;
+    if (!Push(move, s)) return Refuse(ErrorId::kBufferFull);
+    Report(c, ticket, FeedbackState::kBusy);
+    if (Is(GroupState::kStandby)) Enter(GroupState::kMoving, s);
+  }
+
+  static trajectory::AlongPath BrakeOf(const std::optional<double>& deceleration) {
+    trajectory::AlongPath brake;
+    brake.deceleration = deceleration.value_or(0);
+    return brake;
+  }
+
+  void operator()(const Stop& m) const {
+    if (Is(GroupState::kDisabled)) return Refuse(ErrorId::kGroupDisabled);
+    if (Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
+    AbortAll(BrakeOf(m.deceleration));
+    if (Is(GroupState::kHoming)) TellAll(c, s, axis::Stop{});
+    s.ends = true;
+    s.task = Task::kStop;
+    s.ticket = ticket;
+    s.stop_reported = false;
+    s.hold = m.hold;
+    s.lease_s = lease_s;
+    s.lease_end_cycle = CycleIn(c.cycle, lease_s);
+    Report(c, ticket, FeedbackState::kActive);
+    Enter(GroupState::kStopping, s);
+  }
+  void operator()(const Halt& m) const {
+    if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
+    AbortAll(BrakeOf(m.deceleration));
+    s.ends = true;
+    s.task = Task::kHalt;
+    s.ticket = ticket;
+    Report(c, ticket, FeedbackState::kActive);
+    if (Is(GroupState::kStandby)) Enter(GroupState::kMoving, s);
+  }
+  void operator()(const Interrupt& m) const {
+    if (!Is(GroupState::kMoving) || s.ends) return Refuse(ErrorId::kState);
+    if (s.task != Task::kNone) EndTask(FeedbackState::kAborted);
+    s.interrupted = true;
+    s.brake = BrakeOf(m.deceleration);
+    s.task = Task::kInterrupt;
+    s.ticket = ticket;
+    Report(c, ticket, FeedbackState::kActive);
+  }
+  void operator()(const Continue&) const {
+    if (!Is(GroupState::kMoving) || !s.interrupted) return Refuse(ErrorId::kState);
+    if (s.task == Task::kInterrupt) EndTask(FeedbackState::kAborted);
+    s.interrupted = false;
+    s.brake = {};
+    Finish(ErrorId::kNone);
+  }
+
+  void operator()(const AddAxis& m) const {
+    if (!stands()) return Refuse(ErrorId::kState);
+    Finish(Add(c, m, s));
+  }
+  void operator()(const RemoveAxis& m) const {
+    if (!stands()) return Refuse(ErrorId::kState);
+    const ErrorId error = Remove(c, m, s);
+    if (error == ErrorId::kNone && CountOf(s) == 0 && Is(GroupState::kStandby)) Enter(GroupState::kDisabled, s);
+    Finish(error);
+  }
+  void operator()(const UngroupAllAxes&) const {
+    if (Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
+    if (CountOf(s) > 0) LeaveAll();
+    const ErrorId error = Ungroup(c, s);
+    if (!Is(GroupState::kDisabled)) Enter(GroupState::kDisabled, s);
+    Finish(error);
+  }
+  void operator()(const Enable&) const {
+    if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
+    if (!stands()) return Refuse(ErrorId::kState);
+    // What they did by themselves is over.
+    const bool still = AllMembers(c, s, [](const axis::State& member) {
+      return member.plc == axis::PlcState::kDisabled || member.plc == axis::PlcState::kStandstill;
+    });
+    if (!still) return Refuse(ErrorId::kState);
+    if (Is(GroupState::kDisabled)) Enter(GroupState::kStandby, s);
+    Finish(ErrorId::kNone);
+  }
+  // The members come to rest each by itself: they are no group any more.
+  void LeaveAll() const {
+    AbortAll({});
+    if (s.state == GroupState::kHoming) TellAll(c, s, axis::Halt{});
+    LetGoOfMembers(c, s);
+    ForgetPlan(c, s);
+    s.begun = s.ends = s.hold = false;
+    s.pace = {};
+  }
+  void operator()(const Disable&) const {
+    if (Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
+    LeaveAll();
+    if (!Is(GroupState::kDisabled)) Enter(GroupState::kDisabled, s);
+    Finish(ErrorId::kNone);
+  }
+  void operator()(const Reset&) const {
+    if (s.resetting) Report(c, s.reset_ticket, FeedbackState::kAborted);
+    s.resetting = true;
+    s.reset_asked = false;
+    s.reset_ticket = ticket;
+    Report(c, ticket, FeedbackState::kActive);
+  }
+  void operator()(const Power& m) const {
+    if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
+    if (m.enable && s.guides) return Finish(ErrorId::kNone);
+    if (!m.enable) AbortAll({});
+    EndTask(FeedbackState::kAborted);
+    const ErrorId error = TellAll(c, s, axis::Power{.enable = m.enable});
+    if (error != ErrorId::kNone) return Refuse(error);
+    s.task = Task::kPower;
+    s.power_on = m.enable;
+    s.ticket = ticket;
+    Report(c, ticket, FeedbackState::kActive);
+  }
+  void operator()(const Home&) const {
+    if (!Is(GroupState::kStandby)) return Refuse(Is(GroupState::kDisabled) ? ErrorId::kGroupDisabled : ErrorId::kState);
+    const ErrorId error = TellAll(c, s, axis::Home{});
+    if (error != ErrorId::kNone) {
+      TellAll(c, s, axis::Halt{});
+      return Refuse(error);
+    }
+    s.task = Task::kHome;
+    s.ticket = ticket;
+    Report(c, ticket, FeedbackState::kActive);
+    Enter(GroupState::kHoming, s);
+  }
+  void operator()(const SetPosition& m) const {
+    if (!stands()) return Refuse(ErrorId::kState);
+    const std::array<std::optional<double>, kToolNumbers> tool = {m.x, m.y, m.z, m.a, m.b, m.c};
+    const std::array<std::optional<double>, kMaxAxes> axes = {m.a1, m.a2, m.a3, m.a4, m.a5, m.a6, m.a7, m.a8};
+    const std::size_t moved = m.coordinate_system == CoordinateSystem::kAcs ? 0 : InKinematics(c, s);
+    const bool of_tool = std::ranges::any_of(tool, [](const auto& number) { return number.has_value(); });
+    if (m.coordinate_system == CoordinateSystem::kAcs ? of_tool : moved == 0) return Refuse(ErrorId::kParameter);
+    End end = Present(c, s);
+    if (of_tool) {
+      const Frame system = SystemFrame(c, s, m.coordinate_system, m.pcs - 1);
+      kinematics::Pose pose = kinematics::ToPose(system.Inverse() * end.tool);
+      double* const numbers[] = {&pose.x, &pose.y, &pose.z, &pose.a, &pose.b, &pose.c};
+      for (std::size_t i = 0; i < kToolNumbers; ++i) *numbers[i] = tool[i].value_or(*numbers[i]);
+      s.reason = JointsAt(c, system * kinematics::ToFrame(pose), end.joints, end.joints);
+      if (s.reason != kinematics::Reason::kNone) return Refuse(ErrorId::kUnreachable);
+    }
+    for (std::size_t k = 0; k < kMaxAxes; ++k) {
+      if (s.members[k] == 0 || !(k < moved ? of_tool : axes[k].has_value())) continue;
+      const double position = k < moved ? end.joints[k] : *axes[k];
+      if (const ErrorId error = Tell(c, s, k, axis::SetPosition{.position = position}); error != ErrorId::kNone) {
+        return Refuse(error);
+      }
+    }
+    Finish(ErrorId::kNone);
+  }
+  void operator()(const SetOverride& m) const {
+    s.velocity_factor = m.velocity_factor;
+    s.acceleration_factor = m.acceleration_factor;
+    s.jerk_factor = m.jerk_factor;
+    Finish(ErrorId::kNone);
+  }
+  void operator()(const SetKinTransform& m) const {
+    if (!stands()) return Refuse(ErrorId::kState);
+    if (m.enable && !c.kinematics) return Refuse(ErrorId::kParameter);
+    s.kinematics_on = m.enable;
+    Finish(ErrorId::kNone);
+  }
+  void operator()(const SetCartesianTransform& m) const {
+    s.product_systems[m.pcs - 1] = {m.x, m.y, m.z, m.a, m.b, m.c};
+    Finish(ErrorId::kNone);
+  }
+  void operator()(const SetCoordinateTransform& m) const {
+    if (m.reference == CoordinateSystem::kAcs) return Refuse(ErrorId::kParameter);
+    const Frame reference = SystemFrame(c, s, m.reference, m.reference_pcs - 1);
+    s.product_systems[m.pcs - 1] = kinematics::ToPose(reference * kinematics::ToFrame({m.x, m.y, m.z, m.a, m.b, m.c}));
+    Finish(ErrorId::kNone);
+  }
+  void operator()(const SyncAxis& m) const {
+    (void)m;
+    Refuse(ErrorId::kUnknownVerb);
+  }
+  template <typename T>
+  void operator()(const T&) const {}  // moves: see Apply
+};
+
+}  // namespace
+
+void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept {
+  const bool in_range = std::visit([](const auto& body) { return InRange(body); }, command);
+  const Applier applier{c, ticket, lease_s, s};
+  if (!in_range) return applier.Refuse(ErrorId::kParameter);
+  if (const auto made = MakeRequest(c, s, command)) return applier.Move(*made);
+  std::visit(applier, command);
+}
+
+}  // namespace takt::group

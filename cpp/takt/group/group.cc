@@ -1,0 +1,198 @@
+#include "takt/group/group.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/axis/guidance.h"
+#include "takt/group/members.h"
+#include "takt/group/plan.h"
+#include "takt/group/queue.h"
+#include "takt/group/run.h"
+#include "takt/group/systems.h"
+
+namespace takt::group {
+
+namespace {
+
+void EndTask(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
+  if (s.task != Task::kNone && s.ticket != 0) Report(c, s.ticket, feedback, error);
+  s.task = Task::kNone;
+  s.ticket = 0;
+  s.lease_s = 0;
+}
+
+void Fail(const Context& c, ErrorId error, State& s) {
+  if (s.error == ErrorId::kNone) s.error = error;
+  if (s.state == GroupState::kErrorStop) return;
+  EndTask(c, FeedbackState::kError, error, s);
+  s.hold = false;
+  AbortMoves(c, error, s);
+  EndMotion({}, s);
+  if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
+  Enter(GroupState::kErrorStop, s);
+}
+
+// Nothing is left to go: the members stand still and are let go of.
+void ComeToRest(const Context& c, State& s) {
+  s.ends = s.begun = false;
+  s.brake = {};
+  s.active = 0;
+  s.pace = {};
+  ForgetPlan(c, s);
+  if (s.task == Task::kHalt) EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
+  if (s.task == Task::kStop) {
+    if (!s.stop_reported) Report(c, s.ticket, FeedbackState::kDone);
+    s.stop_reported = true;
+    if (s.hold) return LetGoOfMembers(c, s);
+    s.ticket = 0;
+    EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
+  }
+  // What waits goes on from here.
+  if (s.queue.count > 0 && s.state != GroupState::kErrorStop) return;
+  LetGoOfMembers(c, s);
+  if (s.state != GroupState::kErrorStop) Enter(GroupState::kStandby, s);
+}
+
+// The path was not to be gone to its end.
+void EndCutShort(const Context& c, State& s) {
+  const bool singular = s.reason == kinematics::Reason::kSingular;
+  if (s.queue.count > 0) Pop(c, FeedbackState::kError, singular ? ErrorId::kSingular : ErrorId::kUnreachable, s);
+  ComeToRest(c, s);
+}
+
+bool IsThrough(const Context& c, const State& s) {
+  const trajectory::PathWindow& window = c.ahead.window;
+  const bool last = s.pace.node + 1 >= window.known();
+  return s.pace.raw_stands && last && window.swept() && s.planning.stage == Stage::kIdle &&
+         (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short);
+}
+
+void MoveOn(const Context& c, State& s) {
+  Advance(c, s);
+  if (!Rests(s)) return;
+  if (s.ends) return ComeToRest(c, s);
+  if (s.interrupted) {
+    if (s.task == Task::kInterrupt) EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
+    return;
+  }
+  if (!IsThrough(c, s)) return;
+  if (c.ahead.cut_short) return EndCutShort(c, s);
+  while (s.queue.count > 0) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
+  ComeToRest(c, s);
+}
+
+// The first of what is planned can begin.
+void BeginMotion(const Context& c, State& s) {
+  const ErrorId error = TakeMembers(c, s);
+  if (error != ErrorId::kNone) {
+    AbortMoves(c, error, s);
+    ForgetPlan(c, s);
+    if (s.state == GroupState::kMoving) Enter(GroupState::kStandby, s);
+    return;
+  }
+  trajectory::BeginAt(c.ahead.window, c.ahead.window.begin(), c.cycle.period_s, s.pace);
+  s.begun = true;
+  if (s.state == GroupState::kStandby) Enter(GroupState::kMoving, s);
+}
+
+void WatchHoming(const Context& c, State& s) {
+  const bool busy = !AllMembers(c, s, [](const axis::State& member) {
+    return member.plc != axis::PlcState::kHoming && member.active.kind == axis::RequestKind::kNone;
+  });
+  if (busy) return;
+  const bool homed = AllMembers(c, s, [](const axis::State& member) { return member.homing.homed; });
+  EndTask(c, homed ? FeedbackState::kDone : FeedbackState::kError, homed ? ErrorId::kNone : ErrorId::kNoReference, s);
+  Enter(GroupState::kStandby, s);
+}
+
+void WatchPower(const Context& c, State& s) {
+  if (AllMembers(c, s, [&](const axis::State& member) { return member.loop_closed == s.power_on; })) {
+    EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
+  } else if (const ErrorId fault = FaultOfMembers(c, s); fault != ErrorId::kNone) {
+    EndTask(c, FeedbackState::kError, fault, s);
+  }
+}
+
+void WatchReset(const Context& c, State& s) {
+  const bool still = AllMembers(c, s, [](const axis::State& member) {
+    return member.plc != axis::PlcState::kErrorStop && !member.reset_pending;
+  });
+  if (s.guides || (!still && !AllMembers(c, s, [](const axis::State& m) { return !m.reset_pending; }))) return;
+  s.resetting = false;
+  if (!still) return Report(c, s.reset_ticket, FeedbackState::kError, ErrorId::kAxisFault);
+  s.error = ErrorId::kNone;
+  if (s.state == GroupState::kErrorStop) Enter(GroupState::kStandby, s);
+  Report(c, s.reset_ticket, FeedbackState::kDone);
+}
+
+// Once the members are let go of they can be reset.
+void AskForReset(const Context& c, State& s) {
+  if (s.guides || s.reset_asked) return;
+  s.reset_asked = true;
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] != 0 && MemberOf(c, s, k).error != ErrorId::kNone) Tell(c, s, k, axis::Reset{});
+  }
+}
+
+void WatchLease(const Context& c, State& s) {
+  if (s.lease_s <= 0 || c.cycle.count < s.lease_end_cycle) return;
+  Release(c, s.ticket, s);
+}
+
+void WatchMembers(const Context& c, State& s) {
+  if (s.state == GroupState::kDisabled) return;
+  const ErrorId fault = FaultOfMembers(c, s);
+  if (fault != ErrorId::kNone) Fail(c, fault, s);
+}
+
+}  // namespace
+
+State MakeState(const GroupParams&, std::span<const std::uint32_t> axes) noexcept {
+  State s;
+  for (std::size_t k = 0; k < std::min<std::size_t>(axes.size(), kMaxAxes); ++k) s.members[k] = axes[k] + 1;
+  return s;
+}
+
+void Step(const Context& c, State& s) noexcept {
+  WatchLease(c, s);
+  WatchMembers(c, s);
+  if (s.resetting) {
+    AskForReset(c, s);
+    if (s.reset_asked) WatchReset(c, s);
+  }
+  if (s.task == Task::kPower) WatchPower(c, s);
+  if (s.state == GroupState::kHoming) WatchHoming(c, s);
+  if (s.state == GroupState::kStandby || s.state == GroupState::kMoving) {
+    if (!s.ends && !s.interrupted) Plan(c, s);
+    if (!s.begun && !s.ends && MayBegin(c)) BeginMotion(c, s);
+  }
+  if (s.begun) {
+    MoveOn(c, s);
+  } else if (s.ends || (s.state == GroupState::kMoving && s.queue.count == 0)) {
+    ComeToRest(c, s);
+  }
+}
+
+bool Owns(const State& s) noexcept {
+  return s.state != GroupState::kDisabled;
+}
+
+bool Release(const Context& c, Ticket ticket, State& s) noexcept {
+  if (ticket == 0 || s.task != Task::kStop || s.ticket != ticket) return false;
+  s.hold = false;
+  s.lease_s = 0;
+  if (!s.begun && !s.ends) {
+    s.ticket = 0;
+    EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
+    Enter(GroupState::kStandby, s);
+  }
+  return true;
+}
+
+bool Renew(const Context& c, Ticket ticket, State& s) noexcept {
+  if (ticket == 0 || s.task != Task::kStop || s.ticket != ticket || s.lease_s <= 0) return false;
+  s.lease_end_cycle = CycleIn(c.cycle, s.lease_s);
+  return true;
+}
+
+}  // namespace takt::group

@@ -1,0 +1,206 @@
+#include "takt/group/make_stretch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace takt::group {
+
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+// Faster and stronger than anything: what has no limit along the way has those of the axes.
+constexpr double kUnlimited = 1e12;
+
+bool Given(double number) {
+  return !std::isnan(number);
+}
+double Taken(double number, double before, bool relative) {
+  return Given(number) ? (relative ? before + number : number) : before;
+}
+
+// The pose in its coordinate system that a move goes to.
+kinematics::Pose PoseOf(const Request& move, const kinematics::Pose& from) {
+  const auto taken = [&](std::size_t i, double before) { return Taken(move.to[i], before, move.relative); };
+  return {taken(0, from.x), taken(1, from.y), taken(2, from.z), taken(3, from.a), taken(4, from.b), taken(5, from.c)};
+}
+
+kinematics::Joints JointsOf(const Request& move, const kinematics::Joints& from) {
+  kinematics::Joints joints = from;
+  for (std::size_t k = 0; k < kMaxAxes; ++k) joints[k] = Taken(move.to[kToolNumbers + k], from[k], move.relative);
+  return joints;
+}
+
+bool Any(const Request& move, std::size_t begin, std::size_t end) {
+  return std::any_of(move.to.begin() + static_cast<std::ptrdiff_t>(begin),
+                     move.to.begin() + static_cast<std::ptrdiff_t>(end), Given);
+}
+
+// What goes along with the tool.
+path::Auxiliaries Behind(const kinematics::Joints& joints, std::size_t count) {
+  path::Auxiliaries auxiliaries{};
+  std::copy(joints.begin() + static_cast<std::ptrdiff_t>(count), joints.end(), auxiliaries.begin());
+  return auxiliaries;
+}
+
+path::Triple ToTriple(const KDL::Vector& v) {
+  return {v.x(), v.y(), v.z()};
+}
+KDL::Vector ToVector(const path::Triple& t) {
+  return {t[0], t[1], t[2]};
+}
+
+// All axes evenly, so that they arrive together.
+ErrorId AlongJoints(const Context& c, const Request& move, const kinematics::Joints& to, LookAhead& ahead, State& s) {
+  Stretch& stretch = ahead.next;
+  stretch.joints = true;
+  s.problem = path::MakeLine({Frame::Identity(), ahead.end_joints}, {Frame::Identity(), to}, stretch.segment);
+  if (s.problem != path::Problem::kNone) return ErrorId::kPathGeometry;
+  // Of the axis that is nearest to its limit.
+  trajectory::AlongPath& limits = stretch.limits;
+  limits = {kUnlimited, kUnlimited, kUnlimited, kUnlimited};
+  const trajectory::CoordinateLimits& own = ahead.window.limits();
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    const double slope = std::abs(to[k] - ahead.end_joints[k]) / stretch.segment.length;
+    if (s.members[k] == 0 || slope == 0) continue;
+    const double acceleration = move.acceleration_factor * own.of[k].acceleration / slope;
+    limits.velocity = std::min(limits.velocity, move.velocity_factor * own.of[k].velocity / slope);
+    limits.acceleration = std::min(limits.acceleration, acceleration);
+    limits.deceleration = std::min(limits.deceleration, acceleration);
+    limits.jerk = std::min(limits.jerk, move.jerk_factor * own.of[k].jerk / slope);
+  }
+  if (move.kind != MoveKind::kDirect) limits = trajectory::Least(limits, move.limits);
+  return ErrorId::kNone;
+}
+
+ErrorId AlongTool(const Context& c, const Request& move, const Frame& to, const path::Auxiliaries& auxiliaries,
+                  const path::Circle* circle, LookAhead& ahead, State& s) {
+  const path::Point begin{ahead.end_tool, Behind(ahead.end_joints, c.kinematics->count)};
+  const path::Point end{to, auxiliaries};
+  Stretch& stretch = ahead.next;
+  stretch.limits = move.limits;
+  s.problem =
+      circle ? path::MakeArc(begin, *circle, end, stretch.segment) : path::MakeLine(begin, end, stretch.segment);
+  return s.problem == path::Problem::kNone ? ErrorId::kNone : ErrorId::kPathGeometry;
+}
+
+// A circle of a coordinate system, in the MCS.
+path::Circle InBase(const Frame& system, const path::Circle& circle, const KDL::Vector& begin, bool relative) {
+  path::Circle out = circle;
+  const KDL::Vector point = ToVector(circle.auxiliary_point);
+  out.normal = ToTriple(system.M * ToVector(circle.normal));
+  if (circle.mode == path::CircMode::kRadius) {
+    out.auxiliary_point = ToTriple(system.M * point);
+  } else {
+    out.auxiliary_point = ToTriple(relative ? begin + system.M * point : system * point);
+  }
+  return out;
+}
+
+path::Segment InBase(const Frame& system, const path::Segment& segment) {
+  path::Segment out = segment;
+  out.place[0] = ToTriple(system * ToVector(segment.place[0]));
+  for (std::size_t i = 1; i < out.place.size(); ++i) out.place[i] = ToTriple(system.M * ToVector(segment.place[i]));
+  for (path::Triple& turn : out.turn) turn = ToTriple(system.M * ToVector(turn));
+  const std::array<double, 4>& q = segment.base;
+  (system.M * KDL::Rotation::Quaternion(q[0], q[1], q[2], q[3]))
+      .GetQuaternion(out.base[0], out.base[1], out.base[2], out.base[3]);
+  return out;
+}
+
+ErrorId AlongPath(const Context& c, const Request& move, std::uint32_t element, const Frame& system, LookAhead& ahead,
+                  State& s) {
+  const PathPiece& piece = c.paths[move.path].pieces[element];
+  Request one = move;
+  if (piece.velocity > 0) one.limits.velocity = std::min(one.limits.velocity, piece.velocity);
+  const path::Auxiliaries auxiliaries = Behind(ahead.end_joints, c.kinematics->count);
+  if (piece.shape == ElementShape::kSpline) {
+    ahead.next.segment = InBase(system, piece.segment);
+    ahead.next.limits = one.limits;
+    const KDL::Vector gap = path::PointAt(ahead.next.segment, 0).frame.p - ahead.end_tool.p;
+    if (gap.Norm() <= 1e-3) return ErrorId::kNone;
+    s.problem = path::Problem::kApart;
+    return ErrorId::kPathGeometry;
+  }
+  kinematics::Pose to = kinematics::ToPose(system.Inverse() * ahead.end_tool);
+  to.x = piece.to.x;
+  to.y = piece.to.y;
+  to.z = piece.to.z;
+  if (Given(piece.to.a)) to.a = piece.to.a;
+  if (Given(piece.to.b)) to.b = piece.to.b;
+  if (Given(piece.to.c)) to.c = piece.to.c;
+  path::Circle circle;
+  circle.auxiliary_point = ToTriple(system * ToVector(piece.via));
+  const bool arc = piece.shape == ElementShape::kArc;
+  return AlongTool(c, one, system * kinematics::ToFrame(to), auxiliaries, arc ? &circle : nullptr, ahead, s);
+}
+
+}  // namespace
+
+ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element, LookAhead& ahead, State& s) noexcept {
+  const bool of_axes = move.system == CoordinateSystem::kAcs;
+  if (of_axes) {
+    if (move.kind == MoveKind::kCircular || move.kind == MoveKind::kPath) return ErrorId::kParameter;
+    if (Any(move, 0, kToolNumbers)) return ErrorId::kParameter;
+    return AlongJoints(c, move, JointsOf(move, ahead.end_joints), ahead, s);
+  }
+  if (!HasTool(c, s)) return ErrorId::kState;
+  const std::size_t count = c.kinematics->count;
+  if (Any(move, kToolNumbers, kToolNumbers + count)) return ErrorId::kParameter;
+  const Frame system = SystemFrame(c, s, move.system, move.pcs);
+  if (move.kind == MoveKind::kPath) return AlongPath(c, move, element, system, ahead, s);
+  const Frame to = system * kinematics::ToFrame(PoseOf(move, kinematics::ToPose(system.Inverse() * ahead.end_tool)));
+  const kinematics::Joints joints = JointsOf(move, ahead.end_joints);
+  if (move.kind == MoveKind::kDirect) {
+    kinematics::Joints target = joints;
+    s.reason = JointsAt(c, to, joints, target);
+    if (s.reason == kinematics::Reason::kNone) return AlongJoints(c, move, target, ahead, s);
+    return s.reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
+  }
+  const path::Circle circle = InBase(system, move.circle, ahead.end_tool.p, move.relative);
+  return AlongTool(c, move, to, Behind(joints, count), move.kind == MoveKind::kCircular ? &circle : nullptr, ahead, s);
+}
+
+kinematics::Reason AxesOn(const Context& c, const State& s, const Stretch& stretch, double way,
+                          const kinematics::Joints& near, kinematics::JointMotion& motion) noexcept {
+  path::AuxiliaryMotion along = path::AuxiliariesAt(stretch.segment, way);
+  if (stretch.joints) {
+    motion = along;
+  } else {
+    const path::MovingFrame tool = path::At(stretch.segment, way);
+    const path::MovingFrame flange = tool * kinematics::ToFrame(c.params.tool).Inverse();
+    const kinematics::Reason reason = kinematics::Inverse(*c.kinematics, flange, {}, near, motion);
+    if (reason != kinematics::Reason::kNone) return reason;
+    for (std::size_t k = c.kinematics->count; k < kMaxAxes; ++k) {
+      const std::size_t i = k - c.kinematics->count;
+      motion.position[k] = along.position[i];
+      motion.velocity[k] = along.velocity[i];
+      motion.acceleration[k] = along.acceleration[i];
+    }
+  }
+  return WithinRanges(c, s, motion.position) ? kinematics::Reason::kNone : kinematics::Reason::kAxisLimit;
+}
+
+kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& stretch, double way,
+                            const kinematics::Joints& near, trajectory::PathSlopes& slopes,
+                            kinematics::JointMotion& motion) noexcept {
+  const kinematics::Reason reason = AxesOn(c, s, stretch, way, near, motion);
+  if (reason != kinematics::Reason::kNone) return reason;
+  std::copy(motion.velocity.begin(), motion.velocity.end(), slopes.first.begin());
+  std::copy(motion.acceleration.begin(), motion.acceleration.end(), slopes.second.begin());
+  if (stretch.joints || c.ahead.window.limits().count <= kMaxAxes) return reason;
+  const path::MovingFrame tool = path::At(stretch.segment, way);
+  const KDL::Rotation world = kinematics::ToFrame(c.params.base).M;
+  const std::array<KDL::Vector, 4> of_tool = {world * tool.p.v, world * tool.p.dv, world * tool.M.w * kDegrees,
+                                              world * tool.M.dw * kDegrees};
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t k = kMaxAxes + static_cast<std::size_t>(i);
+    slopes.first[k] = of_tool[0](i);
+    slopes.second[k] = of_tool[1](i);
+    slopes.first[k + 3] = of_tool[2](i);
+    slopes.second[k + 3] = of_tool[3](i);
+  }
+  return reason;
+}
+
+}  // namespace takt::group

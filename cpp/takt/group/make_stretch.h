@@ -1,0 +1,16 @@
+// The geometry of one move, from where the plan ends.
+#pragma once
+
+#include "takt/group/plan.h"
+
+namespace takt::group {
+
+// Fills `ahead.next` from where `ahead` ends. An error: there is no such path (State::problem and reason say why).
+ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element, LookAhead& ahead, State& s) noexcept;
+
+// Slopes of all coordinates of LimitsOf, and the axes.
+kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& stretch, double way,
+                            const kinematics::Joints& near, trajectory::PathSlopes& slopes,
+                            kinematics::JointMotion& motion) noexcept;
+
+}  // namespace takt::group

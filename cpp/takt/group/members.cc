@@ -1,0 +1,81 @@
+#include "takt/group/members.h"
+
+#include <algorithm>
+
+#include "takt/axis/guidance.h"
+#include "takt/group/systems.h"
+
+namespace takt::group {
+
+void Enter(GroupState to, State& s) noexcept {
+  if (!IsLegal(s.state, to)) ++s.illegal_transitions;
+  s.state = to;
+}
+
+axis::State& MemberOf(const Context& c, const State& s, std::size_t place) noexcept {
+  return c.axes.states[s.members[place] - 1];
+}
+
+axis::Context ContextOf(const Context& c, const State& s, std::size_t place) noexcept {
+  return c.axes.context(c.axes.owner, s.members[place] - 1);
+}
+
+ErrorId Tell(const Context& c, const State& s, std::size_t place, const axis::Command& command) noexcept {
+  c.feedback.TakeOwnError();
+  axis::Apply(ContextOf(c, s, place), 0, 0, command, MemberOf(c, s, place));
+  return c.feedback.TakeOwnError();
+}
+
+ErrorId TellAll(const Context& c, const State& s, const axis::Command& command) noexcept {
+  ErrorId first = ErrorId::kNone;
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] == 0) continue;
+    const ErrorId error = Tell(c, s, k, command);
+    if (first == ErrorId::kNone) first = error;
+  }
+  return first;
+}
+
+ErrorId Add(const Context& c, const AddAxis& command, State& s) noexcept {
+  const auto count = static_cast<std::uint32_t>(c.axes.states.size());
+  std::uint32_t axis = 0;
+  while (axis < count && c.axes.context(c.axes.owner, axis).params.name != command.axis.view()) ++axis;
+  if (axis == count) return ErrorId::kUnknownTarget;
+  if (c.group_of[axis] == c.number) return ErrorId::kGroupMember;
+  if (c.group_of[axis] != 0) return ErrorId::kOtherGroupMember;
+  if (command.ident > kMaxAxes || s.members[command.ident - 1] != 0) return ErrorId::kGroupFull;
+  s.members[command.ident - 1] = axis + 1;
+  c.group_of[axis] = c.number;
+  return ErrorId::kNone;
+}
+
+ErrorId Remove(const Context& c, const RemoveAxis& command, State& s) noexcept {
+  std::uint32_t& member = s.members[command.ident - 1];
+  if (member == 0) return CountOf(s) == 0 ? ErrorId::kGroupEmpty : ErrorId::kNotGroupMember;
+  c.group_of[member - 1] = 0;
+  member = 0;
+  return ErrorId::kNone;
+}
+
+ErrorId Ungroup(const Context& c, State& s) noexcept {
+  if (CountOf(s) == 0) return ErrorId::kGroupEmpty;
+  for (std::uint32_t& member : s.members) {
+    if (member != 0) c.group_of[member - 1] = 0;
+    member = 0;
+  }
+  return ErrorId::kNone;
+}
+
+ErrorId FaultOfMembers(const Context& c, const State& s) noexcept {
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] == 0) continue;
+    const axis::State& member = MemberOf(c, s, k);
+    if (member.plc == axis::PlcState::kErrorStop) {
+      return member.error == ErrorId::kDeviation ? ErrorId::kGroupDeviation : member.error;
+    }
+    if (s.guides && !axis::IsGuided(member)) return ErrorId::kPowerOff;
+  }
+  return ErrorId::kNone;
+}
+
+}  // namespace takt::group

@@ -1,0 +1,245 @@
+#include "takt/group/plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/group/join.h"
+#include "takt/group/make_stretch.h"
+#include "takt/group/queue.h"
+
+namespace takt::group {
+
+namespace {
+
+// So many inverses of the kinematics in a cycle; each takes up to a µs with closed forms.
+constexpr int kBudget = 48;
+// Of the members' limits: the rest keeps them within theirs in spite of what the timing takes for linear.
+constexpr double kLimitShare = 0.98;
+constexpr std::size_t kSweepNodes = 512;
+constexpr int kLeastPlaces = 4;
+constexpr int kMostPlaces = 64;
+constexpr double kPlaceWay = 8;  // mm between two places at which a path is tried beforehand
+
+int PlacesOf(const Stretch& stretch) {
+  return std::clamp(static_cast<int>(std::ceil(stretch.segment.length / kPlaceWay)), kLeastPlaces, kMostPlaces);
+}
+
+ErrorId ErrorOf(kinematics::Reason reason) {
+  return reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
+}
+
+void NextMove(State& s) {
+  ++s.planning.move;
+  s.planning.element = 0;
+  s.planning.stage = Stage::kIdle;
+}
+
+// What a path began and cannot go on with ends there, and so do the moves behind it.
+void CutShort(const Context& c, kinematics::Reason reason, double at, State& s) {
+  s.reason = reason;
+  s.blocked_at = at;
+  c.ahead.cut_short = true;
+  AbortBehind(c, s.planning.move, s);
+}
+
+void Refuse(const Context& c, ErrorId error, State& s) {
+  if (s.planning.element > 0) {
+    c.ahead.cut_short = true;
+    AbortBehind(c, s.planning.move, s);
+    NextMove(s);
+  } else {
+    RefuseFrom(c, s.planning.move, error, s);
+    s.planning.stage = Stage::kIdle;
+  }
+}
+
+void Begin(const Context& c, State& s) {
+  s.reason = kinematics::Reason::kNone;
+  s.problem = path::Problem::kNone;
+  s.blocked_at = 0;
+  const Request& move = MoveAt(s, s.planning.move);
+  if (!c.ahead.known) {
+    const End end = Present(c, s);
+    c.ahead.end_joints = end.joints;
+    c.ahead.end_tool = end.tool;
+  }
+  c.ahead.next = {};
+  c.ahead.next.move = s.planning.move;
+  const ErrorId error = MakeStretch(c, move, s.planning.element, c.ahead, s);
+  if (error != ErrorId::kNone) return Refuse(c, error, s);
+  c.ahead.build_up = {};
+  c.ahead.near = c.ahead.end_joints;
+  s.planning.verified = 0;
+  s.planning.stage = Stage::kVerify;
+}
+
+// Tries places all along, before anything moves.
+void Verify(const Context& c, int& budget, State& s) {
+  const Stretch& stretch = c.ahead.next;
+  const int places = PlacesOf(stretch);
+  for (; budget > 0 && static_cast<int>(s.planning.verified) <= places; --budget) {
+    const double way = stretch.segment.length * s.planning.verified / places;
+    trajectory::PathPoint point;
+    point.limits = stretch.limits;
+    kinematics::JointMotion motion;
+    const kinematics::Reason reason = SlopesOn(c, s, stretch, way, c.ahead.near, point.slopes, motion);
+    if (reason != kinematics::Reason::kNone) {
+      s.reason = reason;
+      s.blocked_at = way;
+      return Refuse(c, ErrorOf(reason), s);
+    }
+    c.ahead.near = motion.position;
+    c.ahead.build_up.Add(point, c.ahead.window.limits());
+    ++s.planning.verified;
+  }
+  if (static_cast<int>(s.planning.verified) <= places) return;
+  c.ahead.next_joints = c.ahead.near;
+  if (HasTool(c, s)) ToolAt(c, c.ahead.next_joints, c.ahead.next_tool);
+  s.planning.stage = Stage::kJoin;
+}
+
+bool SampleBegin(const Context& c, const Stretch& stretch, State& s) {
+  trajectory::PathPoint point;
+  point.s = stretch.begin;
+  point.limits = stretch.limits;
+  kinematics::JointMotion motion;
+  if (SlopesOn(c, s, stretch, stretch.from, c.ahead.near, point.slopes, motion) != kinematics::Reason::kNone) {
+    return false;
+  }
+  c.ahead.near = motion.position;
+  c.ahead.last = point;
+  c.ahead.window.Append(point);
+  ++s.planning.nodes;
+  return true;
+}
+
+// One node more. False: there the path cannot be gone.
+bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s) {
+  kinematics::Reason reason = kinematics::Reason::kNone;
+  double failed_at = 0;
+  const auto slopes_at = [&](double at, trajectory::PathSlopes& slopes) {
+    --budget;
+    kinematics::JointMotion motion;
+    reason = SlopesOn(c, s, stretch, stretch.from + (at - stretch.begin), c.ahead.near, slopes, motion);
+    failed_at = at;
+    return reason == kinematics::Reason::kNone;
+  };
+  trajectory::PathPoint next;
+  if (!trajectory::NextPoint(c.ahead.last, stretch.end(), c.ahead.window.limits(), c.ahead.window.build_up_s(),
+                             c.cycle.period_s, slopes_at, next)) {
+    CutShort(c, reason, failed_at - stretch.begin, s);
+    return false;
+  }
+  kinematics::JointMotion motion;
+  AxesOn(c, s, stretch, stretch.from + (next.s - stretch.begin), c.ahead.near, motion);
+  c.ahead.near = motion.position;
+  c.ahead.last = next;
+  c.ahead.window.Append(next, stretch.stops && next.s >= stretch.end());
+  ++s.planning.nodes;
+  return true;
+}
+
+void Sample(const Context& c, int& budget, State& s) {
+  LookAhead& ahead = c.ahead;
+  while (budget > 0 && ahead.sampling < ahead.end() && !ahead.cut_short) {
+    Stretch& stretch = ahead[ahead.sampling];
+    ahead.window.SetBuildUp(stretch.build_up_s);
+    if (!stretch.begun) {
+      stretch.begun = true;
+      --budget;
+      if (!SampleBegin(c, stretch, s)) CutShort(c, kinematics::Reason::kSingular, 0, s);
+    } else if (ahead.last.s >= stretch.end()) {
+      ++ahead.sampling;
+    } else {
+      SampleNext(c, stretch, budget, s);
+    }
+  }
+  if (ahead.sampling < ahead.end() && !ahead.cut_short) return;
+  ahead.window.Close();
+  s.planning.stage = Stage::kSweep;
+}
+
+void Sweep(const Context& c, State& s) {
+  if (!c.ahead.window.Sweep(kSweepNodes)) return;
+  const Request& move = MoveAt(s, s.planning.move);
+  const bool more = move.kind == MoveKind::kPath && s.planning.element + 1 < c.paths[move.path].pieces.size();
+  if (c.ahead.cut_short || !more) return NextMove(s);
+  ++s.planning.element;
+  s.planning.stage = Stage::kIdle;
+}
+
+bool HasRoom(const LookAhead& ahead) {
+  return ahead.count + 2 < ahead.stretches.size() && ahead.window.room() > kNodes / 4;
+}
+
+}  // namespace
+
+trajectory::CoordinateLimits LimitsOf(const Context& c, const State& s) noexcept {
+  trajectory::CoordinateLimits limits;
+  const auto set = [&](std::size_t k, double velocity, double acceleration, double jerk) {
+    limits.of[k] = {velocity, acceleration, jerk};
+    limits.count = std::max(limits.count, k + 1);
+  };
+  const double none = trajectory::CoordinateLimits::kNone;
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] == 0) continue;
+    const trajectory::Limits own = c.axes.context(c.axes.owner, s.members[k] - 1).params.planner_limits();
+    set(k, kLimitShare * own.velocity, kLimitShare * std::min(own.acceleration, own.deceleration),
+        own.jerk > 0 ? kLimitShare * own.jerk : none);
+  }
+  const ToolLimits& tool = c.params.tool_limits;
+  if (HasTool(c, s)) {
+    const auto set_three = [&](std::size_t k, const auto& v, const auto& a, const auto& j) {
+      if (!v && !a && !j) return;
+      for (std::size_t i = k; i < k + 3; ++i) set(i, v.value_or(none), a.value_or(none), j.value_or(none));
+    };
+    set_three(kMaxAxes, tool.velocity, tool.acceleration, tool.jerk);
+    set_three(kMaxAxes + 3, tool.angular_velocity, tool.angular_acceleration, tool.angular_jerk);
+  }
+  return limits;
+}
+
+void Plan(const Context& c, State& s) noexcept {
+  int budget = kBudget;
+  while (budget > 0) {
+    switch (s.planning.stage) {
+      case Stage::kIdle:
+        if (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short || !HasRoom(c.ahead)) return;
+        Begin(c, s);
+        --budget;
+        break;
+      case Stage::kVerify:
+        Verify(c, budget, s);
+        break;
+      case Stage::kJoin:
+        budget -= Join(c, s);
+        s.planning.stage = Stage::kSample;
+        break;
+      case Stage::kSample:
+        Sample(c, budget, s);
+        break;
+      case Stage::kSweep:
+        Sweep(c, s);
+        --budget;
+        break;
+    }
+  }
+}
+
+void ForgetPlan(const Context& c, State& s) noexcept {
+  c.ahead.window.Clear();
+  c.ahead.first = c.ahead.end();
+  c.ahead.sampling = c.ahead.first;
+  c.ahead.count = 0;
+  c.ahead.known = c.ahead.cut_short = false;
+  s.planning.stage = Stage::kIdle;
+  s.planning.move = s.done;
+  s.planning.element = 0;
+}
+
+bool MayBegin(const Context& c) noexcept {
+  const trajectory::PathWindow& window = c.ahead.window;
+  return window.swept() && window.known() > window.begin() + 1;
+}
+
+}  // namespace takt::group

@@ -1,0 +1,25 @@
+// From the moves in the queue to stretches of path and the nodes of the window: some work in each cycle.
+#pragma once
+
+#include "takt/group/group.h"
+#include "takt/group/systems.h"
+
+namespace takt::group {
+
+// What a group's coordinates may do: its axes, then the tool along and about X, Y, Z.
+trajectory::CoordinateLimits LimitsOf(const Context& c, const State& s) noexcept;
+
+// Goes on with planning. Moves that cannot be gone are refused.
+void Plan(const Context& c, State& s) noexcept;
+
+// Forgets everything that was planned.
+void ForgetPlan(const Context& c, State& s) noexcept;
+
+// The axes on a stretch, `way` from the beginning of its segment, with their derivatives by the way.
+kinematics::Reason AxesOn(const Context& c, const State& s, const Stretch& stretch, double way,
+                          const kinematics::Joints& near, kinematics::JointMotion& motion) noexcept;
+
+// Something can be gone: what the motion can begin with is through.
+bool MayBegin(const Context& c) noexcept;
+
+}  // namespace takt::group

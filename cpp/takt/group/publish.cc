@@ -1,0 +1,85 @@
+// What everybody sees of a group.
+#include "takt/group/group.h"
+#include "takt/group/queue.h"
+#include "takt/group/systems.h"
+
+namespace takt::group {
+
+namespace {
+
+// Of the members, as commanded and as measured.
+kinematics::JointMotion MotionOf(const Context& c, const State& s, bool actual) {
+  kinematics::JointMotion motion;
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] == 0) continue;
+    const axis::State& member = c.axes.states[s.members[k] - 1];
+    const KinematicState& state = actual ? member.actual : member.setpoint;
+    motion.position[k] = state.position;
+    motion.velocity[k] = state.velocity;
+    motion.acceleration[k] = state.acceleration;
+  }
+  return motion;
+}
+
+}  // namespace
+
+void Publish(const Context& c, const State& s, Outputs& out) noexcept {
+  out = {};
+  out.state = s.state;
+  out.error = s.error;
+  const Frame tool = kinematics::ToFrame(c.params.tool);
+  kinematics::MovingFrame commanded, measured;
+  kinematics::Joints due{};
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] != 0) due[k] = c.axes.states[s.members[k] - 1].due;
+  }
+  kinematics::Pose set{kNotGiven, kNotGiven, kNotGiven, kNotGiven, kNotGiven, kNotGiven};
+  kinematics::Pose actual = set;
+  out.velocity = out.acceleration = out.actual_velocity = out.path_error = kNotGiven;
+  const auto known = kinematics::Reason::kNone;
+  if (HasTool(c, s)) {
+    Frame due_tool;
+    if (kinematics::Forward(*c.kinematics, MotionOf(c, s, false), commanded) == known) {
+      const kinematics::MovingFrame tcp = commanded * tool;
+      set = kinematics::ToPose(tcp.GetFrame());
+      out.velocity = tcp.p.v.Norm();
+      out.acceleration = tcp.p.dv.Norm();
+    }
+    if (kinematics::Forward(*c.kinematics, MotionOf(c, s, true), measured) == known) {
+      const kinematics::MovingFrame tcp = measured * tool;
+      actual = kinematics::ToPose(tcp.GetFrame());
+      out.actual_velocity = tcp.p.v.Norm();
+      if (ToolAt(c, due, due_tool) == known) out.path_error = (due_tool.p - tcp.p.p).Norm();
+    }
+  }
+  out.x = set.x;
+  out.y = set.y;
+  out.z = set.z;
+  out.a = set.a;
+  out.b = set.b;
+  out.c = set.c;
+  out.actual_x = actual.x;
+  out.actual_y = actual.y;
+  out.actual_z = actual.z;
+  out.actual_a = actual.a;
+  out.actual_b = actual.b;
+  out.actual_c = actual.c;
+  if (s.begun) {
+    out.path_position = s.pace.now.position;
+    out.path_velocity = s.pace.now.velocity;
+    out.path_acceleration = s.pace.now.acceleration;
+    const LookAhead& ahead = c.ahead;
+    if (ahead.count > 0) out.path_left = ahead[ahead.end() - 1].end() - s.pace.now.position;
+  }
+  out.override_factor = s.velocity_factor;
+  out.command = s.active;
+  out.buffered = s.queue.count > 0 ? s.queue.count - 1 : 0;
+  out.axes = static_cast<std::uint32_t>(CountOf(s));
+  out.in_position = s.state == GroupState::kStandby && s.queue.count == 0;
+  out.interrupted = s.interrupted;
+  out.reason = s.reason;
+  out.problem = s.problem;
+  out.blocked_at = s.blocked_at;
+}
+
+}  // namespace takt::group

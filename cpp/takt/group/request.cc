@@ -1,0 +1,38 @@
+#include "takt/group/request.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::group {
+
+void describe(Enumeration<MoveKind>& e) {
+  e.about("What kind of move.");
+  e.value(MoveKind::kNone, "none", "None.");
+  e.value(MoveKind::kLinear, "linear", "Straight on.");
+  e.value(MoveKind::kCircular, "circular", "Along an arc.");
+  e.value(MoveKind::kDirect, "direct", "All axes evenly.");
+  e.value(MoveKind::kPath, "path", "Along a path of the machine file.");
+}
+
+void describe(Description<Request>& d) {
+  using R = Request;
+  d.about("A checked move of a group.");
+  d.internal<&R::ticket>("Of the command.");
+  d.internal<&R::kind>("What kind.");
+  d.internal<&R::relative>("How far, not where to.");
+  d.internal<&R::system>("Coordinate system.");
+  d.internal<&R::pcs>("Which product coordinate system, from 0.");
+  d.internal<&R::to>("Numbers given, of the tool and of the axes; NaN: none.");
+  d.internal<&R::circle>("Of circular moves.");
+  d.internal<&R::path>("Index of the path.");
+  d.internal<&R::master>("Axis that gives the way, from 1; 0: none.");
+  d.internal<&R::ratio>("mm per unit of it.");
+  d.internal<&R::limits>("Along the path.");
+  d.internal<&R::velocity_factor>("Direct moves: of the axes' velocity.");
+  d.internal<&R::acceleration_factor>("Of their acceleration.");
+  d.internal<&R::jerk_factor>("Of their jerk.");
+  d.internal<&R::buffer_mode>("When it takes over.");
+  d.internal<&R::transition_mode>("How.");
+  d.internal<&R::transition_parameter>("With what.");
+}
+
+}  // namespace takt::group

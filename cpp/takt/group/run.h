@@ -1,0 +1,21 @@
+// Moving along what is planned.
+#pragma once
+
+#include "takt/group/group.h"
+
+namespace takt::group {
+
+// Puts the group in control of its members. An error: a member cannot be.
+ErrorId TakeMembers(const Context& c, State& s) noexcept;
+void LetGoOfMembers(const Context& c, State& s) noexcept;
+
+// The next set points of the members; ends moves that are over.
+void Advance(const Context& c, State& s) noexcept;
+
+// At rest, with everything ended: nothing to do but what waits in the queue.
+bool Rests(const State& s) noexcept;
+
+// Comes to rest on the path, which is then forgotten.
+void EndMotion(const trajectory::AlongPath& brake, State& s) noexcept;
+
+}  // namespace takt::group

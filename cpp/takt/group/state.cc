@@ -1,0 +1,90 @@
+#include "takt/group/state.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::group {
+
+void describe(Description<Queue>& d) {
+  d.about("Moves that wait.");
+  d.internal<&Queue::moves>("A ring.");
+  d.internal<&Queue::first>("The oldest one.");
+  d.internal<&Queue::count>("How many.");
+}
+
+void describe(Enumeration<Stage>& e) {
+  e.about("How far the planning of a move is.");
+  e.value(Stage::kIdle, "idle", "Nothing is planned.");
+  e.value(Stage::kVerify, "verify", "Whether it can be gone.");
+  e.value(Stage::kJoin, "join", "How it is joined to the path before.");
+  e.value(Stage::kSample, "sample", "Nodes are made.");
+  e.value(Stage::kSweep, "sweep", "Ceilings are worked out.");
+}
+
+void describe(Description<Planning>& d) {
+  d.about("Planning in portions.");
+  d.internal<&Planning::stage>("Where it is.");
+  d.internal<&Planning::move>("Number of the move.");
+  d.internal<&Planning::element>("Of a path.");
+  d.internal<&Planning::verified>("Places that are good.");
+  d.internal<&Planning::nodes>("Nodes made so far.");
+}
+
+void describe(Description<SyncedAxis>& d) {
+  d.about("An axis that follows the way along the path.");
+  d.internal<&SyncedAxis::ticket>("Of the command.");
+  d.internal<&SyncedAxis::axis>("From 1; 0: none.");
+  d.internal<&SyncedAxis::ratio>("Units per mm.");
+  d.internal<&SyncedAxis::offset>("Its place where the path began, over all turns.");
+}
+
+void describe(Description<State>& d) {
+  using S = State;
+  d.about("Memory of an axes group.");
+  d.internal<&S::state>("State.");
+  d.internal<&S::error>("Why it is in ErrorStop.");
+  d.internal<&S::members>("Axes, from 1; 0: none.");
+  d.internal<&S::kinematics_on>("It has a tool.");
+  d.internal<&S::product_systems>("Product coordinate systems in that of the machine.");
+  d.internal<&S::velocity_factor>("Override.");
+  d.internal<&S::acceleration_factor>("Override.");
+  d.internal<&S::jerk_factor>("Override.");
+  d.internal<&S::queue>("Moves.");
+  d.internal<&S::done>("Moves that are over.");
+  d.internal<&S::active>("Ticket of the move being gone.");
+  d.internal<&S::planning>("Planning.");
+  d.internal<&S::pace>("Motion along the path.");
+  d.internal<&S::guides>("In control of its members.");
+  d.internal<&S::begun>("Moves along the path.");
+  d.internal<&S::interrupted>("Rests on the path.");
+  d.internal<&S::ends>("Comes to rest and forgets the path.");
+  d.internal<&S::brake>("How strongly.");
+  d.internal<&S::hold>("Stop: until released.");
+  d.internal<&S::ticket>("Of stop, halt, interrupt, home or power.");
+  d.internal<&S::task>("Which of them.");
+  d.internal<&S::lease_s>("Dead man's lease; 0: none.");
+  d.internal<&S::lease_end_cycle>("When it ends.");
+  d.internal<&S::joints>("Where the members are told to be.");
+  d.internal<&S::origins>("Whole turns and zeros taken out of that.");
+  d.internal<&S::reset_ticket>("Of a reset that waits.");
+  d.internal<&S::resetting>("A reset waits.");
+  d.internal<&S::reset_asked>("The members were told.");
+  d.internal<&S::stop_reported>("The stop is done.");
+  d.internal<&S::power_on>("What power asked for.");
+  d.internal<&S::synced>("Axes that follow the path.");
+  d.internal<&S::reason>("Why there was no position of the axes.");
+  d.internal<&S::problem>("Why there was no path.");
+  d.internal<&S::blocked_at>("How far it could be gone.");
+  d.internal<&S::illegal_transitions>("Always 0.");
+}
+
+void describe(Enumeration<Task>& e) {
+  e.about("What a group is doing besides moves.");
+  e.value(Task::kNone, "none", "Nothing.");
+  e.value(Task::kStop, "stop", "Stop.");
+  e.value(Task::kHalt, "halt", "Halt.");
+  e.value(Task::kInterrupt, "interrupt", "Interrupt.");
+  e.value(Task::kHome, "home", "Home.");
+  e.value(Task::kPower, "power", "Power.");
+}
+
+}  // namespace takt::group

@@ -1,0 +1,76 @@
+#include "takt/group/systems.h"
+
+#include <algorithm>
+
+namespace takt::group {
+
+std::size_t CountOf(const State& s) noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(s.members, [](std::uint32_t member) { return member != 0; }));
+}
+
+std::size_t InKinematics(const Context& c, const State& s) noexcept {
+  return HasTool(c, s) ? c.kinematics->count : 0;
+}
+
+bool HasTool(const Context& c, const State& s) noexcept {
+  if (!c.kinematics || !s.kinematics_on) return false;
+  return std::all_of(s.members.begin(), s.members.begin() + static_cast<std::ptrdiff_t>(c.kinematics->count),
+                     [](std::uint32_t member) { return member != 0; });
+}
+
+Frame SystemFrame(const Context& c, const State& s, CoordinateSystem system, std::uint32_t pcs) noexcept {
+  switch (system) {
+    case CoordinateSystem::kWcs:
+      return kinematics::ToFrame(c.params.base).Inverse();
+    case CoordinateSystem::kPcs:
+      return kinematics::ToFrame(s.product_systems[std::min<std::size_t>(pcs, kProductSystems - 1)]);
+    default:
+      return Frame::Identity();
+  }
+}
+
+kinematics::Reason ToolAt(const Context& c, const kinematics::Joints& joints, Frame& tcp) noexcept {
+  Frame flange;
+  const kinematics::Reason reason = kinematics::Forward(*c.kinematics, joints, flange);
+  if (reason == kinematics::Reason::kNone) tcp = flange * kinematics::ToFrame(c.params.tool);
+  return reason;
+}
+
+kinematics::Reason JointsAt(const Context& c, const Frame& tcp, const kinematics::Joints& near,
+                            kinematics::Joints& joints) noexcept {
+  kinematics::Joints found{};
+  const Frame flange = tcp * kinematics::ToFrame(c.params.tool).Inverse();
+  const kinematics::Reason reason = kinematics::Inverse(*c.kinematics, flange, {}, near, found);
+  if (reason != kinematics::Reason::kNone) return reason;
+  std::copy(near.begin() + static_cast<std::ptrdiff_t>(c.kinematics->count), near.end(),
+            found.begin() + static_cast<std::ptrdiff_t>(c.kinematics->count));
+  joints = found;
+  return reason;
+}
+
+bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints) noexcept {
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] == 0) continue;
+    const axis::AxisLimits& limits = c.axes.context(c.axes.owner, s.members[k] - 1).params.limits;
+    if (limits.lower && joints[k] < *limits.lower) return false;
+    if (limits.upper && joints[k] > *limits.upper) return false;
+  }
+  return true;
+}
+
+kinematics::Joints PresentJoints(const Context& c, const State& s) noexcept {
+  kinematics::Joints joints{};
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] != 0) joints[k] = c.axes.states[s.members[k] - 1].setpoint.position;
+  }
+  return joints;
+}
+
+End Present(const Context& c, const State& s) noexcept {
+  End end;
+  end.joints = PresentJoints(c, s);
+  if (HasTool(c, s)) ToolAt(c, end.joints, end.tool);
+  return end;
+}
+
+}  // namespace takt::group

@@ -1,0 +1,43 @@
+// Coordinate systems of a group: where each is in that of the machine, and numbers of people in them.
+//
+// ACS: the axes themselves. MCS: that of the kinematics. WCS: the world, in which the machine file places the MCS. PCS
+// 1 to 16: products, placed in the MCS at run time. The tool centre point (TCP) lies on the flange as the machine file
+// says.
+#pragma once
+
+#include "takt/group/group.h"
+#include "takt/kinematics/frames.h"
+
+namespace takt::group {
+
+using kinematics::Frame;
+
+inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+
+// Number of members, and of those that the kinematics moves.
+std::size_t CountOf(const State& s) noexcept;
+std::size_t InKinematics(const Context& c, const State& s) noexcept;
+// Whether there is a tool to speak of.
+bool HasTool(const Context& c, const State& s) noexcept;
+
+// Seen from the MCS; of ACS: the MCS itself.
+Frame SystemFrame(const Context& c, const State& s, CoordinateSystem system, std::uint32_t pcs) noexcept;
+
+// The TCP in the MCS. A reason, and nothing in `tcp`, where the axes cannot be so.
+kinematics::Reason ToolAt(const Context& c, const kinematics::Joints& joints, Frame& tcp) noexcept;
+// The axes for a TCP in the MCS, the others as in `near`.
+kinematics::Reason JointsAt(const Context& c, const Frame& tcp, const kinematics::Joints& near,
+                            kinematics::Joints& joints) noexcept;
+// Whether all members are within their ranges.
+bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints) noexcept;
+
+// Where a plan ends.
+struct End {
+  kinematics::Joints joints{};
+  Frame tool;  // in the MCS; without a tool of no meaning
+};
+// Where the members stand as they are told.
+End Present(const Context& c, const State& s) noexcept;
+kinematics::Joints PresentJoints(const Context& c, const State& s) noexcept;
+
+}  // namespace takt::group
