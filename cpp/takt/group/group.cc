@@ -69,7 +69,8 @@ bool IsThrough(const Context& c, const State& s) {
 
 void MoveOn(const Context& c, State& s) {
   Advance(c, s);
-  if (!Rests(s)) return;
+  // The members get to the last set point after this.
+  if (!Rests(s) || !AllMembers(c, s, axis::AtRest)) return;
   if (s.ends) return ComeToRest(c, s);
   if (s.interrupted) {
     if (s.task == Task::kInterrupt) EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);

@@ -51,7 +51,7 @@ KDL::Vector ToVector(const path::Triple& t) {
 }
 
 // All axes evenly, so that they arrive together.
-ErrorId AlongJoints(const Context& c, const Request& move, const kinematics::Joints& to, LookAhead& ahead, State& s) {
+ErrorId AlongJoints(const Request& move, const kinematics::Joints& to, LookAhead& ahead, State& s) {
   Stretch& stretch = ahead.next;
   stretch.joints = true;
   s.problem = path::MakeLine({Frame::Identity(), ahead.end_joints}, {Frame::Identity(), to}, stretch.segment);
@@ -142,7 +142,7 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
   if (of_axes) {
     if (move.kind == MoveKind::kCircular || move.kind == MoveKind::kPath) return ErrorId::kParameter;
     if (Any(move, 0, kToolNumbers)) return ErrorId::kParameter;
-    return AlongJoints(c, move, JointsOf(move, ahead.end_joints), ahead, s);
+    return AlongJoints(move, JointsOf(move, ahead.end_joints), ahead, s);
   }
   if (!HasTool(c, s)) return ErrorId::kState;
   const std::size_t count = c.kinematics->count;
@@ -154,7 +154,7 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
   if (move.kind == MoveKind::kDirect) {
     kinematics::Joints target = joints;
     s.reason = JointsAt(c, to, joints, target);
-    if (s.reason == kinematics::Reason::kNone) return AlongJoints(c, move, target, ahead, s);
+    if (s.reason == kinematics::Reason::kNone) return AlongJoints(move, target, ahead, s);
     return s.reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
   }
   const path::Circle circle = InBase(system, move.circle, ahead.end_tool.p, move.relative);

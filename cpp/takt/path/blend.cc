@@ -18,10 +18,10 @@ constexpr double kReversal = 1e-4;
 // rad, that a curve may turn within a blend.
 constexpr double kMostSweep = 1;
 // How much of the deviation allowed the search for a distance may leave unused.
-constexpr double kUnused = 0.01;
+constexpr double kUnused = 0.02;
 // Part of the deviation that is kept free for what lies between the samples.
-constexpr double kMargin = 1e-3;
-constexpr int kSamples = 12;
+constexpr double kMargin = 5e-3;
+constexpr std::size_t kSamples = 16;
 
 // Tangent length of a blend over its distance, by the cosine of half the angle.
 double TangentShare(double q) {
@@ -95,7 +95,7 @@ class Corner {
     double least = INFINITY;
     double side_before = -1;
     double at_change = 0;  // there the distance may have a peak
-    for (int i = 1; i < kSamples; ++i) {
+    for (std::size_t i = 1; i < kSamples; ++i) {
       const double u = static_cast<double>(i) / kSamples;
       const Vector p = Place(blend, u);
       const double side = SideOf(p);
@@ -103,21 +103,24 @@ class Corner {
         at_change = FromBoth(Place(blend, Change(blend, u - 1.0 / kSamples, u)));
       }
       side_before = side;
-      distances[static_cast<std::size_t>(i)] = FromPath(p);
+      distances[i] = FromPath(p);
       const double squared = (p - place_).squaredNorm();
       if (squared < least) {
         least = squared;
         nearest = u;
       }
     }
-    // The top of the parabola through the largest and its neighbours.
-    const auto most = std::max_element(distances.begin(), distances.end());
-    const auto i = std::clamp<std::ptrdiff_t>(most - distances.begin(), 1, kSamples - 1);
-    const double* d = &distances[static_cast<std::size_t>(i)];
-    const double bend = d[-1] - 2 * d[0] + d[1];
-    const double shift = bend < 0 ? std::clamp((d[-1] - d[1]) / (2 * bend), -1.0, 1.0) : 0;
-    const double between = FromPath(Place(blend, (static_cast<double>(i) + shift) / kSamples));
-    return std::max({*most, between, at_change, FromCorner(blend, nearest)});
+    double most = std::max(at_change, FromCorner(blend, nearest));
+    for (std::size_t i = 1; i < kSamples; ++i) {
+      most = std::max(most, distances[i]);
+      const double less = distances[i - 1] - distances[i];
+      const double more = distances[i + 1] - distances[i];
+      if (less > 0 || more > 0 || less + more == 0) continue;
+      // The top of the parabola through these three.
+      const double top = static_cast<double>(i) + (less - more) / (2 * (less + more));
+      most = std::max(most, FromPath(Place(blend, top / kSamples)));
+    }
+    return most;
   }
 
  private:

@@ -194,6 +194,15 @@ Problem MakeArc(const Point& from, const Circle& circle, const Point& to, Segmen
   return Problem::kNone;
 }
 
+void describe(Description<Circle>& d) {
+  d.about("A circular arc.");
+  d.internal<&Circle::mode>("How it is given.");
+  d.internal<&Circle::auxiliary_point>("Border point, centre, or vector of the radius.");
+  d.internal<&Circle::choice>("Which of several.");
+  d.internal<&Circle::normal>("Of its plane.");
+  d.internal<&Circle::turns>("Whole turns on top.");
+}
+
 void describe(Enumeration<CircMode>& e) {
   e.about("How a circular arc is given.");
   e.value(CircMode::kBorder, "border", "By a point that it goes through.");

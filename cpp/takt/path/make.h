@@ -63,6 +63,7 @@ inline constexpr double kMostTurns = 1e6;
 
 Problem MakeArc(const Point& from, const Circle& circle, const Point& to, Segment& out) noexcept;
 
+void describe(Description<Circle>&);
 void describe(Enumeration<CircMode>&);
 void describe(Enumeration<PathChoice>&);
 

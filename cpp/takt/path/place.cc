@@ -15,10 +15,10 @@ constexpr std::array<double, 6> kWeights{0.1713244923791704, 0.3607615730481386,
 // better by three powers of ten.
 constexpr std::size_t kFewestPieces = 4;
 constexpr std::size_t kMostPieces = kMaxCells / 2;
-constexpr double kPieceError = 1e-10;
+constexpr double kPieceError = 1e-11;
 
 // Of a cell: after a step as short as this the rest is nothing.
-constexpr double kCloseEnough = 1e-3;
+constexpr double kCloseEnough = 3e-4;
 
 struct Piece {
   double from = 0;

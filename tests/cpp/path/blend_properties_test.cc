@@ -94,10 +94,10 @@ TEST_P(Corners, PropertyNothingJumps) {
       ASSERT_LT(step.place, 1e-11) << "trial " << i;
       ASSERT_LT(step.tangent, 1e-11) << "trial " << i;
       ASSERT_LT(step.curvature, 1e-6 * peak) << "trial " << i;
-      // Rounding of orientations is 1e-15 rad, seen over the length of the blend.
-      ASSERT_LT(step.orientation, 1e-14) << "trial " << i;
-      ASSERT_LT(step.turning, 1e-9 * turning + 1e-14 / blend.length) << "trial " << i;
-      ASSERT_LT(step.turning_change, 1e-6 * turning_change + 1e-13 / (blend.length * blend.length)) << "trial " << i;
+      // Orientations are rounded, by 1e-14 rad at most, seen over the length of the blend.
+      ASSERT_LT(step.orientation, 1e-13) << "trial " << i;
+      ASSERT_LT(step.turning, 1e-9 * turning + 1e-13 / blend.length) << "trial " << i;
+      ASSERT_LT(step.turning_change, 1e-6 * turning_change + 1e-12 / (blend.length * blend.length)) << "trial " << i;
       ASSERT_LT(step.auxiliary, 1e-11) << "trial " << i;
       ASSERT_LT(step.auxiliary_rate, 1e-9 * rate + 1e-12 / blend.length) << "trial " << i;
       ASSERT_LT(step.auxiliary_change, 1e-6 * change + 1e-11 / (blend.length * blend.length)) << "trial " << i;
@@ -120,9 +120,9 @@ TEST_P(Corners, PropertyStaysWithinTheDeviation) {
       path = std::max(path, std::min(before, DistanceTo(c.second, p, 0, std::min(2 * d, c.second.length))));
     }
     const double found = Deviation(c.first, c.second, blend);
-    ASSERT_LT(corner, deviation * (1 + 1e-9)) << "trial " << i;
-    ASSERT_LT(path, deviation * (1 + 1e-9)) << "trial " << i;
-    ASSERT_LT(found, deviation * (1 + 1e-9)) << "trial " << i;
+    ASSERT_LT(corner, deviation * (1 + 1e-9) + 1e-12) << "trial " << i;
+    ASSERT_LT(path, deviation * (1 + 1e-9) + 1e-12) << "trial " << i;
+    ASSERT_LT(found, deviation * (1 + 1e-9) + 1e-12) << "trial " << i;
     ASSERT_GT(found, std::max(corner, path) * (1 - 0.01)) << "trial " << i;
   }
 }

@@ -87,7 +87,7 @@ TEST(Splines, PropertyGoOnSmoothly) {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const Point end = PointAt(pieces[i], pieces[i].length);
       ASSERT_LT(Length(end.frame.p - points[i + 1].frame.p), 1e-11 * (1 + size));
-      ASSERT_TRUE(KDL::Equal(end.frame.M, points[i + 1].frame.M, 1e-13));
+      ASSERT_TRUE(KDL::Equal(end.frame.M, points[i + 1].frame.M, 1e-12));
       ASSERT_NEAR(end.auxiliaries[0], points[i + 1].auxiliaries[0], 1e-11);
       if (i == 0) continue;
       const auto step = StepBetween(pieces[i - 1], pieces[i - 1].length, pieces[i], 0);
