@@ -68,7 +68,7 @@ void describe(Enumeration<ElementShape>& e) {
 void describe(Description<PathElement>& d) {
   using E = PathElement;
   d.about("An element of a path; it begins where the one before it ends.");
-  d.defaulted<&E::shape>("What it is.");
+  d.required<&E::shape>("What it is.");
   d.defaulted<&E::to>("Where it ends; of lines and arcs.");
   d.defaulted<&E::via_x>(unit::mm, kPlaces, "X of a point on the way; of arcs.");
   d.defaulted<&E::via_y>(unit::mm, kPlaces, "Y of it.");

@@ -34,7 +34,7 @@ Kinematics Of(const ScaraParams& p) {
 }
 
 Kinematics Of(const DeltaParams& p) {
-  const DeltaLengths lengths{p.base_radius, p.platform_radius, p.upper_arm, p.lower_arm};
+  const DeltaLengths lengths{p.base_radius, p.platform_radius, p.upper_arm, p.lower_arm, p.rod_spacing};
   Kinematics k{.mechanism = MakeDelta(lengths, p.first_arm_deg * kDegree, p.rotary), .count = p.rotary ? 4u : 3u};
   k.kinds.fill(JointKind::kRotary);
   return k;
@@ -116,7 +116,7 @@ MakeResult Make(const KinematicsParams& params, std::string_view folder) {
     std::string why;
     urdf = ReadUrdf(*text, params.serial->base, params.serial->tip, why);
     if (!urdf) return Refused("serial", (inside ? "" : path.string() + ": ") + why);
-    k.mechanism = Serial{urdf->chain};
+    k.mechanism = Serial{urdf->chain, urdf->links};
     TakeKinds(urdf->chain, k);
   }
   if (std::string why = TakeScales(params.joints, k); !why.empty()) return Refused("joints", std::move(why));

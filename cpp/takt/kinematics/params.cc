@@ -40,6 +40,8 @@ void describe(Description<DeltaParams>& d) {
   d.required<&D::platform_radius>(unit::mm, not_negative, "From the tool to the joints on the platform.");
   d.required<&D::upper_arm>(unit::mm, positive, "Length of the upper arms, which the motors turn.");
   d.required<&D::lower_arm>(unit::mm, positive, "Length of the lower arms, which carry the platform.");
+  d.defaulted<&D::rod_spacing>(unit::mm, not_negative,
+                               "Between the two rods of a lower arm. Moves nothing; for checks of the workspace.");
   d.defaulted<&D::first_arm_deg>(unit::deg, "Where arm 1 stands, from X about Z; the others follow by 120 and 240.");
   d.defaulted<&D::rotary>("There is a C axis, through a telescopic shaft.");
   d.rule<&D::lower_arm>(

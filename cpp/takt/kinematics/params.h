@@ -33,6 +33,7 @@ struct DeltaParams {
   double platform_radius = 0;  // mm
   double upper_arm = 0;        // mm
   double lower_arm = 0;        // mm
+  double rod_spacing = 0;      // mm
   double first_arm_deg = 0;    // deg
   bool rotary = false;
 };
