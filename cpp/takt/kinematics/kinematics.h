@@ -52,6 +52,9 @@ struct MakeResult {
   std::string problem;  // and why
 };
 
+// A URDF may be given as the text itself, which begins with <, instead of its file.
+bool IsUrdfText(std::string_view urdf) noexcept;
+
 // `folder`: where paths of files begin. Reads files and allocates.
 MakeResult Make(const KinematicsParams& params, std::string_view folder = ".");
 

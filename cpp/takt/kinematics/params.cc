@@ -66,7 +66,7 @@ void describe(Description<SixAxisParams>& d) {
 void describe(Description<SerialParams>& d) {
   using S = SerialParams;
   d.about("Any chain of up to eight axes out of a URDF file, solved step by step.");
-  d.required<&S::urdf>("The file; its place is seen from the machine file.");
+  d.required<&S::urdf>("The file; its place is seen from the machine file. Or the text itself, which begins with <.");
   d.defaulted<&S::base>("The link where the chain begins; empty: the root.");
   d.defaulted<&S::tip>("The link that is the tool; empty: the only end.");
 }

@@ -49,7 +49,7 @@ struct SixAxisParams {
 };
 
 struct SerialParams {
-  std::string urdf;  // file, seen from the machine file
+  std::string urdf;  // file, seen from the machine file; or the text itself
   std::string base;  // link; empty: the root
   std::string tip;   // link; empty: the only end
 };
