@@ -277,6 +277,22 @@ def show_cam(file: Path, name: str | None, **options: Any) -> int:
     return cam_command.run(file, name, cam_command.Options(**options), out)
 
 
+@cli.command("path")
+@click.argument("file", type=FILE)
+@click.option(
+    "--start", nargs=3, type=float, default=(0.0, 0.0, 0.0), metavar="X Y Z", help="Where the tool is at first, mm."
+)
+@click.option("--tolerance", type=float, default=0.005, show_default=True, help="mm from curves to lines for them.")
+@click.option("--plot", "target", type=FILE, help="Draw it as seen from above into this file (.png, .svg, .pdf).")
+@click.option("--csv", type=FILE, help="Write its elements into this file, for the paths of a machine file.")
+def show_path(file: Path, **options: Any) -> int:
+    """Check the path of a FILE: G-code (.gcode, .nc, .ngc, .tap), a drawing (.svg) or elements (.csv). Says how long it
+    is, what it consists of and how far it extends; draws and converts it."""
+    from takt import toolpath_command
+
+    return toolpath_command.run(file, toolpath_command.Options(**options), out)
+
+
 @cli.command("log")
 @click.argument("log", type=FILE)
 @click.option("--save", type=FILE, help="Keep the last run as a recording (.npz) or a table (.csv).")
