@@ -18,6 +18,7 @@ from takt.couplings import why_refused
 from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.flex_cam import FlexCam
+from takt.group import Group
 from takt.recording import Recording
 from takt.tables import components_of
 
@@ -30,7 +31,7 @@ Program = Callable[[], object]
 P = TypeVar("P", bound=Program)
 C = TypeVar("C", bound=Component)
 
-CLASSES: dict[str, type[Component]] = {component.KIND: component for component in (Axis, FlexCam)}
+CLASSES: dict[str, type[Component]] = {component.KIND: component for component in (Axis, FlexCam, Group)}
 
 
 class Recorder:
@@ -80,6 +81,7 @@ class Session(MachineCommands):
         }
         self._axes = {name: c for name, c in self._components.items() if isinstance(c, Axis)}
         self._flex_cams = {name: c for name, c in self._components.items() if isinstance(c, FlexCam)}
+        self._groups = {name: c for name, c in self._components.items() if isinstance(c, Group)}
         self._programs: list[Program] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
@@ -106,6 +108,14 @@ class Session(MachineCommands):
 
     def flex_cam(self, name: str) -> FlexCam:
         return _named(self._flex_cams, name, "cam module")
+
+    @property
+    def groups(self) -> Mapping[str, Group]:
+        """All groups of axes by name, in the order of the machine file."""
+        return MappingProxyType(self._groups)
+
+    def group(self, name: str) -> Group:
+        return _named(self._groups, name, "group")
 
     @property
     def components(self) -> Mapping[str, Component]:

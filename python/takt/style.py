@@ -36,6 +36,13 @@ STATES = {
     "Sync": "#9b6fd0",
     "Stop": "#e08a3c",
     "Error": "#d6453d",
+    # Of a group.
+    "GroupDisabled": "#9aa3ae",
+    "GroupStandby": "#7fb08a",
+    "GroupMoving": "#4f8fe0",
+    "GroupHoming": "#d0a03a",
+    "GroupStopping": "#e08a3c",
+    "GroupErrorStop": "#d6453d",
 }
 
 GOOD = "#2f9e6b"
@@ -62,6 +69,9 @@ USUAL_FIELDS = (
     "set_y_velocity",
     "state",
     "cam_synchronised",
+    *("x", "y", "z"),
+    "path_velocity",
+    "path_acceleration",
 )
 
 

@@ -132,6 +132,8 @@ def _units(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]
     """What the units in the descriptions stand for. A cam module has those of slave, master and its first cam."""
     if kind.name == "axis":
         return {"u": parameters["unit"]}
+    if kind.name == "group":
+        return {"u": "mm"}
     of_axes = {a["name"]: str(a["unit"]) for a in machine["axes"]}
     cam = next(c for c in machine["cams"] if c["name"] == parameters["cams"][0])
     master = of_axes.get(parameters["master"], cam["x_unit"])

@@ -32,4 +32,4 @@ def test_another_project_uses_the_installed_package(tmp_path):
         "-DCMAKE_BUILD_TYPE=Release",
     )
     run("cmake", "--build", folder)
-    assert run(folder / "consumer") == "2.0 s, message, at 1.0, 520.0 mm\n"
+    assert run(folder / "consumer") == "2.0 s, message, at 1.0, 520.0 mm, met\n"

@@ -17,9 +17,8 @@ struct CsvPoints {
   std::vector<Problem> problems;  // 20 at most
 };
 
-// A line with the names of the columns, x and y, perhaps v and a, in any order; then a line for each point. Between the
-// columns stands a comma, a semicolon or a tabulator. An empty v or a is free. Empty lines and those that begin with #
-// are skipped; decimals have a point.
+// A table (core/csv.h) with columns x and y, perhaps v and a, and a line for each point. An empty v or a is free;
+// decimals have a point.
 CsvPoints ReadCsv(std::string_view text, std::string_view file_name);
 
 // Where a finding about "points[3].x" stands in the file.

@@ -1,5 +1,6 @@
 #include "takt/engine/command.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace {
 constexpr std::string_view kMachine = "machine";
 constexpr std::string_view kAxis = "axis";
 constexpr std::string_view kFlexCam = "flex_cam";
+constexpr std::string_view kGroup = "group";
 
 // A verb together with how its struct gets in and out of a command.
 struct Entry {
@@ -103,6 +105,32 @@ const std::vector<Entry>& Entries() {
       Make<flexcam::Command, flexcam::SetCam>(kFlexCam, "set_cam"),
       Make<flexcam::Command, flexcam::ChangeCam>(kFlexCam, "change_cam"),
       Make<flexcam::Command, flexcam::WithdrawChanges>(kFlexCam, "withdraw_changes"),
+      Make<group::Command, group::Power>(kGroup, "power"),
+      Make<group::Command, group::Reset>(kGroup, "reset"),
+      Make<group::Command, group::Enable>(kGroup, "enable"),
+      Make<group::Command, group::Disable>(kGroup, "disable"),
+      Make<group::Command, group::AddAxis>(kGroup, "add_axis"),
+      Make<group::Command, group::RemoveAxis>(kGroup, "remove_axis"),
+      Make<group::Command, group::UngroupAllAxes>(kGroup, "ungroup_all_axes"),
+      Make<group::Command, group::Home>(kGroup, "home"),
+      Make<group::Command, group::SetPosition>(kGroup, "define_position"),
+      Make<group::Command, group::SetOverride>(kGroup, "set_override"),
+      Make<group::Command, group::SetKinTransform>(kGroup, "set_kin_transform"),
+      Make<group::Command, group::SetCartesianTransform>(kGroup, "set_cartesian_transform"),
+      Make<group::Command, group::SetCoordinateTransform>(kGroup, "set_coordinate_transform"),
+      Make<group::Command, group::MoveLinearAbsolute>(kGroup, "move_linear_absolute"),
+      Make<group::Command, group::MoveLinearRelative>(kGroup, "move_linear_relative"),
+      Make<group::Command, group::MoveCircularAbsolute>(kGroup, "move_circular_absolute"),
+      Make<group::Command, group::MoveCircularRelative>(kGroup, "move_circular_relative"),
+      Make<group::Command, group::MoveDirectAbsolute>(kGroup, "move_direct_absolute"),
+      Make<group::Command, group::MoveDirectRelative>(kGroup, "move_direct_relative"),
+      Make<group::Command, group::MovePath>(kGroup, "move_path"),
+      Make<group::Command, group::MovePathSynchronized>(kGroup, "move_path_synchronized"),
+      Make<group::Command, group::SyncAxis>(kGroup, "sync_axis"),
+      Make<group::Command, group::Stop>(kGroup, "stop", true),
+      Make<group::Command, group::Halt>(kGroup, "halt"),
+      Make<group::Command, group::Interrupt>(kGroup, "interrupt"),
+      Make<group::Command, group::Continue>(kGroup, "continue_path"),
   };
   return entries;
 }
@@ -147,6 +175,34 @@ std::string WhyNot(const Machine& machine, const axis::Command& command, const a
   return why.empty() && switches ? CannotSwitch(machine, *switches, axis) : why;
 }
 
+// What is wrong with a name in a command; empty: nothing.
+template <typename T>
+std::string WhyNotNamed(const char* field, const Name& name, const std::vector<T>& list, const char* what) {
+  std::vector<std::string_view> names;
+  for (const T& element : list) names.push_back(element.name);
+  if (std::ranges::find(names, name.view()) != names.end()) return {};
+  return std::string(field) + ": expected the name of " + what + ", found " + Quoted(name.view()) +
+         DidYouMean(name.view(), names);
+}
+
+std::string WhyNot(const Machine& machine, const group::Command& command) {
+  std::string why = group::WhyNot(command);
+  const auto check = [&](const char* field, const Name& name, const auto& list, const char* what) {
+    if (why.empty()) why = WhyNotNamed(field, name, list, what);
+  };
+  if (const auto* path = std::get_if<group::MovePath>(&command)) {
+    check("path", path->path, machine.paths, "a path of the machine");
+  } else if (const auto* path = std::get_if<group::MovePathSynchronized>(&command)) {
+    check("path", path->path, machine.paths, "a path of the machine");
+    check("master", path->master, machine.axes, "an axis");
+  } else if (const auto* sync = std::get_if<group::SyncAxis>(&command)) {
+    check("axis", sync->axis, machine.axes, "an axis");
+  } else if (const auto* add = std::get_if<group::AddAxis>(&command)) {
+    check("axis", add->axis, machine.axes, "an axis");
+  }
+  return why;
+}
+
 // Why this component cannot do it, as far as its description tells; empty: it can.
 std::string WhyNot(const Machine& machine, const Command& command) {
   if (const auto* body = std::get_if<axis::Command>(&command.body)) {
@@ -155,6 +211,7 @@ std::string WhyNot(const Machine& machine, const Command& command) {
   if (const auto* body = std::get_if<flexcam::Command>(&command.body)) {
     return flexcam::WhyNot(*body, machine.cams);
   }
+  if (const auto* body = std::get_if<group::Command>(&command.body)) return WhyNot(machine, *body);
   return {};
 }
 
@@ -197,6 +254,11 @@ bool LetsGo(const Command& command) noexcept {
     const bool stops = control && (control->stop.value_or(false) || control->halt.value_or(false) ||
                                    control->sync_out_instant.value_or(false) || !control->regulator_on.value_or(true));
     return stops || (jog && !jog->positive && !jog->negative);
+  }
+  if (const auto* group = std::get_if<group::Command>(&command.body)) {
+    const auto* power = std::get_if<group::Power>(group);
+    return std::holds_alternative<group::Stop>(*group) || std::holds_alternative<group::Halt>(*group) ||
+           std::holds_alternative<group::Interrupt>(*group) || (power && !power->enable);
   }
   const auto& body = std::get<axis::Command>(command.body);
   const auto* power = std::get_if<axis::Power>(&body);

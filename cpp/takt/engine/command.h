@@ -13,6 +13,7 @@
 #include "takt/core/feedback.h"
 #include "takt/engine/machine.h"
 #include "takt/flexcam/commands.h"
+#include "takt/group/commands.h"
 
 namespace takt::engine {
 
@@ -38,7 +39,7 @@ void describe(Description<Release>&);
 void describe(Description<Renew>&);
 
 using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
-using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command>;
+using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command>;
 
 // Component i (components.h) is target i + 1.
 inline constexpr std::uint32_t kMachineTarget = 0;
@@ -50,7 +51,7 @@ struct Command {
   CommandBody body;
 };
 
-// Lets go of something or stops it: release, stop_all, stop, power(enable: false).
+// Lets go of something or stops it: release, stop_all, stop, power(enable: false); halt and interrupt of groups.
 bool LetsGo(const Command& command) noexcept;
 
 // One verb a kind of component understands; `arguments` describes its struct.

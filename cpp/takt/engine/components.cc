@@ -5,6 +5,7 @@
 #include "takt/axis/outputs.h"
 #include "takt/core/describe.h"
 #include "takt/flexcam/outputs.h"
+#include "takt/group/outputs.h"
 
 namespace takt::engine {
 
@@ -27,6 +28,7 @@ std::span<const ComponentKind> ComponentKinds() {
   static const std::array kinds = {
       Make<axis::Outputs, &Machine::axes>("axis", "axes", "an axis", "axes"),
       Make<flexcam::Outputs, &Machine::flex_cams>("flex_cam", "flex_cams", "a cam module", "cam modules"),
+      Make<group::Outputs, &Machine::groups>("group", "groups", "a group of axes", "groups of axes"),
   };
   return kinds;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
+#include <utility>
 
 #include "takt/cam/build.h"
 #include "takt/core/describe.h"
@@ -15,6 +17,7 @@ namespace {
 // Feedback of one cycle: each live command of an axis may start and end in it, and so may each newly arrived one.
 constexpr std::size_t kEventsPerAxis = 4 * (axis::kBufferSize + 5);
 constexpr std::size_t kEventsPerCommand = 4;
+constexpr std::size_t kEventsPerGroup = 4 * (group::kQueue + group::kSynced + 5);  // likewise
 
 axis::Context ContextOf(World& w, std::size_t i) {
   const axis::State* master = w.axis_masters[i] ? &w.axis_states[*w.axis_masters[i]] : nullptr;
@@ -25,29 +28,83 @@ flexcam::Context ContextOf(World& w, const FlexCam& module) {
   return {module.params, ContextOf(w, module.slave), module.master, module.homing};
 }
 
-// The k-th axis that axis i must not step before: the one it follows from load on or by a cam module, those it is
-// coupled to, those it will be coupled to by buffered commands. Last come those of `wanted`, a command for axis `of`.
-std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k,
-                                      const axis::CouplingRequest* wanted, std::uint32_t of) {
-  const axis::State& s = w.axis_states[i];
-  const auto of_request = [](const axis::CouplingRequest& r, std::uint32_t& n) -> std::optional<std::uint32_t> {
-    for (const axis::CouplingTerm& term : r.terms) {
-      if (term.master != axis::kNoAxis && n-- == 0) return term.master;
-    }
-    return std::nullopt;
-  };
-  if (w.axis_masters[i] && k-- == 0) return w.axis_masters[i];
-  const std::optional<std::uint32_t> led = w.module_of[i] ? w.flex_cams[w.module_of[i] - 1].master : std::nullopt;
-  if (led && k-- == 0) return led;
-  if (const auto master = of_request(s.active.coupling, k)) return master;
-  for (std::size_t b = 0; b < s.buffered; ++b) {
-    if (const auto master = of_request(s.buffer[b].coupling, k)) return master;
-  }
-  return wanted && i == of ? of_request(*wanted, k) : std::nullopt;
+group::Context ContextOf(World& w, const AxesGroup& group) {
+  const auto index = static_cast<std::size_t>(&group - w.groups.data());
+  const auto of_axis = [](void* owner, std::size_t i) noexcept { return ContextOf(*static_cast<World*>(owner), i); };
+  return {group.params,
+          group.kinematics ? &*group.kinematics : nullptr,
+          w.paths,
+          w.group_of,
+          static_cast<std::uint32_t>(index + 1),
+          {w.axis_states, of_axis, &w},
+          w.cycle,
+          w.feedback,
+          w.look_aheads[index]};
 }
 
-bool MakeOrder(World& w, const axis::CouplingRequest* wanted = nullptr, std::uint32_t of = 0) {
-  return w.axis_order.Make([&](std::uint32_t i, std::uint32_t k) { return MasterOf(w, i, k, wanted, of); });
+// What a command that has not been taken yet adds to the order.
+struct Wanted {
+  const axis::CouplingRequest* coupling = nullptr;
+  std::uint32_t of = 0;                  // for this axis
+  std::uint32_t group = 0;               // from 1; 0: none
+  std::uint32_t master = axis::kNoAxis;  // that its members follow
+  std::uint32_t synced = axis::kNoAxis;  // that follows its members
+};
+
+// The n-th that is seen is what is looked for.
+struct Nth {
+  std::uint32_t n;
+  std::optional<std::uint32_t> found{};
+
+  void See(std::uint32_t axis) {
+    if (!found && axis != axis::kNoAxis && n-- == 0) found = axis;
+  }
+};
+
+void SeeMasters(const axis::CouplingRequest& r, Nth& nth) {
+  for (const axis::CouplingTerm& term : r.terms) nth.See(term.master);
+}
+
+// Of the paths of a group, each once in a row.
+void SeeMasters(const group::State& s, Nth& nth) {
+  std::uint32_t last = 0;
+  for (std::uint32_t i = 0; i < s.queue.count && !nth.found; ++i) {
+    const std::uint32_t master = s.queue.moves[(s.queue.first + i) % group::kQueue].master;
+    if (master != 0 && master != last) nth.See(master - 1);
+    last = master;
+  }
+}
+
+void SeeMembers(const group::State& s, Nth& nth) {
+  for (const std::uint32_t member : s.members) {
+    if (member != 0) nth.See(member - 1);
+  }
+}
+
+// The k-th axis that axis i must not step before: the one it follows from load on or by a cam module, those it is
+// coupled to, those it will be coupled to by buffered commands, those that its group follows, the members of the group
+// that it follows itself. Last come those of `wanted`.
+std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted) {
+  const axis::State& s = w.axis_states[i];
+  Nth nth{k};
+  if (w.axis_masters[i]) nth.See(*w.axis_masters[i]);
+  if (w.module_of[i] != 0) nth.See(w.flex_cams[w.module_of[i] - 1].master.value_or(axis::kNoAxis));
+  SeeMasters(s.active.coupling, nth);
+  for (std::size_t b = 0; b < s.buffered; ++b) SeeMasters(s.buffer[b].coupling, nth);
+  if (w.group_of[i] != 0) SeeMasters(w.group_states[w.group_of[i] - 1], nth);
+  for (const group::State& group : w.group_states) {
+    for (const group::SyncedAxis& synced : group.synced) {
+      if (synced.axis == i + 1) SeeMembers(group, nth);
+    }
+  }
+  if (wanted.coupling != nullptr && i == wanted.of) SeeMasters(*wanted.coupling, nth);
+  if (wanted.group != 0 && w.group_of[i] == wanted.group) nth.See(wanted.master);
+  if (i == wanted.synced) SeeMembers(w.group_states[wanted.group - 1], nth);
+  return nth.found;
+}
+
+bool MakeOrder(World& w, const Wanted& wanted = {}) {
+  return w.axis_order.Make([&](std::uint32_t i, std::uint32_t k) { return MasterOf(w, i, k, wanted); });
 }
 
 // AX-82: after an internal fault nothing may move on: all loops open, all outputs are zero.
@@ -73,6 +130,43 @@ void StopMasters(World& w, std::uint32_t follower) {
   }
 }
 
+// What a member of an enabled group is told by itself: what moves nothing and changes neither its limits nor its
+// numbers, on which the path of the group is planned; and to be switched on or off, or reset.
+bool IsForMembers(const axis::Command& command) {
+  return std::visit(
+      []<typename T>(const T&) {
+        return std::is_same_v<T, axis::Power> || std::is_same_v<T, axis::Reset> ||
+               std::is_same_v<T, axis::ReadParameter> || std::is_same_v<T, axis::CamTableSelect> ||
+               std::is_same_v<T, axis::TouchProbe> || std::is_same_v<T, axis::AbortTrigger> ||
+               std::is_same_v<T, axis::DigitalCamSwitch>;
+      },
+      command);
+}
+
+bool IsOwned(const World& w, std::size_t axis) {
+  return w.group_of[axis] != 0 && group::Owns(w.group_states[w.group_of[axis] - 1]);
+}
+
+std::uint32_t AxisNamed(const World& w, const Name& name) {
+  const auto found = std::ranges::find(w.axis_params, name.view(), [](const auto& axis) { return axis.name; });
+  return found == w.axis_params.end() ? axis::kNoAxis : static_cast<std::uint32_t>(found - w.axis_params.begin());
+}
+
+// What a command makes the members of group `index` follow, or makes follow them.
+Wanted WantedBy(const World& w, const group::Command& command, std::size_t index) {
+  Wanted wanted{.group = static_cast<std::uint32_t>(index + 1)};
+  if (const auto* path = std::get_if<group::MovePathSynchronized>(&command)) {
+    wanted.master = AxisNamed(w, path->master);
+  } else if (const auto* sync = std::get_if<group::SyncAxis>(&command)) {
+    wanted.synced = AxisNamed(w, sync->axis);
+  }
+  return wanted;
+}
+
+bool Changes(const Wanted& wanted) {
+  return wanted.master != axis::kNoAxis || wanted.synced != axis::kNoAxis;
+}
+
 struct MachineApplier {
   World& world;
   Ticket ticket;
@@ -81,7 +175,19 @@ struct MachineApplier {
     world.feedback.Report({ticket, world.cycle.count, state, false, error, 0});
   }
   void operator()(const StopAll& c) const {
+    // A group takes its members to rest.
+    for (std::size_t i = 0; i < world.groups.size(); ++i) {
+      group::State& state = world.group_states[i];
+      if (!group::Owns(state)) continue;
+      const group::Context context = ContextOf(world, world.groups[i]);
+      if (c.open_loops) {
+        group::Apply(context, 0, 0, group::Power{.enable = false}, state);
+      } else if (state.state != group::GroupState::kErrorStop) {
+        group::Apply(context, 0, 0, group::Stop{}, state);
+      }
+    }
     for (std::size_t i = 0; i < world.axis_states.size(); ++i) {
+      if (IsOwned(world, i)) continue;
       axis::State& state = world.axis_states[i];
       if (c.open_loops) {
         axis::Apply(ContextOf(world, i), 0, 0, axis::Power{.enable = false}, state);
@@ -103,11 +209,11 @@ struct MachineApplier {
     }
     Report(FeedbackState::kDone);
   }
-  void operator()(const Release& c) const { ToOwner(c.ticket, axis::Release, flexcam::Release); }
-  void operator()(const Renew& c) const { ToOwner(c.ticket, axis::Renew, flexcam::Renew); }
+  void operator()(const Release& c) const { ToOwner(c.ticket, axis::Release, flexcam::Release, group::Release); }
+  void operator()(const Renew& c) const { ToOwner(c.ticket, axis::Renew, flexcam::Renew, group::Renew); }
 
-  template <typename OfAxis, typename OfModule>
-  void ToOwner(Ticket of, OfAxis change, OfModule of_module) const {
+  template <typename OfAxis, typename OfModule, typename OfGroup>
+  void ToOwner(Ticket of, OfAxis change, OfModule of_module, OfGroup of_group) const {
     bool found = false;
     for (std::size_t i = 0; i < world.axis_states.size() && !found; ++i) {
       found = change(ContextOf(world, i), of, world.axis_states[i]);
@@ -115,9 +221,32 @@ struct MachineApplier {
     for (std::size_t i = 0; i < world.flex_cams.size() && !found; ++i) {
       found = of_module(ContextOf(world, world.flex_cams[i]), of, world.flex_cam_states[i]);
     }
+    for (std::size_t i = 0; i < world.groups.size() && !found; ++i) {
+      found = of_group(ContextOf(world, world.groups[i]), of, world.group_states[i]);
+    }
     Report(FeedbackState::kDone);  // letting go of what is over already is no error
   }
 };
+
+template <typename... T>
+void TouchTypes(const std::variant<T...>*) {
+  (TypeOf<T>(), ...);
+}
+
+// What is called so must be there.
+std::uint32_t IndexOf(const auto& list, const std::string& name) {
+  return static_cast<std::uint32_t>(std::ranges::find(list, name, [](const auto& x) { return x.name; }) - list.begin());
+}
+
+// Kinematics stay within the SW limits of the axes, too.
+void LimitToAxes(const Machine& machine, const group::GroupParams& group, kinematics::Kinematics& kinematics) {
+  for (std::size_t k = 0; k < kinematics.count; ++k) {
+    const axis::AxisLimits& limits = machine.axes[IndexOf(machine.axes, group.axes[k])].limits;
+    kinematics::JointRange& range = kinematics.ranges[k];
+    range.lower = std::max(range.lower, limits.lower.value_or(range.lower));
+    range.upper = std::min(range.upper, limits.upper.value_or(range.upper));
+  }
+}
 
 }  // namespace
 
@@ -130,7 +259,7 @@ World::World(const Machine& machine)
       servo_inputs(machine.axes.size()),
       servo_outputs(machine.axes.size()),
       samplings(machine.axes.size()),
-      feedback_storage(machine.axes.size() * kEventsPerAxis +
+      feedback_storage(machine.axes.size() * kEventsPerAxis + machine.groups.size() * kEventsPerGroup +
                        (kCommandsPerCycle + kRenewalsPerCycle) * kEventsPerCommand),
       feedback(feedback_storage) {
   TypeOf<axis::State>();  // the first use of a type allocates
@@ -154,6 +283,7 @@ World::World(const Machine& machine)
     axis_masters.push_back(engine::MasterOf(machine, i));
   }
   MakeModules(machine);
+  MakeGroups(machine);
   surrounding = {axis_states, axis_params, cam_switches, cams};
   MakeOrder(*this);
 }
@@ -169,16 +299,12 @@ void World::MakeModules(const Machine& machine) {
   TypeOf<flexcam::ChangeCam>();
   TypeOf<flexcam::WithdrawChanges>();
   module_of.assign(machine.axes.size(), 0);
-  const auto index_of = [](const auto& list, const std::string& name) {
-    return static_cast<std::uint32_t>(std::ranges::find(list, name, [](const auto& x) { return x.name; }) -
-                                      list.begin());
-  };
   for (const flexcam::FlexCamParams& params : machine.flex_cams) {
-    FlexCam module{params, index_of(machine.axes, params.slave), {}, {}};
-    if (params.master) module.master = index_of(machine.axes, *params.master);
+    FlexCam module{params, IndexOf(machine.axes, params.slave), {}, {}};
+    if (params.master) module.master = IndexOf(machine.axes, *params.master);
     module.homing = machine.axes[module.slave].homing;
     std::array<std::uint32_t, flexcam::kSlots> slots{};
-    for (std::size_t i = 0; i < params.cams.size(); ++i) slots[i] = index_of(machine.cams, params.cams[i]) + 1;
+    for (std::size_t i = 0; i < params.cams.size(); ++i) slots[i] = IndexOf(machine.cams, params.cams[i]) + 1;
     flex_cams.push_back(module);
     flex_cam_states.push_back(flexcam::MakeState(params, slots));
     module_of[module.slave] = static_cast<std::uint32_t>(flex_cams.size());
@@ -186,11 +312,34 @@ void World::MakeModules(const Machine& machine) {
   flex_cam_outputs.resize(flex_cams.size());
 }
 
+void World::MakeGroups(const Machine& machine) {
+  TypeOf<group::State>();
+  TypeOf<group::GroupParams>();
+  TouchTypes(static_cast<const group::Command*>(nullptr));
+  group_of.assign(machine.axes.size(), 0);
+  for (const group::PathParams& path : machine.paths) paths.push_back(group::MakePathTable(path).table.value());
+  for (const group::GroupParams& params : machine.groups) {
+    AxesGroup& group = groups.emplace_back();
+    group.params = params;
+    if (params.kinematics) {
+      group.kinematics = kinematics::Make(*params.kinematics).kinematics;
+      LimitToAxes(machine, params, group.kinematics.value());
+    }
+    for (const std::string& axis : params.axes) group.axes.push_back(IndexOf(machine.axes, axis));
+    for (const std::uint32_t axis : group.axes) group_of[axis] = static_cast<std::uint32_t>(groups.size());
+    group_states.push_back(group::MakeState(params, group.axes));
+    look_aheads.emplace_back(trajectory::CoordinateLimits{}, cycle.period_s);
+  }
+  group_outputs.resize(groups.size());
+  group_stepped.resize(groups.size());
+}
+
 std::uint64_t World::StateHash() const noexcept {
   std::uint64_t hash = cycle.count;
   for (const axis::State& state : axis_states) hash = HashOf(state, hash);
   for (const axis::AxisParams& params : axis_params) hash = HashOf(params, hash);  // settings change them
   for (const flexcam::State& state : flex_cam_states) hash = HashOf(state, hash);
+  for (const group::State& state : group_states) hash = HashOf(state, hash);
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
   for (const HeardDrive& drive : drives) hash = HashOf(servo_inputs[drive.axis], HashOf(drive, hash));
   return hash;
@@ -227,8 +376,10 @@ void Apply(World& w, const Command& command) noexcept {
     std::visit(MachineApplier{w, command.ticket}, *for_machine);
   } else if (const auto* for_axis = std::get_if<axis::Command>(&command.body)) {
     if (component >= axes) return refuse(ErrorId::kUnknownTarget);
+    if (IsOwned(w, component) && !IsForMembers(*for_axis)) return refuse(ErrorId::kGroupMember);
     axis::CouplingRequest coupling;
-    if (axis::CouplingOf(ContextOf(w, component), *for_axis, coupling) && !MakeOrder(w, &coupling, component)) {
+    if (axis::CouplingOf(ContextOf(w, component), *for_axis, coupling) &&
+        !MakeOrder(w, {.coupling = &coupling, .of = component})) {
       return refuse(ErrorId::kCouplingLoop);
     }
     axis::Apply(ContextOf(w, component), command.ticket, command.lease_s, *for_axis, w.axis_states[component]);
@@ -238,20 +389,39 @@ void Apply(World& w, const Command& command) noexcept {
     const FlexCam& module = w.flex_cams[i];
     flexcam::Apply(ContextOf(w, module), command.ticket, command.lease_s, *for_module, w.axis_states[module.slave],
                    w.flex_cam_states[i]);
+  } else if (const auto* for_group = std::get_if<group::Command>(&command.body)) {
+    const std::size_t i = component - axes - w.flex_cams.size();  // likewise
+    if (i >= w.groups.size()) return refuse(ErrorId::kUnknownTarget);
+    const Wanted wanted = WantedBy(w, *for_group, i);
+    if (Changes(wanted) && !MakeOrder(w, wanted)) return refuse(ErrorId::kCouplingLoop);
+    group::Apply(ContextOf(w, w.groups[i]), command.ticket, command.lease_s, *for_group, w.group_states[i]);
   }
 }
+
+namespace {
+
+// Before the first of its members.
+void StepOnce(World& w, std::size_t group) {
+  if (std::exchange(w.group_stepped[group], std::uint8_t{1}) != 0) return;
+  group::Step(ContextOf(w, w.groups[group]), w.group_states[group]);
+}
+
+}  // namespace
 
 void Move(World& w) noexcept {
   // A master does not go on without a follower that has failed.
   for (const std::uint32_t i : w.axis_order.sequence()) {
     if (w.axis_states[i].plc == axis::PlcState::kErrorStop) StopMasters(w, i);
   }
+  std::ranges::fill(w.group_stepped, std::uint8_t{0});
   for (const std::uint32_t i : w.axis_order.sequence()) {
+    if (w.group_of[i] != 0) StepOnce(w, w.group_of[i] - 1);
     if (const std::uint32_t module = w.module_of[i]; module != 0) {
       flexcam::Step(ContextOf(w, w.flex_cams[module - 1]), w.axis_states[i], w.flex_cam_states[module - 1]);
     }
     axis::Move(ContextOf(w, i), w.axis_states[i]);
   }
+  for (std::size_t i = 0; i < w.groups.size(); ++i) StepOnce(w, i);  // without members
 }
 
 void Control(World& w) noexcept {
@@ -266,6 +436,9 @@ void Control(World& w) noexcept {
   for (std::size_t i = 0; i < w.flex_cams.size(); ++i) {
     const FlexCam& module = w.flex_cams[i];
     flexcam::Publish(ContextOf(w, module), w.axis_states[module.slave], w.flex_cam_states[i], w.flex_cam_outputs[i]);
+  }
+  for (std::size_t i = 0; i < w.groups.size(); ++i) {
+    group::Publish(ContextOf(w, w.groups[i]), w.group_states[i], w.group_outputs[i]);
   }
 }
 

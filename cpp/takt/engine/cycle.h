@@ -20,6 +20,7 @@
 #include "takt/engine/machine.h"
 #include "takt/engine/order.h"
 #include "takt/flexcam/module.h"
+#include "takt/group/group.h"
 #include "takt/plant/servo.h"
 #include "takt/trajectory/planner.h"
 
@@ -37,6 +38,13 @@ struct FlexCam {
   std::uint32_t slave = 0;
   std::optional<std::uint32_t> master{};
   axis::HomingParams homing;  // of the slave, as the machine file has it
+};
+
+// What a group of axes is made from.
+struct AxesGroup {
+  group::GroupParams params;
+  std::optional<kinematics::Kinematics> kinematics{};
+  std::vector<std::uint32_t> axes;  // members at the start
 };
 
 // Everything the cycle works on, in arrays by component; index i is axis i of the machine.
@@ -62,6 +70,14 @@ struct World {
   std::vector<flexcam::Outputs> flex_cam_outputs;
   std::vector<std::uint32_t> module_of;  // the cam module that moves each axis, from 1; 0: none
 
+  std::vector<AxesGroup> groups;
+  std::vector<group::State> group_states;
+  std::vector<group::Outputs> group_outputs;
+  std::vector<group::LookAhead> look_aheads;
+  std::vector<group::PathTable> paths;
+  std::vector<std::uint32_t> group_of;      // the group that each axis is a member of, from 1; 0: none
+  std::vector<std::uint8_t> group_stepped;  // in this cycle
+
   std::vector<ServoInputs> servo_inputs;
   std::vector<ServoOutputs> servo_outputs;
   std::vector<plant::ServoParams> servo_params;
@@ -77,6 +93,7 @@ struct World {
 
  private:
   void MakeModules(const Machine& machine);
+  void MakeGroups(const Machine& machine);
 };
 
 // Not for the cycle (axis/forecast.h).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "takt/core/describe.h"
 #include "takt/engine/cycle.h"
@@ -16,19 +17,26 @@ std::uint64_t Divisor(double rate_hz, double period_s) {
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(1 / (rate_hz * period_s))));
 }
 
-// Of components of a kind.
-template <typename Params>
-std::vector<std::uint64_t> Divisors(const Machine& m, const std::vector<Params>& components) {
-  std::vector<std::uint64_t> divisors;
-  for (const Params& component : components) {
-    double rate = m.lcm.axis_rate_hz;
-    for (const ChannelRate& own : m.lcm.rates) {
-      if (own.axis == component.name) rate = own.rate_hz;
+// What the components of a kind publish.
+template <typename Outputs>
+struct OfKind {
+  template <typename Params>
+  OfKind(const Machine& m, const EngineOptions& options, const std::vector<Params>& components,
+         const std::vector<Outputs>& of_world)
+      : queue(options.publish && !components.empty() ? options.snapshot_queue : 2), outputs(of_world) {
+    for (const Params& component : components) {
+      double rate = m.lcm.axis_rate_hz;
+      for (const ChannelRate& own : m.lcm.rates) {
+        if (own.axis == component.name) rate = own.rate_hz;
+      }
+      divisors.push_back(Divisor(rate, m.cycle.period_s));
     }
-    divisors.push_back(Divisor(rate, m.cycle.period_s));
   }
-  return divisors;
-}
+
+  SpscQueue<SnapshotOf<Outputs>> queue;
+  const std::vector<Outputs>& outputs;
+  std::vector<std::uint64_t> divisors;  // due every so many cycles; 0: never
+};
 
 // Of the command queue, for commands that let go.
 constexpr std::size_t kKeptShare = 16;
@@ -55,16 +63,15 @@ struct Engine::Impl {
         renewals(kRenewalsPerCycle * 4),
         journalled(kJournalledPerCycle),
         feedback(4 * world.feedback_storage.size()),
-        snapshots(o.publish ? o.snapshot_queue : 2),
-        flex_cam_snapshots(o.publish && !machine.flex_cams.empty() ? o.snapshot_queue : 2),
+        axes(machine, o, machine.axes, world.axis_outputs),
+        flex_cams(machine, o, machine.flex_cams, world.flex_cam_outputs),
+        groups(machine, o, machine.groups, world.group_outputs),
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
         hashes(o.journal ? o.snapshot_queue : 2),
         set_points(o.drives ? kDriveQueue * world.drives.size() : 2),
         drive_samples(kDriveQueue * world.drives.size()),
         drive_journal(o.journal && !world.drives.empty() ? o.snapshot_queue : 2),
-        axis_divisors(Divisors(machine, machine.axes)),
-        flex_cam_divisors(Divisors(machine, machine.flex_cams)),
         figures_divisor(Divisor(machine.lcm.engine_rate_hz, machine.cycle.period_s)) {
     SendSetPoints(-1);
   }
@@ -138,14 +145,16 @@ struct Engine::Impl {
     return (LetsGo(command) || room > commands.capacity() / kKeptShare) && commands.TryPush(command);
   }
 
+  // All kinds of components, in the order of their numbers.
+  auto kinds() noexcept { return std::tie(axes, flex_cams, groups); }
+
   template <typename Outputs>
-  void PublishAll(const std::vector<std::uint64_t>& divisors, const std::vector<Outputs>& outputs,
-                  SpscQueue<SnapshotOf<Outputs>>& queue) noexcept {
-    for (std::size_t i = 0; i < divisors.size(); ++i) {
+  void PublishAll(OfKind<Outputs>& kind) noexcept {
+    for (std::size_t i = 0; i < kind.divisors.size(); ++i) {
       // All components of a rate in the same cycle, so that a receiver can hold them against one another.
-      const bool due = divisors[i] != 0 && world.cycle.count % divisors[i] == 0;
+      const bool due = kind.divisors[i] != 0 && world.cycle.count % kind.divisors[i] == 0;
       if (!due && !options.every_cycle) continue;
-      if (!queue.TryPush({world.cycle.count, static_cast<std::uint32_t>(i), due, outputs[i]}))
+      if (!kind.queue.TryPush({world.cycle.count, static_cast<std::uint32_t>(i), due, kind.outputs[i]}))
         ++figures.snapshots_dropped;
     }
   }
@@ -166,8 +175,7 @@ struct Engine::Impl {
       if (!hashes.TryPush({world.cycle.count, figures.state_hash})) ++figures.journal_dropped;
     }
     if (!options.publish) return;
-    PublishAll(axis_divisors, world.axis_outputs, snapshots);
-    PublishAll(flex_cam_divisors, world.flex_cam_outputs, flex_cam_snapshots);
+    std::apply([this](auto&... kind) { (PublishAll(kind), ...); }, kinds());
     if (figures_divisor > 0 && world.cycle.count % figures_divisor == 0) figure_queue.TryPush(figures);
   }
 
@@ -180,8 +188,9 @@ struct Engine::Impl {
   SpscQueue<Command> renewals;
   SpscQueue<Command> journalled;
   SpscQueue<FeedbackEvent> feedback;
-  SpscQueue<AxisSnapshot> snapshots;
-  SpscQueue<FlexCamSnapshot> flex_cam_snapshots;
+  OfKind<axis::Outputs> axes;
+  OfKind<flexcam::Outputs> flex_cams;
+  OfKind<group::Outputs> groups;
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
   SpscQueue<HashEntry> hashes;
@@ -189,8 +198,6 @@ struct Engine::Impl {
   SpscQueue<DriveSample> drive_samples;
   SpscQueue<DriveEntry> drive_journal;
 
-  std::vector<std::uint64_t> axis_divisors;
-  std::vector<std::uint64_t> flex_cam_divisors;
   std::uint64_t figures_divisor;
   std::uint64_t feedback_dropped = 0;  // by the queue
   std::uint64_t samples_unused = 0;    // by the cycle
@@ -248,14 +255,24 @@ const axis::Outputs& Engine::outputs(std::size_t axis) const noexcept {
 const flexcam::Outputs& Engine::flex_cam_outputs(std::size_t module) const noexcept {
   return impl_->world.flex_cam_outputs[module];
 }
+const group::Outputs& Engine::group_outputs(std::size_t group) const noexcept {
+  return impl_->world.group_outputs[group];
+}
 std::size_t Engine::components() const noexcept {
-  return impl_->world.axis_outputs.size() + impl_->world.flex_cam_outputs.size();
+  return std::apply([](const auto&... kind) { return (kind.outputs.size() + ...); }, impl_->kinds());
 }
 Engine::Published Engine::published(std::size_t component) const noexcept {
-  const World& world = impl_->world;
-  const std::size_t axes = world.axis_outputs.size();
-  if (component < axes) return {&TypeOf<axis::Outputs>(), &world.axis_outputs[component]};
-  return {&TypeOf<flexcam::Outputs>(), &world.flex_cam_outputs[component - axes]};
+  Published found{};
+  const auto look = [&]<typename Outputs>(const OfKind<Outputs>& kind) {
+    if (found.type != nullptr) return;
+    if (component < kind.outputs.size()) {
+      found = {&TypeOf<Outputs>(), &kind.outputs[component]};
+    } else {
+      component -= kind.outputs.size();
+    }
+  };
+  std::apply([&](const auto&... kind) { (look(kind), ...); }, impl_->kinds());
+  return found;
 }
 axis::Forecast Engine::Foresee(std::size_t axis) const {
   return engine::Foresee(impl_->world, axis);
@@ -308,12 +325,14 @@ SpscQueue<DriveEntry>& Engine::drive_journal() noexcept {
 SpscQueue<FeedbackEvent>& Engine::feedback() noexcept {
   return impl_->feedback;
 }
-SpscQueue<AxisSnapshot>& Engine::snapshots() noexcept {
-  return impl_->snapshots;
+template <typename Outputs>
+SpscQueue<SnapshotOf<Outputs>>& Engine::snapshots() noexcept {
+  return std::get<OfKind<Outputs>&>(impl_->kinds()).queue;
 }
-SpscQueue<FlexCamSnapshot>& Engine::flex_cam_snapshots() noexcept {
-  return impl_->flex_cam_snapshots;
-}
+template SpscQueue<AxisSnapshot>& Engine::snapshots<axis::Outputs>() noexcept;
+template SpscQueue<FlexCamSnapshot>& Engine::snapshots<flexcam::Outputs>() noexcept;
+template SpscQueue<GroupSnapshot>& Engine::snapshots<group::Outputs>() noexcept;
+
 SpscQueue<EngineFigures>& Engine::figure_queue() noexcept {
   return impl_->figure_queue;
 }

@@ -15,12 +15,13 @@
 #include "takt/engine/machine.h"
 #include "takt/engine/snapshot.h"
 #include "takt/flexcam/outputs.h"
+#include "takt/group/outputs.h"
 
 namespace takt::engine {
 
 struct EngineOptions {
-  bool publish = false;             // hand axis snapshots and figures to the queues (a reader must drain them)
-  bool every_cycle = false;         // snapshots of every axis in every cycle, whatever the machine's rates say
+  bool publish = false;             // hand snapshots and figures to the queues (a reader must drain them)
+  bool every_cycle = false;         // snapshots of every component in every cycle, whatever the machine's rates say
   bool drives = false;              // hand the set points of external drives to a queue (a reader must drain it)
   bool journal = false;             // journal entries and a state hash every cycle
   std::size_t command_queue = 256;  // a stop behind a flood waits for this many, kCommandsPerCycle a cycle
@@ -56,6 +57,7 @@ class Engine {
   const Cycle& cycle() const noexcept;
   const axis::Outputs& outputs(std::size_t axis) const noexcept;
   const flexcam::Outputs& flex_cam_outputs(std::size_t module) const noexcept;
+  const group::Outputs& group_outputs(std::size_t group) const noexcept;
   // The same for components of any kind, by the number that is their target, less one.
   struct Published {
     const Type* type;
@@ -88,8 +90,9 @@ class Engine {
 
   // --- one consuming thread ---
   SpscQueue<FeedbackEvent>& feedback() noexcept;
-  SpscQueue<AxisSnapshot>& snapshots() noexcept;
-  SpscQueue<FlexCamSnapshot>& flex_cam_snapshots() noexcept;
+  // One for each kind of components (PublishedKinds).
+  template <typename Outputs = axis::Outputs>
+  SpscQueue<SnapshotOf<Outputs>>& snapshots() noexcept;
   SpscQueue<EngineFigures>& figure_queue() noexcept;
   SpscQueue<JournalEntry>& journal() noexcept;
   SpscQueue<DriveEntry>& drive_journal() noexcept;

@@ -6,6 +6,7 @@
 #include "takt/axis/following.h"
 #include "takt/core/yaml_reader.h"
 #include "takt/engine/load_cams.h"
+#include "takt/engine/load_groups.h"
 #include "takt/engine/order.h"
 
 namespace takt::engine {
@@ -44,6 +45,9 @@ class CrossCheck {
     CheckNames("cam_switches", machine_.cam_switches);
     CheckNames("flex_cams", machine_.flex_cams);
     CheckModules();
+    CheckNames("groups", machine_.groups);
+    CheckNames("paths", machine_.paths);
+    CheckGroups();
     CheckCamSwitches();
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
@@ -138,6 +142,37 @@ class CrossCheck {
     }
   }
 
+  // Groups and the axes that they name.
+  void CheckGroups() {
+    std::vector<std::string_view> others = names_;
+    for (const flexcam::FlexCamParams& module : machine_.flex_cams) others.push_back(module.name);
+    std::vector<std::string_view> members;
+    for (std::size_t i = 0; i < machine_.groups.size(); ++i) {
+      const group::GroupParams& group = machine_.groups[i];
+      const std::string path = "groups[" + std::to_string(i) + "]";
+      if (group.name == "machine" || std::ranges::find(others, group.name) != others.end()) {
+        Add(path + ".name",
+            "expected a name that no axis and no cam module has, and not machine, found " + Quoted(group.name));
+      }
+      for (std::size_t k = 0; k < group.axes.size(); ++k) {
+        const std::string place = path + ".axes[" + std::to_string(k) + "]";
+        CheckReference(place, group.axes[k], members);
+        CheckMember(place, group.axes[k]);
+      }
+    }
+  }
+
+  // A member goes by its group alone.
+  void CheckMember(const std::string& path, std::string_view name) {
+    for (const axis::AxisParams& axis : machine_.axes) {
+      if (axis.name == name && axis.follows)
+        Add(path, "expected an axis that does not follow another, found " + Quoted(name));
+    }
+    for (const flexcam::FlexCamParams& module : machine_.flex_cams) {
+      if (module.slave == name) Add(path, "expected an axis that no cam module moves, found " + Quoted(name));
+    }
+  }
+
   // Lists that no axis of the machine can have.
   void CheckCamSwitches() {
     for (std::size_t i = 0; i < machine_.cam_switches.size(); ++i) {
@@ -160,14 +195,15 @@ class CrossCheck {
     }
   }
 
-  // Of axes and of cam modules.
+  // Of axes, cam modules and groups.
   void CheckRates() {
     std::vector<std::string_view> components = names_;
     for (const flexcam::FlexCamParams& module : machine_.flex_cams) components.push_back(module.name);
+    for (const group::GroupParams& group : machine_.groups) components.push_back(group.name);
     std::vector<std::string_view> seen;
     for (std::size_t i = 0; i < machine_.lcm.rates.size(); ++i) {
       CheckReference("lcm.rates[" + std::to_string(i) + "].axis", machine_.lcm.rates[i].axis, seen, components,
-                     machine_.flex_cams.empty() ? "axis" : "axis or cam module");
+                     components.size() == names_.size() ? "axis" : "axis, cam module or group");
     }
   }
 
@@ -202,7 +238,11 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name) {
   std::vector<Problem> problems = ReadYaml(TypeOf<Machine>(), &machine, text, file_name, source);
   const bool readable = problems.size() < kMaxProblems;
   CamLoading cams;
-  if (problems.empty()) cams = LoadCams(source, machine);
+  GroupLoading groups;
+  if (problems.empty()) {
+    cams = LoadCams(source, machine);
+    groups = LoadGroups(source, machine);
+  }
   if (readable && !machine.axes.empty()) {
     std::vector<Problem> more = CrossCheck(machine, source).Run();
     problems.insert(problems.end(), more.begin(), more.end());
@@ -210,11 +250,12 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name) {
     problems = CrossCheck(machine, source).Run();
   }
   problems.insert(problems.end(), cams.problems.begin(), cams.problems.end());
+  problems.insert(problems.end(), groups.problems.begin(), groups.problems.end());
   const auto key = [&](const Problem& p) { return std::tuple(p.source != file_name, p.place.line, p.place.column); };
   std::stable_sort(problems.begin(), problems.end(),
                    [&](const Problem& a, const Problem& b) { return key(a) < key(b); });
   LoadResult result;
-  result.names_files = cams.files;
+  result.names_files = cams.files || groups.files;
   for (const Problem& problem : problems) result.problems.push_back(problem.Text());
   for (const Problem& warning : cams.warnings) result.warnings.push_back(warning.Text());
   if (problems.empty()) result.machine = std::move(machine);

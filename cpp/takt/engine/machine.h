@@ -12,6 +12,7 @@
 #include "takt/cam/params.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/flexcam/params.h"
+#include "takt/group/params.h"
 #include "takt/plant/servo.h"
 
 namespace takt::engine {
@@ -22,16 +23,16 @@ struct CycleParams {
 };
 
 struct ChannelRate {
-  std::string axis;  // name of the axis or cam module
+  std::string axis;  // name of the axis, the cam module or the group
   double rate_hz = 100;
 };
 
 struct LcmParams {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";  // EN-25: stays on this host
-  double axis_rate_hz = 100;       // of each axis' and module's state channel; at most once a cycle
-  std::vector<ChannelRate> rates;  // axes and modules with a rate of their own
-  double engine_rate_hz = 10;      // of the engine's own channel
-  double dead_man_s = 0.25;        // s without a heartbeat after which a level-sensitive command is released
+  double axis_rate_hz = 100;                            // of each component's state channel; at most once a cycle
+  std::vector<ChannelRate> rates;                       // components with a rate of their own
+  double engine_rate_hz = 10;                           // of the engine's own channel
+  double dead_man_s = 0.25;  // s without a heartbeat after which a level-sensitive command is released
 };
 
 // The simulated servo behind an axis. Axes without one get an ideal servo that fits their own parameters.
@@ -66,6 +67,8 @@ struct Machine {
   std::vector<cam::CamParams> cams;
   std::vector<axis::CamSwitches> cam_switches;
   std::vector<flexcam::FlexCamParams> flex_cams;
+  std::vector<group::GroupParams> groups;
+  std::vector<group::PathParams> paths;
   Simulation simulation;
   External external;
 };

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 #include "takt/engine/real_time.h"
 
@@ -119,8 +120,13 @@ bool IsHalfFull(const SpscQueue<T>& queue) {
   return queue.size() * 2 > queue.capacity();
 }
 
+template <typename... Outputs>
+bool AreHalfFull(Engine& engine, const std::tuple<Outputs...>*) {
+  return (IsHalfFull(engine.snapshots<Outputs>()) || ...);
+}
+
 bool ReaderIsBehind(Engine& engine) {
-  return IsHalfFull(engine.snapshots()) || IsHalfFull(engine.flex_cam_snapshots()) || IsHalfFull(engine.feedback()) ||
+  return AreHalfFull(engine, static_cast<PublishedKinds*>(nullptr)) || IsHalfFull(engine.feedback()) ||
          IsHalfFull(engine.journal()) || IsHalfFull(engine.drive_journal()) || IsHalfFull(engine.hashes()) ||
          IsHalfFull(engine.figure_queue());
 }

@@ -48,7 +48,7 @@ void describe(Description<EngineFigures>& d) {
   d.internal<&F::overruns>("Cycles that ended after the next one should have begun.");
   d.internal<&F::commands_applied>("Commands the cycle has taken up.");
   d.internal<&F::commands_refused>("Commands refused because the queue to the cycle was full.");
-  d.internal<&F::snapshots_dropped>("Axis states lost because their queue was full (a slow network or disk).");
+  d.internal<&F::snapshots_dropped>("States of components lost because their queue was full (a slow network or disk).");
   d.internal<&F::feedback_dropped>("Feedback events lost because their queue was full.");
   d.internal<&F::journal_dropped>(
       "Commands and hashes missing in the journal because their queue was full: it cannot be replayed.");

@@ -3,13 +3,18 @@
 
 #include <array>
 #include <cstdint>
+#include <tuple>
 
 #include "takt/axis/outputs.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/engine/command.h"
 #include "takt/flexcam/outputs.h"
+#include "takt/group/outputs.h"
 
 namespace takt::engine {
+
+// What each kind of components publishes, in the order of ComponentKinds().
+using PublishedKinds = std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs>;
 
 // What a component published.
 template <typename Outputs>
@@ -21,6 +26,7 @@ struct SnapshotOf {
 };
 using AxisSnapshot = SnapshotOf<axis::Outputs>;
 using FlexCamSnapshot = SnapshotOf<flexcam::Outputs>;
+using GroupSnapshot = SnapshotOf<group::Outputs>;
 
 struct JournalEntry {  // a command as it was applied
   std::uint64_t cycle = 0;

@@ -7,6 +7,7 @@
 #include "takt/group/plan.h"
 #include "takt/group/queue.h"
 #include "takt/group/run.h"
+#include "takt/group/sync.h"
 #include "takt/group/systems.h"
 
 namespace takt::group {
@@ -150,6 +151,7 @@ struct Applier {
     AbortAll({});
     if (s.state == GroupState::kHoming) TellAll(c, s, axis::Halt{});
     LetGoOfMembers(c, s);
+    LetGoOfSynced(c, FeedbackState::kDone, s);
     ForgetPlan(c, s);
     s.begun = s.ends = s.hold = false;
     s.pace = {};
@@ -239,8 +241,10 @@ struct Applier {
     Finish(ErrorId::kNone);
   }
   void operator()(const SyncAxis& m) const {
-    (void)m;
-    Refuse(ErrorId::kUnknownVerb);
+    if (Is(GroupState::kDisabled)) return Refuse(ErrorId::kGroupDisabled);
+    if (Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
+    if (const ErrorId error = Sync(c, ticket, m, s); error != ErrorId::kNone) return Refuse(error);
+    Report(c, ticket, FeedbackState::kActive);
   }
   template <typename T>
   void operator()(const T&) const {}  // moves: see Apply

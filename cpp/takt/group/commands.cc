@@ -11,8 +11,6 @@ namespace takt::group {
 
 namespace {
 
-constexpr Range kFactor{.min = 0, .max = 1, .without_min = true};
-
 template <typename T>
 void DescribeNumbers(Description<T>& d) {
   d.template defaulted<&T::x>(unit::mm, kPlaces, "X of the tool. Not in ACS, as all of x to c.");
@@ -39,17 +37,19 @@ void DescribeSystem(Description<T>& d) {
 
 template <typename T>
 void DescribeRamps(Description<T>& d) {
-  d.template defaulted<&T::velocity>(unit::mm_s, positive, "Largest speed along the path; unset: the group's limit.");
-  d.template defaulted<&T::acceleration>(unit::mm_s2, positive, "Largest acceleration along it; unset: the limit.");
-  d.template defaulted<&T::deceleration>(unit::mm_s2, positive, "Largest deceleration along it; unset: the limit.");
-  d.template defaulted<&T::jerk>(unit::mm_s3, positive, "Largest jerk along it; unset: the limit.");
+  d.template defaulted<&T::velocity>(unit::mm_s, kSpeeds, "Largest speed along the path; unset: the group's limit.");
+  d.template defaulted<&T::acceleration>(unit::mm_s2, kAccelerations,
+                                         "Largest acceleration along it; unset: the limit.");
+  d.template defaulted<&T::deceleration>(unit::mm_s2, kAccelerations,
+                                         "Largest deceleration along it; unset: the limit.");
+  d.template defaulted<&T::jerk>(unit::mm_s3, kJerks, "Largest jerk along it; unset: the limit.");
 }
 
 template <typename T>
 void DescribeTransition(Description<T>& d, std::string_view mode) {
   d.template defaulted<&T::transition_mode>(mode);
   d.template defaulted<&T::transition_parameter>(
-      not_negative, "TransitionParameter: mm from the corner, mm of deviation, or mm/s at it, as the mode says.");
+      between(0, 1e9), "TransitionParameter: mm from the corner, mm of deviation, or mm/s at it, as the mode says.");
 }
 
 constexpr std::string_view kIntoThis = "How the move before goes over into this one, with a blending buffer mode.";
@@ -91,16 +91,16 @@ void DescribeDirect(Description<MoveDirect<kReference>>& d) {
   using M = MoveDirect<kReference>;
   DescribeNumbers(d);
   DescribeSystem(d);
-  d.template defaulted<&M::velocity_factor>(kFactor, "Of the axes' largest velocities.");
-  d.template defaulted<&M::acceleration_factor>(kFactor, "Of their largest accelerations.");
-  d.template defaulted<&M::jerk_factor>(kFactor, "Of their largest jerks.");
+  d.template defaulted<&M::velocity_factor>(kFactors, "Of the axes' largest velocities.");
+  d.template defaulted<&M::acceleration_factor>(kFactors, "Of their largest accelerations.");
+  d.template defaulted<&M::jerk_factor>(kFactors, "Of their largest jerks.");
   DescribeBuffering(d);
 }
 
 template <typename T>
 void DescribeBrake(Description<T>& d) {
-  d.template defaulted<&T::deceleration>(unit::mm_s2, positive, "Largest deceleration; unset: that of the move.");
-  d.template defaulted<&T::jerk>(unit::mm_s3, positive, "Largest jerk; unset: that of the move.");
+  d.template defaulted<&T::deceleration>(unit::mm_s2, kAccelerations, "Largest deceleration; unset: that of the move.");
+  d.template defaulted<&T::jerk>(unit::mm_s3, kJerks, "Largest jerk; unset: that of the move.");
 }
 
 template <typename T>
@@ -389,8 +389,8 @@ void describe(Description<SetOverride>& d) {
   using C = SetOverride;
   d.about("Scales the speed of the motion in progress and of those to come (MC_GroupSetOverride).");
   d.defaulted<&C::velocity_factor>(between(0, 1), "Of velocities; 0 holds the group on its path.");
-  d.defaulted<&C::acceleration_factor>(kFactor, "Of accelerations and decelerations commanded from now on.");
-  d.defaulted<&C::jerk_factor>(kFactor, "Of jerks commanded from now on.");
+  d.defaulted<&C::acceleration_factor>(kFactors, "Of accelerations and decelerations commanded from now on.");
+  d.defaulted<&C::jerk_factor>(kFactors, "Of jerks commanded from now on.");
 }
 
 void describe(Description<SetKinTransform>& d) {

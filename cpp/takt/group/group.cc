@@ -8,6 +8,7 @@
 #include "takt/group/plan.h"
 #include "takt/group/queue.h"
 #include "takt/group/run.h"
+#include "takt/group/sync.h"
 #include "takt/group/systems.h"
 
 namespace takt::group {
@@ -37,7 +38,9 @@ void ComeToRest(const Context& c, State& s) {
   s.ends = s.begun = false;
   s.brake = {};
   s.active = 0;
+  s.way_before += s.pace.now.position;
   s.pace = {};
+  s.master = {};
   ForgetPlan(c, s);
   if (s.task == Task::kHalt) EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
   if (s.task == Task::kStop) {
@@ -93,6 +96,7 @@ void BeginMotion(const Context& c, State& s) {
   }
   trajectory::BeginAt(c.ahead.window, c.ahead.window.begin(), c.cycle.period_s, s.pace);
   s.begun = true;
+  BeginFollowing(c, MoveAt(s, s.done), s);
   if (s.state == GroupState::kStandby) Enter(GroupState::kMoving, s);
 }
 
@@ -172,6 +176,7 @@ void Step(const Context& c, State& s) noexcept {
   } else if (s.ends || (s.state == GroupState::kMoving && s.queue.count == 0)) {
     ComeToRest(c, s);
   }
+  LeadSynced(c, s);
 }
 
 bool Owns(const State& s) noexcept {

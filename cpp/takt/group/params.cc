@@ -17,21 +17,21 @@ bool FitsShape(bool given, const PathElement& element, ElementShape shape) {
 void describe(Description<PathLimits>& d) {
   using L = PathLimits;
   d.about("Limits along the path.");
-  d.required<&L::velocity>(unit::mm_s, positive, "Largest speed.");
-  d.required<&L::acceleration>(unit::mm_s2, positive, "Largest acceleration.");
-  d.defaulted<&L::deceleration>(unit::mm_s2, positive, "Largest deceleration; unset: as the acceleration.");
-  d.required<&L::jerk>(unit::mm_s3, positive, "Largest jerk.");
+  d.required<&L::velocity>(unit::mm_s, kSpeeds, "Largest speed.");
+  d.required<&L::acceleration>(unit::mm_s2, kAccelerations, "Largest acceleration.");
+  d.defaulted<&L::deceleration>(unit::mm_s2, kAccelerations, "Largest deceleration; unset: as the acceleration.");
+  d.required<&L::jerk>(unit::mm_s3, kJerks, "Largest jerk.");
 }
 
 void describe(Description<ToolLimits>& d) {
   using L = ToolLimits;
   d.about("Limits of the tool along X, Y and Z and about them. Unset: none but those of the axes.");
-  d.defaulted<&L::velocity>(unit::mm_s, positive, "Largest velocity along each of X, Y and Z.");
-  d.defaulted<&L::acceleration>(unit::mm_s2, positive, "Largest acceleration along each.");
-  d.defaulted<&L::jerk>(unit::mm_s3, positive, "Largest jerk along each.");
-  d.defaulted<&L::angular_velocity>(unit::deg_s, positive, "Largest velocity about each of X, Y and Z.");
-  d.defaulted<&L::angular_acceleration>(unit::deg_s2, positive, "Largest acceleration about each.");
-  d.defaulted<&L::angular_jerk>(unit::deg_s3, positive, "Largest jerk about each.");
+  d.defaulted<&L::velocity>(unit::mm_s, kSpeeds, "Largest velocity along each of X, Y and Z.");
+  d.defaulted<&L::acceleration>(unit::mm_s2, kAccelerations, "Largest acceleration along each.");
+  d.defaulted<&L::jerk>(unit::mm_s3, kJerks, "Largest jerk along each.");
+  d.defaulted<&L::angular_velocity>(unit::deg_s, kSpeeds, "Largest velocity about each of X, Y and Z.");
+  d.defaulted<&L::angular_acceleration>(unit::deg_s2, kAccelerations, "Largest acceleration about each.");
+  d.defaulted<&L::angular_jerk>(unit::deg_s3, kJerks, "Largest jerk about each.");
 }
 
 void describe(Description<GroupParams>& d) {
@@ -68,13 +68,13 @@ void describe(Enumeration<ElementShape>& e) {
 void describe(Description<PathElement>& d) {
   using E = PathElement;
   d.about("An element of a path; it begins where the one before it ends.");
-  d.defaulted<&E::shape>("What it is.");
+  d.required<&E::shape>("What it is.");
   d.defaulted<&E::to>("Where it ends; of lines and arcs.");
   d.defaulted<&E::via_x>(unit::mm, kPlaces, "X of a point on the way; of arcs.");
   d.defaulted<&E::via_y>(unit::mm, kPlaces, "Y of it.");
   d.defaulted<&E::via_z>(unit::mm, kPlaces, "Z of it.");
   d.defaulted<&E::points>("What a spline goes through, its end last; of a path's first element its beginning first.");
-  d.defaulted<&E::velocity>(unit::mm_s, positive, "Largest speed on it; unset: that of the command.");
+  d.defaulted<&E::velocity>(unit::mm_s, kSpeeds, "Largest speed on it; unset: that of the command.");
   d.rule<&E::to>("must be given for a line and an arc, and for no spline",
                  [](const E& e) { return FitsShape(!e.to, e, ElementShape::kSpline); });
   d.rule<&E::via_x>("must be given for an arc, together with via_y and via_z, and for nothing else", [](const E& e) {

@@ -77,6 +77,7 @@ void Publish(const Context& c, const State& s, Outputs& out) noexcept {
   out.axes = static_cast<std::uint32_t>(CountOf(s));
   out.in_position = s.state == GroupState::kStandby && s.queue.count == 0;
   out.interrupted = s.interrupted;
+  out.synchronized = s.master.in_step;
   out.reason = s.reason;
   out.problem = s.problem;
   out.blocked_at = s.blocked_at;

@@ -6,6 +6,7 @@
 #include "takt/axis/guidance.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
+#include "takt/group/sync.h"
 
 namespace takt::group {
 
@@ -67,7 +68,9 @@ void TellMoves(const Context& c, State& s) {
 
 double WishOf(const Context& c, const State& s) {
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
-  if (!s.ends && !s.interrupted) return s.velocity_factor * node.at.limits.velocity;
+  if (!s.ends && !s.interrupted) {
+    return s.master.axis != 0 ? WishOfMaster(c, s) : s.velocity_factor * node.at.limits.velocity;
+  }
   const double deceleration = s.brake.deceleration > 0 ? s.brake.deceleration : node.bounds.deceleration;
   return std::max(0.0, s.pace.raw.velocity - deceleration * c.cycle.period_s);
 }
@@ -118,6 +121,7 @@ void Advance(const Context& c, State& s) noexcept {
   trajectory::Advance(c.ahead.window, WishOf(c, s), c.cycle.period_s, s.pace);
   Follow(c, s);
   TellMoves(c, s);
+  WatchMaster(c, s);
   Forget(c, s);
 }
 

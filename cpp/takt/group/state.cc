@@ -34,7 +34,17 @@ void describe(Description<SyncedAxis>& d) {
   d.internal<&SyncedAxis::ticket>("Of the command.");
   d.internal<&SyncedAxis::axis>("From 1; 0: none.");
   d.internal<&SyncedAxis::ratio>("Units per mm.");
-  d.internal<&SyncedAxis::offset>("Its place where the path began, over all turns.");
+  d.internal<&SyncedAxis::offset>("Its place where the way is 0, over all turns.");
+  d.internal<&SyncedAxis::reached>("It was in step once.");
+}
+
+void describe(Description<MasterState>& d) {
+  d.about("What a synchronised path follows.");
+  d.internal<&MasterState::axis>("From 1; 0: none.");
+  d.internal<&MasterState::begin>("Where the path begins, over all turns.");
+  d.internal<&MasterState::ratio>("mm per unit.");
+  d.internal<&MasterState::in_step>("The tool is where the master wants it.");
+  d.internal<&MasterState::reached>("It was once.");
 }
 
 void describe(Description<State>& d) {
@@ -71,6 +81,8 @@ void describe(Description<State>& d) {
   d.internal<&S::stop_reported>("The stop is done.");
   d.internal<&S::power_on>("What power asked for.");
   d.internal<&S::synced>("Axes that follow the path.");
+  d.internal<&S::way_before>("Way along all paths before this one.");
+  d.internal<&S::master>("What the path follows.");
   d.internal<&S::reason>("Why there was no position of the axes.");
   d.internal<&S::problem>("Why there was no path.");
   d.internal<&S::blocked_at>("How far it could be gone.");

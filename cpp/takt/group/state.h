@@ -42,7 +42,17 @@ struct SyncedAxis {
   Ticket ticket = 0;
   std::uint32_t axis = 0;  // + 1; 0: none
   double ratio = 1;        // u per mm
-  double offset = 0;       // u
+  double offset = 0;       // u, over all turns, where the way is 0
+  bool reached = false;    // it was in step once
+};
+
+// A path that is gone as a master says.
+struct MasterState {
+  std::uint32_t axis = 0;  // + 1; 0: time says how fast
+  double begin = 0;        // u, over all turns, where the path begins
+  double ratio = 1;        // mm per u
+  bool in_step = false;
+  bool reached = false;  // it was once
 };
 
 struct State {
@@ -78,6 +88,8 @@ struct State {
   bool reset_asked = false;  // of the members
   Ticket reset_ticket = 0;
   std::array<SyncedAxis, kSynced> synced;
+  double way_before = 0;  // mm, gone along all paths before this one
+  MasterState master;
   kinematics::Reason reason = kinematics::Reason::kNone;
   path::Problem problem = path::Problem::kNone;
   double blocked_at = 0;
@@ -89,6 +101,7 @@ void describe(Enumeration<Stage>&);
 void describe(Description<Planning>&);
 void describe(Enumeration<Task>&);
 void describe(Description<SyncedAxis>&);
+void describe(Description<MasterState>&);
 void describe(Description<State>&);
 
 }  // namespace takt::group

@@ -1,12 +1,17 @@
-// Ranges and sentences that many descriptions of groups share.
+// Ranges that many descriptions of groups share.
 #pragma once
 
 #include "takt/core/describe.h"
 
 namespace takt::group {
 
+// Wide enough for anything that is built, narrow enough for squares and quotients of them to be numbers.
 inline constexpr Range kPlaces = between(-1e9, 1e9);           // mm
 inline constexpr Range kAngles = between(-1e6, 1e6);           // deg
 inline constexpr Range kAxisPositions = between(-1e12, 1e12);  // u
+inline constexpr Range kSpeeds = between(1e-6, 1e9);           // mm/s, deg/s
+inline constexpr Range kAccelerations = between(1e-6, 1e12);   // mm/s², deg/s²
+inline constexpr Range kJerks = between(1e-6, 1e15);           // mm/s³, deg/s³
+inline constexpr Range kFactors = between(1e-3, 1);
 
 }  // namespace takt::group

@@ -14,6 +14,7 @@ struct DeltaLengths {
   double platform_radius = 0;  // mm, from the tool to the joints on the platform
   double upper_arm = 0;        // mm, above 0
   double lower_arm = 0;        // mm, above 0
+  double rod_spacing = 0;      // mm, between the two rods of a lower arm; moves nothing
 };
 
 struct Delta {

@@ -50,12 +50,6 @@ bool AllFinite(const Kinematics& k, const Joints& joints) {
                      [](double q) { return std::isfinite(q); });
 }
 
-Joints ToMechanism(const Kinematics& k, const Joints& joints) {
-  Joints out{};
-  for (std::size_t i = 0; i < k.count; ++i) out[i] = (joints[i] - k.scales[i].zero) * k.scales[i].factor;
-  return out;
-}
-
 Joints RatesToMechanism(const Kinematics& k, const Joints& rates) {
   Joints out{};
   for (std::size_t i = 0; i < k.count; ++i) out[i] = rates[i] * k.scales[i].factor;
@@ -110,6 +104,12 @@ Reason ForwardOfAny(const Kinematics& k, const From& own, To& tool) {
 }
 
 }  // namespace
+
+Joints ToMechanism(const Kinematics& k, const Joints& joints) noexcept {
+  Joints out{};
+  for (std::size_t i = 0; i < k.count; ++i) out[i] = (joints[i] - k.scales[i].zero) * k.scales[i].factor;
+  return out;
+}
 
 Reason Forward(const Kinematics& k, const Joints& joints, Frame& tool) noexcept {
   if (!AllFinite(k, joints)) return Reason::kNotFinite;

@@ -52,8 +52,14 @@ struct MakeResult {
   std::string problem;  // and why
 };
 
+// A URDF may be given as the text itself, which begins with <, instead of its file.
+bool IsUrdfText(std::string_view urdf) noexcept;
+
 // `folder`: where paths of files begin. Reads files and allocates.
 MakeResult Make(const KinematicsParams& params, std::string_view folder = ".");
+
+// Positions of the axes in the mechanism's own numbers, mm and rad.
+Joints ToMechanism(const Kinematics& kinematics, const Joints& joints) noexcept;
 
 // Where the tool is. kOutOfReach, kSingular: no such position (Delta). The result is of use with kNone only.
 Reason Forward(const Kinematics& kinematics, const Joints& joints, Frame& tool) noexcept;

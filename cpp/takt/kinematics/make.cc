@@ -34,7 +34,7 @@ Kinematics Of(const ScaraParams& p) {
 }
 
 Kinematics Of(const DeltaParams& p) {
-  const DeltaLengths lengths{p.base_radius, p.platform_radius, p.upper_arm, p.lower_arm};
+  const DeltaLengths lengths{p.base_radius, p.platform_radius, p.upper_arm, p.lower_arm, p.rod_spacing};
   Kinematics k{.mechanism = MakeDelta(lengths, p.first_arm_deg * kDegree, p.rotary), .count = p.rotary ? 4u : 3u};
   k.kinds.fill(JointKind::kRotary);
   return k;
@@ -83,6 +83,11 @@ std::optional<std::string> TextOf(const std::filesystem::path& path) {
 
 }  // namespace
 
+bool IsUrdfText(std::string_view urdf) noexcept {
+  const std::size_t first = urdf.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && urdf[first] == '<';
+}
+
 MakeResult Make(const KinematicsParams& params, std::string_view folder) {
   const int mechanisms = params.gantry.has_value() + params.core_xy.has_value() + params.scara.has_value() +
                          params.delta.has_value() + params.six_axis.has_value() + params.serial.has_value();
@@ -103,13 +108,15 @@ MakeResult Make(const KinematicsParams& params, std::string_view folder) {
   } else if (params.six_axis) {
     k = Of(*params.six_axis);
   } else {
-    const std::filesystem::path path = std::filesystem::path(folder) / params.serial->urdf;
-    const std::optional<std::string> text = TextOf(path);
+    const std::string& given = params.serial->urdf;
+    const bool inside = IsUrdfText(given);
+    const std::filesystem::path path = std::filesystem::path(folder) / (inside ? "" : given);
+    const std::optional<std::string> text = inside ? given : TextOf(path);
     if (!text) return Refused("serial.urdf", "cannot read " + path.string());
     std::string why;
     urdf = ReadUrdf(*text, params.serial->base, params.serial->tip, why);
-    if (!urdf) return Refused("serial", path.string() + ": " + why);
-    k.mechanism = Serial{urdf->chain};
+    if (!urdf) return Refused("serial", (inside ? "" : path.string() + ": ") + why);
+    k.mechanism = Serial{urdf->chain, urdf->links};
     TakeKinds(urdf->chain, k);
   }
   if (std::string why = TakeScales(params.joints, k); !why.empty()) return Refused("joints", std::move(why));

@@ -40,6 +40,8 @@ void describe(Description<DeltaParams>& d) {
   d.required<&D::platform_radius>(unit::mm, not_negative, "From the tool to the joints on the platform.");
   d.required<&D::upper_arm>(unit::mm, positive, "Length of the upper arms, which the motors turn.");
   d.required<&D::lower_arm>(unit::mm, positive, "Length of the lower arms, which carry the platform.");
+  d.defaulted<&D::rod_spacing>(unit::mm, not_negative,
+                               "Between the two rods of a lower arm. Moves nothing; for checks of the workspace.");
   d.defaulted<&D::first_arm_deg>(unit::deg, "Where arm 1 stands, from X about Z; the others follow by 120 and 240.");
   d.defaulted<&D::rotary>("There is a C axis, through a telescopic shaft.");
   d.rule<&D::lower_arm>(
@@ -64,7 +66,7 @@ void describe(Description<SixAxisParams>& d) {
 void describe(Description<SerialParams>& d) {
   using S = SerialParams;
   d.about("Any chain of up to eight axes out of a URDF file, solved step by step.");
-  d.required<&S::urdf>("The file; its place is seen from the machine file.");
+  d.required<&S::urdf>("The file; its place is seen from the machine file. Or the text itself, which begins with <.");
   d.defaulted<&S::base>("The link where the chain begins; empty: the root.");
   d.defaulted<&S::tip>("The link that is the tool; empty: the only end.");
 }

@@ -33,6 +33,7 @@ struct DeltaParams {
   double platform_radius = 0;  // mm
   double upper_arm = 0;        // mm
   double lower_arm = 0;        // mm
+  double rod_spacing = 0;      // mm
   double first_arm_deg = 0;    // deg
   bool rotary = false;
 };
@@ -48,7 +49,7 @@ struct SixAxisParams {
 };
 
 struct SerialParams {
-  std::string urdf;  // file, seen from the machine file
+  std::string urdf;  // file, seen from the machine file; or the text itself
   std::string base;  // link; empty: the root
   std::string tip;   // link; empty: the only end
 };

@@ -10,12 +10,14 @@
 #include <optional>
 #include <string>
 
+#include "takt/core/name.h"
 #include "takt/kinematics/chain.h"
 
 namespace takt::kinematics {
 
 struct Serial {
   Chain chain;
+  std::array<Name, kMaxJoints> links{};  // what each axis moves, as URDF calls it
 };
 
 // The position found is the one that the axes given as near run into, on the same side of all singularities: where a
@@ -32,6 +34,7 @@ struct JointLimits {
 struct UrdfChain {
   Chain chain;
   std::array<JointLimits, kMaxJoints> limits;
+  std::array<Name, kMaxJoints> links;
 };
 
 // The chain from link `base` to link `tip`; empty: from the root, to the only end. Nothing, and a sentence in `why`,

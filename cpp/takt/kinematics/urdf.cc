@@ -96,6 +96,7 @@ std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& bas
       const double unit = slides ? kMetre : 1;
       out.limits[out.chain.count] = {joint->limits->lower * unit, joint->limits->upper * unit};
     }
+    out.links[out.chain.count] = Name::Of(joint->child_link_name);
     Append(out.chain, {rest, axis, slides ? JointKind::kLinear : JointKind::kRotary});
     rest = Frame::Identity();
   }

@@ -17,12 +17,9 @@ inline constexpr char kJournalCommandChannel[] = "takt/journal/command";
 inline constexpr char kJournalHashesChannel[] = "takt/journal/hashes";
 inline constexpr char kJournalDriveChannel[] = "takt/journal/drive";
 
-inline std::string AxisChannel(std::string_view name) {
-  return "takt/axis/" + std::string(name);
-}
-
-inline std::string FlexCamChannel(std::string_view name) {
-  return "takt/flex_cam/" + std::string(name);
+// Of the states of a component; `kind` as ComponentKind::name.
+inline std::string StateChannel(std::string_view kind, std::string_view name) {
+  return "takt/" + std::string(kind) + "/" + std::string(name);
 }
 
 // Of an axis whose drive lives in another process.

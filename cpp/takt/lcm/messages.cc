@@ -152,6 +152,47 @@ msgs::flex_cam_state ToMessage(const engine::FlexCamSnapshot& snapshot, const en
   return m;
 }
 
+msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine::Machine& machine) {
+  const group::Outputs& o = snapshot.outputs;
+  msgs::group_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.groups[snapshot.index].name;
+  m.state = static_cast<std::int8_t>(o.state);
+  m.error = static_cast<std::int32_t>(o.error);
+  m.x = o.x;
+  m.y = o.y;
+  m.z = o.z;
+  m.a = o.a;
+  m.b = o.b;
+  m.c = o.c;
+  m.actual_x = o.actual_x;
+  m.actual_y = o.actual_y;
+  m.actual_z = o.actual_z;
+  m.actual_a = o.actual_a;
+  m.actual_b = o.actual_b;
+  m.actual_c = o.actual_c;
+  m.velocity = o.velocity;
+  m.acceleration = o.acceleration;
+  m.actual_velocity = o.actual_velocity;
+  m.path_position = o.path_position;
+  m.path_velocity = o.path_velocity;
+  m.path_acceleration = o.path_acceleration;
+  m.path_left = o.path_left;
+  m.path_error = o.path_error;
+  m.override_factor = o.override_factor;
+  m.command = Signed(o.command);
+  m.buffered = o.buffered;
+  m.axes = o.axes;
+  m.in_position = o.in_position;
+  m.interrupted = o.interrupted;
+  m.synchronized = o.synchronized;
+  m.reason = static_cast<std::int8_t>(o.reason);
+  m.problem = static_cast<std::int8_t>(o.problem);
+  m.blocked_at = o.blocked_at;
+  return m;
+}
+
 msgs::histogram ToMessage(const engine::Histogram& histogram) {
   msgs::histogram m{};
   std::transform(histogram.buckets.begin(), histogram.buckets.end(), m.buckets, Signed);

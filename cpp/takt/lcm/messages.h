@@ -20,6 +20,7 @@
 #include "takt/msgs/engine_state.hpp"
 #include "takt/msgs/feedback.hpp"
 #include "takt/msgs/flex_cam_state.hpp"
+#include "takt/msgs/group_state.hpp"
 #include "takt/msgs/heartbeat.hpp"
 #include "takt/msgs/journal_command.hpp"
 #include "takt/msgs/journal_drive.hpp"
@@ -31,6 +32,7 @@ namespace takt::lcm {
 
 msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::Machine& machine);
 msgs::flex_cam_state ToMessage(const engine::FlexCamSnapshot& snapshot, const engine::Machine& machine);
+msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine::Machine& machine);
 msgs::histogram ToMessage(const engine::Histogram& histogram);
 msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine::Machine& machine);
 // Client, session and id are left empty.

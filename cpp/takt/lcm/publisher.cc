@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "takt/engine/components.h"
 #include "takt/lcm/channels.h"
 
 namespace takt::lcm {
@@ -31,10 +32,12 @@ Publisher::Publisher(engine::Engine& engine, Clients& clients, Outlet* network, 
   engine_channel_.name = kEngineChannel;
   machine_channel_.name = kMachineChannel;
   feedback_channel_.name = kFeedbackChannel;
-  for (const axis::AxisParams& axis : engine_.machine().axes)
-    axis_channels_.push_back({.name = AxisChannel(axis.name)});
-  for (const flexcam::FlexCamParams& module : engine_.machine().flex_cams)
-    flex_cam_channels_.push_back({.name = FlexCamChannel(module.name)});
+  for (const engine::ComponentKind& kind : engine::ComponentKinds()) {
+    std::vector<Channel>& channels = state_channels_.emplace_back();
+    for (std::size_t i = 0; i < kind.count(engine_.machine()); ++i) {
+      channels.push_back({.name = StateChannel(kind.name, kind.name_of(engine_.machine(), i))});
+    }
+  }
   thread_ = std::thread([this] { Run(); });
 }
 
@@ -66,8 +69,14 @@ bool Publisher::Drain() {
   });
   any |= Take(engine_.hashes(), [this](const engine::HashEntry& entry) { AddHash(entry); });
   any |= Take(engine_.figure_queue(), [this](const engine::EngineFigures& figures) { PublishFigures(figures); });
-  any |= DrainStates(engine_.snapshots(), axis_channels_);
-  any |= DrainStates(engine_.flex_cam_snapshots(), flex_cam_channels_);
+  return any | DrainStates(static_cast<engine::PublishedKinds*>(nullptr));
+}
+
+template <typename... Outputs>
+bool Publisher::DrainStates(const std::tuple<Outputs...>*) {
+  bool any = false;
+  std::size_t kind = 0;
+  ((any |= DrainStates(engine_.snapshots<Outputs>(), state_channels_[kind++])), ...);
   return any;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 #include "takt/engine/engine.h"
@@ -49,6 +50,8 @@ class Publisher {
   // True if anything was there.
   bool Drain();
   // Whatever a component published: all of it to the log, what is due to the network.
+  template <typename... Outputs>
+  bool DrainStates(const std::tuple<Outputs...>* kinds);
   template <typename Snapshot>
   bool DrainStates(SpscQueue<Snapshot>& queue, std::vector<Channel>& channels);
   void PublishReplies();
@@ -74,7 +77,7 @@ class Publisher {
   Outlet* const log_;
   const RunInfo info_;
 
-  std::vector<Channel> axis_channels_, flex_cam_channels_;
+  std::vector<std::vector<Channel>> state_channels_;  // by kind, by component
   Channel engine_channel_, machine_channel_, feedback_channel_;
   std::int64_t next_machine_ns_ = 0;
   msgs::journal_hashes hashes_{};

@@ -19,6 +19,7 @@ Mask = npt.NDArray[np.bool_]
 SHARE_IN_COMMON = 0.9  # of the samples of two components; the rest may have got lost
 
 CAM_AXES = ("x", "y")  # in units of their own
+TOOL = {**dict.fromkeys("xyz", "position"), **dict.fromkeys("abc", "orientation")}
 QUANTITIES = ("position", "velocity", "acceleration", "jerk", "error", "torque", "voltage", "state")
 
 
@@ -198,6 +199,8 @@ def quantity(field: str) -> str:
     if name == "following error":
         return name
     *before, last = name.split(" ")
+    if last in TOOL:
+        return TOOL[last]
     if last not in QUANTITIES:
         return name
     return f"{before[-1]} {last}" if before and before[-1] in CAM_AXES else last

@@ -104,9 +104,10 @@ TEST(LoadFlexCams, IsPublishedAtARateOfItsOwn) {
   EXPECT_THAT(
       Problems(module +
                "lcm: {rates: [{axis: cuter, rate_hz: 5}, {axis: cutter, rate_hz: 5}, {axis: cutter, rate_hz: 6}]}\n"),
-      ElementsAre("m.yaml:14:22: lcm.rates[0].axis: expected the name of an axis or cam module, found 'cuter'; did you "
-                  "mean cutter?",
-                  "m.yaml:14:77: lcm.rates[2].axis: expected each axis or cam module once, found 'cutter' again"));
+      ElementsAre(
+          "m.yaml:14:22: lcm.rates[0].axis: expected the name of an axis, cam module or group, found 'cuter'; did you "
+          "mean cutter?",
+          "m.yaml:14:77: lcm.rates[2].axis: expected each axis, cam module or group once, found 'cutter' again"));
 }
 
 }  // namespace

@@ -151,7 +151,7 @@ TEST(Snapshots, SayWhetherTheyAreDue) {
   EXPECT_THAT(due, testing::Each(100));
   int due_of_module = 0, all_of_module = 0;
   FlexCamSnapshot of_module;
-  while (engine.flex_cam_snapshots().TryPop(of_module)) {
+  while (engine.snapshots<flexcam::Outputs>().TryPop(of_module)) {
     ++all_of_module;
     due_of_module += of_module.due;
   }
@@ -174,7 +174,7 @@ TEST(Snapshots, ComeAtTheRateOfTheirChannel) {
   EXPECT_EQ(counts[AxisNamed(machine, "z")], 0);
   int of_module = 0;
   FlexCamSnapshot module;
-  while (engine.flex_cam_snapshots().TryPop(module)) ++of_module;
+  while (engine.snapshots<flexcam::Outputs>().TryPop(module)) ++of_module;
   EXPECT_EQ(of_module, 250);
 }
 

@@ -6,6 +6,7 @@
 #include "takt/kinematics/kinematics.h"
 #include "takt/plcopen/blocks.h"
 #include "takt/trajectory/planner.h"
+#include "takt/workspace/checker.h"
 
 // Where the axis is after a move by function blocks; -1: the machine is not understood.
 double Move() {
@@ -31,12 +32,21 @@ double Move() {
 }
 
 // How far the level arms of a Delta reach down: lower arms of 650 with 390 sideways.
-double Reach() {
-  const takt::kinematics::MakeResult made =
-      takt::kinematics::Make({.delta = takt::kinematics::DeltaParams{200, 45, 235, 650}, .joints = {}});
+double Reach(const takt::kinematics::Kinematics& delta) {
   takt::kinematics::Frame tool;
-  if (takt::kinematics::Forward(*made.kinematics, {}, tool) != takt::kinematics::Reason::kNone) return 0;
+  if (takt::kinematics::Forward(delta, {}, tool) != takt::kinematics::Reason::kNone) return 0;
   return -tool.p.z();
+}
+
+// Whether it would hit a box in front of its platform.
+const char* Free(const takt::kinematics::Kinematics& delta) {
+  takt::workspace::WorkspaceParams cell;
+  cell.obstacles.push_back({.name = "box", .link = {}, .box = takt::workspace::BoxParams{50, 50, 50}});
+  cell.obstacles.back().pose.z = -700;
+  cell.gripper.push_back({.name = "cup", .link = {}, .sphere = takt::workspace::SphereParams{20}});
+  takt::workspace::MakeResult made = takt::workspace::Make(cell, delta);
+  const takt::workspace::Sample path[] = {{0, {}}, {100, {60, 60, 60}}};
+  return made.checker->Check(path) ? "met" : "free";
 }
 
 int main() {
@@ -45,7 +55,10 @@ int main() {
   const takt::trajectory::Limits limits{.velocity = 1, .acceleration = 1, .deceleration = 1, .jerk = 0};
   const takt::Status status = planner.ToPosition({}, 1.0, 0.0, limits, profile);
   const takt::msgs::axis_state message{};
-  std::printf("%.1f s, %s, at %.1f, %.1f mm\n", profile.duration(),
-              message.getEncodedSize() > 0 ? "message" : "nothing", Move(), Reach());
+  const takt::kinematics::MakeResult delta =
+      takt::kinematics::Make({.delta = takt::kinematics::DeltaParams{200, 45, 235, 650}, .joints = {}});
+  std::printf("%.1f s, %s, at %.1f, %.1f mm, %s\n", profile.duration(),
+              message.getEncodedSize() > 0 ? "message" : "nothing", Move(), Reach(*delta.kinematics),
+              Free(*delta.kinematics));
   return status.ok() ? 0 : 1;
 }

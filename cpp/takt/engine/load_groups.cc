@@ -1,0 +1,107 @@
+#include "takt/engine/load_groups.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "takt/core/yaml_reader.h"
+#include "takt/group/path_table.h"
+#include "takt/kinematics/kinematics.h"
+
+namespace takt::engine {
+
+namespace {
+
+class Loader {
+ public:
+  Loader(const SourceMap& source, Machine& machine) : source_(source), machine_(machine) {}
+
+  GroupLoading Run() {
+    for (std::size_t i = 0; i < machine_.groups.size(); ++i) {
+      LoadGroup("groups[" + std::to_string(i) + "]", machine_.groups[i]);
+    }
+    for (std::size_t i = 0; i < machine_.paths.size(); ++i) {
+      LoadPath("paths[" + std::to_string(i) + "]", machine_.paths[i]);
+    }
+    return std::move(loading_);
+  }
+
+ private:
+  void Add(const std::string& path, const std::string& message) {
+    loading_.problems.push_back(source_.ProblemAt(path, message));
+  }
+
+  std::string Beside(const std::string& file) const {
+    return (std::filesystem::path(source_.file()).parent_path() / file).string();
+  }
+
+  // Of the file that the key `path` names.
+  std::optional<std::string> Read(const std::string& path, const std::string& file) {
+    loading_.files = true;
+    std::string why;
+    std::optional<std::string> text = LoadText(file, why);
+    if (text && text->size() > kMaxYamlBytes) {
+      why = "holds more than " + std::to_string(kMaxYamlBytes / 1'000'000) + " MB";
+      text.reset();
+    }
+    if (!text) Add(path, file + ": " + why);
+    return text;
+  }
+
+  void LoadGroup(const std::string& path, group::GroupParams& group) {
+    if (!group.kinematics) return;
+    kinematics::KinematicsParams& params = *group.kinematics;
+    std::string file;
+    if (params.serial && !kinematics::IsUrdfText(params.serial->urdf)) {
+      file = Beside(params.serial->urdf);
+      std::optional<std::string> text = Read(path + ".kinematics.serial.urdf", file);
+      if (!text) return;
+      params.serial->urdf = std::move(*text);
+    }
+    const kinematics::MakeResult made = kinematics::Make(params);
+    if (!made.kinematics) {
+      const bool of_file = made.path.starts_with("serial") && !file.empty();
+      Add(path + ".kinematics" + (made.path.empty() ? "" : "." + made.path),
+          (of_file ? file + ": " : "") + made.problem);
+    } else if (made.kinematics->count > group.axes.size()) {
+      Add(path + ".axes", "expected the names of the " + std::to_string(made.kinematics->count) +
+                              " axes of the kinematics, found " + std::to_string(group.axes.size()));
+    }
+  }
+
+  void LoadPath(const std::string& path, group::PathParams& params) {
+    std::optional<group::PathCsv> csv;
+    std::string file;
+    if (!params.file.empty()) {
+      file = Beside(params.file);
+      const std::optional<std::string> text = Read(path + ".file", file);
+      if (!text) return;
+      csv = group::ReadPathCsv(*text, file);
+      if (csv->problems.empty() && csv->elements.empty()) Add(path + ".file", file + ": expected at least one element");
+      loading_.problems.insert(loading_.problems.end(), csv->problems.begin(), csv->problems.end());
+      if (!csv->problems.empty()) return;
+      params.elements = csv->elements;
+      params.file.clear();
+    }
+    const group::PathTableResult made = group::MakePathTable(params);
+    if (made.table) return;
+    if (csv) {
+      loading_.problems.push_back({file, group::PlaceInCsv(*csv, made.path), path, made.problem});
+    } else {
+      Add(path + "." + made.path, made.problem);
+    }
+  }
+
+  const SourceMap& source_;
+  Machine& machine_;
+  GroupLoading loading_;
+};
+
+}  // namespace
+
+GroupLoading LoadGroups(const SourceMap& source, Machine& machine) {
+  return Loader(source, machine).Run();
+}
+
+}  // namespace takt::engine

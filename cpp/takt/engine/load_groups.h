@@ -1,0 +1,19 @@
+// The groups of axes of a machine file and the paths for them: reads their files, checks them.
+#pragma once
+
+#include <vector>
+
+#include "takt/core/problem.h"
+#include "takt/engine/machine.h"
+
+namespace takt::engine {
+
+struct GroupLoading {
+  std::vector<Problem> problems;
+  bool files = false;  // something came from a file
+};
+
+// Puts what stands in files (URDF, paths as CSV) into the machine. A file's path counts from the machine file's folder.
+GroupLoading LoadGroups(const SourceMap& source, Machine& machine);
+
+}  // namespace takt::engine

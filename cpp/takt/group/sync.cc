@@ -1,0 +1,115 @@
+#include "takt/group/sync.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/axis/guidance.h"
+#include "takt/group/queue.h"
+
+namespace takt::group {
+
+namespace {
+
+// A path is in step with its master when the tool is nearer than this to where it should be, mm.
+constexpr double kInStep = 0.01;
+// In so many times of building up accelerations the distance to the master is made up: an acceleration can be taken
+// back only after such a time.
+constexpr double kCatchUpTimes = 3;
+
+// Of the master, as the path counts it.
+KinematicState WayOf(const Context& c, const State& s) {
+  const axis::State& master = c.axes.states[s.master.axis - 1];
+  return {s.master.ratio * (master.setpoint.position + master.origin - s.master.begin),
+          s.master.ratio * master.setpoint.velocity, s.master.ratio * master.setpoint.acceleration};
+}
+
+axis::Context ContextOf(const Context& c, const SyncedAxis& synced) {
+  return c.axes.context(c.axes.owner, synced.axis - 1);
+}
+axis::State& StateOf(const Context& c, const SyncedAxis& synced) {
+  return c.axes.states[synced.axis - 1];
+}
+
+}  // namespace
+
+void BeginFollowing(const Context& c, const Request& move, State& s) noexcept {
+  s.master = {};
+  if (move.master == 0) return;
+  const axis::State& master = c.axes.states[move.master - 1];
+  s.master.axis = move.master;
+  s.master.ratio = move.ratio;
+  s.master.begin = master.setpoint.position + master.origin;
+}
+
+double WishOfMaster(const Context& c, const State& s) noexcept {
+  const KinematicState way = WayOf(c, s);
+  const trajectory::PathNode& node = c.ahead.window[s.pace.node];
+  // The raw motion is ahead of its mean by half the time that is taken over.
+  const double half = 0.5 * node.build_up_s;
+  const double wanted = way.position + half * (way.velocity + 2.0 / 3.0 * half * way.acceleration);
+  const double behind = wanted - s.pace.raw.position;
+  const double closing = std::abs(behind) / (kCatchUpTimes * node.build_up_s);
+  const double velocity = way.velocity + half * way.acceleration + std::copysign(closing, behind);
+  return std::clamp(velocity, 0.0, node.at.limits.velocity);
+}
+
+void WatchMaster(const Context& c, State& s) noexcept {
+  if (s.master.axis == 0) return;
+  s.master.in_step = std::abs(WayOf(c, s).position - s.pace.now.position) <= kInStep;
+  if (!s.master.in_step || s.master.reached || s.queue.count == 0) return;
+  s.master.reached = true;
+  c.feedback.Report({MoveAt(s, s.done).ticket, c.cycle.count, FeedbackState::kActive, true, ErrorId::kNone, 0});
+}
+
+ErrorId Sync(const Context& c, Ticket ticket, const SyncAxis& command, State& s) noexcept {
+  std::uint32_t axis = 0;
+  for (std::uint32_t i = 0; i < c.axes.states.size(); ++i) {
+    if (c.axes.context(c.axes.owner, i).params.name == command.axis.view()) axis = i + 1;
+  }
+  if (axis == 0) return ErrorId::kUnknownTarget;
+  if (c.group_of[axis - 1] != 0) return ErrorId::kGroupMember;
+  const auto free = std::ranges::find_if(s.synced, [&](const SyncedAxis& one) { return one.axis == axis; });
+  const auto place = free != s.synced.end() ? free : std::ranges::find(s.synced, 0u, &SyncedAxis::axis);
+  if (place == s.synced.end()) return ErrorId::kBufferFull;
+  if (place->axis != 0) Report(c, place->ticket, FeedbackState::kAborted);
+  *place = {ticket, axis, command.ratio_numerator / command.ratio_denominator, 0, false};
+  axis::State& state = StateOf(c, *place);
+  const Status status = axis::Guide(ContextOf(c, *place), state);
+  if (status.failed()) {
+    *place = {};
+    return status.error;
+  }
+  place->offset = state.setpoint.position + state.origin - place->ratio * (s.way_before + s.pace.now.position);
+  return ErrorId::kNone;
+}
+
+void LeadSynced(const Context& c, State& s) noexcept {
+  for (SyncedAxis& synced : s.synced) {
+    if (synced.axis == 0) continue;
+    axis::State& state = StateOf(c, synced);
+    if (!axis::IsGuided(state)) {  // somebody else has it
+      const bool failed = state.plc == axis::PlcState::kErrorStop;
+      Report(c, synced.ticket, failed ? FeedbackState::kError : FeedbackState::kAborted,
+             failed ? ErrorId::kAxisFault : ErrorId::kNone);
+      synced = {};
+      continue;
+    }
+    if (!synced.reached && state.guidance.chase.in_step) {
+      synced.reached = true;
+      c.feedback.Report({synced.ticket, c.cycle.count, FeedbackState::kActive, true, ErrorId::kNone, 0});
+    }
+    state.guidance.demand = {synced.offset + synced.ratio * (s.way_before + s.pace.now.position),
+                             synced.ratio * s.pace.now.velocity, synced.ratio * s.pace.now.acceleration};
+  }
+}
+
+void LetGoOfSynced(const Context& c, FeedbackState feedback, State& s) noexcept {
+  for (SyncedAxis& synced : s.synced) {
+    if (synced.axis == 0) continue;
+    axis::LetGoOfGuidance(ContextOf(c, synced), StateOf(c, synced));
+    Report(c, synced.ticket, feedback);
+    synced = {};
+  }
+}
+
+}  // namespace takt::group

@@ -1,0 +1,20 @@
+// Paths that follow a master, and axes that follow a path.
+#pragma once
+
+#include "takt/group/group.h"
+
+namespace takt::group {
+
+// The path that begins now follows the master of its move, or nobody.
+void BeginFollowing(const Context& c, const Request& move, State& s) noexcept;
+// The speed along the path with which the tool is where the master wants it, mm/s.
+double WishOfMaster(const Context& c, const State& s) noexcept;
+// Whether it is there.
+void WatchMaster(const Context& c, State& s) noexcept;
+
+ErrorId Sync(const Context& c, Ticket ticket, const SyncAxis& command, State& s) noexcept;
+// Set points of the axes that follow the path.
+void LeadSynced(const Context& c, State& s) noexcept;
+void LetGoOfSynced(const Context& c, FeedbackState feedback, State& s) noexcept;
+
+}  // namespace takt::group

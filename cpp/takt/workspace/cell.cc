@@ -1,0 +1,191 @@
+#include "takt/workspace/cell.h"
+
+#include <algorithm>
+
+#include "takt/core/problem.h"
+
+namespace takt::workspace {
+namespace {
+
+using kinematics::LinkInfo;
+
+// Names of links share their beginnings: lower_arm_1_a belongs to lower_arm_1 and to lower_arm.
+bool Means(const std::string& name, const std::string& link) {
+  return link == name || link.starts_with(name + "_");
+}
+
+std::string NotOneOf(const std::string& found, std::string expected, const std::vector<std::string>& names) {
+  const std::vector<std::string_view> candidates(names.begin(), names.end());
+  for (std::size_t i = 0; i < names.size(); ++i) expected += (i == 0 ? " (" : ", ") + names[i];
+  return "expected " + expected + "), found " + Quoted(found) + DidYouMean(found, candidates);
+}
+
+class Maker {
+ public:
+  Maker(const WorkspaceParams& params, const kinematics::Kinematics& kinematics, std::string_view folder)
+      : params_(params), folder_(folder), links_(kinematics::LinksOf(kinematics)) {
+    cell_.kinematics = kinematics;
+    cell_.bounds = params.bounds;
+    cell_.margin = params.margin;
+    cell_.resolution = params.resolution;
+  }
+
+  MadeCell Run() && {
+    if (!TakeObstacles() || !TakeLinks() || !TakeGripper() || !TakeIgnored())
+      return {.cell = std::nullopt, .path = std::move(path_), .problem = std::move(problem_)};
+    Introduce();
+    if (params_.self_collisions) FindPairs();
+    return {.cell = std::move(cell_), .path = {}, .problem = {}};
+  }
+
+ private:
+  bool Refuse(std::string path, std::string problem) {
+    path_ = std::move(path);
+    problem_ = std::move(problem);
+    return false;
+  }
+
+  std::optional<Shape> Made(const SolidParams& solid, const KDL::Vector& span, const std::string& path) {
+    MadeShape made = MakeShape(solid, span, folder_);
+    if (!made.shape) Refuse(path + (made.path.empty() ? "" : "." + made.path), made.problem);
+    return std::move(made.shape);
+  }
+
+  void AddBody(std::string name, std::string given_name, std::size_t link, Shape shape) {
+    cell_.scene.AddBody(shape);
+    cell_.bodies.push_back({std::move(name), link, std::move(shape)});
+    given_names_.push_back(std::move(given_name));
+  }
+
+  bool TakeObstacles() {
+    for (std::size_t i = 0; i < params_.obstacles.size(); ++i) {
+      const SolidParams& solid = params_.obstacles[i];
+      std::optional<Shape> shape = Made(solid, {}, "obstacles[" + std::to_string(i) + "]");
+      if (!shape) return false;
+      cell_.scene.AddObstacle(*shape);
+      cell_.obstacles.push_back({solid.name, std::move(*shape)});
+    }
+    return true;
+  }
+
+  bool TakeLinks() {
+    for (std::size_t i = 0; i < params_.links.size(); ++i) {
+      const SolidParams& solid = params_.links[i];
+      const std::string path = "links[" + std::to_string(i) + "]";
+      std::vector<std::size_t> on;
+      for (std::size_t link = 0; link < links_.size(); ++link) {
+        if (Means(solid.link, links_[link].name)) on.push_back(link);
+      }
+      if (on.empty()) return Refuse(path + ".link", NotOneOf(solid.link, "a link of this mechanism", LinkNames()));
+      for (const std::size_t link : on) {
+        std::optional<Shape> shape = Made(solid, links_[link].span, path);
+        if (!shape) return false;
+        std::string name = solid.name.empty() ? links_[link].name : solid.name;
+        if (on.size() > 1 && !solid.name.empty()) name += " on " + links_[link].name;
+        AddBody(std::move(name), solid.name, link, std::move(*shape));
+      }
+    }
+    return true;
+  }
+
+  bool TakeGripper() {
+    for (std::size_t i = 0; i < params_.gripper.size(); ++i) {
+      const SolidParams& solid = params_.gripper[i];
+      std::optional<Shape> shape = Made(solid, {}, "gripper[" + std::to_string(i) + "]");
+      if (!shape) return false;
+      AddBody(solid.name, solid.name, links_.size() - 1, std::move(*shape));
+    }
+    return true;
+  }
+
+  bool TakeIgnored() {
+    std::vector<std::string> names = LinkNames();
+    for (const Obstacle& obstacle : cell_.obstacles) names.push_back(obstacle.name);
+    for (const std::string& name : given_names_) {
+      if (!name.empty()) names.push_back(name);
+    }
+    for (std::size_t i = 0; i < params_.ignore.size(); ++i) {
+      for (const std::string& name : params_.ignore[i]) {
+        if (std::none_of(names.begin(), names.end(), [&](const std::string& known) { return Means(name, known); })) {
+          return Refuse("ignore[" + std::to_string(i) + "]",
+                        NotOneOf(name, "the name of an obstacle, a link or a part of the gripper", names));
+        }
+      }
+    }
+    return true;
+  }
+
+  std::vector<std::string> LinkNames() const {
+    std::vector<std::string> names;
+    for (const LinkInfo& link : links_) names.push_back(link.name);
+    return names;
+  }
+
+  bool Called(const std::string& name, std::size_t body) const {
+    return Means(name, links_[cell_.bodies[body].link].name) || Means(name, given_names_[body]);
+  }
+
+  // `first` and `second` say whether a name means the one and the other.
+  bool Ignored(const auto& first, const auto& second) const {
+    return std::any_of(params_.ignore.begin(), params_.ignore.end(), [&](const auto& pair) {
+      return (first(pair[0]) && second(pair[1])) || (first(pair[1]) && second(pair[0]));
+    });
+  }
+
+  // What is on the base stands as still as the obstacles.
+  void Introduce() {
+    cell_.obstacles_of.resize(cell_.bodies.size());
+    for (std::size_t b = 0; b < cell_.bodies.size(); ++b) {
+      for (std::size_t o = 0; o < cell_.obstacles.size(); ++o) {
+        const bool ignored = cell_.bodies[b].link == 0 ||
+                             Ignored([&](const std::string& name) { return Called(name, b); },
+                                     [&](const std::string& name) { return Means(name, cell_.obstacles[o].name); });
+        if (ignored) {
+          cell_.scene.Ignore(b, o);
+        } else {
+          cell_.obstacles_of[b].push_back(o);
+        }
+      }
+    }
+  }
+
+  bool Neighbours(std::size_t a, std::size_t b) const {
+    const std::vector<std::size_t>& beside = links_[a].neighbours;
+    return a == b || std::find(beside.begin(), beside.end(), b) != beside.end();
+  }
+
+  void FindPairs() {
+    kinematics::Joints rest{};
+    for (std::size_t i = 0; i < cell_.kinematics.count; ++i) rest[i] = cell_.kinematics.scales[i].zero;
+    kinematics::LinkFrameArray frames;
+    const bool at_rest = kinematics::LinkFrames(cell_.kinematics, rest, frames) == kinematics::Reason::kNone;
+    for (std::size_t a = 0; a < cell_.bodies.size(); ++a) {
+      for (std::size_t b = a + 1; b < cell_.bodies.size(); ++b) {
+        const std::size_t link_a = cell_.bodies[a].link;
+        const std::size_t link_b = cell_.bodies[b].link;
+        const bool ignored = Ignored([&](const std::string& name) { return Called(name, a); },
+                                     [&](const std::string& name) { return Called(name, b); });
+        if (Neighbours(link_a, link_b) || ignored) continue;
+        const bool near =
+            at_rest && cell_.scene.Between(a, frames[link_a], b, frames[link_b], cell_.margin) < cell_.margin;
+        (near ? cell_.near_at_rest : cell_.pairs).push_back({a, b});
+      }
+    }
+  }
+
+  const WorkspaceParams& params_;
+  std::string_view folder_;
+  std::vector<LinkInfo> links_;
+  std::vector<std::string> given_names_;  // of the bodies; empty: none
+  Cell cell_;
+  std::string path_;
+  std::string problem_;
+};
+
+}  // namespace
+
+MadeCell MakeCell(const WorkspaceParams& params, const kinematics::Kinematics& kinematics, std::string_view folder) {
+  return Maker(params, kinematics, folder).Run();
+}
+
+}  // namespace takt::workspace

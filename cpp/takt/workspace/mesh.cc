@@ -1,0 +1,176 @@
+#include "takt/workspace/mesh.h"
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <system_error>
+
+namespace takt::workspace {
+namespace {
+
+using KDL::Vector;
+
+constexpr std::size_t kHeader = 84;  // bytes: a text and the number of triangles
+constexpr std::size_t kRecord = 50;  // bytes: a normal, three corners, two bytes more
+static_assert(std::endian::native == std::endian::little, "STL counts so");
+
+using Corner = std::array<double, 3>;
+
+// Puts triangles together that share corners.
+class Builder {
+ public:
+  explicit Builder(double scale) : scale_(scale) {}
+
+  // False: not numbers.
+  bool Add(const std::array<Corner, 3>& corners) {
+    std::array<std::size_t, 3> triangle{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      Corner corner = corners[i];
+      for (double& x : corner) {
+        x *= scale_;
+        if (!std::isfinite(x)) return false;
+      }
+      const auto [place, is_new] = known_.try_emplace(corner, mesh_.vertices.size());
+      if (is_new) mesh_.vertices.emplace_back(corner[0], corner[1], corner[2]);
+      triangle[i] = place->second;
+    }
+    const Vector& first = mesh_.vertices[triangle[0]];
+    const Vector normal = (mesh_.vertices[triangle[1]] - first) * (mesh_.vertices[triangle[2]] - first);
+    if (normal.Norm() > 0) mesh_.triangles.push_back(triangle);
+    return true;
+  }
+
+  Mesh Take() {
+    if (!mesh_.vertices.empty()) mesh_.lower = mesh_.upper = mesh_.vertices.front();
+    for (const Vector& vertex : mesh_.vertices) {
+      for (int i = 0; i < 3; ++i) {
+        mesh_.lower(i) = std::min(mesh_.lower(i), vertex(i));
+        mesh_.upper(i) = std::max(mesh_.upper(i), vertex(i));
+      }
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  double scale_;
+  std::map<Corner, std::size_t> known_;
+  Mesh mesh_;
+};
+
+std::uint32_t CountOf(std::string_view bytes) {
+  std::uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + kHeader - sizeof count, sizeof count);
+  return count;
+}
+
+// Empty: all is well.
+std::string ReadBinary(std::string_view bytes, Builder& builder) {
+  const std::size_t count = CountOf(bytes);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<float, 12> numbers{};
+    std::memcpy(numbers.data(), bytes.data() + kHeader + i * kRecord, sizeof numbers);
+    std::array<Corner, 3> corners{};
+    for (std::size_t k = 0; k < 9; ++k) corners[k / 3][k % 3] = numbers[3 + k];
+    if (!builder.Add(corners)) return "triangle " + std::to_string(i + 1) + " has a corner that is no number";
+  }
+  return {};
+}
+
+// The text between two `facet`s may be laid out in any way: only its vertices count.
+std::string ReadText(std::string_view text, Builder& builder) {
+  std::istringstream lines{std::string(text)};
+  std::array<Corner, 3> corners{};
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    const std::string place = "line " + std::to_string(number) + ": ";
+    if (word == "vertex") {
+      if (vertices == 3) return place + "a facet has more than three vertices";
+      for (double& x : corners[vertices]) {
+        word.clear();
+        words >> word;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
+        if (error != std::errc() || end != word.data() + word.size())
+          return place + "expected three numbers behind 'vertex'";
+      }
+      ++vertices;
+    } else if (word == "endfacet") {
+      if (vertices != 3) return place + "a facet has " + std::to_string(vertices) + " vertices instead of three";
+      if (++triangles > kMaxTriangles) return "more than " + std::to_string(kMaxTriangles) + " triangles";
+      if (!builder.Add(corners)) return place + "a facet has a vertex that is no number";
+      vertices = 0;
+    }
+  }
+  return vertices == 0 ? std::string() : "the text ends within a facet";
+}
+
+}  // namespace
+
+std::optional<Mesh> ReadStl(std::string_view bytes, double scale, std::string& why) {
+  why.clear();
+  Builder builder(scale);
+  // Binary files may begin with "solid", too: their length tells.
+  const bool binary = bytes.size() >= kHeader && bytes.size() == kHeader + kRecord * std::size_t{CountOf(bytes)};
+  if (binary && CountOf(bytes) > kMaxTriangles) {
+    why = "more than " + std::to_string(kMaxTriangles) + " triangles";
+  } else if (binary) {
+    why = ReadBinary(bytes, builder);
+  } else if (bytes.starts_with("solid") && bytes.find('\0') == std::string_view::npos) {
+    why = ReadText(bytes, builder);
+  } else if (bytes.size() >= kHeader) {
+    why = "this is no STL: " + std::to_string(CountOf(bytes)) + " triangles would need " +
+          std::to_string(kHeader + kRecord * std::size_t{CountOf(bytes)}) + " bytes, found " +
+          std::to_string(bytes.size());
+  } else {
+    why = "this is no STL: neither a text that begins with 'solid' nor long enough for a binary file";
+  }
+  if (!why.empty()) return std::nullopt;
+  Mesh mesh = builder.Take();
+  if (mesh.triangles.empty()) why = "this STL holds no triangles";
+  return why.empty() ? std::optional(std::move(mesh)) : std::nullopt;
+}
+
+std::optional<Mesh> LoadStl(const std::string& path, double scale, std::string& why) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  if (file) bytes << file.rdbuf();
+  if (!file) {
+    why = "cannot read this file: " + std::system_category().message(errno);
+    return std::nullopt;
+  }
+  return ReadStl(std::move(bytes).str(), scale, why);
+}
+
+// The sum of the angles of sight of all triangles: 4 pi inside, 0 outside.
+bool Encloses(const Mesh& mesh, const Vector& point) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    if (point(i) < mesh.lower(i) || point(i) > mesh.upper(i)) return false;
+  }
+  double angle = 0;
+  for (const std::array<std::size_t, 3>& triangle : mesh.triangles) {
+    const Vector a = mesh.vertices[triangle[0]] - point;
+    const Vector b = mesh.vertices[triangle[1]] - point;
+    const Vector c = mesh.vertices[triangle[2]] - point;
+    const double volume = dot(a, b * c);
+    const double rest =
+        a.Norm() * b.Norm() * c.Norm() + dot(a, b) * c.Norm() + dot(b, c) * a.Norm() + dot(c, a) * b.Norm();
+    angle += 2 * std::atan2(volume, rest);
+  }
+  return std::abs(angle) > 2 * std::numbers::pi;
+}
+
+}  // namespace takt::workspace
