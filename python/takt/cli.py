@@ -148,8 +148,9 @@ def run(file: Path, machine: Path | None, url: str | None, report: Path | None) 
         from takt.report import write_report
 
         counts = {name: value for name, value in figures.items() if isinstance(value, (int, float))}
-        page = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": counts}).html
-        print(f"report: {page}")
+        drawn = scenario.draw(outcome.recording) if outcome.passed else {}
+        page = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": counts}, drawn)
+        print(f"report: {page.html}")
     return 0 if outcome.passed else FAILED
 
 
@@ -172,7 +173,9 @@ def demo(file: Path, machine: Path | None, report: Path, pace: str) -> int:
         table.add_row(name, str(value))
     table.add_row("journal", result.replayed.sentence)
     out.print(table)
-    page = write_report(result.outcome.recording, result.outcome.verdicts, report, scenario.title, {"engine": timing})
+    outcome = result.outcome
+    drawn = scenario.draw(outcome.recording) if outcome.passed else {}
+    page = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": timing}, drawn)
     print(f"report: {page.html}")
     return 0 if result.passed else FAILED
 

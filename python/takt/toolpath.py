@@ -28,6 +28,7 @@ Array = npt.NDArray[np.float64]
 Point = tuple[float, float, float]
 
 SAME = 1e-6  # mm: nearer than this, points are the same, as for the engine
+SLACK = 2.0  # mm: how far beside, before or behind a path points may lie that are said to follow it
 TOLERANCE = 0.005  # mm between a curve and the lines that stand for it
 COLUMNS = ("shape", "x", "y", "z", "via_x", "via_y", "via_z", "velocity")
 _BLOCK = 64  # points looked at together in `follow`
@@ -132,7 +133,7 @@ class Toolpath:
         places = np.concatenate([np.array([self.start]), self._places(which, ways)])
         return places, np.concatenate([[0.0], g.at[which] + ways])
 
-    def follow(self, points: npt.ArrayLike, slack: float = 2.0) -> Followed:
+    def follow(self, points: npt.ArrayLike, slack: float = SLACK) -> Followed:
         """How points (m, 3) that were gone through one after the other, from the start on, lie beside the path.
 
         Looked for is the nearest place not far along the path from the one before, so a path that crosses itself, or
