@@ -253,7 +253,7 @@ class MC_GroupReadActualPosition(GroupReadBlock):  # noqa: N801
         self._show(Position=tuple(axis.actual_position for axis in members))
 
     def _of_tool(self, group: Group, *, in_world: bool) -> None:
-        pose = group.actual_pose
+        pose: tuple[float, ...] = group.actual_pose
         if in_world:
             base = [group.parameters["base"][name] for name in TOOL]
             pose = tuple(map(float, matrix_to_pose(pose_to_matrix(base) @ pose_to_matrix(pose))))
