@@ -20,6 +20,7 @@ def test_a_session_has_its_groups_by_name() -> None:
         assert list(engine.groups) == ["gantry"]
         gantry = engine.group("gantry")
         assert gantry is engine.components["gantry"]
+        engine.step()
         assert [axis.name for axis in gantry.members] == ["x", "y", "z"]
         assert gantry.places == (1, 2, 3, 0, 0, 0, 0, 0)
         assert gantry.state is takt.GroupState.GROUP_DISABLED
@@ -41,6 +42,7 @@ def test_moves_along_a_line_and_is_recorded() -> None:
     """GR-20, PY-04."""
     with portal() as (engine, gantry):
         with engine.record() as recorder:
+            engine.step()
             gantry.move_linear_absolute(x=60, y=80, velocity=100).wait()
         made = recorder.recording
         x, y = (np.array(made["gantry"][name]) for name in "xy")
@@ -58,7 +60,7 @@ def test_moves_along_a_line_and_is_recorded() -> None:
 def test_members_are_not_moved_by_themselves() -> None:
     """GR-03."""
     with portal() as (engine, gantry):
-        refused = engine.axis("x").move_absolute(position=5)
+        refused = engine.axis("x").move_absolute(position=5).wait_final()
         assert (refused.error_id, refused.sentence) == (1000, "the axis is a member of a group")
         gantry.disable().wait()
         engine.axis("x").move_absolute(position=5).wait()
@@ -74,14 +76,14 @@ def test_what_is_refused_comes_with_a_sentence() -> None:
         assert beyond.error_id == 3021
         assert gantry.reason is takt.Reason.AXIS_LIMIT
         gantry.disable().wait()
-        assert gantry.move_linear_absolute(x=1).error_id == 3025
+        assert gantry.move_linear_absolute(x=1).wait_final().error_id == 3025
 
 
 def test_members_come_and_go() -> None:
     """GR-02."""
     with takt.Engine(PORTAL) as engine:
         gantry = engine.group("gantry")
-        assert gantry.add_axis(axis="feed", ident=1).error_id != 0  # the place is taken
+        assert gantry.add_axis(axis="feed", ident=1).wait_final().error_id == 1001  # the place is taken
         gantry.add_axis(axis="feed", ident=4).wait()
         engine.step()
         assert [axis.name for axis in gantry.members] == ["x", "y", "z", "feed"]
