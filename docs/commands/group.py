@@ -47,8 +47,8 @@ def scenario(session: takt.Session) -> None:
     portal = session.group("portal")
     portal.power().wait()
     portal.enable().wait()
-    session.mark("all axes to the start")
-    portal.move_direct_absolute(a1=0, a2=0, a3=0).wait()
+    session.mark("every axis by itself, to arrive together")
+    portal.move_direct_absolute(a1=20, a2=-10, a3=5).wait()
     session.mark("two lines, the corner rounded by 2 mm")
     portal.move_linear_absolute(x=60, y=0)
     portal.move_linear_absolute(

@@ -36,13 +36,6 @@ inline Machine PortalMachine() {
   return *loaded.machine;
 }
 
-inline Command ToGroup(const Machine& machine, const group::Command& body) {
-  Command command;
-  command.target = static_cast<std::uint32_t>(machine.axes.size() + machine.flex_cams.size() + 1);
-  command.body = body;
-  return command;
-}
-
 // All axes powered, the group enabled.
 class Portal : public Line {
  public:

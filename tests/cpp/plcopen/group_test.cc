@@ -62,7 +62,7 @@ TEST_F(GroupBlocks, ALinearMove) {
   EXPECT_FALSE(position.Valid());
   position.Enable = true;
   position();
-  EXPECT_NEAR(position.Position()[0], 30, 1e-3);
+  EXPECT_NEAR(position.Position()[0], 30, 2e-3);
 }
 
 // GR-22: one behind the other, both aborted by a halt.
@@ -142,6 +142,7 @@ TEST_F(GroupBlocks, AFaultAndItsReset) {
   EXPECT_TRUE(error.Error());
   EXPECT_EQ(error.GroupErrorID(), ErrorId::kDrive);
   bench.engine.faults(bench.x.target() - 1).drive_fault = false;
+  bench.Step(5);
   MC_GroupReset reset(pair);
   Finish(reset);
   error();
