@@ -52,7 +52,7 @@ def scenario(session: takt.Session) -> None:
     robot.interrupt().wait()
     assert robot.interrupted
     session.run(0.2)
-    robot.continue_().wait()
+    robot.continue_path().wait()
     drawn.wait()
     session.mark(ENDS)
 
