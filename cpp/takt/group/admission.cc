@@ -172,7 +172,10 @@ struct Applier {
   void operator()(const Power& m) const {
     if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
     if (m.enable && s.guides) return Finish(ErrorId::kNone);
-    if (!m.enable) AbortAll({});
+    if (!m.enable && s.guides) {  // each brakes by itself, as its power off says
+      LeaveAll();
+      if (!stands() && !Is(GroupState::kErrorStop)) Enter(GroupState::kStandby, s);
+    }
     EndTask(FeedbackState::kAborted);
     const ErrorId error = TellAll(c, s, axis::Power{.enable = m.enable});
     if (error != ErrorId::kNone) return Refuse(error);

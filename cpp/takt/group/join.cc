@@ -112,8 +112,8 @@ bool CutAt(const Context& c, State& s, double place) {
   std::uint64_t node = window.end() - 1;
   while (node > window.begin() && window[node].at.s > place) --node;
   if (window[node].stop || window[node].at.s > place) return false;
-  const bool moves = s.guides && !s.pace.raw_stands;
-  if (moves && s.pace.node >= node) return false;
+  if (s.begun && s.pace.node >= node) return false;
+  const bool moves = s.begun && !s.pace.raw_stands;
   c.ahead.window.CutBehind(node);
   c.ahead.last = window[node].at;
   if (!moves) return true;

@@ -17,12 +17,12 @@ struct RawLimits {
   double high = 0;
 };
 
-// The largest acceleration with which, a cycle later, a stop `left` ahead can still be made with `deceleration`, after
-// the speed was held for `hold_s`.
-double BeforeStop(double v, double left, double deceleration, double hold_s, double period_s) {
-  // With u = v + a h: (v + u) h / 2 + u hold + u² / (2 d) = left.
+// The largest acceleration with which, a cycle later, the square of the speed can still be brought down to `square` in
+// what is left, with `deceleration`, after the speed was held for `hold_s`.
+double BeforeSlower(double v, double left, double square, double deceleration, double hold_s, double period_s) {
+  // With u = v + a h: (v + u) h / 2 + u hold + (u² - square) / (2 d) = left.
   const double linear = deceleration * (0.5 * period_s + hold_s);
-  const double room = 2 * deceleration * (left - 0.5 * v * period_s);
+  const double room = 2 * deceleration * (left - 0.5 * v * period_s) + square;
   const double later = room > 0 ? std::sqrt(linear * linear + room) - linear : 0;
   return (later - v) / period_s;
 }
@@ -38,9 +38,11 @@ RawLimits RawLimitsOf(const PathWindow& window, const PathPace& pace, double per
   const auto to_reach = [&](double square) { return (square - v * v) / (2 * left); };
   double ahead = to_reach(next.ceiling);
   double coasting = to_reach(next.coast);
-  if (next.ceiling == 0 && ahead > kLanding * limits.low) {  // there is time before it has to brake
-    ahead = BeforeStop(v, left, -kLanding * limits.low, 0, period_s);
-    coasting = BeforeStop(v, left, -kLanding * limits.low, node.build_up_s, period_s);
+  const double landing = next.ceiling == 0 ? kLanding : 1;
+  if (ahead > landing * limits.low && limits.low < 0) {  // there is time before it has to brake
+    const double later = BeforeSlower(v, left, next.ceiling, -landing * limits.low, 0, period_s);
+    if (v + 0.5 * later * period_s <= left / period_s) ahead = later;
+    if (next.ceiling == 0) coasting = BeforeSlower(v, left, 0, -landing * limits.low, node.build_up_s, period_s);
   }
   limits.high = std::min({limits.high, ahead, std::max(0.0, coasting)});
   limits.low = std::min(limits.low, limits.high);

@@ -126,17 +126,20 @@ bool PathWindow::Raise(std::uint64_t i) noexcept {
 double PathWindow::CoastFrom(std::uint64_t i) const noexcept {
   const double s = (*this)[i].at.s;
   double square = (*this)[i].ceiling;
-  for (std::uint64_t k = i; k + 1 < known_; ++k) {
+  for (std::uint64_t k = i; k + 1 < known_ && !(*this)[k].stop; ++k) {
     const PathNode& node = (*this)[k];
     const PathNode& next = (*this)[k + 1];
-    const double way = std::sqrt(square) * node.build_up_s;
-    if (s + way <= next.at.s) {
+    const double to_next = (next.at.s - s) / node.build_up_s;  // the speed that gets there in T
+    if (std::min(square, next.ceiling) <= to_next * to_next) {
+      // The speed u with u² = ceiling at s + u T, which is a line up to there.
       const double length = next.at.s - node.at.s;
-      const double share = length > 0 ? (s + way - node.at.s) / length : 1;
-      return std::min(square, std::lerp(node.ceiling, next.ceiling, share));
+      const double tilt = length > 0 ? (next.ceiling - node.ceiling) / length : 0;
+      const double half = 0.5 * tilt * node.build_up_s;
+      const double here = node.ceiling - tilt * (node.at.s - s);
+      const double u = half + std::sqrt(std::max(0.0, half * half + here));
+      return std::min(square, u * u);
     }
     square = std::min(square, next.ceiling);
-    if (node.stop) break;
   }
   return square;
 }
