@@ -13,13 +13,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from takt import plot, style
 from takt.recording import Recording
 from takt.toolpath import Array, Toolpath
 
 STEP = 0.2  # mm between points of a curve
-COMMANDED, ACTUAL, SPEED = style.PALETTE[0], style.PALETTE[1], style.PALETTE[2]
+COMMANDED, ACTUAL = style.PALETTE[0], style.PALETTE[1]
 
 
 def picture(path: Toolpath, target: str | os.PathLike[str], title: str = "") -> Path:
@@ -92,24 +93,30 @@ class Followed:
         )  # fmt: skip
 
 
-def followed_picture(followed: Followed, title: str, detail: tuple[float, float, float] | None = None) -> Figure:
-    """The path with what was commanded and measured from above; below, over the way, the deviation from the path and
-    the speed. `detail`: X, Y and width in mm of a place to magnify."""
-    figure = Figure(figsize=(plot.WIDTH_IN, 12.0), dpi=plot.DPI, facecolor="white", layout="constrained")
+def followed_picture(
+    followed: Followed, title: str, *, bound: float, detail: tuple[float, float, float] | None = None
+) -> Figure:
+    """The path with what was commanded and measured from above; below, over the way, the deviation from the path with
+    what was allowed (`bound`, mm) and the speed. `detail`: X, Y and width in mm of a place to magnify."""
+    figure = Figure(figsize=(plot.WIDTH_IN, 11.0), dpi=plot.DPI, facecolor="white", layout="constrained")
     FigureCanvasAgg(figure)
-    grid = figure.add_gridspec(3, 2, height_ratios=[2.6, 1, 1], width_ratios=[1, 1])
+    grid = figure.add_gridspec(3, 2, height_ratios=[2.7, 1, 1], width_ratios=[1.55, 1])
     places = [grid[0, 0], grid[0, 1]] if detail else [grid[0, :]]
     views = [figure.add_subplot(place) for place in places]
+    # The way between two lines is no part of the drawing.
+    which = np.clip(
+        np.searchsorted(followed.path.at, followed.position, "right") - 1, 0, len(followed.path.elements) - 1
+    )
+    quick = np.array([one.velocity is None for one in followed.path.elements])[which, np.newaxis]
     for ax in views:
         plan(ax, followed.path)
-        ax.plot(*followed.commanded[:, :2].T, color=COMMANDED, lw=1.2, zorder=3, label="commanded")
-        ax.plot(*followed.actual[:, :2].T, color=ACTUAL, lw=1.0, zorder=4, label="actual")
-    views[0].legend(loc="upper right", frameon=False, fontsize=9.5, labelcolor=plot.INK)
+        for points, colour, width in ((followed.commanded, COMMANDED, 1.6), (followed.actual, ACTUAL, 1.0)):
+            ax.plot(*np.where(quick, np.nan, points)[:, :2].T, color=colour, lw=width, zorder=3)
     if detail:
         x, y, width = detail
-        views[1].set_xlim(x - width / 2, x + width / 2)
-        views[1].set_ylim(y - width / 2, y + width / 2)
-        views[1].set_aspect("equal", adjustable="box")
+        views[0].plot(x, y, "s", ms=9, mfc="none", mec=style.BAD, zorder=5)
+        views[1].set(xlim=(x - width / 2, x + width / 2), ylim=(y - width / 2, y + width / 2))
+        views[1].set_title("magnified", loc="left", color=style.BAD, size=10.5)
     deviations = figure.add_subplot(grid[1, :])
     speeds = figure.add_subplot(grid[2, :], sharex=deviations)
     for ax, name, unit, commanded, actual in (
@@ -117,11 +124,16 @@ def followed_picture(followed: Followed, title: str, detail: tuple[float, float,
         (speeds, "speed", "mm/s", followed.speed, followed.actual_speed),
     ):
         plot.dress(ax)
-        ax.plot(followed.position, actual, color=ACTUAL, lw=0.8, label="actual", zorder=2)
-        ax.plot(followed.position, commanded, color=COMMANDED, lw=0.8, label="commanded", zorder=3)
+        ax.plot(followed.position, actual, color=ACTUAL, lw=0.8, zorder=2)
+        ax.plot(followed.position, commanded, color=COMMANDED, lw=0.8, zorder=3)
         ax.set_ylabel(f"{name}\n[{unit}]", color=plot.INK, size=10.5)
         ax.set_ylim(bottom=0)
+    deviations.axhline(bound, color=style.BAD, lw=1.2, ls=(0, (5, 2)), zorder=4)
     deviations.tick_params(labelbottom=False)
     speeds.set_xlabel("along the path [mm]", color=plot.INK, size=10.5)
+    names = (("path", plot.INK, "-"), ("commanded", COMMANDED, "-"), ("actual", ACTUAL, "-"))
+    handles = [Line2D([], [], color=colour, ls=line, label=name) for name, colour, line in names]
+    handles.append(Line2D([], [], color=style.BAD, ls=(0, (5, 2)), label=f"allowed to what is commanded: {bound:g} mm"))
+    figure.legend(handles=handles, loc="outside upper right", ncols=4, frameon=False, fontsize=10, labelcolor=plot.INK)
     figure.suptitle(title, x=0.01, ha="left", color=plot.INK, weight="bold", size=14)
     return figure

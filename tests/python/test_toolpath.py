@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from takt import toolpath
+from takt import checks, toolpath
 from takt.cli import main
 from takt.gcode import parse_gcode
+from takt.recording import Recording
 from takt.svg import read_svg
 from takt.toolpath import Element, Toolpath, ToolpathError
 
@@ -464,3 +465,45 @@ def test_the_drawing_of_the_delta_cell() -> None:
     path = toolpath.read(EXAMPLE / "drawing.gcode", (0, 0, 4))
     assert len(path.elements) >= 5000
     assert Toolpath.from_csv(EXAMPLE / "drawing.csv", (0, 0, 4)).length == pytest.approx(path.length)
+
+
+# --- How a group keeps to a path ---
+
+
+def recording_of(points: np.ndarray, actual: np.ndarray | None = None) -> Recording:
+    columns = {"time_s": 0.001 * np.arange(len(points))}
+    for i, axis in enumerate("xyz"):
+        columns[axis] = points[:, i]
+        columns[f"actual_{axis}"] = (points if actual is None else actual)[:, i]
+    return Recording({"robot": columns}, {"robot": dict.fromkeys([*"xyz", "actual_x", "actual_y", "actual_z"], "mm")})
+
+
+def test_follows_path() -> None:
+    path = some_path()
+    points, _ = path.points(0.3)
+    verdict = checks.follows_path(recording_of(points), "robot", path, 0.05)
+    assert verdict.passed
+    assert f"over {path.length:.6g} mm" in verdict.sentence
+    assert verdict.by_how_much == pytest.approx(0.05)
+
+    beside = points.copy()
+    beside[100] += [0, 0, 0.08]
+    verdict = checks.follows_path(recording_of(beside), "robot", path, 0.05)
+    assert not verdict.passed
+    assert verdict.by_how_much == pytest.approx(0.03, abs=1e-3)
+    assert verdict.when_s == pytest.approx(0.1)
+    assert checks.follows_path(recording_of(points, beside), "robot", path, 0.05).passed
+    assert not checks.follows_path(recording_of(points, beside), "robot", path, 0.05, actual=True).passed
+
+
+def test_follows_path_all_the_way() -> None:
+    path = some_path()
+    points, _ = path.points(0.3)
+    verdict = checks.follows_path(recording_of(points[:-5]), "robot", path, 0.05)
+    assert not verdict.passed
+    assert verdict.sentence.startswith("ended ")
+    verdict = checks.follows_path(recording_of(points[3:]), "robot", path, 0.05)
+    assert verdict.sentence.startswith("began ")
+    assert not verdict.passed
+    with pytest.raises(ValueError, match="within"):
+        checks.follows_path(recording_of(points), "robot", path, 2.0)

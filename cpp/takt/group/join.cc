@@ -15,6 +15,7 @@ constexpr int kBlendPlaces = 6;
 constexpr int kHalvings = 8;
 // Slower than this a joint without a blend is no better than a stop, mm/s.
 constexpr double kLeastJointSpeed = 1;
+constexpr double kRounding = 1e-9;
 constexpr double kNoEnd = 1e12;  // mm
 
 // How a path goes on at this element: that of the move, but for the first element of a path, which is joined as the
@@ -120,7 +121,9 @@ bool CutAt(const Context& c, State& s, double place) {
   const trajectory::PathNode& next = window[s.pace.node + 1];
   const double v = s.pace.raw.velocity;
   const double left = next.at.s - s.pace.raw.position;
-  return v * v + 2 * left * window[s.pace.node].bounds.Least(s.pace.entered) <= next.ceiling;
+  // It may go by the ceiling itself.
+  const double least = v * v + 2 * left * window[s.pace.node].bounds.Least(s.pace.entered);
+  return least <= next.ceiling * (1 + kRounding);
 }
 
 void Append(LookAhead& ahead, Stretch stretch) {
