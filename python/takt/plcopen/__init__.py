@@ -26,6 +26,7 @@ from takt.plcopen import (
     cam_switch,
     coupling,
     group,
+    group_moves,
     homing,
     jog,
     moves,
@@ -42,6 +43,7 @@ from takt.plcopen.cam import *  # noqa: F403
 from takt.plcopen.cam_switch import *  # noqa: F403
 from takt.plcopen.coupling import *  # noqa: F403
 from takt.plcopen.group import *  # noqa: F403
+from takt.plcopen.group_moves import *  # noqa: F403
 from takt.plcopen.homing import *  # noqa: F403
 from takt.plcopen.jog import *  # noqa: F403
 from takt.plcopen.moves import *  # noqa: F403
@@ -52,7 +54,7 @@ from takt.plcopen.superimposed import *  # noqa: F403
 from takt.plcopen.torque import *  # noqa: F403
 
 _MOVING = (moves, superimposed, profiles, jog, coupling, cam, homing, torque)
-_GROUPS = (administration, *_MOVING, settings, probe, cam_switch, group)
+_GROUPS = (administration, *_MOVING, settings, probe, cam_switch, group, group_moves)
 
 BLOCKS: tuple[type[FunctionBlock], ...] = tuple(
     block
