@@ -40,7 +40,7 @@ COMMANDS = (
     "group.continue_path",
 )
 ERRORS = (5, 6, 7, 9, 10, 11, 1000, 1001, 1003, 1004, 1005, 3003, 3005, 3010, 3018, 3021, 3022, 3023, 3024, 3025, 3026)
-SIGNALS = ("portal.x", "portal.y", "portal.path_velocity", "portal.state", "portal.interrupted")
+SIGNALS = ("portal.[xy]", "portal.path_velocity", "c.set_position", "portal.state", "portal.interrupted")
 
 
 def scenario(session: takt.Session) -> None:
@@ -62,8 +62,11 @@ def scenario(session: takt.Session) -> None:
     session.mark("continued")
     portal.continue_path().wait()
     half.wait()
-    session.mark("a path, seen from a turned product coordinate system")
+    session.mark("a path, seen from a turned product coordinate system; c turns along")
     portal.set_cartesian_transform(pcs=1, x=20, y=40, c=-90).wait()
+    c = session.axis("c")
+    c.power().wait()
+    portal.sync_axis(axis="c", ratio_numerator=2).wait(until="active")
     portal.move_path(
         path="slot",
         coordinate_system="pcs",
