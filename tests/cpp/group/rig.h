@@ -32,7 +32,8 @@ struct Sample {
 inline axis::AxisParams AxisOf(const std::string& name, double velocity, double acceleration, double jerk) {
   axis::AxisParams p;
   p.name = name;
-  p.limits = {.velocity = velocity, .acceleration = acceleration, .deceleration = {}, .jerk = jerk, .lower = {}, .upper = {}};
+  p.limits = {
+      .velocity = velocity, .acceleration = acceleration, .deceleration = {}, .jerk = jerk, .lower = {}, .upper = {}};
   p.encoder.increments_per_unit = 1e6;
   return p;
 }
@@ -58,6 +59,7 @@ class Rig {
     for (const std::uint32_t member : members) group_of[member] = 1;
     inputs.resize(axes.size());
     commanded.resize(axes.size());
+    slip_counts.resize(axes.size());
     ahead = std::make_unique<LookAhead>(trajectory::CoordinateLimits{}, cycle.period_s);
     state = MakeState(params, members);
   }
@@ -78,7 +80,7 @@ class Rig {
 
   void Step() {
     for (std::size_t i = 0; i < axes.size(); ++i) {
-      inputs[i].counts = static_cast<std::uint32_t>(std::llround(commanded[i].position_counts));
+      inputs[i].counts = static_cast<std::uint32_t>(std::llround(commanded[i].position_counts + slip_counts[i]));
       inputs[i].drive_ready = commanded[i].enable && !inputs[i].drive_fault;
       axis::Sense(AxisContext(i), inputs[i], states[i]);
     }
@@ -132,7 +134,8 @@ class Rig {
   }
   Context Now() {
     Context c{params, kinematics ? &*kinematics : nullptr, paths, group_of, 1, {}, cycle, sink_, *ahead};
-    c.axes = {states, [](void* owner, std::size_t i) noexcept { return static_cast<Rig*>(owner)->AxisContext(i); }, this};
+    c.axes = {states, [](void* owner, std::size_t i) noexcept { return static_cast<Rig*>(owner)->AxisContext(i); },
+              this};
     return c;
   }
   const Outputs& out() const { return trace.back().out; }
@@ -145,6 +148,7 @@ class Rig {
   std::vector<std::uint32_t> group_of;
   std::vector<ServoInputs> inputs;
   std::vector<ServoOutputs> commanded;
+  std::vector<double> slip_counts;  // measured beyond what is commanded
   std::unique_ptr<LookAhead> ahead;
   State state;
   Cycle cycle;
@@ -174,30 +178,5 @@ class Rig {
   std::vector<std::function<void()>> pending_;
   Ticket next_ = 1;
 };
-
-// A gantry of X, Y, Z.
-inline Rig Gantry(std::vector<PathTable> paths = {}) {
-  GroupParams p;
-  p.name = "gantry";
-  p.axes = {"x", "y", "z"};
-  p.kinematics.emplace().gantry.emplace().axes = {kinematics::Coordinate::kX, kinematics::Coordinate::kY,
-                                                  kinematics::Coordinate::kZ};
-  p.path = {.velocity = 1000, .acceleration = 8000, .deceleration = {}, .jerk = 400000};
-  std::vector<axis::AxisParams> axes;
-  for (const char* name : {"x", "y", "z"}) axes.push_back(AxisOf(name, 1500, 10000, 500000));
-  return Rig(std::move(p), std::move(axes), std::move(paths));
-}
-
-// A Delta with the lengths of a FlexPicker (ABB IRB 340), fast axes.
-inline Rig DeltaRobot() {
-  GroupParams p;
-  p.name = "delta";
-  p.axes = {"a1", "a2", "a3"};
-  p.kinematics.emplace().delta = {.base_radius = 200, .platform_radius = 45, .upper_arm = 235, .lower_arm = 800};
-  p.path = {.velocity = 4000, .acceleration = 60000, .deceleration = {}, .jerk = 3e6};
-  std::vector<axis::AxisParams> axes;
-  for (const char* name : {"a1", "a2", "a3"}) axes.push_back(AxisOf(name, 800, 20000, 1e6));
-  return Rig(std::move(p), std::move(axes));
-}
 
 }  // namespace takt::group
