@@ -1,4 +1,6 @@
-"""A Delta draws what a CAM system has written: 5,000 points at up to 300 mm/s, corners blended within 0.05 mm.
+"""A Delta draws what a CAM system has written.
+
+5,000 points at up to 300 mm/s, corners blended within 0.05 mm.
 
 takt path python/examples/delta_cell/drawing.gcode --plot drawing.png    the drawing as it is in the file
 takt run python/examples/delta_cell/scenario.py       in process, in virtual time
