@@ -104,14 +104,13 @@ def followed_picture(
     places = [grid[0, 0], grid[0, 1]] if detail else [grid[0, :]]
     views = [figure.add_subplot(place) for place in places]
     # The way between two lines is no part of the drawing.
-    which = np.clip(
-        np.searchsorted(followed.path.at, followed.position, "right") - 1, 0, len(followed.path.elements) - 1
-    )
-    quick = np.array([one.velocity is None for one in followed.path.elements])[which, np.newaxis]
+    quick = np.array([one.velocity is None for one in followed.path.elements])
+    which = np.searchsorted(followed.path.at, followed.position, "right") - 1
+    lifted = quick[np.clip(which, 0, len(quick) - 1), np.newaxis]
     for ax in views:
         plan(ax, followed.path)
         for points, colour, width in ((followed.commanded, COMMANDED, 1.6), (followed.actual, ACTUAL, 1.0)):
-            ax.plot(*np.where(quick, np.nan, points)[:, :2].T, color=colour, lw=width, zorder=3)
+            ax.plot(*np.where(lifted, np.nan, points)[:, :2].T, color=colour, lw=width, zorder=3)
     if detail:
         x, y, width = detail
         views[0].plot(x, y, "s", ms=9, mfc="none", mec=style.BAD, zorder=5)

@@ -16,7 +16,7 @@ def test_in_virtual_time() -> None:
     with takt.Engine(scenario.machine) as session:
         outcome = run_scenario(scenario, session)
     assert outcome.passed, [v.sentence for v in outcome.verdicts if not v.passed]
-    assert len(outcome.verdicts) >= 13
+    assert len(outcome.verdicts) >= 15
 
 
 def test_on_taktd(tmp_path: Path) -> None:

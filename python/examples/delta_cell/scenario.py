@@ -1,4 +1,6 @@
-"""A Delta draws what a CAM system has written: 5,000 points at up to 300 mm/s, corners blended within 0.05 mm.
+"""A Delta draws what a CAM system has written.
+
+5,000 points at up to 300 mm/s, corners blended within 0.05 mm.
 
 takt path python/examples/delta_cell/drawing.gcode --plot drawing.png    the drawing as it is in the file
 takt run python/examples/delta_cell/scenario.py       in process, in virtual time
@@ -17,6 +19,8 @@ LIFT = 4.0  # mm above the sheet: where the drawing starts
 CORNERS = 0.05  # mm: how far a blend may be beside a corner
 
 BEGINS = "the drawing begins"
+INTERRUPTED = "interrupted on the path"
+GOES_ON = "and gone on with"
 ENDS = "the drawing is done"
 
 
@@ -48,10 +52,11 @@ def scenario(session: takt.Session) -> None:
         transition_parameter=CORNERS,
     )
     session.run(8.0)
-    session.mark("interrupted and gone on with")
+    session.mark(INTERRUPTED)
     robot.interrupt().wait()
     assert robot.interrupted
     session.run(0.2)
+    session.mark(GOES_ON)
     robot.continue_path().wait()
     drawn.wait()
     session.mark(ENDS)
@@ -62,17 +67,18 @@ def scenario(session: takt.Session) -> None:
     robot.power(enable=False).wait()
 
 
-def span(recording: takt.Recording) -> tuple[float, float]:
-    """When the robot draws."""
-    at = {event.text: event.time_s for event in recording.events if event.kind == "mark"}
-    return at[BEGINS], at[ENDS]
+def times(recording: takt.Recording) -> dict[str, float]:
+    return {event.text: event.time_s for event in recording.events if event.kind == "mark"}
 
 
 def verify(recording: takt.Recording) -> None:
-    path, window = drawing(), span(recording)
+    path, at = drawing(), times(recording)
+    window = (at[BEGINS], at[ENDS])
     expect.follows_path(recording, "robot", path, CORNERS + 0.001, window=window)
     expect.follows_path(recording, "robot", path, 0.25, actual=True, window=window)
-    expect.stays(recording, "robot.path_error < 1", window=window)
+    expect.stays(recording, "robot.path_error < 0.5", window=window)
+    for begin, end in ((BEGINS, INTERRUPTED), (GOES_ON, ENDS)):  # it stops at no corner
+        expect.stays(recording, "robot.velocity > 10", window=(at[begin] + 0.05, at[end] - 0.05))
     for axis in ("arm_1", "arm_2", "arm_3"):
         expect.within_limits(recording, axis)
         expect.continuous(recording, axis)
@@ -83,5 +89,8 @@ def verify(recording: takt.Recording) -> None:
 
 
 def pictures(recording: takt.Recording) -> dict[str, Figure]:
-    followed = Followed.of(drawing(), recording, "robot", *span(recording))
-    return {"drawing": followed_picture(followed, "A Delta draws", bound=CORNERS, detail=(11.0, 20.6, 1.2))}
+    at = times(recording)
+    followed = Followed.of(drawing(), recording, "robot", at[BEGINS], at[ENDS])
+    return {
+        "drawing": followed_picture(followed, "A Delta draws 5,000 points", bound=CORNERS, detail=(11.05, 20.55, 1.2))
+    }
