@@ -70,6 +70,10 @@ bool IsThrough(const Context& c, const State& s) {
          (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short);
 }
 
+bool NothingToGo(const Context& c, const State& s) {
+  return c.ahead.count == 0 && s.planning.stage == Stage::kIdle && s.planning.move >= s.done + s.queue.count;
+}
+
 void MoveOn(const Context& c, State& s) {
   Advance(c, s);
   // The members get to the last set point after this.
@@ -173,7 +177,9 @@ void Step(const Context& c, State& s) noexcept {
   }
   if (s.begun) {
     MoveOn(c, s);
-  } else if (s.ends || (s.state == GroupState::kMoving && s.queue.count == 0)) {
+  } else if (s.ends || (s.state == GroupState::kMoving && NothingToGo(c, s))) {
+    // Moves to where the group stands are done.
+    while (!s.ends && s.queue.count > 0) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
     ComeToRest(c, s);
   }
   LeadSynced(c, s);

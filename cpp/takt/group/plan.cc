@@ -34,6 +34,14 @@ void NextMove(State& s) {
   s.planning.stage = Stage::kIdle;
 }
 
+void NextElement(const Context& c, State& s) {
+  const Request& move = MoveAt(s, s.planning.move);
+  const bool more = move.kind == MoveKind::kPath && s.planning.element + 1 < c.paths[move.path].pieces.size();
+  if (c.ahead.cut_short || !more) return NextMove(s);
+  ++s.planning.element;
+  s.planning.stage = Stage::kIdle;
+}
+
 // What a path began and cannot go on with ends there, and so do the moves behind it.
 void CutShort(const Context& c, kinematics::Reason reason, double at, State& s) {
   s.reason = reason;
@@ -66,6 +74,10 @@ void Begin(const Context& c, State& s) {
   c.ahead.next = {};
   c.ahead.next.move = s.planning.move;
   const ErrorId error = MakeStretch(c, move, s.planning.element, c.ahead, s);
+  if (s.problem == path::Problem::kLengthZero) {  // it is there already
+    s.problem = path::Problem::kNone;
+    return NextElement(c, s);
+  }
   if (error != ErrorId::kNone) return Refuse(c, error, s);
   c.ahead.build_up = {};
   c.ahead.near = c.ahead.end_joints;
@@ -160,12 +172,7 @@ void Sample(const Context& c, int& budget, State& s) {
 }
 
 void Sweep(const Context& c, State& s) {
-  if (!c.ahead.window.Sweep(kSweepNodes)) return;
-  const Request& move = MoveAt(s, s.planning.move);
-  const bool more = move.kind == MoveKind::kPath && s.planning.element + 1 < c.paths[move.path].pieces.size();
-  if (c.ahead.cut_short || !more) return NextMove(s);
-  ++s.planning.element;
-  s.planning.stage = Stage::kIdle;
+  if (c.ahead.window.Sweep(kSweepNodes)) NextElement(c, s);
 }
 
 bool HasRoom(const LookAhead& ahead) {
