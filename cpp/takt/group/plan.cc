@@ -16,6 +16,7 @@ constexpr int kBudget = 48;
 // Of the members' limits: the rest keeps them within theirs in spite of what the timing takes for linear.
 constexpr double kLimitShare = 0.98;
 constexpr std::size_t kSweepNodes = 512;
+constexpr std::size_t kSpareNodes = 4;
 constexpr int kLeastPlaces = 4;
 constexpr int kMostPlaces = 64;
 constexpr double kPlaceWay = 8;  // mm between two places at which a path is tried beforehand
@@ -154,6 +155,11 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
 void Sample(const Context& c, int& budget, State& s) {
   LookAhead& ahead = c.ahead;
   while (budget > 0 && ahead.sampling < ahead.end() && !ahead.cut_short) {
+    if (ahead.window.room() < kSpareNodes) {  // the rest when there is room again
+      ahead.window.Close();
+      s.planning.stage = Stage::kSweep;
+      return;
+    }
     Stretch& stretch = ahead[ahead.sampling];
     ahead.window.SetBuildUp(stretch.build_up_s);
     if (!stretch.begun) {
@@ -172,7 +178,12 @@ void Sample(const Context& c, int& budget, State& s) {
 }
 
 void Sweep(const Context& c, State& s) {
-  if (c.ahead.window.Sweep(kSweepNodes)) NextElement(c, s);
+  if (!c.ahead.window.Sweep(kSweepNodes)) return;
+  if (c.ahead.sampling < c.ahead.end() && !c.ahead.cut_short) {
+    if (c.ahead.window.room() > kNodes / 4) s.planning.stage = Stage::kSample;
+    return;
+  }
+  NextElement(c, s);
 }
 
 bool HasRoom(const LookAhead& ahead) {
