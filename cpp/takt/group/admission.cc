@@ -45,7 +45,7 @@ struct Applier {
   }
 
   void EndTask(FeedbackState feedback) const {
-    if (s.task != Task::kNone) Report(c, s.ticket, feedback);
+    if (TaskReports(s)) Report(c, s.ticket, feedback);
     s.task = Task::kNone;
     s.ticket = 0;
   }

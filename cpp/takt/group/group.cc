@@ -16,7 +16,7 @@ namespace takt::group {
 namespace {
 
 void EndTask(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
-  if (s.task != Task::kNone && s.ticket != 0) Report(c, s.ticket, feedback, error);
+  if (TaskReports(s)) Report(c, s.ticket, feedback, error);
   s.task = Task::kNone;
   s.ticket = 0;
   s.lease_s = 0;

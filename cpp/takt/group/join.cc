@@ -68,7 +68,7 @@ double SquareOn(const Context& c, const State& s, const Stretch& blend) {
     const double way = blend.segment.length * i / kBlendPlaces;
     if (SlopesOn(c, s, blend, way, near, point.slopes, motion) != kinematics::Reason::kNone) return -1;
     near = motion.position;
-    square = std::min(square, trajectory::SquareAt(point, c.ahead.window.limits(), c.ahead.window.build_up_s(), 1));
+    square = std::min(square, trajectory::SquareAt(point, c.ahead.window.limits(), 1));
   }
   return square;
 }

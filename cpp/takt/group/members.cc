@@ -12,6 +12,11 @@ void Enter(GroupState to, State& s) noexcept {
   s.state = to;
 }
 
+bool TaskReports(const State& s) noexcept {
+  const bool stopped = s.task == Task::kStop && s.stop_reported;
+  return s.task != Task::kNone && s.ticket != 0 && !stopped;
+}
+
 axis::State& MemberOf(const Context& c, const State& s, std::size_t place) noexcept {
   return c.axes.states[s.members[place] - 1];
 }

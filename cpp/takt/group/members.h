@@ -7,6 +7,9 @@ namespace takt::group {
 
 void Enter(GroupState to, State& s) noexcept;
 
+// The task has a command whose end was not told yet.
+bool TaskReports(const State& s) noexcept;
+
 axis::State& MemberOf(const Context& c, const State& s, std::size_t place) noexcept;
 axis::Context ContextOf(const Context& c, const State& s, std::size_t place) noexcept;
 

@@ -10,10 +10,7 @@ namespace {
 
 // First slopes that differ by more, in relation to both, are a corner.
 constexpr double kSameSlope = 1e-6;
-
-double AccelerationOf(const CoordinateLimits::One& own, double build_up_s, double share) {
-  return share * std::min(own.acceleration, own.jerk * build_up_s);
-}
+constexpr double kJerkShare = 0.98;
 
 }  // namespace
 
@@ -22,14 +19,21 @@ AlongPath Least(const AlongPath& a, const AlongPath& b) noexcept {
           std::min(a.deceleration, b.deceleration), std::min(a.jerk, b.jerk)};
 }
 
+Strength Least(const Strength& a, const Strength& b, double square) noexcept {
+  const double at_rest = std::min(a.at_rest, b.at_rest);
+  if (at_rest == CoordinateLimits::kNone || square == 0) return {at_rest, 0};
+  const double last = std::min(a.At(square), b.At(square));
+  return {at_rest, std::max(0.0, at_rest - last) / square};
+}
+
 double AccelerationBounds::Least(double square) const noexcept {
-  double least = -deceleration;
+  double least = std::max(-deceleration, -strength.At(square));
   for (std::size_t k = 0; k < count; ++k) least = std::max(least, tilt[k] * square - reach[k]);
   return least;
 }
 
 double AccelerationBounds::Most(double square) const noexcept {
-  double most = acceleration;
+  double most = std::min(acceleration, strength.At(square));
   for (std::size_t k = 0; k < count; ++k) most = std::min(most, tilt[k] * square + reach[k]);
   return most;
 }
@@ -41,7 +45,7 @@ AccelerationBounds BoundsAt(const PathSlopes& slopes, const AlongPath& along, co
   bounds.deceleration = std::min(along.deceleration, along.jerk * build_up_s);
   const double largest = std::max(bounds.acceleration, bounds.deceleration);
   for (std::size_t k = 0; k < limits.count; ++k) {
-    const double own = AccelerationOf(limits.of[k], build_up_s, share);
+    const double own = share * limits.of[k].acceleration;
     // Where a coordinate hardly moves with the way, only the square of the speed counts (SquareAt).
     if (own == CoordinateLimits::kNone || std::abs(slopes.first[k]) * largest <= 1e-6 * own) continue;
     const double inverse = 1 / slopes.first[k];
@@ -52,17 +56,42 @@ AccelerationBounds BoundsAt(const PathSlopes& slopes, const AlongPath& along, co
   return bounds;
 }
 
-double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double build_up_s, double share) noexcept {
+double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double share) noexcept {
   double square = point.limits.velocity * point.limits.velocity;
   for (std::size_t k = 0; k < limits.count; ++k) {
     const double slope = std::abs(point.slopes.first[k]);
     const double bend = std::abs(point.slopes.second[k]);
     const CoordinateLimits::One& own = limits.of[k];
     if (slope * slope * square > own.velocity * own.velocity) square = own.velocity * own.velocity / (slope * slope);
-    const double acceleration = AccelerationOf(own, build_up_s, share);
+    const double acceleration = share * own.acceleration;
     if (bend * square > acceleration) square = acceleration / bend;
   }
   return square;
+}
+
+Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordinates>& third,
+                    const CoordinateLimits& limits, double square, double build_up_s) noexcept {
+  const auto at = [&](double w) {
+    const double v = std::sqrt(w);
+    double most = CoordinateLimits::kNone;
+    for (std::size_t k = 0; k < limits.count; ++k) {
+      // The bends' own part is hardly ever largest where the others are: as if at right angles.
+      const double own = kJerkShare * limits.of[k].jerk;
+      const double bends = std::min(third[k] * w * v, 0.99 * own);
+      const double left = std::sqrt(own * own - bends * bends);
+      const double asked = 3 * std::abs(point.slopes.second[k]) * v + std::abs(point.slopes.first[k]) / build_up_s;
+      if (asked * most > left) most = left / asked;
+    }
+    return most;
+  };
+  // The tangent at half the square, or what is beneath it at the whole one.
+  const double last = at(square);
+  const double half = at(0.5 * square);
+  if (last == CoordinateLimits::kNone) return {};
+  const double fading = std::max(0.0, (at(0.49 * square) - half) / (0.01 * square));
+  const double at_rest = std::min(half + 0.5 * fading * square, last + fading * square);
+  if (at_rest - fading * square < 0.3 * last) return {last, 0};
+  return {at_rest, fading};
 }
 
 double SquareBefore(const AccelerationBounds& bounds, double length, double later, double highest) noexcept {
@@ -72,6 +101,10 @@ double SquareBefore(const AccelerationBounds& bounds, double length, double late
   for (int i = 0; i < 2 * static_cast<int>(kPathCoordinates); ++i) {
     double least = -bounds.deceleration;
     double tilt = 0;
+    if (bounds.strength.At(square) < bounds.deceleration) {
+      least = -bounds.strength.At(square);
+      tilt = bounds.strength.fading;
+    }
     for (std::size_t k = 0; k < bounds.count; ++k) {
       const double one = bounds.tilt[k] * square - bounds.reach[k];
       if (one <= least) continue;

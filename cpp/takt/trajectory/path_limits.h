@@ -50,6 +50,17 @@ struct PathPoint {
   AlongPath limits;
 };
 
+// An acceleration that falls with the square of the speed.
+struct Strength {
+  double at_rest = CoordinateLimits::kNone;
+  double fading = 0;  // per square of the speed
+
+  double At(double square) const noexcept { return at_rest - fading * square; }
+  bool operator==(const Strength&) const = default;
+};
+// Beneath both up to a square of the speed.
+Strength Least(const Strength& a, const Strength& b, double square) noexcept;
+
 // The limits of acceleration of one place, those of coordinates as lines over the square of the speed.
 struct AccelerationBounds {
   std::size_t count = 0;
@@ -57,18 +68,25 @@ struct AccelerationBounds {
   std::array<double, kPathCoordinates> reach{};  // at standstill, to both sides
   double acceleration = 0;                       // along the way
   double deceleration = 0;
+  Strength strength;  // either way
 
   double Least(double square) const noexcept;
   double Most(double square) const noexcept;
 };
 
-// With `share` of each coordinate's acceleration, but no more than its jerk builds up within `build_up_s`.
+// With `share` of each coordinate's acceleration; along the way no more than its jerk builds up within `build_up_s`.
 AccelerationBounds BoundsAt(const PathSlopes& slopes, const AlongPath& along, const CoordinateLimits& limits,
                             double build_up_s, double share) noexcept;
 
 // The largest square of the speed at this place: for velocities, and so that there is an acceleration within the
-// bounds.
-double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double build_up_s, double share) noexcept;
+// bounds, with `share` of the coordinates' own.
+double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double share) noexcept;
+
+// The largest acceleration along the way, either way, that may be at speeds up to a square if it is built up and taken
+// back within `build_up_s`: for the jerk of the coordinates, q''' v³ + 3 q'' v a + q' j. A line beneath it.
+// `third`: how large the third derivative of each is.
+Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordinates>& third,
+                    const CoordinateLimits& limits, double square, double build_up_s) noexcept;
 
 // The largest square of the speed up to `highest` from which an acceleration within the bounds leads to `later` at
 // most, `length` further on.

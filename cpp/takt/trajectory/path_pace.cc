@@ -52,7 +52,8 @@ RawLimits RawLimitsOf(const PathWindow& window, const PathPace& pace, double per
 double NextAcceleration(const PathWindow& window, double wish, double period_s, const PathPace& pace) {
   const RawLimits limits = RawLimitsOf(window, pace, period_s);
   // Against the acceleration that leaves the mean in this cycle.
-  const double change = window[pace.node].at.limits.jerk * window[pace.node].build_up_s;
+  const PathNode& node = window[pace.node];
+  const double change = std::min(node.at.limits.jerk * node.build_up_s, node.bounds.strength.At(pace.entered));
   const double before = pace.last[pace.oldest].acceleration;
   const double wanted = (wish - pace.raw.velocity) / period_s;
   const double high = std::min(limits.high, before + change);

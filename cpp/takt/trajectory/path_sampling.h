@@ -55,7 +55,7 @@ template <typename SlopesAt>
 bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limits, double build_up_s, double period_s,
                const SlopesAt& slopes_at, PathPoint& next) {
   namespace c = sampling;
-  const auto square_at = [&](const PathPoint& point) { return SquareAt(point, limits, build_up_s, 1); };
+  const auto square_at = [&](const PathPoint& point) { return SquareAt(point, limits, 1); };
   const double time = std::max(c::kTimeShare * build_up_s, c::kCycles * period_s);
   const double left = end - before.s;
   const double here = square_at(before);

@@ -10,15 +10,24 @@ namespace {
 // Between nodes everything is taken for linear, and the mean of accelerations for the acceleration of the mean: so much
 // of the coordinates' limits is used.
 constexpr double kShare = 0.97;
-constexpr double kDriftShare = 0.9;
+// Of the coordinates' jerk, for bends gone at a steady speed.
+constexpr double kDriftShare = 0.8;
 
-// Up to which bends alone do not ask for more than a share of the coordinates' jerk.
-double DriftSquare(const PathPoint& before, const PathPoint& after, const CoordinateLimits& limits) {
+using Third = std::array<double, kPathCoordinates>;
+
+Third ThirdBetween(const PathPoint& before, const PathPoint& after, const CoordinateLimits& limits) {
+  Third third{};
   const double length = after.s - before.s;
-  double cube = CoordinateLimits::kNone;
   for (std::size_t k = 0; k < limits.count && length > 0; ++k) {
-    const double bend = std::abs(after.slopes.second[k] - before.slopes.second[k]) / length;
-    if (bend * cube > kDriftShare * limits.of[k].jerk) cube = kDriftShare * limits.of[k].jerk / bend;
+    third[k] = std::abs(after.slopes.second[k] - before.slopes.second[k]) / length;
+  }
+  return third;
+}
+
+double DriftSquare(const Third& third, const CoordinateLimits& limits) {
+  double cube = CoordinateLimits::kNone;
+  for (std::size_t k = 0; k < limits.count; ++k) {
+    if (third[k] * cube > kDriftShare * limits.of[k].jerk) cube = kDriftShare * limits.of[k].jerk / third[k];
   }
   const double v = std::cbrt(cube);
   return v * v;
@@ -40,43 +49,52 @@ void PathWindow::Append(const PathPoint& point, bool stop) noexcept {
   node.stop = stop;
   node.build_up_s = build_up_s_;
   node.bounds = BoundsAt(point.slopes, point.limits, limits_, build_up_s_, kShare);
-  node.own = node.cap = SquareAt(point, limits_, build_up_s_, kShare);
+  node.own = SquareAt(point, limits_, kShare);
+  Third third{};
   if (!IsFirst(end_)) {
     PathNode& before = Node(end_ - 1);
-    const double square = DriftSquare(before.at, point, limits_);
+    third = ThirdBetween(before.at, point, limits_);
+    const double square = DriftSquare(third, limits_);
     node.own = std::min(node.own, square);
-    if (square < before.own) {
-      before.own = square;
-      before.cap = std::min(before.cap, square);
-      Spread(end_ - 1);
-    }
+    before.own = std::min(before.own, square);
+    before.cap = std::min(before.cap, square);
+    before.bounds.strength =
+        Least(before.bounds.strength, StrengthAt(before.at, third, limits_, before.own, before.build_up_s), before.own);
+    Spread(end_ - 1);
   }
+  node.cap = node.own;
+  node.bounds.strength = StrengthAt(point, third, limits_, node.own, build_up_s_);
   Spread(end_++);
 }
 
-// Slow places hold for all from which, or to which, the mean reaches.
+// Slow and weak places hold for all from which, or to which, the mean reaches.
 void PathWindow::Spread(std::uint64_t i) noexcept {
   PathNode& node = Node(i);
   const double half = 0.5 * node.build_up_s;
   const double reach = half * std::sqrt(node.own);
   double slowest = std::min(node.own, node.cap);
+  Strength& strength = node.bounds.strength;
+  Strength weakest = strength;
   for (std::uint64_t k = i; !IsFirst(k); --k) {
     PathNode& before = Node(k - 1);
-    const double distance = node.at.s - before.at.s;
-    if (distance > reach) break;
-    if (before.cap > node.own) {
-      before.cap = node.own;
-      lowest_ = std::min(lowest_, k - 1);
-    }
+    if (node.at.s - before.at.s > reach) break;
+    const Strength weaker = Least(before.bounds.strength, strength, std::min(before.own, node.own));
+    if (before.cap <= node.own && before.bounds.strength == weaker) continue;
+    before.cap = std::min(before.cap, node.own);
+    before.bounds.strength = weaker;
+    lowest_ = std::min(lowest_, k - 1);
   }
   // No place further back than the fastest one reaches is slower and reaches as far.
   for (std::uint64_t k = i; !IsFirst(k); --k) {
     const PathNode& before = Node(k - 1);
     const double distance = node.at.s - before.at.s;
     if (distance > reach) break;
-    if (distance <= half * std::sqrt(before.own)) slowest = std::min(slowest, before.own);
+    if (distance > half * std::sqrt(before.own)) continue;
+    slowest = std::min(slowest, before.own);
+    weakest = Least(weakest, before.bounds.strength, slowest);
   }
   node.cap = slowest;
+  strength = weakest;
 }
 
 void PathWindow::Close() noexcept {

@@ -3,9 +3,8 @@
 //
 // The motion is made in two steps. A raw motion, with accelerations that may step, keeps all limits of velocity and
 // acceleration; what is gone is its mean over the time T in which accelerations build up. So the acceleration takes at
-// least T from one value to another, and with accelerations of at most jerk times T no jerk is exceeded: neither along
-// the way nor, since theirs are averaged just so, of any coordinate. The mean comes to rest T after the raw motion
-// does.
+// least T from one value to another, and what it may be at all follows from the jerk allowed along the way, and from
+// that of the coordinates (StrengthAt). The mean comes to rest T after the raw motion does.
 //
 // From the end of the window backwards each node gets its ceiling: the largest speed of the raw motion from which the
 // rest of the window can still be gone within all limits, down to a stop at its end. Whoever is beneath the ceiling in
@@ -54,8 +53,8 @@ class PathWindow {
   std::size_t room() const noexcept { return nodes_.size() - static_cast<std::size_t>(end_ - begin_); }
   const PathNode& operator[](std::uint64_t i) const noexcept { return nodes_[i % nodes_.size()]; }
 
-  // There must be room, s must not fall. No ceiling knows of the node yet. `stop`: the motion stops there, the next node
-  // begins another one at the same place.
+  // There must be room, s must not fall. No ceiling knows of the node yet. `stop`: the motion stops there, the next
+  // node begins another one at the same place.
   void Append(const PathPoint& point, bool stop = false) noexcept;
   // Takes everything appended into the ceilings, with a stop at the last node for as long as nothing comes behind it.
   // Only once Sweep is through.
