@@ -231,6 +231,20 @@ TEST(Moves, TurnAlongTheGreatArc) {
   ExpectSmooth(rig);
 }
 
+// Several in one cycle: each aborts the one before, the last one is gone.
+TEST(Moves, OfOneCycleAbortEachOther) {
+  Rig rig = Gantry();
+  rig.Start();
+  const Ticket first = rig.Give(MoveLinearAbsolute{.x = 100});
+  const Ticket second = rig.Give(MoveLinearAbsolute{.y = 100});
+  const Ticket third = rig.Give(MoveLinearAbsolute{.z = 100});
+  ASSERT_TRUE(rig.RunToEnd(third, 5));
+  EXPECT_TRUE(rig.lives[first].aborted);
+  EXPECT_TRUE(rig.lives[second].aborted);
+  EXPECT_TRUE(rig.lives[third].done);
+  ExpectAt(ToolOf(rig), {0, 0, 100, 0, 0, 0}, 1e-9);
+}
+
 // GR-21: auxiliary axes go along with the path.
 TEST(Moves, TakeAuxiliaryAxesAlong) {
   Rig rig = GantryWithAuxiliary();
