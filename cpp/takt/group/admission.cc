@@ -54,7 +54,11 @@ struct Applier {
   void AbortAll(const trajectory::AlongPath& brake) const {
     EndTask(FeedbackState::kAborted);
     AbortMoves(c, ErrorId::kNone, s);
-    if (s.begun || s.planning.stage != Stage::kIdle || c.ahead.known) EndMotion(brake, s);
+    if (s.begun || s.planning.stage != Stage::kIdle || c.ahead.known) {
+      EndMotion(brake, s);
+    } else {
+      ForgetPlan(c, s);
+    }
     s.interrupted = false;
   }
 

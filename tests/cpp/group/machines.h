@@ -109,7 +109,7 @@ inline std::vector<Kind> Kinds() {
           {"gantry with C", GantryWithC, box(300, 300, -200, 200, 90)},
           {"CoreXY", CoreXy, box(300, 300, -200, 200, 0)},
           {"SCARA", ScaraRobot, ring},
-          {"Delta", DeltaRobot, box(250, 250, -950, -800, 0)},
+          {"Delta", DeltaRobot, box(200, 200, -950, -800, 0)},
           {"six axes", [] { return SixAxisRobot(); }, before}};
 }
 

@@ -80,7 +80,9 @@ class Rig {
 
   void Step() {
     for (std::size_t i = 0; i < axes.size(); ++i) {
-      inputs[i].counts = static_cast<std::uint32_t>(std::llround(commanded[i].position_counts + slip_counts[i]));
+      if (commanded[i].enable) {  // else the drive holds it
+        inputs[i].counts = static_cast<std::uint32_t>(std::llround(commanded[i].position_counts + slip_counts[i]));
+      }
       inputs[i].drive_ready = commanded[i].enable && !inputs[i].drive_fault;
       axis::Sense(AxisContext(i), inputs[i], states[i]);
     }
@@ -159,7 +161,8 @@ class Rig {
  private:
   void Note(const FeedbackEvent& e) {
     Life& life = lives[e.ticket];
-    EXPECT_FALSE(life.ended()) << "ticket " << e.ticket << " ended before";
+    EXPECT_FALSE(life.ended()) << "ticket " << e.ticket << " ended before: done " << life.done << ", aborted "
+                               << life.aborted << ", error " << life.error << "; now " << static_cast<int>(e.state);
     life.busy |= e.state == FeedbackState::kBusy;
     if (e.state == FeedbackState::kActive && !life.active) life.active_cycle = e.cycle;
     life.active |= e.state == FeedbackState::kActive;
