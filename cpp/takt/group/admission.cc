@@ -181,11 +181,19 @@ struct Applier {
     if (m.enable && Is(GroupState::kStopping)) return Refuse(ErrorId::kAxisStopping);
     if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
     if (m.enable && s.guides) return Finish(ErrorId::kNone);
-    if (!m.enable && s.guides) {  // each brakes by itself, as its power off says
-      LeaveAll();
-      if (!stands() && !Is(GroupState::kErrorStop)) Enter(GroupState::kStandby, s);
+    if (!m.enable && s.begun) {  // along the path first
+      AbortAll({});
+      s.hold = false;
+      s.task = Task::kPower;
+      s.power_on = false;
+      s.ticket = ticket;
+      return Report(c, ticket, FeedbackState::kActive);
     }
     EndTask(FeedbackState::kAborted);
+    if (!m.enable && Is(GroupState::kStopping)) {
+      s.hold = false;
+      Enter(GroupState::kStandby, s);
+    }
     const ErrorId error = TellAll(c, s, axis::Power{.enable = m.enable});
     if (error != ErrorId::kNone) return Refuse(error);
     s.task = Task::kPower;
@@ -200,6 +208,7 @@ struct Applier {
       TellAll(c, s, axis::Halt{});
       return Refuse(error);
     }
+    EndTask(FeedbackState::kAborted);
     s.task = Task::kHome;
     s.ticket = ticket;
     Report(c, ticket, FeedbackState::kActive);

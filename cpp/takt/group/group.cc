@@ -53,6 +53,7 @@ void ComeToRest(const Context& c, State& s) {
   // What waits goes on from here.
   if (s.queue.count > 0 && s.state != GroupState::kErrorStop) return;
   LetGoOfMembers(c, s);
+  if (s.task == Task::kPower && !s.power_on) TellAll(c, s, axis::Power{.enable = false});
   if (s.state != GroupState::kErrorStop) Enter(GroupState::kStandby, s);
 }
 
@@ -117,6 +118,7 @@ void WatchHoming(const Context& c, State& s) {
 void WatchPower(const Context& c, State& s) {
   if (AllMembers(c, s, [&](const axis::State& member) { return member.loop_closed == s.power_on; })) {
     EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
+    if (s.state == GroupState::kHoming) Enter(GroupState::kStandby, s);
   } else if (const ErrorId fault = FaultOfMembers(c, s); fault != ErrorId::kNone) {
     EndTask(c, FeedbackState::kError, fault, s);
   }
@@ -170,7 +172,7 @@ void Step(const Context& c, State& s) noexcept {
     if (s.reset_asked) WatchReset(c, s);
   }
   if (s.task == Task::kPower) WatchPower(c, s);
-  if (s.state == GroupState::kHoming) WatchHoming(c, s);
+  if (s.state == GroupState::kHoming && s.task != Task::kPower) WatchHoming(c, s);
   if (s.state == GroupState::kStandby || s.state == GroupState::kMoving) {
     if (!s.ends && !s.interrupted) Plan(c, s);
     if (!s.begun && !s.ends && MayBegin(c)) BeginMotion(c, s);
