@@ -21,9 +21,9 @@ AlongPath Least(const AlongPath& a, const AlongPath& b) noexcept {
 
 Strength Least(const Strength& a, const Strength& b, double square) noexcept {
   const double at_rest = std::min(a.at_rest, b.at_rest);
-  if (at_rest == CoordinateLimits::kNone || square == 0) return {at_rest, 0};
   const double last = std::min(a.At(square), b.At(square));
-  return {at_rest, std::max(0.0, at_rest - last) / square};
+  if (at_rest == CoordinateLimits::kNone || square == 0) return {at_rest, 0, last};
+  return {at_rest, std::max(0.0, at_rest - last) / square, last};
 }
 
 double AccelerationBounds::Least(double square) const noexcept {
@@ -90,8 +90,8 @@ Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordi
   if (last == CoordinateLimits::kNone) return {};
   const double fading = std::max(0.0, (at(0.49 * square) - half) / (0.01 * square));
   const double at_rest = std::min(half + 0.5 * fading * square, last + fading * square);
-  if (at_rest - fading * square < 0.3 * last) return {last, 0};
-  return {at_rest, fading};
+  if (at_rest - fading * square < 0.3 * last) return {last, 0, last};
+  return {at_rest, fading, at_rest - fading * square};
 }
 
 double SquareBefore(const AccelerationBounds& bounds, double length, double later, double highest) noexcept {
@@ -103,7 +103,7 @@ double SquareBefore(const AccelerationBounds& bounds, double length, double late
     double tilt = 0;
     if (bounds.strength.At(square) < bounds.deceleration) {
       least = -bounds.strength.At(square);
-      tilt = bounds.strength.fading;
+      tilt = -least > bounds.strength.least ? bounds.strength.fading : 0;
     }
     for (std::size_t k = 0; k < bounds.count; ++k) {
       const double one = bounds.tilt[k] * square - bounds.reach[k];

@@ -4,6 +4,7 @@
 // the limits of acceleration at one place are straight lines over w, one to either side of each coordinate.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -54,8 +55,9 @@ struct PathPoint {
 struct Strength {
   double at_rest = CoordinateLimits::kNone;
   double fading = 0;  // per square of the speed
+  double least = 0;   // it falls no further
 
-  double At(double square) const noexcept { return at_rest - fading * square; }
+  double At(double square) const noexcept { return std::max(least, at_rest - fading * square); }
   bool operator==(const Strength&) const = default;
 };
 // Beneath both up to a square of the speed.
