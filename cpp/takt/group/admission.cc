@@ -192,6 +192,7 @@ struct Applier {
       TellAll(c, s, axis::Halt{});
       return Refuse(error);
     }
+    EndTask(FeedbackState::kAborted);
     s.task = Task::kHome;
     s.ticket = ticket;
     Report(c, ticket, FeedbackState::kActive);

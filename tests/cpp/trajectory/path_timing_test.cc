@@ -54,7 +54,7 @@ std::vector<Known> KnownOnes() {
 // the path bends within the time T of the mean. Jerk: its three parts are taken to be at right angles.
 constexpr double kMostVelocity = 1.05;
 constexpr double kMostAcceleration = 1.25;
-constexpr double kMostJerk = 1.4;
+constexpr double kMostJerk = 1.5;
 
 void ExpectWithinLimits(const Worst& w, const std::string& what) {
   EXPECT_LE(w.velocity, kMostVelocity) << what;
@@ -70,11 +70,11 @@ void ExpectWithinLimits(const Worst& w, const std::string& what) {
 // bends within a fraction of T is not what drives are like: known, and bounded here.
 double MostRatio(const std::string& name) {
   const auto is = [&](const char* kind) { return name.starts_with(kind); };
-  if (is("warped jerk")) return 2.2;
+  if (is("warped jerk")) return 2.0;
   if (is("warped acceleration")) return 1.7;
-  if (is("winding jerk")) return 1.6;
-  if (is("ripple") || is("burst") || is("zigzag rounded")) return 1.3;
-  if (is("circle twice")) return 1.1;
+  if (is("winding jerk")) return 1.4;
+  if (is("ripple")) return 1.2;
+  if (is("zigzag rounded") || is("circle twice") || is("burst")) return 1.1;
   return 1.07;
 }
 
