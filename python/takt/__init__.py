@@ -17,8 +17,8 @@ from takt.engine import Engine, error_name, error_text, read_machine
 from takt.errors import ClosedError, CommandError, ConfigError, ConnectionError, DriveWarning, TaktError, TimeoutError
 from takt.feedback import Feedback, FeedbackState
 from takt.flex_cam import FlexCam
-from takt.group import Group
 from takt.forecast import Forecast, Moment
+from takt.group import Group
 from takt.lcmlog import LogError, read_log
 from takt.recording import Recording, RecordingError
 from takt.remote import RemoteSession, connect

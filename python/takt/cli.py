@@ -148,8 +148,9 @@ def run(file: Path, machine: Path | None, url: str | None, report: Path | None) 
         from takt.report import write_report
 
         counts = {name: value for name, value in figures.items() if isinstance(value, (int, float))}
-        page = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": counts}).html
-        print(f"report: {page}")
+        drawn = scenario.draw(outcome.recording) if outcome.passed else {}
+        page = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": counts}, drawn)
+        print(f"report: {page.html}")
     return 0 if outcome.passed else FAILED
 
 
@@ -172,7 +173,9 @@ def demo(file: Path, machine: Path | None, report: Path, pace: str) -> int:
         table.add_row(name, str(value))
     table.add_row("journal", result.replayed.sentence)
     out.print(table)
-    page = write_report(result.outcome.recording, result.outcome.verdicts, report, scenario.title, {"engine": timing})
+    outcome = result.outcome
+    drawn = scenario.draw(outcome.recording) if outcome.passed else {}
+    page = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": timing}, drawn)
     print(f"report: {page.html}")
     return 0 if result.passed else FAILED
 
@@ -275,6 +278,22 @@ def show_cam(file: Path, name: str | None, **options: Any) -> int:
     from takt import cam_command
 
     return cam_command.run(file, name, cam_command.Options(**options), out)
+
+
+@cli.command("path")
+@click.argument("file", type=FILE)
+@click.option(
+    "--start", nargs=3, type=float, default=(0.0, 0.0, 0.0), metavar="X Y Z", help="Where the tool is at first, mm."
+)
+@click.option("--tolerance", type=float, default=0.005, show_default=True, help="mm from curves to lines for them.")
+@click.option("--plot", "target", type=FILE, help="Draw it as seen from above into this file (.png, .svg, .pdf).")
+@click.option("--csv", type=FILE, help="Write its elements into this file, for the paths of a machine file.")
+def show_path(file: Path, **options: Any) -> int:
+    """Check the path of a FILE: G-code (.gcode, .nc, .ngc, .tap), a drawing (.svg) or elements (.csv). Says how long it
+    is, what it consists of and how far it extends; draws and converts it."""
+    from takt import toolpath_command
+
+    return toolpath_command.run(file, toolpath_command.Options(**options), out)
 
 
 @cli.command("log")

@@ -34,6 +34,7 @@ __all__ = [
     "collect",
     "complete",
     "continuous",
+    "follows_path",
     "in_sync",
     "keeps_distance",
     "never_both",
@@ -109,6 +110,7 @@ within_limits = _asserting(checks.within_limits)
 continuous = _asserting(checks.continuous)
 reaches = _asserting(checks.reaches)
 settles = _asserting(checks.settles)
+follows_path = _asserting(checks.follows_path)
 in_sync = _asserting(checks.in_sync)
 keeps_distance = _asserting(checks.keeps_distance)
 never_both = _asserting(checks.never_both)

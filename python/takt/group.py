@@ -17,11 +17,22 @@ class Group(Component, GroupCommands, GroupOutputs):
 
     @property
     def members(self) -> tuple[Axis, ...]:
-        """Its axes as the machine file has them: those of the kinematics first."""
-        return tuple(self.session.axis(name) for name in self.parameters["axes"])
+        """Its axes in their places: those of the kinematics first."""
+        axes = list(self.session.axes.values())
+        return tuple(axes[number - 1] for number in self.places if number)
+
+    @property
+    def places(self) -> tuple[int, ...]:
+        """For each of the eight places the number of its axis, from 1; 0: none."""
+        return tuple(int(self._value(f"member{place}")) for place in range(1, 9))
 
     @property
     def pose(self) -> tuple[float, float, float, float, float, float]:
         """Where the tool centre point is commanded to be: X, Y, Z in mm, A, B, C in deg, in the machine coordinate
         system."""
         return self.x, self.y, self.z, self.a, self.b, self.c
+
+    @property
+    def actual_pose(self) -> tuple[float, float, float, float, float, float]:
+        """The same as measured."""
+        return self.actual_x, self.actual_y, self.actual_z, self.actual_a, self.actual_b, self.actual_c

@@ -200,9 +200,11 @@ def _stack(sizes: Sequence[float], title: str | None) -> tuple[Figure, list[Axes
 def _curves(ax: Axes, recording: Recording, name: str, signals: Sequence[Signal], components: Sequence[str]) -> None:
     dress(ax)
     kinds = {style.is_set_point(f) for _, f in signals}
+    sources = dict.fromkeys(_source(field) for _, field in signals)
+    own = {source: style.PALETTE[i % len(style.PALETTE)] for i, source in enumerate(sources)}
     for component, field in signals:
         table = recording[component]
-        colour = style.component_colour(component, components)
+        colour = style.component_colour(component, components) if len(components) > 1 else own[_source(field)]
         dashed = style.is_set_point(field) and len(kinds) > 1
         look: dict[str, Any] = (
             {"color": _darker(colour), "ls": (0, (4, 2.2)), "lw": 1.3, "zorder": 3}
@@ -219,6 +221,11 @@ def _curves(ax: Axes, recording: Recording, name: str, signals: Sequence[Signal]
         handles, labels, loc="upper left", bbox_to_anchor=(1.008, 1.03), borderaxespad=0, frameon=False,
         fontsize=9.5, labelcolor=INK, handlelength=2.2, labelspacing=0.25,
     )  # fmt: skip
+
+
+def _source(field: str) -> str:
+    """What set points and measured values of the same thing have in common."""
+    return re.sub("^(set|actual|commanded|target)_", "", field)
 
 
 def _band_lane(ax: Axes, recording: Recording, signals: Sequence[Signal], several: bool) -> None:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from takt import plot, style
 from takt.checks.series import quantity, words
@@ -37,6 +38,7 @@ def write_report(
     out_dir: str | PathLike[str],
     title: str,
     meta: Mapping[str, Any] | None = None,
+    more: Mapping[str, Figure] | None = None,
 ) -> Report:
     """Writes report.html and the pictures into `out_dir`, replacing what an earlier run left under the same
     names.
@@ -45,17 +47,27 @@ def write_report(
         of figures under its name
     ("engine": {"longest cycle": "112 µs", "overruns": 0}). What the recording's own `meta` holds is shown as
     well.
+    more: pictures of the caller's by name, to be shown in the page and kept as NAME.png beside it.
     """
     directory = Path(out_dir)
     directory.mkdir(parents=True, exist_ok=True)
     pictures = _pictures(recording, verdicts, directory, title)
     page = directory / "report.html"
-    page.write_text(render(recording, verdicts, title, {**recording.meta, **(meta or {})}), encoding="utf-8")
+    shown = {name: plot.save(figure, directory / f"{_file_name(name)}.png") for name, figure in (more or {}).items()}
+    pictures += shown.values()
+    text = render(recording, verdicts, title, {**recording.meta, **(meta or {})}, shown)
+    page.write_text(text, encoding="utf-8")
     return Report(page, tuple(pictures))
 
 
-def render(recording: Recording, verdicts: Sequence[Verdict], title: str, meta: Mapping[str, Any] | None = None) -> str:
-    """The HTML page as text."""
+def render(
+    recording: Recording,
+    verdicts: Sequence[Verdict],
+    title: str,
+    meta: Mapping[str, Any] | None = None,
+    pictures: Mapping[str, Path] | None = None,
+) -> str:
+    """The HTML page as text. `pictures`: PNG files to show in it."""
     payload = {
         "title": title,
         "made": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
@@ -77,8 +89,17 @@ def render(recording: Recording, verdicts: Sequence[Verdict], title: str, meta: 
         "uplot": _asset(assets, "uplot", "uPlot.iife.min.js"),
         "script": _asset(assets, "report.js"),
         "data": data,
+        "pictures": "".join(_shown(name, path) for name, path in (pictures or {}).items()),
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda m: parts[m[1]], _asset(assets, "report.html"))
+
+
+def _shown(name: str, path: Path) -> str:
+    data = base64.b64encode(path.read_bytes()).decode("ascii")
+    return (
+        f"<section><h2>{html.escape(name)}</h2>"
+        f'<img class="picture" alt="{html.escape(name)}" src="data:image/png;base64,{data}"></section>'
+    )
 
 
 def _asset(assets: Any, *path: str) -> str:

@@ -1,4 +1,5 @@
 """Scenario files: a module with `scenario(session)`, what to do, and `verify(recording)`, what must then be true of it.
+`pictures(recording)` may draw more for the report: Matplotlib's figures by their names.
 
 They run unchanged in virtual time and on a running engine. The machine is the one the command line names, or
 machine.yaml beside the file.
@@ -12,16 +13,19 @@ import inspect
 import os
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from takt import expect
 from takt.errors import TaktError
 from takt.recording import Recording
 from takt.session import Session
 from takt.verdict import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 class ScenarioError(TaktError):
@@ -34,6 +38,7 @@ class Scenario:
     title: str  # the first line of its doc string, or the file's name
     scenario: Callable[[Session], object]
     verify: Callable[[Recording], object] | None
+    pictures: Callable[[Recording], Mapping[str, Figure]] | None = None
 
     @property
     def machine(self) -> Path:
@@ -44,6 +49,13 @@ class Scenario:
         """Does what the scenario does."""
         with _no_exit(self.path):
             self.scenario(session)
+
+    def draw(self, recording: Recording) -> Mapping[str, Figure]:
+        """Its own pictures of a recording."""
+        if self.pictures is None:
+            return {}
+        with _no_exit(self.path):
+            return self.pictures(recording)
 
 
 @dataclass(frozen=True)
@@ -74,15 +86,22 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
         sys.path.pop(0)
     scenario: Any = getattr(module, "scenario", None)
     verify: Any = getattr(module, "verify", None)
+    pictures: Any = getattr(module, "pictures", None)
     if not callable(scenario):
         raise ScenarioError(f"{file}: has no function scenario(session)")
-    if verify is not None and not callable(verify):
-        raise ScenarioError(f"{file}: verify is no function")
-    for name, function, argument in (("scenario", scenario, "session"), ("verify", verify, "recording")):
-        if function is not None and not _takes_one(function):
+    for name, function, argument in (
+        ("scenario", scenario, "session"),
+        ("verify", verify, "recording"),
+        ("pictures", pictures, "recording"),
+    ):
+        if function is None:
+            continue
+        if not callable(function):
+            raise ScenarioError(f"{file}: {name} is no function")
+        if not _takes_one(function):
             raise ScenarioError(f"{file}: {name} must take one argument, {name}({argument})")
     lines = (module.__doc__ or "").strip().splitlines()
-    return Scenario(file, lines[0].rstrip(".") if lines else file.stem, scenario, verify)
+    return Scenario(file, lines[0].rstrip(".") if lines else file.stem, scenario, verify, pictures)
 
 
 def run_scenario(scenario: Scenario, session: Session, directory: Path | None = None) -> Outcome:

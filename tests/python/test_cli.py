@@ -73,6 +73,23 @@ def test_run(where: str, files: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert takt.Recording.load(report / "recording.npz").duration_s > 0.2
 
 
+def test_pictures_of_the_scenario(files: Path) -> None:
+    """PY-06: what a scenario draws itself stands in the report and beside it."""
+    drawing = """
+def pictures(recording):
+    from matplotlib.figure import Figure
+    figure = Figure()
+    figure.add_subplot().plot(recording["x"]["time_s"], recording["x"]["set_position"])
+    return {"x over <time>": figure}
+"""
+    (files / "there.py").write_text(SCENARIO + drawing)
+    assert main(["run", str(files / "there.py"), "--report", str(files / "report")]) == 0
+    page = (files / "report" / "report.html").read_text()
+    assert "<h2>x over &lt;time&gt;</h2>" in page
+    assert 'src="data:image/png;base64,' in page
+    assert (files / "report" / "x_over_time_.png").read_bytes().startswith(b"\x89PNG")
+
+
 def test_run_fails(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """PY-07: exit code 1 where something that was verified is not so."""
     (files / "not.py").write_text(SCENARIO.replace('"x", 60.0', '"x", 61.0') + '    assert False, "plainly"\n')
@@ -103,6 +120,7 @@ BAD = {
     "exit": (["run", "exits.py"], "exits.py: ended by exit(7)"),
     "exit at once": (["run", "exits_at_once.py"], "exits_at_once.py: ended by exit(8)"),
     "arguments": (["run", "arguments.py"], "arguments.py: scenario must take one argument, scenario(session)"),
+    "pictures": (["run", "pictures.py"], "pictures.py: pictures is no function"),
     "plot where": (["plot", "there.npz", "-o", "nowhere/a.png"], "nowhere/a.png: there is no directory nowhere"),
     "plot what": (["plot", "there.npz", "-o", "a.xyz"], "a.xyz: expected a name that ends in .png or .svg or .pdf"),
     "save what": (["log", "there.lcm", "--save", "a.txt"], "a.txt: expected a name that ends in .npz or .csv"),
@@ -124,6 +142,7 @@ def test_mistakes_are_one_line(
     Path("exits.py").write_text("import sys\ndef scenario(session):\n    sys.exit(7)\n")
     Path("exits_at_once.py").write_text("exit(8)\n")
     Path("arguments.py").write_text("def scenario():\n    pass\n")
+    Path("pictures.py").write_text(SCENARIO + "pictures = 1\n")
     Path("bad.yaml").write_text(MACHINE.replace("axes:", "axis:"))
     log = lcm.EventLog("there.lcm", "w", overwrite=True)
     log.write_event(1, "nothing", b"")

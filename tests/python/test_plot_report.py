@@ -55,6 +55,15 @@ def test_usual_signals_in_lanes_with_units(tmp_path: Path) -> None:
     pixels(plot.save(figure, tmp_path / "new" / "a.png"))
 
 
+def test_signals_of_one_component_can_be_told_apart() -> None:
+    """X, Y and Z of a tool share a lane; set points have the colour of what is measured, darker."""
+    columns = {name: np.arange(5.0) for name in ("time_s", "x", "y", "z", "actual_x")}
+    figure = plot.draw(Recording({"robot": columns}), "robot.*")
+    looks = {line.get_label(): line.get_color() for ax in figure.axes for line in ax.get_lines()}
+    assert len({looks["x"], looks["y"], looks["z"]}) == 3
+    assert looks["actual x"] == looks["x"]
+
+
 def test_signals_by_pattern() -> None:
     rec = positions(x=np.arange(5.0), y=np.arange(5.0))
     assert plot.select(rec, ["*.set_position"]) == [("x", "set_position"), ("y", "set_position")]

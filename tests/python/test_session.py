@@ -22,11 +22,12 @@ from takt import _core
 from takt.arguments import to_text
 from takt.axis import Axis
 from takt.flex_cam import FlexCam
+from takt.group import Group
 
 REFERENCE: dict[str, Any] = json.loads(subprocess.check_output([taktd(), "--reference"]))
 VERBS = {v["name"]: v for v in REFERENCE["verbs"] if v["target_kind"] == "axis"}
 # What has the commands of each kind of component as methods.
-CLASSES: dict[str, type] = {"machine": takt.Session, **{kind.KIND: kind for kind in (Axis, FlexCam)}}
+CLASSES: dict[str, type] = {"machine": takt.Session, **{kind.KIND: kind for kind in (Axis, FlexCam, Group)}}
 # Not those that the engine gives to itself, or that feedback objects and heartbeats give.
 METHODS = [
     v

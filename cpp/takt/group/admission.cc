@@ -70,6 +70,7 @@ struct Applier {
     if (!c.ahead.known && !s.begun) c.ahead.window.SetLimits(LimitsOf(c, s));
     Request move = made.move;
     move.ticket = ticket;
+    move.frame = kinematics::ToPose(SystemFrame(c, s, move.system, move.pcs));
     if (!Push(move, s)) return Refuse(ErrorId::kBufferFull);
     Report(c, ticket, FeedbackState::kBusy);
     if (Is(GroupState::kStandby)) Enter(GroupState::kMoving, s);
@@ -110,6 +111,7 @@ struct Applier {
     if (s.task != Task::kNone) EndTask(FeedbackState::kAborted);
     s.interrupted = true;
     s.brake = BrakeOf(m.deceleration);
+    if (!s.begun) return Finish(ErrorId::kNone);  // it does not move yet
     s.task = Task::kInterrupt;
     s.ticket = ticket;
     Report(c, ticket, FeedbackState::kActive);
@@ -167,6 +169,8 @@ struct Applier {
     Finish(ErrorId::kNone);
   }
   void operator()(const Reset&) const {
+    const bool well = AllMembers(c, s, [](const axis::State& member) { return member.error == ErrorId::kNone; });
+    if (!Is(GroupState::kErrorStop) && well) return Finish(ErrorId::kNone);
     if (s.resetting) Report(c, s.reset_ticket, FeedbackState::kAborted);
     s.resetting = true;
     s.reset_asked = false;
@@ -174,10 +178,22 @@ struct Applier {
     Report(c, ticket, FeedbackState::kActive);
   }
   void operator()(const Power& m) const {
+    if (m.enable && Is(GroupState::kStopping)) return Refuse(ErrorId::kAxisStopping);
     if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
     if (m.enable && s.guides) return Finish(ErrorId::kNone);
-    if (!m.enable) AbortAll({});
+    if (!m.enable && s.begun) {  // along the path first
+      AbortAll({});
+      s.hold = false;
+      s.task = Task::kPower;
+      s.power_on = false;
+      s.ticket = ticket;
+      return Report(c, ticket, FeedbackState::kActive);
+    }
     EndTask(FeedbackState::kAborted);
+    if (!m.enable && Is(GroupState::kStopping)) {
+      s.hold = false;
+      Enter(GroupState::kStandby, s);
+    }
     const ErrorId error = TellAll(c, s, axis::Power{.enable = m.enable});
     if (error != ErrorId::kNone) return Refuse(error);
     s.task = Task::kPower;

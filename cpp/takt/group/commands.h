@@ -148,6 +148,8 @@ struct SetOverride {  // MC_GroupSetOverride
   double velocity_factor = 1;
   double acceleration_factor = 1;  // of what is commanded from now on
   double jerk_factor = 1;          // the same
+
+  bool operator==(const SetOverride&) const = default;
 };
 struct SetKinTransform {  // MC_SetKinTransform
   bool enable = true;     // false: axes only, without a tool

@@ -53,6 +53,7 @@ void ComeToRest(const Context& c, State& s) {
   // What waits goes on from here.
   if (s.queue.count > 0 && s.state != GroupState::kErrorStop) return;
   LetGoOfMembers(c, s);
+  if (s.task == Task::kPower && !s.power_on) TellAll(c, s, axis::Power{.enable = false});
   if (s.state != GroupState::kErrorStop) Enter(GroupState::kStandby, s);
 }
 
@@ -68,6 +69,10 @@ bool IsThrough(const Context& c, const State& s) {
   const bool last = s.pace.node + 1 >= window.known();
   return s.pace.raw_stands && last && window.swept() && s.planning.stage == Stage::kIdle &&
          (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short);
+}
+
+bool NothingToGo(const Context& c, const State& s) {
+  return c.ahead.count == 0 && s.planning.stage == Stage::kIdle && s.planning.move >= s.done + s.queue.count;
 }
 
 void MoveOn(const Context& c, State& s) {
@@ -113,6 +118,7 @@ void WatchHoming(const Context& c, State& s) {
 void WatchPower(const Context& c, State& s) {
   if (AllMembers(c, s, [&](const axis::State& member) { return member.loop_closed == s.power_on; })) {
     EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
+    if (s.state == GroupState::kHoming) Enter(GroupState::kStandby, s);
   } else if (const ErrorId fault = FaultOfMembers(c, s); fault != ErrorId::kNone) {
     EndTask(c, FeedbackState::kError, fault, s);
   }
@@ -166,14 +172,16 @@ void Step(const Context& c, State& s) noexcept {
     if (s.reset_asked) WatchReset(c, s);
   }
   if (s.task == Task::kPower) WatchPower(c, s);
-  if (s.state == GroupState::kHoming) WatchHoming(c, s);
+  if (s.state == GroupState::kHoming && s.task != Task::kPower) WatchHoming(c, s);
   if (s.state == GroupState::kStandby || s.state == GroupState::kMoving) {
     if (!s.ends && !s.interrupted) Plan(c, s);
     if (!s.begun && !s.ends && MayBegin(c)) BeginMotion(c, s);
   }
   if (s.begun) {
     MoveOn(c, s);
-  } else if (s.ends || (s.state == GroupState::kMoving && s.queue.count == 0)) {
+  } else if (s.ends || (s.state == GroupState::kMoving && NothingToGo(c, s))) {
+    // Moves to where the group stands are done.
+    while (!s.ends && s.queue.count > 0) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
     ComeToRest(c, s);
   }
   LeadSynced(c, s);

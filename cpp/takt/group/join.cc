@@ -15,6 +15,7 @@ constexpr int kBlendPlaces = 6;
 constexpr int kHalvings = 8;
 // Slower than this a joint without a blend is no better than a stop, mm/s.
 constexpr double kLeastJointSpeed = 1;
+constexpr double kRounding = 1e-9;
 constexpr double kNoEnd = 1e12;  // mm
 
 // How a path goes on at this element: that of the move, but for the first element of a path, which is joined as the
@@ -112,15 +113,17 @@ bool CutAt(const Context& c, State& s, double place) {
   std::uint64_t node = window.end() - 1;
   while (node > window.begin() && window[node].at.s > place) --node;
   if (window[node].stop || window[node].at.s > place) return false;
-  const bool moves = s.guides && !s.pace.raw_stands;
-  if (moves && s.pace.node >= node) return false;
+  if (s.begun && s.pace.node >= node) return false;
+  const bool moves = s.begun && !s.pace.raw_stands;
   c.ahead.window.CutBehind(node);
   c.ahead.last = window[node].at;
   if (!moves) return true;
   const trajectory::PathNode& next = window[s.pace.node + 1];
   const double v = s.pace.raw.velocity;
   const double left = next.at.s - s.pace.raw.position;
-  return v * v + 2 * left * window[s.pace.node].bounds.Least(s.pace.entered) <= next.ceiling;
+  // It may go by the ceiling itself.
+  const double least = v * v + 2 * left * window[s.pace.node].bounds.Least(s.pace.entered);
+  return least <= next.ceiling * (1 + kRounding);
 }
 
 void Append(LookAhead& ahead, Stretch stretch) {

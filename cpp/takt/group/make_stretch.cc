@@ -147,7 +147,7 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
   if (!HasTool(c, s)) return ErrorId::kState;
   const std::size_t count = c.kinematics->count;
   if (Any(move, kToolNumbers, kToolNumbers + count)) return ErrorId::kParameter;
-  const Frame system = SystemFrame(c, s, move.system, move.pcs);
+  const Frame system = kinematics::ToFrame(move.frame);
   if (move.kind == MoveKind::kPath) return AlongPath(c, move, element, system, ahead, s);
   const Frame to = system * kinematics::ToFrame(PoseOf(move, kinematics::ToPose(system.Inverse() * ahead.end_tool)));
   const kinematics::Joints joints = JointsOf(move, ahead.end_joints);

@@ -48,6 +48,8 @@ ErrorId Add(const Context& c, const AddAxis& command, State& s) noexcept {
   if (axis == count) return ErrorId::kUnknownTarget;
   if (c.group_of[axis] == c.number) return ErrorId::kGroupMember;
   if (c.group_of[axis] != 0) return ErrorId::kOtherGroupMember;
+  const axis::PlcState plc = c.axes.states[axis].plc;
+  if (plc != axis::PlcState::kDisabled && plc != axis::PlcState::kStandstill) return ErrorId::kState;
   if (command.ident > kMaxAxes || s.members[command.ident - 1] != 0) return ErrorId::kGroupFull;
   s.members[command.ident - 1] = axis + 1;
   c.group_of[axis] = c.number;

@@ -34,6 +34,15 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::command>("Ticket of the move in control; 0: none.");
   d.internal<&O::buffered>("Moves that wait behind it.");
   d.internal<&O::axes>("Members.");
+  d.internal<&O::member1>("Number of the axis in place 1, from 1; 0: none.");
+  d.internal<&O::member2>("In place 2.");
+  d.internal<&O::member3>("In place 3.");
+  d.internal<&O::member4>("In place 4.");
+  d.internal<&O::member5>("In place 5.");
+  d.internal<&O::member6>("In place 6.");
+  d.internal<&O::member7>("In place 7.");
+  d.internal<&O::member8>("In place 8.");
+  d.internal<&O::kinematics_on>("There are kinematics, and they are switched on.");
   d.internal<&O::in_position>("It stands and has nothing to do.");
   d.internal<&O::interrupted>("It rests on the path until it is continued.");
   d.internal<&O::synchronized>("A path that follows a master is in step with it.");

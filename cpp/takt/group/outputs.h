@@ -41,6 +41,16 @@ struct Outputs {
   std::uint64_t command = 0;   // ticket of the move in control; 0: none
   std::uint32_t buffered = 0;  // moves that wait
   std::uint32_t axes = 0;      // members
+  // Number of the axis in each place, from 1; 0: none.
+  std::uint32_t member1 = 0;
+  std::uint32_t member2 = 0;
+  std::uint32_t member3 = 0;
+  std::uint32_t member4 = 0;
+  std::uint32_t member5 = 0;
+  std::uint32_t member6 = 0;
+  std::uint32_t member7 = 0;
+  std::uint32_t member8 = 0;
+  bool kinematics_on = false;  // there are kinematics, and they are switched on
   bool in_position = false;    // stands, and has nothing to do
   bool interrupted = false;    // rests on the path until it is continued
   bool synchronized = false;   // a path that follows a master is in step with it

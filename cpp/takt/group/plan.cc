@@ -16,6 +16,7 @@ constexpr int kBudget = 48;
 // Of the members' limits: the rest keeps them within theirs in spite of what the timing takes for linear.
 constexpr double kLimitShare = 0.98;
 constexpr std::size_t kSweepNodes = 512;
+constexpr std::size_t kSpareNodes = 4;
 constexpr int kLeastPlaces = 4;
 constexpr int kMostPlaces = 64;
 constexpr double kPlaceWay = 8;  // mm between two places at which a path is tried beforehand
@@ -31,6 +32,14 @@ ErrorId ErrorOf(kinematics::Reason reason) {
 void NextMove(State& s) {
   ++s.planning.move;
   s.planning.element = 0;
+  s.planning.stage = Stage::kIdle;
+}
+
+void NextElement(const Context& c, State& s) {
+  const Request& move = MoveAt(s, s.planning.move);
+  const bool more = move.kind == MoveKind::kPath && s.planning.element + 1 < c.paths[move.path].pieces.size();
+  if (c.ahead.cut_short || !more) return NextMove(s);
+  ++s.planning.element;
   s.planning.stage = Stage::kIdle;
 }
 
@@ -66,6 +75,10 @@ void Begin(const Context& c, State& s) {
   c.ahead.next = {};
   c.ahead.next.move = s.planning.move;
   const ErrorId error = MakeStretch(c, move, s.planning.element, c.ahead, s);
+  if (s.problem == path::Problem::kLengthZero) {  // it is there already
+    s.problem = path::Problem::kNone;
+    return NextElement(c, s);
+  }
   if (error != ErrorId::kNone) return Refuse(c, error, s);
   c.ahead.build_up = {};
   c.ahead.near = c.ahead.end_joints;
@@ -142,6 +155,11 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
 void Sample(const Context& c, int& budget, State& s) {
   LookAhead& ahead = c.ahead;
   while (budget > 0 && ahead.sampling < ahead.end() && !ahead.cut_short) {
+    if (ahead.window.room() < kSpareNodes) {  // the rest when there is room again
+      ahead.window.Close();
+      s.planning.stage = Stage::kSweep;
+      return;
+    }
     Stretch& stretch = ahead[ahead.sampling];
     ahead.window.SetBuildUp(stretch.build_up_s);
     if (!stretch.begun) {
@@ -161,11 +179,11 @@ void Sample(const Context& c, int& budget, State& s) {
 
 void Sweep(const Context& c, State& s) {
   if (!c.ahead.window.Sweep(kSweepNodes)) return;
-  const Request& move = MoveAt(s, s.planning.move);
-  const bool more = move.kind == MoveKind::kPath && s.planning.element + 1 < c.paths[move.path].pieces.size();
-  if (c.ahead.cut_short || !more) return NextMove(s);
-  ++s.planning.element;
-  s.planning.stage = Stage::kIdle;
+  if (c.ahead.sampling < c.ahead.end() && !c.ahead.cut_short) {
+    if (c.ahead.window.room() > kNodes / 4) s.planning.stage = Stage::kSample;
+    return;
+  }
+  NextElement(c, s);
 }
 
 bool HasRoom(const LookAhead& ahead) {

@@ -75,6 +75,10 @@ void Publish(const Context& c, const State& s, Outputs& out) noexcept {
   out.command = s.active;
   out.buffered = s.queue.count > 0 ? s.queue.count - 1 : 0;
   out.axes = static_cast<std::uint32_t>(CountOf(s));
+  std::uint32_t* const members[] = {&out.member1, &out.member2, &out.member3, &out.member4,
+                                    &out.member5, &out.member6, &out.member7, &out.member8};
+  for (std::size_t k = 0; k < kMaxAxes; ++k) *members[k] = s.members[k];
+  out.kinematics_on = HasTool(c, s);
   out.in_position = s.state == GroupState::kStandby && s.queue.count == 0;
   out.interrupted = s.interrupted;
   out.synchronized = s.master.in_step;

@@ -21,6 +21,7 @@ void describe(Description<Request>& d) {
   d.internal<&R::relative>("How far, not where to.");
   d.internal<&R::system>("Coordinate system.");
   d.internal<&R::pcs>("Which product coordinate system, from 0.");
+  d.internal<&R::frame>("Where it was then.");
   d.internal<&R::to>("Numbers given, of the tool and of the axes; NaN: none.");
   d.internal<&R::circle>("Of circular moves.");
   d.internal<&R::path>("Index of the path.");

@@ -25,7 +25,8 @@ struct Request {
   MoveKind kind = MoveKind::kNone;
   bool relative = false;
   CoordinateSystem system = CoordinateSystem::kMcs;
-  std::uint32_t pcs = 0;  // from 0
+  std::uint32_t pcs = 0;   // from 0
+  kinematics::Pose frame;  // where that coordinate system was in the MCS when the command was given
   Numbers to{};
   path::Circle circle;
   std::uint32_t path = 0;    // index of the machine's

@@ -116,6 +116,7 @@ void Advance(const Context& c, State& s) noexcept {
     const trajectory::PathWindow& window = c.ahead.window;
     if (window[s.pace.node].stop && next + 1 < window.known() && window.swept()) {
       trajectory::BeginAt(window, next, c.cycle.period_s, s.pace);
+      BeginFollowing(c, MoveAt(s, c.ahead[c.ahead.first].move), s);
     }
   }
   trajectory::Advance(c.ahead.window, WishOf(c, s), c.cycle.period_s, s.pace);

@@ -184,6 +184,15 @@ msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine:
   m.command = Signed(o.command);
   m.buffered = o.buffered;
   m.axes = o.axes;
+  m.member1 = o.member1;
+  m.member2 = o.member2;
+  m.member3 = o.member3;
+  m.member4 = o.member4;
+  m.member5 = o.member5;
+  m.member6 = o.member6;
+  m.member7 = o.member7;
+  m.member8 = o.member8;
+  m.kinematics_on = o.kinematics_on;
   m.in_position = o.in_position;
   m.interrupted = o.interrupted;
   m.synchronized = o.synchronized;

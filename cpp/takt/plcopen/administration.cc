@@ -70,16 +70,6 @@ void GT_EStop::operator()() noexcept {
   Show();
 }
 
-void MC_SetOverride::operator()() noexcept {
-  const axis::SetOverride wanted = {VelFactor, AccFactor, JerkFactor};
-  const bool full = feedback_.failed() && feedback_.error() == ErrorId::kQueueFull;  // then it is tried again
-  const bool due = Enable && (!level_ || wanted != given_ || full);
-  level_ = Enable;
-  if (!due) return;
-  given_ = wanted;
-  feedback_.Give(axis_.target(), axis::Command(wanted));
-}
-
 void MC_DigitalCamSwitch::operator()() noexcept {
   if (Enable == level_) return;
   level_ = enable = Enable;

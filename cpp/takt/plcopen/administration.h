@@ -55,9 +55,9 @@ class MC_Power {
 
 // Clears the fault of an axis. A reset that another one supersedes follows the axis: it is Busy while the axis still
 // brakes, then Done when the fault is cleared, and Error when it is not.
-class MC_Reset : public ExecuteBlock {
+class MC_Reset : public AxisBlock {
  public:
-  explicit MC_Reset(AxisRef axis) : ExecuteBlock(axis) {}
+  using AxisBlock::AxisBlock;
   void operator()() noexcept;
 
  private:
@@ -65,23 +65,32 @@ class MC_Reset : public ExecuteBlock {
 };
 
 // All drives of the machine off and all brakes on at once; faults are cleared, every axis is Disabled.
-class GT_EStop : public ExecuteBlock {
+class GT_EStop : public AxisBlock {
  public:
-  explicit GT_EStop(AxisRef axis) : ExecuteBlock(axis) {}
+  using AxisBlock::AxisBlock;
   void operator()() noexcept;
 };
 
 // Keeps the factors of the override as they are at the inputs as long as Enable is true; false, the last ones stay.
-// Enabled: they are those of the axis. Several instances an axis: the one whose inputs changed last counts.
-class MC_SetOverride {
+// Enabled: they are in force. Several instances an axis: the one whose inputs changed last counts.
+template <typename Ref, typename Kind, typename Set>
+class OverrideBlock {
  public:
   bool Enable = false;
   double VelFactor = 1;
   double AccFactor = 1;
   double JerkFactor = 1;
 
-  explicit MC_SetOverride(AxisRef axis) : axis_(axis), feedback_(axis.program()) {}
-  void operator()() noexcept;
+  explicit OverrideBlock(Ref subject) : subject_(subject), feedback_(subject.program()) {}
+  void operator()() noexcept {
+    const Set wanted = {VelFactor, AccFactor, JerkFactor};
+    const bool full = feedback_.failed() && feedback_.error() == ErrorId::kQueueFull;  // then it is tried again
+    const bool due = Enable && (!level_ || wanted != given_ || full);
+    level_ = Enable;
+    if (!due) return;
+    given_ = wanted;
+    feedback_.Give(subject_.target(), Kind(wanted));
+  }
 
   bool Enabled() const noexcept { return Enable && feedback_.state() == FeedbackState::kDone; }
   bool Busy() const noexcept { return Enable && !Error(); }
@@ -89,11 +98,12 @@ class MC_SetOverride {
   ErrorId ErrorID() const noexcept { return Error() ? feedback_.error() : ErrorId::kNone; }
 
  private:
-  AxisRef axis_;
+  Ref subject_;
   Feedback feedback_;
-  axis::SetOverride given_;
+  Set given_;
   bool level_ = false;  // Enable in the call before
 };
+using MC_SetOverride = OverrideBlock<AxisRef, axis::Command, axis::SetOverride>;
 
 // Switches outputs by the position of the axis as long as Enable is true; the other inputs count when it rises.
 class MC_DigitalCamSwitch : private axis::DigitalCamSwitch {

@@ -33,10 +33,8 @@ class ExecuteBlock {
   // The same however it ended.
   double ValueAtEnd() const noexcept { return IsFinal(end_shown_) ? feedback_.value() : 0; }
 
-  AxisRef axis() const noexcept { return axis_; }
-
  protected:
-  explicit ExecuteBlock(AxisRef axis) : axis_(axis), feedback_(axis.program()) {}
+  explicit ExecuteBlock(Program& program) : feedback_(program) {}
 
   // How a command ended; kBusy: it has not.
   struct End {
@@ -59,7 +57,6 @@ class ExecuteBlock {
   // Whether an output that Execute clears is to be shown: while it is true, and in one call at least.
   bool IsDue(bool& seen) const noexcept;
 
-  AxisRef axis_;
   Feedback feedback_;
   End end_;                // of the command
   bool edge_ = false;      // Execute in this call
@@ -73,23 +70,50 @@ class ExecuteBlock {
   ErrorId end_error_ = ErrorId::kNone;
 };
 
-// The block of a command of axes: the command's own fields are its inputs.
-template <typename C>
-class Block : public ExecuteBlock, public C {
+// Of an axis or a group.
+template <typename Ref>
+class BlockOf : public ExecuteBlock {
  public:
-  explicit Block(AxisRef axis) : ExecuteBlock(axis) {}
+  explicit BlockOf(Ref subject) : ExecuteBlock(subject.program()), subject_(subject) {}
+
+ protected:
+  Ref subject() const noexcept { return subject_; }
+
+ private:
+  Ref subject_;
+};
+
+class AxisBlock : public BlockOf<AxisRef> {
+ public:
+  using BlockOf::BlockOf;
+  AxisRef axis() const noexcept { return subject(); }
+};
+
+// The block of a command: the command's own fields are its inputs. `Base` is the block of what it is given to, `Kind`
+// the commands of that.
+template <typename Base, typename Kind, typename C>
+class CommandBlock : public Base, public C {
+ public:
+  using Base::Base;
 
   void operator()() noexcept {
-    if (Rises()) StartWith(static_cast<const C&>(*this));
-    Show();
+    if (this->Rises()) StartWith(static_cast<const C&>(*this));
+    this->Show();
   }
 
  protected:
   void StartWith(const C& command) noexcept {
     bool may_wait = true;
     if constexpr (requires { command.buffer_mode; }) may_wait = command.buffer_mode != axis::BufferMode::kAborting;
-    Start(axis().target(), axis::Command(command), may_wait);
+    this->Start(this->subject().target(), Kind(command), may_wait);
   }
+};
+
+// Of a command of axes.
+template <typename C>
+class Block : public CommandBlock<AxisBlock, axis::Command, C> {
+ public:
+  using CommandBlock<AxisBlock, axis::Command, C>::CommandBlock;
 };
 
 }  // namespace takt::plcopen

@@ -4,6 +4,7 @@
 
 #include "takt/plcopen/administration.h"
 #include "takt/plcopen/block.h"
+#include "takt/plcopen/group.h"
 #include "takt/plcopen/moves.h"
 #include "takt/plcopen/program.h"
 #include "takt/plcopen/reading.h"

@@ -4,19 +4,33 @@
 #include <stdexcept>
 #include <string>
 
+#include "takt/engine/components.h"
 #include "takt/plcopen/feedback.h"
 
 namespace takt::plcopen {
 
 const axis::Outputs& AxisRef::outputs() const noexcept {
-  return program_->engine().outputs(index_);
+  return program().engine().outputs(target() - 1);
+}
+
+const group::Outputs& GroupRef::outputs() const noexcept {
+  return program().engine().group_outputs(index_);
 }
 
 AxisRef Program::Axis(std::string_view name) {
   const auto& axes = engine_.machine().axes;
   const auto found = std::ranges::find(axes, name, &axis::AxisParams::name);
   if (found == axes.end()) throw std::invalid_argument("the machine has no axis '" + std::string(name) + "'");
-  return {*this, static_cast<std::uint32_t>(found - axes.begin())};
+  return {*this, static_cast<std::uint32_t>(found - axes.begin()) + 1};
+}
+
+GroupRef Program::Group(std::string_view name) {
+  const engine::Machine& machine = engine_.machine();
+  const auto found = std::ranges::find(machine.groups, name, &group::GroupParams::name);
+  if (found == machine.groups.end())
+    throw std::invalid_argument("the machine has no group '" + std::string(name) + "'");
+  const auto index = static_cast<std::uint32_t>(found - machine.groups.begin());
+  return {*this, *engine::FindComponent(machine, name) + 1, index};
 }
 
 void Program::Update() noexcept {

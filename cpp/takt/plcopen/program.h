@@ -26,25 +26,42 @@
 
 #include "takt/axis/outputs.h"
 #include "takt/engine/engine.h"
+#include "takt/group/outputs.h"
 
 namespace takt::plcopen {
 
 class Feedback;
 class Program;
 
-// One axis of the program's machine.
-class AxisRef {
+// One component of the program's machine.
+class ComponentRef {
  public:
-  AxisRef(Program& program, std::uint32_t index) : program_(&program), index_(index) {}
+  ComponentRef(Program& program, std::uint32_t target) : program_(&program), target_(target) {}
 
   Program& program() const noexcept { return *program_; }
-  std::uint32_t target() const noexcept { return index_ + 1; }
-  // As of the last cycle.
-  const axis::Outputs& outputs() const noexcept;
+  std::uint32_t target() const noexcept { return target_; }
 
  private:
   Program* program_;
-  std::uint32_t index_;
+  std::uint32_t target_;
+};
+
+class AxisRef : public ComponentRef {
+ public:
+  using ComponentRef::ComponentRef;
+  // As of the last cycle.
+  const axis::Outputs& outputs() const noexcept;
+};
+
+class GroupRef : public ComponentRef {
+ public:
+  GroupRef(Program& program, std::uint32_t target, std::uint32_t index)
+      : ComponentRef(program, target), index_(index) {}
+  // As of the last cycle.
+  const group::Outputs& outputs() const noexcept;
+
+ private:
+  std::uint32_t index_;  // among the groups
 };
 
 // Hands what the engine says of commands to the blocks that gave them. It is the one consumer of the engine's feedback
@@ -57,6 +74,8 @@ class Program {
 
   // Throws std::invalid_argument: the machine has no such axis.
   AxisRef Axis(std::string_view name);
+  // The same: no such group.
+  GroupRef Group(std::string_view name);
   engine::Engine& engine() noexcept { return engine_; }
 
   // To be called once a cycle, before the blocks.

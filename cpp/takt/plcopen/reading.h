@@ -5,15 +5,16 @@
 
 namespace takt::plcopen {
 
-// What they show is what the axis published in the cycle before the call; default values while not Valid.
-class ReadBlock {
+// What they show is what was published in the cycle before the call; default values while not Valid.
+template <typename Ref, typename Outputs>
+class ReadBlockOf {
  public:
   bool Enable = false;
 
-  explicit ReadBlock(AxisRef axis) : axis_(axis) {}
+  explicit ReadBlockOf(Ref subject) : subject_(subject) {}
   void operator()() noexcept {
     valid_ = Enable;
-    shown_ = Enable ? axis_.outputs() : axis::Outputs{};
+    shown_ = Enable ? subject_.outputs() : Outputs{};
   }
 
   bool Valid() const noexcept { return valid_; }
@@ -22,13 +23,21 @@ class ReadBlock {
   ErrorId ErrorID() const noexcept { return ErrorId::kNone; }
 
  protected:
-  const axis::Outputs& shown() const noexcept { return shown_; }
-  bool Is(axis::PlcState state) const noexcept { return valid_ && shown_.state == state; }
+  const Outputs& shown() const noexcept { return shown_; }
+  Ref subject() const noexcept { return subject_; }
 
  private:
-  AxisRef axis_;
-  axis::Outputs shown_;
+  Ref subject_;
+  Outputs shown_;
   bool valid_ = false;
+};
+
+class ReadBlock : public ReadBlockOf<AxisRef, axis::Outputs> {
+ public:
+  using ReadBlockOf::ReadBlockOf;
+
+ protected:
+  bool Is(axis::PlcState state) const noexcept { return Valid() && shown().state == state; }
 };
 
 class MC_ReadStatus : public ReadBlock {

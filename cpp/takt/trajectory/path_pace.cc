@@ -78,7 +78,8 @@ PathCycle StepRaw(const PathWindow& window, double wish, double period_s, PathPa
     const double square = v * v + 2 * a * way;
     if (square >= 0) {
       const double speed_sum = v + std::sqrt(square);
-      const double arrival = speed_sum > 0 ? 2 * way / speed_sum : left_s * 2;
+      // Two nodes may lie at the same place.
+      const double arrival = way <= kOnNode ? 0 : speed_sum > 0 ? 2 * way / speed_sum : left_s * 2;
       arrives = arrival <= left_s;
       if (arrives) time = arrival;
     } else if (a < 0 && -v / a < left_s) {

@@ -4,11 +4,13 @@ did. `takt.expect` has the same functions in their asserting form."""
 from takt.checks.conditions import complete, never_both, stays, visits_states
 from takt.checks.limits import continuous, within_limits
 from takt.checks.pairs import in_sync, keeps_distance
+from takt.checks.paths import follows_path
 from takt.checks.targets import reaches, settles
 
 __all__ = [
     "complete",
     "continuous",
+    "follows_path",
     "in_sync",
     "keeps_distance",
     "never_both",

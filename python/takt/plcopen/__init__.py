@@ -25,6 +25,8 @@ from takt.plcopen import (
     cam,
     cam_switch,
     coupling,
+    group,
+    group_moves,
     homing,
     jog,
     moves,
@@ -40,6 +42,8 @@ from takt.plcopen.base import FunctionBlock
 from takt.plcopen.cam import *  # noqa: F403
 from takt.plcopen.cam_switch import *  # noqa: F403
 from takt.plcopen.coupling import *  # noqa: F403
+from takt.plcopen.group import *  # noqa: F403
+from takt.plcopen.group_moves import *  # noqa: F403
 from takt.plcopen.homing import *  # noqa: F403
 from takt.plcopen.jog import *  # noqa: F403
 from takt.plcopen.moves import *  # noqa: F403
@@ -50,7 +54,7 @@ from takt.plcopen.superimposed import *  # noqa: F403
 from takt.plcopen.torque import *  # noqa: F403
 
 _MOVING = (moves, superimposed, profiles, jog, coupling, cam, homing, torque)
-_GROUPS = (administration, *_MOVING, settings, probe, cam_switch)
+_GROUPS = (administration, *_MOVING, settings, probe, cam_switch, group, group_moves)
 
 BLOCKS: tuple[type[FunctionBlock], ...] = tuple(
     block

@@ -7,11 +7,13 @@ from typing import Any, ClassVar, Generic, TypeVar, overload
 
 from takt import _commands
 from takt.axis import Axis
+from takt.component import Component
 from takt.feedback import Feedback, FeedbackState
 
 ENDINGS = {FeedbackState.DONE: "Done", FeedbackState.ABORTED: "CommandAborted", FeedbackState.ERROR: "Error"}
 
 T = TypeVar("T")
+AnyAxis = Axis  # where a member is called Axis
 
 
 class Input(Generic[T]):
@@ -77,13 +79,14 @@ class AxisName:
         return self if block is None else block.Axis
 
     def __set__(self, block: FunctionBlock, axis: Axis) -> None:
-        block.Axis = axis
+        setattr(block, block.SUBJECT, axis)
 
 
 class FunctionBlock:
-    """What all blocks have: the axis, inputs, outputs."""
+    """What all blocks have: the component that they command or show, inputs, outputs."""
 
-    AXES: ClassVar[frozenset[str]] = frozenset({"Axis"})  # what the axis is called
+    SUBJECT: ClassVar[str] = "Axis"  # what the component is called ...
+    AXES: ClassVar[frozenset[str]] = frozenset({"Axis"})  # ... with other names of it
     INPUTS: ClassVar[Mapping[str, Input[Any]]] = {}
     OUTPUTS: ClassVar[Mapping[str, Output[Any]]] = {}
 
@@ -94,13 +97,20 @@ class FunctionBlock:
         members = [(n, m) for base in reversed(cls.__mro__) for n, m in vars(base).items()]
         cls.INPUTS = {n: m for n, m in members if isinstance(m, Input)}
         cls.OUTPUTS = {n: m for n, m in members if isinstance(m, Output)}
-        cls.AXES = frozenset({"Axis", *(n for n, m in members if isinstance(m, AxisName))})
+        cls.AXES = frozenset({cls.SUBJECT, *(n for n, m in members if isinstance(m, AxisName))})
 
-    def __init__(self, axis: Axis, **inputs: Any) -> None:
+    Axis: AnyAxis
+
+    def __init__(self, subject: Component, **inputs: Any) -> None:
         self._inputs: dict[str, Any] = {}
         self._outputs: dict[str, Any] = {}
-        self.Axis = axis
+        setattr(self, self.SUBJECT, subject)
         self._assign(inputs)
+
+    @property
+    def _subject(self) -> Component:
+        subject: Component = getattr(self, self.SUBJECT)
+        return subject
 
     def __call__(self, **inputs: Any) -> Any:
         """One call of the block, with new values of some inputs. Returns the block, its outputs up to date."""
@@ -158,13 +168,13 @@ class ExecuteBlock(FunctionBlock):
     Execute = Input(False)
     Busy = Output(False)
 
-    def __init__(self, axis: Axis, **inputs: Any) -> None:
+    def __init__(self, subject: Component, **inputs: Any) -> None:
         self._edge = False  # Execute in the call before
         self._given: dict[str, Any] = {}  # the arguments of the command
         self._feedback: Feedback | None = None
         self._ending: tuple[str, int] | None = None  # of the command: the output that says so, the error's number
         self._seen: set[str] = set()  # outputs that were shown for this command
-        super().__init__(axis, **inputs)
+        super().__init__(subject, **inputs)
 
     def _scan(self) -> None:
         execute = bool(self.Execute)
@@ -181,7 +191,7 @@ class ExecuteBlock(FunctionBlock):
 
     def _command(self) -> Feedback:
         """Gives the command."""
-        return self.Axis.session.command(self.Axis.name, self.VERB, self._given)
+        return self._subject.session.command(self._subject.name, self.VERB, self._given)
 
     def _fall(self) -> None:
         """The falling edge of Execute. The command goes on all the same."""
@@ -210,13 +220,13 @@ class ExecuteBlock(FunctionBlock):
 
 
 class SettingBlock(ExecuteBlock):
-    """A block whose command takes no control of the axis: done at once, or refused."""
+    """A block whose command takes no control of what it is given to: done at once, or refused."""
 
     Done = Output(False)
 
 
 class MotionBlock(ExecuteBlock):
-    """A block whose command moves the axis: others can abort it, and it can wait for others."""
+    """A block whose command moves something: others can abort it, and it can wait for others."""
 
     BufferMode = Input(_commands.BufferMode.ABORTING, "buffer_mode")
     Active = Output(False)

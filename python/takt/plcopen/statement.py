@@ -11,9 +11,10 @@ import yaml
 
 from takt.plcopen.base import FunctionBlock
 
-TABLES = ("plcopen_part1.yaml", "gt775x.yaml")
+TABLES = ("plcopen_part1.yaml", "plcopen_part4.yaml", "gt775x.yaml")
 # What the standard's types are here. Enumerations are those of takt; references are what the block's text says.
 TYPES = {"BOOL": "bool", "REAL": "float", "TIME": "float, in s", "AXIS_REF": "Axis, or its name for a master"}
+TYPES |= {"AXES_GROUP_REF": "Group", "ARRAY": "sequence of float, or a mapping of names to float"}
 TYPES |= dict.fromkeys(("INT", "UINT", "WORD", "DWORD"), "int")
 
 Blocks = Mapping[str, type[FunctionBlock]]
@@ -119,11 +120,11 @@ def _row(entry: Entry, block: type[FunctionBlock] | None) -> str:
     missing = entry.missing(block)
     there = [f"**{pin.name}**" if pin.required else pin.name for pin in entry.pins if pin not in missing]
     without = [f"{p.name} ({entry.without[p.name]})" if p.name in entry.without else p.name for p in missing]
-    listed = {"Axis", *(pin.name for pin in entry.pins)}
+    listed = {block.SUBJECT, *(pin.name for pin in entry.pins)}
     own = [name for name in _in_order(block) if name not in listed]
     columns = (entry.name, entry.section, ", ".join(there), ", ".join(without), ", ".join(own))
     return f"| {' | '.join(columns)} |"
 
 
 def _in_order(block: type[FunctionBlock]) -> list[str]:
-    return ["Axis", *sorted(block.AXES - {"Axis"}), *block.INPUTS, *block.OUTPUTS]
+    return [block.SUBJECT, *sorted(block.AXES - {block.SUBJECT}), *block.INPUTS, *block.OUTPUTS]

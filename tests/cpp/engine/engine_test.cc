@@ -20,6 +20,8 @@ TEST(Descriptions, AreComplete) {
   EXPECT_THAT(Verify(TypeOf<axis::Outputs>()), testing::IsEmpty());
   EXPECT_THAT(Verify(TypeOf<axis::State>()), testing::IsEmpty());
   EXPECT_THAT(Verify(TypeOf<plant::ServoState>()), testing::IsEmpty());
+  EXPECT_THAT(Verify(TypeOf<group::Outputs>()), testing::IsEmpty());
+  EXPECT_THAT(Verify(TypeOf<group::State>()), testing::IsEmpty());
   for (const Verb& verb : Verbs()) EXPECT_THAT(Verify(*verb.arguments), testing::IsEmpty()) << verb.name;
 }
 

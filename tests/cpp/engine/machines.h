@@ -8,7 +8,7 @@
 
 namespace takt::engine {
 
-// Linear and rotary, all three kinds of drives, an absolute encoder, a follower, a cam module, switches and a
+// Linear and rotary, all three kinds of drives, an absolute encoder, a follower, a cam module, a group, switches and a
 // real-looking servo.
 inline const char* kFullMachine = R"(
 name: full
@@ -34,6 +34,21 @@ axes:
     loop: {kp: 0.05, velocity_at_10v: 300}
   - name: knife
     limits: {velocity: 5000, acceleration: 100000, jerk: 10000000}
+  - name: left
+    limits: {velocity: 500, acceleration: 5000, jerk: 100000, lower: -300, upper: 300}
+  - name: right
+    limits: {velocity: 500, acceleration: 5000, jerk: 100000}
+groups:
+  - name: portal
+    axes: [left, right]
+    kinematics: {gantry: {axes: [x, y]}}
+    path: {velocity: 300, acceleration: 3000, jerk: 60000}
+paths:
+  - name: round
+    elements:
+      - {shape: line, to: {x: 50, y: 0, z: 0}}
+      - {shape: arc, via_x: 75, via_y: 25, via_z: 0, to: {x: 50, y: 50, z: 0}}
+      - {shape: spline, points: [{x: 30, y: 60, z: 0}, {x: 0, y: 50, z: 0}]}
 cams:
   - name: hill
     cyclic: true
@@ -84,6 +99,14 @@ inline Command ToModule(const Machine& machine, const flexcam::Command& body) {
   return command;
 }
 
+// The first group.
+inline Command ToGroup(const Machine& machine, const group::Command& body) {
+  Command command;
+  command.target = static_cast<std::uint32_t>(machine.axes.size() + machine.flex_cams.size() + 1);
+  command.body = body;
+  return command;
+}
+
 // Something for every axis to do, spread over the first seconds.
 inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m) {
   using namespace axis;
@@ -108,6 +131,23 @@ inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m)
   commands.push_back({2300, ToAxis(m, "z", StepDirect{.set_position = 1})});
   commands.push_back({2310, ToAxis(m, "z", SetPosition{.position = 2})});
   commands.push_back({2500, ToAxis(m, "y1", Stop{})});
+  const auto to_group = [&](std::uint64_t cycle, const group::Command& body) {
+    commands.push_back({cycle, ToGroup(m, body)});
+  };
+  to_group(310, group::Enable{});
+  to_group(320, group::MoveDirectAbsolute{.a1 = 10, .a2 = -20});
+  to_group(321, group::MovePath{.path = Name::Of("round"),
+                                .buffer_mode = BufferMode::kBuffered,
+                                .transition_mode = group::TransitionMode::kMaxCornerDeviation,
+                                .transition_parameter = 1});
+  to_group(322, group::MoveLinearRelative{.x = 100, .y = 5, .buffer_mode = BufferMode::kBlendingNext});
+  to_group(700, group::Interrupt{});
+  to_group(900, group::Continue{});
+  to_group(1000, group::SetOverride{.velocity_factor = 0.3});
+  to_group(1400, group::MoveLinearAbsolute{.x = 400});  // beyond the SW limit
+  to_group(1410, group::MovePathSynchronized{.path = Name::Of("round"), .master = Name::Of("y1"), .ratio = -1});
+  to_group(2100, group::Stop{});
+  to_group(2600, group::Disable{});
   using flexcam::Control;
   commands.push_back({6, ToModule(m, Control{.regulator_on = true})});
   commands.push_back({330, ToModule(m, Control{.sync_cam = true, .cam_table = 2u})});

@@ -96,7 +96,7 @@ TEST(Snapshots, AreDroppedAndCountedWhenNobodyReads) {
   const Machine machine = FullMachine();
   Engine engine(machine, {.publish = true, .every_cycle = true, .snapshot_queue = 64});
   for (int i = 0; i < 1000; ++i) engine.RunCycle();
-  const std::size_t kept = 2 * 64;  // a queue for axes, one for cam modules
+  const std::size_t kept = 3 * 64;  // a queue for axes, one for cam modules, one for groups
   EXPECT_EQ(engine.figures().snapshots_dropped, 1000 * engine.components() - kept);
 }
 
@@ -105,7 +105,7 @@ TEST(FeedbackQueue, CountsWhatItLost) {
   const Machine machine = FullMachine();
   Engine engine(machine);
   std::uint64_t given = 0;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < 1000; ++i) {
     for (std::size_t k = 0; k < kCommandsPerCycle; ++k) given += engine.Submit(ToAxis(machine, "y1", axis::Halt{})) > 0;
     engine.RunCycle();
   }

@@ -144,8 +144,6 @@ TEST(Members, BadGeometryIsRefused) {
   Rig rig = Gantry();
   rig.Start({100, 0, 0});
   std::vector<std::pair<Command, path::Problem>> bad;
-  bad.emplace_back(MoveLinearAbsolute{.x = 100}, path::Problem::kLengthZero);
-  bad.emplace_back(MoveLinearRelative{}, path::Problem::kLengthZero);
   MoveCircularAbsolute arc{.circ_mode = path::CircMode::kBorder};
   arc.aux_x = 50;
   arc.x = 0;
@@ -168,6 +166,25 @@ TEST(Members, BadGeometryIsRefused) {
     rig.Run(0.005);
     EXPECT_EQ(rig.out().state, GroupState::kStandby);
   }
+}
+
+// GR-20: a move to where the group stands is done at once, also between others.
+TEST(Members, ZeroLengthIsDone) {
+  Rig rig = Gantry();
+  rig.Start({100, 0, 0});
+  for (const Command& command :
+       {Command(MoveLinearAbsolute{.x = 100}), Command(MoveLinearRelative{}), Command(MoveDirectAbsolute{.a1 = 100})}) {
+    const Ticket move = rig.Give(command);
+    rig.Run(0.005);
+    EXPECT_TRUE(rig.lives[move].done);
+    EXPECT_EQ(rig.out().state, GroupState::kStandby);
+  }
+  const Ticket first = rig.Give(MoveLinearAbsolute{.x = 150});
+  const Ticket same = rig.Give(MoveLinearAbsolute{.x = 150, .buffer_mode = BufferMode::kBuffered});
+  const Ticket last = rig.Give(MoveLinearAbsolute{.x = 200, .buffer_mode = BufferMode::kBuffered});
+  ASSERT_TRUE(rig.RunToEnd(last));
+  EXPECT_TRUE(rig.lives[first].done && rig.lives[same].done && rig.lives[last].done);
+  EXPECT_NEAR(rig.out().x, 200, 1e-12);
 }
 
 }  // namespace

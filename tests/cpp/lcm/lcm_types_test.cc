@@ -20,6 +20,7 @@
 #include "takt/engine/scheduler.h"
 #include "takt/engine/snapshot.h"
 #include "takt/flexcam/outputs.h"
+#include "takt/group/outputs.h"
 #include "takt/msgs/engine_state.hpp"
 #include "takt/msgs/feedback.hpp"
 
@@ -165,6 +166,9 @@ TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   ExpectSameConstants("axis_state.lcm", "STATE_", *outputs.FindField("state")->type);
   ExpectSameConstants("flex_cam_state.lcm", "STATE_", TypeOf<flexcam::ModuleState>());
   ExpectSameConstants("axis_state.lcm", "LIMITED_BY_", *outputs.FindField("limited_by")->type);
+  ExpectSameConstants("group_state.lcm", "STATE_", TypeOf<group::GroupState>());
+  ExpectSameConstants("group_state.lcm", "REASON_", TypeOf<kinematics::Reason>());
+  ExpectSameConstants("group_state.lcm", "PROBLEM_", TypeOf<path::Problem>());
 
   using F = msgs::feedback;
   EXPECT_EQ(F::STATE_BUSY, static_cast<int>(FeedbackState::kBusy));
@@ -191,7 +195,7 @@ TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
       EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
     }
   }
-  EXPECT_EQ(files, 14);
+  EXPECT_EQ(files, 15);
 }
 
 }  // namespace

@@ -97,99 +97,39 @@ void Put(const Type& type, std::int64_t value, void* at) {
   }
 }
 
-struct FlexCamField {
+// How a test sees one field of a message.
+template <typename Message>
+struct MessageField {
   std::string_view name;
-  double (*in_message)(const msgs::flex_cam_state&);
+  double (*in_message)(const Message&);
 };
-
-// EN-20, CAM-10: each output has its own field of the same name, and changes no other.
-TEST(Messages, FlexCamStateKeepsEveryNumber) {
-#define FIELD(field)                                                                   \
-  {                                                                                    \
-#field, [](const msgs::flex_cam_state& m) { return static_cast<double>(m.field); } \
+#define FIELD(message, field)                                                   \
+  {                                                                             \
+#field, [](const msgs::message& m) { return static_cast<double>(m.field); } \
   }
-  const std::vector<FlexCamField> fields = {
-      FIELD(set_offset_master),
-      FIELD(set_offset_slave),
-      FIELD(set_scaling_master),
-      FIELD(set_scaling_slave),
-      FIELD(set_x_position),
-      FIELD(set_x_velocity),
-      FIELD(set_x_acceleration),
-      FIELD(set_y_position),
-      FIELD(set_y_velocity),
-      FIELD(set_y_acceleration),
-      FIELD(actual_slave_position),
-      FIELD(actual_slave_velocity),
-      FIELD(slave_max_position),
-      FIELD(slave_min_position),
-      FIELD(slave_max_velocity),
-      FIELD(slave_max_acceleration),
-      FIELD(ip01_set_scaling_master),
-      FIELD(ip02_scaling_mode_master),
-      FIELD(ip03_set_offset_master),
-      FIELD(ip04_set_offset_slave),
-      FIELD(ip05_offset_mode_slave),
-      FIELD(ip06_set_scaling_slave),
-      FIELD(ip07_scaling_mode_slave),
-      FIELD(ip08_cam_table1),
-      FIELD(ip09_cam_table2),
-      FIELD(ip10_cam_table3),
-      FIELD(ip11_cam_table4),
-      FIELD(mp01_set_master_position),
-      FIELD(mp02_set_slave_position),
-      FIELD(mp03_master_to_x_position),
-      FIELD(mp04_cam_profiler_position_out),
-      FIELD(mp05_set_y_position),
-      FIELD(mp06_y_to_slave_position),
-      FIELD(op01_set_x_position_out),
-      FIELD(op02_set_y_position_out),
-      FIELD(error),
-      FIELD(warning),
-      FIELD(state),
-      FIELD(cam_table),
-      FIELD(next_cam_table),
-      FIELD(pending_changes),
-      FIELD(cam_ends),
-      FIELD(internal_control_active),
-      FIELD(axis_enabled),
-      FIELD(done),
-      FIELD(busy),
-      FIELD(is_homed),
-      FIELD(hw_limit_switch_positive),
-      FIELD(hw_limit_switch_negative),
-      FIELD(sw_limit_enabled),
-      FIELD(sw_limit_switch_active),
-      FIELD(cam_synchronised),
-      FIELD(acc_dec_sync),
-      FIELD(end_of_profile),
-      FIELD(sequencer_active),
-      FIELD(bounds_valid),
-  };
-#undef FIELD
-  engine::Machine machine = TestMachine();
-  machine.flex_cams.resize(2);
-  machine.flex_cams[0].name = "other";
-  machine.flex_cams[1].name = "cutter";
-  machine.cycle.period_s = 0.00025;
-  const Type& outputs = TypeOf<flexcam::Outputs>();
+
+// Each output has its own field of the same name, and changes no other.
+template <typename Message, typename Outputs>
+void ExpectKeepsEveryNumber(const std::vector<MessageField<Message>>& fields, const engine::Machine& machine,
+                            const std::string& name) {
+  const Type& outputs = TypeOf<Outputs>();
   ASSERT_EQ(fields.size(), outputs.fields.size());
-  engine::FlexCamSnapshot plain;
+  engine::SnapshotOf<Outputs> plain;
   plain.cycle = 4'000'001;
   plain.index = 1;
-  const msgs::flex_cam_state before = ThroughBytes(ToMessage(plain, machine));
+  const Message before = ThroughBytes(ToMessage(plain, machine));
   EXPECT_EQ(before.cycle, 4'000'001);
   EXPECT_EQ(before.time_ns, 1'000'000'250'000);
-  EXPECT_EQ(before.name, "cutter");
+  EXPECT_EQ(before.name, name);
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const Field& field = outputs.fields[i];
     ASSERT_EQ(field.name, fields[i].name);
     const bool is_enum = field.type->kind == Kind::kEnum;
     const std::int64_t value =
         is_enum ? field.type->enumerators.back().value : 4'000'000'000 + static_cast<std::int64_t>(i);
-    engine::FlexCamSnapshot changed = plain;
+    engine::SnapshotOf<Outputs> changed = plain;
     Put(*field.type, value, reinterpret_cast<std::byte*>(&changed.outputs) + field.offset);
-    const msgs::flex_cam_state after = ThroughBytes(ToMessage(changed, machine));
+    const Message after = ThroughBytes(ToMessage(changed, machine));
     double wanted = static_cast<double>(value);
     if (field.type->kind == Kind::kReal) wanted += 0.25;
     if (field.type->kind == Kind::kBool) wanted = 1;
@@ -199,9 +139,134 @@ TEST(Messages, FlexCamStateKeepsEveryNumber) {
       EXPECT_EQ(fields[k].in_message(after), fields[k].in_message(before)) << field.name << " " << fields[k].name;
     }
   }
+}
+
+// EN-20, CAM-10
+TEST(Messages, FlexCamStateKeepsEveryNumber) {
+  engine::Machine machine = TestMachine();
+  machine.flex_cams.resize(2);
+  machine.flex_cams[0].name = "other";
+  machine.flex_cams[1].name = "cutter";
+  machine.cycle.period_s = 0.00025;
+  ExpectKeepsEveryNumber<msgs::flex_cam_state, flexcam::Outputs>(
+      {
+          FIELD(flex_cam_state, set_offset_master),
+          FIELD(flex_cam_state, set_offset_slave),
+          FIELD(flex_cam_state, set_scaling_master),
+          FIELD(flex_cam_state, set_scaling_slave),
+          FIELD(flex_cam_state, set_x_position),
+          FIELD(flex_cam_state, set_x_velocity),
+          FIELD(flex_cam_state, set_x_acceleration),
+          FIELD(flex_cam_state, set_y_position),
+          FIELD(flex_cam_state, set_y_velocity),
+          FIELD(flex_cam_state, set_y_acceleration),
+          FIELD(flex_cam_state, actual_slave_position),
+          FIELD(flex_cam_state, actual_slave_velocity),
+          FIELD(flex_cam_state, slave_max_position),
+          FIELD(flex_cam_state, slave_min_position),
+          FIELD(flex_cam_state, slave_max_velocity),
+          FIELD(flex_cam_state, slave_max_acceleration),
+          FIELD(flex_cam_state, ip01_set_scaling_master),
+          FIELD(flex_cam_state, ip02_scaling_mode_master),
+          FIELD(flex_cam_state, ip03_set_offset_master),
+          FIELD(flex_cam_state, ip04_set_offset_slave),
+          FIELD(flex_cam_state, ip05_offset_mode_slave),
+          FIELD(flex_cam_state, ip06_set_scaling_slave),
+          FIELD(flex_cam_state, ip07_scaling_mode_slave),
+          FIELD(flex_cam_state, ip08_cam_table1),
+          FIELD(flex_cam_state, ip09_cam_table2),
+          FIELD(flex_cam_state, ip10_cam_table3),
+          FIELD(flex_cam_state, ip11_cam_table4),
+          FIELD(flex_cam_state, mp01_set_master_position),
+          FIELD(flex_cam_state, mp02_set_slave_position),
+          FIELD(flex_cam_state, mp03_master_to_x_position),
+          FIELD(flex_cam_state, mp04_cam_profiler_position_out),
+          FIELD(flex_cam_state, mp05_set_y_position),
+          FIELD(flex_cam_state, mp06_y_to_slave_position),
+          FIELD(flex_cam_state, op01_set_x_position_out),
+          FIELD(flex_cam_state, op02_set_y_position_out),
+          FIELD(flex_cam_state, error),
+          FIELD(flex_cam_state, warning),
+          FIELD(flex_cam_state, state),
+          FIELD(flex_cam_state, cam_table),
+          FIELD(flex_cam_state, next_cam_table),
+          FIELD(flex_cam_state, pending_changes),
+          FIELD(flex_cam_state, cam_ends),
+          FIELD(flex_cam_state, internal_control_active),
+          FIELD(flex_cam_state, axis_enabled),
+          FIELD(flex_cam_state, done),
+          FIELD(flex_cam_state, busy),
+          FIELD(flex_cam_state, is_homed),
+          FIELD(flex_cam_state, hw_limit_switch_positive),
+          FIELD(flex_cam_state, hw_limit_switch_negative),
+          FIELD(flex_cam_state, sw_limit_enabled),
+          FIELD(flex_cam_state, sw_limit_switch_active),
+          FIELD(flex_cam_state, cam_synchronised),
+          FIELD(flex_cam_state, acc_dec_sync),
+          FIELD(flex_cam_state, end_of_profile),
+          FIELD(flex_cam_state, sequencer_active),
+          FIELD(flex_cam_state, bounds_valid),
+      },
+      machine, "cutter");
   EXPECT_EQ(static_cast<int>(flexcam::ModuleState::kError), msgs::flex_cam_state::STATE_ERROR);
   EXPECT_EQ(static_cast<int>(flexcam::ModuleState::kSync), msgs::flex_cam_state::STATE_SYNC);
 }
+
+// EN-20, GR-02
+TEST(Messages, GroupStateKeepsEveryNumber) {
+  engine::Machine machine = TestMachine();
+  machine.groups.resize(2);
+  machine.groups[0].name = "other";
+  machine.groups[1].name = "robot";
+  machine.cycle.period_s = 0.00025;
+  ExpectKeepsEveryNumber<msgs::group_state, group::Outputs>(
+      {
+          FIELD(group_state, state),
+          FIELD(group_state, error),
+          FIELD(group_state, x),
+          FIELD(group_state, y),
+          FIELD(group_state, z),
+          FIELD(group_state, a),
+          FIELD(group_state, b),
+          FIELD(group_state, c),
+          FIELD(group_state, actual_x),
+          FIELD(group_state, actual_y),
+          FIELD(group_state, actual_z),
+          FIELD(group_state, actual_a),
+          FIELD(group_state, actual_b),
+          FIELD(group_state, actual_c),
+          FIELD(group_state, velocity),
+          FIELD(group_state, acceleration),
+          FIELD(group_state, actual_velocity),
+          FIELD(group_state, path_position),
+          FIELD(group_state, path_velocity),
+          FIELD(group_state, path_acceleration),
+          FIELD(group_state, path_left),
+          FIELD(group_state, path_error),
+          FIELD(group_state, override_factor),
+          FIELD(group_state, command),
+          FIELD(group_state, buffered),
+          FIELD(group_state, axes),
+          FIELD(group_state, member1),
+          FIELD(group_state, member2),
+          FIELD(group_state, member3),
+          FIELD(group_state, member4),
+          FIELD(group_state, member5),
+          FIELD(group_state, member6),
+          FIELD(group_state, member7),
+          FIELD(group_state, member8),
+          FIELD(group_state, kinematics_on),
+          FIELD(group_state, in_position),
+          FIELD(group_state, interrupted),
+          FIELD(group_state, synchronized),
+          FIELD(group_state, reason),
+          FIELD(group_state, problem),
+          FIELD(group_state, blocked_at),
+      },
+      machine, "robot");
+  EXPECT_EQ(static_cast<int>(group::GroupState::kErrorStop), msgs::group_state::STATE_GROUP_ERROR_STOP);
+}
+#undef FIELD
 
 // EN-05, EN-20
 TEST(Messages, EngineStateKeepsEveryNumber) {

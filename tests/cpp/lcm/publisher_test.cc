@@ -180,6 +180,35 @@ TEST(Publisher, ModulesArePublishedAsAxesAre) {
   EXPECT_EQ(commands[2].arguments, "{sync_cam: true}");
 }
 
+// EN-20, GR-02
+TEST(Publisher, GroupsArePublishedAsAxesAre) {
+  engine::Machine machine = WithGroup(TestMachine());
+  machine.lcm.axis_rate_hz = 100;
+  machine.lcm.rates = {{"portal", 250}};
+  TestRun run({.publish = true, .every_cycle = true, .journal = true}, machine);
+  TestOutlet network, log;
+  {
+    Publisher publisher(run.engine, run.clients, &network, &log, {});
+    run.clients.OnCommand(Command(1, "portal", "power"), SteadyNs());
+    run.Step(500);
+    run.clients.OnCommand(Command(2, "portal", "enable"), SteadyNs());
+    run.clients.OnCommand(Command(3, "portal", "move_linear_absolute", "{x: 1, y: 2}"), SteadyNs());
+    run.Step(500);
+  }
+  const auto sent = network.On<msgs::group_state>("takt/group/portal");
+  const auto kept = log.On<msgs::group_state>("takt/group/portal");
+  ASSERT_EQ(sent.size(), 250u);
+  ASSERT_EQ(kept.size(), 1000u);
+  ExpectNoGaps(sent);
+  ExpectNoGaps(kept);
+  EXPECT_EQ(kept[400].state, msgs::group_state::STATE_GROUP_DISABLED);
+  EXPECT_EQ(kept.back().state, msgs::group_state::STATE_GROUP_STANDBY);
+  EXPECT_EQ(kept.back().axes, 2);
+  EXPECT_NEAR(kept.back().x, 1, 1e-9);
+  EXPECT_NEAR(kept.back().y, 2, 1e-9);
+  EXPECT_EQ(kept.back().z, 0);
+}
+
 // EN-07, EN-20: the log holds every cycle, every command and every hash; the network goes on at its own rate.
 TEST(Publisher, TheLogHoldsEverything) {
   constexpr int kCycles = 2500;

@@ -42,6 +42,18 @@ inline engine::Machine WithModule(engine::Machine machine) {
   return machine;
 }
 
+// With x and y as a group "portal".
+inline engine::Machine WithGroup(engine::Machine machine) {
+  group::GroupParams group;
+  group.name = "portal";
+  group.axes = {"x", "y"};
+  group.kinematics.emplace().gantry =
+      kinematics::GantryParams{{kinematics::Coordinate::kX, kinematics::Coordinate::kY}};
+  group.path = {.velocity = 100, .acceleration = 1000, .deceleration = {}, .jerk = 20000};
+  machine.groups = {group};
+  return machine;
+}
+
 // An LCM network that no other test uses; its port is below those that systems give away by themselves.
 inline std::string NewUrl() {
   static int port = 10'000 + getpid() % 500 * 4;

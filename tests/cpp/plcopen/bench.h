@@ -33,6 +33,13 @@ axes:
     supervision: {deviation_moving: 2}
 cams:
   - {name: lift, cyclic: true, points: [{x: 0, y: 0, v: 0, a: 0}, {x: 40, y: 10, v: 0, a: 0}]}
+groups:
+  - name: pair
+    axes: [x, y]
+    kinematics: {gantry: {axes: [x, y]}}
+    path: {velocity: 300, acceleration: 3000, jerk: 60000}
+paths:
+  - {name: hook, elements: [{shape: line, to: {x: 40, y: 0, z: 0}}, {shape: line, to: {x: 40, y: 20, z: 0}}]}
 simulation:
   servos:
     - {axis: w, drive: {velocity_feed_forward: 0, position_gain: 100}}

@@ -1,0 +1,57 @@
+"""How groups keep to paths of their tools."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from takt.checks.series import Check, decided, nearest
+from takt.recording import Recording
+from takt.toolpath import SLACK, Toolpath
+from takt.verdict import Bound, Interval, Lane, Trace, Verdict, number
+
+
+@decided
+def follows_path(
+    recording: Recording,
+    group: str,
+    path: Toolpath,
+    within: float,
+    *,
+    actual: bool = False,
+    window: Interval | None = None,
+) -> Verdict:
+    """A group goes along all of a path, from its start to its end and in its order, never further than `within` mm
+    beside it.
+
+    path: in the machine coordinate system. actual: what was measured instead of what was commanded."""
+    if not 0 < within < SLACK:
+        raise ValueError(f"follows_path: within is a number of mm above 0 and below {SLACK:g}, not {within}")
+    check = Check("follows_path", recording, (group,), window)
+    prefix = "actual_" if actual else ""
+    columns = [check.series(group, prefix + axis) for axis in "xyz"]
+    x = columns[0]
+    beside = path.follow(np.stack([column.values for column in columns], axis=1))
+    bound = Bound.level(f"at most {number(within, x.unit)}", within, x.span, "above")
+    name = f"{'measured' if actual else 'commanded'} place beside the path"
+    lane = Lane("deviation", x.unit, (Trace(f"{group}: {name}", x.time_s, beside.distance),), (bound,))
+    worst = int(np.argmax(beside.distance))
+    far, when = float(beside.distance[worst]), float(x.time_s[worst])
+    where = f"{number(float(beside.position[worst]), x.unit)} along the path"
+    if far > within:
+        first = int(np.argmax(beside.distance > within))
+        text = f"the {name} was off by {number(far, x.unit)}, {where}, more than {number(within, x.unit)}"
+        place = (float(x.time_s[first]), when) if first < worst else (when, when)
+        return check.verdict(
+            False, text, when_s=float(x.time_s[first]), by=far - within, unit=x.unit, place=place, lanes=[lane]
+        )
+    for what, at, wanted in (("began", beside.position[0], 0.0), ("ended", beside.position[-1], path.length)):
+        if abs(float(at) - wanted) > within:
+            row = 0 if what == "began" else -1
+            text = f"{what} {number(float(at), x.unit)} along the path, not at {number(wanted, x.unit)}"
+            return check.verdict(
+                False, text, when_s=float(x.time_s[row]), by=abs(float(at) - wanted), unit=x.unit, lanes=[lane]
+            )
+    text = f"the {name} was off by at most {number(far, x.unit)} over {number(path.length, x.unit)}, {where}"
+    return check.verdict(
+        True, f"{text}; {nearest(within - far, x.unit, when)}", when_s=when, by=within - far, unit=x.unit, lanes=[lane]
+    )

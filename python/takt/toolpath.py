@@ -1,0 +1,333 @@
+"""Paths of tools, from G-code or SVG: what a group's `move_path` goes along.
+
+    path = toolpath.read("drawing.gcode")
+    path.length, path.extents                   # mm
+    path.to_csv("drawing.csv")                  # the `file` of a path in a machine file
+
+Lines and arcs only, in mm and mm/s; whatever else a file holds (helices, ellipses, Béziers) becomes lines that keep
+within a tolerance.
+"""
+
+from __future__ import annotations
+
+import csv
+import functools
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from takt.errors import TaktError
+
+Array = npt.NDArray[np.float64]
+Point = tuple[float, float, float]
+
+SAME = 1e-6  # mm: nearer than this, points are the same, as for the engine
+SLACK = 2.0  # mm: how far beside, before or behind a path points may lie that are said to follow it
+TOLERANCE = 0.005  # mm between a curve and the lines that stand for it
+COLUMNS = ("shape", "x", "y", "z", "via_x", "via_y", "via_z", "velocity")
+_BLOCK = 64  # points looked at together in `follow`
+
+
+class ToolpathError(TaktError, ValueError):
+    """A file is no path for a tool; the text says where and why."""
+
+
+@dataclass(frozen=True)
+class Element:
+    """A line to `end`, or an arc through `via` to it, from where the element before it ends."""
+
+    end: Point  # mm
+    via: Point | None = None
+    velocity: float | None = None  # mm/s; None: that of the command, "as fast as possible"
+
+
+class Followed(NamedTuple):
+    """How points lie beside a path."""
+
+    distance: Array  # mm, from the path
+    position: Array  # mm along the path, of the nearest place on it
+
+
+class _Geometry(NamedTuple):
+    """A row an element. Of a line the centre is its beginning and u where it goes."""
+
+    begin: Array
+    is_arc: npt.NDArray[np.bool_]
+    centre: Array
+    u: Array  # unit vectors: from the centre to the beginning ...
+    w: Array  # ... and where the arc goes from there
+    radius: Array
+    length: Array
+    at: Array  # mm along the path where it begins; one more at the end
+
+
+@dataclass(frozen=True)
+class Toolpath:
+    """Lines and arcs from `start` on."""
+
+    start: Point
+    elements: tuple[Element, ...]
+    left_out: tuple[str, ...] = ()  # what the file said besides, a sentence each
+
+    @classmethod
+    def from_csv(cls, path: str | PathLike[str], start: Point = (0.0, 0.0, 0.0)) -> Toolpath:
+        """Lines and arcs of a file as machine files name it. Raises ToolpathError."""
+        with Path(path).open(newline="", encoding="utf-8") as file:
+            table = csv.DictReader(file, restkey="", skipinitialspace=True)
+            unknown = [name for name in table.fieldnames or () if name not in COLUMNS]
+            if unknown or not {"x", "y", "z"} <= set(table.fieldnames or ()):
+                raise ToolpathError(f"{path}:1: expected the columns x, y, z and perhaps {', '.join(COLUMNS)}")
+            elements = [_element_of(row, f"{path}:{table.line_num}") for row in table]
+        return cls(start, tuple(elements))._checked(str(path))
+
+    @property
+    def length(self) -> float:
+        """mm."""
+        return float(self._geometry.at[-1])
+
+    @property
+    def end(self) -> Point:
+        """Where it ends."""
+        return self.elements[-1].end if self.elements else self.start
+
+    @property
+    def extents(self) -> Array:
+        """(2, 3): the least and the greatest X, Y, Z on it, in mm."""
+        g = self._geometry
+        points = [np.array([self.start]), *([_ends(self.elements)] if self.elements else [])]
+        u, w, radius = g.u[g.is_arc], g.w[g.is_arc], g.radius[g.is_arc, np.newaxis]
+        sweep = g.length[g.is_arc, np.newaxis] / radius
+        for turn in (0.0, math.pi):  # where an arc goes neither up nor down an axis
+            angle = np.mod(np.arctan2(w, u) + turn, 2 * math.pi)
+            there = g.centre[g.is_arc] + radius * (u * np.cos(angle) + w * np.sin(angle))
+            points.append(np.where(angle <= sweep, there, g.begin[g.is_arc]))
+        every = np.concatenate(points)
+        return np.array([every.min(axis=0), every.max(axis=0)])
+
+    @property
+    def is_arc(self) -> npt.NDArray[np.bool_]:
+        """(n,): which elements are arcs."""
+        return self._geometry.is_arc
+
+    @property
+    def at(self) -> Array:
+        """(n + 1,): mm along the path where each element begins, and where the last one ends."""
+        return self._geometry.at
+
+    def points(self, step: float) -> tuple[Array, Array]:
+        """Points (m, 3) on it, each element's ends among them and no more than `step` mm apart, and how far along the
+        path (m,) they lie."""
+        if not step > 0:
+            raise ValueError(f"step is a number of mm above 0, not {step}")
+        g = self._geometry
+        counts = np.maximum(np.ceil(g.length / step), 1).astype(np.int64)
+        which = np.repeat(np.arange(len(counts)), counts)
+        shares = (np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts) + 1) / counts[which]
+        ways = shares * g.length[which]
+        places = np.concatenate([np.array([self.start]), self._places(which, ways)])
+        return places, np.concatenate([[0.0], g.at[which] + ways])
+
+    def follow(self, points: npt.ArrayLike, slack: float = SLACK) -> Followed:
+        """How points (m, 3) that were gone through one after the other, from the start on, lie beside the path.
+
+        Looked for is the nearest place not far along the path from the one before, so a path that crosses itself, or
+        leaves a corner out, is not mistaken. `slack`: mm that the points may be beside, before or behind."""
+        rows = np.asarray(points, float)
+        if rows.ndim != 2 or rows.shape[1] != 3:
+            raise ValueError(f"expected rows of 3 numbers, found an array of shape {rows.shape}")
+        if not self.elements:
+            raise ToolpathError("a path without elements cannot be followed")
+        g = self._geometry
+        distance, position = np.empty(len(rows)), np.empty(len(rows))
+        way = np.concatenate([[0.0], np.linalg.norm(np.diff(rows, axis=0), axis=1)])
+        here = 0.0
+        for first in range(0, len(rows), _BLOCK):
+            block = slice(first, min(first + _BLOCK, len(rows)))
+            low, high = here - slack, here + float(np.sum(way[block])) + slack
+            begin = max(int(np.searchsorted(g.at, low, "right")) - 1, 0)
+            end = min(int(np.searchsorted(g.at, high)), len(self.elements))
+            away, ways = self._distances(rows[block], slice(begin, max(end, begin + 1)))
+            nearest = np.argmin(away, axis=1)
+            row = np.arange(len(nearest))
+            distance[block] = away[row, nearest]
+            position[block] = g.at[begin + nearest] + ways[row, nearest]
+            here = float(position[block][-1])
+        return Followed(distance, position)
+
+    def shifted(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Toolpath:
+        """The same, elsewhere."""
+
+        def move(point: Point) -> Point:
+            return (point[0] + x, point[1] + y, point[2] + z)
+
+        elements = tuple(
+            Element(move(one.end), None if one.via is None else move(one.via), one.velocity) for one in self.elements
+        )
+        return Toolpath(move(self.start), elements, self.left_out)
+
+    def to_csv(self, path: str | PathLike[str]) -> Path:
+        """Writes the elements as the `file` of a path in a machine file. It does not say where the path starts."""
+        target = Path(path)
+        with target.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(COLUMNS)
+            for one in self.elements:
+                via = [_text(value) for value in one.via] if one.via else ["", "", ""]
+                velocity = "" if one.velocity is None else _text(one.velocity)
+                shape = "arc" if one.via else "line"
+                writer.writerow([shape, *(_text(value) for value in one.end), *via, velocity])
+        return target
+
+    def to_elements(self) -> list[dict[str, Any]]:
+        """The same as the `elements` of a path in a machine file."""
+        elements = []
+        for one in self.elements:
+            element: dict[str, Any] = {"shape": "arc" if one.via else "line"}
+            element["to"] = dict(zip("xyz", one.end, strict=True))
+            if one.via:
+                element |= dict(zip(("via_x", "via_y", "via_z"), one.via, strict=True))
+            if one.velocity is not None:
+                element["velocity"] = one.velocity
+            elements.append(element)
+        return elements
+
+    @functools.cached_property
+    def _geometry(self) -> _Geometry:
+        if not self.elements:
+            no, nothing = np.empty((0, 3)), np.empty(0)
+            return _Geometry(no, np.empty(0, bool), no, no, no, nothing, nothing, np.zeros(1))
+        ends = _ends(self.elements)
+        begin = np.concatenate([[self.start], ends[:-1]])
+        is_arc = np.array([one.via is not None for one in self.elements])
+        chord = ends - begin
+        length = np.linalg.norm(chord, axis=1)
+        centre, w, radius = begin.copy(), np.zeros_like(begin), np.zeros(len(begin))
+        u = np.divide(chord, length[:, np.newaxis], out=np.zeros_like(chord), where=length[:, np.newaxis] > 0)
+        if np.any(is_arc):
+            via = np.array([one.via for one in self.elements if one.via is not None])
+            arc = _arcs(begin[is_arc], via, ends[is_arc])
+            centre[is_arc], u[is_arc], w[is_arc], radius[is_arc], length[is_arc] = arc
+        return _Geometry(begin, is_arc, centre, u, w, radius, length, np.concatenate([[0.0], np.cumsum(length)]))
+
+    def _places(self, which: npt.NDArray[np.int64], ways: Array) -> Array:
+        """Points `ways` mm from the beginnings of elements."""
+        g = self._geometry
+        arc = g.is_arc[which, np.newaxis]
+        angle = np.divide(ways, g.radius[which], out=np.zeros_like(ways), where=g.is_arc[which])[:, np.newaxis]
+        radius = g.radius[which, np.newaxis]
+        along = np.where(arc, radius * np.cos(angle), ways[:, np.newaxis])
+        return np.asarray(g.centre[which] + along * g.u[which] + radius * np.sin(angle) * g.w[which])
+
+    def _distances(self, points: Array, part: slice) -> tuple[Array, Array]:
+        """Of each point (m) from each element of a part (k) of the path, and how far along it the nearest place is."""
+        g = self._geometry
+        out = points[:, np.newaxis, :] - g.centre[part]
+        along = np.einsum("mkc,kc->mk", out, g.u[part])
+        across = np.einsum("mkc,kc->mk", out, g.w[part])
+        arc, radius, length = g.is_arc[part], g.radius[part], g.length[part]
+        sweep = np.divide(length, radius, out=np.ones_like(length), where=arc)
+        # Beyond an arc's ends the nearer one counts: angles are taken from the middle of the arc.
+        middle = sweep / 2
+        turned = np.mod(np.arctan2(across, along) - middle + math.pi, 2 * math.pi) - math.pi
+        ways = np.where(arc, radius * (np.clip(turned, -middle, middle) + middle), np.clip(along, 0, length))
+        which = np.broadcast_to(np.arange(len(self.elements))[part], ways.shape)
+        there = self._places(which.ravel(), ways.ravel()).reshape(out.shape)
+        return np.linalg.norm(points[:, np.newaxis, :] - there, axis=2), ways
+
+    def _checked(self, source: str) -> Toolpath:
+        """Itself; raises where an arc is none, or an element has no length."""
+        g = self._geometry
+        for wrong, why in ((~np.isfinite(g.length), "the three points of an arc lie on a line"),
+                           (~(g.length >= SAME), "has no length")):  # fmt: skip
+            if np.any(wrong):
+                raise ToolpathError(f"{source}: element {int(np.argmax(wrong)) + 1}: {why}")
+        return self
+
+
+def read(path: str | PathLike[str], start: Point = (0.0, 0.0, 0.0), tolerance: float = TOLERANCE) -> Toolpath:
+    """Reads G-code (.gcode, .nc, .ngc, .tap), a drawing (.svg) or elements (.csv).
+
+    `start`: where the tool is when it begins, in mm. `tolerance`: how far lines that stand for curves may be from
+    them, in mm. Raises ToolpathError."""
+    suffix = Path(path).suffix.lower()
+    if suffix in (".gcode", ".nc", ".ngc", ".tap"):
+        from takt.gcode import read_gcode
+
+        return read_gcode(path, start, tolerance)
+    if suffix == ".svg":
+        from takt.svg import read_svg
+
+        return read_svg(path, start, tolerance)
+    if suffix == ".csv":
+        return Toolpath.from_csv(path, start)
+    raise ToolpathError(f"{path}: expected a file of G-code (.gcode, .nc, .ngc, .tap), .svg or .csv")
+
+
+def split_turn(sweep: float) -> int:
+    """Into how many equal arcs an arc of so many rad is cut: none is more than half a turn, so that three points
+    say which one it is."""
+    return max(math.ceil(abs(sweep) / math.pi - 1e-9), 1)
+
+
+def chords(sweep: float, radius: float, tolerance: float) -> int:
+    """How many chords keep within a tolerance of an arc of so many rad."""
+    if radius <= tolerance:
+        return max(math.ceil(abs(sweep) / 1.0), 1)
+    return max(math.ceil(abs(sweep) / (2 * math.acos(1 - tolerance / radius))), 1)
+
+
+def _arcs(begin: Array, via: Array, end: Array) -> tuple[Array, Array, Array, Array, Array]:
+    """Centre, u, w, radius and length of arcs through three points each; NaN where they lie on a line."""
+    a, b = via - begin, end - begin
+    normal = np.cross(a, b)
+    square = np.einsum("nc,nc->n", normal, normal)
+    reach = np.einsum("nc,nc->n", a, a) * np.einsum("nc,nc->n", b, b)
+    square = np.where(square > 1e-20 * reach, square, np.nan)[:, np.newaxis]
+    squares_a = np.einsum("nc,nc->n", a, a)[:, np.newaxis]
+    squares_b = np.einsum("nc,nc->n", b, b)[:, np.newaxis]
+    to_centre = np.cross(squares_a * b - squares_b * a, normal) / (2 * square)
+    centre = begin + to_centre
+    radius = np.linalg.norm(to_centre, axis=1)
+    u = -to_centre / radius[:, np.newaxis]
+    w = np.cross(normal / np.sqrt(square), u)
+    out = end - centre
+    sweep = np.mod(np.arctan2(np.einsum("nc,nc->n", out, w), np.einsum("nc,nc->n", out, u)), 2 * math.pi)
+    return centre, u, w, radius, radius * sweep
+
+
+def _ends(elements: Sequence[Element]) -> Array:
+    return np.array([one.end for one in elements])
+
+
+def _text(value: float) -> str:
+    return f"{value:.10g}"
+
+
+def _element_of(row: dict[str, str | None], place: str) -> Element:
+    def numbers(names: Iterable[str]) -> list[float]:
+        values = []
+        for name in names:
+            try:
+                values.append(float(row.get(name) or ""))
+            except ValueError:
+                raise ToolpathError(f"{place}: {name}: expected a number, found '{row.get(name) or ''}'") from None
+            if not math.isfinite(values[-1]):
+                raise ToolpathError(f"{place}: {name}: expected a number, found '{row[name]}'")
+        return values
+
+    shape = row.get("shape") or "line"
+    if shape not in ("line", "arc"):
+        raise ToolpathError(f"{place}: shape: expected line or arc, found '{shape}'")
+    x, y, z = numbers("xyz")
+    via: Point | None = None
+    if shape == "arc":
+        via_x, via_y, via_z = numbers(("via_x", "via_y", "via_z"))
+        via = (via_x, via_y, via_z)
+    velocity = numbers(["velocity"])[0] if row.get("velocity") else None
+    return Element((x, y, z), via, velocity)

@@ -1,0 +1,74 @@
+"""The command `takt path`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+import numpy as np
+from rich.console import Console
+from rich.table import Table as Grid
+
+from takt import toolpath
+
+
+@dataclass(frozen=True)
+class Options:
+    """Those of the command line, by their names there."""
+
+    start: toolpath.Point = (0.0, 0.0, 0.0)
+    tolerance: float = toolpath.TOLERANCE
+    csv: Path | None = None
+    target: Path | None = None
+
+
+def run(file: Path, options: Options, out: Console) -> int:
+    """Reads, says, draws, writes."""
+    _refuse_nonsense(options)
+    path = toolpath.read(file, options.start, options.tolerance)
+    _say(file, path, out)
+    if options.csv is not None:
+        print(f"elements: {path.to_csv(options.csv)}")
+    if options.target is not None:
+        from takt.toolpath_picture import picture
+
+        print(f"picture: {picture(path, options.target, file.name)}")
+    return 0
+
+
+def _refuse_nonsense(options: Options) -> None:
+    from takt.plot import PICTURES
+
+    if not 0 < options.tolerance <= 1:
+        raise click.UsageError(f"--tolerance: expected a number of mm above 0, up to 1, found {options.tolerance:g}")
+    for path, suffixes in ((options.target, PICTURES), (options.csv, (".csv",))):
+        if path is None:
+            continue
+        if path.suffix not in suffixes:
+            raise click.UsageError(f"{path}: expected a name that ends in {' or '.join(suffixes)}")
+        if not path.parent.is_dir():
+            raise click.UsageError(f"{path}: there is no directory {path.parent}")
+
+
+def _say(file: Path, path: toolpath.Toolpath, out: Console) -> None:
+    arcs = int(np.count_nonzero(path.is_arc))
+    lines = len(path.elements) - arcs
+    print(f"{file}: {lines} lines and {arcs} arcs, {path.length:.6g} mm")
+    if not path.elements:
+        return
+    lengths = np.diff(path.at)
+    quick = sum(float(length) for one, length in zip(path.elements, lengths, strict=True) if one.velocity is None)
+    print(f"elements of {lengths.min():.4g} to {lengths.max():.4g} mm; {quick:.6g} mm at the velocity of the command")
+    grid = Grid("", "begins", "ends", "least", "greatest", "", box=None)
+    low, high = path.extents
+    for axis, name in enumerate("XYZ"):
+        ends = (path.start[axis], path.end[axis], low[axis], high[axis])
+        grid.add_row(name, *(f"{value:.6g}" for value in ends), "mm")
+    out.print(grid)
+    feeds = sorted({one.velocity for one in path.elements if one.velocity is not None})
+    if feeds:
+        shown = ", ".join(f"{feed:.6g}" for feed in feeds[:8]) + (" ..." if len(feeds) > 8 else "")
+        print(f"velocities: {shown} mm/s")
+    for word in path.left_out:
+        print(f"left out: {word}")

@@ -1,0 +1,181 @@
+// Every number of every command a group understands, made wrong: refused with a sentence before it gets to the cycle;
+// given past the reader, refused in the cycle, and nothing of the machine is different from its twin that was never
+// asked.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "portal.h"
+#include "wrong.h"
+
+namespace takt::engine {
+namespace {
+
+using group::Command;
+using testing::HasSubstr;
+
+// One command of each kind that would be fine by itself.
+std::vector<Command> GoodCommands() {
+  using group::CoordinateSystem;
+  const Name square = Name::Of("square");
+  return {group::MoveLinearAbsolute{.x = 10},
+          group::MoveLinearRelative{.x = 10},
+          group::MoveCircularAbsolute{.aux_x = 10, .aux_y = 10, .x = 20},
+          group::MoveCircularRelative{.aux_x = 10, .aux_y = 10, .x = 20},
+          group::MoveDirectAbsolute{.a1 = 10},
+          group::MoveDirectRelative{.a1 = 10},
+          group::MovePath{.path = square},
+          group::MovePathSynchronized{.path = square, .master = Name::Of("a3")},
+          group::SyncAxis{.axis = Name::Of("a4")},
+          group::Stop{},
+          group::Halt{},
+          group::Interrupt{},
+          group::SetPosition{.a1 = 10},
+          group::SetOverride{},
+          group::SetCartesianTransform{},
+          group::SetCoordinateTransform{}};
+}
+
+// GR-02, EN-22
+TEST(GroupBadInput, IsRefusedAsTextWithASentence) {
+  const Machine machine = PortalMachine();
+  int refused = 0;
+  for (const Command& good : GoodCommands()) {
+    const CommandText fine = ToText(machine, ToGroup(machine, good));
+    ASSERT_EQ(ParseCommand(machine, fine.target, fine.verb, fine.arguments).sentence, "") << fine.verb;
+    for (const Wrong<Command>& wrong : WrongVersionsOf(good)) {
+      const CommandText text = ToText(machine, ToGroup(machine, wrong.command));
+      const ParsedCommand parsed = ParseCommand(machine, text.target, text.verb, text.arguments);
+      EXPECT_EQ(parsed.error, ErrorId::kParameter) << wrong.what;
+      EXPECT_THAT(parsed.sentence, HasSubstr(std::string(wrong.field) + ": expected ")) << wrong.what;
+      EXPECT_THAT(group::WhyNot(wrong.command), HasSubstr(std::string(wrong.field) + ": expected ")) << wrong.what;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 700);
+}
+
+// GR-02, GR-20, EN-22: numbers that do not fit together, whole numbers, names, misspelt arguments.
+TEST(GroupBadInput, SaysWhatWasExpected) {
+  const Machine machine = PortalMachine();
+  const struct {
+    const char* verb;
+    const char* arguments;
+    const char* sentence;
+  } cases[] = {
+      {"move_linear_absolute", "{x: 1, coordinate_system: acs}",
+       "x: expected a1 to a8 only, with coordinate_system acs"},
+      {"move_linear_absolute", "{velosity: 1}", "did you mean velocity?"},
+      {"move_linear_absolute", "{x: 1, coordinate_system: tcs}", "expected one of acs, mcs, wcs, pcs, found 'tcs'"},
+      {"move_linear_absolute", "{x: 1, pcs: 17}", "pcs: expected a whole number from 1 to 16, found 17"},
+      {"move_linear_relative", "{x: 1, transition_mode: corner_distance}", "transition_parameter: expected mm above 0"},
+      {"move_direct_absolute", "{c: 1, coordinate_system: acs}", "c: expected a1 to a8 only"},
+      {"move_direct_absolute", "{a1: 1, velocity_factor: 1.5}", "velocity_factor: expected a number "},
+      {"move_circular_absolute", "{x: 1, circ_mode: radius}", "path_choice: expected short or long"},
+      {"move_circular_absolute", "{x: 1, circ_mode: center, path_choice: long}", "path_choice: expected counterclock"},
+      {"move_circular_relative", "{x: 1, coordinate_system: acs}", "coordinate_system: expected mcs, wcs or pcs"},
+      {"move_circular_relative", "{x: 1, turns: -1}", "turns: expected "},
+      {"move_path", "{path: squar}", "path: expected the name of a path of the machine, found 'squar'; did you mean "},
+      {"move_path", "{path: square, coordinate_system: acs}", "coordinate_system: expected mcs, wcs or pcs"},
+      {"move_path", "{}", "path: "},
+      {"move_path_synchronized", "{path: square, master: a9}", "master: expected the name of an axis, found 'a9'"},
+      {"move_path_synchronized", "{path: square, master: a3, ratio: 0}", "ratio: expected a number other than 0"},
+      {"sync_axis", "{axis: a9}", "axis: expected the name of an axis, found 'a9'"},
+      {"sync_axis", "{axis: a3, ratio_denominator: 0}", "ratio_denominator: expected a number other than 0"},
+      {"add_axis", "{axis: a9}", "axis: expected the name of an axis, found 'a9'"},
+      {"add_axis", "{axis: a3, ident: 9}", "ident: expected a whole number from 1 to 8, found 9"},
+      {"remove_axis", "{ident: 0}", "ident: expected a whole number from 1 to 8, found 0"},
+      {"define_position", "{}", "x: expected at least one of x to c or a1 to a8"},
+      {"define_position", "{x: 1}", "x: expected a1 to a8 only, with coordinate_system acs"},
+      {"set_override", "{velocity_factor: -1}", "velocity_factor: expected a number "},
+      {"set_cartesian_transform", "{pcs: 0}", "pcs: expected a whole number from 1 to 16, found 0"},
+      {"set_coordinate_transform", "{reference: acs}", "reference: expected mcs, wcs or pcs, found acs"},
+      {"set_coordinate_transform", "{pcs: 2, reference: pcs, reference_pcs: 2}", "reference_pcs: expected another"},
+      {"power", "{enable: 2}", "enable: expected true or false"},
+      {"enable", "{now: true}", "now"},
+  };
+  for (const auto& c : cases) {
+    const ParsedCommand parsed = ParseCommand(machine, "portal", c.verb, c.arguments);
+    EXPECT_EQ(parsed.error, ErrorId::kParameter) << c.verb << " " << c.arguments;
+    EXPECT_THAT(parsed.sentence, HasSubstr(c.sentence)) << c.verb << " " << c.arguments;
+  }
+  EXPECT_EQ(ParseCommand(machine, "portal", "halted", "").error, ErrorId::kUnknownVerb);
+  EXPECT_THAT(ParseCommand(machine, "portal", "halted", "").sentence,
+              HasSubstr("expected a command of a group of axes"));
+  EXPECT_THAT(ParseCommand(machine, "portl", "halt", "").sentence, HasSubstr("did you mean portal?"));
+}
+
+struct Situation {
+  const char* name;
+  group::GroupState state;
+  void (*bring)(Portal&);
+};
+
+const Situation kSituations[] = {
+    {"disabled", group::GroupState::kDisabled,
+     [](Portal& p) {
+       p.Tell(group::Disable{});
+       p.Run(5);
+     }},
+    {"standby", group::GroupState::kStandby, [](Portal&) {}},
+    {"moving", group::GroupState::kMoving,
+     [](Portal& p) {
+       p.Tell(group::MoveLinearAbsolute{.x = 200, .velocity = 0.01});
+       p.Tell(group::MoveLinearAbsolute{.x = 100, .y = 100, .buffer_mode = axis::BufferMode::kBuffered});
+       p.Run(100);
+     }},
+    {"stopping", group::GroupState::kStopping,
+     [](Portal& p) {
+       p.Tell(group::MoveLinearAbsolute{.x = 200});
+       p.Run(200);
+       p.Tell(group::Stop{.hold = true});
+       p.Run(50);
+     }},
+    {"error_stop", group::GroupState::kErrorStop, [](Portal& p) {
+       p.Tell(group::MoveLinearAbsolute{.x = 200});
+       p.Run(100);
+       p.engine.faults(0).drive_fault = true;
+       p.Run(50);
+     }}};
+
+class GroupBadInputIn : public testing::TestWithParam<Situation> {};
+
+// GR-02, GR-12
+TEST_P(GroupBadInputIn, IsRefusedAndLeavesTheMachineLikeItsTwin) {
+  Portal asked, twin;
+  for (Portal* portal : {&asked, &twin}) GetParam().bring(*portal);
+  ASSERT_EQ(asked.group().state, GetParam().state);
+  ASSERT_EQ(asked.engine.StateHash(), twin.engine.StateHash());
+  for (const Command& good : GoodCommands()) {
+    for (const Wrong<Command>& wrong : WrongVersionsOf(good)) {
+      const Ticket ticket = asked.Tell(wrong.command);
+      asked.Step();
+      twin.Step();
+      ASSERT_EQ(asked.last[ticket].state, FeedbackState::kError) << wrong.what;
+      ASSERT_NE(asked.last[ticket].error, ErrorId::kNone) << wrong.what;
+      ASSERT_EQ(asked.engine.StateHash(), twin.engine.StateHash()) << wrong.what;
+    }
+  }
+  EXPECT_EQ(asked.group().state, GetParam().state);  // the situation held to the end
+}
+
+INSTANTIATE_TEST_SUITE_P(AllStates, GroupBadInputIn, testing::ValuesIn(kSituations),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+// Every command is among those that are made wrong, or has no real number to be wrong.
+TEST(GroupBadInput, KnowsEveryCommand) {
+  std::set<std::size_t> known;
+  for (const Command& good : GoodCommands()) known.insert(good.index());
+  for (const Command& plain : std::vector<Command>{
+           group::Continue{}, group::AddAxis{}, group::RemoveAxis{}, group::UngroupAllAxes{}, group::Enable{},
+           group::Disable{}, group::Reset{}, group::Power{}, group::Home{}, group::SetKinTransform{}}) {
+    known.insert(plain.index());
+  }
+  EXPECT_EQ(known.size(), std::variant_size_v<Command>);
+}
+
+}  // namespace
+}  // namespace takt::engine

@@ -1,0 +1,191 @@
+// Groups of axes among what else a machine has: whom their members obey, in which order they step, who stops them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "portal.h"
+
+namespace takt::engine {
+namespace {
+
+using group::GroupState;
+
+// GR-03
+TEST(Members, AreNotMovedByThemselvesWhileTheGroupIsEnabled) {
+  Portal portal;
+  ASSERT_EQ(portal.group().state, GroupState::kStandby);
+  const std::vector<axis::Command> own = {axis::MoveAbsolute{.position = 10},
+                                          axis::MoveVelocity{.velocity = 10},
+                                          axis::Jog{.forward = true},
+                                          axis::Halt{},
+                                          axis::Stop{},
+                                          Gear("a3"),
+                                          axis::Home{.position = 1},
+                                          axis::SetPosition{.position = 1},
+                                          axis::SetOverride{},
+                                          axis::SetSoftLimits{},
+                                          axis::SetConstants{.kp = 1},
+                                          axis::WriteParameter{.number = 2, .value = 1},
+                                          axis::DirectOutput{},
+                                          axis::Touch{}};
+  for (const axis::Command& command : own) {
+    for (const std::size_t member : {0u, 1u, 2u}) {
+      const Ticket ticket = portal.Give(member, command);
+      portal.Step();
+      EXPECT_EQ(portal.last[ticket].error, ErrorId::kGroupMember) << command.index();
+    }
+  }
+  const Ticket of_other = portal.Give(3, axis::MoveAbsolute{.position = 10});
+  portal.Run(500);
+  EXPECT_EQ(portal.last[of_other].state, FeedbackState::kDone);
+  portal.Tell(group::Disable{});
+  const Ticket then = portal.Give(0, axis::MoveAbsolute{.position = 10});
+  portal.Run(500);
+  EXPECT_EQ(portal.last[then].state, FeedbackState::kDone);
+}
+
+// GR-03
+TEST(Members, TakeWhatMovesNothing) {
+  Portal portal;
+  const std::vector<axis::Command> harmless = {axis::Power{}, axis::Reset{}, axis::ReadParameter{.number = 1},
+                                               axis::TouchProbe{}, axis::AbortTrigger{}};
+  for (const axis::Command& command : harmless) {
+    const Ticket ticket = portal.Give(0, command);
+    portal.Run(3);
+    EXPECT_NE(portal.last[ticket].error, ErrorId::kGroupMember) << command.index();
+  }
+}
+
+// GR-25: the master of a path steps before the group, what follows the path behind it; no loop.
+TEST(Members, FollowInNoLoop) {
+  Portal portal;
+  const auto error_of = [&](const group::Command& command) {
+    const Ticket ticket = portal.Tell(command);
+    portal.Run(3);
+    return portal.last[ticket].error;
+  };
+  const Name square = Name::Of("square");
+  EXPECT_EQ(error_of(group::MovePathSynchronized{.path = square, .master = Name::Of("a1")}), ErrorId::kCouplingLoop);
+  EXPECT_EQ(error_of(group::SyncAxis{.axis = Name::Of("a1")}), ErrorId::kCouplingLoop);
+  // a3 follows a member: no path of the group may follow a3.
+  portal.Give(3, Gear("a0"));
+  portal.Run(3);
+  EXPECT_EQ(error_of(group::MovePathSynchronized{.path = square, .master = Name::Of("a3")}), ErrorId::kCouplingLoop);
+  // The path follows a4: a4 may not follow a member.
+  EXPECT_EQ(error_of(group::MovePathSynchronized{.path = square, .master = Name::Of("a4")}), ErrorId::kNone);
+  const Ticket gear = portal.Give(4, Gear("a0"));
+  portal.Run(3);
+  EXPECT_EQ(portal.last[gear].error, ErrorId::kCouplingLoop);
+}
+
+// EN-42, GR-20: who is told to stop everything stops groups on their paths.
+TEST(StopAllOfGroups, StopsThemOnTheirPath) {
+  Portal portal;
+  const Ticket move = portal.Tell(group::MoveLinearAbsolute{.x = 200, .y = 100});
+  portal.Run(300);
+  ASSERT_EQ(portal.group().state, GroupState::kMoving);
+  ASSERT_GT(portal.group().x, 1);
+  Command stop;
+  stop.body = MachineCommand(StopAll{});
+  portal.engine.Submit(stop);
+  for (int i = 0; i < 1000; ++i) {
+    portal.Step();
+    EXPECT_NEAR(portal.group().y, portal.group().x / 2, 1e-6);
+  }
+  EXPECT_EQ(portal.last[move].state, FeedbackState::kAborted);
+  EXPECT_EQ(portal.group().state, GroupState::kStandby);
+  EXPECT_TRUE(portal.engine.at_rest());
+  EXPECT_LT(portal.group().x, 190);
+}
+
+// EN-06
+TEST(StopAllOfGroups, OpensTheirLoopsAtShutdown) {
+  Portal portal;
+  portal.Tell(group::MoveLinearAbsolute{.x = 200, .y = 100});
+  portal.Run(300);
+  portal.engine.RequestShutdown();
+  portal.Run(1500);
+  EXPECT_TRUE(portal.engine.all_disabled());
+}
+
+// AX-38
+TEST(StopAllOfGroups, EmergencyStopSwitchesMembersOff) {
+  Portal portal;
+  portal.Tell(group::MoveLinearAbsolute{.x = 200, .y = 100});
+  portal.Run(300);
+  Command stop;
+  stop.body = MachineCommand(EmergencyStop{});
+  portal.engine.Submit(stop);
+  portal.Run(5);
+  EXPECT_TRUE(portal.engine.all_disabled());
+  EXPECT_NE(portal.group().state, GroupState::kMoving);
+  const Ticket move = portal.Tell(group::MoveLinearAbsolute{.x = 0});
+  portal.Run(5);
+  EXPECT_EQ(portal.last[move].state, FeedbackState::kError);
+}
+
+// EN-22: a held stop is let go of by its ticket, by a lease that runs out, or stays.
+TEST(HeldStop, IsLetGoOf) {
+  Portal portal;
+  const Ticket stop = portal.Tell(group::Stop{.hold = true});
+  portal.Run(50);
+  ASSERT_EQ(portal.group().state, GroupState::kStopping);
+  Command release;
+  release.body = MachineCommand(Release{stop});
+  portal.engine.Submit(release);
+  portal.Run(5);
+  EXPECT_EQ(portal.group().state, GroupState::kStandby);
+  Command leased = ToGroup(portal.machine, group::Stop{.hold = true});
+  leased.lease_s = 0.1;
+  const Ticket held = portal.engine.Submit(leased);
+  for (int i = 0; i < 10; ++i) {
+    portal.Run(50);
+    EXPECT_EQ(portal.group().state, GroupState::kStopping);
+    Command renew;
+    renew.body = MachineCommand(Renew{held});
+    portal.engine.Submit(renew);
+  }
+  portal.Run(200);
+  EXPECT_EQ(portal.group().state, GroupState::kStandby);
+}
+
+// A command for a target that is no group, handed in from C++ past the parser.
+TEST(GroupTarget, MustBeAGroup) {
+  Portal portal;
+  const auto axes = static_cast<std::uint32_t>(portal.machine.axes.size());
+  for (const std::uint32_t target : {0u, 1u, axes, axes + 2, 77u, 0xffffffffu}) {
+    Command command = ToGroup(portal.machine, group::Halt{});
+    command.target = target;
+    const Ticket ticket = portal.engine.Submit(command);
+    portal.Step();
+    EXPECT_EQ(portal.last[ticket].error, ErrorId::kUnknownTarget) << target;
+  }
+}
+
+// EN-04, GR-20: a run is replayed to the bit.
+TEST(GroupStates, ComeOutTheSameAgain) {
+  const auto run = [] {
+    Portal portal;
+    std::vector<std::uint64_t> hashes;
+    portal.Tell(group::MovePath{.path = Name::Of("square"),
+                                .transition_mode = group::TransitionMode::kMaxCornerDeviation,
+                                .transition_parameter = 1});
+    for (int i = 0; i < 2000; ++i) {
+      portal.Step();
+      hashes.push_back(portal.engine.StateHash());
+      if (i == 300) portal.Tell(group::Interrupt{});
+      if (i == 800) portal.Tell(group::Continue{});
+    }
+    EXPECT_EQ(portal.group().state, GroupState::kStandby);
+    EXPECT_NEAR(portal.group().x, 0, 1e-9);
+    EXPECT_NEAR(portal.group().y, 0, 1e-9);
+    return hashes;
+  };
+  EXPECT_EQ(run(), run());
+}
+
+}  // namespace
+}  // namespace takt::engine

@@ -1,0 +1,169 @@
+// Blocks for groups (GR-02, GR-20, GR-25), as those of Python.
+#include "takt/plcopen/group.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "bench.h"
+
+namespace takt::plcopen {
+namespace {
+
+class GroupBlocks : public testing::Test {
+ protected:
+  void SetUp() override {
+    GT_GroupPower power(pair);
+    Finish(power);
+    MC_GroupEnable enable(pair);
+    Finish(enable);
+  }
+  // Calls the block until it is done.
+  template <typename B>
+  void Finish(B& block) {
+    block.Execute = true;
+    ASSERT_TRUE(bench.Until(block, [&] { return block.Done() || block.Error(); }));
+    EXPECT_TRUE(block.Done()) << ErrorText(block.ErrorID());
+    block.Execute = false;
+    block();
+  }
+  const group::Outputs& now() const { return pair.outputs(); }
+
+  Bench bench;
+  GroupRef pair = bench.program.Group("pair");
+};
+
+TEST_F(GroupBlocks, AreMadeOfGroupsThatAreThere) {
+  EXPECT_THROW(bench.program.Group("pear"), std::invalid_argument);
+  EXPECT_EQ(pair.target(), bench.engine.machine().axes.size() + 1);
+}
+
+// GR-20: Busy, Active and Done by the rules of all blocks.
+TEST_F(GroupBlocks, ALinearMove) {
+  MC_MoveLinearAbsolute move(pair);
+  MC_GroupReadStatus status(pair);
+  status.Enable = true;
+  status();
+  EXPECT_TRUE(status.GroupStandby() && status.InPosition());
+  move.x = 30;
+  move.y = 40;
+  move.Execute = true;
+  move();
+  EXPECT_TRUE(move.Busy());
+  ASSERT_TRUE(bench.Until(move, [&] { return now().path_velocity > 50; }));
+  status();
+  EXPECT_TRUE(status.GroupMoving() && !status.InPosition());
+  EXPECT_TRUE(move.Active());
+  ASSERT_TRUE(bench.Until(move, [&] { return move.Done(); }));
+  EXPECT_NEAR(now().x, 30, 1e-9);
+  EXPECT_NEAR(now().y, 40, 1e-9);
+  MC_GroupReadActualPosition position(pair);
+  position();
+  EXPECT_FALSE(position.Valid());
+  position.Enable = true;
+  position();
+  EXPECT_NEAR(position.Position()[0], 30, 2e-3);
+}
+
+// GR-22: one behind the other, both aborted by a halt.
+TEST_F(GroupBlocks, WaitForOneAnother) {
+  MC_MoveLinearAbsolute first(pair), second(pair);
+  first.x = 100;
+  second.y = 50;
+  second.buffer_mode = axis::BufferMode::kBuffered;
+  first.Execute = second.Execute = true;
+  first();
+  bench.Step();
+  second();
+  ASSERT_TRUE(bench.Until(first, [&] { return first.Active() && now().path_velocity > 10; }));
+  second();
+  EXPECT_TRUE(second.Busy() && !second.Active());
+  MC_GroupHalt halt(pair);
+  Finish(halt);
+  first();
+  second();
+  EXPECT_TRUE(first.CommandAborted() && second.CommandAborted());
+}
+
+TEST_F(GroupBlocks, AStopHoldsAsLongAsExecute) {
+  MC_GroupStop stop(pair);
+  stop.Execute = true;
+  ASSERT_TRUE(bench.Until(stop, [&] { return stop.Done(); }));
+  bench.Step(100);
+  EXPECT_EQ(now().state, group::GroupState::kStopping);
+  stop.Execute = false;
+  stop();
+  bench.Step(5);
+  EXPECT_EQ(now().state, group::GroupState::kStandby);
+}
+
+TEST_F(GroupBlocks, APathInterruptedAndContinued) {
+  MC_MovePath move(pair);
+  move.path = Name::Of("hook");
+  move.Execute = true;
+  ASSERT_TRUE(bench.Until(move, [&] { return now().x > 10; }));
+  MC_GroupInterrupt interrupt(pair);
+  Finish(interrupt);
+  EXPECT_TRUE(now().interrupted);
+  MC_GroupContinue go_on(pair);
+  Finish(go_on);
+  ASSERT_TRUE(bench.Until(move, [&] { return move.Done(); }));
+  EXPECT_NEAR(now().y, 20, 1e-9);
+}
+
+TEST_F(GroupBlocks, MembersComeAndGo) {
+  MC_GroupDisable disable(pair);
+  Finish(disable);
+  MC_AddAxisToGroup add(pair);
+  add.axis = Name::Of("w");
+  add.ident = 3;
+  Finish(add);
+  MC_GroupReadConfiguration read(pair);
+  read.Enable = true;
+  read.IdentInGroup = 3;
+  read();
+  EXPECT_EQ(read.Axis(), bench.w.target());
+  MC_RemoveAxisFromGroup remove(pair);
+  remove.ident = 3;
+  Finish(remove);
+  read();
+  EXPECT_EQ(read.Axis(), 0u);
+  read.IdentInGroup = 9;
+  EXPECT_EQ(read.Axis(), 0u);
+}
+
+// GR-03: a member's fault is one of the group, until it is reset.
+TEST_F(GroupBlocks, AFaultAndItsReset) {
+  bench.engine.faults(bench.x.target() - 1).drive_fault = true;
+  bench.Step(20);
+  MC_GroupReadError error(pair);
+  error.Enable = true;
+  error();
+  EXPECT_TRUE(error.Error());
+  EXPECT_EQ(error.GroupErrorID(), ErrorId::kDrive);
+  bench.engine.faults(bench.x.target() - 1).drive_fault = false;
+  bench.Step(5);
+  MC_GroupReset reset(pair);
+  Finish(reset);
+  error();
+  EXPECT_FALSE(error.Error());
+}
+
+TEST_F(GroupBlocks, AnOverrideHoldsTheGroup) {
+  MC_GroupSetOverride override_block(pair);
+  override_block.VelFactor = 0;
+  override_block.Enable = true;
+  ASSERT_TRUE(bench.Until(override_block, [&] { return override_block.Enabled(); }));
+  MC_MoveLinearAbsolute move(pair);
+  move.x = 20;
+  move.Execute = true;
+  move();
+  bench.Step(500);
+  EXPECT_EQ(now().path_velocity, 0);
+  override_block.VelFactor = 1;
+  override_block();
+  ASSERT_TRUE(bench.Until(move, [&] { return move.Done(); }));
+}
+
+}  // namespace
+}  // namespace takt::plcopen

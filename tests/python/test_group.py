@@ -1,0 +1,125 @@
+"""GR-02, GR-03, GR-20, PY-02 to PY-04: groups of axes in sessions, recordings, logs and replays."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import takt
+from machines import new_url, running
+from portals import PORTAL, portal
+from takt import _core
+
+OUTPUTS = json.loads(_core.reference())["outputs"]["group"]["fields"]
+
+
+def test_a_session_has_its_groups_by_name() -> None:
+    with takt.Engine(PORTAL) as engine:
+        assert list(engine.groups) == ["gantry"]
+        gantry = engine.group("gantry")
+        assert gantry is engine.components["gantry"]
+        engine.step()
+        assert [axis.name for axis in gantry.members] == ["x", "y", "z"]
+        assert gantry.places == (1, 2, 3, 0, 0, 0, 0, 0)
+        assert gantry.state is takt.GroupState.GROUP_DISABLED
+        with pytest.raises(takt.TaktError, match="no group 'gantrie'; did you mean 'gantry'"):
+            engine.group("gantrie")
+        assert repr(gantry) == "<Group gantry: GroupDisabled at x 0, y 0, z 0 mm>"
+
+
+def test_every_output_is_a_property() -> None:
+    """PY-02."""
+    with takt.Engine(PORTAL) as engine:
+        gantry = engine.group("gantry")
+        for field in OUTPUTS:
+            assert getattr(gantry, field["name"]) is not None
+        assert gantry.pose == gantry.actual_pose == (0, 0, 0, 0, 0, 0)
+
+
+def test_moves_along_a_line_and_is_recorded() -> None:
+    """GR-20, PY-04."""
+    with portal() as (engine, gantry):
+        with engine.record() as recorder:
+            engine.step()
+            gantry.move_linear_absolute(x=60, y=80, velocity=100).wait()
+        made = recorder.recording
+        x, y = (np.array(made["gantry"][name]) for name in "xy")
+        assert np.abs(x / 60 - y / 80).max() < 1e-9
+        assert gantry.pose == pytest.approx((60, 80, 0, 0, 0, 0), abs=1e-9)
+        assert max(made["gantry"]["path_velocity"]) == pytest.approx(100, rel=1e-3)
+        assert made.unit("gantry", "path_velocity") == "mm/s"
+        assert made.unit("gantry", "acceleration") == "mm/s²"
+        assert takt.expect.visits_states(made, "gantry", ["GroupStandby", "GroupMoving", "GroupStandby"])
+        for axis in "xyz":
+            assert takt.expect.within_limits(made, axis)
+            assert takt.expect.continuous(made, axis)
+
+
+def test_members_are_not_moved_by_themselves() -> None:
+    """GR-03."""
+    with portal() as (engine, gantry):
+        refused = engine.axis("x").move_absolute(position=5).wait_final()
+        assert (refused.error_id, refused.sentence) == (1000, "the axis is a member of a group")
+        gantry.disable().wait()
+        engine.axis("x").move_absolute(position=5).wait()
+
+
+def test_what_is_refused_comes_with_a_sentence() -> None:
+    """GR-02, GR-12."""
+    with portal() as (_, gantry):
+        assert gantry.move_path(path="slit").sentence.endswith("found 'slit'; did you mean slot?")
+        beyond = gantry.move_linear_absolute(x=301)
+        with pytest.raises(takt.CommandError):
+            beyond.wait()
+        assert beyond.error_id == 3021
+        assert gantry.reason is takt.Reason.AXIS_LIMIT
+        gantry.disable().wait()
+        assert gantry.move_linear_absolute(x=1).wait_final().error_id == 3025
+
+
+def test_members_come_and_go() -> None:
+    """GR-02."""
+    with takt.Engine(PORTAL) as engine:
+        gantry = engine.group("gantry")
+        assert gantry.add_axis(axis="feed", ident=1).wait_final().error_id == 1001  # the place is taken
+        gantry.add_axis(axis="feed", ident=4).wait()
+        engine.step()
+        assert [axis.name for axis in gantry.members] == ["x", "y", "z", "feed"]
+        gantry.remove_axis(ident=4).wait()
+        gantry.ungroup_all_axes().wait()
+        engine.step()
+        assert gantry.members == ()
+
+
+def test_interrupted_and_continued() -> None:
+    """GR-20."""
+    with portal() as (engine, gantry):
+        move = gantry.move_path(path="slot")
+        engine.run(0.3)
+        gantry.interrupt().wait()
+        assert gantry.interrupted
+        here = gantry.pose
+        engine.run(0.2)
+        assert gantry.pose == here
+        gantry.continue_path().wait()
+        move.wait()
+        assert gantry.pose == pytest.approx((0, 0, 0, 0, 0, 0), abs=1e-9)
+
+
+def test_over_lcm_as_in_process_and_replayed(tmp_path: Path) -> None:
+    """PY-01, PY-03, EN-20, EN-40."""
+    url, log = new_url(), tmp_path / "portal.log"
+    with running(tmp_path, url, "--log", str(log), machine=PORTAL), takt.connect(url) as session:
+        gantry = session.group("gantry")
+        gantry.power().wait()
+        gantry.enable().wait()
+        gantry.move_linear_absolute(x=30, y=40).wait()
+        assert gantry.x == pytest.approx(30, abs=1e-9)
+        stop = gantry.stop(hold=True)
+        session.wait(lambda: gantry.state is takt.GroupState.GROUP_STOPPING)
+        stop.release()
+        session.wait(lambda: gantry.state is takt.GroupState.GROUP_STANDBY)
+    replayed = takt.replay(log)
+    assert replayed.same, replayed.sentence

@@ -1,0 +1,26 @@
+"""The Delta cell (GR-11, GR-20, GR-22, GR-23, GR-24): in virtual time and on taktd."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import takt
+from takt.demo import run_demo
+from takt.scenario import load_scenario, run_scenario
+
+SCENARIO = Path(__file__).parents[2] / "python/examples/delta_cell/scenario.py"
+
+
+def test_in_virtual_time() -> None:
+    scenario = load_scenario(SCENARIO)
+    with takt.Engine(scenario.machine) as session:
+        outcome = run_scenario(scenario, session)
+    assert outcome.passed, [v.sentence for v in outcome.verdicts if not v.passed]
+    assert len(outcome.verdicts) >= 15
+
+
+def test_on_taktd(tmp_path: Path) -> None:
+    scenario = load_scenario(SCENARIO)
+    result = run_demo(scenario, scenario.machine, tmp_path, pace="paced")
+    assert result.passed, [v.sentence for v in result.outcome.verdicts if not v.passed]
+    assert result.replayed.same
