@@ -74,6 +74,7 @@ PathCycle StepRaw(const PathWindow& window, double wish, double period_s, PathPa
     // When it is at the next node, or at rest.
     double time = left_s;
     bool arrives = false;
+    bool rests = false;
     const double square = v * v + 2 * a * way;
     if (square >= 0) {
       const double speed_sum = v + std::sqrt(square);
@@ -83,10 +84,11 @@ PathCycle StepRaw(const PathWindow& window, double wish, double period_s, PathPa
       if (arrives) time = arrival;
     } else if (a < 0 && -v / a < left_s) {
       time = -v / a;
+      rests = true;
     }
     sum += time * (s - cycle.position + time * (0.5 * v + time * a * (1.0 / 6)));
     left_s -= time;
-    pace.raw = {s + time * (v + 0.5 * time * a), std::max(0.0, v + time * a), a};
+    pace.raw = {s + time * (v + 0.5 * time * a), rests ? 0 : std::max(0.0, v + time * a), a};
     if (arrives) {
       pace.raw.position = window[pace.node + 1].at.s;
       pace.raw.velocity = std::sqrt(std::max(0.0, square));

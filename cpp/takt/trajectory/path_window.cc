@@ -58,12 +58,13 @@ void PathWindow::Append(const PathPoint& point, bool stop) noexcept {
     node.own = std::min(node.own, square);
     before.own = std::min(before.own, square);
     before.cap = std::min(before.cap, square);
-    before.bounds.strength =
-        Least(before.bounds.strength, StrengthAt(before.at, third, limits_, before.own, before.build_up_s), before.own);
+    const Strength strength = StrengthAt(before.at, third, limits_, before.own, before.build_up_s);
+    before.own_strength = Least(before.own_strength, strength, before.own);
+    before.bounds.strength = Least(before.bounds.strength, strength, before.cap);
     Spread(end_ - 1);
   }
   node.cap = node.own;
-  node.bounds.strength = StrengthAt(point, third, limits_, node.own, build_up_s_);
+  node.own_strength = node.bounds.strength = StrengthAt(point, third, limits_, node.own, build_up_s_);
   Spread(end_++);
 }
 
@@ -72,16 +73,14 @@ void PathWindow::Spread(std::uint64_t i) noexcept {
   PathNode& node = Node(i);
   const double half = 0.5 * node.build_up_s;
   const double reach = half * std::sqrt(node.own);
-  double slowest = std::min(node.own, node.cap);
-  Strength& strength = node.bounds.strength;
-  Strength weakest = strength;
   for (std::uint64_t k = i; !IsFirst(k); --k) {
     PathNode& before = Node(k - 1);
     if (node.at.s - before.at.s > reach) break;
-    const Strength weaker = Least(before.bounds.strength, strength, std::min(before.own, node.own));
-    if (before.cap <= node.own && before.bounds.strength == weaker) continue;
-    before.cap = std::min(before.cap, node.own);
-    before.bounds.strength = weaker;
+    const double cap = std::min(before.cap, node.own);
+    const Strength strength = Least(before.bounds.strength, node.own_strength, cap);
+    if (before.cap == cap && before.bounds.strength == strength) continue;
+    before.cap = cap;
+    before.bounds.strength = strength;
     lowest_ = std::min(lowest_, k - 1);
   }
   // No place further back than the fastest one reaches is slower and reaches as far.
@@ -90,11 +89,9 @@ void PathWindow::Spread(std::uint64_t i) noexcept {
     const double distance = node.at.s - before.at.s;
     if (distance > reach) break;
     if (distance > half * std::sqrt(before.own)) continue;
-    slowest = std::min(slowest, before.own);
-    weakest = Least(weakest, before.bounds.strength, slowest);
+    node.cap = std::min(node.cap, before.own);
+    node.bounds.strength = Least(node.bounds.strength, before.own_strength, node.cap);
   }
-  node.cap = slowest;
-  strength = weakest;
 }
 
 void PathWindow::Close() noexcept {

@@ -79,6 +79,11 @@ class Rig {
   }
 
   void Step() {
+    Step([](const auto& step) { step(); });
+  }
+  // `around`: calls what it gets, the group's part of the cycle.
+  template <typename Around>
+  void Step(const Around& around) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
       if (commanded[i].enable) {  // else the drive holds it
         inputs[i].counts = static_cast<std::uint32_t>(std::llround(commanded[i].position_counts + slip_counts[i]));
@@ -88,7 +93,7 @@ class Rig {
     }
     for (const auto& command : pending_) command();
     pending_.clear();
-    group::Step(Now(), state);
+    around([&] { group::Step(Now(), state); });
     for (std::size_t i = 0; i < axes.size(); ++i) axis::Move(AxisContext(i), states[i]);
     Sample sample;
     for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -140,6 +145,7 @@ class Rig {
               this};
     return c;
   }
+  bool out_of_work() const { return state.state == GroupState::kStandby && pending_.empty(); }
   const Outputs& out() const { return trace.back().out; }
 
   GroupParams params;

@@ -70,7 +70,7 @@ void ExpectWithinLimits(const Worst& w, const std::string& what) {
 // bends within a fraction of T is not what drives are like: known, and bounded here.
 double MostRatio(const std::string& name) {
   const auto is = [&](const char* kind) { return name.starts_with(kind); };
-  if (is("warped jerk")) return 2.2;
+  if (is("warped jerk")) return 2.0;
   if (is("warped acceleration")) return 1.7;
   if (is("winding jerk")) return 1.6;
   if (is("ripple") || is("burst") || is("zigzag rounded")) return 1.3;
