@@ -155,7 +155,7 @@ struct Applier {
   // The members come to rest each by itself: they are no group any more.
   void LeaveAll() const {
     AbortAll({});
-    if (s.state == GroupState::kHoming) TellAll(c, s, axis::Halt{});
+    if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
     LetGoOfMembers(c, s);
     LetGoOfSynced(c, FeedbackState::kDone, s);
     ForgetPlan(c, s);
@@ -179,6 +179,7 @@ struct Applier {
   }
   void operator()(const Power& m) const {
     if (m.enable && Is(GroupState::kStopping)) return Refuse(ErrorId::kAxisStopping);
+    if (m.enable && Is(GroupState::kHoming)) return Refuse(ErrorId::kState);
     if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
     if (m.enable && s.guides) return Finish(ErrorId::kNone);
     if (!m.enable && s.begun) {  // along the path first
@@ -205,7 +206,12 @@ struct Applier {
     if (!Is(GroupState::kStandby)) return Refuse(Is(GroupState::kDisabled) ? ErrorId::kGroupDisabled : ErrorId::kState);
     const ErrorId error = TellAll(c, s, axis::Home{});
     if (error != ErrorId::kNone) {
-      TellAll(c, s, axis::Halt{});
+      // Those that have begun stop; until then it is homing.
+      for (std::size_t k = 0; k < kMaxAxes; ++k) {
+        if (s.members[k] == 0 || MemberOf(c, s, k).plc != axis::PlcState::kHoming) continue;
+        Tell(c, s, k, axis::Stop{});
+        Enter(GroupState::kHoming, s);
+      }
       return Refuse(error);
     }
     EndTask(FeedbackState::kAborted);

@@ -71,6 +71,10 @@ bool IsThrough(const Context& c, const State& s) {
          (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short);
 }
 
+bool HasStopped(const axis::State& member) {
+  return axis::AtRest(member) && member.plc != axis::PlcState::kStopping && member.plc != axis::PlcState::kHoming;
+}
+
 bool NothingToGo(const Context& c, const State& s) {
   return c.ahead.count == 0 && s.planning.stage == Stage::kIdle && s.planning.move >= s.done + s.queue.count;
 }
@@ -179,7 +183,7 @@ void Step(const Context& c, State& s) noexcept {
   }
   if (s.begun) {
     MoveOn(c, s);
-  } else if (s.ends || (s.state == GroupState::kMoving && NothingToGo(c, s))) {
+  } else if (s.ends ? AllMembers(c, s, HasStopped) : s.state == GroupState::kMoving && NothingToGo(c, s)) {
     // Moves to where the group stands are done.
     while (!s.ends && s.queue.count > 0) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
     ComeToRest(c, s);
