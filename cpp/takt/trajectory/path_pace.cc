@@ -56,7 +56,9 @@ double NextAcceleration(const PathWindow& window, double wish, double period_s, 
   const double change = std::min(node.at.limits.jerk * node.build_up_s, node.bounds.strength.At(pace.entered));
   const double before = pace.last[pace.oldest].acceleration;
   const double wanted = (wish - pace.raw.velocity) / period_s;
-  const double high = std::min(limits.high, before + change);
+  // Braking may be taken back at once: where it cannot be strong it would go on to a stop.
+  const double released = std::min(0.0, before + node.at.limits.jerk * node.build_up_s);
+  const double high = std::min(limits.high, std::max(before + change, released));
   return std::clamp(std::min(high, wanted), std::min(std::max(limits.low, before - change), high), high);
 }
 
