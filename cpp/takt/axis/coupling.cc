@@ -311,9 +311,7 @@ bool IsKnown(const State& master, MasterSource source) noexcept {
 Status FindNamed(const Context& c, Request& r) noexcept {
   for (CouplingTerm& term : r.coupling.terms) {
     if (term.name.empty()) continue;
-    for (std::size_t i = 0; i < c.machine.params.size() && term.master == kNoAxis; ++i) {
-      if (c.machine.params[i].name == term.name.view()) term.master = static_cast<std::uint32_t>(i);
-    }
+    if (term.master == kNoAxis) term.master = FindAxis(c.machine.params, term.name.view());
     if (term.master == kNoAxis) return Status::Failed(ErrorId::kUnknownTarget);
   }
   if (r.table.name.empty()) return Status::Ok();

@@ -7,11 +7,10 @@
 
 #include "takt/axis/commands/cam.h"
 #include "takt/axis/commands/coupling.h"
+#include "takt/axis/params.h"
 #include "takt/core/describe_fwd.h"
 
 namespace takt::axis {
-
-inline constexpr std::uint32_t kNoAxis = 0xffffffff;
 
 struct CouplingTerm {
   Name name;                       // of the master; empty: no such term

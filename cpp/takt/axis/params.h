@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "takt/axis/control_loop.h"
 #include "takt/axis/encoder.h"
@@ -87,6 +90,16 @@ inline double Reported(const AxisParams& params, double position) noexcept {
   const double turns = std::floor(position / params.modulus);
   const double inside = position - turns * params.modulus;
   return inside >= 0 && inside < params.modulus ? inside : 0;
+}
+
+inline constexpr std::uint32_t kNoAxis = 0xffffffff;
+
+// Its index among all axes; kNoAxis: none is called so.
+inline std::uint32_t FindAxis(std::span<const AxisParams> axes, std::string_view name) noexcept {
+  for (std::uint32_t i = 0; i < axes.size(); ++i) {
+    if (axes[i].name == name) return i;
+  }
+  return kNoAxis;
 }
 
 void describe(Enumeration<AxisKind>&);

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "takt/core/describe_fwd.h"
+#include "takt/core/state_table.h"
 
 namespace takt::axis {
 
@@ -21,10 +22,7 @@ enum class PlcState : std::uint8_t {
 };
 inline constexpr int kPlcStates = 8;
 
-struct Transition {
-  PlcState from, to;
-  const char* by;  // the commands or events that make it
-};
+using Transition = takt::Transition<PlcState>;
 
 // PLCopen Motion Control Part 1, the state diagram, with its four notes. Staying in a state is always legal.
 inline constexpr std::array kTransitions = {
@@ -67,11 +65,7 @@ inline constexpr std::array kTransitions = {
 };
 
 constexpr bool IsLegal(PlcState from, PlcState to) {
-  if (from == to) return true;
-  for (const Transition& t : kTransitions) {
-    if (t.from == from && t.to == to) return true;
-  }
-  return false;
+  return takt::IsLegal(kTransitions, from, to);
 }
 
 void describe(Enumeration<PlcState>&);

@@ -32,11 +32,12 @@ group::Context ContextOf(World& w, const AxesGroup& group) {
   const auto index = static_cast<std::size_t>(&group - w.groups.data());
   const auto of_axis = [](void* owner, std::size_t i) noexcept { return ContextOf(*static_cast<World*>(owner), i); };
   return {group.params,
+          group.mounting,
           group.kinematics ? &*group.kinematics : nullptr,
           w.paths,
           w.group_of,
           static_cast<std::uint32_t>(index + 1),
-          {w.axis_states, of_axis, &w},
+          {w.axis_states, w.axis_params, of_axis, &w},
           w.cycle,
           w.feedback,
           w.look_aheads[index]};
@@ -147,18 +148,13 @@ bool IsOwned(const World& w, std::size_t axis) {
   return w.group_of[axis] != 0 && group::Owns(w.group_states[w.group_of[axis] - 1]);
 }
 
-std::uint32_t AxisNamed(const World& w, const Name& name) {
-  const auto found = std::ranges::find(w.axis_params, name.view(), [](const auto& axis) { return axis.name; });
-  return found == w.axis_params.end() ? axis::kNoAxis : static_cast<std::uint32_t>(found - w.axis_params.begin());
-}
-
 // What a command makes the members of group `index` follow, or makes follow them.
 Wanted WantedBy(const World& w, const group::Command& command, std::size_t index) {
   Wanted wanted{.group = static_cast<std::uint32_t>(index + 1)};
   if (const auto* path = std::get_if<group::MovePathSynchronized>(&command)) {
-    wanted.master = AxisNamed(w, path->master);
+    wanted.master = axis::FindAxis(w.axis_params, path->master.view());
   } else if (const auto* sync = std::get_if<group::SyncAxis>(&command)) {
-    wanted.synced = AxisNamed(w, sync->axis);
+    wanted.synced = axis::FindAxis(w.axis_params, sync->axis.view());
   }
   return wanted;
 }
@@ -233,15 +229,16 @@ void TouchTypes(const std::variant<T...>*) {
   (TypeOf<T>(), ...);
 }
 
-// What is called so must be there.
-std::uint32_t IndexOf(const auto& list, const std::string& name) {
-  return static_cast<std::uint32_t>(std::ranges::find(list, name, [](const auto& x) { return x.name; }) - list.begin());
+// It must be there.
+std::uint32_t CamNamed(const Machine& machine, const std::string& name) {
+  return static_cast<std::uint32_t>(std::ranges::find(machine.cams, name, &cam::CamParams::name) -
+                                    machine.cams.begin());
 }
 
 // Kinematics stay within the SW limits of the axes, too.
 void LimitToAxes(const Machine& machine, const group::GroupParams& group, kinematics::Kinematics& kinematics) {
   for (std::size_t k = 0; k < kinematics.count; ++k) {
-    const axis::AxisLimits& limits = machine.axes[IndexOf(machine.axes, group.axes[k])].limits;
+    const axis::AxisLimits& limits = machine.axes[axis::FindAxis(machine.axes, group.axes[k])].limits;
     kinematics::JointRange& range = kinematics.ranges[k];
     range.lower = std::max(range.lower, limits.lower.value_or(range.lower));
     range.upper = std::min(range.upper, limits.upper.value_or(range.upper));
@@ -300,11 +297,11 @@ void World::MakeModules(const Machine& machine) {
   TypeOf<flexcam::WithdrawChanges>();
   module_of.assign(machine.axes.size(), 0);
   for (const flexcam::FlexCamParams& params : machine.flex_cams) {
-    FlexCam module{params, IndexOf(machine.axes, params.slave), {}, {}};
-    if (params.master) module.master = IndexOf(machine.axes, *params.master);
+    FlexCam module{params, axis::FindAxis(machine.axes, params.slave), {}, {}};
+    if (params.master) module.master = axis::FindAxis(machine.axes, *params.master);
     module.homing = machine.axes[module.slave].homing;
     std::array<std::uint32_t, flexcam::kSlots> slots{};
-    for (std::size_t i = 0; i < params.cams.size(); ++i) slots[i] = IndexOf(machine.cams, params.cams[i]) + 1;
+    for (std::size_t i = 0; i < params.cams.size(); ++i) slots[i] = CamNamed(machine, params.cams[i]) + 1;
     flex_cams.push_back(module);
     flex_cam_states.push_back(flexcam::MakeState(params, slots));
     module_of[module.slave] = static_cast<std::uint32_t>(flex_cams.size());
@@ -321,13 +318,14 @@ void World::MakeGroups(const Machine& machine) {
   for (const group::GroupParams& params : machine.groups) {
     AxesGroup& group = groups.emplace_back();
     group.params = params;
+    group.mounting = group::MakeMounting(params);
     if (params.kinematics) {
       group.kinematics = kinematics::Make(*params.kinematics).kinematics;
       LimitToAxes(machine, params, group.kinematics.value());
     }
-    for (const std::string& axis : params.axes) group.axes.push_back(IndexOf(machine.axes, axis));
+    for (const std::string& axis : params.axes) group.axes.push_back(axis::FindAxis(machine.axes, axis));
     for (const std::uint32_t axis : group.axes) group_of[axis] = static_cast<std::uint32_t>(groups.size());
-    group_states.push_back(group::MakeState(params, group.axes));
+    group_states.push_back(group::MakeState(group.axes));
     look_aheads.emplace_back(trajectory::CoordinateLimits{}, cycle.period_s);
   }
   group_outputs.resize(groups.size());

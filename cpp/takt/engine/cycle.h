@@ -43,6 +43,7 @@ struct FlexCam {
 // What a group of axes is made from.
 struct AxesGroup {
   group::GroupParams params;
+  group::Mounting mounting;
   std::optional<kinematics::Kinematics> kinematics{};
   std::vector<std::uint32_t> axes;  // members at the start
 };

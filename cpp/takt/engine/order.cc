@@ -34,25 +34,14 @@ void Order::NoteLoop(std::uint32_t again) noexcept {
   }
 }
 
-namespace {
-
-std::optional<std::uint32_t> IndexOf(const Machine& machine, std::string_view name) {
-  for (std::uint32_t k = 0; k < machine.axes.size(); ++k) {
-    if (machine.axes[k].name == name) return k;
-  }
-  return std::nullopt;
-}
-
-}  // namespace
-
 std::optional<std::uint32_t> MasterOf(const Machine& machine, std::size_t axis) {
   const std::optional<axis::Following>& follows = machine.axes[axis].follows;
-  return follows ? IndexOf(machine, follows->axis) : std::nullopt;
+  return follows ? std::optional(axis::FindAxis(machine.axes, follows->axis)) : std::nullopt;
 }
 
 std::optional<std::uint32_t> MasterOfModule(const Machine& machine, std::size_t axis) {
   for (const flexcam::FlexCamParams& module : machine.flex_cams) {
-    if (module.slave == machine.axes[axis].name && module.master) return IndexOf(machine, *module.master);
+    if (module.slave == machine.axes[axis].name && module.master) return axis::FindAxis(machine.axes, *module.master);
   }
   return std::nullopt;
 }

@@ -44,18 +44,14 @@ struct Applier {
     return ErrorId::kNone;
   }
 
-  void EndTask(FeedbackState feedback) const {
-    if (TaskReports(s)) Report(c, s.ticket, feedback);
-    s.task = Task::kNone;
-    s.ticket = 0;
-  }
+  void AbortTask() const { EndTask(c, FeedbackState::kAborted, ErrorId::kNone, s); }
 
   // Everything that is planned or waits gives way.
-  void AbortAll(const trajectory::AlongPath& brake) const {
-    EndTask(FeedbackState::kAborted);
+  void AbortAll(double deceleration = 0) const {
+    AbortTask();
     AbortMoves(c, ErrorId::kNone, s);
     if (s.begun || s.planning.stage != Stage::kIdle || c.ahead.known) {
-      EndMotion(brake, s);
+      EndMotion(deceleration, s);
     } else {
       ForgetPlan(c, s);
     }
@@ -66,7 +62,7 @@ struct Applier {
     if (made.error != ErrorId::kNone) return Refuse(made.error);
     if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
     if (made.move.buffer_mode != BufferMode::kAborting && s.task == Task::kHalt) return Refuse(ErrorId::kState);
-    if (made.move.buffer_mode == BufferMode::kAborting) AbortAll({});
+    if (made.move.buffer_mode == BufferMode::kAborting) AbortAll();
     if (!c.ahead.known && !s.begun) c.ahead.window.SetLimits(LimitsOf(c, s));
     Request move = made.move;
     move.ticket = ticket;
@@ -76,16 +72,10 @@ struct Applier {
     if (Is(GroupState::kStandby)) Enter(GroupState::kMoving, s);
   }
 
-  static trajectory::AlongPath BrakeOf(const std::optional<double>& deceleration) {
-    trajectory::AlongPath brake;
-    brake.deceleration = deceleration.value_or(0);
-    return brake;
-  }
-
   void operator()(const Stop& m) const {
     if (Is(GroupState::kDisabled)) return Refuse(ErrorId::kGroupDisabled);
     if (Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
-    AbortAll(BrakeOf(m.deceleration));
+    AbortAll(m.deceleration.value_or(0));
     if (Is(GroupState::kHoming)) TellAll(c, s, axis::Stop{});
     s.ends = true;
     s.task = Task::kStop;
@@ -99,7 +89,7 @@ struct Applier {
   }
   void operator()(const Halt& m) const {
     if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
-    AbortAll(BrakeOf(m.deceleration));
+    AbortAll(m.deceleration.value_or(0));
     s.ends = true;
     s.task = Task::kHalt;
     s.ticket = ticket;
@@ -108,9 +98,9 @@ struct Applier {
   }
   void operator()(const Interrupt& m) const {
     if (!Is(GroupState::kMoving) || s.ends) return Refuse(ErrorId::kState);
-    if (s.task != Task::kNone) EndTask(FeedbackState::kAborted);
+    AbortTask();
     s.interrupted = true;
-    s.brake = BrakeOf(m.deceleration);
+    s.brake = m.deceleration.value_or(0);
     if (!s.begun) return Finish(ErrorId::kNone);  // it does not move yet
     s.task = Task::kInterrupt;
     s.ticket = ticket;
@@ -118,9 +108,9 @@ struct Applier {
   }
   void operator()(const Continue&) const {
     if (!Is(GroupState::kMoving) || !s.interrupted) return Refuse(ErrorId::kState);
-    if (s.task == Task::kInterrupt) EndTask(FeedbackState::kAborted);
+    AbortTask();
     s.interrupted = false;
-    s.brake = {};
+    s.brake = 0;
     Finish(ErrorId::kNone);
   }
 
@@ -154,7 +144,7 @@ struct Applier {
   }
   // The members come to rest each by itself: they are no group any more.
   void LeaveAll() const {
-    AbortAll({});
+    AbortAll();
     if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
     LetGoOfMembers(c, s);
     LetGoOfSynced(c, FeedbackState::kDone, s);
@@ -183,14 +173,14 @@ struct Applier {
     if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
     if (m.enable && s.guides) return Finish(ErrorId::kNone);
     if (!m.enable && s.begun) {  // along the path first
-      AbortAll({});
+      AbortAll();
       s.hold = false;
       s.task = Task::kPower;
       s.power_on = false;
       s.ticket = ticket;
       return Report(c, ticket, FeedbackState::kActive);
     }
-    EndTask(FeedbackState::kAborted);
+    AbortTask();
     if (!m.enable && Is(GroupState::kStopping)) {
       s.hold = false;
       Enter(GroupState::kStandby, s);
@@ -214,7 +204,7 @@ struct Applier {
       }
       return Refuse(error);
     }
-    EndTask(FeedbackState::kAborted);
+    AbortTask();
     s.task = Task::kHome;
     s.ticket = ticket;
     Report(c, ticket, FeedbackState::kActive);

@@ -15,20 +15,13 @@ namespace takt::group {
 
 namespace {
 
-void EndTask(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
-  if (TaskReports(s)) Report(c, s.ticket, feedback, error);
-  s.task = Task::kNone;
-  s.ticket = 0;
-  s.lease_s = 0;
-}
-
 void Fail(const Context& c, ErrorId error, State& s) {
   if (s.error == ErrorId::kNone) s.error = error;
   if (s.state == GroupState::kErrorStop) return;
   EndTask(c, FeedbackState::kError, error, s);
   s.hold = false;
   AbortMoves(c, error, s);
-  EndMotion({}, s);
+  EndMotion(0, s);
   if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
   Enter(GroupState::kErrorStop, s);
 }
@@ -36,7 +29,7 @@ void Fail(const Context& c, ErrorId error, State& s) {
 // Nothing is left to go: the members stand still and are let go of.
 void ComeToRest(const Context& c, State& s) {
   s.ends = s.begun = false;
-  s.brake = {};
+  s.brake = 0;
   s.active = 0;
   s.way_before += s.pace.now.position;
   s.pace = {};
@@ -80,7 +73,12 @@ bool NothingToGo(const Context& c, const State& s) {
 }
 
 void MoveOn(const Context& c, State& s) {
-  Advance(c, s);
+  if (!Advance(c, s)) {
+    // It was good when the path was tried: something is wrong with the machine's own numbers. Each brakes by itself.
+    LetGoOfMembers(c, s);
+    s.begun = false;
+    return Fail(c, ErrorId::kUnreachable, s);
+  }
   // The members get to the last set point after this.
   if (!Rests(s) || !AllMembers(c, s, axis::AtRest)) return;
   if (s.ends) return ComeToRest(c, s);
@@ -162,7 +160,7 @@ void WatchMembers(const Context& c, State& s) {
 
 }  // namespace
 
-State MakeState(const GroupParams&, std::span<const std::uint32_t> axes) noexcept {
+State MakeState(std::span<const std::uint32_t> axes) noexcept {
   State s;
   for (std::size_t k = 0; k < std::min<std::size_t>(axes.size(), kMaxAxes); ++k) s.members[k] = axes[k] + 1;
   return s;

@@ -22,13 +22,26 @@ namespace takt::group {
 // The axes of the machine, to be told what to do.
 struct Axes {
   std::span<axis::State> states{};
+  std::span<const axis::AxisParams> params{};
   axis::Context (*context)(void* owner, std::size_t axis) noexcept = nullptr;
   void* owner = nullptr;
+
+  axis::Context Of(std::size_t axis) const noexcept { return context(owner, axis); }
 };
+
+// Where the mechanism stands and what is on its flange, as frames: worked out when a machine is made.
+struct Mounting {
+  kinematics::Frame base;          // of the MCS in the world ...
+  kinematics::Frame base_inverse;  // ... and the other way round
+  kinematics::Frame tool;          // of the TCP on the flange
+  kinematics::Frame tool_inverse;
+};
+Mounting MakeMounting(const GroupParams& params);
 
 // What every stage gets besides the group itself.
 struct Context {
   const GroupParams& params;
+  const Mounting& mounting;
   const kinematics::Kinematics* kinematics = nullptr;  // null: none
   std::span<const PathTable> paths{};
   // For each axis of the machine the group that it is a member of, from 1; 0: none.
@@ -41,7 +54,7 @@ struct Context {
 };
 
 // As it stands when power comes on. `axes`: index of each member.
-State MakeState(const GroupParams& params, std::span<const std::uint32_t> axes) noexcept;
+State MakeState(std::span<const std::uint32_t> axes) noexcept;
 
 // command: carries a command out, queues it or refuses it; reports either way. `lease_s` > 0: of a held stop.
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept;
@@ -54,7 +67,7 @@ void Step(const Context& c, State& s) noexcept;
 
 void Publish(const Context& c, const State& s, Outputs& out) noexcept;
 
-// The member may not be moved by itself (error 1000).
+// Its members may not be moved by themselves (error 1000).
 bool Owns(const State& s) noexcept;
 
 }  // namespace takt::group

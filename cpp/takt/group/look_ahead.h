@@ -1,5 +1,6 @@
 // What a group knows of the path ahead: stretches of geometry, and the window of nodes that says how fast it may go.
-// Made from the moves in the queue alone, so it is no part of the state.
+// It follows from the moves and the cycles in which they came, so that a replay makes it again, and is no part of the
+// state.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,6 @@ struct Stretch {
   double begin = 0;        // along the path
   std::uint64_t move = 0;  // number of the move that it belongs to
   bool joints = false;     // its auxiliaries are all members; else those behind the kinematics
-  bool last = false;       // of its move
   bool stops = false;      // the motion stops at its end
   bool begun = false;      // its first node is there
   trajectory::AlongPath limits;

@@ -106,11 +106,10 @@ struct Maker {
     TakeManner(m);
     r.ratio = m.ratio;
     if (m.coordinate_system == CoordinateSystem::kAcs) return ErrorId::kParameter;
-    for (std::uint32_t i = 0; i < c.axes.states.size(); ++i) {
-      if (c.axes.context(c.axes.owner, i).params.name == m.master.view()) r.master = i + 1;
-    }
-    if (r.master == 0) return ErrorId::kUnknownTarget;
-    return c.group_of[r.master - 1] == c.number ? ErrorId::kParameter : TakePath(m.path);
+    const std::uint32_t master = axis::FindAxis(c.axes.params, m.master.view());
+    if (master == axis::kNoAxis) return ErrorId::kUnknownTarget;
+    r.master = master + 1;
+    return c.group_of[master] == c.number ? ErrorId::kParameter : TakePath(m.path);
   }
 };
 

@@ -168,7 +168,7 @@ kinematics::Reason AxesOn(const Context& c, const State& s, const Stretch& stret
     motion = along;
   } else {
     const path::MovingFrame tool = path::At(stretch.segment, way);
-    const path::MovingFrame flange = tool * kinematics::ToFrame(c.params.tool).Inverse();
+    const path::MovingFrame flange = tool * c.mounting.tool_inverse;
     const kinematics::Reason reason = kinematics::Inverse(*c.kinematics, flange, {}, near, motion);
     if (reason != kinematics::Reason::kNone) return reason;
     for (std::size_t k = c.kinematics->count; k < kMaxAxes; ++k) {
@@ -190,7 +190,7 @@ kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& str
   std::copy(motion.acceleration.begin(), motion.acceleration.end(), slopes.second.begin());
   if (stretch.joints || c.ahead.window.limits().count <= kMaxAxes) return reason;
   const path::MovingFrame tool = path::At(stretch.segment, way);
-  const KDL::Rotation world = kinematics::ToFrame(c.params.base).M;
+  const KDL::Rotation& world = c.mounting.base.M;
   const std::array<KDL::Vector, 4> of_tool = {world * tool.p.v, world * tool.p.dv, world * tool.M.w * kDegrees,
                                               world * tool.M.dw * kDegrees};
   for (int i = 0; i < 3; ++i) {

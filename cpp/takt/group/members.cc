@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "takt/axis/guidance.h"
+#include "takt/group/queue.h"
 #include "takt/group/systems.h"
 
 namespace takt::group {
@@ -12,9 +13,12 @@ void Enter(GroupState to, State& s) noexcept {
   s.state = to;
 }
 
-bool TaskReports(const State& s) noexcept {
+void EndTask(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
   const bool stopped = s.task == Task::kStop && s.stop_reported;
-  return s.task != Task::kNone && s.ticket != 0 && !stopped;
+  if (s.task != Task::kNone && !stopped) Report(c, s.ticket, feedback, error);
+  s.task = Task::kNone;
+  s.ticket = 0;
+  s.lease_s = 0;
 }
 
 axis::State& MemberOf(const Context& c, const State& s, std::size_t place) noexcept {
@@ -22,7 +26,7 @@ axis::State& MemberOf(const Context& c, const State& s, std::size_t place) noexc
 }
 
 axis::Context ContextOf(const Context& c, const State& s, std::size_t place) noexcept {
-  return c.axes.context(c.axes.owner, s.members[place] - 1);
+  return c.axes.Of(s.members[place] - 1);
 }
 
 ErrorId Tell(const Context& c, const State& s, std::size_t place, const axis::Command& command) noexcept {
@@ -42,10 +46,8 @@ ErrorId TellAll(const Context& c, const State& s, const axis::Command& command) 
 }
 
 ErrorId Add(const Context& c, const AddAxis& command, State& s) noexcept {
-  const auto count = static_cast<std::uint32_t>(c.axes.states.size());
-  std::uint32_t axis = 0;
-  while (axis < count && c.axes.context(c.axes.owner, axis).params.name != command.axis.view()) ++axis;
-  if (axis == count) return ErrorId::kUnknownTarget;
+  const std::uint32_t axis = axis::FindAxis(c.axes.params, command.axis.view());
+  if (axis == axis::kNoAxis) return ErrorId::kUnknownTarget;
   if (c.group_of[axis] == c.number) return ErrorId::kGroupMember;
   if (c.group_of[axis] != 0) return ErrorId::kOtherGroupMember;
   const axis::PlcState plc = c.axes.states[axis].plc;

@@ -7,8 +7,8 @@ namespace takt::group {
 
 void Enter(GroupState to, State& s) noexcept;
 
-// The task has a command whose end was not told yet.
-bool TaskReports(const State& s) noexcept;
+// What is being done besides moves is over: its command is told, if it was not before.
+void EndTask(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
 
 axis::State& MemberOf(const Context& c, const State& s, std::size_t place) noexcept;
 axis::Context ContextOf(const Context& c, const State& s, std::size_t place) noexcept;

@@ -201,7 +201,7 @@ trajectory::CoordinateLimits LimitsOf(const Context& c, const State& s) noexcept
   const double none = trajectory::CoordinateLimits::kNone;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
-    const trajectory::Limits own = c.axes.context(c.axes.owner, s.members[k] - 1).params.planner_limits();
+    const trajectory::Limits own = c.axes.params[s.members[k] - 1].planner_limits();
     set(k, kLimitShare * own.velocity, kLimitShare * std::min(own.acceleration, own.deceleration),
         own.jerk > 0 ? kLimitShare * own.jerk : none);
   }

@@ -1,5 +1,6 @@
 // What everybody sees of a group.
 #include "takt/group/group.h"
+#include "takt/group/members.h"
 #include "takt/group/queue.h"
 #include "takt/group/systems.h"
 
@@ -27,7 +28,7 @@ void Publish(const Context& c, const State& s, Outputs& out) noexcept {
   out = {};
   out.state = s.state;
   out.error = s.error;
-  const Frame tool = kinematics::ToFrame(c.params.tool);
+  const Frame& tool = c.mounting.tool;
   kinematics::MovingFrame commanded, measured;
   kinematics::Joints due{};
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
@@ -49,7 +50,10 @@ void Publish(const Context& c, const State& s, Outputs& out) noexcept {
       const kinematics::MovingFrame tcp = measured * tool;
       actual = kinematics::ToPose(tcp.GetFrame());
       out.actual_velocity = tcp.p.v.Norm();
-      if (ToolAt(c, due, due_tool) == known) out.path_error = (due_tool.p - tcp.p.p).Norm();
+      // Nothing is commanded to an axis that is off.
+      const bool on = AllMembers(c, s, [](const axis::State& member) { return member.loop_closed; });
+      out.path_error = on ? kNotGiven : 0;
+      if (on && ToolAt(c, due, due_tool) == known) out.path_error = (due_tool.p - tcp.p.p).Norm();
     }
   }
   out.x = set.x;

@@ -5,16 +5,13 @@
 
 #include "takt/axis/guidance.h"
 #include "takt/group/make_stretch.h"
+#include "takt/group/members.h"
 #include "takt/group/queue.h"
 #include "takt/group/sync.h"
 
 namespace takt::group {
 
 namespace {
-
-axis::State& MemberState(const Context& c, std::uint32_t member) {
-  return c.axes.states[member - 1];
-}
 
 // The stretch that a place of the path lies on.
 const Stretch* StretchAt(LookAhead& ahead, double s) {
@@ -29,22 +26,18 @@ void Demand(const Context& c, const kinematics::JointMotion& motion, State& s) {
   s.joints = motion.position;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
-    MemberState(c, s.members[k]).guidance.demand = {motion.position[k] + s.origins[k], motion.velocity[k],
-                                                    motion.acceleration[k]};
+    MemberOf(c, s, k).guidance.demand = {motion.position[k] + s.origins[k], motion.velocity[k], motion.acceleration[k]};
   }
 }
 
-void Follow(const Context& c, State& s) {
+bool Follow(const Context& c, State& s) {
   const KinematicState& now = s.pace.now;
   const Stretch* stretch = StretchAt(c.ahead, now.position);
-  if (!stretch) return;
+  if (!stretch) return true;
   kinematics::JointMotion by_way;
   const double way = std::clamp(stretch->from + now.position - stretch->begin, stretch->from, stretch->to);
-  if (AxesOn(c, s, *stretch, way, s.joints, by_way) != kinematics::Reason::kNone) {
-    // It was there when the path was tried; what was set since may have taken it away.
-    s.reason = kinematics::Reason::kAxisLimit;
-    return;
-  }
+  s.reason = AxesOn(c, s, *stretch, way, s.joints, by_way);
+  if (s.reason != kinematics::Reason::kNone) return false;
   kinematics::JointMotion motion = by_way;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     const KinematicState at =
@@ -53,6 +46,7 @@ void Follow(const Context& c, State& s) {
     motion.acceleration[k] = at.acceleration;
   }
   Demand(c, motion, s);
+  return true;
 }
 
 // Moves whose last stretch is behind are done; the one that is being gone is active.
@@ -71,7 +65,7 @@ double WishOf(const Context& c, const State& s) {
   if (!s.ends && !s.interrupted) {
     return s.master.axis != 0 ? WishOfMaster(c, s) : s.velocity_factor * node.at.limits.velocity;
   }
-  const double deceleration = s.brake.deceleration > 0 ? s.brake.deceleration : node.bounds.deceleration;
+  const double deceleration = s.brake > 0 ? s.brake : node.bounds.deceleration;
   return std::max(0.0, s.pace.raw.velocity - deceleration * c.cycle.period_s);
 }
 
@@ -87,8 +81,8 @@ ErrorId TakeMembers(const Context& c, State& s) noexcept {
   if (s.guides) return ErrorId::kNone;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
-    axis::State& member = MemberState(c, s.members[k]);
-    const Status status = axis::Guide(c.axes.context(c.axes.owner, s.members[k] - 1), member);
+    axis::State& member = MemberOf(c, s, k);
+    const Status status = axis::Guide(ContextOf(c, s, k), member);
     if (status.failed()) {
       LetGoOfMembers(c, s);
       return status.error;
@@ -104,12 +98,12 @@ ErrorId TakeMembers(const Context& c, State& s) noexcept {
 void LetGoOfMembers(const Context& c, State& s) noexcept {
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
-    axis::LetGoOfGuidance(c.axes.context(c.axes.owner, s.members[k] - 1), MemberState(c, s.members[k]));
+    axis::LetGoOfGuidance(ContextOf(c, s, k), MemberOf(c, s, k));
   }
   s.guides = false;
 }
 
-void Advance(const Context& c, State& s) noexcept {
+bool Advance(const Context& c, State& s) noexcept {
   if (s.pace.raw_stands && trajectory::Stands(s.pace) && !s.ends) {
     // Behind a stop the next motion begins.
     const std::uint64_t next = s.pace.node + 1;
@@ -120,20 +114,21 @@ void Advance(const Context& c, State& s) noexcept {
     }
   }
   trajectory::Advance(c.ahead.window, WishOf(c, s), c.cycle.period_s, s.pace);
-  Follow(c, s);
+  if (!Follow(c, s)) return false;
   TellMoves(c, s);
   WatchMaster(c, s);
   Forget(c, s);
+  return true;
 }
 
 bool Rests(const State& s) noexcept {
   return trajectory::Stands(s.pace);
 }
 
-void EndMotion(const trajectory::AlongPath& brake, State& s) noexcept {
+void EndMotion(double deceleration, State& s) noexcept {
   s.ends = true;
   s.interrupted = false;
-  s.brake = brake;
+  s.brake = deceleration;
 }
 
 }  // namespace takt::group

@@ -9,13 +9,13 @@ namespace takt::group {
 ErrorId TakeMembers(const Context& c, State& s) noexcept;
 void LetGoOfMembers(const Context& c, State& s) noexcept;
 
-// The next set points of the members; ends moves that are over.
-void Advance(const Context& c, State& s) noexcept;
+// The next set points of the members; ends moves that are over. False: the axes cannot be there, nothing was set.
+bool Advance(const Context& c, State& s) noexcept;
 
 // At rest, with everything ended: nothing to do but what waits in the queue.
 bool Rests(const State& s) noexcept;
 
-// Comes to rest on the path, which is then forgotten.
-void EndMotion(const trajectory::AlongPath& brake, State& s) noexcept;
+// Comes to rest on the path, which is then forgotten. mm/s²; 0: as the path says.
+void EndMotion(double deceleration, State& s) noexcept;
 
 }  // namespace takt::group

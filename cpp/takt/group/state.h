@@ -70,13 +70,13 @@ struct State {
   Ticket active = 0;       // of the move being gone
   Planning planning;
   trajectory::PathPace pace;
-  bool guides = false;          // the members go by the group's set points
-  bool begun = false;           // a motion along the path is in progress
-  bool interrupted = false;     // rests, or comes to rest, on the path until it is continued
-  bool ends = false;            // comes to rest and forgets what is left of the path
-  trajectory::AlongPath brake;  // how strongly then; 0: as the path says
-  bool hold = false;            // stop: until released
-  Ticket ticket = 0;            // of the task
+  bool guides = false;       // the members go by the group's set points
+  bool begun = false;        // a motion along the path is in progress
+  bool interrupted = false;  // rests, or comes to rest, on the path until it is continued
+  bool ends = false;         // comes to rest and forgets what is left of the path
+  double brake = 0;          // mm/s², how strongly then; 0: as the path says
+  bool hold = false;         // stop: until released
+  Ticket ticket = 0;         // of the task
   Task task = Task::kNone;
   double lease_s = 0;
   std::uint64_t lease_end_cycle = 0;

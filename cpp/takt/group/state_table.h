@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "takt/core/describe_fwd.h"
+#include "takt/core/state_table.h"
 
 namespace takt::group {
 
@@ -19,10 +20,7 @@ enum class GroupState : std::uint8_t {
 };
 inline constexpr int kGroupStates = 6;
 
-struct Transition {
-  GroupState from, to;
-  const char* by;  // the commands or events that make it
-};
+using Transition = takt::Transition<GroupState>;
 
 // PLCopen Motion Control Part 4, the state diagram of groups. Staying in a state is always legal.
 inline constexpr std::array kTransitions = {
@@ -48,11 +46,7 @@ inline constexpr std::array kTransitions = {
 };
 
 constexpr bool IsLegal(GroupState from, GroupState to) {
-  if (from == to) return true;
-  for (const Transition& t : kTransitions) {
-    if (t.from == from && t.to == to) return true;
-  }
-  return false;
+  return takt::IsLegal(kTransitions, from, to);
 }
 
 void describe(Enumeration<GroupState>&);

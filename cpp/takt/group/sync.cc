@@ -24,7 +24,7 @@ KinematicState WayOf(const Context& c, const State& s) {
 }
 
 axis::Context ContextOf(const Context& c, const SyncedAxis& synced) {
-  return c.axes.context(c.axes.owner, synced.axis - 1);
+  return c.axes.Of(synced.axis - 1);
 }
 axis::State& StateOf(const Context& c, const SyncedAxis& synced) {
   return c.axes.states[synced.axis - 1];
@@ -62,11 +62,9 @@ void WatchMaster(const Context& c, State& s) noexcept {
 }
 
 ErrorId Sync(const Context& c, Ticket ticket, const SyncAxis& command, State& s) noexcept {
-  std::uint32_t axis = 0;
-  for (std::uint32_t i = 0; i < c.axes.states.size(); ++i) {
-    if (c.axes.context(c.axes.owner, i).params.name == command.axis.view()) axis = i + 1;
-  }
-  if (axis == 0) return ErrorId::kUnknownTarget;
+  const std::uint32_t found = axis::FindAxis(c.axes.params, command.axis.view());
+  if (found == axis::kNoAxis) return ErrorId::kUnknownTarget;
+  const std::uint32_t axis = found + 1;
   if (c.group_of[axis - 1] != 0) return ErrorId::kGroupMember;
   const auto free = std::ranges::find_if(s.synced, [&](const SyncedAxis& one) { return one.axis == axis; });
   const auto place = free != s.synced.end() ? free : std::ranges::find(s.synced, 0u, &SyncedAxis::axis);

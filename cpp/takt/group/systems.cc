@@ -4,6 +4,12 @@
 
 namespace takt::group {
 
+Mounting MakeMounting(const GroupParams& params) {
+  const Frame base = kinematics::ToFrame(params.base);
+  const Frame tool = kinematics::ToFrame(params.tool);
+  return {base, base.Inverse(), tool, tool.Inverse()};
+}
+
 std::size_t CountOf(const State& s) noexcept {
   return static_cast<std::size_t>(std::ranges::count_if(s.members, [](std::uint32_t member) { return member != 0; }));
 }
@@ -21,7 +27,7 @@ bool HasTool(const Context& c, const State& s) noexcept {
 Frame SystemFrame(const Context& c, const State& s, CoordinateSystem system, std::uint32_t pcs) noexcept {
   switch (system) {
     case CoordinateSystem::kWcs:
-      return kinematics::ToFrame(c.params.base).Inverse();
+      return c.mounting.base_inverse;
     case CoordinateSystem::kPcs:
       return kinematics::ToFrame(s.product_systems[std::min<std::size_t>(pcs, kProductSystems - 1)]);
     default:
@@ -32,14 +38,14 @@ Frame SystemFrame(const Context& c, const State& s, CoordinateSystem system, std
 kinematics::Reason ToolAt(const Context& c, const kinematics::Joints& joints, Frame& tcp) noexcept {
   Frame flange;
   const kinematics::Reason reason = kinematics::Forward(*c.kinematics, joints, flange);
-  if (reason == kinematics::Reason::kNone) tcp = flange * kinematics::ToFrame(c.params.tool);
+  if (reason == kinematics::Reason::kNone) tcp = flange * c.mounting.tool;
   return reason;
 }
 
 kinematics::Reason JointsAt(const Context& c, const Frame& tcp, const kinematics::Joints& near,
                             kinematics::Joints& joints) noexcept {
   kinematics::Joints found{};
-  const Frame flange = tcp * kinematics::ToFrame(c.params.tool).Inverse();
+  const Frame flange = tcp * c.mounting.tool_inverse;
   const kinematics::Reason reason = kinematics::Inverse(*c.kinematics, flange, {}, near, found);
   if (reason != kinematics::Reason::kNone) return reason;
   std::copy(near.begin() + static_cast<std::ptrdiff_t>(c.kinematics->count), near.end(),
@@ -51,7 +57,7 @@ kinematics::Reason JointsAt(const Context& c, const Frame& tcp, const kinematics
 bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints) noexcept {
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
-    const axis::AxisLimits& limits = c.axes.context(c.axes.owner, s.members[k] - 1).params.limits;
+    const axis::AxisLimits& limits = c.axes.params[s.members[k] - 1].limits;
     if (limits.lower && joints[k] < *limits.lower) return false;
     if (limits.upper && joints[k] > *limits.upper) return false;
   }

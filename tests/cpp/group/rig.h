@@ -61,7 +61,8 @@ class Rig {
     commanded.resize(axes.size());
     slip_counts.resize(axes.size());
     ahead = std::make_unique<LookAhead>(trajectory::CoordinateLimits{}, cycle.period_s);
-    state = MakeState(params, members);
+    mounting = MakeMounting(params);
+    state = MakeState(members);
   }
 
   Ticket Give(const Command& command, double lease_s = 0) {
@@ -140,15 +141,16 @@ class Rig {
     return {axes[i], cycle, planner, sink_, nullptr, machine_};
   }
   Context Now() {
-    Context c{params, kinematics ? &*kinematics : nullptr, paths, group_of, 1, {}, cycle, sink_, *ahead};
-    c.axes = {states, [](void* owner, std::size_t i) noexcept { return static_cast<Rig*>(owner)->AxisContext(i); },
-              this};
+    Context c{params, mounting, kinematics ? &*kinematics : nullptr, paths, group_of, 1, {}, cycle, sink_, *ahead};
+    c.axes = {states, axes,
+              [](void* owner, std::size_t i) noexcept { return static_cast<Rig*>(owner)->AxisContext(i); }, this};
     return c;
   }
   bool out_of_work() const { return state.state == GroupState::kStandby && pending_.empty(); }
   const Outputs& out() const { return trace.back().out; }
 
   GroupParams params;
+  Mounting mounting;
   std::vector<axis::AxisParams> axes;
   std::vector<PathTable> paths;
   std::optional<kinematics::Kinematics> kinematics;
