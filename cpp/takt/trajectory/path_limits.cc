@@ -10,7 +10,10 @@ namespace {
 
 // First slopes that differ by more, in relation to both, are a corner.
 constexpr double kSameSlope = 1e-6;
-constexpr double kJerkShare = 0.98;
+// Of the jerk of coordinates. More than there is: its parts hardly ever come together, and rehearsal takes back what is
+// too much. With the parts taken together it is another matter.
+constexpr double kJerkShare = 1.05;
+constexpr double kGentleJerkShare = 0.98;
 
 }  // namespace
 
@@ -75,7 +78,7 @@ Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordi
     double most = CoordinateLimits::kNone;
     for (std::size_t k = 0; k < limits.count; ++k) {
       // The bends' own part is hardly ever largest where the others are: as if at right angles.
-      const double own = kJerkShare * limits.of[k].jerk;
+      const double own = (together ? kGentleJerkShare : kJerkShare) * limits.of[k].jerk;
       const double bends = std::min(third[k] * v * v * v, (together ? 0.8 : 0.99) * own);
       const double left = together ? own - bends : std::sqrt(own * own - bends * bends);
       const double asked = 3 * std::abs(point.slopes.second[k]) * v + std::abs(point.slopes.first[k]) / build_up_s;

@@ -57,11 +57,11 @@ double NextAcceleration(const PathWindow& window, double wish, double period_s, 
   const PathNode& node = window[pace.node];
   const double square = std::max(pace.entered, pace.raw.velocity * pace.raw.velocity);
   double strength = node.bounds.strength.At(square);
-  if (pace.eased > 0) strength *= node.bounds.gentle;
+  const double wanted = (wish - pace.raw.velocity) / period_s;
+  if (pace.eased > 0 || wanted < limits.high) strength *= node.bounds.gentle;
   const double build_up = node.at.limits.jerk * node.build_up_s;
   const double change = std::min(build_up, strength);
   const double before = pace.last[pace.oldest].acceleration;
-  const double wanted = (wish - pace.raw.velocity) / period_s;
   // Braking may be taken back at once: where it cannot be strong it would go on to a stop.
   const double released = std::min(0.0, before + build_up);
   const double most = std::min(std::max(before + change, released), strength);
