@@ -438,9 +438,11 @@ class Walk {
     EXPECT_LE(std::abs(b.acceleration), limits.acceleration * (1 + 1e-9));
     EXPECT_LE(std::abs(b.acceleration - a.acceleration), limits.jerk * period * (1 + 1e-6));
     const double step = b.position + now.origin - a.position - before.origin;  // other numbers are no motion
+    // What a jerk that changes within the cycle makes of it.
+    const double inside = limits.jerk * period * period * period / 6;
     EXPECT_NEAR(step,
                 0.5 * period * (a.velocity + b.velocity) - period * period / 12 * (b.acceleration - a.acceleration),
-                1e-4);
+                1e-5 + inside);
   }
 
   Machine machine_;
@@ -453,7 +455,7 @@ class Walk {
 
 TEST(TwoGroups, RandomWalk) {
   std::map<GroupState, int> seen;
-  const std::uint64_t seeds = std::getenv("TAKT_LONG") ? 3000 : 60;
+  const std::uint64_t seeds = std::getenv("TAKT_LONG") ? 3000 : 40;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Walk walk(seed);
