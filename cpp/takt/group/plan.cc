@@ -16,6 +16,7 @@ constexpr int kBudget = 48;
 // Of the members' limits: the rest keeps them within theirs in spite of what the timing takes for linear.
 constexpr double kLimitShare = 0.98;
 constexpr std::size_t kSweepNodes = 512;
+constexpr int kRehearsed = 24;  // cycles of the motion ahead
 constexpr std::size_t kSpareNodes = 4;
 constexpr int kLeastPlaces = 4;
 constexpr int kMostPlaces = 64;
@@ -179,6 +180,7 @@ void Sample(const Context& c, int& budget, State& s) {
 
 void Sweep(const Context& c, State& s) {
   if (!c.ahead.window.Sweep(kSweepNodes)) return;
+  c.ahead.rehearsal.GoOn(c.ahead.window);
   if (c.ahead.sampling < c.ahead.end() && !c.ahead.cut_short) {
     if (c.ahead.window.room() > kNodes / 4) s.planning.stage = Stage::kSample;
     return;
@@ -246,6 +248,7 @@ void Plan(const Context& c, State& s) noexcept {
 
 void ForgetPlan(const Context& c, State& s) noexcept {
   c.ahead.window.Clear();
+  c.ahead.rehearsal.Clear();
   c.ahead.first = c.ahead.end();
   c.ahead.sampling = c.ahead.first;
   c.ahead.count = 0;
@@ -253,6 +256,10 @@ void ForgetPlan(const Context& c, State& s) noexcept {
   s.planning.stage = Stage::kIdle;
   s.planning.move = s.done;
   s.planning.element = 0;
+}
+
+void Rehearse(const Context& c, const State& s) noexcept {
+  c.ahead.rehearsal.Run(c.ahead.window, s.pace, kRehearsed, c.cycle.period_s);
 }
 
 bool MayBegin(const Context& c) noexcept {
