@@ -126,7 +126,8 @@ class Followers : public Line, public testing::Test {
     before = now;
     if (!on_hook) return;
     const Nearest nearest = OnHookAt(x(), y());
-    EXPECT_LE(nearest.off, 1e-4) << "beside the path at " << x() << ", " << y();
+    // Where a line meets an arc without a blend its curvature makes a step, which the axes' jerk rounds.
+    EXPECT_LE(nearest.off, 2e-4) << "beside the path at " << x() << ", " << y();
     EXPECT_GE(nearest.way, way - 1e-6) << "back on the path";
     way = std::max(way, nearest.way);
   }
