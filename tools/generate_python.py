@@ -173,11 +173,22 @@ def commands_class(name: str, about: str, verbs: list[Json]) -> str:
 
 def property_text(field: Json) -> str:
     """The property of a published field."""
+    if field["type"]["kind"] == "struct":
+        return struct_property(field)
     kind = type_text(field["type"], False)
     about = field["about"] + (f" [{field['unit']}]" if field.get("unit") else "")
     lines = ["    @property", f"    def {field['name']}(self) -> {kind}:", doc(about, "        ")]
     lines.append(f'        return {kind}(self._value("{field["name"]}"))')
     return "\n".join(lines)
+
+
+def struct_property(field: Json) -> str:
+    """The property of a published struct: its numbers in their order."""
+    parts = field["type"]["fields"]
+    about = field["about"] + " [" + ", ".join(f"{part['name']}: {part['unit']}" for part in parts) + "]"
+    values = [f'self._value("{field["name"]}_{part["name"]}")' for part in parts]
+    lines = ["    @property", f"    def {field['name']}(self) -> tuple[float, ...]:", doc(about, "        ")]
+    return "\n".join([*lines, "        return (", *(f"            {value}," for value in values), "        )"])
 
 
 def outputs_class(name: str, outputs: Json) -> str:

@@ -5,6 +5,11 @@ from __future__ import annotations
 from takt._commands import GroupCommands, GroupOutputs
 from takt.axis import Axis
 from takt.component import Component
+from takt.errors import TaktError
+
+PRODUCT_SYSTEMS = 16
+POSE = ("x", "y", "z", "a", "b", "c")
+Pose = tuple[float, float, float, float, float, float]  # X, Y, Z in mm, A, B, C in deg
 
 
 class Group(Component, GroupCommands, GroupOutputs):
@@ -27,12 +32,32 @@ class Group(Component, GroupCommands, GroupOutputs):
         return tuple(int(self._value(f"member{place}")) for place in range(1, 9))
 
     @property
-    def pose(self) -> tuple[float, float, float, float, float, float]:
-        """Where the tool centre point is commanded to be: X, Y, Z in mm, A, B, C in deg, in the machine coordinate
-        system."""
+    def pose(self) -> Pose:
+        """Where the tool centre point is commanded to be, in the machine coordinate system."""
         return self.x, self.y, self.z, self.a, self.b, self.c
 
     @property
-    def actual_pose(self) -> tuple[float, float, float, float, float, float]:
+    def actual_pose(self) -> Pose:
         """The same as measured."""
         return self.actual_x, self.actual_y, self.actual_z, self.actual_a, self.actual_b, self.actual_c
+
+    def product_system(self, pcs: int) -> Pose:
+        """Where product coordinate system `pcs`, from 1 to 16, is now in the machine coordinate system."""
+        if not 1 <= pcs <= PRODUCT_SYSTEMS:
+            raise TaktError(f"there are product coordinate systems 1 to {PRODUCT_SYSTEMS}, found {pcs}")
+        x, y, z, a, b, c = (float(self._value(f"pcs{pcs}_{number}")) for number in POSE)
+        return x, y, z, a, b, c
+
+    @property
+    def base(self) -> Pose:
+        """Where the machine coordinate system is in the world, as the machine file says."""
+        return self._given("base")
+
+    @property
+    def tool(self) -> Pose:
+        """Where the tool centre point is on the flange, as the machine file says."""
+        return self._given("tool")
+
+    def _given(self, key: str) -> Pose:
+        x, y, z, a, b, c = (float(self.parameters[key][number]) for number in POSE)
+        return x, y, z, a, b, c

@@ -19,7 +19,7 @@ from takt.feedback import Feedback
 from takt.network import DEFAULT_URL, open_network
 from takt.recording import Recording
 from takt.session import Recorder, Session, release_of
-from takt.tables import PREFIXES, State, fields_of, is_possible, kind_of_channel, make_recording, named, table_of
+from takt.tables import KINDS, PREFIXES, State, fields_of, is_possible, kind_of_channel, make_recording, named, table_of
 
 QUEUE = 100_000  # messages waiting to be received before LCM drops some
 SILENCE_S = 3.0  # without any message: the engine is gone (it sends its own state, and the machine every second)
@@ -307,7 +307,7 @@ class RemoteSession(Session):
                 raise ConnectionError(self._trouble)
 
     def _value(self, component: Component, field: str) -> Any:
-        return named(component.KIND, field, getattr(self._states[component.name], field))
+        return named(component.KIND, field, KINDS[component.KIND].getters[field](self._states[component.name]))
 
     def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
         end = self.now + timeout

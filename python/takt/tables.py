@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -26,10 +27,12 @@ class Kind:
     names: Mapping[str, Mapping[int, str]]  # of enumerations
     dtypes: Mapping[str, Any]
     message: Any  # the LCM type
+    getters: Mapping[str, Callable[[Any], Any]]  # of each field, from a message
 
     @staticmethod
     def of(name: str, section: str) -> Kind:
         fields = _core.output_fields(name)
+        message = getattr(msgs, f"{name}_state")
         return Kind(
             name,
             section,
@@ -37,8 +40,14 @@ class Kind:
             units={field: unit for field, unit, _, _ in fields},
             names={field: names for field, _, _, names in fields if names and field not in NUMBERS},
             dtypes={field: dtype for field, (dtype, *_) in (_core.output_layout(name).fields or {}).items()},
-            message=getattr(msgs, f"{name}_state"),
+            message=message,
+            getters={field: attrgetter(_place(field, message)) for field, *_ in fields},
         )
+
+
+def _place(field: str, message: Any) -> str:
+    """Where a message has a field: pcs1_x is the x of its pcs1."""
+    return field if field in message.__slots__ else ".".join(field.rsplit("_", 1))
 
 
 NUMBERS = ("error", "warning")  # enumerations that people know by number
@@ -102,7 +111,7 @@ def table_of(kind: str, messages: Sequence[State], period: float, every: int = 1
 
 def _column(kind: str, messages: Sequence[State], field: str) -> Array:
     try:
-        return np.array([getattr(m, field) for m in messages], dtype=KINDS[kind].dtypes[field])
+        return np.array([KINDS[kind].getters[field](m) for m in messages], dtype=KINDS[kind].dtypes[field])
     except OverflowError:
         raise RecordingError(
             f"{messages[0].name}.{field} holds a number that no engine publishes: bytes of the log were changed"

@@ -57,6 +57,24 @@ def test_moves_along_a_line_and_is_recorded() -> None:
             assert takt.expect.continuous(made, axis)
 
 
+def test_product_systems_are_published() -> None:
+    """GR-10: sixteen, as they were given; also in recordings."""
+    with portal() as (engine, gantry):
+        assert gantry.base == (1000, 0, 0, 0, 0, 90)
+        assert gantry.tool == (0, 0, 0, 0, 0, 0)
+        with engine.record() as recorder:
+            engine.step()
+            for pcs in range(1, 17):
+                gantry.set_cartesian_transform(pcs=pcs, x=pcs, y=-pcs, z=0.5, a=pcs, b=2, c=300).wait()
+                assert gantry.product_system(pcs) == (pcs, -pcs, 0.5, pcs, 2, 300)
+        assert gantry.pcs7 == gantry.product_system(7)
+        assert list(recorder.recording["gantry"]["pcs16_x"][[0, -1]]) == [0, 16]
+        assert recorder.recording.unit("gantry", "pcs16_a") == "deg"
+        for wrong in (0, 17):
+            with pytest.raises(takt.TaktError, match=f"1 to 16, found {wrong}"):
+                gantry.product_system(wrong)
+
+
 def test_members_are_not_moved_by_themselves() -> None:
     """GR-03."""
     with portal() as (engine, gantry):

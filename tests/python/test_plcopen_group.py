@@ -122,7 +122,9 @@ def test_where_it_is(engine: takt.Engine, gantry: takt.Group) -> None:
     assert position(CoordSystem=ACS).Position == pytest.approx((10, 20, 30), abs=2e-3)
     assert position(CoordSystem=MCS).Position == pytest.approx((10, 20, 30, 0, 0, 0), abs=2e-3)
     assert position(CoordSystem=WCS).Position == pytest.approx((980, 10, 30, 0, 0, 90), abs=2e-3)
-    position(CoordSystem=PCS)
+    done(engine, plc.MC_SetCartesianTransform(gantry, TransX=10.0, TransY=-10.0, RotAngle3=90.0, Pcs=16))
+    assert position(CoordSystem=PCS, Pcs=16).Position == pytest.approx((30, 0, 30, 0, 0, -90), abs=2e-3)
+    position(Pcs=17)
     assert (position.Valid, position.Error, position.ErrorID) == (False, True, 5)
     move = plc.MC_MoveLinearAbsolute(gantry, Position=[100, 20, 30], Velocity=50.0)
     velocity = plc.MC_GroupReadActualVelocity(gantry, Enable=True)
@@ -143,6 +145,18 @@ def test_coordinate_systems(engine: takt.Engine, gantry: takt.Group) -> None:
     done(engine, plc.MC_SetCoordinateTransform(gantry, Pcs=2, CoordTransform=[5, 0, 0], Reference=PCS))
     done(engine, plc.MC_MoveLinearAbsolute(gantry, Position=[0, 0, 0], CoordSystem=PCS, Pcs=2))
     assert gantry.pose[:3] == pytest.approx((100, 5, 0), abs=1e-9)
+    # Of 2 in 1 as it was given, in the machine, in the world (base: x 1000, turned by 90 degrees).
+    read = plc.MC_ReadCoordinateTransform(gantry, Enable=True, Pcs=2)
+    assert read().CoordTransform == gantry.product_system(2) == pytest.approx((100, 5, 0, 0, 0, 90), abs=1e-9)
+    assert read(Reference=PCS).CoordTransform == pytest.approx((5, 0, 0, 0, 0, 0), abs=1e-9)
+    assert read(Reference=WCS).CoordTransform == pytest.approx((995, 100, 0, 0, 0, 180), abs=1e-9)
+    assert read(Reference=PCS, ReferencePcs=3).CoordTransform == pytest.approx((100, 5, 0, 0, 0, 90), abs=1e-9)
+    for wrong in ({"Reference": ACS}, {"Reference": PCS, "ReferencePcs": 0}, {"Reference": MCS, "Pcs": 17}):
+        assert (read(**wrong).Valid, read.ErrorID) == (False, 5)
+    numbers = plc.MC_ReadCartesianTransform(gantry, Enable=True)
+    assert numbers().CoordTransform == (100, 0, 0, 0, 0, 90)
+    assert (numbers.TransX, numbers.TransY, numbers.RotAngle1, numbers.RotAngle3) == (100, 0, 0, 90)
+    assert not numbers(Enable=False).Valid
     transform = plc.MC_ReadKinTransform(gantry, Enable=True)
     assert transform().KinTransform
     done(engine, plc.MC_SetKinTransform(gantry, KinTransform=False))
@@ -196,7 +210,7 @@ def test_every_block_is_called_by_its_group() -> None:
     with takt.Engine(PORTAL) as engine:
         gantry, x = engine.group("gantry"), engine.axis("x")
         blocks = [block for block in plc.BLOCKS if issubclass(block, GroupBlock)]
-        assert len(blocks) == 34
+        assert len(blocks) == 36
         for block in blocks:
             made = block(gantry)
             assert made.AxesGroup is gantry

@@ -347,7 +347,10 @@ def test_published_fields_are_as_described(engine: takt.Engine) -> None:
     """EN-11: properties, columns and the C++ description name the same fields."""
     for kind, outputs in REFERENCE["outputs"].items():
         assert kind in CLASSES
-        assert [f[0] for f in _core.output_fields(kind)] == [f["name"] for f in outputs["fields"]]
+        names = []
+        for field in outputs["fields"]:
+            names += [f"{field['name']}_{part['name']}" for part in field["type"].get("fields", ())] or [field["name"]]
+        assert [f[0] for f in _core.output_fields(kind)] == names
     for field in REFERENCE["outputs"]["axis"]["fields"]:
         value = getattr(engine.axis("x"), field["name"])
         assert type(value).__name__ in ("float", "int", "bool", "PlcState", "LimitedBy")

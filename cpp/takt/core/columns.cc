@@ -16,7 +16,7 @@ void Append(std::vector<Column>& columns, const Type& type, const std::string& p
     columns.push_back({path, field.about, field.unit, offset, &type});
   } else if (type.kind == Kind::kStruct) {
     for (const Field& inner : type.fields) {
-      const std::string name = (path.empty() ? "" : path + ".") + std::string(inner.name);
+      const std::string name = (path.empty() ? "" : path + "_") + std::string(inner.name);
       Append(columns, *inner.type, name, offset + inner.offset, inner);
     }
   } else if (type.kind == Kind::kArray) {

@@ -11,7 +11,7 @@
 namespace takt {
 
 struct Column {
-  std::string name;  // "set.position", "voltage[2]"
+  std::string name;  // "set_position" of a struct, "voltage[2]" of a list
   std::string_view about;
   Unit unit;
   std::size_t offset = 0;      // in the object the columns were made for

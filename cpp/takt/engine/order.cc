@@ -34,14 +34,23 @@ void Order::NoteLoop(std::uint32_t again) noexcept {
   }
 }
 
+namespace {
+
+std::optional<std::uint32_t> Named(const Machine& machine, std::string_view name) {
+  const std::uint32_t axis = axis::FindAxis(machine.axes, name);
+  return axis != axis::kNoAxis ? std::optional(axis) : std::nullopt;
+}
+
+}  // namespace
+
 std::optional<std::uint32_t> MasterOf(const Machine& machine, std::size_t axis) {
   const std::optional<axis::Following>& follows = machine.axes[axis].follows;
-  return follows ? std::optional(axis::FindAxis(machine.axes, follows->axis)) : std::nullopt;
+  return follows ? Named(machine, follows->axis) : std::nullopt;
 }
 
 std::optional<std::uint32_t> MasterOfModule(const Machine& machine, std::size_t axis) {
   for (const flexcam::FlexCamParams& module : machine.flex_cams) {
-    if (module.slave == machine.axes[axis].name && module.master) return axis::FindAxis(machine.axes, *module.master);
+    if (module.slave == machine.axes[axis].name && module.master) return Named(machine, *module.master);
   }
   return std::nullopt;
 }

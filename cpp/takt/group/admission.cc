@@ -227,6 +227,9 @@ struct Applier {
       if (s.reason != kinematics::Reason::kNone) return Refuse(ErrorId::kUnreachable);
     }
     for (std::size_t k = 0; k < kMaxAxes; ++k) {
+      if (s.members[k] == 0 && axes[k]) return Refuse(ErrorId::kNotGroupMember);
+    }
+    for (std::size_t k = 0; k < kMaxAxes; ++k) {
       if (s.members[k] == 0 || !(k < moved ? of_tool : axes[k].has_value())) continue;
       const double position = k < moved ? end.joints[k] : *axes[k];
       if (const ErrorId error = Tell(c, s, k, axis::SetPosition{.position = position}); error != ErrorId::kNone) {

@@ -28,6 +28,14 @@ constexpr Numbers NoNumbers() {
   return numbers;
 }
 
+// Whether there is a number for a place where there is no axis.
+bool GivesNobody(const Numbers& to, const State& s) {
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] == 0 && !std::isnan(to[kToolNumbers + k])) return true;
+  }
+  return false;
+}
+
 struct Maker {
   const Context& c;
   const State& s;
@@ -126,6 +134,7 @@ std::optional<MadeRequest> MakeRequest(const Context& c, const State& s, const C
         if constexpr (IsMove<T>) {
           MadeRequest made;
           made.error = Maker{c, s, made.move}.Fill(m);
+          if (GivesNobody(made.move.to, s)) made.error = ErrorId::kNotGroupMember;
           if (!HasTool(c, s) && made.move.system != CoordinateSystem::kAcs) made.error = ErrorId::kState;
           return made;
         } else {

@@ -1,11 +1,14 @@
 // What an axes group publishes every cycle.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "takt/core/describe_fwd.h"
 #include "takt/core/status.h"
+#include "takt/group/commands.h"
 #include "takt/group/state_table.h"
+#include "takt/kinematics/frames.h"
 #include "takt/kinematics/joints.h"
 #include "takt/path/segment.h"
 
@@ -50,6 +53,9 @@ struct Outputs {
   std::uint32_t member6 = 0;
   std::uint32_t member7 = 0;
   std::uint32_t member8 = 0;
+  // Product coordinate systems as they are now, seen from that of the machine.
+  kinematics::Pose pcs1{}, pcs2{}, pcs3{}, pcs4{}, pcs5{}, pcs6{}, pcs7{}, pcs8{};
+  kinematics::Pose pcs9{}, pcs10{}, pcs11{}, pcs12{}, pcs13{}, pcs14{}, pcs15{}, pcs16{};
   bool kinematics_on = false;  // there are kinematics, and they are switched on
   bool in_position = false;    // stands, and has nothing to do
   bool interrupted = false;    // rests on the path until it is continued
@@ -59,6 +65,12 @@ struct Outputs {
   path::Problem problem = path::Problem::kNone;           // no such path
   double blocked_at = 0;                                  // mm from the beginning of that move
 };
+
+// Product coordinate systems by number, from 0.
+inline constexpr std::array<kinematics::Pose Outputs::*, kProductSystems> kPublishedSystems = {
+    &Outputs::pcs1,  &Outputs::pcs2,  &Outputs::pcs3,  &Outputs::pcs4,  &Outputs::pcs5,  &Outputs::pcs6,
+    &Outputs::pcs7,  &Outputs::pcs8,  &Outputs::pcs9,  &Outputs::pcs10, &Outputs::pcs11, &Outputs::pcs12,
+    &Outputs::pcs13, &Outputs::pcs14, &Outputs::pcs15, &Outputs::pcs16};
 
 void describe(Description<Outputs>&);
 

@@ -60,10 +60,10 @@ void TellMoves(const Context& c, State& s) {
   }
 }
 
-double WishOf(const Context& c, const State& s) {
+double WishOf(const Context& c, State& s) {
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   if (!s.ends && !s.interrupted) {
-    if (s.master.axis != 0) return WishOfMaster(c, s);
+    if (Follows(c, s)) return WishOfMaster(c, s);
     return s.velocity_factor < 1 ? s.velocity_factor * node.at.limits.velocity : trajectory::kFullSpeed;
   }
   const double deceleration = s.brake > 0 ? s.brake : node.bounds.deceleration;
@@ -111,7 +111,8 @@ bool Advance(const Context& c, State& s) noexcept {
     const trajectory::PathWindow& window = c.ahead.window;
     if (window[s.pace.node].stop && next + 1 < window.known() && window.swept()) {
       trajectory::BeginAt(window, next, c.cycle.period_s, s.pace);
-      BeginFollowing(c, MoveAt(s, c.ahead[c.ahead.first].move), s);
+      const std::uint64_t move = c.ahead[c.ahead.first].move;
+      BeginFollowing(c, MoveAt(s, move), move, s);
     }
   }
   trajectory::Advance(c.ahead.window, WishOf(c, s), c.cycle.period_s, s.pace);

@@ -41,8 +41,10 @@ void describe(Description<SyncedAxis>& d) {
 void describe(Description<MasterState>& d) {
   d.about("What a synchronised path follows.");
   d.internal<&MasterState::axis>("From 1; 0: none.");
+  d.internal<&MasterState::move>("Number of the move that is gone so.");
   d.internal<&MasterState::begin>("Where the path begins, over all turns.");
   d.internal<&MasterState::ratio>("mm per unit.");
+  d.internal<&MasterState::before>(unit::mm_s2, "Acceleration that it asked for in the cycle before.");
   d.internal<&MasterState::in_step>("The tool is where the master wants it.");
   d.internal<&MasterState::reached>("It was once.");
 }

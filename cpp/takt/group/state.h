@@ -49,8 +49,10 @@ struct SyncedAxis {
 // A path that is gone as a master says.
 struct MasterState {
   std::uint32_t axis = 0;  // + 1; 0: time says how fast
+  std::uint64_t move = 0;  // number of the move that is gone so
   double begin = 0;        // u, over all turns, where the path begins
   double ratio = 1;        // mm per u
+  double before = 0;       // mm/s², of the path as the master moved in the cycle before
   bool in_step = false;
   bool reached = false;  // it was once
 };

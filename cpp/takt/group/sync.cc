@@ -12,15 +12,25 @@ namespace {
 
 // A path is in step with its master when the tool is nearer than this to where it should be, mm.
 constexpr double kInStep = 0.01;
-// In so many times of building up accelerations the distance to the master is made up: an acceleration can be taken
+// In so many times of building up accelerations a small distance to the master is made up: an acceleration can be taken
 // back only after such a time.
 constexpr double kCatchUpTimes = 3;
+// Of the deceleration: for coming into step from behind; the rest is for what the master does meanwhile.
+constexpr double kCatchUpShare = 0.5;
 
 // Of the master, as the path counts it.
 KinematicState WayOf(const Context& c, const State& s) {
   const axis::State& master = c.axes.states[s.master.axis - 1];
   return {s.master.ratio * (master.setpoint.position + master.origin - s.master.begin),
           s.master.ratio * master.setpoint.velocity, s.master.ratio * master.setpoint.acceleration};
+}
+
+// How much faster than its master the path may be, so far behind it: such that this speed v can be taken back with a
+// deceleration d, v + v²/(2 d) in units of the times above.
+double Closing(double behind, const trajectory::PathNode& node) {
+  const double deceleration = kCatchUpShare * node.bounds.deceleration;
+  const double offset = deceleration * kCatchUpTimes * node.build_up_s;
+  return std::copysign(std::sqrt(offset * offset + 2 * deceleration * std::abs(behind)) - offset, behind);
 }
 
 axis::Context ContextOf(const Context& c, const SyncedAxis& synced) {
@@ -32,29 +42,45 @@ axis::State& StateOf(const Context& c, const SyncedAxis& synced) {
 
 }  // namespace
 
-void BeginFollowing(const Context& c, const Request& move, State& s) noexcept {
+void BeginFollowing(const Context& c, const Request& move, std::uint64_t number, State& s) noexcept {
+  if (s.master.axis != 0 && s.master.move == number) return;  // behind a stop within it
   s.master = {};
   if (move.master == 0) return;
   const axis::State& master = c.axes.states[move.master - 1];
   s.master.axis = move.master;
+  s.master.move = number;
   s.master.ratio = move.ratio;
   s.master.begin = master.setpoint.position + master.origin;
 }
 
-double WishOfMaster(const Context& c, const State& s) noexcept {
+bool Follows(const Context& c, const State& s) noexcept {
+  if (s.master.axis == 0 || c.ahead.count == 0) return false;
+  std::uint64_t i = c.ahead.first;
+  while (i + 1 < c.ahead.end() && c.ahead[i].end() <= s.pace.raw.position) ++i;
+  return c.ahead[i].move == s.master.move;
+}
+
+double WishOfMaster(const Context& c, State& s) noexcept {
+  const double period = c.cycle.period_s;
   const KinematicState way = WayOf(c, s);
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
-  // The raw motion is ahead of its mean by half the time that is taken over.
-  const double half = 0.5 * node.build_up_s;
-  const double wanted = way.position + half * (way.velocity + 2.0 / 3.0 * half * way.acceleration);
-  const double behind = wanted - s.pace.raw.position;
-  const double closing = std::abs(behind) / (kCatchUpTimes * node.build_up_s);
-  const double velocity = way.velocity + half * way.acceleration + std::copysign(closing, behind);
-  return std::clamp(velocity, 0.0, node.at.limits.velocity);
+  // The raw motion whose mean is the way of the master, as long as that has the same jerk.
+  const double half = 0.5 * s.pace.cycles * period;
+  const double third = half * half / 3;
+  const double jerk = (way.acceleration - s.master.before) / period;
+  s.master.before = way.acceleration;
+  const double wanted = way.position + half * way.velocity + third * way.acceleration;
+  const double velocity = way.velocity + half * way.acceleration + third * jerk;
+  const double behind = wanted - (s.pace.raw.position + 0.5 * period * (s.pace.raw.velocity + velocity));
+  return std::clamp(velocity + Closing(behind, node), 0.0, node.at.limits.velocity);
 }
 
 void WatchMaster(const Context& c, State& s) noexcept {
   if (s.master.axis == 0) return;
+  if (s.done != s.master.move) {  // what comes behind does not follow
+    s.master = {};
+    return;
+  }
   s.master.in_step = std::abs(WayOf(c, s).position - s.pace.now.position) <= kInStep;
   if (!s.master.in_step || s.master.reached || s.queue.count == 0) return;
   s.master.reached = true;

@@ -5,11 +5,14 @@
 
 namespace takt::group {
 
-// The path that begins now follows the master of its move, or nobody.
-void BeginFollowing(const Context& c, const Request& move, State& s) noexcept;
-// The speed along the path with which the tool is where the master wants it, mm/s.
-double WishOfMaster(const Context& c, const State& s) noexcept;
-// Whether it is there.
+// The path that begins now, or goes on behind a stop, follows the master of its move, or nobody. `number` is the
+// move's.
+void BeginFollowing(const Context& c, const Request& move, std::uint64_t number, State& s) noexcept;
+// Whether the motion, where it has got to, is one that follows a master.
+bool Follows(const Context& c, const State& s) noexcept;
+// The speed along the path with which the tool is where the master wants it, mm/s. Once a cycle.
+double WishOfMaster(const Context& c, State& s) noexcept;
+// Whether it is there; what comes behind that move does not follow.
 void WatchMaster(const Context& c, State& s) noexcept;
 
 ErrorId Sync(const Context& c, Ticket ticket, const SyncAxis& command, State& s) noexcept;

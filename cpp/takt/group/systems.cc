@@ -55,8 +55,13 @@ kinematics::Reason JointsAt(const Context& c, const Frame& tcp, const kinematics
 }
 
 bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints) noexcept {
+  const std::size_t moved = InKinematics(c, s);
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
+    if (k < moved) {  // a URDF has limits of its own
+      const kinematics::JointRange& range = c.kinematics->ranges[k];
+      if (joints[k] < range.lower || joints[k] > range.upper) return false;
+    }
     const axis::AxisLimits& limits = c.axes.params[s.members[k] - 1].limits;
     if (limits.lower && joints[k] < *limits.lower) return false;
     if (limits.upper && joints[k] > *limits.upper) return false;

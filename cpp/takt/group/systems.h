@@ -28,7 +28,7 @@ kinematics::Reason ToolAt(const Context& c, const kinematics::Joints& joints, Fr
 // The axes for a TCP in the MCS, the others as in `near`.
 kinematics::Reason JointsAt(const Context& c, const Frame& tcp, const kinematics::Joints& near,
                             kinematics::Joints& joints) noexcept;
-// Whether all members are within their ranges.
+// Whether all members are within their SW limits and those of the kinematics.
 bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints) noexcept;
 
 // Where a plan ends.

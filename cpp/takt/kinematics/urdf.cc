@@ -1,6 +1,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
+#include <set>
 #include <vector>
 
 #include "takt/kinematics/serial.h"
@@ -41,12 +42,25 @@ std::vector<urdf::JointConstSharedPtr> Way(const urdf::ModelInterface& model, co
                                 : "the URDF has no link " + Quoted(base);
       return {};
     }
+    if (way.size() == model.joints_.size()) {
+      why = "the joints that lead to " + Quoted(tip) + " go in a loop";
+      return {};
+    }
     way.push_back(link->parent_joint);
     link = model.getLink(link->parent_joint->parent_link_name);
   }
   std::reverse(way.begin(), way.end());
   if (why.empty() && way.empty()) why = "base and tip are the same link";
   return way;
+}
+
+// The first link that hangs on two joints; empty: there is none.
+std::string HangsTwice(const urdf::ModelInterface& model) {
+  std::set<std::string> links;
+  for (const auto& [name, joint] : model.joints_) {
+    if (!links.insert(joint->child_link_name).second) return joint->child_link_name;
+  }
+  return {};
 }
 
 // The only link nothing hangs on.
@@ -71,6 +85,10 @@ std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& bas
   const urdf::ModelInterfaceSharedPtr model = Parsed(xml);
   if (!model) {
     why = "this is no URDF that can be read";
+    return std::nullopt;
+  }
+  if (const std::string link = HangsTwice(*model); !link.empty()) {
+    why = "link " + Quoted(link) + " hangs on two joints, which a chain cannot";
     return std::nullopt;
   }
   const std::string end = tip.empty() ? OnlyEnd(*model, why) : tip;

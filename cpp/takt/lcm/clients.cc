@@ -36,11 +36,16 @@ msgs::feedback EmptyReply(const std::string& client, std::int64_t session, std::
   return reply;
 }
 
-// A held stop is done when the axis stands, and in force until it is released.
-bool StaysInForce(const engine::Command& command) {
-  const auto* axis = std::get_if<axis::Command>(&command.body);
-  const auto* stop = axis ? std::get_if<axis::Stop>(axis) : nullptr;
+template <typename Stop, typename OfComponent>
+bool IsHeldStop(const engine::CommandBody& body) {
+  const auto* command = std::get_if<OfComponent>(&body);
+  const auto* stop = command ? std::get_if<Stop>(command) : nullptr;
   return stop && stop->hold;
+}
+
+// A held stop is done when what it stops stands, and in force until it is released.
+bool StaysInForce(const engine::Command& command) {
+  return IsHeldStop<axis::Stop, axis::Command>(command.body) || IsHeldStop<group::Stop, group::Command>(command.body);
 }
 
 // The ticket that a release lets go of; 0: it is no release.

@@ -15,6 +15,10 @@ std::int64_t TimeNs(std::uint64_t cycle, const engine::Machine& machine) {
   return Signed(cycle) * std::llround(machine.cycle.period_s * 1e9);
 }
 
+msgs::pose ToMessage(const kinematics::Pose& pose) {
+  return {.x = pose.x, .y = pose.y, .z = pose.z, .a = pose.a, .b = pose.b, .c = pose.c};
+}
+
 // The fields behind the fingerprint: 'i' eight bytes of whatever kind, 'b' one byte, 's' a string.
 bool FitsLayout(std::span<const std::uint8_t> bytes, std::string_view layout) {
   constexpr std::size_t kFingerprint = 8;
@@ -192,6 +196,22 @@ msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine:
   m.member6 = o.member6;
   m.member7 = o.member7;
   m.member8 = o.member8;
+  m.pcs1 = ToMessage(o.pcs1);
+  m.pcs2 = ToMessage(o.pcs2);
+  m.pcs3 = ToMessage(o.pcs3);
+  m.pcs4 = ToMessage(o.pcs4);
+  m.pcs5 = ToMessage(o.pcs5);
+  m.pcs6 = ToMessage(o.pcs6);
+  m.pcs7 = ToMessage(o.pcs7);
+  m.pcs8 = ToMessage(o.pcs8);
+  m.pcs9 = ToMessage(o.pcs9);
+  m.pcs10 = ToMessage(o.pcs10);
+  m.pcs11 = ToMessage(o.pcs11);
+  m.pcs12 = ToMessage(o.pcs12);
+  m.pcs13 = ToMessage(o.pcs13);
+  m.pcs14 = ToMessage(o.pcs14);
+  m.pcs15 = ToMessage(o.pcs15);
+  m.pcs16 = ToMessage(o.pcs16);
   m.kinematics_on = o.kinematics_on;
   m.in_position = o.in_position;
   m.interrupted = o.interrupted;

@@ -2,6 +2,24 @@
 
 namespace takt::plcopen {
 
+namespace {
+
+bool IsProduct(std::uint32_t pcs) noexcept {
+  return pcs >= 1 && pcs <= group::kProductSystems;
+}
+
+// Seen from the machine coordinate system; empty: there is no such system, or it has no frame.
+std::optional<kinematics::Frame> FrameOf(group::CoordinateSystem system, std::uint32_t pcs, const group::Outputs& now,
+                                         const group::GroupParams& params) noexcept {
+  using group::CoordinateSystem;
+  if (system == CoordinateSystem::kMcs) return kinematics::Frame::Identity();
+  if (system == CoordinateSystem::kWcs) return kinematics::ToFrame(params.base).Inverse();
+  if (system != CoordinateSystem::kPcs || !IsProduct(pcs)) return std::nullopt;
+  return kinematics::ToFrame(now.*group::kPublishedSystems[pcs - 1]);
+}
+
+}  // namespace
+
 void MC_GroupStop::operator()() noexcept {
   hold = true;
   BlockOfGroup::operator()();
@@ -11,6 +29,18 @@ void MC_GroupStop::operator()() noexcept {
 std::array<double, 6> MC_GroupReadActualPosition::Position() const noexcept {
   const group::Outputs& o = shown();
   return {o.actual_x, o.actual_y, o.actual_z, o.actual_a, o.actual_b, o.actual_c};
+}
+
+void MC_ReadCoordinateTransform::operator()() noexcept {
+  GroupReadBlock::operator()();
+  const group::GroupParams& params = subject().params();
+  const auto product = FrameOf(group::CoordinateSystem::kPcs, Pcs, shown(), params);
+  const auto reference = FrameOf(Reference, ReferencePcs, shown(), params);
+  found_.reset();
+  if (!GroupReadBlock::Valid() || !product || !reference) return;
+  // As it was given, not another pose of the same frame.
+  found_ = Reference == group::CoordinateSystem::kMcs ? shown().*group::kPublishedSystems[Pcs - 1]
+                                                      : kinematics::ToPose(reference->Inverse() * *product);
 }
 
 std::uint32_t MC_GroupReadConfiguration::Axis() const noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "takt/group/commands.h"
 #include "takt/group/outputs.h"
@@ -129,6 +130,36 @@ class MC_ReadKinTransform : public GroupReadBlock {
   using GroupReadBlock::GroupReadBlock;
   // There are kinematics, and they are switched on.
   bool KinTransform() const noexcept { return shown().kinematics_on; }
+};
+
+// Where product coordinate system Pcs, from 1, is now in another one: MCS, WCS, or PCS number ReferencePcs. mm, and
+// degrees about X, Y, Z.
+class MC_ReadCoordinateTransform : public GroupReadBlock {
+ public:
+  using GroupReadBlock::GroupReadBlock;
+  std::uint32_t Pcs = 1;
+  group::CoordinateSystem Reference = group::CoordinateSystem::kMcs;
+  std::uint32_t ReferencePcs = 1;
+  void operator()() noexcept;
+  bool Valid() const noexcept { return GroupReadBlock::Valid() && found_; }
+  bool Error() const noexcept { return GroupReadBlock::Valid() && !found_; }
+  ErrorId ErrorID() const noexcept { return Error() ? ErrorId::kParameter : ErrorId::kNone; }
+  kinematics::Pose CoordTransform() const noexcept { return found_.value_or(kinematics::Pose{}); }
+
+ private:
+  std::optional<kinematics::Pose> found_;
+};
+
+// The same, number by number.
+class MC_ReadCartesianTransform : public MC_ReadCoordinateTransform {
+ public:
+  using MC_ReadCoordinateTransform::MC_ReadCoordinateTransform;
+  double TransX() const noexcept { return CoordTransform().x; }
+  double TransY() const noexcept { return CoordTransform().y; }
+  double TransZ() const noexcept { return CoordTransform().z; }
+  double RotAngle1() const noexcept { return CoordTransform().a; }
+  double RotAngle2() const noexcept { return CoordTransform().b; }
+  double RotAngle3() const noexcept { return CoordTransform().c; }
 };
 
 // Which axis of the machine is in the place IdentInGroup, from 1; 0: none.

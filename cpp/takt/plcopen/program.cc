@@ -17,6 +17,10 @@ const group::Outputs& GroupRef::outputs() const noexcept {
   return program().engine().group_outputs(index_);
 }
 
+const group::GroupParams& GroupRef::params() const noexcept {
+  return program().engine().machine().groups[index_];
+}
+
 AxisRef Program::Axis(std::string_view name) {
   const auto& axes = engine_.machine().axes;
   const auto found = std::ranges::find(axes, name, &axis::AxisParams::name);

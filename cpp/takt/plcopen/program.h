@@ -59,6 +59,8 @@ class GroupRef : public ComponentRef {
       : ComponentRef(program, target), index_(index) {}
   // As of the last cycle.
   const group::Outputs& outputs() const noexcept;
+  // What the machine file says of it.
+  const group::GroupParams& params() const noexcept;
 
  private:
   std::uint32_t index_;  // among the groups

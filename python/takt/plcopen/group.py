@@ -10,12 +10,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
+import numpy as np
+
 from takt import _commands
 from takt.axis import Axis
 from takt.engine import error_text
 from takt.feedback import Feedback
-from takt.group import Group
-from takt.kinematics import matrix_to_pose, pose_to_matrix
+from takt.group import POSE, PRODUCT_SYSTEMS, Group
+from takt.kinematics import Array, matrix_to_pose, pose_to_matrix
 from takt.plcopen.base import ExecuteBlock, FunctionBlock, Input, Output, ReadBlock, SettingBlock
 from takt.plcopen.coupling import axis_name
 
@@ -26,7 +28,6 @@ AxisOrName = Axis | str
 PARAMETER = 5  # an input is out of its range
 NO_MEMBER = 1003  # there is no such member
 STATE = 3005  # not legal in this state
-TOOL = ("x", "y", "z", "a", "b", "c")
 AXES = tuple(f"a{place}" for place in range(1, 9))
 
 
@@ -34,7 +35,7 @@ def by_name(numbers: Numbers, system: _commands.CoordinateSystem) -> dict[str, f
     """Arguments of a command from what is given for a position."""
     if isinstance(numbers, Mapping):
         return dict(numbers)
-    names = AXES if system is _commands.CoordinateSystem.ACS else TOOL
+    names = AXES if system is _commands.CoordinateSystem.ACS else POSE
     if len(numbers) > len(names):
         raise TypeError(f"a position has up to {len(names)} numbers with {system.value}, found {len(numbers)}")
     return {name: number for name, number in zip(names, numbers, strict=False) if number is not None}
@@ -177,47 +178,56 @@ class MC_GroupReadError(GroupBlock, ReadBlock):  # noqa: N801
 # --- where it is ---
 
 
+def system_frame(group: Group, system: _commands.CoordinateSystem, pcs: int) -> Array | None:
+    """Where a coordinate system is in the machine coordinate system; None: there is none of this number, or it is
+    that of the axes."""
+    if system is _commands.CoordinateSystem.MCS:
+        return pose_to_matrix([0.0] * len(POSE))
+    if system is _commands.CoordinateSystem.WCS:
+        return np.asarray(np.linalg.inv(pose_to_matrix(group.base)), np.float64)
+    if system is _commands.CoordinateSystem.PCS and 1 <= pcs <= PRODUCT_SYSTEMS:
+        return pose_to_matrix(group.product_system(pcs))
+    return None
+
+
+def seen_from(frame: Array, pose: Sequence[float]) -> tuple[float, ...]:
+    """A pose in the machine coordinate system, seen from a coordinate system that is there."""
+    return tuple(map(float, matrix_to_pose(np.linalg.inv(frame) @ pose_to_matrix(pose))))
+
+
 class GroupReadBlock(GroupBlock, ReadBlock):
-    """A block that shows numbers of a group, seen from CoordSystem. Product coordinate systems are not published."""
+    """A block that shows numbers of a group, seen from CoordSystem."""
 
     CoordSystem = Input(_commands.CoordinateSystem.ACS)
+    Pcs = Input(1)
 
     def _read(self) -> None:
         group, system = self.AxesGroup, self.CoordSystem
         if system is _commands.CoordinateSystem.ACS:
-            self._of_axes(group.members)
-        elif system is _commands.CoordinateSystem.PCS:
-            self._refuse(PARAMETER)
-        elif group.kinematics_on:
-            self._of_tool(group, in_world=system is _commands.CoordinateSystem.WCS)
-        else:
-            self._refuse(STATE)
-
-    def _refuse(self, error_id: int) -> None:
-        self._show(Valid=False)
-        self._show_error(error_id)
+            return self._of_axes(group.members)
+        frame = system_frame(group, system, self.Pcs)
+        if frame is None or not group.kinematics_on:
+            self._show(Valid=False)
+            return self._show_error(PARAMETER if frame is None else STATE)
+        return self._of_tool(group, frame)
 
     def _of_axes(self, members: Sequence[Axis]) -> None:
         raise NotImplementedError
 
-    def _of_tool(self, group: Group, *, in_world: bool) -> None:
+    def _of_tool(self, group: Group, frame: Array) -> None:
         raise NotImplementedError
 
 
 class MC_GroupReadActualPosition(GroupReadBlock):  # noqa: N801
-    """Where a group is as measured: each axis with ACS; X, Y, Z, A, B, C of the tool with MCS and WCS."""
+    """Where a group is as measured: each axis with ACS; X, Y, Z, A, B, C of the tool with MCS, WCS and PCS."""
 
     Position = Output[tuple[float, ...]](())
 
     def _of_axes(self, members: Sequence[Axis]) -> None:
         self._show(Position=tuple(axis.actual_position for axis in members))
 
-    def _of_tool(self, group: Group, *, in_world: bool) -> None:
-        pose: tuple[float, ...] = group.actual_pose
-        if in_world:
-            base = [group.parameters["base"][name] for name in TOOL]
-            pose = tuple(map(float, matrix_to_pose(pose_to_matrix(base) @ pose_to_matrix(pose))))
-        self._show(Position=pose)
+    def _of_tool(self, group: Group, frame: Array) -> None:
+        self._show(Position=seen_from(frame, group.actual_pose))
 
 
 class MC_GroupReadActualVelocity(GroupReadBlock):  # noqa: N801
@@ -229,7 +239,7 @@ class MC_GroupReadActualVelocity(GroupReadBlock):  # noqa: N801
     def _of_axes(self, members: Sequence[Axis]) -> None:
         self._show(Velocity=tuple(axis.actual_velocity for axis in members))
 
-    def _of_tool(self, group: Group, *, in_world: bool) -> None:
+    def _of_tool(self, group: Group, frame: Array) -> None:
         self._show(PathVelocity=group.actual_velocity)
 
 
@@ -243,7 +253,7 @@ class MC_GroupReadActualAcceleration(GroupReadBlock):  # noqa: N801
     def _of_axes(self, members: Sequence[Axis]) -> None:
         self._show(Acceleration=tuple(axis.set_acceleration for axis in members))
 
-    def _of_tool(self, group: Group, *, in_world: bool) -> None:
+    def _of_tool(self, group: Group, frame: Array) -> None:
         self._show(PathAcceleration=group.acceleration)
 
 
@@ -331,3 +341,41 @@ class MC_SetCoordinateTransform(GroupSetting):  # noqa: N801
 
     def _arguments(self) -> dict[str, Any]:
         return super()._arguments() | by_name(self.CoordTransform, _commands.CoordinateSystem.MCS)
+
+
+class MC_ReadCoordinateTransform(GroupBlock, ReadBlock):  # noqa: N801
+    """Where product coordinate system Pcs is now in another one: X, Y, Z, A, B, C."""
+
+    Pcs = Input(1)
+    Reference = Input(_commands.CoordinateSystem.MCS)
+    ReferencePcs = Input(1)
+    CoordTransform = Output[tuple[float, ...]](())
+
+    def _read(self) -> None:
+        group = self.AxesGroup
+        reference = system_frame(group, self.Reference, self.ReferencePcs)
+        if reference is None or not 1 <= self.Pcs <= PRODUCT_SYSTEMS:
+            self._show(Valid=False)
+            return self._show_error(PARAMETER)
+        pose: tuple[float, ...] = group.product_system(self.Pcs)
+        # In the machine coordinate system as it was given, not another pose of the same frame.
+        return self._found(pose if self.Reference is _commands.CoordinateSystem.MCS else seen_from(reference, pose))
+
+    def _found(self, pose: tuple[float, ...]) -> None:
+        self._show(CoordTransform=pose)
+
+
+class MC_ReadCartesianTransform(MC_ReadCoordinateTransform):  # noqa: N801
+    """The same, number by number."""
+
+    TransX = Output(0.0)
+    TransY = Output(0.0)
+    TransZ = Output(0.0)
+    RotAngle1 = Output(0.0)
+    RotAngle2 = Output(0.0)
+    RotAngle3 = Output(0.0)
+
+    def _found(self, pose: tuple[float, ...]) -> None:
+        super()._found(pose)
+        x, y, z, a, b, c = pose
+        self._show(TransX=x, TransY=y, TransZ=z, RotAngle1=a, RotAngle2=b, RotAngle3=c)

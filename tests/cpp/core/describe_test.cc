@@ -140,8 +140,8 @@ TEST(Columns, NameTheNumbersOfAStruct) {
   for (const Column& column : ColumnsOf(TypeOf<example::Axis>()))
     names.push_back(column.name + " " + std::string(column.unit.text));
   EXPECT_THAT(names, ElementsAre("velocity u/s", "mounting_angle deg", "inverted ", "serial ", "shift ", "gains[0] 1/s",
-                                 "gains[1] 1/s", "gains[2] 1/s", "drive.mode ", "drive.station ", "drive.offset count",
-                                 "limits.lower u", "limits.upper u", "counter "));
+                                 "gains[1] 1/s", "gains[2] 1/s", "drive_mode ", "drive_station ", "drive_offset count",
+                                 "limits_lower u", "limits_upper u", "counter "));
 }
 
 TEST(Columns, ReadNumbersInWrittenUnits) {

@@ -81,6 +81,81 @@ TEST(Members, FollowInNoLoop) {
   EXPECT_EQ(portal.last[gear].error, ErrorId::kCouplingLoop);
 }
 
+// GR-02: from one group to another, and back: each moves with those that it has, and no other.
+TEST(Members, MoveToAnotherGroup) {
+  Machine machine = PortalMachine();
+  group::GroupParams other = machine.groups[0];
+  other.name = "other";
+  other.axes = {"a3", "a4"};
+  machine.groups.push_back(other);
+  Line line(machine);
+  const auto tell = [&](std::size_t index, const group::Command& body) {
+    Command command = ToGroup(line.machine, body);
+    command.target += static_cast<std::uint32_t>(index);
+    const Ticket ticket = line.engine.Submit(command);
+    for (int i = 0; i < 2000 && !IsFinal(line.last[ticket].state); ++i) line.Step();
+    return line.last[ticket].error;
+  };
+  for (const std::size_t index : {0u, 1u}) EXPECT_EQ(tell(index, group::Enable{}), ErrorId::kNone);
+  const group::AddAxis add{Name::Of("a2"), 3};
+  EXPECT_EQ(tell(1, add), ErrorId::kOtherGroupMember);
+  EXPECT_EQ(tell(0, group::RemoveAxis{3}), ErrorId::kNone);
+  // Between two groups it is nobody's: it takes commands of its own, and may join only at rest.
+  const Ticket own = line.Give(2, axis::MoveAbsolute{.position = 20, .velocity = 200});
+  line.Run(20);
+  EXPECT_EQ(tell(1, add), ErrorId::kState);
+  for (int i = 0; i < 1000 && !IsFinal(line.last[own].state); ++i) line.Step();
+  EXPECT_EQ(line.last[own].state, FeedbackState::kDone);
+  EXPECT_EQ(tell(1, add), ErrorId::kNone);
+  EXPECT_EQ(tell(1, group::MoveLinearAbsolute{.x = 10, .y = 5, .a3 = 50}), ErrorId::kNone);
+  EXPECT_NEAR(line.At(2).set_position, 50, 1e-9);
+  EXPECT_NEAR(line.At(3).set_position, 10, 1e-9);
+  EXPECT_EQ(tell(0, group::MoveLinearAbsolute{.x = 7, .a3 = 1}), ErrorId::kNotGroupMember);
+  EXPECT_EQ(tell(0, group::SetPosition{.a3 = 1}), ErrorId::kNotGroupMember);
+  EXPECT_EQ(tell(0, group::MoveLinearAbsolute{.x = 7}), ErrorId::kNone);
+  EXPECT_NEAR(line.At(0).set_position, 7, 1e-9);
+  EXPECT_NEAR(line.At(2).set_position, 50, 1e-9);
+  const Ticket refused = line.Give(2, axis::MoveAbsolute{.position = 0});
+  line.Step();
+  EXPECT_EQ(line.last[refused].error, ErrorId::kGroupMember);
+  EXPECT_EQ(tell(1, group::RemoveAxis{3}), ErrorId::kNone);
+  EXPECT_EQ(tell(0, add), ErrorId::kNone);
+  EXPECT_EQ(tell(0, group::MoveLinearAbsolute{.x = 0, .a3 = 0}), ErrorId::kNone);
+  EXPECT_NEAR(line.At(2).set_position, 0, 1e-9);
+}
+
+// GR-12: the limits of a URDF hold for moves of the tool and of the axes, where the axes have none themselves.
+TEST(Members, KeepTheLimitsOfTheirUrdf) {
+  const std::string urdf = std::string(TAKT_SOURCE_DIR) + "/tests/cpp/kinematics/cobra.urdf";
+  const std::string limits = "limits: {velocity: 300, acceleration: 3000, jerk: 60000}}\n";
+  std::string text = "name: cell\naxes:\n";
+  for (const std::string axis : {"j1, unit: deg", "j2, unit: deg", "j3", "j4, unit: deg"}) {
+    text += "  - {name: " + axis + ", " + limits;
+  }
+  text += "groups:\n  - {name: arm, axes: [j1, j2, j3, j4], kinematics: {serial: {urdf: " + urdf +
+          ", tip: tool}}, path: {velocity: 300, acceleration: 3000, jerk: 60000}}\n";
+  const LoadResult loaded = LoadMachine(text, "cell.yaml");
+  ASSERT_TRUE(loaded.machine) << loaded.problems.front();
+  Line line(*loaded.machine);
+  const auto tell = [&](const group::Command& body) {
+    const Ticket ticket = line.engine.Submit(ToGroup(line.machine, body));
+    for (int i = 0; i < 5000 && !IsFinal(line.last[ticket].state); ++i) line.Step();
+    return line.last[ticket].error;
+  };
+  ASSERT_EQ(tell(group::Enable{}), ErrorId::kNone);
+  ASSERT_EQ(tell(group::MoveDirectAbsolute{.a1 = 20, .a2 = 40, .a3 = -50}), ErrorId::kNone);
+  // j3 slides from -210 to 0 mm.
+  EXPECT_EQ(tell(group::MoveLinearRelative{.z = 60}), ErrorId::kUnreachable);
+  EXPECT_EQ(tell(group::MoveDirectRelative{.z = 60, .coordinate_system = group::CoordinateSystem::kMcs}),
+            ErrorId::kUnreachable);
+  EXPECT_EQ(tell(group::MoveDirectAbsolute{.a3 = 1}), ErrorId::kUnreachable);
+  EXPECT_EQ(tell(group::MoveLinearAbsolute{.a3 = -211, .coordinate_system = group::CoordinateSystem::kAcs}),
+            ErrorId::kUnreachable);
+  EXPECT_NEAR(line.At(2).set_position, -50, 1e-9);
+  EXPECT_EQ(tell(group::MoveDirectAbsolute{.a3 = -209}), ErrorId::kNone);
+  EXPECT_NEAR(line.At(2).set_position, -209, 1e-9);
+}
+
 // EN-42, GR-20: who is told to stop everything stops groups on their paths.
 TEST(StopAllOfGroups, StopsThemOnTheirPath) {
   Portal portal;

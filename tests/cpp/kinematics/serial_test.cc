@@ -230,6 +230,29 @@ TEST(Serial, SaysWhatIsWrongWithAUrdf) {
   mimic.replace(mimic.find("<limit"), 0, "<mimic joint=\"j2\"/>");
   EXPECT_EQ(WhyNot(mimic, "", "tool"), "joint 'j1' copies another one, which a chain cannot");
 
+  // A chain has a beginning, and one way to each link.
+  const auto joint = [](const std::string& name, const std::string& from, const std::string& to) {
+    return "<joint name='" + name + "' type='continuous'><parent link='" + from + "'/><child link='" + to +
+           "'/><axis xyz='0 0 1'/></joint>";
+  };
+  const std::string links = "<robot name='r'><link name='a'/><link name='b'/><link name='c'/><link name='d'/>";
+  const std::string no_urdf = "this is no URDF that can be read";
+  const std::string loop = links + joint("j", "a", "b") + joint("k", "b", "a") + joint("l", "c", "d") + "</robot>";
+  EXPECT_EQ(WhyNot(loop, "c", "b"), "the joints that lead to 'b' go in a loop");
+  EXPECT_EQ(WhyNot(links + joint("j", "a", "b") + joint("k", "b", "c") + joint("l", "c", "d") + joint("m", "d", "a") +
+                   "</robot>"),
+            no_urdf);  // without a root
+  const std::string closed =
+      links + joint("j", "a", "b") + joint("k", "a", "c") + joint("l", "b", "d") + joint("m", "c", "d") + "</robot>";
+  EXPECT_EQ(WhyNot(closed, "a", "d"), "link 'd' hangs on two joints, which a chain cannot");
+  EXPECT_EQ(WhyNot("<robot name='r'></robot>"), no_urdf);
+  // Only continuous axes go without limits.
+  for (const char* type : {"revolute", "prismatic"}) {
+    std::string unlimited = joint("j", "a", "b");
+    unlimited.replace(unlimited.find("continuous"), 10, type);
+    EXPECT_EQ(WhyNot("<robot name='r'><link name='a'/><link name='b'/>" + unlimited + "</robot>"), no_urdf);
+  }
+
   std::ostringstream nine;
   nine << "<robot name='nine'><link name='l0'/>";
   for (int n = 1; n <= 9; ++n) {

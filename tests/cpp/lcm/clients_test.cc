@@ -271,6 +271,26 @@ TEST_F(ClientsTest, AHeldStopIsRenewedUntilItIsReleased) {
   EXPECT_TRUE(renewed().empty());
 }
 
+// EN-23, GR-20: so is that of a group.
+TEST_F(ClientsTest, AHeldStopOfAGroupIsRenewedUntilItIsReleased) {
+  Clients clients = Make();
+  msgs::command stop = Command(1, "stop", "{hold: true}");
+  stop.target = "portal";
+  clients.OnCommand(stop, 0);
+  clients.OnFeedback({1, 5, FeedbackState::kDone, false, ErrorId::kNone});
+  for (int beat = 1; beat < 5; ++beat) {
+    submitted_.clear();
+    clients.OnHeartbeat(Heartbeat(), beat);
+    EXPECT_EQ(Renewed(), (std::vector<Ticket>{1}));
+  }
+  msgs::command release = Command(2, "release", "{ticket: 1}");
+  release.target = "machine";
+  clients.OnCommand(release, 0);
+  submitted_.clear();
+  clients.OnHeartbeat(Heartbeat(), 9);
+  EXPECT_TRUE(Renewed().empty());
+}
+
 // EN-23: another client may let go of it, too.
 TEST_F(ClientsTest, AHeldStopReleasedByAnotherClientIsNotRenewed) {
   Clients clients = Make();

@@ -150,6 +150,11 @@ TEST(LcmTypes, EngineStateSaysWhatTheDescriptionOfFiguresSays) {
   ExpectSameFields("histogram.lcm", TypeOf<engine::Histogram>(), {});
 }
 
+// GR-10
+TEST(LcmTypes, PoseSaysWhatTheDescriptionOfPosesSays) {
+  ExpectSameFields("pose.lcm", TypeOf<kinematics::Pose>(), {});
+}
+
 // EN-26, AX-87
 TEST(LcmTypes, DriveMessagesSayWhatTheDescriptionsOfThePortsSay) {
   ExpectSameFields("drive_setpoint.lcm", TypeOf<ServoOutputs>(),
@@ -195,7 +200,7 @@ TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
       EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
     }
   }
-  EXPECT_EQ(files, 15);
+  EXPECT_EQ(files, 16);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "takt/core/columns.h"
 #include "takt/core/describe.h"
 #include "test_machine.h"
 
@@ -107,13 +108,20 @@ struct MessageField {
   {                                                                             \
 #field, [](const msgs::message& m) { return static_cast<double>(m.field); } \
   }
+#define POSE(message, field)                                                                                          \
+  FIELD_OF(message, field, x), FIELD_OF(message, field, y), FIELD_OF(message, field, z), FIELD_OF(message, field, a), \
+      FIELD_OF(message, field, b), FIELD_OF(message, field, c)
+#define FIELD_OF(message, field, part)                                    \
+  {                                                                       \
+#field "_" #part, [](const msgs::message& m) { return m.field.part; } \
+  }
 
 // Each output has its own field of the same name, and changes no other.
 template <typename Message, typename Outputs>
 void ExpectKeepsEveryNumber(const std::vector<MessageField<Message>>& fields, const engine::Machine& machine,
                             const std::string& name) {
-  const Type& outputs = TypeOf<Outputs>();
-  ASSERT_EQ(fields.size(), outputs.fields.size());
+  const std::vector<Column> outputs = ColumnsOf(TypeOf<Outputs>());
+  ASSERT_EQ(fields.size(), outputs.size());
   engine::SnapshotOf<Outputs> plain;
   plain.cycle = 4'000'001;
   plain.index = 1;
@@ -122,7 +130,7 @@ void ExpectKeepsEveryNumber(const std::vector<MessageField<Message>>& fields, co
   EXPECT_EQ(before.time_ns, 1'000'000'250'000);
   EXPECT_EQ(before.name, name);
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const Field& field = outputs.fields[i];
+    const Column& field = outputs[i];
     ASSERT_EQ(field.name, fields[i].name);
     const bool is_enum = field.type->kind == Kind::kEnum;
     const std::int64_t value =
@@ -255,6 +263,22 @@ TEST(Messages, GroupStateKeepsEveryNumber) {
           FIELD(group_state, member6),
           FIELD(group_state, member7),
           FIELD(group_state, member8),
+          POSE(group_state, pcs1),
+          POSE(group_state, pcs2),
+          POSE(group_state, pcs3),
+          POSE(group_state, pcs4),
+          POSE(group_state, pcs5),
+          POSE(group_state, pcs6),
+          POSE(group_state, pcs7),
+          POSE(group_state, pcs8),
+          POSE(group_state, pcs9),
+          POSE(group_state, pcs10),
+          POSE(group_state, pcs11),
+          POSE(group_state, pcs12),
+          POSE(group_state, pcs13),
+          POSE(group_state, pcs14),
+          POSE(group_state, pcs15),
+          POSE(group_state, pcs16),
           FIELD(group_state, kinematics_on),
           FIELD(group_state, in_position),
           FIELD(group_state, interrupted),
@@ -267,6 +291,8 @@ TEST(Messages, GroupStateKeepsEveryNumber) {
   EXPECT_EQ(static_cast<int>(group::GroupState::kErrorStop), msgs::group_state::STATE_GROUP_ERROR_STOP);
 }
 #undef FIELD
+#undef FIELD_OF
+#undef POSE
 
 // EN-05, EN-20
 TEST(Messages, EngineStateKeepsEveryNumber) {

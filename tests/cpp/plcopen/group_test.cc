@@ -132,6 +132,56 @@ TEST_F(GroupBlocks, MembersComeAndGo) {
   EXPECT_EQ(read.Axis(), 0u);
 }
 
+// GR-10: product coordinate systems, seen from where one likes.
+TEST_F(GroupBlocks, SayWhereCoordinateSystemsAre) {
+  MC_SetCartesianTransform set(pair);
+  set.pcs = 16;
+  set.x = 100;
+  set.c = 270;
+  Finish(set);
+  MC_SetCoordinateTransform on_it(pair);
+  on_it.pcs = 2;
+  on_it.x = 5;
+  on_it.reference = group::CoordinateSystem::kPcs;
+  on_it.reference_pcs = 16;
+  Finish(on_it);
+  MC_ReadCartesianTransform numbers(pair);
+  numbers.Pcs = 16;
+  numbers();
+  EXPECT_FALSE(numbers.Valid() || numbers.Error());
+  numbers.Enable = true;
+  numbers();
+  EXPECT_TRUE(numbers.Valid());
+  EXPECT_EQ(numbers.TransX(), 100);
+  EXPECT_EQ(numbers.RotAngle3(), 270);  // as given
+  EXPECT_EQ(numbers.TransY() + numbers.TransZ() + numbers.RotAngle1() + numbers.RotAngle2(), 0);
+  MC_ReadCoordinateTransform read(pair);
+  read.Enable = true;
+  read.Pcs = 2;
+  read();
+  EXPECT_NEAR(read.CoordTransform().x, 100, 1e-9);
+  EXPECT_NEAR(read.CoordTransform().y, -5, 1e-9);
+  read.Reference = group::CoordinateSystem::kPcs;
+  read.ReferencePcs = 16;
+  read();
+  EXPECT_NEAR(read.CoordTransform().x, 5, 1e-9);
+  EXPECT_NEAR(read.CoordTransform().c, 0, 1e-9);
+  read.Reference = group::CoordinateSystem::kWcs;  // base: y 20, turned half around Z
+  read();
+  EXPECT_NEAR(read.CoordTransform().x, -100, 1e-9);
+  EXPECT_NEAR(read.CoordTransform().y, 25, 1e-9);
+  for (const std::uint32_t wrong : {0u, 17u}) {
+    read.Pcs = wrong;
+    read();
+    EXPECT_EQ(read.ErrorID(), ErrorId::kParameter);
+    EXPECT_FALSE(read.Valid());
+  }
+  read.Pcs = 2;
+  read.Reference = group::CoordinateSystem::kAcs;
+  read();
+  EXPECT_TRUE(read.Error());
+}
+
 // GR-03: a member's fault is one of the group, until it is reset.
 TEST_F(GroupBlocks, AFaultAndItsReset) {
   bench.engine.faults(bench.x.target() - 1).drive_fault = true;
