@@ -249,7 +249,7 @@ void ForgetPlan(const Context& c, State& s) noexcept {
   c.ahead.first = c.ahead.end();
   c.ahead.sampling = c.ahead.first;
   c.ahead.count = 0;
-  c.ahead.known = c.ahead.cut_short = false;
+  c.ahead.known = c.ahead.cut_short = c.ahead.corner.open = false;
   s.planning.stage = Stage::kIdle;
   s.planning.move = s.done;
   s.planning.element = 0;
