@@ -81,7 +81,7 @@ void PickPath(benchmark::State& state) {
       largest = std::max(largest, one);
       time += one;
       if (!begun && rig.state.begun) first_motion += time;
-    } while (rig.state.planning.move < 4 && rig.cycle.count < 1000);
+    } while (!IsPlanned(rig.Now(), rig.state) && rig.cycle.count < 1000);
     state.SetIterationTime(time * 1e-9);
   }
   state.counters["largest_ns"] = largest;

@@ -144,7 +144,7 @@ bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch
   if (s.begun && !CanStopAt(window, s.pace, node)) return false;
   window.CutBehind(node);
   c.ahead.last = window[node].at;
-  c.ahead.sampling = stretch;
+  c.ahead.sampling = std::min(c.ahead.sampling, stretch);
   return true;
 }
 
