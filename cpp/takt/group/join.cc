@@ -17,9 +17,8 @@ constexpr int kHalvings = 8;
 constexpr double kLeastJointSpeed = 1;
 constexpr double kRounding = 1e-9;
 constexpr double kNoEnd = 1e12;  // mm
-// Of chords of a curve: how unlike both sides of a corner may be, and how much less than estimated its curvature.
-constexpr double kMostUneven = 2;
-constexpr double kLeastBend = 0.3;
+// How unlike both sides of a corner may be, of chords of a curve: else it would bend to the other side.
+constexpr double kMostUneven = 2.5;
 
 // How a path goes on at this element: that of the move, but for the first element of a path, which is joined as the
 // move.
@@ -184,15 +183,16 @@ bool GoOnFromLastCorner(const Context& c, const State& s, const Distances& d, St
   const path::Segment line = ahead[last_one + 1].segment;
   const double middle = line.length / 2;
   if (d.first < middle && d.second < ahead.next.segment.length / 2) return false;  // it is the deviation that counts
-  const path::Triple bend = path::BendBetween(ahead.corner.first, line, ahead.next.segment);
-  if (bend == path::Triple{}) return false;
+  const auto bend = path::BendBetween(ahead.corner.first, line, ahead.next.segment);
+  if (!bend) return false;
   Stretch last = ahead[last_one];
   OpenCorner corner{true, line, middle, {}, d.reach, d.deviation};
   bool made = false;
-  for (double share = 1; share > kLeastBend && !made; share *= 0.5) {
-    for (std::size_t i = 0; i < bend.size(); ++i) corner.bend[i] = share * bend[i];
+  for (const double share : {1.0, 0.5, 0.0}) {  // less of it comes nearer to the corners
+    for (std::size_t i = 0; i < bend->size(); ++i) corner.bend[i] = share * (*bend)[i];
     made = MakeRound(ahead.corner, line, middle, {ahead.corner.bend, corner.bend}, last.segment) &&
            MakeRound(corner, ahead.next.segment, d.second, {corner.bend, {}}, blend.segment);
+    if (made || *bend == path::Triple{}) break;
   }
   work += 2 * (kBlendPlaces + 1);
   if (!made || !(SquareOn(c, s, last) > 0) || !(SquareOn(c, s, blend) > 0)) return false;

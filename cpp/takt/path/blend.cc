@@ -23,7 +23,7 @@ constexpr double kUnused = 0.02;
 constexpr double kMargin = 5e-3;
 constexpr std::size_t kSamples = 16;
 // Of the mean curvatures on both sides of a chord's middle, what it may be there.
-constexpr double kMostBend = 2;
+constexpr double kMostBend = 2.5;
 
 // Tangent length of a blend over its distance, by the cosine of half the angle.
 double TangentShare(double q) {
@@ -50,7 +50,7 @@ bool Onward(const Vector& way, const Vector& derivative, const Vector& second) {
   return way.dot(derivative + second / 4) > 0;
 }
 
-Problem Places(const Segment& first, double s_first, const Segment& second, double s_second, const Bends& bends,
+Problem Places(const Segment& first, double s_first, const Segment& second, double s_second, const Bends* bends,
                VectorPolynomial& out) {
   auto [a, b] = JointAt(first, s_first, second, s_second);
   const Vector way = a.first + b.first;
@@ -60,9 +60,9 @@ Problem Places(const Segment& first, double s_first, const Segment& second, doub
   const double third = (1 - 0.4 * TangentShare(q)) * std::min(before, s_second);
   double u = 2.5 * (before - third);
   double v = 2.5 * (s_second - third);
-  if (bends != Bends{}) {
-    a.second += ToVector(bends.first);
-    b.second += ToVector(bends.second);
+  if (bends) {
+    a.second += ToVector(bends->first);
+    b.second += ToVector(bends->second);
     u = v = (before + s_second) * ArcShare(q);
   }
   const Derivatives<Vector> begin{a.value, a.first * u, a.second * (u * u)};
@@ -252,7 +252,7 @@ double Search(const Segment& first, const Segment& second, const Corner& corner,
   for (int i = 0; i < 20; ++i) {
     VectorPolynomial blend;
     double found = INFINITY;
-    if (Places(first, first.length - d, second, d, {}, blend) == Problem::kNone) {
+    if (Places(first, first.length - d, second, d, nullptr, blend) == Problem::kNone) {
       found = corner.Deviation(blend) * (1 + kMargin);
     }
     if (found <= deviation) {
@@ -271,14 +271,8 @@ double Search(const Segment& first, const Segment& second, const Corner& corner,
   return good;
 }
 
-}  // namespace
-
-Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, Segment& out) noexcept {
-  return Blend(first, s_first, second, s_second, {}, out);
-}
-
-Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, const Bends& bends,
-              Segment& out) noexcept {
+Problem MakeBlend(const Segment& first, double s_first, const Segment& second, double s_second, const Bends* bends,
+                  Segment& out) {
   if (first.measure != second.measure) return Problem::kMeasure;
   const bool inside = s_first >= 0 && s_first < first.length && s_second > 0 && s_second <= second.length;
   if (!inside) return Problem::kOutside;
@@ -309,25 +303,42 @@ Problem Blend(const Segment& first, double s_first, const Segment& second, doubl
   return Problem::kNone;
 }
 
-Triple BendBetween(const Segment& before, const Segment& chord, const Segment& after) noexcept {
+}  // namespace
+
+Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, Segment& out) noexcept {
+  return MakeBlend(first, s_first, second, s_second, nullptr, out);
+}
+
+Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, const Bends& bends,
+              Segment& out) noexcept {
+  return MakeBlend(first, s_first, second, s_second, &bends, out);
+}
+
+std::optional<Triple> BendBetween(const Segment& before, const Segment& chord, const Segment& after) noexcept {
   const auto is_line = [](const Segment& s) { return s.measure == Measure::kWay && s.shape == Shape::kLine; };
   if (!is_line(before) || !is_line(chord) || !is_line(after)) return {};
   const Vector tangent = ToVector(chord.place[1]);
-  // The mean curvature of a blend from middle to middle, and by how much it is more than that at the chord's end.
-  const auto bend = [&](const Segment& other) -> Vector {
+  struct Side {
+    double cosine = 0;
+    Vector mean;  // curvature of the blend
+    Vector here;  // what it is at the chord, if it runs evenly
+  };
+  const auto side = [&](const Segment& other) -> Side {
     const Vector way = ToVector(other.place[1]);
     const double cosine = tangent.dot(way);
-    if (cosine < 0) return Vector::Zero();
     const double sum = chord.length + other.length;
+    const Vector mean = (way - cosine * tangent) * (4 / (sum * (1 + cosine)));
     const double longer = (chord.length - other.length) / sum;
-    return (way - cosine * tangent) * (4 / (sum * (1 + cosine)) * std::clamp(1 - 3 * longer, 0.0, kMostBend));
+    return {cosine, mean, mean * std::clamp(1 - 3 * longer, 0.0, kMostBend)};
   };
-  const Vector first = -bend(before);
-  const Vector second = bend(after);
-  if (!(first.dot(second) > 0)) return {};
-  const Vector mean = (first + second) / 2;
-  const double most = kMostBend * std::min(first.norm(), second.norm());
-  return ToTriple(mean * std::min(1.0, most / mean.norm()));
+  const Side first = side(before);
+  const Side second = side(after);
+  if (first.cosine < 0 || second.cosine < 0) return {};
+  // That before turns away from where it comes from.
+  if (!(first.mean.dot(second.mean) < 0)) return Triple{};
+  const Vector middle = (second.here - first.here) / 2;
+  const double most = kMostBend * std::min(first.mean.norm(), second.mean.norm());
+  return ToTriple(middle * (most / std::max(middle.norm(), most)));
 }
 
 Room HalfOf(const Segment& first, const Segment& second) noexcept {
