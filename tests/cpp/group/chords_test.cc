@@ -93,6 +93,19 @@ void ExpectNoDip(const Rig& rig, double speed, double length, double ramp) {
   EXPECT_GE(slowest, speed * (1 - 1e-6));
 }
 
+// Of all that is planned: tangent and curvature go on from one stretch to the next.
+void ExpectSmoothPath(const LookAhead& ahead) {
+  for (std::uint64_t i = ahead.first; i + 1 < ahead.end(); ++i) {
+    const Stretch& before = ahead[i];
+    const Stretch& after = ahead[i + 1];
+    if (before.stops) continue;
+    const path::MovingFrame a = path::At(before.segment, before.to), b = path::At(after.segment, after.from);
+    ASSERT_LE((a.p.p - b.p.p).Norm(), 1e-9);
+    ASSERT_LE((a.p.v - b.p.v).Norm(), 1e-9);
+    ASSERT_LE((a.p.dv - b.p.dv).Norm(), 1e-6 * std::max(1.0, a.p.dv.Norm()));
+  }
+}
+
 struct Case {
   bool delta;
   bool circle;
@@ -185,6 +198,7 @@ TEST(ChordPaths, PropertyStayWithinTheDeviation) {
     const auto run = [&](int cycles) {
       for (; cycles > 0; --cycles) {
         rig.Step();
+        if (cycles % 4 == 0) ExpectSmoothPath(*rig.ahead);
         if (!rig.state.begun || rig.lives[last].ended()) continue;
         const KDL::Vector at = OnPath(rig);
         off_chords = std::max(off_chords, FromChords(at, points));
