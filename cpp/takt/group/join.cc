@@ -169,7 +169,7 @@ bool Passes(const Context& c, const State& s, const Stretch& before, const Stret
 bool MakeRound(const OpenCorner& corner, const path::Segment& second, double to, const path::Bends& bends,
                path::Segment& out) {
   const double before = corner.first.length - corner.from;
-  if (to > corner.reach || std::max(before, to) > kMostUneven * std::min(before, to)) return false;
+  if (std::max(before, to) > std::min(corner.reach * (1 + kRounding), kMostUneven * std::min(before, to))) return false;
   if (path::Blend(corner.first, corner.from, second, to, bends, out) != path::Problem::kNone) return false;
   return corner.deviation >= kNoEnd || path::Deviation(corner.first, second, out) <= corner.deviation;
 }
@@ -226,7 +226,7 @@ bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, 
   work += kBlendPlaces + 1;
   if (!MakeBlend(before, after, d.first, d.second, blend.segment) || !(SquareOn(c, s, blend) > 0)) return false;
   const double cut = before.to - d.first;
-  if (!CutAt(c, s, before.begin + cut - before.from, ahead.end() - 1)) return false;
+  if (!CutAt(c, s, before.begin + (cut - before.from), ahead.end() - 1)) return false;
   before.to = cut;
   blend.to = blend.segment.length;
   after.from = d.second;

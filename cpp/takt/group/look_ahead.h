@@ -29,7 +29,7 @@ struct Stretch {
   trajectory::AlongPath limits;
   double build_up_s = 0;  // of accelerations, from one stop to the next
 
-  double end() const noexcept { return begin + to - from; }
+  double end() const noexcept { return begin + (to - from); }
 };
 
 // The corner before the last stretch: two lines, a blend between them. Where the next corner's blend can begin in the

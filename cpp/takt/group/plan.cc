@@ -18,6 +18,7 @@ constexpr double kLimitShare = 0.98;
 constexpr std::size_t kSweepNodes = 512;
 constexpr std::size_t kSpareNodes = 4;
 constexpr double kStepsOfLine = 4;
+constexpr double kLeastStep = 1e-3;  // mm
 constexpr int kLeastPlaces = 4;
 constexpr int kMostPlaces = 64;
 // What waits to be sampled is, as soon as the motion might have to brake for it within so many nodes and seconds.
@@ -144,8 +145,9 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   };
   // Between two blends it can be faster than on them only where there are nodes.
   const bool between = stretch.from > 0 && stretch.segment.shape == path::Shape::kLine;
-  const double most = (stretch.to - stretch.from) / (between ? kStepsOfLine : 1);
-  const double end = stretch.end() - c.ahead.last.s < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
+  const double left = stretch.end() - c.ahead.last.s;
+  const double most = std::max((stretch.to - stretch.from) / (between ? kStepsOfLine : 1), kLeastStep);
+  const double end = left < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
   trajectory::PathPoint next;
   if (!trajectory::NextPoint(c.ahead.last, end, c.ahead.window.limits(), c.ahead.window.build_up_s(), c.cycle.period_s,
                              slopes_at, next)) {

@@ -227,6 +227,40 @@ TEST(ChordPaths, PropertyStayWithinTheDeviation) {
   std::cout << "members that keep their own limits leave the path by up to " << most_off_path << " mm\n";
 }
 
+// GR-22: what is further from all corners than the corner distance lies on the chords.
+TEST(ChordPaths, PropertyKeepTheCornerDistance) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const double distance = Uniform(random, 0.3, 1.5);
+    Points points{KDL::Vector::Zero()};
+    double direction = 0;
+    for (int i = 0; i < 60; ++i) {
+      direction += Uniform(random, 0, 0.2);
+      points.push_back(points.back() +
+                       Uniform(random, 0.5, 2) * KDL::Vector(std::cos(direction), std::sin(direction), 0));
+    }
+    Rig rig = Gantry({TableOf(points)});
+    rig.Start();
+    const Ticket move = rig.Give(MovePath{.path = 0,
+                                          .velocity = 100,
+                                          .transition_mode = TransitionMode::kCornerDistance,
+                                          .transition_parameter = distance});
+    while (!rig.lives[move].ended()) {
+      rig.Step();
+      if (!rig.state.begun) continue;
+      const KDL::Vector at = OnPath(rig);
+      double nearest = 1e99;
+      for (const KDL::Vector& corner : points) nearest = std::min(nearest, (at - corner).Norm());
+      if (nearest > distance) {
+        ASSERT_LE(FromChords(at, points), 1e-9);
+      }
+    }
+    EXPECT_TRUE(rig.lives[move].done);
+    ExpectSmooth(rig);
+  }
+}
+
 // Lines of 4 mm between corners rounded tightly: fast between them, not only on the long ones.
 TEST(ChordPaths, AreFastBetweenCorners) {
   const Points points = {{0, 0, 0}, {50, 0, 0}, {50, 4, 0}, {54, 4, 0}, {54, 50, 0}};
