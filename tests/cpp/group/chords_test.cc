@@ -261,6 +261,25 @@ TEST(ChordPaths, PropertyKeepTheCornerDistance) {
   }
 }
 
+// GR-12: chords that lead out of where an axis may go end before that, on the last chord that can be gone whole.
+TEST(ChordPaths, EndWhereAnAxisCannotGo) {
+  const Points points = Circle(30, 1, 100, {});
+  Rig rig = Gantry({TableOf(points)});
+  rig.axes[1].limits.upper = 40;
+  rig.Start();
+  const Ticket move = rig.Give(MovePath{.path = 0,
+                                        .velocity = 150,
+                                        .transition_mode = TransitionMode::kMaxCornerDeviation,
+                                        .transition_parameter = 0.01});
+  ASSERT_TRUE(rig.RunToEnd(move, 20));
+  EXPECT_EQ(rig.lives[move].error_id, ErrorId::kUnreachable);
+  ExpectSmooth(rig);
+  const double y = ToolOf(rig).p.y();
+  EXPECT_LE(y, 40);
+  EXPECT_GT(y, 39);
+  EXPECT_LE(FromChords(ToolOf(rig).p, points), 1e-9);
+}
+
 // Lines of 4 mm between corners rounded tightly: fast between them, not only on the long ones.
 TEST(ChordPaths, AreFastBetweenCorners) {
   const Points points = {{0, 0, 0}, {50, 0, 0}, {50, 4, 0}, {54, 4, 0}, {54, 50, 0}};
