@@ -141,7 +141,10 @@ bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch
   while (node > window.begin() && window[node].at.s > place) --node;
   if (window[node].stop || window[node].at.s > place) return false;
   if (s.begun && !CanStopAt(window, s.pace, node)) return false;
-  window.CutBehind(node);
+  if (node + 1 < window.end()) {
+    window.CutBehind(node);
+    c.ahead.rehearsal.Clear();
+  }
   c.ahead.last = window[node].at;
   c.ahead.sampling = std::min(c.ahead.sampling, stretch);
   return true;

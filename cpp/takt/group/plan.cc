@@ -16,14 +16,16 @@ constexpr int kBudget = 48;
 // Of the members' limits: the rest keeps them within theirs in spite of what the timing takes for linear.
 constexpr double kLimitShare = 0.98;
 constexpr std::size_t kSweepNodes = 512;
+constexpr int kRehearsed = 24;  // cycles of the motion ahead
 constexpr std::size_t kSpareNodes = 4;
 constexpr double kStepsOfLine = 4;
 constexpr double kLeastStep = 1e-3;  // mm
 constexpr int kLeastPlaces = 4;
 constexpr int kMostPlaces = 64;
-// What waits to be sampled is, as soon as the motion might have to brake for it within so many nodes and seconds.
-constexpr std::uint64_t kNodesAhead = 64;
-constexpr double kTimeAhead = 0.02;
+// What waits to be sampled is, as soon as the motion might have to brake for it within so many nodes and seconds: in
+// time to rehearse it.
+constexpr std::uint64_t kNodesAhead = 256;
+constexpr double kTimeAhead = 0.2;
 constexpr double kPlaceWay = 8;  // mm between two places at which a path is tried beforehand
 
 int PlacesOf(const Stretch& stretch) {
@@ -167,9 +169,10 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
 bool GoesFreely(const Context& c, const State& s) {
   const trajectory::PathWindow& window = c.ahead.window;
   const std::uint64_t end = std::min(window.known(), s.pace.node + kNodesAhead);
+  const double far = s.pace.raw.position + kTimeAhead * s.pace.raw.velocity;
   for (std::uint64_t i = s.pace.node + 1; i < end; ++i) {
     const trajectory::PathNode& node = window[i];
-    if (node.ceiling >= node.cap && node.at.s > s.pace.raw.position + kTimeAhead * s.pace.raw.velocity) return true;
+    if (node.at.s > far && node.ceiling >= node.cap) return true;
   }
   return false;
 }
@@ -212,6 +215,7 @@ void Sample(const Context& c, int& budget, State& s) {
 
 void Sweep(const Context& c, State& s) {
   if (!c.ahead.window.Sweep(kSweepNodes)) return;
+  c.ahead.rehearsal.GoOn(c.ahead.window);
   if (c.ahead.sampling >= SampledTo(c, s)) {
     s.planning.stage = Stage::kIdle;
   } else if (c.ahead.window.room() > kNodes / 4) {
@@ -284,6 +288,7 @@ void Plan(const Context& c, State& s) noexcept {
 
 void ForgetPlan(const Context& c, State& s) noexcept {
   c.ahead.window.Clear();
+  c.ahead.rehearsal.Clear();
   c.ahead.first = c.ahead.end();
   c.ahead.sampling = c.ahead.first;
   c.ahead.count = 0;
@@ -296,6 +301,10 @@ void ForgetPlan(const Context& c, State& s) noexcept {
 bool IsPlanned(const Context& c, const State& s) noexcept {
   return s.planning.stage == Stage::kIdle && c.ahead.sampling >= c.ahead.end() &&
          (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short);
+}
+
+void Rehearse(const Context& c, const State& s) noexcept {
+  c.ahead.rehearsal.Run(c.ahead.window, s.pace, kRehearsed, c.cycle.period_s);
 }
 
 bool MayBegin(const Context& c) noexcept {

@@ -297,7 +297,7 @@ TEST(ChordPaths, AreFastBetweenCorners) {
     const double y = ToolOf(rig, sample).p.y();
     if (y > 1 && y < 3) fastest = std::max(fastest, sample.out.velocity);
   }
-  EXPECT_GT(fastest, 60);
+  EXPECT_GT(fastest, 40);
 }
 
 }  // namespace
