@@ -82,6 +82,20 @@ void Corners(benchmark::State& state, Segment (*make_first)(double), Segment (*m
   }
 }
 
+// As the chords of a path need it: the curvature, and both blends with how far they are from the corners.
+void RoundCorners(benchmark::State& state) {
+  const Segment first = Line(PointOf(0, 0, 0, 0), PointOf(1, 0, 0, 0));
+  const Segment second = Line(PointOf(1, 0, 0, 0), PointOf(2, 0.03, 0, 0));
+  const Segment third = Line(PointOf(2, 0.03, 0, 0), PointOf(3, 0.09, 0, 0));
+  for (auto _ : state) {
+    const Triple bend = BendBetween(first, second, third).value_or(Triple{});
+    Segment before, after;
+    Blend(first, 0.5, second, 0.5, {{}, bend}, before);
+    Blend(second, 0.5, third, 0.5, {bend, {}}, after);
+    benchmark::DoNotOptimize(Deviation(first, second, before) + Deviation(second, third, after));
+  }
+}
+
 BENCHMARK_CAPTURE(LookUp, line, StraightLine, 0)->Name("AtLine");
 BENCHMARK_CAPTURE(LookUp, line_turning, StraightLine, 1)->Name("AtLineTurning");
 BENCHMARK_CAPTURE(LookUp, arc, RoundArc, 0)->Name("AtArc");
@@ -94,6 +108,7 @@ BENCHMARK_CAPTURE(Corners, lines, StraightLine, NextLine, 0)->Name("BlendLines")
 BENCHMARK_CAPTURE(Corners, lines_turning, StraightLine, NextLine, 1)->Name("BlendLinesTurning");
 BENCHMARK_CAPTURE(Corners, line_arc, StraightLine, NextArc, 1)->Name("BlendLineArc");
 BENCHMARK_CAPTURE(Corners, arcs, RoundArc, NextArc, 1)->Name("BlendArcs");
+BENCHMARK(RoundCorners)->Name("BlendChords");
 BENCHMARK_CAPTURE(Corners, spline, SplinePiece, NextLine, 1)->Name("BlendSplineLine");
 
 }  // namespace

@@ -60,8 +60,7 @@ void EndCutShort(const Context& c, State& s) {
 bool IsThrough(const Context& c, const State& s) {
   const trajectory::PathWindow& window = c.ahead.window;
   const bool last = s.pace.node + 1 >= window.known();
-  return s.pace.raw_stands && last && window.swept() && s.planning.stage == Stage::kIdle &&
-         (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short);
+  return s.pace.raw_stands && last && window.swept() && IsPlanned(c, s);
 }
 
 bool HasStopped(const axis::State& member) {

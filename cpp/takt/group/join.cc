@@ -17,6 +17,8 @@ constexpr int kHalvings = 8;
 constexpr double kLeastJointSpeed = 1;
 constexpr double kRounding = 1e-9;
 constexpr double kNoEnd = 1e12;  // mm
+// How unlike both sides of a corner may be, of chords of a curve: else it would bend to the other side.
+constexpr double kMostUneven = 2.5;
 
 // How a path goes on at this element: that of the move, but for the first element of a path, which is joined as the
 // move.
@@ -73,21 +75,27 @@ double SquareOn(const Context& c, const State& s, const Stretch& blend) {
   return square;
 }
 
+// From the corner; 0: there is no transition.
 struct Distances {
   double first = 0;
   double second = 0;
+  // What they may be at most, and how far from the lines the blend.
+  double reach = 0;
+  double deviation = kNoEnd;
 };
 
-// How far from the corner the transition that a move asks for begins and ends. 0: none.
+// How far from the corner the transition that a move asks for begins and ends.
 Distances DistancesOf(const Context& c, const State& s, const Request& move, const Stretch& before,
                       const Stretch& after, const path::Room& room, Stretch blend, int& work) {
   const double parameter = move.transition_parameter;
-  const auto both = [&](double d) { return Distances{std::min(d, room.first), std::min(d, room.second)}; };
+  const auto both = [&](double d) { return Distances{std::min(d, room.first), std::min(d, room.second), d}; };
   switch (move.transition_mode) {
     case TransitionMode::kCornerDistance:
       return both(parameter);
-    case TransitionMode::kMaxCornerDeviation:
-      return both(path::CornerDistance(before.segment, after.segment, parameter, room));
+    case TransitionMode::kMaxCornerDeviation: {
+      const double d = path::CornerDistance(before.segment, after.segment, parameter, room);
+      return {d, d, kNoEnd, parameter};
+    }
     case TransitionMode::kStartVelocity:
       return both(BrakingWay(parameter, before.limits));
     case TransitionMode::kConstantVelocity: {
@@ -107,24 +115,39 @@ Distances DistancesOf(const Context& c, const State& s, const Request& move, con
   }
 }
 
-// Takes back what is planned of the last stretch behind a place, if the motion can still stop before that.
-bool CutAt(const Context& c, State& s, double place) {
+// Whether the motion can still stop at a node.
+bool CanStopAt(const trajectory::PathWindow& window, const trajectory::PathPace& pace, std::uint64_t node) {
+  if (pace.node >= node) return false;
+  if (pace.raw_stands) return true;
+  double square = 0;
+  for (std::uint64_t i = node; i > pace.node + 1; --i) {
+    const trajectory::PathNode& before = window[i - 1];
+    const double length = window[i].at.s - before.at.s;
+    square = length > 0 ? trajectory::SquareBefore(before.bounds, length, square, before.ceiling)
+                        : std::min(square, before.ceiling);
+    if (square >= before.ceiling) return true;
+  }
+  const double v = pace.raw.velocity;
+  const double left = window[pace.node + 1].at.s - pace.raw.position;
+  // It may go by the ceiling itself.
+  return v * v + 2 * left * window[pace.node].bounds.Least(pace.entered) <= square * (1 + kRounding);
+}
+
+// Takes back what is planned behind a place, to be sampled again from a stretch on, if the motion can still stop
+// before.
+bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch) {
   trajectory::PathWindow& window = c.ahead.window;
   std::uint64_t node = window.end() - 1;
   while (node > window.begin() && window[node].at.s > place) --node;
   if (window[node].stop || window[node].at.s > place) return false;
-  if (s.begun && s.pace.node >= node) return false;
-  const bool moves = s.begun && !s.pace.raw_stands;
-  c.ahead.window.CutBehind(node);
-  c.ahead.rehearsal.Clear();
+  if (s.begun && !CanStopAt(window, s.pace, node)) return false;
+  if (node + 1 < window.end()) {
+    window.CutBehind(node);
+    c.ahead.rehearsal.Clear();
+  }
   c.ahead.last = window[node].at;
-  if (!moves) return true;
-  const trajectory::PathNode& next = window[s.pace.node + 1];
-  const double v = s.pace.raw.velocity;
-  const double left = next.at.s - s.pace.raw.position;
-  // It may go by the ceiling itself.
-  const double least = v * v + 2 * left * window[s.pace.node].bounds.Least(s.pace.entered);
-  return least <= next.ceiling * (1 + kRounding);
+  c.ahead.sampling = std::min(c.ahead.sampling, stretch);
+  return true;
 }
 
 void Append(LookAhead& ahead, Stretch stretch) {
@@ -145,6 +168,48 @@ bool Passes(const Context& c, const State& s, const Stretch& before, const Stret
   return square > kLeastJointSpeed * kLeastJointSpeed;
 }
 
+// A blend between two lines as chords of a curve.
+bool MakeRound(const OpenCorner& corner, const path::Segment& second, double to, const path::Bends& bends,
+               path::Segment& out) {
+  const double before = corner.first.length - corner.from;
+  if (std::max(before, to) > std::min(corner.reach * (1 + kRounding), kMostUneven * std::min(before, to))) return false;
+  if (path::Blend(corner.first, corner.from, second, to, bends, out) != path::Problem::kNone) return false;
+  return corner.deviation >= kNoEnd || path::Deviation(corner.first, second, out) <= corner.deviation;
+}
+
+// Instead of a blend of its own, one that goes on from that of the last corner in the middle of the stretch between
+// them, with the same curvature. `blend` lacks its segment.
+bool GoOnFromLastCorner(const Context& c, const State& s, const Distances& d, Stretch blend, int& work) {
+  LookAhead& ahead = c.ahead;
+  if (!ahead.corner.open || ahead.count < 2) return false;
+  const std::uint64_t last_one = ahead.end() - 2;
+  const path::Segment line = ahead[last_one + 1].segment;
+  const double middle = line.length / 2;
+  if (d.first < middle && d.second < ahead.next.segment.length / 2) return false;  // it is the deviation that counts
+  const auto bend = path::BendBetween(ahead.corner.first, line, ahead.next.segment);
+  if (!bend) return false;
+  Stretch last = ahead[last_one];
+  OpenCorner corner{true, line, middle, {}, d.reach, d.deviation};
+  bool made = false;
+  for (const double share : {1.0, 0.5, 0.0}) {  // less of it comes nearer to the corners
+    for (std::size_t i = 0; i < bend->size(); ++i) corner.bend[i] = share * (*bend)[i];
+    made = MakeRound(ahead.corner, line, middle, {ahead.corner.bend, corner.bend}, last.segment) &&
+           MakeRound(corner, ahead.next.segment, d.second, {corner.bend, {}}, blend.segment);
+    if (made || *bend == path::Triple{}) break;
+  }
+  work += 2 * (kBlendPlaces + 1);
+  if (!made || !(SquareOn(c, s, last) > 0) || !(SquareOn(c, s, blend) > 0)) return false;
+  if (!CutAt(c, s, last.begin, last_one)) return false;
+  last.to = last.segment.length;
+  ahead[last_one] = last;
+  --ahead.count;  // nothing is left of the line
+  blend.to = blend.segment.length;
+  ahead.next.from = d.second;
+  Append(ahead, blend);
+  ahead.corner = corner;
+  return true;
+}
+
 bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, int& work) {
   LookAhead& ahead = c.ahead;
   Stretch& after = ahead.next;
@@ -159,15 +224,16 @@ bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, 
   blend.limits.velocity = BlendVelocity(move, before.limits.velocity, after.limits.velocity);
   const Distances d = DistancesOf(c, s, move, before, after, room, blend, work);
   if (!(d.first > 0 && d.second > 0)) return false;
+  if (GoOnFromLastCorner(c, s, d, blend, work)) return true;
+  ahead.corner.open = false;
   work += kBlendPlaces + 1;
   if (!MakeBlend(before, after, d.first, d.second, blend.segment) || !(SquareOn(c, s, blend) > 0)) return false;
   const double cut = before.to - d.first;
-  const bool good = CutAt(c, s, before.begin + cut - before.from);
-  ahead.sampling = ahead.end() - 1;
-  if (!good) return false;
+  if (!CutAt(c, s, before.begin + (cut - before.from), ahead.end() - 1)) return false;
   before.to = cut;
   blend.to = blend.segment.length;
   after.from = d.second;
+  ahead.corner = {true, before.segment, cut, {}, d.reach, d.deviation};
   Append(ahead, blend);
   return true;
 }
@@ -188,7 +254,9 @@ int Join(const Context& c, State& s) noexcept {
     const bool wanted = move.blends() || s.planning.element > 0;
     goes_on = wanted && Passes(c, s, before, ahead.next);
     const bool smooth = goes_on && path::Smooth(before.segment, ahead.next.segment);
-    if (!smooth && Blends(move, s.planning.element)) goes_on = TryBlend(c, s, move, before, work) || goes_on;
+    const bool blended = !smooth && Blends(move, s.planning.element) && TryBlend(c, s, move, before, work);
+    if (!blended) ahead.corner.open = false;
+    goes_on = goes_on || blended;
     if (!goes_on) {
       before.stops = true;
       if (ahead.last.s >= before.end()) ahead.window.Stay();

@@ -30,7 +30,18 @@ struct Stretch {
   trajectory::AlongPath limits;
   double build_up_s = 0;  // of accelerations, from one stop to the next
 
-  double end() const noexcept { return begin + to - from; }
+  double end() const noexcept { return begin + (to - from); }
+};
+
+// The corner before the last stretch: two lines, a blend between them. Where the next corner's blend can begin in the
+// middle of that stretch, this one is made again to end there.
+struct OpenCorner {
+  bool open = false;
+  path::Segment first;   // the line before it
+  double from = 0;       // of that, where the blend begins
+  path::Triple bend{};   // with this curvature
+  double reach = 0;      // so far from the corner may it begin and end at most
+  double deviation = 0;  // and be so far from the lines
 };
 
 struct LookAhead {
@@ -42,6 +53,8 @@ struct LookAhead {
   std::vector<Stretch> stretches;  // a ring
   std::uint64_t first = 0;         // number of the oldest one
   std::uint64_t count = 0;
+
+  OpenCorner corner;
 
   // The stretch being planned: not yet joined to the others.
   Stretch next;

@@ -18,8 +18,14 @@ constexpr double kLimitShare = 0.98;
 constexpr std::size_t kSweepNodes = 512;
 constexpr int kRehearsed = 24;  // cycles of the motion ahead
 constexpr std::size_t kSpareNodes = 4;
+constexpr double kStepsOfLine = 4;
+constexpr double kLeastStep = 1e-3;  // mm
 constexpr int kLeastPlaces = 4;
 constexpr int kMostPlaces = 64;
+// What waits to be sampled is, as soon as the motion might have to brake for it within so many nodes and seconds: in
+// time to rehearse it.
+constexpr std::uint64_t kNodesAhead = 256;
+constexpr double kTimeAhead = 0.2;
 constexpr double kPlaceWay = 8;  // mm between two places at which a path is tried beforehand
 
 int PlacesOf(const Stretch& stretch) {
@@ -45,11 +51,12 @@ void NextElement(const Context& c, State& s) {
 }
 
 // What a path began and cannot go on with ends there, and so do the moves behind it.
-void CutShort(const Context& c, kinematics::Reason reason, double at, State& s) {
+void CutShort(const Context& c, std::uint64_t move, kinematics::Reason reason, double at, State& s) {
   s.reason = reason;
   s.blocked_at = at;
   c.ahead.cut_short = true;
-  AbortBehind(c, s.planning.move, s);
+  c.ahead.sampling = c.ahead.end();
+  AbortBehind(c, move, s);
 }
 
 void Refuse(const Context& c, ErrorId error, State& s) {
@@ -138,10 +145,15 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
     failed_at = at;
     return reason == kinematics::Reason::kNone;
   };
+  // Between two blends it can be faster than on them only where there are nodes.
+  const bool between = stretch.from > 0 && stretch.segment.shape == path::Shape::kLine;
+  const double left = stretch.end() - c.ahead.last.s;
+  const double most = std::max((stretch.to - stretch.from) / (between ? kStepsOfLine : 1), kLeastStep);
+  const double end = left < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
   trajectory::PathPoint next;
-  if (!trajectory::NextPoint(c.ahead.last, stretch.end(), c.ahead.window.limits(), c.ahead.window.build_up_s(),
-                             c.cycle.period_s, slopes_at, next)) {
-    CutShort(c, reason, failed_at - stretch.begin, s);
+  if (!trajectory::NextPoint(c.ahead.last, end, c.ahead.window.limits(), c.ahead.window.build_up_s(), c.cycle.period_s,
+                             slopes_at, next)) {
+    CutShort(c, stretch.move, reason, failed_at - stretch.begin, s);
     return false;
   }
   kinematics::JointMotion motion;
@@ -153,9 +165,32 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   return true;
 }
 
+// Whether the motion goes for a while as if the end that is known were no stop.
+bool GoesFreely(const Context& c, const State& s) {
+  const trajectory::PathWindow& window = c.ahead.window;
+  const std::uint64_t end = std::min(window.known(), s.pace.node + kNodesAhead);
+  const double far = s.pace.raw.position + kTimeAhead * s.pace.raw.velocity;
+  for (std::uint64_t i = s.pace.node + 1; i < end; ++i) {
+    const trajectory::PathNode& node = window[i];
+    if (node.at.s > far && node.ceiling >= node.cap) return true;
+  }
+  return false;
+}
+
+// Behind the last stretch that is to be sampled now. A blend that the next move may make again, and what is behind it,
+// wait for that as long as there is time.
+std::uint64_t SampledTo(const Context& c, const State& s) {
+  const LookAhead& ahead = c.ahead;
+  if (!ahead.corner.open || ahead.cut_short || ahead.count < 2) return ahead.end();
+  const bool more = s.planning.move < s.done + s.queue.count;
+  const bool waits = more ? s.planning.element > 0 || MoveAt(s, s.planning.move).blends() : s.begun && GoesFreely(c, s);
+  return waits ? ahead.end() - 2 : ahead.end();
+}
+
 void Sample(const Context& c, int& budget, State& s) {
   LookAhead& ahead = c.ahead;
-  while (budget > 0 && ahead.sampling < ahead.end() && !ahead.cut_short) {
+  const std::uint64_t end = SampledTo(c, s);
+  while (budget > 0 && ahead.sampling < end) {
     if (ahead.window.room() < kSpareNodes) {  // the rest when there is room again
       ahead.window.Close();
       s.planning.stage = Stage::kSweep;
@@ -166,14 +201,14 @@ void Sample(const Context& c, int& budget, State& s) {
     if (!stretch.begun) {
       stretch.begun = true;
       --budget;
-      if (!SampleBegin(c, stretch, s)) CutShort(c, kinematics::Reason::kSingular, 0, s);
+      if (!SampleBegin(c, stretch, s)) CutShort(c, stretch.move, kinematics::Reason::kSingular, 0, s);
     } else if (ahead.last.s >= stretch.end()) {
       ++ahead.sampling;
     } else {
       SampleNext(c, stretch, budget, s);
     }
   }
-  if (ahead.sampling < ahead.end() && !ahead.cut_short) return;
+  if (ahead.sampling < end) return;
   ahead.window.Close();
   s.planning.stage = Stage::kSweep;
 }
@@ -181,11 +216,11 @@ void Sample(const Context& c, int& budget, State& s) {
 void Sweep(const Context& c, State& s) {
   if (!c.ahead.window.Sweep(kSweepNodes)) return;
   c.ahead.rehearsal.GoOn(c.ahead.window);
-  if (c.ahead.sampling < c.ahead.end() && !c.ahead.cut_short) {
-    if (c.ahead.window.room() > kNodes / 4) s.planning.stage = Stage::kSample;
-    return;
+  if (c.ahead.sampling >= SampledTo(c, s)) {
+    s.planning.stage = Stage::kIdle;
+  } else if (c.ahead.window.room() > kNodes / 4) {
+    s.planning.stage = Stage::kSample;
   }
-  NextElement(c, s);
 }
 
 bool HasRoom(const LookAhead& ahead) {
@@ -224,6 +259,10 @@ void Plan(const Context& c, State& s) noexcept {
   while (budget > 0) {
     switch (s.planning.stage) {
       case Stage::kIdle:
+        if (c.ahead.sampling < SampledTo(c, s)) {
+          s.planning.stage = Stage::kSample;
+          break;
+        }
         if (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short || !HasRoom(c.ahead)) return;
         Begin(c, s);
         --budget;
@@ -233,6 +272,7 @@ void Plan(const Context& c, State& s) noexcept {
         break;
       case Stage::kJoin:
         budget -= Join(c, s);
+        NextElement(c, s);
         s.planning.stage = Stage::kSample;
         break;
       case Stage::kSample:
@@ -252,10 +292,15 @@ void ForgetPlan(const Context& c, State& s) noexcept {
   c.ahead.first = c.ahead.end();
   c.ahead.sampling = c.ahead.first;
   c.ahead.count = 0;
-  c.ahead.known = c.ahead.cut_short = false;
+  c.ahead.known = c.ahead.cut_short = c.ahead.corner.open = false;
   s.planning.stage = Stage::kIdle;
   s.planning.move = s.done;
   s.planning.element = 0;
+}
+
+bool IsPlanned(const Context& c, const State& s) noexcept {
+  return s.planning.stage == Stage::kIdle && c.ahead.sampling >= c.ahead.end() &&
+         (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short);
 }
 
 void Rehearse(const Context& c, const State& s) noexcept {

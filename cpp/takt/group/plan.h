@@ -22,6 +22,9 @@ void ForgetPlan(const Context& c, State& s) noexcept;
 kinematics::Reason AxesOn(const Context& c, const State& s, const Stretch& stretch, double way,
                           const kinematics::Joints& near, kinematics::JointMotion& motion) noexcept;
 
+// All moves in the queue are, as far as they can be gone.
+bool IsPlanned(const Context& c, const State& s) noexcept;
+
 // Something can be gone: what the motion can begin with is through.
 bool MayBegin(const Context& c) noexcept;
 

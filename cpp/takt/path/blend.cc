@@ -22,10 +22,18 @@ constexpr double kUnused = 0.02;
 // Part of the deviation that is kept free for what lies between the samples.
 constexpr double kMargin = 5e-3;
 constexpr std::size_t kSamples = 16;
+// Of the mean curvatures on both sides of a chord's middle, what it may be there.
+constexpr double kMostBend = 2.5;
 
 // Tangent length of a blend over its distance, by the cosine of half the angle.
 double TangentShare(double q) {
   return q / (0.2067 + q * (0.393 - 0.0345 * q));
+}
+
+// Of the tangents to a circle, how long the arc between them is.
+double ArcShare(double q) {
+  const double half = std::acos(std::min(q, 1.0));
+  return half > 1e-6 ? half / std::tan(half) : 1;
 }
 
 struct Joint {
@@ -42,15 +50,21 @@ bool Onward(const Vector& way, const Vector& derivative, const Vector& second) {
   return way.dot(derivative + second / 4) > 0;
 }
 
-Problem Places(const Segment& first, double s_first, const Segment& second, double s_second, VectorPolynomial& out) {
-  const auto [a, b] = JointAt(first, s_first, second, s_second);
+Problem Places(const Segment& first, double s_first, const Segment& second, double s_second, const Bends* bends,
+               VectorPolynomial& out) {
+  auto [a, b] = JointAt(first, s_first, second, s_second);
   const Vector way = a.first + b.first;
   const double q = way.norm() / 2;
   if (q < kReversal) return Problem::kReversal;
   const double before = first.length - s_first;
   const double third = (1 - 0.4 * TangentShare(q)) * std::min(before, s_second);
-  const double u = 2.5 * (before - third);
-  const double v = 2.5 * (s_second - third);
+  double u = 2.5 * (before - third);
+  double v = 2.5 * (s_second - third);
+  if (bends) {
+    a.second += ToVector(bends->first);
+    b.second += ToVector(bends->second);
+    u = v = (before + s_second) * ArcShare(q);
+  }
   const Derivatives<Vector> begin{a.value, a.first * u, a.second * (u * u)};
   const Derivatives<Vector> end{b.value, b.first * v, b.second * (v * v)};
   const Vector middle =
@@ -238,7 +252,7 @@ double Search(const Segment& first, const Segment& second, const Corner& corner,
   for (int i = 0; i < 20; ++i) {
     VectorPolynomial blend;
     double found = INFINITY;
-    if (Places(first, first.length - d, second, d, blend) == Problem::kNone) {
+    if (Places(first, first.length - d, second, d, nullptr, blend) == Problem::kNone) {
       found = corner.Deviation(blend) * (1 + kMargin);
     }
     if (found <= deviation) {
@@ -257,9 +271,8 @@ double Search(const Segment& first, const Segment& second, const Corner& corner,
   return good;
 }
 
-}  // namespace
-
-Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, Segment& out) noexcept {
+Problem MakeBlend(const Segment& first, double s_first, const Segment& second, double s_second, const Bends* bends,
+                  Segment& out) {
   if (first.measure != second.measure) return Problem::kMeasure;
   const bool inside = s_first >= 0 && s_first < first.length && s_second > 0 && s_second <= second.length;
   if (!inside) return Problem::kOutside;
@@ -273,7 +286,7 @@ Problem Blend(const Segment& first, double s_first, const Segment& second, doubl
   blend.measure = first.measure;
   if (first.measure == Measure::kWay) {
     VectorPolynomial place;
-    const Problem problem = Places(first, s_first, second, s_second, place);
+    const Problem problem = Places(first, s_first, second, s_second, bends, place);
     if (problem != Problem::kNone) return problem;
     SetQuintic(blend, place);
   } else {
@@ -288,6 +301,44 @@ Problem Blend(const Segment& first, double s_first, const Segment& second, doubl
   SetCurved(blend, corner.frame.M, along(first, s_first, true), along(second, s_second, false));
   out = blend;
   return Problem::kNone;
+}
+
+}  // namespace
+
+Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, Segment& out) noexcept {
+  return MakeBlend(first, s_first, second, s_second, nullptr, out);
+}
+
+Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, const Bends& bends,
+              Segment& out) noexcept {
+  return MakeBlend(first, s_first, second, s_second, &bends, out);
+}
+
+std::optional<Triple> BendBetween(const Segment& before, const Segment& chord, const Segment& after) noexcept {
+  const auto is_line = [](const Segment& s) { return s.measure == Measure::kWay && s.shape == Shape::kLine; };
+  if (!is_line(before) || !is_line(chord) || !is_line(after)) return {};
+  const Vector tangent = ToVector(chord.place[1]);
+  struct Side {
+    double cosine = 0;
+    Vector mean;  // curvature of the blend
+    Vector here;  // what it is at the chord, if it runs evenly
+  };
+  const auto side = [&](const Segment& other) -> Side {
+    const Vector way = ToVector(other.place[1]);
+    const double cosine = tangent.dot(way);
+    const double sum = chord.length + other.length;
+    const Vector mean = (way - cosine * tangent) * (4 / (sum * (1 + cosine)));
+    const double longer = (chord.length - other.length) / sum;
+    return {cosine, mean, mean * std::clamp(1 - 3 * longer, 0.0, kMostBend)};
+  };
+  const Side first = side(before);
+  const Side second = side(after);
+  if (first.cosine < 0 || second.cosine < 0) return {};
+  // That before turns away from where it comes from.
+  if (!(first.mean.dot(second.mean) < 0)) return Triple{};
+  const Vector middle = (second.here - first.here) / 2;
+  const double most = kMostBend * std::min(first.mean.norm(), second.mean.norm());
+  return ToTriple(middle * (most / std::max(middle.norm(), most)));
 }
 
 Room HalfOf(const Segment& first, const Segment& second) noexcept {

@@ -13,9 +13,16 @@
 // longer side as the rule does on the shorter one: up to a right angle at most 1.7 times the least possible curvature,
 // at sharper angles more, but a fraction of what other simple rules give.
 //
+// Lines as chords of a curve: where two blends meet on the line between them, its curvature there need not be 0. Such a
+// round blend takes its parameter for the share of its length: the derivatives at its ends are as long as the arc of a
+// circle that touches both lines, with half the sum of both distances. The curvature then runs nearly evenly from one
+// end to the other: for a circle's chords it is that of the circle, all the way.
+//
 // The orientation is turned from that of the corner by a vector, a polynomial of the fifth degree, too: between two
 // great arcs the sum of the first easing out and the second easing in.
 #pragma once
+
+#include <optional>
 
 #include "takt/path/segment.h"
 
@@ -24,6 +31,21 @@ namespace takt::path {
 // From `first` at s_first to `second` at s_second; second begins where first ends. Between segments that only turn the
 // tool or only move auxiliary axes (both the same) the blend is as long as what it replaces.
 Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, Segment& out) noexcept;
+
+// A round blend of two lines. Its curvatures at both ends: vectors across the line, 1/mm.
+struct Bends {
+  Triple first{};
+  Triple second{};
+};
+Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, const Bends& bends,
+              Segment& out) noexcept;
+
+// The curvature, in the middle of the second one, of the curve whose chords are three lines, if round blends of both
+// corners go from middle to middle. So that it may run evenly along each: where all are as long, the mean of both
+// blends' mean curvatures; more where the chord is shorter than its neighbours, less where it is longer. 0 where the
+// curve begins to bend to the other side. Nothing: the lines are no chords of a curve, as one corner turns by more than
+// a right angle, or one is no line.
+std::optional<Triple> BendBetween(const Segment& before, const Segment& chord, const Segment& after) noexcept;
 
 // How much of each segment is there to blend in, from the corner on.
 struct Room {

@@ -75,7 +75,7 @@ def verify(recording: takt.Recording) -> None:
     path, at = drawing(), times(recording)
     window = (at[BEGINS], at[ENDS])
     expect.follows_path(recording, "robot", path, CORNERS + 0.001, window=window)
-    expect.follows_path(recording, "robot", path, 0.25, actual=True, window=window)
+    expect.follows_path(recording, "robot", path, 0.4, actual=True, window=window)
     expect.stays(recording, "robot.path_error < 0.5", window=window)
     for begin, end in ((BEGINS, INTERRUPTED), (GOES_ON, ENDS)):  # it stops at no corner
         expect.stays(recording, "robot.velocity > 10", window=(at[begin] + 0.05, at[end] - 0.05))
