@@ -146,12 +146,28 @@ bool Passes(const Context& c, const State& s, const Stretch& before, const Stret
 
 bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, int& work) {
   LookAhead& ahead = c.ahead;
-  Stretch& after = ahead.next;
+  CornerBlend blend;
+  if (!FindBlend(c, s, move, s.planning.element, before, ahead.next, work, blend)) return false;
+  const double cut = before.to - blend.first;
+  const bool good = CutAt(c, s, before.begin + cut - before.from);
+  ahead.sampling = ahead.end() - 1;
+  if (!good) return false;
+  before.to = cut;
+  ahead.next.from = blend.second;
+  Append(ahead, blend.stretch);
+  return true;
+}
+
+}  // namespace
+
+bool FindBlend(const Context& c, const State& s, const Request& move, std::uint32_t element, const Stretch& before,
+               const Stretch& after, int& work, CornerBlend& out) noexcept {
+  if (!Blends(move, element)) return false;
   if (before.joints != after.joints || before.segment.measure != after.segment.measure) return false;
   path::Room room = path::HalfOf(before.segment, after.segment);
   room.first = std::min(room.first, before.to - before.from);
-  Stretch blend;
-  blend.move = s.planning.move;
+  Stretch& blend = out.stretch;
+  blend.move = after.move;
   blend.joints = after.joints;
   blend.limits = trajectory::Least(before.limits, after.limits);
   blend.build_up_s = before.build_up_s;
@@ -160,18 +176,11 @@ bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, 
   if (!(d.first > 0 && d.second > 0)) return false;
   work += kBlendPlaces + 1;
   if (!MakeBlend(before, after, d.first, d.second, blend.segment) || !(SquareOn(c, s, blend) > 0)) return false;
-  const double cut = before.to - d.first;
-  const bool good = CutAt(c, s, before.begin + cut - before.from);
-  ahead.sampling = ahead.end() - 1;
-  if (!good) return false;
-  before.to = cut;
   blend.to = blend.segment.length;
-  after.from = d.second;
-  Append(ahead, blend);
+  out.first = d.first;
+  out.second = d.second;
   return true;
 }
-
-}  // namespace
 
 int Join(const Context& c, State& s) noexcept {
   LookAhead& ahead = c.ahead;
@@ -187,7 +196,7 @@ int Join(const Context& c, State& s) noexcept {
     const bool wanted = move.blends() || s.planning.element > 0;
     goes_on = wanted && Passes(c, s, before, ahead.next);
     const bool smooth = goes_on && path::Smooth(before.segment, ahead.next.segment);
-    if (!smooth && Blends(move, s.planning.element)) goes_on = TryBlend(c, s, move, before, work) || goes_on;
+    if (!smooth) goes_on = TryBlend(c, s, move, before, work) || goes_on;
     if (!goes_on) {
       before.stops = true;
       if (ahead.last.s >= before.end()) ahead.window.Stay();

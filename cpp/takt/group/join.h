@@ -8,4 +8,15 @@ namespace takt::group {
 // Appends `ahead.next`, and a blend before it where there is one. How many inverses of the kinematics that took.
 int Join(const Context& c, State& s) noexcept;
 
+// The blend that a move, or an element of a path, asks for at the corner before it.
+struct CornerBlend {
+  Stretch stretch;
+  double first = 0;   // so far before the corner it begins ...
+  double second = 0;  // ... and so far behind it ends
+};
+// False: there is none. Depends on nothing but the arguments, the limits in `ahead.window` and where the corner is, in
+// `ahead.end_joints`: what was checked is what is gone.
+bool FindBlend(const Context& c, const State& s, const Request& move, std::uint32_t element, const Stretch& before,
+               const Stretch& after, int& work, CornerBlend& out) noexcept;
+
 }  // namespace takt::group
