@@ -345,6 +345,37 @@ TEST(Check, APathIsOneQuestion) {
   ExpectSmooth(rig);
 }
 
+// It is tried while the move before it is gone, and joined to that.
+TEST(Check, APathBehindAMoveGoesOnFromThere) {
+  for (const bool good : {true, false}) {
+    Rig rig = Gantry({LongPath(60, good ? -1 : 39)});
+    rig.params.workspace.emplace();
+    rig.axes[2].limits.upper = 1000;
+    rig.Start();
+    const Ticket first = rig.Give(MoveLinearAbsolute{.x = -100});
+    rig.Step();
+    const Ticket path = rig.Give(MovePath{.path = Name::Of("long"), .buffer_mode = BufferMode::kBuffered});
+    rig.Give(Free(*Asked(rig)));
+    RunAnswering(rig, path);
+    EXPECT_EQ(rig.lives[path].done, good);
+    const Ticket last = rig.Give(MoveLinearRelative{.y = 10, .buffer_mode = BufferMode::kBuffered});
+    RunAnswering(rig, last);
+    EXPECT_TRUE(rig.lives[first].done);
+    EXPECT_TRUE(rig.lives[last].done);
+    EXPECT_NEAR(rig.out().x, good ? 300 : -100, 1e-9);
+    EXPECT_NEAR(rig.out().y, 10, 1e-9);
+    ExpectSmooth(rig);
+    bool there = false;
+    for (std::size_t i = 1; i < rig.trace.size(); ++i) {
+      there |= rig.trace[i].out.x < -99.999;
+      if (there) {
+        EXPECT_GE(rig.trace[i].out.x, rig.trace[i - 1].out.x - 0.001) << "goes back";
+      }
+    }
+    EXPECT_TRUE(there);
+  }
+}
+
 TEST(Check, ABadElementOfAPathIsNamed) {
   Rig rig = Gantry({LongPath(60)});
   rig.params.workspace.emplace();
