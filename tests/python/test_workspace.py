@@ -329,3 +329,71 @@ def test_parts_have_numbers() -> None:
         + "\n"
     ) as engine:
         assert engine.group("robot").parts == ()
+
+
+def urdf_arm(mesh: str = "") -> str:
+    """A slide along x that carries an arm turning about z: a box on it, a finger fixed to it."""
+    shape = f'<mesh filename="{mesh}" scale="0.001 0.001 0.001"/>' if mesh else '<box size="0.4 0.04 0.04"/>'
+    return f"""<robot name="r">
+<link name="world"><collision><geometry><box size="0.02 0.02 0.02"/></geometry></collision></link>
+<link name="arm"/><link name="arm_hand"/><link name="finger"/>
+<joint name="slide" type="prismatic"><parent link="world"/><child link="arm"/><origin xyz="0 0 0.5"/>
+  <axis xyz="1 0 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint>
+<joint name="turn" type="revolute"><parent link="arm"/><child link="arm_hand"/>
+  <axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1" effort="1"/></joint>
+<joint name="fix" type="fixed"><parent link="arm_hand"/><child link="finger"/><origin xyz="0.4 0 0"/></joint>
+</robot>""".replace(
+        '<link name="arm_hand"/><link name="finger"/>',
+        f'<link name="arm_hand"><collision><origin xyz="0.2 0 0"/><geometry>{shape}</geometry></collision></link>'
+        '<link name="finger"><collision><origin xyz="0 0 -0.1"/><geometry><cylinder radius="0.01" length="0.2"/>'
+        "</geometry></collision></link>",
+    )
+
+
+URDF_CELL = """\
+name: arm
+axes:
+  - {name: slide, limits: {velocity: 500, acceleration: 5000, jerk: 100000}}
+  - {name: turn, unit: deg, limits: {velocity: 500, acceleration: 5000, jerk: 100000}}
+groups:
+  - name: robot
+    axes: [slide, turn]
+    kinematics: {serial: {urdf: sub/arm.urdf}}
+    path: {velocity: 100, acceleration: 1000, jerk: 10000}
+    workspace:
+      obstacles: [{name: post, box: {x: 20, y: 20, z: 200}, pose: {x: 600, z: OBSTACLE}}]
+"""
+
+
+def test_links_have_the_shapes_that_urdf_gives_them(tmp_path: Path) -> None:
+    """The finger reaches from z 300 to 500, the arm's box is 40 mm high about 500; their ends are at x 410 and 400."""
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "arm.urdf").write_text(urdf_arm())
+    for z, part, way in ((300, "finger", 175), (615, "arm_hand", 185)):
+        machine = tmp_path / "m.yaml"
+        machine.write_text(URDF_CELL.replace("OBSTACLE", str(z)))
+        with takt.Engine(machine) as engine:
+            robot = engine.group("robot")
+            robot.power().wait()
+            robot.enable().wait()
+            move = robot.move_direct_absolute(a1=300)
+            assert refusal(move).startswith(f"{part} meets post ")
+            assert robot.blocked_at == pytest.approx(way, abs=0.6)
+            robot.move_direct_absolute(a1=150).wait()
+            robot.move_direct_absolute(a2=90).wait()
+            robot.move_direct_absolute(a1=300).wait()
+
+
+def test_meshes_of_urdf(tmp_path: Path) -> None:
+    (tmp_path / "sub" / "meshes").mkdir(parents=True)
+    write_wall(tmp_path / "sub" / "meshes" / "wall.stl")
+    machine = tmp_path / "m.yaml"
+    machine.write_text(URDF_CELL.replace("OBSTACLE", "300"))
+    for mesh in ("meshes/wall.stl", "package://arm/meshes/wall.stl", "package://sub/meshes/wall.stl"):
+        (tmp_path / "sub" / "arm.urdf").write_text(urdf_arm(mesh))
+        takt.Engine(machine).close()
+    for mesh, problem in (("meshes/no.stl", "no.stl: "), ("meshes/wall.dae", "expected an STL file")):
+        (tmp_path / "sub" / "arm.urdf").write_text(urdf_arm(mesh))
+        with pytest.raises(takt.ConfigError, match=problem) as raised:
+            takt.Engine(machine)
+        assert "groups[0].workspace.links" in raised.value.problems[0]

@@ -8,6 +8,7 @@
 #include "takt/core/yaml_reader.h"
 #include "takt/group/path_table.h"
 #include "takt/kinematics/kinematics.h"
+#include "takt/workspace/urdf_links.h"
 
 namespace takt::engine {
 
@@ -54,7 +55,9 @@ class Loader {
     if (!group.kinematics) return;
     kinematics::KinematicsParams& params = *group.kinematics;
     std::string file;
+    std::string urdf_folder;
     if (params.serial && !kinematics::IsUrdfText(params.serial->urdf)) {
+      urdf_folder = std::filesystem::path(params.serial->urdf).parent_path().string();
       file = Beside(params.serial->urdf);
       std::optional<std::string> text = Read(path + ".kinematics.serial.urdf", file);
       if (!text) return;
@@ -68,8 +71,13 @@ class Loader {
     } else if (made.kinematics->count > group.axes.size()) {
       Add(path + ".axes", "expected the names of the " + std::to_string(made.kinematics->count) +
                               " axes of the kinematics, found " + std::to_string(group.axes.size()));
-    } else if (workspaces_ && group.workspace) {
-      LoadWorkspace(path + ".workspace", group, *made.kinematics, loading_.checkers[index]);
+    } else if (group.workspace) {
+      if (params.serial && group.workspace->links.empty()) {
+        workspace::UrdfLinks urdf = workspace::LinksOfUrdf(*params.serial, urdf_folder);
+        group.workspace->links = std::move(urdf.links);
+        if (!urdf.problem.empty()) return Add(path + ".workspace.links", urdf.problem);
+      }
+      if (workspaces_) LoadWorkspace(path + ".workspace", group, *made.kinematics, loading_.checkers[index]);
     }
   }
 

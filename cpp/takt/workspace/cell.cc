@@ -23,6 +23,9 @@ std::string NotOneOf(const std::string& found, std::string expected, const std::
 std::vector<std::size_t> LinksMeantBy(const std::string& name, const std::vector<LinkInfo>& links) {
   std::vector<std::size_t> on;
   for (std::size_t link = 0; link < links.size(); ++link) {
+    if (links[link].name == name) return {link};
+  }
+  for (std::size_t link = 0; link < links.size(); ++link) {
     if (Means(name, links[link].name)) on.push_back(link);
   }
   return on;
