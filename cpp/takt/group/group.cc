@@ -181,6 +181,7 @@ void Step(const Context& c, State& s) noexcept {
     if (!s.begun && !s.ends && MayBegin(c)) BeginMotion(c, s);
   }
   if (s.begun) {
+    if (!s.ends && !s.interrupted) Rehearse(c, s);
     MoveOn(c, s);
   } else if (s.ends ? AllMembers(c, s, HasStopped) : s.state == GroupState::kMoving && NothingToGo(c, s)) {
     // Moves to where the group stands are done.

@@ -116,6 +116,7 @@ bool CutAt(const Context& c, State& s, double place) {
   if (s.begun && s.pace.node >= node) return false;
   const bool moves = s.begun && !s.pace.raw_stands;
   c.ahead.window.CutBehind(node);
+  c.ahead.rehearsal.Clear();
   c.ahead.last = window[node].at;
   if (!moves) return true;
   const trajectory::PathNode& next = window[s.pace.node + 1];

@@ -8,6 +8,7 @@
 
 #include "takt/group/request.h"
 #include "takt/path/segment.h"
+#include "takt/trajectory/path_rehearsal.h"
 #include "takt/trajectory/path_sampling.h"
 #include "takt/trajectory/path_window.h"
 
@@ -37,6 +38,7 @@ struct LookAhead {
       : window(kNodes, limits, period_s), stretches(kStretches) {}
 
   trajectory::PathWindow window;
+  trajectory::PathRehearsal rehearsal;
   std::vector<Stretch> stretches;  // a ring
   std::uint64_t first = 0;         // number of the oldest one
   std::uint64_t count = 0;

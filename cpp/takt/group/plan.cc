@@ -18,6 +18,7 @@ constexpr int kBudgetAtRest = 96;
 // Of the members' limits: the rest keeps them within theirs in spite of what the timing takes for linear.
 constexpr double kLimitShare = 0.98;
 constexpr std::size_t kSweepNodes = 512;
+constexpr int kRehearsed = 24;  // cycles of the motion ahead
 constexpr std::size_t kSpareNodes = 4;
 constexpr int kLeastPlaces = 4;
 constexpr int kMostPlaces = 64;
@@ -249,6 +250,7 @@ void Sample(const Context& c, int& budget, State& s) {
 
 void Sweep(const Context& c, State& s) {
   if (!c.ahead.window.Sweep(kSweepNodes)) return;
+  c.ahead.rehearsal.GoOn(c.ahead.window);
   if (c.ahead.sampling < c.ahead.end() && !c.ahead.cut_short) {
     if (c.ahead.window.room() > kNodes / 4) s.planning.stage = Stage::kSample;
     return;
@@ -321,12 +323,17 @@ void Plan(const Context& c, State& s) noexcept {
 
 void ForgetPlan(const Context& c, State& s) noexcept {
   c.ahead.window.Clear();
+  c.ahead.rehearsal.Clear();
   c.ahead.first = c.ahead.end();
   c.ahead.sampling = c.ahead.first;
   c.ahead.count = 0;
   c.ahead.known = c.ahead.cut_short = false;
   s.planning.move = s.done;
   BeginAgain(false, s);
+}
+
+void Rehearse(const Context& c, const State& s) noexcept {
+  c.ahead.rehearsal.Run(c.ahead.window, s.pace, kRehearsed, c.cycle.period_s);
 }
 
 bool MayBegin(const Context& c) noexcept {

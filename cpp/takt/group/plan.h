@@ -12,6 +12,9 @@ trajectory::CoordinateLimits LimitsOf(const Context& c, const State& s) noexcept
 // Goes on with planning. Moves that cannot be gone are refused.
 void Plan(const Context& c, State& s) noexcept;
 
+// Goes some way along the path ahead of the motion, and takes back what would be too much for the axes.
+void Rehearse(const Context& c, const State& s) noexcept;
+
 // Forgets everything that was planned.
 void ForgetPlan(const Context& c, State& s) noexcept;
 

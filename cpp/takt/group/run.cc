@@ -65,7 +65,8 @@ void TellMoves(const Context& c, State& s) {
 double WishOf(const Context& c, const State& s) {
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   if (!s.ends && !s.interrupted) {
-    return s.master.axis != 0 ? WishOfMaster(c, s) : s.velocity_factor * node.at.limits.velocity;
+    if (s.master.axis != 0) return WishOfMaster(c, s);
+    return s.velocity_factor < 1 ? s.velocity_factor * node.at.limits.velocity : trajectory::kFullSpeed;
   }
   const double deceleration = s.brake > 0 ? s.brake : node.bounds.deceleration;
   return std::max(0.0, s.pace.raw.velocity - deceleration * c.cycle.period_s);
@@ -74,7 +75,7 @@ double WishOf(const Context& c, const State& s) {
 // What lies behind is forgotten.
 void Forget(const Context& c, State& s) {
   trajectory::PathWindow& window = c.ahead.window;
-  if (s.pace.node > window.begin() + 1) window.DropBefore(s.pace.node - 1);
+  if (s.pace.passed > window.begin() + 1) window.DropBefore(s.pace.passed - 1);
 }
 
 }  // namespace

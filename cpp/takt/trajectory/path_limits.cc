@@ -70,24 +70,27 @@ double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double s
 }
 
 Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordinates>& third,
-                    const CoordinateLimits& limits, double square, double build_up_s) noexcept {
-  const auto at = [&](double w) {
-    const double v = std::sqrt(w);
+                    const CoordinateLimits& limits, double square, double build_up_s, double& gentle) noexcept {
+  const auto most_at = [&](double v, bool together) {
     double most = CoordinateLimits::kNone;
     for (std::size_t k = 0; k < limits.count; ++k) {
       // The bends' own part is hardly ever largest where the others are: as if at right angles.
       const double own = kJerkShare * limits.of[k].jerk;
-      const double bends = std::min(third[k] * w * v, 0.99 * own);
-      const double left = std::sqrt(own * own - bends * bends);
+      const double bends = std::min(third[k] * v * v * v, (together ? 0.8 : 0.99) * own);
+      const double left = together ? own - bends : std::sqrt(own * own - bends * bends);
       const double asked = 3 * std::abs(point.slopes.second[k]) * v + std::abs(point.slopes.first[k]) / build_up_s;
       if (asked * most > left) most = left / asked;
     }
     return most;
   };
+  const auto at = [&](double w) { return most_at(std::sqrt(w), false); };
   // The tangent at half the square, or what is beneath it at the whole one.
   const double last = at(square);
   const double half = at(0.5 * square);
+  gentle = 1;
   if (last == CoordinateLimits::kNone) return {};
+  const double v = std::sqrt(0.5 * square);
+  gentle = std::min(1.0, most_at(std::min(v + 0.5 * half * build_up_s, std::sqrt(square)), true) / half);
   const double fading = std::max(0.0, (at(0.49 * square) - half) / (0.01 * square));
   const double at_rest = std::min(half + 0.5 * fading * square, last + fading * square);
   if (at_rest - fading * square < 0.3 * last) return {last, 0, last};

@@ -71,6 +71,7 @@ struct AccelerationBounds {
   double acceleration = 0;                       // along the way
   double deceleration = 0;
   Strength strength;  // either way
+  double gentle = 1;  // share of it that is good at any speed, not only at those of a motion as fast as may be
 
   double Least(double square) const noexcept;
   double Most(double square) const noexcept;
@@ -86,9 +87,10 @@ double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double s
 
 // The largest acceleration along the way, either way, that may be at speeds up to a square if it is built up and taken
 // back within `build_up_s`: for the jerk of the coordinates, q''' v³ + 3 q'' v a + q' j. A line beneath it.
-// `third`: how large the third derivative of each is.
+// `third`: how large the third derivative of each is. `gentle`: the share of it with which the three parts may come
+// together, and the speed grow while it builds up.
 Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordinates>& third,
-                    const CoordinateLimits& limits, double square, double build_up_s) noexcept;
+                    const CoordinateLimits& limits, double square, double build_up_s, double& gentle) noexcept;
 
 // The largest square of the speed up to `highest` from which an acceleration within the bounds leads to `later` at
 // most, `length` further on.

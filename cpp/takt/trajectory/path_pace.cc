@@ -34,7 +34,9 @@ RawLimits RawLimitsOf(const PathWindow& window, const PathPace& pace, double per
   const PathNode& next = window[pace.node + 1];
   const double v = pace.raw.velocity;
   const double left = std::max(next.at.s - pace.raw.position, kOnNode);
-  RawLimits limits{node.bounds.Least(pace.entered), node.bounds.Most(pace.entered)};
+  // The speed may have become another one since.
+  RawLimits limits{std::max(node.bounds.Least(pace.entered), node.bounds.Least(v * v)),
+                   std::min(node.bounds.Most(pace.entered), node.bounds.Most(v * v))};
   const auto to_reach = [&](double square) { return (square - v * v) / (2 * left); };
   double ahead = to_reach(next.ceiling);
   double coasting = to_reach(next.coast);
@@ -49,17 +51,30 @@ RawLimits RawLimitsOf(const PathWindow& window, const PathPace& pace, double per
   return limits;
 }
 
-double NextAcceleration(const PathWindow& window, double wish, double period_s, const PathPace& pace) {
+double NextAcceleration(const PathWindow& window, double wish, double period_s, PathPace& pace) {
   const RawLimits limits = RawLimitsOf(window, pace, period_s);
   // Against the acceleration that leaves the mean in this cycle.
   const PathNode& node = window[pace.node];
-  const double change = std::min(node.at.limits.jerk * node.build_up_s, node.bounds.strength.At(pace.entered));
+  const double square = std::max(pace.entered, pace.raw.velocity * pace.raw.velocity);
+  double strength = node.bounds.strength.At(square);
+  if (pace.eased > 0) strength *= node.bounds.gentle;
+  const double build_up = node.at.limits.jerk * node.build_up_s;
+  const double change = std::min(build_up, strength);
   const double before = pace.last[pace.oldest].acceleration;
   const double wanted = (wish - pace.raw.velocity) / period_s;
   // Braking may be taken back at once: where it cannot be strong it would go on to a stop.
-  const double released = std::min(0.0, before + node.at.limits.jerk * node.build_up_s);
-  const double high = std::min(limits.high, std::max(before + change, released));
-  return std::clamp(std::min(high, wanted), std::min(std::max(limits.low, before - change), high), high);
+  const double released = std::min(0.0, before + build_up);
+  const double most = std::min(std::max(before + change, released), strength);
+  // Ceilings come first, whatever it takes.
+  const double high = std::min(limits.high, std::max(most, limits.low));
+  const double least = std::max({limits.low, before - change, -strength});
+  const double a = std::clamp(std::min(high, wanted), std::min(least, high), high);
+  if (wanted < high) {
+    pace.eased = pace.cycles;
+  } else if (pace.eased > 0 && a == limits.high) {
+    --pace.eased;
+  }
+  return a;
 }
 
 // One cycle of the raw motion: an acceleration holds to the next node at most.
@@ -128,7 +143,7 @@ KinematicState Mean(const PathPace& pace, double period_s) {
 
 void BeginAt(const PathWindow& window, std::uint64_t node, double period_s, PathPace& pace) noexcept {
   pace = {};
-  pace.node = node;
+  pace.node = pace.passed = node;
   pace.now = pace.raw = {window[node].at.s, 0, 0};
   pace.raw_stands = false;
   const double cycles = std::round(window[node].build_up_s / period_s);
@@ -140,6 +155,7 @@ void Advance(const PathWindow& window, double wish, double period_s, PathPace& p
   pace.last[pace.oldest] = StepRaw(window, wish, period_s, pace);
   pace.oldest = (pace.oldest + 1) % pace.cycles;
   pace.now = Mean(pace, period_s);
+  while (pace.passed < pace.node && window[pace.passed + 1].at.s <= pace.now.position) ++pace.passed;
 }
 
 bool Stands(const PathPace& pace) noexcept {
@@ -160,8 +176,10 @@ void describe(Description<PathPace>& d) {
   d.internal<&P::now>("Along the path.");
   d.internal<&P::raw>("What that is the mean of.");
   d.internal<&P::node>("Of the window.");
+  d.internal<&P::passed>("Of the window, by the mean.");
   d.internal<&P::entered>("Square of its speed there.");
   d.internal<&P::raw_stands>("At a stop.");
+  d.internal<&P::eased>("Cycles left.");
   d.internal<&P::cycles>("Of the mean.");
   d.internal<&P::oldest>("Of them.");
   d.internal<&P::last>("The raw motion in them.");

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "takt/core/describe_fwd.h"
 #include "takt/core/kinematic_state.h"
@@ -25,8 +26,10 @@ struct PathPace {
   KinematicState now;        // along the path
   KinematicState raw;        // what that is the mean of; ahead of it
   std::uint64_t node = 0;    // of the window: the last one that the raw motion has reached
+  std::uint64_t passed = 0;  // the last one that the mean has reached
   double entered = 0;        // the square of its speed there
   bool raw_stands = true;    // at a stop, or at the end of what is known
+  std::uint32_t eased = 0;   // cycles at the ceiling until it is as if it had never been slower than it may
   std::uint32_t cycles = 1;  // the mean is over these
   std::uint32_t oldest = 0;
   std::array<PathCycle, kMostBuildUpCycles> last{};  // a ring
@@ -35,8 +38,9 @@ struct PathPace {
 // At rest on a node of the window.
 void BeginAt(const PathWindow& window, std::uint64_t node, double period_s, PathPace& pace) noexcept;
 
-// Where it is at the end of the next cycle. `wish`: the speed wanted, kept as soon as the limits allow; 0: come to rest
-// on the path. At a stop that stays the motion waits for BeginAt.
+// Where it is at the end of the next cycle. `wish`: the speed wanted, kept as soon as the limits allow; kFullSpeed: as
+// fast as may be; 0: come to rest on the path. At a stop that stays the motion waits for BeginAt.
+inline constexpr double kFullSpeed = std::numeric_limits<double>::infinity();
 void Advance(const PathWindow& window, double wish, double period_s, PathPace& pace) noexcept;
 
 // It stands, and so does the raw motion.

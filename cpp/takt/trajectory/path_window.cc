@@ -58,13 +58,18 @@ void PathWindow::Append(const PathPoint& point, bool stop) noexcept {
     node.own = std::min(node.own, square);
     before.own = std::min(before.own, square);
     before.cap = std::min(before.cap, square);
-    const Strength strength = StrengthAt(before.at, third, limits_, before.own, before.build_up_s);
+    double gentle = 1;
+    const Strength strength = StrengthAt(before.at, third, limits_, before.own, before.build_up_s, gentle);
     before.own_strength = Least(before.own_strength, strength, before.own);
     before.bounds.strength = Least(before.bounds.strength, strength, before.cap);
+    before.own_gentle = std::min(before.own_gentle, gentle);
+    before.bounds.gentle = std::min(before.bounds.gentle, gentle);
     Spread(end_ - 1);
   }
   node.cap = node.own;
-  node.own_strength = node.bounds.strength = StrengthAt(point, third, limits_, node.own, build_up_s_);
+  node.own_strength = StrengthAt(point, third, limits_, node.own, build_up_s_, node.own_gentle);
+  node.bounds.strength = node.own_strength;
+  node.bounds.gentle = node.own_gentle;
   Spread(end_++);
 }
 
@@ -76,6 +81,7 @@ void PathWindow::Spread(std::uint64_t i) noexcept {
   for (std::uint64_t k = i; !IsFirst(k); --k) {
     PathNode& before = Node(k - 1);
     if (node.at.s - before.at.s > reach) break;
+    before.bounds.gentle = std::min(before.bounds.gentle, node.own_gentle);
     const double cap = std::min(before.cap, node.own);
     const Strength strength = Least(before.bounds.strength, node.own_strength, cap);
     if (before.cap == cap && before.bounds.strength == strength) continue;
@@ -91,7 +97,35 @@ void PathWindow::Spread(std::uint64_t i) noexcept {
     if (distance > half * std::sqrt(before.own)) continue;
     node.cap = std::min(node.cap, before.own);
     node.bounds.strength = Least(node.bounds.strength, before.own_strength, node.cap);
+    node.bounds.gentle = std::min(node.bounds.gentle, before.own_gentle);
   }
+}
+
+std::uint64_t PathWindow::free_until() const noexcept {
+  for (std::uint64_t i = known_; i > begin_; --i) {
+    if ((*this)[i - 1].ceiling >= (*this)[i - 1].cap || (*this)[i - 1].stop) return i - 1;
+  }
+  return begin_;
+}
+
+void PathWindow::Weaken(double from, double to, std::uint64_t first, const PathShares& shares) noexcept {
+  std::uint64_t behind = known_ - 1;  // the last one is a stop
+  while (behind > first + 1 && Node(behind - 1).at.s > to) --behind;
+  std::uint64_t i = behind;
+  while (i > first && (i == behind || Node(i).at.s > from)) {
+    PathNode& node = Node(--i);
+    node.own *= shares.square;
+    node.cap *= shares.square;
+    for (std::size_t k = 0; k < node.bounds.count; ++k) node.bounds.reach[k] *= shares.acceleration;
+    for (Strength* strength : {&node.own_strength, &node.bounds.strength}) {
+      strength->at_rest *= shares.strength;
+      strength->fading *= shares.strength;
+      strength->least *= shares.strength;
+    }
+  }
+  if (i == behind) return;
+  next_ = behind;
+  low_ = i;
 }
 
 void PathWindow::Close() noexcept {
@@ -99,6 +133,7 @@ void PathWindow::Close() noexcept {
   const std::uint64_t last = end_ - 1;
   std::uint64_t first = std::max(known_, begin_ + 1) - 1;  // what led to the old end goes on now
   if (known_ > begin_ && Node(known_ - 1).stop) first = known_;
+  if (!swept()) first = std::min(first, low_);
   low_ = std::max(begin_, std::min(first, lowest_));
   known_ = lowest_ = end_;
   PathNode& end = Node(last);

@@ -9,10 +9,12 @@
 // From the end of the window backwards each node gets its ceiling: the largest speed of the raw motion from which the
 // rest of the window can still be gone within all limits, down to a stop at its end. Whoever is beneath the ceiling in
 // one cycle finds an acceleration within the limits that leads beneath it in the next one. Where more of the path
-// becomes known ceilings rise, so a node that has not been looked at again is only too careful.
+// becomes known ceilings rise, but for those just before it, which the mean reaches from there.
+//
+// On bends the mean of the raw accelerations is not the acceleration of the mean, so all this is only nearly right for
+// coordinates: PathRehearsal looks at what comes of it and weakens places where it is too much.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -20,11 +22,19 @@
 
 namespace takt::trajectory {
 
+// What is left of the limits of a stretch.
+struct PathShares {
+  double square = 1;        // of the speed
+  double acceleration = 1;  // of the coordinates
+  double strength = 1;      // of what their jerk allows
+};
+
 struct PathNode {
   PathPoint at;
   AccelerationBounds bounds;
   double build_up_s = 0;  // T
   Strength own_strength;  // what the bends at this place say; those of bounds hold for places near by, too
+  double own_gentle = 1;  // the same of AccelerationBounds::gentle
   // Squares of speeds.
   double own = 0;      // what the limits at this place say
   double cap = 0;      // and those of places so near that the mean is taken over them, too
@@ -58,11 +68,16 @@ class PathWindow {
   // node begins another one at the same place.
   void Append(const PathPoint& point, bool stop = false) noexcept;
   // Takes everything appended into the ceilings, with a stop at the last node for as long as nothing comes behind it.
-  // Only once Sweep is through.
   void Close() noexcept;
   // Works on the ceilings of so many nodes at most. True: it is through.
   bool Sweep(std::size_t nodes) noexcept;
   bool swept() const noexcept { return next_ == low_; }
+  // The first node at which Sweep has changed anything since Close or Weaken.
+  std::uint64_t changed_from() const noexcept { return low_; }
+  // The last node whose ceiling a longer path would not raise.
+  std::uint64_t free_until() const noexcept;
+  // Leaves less to what lies between two places, from a node on. Only once Sweep is through; it has to follow.
+  void Weaken(double from, double to, std::uint64_t first, const PathShares& shares) noexcept;
   void DropBefore(std::uint64_t node) noexcept;
   // The end that is known is a stop for good.
   void Stay() noexcept;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "takt/trajectory/path_pace.h"
+#include "takt/trajectory/path_rehearsal.h"
 #include "takt/trajectory/path_sampling.h"
 #include "takt/trajectory/path_window.h"
 
@@ -181,6 +182,9 @@ class Motion {
     while (sampled_to < course.length) SampleNext(course.length, true);
     Know();
     BeginAt(window, window.begin(), kPeriod, pace);
+    rehearsal.GoOn(window);
+    while (!rehearsal.Run(window, pace, 1000, kPeriod)) {
+    }
   }
   void Cycle(double wish) {
     const KinematicState before = pace.now;
@@ -199,6 +203,7 @@ class Motion {
 
   const Course& course;
   PathWindow window;
+  PathRehearsal rehearsal;
   PathPace pace;
   PathPoint last;
   double sampled_to = 0;

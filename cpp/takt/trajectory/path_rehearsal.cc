@@ -1,0 +1,171 @@
+#include "takt/trajectory/path_rehearsal.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace takt::trajectory {
+
+namespace {
+
+constexpr int kRounds = 4;
+// What is too much is gone again at once so often.
+constexpr int kTries = 6;
+// Of T, from one place to go back to to the next.
+constexpr int kApart = 1;
+// Taken back a little more than it seems, so that the next round need not do it again.
+constexpr double kMore = 0.002;
+constexpr double kLeastShare = 0.5;  // of one round
+// So much of a jerk may be due to bends alone before the speed has to fall.
+constexpr double kBendShare = 0.9;
+// Of T, to be gone before a longer path makes a difference.
+constexpr double kBefore = 2;
+
+}  // namespace
+
+void PathRehearsal::Clear() noexcept {
+  started_ = marked_ = weakened_ = trouble_ = again_ = false;
+  through_ = true;
+  rounds_ = 0;
+}
+
+void PathRehearsal::GoOn(const PathWindow& window) noexcept {
+  through_ = false;
+  rounds_ = 0;
+  if (started_ && here_.pace.node >= window.changed_from()) {
+    if (marked_ && mark_.pace.node < window.changed_from()) {
+      here_ = mark_;
+    } else {
+      started_ = false;
+    }
+  }
+  marked_ = false;
+  free_until_ = window[window.free_until()].at.s;
+}
+
+void PathRehearsal::StartFrom(const PathPace& pace) noexcept {
+  here_.pace = pace;
+  started_ = true;
+  marked_ = weakened_ = trouble_ = again_ = false;
+  here_.accelerations.fill(std::numeric_limits<double>::quiet_NaN());
+  tries_ = 0;
+  tried_to_ = pace.raw.position;
+  saved_.fill(here_);
+  until_save_ = 0;
+}
+
+void PathRehearsal::Save() noexcept {
+  if (--until_save_ > 0) return;
+  saved_[save_to_] = here_;
+  save_to_ = (save_to_ + 1) % saved_.size();
+  until_save_ = kApart * static_cast<int>(here_.pace.cycles);
+}
+
+bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, double period_s) noexcept {
+  for (; cycles > 0 && !through_; --cycles) {
+    if (!window.Sweep(1)) continue;
+    if (again_) GoBack(window);
+    if (!started_ || here_.pace.passed < now.passed) StartFrom(now);
+    if (here_.pace.raw_stands && Stands(here_.pace)) {
+      if (trouble_) {
+        EndTrouble(window, now);
+      } else if (window[here_.pace.node].stop && here_.pace.node + 2 < window.known()) {
+        BeginAt(window, here_.pace.node + 1, period_s, here_.pace);  // behind a stop the next motion begins
+        here_.accelerations.fill(0);
+      } else {
+        through_ = !weakened_ || ++rounds_ >= kRounds;
+        started_ = false;
+      }
+      continue;
+    }
+    Save();
+    const KinematicState before = here_.pace.now;
+    const double from = here_.pace.last[here_.pace.oldest].position;
+    if (trouble_ && from > to_) {
+      EndTrouble(window, now);
+      continue;
+    }
+    Advance(window, kFullSpeed, period_s, here_.pace);
+    Look(window, before, period_s);
+    const double ahead = kBefore * here_.pace.raw.velocity * period_s * here_.pace.cycles;
+    if (!marked_ && here_.pace.raw.position + ahead >= free_until_) {
+      mark_ = here_;
+      marked_ = true;
+    }
+  }
+  return through_;
+}
+
+// What this cycle asks of the coordinates.
+void PathRehearsal::Look(const PathWindow& window, const KinematicState& before, double period_s) noexcept {
+  const CoordinateLimits& limits = window.limits();
+  const PathNode& node = window[here_.pace.passed];
+  const PathNode& next = here_.pace.passed + 1 < window.known() ? window[here_.pace.passed + 1] : node;
+  const KinematicState& mean = here_.pace.now;
+  const double length = next.at.s - node.at.s;
+  const double x = mean.position - node.at.s;
+  const double part = length > 0 ? std::clamp(x / length, 0.0, 1.0) : 0;
+  const double jerk = (mean.acceleration - before.acceleration) / period_s;
+  PathShares shares;
+  for (std::size_t k = 0; k < limits.count; ++k) {
+    const PathSlopes &a = node.at.slopes, &b = next.at.slopes;
+    const double bend = b.second[k] - a.second[k];
+    const double second = a.second[k] + part * bend;
+    // The second slope is a line between the nodes; what is left between their first ones is rounding.
+    const double gap = b.first[k] - a.first[k] - length * (a.second[k] + 0.5 * bend);
+    const double first = a.first[k] + x * (a.second[k] + 0.5 * part * bend) + part * gap;
+    const double acceleration = first * mean.acceleration + second * mean.velocity * mean.velocity;
+    const double total = std::abs(acceleration - here_.accelerations[k]) / period_s;
+    here_.accelerations[k] = acceleration;
+    const double over = std::abs(acceleration) / limits.of[k].acceleration;
+    if (over > 1) {
+      shares.square = std::min(shares.square, 1 / over);
+      shares.acceleration = std::min(shares.acceleration, 1 / over);
+    }
+    if (!(total > limits.of[k].jerk)) continue;
+    // What accelerations along the way do to it, and what remains if there were none.
+    const double turning = std::abs(first * jerk + 3 * second * mean.velocity * mean.acceleration);
+    const double bends = std::max(0.0, total - turning);
+    const double room = std::max(limits.of[k].jerk - bends, (1 - kBendShare) * limits.of[k].jerk);
+    if (turning > room) shares.strength = std::min(shares.strength, room / turning);
+    if (bends > kBendShare * limits.of[k].jerk) {
+      const double speed = std::cbrt(kBendShare * limits.of[k].jerk / bends);
+      shares.square = std::min(shares.square, speed * speed);
+    }
+  }
+  if (shares.square >= 1 && shares.strength >= 1) return;
+  if (!trouble_) {
+    trouble_ = true;
+    from_ = here_.pace.last[here_.pace.oldest].position;
+    shares_ = {};
+  }
+  to_ = here_.pace.raw.position;
+  const auto take = [](double& share, double more) {
+    if (more < 1) share = std::min(share, std::max(kLeastShare, more - kMore));
+  };
+  take(shares_.square, shares.square);
+  take(shares_.acceleration, shares.acceleration);
+  take(shares_.strength, shares.strength);
+}
+
+// To the last place from which what is changed now makes no difference.
+void PathRehearsal::GoBack(const PathWindow& window) noexcept {
+  again_ = false;
+  for (std::size_t i = 0; i < saved_.size(); ++i) {
+    save_to_ = (save_to_ + saved_.size() - 1) % saved_.size();
+    if (saved_[save_to_].pace.node >= window.changed_from()) continue;
+    here_ = saved_[save_to_];
+    until_save_ = 0;
+    return;
+  }
+}
+
+void PathRehearsal::EndTrouble(PathWindow& window, const PathPace& now) noexcept {
+  trouble_ = false;
+  weakened_ = true;
+  window.Weaken(from_, to_, now.node + 1, shares_);
+  if (from_ > tried_to_) tries_ = 0;
+  tried_to_ = std::max(tried_to_, to_);
+  again_ = tries_++ < kTries;
+}
+
+}  // namespace takt::trajectory

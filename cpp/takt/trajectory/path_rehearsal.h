@@ -1,0 +1,54 @@
+// Going along a window ahead of the motion, as fast as may be, to see what that asks of the coordinates: where it is
+// more than their limits the window is weakened, and the way gone again.
+//
+// A few of these rounds bring nearly everything within the limits. A motion that may not go as fast (override, a stop
+// on the path) is not looked at, and is more careful in bends by itself (AccelerationBounds::gentle).
+#pragma once
+
+#include <array>
+
+#include "takt/trajectory/path_pace.h"
+
+namespace takt::trajectory {
+
+class PathRehearsal {
+ public:
+  // The motion has begun, or what lies before it is another path.
+  void Clear() noexcept;
+  // The window has become longer, and is swept.
+  void GoOn(const PathWindow& window) noexcept;
+  // So many cycles at most, for a motion that has come to `now`. True: there is nothing left to be done.
+  bool Run(PathWindow& window, const PathPace& now, int cycles, double period_s) noexcept;
+
+ private:
+  // The motion as it is rehearsed, and what it asked of the coordinates last.
+  struct Place {
+    PathPace pace;
+    std::array<double, kPathCoordinates> accelerations{};
+  };
+
+  void StartFrom(const PathPace& pace) noexcept;
+  void Save() noexcept;
+  void GoBack(const PathWindow& window) noexcept;
+  void Look(const PathWindow& window, const KinematicState& before, double period_s) noexcept;
+  void EndTrouble(PathWindow& window, const PathPace& now) noexcept;
+
+  Place here_;
+  Place mark_;                  // where a longer path would begin to make a difference
+  std::array<Place, 8> saved_;  // to go again from there: a ring
+  std::size_t save_to_ = 0;     // the oldest of them
+  int until_save_ = 0;          // cycles
+  bool again_ = false;          // what was weakened just now
+  bool started_ = false, marked_ = false, through_ = true;
+  bool weakened_ = false;  // in this round
+  int rounds_ = 0;
+  double free_until_ = 0;  // mm along the path
+  // What was too much, from where to where.
+  bool trouble_ = false;
+  double from_ = 0, to_ = 0;
+  double tried_to_ = 0;  // up to here it was gone again ...
+  int tries_ = 0;        // ... so often
+  PathShares shares_;
+};
+
+}  // namespace takt::trajectory
