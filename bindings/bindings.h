@@ -37,7 +37,8 @@ void FromPython(const Type& type, const py::dict& values, void* object);
 [[noreturn]] void ThrowConfigError(const std::vector<std::string>& problems);
 
 // A machine file: there is a machine in it, or takt.ConfigError says every problem.
-engine::LoadResult Load(const py::bytes& text, const std::string& file_name);
+// `workspaces`: what knows whether paths are free is made, too.
+engine::LoadResult Load(const py::bytes& text, const std::string& file_name, bool workspaces);
 
 void BindCore(py::module_& m);
 void BindCam(py::module_& m);

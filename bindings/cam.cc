@@ -118,7 +118,8 @@ Warned FromYaml(const py::bytes& text, const std::string& file_name) {
 }
 
 py::typing::List<Warned> OfMachine(const py::bytes& text, const std::string& file_name) {
-  engine::LoadResult loaded = engine::LoadMachine(static_cast<std::string_view>(text), file_name);
+  engine::LoadResult loaded =
+      engine::LoadMachine(static_cast<std::string_view>(text), file_name, engine::Workspaces::kSkip);
   if (!loaded.machine) ThrowConfigError(loaded.problems);
   py::typing::List<Warned> tables;
   for (const cam::CamParams& params : loaded.machine->cams) {

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/typing.h>
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -19,9 +20,11 @@
 #include "takt/core/schema.h"
 #include "takt/engine/components.h"
 #include "takt/engine/load.h"
+#include "takt/engine/path_checks.h"
 #include "takt/engine/reference.h"
 #include "takt/lcm/clock.h"
 #include "takt/lcm/drives.h"
+#include "takt/workspace/trouble.h"
 
 namespace takt::bindings {
 namespace {
@@ -31,8 +34,9 @@ constexpr std::size_t kCommandQueue = 1 << 12;
 
 }  // namespace
 
-engine::LoadResult Load(const py::bytes& text, const std::string& file_name) {
-  engine::LoadResult result = engine::LoadMachine(static_cast<std::string_view>(text), file_name);
+engine::LoadResult Load(const py::bytes& text, const std::string& file_name, bool workspaces) {
+  engine::LoadResult result = engine::LoadMachine(static_cast<std::string_view>(text), file_name,
+                                                  workspaces ? engine::Workspaces::kMake : engine::Workspaces::kSkip);
   if (!result.machine) ThrowConfigError(result.problems);
   return result;
 }
@@ -44,16 +48,28 @@ std::string MachineJson(const engine::Machine& machine) {
 }
 
 std::vector<std::string> CheckMachine(const py::bytes& text, const std::string& file_name) {
-  return Load(text, file_name).warnings;
+  return Load(text, file_name, true).warnings;
 }
 
 std::string LoadMachine(const py::bytes& text, const std::string& file_name) {
-  return MachineJson(*Load(text, file_name).machine);
+  return MachineJson(*Load(text, file_name, false).machine);
+}
+
+py::typing::Dict<py::str, py::typing::List<py::str>> PartsOfGroups(const py::bytes& text,
+                                                                   const std::string& file_name) {
+  const engine::LoadResult loaded = Load(text, file_name, false);
+  py::typing::Dict<py::str, py::typing::List<py::str>> parts;
+  for (const group::GroupParams& group : loaded.machine->groups) {
+    if (!group.workspace) continue;
+    const kinematics::MakeResult made = kinematics::Make(group.kinematics.value());
+    parts[py::str(group.name)] = py::cast(workspace::PartNames(*group.workspace, made.kinematics.value()));
+  }
+  return parts;
 }
 
 using Submitted = py::typing::Tuple<Ticket, int, py::str>;  // ticket, error number, sentence
-using FeedbackRow =
-    py::typing::Tuple<Ticket, std::uint64_t, int, bool, int, double>;  // ticket, cycle, state, reached, error, value
+using FeedbackRow = py::typing::Tuple<Ticket, std::uint64_t, int, bool, int, double,
+                                      py::str>;  // ticket, cycle, state, reached, error, value, sentence
 using JournalRow =
     py::typing::Tuple<std::uint64_t, Ticket, double, py::str, py::str, py::str>;  // cycle, ticket, lease, command
 using Wires = py::typing::Dict<py::str, py::object>;
@@ -66,12 +82,14 @@ using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::ui
 // for without the GIL.
 class VirtualEngine {
  public:
-  // With `drives_url` external drives are reached there; without, they are what Hear says.
-  VirtualEngine(const py::bytes& text, const std::string& file_name, bool journal, std::optional<double> period_s,
-                const std::optional<std::string>& drives_url)
+  // Of a machine that LoadMachine has made. With `drives_url` external drives are reached there; without, they are what
+  // Hear says.
+  VirtualEngine(engine::LoadResult loaded, bool journal, const std::optional<std::string>& drives_url)
       : journaling_(journal),
-        engine_(Prepared(text, file_name, period_s),
+        engine_(std::move(*loaded.machine),
                 {.drives = drives_url.has_value(), .journal = journal, .command_queue = kCommandQueue}) {
+    const auto made = [](const auto& checker) { return checker.has_value(); };
+    if (std::ranges::any_of(loaded.checkers, made)) checks_.emplace(engine_, std::move(loaded.checkers));
     if (!drives_url || engine_.machine().external.drives.empty()) return;
     std::string problem;
     drives_ = lcm::Drives::Open(engine_,
@@ -88,6 +106,7 @@ class VirtualEngine {
     for (std::uint64_t i = 0; i < cycles;) {
       if (drives_ && !drives_->Ready()) return i;
       engine_.RunCycle();
+      if (checks_) checks_->Run();
       ++i;
       const bool news = Drain(engine_.feedback(), feedback_);
       if (journaling_) {
@@ -121,7 +140,8 @@ class VirtualEngine {
   // The same for a command out of a journal.
   Submitted Resubmit(const std::string& target, const std::string& verb, const std::string& arguments, Ticket ticket,
                      double lease_s) {
-    engine::ParsedCommand parsed = engine::ParseCommand(engine_.machine(), target, verb, arguments);
+    engine::ParsedCommand parsed =
+        engine::ParseCommand(engine_.machine(), target, verb, arguments, engine::Giver::kJournal);
     if (parsed.error != ErrorId::kNone) return Answer(0, parsed.error, parsed.sentence);
     parsed.command.ticket = ticket;
     parsed.command.lease_s = lease_s;
@@ -167,8 +187,8 @@ class VirtualEngine {
     }
     py::typing::List<FeedbackRow> list;
     for (const FeedbackEvent& e : events) {
-      list.append(
-          py::make_tuple(e.ticket, e.cycle, static_cast<int>(e.state), e.reached, static_cast<int>(e.error), e.value));
+      list.append(py::make_tuple(e.ticket, e.cycle, static_cast<int>(e.state), e.reached, static_cast<int>(e.error),
+                                 e.value, checks_ ? checks_->Sentence(e) : engine::Sentence(e)));
     }
     return list;
   }
@@ -277,19 +297,6 @@ class VirtualEngine {
   }
 
  private:
-  static engine::Machine Prepared(const py::bytes& text, const std::string& file_name, std::optional<double> period_s) {
-    engine::LoadResult loaded = Load(text, file_name);
-    for (const std::string& warning : loaded.warnings) {
-      if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 2) != 0) throw py::error_already_set();
-    }
-    engine::Machine& machine = *loaded.machine;
-    if (!period_s) return std::move(machine);
-    const Field& field = *TypeOf<engine::CycleParams>().FindField("period_s");
-    if (!field.range.Holds(*period_s)) ThrowConfigError({"the cycle's period must be " + Text(field.range) + " s"});
-    machine.cycle.period_s = *period_s;
-    return std::move(machine);
-  }
-
   static Submitted Answer(Ticket ticket, ErrorId error, std::string_view sentence) {
     return py::make_tuple(ticket, static_cast<int>(error), sentence);
   }
@@ -328,6 +335,7 @@ class VirtualEngine {
   const bool journaling_;
   std::mutex mutex_;
   engine::Engine engine_;
+  std::optional<engine::PathChecks> checks_;
   std::unique_ptr<lcm::Drives> drives_;
   std::vector<FeedbackEvent> feedback_;
   std::vector<engine::JournalEntry> journal_;
@@ -337,6 +345,22 @@ class VirtualEngine {
   std::vector<std::shared_ptr<Recorder>> recorders_;
 };
 
+// `checks`: groups with a workspace are answered when they ask about a path; without, the journal does.
+std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::string& file_name, bool journal,
+                                          std::optional<double> period_s, const std::optional<std::string>& drives_url,
+                                          bool checks) {
+  engine::LoadResult loaded = Load(text, file_name, checks);
+  for (const std::string& warning : loaded.warnings) {
+    if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 2) != 0) throw py::error_already_set();
+  }
+  if (period_s) {
+    const Field& field = *TypeOf<engine::CycleParams>().FindField("period_s");
+    if (!field.range.Holds(*period_s)) ThrowConfigError({"the cycle's period must be " + Text(field.range) + " s"});
+    loaded.machine->cycle.period_s = *period_s;
+  }
+  return std::make_unique<VirtualEngine>(std::move(loaded), journal, drives_url);
+}
+
 }  // namespace
 
 void BindEngine(py::module_& m) {
@@ -345,6 +369,8 @@ void BindEngine(py::module_& m) {
         "with every problem.");
   m.def("check_machine", &CheckMachine, py::arg("text"), py::arg("file_name"),
         "Reads and checks a machine file: its warnings. Raises takt.ConfigError with every problem.");
+  m.def("parts_of_groups", &PartsOfGroups, py::arg("text"), py::arg("file_name"),
+        "For each group with a workspace the names of its parts, in the order of their numbers.");
   m.def("schema", &engine::SchemaText, "The JSON Schema of machine files.");
   m.def(
       "reference", [] { return engine::ReferenceText(TAKT_VERSION); },
@@ -377,10 +403,8 @@ void BindEngine(py::module_& m) {
   using E = VirtualEngine;
   using Released = py::call_guard<py::gil_scoped_release>;
   py::class_<E>(m, "Engine", "One machine in virtual time.")
-      .def(py::init<const py::bytes&, const std::string&, bool, std::optional<double>,
-                    const std::optional<std::string>&>(),
-           py::arg("text"), py::arg("file_name"), py::kw_only(), py::arg("journal") = false,
-           py::arg("period_s") = py::none(), py::arg("drives_url") = py::none())
+      .def(py::init(&MakeEngine), py::arg("text"), py::arg("file_name"), py::kw_only(), py::arg("journal") = false,
+           py::arg("period_s") = py::none(), py::arg("drives_url") = py::none(), py::arg("checks") = true)
       .def("step", &E::Step, py::arg("cycles"), py::arg("until_feedback") = false, Released())
       .def("measure", &E::Measure, py::arg("cycles"), Released())
       .def("submit", &E::Submit, py::arg("target"), py::arg("verb"), py::arg("arguments"))

@@ -14,7 +14,7 @@ using Wires = py::typing::Dict<py::str, py::object>;
 class Servo {
  public:
   Servo(const py::bytes& text, const std::string& file_name, const std::string& axis)
-      : params_(ParamsOf(*Load(text, file_name).machine, axis)), state_(plant::MakeServoState(params_)) {}
+      : params_(ParamsOf(*Load(text, file_name, false).machine, axis)), state_(plant::MakeServoState(params_)) {}
 
   void Restart() { state_ = plant::MakeServoState(params_); }
 

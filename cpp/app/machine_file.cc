@@ -31,6 +31,7 @@ MachineFile ReadMachineFile(const Options& options) {
     const std::string problem = lcm::WhyNotUrl(loaded.machine->lcm.url);
     if (!problem.empty()) file.problems.push_back(options.machine_file + ": lcm.url: " + problem);
   }
+  file.checkers = std::move(loaded.checkers);
   if (file.problems.empty()) file.machine = std::move(loaded.machine);
   return file;
 }

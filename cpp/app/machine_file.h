@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/options.h"
+#include "takt/engine/checkers.h"
 #include "takt/engine/machine.h"
 
 namespace takt::app {
@@ -13,6 +14,7 @@ namespace takt::app {
 struct MachineFile {
   std::optional<engine::Machine> machine;  // empty: see problems
   std::string text;                        // as it was read; with files it names written out
+  engine::Checkers checkers;               // of its groups
   std::vector<std::string> problems;       // one line each
   std::vector<std::string> warnings;       // likewise
 };

@@ -7,10 +7,13 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "app/machine_file.h"
 #include "app/options.h"
 #include "app/summary.h"
+#include "takt/engine/path_checks.h"
 #include "takt/engine/reference.h"
 #include "takt/lcm/drives.h"
 #include "takt/lcm/service.h"
@@ -53,35 +56,45 @@ void SayOnStderr(const std::string& sentence) {
   std::fprintf(stderr, "%s\n", sentence.c_str());
 }
 
-int Run(const Options& options, const engine::Machine& machine, const std::string& text) {
+int Run(const Options& options, MachineFile file) {
+  const engine::Machine& machine = *file.machine;
   const bool log = !options.log_file.empty();
   const bool has_drives = !machine.external.drives.empty();
   if (has_drives && !options.lcm) return Refuse("the machine has external drives, which --no-lcm leaves out of reach");
   engine::Engine engine(machine,
                         {.publish = options.lcm || log, .every_cycle = log, .drives = has_drives, .journal = log});
+  engine::PathChecks checks(engine, std::move(file.checkers));
   engine::SchedulerOptions scheduler = options.scheduler;
   const std::string url = options.lcm ? options.lcm_url.value_or(machine.lcm.url) : "";
-  const lcm::RunInfo info{text, TAKT_VERSION, static_cast<std::int8_t>(scheduler.pace)};
+  const lcm::RunInfo info{file.text, TAKT_VERSION, static_cast<std::int8_t>(scheduler.pace)};
   std::string problem;
   std::unique_ptr<lcm::Service> service;
   if (options.lcm || log) {
-    service = lcm::Service::Open(engine, {.url = url, .log_path = options.log_file, .info = info}, problem);
+    const auto explain = [&checks](const FeedbackEvent& event) { return checks.Sentence(event); };
+    service = lcm::Service::Open(engine, {.url = url, .log_path = options.log_file, .info = info, .explain = explain},
+                                 problem);
     if (!service) return Refuse(problem);
     scheduler.wait_for_reader = log;
   }
   std::unique_ptr<lcm::Drives> drives;
+  const bool real_time = scheduler.pace == engine::Pace::kRealTime;
   if (has_drives) {
-    const bool real_time = scheduler.pace == engine::Pace::kRealTime;
     drives = lcm::Drives::Open(
         engine, {.url = url, .run_id = info.run_id, .real_time = real_time, .complain = SayOnStderr}, problem);
     if (!drives) return Refuse(problem);
-    if (!real_time) scheduler.ready = [&] { return drives->Ready(); };
   }
+  scheduler.ready = [&] {  // in simulated time
+    checks.Run();
+    return !drives || drives->Ready();
+  };
 
   std::cout << Greeting(machine, scheduler.pace) << std::endl;
+  std::optional<engine::PathCheckThread> checking;
+  if (real_time) checking.emplace(checks);
   cycle_runs = true;
   const engine::RunResult result = engine::Run(engine, scheduler, signals);
   cycle_runs = false;
+  checking.reset();
   if (result.end == engine::RunEnd::kSignal) alarm(kCloseWithinS);
   drives.reset();
   const lcm::Losses losses = service ? service->Close() : lcm::Losses{};
@@ -98,7 +111,7 @@ int Main(int argc, char** argv) {
     std::cout << (options->task == Task::kSchema ? engine::SchemaText() : engine::ReferenceText(TAKT_VERSION)) << '\n';
     return 0;
   }
-  const MachineFile file = ReadMachineFile(*options);
+  MachineFile file = ReadMachineFile(*options);
   for (const std::string& problem : file.problems) std::cerr << problem << '\n';
   for (const std::string& warning : file.warnings) std::cerr << warning << '\n';
   if (!file.machine) return kWrongInput;
@@ -106,7 +119,7 @@ int Main(int argc, char** argv) {
     std::cout << "ok\n";
     return 0;
   }
-  return Run(*options, *file.machine, file.text);
+  return Run(*options, std::move(file));
 }
 
 }  // namespace

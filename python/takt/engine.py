@@ -165,11 +165,10 @@ class Engine(Session):
             warnings.warn(sentence, DriveWarning, stacklevel=2)
 
     def _take_feedback(self) -> None:
-        for ticket, cycle, state, reached, error_id, value in self._core.take_feedback():
+        for ticket, cycle, state, reached, error_id, value, sentence in self._core.take_feedback():
             feedback = self._unfinished.get(ticket)
             if feedback is None:
                 continue
-            sentence = error_text(error_id) if error_id else ""
             self._report(feedback, state, reached, error_id, sentence, cycle, value)
             if feedback.final:
                 del self._unfinished[ticket]

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import json
+from functools import cached_property
+
+from takt import _core
 from takt._commands import GroupCommands, GroupOutputs
 from takt.axis import Axis
 from takt.component import Component
@@ -30,6 +34,20 @@ class Group(Component, GroupCommands, GroupOutputs):
     def places(self) -> tuple[int, ...]:
         """For each of the eight places the number of its axis, from 1; 0: none."""
         return tuple(int(self._value(f"member{place}")) for place in range(1, 9))
+
+    @cached_property
+    def parts(self) -> tuple[str, ...]:
+        """What its workspace knows by name, in the order of their numbers from 1: the tool and its bounds, parts of
+        links and gripper, obstacles. Empty without a workspace."""
+        text = json.dumps(self.session.machine).encode()
+        return tuple(_core.parts_of_groups(text, "machine").get(self.name, ()))
+
+    @property
+    def in_the_way(self) -> tuple[str, ...]:
+        """What the last move was refused for: what moves and what it would meet, or the tool and its bound. Empty:
+        for neither."""
+        numbers = (int(self.first_part), int(self.second_part))
+        return tuple(self.parts[number - 1] for number in numbers if number)
 
     @property
     def pose(self) -> Pose:

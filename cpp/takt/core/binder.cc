@@ -409,6 +409,7 @@ void Binder::BadNumber(Place place, const Slot& slot, std::string_view text, Num
 
 void Binder::CheckName(Place place, std::string_view name) {
   if (depth_ < 2 || frames_[depth_ - 2].type->kind != Kind::kVector) return;
+  if (name.empty()) return;  // none
   auto& names = names_[depth_ - 2];
   if (!names) names = std::make_unique<Names>();
   const auto [first, is_new] = names->try_emplace(std::string(name), frames_[depth_ - 2].index);

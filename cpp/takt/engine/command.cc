@@ -42,6 +42,11 @@ Entry Make(std::string_view target_kind, std::string_view name, bool level_sensi
           }};
 }
 
+// What the engine alone gives.
+bool IsInternal(const Verb& verb) {
+  return verb.arguments == &TypeOf<group::PathChecked>();
+}
+
 // Every command there is: the one list.
 const std::vector<Entry>& Entries() {
   static const std::vector<Entry> entries = {
@@ -131,6 +136,7 @@ const std::vector<Entry>& Entries() {
       Make<group::Command, group::Halt>(kGroup, "halt"),
       Make<group::Command, group::Interrupt>(kGroup, "interrupt"),
       Make<group::Command, group::Continue>(kGroup, "continue_path"),
+      Make<group::Command, group::PathChecked>(kGroup, "path_checked"),
   };
   return entries;
 }
@@ -233,8 +239,8 @@ ParsedCommand UnknownTarget(const Machine& machine, std::string_view target) {
 
 ParsedCommand UnknownVerb(std::string_view kind, std::string_view verb) {
   std::vector<std::string_view> names;
-  for (const Entry& entry : Entries()) {
-    if (entry.verb.target_kind == kind) names.push_back(entry.verb.name);
+  for (const Verb& known : Verbs()) {
+    if (known.target_kind == kind) names.push_back(known.name);
   }
   return Refused(ErrorId::kUnknownVerb, "verb: expected a command of " + std::string(PhraseOf(kind)) +
                                             " (takt reference lists them), found " + Quoted(verb) +
@@ -268,19 +274,22 @@ bool LetsGo(const Command& command) noexcept {
 std::span<const Verb> Verbs() {
   static const std::vector<Verb> verbs = [] {
     std::vector<Verb> all;
-    for (const Entry& entry : Entries()) all.push_back(entry.verb);
+    for (const Entry& entry : Entries()) {
+      if (!IsInternal(entry.verb)) all.push_back(entry.verb);
+    }
     return all;
   }();
   return verbs;
 }
 
 ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std::string_view verb,
-                           std::string_view arguments) {
+                           std::string_view arguments, Giver giver) {
   const std::optional<std::uint32_t> found = FindTarget(machine, target);
   if (!found) return UnknownTarget(machine, target);
   const std::string_view kind = KindOf(machine, *found);
   for (const Entry& entry : Entries()) {
     if (entry.verb.target_kind != kind || entry.verb.name != verb) continue;
+    if (IsInternal(entry.verb) && giver != Giver::kJournal) break;
     ParsedCommand parsed;
     parsed.command.target = *found;
     parsed.level_sensitive = entry.verb.level_sensitive;

@@ -61,6 +61,7 @@ struct Verb {
   const Type* arguments;
   bool level_sensitive;  // needs a heartbeat over LCM
 };
+// Without those that the engine alone gives.
 std::span<const Verb> Verbs();
 
 struct ParsedCommand {
@@ -69,9 +70,12 @@ struct ParsedCommand {
   bool level_sensitive = false;
   std::string sentence;  // what is wrong, where, what was expected; empty when error is kNone
 };
+// Who gives a command: a journal also holds what the engine gave to itself.
+enum class Giver : std::uint8_t { kUser, kJournal };
+
 // `arguments` as in "{position: 100, velocity: 50}" or empty.
 ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std::string_view verb,
-                           std::string_view arguments);
+                           std::string_view arguments, Giver giver = Giver::kUser);
 
 struct CommandText {
   std::string target, verb, arguments;

@@ -17,6 +17,8 @@ namespace {
 // Feedback of one cycle: each live command of an axis may start and end in it, and so may each newly arrived one.
 constexpr std::size_t kEventsPerAxis = 4 * (axis::kBufferSize + 5);
 constexpr std::size_t kEventsPerCommand = 4;
+// A question may be given up and the next one asked before anybody has looked.
+constexpr std::size_t kQuestionsPerGroup = 4;
 constexpr std::size_t kEventsPerGroup = 4 * (group::kQueue + group::kSynced + 5);  // likewise
 
 axis::Context ContextOf(World& w, std::size_t i) {
@@ -40,7 +42,8 @@ group::Context ContextOf(World& w, const AxesGroup& group) {
           {w.axis_states, w.axis_params, of_axis, &w},
           w.cycle,
           w.feedback,
-          w.look_aheads[index]};
+          w.look_aheads[index],
+          group.params.workspace ? &w.questions : nullptr};
 }
 
 // What a command that has not been taken yet adds to the order.
@@ -253,6 +256,7 @@ World::World(const Machine& machine)
       cam_switches(machine.cam_switches),
       axis_outputs(machine.axes.size()),
       axis_order(machine.axes.size()),
+      questions(kQuestionsPerGroup * machine.groups.size()),
       servo_inputs(machine.axes.size()),
       servo_outputs(machine.axes.size()),
       samplings(machine.axes.size()),

@@ -40,8 +40,10 @@ struct OfKind {
 
 // Of the command queue, for commands that let go.
 constexpr std::size_t kKeptShare = 16;
+// Answers to groups that one cycle takes.
+constexpr std::size_t kAnswersPerCycle = 16;
 // As many commands as a cycle can write into a journal: besides those of the queues one each of overruns and shutdown.
-constexpr std::size_t kJournalledPerCycle = kCommandsPerCycle + kRenewalsPerCycle + 2;
+constexpr std::size_t kJournalledPerCycle = kCommandsPerCycle + kRenewalsPerCycle + kAnswersPerCycle + 2;
 
 // Cycles that may pass before the set points for external drives are fetched; and samples of a drive that one cycle
 // looks at.
@@ -61,6 +63,7 @@ struct Engine::Impl {
         world(machine),
         commands(o.command_queue),
         renewals(kRenewalsPerCycle * 4),
+        answers(4 * kAnswersPerCycle + 4 * machine.groups.size()),
         journalled(kJournalledPerCycle),
         feedback(4 * world.feedback_storage.size()),
         axes(machine, o, machine.axes, world.axis_outputs),
@@ -123,6 +126,7 @@ struct Engine::Impl {
       }
     }
     ApplyFrom(journalled, journalled.capacity());
+    ApplyFrom(answers, kAnswersPerCycle);
     ApplyFrom(renewals, kRenewalsPerCycle);
     ApplyFrom(commands, kCommandsPerCycle);
   }
@@ -186,6 +190,7 @@ struct Engine::Impl {
 
   SpscQueue<Command> commands;
   SpscQueue<Command> renewals;
+  SpscQueue<Command> answers;
   SpscQueue<Command> journalled;
   SpscQueue<FeedbackEvent> feedback;
   OfKind<axis::Outputs> axes;
@@ -230,6 +235,21 @@ Ticket Engine::Submit(const Command& command) noexcept {
 bool Engine::Resubmit(const Command& command) noexcept {
   impl_->next_ticket = std::max(impl_->next_ticket, command.ticket + 1);
   return impl_->journalled.TryPush(command);
+}
+
+SpscQueue<group::Question>& Engine::questions() noexcept {
+  return impl_->world.questions;
+}
+
+bool Engine::Answer(std::size_t group, const group::PathChecked& answer) noexcept {
+  const Machine& m = impl_->machine;
+  const std::size_t target = m.axes.size() + m.flex_cams.size() + group + 1;
+  return impl_->answers.TryPush({0, static_cast<std::uint32_t>(target), 0, group::Command(answer)});
+}
+
+group::Fixed Engine::fixed(std::size_t group) const noexcept {
+  const AxesGroup& of = impl_->world.groups[group];
+  return {of.params, of.mounting, *of.kinematics, impl_->world.paths, impl_->world.cycle};
 }
 
 void Engine::RunCycle(const CycleTiming& timing) noexcept {

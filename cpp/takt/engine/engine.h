@@ -16,6 +16,8 @@
 #include "takt/engine/snapshot.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
+#include "takt/group/question.h"
+#include "takt/group/survey.h"
 
 namespace takt::engine {
 
@@ -83,6 +85,13 @@ class Engine {
   void RequestShutdown() noexcept;
   // Counts what an external drive sent and nobody could use.
   void CountRefusedSample() noexcept;
+
+  // --- one thread that answers groups (PathChecks) ---
+  SpscQueue<group::Question>& questions() noexcept;
+  // The next cycle takes it. False: there is no room; then nobody waits for it, either.
+  bool Answer(std::size_t group, const group::PathChecked& answer) noexcept;
+  // Never changes.
+  group::Fixed fixed(std::size_t group) const noexcept;
 
   // --- one consuming thread ---
   // For external drives, with EngineOptions::drives: those of cycle -1 (all off) from the start, then of every cycle.

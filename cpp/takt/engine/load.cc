@@ -232,7 +232,7 @@ class CrossCheck {
 
 }  // namespace
 
-LoadResult LoadMachine(std::string_view text, std::string_view file_name) {
+LoadResult LoadMachine(std::string_view text, std::string_view file_name, Workspaces workspaces) {
   Machine machine;
   SourceMap source(file_name);
   std::vector<Problem> problems = ReadYaml(TypeOf<Machine>(), &machine, text, file_name, source);
@@ -241,7 +241,7 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name) {
   GroupLoading groups;
   if (problems.empty()) {
     cams = LoadCams(source, machine);
-    groups = LoadGroups(source, machine);
+    groups = LoadGroups(source, machine, workspaces == Workspaces::kMake);
   }
   if (readable && !machine.axes.empty()) {
     std::vector<Problem> more = CrossCheck(machine, source).Run();
@@ -258,6 +258,7 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name) {
   result.names_files = cams.files || groups.files;
   for (const Problem& problem : problems) result.problems.push_back(problem.Text());
   for (const Problem& warning : cams.warnings) result.warnings.push_back(warning.Text());
+  result.checkers = std::move(groups.checkers);
   if (problems.empty()) result.machine = std::move(machine);
   return result;
 }

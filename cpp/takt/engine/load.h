@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "takt/engine/checkers.h"
 #include "takt/engine/machine.h"
 
 namespace takt::engine {
@@ -14,10 +15,15 @@ struct LoadResult {
   std::optional<Machine> machine;
   std::vector<std::string> problems;  // "file:line:column: key.path: expected ..., found ..."
   std::vector<std::string> warnings;  // in the same form; nothing that hinders
-  bool names_files = false;           // the text alone does not say everything; WriteYaml(machine) does
+  // The text alone does not say everything; WriteYaml(machine) does, but for the meshes of workspaces.
+  bool names_files = false;
+  Checkers checkers{};
 };
 
-LoadResult LoadMachine(std::string_view text, std::string_view file_name);
+// kSkip: for whoever never asks whether a path is free, and may not have the files of meshes.
+enum class Workspaces : std::uint8_t { kMake, kSkip };
+
+LoadResult LoadMachine(std::string_view text, std::string_view file_name, Workspaces workspaces = Workspaces::kMake);
 // Reads the file; a problem when it cannot be read.
 LoadResult LoadMachineFile(const std::string& path);
 

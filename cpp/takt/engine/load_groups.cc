@@ -8,6 +8,7 @@
 #include "takt/core/yaml_reader.h"
 #include "takt/group/path_table.h"
 #include "takt/kinematics/kinematics.h"
+#include "takt/workspace/urdf_links.h"
 
 namespace takt::engine {
 
@@ -15,11 +16,13 @@ namespace {
 
 class Loader {
  public:
-  Loader(const SourceMap& source, Machine& machine) : source_(source), machine_(machine) {}
+  Loader(const SourceMap& source, Machine& machine, bool workspaces)
+      : source_(source), machine_(machine), workspaces_(workspaces) {}
 
   GroupLoading Run() {
+    loading_.checkers.resize(machine_.groups.size());
     for (std::size_t i = 0; i < machine_.groups.size(); ++i) {
-      LoadGroup("groups[" + std::to_string(i) + "]", machine_.groups[i]);
+      LoadGroup(i, "groups[" + std::to_string(i) + "]", machine_.groups[i]);
     }
     for (std::size_t i = 0; i < machine_.paths.size(); ++i) {
       LoadPath("paths[" + std::to_string(i) + "]", machine_.paths[i]);
@@ -32,9 +35,8 @@ class Loader {
     loading_.problems.push_back(source_.ProblemAt(path, message));
   }
 
-  std::string Beside(const std::string& file) const {
-    return (std::filesystem::path(source_.file()).parent_path() / file).string();
-  }
+  std::filesystem::path Folder() const { return std::filesystem::path(source_.file()).parent_path(); }
+  std::string Beside(const std::string& file) const { return (Folder() / file).string(); }
 
   // Of the file that the key `path` names.
   std::optional<std::string> Read(const std::string& path, const std::string& file) {
@@ -49,11 +51,13 @@ class Loader {
     return text;
   }
 
-  void LoadGroup(const std::string& path, group::GroupParams& group) {
+  void LoadGroup(std::size_t index, const std::string& path, group::GroupParams& group) {
     if (!group.kinematics) return;
     kinematics::KinematicsParams& params = *group.kinematics;
     std::string file;
+    std::string urdf_folder;
     if (params.serial && !kinematics::IsUrdfText(params.serial->urdf)) {
+      urdf_folder = std::filesystem::path(params.serial->urdf).parent_path().string();
       file = Beside(params.serial->urdf);
       std::optional<std::string> text = Read(path + ".kinematics.serial.urdf", file);
       if (!text) return;
@@ -67,7 +71,22 @@ class Loader {
     } else if (made.kinematics->count > group.axes.size()) {
       Add(path + ".axes", "expected the names of the " + std::to_string(made.kinematics->count) +
                               " axes of the kinematics, found " + std::to_string(group.axes.size()));
+    } else if (group.workspace) {
+      if (params.serial && group.workspace->links.empty()) {
+        workspace::UrdfLinks urdf = workspace::LinksOfUrdf(*params.serial, urdf_folder);
+        group.workspace->links = std::move(urdf.links);
+        if (!urdf.problem.empty()) return Add(path + ".workspace.links", urdf.problem);
+      }
+      if (workspaces_) LoadWorkspace(path + ".workspace", group, *made.kinematics, loading_.checkers[index]);
     }
+  }
+
+  void LoadWorkspace(const std::string& path, const group::GroupParams& group, const kinematics::Kinematics& kinematics,
+                     std::optional<workspace::Checker>& checker) {
+    workspace::MakeResult made =
+        workspace::Make(*group.workspace, kinematics, Folder().string(), kinematics::ToFrame(group.tool).p);
+    if (!made.checker) Add(path + (made.path.empty() ? "" : "." + made.path), made.problem);
+    checker = std::move(made.checker);
   }
 
   void LoadPath(const std::string& path, group::PathParams& params) {
@@ -95,13 +114,14 @@ class Loader {
 
   const SourceMap& source_;
   Machine& machine_;
+  const bool workspaces_;
   GroupLoading loading_;
 };
 
 }  // namespace
 
-GroupLoading LoadGroups(const SourceMap& source, Machine& machine) {
-  return Loader(source, machine).Run();
+GroupLoading LoadGroups(const SourceMap& source, Machine& machine, bool workspaces) {
+  return Loader(source, machine, workspaces).Run();
 }
 
 }  // namespace takt::engine

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "takt/core/problem.h"
+#include "takt/engine/checkers.h"
 #include "takt/engine/machine.h"
 
 namespace takt::engine {
@@ -11,9 +12,11 @@ namespace takt::engine {
 struct GroupLoading {
   std::vector<Problem> problems;
   bool files = false;  // something came from a file
+  Checkers checkers{};
 };
 
 // Puts what stands in files (URDF, paths as CSV) into the machine. A file's path counts from the machine file's folder.
-GroupLoading LoadGroups(const SourceMap& source, Machine& machine);
+// `workspaces`: what knows whether paths are free is made, too.
+GroupLoading LoadGroups(const SourceMap& source, Machine& machine, bool workspaces);
 
 }  // namespace takt::engine

@@ -1,6 +1,7 @@
 // Commands as they arrive: moves queued, settings changed, or refused.
 #include "takt/core/describe.h"
 #include "takt/core/in_range.h"
+#include "takt/group/ask.h"
 #include "takt/group/group.h"
 #include "takt/group/make_request.h"
 #include "takt/group/members.h"
@@ -172,7 +173,7 @@ struct Applier {
     if (m.enable && Is(GroupState::kHoming)) return Refuse(ErrorId::kState);
     if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
     if (m.enable && s.guides) return Finish(ErrorId::kNone);
-    if (!m.enable && s.begun) {  // along the path first
+    if (!m.enable && (s.begun || s.queue.count > 0)) {  // along the path first
       AbortAll();
       s.hold = false;
       s.task = Task::kPower;
@@ -266,6 +267,7 @@ struct Applier {
     if (const ErrorId error = Sync(c, ticket, m, s); error != ErrorId::kNone) return Refuse(error);
     Report(c, ticket, FeedbackState::kActive);
   }
+  void operator()(const PathChecked& m) const { Finish(Take(m, s) ? ErrorId::kNone : ErrorId::kState); }
   template <typename T>
   void operator()(const T&) const {}  // moves: see Apply
 };

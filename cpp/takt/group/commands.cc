@@ -414,4 +414,17 @@ void describe(Description<SetCoordinateTransform>& d) {
   d.defaulted<&C::reference_pcs>(between(1, kProductSystems), "Which product coordinate system that is; with pcs.");
 }
 
+void describe(Description<PathChecked>& d) {
+  using C = PathChecked;
+  d.about("Whether the path that the group asks about is free. Given by the engine alone.");
+  d.required<&C::number>("Of the question.");
+  d.defaulted<&C::trouble>("What is wrong with it.");
+  d.defaulted<&C::reason>("Why there is no position of the links.");
+  d.defaulted<&C::first>("What moves: its number among the parts of the group, from 1.");
+  d.defaulted<&C::second>("What it meets; 0: nothing.");
+  d.defaulted<&C::element>("Element of a path, from 1; 0: no path.");
+  d.defaulted<&C::place>("Where: from the beginning of the move.");
+  d.defaulted<&C::on_blend>("On the blend into it.");
+}
+
 }  // namespace takt::group

@@ -10,7 +10,9 @@
 #include "takt/axis/commands/moves.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/name.h"
+#include "takt/kinematics/joints.h"
 #include "takt/path/make.h"
+#include "takt/workspace/trouble.h"
 
 namespace takt::group {
 
@@ -167,11 +169,26 @@ struct SetCoordinateTransform {  // MC_SetCoordinateTransform: a PCS in any othe
   std::uint32_t reference_pcs = 1;
 };
 
+// What became of a question whether a path is free (question.h). The engine alone gives it to itself.
+struct PathChecked {
+  std::uint64_t number = 0;  // of the question
+  workspace::Trouble trouble = workspace::Trouble::kNone;
+  kinematics::Reason reason = kinematics::Reason::kNone;  // no position of the links: why
+  // What meets what: numbers from 1 in workspace::PartNames; 0: none.
+  std::uint32_t first = 0;
+  std::uint32_t second = 0;
+  std::uint32_t element = 0;  // of a path of the machine file, from 1; 0: of no such path
+  double place = 0;           // from the beginning of the move, mm or what it counts
+  bool on_blend = false;      // on the blend into the move, or into that element
+
+  bool operator==(const PathChecked&) const = default;
+};
+
 using Command =
     std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircularAbsolute, MoveCircularRelative, MoveDirectAbsolute,
                  MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop, Halt, Interrupt, Continue, AddAxis,
                  RemoveAxis, UngroupAllAxes, Enable, Disable, Reset, Power, Home, SetPosition, SetOverride,
-                 SetKinTransform, SetCartesianTransform, SetCoordinateTransform>;
+                 SetKinTransform, SetCartesianTransform, SetCoordinateTransform, PathChecked>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
 std::string WhyNot(const Command& command);
@@ -204,5 +221,6 @@ void describe(Description<SetOverride>&);
 void describe(Description<SetKinTransform>&);
 void describe(Description<SetCartesianTransform>&);
 void describe(Description<SetCoordinateTransform>&);
+void describe(Description<PathChecked>&);
 
 }  // namespace takt::group

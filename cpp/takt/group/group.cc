@@ -53,7 +53,8 @@ void ComeToRest(const Context& c, State& s) {
 // The path was not to be gone to its end.
 void EndCutShort(const Context& c, State& s) {
   const bool singular = s.reason == kinematics::Reason::kSingular;
-  if (s.queue.count > 0) Pop(c, FeedbackState::kError, singular ? ErrorId::kSingular : ErrorId::kUnreachable, s);
+  const ErrorId error = singular ? ErrorId::kSingular : ErrorId::kUnreachable;
+  if (s.queue.count > 0) Pop(c, FeedbackState::kError, error, s, s.blocked_element);
   ComeToRest(c, s);
 }
 

@@ -14,6 +14,7 @@
 #include "takt/group/outputs.h"
 #include "takt/group/params.h"
 #include "takt/group/path_table.h"
+#include "takt/group/question.h"
 #include "takt/group/state.h"
 #include "takt/kinematics/kinematics.h"
 
@@ -51,6 +52,7 @@ struct Context {
   Cycle cycle;
   FeedbackSink& feedback;
   LookAhead& ahead;
+  Questions* questions = nullptr;  // where paths are asked about before they start; null: nobody knows what is free
 };
 
 // As it stands when power comes on. `axes`: index of each member.

@@ -16,7 +16,6 @@ constexpr int kHalvings = 8;
 // Slower than this a joint without a blend is no better than a stop, mm/s.
 constexpr double kLeastJointSpeed = 1;
 constexpr double kRounding = 1e-9;
-constexpr double kNoEnd = 1e12;  // mm
 // How unlike both sides of a corner may be, of chords of a curve: else it would bend to the other side.
 constexpr double kMostUneven = 2.5;
 
@@ -179,11 +178,13 @@ bool MakeRound(const OpenCorner& corner, const path::Segment& second, double to,
 
 // Instead of a blend of its own, one that goes on from that of the last corner in the middle of the stretch between
 // them, with the same curvature. `blend` lacks its segment.
-bool GoOnFromLastCorner(const Context& c, const State& s, const Distances& d, Stretch blend, int& work) {
+bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, int& work) {
   LookAhead& ahead = c.ahead;
   if (!ahead.corner.open || ahead.count < 2) return false;
   const std::uint64_t last_one = ahead.end() - 2;
   const path::Segment line = ahead[last_one + 1].segment;
+  if (c.params.workspace && line.length > c.params.workspace->margin) return false;
+  Stretch blend = d.stretch;
   const double middle = line.length / 2;
   if (d.first < middle && d.second < ahead.next.segment.length / 2) return false;  // it is the deviation that counts
   const auto bend = path::BendBetween(ahead.corner.first, line, ahead.next.segment);
@@ -210,35 +211,59 @@ bool GoOnFromLastCorner(const Context& c, const State& s, const Distances& d, St
   return true;
 }
 
-bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, int& work) {
-  LookAhead& ahead = c.ahead;
-  Stretch& after = ahead.next;
+// All of a blend but its segment. False: there is none.
+bool FindDistances(const Context& c, const State& s, const Request& move, std::uint32_t element, const Stretch& before,
+                   const Stretch& after, int& work, CornerBlend& out) {
+  if (!Blends(move, element)) return false;
   if (before.joints != after.joints || before.segment.measure != after.segment.measure) return false;
   path::Room room = path::HalfOf(before.segment, after.segment);
   room.first = std::min(room.first, before.to - before.from);
-  Stretch blend;
-  blend.move = s.planning.move;
+  Stretch& blend = out.stretch;
+  blend.move = after.move;
   blend.joints = after.joints;
   blend.limits = trajectory::Least(before.limits, after.limits);
   blend.build_up_s = before.build_up_s;
   blend.limits.velocity = BlendVelocity(move, before.limits.velocity, after.limits.velocity);
   const Distances d = DistancesOf(c, s, move, before, after, room, blend, work);
-  if (!(d.first > 0 && d.second > 0)) return false;
-  if (GoOnFromLastCorner(c, s, d, blend, work)) return true;
-  ahead.corner.open = false;
+  out.first = d.first;
+  out.second = d.second;
+  out.reach = d.reach;
+  out.deviation = d.deviation;
+  // One that the deviation keeps short of the middle of both lines is never made again: nothing has to wait for it.
+  out.to_middle = d.first >= room.first || d.second >= room.second;
+  return d.first > 0 && d.second > 0;
+}
+
+bool MakeSegment(const Context& c, const State& s, const Stretch& before, const Stretch& after, int& work,
+                 CornerBlend& out) {
   work += kBlendPlaces + 1;
-  if (!MakeBlend(before, after, d.first, d.second, blend.segment) || !(SquareOn(c, s, blend) > 0)) return false;
-  const double cut = before.to - d.first;
+  if (!MakeBlend(before, after, out.first, out.second, out.stretch.segment)) return false;
+  out.stretch.to = out.stretch.segment.length;
+  return SquareOn(c, s, out.stretch) > 0;
+}
+
+bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, int& work) {
+  LookAhead& ahead = c.ahead;
+  CornerBlend blend;
+  if (!FindDistances(c, s, move, s.planning.element, before, ahead.next, work, blend)) return false;
+  if (GoOnFromLastCorner(c, s, blend, work)) return true;
+  ahead.corner.open = false;
+  if (!MakeSegment(c, s, before, ahead.next, work, blend)) return false;
+  const double cut = before.to - blend.first;
   if (!CutAt(c, s, before.begin + (cut - before.from), ahead.end() - 1)) return false;
   before.to = cut;
-  blend.to = blend.segment.length;
-  after.from = d.second;
-  ahead.corner = {true, before.segment, cut, {}, d.reach, d.deviation};
-  Append(ahead, blend);
+  ahead.next.from = blend.second;
+  ahead.corner = {blend.to_middle, before.segment, cut, {}, blend.reach, blend.deviation};
+  Append(ahead, blend.stretch);
   return true;
 }
 
 }  // namespace
+
+bool FindBlend(const Context& c, const State& s, const Request& move, std::uint32_t element, const Stretch& before,
+               const Stretch& after, int& work, CornerBlend& out) noexcept {
+  return FindDistances(c, s, move, element, before, after, work, out) && MakeSegment(c, s, before, after, work, out);
+}
 
 int Join(const Context& c, State& s) noexcept {
   LookAhead& ahead = c.ahead;
@@ -254,7 +279,7 @@ int Join(const Context& c, State& s) noexcept {
     const bool wanted = move.blends() || s.planning.element > 0;
     goes_on = wanted && Passes(c, s, before, ahead.next);
     const bool smooth = goes_on && path::Smooth(before.segment, ahead.next.segment);
-    const bool blended = !smooth && Blends(move, s.planning.element) && TryBlend(c, s, move, before, work);
+    const bool blended = !smooth && TryBlend(c, s, move, before, work);
     if (!blended) ahead.corner.open = false;
     goes_on = goes_on || blended;
     if (!goes_on) {

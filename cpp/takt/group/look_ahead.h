@@ -64,10 +64,14 @@ struct LookAhead {
   kinematics::Frame end_tool;
   kinematics::Joints next_joints{};
   kinematics::Frame next_tool;
+  // Where it ended before a path was tried that is not yet planned.
+  kinematics::Joints tried_from{};
+  kinematics::Frame tried_from_tool;
   bool known = false;          // whether it is more than where the members stand
   kinematics::Joints near{};   // of the node sampled last
   trajectory::PathPoint last;  // that node
   std::uint64_t sampling = 0;  // the stretch being sampled
+  bool asked = false;          // the question whether the path is free is on its way
   bool cut_short = false;      // the path ends where it could not be gone on with; `reason` says why
 
   Stretch& operator[](std::uint64_t number) noexcept { return stretches[number % stretches.size()]; }

@@ -65,6 +65,12 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::reason>("Why no position of the axes was found, where the last move was refused or ended for that.");
   d.internal<&O::problem>("Why there is no such path, where the last move was refused for that.");
   d.internal<&O::blocked_at>(unit::mm, "Where on that move, from its beginning.");
+  d.internal<&O::blocked_element>("On which element, from 1, where it is a path of the machine file; 0: it is none.");
+  d.internal<&O::trouble>("Why the path is not free, where the last move was refused for that.");
+  d.internal<&O::first_part>("What comes too near there: its number among the group's parts, from 1; 0: nothing.");
+  d.internal<&O::second_part>("To what; 0: to nothing.");
+  d.internal<&O::on_blend>("That is on the blend into the move, or into that element of a path.");
+  d.internal<&O::checking>("It waits until the next path has been checked.");
 }
 
 }  // namespace takt::group

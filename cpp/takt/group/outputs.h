@@ -11,6 +11,7 @@
 #include "takt/kinematics/frames.h"
 #include "takt/kinematics/joints.h"
 #include "takt/path/segment.h"
+#include "takt/workspace/trouble.h"
 
 namespace takt::group {
 
@@ -61,9 +62,16 @@ struct Outputs {
   bool interrupted = false;    // rests on the path until it is continued
   bool synchronized = false;   // a path that follows a master is in step with it
   // Why the last move was refused or ended.
-  kinematics::Reason reason = kinematics::Reason::kNone;  // no position of the axes
-  path::Problem problem = path::Problem::kNone;           // no such path
-  double blocked_at = 0;                                  // mm from the beginning of that move
+  kinematics::Reason reason = kinematics::Reason::kNone;   // no position of the axes
+  path::Problem problem = path::Problem::kNone;            // no such path
+  double blocked_at = 0;                                   // mm from the beginning of that move
+  std::uint32_t blocked_element = 0;                       // there, of a path of the machine file, from 1; 0: no path
+  workspace::Trouble trouble = workspace::Trouble::kNone;  // it is not free
+  // What meets what: numbers from 1 in workspace::PartNames; 0: none.
+  std::uint32_t first_part = 0;
+  std::uint32_t second_part = 0;
+  bool on_blend = false;  // on the blend into that move or element
+  bool checking = false;  // the next path is being checked
 };
 
 // Product coordinate systems by number, from 0.

@@ -44,6 +44,10 @@ void describe(Description<GroupParams>& d) {
   d.defaulted<&G::tool_limits>("Limits of the tool.");
   d.defaulted<&G::base>("Where the machine coordinate system is in the world.");
   d.defaulted<&G::tool>("Where the tool centre point is on the flange.");
+  d.defaulted<&G::workspace>(
+      "What stands around it and what shapes it has; unset: its paths are not checked for that.");
+  d.rule<&G::workspace>("must not be given without kinematics",
+                        [](const G& g) { return !g.workspace || g.kinematics; });
   d.rule<&G::axes>("must be 8 names at most", [](const G& g) { return g.axes.size() <= kMaxAxes; });
 }
 

@@ -8,6 +8,7 @@
 #include "takt/core/describe_fwd.h"
 #include "takt/kinematics/frames.h"
 #include "takt/kinematics/params.h"
+#include "takt/workspace/params.h"
 
 namespace takt::group {
 
@@ -35,8 +36,9 @@ struct GroupParams {
   std::optional<kinematics::KinematicsParams> kinematics{};
   PathLimits path;
   ToolLimits tool_limits;
-  kinematics::Pose base;  // of the machine coordinate system in the world
-  kinematics::Pose tool;  // of the tool centre point on the flange
+  kinematics::Pose base;                                  // of the machine coordinate system in the world
+  kinematics::Pose tool;                                  // of the tool centre point on the flange
+  std::optional<workspace::WorkspaceParams> workspace{};  // unset: paths are not checked
 };
 
 // A place on a path of the machine file.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/group/ask.h"
 #include "takt/group/join.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
@@ -13,6 +14,7 @@ namespace {
 
 // So many inverses of the kinematics in a cycle; each takes up to a µs with closed forms.
 constexpr int kBudget = 48;
+constexpr int kBudgetAtRest = 96;
 // Of the members' limits: the rest keeps them within theirs in spite of what the timing takes for linear.
 constexpr double kLimitShare = 0.98;
 constexpr std::size_t kSweepNodes = 512;
@@ -36,49 +38,89 @@ ErrorId ErrorOf(kinematics::Reason reason) {
   return reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
 }
 
-void NextMove(State& s) {
-  ++s.planning.move;
+bool IsPath(const State& s) {
+  return MoveAt(s, s.planning.move).kind == MoveKind::kPath;
+}
+
+// All elements of a path are tried before the first one is planned.
+bool Tries(const State& s) {
+  return IsPath(s) && !s.planning.tried;
+}
+
+// The element being planned, from 1; 0: no path.
+std::uint32_t ElementOf(const State& s) {
+  return IsPath(s) ? s.planning.element + 1 : 0;
+}
+
+void BeginAgain(bool tried, State& s) {
+  s.planning.tried = tried;
   s.planning.element = 0;
   s.planning.stage = Stage::kIdle;
 }
 
+void NextMove(State& s) {
+  ++s.planning.move;
+  BeginAgain(false, s);
+}
+
+void EndTrial(const Context& c, State& s) {
+  c.ahead.end_joints = c.ahead.tried_from;
+  c.ahead.end_tool = c.ahead.tried_from_tool;
+  BeginAgain(true, s);
+  if (HasWorkspace(c, s)) Ask(c, s);
+}
+
 void NextElement(const Context& c, State& s) {
-  const Request& move = MoveAt(s, s.planning.move);
-  const bool more = move.kind == MoveKind::kPath && s.planning.element + 1 < c.paths[move.path].pieces.size();
-  if (c.ahead.cut_short || !more) return NextMove(s);
-  ++s.planning.element;
-  s.planning.stage = Stage::kIdle;
+  const bool more = IsPath(s) && s.planning.element + 1 < c.paths[MoveAt(s, s.planning.move).path].pieces.size();
+  if (more && !c.ahead.cut_short) {
+    ++s.planning.element;
+    s.planning.stage = Stage::kIdle;
+  } else if (Tries(s)) {
+    EndTrial(c, s);
+  } else {
+    NextMove(s);
+  }
 }
 
 // What a path began and cannot go on with ends there, and so do the moves behind it.
 void CutShort(const Context& c, std::uint64_t move, kinematics::Reason reason, double at, State& s) {
   s.reason = reason;
   s.blocked_at = at;
+  s.blocked_element = ElementOf(s);
   c.ahead.cut_short = true;
   c.ahead.sampling = c.ahead.end();
   AbortBehind(c, move, s);
 }
 
 void Refuse(const Context& c, ErrorId error, State& s) {
-  if (s.planning.element > 0) {
+  if (s.planning.tried && s.planning.element > 0) {
     c.ahead.cut_short = true;
     AbortBehind(c, s.planning.move, s);
-    NextMove(s);
-  } else {
-    RefuseFrom(c, s.planning.move, error, s);
-    s.planning.stage = Stage::kIdle;
+    return NextMove(s);
   }
+  if (Tries(s)) {
+    c.ahead.end_joints = c.ahead.tried_from;
+    c.ahead.end_tool = c.ahead.tried_from_tool;
+  }
+  RefuseFrom(c, s.planning.move, error, s.blocked_element, s);
+  BeginAgain(false, s);
 }
 
 void Begin(const Context& c, State& s) {
   s.reason = kinematics::Reason::kNone;
   s.problem = path::Problem::kNone;
   s.blocked_at = 0;
+  s.blocked_element = 0;
+  s.answer = {};
   const Request& move = MoveAt(s, s.planning.move);
-  if (!c.ahead.known) {
-    const End end = Present(c, s);
-    c.ahead.end_joints = end.joints;
-    c.ahead.end_tool = end.tool;
+  if (s.planning.element == 0) {
+    if (!c.ahead.known) {
+      const End end = Present(c, s);
+      c.ahead.end_joints = end.joints;
+      c.ahead.end_tool = end.tool;
+    }
+    c.ahead.tried_from = c.ahead.end_joints;
+    c.ahead.tried_from_tool = c.ahead.end_tool;
   }
   c.ahead.next = {};
   c.ahead.next.move = s.planning.move;
@@ -87,7 +129,10 @@ void Begin(const Context& c, State& s) {
     s.problem = path::Problem::kNone;
     return NextElement(c, s);
   }
-  if (error != ErrorId::kNone) return Refuse(c, error, s);
+  if (error != ErrorId::kNone) {
+    s.blocked_element = ElementOf(s);
+    return Refuse(c, error, s);
+  }
   c.ahead.build_up = {};
   c.ahead.near = c.ahead.end_joints;
   s.planning.verified = 0;
@@ -107,6 +152,7 @@ void Verify(const Context& c, int& budget, State& s) {
     if (reason != kinematics::Reason::kNone) {
       s.reason = reason;
       s.blocked_at = way;
+      s.blocked_element = ElementOf(s);
       return Refuse(c, ErrorOf(reason), s);
     }
     c.ahead.near = motion.position;
@@ -116,7 +162,31 @@ void Verify(const Context& c, int& budget, State& s) {
   if (static_cast<int>(s.planning.verified) <= places) return;
   c.ahead.next_joints = c.ahead.near;
   if (HasTool(c, s)) ToolAt(c, c.ahead.next_joints, c.ahead.next_tool);
-  s.planning.stage = Stage::kJoin;
+  if (Tries(s)) {
+    c.ahead.end_joints = c.ahead.next_joints;
+    c.ahead.end_tool = c.ahead.next_tool;
+    NextElement(c, s);
+  } else if (!IsPath(s) && HasWorkspace(c, s)) {
+    Ask(c, s);
+  } else {
+    s.planning.stage = Stage::kJoin;
+  }
+}
+
+// False: it is not yet known whether the path is free.
+bool Check(const Context& c, State& s) {
+  if (!IsAnswered(c, s)) return false;
+  const PathChecked& answer = s.answer;
+  if (answer.trouble == workspace::Trouble::kNone) {
+    s.planning.stage = IsPath(s) ? Stage::kIdle : Stage::kJoin;
+    return true;
+  }
+  s.reason = answer.reason;
+  s.blocked_at = answer.place;
+  s.blocked_element = answer.element;
+  const bool lost = answer.trouble == workspace::Trouble::kNoPose;
+  Refuse(c, lost ? ErrorOf(answer.reason) : ErrorId::kCollision, s);
+  return true;
 }
 
 bool SampleBegin(const Context& c, const Stretch& stretch, State& s) {
@@ -255,7 +325,7 @@ trajectory::CoordinateLimits LimitsOf(const Context& c, const State& s) noexcept
 }
 
 void Plan(const Context& c, State& s) noexcept {
-  int budget = kBudget;
+  int budget = s.begun ? kBudget : kBudgetAtRest;
   while (budget > 0) {
     switch (s.planning.stage) {
       case Stage::kIdle:
@@ -263,12 +333,21 @@ void Plan(const Context& c, State& s) noexcept {
           s.planning.stage = Stage::kSample;
           break;
         }
-        if (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short || !HasRoom(c.ahead)) return;
+        if (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short) return;
+        if (!Tries(s) && !HasRoom(c.ahead)) return;
+        if (c.ahead.corner.open && !IsPath(s) && HasWorkspace(c, s)) {  // nothing waits for an answer
+          c.ahead.corner.open = false;
+          break;
+        }
         Begin(c, s);
         --budget;
         break;
       case Stage::kVerify:
         Verify(c, budget, s);
+        break;
+      case Stage::kCheck:
+        if (!Check(c, s)) return;
+        --budget;
         break;
       case Stage::kJoin:
         budget -= Join(c, s);
@@ -293,9 +372,8 @@ void ForgetPlan(const Context& c, State& s) noexcept {
   c.ahead.sampling = c.ahead.first;
   c.ahead.count = 0;
   c.ahead.known = c.ahead.cut_short = c.ahead.corner.open = false;
-  s.planning.stage = Stage::kIdle;
   s.planning.move = s.done;
-  s.planning.element = 0;
+  BeginAgain(false, s);
 }
 
 bool IsPlanned(const Context& c, const State& s) noexcept {

@@ -90,6 +90,12 @@ void Publish(const Context& c, const State& s, Outputs& out) noexcept {
   out.reason = s.reason;
   out.problem = s.problem;
   out.blocked_at = s.blocked_at;
+  out.blocked_element = s.blocked_element;
+  out.trouble = s.answer.trouble;
+  out.first_part = s.answer.first;
+  out.second_part = s.answer.second;
+  out.on_blend = s.answer.on_blend;
+  out.checking = s.planning.stage == Stage::kCheck;
 }
 
 }  // namespace takt::group

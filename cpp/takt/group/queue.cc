@@ -13,8 +13,8 @@ bool Push(const Request& move, State& s) noexcept {
   return true;
 }
 
-void Pop(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
-  Report(c, MoveAt(s, s.done).ticket, feedback, error);
+void Pop(const Context& c, FeedbackState feedback, ErrorId error, State& s, std::uint32_t element) noexcept {
+  Report(c, MoveAt(s, s.done).ticket, feedback, error, element);
   MoveAt(s, s.done) = {};
   s.queue.first = (s.queue.first + 1) % kQueue;
   --s.queue.count;
@@ -29,9 +29,9 @@ void AbortBehind(const Context& c, std::uint64_t move, State& s) noexcept {
   }
 }
 
-void RefuseFrom(const Context& c, std::uint64_t move, ErrorId error, State& s) noexcept {
+void RefuseFrom(const Context& c, std::uint64_t move, ErrorId error, std::uint32_t element, State& s) noexcept {
   AbortBehind(c, move, s);
-  Report(c, MoveAt(s, move).ticket, FeedbackState::kError, error);
+  Report(c, MoveAt(s, move).ticket, FeedbackState::kError, error, element);
   MoveAt(s, move) = {};
   --s.queue.count;
 }

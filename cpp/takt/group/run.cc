@@ -36,8 +36,10 @@ bool Follow(const Context& c, State& s) {
   if (!stretch) return true;
   kinematics::JointMotion by_way;
   const double way = std::clamp(stretch->from + now.position - stretch->begin, stretch->from, stretch->to);
-  s.reason = AxesOn(c, s, *stretch, way, s.joints, by_way);
-  if (s.reason != kinematics::Reason::kNone) return false;
+  if (const auto reason = AxesOn(c, s, *stretch, way, s.joints, by_way); reason != kinematics::Reason::kNone) {
+    s.reason = reason;
+    return false;
+  }
   kinematics::JointMotion motion = by_way;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     const KinematicState at =

@@ -15,6 +15,7 @@ void describe(Enumeration<Stage>& e) {
   e.about("How far the planning of a move is.");
   e.value(Stage::kIdle, "idle", "Nothing is planned.");
   e.value(Stage::kVerify, "verify", "Whether it can be gone.");
+  e.value(Stage::kCheck, "check", "Whether it is free: asked outside the cycle.");
   e.value(Stage::kJoin, "join", "How it is joined to the path before.");
   e.value(Stage::kSample, "sample", "Nodes are made.");
   e.value(Stage::kSweep, "sweep", "Ceilings are worked out.");
@@ -25,7 +26,9 @@ void describe(Description<Planning>& d) {
   d.internal<&Planning::stage>("Where it is.");
   d.internal<&Planning::move>("Number of the move.");
   d.internal<&Planning::element>("Of a path.");
+  d.internal<&Planning::tried>("All elements are good.");
   d.internal<&Planning::verified>("Places that are good.");
+  d.internal<&Planning::question>("Number of the last question about a path.");
   d.internal<&Planning::nodes>("Nodes made so far.");
 }
 
@@ -88,6 +91,8 @@ void describe(Description<State>& d) {
   d.internal<&S::reason>("Why there was no position of the axes.");
   d.internal<&S::problem>("Why there was no path.");
   d.internal<&S::blocked_at>("How far it could be gone.");
+  d.internal<&S::blocked_element>("On which element of a path.");
+  d.internal<&S::answer>("To the last question about a path.");
   d.internal<&S::illegal_transitions>("Always 0.");
 }
 

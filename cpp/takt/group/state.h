@@ -25,13 +25,15 @@ struct Queue {
 };
 
 // Where the planning of a move has got to.
-enum class Stage : std::uint8_t { kIdle, kVerify, kJoin, kSample, kSweep };
+enum class Stage : std::uint8_t { kIdle, kVerify, kCheck, kJoin, kSample, kSweep };
 
 struct Planning {
   Stage stage = Stage::kIdle;
   std::uint64_t move = 0;      // number of the move that is planned, from 0 since the start
   std::uint32_t element = 0;   // of a path
+  bool tried = false;          // all elements of it are good
   std::uint32_t verified = 0;  // so many places
+  std::uint64_t question = 0;  // number of the last one about a path
   std::uint64_t nodes = 0;     // so many were made: the window itself is no part of the state
 };
 
@@ -95,6 +97,8 @@ struct State {
   kinematics::Reason reason = kinematics::Reason::kNone;
   path::Problem problem = path::Problem::kNone;
   double blocked_at = 0;
+  std::uint32_t blocked_element = 0;      // of a path, from 1; 0: no path
+  PathChecked answer;                     // to the last question
   std::uint64_t illegal_transitions = 0;  // always 0: the state table holds
 };
 

@@ -7,8 +7,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "takt/core/name.h"
 #include "takt/kinematics/chain.h"
@@ -41,5 +43,20 @@ struct UrdfChain {
 // when there is none. Not for the cycle.
 std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& base, const std::string& tip,
                                   std::string& why);
+
+// A shape that URDF gives a link for collisions. Lengths in mm.
+struct UrdfShape {
+  enum class Kind : std::uint8_t { kBox, kCylinder, kSphere, kMesh };
+  std::string link;   // as URDF calls it
+  std::string fixed;  // the link of the chain that it goes along with, or base
+  Kind kind = Kind::kBox;
+  std::array<double, 3> size{};  // box: edges; cylinder: radius, length along Z; sphere: radius; mesh: mm for 1 in it
+  std::string mesh;              // file, as URDF names it
+  Frame pose;                    // of its middle, or of the mesh, on that link
+};
+
+// Those of all links that go along with a link of the chain, or with its base, and have no axis of their own between.
+// The arguments are those of ReadUrdf, which must have read them.
+std::vector<UrdfShape> ReadUrdfShapes(const std::string& xml, const std::string& base, const std::string& tip);
 
 }  // namespace takt::kinematics

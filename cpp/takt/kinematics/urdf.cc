@@ -77,7 +77,63 @@ std::string OnlyEnd(const urdf::ModelInterface& model, std::string& why) {
   return end;
 }
 
+// What it goes along with, and where it is on that. Empty: with an axis that does not belong to the chain.
+std::string FixedTo(const urdf::ModelInterface& model, const urdf::LinkConstSharedPtr& of,
+                    const std::vector<urdf::JointConstSharedPtr>& way, const std::string& base, Frame& pose) {
+  urdf::LinkConstSharedPtr link = of;
+  pose = Frame::Identity();
+  while (link->name != base) {
+    const urdf::JointConstSharedPtr joint = link->parent_joint;
+    if (!joint) return {};
+    if (joint->type != urdf::Joint::FIXED) {
+      return std::find(way.begin(), way.end(), joint) == way.end() ? std::string() : link->name;
+    }
+    pose = ToFrame(joint->parent_to_joint_origin_transform) * pose;
+    link = model.getLink(joint->parent_link_name);
+  }
+  return "base";
+}
+
+bool TakeGeometry(const urdf::Geometry& geometry, UrdfShape& shape) {
+  if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry)) {
+    shape.kind = UrdfShape::Kind::kBox;
+    shape.size = {box->dim.x * kMetre, box->dim.y * kMetre, box->dim.z * kMetre};
+  } else if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(&geometry)) {
+    shape.kind = UrdfShape::Kind::kCylinder;
+    shape.size = {cylinder->radius * kMetre, cylinder->length * kMetre, 0};
+  } else if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(&geometry)) {
+    shape.kind = UrdfShape::Kind::kSphere;
+    shape.size = {sphere->radius * kMetre, 0, 0};
+  } else if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(&geometry)) {
+    shape.kind = UrdfShape::Kind::kMesh;
+    shape.size = {mesh->scale.x * kMetre, mesh->scale.y * kMetre, mesh->scale.z * kMetre};
+    shape.mesh = mesh->filename;
+  } else {
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
+
+std::vector<UrdfShape> ReadUrdfShapes(const std::string& xml, const std::string& base, const std::string& tip) {
+  const urdf::ModelInterfaceSharedPtr model = Parsed(xml);
+  if (!model) return {};
+  std::string why;
+  const std::string begin = base.empty() ? model->getRoot()->name : base;
+  const std::vector<urdf::JointConstSharedPtr> way = Way(*model, begin, tip.empty() ? OnlyEnd(*model, why) : tip, why);
+  std::vector<UrdfShape> shapes;
+  for (const auto& [name, link] : model->links_) {
+    Frame at;
+    const std::string fixed = FixedTo(*model, link, way, begin, at);
+    if (fixed.empty()) continue;
+    for (const urdf::CollisionSharedPtr& collision : link->collision_array) {
+      UrdfShape shape{.link = name, .fixed = fixed, .mesh = {}, .pose = at * ToFrame(collision->origin)};
+      if (collision->geometry && TakeGeometry(*collision->geometry, shape)) shapes.push_back(shape);
+    }
+  }
+  return shapes;
+}
 
 std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& base, const std::string& tip,
                                   std::string& why) {

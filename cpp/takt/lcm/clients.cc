@@ -61,8 +61,9 @@ bool IsFinalReply(const msgs::feedback& reply) {
 
 }  // namespace
 
-Clients::Clients(const engine::Machine& machine, std::int64_t run_id, Submit submit, const ClientLimits& limits)
-    : machine_(machine), run_id_(run_id), submit_(std::move(submit)), limits_(limits) {}
+Clients::Clients(const engine::Machine& machine, std::int64_t run_id, Submit submit, const ClientLimits& limits,
+                 Explain explain)
+    : machine_(machine), run_id_(run_id), submit_(std::move(submit)), explain_(std::move(explain)), limits_(limits) {}
 
 template <typename Message>
 Clients::Client* Clients::Admit(const Message& message, std::int64_t now_ns, msgs::feedback& refusal) {
@@ -183,6 +184,7 @@ void Clients::OnFeedback(const FeedbackEvent& event) {
   const auto [client, id] = found->second;
   Record& record = client->records.at(id);
   msgs::feedback reply = ToMessage(event);
+  reply.sentence = explain_(event);
   reply.client = record.last.client;
   reply.session = record.last.session;
   reply.id = id;

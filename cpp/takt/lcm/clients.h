@@ -13,6 +13,7 @@
 
 #include "takt/engine/command.h"
 #include "takt/engine/machine.h"
+#include "takt/engine/path_checks.h"
 #include "takt/lcm/messages.h"
 
 namespace takt::lcm {
@@ -36,8 +37,12 @@ class Clients {
   // Hands a command to the engine: its ticket, or 0 if the queue is full. Called by one thread at a time.
   using Submit = std::function<Ticket(const engine::Command&)>;
 
+  // What is wrong, for people; empty: nothing.
+  using Explain = std::function<std::string(const FeedbackEvent&)>;
+
   // `machine` must outlive this. Commands and heartbeats with another `run_id` are refused.
-  Clients(const engine::Machine& machine, std::int64_t run_id, Submit submit, const ClientLimits& limits = {});
+  Clients(const engine::Machine& machine, std::int64_t run_id, Submit submit, const ClientLimits& limits = {},
+          Explain explain = engine::Sentence);
 
   std::int64_t run_id() const { return run_id_; }
 
@@ -91,6 +96,7 @@ class Clients {
   const engine::Machine& machine_;
   const std::int64_t run_id_;
   const Submit submit_;
+  const Explain explain_;
   const ClientLimits limits_;
 
   mutable std::mutex mutex_;

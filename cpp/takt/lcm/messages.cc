@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "takt/engine/path_checks.h"
+
 namespace takt::lcm {
 namespace {
 
@@ -219,6 +221,12 @@ msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine:
   m.reason = static_cast<std::int8_t>(o.reason);
   m.problem = static_cast<std::int8_t>(o.problem);
   m.blocked_at = o.blocked_at;
+  m.blocked_element = o.blocked_element;
+  m.trouble = static_cast<std::int8_t>(o.trouble);
+  m.first_part = o.first_part;
+  m.second_part = o.second_part;
+  m.on_blend = o.on_blend;
+  m.checking = o.checking;
   return m;
 }
 
@@ -259,7 +267,7 @@ msgs::feedback ToMessage(const FeedbackEvent& event) {
   m.reached = event.reached;
   m.error_id = static_cast<std::int32_t>(event.error);
   m.value = event.value;
-  if (event.error != ErrorId::kNone) m.sentence = ErrorText(event.error);
+  m.sentence = engine::Sentence(event);
   return m;
 }
 

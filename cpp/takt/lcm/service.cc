@@ -2,12 +2,13 @@
 
 namespace takt::lcm {
 
-Service::Service(engine::Engine& engine, std::int64_t run_id)
-    : clients_(engine.machine(), run_id, [&engine](const engine::Command& command) { return engine.Submit(command); }) {
-}
+Service::Service(engine::Engine& engine, const ServiceOptions& options)
+    : clients_(
+          engine.machine(), options.info.run_id,
+          [&engine](const engine::Command& command) { return engine.Submit(command); }, {}, options.explain) {}
 
 std::unique_ptr<Service> Service::Open(engine::Engine& engine, const ServiceOptions& options, std::string& problem) {
-  std::unique_ptr<Service> service(new Service(engine, options.info.run_id));
+  std::unique_ptr<Service> service(new Service(engine, options));
   if (!options.url.empty()) {
     service->sending_ = OpenNetwork(options.url);
     if (service->sending_.lcm) service->receiving_ = OpenNetwork(options.url);

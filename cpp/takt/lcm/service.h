@@ -22,6 +22,7 @@ struct ServiceOptions {
   std::string url{};       // empty: no network
   std::string log_path{};  // empty: no log
   RunInfo info{};
+  Clients::Explain explain = engine::Sentence;
 };
 
 class Service {
@@ -35,7 +36,7 @@ class Service {
   Losses Close();
 
  private:
-  Service(engine::Engine& engine, std::int64_t run_id);
+  Service(engine::Engine& engine, const ServiceOptions& options);
 
   Clients clients_;
   // Two members of the same network: sending and receiving do not wait for each other.

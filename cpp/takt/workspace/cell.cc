@@ -20,10 +20,21 @@ std::string NotOneOf(const std::string& found, std::string expected, const std::
   return "expected " + expected + "), found " + Quoted(found) + DidYouMean(found, candidates);
 }
 
+std::vector<std::size_t> LinksMeantBy(const std::string& name, const std::vector<LinkInfo>& links) {
+  std::vector<std::size_t> on;
+  for (std::size_t link = 0; link < links.size(); ++link) {
+    if (links[link].name == name) return {link};
+  }
+  for (std::size_t link = 0; link < links.size(); ++link) {
+    if (Means(name, links[link].name)) on.push_back(link);
+  }
+  return on;
+}
+
 class Maker {
  public:
   Maker(const WorkspaceParams& params, const kinematics::Kinematics& kinematics, std::string_view folder)
-      : params_(params), folder_(folder), links_(kinematics::LinksOf(kinematics)) {
+      : params_(params), folder_(folder), links_(kinematics::LinksOf(kinematics)), parts_(PartsOf(params, kinematics)) {
     cell_.kinematics = kinematics;
     cell_.bounds = params.bounds;
     cell_.margin = params.margin;
@@ -31,7 +42,7 @@ class Maker {
   }
 
   MadeCell Run() && {
-    if (!TakeObstacles() || !TakeLinks() || !TakeGripper() || !TakeIgnored())
+    if (!TakeObstacles() || !TakeBodies() || !TakeIgnored())
       return {.cell = std::nullopt, .path = std::move(path_), .problem = std::move(problem_)};
     Introduce();
     if (params_.self_collisions) FindPairs();
@@ -51,12 +62,6 @@ class Maker {
     return std::move(made.shape);
   }
 
-  void AddBody(std::string name, std::string given_name, std::size_t link, Shape shape) {
-    cell_.scene.AddBody(shape);
-    cell_.bodies.push_back({std::move(name), link, std::move(shape)});
-    given_names_.push_back(std::move(given_name));
-  }
-
   bool TakeObstacles() {
     for (std::size_t i = 0; i < params_.obstacles.size(); ++i) {
       const SolidParams& solid = params_.obstacles[i];
@@ -68,32 +73,23 @@ class Maker {
     return true;
   }
 
-  bool TakeLinks() {
+  // In the order of their numbers.
+  bool TakeBodies() {
     for (std::size_t i = 0; i < params_.links.size(); ++i) {
       const SolidParams& solid = params_.links[i];
       const std::string path = "links[" + std::to_string(i) + "]";
-      std::vector<std::size_t> on;
-      for (std::size_t link = 0; link < links_.size(); ++link) {
-        if (Means(solid.link, links_[link].name)) on.push_back(link);
-      }
-      if (on.empty()) return Refuse(path + ".link", NotOneOf(solid.link, "a link of this mechanism", LinkNames()));
-      for (const std::size_t link : on) {
-        std::optional<Shape> shape = Made(solid, links_[link].span, path);
-        if (!shape) return false;
-        std::string name = solid.name.empty() ? links_[link].name : solid.name;
-        if (on.size() > 1 && !solid.name.empty()) name += " on " + links_[link].name;
-        AddBody(std::move(name), solid.name, link, std::move(*shape));
-      }
+      if (LinksMeantBy(solid.link, links_).empty())
+        return Refuse(path + ".link", NotOneOf(solid.link, "a link of this mechanism", LinkNames()));
     }
-    return true;
-  }
-
-  bool TakeGripper() {
-    for (std::size_t i = 0; i < params_.gripper.size(); ++i) {
-      const SolidParams& solid = params_.gripper[i];
-      std::optional<Shape> shape = Made(solid, {}, "gripper[" + std::to_string(i) + "]");
+    for (const Part& part : parts_) {
+      const bool of_gripper = part.solid->link.empty();
+      const SolidParams* const first = of_gripper ? params_.gripper.data() : params_.links.data();
+      const std::string path = (of_gripper ? "gripper[" : "links[") + std::to_string(part.solid - first) + "]";
+      std::optional<Shape> shape = Made(*part.solid, of_gripper ? KDL::Vector::Zero() : links_[part.link].span, path);
       if (!shape) return false;
-      AddBody(solid.name, solid.name, links_.size() - 1, std::move(*shape));
+      cell_.scene.AddBody(*shape);
+      cell_.bodies.push_back({part.name, part.link, std::move(*shape)});
+      given_names_.push_back(part.solid->name);
     }
     return true;
   }
@@ -176,6 +172,7 @@ class Maker {
   const WorkspaceParams& params_;
   std::string_view folder_;
   std::vector<LinkInfo> links_;
+  std::vector<Part> parts_;
   std::vector<std::string> given_names_;  // of the bodies; empty: none
   Cell cell_;
   std::string path_;
@@ -183,6 +180,21 @@ class Maker {
 };
 
 }  // namespace
+
+std::vector<Part> PartsOf(const WorkspaceParams& params, const kinematics::Kinematics& kinematics) {
+  const std::vector<LinkInfo> links = kinematics::LinksOf(kinematics);
+  std::vector<Part> parts;
+  for (const SolidParams& solid : params.links) {
+    const std::vector<std::size_t> on = LinksMeantBy(solid.link, links);
+    for (const std::size_t link : on) {
+      std::string name = solid.name.empty() ? links[link].name : solid.name;
+      if (on.size() > 1 && !solid.name.empty()) name += " on " + links[link].name;
+      parts.push_back({std::move(name), link, &solid});
+    }
+  }
+  for (const SolidParams& solid : params.gripper) parts.push_back({solid.name, links.size() - 1, &solid});
+  return parts;
+}
 
 MadeCell MakeCell(const WorkspaceParams& params, const kinematics::Kinematics& kinematics, std::string_view folder) {
   return Maker(params, kinematics, folder).Run();

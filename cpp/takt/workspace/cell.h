@@ -30,8 +30,9 @@ struct Body {
 struct Cell {
   kinematics::Kinematics kinematics;
   BoundsParams bounds;
-  double margin = 0;      // mm
-  double resolution = 0;  // mm
+  KDL::Vector tool_centre;  // on the flange: what stays within them
+  double margin = 0;        // mm
+  double resolution = 0;    // mm
   std::vector<Obstacle> obstacles;
   std::vector<Body> bodies;
   // Which obstacles a body must not meet, and which bodies one another.
@@ -46,6 +47,16 @@ struct MadeCell {
   std::string path;     // without: which key of the parameters is wrong, "obstacles[2].mesh.file"; empty: all of them
   std::string problem;  // and why
 };
+
+// Where a part of a link or of the gripper belongs.
+struct Part {
+  std::string name;
+  std::size_t link = 0;
+  const SolidParams* solid = nullptr;
+};
+
+// Of all parts, links first; links that the mechanism does not have are left out.
+std::vector<Part> PartsOf(const WorkspaceParams& params, const kinematics::Kinematics& kinematics);
 
 MadeCell MakeCell(const WorkspaceParams& params, const kinematics::Kinematics& kinematics, std::string_view folder);
 

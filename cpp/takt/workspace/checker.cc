@@ -180,18 +180,19 @@ class Run {
     const std::vector<Bound> bounds = BoundsOf(cell_.bounds);
     if (bounds.empty()) return;
     const std::size_t tool = kinematics::LinksOf(cell_.kinematics).size() - 1;
-    const std::array<KDL::Vector, 1> origin{};
+    const std::array<KDL::Vector, 1> centre = {cell_.tool_centre};
     std::string_view nearest;
     const auto distance = [&](const LinkFrameArray& frames) {
       double least = kFar;
+      const KDL::Vector at = frames[tool] * cell_.tool_centre;
       for (const Bound& bound : bounds) {
-        const double room = bound.sign * (bound.value - frames[tool].p(bound.axis));
+        const double room = bound.sign * (bound.value - at(bound.axis));
         if (room < least) nearest = bound.name;
         least = std::min(least, room);
       }
       return least;
     };
-    const std::optional<Hit> hit = walker_.Follow({tool, 0, origin, 0}, -kRounding, distance);
+    const std::optional<Hit> hit = walker_.Follow({tool, 0, centre, 0}, -kRounding, distance);
     Take(hit, Trouble::kBounds, "tool", std::string(nearest));
   }
 
@@ -266,12 +267,14 @@ std::optional<Finding> Checker::Check(std::span<const Sample> path) {
                  .reason = reason};
 }
 
-std::string Checker::Describe(const Finding& finding) const {
+std::string Checker::Describe(const Finding& finding, std::string_view unit) const {
   std::ostringstream text;
   text << std::fixed;
   text.precision(1);
-  const auto place = [&] { text << ' ' << finding.s << " mm along the path"; };
+  const auto place = [&] { text << ' ' << finding.s << ' ' << unit << " along the path"; };
   switch (finding.trouble) {
+    case Trouble::kNone:
+      break;
     case Trouble::kCollision:
       text << finding.first << " meets " << finding.second;
       place();
@@ -296,9 +299,11 @@ std::vector<std::pair<std::string, std::string>> Checker::NearAtRest() const {
   return names;
 }
 
-MakeResult Make(const WorkspaceParams& params, const kinematics::Kinematics& kinematics, std::string_view folder) {
+MakeResult Make(const WorkspaceParams& params, const kinematics::Kinematics& kinematics, std::string_view folder,
+                const KDL::Vector& tool_centre) {
   MadeCell made = MakeCell(params, kinematics, folder);
   if (!made.cell) return {.checker = std::nullopt, .path = std::move(made.path), .problem = std::move(made.problem)};
+  made.cell->tool_centre = tool_centre;
   return {.checker = Checker(std::move(*made.cell)), .path = {}, .problem = {}};
 }
 

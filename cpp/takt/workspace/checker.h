@@ -16,7 +16,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,18 +28,13 @@
 #include "takt/kinematics/links.h"
 #include "takt/workspace/cell.h"
 #include "takt/workspace/params.h"
+#include "takt/workspace/trouble.h"
 
 namespace takt::workspace {
 
 struct Sample {
   double s = 0;                 // mm along the path; only reported
   kinematics::Joints joints{};  // in the axes' own units
-};
-
-enum class Trouble : std::uint8_t {
-  kCollision,  // two things are nearer than the margin
-  kBounds,     // the tool leaves its bounds
-  kNoPose,     // no position of the links there: `reason` says why
 };
 
 struct Finding {
@@ -51,7 +45,7 @@ struct Finding {
   std::size_t index = 0;        // the last sample at or before the place
   double distance = 0;          // mm between the two, 0 if they touch; how far out of the bounds
   kinematics::Joints joints{};  // there
-  kinematics::Reason reason = kinematics::Reason::kNone;
+  kinematics::Reason reason = kinematics::Reason::kNone;  // no position: why
 };
 
 class Checker {
@@ -61,8 +55,9 @@ class Checker {
   // The first place where something is wrong; nothing: the path is free. Positions that are no numbers are kNoPose.
   std::optional<Finding> Check(std::span<const Sample> path);
 
-  // One sentence without a full stop: "finger meets post 12.3 mm along the path (5 mm are to be kept)".
-  std::string Describe(const Finding& finding) const;
+  // One sentence without a full stop: "finger meets post 12.3 mm along the path (5 mm are to be kept)". `unit`: what
+  // s counts.
+  std::string Describe(const Finding& finding, std::string_view unit = "mm") const;
 
   // Parts of the mechanism that are not checked against one another because they are nearer than the margin with all of
   // its axes at 0.
@@ -79,7 +74,8 @@ struct MakeResult {
   std::string problem;  // and why
 };
 
-// `folder`: where paths of files begin. Reads files.
-MakeResult Make(const WorkspaceParams& params, const kinematics::Kinematics& kinematics, std::string_view folder = ".");
+// `folder`: where paths of files begin. `tool_centre`: what stays within the bounds, seen from the flange. Reads files.
+MakeResult Make(const WorkspaceParams& params, const kinematics::Kinematics& kinematics, std::string_view folder = ".",
+                const KDL::Vector& tool_centre = {});
 
 }  // namespace takt::workspace

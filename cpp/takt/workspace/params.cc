@@ -92,7 +92,8 @@ void describe(Description<WorkspaceParams>& d) {
   d.defaulted<&W::obstacles>("What stands in the cell.");
   d.rule<&W::obstacles>("must each have a name and no `link`",
                         [](const W& w) { return std::all_of(w.obstacles.begin(), w.obstacles.end(), Named); });
-  d.defaulted<&W::links>("What shapes the links of the mechanism have.");
+  d.defaulted<&W::links>(
+      "What shapes the links of the mechanism have. Unset: with kinematics from URDF what that says for collisions.");
   d.rule<&W::links>("must each say which link they are on", [](const W& w) {
     return std::none_of(w.links.begin(), w.links.end(), [](const SolidParams& s) { return s.link.empty(); });
   });

@@ -169,9 +169,10 @@ INSTANTIATE_TEST_SUITE_P(AllStates, GroupBadInputIn, testing::ValuesIn(kSituatio
 TEST(GroupBadInput, KnowsEveryCommand) {
   std::set<std::size_t> known;
   for (const Command& good : GoodCommands()) known.insert(good.index());
-  for (const Command& plain : std::vector<Command>{
-           group::Continue{}, group::AddAxis{}, group::RemoveAxis{}, group::UngroupAllAxes{}, group::Enable{},
-           group::Disable{}, group::Reset{}, group::Power{}, group::Home{}, group::SetKinTransform{}}) {
+  for (const Command& plain :
+       std::vector<Command>{group::Continue{}, group::AddAxis{}, group::RemoveAxis{}, group::UngroupAllAxes{},
+                            group::Enable{}, group::Disable{}, group::Reset{}, group::Power{}, group::Home{},
+                            group::SetKinTransform{}, group::PathChecked{}}) {  // no user's
     known.insert(plain.index());
   }
   EXPECT_EQ(known.size(), std::variant_size_v<Command>);

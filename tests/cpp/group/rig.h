@@ -20,6 +20,7 @@ namespace takt::group {
 struct Life {
   bool busy = false, active = false, done = false, aborted = false, error = false;
   ErrorId error_id = ErrorId::kNone;
+  double value = 0;  // at the end
   std::uint64_t active_cycle = 0, final_cycle = 0;
   bool ended() const { return done || aborted || error; }
 };
@@ -62,6 +63,7 @@ class Rig {
     slip_counts.resize(axes.size());
     ahead = std::make_unique<LookAhead>(trajectory::CoordinateLimits{}, cycle.period_s);
     mounting = MakeMounting(params);
+    questions = std::make_unique<Questions>(4);
     state = MakeState(members);
   }
 
@@ -144,6 +146,7 @@ class Rig {
     Context c{params, mounting, kinematics ? &*kinematics : nullptr, paths, group_of, 1, {}, cycle, sink_, *ahead};
     c.axes = {states, axes,
               [](void* owner, std::size_t i) noexcept { return static_cast<Rig*>(owner)->AxisContext(i); }, this};
+    if (params.workspace) c.questions = questions.get();
     return c;
   }
   bool out_of_work() const { return state.state == GroupState::kStandby && pending_.empty(); }
@@ -160,6 +163,7 @@ class Rig {
   std::vector<ServoOutputs> commanded;
   std::vector<double> slip_counts;  // measured beyond what is commanded
   std::unique_ptr<LookAhead> ahead;
+  std::unique_ptr<Questions> questions;  // with a workspace
   State state;
   Cycle cycle;
   trajectory::Planner planner;
@@ -180,6 +184,7 @@ class Rig {
     if (IsFinal(e.state)) {
       life.final_cycle = e.cycle;
       life.error_id = e.error;
+      life.value = e.value;
     }
   }
 

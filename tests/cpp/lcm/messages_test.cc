@@ -286,6 +286,12 @@ TEST(Messages, GroupStateKeepsEveryNumber) {
           FIELD(group_state, reason),
           FIELD(group_state, problem),
           FIELD(group_state, blocked_at),
+          FIELD(group_state, blocked_element),
+          FIELD(group_state, trouble),
+          FIELD(group_state, first_part),
+          FIELD(group_state, second_part),
+          FIELD(group_state, on_blend),
+          FIELD(group_state, checking),
       },
       machine, "robot");
   EXPECT_EQ(static_cast<int>(group::GroupState::kErrorStop), msgs::group_state::STATE_GROUP_ERROR_STOP);

@@ -1,0 +1,204 @@
+#include "takt/engine/path_checks.h"
+
+#include <algorithm>
+#include <chrono>
+#include <string_view>
+
+#include "takt/group/survey.h"
+#include "takt/workspace/trouble.h"
+
+namespace takt::engine {
+
+namespace {
+
+using group::PathChecked;
+using group::Survey;
+using workspace::Finding;
+using workspace::Sample;
+using workspace::Trouble;
+
+constexpr auto kIdleWait = std::chrono::milliseconds(1);
+// Looked at in one go: a start of its own costs more than a sample.
+constexpr std::size_t kSamplesAtOnce = 1000;
+// Of refused moves whose end has not been told yet.
+constexpr std::size_t kSentences = 1024;
+
+std::string_view UnitOf(path::Measure measure) {
+  if (measure == path::Measure::kAuxiliaries) return "units";
+  return measure == path::Measure::kTurn ? "deg" : "mm";
+}
+
+std::string InElement(std::uint32_t element) {
+  return element == 0 ? "" : ", in element " + std::to_string(element);
+}
+
+// One question: what goes on without a gap is looked at together.
+class Inquiry {
+ public:
+  explicit Inquiry(workspace::Checker& checker) : checker_(checker) {}
+
+  // False: something is wrong, or nothing is left to look at.
+  bool Take(const Survey::Part& part) {
+    unit_ = UnitOf(part.measure);
+    if (part.on_blend) {
+      const std::optional<Finding> found = checker_.Check(part.samples);
+      if (!found) return true;
+      if (CheckLine()) Note(*found, part.element, true);
+      return false;
+    }
+    for (const Sample& sample : part.samples) {
+      if (!line_.empty() && &sample == part.samples.data()) continue;  // the last one of the part before
+      line_.push_back(sample);
+      elements_.push_back(part.element);
+    }
+    return line_.size() < kSamplesAtOnce || CheckLine();
+  }
+
+  // `lost`: behind the last part there is no position of the axes.
+  void End(kinematics::Reason lost) {
+    if (finding_ || !CheckLine() || lost == kinematics::Reason::kNone) return;
+    Finding finding{.trouble = Trouble::kNoPose, .first = "tool", .second = {}, .joints = {}, .reason = lost};
+    if (!line_.empty()) finding.s = line_.back().s;
+    Note(finding, elements_.empty() ? 0 : elements_.back(), false);
+  }
+
+  const std::optional<Finding>& finding() const { return finding_; }
+  std::uint32_t element() const { return element_; }
+  bool on_blend() const { return on_blend_; }
+  std::string_view unit() const { return unit_; }
+
+ private:
+  void Note(const Finding& finding, std::uint32_t element, bool on_blend) {
+    finding_ = finding;
+    element_ = element;
+    on_blend_ = on_blend;
+  }
+
+  // False: something is wrong. The last sample stays: from there it goes on.
+  bool CheckLine() {
+    if (line_.size() < 2) return true;
+    const std::optional<Finding> found = checker_.Check(line_);
+    if (found) {
+      const std::size_t next = std::min(found->index + (found->s > line_[found->index].s ? 1 : 0), line_.size() - 1);
+      Note(*found, elements_[next], false);
+      return false;
+    }
+    line_.erase(line_.begin(), line_.end() - 1);
+    elements_.erase(elements_.begin(), elements_.end() - 1);
+    return true;
+  }
+
+  workspace::Checker& checker_;
+  std::vector<Sample> line_;
+  std::vector<std::uint32_t> elements_;  // of each sample
+  std::optional<Finding> finding_;
+  std::uint32_t element_ = 0;
+  bool on_blend_ = false;
+  std::string_view unit_ = "mm";
+};
+
+}  // namespace
+
+struct PathChecks::OfGroup {
+  OfGroup(const group::Fixed& fixed, workspace::Checker its)
+      : checker(std::move(its)),
+        survey(fixed),
+        parts(workspace::PartNames(fixed.params.workspace.value(), fixed.kinematics)) {}
+
+  // From 1; 0: none.
+  std::uint32_t NumberOf(const std::string& part) const {
+    const auto found = std::ranges::find(parts, part);
+    return found == parts.end() ? 0 : static_cast<std::uint32_t>(found - parts.begin() + 1);
+  }
+
+  workspace::Checker checker;
+  Survey survey;
+  std::vector<std::string> parts;
+  std::optional<group::Question> asked{};  // last
+};
+
+PathChecks::PathChecks(Engine& engine, Checkers checkers) : engine_(engine) {
+  for (std::size_t i = 0; i < checkers.size(); ++i) {
+    groups_.push_back(checkers[i] ? std::make_unique<OfGroup>(engine.fixed(i), std::move(*checkers[i])) : nullptr);
+  }
+}
+
+PathChecks::~PathChecks() = default;
+
+void PathChecks::Run() {
+  group::Question question;
+  bool any = false;
+  while (engine_.questions().TryPop(question)) {  // what was asked before is not waited for any more
+    const std::size_t index = question.group - 1;
+    if (index >= groups_.size() || !groups_[index]) continue;
+    groups_[index]->asked = question;
+    any = true;
+  }
+  if (!any) return;
+  for (const auto& group : groups_) {
+    if (!group || !group->asked) continue;
+    engine_.Answer(group->asked->group - 1, Check(*group->asked));
+    group->asked.reset();
+  }
+}
+
+PathChecked PathChecks::Check(const group::Question& question) {
+  OfGroup& group = *groups_[question.group - 1];
+  Inquiry inquiry(group.checker);
+  inquiry.End(group.survey.Run(question, [&](const Survey::Part& part) { return inquiry.Take(part); }));
+  PathChecked answer{.number = question.number};
+  if (!inquiry.finding()) return answer;
+  const Finding& finding = *inquiry.finding();
+  answer.trouble = finding.trouble;
+  answer.reason = finding.reason;
+  answer.first = group.NumberOf(finding.first);
+  answer.second = group.NumberOf(finding.second);
+  answer.element = inquiry.element();
+  answer.place = finding.s;
+  answer.on_blend = inquiry.on_blend();
+  Remember(question.move.ticket, group.checker.Describe(finding, inquiry.unit()) + InElement(answer.element) +
+                                     (answer.on_blend ? ", where the corner before it is rounded" : ""));
+  return answer;
+}
+
+void PathChecks::Remember(Ticket ticket, std::string sentence) {
+  const std::lock_guard lock(mutex_);
+  sentences_.emplace_back(ticket, std::move(sentence));
+  if (sentences_.size() > kSentences) sentences_.pop_front();
+}
+
+std::string PathChecks::Sentence(const FeedbackEvent& event) {
+  if (event.error == ErrorId::kNone) return {};
+  const std::lock_guard lock(mutex_);
+  const auto found = std::ranges::find(sentences_, event.ticket, &std::pair<Ticket, std::string>::first);
+  if (found == sentences_.end()) return engine::Sentence(event);
+  std::string sentence = std::move(found->second);
+  sentences_.erase(found);
+  // Something else may have ended the move meanwhile.
+  const bool of_path =
+      event.error == ErrorId::kCollision || event.error == ErrorId::kUnreachable || event.error == ErrorId::kSingular;
+  return of_path ? sentence : engine::Sentence(event);
+}
+
+std::string Sentence(const FeedbackEvent& event) {
+  if (event.error == ErrorId::kNone) return {};
+  const bool of_path = event.error == ErrorId::kCollision || event.error == ErrorId::kUnreachable ||
+                       event.error == ErrorId::kSingular || event.error == ErrorId::kPathGeometry;
+  const std::string text(ErrorText(event.error));
+  return of_path && event.value > 0 ? text + InElement(static_cast<std::uint32_t>(event.value)) : text;
+}
+
+PathCheckThread::PathCheckThread(PathChecks& checks)
+    : thread_([this, &checks] {
+        while (!stop_) {
+          checks.Run();
+          std::this_thread::sleep_for(kIdleWait);
+        }
+      }) {}
+
+PathCheckThread::~PathCheckThread() {
+  stop_ = true;
+  thread_.join();
+}
+
+}  // namespace takt::engine

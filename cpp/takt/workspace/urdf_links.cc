@@ -1,0 +1,71 @@
+#include "takt/workspace/urdf_links.h"
+
+#include <filesystem>
+#include <map>
+
+#include "takt/core/problem.h"
+#include "takt/kinematics/serial.h"
+
+namespace takt::workspace {
+namespace {
+
+using kinematics::UrdfShape;
+
+constexpr std::string_view kPackage = "package://";
+constexpr std::string_view kFile = "file://";
+
+std::string FileOf(const std::string& mesh, const std::string& urdf_folder) {
+  namespace fs = std::filesystem;
+  if (mesh.starts_with(kFile)) return mesh.substr(kFile.size());
+  if (!mesh.starts_with(kPackage)) return (fs::path(urdf_folder) / mesh).string();
+  const fs::path inside = mesh.substr(kPackage.size());
+  fs::path folder = urdf_folder;
+  for (fs::path above = folder; !above.empty(); above = above.parent_path()) {
+    if (above.filename() == *inside.begin()) return (above.parent_path() / inside).string();
+    if (above == above.parent_path()) break;
+  }
+  return (folder / inside.lexically_relative(*inside.begin())).string();
+}
+
+// What is wrong with a mesh for us; empty: nothing.
+std::string WhyNot(const UrdfShape& shape) {
+  std::string extension = std::filesystem::path(shape.mesh).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string of = "link " + Quoted(shape.link) + " of the URDF has the mesh " + Quoted(shape.mesh);
+  if (extension != ".stl") return of + ", expected an STL file: give the shapes of its links here";
+  const bool even = shape.size[0] == shape.size[1] && shape.size[1] == shape.size[2];
+  return even ? "" : of + " with one scale along each axis, expected one for all: give the shapes of its links here";
+}
+
+}  // namespace
+
+UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const std::string& urdf_folder) {
+  UrdfLinks out;
+  std::map<std::string, int> named;
+  for (const UrdfShape& shape : kinematics::ReadUrdfShapes(serial.urdf, serial.base, serial.tip)) {
+    SolidParams& solid = out.links.emplace_back();
+    solid.link = shape.fixed;
+    solid.pose = kinematics::ToPose(shape.pose);
+    if (const int count = ++named[shape.link]; shape.link != shape.fixed || count > 1) {
+      solid.name = shape.link + (count > 1 ? "#" + std::to_string(count) : "");
+    }
+    switch (shape.kind) {
+      case UrdfShape::Kind::kBox:
+        solid.box = {shape.size[0], shape.size[1], shape.size[2]};
+        break;
+      case UrdfShape::Kind::kCylinder:
+        solid.cylinder = {shape.size[0], shape.size[1]};
+        break;
+      case UrdfShape::Kind::kSphere:
+        solid.sphere = {shape.size[0]};
+        break;
+      case UrdfShape::Kind::kMesh:
+        solid.mesh = {FileOf(shape.mesh, urdf_folder), shape.size[0]};
+        if (out.problem.empty()) out.problem = WhyNot(shape);
+        break;
+    }
+  }
+  return out;
+}
+
+}  // namespace takt::workspace

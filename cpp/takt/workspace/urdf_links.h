@@ -1,0 +1,21 @@
+// Shapes of links as URDF gives them, for workspaces that say nothing about links themselves.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "takt/kinematics/params.h"
+#include "takt/workspace/params.h"
+
+namespace takt::workspace {
+
+struct UrdfLinks {
+  std::vector<SolidParams> links;
+  std::string problem;  // empty: none
+};
+
+// `serial`: with the text of the URDF, and good. `urdf_folder`: of its file, seen from the folder of the machine file;
+// meshes count from there, and package://NAME/ as well, if that folder or one above is called NAME.
+UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const std::string& urdf_folder);
+
+}  // namespace takt::workspace
