@@ -233,7 +233,9 @@ bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, 
   before.to = cut;
   blend.to = blend.segment.length;
   after.from = d.second;
-  ahead.corner = {true, before.segment, cut, {}, d.reach, d.deviation};
+  // One that the deviation keeps short of the middle of both lines is never made again: nothing has to wait for it.
+  const bool open = d.first >= room.first || d.second >= room.second;
+  ahead.corner = {open, before.segment, cut, {}, d.reach, d.deviation};
   Append(ahead, blend);
   return true;
 }
