@@ -334,7 +334,7 @@ def test_parts_have_numbers() -> None:
 def urdf_arm(mesh: str = "") -> str:
     """A slide along x that carries an arm turning about z: a box on it, a finger fixed to it."""
     shape = f'<mesh filename="{mesh}" scale="0.001 0.001 0.001"/>' if mesh else '<box size="0.4 0.04 0.04"/>'
-    return f"""<robot name="r">
+    return """<robot name="r">
 <link name="world"><collision><geometry><box size="0.02 0.02 0.02"/></geometry></collision></link>
 <link name="arm"/><link name="arm_hand"/><link name="finger"/>
 <joint name="slide" type="prismatic"><parent link="world"/><child link="arm"/><origin xyz="0 0 0.5"/>
