@@ -158,6 +158,15 @@ void Advance(const PathWindow& window, double wish, double period_s, PathPace& p
   while (pace.passed < pace.node && window[pace.passed + 1].at.s <= pace.now.position) ++pace.passed;
 }
 
+bool GoesOn(const PathWindow& window, const PathPace& pace, double period_s) noexcept {
+  if (pace.raw_stands || pace.node + 1 >= window.known() || window[pace.node].stop) return true;
+  const PathNode& node = window[pace.node];
+  const double square = std::max(pace.entered, pace.raw.velocity * pace.raw.velocity);
+  const double change = std::min(node.at.limits.jerk * node.build_up_s, node.bounds.strength.At(square));
+  const double least = std::max(-node.bounds.deceleration, pace.last[pace.oldest].acceleration - change);
+  return RawLimitsOf(window, pace, period_s).high >= least - 1e-9 * node.bounds.deceleration;
+}
+
 bool Stands(const PathPace& pace) noexcept {
   return pace.raw.velocity == 0 && pace.now.velocity == 0 && pace.now.acceleration == 0;
 }

@@ -43,6 +43,9 @@ void BeginAt(const PathWindow& window, std::uint64_t node, double period_s, Path
 inline constexpr double kFullSpeed = std::numeric_limits<double>::infinity();
 void Advance(const PathWindow& window, double wish, double period_s, PathPace& pace) noexcept;
 
+// Whether it stays beneath the ceilings with an acceleration that changes no faster than it may.
+bool GoesOn(const PathWindow& window, const PathPace& pace, double period_s) noexcept;
+
 // It stands, and so does the raw motion.
 bool Stands(const PathPace& pace) noexcept;
 

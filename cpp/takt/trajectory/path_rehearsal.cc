@@ -67,7 +67,7 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, dou
     if (!started_ || here_.pace.passed < now.passed) StartFrom(now);
     if (here_.pace.raw_stands && Stands(here_.pace)) {
       if (trouble_) {
-        EndTrouble(window, now);
+        EndTrouble(window, now, period_s);
       } else if (window[here_.pace.node].stop && here_.pace.node + 2 < window.known()) {
         BeginAt(window, here_.pace.node + 1, period_s, here_.pace);  // behind a stop the next motion begins
         here_.accelerations.fill(0);
@@ -81,7 +81,7 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, dou
     const KinematicState before = here_.pace.now;
     const double from = here_.pace.last[here_.pace.oldest].position;
     if (trouble_ && from > to_) {
-      EndTrouble(window, now);
+      EndTrouble(window, now, period_s);
       continue;
     }
     Advance(window, kFullSpeed, period_s, here_.pace);
@@ -159,10 +159,11 @@ void PathRehearsal::GoBack(const PathWindow& window) noexcept {
   }
 }
 
-void PathRehearsal::EndTrouble(PathWindow& window, const PathPace& now) noexcept {
+void PathRehearsal::EndTrouble(PathWindow& window, const PathPace& now, double period_s) noexcept {
   trouble_ = false;
-  weakened_ = true;
   window.Weaken(from_, to_, now.node + 1, shares_);
+  if (!GoesOn(window, now, period_s)) return window.TakeBack();  // it is too near
+  weakened_ = true;
   if (from_ > tried_to_) tries_ = 0;
   tried_to_ = std::max(tried_to_, to_);
   again_ = tries_++ < kTries;

@@ -31,7 +31,7 @@ class PathRehearsal {
   void Save() noexcept;
   void GoBack(const PathWindow& window) noexcept;
   void Look(const PathWindow& window, const KinematicState& before, double period_s) noexcept;
-  void EndTrouble(PathWindow& window, const PathPace& now) noexcept;
+  void EndTrouble(PathWindow& window, const PathPace& now, double period_s) noexcept;
 
   Place here_;
   Place mark_;                  // where a longer path would begin to make a difference

@@ -12,6 +12,7 @@ namespace {
 constexpr double kShare = 0.97;
 // Of the coordinates' jerk, for bends gone at a steady speed.
 constexpr double kDriftShare = 0.8;
+constexpr std::size_t kKept = 64;
 
 using Third = std::array<double, kPathCoordinates>;
 
@@ -36,7 +37,9 @@ double DriftSquare(const Third& third, const CoordinateLimits& limits) {
 }  // namespace
 
 PathWindow::PathWindow(std::size_t capacity, const CoordinateLimits& limits, double period_s)
-    : nodes_(capacity), limits_(limits), period_s_(period_s), build_up_s_(period_s) {}
+    : nodes_(capacity), limits_(limits), period_s_(period_s), build_up_s_(period_s) {
+  kept_.reserve(kKept);
+}
 
 void PathWindow::Clear() noexcept {
   begin_ = known_ = next_ = low_ = lowest_ = end_;
@@ -108,12 +111,20 @@ std::uint64_t PathWindow::free_until() const noexcept {
   return begin_;
 }
 
+void PathWindow::SweepFrom(std::uint64_t behind) noexcept {
+  next_ = behind;
+  low_ = std::max(begin_, std::min(kept_from_, behind));
+  Sweep(nodes_.size());
+}
+
 void PathWindow::Weaken(double from, double to, std::uint64_t first, const PathShares& shares) noexcept {
   std::uint64_t behind = known_ - 1;  // the last one is a stop
   while (behind > first + 1 && Node(behind - 1).at.s > to) --behind;
+  kept_.clear();
   std::uint64_t i = behind;
-  while (i > first && (i == behind || Node(i).at.s > from)) {
+  while (i > first && (i == behind || Node(i).at.s > from) && kept_.size() < kKept) {
     PathNode& node = Node(--i);
+    kept_.push_back(node);
     node.own *= shares.square;
     node.cap *= shares.square;
     for (std::size_t k = 0; k < node.bounds.count; ++k) node.bounds.reach[k] *= shares.acceleration;
@@ -123,9 +134,16 @@ void PathWindow::Weaken(double from, double to, std::uint64_t first, const PathS
       strength->least *= shares.strength;
     }
   }
-  if (i == behind) return;
-  next_ = behind;
-  low_ = i;
+  kept_from_ = i;
+  SweepFrom(behind);
+}
+
+void PathWindow::TakeBack() noexcept {
+  std::uint64_t i = kept_from_ + kept_.size();
+  const std::uint64_t behind = i;
+  for (const PathNode& node : kept_) Node(--i) = node;
+  kept_.clear();
+  SweepFrom(behind);
 }
 
 void PathWindow::Close() noexcept {

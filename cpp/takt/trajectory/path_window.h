@@ -76,8 +76,11 @@ class PathWindow {
   std::uint64_t changed_from() const noexcept { return low_; }
   // The last node whose ceiling a longer path would not raise.
   std::uint64_t free_until() const noexcept;
-  // Leaves less to what lies between two places, from a node on. Only once Sweep is through; it has to follow.
+  // Leaves less to what lies between two places, to some 64 nodes at most, from a node on; and sweeps. Only once Sweep is
+  // through.
   void Weaken(double from, double to, std::uint64_t first, const PathShares& shares) noexcept;
+  // Undoes the last Weaken.
+  void TakeBack() noexcept;
   void DropBefore(std::uint64_t node) noexcept;
   // The end that is known is a stop for good.
   void Stay() noexcept;
@@ -90,8 +93,11 @@ class PathWindow {
   void Spread(std::uint64_t i) noexcept;
   bool Raise(std::uint64_t i) noexcept;
   double CoastFrom(std::uint64_t i) const noexcept;
+  void SweepFrom(std::uint64_t behind) noexcept;
 
   std::vector<PathNode> nodes_;
+  std::vector<PathNode> kept_;  // what was before Weaken, the last node first
+  std::uint64_t kept_from_ = 0;
   CoordinateLimits limits_;
   double period_s_;
   double build_up_s_ = 0;
