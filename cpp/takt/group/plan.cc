@@ -13,8 +13,7 @@ namespace takt::group {
 namespace {
 
 // So many inverses of the kinematics in a cycle; each takes up to a µs with closed forms.
-constexpr int kBudget = 48;
-constexpr int kBudgetAtRest = 96;
+constexpr int kBudget = 40;
 // Of the members' limits: the rest keeps them within theirs in spite of what the timing takes for linear.
 constexpr double kLimitShare = 0.98;
 constexpr std::size_t kSweepNodes = 512;
@@ -208,9 +207,10 @@ bool SampleBegin(const Context& c, const Stretch& stretch, State& s) {
 bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s) {
   kinematics::Reason reason = kinematics::Reason::kNone;
   double failed_at = 0;
+  kinematics::JointMotion motion, before;  // of the last two places: the node, then the middle on the way to it
   const auto slopes_at = [&](double at, trajectory::PathSlopes& slopes) {
     --budget;
-    kinematics::JointMotion motion;
+    before = motion;
     reason = SlopesOn(c, s, stretch, stretch.from + (at - stretch.begin), c.ahead.near, slopes, motion);
     failed_at = at;
     return reason == kinematics::Reason::kNone;
@@ -226,9 +226,7 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
     CutShort(c, stretch.move, reason, failed_at - stretch.begin, s);
     return false;
   }
-  kinematics::JointMotion motion;
-  AxesOn(c, s, stretch, stretch.from + (next.s - stretch.begin), c.ahead.near, motion);
-  c.ahead.near = motion.position;
+  c.ahead.near = before.position;
   c.ahead.last = next;
   c.ahead.window.Append(next, stretch.stops && next.s >= stretch.end());
   ++s.planning.nodes;
@@ -325,7 +323,7 @@ trajectory::CoordinateLimits LimitsOf(const Context& c, const State& s) noexcept
 }
 
 void Plan(const Context& c, State& s) noexcept {
-  int budget = s.begun ? kBudget : kBudgetAtRest;
+  int budget = kBudget;
   while (budget > 0) {
     switch (s.planning.stage) {
       case Stage::kIdle:

@@ -66,6 +66,7 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
   for (int i = 0;; ++i) {
     next.s = step < left ? before.s + step : end;
     middle.s = before.s + 0.5 * step;
+    // In this order: the caller may count on it.
     if (!slopes_at(next.s, next.slopes) || !slopes_at(middle.s, middle.slopes)) return false;
     const double there = square_at(next);
     bool linear = step <= 2 * std::sqrt(there) * time;

@@ -76,14 +76,22 @@ void PathWindow::Append(const PathPoint& point, bool stop) noexcept {
   Spread(end_++);
 }
 
-// Slow and weak places hold for all from which, or to which, the mean reaches.
+// Slow and weak places hold for all from which, or to which, the mean reaches. Where the velocity allowed changes, also
+// for the first node beyond: on the way to it the motion is no faster than there.
 void PathWindow::Spread(std::uint64_t i) noexcept {
   PathNode& node = Node(i);
   const double half = 0.5 * node.build_up_s;
   const double reach = half * std::sqrt(node.own);
   for (std::uint64_t k = i; !IsFirst(k); --k) {
     PathNode& before = Node(k - 1);
-    if (node.at.s - before.at.s > reach) break;
+    if (node.at.s - before.at.s > reach) {
+      const double slow = node.at.limits.velocity;
+      if (slow < before.at.limits.velocity && slow * slow < before.cap) {
+        before.cap = slow * slow;
+        lowest_ = std::min(lowest_, k - 1);
+      }
+      break;
+    }
     before.bounds.gentle = std::min(before.bounds.gentle, node.own_gentle);
     const double cap = std::min(before.cap, node.own);
     const Strength strength = Least(before.bounds.strength, node.own_strength, cap);
@@ -97,7 +105,13 @@ void PathWindow::Spread(std::uint64_t i) noexcept {
     const PathNode& before = Node(k - 1);
     const double distance = node.at.s - before.at.s;
     if (distance > reach) break;
-    if (distance > half * std::sqrt(before.own)) continue;
+    const double its_reach = half * std::sqrt(before.own);
+    if (distance > its_reach) {
+      const double slow = before.at.limits.velocity;
+      const bool first_beyond = Node(i - 1).at.s - before.at.s <= its_reach;
+      if (first_beyond && slow < node.at.limits.velocity) node.cap = std::min(node.cap, slow * slow);
+      continue;
+    }
     node.cap = std::min(node.cap, before.own);
     node.bounds.strength = Least(node.bounds.strength, before.own_strength, node.cap);
     node.bounds.gentle = std::min(node.bounds.gentle, before.own_gentle);

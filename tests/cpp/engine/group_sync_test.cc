@@ -165,8 +165,6 @@ TEST_F(Followers, EveryElementHasItsSpeed) {
   double slowest_inside = 1e99;
   while (!IsFinal(last[move].state)) {
     Step();
-    // Where the speeds of two elements meet, the mean of the raw motion is still on its way to the lower one.
-    if (y() == 0 && std::abs(x() - 100 * std::round(x() / 100)) < 1) continue;
     const std::size_t element = x() >= 300 || y() > 0 ? 3 : static_cast<std::size_t>(x() / 100);
     fastest[element] = std::max(fastest[element], bench().velocity);
     if (element == 3 && y() > 20 && y() < 80) slowest_inside = std::min(slowest_inside, bench().velocity);
