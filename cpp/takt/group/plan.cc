@@ -14,6 +14,7 @@ namespace {
 
 // So many inverses of the kinematics in a cycle; each takes up to a µs with closed forms.
 constexpr int kBudget = 40;
+constexpr int kBudgetAtRest = 80;
 // Of the members' limits: the rest keeps them within theirs in spite of what the timing takes for linear.
 constexpr double kLimitShare = 0.98;
 constexpr std::size_t kSweepNodes = 512;
@@ -29,8 +30,9 @@ constexpr std::uint64_t kNodesAhead = 256;
 constexpr double kTimeAhead = 0.2;
 constexpr double kPlaceWay = 8;  // mm between two places at which a path is tried beforehand
 
-int PlacesOf(const Stretch& stretch) {
-  return std::clamp(static_cast<int>(std::ceil(stretch.segment.length / kPlaceWay)), kLeastPlaces, kMostPlaces);
+// `least` of them.
+int PlacesOf(const Stretch& stretch, int least) {
+  return std::clamp(static_cast<int>(std::ceil(stretch.segment.length / kPlaceWay)), least, kMostPlaces);
 }
 
 ErrorId ErrorOf(kinematics::Reason reason) {
@@ -141,7 +143,8 @@ void Begin(const Context& c, State& s) {
 // Tries places all along, before anything moves.
 void Verify(const Context& c, int& budget, State& s) {
   const Stretch& stretch = c.ahead.next;
-  const int places = PlacesOf(stretch);
+  // Of the many elements of a path one after the other is tried: theirs are near enough.
+  const int places = PlacesOf(stretch, Tries(s) ? 1 : kLeastPlaces);
   for (; budget > 0 && static_cast<int>(s.planning.verified) <= places; --budget) {
     const double way = stretch.segment.length * s.planning.verified / places;
     trajectory::PathPoint point;
@@ -323,7 +326,7 @@ trajectory::CoordinateLimits LimitsOf(const Context& c, const State& s) noexcept
 }
 
 void Plan(const Context& c, State& s) noexcept {
-  int budget = kBudget;
+  int budget = s.begun ? kBudget : kBudgetAtRest;
   while (budget > 0) {
     switch (s.planning.stage) {
       case Stage::kIdle:
