@@ -137,8 +137,11 @@ def test_paths_do_not_jump(name, seed):
     length = int(np.argmin(found.ok)) if not found.ok.all() else len(path)
     assert length > 0
     assert robot.configuration(found.joints[length - 1]) == robot.configuration(start)
-    steps = np.abs(np.diff(found.joints[:length], axis=0))
-    assert not steps.size or steps.max() < 30
+    for i in np.flatnonzero(np.abs(np.diff(found.joints[:length], axis=0)).max(axis=1) >= 30):
+        # A wrist nearly stretched turns as fast as that; looked at closely it is no step.
+        near = robot.inverse(kin.interpolate(path[i], path[i + 1], np.linspace(0, 1, 4001)), found.joints[i], path=True)
+        assert near.ok.all()
+        assert np.abs(np.diff(near.joints, axis=0)).max() < 30
     assert np.isnan(found.joints[~found.ok]).all()
 
 
