@@ -48,11 +48,11 @@ struct Applier {
   void AbortTask() const { EndTask(c, FeedbackState::kAborted, ErrorId::kNone, s); }
 
   // Everything that is planned or waits gives way.
-  void AbortAll(double deceleration = 0) const {
+  void AbortAll(const Brake& brake = {}) const {
     AbortTask();
     AbortMoves(c, ErrorId::kNone, s);
     if (s.begun || s.planning.stage != Stage::kIdle || c.ahead.known) {
-      EndMotion(deceleration, s);
+      EndMotion(brake, s);
     } else {
       ForgetPlan(c, s);
     }
@@ -76,7 +76,7 @@ struct Applier {
   void operator()(const Stop& m) const {
     if (Is(GroupState::kDisabled)) return Refuse(ErrorId::kGroupDisabled);
     if (Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
-    AbortAll(m.deceleration.value_or(0));
+    AbortAll({m.deceleration.value_or(0), m.jerk.value_or(0)});
     if (Is(GroupState::kHoming)) TellAll(c, s, axis::Stop{});
     s.ends = true;
     s.task = Task::kStop;
@@ -90,7 +90,7 @@ struct Applier {
   }
   void operator()(const Halt& m) const {
     if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
-    AbortAll(m.deceleration.value_or(0));
+    AbortAll({m.deceleration.value_or(0), m.jerk.value_or(0)});
     s.ends = true;
     s.task = Task::kHalt;
     s.ticket = ticket;
@@ -101,7 +101,7 @@ struct Applier {
     if (!Is(GroupState::kMoving) || s.ends) return Refuse(ErrorId::kState);
     AbortTask();
     s.interrupted = true;
-    s.brake = m.deceleration.value_or(0);
+    s.brake = {m.deceleration.value_or(0), m.jerk.value_or(0)};
     if (!s.begun) return Finish(ErrorId::kNone);  // it does not move yet
     s.task = Task::kInterrupt;
     s.ticket = ticket;
@@ -111,7 +111,7 @@ struct Applier {
     if (!Is(GroupState::kMoving) || !s.interrupted) return Refuse(ErrorId::kState);
     AbortTask();
     s.interrupted = false;
-    s.brake = 0;
+    s.brake = {};
     Finish(ErrorId::kNone);
   }
 

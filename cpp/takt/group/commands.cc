@@ -100,7 +100,8 @@ void DescribeDirect(Description<MoveDirect<kReference>>& d) {
 template <typename T>
 void DescribeBrake(Description<T>& d) {
   d.template defaulted<&T::deceleration>(unit::mm_s2, kAccelerations, "Largest deceleration; unset: that of the move.");
-  d.template defaulted<&T::jerk>(unit::mm_s3, kJerks, "Without effect: accelerations build up as in the move.");
+  d.template defaulted<&T::jerk>(unit::mm_s3, kJerks,
+                                 "Largest jerk; unset: that of the move. Less makes the deceleration smaller, too.");
 }
 
 template <typename T>

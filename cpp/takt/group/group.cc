@@ -21,7 +21,7 @@ void Fail(const Context& c, ErrorId error, State& s) {
   EndTask(c, FeedbackState::kError, error, s);
   s.hold = false;
   AbortMoves(c, error, s);
-  EndMotion(0, s);
+  EndMotion({}, s);
   if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
   Enter(GroupState::kErrorStop, s);
 }
@@ -29,7 +29,7 @@ void Fail(const Context& c, ErrorId error, State& s) {
 // Nothing is left to go: the members stand still and are let go of.
 void ComeToRest(const Context& c, State& s) {
   s.ends = s.begun = false;
-  s.brake = 0;
+  s.brake = {};
   s.active = 0;
   s.way_before += s.pace.now.position;
   s.pace = {};

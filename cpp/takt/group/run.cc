@@ -68,7 +68,9 @@ double WishOf(const Context& c, State& s) {
     if (Follows(c, s)) return WishOfMaster(c, s);
     return s.velocity_factor < 1 ? s.velocity_factor * node.at.limits.velocity : trajectory::kFullSpeed;
   }
-  const double deceleration = s.brake > 0 ? s.brake : node.bounds.deceleration;
+  double deceleration = s.brake.deceleration > 0 ? s.brake.deceleration : node.bounds.deceleration;
+  // What takes no longer to build up, and to be taken back, than all accelerations of this path.
+  if (s.brake.jerk > 0) deceleration = std::min(deceleration, s.brake.jerk * node.build_up_s);
   return std::max(0.0, s.pace.raw.velocity - deceleration * c.cycle.period_s);
 }
 
@@ -129,10 +131,10 @@ bool Rests(const State& s) noexcept {
   return trajectory::Stands(s.pace);
 }
 
-void EndMotion(double deceleration, State& s) noexcept {
+void EndMotion(const Brake& brake, State& s) noexcept {
   s.ends = true;
   s.interrupted = false;
-  s.brake = deceleration;
+  s.brake = brake;
 }
 
 }  // namespace takt::group

@@ -16,6 +16,6 @@ bool Advance(const Context& c, State& s) noexcept;
 bool Rests(const State& s) noexcept;
 
 // Comes to rest on the path, which is then forgotten. mm/s²; 0: as the path says.
-void EndMotion(double deceleration, State& s) noexcept;
+void EndMotion(const Brake& brake, State& s) noexcept;
 
 }  // namespace takt::group

@@ -40,6 +40,12 @@ struct Planning {
 // What a group is doing besides moves.
 enum class Task : std::uint8_t { kNone, kStop, kHalt, kInterrupt, kHome, kPower };
 
+// Along the path; 0: as the path says.
+struct Brake {
+  double deceleration = 0;  // mm/s²
+  double jerk = 0;          // mm/s³
+};
+
 struct SyncedAxis {
   Ticket ticket = 0;
   std::uint32_t axis = 0;  // + 1; 0: none
@@ -78,7 +84,7 @@ struct State {
   bool begun = false;        // a motion along the path is in progress
   bool interrupted = false;  // rests, or comes to rest, on the path until it is continued
   bool ends = false;         // comes to rest and forgets what is left of the path
-  double brake = 0;          // mm/s², how strongly then; 0: as the path says
+  Brake brake;               // how it brakes then
   bool hold = false;         // stop: until released
   Ticket ticket = 0;         // of the task
   Task task = Task::kNone;
@@ -106,6 +112,7 @@ void describe(Description<Queue>&);
 void describe(Enumeration<Stage>&);
 void describe(Description<Planning>&);
 void describe(Enumeration<Task>&);
+void describe(Description<Brake>&);
 void describe(Description<SyncedAxis>&);
 void describe(Description<MasterState>&);
 void describe(Description<State>&);

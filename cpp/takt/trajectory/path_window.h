@@ -76,8 +76,8 @@ class PathWindow {
   std::uint64_t changed_from() const noexcept { return low_; }
   // The last node whose ceiling a longer path would not raise.
   std::uint64_t free_until() const noexcept;
-  // Leaves less to what lies between two places, to some 64 nodes at most, from a node on; and sweeps. Only once Sweep is
-  // through.
+  // Leaves less to what lies between two places, to some 64 nodes at most, from a node on; and sweeps. Only once Sweep
+  // is through.
   void Weaken(double from, double to, std::uint64_t first, const PathShares& shares) noexcept;
   // Undoes the last Weaken.
   void TakeBack() noexcept;
