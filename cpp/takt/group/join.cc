@@ -223,7 +223,9 @@ bool FindDistances(const Context& c, const State& s, const Request& move, std::u
   blend.joints = after.joints;
   blend.limits = trajectory::Least(before.limits, after.limits);
   blend.build_up_s = before.build_up_s;
-  blend.limits.velocity = BlendVelocity(move, before.limits.velocity, after.limits.velocity);
+  // No element of a path is gone faster than it may, on its blends either.
+  const double slower = std::min(before.limits.velocity, after.limits.velocity);
+  blend.limits.velocity = element > 0 ? slower : BlendVelocity(move, before.limits.velocity, after.limits.velocity);
   const Distances d = DistancesOf(c, s, move, before, after, room, blend, work);
   out.first = d.first;
   out.second = d.second;

@@ -59,6 +59,7 @@ struct LookAhead {
   // The stretch being planned: not yet joined to the others.
   Stretch next;
   trajectory::BuildUp build_up;
+  trajectory::PathSlopes tried;  // of the place tried last
   // Where the plan ends, as the next move finds it; and with the next stretch.
   kinematics::Joints end_joints{};
   kinematics::Frame end_tool;

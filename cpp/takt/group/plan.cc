@@ -28,7 +28,10 @@ constexpr int kMostPlaces = 64;
 // time to rehearse it.
 constexpr std::uint64_t kNodesAhead = 256;
 constexpr double kTimeAhead = 0.2;
-constexpr double kPlaceWay = 8;  // mm between two places at which a path is tried beforehand
+constexpr double kPlaceWay = 8;     // mm between two places at which a path is tried beforehand
+constexpr double kLeastTry = 1e-3;  // where it is uneven
+constexpr double kUneven = 0.25;    // mm or deg
+constexpr double kUnevenShare = 0.1;
 
 // `least` of them.
 int PlacesOf(const Stretch& stretch, int least) {
@@ -136,32 +139,58 @@ void Begin(const Context& c, State& s) {
   }
   c.ahead.build_up = {};
   c.ahead.near = c.ahead.end_joints;
+  s.planning.verifying = false;
   s.planning.verified = 0;
   s.planning.stage = Stage::kVerify;
+}
+
+// Whether the axes go from one place to the next about as their slopes at both say. Where they do not, something is
+// between the two: where a wrist is stretched, axes turn half a turn.
+bool GoesEvenly(const kinematics::Joints& before, const trajectory::PathSlopes& slopes_before,
+                const kinematics::Joints& after, const trajectory::PathSlopes& slopes_after, double length) {
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    const double way = after[k] - before[k];
+    const double expected = 0.5 * length * (slopes_before.first[k] + slopes_after.first[k]);
+    if (std::abs(way - expected) > std::max(kUneven, kUnevenShare * std::abs(way))) return false;
+  }
+  return true;
 }
 
 // Tries places all along, before anything moves.
 void Verify(const Context& c, int& budget, State& s) {
   const Stretch& stretch = c.ahead.next;
+  const double length = stretch.segment.length;
+  Planning& p = s.planning;
   // Of the many elements of a path one after the other is tried: theirs are near enough.
-  const int places = PlacesOf(stretch, Tries(s) ? 1 : kLeastPlaces);
-  for (; budget > 0 && static_cast<int>(s.planning.verified) <= places; --budget) {
-    const double way = stretch.segment.length * s.planning.verified / places;
+  const double full = length / PlacesOf(stretch, Tries(s) ? 1 : kLeastPlaces);
+  for (; budget > 0 && p.verified < length; --budget) {
+    const double way = p.verifying ? p.verified + p.step : 0;
+    const double to = way > length - 0.01 * full ? length : way;
     trajectory::PathPoint point;
     point.limits = stretch.limits;
     kinematics::JointMotion motion;
-    const kinematics::Reason reason = SlopesOn(c, s, stretch, way, c.ahead.near, point.slopes, motion);
+    kinematics::Reason reason = SlopesOn(c, s, stretch, to, c.ahead.near, point.slopes, motion);
+    const bool even = !p.verifying || reason != kinematics::Reason::kNone ||
+                      GoesEvenly(c.ahead.near, c.ahead.tried, motion.position, point.slopes, to - p.verified);
+    if (!even && p.step > kLeastTry) {
+      p.step *= 0.5;
+      continue;
+    }
+    if (!even) reason = kinematics::Reason::kSingular;
     if (reason != kinematics::Reason::kNone) {
       s.reason = reason;
-      s.blocked_at = way;
+      s.blocked_at = to;
       s.blocked_element = ElementOf(s);
       return Refuse(c, ErrorOf(reason), s);
     }
     c.ahead.near = motion.position;
-    c.ahead.build_up.Add(point, c.ahead.window.limits());
-    ++s.planning.verified;
+    c.ahead.tried = point.slopes;
+    if (!p.verifying || p.step == full) c.ahead.build_up.Add(point, c.ahead.window.limits());
+    p.step = p.verifying ? std::min(full, 2 * p.step) : full;
+    p.verified = to;
+    p.verifying = true;
   }
-  if (static_cast<int>(s.planning.verified) <= places) return;
+  if (p.verified < length) return;
   c.ahead.next_joints = c.ahead.near;
   if (HasTool(c, s)) ToolAt(c, c.ahead.next_joints, c.ahead.next_tool);
   if (Tries(s)) {
@@ -222,12 +251,17 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   const bool between = stretch.from > 0 && stretch.segment.shape == path::Shape::kLine;
   const double left = stretch.end() - c.ahead.last.s;
   const double most = std::max((stretch.to - stretch.from) / (between ? kStepsOfLine : 1), kLeastStep);
-  const double end = left < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
+  double end = left < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
   trajectory::PathPoint next;
-  if (!trajectory::NextPoint(c.ahead.last, end, c.ahead.window.limits(), c.ahead.window.build_up_s(), c.cycle.period_s,
-                             slopes_at, next)) {
-    CutShort(c, stretch.move, reason, failed_at - stretch.begin, s);
-    return false;
+  for (bool even = false; !even;) {
+    if (!trajectory::NextPoint(c.ahead.last, end, c.ahead.window.limits(), c.ahead.window.build_up_s(),
+                               c.cycle.period_s, slopes_at, next)) {
+      CutShort(c, stretch.move, reason, failed_at - stretch.begin, s);
+      return false;
+    }
+    const double length = next.s - c.ahead.last.s;
+    even = length <= kLeastTry || GoesEvenly(c.ahead.near, c.ahead.last.slopes, before.position, next.slopes, length);
+    end = c.ahead.last.s + 0.5 * length;
   }
   c.ahead.near = before.position;
   c.ahead.last = next;
@@ -317,7 +351,9 @@ trajectory::CoordinateLimits LimitsOf(const Context& c, const State& s) noexcept
   if (HasTool(c, s)) {
     const auto set_three = [&](std::size_t k, const auto& v, const auto& a, const auto& j) {
       if (!v && !a && !j) return;
-      for (std::size_t i = k; i < k + 3; ++i) set(i, v.value_or(none), a.value_or(none), j.value_or(none));
+      for (std::size_t i = k; i < k + 3; ++i) {
+        set(i, kLimitShare * v.value_or(none), kLimitShare * a.value_or(none), kLimitShare * j.value_or(none));
+      }
     };
     set_three(kMaxAxes, tool.velocity, tool.acceleration, tool.jerk);
     set_three(kMaxAxes + 3, tool.angular_velocity, tool.angular_acceleration, tool.angular_jerk);

@@ -27,7 +27,9 @@ void describe(Description<Planning>& d) {
   d.internal<&Planning::move>("Number of the move.");
   d.internal<&Planning::element>("Of a path.");
   d.internal<&Planning::tried>("All elements are good.");
-  d.internal<&Planning::verified>("Places that are good.");
+  d.internal<&Planning::verifying>("The beginning is good.");
+  d.internal<&Planning::verified>("So far it is good.");
+  d.internal<&Planning::step>("To the next place tried.");
   d.internal<&Planning::question>("Number of the last question about a path.");
   d.internal<&Planning::nodes>("Nodes made so far.");
 }

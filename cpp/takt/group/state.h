@@ -32,7 +32,9 @@ struct Planning {
   std::uint64_t move = 0;      // number of the move that is planned, from 0 since the start
   std::uint32_t element = 0;   // of a path
   bool tried = false;          // all elements of it are good
-  std::uint32_t verified = 0;  // so many places
+  bool verifying = false;      // the beginning is good
+  double verified = 0;         // mm: the path is good so far ...
+  double step = 0;             // ... and is tried so much further on next
   std::uint64_t question = 0;  // number of the last one about a path
   std::uint64_t nodes = 0;     // so many were made: the window itself is no part of the state
 };

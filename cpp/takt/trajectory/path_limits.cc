@@ -86,7 +86,14 @@ Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordi
     }
     return most;
   };
-  const auto at = [&](double w) { return most_at(std::sqrt(w), false); };
+  // Without bends there is nothing to hope for.
+  double straight = CoordinateLimits::kNone;
+  for (std::size_t k = 0; k < limits.count; ++k) {
+    const double own = kGentleJerkShare * limits.of[k].jerk * build_up_s;
+    const double slope = std::abs(point.slopes.first[k]);
+    if (slope * straight > own) straight = own / slope;
+  }
+  const auto at = [&](double w) { return std::min(straight, most_at(std::sqrt(w), false)); };
   // The tangent at half the square, or what is beneath it at the whole one.
   const double last = at(square);
   const double half = at(0.5 * square);
@@ -95,7 +102,7 @@ Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordi
   const double v = std::sqrt(0.5 * square);
   gentle = std::min(1.0, most_at(std::min(v + 0.5 * half * build_up_s, std::sqrt(square)), true) / half);
   const double fading = std::max(0.0, (at(0.49 * square) - half) / (0.01 * square));
-  const double at_rest = std::min(half + 0.5 * fading * square, last + fading * square);
+  const double at_rest = std::min({half + 0.5 * fading * square, last + fading * square, straight});
   if (at_rest - fading * square < 0.3 * last) return {last, 0, last};
   return {at_rest, fading, at_rest - fading * square};
 }

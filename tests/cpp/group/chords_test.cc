@@ -279,6 +279,24 @@ TEST(ChordPaths, EndWhereAnAxisCannotGo) {
   EXPECT_LE(FromChords(ToolOf(rig).p, points), 1e-9);
 }
 
+// GR-20: no element is gone faster than it may, on the blend behind it either.
+TEST(ChordPaths, KeepTheSpeedOfAnElementOnItsBlends) {
+  PathTable table = TableOf({{0, 0, 0}, {100, 0, 0}, {100, 100, 0}});
+  table.pieces[0].velocity = 50;
+  Rig rig = Gantry({table});
+  rig.Start();
+  const Ticket move = rig.Give(MovePath{
+      .path = 0, .velocity = 400, .transition_mode = TransitionMode::kCornerDistance, .transition_parameter = 10});
+  ASSERT_TRUE(rig.RunToEnd(move));
+  double slow = 0, fast = 0;
+  for (const Sample& sample : rig.trace) {
+    double& most = ToolOf(rig, sample).p.y() < 10 ? slow : fast;
+    most = std::max(most, sample.out.velocity);
+  }
+  EXPECT_NEAR(slow, 50, 1e-3);
+  EXPECT_GT(fast, 350);
+}
+
 // Lines of 4 mm between corners rounded tightly: fast between them, not only on the long ones.
 TEST(ChordPaths, AreFastBetweenCorners) {
   const Points points = {{0, 0, 0}, {50, 0, 0}, {50, 4, 0}, {54, 4, 0}, {54, 50, 0}};

@@ -63,6 +63,31 @@ TEST(Limits, OfAllAxesOnLines) {
   }
 }
 
+// GR-23: short lines on which the axes and not the limits along the path say how fast: they end where they should, and
+// do not run beyond that.
+TEST(Limits, OfAllAxesOnShortLines) {
+  for (const Kind& kind : Kinds()) {
+    double off = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+      std::mt19937_64 random(seed);
+      Rig rig = kind.make();
+      const Pose from = kind.place(random), far = kind.place(random);
+      const double share = std::exp(Uniform(random, -5, -1));
+      rig.StartAt(from);
+      rig.Step();
+      const KDL::Vector begin = ToolOf(rig).p;
+      const KDL::Vector end = begin + share * (kinematics::ToFrame(far).p - begin);
+      const Ticket move = rig.Give(MoveLinearAbsolute{
+          .x = end.x(), .y = end.y(), .z = end.z(), .velocity = 5000, .acceleration = 50000, .jerk = 3e6});
+      ASSERT_TRUE(rig.RunToEnd(move));
+      if (!rig.lives[move].done) continue;
+      ExpectSmooth(rig, kind.name);
+      off = std::max(off, WorstFromLine(rig, begin, end));
+    }
+    EXPECT_LE(off, 1e-3) << kind.name;
+  }
+}
+
 // How far from its circle a gantry's tool was; `interrupts`: at random, and on again.
 double GoRound(double radius, std::uint64_t seed, bool interrupts) {
   std::mt19937_64 random(seed);
@@ -139,6 +164,15 @@ TEST(Limits, WhatCannotBeReachedIsRefused) {
   ExpectRefused(scara, MoveLinearAbsolute{.x = -300, .y = -250}, ErrorId::kUnreachable,
                 kinematics::Reason::kOutOfReach);
   EXPECT_GT(scara.out().blocked_at, 300);
+
+  // Through a place where the wrist is stretched: beyond it two axes would have to be half a turn further.
+  Rig wrist = SixAxisRobot();
+  wrist.Start(
+      {202.49630212634239, -46.652576833184639, -115.82857850336389, 0, 162.48115533654851, -202.49630212634239});
+  wrist.Step();
+  ExpectRefused(wrist, MoveLinearRelative{.x = -89.58, .y = -67.46, .z = -50.312}, ErrorId::kSingular,
+                kinematics::Reason::kSingular);
+  EXPECT_NEAR(wrist.out().blocked_at, 111.067, 0.01);
 
   Rig gantry = Gantry();
   gantry.axes[1].limits.upper = 100;
