@@ -76,6 +76,7 @@ double MostRatio(const std::string& name) {
   if (is("winding jerk")) return 1.6;
   if (is("ripple") || is("burst") || is("zigzag rounded")) return 1.3;
   if (is("circle twice")) return 1.13;
+  if (is("circle")) return 1.1;
   return 1.07;
 }
 
