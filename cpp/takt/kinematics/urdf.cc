@@ -24,7 +24,15 @@ std::string Quoted(const std::string& name) {
 // Null when it cannot be read; the reader has then said why on stderr.
 urdf::ModelInterfaceSharedPtr Parsed(const std::string& xml) {
   try {
-    return urdf::parseURDF(xml);
+    const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(xml);
+    if (!model) return nullptr;
+    // Links in a loop would keep one another for ever.
+    return {model.get(), [model](urdf::ModelInterface* read) {
+              for (const auto& [name, link] : read->links_) {
+                link->child_links.clear();
+                link->child_joints.clear();
+              }
+            }};
   } catch (const std::exception&) {
     return nullptr;
   }

@@ -126,6 +126,7 @@ TEST(ChordPaths, KeepTheirSpeed) {
     Rig rig = one.delta ? DeltaRobot() : Gantry();
     rig.paths = {TableOf(points)};
     rig.StartAt({from.x(), from.y(), from.z(), 0, 0, 0});
+    rig.Step();
     Ticket last = 0;
     if (one.queued) {
       std::size_t given = 0;
