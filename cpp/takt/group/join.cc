@@ -144,8 +144,17 @@ bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch
     window.CutBehind(node);
     c.ahead.rehearsal.Clear();
   }
-  c.ahead.last = window[node].at;
   c.ahead.sampling = std::min(c.ahead.sampling, stretch);
+  if (c.ahead.last.s == window[node].at.s) return true;
+  c.ahead.last = window[node].at;
+  std::uint64_t on = c.ahead.sampling;
+  while (on > c.ahead.first && c.ahead[on].begin > c.ahead.last.s) --on;
+  const Stretch& there = c.ahead[on];
+  kinematics::JointMotion motion;
+  const double way = there.from + (c.ahead.last.s - there.begin);
+  if (AxesOn(c, s, there, way, c.ahead.last_joints, motion) == kinematics::Reason::kNone) {
+    c.ahead.last_joints = motion.position;
+  }
   return true;
 }
 
@@ -277,7 +286,6 @@ int Join(const Context& c, State& s) noexcept {
   const bool follows = ahead.known && ahead.count > 0;
   if (follows) {
     Stretch& before = ahead[ahead.end() - 1];
-    ahead.near = ahead.end_joints;
     const bool wanted = move.blends() || s.planning.element > 0;
     goes_on = wanted && Passes(c, s, before, ahead.next);
     const bool smooth = goes_on && path::Smooth(before.segment, ahead.next.segment);
@@ -296,7 +304,7 @@ int Join(const Context& c, State& s) noexcept {
     ahead.next.build_up_s = ahead[ahead.end() - 1].build_up_s;
   }
   if (!follows) {
-    ahead.near = ahead.end_joints;
+    ahead.last_joints = ahead.end_joints;
     ahead.sampling = ahead.end();
   }
   Append(ahead, ahead.next);

@@ -69,8 +69,9 @@ struct LookAhead {
   kinematics::Joints tried_from{};
   kinematics::Frame tried_from_tool;
   bool known = false;          // whether it is more than where the members stand
-  kinematics::Joints near{};   // of the node sampled last
-  trajectory::PathPoint last;  // that node
+  kinematics::Joints near{};   // of the place tried last
+  trajectory::PathPoint last;  // the node sampled last
+  kinematics::Joints last_joints{};
   std::uint64_t sampling = 0;  // the stretch being sampled
   bool asked = false;          // the question whether the path is free is on its way
   bool cut_short = false;      // the path ends where it could not be gone on with; `reason` says why

@@ -225,10 +225,10 @@ bool SampleBegin(const Context& c, const Stretch& stretch, State& s) {
   point.s = stretch.begin;
   point.limits = stretch.limits;
   kinematics::JointMotion motion;
-  if (SlopesOn(c, s, stretch, stretch.from, c.ahead.near, point.slopes, motion) != kinematics::Reason::kNone) {
+  if (SlopesOn(c, s, stretch, stretch.from, c.ahead.last_joints, point.slopes, motion) != kinematics::Reason::kNone) {
     return false;
   }
-  c.ahead.near = motion.position;
+  c.ahead.last_joints = motion.position;
   c.ahead.last = point;
   c.ahead.window.Append(point);
   ++s.planning.nodes;
@@ -243,7 +243,7 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   const auto slopes_at = [&](double at, trajectory::PathSlopes& slopes) {
     --budget;
     before = motion;
-    reason = SlopesOn(c, s, stretch, stretch.from + (at - stretch.begin), c.ahead.near, slopes, motion);
+    reason = SlopesOn(c, s, stretch, stretch.from + (at - stretch.begin), c.ahead.last_joints, slopes, motion);
     failed_at = at;
     return reason == kinematics::Reason::kNone;
   };
@@ -260,10 +260,11 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
       return false;
     }
     const double length = next.s - c.ahead.last.s;
-    even = length <= kLeastTry || GoesEvenly(c.ahead.near, c.ahead.last.slopes, before.position, next.slopes, length);
+    even = length <= kLeastTry ||
+           GoesEvenly(c.ahead.last_joints, c.ahead.last.slopes, before.position, next.slopes, length);
     end = c.ahead.last.s + 0.5 * length;
   }
-  c.ahead.near = before.position;
+  c.ahead.last_joints = before.position;
   c.ahead.last = next;
   c.ahead.window.Append(next, stretch.stops && next.s >= stretch.end());
   ++s.planning.nodes;

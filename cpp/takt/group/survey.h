@@ -1,5 +1,6 @@
 // The axes along a path that is asked about (question.h), made once more outside the cycle: all elements of the move in
-// full, and the blends at their corners, so that whatever becomes of a corner has been looked at. Allocates.
+// full, and the blends at their corners, so that whatever becomes of a corner has been looked at (but for short chords:
+// join.h). Allocates.
 #pragma once
 
 #include <functional>

@@ -25,8 +25,9 @@ AlongPath Least(const AlongPath& a, const AlongPath& b) noexcept {
 Strength Least(const Strength& a, const Strength& b, double square) noexcept {
   const double at_rest = std::min(a.at_rest, b.at_rest);
   const double last = std::min(a.At(square), b.At(square));
-  if (at_rest == CoordinateLimits::kNone || square == 0) return {at_rest, 0, last};
-  return {at_rest, std::max(0.0, at_rest - last) / square, last};
+  const double gentle = std::min(a.gentle, b.gentle);
+  if (at_rest == CoordinateLimits::kNone || square == 0) return {at_rest, 0, last, gentle};
+  return {at_rest, std::max(0.0, at_rest - last) / square, last, gentle};
 }
 
 double AccelerationBounds::Least(double square) const noexcept {
@@ -73,7 +74,7 @@ double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double s
 }
 
 Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordinates>& third,
-                    const CoordinateLimits& limits, double square, double build_up_s, double& gentle) noexcept {
+                    const CoordinateLimits& limits, double square, double build_up_s) noexcept {
   const auto most_at = [&](double v, bool together) {
     double most = CoordinateLimits::kNone;
     for (std::size_t k = 0; k < limits.count; ++k) {
@@ -97,14 +98,13 @@ Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordi
   // The tangent at half the square, or what is beneath it at the whole one.
   const double last = at(square);
   const double half = at(0.5 * square);
-  gentle = 1;
   if (last == CoordinateLimits::kNone) return {};
   const double v = std::sqrt(0.5 * square);
-  gentle = std::min(1.0, most_at(std::min(v + 0.5 * half * build_up_s, std::sqrt(square)), true) / half);
+  const double gentle = std::min(1.0, most_at(std::min(v + 0.5 * half * build_up_s, std::sqrt(square)), true) / half);
   const double fading = std::max(0.0, (at(0.49 * square) - half) / (0.01 * square));
   const double at_rest = std::min({half + 0.5 * fading * square, last + fading * square, straight});
-  if (at_rest - fading * square < 0.3 * last) return {last, 0, last};
-  return {at_rest, fading, at_rest - fading * square};
+  if (at_rest - fading * square < 0.3 * last) return {last, 0, last, gentle};
+  return {at_rest, fading, at_rest - fading * square, gentle};
 }
 
 double SquareBefore(const AccelerationBounds& bounds, double length, double later, double highest) noexcept {

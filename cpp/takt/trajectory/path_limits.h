@@ -56,6 +56,7 @@ struct Strength {
   double at_rest = CoordinateLimits::kNone;
   double fading = 0;  // per square of the speed
   double least = 0;   // it falls no further
+  double gentle = 1;  // share of it that is good at any speed, not only at those of a motion as fast as may be
 
   double At(double square) const noexcept { return std::max(least, at_rest - fading * square); }
   bool operator==(const Strength&) const = default;
@@ -71,7 +72,6 @@ struct AccelerationBounds {
   double acceleration = 0;                       // along the way
   double deceleration = 0;
   Strength strength;  // either way
-  double gentle = 1;  // share of it that is good at any speed, not only at those of a motion as fast as may be
 
   double Least(double square) const noexcept;
   double Most(double square) const noexcept;
@@ -87,10 +87,10 @@ double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double s
 
 // The largest acceleration along the way, either way, that may be at speeds up to a square if it is built up and taken
 // back within `build_up_s`: for the jerk of the coordinates, q''' v³ + 3 q'' v a + q' j. A line beneath it.
-// `third`: how large the third derivative of each is. `gentle`: the share of it with which the three parts may come
-// together, and the speed grow while it builds up.
+// `third`: how large the third derivative of each is. With its share
+// `gentle` the three parts may come together, and the speed may grow while it builds up.
 Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordinates>& third,
-                    const CoordinateLimits& limits, double square, double build_up_s, double& gentle) noexcept;
+                    const CoordinateLimits& limits, double square, double build_up_s) noexcept;
 
 // The largest square of the speed up to `highest` from which an acceleration within the bounds leads to `later` at
 // most, `length` further on.

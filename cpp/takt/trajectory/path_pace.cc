@@ -58,7 +58,7 @@ double NextAcceleration(const PathWindow& window, double wish, double period_s, 
   const double square = std::max(pace.entered, pace.raw.velocity * pace.raw.velocity);
   double strength = node.bounds.strength.At(square);
   const double wanted = (wish - pace.raw.velocity) / period_s;
-  if (pace.eased > 0 || wanted < limits.high) strength *= node.bounds.gentle;
+  if (pace.eased > 0 || wanted < limits.high) strength *= node.bounds.strength.gentle;
   const double build_up = node.at.limits.jerk * node.build_up_s;
   const double change = std::min(build_up, strength);
   const double before = pace.last[pace.oldest].acceleration;

@@ -61,8 +61,8 @@ void PathRehearsal::Save() noexcept {
 }
 
 bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, double period_s) noexcept {
+  if (!window.swept()) return through_;
   for (; cycles > 0 && !through_; --cycles) {
-    if (!window.Sweep(1)) continue;
     if (again_) GoBack(window);
     if (!started_ || here_.pace.passed < now.passed) StartFrom(now);
     if (here_.pace.raw_stands && Stands(here_.pace)) {

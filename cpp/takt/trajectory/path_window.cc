@@ -61,18 +61,13 @@ void PathWindow::Append(const PathPoint& point, bool stop) noexcept {
     node.own = std::min(node.own, square);
     before.own = std::min(before.own, square);
     before.cap = std::min(before.cap, square);
-    double gentle = 1;
-    const Strength strength = StrengthAt(before.at, third, limits_, before.own, before.build_up_s, gentle);
+    const Strength strength = StrengthAt(before.at, third, limits_, before.own, before.build_up_s);
     before.own_strength = Least(before.own_strength, strength, before.own);
     before.bounds.strength = Least(before.bounds.strength, strength, before.cap);
-    before.own_gentle = std::min(before.own_gentle, gentle);
-    before.bounds.gentle = std::min(before.bounds.gentle, gentle);
     Spread(end_ - 1);
   }
   node.cap = node.own;
-  node.own_strength = StrengthAt(point, third, limits_, node.own, build_up_s_, node.own_gentle);
-  node.bounds.strength = node.own_strength;
-  node.bounds.gentle = node.own_gentle;
+  node.own_strength = node.bounds.strength = StrengthAt(point, third, limits_, node.own, build_up_s_);
   Spread(end_++);
 }
 
@@ -92,7 +87,6 @@ void PathWindow::Spread(std::uint64_t i) noexcept {
       }
       break;
     }
-    before.bounds.gentle = std::min(before.bounds.gentle, node.own_gentle);
     const double cap = std::min(before.cap, node.own);
     const Strength strength = Least(before.bounds.strength, node.own_strength, cap);
     if (before.cap == cap && before.bounds.strength == strength) continue;
@@ -114,7 +108,6 @@ void PathWindow::Spread(std::uint64_t i) noexcept {
     }
     node.cap = std::min(node.cap, before.own);
     node.bounds.strength = Least(node.bounds.strength, before.own_strength, node.cap);
-    node.bounds.gentle = std::min(node.bounds.gentle, before.own_gentle);
   }
 }
 

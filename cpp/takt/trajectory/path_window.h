@@ -34,7 +34,6 @@ struct PathNode {
   AccelerationBounds bounds;
   double build_up_s = 0;  // T
   Strength own_strength;  // what the bends at this place say; those of bounds hold for places near by, too
-  double own_gentle = 1;  // the same of AccelerationBounds::gentle
   // Squares of speeds.
   double own = 0;      // what the limits at this place say
   double cap = 0;      // and those of places so near that the mean is taken over them, too
