@@ -64,7 +64,14 @@ enum class ErrorId : std::uint16_t {
   kCollision = 3024,          // on the way parts would touch, or something that stands there
   kGroupDisabled = 3025,      // the group is not enabled
   kPathUnknown = 3026,        // no such path
+  kTrackOrder = 3027,         // tracking would begin behind the place where it ends
+  kTrackShort = 3028,         // tracking would end before the tool is in step
+  kBeltBackwards = 3029,      // the belt moves backwards
+  kTooFast = 3030,            // what carries the target is faster than the group can follow
+  kOffPath = 3031,            // the tool is not where its path was left
+  kNoWorkpiece = 3032,        // there is no such workpiece
   kGroupDeviation = 8001,
+  kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual
   // A cam module is in error; numbers of the Flex Cam manual.
   kModuleSoftLimitPositive = 20306,
   kModuleSoftLimitNegative = 20307,

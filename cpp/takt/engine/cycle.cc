@@ -43,6 +43,7 @@ group::Context ContextOf(World& w, const AxesGroup& group) {
           w.cycle,
           w.feedback,
           w.look_aheads[index],
+          {},
           group.params.workspace ? &w.questions : nullptr};
 }
 

@@ -169,6 +169,52 @@ struct SetCoordinateTransform {  // MC_SetCoordinateTransform: a PCS in any othe
   std::uint32_t reference_pcs = 1;
 };
 
+// When a command that is no motion itself takes effect.
+enum class ExecutionMode : std::uint8_t {
+  kImmediately,  // at once, whatever runs
+  kDelayed,      // when the motion in progress is over
+  kQueued,       // when all motions given before are over
+};
+
+// A PCS that goes along with something (MC_SetDynCoordTransform): a belt, a table, the tool of another group, or a pose
+// from elsewhere. pose = origin * travel since `recorded_position` * (x, y, z, a, b, c).
+struct SetDynCoordTransform {
+  std::uint32_t pcs = 1;
+  Name carrier;  // name of the belt, the table, the group or the pose
+  double x = 0, y = 0, z = 0;
+  double a = 0, b = 0, c = 0;
+  std::optional<double> recorded_position{};  // of the belt's axis, u; unset: where it is now
+};
+
+// The tool goes along with a belt, by itself and beneath moves in that PCS (MC_TrackConveyorBelt).
+struct TrackConveyorBelt {
+  Name belt;
+  std::uint32_t pcs = 1;  // becomes that of the object
+  // Another origin than that of the belt, in the MCS; unset: the belt's own.
+  std::optional<double> origin_x{}, origin_y{}, origin_z{}, origin_a{}, origin_b{}, origin_c{};
+  double x = 0, y = 0, z = 0, a = 0, b = 0, c = 0;  // InitialObjectPosition, on the belt
+  std::optional<double> recorded_position{};        // of the belt's axis, u; unset: where it is now
+  // Of the belt, from the recorded position (and x further on).
+  double start_distance = 0;             // mm
+  std::optional<double> end_distance{};  // mm; unset: none
+  // TrackOptions; unset or 0: as fast as the limits allow.
+  std::optional<double> sync_in_conveyor_distance{}, sync_in_tcp_distance{};    // mm
+  std::optional<double> sync_out_conveyor_distance{}, sync_out_tcp_distance{};  // mm
+  ExecutionMode execution_mode = ExecutionMode::kImmediately;
+};
+
+// The same on a table that turns (MC_TrackRotaryTable).
+struct TrackRotaryTable {
+  Name table;
+  std::uint32_t pcs = 1;
+  double x = 0, y = 0, z = 0, a = 0, b = 0, c = 0;
+  std::optional<double> recorded_position{};                // of the table's axis, u
+  double start_angle = 0;                                   // deg, in the sense in which the table turns
+  std::optional<double> end_angle{};                        // deg
+  std::optional<double> sync_in_angle{}, sync_out_angle{};  // deg of the table
+  ExecutionMode execution_mode = ExecutionMode::kImmediately;
+};
+
 // What became of a question whether a path is free (question.h). The engine alone gives it to itself.
 struct PathChecked {
   std::uint64_t number = 0;  // of the question

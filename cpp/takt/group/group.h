@@ -9,6 +9,7 @@
 
 #include "takt/axis/axis.h"
 #include "takt/core/feedback.h"
+#include "takt/group/carriers.h"
 #include "takt/group/commands.h"
 #include "takt/group/look_ahead.h"
 #include "takt/group/outputs.h"
@@ -52,6 +53,7 @@ struct Context {
   Cycle cycle;
   FeedbackSink& feedback;
   LookAhead& ahead;
+  Carriers carriers{};
   Questions* questions = nullptr;  // where paths are asked about before they start; null: nobody knows what is free
 };
 
