@@ -168,21 +168,21 @@ class CrossCheck {
   // Belts and the axes that they name; several may go by the same. And poses.
   void CheckBelts() {
     const std::vector<std::string_view> names = Components();
-    auto before = names.end() - static_cast<std::ptrdiff_t>(machine_.belts.size() + machine_.poses.size());
-    const auto check_name = [&](const std::string& path, std::string_view name) {
-      if (name == "machine" || std::find(names.begin(), before, name) != before) {
+    const auto poses = names.end() - static_cast<std::ptrdiff_t>(machine_.poses.size());
+    const auto belts = poses - static_cast<std::ptrdiff_t>(machine_.belts.size());
+    const auto check_name = [&](const std::string& path, std::string_view name, auto others) {
+      if (name == "machine" || std::find(names.begin(), others, name) != others) {
         Add(path + ".name", "expected a name that nothing else has, and not machine, found " + Quoted(name));
       }
-      ++before;
     };
     for (std::size_t i = 0; i < machine_.belts.size(); ++i) {
       const std::string path = "belts[" + std::to_string(i) + "]";
-      check_name(path, machine_.belts[i].name);
+      check_name(path, machine_.belts[i].name, belts);
       std::vector<std::string_view> any;
       CheckReference(path + ".axis", machine_.belts[i].axis, any);
     }
     for (std::size_t i = 0; i < machine_.poses.size(); ++i) {
-      check_name("poses[" + std::to_string(i) + "]", machine_.poses[i].name);
+      check_name("poses[" + std::to_string(i) + "]", machine_.poses[i].name, poses);
     }
   }
 

@@ -169,10 +169,10 @@ inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m)
   to_group(1410, group::MovePathSynchronized{.path = Name::Of("round"), .master = Name::Of("y1"), .ratio = -1});
   to_group(2100, group::Stop{});
   to_group(2600, group::Disable{});
-  for (std::uint64_t i = 0; i < 33; ++i) {
+  for (std::uint32_t i = 0; i < 33; ++i) {
     commands.push_back({340 + 10 * i, ToBelt(m, i % 3 == 0 ? 0 : 1, conveyor::Detect{.recorded_position = 10.0 * i})});
   }
-  for (std::uint64_t i = 0; i < 12; ++i) commands.push_back({400 + 20 * i, ToBelt(m, 1, conveyor::Locate{.x = 80})});
+  for (std::uint32_t i = 0; i < 12; ++i) commands.push_back({400 + 20 * i, ToBelt(m, 1, conveyor::Locate{.x = 80})});
   commands.push_back({650, ToBelt(m, 1, conveyor::TakeObject{3})});
   commands.push_back({660, ToBelt(m, 1, conveyor::RemoveObject{3})});
   commands.push_back({2400, ToBelt(m, 1, conveyor::ClearObjects{})});
