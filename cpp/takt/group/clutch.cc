@@ -104,14 +104,22 @@ bool ClutchesStand(const State& s) noexcept {
   });
 }
 
-bool CanLetGo(const Context& c, const Stretch& stretch, double way, State& s) noexcept {
-  if (stretch.joints || stretch.from_ride != stretch.to_ride) return true;
-  const Clutch* clutch = Find(s, stretch.to_ride);
-  if (!clutch) return true;
-  const KinematicState rest = {trajectory::StopPosition(clutch->travel, clutch->limits()), 0, 0};
-  const MovingFrame tool = ToolAtTravel(c, stretch, way, RideAt(c, stretch.to_ride), rest);
+bool CanLetGo(const Context& c, const Stretch& stretch, const MovingFrame& tool, State& s) noexcept {
+  const double speed = tool.p.v.Norm();
+  const PathLimits& path = c.params.path;
+  const trajectory::Limits limits = {path.velocity, path.acceleration, path.deceleration.value_or(path.acceleration),
+                                     path.jerk};
+  MovingFrame rest = tool;
+  rest.p.dv = rest.M.dw = KDL::Vector::Zero();
+  if (speed > 0) rest.p.p += trajectory::StopPosition({0, speed, 0}, limits) / speed * tool.p.v;
   kinematics::JointMotion motion;
-  const kinematics::Reason reason = AxesFor(c, s, stretch, tool, {way, 0, 0}, s.joints, motion);
+  kinematics::Reason reason = AxesFor(c, s, stretch, rest, {stretch.from, 0, 0}, s.joints, motion);
+  const trajectory::CoordinateLimits& own = c.ahead.window.limits();
+  for (std::size_t k = 0; k < std::min(own.count, kMaxAxes); ++k) {
+    if (reason != kinematics::Reason::kNone || s.members[k] == 0) continue;
+    if (std::abs(motion.velocity[k]) > own.of[k].velocity) reason = kinematics::Reason::kSingular;
+    if (std::abs(motion.acceleration[k]) > own.of[k].acceleration) reason = kinematics::Reason::kSingular;
+  }
   if (reason != kinematics::Reason::kNone) s.reason = reason;
   return reason == kinematics::Reason::kNone;
 }

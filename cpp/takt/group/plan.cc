@@ -497,7 +497,18 @@ bool IsPlanned(const Context& c, const State& s) noexcept {
 }
 
 void Rehearse(const Context& c, const State& s) noexcept {
-  c.ahead.rehearsal.Run(c.ahead.window, s.pace, kRehearsed, c.cycle.period_s);
+  struct Owner {
+    const Context& c;
+    const State& s;
+  };
+  const Owner owner{c, s};
+  const auto look = [](const void* with, const KinematicState& along, double ahead_s,
+                       trajectory::PathCoordinateValues& positions, trajectory::PathCoordinateValues& velocities,
+                       trajectory::PathCoordinateValues& accelerations) noexcept {
+    const auto& [context, state] = *static_cast<const Owner*>(with);
+    return Foresee(context, state, along, ahead_s, positions, velocities, accelerations);
+  };
+  c.ahead.rehearsal.Run(c.ahead.window, s.pace, kRehearsed, c.cycle.count, c.cycle.period_s, {look, &owner});
 }
 
 bool MayBegin(const Context& c) noexcept {

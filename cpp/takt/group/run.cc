@@ -41,7 +41,7 @@ bool FollowCarried(const Context& c, const Stretch& stretch, double way, State& 
   }
   Demand(c, motion, s);
   // Where it could not be braked any more it is braked now.
-  if (!s.lets_go && !CanLetGo(c, stretch, way, s)) {
+  if (!s.lets_go && !CanLetGo(c, stretch, ToolNow(c, s, stretch, {way, 0, 0}), s)) {
     AbortMoves(c, ErrorId::kUnreachable, s);
     EndMotion({}, true, s);
   }
