@@ -125,6 +125,7 @@ const std::vector<Entry>& Entries() {
       Make<group::Command, group::SetKinTransform>(kGroup, "set_kin_transform"),
       Make<group::Command, group::SetCartesianTransform>(kGroup, "set_cartesian_transform"),
       Make<group::Command, group::SetCoordinateTransform>(kGroup, "set_coordinate_transform"),
+      Make<group::Command, group::SetDynCoordTransform>(kGroup, "set_dyn_coord_transform"),
       Make<group::Command, group::MoveLinearAbsolute>(kGroup, "move_linear_absolute"),
       Make<group::Command, group::MoveLinearRelative>(kGroup, "move_linear_relative"),
       Make<group::Command, group::MoveCircularAbsolute>(kGroup, "move_circular_absolute"),

@@ -42,8 +42,10 @@ void PathRehearsal::GoOn(const PathWindow& window) noexcept {
   free_until_ = window[window.free_until()].at.s;
 }
 
-void PathRehearsal::StartFrom(const PathPace& pace) noexcept {
+void PathRehearsal::StartFrom(const PathPace& pace, std::uint64_t cycle) noexcept {
   here_.pace = pace;
+  here_.cycle = cycle;
+  here_.positions.fill(std::numeric_limits<double>::quiet_NaN());
   started_ = true;
   marked_ = weakened_ = trouble_ = again_ = false;
   here_.accelerations.fill(std::numeric_limits<double>::quiet_NaN());
@@ -60,11 +62,12 @@ void PathRehearsal::Save() noexcept {
   until_save_ = kApart * static_cast<int>(here_.pace.cycles);
 }
 
-bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, double period_s) noexcept {
+bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, std::uint64_t cycle, double period_s,
+                        const PathProbe& probe) noexcept {
   if (!window.swept()) return through_;
   for (; cycles > 0 && !through_; --cycles) {
     if (again_) GoBack(window);
-    if (!started_ || here_.pace.passed < now.passed) StartFrom(now);
+    if (!started_ || here_.pace.passed < now.passed) StartFrom(now, cycle);
     if (here_.pace.raw_stands && Stands(here_.pace)) {
       if (trouble_) {
         EndTrouble(window, now, period_s);
@@ -85,7 +88,9 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, dou
       continue;
     }
     Advance(window, kFullSpeed, period_s, here_.pace);
-    Look(window, before, period_s);
+    ++here_.cycle;
+    const double ahead_s = here_.cycle > cycle ? static_cast<double>(here_.cycle - cycle) * period_s : 0;
+    Look(window, before, ahead_s, period_s, probe);
     const double ahead = kBefore * here_.pace.raw.velocity * period_s * here_.pace.cycles;
     if (!marked_ && here_.pace.raw.position + ahead >= free_until_) {
       mark_ = here_;
@@ -96,7 +101,8 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, dou
 }
 
 // What this cycle asks of the coordinates.
-void PathRehearsal::Look(const PathWindow& window, const KinematicState& before, double period_s) noexcept {
+void PathRehearsal::Look(const PathWindow& window, const KinematicState& before, double ahead_s, double period_s,
+                         const PathProbe& probe) noexcept {
   const CoordinateLimits& limits = window.limits();
   const PathNode& node = window[here_.pace.passed];
   const PathNode& next = here_.pace.passed + 1 < window.known() ? window[here_.pace.passed + 1] : node;
@@ -104,8 +110,11 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
   const double length = next.at.s - node.at.s;
   const double x = mean.position - node.at.s;
   const double part = length > 0 ? std::clamp(x / length, 0.0, 1.0) : 0;
+  const double left = std::lerp(node.at.left, next.at.left, part);
   const double jerk = (mean.acceleration - before.acceleration) / period_s;
   PathShares shares;
+  PathCoordinateValues velocities, accelerations;
+  const bool probed = probe.look && probe.look(probe.owner, mean, ahead_s, here_.positions, velocities, accelerations);
   for (std::size_t k = 0; k < limits.count; ++k) {
     const PathSlopes &a = node.at.slopes, &b = next.at.slopes;
     const double bend = b.second[k] - a.second[k];
@@ -113,22 +122,29 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
     // The second slope is a line between the nodes; what is left between their first ones is rounding.
     const double gap = b.first[k] - a.first[k] - length * (a.second[k] + 0.5 * bend);
     const double first = a.first[k] + x * (a.second[k] + 0.5 * part * bend) + part * gap;
-    const double acceleration = first * mean.acceleration + second * mean.velocity * mean.velocity;
+    const double by_way = first * mean.acceleration + second * mean.velocity * mean.velocity;
+    const double acceleration = probed ? accelerations[k] : by_way;
     const double total = std::abs(acceleration - here_.accelerations[k]) / period_s;
     here_.accelerations[k] = acceleration;
-    const double over = std::abs(acceleration) / limits.of[k].acceleration;
+    const double share = probed ? 1 : left;
+    const double over = std::abs(acceleration) / (share * limits.of[k].acceleration);
+    const double most = share * limits.of[k].jerk;
+    if (probed && std::abs(velocities[k]) > limits.of[k].velocity) {
+      const double speed = limits.of[k].velocity / std::abs(velocities[k]);
+      shares.square = std::min(shares.square, speed * speed);
+    }
     if (over > 1) {
       shares.square = std::min(shares.square, 1 / over);
       shares.acceleration = std::min(shares.acceleration, 1 / over);
     }
-    if (!(total > limits.of[k].jerk)) continue;
+    if (!(total > most)) continue;
     // What accelerations along the way do to it, and what remains if there were none.
     const double turning = std::abs(first * jerk + 3 * second * mean.velocity * mean.acceleration);
     const double bends = std::max(0.0, total - turning);
-    const double room = std::max(limits.of[k].jerk - bends, (1 - kBendShare) * limits.of[k].jerk);
+    const double room = std::max(most - bends, (1 - kBendShare) * most);
     if (turning > room) shares.strength = std::min(shares.strength, room / turning);
-    if (bends > kBendShare * limits.of[k].jerk) {
-      const double speed = std::cbrt(kBendShare * limits.of[k].jerk / bends);
+    if (bends > kBendShare * most) {
+      const double speed = std::cbrt(kBendShare * most / bends);
       shares.square = std::min(shares.square, speed * speed);
     }
   }

@@ -167,7 +167,7 @@ class Motion {
     const PathPoint before = last;
     NextPoint(
         before, end, window.limits(), window.build_up_s(), kPeriod,
-        [&](double s, PathSlopes& slopes) { return course.Slopes(s, slopes); }, last);
+        [&](double s, PathPoint& point) { return course.Slopes(s, point.slopes); }, last);
     window.Append(last, stop_at_end && last.s >= end);
     sampled_to = last.s;
   }
@@ -183,7 +183,7 @@ class Motion {
     Know();
     BeginAt(window, window.begin(), kPeriod, pace);
     rehearsal.GoOn(window);
-    while (!rehearsal.Run(window, pace, 1000, kPeriod)) {
+    while (!rehearsal.Run(window, pace, 1000, 0, kPeriod)) {
     }
   }
   void Cycle(double wish) {
