@@ -125,6 +125,8 @@ const std::vector<Entry>& Entries() {
       Make<group::Command, group::SetCartesianTransform>(kGroup, "set_cartesian_transform"),
       Make<group::Command, group::SetCoordinateTransform>(kGroup, "set_coordinate_transform"),
       Make<group::Command, group::SetDynCoordTransform>(kGroup, "set_dyn_coord_transform"),
+      Make<group::Command, group::TrackConveyorBelt>(kGroup, "track_conveyor_belt"),
+      Make<group::Command, group::TrackRotaryTable>(kGroup, "track_rotary_table"),
       Make<group::Command, group::MoveLinearAbsolute>(kGroup, "move_linear_absolute"),
       Make<group::Command, group::MoveLinearRelative>(kGroup, "move_linear_relative"),
       Make<group::Command, group::MoveCircularAbsolute>(kGroup, "move_circular_absolute"),
