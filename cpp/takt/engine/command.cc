@@ -20,6 +20,7 @@ constexpr std::string_view kAxis = "axis";
 constexpr std::string_view kFlexCam = "flex_cam";
 constexpr std::string_view kGroup = "group";
 constexpr std::string_view kBelt = "belt";
+constexpr std::string_view kPose = "pose";
 
 // A verb together with how its struct gets in and out of a command.
 struct Entry {
@@ -147,6 +148,7 @@ const std::vector<Entry>& Entries() {
       Make<conveyor::Command, conveyor::GiveBackObject>(kBelt, "give_back"),
       Make<conveyor::Command, conveyor::RemoveObject>(kBelt, "remove"),
       Make<conveyor::Command, conveyor::ClearObjects>(kBelt, "clear"),
+      Make<conveyor::PoseCommand, conveyor::SetPose>(kPose, "set"),
   };
   return entries;
 }

@@ -267,6 +267,20 @@ msgs::belt_state ToMessage(const engine::BeltSnapshot& snapshot, const engine::M
   return m;
 }
 
+msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::Machine& machine) {
+  const conveyor::PoseOutputs& o = snapshot.outputs;
+  msgs::pose_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.poses[snapshot.index].name;
+  m.pose = ToMessage(o.pose);
+  m.velocity = o.velocity;
+  m.turning = o.turning;
+  m.age_s = o.age_s;
+  m.fresh = o.fresh;
+  return m;
+}
+
 msgs::histogram ToMessage(const engine::Histogram& histogram) {
   msgs::histogram m{};
   std::transform(histogram.buckets.begin(), histogram.buckets.end(), m.buckets, Signed);
