@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from takt._commands import DEFAULTS, LEVEL_SENSITIVE, MachineCommands
 from takt.arguments import to_text, without_arguments
 from takt.axis import Axis
+from takt.belt import Belt
 from takt.component import Component
 from takt.couplings import why_refused
 from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
@@ -31,7 +32,7 @@ Program = Callable[[], object]
 P = TypeVar("P", bound=Program)
 C = TypeVar("C", bound=Component)
 
-CLASSES: dict[str, type[Component]] = {component.KIND: component for component in (Axis, FlexCam, Group)}
+CLASSES: dict[str, type[Component]] = {component.KIND: component for component in (Axis, FlexCam, Group, Belt)}
 
 
 class Recorder:
@@ -82,6 +83,7 @@ class Session(MachineCommands):
         self._axes = {name: c for name, c in self._components.items() if isinstance(c, Axis)}
         self._flex_cams = {name: c for name, c in self._components.items() if isinstance(c, FlexCam)}
         self._groups = {name: c for name, c in self._components.items() if isinstance(c, Group)}
+        self._belts = {name: c for name, c in self._components.items() if isinstance(c, Belt)}
         self._programs: list[Program] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
@@ -116,6 +118,14 @@ class Session(MachineCommands):
 
     def group(self, name: str) -> Group:
         return _named(self._groups, name, "group")
+
+    @property
+    def belts(self) -> Mapping[str, Belt]:
+        """All belts by name, in the order of the machine file."""
+        return MappingProxyType(self._belts)
+
+    def belt(self, name: str) -> Belt:
+        return _named(self._belts, name, "belt")
 
     @property
     def components(self) -> Mapping[str, Component]:

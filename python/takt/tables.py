@@ -143,6 +143,8 @@ def _units(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]
         return {"u": parameters["unit"]}
     if kind.name == "group":
         return {"u": "mm"}
+    if kind.name == "belt":
+        return {"u": "deg" if parameters["kind"] == "turning" else "mm"}
     of_axes = {a["name"]: str(a["unit"]) for a in machine["axes"]}
     cam = next(c for c in machine["cams"] if c["name"] == parameters["cams"][0])
     master = of_axes.get(parameters["master"], cam["x_unit"])

@@ -67,7 +67,7 @@ bool Continues(const KinematicState& before, const KinematicState& x, const Limi
 
 // Towards a velocity with the axis' own ramps: keeps the invariant from any state that has it.
 KinematicState TowardsVelocity(const Chaser& c, const KinematicState& before, double velocity) {
-  const Limits own = c.params.planner_limits();
+  const Limits& own = c.own;
   Profile profile{before};
   c.planner.ToVelocity(before, std::clamp(velocity, -own.velocity, own.velocity), own, profile);
   return profile.At(c.period_s);
@@ -91,7 +91,7 @@ KinematicState CycleBefore(const KinematicState& demand, double t) {
 // limits leave no room there, or there is no such plan.
 bool InFrame(const Chaser& c, ChaseMode mode, const KinematicState& before, const KinematicState& demand, double sense,
              KinematicState& next, bool& arrives) {
-  const Limits own = c.params.planner_limits();
+  const Limits& own = c.own;
   const double t = c.period_s;
   const double speed = std::abs(demand.velocity);
   const double fastest = c.catching_up.velocity > speed ? c.catching_up.velocity : own.velocity;
@@ -123,7 +123,7 @@ bool Sound(const KinematicState& x) {
 
 KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& before, const KinematicState& demand,
                      ChaseState& state) noexcept {
-  const Limits own = c.params.planner_limits();
+  const Limits& own = c.own;
   const auto keeps = [&](const KinematicState& x) {
     return KeepsVelocity(x, own) && KeepsAcceleration(before, x, own) && KeepsReversal(x, own) &&
            Continues(before, x, own, c.period_s);

@@ -24,7 +24,7 @@ struct ChaseState {
 };
 
 struct Chaser {
-  const AxisParams& params;
+  trajectory::Limits own;  // of the axis
   trajectory::Planner& planner;
   trajectory::Limits catching_up;  // of the command: how fast to get into step; within the axis' own
   double period_s;

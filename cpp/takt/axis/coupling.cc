@@ -382,7 +382,7 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     demand = {s.setpoint.position + s.origin + s.setpoint.velocity * c.cycle.period_s, s.setpoint.velocity, 0};
   }
   demand.position -= s.origin;
-  const Chaser chaser = {c.params, c.planner, s.active.limits(), c.cycle.period_s};
+  const Chaser chaser = {c.params.planner_limits(), c.planner, s.active.limits(), c.cycle.period_s};
   if (k.locked) {
     if (begun) demand.position += k.chase.offset;
     s.setpoint = Chase(chaser, ChaseMode::kPosition, s.setpoint, demand, k.chase);

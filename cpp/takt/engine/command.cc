@@ -19,6 +19,7 @@ constexpr std::string_view kMachine = "machine";
 constexpr std::string_view kAxis = "axis";
 constexpr std::string_view kFlexCam = "flex_cam";
 constexpr std::string_view kGroup = "group";
+constexpr std::string_view kBelt = "belt";
 
 // A verb together with how its struct gets in and out of a command.
 struct Entry {
@@ -123,6 +124,7 @@ const std::vector<Entry>& Entries() {
       Make<group::Command, group::SetKinTransform>(kGroup, "set_kin_transform"),
       Make<group::Command, group::SetCartesianTransform>(kGroup, "set_cartesian_transform"),
       Make<group::Command, group::SetCoordinateTransform>(kGroup, "set_coordinate_transform"),
+      Make<group::Command, group::SetDynCoordTransform>(kGroup, "set_dyn_coord_transform"),
       Make<group::Command, group::MoveLinearAbsolute>(kGroup, "move_linear_absolute"),
       Make<group::Command, group::MoveLinearRelative>(kGroup, "move_linear_relative"),
       Make<group::Command, group::MoveCircularAbsolute>(kGroup, "move_circular_absolute"),
@@ -137,6 +139,12 @@ const std::vector<Entry>& Entries() {
       Make<group::Command, group::Interrupt>(kGroup, "interrupt"),
       Make<group::Command, group::Continue>(kGroup, "continue_path"),
       Make<group::Command, group::PathChecked>(kGroup, "path_checked"),
+      Make<conveyor::Command, conveyor::Detect>(kBelt, "detect"),
+      Make<conveyor::Command, conveyor::Locate>(kBelt, "locate"),
+      Make<conveyor::Command, conveyor::TakeObject>(kBelt, "take"),
+      Make<conveyor::Command, conveyor::GiveBackObject>(kBelt, "give_back"),
+      Make<conveyor::Command, conveyor::RemoveObject>(kBelt, "remove"),
+      Make<conveyor::Command, conveyor::ClearObjects>(kBelt, "clear"),
   };
   return entries;
 }
@@ -266,9 +274,9 @@ bool LetsGo(const Command& command) noexcept {
     return std::holds_alternative<group::Stop>(*group) || std::holds_alternative<group::Halt>(*group) ||
            std::holds_alternative<group::Interrupt>(*group) || (power && !power->enable);
   }
-  const auto& body = std::get<axis::Command>(command.body);
-  const auto* power = std::get_if<axis::Power>(&body);
-  return std::holds_alternative<axis::Stop>(body) || (power && !power->enable);
+  const auto* axis = std::get_if<axis::Command>(&command.body);
+  const auto* power = axis ? std::get_if<axis::Power>(axis) : nullptr;
+  return axis && (std::holds_alternative<axis::Stop>(*axis) || (power && !power->enable));
 }
 
 std::span<const Verb> Verbs() {

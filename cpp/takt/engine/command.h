@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "takt/axis/commands.h"
+#include "takt/conveyor/commands.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
 #include "takt/engine/machine.h"
@@ -39,7 +40,7 @@ void describe(Description<Release>&);
 void describe(Description<Renew>&);
 
 using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
-using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command>;
+using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command>;
 
 // Component i (components.h) is target i + 1.
 inline constexpr std::uint32_t kMachineTarget = 0;

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "takt/axis/outputs.h"
+#include "takt/conveyor/outputs.h"
 #include "takt/core/describe.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
@@ -29,6 +30,7 @@ std::span<const ComponentKind> ComponentKinds() {
       Make<axis::Outputs, &Machine::axes>("axis", "axes", "an axis", "axes"),
       Make<flexcam::Outputs, &Machine::flex_cams>("flex_cam", "flex_cams", "a cam module", "cam modules"),
       Make<group::Outputs, &Machine::groups>("group", "groups", "a group of axes", "groups of axes"),
+      Make<conveyor::Outputs, &Machine::belts>("belt", "belts", "a belt", "belts"),
   };
   return kinds;
 }

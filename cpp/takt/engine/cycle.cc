@@ -8,6 +8,7 @@
 #include "takt/cam/build.h"
 #include "takt/core/describe.h"
 #include "takt/core/hash.h"
+#include "takt/engine/carriers.h"
 #include "takt/engine/order.h"
 
 namespace takt::engine {
@@ -30,6 +31,10 @@ flexcam::Context ContextOf(World& w, const FlexCam& module) {
   return {module.params, ContextOf(w, module.slave), module.master, module.homing};
 }
 
+conveyor::Context ContextOf(World& w, const Belt& belt) {
+  return {belt.params, w.axis_states[belt.axis], w.axis_params[belt.axis], w.cycle, w.feedback};
+}
+
 group::Context ContextOf(World& w, const AxesGroup& group) {
   const auto index = static_cast<std::size_t>(&group - w.groups.data());
   const auto of_axis = [](void* owner, std::size_t i) noexcept { return ContextOf(*static_cast<World*>(owner), i); };
@@ -43,9 +48,12 @@ group::Context ContextOf(World& w, const AxesGroup& group) {
           w.cycle,
           w.feedback,
           w.look_aheads[index],
-          {},
+          CarriersFor(w.riders[index]),
           group.params.workspace ? &w.questions : nullptr};
 }
+
+// Whether groups come behind all belts, wherever those go by themselves: they may ride on any of them.
+enum class Belts : std::uint8_t { kFirst, kAnywhere };
 
 // What a command that has not been taken yet adds to the order.
 struct Wanted {
@@ -86,10 +94,17 @@ void SeeMembers(const group::State& s, Nth& nth) {
   }
 }
 
+// The axes of belts whose set position counts.
+void SeeBelts(const World& w, Nth& nth) {
+  for (const Belt& belt : w.belts) {
+    if (!IsMeasured(belt.params) && w.group_of[belt.axis] == 0) nth.See(belt.axis);
+  }
+}
+
 // The k-th axis that axis i must not step before: the one it follows from load on or by a cam module, those it is
 // coupled to, those it will be coupled to by buffered commands, those that its group follows, the members of the group
 // that it follows itself. Last come those of `wanted`.
-std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted) {
+std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted, Belts belts) {
   const axis::State& s = w.axis_states[i];
   Nth nth{k};
   if (w.axis_masters[i]) nth.See(*w.axis_masters[i]);
@@ -97,6 +112,7 @@ std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint
   SeeMasters(s.active.coupling, nth);
   for (std::size_t b = 0; b < s.buffered; ++b) SeeMasters(s.buffer[b].coupling, nth);
   if (w.group_of[i] != 0) SeeMasters(w.group_states[w.group_of[i] - 1], nth);
+  if (w.group_of[i] != 0 && belts == Belts::kFirst) SeeBelts(w, nth);
   for (const group::State& group : w.group_states) {
     for (const group::SyncedAxis& synced : group.synced) {
       if (synced.axis == i + 1) SeeMembers(group, nth);
@@ -109,7 +125,10 @@ std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint
 }
 
 bool MakeOrder(World& w, const Wanted& wanted = {}) {
-  return w.axis_order.Make([&](std::uint32_t i, std::uint32_t k) { return MasterOf(w, i, k, wanted); });
+  const auto make = [&](Belts belts) {
+    return w.axis_order.Make([&](std::uint32_t i, std::uint32_t k) { return MasterOf(w, i, k, wanted, belts); });
+  };
+  return make(Belts::kFirst) || make(Belts::kAnywhere);
 }
 
 // AX-82: after an internal fault nothing may move on: all loops open, all outputs are zero.
@@ -286,6 +305,7 @@ World::World(const Machine& machine)
   }
   MakeModules(machine);
   MakeGroups(machine);
+  MakeBelts(machine);
   surrounding = {axis_states, axis_params, cam_switches, cams};
   MakeOrder(*this);
 }
@@ -337,12 +357,27 @@ void World::MakeGroups(const Machine& machine) {
   group_stepped.resize(groups.size());
 }
 
+void World::MakeBelts(const Machine& machine) {
+  TypeOf<conveyor::State>();
+  TouchTypes(static_cast<const conveyor::Command*>(nullptr));
+  belts_after.resize(machine.axes.size());
+  for (const conveyor::BeltParams& params : machine.belts) {
+    const auto index = static_cast<std::uint32_t>(belts.size());
+    const Belt& belt = belts.emplace_back(params, axis::FindAxis(machine.axes, params.axis));
+    (IsMeasured(params) ? measured_belts : belts_after[belt.axis]).push_back(index);
+  }
+  belt_states.resize(belts.size());
+  belt_outputs.resize(belts.size());
+  for (std::uint32_t i = 0; i < groups.size(); ++i) riders.push_back({this, i});
+}
+
 std::uint64_t World::StateHash() const noexcept {
   std::uint64_t hash = cycle.count;
   for (const axis::State& state : axis_states) hash = HashOf(state, hash);
   for (const axis::AxisParams& params : axis_params) hash = HashOf(params, hash);  // settings change them
   for (const flexcam::State& state : flex_cam_states) hash = HashOf(state, hash);
   for (const group::State& state : group_states) hash = HashOf(state, hash);
+  for (const conveyor::State& state : belt_states) hash = HashOf(state, hash);
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
   for (const HeardDrive& drive : drives) hash = HashOf(servo_inputs[drive.axis], HashOf(drive, hash));
   return hash;
@@ -398,6 +433,10 @@ void Apply(World& w, const Command& command) noexcept {
     const Wanted wanted = WantedBy(w, *for_group, i);
     if (Changes(wanted) && !MakeOrder(w, wanted)) return refuse(ErrorId::kCouplingLoop);
     group::Apply(ContextOf(w, w.groups[i]), command.ticket, command.lease_s, *for_group, w.group_states[i]);
+  } else if (const auto* for_belt = std::get_if<conveyor::Command>(&command.body)) {
+    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size();  // likewise
+    if (i >= w.belts.size()) return refuse(ErrorId::kUnknownTarget);
+    conveyor::Apply(ContextOf(w, w.belts[i]), command.ticket, *for_belt, w.belt_states[i]);
   }
 }
 
@@ -409,6 +448,10 @@ void StepOnce(World& w, std::size_t group) {
   group::Step(ContextOf(w, w.groups[group]), w.group_states[group]);
 }
 
+void StepBelts(World& w, std::span<const std::uint32_t> belts) {
+  for (const std::uint32_t i : belts) conveyor::Step(ContextOf(w, w.belts[i]), w.belt_states[i]);
+}
+
 }  // namespace
 
 void Move(World& w) noexcept {
@@ -417,12 +460,14 @@ void Move(World& w) noexcept {
     if (w.axis_states[i].plc == axis::PlcState::kErrorStop) StopMasters(w, i);
   }
   std::ranges::fill(w.group_stepped, std::uint8_t{0});
+  StepBelts(w, w.measured_belts);
   for (const std::uint32_t i : w.axis_order.sequence()) {
     if (w.group_of[i] != 0) StepOnce(w, w.group_of[i] - 1);
     if (const std::uint32_t module = w.module_of[i]; module != 0) {
       flexcam::Step(ContextOf(w, w.flex_cams[module - 1]), w.axis_states[i], w.flex_cam_states[module - 1]);
     }
     axis::Move(ContextOf(w, i), w.axis_states[i]);
+    StepBelts(w, w.belts_after[i]);
   }
   for (std::size_t i = 0; i < w.groups.size(); ++i) StepOnce(w, i);  // without members
 }
@@ -442,6 +487,9 @@ void Control(World& w) noexcept {
   }
   for (std::size_t i = 0; i < w.groups.size(); ++i) {
     group::Publish(ContextOf(w, w.groups[i]), w.group_states[i], w.group_outputs[i]);
+  }
+  for (std::size_t i = 0; i < w.belts.size(); ++i) {
+    conveyor::Publish(ContextOf(w, w.belts[i]), w.belt_states[i], w.belt_outputs[i]);
   }
 }
 

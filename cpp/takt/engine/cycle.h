@@ -12,6 +12,7 @@
 #include "takt/axis/params.h"
 #include "takt/axis/state.h"
 #include "takt/cam/table.h"
+#include "takt/conveyor/belt.h"
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
 #include "takt/core/ports.h"
@@ -48,6 +49,20 @@ struct AxesGroup {
   std::vector<std::uint32_t> axes;  // members at the start
 };
 
+// What a belt is made from.
+struct Belt {
+  conveyor::BeltParams params;
+  std::uint32_t axis = 0;
+};
+
+struct World;
+
+// A group as one who looks for what carries: it does not carry itself.
+struct Rider {
+  World* world;
+  std::uint32_t group;
+};
+
 // Everything the cycle works on, in arrays by component; index i is axis i of the machine.
 struct World {
   explicit World(const Machine& machine);
@@ -80,6 +95,13 @@ struct World {
   std::vector<std::uint32_t> group_of;      // the group that each axis is a member of, from 1; 0: none
   std::vector<std::uint8_t> group_stepped;  // in this cycle
 
+  std::vector<Belt> belts;
+  std::vector<conveyor::State> belt_states;
+  std::vector<conveyor::Outputs> belt_outputs;
+  std::vector<std::uint32_t> measured_belts;            // step before all axes ...
+  std::vector<std::vector<std::uint32_t>> belts_after;  // ... and those of set positions behind each axis
+  std::vector<Rider> riders;                            // the groups
+
   std::vector<ServoInputs> servo_inputs;
   std::vector<ServoOutputs> servo_outputs;
   std::vector<plant::ServoParams> servo_params;
@@ -96,6 +118,7 @@ struct World {
  private:
   void MakeModules(const Machine& machine);
   void MakeGroups(const Machine& machine);
+  void MakeBelts(const Machine& machine);
 };
 
 // Not for the cycle (axis/forecast.h).

@@ -69,6 +69,7 @@ struct Engine::Impl {
         axes(machine, o, machine.axes, world.axis_outputs),
         flex_cams(machine, o, machine.flex_cams, world.flex_cam_outputs),
         groups(machine, o, machine.groups, world.group_outputs),
+        belts(machine, o, machine.belts, world.belt_outputs),
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
         hashes(o.journal ? o.snapshot_queue : 2),
@@ -150,7 +151,7 @@ struct Engine::Impl {
   }
 
   // All kinds of components, in the order of their numbers.
-  auto kinds() noexcept { return std::tie(axes, flex_cams, groups); }
+  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts); }
 
   template <typename Outputs>
   void PublishAll(OfKind<Outputs>& kind) noexcept {
@@ -196,6 +197,7 @@ struct Engine::Impl {
   OfKind<axis::Outputs> axes;
   OfKind<flexcam::Outputs> flex_cams;
   OfKind<group::Outputs> groups;
+  OfKind<conveyor::Outputs> belts;
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
   SpscQueue<HashEntry> hashes;
@@ -278,6 +280,9 @@ const flexcam::Outputs& Engine::flex_cam_outputs(std::size_t module) const noexc
 const group::Outputs& Engine::group_outputs(std::size_t group) const noexcept {
   return impl_->world.group_outputs[group];
 }
+const conveyor::Outputs& Engine::belt_outputs(std::size_t belt) const noexcept {
+  return impl_->world.belt_outputs[belt];
+}
 std::size_t Engine::components() const noexcept {
   return std::apply([](const auto&... kind) { return (kind.outputs.size() + ...); }, impl_->kinds());
 }
@@ -352,6 +357,7 @@ SpscQueue<SnapshotOf<Outputs>>& Engine::snapshots() noexcept {
 template SpscQueue<AxisSnapshot>& Engine::snapshots<axis::Outputs>() noexcept;
 template SpscQueue<FlexCamSnapshot>& Engine::snapshots<flexcam::Outputs>() noexcept;
 template SpscQueue<GroupSnapshot>& Engine::snapshots<group::Outputs>() noexcept;
+template SpscQueue<BeltSnapshot>& Engine::snapshots<conveyor::Outputs>() noexcept;
 
 SpscQueue<EngineFigures>& Engine::figure_queue() noexcept {
   return impl_->figure_queue;

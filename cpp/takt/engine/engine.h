@@ -8,6 +8,7 @@
 #include <span>
 
 #include "takt/axis/forecast.h"
+#include "takt/conveyor/outputs.h"
 #include "takt/core/cycle.h"
 #include "takt/core/spsc_queue.h"
 #include "takt/engine/command.h"
@@ -60,6 +61,7 @@ class Engine {
   const axis::Outputs& outputs(std::size_t axis) const noexcept;
   const flexcam::Outputs& flex_cam_outputs(std::size_t module) const noexcept;
   const group::Outputs& group_outputs(std::size_t group) const noexcept;
+  const conveyor::Outputs& belt_outputs(std::size_t belt) const noexcept;
   // The same for components of any kind, by the number that is their target, less one.
   struct Published {
     const Type* type;

@@ -48,6 +48,8 @@ class CrossCheck {
     CheckNames("groups", machine_.groups);
     CheckNames("paths", machine_.paths);
     CheckGroups();
+    CheckNames("belts", machine_.belts);
+    CheckBelts();
     CheckCamSwitches();
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
@@ -162,6 +164,31 @@ class CrossCheck {
     }
   }
 
+  // Belts and the axes that they name; several may go by the same.
+  void CheckBelts() {
+    const std::vector<std::string_view> names = Components();
+    const auto of_others = names.begin() + static_cast<std::ptrdiff_t>(names.size() - machine_.belts.size());
+    for (std::size_t i = 0; i < machine_.belts.size(); ++i) {
+      const conveyor::BeltParams& belt = machine_.belts[i];
+      const std::string path = "belts[" + std::to_string(i) + "]";
+      if (belt.name == "machine" || std::find(names.begin(), of_others, belt.name) != of_others) {
+        Add(path + ".name", "expected a name that no axis, cam module or group has, and not machine, found " +
+                                Quoted(belt.name));
+      }
+      std::vector<std::string_view> any;
+      CheckReference(path + ".axis", belt.axis, any);
+    }
+  }
+
+  // Names of all, belts last.
+  std::vector<std::string_view> Components() const {
+    std::vector<std::string_view> names = names_;
+    for (const flexcam::FlexCamParams& module : machine_.flex_cams) names.push_back(module.name);
+    for (const group::GroupParams& group : machine_.groups) names.push_back(group.name);
+    for (const conveyor::BeltParams& belt : machine_.belts) names.push_back(belt.name);
+    return names;
+  }
+
   // A member goes by its group alone.
   void CheckMember(const std::string& path, std::string_view name) {
     for (const axis::AxisParams& axis : machine_.axes) {
@@ -195,15 +222,13 @@ class CrossCheck {
     }
   }
 
-  // Of axes, cam modules and groups.
+  // Of components of any kind.
   void CheckRates() {
-    std::vector<std::string_view> components = names_;
-    for (const flexcam::FlexCamParams& module : machine_.flex_cams) components.push_back(module.name);
-    for (const group::GroupParams& group : machine_.groups) components.push_back(group.name);
+    const std::vector<std::string_view> components = Components();
     std::vector<std::string_view> seen;
     for (std::size_t i = 0; i < machine_.lcm.rates.size(); ++i) {
       CheckReference("lcm.rates[" + std::to_string(i) + "].axis", machine_.lcm.rates[i].axis, seen, components,
-                     components.size() == names_.size() ? "axis" : "axis, cam module or group");
+                     components.size() == names_.size() ? "axis" : "axis or other component");
     }
   }
 

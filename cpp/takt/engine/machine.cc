@@ -59,8 +59,8 @@ void describe(Description<CycleParams>& d) {
 }
 
 void describe(Description<ChannelRate>& d) {
-  d.about("How often one axis, cam module or group is published.");
-  d.required<&ChannelRate::axis>("Name of the axis, the cam module or the group.");
+  d.about("How often one axis or other component is published.");
+  d.required<&ChannelRate::axis>("Name of the axis or other component.");
   d.required<&ChannelRate::rate_hz>(unit::hz, between(0, 4000), "How often; 0: never.");
 }
 
@@ -70,8 +70,8 @@ void describe(Description<LcmParams>& d) {
   d.defaulted<&L::url>("LCM's provider; as it is, messages stay on this host (ttl 0).");
   d.defaulted<&L::axis_rate_hz>(
       unit::hz, between(0, 4000),
-      "How often each axis, each cam module and each group is published, at most once a cycle; 0: never.");
-  d.defaulted<&L::rates>("Axes, cam modules and groups with a rate of their own.");
+      "How often each axis and each other component is published, at most once a cycle; 0: never.");
+  d.defaulted<&L::rates>("Axes and other components with a rate of their own.");
   d.defaulted<&L::engine_rate_hz>(unit::hz, between(0.1, 1000), "How often the engine's own figures are published.");
   d.defaulted<&L::dead_man_s>(unit::s, between(0.02, 60),
                               "Without a heartbeat for so long, a client's level-sensitive commands are released.");
@@ -122,6 +122,7 @@ void describe(Description<Machine>& d) {
   d.defaulted<&M::flex_cams>("Cam modules.");
   d.defaulted<&M::groups>("Groups of axes.");
   d.defaulted<&M::paths>("Paths, for any group.");
+  d.defaulted<&M::belts>("Belts, and tables that turn.");
   d.defaulted<&M::simulation>("What stands in for the metal.");
   d.defaulted<&M::external>("What lives in other processes.");
 }

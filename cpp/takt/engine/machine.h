@@ -10,6 +10,7 @@
 #include "takt/axis/cam_switch.h"
 #include "takt/axis/params.h"
 #include "takt/cam/params.h"
+#include "takt/conveyor/params.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/flexcam/params.h"
 #include "takt/group/params.h"
@@ -23,7 +24,7 @@ struct CycleParams {
 };
 
 struct ChannelRate {
-  std::string axis;  // name of the axis, the cam module or the group
+  std::string axis;  // name of the axis or other component
   double rate_hz = 100;
 };
 
@@ -69,6 +70,7 @@ struct Machine {
   std::vector<flexcam::FlexCamParams> flex_cams;
   std::vector<group::GroupParams> groups;
   std::vector<group::PathParams> paths;
+  std::vector<conveyor::BeltParams> belts;
   Simulation simulation;
   External external;
 };

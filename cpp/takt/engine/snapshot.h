@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "takt/axis/outputs.h"
+#include "takt/conveyor/outputs.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/engine/command.h"
 #include "takt/flexcam/outputs.h"
@@ -14,7 +15,7 @@
 namespace takt::engine {
 
 // What each kind of components publishes, in the order of ComponentKinds().
-using PublishedKinds = std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs>;
+using PublishedKinds = std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs>;
 
 // What a component published.
 template <typename Outputs>
@@ -27,6 +28,7 @@ struct SnapshotOf {
 using AxisSnapshot = SnapshotOf<axis::Outputs>;
 using FlexCamSnapshot = SnapshotOf<flexcam::Outputs>;
 using GroupSnapshot = SnapshotOf<group::Outputs>;
+using BeltSnapshot = SnapshotOf<conveyor::Outputs>;
 
 struct JournalEntry {  // a command as it was applied
   std::uint64_t cycle = 0;

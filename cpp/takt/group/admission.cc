@@ -48,11 +48,11 @@ struct Applier {
   void AbortTask() const { EndTask(c, FeedbackState::kAborted, ErrorId::kNone, s); }
 
   // Everything that is planned or waits gives way.
-  void AbortAll(const Brake& brake = {}) const {
+  void AbortAll(const Brake& brake = {}, bool lets_go = true) const {
     AbortTask();
     AbortMoves(c, ErrorId::kNone, s);
     if (s.begun || s.planning.stage != Stage::kIdle || c.ahead.known) {
-      EndMotion(brake, s);
+      EndMotion(brake, lets_go || s.lets_go, s);
     } else {
       ForgetPlan(c, s);
     }
@@ -63,11 +63,12 @@ struct Applier {
     if (made.error != ErrorId::kNone) return Refuse(made.error);
     if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
     if (made.move.buffer_mode != BufferMode::kAborting && s.task == Task::kHalt) return Refuse(ErrorId::kState);
-    if (made.move.buffer_mode == BufferMode::kAborting) AbortAll();
+    if (made.move.buffer_mode == BufferMode::kAborting) AbortAll({}, false);
     if (!c.ahead.known && !s.begun) c.ahead.window.SetLimits(LimitsOf(c, s));
     Request move = made.move;
     move.ticket = ticket;
     move.frame = kinematics::ToPose(SystemFrame(c, s, move.system, move.pcs));
+    if (move.system == CoordinateSystem::kPcs) move.cargo = s.cargoes[move.pcs];
     if (!Push(move, s)) return Refuse(ErrorId::kBufferFull);
     Report(c, ticket, FeedbackState::kBusy);
     if (Is(GroupState::kStandby)) Enter(GroupState::kMoving, s);
@@ -100,7 +101,7 @@ struct Applier {
   void operator()(const Interrupt& m) const {
     if (!Is(GroupState::kMoving) || s.ends) return Refuse(ErrorId::kState);
     AbortTask();
-    s.interrupted = true;
+    s.interrupted = s.lets_go = true;
     s.brake = {m.deceleration.value_or(0), m.jerk.value_or(0)};
     if (!s.begun) return Finish(ErrorId::kNone);  // it does not move yet
     s.task = Task::kInterrupt;
@@ -110,7 +111,7 @@ struct Applier {
   void operator()(const Continue&) const {
     if (!Is(GroupState::kMoving) || !s.interrupted) return Refuse(ErrorId::kState);
     AbortTask();
-    s.interrupted = false;
+    s.interrupted = s.lets_go = false;
     s.brake = {};
     Finish(ErrorId::kNone);
   }
@@ -150,7 +151,8 @@ struct Applier {
     LetGoOfMembers(c, s);
     LetGoOfSynced(c, FeedbackState::kDone, s);
     ForgetPlan(c, s);
-    s.begun = s.ends = s.hold = false;
+    s.begun = s.ends = s.hold = s.lets_go = false;
+    s.clutches = {};
     s.pace = {};
   }
   void operator()(const Disable&) const {
@@ -251,13 +253,25 @@ struct Applier {
     s.kinematics_on = m.enable;
     Finish(ErrorId::kNone);
   }
+  void operator()(const SetDynCoordTransform& m) const {
+    Cargo cargo;
+    cargo.carrier = c.carriers.Find(m.carrier.view());
+    if (cargo.carrier == 0) return Refuse(ErrorId::kUnknownTarget);
+    cargo.on = {m.x, m.y, m.z, m.a, m.b, m.c};
+    cargo.from = m.recorded_position ? c.carriers.TravelAt(cargo.carrier, *m.recorded_position)
+                                     : c.carriers.At(cargo.carrier).travel.position;
+    s.cargoes[m.pcs - 1] = cargo;
+    Finish(ErrorId::kNone);
+  }
   void operator()(const SetCartesianTransform& m) const {
+    s.cargoes[m.pcs - 1] = {};
     s.product_systems[m.pcs - 1] = {m.x, m.y, m.z, m.a, m.b, m.c};
     Finish(ErrorId::kNone);
   }
   void operator()(const SetCoordinateTransform& m) const {
     if (m.reference == CoordinateSystem::kAcs) return Refuse(ErrorId::kParameter);
     const Frame reference = SystemFrame(c, s, m.reference, m.reference_pcs - 1);
+    s.cargoes[m.pcs - 1] = {};
     s.product_systems[m.pcs - 1] = kinematics::ToPose(reference * kinematics::ToFrame({m.x, m.y, m.z, m.a, m.b, m.c}));
     Finish(ErrorId::kNone);
   }

@@ -1,6 +1,7 @@
 #include "takt/group/ask.h"
 
 #include "takt/group/queue.h"
+#include "takt/group/rides.h"
 #include "takt/group/systems.h"
 
 namespace takt::group {
@@ -13,6 +14,10 @@ Question QuestionOf(const Context& c, const State& s) {
   question.group = c.number;
   question.number = s.planning.question;
   question.move = MoveAt(s, s.planning.move);
+  if (question.move.cargo.carrier != 0) {  // where it will be
+    question.move.cargo = {};
+    question.move.frame = kinematics::ToPose(ReferenceOf(ahead.rides[ahead.next.to_ride % kRides]));
+  }
   question.from = ahead.end_joints;
   question.follows = ahead.known && ahead.count > 0;
   if (question.follows) question.before = ahead[ahead.end() - 1];

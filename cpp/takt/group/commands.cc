@@ -424,6 +424,23 @@ void describe(Description<SetCoordinateTransform>& d) {
   d.defaulted<&C::reference_pcs>(between(1, kProductSystems), "Which product coordinate system that is; with pcs.");
 }
 
+void describe(Enumeration<ExecutionMode>& e) {
+  e.about("When a command that is no motion itself takes effect.");
+  e.value(ExecutionMode::kImmediately, "immediately", "At once, whatever runs.");
+  e.value(ExecutionMode::kDelayed, "delayed", "When the motion in progress is over.");
+  e.value(ExecutionMode::kQueued, "queued", "When all motions given before are over.");
+}
+
+void describe(Description<SetDynCoordTransform>& d) {
+  using C = SetDynCoordTransform;
+  d.about("Lets a product coordinate system go along with something that moves (MC_SetDynCoordTransform).");
+  d.defaulted<&C::pcs>(between(1, kProductSystems), "Which one.");
+  d.required<&C::carrier>("Name of a belt, a table, another group (its tool) or a pose.");
+  DescribePose(d);
+  d.defaulted<&C::recorded_position>(unit::u, kAxisPositions,
+                                     "Of the belt's axis when the object was at that place of the belt; unset: now.");
+}
+
 void describe(Description<PathChecked>& d) {
   using C = PathChecked;
   d.about("Whether the path that the group asks about is free. Given by the engine alone.");

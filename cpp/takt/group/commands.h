@@ -247,7 +247,7 @@ using Command =
     std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircularAbsolute, MoveCircularRelative, MoveDirectAbsolute,
                  MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop, Halt, Interrupt, Continue, AddAxis,
                  RemoveAxis, UngroupAllAxes, Enable, Disable, Reset, Power, Home, SetPosition, SetOverride,
-                 SetKinTransform, SetCartesianTransform, SetCoordinateTransform, PathChecked>;
+                 SetKinTransform, SetCartesianTransform, SetCoordinateTransform, SetDynCoordTransform, PathChecked>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
 std::string WhyNot(const Command& command);
@@ -280,6 +280,8 @@ void describe(Description<SetPosition>&);
 void describe(Description<SetOverride>&);
 void describe(Description<SetKinTransform>&);
 void describe(Description<SetCartesianTransform>&);
+void describe(Enumeration<ExecutionMode>&);
+void describe(Description<SetDynCoordTransform>&);
 void describe(Description<SetCoordinateTransform>&);
 void describe(Description<PathChecked>&);
 

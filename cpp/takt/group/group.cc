@@ -21,14 +21,15 @@ void Fail(const Context& c, ErrorId error, State& s) {
   EndTask(c, FeedbackState::kError, error, s);
   s.hold = false;
   AbortMoves(c, error, s);
-  EndMotion({}, s);
+  EndMotion({}, true, s);
   if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
   Enter(GroupState::kErrorStop, s);
 }
 
 // Nothing is left to go: the members stand still and are let go of.
 void ComeToRest(const Context& c, State& s) {
-  s.ends = s.begun = false;
+  s.ends = s.begun = s.lets_go = false;
+  s.clutches = {};
   s.brake = {};
   s.active = 0;
   s.way_before += s.pace.now.position;
@@ -79,8 +80,18 @@ void MoveOn(const Context& c, State& s) {
     s.begun = false;
     return Fail(c, ErrorId::kUnreachable, s);
   }
+  if (!Rests(s)) return;
+  const bool rides = !s.lets_go && IsOnRide(c, s);
+  if (s.ends && rides) {
+    // On the way from ride to ride nothing could be gone on with.
+    if (IsBetweenRides(c, s))
+      s.lets_go = true;
+    else
+      Sit(c, s);
+    return;
+  }
   // The members get to the last set point after this.
-  if (!Rests(s) || !AllMembers(c, s, axis::AtRest)) return;
+  if (!rides && !AllMembers(c, s, axis::AtRest)) return;
   if (s.ends) return ComeToRest(c, s);
   if (s.interrupted) {
     if (s.task == Task::kInterrupt) EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
@@ -89,7 +100,8 @@ void MoveOn(const Context& c, State& s) {
   if (!IsThrough(c, s)) return;
   if (c.ahead.cut_short) return EndCutShort(c, s);
   while (s.queue.count > 0) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
-  ComeToRest(c, s);
+  s.active = 0;
+  if (!rides) ComeToRest(c, s);  // else it goes along until it is told something else
 }
 
 // The first of what is planned can begin.

@@ -67,7 +67,7 @@ double SquareOn(const Context& c, const State& s, const Stretch& blend) {
     point.limits = blend.limits;
     kinematics::JointMotion motion;
     const double way = blend.segment.length * i / kBlendPlaces;
-    if (SlopesOn(c, s, blend, way, near, point.slopes, motion) != kinematics::Reason::kNone) return -1;
+    if (SlopesOn(c, s, blend, way, near, point, motion) != kinematics::Reason::kNone) return -1;
     near = motion.position;
     square = std::min(square, trajectory::SquareAt(point, c.ahead.window.limits(), 1));
   }
@@ -167,12 +167,12 @@ void Append(LookAhead& ahead, Stretch stretch) {
 
 // What a corner without a blend allows.
 bool Passes(const Context& c, const State& s, const Stretch& before, const Stretch& after) {
-  trajectory::PathSlopes ends, begins;
+  trajectory::PathPoint ends, begins;
   kinematics::JointMotion motion;
   if (before.joints != after.joints) return false;
   if (SlopesOn(c, s, before, before.to, c.ahead.end_joints, ends, motion) != kinematics::Reason::kNone) return false;
   if (SlopesOn(c, s, after, 0, c.ahead.end_joints, begins, motion) != kinematics::Reason::kNone) return false;
-  const double square = trajectory::JointSquare(ends, begins, c.ahead.window.limits(), c.cycle.period_s);
+  const double square = trajectory::JointSquare(ends.slopes, begins.slopes, c.ahead.window.limits(), c.cycle.period_s);
   return square > kLeastJointSpeed * kLeastJointSpeed;
 }
 
@@ -190,6 +190,7 @@ bool MakeRound(const OpenCorner& corner, const path::Segment& second, double to,
 bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, int& work) {
   LookAhead& ahead = c.ahead;
   if (!ahead.corner.open || ahead.count < 2) return false;
+  if (ahead.next.from_ride != ahead.next.to_ride || ahead[ahead.end() - 1].from_ride != ahead.end_ride) return false;
   const std::uint64_t last_one = ahead.end() - 2;
   const path::Segment line = ahead[last_one + 1].segment;
   if (c.params.workspace && line.length > c.params.workspace->margin) return false;
@@ -225,6 +226,7 @@ bool FindDistances(const Context& c, const State& s, const Request& move, std::u
                    const Stretch& after, int& work, CornerBlend& out) {
   if (!Blends(move, element)) return false;
   if (before.joints != after.joints || before.segment.measure != after.segment.measure) return false;
+  if (before.begun && before.from_ride != before.to_ride) return false;  // where it ends is settled
   path::Room room = path::HalfOf(before.segment, after.segment);
   room.first = std::min(room.first, before.to - before.from);
   Stretch& blend = out.stretch;
@@ -232,6 +234,8 @@ bool FindDistances(const Context& c, const State& s, const Request& move, std::u
   blend.joints = after.joints;
   blend.limits = trajectory::Least(before.limits, after.limits);
   blend.build_up_s = before.build_up_s;
+  blend.from_ride = blend.to_ride = before.to_ride;
+  blend.eta_begin = blend.eta_end = before.eta_end;
   // No element of a path is gone faster than it may, on its blends either.
   const double slower = std::min(before.limits.velocity, after.limits.velocity);
   blend.limits.velocity = element > 0 ? slower : BlendVelocity(move, before.limits.velocity, after.limits.velocity);
@@ -308,6 +312,9 @@ int Join(const Context& c, State& s) noexcept {
     ahead.sampling = ahead.end();
   }
   Append(ahead, ahead.next);
+  ahead.end_ride = ahead.next.to_ride;
+  ahead.rides_end = std::max(ahead.rides_end, ahead.end_ride + 1);
+  ahead.end_eta = ahead.next.eta_end;
   ahead.known = true;
   ahead.end_joints = ahead.next_joints;
   ahead.end_tool = ahead.next_tool;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "takt/group/request.h"
+#include "takt/kinematics/frames.h"
 #include "takt/path/segment.h"
 #include "takt/trajectory/path_rehearsal.h"
 #include "takt/trajectory/path_sampling.h"
@@ -14,10 +15,20 @@
 
 namespace takt::group {
 
+using kinematics::Frame;
+
 inline constexpr std::size_t kStretches = 512;
 inline constexpr std::size_t kNodes = 4096;
+inline constexpr std::size_t kRides = 16;
 
-// A piece of path in the MCS.
+// What a path is carried by from some place on (rides.h).
+struct Ride {
+  Cargo cargo;
+  Frame reference_inverse;  // of where it lies in the still world
+  bool displaces = false;   // the still world is not the MCS there
+};
+
+// A piece of path in the still world.
 struct Stretch {
   path::Segment segment;
   double from = 0;         // of the segment ...
@@ -29,6 +40,9 @@ struct Stretch {
   bool begun = false;      // its first node is there
   trajectory::AlongPath limits;
   double build_up_s = 0;  // of accelerations, from one stop to the next
+  // Numbers of the rides on which it begins and ends; all along it goes over from the one to the other.
+  std::uint64_t from_ride = 0, to_ride = 0;
+  double eta_begin = 0, eta_end = 0;  // s from the start of the engine, expected when it was planned
 
   double end() const noexcept { return begin + (to - from); }
 };
@@ -55,6 +69,11 @@ struct LookAhead {
   std::uint64_t count = 0;
 
   OpenCorner corner;
+  std::array<Ride, kRides> rides{};  // a ring
+  std::uint64_t end_ride = 0;        // of the last stretch
+  std::uint64_t rides_end = 1;       // behind the newest one
+  double end_eta = 0;                // when the tool is expected there
+  double next_time_s = 0;            // how long the next stretch is expected to take; 0: not known yet
 
   // The stretch being planned: not yet joined to the others.
   Stretch next;
@@ -65,9 +84,12 @@ struct LookAhead {
   kinematics::Frame end_tool;
   kinematics::Joints next_joints{};
   kinematics::Frame next_tool;
+  double load = 0;  // the largest share of a limit that carriers take, of what was tried
   // Where it ended before a path was tried that is not yet planned.
   kinematics::Joints tried_from{};
   kinematics::Frame tried_from_tool;
+  std::uint64_t tried_from_ride = 0;
+  double tried_from_eta = 0;
   bool known = false;          // whether it is more than where the members stand
   kinematics::Joints near{};   // of the place tried last
   trajectory::PathPoint last;  // the node sampled last

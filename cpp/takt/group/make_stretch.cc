@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/group/rides.h"
+
 namespace takt::group {
 
 namespace {
@@ -11,6 +13,10 @@ namespace {
 constexpr double kDegrees = 180 / std::numbers::pi;
 // Faster and stronger than anything: what has no limit along the way has those of the axes.
 constexpr double kUnlimited = 1e12;
+// What a belt's speed may change without the limits being exceeded.
+constexpr double kBeltChange = 1.1;
+constexpr double kMostReserve = 0.9;  // of a limit
+constexpr int kReserveRounds = 3;
 
 bool Given(double number) {
   return !std::isnan(number);
@@ -135,61 +141,122 @@ ErrorId AlongPath(const Context& c, const Request& move, std::uint32_t element, 
   return AlongTool(c, one, system * kinematics::ToFrame(to), auxiliaries, arc ? &circle : nullptr, ahead, s);
 }
 
+// As fast as the axes can.
+ErrorId Straight(const Context& c, const Request& move, const Frame& to, const path::Auxiliaries& auxiliaries,
+                 LookAhead& ahead, State& s) {
+  Request one = move;
+  if (move.kind == MoveKind::kDirect) one.limits = {kUnlimited, kUnlimited, kUnlimited, kUnlimited};
+  return AlongTool(c, one, to, auxiliaries, nullptr, ahead, s);
+}
+
+// The coordinate system of a move in the still world; the ride that leads there.
+Frame StillFrameOf(const Context& c, const Request& move, LookAhead& ahead) {
+  const Cargo& cargo = move.cargo;
+  const Ride& end = ahead.rides[ahead.end_ride % kRides];
+  Stretch& stretch = ahead.next;
+  Frame frame = kinematics::ToFrame(move.frame);
+  if (cargo.carrier == 0 && !end.displaces) return frame;
+  if (cargo.carrier != 0) frame = Frame::Identity();
+  if (cargo == end.cargo) return ReferenceOf(end) * frame;
+  // Where it will be when the tool gets there depends on how long that takes, and the other way round.
+  double time = ahead.next_time_s;
+  if (!(time > 0)) {
+    const Frame from = DisplacementOf(c, end, 0).GetFrame() * ahead.end_tool;
+    const Frame now = cargo.carrier != 0 ? PlaceOf(c, cargo).GetFrame() : frame;
+    time = TimeFor(c, (now.p - from.p).Norm(), move.limits);
+  }
+  stretch.to_ride = RideTo(c, cargo, std::max(0.0, ahead.end_eta + time - Now(c)));
+  return ReferenceOf(ahead.rides[stretch.to_ride % kRides]) * frame;
+}
+
+// From a ride to where the axes stand by themselves: straight, for all axes to come to rest on the way would be to fall
+// off the ride.
+ErrorId OffRide(const Context& c, const Request& move, const kinematics::Joints& to, LookAhead& ahead, State& s) {
+  Frame tool;
+  s.reason = ToolAt(c, to, tool);
+  if (s.reason != kinematics::Reason::kNone) return ErrorId::kUnreachable;
+  Request there = move;
+  there.frame = {};
+  there.cargo = {};
+  const Frame still = StillFrameOf(c, there, ahead);
+  return Straight(c, move, still * tool, Behind(to, c.kinematics->count), ahead, s);
+}
+
 }  // namespace
 
 ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element, LookAhead& ahead, State& s) noexcept {
-  const bool of_axes = move.system == CoordinateSystem::kAcs;
-  if (of_axes) {
+  const bool rides = Moves(ahead.rides[ahead.end_ride % kRides]);
+  Stretch& stretch = ahead.next;
+  stretch.from_ride = stretch.to_ride = ahead.end_ride;
+  if (move.system == CoordinateSystem::kAcs) {
     if (move.kind == MoveKind::kCircular || move.kind == MoveKind::kPath) return ErrorId::kParameter;
     if (Any(move, 0, kToolNumbers)) return ErrorId::kParameter;
-    return AlongJoints(move, JointsOf(move, ahead.end_joints), ahead, s);
+    const kinematics::Joints to = JointsOf(move, ahead.end_joints);
+    return rides ? OffRide(c, move, to, ahead, s) : AlongJoints(move, to, ahead, s);
   }
   if (!HasTool(c, s)) return ErrorId::kState;
   const std::size_t count = c.kinematics->count;
   if (Any(move, kToolNumbers, kToolNumbers + count)) return ErrorId::kParameter;
-  const Frame system = kinematics::ToFrame(move.frame);
+  const Frame system = StillFrameOf(c, move, ahead);
   if (move.kind == MoveKind::kPath) return AlongPath(c, move, element, system, ahead, s);
   const Frame to = system * kinematics::ToFrame(PoseOf(move, kinematics::ToPose(system.Inverse() * ahead.end_tool)));
   const kinematics::Joints joints = JointsOf(move, ahead.end_joints);
-  if (move.kind == MoveKind::kDirect) {
+  // Onto what moves, and off it, the tool goes straight: where the axes are to be in the end is not known.
+  if (move.kind == MoveKind::kDirect && !IsCarried(ahead, stretch)) {
     kinematics::Joints target = joints;
     s.reason = JointsAt(c, to, joints, target);
     if (s.reason == kinematics::Reason::kNone) return AlongJoints(move, target, ahead, s);
     return s.reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
   }
   const path::Circle circle = InBase(system, move.circle, ahead.end_tool.p, move.relative);
+  if (move.kind == MoveKind::kDirect) return Straight(c, move, to, Behind(joints, count), ahead, s);
   return AlongTool(c, move, to, Behind(joints, count), move.kind == MoveKind::kCircular ? &circle : nullptr, ahead, s);
 }
 
 kinematics::Reason AxesOn(const Context& c, const State& s, const Stretch& stretch, double way,
                           const kinematics::Joints& near, kinematics::JointMotion& motion) noexcept {
-  path::AuxiliaryMotion along = path::AuxiliariesAt(stretch.segment, way);
   if (stretch.joints) {
-    motion = along;
-  } else {
-    const path::MovingFrame tool = path::At(stretch.segment, way);
-    const path::MovingFrame flange = tool * c.mounting.tool_inverse;
-    const kinematics::Reason reason = kinematics::Inverse(*c.kinematics, flange, {}, near, motion);
-    if (reason != kinematics::Reason::kNone) return reason;
-    for (std::size_t k = c.kinematics->count; k < kMaxAxes; ++k) {
-      const std::size_t i = k - c.kinematics->count;
-      motion.position[k] = along.position[i];
-      motion.velocity[k] = along.velocity[i];
-      motion.acceleration[k] = along.acceleration[i];
-    }
+    motion = path::AuxiliariesAt(stretch.segment, way);
+    return WithinRanges(c, s, motion.position) ? kinematics::Reason::kNone : kinematics::Reason::kAxisLimit;
+  }
+  const KinematicState along = {way, 1, 0};
+  const bool carried = IsCarried(c.ahead, stretch);
+  const path::MovingFrame tool = carried ? ToolThen(c, stretch, along, true) : path::At(stretch.segment, way);
+  return AxesFor(c, s, stretch, tool, along, near, motion);
+}
+
+kinematics::Reason AxesFor(const Context& c, const State& s, const Stretch& stretch, const path::MovingFrame& tool,
+                           const KinematicState& along, const kinematics::Joints& near,
+                           kinematics::JointMotion& motion) noexcept {
+  const path::MovingFrame flange = tool * c.mounting.tool_inverse;
+  const kinematics::Reason reason = kinematics::Inverse(*c.kinematics, flange, {}, near, motion);
+  if (reason != kinematics::Reason::kNone) return reason;
+  const path::AuxiliaryMotion behind = path::AuxiliariesAt(stretch.segment, along.position);
+  for (std::size_t k = c.kinematics->count; k < kMaxAxes; ++k) {
+    const std::size_t i = k - c.kinematics->count;
+    const KinematicState at =
+        trajectory::AlongWay({behind.position[i], behind.velocity[i], behind.acceleration[i]}, along);
+    motion.position[k] = at.position;
+    motion.velocity[k] = at.velocity;
+    motion.acceleration[k] = at.acceleration;
   }
   return WithinRanges(c, s, motion.position) ? kinematics::Reason::kNone : kinematics::Reason::kAxisLimit;
 }
 
-kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& stretch, double way,
-                            const kinematics::Joints& near, trajectory::PathSlopes& slopes,
-                            kinematics::JointMotion& motion) noexcept {
-  const kinematics::Reason reason = AxesOn(c, s, stretch, way, near, motion);
-  if (reason != kinematics::Reason::kNone) return reason;
+namespace {
+
+trajectory::PathSlopes SlopesOf(const kinematics::JointMotion& motion) {
+  trajectory::PathSlopes slopes;
   std::copy(motion.velocity.begin(), motion.velocity.end(), slopes.first.begin());
   std::copy(motion.acceleration.begin(), motion.acceleration.end(), slopes.second.begin());
-  if (stretch.joints || c.ahead.window.limits().count <= kMaxAxes) return reason;
-  const path::MovingFrame tool = path::At(stretch.segment, way);
+  return slopes;
+}
+
+// Axes, then the tool along and about X, Y and Z of the world.
+trajectory::PathSlopes SlopesOf(const Context& c, const kinematics::JointMotion& motion,
+                                const path::MovingFrame& tool) {
+  trajectory::PathSlopes slopes = SlopesOf(motion);
+  if (c.ahead.window.limits().count <= kMaxAxes) return slopes;
   const KDL::Rotation& world = c.mounting.base.M;
   const std::array<KDL::Vector, 4> of_tool = {world * tool.p.v, world * tool.p.dv, world * tool.M.w * kDegrees,
                                               world * tool.M.dw * kDegrees};
@@ -200,6 +267,55 @@ kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& str
     slopes.first[k + 3] = of_tool[2](i);
     slopes.second[k + 3] = of_tool[3](i);
   }
+  return slopes;
+}
+
+// What is left of the limits: carriers take their part, q = q_s v + q_t, and in the accelerations 2 q_st v + q_tt
+// besides what the path asks for.
+void Reserve(const Context& c, const trajectory::PathSlopes& moving, const trajectory::PathSlopes& resting,
+             trajectory::PathPoint& point) {
+  const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
+  point.left = 1;
+  for (int round = 0; round < kReserveRounds; ++round) {
+    const double speed = std::sqrt(trajectory::SquareAt(point, limits, 1));
+    double taken = 0;
+    for (std::size_t k = 0; k < limits.count; ++k) {
+      const double cross = 0.5 * (moving.second[k] - point.slopes.second[k] - resting.second[k]);
+      const double velocity = kBeltChange * std::abs(resting.first[k]);
+      const double acceleration = kBeltChange * (2 * std::abs(cross) * speed + std::abs(resting.second[k]));
+      taken = std::max({taken, velocity / limits.of[k].velocity, acceleration / limits.of[k].acceleration});
+      c.ahead.load = std::max(c.ahead.load, velocity / limits.of[k].velocity);
+    }
+    point.left = 1 - std::min(taken, kMostReserve);
+  }
+}
+
+}  // namespace
+
+kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& stretch, double way,
+                            const kinematics::Joints& near, trajectory::PathPoint& point,
+                            kinematics::JointMotion& motion) noexcept {
+  kinematics::Reason reason = AxesOn(c, s, stretch, way, near, motion);
+  if (reason != kinematics::Reason::kNone) return reason;
+  point.left = 1;
+  if (stretch.joints) {
+    point.slopes = SlopesOf(motion);
+    return reason;
+  }
+  const bool carried = IsCarried(c.ahead, stretch);
+  const KinematicState along = {way, 1, 0}, resting = {way, 0, 0};
+  point.slopes = SlopesOf(c, motion, carried ? ToolThen(c, stretch, along, true) : path::At(stretch.segment, way));
+  if (!carried) return reason;
+  std::array<trajectory::PathSlopes, 2> with;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const KinematicState& one = i == 0 ? along : resting;
+    const path::MovingFrame tool = ToolThen(c, stretch, one, false);
+    kinematics::JointMotion moved;
+    reason = AxesFor(c, s, stretch, tool, one, motion.position, moved);
+    if (reason != kinematics::Reason::kNone) return reason;
+    with[i] = SlopesOf(c, moved, tool);
+  }
+  Reserve(c, with[0], with[1], point);
   return reason;
 }
 

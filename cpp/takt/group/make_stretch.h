@@ -8,9 +8,14 @@ namespace takt::group {
 // Fills `ahead.next` from where `ahead` ends. An error: there is no such path (State::problem and reason say why).
 ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element, LookAhead& ahead, State& s) noexcept;
 
-// Slopes of all coordinates of LimitsOf, and the axes.
+// The axes for a tool on a stretch that moves `along` its segment.
+kinematics::Reason AxesFor(const Context& c, const State& s, const Stretch& stretch, const path::MovingFrame& tool,
+                           const KinematicState& along, const kinematics::Joints& near,
+                           kinematics::JointMotion& motion) noexcept;
+
+// Slopes of all coordinates of LimitsOf and what is left of their limits, and the axes.
 kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& stretch, double way,
-                            const kinematics::Joints& near, trajectory::PathSlopes& slopes,
+                            const kinematics::Joints& near, trajectory::PathPoint& point,
                             kinematics::JointMotion& motion) noexcept;
 
 }  // namespace takt::group

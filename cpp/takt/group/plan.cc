@@ -7,6 +7,8 @@
 #include "takt/group/join.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
+#include "takt/group/rides.h"
+#include "takt/path/make.h"
 
 namespace takt::group {
 
@@ -32,6 +34,9 @@ constexpr double kPlaceWay = 8;     // mm between two places at which a path is 
 constexpr double kLeastTry = 1e-3;  // where it is uneven
 constexpr double kUneven = 0.25;    // mm or deg
 constexpr double kUnevenShare = 0.1;
+constexpr double kMostLoad = 0.8;      // share of a limit that carriers may take
+constexpr double kLatency_s = 0.004;   // from planning to motion
+constexpr double kStraightEnough = 1;  // mm that a target moves while the tool is early or late
 
 // `least` of them.
 int PlacesOf(const Stretch& stretch, int least) {
@@ -67,9 +72,15 @@ void NextMove(State& s) {
   BeginAgain(false, s);
 }
 
+void GoBackToTrial(LookAhead& ahead) {
+  ahead.end_joints = ahead.tried_from;
+  ahead.end_tool = ahead.tried_from_tool;
+  ahead.end_ride = ahead.tried_from_ride;
+  ahead.end_eta = ahead.tried_from_eta;
+}
+
 void EndTrial(const Context& c, State& s) {
-  c.ahead.end_joints = c.ahead.tried_from;
-  c.ahead.end_tool = c.ahead.tried_from_tool;
+  GoBackToTrial(c.ahead);
   BeginAgain(true, s);
   if (HasWorkspace(c, s)) Ask(c, s);
 }
@@ -102,13 +113,12 @@ void Refuse(const Context& c, ErrorId error, State& s) {
     AbortBehind(c, s.planning.move, s);
     return NextMove(s);
   }
-  if (Tries(s)) {
-    c.ahead.end_joints = c.ahead.tried_from;
-    c.ahead.end_tool = c.ahead.tried_from_tool;
-  }
+  if (Tries(s)) GoBackToTrial(c.ahead);
   RefuseFrom(c, s.planning.move, error, s.blocked_element, s);
   BeginAgain(false, s);
 }
+
+void BeginStretch(const Context& c, double time_s, State& s);
 
 void Begin(const Context& c, State& s) {
   s.reason = kinematics::Reason::kNone;
@@ -116,17 +126,28 @@ void Begin(const Context& c, State& s) {
   s.blocked_at = 0;
   s.blocked_element = 0;
   s.answer = {};
-  const Request& move = MoveAt(s, s.planning.move);
   if (s.planning.element == 0) {
     if (!c.ahead.known) {
       const End end = Present(c, s);
       c.ahead.end_joints = end.joints;
       c.ahead.end_tool = end.tool;
     }
+    if (!s.begun || trajectory::Stands(s.pace) || !c.ahead.known) c.ahead.end_eta = 0;
+    c.ahead.end_eta = std::max(c.ahead.end_eta, Now(c) + kLatency_s);
     c.ahead.tried_from = c.ahead.end_joints;
     c.ahead.tried_from_tool = c.ahead.end_tool;
+    c.ahead.tried_from_ride = c.ahead.end_ride;
+    c.ahead.tried_from_eta = c.ahead.end_eta;
   }
+  BeginStretch(c, 0, s);
+}
+
+// With how long it is expected to take, once that is known.
+void BeginStretch(const Context& c, double time_s, State& s) {
+  const Request& move = MoveAt(s, s.planning.move);
   c.ahead.next = {};
+  c.ahead.next_time_s = time_s;
+  c.ahead.load = 0;
   c.ahead.next.move = s.planning.move;
   const ErrorId error = MakeStretch(c, move, s.planning.element, c.ahead, s);
   if (s.problem == path::Problem::kLengthZero) {  // it is there already
@@ -137,6 +158,10 @@ void Begin(const Context& c, State& s) {
     s.blocked_element = ElementOf(s);
     return Refuse(c, error, s);
   }
+  Stretch& next = c.ahead.next;
+  next.to = next.segment.length;
+  next.eta_begin = c.ahead.end_eta;
+  next.eta_end = next.eta_begin + (time_s > 0 ? time_s : TimeFor(c, next.segment.length, next.limits));
   c.ahead.build_up = {};
   c.ahead.near = c.ahead.end_joints;
   s.planning.verifying = false;
@@ -156,11 +181,51 @@ bool GoesEvenly(const kinematics::Joints& before, const trajectory::PathSlopes& 
   return true;
 }
 
+// Whether what is tried goes to where its target will be: else it begins once more.
+bool Settled(const Context& c, State& s) {
+  Stretch& next = c.ahead.next;
+  if (c.ahead.load > kMostLoad) {
+    s.blocked_element = ElementOf(s);
+    Refuse(c, ErrorId::kTooFast, s);
+    return false;
+  }
+  const trajectory::AlongPath limits = trajectory::Least(next.limits, c.ahead.build_up.Mean());
+  const double time = TimeFor(c, next.segment.length, limits);
+  const double late = std::abs(time - (next.eta_end - next.eta_begin));
+  next.eta_end = next.eta_begin + time;
+  if (c.ahead.next_time_s > 0 || next.from_ride == next.to_ride) return true;
+  const Ride& ride = c.ahead.rides[next.to_ride % kRides];
+  const Ride& before = c.ahead.rides[next.from_ride % kRides];
+  const auto speed = [&](const Ride& one) { return DisplacementOf(c, one, 0).p.v.Norm(); };
+  if (late * (speed(ride) + speed(before)) < kStraightEnough) return true;
+  BeginStretch(c, time, s);
+  return false;
+}
+
+// Where the tool is then in the still world.
+void TakeNextTool(const Context& c, const State& s) {
+  LookAhead& ahead = c.ahead;
+  if (!HasTool(c, s)) return;
+  if (IsCarried(ahead, ahead.next)) {
+    ahead.next_tool = path::PointAt(ahead.next.segment, ahead.next.segment.length).frame;
+    return;
+  }
+  ToolAt(c, ahead.next_joints, ahead.next_tool);
+  const Ride& ride = ahead.rides[ahead.next.to_ride % kRides];
+  if (ride.displaces) ahead.next_tool = ReferenceOf(ride) * ahead.next_tool;
+}
+
+// A path that begins on what moves cannot be looked at from outside: where it will be is not known there.
+bool CanAsk(const Context& c) {
+  return !c.ahead.rides[c.ahead.next.from_ride % kRides].displaces;
+}
+
 // Tries places all along, before anything moves.
 void Verify(const Context& c, int& budget, State& s) {
   const Stretch& stretch = c.ahead.next;
   const double length = stretch.segment.length;
   Planning& p = s.planning;
+  const bool carried = IsCarried(c.ahead, stretch);
   // Of the many elements of a path one after the other is tried: theirs are near enough.
   const double full = length / PlacesOf(stretch, Tries(s) ? 1 : kLeastPlaces);
   for (; budget > 0 && p.verified < length; --budget) {
@@ -169,8 +234,8 @@ void Verify(const Context& c, int& budget, State& s) {
     trajectory::PathPoint point;
     point.limits = stretch.limits;
     kinematics::JointMotion motion;
-    kinematics::Reason reason = SlopesOn(c, s, stretch, to, c.ahead.near, point.slopes, motion);
-    const bool even = !p.verifying || reason != kinematics::Reason::kNone ||
+    kinematics::Reason reason = SlopesOn(c, s, stretch, to, c.ahead.near, point, motion);
+    const bool even = !p.verifying || reason != kinematics::Reason::kNone || carried ||
                       GoesEvenly(c.ahead.near, c.ahead.tried, motion.position, point.slopes, to - p.verified);
     if (!even && p.step > kLeastTry) {
       p.step *= 0.5;
@@ -192,12 +257,15 @@ void Verify(const Context& c, int& budget, State& s) {
   }
   if (p.verified < length) return;
   c.ahead.next_joints = c.ahead.near;
-  if (HasTool(c, s)) ToolAt(c, c.ahead.next_joints, c.ahead.next_tool);
+  if (carried && !Settled(c, s)) return;
+  TakeNextTool(c, s);
   if (Tries(s)) {
     c.ahead.end_joints = c.ahead.next_joints;
     c.ahead.end_tool = c.ahead.next_tool;
+    c.ahead.end_ride = c.ahead.next.to_ride;
+    c.ahead.end_eta = c.ahead.next.eta_end;
     NextElement(c, s);
-  } else if (!IsPath(s) && HasWorkspace(c, s)) {
+  } else if (!IsPath(s) && HasWorkspace(c, s) && CanAsk(c)) {
     Ask(c, s);
   } else {
     s.planning.stage = Stage::kJoin;
@@ -225,7 +293,7 @@ bool SampleBegin(const Context& c, const Stretch& stretch, State& s) {
   point.s = stretch.begin;
   point.limits = stretch.limits;
   kinematics::JointMotion motion;
-  if (SlopesOn(c, s, stretch, stretch.from, c.ahead.last_joints, point.slopes, motion) != kinematics::Reason::kNone) {
+  if (SlopesOn(c, s, stretch, stretch.from, c.ahead.last_joints, point, motion) != kinematics::Reason::kNone) {
     return false;
   }
   c.ahead.last_joints = motion.position;
@@ -240,10 +308,11 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   kinematics::Reason reason = kinematics::Reason::kNone;
   double failed_at = 0;
   kinematics::JointMotion motion, before;  // of the last two places: the node, then the middle on the way to it
-  const auto slopes_at = [&](double at, trajectory::PathSlopes& slopes) {
-    --budget;
+  const bool carried = IsCarried(c.ahead, stretch);
+  const auto slopes_at = [&](double at, trajectory::PathPoint& point) {
+    budget -= carried ? 3 : 1;
     before = motion;
-    reason = SlopesOn(c, s, stretch, stretch.from + (at - stretch.begin), c.ahead.last_joints, slopes, motion);
+    reason = SlopesOn(c, s, stretch, stretch.from + (at - stretch.begin), c.ahead.last_joints, point, motion);
     failed_at = at;
     return reason == kinematics::Reason::kNone;
   };
@@ -260,7 +329,7 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
       return false;
     }
     const double length = next.s - c.ahead.last.s;
-    even = length <= kLeastTry ||
+    even = length <= kLeastTry || carried ||
            GoesEvenly(c.ahead.last_joints, c.ahead.last.slopes, before.position, next.slopes, length);
     end = c.ahead.last.s + 0.5 * length;
   }
@@ -287,8 +356,13 @@ bool GoesFreely(const Context& c, const State& s) {
 // wait for that as long as there is time.
 std::uint64_t SampledTo(const Context& c, const State& s) {
   const LookAhead& ahead = c.ahead;
-  if (!ahead.corner.open || ahead.cut_short || ahead.count < 2) return ahead.end();
   const bool more = s.planning.move < s.done + s.queue.count;
+  if (ahead.cut_short || ahead.count == 0) return ahead.end();
+  // How a stretch goes over from ride to ride depends on where it ends.
+  const Stretch& last = ahead[ahead.end() - 1];
+  const bool open = last.from_ride != last.to_ride && !last.begun;
+  if (open && more && (s.planning.element > 0 || MoveAt(s, s.planning.move).blends())) return ahead.end() - 1;
+  if (!ahead.corner.open || ahead.count < 2) return ahead.end();
   const bool waits = more ? s.planning.element > 0 || MoveAt(s, s.planning.move).blends() : s.begun && GoesFreely(c, s);
   return waits ? ahead.end() - 2 : ahead.end();
 }
@@ -330,6 +404,7 @@ void Sweep(const Context& c, State& s) {
 }
 
 bool HasRoom(const LookAhead& ahead) {
+  if (ahead.count > 0 && ahead.rides_end - ahead[ahead.first].from_ride + 2 > kRides) return false;
   return ahead.count + 2 < ahead.stretches.size() && ahead.window.room() > kNodes / 4;
 }
 
@@ -410,6 +485,8 @@ void ForgetPlan(const Context& c, State& s) noexcept {
   c.ahead.sampling = c.ahead.first;
   c.ahead.count = 0;
   c.ahead.known = c.ahead.cut_short = c.ahead.corner.open = false;
+  c.ahead.end_ride = c.ahead.rides_end++;
+  c.ahead.rides[c.ahead.end_ride % kRides] = {};
   s.planning.move = s.done;
   BeginAgain(false, s);
 }

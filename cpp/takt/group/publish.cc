@@ -2,6 +2,7 @@
 #include "takt/group/group.h"
 #include "takt/group/members.h"
 #include "takt/group/queue.h"
+#include "takt/group/rides.h"
 #include "takt/group/systems.h"
 
 namespace takt::group {
@@ -82,7 +83,10 @@ void Publish(const Context& c, const State& s, Outputs& out) noexcept {
   std::uint32_t* const members[] = {&out.member1, &out.member2, &out.member3, &out.member4,
                                     &out.member5, &out.member6, &out.member7, &out.member8};
   for (std::size_t k = 0; k < kMaxAxes; ++k) *members[k] = s.members[k];
-  for (std::size_t k = 0; k < kProductSystems; ++k) out.*kPublishedSystems[k] = s.product_systems[k];
+  for (std::size_t k = 0; k < kProductSystems; ++k) {
+    const bool moves = s.cargoes[k].carrier != 0;
+    out.*kPublishedSystems[k] = moves ? kinematics::ToPose(PlaceOf(c, s.cargoes[k]).GetFrame()) : s.product_systems[k];
+  }
   out.kinematics_on = HasTool(c, s);
   out.in_position = s.state == GroupState::kStandby && s.queue.count == 0;
   out.interrupted = s.interrupted;

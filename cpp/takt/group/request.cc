@@ -13,6 +13,15 @@ void describe(Enumeration<MoveKind>& e) {
   e.value(MoveKind::kPath, "path", "Along a path of the machine file.");
 }
 
+void describe(Description<Cargo>& d) {
+  d.about("Something that lies on a carrier.");
+  d.internal<&Cargo::carrier>("Its number; 0: none.");
+  d.internal<&Cargo::from>("Travel at which it lay at `on`.");
+  d.internal<&Cargo::on>("Of the origin.");
+  d.internal<&Cargo::has_origin>("Another origin than that of the carrier.");
+  d.internal<&Cargo::origin>("In the MCS.");
+}
+
 void describe(Description<Request>& d) {
   using R = Request;
   d.about("A checked move of a group.");
@@ -22,6 +31,7 @@ void describe(Description<Request>& d) {
   d.internal<&R::system>("Coordinate system.");
   d.internal<&R::pcs>("Which product coordinate system, from 0.");
   d.internal<&R::frame>("Where it was then.");
+  d.internal<&R::cargo>("Or what it is that of, if that moves.");
   d.internal<&R::to>("Numbers given, of the tool and of the axes; NaN: none.");
   d.internal<&R::circle>("Of circular moves.");
   d.internal<&R::path>("Index of the path.");

@@ -16,6 +16,17 @@ namespace takt::group {
 
 enum class MoveKind : std::uint8_t { kNone, kLinear, kCircular, kDirect, kPath };
 
+// Something that lies on a carrier: on + the carrier's travel since `from`.
+struct Cargo {
+  std::uint32_t carrier = 0;  // its number; 0: none, it stands in the MCS
+  double from = 0;            // travel at which it lay at `on`
+  kinematics::Pose on;        // of the carrier's origin
+  bool has_origin = false;    // another one than that of the carrier itself:
+  kinematics::Pose origin;    // in the MCS
+
+  bool operator==(const Cargo&) const = default;
+};
+
 // Six numbers of the tool, then those of the axes; NaN: not given.
 inline constexpr std::size_t kToolNumbers = 6;
 using Numbers = std::array<double, kToolNumbers + kMaxAxes>;
@@ -27,6 +38,7 @@ struct Request {
   CoordinateSystem system = CoordinateSystem::kMcs;
   std::uint32_t pcs = 0;   // from 0
   kinematics::Pose frame;  // where that coordinate system was in the MCS when the command was given
+  Cargo cargo;             // or what it is that of, if that moves
   Numbers to{};
   path::Circle circle;
   std::uint32_t path = 0;    // index of the machine's
@@ -44,6 +56,7 @@ struct Request {
 };
 
 void describe(Enumeration<MoveKind>&);
+void describe(Description<Cargo>&);
 void describe(Description<Request>&);
 
 }  // namespace takt::group

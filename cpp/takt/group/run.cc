@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/axis/guidance.h"
+#include "takt/group/clutch.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
 #include "takt/group/queue.h"
@@ -30,12 +31,31 @@ void Demand(const Context& c, const kinematics::JointMotion& motion, State& s) {
   }
 }
 
+bool FollowCarried(const Context& c, const Stretch& stretch, double way, State& s) {
+  const KinematicState along = {way, s.pace.now.velocity, s.pace.now.acceleration};
+  kinematics::JointMotion motion;
+  const MovingFrame tool = ToolNow(c, s, stretch, along);
+  if (const auto reason = AxesFor(c, s, stretch, tool, along, s.joints, motion); reason != kinematics::Reason::kNone) {
+    s.reason = reason;
+    return false;
+  }
+  Demand(c, motion, s);
+  // Where it could not be braked any more it is braked now.
+  if (!s.lets_go && !CanLetGo(c, stretch, way, s)) {
+    AbortMoves(c, ErrorId::kUnreachable, s);
+    EndMotion({}, true, s);
+  }
+  return true;
+}
+
 bool Follow(const Context& c, State& s) {
   const KinematicState& now = s.pace.now;
   const Stretch* stretch = StretchAt(c.ahead, now.position);
   if (!stretch) return true;
-  kinematics::JointMotion by_way;
+  StepClutches(c, *stretch, s);
   const double way = std::clamp(stretch->from + now.position - stretch->begin, stretch->from, stretch->to);
+  if (IsCarried(c.ahead, *stretch)) return FollowCarried(c, *stretch, way, s);
+  kinematics::JointMotion by_way;
   if (const auto reason = AxesOn(c, s, *stretch, way, s.joints, by_way); reason != kinematics::Reason::kNone) {
     s.reason = reason;
     return false;
@@ -62,16 +82,21 @@ void TellMoves(const Context& c, State& s) {
   }
 }
 
+double Braked(const Context& c, const trajectory::PathNode& node, const Brake& brake, const State& s) {
+  double deceleration = brake.deceleration > 0 ? brake.deceleration : node.bounds.deceleration;
+  // What takes no longer to build up, and to be taken back, than all accelerations of this path.
+  if (brake.jerk > 0) deceleration = std::min(deceleration, brake.jerk * node.build_up_s);
+  return std::max(0.0, s.pace.raw.velocity - deceleration * c.cycle.period_s);
+}
+
 double WishOf(const Context& c, State& s) {
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   if (!s.ends && !s.interrupted) {
+    if (Slips(s)) return Braked(c, node, {}, s);
     if (Follows(c, s)) return WishOfMaster(c, s);
     return s.velocity_factor < 1 ? s.velocity_factor * node.at.limits.velocity : trajectory::kFullSpeed;
   }
-  double deceleration = s.brake.deceleration > 0 ? s.brake.deceleration : node.bounds.deceleration;
-  // What takes no longer to build up, and to be taken back, than all accelerations of this path.
-  if (s.brake.jerk > 0) deceleration = std::min(deceleration, s.brake.jerk * node.build_up_s);
-  return std::max(0.0, s.pace.raw.velocity - deceleration * c.cycle.period_s);
+  return Braked(c, node, s.brake, s);
 }
 
 // What lies behind is forgotten.
@@ -128,11 +153,81 @@ bool Advance(const Context& c, State& s) noexcept {
 }
 
 bool Rests(const State& s) noexcept {
-  return trajectory::Stands(s.pace);
+  return trajectory::Stands(s.pace) && (!s.lets_go || ClutchesStand(s));
 }
 
-void EndMotion(const Brake& brake, State& s) noexcept {
+const Stretch* Here(const Context& c, const State& s) noexcept {
+  const LookAhead& ahead = c.ahead;
+  std::uint64_t i = ahead.first;
+  while (i + 1 < ahead.end() && ahead[i].end() <= s.pace.now.position) ++i;
+  return ahead.count > 0 ? &ahead[i] : nullptr;
+}
+
+bool IsOnRide(const Context& c, const State& s) noexcept {
+  const Stretch* stretch = s.begun ? Here(c, s) : nullptr;
+  if (!stretch || stretch->joints) return false;
+  const double share = ShareAt(*stretch, stretch->from + s.pace.now.position - stretch->begin).position;
+  const auto moves = [&](std::uint64_t ride) { return Moves(c.ahead.rides[ride % kRides]); };
+  return (share < 1 && moves(stretch->from_ride)) || (share > 0 && moves(stretch->to_ride));
+}
+
+bool IsBetweenRides(const Context& c, const State& s) noexcept {
+  const Stretch* stretch = Here(c, s);
+  if (!stretch || stretch->from_ride == stretch->to_ride) return false;
+  const double share = ShareAt(*stretch, stretch->from + s.pace.now.position - stretch->begin).position;
+  return share > 0 && share < 1;
+}
+
+void Sit(const Context& c, State& s) noexcept {
+  LookAhead& ahead = c.ahead;
+  const Stretch* stretch = Here(c, s);
+  const double way = std::clamp(stretch->from + s.pace.now.position - stretch->begin, stretch->from, stretch->to);
+  const std::uint64_t number = ShareAt(*stretch, way).position > 0 ? stretch->to_ride : stretch->from_ride;
+  const Ride ride = ahead.rides[number % kRides];
+  const path::Point place = path::PointAt(stretch->segment, way);
+  const Clutch* found = std::ranges::find_if(s.clutches, [&](const Clutch& k) { return k.used && k.ride == number; });
+  Clutch clutch = found != s.clutches.end() ? *found : Clutch{};
+  s.way_before += s.pace.now.position;
+  ForgetPlan(c, s);
+  SitOn(c, ride, place, s);
+  clutch.ride = ahead.end_ride;
+  s.clutches = {};
+  s.clutches[0] = clutch;
+}
+
+void SitOn(const Context& c, const Ride& ride, const path::Point& place, State& s) noexcept {
+  LookAhead& ahead = c.ahead;
+  ahead.end_ride = ahead.rides_end++;
+  ahead.rides[ahead.end_ride % kRides] = ride;
+  Stretch seat;
+  seat.segment = path::Still(place);
+  seat.from_ride = seat.to_ride = ahead.end_ride;
+  seat.begun = seat.stops = true;
+  seat.move = s.done - 1;
+  seat.build_up_s = c.cycle.period_s;
+  const PathLimits& path = c.params.path;
+  seat.limits = {path.velocity, path.acceleration, path.deceleration.value_or(path.acceleration), path.jerk};
+  ahead.count = 1;
+  ahead[ahead.first] = seat;
+  ahead.sampling = ahead.end();
+  ahead.end_joints = ahead.last_joints = s.joints;
+  ahead.end_tool = place.frame;
+  ahead.known = true;
+  ahead.last = {};
+  ahead.last.limits = seat.limits;
+  ahead.window.SetBuildUp(seat.build_up_s);
+  ahead.window.Append(ahead.last, true);
+  ahead.window.Close();
+  ahead.window.Sweep(1);
+  trajectory::BeginAt(ahead.window, ahead.window.begin(), c.cycle.period_s, s.pace);
+  s.begun = true;
+  s.ends = s.lets_go = false;
+  s.brake = {};
+}
+
+void EndMotion(const Brake& brake, bool lets_go, State& s) noexcept {
   s.ends = true;
+  s.lets_go = lets_go;
   s.interrupted = false;
   s.brake = brake;
 }

@@ -16,6 +16,15 @@ bool Advance(const Context& c, State& s) noexcept;
 bool Rests(const State& s) noexcept;
 
 // Comes to rest on the path, which is then forgotten. mm/s²; 0: as the path says.
-void EndMotion(const Brake& brake, State& s) noexcept;
+void EndMotion(const Brake& brake, bool lets_go, State& s) noexcept;
+
+// Something that moves carries the tool, or takes part in it.
+bool IsOnRide(const Context& c, const State& s) noexcept;
+// It goes over from one ride to another.
+bool IsBetweenRides(const Context& c, const State& s) noexcept;
+// Forgets the path and stays where it is on the ride.
+void Sit(const Context& c, State& s) noexcept;
+// The same on another ride, at a place of its still world.
+void SitOn(const Context& c, const Ride& ride, const path::Point& place, State& s) noexcept;
 
 }  // namespace takt::group

@@ -60,6 +60,18 @@ void describe(Description<MasterState>& d) {
   d.internal<&MasterState::reached>("It was once.");
 }
 
+void describe(Description<Clutch>& d) {
+  d.about("Between a carrier and the tool.");
+  d.internal<&Clutch::used>("The tool is carried.");
+  d.internal<&Clutch::coupled>("It goes with the carrier itself.");
+  d.internal<&Clutch::ride>("Number of the ride.");
+  d.internal<&Clutch::travel>("Of the carrier, as far as the tool is concerned.");
+  d.internal<&Clutch::velocity>("Largest, of the travel.");
+  d.internal<&Clutch::acceleration>("The same.");
+  d.internal<&Clutch::deceleration>("The same.");
+  d.internal<&Clutch::jerk>("The same.");
+}
+
 void describe(Description<State>& d) {
   using S = State;
   d.about("Memory of an axes group.");
@@ -68,6 +80,7 @@ void describe(Description<State>& d) {
   d.internal<&S::members>("Axes, from 1; 0: none.");
   d.internal<&S::kinematics_on>("It has a tool.");
   d.internal<&S::product_systems>("Product coordinate systems in that of the machine.");
+  d.internal<&S::cargoes>("What those lie on that move.");
   d.internal<&S::velocity_factor>("Override.");
   d.internal<&S::acceleration_factor>("Override.");
   d.internal<&S::jerk_factor>("Override.");
@@ -81,6 +94,8 @@ void describe(Description<State>& d) {
   d.internal<&S::interrupted>("Rests on the path.");
   d.internal<&S::ends>("Comes to rest and forgets the path.");
   d.internal<&S::brake>("How strongly.");
+  d.internal<&S::lets_go>("Of what carries it.");
+  d.internal<&S::clutches>("Between carriers and the tool.");
   d.internal<&S::hold>("Stop: until released.");
   d.internal<&S::ticket>("Of stop, halt, interrupt, home or power.");
   d.internal<&S::task>("Which of them.");

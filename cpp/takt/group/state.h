@@ -6,10 +6,12 @@
 
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
+#include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
 #include "takt/group/request.h"
 #include "takt/group/state_table.h"
 #include "takt/kinematics/joints.h"
+#include "takt/trajectory/limits.h"
 #include "takt/trajectory/path_pace.h"
 
 namespace takt::group {
@@ -29,7 +31,7 @@ enum class Stage : std::uint8_t { kIdle, kVerify, kCheck, kJoin, kSample, kSweep
 
 struct Planning {
   Stage stage = Stage::kIdle;
-  std::uint64_t move = 0;      // number of the move that is planned, from 0 since the start
+  std::uint64_t move = 1;      // number of the move that is planned, from 1 since the start
   std::uint32_t element = 0;   // of a path
   bool tried = false;          // all elements of it are good
   bool verifying = false;      // the beginning is good
@@ -38,6 +40,23 @@ struct Planning {
   std::uint64_t question = 0;  // number of the last one about a path
   std::uint64_t nodes = 0;     // so many were made: the window itself is no part of the state
 };
+
+// Between a carrier and the tool: where the carrier's travel is as far as the tool is concerned. The tool gets onto
+// what moves, and off it, along the travel of the carrier alone, within limits.
+struct Clutch {
+  bool used = false;
+  bool coupled = false;    // it is the carrier's own
+  std::uint64_t ride = 0;  // number of the ride
+  KinematicState travel;   // mm or rad
+  // Of the travel.
+  double velocity = 0;
+  double acceleration = 0;
+  double deceleration = 0;
+  double jerk = 0;
+
+  trajectory::Limits limits() const noexcept { return {velocity, acceleration, deceleration, jerk}; }
+};
+inline constexpr std::size_t kClutches = 2;
 
 // What a group is doing besides moves.
 enum class Task : std::uint8_t { kNone, kStop, kHalt, kInterrupt, kHome, kPower };
@@ -73,12 +92,13 @@ struct State {
   std::array<std::uint32_t, kMaxAxes> members{};  // axis + 1 in each place; 0: none
   bool kinematics_on = true;
   std::array<kinematics::Pose, kProductSystems> product_systems{};  // in the MCS
+  std::array<Cargo, kProductSystems> cargoes{};                     // of those that move instead
   double velocity_factor = 1;
   double acceleration_factor = 1;
   double jerk_factor = 1;
 
   Queue queue;             // [first] is the one planned or moved along now
-  std::uint64_t done = 0;  // number of the move at queue.first
+  std::uint64_t done = 1;  // number of the move at queue.first
   Ticket active = 0;       // of the move being gone
   Planning planning;
   trajectory::PathPace pace;
@@ -87,8 +107,10 @@ struct State {
   bool interrupted = false;  // rests, or comes to rest, on the path until it is continued
   bool ends = false;         // comes to rest and forgets what is left of the path
   Brake brake;               // how it brakes then
-  bool hold = false;         // stop: until released
-  Ticket ticket = 0;         // of the task
+  bool lets_go = false;      // of what carries it: the tool comes to rest in the MCS
+  std::array<Clutch, kClutches> clutches{};
+  bool hold = false;  // stop: until released
+  Ticket ticket = 0;  // of the task
   Task task = Task::kNone;
   double lease_s = 0;
   std::uint64_t lease_end_cycle = 0;
@@ -113,6 +135,7 @@ struct State {
 void describe(Description<Queue>&);
 void describe(Enumeration<Stage>&);
 void describe(Description<Planning>&);
+void describe(Description<Clutch>&);
 void describe(Enumeration<Task>&);
 void describe(Description<Brake>&);
 void describe(Description<SyncedAxis>&);

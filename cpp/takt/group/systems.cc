@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "takt/group/rides.h"
+
 namespace takt::group {
 
 Mounting MakeMounting(const GroupParams& params) {
@@ -29,7 +31,8 @@ Frame SystemFrame(const Context& c, const State& s, CoordinateSystem system, std
     case CoordinateSystem::kWcs:
       return c.mounting.base_inverse;
     case CoordinateSystem::kPcs:
-      return kinematics::ToFrame(s.product_systems[std::min<std::size_t>(pcs, kProductSystems - 1)]);
+      if (s.cargoes[pcs].carrier != 0) return PlaceOf(c, s.cargoes[pcs]).GetFrame();
+      return kinematics::ToFrame(s.product_systems[pcs]);
     default:
       return Frame::Identity();
   }

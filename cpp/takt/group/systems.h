@@ -10,8 +10,6 @@
 
 namespace takt::group {
 
-using kinematics::Frame;
-
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
 // Number of members, and of those that the kinematics moves.
@@ -21,6 +19,7 @@ std::size_t InKinematics(const Context& c, const State& s) noexcept;
 bool HasTool(const Context& c, const State& s) noexcept;
 
 // Seen from the MCS; of ACS: the MCS itself.
+// That of a moving PCS: where it is in this cycle.
 Frame SystemFrame(const Context& c, const State& s, CoordinateSystem system, std::uint32_t pcs) noexcept;
 
 // The TCP in the MCS. A reason, and nothing in `tcp`, where the axes cannot be so.

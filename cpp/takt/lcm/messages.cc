@@ -230,6 +230,33 @@ msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine:
   return m;
 }
 
+msgs::belt_state ToMessage(const engine::BeltSnapshot& snapshot, const engine::Machine& machine) {
+  const conveyor::Outputs& o = snapshot.outputs;
+  msgs::belt_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.belts[snapshot.index].name;
+  m.position = o.position;
+  m.velocity = o.velocity;
+  m.acceleration = o.acceleration;
+  m.known = o.known;
+  m.object_count = o.object_count;
+  m.visible_count = o.visible_count;
+  m.taken_count = o.taken_count;
+  m.in_range_count = o.in_range_count;
+  m.last_number = o.last_number;
+  m.lost_count = o.lost_count;
+  m.refused_count = o.refused_count;
+  m.first_number = o.first_number;
+  m.first_kind = o.first_kind;
+  m.first_colour = o.first_colour;
+  m.first_quality = o.first_quality;
+  m.first_place = o.first_place;
+  m.first_pose = ToMessage(o.first_pose);
+  m.first_time_left = o.first_time_left;
+  return m;
+}
+
 msgs::histogram ToMessage(const engine::Histogram& histogram) {
   msgs::histogram m{};
   std::transform(histogram.buckets.begin(), histogram.buckets.end(), m.buckets, Signed);

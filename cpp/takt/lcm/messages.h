@@ -14,6 +14,7 @@
 #include "takt/engine/machine.h"
 #include "takt/engine/snapshot.h"
 #include "takt/msgs/axis_state.hpp"
+#include "takt/msgs/belt_state.hpp"
 #include "takt/msgs/command.hpp"
 #include "takt/msgs/drive_feedback.hpp"
 #include "takt/msgs/drive_setpoint.hpp"
@@ -33,6 +34,7 @@ namespace takt::lcm {
 msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::Machine& machine);
 msgs::flex_cam_state ToMessage(const engine::FlexCamSnapshot& snapshot, const engine::Machine& machine);
 msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine::Machine& machine);
+msgs::belt_state ToMessage(const engine::BeltSnapshot& snapshot, const engine::Machine& machine);
 msgs::histogram ToMessage(const engine::Histogram& histogram);
 msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine::Machine& machine);
 // Client, session and id are left empty.

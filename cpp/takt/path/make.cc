@@ -157,6 +157,14 @@ Problem MakeLine(const Point& from, const Point& to, Segment& out) noexcept {
   return Problem::kNone;
 }
 
+Segment Still(const Point& point) noexcept {
+  Segment segment;
+  segment.length = 1;
+  segment.place[0] = ToTriple(ToVector(point.frame.p));
+  SetEven(segment, point, point);
+  return segment;
+}
+
 Problem MakeArc(const Point& from, const Circle& circle, const Point& to, Segment& out) noexcept {
   if (!Sound(from) || !Sound(to) || !Finite(circle)) return Problem::kNotFinite;
   if (!(circle.turns >= 0) || circle.turns != std::floor(circle.turns) || circle.turns > kMostTurns) {

@@ -15,6 +15,9 @@ namespace takt::path {
 // the way of its auxiliary axes.
 Problem MakeLine(const Point& from, const Point& to, Segment& out) noexcept;
 
+// Where nothing moves: a place as a segment, of which only the beginning is of use.
+Segment Still(const Point& point) noexcept;
+
 // Nearer than this, points are the same.
 inline constexpr double kSame = 1e-6;      // mm
 inline constexpr double kSameTurn = 1e-6;  // deg

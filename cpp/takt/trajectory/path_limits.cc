@@ -66,8 +66,9 @@ double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double s
     const double slope = std::abs(point.slopes.first[k]);
     const double bend = std::abs(point.slopes.second[k]);
     const CoordinateLimits::One& own = limits.of[k];
-    if (slope * slope * square > own.velocity * own.velocity) square = own.velocity * own.velocity / (slope * slope);
-    const double acceleration = share * own.acceleration;
+    const double velocity = point.left * own.velocity;
+    if (slope * slope * square > velocity * velocity) square = velocity * velocity / (slope * slope);
+    const double acceleration = share * point.left * own.acceleration;
     if (bend * square > acceleration) square = acceleration / bend;
   }
   return square;
@@ -79,7 +80,7 @@ Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordi
     double most = CoordinateLimits::kNone;
     for (std::size_t k = 0; k < limits.count; ++k) {
       // The bends' own part is hardly ever largest where the others are: as if at right angles.
-      const double own = (together ? kGentleJerkShare : kJerkShare) * limits.of[k].jerk;
+      const double own = (together ? kGentleJerkShare : kJerkShare) * point.left * limits.of[k].jerk;
       const double bends = std::min(third[k] * v * v * v, (together ? 0.8 : 0.99) * own);
       const double left = together ? own - bends : std::sqrt(own * own - bends * bends);
       const double asked = 3 * std::abs(point.slopes.second[k]) * v + std::abs(point.slopes.first[k]) / build_up_s;
@@ -90,7 +91,7 @@ Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordi
   // Without bends there is nothing to hope for.
   double straight = CoordinateLimits::kNone;
   for (std::size_t k = 0; k < limits.count; ++k) {
-    const double own = kGentleJerkShare * limits.of[k].jerk * build_up_s;
+    const double own = kGentleJerkShare * point.left * limits.of[k].jerk * build_up_s;
     const double slope = std::abs(point.slopes.first[k]);
     if (slope * straight > own) straight = own / slope;
   }

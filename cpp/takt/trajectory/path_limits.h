@@ -49,6 +49,7 @@ struct PathPoint {
   double s = 0;  // along the way
   PathSlopes slopes;
   AlongPath limits;
+  double left = 1;  // of the coordinates' limits: the rest is taken by what moves the path itself
 };
 
 // An acceleration that falls with the square of the speed.

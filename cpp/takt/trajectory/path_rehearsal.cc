@@ -104,6 +104,7 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
   const double length = next.at.s - node.at.s;
   const double x = mean.position - node.at.s;
   const double part = length > 0 ? std::clamp(x / length, 0.0, 1.0) : 0;
+  const double left = std::lerp(node.at.left, next.at.left, part);
   const double jerk = (mean.acceleration - before.acceleration) / period_s;
   PathShares shares;
   for (std::size_t k = 0; k < limits.count; ++k) {
@@ -116,19 +117,20 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
     const double acceleration = first * mean.acceleration + second * mean.velocity * mean.velocity;
     const double total = std::abs(acceleration - here_.accelerations[k]) / period_s;
     here_.accelerations[k] = acceleration;
-    const double over = std::abs(acceleration) / limits.of[k].acceleration;
+    const double over = std::abs(acceleration) / (left * limits.of[k].acceleration);
+    const double most = left * limits.of[k].jerk;
     if (over > 1) {
       shares.square = std::min(shares.square, 1 / over);
       shares.acceleration = std::min(shares.acceleration, 1 / over);
     }
-    if (!(total > limits.of[k].jerk)) continue;
+    if (!(total > most)) continue;
     // What accelerations along the way do to it, and what remains if there were none.
     const double turning = std::abs(first * jerk + 3 * second * mean.velocity * mean.acceleration);
     const double bends = std::max(0.0, total - turning);
-    const double room = std::max(limits.of[k].jerk - bends, (1 - kBendShare) * limits.of[k].jerk);
+    const double room = std::max(most - bends, (1 - kBendShare) * most);
     if (turning > room) shares.strength = std::min(shares.strength, room / turning);
-    if (bends > kBendShare * limits.of[k].jerk) {
-      const double speed = std::cbrt(kBendShare * limits.of[k].jerk / bends);
+    if (bends > kBendShare * most) {
+      const double speed = std::cbrt(kBendShare * most / bends);
       shares.square = std::min(shares.square, speed * speed);
     }
   }

@@ -27,12 +27,21 @@ class BuildUp {
     double jerk = point.limits.jerk;
     for (std::size_t k = 0; k < limits.count; ++k) {
       const double slope = std::abs(point.slopes.first[k]);
-      if (slope * acceleration > limits.of[k].acceleration) acceleration = limits.of[k].acceleration / slope;
-      if (slope * jerk > limits.of[k].jerk) jerk = limits.of[k].jerk / slope;
+      const CoordinateLimits::One& own = limits.of[k];
+      if (slope * acceleration > point.left * own.acceleration) acceleration = point.left * own.acceleration / slope;
+      if (slope * jerk > point.left * own.jerk) jerk = point.left * own.jerk / slope;
     }
     ++count_;
     time_ += acceleration / jerk;
     jerk_ += jerk;
+    acceleration_ += acceleration;
+    velocity_ += std::sqrt(SquareAt(point, limits, 1));
+  }
+
+  // What the motion may do, in the mean.
+  AlongPath Mean() const noexcept {
+    const double n = std::max(count_, 1);
+    return {velocity_ / n, acceleration_ / n, acceleration_ / n, jerk_ / n};
   }
 
   // Whole cycles. Longer than it takes to build up what may be is of no use, nor, on a short way, longer than it takes
@@ -47,10 +56,12 @@ class BuildUp {
   int count_ = 0;
   double time_ = 0;
   double jerk_ = 0;
+  double acceleration_ = 0;
+  double velocity_ = 0;
 };
 
-// The node behind `before`, at `end` at most. `slopes_at(s, slopes)` answers false where there is no path; then this
-// does, too. The limits along the way are those of `before`.
+// The node behind `before`, at `end` at most. `slopes_at(s, point)` fills slopes and what is left of the limits; it
+// answers false where there is no path, then this does, too. The limits along the way are those of `before`.
 template <typename SlopesAt>
 bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limits, double build_up_s, double period_s,
                const SlopesAt& slopes_at, PathPoint& next) {
@@ -67,7 +78,7 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
     next.s = step < left ? before.s + step : end;
     middle.s = before.s + 0.5 * step;
     // In this order: the caller may count on it.
-    if (!slopes_at(next.s, next.slopes) || !slopes_at(middle.s, middle.slopes)) return false;
+    if (!slopes_at(next.s, next) || !slopes_at(middle.s, middle)) return false;
     const double there = square_at(next);
     bool linear = step <= 2 * std::sqrt(there) * time;
     const double square = std::min(here, there);

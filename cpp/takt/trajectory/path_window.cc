@@ -25,10 +25,11 @@ Third ThirdBetween(const PathPoint& before, const PathPoint& after, const Coordi
   return third;
 }
 
-double DriftSquare(const Third& third, const CoordinateLimits& limits) {
+double DriftSquare(const Third& third, const CoordinateLimits& limits, double left) {
   double cube = CoordinateLimits::kNone;
   for (std::size_t k = 0; k < limits.count; ++k) {
-    if (third[k] * cube > kDriftShare * limits.of[k].jerk) cube = kDriftShare * limits.of[k].jerk / third[k];
+    const double jerk = kDriftShare * left * limits.of[k].jerk;
+    if (third[k] * cube > jerk) cube = jerk / third[k];
   }
   const double v = std::cbrt(cube);
   return v * v;
@@ -51,13 +52,13 @@ void PathWindow::Append(const PathPoint& point, bool stop) noexcept {
   node.at = point;
   node.stop = stop;
   node.build_up_s = build_up_s_;
-  node.bounds = BoundsAt(point.slopes, point.limits, limits_, build_up_s_, kShare);
+  node.bounds = BoundsAt(point.slopes, point.limits, limits_, build_up_s_, kShare * point.left);
   node.own = SquareAt(point, limits_, kShare);
   Third third{};
   if (!IsFirst(end_)) {
     PathNode& before = Node(end_ - 1);
     third = ThirdBetween(before.at, point, limits_);
-    const double square = DriftSquare(third, limits_);
+    const double square = DriftSquare(third, limits_, std::min(before.at.left, point.left));
     node.own = std::min(node.own, square);
     before.own = std::min(before.own, square);
     before.cap = std::min(before.cap, square);

@@ -48,7 +48,7 @@ class Follower {
   void Step(ChaseMode mode, const KinematicState& demand) {
     const trajectory::Limits own = params.planner_limits();
     const KinematicState before = at;
-    at = Chase({params, planner, own, kPeriod}, mode, before, demand, state);
+    at = Chase({params.planner_limits(), planner, own, kPeriod}, mode, before, demand, state);
     EXPECT_LE(std::abs(at.velocity), own.velocity * (1 + 1e-8));
     const double limit = at.velocity * at.acceleration > 0 ? own.acceleration : own.deceleration;
     // Where the sense turns within a step, what was allowed for growing may still be there for falling.

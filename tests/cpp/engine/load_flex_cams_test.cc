@@ -105,9 +105,9 @@ TEST(LoadFlexCams, IsPublishedAtARateOfItsOwn) {
       Problems(module +
                "lcm: {rates: [{axis: cuter, rate_hz: 5}, {axis: cutter, rate_hz: 5}, {axis: cutter, rate_hz: 6}]}\n"),
       ElementsAre(
-          "m.yaml:14:22: lcm.rates[0].axis: expected the name of an axis, cam module or group, found 'cuter'; did you "
+          "m.yaml:14:22: lcm.rates[0].axis: expected the name of an axis or other component, found 'cuter'; did you "
           "mean cutter?",
-          "m.yaml:14:77: lcm.rates[2].axis: expected each axis, cam module or group once, found 'cutter' again"));
+          "m.yaml:14:77: lcm.rates[2].axis: expected each axis or other component once, found 'cutter' again"));
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ TEST(LoadGroups, HasLimitsAlongThePath) {
 TEST(LoadGroups, IsPublishedAtARateOfItsOwn) {
   EXPECT_THAT(Problems(Group("robot", "a, b") + "lcm: {rates: [{axis: robot, rate_hz: 5}]}\n"), IsEmpty());
   EXPECT_THAT(Problems(Group("robot", "a, b") + "lcm: {rates: [{axis: robott, rate_hz: 5}]}\n"),
-              ElementsAre(HasSubstr("expected the name of an axis, cam module or group, found 'robott'; did you mean "
+              ElementsAre(HasSubstr("expected the name of an axis or other component, found 'robott'; did you mean "
                                     "robot?")));
 }
 

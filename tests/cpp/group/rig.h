@@ -146,6 +146,7 @@ class Rig {
     Context c{params, mounting, kinematics ? &*kinematics : nullptr, paths, group_of, 1, {}, cycle, sink_, *ahead};
     c.axes = {states, axes,
               [](void* owner, std::size_t i) noexcept { return static_cast<Rig*>(owner)->AxisContext(i); }, this};
+    c.carriers = carriers;
     if (params.workspace) c.questions = questions.get();
     return c;
   }
@@ -164,6 +165,7 @@ class Rig {
   std::vector<double> slip_counts;  // measured beyond what is commanded
   std::unique_ptr<LookAhead> ahead;
   std::unique_ptr<Questions> questions;  // with a workspace
+  Carriers carriers;
   State state;
   Cycle cycle;
   trajectory::Planner planner;

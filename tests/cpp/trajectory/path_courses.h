@@ -167,7 +167,7 @@ class Motion {
     const PathPoint before = last;
     NextPoint(
         before, end, window.limits(), window.build_up_s(), kPeriod,
-        [&](double s, PathSlopes& slopes) { return course.Slopes(s, slopes); }, last);
+        [&](double s, PathPoint& point) { return course.Slopes(s, point.slopes); }, last);
     window.Append(last, stop_at_end && last.s >= end);
     sampled_to = last.s;
   }

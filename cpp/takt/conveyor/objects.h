@@ -1,0 +1,53 @@
+// What lies on a belt: who looks for workpieces finds, takes and deletes them here. All of it is fit for the cycle.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "takt/conveyor/params.h"
+#include "takt/conveyor/state.h"
+#include "takt/core/status.h"
+#include "takt/kinematics/carrier.h"
+
+namespace takt::conveyor {
+
+// A length of the belt as its carrier has it: mm, or rad.
+double InCarrier(const BeltParams& params, double length) noexcept;
+// The belt as something that carries, as it is in this cycle.
+kinematics::Carrier CarrierOf(const BeltParams& params, const KinematicState& travel) noexcept;
+
+// All that lie on it, in the order of their numbers, those that are not visible yet, too.
+std::span<const Object> ObjectsOf(const State& state) noexcept;
+// Null: there is none of that number.
+const Object* Find(const State& state, std::uint32_t number) noexcept;
+Object* Find(State& state, std::uint32_t number) noexcept;
+
+// Where an object is along the belt now, mm from the origin. On a table: the angle at which it lies, deg; it counts on
+// from turn to turn, so that each object passes the range once. Of no meaning before the object is visible.
+double PlaceOf(const BeltParams& params, const State& state, const Object& object) noexcept;
+// The object's pose with velocity and acceleration, in the world.
+kinematics::MovingFrame PoseOf(const BeltParams& params, const State& state, const Object& object) noexcept;
+
+// It is visible (or taken) and lies within the work range; limits belong to it.
+bool InRange(const BeltParams& params, const State& state, const Object& object) noexcept;
+// InRange and not taken.
+bool IsFree(const BeltParams& params, const State& state, const Object& object) noexcept;
+// The one that leaves the range first, of those that are free; null: there is none.
+const Object* FirstFree(const BeltParams& params, const State& state) noexcept;
+
+// s until the object is at place x if the belt goes on as fast as now; 0: it is there. NaN: never.
+double TimeTo(const BeltParams& params, const State& state, const Object& object, double x) noexcept;
+// Where it is a time later, likewise.
+double PlaceIn(const BeltParams& params, const State& state, const Object& object, double time_s) noexcept;
+// s until it leaves the work range, likewise. Infinite: the belt stands, or there is no limit on its way; 0: it is
+// outside already.
+double TimeLeft(const BeltParams& params, const State& state, const Object& object) noexcept;
+
+// A visible one becomes somebody's. kNoWorkpiece: there is none of that number that is visible and not taken.
+Status Take(std::uint32_t number, State& state) noexcept;
+// And anybody's again. kNoWorkpiece: it is not taken.
+Status GiveBack(std::uint32_t number, State& state) noexcept;
+// Whatever its state. kNoWorkpiece: there is none.
+Status Remove(std::uint32_t number, State& state) noexcept;
+
+}  // namespace takt::conveyor

@@ -1,0 +1,42 @@
+#include "takt/conveyor/params.h"
+
+#include "takt/conveyor/texts.h"
+
+namespace takt::conveyor {
+
+void describe(Enumeration<BeltKind>& e) {
+  e.about("How a belt carries.");
+  e.value(BeltKind::kStraight, "straight", "Along X of its origin.");
+  e.value(BeltKind::kTurning, "turning", "About Z of its origin: a table.");
+}
+
+void describe(Description<BeltParams>& d) {
+  using P = BeltParams;
+  d.about("A belt, or a table that turns: it carries workpieces through the cell, and groups can go along with it.");
+  d.required<&P::name>("Of the belt; commands go to it.");
+  d.defaulted<&P::kind>("How it carries.");
+  d.required<&P::axis>("Name of the axis that moves it, or that only measures it.");
+  d.defaulted<&P::source>("Whether the axis' set position or its measured one counts.");
+  d.defaulted<&P::ratio>(Unit{"mm/u", "deg of a table per axis' unit"}, kRatios,
+                         "How far it goes while the axis goes one unit; below 0: against the axis.");
+  d.defaulted<&P::origin>("In the world. X is the direction of travel; a table turns about Z.");
+  d.defaulted<&P::lower_limit>(kAlong, kPlaces, "Where the work range begins, seen from the origin; unset: nowhere.");
+  d.defaulted<&P::upper_limit>(
+      kAlong, kPlaces, "Where it ends; an object beyond it that nobody has taken is deleted. Unset: nowhere.");
+  d.defaulted<&P::filter_s>(
+      unit::s, between(0, 10),
+      "Time constant of the filter; a constant speed passes without lag. Unset: 5 ms where the axis is measured, else "
+      "0. A set position is not filtered with 0, a measured one as little as can be.");
+  d.defaulted<&P::dead_time_s>(unit::s, between(0, 1),
+                               "The belt is taken to be so much further on than its axis says, at its speed and "
+                               "acceleration. The cycle that passes anyway is made good without it.");
+  d.defaulted<&P::forget_after>(
+      kAlong, between(0, 1e9),
+      "An object that was detected but not located is deleted once it has travelled so far; unset: never.");
+  d.rule<&P::ratio>("must not be 0", [](const P& p) { return p.ratio != 0; });
+  d.rule<&P::upper_limit>("must lie above lower_limit", [](const P& p) {
+    return !p.lower_limit || !p.upper_limit || *p.lower_limit < *p.upper_limit;
+  });
+}
+
+}  // namespace takt::conveyor

@@ -1,0 +1,71 @@
+#include "takt/engine/carriers.h"
+
+#include <optional>
+
+#include "takt/kinematics/kinematics.h"
+
+namespace takt::engine {
+
+namespace {
+
+template <typename T>
+std::optional<std::uint32_t> Named(const std::vector<T>& list, std::string_view name) {
+  for (std::uint32_t i = 0; i < list.size(); ++i) {
+    if (list[i].params.name == name) return i;
+  }
+  return std::nullopt;
+}
+
+std::uint32_t FindCarrier(void* owner, std::string_view name) noexcept {
+  const auto& [world, rider] = *static_cast<Rider*>(owner);
+  if (const auto belt = Named(world->belts, name)) return *belt + 1;
+  const auto group = Named(world->groups, name);
+  return group && *group != rider ? static_cast<std::uint32_t>(world->belts.size()) + *group + 1 : 0;
+}
+
+// The tool as it is commanded.
+kinematics::Carrier ToolOf(const World& w, std::size_t index) {
+  const AxesGroup& group = w.groups[index];
+  const group::State& s = w.group_states[index];
+  kinematics::Carrier carrier;
+  if (!group.kinematics || !s.kinematics_on) return carrier;
+  kinematics::JointMotion motion;
+  for (std::size_t k = 0; k < group.kinematics->count; ++k) {
+    if (s.members[k] == 0) return carrier;
+    const KinematicState& set = w.axis_states[s.members[k] - 1].setpoint;
+    motion.position[k] = set.position;
+    motion.velocity[k] = set.velocity;
+    motion.acceleration[k] = set.acceleration;
+  }
+  kinematics::MovingFrame flange;
+  if (kinematics::Forward(*group.kinematics, motion, flange) != kinematics::Reason::kNone) return carrier;
+  carrier.kind = kinematics::CarrierKind::kFree;
+  carrier.pose = group.mounting.base * flange * group.mounting.tool;
+  return carrier;
+}
+
+kinematics::Carrier CarrierAt(void* owner, std::uint32_t number) noexcept {
+  const World& w = *static_cast<Rider*>(owner)->world;
+  std::size_t i = number - 1;
+  if (i < w.belts.size()) return conveyor::CarrierOf(w.belts[i].params, w.belt_states[i].travel);
+  i -= w.belts.size();
+  return i < w.groups.size() ? ToolOf(w, i) : kinematics::Carrier{};
+}
+
+double CarrierTravelAt(void* owner, std::uint32_t number, double position) noexcept {
+  World& w = *static_cast<Rider*>(owner)->world;
+  const std::size_t i = number - 1;
+  if (i >= w.belts.size()) return 0;
+  const Belt& belt = w.belts[i];
+  const conveyor::Context context{belt.params, w.axis_states[belt.axis], w.axis_params[belt.axis], w.cycle, w.feedback};
+  const double travel = conveyor::TravelAt(context, w.belt_states[i], position);
+  return conveyor::InCarrier(belt.params, travel);
+}
+
+}  // namespace
+
+group::Carriers CarriersFor(Rider& rider) noexcept {
+  return {FindCarrier, CarrierAt, CarrierTravelAt, &rider};
+}
+
+}  // namespace takt::engine

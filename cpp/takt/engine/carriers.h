@@ -1,0 +1,12 @@
+// What can carry something in a machine: its belts, then the tools of its groups.
+#pragma once
+
+#include "takt/engine/cycle.h"
+#include "takt/group/carriers.h"
+
+namespace takt::engine {
+
+// As this group sees them; `rider` must live on. Belts are numbered from 1, groups go on from there.
+group::Carriers CarriersFor(Rider& rider) noexcept;
+
+}  // namespace takt::engine

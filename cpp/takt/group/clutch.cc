@@ -1,0 +1,155 @@
+#include "takt/group/clutch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/axis/chase.h"
+#include "takt/group/make_stretch.h"
+#include "takt/group/members.h"
+
+namespace takt::group {
+
+namespace {
+
+// Of the axes' limits; the rest is for what changes on the way.
+constexpr double kShare = 0.9;
+constexpr double kLeastAcceleration = 0.1;  // of an axis, left beside what its bends need
+constexpr int kPlaces = 4;
+constexpr double kPlacesApart_s = 0.05;
+
+trajectory::Planner& PlannerOf(const Context& c, const State& s) {
+  std::size_t place = 0;
+  while (s.members[place] == 0) ++place;
+  return ContextOf(c, s, place).planner;
+}
+
+const Ride& RideAt(const Context& c, std::uint64_t number) {
+  return c.ahead.rides[number % kRides];
+}
+
+Clutch* Find(State& s, std::uint64_t ride) {
+  const auto found = std::ranges::find_if(s.clutches, [&](const Clutch& k) { return k.used && k.ride == ride; });
+  return found != s.clutches.end() ? &*found : nullptr;
+}
+
+bool HasTravel(const kinematics::Carrier& carrier) {
+  return carrier.kind == kinematics::CarrierKind::kStraight || carrier.kind == kinematics::CarrierKind::kTurning;
+}
+
+// The tool at a place of a stretch, carried by one ride whose travel is this.
+MovingFrame ToolAtTravel(const Context& c, const Stretch& stretch, double way, const Ride& ride,
+                         const KinematicState& travel) {
+  kinematics::Carrier carrier = CarrierOf(c, ride.cargo);
+  carrier.travel = travel;
+  return kinematics::PoseOn(carrier, ride.cargo.from, kinematics::ToFrame(ride.cargo.on)) *
+         (ride.reference_inverse * path::At(stretch.segment, way).GetFrame());
+}
+
+void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& clutch) {
+  trajectory::Planner& planner = PlannerOf(c, s);
+  const double period = c.cycle.period_s;
+  if (s.lets_go) {
+    trajectory::Limits limits = clutch.limits();
+    if (s.brake.deceleration > 0) limits.deceleration = std::min(limits.deceleration, s.brake.deceleration);
+    if (s.brake.jerk > 0) limits.jerk = std::min(limits.jerk, s.brake.jerk);
+    trajectory::Profile profile{clutch.travel};
+    planner.ToVelocity(clutch.travel, 0, limits, profile);
+    clutch.travel = profile.At(period);
+    clutch.coupled = false;
+    return;
+  }
+  if (clutch.coupled) {
+    clutch.travel = carrier;
+    return;
+  }
+  axis::ChaseState chase;
+  const axis::Chaser chaser = {clutch.limits(), planner, clutch.limits(), period};
+  clutch.travel = axis::Chase(chaser, axis::ChaseMode::kPosition, clutch.travel, carrier, chase);
+  clutch.coupled = chase.in_step;
+}
+
+void StepOne(const Context& c, const Stretch& stretch, double way, std::uint64_t number, State& s) {
+  const Ride& ride = RideAt(c, number);
+  if (!Moves(ride)) return;
+  const kinematics::Carrier carrier = CarrierOf(c, ride.cargo);
+  if (!HasTravel(carrier)) return;
+  Clutch* clutch = Find(s, number);
+  if (clutch) return Drive(c, s, carrier.travel, *clutch);
+  const auto free = std::ranges::find_if(s.clutches, [](const Clutch& k) { return !k.used; });
+  if (free == s.clutches.end()) return;
+  const trajectory::Limits limits = LimitsAlong(c, s, stretch, way, number);
+  *free = {true,       !s.lets_go, number, carrier.travel, limits.velocity, limits.acceleration, limits.deceleration,
+           limits.jerk};
+}
+
+}  // namespace
+
+void StepClutches(const Context& c, const Stretch& stretch, State& s) noexcept {
+  for (Clutch& clutch : s.clutches) {
+    if (clutch.used && clutch.ride != stretch.from_ride && clutch.ride != stretch.to_ride) clutch = {};
+  }
+  if (stretch.joints) return;
+  const double way = std::clamp(stretch.from + s.pace.now.position - stretch.begin, stretch.from, stretch.to);
+  StepOne(c, stretch, way, stretch.from_ride, s);
+  if (stretch.to_ride != stretch.from_ride) StepOne(c, stretch, way, stretch.to_ride, s);
+}
+
+bool Slips(const State& s) noexcept {
+  return std::ranges::any_of(s.clutches, [](const Clutch& k) { return k.used && !k.coupled; });
+}
+
+bool ClutchesStand(const State& s) noexcept {
+  return std::ranges::all_of(s.clutches, [](const Clutch& k) {
+    return !k.used || (!k.coupled && k.travel.velocity == 0 && k.travel.acceleration == 0);
+  });
+}
+
+bool CanLetGo(const Context& c, const Stretch& stretch, double way, State& s) noexcept {
+  if (stretch.joints || stretch.from_ride != stretch.to_ride) return true;
+  const Clutch* clutch = Find(s, stretch.to_ride);
+  if (!clutch) return true;
+  const KinematicState rest = {trajectory::StopPosition(clutch->travel, clutch->limits()), 0, 0};
+  const MovingFrame tool = ToolAtTravel(c, stretch, way, RideAt(c, stretch.to_ride), rest);
+  kinematics::JointMotion motion;
+  const kinematics::Reason reason = AxesFor(c, s, stretch, tool, {way, 0, 0}, s.joints, motion);
+  if (reason != kinematics::Reason::kNone) s.reason = reason;
+  return reason == kinematics::Reason::kNone;
+}
+
+trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& stretch, double way,
+                               std::uint64_t number) noexcept {
+  const Ride& ride = RideAt(c, number);
+  const kinematics::Carrier carrier = CarrierOf(c, ride.cargo);
+  const PathLimits& path = c.params.path;
+  const trajectory::CoordinateLimits& own = c.ahead.window.limits();
+  const double speed = std::abs(carrier.travel.velocity);
+  trajectory::Limits limits = {path.velocity, path.acceleration, path.deceleration.value_or(path.acceleration),
+                               path.jerk};
+  double length = 0;  // mm of the tool per unit of the travel
+  kinematics::Joints near = s.joints;
+  double velocity = trajectory::CoordinateLimits::kNone, acceleration = velocity, jerk = velocity;
+  for (int i = 0; i < kPlaces; ++i) {
+    const double travel = carrier.travel.position + i * kPlacesApart_s * carrier.travel.velocity;
+    const KinematicState one = {travel, 1, 0};
+    const MovingFrame tool = ToolAtTravel(c, stretch, way, ride, one);
+    length = std::max(length, tool.p.v.Norm());
+    kinematics::JointMotion motion;
+    if (AxesFor(c, s, stretch, tool, {way, 0, 0}, near, motion) != kinematics::Reason::kNone) break;
+    near = motion.position;
+    for (std::size_t k = 0; k < own.count && k < kMaxAxes; ++k) {
+      const double slope = std::abs(motion.velocity[k]);
+      if (s.members[k] == 0 || slope == 0) continue;
+      const double bends = std::abs(motion.acceleration[k]) * speed * speed;
+      const double left =
+          std::max(kShare * own.of[k].acceleration - bends, kLeastAcceleration * own.of[k].acceleration);
+      velocity = std::min(velocity, kShare * own.of[k].velocity / slope);
+      acceleration = std::min(acceleration, left / slope);
+      jerk = std::min(jerk, kShare * own.of[k].jerk / slope);
+    }
+  }
+  const double scale = length > 0 ? 1 / length : 1;
+  return {std::min(velocity, scale * limits.velocity), std::min(acceleration, scale * limits.acceleration),
+          std::min(acceleration, scale * limits.deceleration), std::min(jerk, scale * limits.jerk)};
+}
+
+}  // namespace takt::group

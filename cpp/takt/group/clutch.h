@@ -1,0 +1,29 @@
+// Between what carries the tool and the tool: clutches along the travel of a carrier.
+//
+// A tool that rides goes with its carrier exactly. To stop in the machine's own space it lets go: what it takes for the
+// carrier's travel is braked to rest within limits, while the carrier goes on. Taken along again, that travel catches
+// up with the carrier's (axis/chase.h), and from then on is the carrier's own, bit for bit. The path between keeps its
+// shape and its place on the object.
+#pragma once
+
+#include "takt/group/rides.h"
+
+namespace takt::group {
+
+// Each clutch of the stretch that the tool is on goes on by a cycle: along, or to rest (State::lets_go).
+void StepClutches(const Context& c, const Stretch& stretch, State& s) noexcept;
+
+// The tool is not where its carriers are, and comes after them.
+bool Slips(const State& s) noexcept;
+// Nothing that was let go of moves on.
+bool ClutchesStand(const State& s) noexcept;
+
+// Whether the tool could still be braked from here within what the axes reach; s.reason if not.
+bool CanLetGo(const Context& c, const Stretch& stretch, double way, State& s) noexcept;
+
+// What the travel of a carrier may do so that group and axes keep their limits, at the place of a stretch where the
+// tool is and some way on.
+trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& stretch, double way,
+                               std::uint64_t ride) noexcept;
+
+}  // namespace takt::group

@@ -1,0 +1,169 @@
+#include "takt/group/rides.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/path/turn.h"
+#include "takt/trajectory/quintic.h"
+
+namespace takt::group {
+
+namespace {
+
+// A motion over the way, as one over time.
+MovingFrame InTime(const MovingFrame& over_way, const KinematicState& way) {
+  const double v = way.velocity, square = v * v, a = way.acceleration;
+  MovingFrame out;
+  out.p = KDL::VectorAcc(over_way.p.p, over_way.p.v * v, over_way.p.dv * square + over_way.p.v * a);
+  out.M = KDL::RotationAcc(over_way.M.R, over_way.M.w * v, over_way.M.dw * square + over_way.M.w * a);
+  return out;
+}
+
+MovingFrame Still(const MovingFrame& frame) {
+  return MovingFrame(frame.GetFrame());
+}
+
+// Part of the way from one moving frame to another.
+MovingFrame Mix(const MovingFrame& from, const MovingFrame& to, const KinematicState& share) {
+  const double w = share.position, dw = share.velocity, ddw = share.acceleration;
+  const KDL::VectorAcc apart = to.p - from.p;
+  MovingFrame out;
+  out.p.p = from.p.p + w * apart.p;
+  out.p.v = from.p.v + w * apart.v + dw * apart.p;
+  out.p.dv = from.p.dv + w * apart.dv + 2 * dw * apart.v + ddw * apart.p;
+  // The turn from the one to the other, and how it changes, seen from the first one.
+  const KDL::Rotation back = from.M.R.Inverse();
+  const KDL::Vector turn = back * kinematics::TurnBetween(from.M.R, to.M.R);
+  if (turn.Norm() < 1e-12 && (to.M.w - from.M.w).Norm() < 1e-12 && (to.M.dw - from.M.dw).Norm() < 1e-12) {
+    out.M = from.M;
+    return out;
+  }
+  const KDL::Vector w0 = back * from.M.w;
+  const KDL::Vector spin = back * (to.M.w - from.M.w);
+  const KDL::Vector change = back * (to.M.dw - from.M.dw) - w0 * spin;  // of the spin, seen from the first one
+  const path::Derivatives<path::Vector> log =
+      path::TurnOf(path::ToVector(turn), path::ToVector(spin), path::ToVector(change));
+  const path::Turned part = path::TurnBy(
+      {w * log.value, w * log.first + dw * log.value, w * log.second + 2 * dw * log.first + ddw * log.value});
+  MovingFrame moved = MovingFrame::Identity();
+  const Eigen::Quaterniond& q = part.rotation;
+  moved.M = KDL::RotationAcc(KDL::Rotation::Quaternion(q.x(), q.y(), q.z(), q.w()), path::ToKdl(part.velocity),
+                             path::ToKdl(part.acceleration));
+  out.M = from.M * moved.M;
+  return out;
+}
+
+const Ride& RideAt(const LookAhead& ahead, std::uint64_t number) {
+  return ahead.rides[number % ahead.rides.size()];
+}
+
+// Where a carrier's travel is as far as the tool is concerned.
+kinematics::Carrier Clutched(const State& s, std::uint64_t ride, kinematics::Carrier carrier) {
+  for (const Clutch& clutch : s.clutches) {
+    if (clutch.used && !clutch.coupled && clutch.ride == ride) carrier.travel = clutch.travel;
+  }
+  return carrier;
+}
+
+MovingFrame Displaced(const Ride& ride, const kinematics::Carrier& carrier) {
+  if (!Moves(ride)) return MovingFrame(ride.reference_inverse);
+  return kinematics::PoseOn(carrier, ride.cargo.from, kinematics::ToFrame(ride.cargo.on)) * ride.reference_inverse;
+}
+
+template <typename Displacement>
+MovingFrame ToolOn(const Stretch& stretch, const KinematicState& way, const Displacement& displacement) {
+  const MovingFrame place = InTime(path::At(stretch.segment, way.position), way);
+  const KinematicState share = trajectory::AlongWay(ShareAt(stretch, way.position), way);
+  if (stretch.from_ride == stretch.to_ride || share.position <= 0) return displacement(stretch.from_ride) * place;
+  if (share.position >= 1) return displacement(stretch.to_ride) * place;
+  return Mix(displacement(stretch.from_ride) * place, displacement(stretch.to_ride) * place, share);
+}
+
+}  // namespace
+
+kinematics::Carrier CarrierOf(const Context& c, const Cargo& cargo, double ahead_s) noexcept {
+  kinematics::Carrier carrier = c.carriers.At(cargo.carrier);
+  if (cargo.has_origin) {
+    carrier.origin = kinematics::ToFrame(cargo.origin);
+  } else {
+    carrier.origin = c.mounting.base_inverse * carrier.origin;
+  }
+  carrier.pose = c.mounting.base_inverse * carrier.pose;
+  return ahead_s > 0 ? kinematics::Ahead(carrier, ahead_s) : carrier;
+}
+
+MovingFrame PlaceOf(const Context& c, const Cargo& cargo, double ahead_s) noexcept {
+  return kinematics::PoseOn(CarrierOf(c, cargo, ahead_s), cargo.from, kinematics::ToFrame(cargo.on));
+}
+
+bool Moves(const Ride& ride) noexcept {
+  return ride.cargo.carrier != 0;
+}
+
+Frame ReferenceOf(const Ride& ride) noexcept {
+  return ride.reference_inverse.Inverse();
+}
+
+MovingFrame DisplacementOf(const Context& c, const Ride& ride, double ahead_s) noexcept {
+  return Displaced(ride, CarrierOf(c, ride.cargo, ahead_s));
+}
+
+std::uint64_t RideTo(const Context& c, const Cargo& cargo, double arrival_s) noexcept {
+  LookAhead& ahead = c.ahead;
+  const Ride& end = RideAt(ahead, ahead.end_ride);
+  if (end.cargo == cargo) return ahead.end_ride;
+  Ride& ride = ahead.rides[ahead.rides_end % ahead.rides.size()];
+  const Frame there = cargo.carrier != 0 ? PlaceOf(c, cargo, arrival_s).GetFrame() : Frame::Identity();
+  ride.reference_inverse = there.Inverse() * DisplacementOf(c, end, arrival_s).GetFrame();
+  ride.cargo = cargo;
+  ride.displaces = Moves(ride) || !KDL::Equal(ride.reference_inverse, Frame::Identity(), 0);
+  return ahead.rides_end;
+}
+
+bool IsCarried(const LookAhead& ahead, const Stretch& stretch) noexcept {
+  if (stretch.joints) return false;
+  const auto displaces = [&](std::uint64_t ride) { return RideAt(ahead, ride).displaces; };
+  return displaces(stretch.to_ride) || displaces(stretch.from_ride);
+}
+
+KinematicState ShareAt(const Stretch& stretch, double way) noexcept {
+  if (stretch.from_ride == stretch.to_ride) return {1, 0, 0};
+  const double length = stretch.to - stretch.from;
+  const double x = std::clamp((way - stretch.from) / length, 0.0, 1.0);
+  return {x * x * x * (10 + x * (6 * x - 15)), 30 * x * x * (1 - x) * (1 - x) / length,
+          60 * x * (1 - x) * (1 - 2 * x) / (length * length)};
+}
+
+MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, const KinematicState& way) noexcept {
+  return ToolOn(stretch, way, [&](std::uint64_t number) {
+    const Ride& ride = RideAt(c.ahead, number);
+    return Displaced(ride, Clutched(s, number, CarrierOf(c, ride.cargo)));
+  });
+}
+
+MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicState& way, bool still) noexcept {
+  const double length = stretch.to - stretch.from;
+  const double x = length > 0 ? std::clamp((way.position - stretch.from) / length, 0.0, 1.0) : 1;
+  const double then = std::lerp(stretch.eta_begin, stretch.eta_end, x) - Now(c);
+  return ToolOn(stretch, way, [&](std::uint64_t number) {
+    const MovingFrame displacement = DisplacementOf(c, RideAt(c.ahead, number), std::max(then, 1e-9));
+    return still ? Still(displacement) : displacement;
+  });
+}
+
+double Now(const Context& c) noexcept {
+  return static_cast<double>(c.cycle.count) * c.cycle.period_s;
+}
+
+double TimeFor(const Context& c, double length, const trajectory::AlongPath& limits) noexcept {
+  if (!(length > 0)) return 0;
+  trajectory::Profile profile{};
+  for (std::size_t i = 0; i < c.axes.states.size(); ++i) {
+    trajectory::Planner& planner = c.axes.Of(i).planner;
+    const trajectory::Limits ramp = {limits.velocity, limits.acceleration, limits.deceleration, limits.jerk};
+    return planner.ToPosition({}, length, 0, ramp, profile).failed() ? 0 : profile.duration();
+  }
+  return 0;
+}
+
+}  // namespace takt::group
