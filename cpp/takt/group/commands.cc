@@ -291,6 +291,15 @@ void describe(Description<MoveDirectRelative>& d) {
   DescribeDirect(d);
 }
 
+void describe(Description<MoveArch>& d) {
+  d.about("Moves the tool along half an ellipse, upright in the world over where it begins and ends.");
+  DescribeNumbers(d);
+  d.defaulted<&MoveArch::height>(unit::mm, between(0, 1e9), "Of its crest above the higher of both points.");
+  DescribeSystem(d);
+  DescribeRamps(d);
+  DescribeBuffering(d);
+}
+
 void describe(Description<MovePath>& d) {
   using M = MovePath;
   d.about("Moves along a path of the machine file (MC_PathSelect, MC_MovePath).");
