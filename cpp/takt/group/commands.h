@@ -86,6 +86,19 @@ struct MoveDirect {  // MC_MoveDirectAbsolute, MC_MoveDirectRelative
 using MoveDirectAbsolute = MoveDirect<Reference::kAbsolute>;
 using MoveDirectRelative = MoveDirect<Reference::kRelative>;
 
+// Half an ellipse, upright over where the move begins and ends; a straight piece where their heights differ.
+struct MoveArch {
+  std::optional<double> x{}, y{}, z{}, a{}, b{}, c{};
+  std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
+  double height = 0;  // mm, of its crest above the higher of both
+  CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
+  std::uint32_t pcs = 1;
+  std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
+  TransitionMode transition_mode = TransitionMode::kNone;
+  double transition_parameter = 0;
+};
+
 struct MovePath {  // MC_MovePath, with the path that MC_PathSelect names
   Name path;
   CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
@@ -234,7 +247,8 @@ using Command =
     std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircularAbsolute, MoveCircularRelative, MoveDirectAbsolute,
                  MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop, Halt, Interrupt, Continue, AddAxis,
                  RemoveAxis, UngroupAllAxes, Enable, Disable, Reset, Power, Home, SetPosition, SetOverride,
-                 SetKinTransform, SetCartesianTransform, SetCoordinateTransform, SetDynCoordTransform, PathChecked>;
+                 SetKinTransform, SetCartesianTransform, SetCoordinateTransform, SetDynCoordTransform,
+                 TrackConveyorBelt, TrackRotaryTable, MoveArch, PathChecked>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
 std::string WhyNot(const Command& command);
@@ -247,6 +261,7 @@ void describe(Description<MoveCircularAbsolute>&);
 void describe(Description<MoveCircularRelative>&);
 void describe(Description<MoveDirectAbsolute>&);
 void describe(Description<MoveDirectRelative>&);
+void describe(Description<MoveArch>&);
 void describe(Description<MovePath>&);
 void describe(Description<MovePathSynchronized>&);
 void describe(Description<SyncAxis>&);
@@ -268,6 +283,8 @@ void describe(Description<SetKinTransform>&);
 void describe(Description<SetCartesianTransform>&);
 void describe(Enumeration<ExecutionMode>&);
 void describe(Description<SetDynCoordTransform>&);
+void describe(Description<TrackConveyorBelt>&);
+void describe(Description<TrackRotaryTable>&);
 void describe(Description<SetCoordinateTransform>&);
 void describe(Description<PathChecked>&);
 

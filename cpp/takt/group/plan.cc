@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "takt/group/ask.h"
+#include "takt/group/clutch.h"
 #include "takt/group/join.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
 #include "takt/group/rides.h"
+#include "takt/group/track.h"
 #include "takt/path/make.h"
 
 namespace takt::group {
@@ -47,8 +49,10 @@ ErrorId ErrorOf(kinematics::Reason reason) {
   return reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
 }
 
+// It has elements.
 bool IsPath(const State& s) {
-  return MoveAt(s, s.planning.move).kind == MoveKind::kPath;
+  const MoveKind kind = MoveAt(s, s.planning.move).kind;
+  return kind == MoveKind::kPath || kind == MoveKind::kArch;
 }
 
 // All elements of a path are tried before the first one is planned.
@@ -77,6 +81,7 @@ void GoBackToTrial(LookAhead& ahead) {
   ahead.end_tool = ahead.tried_from_tool;
   ahead.end_ride = ahead.tried_from_ride;
   ahead.end_eta = ahead.tried_from_eta;
+  ahead.tried_way = 0;
 }
 
 void EndTrial(const Context& c, State& s) {
@@ -86,7 +91,7 @@ void EndTrial(const Context& c, State& s) {
 }
 
 void NextElement(const Context& c, State& s) {
-  const bool more = IsPath(s) && s.planning.element + 1 < c.paths[MoveAt(s, s.planning.move).path].pieces.size();
+  const bool more = s.planning.element + 1 < ElementsOf(c, MoveAt(s, s.planning.move));
   if (more && !c.ahead.cut_short) {
     ++s.planning.element;
     s.planning.stage = Stage::kIdle;
@@ -138,6 +143,8 @@ void Begin(const Context& c, State& s) {
     c.ahead.tried_from_tool = c.ahead.end_tool;
     c.ahead.tried_from_ride = c.ahead.end_ride;
     c.ahead.tried_from_eta = c.ahead.end_eta;
+    c.ahead.tried_way = 0;
+    c.ahead.arch_pieces = 0;
   }
   BeginStretch(c, 0, s);
 }
@@ -160,8 +167,20 @@ void BeginStretch(const Context& c, double time_s, State& s) {
   }
   Stretch& next = c.ahead.next;
   next.to = next.segment.length;
+  next.begin = (c.ahead.count > 0 ? c.ahead[c.ahead.end() - 1].end() : 0) + c.ahead.tried_way;
+  next.bends_at_ends = move.kind == MoveKind::kArch;
+  const double left = move.kind == MoveKind::kArch ? c.ahead.arch_left : 0;
+  if (s.planning.element == 0) {
+    c.ahead.from_ride = next.from_ride;
+    if (next.from_ride != next.to_ride) {
+      Ride& ride = c.ahead.rides[next.to_ride % kRides];
+      ride.begin = next.begin;
+      ride.end = next.begin + next.to + left;
+    }
+  }
+  const double time = time_s > 0 ? time_s : TimeFor(c, next.to + left, next.limits);
   next.eta_begin = c.ahead.end_eta;
-  next.eta_end = next.eta_begin + (time_s > 0 ? time_s : TimeFor(c, next.segment.length, next.limits));
+  next.eta_end = next.eta_begin + time * next.to / (next.to + left);
   c.ahead.build_up = {};
   c.ahead.near = c.ahead.end_joints;
   s.planning.verifying = false;
@@ -190,10 +209,13 @@ bool Settled(const Context& c, State& s) {
     return false;
   }
   const trajectory::AlongPath limits = trajectory::Least(next.limits, c.ahead.build_up.Mean());
-  const double time = TimeFor(c, next.segment.length, limits);
-  const double late = std::abs(time - (next.eta_end - next.eta_begin));
-  next.eta_end = next.eta_begin + time;
-  if (c.ahead.next_time_s > 0 || next.from_ride == next.to_ride) return true;
+  const bool arch = MoveAt(s, s.planning.move).kind == MoveKind::kArch;
+  const double whole = next.to + (arch ? c.ahead.arch_left : 0);
+  const double time = TimeFor(c, whole, limits);
+  const double expected = (next.eta_end - next.eta_begin) * whole / next.to;
+  const double late = std::abs(time - expected);
+  next.eta_end = next.eta_begin + time * next.to / whole;
+  if (c.ahead.next_time_s > 0 || next.from_ride == next.to_ride || s.planning.element > 0) return true;
   const Ride& ride = c.ahead.rides[next.to_ride % kRides];
   const Ride& before = c.ahead.rides[next.from_ride % kRides];
   const auto speed = [&](const Ride& one) { return DisplacementOf(c, one, 0).p.v.Norm(); };
@@ -264,6 +286,7 @@ void Verify(const Context& c, int& budget, State& s) {
     c.ahead.end_tool = c.ahead.next_tool;
     c.ahead.end_ride = c.ahead.next.to_ride;
     c.ahead.end_eta = c.ahead.next.eta_end;
+    c.ahead.tried_way += c.ahead.next.to;
     NextElement(c, s);
   } else if (!IsPath(s) && HasWorkspace(c, s) && CanAsk(c)) {
     Ask(c, s);
@@ -352,16 +375,22 @@ bool GoesFreely(const Context& c, const State& s) {
   return false;
 }
 
+bool IsTransition(const Stretch& stretch) {
+  return stretch.from_ride != stretch.to_ride;
+}
+
 // Behind the last stretch that is to be sampled now. A blend that the next move may make again, and what is behind it,
 // wait for that as long as there is time.
 std::uint64_t SampledTo(const Context& c, const State& s) {
   const LookAhead& ahead = c.ahead;
   const bool more = s.planning.move < s.done + s.queue.count;
   if (ahead.cut_short || ahead.count == 0) return ahead.end();
-  // How a stretch goes over from ride to ride depends on where it ends.
-  const Stretch& last = ahead[ahead.end() - 1];
-  const bool open = last.from_ride != last.to_ride && !last.begun;
-  if (open && more && (s.planning.element > 0 || MoveAt(s, s.planning.move).blends())) return ahead.end() - 1;
+  // How the path goes over from ride to ride depends on where that ends.
+  if (more && (s.planning.element > 0 || MoveAt(s, s.planning.move).blends())) {
+    std::uint64_t open = ahead.end();
+    while (open > ahead.first && IsTransition(ahead[open - 1]) && !ahead[open - 1].begun) --open;
+    if (open < ahead.end()) return open;
+  }
   if (!ahead.corner.open || ahead.count < 2) return ahead.end();
   const bool waits = more ? s.planning.element > 0 || MoveAt(s, s.planning.move).blends() : s.begun && GoesFreely(c, s);
   return waits ? ahead.end() - 2 : ahead.end();
@@ -447,6 +476,7 @@ void Plan(const Context& c, State& s) noexcept {
           break;
         }
         if (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short) return;
+        if (WaitsForTracking(s, MoveAt(s, s.planning.move))) return;
         if (!Tries(s) && !HasRoom(c.ahead)) return;
         if (c.ahead.corner.open && !IsPath(s) && HasWorkspace(c, s)) {  // nothing waits for an answer
           c.ahead.corner.open = false;
@@ -509,6 +539,13 @@ void Rehearse(const Context& c, const State& s) noexcept {
     return Foresee(context, state, along, ahead_s, positions, velocities, accelerations);
   };
   c.ahead.rehearsal.Run(c.ahead.window, s.pace, kRehearsed, c.cycle.count, c.cycle.period_s, {look, &owner});
+}
+
+double TimeLeft(const Context& c, const State& s) noexcept {
+  const std::uint64_t end = c.ahead.rehearsal.end_cycle();
+  const bool slowed = s.velocity_factor < 1 || s.ends || s.interrupted || Slips(s) || s.master.axis != 0;
+  if (!s.begun || slowed || !IsPlanned(c, s) || end == 0) return kNotGiven;
+  return end > c.cycle.count ? static_cast<double>(end - c.cycle.count) * c.cycle.period_s : 0;
 }
 
 bool MayBegin(const Context& c) noexcept {

@@ -23,13 +23,15 @@ constexpr double kBefore = 2;
 }  // namespace
 
 void PathRehearsal::Clear() noexcept {
-  started_ = marked_ = weakened_ = trouble_ = again_ = false;
+  started_ = marked_ = weakened_ = trouble_ = again_ = measuring_ = false;
   through_ = true;
+  end_cycle_ = 0;
   rounds_ = 0;
 }
 
 void PathRehearsal::GoOn(const PathWindow& window) noexcept {
-  through_ = false;
+  through_ = measuring_ = false;
+  end_cycle_ = 0;
   rounds_ = 0;
   if (started_ && here_.pace.node >= window.changed_from()) {
     if (marked_ && mark_.pace.node < window.changed_from()) {
@@ -75,7 +77,12 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, std
         BeginAt(window, here_.pace.node + 1, period_s, here_.pace);  // behind a stop the next motion begins
         here_.accelerations.fill(0);
       } else {
-        through_ = !weakened_ || ++rounds_ >= kRounds;
+        if (!weakened_) {
+          through_ = true;
+          end_cycle_ = here_.cycle - 1;
+        } else if (++rounds_ >= kRounds) {
+          measuring_ = true;
+        }
         started_ = false;
       }
       continue;
@@ -88,9 +95,9 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, std
       continue;
     }
     Advance(window, kFullSpeed, period_s, here_.pace);
-    ++here_.cycle;
     const double ahead_s = here_.cycle > cycle ? static_cast<double>(here_.cycle - cycle) * period_s : 0;
-    Look(window, before, ahead_s, period_s, probe);
+    ++here_.cycle;
+    if (!measuring_) Look(window, before, ahead_s, period_s, probe);
     const double ahead = kBefore * here_.pace.raw.velocity * period_s * here_.pace.cycles;
     if (!marked_ && here_.pace.raw.position + ahead >= free_until_) {
       mark_ = here_;

@@ -32,6 +32,9 @@ class PathRehearsal {
   // left to be done.
   bool Run(PathWindow& window, const PathPace& now, int cycles, std::uint64_t cycle, double period_s,
            const PathProbe& probe = {}) noexcept;
+  // The cycle at the end of which the motion stands at the end of what is known, if nothing slows it down; 0: not known
+  // yet.
+  std::uint64_t end_cycle() const noexcept { return end_cycle_; }
 
  private:
   // The motion as it is rehearsed, and what it asked of the coordinates last.
@@ -58,6 +61,8 @@ class PathRehearsal {
   bool started_ = false, marked_ = false, through_ = true;
   bool weakened_ = false;  // in this round
   int rounds_ = 0;
+  bool measuring_ = false;  // nothing is weakened any more: when it ends
+  std::uint64_t end_cycle_ = 0;
   double free_until_ = 0;  // mm along the path
   // What was too much, from where to where.
   bool trouble_ = false;

@@ -1,0 +1,62 @@
+// What a pick and place module understands. Its inputs are levels, as those of the Track Pick & Place block: they stay
+// until they are changed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/given.h"
+#include "takt/pickplace/places.h"
+#include "takt/pickplace/settings.h"
+
+namespace takt::pickplace {
+
+// The inputs of the manual's 3.6.2; "T&P:" in the doc strings is the name there. Those of its 3.6.3 are commands of the
+// belts.
+template <template <typename> class Of>
+struct InputsOf {
+  Of<bool> enable = Preset<Of>(true);
+  Of<bool> internal_control = Preset<Of>(false);
+  Of<bool> reset_error = Preset<Of>(false);
+  Of<bool> regulator_on = Preset<Of>(false);
+  Of<bool> path_stop = Preset<Of>(false);
+  Of<bool> path_halt = Preset<Of>(false);
+  Of<bool> stop_all = Preset<Of>(false);
+  Of<bool> home_execute = Preset<Of>(false);
+  Of<std::array<bool, kRealAxes>> home_abs_switch = Preset<Of>(std::array<bool, kRealAxes>{});
+  Of<bool> enable_hw_limit = Preset<Of>(false);
+  Of<std::array<bool, kAllAxes>> hw_limit_positive = Preset<Of>(std::array<bool, kAllAxes>{});
+  Of<std::array<bool, kAllAxes>> hw_limit_negative = Preset<Of>(std::array<bool, kAllAxes>{});
+  Of<SelectAxis> select_axis = Preset<Of>(SelectAxis::kNone);
+  Of<bool> execute = Preset<Of>(false);
+  Of<std::uint32_t> set_target = Preset<Of>(std::uint32_t{0});
+  Of<bool> path_interrupt = Preset<Of>(false);
+  Of<bool> abort = Preset<Of>(false);
+  Of<double> override_factor = Preset<Of>(1.0);
+  Of<bool> ack_gripper = Preset<Of>(false);
+  Of<bool> return_to_path = Preset<Of>(false);
+};
+using Inputs = InputsOf<Plain>;
+
+// Changes inputs. Where it starts a profile, homing or the way back to the path, it is done when that is.
+using Control = InputsOf<std::optional>;
+
+// Level-sensitive: give it again to change the levels, both false (or a release) to let go.
+struct Jog {
+  bool positive = false;
+  bool negative = false;
+};
+
+struct ResetCounters {};  // of what was picked, placed and missed
+
+using Command = std::variant<Control, Jog, Configure, ConfigureBelt, ResetCounters>;
+
+void describe(Description<Inputs>&);
+void describe(Description<Control>&);
+void describe(Description<Jog>&);
+void describe(Description<ResetCounters>&);
+
+}  // namespace takt::pickplace

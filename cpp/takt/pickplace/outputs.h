@@ -1,0 +1,67 @@
+// What a pick and place module publishes every cycle: the outputs of the manual's 3.6.4, and counters.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/status.h"
+#include "takt/pickplace/places.h"
+#include "takt/pickplace/state_table.h"
+
+namespace takt::pickplace {
+
+// What became of workpieces and places since the start or the last reset_counters.
+struct Counters {
+  std::uint32_t picked = 0;       // profiles that ended at a place to pick ...
+  std::uint32_t placed = 0;       // ... and to place
+  std::uint32_t missed = 0;       // workpieces that were on the way and left the range, of these:
+  std::uint32_t too_late = 0;     // nobody could have reached them in time any more
+  std::uint32_t interrupted = 0;  // the path to them was stopped or aborted
+  std::uint32_t refused = 0;      // there was no path to them
+};
+
+struct Outputs {
+  ModuleState state = ModuleState::kInit;
+  ErrorId error = ErrorId::kNone;
+  ErrorId warning = ErrorId::kNone;
+  std::array<std::uint32_t, kAllAxes> error_info{};  // error number of each axis
+  double set_path_velocity = 0;                      // mm/s
+  double path_preparation_time = 0;                  // s
+  double precalculated_profile_time = 0;             // s
+  std::array<double, kAllAxes> actual_position{};    // as measured
+  std::array<double, kAllAxes> actual_velocity{};
+  std::uint32_t profile_point_passed = 0;  // 0: the start; the last one is the target
+  std::uint32_t target = 0;                // that is approached: a belt from 1; 0: the static one
+  std::uint32_t workpiece = 0;             // its number there; 0: none
+  std::uint32_t profiles = 0;              // accepted and not yet done
+  Counters counters;
+  double picks_per_minute = 0;  // over the last ones
+  bool internal_control_active = false;
+  bool axes_enabled = false;
+  bool axes_group_enabled = false;
+  bool done = false;
+  bool busy = false;
+  bool axes_group_homed = false;
+  bool in_position = false;
+  bool hw_limit_switch_active = false;
+  bool sw_limit_switch_active = false;
+  std::array<bool, kAllAxes> hw_limit_switch_positive{};
+  std::array<bool, kAllAxes> hw_limit_switch_negative{};
+  std::array<bool, kAllAxes> sw_limit_enabled{};
+  std::array<bool, kAllAxes> sw_limit_switches{};
+  bool path_hold = false;  // rests on a path that can be gone on with
+  bool off_path = false;   // but was moved away from it: return_to_path
+  bool gripper_control_active = false;
+  bool pulse_gripper = false;  // for one cycle
+  bool profile_in_preparation = false;
+  bool acc_dec_sync = false;
+  bool synchronised = false;
+  bool in_target = false;
+  bool in_park_position = false;
+};
+
+void describe(Description<Counters>&);
+void describe(Description<Outputs>&);
+
+}  // namespace takt::pickplace

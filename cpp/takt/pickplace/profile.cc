@@ -1,0 +1,189 @@
+#include "takt/pickplace/profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "takt/core/describe.h"
+#include "takt/path/make.h"
+
+namespace takt::pickplace {
+
+namespace {
+
+using kinematics::Frame;
+
+// cos of what is still upright, and of what is no way back.
+constexpr double kUpright = 1 - 1e-9;
+
+Place Above(const Place& place, double distance) {
+  Place above = place;
+  above.pose.z += distance;
+  above.parks = false;
+  return above;
+}
+
+KDL::Vector In(const Frame& system, const Place& place) {
+  return system * KDL::Vector(place.pose.x, place.pose.y, place.pose.z);
+}
+
+bool IsUpright(const Frame& base, const Frame& system) {
+  return (base.M * system.M).UnitZ().z() > kUpright;
+}
+
+struct Maker {
+  const Systems& systems;
+  Profile profile;
+  KDL::Vector at;      // where the last leg ends
+  KDL::Vector before;  // and where it begins
+  double last = 0;     // mm, its length
+
+  // `system`: that of the leg's end.
+  void Add(const Leg& leg, const Frame& system, double radius) {
+    const KDL::Vector to = In(system, leg.to);
+    const double length = (to - at).Norm();
+    Leg& added = profile.legs[profile.count];
+    added = leg;
+    if (profile.count > 0 && last > path::kSame && length > path::kSame) {
+      const double turn = dot(at - before, to - at) / (last * length);
+      // An arch begins upright, whatever its ends.
+      if (leg.arch || turn > -kUpright) added.radius = std::min({radius, last / 2, length / 2});
+    }
+    ++profile.count;
+    before = at;
+    at = to;
+    last = length;
+  }
+};
+
+Profile Refused(ErrorId error) {
+  Profile profile;
+  profile.error = error;
+  return profile;
+}
+
+// To or from a parking position.
+Profile Parking(const Place& start, const Place& target, const Shape& shape, Maker& m) {
+  const double up = shape.height + (target.parks ? shape.start_distance : shape.target_distance);
+  const double radius = shape.height + shape.radius;
+  const bool both = start.parks && target.parks;
+  if (both || up <= path::kSame) {
+    m.Add({.to = target, .turns = true}, m.systems.target, 0);
+  } else if (target.parks) {
+    m.Add({.to = Above(start, up)}, m.systems.start, 0);
+    m.Add({.to = target, .turns = true}, m.systems.target, radius);
+  } else {
+    m.Add({.to = Above(target, up), .turns = true}, m.systems.target, 0);
+    m.Add({.to = target}, m.systems.target, radius);
+  }
+  return m.profile;
+}
+
+template <typename Move>
+void Fill(const Leg& leg, const PathRamps& ramps, bool keep_orientation, std::size_t aux1, Move& m) {
+  const Place& to = leg.to;
+  m.coordinate_system = to.system;
+  m.pcs = to.pcs;
+  m.x = to.pose.x;
+  m.y = to.pose.y;
+  m.z = to.pose.z;
+  if (leg.turns && !keep_orientation) {
+    m.a = to.pose.a;
+    m.b = to.pose.b;
+    m.c = to.pose.c;
+  }
+  const std::array aux = {&m.a1, &m.a2, &m.a3, &m.a4, &m.a5, &m.a6, &m.a7, &m.a8};
+  if (leg.turns && aux1 < aux.size()) *aux[aux1] = to.aux1;
+  m.velocity = ramps.velocity;
+  m.acceleration = ramps.acceleration;
+  m.deceleration = ramps.deceleration;
+  m.jerk = ramps.jerk;
+  m.buffer_mode = group::BufferMode::kBuffered;
+  if (leg.radius <= 0) return;
+  m.buffer_mode = group::BufferMode::kBlendingNext;
+  m.transition_mode = group::TransitionMode::kCornerDistance;
+  m.transition_parameter = leg.radius;
+}
+
+}  // namespace
+
+Profile MakeProfile(const Place& start, const Place& target, const Shape& shape, const Systems& systems) noexcept {
+  using group::CoordinateSystem;
+  if (start.system == CoordinateSystem::kAcs || target.system == CoordinateSystem::kAcs) {
+    return Refused(ErrorId::kParameter);
+  }
+  Maker m{systems, {}, In(systems.start, start), {}, 0};
+  if (start.parks || target.parks) return Parking(start, target, shape, m);
+  const bool arch = shape.mode == PathMode::kElliptical;
+  if (arch && !(IsUpright(systems.base, systems.start) && IsUpright(systems.base, systems.target))) {
+    return Refused(ErrorId::kParameter);
+  }
+  if (shape.start_distance > path::kSame) m.Add({.to = Above(start, shape.start_distance)}, systems.start, 0);
+  const bool lowers = shape.target_distance > path::kSame;
+  m.Add({.to = lowers ? Above(target, shape.target_distance) : target,
+         .arch = arch,
+         .turns = true,
+         .height = arch ? shape.height : 0},
+        systems.target, shape.radius);
+  if (lowers) m.Add({.to = target}, systems.target, shape.radius);
+  return m.profile;
+}
+
+group::MoveLinearAbsolute LineOf(const Leg& leg, const PathRamps& ramps, bool keep_orientation,
+                                 std::size_t aux1) noexcept {
+  group::MoveLinearAbsolute move;
+  Fill(leg, ramps, keep_orientation, aux1, move);
+  return move;
+}
+
+group::MoveArch ArchOf(const Leg& leg, const PathRamps& ramps, bool keep_orientation, std::size_t aux1) noexcept {
+  group::MoveArch move;
+  move.height = leg.height;
+  Fill(leg, ramps, keep_orientation, aux1, move);
+  return move;
+}
+
+void describe(Description<Place>& d) {
+  d.about("Where the tool is to be.");
+  d.internal<&Place::system>("What it is seen from.");
+  d.internal<&Place::pcs>("Which product coordinate system.");
+  d.internal<&Place::pose>("There.");
+  d.internal<&Place::aux1>(unit::u, "Of the auxiliary axis.");
+  d.internal<&Place::parks>("A parking position.");
+}
+
+void describe(Description<Shape>& d) {
+  d.about("How a profile runs.");
+  d.internal<&Shape::mode>("Between its points.");
+  d.internal<&Shape::start_distance>(unit::mm, "From the start to point 1.");
+  d.internal<&Shape::target_distance>(unit::mm, "From point 2 to the target.");
+  d.internal<&Shape::height>(unit::mm, "Of the ellipse.");
+  d.internal<&Shape::radius>(unit::mm, "Of the rounding.");
+  d.internal<&Shape::keep_orientation>("The tool is not turned.");
+}
+
+void describe(Description<Leg>& d) {
+  d.about("One move of a profile.");
+  d.internal<&Leg::to>("Where it ends.");
+  d.internal<&Leg::arch>("Along half an ellipse.");
+  d.internal<&Leg::turns>("Orientation and Aux1 change on it.");
+  d.internal<&Leg::height>(unit::mm, "Of the ellipse.");
+  d.internal<&Leg::radius>(unit::mm, "Of the rounding where it begins.");
+}
+
+void describe(Description<Profile>& d) {
+  d.about("The moves of a profile.");
+  d.internal<&Profile::legs>("In their order.");
+  d.internal<&Profile::count>("How many.");
+  d.internal<&Profile::error>("Why there are none.");
+}
+
+void describe(Description<PathRamps>& d) {
+  d.about("Limits along a profile.");
+  d.internal<&PathRamps::velocity>(unit::mm_s, "Largest speed.");
+  d.internal<&PathRamps::acceleration>(unit::mm_s2, "Largest acceleration.");
+  d.internal<&PathRamps::deceleration>(unit::mm_s2, "Largest deceleration.");
+  d.internal<&PathRamps::jerk>(unit::mm_s3, "Largest jerk.");
+}
+
+}  // namespace takt::pickplace
