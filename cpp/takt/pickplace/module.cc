@@ -16,6 +16,11 @@ bool Rises(bool now, bool before) {
   return now && !before;
 }
 
+// Something that stops harder than what is there.
+bool StopRises(const State& s) {
+  return Rises(s.inputs.stop_all, s.before.stop_all) || Rises(s.inputs.path_stop, s.before.path_stop);
+}
+
 // The manual's number for what stopped an axis, where it has one.
 ErrorId ErrorOf(ErrorId axis_error) {
   switch (axis_error) {
@@ -168,8 +173,7 @@ void Abort(const Context& c, group::State& g, State& s) {
 }
 
 void InStop(const Context& c, group::State& g, State& s) {
-  const bool again = Rises(s.inputs.stop_all, s.before.stop_all) || Rises(s.inputs.path_stop, s.before.path_stop);
-  if (again) return BeginStop(c, g, s);
+  if (StopRises(s)) return BeginStop(c, g, s);
   if (s.hold.held && s.jog.ticket != 0) return BeginJog(c, g, s);
   if (!StopIsAsked(s) && Stands(c, g)) Enter(ModuleState::kReady, s);
 }
@@ -267,7 +271,10 @@ void RunStates(const Context& c, group::State& g, State& s) {
     Enter(s.error == ErrorId::kNone ? ModuleState::kReady : ModuleState::kError, s);
   }
   if (s.state != ModuleState::kError) WatchFaults(c, g, s);
-  if (s.state != ModuleState::kError && s.state != ModuleState::kStop && StopIsAsked(s)) BeginStop(c, g, s);
+  // A jog from STOP goes on beneath the level that led there.
+  const bool jogs = Jogs(s) && s.back == ModuleState::kStop;
+  const bool stops = jogs ? StopRises(s) : StopIsAsked(s);
+  if (s.state != ModuleState::kError && s.state != ModuleState::kStop && stops) BeginStop(c, g, s);
   if (s.halting && IsFree(c, g)) s.halting = false;
   WatchHold(c, g, s);
   ReadyOrService(c, g, s);

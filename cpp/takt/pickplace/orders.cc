@@ -13,6 +13,7 @@ namespace {
 
 using group::SystemFrame;
 
+constexpr double kLimitShare = 0.98;  // as of the axes: the rest keeps the motion within
 constexpr double kOneAtATime = 0.25;  // of what is learned of a profile
 constexpr double kMargin = 1.1;       // of the time that the next one is thought to take
 
@@ -60,7 +61,7 @@ void Drop(const Context& c, std::uint32_t index, FeedbackState feedback, ErrorId
 void TightenLimits(const Context& c, const group::State& g, const State& s) {
   trajectory::CoordinateLimits limits = group::LimitsOf(c.group, g);
   const auto tighten = [&](std::size_t k, std::size_t i) {
-    const auto least = [](double limit, double own) { return own > 0 ? std::min(limit, own) : limit; };
+    const auto least = [](double limit, double own) { return own > 0 ? std::min(limit, kLimitShare * own) : limit; };
     trajectory::CoordinateLimits::One& of = limits.of[k];
     of = {least(of.velocity, s.settings.max_velocity[i]), least(of.acceleration, s.settings.max_acceleration[i]),
           least(of.jerk, s.settings.max_jerk[i])};
