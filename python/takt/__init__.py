@@ -20,6 +20,7 @@ from takt.feedback import Feedback, FeedbackState
 from takt.flex_cam import FlexCam
 from takt.forecast import Forecast, Moment
 from takt.group import Group
+from takt.pose import FreePose
 from takt.lcmlog import LogError, read_log
 from takt.recording import Recording, RecordingError
 from takt.remote import RemoteSession, connect
@@ -40,6 +41,7 @@ __all__ = [
     "FlexCam",
     "Group",
     "Forecast",
+    "FreePose",
     "LogError",
     "Moment",
     "Recorder",

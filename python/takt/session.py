@@ -20,6 +20,7 @@ from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.flex_cam import FlexCam
 from takt.group import Group
+from takt.pose import FreePose
 from takt.recording import Recording
 from takt.tables import components_of
 
@@ -32,7 +33,7 @@ Program = Callable[[], object]
 P = TypeVar("P", bound=Program)
 C = TypeVar("C", bound=Component)
 
-CLASSES: dict[str, type[Component]] = {component.KIND: component for component in (Axis, FlexCam, Group, Belt)}
+CLASSES: dict[str, type[Component]] = {component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose)}
 
 
 class Recorder:
@@ -84,6 +85,7 @@ class Session(MachineCommands):
         self._flex_cams = {name: c for name, c in self._components.items() if isinstance(c, FlexCam)}
         self._groups = {name: c for name, c in self._components.items() if isinstance(c, Group)}
         self._belts = {name: c for name, c in self._components.items() if isinstance(c, Belt)}
+        self._poses = {name: c for name, c in self._components.items() if isinstance(c, FreePose)}
         self._programs: list[Program] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
@@ -126,6 +128,14 @@ class Session(MachineCommands):
 
     def belt(self, name: str) -> Belt:
         return _named(self._belts, name, "belt")
+
+    @property
+    def poses(self) -> Mapping[str, FreePose]:
+        """All poses that come from elsewhere by name, in the order of the machine file."""
+        return MappingProxyType(self._poses)
+
+    def pose(self, name: str) -> FreePose:
+        return _named(self._poses, name, "pose")
 
     @property
     def components(self) -> Mapping[str, Component]:

@@ -1,26 +1,27 @@
 #include "takt/engine/carriers.h"
 
-#include <optional>
-
 #include "takt/kinematics/kinematics.h"
 
 namespace takt::engine {
 
 namespace {
 
-template <typename T>
-std::optional<std::uint32_t> Named(const std::vector<T>& list, std::string_view name) {
-  for (std::uint32_t i = 0; i < list.size(); ++i) {
-    if (list[i].params.name == name) return i;
-  }
-  return std::nullopt;
-}
-
 std::uint32_t FindCarrier(void* owner, std::string_view name) noexcept {
   const auto& [world, rider] = *static_cast<Rider*>(owner);
-  if (const auto belt = Named(world->belts, name)) return *belt + 1;
-  const auto group = Named(world->groups, name);
-  return group && *group != rider ? static_cast<std::uint32_t>(world->belts.size()) + *group + 1 : 0;
+  std::uint32_t number = 0;
+  for (const Belt& belt : world->belts) {
+    ++number;
+    if (belt.params.name == name) return number;
+  }
+  for (const AxesGroup& group : world->groups) {
+    ++number;
+    if (group.params.name == name) return &group == &world->groups[rider] ? 0 : number;
+  }
+  for (const conveyor::PoseParams& pose : world->poses) {
+    ++number;
+    if (pose.name == name) return number;
+  }
+  return 0;
 }
 
 // The tool as it is commanded.
@@ -49,7 +50,9 @@ kinematics::Carrier CarrierAt(void* owner, std::uint32_t number) noexcept {
   std::size_t i = number - 1;
   if (i < w.belts.size()) return conveyor::CarrierOf(w.belts[i].params, w.belt_states[i].travel);
   i -= w.belts.size();
-  return i < w.groups.size() ? ToolOf(w, i) : kinematics::Carrier{};
+  if (i < w.groups.size()) return ToolOf(w, i);
+  i -= w.groups.size();
+  return i < w.poses.size() ? conveyor::CarrierOf(w.poses[i], w.cycle, w.pose_states[i]) : kinematics::Carrier{};
 }
 
 double CarrierTravelAt(void* owner, std::uint32_t number, double position) noexcept {

@@ -1,4 +1,4 @@
-// What can carry something in a machine: its belts, then the tools of its groups.
+// What can carry something in a machine: its belts, then the tools of its groups, then poses.
 #pragma once
 
 #include "takt/engine/cycle.h"
@@ -6,7 +6,7 @@
 
 namespace takt::engine {
 
-// As this group sees them; `rider` must live on. Belts are numbered from 1, groups go on from there.
+// As this group sees them; `rider` must live on. Belts are numbered from 1, groups and poses go on from there.
 group::Carriers CarriersFor(Rider& rider) noexcept;
 
 }  // namespace takt::engine

@@ -20,6 +20,7 @@ constexpr std::string_view kAxis = "axis";
 constexpr std::string_view kFlexCam = "flex_cam";
 constexpr std::string_view kGroup = "group";
 constexpr std::string_view kBelt = "belt";
+constexpr std::string_view kPose = "pose";
 
 // A verb together with how its struct gets in and out of a command.
 struct Entry {
@@ -125,6 +126,8 @@ const std::vector<Entry>& Entries() {
       Make<group::Command, group::SetCartesianTransform>(kGroup, "set_cartesian_transform"),
       Make<group::Command, group::SetCoordinateTransform>(kGroup, "set_coordinate_transform"),
       Make<group::Command, group::SetDynCoordTransform>(kGroup, "set_dyn_coord_transform"),
+      Make<group::Command, group::TrackConveyorBelt>(kGroup, "track_conveyor_belt"),
+      Make<group::Command, group::TrackRotaryTable>(kGroup, "track_rotary_table"),
       Make<group::Command, group::MoveLinearAbsolute>(kGroup, "move_linear_absolute"),
       Make<group::Command, group::MoveLinearRelative>(kGroup, "move_linear_relative"),
       Make<group::Command, group::MoveCircularAbsolute>(kGroup, "move_circular_absolute"),
@@ -145,6 +148,7 @@ const std::vector<Entry>& Entries() {
       Make<conveyor::Command, conveyor::GiveBackObject>(kBelt, "give_back"),
       Make<conveyor::Command, conveyor::RemoveObject>(kBelt, "remove"),
       Make<conveyor::Command, conveyor::ClearObjects>(kBelt, "clear"),
+      Make<conveyor::PoseCommand, conveyor::SetPose>(kPose, "set"),
   };
   return entries;
 }

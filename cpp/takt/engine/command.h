@@ -10,6 +10,7 @@
 
 #include "takt/axis/commands.h"
 #include "takt/conveyor/commands.h"
+#include "takt/conveyor/pose.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
 #include "takt/engine/machine.h"
@@ -40,7 +41,8 @@ void describe(Description<Release>&);
 void describe(Description<Renew>&);
 
 using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
-using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command>;
+using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command,
+                                 conveyor::PoseCommand>;
 
 // Component i (components.h) is target i + 1.
 inline constexpr std::uint32_t kMachineTarget = 0;

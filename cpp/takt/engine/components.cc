@@ -4,6 +4,7 @@
 
 #include "takt/axis/outputs.h"
 #include "takt/conveyor/outputs.h"
+#include "takt/conveyor/pose.h"
 #include "takt/core/describe.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
@@ -31,6 +32,7 @@ std::span<const ComponentKind> ComponentKinds() {
       Make<flexcam::Outputs, &Machine::flex_cams>("flex_cam", "flex_cams", "a cam module", "cam modules"),
       Make<group::Outputs, &Machine::groups>("group", "groups", "a group of axes", "groups of axes"),
       Make<conveyor::Outputs, &Machine::belts>("belt", "belts", "a belt", "belts"),
+      Make<conveyor::PoseOutputs, &Machine::poses>("pose", "poses", "a pose", "poses"),
   };
   return kinds;
 }

@@ -366,6 +366,11 @@ void World::MakeBelts(const Machine& machine) {
     const Belt& belt = belts.emplace_back(params, axis::FindAxis(machine.axes, params.axis));
     (IsMeasured(params) ? measured_belts : belts_after[belt.axis]).push_back(index);
   }
+  TypeOf<conveyor::PoseState>();
+  TouchTypes(static_cast<const conveyor::PoseCommand*>(nullptr));
+  poses = machine.poses;
+  pose_states.resize(poses.size());
+  pose_outputs.resize(poses.size());
   belt_states.resize(belts.size());
   belt_outputs.resize(belts.size());
   for (std::uint32_t i = 0; i < groups.size(); ++i) riders.push_back({this, i});
@@ -378,6 +383,7 @@ std::uint64_t World::StateHash() const noexcept {
   for (const flexcam::State& state : flex_cam_states) hash = HashOf(state, hash);
   for (const group::State& state : group_states) hash = HashOf(state, hash);
   for (const conveyor::State& state : belt_states) hash = HashOf(state, hash);
+  for (const conveyor::PoseState& state : pose_states) hash = HashOf(state, hash);
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
   for (const HeardDrive& drive : drives) hash = HashOf(servo_inputs[drive.axis], HashOf(drive, hash));
   return hash;
@@ -437,6 +443,10 @@ void Apply(World& w, const Command& command) noexcept {
     const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size();  // likewise
     if (i >= w.belts.size()) return refuse(ErrorId::kUnknownTarget);
     conveyor::Apply(ContextOf(w, w.belts[i]), command.ticket, *for_belt, w.belt_states[i]);
+  } else if (const auto* for_pose = std::get_if<conveyor::PoseCommand>(&command.body)) {
+    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size();  // likewise
+    if (i >= w.poses.size()) return refuse(ErrorId::kUnknownTarget);
+    conveyor::Apply(w.cycle, w.feedback, command.ticket, *for_pose, w.pose_states[i]);
   }
 }
 
@@ -490,6 +500,9 @@ void Control(World& w) noexcept {
   }
   for (std::size_t i = 0; i < w.belts.size(); ++i) {
     conveyor::Publish(ContextOf(w, w.belts[i]), w.belt_states[i], w.belt_outputs[i]);
+  }
+  for (std::size_t i = 0; i < w.poses.size(); ++i) {
+    conveyor::Publish(w.poses[i], w.cycle, w.pose_states[i], w.pose_outputs[i]);
   }
 }
 

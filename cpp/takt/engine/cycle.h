@@ -13,6 +13,7 @@
 #include "takt/axis/state.h"
 #include "takt/cam/table.h"
 #include "takt/conveyor/belt.h"
+#include "takt/conveyor/pose.h"
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
 #include "takt/core/ports.h"
@@ -101,6 +102,10 @@ struct World {
   std::vector<std::uint32_t> measured_belts;            // step before all axes ...
   std::vector<std::vector<std::uint32_t>> belts_after;  // ... and those of set positions behind each axis
   std::vector<Rider> riders;                            // the groups
+
+  std::vector<conveyor::PoseParams> poses;
+  std::vector<conveyor::PoseState> pose_states;
+  std::vector<conveyor::PoseOutputs> pose_outputs;
 
   std::vector<ServoInputs> servo_inputs;
   std::vector<ServoOutputs> servo_outputs;

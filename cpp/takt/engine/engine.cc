@@ -70,6 +70,7 @@ struct Engine::Impl {
         flex_cams(machine, o, machine.flex_cams, world.flex_cam_outputs),
         groups(machine, o, machine.groups, world.group_outputs),
         belts(machine, o, machine.belts, world.belt_outputs),
+        poses(machine, o, machine.poses, world.pose_outputs),
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
         hashes(o.journal ? o.snapshot_queue : 2),
@@ -151,7 +152,7 @@ struct Engine::Impl {
   }
 
   // All kinds of components, in the order of their numbers.
-  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts); }
+  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses); }
 
   template <typename Outputs>
   void PublishAll(OfKind<Outputs>& kind) noexcept {
@@ -198,6 +199,7 @@ struct Engine::Impl {
   OfKind<flexcam::Outputs> flex_cams;
   OfKind<group::Outputs> groups;
   OfKind<conveyor::Outputs> belts;
+  OfKind<conveyor::PoseOutputs> poses;
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
   SpscQueue<HashEntry> hashes;
@@ -283,6 +285,9 @@ const group::Outputs& Engine::group_outputs(std::size_t group) const noexcept {
 const conveyor::Outputs& Engine::belt_outputs(std::size_t belt) const noexcept {
   return impl_->world.belt_outputs[belt];
 }
+const conveyor::PoseOutputs& Engine::pose_outputs(std::size_t pose) const noexcept {
+  return impl_->world.pose_outputs[pose];
+}
 std::size_t Engine::components() const noexcept {
   return std::apply([](const auto&... kind) { return (kind.outputs.size() + ...); }, impl_->kinds());
 }
@@ -358,6 +363,7 @@ template SpscQueue<AxisSnapshot>& Engine::snapshots<axis::Outputs>() noexcept;
 template SpscQueue<FlexCamSnapshot>& Engine::snapshots<flexcam::Outputs>() noexcept;
 template SpscQueue<GroupSnapshot>& Engine::snapshots<group::Outputs>() noexcept;
 template SpscQueue<BeltSnapshot>& Engine::snapshots<conveyor::Outputs>() noexcept;
+template SpscQueue<PoseSnapshot>& Engine::snapshots<conveyor::PoseOutputs>() noexcept;
 
 SpscQueue<EngineFigures>& Engine::figure_queue() noexcept {
   return impl_->figure_queue;

@@ -9,6 +9,7 @@
 
 #include "takt/axis/forecast.h"
 #include "takt/conveyor/outputs.h"
+#include "takt/conveyor/pose.h"
 #include "takt/core/cycle.h"
 #include "takt/core/spsc_queue.h"
 #include "takt/engine/command.h"
@@ -62,6 +63,7 @@ class Engine {
   const flexcam::Outputs& flex_cam_outputs(std::size_t module) const noexcept;
   const group::Outputs& group_outputs(std::size_t group) const noexcept;
   const conveyor::Outputs& belt_outputs(std::size_t belt) const noexcept;
+  const conveyor::PoseOutputs& pose_outputs(std::size_t pose) const noexcept;
   // The same for components of any kind, by the number that is their target, less one.
   struct Published {
     const Type* type;

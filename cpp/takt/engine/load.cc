@@ -49,6 +49,7 @@ class CrossCheck {
     CheckNames("paths", machine_.paths);
     CheckGroups();
     CheckNames("belts", machine_.belts);
+    CheckNames("poses", machine_.poses);
     CheckBelts();
     CheckCamSwitches();
     std::vector<std::string_view> servos;
@@ -164,28 +165,34 @@ class CrossCheck {
     }
   }
 
-  // Belts and the axes that they name; several may go by the same.
+  // Belts and the axes that they name; several may go by the same. And poses.
   void CheckBelts() {
     const std::vector<std::string_view> names = Components();
-    const auto of_others = names.begin() + static_cast<std::ptrdiff_t>(names.size() - machine_.belts.size());
-    for (std::size_t i = 0; i < machine_.belts.size(); ++i) {
-      const conveyor::BeltParams& belt = machine_.belts[i];
-      const std::string path = "belts[" + std::to_string(i) + "]";
-      if (belt.name == "machine" || std::find(names.begin(), of_others, belt.name) != of_others) {
-        Add(path + ".name", "expected a name that no axis, cam module or group has, and not machine, found " +
-                                Quoted(belt.name));
+    const auto poses = names.end() - static_cast<std::ptrdiff_t>(machine_.poses.size());
+    const auto belts = poses - static_cast<std::ptrdiff_t>(machine_.belts.size());
+    const auto check_name = [&](const std::string& path, std::string_view name, auto others) {
+      if (name == "machine" || std::find(names.begin(), others, name) != others) {
+        Add(path + ".name", "expected a name that nothing else has, and not machine, found " + Quoted(name));
       }
+    };
+    for (std::size_t i = 0; i < machine_.belts.size(); ++i) {
+      const std::string path = "belts[" + std::to_string(i) + "]";
+      check_name(path, machine_.belts[i].name, belts);
       std::vector<std::string_view> any;
-      CheckReference(path + ".axis", belt.axis, any);
+      CheckReference(path + ".axis", machine_.belts[i].axis, any);
+    }
+    for (std::size_t i = 0; i < machine_.poses.size(); ++i) {
+      check_name("poses[" + std::to_string(i) + "]", machine_.poses[i].name, poses);
     }
   }
 
-  // Names of all, belts last.
+  // Names of all, belts and poses last.
   std::vector<std::string_view> Components() const {
     std::vector<std::string_view> names = names_;
     for (const flexcam::FlexCamParams& module : machine_.flex_cams) names.push_back(module.name);
     for (const group::GroupParams& group : machine_.groups) names.push_back(group.name);
     for (const conveyor::BeltParams& belt : machine_.belts) names.push_back(belt.name);
+    for (const conveyor::PoseParams& pose : machine_.poses) names.push_back(pose.name);
     return names;
   }
 

@@ -11,6 +11,7 @@
 #include "takt/axis/params.h"
 #include "takt/cam/params.h"
 #include "takt/conveyor/params.h"
+#include "takt/conveyor/pose.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/flexcam/params.h"
 #include "takt/group/params.h"
@@ -71,6 +72,7 @@ struct Machine {
   std::vector<group::GroupParams> groups;
   std::vector<group::PathParams> paths;
   std::vector<conveyor::BeltParams> belts;
+  std::vector<conveyor::PoseParams> poses;
   Simulation simulation;
   External external;
 };

@@ -7,6 +7,7 @@
 
 #include "takt/axis/outputs.h"
 #include "takt/conveyor/outputs.h"
+#include "takt/conveyor/pose.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/engine/command.h"
 #include "takt/flexcam/outputs.h"
@@ -15,7 +16,8 @@
 namespace takt::engine {
 
 // What each kind of components publishes, in the order of ComponentKinds().
-using PublishedKinds = std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs>;
+using PublishedKinds =
+    std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs, conveyor::PoseOutputs>;
 
 // What a component published.
 template <typename Outputs>
@@ -29,6 +31,7 @@ using AxisSnapshot = SnapshotOf<axis::Outputs>;
 using FlexCamSnapshot = SnapshotOf<flexcam::Outputs>;
 using GroupSnapshot = SnapshotOf<group::Outputs>;
 using BeltSnapshot = SnapshotOf<conveyor::Outputs>;
+using PoseSnapshot = SnapshotOf<conveyor::PoseOutputs>;
 
 struct JournalEntry {  // a command as it was applied
   std::uint64_t cycle = 0;

@@ -10,6 +10,7 @@
 #include "takt/group/run.h"
 #include "takt/group/sync.h"
 #include "takt/group/systems.h"
+#include "takt/group/track.h"
 
 namespace takt::group {
 
@@ -77,6 +78,7 @@ struct Applier {
   void operator()(const Stop& m) const {
     if (Is(GroupState::kDisabled)) return Refuse(ErrorId::kGroupDisabled);
     if (Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
+    EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
     AbortAll({m.deceleration.value_or(0), m.jerk.value_or(0)});
     if (Is(GroupState::kHoming)) TellAll(c, s, axis::Stop{});
     s.ends = true;
@@ -91,6 +93,7 @@ struct Applier {
   }
   void operator()(const Halt& m) const {
     if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
+    EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
     AbortAll({m.deceleration.value_or(0), m.jerk.value_or(0)});
     s.ends = true;
     s.task = Task::kHalt;
@@ -146,6 +149,7 @@ struct Applier {
   }
   // The members come to rest each by itself: they are no group any more.
   void LeaveAll() const {
+    EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
     AbortAll();
     if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
     LetGoOfMembers(c, s);
@@ -176,6 +180,7 @@ struct Applier {
     if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
     if (m.enable && s.guides) return Finish(ErrorId::kNone);
     if (!m.enable && (s.begun || s.queue.count > 0)) {  // along the path first
+      EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
       AbortAll();
       s.hold = false;
       s.task = Task::kPower;
@@ -263,6 +268,14 @@ struct Applier {
     s.cargoes[m.pcs - 1] = cargo;
     Finish(ErrorId::kNone);
   }
+  template <typename T>
+  void Track(const T& m) const {
+    ErrorId error = MayMove();
+    if (error == ErrorId::kNone) error = BeginTracking(c, ticket, m, s);
+    if (error != ErrorId::kNone) Refuse(error);
+  }
+  void operator()(const TrackConveyorBelt& m) const { Track(m); }
+  void operator()(const TrackRotaryTable& m) const { Track(m); }
   void operator()(const SetCartesianTransform& m) const {
     s.cargoes[m.pcs - 1] = {};
     s.product_systems[m.pcs - 1] = {m.x, m.y, m.z, m.a, m.b, m.c};

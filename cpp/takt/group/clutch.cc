@@ -6,6 +6,7 @@
 #include "takt/axis/chase.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
+#include "takt/trajectory/quintic.h"
 
 namespace takt::group {
 
@@ -15,6 +16,7 @@ namespace {
 constexpr double kShare = 0.9;
 constexpr double kLeastAcceleration = 0.1;  // of an axis, left beside what its bends need
 constexpr int kPlaces = 4;
+constexpr double kLeastOverride = 0.01;
 constexpr double kPlacesApart_s = 0.05;
 
 trajectory::Planner& PlannerOf(const Context& c, const State& s) {
@@ -45,10 +47,28 @@ MovingFrame ToolAtTravel(const Context& c, const Stretch& stretch, double way, c
          (ride.reference_inverse * path::At(stretch.segment, way).GetFrame());
 }
 
+// Where the law that gets the tool into step, or out of it, wants it. False: the law is through.
+bool FollowLaw(const KinematicState& carrier, bool out, Clutch& clutch, KinematicState& demand) {
+  if (clutch.law_length == 0) return false;
+  const double x = std::clamp((carrier.position - clutch.law_begin) / clutch.law_length, 0.0, 1.0);
+  if (x >= 1) {
+    clutch.law_length = 0;
+    return false;
+  }
+  const trajectory::Quintic law =
+      trajectory::Connect(clutch.law_length, {0, out ? 1.0 : 0.0, 0}, {clutch.law_way, out ? 0.0 : 1.0, 0});
+  demand = trajectory::AlongWay(law.At(x * clutch.law_length), carrier);
+  demand.position += clutch.law_from;
+  return true;
+}
+
 void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& clutch) {
   trajectory::Planner& planner = PlannerOf(c, s);
   const double period = c.cycle.period_s;
-  if (s.lets_go) {
+  const TrackingParams& params = c.params.tracking;
+  KinematicState demand = carrier;
+  const bool law = FollowLaw(carrier, s.lets_go, clutch, demand);
+  if (s.lets_go && !law) {
     trajectory::Limits limits = clutch.limits();
     if (s.brake.deceleration > 0) limits.deceleration = std::min(limits.deceleration, s.brake.deceleration);
     if (s.brake.jerk > 0) limits.jerk = std::min(limits.jerk, s.brake.jerk);
@@ -58,14 +78,16 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
     clutch.coupled = false;
     return;
   }
-  if (clutch.coupled) {
+  if (clutch.coupled && params.after_sync == AfterSync::kStay && !law) {
     clutch.travel = carrier;
     return;
   }
   axis::ChaseState chase;
-  const axis::Chaser chaser = {clutch.limits(), planner, clutch.limits(), period};
-  clutch.travel = axis::Chase(chaser, axis::ChaseMode::kPosition, clutch.travel, carrier, chase);
-  clutch.coupled = chase.in_step;
+  trajectory::Limits catching_up = clutch.limits();
+  if (params.override_in_sync) catching_up.velocity *= std::max(s.velocity_factor, kLeastOverride);
+  const axis::Chaser chaser = {clutch.limits(), planner, catching_up, period};
+  clutch.travel = axis::Chase(chaser, axis::ChaseMode::kPosition, clutch.travel, demand, chase);
+  clutch.coupled = chase.in_step && !law;
 }
 
 void StepOne(const Context& c, const Stretch& stretch, double way, std::uint64_t number, State& s) {
@@ -78,8 +100,14 @@ void StepOne(const Context& c, const Stretch& stretch, double way, std::uint64_t
   const auto free = std::ranges::find_if(s.clutches, [](const Clutch& k) { return !k.used; });
   if (free == s.clutches.end()) return;
   const trajectory::Limits limits = LimitsAlong(c, s, stretch, way, number);
-  *free = {true,       !s.lets_go, number, carrier.travel, limits.velocity, limits.acceleration, limits.deceleration,
-           limits.jerk};
+  free->used = true;
+  free->coupled = !s.lets_go;
+  free->ride = number;
+  free->travel = carrier.travel;
+  free->velocity = limits.velocity;
+  free->acceleration = limits.acceleration;
+  free->deceleration = limits.deceleration;
+  free->jerk = limits.jerk;
 }
 
 }  // namespace
@@ -104,14 +132,22 @@ bool ClutchesStand(const State& s) noexcept {
   });
 }
 
-bool CanLetGo(const Context& c, const Stretch& stretch, double way, State& s) noexcept {
-  if (stretch.joints || stretch.from_ride != stretch.to_ride) return true;
-  const Clutch* clutch = Find(s, stretch.to_ride);
-  if (!clutch) return true;
-  const KinematicState rest = {trajectory::StopPosition(clutch->travel, clutch->limits()), 0, 0};
-  const MovingFrame tool = ToolAtTravel(c, stretch, way, RideAt(c, stretch.to_ride), rest);
+bool CanLetGo(const Context& c, const Stretch& stretch, const MovingFrame& tool, State& s) noexcept {
+  const double speed = tool.p.v.Norm();
+  const PathLimits& path = c.params.path;
+  const trajectory::Limits limits = {path.velocity, path.acceleration, path.deceleration.value_or(path.acceleration),
+                                     path.jerk};
+  MovingFrame rest = tool;
+  rest.p.dv = rest.M.dw = KDL::Vector::Zero();
+  if (speed > 0) rest.p.p += trajectory::StopPosition({0, speed, 0}, limits) / speed * tool.p.v;
   kinematics::JointMotion motion;
-  const kinematics::Reason reason = AxesFor(c, s, stretch, tool, {way, 0, 0}, s.joints, motion);
+  kinematics::Reason reason = AxesFor(c, s, stretch, rest, {stretch.from, 0, 0}, s.joints, motion);
+  const trajectory::CoordinateLimits& own = c.ahead.window.limits();
+  for (std::size_t k = 0; k < std::min(own.count, kMaxAxes); ++k) {
+    if (reason != kinematics::Reason::kNone || s.members[k] == 0) continue;
+    if (std::abs(motion.velocity[k]) > own.of[k].velocity) reason = kinematics::Reason::kSingular;
+    if (std::abs(motion.acceleration[k]) > own.of[k].acceleration) reason = kinematics::Reason::kSingular;
+  }
   if (reason != kinematics::Reason::kNone) s.reason = reason;
   return reason == kinematics::Reason::kNone;
 }

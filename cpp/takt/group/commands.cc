@@ -441,6 +441,50 @@ void describe(Description<SetDynCoordTransform>& d) {
                                      "Of the belt's axis when the object was at that place of the belt; unset: now.");
 }
 
+void describe(Description<TrackConveyorBelt>& d) {
+  using C = TrackConveyorBelt;
+  d.about(
+      "Takes the tool along with an object on a belt, from one place of the belt to another (MC_TrackConveyorBelt).");
+  d.required<&C::belt>("Name of the belt.");
+  d.defaulted<&C::pcs>(between(1, kProductSystems), "Product coordinate system that becomes the object's.");
+  d.defaulted<&C::origin_x>(unit::mm, kPlaces,
+                            "ConveyorBeltOrigin in the MCS, X along the belt; unset: the belt's own.");
+  d.defaulted<&C::origin_y>(unit::mm, kPlaces, "Y of it.");
+  d.defaulted<&C::origin_z>(unit::mm, kPlaces, "Z of it.");
+  d.defaulted<&C::origin_a>(unit::deg, kAngles, "Turned about X.");
+  d.defaulted<&C::origin_b>(unit::deg, kAngles, "Turned about Y.");
+  d.defaulted<&C::origin_c>(unit::deg, kAngles, "Turned about Z.");
+  DescribePose(d);
+  d.defaulted<&C::recorded_position>(
+      unit::u, kAxisPositions, "RecordedPosition: of the belt's axis when the object was at that pose; unset: now.");
+  d.defaulted<&C::start_distance>(unit::mm, kPlaces, "StartDistance: travel, and x more, after which tracking begins.");
+  d.defaulted<&C::end_distance>(unit::mm, kPlaces, "EndDistance: travel after which it ends; unset: never.");
+  d.defaulted<&C::sync_in_conveyor_distance>(
+      unit::mm, at_least(0), "Travel in which the tool gets into step; 0: as fast as the limits allow.");
+  d.defaulted<&C::sync_in_tcp_distance>(unit::mm, at_least(0),
+                                        "How far the tool goes meanwhile; 0: to the object, along the belt.");
+  d.defaulted<&C::sync_out_conveyor_distance>(unit::mm, at_least(0),
+                                              "Travel in which the tool comes to rest; 0: likewise.");
+  d.defaulted<&C::sync_out_tcp_distance>(unit::mm, at_least(0), "How far the tool goes meanwhile; 0: half of that.");
+  d.defaulted<&C::execution_mode>("When it takes effect.");
+}
+
+void describe(Description<TrackRotaryTable>& d) {
+  using C = TrackRotaryTable;
+  d.about("Takes the tool along with an object on a table that turns, either way round (MC_TrackRotaryTable).");
+  d.required<&C::table>("Name of the belt of kind turning.");
+  d.defaulted<&C::pcs>(between(1, kProductSystems), "Product coordinate system that becomes the object's.");
+  DescribePose(d);
+  d.defaulted<&C::recorded_position>(unit::u, kAxisPositions,
+                                     "Of the table's axis when the object was at that pose; unset: now.");
+  d.defaulted<&C::start_angle>(unit::deg, kAngles, "Turn after which tracking begins, in the sense of the table.");
+  d.defaulted<&C::end_angle>(unit::deg, kAngles, "Turn after which it ends; unset: never.");
+  d.defaulted<&C::sync_in_angle>(unit::deg, at_least(0),
+                                 "Turn in which the tool gets into step; 0: as fast as the limits allow.");
+  d.defaulted<&C::sync_out_angle>(unit::deg, at_least(0), "Turn in which the tool comes to rest; 0: likewise.");
+  d.defaulted<&C::execution_mode>("When it takes effect.");
+}
+
 void describe(Description<PathChecked>& d) {
   using C = PathChecked;
   d.about("Whether the path that the group asks about is free. Given by the engine alone.");

@@ -247,7 +247,8 @@ using Command =
     std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircularAbsolute, MoveCircularRelative, MoveDirectAbsolute,
                  MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop, Halt, Interrupt, Continue, AddAxis,
                  RemoveAxis, UngroupAllAxes, Enable, Disable, Reset, Power, Home, SetPosition, SetOverride,
-                 SetKinTransform, SetCartesianTransform, SetCoordinateTransform, SetDynCoordTransform, PathChecked>;
+                 SetKinTransform, SetCartesianTransform, SetCoordinateTransform, SetDynCoordTransform,
+                 TrackConveyorBelt, TrackRotaryTable, PathChecked>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
 std::string WhyNot(const Command& command);
@@ -282,6 +283,8 @@ void describe(Description<SetKinTransform>&);
 void describe(Description<SetCartesianTransform>&);
 void describe(Enumeration<ExecutionMode>&);
 void describe(Description<SetDynCoordTransform>&);
+void describe(Description<TrackConveyorBelt>&);
+void describe(Description<TrackRotaryTable>&);
 void describe(Description<SetCoordinateTransform>&);
 void describe(Description<PathChecked>&);
 

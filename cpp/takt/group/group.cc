@@ -10,6 +10,7 @@
 #include "takt/group/run.h"
 #include "takt/group/sync.h"
 #include "takt/group/systems.h"
+#include "takt/group/track.h"
 
 namespace takt::group {
 
@@ -20,6 +21,7 @@ void Fail(const Context& c, ErrorId error, State& s) {
   if (s.state == GroupState::kErrorStop) return;
   EndTask(c, FeedbackState::kError, error, s);
   s.hold = false;
+  EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
   AbortMoves(c, error, s);
   EndMotion({}, true, s);
   if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
@@ -188,6 +190,7 @@ void Step(const Context& c, State& s) noexcept {
   if (s.task == Task::kPower) WatchPower(c, s);
   if (s.state == GroupState::kHoming && s.task != Task::kPower) WatchHoming(c, s);
   if (s.state == GroupState::kStandby || s.state == GroupState::kMoving) {
+    if (!s.interrupted) StepTracking(c, s);
     if (!s.ends && !s.interrupted) Plan(c, s);
     if (!s.begun && !s.ends && MayBegin(c)) BeginMotion(c, s);
   }
@@ -199,6 +202,7 @@ void Step(const Context& c, State& s) noexcept {
     while (!s.ends && s.queue.count > 0) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
     ComeToRest(c, s);
   }
+  WatchTracking(c, s);
   LeadSynced(c, s);
 }
 

@@ -319,4 +319,28 @@ kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& str
   return reason;
 }
 
+bool Foresee(const Context& c, const State& s, const KinematicState& along, double ahead_s,
+             trajectory::PathCoordinateValues& positions, trajectory::PathCoordinateValues& velocities,
+             trajectory::PathCoordinateValues& accelerations) noexcept {
+  const LookAhead& ahead = c.ahead;
+  if (ahead.count == 0) return false;
+  std::uint64_t i = ahead.first;
+  if (ahead[i].from_ride == ahead.end_ride && !ahead.rides[ahead.end_ride % kRides].displaces) return false;
+  while (i + 1 < ahead.end() && ahead[i].end() <= along.position) ++i;
+  if (!IsCarried(ahead, ahead[i])) return false;
+  const Stretch& stretch = ahead[i];
+  KinematicState way = along;
+  way.position = std::clamp(stretch.from + along.position - stretch.begin, stretch.from, stretch.to);
+  const path::MovingFrame tool = ToolIn(c, stretch, way, ahead_s);
+  kinematics::Joints near = s.joints;
+  if (!std::isnan(positions[0])) std::copy_n(positions.begin(), kMaxAxes, near.begin());
+  kinematics::JointMotion motion;
+  if (AxesFor(c, s, stretch, tool, way, near, motion) != kinematics::Reason::kNone) return false;
+  std::copy(motion.position.begin(), motion.position.end(), positions.begin());
+  const trajectory::PathSlopes values = SlopesOf(c, motion, tool);
+  velocities = values.first;
+  accelerations = values.second;
+  return true;
+}
+
 }  // namespace takt::group

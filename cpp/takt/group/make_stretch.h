@@ -13,6 +13,12 @@ kinematics::Reason AxesFor(const Context& c, const State& s, const Stretch& stre
                            const KinematicState& along, const kinematics::Joints& near,
                            kinematics::JointMotion& motion) noexcept;
 
+// What a motion along the path asks of all coordinates of LimitsOf where it is carried, if that goes on as it does now.
+// `positions` of the place before, NaN: none. False: it is not carried there, or the axes cannot be so.
+bool Foresee(const Context& c, const State& s, const KinematicState& along, double ahead_s,
+             trajectory::PathCoordinateValues& positions, trajectory::PathCoordinateValues& velocities,
+             trajectory::PathCoordinateValues& accelerations) noexcept;
+
 // Slopes of all coordinates of LimitsOf and what is left of their limits, and the axes.
 kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& stretch, double way,
                             const kinematics::Joints& near, trajectory::PathPoint& point,

@@ -29,6 +29,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::path_velocity>(unit::mm_s, "Speed along the path.");
   d.internal<&O::path_acceleration>(unit::mm_s2, "Acceleration along the path.");
   d.internal<&O::path_left>(unit::mm, "How much of the path is left, as far as it is known.");
+  d.internal<&O::time_left>(unit::s, "Until it stands at the end of what was commanded; NaN: not known.");
   d.internal<&O::path_error>(unit::mm, "From the place commanded for this cycle to the measured one.");
   d.internal<&O::override_factor>(unit::one, "Velocity factor of the override.");
   d.internal<&O::command>("Ticket of the move in control; 0: none.");
@@ -58,6 +59,16 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::pcs14>("The same of 14.");
   d.internal<&O::pcs15>("The same of 15.");
   d.internal<&O::pcs16>("The same of 16.");
+  d.internal<&O::track_state>("How the tool goes along with an object.");
+  d.internal<&O::in_sync>("It is in step with it.");
+  d.internal<&O::track_lag>(
+      "Of the carrier's travel, mm or rad, from the tool to the object; NaN without one, as all that follows.");
+  d.internal<&O::object_x>(unit::mm, "X of the commanded tool, seen from the object.");
+  d.internal<&O::object_y>(unit::mm, "Y of it.");
+  d.internal<&O::object_z>(unit::mm, "Z of it.");
+  d.internal<&O::object_a>(unit::deg, "A of it: about X.");
+  d.internal<&O::object_b>(unit::deg, "B of it: about Y.");
+  d.internal<&O::object_c>(unit::deg, "C of it: about Z.");
   d.internal<&O::kinematics_on>("There are kinematics, and they are switched on.");
   d.internal<&O::in_position>("It stands and has nothing to do.");
   d.internal<&O::interrupted>("It rests on the path until it is continued.");

@@ -8,6 +8,7 @@
 #include "takt/core/status.h"
 #include "takt/group/commands.h"
 #include "takt/group/state_table.h"
+#include "takt/group/track_state.h"
 #include "takt/kinematics/frames.h"
 #include "takt/kinematics/joints.h"
 #include "takt/path/segment.h"
@@ -40,6 +41,7 @@ struct Outputs {
   double path_velocity = 0;      // mm/s
   double path_acceleration = 0;  // mm/s²
   double path_left = 0;          // mm, of what is known
+  double time_left = 0;          // s until it stands at the end of what was commanded; NaN: not known
   double path_error = 0;         // mm, between the place commanded for this cycle and the measured one
   double override_factor = 1;
   std::uint64_t command = 0;   // ticket of the move in control; 0: none
@@ -57,6 +59,16 @@ struct Outputs {
   // Product coordinate systems as they are now, seen from that of the machine.
   kinematics::Pose pcs1{}, pcs2{}, pcs3{}, pcs4{}, pcs5{}, pcs6{}, pcs7{}, pcs8{};
   kinematics::Pose pcs9{}, pcs10{}, pcs11{}, pcs12{}, pcs13{}, pcs14{}, pcs15{}, pcs16{};
+  // Going along with an object on something that moves; NaN without one.
+  TrackState track_state = TrackState::kNone;
+  bool in_sync = false;
+  double track_lag = 0;  // mm or rad of the carrier's travel, from the object to the tool
+  double object_x = 0;   // mm, of the tool as commanded, in the coordinate system of the object
+  double object_y = 0;
+  double object_z = 0;
+  double object_a = 0;  // deg
+  double object_b = 0;
+  double object_c = 0;
   bool kinematics_on = false;  // there are kinematics, and they are switched on
   bool in_position = false;    // stands, and has nothing to do
   bool interrupted = false;    // rests on the path until it is continued

@@ -34,6 +34,21 @@ void describe(Description<ToolLimits>& d) {
   d.defaulted<&L::angular_jerk>(unit::deg_s3, kJerks, "Largest jerk about each.");
 }
 
+void describe(Enumeration<AfterSync>& e) {
+  e.about("What counts once the tool is in step with what moves.");
+  e.value(AfterSync::kStay, "stay", "To stay in step, whatever that does; the axes keep their own limits.");
+  e.value(AfterSync::kLimited, "limited", "The group's limits: where they do not allow it the tool falls out of step.");
+}
+
+void describe(Description<TrackingParams>& d) {
+  using P = TrackingParams;
+  d.about("How a group follows objects on belts and tables.");
+  d.defaulted<&P::after_sync>("Once in step.");
+  d.defaulted<&P::tolerance>(at_least(0), "mm, or rad on tables, that count as in step; 0: exactly.");
+  d.defaulted<&P::tolerance_time_s>(unit::s, at_least(0), "For so long.");
+  d.defaulted<&P::override_in_sync>("The override holds for getting into step, too.");
+}
+
 void describe(Description<GroupParams>& d) {
   using G = GroupParams;
   d.about("A group of axes that move together, with or without kinematics.");
@@ -42,6 +57,7 @@ void describe(Description<GroupParams>& d) {
   d.defaulted<&G::kinematics>("How the axes move the tool; unset: there is none, only axes move.");
   d.required<&G::path>("Limits along the path.");
   d.defaulted<&G::tool_limits>("Limits of the tool.");
+  d.defaulted<&G::tracking>("How it follows objects on belts and tables.");
   d.defaulted<&G::base>("Where the machine coordinate system is in the world.");
   d.defaulted<&G::tool>("Where the tool centre point is on the flange.");
   d.defaulted<&G::workspace>(

@@ -30,12 +30,24 @@ struct ToolLimits {
   std::optional<double> angular_jerk{};          // deg/s³
 };
 
+// Once in step with what moves: go along whatever it does, or keep the limits of the group and fall out of step.
+enum class AfterSync : std::uint8_t { kStay, kLimited };
+
+// How the group follows objects on belts.
+struct TrackingParams {
+  AfterSync after_sync = AfterSync::kStay;
+  double tolerance = 0;           // mm (tables: rad) from the object that count as in step; 0: exactly there
+  double tolerance_time_s = 0;    // s, for so long
+  bool override_in_sync = false;  // the override slows down getting into step, too
+};
+
 struct GroupParams {
   std::string name;
   std::vector<std::string> axes;  // names: those of the kinematics first, in its order, then auxiliary ones
   std::optional<kinematics::KinematicsParams> kinematics{};
   PathLimits path;
   ToolLimits tool_limits;
+  TrackingParams tracking;
   kinematics::Pose base;                                  // of the machine coordinate system in the world
   kinematics::Pose tool;                                  // of the tool centre point on the flange
   std::optional<workspace::WorkspaceParams> workspace{};  // unset: paths are not checked
@@ -66,6 +78,8 @@ struct PathParams {
 
 void describe(Description<PathLimits>&);
 void describe(Description<ToolLimits>&);
+void describe(Enumeration<AfterSync>&);
+void describe(Description<TrackingParams>&);
 void describe(Description<GroupParams>&);
 void describe(Description<PathPose>&);
 void describe(Enumeration<ElementShape>&);

@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "takt/group/ask.h"
+#include "takt/group/clutch.h"
 #include "takt/group/join.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
 #include "takt/group/rides.h"
+#include "takt/group/track.h"
 #include "takt/path/make.h"
 
 namespace takt::group {
@@ -447,6 +449,7 @@ void Plan(const Context& c, State& s) noexcept {
           break;
         }
         if (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short) return;
+        if (WaitsForTracking(s, MoveAt(s, s.planning.move))) return;
         if (!Tries(s) && !HasRoom(c.ahead)) return;
         if (c.ahead.corner.open && !IsPath(s) && HasWorkspace(c, s)) {  // nothing waits for an answer
           c.ahead.corner.open = false;
@@ -497,7 +500,25 @@ bool IsPlanned(const Context& c, const State& s) noexcept {
 }
 
 void Rehearse(const Context& c, const State& s) noexcept {
-  c.ahead.rehearsal.Run(c.ahead.window, s.pace, kRehearsed, c.cycle.period_s);
+  struct Owner {
+    const Context& c;
+    const State& s;
+  };
+  const Owner owner{c, s};
+  const auto look = [](const void* with, const KinematicState& along, double ahead_s,
+                       trajectory::PathCoordinateValues& positions, trajectory::PathCoordinateValues& velocities,
+                       trajectory::PathCoordinateValues& accelerations) noexcept {
+    const auto& [context, state] = *static_cast<const Owner*>(with);
+    return Foresee(context, state, along, ahead_s, positions, velocities, accelerations);
+  };
+  c.ahead.rehearsal.Run(c.ahead.window, s.pace, kRehearsed, c.cycle.count, c.cycle.period_s, {look, &owner});
+}
+
+double TimeLeft(const Context& c, const State& s) noexcept {
+  const std::uint64_t end = c.ahead.rehearsal.end_cycle();
+  const bool slowed = s.velocity_factor < 1 || s.ends || s.interrupted || Slips(s) || s.master.axis != 0;
+  if (!s.begun || slowed || !IsPlanned(c, s) || end == 0) return kNotGiven;
+  return end > c.cycle.count ? static_cast<double>(end - c.cycle.count) * c.cycle.period_s : 0;
 }
 
 bool MayBegin(const Context& c) noexcept {

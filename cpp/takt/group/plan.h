@@ -25,6 +25,10 @@ kinematics::Reason AxesOn(const Context& c, const State& s, const Stretch& stret
 // All moves in the queue are, as far as they can be gone.
 bool IsPlanned(const Context& c, const State& s) noexcept;
 
+// s until the motion stands at the end of what was commanded, to the cycle; NaN: it does not move, something slows it
+// down, or it is not known yet.
+double TimeLeft(const Context& c, const State& s) noexcept;
+
 // Something can be gone: what the motion can begin with is through.
 bool MayBegin(const Context& c) noexcept;
 

@@ -1,9 +1,12 @@
 // What everybody sees of a group.
 #include "takt/group/group.h"
 #include "takt/group/members.h"
+#include "takt/group/plan.h"
 #include "takt/group/queue.h"
 #include "takt/group/rides.h"
+#include "takt/group/run.h"
 #include "takt/group/systems.h"
+#include "takt/group/track.h"
 
 namespace takt::group {
 
@@ -21,6 +24,28 @@ kinematics::JointMotion MotionOf(const Context& c, const State& s, bool actual) 
     motion.acceleration[k] = state.acceleration;
   }
   return motion;
+}
+
+void PublishTracking(const Context& c, const State& s, const kinematics::MovingFrame& tcp, Outputs& out) {
+  out.track_state = TrackStateOf(c, s);
+  out.track_lag = out.object_x = out.object_y = out.object_z = out.object_a = out.object_b = out.object_c = kNotGiven;
+  out.in_sync = out.track_state == TrackState::kInSync;
+  if (!IsOnRide(c, s)) return;
+  const Stretch& stretch = *Here(c, s);
+  const std::uint64_t number = stretch.to_ride;
+  const Cargo& cargo = c.ahead.rides[number % kRides].cargo;
+  if (cargo.carrier == 0) return;
+  const kinematics::Pose on = kinematics::ToPose(PlaceOf(c, cargo).GetFrame().Inverse() * tcp.GetFrame());
+  out.object_x = on.x;
+  out.object_y = on.y;
+  out.object_z = on.z;
+  out.object_a = on.a;
+  out.object_b = on.b;
+  out.object_c = on.c;
+  for (const Clutch& clutch : s.clutches) {
+    if (!clutch.used || clutch.ride != number) continue;
+    out.track_lag = CarrierOf(c, cargo).travel.position - clutch.travel.position;
+  }
 }
 
 }  // namespace
@@ -76,6 +101,7 @@ void Publish(const Context& c, const State& s, Outputs& out) noexcept {
     const LookAhead& ahead = c.ahead;
     if (ahead.count > 0) out.path_left = ahead[ahead.end() - 1].end() - s.pace.now.position;
   }
+  out.time_left = TimeLeft(c, s);
   out.override_factor = s.velocity_factor;
   out.command = s.active;
   out.buffered = s.queue.count > 0 ? s.queue.count - 1 : 0;
@@ -87,6 +113,7 @@ void Publish(const Context& c, const State& s, Outputs& out) noexcept {
     const bool moves = s.cargoes[k].carrier != 0;
     out.*kPublishedSystems[k] = moves ? kinematics::ToPose(PlaceOf(c, s.cargoes[k]).GetFrame()) : s.product_systems[k];
   }
+  PublishTracking(c, s, commanded * tool, out);
   out.kinematics_on = HasTool(c, s);
   out.in_position = s.state == GroupState::kStandby && s.queue.count == 0;
   out.interrupted = s.interrupted;

@@ -151,6 +151,12 @@ MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicSt
   });
 }
 
+MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicState& way, double ahead_s) noexcept {
+  return ToolOn(stretch, way, [&](std::uint64_t number) {
+    return DisplacementOf(c, RideAt(c.ahead, number), std::max(ahead_s, 1e-9));
+  });
+}
+
 double Now(const Context& c) noexcept {
   return static_cast<double>(c.cycle.count) * c.cycle.period_s;
 }

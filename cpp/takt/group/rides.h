@@ -43,6 +43,9 @@ MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, co
 // The same as it is expected when the tool gets there. `still`: as if carriers stood.
 MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicState& way, bool still) noexcept;
 
+// The same after so much time.
+MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicState& way, double ahead_s) noexcept;
+
 // Expected times, s from the start of the engine.
 double Now(const Context& c) noexcept;
 // How long a motion from rest to rest takes, about.

@@ -9,6 +9,7 @@
 #include "takt/group/members.h"
 #include "takt/group/queue.h"
 #include "takt/group/sync.h"
+#include "takt/group/track.h"
 
 namespace takt::group {
 
@@ -41,7 +42,8 @@ bool FollowCarried(const Context& c, const Stretch& stretch, double way, State& 
   }
   Demand(c, motion, s);
   // Where it could not be braked any more it is braked now.
-  if (!s.lets_go && !CanLetGo(c, stretch, way, s)) {
+  if (!s.lets_go && !CanLetGo(c, stretch, ToolNow(c, s, stretch, {way, 0, 0}), s)) {
+    EndTracking(c, FeedbackState::kError, ErrorId::kUnreachable, s);
     AbortMoves(c, ErrorId::kUnreachable, s);
     EndMotion({}, true, s);
   }

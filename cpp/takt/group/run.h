@@ -18,6 +18,8 @@ bool Rests(const State& s) noexcept;
 // Comes to rest on the path, which is then forgotten. mm/s²; 0: as the path says.
 void EndMotion(const Brake& brake, bool lets_go, State& s) noexcept;
 
+// The stretch that the tool is on; null: none.
+const Stretch* Here(const Context& c, const State& s) noexcept;
 // Something that moves carries the tool, or takes part in it.
 bool IsOnRide(const Context& c, const State& s) noexcept;
 // It goes over from one ride to another.

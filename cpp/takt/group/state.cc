@@ -70,6 +70,38 @@ void describe(Description<Clutch>& d) {
   d.internal<&Clutch::acceleration>("The same.");
   d.internal<&Clutch::deceleration>("The same.");
   d.internal<&Clutch::jerk>("The same.");
+  d.internal<&Clutch::law_length>("Travel in which the tool gets into step or out of it.");
+  d.internal<&Clutch::law_begin>("Where that begins.");
+  d.internal<&Clutch::law_from>("Where the tool is there.");
+  d.internal<&Clutch::law_way>("How far it goes meanwhile.");
+}
+
+void describe(Enumeration<TrackState>& e) {
+  e.about("How the tool goes along with an object (TrackState).");
+  e.value(TrackState::kNone, "none", "It does not.");
+  e.value(TrackState::kWaiting, "waiting", "The object is not yet where tracking begins.");
+  e.value(TrackState::kSynchronizing, "synchronizing", "The tool gets into step.");
+  e.value(TrackState::kInSync, "in_sync", "It goes along.");
+  e.value(TrackState::kDesynchronizing, "desynchronizing", "It gets out of step.");
+}
+
+void describe(Description<Track>& d) {
+  d.about("Tracking of an object.");
+  d.internal<&Track::ticket>("Of the command.");
+  d.internal<&Track::behind>("The move that it waits for.");
+  d.internal<&Track::active>("It waits for the object.");
+  d.internal<&Track::started>("The tool is taken along.");
+  d.internal<&Track::ends>("The object has left.");
+  d.internal<&Track::in_sync>("The tool goes along.");
+  d.internal<&Track::near_cycles>("For so long.");
+  d.internal<&Track::cargo>("The object.");
+  d.internal<&Track::sense>("Of the travel.");
+  d.internal<&Track::begin>("Where it begins.");
+  d.internal<&Track::end>("Where it ends.");
+  d.internal<&Track::in_distance>("To get into step.");
+  d.internal<&Track::in_tool>("The tool goes so far meanwhile.");
+  d.internal<&Track::out_distance>("To get out of step.");
+  d.internal<&Track::out_tool>("The tool goes so far meanwhile.");
 }
 
 void describe(Description<State>& d) {
@@ -96,6 +128,7 @@ void describe(Description<State>& d) {
   d.internal<&S::brake>("How strongly.");
   d.internal<&S::lets_go>("Of what carries it.");
   d.internal<&S::clutches>("Between carriers and the tool.");
+  d.internal<&S::track>("Tracking of an object.");
   d.internal<&S::hold>("Stop: until released.");
   d.internal<&S::ticket>("Of stop, halt, interrupt, home or power.");
   d.internal<&S::task>("Which of them.");

@@ -10,6 +10,7 @@
 #include "takt/core/status.h"
 #include "takt/group/request.h"
 #include "takt/group/state_table.h"
+#include "takt/group/track_state.h"
 #include "takt/kinematics/joints.h"
 #include "takt/trajectory/limits.h"
 #include "takt/trajectory/path_pace.h"
@@ -54,9 +55,35 @@ struct Clutch {
   double deceleration = 0;
   double jerk = 0;
 
+  // Over a distance of the carrier's travel the tool gets into step, or out of it: a quintic over that. 0: as fast as
+  // the limits allow.
+  double law_length = 0;
+  double law_begin = 0;  // of the carrier's travel
+  double law_from = 0;   // of the tool's ...
+  double law_way = 0;    // ... and so far
+
   trajectory::Limits limits() const noexcept { return {velocity, acceleration, deceleration, jerk}; }
 };
 inline constexpr std::size_t kClutches = 2;
+
+// Tracking an object by command (track.h). Distances along the travel of the carrier, mm or rad, since it was recorded.
+struct Track {
+  Ticket ticket = 0;         // 0: none
+  std::uint64_t behind = 0;  // number of the move that it waits for
+  bool active = false;
+  bool started = false;  // the tool is taken along
+  bool ends = false;     // the object has left
+  bool in_sync = false;
+  std::uint64_t near_cycles = 0;
+  Cargo cargo;
+  double sense = 1;  // of the travel
+  double begin = 0;
+  double end = 0;
+  double in_distance = 0;
+  double in_tool = 0;
+  double out_distance = 0;
+  double out_tool = 0;
+};
 
 // What a group is doing besides moves.
 enum class Task : std::uint8_t { kNone, kStop, kHalt, kInterrupt, kHome, kPower };
@@ -109,6 +136,7 @@ struct State {
   Brake brake;               // how it brakes then
   bool lets_go = false;      // of what carries it: the tool comes to rest in the MCS
   std::array<Clutch, kClutches> clutches{};
+  Track track;
   bool hold = false;  // stop: until released
   Ticket ticket = 0;  // of the task
   Task task = Task::kNone;
@@ -136,6 +164,7 @@ void describe(Description<Queue>&);
 void describe(Enumeration<Stage>&);
 void describe(Description<Planning>&);
 void describe(Description<Clutch>&);
+void describe(Description<Track>&);
 void describe(Enumeration<Task>&);
 void describe(Description<Brake>&);
 void describe(Description<SyncedAxis>&);

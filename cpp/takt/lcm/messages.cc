@@ -185,6 +185,7 @@ msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine:
   m.path_velocity = o.path_velocity;
   m.path_acceleration = o.path_acceleration;
   m.path_left = o.path_left;
+  m.time_left = o.time_left;
   m.path_error = o.path_error;
   m.override_factor = o.override_factor;
   m.command = Signed(o.command);
@@ -214,6 +215,15 @@ msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine:
   m.pcs14 = ToMessage(o.pcs14);
   m.pcs15 = ToMessage(o.pcs15);
   m.pcs16 = ToMessage(o.pcs16);
+  m.track_state = static_cast<std::int8_t>(o.track_state);
+  m.in_sync = o.in_sync;
+  m.track_lag = o.track_lag;
+  m.object_x = o.object_x;
+  m.object_y = o.object_y;
+  m.object_z = o.object_z;
+  m.object_a = o.object_a;
+  m.object_b = o.object_b;
+  m.object_c = o.object_c;
   m.kinematics_on = o.kinematics_on;
   m.in_position = o.in_position;
   m.interrupted = o.interrupted;
@@ -254,6 +264,20 @@ msgs::belt_state ToMessage(const engine::BeltSnapshot& snapshot, const engine::M
   m.first_place = o.first_place;
   m.first_pose = ToMessage(o.first_pose);
   m.first_time_left = o.first_time_left;
+  return m;
+}
+
+msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::Machine& machine) {
+  const conveyor::PoseOutputs& o = snapshot.outputs;
+  msgs::pose_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.poses[snapshot.index].name;
+  m.pose = ToMessage(o.pose);
+  m.velocity = o.velocity;
+  m.turning = o.turning;
+  m.age_s = o.age_s;
+  m.fresh = o.fresh;
   return m;
 }
 

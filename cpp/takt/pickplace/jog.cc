@@ -89,7 +89,7 @@ group::MoveLinearAbsolute AxisMove(const Context& c, const group::State& g, std:
   group::MoveLinearAbsolute move;
   move.coordinate_system = CoordinateSystem::kAcs;
   const std::array axes = {&move.a1, &move.a2, &move.a3, &move.a4, &move.a5, &move.a6, &move.a7, &move.a8};
-  *axes[k] = to;
+  *axes[k] = to - s.jog_sense * kShort;
   return move;
 }
 

@@ -23,13 +23,15 @@ constexpr double kBefore = 2;
 }  // namespace
 
 void PathRehearsal::Clear() noexcept {
-  started_ = marked_ = weakened_ = trouble_ = again_ = false;
+  started_ = marked_ = weakened_ = trouble_ = again_ = measuring_ = false;
   through_ = true;
+  end_cycle_ = 0;
   rounds_ = 0;
 }
 
 void PathRehearsal::GoOn(const PathWindow& window) noexcept {
-  through_ = false;
+  through_ = measuring_ = false;
+  end_cycle_ = 0;
   rounds_ = 0;
   if (started_ && here_.pace.node >= window.changed_from()) {
     if (marked_ && mark_.pace.node < window.changed_from()) {
@@ -42,8 +44,10 @@ void PathRehearsal::GoOn(const PathWindow& window) noexcept {
   free_until_ = window[window.free_until()].at.s;
 }
 
-void PathRehearsal::StartFrom(const PathPace& pace) noexcept {
+void PathRehearsal::StartFrom(const PathPace& pace, std::uint64_t cycle) noexcept {
   here_.pace = pace;
+  here_.cycle = cycle;
+  here_.positions.fill(std::numeric_limits<double>::quiet_NaN());
   started_ = true;
   marked_ = weakened_ = trouble_ = again_ = false;
   here_.accelerations.fill(std::numeric_limits<double>::quiet_NaN());
@@ -60,11 +64,12 @@ void PathRehearsal::Save() noexcept {
   until_save_ = kApart * static_cast<int>(here_.pace.cycles);
 }
 
-bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, double period_s) noexcept {
+bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, std::uint64_t cycle, double period_s,
+                        const PathProbe& probe) noexcept {
   if (!window.swept()) return through_;
   for (; cycles > 0 && !through_; --cycles) {
     if (again_) GoBack(window);
-    if (!started_ || here_.pace.passed < now.passed) StartFrom(now);
+    if (!started_ || here_.pace.passed < now.passed) StartFrom(now, cycle);
     if (here_.pace.raw_stands && Stands(here_.pace)) {
       if (trouble_) {
         EndTrouble(window, now, period_s);
@@ -72,7 +77,12 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, dou
         BeginAt(window, here_.pace.node + 1, period_s, here_.pace);  // behind a stop the next motion begins
         here_.accelerations.fill(0);
       } else {
-        through_ = !weakened_ || ++rounds_ >= kRounds;
+        if (!weakened_) {
+          through_ = true;
+          end_cycle_ = here_.cycle - 1;
+        } else if (++rounds_ >= kRounds) {
+          measuring_ = true;
+        }
         started_ = false;
       }
       continue;
@@ -85,7 +95,9 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, dou
       continue;
     }
     Advance(window, kFullSpeed, period_s, here_.pace);
-    Look(window, before, period_s);
+    const double ahead_s = here_.cycle > cycle ? static_cast<double>(here_.cycle - cycle) * period_s : 0;
+    ++here_.cycle;
+    if (!measuring_) Look(window, before, ahead_s, period_s, probe);
     const double ahead = kBefore * here_.pace.raw.velocity * period_s * here_.pace.cycles;
     if (!marked_ && here_.pace.raw.position + ahead >= free_until_) {
       mark_ = here_;
@@ -96,7 +108,8 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, dou
 }
 
 // What this cycle asks of the coordinates.
-void PathRehearsal::Look(const PathWindow& window, const KinematicState& before, double period_s) noexcept {
+void PathRehearsal::Look(const PathWindow& window, const KinematicState& before, double ahead_s, double period_s,
+                         const PathProbe& probe) noexcept {
   const CoordinateLimits& limits = window.limits();
   const PathNode& node = window[here_.pace.passed];
   const PathNode& next = here_.pace.passed + 1 < window.known() ? window[here_.pace.passed + 1] : node;
@@ -107,6 +120,8 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
   const double left = std::lerp(node.at.left, next.at.left, part);
   const double jerk = (mean.acceleration - before.acceleration) / period_s;
   PathShares shares;
+  PathCoordinateValues velocities, accelerations;
+  const bool probed = probe.look && probe.look(probe.owner, mean, ahead_s, here_.positions, velocities, accelerations);
   for (std::size_t k = 0; k < limits.count; ++k) {
     const PathSlopes &a = node.at.slopes, &b = next.at.slopes;
     const double bend = b.second[k] - a.second[k];
@@ -114,11 +129,17 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
     // The second slope is a line between the nodes; what is left between their first ones is rounding.
     const double gap = b.first[k] - a.first[k] - length * (a.second[k] + 0.5 * bend);
     const double first = a.first[k] + x * (a.second[k] + 0.5 * part * bend) + part * gap;
-    const double acceleration = first * mean.acceleration + second * mean.velocity * mean.velocity;
+    const double by_way = first * mean.acceleration + second * mean.velocity * mean.velocity;
+    const double acceleration = probed ? accelerations[k] : by_way;
     const double total = std::abs(acceleration - here_.accelerations[k]) / period_s;
     here_.accelerations[k] = acceleration;
-    const double over = std::abs(acceleration) / (left * limits.of[k].acceleration);
-    const double most = left * limits.of[k].jerk;
+    const double share = probed ? 1 : left;
+    const double over = std::abs(acceleration) / (share * limits.of[k].acceleration);
+    const double most = share * limits.of[k].jerk;
+    if (probed && std::abs(velocities[k]) > limits.of[k].velocity) {
+      const double speed = limits.of[k].velocity / std::abs(velocities[k]);
+      shares.square = std::min(shares.square, speed * speed);
+    }
     if (over > 1) {
       shares.square = std::min(shares.square, 1 / over);
       shares.acceleration = std::min(shares.acceleration, 1 / over);

@@ -11,26 +11,45 @@
 
 namespace takt::trajectory {
 
+using PathCoordinateValues = std::array<double, kPathCoordinates>;
+
+// What a motion asks of coordinates that depend on more than the way: on what moves by itself.
+struct PathProbe {
+  // At a place, `ahead_s` from now; `positions` are those of the place looked at before (NaN: none). False: there the
+  // slopes of the nodes say all.
+  bool (*look)(const void* owner, const KinematicState& along, double ahead_s, PathCoordinateValues& positions,
+               PathCoordinateValues& velocities, PathCoordinateValues& accelerations) noexcept = nullptr;
+  const void* owner = nullptr;
+};
+
 class PathRehearsal {
  public:
   // The motion has begun, or what lies before it is another path.
   void Clear() noexcept;
   // The window has become longer, and is swept.
   void GoOn(const PathWindow& window) noexcept;
-  // So many cycles at most, for a motion that has come to `now`. True: there is nothing left to be done.
-  bool Run(PathWindow& window, const PathPace& now, int cycles, double period_s) noexcept;
+  // So many cycles at most, for a motion that has come to `now` in this cycle of the engine. True: there is nothing
+  // left to be done.
+  bool Run(PathWindow& window, const PathPace& now, int cycles, std::uint64_t cycle, double period_s,
+           const PathProbe& probe = {}) noexcept;
+  // The cycle at the end of which the motion stands at the end of what is known, if nothing slows it down; 0: not known
+  // yet.
+  std::uint64_t end_cycle() const noexcept { return end_cycle_; }
 
  private:
   // The motion as it is rehearsed, and what it asked of the coordinates last.
   struct Place {
     PathPace pace;
-    std::array<double, kPathCoordinates> accelerations{};
+    std::uint64_t cycle = 0;  // of the engine, in which it will be there
+    PathCoordinateValues positions{};
+    PathCoordinateValues accelerations{};
   };
 
-  void StartFrom(const PathPace& pace) noexcept;
+  void StartFrom(const PathPace& pace, std::uint64_t cycle) noexcept;
   void Save() noexcept;
   void GoBack(const PathWindow& window) noexcept;
-  void Look(const PathWindow& window, const KinematicState& before, double period_s) noexcept;
+  void Look(const PathWindow& window, const KinematicState& before, double ahead_s, double period_s,
+            const PathProbe& probe) noexcept;
   void EndTrouble(PathWindow& window, const PathPace& now, double period_s) noexcept;
 
   Place here_;
@@ -42,6 +61,8 @@ class PathRehearsal {
   bool started_ = false, marked_ = false, through_ = true;
   bool weakened_ = false;  // in this round
   int rounds_ = 0;
+  bool measuring_ = false;  // nothing is weakened any more: when it ends
+  std::uint64_t end_cycle_ = 0;
   double free_until_ = 0;  // mm along the path
   // What was too much, from where to where.
   bool trouble_ = false;

@@ -8,8 +8,8 @@
 
 namespace takt::engine {
 
-// Linear and rotary, all three kinds of drives, an absolute encoder, a follower, a cam module, a group, switches and a
-// real-looking servo.
+// Linear and rotary, all three kinds of drives, an absolute encoder, a follower, a cam module, a group, belts, a pose,
+// switches and a real-looking servo.
 inline const char* kFullMachine = R"(
 name: full
 cycle: {period_s: 0.001}
@@ -64,6 +64,11 @@ flex_cams:
     cams: [hill, valley]
     settings: {sync_mode: ramp_time, sync_in_time_s: 0.1, calculate_bounds: true, master_filter_s: 0.01,
                offset_mode_master: ramp_in, scaling_mode_slave: ramp_absolute, position_control: master_direction}
+belts:
+  - {name: infeed, axis: y1, origin: {x: 100, c: 30}, upper_limit: 250}
+  - {name: table, kind: turning, axis: c, source: actual_value, filter_s: 0.01, lower_limit: -90, upper_limit: 3600}
+poses:
+  - {name: mover, goes_on_s: 0.2}
 simulation:
   servos:
     - axis: z
@@ -103,6 +108,22 @@ inline Command ToModule(const Machine& machine, const flexcam::Command& body) {
 inline Command ToGroup(const Machine& machine, const group::Command& body) {
   Command command;
   command.target = static_cast<std::uint32_t>(machine.axes.size() + machine.flex_cams.size() + 1);
+  command.body = body;
+  return command;
+}
+
+// A belt of the machine.
+inline Command ToBelt(const Machine& machine, std::size_t index, const conveyor::Command& body) {
+  Command command;
+  command.target =
+      static_cast<std::uint32_t>(machine.axes.size() + machine.flex_cams.size() + machine.groups.size() + index + 1);
+  command.body = body;
+  return command;
+}
+
+// The first pose.
+inline Command ToPose(const Machine& machine, const conveyor::PoseCommand& body) {
+  Command command = ToBelt(machine, machine.belts.size(), {});
   command.body = body;
   return command;
 }
@@ -148,6 +169,14 @@ inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m)
   to_group(1410, group::MovePathSynchronized{.path = Name::Of("round"), .master = Name::Of("y1"), .ratio = -1});
   to_group(2100, group::Stop{});
   to_group(2600, group::Disable{});
+  for (std::uint32_t i = 0; i < 33; ++i) {
+    commands.push_back({340 + 10 * i, ToBelt(m, i % 3 == 0 ? 0 : 1, conveyor::Detect{.recorded_position = 10.0 * i})});
+  }
+  for (std::uint32_t i = 0; i < 12; ++i) commands.push_back({400 + 20 * i, ToBelt(m, 1, conveyor::Locate{.x = 80})});
+  commands.push_back({650, ToBelt(m, 1, conveyor::TakeObject{3})});
+  commands.push_back({660, ToBelt(m, 1, conveyor::RemoveObject{3})});
+  commands.push_back({2400, ToBelt(m, 1, conveyor::ClearObjects{})});
+  commands.push_back({350, ToPose(m, conveyor::SetPose{.x = 5, .vx = 10, .wy = 3})});
   using flexcam::Control;
   commands.push_back({6, ToModule(m, Control{.regulator_on = true})});
   commands.push_back({330, ToModule(m, Control{.sync_cam = true, .cam_table = 2u})});

@@ -200,7 +200,7 @@ TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
       EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
     }
   }
-  EXPECT_EQ(files, 17);
+  EXPECT_EQ(files, 18);
 }
 
 }  // namespace

@@ -296,6 +296,52 @@ TEST(Messages, GroupStateKeepsEveryNumber) {
       machine, "robot");
   EXPECT_EQ(static_cast<int>(group::GroupState::kErrorStop), msgs::group_state::STATE_GROUP_ERROR_STOP);
 }
+// EN-20, CV-01
+TEST(Messages, BeltStateKeepsEveryNumber) {
+  engine::Machine machine = TestMachine();
+  machine.belts.resize(2);
+  machine.belts[0].name = "other";
+  machine.belts[1].name = "infeed";
+  machine.cycle.period_s = 0.00025;
+  ExpectKeepsEveryNumber<msgs::belt_state, conveyor::Outputs>(
+      {
+          FIELD(belt_state, position),
+          FIELD(belt_state, velocity),
+          FIELD(belt_state, acceleration),
+          FIELD(belt_state, known),
+          FIELD(belt_state, object_count),
+          FIELD(belt_state, visible_count),
+          FIELD(belt_state, taken_count),
+          FIELD(belt_state, in_range_count),
+          FIELD(belt_state, last_number),
+          FIELD(belt_state, lost_count),
+          FIELD(belt_state, refused_count),
+          FIELD(belt_state, first_number),
+          FIELD(belt_state, first_kind),
+          FIELD(belt_state, first_colour),
+          FIELD(belt_state, first_quality),
+          FIELD(belt_state, first_place),
+          POSE(belt_state, first_pose),
+          FIELD(belt_state, first_time_left),
+      },
+      machine, "infeed");
+}
+
+// EN-20, CV-42
+TEST(Messages, PoseStateKeepsEveryNumber) {
+  engine::Machine machine = TestMachine();
+  machine.poses = {{.name = "other"}, {.name = "mover"}};
+  machine.cycle.period_s = 0.00025;
+  ExpectKeepsEveryNumber<msgs::pose_state, conveyor::PoseOutputs>(
+      {
+          POSE(pose_state, pose),
+          FIELD(pose_state, velocity),
+          FIELD(pose_state, turning),
+          FIELD(pose_state, age_s),
+          FIELD(pose_state, fresh),
+      },
+      machine, "mover");
+}
 #undef FIELD
 #undef FIELD_OF
 #undef POSE

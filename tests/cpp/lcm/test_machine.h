@@ -54,6 +54,16 @@ inline engine::Machine WithGroup(engine::Machine machine) {
   return machine;
 }
 
+// With a belt "infeed" on x, and a pose "mover".
+inline engine::Machine WithBelt(engine::Machine machine) {
+  conveyor::BeltParams belt;
+  belt.name = "infeed";
+  belt.axis = "x";
+  machine.belts = {belt};
+  machine.poses = {{.name = "mover"}};
+  return machine;
+}
+
 // An LCM network that no other test uses; its port is below those that systems give away by themselves.
 inline std::string NewUrl() {
   static int port = 10'000 + getpid() % 500 * 4;

@@ -352,7 +352,7 @@ TEST(Jogs, AwayFromThePathAndBack) {
       cell.Steps(300);
       if (from == M::kReady) cell.Do(Control{.path_stop = false});
       ASSERT_EQ(cell.state.state, from);
-      ASSERT_TRUE(cell.out().path_hold);
+      ASSERT_TRUE(cell.out().path_hold) << cell.state.hold.held << cell.rig.state.interrupted << cell.rig.state.begun << cell.state.order_count << cell.tool().x() << ' ' << cell.tool().z() << ' ' << cell.rig.out().velocity << ' ' << cell.rig.state.pace.now.velocity;
       const KDL::Vector held = cell.tool();
       cell.Do(Control{.select_axis = SelectAxis::kY});
       cell.Do(Jog{.positive = true});

@@ -183,7 +183,7 @@ class Motion {
     Know();
     BeginAt(window, window.begin(), kPeriod, pace);
     rehearsal.GoOn(window);
-    while (!rehearsal.Run(window, pace, 1000, kPeriod)) {
+    while (!rehearsal.Run(window, pace, 1000, 0, kPeriod)) {
     }
   }
   void Cycle(double wish) {

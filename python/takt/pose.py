@@ -1,0 +1,16 @@
+"""One pose of a session that comes from elsewhere: whoever knows it gives it."""
+
+from __future__ import annotations
+
+from takt._commands import PoseCommands, PoseOutputs
+from takt.component import Component
+
+
+class FreePose(Component, PoseCommands, PoseOutputs):
+    """A pose from elsewhere; groups can go along with it."""
+
+    KIND = "pose"
+
+    def __repr__(self) -> str:
+        x, y, z, *_ = self.pose
+        return f"<FreePose {self.name}: x {x:.6g}, y {y:.6g}, z {z:.6g} mm>"
