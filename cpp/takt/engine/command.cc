@@ -134,6 +134,7 @@ const std::vector<Entry>& Entries() {
       Make<group::Command, group::MoveCircularRelative>(kGroup, "move_circular_relative"),
       Make<group::Command, group::MoveDirectAbsolute>(kGroup, "move_direct_absolute"),
       Make<group::Command, group::MoveDirectRelative>(kGroup, "move_direct_relative"),
+      Make<group::Command, group::MoveArch>(kGroup, "move_arch"),
       Make<group::Command, group::MovePath>(kGroup, "move_path"),
       Make<group::Command, group::MovePathSynchronized>(kGroup, "move_path_synchronized"),
       Make<group::Command, group::SyncAxis>(kGroup, "sync_axis"),

@@ -248,7 +248,7 @@ using Command =
                  MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop, Halt, Interrupt, Continue, AddAxis,
                  RemoveAxis, UngroupAllAxes, Enable, Disable, Reset, Power, Home, SetPosition, SetOverride,
                  SetKinTransform, SetCartesianTransform, SetCoordinateTransform, SetDynCoordTransform,
-                 TrackConveyorBelt, TrackRotaryTable, PathChecked>;
+                 TrackConveyorBelt, TrackRotaryTable, MoveArch, PathChecked>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
 std::string WhyNot(const Command& command);

@@ -28,7 +28,7 @@ bool Blends(const Request& move, std::uint32_t element) {
 // Whether the path goes on behind this stretch without a stop, as far as is known.
 bool GoesOn(const Context& c, const State& s) {
   const Request& move = MoveAt(s, s.planning.move);
-  if (move.kind == MoveKind::kPath && s.planning.element + 1 < c.paths[move.path].pieces.size()) return true;
+  if (s.planning.element + 1 < ElementsOf(c, move)) return true;
   return s.planning.move + 1 < s.done + s.queue.count && MoveAt(s, s.planning.move + 1).blends();
 }
 
@@ -165,6 +165,15 @@ void Append(LookAhead& ahead, Stretch stretch) {
   ahead[ahead.end() - 1] = stretch;
 }
 
+// From where to where the tool goes over to the ride of the last stretch.
+void SettleRide(LookAhead& ahead, bool first, double left) {
+  const Stretch& last = ahead[ahead.end() - 1];
+  if (last.from_ride == last.to_ride) return;
+  Ride& ride = ahead.rides[last.to_ride % kRides];
+  if (first) ride.begin = last.begin;
+  ride.end = last.end() + left;
+}
+
 // What a corner without a blend allows.
 bool Passes(const Context& c, const State& s, const Stretch& before, const Stretch& after) {
   trajectory::PathPoint ends, begins;
@@ -235,6 +244,7 @@ bool FindDistances(const Context& c, const State& s, const Request& move, std::u
   blend.limits = trajectory::Least(before.limits, after.limits);
   blend.build_up_s = before.build_up_s;
   blend.from_ride = blend.to_ride = before.to_ride;
+  if (after.to_ride == before.to_ride) blend.from_ride = after.from_ride;  // within one transition
   blend.eta_begin = blend.eta_end = before.eta_end;
   // No element of a path is gone faster than it may, on its blends either.
   const double slower = std::min(before.limits.velocity, after.limits.velocity);
@@ -267,6 +277,7 @@ bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, 
   const double cut = before.to - blend.first;
   if (!CutAt(c, s, before.begin + (cut - before.from), ahead.end() - 1)) return false;
   before.to = cut;
+  SettleRide(ahead, false, 0);
   ahead.next.from = blend.second;
   ahead.corner = {blend.to_middle, before.segment, cut, {}, blend.reach, blend.deviation};
   Append(ahead, blend.stretch);
@@ -292,7 +303,8 @@ int Join(const Context& c, State& s) noexcept {
     Stretch& before = ahead[ahead.end() - 1];
     const bool wanted = move.blends() || s.planning.element > 0;
     goes_on = wanted && Passes(c, s, before, ahead.next);
-    const bool smooth = goes_on && path::Smooth(before.segment, ahead.next.segment);
+    const bool bends = s.planning.element == 0 && (before.bends_at_ends || ahead.next.bends_at_ends);
+    const bool smooth = goes_on && !bends && path::Smooth(before.segment, ahead.next.segment);
     const bool blended = !smooth && TryBlend(c, s, move, before, work);
     if (!blended) ahead.corner.open = false;
     goes_on = goes_on || blended;
@@ -312,6 +324,7 @@ int Join(const Context& c, State& s) noexcept {
     ahead.sampling = ahead.end();
   }
   Append(ahead, ahead.next);
+  SettleRide(ahead, s.planning.element == 0, move.kind == MoveKind::kArch ? ahead.arch_left : 0);
   ahead.end_ride = ahead.next.to_ride;
   ahead.rides_end = std::max(ahead.rides_end, ahead.end_ride + 1);
   ahead.end_eta = ahead.next.eta_end;

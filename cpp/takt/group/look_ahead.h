@@ -26,21 +26,25 @@ struct Ride {
   Cargo cargo;
   Frame reference_inverse;  // of where it lies in the still world
   bool displaces = false;   // the still world is not the MCS there
+  // From where to where along the path the tool goes over to it from the ride before.
+  double begin = 0;
+  double end = 0;
 };
 
 // A piece of path in the still world.
 struct Stretch {
   path::Segment segment;
-  double from = 0;         // of the segment ...
-  double to = 0;           // ... is gone
-  double begin = 0;        // along the path
-  std::uint64_t move = 0;  // number of the move that it belongs to
-  bool joints = false;     // its auxiliaries are all members; else those behind the kinematics
-  bool stops = false;      // the motion stops at its end
-  bool begun = false;      // its first node is there
+  double from = 0;             // of the segment ...
+  double to = 0;               // ... is gone
+  double begin = 0;            // along the path
+  std::uint64_t move = 0;      // number of the move that it belongs to
+  bool joints = false;         // its auxiliaries are all members; else those behind the kinematics
+  bool stops = false;          // the motion stops at its end
+  bool bends_at_ends = false;  // it is rounded also where it goes on from a line
+  bool begun = false;          // its first node is there
   trajectory::AlongPath limits;
   double build_up_s = 0;  // of accelerations, from one stop to the next
-  // Numbers of the rides on which it begins and ends; all along it goes over from the one to the other.
+  // Numbers of the ride on which it is, and of the one from which the tool goes over to that on the way.
   std::uint64_t from_ride = 0, to_ride = 0;
   double eta_begin = 0, eta_end = 0;  // s from the start of the engine, expected when it was planned
 
@@ -71,6 +75,7 @@ struct LookAhead {
   OpenCorner corner;
   std::array<Ride, kRides> rides{};  // a ring
   std::uint64_t end_ride = 0;        // of the last stretch
+  std::uint64_t from_ride = 0;       // from which the move that is planned goes over
   std::uint64_t rides_end = 1;       // behind the newest one
   double end_eta = 0;                // when the tool is expected there
   double next_time_s = 0;            // how long the next stretch is expected to take; 0: not known yet
@@ -84,12 +89,18 @@ struct LookAhead {
   kinematics::Frame end_tool;
   kinematics::Joints next_joints{};
   kinematics::Frame next_tool;
-  double load = 0;  // the largest share of a limit that carriers take, of what was tried
+  // An arch, as a whole, while its pieces are planned.
+  path::Point arch_begin, arch_end;
+  path::Triple arch_up{};
+  int arch_pieces = 0;
+  double arch_left = 0;  // mm, of the pieces behind the next one
+  double load = 0;       // the largest share of a limit that carriers take, of what was tried
   // Where it ended before a path was tried that is not yet planned.
   kinematics::Joints tried_from{};
   kinematics::Frame tried_from_tool;
   std::uint64_t tried_from_ride = 0;
   double tried_from_eta = 0;
+  double tried_way = 0;        // mm, of the elements before the next one
   bool known = false;          // whether it is more than where the members stand
   kinematics::Joints near{};   // of the place tried last
   trajectory::PathPoint last;  // the node sampled last

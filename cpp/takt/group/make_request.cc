@@ -105,6 +105,14 @@ struct Maker {
     r.transition_parameter = m.transition_parameter;
     return ErrorId::kNone;
   }
+  ErrorId Fill(const MoveArch& m) const {
+    r.kind = MoveKind::kArch;
+    r.to = NumbersOf(m);
+    r.height = m.height;
+    r.buffer_mode = m.buffer_mode;
+    TakeManner(m);
+    return m.coordinate_system == CoordinateSystem::kAcs ? ErrorId::kParameter : ErrorId::kNone;
+  }
   ErrorId Fill(const MovePath& m) const {
     r.buffer_mode = m.buffer_mode;
     TakeManner(m);

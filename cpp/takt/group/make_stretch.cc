@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "takt/group/rides.h"
+#include "takt/path/arch.h"
 
 namespace takt::group {
 
@@ -141,6 +142,22 @@ ErrorId AlongPath(const Context& c, const Request& move, std::uint32_t element, 
   return AlongTool(c, one, system * kinematics::ToFrame(to), auxiliaries, arc ? &circle : nullptr, ahead, s);
 }
 
+// One piece of an arch.
+ErrorId AlongArch(const Context&, const Request& move, int piece, LookAhead& ahead, State& s) {
+  Stretch& stretch = ahead.next;
+  stretch.limits = move.limits;
+  const auto make = [&](int i, path::Segment& out) {
+    return path::MakeArchPiece(ahead.arch_begin, ahead.arch_end, move.height, ahead.arch_up, i, out);
+  };
+  ahead.arch_left = 0;
+  for (int i = piece + 1; i < ahead.arch_pieces; ++i) {
+    path::Segment other;
+    if (make(i, other) == path::Problem::kNone) ahead.arch_left += other.length;
+  }
+  s.problem = make(piece, stretch.segment);
+  return s.problem == path::Problem::kNone ? ErrorId::kNone : ErrorId::kPathGeometry;
+}
+
 // As fast as the axes can.
 ErrorId Straight(const Context& c, const Request& move, const Frame& to, const path::Auxiliaries& auxiliaries,
                  LookAhead& ahead, State& s) {
@@ -188,8 +205,9 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
   const bool rides = Moves(ahead.rides[ahead.end_ride % kRides]);
   Stretch& stretch = ahead.next;
   stretch.from_ride = stretch.to_ride = ahead.end_ride;
+  if (move.kind == MoveKind::kArch && element > 0) stretch.from_ride = ahead.from_ride;
   if (move.system == CoordinateSystem::kAcs) {
-    if (move.kind == MoveKind::kCircular || move.kind == MoveKind::kPath) return ErrorId::kParameter;
+    if (move.kind != MoveKind::kLinear && move.kind != MoveKind::kDirect) return ErrorId::kParameter;
     if (Any(move, 0, kToolNumbers)) return ErrorId::kParameter;
     const kinematics::Joints to = JointsOf(move, ahead.end_joints);
     return rides ? OffRide(c, move, to, ahead, s) : AlongJoints(move, to, ahead, s);
@@ -197,10 +215,20 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
   if (!HasTool(c, s)) return ErrorId::kState;
   const std::size_t count = c.kinematics->count;
   if (Any(move, kToolNumbers, kToolNumbers + count)) return ErrorId::kParameter;
+  if (move.kind == MoveKind::kArch && element > 0) return AlongArch(c, move, static_cast<int>(element), ahead, s);
   const Frame system = StillFrameOf(c, move, ahead);
   if (move.kind == MoveKind::kPath) return AlongPath(c, move, element, system, ahead, s);
   const Frame to = system * kinematics::ToFrame(PoseOf(move, kinematics::ToPose(system.Inverse() * ahead.end_tool)));
   const kinematics::Joints joints = JointsOf(move, ahead.end_joints);
+  if (move.kind == MoveKind::kArch) {
+    ahead.arch_begin = {ahead.end_tool, Behind(ahead.end_joints, count)};
+    ahead.arch_end = {to, Behind(joints, count)};
+    const Frame world =
+        DisplacementOf(c, ahead.rides[ahead.end_ride % kRides], 0).GetFrame().Inverse() * c.mounting.base_inverse;
+    ahead.arch_up = ToTriple(world.M.UnitZ());
+    ahead.arch_pieces = path::ArchPieces(ahead.arch_begin, ahead.arch_end, move.height, ahead.arch_up);
+    return AlongArch(c, move, 0, ahead, s);
+  }
   // Onto what moves, and off it, the tool goes straight: where the axes are to be in the end is not known.
   if (move.kind == MoveKind::kDirect && !IsCarried(ahead, stretch)) {
     kinematics::Joints target = joints;
@@ -211,6 +239,11 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
   const path::Circle circle = InBase(system, move.circle, ahead.end_tool.p, move.relative);
   if (move.kind == MoveKind::kDirect) return Straight(c, move, to, Behind(joints, count), ahead, s);
   return AlongTool(c, move, to, Behind(joints, count), move.kind == MoveKind::kCircular ? &circle : nullptr, ahead, s);
+}
+
+std::size_t ElementsOf(const Context& c, const Request& move) noexcept {
+  if (move.kind == MoveKind::kPath) return c.paths[move.path].pieces.size();
+  return move.kind == MoveKind::kArch ? static_cast<std::size_t>(std::max(1, c.ahead.arch_pieces)) : 1;
 }
 
 kinematics::Reason AxesOn(const Context& c, const State& s, const Stretch& stretch, double way,

@@ -8,6 +8,9 @@ namespace takt::group {
 // Fills `ahead.next` from where `ahead` ends. An error: there is no such path (State::problem and reason say why).
 ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element, LookAhead& ahead, State& s) noexcept;
 
+// How many stretches a move is made of; of an arch, once the first is made.
+std::size_t ElementsOf(const Context& c, const Request& move) noexcept;
+
 // The axes for a tool on a stretch that moves `along` its segment.
 kinematics::Reason AxesFor(const Context& c, const State& s, const Stretch& stretch, const path::MovingFrame& tool,
                            const KinematicState& along, const kinematics::Joints& near,

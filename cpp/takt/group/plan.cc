@@ -49,8 +49,10 @@ ErrorId ErrorOf(kinematics::Reason reason) {
   return reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
 }
 
+// It has elements.
 bool IsPath(const State& s) {
-  return MoveAt(s, s.planning.move).kind == MoveKind::kPath;
+  const MoveKind kind = MoveAt(s, s.planning.move).kind;
+  return kind == MoveKind::kPath || kind == MoveKind::kArch;
 }
 
 // All elements of a path are tried before the first one is planned.
@@ -79,6 +81,7 @@ void GoBackToTrial(LookAhead& ahead) {
   ahead.end_tool = ahead.tried_from_tool;
   ahead.end_ride = ahead.tried_from_ride;
   ahead.end_eta = ahead.tried_from_eta;
+  ahead.tried_way = 0;
 }
 
 void EndTrial(const Context& c, State& s) {
@@ -88,7 +91,7 @@ void EndTrial(const Context& c, State& s) {
 }
 
 void NextElement(const Context& c, State& s) {
-  const bool more = IsPath(s) && s.planning.element + 1 < c.paths[MoveAt(s, s.planning.move).path].pieces.size();
+  const bool more = s.planning.element + 1 < ElementsOf(c, MoveAt(s, s.planning.move));
   if (more && !c.ahead.cut_short) {
     ++s.planning.element;
     s.planning.stage = Stage::kIdle;
@@ -140,6 +143,8 @@ void Begin(const Context& c, State& s) {
     c.ahead.tried_from_tool = c.ahead.end_tool;
     c.ahead.tried_from_ride = c.ahead.end_ride;
     c.ahead.tried_from_eta = c.ahead.end_eta;
+    c.ahead.tried_way = 0;
+    c.ahead.arch_pieces = 0;
   }
   BeginStretch(c, 0, s);
 }
@@ -162,8 +167,20 @@ void BeginStretch(const Context& c, double time_s, State& s) {
   }
   Stretch& next = c.ahead.next;
   next.to = next.segment.length;
+  next.begin = (c.ahead.count > 0 ? c.ahead[c.ahead.end() - 1].end() : 0) + c.ahead.tried_way;
+  next.bends_at_ends = move.kind == MoveKind::kArch;
+  const double left = move.kind == MoveKind::kArch ? c.ahead.arch_left : 0;
+  if (s.planning.element == 0) {
+    c.ahead.from_ride = next.from_ride;
+    if (next.from_ride != next.to_ride) {
+      Ride& ride = c.ahead.rides[next.to_ride % kRides];
+      ride.begin = next.begin;
+      ride.end = next.begin + next.to + left;
+    }
+  }
+  const double time = time_s > 0 ? time_s : TimeFor(c, next.to + left, next.limits);
   next.eta_begin = c.ahead.end_eta;
-  next.eta_end = next.eta_begin + (time_s > 0 ? time_s : TimeFor(c, next.segment.length, next.limits));
+  next.eta_end = next.eta_begin + time * next.to / (next.to + left);
   c.ahead.build_up = {};
   c.ahead.near = c.ahead.end_joints;
   s.planning.verifying = false;
@@ -192,10 +209,13 @@ bool Settled(const Context& c, State& s) {
     return false;
   }
   const trajectory::AlongPath limits = trajectory::Least(next.limits, c.ahead.build_up.Mean());
-  const double time = TimeFor(c, next.segment.length, limits);
-  const double late = std::abs(time - (next.eta_end - next.eta_begin));
-  next.eta_end = next.eta_begin + time;
-  if (c.ahead.next_time_s > 0 || next.from_ride == next.to_ride) return true;
+  const bool arch = MoveAt(s, s.planning.move).kind == MoveKind::kArch;
+  const double whole = next.to + (arch ? c.ahead.arch_left : 0);
+  const double time = TimeFor(c, whole, limits);
+  const double expected = (next.eta_end - next.eta_begin) * whole / next.to;
+  const double late = std::abs(time - expected);
+  next.eta_end = next.eta_begin + time * next.to / whole;
+  if (c.ahead.next_time_s > 0 || next.from_ride == next.to_ride || s.planning.element > 0) return true;
   const Ride& ride = c.ahead.rides[next.to_ride % kRides];
   const Ride& before = c.ahead.rides[next.from_ride % kRides];
   const auto speed = [&](const Ride& one) { return DisplacementOf(c, one, 0).p.v.Norm(); };
@@ -266,6 +286,7 @@ void Verify(const Context& c, int& budget, State& s) {
     c.ahead.end_tool = c.ahead.next_tool;
     c.ahead.end_ride = c.ahead.next.to_ride;
     c.ahead.end_eta = c.ahead.next.eta_end;
+    c.ahead.tried_way += c.ahead.next.to;
     NextElement(c, s);
   } else if (!IsPath(s) && HasWorkspace(c, s) && CanAsk(c)) {
     Ask(c, s);
@@ -354,16 +375,22 @@ bool GoesFreely(const Context& c, const State& s) {
   return false;
 }
 
+bool IsTransition(const Stretch& stretch) {
+  return stretch.from_ride != stretch.to_ride;
+}
+
 // Behind the last stretch that is to be sampled now. A blend that the next move may make again, and what is behind it,
 // wait for that as long as there is time.
 std::uint64_t SampledTo(const Context& c, const State& s) {
   const LookAhead& ahead = c.ahead;
   const bool more = s.planning.move < s.done + s.queue.count;
   if (ahead.cut_short || ahead.count == 0) return ahead.end();
-  // How a stretch goes over from ride to ride depends on where it ends.
-  const Stretch& last = ahead[ahead.end() - 1];
-  const bool open = last.from_ride != last.to_ride && !last.begun;
-  if (open && more && (s.planning.element > 0 || MoveAt(s, s.planning.move).blends())) return ahead.end() - 1;
+  // How the path goes over from ride to ride depends on where that ends.
+  if (more && (s.planning.element > 0 || MoveAt(s, s.planning.move).blends())) {
+    std::uint64_t open = ahead.end();
+    while (open > ahead.first && IsTransition(ahead[open - 1]) && !ahead[open - 1].begun) --open;
+    if (open < ahead.end()) return open;
+  }
   if (!ahead.corner.open || ahead.count < 2) return ahead.end();
   const bool waits = more ? s.planning.element > 0 || MoveAt(s, s.planning.move).blends() : s.begun && GoesFreely(c, s);
   return waits ? ahead.end() - 2 : ahead.end();

@@ -11,6 +11,7 @@ void describe(Enumeration<MoveKind>& e) {
   e.value(MoveKind::kCircular, "circular", "Along an arc.");
   e.value(MoveKind::kDirect, "direct", "All axes evenly.");
   e.value(MoveKind::kPath, "path", "Along a path of the machine file.");
+  e.value(MoveKind::kArch, "arch", "Along half an ellipse.");
 }
 
 void describe(Description<Cargo>& d) {
@@ -36,6 +37,7 @@ void describe(Description<Request>& d) {
   d.internal<&R::circle>("Of circular moves.");
   d.internal<&R::path>("Index of the path.");
   d.internal<&R::master>("Axis that gives the way, from 1; 0: none.");
+  d.internal<&R::height>("Of arches.");
   d.internal<&R::ratio>("mm per unit of it.");
   d.internal<&R::limits>("Along the path.");
   d.internal<&R::velocity_factor>("Direct moves: of the axes' velocity.");

@@ -14,7 +14,7 @@
 
 namespace takt::group {
 
-enum class MoveKind : std::uint8_t { kNone, kLinear, kCircular, kDirect, kPath };
+enum class MoveKind : std::uint8_t { kNone, kLinear, kCircular, kDirect, kPath, kArch };
 
 // Something that lies on a carrier: on + the carrier's travel since `from`.
 struct Cargo {
@@ -43,6 +43,7 @@ struct Request {
   path::Circle circle;
   std::uint32_t path = 0;    // index of the machine's
   std::uint32_t master = 0;  // axis + 1 that gives the way along the path; 0: time does
+  double height = 0;         // mm, of an arch
   double ratio = 1;          // mm per u of it
   trajectory::AlongPath limits;
   double velocity_factor = 1;  // direct moves: of the axes' limits

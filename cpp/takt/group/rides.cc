@@ -71,9 +71,10 @@ MovingFrame Displaced(const Ride& ride, const kinematics::Carrier& carrier) {
 }
 
 template <typename Displacement>
-MovingFrame ToolOn(const Stretch& stretch, const KinematicState& way, const Displacement& displacement) {
+MovingFrame ToolOn(const LookAhead& ahead, const Stretch& stretch, const KinematicState& way,
+                   const Displacement& displacement) {
   const MovingFrame place = InTime(path::At(stretch.segment, way.position), way);
-  const KinematicState share = trajectory::AlongWay(ShareAt(stretch, way.position), way);
+  const KinematicState share = trajectory::AlongWay(ShareAt(ahead, stretch, way.position), way);
   if (stretch.from_ride == stretch.to_ride || share.position <= 0) return displacement(stretch.from_ride) * place;
   if (share.position >= 1) return displacement(stretch.to_ride) * place;
   return Mix(displacement(stretch.from_ride) * place, displacement(stretch.to_ride) * place, share);
@@ -126,16 +127,17 @@ bool IsCarried(const LookAhead& ahead, const Stretch& stretch) noexcept {
   return displaces(stretch.to_ride) || displaces(stretch.from_ride);
 }
 
-KinematicState ShareAt(const Stretch& stretch, double way) noexcept {
+KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double way) noexcept {
   if (stretch.from_ride == stretch.to_ride) return {1, 0, 0};
-  const double length = stretch.to - stretch.from;
-  const double x = std::clamp((way - stretch.from) / length, 0.0, 1.0);
+  const Ride& ride = RideAt(ahead, stretch.to_ride);
+  const double length = ride.end - ride.begin;
+  const double x = std::clamp((stretch.begin + way - stretch.from - ride.begin) / length, 0.0, 1.0);
   return {x * x * x * (10 + x * (6 * x - 15)), 30 * x * x * (1 - x) * (1 - x) / length,
           60 * x * (1 - x) * (1 - 2 * x) / (length * length)};
 }
 
 MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, const KinematicState& way) noexcept {
-  return ToolOn(stretch, way, [&](std::uint64_t number) {
+  return ToolOn(c.ahead, stretch, way, [&](std::uint64_t number) {
     const Ride& ride = RideAt(c.ahead, number);
     return Displaced(ride, Clutched(s, number, CarrierOf(c, ride.cargo)));
   });
@@ -145,14 +147,14 @@ MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicSt
   const double length = stretch.to - stretch.from;
   const double x = length > 0 ? std::clamp((way.position - stretch.from) / length, 0.0, 1.0) : 1;
   const double then = std::lerp(stretch.eta_begin, stretch.eta_end, x) - Now(c);
-  return ToolOn(stretch, way, [&](std::uint64_t number) {
+  return ToolOn(c.ahead, stretch, way, [&](std::uint64_t number) {
     const MovingFrame displacement = DisplacementOf(c, RideAt(c.ahead, number), std::max(then, 1e-9));
     return still ? Still(displacement) : displacement;
   });
 }
 
 MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicState& way, double ahead_s) noexcept {
-  return ToolOn(stretch, way, [&](std::uint64_t number) {
+  return ToolOn(c.ahead, stretch, way, [&](std::uint64_t number) {
     return DisplacementOf(c, RideAt(c.ahead, number), std::max(ahead_s, 1e-9));
   });
 }

@@ -37,7 +37,7 @@ bool Moves(const Ride& ride) noexcept;
 MovingFrame DisplacementOf(const Context& c, const Ride& ride, double ahead_s) noexcept;
 
 // How far a stretch has gone over from its first ride to its second one, with its derivatives by the way.
-KinematicState ShareAt(const Stretch& stretch, double way) noexcept;
+KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double way) noexcept;
 // The tool on a stretch for a motion along its segment, with what carries it as it is now; clutches included.
 MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, const KinematicState& way) noexcept;
 // The same as it is expected when the tool gets there. `still`: as if carriers stood.

@@ -168,7 +168,7 @@ const Stretch* Here(const Context& c, const State& s) noexcept {
 bool IsOnRide(const Context& c, const State& s) noexcept {
   const Stretch* stretch = s.begun ? Here(c, s) : nullptr;
   if (!stretch || stretch->joints) return false;
-  const double share = ShareAt(*stretch, stretch->from + s.pace.now.position - stretch->begin).position;
+  const double share = ShareAt(c.ahead, *stretch, stretch->from + s.pace.now.position - stretch->begin).position;
   const auto moves = [&](std::uint64_t ride) { return Moves(c.ahead.rides[ride % kRides]); };
   return (share < 1 && moves(stretch->from_ride)) || (share > 0 && moves(stretch->to_ride));
 }
@@ -176,7 +176,7 @@ bool IsOnRide(const Context& c, const State& s) noexcept {
 bool IsBetweenRides(const Context& c, const State& s) noexcept {
   const Stretch* stretch = Here(c, s);
   if (!stretch || stretch->from_ride == stretch->to_ride) return false;
-  const double share = ShareAt(*stretch, stretch->from + s.pace.now.position - stretch->begin).position;
+  const double share = ShareAt(c.ahead, *stretch, stretch->from + s.pace.now.position - stretch->begin).position;
   return share > 0 && share < 1;
 }
 
@@ -184,7 +184,7 @@ void Sit(const Context& c, State& s) noexcept {
   LookAhead& ahead = c.ahead;
   const Stretch* stretch = Here(c, s);
   const double way = std::clamp(stretch->from + s.pace.now.position - stretch->begin, stretch->from, stretch->to);
-  const std::uint64_t number = ShareAt(*stretch, way).position > 0 ? stretch->to_ride : stretch->from_ride;
+  const std::uint64_t number = ShareAt(c.ahead, *stretch, way).position > 0 ? stretch->to_ride : stretch->from_ride;
   const Ride ride = ahead.rides[number % kRides];
   const path::Point place = path::PointAt(stretch->segment, way);
   const Clutch* found = std::ranges::find_if(s.clutches, [&](const Clutch& k) { return k.used && k.ride == number; });

@@ -81,10 +81,9 @@ struct Survey::Inside {
 kinematics::Reason Survey::Inside::Run(const Question& q, const std::function<bool(const Part&)>& use) {
   Begin(q);
   const bool path = q.move.kind == MoveKind::kPath;
-  const std::size_t count = path ? fixed.paths[q.move.path].pieces.size() : 1;
   std::optional<Stretch> before;
   if (q.follows) before = q.before;
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (std::uint32_t i = 0; i < ElementsOf(Now(), q.move); ++i) {
     ahead.next = {};
     state.problem = path::Problem::kNone;
     const ErrorId error = MakeStretch(Now(), q.move, i, ahead, state);

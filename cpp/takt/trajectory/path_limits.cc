@@ -8,8 +8,9 @@ namespace takt::trajectory {
 
 namespace {
 
-// First slopes that differ by more, in relation to both, are a corner.
+// First slopes that differ by more, in relation to both and at all, are a corner.
 constexpr double kSameSlope = 1e-6;
+constexpr double kNoSlope = 1e-8;
 // Of the jerk of coordinates. More than there is: its parts hardly ever come together, and rehearsal takes back what is
 // too much. With the parts taken together it is another matter.
 constexpr double kJerkShare = 1.05;
@@ -140,7 +141,7 @@ double JointSquare(const PathSlopes& before, const PathSlopes& after, const Coor
   double square = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < limits.count; ++k) {
     const double corner = std::abs(after.first[k] - before.first[k]);
-    if (corner > kSameSlope * (std::abs(after.first[k]) + std::abs(before.first[k]) + kSameSlope)) return 0;
+    if (corner > kSameSlope * (std::abs(after.first[k]) + std::abs(before.first[k])) + kNoSlope) return 0;
     const double bend = std::abs(after.second[k] - before.second[k]);
     const double step = std::min(limits.of[k].jerk * time, 0.5 * limits.of[k].acceleration);
     if (bend * square > step) square = step / bend;

@@ -52,5 +52,59 @@ TEST(Riding, OntoABeltAndAlongWithIt) {
   }
 }
 
+MoveArch Arch(double x, double y, double z, double height, std::uint32_t pcs, BufferMode buffer, double radius = 0) {
+  MoveArch m{.x = x, .y = y, .z = z, .height = height};
+  if (pcs != 0) {
+    m.coordinate_system = CoordinateSystem::kPcs;
+    m.pcs = pcs;
+  }
+  m.buffer_mode = buffer;
+  if (radius > 0) {
+    m.transition_mode = TransitionMode::kCornerDistance;
+    m.transition_parameter = radius;
+  }
+  return m;
+}
+
+// PP-11: an arch that stands keeps to its ellipse.
+TEST(Arch, KeepsToItsEllipse) {
+  Rig rig = Gantry();
+  rig.StartAt({-150, 0, 0});
+  const Ticket move = rig.Give(Arch(150, 0, 0, 60, 0, BufferMode::kBuffered));
+  ASSERT_TRUE(rig.RunToEnd(move, 5));
+  EXPECT_TRUE(rig.lives[move].done);
+  ExpectSmooth(rig);
+  double highest = 0;
+  for (const Sample& sample : rig.trace) {
+    const KDL::Vector p = ToolOf(rig, sample).p;
+    highest = std::max(highest, p.z());
+    EXPECT_NEAR(p.x() * p.x() / (150 * 150) + p.z() * p.z() / (60 * 60), 1, 1e-3);
+  }
+  EXPECT_NEAR(highest, 60, 1e-2);
+}
+
+// PP-11, CV-23: onto a belt along an arch, between a lift and a lowering.
+TEST(Arch, LeadsOntoABelt) {
+  Rig rig = Gantry();
+  rig.StartAt({-150, 0, 0});
+  const auto belts = Put(rig, {BeltAt("belt", {0, 100, -20}, [](double t) { return Steady(t, 300); })});
+  rig.RunToEnd(rig.Give(SetDynCoordTransform{.pcs = 1, .carrier = Name::Of("belt"), .recorded_position = 0.0}));
+  rig.trace.clear();
+  rig.Give(Line(-150, 0, 30, 0, BufferMode::kBuffered));
+  rig.Give(Arch(0, 0, 30, 50, 1, BufferMode::kBlendingNext, 10));
+  const Ticket down = rig.Give(Line(0, 0, 0, 1, BufferMode::kBlendingNext, 10));
+  ASSERT_TRUE(rig.RunToEnd(down, 5));
+  ASSERT_TRUE(rig.lives[down].done) << static_cast<int>(rig.lives[down].error_id);
+  EXPECT_LE(Off(rig, *belts, 0, 0, {}, {}), kOnObject);
+  ExpectSmooth(rig);
+  // No stop on the way.
+  bool moving = false;
+  for (std::size_t n = 50; n + 50 < rig.trace.size(); ++n) {
+    moving |= rig.trace[n].out.path_velocity > 0;
+    EXPECT_GT(rig.trace[n].out.path_velocity, 20) << n;
+  }
+  EXPECT_TRUE(moving);
+}
+
 }  // namespace
 }  // namespace takt::group
