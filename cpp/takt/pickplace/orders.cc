@@ -1,7 +1,6 @@
 // Targets, one behind the other: profiles to them are given to the group as moves, and watched.
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "takt/group/plan.h"
 #include "takt/group/systems.h"
@@ -76,16 +75,9 @@ ErrorId GiveLeg(const Context& c, const Leg& leg, const PathRamps& ramps, bool k
                 State& s) {
   const std::size_t aux1 = Aux1Of(c, g);
   const bool from_rest = !c.group.ahead.known && !g.begun;
-  // Until groups know arches there is no path along one.
-  const auto give = [&]<typename Move>(const Move& move) {
-    if constexpr (std::is_constructible_v<group::Command, Move>) {
-      return Tell(c, move, g);
-    } else {
-      return ErrorId::kPathGeometry;
-    }
-  };
-  const ErrorId error =
-      leg.arch ? give(ArchOf(leg, ramps, keep_orientation, aux1)) : give(LineOf(leg, ramps, keep_orientation, aux1));
+  const group::Command move = leg.arch ? group::Command(ArchOf(leg, ramps, keep_orientation, aux1))
+                                       : group::Command(LineOf(leg, ramps, keep_orientation, aux1));
+  const ErrorId error = Tell(c, move, g);
   if (from_rest && error == ErrorId::kNone) TightenLimits(c, g, s);
   return error;
 }

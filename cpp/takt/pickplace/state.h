@@ -135,7 +135,7 @@ struct State {
   double profile_time = 0;          // s
   double preparation_time = 0;      // s
   std::uint64_t prepare_cycle = 0;  // when it began
-  double slowness = 2;              // the real time of profiles to the expected one
+  double slowness = 1.2;            // the real time of profiles to the expected one
   std::uint32_t out_of_window = 0;  // cycles since the measured tool was too far away: counts down
   bool in_target = false;
   Counters counters;

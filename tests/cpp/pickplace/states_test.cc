@@ -349,10 +349,10 @@ TEST(Jogs, AwayFromThePathAndBack) {
       cell.Steps(instant);
       const bool interrupts = from == M::kPathInterrupt;
       cell.Do(interrupts ? Control{.path_interrupt = true} : Control{.path_stop = true});
-      cell.Steps(300);
+      cell.Steps(700);
       if (from == M::kReady) cell.Do(Control{.path_stop = false});
       ASSERT_EQ(cell.state.state, from);
-      ASSERT_TRUE(cell.out().path_hold) << cell.state.hold.held << cell.rig.state.interrupted << cell.rig.state.begun << cell.state.order_count << cell.tool().x() << ' ' << cell.tool().z() << ' ' << cell.rig.out().velocity << ' ' << cell.rig.state.pace.now.velocity;
+      ASSERT_TRUE(cell.out().path_hold);
       const KDL::Vector held = cell.tool();
       cell.Do(Control{.select_axis = SelectAxis::kY});
       cell.Do(Jog{.positive = true});
