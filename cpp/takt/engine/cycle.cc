@@ -130,9 +130,10 @@ void SeeCarriers(const World& w, std::size_t group, Nth& nth) {
 }
 
 // The k-th axis that axis i must not step before: the one it follows from load on or by a cam module, those it is
-// coupled to, those it will be coupled to by buffered commands, those that its group follows or rides on, the members of the group
-// that it follows itself. Last come those of `wanted`.
-std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted, Belts belts) {
+// coupled to, those it will be coupled to by buffered commands, those that its group follows or rides on, the members
+// of the group that it follows itself. Last come those of `wanted`.
+std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted,
+                                      Belts belts) {
   const axis::State& s = w.axis_states[i];
   Nth nth{k};
   if (w.axis_masters[i]) nth.See(*w.axis_masters[i]);

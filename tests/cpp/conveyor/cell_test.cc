@@ -41,7 +41,8 @@ TEST(Cell, BeltsOfTheMachineFile) {
   EXPECT_THAT(Problems("  - {name: second, axis: drive}\n" + kPoses), IsEmpty());
   EXPECT_THAT(Problems("  - {name: b, axis: driv}\n"),
               ElementsAre(HasSubstr("belts[2].axis: expected the name of an axis, found 'driv'; did you mean drive?")));
-  EXPECT_THAT(Problems("  - {name: left, axis: drive}\n"), ElementsAre(HasSubstr("belts[2].name: expected a name that")));
+  EXPECT_THAT(Problems("  - {name: left, axis: drive}\n"),
+              ElementsAre(HasSubstr("belts[2].name: expected a name that")));
   EXPECT_THAT(Problems("  - {name: infeed, axis: drive}\n"), ElementsAre(HasSubstr("expected each name once")));
   EXPECT_THAT(Problems("poses: [{name: infeed}, {name: machine}]\n"),
               ElementsAre(HasSubstr("poses[0].name"), HasSubstr("poses[1].name")));
@@ -97,9 +98,7 @@ struct OneWorld {
       Finish();
     }
   }
-  void Begin() {
-    Move(world);
-  }
+  void Begin() { Move(world); }
   void Finish() {
     Control(world);
     Actuate(world);
@@ -198,8 +197,8 @@ TEST(Cell, GroupsLeadBeltsThatFollowThem) {
   EXPECT_NEAR(w.world.belt_outputs[0].position, 40, 1e-6);  // the tool is 10 mm from the flange
 }
 
-// CV-20, CV-21: through the whole engine the tool is on the object in every cycle, to the last bits; on a measured belt,
-// too, against where its drive truly is.
+// CV-20, CV-21: through the whole engine the tool is on the object in every cycle, to the last bits; on a measured
+// belt, too, against where its drive truly is.
 TEST(Cell, AToolRidesWithoutLag) {
   for (const char* source : {"set_value", "actual_value"}) {
     Cell cell(R"(
