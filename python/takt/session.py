@@ -33,7 +33,9 @@ Program = Callable[[], object]
 P = TypeVar("P", bound=Program)
 C = TypeVar("C", bound=Component)
 
-CLASSES: dict[str, type[Component]] = {component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose)}
+CLASSES: dict[str, type[Component]] = {
+    component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose)
+}
 
 
 class Recorder:

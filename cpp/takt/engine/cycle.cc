@@ -62,6 +62,7 @@ struct Wanted {
   std::uint32_t group = 0;               // from 1; 0: none
   std::uint32_t master = axis::kNoAxis;  // that its members follow
   std::uint32_t synced = axis::kNoAxis;  // that follows its members
+  std::uint32_t carrier = 0;             // number of what it is to ride on; 0: nothing
 };
 
 // The n-th that is seen is what is looked for.
@@ -101,10 +102,38 @@ void SeeBelts(const World& w, Nth& nth) {
   }
 }
 
+// The axes that carry, by the number of the carrier; measured belts need none.
+void SeeCarrier(const World& w, std::uint32_t number, Nth& nth) {
+  if (number == 0) return;
+  std::size_t i = number - 1;
+  if (i < w.belts.size()) {
+    if (!IsMeasured(w.belts[i].params)) nth.See(w.belts[i].axis);
+    return;
+  }
+  i -= w.belts.size();
+  if (i < w.groups.size()) SeeMembers(w.group_states[i], nth);
+}
+
+// Of all that a group rides on, or may at any time.
+void SeeCarriers(const World& w, std::size_t group, Nth& nth) {
+  const group::State& s = w.group_states[group];
+  std::uint32_t last = 0;  // each once in a row
+  const auto see = [&](const group::Cargo& cargo) {
+    if (cargo.carrier != last) SeeCarrier(w, cargo.carrier, nth);
+    last = cargo.carrier;
+  };
+  std::ranges::for_each(s.cargoes, see);
+  see(s.track.cargo);
+  for (std::uint32_t i = 0; i < s.queue.count && !nth.found; ++i) {
+    see(s.queue.moves[(s.queue.first + i) % group::kQueue].cargo);
+  }
+}
+
 // The k-th axis that axis i must not step before: the one it follows from load on or by a cam module, those it is
-// coupled to, those it will be coupled to by buffered commands, those that its group follows, the members of the group
-// that it follows itself. Last come those of `wanted`.
-std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted, Belts belts) {
+// coupled to, those it will be coupled to by buffered commands, those that its group follows or rides on, the members
+// of the group that it follows itself. Last come those of `wanted`.
+std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted,
+                                      Belts belts) {
   const axis::State& s = w.axis_states[i];
   Nth nth{k};
   if (w.axis_masters[i]) nth.See(*w.axis_masters[i]);
@@ -112,6 +141,7 @@ std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint
   SeeMasters(s.active.coupling, nth);
   for (std::size_t b = 0; b < s.buffered; ++b) SeeMasters(s.buffer[b].coupling, nth);
   if (w.group_of[i] != 0) SeeMasters(w.group_states[w.group_of[i] - 1], nth);
+  if (w.group_of[i] != 0) SeeCarriers(w, w.group_of[i] - 1, nth);
   if (w.group_of[i] != 0 && belts == Belts::kFirst) SeeBelts(w, nth);
   for (const group::State& group : w.group_states) {
     for (const group::SyncedAxis& synced : group.synced) {
@@ -119,7 +149,10 @@ std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint
     }
   }
   if (wanted.coupling != nullptr && i == wanted.of) SeeMasters(*wanted.coupling, nth);
-  if (wanted.group != 0 && w.group_of[i] == wanted.group) nth.See(wanted.master);
+  if (wanted.group != 0 && w.group_of[i] == wanted.group) {
+    nth.See(wanted.master);
+    SeeCarrier(w, wanted.carrier, nth);
+  }
   if (i == wanted.synced) SeeMembers(w.group_states[wanted.group - 1], nth);
   return nth.found;
 }
@@ -171,19 +204,26 @@ bool IsOwned(const World& w, std::size_t axis) {
   return w.group_of[axis] != 0 && group::Owns(w.group_states[w.group_of[axis] - 1]);
 }
 
-// What a command makes the members of group `index` follow, or makes follow them.
-Wanted WantedBy(const World& w, const group::Command& command, std::size_t index) {
+// What a command makes the members of group `index` follow or ride on, or makes follow them.
+Wanted WantedBy(World& w, const group::Command& command, std::size_t index) {
+  const auto carrier = [&](const Name& name) { return CarriersFor(w.riders[index]).Find(name.view()); };
   Wanted wanted{.group = static_cast<std::uint32_t>(index + 1)};
   if (const auto* path = std::get_if<group::MovePathSynchronized>(&command)) {
     wanted.master = axis::FindAxis(w.axis_params, path->master.view());
   } else if (const auto* sync = std::get_if<group::SyncAxis>(&command)) {
     wanted.synced = axis::FindAxis(w.axis_params, sync->axis.view());
+  } else if (const auto* transform = std::get_if<group::SetDynCoordTransform>(&command)) {
+    wanted.carrier = carrier(transform->carrier);
+  } else if (const auto* belt = std::get_if<group::TrackConveyorBelt>(&command)) {
+    wanted.carrier = carrier(belt->belt);
+  } else if (const auto* table = std::get_if<group::TrackRotaryTable>(&command)) {
+    wanted.carrier = carrier(table->table);
   }
   return wanted;
 }
 
 bool Changes(const Wanted& wanted) {
-  return wanted.master != axis::kNoAxis || wanted.synced != axis::kNoAxis;
+  return wanted.master != axis::kNoAxis || wanted.synced != axis::kNoAxis || wanted.carrier != 0;
 }
 
 struct MachineApplier {
