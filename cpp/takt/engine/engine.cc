@@ -71,6 +71,7 @@ struct Engine::Impl {
         groups(machine, o, machine.groups, world.group_outputs),
         belts(machine, o, machine.belts, world.belt_outputs),
         poses(machine, o, machine.poses, world.pose_outputs),
+        pick_places(machine, o, machine.pick_and_place, world.pick_place_outputs),
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
         hashes(o.journal ? o.snapshot_queue : 2),
@@ -152,7 +153,7 @@ struct Engine::Impl {
   }
 
   // All kinds of components, in the order of their numbers.
-  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses); }
+  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses, pick_places); }
 
   template <typename Outputs>
   void PublishAll(OfKind<Outputs>& kind) noexcept {
@@ -200,6 +201,7 @@ struct Engine::Impl {
   OfKind<group::Outputs> groups;
   OfKind<conveyor::Outputs> belts;
   OfKind<conveyor::PoseOutputs> poses;
+  OfKind<pickplace::Outputs> pick_places;
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
   SpscQueue<HashEntry> hashes;
@@ -288,6 +290,9 @@ const conveyor::Outputs& Engine::belt_outputs(std::size_t belt) const noexcept {
 const conveyor::PoseOutputs& Engine::pose_outputs(std::size_t pose) const noexcept {
   return impl_->world.pose_outputs[pose];
 }
+const pickplace::Outputs& Engine::pick_place_outputs(std::size_t module) const noexcept {
+  return impl_->world.pick_place_outputs[module];
+}
 std::size_t Engine::components() const noexcept {
   return std::apply([](const auto&... kind) { return (kind.outputs.size() + ...); }, impl_->kinds());
 }
@@ -364,6 +369,7 @@ template SpscQueue<FlexCamSnapshot>& Engine::snapshots<flexcam::Outputs>() noexc
 template SpscQueue<GroupSnapshot>& Engine::snapshots<group::Outputs>() noexcept;
 template SpscQueue<BeltSnapshot>& Engine::snapshots<conveyor::Outputs>() noexcept;
 template SpscQueue<PoseSnapshot>& Engine::snapshots<conveyor::PoseOutputs>() noexcept;
+template SpscQueue<PickPlaceSnapshot>& Engine::snapshots<pickplace::Outputs>() noexcept;
 
 SpscQueue<EngineFigures>& Engine::figure_queue() noexcept {
   return impl_->figure_queue;
