@@ -13,7 +13,7 @@ from takt._commands import *  # noqa: F403
 from takt._commands import __all__ as _names
 from takt._core import __version__
 from takt.axis import Axis
-from takt.belt import Belt
+from takt.belt import Belt, BeltObject
 from takt.engine import Engine, error_name, error_text, read_machine
 from takt.errors import ClosedError, CommandError, ConfigError, ConnectionError, DriveWarning, TaktError, TimeoutError
 from takt.feedback import Feedback, FeedbackState
@@ -30,6 +30,7 @@ from takt.session import Recorder, Session
 __all__ = [
     "Axis",
     "Belt",
+    "BeltObject",
     "ClosedError",
     "CommandError",
     "ConfigError",

@@ -310,6 +310,10 @@ class Session(MachineCommands):
     def _value(self, component: Component, field: str) -> Any:
         """A published value of a component."""
 
+    @abstractmethod
+    def _objects(self, belt: Belt) -> Iterable[tuple[Any, ...]]:
+        """What lies on a belt: the fields of a BeltObject, the state by number."""
+
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
         raise TaktError("forecasts are made in process only; over LCM a feedback has travel_time_s")
 

@@ -78,6 +78,10 @@ USUAL_FIELDS = (
     *("x", "y", "z"),
     "path_velocity",
     "path_acceleration",
+    "position",
+    "first_place",
+    "pose_x",
+    "pose_y",
 )
 
 

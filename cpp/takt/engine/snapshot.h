@@ -8,6 +8,7 @@
 #include "takt/axis/outputs.h"
 #include "takt/conveyor/outputs.h"
 #include "takt/conveyor/pose.h"
+#include "takt/conveyor/state.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/engine/command.h"
 #include "takt/flexcam/outputs.h"
@@ -32,6 +33,13 @@ using FlexCamSnapshot = SnapshotOf<flexcam::Outputs>;
 using GroupSnapshot = SnapshotOf<group::Outputs>;
 using BeltSnapshot = SnapshotOf<conveyor::Outputs>;
 using PoseSnapshot = SnapshotOf<conveyor::PoseOutputs>;
+
+// What lies on a belt, at the rate of its channel.
+struct ObjectsSnapshot {
+  std::uint64_t cycle = 0;
+  std::uint32_t index = 0;  // of the belt
+  conveyor::State state;
+};
 
 struct JournalEntry {  // a command as it was applied
   std::uint64_t cycle = 0;

@@ -139,7 +139,9 @@ bool CanLetGo(const Context& c, const Stretch& stretch, const MovingFrame& tool,
                                      path.jerk};
   MovingFrame rest = tool;
   rest.p.dv = rest.M.dw = KDL::Vector::Zero();
-  if (speed > 0) rest.p.p += trajectory::StopPosition({0, speed, 0}, limits) / speed * tool.p.v;
+  // What is decided now brakes from the next cycle on, and is looked at again only then.
+  const double way = trajectory::StopPosition({0, speed, 0}, limits) + 2 * c.cycle.period_s * speed;
+  if (speed > 0) rest.p.p += way / speed * tool.p.v;
   kinematics::JointMotion motion;
   kinematics::Reason reason = AxesFor(c, s, stretch, rest, {stretch.from, 0, 0}, s.joints, motion);
   const trajectory::CoordinateLimits& own = c.ahead.window.limits();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "takt/conveyor/objects.h"
 #include "takt/engine/path_checks.h"
 
 namespace takt::lcm {
@@ -264,6 +265,27 @@ msgs::belt_state ToMessage(const engine::BeltSnapshot& snapshot, const engine::M
   m.first_place = o.first_place;
   m.first_pose = ToMessage(o.first_pose);
   m.first_time_left = o.first_time_left;
+  return m;
+}
+
+msgs::belt_objects ToMessage(const engine::ObjectsSnapshot& snapshot, const engine::Machine& machine) {
+  const conveyor::BeltParams& belt = machine.belts[snapshot.index];
+  msgs::belt_objects m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = belt.name;
+  for (const conveyor::Object& object : conveyor::ObjectsOf(snapshot.state)) {
+    const conveyor::Seen seen = conveyor::See(belt, snapshot.state, object);
+    m.objects.push_back({.number = object.number,
+                         .state = static_cast<std::int8_t>(object.state),
+                         .place = seen.place,
+                         .pose = ToMessage(seen.pose),
+                         .in_range = seen.in_range,
+                         .kind = object.attributes.kind,
+                         .colour = object.attributes.colour,
+                         .quality = object.attributes.quality});
+  }
+  m.count = static_cast<std::int32_t>(m.objects.size());
   return m;
 }
 

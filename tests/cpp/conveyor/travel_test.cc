@@ -78,6 +78,24 @@ TEST(Travel, ChangingSpeedsAreWrongByLessThanTheDeadTimeAllows) {
   }
 }
 
+// CV-20: what a constant acceleration leaves behind, with the velocity measured as the mean over a cycle.
+TEST(Travel, AConstantAccelerationLeavesWhatTheFilterSays) {
+  for (const double filter : {0.004, 0.01, 0.05}) {
+    BeltParams p = Straight(kActual);
+    p.filter_s = filter;
+    Rig rig(p);
+    const double a = 1000;
+    for (int k = 0; k < 2000; ++k) {
+      const double t = k * 0.001;
+      rig.Step({a * t * t / 2, a * (t - 0.0005), 0});
+    }
+    const double t = 2;
+    EXPECT_NEAR(a * t * t / 2 - rig.state.travel.position, 3 * a * filter * filter + 1.5 * a * filter * 0.001,
+                a * 1e-7 + a * filter * 1e-4);
+    EXPECT_NEAR(rig.state.travel.acceleration, a, 1e-6 * a);
+  }
+}
+
 // CV-01: a counter of 32 bits wraps several times a second; the belt goes on.
 TEST(Travel, GoesOnOverWrapsOfTheEncoder) {
   Cell cell(R"(
