@@ -582,6 +582,7 @@ void Control(World& w) noexcept {
   for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
     axis::Publish(w.axis_params[i], w.axis_states[i], w.axis_outputs[i]);
   }
+  for (const std::uint32_t i : w.simulated) w.axis_outputs[i].true_position = w.servo_states[i].load_position;
   for (std::size_t i = 0; i < w.flex_cams.size(); ++i) {
     const FlexCam& module = w.flex_cams[i];
     flexcam::Publish(ContextOf(w, module), w.axis_states[module.slave], w.flex_cam_states[i], w.flex_cam_outputs[i]);

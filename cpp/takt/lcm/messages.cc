@@ -103,6 +103,7 @@ msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::M
   m.probe_captures = o.probe_captures;
   m.cam_outputs = o.cam_outputs;
   m.override_factor = o.override_factor;
+  m.true_position = o.true_position;
   m.limit_positive = o.limit_positive;
   m.limit_negative = o.limit_negative;
   m.reference = o.reference;
