@@ -78,7 +78,7 @@ using DriveRow = py::typing::Tuple<std::uint64_t, std::uint32_t, std::int64_t, W
 using Foreseen = py::typing::Tuple<axis::Forecast, py::str>;
 using PoseRow = py::typing::Tuple<double, double, double, double, double, double>;
 using ObjectRow = py::typing::Tuple<std::uint32_t, int, double, PoseRow, bool, std::uint32_t, std::uint32_t,
-                                    double>;  // number, state, place, pose, in range, kind, colour, quality
+                                    double>;              // number, state, place, pose, in range, kind, colour, quality
 using State = py::typing::Tuple<double, double, double>;  // position, velocity, acceleration
 using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::uint64_t>>;  // cycles, hashes
 
@@ -238,8 +238,8 @@ class VirtualEngine {
       const auto [place, pose, in_range] = conveyor::See(machine.belts[belt], state, object);
       const auto& [kind, colour, quality] = object.attributes;
       list.append(py::make_tuple(object.number, static_cast<int>(object.state), place,
-                                 py::make_tuple(pose.x, pose.y, pose.z, pose.a, pose.b, pose.c), in_range, kind,
-                                 colour, quality));
+                                 py::make_tuple(pose.x, pose.y, pose.z, pose.a, pose.b, pose.c), in_range, kind, colour,
+                                 quality));
     }
     return list;
   }

@@ -1,8 +1,8 @@
 """Belts.
 
 A belt carries objects through the cell: a photo sensor or a camera detects them, later it is told where they lay, and
-whoever wants one takes it. What leaves the work range untaken is lost. A pose that comes from elsewhere carries, too: its
-mover, camera or robot says where it is.
+whoever wants one takes it. What leaves the work range untaken is lost. A pose that comes from elsewhere carries, too:
+its mover, camera or robot says where it is.
 """
 
 import takt

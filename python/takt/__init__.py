@@ -20,8 +20,9 @@ from takt.feedback import Feedback, FeedbackState
 from takt.flex_cam import FlexCam
 from takt.forecast import Forecast, Moment
 from takt.group import Group
-from takt.pose import FreePose
+from takt.pick_place import PickPlace
 from takt.lcmlog import LogError, read_log
+from takt.pose import FreePose
 from takt.recording import Recording, RecordingError
 from takt.remote import RemoteSession, connect
 from takt.replay import ReplayResult, replay
@@ -43,6 +44,7 @@ __all__ = [
     "Group",
     "Forecast",
     "FreePose",
+    "PickPlace",
     "LogError",
     "Moment",
     "Recorder",

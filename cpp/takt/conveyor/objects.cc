@@ -37,8 +37,7 @@ double InCarrier(const BeltParams& p, double length) noexcept {
 
 kinematics::Carrier CarrierOf(const BeltParams& p, const KinematicState& travel) noexcept {
   kinematics::Carrier carrier;
-  carrier.kind =
-      p.kind == BeltKind::kTurning ? kinematics::CarrierKind::kTurning : kinematics::CarrierKind::kStraight;
+  carrier.kind = p.kind == BeltKind::kTurning ? kinematics::CarrierKind::kTurning : kinematics::CarrierKind::kStraight;
   carrier.origin = kinematics::ToFrame(p.origin);
   carrier.travel = {InCarrier(p, travel.position), InCarrier(p, travel.velocity), InCarrier(p, travel.acceleration)};
   return carrier;

@@ -22,6 +22,7 @@ constexpr std::string_view kFlexCam = "flex_cam";
 constexpr std::string_view kGroup = "group";
 constexpr std::string_view kBelt = "belt";
 constexpr std::string_view kPose = "pose";
+constexpr std::string_view kPickPlace = "pick_place";
 
 // A verb together with how its struct gets in and out of a command.
 struct Entry {
@@ -151,6 +152,11 @@ const std::vector<Entry>& Entries() {
       Make<conveyor::Command, conveyor::RemoveObject>(kBelt, "remove"),
       Make<conveyor::Command, conveyor::ClearObjects>(kBelt, "clear"),
       Make<conveyor::PoseCommand, conveyor::SetPose>(kPose, "set"),
+      Make<pickplace::Command, pickplace::Control>(kPickPlace, "control"),
+      Make<pickplace::Command, pickplace::Jog>(kPickPlace, "jog", true),
+      Make<pickplace::Command, pickplace::Configure>(kPickPlace, "configure"),
+      Make<pickplace::Command, pickplace::ConfigureBelt>(kPickPlace, "configure_belt"),
+      Make<pickplace::Command, pickplace::ResetCounters>(kPickPlace, "reset_counters"),
   };
   return entries;
 }
@@ -316,6 +322,14 @@ bool LetsGo(const Command& command) noexcept {
     const auto* power = std::get_if<group::Power>(group);
     return std::holds_alternative<group::Stop>(*group) || std::holds_alternative<group::Halt>(*group) ||
            std::holds_alternative<group::Interrupt>(*group) || (power && !power->enable);
+  }
+  if (const auto* module = std::get_if<pickplace::Command>(&command.body)) {
+    const auto* control = std::get_if<pickplace::Control>(module);
+    const auto* jog = std::get_if<pickplace::Jog>(module);
+    const bool stops = control && (control->path_stop.value_or(false) || control->path_halt.value_or(false) ||
+                                   control->stop_all.value_or(false) || control->path_interrupt.value_or(false) ||
+                                   !control->regulator_on.value_or(true));
+    return stops || (jog && !jog->positive && !jog->negative);
   }
   const auto* axis = std::get_if<axis::Command>(&command.body);
   const auto* power = axis ? std::get_if<axis::Power>(axis) : nullptr;

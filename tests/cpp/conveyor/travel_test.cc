@@ -41,7 +41,8 @@ TEST(Travel, HasNoLagAtConstantSpeed) {
   }
 }
 
-// CV-01: from rest to speed the filter forgets what it did not know; position, velocity and acceleration fit one another.
+// CV-01: from rest to speed the filter forgets what it did not know; position, velocity and acceleration fit one
+// another.
 TEST(Travel, FindsASpeedAndIsSmooth) {
   BeltParams p = Straight(kActual);
   p.filter_s = 0.01;

@@ -15,8 +15,9 @@ namespace {
 using testing::HasSubstr;
 
 std::vector<conveyor::Command> GoodCommands() {
-  return {conveyor::Detect{.x = 5}, conveyor::Locate{.number = 2, .x = 5}, conveyor::TakeObject{1},
-          conveyor::GiveBackObject{1}, conveyor::RemoveObject{1}, conveyor::ClearObjects{}};
+  return {conveyor::Detect{.x = 5},  conveyor::Locate{.number = 2, .x = 5},
+          conveyor::TakeObject{1},   conveyor::GiveBackObject{1},
+          conveyor::RemoveObject{1}, conveyor::ClearObjects{}};
 }
 
 // With an object that is visible and one that is not.
