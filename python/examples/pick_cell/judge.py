@@ -5,18 +5,17 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass
-from itertools import takewhile
 from typing import Any
 
 import numpy as np
-import takt
+from cell import Array, Settings, Thing, in_world, place, products, trays
 from takt import kinematics
 from takt.recording import Recording
 
-from cell import Array, Settings, Thing, in_world, place, products, trays
-
 WORKS = "picks begin"
 ENDS = "picks end"
+INTERRUPTED = "interrupted on the path"
+GOES_ON = "and gone on with"
 
 
 @dataclass(frozen=True)
