@@ -17,6 +17,7 @@
 
 #include "bindings.h"
 #include "recorder.h"
+#include "takt/conveyor/objects.h"
 #include "takt/core/schema.h"
 #include "takt/engine/components.h"
 #include "takt/engine/load.h"
@@ -75,6 +76,9 @@ using JournalRow =
 using Wires = py::typing::Dict<py::str, py::object>;
 using DriveRow = py::typing::Tuple<std::uint64_t, std::uint32_t, std::int64_t, Wires>;  // cycle, axis, answers, wires
 using Foreseen = py::typing::Tuple<axis::Forecast, py::str>;
+using PoseRow = py::typing::Tuple<double, double, double, double, double, double>;
+using ObjectRow = py::typing::Tuple<std::uint32_t, int, double, PoseRow, bool, std::uint32_t, std::uint32_t,
+                                    double>;              // number, state, place, pose, in range, kind, colour, quality
 using State = py::typing::Tuple<double, double, double>;  // position, velocity, acceleration
 using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::uint64_t>>;  // cycles, hashes
 
@@ -222,6 +226,22 @@ class VirtualEngine {
       hashes.mutable_data()[i] = entries[i].hash;
     }
     return py::make_tuple(cycles, hashes);
+  }
+
+  py::typing::List<ObjectRow> BeltObjects(std::size_t belt) {
+    const auto lock = Lock();
+    const engine::Machine& machine = engine_.machine();
+    if (belt >= machine.belts.size()) throw std::out_of_range("no such belt");
+    const conveyor::State& state = engine_.belt_state(belt);
+    py::typing::List<ObjectRow> list;
+    for (const conveyor::Object& object : conveyor::ObjectsOf(state)) {
+      const auto [place, pose, in_range] = conveyor::See(machine.belts[belt], state, object);
+      const auto& [kind, colour, quality] = object.attributes;
+      list.append(py::make_tuple(object.number, static_cast<int>(object.state), place,
+                                 py::make_tuple(pose.x, pose.y, pose.z, pose.a, pose.b, pose.c), in_range, kind, colour,
+                                 quality));
+    }
+    return list;
   }
 
   py::object Value(std::size_t component, std::size_t field) {
@@ -416,6 +436,7 @@ void BindEngine(py::module_& m) {
       .def("take_feedback", &E::TakeFeedback)
       .def("take_journal", &E::TakeJournal)
       .def("take_hashes", &E::TakeHashes)
+      .def("belt_objects", &E::BeltObjects, py::arg("belt"))
       .def("value", &E::Value, py::arg("component"), py::arg("field"))
       .def("foresee", &E::Foresee, py::arg("axis"))
       .def("foresee_command", &E::ForeseeCommand, py::arg("target"), py::arg("verb"), py::arg("arguments"))

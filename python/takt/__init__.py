@@ -13,15 +13,16 @@ from takt._commands import *  # noqa: F403
 from takt._commands import __all__ as _names
 from takt._core import __version__
 from takt.axis import Axis
-from takt.belt import Belt
+from takt.belt import Belt, BeltObject
 from takt.engine import Engine, error_name, error_text, read_machine
 from takt.errors import ClosedError, CommandError, ConfigError, ConnectionError, DriveWarning, TaktError, TimeoutError
 from takt.feedback import Feedback, FeedbackState
 from takt.flex_cam import FlexCam
 from takt.forecast import Forecast, Moment
 from takt.group import Group
-from takt.pose import FreePose
+from takt.pick_place import PickPlace
 from takt.lcmlog import LogError, read_log
+from takt.pose import FreePose
 from takt.recording import Recording, RecordingError
 from takt.remote import RemoteSession, connect
 from takt.replay import ReplayResult, replay
@@ -30,6 +31,7 @@ from takt.session import Recorder, Session
 __all__ = [
     "Axis",
     "Belt",
+    "BeltObject",
     "ClosedError",
     "CommandError",
     "ConfigError",
@@ -42,6 +44,7 @@ __all__ = [
     "Group",
     "Forecast",
     "FreePose",
+    "PickPlace",
     "LogError",
     "Moment",
     "Recorder",

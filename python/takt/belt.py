@@ -2,9 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from takt._commands import BeltCommands, BeltOutputs
 from takt.axis import Axis
 from takt.component import Component
+from takt.group import Pose
+
+STATES = ("detected", "visible", "taken")
+
+
+@dataclass(frozen=True)
+class BeltObject:
+    """An object on a belt, as it is now. Before it is visible nothing is known of its place."""
+
+    number: int  # from 1 in the order of their detection, never used again
+    state: str  # one of STATES
+    place: float  # mm along the belt, from its origin; of a table deg
+    pose: Pose  # in the world
+    in_range: bool  # it lies within the work range
+    kind: int  # these three as they were told
+    colour: int
+    quality: float
 
 
 class Belt(Component, BeltCommands, BeltOutputs):
@@ -19,3 +38,9 @@ class Belt(Component, BeltCommands, BeltOutputs):
     def axis(self) -> Axis:
         """The axis that moves it, or measures it."""
         return self.session.axis(self.parameters["axis"])
+
+    @property
+    def objects(self) -> tuple[BeltObject, ...]:
+        """What lies on it, in the order of the numbers."""
+        rows = self.session._objects(self)
+        return tuple(BeltObject(number, STATES[state], *rest) for number, state, *rest in rows)

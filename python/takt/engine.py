@@ -6,7 +6,7 @@ import json
 import math
 import os
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from takt import _core
 from takt._commands import DEFAULTS
 from takt.arguments import to_text
 from takt.axis import Axis
+from takt.belt import Belt
 from takt.component import Component
 from takt.errors import ConfigError, DriveWarning, seconds, whole
 from takt.feedback import Feedback
@@ -135,6 +136,9 @@ class Engine(Session):
     def _value(self, component: Component, field: str) -> Any:
         place = KINDS[component.KIND].places[field]
         return named(component.KIND, field, self._core.value(component.index, place))
+
+    def _objects(self, belt: Belt) -> Iterable[tuple[Any, ...]]:
+        return self._core.belt_objects(list(self.belts).index(belt.name))
 
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
         self._check_open()

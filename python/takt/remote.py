@@ -8,11 +8,12 @@ import os
 import random
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
 from takt import _core, msgs
+from takt.belt import Belt
 from takt.component import Component
 from takt.errors import ConnectionError, TaktError
 from takt.feedback import Feedback
@@ -58,6 +59,7 @@ class RemoteSession(Session):
         self._cycle = -1
         self._heard = 0.0
         self._trouble = ""  # why the session cannot go on
+        self._belt_objects: dict[str, msgs.belt_objects] = {}
         self._sent: dict[int, _Sent] = {}
         self._held: list[Feedback] = []  # level-sensitive commands that need heartbeats
         self._last_id = 0
@@ -70,6 +72,7 @@ class RemoteSession(Session):
             ("takt/machine", self._on_machine),
             ("takt/engine", self._on_engine),
             ("takt/feedback", self._on_feedback),
+            ("takt/belt_objects/.*", self._on_objects),
             *((f"{prefix}.*", self._on_state) for prefix in PREFIXES.values()),
         ):
             self._lcm.subscribe(channel, handler).set_queue_capacity(QUEUE)
@@ -212,6 +215,15 @@ class RemoteSession(Session):
                     rows[message.name].append(message)
             self._hear(channel, message.sequence)
 
+    def _on_objects(self, channel: str, data: bytes) -> None:
+        message = _decoded(msgs.belt_objects, data)
+        if message is None:
+            return
+        with self._news:
+            if self._believable(message):
+                self._belt_objects[message.name] = message
+                self._hear(channel, message.sequence)
+
     def _on_feedback(self, channel: str, data: bytes) -> None:
         message = _decoded(msgs.feedback, data)
         if message is None:
@@ -308,6 +320,12 @@ class RemoteSession(Session):
 
     def _value(self, component: Component, field: str) -> Any:
         return named(component.KIND, field, KINDS[component.KIND].getters[field](self._states[component.name]))
+
+    def _objects(self, belt: Belt) -> Iterable[tuple[Any, ...]]:
+        message = self._belt_objects.get(belt.name)
+        for o in message.objects if message else ():
+            pose = (o.pose.x, o.pose.y, o.pose.z, o.pose.a, o.pose.b, o.pose.c)
+            yield o.number, o.state, o.place, pose, bool(o.in_range), o.kind, o.colour, o.quality
 
     def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
         end = self.now + timeout

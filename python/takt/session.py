@@ -20,6 +20,7 @@ from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.flex_cam import FlexCam
 from takt.group import Group
+from takt.pick_place import PickPlace
 from takt.pose import FreePose
 from takt.recording import Recording
 from takt.tables import components_of
@@ -33,7 +34,9 @@ Program = Callable[[], object]
 P = TypeVar("P", bound=Program)
 C = TypeVar("C", bound=Component)
 
-CLASSES: dict[str, type[Component]] = {component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose)}
+CLASSES: dict[str, type[Component]] = {
+    component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace)
+}
 
 
 class Recorder:
@@ -86,6 +89,7 @@ class Session(MachineCommands):
         self._groups = {name: c for name, c in self._components.items() if isinstance(c, Group)}
         self._belts = {name: c for name, c in self._components.items() if isinstance(c, Belt)}
         self._poses = {name: c for name, c in self._components.items() if isinstance(c, FreePose)}
+        self._pick_places = {name: c for name, c in self._components.items() if isinstance(c, PickPlace)}
         self._programs: list[Program] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
@@ -136,6 +140,14 @@ class Session(MachineCommands):
 
     def pose(self, name: str) -> FreePose:
         return _named(self._poses, name, "pose")
+
+    @property
+    def pick_places(self) -> Mapping[str, PickPlace]:
+        """All pick and place modules by name, in the order of the machine file."""
+        return MappingProxyType(self._pick_places)
+
+    def pick_place(self, name: str) -> PickPlace:
+        return _named(self._pick_places, name, "pick and place module")
 
     @property
     def components(self) -> Mapping[str, Component]:
@@ -309,6 +321,10 @@ class Session(MachineCommands):
     @abstractmethod
     def _value(self, component: Component, field: str) -> Any:
         """A published value of a component."""
+
+    @abstractmethod
+    def _objects(self, belt: Belt) -> Iterable[tuple[Any, ...]]:
+        """What lies on a belt: the fields of a BeltObject, the state by number."""
 
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
         raise TaktError("forecasts are made in process only; over LCM a feedback has travel_time_s")

@@ -55,3 +55,9 @@ def test_a_cam_module_with_everything_on(tmp_path: Path) -> None:
     for points in (10, 10_000):
         row = found[f"FlexCamWithEverything/{points}/manual_time"]
         assert 0 < row["p99.9_ns"] <= row["max_ns"]
+
+
+def test_belts_full_of_objects(tmp_path: Path) -> None:
+    """CV-30."""
+    found = rows("bench_conveyor", ".", tmp_path)
+    assert {f"Belts/{kind}/16" for kind in ("set_value", "actual_value", "tables")} <= found.keys()

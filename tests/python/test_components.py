@@ -62,7 +62,7 @@ def test_components_are_numbered_by_kind() -> None:
         assert cutter.slave is engine.axis("knife")
         assert cutter.master is engine.axis("web")
         unknown = engine.command("cuter", "control")
-        kinds = "an axis, a cam module, a group of axes or machine"
+        kinds = "an axis, a cam module, a group of axes, a belt, a pose or machine"
         assert f"expected the name of {kinds}, found 'cuter'" in unknown.sentence
 
 
@@ -107,7 +107,7 @@ def test_x_and_y_of_a_module_have_lanes_of_their_own(tmp_path: Path) -> None:
 def test_every_state_has_a_colour_of_its_own() -> None:
     """PY-04."""
     for kind in KINDS.values():
-        assert set(kind.names["state"].values()) <= set(style.STATES)
+        assert set(kind.names.get("state", {}).values()) <= set(style.STATES)
 
 
 def test_a_report_has_modules_beside_axes(tmp_path: Path) -> None:

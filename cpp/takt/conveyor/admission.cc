@@ -79,7 +79,9 @@ Answer CarryOut(const Context&, const ClearObjects&, State& s) {
 
 void Apply(const Context& c, Ticket ticket, const Command& command, State& s) noexcept {
   const Answer answer = std::visit(
-      [&](const auto& body) { return takt::InRange(body) ? CarryOut(c, body, s) : Answer{Status::Failed(ErrorId::kParameter)}; },
+      [&](const auto& body) {
+        return takt::InRange(body) ? CarryOut(c, body, s) : Answer{Status::Failed(ErrorId::kParameter)};
+      },
       command);
   const auto report = [&](FeedbackState state) {
     c.feedback.Report({ticket, c.cycle.count, state, false, answer.status.error, answer.value});

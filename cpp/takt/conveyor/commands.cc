@@ -33,8 +33,9 @@ void describe(Description<Detect>& d) {
       "once, the others being 0; else locate has to follow. The value of the feedback is its number.");
   d.defaulted<&D::recorded_position>(unit::u, kAxisPositions,
                                      "Position of the belt's axis when it was seen, from a touch probe; unset: now.");
-  d.defaulted<&D::latched_with>(between(1, 4294967295.0),
-                                "It was seen together with the object of that number, which is still there; unset: not.");
+  d.defaulted<&D::latched_with>(
+      between(1, 4294967295.0),
+      "It was seen together with the object of that number, which is still there; unset: not.");
   DescribePose(d);
   d.rule<&D::latched_with>("must not be given besides recorded_position",
                            [](const D& c) { return !c.latched_with || !c.recorded_position; });
@@ -42,8 +43,9 @@ void describe(Description<Detect>& d) {
 
 void describe(Description<Locate>& d) {
   using L = Locate;
-  d.about("Tells where an object lay when it was detected, and makes it visible; what the belt has travelled since is "
-          "made good.");
+  d.about(
+      "Tells where an object lay when it was detected, and makes it visible; what the belt has travelled since is "
+      "made good.");
   d.defaulted<&L::number>(between(1, 4294967295.0),
                           "Of the object; unset: of those that were not located yet the first one.");
   DescribePose(d);

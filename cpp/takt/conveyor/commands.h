@@ -12,11 +12,11 @@ namespace takt::conveyor {
 // An object is there now (a photo sensor, the trigger of a camera), or was there. Its number is the command's value.
 // With any of x to c it is visible at once.
 struct Detect {
-  std::optional<double> recorded_position{};      // u of the axis, as a touch probe has it; unset: now
-  std::optional<std::uint32_t> latched_with{};    // together with that object: several on one picture
-  std::optional<double> x{}, y{}, z{};            // mm, as it lay then, from the belt's origin; the others are 0
-  std::optional<double> a{}, b{}, c{};            // deg
-  std::uint32_t kind = 0;                         // attributes
+  std::optional<double> recorded_position{};    // u of the axis, as a touch probe has it; unset: now
+  std::optional<std::uint32_t> latched_with{};  // together with that object: several on one picture
+  std::optional<double> x{}, y{}, z{};          // mm, as it lay then, from the belt's origin; the others are 0
+  std::optional<double> a{}, b{}, c{};          // deg
+  std::uint32_t kind = 0;                       // attributes
   std::uint32_t colour = 0;
   double quality = 1;
 };

@@ -11,7 +11,7 @@ namespace takt::conveyor {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // Along the belt, where the object lay when it was detected.
 double InitialPlace(const BeltParams& p, const Object& object) {
@@ -37,8 +37,7 @@ double InCarrier(const BeltParams& p, double length) noexcept {
 
 kinematics::Carrier CarrierOf(const BeltParams& p, const KinematicState& travel) noexcept {
   kinematics::Carrier carrier;
-  carrier.kind =
-      p.kind == BeltKind::kTurning ? kinematics::CarrierKind::kTurning : kinematics::CarrierKind::kStraight;
+  carrier.kind = p.kind == BeltKind::kTurning ? kinematics::CarrierKind::kTurning : kinematics::CarrierKind::kStraight;
   carrier.origin = kinematics::ToFrame(p.origin);
   carrier.travel = {InCarrier(p, travel.position), InCarrier(p, travel.velocity), InCarrier(p, travel.acceleration)};
   return carrier;
@@ -66,10 +65,17 @@ kinematics::MovingFrame PoseOf(const BeltParams& p, const State& s, const Object
   return kinematics::PoseOn(CarrierOf(p, since), 0, kinematics::ToFrame(object.pose));
 }
 
-bool InRange(const BeltParams& p, const State& s, const Object& object) noexcept {
-  if (!IsVisible(object)) return false;
-  const double place = PlaceOf(p, s, object);
+Seen See(const BeltParams& p, const State& s, const Object& object) noexcept {
+  if (!IsVisible(object)) return {kNone, {kNone, kNone, kNone, kNone, kNone, kNone}, false};
+  return {PlaceOf(p, s, object), kinematics::ToPose(PoseOf(p, s, object).GetFrame()), InRange(p, s, object)};
+}
+
+bool IsWithin(const BeltParams& p, double place) noexcept {
   return (!p.lower_limit || place >= *p.lower_limit) && (!p.upper_limit || place <= *p.upper_limit);
+}
+
+bool InRange(const BeltParams& p, const State& s, const Object& object) noexcept {
+  return IsVisible(object) && IsWithin(p, PlaceOf(p, s, object));
 }
 
 bool IsFree(const BeltParams& p, const State& s, const Object& object) noexcept {
@@ -78,8 +84,13 @@ bool IsFree(const BeltParams& p, const State& s, const Object& object) noexcept 
 
 const Object* FirstFree(const BeltParams& p, const State& s) noexcept {
   const Object* first = nullptr;
+  double furthest = 0;
   for (const Object& object : ObjectsOf(s)) {
-    if (IsFree(p, s, object) && (!first || PlaceOf(p, s, object) > PlaceOf(p, s, *first))) first = &object;
+    if (object.state != ObjectState::kVisible) continue;
+    const double place = PlaceOf(p, s, object);
+    if (!IsWithin(p, place) || (first && place <= furthest)) continue;
+    first = &object;
+    furthest = place;
   }
   return first;
 }
@@ -88,7 +99,7 @@ double TimeTo(const BeltParams& p, const State& s, const Object& object, double 
   const double way = x - PlaceOf(p, s, object);
   if (way == 0) return 0;
   const double time = way / s.travel.velocity;
-  return time > 0 && std::isfinite(time) ? time : kNever;
+  return time > 0 && std::isfinite(time) ? time : kNone;
 }
 
 double PlaceIn(const BeltParams& p, const State& s, const Object& object, double time_s) noexcept {
@@ -98,7 +109,7 @@ double PlaceIn(const BeltParams& p, const State& s, const Object& object, double
 double TimeLeft(const BeltParams& p, const State& s, const Object& object) noexcept {
   if (!InRange(p, s, object)) return 0;
   const std::optional<double>& end = s.travel.velocity < 0 ? p.lower_limit : p.upper_limit;
-  const double time = end ? TimeTo(p, s, object, *end) : kNever;
+  const double time = end ? TimeTo(p, s, object, *end) : kNone;
   return std::isnan(time) ? std::numeric_limits<double>::infinity() : time;
 }
 

@@ -28,7 +28,17 @@ double PlaceOf(const BeltParams& params, const State& state, const Object& objec
 // The object's pose with velocity and acceleration, in the world.
 kinematics::MovingFrame PoseOf(const BeltParams& params, const State& state, const Object& object) noexcept;
 
-// It is visible (or taken) and lies within the work range; limits belong to it.
+// The same for people, as it is published; nan before the object is visible.
+struct Seen {
+  double place = 0;       // mm or deg
+  kinematics::Pose pose;  // in the world
+  bool in_range = false;
+};
+Seen See(const BeltParams& params, const State& state, const Object& object) noexcept;
+
+// Whether this place is within the work range; limits belong to it.
+bool IsWithin(const BeltParams& params, double place) noexcept;
+// It is visible (or taken) and lies within the work range.
 bool InRange(const BeltParams& params, const State& state, const Object& object) noexcept;
 // InRange and not taken.
 bool IsFree(const BeltParams& params, const State& state, const Object& object) noexcept;

@@ -18,7 +18,7 @@ struct Outputs {
   std::uint32_t visible_count = 0;  // taken ones, too
   std::uint32_t taken_count = 0;
   std::uint32_t in_range_count = 0;  // visible or taken, within the work range
-  std::uint32_t last_number = 0;       // of the object detected last; 0: none yet
+  std::uint32_t last_number = 0;     // of the object detected last; 0: none yet
   std::uint32_t lost_count = 0;      // left the range and nobody had taken them, since the start
   std::uint32_t refused_count = 0;   // found no room, since the start
   // Of the objects in the range that nobody has taken the one that leaves it first. 0 and nan: there is none.
@@ -26,9 +26,9 @@ struct Outputs {
   std::uint32_t first_kind = 0;
   std::uint32_t first_colour = 0;
   double first_quality = 0;
-  double first_place = 0;  // mm or deg along the belt, from its origin
+  double first_place = 0;       // mm or deg along the belt, from its origin
   kinematics::Pose first_pose;  // in the world
-  double first_time_left = 0;  // s until it leaves the range at this speed
+  double first_time_left = 0;   // s until it leaves the range at this speed
 };
 
 void describe(Description<Outputs>&);

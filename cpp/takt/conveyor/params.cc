@@ -21,8 +21,8 @@ void describe(Description<BeltParams>& d) {
                          "How far it goes while the axis goes one unit; below 0: against the axis.");
   d.defaulted<&P::origin>("In the world. X is the direction of travel; a table turns about Z.");
   d.defaulted<&P::lower_limit>(kAlong, kPlaces, "Where the work range begins, seen from the origin; unset: nowhere.");
-  d.defaulted<&P::upper_limit>(
-      kAlong, kPlaces, "Where it ends; an object beyond it that nobody has taken is deleted. Unset: nowhere.");
+  d.defaulted<&P::upper_limit>(kAlong, kPlaces,
+                               "Where it ends; an object beyond it that nobody has taken is deleted. Unset: nowhere.");
   d.defaulted<&P::filter_s>(
       unit::s, between(0, 10),
       "Time constant of the filter; a constant speed passes without lag. Unset: 5 ms where the axis is measured, else "

@@ -40,8 +40,7 @@ kinematics::Carrier CarrierOf(const PoseParams& p, const Cycle& cycle, const Pos
   carrier.kind = kinematics::CarrierKind::kFree;
   const kinematics::Frame frame = kinematics::ToFrame({last.x, last.y, last.z, last.a, last.b, last.c});
   carrier.pose.p = KDL::VectorAcc(frame.p, KDL::Vector(last.vx, last.vy, last.vz), KDL::Vector::Zero());
-  carrier.pose.M =
-      KDL::RotationAcc(frame.M, kDegree * KDL::Vector(last.wx, last.wy, last.wz), KDL::Vector::Zero());
+  carrier.pose.M = KDL::RotationAcc(frame.M, kDegree * KDL::Vector(last.wx, last.wy, last.wz), KDL::Vector::Zero());
   const double age = AgeOf(cycle, s);
   carrier = kinematics::Ahead(carrier, std::min(age, p.goes_on_s));
   if (age > p.goes_on_s) carrier.pose = kinematics::MovingFrame(carrier.pose.GetFrame());

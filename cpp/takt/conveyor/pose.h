@@ -1,5 +1,5 @@
-// A pose that comes from elsewhere: a mover, a camera, another robot that says where it is and how it moves. Between two
-// messages it goes on as it moves.
+// A pose that comes from elsewhere: a mover, a camera, another robot that says where it is and how it moves. Between
+// two messages it goes on as it moves.
 #pragma once
 
 #include <cstdint>
@@ -35,9 +35,9 @@ struct PoseState {
 };
 
 struct PoseOutputs {
-  kinematics::Pose pose;    // in the world; nan until one has come
-  double velocity = 0;      // mm/s
-  double turning = 0;       // deg/s
+  kinematics::Pose pose;  // in the world; nan until one has come
+  double velocity = 0;    // mm/s
+  double turning = 0;     // deg/s
   double age_s = 0;       // s since it was so
   bool fresh = false;     // it goes on
 };

@@ -52,6 +52,15 @@ group::Context ContextOf(World& w, const AxesGroup& group) {
           group.params.workspace ? &w.questions : nullptr};
 }
 
+pickplace::Context ContextOf(World& w, const PickPlace& module) {
+  pickplace::Context c{
+      module.params, ContextOf(w, w.groups[module.group]), {}, w.group_outputs[module.group].path_error};
+  for (std::size_t i = 0; i < module.belts.size(); ++i) {
+    c.belts[i] = {&w.belts[module.belts[i]].params, &w.belt_states[module.belts[i]]};
+  }
+  return c;
+}
+
 // Whether groups come behind all belts, wherever those go by themselves: they may ride on any of them.
 enum class Belts : std::uint8_t { kFirst, kAnywhere };
 
@@ -62,6 +71,7 @@ struct Wanted {
   std::uint32_t group = 0;               // from 1; 0: none
   std::uint32_t master = axis::kNoAxis;  // that its members follow
   std::uint32_t synced = axis::kNoAxis;  // that follows its members
+  std::uint32_t carrier = 0;             // number of what it is to ride on; 0: nothing
 };
 
 // The n-th that is seen is what is looked for.
@@ -101,10 +111,38 @@ void SeeBelts(const World& w, Nth& nth) {
   }
 }
 
+// The axes that carry, by the number of the carrier; measured belts need none.
+void SeeCarrier(const World& w, std::uint32_t number, Nth& nth) {
+  if (number == 0) return;
+  std::size_t i = number - 1;
+  if (i < w.belts.size()) {
+    if (!IsMeasured(w.belts[i].params)) nth.See(w.belts[i].axis);
+    return;
+  }
+  i -= w.belts.size();
+  if (i < w.groups.size()) SeeMembers(w.group_states[i], nth);
+}
+
+// Of all that a group rides on, or may at any time.
+void SeeCarriers(const World& w, std::size_t group, Nth& nth) {
+  const group::State& s = w.group_states[group];
+  std::uint32_t last = 0;  // each once in a row
+  const auto see = [&](const group::Cargo& cargo) {
+    if (cargo.carrier != last) SeeCarrier(w, cargo.carrier, nth);
+    last = cargo.carrier;
+  };
+  std::ranges::for_each(s.cargoes, see);
+  see(s.track.cargo);
+  for (std::uint32_t i = 0; i < s.queue.count && !nth.found; ++i) {
+    see(s.queue.moves[(s.queue.first + i) % group::kQueue].cargo);
+  }
+}
+
 // The k-th axis that axis i must not step before: the one it follows from load on or by a cam module, those it is
-// coupled to, those it will be coupled to by buffered commands, those that its group follows, the members of the group
-// that it follows itself. Last come those of `wanted`.
-std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted, Belts belts) {
+// coupled to, those it will be coupled to by buffered commands, those that its group follows or rides on, the members
+// of the group that it follows itself. Last come those of `wanted`.
+std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted,
+                                      Belts belts) {
   const axis::State& s = w.axis_states[i];
   Nth nth{k};
   if (w.axis_masters[i]) nth.See(*w.axis_masters[i]);
@@ -112,6 +150,7 @@ std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint
   SeeMasters(s.active.coupling, nth);
   for (std::size_t b = 0; b < s.buffered; ++b) SeeMasters(s.buffer[b].coupling, nth);
   if (w.group_of[i] != 0) SeeMasters(w.group_states[w.group_of[i] - 1], nth);
+  if (w.group_of[i] != 0) SeeCarriers(w, w.group_of[i] - 1, nth);
   if (w.group_of[i] != 0 && belts == Belts::kFirst) SeeBelts(w, nth);
   for (const group::State& group : w.group_states) {
     for (const group::SyncedAxis& synced : group.synced) {
@@ -119,7 +158,10 @@ std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint
     }
   }
   if (wanted.coupling != nullptr && i == wanted.of) SeeMasters(*wanted.coupling, nth);
-  if (wanted.group != 0 && w.group_of[i] == wanted.group) nth.See(wanted.master);
+  if (wanted.group != 0 && w.group_of[i] == wanted.group) {
+    nth.See(wanted.master);
+    SeeCarrier(w, wanted.carrier, nth);
+  }
   if (i == wanted.synced) SeeMembers(w.group_states[wanted.group - 1], nth);
   return nth.found;
 }
@@ -171,19 +213,26 @@ bool IsOwned(const World& w, std::size_t axis) {
   return w.group_of[axis] != 0 && group::Owns(w.group_states[w.group_of[axis] - 1]);
 }
 
-// What a command makes the members of group `index` follow, or makes follow them.
-Wanted WantedBy(const World& w, const group::Command& command, std::size_t index) {
+// What a command makes the members of group `index` follow or ride on, or makes follow them.
+Wanted WantedBy(World& w, const group::Command& command, std::size_t index) {
+  const auto carrier = [&](const Name& name) { return CarriersFor(w.riders[index]).Find(name.view()); };
   Wanted wanted{.group = static_cast<std::uint32_t>(index + 1)};
   if (const auto* path = std::get_if<group::MovePathSynchronized>(&command)) {
     wanted.master = axis::FindAxis(w.axis_params, path->master.view());
   } else if (const auto* sync = std::get_if<group::SyncAxis>(&command)) {
     wanted.synced = axis::FindAxis(w.axis_params, sync->axis.view());
+  } else if (const auto* transform = std::get_if<group::SetDynCoordTransform>(&command)) {
+    wanted.carrier = carrier(transform->carrier);
+  } else if (const auto* belt = std::get_if<group::TrackConveyorBelt>(&command)) {
+    wanted.carrier = carrier(belt->belt);
+  } else if (const auto* table = std::get_if<group::TrackRotaryTable>(&command)) {
+    wanted.carrier = carrier(table->table);
   }
   return wanted;
 }
 
 bool Changes(const Wanted& wanted) {
-  return wanted.master != axis::kNoAxis || wanted.synced != axis::kNoAxis;
+  return wanted.master != axis::kNoAxis || wanted.synced != axis::kNoAxis || wanted.carrier != 0;
 }
 
 struct MachineApplier {
@@ -228,11 +277,15 @@ struct MachineApplier {
     }
     Report(FeedbackState::kDone);
   }
-  void operator()(const Release& c) const { ToOwner(c.ticket, axis::Release, flexcam::Release, group::Release); }
-  void operator()(const Renew& c) const { ToOwner(c.ticket, axis::Renew, flexcam::Renew, group::Renew); }
+  void operator()(const Release& c) const {
+    ToOwner(c.ticket, axis::Release, flexcam::Release, group::Release, pickplace::Release);
+  }
+  void operator()(const Renew& c) const {
+    ToOwner(c.ticket, axis::Renew, flexcam::Renew, group::Renew, pickplace::Renew);
+  }
 
-  template <typename OfAxis, typename OfModule, typename OfGroup>
-  void ToOwner(Ticket of, OfAxis change, OfModule of_module, OfGroup of_group) const {
+  template <typename OfAxis, typename OfModule, typename OfGroup, typename OfPickPlace>
+  void ToOwner(Ticket of, OfAxis change, OfModule of_module, OfGroup of_group, OfPickPlace of_pick_place) const {
     bool found = false;
     for (std::size_t i = 0; i < world.axis_states.size() && !found; ++i) {
       found = change(ContextOf(world, i), of, world.axis_states[i]);
@@ -242,6 +295,9 @@ struct MachineApplier {
     }
     for (std::size_t i = 0; i < world.groups.size() && !found; ++i) {
       found = of_group(ContextOf(world, world.groups[i]), of, world.group_states[i]);
+    }
+    for (std::size_t i = 0; i < world.pick_places.size() && !found; ++i) {
+      found = of_pick_place(ContextOf(world, world.pick_places[i]), of, world.pick_place_states[i]);
     }
     Report(FeedbackState::kDone);  // letting go of what is over already is no error
   }
@@ -253,9 +309,12 @@ void TouchTypes(const std::variant<T...>*) {
 }
 
 // It must be there.
+template <typename T>
+std::uint32_t IndexNamed(const std::vector<T>& list, const std::string& name) {
+  return static_cast<std::uint32_t>(std::ranges::find(list, name, &T::name) - list.begin());
+}
 std::uint32_t CamNamed(const Machine& machine, const std::string& name) {
-  return static_cast<std::uint32_t>(std::ranges::find(machine.cams, name, &cam::CamParams::name) -
-                                    machine.cams.begin());
+  return IndexNamed(machine.cams, name);
 }
 
 // Kinematics stay within the SW limits of the axes, too.
@@ -306,6 +365,7 @@ World::World(const Machine& machine)
   MakeModules(machine);
   MakeGroups(machine);
   MakeBelts(machine);
+  MakePickPlaces(machine);
   surrounding = {axis_states, axis_params, cam_switches, cams};
   MakeOrder(*this);
 }
@@ -376,6 +436,26 @@ void World::MakeBelts(const Machine& machine) {
   for (std::uint32_t i = 0; i < groups.size(); ++i) riders.push_back({this, i});
 }
 
+void World::MakePickPlaces(const Machine& machine) {
+  TypeOf<pickplace::State>();
+  TypeOf<pickplace::Settings>();
+  TypeOf<pickplace::BeltSettings>();
+  TypeOf<pickplace::Inputs>();
+  TouchTypes(static_cast<const pickplace::Command*>(nullptr));
+  pick_place_of.assign(groups.size(), 0);
+  for (const pickplace::PickPlaceParams& params : machine.pick_and_place) {
+    PickPlace& module = pick_places.emplace_back();
+    module.params = params;
+    module.group = IndexNamed(machine.groups, params.group);
+    for (const pickplace::PickPlaceBelt& belt : params.belts) {
+      module.belts.push_back(IndexNamed(machine.belts, belt.belt));
+    }
+    pick_place_states.push_back(pickplace::MakeState(params));
+    pick_place_of[module.group] = static_cast<std::uint32_t>(pick_places.size());
+  }
+  pick_place_outputs.resize(pick_places.size());
+}
+
 std::uint64_t World::StateHash() const noexcept {
   std::uint64_t hash = cycle.count;
   for (const axis::State& state : axis_states) hash = HashOf(state, hash);
@@ -384,6 +464,7 @@ std::uint64_t World::StateHash() const noexcept {
   for (const group::State& state : group_states) hash = HashOf(state, hash);
   for (const conveyor::State& state : belt_states) hash = HashOf(state, hash);
   for (const conveyor::PoseState& state : pose_states) hash = HashOf(state, hash);
+  for (const pickplace::State& state : pick_place_states) hash = HashOf(state, hash);
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
   for (const HeardDrive& drive : drives) hash = HashOf(servo_inputs[drive.axis], HashOf(drive, hash));
   return hash;
@@ -447,14 +528,24 @@ void Apply(World& w, const Command& command) noexcept {
     const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size();  // likewise
     if (i >= w.poses.size()) return refuse(ErrorId::kUnknownTarget);
     conveyor::Apply(w.cycle, w.feedback, command.ticket, *for_pose, w.pose_states[i]);
+  } else if (const auto* for_module = std::get_if<pickplace::Command>(&command.body)) {
+    const std::size_t i =
+        component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size();  // likewise
+    if (i >= w.pick_places.size()) return refuse(ErrorId::kUnknownTarget);
+    const PickPlace& module = w.pick_places[i];
+    pickplace::Apply(ContextOf(w, module), command.ticket, command.lease_s, *for_module, w.group_states[module.group],
+                     w.pick_place_states[i]);
   }
 }
 
 namespace {
 
-// Before the first of its members.
+// Before the first of its members; behind the module that moves it.
 void StepOnce(World& w, std::size_t group) {
   if (std::exchange(w.group_stepped[group], std::uint8_t{1}) != 0) return;
+  if (const std::uint32_t module = w.pick_place_of[group]; module != 0) {
+    pickplace::Step(ContextOf(w, w.pick_places[module - 1]), w.group_states[group], w.pick_place_states[module - 1]);
+  }
   group::Step(ContextOf(w, w.groups[group]), w.group_states[group]);
 }
 
@@ -504,6 +595,11 @@ void Control(World& w) noexcept {
   }
   for (std::size_t i = 0; i < w.poses.size(); ++i) {
     conveyor::Publish(w.poses[i], w.cycle, w.pose_states[i], w.pose_outputs[i]);
+    for (std::size_t i = 0; i < w.pick_places.size(); ++i) {
+      const PickPlace& module = w.pick_places[i];
+      pickplace::Publish(ContextOf(w, module), w.group_states[module.group], w.pick_place_states[i],
+                         w.pick_place_outputs[i]);
+    }
   }
 }
 

@@ -11,6 +11,9 @@ namespace takt::engine {
 
 namespace {
 
+// Lists of objects that may wait for each belt: they are long.
+constexpr std::size_t kObjectLists = 64;
+
 // Every how many cycles something with this rate is due; 0: never.
 std::uint64_t Divisor(double rate_hz, double period_s) {
   if (rate_hz <= 0) return 0;
@@ -71,6 +74,8 @@ struct Engine::Impl {
         groups(machine, o, machine.groups, world.group_outputs),
         belts(machine, o, machine.belts, world.belt_outputs),
         poses(machine, o, machine.poses, world.pose_outputs),
+        belt_objects(o.publish ? kObjectLists * machine.belts.size() : 2),
+        pick_places(machine, o, machine.pick_and_place, world.pick_place_outputs),
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
         hashes(o.journal ? o.snapshot_queue : 2),
@@ -152,7 +157,7 @@ struct Engine::Impl {
   }
 
   // All kinds of components, in the order of their numbers.
-  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses); }
+  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses, pick_places); }
 
   template <typename Outputs>
   void PublishAll(OfKind<Outputs>& kind) noexcept {
@@ -162,6 +167,13 @@ struct Engine::Impl {
       if (!due && !options.every_cycle) continue;
       if (!kind.queue.TryPush({world.cycle.count, static_cast<std::uint32_t>(i), due, kind.outputs[i]}))
         ++figures.snapshots_dropped;
+    }
+  }
+
+  void PublishObjects() noexcept {
+    for (std::uint32_t i = 0; i < belts.divisors.size(); ++i) {
+      if (belts.divisors[i] == 0 || world.cycle.count % belts.divisors[i] != 0) continue;
+      if (!belt_objects.TryPush({world.cycle.count, i, world.belt_states[i]})) ++figures.snapshots_dropped;
     }
   }
 
@@ -182,6 +194,7 @@ struct Engine::Impl {
     }
     if (!options.publish) return;
     std::apply([this](auto&... kind) { (PublishAll(kind), ...); }, kinds());
+    PublishObjects();
     if (figures_divisor > 0 && world.cycle.count % figures_divisor == 0) figure_queue.TryPush(figures);
   }
 
@@ -200,6 +213,8 @@ struct Engine::Impl {
   OfKind<group::Outputs> groups;
   OfKind<conveyor::Outputs> belts;
   OfKind<conveyor::PoseOutputs> poses;
+  SpscQueue<ObjectsSnapshot> belt_objects;
+  OfKind<pickplace::Outputs> pick_places;
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
   SpscQueue<HashEntry> hashes;
@@ -288,6 +303,12 @@ const conveyor::Outputs& Engine::belt_outputs(std::size_t belt) const noexcept {
 const conveyor::PoseOutputs& Engine::pose_outputs(std::size_t pose) const noexcept {
   return impl_->world.pose_outputs[pose];
 }
+const conveyor::State& Engine::belt_state(std::size_t belt) const noexcept {
+  return impl_->world.belt_states[belt];
+}
+const pickplace::Outputs& Engine::pick_place_outputs(std::size_t module) const noexcept {
+  return impl_->world.pick_place_outputs[module];
+}
 std::size_t Engine::components() const noexcept {
   return std::apply([](const auto&... kind) { return (kind.outputs.size() + ...); }, impl_->kinds());
 }
@@ -364,7 +385,11 @@ template SpscQueue<FlexCamSnapshot>& Engine::snapshots<flexcam::Outputs>() noexc
 template SpscQueue<GroupSnapshot>& Engine::snapshots<group::Outputs>() noexcept;
 template SpscQueue<BeltSnapshot>& Engine::snapshots<conveyor::Outputs>() noexcept;
 template SpscQueue<PoseSnapshot>& Engine::snapshots<conveyor::PoseOutputs>() noexcept;
+template SpscQueue<PickPlaceSnapshot>& Engine::snapshots<pickplace::Outputs>() noexcept;
 
+SpscQueue<ObjectsSnapshot>& Engine::belt_objects() noexcept {
+  return impl_->belt_objects;
+}
 SpscQueue<EngineFigures>& Engine::figure_queue() noexcept {
   return impl_->figure_queue;
 }

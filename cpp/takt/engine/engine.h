@@ -20,6 +20,7 @@
 #include "takt/group/outputs.h"
 #include "takt/group/question.h"
 #include "takt/group/survey.h"
+#include "takt/pickplace/outputs.h"
 
 namespace takt::engine {
 
@@ -64,6 +65,8 @@ class Engine {
   const group::Outputs& group_outputs(std::size_t group) const noexcept;
   const conveyor::Outputs& belt_outputs(std::size_t belt) const noexcept;
   const conveyor::PoseOutputs& pose_outputs(std::size_t pose) const noexcept;
+  const conveyor::State& belt_state(std::size_t belt) const noexcept;
+  const pickplace::Outputs& pick_place_outputs(std::size_t module) const noexcept;
   // The same for components of any kind, by the number that is their target, less one.
   struct Published {
     const Type* type;
@@ -106,6 +109,7 @@ class Engine {
   // One for each kind of components (PublishedKinds).
   template <typename Outputs = axis::Outputs>
   SpscQueue<SnapshotOf<Outputs>>& snapshots() noexcept;
+  SpscQueue<ObjectsSnapshot>& belt_objects() noexcept;
   SpscQueue<EngineFigures>& figure_queue() noexcept;
   SpscQueue<JournalEntry>& journal() noexcept;
   SpscQueue<DriveEntry>& drive_journal() noexcept;

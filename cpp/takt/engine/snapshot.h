@@ -8,16 +8,18 @@
 #include "takt/axis/outputs.h"
 #include "takt/conveyor/outputs.h"
 #include "takt/conveyor/pose.h"
+#include "takt/conveyor/state.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/engine/command.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
+#include "takt/pickplace/outputs.h"
 
 namespace takt::engine {
 
 // What each kind of components publishes, in the order of ComponentKinds().
-using PublishedKinds =
-    std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs, conveyor::PoseOutputs>;
+using PublishedKinds = std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs,
+                                  conveyor::PoseOutputs, pickplace::Outputs>;
 
 // What a component published.
 template <typename Outputs>
@@ -32,6 +34,14 @@ using FlexCamSnapshot = SnapshotOf<flexcam::Outputs>;
 using GroupSnapshot = SnapshotOf<group::Outputs>;
 using BeltSnapshot = SnapshotOf<conveyor::Outputs>;
 using PoseSnapshot = SnapshotOf<conveyor::PoseOutputs>;
+using PickPlaceSnapshot = SnapshotOf<pickplace::Outputs>;
+
+// What lies on a belt, at the rate of its channel.
+struct ObjectsSnapshot {
+  std::uint64_t cycle = 0;
+  std::uint32_t index = 0;  // of the belt
+  conveyor::State state;
+};
 
 struct JournalEntry {  // a command as it was applied
   std::uint64_t cycle = 0;

@@ -105,6 +105,7 @@ struct Applier {
     if (!Is(GroupState::kMoving) || s.ends) return Refuse(ErrorId::kState);
     AbortTask();
     s.interrupted = s.lets_go = true;
+    for (Clutch& clutch : s.clutches) clutch.law_length = 0;
     s.brake = {m.deceleration.value_or(0), m.jerk.value_or(0)};
     if (!s.begun) return Finish(ErrorId::kNone);  // it does not move yet
     s.task = Task::kInterrupt;

@@ -134,14 +134,14 @@ Clutch* ClutchOf(const Context& c, State& s) {
 // The object leaves where it may be tracked.
 void Leave(const Context& c, double distance, double of_tool, State& s) {
   AbortMoves(c, ErrorId::kNone, s);
+  EndMotion({}, true, s);
+  s.track.ends = true;
   if (Clutch* clutch = ClutchOf(c, s); clutch && distance > 0) {
     clutch->law_begin = CarrierOf(c, s.track.cargo).travel.position;
     clutch->law_length = s.track.sense * distance;
     clutch->law_from = clutch->travel.position;
     clutch->law_way = s.track.sense * (of_tool > 0 ? of_tool : 0.5 * distance);
   }
-  s.track.ends = true;
-  EndMotion({}, true, s);
 }
 
 }  // namespace

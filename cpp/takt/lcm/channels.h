@@ -22,6 +22,11 @@ inline std::string StateChannel(std::string_view kind, std::string_view name) {
   return "takt/" + std::string(kind) + "/" + std::string(name);
 }
 
+// What lies on a belt.
+inline std::string ObjectsChannel(std::string_view name) {
+  return "takt/belt_objects/" + std::string(name);
+}
+
 // Of an axis whose drive lives in another process.
 inline std::string SetPointChannel(std::string_view name) {
   return "takt/drive/" + std::string(name) + "/setpoint";

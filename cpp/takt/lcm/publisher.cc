@@ -38,6 +38,9 @@ Publisher::Publisher(engine::Engine& engine, Clients& clients, Outlet* network, 
       channels.push_back({.name = StateChannel(kind.name, kind.name_of(engine_.machine(), i))});
     }
   }
+  for (const conveyor::BeltParams& belt : engine_.machine().belts) {
+    object_channels_.push_back({.name = ObjectsChannel(belt.name)});
+  }
   thread_ = std::thread([this] { Run(); });
 }
 
@@ -69,6 +72,10 @@ bool Publisher::Drain() {
   });
   any |= Take(engine_.hashes(), [this](const engine::HashEntry& entry) { AddHash(entry); });
   any |= Take(engine_.figure_queue(), [this](const engine::EngineFigures& figures) { PublishFigures(figures); });
+  any |= Take(engine_.belt_objects(), [this](const engine::ObjectsSnapshot& snapshot) {
+    auto message = ToMessage(snapshot, engine_.machine());
+    ToBoth(object_channels_[snapshot.index], message);
+  });
   return any | DrainStates(static_cast<engine::PublishedKinds*>(nullptr));
 }
 

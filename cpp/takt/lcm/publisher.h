@@ -78,6 +78,7 @@ class Publisher {
   const RunInfo info_;
 
   std::vector<std::vector<Channel>> state_channels_;  // by kind, by component
+  std::vector<Channel> object_channels_;              // by belt
   Channel engine_channel_, machine_channel_, feedback_channel_;
   std::int64_t next_machine_ns_ = 0;
   msgs::journal_hashes hashes_{};

@@ -129,6 +129,30 @@ Profile MakeProfile(const Place& start, const Place& target, const Shape& shape,
   return m.profile;
 }
 
+double TimeFor(double length, const PathRamps& ramps) noexcept {
+  const double v = ramps.velocity;
+  const double a = std::min(ramps.acceleration, ramps.deceleration);
+  const double j = ramps.jerk;
+  // Accelerations build up within a / j, speeds within v / a.
+  if (length >= v * v / a + v * a / j) return length / v + v / a + a / j;
+  if (length >= 2 * a * a * a / (j * j)) return a / j + std::sqrt(a * a / (j * j) + 4 * length / a);
+  return 4 * std::cbrt(length / (2 * j));
+}
+
+double TimeAlong(const Profile& profile, const Place& start, const PathRamps& ramps, const Systems& systems) noexcept {
+  KDL::Vector at = In(systems.start, start);
+  double time_s = 0;
+  for (std::uint32_t i = 0; i < profile.count; ++i) {
+    const Leg& leg = profile.legs[i];
+    const bool lifts = i == 0 && !leg.turns;
+    const KDL::Vector to = In(lifts ? systems.start : systems.target, leg.to);
+    // Half an ellipse is shorter than its half axes together.
+    time_s += TimeFor((to - at).Norm() + 2 * leg.height, ramps);
+    at = to;
+  }
+  return time_s;
+}
+
 group::MoveLinearAbsolute LineOf(const Leg& leg, const PathRamps& ramps, bool keep_orientation,
                                  std::size_t aux1) noexcept {
   group::MoveLinearAbsolute move;

@@ -70,6 +70,11 @@ struct PathRamps {
   double jerk = 0;          // mm/s³
 };
 
+// s that a way from rest to rest takes with these limits, and that all legs of a profile take if it stopped at its
+// points: it takes no longer as far as the axes can keep up.
+double TimeFor(double length, const PathRamps& ramps) noexcept;
+double TimeAlong(const Profile& profile, const Place& start, const PathRamps& ramps, const Systems& systems) noexcept;
+
 // A leg as a move of a group. `aux1`: place of the auxiliary axis in the group, from 0; none: kMaxAxes.
 group::MoveLinearAbsolute LineOf(const Leg& leg, const PathRamps& ramps, bool keep_orientation,
                                  std::size_t aux1) noexcept;

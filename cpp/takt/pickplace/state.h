@@ -17,7 +17,7 @@
 
 namespace takt::pickplace {
 
-inline constexpr std::size_t kOrders = 8;   // profiles that may wait, with the one that is gone
+inline constexpr std::size_t kOrders = 8;  // profiles that may wait, with the one that is gone
 inline constexpr std::size_t kPickTimes = 8;
 
 // Where an order has got to.
@@ -35,27 +35,28 @@ struct Order {
   std::uint32_t belt = 0;  // of the module's list, from 1; 0: static
   bool picks = false;      // a workpiece is picked there; else placed
   Place target;            // static
+  Place start;             // where it began
   Shape shape;
   PathRamps ramps;
   double gripper_time = 0;  // s
   Phase phase = Phase::kNew;
   Profile profile;
-  std::uint32_t next_leg = 0;  // the first one given
-  std::uint64_t first = 0;     // number of its first move ...
-  std::uint64_t last = 0;      // ... and of its last one, in the group
+  std::uint32_t next_leg = 0;   // the first one given
+  std::uint64_t first = 0;      // number of its first move ...
+  std::uint64_t last = 0;       // ... and of its last one, in the group
   std::uint32_t workpiece = 0;  // its number; 0: none is taken
   std::uint64_t begin_cycle = 0;
-  std::uint64_t stay_cycle = 0;   // when it arrived
-  double expected_s = 0;          // the way was thought to take
-  bool gripper_off = false;       // it was stopped, or the override changed
-  bool pulse_at_end = false;      // it was interrupted
+  std::uint64_t stay_cycle = 0;  // when it arrived
+  double expected_s = 0;         // the way was thought to take
+  bool gripper_off = false;      // it was stopped, or the override changed
+  bool pulse_at_end = false;     // it was interrupted
   bool pulsed = false;
 };
 
 // A tracking mode that goes round and round.
 struct Loop {
   bool active = false;
-  bool ends = false;  // behind the order that is gone
+  bool ends = false;    // behind the order that is gone
   bool places = false;  // the next order is to place
   Ticket ticket = 0;
   TrackingMode mode = TrackingMode::kProgram;
@@ -75,7 +76,7 @@ struct Hold {
   bool held = false;  // the group rests on it, or it is to be given again
   bool off = false;   // the tool was moved away
   bool returning = false;
-  Ticket ticket = 0;  // of the way back
+  Ticket ticket = 0;      // of the way back
   kinematics::Pose pose;  // in the MCS: where it was left
   double aux1 = 0;
   std::uint64_t move = 0;  // of the way back
@@ -88,11 +89,11 @@ struct HomingState {
 
 // Goes ahead of the group on its path, to know when a profile will be over.
 struct Scout {
-  bool known = false;             // when the profile ends
-  std::uint64_t end_cycle = 0;    // then
+  bool known = false;           // when the profile ends
+  std::uint64_t end_cycle = 0;  // then
   bool running = false;
-  std::uint64_t order_last = 0;   // number of the move that it looks for
-  std::uint64_t cycle = 0;        // where it has got to
+  std::uint64_t order_last = 0;  // number of the move that it looks for
+  std::uint64_t cycle = 0;       // where it has got to
   trajectory::PathPace pace;
 };
 
@@ -109,16 +110,17 @@ struct State {
   bool abort = false;
   bool ack = false;
   bool done = false;
-  bool enables = false;  // the group, as soon as its axes are on and stand
+  bool halting = false;               // the group comes to rest because the module told it to
+  bool enables = false;               // the group, as soon as its axes are on and stand
   std::array<Order, kOrders> orders;  // [0] is the one that is gone
   std::uint32_t order_count = 0;
   Loop loop;
   // Where the moves given end.
   bool at_known = false;  // else where the tool stands
   Place at;
-  std::uint32_t at_belt = 0;     // on a workpiece of that belt; 0: static
-  std::uint32_t parked_at = 0;   // the parking position of that belt, from 1
-  bool parking = false;          // on the way there
+  std::uint32_t at_belt = 0;    // on a workpiece of that belt; 0: static
+  std::uint32_t parked_at = 0;  // the parking position of that belt, from 1
+  bool parking = false;         // on the way there
   std::uint64_t parking_move = 0;
   std::uint64_t given = 0;  // number that the next move gets: fewer in the group mean that it refused some
   bool second_pcs = false;  // workpieces get the second one next
@@ -130,9 +132,10 @@ struct State {
   double override_given = 1;
   bool pulse = false;
   Scout scout;
-  double profile_time = 0;      // s
-  double preparation_time = 0;  // s
-  double slowness = 2;          // the real time of profiles to the expected one
+  double profile_time = 0;          // s
+  double preparation_time = 0;      // s
+  std::uint64_t prepare_cycle = 0;  // when it began
+  double slowness = 1.2;            // the real time of profiles to the expected one
   std::uint32_t out_of_window = 0;  // cycles since the measured tool was too far away: counts down
   bool in_target = false;
   Counters counters;

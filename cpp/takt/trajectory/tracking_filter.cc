@@ -8,6 +8,9 @@ namespace takt::trajectory {
 
 namespace {
 
+// Cycles; with 2.2 it would no longer settle, since its jerk changes once a cycle only.
+constexpr double kFastest = 3;
+
 KinematicState After(const KinematicState& x, double t) {
   return {x.position + t * (x.velocity + 0.5 * t * x.acceleration), x.velocity + t * x.acceleration, x.acceleration};
 }
@@ -22,7 +25,7 @@ KinematicState Track(double filter_s, double dead_time_s, double period_s, doubl
     f.running = true;
     f.state = {position, velocity, 0};
   } else {
-    const double w = 1 / std::max(filter_s, 2 * t);
+    const double w = 1 / std::max(filter_s, kFastest * t);
     // What is measured now was there one cycle of the filter's motion after its state of the cycle before.
     const KinematicState expected = After(f.state, t);
     const double jerk = w * w * w * (position - expected.position) + 3 * w * w * (velocity - expected.velocity) -

@@ -13,7 +13,7 @@ struct TrackingFilterState {
 
 // One cycle. The filter is a motion of constant jerk in each cycle: its position, velocity and acceleration fit one
 // another. A standing target and one of constant speed pass without lag; of a step, what is left after some `filter_s`
-// is small. The answer is `dead_time_s` further on, with velocity and acceleration as they are. With `filter_s` < 2
+// is small. The answer is `dead_time_s` further on, with velocity and acceleration as they are. With `filter_s` < 3
 // cycles the filter is as fast as it can be.
 KinematicState Track(double filter_s, double dead_time_s, double period_s, double position, double velocity,
                      TrackingFilterState& state) noexcept;

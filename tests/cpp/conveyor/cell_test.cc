@@ -41,7 +41,8 @@ TEST(Cell, BeltsOfTheMachineFile) {
   EXPECT_THAT(Problems("  - {name: second, axis: drive}\n" + kPoses), IsEmpty());
   EXPECT_THAT(Problems("  - {name: b, axis: driv}\n"),
               ElementsAre(HasSubstr("belts[2].axis: expected the name of an axis, found 'driv'; did you mean drive?")));
-  EXPECT_THAT(Problems("  - {name: left, axis: drive}\n"), ElementsAre(HasSubstr("belts[2].name: expected a name that")));
+  EXPECT_THAT(Problems("  - {name: left, axis: drive}\n"),
+              ElementsAre(HasSubstr("belts[2].name: expected a name that")));
   EXPECT_THAT(Problems("  - {name: infeed, axis: drive}\n"), ElementsAre(HasSubstr("expected each name once")));
   EXPECT_THAT(Problems("poses: [{name: infeed}, {name: machine}]\n"),
               ElementsAre(HasSubstr("poses[0].name"), HasSubstr("poses[1].name")));
@@ -97,9 +98,7 @@ struct OneWorld {
       Finish();
     }
   }
-  void Begin() {
-    Move(world);
-  }
+  void Begin() { Move(world); }
   void Finish() {
     Control(world);
     Actuate(world);
@@ -196,6 +195,74 @@ TEST(Cell, GroupsLeadBeltsThatFollowThem) {
   w.Give("left", "move_linear_absolute", "{x: 50}");
   w.Run(1000);
   EXPECT_NEAR(w.world.belt_outputs[0].position, 40, 1e-6);  // the tool is 10 mm from the flange
+}
+
+// CV-20, CV-21: through the whole engine the tool is on the object in every cycle, to the last bits; on a measured
+// belt, too, against where its drive truly is.
+TEST(Cell, AToolRidesWithoutLag) {
+  for (const char* source : {"set_value", "actual_value"}) {
+    Cell cell(R"(
+name: cell
+axes:
+  - {name: x, limits: {velocity: 2000, acceleration: 20000, jerk: 1000000}}
+  - {name: y, limits: {velocity: 2000, acceleration: 20000, jerk: 1000000}}
+  - name: drive
+    limits: {velocity: 1000, acceleration: 10000, jerk: 1000000}
+    encoder: {increments_per_unit: 10000000}
+groups:
+  - {name: robot, axes: [x, y], kinematics: {gantry: {axes: [x, y]}},
+     path: {velocity: 500, acceleration: 5000, jerk: 500000}}
+belts:
+  - {name: infeed, axis: drive, filter_s: 0.01, origin: {x: 5, y: -20}, source: )" +
+              std::string(source) + "}\n");
+    for (const char* target : {"robot", "drive"}) cell.Give(target, "power");
+    cell.Run(200);
+    cell.Give("robot", "enable");
+    cell.Give("drive", "move_velocity", "{velocity: 200}");
+    cell.Run(500);
+    cell.Give("robot", "set_dyn_coord_transform", "{pcs: 3, carrier: infeed, x: 10}");
+    cell.Run(1);
+    const Ticket move = cell.Give("robot", "move_linear_absolute", "{coordinate_system: pcs, pcs: 3, x: 30, y: 20}");
+    cell.Run(1000);
+    EXPECT_EQ(cell.last[move].state, FeedbackState::kDone);
+    const double offset = cell.engine.group_outputs(0).x - cell.Belt().position;
+    double worst = 0, against_axis = 0;
+    const double true_offset = cell.engine.group_outputs(0).x - cell.engine.outputs(2).set_position;
+    cell.each = [&] {
+      const double x = cell.engine.group_outputs(0).x;
+      worst = std::max(worst, std::abs(x - cell.Belt().position - offset));
+      against_axis = std::max(against_axis, std::abs(x - cell.engine.outputs(2).set_position - true_offset));
+    };
+    cell.Run(500);
+    EXPECT_LT(worst, 1e-9) << source;
+    EXPECT_LT(against_axis, source == std::string("set_value") ? 1e-9 : 1e-5);
+    EXPECT_NEAR(cell.engine.group_outputs(0).velocity, 200, 1e-3);
+  }
+}
+
+// CV-42, EN-03: whoever rides on the tool of another group steps behind it; not both on one another.
+TEST(Cell, GroupsRideOnOneAnotherOneWayOnly) {
+  OneWorld w;
+  w.Give("left", "set_dyn_coord_transform", "{pcs: 1, carrier: right}");
+  auto order = w.world.axis_order.sequence();
+  const auto place = [&](std::uint32_t axis) { return std::ranges::find(order, axis) - order.begin(); };
+  for (const std::uint32_t member : {0u, 1u}) {
+    EXPECT_GT(place(member), place(2));
+    EXPECT_GT(place(member), place(3));
+  }
+  const engine::ParsedCommand back =
+      engine::ParseCommand(w.machine, "right", "set_dyn_coord_transform", "{pcs: 1, carrier: left}");
+  engine::Command numbered = back.command;
+  numbered.ticket = 7;
+  w.world.feedback.Clear();
+  engine::Apply(w.world, numbered);
+  ASSERT_EQ(w.world.feedback.events().size(), 1u);
+  EXPECT_EQ(w.world.feedback.events()[0].error, ErrorId::kCouplingLoop);
+  w.Give("left", "set_cartesian_transform", "{pcs: 1}");
+  engine::Apply(w.world, numbered);
+  EXPECT_EQ(w.world.feedback.events().back().error, ErrorId::kNone);
+  order = w.world.axis_order.sequence();
+  EXPECT_GT(place(2), place(0));
 }
 
 // CV-42: a pose that is given goes on as it moves, to the instant of the set points, and stands when it is old.

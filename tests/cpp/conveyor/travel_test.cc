@@ -41,7 +41,8 @@ TEST(Travel, HasNoLagAtConstantSpeed) {
   }
 }
 
-// CV-01: from rest to speed the filter forgets what it did not know; position, velocity and acceleration fit one another.
+// CV-01: from rest to speed the filter forgets what it did not know; position, velocity and acceleration fit one
+// another.
 TEST(Travel, FindsASpeedAndIsSmooth) {
   BeltParams p = Straight(kActual);
   p.filter_s = 0.01;
@@ -75,6 +76,24 @@ TEST(Travel, ChangingSpeedsAreWrongByLessThanTheDeadTimeAllows) {
     }
     EXPECT_LT(worst, amplitude * w * w * 0.02 * 0.02 / 2) << hertz;
     EXPECT_GT(worst, 1e-4) << "a test that cannot fail";
+  }
+}
+
+// CV-20: what a constant acceleration leaves behind, with the velocity measured as the mean over a cycle.
+TEST(Travel, AConstantAccelerationLeavesWhatTheFilterSays) {
+  for (const double filter : {0.004, 0.01, 0.05}) {
+    BeltParams p = Straight(kActual);
+    p.filter_s = filter;
+    Rig rig(p);
+    const double a = 1000;
+    for (int k = 0; k < 2000; ++k) {
+      const double t = k * 0.001;
+      rig.Step({a * t * t / 2, a * (t - 0.0005), 0});
+    }
+    const double t = 2;
+    EXPECT_NEAR(a * t * t / 2 - rig.state.travel.position, 3 * a * filter * filter + 1.5 * a * filter * 0.001,
+                a * 1e-7 + a * filter * 1e-4);
+    EXPECT_NEAR(rig.state.travel.acceleration, a, 1e-6 * a);
   }
 }
 

@@ -2,6 +2,7 @@
 #include <random>
 
 #include "belts.h"
+#include "takt/group/clutch.h"
 
 namespace takt::group {
 namespace {
@@ -104,6 +105,223 @@ TEST(Arch, LeadsOntoABelt) {
     EXPECT_GT(rig.trace[n].out.path_velocity, 20) << n;
   }
   EXPECT_TRUE(moving);
+}
+
+// Standing on an object of a belt with this motion, `on` the belt.
+struct Seated {
+  explicit Seated(std::function<KinematicState(double)> travel, const Pose& origin = {0, 100, -20})
+      : belts(Put(rig, {BeltAt("belt", origin, std::move(travel))})) {
+    rig.StartAt({-50, 0, 0});
+    rig.RunToEnd(rig.Give(SetDynCoordTransform{.pcs = 1, .carrier = Name::Of("belt")}));
+    from = rig.state.cargoes[0].from;
+    rig.trace.clear();
+    const Ticket move = rig.Give(Line(0, 0, 0, 1));
+    EXPECT_TRUE(rig.RunToEnd(move, 5));
+    EXPECT_TRUE(rig.lives[move].done) << static_cast<int>(rig.lives[move].error_id);
+  }
+  double off(const Pose& place = {}) const { return Off(rig, *belts, 0, from, {}, place); }
+
+  Rig rig = Gantry();
+  std::unique_ptr<Belts> belts;
+  double from = 0;
+};
+
+KinematicState Wavy(double t) {  // 200 mm/s, more and less by 100
+  return {200 * t - 20 * std::cos(5 * t), 200 + 100 * std::sin(5 * t), 500 * std::cos(5 * t)};
+}
+
+// CV-20: whatever the belt does, the set point is on the object.
+TEST(Riding, StaysOnABeltWhoseSpeedChanges) {
+  Seated seat(Wavy);
+  for (int i = 0; i < 1000; ++i) {
+    seat.rig.Step();
+    ASSERT_LE(seat.off(), kOnObject);
+    ASSERT_EQ(seat.rig.out().track_state, TrackState::kInSync);
+  }
+  ExpectSmooth(seat.rig);
+}
+
+// CV-14, GR-03: stop brakes the tool in the world, while the belt goes on.
+TEST(Riding, StopLetsGo) {
+  Seated seat([](double t) { return Steady(t, 300); });
+  const Ticket stop = seat.rig.Give(Stop{.deceleration = 2000, .jerk = 100000});
+  const double x = seat.rig.out().x;
+  seat.rig.Step();
+  EXPECT_EQ(seat.rig.out().track_state, TrackState::kDesynchronizing);
+  ASSERT_TRUE(seat.rig.RunToEnd(stop, 2));
+  EXPECT_TRUE(seat.rig.lives[stop].done);
+  EXPECT_EQ(seat.rig.out().velocity, 0);
+  // As a closed form: braked from 300 mm/s with these.
+  const double way = trajectory::StopPosition({0, 300, 0}, {300, 2000, 2000, 100000});
+  EXPECT_NEAR(seat.rig.out().x - x, way, 1);
+  EXPECT_EQ(seat.rig.out().state, GroupState::kStandby);
+  ExpectSmooth(seat.rig);
+}
+
+// PP-20: interrupted in the middle of a path onto a belt the tool rests in the world; continued it catches up with the
+// belt and goes on from the same place of its path.
+TEST(Riding, InterruptRestsAndContinueCatchesUp) {
+  for (const double after : {0.02, 0.06, 0.1, 0.14, 0.2, 0.3, 0.5}) {
+    SCOPED_TRACE(after);
+    Seated seat([](double t) { return Steady(t, 150); });
+    Rig& rig = seat.rig;
+    const Ticket up = rig.Give(Line(0, 0, 40, 1, BufferMode::kBuffered));
+    const Ticket over = rig.Give(Line(60, 30, 40, 1, BufferMode::kBlendingNext, 10));
+    const Ticket down = rig.Give(Line(60, 30, 0, 1, BufferMode::kBlendingNext, 10));
+    rig.Run(after);
+    rig.Give(Interrupt{});
+    rig.Run(0.3);
+    const Frame rests = ToolOf(rig);
+    const KDL::Vector on_object = (ObjectOn(*seat.belts, 0, seat.from, {}, rig.cycle.count - 1).Inverse() * rests).p;
+    rig.Run(0.2);
+    EXPECT_LE((ToolOf(rig).p - rests.p).Norm(), 1e-9);
+    EXPECT_EQ(rig.out().velocity, 0);
+    if (!rig.lives[down].ended()) {
+      const double position = rig.out().path_position;
+      rig.Give(Continue{});
+      rig.Step();
+      while (Slips(rig.state)) {
+        EXPECT_EQ(rig.out().path_position, position);
+        rig.Step();
+      }
+    }
+    EXPECT_TRUE(rig.RunToEnd(down, 5));
+    EXPECT_TRUE(rig.lives[up].done && rig.lives[over].done && rig.lives[down].done);
+    if (!rig.state.interrupted) {
+      EXPECT_LE(seat.off({60, 30, 0}), kOnObject);
+    }
+    ExpectSmooth(rig);
+    EXPECT_LE(std::abs(on_object.y()), 30 + 1e-6);
+  }
+}
+
+// A stop before any border (GR-13): a belt that takes the tool out of the axes' range.
+TEST(Riding, LetsGoBeforeTheBorder) {
+  Rig rig = [] {
+    KinematicsParams k;
+    k.gantry.emplace().axes = {Coordinate::kX, Coordinate::kY, Coordinate::kZ};
+    Rig made = Machine(k, {"x", "y", "z"}, {}, kGantryPath);
+    made.axes[0].limits.upper = 300;
+    return made;
+  }();
+  rig.StartAt({-50, 0, 0});
+  const auto belts = Put(rig, {BeltAt("belt", {}, [](double t) { return Steady(t, 400); })});
+  rig.RunToEnd(rig.Give(SetDynCoordTransform{.pcs = 1, .carrier = Name::Of("belt")}));
+  const Ticket move = rig.Give(Line(0, 0, 0, 1));
+  ASSERT_TRUE(rig.RunToEnd(move, 3));
+  EXPECT_TRUE(rig.lives[move].done);
+  rig.Run(2);
+  EXPECT_EQ(rig.out().state, GroupState::kStandby);
+  EXPECT_EQ(rig.out().error, ErrorId::kNone);
+  EXPECT_EQ(rig.out().reason, kinematics::Reason::kAxisLimit);
+  EXPECT_LE(rig.out().x, 300);
+  EXPECT_GE(rig.out().x, 270);
+  ExpectSmooth(rig);
+  // And off again.
+  const Ticket back = rig.Give(Line(0, 0, 0));
+  EXPECT_TRUE(rig.RunToEnd(back, 3));
+  EXPECT_TRUE(rig.lives[back].done);
+}
+
+// CV-13 of moves: a belt that is faster than the group can follow.
+TEST(Riding, RefusesBeltsThatAreTooFast) {
+  Rig rig = Gantry();
+  rig.StartAt({0, 0, 0});
+  const auto belts = Put(rig, {BeltAt("belt", {}, [](double t) { return Steady(t, 1400); })});
+  rig.RunToEnd(rig.Give(SetDynCoordTransform{.pcs = 1, .carrier = Name::Of("belt")}));
+  const Ticket move = rig.Give(Line(0, 0, 0, 1));
+  EXPECT_TRUE(rig.RunToEnd(move, 1));
+  EXPECT_EQ(rig.lives[move].error_id, ErrorId::kTooFast);
+  EXPECT_EQ(rig.out().state, GroupState::kStandby);
+}
+
+// An aborting move in the object's system goes on from the ride, one of axes leads off it.
+TEST(Riding, OtherMovesTakeOver) {
+  Seated seat([](double t) { return Steady(t, 150); });
+  Rig& rig = seat.rig;
+  const Ticket first = rig.Give(Line(100, 0, 0, 1));
+  rig.Run(0.05);
+  MoveDirectAbsolute direct{.x = 0, .y = 20, .z = 10};
+  direct.coordinate_system = CoordinateSystem::kPcs;
+  const Ticket second = rig.Give(direct);
+  ASSERT_TRUE(rig.RunToEnd(second, 3));
+  EXPECT_TRUE(rig.lives[first].aborted);
+  EXPECT_TRUE(rig.lives[second].done);
+  EXPECT_LE(seat.off({0, 20, 10}), kOnObject);
+  const Ticket axes = rig.Give(MoveDirectAbsolute{.a1 = -100, .a2 = -20, .a3 = 30});
+  ASSERT_TRUE(rig.RunToEnd(axes, 3));
+  EXPECT_TRUE(rig.lives[axes].done);
+  EXPECT_NEAR(rig.out().x, -100, 1e-9);
+  EXPECT_NEAR(rig.out().z, 30, 1e-9);
+  EXPECT_EQ(rig.out().state, GroupState::kStandby);
+  ExpectSmooth(rig);
+}
+
+// PP-15, PP-30: how long it will take is known to the cycle.
+TEST(Riding, TimeLeftIsExact) {
+  Seated seat([](double t) { return Steady(t, 200); });
+  Rig& rig = seat.rig;
+  rig.Give(Line(0, 0, 40, 1, BufferMode::kBuffered));
+  rig.Give(Line(-100, 0, 40, 0, BufferMode::kBlendingNext, 15));
+  const Ticket last = rig.Give(Line(-100, 0, 0, 0, BufferMode::kBlendingNext, 15));
+  std::vector<std::pair<std::uint64_t, double>> said;
+  while (!rig.lives[last].ended()) {
+    rig.Step();
+    if (!std::isnan(rig.out().time_left) && rig.out().path_velocity > 0) {
+      said.push_back({rig.cycle.count - 1, rig.out().time_left});
+    }
+  }
+  std::uint64_t stood = 0;
+  for (std::size_t n = 0; n < rig.trace.size(); ++n) {
+    if (rig.trace[n].out.path_velocity > 0) stood = n + 1;
+  }
+  stood += rig.cycle.count - rig.trace.size();
+  ASSERT_GE(said.size(), 100u);
+  for (const auto& [cycle, left] : said) {
+    EXPECT_NEAR(left, static_cast<double>(stood - cycle) * 0.001, 1e-9) << cycle;
+  }
+}
+
+// CV-42: another tool, or whatever else moves freely, turning and speeding up.
+TEST(Riding, OntoAPoseFromElsewhere) {
+  Rig rig = GantryWithC();
+  rig.StartAt({0, 0, 0});
+  const auto pose = [](double t) {
+    kinematics::MovingFrame f;
+    f.p = KDL::VectorAcc(KDL::Vector(100 + 50 * std::sin(t), 40 * std::cos(t), -30),
+                         KDL::Vector(50 * std::cos(t), -40 * std::sin(t), 0),
+                         KDL::Vector(-50 * std::sin(t), -40 * std::cos(t), 0));
+    f.M = KDL::RotationAcc(KDL::Rotation::RotZ(0.5 * t), KDL::Vector(0, 0, 0.5), KDL::Vector::Zero());
+    return f;
+  };
+  struct Free {
+    Rig& rig;
+    decltype(pose)& at;
+  } free{rig, pose};
+  rig.carriers = {[](void*, std::string_view) noexcept -> std::uint32_t { return 1; },
+                  [](void* owner, std::uint32_t) noexcept {
+                    const Free& f = *static_cast<Free*>(owner);
+                    Carrier carrier;
+                    carrier.kind = CarrierKind::kFree;
+                    carrier.pose = f.at(static_cast<double>(f.rig.cycle.count) * f.rig.cycle.period_s);
+                    return carrier;
+                  },
+                  nullptr, &free};
+  rig.RunToEnd(rig.Give(SetDynCoordTransform{.pcs = 1, .carrier = Name::Of("mover"), .z = 10}));
+  rig.trace.clear();
+  MoveLinearAbsolute onto = Line(5, 0, 0, 1);
+  onto.c = 0;
+  const Ticket move = rig.Give(onto);
+  ASSERT_TRUE(rig.RunToEnd(move, 5));
+  EXPECT_TRUE(rig.lives[move].done);
+  for (int i = 0; i < 500; ++i) {
+    rig.Step();
+    const Frame want = pose(static_cast<double>(rig.cycle.count - 1) * 0.001).GetFrame() *
+                       Frame(KDL::Vector(0, 0, 10)) * Frame(KDL::Vector(5, 0, 0));
+    ASSERT_LE((ToolOf(rig).p - want.p).Norm(), 1e-9);
+    ASSERT_LE(KDL::diff(ToolOf(rig).M, want.M).Norm(), 1e-9);
+  }
+  ExpectSmooth(rig);
 }
 
 }  // namespace

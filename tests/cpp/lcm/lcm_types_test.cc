@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "takt/axis/outputs.h"
+#include "takt/conveyor/state.h"
 #include "takt/core/describe.h"
 #include "takt/core/feedback.h"
 #include "takt/core/ports.h"
@@ -172,6 +173,7 @@ TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   ExpectSameConstants("flex_cam_state.lcm", "STATE_", TypeOf<flexcam::ModuleState>());
   ExpectSameConstants("axis_state.lcm", "LIMITED_BY_", *outputs.FindField("limited_by")->type);
   ExpectSameConstants("group_state.lcm", "STATE_", TypeOf<group::GroupState>());
+  ExpectSameConstants("belt_object.lcm", "STATE_", TypeOf<conveyor::ObjectState>());
   ExpectSameConstants("group_state.lcm", "REASON_", TypeOf<kinematics::Reason>());
   ExpectSameConstants("group_state.lcm", "PROBLEM_", TypeOf<path::Problem>());
 
@@ -200,7 +202,7 @@ TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
       EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
     }
   }
-  EXPECT_EQ(files, 18);
+  EXPECT_EQ(files, 20);
 }
 
 }  // namespace

@@ -1,0 +1,101 @@
+// When a profile will be over, to the cycle, and the gripper's pulse before it (PP-30).
+#include <cmath>
+#include <optional>
+
+#include "takt/pickplace/run.h"
+
+namespace takt::pickplace {
+
+namespace {
+
+using trajectory::PathPace;
+using trajectory::PathWindow;
+
+constexpr double kThere = 1e-6;  // mm
+// The scout goes so many cycles in one.
+constexpr int kScouted = 16;
+// Before the pulse may be due it is looked at in each cycle.
+constexpr std::uint64_t kEarly = 3;
+
+// Along the path, where a move ends; nothing: it is not planned to its end.
+std::optional<double> EndOf(const group::LookAhead& ahead, std::uint64_t move) {
+  const PathWindow& window = ahead.window;
+  for (std::uint64_t i = ahead.end(); i > ahead.first; --i) {
+    const group::Stretch& stretch = ahead[i - 1];
+    if (stretch.move != move) continue;
+    const bool known =
+        window.swept() && window.known() > window.begin() && window[window.known() - 1].at.s >= stretch.end() - kThere;
+    return known ? std::optional(stretch.end()) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+// As the group does.
+void Advance(const PathWindow& window, double period_s, PathPace& pace) {
+  const std::uint64_t next = pace.node + 1;
+  if (pace.raw_stands && trajectory::Stands(pace) && window[pace.node].stop && next + 1 < window.known()) {
+    trajectory::BeginAt(window, next, period_s, pace);
+  }
+  trajectory::Advance(window, trajectory::kFullSpeed, period_s, pace);
+}
+
+bool IsThere(const PathPace& pace, double end) {
+  return trajectory::Stands(pace) && pace.now.position >= end - kThere;
+}
+
+bool ArrivesWithin(const PathWindow& window, double end, std::uint64_t cycles, double period_s, PathPace pace) {
+  for (std::uint64_t i = 0; i < cycles; ++i) {
+    Advance(window, period_s, pace);
+    if (IsThere(pace, end)) return true;
+  }
+  return false;
+}
+
+bool IsOnItsWay(const group::State& g, const Order& order) {
+  return order.phase == Phase::kGoing && g.begun && !g.ends && !g.interrupted && g.done >= order.first &&
+         g.done <= order.last;
+}
+
+// Goes on ahead of the group.
+void StepScout(const Context& c, const group::State& g, const Order& order, double end, State& s) {
+  Scout& scout = s.scout;
+  if (scout.known) return;
+  const PathWindow& window = c.group.ahead.window;
+  if (!scout.running) {
+    scout = {.running = true, .order_last = order.last, .cycle = c.group.cycle.count - 1, .pace = g.pace};
+  }
+  for (int i = 0; i < kScouted && !scout.known; ++i) {
+    Advance(window, c.group.cycle.period_s, scout.pace);
+    ++scout.cycle;
+    scout.known = IsThere(scout.pace, end);
+  }
+  if (!scout.known) return;
+  scout.end_cycle = scout.cycle;
+  s.profile_time = static_cast<double>(scout.end_cycle - order.begin_cycle) * c.group.cycle.period_s;
+}
+
+}  // namespace
+
+void StepGripper(const Context& c, const group::State& g, State& s) noexcept {
+  if (s.order_count == 0) return;
+  Order& order = s.orders[0];
+  if (s.inputs.override_factor != 1) order.gripper_off = true;
+  if (!IsOnItsWay(g, order)) return;
+  if (s.scout.order_last != order.last) {
+    s.scout = {};
+    s.scout.order_last = order.last;
+    order.begin_cycle = c.group.cycle.count - 1;
+  }
+  const std::optional<double> end = EndOf(c.group.ahead, order.last);
+  if (!end) return;
+  StepScout(c, g, order, *end, s);
+  if (order.gripper_time <= 0 || order.gripper_off || order.pulse_at_end || order.pulsed || !s.scout.known) return;
+  const double period = c.group.cycle.period_s;
+  const auto before = static_cast<std::uint64_t>(std::llround(order.gripper_time / period));
+  if (c.group.cycle.count + before + kEarly < s.scout.end_cycle) return;
+  // What stands after this cycle is its first step.
+  if (!ArrivesWithin(c.group.ahead.window, *end, before + 1, period, g.pace)) return;
+  s.pulse = order.pulsed = true;
+}
+
+}  // namespace takt::pickplace

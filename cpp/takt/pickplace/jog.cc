@@ -1,0 +1,170 @@
+// Jog of one axis at a time (PP-03): a long move of the group that is stopped when the key is released.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "takt/group/systems.h"
+#include "takt/pickplace/run.h"
+
+namespace takt::pickplace {
+
+namespace {
+
+using group::CoordinateSystem;
+
+constexpr double kFarthest = 16'384;  // mm or u
+constexpr double kWidest = 170;       // deg: beyond half a turn it would go the other way round
+constexpr double kUprightest = 89.9;  // deg, of B
+constexpr double kShort = 1e-3;       // of the end of what can be reached
+constexpr int kHalvings = 16;
+
+struct Ramps {
+  double velocity, acceleration, deceleration, jerk;
+};
+
+Ramps RampsOf(const State& s) {
+  const Settings& p = s.settings;
+  if (s.jog_axis <= SelectAxis::kZ) {
+    return {p.cartesian_jog_velocity, p.cartesian_jog_acceleration, p.cartesian_jog_deceleration, p.cartesian_jog_jerk};
+  }
+  if (s.jog_axis <= SelectAxis::kC) {
+    return {p.orientation_jog_velocity, p.orientation_jog_acceleration, p.orientation_jog_deceleration,
+            p.orientation_jog_jerk};
+  }
+  return {p.real_axis_jog_velocity, p.real_axis_jog_acceleration, p.real_axis_jog_deceleration, p.real_axis_jog_jerk};
+}
+
+// The furthest that `may` allows of a way up to `most`, as far as doubling steps and halves tell.
+template <typename May>
+double Furthest(double most, const May& may) {
+  double good = 0;
+  double step = std::min(1.0, most);
+  while (good < most && may(step)) {
+    good = step;
+    step = std::min(2 * step, most);
+  }
+  double bad = step;
+  for (int i = 0; i < kHalvings && good < most; ++i) {
+    const double middle = (good + bad) / 2;
+    (may(middle) ? good : bad) = middle;
+  }
+  return good < most ? std::max(0.0, good - kShort) : most;
+}
+
+double& NumberOf(kinematics::Pose& pose, SelectAxis axis) {
+  double* const numbers[] = {&pose.x, &pose.y, &pose.z, &pose.a, &pose.b, &pose.c};
+  return *numbers[static_cast<std::size_t>(axis) - 1];
+}
+
+// Of the tool along or about an axis of the MCS.
+group::MoveLinearAbsolute ToolMove(const Context& c, const group::State& g, const State& s) {
+  const group::End present = group::Present(c.group, g);
+  const kinematics::Pose from = kinematics::ToPose(present.tool);
+  const auto at = [&](double way) {
+    kinematics::Pose pose = from;
+    NumberOf(pose, s.jog_axis) += s.jog_sense * way;
+    return pose;
+  };
+  const auto may = [&](double way) {
+    kinematics::Joints joints = present.joints;
+    const kinematics::Frame tool = kinematics::ToFrame(at(way));
+    return group::JointsAt(c.group, tool, present.joints, joints) == kinematics::Reason::kNone &&
+           group::WithinRanges(c.group, g, joints);
+  };
+  double most = s.jog_axis <= SelectAxis::kZ ? kFarthest : kWidest;
+  if (s.jog_axis == SelectAxis::kB) most = std::clamp(kUprightest - s.jog_sense * from.b, 0.0, kWidest);
+  const kinematics::Pose to = at(Furthest(most, may));
+  return {.x = to.x, .y = to.y, .z = to.z, .a = to.a, .b = to.b, .c = to.c};
+}
+
+group::MoveLinearAbsolute AxisMove(const Context& c, const group::State& g, std::size_t k, const State& s) {
+  const bool up = s.jog_sense > 0;
+  double to = group::PresentJoints(c.group, g)[k] + s.jog_sense * kFarthest;
+  const axis::AxisLimits& limits = c.group.axes.params[g.members[k] - 1].limits;
+  if (const auto& limit = up ? limits.upper : limits.lower) to = up ? std::min(to, *limit) : std::max(to, *limit);
+  if (k < group::InKinematics(c.group, g)) {
+    const kinematics::JointRange& range = c.group.kinematics->ranges[k];
+    to = up ? std::min(to, range.upper) : std::max(to, range.lower);
+  }
+  group::MoveLinearAbsolute move;
+  move.coordinate_system = CoordinateSystem::kAcs;
+  const std::array axes = {&move.a1, &move.a2, &move.a3, &move.a4, &move.a5, &move.a6, &move.a7, &move.a8};
+  *axes[k] = to - s.jog_sense * kShort;
+  return move;
+}
+
+// The place in the group of the real axis that is selected; none: kMaxAxes.
+std::size_t PlaceOf(const Context& c, const group::State& g, const State& s) {
+  for (std::size_t k = 0; k < group::kMaxAxes; ++k) {
+    const std::size_t real = g.members[k] != 0 ? RealOf(c, g, k) : kRealAxes;
+    if (real < kRealAxes && real + kFirstReal + 1 == static_cast<std::size_t>(s.jog_axis)) return k;
+  }
+  return group::kMaxAxes;
+}
+
+ErrorId GiveMove(const Context& c, group::State& g, State& s) {
+  group::MoveLinearAbsolute move;
+  if (s.jog_axis == SelectAxis::kNone) return ErrorId::kParameter;
+  if (s.jog_axis <= SelectAxis::kC) {
+    if (!group::HasTool(c.group, g)) return ErrorId::kParameter;
+    move = ToolMove(c, g, s);
+  } else {
+    const std::size_t k = PlaceOf(c, g, s);
+    if (k == group::kMaxAxes) return ErrorId::kNotGroupMember;
+    move = AxisMove(c, g, k, s);
+  }
+  const Ramps ramps = RampsOf(s);
+  move.velocity = ramps.velocity;
+  move.acceleration = ramps.acceleration;
+  move.deceleration = ramps.deceleration;
+  move.jerk = ramps.jerk;
+  return Tell(c, move, g);
+}
+
+}  // namespace
+
+void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
+  if (s.jog.ticket != 0) Report(c, s.jog.ticket, feedback, error);
+  s.jog = {};
+}
+
+void BeginJog(const Context& c, group::State& g, State& s) noexcept {
+  if (s.jog.ticket == 0 || s.halting || !IsOn(c, g) || !Stands(c, g)) return;
+  if (!s.jog.keys.positive && !s.jog.keys.negative) return EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
+  s.jog_axis = s.inputs.select_axis;
+  s.jog_sense = s.jog.keys.positive ? 1 : -1;
+  const bool on_path = s.hold.held && g.interrupted;
+  if (s.hold.held) LosePath(c, g, on_path, s);
+  s.hold.off |= on_path;
+  s.at_known = false;
+  s.parked_at = 0;
+  if (const ErrorId error = GiveMove(c, g, s); error != ErrorId::kNone) {
+    s.warning = error;
+    return EndJog(c, FeedbackState::kError, error, s);
+  }
+  s.given = g.done + g.queue.count;
+  s.back = s.state;
+  Enter(s.jog_sense > 0 ? ModuleState::kJogPos : ModuleState::kJogNeg, s);
+}
+
+void InJog(const Context& c, group::State& g, State& s) noexcept {
+  const Ramps ramps = RampsOf(s);
+  const bool held = s.jog_sense > 0 ? s.jog.keys.positive : s.jog.keys.negative;
+  const bool any = s.jog.keys.positive || s.jog.keys.negative;
+  const bool refused = s.given > g.done + g.queue.count;
+  if (!held && !s.halting && !IsFree(c, g)) {
+    const group::Halt halt{.deceleration = ramps.deceleration, .jerk = ramps.jerk};
+    s.halting = Tell(c, halt, g) == ErrorId::kNone;
+    s.given = 0;
+  }
+  if (!IsFree(c, g)) return;
+  s.halting = false;
+  if (any && !refused) return;  // it has come to the end of its range
+  const ErrorId error = refused ? TroubleOf(g) : ErrorId::kNone;
+  if (refused) s.warning = error;
+  EndJog(c, refused ? FeedbackState::kError : FeedbackState::kDone, error, s);
+  s.given = 0;
+  Enter(s.back, s);
+}
+
+}  // namespace takt::pickplace

@@ -1,0 +1,344 @@
+#include "takt/pickplace/module.h"
+
+#include <algorithm>
+
+#include "takt/group/members.h"
+#include "takt/group/run.h"
+#include "takt/pickplace/run.h"
+
+namespace takt::pickplace {
+
+namespace {
+
+using group::GroupState;
+
+bool Rises(bool now, bool before) {
+  return now && !before;
+}
+
+// Something that stops harder than what is there.
+bool StopRises(const State& s) {
+  return Rises(s.inputs.stop_all, s.before.stop_all) || Rises(s.inputs.path_stop, s.before.path_stop);
+}
+
+// The manual's number for what stopped an axis, where it has one.
+ErrorId ErrorOf(ErrorId axis_error) {
+  switch (axis_error) {
+    case ErrorId::kLimitSwitchPositive:
+      return ErrorId::kModuleLimitSwitchPositive;
+    case ErrorId::kLimitSwitchNegative:
+      return ErrorId::kModuleLimitSwitchNegative;
+    case ErrorId::kSoftLimitPositive:
+      return ErrorId::kModuleSoftLimitPositive;
+    case ErrorId::kSoftLimitNegative:
+      return ErrorId::kModuleSoftLimitNegative;
+    default:
+      return axis_error;
+  }
+}
+
+void WatchFaults(const Context& c, group::State& g, State& s) {
+  if (g.state == GroupState::kErrorStop) {
+    ErrorId error = g.error;
+    group::AllMembers(c.group, g, [&](const axis::State& m) {
+      if (m.error == ErrorId::kNone) return true;
+      error = ErrorOf(m.error);
+      return false;
+    });
+    return Fail(c, error, g, s);
+  }
+  if (!s.inputs.enable_hw_limit) return;
+  const bool on = s.before.enable_hw_limit;
+  for (std::size_t i = 0; i < kAllAxes; ++i) {
+    const bool positive = Rises(s.inputs.hw_limit_positive[i], on && s.before.hw_limit_positive[i]);
+    const bool negative = Rises(s.inputs.hw_limit_negative[i], on && s.before.hw_limit_negative[i]);
+    if (!positive && !negative) continue;
+    Fail(c, positive ? ErrorId::kModuleLimitSwitchPositive : ErrorId::kModuleLimitSwitchNegative, g, s);
+    if (g.state != GroupState::kDisabled) StopAxes(c, g, s);
+    return;
+  }
+}
+
+void ForgetAll(const Context& c, FeedbackState feedback, ErrorId error, group::State& g, State& s) {
+  Report(c, s.hold.ticket, feedback, error);
+  EndOrders(c, feedback, error, s);
+  EndJog(c, feedback, error, s);
+  EndHoming(c, feedback, error, g, s);
+}
+
+void SwitchPower(const Context& c, group::State& g, State& s) {
+  const bool rises = s.inputs.enable && s.inputs.regulator_on && (!s.before.regulator_on || !s.before.enable);
+  const bool falls = !s.inputs.regulator_on && s.before.regulator_on;
+  if (rises && !IsOn(c, g)) {
+    Tell(c, group::Power{.enable = true}, g);
+    s.enables = true;
+  }
+  if (falls) {
+    ForgetAll(c, FeedbackState::kAborted, ErrorId::kPowerOff, g, s);
+    Tell(c, group::Power{.enable = false}, g);
+    s.enables = s.halting = false;
+    const bool waits = s.state == ModuleState::kInit || s.state == ModuleState::kError ||
+                       s.state == ModuleState::kStop || s.state == ModuleState::kService;
+    if (!waits) Enter(ModuleState::kReady, s);
+  }
+  if (!s.enables || !s.inputs.regulator_on || g.state != GroupState::kDisabled) return;
+  const bool stands = group::AllMembers(
+      c.group, g, [](const axis::State& m) { return m.loop_closed && m.plc == axis::PlcState::kStandstill; });
+  if (stands && Tell(c, group::Enable{}, g) == ErrorId::kNone) s.enables = false;
+}
+
+void SetOverride(const Context& c, group::State& g, State& s) {
+  const double factor = s.inputs.override_factor;
+  if (factor == s.override_given) return;
+  // Accelerations and jerks cannot be 0.
+  const double ramps = std::max(factor, 1e-3);
+  Tell(c, group::SetOverride{factor, ramps, ramps}, g);
+  s.override_given = factor;
+}
+
+// Those of the path that is gone, or of the next one.
+double PathDeceleration(const State& s) {
+  return s.order_count > 0 ? s.orders[0].ramps.deceleration : s.settings.path_deceleration;
+}
+
+void Interrupt(const Context& c, double deceleration, double jerk, group::State& g, State& s) {
+  s.hold.held = true;
+  Tell(c, group::Interrupt{.deceleration = std::max(deceleration, PathDeceleration(s)), .jerk = jerk}, g);
+}
+
+void EndReturn(const Context& c, FeedbackState feedback, State& s) {
+  Report(c, s.hold.ticket, feedback);
+  s.hold.returning = false;
+  s.hold.ticket = 0;
+  s.given = 0;
+}
+
+void BeginStop(const Context& c, group::State& g, State& s) {
+  const Settings& p = s.settings;
+  const bool stop = s.inputs.path_stop;
+  const double deceleration = stop ? p.path_stop_deceleration : p.path_halt_deceleration;
+  const double jerk = stop ? p.path_stop_jerk : p.path_jerk;
+  const bool path = (s.order_count > 0 || s.loop.active) && !Jogs(s) && !s.hold.returning;
+  EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  EndHoming(c, FeedbackState::kAborted, ErrorId::kNone, g, s);
+  if (s.order_count > 0) s.orders[0].gripper_off = true;
+  if (s.inputs.stop_all) {
+    if (s.hold.returning) EndReturn(c, FeedbackState::kAborted, s);
+    LosePath(c, g, false, s);
+    s.hold = {};
+    s.hold.held = s.order_count > 0 || s.loop.active;
+    s.halting = false;
+    if (g.state != GroupState::kDisabled) StopAxes(c, g, s);
+  } else if (path) {
+    Interrupt(c, deceleration, jerk, g, s);
+  } else {
+    if (s.hold.returning) EndReturn(c, FeedbackState::kAborted, s);
+    if (IsOn(c, g) && !IsFree(c, g)) {
+      const group::Halt halt{.deceleration = deceleration, .jerk = jerk};
+      s.halting = Tell(c, halt, g) == ErrorId::kNone;
+    }
+    s.at_known = s.parking = false;
+    s.at_belt = s.parked_at = 0;
+  }
+  if (s.state != ModuleState::kStop) Enter(ModuleState::kStop, s);
+}
+
+// Where the path is held, for the way back. Somebody else may have moved the tool on.
+void WatchHold(const Context& c, const group::State& g, State& s) {
+  if (!s.hold.held || s.hold.off) return;
+  if (g.interrupted && Stands(c, g)) {
+    const Place place = PresentPlace(c, g);
+    s.hold.pose = place.pose;
+    s.hold.aux1 = place.aux1;
+    return;
+  }
+  const bool going = s.order_count > 0 && s.orders[0].phase == Phase::kGoing && g.done <= s.orders[0].last;
+  if (going && !g.interrupted) {
+    LosePath(c, g, true, s);
+    s.hold.off = true;
+  }
+}
+
+void Abort(const Context& c, group::State& g, State& s) {
+  if (s.state == ModuleState::kMovePp && s.loop.active) return EndLoopBehindThis(c, s);
+  const bool prepares = s.state == ModuleState::kPreparingPath && !g.begun;
+  const bool holds = s.hold.held && !s.hold.returning && Stands(c, g);
+  if (!prepares && !holds) {
+    s.warning = ErrorId::kState;
+    return;
+  }
+  EndOrders(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  if (g.interrupted || g.queue.count > 0) HaltGroup(c, g, s);
+  if (prepares || s.state == ModuleState::kPathInterrupt) Enter(ModuleState::kReady, s);
+}
+
+void InStop(const Context& c, group::State& g, State& s) {
+  if (StopRises(s)) return BeginStop(c, g, s);
+  if (s.hold.held && s.jog.ticket != 0) return BeginJog(c, g, s);
+  if (!StopIsAsked(s) && Stands(c, g)) Enter(ModuleState::kReady, s);
+}
+
+void InInterrupt(const Context& c, group::State& g, State& s) {
+  if (s.inputs.path_interrupt) return BeginJog(c, g, s);
+  if (s.hold.off) {
+    s.warning = ErrorId::kOffPath;
+    return Enter(ModuleState::kReady, s);
+  }
+  GoOn(c, g, s);
+  Enter(ModuleState::kMovePp, s);
+}
+
+void InReturn(const Context& c, group::State& g, State& s) {
+  if (s.given > g.done + g.queue.count) return Fail(c, TroubleOf(g), g, s);
+  if (g.done <= s.hold.move || !IsFree(c, g)) return;
+  EndReturn(c, FeedbackState::kDone, s);
+  s.hold.off = false;
+  Enter(ModuleState::kReady, s);
+}
+
+void InMove(const Context& c, group::State& g, State& s) {
+  if (s.state == ModuleState::kMovePp && s.inputs.path_interrupt && !s.hold.returning) {
+    Interrupt(c, s.settings.path_stop_deceleration, s.settings.path_stop_jerk, g, s);
+    if (s.order_count > 0) s.orders[0].pulse_at_end = true;
+    return Enter(ModuleState::kPathInterrupt, s);
+  }
+  s.hold.returning ? InReturn(c, g, s) : RunOrders(c, g, s);
+}
+
+void InError(const Context& c, group::State& g, State& s) {
+  if (s.reset) {
+    Tell(c, group::Reset{}, g);
+    s.error = s.warning = ErrorId::kNone;
+  }
+  const bool well = g.state != GroupState::kErrorStop && !g.resetting && Stands(c, g);
+  if (s.error != ErrorId::kNone || !well) return;
+  Enter(ModuleState::kReady, s);
+  if (!s.inputs.regulator_on || IsOn(c, g)) return;
+  Tell(c, group::Power{.enable = true}, g);
+  s.enables = true;
+}
+
+// READY and SERVICE are one another's: what the group does by itself is a service.
+void ReadyOrService(const Context& c, const group::State& g, State& s) {
+  if (s.state != ModuleState::kReady && s.state != ModuleState::kService) return;
+  const bool moves =
+      g.state == GroupState::kMoving || g.state == GroupState::kHoming || g.state == GroupState::kStopping;
+  const bool service = s.inputs.internal_control || (moves && !s.hold.held && !s.halting);
+  const ModuleState wanted = service ? ModuleState::kService : ModuleState::kReady;
+  if (wanted == s.state) return;
+  EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  Enter(wanted, s);
+}
+
+void WatchLease(const Context& c, State& s) {
+  if (s.jog.lease_s <= 0 || c.group.cycle.count < s.jog.lease_end_cycle) return;
+  s.jog.keys = {};
+  s.jog.lease_s = 0;
+}
+
+void Disable(const Context& c, group::State& g, State& s) {
+  if (s.state == ModuleState::kInit) return;
+  ForgetAll(c, FeedbackState::kAborted, ErrorId::kNone, g, s);
+  if (s.state != ModuleState::kService && IsOn(c, g) && !IsFree(c, g)) HaltGroup(c, g, s);
+  Enter(ModuleState::kInit, s);
+}
+
+void StepState(const Context& c, group::State& g, State& s) {
+  switch (s.state) {
+    case ModuleState::kReady:
+      return BeginJog(c, g, s);
+    case ModuleState::kJogPos:
+    case ModuleState::kJogNeg:
+      return InJog(c, g, s);
+    case ModuleState::kHoming:
+      return InHoming(c, g, s);
+    case ModuleState::kPreparingPath:
+    case ModuleState::kMovePp:
+      return InMove(c, g, s);
+    case ModuleState::kPathInterrupt:
+      return InInterrupt(c, g, s);
+    case ModuleState::kStop:
+      return InStop(c, g, s);
+    case ModuleState::kError:
+      return InError(c, g, s);
+    default:
+      return;
+  }
+}
+
+void RunStates(const Context& c, group::State& g, State& s) {
+  if (s.state == ModuleState::kInit) {
+    Enter(s.error == ErrorId::kNone ? ModuleState::kReady : ModuleState::kError, s);
+  }
+  if (s.state != ModuleState::kError) WatchFaults(c, g, s);
+  // A jog from STOP goes on beneath the level that led there.
+  const bool jogs = Jogs(s) && s.back == ModuleState::kStop;
+  const bool stops = jogs ? StopRises(s) : StopIsAsked(s);
+  if (s.state != ModuleState::kError && s.state != ModuleState::kStop && stops) BeginStop(c, g, s);
+  if (s.halting && IsFree(c, g)) s.halting = false;
+  WatchHold(c, g, s);
+  ReadyOrService(c, g, s);
+  if (s.abort) Abort(c, g, s);
+  StepState(c, g, s);
+}
+
+void WatchWindow(const Context& c, State& s) {
+  const double cycles = s.settings.position_window_ms / 1000 / c.group.cycle.period_s;
+  if (c.path_error > s.settings.position_window) {
+    s.out_of_window = static_cast<std::uint32_t>(cycles) + 1;
+  } else if (s.out_of_window > 0) {
+    --s.out_of_window;
+  }
+}
+
+}  // namespace
+
+void GoOn(const Context& c, group::State& g, State& s) noexcept {
+  s.hold.held = false;
+  if (!g.interrupted) return;
+  if (s.order_count == 0 || IsWithin(c, s.orders[0], s)) {
+    Tell(c, group::Continue{}, g);
+    return;
+  }
+  // The workpiece has gone on.
+  LosePath(c, g, false, s);
+  HaltGroup(c, g, s);
+}
+
+void Fail(const Context& c, ErrorId error, group::State& g, State& s) noexcept {
+  if (s.error == ErrorId::kNone) s.error = error;
+  if (s.state == ModuleState::kError) return;
+  ForgetAll(c, FeedbackState::kError, error, g, s);
+  if (IsOn(c, g) && !IsFree(c, g)) HaltGroup(c, g, s);
+  Enter(ModuleState::kError, s);
+}
+
+State MakeState(const PickPlaceParams& params) noexcept {
+  State s;
+  s.settings = params.settings;
+  for (std::size_t i = 0; i < params.belts.size(); ++i) s.belts[i] = params.belts[i].settings;
+  return s;
+}
+
+void Step(const Context& c, group::State& g, State& s) noexcept {
+  s.pulse = false;
+  SwitchPower(c, g, s);
+  SetOverride(c, g, s);
+  for (std::size_t k = 0; k < group::kMaxAxes; ++k) {
+    const std::size_t real = g.members[k] != 0 ? RealOf(c, g, k) : kRealAxes;
+    if (real < kRealAxes) group::MemberOf(c.group, g, k).reference |= s.inputs.home_abs_switch[real];
+  }
+  if (s.inputs.enable) {
+    WatchLease(c, s);
+    RunStates(c, g, s);
+  } else {
+    Disable(c, g, s);
+  }
+  StepGripper(c, g, s);
+  CountLost(c, s);
+  WatchWindow(c, s);
+  s.before = s.inputs;
+  s.reset = s.abort = s.ack = false;
+}
+
+}  // namespace takt::pickplace

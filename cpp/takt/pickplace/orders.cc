@@ -1,0 +1,440 @@
+// Targets, one behind the other: profiles to them are given to the group as moves, and watched.
+#include <algorithm>
+#include <cmath>
+
+#include "takt/group/plan.h"
+#include "takt/group/systems.h"
+#include "takt/pickplace/run.h"
+
+namespace takt::pickplace {
+
+namespace {
+
+using group::SystemFrame;
+
+constexpr double kLimitShare = 0.98;  // as of the axes: the rest keeps the motion within
+constexpr double kOneAtATime = 0.25;  // of what is learned of a profile
+constexpr double kMargin = 1.1;       // of the time that the next one is thought to take
+
+bool IsStatic(const Order& order) {
+  return order.belt == 0;
+}
+
+PathRamps RampsOf(const Settings& s) {
+  return {s.path_velocity, s.path_acceleration, s.path_deceleration, s.path_jerk};
+}
+
+Shape ShapeOf(const Settings& s) {
+  return {s.path_mode, s.z_start_distance, s.z_target_distance, s.z_elliptical, s.blending_radius, s.keep_orientation};
+}
+
+Order MakeOrder(std::uint32_t belt, bool picks, const State& s) {
+  const Settings& p = s.settings;
+  Order order;
+  order.belt = belt;
+  order.picks = picks;
+  order.target = {.system = p.target_coordinate_system,
+                  .pcs = p.target_pcs,
+                  .pose = {p.x_target, p.y_target, p.z_target, p.a_target, p.b_target, p.c_target},
+                  .aux1 = p.aux1_target};
+  order.shape = ShapeOf(p);
+  if (belt != 0) order.shape.target_distance = s.belts[belt - 1].z_distance;
+  order.ramps = RampsOf(p);
+  const bool opens = p.tracking_mode != TrackingMode::kProgram && !picks;
+  order.gripper_time = opens ? p.gripper_open_time : p.gripper_closing_time;
+  return order;
+}
+
+void Push(const Order& order, State& s) {
+  s.orders[s.order_count++] = order;
+}
+
+void Drop(const Context& c, std::uint32_t index, FeedbackState feedback, ErrorId error, State& s) {
+  GiveBackWorkpiece(c, s.orders[index]);
+  Report(c, s.orders[index].ticket, feedback, error);
+  for (std::uint32_t i = index; i + 1 < s.order_count; ++i) s.orders[i] = s.orders[i + 1];
+  s.orders[--s.order_count] = {};
+}
+
+// Limits of the tool in the world, along and about X, Y, Z, and of Aux1: they hold for all moves of a path from rest.
+void TightenLimits(const Context& c, const group::State& g, const State& s) {
+  trajectory::CoordinateLimits limits = group::LimitsOf(c.group, g);
+  const auto tighten = [&](std::size_t k, std::size_t i) {
+    const auto least = [](double limit, double own) { return own > 0 ? std::min(limit, kLimitShare * own) : limit; };
+    trajectory::CoordinateLimits::One& of = limits.of[k];
+    of = {least(of.velocity, s.settings.max_velocity[i]), least(of.acceleration, s.settings.max_acceleration[i]),
+          least(of.jerk, s.settings.max_jerk[i])};
+    limits.count = std::max(limits.count, k + 1);
+  };
+  for (std::size_t i = 0; i + 1 < kProfileAxes; ++i) tighten(group::kMaxAxes + i, i);
+  if (const std::size_t aux1 = Aux1Of(c, g); aux1 < group::kMaxAxes) tighten(aux1, kProfileAxes - 1);
+  c.group.ahead.window.SetLimits(limits);
+}
+
+ErrorId GiveLeg(const Context& c, const Leg& leg, const PathRamps& ramps, bool keep_orientation, group::State& g,
+                State& s) {
+  const std::size_t aux1 = Aux1Of(c, g);
+  const bool from_rest = !c.group.ahead.known && !g.begun;
+  const group::Command move = leg.arch ? group::Command(ArchOf(leg, ramps, keep_orientation, aux1))
+                                       : group::Command(LineOf(leg, ramps, keep_orientation, aux1));
+  const ErrorId error = Tell(c, move, g);
+  if (from_rest && error == ErrorId::kNone) TightenLimits(c, g, s);
+  return error;
+}
+
+struct Given {
+  ErrorId error = ErrorId::kNone;
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+};
+
+// From a leg on.
+Given GiveLegs(const Context& c, const Profile& profile, std::uint32_t from, const PathRamps& ramps,
+               bool keep_orientation, group::State& g, State& s) {
+  Given given{profile.error, g.done + g.queue.count, 0};
+  for (std::uint32_t i = from; i < profile.count && given.error == ErrorId::kNone; ++i) {
+    Leg leg = profile.legs[i];
+    if (i == from) leg.radius = 0;
+    given.error = GiveLeg(c, leg, ramps, keep_orientation, g, s);
+  }
+  s.given = g.done + g.queue.count;
+  given.last = s.given - 1;
+  return given;
+}
+
+Systems SystemsOf(const Context& c, const group::State& g, const Place& start, const Place& target) {
+  return {c.group.mounting.base, SystemFrame(c.group, g, start.system, start.pcs - 1),
+          SystemFrame(c.group, g, target.system, target.pcs - 1)};
+}
+
+Place StartOf(const Context& c, const group::State& g, const State& s) {
+  return s.at_known ? s.at : PresentPlace(c, g);
+}
+
+// The way up from a workpiece is the belt's.
+void SetStart(Shape& shape, const State& s) {
+  if (s.at_belt != 0) shape.start_distance = s.belts[s.at_belt - 1].z_distance;
+}
+
+void Park(const Context& c, std::uint32_t belt, group::State& g, State& s) {
+  const BeltSettings& own = s.belts[belt - 1];
+  const Place start = StartOf(c, g, s);
+  const Place target{.pose = {own.park_x, own.park_y, own.park_z, own.park_a, own.park_b, own.park_c},
+                     .aux1 = start.aux1,
+                     .parks = true};
+  Shape shape = ShapeOf(s.settings);
+  SetStart(shape, s);
+  const Profile profile = MakeProfile(start, target, shape, SystemsOf(c, g, start, target));
+  const Given given = GiveLegs(c, profile, 0, RampsOf(s.settings), s.settings.keep_orientation, g, s);
+  if (given.error != ErrorId::kNone) return Fail(c, given.error, g, s);
+  s.at = target;
+  s.at_known = true;
+  s.at_belt = 0;
+  s.parked_at = belt;
+  s.parking = true;
+  s.parking_move = given.last;
+}
+
+// Its moves are given; or it waits for a workpiece, where such wait.
+void Begin(const Context& c, group::State& g, Order& order, State& s) {
+  Place target = order.target;
+  if (!IsStatic(order)) {
+    const conveyor::Object* object = s.parking ? nullptr : ChooseWorkpiece(c, g, order, s);
+    if (!object) {
+      order.phase = Phase::kWaiting;
+      if (s.parked_at != order.belt && !s.parking) Park(c, order.belt, g, s);
+      return;
+    }
+    if (const ErrorId error = BindWorkpiece(c, *object, g, order, target, s); error != ErrorId::kNone) {
+      return Fail(c, error, g, s);
+    }
+  }
+  order.start = StartOf(c, g, s);
+  SetStart(order.shape, s);
+  const Systems systems = SystemsOf(c, g, order.start, target);
+  order.profile = MakeProfile(order.start, target, order.shape, systems);
+  order.expected_s = TimeAlong(order.profile, order.start, order.ramps, systems);
+  order.next_leg = 0;
+  const Given given = GiveLegs(c, order.profile, 0, order.ramps, order.shape.keep_orientation, g, s);
+  if (given.error != ErrorId::kNone) {
+    if (order.workpiece != 0) ++s.counters.missed, ++s.counters.refused;
+    return Fail(c, given.error, g, s);
+  }
+  order.first = given.first;
+  order.last = given.last;
+  order.begin_cycle = c.group.cycle.count;
+  order.phase = Phase::kGoing;
+  s.at = target;
+  s.at_known = true;
+  s.at_belt = order.belt;
+  s.parked_at = 0;
+}
+
+// The rest of a path that was left, from where it was left. An arch goes on to the same height.
+void BeginAgain(const Context& c, group::State& g, Order& order, State& s) {
+  Leg& leg = order.profile.legs[order.next_leg];
+  if (leg.arch) {
+    const auto height = [&](const Place& place) {
+      const kinematics::Frame world = c.group.mounting.base * SystemFrame(c.group, g, place.system, place.pcs - 1);
+      return (world * KDL::Vector(place.pose.x, place.pose.y, place.pose.z)).z();
+    };
+    const Place& foot = order.next_leg > 0 ? order.profile.legs[order.next_leg - 1].to : order.start;
+    const double crest = std::max(height(foot), height(leg.to)) + leg.height;
+    leg.height = std::max(0.0, crest - std::max(height(PresentPlace(c, g)), height(leg.to)));
+    order.start = PresentPlace(c, g);
+  }
+  const Given given = GiveLegs(c, order.profile, order.next_leg, order.ramps, order.shape.keep_orientation, g, s);
+  if (given.error != ErrorId::kNone) return Fail(c, given.error, g, s);
+  order.first = given.first;
+  order.last = given.last;
+  order.phase = Phase::kGoing;
+  s.at = order.target;
+  s.at_known = true;
+}
+
+void CountPick(const Context& c, const Order& order, State& s) {
+  if (!order.picks) {
+    ++s.counters.placed;
+    return;
+  }
+  ++s.counters.picked;
+  s.pick_cycles[s.pick_count % kPickTimes] = c.group.cycle.count;
+  ++s.pick_count;
+}
+
+void Finish(const Context& c, State& s) {
+  Order& order = s.orders[0];
+  CountPick(c, order, s);
+  if (order.workpiece != 0) conveyor::Remove(order.workpiece, *c.belts[order.belt - 1].state);
+  order.workpiece = 0;
+  s.done = true;
+  Drop(c, 0, FeedbackState::kDone, ErrorId::kNone, s);
+}
+
+void Learn(const Context& c, const Order& order, State& s) {
+  if (order.expected_s <= 0 || order.gripper_off || order.pulse_at_end) return;
+  const double took = static_cast<double>(c.group.cycle.count - order.begin_cycle) * c.group.cycle.period_s;
+  s.slowness += kOneAtATime * (kMargin * took / order.expected_s - s.slowness);
+  s.slowness = std::max(s.slowness, 1.0);
+}
+
+// The workpiece is gone: the next one.
+void Miss(const Context& c, group::State& g, State& s) {
+  Order& order = s.orders[0];
+  ++s.counters.missed;
+  ++s.counters.too_late;
+  conveyor::Remove(order.workpiece, *c.belts[order.belt - 1].state);
+  order.workpiece = 0;
+  LosePath(c, g, false, s);
+  HaltGroup(c, g, s);
+}
+
+void Go(const Context& c, group::State& g, State& s) {
+  Order& order = s.orders[0];
+  if (g.done <= order.last) {
+    if (!IsWithin(c, order, s)) Miss(c, g, s);
+    return;
+  }
+  if (g.reason != kinematics::Reason::kNone) return Fail(c, TroubleOf(g), g, s);
+  s.in_target = true;
+  if (order.pulse_at_end && order.gripper_time > 0 && !order.pulsed) s.pulse = order.pulsed = true;
+  Learn(c, order, s);
+  if (IsStatic(order)) return Finish(c, s);
+  order.phase = Phase::kStaying;
+  order.stay_cycle = c.group.cycle.count;
+}
+
+void Stay(const Context& c, State& s) {
+  const Order& order = s.orders[0];
+  const double wanted = std::round(s.belts[order.belt - 1].sync_time / c.group.cycle.period_s);
+  const auto cycles = static_cast<std::uint64_t>(std::max(1.0, wanted));
+  if (s.ack || c.group.cycle.count - order.stay_cycle >= cycles) Finish(c, s);
+}
+
+void StepOrder(const Context& c, group::State& g, State& s) {
+  Order& order = s.orders[0];
+  switch (order.phase) {
+    case Phase::kNew:
+    case Phase::kWaiting:
+      if (s.at_known || IsFree(c, g)) Begin(c, g, order, s);
+      return;
+    case Phase::kHeld:
+      if (IsFree(c, g)) BeginAgain(c, g, order, s);
+      return;
+    case Phase::kGoing:
+      return Go(c, g, s);
+    case Phase::kStaying:
+      return Stay(c, s);
+  }
+}
+
+// Static targets behind one another are given as early as may be: their profiles join without a pause.
+void GiveAhead(const Context& c, group::State& g, State& s) {
+  for (std::uint32_t i = 1; i < s.order_count && s.state != ModuleState::kError; ++i) {
+    const Order& before = s.orders[i - 1];
+    if (before.phase != Phase::kGoing || !IsStatic(before) || !IsStatic(s.orders[i])) return;
+    if (s.orders[i].phase == Phase::kNew) Begin(c, g, s.orders[i], s);
+  }
+}
+
+void StepLoop(const Context& c, State& s) {
+  Loop& loop = s.loop;
+  if (!loop.active) return;
+  if (loop.ends) {
+    if (s.order_count > 0) return;
+    Report(c, loop.ticket, FeedbackState::kDone);
+    loop = {};
+    s.done = true;
+    return;
+  }
+  while (s.order_count < 2) {
+    Push(MakeOrder(loop.places ? loop.place_belt : loop.pick_belt, !loop.places, s), s);
+    loop.places = !loop.places;
+  }
+}
+
+void DropNew(const Context& c, State& s) {
+  while (s.order_count > 1 && s.orders[s.order_count - 1].phase == Phase::kNew) {
+    Drop(c, s.order_count - 1, FeedbackState::kAborted, ErrorId::kNone, s);
+  }
+}
+
+void EndLoop(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
+  if (s.loop.active) Report(c, s.loop.ticket, feedback, error);
+  s.loop = {};
+}
+
+std::pair<std::uint32_t, std::uint32_t> BeltsOf(const Settings& s) {
+  switch (s.tracking_mode) {
+    case TrackingMode::kStaticToBelt1:
+      return {0, 1};
+    case TrackingMode::kBelt1ToStatic:
+      return {1, 0};
+    case TrackingMode::kBelt1ToBelt2:
+      return {1, 2};
+    case TrackingMode::kBelt2ToBelt1:
+      return {2, 1};
+    default:
+      return {s.pick_belt, s.place_belt};
+  }
+}
+
+bool NoMore(const group::State& g, const State& s) {
+  return s.order_count == 0 && !s.loop.active && s.at_belt == 0 && !s.parking && !s.halting && g.queue.count == 0;
+}
+
+}  // namespace
+
+void HaltGroup(const Context& c, group::State& g, State& s) noexcept {
+  if (Tell(c, group::Halt{}, g) == ErrorId::kNone) s.halting = true;
+}
+
+void Accept(const Context& c, Ticket ticket, std::uint32_t belt, State& s) noexcept {
+  ErrorId error = ErrorId::kNone;
+  if (s.order_count == kOrders) error = ErrorId::kBufferFull;
+  if (belt > c.params.belts.size()) error = ErrorId::kUnknownTarget;
+  if (error != ErrorId::kNone) {
+    s.warning = error;
+    return Report(c, ticket, FeedbackState::kError, error);
+  }
+  if (s.loop.active) {
+    EndLoop(c, FeedbackState::kAborted, ErrorId::kNone, s);
+    DropNew(c, s);
+  }
+  Order order = MakeOrder(belt, belt != 0, s);
+  order.ticket = ticket;
+  Push(order, s);
+  s.warning = ErrorId::kNone;
+  s.done = false;
+  Report(c, ticket, FeedbackState::kActive);
+}
+
+void BeginLoop(const Context& c, Ticket ticket, State& s) noexcept {
+  const auto [pick, place] = BeltsOf(s.settings);
+  ErrorId error = ErrorId::kNone;
+  if (std::max(pick, place) > c.params.belts.size()) error = ErrorId::kUnknownTarget;
+  if (s.loop.active && s.loop.mode == s.settings.tracking_mode && s.loop.pick_belt == pick &&
+      s.loop.place_belt == place && !s.loop.ends) {
+    error = ErrorId::kState;
+  }
+  if (error != ErrorId::kNone) {
+    s.warning = error;
+    return Report(c, ticket, FeedbackState::kError, error);
+  }
+  EndLoop(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  DropNew(c, s);
+  s.loop = {.active = true, .ticket = ticket, .mode = s.settings.tracking_mode, .pick_belt = pick, .place_belt = place};
+  s.warning = ErrorId::kNone;
+  s.done = false;
+  Report(c, ticket, FeedbackState::kActive);
+}
+
+void EndOrders(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
+  while (s.order_count > 0) Drop(c, s.order_count - 1, feedback, error, s);
+  EndLoop(c, feedback, error, s);
+  s.at_known = s.parking = false;
+  s.at_belt = s.parked_at = 0;
+  s.given = 0;
+  s.hold = {};
+  s.scout = {};
+}
+
+void LosePath(const Context& c, const group::State& g, bool kept, State& s) noexcept {
+  for (std::uint32_t i = 0; i < s.order_count; ++i) {
+    Order& order = s.orders[i];
+    if (i == 0 && kept && order.phase == Phase::kGoing && IsStatic(order)) {
+      const std::uint64_t gone = g.done > order.first ? g.done - order.first : 0;
+      order.next_leg = std::min(order.next_leg + static_cast<std::uint32_t>(gone), order.profile.count - 1);
+      order.phase = Phase::kHeld;
+      continue;
+    }
+    if (i == 0 && kept && order.phase == Phase::kHeld) continue;
+    if (order.workpiece != 0) ++s.counters.missed, ++s.counters.interrupted;
+    GiveBackWorkpiece(c, order);
+    order.phase = Phase::kNew;
+  }
+  s.at_known = s.parking = false;
+  s.at_belt = s.parked_at = 0;
+  s.given = 0;
+  s.scout = {};
+}
+
+void EndLoopBehindThis(const Context& c, State& s) noexcept {
+  s.loop.ends = true;
+  DropNew(c, s);
+}
+
+void RunOrders(const Context& c, group::State& g, State& s) noexcept {
+  if (s.halting) {
+    if (!IsFree(c, g)) return;
+    s.halting = false;
+  }
+  if (g.ends) {  // somebody else told the group to
+    EndOrders(c, FeedbackState::kAborted, ErrorId::kNone, s);
+    return Enter(ModuleState::kReady, s);
+  }
+  if (s.given > g.done + g.queue.count) return Fail(c, TroubleOf(g), g, s);
+  if (s.parking && g.done > s.parking_move) s.parking = false;
+  if (s.in_target && g.begun && g.pace.now.velocity > 0) s.in_target = false;
+  StepLoop(c, s);
+  if (s.order_count > 0) StepOrder(c, g, s);
+  if (s.state == ModuleState::kError) return;
+  StepLoop(c, s);
+  GiveAhead(c, g, s);
+  if (s.state == ModuleState::kError) return;
+  if (s.order_count == 0 && !s.loop.active && s.at_belt != 0) return Park(c, s.at_belt, g, s);
+  const bool waits = s.order_count > 0 && s.orders[0].phase == Phase::kWaiting;
+  if (s.state == ModuleState::kPreparingPath && (g.begun || waits || NoMore(g, s))) {
+    if (s.order_count > 0) {
+      const double took = static_cast<double>(c.group.cycle.count - s.prepare_cycle) * c.group.cycle.period_s;
+      s.preparation_time = took;
+    }
+    Enter(ModuleState::kMovePp, s);
+  }
+  if (s.state == ModuleState::kMovePp && NoMore(g, s) && IsFree(c, g)) {
+    Enter(ModuleState::kReady, s);
+    s.at_known = false;
+  }
+}
+
+}  // namespace takt::pickplace

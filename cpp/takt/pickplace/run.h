@@ -1,0 +1,89 @@
+// What the stages of a pick and place module share. Used by them only.
+#pragma once
+
+#include "takt/pickplace/module.h"
+
+namespace takt::pickplace {
+
+inline void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error = ErrorId::kNone) noexcept {
+  if (ticket != 0) c.group.feedback.Report({ticket, c.group.cycle.count, feedback, false, error, 0});
+}
+inline void Enter(ModuleState to, State& s) noexcept {
+  if (!IsLegal(s.state, to)) ++s.illegal_transitions;
+  s.state = to;
+}
+inline bool Jogs(const State& s) noexcept {
+  return s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg;
+}
+inline bool StopIsAsked(const State& s) noexcept {
+  return s.inputs.path_stop || s.inputs.path_halt || s.inputs.stop_all;
+}
+
+// group.cc: the group as the module sees it.
+// Gives the group a command; why it was refused, if it was.
+ErrorId Tell(const Context& c, const group::Command& command, group::State& g) noexcept;
+// All axes are on and the group takes moves.
+bool IsOn(const Context& c, const group::State& g) noexcept;
+// Nothing moves, whether a path is held or not.
+bool Stands(const Context& c, const group::State& g) noexcept;
+// It stands and has nothing to do.
+bool IsFree(const Context& c, const group::State& g) noexcept;
+// Each axis brakes by itself; the group is disabled, and enabled again once all stand.
+void StopAxes(const Context& c, group::State& g, State& s) noexcept;
+// Where the tool is told to be, and Aux1.
+Place PresentPlace(const Context& c, const group::State& g) noexcept;
+// Number of Aux1 in the group, from 0; none: kMaxAxes.
+std::size_t Aux1Of(const Context& c, const group::State& g) noexcept;
+// Index among A1 to A6, Aux1 of the member in a place of the group; none: kRealAxes.
+std::size_t RealOf(const Context& c, const group::State& g, std::size_t place) noexcept;
+// Why the group ended a move before its time, as far as it says.
+ErrorId TroubleOf(const group::State& g) noexcept;
+
+// workpieces.cc
+// The workpiece to go to now; null: none.
+const conveyor::Object* ChooseWorkpiece(const Context& c, const group::State& g, const Order& order,
+                                        const State& s) noexcept;
+// It is the order's: taken, and given a product coordinate system. Its place for the tool.
+ErrorId BindWorkpiece(const Context& c, const conveyor::Object& object, group::State& g, Order& order, Place& place,
+                      State& s) noexcept;
+// Nobody's again, if it is still there.
+void GiveBackWorkpiece(const Context& c, Order& order) noexcept;
+// Whether the order's workpiece is where it can be gone to.
+bool IsWithin(const Context& c, const Order& order, const State& s) noexcept;
+void CountLost(const Context& c, State& s) noexcept;
+
+// orders.cc
+// Takes a target; belt 0: the static one. An error: it was refused, and told.
+void Accept(const Context& c, Ticket ticket, std::uint32_t belt, State& s) noexcept;
+void BeginLoop(const Context& c, Ticket ticket, State& s) noexcept;
+// Goes on with what is to be done; MOVE_PP and PREPARING_PATH.
+void RunOrders(const Context& c, group::State& g, State& s) noexcept;
+// The loop is over behind the order that is gone.
+void EndLoopBehindThis(const Context& c, State& s) noexcept;
+// All are forgotten.
+void EndOrders(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
+// What was given to the group is lost: orders begin anew, where `kept` from where the path was left.
+void LosePath(const Context& c, const group::State& g, bool kept, State& s) noexcept;
+// The group comes to rest and forgets its moves.
+void HaltGroup(const Context& c, group::State& g, State& s) noexcept;
+
+// gripper.cc
+void StepGripper(const Context& c, const group::State& g, State& s) noexcept;
+
+// jog.cc
+void BeginJog(const Context& c, group::State& g, State& s) noexcept;
+void InJog(const Context& c, group::State& g, State& s) noexcept;
+void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
+
+// homing.cc
+void BeginHoming(const Context& c, Ticket ticket, group::State& g, State& s) noexcept;
+void InHoming(const Context& c, group::State& g, State& s) noexcept;
+void EndHoming(const Context& c, FeedbackState feedback, ErrorId error, group::State& g, State& s) noexcept;
+
+// module.cc
+// From where the path was held.
+void GoOn(const Context& c, group::State& g, State& s) noexcept;
+// Into ERROR; the tool comes to rest on its path.
+void Fail(const Context& c, ErrorId error, group::State& g, State& s) noexcept;
+
+}  // namespace takt::pickplace
