@@ -69,8 +69,9 @@ class Judgement:
         errors = self.errors
         missed = ", ".join(f"{number} {why}" for why, number in sorted(self.reasons.items())) or "none"
         return (
-            f"{len(errors)} products placed, {self.picks_a_minute:.0f} a minute; placing error {errors.mean():.3f} mm in "
-            f"the mean, {np.percentile(errors, 95):.3f} mm for 95 %, {errors.max():.3f} mm at most; missed: {missed}"
+            f"{len(errors)} products placed, {self.picks_a_minute:.0f} a minute; missed: {missed}; placing error "
+            f"{errors.mean():.3f} mm in the mean, {np.percentile(errors, 95):.3f} mm for 95 %, {errors.max():.3f} mm "
+            f"at most"
         )
 
 

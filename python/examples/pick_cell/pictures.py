@@ -110,7 +110,7 @@ def _from_the_side(ax: Axes, machine: dict[str, Any], found: Judgement, full: An
 def _errors(ax: Axes, found: Judgement) -> None:
     plot.dress(ax)
     errors = found.errors
-    ax.hist(errors, bins=24, range=(0.0, max(float(errors.max()), 1e-3)), color=style.GOOD, alpha=0.85, zorder=2)
+    ax.hist(errors, bins=16, range=(0.0, max(float(errors.max()), 1e-3)), color=style.GOOD, alpha=0.85, zorder=2)
     for value, name, dash in (
         (errors.mean(), "mean", "-"),
         (np.percentile(errors, 95), "95 %", (0, (5, 2))),
@@ -157,7 +157,7 @@ def _speeds(ax: Axes, recording: Recording, machine: dict[str, Any], window: tup
     ax.set_ylim(0, 420)
     ax.set_xlabel("time [s]", color=plot.INK, size=10.5)
     ax.set_ylabel("speed\n[mm/s]", color=plot.INK, size=10.5)
-    ax.legend(loc="upper right", ncols=3, frameon=False, fontsize=9, labelcolor=plot.INK)
+    ax.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=3, frameon=False, fontsize=9, labelcolor=plot.INK)
     for event in shown.events:
         if event.kind == "mark" and not event.text.startswith(("holds", "puts", "misses")):
             ax.axvline(event.time_s, color=plot.INK, lw=0.8, alpha=0.4)
