@@ -78,8 +78,9 @@ class Judgement:
 class Truth:
     """Where all really was in a recording, at any time of it."""
 
-    def __init__(self, recording: Recording, machine: dict[str, Any], settings: Settings) -> None:
+    def __init__(self, recording: Recording, machine: dict[str, Any], settings: Settings, begins_s: float) -> None:
         self.settings = settings
+        self._begins_s = begins_s
         self._recording = recording
         self.belts = {belt["name"]: belt for belt in machine["belts"]}
         (group,) = machine["groups"]
@@ -97,8 +98,9 @@ class Truth:
         return np.array([np.interp(time_s, self.time_s, self.tool[:, axis]) for axis in range(3)])
 
     def travel_at(self, belt: str, time_s: Array | float) -> Array:
+        """mm since the picks began."""
         times, positions = self._true(self.belts[belt]["axis"])
-        return np.interp(time_s, times, positions)
+        return np.interp(time_s, times, positions) - np.interp(self._begins_s, times, positions)
 
     def thing_at(self, belt: str, thing: Thing, time_s: Array | float) -> Array:
         """X and Y of something that lies on a belt."""
@@ -107,9 +109,9 @@ class Truth:
 
 
 def judge(recording: Recording, machine: dict[str, Any], settings: Settings) -> Judgement:
-    truth = Truth(recording, machine, settings)
     marks = [event for event in recording.events if event.kind == "mark"]
     begins, ends = (next(mark.time_s for mark in marks if mark.text == text) for text in (WORKS, ENDS))
+    truth = Truth(recording, machine, settings, begins)
     held: dict[int, tuple[float, Array]] = {}
     placed: list[Placed] = []
     misses: list[Miss] = []
