@@ -163,7 +163,7 @@ void PickAndPlace(benchmark::State& bench) {
   Line line;
   Cycles(bench, line);
   bench.counters["picked"] = line.module().counters.picked;
-  if (line.module().state == ModuleState::kError) bench.SkipWithError("the module is in error");
+  if (line.module().state == PickPlaceState::kError) bench.SkipWithError("the module is in error");
 }
 void GroupAlone(benchmark::State& bench) {
   Floor floor;

@@ -12,7 +12,7 @@
 namespace takt::pickplace {
 namespace {
 
-using M = ModuleState;
+using M = PickPlaceState;
 
 // As far as the Delta of tests/cpp/group/machines.h goes; 25 mm up, 305 mm across, 25 mm down.
 Settings StandardCycle() {

@@ -119,7 +119,7 @@ class Run {
       }
       Step(figures);
       if (testing::Test::HasFailure()) return;
-      ASSERT_NE(cell_.state.state, ModuleState::kError) << static_cast<int>(cell_.state.error);
+      ASSERT_NE(cell_.state.state, PickPlaceState::kError) << static_cast<int>(cell_.state.error);
       const std::uint32_t uncounted = belt().lost - cell_.state.lost_before[0];  // until the next cycle
       ASSERT_EQ(put, counters.picked + counters.missed + belt().count + uncounted);
     }
