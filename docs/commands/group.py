@@ -31,6 +31,7 @@ COMMANDS = (
     "group.move_circular_relative",
     "group.move_direct_absolute",
     "group.move_direct_relative",
+    "group.move_arch",
     "group.move_path",
     "group.move_path_synchronized",
     "group.sync_axis",

@@ -20,6 +20,7 @@ from takt.feedback import Feedback, FeedbackState
 from takt.flex_cam import FlexCam
 from takt.forecast import Forecast, Moment
 from takt.group import Group
+from takt.pick_place import PickPlace
 from takt.lcmlog import LogError, read_log
 from takt.pose import FreePose
 from takt.recording import Recording, RecordingError
@@ -43,6 +44,7 @@ __all__ = [
     "Group",
     "Forecast",
     "FreePose",
+    "PickPlace",
     "LogError",
     "Moment",
     "Recorder",

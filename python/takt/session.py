@@ -20,6 +20,7 @@ from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.flex_cam import FlexCam
 from takt.group import Group
+from takt.pick_place import PickPlace
 from takt.pose import FreePose
 from takt.recording import Recording
 from takt.tables import components_of
@@ -34,7 +35,7 @@ P = TypeVar("P", bound=Program)
 C = TypeVar("C", bound=Component)
 
 CLASSES: dict[str, type[Component]] = {
-    component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose)
+    component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace)
 }
 
 
@@ -88,6 +89,7 @@ class Session(MachineCommands):
         self._groups = {name: c for name, c in self._components.items() if isinstance(c, Group)}
         self._belts = {name: c for name, c in self._components.items() if isinstance(c, Belt)}
         self._poses = {name: c for name, c in self._components.items() if isinstance(c, FreePose)}
+        self._pick_places = {name: c for name, c in self._components.items() if isinstance(c, PickPlace)}
         self._programs: list[Program] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
@@ -138,6 +140,14 @@ class Session(MachineCommands):
 
     def pose(self, name: str) -> FreePose:
         return _named(self._poses, name, "pose")
+
+    @property
+    def pick_places(self) -> Mapping[str, PickPlace]:
+        """All pick and place modules by name, in the order of the machine file."""
+        return MappingProxyType(self._pick_places)
+
+    def pick_place(self, name: str) -> PickPlace:
+        return _named(self._pick_places, name, "pick and place module")
 
     @property
     def components(self) -> Mapping[str, Component]:

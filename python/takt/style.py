@@ -43,6 +43,12 @@ STATES = {
     "GroupHoming": "#d0a03a",
     "GroupStopping": "#e08a3c",
     "GroupErrorStop": "#d6453d",
+    # How its tool goes along with what moves; grey for whatever has nothing to tell.
+    "none": "#c5cad2",
+    "waiting": "#d0a03a",
+    "synchronizing": "#37a3b5",
+    "in_sync": "#9b6fd0",
+    "desynchronizing": "#e08a3c",
 }
 
 GOOD = "#2f9e6b"

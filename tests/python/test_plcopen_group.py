@@ -210,7 +210,7 @@ def test_every_block_is_called_by_its_group() -> None:
     with takt.Engine(PORTAL) as engine:
         gantry, x = engine.group("gantry"), engine.axis("x")
         blocks = [block for block in plc.BLOCKS if issubclass(block, GroupBlock)]
-        assert len(blocks) == 36
+        assert len(blocks) == 39
         for block in blocks:
             made = block(gantry)
             assert made.AxesGroup is gantry

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "takt/axis/state_table.h"
 #include "takt/core/feedback.h"
@@ -16,6 +17,9 @@ struct Outputs {
   double actual_position = 0;      // u; rotary: in [0, modulus)
   double actual_velocity = 0;      // u/s
   double following_error = 0;      // u, set point of the cycle before minus what is measured now
+  // u, over all turns: where a drive simulated in the engine has really brought the load when `actual_position` was
+  // measured, whatever the encoder makes of it; NaN: nobody knows.
+  double true_position = std::numeric_limits<double>::quiet_NaN();
   double voltage_v = 0;            // V, output of the position loop
   double torque_nm = 0;            // Nm, as the drive reports it
   double probe_position = 0;       // u, where the touch probe was captured last

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <vector>
 
 #include "takt/axis/request.h"
@@ -21,6 +22,7 @@ constexpr std::string_view kFlexCam = "flex_cam";
 constexpr std::string_view kGroup = "group";
 constexpr std::string_view kBelt = "belt";
 constexpr std::string_view kPose = "pose";
+constexpr std::string_view kPickPlace = "pick_place";
 
 // A verb together with how its struct gets in and out of a command.
 struct Entry {
@@ -150,6 +152,11 @@ const std::vector<Entry>& Entries() {
       Make<conveyor::Command, conveyor::RemoveObject>(kBelt, "remove"),
       Make<conveyor::Command, conveyor::ClearObjects>(kBelt, "clear"),
       Make<conveyor::PoseCommand, conveyor::SetPose>(kPose, "set"),
+      Make<pickplace::Command, pickplace::Control>(kPickPlace, "control"),
+      Make<pickplace::Command, pickplace::Jog>(kPickPlace, "jog", true),
+      Make<pickplace::Command, pickplace::Configure>(kPickPlace, "configure"),
+      Make<pickplace::Command, pickplace::ConfigureBelt>(kPickPlace, "configure_belt"),
+      Make<pickplace::Command, pickplace::ResetCounters>(kPickPlace, "reset_counters"),
   };
   return entries;
 }
@@ -194,30 +201,59 @@ std::string WhyNot(const Machine& machine, const axis::Command& command, const a
   return why.empty() && switches ? CannotSwitch(machine, *switches, axis) : why;
 }
 
-// What is wrong with a name in a command; empty: nothing.
 template <typename T>
-std::string WhyNotNamed(const char* field, const Name& name, const std::vector<T>& list, const char* what) {
+std::vector<std::string_view> NamesOf(const std::vector<T>& list) {
   std::vector<std::string_view> names;
   for (const T& element : list) names.push_back(element.name);
+  return names;
+}
+
+std::vector<std::string_view> BeltsOf(const Machine& machine, conveyor::BeltKind kind) {
+  std::vector<std::string_view> names;
+  for (const conveyor::BeltParams& belt : machine.belts) {
+    if (belt.kind == kind) names.push_back(belt.name);
+  }
+  return names;
+}
+
+// What can carry the tool of a group: no group itself.
+std::vector<std::string_view> CarriersOf(const Machine& machine, std::string_view group) {
+  std::vector<std::string_view> names = NamesOf(machine.belts);
+  std::ranges::copy(NamesOf(machine.groups), std::back_inserter(names));
+  std::ranges::copy(NamesOf(machine.poses), std::back_inserter(names));
+  std::erase(names, group);
+  return names;
+}
+
+// What is wrong with a name in a command; empty: nothing.
+std::string WhyNotNamed(const char* field, const Name& name, const std::vector<std::string_view>& names,
+                        const char* what) {
   if (std::ranges::find(names, name.view()) != names.end()) return {};
   return std::string(field) + ": expected the name of " + what + ", found " + Quoted(name.view()) +
          DidYouMean(name.view(), names);
 }
 
-std::string WhyNot(const Machine& machine, const group::Command& command) {
+std::string WhyNot(const Machine& machine, const group::Command& command, std::string_view target) {
   std::string why = group::WhyNot(command);
-  const auto check = [&](const char* field, const Name& name, const auto& list, const char* what) {
-    if (why.empty()) why = WhyNotNamed(field, name, list, what);
+  const auto check = [&](const char* field, const Name& name, const std::vector<std::string_view>& names,
+                         const char* what) {
+    if (why.empty()) why = WhyNotNamed(field, name, names, what);
   };
   if (const auto* path = std::get_if<group::MovePath>(&command)) {
-    check("path", path->path, machine.paths, "a path of the machine");
+    check("path", path->path, NamesOf(machine.paths), "a path of the machine");
   } else if (const auto* path = std::get_if<group::MovePathSynchronized>(&command)) {
-    check("path", path->path, machine.paths, "a path of the machine");
-    check("master", path->master, machine.axes, "an axis");
+    check("path", path->path, NamesOf(machine.paths), "a path of the machine");
+    check("master", path->master, NamesOf(machine.axes), "an axis");
   } else if (const auto* sync = std::get_if<group::SyncAxis>(&command)) {
-    check("axis", sync->axis, machine.axes, "an axis");
+    check("axis", sync->axis, NamesOf(machine.axes), "an axis");
   } else if (const auto* add = std::get_if<group::AddAxis>(&command)) {
-    check("axis", add->axis, machine.axes, "an axis");
+    check("axis", add->axis, NamesOf(machine.axes), "an axis");
+  } else if (const auto* dynamic = std::get_if<group::SetDynCoordTransform>(&command)) {
+    check("carrier", dynamic->carrier, CarriersOf(machine, target), "a belt, another group or a pose");
+  } else if (const auto* belt = std::get_if<group::TrackConveyorBelt>(&command)) {
+    check("belt", belt->belt, BeltsOf(machine, conveyor::BeltKind::kStraight), "a belt that goes straight");
+  } else if (const auto* table = std::get_if<group::TrackRotaryTable>(&command)) {
+    check("table", table->table, BeltsOf(machine, conveyor::BeltKind::kTurning), "a belt that turns");
   }
   return why;
 }
@@ -230,8 +266,16 @@ std::string WhyNot(const Machine& machine, const Command& command) {
   if (const auto* body = std::get_if<flexcam::Command>(&command.body)) {
     return flexcam::WhyNot(*body, machine.cams);
   }
-  if (const auto* body = std::get_if<group::Command>(&command.body)) return WhyNot(machine, *body);
+  if (const auto* body = std::get_if<group::Command>(&command.body)) {
+    return WhyNot(machine, *body, NameOf(machine, command.target));
+  }
   return {};
+}
+
+// Of a command that this component cannot do.
+ErrorId ErrorOf(const Command& command) {
+  const auto* group = std::get_if<group::Command>(&command.body);
+  return group ? group::ErrorOf(*group) : ErrorId::kParameter;
 }
 
 ParsedCommand Refused(ErrorId error, std::string sentence) {
@@ -279,6 +323,14 @@ bool LetsGo(const Command& command) noexcept {
     return std::holds_alternative<group::Stop>(*group) || std::holds_alternative<group::Halt>(*group) ||
            std::holds_alternative<group::Interrupt>(*group) || (power && !power->enable);
   }
+  if (const auto* module = std::get_if<pickplace::Command>(&command.body)) {
+    const auto* control = std::get_if<pickplace::Control>(module);
+    const auto* jog = std::get_if<pickplace::Jog>(module);
+    const bool stops = control && (control->path_stop.value_or(false) || control->path_halt.value_or(false) ||
+                                   control->stop_all.value_or(false) || control->path_interrupt.value_or(false) ||
+                                   !control->regulator_on.value_or(true));
+    return stops || (jog && !jog->positive && !jog->negative);
+  }
   const auto* axis = std::get_if<axis::Command>(&command.body);
   const auto* power = axis ? std::get_if<axis::Power>(axis) : nullptr;
   return axis && (std::holds_alternative<axis::Stop>(*axis) || (power && !power->enable));
@@ -309,7 +361,7 @@ ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std:
     Problem problem;
     if (!entry.read(arguments, parsed.command.body, problem)) return Refused(ErrorId::kParameter, problem.Text());
     if (std::string sentence = WhyNot(machine, parsed.command); !sentence.empty()) {
-      return Refused(ErrorId::kParameter, std::move(sentence));
+      return Refused(ErrorOf(parsed.command), std::move(sentence));
     }
     return parsed;
   }

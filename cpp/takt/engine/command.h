@@ -16,6 +16,7 @@
 #include "takt/engine/machine.h"
 #include "takt/flexcam/commands.h"
 #include "takt/group/commands.h"
+#include "takt/pickplace/commands.h"
 
 namespace takt::engine {
 
@@ -42,7 +43,7 @@ void describe(Description<Renew>&);
 
 using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
 using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command,
-                                 conveyor::PoseCommand>;
+                                 conveyor::PoseCommand, pickplace::Command>;
 
 // Component i (components.h) is target i + 1.
 inline constexpr std::uint32_t kMachineTarget = 0;

@@ -8,6 +8,7 @@
 #include "takt/core/describe.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
+#include "takt/pickplace/outputs.h"
 
 namespace takt::engine {
 
@@ -33,6 +34,8 @@ std::span<const ComponentKind> ComponentKinds() {
       Make<group::Outputs, &Machine::groups>("group", "groups", "a group of axes", "groups of axes"),
       Make<conveyor::Outputs, &Machine::belts>("belt", "belts", "a belt", "belts"),
       Make<conveyor::PoseOutputs, &Machine::poses>("pose", "poses", "a pose", "poses"),
+      Make<pickplace::Outputs, &Machine::pick_and_place>("pick_place", "pick_and_place", "a pick and place module",
+                                                         "pick and place modules"),
   };
   return kinds;
 }

@@ -52,6 +52,15 @@ group::Context ContextOf(World& w, const AxesGroup& group) {
           group.params.workspace ? &w.questions : nullptr};
 }
 
+pickplace::Context ContextOf(World& w, const PickPlace& module) {
+  pickplace::Context c{
+      module.params, ContextOf(w, w.groups[module.group]), {}, w.group_outputs[module.group].path_error};
+  for (std::size_t i = 0; i < module.belts.size(); ++i) {
+    c.belts[i] = {&w.belts[module.belts[i]].params, &w.belt_states[module.belts[i]]};
+  }
+  return c;
+}
+
 // Whether groups come behind all belts, wherever those go by themselves: they may ride on any of them.
 enum class Belts : std::uint8_t { kFirst, kAnywhere };
 
@@ -122,6 +131,7 @@ void SeeCarriers(const World& w, std::size_t group, Nth& nth) {
     if (cargo.carrier != last) SeeCarrier(w, cargo.carrier, nth);
     last = cargo.carrier;
   };
+  for (const std::uint32_t carrier : s.ridden) SeeCarrier(w, carrier, nth);
   std::ranges::for_each(s.cargoes, see);
   see(s.track.cargo);
   for (std::uint32_t i = 0; i < s.queue.count && !nth.found; ++i) {
@@ -268,11 +278,15 @@ struct MachineApplier {
     }
     Report(FeedbackState::kDone);
   }
-  void operator()(const Release& c) const { ToOwner(c.ticket, axis::Release, flexcam::Release, group::Release); }
-  void operator()(const Renew& c) const { ToOwner(c.ticket, axis::Renew, flexcam::Renew, group::Renew); }
+  void operator()(const Release& c) const {
+    ToOwner(c.ticket, axis::Release, flexcam::Release, group::Release, pickplace::Release);
+  }
+  void operator()(const Renew& c) const {
+    ToOwner(c.ticket, axis::Renew, flexcam::Renew, group::Renew, pickplace::Renew);
+  }
 
-  template <typename OfAxis, typename OfModule, typename OfGroup>
-  void ToOwner(Ticket of, OfAxis change, OfModule of_module, OfGroup of_group) const {
+  template <typename OfAxis, typename OfModule, typename OfGroup, typename OfPickPlace>
+  void ToOwner(Ticket of, OfAxis change, OfModule of_module, OfGroup of_group, OfPickPlace of_pick_place) const {
     bool found = false;
     for (std::size_t i = 0; i < world.axis_states.size() && !found; ++i) {
       found = change(ContextOf(world, i), of, world.axis_states[i]);
@@ -282,6 +296,9 @@ struct MachineApplier {
     }
     for (std::size_t i = 0; i < world.groups.size() && !found; ++i) {
       found = of_group(ContextOf(world, world.groups[i]), of, world.group_states[i]);
+    }
+    for (std::size_t i = 0; i < world.pick_places.size() && !found; ++i) {
+      found = of_pick_place(ContextOf(world, world.pick_places[i]), of, world.pick_place_states[i]);
     }
     Report(FeedbackState::kDone);  // letting go of what is over already is no error
   }
@@ -293,9 +310,12 @@ void TouchTypes(const std::variant<T...>*) {
 }
 
 // It must be there.
+template <typename T>
+std::uint32_t IndexNamed(const std::vector<T>& list, const std::string& name) {
+  return static_cast<std::uint32_t>(std::ranges::find(list, name, &T::name) - list.begin());
+}
 std::uint32_t CamNamed(const Machine& machine, const std::string& name) {
-  return static_cast<std::uint32_t>(std::ranges::find(machine.cams, name, &cam::CamParams::name) -
-                                    machine.cams.begin());
+  return IndexNamed(machine.cams, name);
 }
 
 // Kinematics stay within the SW limits of the axes, too.
@@ -346,6 +366,7 @@ World::World(const Machine& machine)
   MakeModules(machine);
   MakeGroups(machine);
   MakeBelts(machine);
+  MakePickPlaces(machine);
   surrounding = {axis_states, axis_params, cam_switches, cams};
   MakeOrder(*this);
 }
@@ -416,6 +437,26 @@ void World::MakeBelts(const Machine& machine) {
   for (std::uint32_t i = 0; i < groups.size(); ++i) riders.push_back({this, i});
 }
 
+void World::MakePickPlaces(const Machine& machine) {
+  TypeOf<pickplace::State>();
+  TypeOf<pickplace::Settings>();
+  TypeOf<pickplace::BeltSettings>();
+  TypeOf<pickplace::Inputs>();
+  TouchTypes(static_cast<const pickplace::Command*>(nullptr));
+  pick_place_of.assign(groups.size(), 0);
+  for (const pickplace::PickPlaceParams& params : machine.pick_and_place) {
+    PickPlace& module = pick_places.emplace_back();
+    module.params = params;
+    module.group = IndexNamed(machine.groups, params.group);
+    for (const pickplace::PickPlaceBelt& belt : params.belts) {
+      module.belts.push_back(IndexNamed(machine.belts, belt.belt));
+    }
+    pick_place_states.push_back(pickplace::MakeState(params));
+    pick_place_of[module.group] = static_cast<std::uint32_t>(pick_places.size());
+  }
+  pick_place_outputs.resize(pick_places.size());
+}
+
 std::uint64_t World::StateHash() const noexcept {
   std::uint64_t hash = cycle.count;
   for (const axis::State& state : axis_states) hash = HashOf(state, hash);
@@ -424,6 +465,7 @@ std::uint64_t World::StateHash() const noexcept {
   for (const group::State& state : group_states) hash = HashOf(state, hash);
   for (const conveyor::State& state : belt_states) hash = HashOf(state, hash);
   for (const conveyor::PoseState& state : pose_states) hash = HashOf(state, hash);
+  for (const pickplace::State& state : pick_place_states) hash = HashOf(state, hash);
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
   for (const HeardDrive& drive : drives) hash = HashOf(servo_inputs[drive.axis], HashOf(drive, hash));
   return hash;
@@ -487,14 +529,24 @@ void Apply(World& w, const Command& command) noexcept {
     const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size();  // likewise
     if (i >= w.poses.size()) return refuse(ErrorId::kUnknownTarget);
     conveyor::Apply(w.cycle, w.feedback, command.ticket, *for_pose, w.pose_states[i]);
+  } else if (const auto* for_module = std::get_if<pickplace::Command>(&command.body)) {
+    const std::size_t i =
+        component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size();  // likewise
+    if (i >= w.pick_places.size()) return refuse(ErrorId::kUnknownTarget);
+    const PickPlace& module = w.pick_places[i];
+    pickplace::Apply(ContextOf(w, module), command.ticket, command.lease_s, *for_module, w.group_states[module.group],
+                     w.pick_place_states[i]);
   }
 }
 
 namespace {
 
-// Before the first of its members.
+// Before the first of its members; behind the module that moves it.
 void StepOnce(World& w, std::size_t group) {
   if (std::exchange(w.group_stepped[group], std::uint8_t{1}) != 0) return;
+  if (const std::uint32_t module = w.pick_place_of[group]; module != 0) {
+    pickplace::Step(ContextOf(w, w.pick_places[module - 1]), w.group_states[group], w.pick_place_states[module - 1]);
+  }
   group::Step(ContextOf(w, w.groups[group]), w.group_states[group]);
 }
 
@@ -531,6 +583,7 @@ void Control(World& w) noexcept {
   for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
     axis::Publish(w.axis_params[i], w.axis_states[i], w.axis_outputs[i]);
   }
+  for (const std::uint32_t i : w.simulated) w.axis_outputs[i].true_position = w.servo_states[i].load_position;
   for (std::size_t i = 0; i < w.flex_cams.size(); ++i) {
     const FlexCam& module = w.flex_cams[i];
     flexcam::Publish(ContextOf(w, module), w.axis_states[module.slave], w.flex_cam_states[i], w.flex_cam_outputs[i]);
@@ -543,6 +596,11 @@ void Control(World& w) noexcept {
   }
   for (std::size_t i = 0; i < w.poses.size(); ++i) {
     conveyor::Publish(w.poses[i], w.cycle, w.pose_states[i], w.pose_outputs[i]);
+    for (std::size_t i = 0; i < w.pick_places.size(); ++i) {
+      const PickPlace& module = w.pick_places[i];
+      pickplace::Publish(ContextOf(w, module), w.group_states[module.group], w.pick_place_states[i],
+                         w.pick_place_outputs[i]);
+    }
   }
 }
 

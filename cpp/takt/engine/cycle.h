@@ -23,6 +23,7 @@
 #include "takt/engine/order.h"
 #include "takt/flexcam/module.h"
 #include "takt/group/group.h"
+#include "takt/pickplace/module.h"
 #include "takt/plant/servo.h"
 #include "takt/trajectory/planner.h"
 
@@ -62,6 +63,13 @@ struct World;
 struct Rider {
   World* world;
   std::uint32_t group;
+};
+
+// What a pick and place module is made from, with its names looked up.
+struct PickPlace {
+  pickplace::PickPlaceParams params;
+  std::uint32_t group = 0;
+  std::vector<std::uint32_t> belts;
 };
 
 // Everything the cycle works on, in arrays by component; index i is axis i of the machine.
@@ -107,6 +115,11 @@ struct World {
   std::vector<conveyor::PoseState> pose_states;
   std::vector<conveyor::PoseOutputs> pose_outputs;
 
+  std::vector<PickPlace> pick_places;
+  std::vector<pickplace::State> pick_place_states;
+  std::vector<pickplace::Outputs> pick_place_outputs;
+  std::vector<std::uint32_t> pick_place_of;  // the module that moves each group, from 1; 0: none
+
   std::vector<ServoInputs> servo_inputs;
   std::vector<ServoOutputs> servo_outputs;
   std::vector<plant::ServoParams> servo_params;
@@ -124,6 +137,7 @@ struct World {
   void MakeModules(const Machine& machine);
   void MakeGroups(const Machine& machine);
   void MakeBelts(const Machine& machine);
+  void MakePickPlaces(const Machine& machine);
 };
 
 // Not for the cycle (axis/forecast.h).

@@ -75,6 +75,7 @@ struct Engine::Impl {
         belts(machine, o, machine.belts, world.belt_outputs),
         poses(machine, o, machine.poses, world.pose_outputs),
         belt_objects(o.publish ? kObjectLists * machine.belts.size() : 2),
+        pick_places(machine, o, machine.pick_and_place, world.pick_place_outputs),
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
         hashes(o.journal ? o.snapshot_queue : 2),
@@ -156,7 +157,7 @@ struct Engine::Impl {
   }
 
   // All kinds of components, in the order of their numbers.
-  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses); }
+  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses, pick_places); }
 
   template <typename Outputs>
   void PublishAll(OfKind<Outputs>& kind) noexcept {
@@ -213,6 +214,7 @@ struct Engine::Impl {
   OfKind<conveyor::Outputs> belts;
   OfKind<conveyor::PoseOutputs> poses;
   SpscQueue<ObjectsSnapshot> belt_objects;
+  OfKind<pickplace::Outputs> pick_places;
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
   SpscQueue<HashEntry> hashes;
@@ -304,6 +306,9 @@ const conveyor::PoseOutputs& Engine::pose_outputs(std::size_t pose) const noexce
 const conveyor::State& Engine::belt_state(std::size_t belt) const noexcept {
   return impl_->world.belt_states[belt];
 }
+const pickplace::Outputs& Engine::pick_place_outputs(std::size_t module) const noexcept {
+  return impl_->world.pick_place_outputs[module];
+}
 std::size_t Engine::components() const noexcept {
   return std::apply([](const auto&... kind) { return (kind.outputs.size() + ...); }, impl_->kinds());
 }
@@ -380,6 +385,7 @@ template SpscQueue<FlexCamSnapshot>& Engine::snapshots<flexcam::Outputs>() noexc
 template SpscQueue<GroupSnapshot>& Engine::snapshots<group::Outputs>() noexcept;
 template SpscQueue<BeltSnapshot>& Engine::snapshots<conveyor::Outputs>() noexcept;
 template SpscQueue<PoseSnapshot>& Engine::snapshots<conveyor::PoseOutputs>() noexcept;
+template SpscQueue<PickPlaceSnapshot>& Engine::snapshots<pickplace::Outputs>() noexcept;
 
 SpscQueue<ObjectsSnapshot>& Engine::belt_objects() noexcept {
   return impl_->belt_objects;

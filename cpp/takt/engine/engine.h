@@ -20,6 +20,7 @@
 #include "takt/group/outputs.h"
 #include "takt/group/question.h"
 #include "takt/group/survey.h"
+#include "takt/pickplace/outputs.h"
 
 namespace takt::engine {
 
@@ -65,6 +66,7 @@ class Engine {
   const conveyor::Outputs& belt_outputs(std::size_t belt) const noexcept;
   const conveyor::PoseOutputs& pose_outputs(std::size_t pose) const noexcept;
   const conveyor::State& belt_state(std::size_t belt) const noexcept;
+  const pickplace::Outputs& pick_place_outputs(std::size_t module) const noexcept;
   // The same for components of any kind, by the number that is their target, less one.
   struct Published {
     const Type* type;

@@ -51,6 +51,8 @@ class CrossCheck {
     CheckNames("belts", machine_.belts);
     CheckNames("poses", machine_.poses);
     CheckBelts();
+    CheckNames("pick_and_place", machine_.pick_and_place);
+    CheckPickPlaces();
     CheckCamSwitches();
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
@@ -168,7 +170,8 @@ class CrossCheck {
   // Belts and the axes that they name; several may go by the same. And poses.
   void CheckBelts() {
     const std::vector<std::string_view> names = Components();
-    const auto poses = names.end() - static_cast<std::ptrdiff_t>(machine_.poses.size());
+    const auto modules = names.end() - static_cast<std::ptrdiff_t>(machine_.pick_and_place.size());
+    const auto poses = modules - static_cast<std::ptrdiff_t>(machine_.poses.size());
     const auto belts = poses - static_cast<std::ptrdiff_t>(machine_.belts.size());
     const auto check_name = [&](const std::string& path, std::string_view name, auto others) {
       if (name == "machine" || std::find(names.begin(), others, name) != others) {
@@ -186,13 +189,45 @@ class CrossCheck {
     }
   }
 
-  // Names of all, belts and poses last.
+  // Pick and place modules, and what they name. A group has one at most.
+  void CheckPickPlaces() {
+    std::vector<std::string_view> names = Components();
+    std::vector<std::string_view> groups, belts, moved;
+    for (const group::GroupParams& group : machine_.groups) groups.push_back(group.name);
+    for (const conveyor::BeltParams& belt : machine_.belts) belts.push_back(belt.name);
+    for (std::size_t i = 0; i < machine_.pick_and_place.size(); ++i) {
+      const pickplace::PickPlaceParams& module = machine_.pick_and_place[i];
+      const std::string path = "pick_and_place[" + std::to_string(i) + "]";
+      const std::size_t others = names.size() - machine_.pick_and_place.size();
+      if (module.name == "machine" || std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(others),
+                                                module.name) != names.begin() + static_cast<std::ptrdiff_t>(others)) {
+        Add(path + ".name", "expected a name that nothing else has, and not machine, found " + Quoted(module.name));
+      }
+      CheckReference(path + ".group", module.group, moved, groups, "group");
+      std::vector<std::string_view> used;
+      for (std::size_t k = 0; k < module.belts.size(); ++k) {
+        CheckReference(path + ".belts[" + std::to_string(k) + "].belt", module.belts[k].belt, used, belts, "belt");
+      }
+      for (const group::GroupParams& group : machine_.groups) {
+        if (group.name != module.group) continue;
+        const std::vector<std::string_view> members(group.axes.begin(), group.axes.end());
+        std::vector<std::string_view> homed;
+        for (std::size_t k = 0; k < module.homing.size(); ++k) {
+          CheckReference(path + ".homing[" + std::to_string(k) + "].axis", module.homing[k].axis, homed, members,
+                         "axis of its group");
+        }
+      }
+    }
+  }
+
+  // Names of all, belts, poses and pick and place modules last.
   std::vector<std::string_view> Components() const {
     std::vector<std::string_view> names = names_;
     for (const flexcam::FlexCamParams& module : machine_.flex_cams) names.push_back(module.name);
     for (const group::GroupParams& group : machine_.groups) names.push_back(group.name);
     for (const conveyor::BeltParams& belt : machine_.belts) names.push_back(belt.name);
     for (const conveyor::PoseParams& pose : machine_.poses) names.push_back(pose.name);
+    for (const pickplace::PickPlaceParams& module : machine_.pick_and_place) names.push_back(module.name);
     return names;
   }
 
@@ -249,7 +284,9 @@ class CrossCheck {
                       const std::vector<std::string_view>& names, const std::string& what) {
     if (name.empty()) return;
     if (std::find(names.begin(), names.end(), name) == names.end()) {
-      Add(path, "expected the name of an " + what + ", found " + Quoted(name) + DidYouMean(name, names));
+      const bool vowel = std::string_view("aeiou").find(what.front()) != std::string_view::npos;
+      Add(path, std::string("expected the name of a") + (vowel ? "n " : " ") + what + ", found " + Quoted(name) +
+                    DidYouMean(name, names));
     } else if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
       Add(path, "expected each " + what + " once, found " + Quoted(name) + " again");
     }

@@ -124,6 +124,7 @@ void describe(Description<Machine>& d) {
   d.defaulted<&M::paths>("Paths, for any group.");
   d.defaulted<&M::belts>("Belts, and tables that turn.");
   d.defaulted<&M::poses>("Poses that come from elsewhere.");
+  d.defaulted<&M::pick_and_place>("Pick and place modules.");
   d.defaulted<&M::simulation>("What stands in for the metal.");
   d.defaulted<&M::external>("What lives in other processes.");
 }

@@ -15,6 +15,7 @@
 #include "takt/core/describe_fwd.h"
 #include "takt/flexcam/params.h"
 #include "takt/group/params.h"
+#include "takt/pickplace/params.h"
 #include "takt/plant/servo.h"
 
 namespace takt::engine {
@@ -73,6 +74,7 @@ struct Machine {
   std::vector<group::PathParams> paths;
   std::vector<conveyor::BeltParams> belts;
   std::vector<conveyor::PoseParams> poses;
+  std::vector<pickplace::PickPlaceParams> pick_and_place;
   Simulation simulation;
   External external;
 };

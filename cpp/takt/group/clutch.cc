@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/axis/chase.h"
+#include "takt/group/join.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
 #include "takt/trajectory/quintic.h"
@@ -29,7 +30,8 @@ const Ride& RideAt(const Context& c, std::uint64_t number) {
   return c.ahead.rides[number % kRides];
 }
 
-Clutch* Find(State& s, std::uint64_t ride) {
+template <typename S>
+auto* Find(S& s, std::uint64_t ride) {
   const auto found = std::ranges::find_if(s.clutches, [&](const Clutch& k) { return k.used && k.ride == ride; });
   return found != s.clutches.end() ? &*found : nullptr;
 }
@@ -116,10 +118,18 @@ void StepClutches(const Context& c, const Stretch& stretch, State& s) noexcept {
   for (Clutch& clutch : s.clutches) {
     if (clutch.used && clutch.ride != stretch.from_ride && clutch.ride != stretch.to_ride) clutch = {};
   }
+  s.ridden = {};
   if (stretch.joints) return;
+  s.ridden = {RideAt(c, stretch.from_ride).cargo.carrier, RideAt(c, stretch.to_ride).cargo.carrier};
   const double way = std::clamp(stretch.from + s.pace.now.position - stretch.begin, stretch.from, stretch.to);
   StepOne(c, stretch, way, stretch.from_ride, s);
   if (stretch.to_ride != stretch.from_ride) StepOne(c, stretch, way, stretch.to_ride, s);
+}
+
+bool RidesFreely(const Context& c, const State& s) noexcept {
+  return std::ranges::any_of(s.ridden, [&](std::uint32_t carrier) {
+    return carrier != 0 && c.carriers.At(carrier).kind == kinematics::CarrierKind::kFree;
+  });
 }
 
 bool Slips(const State& s) noexcept {
@@ -132,18 +142,35 @@ bool ClutchesStand(const State& s) noexcept {
   });
 }
 
-bool CanLetGo(const Context& c, const Stretch& stretch, const MovingFrame& tool, State& s) noexcept {
-  const double speed = tool.p.v.Norm();
-  const PathLimits& path = c.params.path;
-  const trajectory::Limits limits = {path.velocity, path.acceleration, path.deceleration.value_or(path.acceleration),
-                                     path.jerk};
-  MovingFrame rest = tool;
-  rest.p.dv = rest.M.dw = KDL::Vector::Zero();
-  // What is decided now brakes from the next cycle on, and is looked at again only then.
-  const double way = trajectory::StopPosition({0, speed, 0}, limits) + 2 * c.cycle.period_s * speed;
-  if (speed > 0) rest.p.p += way / speed * tool.p.v;
+bool CanLetGo(const Context& c, State& s) noexcept {
+  // Where the path would end if it were braked now: the mean comes to rest where the raw motion does.
+  const trajectory::PathNode& node = c.ahead.window[s.pace.node];
+  const double v = s.pace.raw.velocity;
+  const double deceleration =
+      std::min(-node.bounds.Least(v * v), node.bounds.strength.At(v * v) * node.bounds.strength.gentle);
+  const double way_to_rest = deceleration > 0 ? 0.5 * v * v / deceleration : kNoEnd;
+  const double place = s.pace.raw.position + way_to_rest + v * c.cycle.period_s;
+  const LookAhead& ahead = c.ahead;
+  std::uint64_t i = ahead.first;
+  while (i + 1 < ahead.end() && ahead[i].end() <= place) ++i;
+  const Stretch& stretch = ahead[i];
+  if (!IsCarried(ahead, stretch)) return true;
+  const double way = std::clamp(stretch.from + place - stretch.begin, stretch.from, stretch.to);
+  // And the carriers with it, from the next cycle on.
+  const auto braked = [&](std::uint64_t number, kinematics::Carrier carrier) {
+    const Clutch* clutch = Find(s, number);
+    KinematicState& travel = carrier.travel;
+    if (!clutch) return carrier;
+    travel = clutch->travel;
+    const double speed = travel.velocity;
+    travel.position = trajectory::StopPosition(travel, clutch->limits()) + 2 * c.cycle.period_s * speed;
+    travel.acceleration = 0;
+    return carrier;
+  };
+  const MovingFrame tool = ToolWith(c, stretch, {way, 0, 0}, braked);
   kinematics::JointMotion motion;
-  kinematics::Reason reason = AxesFor(c, s, stretch, rest, {stretch.from, 0, 0}, s.joints, motion);
+  kinematics::Reason reason = AxesFor(c, s, stretch, tool, {way, 0, 0}, s.joints, motion);
+  // As fast as the carriers are now the axes must be able to go there.
   const trajectory::CoordinateLimits& own = c.ahead.window.limits();
   for (std::size_t k = 0; k < std::min(own.count, kMaxAxes); ++k) {
     if (reason != kinematics::Reason::kNone || s.members[k] == 0) continue;

@@ -13,14 +13,17 @@ namespace takt::group {
 // Each clutch of the stretch that the tool is on goes on by a cycle: along, or to rest (State::lets_go).
 void StepClutches(const Context& c, const Stretch& stretch, State& s) noexcept;
 
+// It goes along with something that has no travel of its own to be braked: to let go of it is to let go of the axes.
+bool RidesFreely(const Context& c, const State& s) noexcept;
+
 // The tool is not where its carriers are, and comes after them.
 bool Slips(const State& s) noexcept;
 // Nothing that was let go of moves on.
 bool ClutchesStand(const State& s) noexcept;
 
-// Whether the tool could still be braked from here within what the axes reach, and they could move it as fast there;
-// s.reason if not. `tool`: as its carriers move it.
-bool CanLetGo(const Context& c, const Stretch& stretch, const MovingFrame& tool, State& s) noexcept;
+// Whether the tool could still be braked within what the axes reach, path and carriers at once, and the axes could move
+// it there as fast as its carriers do now; s.reason if not.
+bool CanLetGo(const Context& c, State& s) noexcept;
 
 // What the travel of a carrier may do so that group and axes keep their limits, at the place of a stretch where the
 // tool is and some way on.

@@ -216,6 +216,54 @@ std::string WhyNotThis(const SetCoordinateTransform& c) {
   return {};
 }
 
+std::string WhyNotThis(const SetDynCoordTransform& c) {
+  return WhyNotNamed("carrier", c.carrier, "a belt, a group or a pose");
+}
+
+std::string WhyNotThis(const MoveArch& c) {
+  return FirstOf(WhyNotAPlace(c), WhyNotTransition(c));
+}
+
+// From where to where an object is tracked: mm or deg of what carries it.
+struct Tracked {
+  std::string_view begin_name, end_name, sync_in_name, unit;
+  double begin = 0;
+  std::optional<double> end{};
+  double sync_in = 0;
+
+  ErrorId error() const {
+    if (!end) return ErrorId::kNone;
+    if (*end < begin) return ErrorId::kTrackOrder;
+    return *end - begin < sync_in ? ErrorId::kTrackShort : ErrorId::kNone;
+  }
+};
+
+Tracked TrackedBy(const TrackConveyorBelt& c) {
+  return {"start_distance",
+          "end_distance",
+          "sync_in_conveyor_distance",
+          "mm",
+          c.start_distance,
+          c.end_distance,
+          c.sync_in_conveyor_distance.value_or(0)};
+}
+
+Tracked TrackedBy(const TrackRotaryTable& c) {
+  return {"start_angle", "end_angle", "sync_in_angle", "deg", c.start_angle, c.end_angle, c.sync_in_angle.value_or(0)};
+}
+
+template <typename T>
+requires requires(const T& c) {
+  TrackedBy(c);
+}
+std::string WhyNotThis(const T& c) {
+  const Tracked t = TrackedBy(c);
+  if (t.error() == ErrorId::kNone) return {};
+  const bool order = t.error() == ErrorId::kTrackOrder;
+  return std::string(t.end_name) + ": expected " + Text(at_least(order ? t.begin : t.begin + t.sync_in)) + " " +
+         std::string(t.unit) + ", " + std::string(t.begin_name) + (order ? "" : " and " + std::string(t.sync_in_name));
+}
+
 template <typename T>
 std::string WhyNotThis(const T&) {
   return {};
@@ -232,6 +280,17 @@ std::string WhyNot(const Command& command) {
         return std::string(wrong->name) + ": expected " + (range.empty() ? "a value of its kind" : "a number " + range);
       },
       command);
+}
+
+ErrorId ErrorOf(const Command& command) noexcept {
+  ErrorId error = ErrorId::kNone;
+  if (const auto* belt = std::get_if<TrackConveyorBelt>(&command); belt && InRange(*belt)) {
+    error = TrackedBy(*belt).error();
+  }
+  if (const auto* table = std::get_if<TrackRotaryTable>(&command); table && InRange(*table)) {
+    error = TrackedBy(*table).error();
+  }
+  return error == ErrorId::kNone ? ErrorId::kParameter : error;
 }
 
 void describe(Enumeration<CoordinateSystem>& e) {
@@ -294,7 +353,7 @@ void describe(Description<MoveDirectRelative>& d) {
 void describe(Description<MoveArch>& d) {
   d.about("Moves the tool along half an ellipse, upright in the world over where it begins and ends.");
   DescribeNumbers(d);
-  d.defaulted<&MoveArch::height>(unit::mm, between(0, 1e9), "Of its crest above the higher of both points.");
+  d.defaulted<&MoveArch::height>(unit::mm, kLengths, "Of its crest above the higher of both points.");
   DescribeSystem(d);
   DescribeRamps(d);
   DescribeBuffering(d);
@@ -460,12 +519,12 @@ void describe(Description<TrackConveyorBelt>& d) {
   d.defaulted<&C::start_distance>(unit::mm, kPlaces, "StartDistance: travel, and x more, after which tracking begins.");
   d.defaulted<&C::end_distance>(unit::mm, kPlaces, "EndDistance: travel after which it ends; unset: never.");
   d.defaulted<&C::sync_in_conveyor_distance>(
-      unit::mm, at_least(0), "Travel in which the tool gets into step; 0: as fast as the limits allow.");
-  d.defaulted<&C::sync_in_tcp_distance>(unit::mm, at_least(0),
+      unit::mm, kLengths, "Travel in which the tool gets into step; 0: as fast as the limits allow.");
+  d.defaulted<&C::sync_in_tcp_distance>(unit::mm, kLengths,
                                         "How far the tool goes meanwhile; 0: to the object, along the belt.");
-  d.defaulted<&C::sync_out_conveyor_distance>(unit::mm, at_least(0),
+  d.defaulted<&C::sync_out_conveyor_distance>(unit::mm, kLengths,
                                               "Travel in which the tool comes to rest; 0: likewise.");
-  d.defaulted<&C::sync_out_tcp_distance>(unit::mm, at_least(0), "How far the tool goes meanwhile; 0: half of that.");
+  d.defaulted<&C::sync_out_tcp_distance>(unit::mm, kLengths, "How far the tool goes meanwhile; 0: half of that.");
   d.defaulted<&C::execution_mode>("When it takes effect.");
 }
 
@@ -479,9 +538,9 @@ void describe(Description<TrackRotaryTable>& d) {
                                      "Of the table's axis when the object was at that pose; unset: now.");
   d.defaulted<&C::start_angle>(unit::deg, kAngles, "Turn after which tracking begins, in the sense of the table.");
   d.defaulted<&C::end_angle>(unit::deg, kAngles, "Turn after which it ends; unset: never.");
-  d.defaulted<&C::sync_in_angle>(unit::deg, at_least(0),
+  d.defaulted<&C::sync_in_angle>(unit::deg, kTurns,
                                  "Turn in which the tool gets into step; 0: as fast as the limits allow.");
-  d.defaulted<&C::sync_out_angle>(unit::deg, at_least(0), "Turn in which the tool comes to rest; 0: likewise.");
+  d.defaulted<&C::sync_out_angle>(unit::deg, kTurns, "Turn in which the tool comes to rest; 0: likewise.");
   d.defaulted<&C::execution_mode>("When it takes effect.");
 }
 

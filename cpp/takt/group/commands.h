@@ -10,6 +10,7 @@
 #include "takt/axis/commands/moves.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/name.h"
+#include "takt/core/status.h"
 #include "takt/kinematics/joints.h"
 #include "takt/path/make.h"
 #include "takt/workspace/trouble.h"
@@ -252,6 +253,8 @@ using Command =
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
 std::string WhyNot(const Command& command);
+// The error of a command with which something is wrong: the same that the cycle finds in its numbers.
+ErrorId ErrorOf(const Command& command) noexcept;
 
 void describe(Enumeration<CoordinateSystem>&);
 void describe(Enumeration<TransitionMode>&);

@@ -159,6 +159,14 @@ MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicStat
   });
 }
 
+MovingFrame ToolSeen(const Context& c, const Stretch& stretch, const KinematicState& way, SeeCarrier see,
+                     const void* owner) noexcept {
+  return ToolOn(c.ahead, stretch, way, [&](std::uint64_t number) {
+    const Ride& ride = RideAt(c.ahead, number);
+    return Displaced(ride, see(owner, number, CarrierOf(c, ride.cargo)));
+  });
+}
+
 double Now(const Context& c) noexcept {
   return static_cast<double>(c.cycle.count) * c.cycle.period_s;
 }

@@ -46,6 +46,18 @@ MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicSt
 // The same after so much time.
 MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicState& way, double ahead_s) noexcept;
 
+using SeeCarrier = kinematics::Carrier (*)(const void* owner, std::uint64_t ride, const kinematics::Carrier& carrier);
+MovingFrame ToolSeen(const Context& c, const Stretch& stretch, const KinematicState& way, SeeCarrier see,
+                     const void* owner) noexcept;
+// The same with carriers as somebody else sees them.
+template <typename See>
+MovingFrame ToolWith(const Context& c, const Stretch& stretch, const KinematicState& way, const See& see) noexcept {
+  const auto seen = [](const void* owner, std::uint64_t ride, const kinematics::Carrier& carrier) {
+    return (*static_cast<const See*>(owner))(ride, carrier);
+  };
+  return ToolSeen(c, stretch, way, seen, &see);
+}
+
 // Expected times, s from the start of the engine.
 double Now(const Context& c) noexcept;
 // How long a motion from rest to rest takes, about.

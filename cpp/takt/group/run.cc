@@ -42,7 +42,7 @@ bool FollowCarried(const Context& c, const Stretch& stretch, double way, State& 
   }
   Demand(c, motion, s);
   // Where it could not be braked any more it is braked now.
-  if (!s.lets_go && !CanLetGo(c, stretch, ToolNow(c, s, stretch, {way, 0, 0}), s)) {
+  if (!s.lets_go && !CanLetGo(c, s)) {
     EndTracking(c, FeedbackState::kError, ErrorId::kUnreachable, s);
     AbortMoves(c, ErrorId::kUnreachable, s);
     EndMotion({}, true, s);
@@ -230,6 +230,9 @@ void SitOn(const Context& c, const Ride& ride, const path::Point& place, State& 
 void EndMotion(const Brake& brake, bool lets_go, State& s) noexcept {
   s.ends = true;
   s.lets_go = lets_go;
+  if (lets_go) {
+    for (Clutch& clutch : s.clutches) clutch.law_length = 0;
+  }
   s.interrupted = false;
   s.brake = brake;
 }

@@ -8,6 +8,8 @@ namespace takt::group {
 // Wide enough for anything that is built, narrow enough for squares and quotients of them to be numbers.
 inline constexpr Range kPlaces = between(-1e9, 1e9);           // mm
 inline constexpr Range kAngles = between(-1e6, 1e6);           // deg
+inline constexpr Range kLengths = between(0, 1e9);             // mm
+inline constexpr Range kTurns = between(0, 1e6);               // deg
 inline constexpr Range kAxisPositions = between(-1e12, 1e12);  // u
 inline constexpr Range kSpeeds = between(1e-6, 1e9);           // mm/s, deg/s
 inline constexpr Range kAccelerations = between(1e-6, 1e12);   // mm/s², deg/s²

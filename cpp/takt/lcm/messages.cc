@@ -22,6 +22,22 @@ msgs::pose ToMessage(const kinematics::Pose& pose) {
   return {.x = pose.x, .y = pose.y, .z = pose.z, .a = pose.a, .b = pose.b, .c = pose.c};
 }
 
+msgs::axis_numbers ToMessage(const pickplace::AxisNumbers& n) {
+  return {.x = n.x,
+          .y = n.y,
+          .z = n.z,
+          .a = n.a,
+          .b = n.b,
+          .c = n.c,
+          .a1 = n.a1,
+          .a2 = n.a2,
+          .a3 = n.a3,
+          .a4 = n.a4,
+          .a5 = n.a5,
+          .a6 = n.a6,
+          .aux1 = n.aux1};
+}
+
 // The fields behind the fingerprint: 'i' eight bytes of whatever kind, 'b' one byte, 's' a string.
 bool FitsLayout(std::span<const std::uint8_t> bytes, std::string_view layout) {
   constexpr std::size_t kFingerprint = 8;
@@ -87,6 +103,7 @@ msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::M
   m.probe_captures = o.probe_captures;
   m.cam_outputs = o.cam_outputs;
   m.override_factor = o.override_factor;
+  m.true_position = o.true_position;
   m.limit_positive = o.limit_positive;
   m.limit_negative = o.limit_negative;
   m.reference = o.reference;
@@ -300,6 +317,57 @@ msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::M
   m.turning = o.turning;
   m.age_s = o.age_s;
   m.fresh = o.fresh;
+  return m;
+}
+
+msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, const engine::Machine& machine) {
+  const pickplace::Outputs& o = snapshot.outputs;
+  msgs::pick_place_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.pick_and_place[snapshot.index].name;
+  m.state = static_cast<std::int8_t>(o.state);
+  m.error = static_cast<std::int32_t>(o.error);
+  m.warning = static_cast<std::int32_t>(o.warning);
+  m.error_axes = o.error_axes;
+  m.set_path_velocity = o.set_path_velocity;
+  m.path_preparation_time = o.path_preparation_time;
+  m.precalculated_profile_time = o.precalculated_profile_time;
+  m.position = ToMessage(o.position);
+  m.velocity = ToMessage(o.velocity);
+  m.profile_point_passed = o.profile_point_passed;
+  m.target = o.target;
+  m.workpiece = o.workpiece;
+  m.profiles = o.profiles;
+  m.picked = o.picked;
+  m.placed = o.placed;
+  m.missed = o.missed;
+  m.missed_too_late = o.missed_too_late;
+  m.missed_interrupted = o.missed_interrupted;
+  m.missed_refused = o.missed_refused;
+  m.picks_per_minute = o.picks_per_minute;
+  m.internal_control_active = o.internal_control_active;
+  m.axes_enabled = o.axes_enabled;
+  m.axes_group_enabled = o.axes_group_enabled;
+  m.done = o.done;
+  m.busy = o.busy;
+  m.axes_group_homed = o.axes_group_homed;
+  m.in_position = o.in_position;
+  m.hw_limit_switch_active = o.hw_limit_switch_active;
+  m.sw_limit_switch_active = o.sw_limit_switch_active;
+  m.hw_limit_switches_positive = o.hw_limit_switches_positive;
+  m.hw_limit_switches_negative = o.hw_limit_switches_negative;
+  m.sw_limits_enabled = o.sw_limits_enabled;
+  m.sw_limit_switches = o.sw_limit_switches;
+  m.path_hold = o.path_hold;
+  m.off_path = o.off_path;
+  m.gripper_control_active = o.gripper_control_active;
+  m.pulse_gripper = o.pulse_gripper;
+  m.profile_in_preparation = o.profile_in_preparation;
+  m.acc_dec_sync = o.acc_dec_sync;
+  m.synchronised = o.synchronised;
+  m.in_target = o.in_target;
+  m.in_park_position = o.in_park_position;
   return m;
 }
 

@@ -29,6 +29,7 @@
 #include "takt/msgs/journal_hashes.hpp"
 #include "takt/msgs/journal_start.hpp"
 #include "takt/msgs/machine_description.hpp"
+#include "takt/msgs/pick_place_state.hpp"
 #include "takt/msgs/pose_state.hpp"
 
 namespace takt::lcm {
@@ -38,6 +39,7 @@ msgs::flex_cam_state ToMessage(const engine::FlexCamSnapshot& snapshot, const en
 msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine::Machine& machine);
 msgs::belt_state ToMessage(const engine::BeltSnapshot& snapshot, const engine::Machine& machine);
 msgs::belt_objects ToMessage(const engine::ObjectsSnapshot& snapshot, const engine::Machine& machine);
+msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, const engine::Machine& machine);
 msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::Machine& machine);
 msgs::histogram ToMessage(const engine::Histogram& histogram);
 msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine::Machine& machine);

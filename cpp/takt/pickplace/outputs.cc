@@ -4,8 +4,8 @@
 
 namespace takt::pickplace {
 
-void describe(Enumeration<ModuleState>& e) {
-  using S = ModuleState;
+void describe(Enumeration<PickPlaceState>& e) {
+  using S = PickPlaceState;
   e.about("States of a pick and place module.");
   e.value(S::kInit, "init", "It is not enabled.");
   e.value(S::kReady, "ready", "It waits; a path that was stopped may be held.");
@@ -32,6 +32,25 @@ void describe(Description<Counters>& d) {
   d.internal<&C::refused>("There was no path to them.");
 }
 
+void describe(Description<AxisNumbers>& d) {
+  using N = AxisNumbers;
+  d.named("PickPlaceAxisNumbers");
+  d.about("A number of each axis.");
+  d.internal<&N::x>(unit::mm, "Of the tool along X.");
+  d.internal<&N::y>(unit::mm, "Along Y.");
+  d.internal<&N::z>(unit::mm, "Along Z.");
+  d.internal<&N::a>(unit::deg, "Of the tool about X.");
+  d.internal<&N::b>(unit::deg, "About Y.");
+  d.internal<&N::c>(unit::deg, "About Z.");
+  d.internal<&N::a1>(unit::u, "Of axis 1.");
+  d.internal<&N::a2>(unit::u, "Of axis 2.");
+  d.internal<&N::a3>(unit::u, "Of axis 3.");
+  d.internal<&N::a4>(unit::u, "Of axis 4.");
+  d.internal<&N::a5>(unit::u, "Of axis 5.");
+  d.internal<&N::a6>(unit::u, "Of axis 6.");
+  d.internal<&N::aux1>(unit::u, "Of the auxiliary axis.");
+}
+
 void describe(Description<Outputs>& d) {
   using O = Outputs;
   d.named("PickPlaceOutputs");
@@ -39,19 +58,24 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::state>("State of the module. T&P: eTMState.");
   d.internal<&O::error>("Why it is in error. T&P: xError, eErrorID.");
   d.internal<&O::warning>("What was not done as asked. T&P: xWarning, eErrorID.");
-  d.internal<&O::error_info>(
-      "Error number of each axis: X, Y, Z, A, B, C, A1 to A6, Aux1, as in all lists here. T&P: ascErrorInfo.");
+  d.internal<&O::error_axes>(
+      "Axes in error, a mask: bit 0 is X, then Y, Z, A, B, C, A1 to A6, Aux1; each axis says why. T&P: ascErrorInfo.");
   d.internal<&O::set_path_velocity>(unit::mm_s, "Along the path, as commanded. T&P: lrSetPathVelOut.");
   d.internal<&O::path_preparation_time>(
       unit::s, "From the edge to the first set point of the profile. T&P: lrPathPreparationTime.");
   d.internal<&O::precalculated_profile_time>(unit::s, "The profile takes so long. T&P: lrPreCalcProfileTime.");
-  d.internal<&O::actual_position>("As measured, in mm, deg or u. T&P: alrActPos.");
-  d.internal<&O::actual_velocity>("As measured, the same per s. T&P: alrActVel.");
+  d.internal<&O::position>("As measured. T&P: alrActPos.");
+  d.internal<&O::velocity>("As measured, the same per s. T&P: alrActVel.");
   d.internal<&O::profile_point_passed>("Number of the last point passed; 0: the start. T&P: iProfilePointPassed.");
   d.internal<&O::target>("What is approached: a belt, from 1; 0: the static target. T&P: eSetTargetOut.");
   d.internal<&O::workpiece>("Number of the workpiece that is approached; 0: none.");
   d.internal<&O::profiles>("Profiles accepted and not yet done.");
-  d.internal<&O::counters>("What became of workpieces.");
+  d.internal<&O::picked>("Profiles that ended at a place to pick, since the start or reset_counters.");
+  d.internal<&O::placed>("Profiles that ended at a place to put something.");
+  d.internal<&O::missed>("Workpieces that were not reached, of these:");
+  d.internal<&O::missed_too_late>("They left the range.");
+  d.internal<&O::missed_interrupted>("The path to them was stopped or aborted.");
+  d.internal<&O::missed_refused>("There was no path to them.");
   d.internal<&O::picks_per_minute>("By the time between the last picks.");
   d.internal<&O::internal_control_active>("The group is given to others. T&P: xInternalControlActive.");
   d.internal<&O::axes_enabled>("All axes are on. T&P: xAxesEnabled.");
@@ -62,10 +86,10 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::in_position>("The tool is where it was to go. T&P: xInPosition.");
   d.internal<&O::hw_limit_switch_active>("A limit switch is on. T&P: xHwLimitSwitchActive.");
   d.internal<&O::sw_limit_switch_active>("A SW limit stopped an axis. T&P: xSwLimitSwitchActive.");
-  d.internal<&O::hw_limit_switch_positive>("Of each axis. T&P: axHwLimitSwitchPos.");
-  d.internal<&O::hw_limit_switch_negative>("Of each axis. T&P: axHwLimitSwitchNeg.");
-  d.internal<&O::sw_limit_enabled>("The axis has SW limits. T&P: axSwLimitEnabled.");
-  d.internal<&O::sw_limit_switches>("The axis was stopped by one. T&P: axSwLimitSwitchActive.");
+  d.internal<&O::hw_limit_switches_positive>("Which, a mask as above. T&P: axHwLimitSwitchPos.");
+  d.internal<&O::hw_limit_switches_negative>("Which, a mask. T&P: axHwLimitSwitchNeg.");
+  d.internal<&O::sw_limits_enabled>("Axes with SW limits, a mask. T&P: axSwLimitEnabled.");
+  d.internal<&O::sw_limit_switches>("Axes that were stopped by them, a mask. T&P: axSwLimitSwitchActive.");
   d.internal<&O::path_hold>("It rests on a path that can be gone on with. T&P: xPathHold.");
   d.internal<&O::off_path>("The tool was moved away from that path: return_to_path moves it back.");
   d.internal<&O::gripper_control_active>("The gripper gets its pulse. T&P: xGripperCtrlActive.");

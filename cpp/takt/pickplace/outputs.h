@@ -1,7 +1,6 @@
 // What a pick and place module publishes every cycle: the outputs of the manual's 3.6.4, and counters.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "takt/core/describe_fwd.h"
@@ -21,21 +20,35 @@ struct Counters {
   std::uint32_t refused = 0;      // there was no path to them
 };
 
+// A number of each axis.
+struct AxisNumbers {
+  double x = 0, y = 0, z = 0;                             // mm
+  double a = 0, b = 0, c = 0;                             // deg
+  double a1 = 0, a2 = 0, a3 = 0, a4 = 0, a5 = 0, a6 = 0;  // u
+  double aux1 = 0;                                        // u
+};
+
+// In masks of axes bit 0 is X, then come Y, Z, A, B, C, A1 to A6 and Aux1.
 struct Outputs {
-  ModuleState state = ModuleState::kInit;
+  PickPlaceState state = PickPlaceState::kInit;
   ErrorId error = ErrorId::kNone;
   ErrorId warning = ErrorId::kNone;
-  std::array<std::uint32_t, kAllAxes> error_info{};  // error number of each axis
-  double set_path_velocity = 0;                      // mm/s
-  double path_preparation_time = 0;                  // s
-  double precalculated_profile_time = 0;             // s
-  std::array<double, kAllAxes> actual_position{};    // as measured
-  std::array<double, kAllAxes> actual_velocity{};
+  std::uint32_t error_axes = 0;           // mask; why says each axis itself
+  double set_path_velocity = 0;           // mm/s
+  double path_preparation_time = 0;       // s
+  double precalculated_profile_time = 0;  // s
+  AxisNumbers position;                   // as measured
+  AxisNumbers velocity;
   std::uint32_t profile_point_passed = 0;  // 0: the start; the last one is the target
   std::uint32_t target = 0;                // that is approached: a belt from 1; 0: the static one
   std::uint32_t workpiece = 0;             // its number there; 0: none
   std::uint32_t profiles = 0;              // accepted and not yet done
-  Counters counters;
+  std::uint32_t picked = 0;                // counters
+  std::uint32_t placed = 0;
+  std::uint32_t missed = 0;
+  std::uint32_t missed_too_late = 0;
+  std::uint32_t missed_interrupted = 0;
+  std::uint32_t missed_refused = 0;
   double picks_per_minute = 0;  // over the last ones
   bool internal_control_active = false;
   bool axes_enabled = false;
@@ -46,10 +59,10 @@ struct Outputs {
   bool in_position = false;
   bool hw_limit_switch_active = false;
   bool sw_limit_switch_active = false;
-  std::array<bool, kAllAxes> hw_limit_switch_positive{};
-  std::array<bool, kAllAxes> hw_limit_switch_negative{};
-  std::array<bool, kAllAxes> sw_limit_enabled{};
-  std::array<bool, kAllAxes> sw_limit_switches{};
+  std::uint32_t hw_limit_switches_positive = 0;  // masks
+  std::uint32_t hw_limit_switches_negative = 0;
+  std::uint32_t sw_limits_enabled = 0;
+  std::uint32_t sw_limit_switches = 0;
   bool path_hold = false;  // rests on a path that can be gone on with
   bool off_path = false;   // but was moved away from it: return_to_path
   bool gripper_control_active = false;
@@ -62,6 +75,7 @@ struct Outputs {
 };
 
 void describe(Description<Counters>&);
+void describe(Description<AxisNumbers>&);
 void describe(Description<Outputs>&);
 
 }  // namespace takt::pickplace

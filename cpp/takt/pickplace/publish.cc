@@ -9,6 +9,11 @@ namespace takt::pickplace {
 
 namespace {
 
+constexpr std::array kNumbers = {&AxisNumbers::x,   &AxisNumbers::y,  &AxisNumbers::z,  &AxisNumbers::a,
+                                 &AxisNumbers::b,   &AxisNumbers::c,  &AxisNumbers::a1, &AxisNumbers::a2,
+                                 &AxisNumbers::a3,  &AxisNumbers::a4, &AxisNumbers::a5, &AxisNumbers::a6,
+                                 &AxisNumbers::aux1};
+
 void PublishAxes(const Context& c, const group::State& g, const State& s, Outputs& out) {
   out.axes_enabled = out.axes_group_homed = group::CountOf(g) > 0;
   for (std::size_t k = 0; k < group::kMaxAxes; ++k) {
@@ -19,21 +24,23 @@ void PublishAxes(const Context& c, const group::State& g, const State& s, Output
     const std::size_t real = RealOf(c, g, k);
     if (real == kRealAxes) continue;
     const std::size_t i = kFirstReal + real;
+    const std::uint32_t bit = 1u << i;
     const axis::AxisParams& p = c.group.axes.params[g.members[k] - 1];
-    out.error_info[i] = static_cast<std::uint32_t>(m.error);
-    out.actual_position[i] = axis::Reported(p, m.actual.position);
-    out.actual_velocity[i] = m.actual.velocity;
-    out.hw_limit_switch_positive[i] = m.limit_positive;
-    out.hw_limit_switch_negative[i] = m.limit_negative;
-    out.sw_limit_enabled[i] = p.limits.lower.has_value() || p.limits.upper.has_value();
-    out.sw_limit_switches[i] = m.error == ErrorId::kSoftLimitPositive || m.error == ErrorId::kSoftLimitNegative;
+    out.position.*kNumbers[i] = axis::Reported(p, m.actual.position);
+    out.velocity.*kNumbers[i] = m.actual.velocity;
+    if (m.error != ErrorId::kNone) out.error_axes |= bit;
+    if (m.limit_positive) out.hw_limit_switches_positive |= bit;
+    if (m.limit_negative) out.hw_limit_switches_negative |= bit;
+    if (p.limits.lower || p.limits.upper) out.sw_limits_enabled |= bit;
+    const bool stopped = m.error == ErrorId::kSoftLimitPositive || m.error == ErrorId::kSoftLimitNegative;
+    if (stopped) out.sw_limit_switches |= bit;
   }
   for (std::size_t i = 0; i < kAllAxes; ++i) {
-    out.hw_limit_switch_positive[i] |= s.inputs.hw_limit_positive[i];
-    out.hw_limit_switch_negative[i] |= s.inputs.hw_limit_negative[i];
-    out.hw_limit_switch_active |= out.hw_limit_switch_positive[i] || out.hw_limit_switch_negative[i];
-    out.sw_limit_switch_active |= out.sw_limit_switches[i];
+    if (s.inputs.hw_limit_positive[i]) out.hw_limit_switches_positive |= 1u << i;
+    if (s.inputs.hw_limit_negative[i]) out.hw_limit_switches_negative |= 1u << i;
   }
+  out.hw_limit_switch_active = (out.hw_limit_switches_positive | out.hw_limit_switches_negative) != 0;
+  out.sw_limit_switch_active = out.sw_limit_switches != 0;
 }
 
 void PublishTool(const Context& c, const group::State& g, Outputs& out) {
@@ -50,11 +57,20 @@ void PublishTool(const Context& c, const group::State& g, Outputs& out) {
   const kinematics::MovingFrame tool = flange * c.group.mounting.tool;
   const kinematics::Pose pose = kinematics::ToPose(tool.GetFrame());
   const std::array position = {pose.x, pose.y, pose.z, pose.a, pose.b, pose.c};
-  std::ranges::copy(position, out.actual_position.begin());
-  for (int i = 0; i < 3; ++i) {
-    out.actual_velocity[static_cast<std::size_t>(i)] = tool.p.v(i);
-    out.actual_velocity[static_cast<std::size_t>(i) + 3] = KDL::rad2deg * tool.M.w(i);
+  for (int i = 0; i < 6; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    out.position.*kNumbers[k] = position[k];
+    out.velocity.*kNumbers[k] = i < 3 ? tool.p.v(i) : KDL::rad2deg * tool.M.w(i - 3);
   }
+}
+
+void PublishCounters(const Counters& counters, Outputs& out) {
+  out.picked = counters.picked;
+  out.placed = counters.placed;
+  out.missed = counters.missed;
+  out.missed_too_late = counters.too_late;
+  out.missed_interrupted = counters.interrupted;
+  out.missed_refused = counters.refused;
 }
 
 double PicksPerMinute(const Context& c, const State& s) {
@@ -100,18 +116,18 @@ void Publish(const Context& c, const group::State& g, const State& s, Outputs& o
   PublishAxes(c, g, s, out);
   PublishTool(c, g, out);
   PublishOrder(g, s, out);
-  out.counters = s.counters;
+  PublishCounters(s.counters, out);
   out.picks_per_minute = PicksPerMinute(c, s);
   out.internal_control_active = s.inputs.internal_control;
   out.axes_group_enabled = g.state != group::GroupState::kDisabled;
   out.done = s.done;
-  out.busy = s.order_count > 0 || s.loop.active || s.hold.returning || s.state == ModuleState::kHoming;
+  out.busy = s.order_count > 0 || s.loop.active || s.hold.returning || s.state == PickPlaceState::kHoming;
   out.in_target = s.in_target;
   out.in_position = s.in_target && (!s.settings.watch_position_window || s.out_of_window == 0);
   out.path_hold = s.hold.held && Stands(c, g);
   out.off_path = s.hold.off;
   out.pulse_gripper = s.pulse;
-  out.profile_in_preparation = s.order_count == kOrders || s.state == ModuleState::kPreparingPath;
+  out.profile_in_preparation = s.order_count == kOrders || s.state == PickPlaceState::kPreparingPath;
   out.in_park_position = s.parked_at != 0 && !s.parking;
 }
 

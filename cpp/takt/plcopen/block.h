@@ -9,6 +9,7 @@
 #pragma once
 
 #include "takt/axis/commands.h"
+#include "takt/group/commands.h"
 #include "takt/plcopen/feedback.h"
 #include "takt/plcopen/program.h"
 
@@ -105,6 +106,9 @@ class CommandBlock : public Base, public C {
   void StartWith(const C& command) noexcept {
     bool may_wait = true;
     if constexpr (requires { command.buffer_mode; }) may_wait = command.buffer_mode != axis::BufferMode::kAborting;
+    if constexpr (requires { command.execution_mode; }) {
+      may_wait = command.execution_mode != group::ExecutionMode::kImmediately;
+    }
     this->Start(this->subject().target(), Kind(command), may_wait);
   }
 };

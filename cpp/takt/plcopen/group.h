@@ -39,6 +39,9 @@ using MC_SetKinTransform = BlockOfGroup<group::SetKinTransform>;
 using MC_SetCartesianTransform = BlockOfGroup<group::SetCartesianTransform>;
 using MC_SetCoordinateTransform = BlockOfGroup<group::SetCoordinateTransform>;
 
+// `carrier` is the MasterAxesGroup, or what else the coordinate system goes along with.
+using MC_SetDynCoordTransform = BlockOfGroup<group::SetDynCoordTransform>;
+
 using MC_GroupHalt = BlockOfGroup<group::Halt>;
 using MC_GroupInterrupt = BlockOfGroup<group::Interrupt>;
 using MC_GroupContinue = BlockOfGroup<group::Continue>;
@@ -72,6 +75,20 @@ class MC_MovePathSynchronized : public BlockOfGroup<group::MovePathSynchronized>
   bool InSync() const noexcept { return Active() && AxesGroup().outputs().synchronized; }
 };
 
+// The tool goes along with an object, from the first place where it may to the last one; moves in the object's
+// coordinate system run on top. Done when the object has left.
+template <typename C>
+class TrackingBlock : public BlockOfGroup<C> {
+ public:
+  using BlockOfGroup<C>::BlockOfGroup;
+  // The tool is in step with the object; its speed is that of the object only where no move runs on top.
+  bool InSync() const noexcept {
+    return this->EverReached() && this->AxesGroup().outputs().track_state == group::TrackState::kInSync;
+  }
+};
+using MC_TrackConveyorBelt = TrackingBlock<group::TrackConveyorBelt>;
+using MC_TrackRotaryTable = TrackingBlock<group::TrackRotaryTable>;
+
 class GroupReadBlock : public ReadBlockOf<GroupRef, group::Outputs> {
  public:
   using ReadBlockOf::ReadBlockOf;
@@ -93,6 +110,13 @@ class MC_GroupReadStatus : public GroupReadBlock {
   bool Accelerating() const noexcept { return shown().path_acceleration > 0; }
   bool Decelerating() const noexcept { return shown().path_acceleration < 0; }
   bool InPosition() const noexcept { return shown().in_position; }
+  // The tool goes along with what moves, gets into step with it or out of it; or its path follows a master.
+  bool SynchronizedMotion() const noexcept { return GroupMoving() && (Rides() || shown().synchronized); }
+  // A move is in control, also one on what moves; or the tool comes to rest.
+  bool DiscreteMotion() const noexcept { return GroupMoving() && (shown().command != 0 || !Rides()); }
+
+ private:
+  bool Rides() const noexcept { return shown().track_state >= group::TrackState::kSynchronizing; }
 };
 
 // Why the group is in GroupErrorStop. The block itself has no error; Error and ErrorID say that of the group, too.

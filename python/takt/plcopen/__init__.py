@@ -36,6 +36,7 @@ from takt.plcopen import (
     statement,
     superimposed,
     torque,
+    tracking,
 )
 from takt.plcopen.administration import *  # noqa: F403
 from takt.plcopen.base import FunctionBlock
@@ -52,9 +53,11 @@ from takt.plcopen.profiles import *  # noqa: F403
 from takt.plcopen.settings import *  # noqa: F403
 from takt.plcopen.superimposed import *  # noqa: F403
 from takt.plcopen.torque import *  # noqa: F403
+from takt.plcopen.tracking import *  # noqa: F403
+from takt.plcopen.tracking import SyncDistances, TrackOptions
 
 _MOVING = (moves, superimposed, profiles, jog, coupling, cam, homing, torque)
-_GROUPS = (administration, *_MOVING, settings, probe, cam_switch, group, group_moves)
+_GROUPS = (administration, *_MOVING, settings, probe, cam_switch, group, group_moves, tracking)
 
 BLOCKS: tuple[type[FunctionBlock], ...] = tuple(
     block
@@ -69,5 +72,5 @@ def compliance() -> str:
     return statement.page({block.__name__: block for block in BLOCKS})
 
 
-__all__ = ["BLOCKS", "FunctionBlock", "compliance"]
+__all__ = ["BLOCKS", "FunctionBlock", "SyncDistances", "TrackOptions", "compliance"]
 __all__ += [block.__name__ for block in BLOCKS]

@@ -29,6 +29,8 @@ PARAMETER = 5  # an input is out of its range
 NO_MEMBER = 1003  # there is no such member
 STATE = 3005  # not legal in this state
 AXES = tuple(f"a{place}" for place in range(1, 9))
+# The tool goes along with an object, or gets into step with it or out of it.
+RIDING = frozenset(_commands.TrackState) - {_commands.TrackState.NONE, _commands.TrackState.WAITING}
 
 
 def by_name(numbers: Numbers, system: _commands.CoordinateSystem) -> dict[str, float]:
@@ -140,7 +142,8 @@ class GT_GroupPower(GroupBlock, ExecuteBlock):  # noqa: N801
 
 class MC_GroupReadStatus(GroupBlock, ReadBlock):  # noqa: N801
     """The state of a group, one output for each; how the speed along its path changes; whether it stands and has
-    nothing to do."""
+    nothing to do. SynchronizedMotion: the tool goes along with what moves, gets into step with it or out of it; or its
+    path follows a master. DiscreteMotion: a move is in control, also one on what moves, or the tool comes to rest."""
 
     GroupMoving = Output(False)
     GroupHoming = Output(False)
@@ -152,12 +155,17 @@ class MC_GroupReadStatus(GroupBlock, ReadBlock):  # noqa: N801
     Accelerating = Output(False)
     Decelerating = Output(False)
     InPosition = Output(False)
+    SynchronizedMotion = Output(False)
+    DiscreteMotion = Output(False)
 
     def _read(self) -> None:
         group = self.AxesGroup
         speed, change = group.path_velocity, group.path_acceleration
         self._show(**{group.state.value: True}, InPosition=group.in_position)
         self._show(ConstantVelocity=speed > 0 and change == 0, Accelerating=change > 0, Decelerating=change < 0)
+        if group.state is _commands.GroupState.GROUP_MOVING:
+            rides = group.track_state in RIDING
+            self._show(SynchronizedMotion=rides or group.synchronized, DiscreteMotion=bool(group.command) or not rides)
 
 
 class MC_GroupReadError(GroupBlock, ReadBlock):  # noqa: N801

@@ -11,10 +11,11 @@ import yaml
 
 from takt.plcopen.base import FunctionBlock
 
-TABLES = ("plcopen_part1.yaml", "plcopen_part4.yaml", "gt775x.yaml")
+TABLES = ("plcopen_part1.yaml", "plcopen_part4.yaml", "gt775x.yaml", "conveyor_tracking.yaml")
 # What the standard's types are here. Enumerations are those of takt; references are what the block's text says.
 TYPES = {"BOOL": "bool", "REAL": "float", "TIME": "float, in s", "AXIS_REF": "Axis, or its name for a master"}
-TYPES |= {"AXES_GROUP_REF": "Group", "ARRAY": "sequence of float, or a mapping of names to float"}
+TYPES |= {"AXES_GROUP_REF": "Group", "LREAL": "float", "Yt_TrackOptions": "TrackOptions"}
+TYPES |= dict.fromkeys(("ARRAY", "VECTOR"), "sequence of float, or a mapping of names to float")
 TYPES |= dict.fromkeys(("INT", "UINT", "WORD", "DWORD"), "int")
 
 Blocks = Mapping[str, type[FunctionBlock]]
@@ -95,7 +96,7 @@ def page(blocks: Blocks) -> str:
 def _page(blocks: Blocks) -> Iterator[str]:
     known = tables()
     yield "# Function blocks: what there is of the standard\n"
-    yield "`takt.plcopen` against the lists of the standard and of the GT-775x modules in `spec/`."
+    yield "`takt.plcopen` against the lists in `spec/`: of the standard, of the GT-775x modules, of conveyor tracking."
     yield "**Bold**: basic, what a block of this name must have. The others are extended: what it may have."
     yield "Made by `tools/compliance.py`.\n"
     yield "| type | in Python |\n|---|---|"

@@ -1,4 +1,5 @@
-// A portal of two axes with an auxiliary one, and two axes besides, on an engine in virtual time.
+// A portal of two axes with an auxiliary one, and two axes besides that move a belt and a table, on an engine in
+// virtual time.
 #pragma once
 
 #include <stdexcept>
@@ -21,6 +22,11 @@ groups:
     axes: [a0, a1, a2]
     kinematics: {gantry: {axes: [x, y]}}
     path: {velocity: 300, acceleration: 3000, jerk: 60000}
+belts:
+  - {name: belt, axis: a3}
+  - {name: table, kind: turning, axis: a4}
+poses:
+  - {name: mover}
 paths:
   - name: square
     elements:

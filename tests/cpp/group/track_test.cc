@@ -237,5 +237,154 @@ TEST(Track, OnATableEitherWayRound) {
   }
 }
 
+// CV-41: the set points with the belt's share and without it.
+TEST(Track, PublishesWithAndWithoutTheBeltsShare) {
+  Rig rig = Gantry();
+  rig.Start({0, 0, 0});
+  const auto belts = Put(rig, {SlowBelt(100)});
+  TrackConveyorBelt m = Example();
+  m.end_distance = {};
+  rig.Give(m);
+  while (!rig.out().in_sync && rig.cycle.count < 5000) rig.Step();
+  MoveLinearAbsolute move{.x = 30, .y = 0, .z = 0, .velocity = 50};
+  move.coordinate_system = CoordinateSystem::kPcs;
+  const Ticket ticket = rig.Give(move);
+  double before = rig.out().object_x;
+  while (!rig.lives[ticket].ended()) {
+    rig.Step();
+    ASSERT_NEAR(rig.out().object_x, rig.out().x - kOrigin - Travel(rig, *belts), 1e-9);
+    ASSERT_LE(rig.out().object_x - before, 50 * 0.001 + 1e-9);  // the move's own speed
+    before = rig.out().object_x;
+  }
+  EXPECT_NEAR(rig.out().object_x, 30, 1e-9);
+  EXPECT_NEAR(rig.out().velocity, 100, 1e-6);
+}
+
+// In step with a belt that then speeds up harder than the group may.
+Sample HardestOf(AfterSync after, double& out_of_step) {
+  Rig rig = Gantry();
+  rig.params.path.acceleration = 500;
+  rig.params.tracking.after_sync = after;
+  rig.Start({0, 0, 0});
+  const auto pull = [](double t) {  // 100 mm/s, from 2 s on 2000 mm/s² for a tenth of a second
+    const double x = std::clamp(t - 2, 0.0, 0.1), rest = std::max(0.0, t - 2.1);
+    return KinematicState{100 * t + 1000 * x * x + 200 * rest, 100 + 2000 * x, x > 0 && rest == 0 ? 2000.0 : 0.0};
+  };
+  const auto belts = Put(rig, {BeltAt("belt", {kOrigin, 0, 0}, pull)});
+  TrackConveyorBelt m = Example();
+  m.end_distance = {};
+  rig.Give(m);
+  while (!rig.out().in_sync && rig.cycle.count < 1900) rig.Step();
+  EXPECT_TRUE(rig.out().in_sync);
+  Sample hardest = rig.trace.back();
+  out_of_step = 0;
+  for (int i = 0; i < 3000; ++i) {
+    rig.Step();
+    if (rig.out().acceleration > hardest.out.acceleration) hardest = rig.trace.back();
+    if (!rig.out().in_sync) out_of_step += rig.cycle.period_s;
+  }
+  EXPECT_TRUE(rig.out().in_sync);  // and back
+  EXPECT_NEAR(rig.out().x, kOrigin + Travel(rig, *belts), 1e-9);
+  ExpectSmooth(rig);
+  return hardest;
+}
+
+// CV-40: once in step the group's limits give way to the belt, or the tool falls out of step and comes back.
+TEST(Track, StaysInStepOrKeepsTheLimits) {
+  double out_of_step = 0;
+  const Sample stays = HardestOf(AfterSync::kStay, out_of_step);
+  EXPECT_GE(stays.out.acceleration, 2000 - 1);  // the belt steps harder than the axes can, who make up for it
+  EXPECT_LE(out_of_step, 0.02);                 // the axes' own jerk
+  const Sample limited = HardestOf(AfterSync::kLimited, out_of_step);
+  EXPECT_LE(limited.out.acceleration, 500 * (1 + 1e-9));
+  EXPECT_GT(out_of_step, 0.1);
+}
+
+// CV-40: in step from a distance on, for a time; the override may hold for getting there.
+TEST(Track, ToleranceAndOverride) {
+  const auto time_to_sync = [](double tolerance, double time_s, bool override_in_sync) {
+    Rig rig = Gantry();
+    rig.params.tracking = {AfterSync::kStay, tolerance, time_s, override_in_sync};
+    rig.Start({0, 0, 0});
+    const auto belts = Put(rig, {SlowBelt(100)});
+    rig.Give(SetOverride{.velocity_factor = 0.3});
+    TrackConveyorBelt m;
+    m.belt = Name::Of("belt");
+    m.recorded_position = 0.0;
+    m.start_distance = 80;
+    rig.Give(m);
+    while (Travel(rig, *belts) < 80) rig.Step();
+    const std::uint64_t begin = rig.cycle.count;
+    while (!rig.out().in_sync && rig.cycle.count < begin + 3000) rig.Step();
+    ExpectSmooth(rig);
+    return static_cast<double>(rig.cycle.count - begin) * rig.cycle.period_s;
+  };
+  const double exact = time_to_sync(0, 0, false);
+  EXPECT_LT(time_to_sync(5, 0, false), exact);
+  EXPECT_NEAR(time_to_sync(5, 0.05, false), time_to_sync(5, 0, false) + 0.05, 0.0021);
+  EXPECT_GT(time_to_sync(0, 0, true), 1.2 * exact);
+}
+
+// CV-10: delayed behind the motion in progress, queued behind all.
+TEST(Track, WaitsForMotionsAsItsModeSays) {
+  for (const auto mode : {ExecutionMode::kImmediately, ExecutionMode::kDelayed, ExecutionMode::kQueued}) {
+    Rig rig = Gantry();
+    rig.Start({0, 0, 0});
+    const auto belts = Put(rig, {SlowBelt(20)});
+    const Ticket first = rig.Give(MoveLinearAbsolute{.x = 100, .velocity = 100});
+    MoveLinearAbsolute back{.x = 0, .velocity = 100};
+    back.buffer_mode = BufferMode::kBuffered;
+    const Ticket second = rig.Give(back);
+    rig.Step();
+    TrackConveyorBelt m = Example();
+    m.recorded_position = {};
+    m.start_distance = 1;
+    m.execution_mode = mode;
+    const Ticket track = rig.Give(m);
+    while (!rig.lives[track].active && rig.cycle.count < 5000) rig.Step();
+    EXPECT_EQ(rig.lives[first].done, mode != ExecutionMode::kImmediately);
+    EXPECT_EQ(rig.lives[second].done, mode == ExecutionMode::kQueued);
+    while (!rig.out().in_sync && rig.cycle.count < 9000) rig.Step();
+    EXPECT_TRUE(rig.out().in_sync);
+    ExpectSmooth(rig);
+  }
+}
+
+// CV-14, CV-23: from the object of one belt to that of another, both tracked, by a move and without a stop.
+TEST(Track, FromBeltToBelt) {
+  Rig rig = Gantry();
+  rig.Start({0, 0, 0});
+  const auto belts =
+      Put(rig, {SlowBelt(100), BeltAt("other", {100, 80, 0, 0, 0, 180}, [](double t) { return Steady(t, 80); })});
+  TrackConveyorBelt m = Example();
+  m.end_distance = {};
+  const Ticket first = rig.Give(m);
+  while (!rig.out().in_sync && rig.cycle.count < 5000) rig.Step();
+  TrackConveyorBelt other;
+  other.belt = Name::Of("other");
+  other.pcs = 2;
+  other.start_distance = 5;
+  const Ticket second = rig.Give(other);
+  MoveLinearAbsolute onto{.x = 0, .y = 0, .z = 10};
+  onto.coordinate_system = CoordinateSystem::kPcs;
+  onto.pcs = 2;
+  onto.buffer_mode = BufferMode::kBuffered;
+  const Ticket move = rig.Give(onto);
+  double slowest = 1e9;
+  while (!rig.lives[move].ended() && rig.cycle.count < 9000) {
+    rig.Step();
+    slowest = std::min(slowest, rig.out().velocity);
+  }
+  EXPECT_TRUE(rig.lives[move].done);
+  EXPECT_TRUE(rig.lives[first].aborted);
+  rig.Run(0.1);
+  EXPECT_TRUE(rig.lives[second].active && !rig.lives[second].ended());
+  EXPECT_EQ(rig.out().track_state, TrackState::kInSync);
+  EXPECT_NEAR(rig.out().object_z, 10, 1e-9);
+  EXPECT_NEAR(rig.out().velocity, 80, 1e-6);
+  EXPECT_GT(slowest, 5);
+  ExpectSmooth(rig);
+}
+
 }  // namespace
 }  // namespace takt::group

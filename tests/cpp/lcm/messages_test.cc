@@ -57,6 +57,7 @@ TEST(Messages, AxisStateKeepsEveryNumber) {
   o.state = axis::PlcState::kErrorStop;
   o.limited_by = LimitedBy::kDistance;
   o.buffered_commands = 255;
+  o.true_position = 1.5;
   o.loop_closed = o.limit_positive = o.reference = true;
   const msgs::axis_state m = ThroughBytes(ToMessage(s, machine));
   EXPECT_EQ(m.cycle, 4'000'001);
@@ -68,6 +69,7 @@ TEST(Messages, AxisStateKeepsEveryNumber) {
   EXPECT_EQ(m.actual_position, 1.0 / 3);
   EXPECT_EQ(m.actual_velocity, -1e-300);
   EXPECT_EQ(m.following_error, 0.125);
+  EXPECT_EQ(m.true_position, 1.5);
   EXPECT_EQ(m.voltage_v, -9.75);
   EXPECT_EQ(m.torque_nm, 3.5);
   EXPECT_EQ(m.active_command, 9007199254740993);

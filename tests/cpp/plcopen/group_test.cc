@@ -1,4 +1,4 @@
-// Blocks for groups (GR-02, GR-20, GR-25), as those of Python.
+// Blocks for groups (GR-02, GR-20, GR-25, CV-10, CV-11), as those of Python.
 #include "takt/plcopen/group.h"
 
 #include <gtest/gtest.h>
@@ -197,6 +197,100 @@ TEST_F(GroupBlocks, AFaultAndItsReset) {
   Finish(reset);
   error();
   EXPECT_FALSE(error.Error());
+}
+
+class TrackingBlocks : public GroupBlocks {
+ protected:
+  void SetUp() override {
+    GroupBlocks::SetUp();
+    bench.PowerOn(bench.w);
+    drive.velocity = 100;
+    drive.Execute = true;
+    ASSERT_TRUE(bench.Until(drive, [&] { return drive.InVelocity(); }));
+    status.Enable = true;
+    track.belt = Name::Of("feed");
+  }
+
+  MC_MoveVelocity drive{bench.w};
+  MC_GroupReadStatus status{pair};
+  MC_TrackConveyorBelt track{pair};
+};
+
+// CV-10, CV-11: in step, with a move on top, until the object has left.
+TEST_F(TrackingBlocks, GoAlongWithABelt) {
+  track.start_distance = 10;
+  track.end_distance = 150;
+  track.Execute = true;
+  track();
+  EXPECT_TRUE(track.Busy() && track.Active() && !track.InSync());
+  bench.Step(20);
+  status();
+  EXPECT_TRUE(status.GroupStandby() && !status.SynchronizedMotion() && !status.DiscreteMotion());
+  ASSERT_TRUE(bench.Until(track, [&] { return track.InSync(); }));
+  EXPECT_EQ(now().track_state, group::TrackState::kInSync);
+  status();
+  EXPECT_TRUE(status.GroupMoving() && status.SynchronizedMotion() && !status.DiscreteMotion());
+  MC_MoveLinearAbsolute across(pair);
+  across.y = 10;
+  across.coordinate_system = group::CoordinateSystem::kPcs;
+  across.Execute = true;
+  ASSERT_TRUE(bench.Until(across, [&] { return across.Active(); }));
+  bench.Step(20);
+  status();
+  EXPECT_TRUE(status.SynchronizedMotion() && status.DiscreteMotion());
+  ASSERT_TRUE(bench.Until(across, [&] { return across.Done(); }));
+  EXPECT_NEAR(now().object_y, 10, 1e-9);
+  ASSERT_TRUE(bench.Until(track, [&] { return track.Done(); }));
+  EXPECT_FALSE(track.InSync() || track.Busy());
+  track.Execute = false;
+  track();
+  EXPECT_FALSE(track.Done());
+}
+
+// CV-10, CV-11: behind a move; a group that only moves. CV-13: the same numbers as in Python.
+TEST_F(TrackingBlocks, WaitForMoves) {
+  MC_MoveLinearAbsolute move(pair);
+  move.y = 20;
+  move.Execute = true;
+  ASSERT_TRUE(bench.Until(move, [&] { return move.Active() && now().path_velocity > 10; }));
+  track.execution_mode = group::ExecutionMode::kQueued;
+  track.Execute = true;
+  while (!move.Done()) {
+    track();
+    status();
+    ASSERT_TRUE(track.Busy() && !track.Active());
+    ASSERT_TRUE(status.DiscreteMotion() && !status.SynchronizedMotion());
+    bench.Step();
+    move();
+  }
+  ASSERT_TRUE(bench.Until(track, [&] { return track.InSync(); }));
+  MC_GroupStop stop(pair);
+  Finish(stop);
+  track();
+  EXPECT_TRUE(track.CommandAborted());
+  track.Execute = false;
+  track();
+  track.end_distance = -1;
+  track.Execute = true;
+  ASSERT_TRUE(bench.Until(track, [&] { return track.Error(); }));
+  EXPECT_EQ(track.ErrorID(), ErrorId::kTrackOrder);
+}
+
+// CV-03: a coordinate system that goes along.
+TEST_F(TrackingBlocks, ShowCoordinateSystemsThatMove) {
+  MC_SetDynCoordTransform set(pair);
+  set.carrier = Name::Of("feed");
+  set.pcs = 4;
+  set.y = 7;
+  Finish(set);
+  MC_ReadCartesianTransform read(pair);
+  read.Pcs = 4;
+  read.Enable = true;
+  read();
+  const double before = read.TransX();
+  bench.Step(100);
+  read();
+  EXPECT_NEAR(read.TransX() - before, 10, 1e-9);
 }
 
 TEST_F(GroupBlocks, AnOverrideHoldsTheGroup) {

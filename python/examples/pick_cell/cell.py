@@ -1,0 +1,224 @@
+"""What is true in the pick cell, whatever anybody measures or commands: where products, trays and tool really are.
+
+Belts are moved by their simulated servos, and slip. Products lie on the infeed at random places that the seed alone
+decides; some slide after the camera has seen them. The camera notices a product at once when it passes, and says late
+and not quite exactly where it lies. The gripper takes its time; it holds a product that is near enough just then.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from itertools import count
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import takt
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Settings:
+    seed: int = 8
+    nearest: float = 90.0  # mm between two products at least
+    more: float = 50.0  # mm, the mean of what there is beside
+    across: float = 40.0  # mm to either side of the middle of the belt
+    pitch: float = 100.0  # mm between two trays
+    slip: float = 0.0001  # share of what the drive travels that the belt does not
+    noise: float = 0.03  # mm, standard deviation of what the camera says of X and of Y
+    picture_s: float = 0.05  # s from the camera's latch to the pose
+    slides: float = 0.03  # share of the products that slide ...
+    slides_by: float = 8.0  # ... by so many mm ...
+    slides_at: float = 150.0  # ... when they are so many mm behind the camera
+    gripper_s: float = 0.03  # s to close, and to open
+    holds_within: float = 2.0  # mm from the middle of a product at which the gripper still holds it
+
+
+@dataclass(frozen=True)
+class Thing:
+    """A product or a tray: where it lies on its belt."""
+
+    number: int  # from 1, in the order in which they pass the sensor
+    at: float  # mm of the belt's travel at which it passes the sensor
+    y: float = 0.0  # mm beside the middle of the belt
+    slides: tuple[float, float] = (0.0, 0.0)  # mm, along and across, after the camera has seen it
+
+
+def products(settings: Settings) -> Iterator[Thing]:
+    """All that will ever come."""
+    chance = random.Random(settings.seed)
+    at = 100.0
+    for number in count(1):
+        at += settings.nearest + chance.expovariate(1 / settings.more)
+        y = chance.uniform(-settings.across, settings.across)
+        turn, slides = chance.uniform(0, 2 * math.pi), chance.random() < settings.slides
+        by = settings.slides_by if slides else 0.0
+        yield Thing(number, at, y, (by * math.cos(turn), by * math.sin(turn)))
+
+
+def trays(settings: Settings) -> Iterator[Thing]:
+    for number in count(1):
+        yield Thing(number, number * settings.pitch)
+
+
+def place(thing: Thing, travel: Array | float, settings: Settings) -> tuple[Array, Array]:
+    """X and Y of a thing from the origin of its belt when its drive has really travelled so far, mm."""
+    x = np.asarray((1 - settings.slip) * np.asarray(travel) - thing.at)
+    slid = x > settings.slides_at
+    return x + slid * thing.slides[0], thing.y + slid * thing.slides[1]
+
+
+def in_world(origin: dict[str, float], x: Array | float, y: Array | float) -> Array:
+    """(2, ...): X and Y of a place on a level belt."""
+    turn = math.radians(origin.get("c", 0.0))
+    return np.array(
+        [
+            origin["x"] + math.cos(turn) * np.asarray(x) - math.sin(turn) * np.asarray(y),
+            origin["y"] + math.sin(turn) * np.asarray(x) + math.cos(turn) * np.asarray(y),
+        ]
+    )
+
+
+@dataclass
+class Seen:
+    """What the control knows of a thing on a belt."""
+
+    number: int  # the belt's own
+    recorded: float  # mm, position of the belt's axis at which it was
+    x: float  # mm, there
+    y: float
+
+
+class Conveyor:
+    """A belt of the cell with all that lies on it, and the sensor over its origin. `late`: a camera that gives poses
+    so many s later; none: a photo sensor, which knows that things lie in the middle."""
+
+    def __init__(self, session: takt.Session, name: str, things: Iterator[Thing], settings: Settings, late: float):
+        self.session = session
+        self.belt = session.belt(name)
+        self.settings = settings
+        self.late = late
+        self.origin: dict[str, float] = self.belt.parameters["origin"]
+        self.seen: dict[int, Seen] = {}  # by number, with a pose
+        self.here: dict[int, Thing] = {}  # what has passed the sensor and lies there still
+        self._things = things
+        self._next = next(things)
+        self._noise = random.Random(settings.seed + 1)
+        self._before = self._measured()
+        self._start = self._before[0]
+        self._pictures: list[tuple[float, Seen, takt.Feedback]] = []
+
+    @property
+    def travel(self) -> float:
+        """mm that its drive has really travelled."""
+        return self.belt.axis.true_position - self._start
+
+    def truth(self, thing: Thing) -> Array:
+        """X and Y in the world."""
+        return in_world(self.origin, *place(thing, self.travel, self.settings))
+
+    def _measured(self) -> tuple[float, float]:
+        axis = self.belt.axis
+        return axis.true_position, axis.actual_position
+
+    def step(self) -> None:
+        """The sensor latches what has passed it since the last look, the camera gives poses that are due."""
+        (true_0, actual_0), (true_1, actual_1) = self._before, self._measured()
+        self._before = true_1, actual_1
+        while float(place(self._next, true_1 - self._start, self.settings)[0]) >= 0:
+            passed_at = self._start + self._next.at / (1 - self.settings.slip)
+            share = (passed_at - true_0) / (true_1 - true_0) if true_1 > true_0 else 1.0
+            self._latch(self._next, actual_0 + min(max(share, 0.0), 1.0) * (actual_1 - actual_0))
+            self._next = next(self._things)
+        while self._pictures and self._pictures[0][0] <= self.session.now and self._pictures[0][2].final:
+            _, seen, latched = self._pictures.pop(0)
+            if latched.done:
+                seen.number = int(latched.value)
+                if self.late > 0:
+                    self.belt.locate(number=seen.number, x=seen.x, y=seen.y)
+                self.seen[seen.number] = seen
+
+    def _latch(self, thing: Thing, recorded: float) -> None:
+        noise = self.settings.noise if self.late > 0 else 0.0
+        seen = Seen(0, recorded, self._noise.gauss(0, noise), thing.y + self._noise.gauss(0, noise))
+        pose = {} if self.late > 0 else {"x": 0.0}
+        latched = self.belt.detect(recorded_position=recorded, **pose)
+        self.here[thing.number] = thing
+        self._pictures.append((self.session.now + self.late, seen, latched))
+
+
+@dataclass
+class Gripper:
+    """It closes and opens a time after it is told so; what it then holds hangs as it was gripped."""
+
+    cell: Cell
+    closed: bool = False
+    holds: Thing | None = None
+    _due: list[tuple[float, bool]] = field(default_factory=list)
+
+    def close(self) -> None:
+        self._due.append((self.cell.session.now + self.cell.settings.gripper_s, True))
+
+    def open(self) -> None:
+        self._due.append((self.cell.session.now + self.cell.settings.gripper_s, False))
+
+    def step(self) -> None:
+        while self._due and self._due[0][0] <= self.cell.session.now:
+            _, self.closed = self._due.pop(0)
+            self._grip() if self.closed else self._let_go()
+
+    def _grip(self) -> None:
+        conveyor, session = self.cell.infeed, self.cell.session
+        near = min(conveyor.here.values(), key=lambda thing: self.cell.apart(conveyor, thing), default=None)
+        if near is None or self.cell.apart(conveyor, near) > self.cell.settings.holds_within:
+            session.mark("holds nothing")
+            return
+        self.holds = conveyor.here.pop(near.number)
+        session.mark(f"holds product {near.number}")
+
+    def _let_go(self) -> None:
+        thing, self.holds = self.holds, None
+        if thing is None:
+            return
+        conveyor = self.cell.outfeed
+        tray = min(conveyor.here.values(), key=lambda tray: self.cell.apart(conveyor, tray))
+        self.cell.session.mark(f"puts product {thing.number} onto tray {tray.number}")
+
+
+class Cell:
+    """Both belts and the gripper, from now on in step with the session's engine."""
+
+    def __init__(self, session: takt.Session, settings: Settings) -> None:
+        self.session = session
+        self.settings = settings
+        self.robot = session.group("robot")
+        self.infeed = Conveyor(session, "infeed", products(settings), settings, settings.picture_s)
+        self.outfeed = Conveyor(session, "outfeed", trays(settings), settings, 0.0)
+        self.gripper = Gripper(self)
+        self._later: list[tuple[Callable[[], object], Callable[[], Any]]] = []
+        session.program(self._step)
+
+    def when(self, condition: Callable[[], object], what: Callable[[], Any]) -> None:
+        """Has something done once, as soon as the condition holds: a command, a change."""
+        self._later.append((condition, what))
+
+    def at(self, seconds: float, what: Callable[[], Any]) -> None:
+        """The same when the session's time has come."""
+        self.when(lambda: self.session.now >= seconds, what)
+
+    def apart(self, conveyor: Conveyor, thing: Thing) -> float:
+        """mm from the tool to a thing."""
+        truth = (*conveyor.truth(thing), conveyor.origin["z"])
+        return float(math.dist(self.robot.actual_pose[:3], truth))
+
+    def _step(self) -> None:
+        for one in [one for one in self._later if one[0]()]:
+            self._later.remove(one)
+            one[1]()
+        self.infeed.step()
+        self.outfeed.step()
+        self.gripper.step()

@@ -1,0 +1,345 @@
+"""Conveyor tracking as engineers use it: a portal over two belts, and one with a turning tool over a table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import takt
+from blocks import call, shown, until
+from machines import new_url, running
+from takt import expect
+from takt import plcopen as plc
+
+PCS = takt.CoordinateSystem.PCS
+TRACK = takt.TrackState
+MACHINE = """\
+name: conveyors
+cycle: {period_s: 0.001}
+lcm: {axis_rate_hz: 1000}
+axes:
+  - {name: x, unit: mm, limits: {velocity: 1000, acceleration: 10000, jerk: 500000}}
+  - {name: y, unit: mm, limits: {velocity: 1000, acceleration: 10000, jerk: 500000}}
+  - {name: z, unit: mm, limits: {velocity: 1000, acceleration: 10000, jerk: 500000}}
+  - {name: c, unit: deg, limits: {velocity: 720, acceleration: 7200, jerk: 360000}}
+  - name: drive
+    unit: mm
+    limits: {velocity: 500, acceleration: 2000, jerk: 100000}
+    encoder: {type: absolute_ssi, ssi_bits: 25, increments_per_unit: 10000}
+  - {name: out, unit: mm, limits: {velocity: 500, acceleration: 2000, jerk: 100000}}
+  - {name: disc, unit: deg, kind: rotary, limits: {velocity: 90, acceleration: 360, jerk: 7200}}
+groups:
+  - name: gantry
+    axes: [x, y, z, c]
+    kinematics: {gantry: {axes: [x, y, z, c]}}
+    path: {velocity: 800, acceleration: 8000, jerk: 400000}
+belts:
+  - {name: infeed, axis: drive}
+  - {name: outfeed, axis: out, origin: {x: 50, y: 150, c: 90}} # along Y
+  - {name: table, kind: turning, axis: disc, origin: {y: 200}}
+simulation:
+  servos:
+    - axis: drive
+      mechanics: {start_position: 976}
+      encoder: {type: absolute, ssi_bits: 25, increments_per_unit: 10000}
+      switches: {touch_probe: {from: 977, to: 980}}
+"""
+GROUP_AXES = ("x", "y", "z", "c")
+STATUS = ("GroupMoving", "GroupStandby", "SynchronizedMotion", "DiscreteMotion")
+
+
+def ready(session: takt.Session) -> takt.Group:
+    """All axes on, the group enabled."""
+    gantry = session.group("gantry")
+    for name in ("drive", "out", "disc"):
+        session.axis(name).power().wait()
+    gantry.power().wait()
+    gantry.enable().wait()
+    return gantry
+
+
+@pytest.fixture
+def engine() -> Iterator[takt.Engine]:
+    with takt.Engine(MACHINE) as made:
+        ready(made)
+        yield made
+
+
+@pytest.fixture
+def gantry(engine: takt.Engine) -> takt.Group:
+    return engine.group("gantry")
+
+
+def moving(engine: takt.Engine, axis: str, velocity: float) -> takt.Axis:
+    """An axis at this speed."""
+    drive = engine.axis(axis)
+    drive.move_velocity(velocity=abs(velocity), direction="negative" if velocity < 0 else "positive").wait(
+        until="reached"
+    )
+    return drive
+
+
+def on_object(gantry: takt.Group) -> tuple[float, float, float]:
+    return gantry.object_x, gantry.object_y, gantry.object_z
+
+
+def keeps_limits(recording: takt.Recording) -> None:
+    for axis in GROUP_AXES:
+        assert expect.within_limits(recording, axis)
+        assert expect.continuous(recording, axis)
+
+
+def test_the_manuals_example(engine: takt.Engine, gantry: takt.Group) -> None:
+    """CV-02, CV-10 to CV-12, CV-15, CV-20: the manual's Example 1, number for number, latched by a touch probe."""
+    speed, begin, in_step = 2.0, 9.0, 12.0
+    belt, drive = engine.belt("infeed"), engine.axis("drive")
+    probe = plc.MC_TouchProbe(drive)
+    drive.move_velocity(velocity=speed)
+    until(engine, probe, lambda: probe.Done, Execute=True)
+    assert probe.RecordedPosition == pytest.approx(977, abs=0.01)
+    track = plc.MC_TrackConveyorBelt(gantry, ConveyorBelt=belt, RecordedPosition=probe.RecordedPosition)
+    track(ConveyorBeltOrigin=[-10.5], StartDistance=begin, EndDistance=20.0)
+    track(TrackOptions=plc.TrackOptions(SyncIn=plc.SyncDistances(ConveyorDistance=3.0, TCPDistance=1.5)))
+    status = plc.MC_GroupReadStatus(gantry, Enable=True)
+
+    def travel() -> float:
+        return belt.position - probe.RecordedPosition
+
+    track(Execute=True)
+    engine.step()
+    while travel() < begin:
+        track()
+        assert shown(status(), *STATUS) == ["GroupStandby"]
+        assert gantry.track_state is TRACK.WAITING
+        assert (track.Busy, track.Active, track.InSync, gantry.x) == (True, True, False, 0)
+        engine.step()
+    while travel() < in_step - 1e-9:
+        track()
+        assert shown(status(), *STATUS) == ["GroupMoving", "SynchronizedMotion"]
+        assert gantry.track_state is TRACK.SYNCHRONIZING
+        assert not track.InSync
+        assert gantry.velocity <= speed * (1 + 1e-9)  # never faster than the belt
+        engine.step()
+    assert travel() == pytest.approx(in_step, abs=speed * engine.period)
+    late = speed * engine.period  # it begins with the first cycle in which the belt has come so far
+    assert gantry.x == pytest.approx(1.5 + travel() - in_step, abs=late)
+    assert gantry.velocity == pytest.approx(speed, rel=1e-6)
+    until(engine, track, lambda: track.InSync)
+    assert travel() == pytest.approx(in_step, abs=4 * speed * engine.period)
+    on = gantry.object_x
+    assert on == pytest.approx(0, abs=late)
+    while travel() < 20:
+        assert track().InSync
+        assert gantry.track_state is TRACK.IN_SYNC
+        assert gantry.x == pytest.approx(-10.5 + travel() + on, abs=1e-9)
+        engine.step()
+    until(engine, track, lambda: track.Done)  # CV-14: the end distance
+    assert not track.InSync
+    assert (gantry.track_state, gantry.state) == (TRACK.NONE, takt.GroupState.GROUP_STANDBY)
+    assert not track(Execute=False).Done
+
+
+def test_refusals(engine: takt.Engine, gantry: takt.Group) -> None:
+    """CV-10, CV-13: each has its own number and text."""
+    track = plc.MC_TrackConveyorBelt(gantry, ConveyorBelt="infeed", StartDistance=9.0)
+    assert (track(Execute=True, EndDistance=8.0).Error, track.ErrorID) == (True, 3027)
+    options = plc.TrackOptions(SyncIn=plc.SyncDistances(3.0, 1.5))
+    track(Execute=False)
+    assert track(Execute=True, EndDistance=11.0, TrackOptions=options).ErrorID == 3028
+    track(Execute=False)
+    moving(engine, "drive", -20)
+    track(Execute=True, EndDistance=60.0)
+    until(engine, track, lambda: track.Error)
+    assert track.ErrorID == 3029
+    track(Execute=False)
+    table = plc.MC_TrackRotaryTable(gantry, RotaryTable="infeed")
+    assert table(Execute=True).ErrorID == 5
+    sentence = gantry.track_conveyor_belt(belt="infeed", start_distance=9, end_distance=8).sentence
+    assert sentence == "end_distance: expected at least 9 mm, start_distance"
+
+
+def test_waits_for_moves(engine: takt.Engine, gantry: takt.Group) -> None:
+    """CV-10: the execution mode."""
+    moving(engine, "drive", 50)
+    track = plc.MC_TrackConveyorBelt(gantry, ConveyorBelt="infeed", ExecutionMode=takt.ExecutionMode.QUEUED)
+    first = gantry.move_linear_absolute(x=20)
+    second = gantry.move_linear_absolute(x=40, y=5, buffer_mode="buffered")
+    track(Execute=True)
+    while not second.done:
+        track()
+        assert (track.Busy, track.Active) == (True, False)
+        engine.step()
+    assert first.done
+    until(engine, track, lambda: track.InSync)
+    assert track.Active
+
+
+def test_picks_and_places(engine: takt.Engine, gantry: takt.Group) -> None:
+    """CV-11, CV-14, CV-21, CV-23: from one belt to another without a stop; moves run on top."""
+    moving(engine, "drive", 150)
+    moving(engine, "out", 100)
+    infeed, outfeed = engine.belt("infeed"), engine.belt("outfeed")
+    status = plc.MC_GroupReadStatus(gantry, Enable=True)
+    with engine.record() as recorder:
+        track = plc.MC_TrackConveyorBelt(gantry, ConveyorBelt=infeed, InitialObjectPosition={"y": 20.0, "z": -60.0})
+        until(engine, track, lambda: track.InSync, Execute=True)
+        assert shown(status(), *STATUS) == ["GroupMoving", "SynchronizedMotion"]
+        down = plc.MC_MoveLinearAbsolute(gantry, Position=[0, 0, 0], CoordSystem=PCS)
+        until(engine, down, lambda: gantry.velocity > 200, Execute=True)
+        assert shown(status(), *STATUS) == ["GroupMoving", "SynchronizedMotion", "DiscreteMotion"]
+        until(engine, down, lambda: down.Done)
+        assert on_object(gantry) == pytest.approx((0, 0, 0), abs=1e-9)
+        assert track().InSync
+        place = {"x": 10.0, "z": -40.0}
+        onto = plc.MC_SetDynCoordTransform(gantry, MasterAxesGroup=outfeed, CoordTransform=place, Pcs=2)
+        until(engine, onto, lambda: onto.Done, Execute=True)
+        begin = outfeed.position
+        over = plc.MC_MoveLinearAbsolute(gantry, Position=[0, 0, 30], CoordSystem=PCS, Pcs=2)
+        over(Execute=True)
+        engine.step()
+        lower = plc.MC_MoveLinearAbsolute(gantry, Position=[0, 0, 0], CoordSystem=PCS, Pcs=2)
+        lower(BufferMode=takt.BufferMode.BUFFERED, Execute=True)
+        while not over.Done:
+            over(), lower(), track()
+            assert gantry.velocity > 50
+            engine.step()
+        assert track.CommandAborted
+        until(engine, lower, lambda: lower.Done)
+        engine.run(0.2)
+        assert on_object(gantry) == pytest.approx((0, 0, 0), abs=1e-9)
+        assert gantry.pose[:3] == pytest.approx((50, 150 + 10 + outfeed.position - begin, -40), abs=0.2)
+        assert gantry.velocity == pytest.approx(100, rel=1e-9)
+    keeps_limits(recorder.recording)
+
+
+def test_interrupted_and_continued(engine: takt.Engine, gantry: takt.Group) -> None:
+    """CV-14, CV-16, CV-40: it stands in the world, then catches up within limits."""
+    moving(engine, "drive", 120)
+    with engine.record() as recorder:
+        engine.step()
+        track = gantry.track_conveyor_belt(belt="infeed", y=10).wait(until="reached")
+        gantry.move_linear_absolute(x=0, y=0, coordinate_system="pcs").wait()
+        assert on_object(gantry)[:2] == pytest.approx((0, 0), abs=1e-9)
+        gantry.interrupt().wait()
+        here = gantry.pose
+        engine.run(0.3)
+        assert gantry.pose == here
+        assert gantry.interrupted
+        assert gantry.track_lag == pytest.approx(-gantry.object_x, abs=1e-9)
+        assert gantry.track_lag > 36
+        gantry.continue_path().wait()
+        engine.wait(lambda: gantry.in_sync, 2.0)
+        assert on_object(gantry)[:2] == pytest.approx((0, 0), abs=1e-9)
+        assert track.active
+    keeps_limits(recorder.recording)
+    assert recorder.recording["gantry"]["velocity"].max() <= 800 * (1 + 1e-6)
+
+
+def test_a_stop(engine: takt.Engine, gantry: takt.Group) -> None:
+    """CV-14."""
+    moving(engine, "drive", 120)
+    track = plc.MC_TrackConveyorBelt(gantry, ConveyorBelt="infeed")
+    until(engine, track, lambda: track.InSync, Execute=True)
+    stop = plc.MC_GroupStop(gantry)
+    until(engine, stop, lambda: stop.Done, Execute=True)
+    assert (track().CommandAborted, track.InSync) == (True, False)
+    here = gantry.pose
+    call(engine, stop, 0.1)
+    assert (gantry.pose, gantry.state) == (here, takt.GroupState.GROUP_STOPPING)
+    call(engine, stop, 0.01, Execute=False)
+    assert (gantry.state, gantry.track_state) == (takt.GroupState.GROUP_STANDBY, TRACK.NONE)
+
+
+def test_a_disabled_group(engine: takt.Engine, gantry: takt.Group) -> None:
+    """CV-14."""
+    moving(engine, "drive", 120)
+    track = plc.MC_TrackConveyorBelt(gantry, ConveyorBelt="infeed")
+    until(engine, track, lambda: track.InSync, Execute=True)
+    gantry.disable().wait()
+    assert track().CommandAborted
+
+
+def test_a_belt_that_reverses(engine: takt.Engine, gantry: takt.Group) -> None:
+    """CV-01, CV-14: followed backwards as far as where tracking began, then it is over for good."""
+    belt = engine.belt("infeed")
+    drive = moving(engine, "drive", 100)
+    begin = belt.position
+    track = gantry.track_conveyor_belt(belt="infeed", recorded_position=drive.set_position, start_distance=20)
+    track.wait(until="reached")
+    engine.run(0.5)
+    drive.move_velocity(velocity=100, direction="negative")
+    engine.run(0.3)
+    assert belt.velocity == pytest.approx(-100)
+    while belt.position - begin > 20.5:
+        assert gantry.in_sync
+        assert gantry.object_x == pytest.approx(0, abs=1e-9)
+        engine.step()
+    track.wait()
+    assert belt.position - begin == pytest.approx(20, abs=5)
+    drive.move_velocity(velocity=100)
+    engine.run(1.0)
+    assert belt.position - begin > 60
+    assert (gantry.track_state, gantry.state) == (TRACK.NONE, takt.GroupState.GROUP_STANDBY)
+
+
+@pytest.mark.parametrize("speed", [30.0, -30.0])
+def test_a_table(engine: takt.Engine, gantry: takt.Group, speed: float) -> None:
+    """CV-22: either way round; the tool turns along."""
+    gantry.move_linear_absolute(x=80, y=200).wait()
+    moving(engine, "disc", speed)
+    table = engine.belt("table")
+    track = plc.MC_TrackRotaryTable(gantry, RotaryTable=table, InitialObjectPosition=[80], StartAngle=10.0)
+    track(EndAngle=100.0, SyncInAngle=15.0, Execute=True)
+    begin = table.position
+    until(engine, track, lambda: track.InSync)
+    assert abs(table.position - begin) == pytest.approx(25, abs=1)
+    c = gantry.c - table.position
+    for _ in range(500):
+        track()
+        engine.step()
+        on = gantry.pcs1
+        assert gantry.pose[:2] == pytest.approx(on[:2], abs=1e-9)
+        assert math.hypot(gantry.x, gantry.y - 200) == pytest.approx(80, abs=1e-9)
+        assert gantry.c - table.position == pytest.approx(c, abs=1e-6)
+    until(engine, track, lambda: track.Done)
+    assert gantry.state is takt.GroupState.GROUP_STANDBY
+
+
+def test_an_object_of_a_camera(engine: takt.Engine, gantry: takt.Group) -> None:
+    """CV-02, CV-03: latched now, located later, tracked by where it lay then."""
+    moving(engine, "drive", 150)
+    belt, drive = engine.belt("infeed"), engine.axis("drive")
+    latch = drive.set_position
+    number = int(belt.detect().wait().value)
+    engine.run(0.2)
+    belt.locate(number=number, x=-30, y=15, c=20).wait()
+    gantry.track_conveyor_belt(belt="infeed", recorded_position=latch, x=-30, y=15, c=20, start_distance=50)
+    move = gantry.move_linear_absolute(x=0, y=0, z=-5, c=0, coordinate_system="pcs")
+    move.wait()
+    travel = drive.set_position - latch
+    assert gantry.pose == pytest.approx((travel - 30, 15, -5, 0, 0, 20), abs=1e-6)
+    assert belt.first_place == pytest.approx(travel - 30, abs=0.3)  # detected a cycle after the latch was read
+
+
+def test_a_run_is_reproduced(tmp_path: Path) -> None:
+    """EN-07, CV-11: every cycle, bit for bit; states of tracking are in the log."""
+    url, log = new_url(), tmp_path / "run.lcm"
+    with running(tmp_path, url, "--log", str(log), machine=MACHINE), takt.connect(url) as session:
+        gantry = ready(session)
+        session.axis("drive").move_velocity(velocity=150).wait(until="reached")
+        gantry.track_conveyor_belt(belt="infeed", y=5, end_distance=250, sync_in_conveyor_distance=20)
+        gantry.move_linear_absolute(x=0, y=0, z=-20, coordinate_system="pcs").wait()
+        gantry.interrupt().wait()
+        session.run(0.1)
+        gantry.continue_path().wait()
+        session.wait(lambda: gantry.state is takt.GroupState.GROUP_STANDBY, 10.0)
+        session.axis("disc").move_velocity(velocity=30).wait(until="reached")
+        gantry.track_rotary_table(table="table", x=100, end_angle=20).wait(until="reached")
+        gantry.stop().wait()
+    result = takt.replay(log)
+    assert result.same, result.sentence
+    states = takt.read_log(log)["gantry"]["track_state"]
+    assert set(np.unique(states)) == {0, 2, 3, 4}
