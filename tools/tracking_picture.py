@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from takt import plot, style
+from takt.recording import FloatArray
 
 PICTURE = Path(__file__).resolve().parent.parent / "docs" / "images" / "tracking.png"
 SPEED = 2.0  # mm/s
@@ -59,7 +60,7 @@ def run() -> tuple[takt.Recording, float]:
         return recorder.recording, seen
 
 
-def states(ax: Axes, travel: plot.FloatArray, values: plot.FloatArray, names: dict[int, str]) -> None:
+def states(ax: Axes, travel: FloatArray, values: FloatArray, names: dict[int, str]) -> None:
     """What the group calls it, as coloured ground."""
     for first, last, value in plot.stretches(travel, values):
         if name := names[value].replace("_", " ") if value else "":
@@ -108,7 +109,7 @@ def draw() -> Figure:
     speed.set_xlabel("travel of the belt since the object was seen [mm]", color=plot.INK, size=10.5)
     speed.set_xlim(travel[0], travel[-1])
     for ax in (place, speed):
-        ax.legend(loc="upper left", frameon=False, fontsize=10, labelcolor=plot.INK)
+        ax.legend(loc="center left", frameon=False, fontsize=10, labelcolor=plot.INK)
     return figure
 
 

@@ -253,7 +253,9 @@ Tracked TrackedBy(const TrackRotaryTable& c) {
 }
 
 template <typename T>
-  requires requires(const T& c) { TrackedBy(c); }
+requires requires(const T& c) {
+  TrackedBy(c);
+}
 std::string WhyNotThis(const T& c) {
   const Tracked t = TrackedBy(c);
   if (t.error() == ErrorId::kNone) return {};

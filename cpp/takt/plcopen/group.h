@@ -54,7 +54,6 @@ using MC_MoveDirectRelative = BlockOfGroup<group::MoveDirectRelative>;
 // With the path that MC_PathSelect names; here the name is its input.
 using MC_MovePath = BlockOfGroup<group::MovePath>;
 
-
 // Brakes to standstill on the path. The group stays in GroupStopping as long as Execute is true.
 class MC_GroupStop : public BlockOfGroup<group::Stop> {
  public:

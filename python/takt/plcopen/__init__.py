@@ -54,6 +54,7 @@ from takt.plcopen.settings import *  # noqa: F403
 from takt.plcopen.superimposed import *  # noqa: F403
 from takt.plcopen.torque import *  # noqa: F403
 from takt.plcopen.tracking import *  # noqa: F403
+from takt.plcopen.tracking import SyncDistances, TrackOptions
 
 _MOVING = (moves, superimposed, profiles, jog, coupling, cam, homing, torque)
 _GROUPS = (administration, *_MOVING, settings, probe, cam_switch, group, group_moves, tracking)

@@ -96,7 +96,7 @@ def page(blocks: Blocks) -> str:
 def _page(blocks: Blocks) -> Iterator[str]:
     known = tables()
     yield "# Function blocks: what there is of the standard\n"
-    yield "`takt.plcopen` against the lists of the standard, of the GT-775x modules and of conveyor tracking in `spec/`."
+    yield "`takt.plcopen` against the lists in `spec/`: of the standard, of the GT-775x modules, of conveyor tracking."
     yield "**Bold**: basic, what a block of this name must have. The others are extended: what it may have."
     yield "Made by `tools/compliance.py`.\n"
     yield "| type | in Python |\n|---|---|"

@@ -1,5 +1,5 @@
-// A portal of two axes with an auxiliary one, and two axes besides that move a belt and a table, on an engine in virtual
-// time.
+// A portal of two axes with an auxiliary one, and two axes besides that move a belt and a table, on an engine in
+// virtual time.
 #pragma once
 
 #include <stdexcept>

@@ -4,7 +4,7 @@
 namespace takt::pickplace {
 namespace {
 
-using M = ModuleState;
+using M = PickPlaceState;
 
 constexpr double kOnWorkpiece = 1e-6;  // mm
 
