@@ -1,8 +1,12 @@
-// CV-30, belt side: what belts full of objects cost a cycle, stepped and published.
+// CV-30: what belts full of objects cost a cycle, stepped and published, and with them a Delta in step with one.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <vector>
 
+#include "cpp/group/machines.h"
 #include "takt/conveyor/belt.h"
 
 namespace takt::conveyor {
@@ -38,6 +42,83 @@ void Belts(benchmark::State& bench, BeltKind kind, axis::MasterSource source) {
 BENCHMARK_CAPTURE(Belts, set_value, BeltKind::kStraight, axis::MasterSource::kSetValue)->Arg(1)->Arg(16);
 BENCHMARK_CAPTURE(Belts, actual_value, BeltKind::kStraight, axis::MasterSource::kActualValue)->Arg(1)->Arg(16);
 BENCHMARK_CAPTURE(Belts, tables, BeltKind::kTurning, axis::MasterSource::kActualValue)->Arg(1)->Arg(16);
+
+// Belts that go to and fro, and a Delta that stays on an object of the first one.
+class InStep {
+ public:
+  explicit InStep(std::size_t count) : belts_(count) {
+    params_.name = params_.axis = "belt";
+    params_.origin = {0, 0, -880, 0, 0, 0};
+    drive_.loop_closed = true;
+    for (State& belt : belts_) {
+      for (std::size_t i = 0; i < kObjects; ++i) Apply(Now(), 0, Detect{.x = 10.0 * static_cast<double>(i)}, belt);
+    }
+    rig_.carriers = {
+        [](void*, std::string_view name) noexcept -> std::uint32_t { return name == "belt" ? 1 : 0; },
+        [](void* owner, std::uint32_t) noexcept {
+          const auto* self = static_cast<InStep*>(owner);
+          return CarrierOf(self->params_, self->belts_[0].travel);
+        },
+        nullptr, this};
+    rig_.StartAt({0, 0, -850, 0, 0, 0});
+    rig_.Give(group::SetDynCoordTransform{.pcs = 1, .carrier = Name::Of("belt")});
+    rig_.Give(group::MoveLinearAbsolute{.coordinate_system = group::CoordinateSystem::kPcs, .x = 0, .y = 0, .z = 10});
+    for (int i = 0; i < 1000; ++i) Cycle();
+  }
+  InStep(const InStep&) = delete;
+
+  // ns of belts and group.
+  double Cycle() {
+    using Clock = std::chrono::steady_clock;
+    constexpr double kReach = 100, kPace = 4;  // mm, rad/s
+    double time = 0;
+    rig_.trace.clear();
+    rig_.Step([&](const auto& group) {
+      const double angle = kPace * static_cast<double>(rig_.cycle.count) * rig_.cycle.period_s;
+      drive_.setpoint = {kReach * std::sin(angle), kReach * kPace * std::cos(angle),
+                         -kReach * kPace * kPace * std::sin(angle)};
+      const auto from = Clock::now();
+      for (State& belt : belts_) conveyor::Step(Now(), belt);
+      group();
+      for (const State& belt : belts_) {
+        Publish(Now(), belt, out_);
+        benchmark::DoNotOptimize(out_);
+      }
+      group::Publish(rig_.Now(), rig_.state, group_out_);
+      benchmark::DoNotOptimize(group_out_);
+      time = std::chrono::duration<double, std::nano>(Clock::now() - from).count();
+    });
+    return time;
+  }
+  bool rides() const { return group_out_.in_sync && std::abs(group_out_.x - belts_[0].travel.position) < 1e-6; }
+
+ private:
+  Context Now() { return {params_, drive_, drive_params_, rig_.cycle, feedback_}; }
+
+  BeltParams params_;
+  axis::State drive_;
+  axis::AxisParams drive_params_;
+  std::vector<FeedbackEvent> storage_ = std::vector<FeedbackEvent>(1024);
+  FeedbackSink feedback_{storage_};
+  std::vector<State> belts_;
+  group::Rig rig_ = group::DeltaRobot();
+  Outputs out_;
+  group::Outputs group_out_;
+};
+
+void BeltsAndDelta(benchmark::State& bench) {
+  InStep cell(static_cast<std::size_t>(bench.range(0)));
+  std::vector<double> times;
+  for (auto _ : bench) {
+    times.push_back(cell.Cycle());
+    bench.SetIterationTime(times.back() * 1e-9);
+  }
+  std::ranges::sort(times);
+  bench.counters["p98_ns"] = times[times.size() * 98 / 100];
+  bench.counters["largest_ns"] = times.back();
+  if (!cell.rides()) bench.SkipWithError("the tool is not on its object");
+}
+BENCHMARK(BeltsAndDelta)->Arg(1)->Arg(16)->UseManualTime();
 
 }  // namespace
 }  // namespace takt::conveyor

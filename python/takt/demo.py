@@ -26,6 +26,9 @@ from takt.scenario import Outcome, Scenario, verify_recording
 
 Say = Callable[[str], None]
 
+STILL_S = 0.5  # without anything new in the log: lcm-logger has written all
+LAGGING_S = 30.0  # that it may take for that
+
 
 @dataclass(frozen=True)
 class DemoResult:
@@ -63,6 +66,7 @@ def run_demo(scenario: Scenario, machine: Path, directory: Path, say: Say = prin
         engine.send_signal(signal.SIGINT)
         if engine.wait(20):
             raise TaktError(f"taktd ended with {engine.returncode}: see {directory / 'taktd.txt'}")
+        _written(log)
     recording = read_log(log)
     say(f"{log.name} read back: {len(recording.components)} components, {recording.duration_s:.1f} s")
     marks = [event for event in notes.recording.events if event.kind == "mark"]
@@ -125,6 +129,16 @@ def _logger(url: str, log: Path) -> Iterator[None]:
     with _ended(subprocess.Popen([program, f"--lcm-url={url}", "--quiet", log], stdout=subprocess.DEVNULL)):
         time.sleep(0.3)  # until it listens
         yield
+
+
+def _written(log: Path) -> None:
+    """Until lcm-logger is through with what it has heard: on a busy machine it is seconds behind, and what it has not
+    written when it is ended is lost."""
+    size, since, end = -1, time.monotonic(), time.monotonic() + LAGGING_S
+    while time.monotonic() < min(since + STILL_S, end):
+        time.sleep(0.05)
+        if log.stat().st_size != size:
+            size, since = log.stat().st_size, time.monotonic()
 
 
 @contextlib.contextmanager

@@ -61,3 +61,13 @@ def test_belts_full_of_objects(tmp_path: Path) -> None:
     """CV-30."""
     found = rows("bench_conveyor", ".", tmp_path)
     assert {f"Belts/{kind}/16" for kind in ("set_value", "actual_value", "tables")} <= found.keys()
+    assert 0 < found["BeltsAndDelta/16/manual_time"]["p98_ns"] <= found["BeltsAndDelta/16/manual_time"]["largest_ns"]
+
+
+def test_a_pick_and_place_module_between_two_full_belts(tmp_path: Path) -> None:
+    """PP-50: module, belts and group; beside the group alone on the same way."""
+    found = rows("bench_pickplace", ".", tmp_path)
+    whole, alone = (found[f"PickAndPlaceCycle/{name}/iterations:20000/manual_time"] for name in ("takt", "group_alone"))
+    assert whole["picked"] >= 5
+    for row in (whole, alone):
+        assert 0 < row["p98_ns"] <= row["p99.9_ns"] <= row["largest_ns"]

@@ -22,6 +22,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from numpy.polynomial import Chebyshev
+from numpy.polynomial import Polynomial as Power
 from path_optimum import Array, Coordinate, Optimum, Problem, optimum
 from path_problems import summary
 from takt.kinematics import Kinematics
@@ -93,6 +94,57 @@ def pick(start: Sequence[float], way: float, height: float, radius: float) -> li
     ]
 
 
+def corner(start: Sequence[float], apex: Sequence[float], end: Sequence[float]) -> Piece:
+    """Instead of the corner at `apex`, as far from `start` as from `end`: the blend of cpp/takt/path/blend.h."""
+    begin, finish = np.asarray(start, float), np.asarray(end, float)
+    first, second = np.subtract(apex, begin), np.subtract(finish, apex)
+    distance = float(np.linalg.norm(first))
+    q = math.sqrt((1 + float(first @ second) / distance**2) / 2)
+    share = q / (0.2067 + q * (0.393 - 0.0345 * q))  # of the tangents at both ends over the distance
+    u = Power([0, 1])
+    # Hermite's polynomials of the fifth degree, without curvature at the ends.
+    place = 10 * u**3 - 15 * u**4 + 6 * u**5
+    leave = u - 6 * u**3 + 8 * u**4 - 3 * u**5
+    join = -4 * u**3 + 7 * u**4 - 3 * u**5
+    axes = [
+        a + (b - a) * place + share * (c * leave + d * join)
+        for a, b, c, d in zip(begin, finish, first, second, strict=True)
+    ]
+
+    def rows(order: int, x: Array) -> Array:
+        return np.column_stack([axis.deriv(order)(x) if order else axis(x) for axis in axes])
+
+    speed = Chebyshev.interpolate(lambda x: np.linalg.norm(rows(1, x), axis=1), 60, domain=[0, 1])
+    way = speed.integ(lbnd=0)
+    length = float(way(1.0))
+
+    def at(s: Array) -> tuple[Array, Array, Array]:
+        x = s / length
+        for _ in range(20):
+            x = x - (way(x) - s) / speed(x)
+        velocity, acceleration = rows(1, x), rows(2, x)
+        pace = np.linalg.norm(velocity, axis=1)[:, None]
+        tangent = velocity / pace
+        along = (acceleration * tangent).sum(axis=1)[:, None]
+        return rows(0, x), tangent, (acceleration - along * tangent) / pace**2
+
+    return length, at
+
+
+def blended_pick(start: Sequence[float], way: float, height: float, distance: float) -> list[Piece]:
+    """The same with blends that begin and end at a distance from the corners."""
+    x, y, z = start
+    top, low, near, far = z + height, z + height - distance, y + distance, y + way - distance
+    ends = (x, y, z), (x, y, low), (x, near, top), (x, far, top), (x, y + way, low), (x, y + way, z)
+    return [
+        line(ends[0], ends[1]),
+        corner(ends[1], (x, y, top), ends[2]),
+        line(ends[2], ends[3]),
+        corner(ends[3], (x, y + way, top), ends[4]),
+        line(ends[4], ends[5]),
+    ]
+
+
 # --- Through the joints -------------------------------------------------------------------------------------------
 
 
@@ -129,6 +181,11 @@ MECHANISMS: dict[str, tuple[dict[str, Any], Limits]] = {
         {"delta": {"base_radius": 200, "platform_radius": 45, "upper_arm": 235, "lower_arm": 800}},
         ((400, 5000, 2.5e5),) * 3,
     ),
+    # As strong as tests/cpp/group/machines.h has it: of the class that moves 0.1 kg.
+    "strong delta": (
+        {"delta": {"base_radius": 200, "platform_radius": 45, "upper_arm": 235, "lower_arm": 800}},
+        ((800, 20000, 1e6),) * 3,
+    ),
     "scara": (
         {"scara": {"first_arm": 325, "second_arm": 275, "height": 387}},
         ((450, 4000, 1e5), (720, 8000, 3e5), (1100, 15000, 6e5), (2400, 30000, 1e6)),
@@ -139,11 +196,13 @@ MECHANISMS: dict[str, tuple[dict[str, Any], Limits]] = {
 def paths() -> dict[str, tuple[str, tuple[float, float, float, float], list[Piece]]]:
     """Mechanism, path limits (speed, acceleration, deceleration, jerk) and pieces."""
     delta, scara = (4000.0, 4e4, 4e4, 2e6), (3000.0, 2e4, 2e4, 8e5)
+    strong = (4000.0, 6e4, 6e4, 3e6)
     turn = 2 * math.pi
     return {
         "delta line": ("delta", delta, [line((-150, 60, -760), (150, 60, -760))]),
         "delta pick": ("delta", delta, pick((50, -152.5, -800), 305, 25, 20)),
         "delta circle": ("delta", delta, [arc((40, 0, -780), (120, 0, -780), (0, 1, 0), turn)]),
+        "delta standard cycle": ("strong delta", strong, blended_pick((0, -152.5, -850), 305, 25, 12.5)),
         "scara line": ("scara", scara, [line((260, -150, 300), (260, 150, 300))]),
         "scara pick": ("scara", scara, pick((380, -152.5, 250), 305, 25, 20)),
         "scara circle": ("scara", scara, [arc((380, 100, 300), (460, 100, 300), (0, 1, 0), turn)]),

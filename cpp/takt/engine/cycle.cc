@@ -131,6 +131,7 @@ void SeeCarriers(const World& w, std::size_t group, Nth& nth) {
     if (cargo.carrier != last) SeeCarrier(w, cargo.carrier, nth);
     last = cargo.carrier;
   };
+  for (const std::uint32_t carrier : s.ridden) SeeCarrier(w, carrier, nth);
   std::ranges::for_each(s.cargoes, see);
   see(s.track.cargo);
   for (std::uint32_t i = 0; i < s.queue.count && !nth.found; ++i) {

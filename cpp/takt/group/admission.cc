@@ -2,6 +2,7 @@
 #include "takt/core/describe.h"
 #include "takt/core/in_range.h"
 #include "takt/group/ask.h"
+#include "takt/group/clutch.h"
 #include "takt/group/group.h"
 #include "takt/group/make_request.h"
 #include "takt/group/members.h"
@@ -102,7 +103,7 @@ struct Applier {
     if (Is(GroupState::kStandby)) Enter(GroupState::kMoving, s);
   }
   void operator()(const Interrupt& m) const {
-    if (!Is(GroupState::kMoving) || s.ends) return Refuse(ErrorId::kState);
+    if (!Is(GroupState::kMoving) || s.ends || RidesFreely(c, s)) return Refuse(ErrorId::kState);
     AbortTask();
     s.interrupted = s.lets_go = true;
     for (Clutch& clutch : s.clutches) clutch.law_length = 0;
@@ -158,6 +159,7 @@ struct Applier {
     ForgetPlan(c, s);
     s.begun = s.ends = s.hold = s.lets_go = false;
     s.clutches = {};
+    s.ridden = {};
     s.pace = {};
   }
   void operator()(const Disable&) const {

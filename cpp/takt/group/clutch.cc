@@ -118,10 +118,18 @@ void StepClutches(const Context& c, const Stretch& stretch, State& s) noexcept {
   for (Clutch& clutch : s.clutches) {
     if (clutch.used && clutch.ride != stretch.from_ride && clutch.ride != stretch.to_ride) clutch = {};
   }
+  s.ridden = {};
   if (stretch.joints) return;
+  s.ridden = {RideAt(c, stretch.from_ride).cargo.carrier, RideAt(c, stretch.to_ride).cargo.carrier};
   const double way = std::clamp(stretch.from + s.pace.now.position - stretch.begin, stretch.from, stretch.to);
   StepOne(c, stretch, way, stretch.from_ride, s);
   if (stretch.to_ride != stretch.from_ride) StepOne(c, stretch, way, stretch.to_ride, s);
+}
+
+bool RidesFreely(const Context& c, const State& s) noexcept {
+  return std::ranges::any_of(s.ridden, [&](std::uint32_t carrier) {
+    return carrier != 0 && c.carriers.At(carrier).kind == kinematics::CarrierKind::kFree;
+  });
 }
 
 bool Slips(const State& s) noexcept {

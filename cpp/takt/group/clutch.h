@@ -13,6 +13,9 @@ namespace takt::group {
 // Each clutch of the stretch that the tool is on goes on by a cycle: along, or to rest (State::lets_go).
 void StepClutches(const Context& c, const Stretch& stretch, State& s) noexcept;
 
+// It goes along with something that has no travel of its own to be braked: to let go of it is to let go of the axes.
+bool RidesFreely(const Context& c, const State& s) noexcept;
+
 // The tool is not where its carriers are, and comes after them.
 bool Slips(const State& s) noexcept;
 // Nothing that was let go of moves on.

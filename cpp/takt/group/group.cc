@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/axis/guidance.h"
+#include "takt/group/clutch.h"
 #include "takt/group/members.h"
 #include "takt/group/plan.h"
 #include "takt/group/queue.h"
@@ -32,6 +33,7 @@ void Fail(const Context& c, ErrorId error, State& s) {
 void ComeToRest(const Context& c, State& s) {
   s.ends = s.begun = s.lets_go = false;
   s.clutches = {};
+  s.ridden = {};
   s.brake = {};
   s.active = 0;
   s.way_before += s.pace.now.position;
@@ -90,6 +92,11 @@ void MoveOn(const Context& c, State& s) {
       s.lets_go = true;
     else
       Sit(c, s);
+    return;
+  }
+  if (s.ends && RidesFreely(c, s)) {  // each brakes by itself
+    LetGoOfMembers(c, s);
+    s.begun = false;
     return;
   }
   // The members get to the last set point after this.

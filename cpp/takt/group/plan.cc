@@ -22,7 +22,8 @@ constexpr int kBudgetAtRest = 80;
 // Of the members' limits: the rest keeps them within theirs in spite of what the timing takes for linear.
 constexpr double kLimitShare = 0.98;
 constexpr std::size_t kSweepNodes = 512;
-constexpr int kRehearsed = 24;  // cycles of the motion ahead
+constexpr int kRehearsed = 24;         // cycles of the motion ahead
+constexpr int kRehearsedIfCostly = 4;  // with an inverse of a chain for each
 constexpr std::size_t kSpareNodes = 4;
 constexpr double kStepsOfLine = 4;
 constexpr double kLeastStep = 1e-3;  // mm
@@ -250,7 +251,7 @@ void Verify(const Context& c, int& budget, State& s) {
   const bool carried = IsCarried(c.ahead, stretch);
   // Of the many elements of a path one after the other is tried: theirs are near enough.
   const double full = length / PlacesOf(stretch, Tries(s) ? 1 : kLeastPlaces);
-  for (; budget > 0 && p.verified < length; --budget) {
+  for (; budget > 0 && p.verified < length; budget -= carried ? 3 : 1) {
     const double way = p.verifying ? p.verified + p.step : 0;
     const double to = way > length - 0.01 * full ? length : way;
     trajectory::PathPoint point;
@@ -538,7 +539,10 @@ void Rehearse(const Context& c, const State& s) noexcept {
     const auto& [context, state] = *static_cast<const Owner*>(with);
     return Foresee(context, state, along, ahead_s, positions, velocities, accelerations);
   };
-  c.ahead.rehearsal.Run(c.ahead.window, s.pace, kRehearsed, c.cycle.count, c.cycle.period_s, {look, &owner});
+  const bool costly = c.kinematics && std::holds_alternative<kinematics::Serial>(c.kinematics->mechanism) &&
+                      c.ahead.rides[c.ahead.end_ride % kRides].displaces;
+  c.ahead.rehearsal.Run(c.ahead.window, s.pace, costly ? kRehearsedIfCostly : kRehearsed, c.cycle.count,
+                        c.cycle.period_s, {look, &owner});
 }
 
 double TimeLeft(const Context& c, const State& s) noexcept {

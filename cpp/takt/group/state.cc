@@ -91,6 +91,7 @@ void describe(Description<Track>& d) {
   d.internal<&Track::behind>("The move that it waits for.");
   d.internal<&Track::active>("It waits for the object.");
   d.internal<&Track::started>("The tool is taken along.");
+  d.internal<&Track::boarded>("It is on its way with the object.");
   d.internal<&Track::ends>("The object has left.");
   d.internal<&Track::in_sync>("The tool goes along.");
   d.internal<&Track::near_cycles>("For so long.");
@@ -128,6 +129,7 @@ void describe(Description<State>& d) {
   d.internal<&S::brake>("How strongly.");
   d.internal<&S::lets_go>("Of what carries it.");
   d.internal<&S::clutches>("Between carriers and the tool.");
+  d.internal<&S::ridden>("Carriers that take part now.");
   d.internal<&S::track>("Tracking of an object.");
   d.internal<&S::hold>("Stop: until released.");
   d.internal<&S::ticket>("Of stop, halt, interrupt, home or power.");

@@ -72,6 +72,7 @@ struct Track {
   std::uint64_t behind = 0;  // number of the move that it waits for
   bool active = false;
   bool started = false;  // the tool is taken along
+  bool boarded = false;  // and on the object's carrier
   bool ends = false;     // the object has left
   bool in_sync = false;
   std::uint64_t near_cycles = 0;
@@ -136,6 +137,7 @@ struct State {
   Brake brake;               // how it brakes then
   bool lets_go = false;      // of what carries it: the tool comes to rest in the MCS
   std::array<Clutch, kClutches> clutches{};
+  std::array<std::uint32_t, kClutches> ridden{};  // numbers of the carriers that take part in the motion now
   Track track;
   bool hold = false;  // stop: until released
   Ticket ticket = 0;  // of the task

@@ -104,7 +104,7 @@ void SitDown(const Context& c, const kinematics::Carrier& carrier, State& s) {
   clutch.jerk = limits.jerk;
   s.clutches = {};
   s.clutches[0] = clutch;
-  track.started = true;
+  track.started = track.boarded = true;
   if (s.state == GroupState::kStandby) Enter(GroupState::kMoving, s);
 }
 
@@ -113,6 +113,11 @@ void Wait(const Context& c, const kinematics::Carrier& carrier, State& s) {
   if (progress < s.track.begin) return;
   if (progress > s.track.end) return EndTracking(c, FeedbackState::kError, ErrorId::kTrackShort, s);
   if (s.ends) return;
+  const bool by_move = s.planning.move < s.done + s.queue.count && WaitsForTracking(s, MoveAt(s, s.planning.move));
+  if (by_move && IsOnRide(c, s) && s.planning.move == s.done) {  // from belt to belt
+    s.track.started = true;
+    return;
+  }
   if (s.begun || s.queue.count > 0 || s.planning.stage != Stage::kIdle) {  // it comes to rest first
     bool waits = !s.begun;
     for (std::uint32_t i = 0; i < s.queue.count; ++i) waits &= WaitsForTracking(s, MoveAt(s, s.done + i));
@@ -210,6 +215,11 @@ void WatchTracking(const Context& c, State& s) noexcept {
   }
   const Stretch* stretch = Here(c, s);
   const auto is_ours = [&](std::uint64_t ride) { return c.ahead.rides[ride % kRides].cargo == track.cargo; };
+  if (!track.boarded) {
+    track.boarded = stretch && is_ours(stretch->to_ride);
+    if (!track.boarded && s.queue.count == 0) EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
+    return;
+  }
   if (stretch && !is_ours(stretch->to_ride)) return EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
   const Clutch* clutch = ClutchOf(c, s);
   if (!clutch || track.ends) return;

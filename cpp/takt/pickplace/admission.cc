@@ -22,15 +22,15 @@ void Finish(const Context& c, Ticket ticket) {
 void Resume(const Context& c, Ticket ticket, group::State& g, State& s) {
   if (s.hold.off) return Refuse(c, ticket, ErrorId::kOffPath, s);
   GoOn(c, g, s);
-  Enter(ModuleState::kMovePp, s);
+  Enter(PickPlaceState::kMovePp, s);
   Finish(c, ticket);
 }
 
 void Execute(const Context& c, Ticket ticket, group::State& g, State& s) {
-  const bool moves = s.state == ModuleState::kPreparingPath || s.state == ModuleState::kMovePp;
+  const bool moves = s.state == PickPlaceState::kPreparingPath || s.state == PickPlaceState::kMovePp;
   const bool returns = s.hold.returning;
   if (!IsOn(c, g)) return Refuse(c, ticket, ErrorId::kPowerOff, s);
-  if (StopIsAsked(s) || returns || !(moves || s.state == ModuleState::kReady)) {
+  if (StopIsAsked(s) || returns || !(moves || s.state == PickPlaceState::kReady)) {
     return Refuse(c, ticket, ErrorId::kState, s);
   }
   if (s.hold.held) return Resume(c, ticket, g, s);
@@ -39,12 +39,12 @@ void Execute(const Context& c, Ticket ticket, group::State& g, State& s) {
   program ? Accept(c, ticket, s.inputs.set_target, s) : BeginLoop(c, ticket, s);
   if (moves || (s.order_count == before && !s.loop.active)) return;
   s.prepare_cycle = c.group.cycle.count;
-  Enter(ModuleState::kPreparingPath, s);
+  Enter(PickPlaceState::kPreparingPath, s);
 }
 
 void Return(const Context& c, Ticket ticket, group::State& g, State& s) {
   if (!IsOn(c, g)) return Refuse(c, ticket, ErrorId::kPowerOff, s);
-  if (s.state != ModuleState::kReady || StopIsAsked(s) || !s.hold.held || !IsFree(c, g)) {
+  if (s.state != PickPlaceState::kReady || StopIsAsked(s) || !s.hold.held || !IsFree(c, g)) {
     return Refuse(c, ticket, ErrorId::kState, s);
   }
   if (!s.hold.off) return Finish(c, ticket);
@@ -59,7 +59,7 @@ void Return(const Context& c, Ticket ticket, group::State& g, State& s) {
   s.given = g.done + g.queue.count;
   s.hold.move = s.given - 1;
   Report(c, ticket, FeedbackState::kActive);
-  Enter(ModuleState::kMovePp, s);
+  Enter(PickPlaceState::kMovePp, s);
 }
 
 void CarryOut(const Context& c, Ticket ticket, double, const Control& command, group::State& g, State& s) {
@@ -77,8 +77,8 @@ void CarryOut(const Context& c, Ticket ticket, double, const Control& command, g
 
 void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& command, group::State& g, State& s) {
   const bool held = command.positive || command.negative;
-  const bool rests = s.state == ModuleState::kStop || s.state == ModuleState::kPathInterrupt;
-  const bool may = s.state == ModuleState::kReady || Jogs(s) || (rests && s.hold.held);
+  const bool rests = s.state == PickPlaceState::kStop || s.state == PickPlaceState::kPathInterrupt;
+  const bool may = s.state == PickPlaceState::kReady || Jogs(s) || (rests && s.hold.held);
   ErrorId error = ErrorId::kNone;
   if (!may) error = ErrorId::kState;
   if (s.jog.ticket == 0 && command.positive && command.negative) error = ErrorId::kParameter;  // which was first?

@@ -46,7 +46,7 @@ bool IsLooking(const axis::State& member) {
 
 void BeginHoming(const Context& c, Ticket ticket, group::State& g, State& s) noexcept {
   ErrorId error = ErrorId::kNone;
-  if (s.state != ModuleState::kReady || StopIsAsked(s) || s.hold.held) error = ErrorId::kState;
+  if (s.state != PickPlaceState::kReady || StopIsAsked(s) || s.hold.held) error = ErrorId::kState;
   if (!IsOn(c, g)) error = ErrorId::kPowerOff;
   if (error == ErrorId::kNone && !IsFree(c, g)) error = ErrorId::kState;
   if (error != ErrorId::kNone) {
@@ -58,11 +58,11 @@ void BeginHoming(const Context& c, Ticket ticket, group::State& g, State& s) noe
   s.done = false;
   s.at_known = false;
   s.warning = ErrorId::kNone;
-  Enter(ModuleState::kHoming, s);
+  Enter(PickPlaceState::kHoming, s);
 }
 
 void EndHoming(const Context& c, FeedbackState feedback, ErrorId error, group::State& g, State& s) noexcept {
-  if (s.state != ModuleState::kHoming) return;
+  if (s.state != PickPlaceState::kHoming) return;
   Report(c, s.homing.ticket, feedback, error);
   s.homing = {};
   s.done = feedback == FeedbackState::kDone;
@@ -85,7 +85,7 @@ void InHoming(const Context& c, group::State& g, State& s) noexcept {
     if (!group::AllMembers(c.group, g, [](const axis::State& m) { return !IsLooking(m); })) return;
   }
   EndHoming(c, FeedbackState::kDone, ErrorId::kNone, g, s);
-  Enter(ModuleState::kReady, s);
+  Enter(PickPlaceState::kReady, s);
 }
 
 }  // namespace takt::pickplace

@@ -144,7 +144,7 @@ void BeginJog(const Context& c, group::State& g, State& s) noexcept {
   }
   s.given = g.done + g.queue.count;
   s.back = s.state;
-  Enter(s.jog_sense > 0 ? ModuleState::kJogPos : ModuleState::kJogNeg, s);
+  Enter(s.jog_sense > 0 ? PickPlaceState::kJogPos : PickPlaceState::kJogNeg, s);
 }
 
 void InJog(const Context& c, group::State& g, State& s) noexcept {

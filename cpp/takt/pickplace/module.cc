@@ -77,9 +77,9 @@ void SwitchPower(const Context& c, group::State& g, State& s) {
     ForgetAll(c, FeedbackState::kAborted, ErrorId::kPowerOff, g, s);
     Tell(c, group::Power{.enable = false}, g);
     s.enables = s.halting = false;
-    const bool waits = s.state == ModuleState::kInit || s.state == ModuleState::kError ||
-                       s.state == ModuleState::kStop || s.state == ModuleState::kService;
-    if (!waits) Enter(ModuleState::kReady, s);
+    const bool waits = s.state == PickPlaceState::kInit || s.state == PickPlaceState::kError ||
+                       s.state == PickPlaceState::kStop || s.state == PickPlaceState::kService;
+    if (!waits) Enter(PickPlaceState::kReady, s);
   }
   if (!s.enables || !s.inputs.regulator_on || g.state != GroupState::kDisabled) return;
   const bool stands = group::AllMembers(
@@ -140,7 +140,7 @@ void BeginStop(const Context& c, group::State& g, State& s) {
     s.at_known = s.parking = false;
     s.at_belt = s.parked_at = 0;
   }
-  if (s.state != ModuleState::kStop) Enter(ModuleState::kStop, s);
+  if (s.state != PickPlaceState::kStop) Enter(PickPlaceState::kStop, s);
 }
 
 // Where the path is held, for the way back. Somebody else may have moved the tool on.
@@ -160,8 +160,8 @@ void WatchHold(const Context& c, const group::State& g, State& s) {
 }
 
 void Abort(const Context& c, group::State& g, State& s) {
-  if (s.state == ModuleState::kMovePp && s.loop.active) return EndLoopBehindThis(c, s);
-  const bool prepares = s.state == ModuleState::kPreparingPath && !g.begun;
+  if (s.state == PickPlaceState::kMovePp && s.loop.active) return EndLoopBehindThis(c, s);
+  const bool prepares = s.state == PickPlaceState::kPreparingPath && !g.begun;
   const bool holds = s.hold.held && !s.hold.returning && Stands(c, g);
   if (!prepares && !holds) {
     s.warning = ErrorId::kState;
@@ -169,23 +169,23 @@ void Abort(const Context& c, group::State& g, State& s) {
   }
   EndOrders(c, FeedbackState::kAborted, ErrorId::kNone, s);
   if (g.interrupted || g.queue.count > 0) HaltGroup(c, g, s);
-  if (prepares || s.state == ModuleState::kPathInterrupt) Enter(ModuleState::kReady, s);
+  if (prepares || s.state == PickPlaceState::kPathInterrupt) Enter(PickPlaceState::kReady, s);
 }
 
 void InStop(const Context& c, group::State& g, State& s) {
   if (StopRises(s)) return BeginStop(c, g, s);
   if (s.hold.held && s.jog.ticket != 0) return BeginJog(c, g, s);
-  if (!StopIsAsked(s) && Stands(c, g)) Enter(ModuleState::kReady, s);
+  if (!StopIsAsked(s) && Stands(c, g)) Enter(PickPlaceState::kReady, s);
 }
 
 void InInterrupt(const Context& c, group::State& g, State& s) {
   if (s.inputs.path_interrupt) return BeginJog(c, g, s);
   if (s.hold.off) {
     s.warning = ErrorId::kOffPath;
-    return Enter(ModuleState::kReady, s);
+    return Enter(PickPlaceState::kReady, s);
   }
   GoOn(c, g, s);
-  Enter(ModuleState::kMovePp, s);
+  Enter(PickPlaceState::kMovePp, s);
 }
 
 void InReturn(const Context& c, group::State& g, State& s) {
@@ -193,14 +193,14 @@ void InReturn(const Context& c, group::State& g, State& s) {
   if (g.done <= s.hold.move || !IsFree(c, g)) return;
   EndReturn(c, FeedbackState::kDone, s);
   s.hold.off = false;
-  Enter(ModuleState::kReady, s);
+  Enter(PickPlaceState::kReady, s);
 }
 
 void InMove(const Context& c, group::State& g, State& s) {
-  if (s.state == ModuleState::kMovePp && s.inputs.path_interrupt && !s.hold.returning) {
+  if (s.state == PickPlaceState::kMovePp && s.inputs.path_interrupt && !s.hold.returning) {
     Interrupt(c, s.settings.path_stop_deceleration, s.settings.path_stop_jerk, g, s);
     if (s.order_count > 0) s.orders[0].pulse_at_end = true;
-    return Enter(ModuleState::kPathInterrupt, s);
+    return Enter(PickPlaceState::kPathInterrupt, s);
   }
   s.hold.returning ? InReturn(c, g, s) : RunOrders(c, g, s);
 }
@@ -212,7 +212,7 @@ void InError(const Context& c, group::State& g, State& s) {
   }
   const bool well = g.state != GroupState::kErrorStop && !g.resetting && Stands(c, g);
   if (s.error != ErrorId::kNone || !well) return;
-  Enter(ModuleState::kReady, s);
+  Enter(PickPlaceState::kReady, s);
   if (!s.inputs.regulator_on || IsOn(c, g)) return;
   Tell(c, group::Power{.enable = true}, g);
   s.enables = true;
@@ -220,11 +220,11 @@ void InError(const Context& c, group::State& g, State& s) {
 
 // READY and SERVICE are one another's: what the group does by itself is a service.
 void ReadyOrService(const Context& c, const group::State& g, State& s) {
-  if (s.state != ModuleState::kReady && s.state != ModuleState::kService) return;
+  if (s.state != PickPlaceState::kReady && s.state != PickPlaceState::kService) return;
   const bool moves =
       g.state == GroupState::kMoving || g.state == GroupState::kHoming || g.state == GroupState::kStopping;
   const bool service = s.inputs.internal_control || (moves && !s.hold.held && !s.halting);
-  const ModuleState wanted = service ? ModuleState::kService : ModuleState::kReady;
+  const PickPlaceState wanted = service ? PickPlaceState::kService : PickPlaceState::kReady;
   if (wanted == s.state) return;
   EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
   Enter(wanted, s);
@@ -237,29 +237,29 @@ void WatchLease(const Context& c, State& s) {
 }
 
 void Disable(const Context& c, group::State& g, State& s) {
-  if (s.state == ModuleState::kInit) return;
+  if (s.state == PickPlaceState::kInit) return;
   ForgetAll(c, FeedbackState::kAborted, ErrorId::kNone, g, s);
-  if (s.state != ModuleState::kService && IsOn(c, g) && !IsFree(c, g)) HaltGroup(c, g, s);
-  Enter(ModuleState::kInit, s);
+  if (s.state != PickPlaceState::kService && IsOn(c, g) && !IsFree(c, g)) HaltGroup(c, g, s);
+  Enter(PickPlaceState::kInit, s);
 }
 
 void StepState(const Context& c, group::State& g, State& s) {
   switch (s.state) {
-    case ModuleState::kReady:
+    case PickPlaceState::kReady:
       return BeginJog(c, g, s);
-    case ModuleState::kJogPos:
-    case ModuleState::kJogNeg:
+    case PickPlaceState::kJogPos:
+    case PickPlaceState::kJogNeg:
       return InJog(c, g, s);
-    case ModuleState::kHoming:
+    case PickPlaceState::kHoming:
       return InHoming(c, g, s);
-    case ModuleState::kPreparingPath:
-    case ModuleState::kMovePp:
+    case PickPlaceState::kPreparingPath:
+    case PickPlaceState::kMovePp:
       return InMove(c, g, s);
-    case ModuleState::kPathInterrupt:
+    case PickPlaceState::kPathInterrupt:
       return InInterrupt(c, g, s);
-    case ModuleState::kStop:
+    case PickPlaceState::kStop:
       return InStop(c, g, s);
-    case ModuleState::kError:
+    case PickPlaceState::kError:
       return InError(c, g, s);
     default:
       return;
@@ -267,14 +267,14 @@ void StepState(const Context& c, group::State& g, State& s) {
 }
 
 void RunStates(const Context& c, group::State& g, State& s) {
-  if (s.state == ModuleState::kInit) {
-    Enter(s.error == ErrorId::kNone ? ModuleState::kReady : ModuleState::kError, s);
+  if (s.state == PickPlaceState::kInit) {
+    Enter(s.error == ErrorId::kNone ? PickPlaceState::kReady : PickPlaceState::kError, s);
   }
-  if (s.state != ModuleState::kError) WatchFaults(c, g, s);
+  if (s.state != PickPlaceState::kError) WatchFaults(c, g, s);
   // A jog from STOP goes on beneath the level that led there.
-  const bool jogs = Jogs(s) && s.back == ModuleState::kStop;
+  const bool jogs = Jogs(s) && s.back == PickPlaceState::kStop;
   const bool stops = jogs ? StopRises(s) : StopIsAsked(s);
-  if (s.state != ModuleState::kError && s.state != ModuleState::kStop && stops) BeginStop(c, g, s);
+  if (s.state != PickPlaceState::kError && s.state != PickPlaceState::kStop && stops) BeginStop(c, g, s);
   if (s.halting && IsFree(c, g)) s.halting = false;
   WatchHold(c, g, s);
   ReadyOrService(c, g, s);
@@ -307,10 +307,10 @@ void GoOn(const Context& c, group::State& g, State& s) noexcept {
 
 void Fail(const Context& c, ErrorId error, group::State& g, State& s) noexcept {
   if (s.error == ErrorId::kNone) s.error = error;
-  if (s.state == ModuleState::kError) return;
+  if (s.state == PickPlaceState::kError) return;
   ForgetAll(c, FeedbackState::kError, error, g, s);
   if (IsOn(c, g) && !IsFree(c, g)) HaltGroup(c, g, s);
-  Enter(ModuleState::kError, s);
+  Enter(PickPlaceState::kError, s);
 }
 
 State MakeState(const PickPlaceParams& params) noexcept {

@@ -270,7 +270,7 @@ void StepOrder(const Context& c, group::State& g, State& s) {
 
 // Static targets behind one another are given as early as may be: their profiles join without a pause.
 void GiveAhead(const Context& c, group::State& g, State& s) {
-  for (std::uint32_t i = 1; i < s.order_count && s.state != ModuleState::kError; ++i) {
+  for (std::uint32_t i = 1; i < s.order_count && s.state != PickPlaceState::kError; ++i) {
     const Order& before = s.orders[i - 1];
     if (before.phase != Phase::kGoing || !IsStatic(before) || !IsStatic(s.orders[i])) return;
     if (s.orders[i].phase == Phase::kNew) Begin(c, g, s.orders[i], s);
@@ -411,28 +411,28 @@ void RunOrders(const Context& c, group::State& g, State& s) noexcept {
   }
   if (g.ends) {  // somebody else told the group to
     EndOrders(c, FeedbackState::kAborted, ErrorId::kNone, s);
-    return Enter(ModuleState::kReady, s);
+    return Enter(PickPlaceState::kReady, s);
   }
   if (s.given > g.done + g.queue.count) return Fail(c, TroubleOf(g), g, s);
   if (s.parking && g.done > s.parking_move) s.parking = false;
   if (s.in_target && g.begun && g.pace.now.velocity > 0) s.in_target = false;
   StepLoop(c, s);
   if (s.order_count > 0) StepOrder(c, g, s);
-  if (s.state == ModuleState::kError) return;
+  if (s.state == PickPlaceState::kError) return;
   StepLoop(c, s);
   GiveAhead(c, g, s);
-  if (s.state == ModuleState::kError) return;
+  if (s.state == PickPlaceState::kError) return;
   if (s.order_count == 0 && !s.loop.active && s.at_belt != 0) return Park(c, s.at_belt, g, s);
   const bool waits = s.order_count > 0 && s.orders[0].phase == Phase::kWaiting;
-  if (s.state == ModuleState::kPreparingPath && (g.begun || waits || NoMore(g, s))) {
+  if (s.state == PickPlaceState::kPreparingPath && (g.begun || waits || NoMore(g, s))) {
     if (s.order_count > 0) {
       const double took = static_cast<double>(c.group.cycle.count - s.prepare_cycle) * c.group.cycle.period_s;
       s.preparation_time = took;
     }
-    Enter(ModuleState::kMovePp, s);
+    Enter(PickPlaceState::kMovePp, s);
   }
-  if (s.state == ModuleState::kMovePp && NoMore(g, s) && IsFree(c, g)) {
-    Enter(ModuleState::kReady, s);
+  if (s.state == PickPlaceState::kMovePp && NoMore(g, s) && IsFree(c, g)) {
+    Enter(PickPlaceState::kReady, s);
     s.at_known = false;
   }
 }

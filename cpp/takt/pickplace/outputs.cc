@@ -4,8 +4,8 @@
 
 namespace takt::pickplace {
 
-void describe(Enumeration<ModuleState>& e) {
-  using S = ModuleState;
+void describe(Enumeration<PickPlaceState>& e) {
+  using S = PickPlaceState;
   e.about("States of a pick and place module.");
   e.value(S::kInit, "init", "It is not enabled.");
   e.value(S::kReady, "ready", "It waits; a path that was stopped may be held.");

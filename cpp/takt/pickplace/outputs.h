@@ -30,7 +30,7 @@ struct AxisNumbers {
 
 // In masks of axes bit 0 is X, then come Y, Z, A, B, C, A1 to A6 and Aux1.
 struct Outputs {
-  ModuleState state = ModuleState::kInit;
+  PickPlaceState state = PickPlaceState::kInit;
   ErrorId error = ErrorId::kNone;
   ErrorId warning = ErrorId::kNone;
   std::uint32_t error_axes = 0;           // mask; why says each axis itself

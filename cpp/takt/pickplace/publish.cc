@@ -121,13 +121,13 @@ void Publish(const Context& c, const group::State& g, const State& s, Outputs& o
   out.internal_control_active = s.inputs.internal_control;
   out.axes_group_enabled = g.state != group::GroupState::kDisabled;
   out.done = s.done;
-  out.busy = s.order_count > 0 || s.loop.active || s.hold.returning || s.state == ModuleState::kHoming;
+  out.busy = s.order_count > 0 || s.loop.active || s.hold.returning || s.state == PickPlaceState::kHoming;
   out.in_target = s.in_target;
   out.in_position = s.in_target && (!s.settings.watch_position_window || s.out_of_window == 0);
   out.path_hold = s.hold.held && Stands(c, g);
   out.off_path = s.hold.off;
   out.pulse_gripper = s.pulse;
-  out.profile_in_preparation = s.order_count == kOrders || s.state == ModuleState::kPreparingPath;
+  out.profile_in_preparation = s.order_count == kOrders || s.state == PickPlaceState::kPreparingPath;
   out.in_park_position = s.parked_at != 0 && !s.parking;
 }
 

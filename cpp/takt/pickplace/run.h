@@ -8,12 +8,12 @@ namespace takt::pickplace {
 inline void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error = ErrorId::kNone) noexcept {
   if (ticket != 0) c.group.feedback.Report({ticket, c.group.cycle.count, feedback, false, error, 0});
 }
-inline void Enter(ModuleState to, State& s) noexcept {
+inline void Enter(PickPlaceState to, State& s) noexcept {
   if (!IsLegal(s.state, to)) ++s.illegal_transitions;
   s.state = to;
 }
 inline bool Jogs(const State& s) noexcept {
-  return s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg;
+  return s.state == PickPlaceState::kJogPos || s.state == PickPlaceState::kJogNeg;
 }
 inline bool StopIsAsked(const State& s) noexcept {
   return s.inputs.path_stop || s.inputs.path_halt || s.inputs.stop_all;

@@ -102,8 +102,8 @@ struct State {
   Inputs before;  // inputs of the cycle before, for their edges
   Settings settings;
   std::array<BeltSettings, kBelts> belts;
-  ModuleState state = ModuleState::kInit;
-  ModuleState back = ModuleState::kReady;  // from a jog
+  PickPlaceState state = PickPlaceState::kInit;
+  PickPlaceState back = PickPlaceState::kReady;  // from a jog
   ErrorId error = ErrorId::kNone;
   ErrorId warning = ErrorId::kNone;
   bool reset = false;  // edges of this cycle

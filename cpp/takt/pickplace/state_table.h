@@ -9,7 +9,7 @@
 
 namespace takt::pickplace {
 
-enum class ModuleState : std::uint8_t {
+enum class PickPlaceState : std::uint8_t {
   kInit,           // the module is not enabled
   kReady,          // waits; a path that was stopped may be held
   kService,        // the group moves by itself, or is given to others
@@ -24,10 +24,10 @@ enum class ModuleState : std::uint8_t {
 };
 inline constexpr int kModuleStates = 11;
 
-using Transition = takt::Transition<ModuleState>;
+using Transition = takt::Transition<PickPlaceState>;
 
 inline constexpr std::array kTransitions = [] {
-  using S = ModuleState;
+  using S = PickPlaceState;
   return std::array{
       Transition{S::kInit, S::kReady, "enable"},
       Transition{S::kInit, S::kError, "an error that was not reset"},
@@ -85,10 +85,10 @@ inline constexpr std::array kTransitions = [] {
   };
 }();
 
-constexpr bool IsLegal(ModuleState from, ModuleState to) {
+constexpr bool IsLegal(PickPlaceState from, PickPlaceState to) {
   return takt::IsLegal(kTransitions, from, to);
 }
 
-void describe(Enumeration<ModuleState>&);
+void describe(Enumeration<PickPlaceState>&);
 
 }  // namespace takt::pickplace

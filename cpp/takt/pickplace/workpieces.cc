@@ -157,7 +157,7 @@ bool IsWithin(const Context& c, const Order& order, const State& s) noexcept {
 }
 
 void CountLost(const Context& c, State& s) noexcept {
-  const bool counts = s.state == ModuleState::kMovePp || s.state == ModuleState::kPreparingPath;
+  const bool counts = s.state == PickPlaceState::kMovePp || s.state == PickPlaceState::kPreparingPath;
   for (std::size_t i = 0; i < c.params.belts.size(); ++i) {
     const std::uint32_t lost = c.belts[i].state->lost;
     if (counts) {

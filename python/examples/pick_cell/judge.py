@@ -5,18 +5,17 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass
-from itertools import takewhile
 from typing import Any
 
 import numpy as np
-import takt
+from cell import Array, Settings, Thing, in_world, place, products, trays
 from takt import kinematics
 from takt.recording import Recording
 
-from cell import Array, Settings, Thing, in_world, place, products, trays
-
 WORKS = "picks begin"
 ENDS = "picks end"
+INTERRUPTED = "interrupted on the path"
+GOES_ON = "and gone on with"
 
 
 @dataclass(frozen=True)
@@ -70,16 +69,18 @@ class Judgement:
         errors = self.errors
         missed = ", ".join(f"{number} {why}" for why, number in sorted(self.reasons.items())) or "none"
         return (
-            f"{len(errors)} products placed, {self.picks_a_minute:.0f} a minute; placing error {errors.mean():.3f} mm in "
-            f"the mean, {np.percentile(errors, 95):.3f} mm for 95 %, {errors.max():.3f} mm at most; missed: {missed}"
+            f"{len(errors)} products placed, {self.picks_a_minute:.0f} a minute; missed: {missed}; placing error "
+            f"{errors.mean():.3f} mm in the mean, {np.percentile(errors, 95):.3f} mm for 95 %, {errors.max():.3f} mm "
+            f"at most"
         )
 
 
 class Truth:
     """Where all really was in a recording, at any time of it."""
 
-    def __init__(self, recording: Recording, machine: dict[str, Any], settings: Settings) -> None:
+    def __init__(self, recording: Recording, machine: dict[str, Any], settings: Settings, begins_s: float) -> None:
         self.settings = settings
+        self._begins_s = begins_s
         self._recording = recording
         self.belts = {belt["name"]: belt for belt in machine["belts"]}
         (group,) = machine["groups"]
@@ -97,8 +98,9 @@ class Truth:
         return np.array([np.interp(time_s, self.time_s, self.tool[:, axis]) for axis in range(3)])
 
     def travel_at(self, belt: str, time_s: Array | float) -> Array:
+        """mm since the picks began."""
         times, positions = self._true(self.belts[belt]["axis"])
-        return np.interp(time_s, times, positions)
+        return np.interp(time_s, times, positions) - np.interp(self._begins_s, times, positions)
 
     def thing_at(self, belt: str, thing: Thing, time_s: Array | float) -> Array:
         """X and Y of something that lies on a belt."""
@@ -107,9 +109,9 @@ class Truth:
 
 
 def judge(recording: Recording, machine: dict[str, Any], settings: Settings) -> Judgement:
-    truth = Truth(recording, machine, settings)
     marks = [event for event in recording.events if event.kind == "mark"]
     begins, ends = (next(mark.time_s for mark in marks if mark.text == text) for text in (WORKS, ENDS))
+    truth = Truth(recording, machine, settings, begins)
     held: dict[int, tuple[float, Array]] = {}
     placed: list[Placed] = []
     misses: list[Miss] = []

@@ -6,17 +6,16 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from cell import in_world
+from judge import INTERRUPTED, Judgement
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
+from picker import LIFT
 from takt import plot, style
 from takt.recording import Recording
-
-from cell import in_world
-from judge import Judgement
-from picker import LIFT
 
 HALF_WIDTH = 60.0  # mm, of a belt
 DETAIL_S = 8.0  # s of the time line
@@ -41,7 +40,10 @@ def picture(recording: Recording, machine: dict[str, Any], found: Judgement, aro
     window = (around_s - DETAIL_S / 2, around_s + DETAIL_S / 2)
     _states(states, recording, found, window)
     _speeds(speeds, recording, machine, window)
-    handles = [Line2D([], [], color=EMPTY, label="tool, empty"), Line2D([], [], color=FULL, label="tool with a product")]
+    handles = [
+        Line2D([], [], color=EMPTY, label="tool, empty"),
+        Line2D([], [], color=FULL, label="tool with a product"),
+    ]
     figure.legend(handles=handles, loc="outside upper right", ncols=2, frameon=False, fontsize=10, labelcolor=plot.INK)
     title = f"{found.picks_a_minute:.0f} picks a minute from one running belt to another"
     figure.suptitle(title, x=0.01, ha="left", color=plot.INK, weight="bold", size=14)
@@ -79,7 +81,9 @@ def _from_above(ax: Axes, machine: dict[str, Any], found: Judgement, full: Any) 
         name = in_world(belt["origin"], 20.0, -HALF_WIDTH + 12.0)
         right = abs(belt["origin"].get("c", 0.0)) > 90
         what = "camera" if belt["name"] == "infeed" else "photo sensor"
-        ax.text(*name, f"{belt['name']}, {what}", ha="right" if right else "left", va="center", color=plot.INK, size=9.5)
+        ax.text(
+            *name, f"{belt['name']}, {what}", ha="right" if right else "left", va="center", color=plot.INK, size=9.5
+        )
     _ways(ax, found, full, (0, 1))
     ax.set(xlim=(-470, 470), ylim=(-230, 230))
     ax.set_xlabel("X [mm]", color=plot.INK, size=10.5)
@@ -106,14 +110,14 @@ def _from_the_side(ax: Axes, machine: dict[str, Any], found: Judgement, full: An
 def _errors(ax: Axes, found: Judgement) -> None:
     plot.dress(ax)
     errors = found.errors
-    ax.hist(errors, bins=24, range=(0.0, max(float(errors.max()) * 1.05, 1e-3)), color=style.GOOD, alpha=0.85, zorder=2)
+    ax.hist(errors, bins=16, range=(0.0, max(float(errors.max()), 1e-3)), color=style.GOOD, alpha=0.85, zorder=2)
     for value, name, dash in (
         (errors.mean(), "mean", "-"),
         (np.percentile(errors, 95), "95 %", (0, (5, 2))),
         (errors.max(), "largest", (0, (1, 1.5))),
     ):
         ax.axvline(value, color=plot.INK, lw=1.2, ls=dash, label=f"{name}  {value:.3f} mm", zorder=3)
-    ax.set_xlim(left=0)
+    ax.set_xlim(0, 1.5 * float(errors.max()))
     ax.set_xlabel("from where a product should lie to where it lies [mm]", color=plot.INK, size=10.5)
     ax.set_ylabel("products", color=plot.INK, size=10.5)
     ax.legend(loc="upper right", frameon=False, fontsize=9.5, labelcolor=plot.INK)
@@ -150,12 +154,14 @@ def _speeds(ax: Axes, recording: Recording, machine: dict[str, Any], window: tup
     tool = shown["robot"]
     ax.plot(tool["time_s"], tool["velocity"] / 10, color=plot.FAINT, lw=0.9, label="tool / 10")
     ax.set_xlim(*window)
-    ax.set_ylim(bottom=0)
+    ax.set_ylim(0, 420)
     ax.set_xlabel("time [s]", color=plot.INK, size=10.5)
     ax.set_ylabel("speed\n[mm/s]", color=plot.INK, size=10.5)
-    ax.legend(loc="upper right", ncols=3, frameon=False, fontsize=9, labelcolor=plot.INK)
+    ax.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=3, frameon=False, fontsize=9, labelcolor=plot.INK)
     for event in shown.events:
         if event.kind == "mark" and not event.text.startswith(("holds", "puts", "misses")):
             ax.axvline(event.time_s, color=plot.INK, lw=0.8, alpha=0.4)
-            ax.annotate(event.text, (event.time_s, 1.0), xycoords=("data", "axes fraction"), xytext=(3, -3),
-                        textcoords="offset points", va="top", size=9, color=plot.INK)  # fmt: skip
+            before = event.text == INTERRUPTED
+            ax.annotate(event.text, (event.time_s, 1.0), xycoords=("data", "axes fraction"),
+                        xytext=(-3 if before else 3, -3), textcoords="offset points",
+                        ha="right" if before else "left", va="top", size=9, color=plot.INK)  # fmt: skip

@@ -12,7 +12,7 @@ from pathlib import Path
 import takt
 import yaml
 from cell import Cell, Settings
-from judge import ENDS, WORKS, Judgement, judge
+from judge import ENDS, GOES_ON, INTERRUPTED, WORKS, Judgement, judge
 from matplotlib.figure import Figure
 from picker import Picker
 from pictures import picture
@@ -22,15 +22,13 @@ SETTINGS = Settings()
 SECONDS = 40.0
 INFEED, OUTFEED = 200.0, 150.0  # mm/s, in the beginning
 SPEEDS = (  # s from the beginning, belt, mm/s
-    (8.0, "infeed", 240.0),
+    (8.0, "infeed", 250.0),
     (14.0, "outfeed", 190.0),
-    (20.0, "infeed", 180.0),
-    (30.0, "outfeed", 140.0),
+    (22.0, "infeed", 200.0),
+    (27.0, "outfeed", 160.0),
+    (34.0, "infeed", 180.0),
 )
 INTERRUPT, REST = 24.0, 0.3  # s: from then on the next product on its way is held up, for so long
-
-INTERRUPTED = "interrupted on the path"
-GOES_ON = "and gone on with"
 
 MACHINE = yaml.safe_load((Path(__file__).parent / "machine.yaml").read_text(encoding="utf-8"))
 

@@ -321,6 +321,14 @@ TEST(Riding, OntoAPoseFromElsewhere) {
     ASSERT_LE((ToolOf(rig).p - want.p).Norm(), 1e-9);
     ASSERT_LE(KDL::diff(ToolOf(rig).M, want.M).Norm(), 1e-9);
   }
+  // Stop: there is no travel to be braked, each axis brakes by itself.
+  const Ticket interrupt = rig.Give(Interrupt{});
+  rig.Step();
+  EXPECT_EQ(rig.lives[interrupt].error_id, ErrorId::kState);
+  const Ticket stop = rig.Give(Stop{});
+  ASSERT_TRUE(rig.RunToEnd(stop, 2));
+  EXPECT_TRUE(rig.lives[stop].done);
+  EXPECT_EQ(rig.out().velocity, 0);
   ExpectSmooth(rig);
 }
 

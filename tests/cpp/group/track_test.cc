@@ -350,5 +350,41 @@ TEST(Track, WaitsForMotionsAsItsModeSays) {
   }
 }
 
+// CV-14, CV-23: from the object of one belt to that of another, both tracked, by a move and without a stop.
+TEST(Track, FromBeltToBelt) {
+  Rig rig = Gantry();
+  rig.Start({0, 0, 0});
+  const auto belts =
+      Put(rig, {SlowBelt(100), BeltAt("other", {100, 80, 0, 0, 0, 180}, [](double t) { return Steady(t, 80); })});
+  TrackConveyorBelt m = Example();
+  m.end_distance = {};
+  const Ticket first = rig.Give(m);
+  while (!rig.out().in_sync && rig.cycle.count < 5000) rig.Step();
+  TrackConveyorBelt other;
+  other.belt = Name::Of("other");
+  other.pcs = 2;
+  other.start_distance = 5;
+  const Ticket second = rig.Give(other);
+  MoveLinearAbsolute onto{.x = 0, .y = 0, .z = 10};
+  onto.coordinate_system = CoordinateSystem::kPcs;
+  onto.pcs = 2;
+  onto.buffer_mode = BufferMode::kBuffered;
+  const Ticket move = rig.Give(onto);
+  double slowest = 1e9;
+  while (!rig.lives[move].ended() && rig.cycle.count < 9000) {
+    rig.Step();
+    slowest = std::min(slowest, rig.out().velocity);
+  }
+  EXPECT_TRUE(rig.lives[move].done);
+  EXPECT_TRUE(rig.lives[first].aborted);
+  rig.Run(0.1);
+  EXPECT_TRUE(rig.lives[second].active && !rig.lives[second].ended());
+  EXPECT_EQ(rig.out().track_state, TrackState::kInSync);
+  EXPECT_NEAR(rig.out().object_z, 10, 1e-9);
+  EXPECT_NEAR(rig.out().velocity, 80, 1e-6);
+  EXPECT_GT(slowest, 5);
+  ExpectSmooth(rig);
+}
+
 }  // namespace
 }  // namespace takt::group

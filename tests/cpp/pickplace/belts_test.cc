@@ -4,7 +4,7 @@
 namespace takt::pickplace {
 namespace {
 
-using M = ModuleState;
+using M = PickPlaceState;
 
 constexpr double kOnWorkpiece = 1e-6;  // mm
 
@@ -78,6 +78,34 @@ TEST(Belts, PickOne) {
   }
 }
 
+// PP-41, PP-40: the numbers of the manual's chapters on belts and workpieces: the belt's origin at X 400, Y 500, Z 100,
+// turned by C 180; its work range from 200 to 800 along it; the parking position at X -400, Y 500, Z 300; a workpiece
+// detected at X 210, Y -50, Z 10 of the belt. That is X 400 - 210 = 190, Y 500 + 50 = 550, Z 110 in the MCS, and within
+// the range; the belt runs towards -X.
+TEST(Belts, ExampleOfTheManual) {
+  CellBelt belt = BeltAt("belt", {400, 500, 100, 0, 0, 180}, 0);
+  belt.params.lower_limit.reset();
+  belt.params.upper_limit.reset();
+  belt.settings.lower_limit = 200;
+  belt.settings.upper_limit = 800;
+  belt.settings.park_x = -400;
+  belt.settings.park_y = 500;
+  belt.settings.park_z = 300;
+  Cell cell(Quick(), {belt});
+  cell.Start({0, 0, 300, 0, 0, 0});
+  cell.Put(0, {190, -50, 10, 0, 0, 0});  // before the range: it parks
+  const Ticket ticket = cell.Execute(1);
+  ASSERT_TRUE(cell.RunUntil([&] { return cell.out().in_park_position; }, 5));
+  EXPECT_LT(cell.Off(-400, 500, 300), 1e-9);
+  cell.Steps(200);
+  EXPECT_FALSE(cell.rig.lives[ticket].ended());
+  conveyor::Remove(1, cell.belt_states[0]);
+  cell.Put(0, {210, -50, 10, 0, 0, 0});
+  ASSERT_TRUE(cell.RunToEnd(ticket, 5));
+  EXPECT_TRUE(cell.rig.lives[ticket].done);
+  EXPECT_LT(cell.Off(190, 550, 110), 1e-6);
+}
+
 // PP-42: nothing in range: it parks and waits; what comes into range is fetched.
 TEST(Belts, ParksAndWaits) {
   Cell cell(Quick(), {BeltAt("belt", {0, 200, -50, 0, 0, 0}, 100)});
@@ -121,6 +149,31 @@ TEST(Belts, Rules) {
   EXPECT_EQ(chosen(WorkpieceRule::kFirst), 2u);  // 690 leaves the range too soon
   EXPECT_EQ(chosen(WorkpieceRule::kNearest), 1u);
   EXPECT_EQ(chosen(WorkpieceRule::kLatest), 3u);
+}
+
+// PP-11, PP-42: half ellipses between workpieces of two belts.
+TEST(Belts, EllipsesFromBeltToBelt) {
+  Settings s = Quick();
+  s.path_mode = PathMode::kElliptical;
+  s.z_elliptical = 40;
+  s.gripper_closing_time = 0.03;
+  Cell cell(s, {BeltAt("in", {0, 200, -50, 0, 0, 0}, 100), BeltAt("out", {0, 400, -60, 0, 0, 0}, 60)});
+  cell.Start();
+  cell.Put(0, {120, 0, 0, 0, 0, 0});
+  cell.Put(1, {150, 0, 0, 0, 0, 0});
+  const conveyor::Object place = cell.belt_states[1].objects[0];
+  const Ticket pick = cell.Execute(1);
+  const Ticket put = cell.Execute(2);
+  ASSERT_TRUE(cell.RunToEnd(pick, 5));
+  ASSERT_TRUE(cell.rig.lives[pick].done) << static_cast<int>(cell.rig.lives[pick].error_id);
+  cell.rig.trace.clear();
+  ASSERT_TRUE(cell.RunToEnd(put, 5));
+  ASSERT_TRUE(cell.rig.lives[put].done) << static_cast<int>(cell.rig.lives[put].error_id);
+  EXPECT_LT(OffWorkpiece(cell, 1, place), kOnWorkpiece);
+  double highest = -1000;
+  for (const auto& sample : cell.rig.trace) highest = std::max(highest, sample.out.z);
+  // Points at -50 + 25 and -60 + 25; 40 above the higher.
+  EXPECT_NEAR(highest, -50 + 25 + 40, 0.5);
 }
 
 // PP-31: ack_gripper ends the time on the workpiece at once.

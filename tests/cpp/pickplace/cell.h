@@ -71,7 +71,7 @@ class Cell {
     rig.StartAt(tool);
     Do(Control{.enable = true, .regulator_on = true});
     Steps(2);
-    EXPECT_EQ(state.state, ModuleState::kReady);
+    EXPECT_EQ(state.state, PickPlaceState::kReady);
     rig.trace.clear();
     outs.clear();
   }
@@ -117,7 +117,7 @@ class Cell {
     }
     return until();
   }
-  bool RunTo(ModuleState wanted, double seconds = 10) {
+  bool RunTo(PickPlaceState wanted, double seconds = 10) {
     return RunUntil([&] { return state.state == wanted; }, seconds);
   }
   bool RunToEnd(Ticket ticket, double seconds = 10) {

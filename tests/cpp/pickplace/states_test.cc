@@ -6,7 +6,7 @@
 namespace takt::pickplace {
 namespace {
 
-using M = ModuleState;
+using M = PickPlaceState;
 
 Configure To(double x, double y, double z) {
   Configure c;

@@ -37,14 +37,14 @@ TEST(Static, OneProfile) {
   cell.Do(To(300, 0, -10));
   const Ticket ticket = cell.Execute();
   cell.Step();
-  EXPECT_EQ(cell.state.state, ModuleState::kPreparingPath);
+  EXPECT_EQ(cell.state.state, PickPlaceState::kPreparingPath);
   ASSERT_TRUE(cell.RunToEnd(ticket, 5));
   EXPECT_TRUE(cell.rig.lives[ticket].done);
   EXPECT_LT(cell.Off(300, 0, -10), 1e-9);
   double highest = -100;
   for (const auto& sample : cell.rig.trace) highest = std::max(highest, sample.out.z);
   EXPECT_NEAR(highest, 30, 2.5);  // the corner is rounded
-  EXPECT_TRUE(cell.RunTo(ModuleState::kReady, 0.1));
+  EXPECT_TRUE(cell.RunTo(PickPlaceState::kReady, 0.1));
   EXPECT_TRUE(cell.out().in_target);
   EXPECT_TRUE(cell.out().done);
 }
@@ -67,6 +67,62 @@ TEST(Static, StopsAtPointsWithoutARadius) {
     }
   }
   EXPECT_EQ(stops, 2);
+}
+
+// PP-11: half an ellipse: its crest lies z_elliptical above the higher point; refused in a PCS that is turned about A.
+TEST(Static, Ellipse) {
+  Settings s = Fast();
+  s.path_mode = PathMode::kElliptical;
+  s.z_elliptical = 60;
+  Cell cell(s);
+  cell.Start();
+  cell.Do(To(300, 0, -10));
+  const Ticket ticket = cell.Execute();
+  ASSERT_TRUE(cell.RunToEnd(ticket, 5));
+  ASSERT_TRUE(cell.rig.lives[ticket].done) << static_cast<int>(cell.rig.lives[ticket].error_id);
+  EXPECT_LT(cell.Off(300, 0, -10), 1e-9);
+  double highest = -100;
+  for (const auto& sample : cell.rig.trace) highest = std::max(highest, sample.out.z);
+  EXPECT_NEAR(highest, 90, 0.05);
+  ASSERT_TRUE(cell.RunTo(PickPlaceState::kReady, 1));
+  cell.rig.RunToEnd(cell.rig.Give(group::SetCartesianTransform{.pcs = 4, .x = 100, .a = 5}), 1);
+  Configure c;
+  c.target_coordinate_system = group::CoordinateSystem::kPcs;
+  c.target_pcs = 4;
+  cell.Do(c);
+  const Ticket turned = cell.Execute();
+  ASSERT_TRUE(cell.RunToEnd(turned, 1));
+  EXPECT_EQ(cell.rig.lives[turned].error_id, ErrorId::kParameter);
+}
+
+// PP-20: stopped in the middle of an ellipse, jogged away and brought back: it goes on over the same height.
+TEST(Static, EllipseGoneOnWith) {
+  Settings s = Fast();
+  s.path_mode = PathMode::kElliptical;
+  s.z_elliptical = 60;
+  Cell cell(s);
+  cell.Start();
+  cell.Do(To(400, 0, 0));
+  const Ticket ticket = cell.Execute();
+  cell.RunUntil([&] { return cell.tool().x() > 30; }, 5);
+  cell.Do(Control{.path_stop = true});
+  ASSERT_TRUE(cell.RunUntil([&] { return cell.out().path_hold; }, 5));
+  cell.Do(Control{.select_axis = SelectAxis::kY});
+  cell.Do(Jog{.negative = true});
+  cell.Steps(300);
+  cell.Do(Jog{});
+  ASSERT_TRUE(cell.RunTo(PickPlaceState::kStop, 2));
+  cell.Do(Control{.path_stop = false});
+  const Ticket back = cell.Give(Control{.return_to_path = true});
+  ASSERT_TRUE(cell.RunToEnd(back, 5));
+  cell.rig.trace.clear();
+  cell.Execute();
+  ASSERT_TRUE(cell.RunToEnd(ticket, 5));
+  EXPECT_TRUE(cell.rig.lives[ticket].done) << static_cast<int>(cell.rig.lives[ticket].error_id);
+  double highest = -100;
+  for (const auto& sample : cell.rig.trace) highest = std::max(highest, sample.out.z);
+  EXPECT_NEAR(highest, 90, 3);
+  EXPECT_LT(cell.Off(400, 0, 0), 1e-9);
 }
 
 // PP-14: a target in a PCS that stands, from the MCS.
@@ -101,7 +157,7 @@ TEST(Static, ProfilesWait) {
     EXPECT_TRUE(cell.rig.lives[tickets[i]].done);
     EXPECT_LT(cell.Off(i % 2 == 0 ? 100 + 10.0 * static_cast<double>(i) : 0, 0, 0), 0.01) << i;
   }
-  EXPECT_TRUE(cell.RunTo(ModuleState::kReady, 0.1));
+  EXPECT_TRUE(cell.RunTo(PickPlaceState::kReady, 0.1));
   EXPECT_EQ(cell.state.counters.placed, kOrders);
 }
 
@@ -231,7 +287,7 @@ TEST(Static, PointsPassed) {
   while (!cell.rig.lives[ticket].ended()) {
     cell.Step();
     const std::uint32_t point = cell.out().profile_point_passed;
-    if (cell.state.state == ModuleState::kMovePp && (seen.empty() || seen.back() != point)) seen.push_back(point);
+    if (cell.state.state == PickPlaceState::kMovePp && (seen.empty() || seen.back() != point)) seen.push_back(point);
   }
   EXPECT_EQ(seen, (std::vector<std::uint32_t>{0, 1, 2, 3}));
 }
@@ -246,11 +302,11 @@ TEST(Static, OutOfReach) {
   const Ticket ticket = cell.Execute();
   ASSERT_TRUE(cell.RunToEnd(ticket, 5));
   EXPECT_EQ(cell.rig.lives[ticket].error_id, ErrorId::kUnreachable);
-  EXPECT_EQ(cell.state.state, ModuleState::kError);
+  EXPECT_EQ(cell.state.state, PickPlaceState::kError);
   cell.Do(To(300, 0, 0));
   EXPECT_TRUE(cell.RunUntil([&] { return IsFree(cell.Now(), cell.rig.state); }, 2));
   cell.Do(Control{.reset_error = true});
-  ASSERT_TRUE(cell.RunTo(ModuleState::kReady, 1));
+  ASSERT_TRUE(cell.RunTo(PickPlaceState::kReady, 1));
   const Ticket again = cell.Execute();
   ASSERT_TRUE(cell.RunToEnd(again, 5));
   EXPECT_TRUE(cell.rig.lives[again].done);

@@ -1,0 +1,198 @@
+// PP-17, PP-51: the work of preparing a path, picks a minute beside the least time there is for them, and how exact
+// placing on a belt is that changes its speed.
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "../group/watch.h"
+#include "cell.h"
+#include "takt/conveyor/belt.h"
+
+namespace takt::pickplace {
+namespace {
+
+using M = PickPlaceState;
+
+// As far as the Delta of tests/cpp/group/machines.h goes; 25 mm up, 305 mm across, 25 mm down.
+Settings StandardCycle() {
+  Settings s = Fast();
+  s.path_velocity = 4000;
+  s.path_acceleration = s.path_deceleration = 60000;
+  s.path_jerk = 3e6;
+  s.z_start_distance = s.z_target_distance = 25;
+  s.blending_radius = 12.5;
+  s.z_target = -850;
+  return s;
+}
+constexpr double kSide = 152.5;
+
+// s of this path at least, found off line by tests/tools/path_mechanisms.py with the same limits.
+double LeastTime() {
+  std::ifstream file(std::string(TAKT_SOURCE_DIR) + "/tests/data/path_optimum_joints.json");
+  for (const nlohmann::json& path : nlohmann::json::parse(file)) {
+    if (path["name"] != "delta standard cycle") continue;
+    const Rig delta = group::DeltaRobot();
+    EXPECT_EQ(path["joints"][0]["velocity"], delta.axes[0].limits.velocity);
+    EXPECT_EQ(path["joints"][0]["acceleration"], delta.axes[0].limits.acceleration);
+    EXPECT_EQ(path["joints"][0]["jerk"], delta.axes[0].limits.jerk);
+    EXPECT_EQ(path["path"]["jerk"], StandardCycle().path_jerk);
+    return path["optimum_s"];
+  }
+  ADD_FAILURE() << "no such path";
+  return 0;
+}
+
+// PP-51: there and back, over and over.
+TEST(Figures, StandardCycle) {
+  Cell cell(StandardCycle(), {}, group::DeltaRobot());
+  cell.Start({0, -kSide, -850, 0, 0, 0});
+  std::vector<Ticket> tickets;
+  for (std::size_t i = 0; i < kOrders; ++i) {
+    Configure to;
+    to.y_target = i % 2 == 0 ? kSide : -kSide;
+    cell.Give(to);
+    tickets.push_back(cell.Execute());
+  }
+  ASSERT_TRUE(cell.RunToEnd(tickets.back(), 10));
+  group::ExpectSmooth(cell.rig);
+  // Not the first one, and nothing of the planning: from end to end.
+  const double taken = static_cast<double>(cell.rig.lives[tickets.back()].final_cycle -
+                                           cell.rig.lives[tickets.front()].final_cycle) *
+                       cell.rig.cycle.period_s / (kOrders - 1);
+  const double ratio = LeastTime() / taken;
+  std::cout << 60 / (2 * taken) << " picks/min, one way " << taken << " s, least " << LeastTime() << " s, ratio "
+            << ratio << "\n";
+  EXPECT_LE(ratio, 1);
+  EXPECT_GE(ratio, 0.85);
+  EXPECT_GE(60 / (2 * taken), 90);
+}
+
+// PP-17: no cycle makes more nodes of the path than its budget has inverses for, two each; and the tool sets out within
+// a few cycles.
+TEST(Figures, PreparationIsSpreadOverCycles) {
+  constexpr std::uint64_t kMostNodes = 40;
+  constexpr std::uint64_t kMostCycles = 4;
+  for (const PathMode mode : {PathMode::kLinear, PathMode::kElliptical}) {
+    for (const double radius : {0.0, 12.5}) {
+      SCOPED_TRACE(testing::Message() << static_cast<int>(mode) << ", " << radius);
+      Settings s = StandardCycle();
+      s.path_mode = mode;
+      s.z_elliptical = 15;
+      s.blending_radius = radius;
+      Cell cell(s, {}, group::DeltaRobot());
+      cell.Start({0, -kSide, -850, 0, 0, 0});
+      Configure to;
+      to.y_target = kSide;
+      cell.Give(to);
+      const Ticket ticket = cell.Execute();
+      std::uint64_t before = 0, most = 0, cycles = 0;
+      bool moves = false;
+      while (!cell.rig.lives[ticket].ended()) {
+        cell.Step();
+        const std::uint64_t nodes = cell.rig.state.planning.nodes;
+        most = std::max(most, nodes - before);
+        before = nodes;
+        moves |= cell.rig.out().path_velocity > 0;
+        if (!moves) ++cycles;
+      }
+      std::cout << "most nodes in a cycle " << most << ", cycles until it moves " << cycles << "\n";
+      EXPECT_GT(before, kMostNodes / 4);
+      EXPECT_LE(most, kMostNodes);
+      EXPECT_LE(cycles, kMostCycles);
+      EXPECT_LE(cell.out().path_preparation_time, kMostCycles * cell.rig.cycle.period_s + 1e-9);
+    }
+  }
+}
+
+// A belt whose speed changes by a tenth, and what its encoder, of 100 increments/mm, tells of it a while later.
+struct Measured {
+  double speed = 1000, hertz = 1, dead_time_s = 0.002;
+  conveyor::BeltParams params;
+  axis::State axis;
+  axis::AxisParams axis_params;
+  Cycle cycle;
+  std::vector<FeedbackEvent> storage = std::vector<FeedbackEvent>(64);
+  FeedbackSink feedback{storage};
+  conveyor::State state;
+
+  double TrueAt(double t) const {
+    const double w = 2 * std::numbers::pi * hertz;
+    return speed * t - 0.1 * speed / w * std::cos(w * t);
+  }
+  // In the cycle that begins then.
+  KinematicState Step(double t) {
+    const double period = cycle.period_s;
+    const auto seen = [&](double when) { return std::round(100 * TrueAt(when - dead_time_s)) / 100; };
+    axis.loop_closed = true;
+    axis.actual = {seen(t), (seen(t) - seen(t - period)) / period, 0};
+    conveyor::Step({params, axis, axis_params, cycle, feedback}, state);
+    return state.travel;
+  }
+};
+
+// PP-51: the tool on the belt, told where to be at the end of a cycle, beside where the belt truly is then.
+TEST(Figures, PlacingOnABeltThatChangesItsSpeed) {
+  for (const double hertz : {0.5, 1.0, 2.0}) {
+    SCOPED_TRACE(hertz);
+    kinematics::KinematicsParams gantry;
+    gantry.gantry.emplace().axes = {kinematics::Coordinate::kX, kinematics::Coordinate::kY, kinematics::Coordinate::kZ};
+    Rig machine = group::Machine(gantry, {"x", "y", "z"}, {4000, 40000, 2e6},
+                                 {.velocity = 3000, .acceleration = 30000, .deceleration = {}, .jerk = 1.5e6});
+    Settings s = StandardCycle();
+    s.path_velocity = 3000;
+    s.path_acceleration = s.path_deceleration = 30000;
+    s.path_jerk = 1.5e6;
+    s.z_target = 0;
+    s.y_target = -100;
+    s.tracking_mode = TrackingMode::kStaticToBelt1;
+    Measured measured;
+    measured.hertz = hertz;
+    CellBelt belt;
+    belt.params.name = belt.params.axis = "belt";
+    belt.params.source = axis::MasterSource::kActualValue;
+    belt.params.dead_time_s = measured.dead_time_s;
+    belt.params.origin = {-600, 100, 0, 0, 0, 0};
+    belt.settings = {.park_z = 60, .z_distance = 25, .sync_time = 0.05, .lower_limit = 0, .upper_limit = 1200};
+    measured.params = belt.params;
+    belt.travel = [&](double t) { return measured.Step(t); };
+    Cell cell(s, {belt}, std::move(machine));
+    cell.Start({0, 0, 60, 0, 0, 0});
+    cell.Steps(100);  // the filter finds the speed
+    cell.Execute();
+    // Where the belt is when the axes are at the set points of the cycle that was stepped last.
+    const auto truth = [&] { return measured.TrueAt(static_cast<double>(cell.rig.cycle.count) * 0.001); };
+    double worst = 0;
+    int on = 0;
+    for (int i = 0; i < 20000; ++i) {
+      if (i % 1000 == 0) {  // found where it truly is
+        cell.Put(0, {0, 20, 0, 0, 0, 0});
+        conveyor::State& state = cell.belt_states[0];
+        state.objects[state.count - 1].latch = truth();
+      }
+      cell.Step();
+      ASSERT_NE(cell.state.state, M::kError);
+      conveyor::State& state = cell.belt_states[0];
+      const Order& order = cell.state.orders[0];
+      if (order.phase == Phase::kStaying) {
+        const conveyor::Object& object = *conveyor::Find(state, order.workpiece);
+        worst = std::max(worst, cell.Off(-600 + truth() - object.latch, 120, 0));
+        ++on;
+      }
+      for (const conveyor::Object& object : conveyor::ObjectsOf(state)) {
+        if (object.state != conveyor::ObjectState::kVisible) continue;
+        if (conveyor::PlaceOf(cell.belts[0].params, state, object) <= 1200) continue;
+        conveyor::Remove(object.number, state);
+        break;
+      }
+    }
+    std::cout << hertz << " Hz: " << cell.state.counters.placed << " placed, off by " << worst << " mm at most\n";
+    EXPECT_GT(cell.state.counters.placed, 10u);
+    EXPECT_GT(on, 500);
+    EXPECT_LT(worst, 0.1);
+    EXPECT_GT(worst, 1e-4) << "a test that cannot fail";
+  }
+}
+
+}  // namespace
+}  // namespace takt::pickplace

@@ -1,0 +1,221 @@
+// PP-44, CV-43: products at random on belts that change their speed. No pick that was begun leaves the work range, none
+// collides, and every product is accounted for. TAKT_LONG in the environment: 10,000 products instead of 300.
+#include <cstdlib>
+#include <iostream>
+#include <random>
+
+#include "cell.h"
+
+namespace takt::pickplace {
+namespace {
+
+constexpr double kOnWorkpiece = 1e-6;  // mm
+constexpr double kTop = 10;            // mm, of products above the belt
+constexpr double kRise = 25;           // mm, of the way down that is straight but for its rounding
+constexpr double kRounding = 10;
+constexpr double kHalfWidth = 60;  // mm, of the belt
+
+struct Place3 {
+  double x = 0, y = 0, z = 0;
+};
+
+// A cell with one belt, at random.
+struct Cellar {
+  CellBelt belt;
+  Settings settings;
+  std::function<Rig()> machine;
+  Place3 start;
+  double gap_s = 0;  // mean time between products
+};
+
+using group::Uniform;
+
+Cellar AtRandom(std::mt19937_64& random) {
+  Cellar made;
+  Settings& s = made.settings;
+  s = Fast();
+  const bool delta = Uniform(random, 0, 1) < 0.5;
+  if (delta) {
+    made.machine = group::DeltaRobot;
+    made.belt.params.origin = {-300, -80, -910, 0, 0, 0};
+    made.start = {0, 0, -850};
+    s.path_velocity = 3000;
+    s.path_acceleration = s.path_deceleration = 30000;
+    s.path_jerk = 1.5e6;
+    s.x_target = 0;
+    s.y_target = 120;
+    s.z_target = -890;
+  } else {
+    made.machine = [] { return group::Gantry(); };
+    made.belt.params.origin = {-300, 200, -60, 0, 0, 0};
+    made.start = {0, 0, 50};
+    s.x_target = Uniform(random, -200, 200);
+    s.y_target = -50;
+    s.z_target = -20;
+  }
+  s.tracking_mode = TrackingMode::kBelt1ToStatic;
+  s.z_start_distance = kRise;
+  s.blending_radius = kRounding;
+  s.path_mode = Uniform(random, 0, 1) < 0.5 ? PathMode::kLinear : PathMode::kElliptical;
+  s.z_elliptical = 15;
+  s.workpiece_rule = static_cast<WorkpieceRule>(std::uniform_int_distribution<int>(0, 2)(random));
+  CellBelt& belt = made.belt;
+  const Pose& origin = belt.params.origin;
+  belt.params.name = belt.params.axis = "belt";
+  belt.params.lower_limit = 100;
+  belt.params.upper_limit = 500;
+  belt.settings = {.park_x = origin.x + 250,
+                   .park_y = origin.y,
+                   .park_z = origin.z + 60,
+                   .z_distance = kRise,
+                   .sync_time = std::round(Uniform(random, 0, 60)) * 0.001,
+                   .lower_limit = 120,
+                   .upper_limit = 480};
+  // Between a tenth and nearly twice of it.
+  const double speed = Uniform(random, 30, delta ? 350 : 200);
+  struct Swing {
+    double share, pace, phase;
+  };
+  std::array<Swing, 2> swings{};
+  for (Swing& swing : swings) swing = {Uniform(random, 0, 0.45), Uniform(random, 0.5, 4), Uniform(random, 0, 6)};
+  belt.travel = [=](double t) {
+    KinematicState x{speed * t, speed, 0};
+    for (const Swing& w : swings) {
+      x.position -= speed * w.share / w.pace * std::cos(w.pace * t + w.phase);
+      x.velocity += speed * w.share * std::sin(w.pace * t + w.phase);
+      x.acceleration += speed * w.share * w.pace * std::cos(w.pace * t + w.phase);
+    }
+    return x;
+  };
+  made.gap_s = Uniform(random, 0.2, 1.5) * (delta ? 0.6 : 1.2);
+  return made;
+}
+
+struct Figures {
+  std::uint32_t products = 0, picked = 0, too_late = 0, interrupted = 0, refused = 0, there = 0;
+  double furthest = 0;  // mm beyond the range with the tool on a workpiece
+};
+
+class Run {
+ public:
+  Run(Cellar made, std::mt19937_64& random)
+      : gap_s_(made.gap_s), random_(random), cell_(made.settings, {made.belt}, made.machine()) {
+    cell_.Start({made.start.x, made.start.y, made.start.z, 0, 0, 0});
+    cell_.Execute();
+    cell_.Step();
+  }
+
+  void Until(std::uint32_t products, Figures& figures) {
+    const auto& counters = cell_.state.counters;
+    double next_s = 0;
+    std::uint32_t put = 0;
+    for (int i = 0; put < products || belt().count > 0 || belt().lost > cell_.state.lost_before[0]; ++i) {
+      ASSERT_LT(i, 3'000'000);
+      const double now_s = i * 0.001;
+      if (put < products && now_s >= next_s && belt().count < conveyor::kObjects) {
+        next_s = now_s + std::exponential_distribution<double>(1 / gap_s_)(random_);
+        cell_.Put(0, {Uniform(random_, -20, 100), Uniform(random_, -40, 40), kTop, 0, 0, 0});
+        ++put;
+      }
+      Step(figures);
+      if (testing::Test::HasFailure()) return;
+      ASSERT_NE(cell_.state.state, PickPlaceState::kError) << static_cast<int>(cell_.state.error);
+      const std::uint32_t uncounted = belt().lost - cell_.state.lost_before[0];  // until the next cycle
+      ASSERT_EQ(put, counters.picked + counters.missed + belt().count + uncounted);
+    }
+    EXPECT_EQ(counters.missed, counters.too_late + counters.interrupted + counters.refused);
+    figures.products += put;
+    figures.picked += counters.picked;
+    figures.too_late += counters.too_late;
+    figures.interrupted += counters.interrupted;
+    figures.refused += counters.refused;
+    figures.there += belt().count;
+  }
+
+ private:
+  conveyor::State& belt() { return cell_.belt_states[0]; }
+  const BeltSettings& range() const { return cell_.state.belts[0]; }
+
+  void Step(Figures& figures) {
+    const std::uint32_t picked = cell_.state.counters.picked;
+    cell_.rig.trace.clear();
+    cell_.outs.clear();
+    cell_.Step();
+    const KDL::Vector tool = cell_.tool();
+    const Order& order = cell_.state.orders[0];
+    const std::uint32_t bound = cell_.state.order_count > 0 ? order.workpiece : 0;
+    const double surface = cell_.belts[0].params.origin.z;
+    // Those that were picked go up with the tool.
+    const conveyor::Object* mine = bound != 0 ? conveyor::Find(belt(), bound) : nullptr;
+    if (mine) last_ = *mine;
+    const conveyor::Object& at = last_;
+    const KDL::Vector place = conveyor::PoseOf(cell_.belts[0].params, belt(), at).GetFrame().p;
+    const KDL::Vector off = tool - place;
+    const bool over = std::abs(tool.y() - cell_.belts[0].params.origin.y) < kHalfWidth;
+    const double height = tool.z() - surface - kTop;
+    // What is lower than the rounding is straight over its workpiece.
+    if (over && height < kRise - kRounding - 1e-3) {
+      ASSERT_GE(height, -kOnWorkpiece);
+      ASSERT_LT(std::hypot(off.x(), off.y()), 0.01) << "at " << height << " over the belt, workpiece " << at.number;
+    }
+    if (mine) {
+      if (height < kRise - kRounding - 1e-3 && over) lowering_ = bound;
+      if (off.Norm() < kOnWorkpiece) {
+        const double along = conveyor::PlaceOf(cell_.belts[0].params, belt(), *mine);
+        figures.furthest = std::max(figures.furthest, along - range().upper_limit);
+        ASSERT_GE(along, range().lower_limit);
+        ASSERT_LE(along, range().upper_limit);
+        ++on_;
+      }
+    }
+    if (cell_.state.counters.picked > picked) {
+      ASSERT_GE(on_, std::max(1L, std::lround(range().sync_time / 0.001)));
+      lowering_ = 0;
+    }
+    if (bound != before_) {
+      // Whoever was lowered onto was picked.
+      ASSERT_EQ(lowering_, 0u) << "given up while the tool was lowered";
+      on_ = 0;
+    }
+    before_ = bound;
+    Lose();
+  }
+
+  // As belts do.
+  void Lose() {
+    for (std::uint32_t i = belt().count; i-- > 0;) {
+      const conveyor::Object& object = belt().objects[i];
+      if (object.state != conveyor::ObjectState::kVisible) continue;
+      if (conveyor::PlaceOf(cell_.belts[0].params, belt(), object) <= *cell_.belts[0].params.upper_limit) continue;
+      conveyor::Remove(object.number, belt());
+      ++belt().lost;
+    }
+  }
+
+  double gap_s_;
+  std::mt19937_64& random_;
+  Cell cell_;
+  conveyor::Object last_;
+  std::uint32_t before_ = 0, lowering_ = 0;
+  long on_ = 0;
+};
+
+TEST(Reach, ProductsAtRandom) {
+  const int cells = std::getenv("TAKT_LONG") ? 400 : 12;
+  Figures figures;
+  for (int seed = 1; seed <= cells && !HasFailure(); ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    Run run(AtRandom(random), random);
+    run.Until(25, figures);
+  }
+  std::cout << figures.products << " products: " << figures.picked << " picked, " << figures.too_late << " too late, "
+            << figures.interrupted << " interrupted, " << figures.refused << " refused, " << figures.there
+            << " still there\n";
+  EXPECT_EQ(figures.products, figures.picked + figures.too_late + figures.interrupted + figures.refused);
+  EXPECT_GT(figures.picked, figures.products / 4);
+  EXPECT_GT(figures.too_late, 0u);
+}
+
+}  // namespace
+}  // namespace takt::pickplace
