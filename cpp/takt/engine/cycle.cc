@@ -461,11 +461,11 @@ void Control(World& w) noexcept {
   }
   for (std::size_t i = 0; i < w.poses.size(); ++i) {
     conveyor::Publish(w.poses[i], w.cycle, w.pose_states[i], w.pose_outputs[i]);
-    for (std::size_t i = 0; i < w.pick_places.size(); ++i) {
-      const PickPlace& module = w.pick_places[i];
-      pickplace::Publish(ContextOf(w, module), w.group_states[module.group], w.pick_place_states[i],
-                         w.pick_place_outputs[i]);
-    }
+  }
+  for (std::size_t i = 0; i < w.pick_places.size(); ++i) {
+    const PickPlace& module = w.pick_places[i];
+    pickplace::Publish(ContextOf(w, module), w.group_states[module.group], w.pick_place_states[i],
+                       w.pick_place_outputs[i]);
   }
 }
 
