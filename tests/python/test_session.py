@@ -230,13 +230,10 @@ def test_where_loads_really_are_is_known_of_simulated_servos() -> None:
 name: press
 axes:
   - {name: x, unit: deg, kind: rotary, limits: {velocity: 720, acceleration: 7200, jerk: 720000}, supervision: {}}
-  - {name: elsewhere}
 simulation:
   servos:
     - axis: x
       mechanics: {backlash: 0.5, coulomb_friction: 0.01}
-external:
-  drives: []
 """
     with takt.Engine(text) as engine:
         x = engine.axis("x")
@@ -247,8 +244,8 @@ external:
         engine.run(0.2)
         table = recorder.stop()["x"]
     assert table["actual_position"][-1] == pytest.approx(120, abs=0.01)
-    assert table["true_position"][-1] == pytest.approx(480.25, abs=0.01)  # over all turns, at the other end of the play
-    assert table["true_position"].max() == pytest.approx(499.75, abs=0.01)
+    assert table["true_position"][-1] == pytest.approx(480.25, abs=0.05)  # over all turns, at the other end of the play
+    assert table["true_position"].max() == pytest.approx(499.75, abs=0.05)
 
 
 def test_the_cycle_time_can_be_overruled() -> None:

@@ -121,6 +121,12 @@ class Conveyor:
         """X and Y in the world."""
         return in_world(self.origin, *place(thing, self.travel, self.settings))
 
+    @property
+    def waiting(self) -> int:
+        """How many of what has passed the sensor the control has not dealt with: it does not know of them yet, or has
+        neither gone for them nor given them up."""
+        return len(self.seen) + len(self._pictures)
+
     def _measured(self) -> tuple[float, float]:
         axis = self.belt.axis
         return axis.true_position, axis.actual_position

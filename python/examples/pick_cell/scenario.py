@@ -43,7 +43,7 @@ def play(
     seconds: float,
     speeds: tuple[tuple[float, str, float], ...] = (),
     interrupt: float | None = None,
-) -> None:
+) -> Cell:
     """Power on, pick for so long, and off again. `speeds` of belts at times, as SPEEDS; `interrupt`, as INTERRUPT."""
     robot = session.group("robot")
     axes = {name: belt.axis for name, belt in session.belts.items()}
@@ -78,6 +78,7 @@ def play(
     robot.disable().wait()
     for one in (robot, *axes.values()):
         one.power(enable=False).wait()
+    return cell
 
 
 def found(recording: takt.Recording) -> Judgement:
