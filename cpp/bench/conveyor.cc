@@ -53,13 +53,12 @@ class InStep {
     for (State& belt : belts_) {
       for (std::size_t i = 0; i < kObjects; ++i) Apply(Now(), 0, Detect{.x = 10.0 * static_cast<double>(i)}, belt);
     }
-    rig_.carriers = {
-        [](void*, std::string_view name) noexcept -> std::uint32_t { return name == "belt" ? 1 : 0; },
-        [](void* owner, std::uint32_t) noexcept {
-          const auto* self = static_cast<InStep*>(owner);
-          return CarrierOf(self->params_, self->belts_[0].travel);
-        },
-        [](void*, std::uint32_t, double position) noexcept { return position; }, this};
+    rig_.carriers = {[](void*, std::string_view name) noexcept -> std::uint32_t { return name == "belt" ? 1 : 0; },
+                     [](void* owner, std::uint32_t) noexcept {
+                       const auto* self = static_cast<InStep*>(owner);
+                       return CarrierOf(self->params_, self->belts_[0].travel);
+                     },
+                     [](void*, std::uint32_t, double position) noexcept { return position; }, this};
     rig_.StartAt({0, 0, -870, 0, 0, 0});
     group::TrackConveyorBelt track;
     track.belt = Name::Of("belt");

@@ -1,6 +1,6 @@
 // PP-50: what a cycle of a pick and place module costs with its group, a Delta, and two belts full of workpieces, from
-// one to the other without a pause; beside the group alone, as the floor. And where no workpiece can be reached, so that
-// all of them are tried in each cycle.
+// one to the other without a pause; beside the group alone, as the floor. And where no workpiece can be reached, so
+// that all of them are tried in each cycle.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -47,7 +47,8 @@ Settings OfTheDelta() {
 class Line {
  public:
   // `aside`: mm that workpieces lie beside the middle of the belts.
-  explicit Line(double aside) : aside_(aside), cell_(OfTheDelta(), {BeltAt("in", -100), BeltAt("out", 100)}, group::DeltaRobot()) {
+  explicit Line(double aside)
+      : aside_(aside), cell_(OfTheDelta(), {BeltAt("in", -100), BeltAt("out", 100)}, group::DeltaRobot()) {
     cell_.Start({0, 0, -860, 0, 0, 0});
     for (axis::State& axis : drives_) axis.loop_closed = true;
     Refill();

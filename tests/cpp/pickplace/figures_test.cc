@@ -62,9 +62,9 @@ TEST(Figures, StandardCycle) {
   ASSERT_TRUE(cell.RunToEnd(tickets.back(), 10));
   group::ExpectSmooth(cell.rig);
   // Not the first one, and nothing of the planning: from end to end.
-  const double taken = static_cast<double>(cell.rig.lives[tickets.back()].final_cycle -
-                                           cell.rig.lives[tickets.front()].final_cycle) *
-                       cell.rig.cycle.period_s / (kOrders - 1);
+  const double taken =
+      static_cast<double>(cell.rig.lives[tickets.back()].final_cycle - cell.rig.lives[tickets.front()].final_cycle) *
+      cell.rig.cycle.period_s / (kOrders - 1);
   double way = 0;
   for (std::size_t i = 1; i < cell.rig.trace.size(); ++i) {
     way += (group::ToolOf(cell.rig, cell.rig.trace[i]).p - group::ToolOf(cell.rig, cell.rig.trace[i - 1]).p).Norm();
