@@ -1,8 +1,10 @@
 // PP-50: what a cycle of a pick and place module costs with its group, a Delta, and two belts full of workpieces, from
-// one to the other without a pause; beside the group alone, as the floor.
+// one to the other without a pause; beside the group alone, as the floor. And where no workpiece can be reached, so that
+// all of them are tried in each cycle.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <vector>
 
@@ -44,11 +46,12 @@ Settings OfTheDelta() {
 // The belts really step; the rest is that of the tests.
 class Line {
  public:
-  Line() : cell_(OfTheDelta(), {BeltAt("in", -100), BeltAt("out", 100)}, group::DeltaRobot()) {
+  // `aside`: mm that workpieces lie beside the middle of the belts.
+  explicit Line(double aside) : aside_(aside), cell_(OfTheDelta(), {BeltAt("in", -100), BeltAt("out", 100)}, group::DeltaRobot()) {
     cell_.Start({0, 0, -860, 0, 0, 0});
     for (axis::State& axis : drives_) axis.loop_closed = true;
     Refill();
-    Apply(cell_.Now(), 1, 0, Control{.execute = true}, cell_.rig.state, cell_.state);
+    Apply(cell_.Now(), 0, 0, Control{.execute = true}, cell_.rig.state, cell_.state);
   }
 
   // ns of belts, module and group, from their steps to what they publish.
@@ -87,7 +90,7 @@ class Line {
         for (const conveyor::Object& object : conveyor::ObjectsOf(belt)) {
           x = std::min(x, conveyor::PlaceOf(cell_.belts[i].params, belt, object));
         }
-        Apply(BeltContext(i), 0, conveyor::Detect{.x = x - kApart}, belt);
+        Apply(BeltContext(i), 0, conveyor::Detect{.x = x - kApart, .y = aside_}, belt);
       }
     }
     feedback_.Clear();
@@ -96,6 +99,7 @@ class Line {
     return {cell_.belts[i].params, drives_[i], drive_params_, cell_.rig.cycle, feedback_};
   }
 
+  double aside_;
   Cell cell_;
   std::array<axis::State, 2> drives_;
   axis::AxisParams drive_params_;
@@ -159,8 +163,8 @@ void Cycles(benchmark::State& bench, What& what) {
   bench.counters["largest_ns"] = times.back();
 }
 
-void PickAndPlace(benchmark::State& bench) {
-  Line line;
+void PickAndPlace(benchmark::State& bench, double aside) {
+  Line line(aside);
   Cycles(bench, line);
   bench.counters["picked"] = line.module().counters.picked;
   if (line.module().state == PickPlaceState::kError) bench.SkipWithError("the module is in error");
@@ -169,8 +173,9 @@ void GroupAlone(benchmark::State& bench) {
   Floor floor;
   Cycles(bench, floor);
 }
-BENCHMARK(PickAndPlace)->Name("PickAndPlaceCycle/takt")->UseManualTime()->Iterations(20000);
-BENCHMARK(GroupAlone)->Name("PickAndPlaceCycle/group_alone")->UseManualTime()->Iterations(20000);
+BENCHMARK_CAPTURE(PickAndPlace, busy, 0.0)->UseManualTime()->Iterations(20000);
+BENCHMARK_CAPTURE(PickAndPlace, none_reachable, -600.0)->UseManualTime()->Iterations(20000);
+BENCHMARK(GroupAlone)->UseManualTime()->Iterations(20000);
 
 }  // namespace
 }  // namespace takt::pickplace

@@ -1,7 +1,8 @@
 """Pick and place modules.
 
-A pick and place module moves a group between static places and workpieces on belts: [what it does](../../docs/pick_and_place.md).
-Here it picks two workpieces from a belt that runs, puts them down at a static place, and parks.
+A pick and place module moves a group between static places and workpieces on belts
+([what it does](../../docs/pick_and_place.md)). Here it picks two workpieces from a belt that runs, puts them down at a
+static place, and parks.
 """
 
 import takt

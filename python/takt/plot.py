@@ -34,6 +34,7 @@ PICTURES = (".png", ".svg", ".pdf")
 INK = "#23282f"
 FAINT = "#8b939e"
 GRID = "#e6e9ee"
+MANY = 100  # events: beyond it starts and ends of commands are left out, and all others are drawn the fainter
 _PLAIN_LANE = 0.775  # width of a lane, as a share of the picture
 EVENT_COLOURS = {"error": style.BAD, "end": "#9aa3ae", "start": "#4b5563", "mark": "#4b5563"}
 
@@ -83,6 +84,8 @@ def draw(
     order = {q: i for i, q in enumerate(style.QUANTITY_ORDER)}
     ranked = sorted(lanes.items(), key=lambda lane: order.get(lane[0][0], len(order)))
     shown = [e for e in recording.events if e.component in components or not e.component] if events else []
+    if len(shown) > MANY:
+        shown = [e for e in shown if e.kind not in ("start", "end")]
     span = window or (_or_zero(recording.start_s), _or_zero(recording.end_s))
     rows = _event_rows(shown, span)
     depth = 1 + max((row for _, row, _ in rows), default=-1)
@@ -342,8 +345,9 @@ def _short(event: Event) -> str:
 
 
 def _mark(ax: Axes, events: Sequence[Event]) -> None:
+    alpha = 0.35 * min(1.0, 0.5 * MANY / max(len(events), 1))
     for event in events:
-        ax.axvline(event.time_s, color=EVENT_COLOURS.get(event.kind, FAINT), lw=0.8, alpha=0.35, zorder=1)
+        ax.axvline(event.time_s, color=EVENT_COLOURS.get(event.kind, FAINT), lw=0.8, alpha=alpha, zorder=1)
 
 
 # --- lanes of a verdict ---

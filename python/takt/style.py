@@ -78,6 +78,7 @@ USUAL_FIELDS = (
     *("x", "y", "z"),
     "path_velocity",
     "path_acceleration",
+    "track_state",
     "position",
     "first_place",
     "pose_x",

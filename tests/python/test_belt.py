@@ -48,6 +48,7 @@ def test_a_late_pose_is_made_good(engine: takt.Engine) -> None:
     belt.axis.move_velocity(velocity=200).wait(until="reached")
     seen = belt.detect(kind=4)
     number = int(seen.wait().value)
+    assert seen.travel_time_s == 0
     latch = belt.position - belt.velocity * engine.period * (engine.cycle - seen.cycle)
     (thing,) = belt.objects
     assert (thing.number, thing.state, thing.kind, thing.in_range) == (number, "detected", 4, False)

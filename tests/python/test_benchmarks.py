@@ -65,9 +65,11 @@ def test_belts_full_of_objects(tmp_path: Path) -> None:
 
 
 def test_a_pick_and_place_module_between_two_full_belts(tmp_path: Path) -> None:
-    """PP-50: module, belts and group; beside the group alone on the same way."""
+    """PP-50: module, belts and group, picking and with nothing in reach; beside the group alone on the same way."""
     found = rows("bench_pickplace", ".", tmp_path)
-    whole, alone = (found[f"PickAndPlaceCycle/{name}/iterations:20000/manual_time"] for name in ("takt", "group_alone"))
-    assert whole["picked"] >= 5
-    for row in (whole, alone):
+    names = ("PickAndPlace/busy", "PickAndPlace/none_reachable", "GroupAlone")
+    busy, waiting, alone = (found[f"{name}/iterations:20000/manual_time"] for name in names)
+    assert busy["picked"] >= 5
+    assert waiting["picked"] == 0
+    for row in (busy, waiting, alone):
         assert 0 < row["p98_ns"] <= row["p99.9_ns"] <= row["largest_ns"]

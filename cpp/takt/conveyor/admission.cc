@@ -83,12 +83,12 @@ void Apply(const Context& c, Ticket ticket, const Command& command, State& s) no
         return takt::InRange(body) ? CarryOut(c, body, s) : Answer{Status::Failed(ErrorId::kParameter)};
       },
       command);
-  const auto report = [&](FeedbackState state) {
-    c.feedback.Report({ticket, c.cycle.count, state, false, answer.status.error, answer.value});
+  const auto report = [&](FeedbackState state, double value) {
+    c.feedback.Report({ticket, c.cycle.count, state, false, answer.status.error, value});
   };
-  if (answer.status.failed()) return report(FeedbackState::kError);
-  report(FeedbackState::kActive);
-  report(FeedbackState::kDone);
+  if (answer.status.failed()) return report(FeedbackState::kError, 0);
+  report(FeedbackState::kActive, 0);
+  report(FeedbackState::kDone, answer.value);
 }
 
 }  // namespace takt::conveyor

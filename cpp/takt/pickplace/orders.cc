@@ -402,6 +402,8 @@ void LosePath(const Context& c, const group::State& g, bool kept, State& s) noex
 void EndLoopBehindThis(const Context& c, State& s) noexcept {
   s.loop.ends = true;
   DropNew(c, s);
+  const bool waits = s.order_count == 1 && s.orders[0].phase <= Phase::kWaiting;
+  if (waits) Drop(c, 0, FeedbackState::kAborted, ErrorId::kNone, s);
 }
 
 void RunOrders(const Context& c, group::State& g, State& s) noexcept {
@@ -409,6 +411,7 @@ void RunOrders(const Context& c, group::State& g, State& s) noexcept {
     if (!IsFree(c, g)) return;
     s.halting = false;
   }
+  if (g.ends && g.reason != kinematics::Reason::kNone) return Fail(c, TroubleOf(g), g, s);
   if (g.ends) {  // somebody else told the group to
     EndOrders(c, FeedbackState::kAborted, ErrorId::kNone, s);
     return Enter(PickPlaceState::kReady, s);

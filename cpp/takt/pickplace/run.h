@@ -58,7 +58,7 @@ void Accept(const Context& c, Ticket ticket, std::uint32_t belt, State& s) noexc
 void BeginLoop(const Context& c, Ticket ticket, State& s) noexcept;
 // Goes on with what is to be done; MOVE_PP and PREPARING_PATH.
 void RunOrders(const Context& c, group::State& g, State& s) noexcept;
-// The loop is over behind the order that is gone.
+// The loop is over behind the order that is gone; at once if that waits.
 void EndLoopBehindThis(const Context& c, State& s) noexcept;
 // All are forgotten.
 void EndOrders(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;

@@ -19,8 +19,7 @@ from takt.recording import Recording
 
 HALF_WIDTH = 60.0  # mm, of a belt
 DETAIL_S = 8.0  # s of the time line
-RIDES = {"none": "#dfe3e8", "waiting": "#c2992b", "synchronizing": "#8fb4ee", "in_sync": "#2f6fde",
-         "desynchronizing": "#d9b08a"}  # fmt: skip
+SHOWN = ("none", "synchronizing", "in_sync", "desynchronizing")
 EMPTY, FULL = style.PALETTE[0], style.PALETTE[1]
 
 
@@ -132,7 +131,7 @@ def _states(ax: Axes, recording: Recording, found: Judgement, window: tuple[floa
     for begin, end, value in plot.stretches(table["time_s"], table["track_state"]):
         if end < window[0] or begin > window[1]:
             continue
-        colour = RIDES.get(names.get(value, "").lower(), style.PALETTE[value % len(style.PALETTE)])
+        colour = style.state_colour(names.get(value, ""), value)
         ax.add_patch(Rectangle((begin, 0.6), end - begin, 0.8, fc=colour, ec="none"))
     for one in found.placed:
         ax.add_patch(Rectangle((one.held_s, -0.4), one.time_s - one.held_s, 0.8, fc=FULL, ec="none"))
@@ -140,7 +139,7 @@ def _states(ax: Axes, recording: Recording, found: Judgement, window: tuple[floa
         side.set_visible(False)
     ax.set(xlim=window, ylim=(-0.6, 1.6), yticks=[0, 1], yticklabels=["holds", "tracking"])
     ax.tick_params(colors=plot.FAINT, labelcolor=plot.INK, labelsize=9.5, length=0, labelbottom=False)
-    shown = [Patch(fc=colour, label=name.replace("_", " ")) for name, colour in RIDES.items() if name != "waiting"]
+    shown = [Patch(fc=style.STATES[name], label=name.replace("_", " ")) for name in SHOWN]
     ax.legend(handles=shown, loc="lower right", bbox_to_anchor=(1, 0.98), ncols=4, frameon=False, fontsize=9)
     ax.set_title(f"{DETAIL_S:g} s of it", loc="left", color=plot.INK, size=10.5)
 

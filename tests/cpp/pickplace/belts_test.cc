@@ -295,6 +295,37 @@ TEST(Modes, RoundAndRound) {
   }
 }
 
+// PP-43: a loop that waits for a workpiece ends at once.
+TEST(Modes, AbortedWhileWaiting) {
+  Cell cell(Quick(), {BeltAt("belt", {0, 200, -50, 0, 0, 0}, 60)});
+  cell.Start();
+  cell.Do(Mode(TrackingMode::kBelt1ToStatic));
+  const Ticket loop = cell.Execute();
+  ASSERT_TRUE(cell.RunUntil([&] { return cell.out().in_park_position; }, 5));
+  cell.Do(Control{.abort = true});
+  cell.Steps(3);
+  EXPECT_TRUE(cell.rig.lives[loop].done);
+  EXPECT_TRUE(cell.RunTo(M::kReady, 0.1));
+}
+
+// PP-20: a group that somebody else stops has no path any more; the module lets go of it.
+TEST(Modes, StoppedBySomebodyElse) {
+  Cell cell(Quick(), {BeltAt("belt", {0, 200, -50, 0, 0, 0}, 60)});
+  cell.Start();
+  cell.Put(0, {150, 0, 0, 0, 0, 0});
+  const Ticket ticket = cell.Execute(1);
+  cell.Steps(200);
+  cell.rig.Give(group::Stop{});
+  ASSERT_TRUE(cell.RunToEnd(ticket, 1));
+  EXPECT_TRUE(cell.rig.lives[ticket].aborted);
+  EXPECT_TRUE(cell.RunUntil([&] { return IsFree(cell.Now(), cell.rig.state); }, 2));
+  cell.Steps(2);
+  EXPECT_EQ(cell.state.state, M::kReady);
+  const Ticket again = cell.Execute(1);
+  ASSERT_TRUE(cell.RunToEnd(again, 5));
+  EXPECT_TRUE(cell.rig.lives[again].done);
+}
+
 // PP-43: another mode with an edge of execute; the same one again is refused.
 TEST(Modes, Changed) {
   Settings s = Quick();

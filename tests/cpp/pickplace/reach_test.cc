@@ -15,23 +15,23 @@ constexpr double kRise = 25;           // mm, of the way down that is straight b
 constexpr double kRounding = 10;
 constexpr double kHalfWidth = 60;  // mm, of the belt
 
-struct Place3 {
+struct Point {
   double x = 0, y = 0, z = 0;
 };
 
 // A cell with one belt, at random.
-struct Cellar {
+struct Given {
   CellBelt belt;
   Settings settings;
   std::function<Rig()> machine;
-  Place3 start;
+  Point start;
   double gap_s = 0;  // mean time between products
 };
 
 using group::Uniform;
 
-Cellar AtRandom(std::mt19937_64& random) {
-  Cellar made;
+Given AtRandom(std::mt19937_64& random) {
+  Given made;
   Settings& s = made.settings;
   s = Fast();
   const bool delta = Uniform(random, 0, 1) < 0.5;
@@ -96,9 +96,9 @@ struct Figures {
   double furthest = 0;  // mm beyond the range with the tool on a workpiece
 };
 
-class Run {
+class Watched {
  public:
-  Run(Cellar made, std::mt19937_64& random)
+  Watched(Given made, std::mt19937_64& random)
       : gap_s_(made.gap_s), random_(random), cell_(made.settings, {made.belt}, made.machine()) {
     cell_.Start({made.start.x, made.start.y, made.start.z, 0, 0, 0});
     cell_.Execute();
@@ -206,7 +206,7 @@ TEST(Reach, ProductsAtRandom) {
   for (int seed = 1; seed <= cells && !HasFailure(); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
-    Run run(AtRandom(random), random);
+    Watched run(AtRandom(random), random);
     run.Until(25, figures);
   }
   std::cout << figures.products << " products: " << figures.picked << " picked, " << figures.too_late << " too late, "

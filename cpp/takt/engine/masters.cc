@@ -1,0 +1,135 @@
+#include "takt/engine/masters.h"
+
+#include <algorithm>
+#include <optional>
+#include <variant>
+
+#include "takt/engine/carriers.h"
+
+namespace takt::engine {
+
+namespace {
+
+// Whether groups come behind all belts, wherever those go by themselves: they may ride on any of them.
+enum class Belts : std::uint8_t { kFirst, kAnywhere };
+
+// The n-th that is seen is what is looked for.
+struct Nth {
+  std::uint32_t n;
+  std::optional<std::uint32_t> found{};
+
+  void See(std::uint32_t axis) {
+    if (!found && axis != axis::kNoAxis && n-- == 0) found = axis;
+  }
+};
+
+void SeeMasters(const axis::CouplingRequest& r, Nth& nth) {
+  for (const axis::CouplingTerm& term : r.terms) nth.See(term.master);
+}
+
+// Of the paths of a group, each once in a row.
+void SeeMasters(const group::State& s, Nth& nth) {
+  std::uint32_t last = 0;
+  for (std::uint32_t i = 0; i < s.queue.count && !nth.found; ++i) {
+    const std::uint32_t master = s.queue.moves[(s.queue.first + i) % group::kQueue].master;
+    if (master != 0 && master != last) nth.See(master - 1);
+    last = master;
+  }
+}
+
+void SeeMembers(const group::State& s, Nth& nth) {
+  for (const std::uint32_t member : s.members) {
+    if (member != 0) nth.See(member - 1);
+  }
+}
+
+// The axes of belts whose set position counts.
+void SeeBelts(const World& w, Nth& nth) {
+  for (const Belt& belt : w.belts) {
+    if (!IsMeasured(belt.params) && w.group_of[belt.axis] == 0) nth.See(belt.axis);
+  }
+}
+
+// The axes that carry, by the number of the carrier; measured belts need none.
+void SeeCarrier(const World& w, std::uint32_t number, Nth& nth) {
+  if (number == 0) return;
+  std::size_t i = number - 1;
+  if (i < w.belts.size()) {
+    if (!IsMeasured(w.belts[i].params)) nth.See(w.belts[i].axis);
+    return;
+  }
+  i -= w.belts.size();
+  if (i < w.groups.size()) SeeMembers(w.group_states[i], nth);
+}
+
+// Of all that a group rides on, or may at any time.
+void SeeCarriers(const World& w, std::size_t group, Nth& nth) {
+  const group::State& s = w.group_states[group];
+  std::uint32_t last = 0;  // each once in a row
+  const auto see = [&](const group::Cargo& cargo) {
+    if (cargo.carrier != last) SeeCarrier(w, cargo.carrier, nth);
+    last = cargo.carrier;
+  };
+  for (const std::uint32_t carrier : s.ridden) SeeCarrier(w, carrier, nth);
+  std::ranges::for_each(s.cargoes, see);
+  see(s.track.cargo);
+  for (std::uint32_t i = 0; i < s.queue.count && !nth.found; ++i) {
+    see(s.queue.moves[(s.queue.first + i) % group::kQueue].cargo);
+  }
+}
+
+// The k-th axis that axis i must not step before: the one it follows from load on or by a cam module, those it is
+// coupled to, those it will be coupled to by buffered commands, those that its group follows or rides on, the members
+// of the group that it follows itself. Last come those of `wanted`.
+std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted,
+                                      Belts belts) {
+  const axis::State& s = w.axis_states[i];
+  Nth nth{k};
+  if (w.axis_masters[i]) nth.See(*w.axis_masters[i]);
+  if (w.module_of[i] != 0) nth.See(w.flex_cams[w.module_of[i] - 1].master.value_or(axis::kNoAxis));
+  SeeMasters(s.active.coupling, nth);
+  for (std::size_t b = 0; b < s.buffered; ++b) SeeMasters(s.buffer[b].coupling, nth);
+  if (w.group_of[i] != 0) SeeMasters(w.group_states[w.group_of[i] - 1], nth);
+  if (w.group_of[i] != 0) SeeCarriers(w, w.group_of[i] - 1, nth);
+  if (w.group_of[i] != 0 && belts == Belts::kFirst) SeeBelts(w, nth);
+  for (const group::State& group : w.group_states) {
+    for (const group::SyncedAxis& synced : group.synced) {
+      if (synced.axis == i + 1) SeeMembers(group, nth);
+    }
+  }
+  if (wanted.coupling != nullptr && i == wanted.of) SeeMasters(*wanted.coupling, nth);
+  if (wanted.group != 0 && w.group_of[i] == wanted.group) {
+    nth.See(wanted.master);
+    SeeCarrier(w, wanted.carrier, nth);
+  }
+  if (i == wanted.synced) SeeMembers(w.group_states[wanted.group - 1], nth);
+  return nth.found;
+}
+
+}  // namespace
+
+bool MakeOrder(World& w, const Wanted& wanted) noexcept {
+  const auto make = [&](Belts belts) {
+    return w.axis_order.Make([&](std::uint32_t i, std::uint32_t k) { return MasterOf(w, i, k, wanted, belts); });
+  };
+  return make(Belts::kFirst) || make(Belts::kAnywhere);
+}
+
+Wanted WantedBy(World& w, const group::Command& command, std::size_t index) noexcept {
+  const auto carrier = [&](const Name& name) { return CarriersFor(w.riders[index]).Find(name.view()); };
+  Wanted wanted{.group = static_cast<std::uint32_t>(index + 1)};
+  if (const auto* path = std::get_if<group::MovePathSynchronized>(&command)) {
+    wanted.master = axis::FindAxis(w.axis_params, path->master.view());
+  } else if (const auto* sync = std::get_if<group::SyncAxis>(&command)) {
+    wanted.synced = axis::FindAxis(w.axis_params, sync->axis.view());
+  } else if (const auto* transform = std::get_if<group::SetDynCoordTransform>(&command)) {
+    wanted.carrier = carrier(transform->carrier);
+  } else if (const auto* belt = std::get_if<group::TrackConveyorBelt>(&command)) {
+    wanted.carrier = carrier(belt->belt);
+  } else if (const auto* table = std::get_if<group::TrackRotaryTable>(&command)) {
+    wanted.carrier = carrier(table->table);
+  }
+  return wanted;
+}
+
+}  // namespace takt::engine
