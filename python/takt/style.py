@@ -49,6 +49,18 @@ STATES = {
     "synchronizing": "#37a3b5",
     "in_sync": "#9b6fd0",
     "desynchronizing": "#e08a3c",
+    # Of a pick and place module.
+    "init": "#9aa3ae",
+    "ready": "#7fb08a",
+    "service": "#6b7689",
+    "homing": "#d0a03a",
+    "jog_pos": "#37a3b5",
+    "jog_neg": "#3a86a3",
+    "preparing_path": "#c2992b",
+    "move_pp": "#9b6fd0",
+    "path_interrupt": "#8c6a55",
+    "stop": "#e08a3c",
+    "error": "#d6453d",
 }
 
 GOOD = "#2f9e6b"
