@@ -20,8 +20,8 @@ from takt.feedback import Feedback, FeedbackState
 from takt.flex_cam import FlexCam
 from takt.forecast import Forecast, Moment
 from takt.group import Group
-from takt.pick_place import PickPlace
 from takt.lcmlog import LogError, read_log
+from takt.pick_place import PickPlace
 from takt.pose import FreePose
 from takt.recording import Recording, RecordingError
 from takt.remote import RemoteSession, connect

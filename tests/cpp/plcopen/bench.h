@@ -40,7 +40,7 @@ groups:
     path: {velocity: 300, acceleration: 3000, jerk: 60000}
     base: {y: 20, c: 180}
 belts:
-  - {name: feed, axis: w}
+  - {name: feed, axis: w, origin: {y: 20, c: 180}}
 paths:
   - {name: hook, elements: [{shape: line, to: {x: 40, y: 0, z: 0}}, {shape: line, to: {x: 40, y: 20, z: 0}}]}
 simulation:
