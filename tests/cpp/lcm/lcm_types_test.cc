@@ -85,9 +85,10 @@ bool Carries(const std::string& lcm_type, const Type& type) {
     case Kind::kArray:
       return Carries(lcm_type, *type.element);
     case Kind::kStruct: {
-      std::string name(type.name);
-      name[0] = static_cast<char>(std::tolower(name[0]));
-      return lcm_type == name;
+      static const std::map<std::string_view, std::string> structs{{"Pose", "pose"},
+                                                                   {"PickPlaceAxisNumbers", "axis_numbers"}};
+      const auto found = structs.find(type.name);
+      return found != structs.end() && lcm_type == found->second;
     }
     default:
       return false;
@@ -173,6 +174,7 @@ TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   ExpectSameConstants("flex_cam_state.lcm", "STATE_", TypeOf<flexcam::ModuleState>());
   ExpectSameConstants("axis_state.lcm", "LIMITED_BY_", *outputs.FindField("limited_by")->type);
   ExpectSameConstants("group_state.lcm", "STATE_", TypeOf<group::GroupState>());
+  ExpectSameConstants("group_state.lcm", "TRACK_", TypeOf<group::TrackState>());
   ExpectSameConstants("belt_object.lcm", "STATE_", TypeOf<conveyor::ObjectState>());
   ExpectSameConstants("group_state.lcm", "REASON_", TypeOf<kinematics::Reason>());
   ExpectSameConstants("group_state.lcm", "PROBLEM_", TypeOf<path::Problem>());
@@ -190,7 +192,8 @@ TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   EXPECT_EQ(E::PACE_FAST, static_cast<int>(engine::Pace::kFast));
 }
 
-// EN-20: but for what counts in the units of a cam, or of a master that is known to the machine file only.
+// EN-20: but for what counts in the units of a cam, of a master that is known to the machine file only, or of what
+// carries a tool.
 TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(Folder())) {
@@ -198,11 +201,13 @@ TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
     ++files;
     for (const auto& [name, field] : Parse(entry.path()).fields) {
       const bool of_cam = entry.path().filename() == "flex_cam_state.lcm";
-      const bool needs_unit = (field.type == "double" && !of_cam) || name == "utime" || name.ends_with("_ns");
+      const bool of_carrier = name == "track_lag";
+      const bool needs_unit =
+          (field.type == "double" && !of_cam && !of_carrier) || name == "utime" || name.ends_with("_ns");
       EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
     }
   }
-  EXPECT_EQ(files, 20);
+  EXPECT_EQ(files, 22);
 }
 
 }  // namespace
