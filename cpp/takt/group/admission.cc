@@ -265,7 +265,7 @@ struct Applier {
     Cargo cargo;
     cargo.carrier = c.carriers.Find(m.carrier.view());
     if (cargo.carrier == 0) return Refuse(ErrorId::kUnknownTarget);
-    cargo.on = {m.x, m.y, m.z, m.a, m.b, m.c};
+    cargo.lies = {m.x, m.y, m.z, m.a, m.b, m.c};
     cargo.from = m.recorded_position ? c.carriers.TravelAt(cargo.carrier, *m.recorded_position)
                                      : c.carriers.At(cargo.carrier).travel.position;
     s.cargoes[m.pcs - 1] = cargo;

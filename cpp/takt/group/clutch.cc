@@ -45,7 +45,7 @@ MovingFrame ToolAtTravel(const Context& c, const Stretch& stretch, double way, c
                          const KinematicState& travel) {
   kinematics::Carrier carrier = CarrierOf(c, ride.cargo);
   carrier.travel = travel;
-  return kinematics::PoseOn(carrier, ride.cargo.from, kinematics::ToFrame(ride.cargo.on)) *
+  return kinematics::PoseOn(carrier, ride.cargo.from, kinematics::ToFrame(ride.cargo.lies)) *
          (ride.reference_inverse * path::At(stretch.segment, way).GetFrame());
 }
 
@@ -69,6 +69,8 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
   const double period = c.cycle.period_s;
   const TrackingParams& params = c.params.tracking;
   KinematicState demand = carrier;
+  // A move that waits does not wait for a carrier that stands.
+  if (carrier.velocity == 0 && s.queue.count > 0 && !s.lets_go) clutch.law_length = 0;
   const bool law = FollowLaw(carrier, s.lets_go, clutch, demand);
   if (s.lets_go && !law) {
     trajectory::Limits limits = clutch.limits();

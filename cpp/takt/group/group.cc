@@ -100,7 +100,7 @@ void MoveOn(const Context& c, State& s) {
     return;
   }
   // The members get to the last set point after this.
-  if (!rides && !AllMembers(c, s, axis::AtRest)) return;
+  if (rides ? !AreInStep(c, s) : !AllMembers(c, s, axis::AtRest)) return;
   if (s.ends) return ComeToRest(c, s);
   if (s.interrupted) {
     if (s.task == Task::kInterrupt) EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);

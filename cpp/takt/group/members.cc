@@ -1,12 +1,19 @@
 #include "takt/group/members.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "takt/axis/guidance.h"
 #include "takt/group/queue.h"
 #include "takt/group/systems.h"
 
 namespace takt::group {
+
+namespace {
+
+constexpr double kSame = 1e-3;  // u
+
+}  // namespace
 
 void Enter(GroupState to, State& s) noexcept {
   if (!IsLegal(s.state, to)) ++s.illegal_transitions;
@@ -33,6 +40,13 @@ ErrorId Tell(const Context& c, const State& s, std::size_t place, const axis::Co
   c.feedback.TakeOwnError();
   axis::Apply(ContextOf(c, s, place), 0, 0, command, MemberOf(c, s, place));
   return c.feedback.TakeOwnError();
+}
+
+bool AreInStep(const Context& c, const State& s) noexcept {
+  return AllMembers(c, s, [](const axis::State& member) {
+    const double lag = member.guidance.demand.position - member.origin - member.setpoint.position;
+    return member.guidance.chase.in_step || std::abs(lag) <= kSame;
+  });
 }
 
 ErrorId TellAll(const Context& c, const State& s, const axis::Command& command) noexcept {

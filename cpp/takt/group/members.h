@@ -26,6 +26,9 @@ bool AllMembers(const Context& c, const State& s, const Test& test) noexcept {
   return true;
 }
 
+// All members are where they are told to be, so far as anybody can see: what is asked of them is within their limits.
+bool AreInStep(const Context& c, const State& s) noexcept;
+
 ErrorId Add(const Context& c, const AddAxis& command, State& s) noexcept;
 ErrorId Remove(const Context& c, const RemoveAxis& command, State& s) noexcept;
 ErrorId Ungroup(const Context& c, State& s) noexcept;

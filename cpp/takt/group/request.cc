@@ -17,8 +17,8 @@ void describe(Enumeration<MoveKind>& e) {
 void describe(Description<Cargo>& d) {
   d.about("Something that lies on a carrier.");
   d.internal<&Cargo::carrier>("Its number; 0: none.");
-  d.internal<&Cargo::from>("Travel at which it lay at `on`.");
-  d.internal<&Cargo::on>("Of the origin.");
+  d.internal<&Cargo::from>("Travel at which it lay there.");
+  d.internal<&Cargo::lies>("Of the origin.");
   d.internal<&Cargo::has_origin>("Another origin than that of the carrier.");
   d.internal<&Cargo::origin>("In the MCS.");
 }

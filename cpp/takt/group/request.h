@@ -16,11 +16,11 @@ namespace takt::group {
 
 enum class MoveKind : std::uint8_t { kNone, kLinear, kCircular, kDirect, kPath, kArch };
 
-// Something that lies on a carrier: on + the carrier's travel since `from`.
+// Something that lies on a carrier: its place then, and the carrier's travel since.
 struct Cargo {
   std::uint32_t carrier = 0;  // its number; 0: none, it stands in the MCS
-  double from = 0;            // travel at which it lay at `on`
-  kinematics::Pose on;        // of the carrier's origin
+  double from = 0;            // travel at which it lay there
+  kinematics::Pose lies;      // seen from the carrier's origin
   bool has_origin = false;    // another one than that of the carrier itself:
   kinematics::Pose origin;    // in the MCS
 

@@ -67,7 +67,7 @@ kinematics::Carrier Clutched(const State& s, std::uint64_t ride, kinematics::Car
 
 MovingFrame Displaced(const Ride& ride, const kinematics::Carrier& carrier) {
   if (!Moves(ride)) return MovingFrame(ride.reference_inverse);
-  return kinematics::PoseOn(carrier, ride.cargo.from, kinematics::ToFrame(ride.cargo.on)) * ride.reference_inverse;
+  return kinematics::PoseOn(carrier, ride.cargo.from, kinematics::ToFrame(ride.cargo.lies)) * ride.reference_inverse;
 }
 
 template <typename Displacement>
@@ -94,7 +94,7 @@ kinematics::Carrier CarrierOf(const Context& c, const Cargo& cargo, double ahead
 }
 
 MovingFrame PlaceOf(const Context& c, const Cargo& cargo, double ahead_s) noexcept {
-  return kinematics::PoseOn(CarrierOf(c, cargo, ahead_s), cargo.from, kinematics::ToFrame(cargo.on));
+  return kinematics::PoseOn(CarrierOf(c, cargo, ahead_s), cargo.from, kinematics::ToFrame(cargo.lies));
 }
 
 bool Moves(const Ride& ride) noexcept {

@@ -230,9 +230,7 @@ void SitOn(const Context& c, const Ride& ride, const path::Point& place, State& 
 void EndMotion(const Brake& brake, bool lets_go, State& s) noexcept {
   s.ends = true;
   s.lets_go = lets_go;
-  if (lets_go) {
-    for (Clutch& clutch : s.clutches) clutch.law_length = 0;
-  }
+  for (Clutch& clutch : s.clutches) clutch.law_length = 0;  // whoever takes over does not wait for the carrier
   s.interrupted = false;
   s.brake = brake;
 }

@@ -57,7 +57,7 @@ ErrorId Begin(const Context& c, Ticket ticket, std::uint32_t pcs, double offset,
 // Where the carrier's travel would be if the tool, where it is, were where the object is along the travel.
 double TravelOfTool(const Track& track, const kinematics::Carrier& carrier, const Frame& tool) {
   const KDL::Vector there = carrier.origin.Inverse() * tool.p;
-  const kinematics::Pose& on = track.cargo.on;
+  const kinematics::Pose& on = track.cargo.lies;
   if (carrier.kind == kinematics::CarrierKind::kStraight) return track.cargo.from + there.x() - on.x;
   const double now = carrier.travel.position;
   if (std::hypot(there.x(), there.y()) < kCenter || std::hypot(on.x, on.y) < kCenter) return now;
@@ -85,7 +85,7 @@ void SitDown(const Context& c, const kinematics::Carrier& carrier, State& s) {
   ride.cargo = track.cargo;
   kinematics::Carrier there = carrier;
   there.travel = clutch.travel;
-  const Frame on = kinematics::ToFrame(track.cargo.on);
+  const Frame on = kinematics::ToFrame(track.cargo.lies);
   ride.reference_inverse = kinematics::PoseOn(there, track.cargo.from, on).GetFrame().Inverse();
   ride.displaces = true;
   ForgetPlan(c, s);
@@ -156,7 +156,7 @@ ErrorId BeginTracking(const Context& c, Ticket ticket, const TrackConveyorBelt& 
   Cargo& cargo = track.cargo;
   cargo.carrier = c.carriers.Find(m.belt.view());
   if (cargo.carrier == 0) return ErrorId::kUnknownTarget;
-  cargo.on = {m.x, m.y, m.z, m.a, m.b, m.c};
+  cargo.lies = {m.x, m.y, m.z, m.a, m.b, m.c};
   cargo.has_origin = m.origin_x || m.origin_y || m.origin_z || m.origin_a || m.origin_b || m.origin_c;
   if (cargo.has_origin) {
     cargo.origin = {m.origin_x.value_or(0), m.origin_y.value_or(0), m.origin_z.value_or(0),
@@ -179,7 +179,7 @@ ErrorId BeginTracking(const Context& c, Ticket ticket, const TrackRotaryTable& m
   Cargo& cargo = track.cargo;
   cargo.carrier = c.carriers.Find(m.table.view());
   if (cargo.carrier == 0) return ErrorId::kUnknownTarget;
-  cargo.on = {m.x, m.y, m.z, m.a, m.b, m.c};
+  cargo.lies = {m.x, m.y, m.z, m.a, m.b, m.c};
   const kinematics::Carrier carrier = c.carriers.At(cargo.carrier);
   cargo.from = m.recorded_position ? c.carriers.TravelAt(cargo.carrier, *m.recorded_position) : carrier.travel.position;
   track.sense = carrier.travel.velocity < 0 ? -1 : 1;
@@ -226,9 +226,10 @@ void WatchTracking(const Context& c, State& s) noexcept {
   const double apart = std::abs(clutch->travel.position - CarrierOf(c, track.cargo).travel.position);
   const TrackingParams& params = c.params.tracking;
   const bool near = clutch->coupled || (clutch->law_length == 0 && apart <= params.tolerance && params.tolerance > 0);
-  track.near_cycles = near ? track.near_cycles + 1 : 0;
+  track.near_cycles = near && AreInStep(c, s) ? track.near_cycles + 1 : 0;
   const bool was = track.in_sync;
-  track.in_sync = near && static_cast<double>(track.near_cycles) * c.cycle.period_s >= params.tolerance_time_s;
+  track.in_sync =
+      track.near_cycles > 0 && static_cast<double>(track.near_cycles) * c.cycle.period_s >= params.tolerance_time_s;
   if (track.in_sync != was) {
     c.feedback.Report({track.ticket, c.cycle.count, FeedbackState::kActive, track.in_sync, ErrorId::kNone, 0});
   }
@@ -252,7 +253,7 @@ TrackState TrackStateOf(const Context& c, const State& s) noexcept {
     return to ? TrackState::kSynchronizing : TrackState::kDesynchronizing;
   }
   if (s.track.started) return s.track.in_sync ? TrackState::kInSync : TrackState::kSynchronizing;
-  return Slips(s) ? TrackState::kSynchronizing : TrackState::kInSync;
+  return Slips(s) || !AreInStep(c, s) ? TrackState::kSynchronizing : TrackState::kInSync;
 }
 
 }  // namespace takt::group

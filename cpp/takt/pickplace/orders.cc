@@ -137,6 +137,7 @@ void Park(const Context& c, std::uint32_t belt, group::State& g, State& s) {
 
 // Its moves are given; or it waits for a workpiece, where such wait.
 void Begin(const Context& c, group::State& g, Order& order, State& s) {
+  s.in_target = false;
   Place target = order.target;
   if (!IsStatic(order)) {
     const conveyor::Object* object = s.parking ? nullptr : ChooseWorkpiece(c, g, order, s);

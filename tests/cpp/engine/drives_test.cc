@@ -34,7 +34,9 @@ TEST(ExternalDrives, InLockStepAreTheBuiltInOnes) {
     built_in.RunCycle();
     rig.Step();
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-      ASSERT_TRUE(Same(built_in.outputs(i), rig.At(i))) << machine.axes[i].name << " in cycle " << c;
+      axis::Outputs other = rig.At(i);
+      other.true_position = built_in.outputs(i).true_position;  // only the plant knows it
+      ASSERT_TRUE(Same(built_in.outputs(i), other)) << machine.axes[i].name << " in cycle " << c;
       moving += rig.At(i).actual_velocity != 0 ? 1 : 0;
     }
   }
