@@ -108,8 +108,8 @@ def draw() -> Figure:
     speed.set_ylabel("speed [mm/s]", color=plot.INK, size=10.5)
     speed.set_xlabel("travel of the belt since the object was seen [mm]", color=plot.INK, size=10.5)
     speed.set_xlim(travel[0], travel[-1])
-    for ax in (place, speed):
-        ax.legend(loc="center left", frameon=False, fontsize=10, labelcolor=plot.INK)
+    for ax, where in ((place, "upper left"), (speed, "center left")):
+        ax.legend(loc=where, frameon=False, fontsize=10, labelcolor=plot.INK)
     return figure
 
 

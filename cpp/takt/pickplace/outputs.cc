@@ -75,7 +75,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::missed_too_late>("They left the range.");
   d.internal<&O::missed_interrupted>("The path to them was stopped or aborted.");
   d.internal<&O::missed_refused>("There was no path to them.");
-  d.internal<&O::picks_per_minute>(unit::one, "By the time between the last picks.");
+  d.internal<&O::picks_per_minute>(Unit{"1/min", ""}, "By the time between the last picks.");
   d.internal<&O::internal_control_active>("The group is given to others. T&P: xInternalControlActive.");
   d.internal<&O::axes_enabled>("All axes are on. T&P: xAxesEnabled.");
   d.internal<&O::axes_group_enabled>("The group is enabled. T&P: xAxesGroupEnabled.");
