@@ -85,8 +85,8 @@ bool Carries(const std::string& lcm_type, const Type& type) {
     case Kind::kArray:
       return Carries(lcm_type, *type.element);
     case Kind::kStruct: {
-      static const std::map<std::string_view, std::string> structs{{"Pose", "pose"},
-                                                                   {"PickPlaceAxisNumbers", "axis_numbers"}};
+      static const std::map<std::string_view, std::string> structs{
+          {"Histogram", "histogram"}, {"Pose", "pose"}, {"PickPlaceAxisNumbers", "axis_numbers"}};
       const auto found = structs.find(type.name);
       return found != structs.end() && lcm_type == found->second;
     }
