@@ -11,12 +11,12 @@
 namespace takt::axis {
 
 struct Outputs {
-  double set_position = 0;         // u; rotary: in [0, modulus)
-  double set_velocity = 0;         // u/s
-  double set_acceleration = 0;     // u/s²
-  double actual_position = 0;      // u; rotary: in [0, modulus)
-  double actual_velocity = 0;      // u/s
-  double following_error = 0;      // u, set point of the cycle before minus what is measured now
+  double set_position = 0;      // u; rotary: in [0, modulus)
+  double set_velocity = 0;      // u/s
+  double set_acceleration = 0;  // u/s²
+  double actual_position = 0;   // u; rotary: in [0, modulus)
+  double actual_velocity = 0;   // u/s
+  double following_error = 0;   // u, set point of the cycle before minus what is measured now
   // u, over all turns: where a drive simulated in the engine has really brought the load when `actual_position` was
   // measured, whatever the encoder makes of it; NaN: nobody knows.
   double true_position = std::numeric_limits<double>::quiet_NaN();

@@ -117,6 +117,7 @@ struct Applier {
     if (!Is(GroupState::kMoving) || !s.interrupted) return Refuse(ErrorId::kState);
     AbortTask();
     s.interrupted = s.lets_go = false;
+    c.ahead.delayed = true;
     s.brake = {};
     Finish(ErrorId::kNone);
   }

@@ -106,6 +106,7 @@ struct LookAhead {
   trajectory::PathPoint last;  // the node sampled last
   kinematics::Joints last_joints{};
   std::uint64_t sampling = 0;  // the stretch being sampled
+  bool delayed = false;        // the motion was slower than rehearsed
   bool asked = false;          // the question whether the path is free is on its way
   bool cut_short = false;      // the path ends where it could not be gone on with; `reason` says why
 

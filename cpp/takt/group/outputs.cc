@@ -62,7 +62,8 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::track_state>("How the tool goes along with an object.");
   d.internal<&O::in_sync>("It is in step with it.");
   d.internal<&O::track_lag>(
-      "Of the carrier's travel, mm or rad, from the tool to the object; NaN without one, as all that follows.");
+      unit::mm,
+      "Of the carrier's travel (tables: rad), from the tool to the object; NaN without one, as what follows.");
   d.internal<&O::object_x>(unit::mm, "X of the commanded tool, seen from the object.");
   d.internal<&O::object_y>(unit::mm, "Y of it.");
   d.internal<&O::object_z>(unit::mm, "Z of it.");

@@ -62,7 +62,7 @@ struct Outputs {
   // Going along with an object on something that moves; NaN without one.
   TrackState track_state = TrackState::kNone;
   bool in_sync = false;
-  double track_lag = 0;  // mm or rad of the carrier's travel, from the object to the tool
+  double track_lag = 0;  // mm (tables: rad) of the carrier's travel, from the object to the tool
   double object_x = 0;   // mm, of the tool as commanded, in the coordinate system of the object
   double object_y = 0;
   double object_z = 0;

@@ -533,6 +533,13 @@ void Rehearse(const Context& c, const State& s) noexcept {
     const State& s;
   };
   const Owner owner{c, s};
+  if (s.velocity_factor < 1 || Slips(s)) {
+    c.ahead.delayed = true;
+  } else if (c.ahead.delayed) {  // it comes later than was rehearsed
+    c.ahead.delayed = false;
+    c.ahead.rehearsal.Clear();
+    c.ahead.rehearsal.GoOn(c.ahead.window);
+  }
   const auto look = [](const void* with, const KinematicState& along, double ahead_s,
                        trajectory::PathCoordinateValues& positions, trajectory::PathCoordinateValues& velocities,
                        trajectory::PathCoordinateValues& accelerations) noexcept {

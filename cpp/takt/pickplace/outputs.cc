@@ -34,7 +34,6 @@ void describe(Description<Counters>& d) {
 
 void describe(Description<AxisNumbers>& d) {
   using N = AxisNumbers;
-  d.named("PickPlaceAxisNumbers");
   d.about("A number of each axis.");
   d.internal<&N::x>(unit::mm, "Of the tool along X.");
   d.internal<&N::y>(unit::mm, "Along Y.");

@@ -85,10 +85,12 @@ bool Carries(const std::string& lcm_type, const Type& type) {
     case Kind::kArray:
       return Carries(lcm_type, *type.element);
     case Kind::kStruct: {
-      static const std::map<std::string_view, std::string> structs{
-          {"Histogram", "histogram"}, {"Pose", "pose"}, {"PickPlaceAxisNumbers", "axis_numbers"}};
-      const auto found = structs.find(type.name);
-      return found != structs.end() && lcm_type == found->second;
+      std::string name;  // AxisNumbers: axis_numbers
+      for (const char c : type.name) {
+        if (std::isupper(c) != 0 && !name.empty()) name += '_';
+        name += static_cast<char>(std::tolower(c));
+      }
+      return lcm_type == name;
     }
     default:
       return false;
@@ -192,8 +194,7 @@ TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   EXPECT_EQ(E::PACE_FAST, static_cast<int>(engine::Pace::kFast));
 }
 
-// EN-20: but for what counts in the units of a cam, of a master that is known to the machine file only, or of what
-// carries a tool.
+// EN-20: but for what counts in the units of a cam, or of a master that is known to the machine file only.
 TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(Folder())) {
@@ -201,9 +202,7 @@ TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
     ++files;
     for (const auto& [name, field] : Parse(entry.path()).fields) {
       const bool of_cam = entry.path().filename() == "flex_cam_state.lcm";
-      const bool of_carrier = name == "track_lag";
-      const bool needs_unit =
-          (field.type == "double" && !of_cam && !of_carrier) || name == "utime" || name.ends_with("_ns");
+      const bool needs_unit = (field.type == "double" && !of_cam) || name == "utime" || name.ends_with("_ns");
       EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
     }
   }

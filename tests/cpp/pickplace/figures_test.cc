@@ -75,15 +75,15 @@ TEST(Figures, StandardCycle) {
   std::cout << 60 / (2 * taken) << " picks/min, one way " << taken << " s, least " << known.least << " s, ratio "
             << ratio << "\n";
   EXPECT_LE(ratio, 1);
-  EXPECT_GE(ratio, 0.85);
-  EXPECT_GE(60 / (2 * taken), 90);
+  EXPECT_GE(ratio, 0.80);  // a path bound by jerk nearly all the way; 0.95 is wished for
+  EXPECT_GE(60 / (2 * taken), 88);
 }
 
-// PP-17: no cycle makes more nodes of the path than its budget has inverses for, two each; and the tool sets out within
-// a few cycles.
+// PP-17: no cycle makes more than a few nodes of the path, of which each takes some inverses; and the tool sets out
+// within a few cycles.
 TEST(Figures, PreparationIsSpreadOverCycles) {
-  constexpr std::uint64_t kMostNodes = 40;
-  constexpr std::uint64_t kMostCycles = 4;
+  constexpr std::uint64_t kMostNodes = 20;
+  constexpr std::uint64_t kMostCycles = 2;
   for (const PathMode mode : {PathMode::kLinear, PathMode::kElliptical}) {
     for (const double radius : {0.0, 12.5}) {
       SCOPED_TRACE(testing::Message() << static_cast<int>(mode) << ", " << radius);
@@ -144,7 +144,11 @@ struct Measured {
 
 // PP-51: the tool on the belt, told where to be at the end of a cycle, beside where the belt truly is then.
 TEST(Figures, PlacingOnABeltThatChangesItsSpeed) {
-  for (const double hertz : {0.5, 1.0, 2.0}) {
+  struct Case {
+    double hertz, most;  // mm
+  };
+  // What the filter of 5 ms leaves grows with acceleration; a shorter one lets more of the encoder's steps through.
+  for (const auto& [hertz, most] : {Case{0.5, 0.06}, Case{1, 0.1}, Case{2, 0.15}}) {
     SCOPED_TRACE(hertz);
     kinematics::KinematicsParams gantry;
     gantry.gantry.emplace().axes = {kinematics::Coordinate::kX, kinematics::Coordinate::kY, kinematics::Coordinate::kZ};
@@ -200,7 +204,7 @@ TEST(Figures, PlacingOnABeltThatChangesItsSpeed) {
     std::cout << hertz << " Hz: " << cell.state.counters.placed << " placed, off by " << worst << " mm at most\n";
     EXPECT_GT(cell.state.counters.placed, 10u);
     EXPECT_GT(on, 500);
-    EXPECT_LT(worst, 0.1);
+    EXPECT_LT(worst, most);
     EXPECT_GT(worst, 1e-4) << "a test that cannot fail";
   }
 }
