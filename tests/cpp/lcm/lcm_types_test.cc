@@ -194,8 +194,7 @@ TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   EXPECT_EQ(E::PACE_FAST, static_cast<int>(engine::Pace::kFast));
 }
 
-// EN-20: but for what counts in the units of a cam, of a master that is known to the machine file only, or of what
-// carries a tool.
+// EN-20: but for what counts in the units of a cam, or of a master that is known to the machine file only.
 TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(Folder())) {
@@ -203,9 +202,7 @@ TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
     ++files;
     for (const auto& [name, field] : Parse(entry.path()).fields) {
       const bool of_cam = entry.path().filename() == "flex_cam_state.lcm";
-      const bool of_carrier = name == "track_lag";
-      const bool needs_unit =
-          (field.type == "double" && !of_cam && !of_carrier) || name == "utime" || name.ends_with("_ns");
+      const bool needs_unit = (field.type == "double" && !of_cam) || name == "utime" || name.ends_with("_ns");
       EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
     }
   }

@@ -64,6 +64,17 @@ inline engine::Machine WithBelt(engine::Machine machine) {
   return machine;
 }
 
+// With a pick and place module "picker" that moves its group.
+inline engine::Machine WithPicker(engine::Machine machine) {
+  pickplace::PickPlaceParams picker;
+  picker.name = "picker";
+  picker.group = machine.groups[0].name;
+  picker.belts.resize(1);
+  picker.belts[0].belt = "infeed";
+  machine.pick_and_place = {picker};
+  return machine;
+}
+
 // An LCM network that no other test uses; its port is below those that systems give away by themselves.
 inline std::string NewUrl() {
   static int port = 10'000 + getpid() % 500 * 4;
