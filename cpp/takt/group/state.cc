@@ -96,6 +96,7 @@ void describe(Description<Track>& d) {
   d.internal<&Track::in_sync>("The tool goes along.");
   d.internal<&Track::near_cycles>("For so long.");
   d.internal<&Track::cargo>("The object.");
+  d.internal<&Track::kind>("Of the carrier.");
   d.internal<&Track::sense>("Of the travel.");
   d.internal<&Track::begin>("Where it begins.");
   d.internal<&Track::end>("Where it ends.");

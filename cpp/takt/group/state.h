@@ -11,6 +11,7 @@
 #include "takt/group/request.h"
 #include "takt/group/state_table.h"
 #include "takt/group/track_state.h"
+#include "takt/kinematics/carrier.h"
 #include "takt/kinematics/joints.h"
 #include "takt/trajectory/limits.h"
 #include "takt/trajectory/path_pace.h"
@@ -77,6 +78,7 @@ struct Track {
   bool in_sync = false;
   std::uint64_t near_cycles = 0;
   Cargo cargo;
+  kinematics::CarrierKind kind = kinematics::CarrierKind::kStraight;
   double sense = 1;  // of the travel
   double begin = 0;
   double end = 0;

@@ -27,9 +27,7 @@ double Progress(const Track& track, const kinematics::Carrier& carrier) {
 
 ErrorId Check(const Context& c, const State& s, const Track& track, const kinematics::Carrier& carrier) {
   if (!HasTool(c, s)) return ErrorId::kState;
-  if (carrier.kind != kinematics::CarrierKind::kStraight && carrier.kind != kinematics::CarrierKind::kTurning) {
-    return ErrorId::kUnknownTarget;
-  }
+  if (carrier.kind != track.kind) return ErrorId::kUnknownTarget;
   if (track.begin > track.end) return ErrorId::kTrackOrder;
   if (track.end - track.begin < track.in_distance) return ErrorId::kTrackShort;
   if (track.sense * carrier.travel.velocity < kBackwards) return ErrorId::kBeltBackwards;
@@ -74,7 +72,11 @@ void SitDown(const Context& c, const kinematics::Carrier& carrier, State& s) {
   Track& track = s.track;
   Clutch clutch;
   clutch.used = true;
-  clutch.law_begin = carrier.travel.position;
+  // Where it should begin, if that was passed just now.
+  const double begin = track.cargo.from + track.sense * track.begin;
+  const double passed = std::abs(carrier.travel.position - begin);
+  const bool just = passed <= 2 * c.cycle.period_s * std::abs(carrier.travel.velocity);
+  clutch.law_begin = just ? begin : carrier.travel.position;
   clutch.law_length = track.sense * track.in_distance;
   const bool given = track.in_distance > 0 && track.in_tool > 0;
   clutch.travel.position = given ? clutch.law_begin + clutch.law_length - track.sense * track.in_tool
@@ -142,7 +144,7 @@ void Leave(const Context& c, double distance, double of_tool, State& s) {
   EndMotion({}, true, s);
   s.track.ends = true;
   if (Clutch* clutch = ClutchOf(c, s); clutch && distance > 0) {
-    clutch->law_begin = CarrierOf(c, s.track.cargo).travel.position;
+    clutch->law_begin = clutch->travel.position;
     clutch->law_length = s.track.sense * distance;
     clutch->law_from = clutch->travel.position;
     clutch->law_way = s.track.sense * (of_tool > 0 ? of_tool : 0.5 * distance);
@@ -182,6 +184,7 @@ ErrorId BeginTracking(const Context& c, Ticket ticket, const TrackRotaryTable& m
   cargo.lies = {m.x, m.y, m.z, m.a, m.b, m.c};
   const kinematics::Carrier carrier = c.carriers.At(cargo.carrier);
   cargo.from = m.recorded_position ? c.carriers.TravelAt(cargo.carrier, *m.recorded_position) : carrier.travel.position;
+  track.kind = kinematics::CarrierKind::kTurning;
   track.sense = carrier.travel.velocity < 0 ? -1 : 1;
   track.begin = kRadians * m.start_angle;
   track.end = m.end_angle ? kRadians * *m.end_angle : std::numeric_limits<double>::infinity();

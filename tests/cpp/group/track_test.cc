@@ -294,7 +294,7 @@ TEST(Track, StaysInStepOrKeepsTheLimits) {
   double out_of_step = 0;
   const Sample stays = HardestOf(AfterSync::kStay, out_of_step);
   EXPECT_GE(stays.out.acceleration, 2000 - 1);  // the belt steps harder than the axes can, who make up for it
-  EXPECT_LE(out_of_step, 0.05);  // until the axes have made up for what their jerk cost
+  EXPECT_LE(out_of_step, 0.05);                 // until the axes have made up for what their jerk cost
   const Sample limited = HardestOf(AfterSync::kLimited, out_of_step);
   EXPECT_LE(limited.out.acceleration, 500 * (1 + 1e-9));
   EXPECT_GT(out_of_step, 0.1);
