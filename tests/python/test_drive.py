@@ -35,7 +35,12 @@ def work(session: takt.Session) -> takt.Recording:
 
 
 def same(a: takt.Recording, b: takt.Recording) -> bool:
-    return all(a[axis].tobytes() == b[axis].tobytes() for axis in ("x", "y.2", "z"))
+    def seen(recording: takt.Recording, axis: str) -> bytes:
+        table = recording[axis].copy()
+        table["true_position"] = 0  # only the plant knows it
+        return table.tobytes()
+
+    return all(seen(a, axis) == seen(b, axis) for axis in ("x", "y.2", "z"))
 
 
 def test_a_plant_in_another_process_is_the_built_in_one(tmp_path: Path) -> None:
