@@ -101,7 +101,7 @@ struct Cell {
 void PickOne(Cell& run) {
   run.Give(kPicker, Command(pickplace::Control{.regulator_on = true}));
   run.Give(4, axis::Command(axis::Power{}));
-  run.Cycles(100);
+  run.Cycles(1000);
   run.Give(4, axis::Command(axis::MoveVelocity{.velocity = 100}));
   run.Give(4 + 1 + 1, conveyor::Command(conveyor::Detect{.x = 50}));
   run.Give(kPicker, Command(pickplace::Control{.execute = true, .set_target = 1}));

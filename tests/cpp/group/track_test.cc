@@ -153,6 +153,7 @@ TEST(Track, EndsWithStop) {
   rig.Start({0, 0, 0});
   const auto belts = Put(rig, {SlowBelt(100)});
   const Ticket track = rig.Give(Example());
+  rig.Step();
   while (!rig.out().in_sync && rig.cycle.count < 5000) rig.Step();
   const Ticket stop = rig.Give(Stop{});
   ASSERT_TRUE(rig.RunToEnd(stop, 2));
@@ -220,6 +221,7 @@ TEST(Track, OnATableEitherWayRound) {
     m.end_angle = 140.0;
     const Ticket track = rig.Give(m);
     std::uint64_t steps = 0;
+    rig.Step();
     while (!rig.out().in_sync && ++steps < 5000) rig.Step();
     ASSERT_TRUE(rig.out().in_sync);
     const double c0 = rig.out().c;
@@ -245,6 +247,7 @@ TEST(Track, PublishesWithAndWithoutTheBeltsShare) {
   TrackConveyorBelt m = Example();
   m.end_distance = {};
   rig.Give(m);
+  rig.Step();
   while (!rig.out().in_sync && rig.cycle.count < 5000) rig.Step();
   MoveLinearAbsolute move{.x = 30, .y = 0, .z = 0, .velocity = 50};
   move.coordinate_system = CoordinateSystem::kPcs;
@@ -359,6 +362,7 @@ TEST(Track, FromBeltToBelt) {
   TrackConveyorBelt m = Example();
   m.end_distance = {};
   const Ticket first = rig.Give(m);
+  rig.Step();
   while (!rig.out().in_sync && rig.cycle.count < 5000) rig.Step();
   TrackConveyorBelt other;
   other.belt = Name::Of("other");

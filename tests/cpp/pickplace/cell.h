@@ -112,7 +112,7 @@ class Cell {
   template <typename Until>
   bool RunUntil(const Until& until, double seconds = 10) {
     for (auto n = std::llround(seconds / rig.cycle.period_s); n > 0; --n) {
-      if (until()) return true;
+      if (!outs.empty() && until()) return true;  // nothing is published before the first cycle
       Step();
     }
     return until();
