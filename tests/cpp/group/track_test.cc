@@ -277,6 +277,7 @@ Sample HardestOf(AfterSync after, double& out_of_step) {
   TrackConveyorBelt m = Example();
   m.end_distance = {};
   rig.Give(m);
+  rig.Step();
   while (!rig.out().in_sync && rig.cycle.count < 1900) rig.Step();
   EXPECT_TRUE(rig.out().in_sync);
   Sample hardest = rig.trace.back();
