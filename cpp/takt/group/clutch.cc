@@ -15,8 +15,13 @@ namespace {
 
 // Of the axes' limits; the rest is for what changes on the way.
 constexpr double kShare = 0.9;
+constexpr double kBothShare = 0.5;
+// Of that, for carriers: bends of the path take their part, too, and a path that speeds up takes its acceleration back
+// at once.
+constexpr double kCarrierShare = 0.25;
 constexpr double kLeastAcceleration = 0.1;  // of an axis, left beside what its bends need
 constexpr int kPlaces = 4;
+constexpr std::uint64_t kLimitCycles = 16;  // after so many they are worked out again
 constexpr double kLeastOverride = 0.01;
 constexpr double kPlacesApart_s = 0.05;
 
@@ -64,6 +69,18 @@ bool FollowLaw(const KinematicState& carrier, bool out, Clutch& clutch, Kinemati
   return true;
 }
 
+trajectory::Limits Shared(trajectory::Limits limits, double share) {
+  const double carriers = share < 1 ? share * kCarrierShare : 1;
+  limits.acceleration *= carriers;
+  limits.deceleration *= carriers;
+  limits.jerk *= carriers;
+  return limits;
+}
+
+trajectory::Limits LimitsNow(const Clutch& clutch, const State& s) {
+  return clutch.coupled && !s.lets_go ? clutch.limits() : Shared(clutch.limits(), BrakeShare(s));
+}
+
 void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& clutch) {
   trajectory::Planner& planner = PlannerOf(c, s);
   const double period = c.cycle.period_s;
@@ -72,8 +89,9 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
   // A move that waits does not wait for a carrier that stands.
   if (carrier.velocity == 0 && s.queue.count > 0 && !s.lets_go) clutch.law_length = 0;
   const bool law = FollowLaw(carrier, s.lets_go, clutch, demand);
+  const trajectory::Limits limits_now = LimitsNow(clutch, s);
   if (s.lets_go && !law) {
-    trajectory::Limits limits = clutch.limits();
+    trajectory::Limits limits = limits_now;
     if (s.brake.deceleration > 0) limits.deceleration = std::min(limits.deceleration, s.brake.deceleration);
     if (s.brake.jerk > 0) limits.jerk = std::min(limits.jerk, s.brake.jerk);
     trajectory::Profile profile{clutch.travel};
@@ -87,9 +105,9 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
     return;
   }
   axis::ChaseState chase;
-  trajectory::Limits catching_up = clutch.limits();
+  trajectory::Limits catching_up = limits_now;
   if (params.override_in_sync) catching_up.velocity *= std::max(s.velocity_factor, kLeastOverride);
-  const axis::Chaser chaser = {clutch.limits(), planner, catching_up, period};
+  const axis::Chaser chaser = {limits_now, planner, catching_up, period};
   clutch.travel = axis::Chase(chaser, axis::ChaseMode::kPosition, clutch.travel, demand, chase);
   clutch.coupled = chase.in_step && !law;
 }
@@ -100,21 +118,31 @@ void StepOne(const Context& c, const Stretch& stretch, double way, std::uint64_t
   const kinematics::Carrier carrier = CarrierOf(c, ride.cargo);
   if (!HasTravel(carrier)) return;
   Clutch* clutch = Find(s, number);
-  if (clutch) return Drive(c, s, carrier.travel, *clutch);
+  if (clutch) {
+    // The axes' part of what the travel does is another one from place to place.
+    const bool slips = s.lets_go || !clutch->coupled;
+    if (slips && c.cycle.count % kLimitCycles == 0) {
+      SetLimits(LimitsAlong(c, s, stretch, way, number, clutch->travel), *clutch);
+    }
+    return Drive(c, s, carrier.travel, *clutch);
+  }
   const auto free = std::ranges::find_if(s.clutches, [](const Clutch& k) { return !k.used; });
   if (free == s.clutches.end()) return;
-  const trajectory::Limits limits = LimitsAlong(c, s, stretch, way, number);
   free->used = true;
   free->coupled = !s.lets_go;
   free->ride = number;
   free->travel = carrier.travel;
-  free->velocity = limits.velocity;
-  free->acceleration = limits.acceleration;
-  free->deceleration = limits.deceleration;
-  free->jerk = limits.jerk;
+  SetLimits(LimitsAlong(c, s, stretch, way, number, carrier.travel), *free);
 }
 
 }  // namespace
+
+void SetLimits(const trajectory::Limits& limits, Clutch& clutch) noexcept {
+  clutch.velocity = limits.velocity;
+  clutch.acceleration = limits.acceleration;
+  clutch.deceleration = limits.deceleration;
+  clutch.jerk = limits.jerk;
+}
 
 void StepClutches(const Context& c, const Stretch& stretch, State& s) noexcept {
   for (Clutch& clutch : s.clutches) {
@@ -144,12 +172,19 @@ bool ClutchesStand(const State& s) noexcept {
   });
 }
 
+double BrakeShare(const State& s) noexcept {
+  const bool carried = std::ranges::any_of(s.clutches, &Clutch::used);
+  return carried && !trajectory::Stands(s.pace) ? kBothShare : 1;
+}
+
 bool CanLetGo(const Context& c, State& s) noexcept {
   // Where the path would end if it were braked now: the mean comes to rest where the raw motion does.
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const double v = s.pace.raw.velocity;
+  const double share = BrakeShare(s);
   const double deceleration =
-      std::min(-node.bounds.Least(v * v), node.bounds.strength.At(v * v) * node.bounds.strength.gentle);
+      share * std::min({-node.bounds.Least(v * v), node.bounds.strength.At(v * v) * node.bounds.strength.gentle,
+                        c.ahead.keep_up.brake});
   const double way_to_rest = deceleration > 0 ? 0.5 * v * v / deceleration : kNoEnd;
   const double place = s.pace.raw.position + way_to_rest + v * c.cycle.period_s;
   const LookAhead& ahead = c.ahead;
@@ -165,7 +200,7 @@ bool CanLetGo(const Context& c, State& s) noexcept {
     if (!clutch) return carrier;
     travel = clutch->travel;
     const double speed = travel.velocity;
-    travel.position = trajectory::StopPosition(travel, clutch->limits()) + 2 * c.cycle.period_s * speed;
+    travel.position = trajectory::StopPosition(travel, Shared(clutch->limits(), share)) + 2 * c.cycle.period_s * speed;
     travel.acceleration = 0;
     return carrier;
   };
@@ -184,19 +219,18 @@ bool CanLetGo(const Context& c, State& s) noexcept {
 }
 
 trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& stretch, double way,
-                               std::uint64_t number) noexcept {
+                               std::uint64_t number, const KinematicState& from) noexcept {
   const Ride& ride = RideAt(c, number);
-  const kinematics::Carrier carrier = CarrierOf(c, ride.cargo);
   const PathLimits& path = c.params.path;
   const trajectory::CoordinateLimits& own = c.ahead.window.limits();
-  const double speed = std::abs(carrier.travel.velocity);
+  const double speed = std::abs(from.velocity);
   trajectory::Limits limits = {path.velocity, path.acceleration, path.deceleration.value_or(path.acceleration),
                                path.jerk};
   double length = 0;  // mm of the tool per unit of the travel
   kinematics::Joints near = s.joints;
   double velocity = trajectory::CoordinateLimits::kNone, acceleration = velocity, jerk = velocity;
   for (int i = 0; i < kPlaces; ++i) {
-    const double travel = carrier.travel.position + i * kPlacesApart_s * carrier.travel.velocity;
+    const double travel = from.position + i * kPlacesApart_s * from.velocity;
     const KinematicState one = {travel, 1, 0};
     const MovingFrame tool = ToolAtTravel(c, stretch, way, ride, one);
     length = std::max(length, tool.p.v.Norm());

@@ -21,13 +21,17 @@ bool Slips(const State& s) noexcept;
 // Nothing that was let go of moves on.
 bool ClutchesStand(const State& s) noexcept;
 
+// Of what can be braked with: path and carriers share it while both come to rest at once.
+double BrakeShare(const State& s) noexcept;
+
 // Whether the tool could still be braked within what the axes reach, path and carriers at once, and the axes could move
 // it there as fast as its carriers do now; s.reason if not.
 bool CanLetGo(const Context& c, State& s) noexcept;
 
-// What the travel of a carrier may do so that group and axes keep their limits, at the place of a stretch where the
-// tool is and some way on.
-trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& stretch, double way,
-                               std::uint64_t ride) noexcept;
+// What the travel of a carrier may do so that group and axes keep their limits, at a place of a stretch, from a travel
+// and some way on.
+trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& stretch, double way, std::uint64_t ride,
+                               const KinematicState& from) noexcept;
+void SetLimits(const trajectory::Limits& limits, Clutch& clutch) noexcept;
 
 }  // namespace takt::group

@@ -106,7 +106,7 @@ void MoveOn(const Context& c, State& s) {
     if (s.task == Task::kInterrupt) EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
     return;
   }
-  if (!IsThrough(c, s)) return;
+  if (!IsThrough(c, s) || (rides && Slips(s))) return;
   if (c.ahead.cut_short) return EndCutShort(c, s);
   while (s.queue.count > 0) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
   s.active = 0;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "takt/group/keep_up.h"
 #include "takt/group/request.h"
 #include "takt/kinematics/frames.h"
 #include "takt/path/segment.h"
@@ -29,6 +30,7 @@ struct Ride {
   // From where to where along the path the tool goes over to it from the ride before.
   double begin = 0;
   double end = 0;
+  double speed = 0;  // of what carries, when it was planned
 };
 
 // A piece of path in the still world.
@@ -68,6 +70,7 @@ struct LookAhead {
 
   trajectory::PathWindow window;
   trajectory::PathRehearsal rehearsal;
+  KeepUp keep_up;
   std::vector<Stretch> stretches;  // a ring
   std::uint64_t first = 0;         // number of the oldest one
   std::uint64_t count = 0;

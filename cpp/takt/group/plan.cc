@@ -512,6 +512,7 @@ void Plan(const Context& c, State& s) noexcept {
 void ForgetPlan(const Context& c, State& s) noexcept {
   c.ahead.window.Clear();
   c.ahead.rehearsal.Clear();
+  c.ahead.keep_up = {};
   c.ahead.first = c.ahead.end();
   c.ahead.sampling = c.ahead.first;
   c.ahead.count = 0;
@@ -533,13 +534,14 @@ void Rehearse(const Context& c, const State& s) noexcept {
     const State& s;
   };
   const Owner owner{c, s};
-  if (s.velocity_factor < 1 || Slips(s)) {
+  if (s.velocity_factor < 1 || Slips(s) || c.ahead.keep_up.on) {
     c.ahead.delayed = true;
   } else if (c.ahead.delayed) {  // it comes later than was rehearsed
     c.ahead.delayed = false;
     c.ahead.rehearsal.Clear();
     c.ahead.rehearsal.GoOn(c.ahead.window);
   }
+  if (c.ahead.keep_up.on) return;  // what is near is looked at there
   const auto look = [](const void* with, const KinematicState& along, double ahead_s,
                        trajectory::PathCoordinateValues& positions, trajectory::PathCoordinateValues& velocities,
                        trajectory::PathCoordinateValues& accelerations) noexcept {
@@ -554,7 +556,8 @@ void Rehearse(const Context& c, const State& s) noexcept {
 
 double TimeLeft(const Context& c, const State& s) noexcept {
   const std::uint64_t end = c.ahead.rehearsal.end_cycle();
-  const bool slowed = s.velocity_factor < 1 || s.ends || s.interrupted || Slips(s) || s.master.axis != 0;
+  const bool slowed =
+      s.velocity_factor < 1 || s.ends || s.interrupted || Slips(s) || c.ahead.keep_up.on || s.master.axis != 0;
   if (!s.begun || slowed || !IsPlanned(c, s) || end == 0) return kNotGiven;
   return end > c.cycle.count ? static_cast<double>(end - c.cycle.count) * c.cycle.period_s : 0;
 }

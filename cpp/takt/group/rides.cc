@@ -101,6 +101,12 @@ bool Moves(const Ride& ride) noexcept {
   return ride.cargo.carrier != 0;
 }
 
+double SpeedOf(const Context& c, const Cargo& cargo) noexcept {
+  if (cargo.carrier == 0) return 0;
+  const kinematics::Carrier carrier = CarrierOf(c, cargo);
+  return carrier.kind == kinematics::CarrierKind::kFree ? carrier.pose.p.v.Norm() : carrier.travel.velocity;
+}
+
 Frame ReferenceOf(const Ride& ride) noexcept {
   return ride.reference_inverse.Inverse();
 }
@@ -117,6 +123,7 @@ std::uint64_t RideTo(const Context& c, const Cargo& cargo, double arrival_s) noe
   const Frame there = cargo.carrier != 0 ? PlaceOf(c, cargo, arrival_s).GetFrame() : Frame::Identity();
   ride.reference_inverse = there.Inverse() * DisplacementOf(c, end, arrival_s).GetFrame();
   ride.cargo = cargo;
+  ride.speed = SpeedOf(c, cargo);
   ride.displaces = Moves(ride) || !KDL::Equal(ride.reference_inverse, Frame::Identity(), 0);
   return ahead.rides_end;
 }

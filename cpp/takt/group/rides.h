@@ -33,6 +33,8 @@ Frame ReferenceOf(const Ride& ride) noexcept;
 // A stretch whose tool is not simply where its segment says.
 bool IsCarried(const LookAhead& ahead, const Stretch& stretch) noexcept;
 bool Moves(const Ride& ride) noexcept;
+// How fast what carries it travels now, mm/s or rad/s; 0: nothing does.
+double SpeedOf(const Context& c, const Cargo& cargo) noexcept;
 // From a place of the still world to where it is, for a stretch that is on one ride only.
 MovingFrame DisplacementOf(const Context& c, const Ride& ride, double ahead_s) noexcept;
 

@@ -5,6 +5,7 @@
 
 #include "takt/axis/guidance.h"
 #include "takt/group/clutch.h"
+#include "takt/group/keep_up.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
 #include "takt/group/queue.h"
@@ -88,17 +89,22 @@ double Braked(const Context& c, const trajectory::PathNode& node, const Brake& b
   double deceleration = brake.deceleration > 0 ? brake.deceleration : node.bounds.deceleration;
   // What takes no longer to build up, and to be taken back, than all accelerations of this path.
   if (brake.jerk > 0) deceleration = std::min(deceleration, brake.jerk * node.build_up_s);
+  if (s.lets_go || Slips(s)) {
+    const double square = s.pace.raw.velocity * s.pace.raw.velocity;
+    const trajectory::Strength& strength = node.bounds.strength;
+    deceleration = std::min(deceleration, BrakeShare(s) * strength.gentle * strength.At(square));
+  }
   return std::max(0.0, s.pace.raw.velocity - deceleration * c.cycle.period_s);
 }
 
 double WishOf(const Context& c, State& s) {
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   if (!s.ends && !s.interrupted) {
-    if (Slips(s)) return Braked(c, node, {}, s);
-    if (Follows(c, s)) return WishOfMaster(c, s);
-    return s.velocity_factor < 1 ? s.velocity_factor * node.at.limits.velocity : trajectory::kFullSpeed;
+    if (Slips(s)) return SlowDown(c, s, Braked(c, node, {}, s));
+    if (Follows(c, s)) return SlowDown(c, s, WishOfMaster(c, s));
+    return SlowDown(c, s, s.velocity_factor < 1 ? s.velocity_factor * node.at.limits.velocity : trajectory::kFullSpeed);
   }
-  return Braked(c, node, s.brake, s);
+  return SlowDown(c, s, Braked(c, node, s.brake, s));
 }
 
 // What lies behind is forgotten.

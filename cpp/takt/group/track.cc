@@ -99,11 +99,7 @@ void SitDown(const Context& c, const kinematics::Carrier& carrier, State& s) {
   SitOn(c, ride, place, s);
   clutch.ride = c.ahead.end_ride;
   const Stretch& seat = c.ahead[c.ahead.first];
-  const trajectory::Limits limits = LimitsAlong(c, s, seat, seat.from, clutch.ride);
-  clutch.velocity = limits.velocity;
-  clutch.acceleration = limits.acceleration;
-  clutch.deceleration = limits.deceleration;
-  clutch.jerk = limits.jerk;
+  SetLimits(LimitsAlong(c, s, seat, seat.from, clutch.ride, carrier.travel), clutch);
   s.clutches = {};
   s.clutches[0] = clutch;
   track.started = track.boarded = true;

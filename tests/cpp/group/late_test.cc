@@ -1,0 +1,156 @@
+// CV-21, CV-23, PP-20, PP-21: transitions from belt to belt that do not go as they were planned, because of overrides,
+// interrupts, and belts that swing and turn round: the axes are asked for no more than they can, so the tool is where
+// its path is.
+#include <random>
+
+#include "belts.h"
+#include "takt/group/clutch.h"
+
+namespace takt::group {
+namespace {
+
+constexpr double kOnObject = 1e-9;  // mm
+constexpr double kSame = 0.02;      // u
+constexpr int kTrips = 50;
+
+MoveLinearAbsolute Line(double x, double y, double z, std::uint32_t pcs, double radius = 0) {
+  MoveLinearAbsolute m{.x = x, .y = y, .z = z};
+  m.coordinate_system = pcs != 0 ? CoordinateSystem::kPcs : CoordinateSystem::kMcs;
+  m.pcs = pcs;
+  m.buffer_mode = radius > 0 ? BufferMode::kBlendingNext : BufferMode::kBuffered;
+  if (radius > 0) {
+    m.transition_mode = TransitionMode::kCornerDistance;
+    m.transition_parameter = radius;
+  }
+  return m;
+}
+
+// How far the axes are behind what is asked of them, u.
+double Lag(const Rig& rig) {
+  double most = 0;
+  for (const axis::State& member : rig.states) {
+    most = std::max(most, std::abs(member.guidance.demand.position - member.origin - member.setpoint.position));
+  }
+  return most;
+}
+
+// From one belt to another: lift, over, lowering; and what is done to it on the way.
+struct Trip {
+  explicit Trip(const Kind& kind, std::uint64_t seed) : random(seed), rig(kind.make()) {
+    const Pose a = kind.place(random), b = kind.place(random);
+    const auto at = [](const Pose& p) { return Pose{p.x, p.y, p.z}; };
+    Pose start = at(a);
+    start.z += 5;
+    rig.StartAt(start);
+    belts = Put(rig, {BeltAt("first", at(a), Way()), BeltAt("second", at(b), Way())});
+    for (const std::uint32_t pcs : {1u, 2u}) {
+      rig.RunToEnd(rig.Give(SetDynCoordTransform{.pcs = pcs, .carrier = Name::Of(pcs == 1 ? "first" : "second")}));
+    }
+    from = rig.state.cargoes[1].from;
+    const bool rides = Uniform(random, 0, 1) < 0.7;
+    if (rides) {
+      EXPECT_TRUE(rig.RunToEnd(rig.Give(Line(0, 0, 0, 1)), 10));
+      rig.Give(Line(0, 0, 25, 1));
+    }
+    rig.Give(Line(0, 0, 25, 2, rides ? 10 : 0));
+    last = rig.Give(Line(0, 0, 0, 2, 10));
+  }
+
+  // Goes on evenly, swings, or turns round.
+  std::function<KinematicState(double)> Way() {
+    const double speed = Uniform(random, -200, 200), size = Uniform(random, 0, 1) < 0.5 ? 0 : Uniform(random, 0, 200);
+    const double pace = Uniform(random, 1, 8), phase = Uniform(random, 0, 6);
+    return [=](double t) {
+      const double x = pace * t + phase;
+      return KinematicState{speed * t - size / pace * std::cos(x), speed + size * std::sin(x),
+                            size * pace * std::cos(x)};
+    };
+  }
+
+  // False: the object went out of reach.
+  bool Go(bool interrupted) {
+    const auto random_cycle = [&](int to) { return std::uniform_int_distribution<int>(1, to)(random); };
+    int next = random_cycle(300), undo = 0, left = 3;
+    for (int i = 1; i < 30000 && !rig.lives[last].ended(); ++i) {
+      if (i == next) {
+        if (interrupted) {
+          rig.Give(Interrupt{});
+        } else {
+          rig.Give(SetOverride{.velocity_factor = std::pow(10, Uniform(random, -2, 0))});
+        }
+        undo = i + random_cycle(1000);
+      }
+      if (i == undo) {
+        if (interrupted) {
+          rig.Give(Continue{});
+        } else {
+          rig.Give(SetOverride{.velocity_factor = 1});
+        }
+        next = --left > 0 ? i + random_cycle(300) : 0;
+      }
+      rig.Step();
+      lag = std::max(lag, Lag(rig));
+    }
+    return rig.lives[last].done;
+  }
+  double off() const { return (ToolOf(rig).p - ObjectOn(*belts, 1, from, {}, rig.cycle.count - 1).p).Norm(); }
+
+  std::mt19937_64 random;
+  Rig rig;
+  std::unique_ptr<Belts> belts;
+  double from = 0;
+  Ticket last = 0;
+  double lag = 0;
+};
+
+class Late : public ::testing::TestWithParam<std::string> {};
+
+struct Sum {
+  double worst = 0;  // distance of the axes from what is asked of them, u
+  int late = 0;      // trips in which it was more than kSame
+  int done = 0;
+};
+
+Sum Go(const std::string& name, bool interrupted) {
+  const std::vector<Kind> kinds = Kinds();
+  const Kind& kind = *std::ranges::find(kinds, name, &Kind::name);
+  Sum sum;
+  for (int seed = 1; seed <= kTrips; ++seed) {
+    SCOPED_TRACE(seed);
+    Trip trip(kind, static_cast<std::uint64_t>(seed));
+    const bool arrived = trip.Go(interrupted);
+    sum.worst = std::max(sum.worst, trip.lag);
+    sum.late += trip.lag > kSame;
+    EXPECT_TRUE(trip.rig.lives[trip.last].ended());
+    if (!arrived) continue;
+    ++sum.done;
+    EXPECT_LE(trip.off(), kOnObject);
+    ExpectSmooth(trip.rig);
+  }
+  std::cout << name << ": " << sum.done << " arrived; " << sum.late << " came later than " << kSame << " u, "
+            << sum.worst << " u at most\n";
+  return sum;
+}
+
+// A SCARA's tool may be carried by near the arm's own axis: no pace of the path helps there.
+TEST_P(Late, PropertyOverridesAndBeltsThatSwing) {
+  const Sum sum = Go(GetParam(), false);
+  const bool scara = GetParam() == "SCARA";
+  EXPECT_LE(sum.late, scara ? 2 : 0);
+  EXPECT_GE(sum.done, scara ? 40 : kTrips);
+}
+
+// At the instant of an interrupt a path may use all that the axes can, and its carriers are to be braked, too.
+TEST_P(Late, PropertyInterrupts) {
+  const Sum sum = Go(GetParam(), true);
+  const bool scara = GetParam() == "SCARA";
+  EXPECT_LE(sum.late, scara ? 6 : 1);
+  EXPECT_LE(sum.worst, scara ? 5 : 0.1);
+  EXPECT_GE(sum.done, scara ? 15 : 25);
+}
+
+INSTANTIATE_TEST_SUITE_P(Group, Late, ::testing::Values("gantry", "CoreXY", "Delta", "SCARA"),
+                         [](const auto& param) { return param.param; });
+
+}  // namespace
+}  // namespace takt::group
