@@ -21,9 +21,8 @@ constexpr double kBothShare = 0.5;
 constexpr double kCarrierShare = 0.25;
 constexpr double kLeastAcceleration = 0.1;  // of an axis, left beside what its bends need
 constexpr int kPlaces = 4;
-constexpr std::uint64_t kLimitCycles = 16;  // after so many they are worked out again
 constexpr double kLeastOverride = 0.01;
-constexpr double kPlacesApart_s = 0.05;
+constexpr double kBendShare = 0.4;  // of it, while a tool at rest catches up
 
 trajectory::Planner& PlannerOf(const Context& c, const State& s) {
   std::size_t place = 0;
@@ -119,10 +118,12 @@ void StepOne(const Context& c, const Stretch& stretch, double way, std::uint64_t
   if (!HasTravel(carrier)) return;
   Clutch* clutch = Find(s, number);
   if (clutch) {
-    // The axes' part of what the travel does is another one from place to place.
-    const bool slips = s.lets_go || !clutch->coupled;
-    if (slips && c.cycle.count % kLimitCycles == 0) {
-      SetLimits(LimitsAlong(c, s, stretch, way, number, clutch->travel), *clutch);
+    // At rest somewhere else: what the axes can do on the way from there. It stays so until the tool is in step,
+    // because CanLetGo counts on it.
+    const bool stands = clutch->travel.velocity == 0 && clutch->travel.acceleration == 0;
+    if (!s.lets_go && !clutch->coupled && stands) {
+      const double way_to_go = carrier.travel.position - clutch->travel.position;
+      SetLimits(LimitsAlong(c, s, stretch, way, number, clutch->travel, way_to_go), *clutch);
     }
     return Drive(c, s, carrier.travel, *clutch);
   }
@@ -132,7 +133,7 @@ void StepOne(const Context& c, const Stretch& stretch, double way, std::uint64_t
   free->coupled = !s.lets_go;
   free->ride = number;
   free->travel = carrier.travel;
-  SetLimits(LimitsAlong(c, s, stretch, way, number, carrier.travel), *free);
+  SetLimits(LimitsAlong(c, s, stretch, way, number, carrier.travel, kAhead_s * carrier.travel.velocity), *free);
 }
 
 }  // namespace
@@ -219,18 +220,19 @@ bool CanLetGo(const Context& c, State& s) noexcept {
 }
 
 trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& stretch, double way,
-                               std::uint64_t number, const KinematicState& from) noexcept {
+                               std::uint64_t number, const KinematicState& from, double distance) noexcept {
   const Ride& ride = RideAt(c, number);
   const PathLimits& path = c.params.path;
   const trajectory::CoordinateLimits& own = c.ahead.window.limits();
   const double speed = std::abs(from.velocity);
+  const bool stands = speed == 0;
   trajectory::Limits limits = {path.velocity, path.acceleration, path.deceleration.value_or(path.acceleration),
                                path.jerk};
   double length = 0;  // mm of the tool per unit of the travel
   kinematics::Joints near = s.joints;
   double velocity = trajectory::CoordinateLimits::kNone, acceleration = velocity, jerk = velocity;
   for (int i = 0; i < kPlaces; ++i) {
-    const double travel = from.position + i * kPlacesApart_s * from.velocity;
+    const double travel = from.position + i * distance / (kPlaces - 1);
     const KinematicState one = {travel, 1, 0};
     const MovingFrame tool = ToolAtTravel(c, stretch, way, ride, one);
     length = std::max(length, tool.p.v.Norm());
@@ -240,10 +242,13 @@ trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& 
     for (std::size_t k = 0; k < own.count && k < kMaxAxes; ++k) {
       const double slope = std::abs(motion.velocity[k]);
       if (s.members[k] == 0 || slope == 0) continue;
-      const double bends = std::abs(motion.acceleration[k]) * speed * speed;
+      velocity = std::min(velocity, kShare * own.of[k].velocity / slope);
+      const double bend = std::abs(motion.acceleration[k]), most = kBendShare * own.of[k].acceleration;
+      if (stands && bend * velocity * velocity > most) velocity = std::sqrt(most / bend);
+      const double at = stands ? velocity : speed;
+      const double bends = bend * at * at;
       const double left =
           std::max(kShare * own.of[k].acceleration - bends, kLeastAcceleration * own.of[k].acceleration);
-      velocity = std::min(velocity, kShare * own.of[k].velocity / slope);
       acceleration = std::min(acceleration, left / slope);
       jerk = std::min(jerk, kShare * own.of[k].jerk / slope);
     }

@@ -28,10 +28,13 @@ double BrakeShare(const State& s) noexcept;
 // it there as fast as its carriers do now; s.reason if not.
 bool CanLetGo(const Context& c, State& s) noexcept;
 
+// A tool that goes along: so far ahead, s.
+inline constexpr double kAhead_s = 0.15;
+
 // What the travel of a carrier may do so that group and axes keep their limits, at a place of a stretch, from a travel
-// and some way on.
+// to some distance on.
 trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& stretch, double way, std::uint64_t ride,
-                               const KinematicState& from) noexcept;
+                               const KinematicState& from, double distance) noexcept;
 void SetLimits(const trajectory::Limits& limits, Clutch& clutch) noexcept;
 
 }  // namespace takt::group

@@ -99,7 +99,8 @@ void SitDown(const Context& c, const kinematics::Carrier& carrier, State& s) {
   SitOn(c, ride, place, s);
   clutch.ride = c.ahead.end_ride;
   const Stretch& seat = c.ahead[c.ahead.first];
-  SetLimits(LimitsAlong(c, s, seat, seat.from, clutch.ride, carrier.travel), clutch);
+  SetLimits(LimitsAlong(c, s, seat, seat.from, clutch.ride, carrier.travel, kAhead_s * carrier.travel.velocity),
+            clutch);
   s.clutches = {};
   s.clutches[0] = clutch;
   track.started = track.boarded = true;
