@@ -32,7 +32,9 @@ void PublishTracking(const Context& c, const State& s, const kinematics::MovingF
   out.in_sync = out.track_state == TrackState::kInSync;
   if (!IsOnRide(c, s)) return;
   const Stretch& stretch = *Here(c, s);
-  const std::uint64_t number = stretch.to_ride;
+  // Until it begins to go over it is on the ride before.
+  const bool goes_over = ShareAt(c.ahead, stretch, stretch.from + s.pace.now.position - stretch.begin).position > 0;
+  const std::uint64_t number = goes_over ? stretch.to_ride : stretch.from_ride;
   const Cargo& cargo = c.ahead.rides[number % kRides].cargo;
   if (cargo.carrier == 0) return;
   const kinematics::Pose on = kinematics::ToPose(PlaceOf(c, cargo).GetFrame().Inverse() * tcp.GetFrame());

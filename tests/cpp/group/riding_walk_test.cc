@@ -18,6 +18,10 @@ struct Waves {
   }
 };
 
+// mm in a cycle. Axes that are in step but for a little come fully into step while the tool rests on the object.
+constexpr double kNearly = 1e-3, kStays = 1e-8;
+constexpr int kSettled = 100;  // cycles
+
 struct Walk {
   explicit Walk(std::uint64_t seed, const Kind& kind)
       : random(seed), rig(kind.make()), place(kind.place), turns(kind.name == "SCARA") {
@@ -109,6 +113,25 @@ struct Walk {
   std::unique_ptr<Belts> belts;
 };
 
+// CV-20: in step with an object, and told to go nowhere, the tool stays where it is on it.
+struct StaysOnObject {
+  void Look(const Outputs& out) {
+    const bool rests = out.in_sync && out.path_velocity == 0;
+    if (rests) {
+      ASSERT_FALSE(std::isnan(out.object_x));
+    }
+    const KDL::Vector now(out.object_x, out.object_y, out.object_z);
+    if (rested > 0 && rests) {
+      ASSERT_LE((now - before).Norm(), rested > kSettled ? kStays : kNearly);
+    }
+    rested = rests ? rested + 1 : 0;
+    before = now;
+  }
+
+  int rested = 0;  // cycles
+  KDL::Vector before;
+};
+
 class RidingWalk : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(RidingWalk, PropertyKeepsLimitsAndCanAlwaysBeStopped) {
@@ -126,12 +149,14 @@ TEST_P(RidingWalk, PropertyKeepsLimitsAndCanAlwaysBeStopped) {
     rig.Step();
     rig.trace = {rig.trace.back()};
     std::vector<Ticket> given;
+    StaysOnObject stays;
     for (int i = 0; i < 60; ++i) {
       given.push_back(rig.Give(walk.Next()));
       for (int n = walk.Pick(walk.Pick(4) == 0 ? 800 : 120); n >= 0; --n) {
         rig.Step();
         rode += rig.out().track_state != TrackState::kNone;
         in_sync += rig.out().in_sync;
+        ASSERT_NO_FATAL_FAILURE(stays.Look(rig.out()));
         ASSERT_EQ(rig.state.illegal_transitions, 0u);
         if (rig.out().state == GroupState::kErrorStop) {  // braked on the way to where the arms do not reach
           ASSERT_EQ(rig.out().error, ErrorId::kUnreachable);
