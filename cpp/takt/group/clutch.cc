@@ -21,6 +21,7 @@ constexpr double kBothShare = 0.5;
 constexpr double kCarrierShare = 0.25;
 constexpr double kLeastAcceleration = 0.1;  // of an axis, left beside what its bends need
 constexpr int kPlaces = 4;
+constexpr double kJump = 2;  // of the way that the axes could go along with in a cycle
 constexpr double kLeastOverride = 0.01;
 constexpr double kBendShare = 0.4;  // of it, while a tool at rest catches up
 
@@ -99,7 +100,9 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
     clutch.coupled = false;
     return;
   }
-  if (clutch.coupled && params.after_sync == AfterSync::kStay && !law) {
+  // A belt whose encoder was lost may turn up elsewhere: that is no motion to go along with.
+  const bool jumps = std::abs(carrier.position - clutch.travel.position) > kJump * clutch.velocity * period;
+  if (clutch.coupled && params.after_sync == AfterSync::kStay && !law && !jumps) {
     clutch.travel = carrier;
     return;
   }

@@ -195,6 +195,34 @@ TEST(Riding, InterruptRestsAndContinueCatchesUp) {
   }
 }
 
+// CV-01: a belt that is found elsewhere after its encoder was lost: the tool follows within the limits, and falls into
+// step again.
+TEST(Riding, CatchesUpWithABeltThatJumps) {
+  for (const double jump : {80.0, -80.0}) {
+    SCOPED_TRACE(jump);
+    double jumped = 0;
+    Seated seat([&](double t) { return KinematicState{150 * t + jumped, 150, 0}; });
+    Rig& rig = seat.rig;
+    rig.Run(0.1);
+    ASSERT_LE(seat.off(), kOnObject);
+    jumped = jump;
+    rig.Step();
+    EXPECT_FALSE(rig.out().in_sync);
+    EXPECT_NEAR(seat.off(), std::abs(jump), 1);
+    for (int i = 0; i < 500; ++i) {
+      rig.Step();
+      EXPECT_NEAR(rig.out().y, 100, 1e-9);  // along the belt
+      for (const axis::State& member : rig.states) {
+        const double lag = member.guidance.demand.position - member.origin - member.setpoint.position;
+        ASSERT_LE(std::abs(lag), 1e-6) << i;
+      }
+    }
+    EXPECT_TRUE(rig.out().in_sync);
+    EXPECT_LE(seat.off(), kOnObject);
+    ExpectSmooth(rig);
+  }
+}
+
 // A stop before any border (GR-13): a belt that takes the tool out of the axes' range.
 TEST(Riding, LetsGoBeforeTheBorder) {
   Rig rig = [] {
