@@ -137,8 +137,7 @@ void BeginStop(const Context& c, group::State& g, State& s) {
       const group::Halt halt{.deceleration = deceleration, .jerk = jerk};
       s.halting = Tell(c, halt, g) == ErrorId::kNone;
     }
-    s.at_known = s.parking = false;
-    s.at_belt = s.parked_at = 0;
+    ForgetPlace(s);
   }
   if (s.state != PickPlaceState::kStop) Enter(PickPlaceState::kStop, s);
 }
@@ -282,6 +281,11 @@ void RunStates(const Context& c, group::State& g, State& s) {
   StepState(c, g, s);
 }
 
+// Along its path, or away from where it stood.
+bool MovesOn(const Context& c, const group::State& g) {
+  return g.begun ? g.pace.now.velocity > 0 : !group::AllMembers(c.group, g, axis::AtRest);
+}
+
 void WatchWindow(const Context& c, State& s) {
   const double cycles = s.settings.position_window_ms / 1000 / c.group.cycle.period_s;
   if (c.path_error > s.settings.position_window) {
@@ -300,9 +304,7 @@ void GoOn(const Context& c, group::State& g, State& s) noexcept {
     Tell(c, group::Continue{}, g);
     return;
   }
-  // The workpiece has gone on.
-  LosePath(c, g, false, s);
-  HaltGroup(c, g, s);
+  GiveUpAtRest(c, g, s);  // the workpiece has gone on
 }
 
 void Fail(const Context& c, ErrorId error, group::State& g, State& s) noexcept {
@@ -322,6 +324,7 @@ State MakeState(const PickPlaceParams& params) noexcept {
 
 void Step(const Context& c, group::State& g, State& s) noexcept {
   s.pulse = false;
+  if (MovesOn(c, g)) s.in_target = false;
   SwitchPower(c, g, s);
   SetOverride(c, g, s);
   for (std::size_t k = 0; k < group::kMaxAxes; ++k) {
