@@ -1,0 +1,184 @@
+// PP-44, PP-40: belts that do what nobody expected, and workpieces that vanish, at every instant of a pick. The tool is
+// low over a belt only within the work range and straight over its workpiece, also on the way up from a pick that was
+// given up; and it goes on with the next one.
+#include <algorithm>
+
+#include "cell.h"
+
+namespace takt::pickplace {
+namespace {
+
+using M = PickPlaceState;
+
+constexpr double kBeltY = 200, kBeltZ = -50;
+constexpr double kDistance = 25, kRadius = 10;  // mm, of the way down and its rounding
+constexpr double kBeside = 0.01;                // mm
+constexpr double kHalfWidth = 60;               // mm, of the belt
+
+// From one speed to another, from a time on, in so long a time: with no jerk that axes could not follow.
+std::function<KinematicState(double)> Changing(double before, double after, double from_s, double takes_s) {
+  return [=](double t) -> KinematicState {
+    const double change = after - before;
+    const double x = std::clamp((t - from_s) / takes_s, 0.0, 1.0);
+    const double rest = std::max(0.0, t - from_s - takes_s);
+    const double place = before * t + change * (takes_s * x * x * x * (1 - 0.5 * x) + rest);
+    return {place, before + change * x * x * (3 - 2 * x), change / takes_s * 6 * x * (1 - x)};
+  };
+}
+
+CellBelt Infeed(const std::function<KinematicState(double)>& travel) {
+  CellBelt belt;
+  belt.params.name = belt.params.axis = "belt";
+  belt.params.origin = {0, kBeltY, kBeltZ, 0, 0, 0};
+  belt.params.lower_limit = 100;
+  belt.params.upper_limit = 500;
+  belt.settings = {.park_x = 300, .park_y = kBeltY, .park_z = 30, .z_distance = kDistance, .sync_time = 0.1};
+  belt.travel = travel;
+  return belt;
+}
+
+Settings Rounded() {
+  Settings s = Fast();
+  s.blending_radius = kRadius;
+  return s;
+}
+
+class Watched {
+ public:
+  explicit Watched(const CellBelt& belt) : cell(Rounded(), {belt}) { cell.Start(); }
+
+  void Put(double x) {
+    cell.Put(0, {x, 20, 0, 0, 0, 0});
+    objects_.push_back(belt().objects[belt().count - 1]);
+  }
+  void Step() {
+    cell.Step();
+    ASSERT_NE(cell.state.state, M::kError) << static_cast<int>(cell.state.error);
+    const KDL::Vector tool = cell.tool();
+    if (std::abs(tool.y() - kBeltY) > kHalfWidth || tool.z() > kBeltZ + kDistance - kRadius - 1e-3) return;
+    ++low;
+    double beside = 1e9, along = 0;
+    for (const conveyor::Object& object : objects_) {
+      const KDL::Vector place = conveyor::PoseOf(cell.belts[0].params, belt(), object).GetFrame().p;
+      const double off = std::hypot(tool.x() - place.x(), tool.y() - place.y());
+      if (off > beside) continue;
+      beside = off;
+      along = conveyor::PlaceOf(cell.belts[0].params, belt(), object);
+    }
+    ASSERT_LT(beside, kBeside) << "z " << tool.z();
+    ASSERT_GE(along, 100);
+    ASSERT_LE(along, 500);
+  }
+  void Steps(int n) {
+    while (n-- > 0 && !testing::Test::HasFatalFailure()) Step();
+  }
+  // Until that is true; false: it never was.
+  template <typename Until>
+  bool RunUntil(const Until& until, double seconds = 10) {
+    for (int i = 0; i < seconds * 1000 && !testing::Test::HasFatalFailure(); ++i) {
+      Step();
+      if (until()) return true;
+    }
+    return false;
+  }
+  bool IsUp() const { return cell.tool().z() >= kBeltZ + kDistance - kRadius; }
+  conveyor::State& belt() { return cell.belt_states[0]; }
+  const Counters& counters() const { return cell.state.counters; }
+
+  Cell cell;
+  int low = 0;  // cycles
+
+ private:
+  std::vector<conveyor::Object> objects_;
+};
+
+constexpr double kPick_s = 1.4;  // of one pick, and some time more
+
+// The belt stops for ever at every instant of a pick: the workpiece is picked where it stands.
+TEST(GiveUp, BeltStopsForEver) {
+  for (double stop = 0; stop < kPick_s; stop += 0.017) {
+    SCOPED_TRACE(stop);
+    Watched run(Infeed(Changing(150, 0, stop, 0.1)));
+    run.Put(150);
+    const Ticket ticket = run.cell.Execute(1);
+    ASSERT_TRUE(run.RunUntil([&] { return run.cell.rig.lives[ticket].ended(); }));
+    EXPECT_TRUE(run.cell.rig.lives[ticket].done);
+    EXPECT_EQ(run.counters().picked, 1u);
+    EXPECT_GE(run.low, 100);
+    ASSERT_TRUE(run.RunUntil([&] { return run.cell.state.state == M::kReady; }));
+    EXPECT_TRUE(run.cell.out().in_park_position);
+  }
+}
+
+// It turns back at every instant: near the beginning of the range that is too early for some.
+TEST(GiveUp, BeltTurnsBack) {
+  int given_up = 0;
+  for (double turn = 0; turn < kPick_s; turn += 0.013) {
+    SCOPED_TRACE(turn);
+    Watched run(Infeed(Changing(100, -200, turn, 0.2)));
+    run.Put(120);
+    run.cell.Execute(1);
+    run.Steps(1500);
+    given_up += run.counters().picked == 0 ? 1 : 0;
+    run.Put(450);
+    ASSERT_TRUE(run.RunUntil([&] { return run.counters().picked > 0; }));
+  }
+  EXPECT_GT(given_up, 10);
+  EXPECT_LT(given_up, 100);
+}
+
+// It becomes much faster at every instant, beyond what was said of it: in the end it is too late for some. Those go on
+// along the belt, to whoever else may reach them.
+TEST(GiveUp, BeltBecomesMuchFaster) {
+  int given_up = 0, low = 0;
+  for (double change = 0; change < kPick_s; change += 0.007) {
+    SCOPED_TRACE(change);
+    Watched run(Infeed(Changing(100, 600, change, 0.3)));
+    run.Put(290);
+    run.cell.Execute(1);
+    bool lowers = false, was_low = false;
+    ASSERT_TRUE(run.RunUntil([&] {
+      const bool lost = lowers && run.cell.state.orders[0].workpiece == 0 && run.counters().picked == 0;
+      if (lost && !run.IsUp()) was_low = true;
+      lowers = run.cell.state.orders[0].workpiece != 0;
+      return lost || run.counters().picked > 0;
+    }));
+    low += was_low ? 1 : 0;
+    if (run.counters().picked == 0) {
+      ++given_up;
+      ASSERT_TRUE(run.RunUntil([&] { return run.cell.out().in_park_position; }, 2));
+    }
+  }
+  EXPECT_GT(given_up, 10);
+  EXPECT_LT(given_up, 190);
+  EXPECT_GT(low, 3) << "a test that cannot fail";
+}
+
+// The camera or the program takes the workpiece away while the tool goes to it: it goes up, straight and in step, and
+// parks; what comes next is picked. On the workpiece it stays as long as it should.
+TEST(GiveUp, WorkpieceIsRemoved) {
+  int low = 0;
+  for (int instant = 1; instant < 1400; instant += 11) {
+    SCOPED_TRACE(instant);
+    Watched run(Infeed(Changing(150, 150, 0, 1)));
+    run.Put(150);
+    run.cell.Execute(1);
+    run.Steps(instant);
+    const Order& order = run.cell.state.orders[0];
+    const bool goes = order.phase == Phase::kGoing && run.counters().picked == 0;
+    conveyor::Remove(1, run.belt());
+    if (!goes) continue;
+    const bool was_low = run.low > 0 && !run.IsUp();
+    low += was_low ? 1 : 0;
+    ASSERT_TRUE(run.RunUntil([&] { return was_low ? run.IsUp() : true; }, 0.25));
+    ASSERT_TRUE(run.RunUntil([&] { return run.cell.out().in_park_position; }));
+    EXPECT_EQ(run.counters().missed, 0u);
+    EXPECT_FALSE(run.cell.out().in_target);
+    run.Put(130);
+    ASSERT_TRUE(run.RunUntil([&] { return run.counters().picked == 1; }));
+  }
+  EXPECT_GT(low, 5) << "a test that cannot fail";
+}
+
+}  // namespace
+}  // namespace takt::pickplace
