@@ -45,7 +45,12 @@ std::optional<Place> PointOver(const Context& c, const group::State& g, const Or
 
 double TimeToGo(const Context& c, const group::State& g, const Order& order, const State& s) noexcept {
   const double known_s = group::TimeLeft(c.group, g);
-  return std::isnan(known_s) ? std::max(0.0, LongerBy(s) * order.expected_s - TimeGone(c, order)) : known_s;
+  if (!std::isnan(known_s)) return known_s;
+  // It is being planned, or was stopped.
+  const group::LookAhead& ahead = c.group.ahead;
+  const double way = g.begun && ahead.count > 0 ? ahead[ahead.end() - 1].end() - g.pace.now.position : 0;
+  const double stopped_s = TimeFor(std::max(0.0, way), order.ramps);
+  return std::max(LongerBy(s) * order.expected_s - TimeGone(c, order), LongerBy(s) * stopped_s);
 }
 
 void GiveUp(const Context& c, group::State& g, State& s) noexcept {
@@ -58,7 +63,7 @@ void GiveUp(const Context& c, group::State& g, State& s) noexcept {
   const PathRamps ramps = order.ramps;
   GiveBackWorkpiece(c, order);
   LosePath(c, g, false, s);
-  if (!over) return HaltGroup(c, g, s);
+  if (!over || !g.begun) return HaltGroup(c, g, s);
   // It is braked in step with what it is over; then it rises.
   const group::MoveLinearAbsolute lift{.z = over->pose.z,
                                        .coordinate_system = over->system,

@@ -281,6 +281,13 @@ void RunStates(const Context& c, group::State& g, State& s) {
   StepState(c, g, s);
 }
 
+// Whether there is not enough time left for the workpiece that is gone for.
+bool IsTooLate(const Context& c, const group::State& g, const State& s) {
+  if (s.order_count == 0 || s.orders[0].workpiece == 0) return false;
+  const Order& order = s.orders[0];
+  return !StaysWithin(c, order, TimeToGo(c, g, order, s) + s.belts[order.belt - 1].sync_time, s);
+}
+
 // Along its path, or away from where it stood.
 bool MovesOn(const Context& c, const group::State& g) {
   return g.begun ? g.pace.now.velocity > 0 : !group::AllMembers(c.group, g, axis::AtRest);
@@ -300,11 +307,8 @@ void WatchWindow(const Context& c, State& s) {
 void GoOn(const Context& c, group::State& g, State& s) noexcept {
   s.hold.held = false;
   if (!g.interrupted) return;
-  if (s.order_count == 0 || IsWithin(c, s.orders[0], s)) {
-    Tell(c, group::Continue{}, g);
-    return;
-  }
-  GiveUpAtRest(c, g, s);  // the workpiece has gone on
+  if (IsTooLate(c, g, s)) return GiveUpAtRest(c, g, s);
+  Tell(c, group::Continue{}, g);
 }
 
 void Fail(const Context& c, ErrorId error, group::State& g, State& s) noexcept {

@@ -160,6 +160,7 @@ void Begin(const Context& c, group::State& g, Order& order, State& s) {
   order.profile = MakeProfile(order.start, target, ShapeFromHere(order.shape, s), systems);
   if (IsStatic(order)) order.expected_s = TimeAlong(order.profile, order.start, order.ramps, systems);
   order.next_leg = 0;
+  order.pulsed = false;
   const Given given = GiveLegs(c, order.profile, 0, order.ramps, order.shape.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) {
     if (order.workpiece != 0) ++s.counters.missed, ++s.counters.refused;

@@ -50,9 +50,8 @@ ErrorId BindWorkpiece(const Context& c, const conveyor::Object& object, group::S
                       State& s) noexcept;
 // Nobody's again, if it is still there.
 void GiveBackWorkpiece(const Context& c, Order& order) noexcept;
-// Whether the order's workpiece is where it can be gone to.
-bool IsWithin(const Context& c, const Order& order, const State& s) noexcept;
-// Whether it will be until the tool is up again that leaves it after so long, whatever its belt may do.
+// Whether the order's workpiece will be in the range until the tool is up again that leaves it after so long, whatever
+// its belt may do.
 bool StaysWithin(const Context& c, const Order& order, double time_s, const State& s) noexcept;
 // Of what it was thought to take a profile may take so many times as much now.
 double LongerBy(const State& s) noexcept;

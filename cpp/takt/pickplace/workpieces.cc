@@ -216,14 +216,6 @@ void GiveBackWorkpiece(const Context& c, Order& order) noexcept {
   order.workpiece = 0;
 }
 
-bool IsWithin(const Context& c, const Order& order, const State& s) noexcept {
-  if (order.belt == 0 || order.workpiece == 0) return true;
-  const Belt& belt = BeltOf(c, order);
-  const Object* object = conveyor::Find(*belt.state, order.workpiece);
-  if (!object) return false;
-  return IsInside(belt, SettingsFor(order, s), conveyor::PlaceOf(*belt.params, *belt.state, *object));
-}
-
 bool StaysWithin(const Context& c, const Order& order, double time_s, const State& s) noexcept {
   const Belt& belt = BeltOf(c, order);
   const BeltSettings& own = SettingsFor(order, s);

@@ -180,5 +180,71 @@ TEST(GiveUp, WorkpieceIsRemoved) {
   EXPECT_GT(low, 5) << "a test that cannot fail";
 }
 
+// PP-20: stopped at every instant until the workpiece has left the range. Where the tool stands low over the belt it
+// goes straight up from there before anything else.
+TEST(GiveUp, StoppedUntilItHasLeft) {
+  int low = 0;
+  for (int instant = 1; instant < 1400; instant += 17) {
+    SCOPED_TRACE(instant);
+    Watched run(Infeed(Changing(150, 150, 0, 1)));
+    run.Put(150);
+    run.cell.Execute(1);
+    run.Steps(instant);
+    if (run.counters().picked > 0) break;
+    run.cell.Do(Control{.path_stop = true});
+    run.cell.Steps(3000);
+    const KDL::Vector rest = run.cell.tool();
+    const bool was_low = std::abs(rest.y() - kBeltY) < kHalfWidth && !run.IsUp();
+    low += was_low ? 1 : 0;
+    run.cell.Do(Control{.path_stop = false});
+    run.Put(150);
+    run.cell.Steps(2);
+    run.cell.Execute();
+    for (int i = 0; i < 400 && was_low && !run.IsUp(); ++i) {
+      run.cell.Step();
+      ASSERT_LT(std::hypot(run.cell.tool().x() - rest.x(), run.cell.tool().y() - rest.y()), kBeside) << i;
+    }
+    ASSERT_TRUE(run.RunUntil([&] { return run.counters().picked == 1; }));
+    EXPECT_EQ(run.counters().interrupted, 1u);
+  }
+  EXPECT_GT(low, 5) << "a test that cannot fail";
+}
+
+// From belt to belt: the place on the second one vanishes while the tool lifts from the first one. It goes on lifting,
+// over what it has picked.
+TEST(GiveUp, PlaceIsRemovedWhileTheToolLifts) {
+  int low = 0;
+  for (int instant = 1; instant < 140; instant += 3) {
+    SCOPED_TRACE(instant);
+    Settings s = Rounded();
+    s.tracking_mode = TrackingMode::kBelt1ToBelt2;
+    CellBelt out = Infeed(Changing(100, 100, 0, 1));
+    out.params.name = out.params.axis = "out";
+    out.params.origin.y = out.settings.park_y = 400;
+    Cell cell(s, {Infeed(Changing(150, 150, 0, 1)), out});
+    cell.Start();
+    cell.Put(0, {150, 0, 0, 0, 0, 0});
+    const conveyor::Object picked = cell.belt_states[0].objects[0];
+    cell.Execute();
+    ASSERT_TRUE(cell.RunUntil([&] { return cell.state.orders[0].phase == Phase::kStaying; }));
+    cell.Put(1, {120, 0, 0, 0, 0, 0});
+    ASSERT_TRUE(cell.RunUntil([&] { return cell.state.counters.picked == 1; }));
+    cell.Steps(instant);
+    const auto is_low = [&] { return cell.tool().z() < kBeltZ + kDistance - kRadius; };
+    low += is_low() ? 1 : 0;
+    conveyor::Remove(1, cell.belt_states[1]);
+    for (int i = 0; i < 300 && is_low(); ++i) {
+      cell.Step();
+      const auto place = conveyor::PoseOf(cell.belts[0].params, cell.belt_states[0], picked).GetFrame().p;
+      ASSERT_LT(std::hypot(cell.tool().x() - place.x(), cell.tool().y() - place.y()), kBeside) << i;
+    }
+    ASSERT_TRUE(cell.RunUntil([&] { return cell.out().in_park_position; }));
+    cell.Put(1, {120, 0, 0, 0, 0, 0});
+    ASSERT_TRUE(cell.RunUntil([&] { return cell.state.counters.placed == 1; }));
+    EXPECT_EQ(cell.state.counters.missed, 0u);
+  }
+  EXPECT_GT(low, 10) << "a test that cannot fail";
+}
+
 }  // namespace
 }  // namespace takt::pickplace
