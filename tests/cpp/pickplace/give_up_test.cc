@@ -40,6 +40,7 @@ CellBelt Infeed(const std::function<KinematicState(double)>& travel) {
 Settings Rounded() {
   Settings s = Fast();
   s.blending_radius = kRadius;
+  s.z_start_distance = 0;
   return s;
 }
 
@@ -131,10 +132,12 @@ TEST(GiveUp, BeltTurnsBack) {
 // along the belt, to whoever else may reach them.
 TEST(GiveUp, BeltBecomesMuchFaster) {
   int given_up = 0, low = 0;
-  for (double change = 0; change < kPick_s; change += 0.007) {
+  for (double change = 0; change < kPick_s + 0.5; change += 0.009) {
     SCOPED_TRACE(change);
-    Watched run(Infeed(Changing(100, 600, change, 0.3)));
-    run.Put(290);
+    CellBelt belt = Infeed(Changing(100, 600, change, 0.3));
+    belt.settings.sync_time = 0.6;
+    Watched run(belt);
+    run.Put(240);
     run.cell.Execute(1);
     bool lowers = false, was_low = false;
     ASSERT_TRUE(run.RunUntil([&] {
@@ -178,6 +181,28 @@ TEST(GiveUp, WorkpieceIsRemoved) {
     ASSERT_TRUE(run.RunUntil([&] { return run.counters().picked == 1; }));
   }
   EXPECT_GT(low, 5) << "a test that cannot fail";
+}
+
+// What is said of the belt's speed counts from the choice of a workpiece on: how fast it may become, and how slow, or
+// whether it may turn back.
+TEST(GiveUp, ReckonsWithWhatTheBeltMayDo) {
+  struct Case {
+    double lowest, highest, x;
+    bool picks;
+  };
+  // From 100 to 500; the way there takes some 0.8 s, with the stay and the way up some 1.1 s.
+  for (const Case& one : {Case{0, 0, 300, true}, Case{0, 150, 300, true}, Case{0, 250, 300, false},
+                          Case{0, 250, 110, true}, Case{-100, 0, 110, false}, Case{-100, 0, 300, true}}) {
+    SCOPED_TRACE(testing::Message() << one.lowest << " to " << one.highest << " from " << one.x);
+    CellBelt belt = Infeed(Changing(100, 100, 0, 1));
+    belt.settings.lowest_speed = one.lowest;
+    belt.settings.highest_speed = one.highest;
+    Watched run(belt);
+    run.Put(one.x);
+    run.cell.Execute(1);
+    run.Step();
+    EXPECT_EQ(run.cell.out().workpiece != 0, one.picks);
+  }
 }
 
 // PP-20: stopped at every instant until the workpiece has left the range. Where the tool stands low over the belt it
