@@ -72,6 +72,7 @@ void StepScout(const Context& c, const group::State& g, const Order& order, doub
   if (!scout.known) return;
   scout.end_cycle = scout.cycle;
   s.profile_time = static_cast<double>(scout.end_cycle - order.begin_cycle) * c.group.cycle.period_s;
+  Learn(s.profile_time, order, s);
 }
 
 }  // namespace

@@ -137,8 +137,7 @@ void BeginStop(const Context& c, group::State& g, State& s) {
       const group::Halt halt{.deceleration = deceleration, .jerk = jerk};
       s.halting = Tell(c, halt, g) == ErrorId::kNone;
     }
-    s.at_known = s.parking = false;
-    s.at_belt = s.parked_at = 0;
+    ForgetPlace(s);
   }
   if (s.state != PickPlaceState::kStop) Enter(PickPlaceState::kStop, s);
 }
@@ -282,6 +281,18 @@ void RunStates(const Context& c, group::State& g, State& s) {
   StepState(c, g, s);
 }
 
+// Whether there is not enough time left for the workpiece that is gone for.
+bool IsTooLate(const Context& c, const group::State& g, const State& s) {
+  if (s.order_count == 0 || s.orders[0].workpiece == 0) return false;
+  const Order& order = s.orders[0];
+  return !StaysWithin(c, order, TimeToGo(c, g, order, s) + s.belts[order.belt - 1].sync_time, s);
+}
+
+// Along its path, or away from where it stood.
+bool MovesOn(const Context& c, const group::State& g) {
+  return g.begun ? g.pace.now.velocity > 0 : !group::AllMembers(c.group, g, axis::AtRest);
+}
+
 void WatchWindow(const Context& c, State& s) {
   const double cycles = s.settings.position_window_ms / 1000 / c.group.cycle.period_s;
   if (c.path_error > s.settings.position_window) {
@@ -296,13 +307,8 @@ void WatchWindow(const Context& c, State& s) {
 void GoOn(const Context& c, group::State& g, State& s) noexcept {
   s.hold.held = false;
   if (!g.interrupted) return;
-  if (s.order_count == 0 || IsWithin(c, s.orders[0], s)) {
-    Tell(c, group::Continue{}, g);
-    return;
-  }
-  // The workpiece has gone on.
-  LosePath(c, g, false, s);
-  HaltGroup(c, g, s);
+  if (IsTooLate(c, g, s)) return GiveUpAtRest(c, g, s);
+  Tell(c, group::Continue{}, g);
 }
 
 void Fail(const Context& c, ErrorId error, group::State& g, State& s) noexcept {
@@ -322,6 +328,7 @@ State MakeState(const PickPlaceParams& params) noexcept {
 
 void Step(const Context& c, group::State& g, State& s) noexcept {
   s.pulse = false;
+  if (MovesOn(c, g)) s.in_target = false;
   SwitchPower(c, g, s);
   SetOverride(c, g, s);
   for (std::size_t k = 0; k < group::kMaxAxes; ++k) {

@@ -14,6 +14,7 @@ using group::SystemFrame;
 
 constexpr double kLimitShare = 0.98;  // as of the axes: the rest keeps the motion within
 constexpr double kOneAtATime = 0.25;  // of what is learned of a profile
+constexpr double kForget_s = 10;      // while nothing is to be learned
 constexpr double kMargin = 1.1;       // of the time that the next one is thought to take
 
 bool IsStatic(const Order& order) {
@@ -111,9 +112,13 @@ Place StartOf(const Context& c, const group::State& g, const State& s) {
   return s.at_known ? s.at : PresentPlace(c, g);
 }
 
-// The way up from a workpiece is the belt's.
-void SetStart(Shape& shape, const State& s) {
-  if (s.at_belt != 0) shape.start_distance = s.belts[s.at_belt - 1].z_distance;
+// Where the moves given end.
+void SetPlace(const Place& at, std::uint32_t belt, State& s) {
+  s.at = at;
+  s.at_known = true;
+  s.at_belt = belt;
+  s.at_rise = kItself;
+  s.parked_at = 0;
 }
 
 void Park(const Context& c, std::uint32_t belt, group::State& g, State& s) {
@@ -122,14 +127,11 @@ void Park(const Context& c, std::uint32_t belt, group::State& g, State& s) {
   const Place target{.pose = {own.park_x, own.park_y, own.park_z, own.park_a, own.park_b, own.park_c},
                      .aux1 = start.aux1,
                      .parks = true};
-  Shape shape = ShapeOf(s.settings);
-  SetStart(shape, s);
+  const Shape shape = ShapeFromHere(ShapeOf(s.settings), s);
   const Profile profile = MakeProfile(start, target, shape, SystemsOf(c, g, start, target));
   const Given given = GiveLegs(c, profile, 0, RampsOf(s.settings), s.settings.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) return Fail(c, given.error, g, s);
-  s.at = target;
-  s.at_known = true;
-  s.at_belt = 0;
+  SetPlace(target, 0, s);
   s.parked_at = belt;
   s.parking = true;
   s.parking_move = given.last;
@@ -143,19 +145,22 @@ void Begin(const Context& c, group::State& g, Order& order, State& s) {
     const conveyor::Object* object = s.parking ? nullptr : ChooseWorkpiece(c, g, order, s);
     if (!object) {
       order.phase = Phase::kWaiting;
+      // What it learned may be why it waits.
+      s.slowness += (1 - s.slowness) * std::min(1.0, c.group.cycle.period_s / kForget_s);
       if (s.parked_at != order.belt && !s.parking) Park(c, order.belt, g, s);
       return;
     }
+    order.expected_s = TimeToMeet(c, g, order, *object, s);
     if (const ErrorId error = BindWorkpiece(c, *object, g, order, target, s); error != ErrorId::kNone) {
       return Fail(c, error, g, s);
     }
   }
   order.start = StartOf(c, g, s);
-  SetStart(order.shape, s);
   const Systems systems = SystemsOf(c, g, order.start, target);
-  order.profile = MakeProfile(order.start, target, order.shape, systems);
-  order.expected_s = TimeAlong(order.profile, order.start, order.ramps, systems);
+  order.profile = MakeProfile(order.start, target, ShapeFromHere(order.shape, s), systems);
+  if (IsStatic(order)) order.expected_s = TimeAlong(order.profile, order.start, order.ramps, systems);
   order.next_leg = 0;
+  order.pulsed = false;
   const Given given = GiveLegs(c, order.profile, 0, order.ramps, order.shape.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) {
     if (order.workpiece != 0) ++s.counters.missed, ++s.counters.refused;
@@ -165,10 +170,7 @@ void Begin(const Context& c, group::State& g, Order& order, State& s) {
   order.last = given.last;
   order.begin_cycle = c.group.cycle.count;
   order.phase = Phase::kGoing;
-  s.at = target;
-  s.at_known = true;
-  s.at_belt = order.belt;
-  s.parked_at = 0;
+  SetPlace(target, order.belt, s);
 }
 
 // The rest of a path that was left, from where it was left. An arch goes on to the same height.
@@ -189,8 +191,7 @@ void BeginAgain(const Context& c, group::State& g, Order& order, State& s) {
   order.first = given.first;
   order.last = given.last;
   order.phase = Phase::kGoing;
-  s.at = order.target;
-  s.at_known = true;
+  SetPlace(order.target, 0, s);
 }
 
 void CountPick(const Context& c, const Order& order, State& s) {
@@ -212,44 +213,38 @@ void Finish(const Context& c, State& s) {
   Drop(c, 0, FeedbackState::kDone, ErrorId::kNone, s);
 }
 
-void Learn(const Context& c, const Order& order, State& s) {
-  if (order.expected_s <= 0 || order.gripper_off || order.pulse_at_end) return;
-  const double took = static_cast<double>(c.group.cycle.count - order.begin_cycle) * c.group.cycle.period_s;
-  s.slowness += kOneAtATime * (kMargin * took / order.expected_s - s.slowness);
-  s.slowness = std::max(s.slowness, 1.0);
-}
-
-// The workpiece is gone: the next one.
-void Miss(const Context& c, group::State& g, State& s) {
-  Order& order = s.orders[0];
-  ++s.counters.missed;
-  ++s.counters.too_late;
-  conveyor::Remove(order.workpiece, *c.belts[order.belt - 1].state);
-  order.workpiece = 0;
-  LosePath(c, g, false, s);
-  HaltGroup(c, g, s);
-}
-
 void Go(const Context& c, group::State& g, State& s) {
   Order& order = s.orders[0];
   if (g.done <= order.last) {
-    if (!IsWithin(c, order, s)) Miss(c, g, s);
+    if (IsStatic(order)) return;
+    const double left_s = TimeToGo(c, g, order, s);
+    if (!StaysWithin(c, order, left_s + s.belts[order.belt - 1].sync_time, s)) GiveUp(c, g, s);
     return;
   }
   if (g.reason != kinematics::Reason::kNone) return Fail(c, TroubleOf(g), g, s);
   s.in_target = true;
   if (order.pulse_at_end && order.gripper_time > 0 && !order.pulsed) s.pulse = order.pulsed = true;
-  Learn(c, order, s);
   if (IsStatic(order)) return Finish(c, s);
+  Learn(TimeGone(c, order), order, s);
   order.phase = Phase::kStaying;
   order.stay_cycle = c.group.cycle.count;
 }
 
 void Stay(const Context& c, State& s) {
-  const Order& order = s.orders[0];
-  const double wanted = std::round(s.belts[order.belt - 1].sync_time / c.group.cycle.period_s);
+  Order& order = s.orders[0];
+  const double period = c.group.cycle.period_s;
+  const double wanted = std::round(s.belts[order.belt - 1].sync_time / period);
   const auto cycles = static_cast<std::uint64_t>(std::max(1.0, wanted));
-  if (s.ack || c.group.cycle.count - order.stay_cycle >= cycles) Finish(c, s);
+  const std::uint64_t gone = c.group.cycle.count - order.stay_cycle;
+  if (s.ack || gone >= cycles) return Finish(c, s);
+  const bool there = conveyor::Find(*c.belts[order.belt - 1].state, order.workpiece) != nullptr;
+  if (!there || StaysWithin(c, order, static_cast<double>(cycles - gone) * period, s)) return;
+  // Whether the gripper has it is not known: nobody else gets it. What comes next leads up.
+  conveyor::Remove(order.workpiece, *c.belts[order.belt - 1].state);
+  order.workpiece = 0;
+  ++s.counters.missed;
+  ++s.counters.too_late;
+  order.phase = Phase::kNew;
 }
 
 void StepOrder(const Context& c, group::State& g, State& s) {
@@ -326,6 +321,27 @@ bool NoMore(const group::State& g, const State& s) {
 
 }  // namespace
 
+Shape ShapeFromHere(const Shape& shape, const State& s) noexcept {
+  Shape from_here = shape;
+  // The way up from a workpiece is the belt's.
+  if (s.at_belt != 0) from_here.start_distance = s.belts[s.at_belt - 1].z_distance;
+  if (!std::isnan(s.at_rise)) from_here.start_distance = s.at_rise;
+  return from_here;
+}
+
+void ForgetPlace(State& s) noexcept {
+  s.at_known = s.parking = s.lifting = false;
+  s.at_belt = s.parked_at = 0;
+  s.at_rise = kItself;
+}
+
+// At once where it is longer, bit by bit where it is shorter.
+void Learn(double takes_s, const Order& order, State& s) noexcept {
+  if (order.expected_s <= 0 || order.gripper_off || order.pulse_at_end) return;
+  const double slowness = std::max(1.0, kMargin * takes_s / order.expected_s);
+  s.slowness = slowness > s.slowness ? slowness : std::lerp(s.slowness, slowness, kOneAtATime);
+}
+
 void HaltGroup(const Context& c, group::State& g, State& s) noexcept {
   if (Tell(c, group::Halt{}, g) == ErrorId::kNone) s.halting = true;
 }
@@ -373,8 +389,8 @@ void BeginLoop(const Context& c, Ticket ticket, State& s) noexcept {
 void EndOrders(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
   while (s.order_count > 0) Drop(c, s.order_count - 1, feedback, error, s);
   EndLoop(c, feedback, error, s);
-  s.at_known = s.parking = false;
-  s.at_belt = s.parked_at = 0;
+  s.in_target = false;
+  ForgetPlace(s);
   s.given = 0;
   s.hold = {};
   s.scout = {};
@@ -394,8 +410,7 @@ void LosePath(const Context& c, const group::State& g, bool kept, State& s) noex
     GiveBackWorkpiece(c, order);
     order.phase = Phase::kNew;
   }
-  s.at_known = s.parking = false;
-  s.at_belt = s.parked_at = 0;
+  ForgetPlace(s);
   s.given = 0;
   s.scout = {};
 }
@@ -412,6 +427,7 @@ void RunOrders(const Context& c, group::State& g, State& s) noexcept {
     if (!IsFree(c, g)) return;
     s.halting = false;
   }
+  if (s.lifting && !IsLifted(c, g, s)) return;
   if (g.ends && g.reason != kinematics::Reason::kNone) return Fail(c, TroubleOf(g), g, s);
   if (g.ends) {  // somebody else told the group to
     EndOrders(c, FeedbackState::kAborted, ErrorId::kNone, s);
@@ -419,7 +435,6 @@ void RunOrders(const Context& c, group::State& g, State& s) noexcept {
   }
   if (s.given > g.done + g.queue.count) return Fail(c, TroubleOf(g), g, s);
   if (s.parking && g.done > s.parking_move) s.parking = false;
-  if (s.in_target && g.begun && g.pace.now.velocity > 0) s.in_target = false;
   StepLoop(c, s);
   if (s.order_count > 0) StepOrder(c, g, s);
   if (s.state == PickPlaceState::kError) return;

@@ -40,16 +40,21 @@ std::size_t RealOf(const Context& c, const group::State& g, std::size_t place) n
 ErrorId TroubleOf(const group::State& g) noexcept;
 
 // workpieces.cc
-// The workpiece to go to now; null: none.
-const conveyor::Object* ChooseWorkpiece(const Context& c, const group::State& g, const Order& order,
-                                        const State& s) noexcept;
+// The workpiece to go to now; null: none. While the order waits a few are tried in each cycle.
+const conveyor::Object* ChooseWorkpiece(const Context& c, const group::State& g, const Order& order, State& s) noexcept;
+// So long the way to it is thought to take, as its belt goes now.
+double TimeToMeet(const Context& c, const group::State& g, const Order& order, const conveyor::Object& object,
+                  const State& s) noexcept;
 // It is the order's: taken, and given a product coordinate system. Its place for the tool.
 ErrorId BindWorkpiece(const Context& c, const conveyor::Object& object, group::State& g, Order& order, Place& place,
                       State& s) noexcept;
 // Nobody's again, if it is still there.
 void GiveBackWorkpiece(const Context& c, Order& order) noexcept;
-// Whether the order's workpiece is where it can be gone to.
-bool IsWithin(const Context& c, const Order& order, const State& s) noexcept;
+// Whether the order's workpiece will be in the range until the tool is up again that leaves it after so long, whatever
+// its belt may do.
+bool StaysWithin(const Context& c, const Order& order, double time_s, const State& s) noexcept;
+// Of what it was thought to take a profile may take so many times as much now.
+double LongerBy(const State& s) noexcept;
 void CountLost(const Context& c, State& s) noexcept;
 
 // orders.cc
@@ -60,12 +65,32 @@ void BeginLoop(const Context& c, Ticket ticket, State& s) noexcept;
 void RunOrders(const Context& c, group::State& g, State& s) noexcept;
 // The loop is over behind the order that is gone; at once if that waits.
 void EndLoopBehindThis(const Context& c, State& s) noexcept;
+// How the profile of an order runs from where the tool will be.
+Shape ShapeFromHere(const Shape& shape, const State& s) noexcept;
+// Where the tool will be.
+void ForgetPlace(State& s) noexcept;
+// So long has the tool been on its way.
+inline double TimeGone(const Context& c, const Order& order) noexcept {
+  return static_cast<double>(c.group.cycle.count - order.begin_cycle) * c.group.cycle.period_s;
+}
+// So long it takes; for the next ones.
+void Learn(double takes_s, const Order& order, State& s) noexcept;
 // All are forgotten.
 void EndOrders(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
 // What was given to the group is lost: orders begin anew, where `kept` from where the path was left.
 void LosePath(const Context& c, const group::State& g, bool kept, State& s) noexcept;
 // The group comes to rest and forgets its moves.
 void HaltGroup(const Context& c, group::State& g, State& s) noexcept;
+
+// give_up.cc
+// The workpiece of the order that is gone will not be reached in time: the tool leaves it, and its belt, upwards.
+void GiveUp(const Context& c, group::State& g, State& s) noexcept;
+// The same from where the tool rests beside the path.
+void GiveUpAtRest(const Context& c, group::State& g, State& s) noexcept;
+// Whether it is up there; from then on the next order may begin.
+bool IsLifted(const Context& c, const group::State& g, State& s) noexcept;
+// s until the group is through with the order's moves.
+double TimeToGo(const Context& c, const group::State& g, const Order& order, const State& s) noexcept;
 
 // gripper.cc
 void StepGripper(const Context& c, const group::State& g, State& s) noexcept;

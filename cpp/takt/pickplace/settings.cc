@@ -127,6 +127,13 @@ void DescribeBelt(Description<BeltSettingsOf<Of>>& d) {
   d.template defaulted<&S::lower_limit>(
       unit::mm, kPositions, "Where the work range begins along X of the belt, deg on a table. T&P: lrLowerSyncLimit.");
   d.template defaulted<&S::upper_limit>(unit::mm, kPositions, "Where it ends. T&P: lrUpperSyncLimit.");
+  d.template defaulted<&S::lowest_speed>(
+      unit::mm_s, kPositions,
+      "The belt may come down to this speed along its X while a workpiece is gone for, deg/s on a table; below 0: turn "
+      "back. No more than its present speed counts.");
+  d.template defaulted<&S::highest_speed>(unit::mm_s, kPositions,
+                                          "It may come up to this speed meanwhile. No less than its present speed "
+                                          "counts.");
   d.template defaulted<&S::grip_x>(unit::mm, kPositions,
                                    "Where the tool stands on a workpiece, in its coordinate system.");
   d.template defaulted<&S::grip_y>(unit::mm, kPositions,

@@ -119,6 +119,9 @@ struct BeltSettingsOf {
   Of<double> sync_time = Preset<Of>(0.0);    // s
   Of<double> lower_limit = Preset<Of>(0.0);  // mm, along X of the belt
   Of<double> upper_limit = Preset<Of>(0.0);
+  // What the belt may do while a workpiece is gone for, mm/s along its X: at least from its present speed to 0.
+  Of<double> lowest_speed = Preset<Of>(0.0);
+  Of<double> highest_speed = Preset<Of>(0.0);
   // How the tool stands on a workpiece; beyond the manual.
   Of<double> grip_x = Preset<Of>(0.0);
   Of<double> grip_y = Preset<Of>(0.0);

@@ -112,9 +112,12 @@ void describe(Description<State>& d) {
   d.internal<&State::at_known>("Where the moves given end.");
   d.internal<&State::at>("There.");
   d.internal<&State::at_belt>("On a workpiece of that belt.");
+  d.internal<&State::at_rise>(unit::mm, "Of the next profile.");
   d.internal<&State::parked_at>("The parking position of that belt.");
   d.internal<&State::parking>("On the way there.");
   d.internal<&State::parking_move>("Number of the move.");
+  d.internal<&State::lifting>("From where a pick was given up.");
+  d.internal<&State::lifting_move>("Number of the move.");
   d.internal<&State::given>("Number of the next move.");
   d.internal<&State::second_pcs>("The second one is next.");
   d.internal<&State::hold>("A path that was left.");
@@ -129,6 +132,7 @@ void describe(Description<State>& d) {
   d.internal<&State::preparation_time>("Of the path.");
   d.internal<&State::prepare_cycle>("When it began.");
   d.internal<&State::slowness>("The real time of profiles to the expected one.");
+  d.internal<&State::searched>("The workpiece that was tried last.");
   d.internal<&State::out_of_window>("Cycles left.");
   d.internal<&State::in_target>("The target is reached.");
   d.internal<&State::counters>("Of workpieces.");

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
@@ -19,6 +20,8 @@ namespace takt::pickplace {
 
 inline constexpr std::size_t kOrders = 8;  // profiles that may wait, with the one that is gone
 inline constexpr std::size_t kPickTimes = 8;
+// As the profile says itself.
+inline constexpr double kItself = std::numeric_limits<double>::quiet_NaN();
 
 // Where an order has got to.
 enum class Phase : std::uint8_t {
@@ -119,9 +122,12 @@ struct State {
   bool at_known = false;  // else where the tool stands
   Place at;
   std::uint32_t at_belt = 0;    // on a workpiece of that belt; 0: static
+  double at_rise = kItself;     // mm that the next profile lifts first
   std::uint32_t parked_at = 0;  // the parking position of that belt, from 1
   bool parking = false;         // on the way there
   std::uint64_t parking_move = 0;
+  bool lifting = false;  // from where a pick was given up
+  std::uint64_t lifting_move = 0;
   std::uint64_t given = 0;  // number that the next move gets: fewer in the group mean that it refused some
   bool second_pcs = false;  // workpieces get the second one next
   Hold hold;
@@ -135,7 +141,8 @@ struct State {
   double profile_time = 0;          // s
   double preparation_time = 0;      // s
   std::uint64_t prepare_cycle = 0;  // when it began
-  double slowness = 1.2;            // the real time of profiles to the expected one
+  double slowness = 1.1;            // the real time of profiles to the expected one
+  std::uint32_t searched = 0;       // number of the workpiece that was tried last; 0: the search begins anew
   std::uint32_t out_of_window = 0;  // cycles since the measured tool was too far away: counts down
   bool in_target = false;
   Counters counters;

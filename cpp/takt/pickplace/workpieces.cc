@@ -15,6 +15,11 @@ using kinematics::Frame;
 
 // So often the place of arrival is worked out anew from the time that the way there takes.
 constexpr int kRounds = 3;
+// From the end of the time on a workpiece until the way up from it begins.
+constexpr double kCyclesBetween = 4;
+constexpr double kLeastOverride = 1e-3;
+// Workpieces in a cycle: one after the other they can be reached, or leave the range.
+constexpr std::size_t kTriesWhileWaiting = 2;
 
 const Belt& BeltOf(const Context& c, const Order& order) {
   return c.belts[order.belt - 1];
@@ -26,45 +31,47 @@ const BeltSettings& SettingsFor(const Order& order, const State& s) {
 bool IsInside(const BeltSettings& own, double place) {
   return own.lower_limit >= own.upper_limit || (place >= own.lower_limit && place <= own.upper_limit);
 }
-bool IsInside(const conveyor::BeltParams& p, double place) {
-  return (!p.lower_limit || place >= *p.lower_limit) && (!p.upper_limit || place <= *p.upper_limit);
-}
 
 kinematics::Pose GripOn(const BeltSettings& own) {
   return {own.grip_x, own.grip_y, own.grip_z, own.grip_a, own.grip_b, own.grip_c};
 }
 
-// Seen from the MCS, a time later.
-Frame ObjectIn(const Context& c, const Belt& belt, const Object& object, double time_s) {
+// Seen from the MCS, after so much travel of the belt.
+Frame ObjectAfter(const Context& c, const Belt& belt, const Object& object, double travel) {
   conveyor::State later;
   later.travel = belt.state->travel;
-  later.travel.position += later.travel.velocity * time_s;
+  later.travel.position += travel;
   return c.group.mounting.base_inverse * conveyor::PoseOf(*belt.params, later, object).GetFrame();
 }
 
-// How long it takes to get there, and whether tool and workpiece meet within the range and within reach.
-bool IsReachable(const Context& c, const group::State& g, const Order& order, const Object& object, const State& s) {
-  const Belt& belt = BeltOf(c, order);
-  const BeltSettings& own = SettingsFor(order, s);
-  const Place from = s.at_known ? s.at : PresentPlace(c, g);
-  const Frame start = group::SystemFrame(c.group, g, from.system, from.pcs - 1);
-  Place to{.system = group::CoordinateSystem::kPcs, .pcs = 1, .pose = GripOn(own), .aux1 = own.aux1_target};
-  Frame target;
-  double time_s = 0;
-  for (int i = 0; i < kRounds; ++i) {
-    target = ObjectIn(c, belt, object, time_s * s.slowness);
-    const Systems systems{c.group.mounting.base, start, target};
-    const Profile profile = MakeProfile(from, to, order.shape, systems);
-    if (profile.error != ErrorId::kNone) return false;
-    time_s = TimeAlong(profile, from, order.ramps, systems);
-  }
-  const double end = conveyor::PlaceIn(*belt.params, *belt.state, object, time_s * s.slowness + own.sync_time);
-  if (!IsInside(own, end) || !IsInside(*belt.params, end)) return false;
-  const Frame tool = target * kinematics::ToFrame(to.pose);
-  const Frame above = target * kinematics::ToFrame({own.grip_x, own.grip_y, own.grip_z + own.z_distance, own.grip_a,
-                                                    own.grip_b, own.grip_c});
+double OverrideOf(const State& s) {
+  return std::clamp(s.inputs.override_factor, kLeastOverride, 1.0);
+}
+
+// What a belt may do from now on. Between these it may change its speed as it likes.
+std::array<double, 2> SpeedsOf(const Belt& belt, const BeltSettings& own) {
+  const double now = belt.state->travel.velocity;
+  return {std::min(now, own.lowest_speed), std::max(now, own.highest_speed)};
+}
+
+// From the end of the time on a workpiece until the tool is up.
+double TimeUp(const Context& c, const Order& order, const BeltSettings& own, const State& s) {
+  // From rest to rest: it does not stop up there, so that there is some time to spare.
+  const double lift_s = own.z_distance > 0 ? TimeFor(own.z_distance, order.ramps) : 0;
+  return kCyclesBetween * c.group.cycle.period_s + lift_s / OverrideOf(s);
+}
+
+bool IsInside(const Belt& belt, const BeltSettings& own, double place) {
+  return IsInside(own, place) && conveyor::IsWithin(*belt.params, place);
+}
+
+// The tool can be there, and over there.
+bool CanBeAt(const Context& c, const group::State& g, const BeltSettings& own, const Frame& object, const State& s) {
   const group::End present = group::Present(c.group, g);
-  for (Frame at : {tool, above}) {
+  kinematics::Pose grip = GripOn(own);
+  for (const double height : {0.0, own.z_distance}) {
+    grip.z = own.grip_z + height;
+    Frame at = object * kinematics::ToFrame(grip);
     if (s.settings.keep_orientation) at.M = present.tool.M;
     kinematics::Joints joints = present.joints;
     if (group::JointsAt(c.group, at, present.joints, joints) != kinematics::Reason::kNone) return false;
@@ -73,42 +80,104 @@ bool IsReachable(const Context& c, const group::State& g, const Order& order, co
   return true;
 }
 
+// Where tool and object meet if the belt runs at this speed, and how long the way there is thought to take.
+struct Meeting {
+  ErrorId error = ErrorId::kNone;
+  Frame object;
+  double time_s = 0;
+};
+
+Meeting Meet(const Context& c, const group::State& g, const Order& order, const Object& object, double speed,
+             const State& s) {
+  const BeltSettings& own = SettingsFor(order, s);
+  const Place from = s.at_known ? s.at : PresentPlace(c, g);
+  const Frame start = group::SystemFrame(c.group, g, from.system, from.pcs - 1);
+  const Shape shape = ShapeFromHere(order.shape, s);
+  const Place to{.system = group::CoordinateSystem::kPcs, .pcs = 1, .pose = GripOn(own), .aux1 = own.aux1_target};
+  Meeting meeting;
+  for (int i = 0; i < kRounds && meeting.error == ErrorId::kNone; ++i) {
+    meeting.object = ObjectAfter(c, BeltOf(c, order), object, speed * LongerBy(s) * meeting.time_s);
+    const Systems systems{c.group.mounting.base, start, meeting.object};
+    const Profile profile = MakeProfile(from, to, shape, systems);
+    meeting.error = profile.error;
+    meeting.time_s = TimeAlong(profile, from, order.ramps, systems);
+  }
+  return meeting;
+}
+
+// Whether they meet, and part, within the range and within reach.
+bool IsReachableAt(double speed, const Context& c, const group::State& g, const Order& order, const Object& object,
+                   const State& s) {
+  const Belt& belt = BeltOf(c, order);
+  const BeltSettings& own = SettingsFor(order, s);
+  const Meeting meeting = Meet(c, g, order, object, speed, s);
+  if (meeting.error != ErrorId::kNone) return false;
+  const double travel = speed * (LongerBy(s) * meeting.time_s + own.sync_time + TimeUp(c, order, own, s));
+  const double end = conveyor::PlaceOf(*belt.params, *belt.state, object) + travel;
+  return IsInside(belt, own, end) && CanBeAt(c, g, own, meeting.object, s) &&
+         CanBeAt(c, g, own, ObjectAfter(c, belt, object, travel), s);
+}
+
+// Wherever the belt may have come to meanwhile lies between where its two speeds take it.
+bool IsReachable(const Context& c, const group::State& g, const Order& order, const Object& object, const State& s) {
+  const auto [lowest, highest] = SpeedsOf(BeltOf(c, order), SettingsFor(order, s));
+  return IsReachableAt(highest, c, g, order, object, s) &&
+         (lowest == highest || IsReachableAt(lowest, c, g, order, object, s));
+}
+
 }  // namespace
 
-const Object* ChooseWorkpiece(const Context& c, const group::State& g, const Order& order, const State& s) noexcept {
+double LongerBy(const State& s) noexcept {
+  return s.slowness / OverrideOf(s);
+}
+
+const Object* ChooseWorkpiece(const Context& c, const group::State& g, const Order& order, State& s) noexcept {
   const Belt& belt = BeltOf(c, order);
   const BeltSettings& own = SettingsFor(order, s);
   const auto objects = conveyor::ObjectsOf(*belt.state);
-  const double sense = belt.state->sense;
   const KDL::Vector tool = group::Present(c.group, g).tool.p;
   const auto rank = [&](const Object& object) {
-    const double place = sense * conveyor::PlaceOf(*belt.params, *belt.state, object);
+    const double place = belt.state->sense * conveyor::PlaceOf(*belt.params, *belt.state, object);
     switch (s.settings.workpiece_rule) {
       case WorkpieceRule::kFirst:
         return place;
       case WorkpieceRule::kLatest:
         return -place;
       default:
-        return -(ObjectIn(c, belt, object, 0).p - tool).Norm();
+        return -(ObjectAfter(c, belt, object, 0).p - tool).Norm();
     }
   };
-  std::array<bool, conveyor::kObjects> tried{};
-  while (true) {
+  std::array<double, conveyor::kObjects> ranks{};
+  for (std::size_t i = 0; i < objects.size(); ++i) ranks[i] = rank(objects[i]);
+  const auto is_behind = [&](std::size_t i, std::size_t other) {
+    return ranks[i] != ranks[other] ? ranks[i] < ranks[other] : i > other;
+  };
+  const bool waits = order.phase == Phase::kWaiting;
+  std::size_t tried = objects.size();
+  if (const Object* last = conveyor::Find(*belt.state, waits ? s.searched : 0)) {
+    tried = static_cast<std::size_t>(last - objects.data());
+  }
+  for (std::size_t tries = waits ? kTriesWhileWaiting : objects.size(); tries > 0; --tries) {
     std::size_t best = objects.size();
-    double best_rank = 0;
     for (std::size_t i = 0; i < objects.size(); ++i) {
       const Object& object = objects[i];
-      if (tried[i] || !conveyor::IsFree(*belt.params, *belt.state, object)) continue;
-      if (!IsInside(own, conveyor::PlaceOf(*belt.params, *belt.state, object))) continue;
-      const double r = rank(object);
-      if (best < objects.size() && r <= best_rank) continue;
-      best = i;
-      best_rank = r;
+      if (tried < objects.size() && !is_behind(i, tried)) continue;
+      if (best < objects.size() && is_behind(i, best)) continue;
+      if (!conveyor::IsFree(*belt.params, *belt.state, object)) continue;
+      if (IsInside(own, conveyor::PlaceOf(*belt.params, *belt.state, object))) best = i;
     }
-    if (best == objects.size()) return nullptr;
-    if (IsReachable(c, g, order, objects[best], s)) return &objects[best];
-    tried[best] = true;
+    const bool found = best < objects.size() && IsReachable(c, g, order, objects[best], s);
+    s.searched = best == objects.size() || found ? 0 : objects[best].number;
+    if (found) return &objects[best];
+    if (s.searched == 0) return nullptr;
+    tried = best;
   }
+  return nullptr;
+}
+
+double TimeToMeet(const Context& c, const group::State& g, const Order& order, const Object& object,
+                  const State& s) noexcept {
+  return Meet(c, g, order, object, BeltOf(c, order).state->travel.velocity, s).time_s;
 }
 
 ErrorId BindWorkpiece(const Context& c, const Object& object, group::State& g, Order& order, Place& place,
@@ -147,13 +216,15 @@ void GiveBackWorkpiece(const Context& c, Order& order) noexcept {
   order.workpiece = 0;
 }
 
-bool IsWithin(const Context& c, const Order& order, const State& s) noexcept {
-  if (order.belt == 0 || order.workpiece == 0) return true;
+bool StaysWithin(const Context& c, const Order& order, double time_s, const State& s) noexcept {
   const Belt& belt = BeltOf(c, order);
+  const BeltSettings& own = SettingsFor(order, s);
   const Object* object = conveyor::Find(*belt.state, order.workpiece);
   if (!object) return false;
   const double place = conveyor::PlaceOf(*belt.params, *belt.state, *object);
-  return IsInside(SettingsFor(order, s), place) && conveyor::InRange(*belt.params, *belt.state, *object);
+  const double until_s = time_s + TimeUp(c, order, own, s);
+  return std::ranges::all_of(SpeedsOf(belt, own),
+                             [&](double speed) { return IsInside(belt, own, place + speed * until_s); });
 }
 
 void CountLost(const Context& c, State& s) noexcept {

@@ -1,6 +1,6 @@
-// PP-44, CV-43: products at random on belts that change their speed. The tool is on no workpiece outside the work
-// range, never low over the belt but straight over its workpiece, and every product is accounted for. A forecast takes
-// the belt to go on as fast as now: where that was wrong a pick is given up, seldom, even on its way down.
+// PP-44, CV-43: products at random on belts that change their speed. The tool is never low over the belt but straight
+// over its workpiece and within the work range, and every product is accounted for. No pick is given up on its way down
+// where it was said how fast the belt may go; where that was not said some are, and the rest holds all the same.
 // TAKT_LONG in the environment: 10,000 products instead of 300.
 #include <cstdlib>
 #include <iostream>
@@ -12,6 +12,7 @@ namespace takt::pickplace {
 namespace {
 
 constexpr double kOnWorkpiece = 1e-6;  // mm
+constexpr double kBeside = 0.01;       // mm
 constexpr double kTop = 10;            // mm, of products above the belt
 constexpr double kRise = 25;           // mm, of the way down that is straight but for its rounding
 constexpr double kRounding = 10;
@@ -32,7 +33,7 @@ struct Given {
 
 using group::Uniform;
 
-Given AtRandom(std::mt19937_64& random) {
+Given AtRandom(bool says_how_fast, std::mt19937_64& random) {
   Given made;
   Settings& s = made.settings;
   s = Fast();
@@ -89,16 +90,17 @@ Given AtRandom(std::mt19937_64& random) {
     }
     return x;
   };
+  if (says_how_fast) belt.settings.highest_speed = speed * (1 + swings[0].share + swings[1].share);
   made.gap_s = Uniform(random, 0.2, 1.5) * (delta ? 0.6 : 1.2);
   return made;
 }
 
 struct Figures {
   std::uint32_t products = 0, picked = 0, too_late = 0, interrupted = 0, refused = 0, there = 0;
-  double furthest = 0;             // mm beyond the range with the tool on a workpiece
   std::uint32_t given_up_low = 0;  // on the straight way down
-  double lowest = kRise;           // mm over the product, after that
-  double beside = 0;               // mm to the side of it, on the straight way down
+  // With the tool low over the belt:
+  double furthest = 0;  // mm beyond the range
+  double beside = 0;    // mm to the side of its workpiece
 };
 
 class Watched {
@@ -150,9 +152,9 @@ class Watched {
     const Order& order = cell_.state.orders[0];
     const std::uint32_t bound = cell_.state.order_count > 0 ? order.workpiece : 0;
     const double surface = cell_.belts[0].params.origin.z;
-    // Those that were picked go up with the tool.
+    // From others, picked or given up, it has to go up first.
     const conveyor::Object* mine = bound != 0 ? conveyor::Find(belt(), bound) : nullptr;
-    if (mine) last_ = *mine;
+    if (mine && !low_) last_ = *mine;
     const conveyor::Object& at = last_;
     const KDL::Vector place = conveyor::PoseOf(cell_.belts[0].params, belt(), at).GetFrame().p;
     const KDL::Vector off = tool - place;
@@ -162,32 +164,25 @@ class Watched {
     if (picks) lowers_ = false;
     const double height = tool.z() - surface - kTop;
     // What is lower than the rounding is straight over its workpiece.
-    const bool low = over && height < kRise - kRounding - 1e-3;
-    if (low) {
+    low_ = over && height < kRise - kRounding - 1e-3;
+    if (low_) {
       ASSERT_GE(height, -kOnWorkpiece);
+      ASSERT_LT(std::hypot(off.x(), off.y()), kBeside);
+      figures.beside = std::max(figures.beside, std::hypot(off.x(), off.y()));
+      const double along = conveyor::PlaceOf(cell_.belts[0].params, belt(), at);
+      ASSERT_GE(along, range().lower_limit);
+      figures.furthest = std::max(figures.furthest, along - range().upper_limit);
     }
-    if (!low) gave_up_ = false;
     if (bound != before_) {
-      if (lowers_) gave_up_ = true, ++figures.given_up_low;
+      if (lowers_) ++figures.given_up_low;
       lowers_ = false;
       on_ = 0;
-    }
-    if (gave_up_) {
-      figures.lowest = std::min(figures.lowest, height);
-    } else if (low) {
-      // Where a belt changes its speed while the tool gets on, axes may be asked for too much and come later.
-      figures.beside = std::max(figures.beside, std::hypot(off.x(), off.y()));
     }
     if (picks) {
       ASSERT_GE(stayed, std::max(1L, std::lround(range().sync_time / 0.001)));
     }
-    if (mine && low) lowers_ = true;
-    if (mine && off.Norm() < kOnWorkpiece) {
-      const double along = conveyor::PlaceOf(cell_.belts[0].params, belt(), *mine);
-      ASSERT_GE(along, range().lower_limit);
-      figures.furthest = std::max(figures.furthest, along - range().upper_limit);
-      ++on_;
-    }
+    if (mine && low_) lowers_ = true;
+    if (mine && off.Norm() < kOnWorkpiece) ++on_;
     before_ = bound;
     Lose();
   }
@@ -208,29 +203,39 @@ class Watched {
   Cell cell_;
   conveyor::Object last_;
   std::uint32_t before_ = 0;
-  bool lowers_ = false, gave_up_ = false;
+  bool lowers_ = false, low_ = false;
   long on_ = 0;
 };
 
-TEST(Reach, ProductsAtRandom) {
+Figures RunCells(bool says_how_fast) {
   const int cells = std::getenv("TAKT_LONG") ? 400 : 12;
   Figures figures;
-  for (int seed = 1; seed <= cells && !HasFailure(); ++seed) {
+  for (int seed = 1; seed <= cells && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
-    Watched run(AtRandom(random), random);
+    Watched run(AtRandom(says_how_fast, random), random);
     run.Until(25, figures);
   }
   std::cout << figures.products << " products: " << figures.picked << " picked, " << figures.too_late << " too late, "
             << figures.interrupted << " interrupted, " << figures.refused << " refused, " << figures.there
-            << " still there; " << figures.given_up_low << " given up on the way down, at least " << figures.lowest
-            << " mm over the product; on one " << figures.furthest << " mm beyond the range\n";
+            << " still there; " << figures.given_up_low << " given up on the way down; low over the belt "
+            << figures.furthest << " mm beyond the range and " << figures.beside << " mm beside a workpiece at most\n";
   EXPECT_EQ(figures.products, figures.picked + figures.too_late + figures.interrupted + figures.refused);
-  EXPECT_GT(figures.picked, figures.products / 4);
   EXPECT_GT(figures.too_late, 0u);
-  EXPECT_LE(figures.furthest, 1);
-  std::cout << figures.beside << " mm beside a workpiece at most, low over the belt\n";
-  EXPECT_LE(figures.given_up_low, figures.products / 50);
+  EXPECT_EQ(figures.furthest, 0);
+  return figures;
+}
+
+TEST(Reach, ProductsAtRandom) {
+  const Figures figures = RunCells(true);
+  EXPECT_EQ(figures.given_up_low, 0u);
+  EXPECT_GT(figures.picked, figures.products / 4);
+}
+
+TEST(Reach, FasterThanExpected) {
+  const Figures figures = RunCells(false);
+  EXPECT_LE(figures.given_up_low, figures.products / 500);
+  EXPECT_GT(figures.picked, figures.products / 2);
 }
 
 }  // namespace

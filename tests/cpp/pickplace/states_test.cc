@@ -484,6 +484,30 @@ TEST(Faults, OfAnAxis) {
   EXPECT_TRUE(cell.rig.lives[again].done);
 }
 
+// PP-01: a target is no longer reached once it is forgotten, or the tool moves away from it by whatever means.
+TEST(States, InTargetEnds) {
+  const auto at_target = [](Cell& cell) {
+    cell.Start();
+    const Ticket ticket = Begin(cell);
+    ASSERT_TRUE(cell.RunToEnd(ticket));
+    cell.Steps(100);
+    ASSERT_TRUE(cell.out().in_target);
+  };
+  Cell off, jogged, moved;
+  at_target(off);
+  off.Do(Control{.regulator_on = false});
+  EXPECT_FALSE(off.out().in_target);
+  at_target(jogged);
+  jogged.Do(Control{.select_axis = SelectAxis::kX});
+  jogged.Do(Jog{.positive = true});
+  jogged.Steps(50);
+  EXPECT_FALSE(jogged.out().in_target);
+  at_target(moved);
+  moved.rig.Give(group::MoveLinearAbsolute{.x = 10});
+  moved.Steps(50);
+  EXPECT_FALSE(moved.out().in_target);
+}
+
 // PP-01: power off ends what is going on.
 TEST(States, PowerOff) {
   Cell cell;
