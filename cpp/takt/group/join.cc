@@ -114,47 +114,62 @@ Distances DistancesOf(const Context& c, const State& s, const Request& move, con
   }
 }
 
-// Whether the motion can still stop at a node.
-bool CanStopAt(const trajectory::PathWindow& window, const trajectory::PathPace& pace, std::uint64_t node) {
-  if (pace.node >= node) return false;
-  if (pace.raw_stands) return true;
+// Whether the motion can still stop at a place, at a node or between it and the next one.
+bool CanStopAt(const trajectory::PathWindow& window, const trajectory::PathPace& pace, std::uint64_t node,
+               double place) {
+  if (pace.raw_stands) return pace.node < node;
   double square = 0;
-  for (std::uint64_t i = node; i > pace.node + 1; --i) {
+  double later = place;
+  for (std::uint64_t i = place > window[node].at.s ? node + 1 : node; i > pace.node + 1; --i) {
     const trajectory::PathNode& before = window[i - 1];
-    const double length = window[i].at.s - before.at.s;
+    const double length = later - before.at.s;
     square = length > 0 ? trajectory::SquareBefore(before.bounds, length, square, before.ceiling)
                         : std::min(square, before.ceiling);
     if (square >= before.ceiling) return true;
+    later = before.at.s;
   }
   const double v = pace.raw.velocity;
-  const double left = window[pace.node + 1].at.s - pace.raw.position;
+  const double left = later - pace.raw.position;
   // It may go by the ceiling itself.
-  return v * v + 2 * left * window[pace.node].bounds.Least(pace.entered) <= square * (1 + kRounding);
+  return left > 0 && v * v + 2 * left * window[pace.node].bounds.Least(pace.entered) <= square * (1 + kRounding);
 }
 
 // Takes back what is planned behind a place, to be sampled again from a stretch on, if the motion can still stop
 // before.
 bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch) {
-  trajectory::PathWindow& window = c.ahead.window;
+  LookAhead& ahead = c.ahead;
+  trajectory::PathWindow& window = ahead.window;
   std::uint64_t node = window.end() - 1;
   while (node > window.begin() && window[node].at.s > place) --node;
   if (window[node].stop || window[node].at.s > place) return false;
-  if (s.begun && !CanStopAt(window, s.pace, node)) return false;
-  if (node + 1 < window.end()) {
-    window.CutBehind(node);
-    c.ahead.rehearsal.Clear();
-  }
-  c.ahead.sampling = std::min(c.ahead.sampling, stretch);
-  if (c.ahead.last.s == window[node].at.s) return true;
-  c.ahead.last = window[node].at;
-  std::uint64_t on = c.ahead.sampling;
-  while (on > c.ahead.first && c.ahead[on].begin > c.ahead.last.s) --on;
-  const Stretch& there = c.ahead[on];
+  trajectory::PathPoint end = window[node].at;
   kinematics::JointMotion motion;
-  const double way = there.from + (c.ahead.last.s - there.begin);
-  if (AxesOn(c, s, there, way, c.ahead.last_joints, motion) == kinematics::Reason::kNone) {
-    c.ahead.last_joints = motion.position;
+  motion.position = ahead.last_joints;
+  const bool shorter = node + 1 < window.end();
+  if (shorter) {
+    std::uint64_t on = std::min(ahead.sampling, stretch);
+    while (on > ahead.first && ahead[on].begin > place) --on;
+    trajectory::PathPoint there = end;
+    there.s = place;
+    const double way = ahead[on].from + (place - ahead[on].begin);
+    const kinematics::Reason reason = SlopesOn(c, s, ahead[on], way, ahead.last_joints, there, motion);
+    if (reason != kinematics::Reason::kNone) return false;
+    // Where nodes are far apart, the motion would have to stop far before the place: it gets one of its own.
+    if (place > end.s) end = there;
   }
+  if (s.begun && !CanStopAt(window, s.pace, node, end.s)) return false;
+  if (shorter) {
+    window.CutBehind(node);
+    if (end.s > window[node].at.s) {
+      window.Append(end);
+      window.Close();
+      window.Sweep(kNodes);
+    }
+    ahead.rehearsal.Clear();
+  }
+  ahead.sampling = std::min(ahead.sampling, stretch);
+  ahead.last = end;
+  ahead.last_joints = motion.position;
   return true;
 }
 
@@ -240,6 +255,7 @@ bool FindDistances(const Context& c, const State& s, const Request& move, std::u
   room.first = std::min(room.first, before.to - before.from);
   Stretch& blend = out.stretch;
   blend.move = after.move;
+  blend.goes_on = true;
   blend.joints = after.joints;
   blend.limits = trajectory::Least(before.limits, after.limits);
   blend.build_up_s = before.build_up_s;
@@ -319,6 +335,7 @@ int Join(const Context& c, State& s) noexcept {
   } else {
     ahead.next.build_up_s = ahead[ahead.end() - 1].build_up_s;
   }
+  ahead.next.goes_on = goes_on;
   if (!follows) {
     ahead.last_joints = ahead.end_joints;
     ahead.sampling = ahead.end();

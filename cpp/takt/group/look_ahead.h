@@ -42,6 +42,7 @@ struct Stretch {
   std::uint64_t move = 0;      // number of the move that it belongs to
   bool joints = false;         // its auxiliaries are all members; else those behind the kinematics
   bool stops = false;          // the motion stops at its end
+  bool goes_on = false;        // from the stretch before, without a corner
   bool bends_at_ends = false;  // it is rounded also where it goes on from a line
   bool begun = false;          // its first node is there
   trajectory::AlongPath limits;

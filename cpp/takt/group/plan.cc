@@ -25,7 +25,6 @@ constexpr std::size_t kSweepNodes = 512;
 constexpr int kRehearsed = 24;         // cycles of the motion ahead
 constexpr int kRehearsedIfCostly = 4;  // with an inverse of a chain for each
 constexpr std::size_t kSpareNodes = 4;
-constexpr double kStepsOfLine = 4;
 constexpr double kLeastStep = 1e-3;  // mm
 constexpr int kLeastPlaces = 4;
 constexpr int kMostPlaces = 64;
@@ -126,6 +125,12 @@ void Refuse(const Context& c, ErrorId error, State& s) {
 
 void BeginStretch(const Context& c, double time_s, State& s);
 
+// Some of what is planned is still to be gone.
+bool LiesAhead(const Context& c, const State& s) {
+  const LookAhead& ahead = c.ahead;
+  return ahead.known && ahead.count > 0 && !(s.begun && s.pace.now.position >= ahead[ahead.end() - 1].end());
+}
+
 void Begin(const Context& c, State& s) {
   s.reason = kinematics::Reason::kNone;
   s.problem = path::Problem::kNone;
@@ -138,7 +143,7 @@ void Begin(const Context& c, State& s) {
       c.ahead.end_joints = end.joints;
       c.ahead.end_tool = end.tool;
     }
-    if (!s.begun || trajectory::Stands(s.pace) || !c.ahead.known) c.ahead.end_eta = 0;
+    if (!LiesAhead(c, s)) c.ahead.end_eta = 0;
     c.ahead.end_eta = std::max(c.ahead.end_eta, Now(c) + kLatency_s);
     c.ahead.tried_from = c.ahead.end_joints;
     c.ahead.tried_from_tool = c.ahead.end_tool;
@@ -320,6 +325,8 @@ bool SampleBegin(const Context& c, const Stretch& stretch, State& s) {
   if (SlopesOn(c, s, stretch, stretch.from, c.ahead.last_joints, point, motion) != kinematics::Reason::kNone) {
     return false;
   }
+  // Where carriers will be is not foreseen alike each time: that is no corner.
+  if (stretch.goes_on) point.slopes.first = c.ahead.last.slopes.first;
   c.ahead.last_joints = motion.position;
   c.ahead.last = point;
   c.ahead.window.Append(point);
@@ -340,15 +347,19 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
     failed_at = at;
     return reason == kinematics::Reason::kNone;
   };
-  // Between two blends it can be faster than on them only where there are nodes.
-  const bool between = stretch.from > 0 && stretch.segment.shape == path::Shape::kLine;
+  const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
   const double left = stretch.end() - c.ahead.last.s;
-  const double most = std::max((stretch.to - stretch.from) / (between ? kStepsOfLine : 1), kLeastStep);
+  double most = stretch.to - stretch.from;
+  if (stretch.segment.shape == path::Shape::kLine) {
+    most = trajectory::StepBetweenSlowPlaces(c.ahead.last, stretch.begin, stretch.end(), limits,
+                                             c.ahead.window.build_up_s(), c.cycle.period_s);
+  }
+  most = std::max(most, kLeastStep);
   double end = left < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
   trajectory::PathPoint next;
   for (bool even = false; !even;) {
-    if (!trajectory::NextPoint(c.ahead.last, end, c.ahead.window.limits(), c.ahead.window.build_up_s(),
-                               c.cycle.period_s, slopes_at, next)) {
+    if (!trajectory::NextPoint(c.ahead.last, end, limits, c.ahead.window.build_up_s(), c.cycle.period_s, slopes_at,
+                               next)) {
       CutShort(c, stretch.move, reason, failed_at - stretch.begin, s);
       return false;
     }

@@ -14,22 +14,34 @@ namespace sampling {
 inline constexpr double kTimeShare = 0.35;
 // Cycles between two nodes at least, so far as the path allows.
 inline constexpr double kCycles = 2;
+// Nodes from one slow place to the next, no more than about so many for that alone.
+constexpr double kMostSteps = 32;
 // How far an acceleration between two nodes may be from the line, as a share of its limit.
 inline constexpr double kBend = 0.02;
 inline constexpr int kHalvings = 12;
 }  // namespace sampling
 
+// The acceleration along the way that the limits allow at a place, but for bends.
+inline double AccelerationAt(const PathPoint& point, const CoordinateLimits& limits) noexcept {
+  double acceleration = std::max(point.limits.acceleration, point.limits.deceleration);
+  for (std::size_t k = 0; k < limits.count; ++k) {
+    const double slope = std::abs(point.slopes.first[k]);
+    const double own = point.left * limits.of[k].acceleration;
+    if (slope * acceleration > own) acceleration = own / slope;
+  }
+  return acceleration;
+}
+
 // Finds T for a motion from one stop to the next, from samples of what is known of its path.
 class BuildUp {
  public:
   void Add(const PathPoint& point, const CoordinateLimits& limits) noexcept {
-    double acceleration = std::max(point.limits.acceleration, point.limits.deceleration);
+    const double acceleration = AccelerationAt(point, limits);
     double jerk = point.limits.jerk;
     for (std::size_t k = 0; k < limits.count; ++k) {
       const double slope = std::abs(point.slopes.first[k]);
-      const CoordinateLimits::One& own = limits.of[k];
-      if (slope * acceleration > point.left * own.acceleration) acceleration = point.left * own.acceleration / slope;
-      if (slope * jerk > point.left * own.jerk) jerk = point.left * own.jerk / slope;
+      const double own = point.left * limits.of[k].jerk;
+      if (slope * jerk > own) jerk = own / slope;
     }
     ++count_;
     time_ += acceleration / jerk;
@@ -59,6 +71,21 @@ class BuildUp {
   double acceleration_ = 0;
   double velocity_ = 0;
 };
+
+// How far from a node the next one may be on a stretch at both ends of which the motion may be slow. Between two nodes
+// it can neither speed up and brake again nor do better than the worse one allows, so they are the nearer to one
+// another the less a motion from rest, or to rest, has speeded up.
+inline double StepBetweenSlowPlaces(const PathPoint& point, double begin, double end, const CoordinateLimits& limits,
+                                    double build_up_s, double period_s) noexcept {
+  namespace c = sampling;
+  const double time = std::max(c::kTimeShare * build_up_s, c::kCycles * period_s);
+  // The square root of the way from rest, 0.5 a t², grows so much from node to node.
+  const double growth =
+      std::max(std::sqrt(0.5 * AccelerationAt(point, limits)) * time, std::sqrt(2 * (end - begin)) / c::kMostSteps);
+  const double out = 2 * growth * std::sqrt(std::max(0.0, point.s - begin)) + growth * growth;
+  const double in = 2 * growth * std::sqrt(end - point.s) - growth * growth;
+  return std::max(growth * growth, std::min(out, in));
+}
 
 // The node behind `before`, at `end` at most. `slopes_at(s, point)` fills slopes and what is left of the limits; it
 // answers false where there is no path, then this does, too. The limits along the way are those of `before`.

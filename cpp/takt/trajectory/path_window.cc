@@ -198,19 +198,21 @@ bool PathWindow::Raise(std::uint64_t i) noexcept {
   return node.ceiling != before || node.coast != coast_before;
 }
 
-// The largest square of the speed that may be held for the time T from there without getting above a ceiling.
+// The largest square of the speed that may be held for the time T from there without getting above a ceiling; and for
+// one cycle more, since an acceleration that ends at a node does so within a cycle.
 double PathWindow::CoastFrom(std::uint64_t i) const noexcept {
   const double s = (*this)[i].at.s;
   double square = (*this)[i].ceiling;
   for (std::uint64_t k = i; k + 1 < known_ && !(*this)[k].stop; ++k) {
     const PathNode& node = (*this)[k];
     const PathNode& next = (*this)[k + 1];
-    const double to_next = (next.at.s - s) / node.build_up_s;  // the speed that gets there in T
+    const double hold_s = node.build_up_s + period_s_;
+    const double to_next = (next.at.s - s) / hold_s;  // the speed that gets there in that time
     if (std::min(square, next.ceiling) <= to_next * to_next) {
-      // The speed u with u² = ceiling at s + u T, which is a line up to there.
+      // The speed u with u² = ceiling at s + u hold, which is a line up to there.
       const double length = next.at.s - node.at.s;
       const double tilt = length > 0 ? (next.ceiling - node.ceiling) / length : 0;
-      const double half = 0.5 * tilt * node.build_up_s;
+      const double half = 0.5 * tilt * hold_s;
       const double here = node.ceiling - tilt * (node.at.s - s);
       const double u = half + std::sqrt(std::max(0.0, half * half + here));
       return std::min(square, u * u);

@@ -367,10 +367,10 @@ TEST(Check, APathBehindAMoveGoesOnFromThere) {
     ExpectSmooth(rig);
     bool there = false;
     for (std::size_t i = 1; i < rig.trace.size(); ++i) {
-      there |= rig.trace[i].out.x < -99.999;
       if (there) {
         EXPECT_GE(rig.trace[i].out.x, rig.trace[i - 1].out.x - 0.001) << "goes back";
       }
+      there |= rig.trace[i].out.x < -99.999;
     }
     EXPECT_TRUE(there);
   }

@@ -53,6 +53,71 @@ TEST(Riding, OntoABeltAndAlongWithIt) {
   }
 }
 
+// From one belt to another, 25 mm up, across, 25 mm down, with corners rounded so much.
+struct Pick {
+  double time = 0;        // s
+  double slowest = 1e99;  // mm/s, further than 5 mm from both ends
+};
+using Travel = std::function<KinematicState(double t)>;
+Pick Across(Rig rig, double z, const Travel& first, const Travel& second, double radius) {
+  rig.StartAt({0, -152.5, z + 20});
+  const auto belts = Put(rig, {BeltAt("first", {0, -152.5, z}, first), BeltAt("second", {0, 152.5, z}, second)});
+  rig.RunToEnd(rig.Give(SetDynCoordTransform{.pcs = 1, .carrier = Name::Of("first"), .recorded_position = 0.0}));
+  rig.RunToEnd(rig.Give(SetDynCoordTransform{.pcs = 2, .carrier = Name::Of("second"), .recorded_position = 0.0}));
+  EXPECT_TRUE(rig.RunToEnd(rig.Give(Line(0, 0, 0, 1)), 2));
+  rig.trace.clear();
+  rig.Give(Line(0, 0, 25, 1, BufferMode::kBuffered));
+  rig.Give(Line(0, 0, 25, 2, BufferMode::kBlendingNext, radius));
+  const Ticket down = rig.Give(Line(0, 0, 0, 2, BufferMode::kBlendingNext, radius));
+  EXPECT_TRUE(rig.RunToEnd(down, 5));
+  EXPECT_TRUE(rig.lives[down].done) << static_cast<int>(rig.lives[down].error_id);
+  EXPECT_LE(Off(rig, *belts, 1, 0, {}, {}), kOnObject);
+  ExpectSmooth(rig);
+  Pick pick;
+  const double begin = rig.trace.front().out.path_position, end = rig.trace.back().out.path_position;
+  for (const Sample& sample : rig.trace) {
+    const Outputs& out = sample.out;
+    if (out.path_velocity > 0) pick.time += rig.cycle.period_s;
+    if (out.path_position > begin + 5 && out.path_position < end - 5) {
+      pick.slowest = std::min(pick.slowest, out.path_velocity);
+    }
+  }
+  return pick;
+}
+
+// CV-23, GR-22: whatever the belts do, the corners of a pick are rounded, and a larger blend is no slower.
+TEST(Riding, BlendsBetweenBelts) {
+  const auto steady = [](double speed) { return [=](double t) { return Steady(t - 0.3, speed); }; };
+  const auto uneven = [](double t) {  // 250 mm/s, more and less by 50
+    return KinematicState{250 * (t - 0.3) - 2.5 * std::cos(20 * t), 250 + 50 * std::sin(20 * t),
+                          1000 * std::cos(20 * t)};
+  };
+  const auto gantry = [] {
+    KinematicsParams k;
+    k.gantry.emplace().axes = {Coordinate::kX, Coordinate::kY, Coordinate::kZ};
+    return Machine(k, {"x", "y", "z"}, {4000, 40000, 2e6},
+                   {.velocity = 3000, .acceleration = 30000, .deceleration = {}, .jerk = 1.5e6});
+  };
+  const std::vector<std::pair<Travel, Travel>> cases = {
+      {steady(0), steady(0)}, {steady(300), steady(400)}, {steady(300), steady(-200)}, {uneven, steady(200)}};
+  double standing[2] = {};
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    for (const bool delta : {false, true}) {
+      double before = 1e99;
+      for (const double radius : {2.5, 5.0, 7.5, 10.0, 11.0, 12.0, 12.5}) {
+        SCOPED_TRACE(testing::Message() << "case " << i << (delta ? ", Delta, " : ", gantry, ") << radius << " mm");
+        const Pick pick =
+            Across(delta ? DeltaRobot() : gantry(), delta ? -850 : 0, cases[i].first, cases[i].second, radius);
+        EXPECT_LE(pick.time, 1.03 * before);
+        EXPECT_GE(pick.slowest, 20 * radius);  // mm/s: it does not stop there
+        before = pick.time;
+      }
+      if (i == 0) standing[delta] = before;
+      EXPECT_LE(before, 1.1 * standing[delta]);
+    }
+  }
+}
+
 MoveArch Arch(double x, double y, double z, double height, std::uint32_t pcs, BufferMode buffer, double radius = 0) {
   MoveArch m{.x = x, .y = y, .z = z, .height = height};
   if (pcs != 0) {

@@ -125,6 +125,31 @@ TEST(PathTiming, GoesStraightInSevenPhases) {
   }
 }
 
+// GR-23: straight on, however short the way and wherever its nodes are: accelerations change no faster than they may
+// within a cycle either, where the raw motion's changes at a node.
+TEST(PathTiming, KeepsTheJerkOnLines) {
+  std::mt19937_64 random(2);
+  for (int i = 0; i < 1000; ++i) {
+    Course course;
+    const double a = Between(random, 5000, 40000);
+    course.along = {Between(random, 200, 3000), a, a, a / Between(random, 0.005, 0.05)};
+    course.length = Between(random, 1, 400);
+    Motion motion(course);
+    motion.FindBuildUp(course.length);
+    motion.SampleBegin();
+    const double part = course.length / Between(random, 1, 20);
+    while (motion.sampled_to < course.length) {
+      const double end = motion.sampled_to + Uniform(random, 0.5, 1.5) * part;
+      motion.SampleNext(std::min(end, course.length), end >= course.length);
+    }
+    motion.Know();
+    BeginAt(motion.window, motion.window.begin(), kPeriod, motion.pace);
+    ASSERT_TRUE(motion.ToRest(kFast));
+    EXPECT_EQ(motion.pace.now.position, course.length);
+    EXPECT_LE(motion.worst.along_jerk, 1 + 1e-6) << i;
+  }
+}
+
 // GR-23: whatever the path, and whatever is wanted in any cycle: within the limits, never backwards, to rest at its
 // end.
 TEST(PathTiming, KeepsLimitsWhateverIsWanted) {
