@@ -15,8 +15,9 @@ namespace {
 
 using trajectory::PathCoordinateValues;
 
-// Of the axes' limits; the rest is for what changes until the tool is there.
-constexpr double kShare = 0.7;
+// Of the axes' limits; the rest is for what changes until the tool is there. More where only carriers are a little
+// faster or slower than was planned for.
+constexpr double kShare = 0.7, kNearlyAll = 0.9;
 constexpr double kLeast = 0.02;        // of the speed of the path: it goes on, however slowly
 constexpr double kBrakeShare = 0.7;    // of what the axes can do; the rest is for getting there
 constexpr double kLeastBrake = 0.03;   // of the path's
@@ -35,8 +36,11 @@ const Stretch* StretchAt(const LookAhead& ahead, double s) {
   return ahead.count > 0 ? &ahead[i] : nullptr;
 }
 
-bool IsDisturbed(const Context& c, const State& s) {
-  if (s.velocity_factor < 1 || Slips(s) || Follows(c, s)) return true;
+bool IsLate(const Context& c, const State& s) {
+  return s.velocity_factor < 1 || Slips(s) || Follows(c, s);
+}
+
+bool CarriersHaveChanged(const Context& c, const State& s) {
   const Stretch* here = StretchAt(c.ahead, s.pace.raw.position);
   return here && (HasChanged(c, here->from_ride) || HasChanged(c, here->to_ride));
 }
@@ -116,6 +120,7 @@ void LookAt(const Context& c, const State& s, double place, double wish, KeepUp:
   const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
   const double time = TimeTo(s, place, node.bounds.deceleration, wish);
   const double u = node.at.limits.velocity;
+  const double of_limits = c.ahead.keep_up.share;
   PathCoordinateValues near, after, velocity, slope, at_rest, by_way, bend;
   near.fill(std::numeric_limits<double>::quiet_NaN());
   const double none = std::numeric_limits<double>::infinity();
@@ -136,7 +141,7 @@ void LookAt(const Context& c, const State& s, double place, double wish, KeepUp:
       const double toward = std::copysign(velocity[k], velocity[k] * slope[k]);
       seen.velocity = std::min(seen.velocity, (of.velocity - toward) / std::abs(slope[k]));
     }
-    const double most = kShare * of.acceleration;
+    const double most = of_limits * of.acceleration;
     if (std::abs(at_rest[k]) < most)
       seen.velocity = std::min(seen.velocity, UpTo(at_rest[k], by_way[k], bend[k], most));
   }
@@ -148,7 +153,8 @@ void LookAt(const Context& c, const State& s, double place, double wish, KeepUp:
   for (std::size_t k = 0; known && k < limits.count; ++k) {
     const double now = at_rest[k] + most * (by_way[k] + most * bend[k]);
     const double jerk = std::abs(later[k] - now) / kJerkOver_s;
-    if (jerk > kShare * limits.of[k].jerk) share = std::min(share, std::cbrt(kShare * limits.of[k].jerk / jerk));
+    const double allowed = of_limits * limits.of[k].jerk;
+    if (jerk > allowed) share = std::min(share, std::cbrt(allowed / jerk));
   }
   seen.velocity = std::max(share * most, kLeast * u);
   for (std::size_t k = 0; k < limits.count; ++k) {
@@ -157,7 +163,7 @@ void LookAt(const Context& c, const State& s, double place, double wish, KeepUp:
     const double v = std::min(seen.velocity, u);
     const double left = of.acceleration - std::abs(at_rest[k] + v * (by_way[k] + v * bend[k]));
     seen.acceleration = std::min(seen.acceleration, left / std::abs(slope[k]));
-    seen.change = std::min(seen.change, kShare * of.jerk * node.build_up_s / std::abs(slope[k]));
+    seen.change = std::min(seen.change, of_limits * of.jerk * node.build_up_s / std::abs(slope[k]));
   }
   seen.acceleration = std::max(std::min(seen.acceleration, seen.change), kLeastBrake * node.bounds.deceleration);
 }
@@ -167,12 +173,14 @@ void LookAt(const Context& c, const State& s, double place, double wish, KeepUp:
 double SlowDown(const Context& c, const State& s, double wish) noexcept {
   KeepUp& k = c.ahead.keep_up;
   const KinematicState& raw = s.pace.raw;
+  const bool late = IsLate(c, s);
   if (k.on && raw.position >= k.begin + k.apart * (kWatched - 1)) {
     // A blend may have made the way from ride to ride longer.
     const Stretch* here = StretchAt(c.ahead, raw.position);
     if (!here || here->from_ride == here->to_ride || !Begin(c, s)) k = {};
   }
-  if (!k.on && (!IsDisturbed(c, s) || !Begin(c, s))) return wish;
+  if (!k.on && ((!late && !CarriersHaveChanged(c, s)) || !Begin(c, s))) return wish;
+  k.share = late ? kShare : std::min(k.share, kNearlyAll);
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const double period = c.cycle.period_s;
   const double square = raw.velocity * raw.velocity;

@@ -26,6 +26,7 @@ struct KeepUp {
     double change = 0;        // mm/s², of the acceleration in the time in which it builds up
   };
   bool on = false;
+  double share = 1;                                        // of the axes' limits that may be used
   double begin = 0;                                        // mm along the path, of the first place ...
   double apart = 0;                                        // ... and between one and the next
   double brake = std::numeric_limits<double>::infinity();  // mm/s², as strongly as the axes can
