@@ -10,8 +10,10 @@ namespace takt::group {
 
 namespace {
 
-// mm: of places along a path. So near to its ends a transition has no effect yet, or all of it.
-constexpr double kRounding = 1e-6;
+// Of places along a path, which count on as long as the tool does not come to rest: so near to its ends a transition
+// has no effect yet, or all of it.
+constexpr double kRounding = 1e-14;
+constexpr double kLeastRounded = 1e5;  // mm
 
 // A motion over the way, as one over time.
 MovingFrame InTime(const MovingFrame& over_way, const KinematicState& way) {
@@ -142,8 +144,9 @@ KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double wa
   const Ride& ride = RideAt(ahead, stretch.to_ride);
   const double length = ride.end - ride.begin;
   const double place = stretch.begin + way - stretch.from;
-  if (place > ride.end - kRounding) return {1, 0, 0};
-  if (place < ride.begin + kRounding) return {0, 0, 0};
+  const double rounding = kRounding * std::max(kLeastRounded, place);
+  if (place > ride.end - rounding) return {1, 0, 0};
+  if (place < ride.begin + rounding) return {0, 0, 0};
   const double x = std::clamp((place - ride.begin) / length, 0.0, 1.0);
   return {x * x * x * (10 + x * (6 * x - 15)), 30 * x * x * (1 - x) * (1 - x) / length,
           60 * x * (1 - x) * (1 - 2 * x) / (length * length)};

@@ -31,17 +31,33 @@ double WayDown(const Context& c, const Order& order) {
   return std::numeric_limits<double>::infinity();
 }
 
-// The point over what the tool is low on, or will be before it is braked; nothing: it is on the way across.
-std::optional<Place> PointOver(const Context& c, const group::State& g, const Order& order) {
+// It is on the way up from where it began.
+bool Lifts(const group::State& g, const Order& order) {
+  return g.done <= order.first && !order.profile.legs[0].turns;
+}
+
+bool Lowers(const Order& order) {
   const Profile& profile = order.profile;
-  const std::uint64_t leg = g.done > order.first ? g.done - order.first : 0;
-  if (leg == 0 && !profile.legs[0].turns) return profile.legs[0].to;
-  const bool lowers = profile.count > 1 && !profile.legs[profile.count - 1].turns;
-  if (!lowers || RestOf(g, order) < WayDown(c, order)) return std::nullopt;
-  return profile.legs[profile.count - 2].to;
+  return profile.count > 1 && !profile.legs[profile.count - 1].turns;
+}
+
+// Braked now it rests in step with what it is low on.
+bool RestsLow(const Context& c, const group::State& g, const Order& order) {
+  return g.begun && (Lifts(g, order) || (Lowers(order) && RestOf(g, order) >= WayDown(c, order)));
 }
 
 }  // namespace
+
+std::optional<Place> PointOver(const group::State& g, const Order& order) noexcept {
+  if (order.phase != Phase::kGoing && order.phase != Phase::kStaying) return std::nullopt;
+  if (Lifts(g, order)) return order.profile.legs[0].to;
+  if (order.belt == 0 || !Lowers(order)) return std::nullopt;
+  return order.profile.legs[order.profile.count - 2].to;
+}
+
+double RiseTo(const Context& c, const group::State& g, const Place& over) noexcept {
+  return std::max(0.0, over.pose.z - ToolFrom(c, g, over).p.z());
+}
 
 double TimeToGo(const Context& c, const group::State& g, const Order& order, const State& s) noexcept {
   const double known_s = group::TimeLeft(c.group, g);
@@ -58,16 +74,16 @@ void GiveUp(const Context& c, group::State& g, State& s) noexcept {
   if (const double left_s = group::TimeLeft(c.group, g); !std::isnan(left_s)) {
     Learn(TimeGone(c, order) + left_s, order, s);
   }
-  const std::optional<Place> over = PointOver(c, g, order);
+  const bool low = RestsLow(c, g, order);
   const std::uint32_t belt = order.belt;
   const PathRamps ramps = order.ramps;
   GiveBackWorkpiece(c, order);
   LosePath(c, g, false, s);
-  if (!over || !g.begun) return HaltGroup(c, g, s);
+  if (!low) return HaltGroup(c, g, s);
   // It is braked in step with what it is over; then it rises.
-  const group::MoveLinearAbsolute lift{.z = over->pose.z,
-                                       .coordinate_system = over->system,
-                                       .pcs = over->pcs,
+  const group::MoveLinearAbsolute lift{.z = s.over.pose.z,
+                                       .coordinate_system = s.over.system,
+                                       .pcs = s.over.pcs,
                                        .velocity = ramps.velocity,
                                        .acceleration = ramps.acceleration,
                                        .deceleration = ramps.deceleration,
@@ -75,29 +91,20 @@ void GiveUp(const Context& c, group::State& g, State& s) noexcept {
   if (Tell(c, lift, g) != ErrorId::kNone) return HaltGroup(c, g, s);
   s.lifting = true;
   s.lifting_move = g.done + g.queue.count - 1;
-  s.at = *over;
+  s.at = s.over;
   s.at_belt = belt;
-}
-
-void GiveUpAtRest(const Context& c, group::State& g, State& s) noexcept {
-  const std::optional<Place> over = PointOver(c, g, s.orders[0]);
-  const double rise = over ? over->pose.z - ToolFrom(c, g, *over).p.z() : 0;
-  LosePath(c, g, false, s);
-  HaltGroup(c, g, s);
-  if (rise > 0) s.at_rise = std::max(rise, s.settings.z_start_distance);
 }
 
 bool IsLifted(const Context& c, const group::State& g, State& s) noexcept {
   if (g.queue.count > 0) return false;
   s.lifting = false;
   if (g.ends || !group::IsOnRide(c.group, g)) {
-    ForgetPlace(s);
+    s.at_belt = 0;
     return true;
   }
   s.at.pose = kinematics::ToPose(ToolFrom(c, g, s.at));
   s.at.aux1 = PresentPlace(c, g).aux1;
   s.at_known = true;
-  s.at_rise = 0;
   return true;
 }
 

@@ -307,8 +307,12 @@ void WatchWindow(const Context& c, State& s) {
 void GoOn(const Context& c, group::State& g, State& s) noexcept {
   s.hold.held = false;
   if (!g.interrupted) return;
-  if (IsTooLate(c, g, s)) return GiveUpAtRest(c, g, s);
-  Tell(c, group::Continue{}, g);
+  if (!IsTooLate(c, g, s)) {
+    Tell(c, group::Continue{}, g);
+    return;
+  }
+  LosePath(c, g, false, s);
+  HaltGroup(c, g, s);
 }
 
 void Fail(const Context& c, ErrorId error, group::State& g, State& s) noexcept {

@@ -117,7 +117,7 @@ void SetPlace(const Place& at, std::uint32_t belt, State& s) {
   s.at = at;
   s.at_known = true;
   s.at_belt = belt;
-  s.at_rise = kItself;
+  s.low = false;
   s.parked_at = 0;
 }
 
@@ -127,7 +127,7 @@ void Park(const Context& c, std::uint32_t belt, group::State& g, State& s) {
   const Place target{.pose = {own.park_x, own.park_y, own.park_z, own.park_a, own.park_b, own.park_c},
                      .aux1 = start.aux1,
                      .parks = true};
-  const Shape shape = ShapeFromHere(ShapeOf(s.settings), s);
+  const Shape shape = ShapeFromHere(c, g, ShapeOf(s.settings), s);
   const Profile profile = MakeProfile(start, target, shape, SystemsOf(c, g, start, target));
   const Given given = GiveLegs(c, profile, 0, RampsOf(s.settings), s.settings.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) return Fail(c, given.error, g, s);
@@ -157,7 +157,7 @@ void Begin(const Context& c, group::State& g, Order& order, State& s) {
   }
   order.start = StartOf(c, g, s);
   const Systems systems = SystemsOf(c, g, order.start, target);
-  order.profile = MakeProfile(order.start, target, ShapeFromHere(order.shape, s), systems);
+  order.profile = MakeProfile(order.start, target, ShapeFromHere(c, g, order.shape, s), systems);
   if (IsStatic(order)) order.expected_s = TimeAlong(order.profile, order.start, order.ramps, systems);
   order.next_leg = 0;
   order.pulsed = false;
@@ -321,18 +321,18 @@ bool NoMore(const group::State& g, const State& s) {
 
 }  // namespace
 
-Shape ShapeFromHere(const Shape& shape, const State& s) noexcept {
+Shape ShapeFromHere(const Context& c, const group::State& g, const Shape& shape, const State& s) noexcept {
   Shape from_here = shape;
   // The way up from a workpiece is the belt's.
   if (s.at_belt != 0) from_here.start_distance = s.belts[s.at_belt - 1].z_distance;
-  if (!std::isnan(s.at_rise)) from_here.start_distance = s.at_rise;
+  if (s.low) from_here.start_distance = std::max(s.at_known ? 0 : shape.start_distance, RiseTo(c, g, s.over));
   return from_here;
 }
 
 void ForgetPlace(State& s) noexcept {
   s.at_known = s.parking = s.lifting = false;
   s.at_belt = s.parked_at = 0;
-  s.at_rise = kItself;
+  s.low = false;
 }
 
 // At once where it is longer, bit by bit where it is shorter.
@@ -397,6 +397,7 @@ void EndOrders(const Context& c, FeedbackState feedback, ErrorId error, State& s
 }
 
 void LosePath(const Context& c, const group::State& g, bool kept, State& s) noexcept {
+  const std::optional<Place> over = s.order_count > 0 ? PointOver(g, s.orders[0]) : std::nullopt;
   for (std::uint32_t i = 0; i < s.order_count; ++i) {
     Order& order = s.orders[i];
     if (i == 0 && kept && order.phase == Phase::kGoing && IsStatic(order)) {
@@ -410,7 +411,10 @@ void LosePath(const Context& c, const group::State& g, bool kept, State& s) noex
     GiveBackWorkpiece(c, order);
     order.phase = Phase::kNew;
   }
+  const bool was_low = s.low;
   ForgetPlace(s);
+  s.low = was_low || over;
+  if (over) s.over = *over;
   s.given = 0;
   s.scout = {};
 }

@@ -1,6 +1,8 @@
 // What the stages of a pick and place module share. Used by them only.
 #pragma once
 
+#include <optional>
+
 #include "takt/pickplace/module.h"
 
 namespace takt::pickplace {
@@ -66,7 +68,7 @@ void RunOrders(const Context& c, group::State& g, State& s) noexcept;
 // The loop is over behind the order that is gone; at once if that waits.
 void EndLoopBehindThis(const Context& c, State& s) noexcept;
 // How the profile of an order runs from where the tool will be.
-Shape ShapeFromHere(const Shape& shape, const State& s) noexcept;
+Shape ShapeFromHere(const Context& c, const group::State& g, const Shape& shape, const State& s) noexcept;
 // Where the tool will be.
 void ForgetPlace(State& s) noexcept;
 // So long has the tool been on its way.
@@ -85,8 +87,10 @@ void HaltGroup(const Context& c, group::State& g, State& s) noexcept;
 // give_up.cc
 // The workpiece of the order that is gone will not be reached in time: the tool leaves it, and its belt, upwards.
 void GiveUp(const Context& c, group::State& g, State& s) noexcept;
-// The same from where the tool rests beside the path.
-void GiveUpAtRest(const Context& c, group::State& g, State& s) noexcept;
+// The point over where the tool is low, or may be when it comes to rest; nothing: nowhere.
+std::optional<Place> PointOver(const group::State& g, const Order& order) noexcept;
+// mm that the tool has to rise to be as high as that.
+double RiseTo(const Context& c, const group::State& g, const Place& over) noexcept;
 // Whether it is up there; from then on the next order may begin.
 bool IsLifted(const Context& c, const group::State& g, State& s) noexcept;
 // s until the group is through with the order's moves.

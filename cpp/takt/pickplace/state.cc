@@ -112,7 +112,8 @@ void describe(Description<State>& d) {
   d.internal<&State::at_known>("Where the moves given end.");
   d.internal<&State::at>("There.");
   d.internal<&State::at_belt>("On a workpiece of that belt.");
-  d.internal<&State::at_rise>(unit::mm, "Of the next profile.");
+  d.internal<&State::low>("The next profile rises first.");
+  d.internal<&State::over>("As high as this.");
   d.internal<&State::parked_at>("The parking position of that belt.");
   d.internal<&State::parking>("On the way there.");
   d.internal<&State::parking_move>("Number of the move.");

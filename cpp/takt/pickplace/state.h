@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
@@ -20,8 +19,6 @@ namespace takt::pickplace {
 
 inline constexpr std::size_t kOrders = 8;  // profiles that may wait, with the one that is gone
 inline constexpr std::size_t kPickTimes = 8;
-// As the profile says itself.
-inline constexpr double kItself = std::numeric_limits<double>::quiet_NaN();
 
 // Where an order has got to.
 enum class Phase : std::uint8_t {
@@ -122,7 +119,8 @@ struct State {
   bool at_known = false;  // else where the tool stands
   Place at;
   std::uint32_t at_belt = 0;    // on a workpiece of that belt; 0: static
-  double at_rise = kItself;     // mm that the next profile lifts first
+  bool low = false;             // it was left where the next profile has to rise first ...
+  Place over;                   // ... as high as this
   std::uint32_t parked_at = 0;  // the parking position of that belt, from 1
   bool parking = false;         // on the way there
   std::uint64_t parking_move = 0;

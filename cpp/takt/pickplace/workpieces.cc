@@ -92,7 +92,7 @@ Meeting Meet(const Context& c, const group::State& g, const Order& order, const 
   const BeltSettings& own = SettingsFor(order, s);
   const Place from = s.at_known ? s.at : PresentPlace(c, g);
   const Frame start = group::SystemFrame(c.group, g, from.system, from.pcs - 1);
-  const Shape shape = ShapeFromHere(order.shape, s);
+  const Shape shape = ShapeFromHere(c, g, order.shape, s);
   const Place to{.system = group::CoordinateSystem::kPcs, .pcs = 1, .pose = GripOn(own), .aux1 = own.aux1_target};
   Meeting meeting;
   for (int i = 0; i < kRounds && meeting.error == ErrorId::kNone; ++i) {

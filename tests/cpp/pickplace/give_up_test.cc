@@ -205,8 +205,8 @@ TEST(GiveUp, ReckonsWithWhatTheBeltMayDo) {
   }
 }
 
-// PP-20: stopped at every instant until the workpiece has left the range. Where the tool stands low over the belt it
-// goes straight up from there before anything else.
+// PP-20: stopped at every instant, by whatever stop, until the workpiece has left the range. Where the tool stands low
+// over the belt it goes straight up from there before anything else.
 TEST(GiveUp, StoppedUntilItHasLeft) {
   int low = 0;
   for (int instant = 1; instant < 1400; instant += 17) {
@@ -216,12 +216,13 @@ TEST(GiveUp, StoppedUntilItHasLeft) {
     run.cell.Execute(1);
     run.Steps(instant);
     if (run.counters().picked > 0) break;
-    run.cell.Do(Control{.path_stop = true});
+    const bool all = instant % 2 == 0;
+    run.cell.Do(Control{.path_stop = !all, .stop_all = all});
     run.cell.Steps(3000);
     const KDL::Vector rest = run.cell.tool();
     const bool was_low = std::abs(rest.y() - kBeltY) < kHalfWidth && !run.IsUp();
     low += was_low ? 1 : 0;
-    run.cell.Do(Control{.path_stop = false});
+    run.cell.Do(Control{.path_stop = false, .stop_all = false});
     run.Put(150);
     run.cell.Steps(2);
     run.cell.Execute();

@@ -500,11 +500,11 @@ TEST(States, InTargetEnds) {
   at_target(jogged);
   jogged.Do(Control{.select_axis = SelectAxis::kX});
   jogged.Do(Jog{.positive = true});
-  jogged.Steps(50);
+  jogged.Steps(200);
   EXPECT_FALSE(jogged.out().in_target);
   at_target(moved);
   moved.rig.Give(group::MoveLinearAbsolute{.x = 10});
-  moved.Steps(50);
+  moved.Steps(200);
   EXPECT_FALSE(moved.out().in_target);
 }
 
