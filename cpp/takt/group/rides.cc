@@ -132,7 +132,10 @@ KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double wa
   const Ride& ride = RideAt(ahead, stretch.to_ride);
   const double length = ride.end - ride.begin;
   const double x = std::clamp((stretch.begin + way - stretch.from - ride.begin) / length, 0.0, 1.0);
-  return {x * x * x * (10 + x * (6 * x - 15)), 30 * x * x * (1 - x) * (1 - x) / length,
+  // From the nearer end: near 1, too, it only grows.
+  const double y = std::min(x, 1 - x);
+  const double share = y * y * y * (10 + y * (6 * y - 15));
+  return {x < 0.5 ? share : 1 - share, 30 * x * x * (1 - x) * (1 - x) / length,
           60 * x * (1 - x) * (1 - 2 * x) / (length * length)};
 }
 
