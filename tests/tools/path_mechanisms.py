@@ -100,7 +100,7 @@ def corner(start: Sequence[float], apex: Sequence[float], end: Sequence[float]) 
     first, second = np.subtract(apex, begin), np.subtract(finish, apex)
     distance = float(np.linalg.norm(first))
     q = math.sqrt((1 + float(first @ second) / distance**2) / 2)
-    share = q / (0.2067 + q * (0.393 - 0.0345 * q))  # of the tangents at both ends over the distance
+    share = q / (0.2067 + 0.28 * q)  # of the tangents at both ends over the distance
     u = Power([0, 1])
     # Hermite's polynomials of the fifth degree, without curvature at the ends.
     place = 10 * u**3 - 15 * u**4 + 6 * u**5

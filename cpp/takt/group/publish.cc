@@ -32,9 +32,9 @@ void PublishTracking(const Context& c, const State& s, const kinematics::MovingF
   out.in_sync = out.track_state == TrackState::kInSync;
   if (!IsOnRide(c, s)) return;
   const Stretch& stretch = *Here(c, s);
-  // Until it begins to go over it is on the ride before.
-  const bool goes_over = ShareAt(c.ahead, stretch, stretch.from + s.pace.now.position - stretch.begin).position > 0;
-  const std::uint64_t number = goes_over ? stretch.to_ride : stretch.from_ride;
+  // Until it begins to go over it is on what it comes from.
+  const double way = stretch.from + s.pace.now.position - stretch.begin;
+  const std::uint64_t number = ShareAt(c.ahead, stretch, way).position > 0 ? stretch.to_ride : stretch.from_ride;
   const Cargo& cargo = c.ahead.rides[number % kRides].cargo;
   if (cargo.carrier == 0) return;
   const kinematics::Pose on = kinematics::ToPose(PlaceOf(c, cargo).GetFrame().Inverse() * tcp.GetFrame());

@@ -148,7 +148,10 @@ KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double wa
   if (place > ride.end - rounding) return {1, 0, 0};
   if (place < ride.begin + rounding) return {0, 0, 0};
   const double x = std::clamp((place - ride.begin) / length, 0.0, 1.0);
-  return {x * x * x * (10 + x * (6 * x - 15)), 30 * x * x * (1 - x) * (1 - x) / length,
+  // From the nearer end: near 1, too, it only grows.
+  const double y = std::min(x, 1 - x);
+  const double share = y * y * y * (10 + y * (6 * y - 15));
+  return {x < 0.5 ? share : 1 - share, 30 * x * x * (1 - x) * (1 - x) / length,
           60 * x * (1 - x) * (1 - 2 * x) / (length * length)};
 }
 

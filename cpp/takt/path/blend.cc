@@ -27,7 +27,7 @@ constexpr double kMostBend = 2.5;
 
 // Tangent length of a blend over its distance, by the cosine of half the angle.
 double TangentShare(double q) {
-  return q / (0.2067 + q * (0.393 - 0.0345 * q));
+  return q / (0.2067 + 0.28 * q);
 }
 
 // Of the tangents to a circle, how long the arc between them is.

@@ -119,6 +119,53 @@ TEST(Riding, BlendsBetweenBelts) {
   }
 }
 
+// CV-11: what is published as the tool gets onto a belt, over to another one and off: in step it is seen from the
+// object that it is on, to the last digits.
+TEST(Riding, TellsWhatItIsOn) {
+  Rig rig = Gantry();
+  rig.StartAt({-100, 0, 0});
+  const auto belts = Put(rig, {BeltAt("first", {0, 0, 0}, [](double t) { return Steady(t, 100); }),
+                               BeltAt("second", {0, 200, 0}, [](double t) { return Steady(t, -50); })});
+  rig.RunToEnd(rig.Give(SetDynCoordTransform{.pcs = 1, .carrier = Name::Of("first"), .recorded_position = 0.0}));
+  rig.RunToEnd(rig.Give(SetDynCoordTransform{.pcs = 2, .carrier = Name::Of("second"), .recorded_position = 0.0}));
+  std::vector<TrackState> seen;
+  int in_sync = 0;
+  const auto step = [&] {
+    rig.Step();
+    const Outputs& out = rig.out();
+    if (seen.empty() || out.track_state != seen.back()) seen.push_back(out.track_state);
+    EXPECT_EQ(out.in_sync, out.track_state == TrackState::kInSync);
+    if (!out.in_sync) return;
+    ++in_sync;
+    const std::size_t belt = seen.size() > 3 ? 1 : 0;
+    const KDL::Vector place(out.object_x, out.object_y, out.object_z);
+    EXPECT_LE((ObjectOn(*belts, belt, 0, {}, rig.cycle.count - 1) * place - ToolOf(rig).p).Norm(), kOnObject);
+  };
+  for (const bool together : {false, true}) {
+    for (const BufferMode buffer : {BufferMode::kBuffered, BufferMode::kBlendingNext}) {
+      SCOPED_TRACE(testing::Message() << static_cast<int>(buffer) << (together ? " together" : " one by one"));
+      seen.clear();
+      step();
+      Ticket last = 0;
+      const auto wait = [&] {
+        for (int i = 0; i < 3000 && !rig.lives[last].ended(); ++i) step();
+        EXPECT_TRUE(rig.lives[last].done);
+        for (int i = 0; i < 20; ++i) step();
+      };
+      for (const MoveLinearAbsolute& move :
+           {Line(0, 0, 0, 1, buffer), Line(0, 0, 30, 1, buffer, 10), Line(0, 0, 30, 2, buffer, 10),
+            Line(0, 0, 0, 2, buffer, 10), Line(-100, 0, 0, 0, buffer, 10)}) {
+        last = rig.Give(move);
+        if (!together) wait();
+      }
+      wait();
+      using enum TrackState;
+      EXPECT_EQ(seen, (std::vector{kNone, kSynchronizing, kInSync, kSynchronizing, kInSync, kDesynchronizing, kNone}));
+    }
+  }
+  EXPECT_GT(in_sync, 1000);
+}
+
 MoveArch Arch(double x, double y, double z, double height, std::uint32_t pcs, BufferMode buffer, double radius = 0) {
   MoveArch m{.x = x, .y = y, .z = z, .height = height};
   if (pcs != 0) {
