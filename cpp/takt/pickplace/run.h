@@ -69,7 +69,7 @@ void RunOrders(const Context& c, group::State& g, State& s) noexcept;
 void EndLoopBehindThis(const Context& c, State& s) noexcept;
 // How the profile of an order runs from where the tool will be.
 Shape ShapeFromHere(const Context& c, const group::State& g, const Shape& shape, const State& s) noexcept;
-// Where the tool will be.
+// Where the tool will be is not known any more.
 void ForgetPlace(State& s) noexcept;
 // So long has the tool been on its way.
 inline double TimeGone(const Context& c, const Order& order) noexcept {

@@ -36,6 +36,11 @@ kinematics::Pose GripOn(const BeltSettings& own) {
   return {own.grip_x, own.grip_y, own.grip_z, own.grip_a, own.grip_b, own.grip_c};
 }
 
+// Of the two that workpieces get in turn.
+std::uint32_t NextPcs(const State& s) {
+  return s.second_pcs ? s.settings.workpiece_pcs2 : s.settings.workpiece_pcs1;
+}
+
 // Seen from the MCS, after so much travel of the belt.
 Frame ObjectAfter(const Context& c, const Belt& belt, const Object& object, double travel) {
   conveyor::State later;
@@ -184,7 +189,11 @@ ErrorId BindWorkpiece(const Context& c, const Object& object, group::State& g, O
                       State& s) noexcept {
   const Belt& belt = BeltOf(c, order);
   const BeltSettings& own = SettingsFor(order, s);
-  const std::uint32_t pcs = s.second_pcs ? s.settings.workpiece_pcs2 : s.settings.workpiece_pcs1;
+  // Not the one in which the tool is now, which is that of a pick before one that was given up.
+  const Place& here = s.low ? s.over : s.at;
+  const bool in_pcs = (s.low || s.at_known) && here.system == group::CoordinateSystem::kPcs;
+  if (in_pcs && here.pcs == NextPcs(s)) s.second_pcs = !s.second_pcs;
+  const std::uint32_t pcs = NextPcs(s);
   // Where it is now: then it does not matter what the belt's axis counts.
   const double since = belt.state->travel.position - object.latch;
   Frame moved = kinematics::ToFrame(object.pose);
