@@ -7,6 +7,7 @@
 #include "takt/group/join.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
+#include "takt/group/run.h"
 #include "takt/trajectory/quintic.h"
 
 namespace takt::group {
@@ -182,15 +183,8 @@ double BrakeShare(const State& s) noexcept {
 }
 
 bool CanLetGo(const Context& c, State& s) noexcept {
-  // Where the path would end if it were braked now: the mean comes to rest where the raw motion does.
-  const trajectory::PathNode& node = c.ahead.window[s.pace.node];
-  const double v = s.pace.raw.velocity;
   const double share = BrakeShare(s);
-  const double deceleration =
-      share * std::min({-node.bounds.Least(v * v), node.bounds.strength.At(v * v) * node.bounds.strength.gentle,
-                        c.ahead.keep_up.brake});
-  const double way_to_rest = deceleration > 0 ? 0.5 * v * v / deceleration : kNoEnd;
-  const double place = s.pace.raw.position + way_to_rest + v * c.cycle.period_s;
+  const double place = RestAt(c, s, share);
   const LookAhead& ahead = c.ahead;
   std::uint64_t i = ahead.first;
   while (i + 1 < ahead.end() && ahead[i].end() <= place) ++i;

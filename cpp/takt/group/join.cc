@@ -16,6 +16,8 @@ constexpr int kHalvings = 8;
 // Slower than this a joint without a blend is no better than a stop, mm/s.
 constexpr double kLeastJointSpeed = 1;
 constexpr double kRounding = 1e-9;
+// Of a stretch that goes over from ride to ride, at most, on each side.
+constexpr double kBlendShare = 0.4;
 // How unlike both sides of a corner may be, of chords of a curve: else it would bend to the other side.
 constexpr double kMostUneven = 2.5;
 
@@ -245,14 +247,21 @@ bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, 
   return true;
 }
 
+bool GoesOver(const Stretch& stretch) {
+  return stretch.from_ride != stretch.to_ride;
+}
+
 // All of a blend but its segment. False: there is none.
 bool FindDistances(const Context& c, const State& s, const Request& move, std::uint32_t element, const Stretch& before,
                    const Stretch& after, int& work, CornerBlend& out) {
   if (!Blends(move, element)) return false;
   if (before.joints != after.joints || before.segment.measure != after.segment.measure) return false;
-  if (before.begun && before.from_ride != before.to_ride) return false;  // where it ends is settled
+  if (before.begun && GoesOver(before)) return false;  // where it ends is settled
   path::Room room = path::HalfOf(before.segment, after.segment);
   room.first = std::min(room.first, before.to - before.from);
+  // Some way is left to go over from ride to ride on.
+  if (GoesOver(before)) room.first = std::min(room.first, kBlendShare * before.segment.length);
+  if (GoesOver(after)) room.second = std::min(room.second, kBlendShare * after.segment.length);
   Stretch& blend = out.stretch;
   blend.move = after.move;
   blend.goes_on = true;

@@ -5,6 +5,7 @@
 
 #include "takt/axis/guidance.h"
 #include "takt/group/clutch.h"
+#include "takt/group/join.h"
 #include "takt/group/keep_up.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
@@ -162,6 +163,19 @@ bool Advance(const Context& c, State& s) noexcept {
 
 bool Rests(const State& s) noexcept {
   return trajectory::Stands(s.pace) && (!s.lets_go || ClutchesStand(s));
+}
+
+double RestAt(const Context& c, const State& s, double share) noexcept {
+  // The mean comes to rest where the raw motion does.
+  const trajectory::PathNode& node = c.ahead.window[s.pace.node];
+  const double v = s.pace.raw.velocity;
+  const double deceleration =
+      share * std::min({-node.bounds.Least(v * v), node.bounds.strength.At(v * v) * node.bounds.strength.gentle,
+                        c.ahead.keep_up.brake});
+  const double way = deceleration > 0 ? 0.5 * v * v / deceleration : kNoEnd;
+  // What it has sped up with is taken back first.
+  const bool speeds_up = s.pace.last[s.pace.oldest].acceleration > 0 || s.pace.raw.acceleration > 0;
+  return s.pace.raw.position + way + v * (speeds_up ? node.build_up_s : c.cycle.period_s);
 }
 
 const Stretch* Here(const Context& c, const State& s) noexcept {

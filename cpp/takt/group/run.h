@@ -18,6 +18,9 @@ bool Rests(const State& s) noexcept;
 // Comes to rest on the path, which is then forgotten. mm/s²; 0: as the path says.
 void EndMotion(const Brake& brake, bool lets_go, State& s) noexcept;
 
+// Along the path, where it comes to rest if it is braked from now on with a share of all that it can; no nearer.
+double RestAt(const Context& c, const State& s, double share = 1) noexcept;
+
 // The stretch that the tool is on; null: none.
 const Stretch* Here(const Context& c, const State& s) noexcept;
 // Something that moves carries the tool, or takes part in it.

@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "takt/group/clutch.h"
 #include "takt/group/plan.h"
 #include "takt/group/run.h"
 #include "takt/group/systems.h"
@@ -14,12 +15,6 @@ namespace {
 
 kinematics::Frame ToolFrom(const Context& c, const group::State& g, const Place& place) {
   return group::SystemFrame(c.group, g, place.system, place.pcs - 1).Inverse() * group::Present(c.group, g).tool;
-}
-
-// Along the path, where the tool comes to rest if it is braked now.
-double RestOf(const group::State& g, const Order& order) {
-  const double v = g.pace.raw.velocity;
-  return g.pace.raw.position + 0.5 * v * v / order.ramps.deceleration;
 }
 
 // Along the path, where the way down begins, in step with the workpiece.
@@ -43,7 +38,8 @@ bool Lowers(const Order& order) {
 
 // Braked now it rests in step with what it is low on.
 bool RestsLow(const Context& c, const group::State& g, const Order& order) {
-  return g.begun && (Lifts(g, order) || (Lowers(order) && RestOf(g, order) >= WayDown(c, order)));
+  return g.begun &&
+         (Lifts(g, order) || (Lowers(order) && group::RestAt(c.group, g, group::BrakeShare(g)) >= WayDown(c, order)));
 }
 
 }  // namespace

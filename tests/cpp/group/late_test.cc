@@ -149,6 +149,43 @@ TEST_P(Late, PropertyInterrupts) {
   EXPECT_GE(sum.done, scara ? 15 : 25);
 }
 
+// The way over may be short, or nothing at all: then it takes its time.
+TEST(ShortWays, FromBeltToBelt) {
+  for (const double apart : {0.0, 0.01, 1.0, 5.0, 10.0, 20.0, 40.0}) {
+    for (const bool lifts : {false, true}) {
+      for (const double speed : {0.0, -100.0, 300.0}) {
+        SCOPED_TRACE(testing::Message() << apart << " mm apart" << (lifts ? ", lifted, to " : ", to ") << speed);
+        Rig rig = Gantry();
+        rig.StartAt({0, 0, 30});
+        const auto belts = Put(rig, {BeltAt("first", {}, [](double t) { return Steady(t, 150); }),
+                                     BeltAt("second", {0, apart, 0}, [=](double t) { return Steady(t, speed); })});
+        const auto bind = [&](std::uint32_t pcs, double x) {
+          rig.RunToEnd(
+              rig.Give(SetDynCoordTransform{.pcs = pcs, .carrier = Name::Of(pcs == 1 ? "first" : "second"), .x = x}));
+        };
+        bind(1, 0);
+        ASSERT_TRUE(rig.RunToEnd(rig.Give(Line(0, 0, 0, 1)), 5));
+        bind(2, rig.out().x);
+        const double from = rig.state.cargoes[1].from;
+        const double x = rig.state.cargoes[1].lies.x;
+        if (lifts) rig.Give(Line(0, 0, 25, 1));
+        if (lifts) rig.Give(Line(0, 0, 25, 2, 10));
+        const Ticket last = rig.Give(Line(0, 0, 0, 2, lifts ? 10 : 0));
+        double lag = 0;
+        while (!rig.lives[last].ended() && rig.cycle.count < 20000) {
+          rig.Step();
+          lag = std::max(lag, Lag(rig));
+        }
+        EXPECT_TRUE(rig.lives[last].done);
+        EXPECT_LE(lag, kSame);
+        const Frame object = ObjectOn(*belts, 1, from, {x, 0, 0}, rig.cycle.count - 1);
+        EXPECT_LE((ToolOf(rig).p - object.p).Norm(), 1e-3);
+        ExpectSmooth(rig);
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Group, Late, ::testing::Values("gantry", "CoreXY", "Delta", "SCARA"),
                          [](const auto& param) { return param.param; });
 
