@@ -24,7 +24,7 @@ Controls ControlsOf(const path::VectorPolynomial& place, double from, double to)
                               p.third * (h * h * h / 6),
                               fourth * (h * h * h * h / 24),
                               fifth * (h * h * h * h * h / 120)};
-  constexpr double kShare[6][6] = {{1, 0, 0, 0, 0, 0},       {1, 0.2, 0, 0, 0, 0},     {1, 0.4, 0.1, 0, 0, 0},
+  constexpr double kShare[6][6] = {{1, 0, 0, 0, 0, 0},       {1, 0.2, 0, 0, 0, 0},       {1, 0.4, 0.1, 0, 0, 0},
                                    {1, 0.6, 0.3, 0.1, 0, 0}, {1, 0.8, 0.6, 0.4, 0.2, 0}, {1, 1, 1, 1, 1, 1}};
   Controls out;
   for (std::size_t i = 0; i < 6; ++i) {

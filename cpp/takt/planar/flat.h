@@ -57,8 +57,7 @@ inline Bent BentAt(const path::VectorPolynomial& c, double u) noexcept {
   for (std::size_t i = 0; i < 6; ++i) k[i] = ToFlat(c[i]);
   return {k[0] + u * (k[1] + u * (k[2] + u * (k[3] + u * (k[4] + u * k[5])))),
           k[1] + u * (2 * k[2] + u * (3 * k[3] + u * (4 * k[4] + u * (5 * k[5])))),
-          2 * k[2] + u * (6 * k[3] + u * (12 * k[4] + u * (20 * k[5]))),
-          6 * k[3] + u * (24 * k[4] + u * (60 * k[5]))};
+          2 * k[2] + u * (6 * k[3] + u * (12 * k[4] + u * (20 * k[5]))), 6 * k[3] + u * (24 * k[4] + u * (60 * k[5]))};
 }
 
 }  // namespace takt::planar

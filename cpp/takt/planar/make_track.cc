@@ -6,6 +6,7 @@
 
 #include "takt/path/make.h"
 #include "takt/path/place.h"
+#include "takt/path/spline.h"
 #include "takt/planar/flat.h"
 #include "takt/planar/track.h"
 #include "takt/planar/transition.h"
@@ -67,30 +68,6 @@ Problem Stand(const Element& element, Standing& out) {
   return Problem::kNone;
 }
 
-// Direction and curvature in the middle place of three on a circle.
-Problem ThroughThree(const Place& before, TrackPoint& point, const Place& behind) {
-  if (SamePlace(before, behind)) return Problem::kTooFew;
-  if (SamePlace(before, point.place) || SamePlace(point.place, behind)) return Problem::kLengthZero;
-  const Flat a = ToFlat(point.place) - ToFlat(before);
-  const Flat b = ToFlat(behind) - ToFlat(point.place);
-  const double turn = AngleTo(a, b);
-  // The angle between tangent and chord is that at the far end of the other chord.
-  point.direction = std::atan2(b.y(), b.x()) - AngleTo(a, a + b);
-  point.curvature = 2 * std::sin(turn) / (a + b).norm();
-  return Problem::kNone;
-}
-
-// Where the circle through a place that goes on from a neighbour arrives; or, `before`, where it comes from.
-Problem AlongCircle(const TrackPoint& neighbour, TrackPoint& point, bool before) {
-  if (SamePlace(neighbour.place, point.place)) return Problem::kLengthZero;
-  const Flat way = ToFlat(point.place) - ToFlat(neighbour.place);
-  const Flat chord = before ? Flat(-way) : way;
-  const double off = AngleTo(Heading(neighbour.direction), chord);
-  point.direction = neighbour.direction + 2 * off;
-  point.curvature = (before ? -2 : 2) * std::sin(off) / chord.norm();
-  return Problem::kNone;
-}
-
 class Maker {
  public:
   explicit Maker(const Layout& layout) : layout_(layout), standing_(layout.elements.size()) {}
@@ -98,7 +75,7 @@ class Maker {
   Making Make(Track& out) {
     if (!Finite(layout_.from) || !Finite(layout_.to)) return {Problem::kNotFinite, 0};
     if (layout_.closed && (layout_.from || layout_.to)) return {Problem::kLinked, 0};
-    for (const auto step : {&Maker::StandAll, &Maker::DirectPositions, &Maker::DirectEnds, &Maker::Join}) {
+    for (const auto step : {&Maker::StandAll, &Maker::DirectPositions, &Maker::Join}) {
       if (const Making making = (this->*step)(); making.problem != Problem::kNone) return making;
     }
     if (track_.pieces.empty()) return {Problem::kEmpty, 0};
@@ -130,44 +107,69 @@ class Maker {
     return {};
   }
 
+  // As a spline runs through them and the places before and behind.
   Making DirectPositions() {
+    std::size_t positions = 0;
+    for (std::size_t i = 0; i < count(); ++i) positions += is_position(i) ? 1 : 0;
+    if (layout_.closed && positions == count()) return DirectLoop();
     for (std::size_t i = 0; i < count(); ++i) {
-      if (!is_position(i) || !Before(i) || !Behind(i)) continue;
-      Standing& here = standing_[i];
-      const Problem p = ThroughThree(Before(i)->place, here.end, Behind(i)->place);
-      if (p != Problem::kNone) return {p, i};
-      here.begin = here.end;
+      const bool goes_on = (i > 0 || layout_.closed) && is_position(i > 0 ? i - 1 : count() - 1);
+      if (!is_position(i) || goes_on) continue;
+      if (const Problem p = DirectFrom(i); p != Problem::kNone) return {p, i};
     }
     return {};
   }
 
-  // A position at an end of an open track.
-  Making DirectEnds() {
-    if (count() == 0) return {};
-    const std::size_t last = count() - 1;
-    const bool first_free = is_position(0) && !Before(0);
-    const bool last_free = is_position(last) && !Behind(last);
-    if (first_free && last_free && last <= 1) return DirectLine();
-    if (first_free) {
-      Standing& here = standing_.front();
-      const Problem p = AlongCircle(*Behind(0), here.begin, true);
-      if (p != Problem::kNone) return {p, 0};
-      here.end = here.begin;
+  // Positions that follow one another, from the first of them on.
+  Problem DirectFrom(std::size_t first) {
+    std::vector<path::Point> points;
+    path::SplineOptions options;
+    const auto end = [&](const TrackPoint* neighbour, std::optional<path::Triple>& direction) {
+      if (!neighbour) return;
+      points.push_back(ToPoint(neighbour->place));
+      direction = path::ToTriple(ToSpace(Heading(neighbour->direction)));
+    };
+    const TrackPoint* const before = Before(first);
+    end(before, options.start_direction);
+    std::size_t run = 0;
+    while ((first + run < count() || layout_.closed) && is_position((first + run) % count())) {
+      points.push_back(ToPoint(standing_[(first + run) % count()].end.place));
+      ++run;
     }
-    if (last_free) {
-      Standing& here = standing_.back();
-      const Problem p = AlongCircle(*Before(last), here.end, false);
-      if (p != Problem::kNone) return {p, last};
-      here.begin = here.end;
-    }
-    return {};
+    end(Behind((first + run - 1) % count()), options.end_direction);
+    return DirectBySpline(points, options, before ? 1 : 0, first, run);
   }
 
-  // Nothing but two positions, or one.
-  Making DirectLine() {
-    const Flat way = ToFlat(standing_.back().end.place) - ToFlat(standing_.front().end.place);
-    for (Standing& here : standing_) here.begin.direction = here.end.direction = std::atan2(way.y(), way.x());
-    return {};
+  // A loop of nothing else: several times round, of which one in the middle counts.
+  Making DirectLoop() {
+    if (count() < 2) return {Problem::kEmpty, 0};
+    constexpr std::size_t kEnough = 24;  // so far away nobody knows that the spline has ends
+    const std::size_t rounds = (kEnough + count() - 1) / count();
+    std::vector<path::Point> points;
+    for (std::size_t i = 0; i <= (2 * rounds + 1) * count(); ++i) {
+      points.push_back(ToPoint(standing_[i % count()].end.place));
+    }
+    return {DirectBySpline(points, {}, rounds * count(), 0, count()), 0};
+  }
+
+  // The spline's points from `offset` on are the positions from `first` on.
+  Problem DirectBySpline(const std::vector<path::Point>& points, const path::SplineOptions& options, std::size_t offset,
+                         std::size_t first, std::size_t run) {
+    std::vector<path::Segment> spline;
+    if (points.size() < 2) return Problem::kNone;
+    const path::Problem problem = path::MakeSpline(points, options, spline);
+    if (problem != path::Problem::kNone) return FromPath(problem);
+    for (std::size_t i = 0; i < run; ++i) {
+      const std::size_t k = offset + i;
+      const bool last = k == spline.size();
+      const path::Segment& segment = spline[last ? k - 1 : k];
+      const auto at = path::PlaceAt(segment, last ? segment.length : 0);
+      Standing& here = standing_[(first + i) % count()];
+      here.end.direction = std::atan2(at.first.y(), at.first.x());
+      here.end.curvature = Cross(at.first.head<2>(), at.second.head<2>());
+      here.begin = here.end;
+    }
+    return Problem::kNone;
   }
 
   Making Join() {

@@ -11,7 +11,7 @@ std::string_view Text(Problem problem) noexcept {
     case Problem::kNotFinite:
       return "a number of the track is not finite";
     case Problem::kLengthZero:
-      return "the line begins where it ends";
+      return "a line begins where it ends, or a position is where its neighbour is";
     case Problem::kRadiusZero:
       return "the arc begins at its centre";
     case Problem::kNotOnCircle:
@@ -30,8 +30,6 @@ std::string_view Text(Problem problem) noexcept {
       return "the transition would make a loop";
     case Problem::kEmpty:
       return "the track has no length";
-    case Problem::kTooFew:
-      return "the places before and behind a position are the same: it has no direction";
     case Problem::kClosed:
       return "the track is a closed loop: nothing can be appended";
     case Problem::kEnded:
@@ -51,6 +49,7 @@ Problem FromPath(path::Problem problem) noexcept {
     case path::Problem::kNone:
       return Problem::kNone;
     case path::Problem::kLengthZero:
+    case path::Problem::kCoincide:
       return Problem::kLengthZero;
     case path::Problem::kRadiusZero:
       return Problem::kRadiusZero;
@@ -65,7 +64,7 @@ void describe(Enumeration<Problem>& e) {
   e.about("Why a track cannot be as it is wished.");
   e.value(Problem::kNone, "none", "It can.");
   e.value(Problem::kNotFinite, "not_finite", "A number is not finite.");
-  e.value(Problem::kLengthZero, "length_zero", "A line begins where it ends.");
+  e.value(Problem::kLengthZero, "length_zero", "A line begins where it ends, or a position is where its neighbour is.");
   e.value(Problem::kRadiusZero, "radius_zero", "An arc begins at its centre.");
   e.value(Problem::kNotOnCircle, "not_on_circle", "Start and end of an arc are not equally far from its centre.");
   e.value(Problem::kTooTight, "too_tight", "The radius of an arc is too small.");
@@ -75,7 +74,6 @@ void describe(Enumeration<Problem>& e) {
   e.value(Problem::kReversal, "reversal", "A transition would go back the way it came.");
   e.value(Problem::kLoop, "loop", "A transition would make a loop.");
   e.value(Problem::kEmpty, "empty", "The track has no length.");
-  e.value(Problem::kTooFew, "too_few", "The places before and behind a position are the same.");
   e.value(Problem::kClosed, "closed", "The track is a closed loop.");
   e.value(Problem::kEnded, "ended", "The track ends at another one.");
   e.value(Problem::kLinked, "linked", "A track with links cannot be a closed loop.");

@@ -12,7 +12,7 @@ namespace takt::planar {
 enum class Problem : std::uint8_t {
   kNone,           // it can
   kNotFinite,      // a number given is NaN or infinite
-  kLengthZero,     // a line begins where it ends
+  kLengthZero,     // a line begins where it ends, or a position is where its neighbour is
   kRadiusZero,     // start and centre of an arc are the same
   kNotOnCircle,    // start and end of an arc are not equally far from its centre
   kTooTight,       // an arc of a smaller radius than kLeastRadius
@@ -22,7 +22,6 @@ enum class Problem : std::uint8_t {
   kReversal,       // a transition would have to go back the way it came
   kLoop,           // a transition would cross itself, or turn by more than a whole turn
   kEmpty,          // there is nothing that a track could run along
-  kTooFew,         // a position lies between two places that are the same: its direction is not determined
   kClosed,         // the track is a closed loop
   kEnded,          // the track ends at another one already
   kLinked,         // a track that starts from or ends at another one is no loop

@@ -57,8 +57,8 @@ double SpeedBound(const TrackPoint& point, double lateral) noexcept {
 }
 
 double PeakCurvature(const Track& track, double from, double to) noexcept {
-  auto cell = std::lower_bound(track.cells.begin(), track.cells.end(), from,
-                               [](const Cell& c, double s) { return c.to < s; });
+  auto cell =
+      std::lower_bound(track.cells.begin(), track.cells.end(), from, [](const Cell& c, double s) { return c.to < s; });
   double most = 0;
   for (; cell != track.cells.end() && cell->from <= to; ++cell) most = std::max(most, cell->curvature);
   return most;

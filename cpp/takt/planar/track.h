@@ -21,8 +21,8 @@ namespace takt::planar {
 enum class ElementShape : std::uint8_t { kPosition, kLine, kArc };
 
 // What a track is given by, mm. Between a line or an arc and the next a gap may be left for a transition; without a gap
-// they must go on in direction and curvature. A position has the direction and the curvature of the circle through it
-// and the places before and behind; at an end of the track, of the circle that goes on from its neighbour.
+// they must go on in direction and curvature. A position has the direction and the curvature of the spline
+// (path/spline.h) through all positions that follow one another and the ends of their neighbours.
 struct Element {
   ElementShape shape = ElementShape::kLine;
   Place start;  // of line and arc
@@ -56,7 +56,7 @@ struct Track {
   bool closed = false;
 };
 
-// Where `problem` is: in this element, or in the transition before it; behind the last one, in the transition at the end.
+// Where `problem` is: in this element, or in the transition before it; behind the last one, in that at the end.
 struct Making {
   Problem problem = Problem::kNone;
   std::size_t element = 0;
@@ -73,7 +73,7 @@ double Within(const Track& track, double s) noexcept;
 // mm/s: at this speed the lateral acceleration is `lateral` (mm/s²); infinite where the track is straight.
 double SpeedBound(const TrackPoint& point, double lateral) noexcept;
 
-// The largest curvature (1/mm, without sign) of all cells that have a part in from <= s <= to, 0 <= from <= to <= length.
+// The largest curvature (1/mm, without sign) of all cells that have a part in this stretch; 0 <= from <= to <= length.
 double PeakCurvature(const Track& track, double from, double to) noexcept;
 
 void describe(Enumeration<ElementShape>&);

@@ -54,7 +54,7 @@ double Bend(const VectorPolynomial& curve) {
     bend += curvature * curvature * speed;
     rate += curvature_rate * curvature_rate * speed;
   }
-  return length * std::sqrt(bend + kRateShare * length * length * rate);
+  return std::pow(length, 0.75) * std::sqrt(bend + kRateShare * length * length * rate);
 }
 
 // The lengths of the derivatives that bend least, by their logarithms: the best of a grid, then Newton's steps on

@@ -2,7 +2,7 @@
 //
 // A polynomial of the fifth degree with place, direction and curvature of both sides at its ends. How long its
 // derivatives are there is chosen so that
-//   L * sqrt(integral of k² + 0.01 L² * integral of k'²)
+//   L^0.75 * sqrt(integral of k² + 0.01 L² * integral of k'²)
 // is least, with L the length and k the curvature, by arc length: little curvature, changing gently, without a detour.
 // At a right angle with both sides as far from the corner the largest curvature is 1.17 times that of a circle. What is
 // chosen depends smoothly on the gap, and is the same for gaps that are turned, moved or mirrored.

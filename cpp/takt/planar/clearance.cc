@@ -1,0 +1,158 @@
+#include "takt/planar/clearance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "takt/planar/flat.h"
+
+namespace takt::planar {
+namespace {
+
+// A rectangle with a margin around it.
+struct Box {
+  Flat center;
+  Flat along;   // half of it
+  Flat across;  // half of it
+  double margin = 0;
+
+  Flat corner(int i) const { return center + ((i & 1) != 0 ? along : -along) + ((i & 2) != 0 ? across : -across); }
+};
+
+double Radius(const Footprint& mover) {
+  return std::hypot(mover.width, mover.height) / 2;
+}
+
+Box BoxOf(const TrackPoint& point, const Footprint& mover) {
+  if (mover.any_angle) return {ToFlat(point.place), Flat::Zero(), Flat::Zero(), Radius(mover)};
+  const Flat heading = Heading(point.direction);
+  return {ToFlat(point.place), mover.width / 2 * heading, mover.height / 2 * Left(heading), 0};
+}
+
+// How far `other` is off the box along the two sides of the box; the larger of both.
+double OffSides(const Box& box, const Box& other) {
+  double most = -INFINITY;
+  for (const Flat& side : {box.along, box.across}) {
+    const double half = side.norm();
+    if (half == 0) continue;
+    const Flat normal = side / half;
+    const double reach = half + std::abs(normal.dot(other.along)) + std::abs(normal.dot(other.across));
+    most = std::max(most, std::abs(normal.dot(other.center - box.center)) - reach);
+  }
+  return most;
+}
+
+double FromBox(const Flat& point, const Box& box) {
+  Flat off = point - box.center;
+  Flat outside = off;
+  for (const Flat& side : {box.along, box.across}) {
+    const double squared = side.squaredNorm();
+    if (squared > 0) outside -= std::clamp(off.dot(side) / squared, -1.0, 1.0) * side;
+  }
+  return outside.norm();
+}
+
+double Separation(const Box& a, const Box& b) {
+  const double margins = a.margin + b.margin;
+  const double off = std::max(OffSides(a, b), OffSides(b, a));
+  if (off <= 0 && off > -INFINITY) return off - margins;
+  // Apart: from a corner of one of them to the other.
+  double least = INFINITY;
+  for (int i = 0; i < 4; ++i) least = std::min({least, FromBox(a.corner(i), b), FromBox(b.corner(i), a)});
+  return least - margins;
+}
+
+// Part of a cell, seen from its middle: how far any point of the mover is at most from where it is there.
+struct Stretch {
+  double from = 0;
+  double to = 0;
+  Box box;
+  double spread = 0;
+};
+
+class Search {
+ public:
+  Search(const Track& a, const Footprint& on_a, const Track& b, const Footprint& on_b, double clearance,
+         double resolution)
+      : a_(a), on_a_(on_a), b_(b), on_b_(on_b), clearance_(clearance), resolution_(resolution) {
+    for (const Cell& cell : b.cells) others_.push_back(StretchOf(b, on_b, cell, cell.from, cell.to));
+  }
+
+  std::vector<Range> Run() {
+    for (const Cell& cell : a_.cells) Look(cell, cell.from, cell.to);
+    return std::move(ranges_);
+  }
+
+ private:
+  enum class Answer { kFree, kPerhaps, kConflict };
+
+  static Stretch StretchOf(const Track& track, const Footprint& mover, const Cell& cell, double from, double to) {
+    const double half = (to - from) / 2;
+    // The curvature of a cell is known to a thousandth.
+    const double turn = mover.any_angle ? 0 : std::min(cell.turn, 1.01 * cell.curvature * half);
+    return {from, to, BoxOf(At(track, from + half), mover), half + 2 * Radius(mover) * std::sin(turn / 2)};
+  }
+
+  void Look(const Cell& cell, double from, double to) {
+    const Stretch stretch = StretchOf(a_, on_a_, cell, from, to);
+    Answer answer = Answer::kFree;
+    for (std::size_t i = 0; i < others_.size() && answer != Answer::kConflict; ++i) {
+      answer = std::max(answer, Against(stretch, b_.cells[i], others_[i]));
+    }
+    if (answer == Answer::kFree) return;
+    if (answer == Answer::kConflict || stretch.spread <= resolution_ * 0.4) return Add(from, to);
+    Look(cell, from, (from + to) / 2);
+    Look(cell, (from + to) / 2, to);
+  }
+
+  Answer Against(const Stretch& stretch, const Cell& cell, const Stretch& other) const {
+    const double least = (other.box.center - stretch.box.center).norm() - Radius(on_a_) - Radius(on_b_);
+    if (least - stretch.spread - other.spread >= clearance_) return Answer::kFree;
+    const double apart = Separation(stretch.box, other.box);
+    if (apart - stretch.spread - other.spread >= clearance_) return Answer::kFree;
+    if (apart + stretch.spread < clearance_) return Answer::kConflict;
+    if (other.spread <= stretch.spread / 4) return Answer::kPerhaps;
+    const double middle = (other.from + other.to) / 2;
+    const Answer first = Against(stretch, cell, StretchOf(b_, on_b_, cell, other.from, middle));
+    if (first == Answer::kConflict) return first;
+    return std::max(first, Against(stretch, cell, StretchOf(b_, on_b_, cell, middle, other.to)));
+  }
+
+  void Add(double from, double to) {
+    if (!ranges_.empty() && ranges_.back().to >= from) {
+      ranges_.back().to = to;
+    } else {
+      ranges_.push_back({from, to});
+    }
+  }
+
+  const Track& a_;
+  const Footprint& on_a_;
+  const Track& b_;
+  const Footprint& on_b_;
+  const double clearance_;
+  const double resolution_;
+  std::vector<Stretch> others_;
+  std::vector<Range> ranges_;
+};
+
+}  // namespace
+
+double Separation(const TrackPoint& a, const Footprint& on_a, const TrackPoint& b, const Footprint& on_b) noexcept {
+  return Separation(BoxOf(a, on_a), BoxOf(b, on_b));
+}
+
+std::vector<Range> Conflicts(const Track& a, const Footprint& on_a, const Track& b, const Footprint& on_b,
+                             double clearance, double resolution) {
+  return Search(a, on_a, b, on_b, clearance, resolution).Run();
+}
+
+double ReachFromStart(const std::vector<Range>& ranges) noexcept {
+  return !ranges.empty() && ranges.front().from <= 0 ? ranges.front().to : 0;
+}
+
+double ReachFromEnd(const std::vector<Range>& ranges, double length) noexcept {
+  return !ranges.empty() && ranges.back().to >= length ? length - ranges.back().from : 0;
+}
+
+}  // namespace takt::planar
