@@ -62,13 +62,29 @@ double Separation(const Box& a, const Box& b) {
   return least - margins;
 }
 
-// Part of a cell, seen from its middle: how far any point of the mover is at most from where it is there.
+// Part of a cell, seen from its middle. All that a mover covers on it lies within `stray` of `swept`, which is the
+// mover drawn out along its direction in the middle; and within `spread` of where it is in the middle.
 struct Stretch {
   double from = 0;
   double to = 0;
-  Box box;
+  Box middle;
+  Box swept;
+  double stray = 0;
   double spread = 0;
 };
+
+Stretch StretchOf(const Track& track, const Footprint& mover, const Cell& cell, double from, double to) {
+  const double half = (to - from) / 2;
+  const TrackPoint point = At(track, from + half);
+  // The curvature of a cell is known to a thousandth.
+  const double turn = std::min(cell.turn, 1.01 * cell.curvature * half);
+  const double step = 2 * std::sin(turn / 2);
+  const double corner = mover.any_angle ? 0 : step * Radius(mover);
+  Stretch out{from, to, BoxOf(point, mover), {}, step * half + corner, half + corner};
+  out.swept = out.middle;
+  out.swept.along += half * Heading(point.direction);
+  return out;
+}
 
 class Search {
  public:
@@ -86,13 +102,6 @@ class Search {
  private:
   enum class Answer { kFree, kPerhaps, kConflict };
 
-  static Stretch StretchOf(const Track& track, const Footprint& mover, const Cell& cell, double from, double to) {
-    const double half = (to - from) / 2;
-    // The curvature of a cell is known to a thousandth.
-    const double turn = mover.any_angle ? 0 : std::min(cell.turn, 1.01 * cell.curvature * half);
-    return {from, to, BoxOf(At(track, from + half), mover), half + 2 * Radius(mover) * std::sin(turn / 2)};
-  }
-
   void Look(const Cell& cell, double from, double to) {
     const Stretch stretch = StretchOf(a_, on_a_, cell, from, to);
     Answer answer = Answer::kFree;
@@ -106,11 +115,10 @@ class Search {
   }
 
   Answer Against(const Stretch& stretch, const Cell& cell, const Stretch& other) const {
-    const double least = (other.box.center - stretch.box.center).norm() - Radius(on_a_) - Radius(on_b_);
-    if (least - stretch.spread - other.spread >= clearance_) return Answer::kFree;
-    const double apart = Separation(stretch.box, other.box);
-    if (apart - stretch.spread - other.spread >= clearance_) return Answer::kFree;
-    if (apart + stretch.spread < clearance_) return Answer::kConflict;
+    const double least = (other.middle.center - stretch.middle.center).norm() - Radius(on_a_) - Radius(on_b_);
+    if (least - (stretch.to - stretch.from + other.to - other.from) / 2 >= clearance_) return Answer::kFree;
+    if (Separation(stretch.swept, other.swept) - stretch.stray - other.stray >= clearance_) return Answer::kFree;
+    if (Separation(stretch.middle, other.middle) + stretch.spread < clearance_) return Answer::kConflict;
     if (other.spread <= stretch.spread / 4) return Answer::kPerhaps;
     const double middle = (other.from + other.to) / 2;
     const Answer first = Against(stretch, cell, StretchOf(b_, on_b_, cell, other.from, middle));

@@ -25,17 +25,17 @@ enum class ElementShape : std::uint8_t { kPosition, kLine, kArc };
 // (path/spline.h) through all positions that follow one another and the ends of their neighbours.
 struct Element {
   ElementShape shape = ElementShape::kLine;
-  Place start;  // of line and arc
-  Place end;    // a position has this only
+  Place start{};  // of line and arc
+  Place end{};    // a position has this only
   Place center{};
   bool clockwise = false;  // an arc that ends where it starts is a whole circle
 };
 
 struct Layout {
-  std::vector<Element> elements;
-  std::optional<TrackPoint> from;  // the end of another track
-  std::optional<TrackPoint> to;    // the start of another track
-  bool closed = false;             // goes on from its last element to its first
+  std::vector<Element> elements{};
+  std::optional<TrackPoint> from{};  // the end of another track
+  std::optional<TrackPoint> to{};    // the start of another track
+  bool closed = false;               // goes on from its last element to its first
 };
 
 // A stretch of a track.

@@ -1,6 +1,6 @@
 #include "takt/planar/transition.h"
 
-#include <Eigen/LU>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -78,6 +78,7 @@ class Search {
   static constexpr int kMostSteps = 60;
   static constexpr double kCloseEnough = 1e-11;
   static constexpr double kDifference = 1e-3;
+  static constexpr double kFlat = 1e-3;
 
   double Value(const Flat& at) const { return std::log(Bend(CurveOf(gap_, std::exp(at.x()), std::exp(at.y())))); }
 
@@ -98,15 +99,20 @@ class Search {
     const Flat slope((right - left) / (2 * h), (up - down) / (2 * h));
     Eigen::Matrix2d bend;
     bend << (right - 2 * least_ + left) / (h * h), mixed, mixed, (up - 2 * least_ + down) / (h * h);
-    const bool valley = bend(0, 0) > 0 && bend.determinant() > 0;
-    Flat step = valley ? Flat(-bend.inverse() * slope) : Flat(-slope.normalized() * reach);
-    if (step.norm() > reach) step *= reach / step.norm();
-    // At the bottom rounding decides what is less: the last step is taken as it is.
+    // Where it bends down along one of its axes one goes on as if it bent up: that leads on in a valley, too.
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+    axes.computeDirect(bend);
+    const Eigen::Matrix2d& turn = axes.eigenvectors();
+    const Flat bends = axes.eigenvalues().cwiseAbs().cwiseMax(kFlat);
+    Flat step = -(turn * (turn.transpose() * slope).cwiseQuotient(bends));
+    const bool valley = axes.eigenvalues().minCoeff() > 0;
+    // At the bottom rounding decides what is less: the last steps are taken as they are.
     if (valley && step.norm() < kDifference / 10) {
       best_ += step;
       least_ = Value(best_);
       return step.norm();
     }
+    if (step.norm() > reach) step *= reach / step.norm();
     return Try(best_ + step) ? 2 * reach : reach / 4;
   }
 
