@@ -67,6 +67,7 @@ double Separation(const Box& a, const Box& b) {
 struct Stretch {
   double from = 0;
   double to = 0;
+  Flat heading;
   Box middle;
   Box swept;
   double stray = 0;
@@ -80,9 +81,9 @@ Stretch StretchOf(const Track& track, const Footprint& mover, const Cell& cell, 
   const double turn = std::min(cell.turn, 1.01 * cell.curvature * half);
   const double step = 2 * std::sin(turn / 2);
   const double corner = mover.any_angle ? 0 : step * Radius(mover);
-  Stretch out{from, to, BoxOf(point, mover), {}, step * half + corner, half + corner};
+  Stretch out{from, to, Heading(point.direction), BoxOf(point, mover), {}, step * half + corner, half + corner};
   out.swept = out.middle;
-  out.swept.along += half * Heading(point.direction);
+  out.swept.along += half * out.heading;
   return out;
 }
 
@@ -109,7 +110,7 @@ class Search {
       answer = std::max(answer, Against(stretch, b_.cells[i], others_[i]));
     }
     if (answer == Answer::kFree) return;
-    if (answer == Answer::kConflict || stretch.spread <= resolution_ * 0.4) return Add(from, to);
+    if (answer == Answer::kConflict || stretch.spread <= resolution_ / 5) return Add(from, to);
     Look(cell, from, (from + to) / 2);
     Look(cell, (from + to) / 2, to);
   }
@@ -118,12 +119,19 @@ class Search {
     const double least = (other.middle.center - stretch.middle.center).norm() - Radius(on_a_) - Radius(on_b_);
     if (least - (stretch.to - stretch.from + other.to - other.from) / 2 >= clearance_) return Answer::kFree;
     if (Separation(stretch.swept, other.swept) - stretch.stray - other.stray >= clearance_) return Answer::kFree;
-    if (Separation(stretch.middle, other.middle) + stretch.spread < clearance_) return Answer::kConflict;
-    if (other.spread <= stretch.spread / 4) return Answer::kPerhaps;
+    if (Separation(stretch.middle, Facing(stretch, other)) + stretch.spread < clearance_) return Answer::kConflict;
+    if (other.stray <= stretch.spread / 4) return Answer::kPerhaps;
     const double middle = (other.from + other.to) / 2;
     const Answer first = Against(stretch, cell, StretchOf(b_, on_b_, cell, other.from, middle));
     if (first == Answer::kConflict) return first;
     return std::max(first, Against(stretch, cell, StretchOf(b_, on_b_, cell, middle, other.to)));
+  }
+
+  // The other mover about where it comes nearest to the middle of the stretch.
+  Box Facing(const Stretch& stretch, const Stretch& other) const {
+    const double half = (other.to - other.from) / 2;
+    const double ahead = other.heading.dot(stretch.middle.center - other.middle.center);
+    return BoxOf(At(b_, other.from + half + std::clamp(ahead, -half, half)), on_b_);
   }
 
   void Add(double from, double to) {
