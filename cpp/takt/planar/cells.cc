@@ -14,22 +14,13 @@ using Controls = std::array<Flat, 6>;
 
 // Control points of the part of a polynomial between two parameters, as a Bezier curve.
 Controls ControlsOf(const path::VectorPolynomial& place, double from, double to) {
-  const Bent p = BentAt(place, from);
-  const double h = to - from;
-  const Flat fourth = 24 * ToFlat(place[4]) + 120 * from * ToFlat(place[5]);
-  const Flat fifth = 120 * ToFlat(place[5]);
-  const std::array<Flat, 6> c{p.value,
-                              p.first * h,
-                              p.second * (h * h / 2),
-                              p.third * (h * h * h / 6),
-                              fourth * (h * h * h * h / 24),
-                              fifth * (h * h * h * h * h / 120)};
+  const path::VectorPolynomial c = PartOf(place, from, to);
   constexpr double kShare[6][6] = {{1, 0, 0, 0, 0, 0},       {1, 0.2, 0, 0, 0, 0},       {1, 0.4, 0.1, 0, 0, 0},
                                    {1, 0.6, 0.3, 0.1, 0, 0}, {1, 0.8, 0.6, 0.4, 0.2, 0}, {1, 1, 1, 1, 1, 1}};
   Controls out;
   for (std::size_t i = 0; i < 6; ++i) {
     out[i] = Flat::Zero();
-    for (std::size_t k = 0; k <= i; ++k) out[i] += kShare[i][k] * c[k];
+    for (std::size_t k = 0; k <= i; ++k) out[i] += kShare[i][k] * ToFlat(c[k]);
   }
   return out;
 }
@@ -59,12 +50,20 @@ double OffChord(const Controls& controls) {
   return most;
 }
 
-// By places so close together that what lies between is no more than a thousandth above.
+// By places close together, and the tops of parabolas through three of them.
 double LargestCurvature(const path::VectorPolynomial& place, double from, double to) {
-  constexpr int kPlaces = 16;
+  constexpr std::size_t kPlaces = 16;
+  std::array<double, kPlaces + 1> k{};
   double most = 0;
-  for (int i = 0; i <= kPlaces; ++i) {
-    most = std::max(most, std::abs(BentAt(place, std::lerp(from, to, static_cast<double>(i) / kPlaces)).curvature()));
+  for (std::size_t i = 0; i <= kPlaces; ++i) {
+    const double share = static_cast<double>(i) / kPlaces;
+    k[i] = std::abs(BentAt(place, std::lerp(from, to, share)).curvature());
+    most = std::max(most, k[i]);
+  }
+  for (std::size_t i = 1; i < kPlaces; ++i) {
+    const double bend = 2 * k[i] - k[i - 1] - k[i + 1];
+    const double slope = (k[i + 1] - k[i - 1]) / 2;
+    if (bend > 0 && std::abs(slope) < bend) most = std::max(most, k[i] + slope * slope / (2 * bend));
   }
   return most;
 }

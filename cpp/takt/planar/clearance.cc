@@ -31,15 +31,14 @@ Box BoxOf(const TrackPoint& point, const Footprint& mover) {
 
 // How far `other` is off the box along the two sides of the box; the larger of both.
 double OffSides(const Box& box, const Box& other) {
-  double most = -INFINITY;
-  for (const Flat& side : {box.along, box.across}) {
-    const double half = side.norm();
-    if (half == 0) continue;
-    const Flat normal = side / half;
+  const double length = box.along.norm(), breadth = box.across.norm();
+  if (length == 0 && breadth == 0) return -INFINITY;  // a point has none
+  const Flat forward = length > 0 ? Flat(box.along / length) : Flat(-Left(box.across) / breadth);
+  const auto off = [&](const Flat& normal, double half) {
     const double reach = half + std::abs(normal.dot(other.along)) + std::abs(normal.dot(other.across));
-    most = std::max(most, std::abs(normal.dot(other.center - box.center)) - reach);
-  }
-  return most;
+    return std::abs(normal.dot(other.center - box.center)) - reach;
+  };
+  return std::max(off(forward, length), off(Left(forward), breadth));
 }
 
 double FromBox(const Flat& point, const Box& box) {
@@ -91,7 +90,7 @@ class Search {
  public:
   Search(const Track& a, const Footprint& on_a, const Track& b, const Footprint& on_b, double clearance,
          double resolution)
-      : a_(a), on_a_(on_a), b_(b), on_b_(on_b), clearance_(clearance), resolution_(resolution) {
+      : a_(a), on_a_(on_a), b_(b), on_b_(on_b), clearance_(clearance), resolution_(std::max(kFinest, resolution)) {
     for (const Cell& cell : b.cells) others_.push_back(StretchOf(b, on_b, cell, cell.from, cell.to));
   }
 
@@ -101,6 +100,8 @@ class Search {
   }
 
  private:
+  static constexpr double kFinest = 1e-3;  // mm
+
   enum class Answer { kFree, kPerhaps, kConflict };
 
   void Look(const Cell& cell, double from, double to) {

@@ -25,7 +25,7 @@ struct Range {
 double Separation(const TrackPoint& a, const Footprint& on_a, const TrackPoint& b, const Footprint& on_b) noexcept;
 
 // Where on `a` a mover comes nearer than `clearance` to a mover somewhere on `b`, in order. Never too little; too much
-// only where they come nearer than `clearance` + `resolution`, mm, above 0. Allocates; not for the cycle.
+// only where they come nearer than `clearance` + `resolution` (mm, 0.001 or more). Allocates; not for the cycle.
 std::vector<Range> Conflicts(const Track& a, const Footprint& on_a, const Track& b, const Footprint& on_b,
                              double clearance, double resolution);
 

@@ -60,4 +60,18 @@ inline Bent BentAt(const path::VectorPolynomial& c, double u) noexcept {
           2 * k[2] + u * (6 * k[3] + u * (12 * k[4] + u * (20 * k[5]))), 6 * k[3] + u * (24 * k[4] + u * (60 * k[5]))};
 }
 
+// The part of a polynomial between two parameters, over one from 0 to 1.
+inline path::VectorPolynomial PartOf(const path::VectorPolynomial& c, double from, double to) noexcept {
+  const Bent p = BentAt(c, from);
+  const double h = to - from;
+  const Flat fourth = ToFlat(c[4]) + 5 * from * ToFlat(c[5]);
+  const auto coefficient = [](const Flat& v) { return path::ToTriple(ToSpace(v)); };
+  return {coefficient(p.value),
+          coefficient(p.first * h),
+          coefficient(p.second * (h * h / 2)),
+          coefficient(p.third * (h * h * h / 6)),
+          coefficient(fourth * (h * h * h * h)),
+          coefficient(ToFlat(c[5]) * (h * h * h * h * h))};
+}
+
 }  // namespace takt::planar

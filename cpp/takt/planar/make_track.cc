@@ -192,9 +192,9 @@ class Maker {
       if (!SameDirection(end, begin)) return Problem::kKink;
       return SameCurvature(end, begin) ? Problem::kNone : Problem::kCurvatureJump;
     }
-    path::Segment segment;
-    const Problem problem = MakeTransition(end, begin, segment);
-    if (problem == Problem::kNone) track_.pieces.push_back(PieceOf(segment, false));
+    std::vector<path::Segment> segments;
+    const Problem problem = MakeTransition(end, begin, segments);
+    for (const path::Segment& segment : segments) track_.pieces.push_back(PieceOf(segment, false));
     return problem;
   }
 

@@ -150,9 +150,33 @@ double Peak(const VectorPolynomial& curve) {
   return std::max(most - middle, middle - least) < kMostTurn ? peak : INFINITY;
 }
 
+// How well its length is known: cells against their halves.
+double LengthError(const path::Segment& segment) {
+  double error = 0;
+  double from = 0, length = 0;
+  for (std::size_t i = 0; i < segment.cells; ++i) {
+    const double to = segment.cell_parameter[i];
+    const double middle = (from + to) / 2;
+    const double halves =
+        path::LengthBetween(segment.place, from, middle) + path::LengthBetween(segment.place, middle, to);
+    error += std::abs(halves - (segment.cell_length[i] - length));
+    from = to;
+    length = segment.cell_length[i];
+  }
+  return error;
+}
+
+void Append(const VectorPolynomial& curve, int halvings, std::vector<path::Segment>& out) {
+  path::Segment segment;
+  path::SetQuintic(segment, curve);
+  if (halvings == 0 || LengthError(segment) <= kLengthError) return out.push_back(segment);
+  Append(PartOf(curve, 0, 0.5), halvings - 1, out);
+  Append(PartOf(curve, 0.5, 1), halvings - 1, out);
+}
+
 }  // namespace
 
-Problem MakeTransition(const TrackPoint& begin, const TrackPoint& end, path::Segment& out) noexcept {
+Problem MakeTransition(const TrackPoint& begin, const TrackPoint& end, std::vector<path::Segment>& out) {
   const Flat from = ToFlat(begin.place);
   const Flat chord = ToFlat(end.place) - from;
   const double distance = chord.norm();
@@ -160,12 +184,12 @@ Problem MakeTransition(const TrackPoint& begin, const TrackPoint& end, path::Seg
                 begin.curvature * distance, end.curvature * distance};
   const double off = std::max(std::abs(gap.begin_angle), std::abs(gap.end_angle));
   const double bend = std::max(std::abs(gap.begin_bend), std::abs(gap.end_bend));
-  path::Segment segment;
   if (off < kStraight && bend < kStraight) {
+    path::Segment segment;
     segment.length = distance;
     segment.place[0] = path::ToTriple(ToSpace(from));
     segment.place[1] = path::ToTriple(ToSpace(chord / distance));
-    out = segment;
+    out.push_back(segment);
     return Problem::kNone;
   }
   if (off > kBehind) return Problem::kReversal;
@@ -174,8 +198,8 @@ Problem MakeTransition(const TrackPoint& begin, const TrackPoint& end, path::Seg
   const double peak = Peak(curve);
   if (!std::isfinite(peak)) return Problem::kLoop;
   if (peak * kLeastRadius > distance) return Problem::kTooSharp;
-  path::SetQuintic(segment, Put(curve, from, chord));
-  out = segment;
+  constexpr int kHalvings = 5;
+  Append(Put(curve, from, chord), kHalvings, out);
   return Problem::kNone;
 }
 

@@ -8,6 +8,8 @@
 // chosen depends smoothly on the gap, and is the same for gaps that are turned, moved or mirrored.
 #pragma once
 
+#include <vector>
+
 #include "takt/path/segment.h"
 #include "takt/planar/point.h"
 #include "takt/planar/problem.h"
@@ -17,7 +19,9 @@ namespace takt::planar {
 // No track bends more tightly than this.
 inline constexpr double kLeastRadius = 1;  // mm
 
-// A straight line where both sides lie on one.
-Problem MakeTransition(const TrackPoint& begin, const TrackPoint& end, path::Segment& out) noexcept;
+// A straight line where both sides lie on one. What bends so unevenly that its length would not be known to
+// kLengthError is cut into pieces. Appends to `out`, or leaves it alone where there is a problem.
+inline constexpr double kLengthError = 1e-10;  // mm
+Problem MakeTransition(const TrackPoint& begin, const TrackPoint& end, std::vector<path::Segment>& out);
 
 }  // namespace takt::planar

@@ -47,13 +47,14 @@ TEST(NearestPlaces, AreNowhereElse) {
   Random random(11);
   for (int i = 0; i < Trials(100); ++i) {
     const Track track = RandomTrack(random);
-    const int samples = static_cast<int>(track.length);
+    const int samples = 2 * static_cast<int>(track.length);
     std::vector<Place> places;
     for (int k = 0; k <= samples; ++k) places.push_back(At(track, track.length * k / samples).place);
-    for (int k = 0; k < 20; ++k) {
-      // Also on the inside of curves, and on the track.
+    for (int k = 0; k < 200; ++k) {
+      // Also on the track, and about the centres of its curves, from where much of it is equally far.
       const TrackPoint near = At(track, random.Between(0, track.length));
-      const double off = k < 5 ? 0 : random.Between(-300, 300);
+      double off = k < 5 ? 0 : random.Between(-300, 300);
+      if (k >= 15 && near.curvature != 0) off = random.Between(0.9, 1.1) / near.curvature;
       const Place place = testing::Ahead(near.place, near.direction + std::numbers::pi / 2, off);
       const Nearest found = NearestTo(track, place);
       double least = INFINITY;
