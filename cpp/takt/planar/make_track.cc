@@ -21,11 +21,19 @@ struct Standing {
   TrackPoint end;
 };
 
-bool Finite(const Place& place) {
-  return std::isfinite(place.x) && std::isfinite(place.y);
+// mm: further away numbers no longer say where a place is.
+constexpr double kFarthest = 1e9;
+
+bool Sound(const Place& place) {
+  return std::abs(place.x) <= kFarthest && std::abs(place.y) <= kFarthest;
 }
-bool Finite(const std::optional<TrackPoint>& point) {
-  return !point || (Finite(point->place) && std::isfinite(point->direction) && std::isfinite(point->curvature));
+
+Problem Check(const std::optional<TrackPoint>& link) {
+  if (!link) return Problem::kNone;
+  if (!Sound(link->place) || !std::isfinite(link->direction) || !std::isfinite(link->curvature)) {
+    return Problem::kNotFinite;
+  }
+  return std::abs(link->curvature) * kLeastRadius > 1.001 ? Problem::kTooTight : Problem::kNone;
 }
 
 path::Point ToPoint(const Place& p) {
@@ -46,7 +54,7 @@ Piece PieceOf(const path::Segment& segment, bool given) {
 }
 
 Problem Stand(const Element& element, Standing& out) {
-  if (!Finite(element.start) || !Finite(element.end) || !Finite(element.center)) return Problem::kNotFinite;
+  if (!Sound(element.start) || !Sound(element.end) || !Sound(element.center)) return Problem::kNotFinite;
   if (element.shape == ElementShape::kPosition) {
     out.begin.place = out.end.place = element.end;
     return Problem::kNone;
@@ -73,7 +81,9 @@ class Maker {
   explicit Maker(const Layout& layout) : layout_(layout), standing_(layout.elements.size()) {}
 
   Making Make(Track& out) {
-    if (!Finite(layout_.from) || !Finite(layout_.to)) return {Problem::kNotFinite, 0};
+    for (const auto* link : {&layout_.from, &layout_.to}) {
+      if (const Problem p = Check(*link); p != Problem::kNone) return {p, 0};
+    }
     if (layout_.closed && (layout_.from || layout_.to)) return {Problem::kLinked, 0};
     for (const auto step : {&Maker::StandAll, &Maker::DirectPositions, &Maker::Join}) {
       if (const Making making = (this->*step)(); making.problem != Problem::kNone) return making;

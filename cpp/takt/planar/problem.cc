@@ -9,7 +9,7 @@ std::string_view Text(Problem problem) noexcept {
     case Problem::kNone:
       return "";
     case Problem::kNotFinite:
-      return "a number of the track is not finite";
+      return "a number of the track is not finite, or a place is more than 1000 km away";
     case Problem::kLengthZero:
       return "a line begins where it ends, or a position is where its neighbour is";
     case Problem::kRadiusZero:
@@ -17,7 +17,7 @@ std::string_view Text(Problem problem) noexcept {
     case Problem::kNotOnCircle:
       return "start and end of the arc are not equally far from its centre";
     case Problem::kTooTight:
-      return "the radius of the arc is less than 1 mm";
+      return "a radius is less than 1 mm";
     case Problem::kKink:
       return "two pieces of the track touch where their directions differ: leave a gap for the transition";
     case Problem::kCurvatureJump:
@@ -63,11 +63,11 @@ Problem FromPath(path::Problem problem) noexcept {
 void describe(Enumeration<Problem>& e) {
   e.about("Why a track cannot be as it is wished.");
   e.value(Problem::kNone, "none", "It can.");
-  e.value(Problem::kNotFinite, "not_finite", "A number is not finite.");
+  e.value(Problem::kNotFinite, "not_finite", "A number is not finite, or too large.");
   e.value(Problem::kLengthZero, "length_zero", "A line begins where it ends, or a position is where its neighbour is.");
   e.value(Problem::kRadiusZero, "radius_zero", "An arc begins at its centre.");
   e.value(Problem::kNotOnCircle, "not_on_circle", "Start and end of an arc are not equally far from its centre.");
-  e.value(Problem::kTooTight, "too_tight", "The radius of an arc is too small.");
+  e.value(Problem::kTooTight, "too_tight", "A radius is too small.");
   e.value(Problem::kKink, "kink", "Two pieces touch where their directions differ.");
   e.value(Problem::kCurvatureJump, "curvature_jump", "Two pieces touch where their curvatures differ.");
   e.value(Problem::kTooSharp, "too_sharp", "The radius of a transition would be too small.");

@@ -11,11 +11,11 @@ namespace takt::planar {
 
 enum class Problem : std::uint8_t {
   kNone,           // it can
-  kNotFinite,      // a number given is NaN or infinite
+  kNotFinite,      // a number given is NaN, infinite, or further away than 1e9 mm
   kLengthZero,     // a line begins where it ends, or a position is where its neighbour is
   kRadiusZero,     // start and centre of an arc are the same
   kNotOnCircle,    // start and end of an arc are not equally far from its centre
-  kTooTight,       // an arc of a smaller radius than kLeastRadius
+  kTooTight,       // an arc, or another track where it is met, of a smaller radius than kLeastRadius
   kKink,           // two pieces touch, but the second goes off in another direction
   kCurvatureJump,  // two pieces touch and run in one direction, but bend differently
   kTooSharp,       // a transition would bend more than a circle of kLeastRadius: the gap is too small

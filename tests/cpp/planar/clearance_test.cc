@@ -97,6 +97,15 @@ TEST(Conflicts, AreThoseOfLines) {
   EXPECT_TRUE(Conflicts(a, mover, b, mover, 1.9, 0.01).empty());
   EXPECT_EQ(ReachFromStart(ranges), 0);
   EXPECT_EQ(ReachFromEnd(ranges, a.length), 0);
+  // At any angle movers cover circles of 79.9 mm.
+  const Footprint round{113, 113, true};
+  const Track c = Make({.elements = {Line({500, 170}, {700, 170})}});
+  for (const Footprint& other : {mover, round}) {
+    const double free = 170 - 79.9 - (other.any_angle ? 79.9 : 56.5);
+    EXPECT_TRUE(Conflicts(a, round, c, other, free - 0.2, 0.01).empty());
+    EXPECT_TRUE(Conflicts(c, other, a, round, free - 0.2, 0.01).empty());
+    EXPECT_EQ(Conflicts(a, round, c, other, free + 0.2, 0.01).size(), 1u);
+  }
 }
 
 // PL-24: two tracks that start from the end of one, at a right angle to each other: near the switch they conflict, from

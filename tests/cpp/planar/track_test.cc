@@ -300,5 +300,33 @@ TEST(Tracks, SayWhereTheProblemIs) {
   EXPECT_EQ(Make({.elements = {line, Line({100, 0}, {200, 0})}}).pieces.size(), 2u);
 }
 
+// PL-20: whatever numbers are given, there is a problem or a track of finite numbers.
+TEST(Tracks, StandAnyNumbers) {
+  Random random(8);
+  const double numbers[] = {0, 1, -1, 1e-9, 100, 200, 1e9, -1e9, 1e18, 1e308, std::nan(""), INFINITY};
+  const auto number = [&] { return random.Below(3) > 0 ? random.Between(-500, 500) : numbers[random.Below(12)]; };
+  int made = 0;
+  for (int i = 0; i < Trials(3000); ++i) {
+    Layout layout{.closed = random.Below(4) == 0};
+    const auto place = [&] { return Place{number(), number()}; };
+    const int count = random.Below(4);
+    for (int k = 0; k < count; ++k) {
+      layout.elements.push_back({static_cast<ElementShape>(random.Below(3)), place(), place(), place(), random.Coin()});
+    }
+    if (random.Below(3) == 0) layout.from = TrackPoint{place(), number(), number() / 1000};
+    if (random.Below(3) == 0) layout.to = TrackPoint{place(), number(), number() / 1000};
+    Track track;
+    if (MakeTrack(layout, track).problem != Problem::kNone) continue;
+    ++made;
+    EXPECT_TRUE(std::isfinite(track.length));
+    EXPECT_GT(track.length, 0);
+    for (int k = 0; k <= 20; ++k) {
+      const TrackPoint p = At(track, track.length * k / 20);
+      EXPECT_TRUE(std::isfinite(p.place.x + p.place.y + p.direction + p.curvature + p.curvature_rate));
+    }
+  }
+  EXPECT_GT(made, 100);
+}
+
 }  // namespace
 }  // namespace takt::planar
