@@ -102,11 +102,10 @@ class Search {
     if (distance - reach > bound_ + kAsNear) return;
     const double lowest = std::min({begin.change, middle.change, end.change});
     const double highest = std::max({begin.change, middle.change, end.change});
-    if (lowest > 0 && highest < 4 * lowest) {
+    if (halvings == 0 || (lowest > 0 && highest < 4 * lowest)) {
       if (begin.value < 0 && end.value > 0) Solve(place, u0, u1, u0 + half);
       return;
     }
-    if (halvings == 0) return At(place, u0 + half);
     Between(place, u0, begin, u0 + half, middle, halvings - 1);
     Between(place, u0 + half, middle, u1, end, halvings - 1);
   }

@@ -126,7 +126,7 @@ TEST(Tracks, RunSmoothly) {
 // and curvatures around it say.
 TEST(Tracks, CountArcLength) {
   Random random(4);
-  for (int i = 0; i < Trials(60); ++i) {
+  for (int i = 0; i < Trials(30); ++i) {
     const Track track = RandomTrack(random);
     EXPECT_NEAR(LengthTo(track, track.length), track.length, 1e-8);
     for (int k = 0; k < 3; ++k) {

@@ -85,7 +85,6 @@ double LengthTo(const Track& track, double s) {
   for (const Piece& piece : track.pieces) {
     const double rest = std::min(s - piece.start, piece.segment.length);
     if (rest <= 0) break;
-    // Of cells of the path, within which it is smooth.
     const auto lines = [&](double from, double to, int count) {
       double length = 0;
       Place last = At(piece, from).place;
@@ -98,7 +97,7 @@ double LengthTo(const Track& track, double s) {
     };
     double from = 0;
     while (from < rest) {
-      const double to = std::min(rest, from + 20);
+      const double to = std::min(rest, from + 5);
       const double one = lines(from, to, 50), two = lines(from, to, 100), four = lines(from, to, 200);
       const double better = two + (two - one) / 3, best = four + (four - two) / 3;
       sum += best + (best - better) / 15;
