@@ -11,6 +11,8 @@ namespace {
 
 // mm: nearer by less is as near.
 constexpr double kAsNear = 1e-9;
+// mm along the track.
+constexpr double kSameValley = 0.1;
 
 double DistanceToLine(const Flat& begin, const Flat& end, const Flat& point) {
   const Flat way = end - begin;
@@ -59,10 +61,11 @@ class Search {
     return out;
   }
 
-  bool Better(double distance) const { return distance < best_.distance - kAsNear; }
+  // What is a little nearer only counts if it belongs to the same valley: else the first one does.
   void Take(double s, const Flat& place) {
     const double distance = (place - point_).norm();
-    if (!Better(distance)) return;
+    const double margin = s - best_.s < kSameValley ? 0 : kAsNear;
+    if (!(distance < best_.distance - margin)) return;
     best_ = {s, ToPlace(place), distance};
     bound_ = std::min(bound_, distance);
   }
@@ -83,7 +86,9 @@ class Search {
     const Flat out = std::cos(angle) * radius + std::sin(angle) * across;
     const Flat along = std::cos(angle) * across - std::sin(angle) * radius;
     const double half = (cell.to - cell.from) / 2;
-    const double way = std::clamp(std::atan2(off.dot(along), off.dot(out)) / segment.rate, -half, half);
+    const bool center = off.norm() < kAsNear;
+    const double way =
+        center ? -half : std::clamp(std::atan2(off.dot(along), off.dot(out)) / segment.rate, -half, half);
     const double s = std::clamp(middle + way, cell.from, cell.to);
     Take(s, path::PlaceAt(segment, s - start).value.head<2>());
   }
@@ -126,7 +131,7 @@ class Search {
 
   void At(const path::VectorPolynomial& place, double u) {
     const Flat p = BentAt(place, u).value;
-    if (!Better((p - point_).norm())) return;
+    if ((p - point_).norm() >= best_.distance) return;
     double s = cell_->to;
     if (u < cell_->end_parameter) s = cell_->from + path::LengthBetween(place, cell_->begin_parameter, u);
     Take(s, p);

@@ -37,6 +37,7 @@ TEST(NearestPlaces, AreThoseOfLinesAndArcs) {
 TEST(NearestPlaces, AreTheFirstOfMany) {
   const Track circle = Make({.elements = {Arc({100, 0}, {100, 0}, {0, 0}, false)}, .closed = true});
   EXPECT_NEAR(NearestTo(circle, {0, 0}).distance, 100, 1e-12);
+  EXPECT_EQ(NearestTo(circle, {0, 0}).s, 0);
   const Track around = Make({.elements = {Line({0, 0}, {300, 0}), Line({300, 200}, {0, 200})}});
   EXPECT_NEAR(NearestTo(around, {100, 100}).s, 100, 1e-9);
 }
@@ -54,7 +55,7 @@ TEST(NearestPlaces, AreNowhereElse) {
       // Also on the track, and about the centres of its curves, from where much of it is equally far.
       const TrackPoint near = At(track, random.Between(0, track.length));
       double off = k < 5 ? 0 : random.Between(-300, 300);
-      if (k >= 15 && near.curvature != 0) off = random.Between(0.9, 1.1) / near.curvature;
+      if (k >= 15 && std::abs(near.curvature) > 1e-3) off = random.Between(0.9, 1.1) / near.curvature;
       const Place place = testing::Ahead(near.place, near.direction + std::numbers::pi / 2, off);
       const Nearest found = NearestTo(track, place);
       double least = INFINITY;
