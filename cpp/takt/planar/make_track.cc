@@ -22,7 +22,7 @@ struct Standing {
 };
 
 // mm: further away numbers no longer say where a place is.
-constexpr double kFarthest = 1e9;
+constexpr double kFarthest = 1e6;
 
 bool Sound(const Place& place) {
   return std::abs(place.x) <= kFarthest && std::abs(place.y) <= kFarthest;

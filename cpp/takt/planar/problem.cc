@@ -9,7 +9,7 @@ std::string_view Text(Problem problem) noexcept {
     case Problem::kNone:
       return "";
     case Problem::kNotFinite:
-      return "a number of the track is not finite, or a place is more than 1000 km away";
+      return "a number of the track is not finite, or a place is more than 1 km away";
     case Problem::kLengthZero:
       return "a line begins where it ends, or a position is where its neighbour is";
     case Problem::kRadiusZero:

@@ -11,7 +11,7 @@ namespace takt::planar {
 
 enum class Problem : std::uint8_t {
   kNone,           // it can
-  kNotFinite,      // a number given is NaN, infinite, or further away than 1e9 mm
+  kNotFinite,      // a number given is NaN, infinite, or further away than 1e6 mm
   kLengthZero,     // a line begins where it ends, or a position is where its neighbour is
   kRadiusZero,     // start and centre of an arc are the same
   kNotOnCircle,    // start and end of an arc are not equally far from its centre

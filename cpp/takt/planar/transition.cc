@@ -131,7 +131,7 @@ VectorPolynomial Put(const VectorPolynomial& curve, const Flat& from, const Flat
   return out;
 }
 
-// Largest curvature; infinite where the curve turns too far.
+// Largest curvature; infinite where the curve turns too far, no number where it has a cusp.
 double Peak(const VectorPolynomial& curve) {
   constexpr int kPlaces = 512;
   double peak = 0;
@@ -140,7 +140,9 @@ double Peak(const VectorPolynomial& curve) {
   double least = 0, most = 0, middle = 0;
   for (int i = 0; i <= kPlaces; ++i) {
     const Bent p = BentAt(curve, static_cast<double>(i) / kPlaces);
-    peak = std::max(peak, std::abs(p.curvature()));
+    const double curvature = std::abs(p.curvature());
+    if (!std::isfinite(curvature)) return NAN;
+    peak = std::max(peak, curvature);
     turned += AngleTo(heading, p.first);
     heading = p.first;
     least = std::min(least, turned);
@@ -169,7 +171,8 @@ double LengthError(const path::Segment& segment) {
 void Append(const VectorPolynomial& curve, int halvings, std::vector<path::Segment>& out) {
   path::Segment segment;
   path::SetQuintic(segment, curve);
-  if (halvings == 0 || LengthError(segment) <= kLengthError) return out.push_back(segment);
+  if (halvings == 0 || LengthError(segment) <= kLengthError * std::max(1.0, segment.length / 1000))
+    return out.push_back(segment);
   Append(PartOf(curve, 0, 0.5), halvings - 1, out);
   Append(PartOf(curve, 0.5, 1), halvings - 1, out);
 }
@@ -196,8 +199,8 @@ Problem MakeTransition(const TrackPoint& begin, const TrackPoint& end, std::vect
   const Search search(gap);
   const VectorPolynomial curve = search.curve();
   const double peak = Peak(curve);
-  if (!std::isfinite(peak)) return Problem::kLoop;
-  if (peak * kLeastRadius > distance) return Problem::kTooSharp;
+  if (std::isinf(peak)) return Problem::kLoop;
+  if (!(peak * kLeastRadius <= distance)) return Problem::kTooSharp;
   constexpr int kHalvings = 5;
   Append(Put(curve, from, chord), kHalvings, out);
   return Problem::kNone;

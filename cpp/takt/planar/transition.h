@@ -21,7 +21,7 @@ inline constexpr double kLeastRadius = 1;  // mm
 
 // A straight line where both sides lie on one. What bends so unevenly that its length would not be known to
 // kLengthError is cut into pieces. Appends to `out`, or leaves it alone where there is a problem.
-inline constexpr double kLengthError = 1e-10;  // mm
+inline constexpr double kLengthError = 1e-10;  // mm, or of a metre where it is longer
 Problem MakeTransition(const TrackPoint& begin, const TrackPoint& end, std::vector<path::Segment>& out);
 
 }  // namespace takt::planar
