@@ -128,10 +128,10 @@ TEST(Tracks, CountArcLength) {
   Random random(4);
   for (int i = 0; i < Trials(30); ++i) {
     const Track track = RandomTrack(random);
-    EXPECT_NEAR(LengthTo(track, track.length), track.length, 1e-8);
+    EXPECT_NEAR(LengthTo(track, track.length), track.length, 1e-9);
     for (int k = 0; k < 3; ++k) {
       const double s = random.Between(0, track.length);
-      EXPECT_NEAR(LengthTo(track, s), s, 1e-8);
+      EXPECT_NEAR(LengthTo(track, s), s, 1e-9);
     }
     for (const Piece& piece : track.pieces) {
       const double h = 1e-3;
