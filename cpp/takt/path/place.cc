@@ -95,9 +95,7 @@ void SetQuintic(Segment& segment, const VectorPolynomial& place) noexcept {
   segment.length = sum;
 }
 
-namespace {
-
-double ParameterAt(const Segment& segment, double s) {
+double ParameterAt(const Segment& segment, double s) noexcept {
   std::size_t cell = 0;
   while (cell + 1u < segment.cells && s > segment.cell_length[cell]) ++cell;
   const double u0 = cell == 0 ? 0 : segment.cell_parameter[cell - 1];
@@ -124,6 +122,8 @@ double ParameterAt(const Segment& segment, double s) {
   }
   return u;
 }
+
+namespace {
 
 Derivatives<Vector> ByLength(const VectorPolynomial& place, double parameter) {
   const auto p = Evaluate(place, parameter);

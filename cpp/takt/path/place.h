@@ -13,6 +13,9 @@ double LengthBetween(const VectorPolynomial& place, double from, double to) noex
 // the parameter changes fast.
 void SetQuintic(Segment& segment, const VectorPolynomial& place) noexcept;
 
+// Of a quintic: the parameter after s, 0 <= s <= length.
+double ParameterAt(const Segment& segment, double s) noexcept;
+
 // Place, tangent and curvature, 0 <= s <= length.
 Derivatives<Vector> PlaceAt(const Segment& segment, double s) noexcept;
 

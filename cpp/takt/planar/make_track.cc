@@ -1,0 +1,242 @@
+// From what is given to a track: every element gets its begin and end, positions from their neighbours; then the gaps
+// are filled.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "takt/path/make.h"
+#include "takt/path/place.h"
+#include "takt/path/spline.h"
+#include "takt/planar/flat.h"
+#include "takt/planar/track.h"
+#include "takt/planar/transition.h"
+
+namespace takt::planar {
+namespace {
+
+// An element as it stands in the plane.
+struct Standing {
+  path::Segment segment;  // not of a position
+  TrackPoint begin;
+  TrackPoint end;
+};
+
+// mm: further away numbers no longer say where a place is.
+constexpr double kFarthest = 1e6;
+
+bool Sound(const Place& place) {
+  return std::abs(place.x) <= kFarthest && std::abs(place.y) <= kFarthest;
+}
+
+Problem Check(const std::optional<TrackPoint>& link) {
+  if (!link) return Problem::kNone;
+  if (!Sound(link->place) || !std::isfinite(link->direction) || !std::isfinite(link->curvature)) {
+    return Problem::kNotFinite;
+  }
+  return std::abs(link->curvature) * kLeastRadius > 1.001 ? Problem::kTooTight : Problem::kNone;
+}
+
+path::Point ToPoint(const Place& p) {
+  return {kinematics::Frame(KDL::Vector(p.x, p.y, 0)), {}};
+}
+
+// 0 to 2 pi are the same.
+double Plain(double angle) {
+  return std::remainder(angle, 2 * std::numbers::pi);
+}
+
+Piece PieceOf(const path::Segment& segment, bool given) {
+  Piece piece{.segment = segment, .given = given};
+  const bool quintic = segment.shape == path::Shape::kQuintic;
+  const Flat heading = quintic ? BentAt(segment.place, 0.5).first : Flat(path::PlaceAt(segment, 0).first.head<2>());
+  piece.direction = std::atan2(heading.y(), heading.x());
+  return piece;
+}
+
+Problem Stand(const Element& element, Standing& out) {
+  if (!Sound(element.start) || !Sound(element.end) || !Sound(element.center)) return Problem::kNotFinite;
+  if (element.shape == ElementShape::kPosition) {
+    out.begin.place = out.end.place = element.end;
+    return Problem::kNone;
+  }
+  const bool line = element.shape == ElementShape::kLine;
+  const path::Circle circle{
+      .mode = path::CircMode::kCenter,
+      .auxiliary_point = path::ToTriple(ToSpace(ToFlat(element.center))),
+      .choice = element.clockwise ? path::PathChoice::kClockwise : path::PathChoice::kCounterclockwise,
+      .normal = {0, 0, 1}};
+  const path::Point start = ToPoint(element.start), end = ToPoint(element.end);
+  const path::Problem problem =
+      line ? path::MakeLine(start, end, out.segment) : path::MakeArc(start, circle, end, out.segment);
+  if (problem != path::Problem::kNone) return FromPath(problem);
+  if (!line && out.segment.rate * kLeastRadius > 1) return Problem::kTooTight;
+  const Piece piece = PieceOf(out.segment, true);
+  out.begin = At(piece, 0);
+  out.end = At(piece, out.segment.length);
+  return Problem::kNone;
+}
+
+class Maker {
+ public:
+  explicit Maker(const Layout& layout) : layout_(layout), standing_(layout.elements.size()) {}
+
+  Making Make(Track& out) {
+    for (const auto* link : {&layout_.from, &layout_.to}) {
+      if (const Problem p = Check(*link); p != Problem::kNone) return {p, 0};
+    }
+    if (layout_.closed && (layout_.from || layout_.to)) return {Problem::kLinked, 0};
+    for (const auto step : {&Maker::StandAll, &Maker::DirectPositions, &Maker::Join}) {
+      if (const Making making = (this->*step)(); making.problem != Problem::kNone) return making;
+    }
+    if (track_.pieces.empty()) return {Problem::kEmpty, 0};
+    Finish();
+    out = std::move(track_);
+    return {};
+  }
+
+ private:
+  std::size_t count() const { return standing_.size(); }
+  bool is_position(std::size_t i) const { return layout_.elements[i].shape == ElementShape::kPosition; }
+
+  // The neighbours of an element; null where the track ends. Of a loop the last one is before the first.
+  const TrackPoint* Before(std::size_t i) const {
+    if (i > 0) return &standing_[i - 1].end;
+    if (layout_.closed && count() > 1) return &standing_.back().end;
+    return layout_.from ? &*layout_.from : nullptr;
+  }
+  const TrackPoint* Behind(std::size_t i) const {
+    if (i + 1 < count()) return &standing_[i + 1].begin;
+    if (layout_.closed && count() > 1) return &standing_.front().begin;
+    return layout_.to ? &*layout_.to : nullptr;
+  }
+
+  Making StandAll() {
+    for (std::size_t i = 0; i < count(); ++i) {
+      if (const Problem p = Stand(layout_.elements[i], standing_[i]); p != Problem::kNone) return {p, i};
+    }
+    return {};
+  }
+
+  // As a spline runs through them and the places before and behind.
+  Making DirectPositions() {
+    std::size_t positions = 0;
+    for (std::size_t i = 0; i < count(); ++i) positions += is_position(i) ? 1 : 0;
+    if (layout_.closed && positions == count()) return DirectLoop();
+    for (std::size_t i = 0; i < count(); ++i) {
+      const bool goes_on = (i > 0 || layout_.closed) && is_position(i > 0 ? i - 1 : count() - 1);
+      if (!is_position(i) || goes_on) continue;
+      if (const Problem p = DirectFrom(i); p != Problem::kNone) return {p, i};
+    }
+    return {};
+  }
+
+  // Positions that follow one another, from the first of them on.
+  Problem DirectFrom(std::size_t first) {
+    std::vector<path::Point> points;
+    path::SplineOptions options;
+    const auto end = [&](const TrackPoint* neighbour, std::optional<path::Triple>& direction) {
+      if (!neighbour) return;
+      points.push_back(ToPoint(neighbour->place));
+      direction = path::ToTriple(ToSpace(Heading(neighbour->direction)));
+    };
+    const TrackPoint* const before = Before(first);
+    end(before, options.start_direction);
+    std::size_t run = 0;
+    while ((first + run < count() || layout_.closed) && is_position((first + run) % count())) {
+      points.push_back(ToPoint(standing_[(first + run) % count()].end.place));
+      ++run;
+    }
+    end(Behind((first + run - 1) % count()), options.end_direction);
+    return DirectBySpline(points, options, before ? 1 : 0, first, run);
+  }
+
+  // A loop of nothing else: several times round, of which one in the middle counts.
+  Making DirectLoop() {
+    if (count() < 2) return {Problem::kEmpty, 0};
+    constexpr std::size_t kEnough = 24;  // so far away nobody knows that the spline has ends
+    const std::size_t rounds = (kEnough + count() - 1) / count();
+    std::vector<path::Point> points;
+    for (std::size_t i = 0; i <= (2 * rounds + 1) * count(); ++i) {
+      points.push_back(ToPoint(standing_[i % count()].end.place));
+    }
+    return {DirectBySpline(points, {}, rounds * count(), 0, count()), 0};
+  }
+
+  // The spline's points from `offset` on are the positions from `first` on.
+  Problem DirectBySpline(const std::vector<path::Point>& points, const path::SplineOptions& options, std::size_t offset,
+                         std::size_t first, std::size_t run) {
+    std::vector<path::Segment> spline;
+    if (points.size() < 2) return Problem::kNone;
+    const path::Problem problem = path::MakeSpline(points, options, spline);
+    if (problem != path::Problem::kNone) return FromPath(problem);
+    for (std::size_t i = 0; i < run; ++i) {
+      const std::size_t k = offset + i;
+      const bool last = k == spline.size();
+      const path::Segment& segment = spline[last ? k - 1 : k];
+      const auto at = path::PlaceAt(segment, last ? segment.length : 0);
+      Standing& here = standing_[(first + i) % count()];
+      here.end.direction = std::atan2(at.first.y(), at.first.x());
+      here.end.curvature = Cross(at.first.head<2>(), at.second.head<2>());
+      here.begin = here.end;
+    }
+    return Problem::kNone;
+  }
+
+  Making Join() {
+    const TrackPoint* end = layout_.from ? &*layout_.from : nullptr;
+    for (std::size_t i = 0; i < count(); ++i) {
+      if (end) {
+        if (const Problem p = Fill(*end, standing_[i].begin); p != Problem::kNone) return {p, i};
+      }
+      if (!is_position(i)) track_.pieces.push_back(PieceOf(standing_[i].segment, true));
+      end = &standing_[i].end;
+    }
+    const TrackPoint* goal = layout_.to ? &*layout_.to : nullptr;
+    if (layout_.closed && count() > 0) goal = &standing_.front().begin;
+    if (!end || !goal) return {};
+    return {Fill(*end, *goal), count()};
+  }
+
+  Problem Fill(const TrackPoint& end, const TrackPoint& begin) {
+    if (SamePlace(end.place, begin.place)) {
+      if (!SameDirection(end, begin)) return Problem::kKink;
+      return SameCurvature(end, begin) ? Problem::kNone : Problem::kCurvatureJump;
+    }
+    std::vector<path::Segment> segments;
+    const Problem problem = MakeTransition(end, begin, segments);
+    for (const path::Segment& segment : segments) track_.pieces.push_back(PieceOf(segment, false));
+    return problem;
+  }
+
+  void Finish() {
+    double direction = 0;
+    for (std::size_t i = 0; i < track_.pieces.size(); ++i) {
+      Piece& piece = track_.pieces[i];
+      piece.start = track_.length;
+      if (i > 0) {
+        const double ahead = At(piece, 0).direction;
+        piece.direction += direction + Plain(ahead - direction) - ahead;
+      } else {
+        const double begin = At(piece, 0).direction;
+        piece.direction += Plain(begin) - begin;
+      }
+      direction = At(piece, piece.segment.length).direction;
+      track_.length += piece.segment.length;
+      track_.ends.push_back(track_.length);
+      AppendCells(piece.segment, piece.start, static_cast<std::uint32_t>(i), track_.cells);
+    }
+    track_.closed = layout_.closed;
+  }
+
+  const Layout& layout_;
+  std::vector<Standing> standing_;
+  Track track_;
+};
+
+}  // namespace
+
+Making MakeTrack(const Layout& layout, Track& out) {
+  return Maker(layout).Make(out);
+}
+
+}  // namespace takt::planar

@@ -1,0 +1,45 @@
+#include "takt/planar/point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "takt/core/describe.h"
+
+namespace takt::planar {
+namespace {
+
+constexpr double kSameDirection = 1e-9;          // rad
+constexpr double kSameCurvature = 1e-9;          // 1/mm
+constexpr double kSameCurvatureRelative = 1e-7;  // of the larger one
+
+}  // namespace
+
+bool SamePlace(const Place& a, const Place& b) noexcept {
+  return std::hypot(b.x - a.x, b.y - a.y) < kSame;
+}
+
+bool SameDirection(const TrackPoint& a, const TrackPoint& b) noexcept {
+  return std::abs(std::remainder(b.direction - a.direction, 2 * std::numbers::pi)) < kSameDirection;
+}
+
+bool SameCurvature(const TrackPoint& a, const TrackPoint& b) noexcept {
+  const double larger = std::max(std::abs(a.curvature), std::abs(b.curvature));
+  return std::abs(b.curvature - a.curvature) <= kSameCurvature + kSameCurvatureRelative * larger;
+}
+
+void describe(Description<Place>& d) {
+  d.about("A place in the plane.");
+  d.required<&Place::x>(unit::mm, "X.");
+  d.required<&Place::y>(unit::mm, "Y.");
+}
+
+void describe(Description<TrackPoint>& d) {
+  d.about("How a track runs through a place.");
+  d.internal<&TrackPoint::place>("The place.");
+  d.internal<&TrackPoint::direction>("Direction in rad, counterclockwise from x.");
+  d.internal<&TrackPoint::curvature>("Curvature in 1/mm, above 0 to the left.");
+  d.internal<&TrackPoint::curvature_rate>("How the curvature changes, 1/mm².");
+}
+
+}  // namespace takt::planar

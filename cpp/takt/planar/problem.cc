@@ -1,0 +1,84 @@
+#include "takt/planar/problem.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::planar {
+
+std::string_view Text(Problem problem) noexcept {
+  switch (problem) {
+    case Problem::kNone:
+      return "";
+    case Problem::kNotFinite:
+      return "a number of the track is not finite, or a place is more than 1 km away";
+    case Problem::kLengthZero:
+      return "a line begins where it ends, or a position is where its neighbour is";
+    case Problem::kRadiusZero:
+      return "the arc begins at its centre";
+    case Problem::kNotOnCircle:
+      return "start and end of the arc are not equally far from its centre";
+    case Problem::kTooTight:
+      return "a radius is less than 1 mm";
+    case Problem::kKink:
+      return "two pieces of the track touch where their directions differ: leave a gap for the transition";
+    case Problem::kCurvatureJump:
+      return "two pieces of the track touch where their curvatures differ: leave a gap for the transition";
+    case Problem::kTooSharp:
+      return "the gap is too small: the transition would have a radius of less than 1 mm";
+    case Problem::kReversal:
+      return "the transition would have to go back the way it came";
+    case Problem::kLoop:
+      return "the transition would make a loop";
+    case Problem::kEmpty:
+      return "the track has no length";
+    case Problem::kClosed:
+      return "the track is a closed loop: nothing can be appended";
+    case Problem::kEnded:
+      return "the track ends at another track: nothing can be appended";
+    case Problem::kLinked:
+      return "a track that starts from or ends at another one cannot be a closed loop";
+    case Problem::kNotItsStart:
+      return "the track starts elsewhere, or in another direction or curvature, than the other track ends";
+    case Problem::kNotItsEnd:
+      return "the track ends elsewhere, or in another direction or curvature, than the other track starts";
+  }
+  return "";
+}
+
+Problem FromPath(path::Problem problem) noexcept {
+  switch (problem) {
+    case path::Problem::kNone:
+      return Problem::kNone;
+    case path::Problem::kLengthZero:
+    case path::Problem::kCoincide:
+      return Problem::kLengthZero;
+    case path::Problem::kRadiusZero:
+      return Problem::kRadiusZero;
+    case path::Problem::kNotOnCircle:
+      return Problem::kNotOnCircle;
+    default:
+      return Problem::kNotFinite;
+  }
+}
+
+void describe(Enumeration<Problem>& e) {
+  e.about("Why a track cannot be as it is wished.");
+  e.value(Problem::kNone, "none", "It can.");
+  e.value(Problem::kNotFinite, "not_finite", "A number is not finite, or too large.");
+  e.value(Problem::kLengthZero, "length_zero", "A line begins where it ends, or a position is where its neighbour is.");
+  e.value(Problem::kRadiusZero, "radius_zero", "An arc begins at its centre.");
+  e.value(Problem::kNotOnCircle, "not_on_circle", "Start and end of an arc are not equally far from its centre.");
+  e.value(Problem::kTooTight, "too_tight", "A radius is too small.");
+  e.value(Problem::kKink, "kink", "Two pieces touch where their directions differ.");
+  e.value(Problem::kCurvatureJump, "curvature_jump", "Two pieces touch where their curvatures differ.");
+  e.value(Problem::kTooSharp, "too_sharp", "The radius of a transition would be too small.");
+  e.value(Problem::kReversal, "reversal", "A transition would go back the way it came.");
+  e.value(Problem::kLoop, "loop", "A transition would make a loop.");
+  e.value(Problem::kEmpty, "empty", "The track has no length.");
+  e.value(Problem::kClosed, "closed", "The track is a closed loop.");
+  e.value(Problem::kEnded, "ended", "The track ends at another one.");
+  e.value(Problem::kLinked, "linked", "A track with links cannot be a closed loop.");
+  e.value(Problem::kNotItsStart, "not_its_start", "The track starts elsewhere than the other one ends.");
+  e.value(Problem::kNotItsEnd, "not_its_end", "The track ends elsewhere than the other one starts.");
+}
+
+}  // namespace takt::planar

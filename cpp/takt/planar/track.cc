@@ -1,0 +1,83 @@
+#include "takt/planar/track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "takt/core/describe.h"
+#include "takt/path/place.h"
+#include "takt/planar/flat.h"
+
+namespace takt::planar {
+namespace {
+
+TrackPoint OnQuintic(const Piece& piece, double s) {
+  const path::VectorPolynomial& place = piece.segment.place;
+  const Bent p = BentAt(place, path::ParameterAt(piece.segment, s));
+  const double turned = AngleTo(Heading(piece.direction), p.first);
+  return {ToPlace(p.value), piece.direction + turned, p.curvature(), p.curvature_rate()};
+}
+
+TrackPoint OnGiven(const Piece& piece, double s) {
+  const path::Segment& segment = piece.segment;
+  const Place place = ToPlace(path::PlaceAt(segment, s).value.head<2>());
+  if (segment.shape == path::Shape::kLine) return {place, piece.direction, 0, 0};
+  // Counterclockwise if a quarter turn on from the radius is to its left.
+  const bool left = Cross(ToFlat(segment.place[1]), ToFlat(segment.place[2])) > 0;
+  const double curvature = left ? segment.rate : -segment.rate;
+  return {place, piece.direction + curvature * s, curvature, 0};
+}
+
+}  // namespace
+
+TrackPoint At(const Piece& piece, double s) noexcept {
+  s = std::clamp(s, 0.0, piece.segment.length);
+  return piece.segment.shape == path::Shape::kQuintic ? OnQuintic(piece, s) : OnGiven(piece, s);
+}
+
+double Within(const Track& track, double s) noexcept {
+  if (s >= 0 && s <= track.length) return s;
+  if (!track.closed) return s > 0 ? track.length : 0;
+  s = std::fmod(s, track.length);
+  if (s < 0) s += track.length;
+  return s >= 0 ? s : 0;  // of what is no number
+}
+
+TrackPoint At(const Track& track, double s) noexcept {
+  s = Within(track, s);
+  const auto end = std::lower_bound(track.ends.begin(), track.ends.end() - 1, s);
+  const Piece& piece = track.pieces[static_cast<std::size_t>(end - track.ends.begin())];
+  return At(piece, s - piece.start);
+}
+
+double SpeedBound(const TrackPoint& point, double lateral) noexcept {
+  const double curvature = std::abs(point.curvature);
+  return curvature > 0 ? std::sqrt(lateral / curvature) : std::numeric_limits<double>::infinity();
+}
+
+double PeakCurvature(const Track& track, double from, double to) noexcept {
+  auto cell =
+      std::lower_bound(track.cells.begin(), track.cells.end(), from, [](const Cell& c, double s) { return c.to < s; });
+  double most = 0;
+  for (; cell != track.cells.end() && cell->from <= to; ++cell) most = std::max(most, cell->curvature);
+  return most;
+}
+
+void describe(Enumeration<ElementShape>& e) {
+  e.about("What a track is given by.");
+  e.value(ElementShape::kPosition, "position", "A place to go through.");
+  e.value(ElementShape::kLine, "line", "A straight line.");
+  e.value(ElementShape::kArc, "arc", "A circular arc.");
+}
+
+void describe(Description<Element>& d) {
+  d.about("A piece that a track is given by.");
+  d.defaulted<&Element::shape>("What it is.");
+  d.defaulted<&Element::start>("Where a line or an arc begins.");
+  d.defaulted<&Element::end>("Where it ends; the place of a position.");
+  d.defaulted<&Element::center>("Of an arc.");
+  d.defaulted<&Element::clockwise>("Which way round an arc goes.");
+}
+
+}  // namespace takt::planar

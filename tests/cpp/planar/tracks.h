@@ -1,0 +1,56 @@
+// Random tracks, and what is measured on them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <random>
+#include <vector>
+
+#include "takt/planar/builder.h"
+#include "takt/planar/track.h"
+
+namespace takt::planar {
+
+inline void PrintTo(Problem problem, std::ostream* stream) {
+  *stream << '"' << (problem == Problem::kNone ? "none" : Text(problem)) << '"';
+}
+
+namespace testing {
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double Between(double lower, double upper) { return std::uniform_real_distribution<>(lower, upper)(engine_); }
+  bool Coin() { return engine_() % 2 == 0; }
+  int Below(int count) { return static_cast<int>(engine_() % static_cast<unsigned>(count)); }
+
+ private:
+  std::mt19937 engine_;
+};
+
+Element Line(const Place& start, const Place& end);
+Element Position(const Place& place);
+Element Arc(const Place& start, const Place& end, const Place& center, bool clockwise);
+Place Ahead(const Place& from, double direction, double distance);
+double Distance(const Place& a, const Place& b);
+
+// A track that must be.
+Track Make(const Layout& layout);
+
+// Lines, arcs and positions with gaps, as people leave them, here and there bad ones; about a third closed.
+Layout RandomLayout(Random& random);
+// One that can be made.
+Track RandomTrack(Random& random);
+
+TrackPoint Start(const Track& track);
+TrackPoint End(const Track& track);
+
+// mm from the start to s, from places only: sums of straight lines, finer and finer.
+double LengthTo(const Track& track, double s);
+
+// How many random trials: many with TAKT_LONG=1.
+int Trials(int usual);
+
+}  // namespace testing
+}  // namespace takt::planar
