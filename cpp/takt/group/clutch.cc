@@ -179,12 +179,11 @@ bool ClutchesStand(const State& s) noexcept {
 
 double BrakeShare(const State& s) noexcept {
   const bool carried = std::ranges::any_of(s.clutches, &Clutch::used);
-  return carried && !trajectory::Stands(s.pace) ? kBothShare : 1;
+  return carried && !s.ends && !trajectory::Stands(s.pace) ? kBothShare : 1;
 }
 
 bool CanLetGo(const Context& c, State& s) noexcept {
-  const double share = BrakeShare(s);
-  const double place = RestAt(c, s, share);
+  const double place = RestAt(c, s);
   const LookAhead& ahead = c.ahead;
   std::uint64_t i = ahead.first;
   while (i + 1 < ahead.end() && ahead[i].end() <= place) ++i;
@@ -198,7 +197,7 @@ bool CanLetGo(const Context& c, State& s) noexcept {
     if (!clutch) return carrier;
     travel = clutch->travel;
     const double speed = travel.velocity;
-    travel.position = trajectory::StopPosition(travel, Shared(clutch->limits(), share)) + 2 * c.cycle.period_s * speed;
+    travel.position = trajectory::StopPosition(travel, clutch->limits()) + 2 * c.cycle.period_s * speed;
     travel.acceleration = 0;
     return carrier;
   };

@@ -21,7 +21,8 @@ bool Slips(const State& s) noexcept;
 // Nothing that was let go of moves on.
 bool ClutchesStand(const State& s) noexcept;
 
-// Of what can be braked with: path and carriers share it while both come to rest at once.
+// Of what can be braked with: path and carriers share it while both come to rest at once, so that the tool stays on its
+// path. Not where that is not gone on with: then axes may come late.
 double BrakeShare(const State& s) noexcept;
 
 // Whether the tool could still be braked within what the axes reach, path and carriers at once, and the axes could move

@@ -165,13 +165,12 @@ bool Rests(const State& s) noexcept {
   return trajectory::Stands(s.pace) && (!s.lets_go || ClutchesStand(s));
 }
 
-double RestAt(const Context& c, const State& s, double share) noexcept {
+double RestAt(const Context& c, const State& s) noexcept {
   // The mean comes to rest where the raw motion does.
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const double v = s.pace.raw.velocity;
-  const double deceleration =
-      share * std::min({-node.bounds.Least(v * v), node.bounds.strength.At(v * v) * node.bounds.strength.gentle,
-                        c.ahead.keep_up.brake});
+  const double strength = node.bounds.strength.At(v * v) * node.bounds.strength.gentle;
+  const double deceleration = std::min({-node.bounds.Least(v * v), strength, c.ahead.keep_up.brake});
   const double way = deceleration > 0 ? 0.5 * v * v / deceleration : kNoEnd;
   // What it has sped up with is taken back first.
   const bool speeds_up = s.pace.last[s.pace.oldest].acceleration > 0 || s.pace.raw.acceleration > 0;

@@ -18,8 +18,8 @@ bool Rests(const State& s) noexcept;
 // Comes to rest on the path, which is then forgotten. mm/s²; 0: as the path says.
 void EndMotion(const Brake& brake, bool lets_go, State& s) noexcept;
 
-// Along the path, where it comes to rest if it is braked from now on with a share of all that it can; no nearer.
-double RestAt(const Context& c, const State& s, double share = 1) noexcept;
+// Along the path, where it comes to rest if it is braked from now on; no nearer.
+double RestAt(const Context& c, const State& s) noexcept;
 
 // The stretch that the tool is on; null: none.
 const Stretch* Here(const Context& c, const State& s) noexcept;

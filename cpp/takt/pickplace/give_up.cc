@@ -3,7 +3,6 @@
 #include <limits>
 #include <optional>
 
-#include "takt/group/clutch.h"
 #include "takt/group/plan.h"
 #include "takt/group/run.h"
 #include "takt/group/systems.h"
@@ -38,8 +37,7 @@ bool Lowers(const Order& order) {
 
 // Braked now it rests in step with what it is low on.
 bool RestsLow(const Context& c, const group::State& g, const Order& order) {
-  return g.begun &&
-         (Lifts(g, order) || (Lowers(order) && group::RestAt(c.group, g, group::BrakeShare(g)) >= WayDown(c, order)));
+  return g.begun && (Lifts(g, order) || (Lowers(order) && group::RestAt(c.group, g) >= WayDown(c, order)));
 }
 
 }  // namespace

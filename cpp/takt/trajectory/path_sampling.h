@@ -15,7 +15,7 @@ inline constexpr double kTimeShare = 0.35;
 // Cycles between two nodes at least, so far as the path allows.
 inline constexpr double kCycles = 2;
 // Nodes from one slow place to the next, no more than about so many for that alone.
-constexpr double kMostSteps = 32;
+inline constexpr double kMostSteps = 32;
 // How far an acceleration between two nodes may be from the line, as a share of its limit.
 inline constexpr double kBend = 0.02;
 inline constexpr int kHalvings = 12;
