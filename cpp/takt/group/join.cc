@@ -140,6 +140,7 @@ bool CanStopAt(const trajectory::PathWindow& window, const trajectory::PathPace&
 // before.
 bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch) {
   LookAhead& ahead = c.ahead;
+  if (!ahead[stretch].begun) return true;  // there are no nodes of it yet: it waited for this
   trajectory::PathWindow& window = ahead.window;
   std::uint64_t node = window.end() - 1;
   while (node > window.begin() && window[node].at.s > place) --node;

@@ -166,6 +166,34 @@ TEST(Riding, TellsWhatItIsOn) {
   EXPECT_GT(in_sync, 1000);
 }
 
+// CV-23: given at any time while the tool comes to rest, a move onto a belt and the one behind it are rounded.
+TEST(Riding, BlendsBehindAMotionThatEnds) {
+  for (const double speed : {0.0, 300.0}) {
+    for (int given = 0; given < 200; given += 10) {
+      SCOPED_TRACE(testing::Message() << speed << " mm/s, given in cycle " << given);
+      Rig rig = DeltaRobot();
+      rig.StartAt({-150, -60, -850});
+      const auto belts =
+          Put(rig, {BeltAt("belt", {100, 150, -900, 0, 0, 180}, [=](double t) { return Steady(t, speed); })});
+      rig.Give(Line(0, -60, -850, 0, BufferMode::kBuffered));
+      rig.Run(0.001 * given);
+      rig.Give(SetDynCoordTransform{.pcs = 1, .carrier = Name::Of("belt")});
+      const Ticket over = rig.Give(Line(0, 0, 40, 1, BufferMode::kBlendingNext, 18));
+      const Ticket down = rig.Give(Line(0, 0, 0, 1, BufferMode::kBlendingNext, 18));
+      bool fast = false;
+      while (!rig.lives[down].ended() && rig.cycle.count < 3000) {
+        rig.Step();
+        fast |= rig.out().command == over && rig.out().path_velocity > 1000;
+        if (fast && rig.out().path_left > 30) {
+          ASSERT_GT(rig.out().path_velocity, 400);
+        }
+      }
+      EXPECT_TRUE(fast);
+      EXPECT_TRUE(rig.lives[down].done);
+    }
+  }
+}
+
 MoveArch Arch(double x, double y, double z, double height, std::uint32_t pcs, BufferMode buffer, double radius = 0) {
   MoveArch m{.x = x, .y = y, .z = z, .height = height};
   if (pcs != 0) {
