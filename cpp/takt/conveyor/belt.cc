@@ -14,6 +14,11 @@ KinematicState OfAxis(const Context& c) {
   return {ratio * (x.position + c.axis.origin), ratio * x.velocity, ratio * x.acceleration};
 }
 
+double Filter(const Context& c) {
+  const double increments = c.axis_params.encoder.increments_per_unit;
+  return FilterOf(c.params, increments > 0 ? std::abs(c.params.ratio) / increments : 0);
+}
+
 KinematicState Travelled(const Context& c, State& s) {
   const double period = c.cycle.period_s;
   const bool lost = IsMeasured(c.params) ? !axis::IsKnown(c.axis, c.params.source) : c.axis.encoder_error;
@@ -23,7 +28,7 @@ KinematicState Travelled(const Context& c, State& s) {
   }
   s.started = true;
   const KinematicState x = OfAxis(c);
-  const double filter = FilterOf(c.params);
+  const double filter = Filter(c);
   // Measured is where the axis was when the cycle began.
   const double dead_time = c.params.dead_time_s + (IsMeasured(c.params) ? period : 0);
   if (IsMeasured(c.params) || filter > 0) {
@@ -64,7 +69,7 @@ double TravelAt(const Context& c, const State& s, double position) noexcept {
   if (const double turn = c.axis_params.turn(); turn > 0) {
     const double now = s.travel.position / ratio;
     // What the belt has come further than it is known yet is no turn ago.
-    const double ahead_s = FilterOf(c.params) + c.params.dead_time_s + 2 * c.cycle.period_s;
+    const double ahead_s = Filter(c) + c.params.dead_time_s + 2 * c.cycle.period_s;
     const double slack = std::abs(s.travel.velocity / ratio) * ahead_s + 1e-9 * turn;
     const bool upwards = (s.sense > 0) == (ratio > 0);
     const double turns = upwards ? std::floor((now + slack - there) / turn) : std::ceil((now - slack - there) / turn);

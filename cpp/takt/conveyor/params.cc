@@ -1,8 +1,25 @@
 #include "takt/conveyor/params.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "takt/conveyor/texts.h"
 
 namespace takt::conveyor {
+
+namespace {
+
+constexpr double kMeasuredFilter = 0.005;  // s
+constexpr double kShaking = 200;           // mm/s² or deg/s², that steps of an encoder may amount to
+
+}  // namespace
+
+double FilterOf(const BeltParams& params, double step) noexcept {
+  if (!IsMeasured(params)) return params.filter_s.value_or(0);
+  // A step changes the measured velocity by step / T for one cycle T, which the filter (trajectory::Track) turns into
+  // an acceleration of 3 step / f².
+  return params.filter_s.value_or(std::max(kMeasuredFilter, std::sqrt(3 * step / kShaking)));
+}
 
 void describe(Enumeration<BeltKind>& e) {
   e.about("How a belt carries.");
@@ -25,8 +42,9 @@ void describe(Description<BeltParams>& d) {
                                "Where it ends; an object beyond it that nobody has taken is deleted. Unset: nowhere.");
   d.defaulted<&P::filter_s>(
       unit::s, between(0, 10),
-      "Time constant of the filter; a constant speed passes without lag. Unset: 5 ms where the axis is measured, else "
-      "0. A set position is not filtered with 0, a measured one as little as can be.");
+      "Time constant of the filter; a constant speed passes without lag. Unset: where the axis is measured 5 ms, or as "
+      "many as its encoder's steps need not to shake the tool, else 0. A set position is not filtered with 0, a "
+      "measured one as little as can be.");
   d.defaulted<&P::dead_time_s>(unit::s, between(0, 1),
                                "The belt is taken to be so much further on than its axis says, at its speed and "
                                "acceleration. The cycle that passes anyway is made good without it.");

@@ -28,20 +28,18 @@ struct BeltParams {
   // The work range, seen from the origin; unset: none.
   std::optional<double> lower_limit{};  // mm or deg
   std::optional<double> upper_limit{};  // mm or deg; objects beyond it are lost
-  // s; unset: measured positions 5 ms, set positions 0, which is no filter. Measured positions always are filtered.
+  // s; unset: measured positions as their steps need, set positions 0, which is no filter. Measured
+  // positions always are filtered.
   std::optional<double> filter_s{};
   double dead_time_s = 0;                // s that what is measured is older than the cycle in which it comes
   std::optional<double> forget_after{};  // mm or deg of travel without a pose after a latch; unset: never
 };
 
-inline constexpr double kMeasuredFilter = 0.005;  // s
-
 inline bool IsMeasured(const BeltParams& params) noexcept {
   return params.source == axis::MasterSource::kActualValue;
 }
-inline double FilterOf(const BeltParams& params) noexcept {
-  return params.filter_s.value_or(IsMeasured(params) ? kMeasuredFilter : 0);
-}
+// The filter's time constant, for a position that is measured in steps of so many mm or deg.
+double FilterOf(const BeltParams& params, double step) noexcept;
 
 void describe(Enumeration<BeltKind>&);
 void describe(Description<BeltParams>&);

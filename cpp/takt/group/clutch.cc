@@ -22,7 +22,9 @@ constexpr double kBothShare = 0.5;
 constexpr double kCarrierShare = 0.25;
 constexpr double kLeastAcceleration = 0.1;  // of an axis, left beside what its bends need
 constexpr int kPlaces = 4;
-constexpr double kJump = 2;  // of the way that the axes could go along with in a cycle
+constexpr double kJump = 2;             // of the way that the axes could go along with in a cycle
+constexpr double kLeastClosing = 0.05;  // of the velocity, towards a carrier that is as fast itself
+constexpr double kCarriersOwn = 0.5;    // of the acceleration, at most
 constexpr double kLeastOverride = 0.01;
 constexpr double kBendShare = 0.4;  // of it, while a tool at rest catches up
 
@@ -82,6 +84,31 @@ trajectory::Limits LimitsNow(const Clutch& clutch, const State& s) {
   return clutch.coupled && !s.lets_go ? clutch.limits() : Shared(clutch.limits(), BrakeShare(s));
 }
 
+KinematicState Less(const KinematicState& a, const KinematicState& b) {
+  return {a.position - b.position, a.velocity - b.velocity, a.acceleration - b.acceleration};
+}
+KinematicState Before(const KinematicState& now, double time_s) {
+  return {now.position - time_s * (now.velocity - 0.5 * time_s * now.acceleration),
+          now.velocity - time_s * now.acceleration, now.acceleration};
+}
+KinematicState Sum(const KinematicState& a, const KinematicState& b) {
+  return {a.position + b.position, a.velocity + b.velocity, a.acceleration + b.acceleration};
+}
+
+// The way into step, seen from the carrier: what that does by itself, and how coarsely it is measured, is no matter
+// then. A cycle later; nothing when it is there.
+KinematicState Closer(trajectory::Planner& planner, const KinematicState& carrier, const trajectory::Limits& limits,
+                      const KinematicState& apart, double period_s) {
+  const double toward = apart.position > 0 ? -1 : 1;
+  const double velocity = std::max(limits.velocity - toward * carrier.velocity, kLeastClosing * limits.velocity);
+  const double most = kCarriersOwn * limits.acceleration;
+  const double own = std::clamp(carrier.acceleration, -most, most);
+  const trajectory::Bounds bounds = {limits.acceleration - own, limits.acceleration + own, limits.jerk};
+  trajectory::Profile profile;
+  if (planner.ToPosition(apart, 0, velocity, bounds, profile).failed()) return apart;
+  return profile.duration() > period_s ? profile.At(period_s) : KinematicState{};
+}
+
 void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& clutch) {
   trajectory::Planner& planner = PlannerOf(c, s);
   const double period = c.cycle.period_s;
@@ -98,18 +125,31 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
     trajectory::Profile profile{clutch.travel};
     planner.ToVelocity(clutch.travel, 0, limits, profile);
     clutch.travel = profile.At(period);
-    clutch.coupled = false;
+    clutch.coupled = clutch.catches_up = false;
     return;
   }
   // A belt whose encoder was lost may turn up elsewhere: that is no motion to go along with.
-  const bool jumps = std::abs(carrier.position - clutch.travel.position) > kJump * clutch.velocity * period;
+  const KinematicState before = Before(carrier, period);
+  const double known = clutch.travel.position - (clutch.catches_up ? clutch.apart.position : 0);
+  const double step = before.position - known;
+  const bool jumps = std::abs(step) > kJump * clutch.velocity * period;
   if (clutch.coupled && params.after_sync == AfterSync::kStay && !law && !jumps) {
     clutch.travel = carrier;
+    clutch.catches_up = false;
     return;
   }
-  axis::ChaseState chase;
   trajectory::Limits catching_up = limits_now;
   if (params.override_in_sync) catching_up.velocity *= std::max(s.velocity_factor, kLeastOverride);
+  if (params.after_sync == AfterSync::kStay && !law) {
+    if (!clutch.catches_up || jumps) clutch.apart = Less(clutch.travel, before);
+    clutch.catches_up = true;
+    clutch.apart = Closer(planner, carrier, catching_up, clutch.apart, period);
+    clutch.coupled = clutch.apart == KinematicState{};
+    clutch.travel = clutch.coupled ? carrier : Sum(carrier, clutch.apart);
+    return;
+  }
+  clutch.catches_up = false;
+  axis::ChaseState chase;
   const axis::Chaser chaser = {limits_now, planner, catching_up, period};
   clutch.travel = axis::Chase(chaser, axis::ChaseMode::kPosition, clutch.travel, demand, chase);
   clutch.coupled = chase.in_step && !law;

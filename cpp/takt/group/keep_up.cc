@@ -21,6 +21,7 @@ constexpr double kShare = 0.7, kNearlyAll = 0.9;
 constexpr double kLeast = 0.02;        // of the speed of the path: it goes on, however slowly
 constexpr double kBrakeShare = 0.7;    // of what the axes can do; the rest is for getting there
 constexpr double kLeastBrake = 0.03;   // of the path's
+constexpr double kLeastSpeed = 1;      // mm/s, to try places with
 constexpr double kSameSpeed = 0.05;    // of a carrier
 constexpr double kJerkOver_s = 0.004;  // a jerk is an acceleration's change in so long a time
 constexpr double kFurthest_s = 1;
@@ -119,7 +120,7 @@ void LookAt(const Context& c, const State& s, double place, double wish, KeepUp:
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
   const double time = TimeTo(s, place, node.bounds.deceleration, wish);
-  const double u = node.at.limits.velocity;
+  const double u = std::max(kLeastSpeed, std::min(node.at.limits.velocity, std::sqrt(node.own)));
   const double of_limits = c.ahead.keep_up.share;
   PathCoordinateValues near, after, velocity, slope, at_rest, by_way, bend;
   near.fill(std::numeric_limits<double>::quiet_NaN());

@@ -12,8 +12,6 @@ namespace takt::group {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-// Faster and stronger than anything: what has no limit along the way has those of the axes.
-constexpr double kUnlimited = 1e12;
 // What a belt's speed may change without the limits being exceeded.
 constexpr double kBeltChange = 1.1;
 constexpr double kMostReserve = 0.9;  // of a limit

@@ -5,6 +5,9 @@
 
 namespace takt::group {
 
+// Faster and stronger than anything: what has no limit along the way has those of the axes.
+inline constexpr double kUnlimited = 1e12;
+
 // Fills `ahead.next` from where `ahead` ends. An error: there is no such path (State::problem and reason say why).
 ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element, LookAhead& ahead, State& s) noexcept;
 

@@ -43,9 +43,10 @@ ErrorId Tell(const Context& c, const State& s, std::size_t place, const axis::Co
 }
 
 bool AreInStep(const Context& c, const State& s) noexcept {
-  return AllMembers(c, s, [](const axis::State& member) {
+  const double same = std::max(kSame, c.params.tracking.tolerance);
+  return AllMembers(c, s, [&](const axis::State& member) {
     const double lag = member.guidance.demand.position - member.origin - member.setpoint.position;
-    return member.guidance.chase.in_step || std::abs(lag) <= kSame;
+    return member.guidance.chase.in_step || std::abs(lag) <= same;
   });
 }
 

@@ -103,7 +103,9 @@ double WishOf(const Context& c, State& s) {
   if (!s.ends && !s.interrupted) {
     if (Slips(s)) return SlowDown(c, s, Braked(c, node, {}, s));
     if (Follows(c, s)) return SlowDown(c, s, WishOfMaster(c, s));
-    return SlowDown(c, s, s.velocity_factor < 1 ? s.velocity_factor * node.at.limits.velocity : trajectory::kFullSpeed);
+    const double own = node.at.limits.velocity;
+    const double full = own < kUnlimited ? own : std::sqrt(node.own);  // as fast as the axes can
+    return SlowDown(c, s, s.velocity_factor < 1 ? s.velocity_factor * full : trajectory::kFullSpeed);
   }
   return SlowDown(c, s, Braked(c, node, s.brake, s));
 }

@@ -66,6 +66,8 @@ void describe(Description<Clutch>& d) {
   d.internal<&Clutch::coupled>("It goes with the carrier itself.");
   d.internal<&Clutch::ride>("Number of the ride.");
   d.internal<&Clutch::travel>("Of the carrier, as far as the tool is concerned.");
+  d.internal<&Clutch::catches_up>("The tool is on its way into step.");
+  d.internal<&Clutch::apart>("Of its travel from the carrier's, on that way.");
   d.internal<&Clutch::velocity>("Largest, of the travel.");
   d.internal<&Clutch::acceleration>("The same.");
   d.internal<&Clutch::deceleration>("The same.");

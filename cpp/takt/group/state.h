@@ -47,9 +47,11 @@ struct Planning {
 // what moves, and off it, along the travel of the carrier alone, within limits.
 struct Clutch {
   bool used = false;
-  bool coupled = false;    // it is the carrier's own
-  std::uint64_t ride = 0;  // number of the ride
-  KinematicState travel;   // mm or rad
+  bool coupled = false;     // it is the carrier's own
+  std::uint64_t ride = 0;   // number of the ride
+  KinematicState travel;    // mm or rad
+  bool catches_up = false;  // the tool is on its way into step
+  KinematicState apart;     // how far its travel is from the carrier's then, and how that changes
   // Of the travel.
   double velocity = 0;
   double acceleration = 0;

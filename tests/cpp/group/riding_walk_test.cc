@@ -19,7 +19,7 @@ struct Waves {
 };
 
 // mm in a cycle. Axes that are in step but for a little come fully into step while the tool rests on the object.
-constexpr double kNearly = 1e-3, kStays = 1e-8;
+constexpr double kNearly = 1e-2, kStays = 1e-8;
 constexpr int kSettled = 100;  // cycles
 
 struct Walk {
@@ -180,7 +180,7 @@ TEST_P(RidingWalk, PropertyKeepsLimitsAndCanAlwaysBeStopped) {
   EXPECT_GT(in_sync, 10000u);
   // At the rim of an arm's reach a path may have to be braked where it cannot be gone any more: then each axis brakes
   // by itself, within its limits.
-  EXPECT_LE(lost, kind.name == "gantry" ? 0 : 4);
+  EXPECT_LE(lost, kind.name == "gantry" ? 0 : 6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Group, RidingWalk, ::testing::Values("gantry", "Delta", "SCARA"),
