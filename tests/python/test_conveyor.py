@@ -343,3 +343,31 @@ def test_a_run_is_reproduced(tmp_path: Path) -> None:
     assert result.same, result.sentence
     states = takt.read_log(log)["gantry"]["track_state"]
     assert set(np.unique(states)) == {0, 2, 3, 4}
+
+
+@pytest.mark.parametrize("increments", [10, 50, 500])
+def test_coarsely_measured_belts_are_followed(increments: int) -> None:
+    """CV-01, CV-16, CV-20: an encoder alone, with few increments in a millimetre, at a constant speed. The set point
+    shakes by less than a tenth of an increment; after an interrupt the tool gets into step again."""
+    machine = MACHINE.replace("increments_per_unit: 10000", f"increments_per_unit: {increments}")
+    machine = machine.replace("absolute_ssi, ssi_bits: 25", "incremental").replace("absolute, ssi_bits: 25", "incremental")
+    machine = machine.replace("infeed, axis: drive", "infeed, axis: drive, source: actual_value")
+    machine = machine.replace("path: {velocity: 800", "tracking: {tolerance: 0.01}\n    path: {velocity: 800")
+    with takt.Engine(machine) as session:
+        gantry, drive = ready(session), session.axis("drive")
+        drive.move_velocity(velocity=61.7).wait(until="reached")
+        session.run(0.5)
+        record = session.record()
+        gantry.track_conveyor_belt(belt="infeed", start_distance=1).wait(until="reached")
+        session.run(0.5)
+        gantry.interrupt().wait()
+        session.run(0.3)
+        gantry.continue_path()
+        session.run(1.0)
+        recording = record.stop()
+    robot, belt = recording["gantry"], recording["infeed"]
+    last = slice(-500, None)
+    shakes = robot["object_x"][last]
+    assert np.ptp(shakes) < 0.1 / increments + 1e-3
+    assert np.mean(robot["in_sync"][last]) > 0.95
+    assert np.ptp(robot["velocity"][last] - belt["velocity"][last]) < 5

@@ -43,10 +43,13 @@ ErrorId Tell(const Context& c, const State& s, std::size_t place, const axis::Co
 }
 
 bool AreInStep(const Context& c, const State& s) noexcept {
-  const double same = std::max(kSame, c.params.tracking.tolerance);
+  const double same = std::max(kSame, c.params.tracking.tolerance), period = c.cycle.period_s;
   return AllMembers(c, s, [&](const axis::State& member) {
-    const double lag = member.guidance.demand.position - member.origin - member.setpoint.position;
-    return member.guidance.chase.in_step || std::abs(lag) <= same;
+    // Before the members have moved in this cycle they are where they were told to be in the one before.
+    const KinematicState& demand = member.guidance.demand;
+    const double lag = demand.position - member.origin - member.setpoint.position;
+    const double moved = period * (demand.velocity - 0.5 * period * demand.acceleration);
+    return member.guidance.chase.in_step || std::min(std::abs(lag), std::abs(lag - moved)) <= same;
   });
 }
 

@@ -91,7 +91,12 @@ void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& comman
 }
 
 void CarryOut(const Context& c, Ticket ticket, double, const Configure& command, group::State&, State& s) {
+  const Settings was = s.settings;
   TakeGiven(command, s.settings);
+  if (s.settings.workpiece_pcs1 == s.settings.workpiece_pcs2) {  // where it lifts from would be forgotten
+    s.settings = was;
+    return Refuse(c, ticket, ErrorId::kParameter, s);
+  }
   Finish(c, ticket);
 }
 

@@ -25,6 +25,8 @@ void describe(Description<PickPlaceParams>& d) {
   d.defaulted<&P::belts>("Belts that it picks from and places on, in the order of their numbers.");
   d.defaulted<&P::settings>("Settings at the start.");
   d.defaulted<&P::homing>("Homing of axes other than they do by themselves.");
+  d.rule<&P::settings>("workpiece_pcs1 and workpiece_pcs2 must be different: places on two belts are seen from them",
+                       [](const P& p) { return p.settings.workpiece_pcs1 != p.settings.workpiece_pcs2; });
   d.rule<&P::belts>("must be no more than 16", [](const P& p) { return p.belts.size() <= kBelts; });
 }
 

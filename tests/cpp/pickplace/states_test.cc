@@ -508,6 +508,15 @@ TEST(States, InTargetEnds) {
   EXPECT_FALSE(moved.out().in_target);
 }
 
+// PP-14: two belts need two product coordinate systems.
+TEST(States, WorkpieceSystemsAreDifferent) {
+  Cell cell;
+  cell.Start();
+  const Ticket ticket = cell.Do(Configure{.workpiece_pcs1 = cell.state.settings.workpiece_pcs2});
+  EXPECT_EQ(cell.rig.lives[ticket].error_id, ErrorId::kParameter);
+  EXPECT_NE(cell.state.settings.workpiece_pcs1, cell.state.settings.workpiece_pcs2);
+}
+
 // PP-01: power off ends what is going on.
 TEST(States, PowerOff) {
   Cell cell;
