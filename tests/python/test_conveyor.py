@@ -350,7 +350,9 @@ def test_coarsely_measured_belts_are_followed(increments: int) -> None:
     """CV-01, CV-16, CV-20: an encoder alone, with few increments in a millimetre, at a constant speed. The set point
     shakes by less than a tenth of an increment; after an interrupt the tool gets into step again."""
     machine = MACHINE.replace("increments_per_unit: 10000", f"increments_per_unit: {increments}")
-    machine = machine.replace("absolute_ssi, ssi_bits: 25", "incremental").replace("absolute, ssi_bits: 25", "incremental")
+    machine = machine.replace("absolute_ssi, ssi_bits: 25", "incremental").replace(
+        "absolute, ssi_bits: 25", "incremental"
+    )
     machine = machine.replace("infeed, axis: drive", "infeed, axis: drive, source: actual_value")
     machine = machine.replace("path: {velocity: 800", "tracking: {tolerance: 0.01}\n    path: {velocity: 800")
     with takt.Engine(machine) as session:

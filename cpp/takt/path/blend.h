@@ -5,8 +5,8 @@
 // long the derivatives over its parameter are there decides how much it bends and how fast the curvature grows. For two
 // lines that are left and joined at the same distance d from the corner, with q the cosine of half the angle between
 // them, it bends least with d * q / (0.2067 + 0.393 q - 0.0345 q²): 1.14 to 1.18 times as much as a circle that begins
-// and ends there. But for d up to some ten times a³ / j² it is the jerk j of drives, not their acceleration a, that says
-// how fast a corner can be gone. So they are longer,
+// and ends there. But for d up to some ten times a³ / j² it is the jerk j of drives, not their acceleration a, that
+// says how fast a corner can be gone. So they are longer,
 //   d * q / (0.2067 + 0.28 q)
 // with which the largest curvature is up to 1.62 times the circle's and, where the corner turns by no more than a right
 // angle, grows half as fast or less: 26 to 37 % more speed where that is what counts, 12 to 15 % less where it is not.
