@@ -116,10 +116,16 @@ struct Brakes {
   }
 };
 
+// What the path may be braked with here by its own limits and those of the axes.
+double Own(const trajectory::PathNode& node, const State& s) {
+  return -node.bounds.Least(s.pace.raw.velocity * s.pace.raw.velocity);
+}
+
 void LookAt(const Context& c, const State& s, double place, double wish, KeepUp::Place& seen) {
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
-  const double time = TimeTo(s, place, node.bounds.deceleration, wish);
+  const double own = Own(node, s);
+  const double time = TimeTo(s, place, own, wish);
   const double u = std::max(kLeastSpeed, std::min(node.at.limits.velocity, std::sqrt(node.own)));
   const double of_limits = c.ahead.keep_up.share;
   PathCoordinateValues near, after, velocity, slope, at_rest, by_way, bend;
@@ -166,7 +172,7 @@ void LookAt(const Context& c, const State& s, double place, double wish, KeepUp:
     seen.acceleration = std::min(seen.acceleration, left / std::abs(slope[k]));
     seen.change = std::min(seen.change, of_limits * of.jerk * node.build_up_s / std::abs(slope[k]));
   }
-  seen.acceleration = std::max(std::min(seen.acceleration, seen.change), kLeastBrake * node.bounds.deceleration);
+  seen.acceleration = std::max(std::min(seen.acceleration, seen.change), kLeastBrake * own);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ double Lag(const Rig& rig) {
 
 // From one belt to another: lift, over, lowering; and what is done to it on the way.
 struct Trip {
-  explicit Trip(const Kind& kind, std::uint64_t seed) : random(seed), rig(kind.make()) {
+  explicit Trip(const Kind& kind, std::uint64_t seed, bool direct = false) : random(seed), rig(kind.make()) {
     const Pose a = kind.place(random), b = kind.place(random);
     const auto at = [](const Pose& p) { return Pose{p.x, p.y, p.z}; };
     Pose start = at(a);
@@ -52,7 +52,15 @@ struct Trip {
       EXPECT_TRUE(rig.RunToEnd(rig.Give(Line(0, 0, 0, 1)), 10));
       rig.Give(Line(0, 0, 25, 1));
     }
-    rig.Give(Line(0, 0, 25, 2, rides ? 10 : 0));
+    if (direct) {
+      MoveDirectAbsolute over{.x = 0, .y = 0, .z = 25};
+      over.coordinate_system = CoordinateSystem::kPcs;
+      over.pcs = 2;
+      over.buffer_mode = BufferMode::kBuffered;
+      rig.Give(over);
+    } else {
+      rig.Give(Line(0, 0, 25, 2, rides ? 10 : 0));
+    }
     last = rig.Give(Line(0, 0, 0, 2, 10));
   }
 
@@ -67,6 +75,14 @@ struct Trip {
     };
   }
 
+  // The same, left alone.
+  bool Go() {
+    for (int i = 0; i < 30000 && !rig.lives[last].ended(); ++i) {
+      rig.Step();
+      lag = std::max(lag, Lag(rig));
+    }
+    return rig.lives[last].done;
+  }
   // False: the object went out of reach.
   bool Go(bool interrupted) {
     const auto random_cycle = [&](int to) { return std::uniform_int_distribution<int>(1, to)(random); };
@@ -138,6 +154,23 @@ TEST_P(Late, PropertyOverridesAndBeltsThatSwing) {
   const bool scara = GetParam() == "SCARA";
   EXPECT_LE(sum.late, scara ? 2 : 0);
   EXPECT_GE(sum.done, scara ? 40 : kTrips);
+}
+
+// As fast as the axes can, between belts that change their speed.
+TEST_P(Late, PropertyDirectMoves) {
+  const std::vector<Kind> kinds = Kinds();
+  const Kind& kind = *std::ranges::find(kinds, GetParam(), &Kind::name);
+  int late = 0;
+  for (int seed = 1; seed <= kTrips; ++seed) {
+    SCOPED_TRACE(seed);
+    Trip trip(kind, static_cast<std::uint64_t>(seed), true);
+    const bool arrived = trip.Go();
+    late += trip.lag > kSame;
+    if (arrived) {
+      EXPECT_LE(trip.off(), kOnObject);
+    }
+  }
+  EXPECT_LE(late, GetParam() == "SCARA" ? 2 : 0);
 }
 
 // At the instant of an interrupt a path may use all that the axes can, and its carriers are to be braked, too.
