@@ -219,15 +219,14 @@ bool ClutchesStand(const State& s) noexcept {
 
 double BrakeShare(const State& s) noexcept {
   const bool carried = std::ranges::any_of(s.clutches, &Clutch::used);
-  return carried && !s.ends && !trajectory::Stands(s.pace) ? kBothShare : 1;
+  const bool both = carried && (s.lets_go || Slips(s)) && !trajectory::Stands(s.pace);
+  return both && !s.ends ? kBothShare : 1;
 }
 
 bool CanLetGo(const Context& c, State& s) noexcept {
   const double place = RestAt(c, s);
   const LookAhead& ahead = c.ahead;
-  std::uint64_t i = ahead.first;
-  while (i + 1 < ahead.end() && ahead[i].end() <= place) ++i;
-  const Stretch& stretch = ahead[i];
+  const Stretch& stretch = *ahead.At(place);
   if (!IsCarried(ahead, stretch)) return true;
   const double way = std::clamp(stretch.from + place - stretch.begin, stretch.from, stretch.to);
   // And the carriers with it, from the next cycle on.

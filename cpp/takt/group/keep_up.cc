@@ -31,18 +31,12 @@ bool HasChanged(const Context& c, std::uint64_t number) {
   return std::abs(SpeedOf(c, ride.cargo) - ride.speed) > kSameSpeed * std::abs(ride.speed);
 }
 
-const Stretch* StretchAt(const LookAhead& ahead, double s) {
-  std::uint64_t i = ahead.first;
-  while (i + 1 < ahead.end() && ahead[i].end() <= s) ++i;
-  return ahead.count > 0 ? &ahead[i] : nullptr;
-}
-
 bool IsLate(const Context& c, const State& s) {
   return s.velocity_factor < 1 || Slips(s) || Follows(c, s);
 }
 
 bool CarriersHaveChanged(const Context& c, const State& s) {
-  const Stretch* here = StretchAt(c.ahead, s.pace.raw.position);
+  const Stretch* here = c.ahead.At(s.pace.raw.position);
   return here && (HasChanged(c, here->from_ride) || HasChanged(c, here->to_ride));
 }
 
@@ -116,15 +110,10 @@ struct Brakes {
   }
 };
 
-// What the path may be braked with here by its own limits and those of the axes.
-double Own(const trajectory::PathNode& node, const State& s) {
-  return -node.bounds.Least(s.pace.raw.velocity * s.pace.raw.velocity);
-}
-
 void LookAt(const Context& c, const State& s, double place, double wish, KeepUp::Place& seen) {
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
-  const double own = Own(node, s);
+  const double own = node.bounds.Gentle(s.pace.raw.velocity * s.pace.raw.velocity);
   const double time = TimeTo(s, place, own, wish);
   const double u = std::max(kLeastSpeed, std::min(node.at.limits.velocity, std::sqrt(node.own)));
   const double of_limits = c.ahead.keep_up.share;
@@ -183,7 +172,7 @@ double SlowDown(const Context& c, const State& s, double wish) noexcept {
   const bool late = IsLate(c, s);
   if (k.on && raw.position >= k.begin + k.apart * (kWatched - 1)) {
     // A blend may have made the way from ride to ride longer.
-    const Stretch* here = StretchAt(c.ahead, raw.position);
+    const Stretch* here = c.ahead.At(raw.position);
     if (!here || here->from_ride == here->to_ride || !Begin(c, s)) k = {};
   }
   if (!k.on && ((!late && !CarriersHaveChanged(c, s)) || !Begin(c, s))) return wish;
@@ -191,8 +180,7 @@ double SlowDown(const Context& c, const State& s, double wish) noexcept {
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const double period = c.cycle.period_s;
   const double square = raw.velocity * raw.velocity;
-  const double brake =
-      std::min(node.bounds.deceleration, node.bounds.strength.At(square) * node.bounds.strength.gentle);
+  const double brake = node.bounds.Gentle(square);
   // The mean is there later, of speeds before and behind.
   const double lag = 0.5 * raw.velocity * s.pace.cycles * period;
   const double seen_to = raw.position + lag + square / brake + raw.velocity * node.build_up_s;

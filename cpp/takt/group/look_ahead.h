@@ -117,6 +117,12 @@ struct LookAhead {
   Stretch& operator[](std::uint64_t number) noexcept { return stretches[number % stretches.size()]; }
   const Stretch& operator[](std::uint64_t number) const noexcept { return stretches[number % stretches.size()]; }
   std::uint64_t end() const noexcept { return first + count; }
+  // The stretch that a place of the path lies on, the first or the last one beyond their ends; null: there is none.
+  const Stretch* At(double place) const noexcept {
+    std::uint64_t i = first;
+    while (i + 1 < end() && (*this)[i].end() <= place) ++i;
+    return count > 0 ? &(*this)[i] : nullptr;
+  }
 };
 
 }  // namespace takt::group

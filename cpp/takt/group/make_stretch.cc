@@ -355,11 +355,10 @@ bool Foresee(const Context& c, const State& s, const KinematicState& along, doub
              trajectory::PathCoordinateValues& accelerations) noexcept {
   const LookAhead& ahead = c.ahead;
   if (ahead.count == 0) return false;
-  std::uint64_t i = ahead.first;
-  if (ahead[i].from_ride == ahead.end_ride && !ahead.rides[ahead.end_ride % kRides].displaces) return false;
-  while (i + 1 < ahead.end() && ahead[i].end() <= along.position) ++i;
-  if (!IsCarried(ahead, ahead[i])) return false;
-  const Stretch& stretch = ahead[i];
+  const bool stands = ahead[ahead.first].from_ride == ahead.end_ride;
+  if (stands && !ahead.rides[ahead.end_ride % kRides].displaces) return false;
+  const Stretch& stretch = *ahead.At(along.position);
+  if (!IsCarried(ahead, stretch)) return false;
   KinematicState way = along;
   way.position = std::clamp(stretch.from + along.position - stretch.begin, stretch.from, stretch.to);
   const path::MovingFrame tool = ToolIn(c, stretch, way, ahead_s);

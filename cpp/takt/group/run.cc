@@ -17,8 +17,8 @@ namespace takt::group {
 
 namespace {
 
-// The stretch that a place of the path lies on.
-const Stretch* StretchAt(LookAhead& ahead, double s) {
+// The stretch that a place of the path lies on; those before it are forgotten.
+const Stretch* GoOnTo(LookAhead& ahead, double s) {
   while (ahead.count > 1 && ahead[ahead.first].end() <= s) {
     ++ahead.first;
     --ahead.count;
@@ -54,7 +54,7 @@ bool FollowCarried(const Context& c, const Stretch& stretch, double way, State& 
 
 bool Follow(const Context& c, State& s) {
   const KinematicState& now = s.pace.now;
-  const Stretch* stretch = StretchAt(c.ahead, now.position);
+  const Stretch* stretch = GoOnTo(c.ahead, now.position);
   if (!stretch) return true;
   StepClutches(c, *stretch, s);
   const double way = std::clamp(stretch->from + now.position - stretch->begin, stretch->from, stretch->to);
@@ -90,10 +90,8 @@ double Braked(const Context& c, const trajectory::PathNode& node, const Brake& b
   double deceleration = brake.deceleration > 0 ? brake.deceleration : node.bounds.deceleration;
   // What takes no longer to build up, and to be taken back, than all accelerations of this path.
   if (brake.jerk > 0) deceleration = std::min(deceleration, brake.jerk * node.build_up_s);
-  if (s.lets_go || Slips(s)) {
-    const double square = s.pace.raw.velocity * s.pace.raw.velocity;
-    const trajectory::Strength& strength = node.bounds.strength;
-    deceleration = std::min(deceleration, BrakeShare(s) * strength.gentle * strength.At(square));
+  if (const double share = BrakeShare(s); share < 1) {
+    deceleration = std::min(deceleration, share * node.bounds.Gentle(s.pace.raw.velocity * s.pace.raw.velocity));
   }
   return std::max(0.0, s.pace.raw.velocity - deceleration * c.cycle.period_s);
 }
@@ -171,8 +169,7 @@ double RestAt(const Context& c, const State& s) noexcept {
   // The mean comes to rest where the raw motion does.
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const double v = s.pace.raw.velocity;
-  const double strength = node.bounds.strength.At(v * v) * node.bounds.strength.gentle;
-  const double deceleration = std::min({-node.bounds.Least(v * v), strength, c.ahead.keep_up.brake});
+  const double deceleration = std::min(node.bounds.Gentle(v * v), c.ahead.keep_up.brake);
   const double way = deceleration > 0 ? 0.5 * v * v / deceleration : kNoEnd;
   // What it has sped up with is taken back first.
   const bool speeds_up = s.pace.last[s.pace.oldest].acceleration > 0 || s.pace.raw.acceleration > 0;
@@ -180,10 +177,7 @@ double RestAt(const Context& c, const State& s) noexcept {
 }
 
 const Stretch* Here(const Context& c, const State& s) noexcept {
-  const LookAhead& ahead = c.ahead;
-  std::uint64_t i = ahead.first;
-  while (i + 1 < ahead.end() && ahead[i].end() <= s.pace.now.position) ++i;
-  return ahead.count > 0 ? &ahead[i] : nullptr;
+  return c.ahead.At(s.pace.now.position);
 }
 
 bool IsOnRide(const Context& c, const State& s) noexcept {

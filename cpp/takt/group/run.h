@@ -18,7 +18,7 @@ bool Rests(const State& s) noexcept;
 // Comes to rest on the path, which is then forgotten. mm/s²; 0: as the path says.
 void EndMotion(const Brake& brake, bool lets_go, State& s) noexcept;
 
-// Along the path, where it comes to rest if it is braked from now on; no nearer.
+// Along the path, where it comes to rest at the furthest if it is braked from now on.
 double RestAt(const Context& c, const State& s) noexcept;
 
 // The stretch that the tool is on; null: none.

@@ -55,9 +55,7 @@ void BeginFollowing(const Context& c, const Request& move, std::uint64_t number,
 
 bool Follows(const Context& c, const State& s) noexcept {
   if (s.master.axis == 0 || c.ahead.count == 0) return false;
-  std::uint64_t i = c.ahead.first;
-  while (i + 1 < c.ahead.end() && c.ahead[i].end() <= s.pace.raw.position) ++i;
-  return c.ahead[i].move == s.master.move;
+  return c.ahead.At(s.pace.raw.position)->move == s.master.move;
 }
 
 double WishOfMaster(const Context& c, State& s) noexcept {

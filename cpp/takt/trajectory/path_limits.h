@@ -76,6 +76,10 @@ struct AccelerationBounds {
 
   double Least(double square) const noexcept;
   double Most(double square) const noexcept;
+  // A deceleration that is good whatever the motion did before.
+  double Gentle(double square) const noexcept {
+    return std::min(-Least(square), strength.gentle * strength.At(square));
+  }
 };
 
 // With `share` of each coordinate's acceleration; along the way no more than its jerk builds up within `build_up_s`.

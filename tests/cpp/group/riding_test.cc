@@ -364,6 +364,34 @@ TEST(Riding, CatchesUpWithABeltThatJumps) {
   }
 }
 
+// CV-22: near the middle of a table the tool hardly moves; it stays in step also where the table becomes much faster
+// than it was, and than it could have been further out, when the tool got onto it.
+TEST(Riding, StaysNearTheMiddleOfATable) {
+  Rig rig = Gantry();
+  rig.StartAt({-300, 0, 0});
+  const auto speed = [](double t) {  // 10 deg/s, from 2 s on up to 80 deg/s within a second
+    const double x = std::clamp(t - 2, 0.0, 1.0), after = std::max(0.0, t - 3);
+    const double degrees = 10 * t + 70 * (x * x * x * (1 - 0.5 * x) + after);
+    const double radians = std::numbers::pi / 180;
+    return KinematicState{radians * degrees, radians * (10 + 70 * x * x * (3 - 2 * x)), radians * 420 * x * (1 - x)};
+  };
+  const auto belts = Put(rig, {BeltAt("table", {}, speed, CarrierKind::kTurning)});
+  rig.RunToEnd(rig.Give(SetDynCoordTransform{.pcs = 1, .carrier = Name::Of("table")}));
+  const double from = rig.state.cargoes[0].from;
+  MoveLinearAbsolute on = Line(30, 0, 0, 1);
+  on.velocity = 300;
+  ASSERT_TRUE(rig.RunToEnd(rig.Give(on), 5));
+  for (int i = 0; i < 6000; ++i) {
+    rig.Step();
+    ASSERT_LE(Off(rig, *belts, 0, from, {}, {30, 0, 0}), kOnObject) << i;
+    ASSERT_TRUE(rig.out().in_sync);
+  }
+  const Ticket next = rig.Give(Line(-30, 0, 0, 1));
+  EXPECT_TRUE(rig.RunToEnd(next, 5));
+  EXPECT_TRUE(rig.lives[next].done);
+  ExpectSmooth(rig);
+}
+
 // A stop before any border (GR-13): a belt that takes the tool out of the axes' range.
 TEST(Riding, LetsGoBeforeTheBorder) {
   Rig rig = [] {

@@ -168,7 +168,7 @@ TEST(Figures, PlacingOnABeltThatChangesItsSpeed) {
     belt.params.source = axis::MasterSource::kActualValue;
     belt.params.dead_time_s = measured.dead_time_s;
     belt.params.origin = {-600, 100, 0, 0, 0, 0};
-    belt.settings = {.park_z = 60, .z_distance = 25, .sync_time = 0.05, .lower_limit = 0, .upper_limit = 1500};
+    belt.settings = {.park_z = 60, .z_distance = 25, .sync_time = 0.05, .lower_limit = 0, .upper_limit = 1200};
     measured.params = belt.params;
     belt.travel = [&](double t) { return measured.Step(t); };
     Cell cell(s, {belt}, std::move(machine));
@@ -196,7 +196,7 @@ TEST(Figures, PlacingOnABeltThatChangesItsSpeed) {
       }
       for (const conveyor::Object& object : conveyor::ObjectsOf(state)) {
         if (object.state != conveyor::ObjectState::kVisible) continue;
-        if (conveyor::PlaceOf(cell.belts[0].params, state, object) <= 1500) continue;
+        if (conveyor::PlaceOf(cell.belts[0].params, state, object) <= 1200) continue;
         conveyor::Remove(object.number, state);
         break;
       }
