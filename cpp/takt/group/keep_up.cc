@@ -180,7 +180,7 @@ double SlowDown(const Context& c, const State& s, double wish) noexcept {
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const double period = c.cycle.period_s;
   const double square = raw.velocity * raw.velocity;
-  const double brake = node.bounds.Gentle(square);
+  const double brake = std::min(node.bounds.deceleration, node.bounds.strength.Gentle(square));
   // The mean is there later, of speeds before and behind.
   const double lag = 0.5 * raw.velocity * s.pace.cycles * period;
   const double seen_to = raw.position + lag + square / brake + raw.velocity * node.build_up_s;

@@ -90,8 +90,10 @@ double Braked(const Context& c, const trajectory::PathNode& node, const Brake& b
   double deceleration = brake.deceleration > 0 ? brake.deceleration : node.bounds.deceleration;
   // What takes no longer to build up, and to be taken back, than all accelerations of this path.
   if (brake.jerk > 0) deceleration = std::min(deceleration, brake.jerk * node.build_up_s);
-  if (const double share = BrakeShare(s); share < 1) {
-    deceleration = std::min(deceleration, share * node.bounds.Gentle(s.pace.raw.velocity * s.pace.raw.velocity));
+  // What is left of the axes when carriers are braked, too. Not of what bends leave: the pace keeps to that by itself.
+  if (s.lets_go || Slips(s)) {
+    const double square = s.pace.raw.velocity * s.pace.raw.velocity;
+    deceleration = std::min(deceleration, BrakeShare(s) * node.bounds.strength.Gentle(square));
   }
   return std::max(0.0, s.pace.raw.velocity - deceleration * c.cycle.period_s);
 }

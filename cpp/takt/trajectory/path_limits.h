@@ -60,6 +60,7 @@ struct Strength {
   double gentle = 1;  // share of it that is good at any speed, not only at those of a motion as fast as may be
 
   double At(double square) const noexcept { return std::max(least, at_rest - fading * square); }
+  double Gentle(double square) const noexcept { return gentle * At(square); }
   bool operator==(const Strength&) const = default;
 };
 // Beneath both up to a square of the speed.
@@ -77,9 +78,7 @@ struct AccelerationBounds {
   double Least(double square) const noexcept;
   double Most(double square) const noexcept;
   // A deceleration that is good whatever the motion did before.
-  double Gentle(double square) const noexcept {
-    return std::min(-Least(square), strength.gentle * strength.At(square));
-  }
+  double Gentle(double square) const noexcept { return std::min(-Least(square), strength.Gentle(square)); }
 };
 
 // With `share` of each coordinate's acceleration; along the way no more than its jerk builds up within `build_up_s`.
