@@ -141,7 +141,9 @@ class Traffic::Step_ {
       offset += network_[r.route.tracks[k - 1]].length;
       if (offset > reach) break;
       const std::uint32_t next = r.route.tracks[k];
-      if (t_.begins_[next] < t_.begins_[next + 1]) return t_.order_[t_.begins_[next]];
+      if (t_.begins_[next] == t_.begins_[next + 1]) continue;
+      const std::uint32_t found = t_.order_[t_.begins_[next]];
+      return found == i ? kNobody : found;
     }
     return kNobody;
   }
@@ -196,9 +198,15 @@ class Traffic::Step_ {
     });
   }
 
-  // One of them is on the other's way, which their order along it sees to.
-  bool Follow_(std::uint32_t a, std::uint32_t b) const {
-    return riders_[a].route.Contains(riders_[b].route.first()) || riders_[b].route.Contains(riders_[a].route.first());
+  // The other is on this one's way as far as the places of both differ by `apart`.
+  bool IsOnRoute(const Rider& r, const Rider& other, double apart) const {
+    double begin = 0;
+    for (const std::uint32_t track : r.route.all()) {
+      if (begin > apart + kSame) return false;
+      if (track == other.route.first() && begin >= apart - kSame) return true;
+      begin += network_[track].length;
+    }
+    return false;
   }
 
   // Calls `look` for those at a node with whom this mover has to do there: the presence, and the offset from their
@@ -207,12 +215,16 @@ class Traffic::Step_ {
   void OthersAt(std::uint32_t i, std::uint32_t node, double offset, const Look& look) const {
     for (std::uint32_t k = t_.heads_[node]; k != kNobody; k = t_.presences_[k].next) {
       const Presence& other = t_.presences_[k];
-      if (other.mover != i && !Follow_(i, other.mover)) look(other.mover, offset - other.offset);
+      if (other.mover == i) continue;
+      const double apart = offset - other.offset;
+      // Their order along the way sees to it.
+      const Rider &r = riders_[i], &o = riders_[other.mover];
+      if (!IsOnRoute(r, o, apart) && !IsOnRoute(o, r, -apart)) look(other.mover, apart);
     }
   }
 
-  // How far `ahead` has to stay from `behind`: what is less already must not get less.
-  double Required(double gap, double apart_now) const { return std::min(gap, apart_now) - kTolerance; }
+  // How far apart two have to stay: what is less already must not get less.
+  static double Required(double gap, double apart_now) { return std::min(gap - kTolerance, apart_now); }
 
   double GapTo(std::uint32_t i, std::uint32_t leader, int direction) const {
     const Rider& other = riders_[leader];
@@ -220,10 +232,7 @@ class Traffic::Step_ {
     return faces ? std::max(riders_[i].gap, other.gap) : riders_[i].gap;
   }
 
-  bool Holds(std::uint32_t behind, std::uint32_t ahead, const Braking& of_behind, const Braking& of_ahead, double apart,
-             double required) const {
-    (void)behind;
-    (void)ahead;
+  static bool Holds(const Braking& of_behind, const Braking& of_ahead, double apart, double required) {
     // Mostly there is room enough.
     if (of_ahead.lowest + apart - of_behind.highest >= required) return true;
     return LeastDistance(of_behind, of_ahead, apart) >= required;
@@ -250,7 +259,7 @@ class Traffic::Step_ {
       if (leader != kNobody) {
         const double required =
             Required(GapTo(i, leader, 1), riders_[leader].at.position + apart - r.at.position);
-        if (!Holds(i, leader, braking, t_.now_[leader].braking, apart, required)) return false;
+        if (!Holds(braking, t_.now_[leader].braking, apart, required)) return false;
       }
     }
     if (back) {
@@ -259,14 +268,14 @@ class Traffic::Step_ {
       if (leader != kNobody) {
         const double required =
             Required(GapTo(i, leader, -1), r.at.position - riders_[leader].at.position - apart);
-        if (!Holds(leader, i, t_.now_[leader].braking, braking, -apart, required)) return false;
+        if (!Holds(t_.now_[leader].braking, braking, -apart, required)) return false;
       }
       for (std::uint32_t k = 0; k < riders_.size(); ++k) {
         const Now& other = t_.now_[k];
         if (!riders_[k].on || other.leader != i || riders_[k].direction < 0) continue;
         const double required = Required(std::max(riders_[k].gap, r.gap),
                                          r.at.position + other.leader_offset - riders_[k].at.position);
-        if (!Holds(k, i, other.braking, braking, other.leader_offset, required)) return false;
+        if (!Holds(other.braking, braking, other.leader_offset, required)) return false;
       }
     }
     bool may = true;
@@ -281,7 +290,7 @@ class Traffic::Step_ {
         // Who was not active has kept away by other means, and has to have all of it now.
         const double required = anew ? gap - kTolerance : Required(gap, std::abs(distance));
         const Braking& theirs = t_.now_[other].braking;
-        may = ahead ? Holds(i, other, braking, theirs, apart, required) : Holds(other, i, theirs, braking, -apart, required);
+        may = ahead ? Holds(braking, theirs, apart, required) : Holds(theirs, braking, -apart, required);
       });
     });
     return may;
@@ -391,7 +400,7 @@ class Traffic::Step_ {
     Now& now = t_.now_[i];
     const Braking braking = Brake(next, riders_[i].brakes);
     if (!MayTake(i, next, braking)) {
-      ++t_.refused_;
+      t_.refused_ += std::abs(riders_[i].at.velocity) > kStands ? 1 : 0;
       return false;
     }
     now.next = next;
@@ -423,8 +432,11 @@ class Traffic::Step_ {
     Limit limit;
     double most = kInfinite;
     LimitBy(i, speed, limit, most);
-    const double wished = (direction * wish.velocity - speed) / period();
-    bool limited = wished > most + 1e-9 && !GoesAlong(i, wish, limit);
+    const double before = direction * r.at.acceleration;
+    // With constant jerk neither faster than wished at the end of the cycle, nor with more acceleration.
+    const double mean = (direction * wish.velocity - speed) / period();
+    const double wished = std::min(direction * wish.acceleration, 2 * mean - before);
+    const bool limited = mean > most + 1e-9 && !GoesAlong(i, wish, limit);
     if (!limited && Take(i, wish)) {
       if (r.aim == Aim::kTarget && r.plan_ends && r.plan_time >= r.plan.duration()) r.there = true;
       return WaitFor(r, Waits::kNot, kNobody);
@@ -432,7 +444,6 @@ class Traffic::Step_ {
     r.planned = false;
     const bool stands = std::abs(r.at.velocity) < kStands;
     // Slower than it wishes, as fast as it may behind the other.
-    const double before = direction * r.at.acceleration;
     const double change = r.pace.limits.jerk * period();
     double next = std::clamp(std::min(most, wished), before - change, before + change);
     next = std::clamp(next, -r.brakes.deceleration, r.pace.limits.acceleration);

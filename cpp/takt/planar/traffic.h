@@ -93,7 +93,7 @@ class Traffic {
 
   // The movers on a track, from its start to its end. As the last step left it.
   std::span<const std::uint32_t> On(std::uint32_t track) const noexcept;
-  // Of the last step: steps that were wished for and refused.
+  // Movers that were going and had to brake in the last step, against what they follow with.
   std::uint32_t refused() const noexcept { return refused_; }
 
  private:

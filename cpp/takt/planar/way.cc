@@ -145,6 +145,12 @@ bool PlanWay(trajectory::Planner& planner, const Network& network, const Start& 
              trajectory::Profile& out, bool& ends) noexcept {
   const KinematicState from{0, start.speed, start.acceleration};
   const Brakes brakes = pace.brakes();
+  const auto stop = [&] {
+    ends = false;
+    if (planner.Stop(from, pace.limits, out).failed()) out = trajectory::Profile(KinematicState{});
+    return false;
+  };
+  if (!(way >= 0)) return stop();
   ends = true;
   const Caps caps = CapsAhead(network, start, way, pace);
 
@@ -204,9 +210,7 @@ bool PlanWay(trajectory::Planner& planner, const Network& network, const Start& 
     ends = count == 1 && out.end().velocity == 0;
     return true;
   }
-  ends = false;
-  if (planner.Stop(from, pace.limits, out).failed()) out = trajectory::Profile(KinematicState{});
-  return false;
+  return stop();
 }
 
 }  // namespace takt::planar

@@ -5,6 +5,75 @@
 
 namespace takt::planar::testing {
 
+namespace {
+
+bool Meet(const TrackPoint& a, const TrackPoint& b) {
+  return SamePlace(a.place, b.place) && SameDirection(a, b);
+}
+
+// Bodies on both tracks come too near only from a common start, or to a common end, on; or from the end of one to the
+// start of the other.
+bool GoTogether(const Track& a, const Track& b, const Footprint& body) {
+  const bool starts = Meet(Start(a), Start(b)), ends = Meet(End(a), End(b));
+  const bool ab = Meet(End(a), Start(b)), ba = Meet(End(b), Start(a));
+  for (const Range& range : Conflicts(a, body, b, body, 0, 5)) {
+    const bool at_start = range.from <= 0 && (starts || ba), at_end = range.to >= a.length && (ends || ab);
+    if (!at_start && !at_end) return false;
+    if (range.to - range.from > 0.6 * a.length) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<Layout> RandomCity(Random& random, int count, double size) {
+  const Footprint body{size, size, true};
+  std::vector<TrackPoint> crossings;
+  for (int x = 0; x < 4; ++x) {
+    for (int y = 0; y < 4; ++y) {
+      crossings.push_back({{900.0 * x + random.Between(-100, 100), 900.0 * y + random.Between(-100, 100)},
+                           random.Between(-M_PI, M_PI), 0, 0});
+    }
+  }
+  std::vector<Layout> layouts;
+  std::vector<Track> tracks;
+  for (int trial = 0; trial < 3000 && static_cast<int>(tracks.size()) < count; ++trial) {
+    Layout layout;
+    const TrackPoint& from = crossings[static_cast<std::size_t>(random.Below(16))];
+    const TrackPoint& to = crossings[static_cast<std::size_t>(random.Below(16))];
+    if (&from == &to || Distance(from.place, to.place) > 1500) continue;
+    const double out = random.Between(50, 200), in = random.Between(50, 200);
+    const Place a = Ahead(from.place, from.direction, out), b = Ahead(to.place, to.direction, -in);
+    layout.elements = {Line(from.place, a), Line(b, to.place)};
+    Track track;
+    if (MakeTrack(layout, track).problem != Problem::kNone || track.length > 3000) continue;
+    if (PeakCurvature(track, 0, track.length) > 1 / 150.0) continue;
+    const auto fits = [&](const Track& other) { return GoTogether(track, other, body) && GoTogether(other, track, body); };
+    if (!std::ranges::all_of(tracks, fits)) continue;
+    layouts.push_back(layout);
+    tracks.push_back(track);
+  }
+  // Tracks that only start, or only end, at the same place are not linked: nobody sees to them.
+  for (std::size_t i = 0; i < tracks.size();) {
+    const auto linked = [&](const TrackPoint& place, const auto& own, const auto& across) {
+      int alike = 0, linked = 0;
+      for (const Track& other : tracks) {
+        alike += Meet(place, own(other)) ? 1 : 0;
+        linked += Meet(place, across(other)) ? 1 : 0;
+      }
+      return alike == 1 || linked > 0;
+    };
+    if (linked(Start(tracks[i]), Start, End) && linked(End(tracks[i]), End, Start)) {
+      ++i;
+    } else {
+      tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(i));
+      layouts.erase(layouts.begin() + static_cast<std::ptrdiff_t>(i));
+      i = 0;
+    }
+  }
+  return layouts;
+}
+
 Streets::Streets(const std::vector<Layout>& layouts, std::uint32_t movers, double size)
     : riders_(movers),
       traffic_({movers, static_cast<std::uint32_t>(layouts.size())}),
@@ -121,7 +190,7 @@ double Streets::Nearest() const {
     for (std::uint32_t k = 0; k < i; ++k) {
       if (!riders_[i].on || !riders_[k].on) continue;
       const Place a = PointOf(i).place, b = PointOf(k).place;
-      least = std::min(least, Distance(a, b));
+      least = std::min(least, Distance(a, b) - std::hypot(body_.width, body_.height));
     }
   }
   return least;

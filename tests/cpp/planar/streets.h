@@ -45,7 +45,7 @@ class Streets {
   TrackPoint PointOf(std::uint32_t mover) const;
   // Along their ways: how much less than its gap the nearest pair of movers on one track, or one route, is apart.
   double Missing() const;
-  // mm between the bodies of the nearest two movers anywhere.
+  // mm between the bodies of the nearest two movers anywhere, turned in the worst way.
   double Nearest() const;
 
   // Called after each step.
@@ -62,6 +62,9 @@ class Streets {
   Cycle cycle_{0, kPeriod};
   Footprint body_;
 };
+
+// Tracks between random crossings, with merges, splits and rings; bodies of this size can only meet where tracks do.
+std::vector<Layout> RandomCity(Random& random, int tracks, double size);
 
 // Limits of every mover, cycle by cycle: of speed, acceleration, jerk along the way and acceleration across it.
 class Watcher {

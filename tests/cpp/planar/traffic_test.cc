@@ -85,5 +85,56 @@ TEST(Traffic, FollowsWithoutChatter) {  // PL-25
   std::printf("most %g turns %d gap %g refused\n", most, turns, streets[1].at.position - streets[0].at.position);
 }
 
+// Random commands to random movers in random cities: the invariant, by what is seen of it.
+TEST(Traffic, NobodyComesTooNear) {  // PL-23, PL-24
+  const int trials = testing::Trials(3);
+  for (int trial = 0; trial < trials; ++trial) {
+    testing::Random random(static_cast<unsigned>(trial));
+    const std::vector<Layout> layouts = testing::RandomCity(random, 14, 100);
+    Streets streets(layouts, 50);
+    double length = 0;
+    std::uint32_t put = 0;
+    for (std::uint32_t track = 0; track < layouts.size(); ++track) {
+      length += streets.track(track).length;
+      const Road& road = streets.network()[track];
+      const double from = std::max(170.0, road.range_at_start) + 1,
+                   to = road.length - std::max(170.0, road.range_at_end) - 1;
+      for (double s = from; s < to && put < 50; s += 180 + random.Between(0, 500)) {
+        const Pace pace = testing::PaceOf(random.Between(300, 2000), random.Between(2000, 15000),
+                                          random.Between(5e4, 4e5), random.Between(2000, 10000));
+        Rider& r = streets.Put(put++, track, s, pace, 170);
+        r.brakes.deceleration *= random.Between(1, 2);
+      }
+    }
+    double missing = -INFINITY, nearest = INFINITY, travelled = 0;
+    Watcher watcher(streets);
+    int arrived = 0, refused = 0;
+    for (int i = 0; i < 20000; ++i) {
+      for (std::uint32_t k = 0; k < put; ++k) {
+        Rider& r = streets[k];
+        if (random.Below(2000) == 0) streets.Halt(k);
+        if (((r.aim == Aim::kRest || r.there) && random.Below(300) == 0) || random.Below(5000) == 0) {
+          arrived += r.there ? 1 : 0;
+          const auto track = static_cast<std::uint32_t>(random.Below(static_cast<int>(layouts.size())));
+          streets.Send(k, track, random.Between(0, streets.track(track).length));
+        }
+      }
+      streets.Step();
+      refused += static_cast<int>(streets.traffic().refused());
+      watcher.Look();
+      missing = std::max(missing, streets.Missing());
+      if (i % 5 == 0) nearest = std::min(nearest, streets.Nearest());
+    }
+    for (std::uint32_t k = 0; k < put; ++k) travelled += streets[k].origin;
+    std::printf("trial %d: %zu tracks %.0f mm, %u movers, arrived %d refused %d, travelled %.0f, missing %g nearest %g; "
+                "speed %g acc %g jerk %g lateral %g\n", trial, layouts.size(), length, put, arrived, refused, travelled,
+                missing, nearest, watcher.speed, watcher.acceleration, watcher.jerk, watcher.lateral);
+    EXPECT_LT(missing, 1e-3);
+    EXPECT_GT(nearest, 0);
+    EXPECT_LE(watcher.acceleration, 1 + 1e-6);
+    EXPECT_LE(watcher.jerk, 1 + 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace takt::planar
