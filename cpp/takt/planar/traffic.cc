@@ -19,6 +19,8 @@ constexpr double kReserve = 0.95;
 // s, in which a mover takes back what it is too fast, and cycles in which it can at the least.
 constexpr double kCalm = 0.1;
 constexpr double kQuick = 5;
+// Cycles in which a mover that had to brake against its wish speeds up no more than it did: it would soon have to again.
+constexpr std::uint32_t kCalmCycles = 20;
 // Standing is slower than this, mm/s, and nearer than this to where it has to stop, mm.
 constexpr double kStands = 0.1;
 constexpr double kAtLimit = 0.01;
@@ -36,23 +38,29 @@ struct Limit {
   std::uint32_t by = kNobody;
 };
 
-Brakes Weaker(const Brakes& a, const Brakes& b) {
-  return {std::min(a.deceleration, b.deceleration), std::min(a.jerk, b.jerk)};
+// What following plans with: what both can do, less a reserve.
+Brakes Common(const Brakes& a, const Brakes& b) {
+  return {kReserve * std::min(a.deceleration, b.deceleration), kReserve * std::min(a.jerk, b.jerk)};
+}
+
+// How the way to rest grows with the speed, s.
+double SlopeOfWayToRest(double speed, const Brakes& b) {
+  const double ramp = b.deceleration / b.jerk;
+  return speed >= b.deceleration * ramp ? speed / b.deceleration + 0.5 * ramp : 1.5 * std::sqrt(speed / b.jerk);
 }
 
 // The acceleration with which a mover follows a limit. With so much room R left it may have the speed v(R) from which
 // it just gets to rest in it. Held at that speed its stop keeps its distance to the limit; so a chain of movers hands on
 // the stop of the first, and each settles on the speed of the one before it without swinging.
 double Follow(const Limit& limit, double speed, double period_s) {
-  const Brakes brakes{kReserve * limit.brakes.deceleration, kReserve * limit.brakes.jerk};
+  const Brakes& brakes = limit.brakes;
   const double allowed = SpeedForWay(limit.room, brakes);
-  const double full = brakes.deceleration * brakes.deceleration / brakes.jerk;
-  // How the way to rest grows with the speed.
-  const double slope = allowed >= full ? allowed / brakes.deceleration + 0.5 * brakes.deceleration / brakes.jerk
-                                       : 1.5 * std::sqrt(allowed / brakes.jerk);
+  const double slope = SlopeOfWayToRest(allowed, brakes);
   const double quick = kQuick * period_s;
-  const double goes_along = (limit.rate - speed) / std::max(slope, quick);
-  return goes_along + (allowed - speed) / std::clamp(slope, quick, kCalm);
+  const double calm = std::clamp(slope, quick, kCalm);
+  const double acceleration = (limit.rate - speed) / std::max(slope, quick) + (allowed - speed) / calm;
+  // What it speeds up with has to be taken back first, for which it needs more way: speed / jerk of it.
+  return acceleration > 0 ? acceleration / (1 + speed / (brakes.jerk * std::max(slope, quick) * calm)) : acceleration;
 }
 
 }  // namespace
@@ -344,6 +352,16 @@ class Traffic::Step_ {
         limit = one;
       }
     };
+    // One that speeds up could stop further on than one of its speed; until it is there the way is not free. Behind one
+    // that is as fast the gap is enough, and no mover gets nearer that is faster.
+    const auto as_fast = [&](Limit one) {
+      const Rider& before = riders_[one.by];
+      const double its_speed = direction * before.at.velocity;
+      if (its_speed <= 0 || direction * before.at.acceleration <= 0) return;
+      one.room += direction * (before.at.position - t_.now_[one.by].rest_before) + WayToRest(its_speed, one.brakes);
+      one.rate = its_speed + SlopeOfWayToRest(its_speed, one.brakes) * direction * before.at.acceleration;
+      take(one);
+    };
     const auto behind = [&](std::uint32_t other, double apart, double gap) {
       const Rider& before = riders_[other];
       const Now& its = t_.now_[other];
@@ -351,12 +369,14 @@ class Traffic::Step_ {
       Limit one;
       one.room = direction * (stop - r.at.position) - gap;
       one.rate = direction * (its.braking.rest - its.rest_before) / period();
-      one.brakes = Weaker(r.pace.brakes(), before.brakes);
+      one.brakes = Common(r.pace.brakes(), before.brakes);
       one.by = other;
       return one;
     };
     if (now.leader != kNobody) {
-      take(behind(now.leader, now.leader_offset, GapTo(i, now.leader, direction)));
+      const Limit one = behind(now.leader, now.leader_offset, GapTo(i, now.leader, direction));
+      take(one);
+      as_fast(one);
     }
     const double reach = 2 * WayToRest(r.pace.limits.velocity, r.pace.brakes()) + r.gap;
     AlongNodes(r, r.at.position + reach, [&](std::uint32_t node, double offset, double range_before, double range_behind) {
@@ -378,9 +398,10 @@ class Traffic::Step_ {
         if (!active && way - zone - kBeforeNode > one.room) {
           one.room = way - zone - kBeforeNode;
           one.rate = 0;
-          one.brakes = r.pace.brakes();
+          one.brakes = Common(r.pace.brakes(), r.brakes);
         }
         take(one);
+        if (active && distance > 0) as_fast(one);
       });
     });
   }
@@ -400,6 +421,7 @@ class Traffic::Step_ {
     Now& now = t_.now_[i];
     const Braking braking = Brake(next, riders_[i].brakes);
     if (!MayTake(i, next, braking)) {
+      riders_[i].calm_cycles = kCalmCycles;
       t_.refused_ += std::abs(riders_[i].at.velocity) > kStands ? 1 : 0;
       return false;
     }
@@ -424,19 +446,25 @@ class Traffic::Step_ {
       r.planned = false;
       return WaitFor(r, Waits::kNot, kNobody);
     }
+    // Who is held back stays so until there is room: else it would swing between both.
+    const bool was_free = r.aim == Aim::kFollow || r.planned || Rests(r.at);
     const KinematicState wish = r.aim == Aim::kTarget ? Wish(r) : r.demand;
     if (r.aim == Aim::kFollow && Rests(r.at) && wish.velocity != 0) r.direction = wish.velocity < 0 ? -1 : 1;
     if (r.aim == Aim::kTarget && now.leader == kNobody) now.leader = FindLeader(i, r.direction, now.leader_offset);
     const int direction = r.direction;
     const double speed = direction * r.at.velocity;
+    const double before = direction * r.at.acceleration;
     Limit limit;
     double most = kInfinite;
     LimitBy(i, speed, limit, most);
-    const double before = direction * r.at.acceleration;
+    if (r.calm_cycles > 0) {
+      --r.calm_cycles;
+      most = std::min(most, std::max(0.0, before));
+    }
     // With constant jerk neither faster than wished at the end of the cycle, nor with more acceleration.
     const double mean = (direction * wish.velocity - speed) / period();
     const double wished = std::min(direction * wish.acceleration, 2 * mean - before);
-    const bool limited = mean > most + 1e-9 && !GoesAlong(i, wish, limit);
+    const bool limited = mean > most + 1e-9 && !(was_free && GoesAlong(i, wish, limit));
     if (!limited && Take(i, wish)) {
       if (r.aim == Aim::kTarget && r.plan_ends && r.plan_time >= r.plan.duration()) r.there = true;
       return WaitFor(r, Waits::kNot, kNobody);
@@ -569,6 +597,7 @@ void describe(Description<Rider>& d) {
   d.internal<&R::plan_time>(unit::s, "Since that began.");
   d.internal<&R::plan_ends>("It goes all the way to the target.");
   d.internal<&R::there>("It rests at its target.");
+  d.internal<&R::calm_cycles>("So long it does not speed up more, having had to brake.");
   d.internal<&R::origin>(unit::mm, "Of all tracks it has left behind.");
   d.internal<&R::waits>("Why it does not go on.");
   d.internal<&R::waits_for>("The mover that is in its way.");
