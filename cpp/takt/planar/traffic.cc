@@ -21,6 +21,9 @@ constexpr double kCalm = 0.1;
 constexpr double kQuick = 5;
 // Cycles in which a mover that had to brake against its wish speeds up no more than it did: it would soon have to again.
 constexpr std::uint32_t kCalmCycles = 20;
+// Shares of a change in what following asks for that count in one cycle.
+constexpr double kEaseUp = 0.15;
+constexpr double kEaseDown = 0.4;
 // Standing is slower than this, mm/s, and nearer than this to where it has to stop, mm.
 constexpr double kStands = 0.1;
 constexpr double kAtLimit = 0.01;
@@ -457,6 +460,10 @@ class Traffic::Step_ {
     Limit limit;
     double most = kInfinite;
     LimitBy(i, speed, limit, most);
+    // What those before it do in single cycles is not handed on, or it would grow along a chain of movers.
+    const double wanted = std::clamp(most, -2 * r.pace.limits.deceleration, 2 * r.pace.limits.acceleration);
+    r.eased += (wanted < r.eased ? kEaseDown : kEaseUp) * (wanted - r.eased);
+    most = r.eased;
     if (r.calm_cycles > 0) {
       --r.calm_cycles;
       most = std::min(most, std::max(0.0, before));
@@ -598,6 +605,7 @@ void describe(Description<Rider>& d) {
   d.internal<&R::plan_ends>("It goes all the way to the target.");
   d.internal<&R::there>("It rests at its target.");
   d.internal<&R::calm_cycles>("So long it does not speed up more, having had to brake.");
+  d.internal<&R::eased>(unit::mm_s2, "What following asks for, without the shaking of those before it.");
   d.internal<&R::origin>(unit::mm, "Of all tracks it has left behind.");
   d.internal<&R::waits>("Why it does not go on.");
   d.internal<&R::waits_for>("The mover that is in its way.");

@@ -71,6 +71,7 @@ struct Rider {
   bool plan_ends = false;    // it goes all the way to the target
   bool there = false;        // it rests at its target
   std::uint32_t calm_cycles = 0;  // so long it does not speed up more, having had to brake
+  double eased = 0;  // mm/s², what following asks for, without the shaking of those before it
   double origin = 0;         // mm, of all tracks that it has left behind: at + origin goes on over borders
 
   Waits waits = Waits::kNot;
