@@ -27,6 +27,7 @@ from takt.recording import Recording, RecordingError
 from takt.remote import RemoteSession, connect
 from takt.replay import ReplayResult, replay
 from takt.session import Recorder, Session
+from takt.track import Track, TrackPosition
 
 __all__ = [
     "Axis",
@@ -55,6 +56,8 @@ __all__ = [
     "Session",
     "TaktError",
     "TimeoutError",
+    "Track",
+    "TrackPosition",
     "__version__",
     "connect",
     "error_name",

@@ -17,6 +17,7 @@
 #include "takt/flexcam/commands.h"
 #include "takt/group/commands.h"
 #include "takt/pickplace/commands.h"
+#include "takt/track/commands.h"
 
 namespace takt::engine {
 
@@ -43,7 +44,7 @@ void describe(Description<Renew>&);
 
 using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
 using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command,
-                                 conveyor::PoseCommand, pickplace::Command>;
+                                 conveyor::PoseCommand, pickplace::Command, track::Command>;
 
 // Component i (components.h) is target i + 1.
 inline constexpr std::uint32_t kMachineTarget = 0;

@@ -202,16 +202,21 @@ World::World(const Machine& machine)
       axis_outputs(machine.axes.size()),
       axis_order(machine.axes.size()),
       questions(kQuestionsPerGroup * machine.groups.size()),
+      tracks(machine.tracks),
       servo_inputs(machine.axes.size()),
       servo_outputs(machine.axes.size()),
       samplings(machine.axes.size()),
       feedback_storage(machine.axes.size() * kEventsPerAxis + machine.groups.size() * kEventsPerGroup +
+                       track::EventsOf(machine.tracks.size()) +
                        (kCommandsPerCycle + kRenewalsPerCycle) * kEventsPerCommand),
       feedback(feedback_storage) {
   TypeOf<axis::State>();  // the first use of a type allocates
   TypeOf<plant::ServoState>();
   TypeOf<HeardDrive>();
   TypeOf<ServoInputs>();
+  TypeOf<track::State>();
+  TypeOf<track::Works>();
+  TouchTypes(static_cast<const track::Command*>(nullptr));
   for (const cam::CamParams& cam : machine.cams) cams.push_back(cam::Build(cam).table.value());
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axis_states.push_back(axis::MakeState(axis_params[i]));
@@ -331,6 +336,8 @@ std::uint64_t World::StateHash() const noexcept {
   for (const conveyor::State& state : belt_states) hash = HashOf(state, hash);
   for (const conveyor::PoseState& state : pose_states) hash = HashOf(state, hash);
   for (const pickplace::State& state : pick_place_states) hash = HashOf(state, hash);
+  for (const track::State& state : tracks.states) hash = HashOf(state, hash);
+  if (!tracks.states.empty()) hash = HashOf(tracks.works, hash);
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
   for (const HeardDrive& drive : drives) hash = HashOf(servo_inputs[drive.axis], HashOf(drive, hash));
   return hash;
@@ -401,6 +408,11 @@ void Apply(World& w, const Command& command) noexcept {
     const PickPlace& module = w.pick_places[i];
     pickplace::Apply(ContextOf(w, module), command.ticket, command.lease_s, *for_module, w.group_states[module.group],
                      w.pick_place_states[i]);
+  } else if (const auto* for_track = std::get_if<track::Command>(&command.body)) {
+    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
+                          w.pick_places.size();  // likewise
+    if (i >= w.tracks.states.size()) return refuse(ErrorId::kUnknownTarget);
+    track::Apply({w.tracks, w.cycle, w.feedback}, i, command.ticket, *for_track);
   }
 }
 
@@ -426,6 +438,7 @@ void Move(World& w) noexcept {
   for (const std::uint32_t i : w.axis_order.sequence()) {
     if (w.axis_states[i].plc == axis::PlcState::kErrorStop) StopMasters(w, i);
   }
+  track::Step({w.tracks, w.cycle, w.feedback});
   std::ranges::fill(w.group_stepped, std::uint8_t{0});
   StepBelts(w, w.measured_belts);
   for (const std::uint32_t i : w.axis_order.sequence()) {
@@ -467,6 +480,7 @@ void Control(World& w) noexcept {
     pickplace::Publish(ContextOf(w, module), w.group_states[module.group], w.pick_place_states[i],
                        w.pick_place_outputs[i]);
   }
+  track::Publish({w.tracks, w.cycle, w.feedback});
 }
 
 void Actuate(World& w) noexcept {

@@ -25,6 +25,7 @@
 #include "takt/group/group.h"
 #include "takt/pickplace/module.h"
 #include "takt/plant/servo.h"
+#include "takt/track/tracks.h"
 #include "takt/trajectory/planner.h"
 
 namespace takt::engine {
@@ -119,6 +120,8 @@ struct World {
   std::vector<pickplace::State> pick_place_states;
   std::vector<pickplace::Outputs> pick_place_outputs;
   std::vector<std::uint32_t> pick_place_of;  // the module that moves each group, from 1; 0: none
+
+  track::Tracks tracks;
 
   std::vector<ServoInputs> servo_inputs;
   std::vector<ServoOutputs> servo_outputs;

@@ -8,6 +8,7 @@
 #include "takt/engine/load_cams.h"
 #include "takt/engine/load_groups.h"
 #include "takt/engine/order.h"
+#include "takt/track/build.h"
 
 namespace takt::engine {
 
@@ -53,6 +54,8 @@ class CrossCheck {
     CheckBelts();
     CheckNames("pick_and_place", machine_.pick_and_place);
     CheckPickPlaces();
+    CheckNames("tracks", machine_.tracks);
+    CheckTracks();
     CheckCamSwitches();
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
@@ -72,7 +75,7 @@ class CrossCheck {
   }
 
   void CheckAxes() {
-    if (machine_.axes.empty()) Add("axes", "expected at least one axis");
+    if (machine_.axes.empty() && machine_.tracks.empty()) Add("axes", "expected at least one axis");
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
       const std::string path = "axes[" + std::to_string(i) + "]";
       const std::string& name = machine_.axes[i].name;
@@ -170,7 +173,8 @@ class CrossCheck {
   // Belts and the axes that they name; several may go by the same. And poses.
   void CheckBelts() {
     const std::vector<std::string_view> names = Components();
-    const auto modules = names.end() - static_cast<std::ptrdiff_t>(machine_.pick_and_place.size());
+    const auto tracks = names.end() - static_cast<std::ptrdiff_t>(machine_.tracks.size());
+    const auto modules = tracks - static_cast<std::ptrdiff_t>(machine_.pick_and_place.size());
     const auto poses = modules - static_cast<std::ptrdiff_t>(machine_.poses.size());
     const auto belts = poses - static_cast<std::ptrdiff_t>(machine_.belts.size());
     const auto check_name = [&](const std::string& path, std::string_view name, auto others) {
@@ -198,7 +202,7 @@ class CrossCheck {
     for (std::size_t i = 0; i < machine_.pick_and_place.size(); ++i) {
       const pickplace::PickPlaceParams& module = machine_.pick_and_place[i];
       const std::string path = "pick_and_place[" + std::to_string(i) + "]";
-      const std::size_t others = names.size() - machine_.pick_and_place.size();
+      const std::size_t others = names.size() - machine_.tracks.size() - machine_.pick_and_place.size();
       if (module.name == "machine" || std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(others),
                                                 module.name) != names.begin() + static_cast<std::ptrdiff_t>(others)) {
         Add(path + ".name", "expected a name that nothing else has, and not machine, found " + Quoted(module.name));
@@ -220,7 +224,23 @@ class CrossCheck {
     }
   }
 
-  // Names of all, belts, poses and pick and place modules last.
+  // Tracks, their geometry and their links.
+  void CheckTracks() {
+    const std::vector<std::string_view> names = Components();
+    const auto others = names.end() - static_cast<std::ptrdiff_t>(machine_.tracks.size());
+    for (std::size_t i = 0; i < machine_.tracks.size(); ++i) {
+      const std::string& name = machine_.tracks[i].name;
+      if (name == "machine" || std::find(names.begin(), others, name) != others) {
+        Add("tracks[" + std::to_string(i) + "].name",
+            "expected a name that nothing else has, and not machine, found " + Quoted(name));
+      }
+    }
+    for (const track::BuildProblem& problem : track::Build(machine_.tracks).problems) {
+      Add("tracks" + problem.path, problem.message);
+    }
+  }
+
+  // Names of all, belts, poses, pick and place modules and tracks last.
   std::vector<std::string_view> Components() const {
     std::vector<std::string_view> names = names_;
     for (const flexcam::FlexCamParams& module : machine_.flex_cams) names.push_back(module.name);
@@ -228,6 +248,7 @@ class CrossCheck {
     for (const conveyor::BeltParams& belt : machine_.belts) names.push_back(belt.name);
     for (const conveyor::PoseParams& pose : machine_.poses) names.push_back(pose.name);
     for (const pickplace::PickPlaceParams& module : machine_.pick_and_place) names.push_back(module.name);
+    for (const track::TrackParams& track : machine_.tracks) names.push_back(track.name);
     return names;
   }
 

@@ -17,6 +17,7 @@
 #include "takt/group/params.h"
 #include "takt/pickplace/params.h"
 #include "takt/plant/servo.h"
+#include "takt/track/params.h"
 
 namespace takt::engine {
 
@@ -75,6 +76,7 @@ struct Machine {
   std::vector<conveyor::BeltParams> belts;
   std::vector<conveyor::PoseParams> poses;
   std::vector<pickplace::PickPlaceParams> pick_and_place;
+  std::vector<track::TrackParams> tracks;
   Simulation simulation;
   External external;
 };

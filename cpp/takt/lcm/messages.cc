@@ -320,6 +320,24 @@ msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::M
   return m;
 }
 
+msgs::track_state ToMessage(const engine::TrackSnapshot& snapshot, const engine::Machine& machine) {
+  const track::Outputs& o = snapshot.outputs;
+  msgs::track_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.tracks[snapshot.index].name;
+  m.state = static_cast<std::int8_t>(o.state);
+  m.operation_mode = static_cast<std::int8_t>(o.operation_mode);
+  m.error = static_cast<std::int32_t>(o.error);
+  m.length = o.length;
+  m.closed_loop = o.closed_loop;
+  m.element_count = o.element_count;
+  m.mover_count = o.mover_count;
+  m.previous_tracks = o.previous_tracks;
+  m.subsequent_tracks = o.subsequent_tracks;
+  return m;
+}
+
 msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, const engine::Machine& machine) {
   const pickplace::Outputs& o = snapshot.outputs;
   msgs::pick_place_state m{};

@@ -31,6 +31,7 @@
 #include "takt/msgs/machine_description.hpp"
 #include "takt/msgs/pick_place_state.hpp"
 #include "takt/msgs/pose_state.hpp"
+#include "takt/msgs/track_state.hpp"
 
 namespace takt::lcm {
 
@@ -41,6 +42,7 @@ msgs::belt_state ToMessage(const engine::BeltSnapshot& snapshot, const engine::M
 msgs::belt_objects ToMessage(const engine::ObjectsSnapshot& snapshot, const engine::Machine& machine);
 msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, const engine::Machine& machine);
 msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::Machine& machine);
+msgs::track_state ToMessage(const engine::TrackSnapshot& snapshot, const engine::Machine& machine);
 msgs::histogram ToMessage(const engine::Histogram& histogram);
 msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine::Machine& machine);
 // Client, session and id are left empty.

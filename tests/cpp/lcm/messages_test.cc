@@ -339,6 +339,27 @@ TEST(Messages, BeltStateKeepsEveryNumber) {
       machine, "infeed");
 }
 
+// EN-20
+TEST(Messages, TrackStateKeepsEveryNumber) {
+  engine::Machine machine = TestMachine();
+  machine.tracks.resize(2);
+  machine.tracks[1].name = "loop";
+  machine.cycle.period_s = 0.00025;
+  ExpectKeepsEveryNumber<msgs::track_state, track::Outputs>(
+      {
+          FIELD(track_state, state),
+          FIELD(track_state, operation_mode),
+          FIELD(track_state, error),
+          FIELD(track_state, length),
+          FIELD(track_state, closed_loop),
+          FIELD(track_state, element_count),
+          FIELD(track_state, mover_count),
+          FIELD(track_state, previous_tracks),
+          FIELD(track_state, subsequent_tracks),
+      },
+      machine, "loop");
+}
+
 // EN-20, CV-42
 TEST(Messages, PoseStateKeepsEveryNumber) {
   engine::Machine machine = TestMachine();
