@@ -116,7 +116,7 @@ def test_the_manuals_network_from_the_machine_file() -> None:
 def test_the_manuals_network_by_its_program(empty: Engine) -> None:
     """PL-20, PL-23, PL-50: the same to the last bit."""
     given = build_network(empty)
-    assert [f.state.value for f in given] == ["done"] * len(given)
+    assert all(f.done for f in given), [f.sentence for f in given]
     check_network(empty)
     with Engine(NETWORK) as other:
         other.step()
@@ -133,22 +133,23 @@ def test_states_and_modes() -> None:
             engine.step()
             seen.append(one.state.value)
         assert seen[:2] == ["Enabling", "Enabled"]
-        assert enable.state.value == "done"
+        assert enable.done
         disable, enable = one.disable(), one.enable()
         engine.step()
-        assert (disable.state.value, one.state.value) == ("aborted", "Enabling")
+        assert disable.aborted
+        assert one.state.value == "Enabling"
         enable.wait()
         assert one.operation_mode.value == "Standing"
         one.disable().wait()
         assert (one.state.value, one.operation_mode.value) == ("Disabled", "Uninitialized")
         refused = one.reset()
         engine.step()
-        assert (refused.state.value, refused.error_id) == ("error", 3005)
+        assert (refused.error, refused.error_id) == (True, 3005)
 
 
 def refuse(engine: Engine, feedback: takt.Feedback, sentence: str) -> None:
     engine.wait(lambda: feedback.final, timeout=1)
-    assert feedback.state.value == "error"
+    assert feedback.error
     assert sentence in feedback.sentence
 
 
@@ -161,15 +162,13 @@ def test_what_cannot_be_is_refused_with_a_sentence(empty: Engine) -> None:
     refuse(empty, one.append_line(start_x=1, start_y=2, end_x=1, end_y=2), "begins where it ends, or a position is")
     refuse(empty, two.start_from_track(track="one"), "the other track has no length yet")
     refuse(empty, one.start_from_track(track="one"), "expected the name of another track, found 'one'")
-    refuse(empty, one.start_from_track(track="tow"), "did you mean 'two'?")
+    refuse(empty, one.start_from_track(track="tow"), "did you mean two?")
     refuse(empty, one.append_line(start_x=0, start_y=0, end_x=2e6, end_y=0), "end_x: expected ")
     one.append_line(**line((0, 0), (300, 0))).wait()
-    before = empty.state_hash
     refuse(empty, one.append_line(**line((300, 0), (300, 100))), "leave a gap for the transition, in element 2")
     refuse(empty, one.append_circle(start_x=400, start_y=0, end_x=500, end_y=0, center_x=440, center_y=0), "equally")
     refuse(empty, one.append_line(**line((150, 200), (150, -200))), "the track crosses or touches itself")
     assert (one.length, one.element_count) == (300, 1)
-    assert empty.state_hash != before  # time goes on
     one.append_line(**line((400, 100), (400, 400))).wait()
     two.start_from_track(track="one").wait()
     for change in (one.append_position(x=0, y=900), one.clear(), one.close_loop()):
@@ -242,7 +241,7 @@ def test_a_replay_makes_the_same_tracks() -> None:
         bad = engine.track("three").append_line(**line((120, 500), (120, 600)))
         engine.track("three").append_line(**line((100, 520), (100, 600)))
         engine.run(0.02)
-        assert bad.state.value == "error"
+        assert bad.error
         journal = engine.take_journal()
         cycles, hashes = engine.take_hashes()
         length = engine.track("three").length
