@@ -296,6 +296,17 @@ def show_path(file: Path, **options: Any) -> int:
     return toolpath_command.run(file, toolpath_command.Options(**options), out)
 
 
+@cli.command("track")
+@click.argument("file", type=FILE)
+@click.option("--plot", "--draw", "target", type=FILE, help="Draw them from above into this file (.png, .svg, .pdf).")
+def show_track(file: Path, target: Path | None) -> int:
+    """Check the tracks of a FILE: a machine file, or one with only the section `tracks`. Says how long they are, how
+    tightly they bend, where they lead and how near to switches movers come too near to each other; draws them."""
+    from takt import track_command
+
+    return track_command.run(file, target, out)
+
+
 @cli.command("log")
 @click.argument("log", type=FILE)
 @click.option("--save", type=FILE, help="Keep the last run as a recording (.npz) or a table (.csv).")

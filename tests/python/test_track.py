@@ -11,6 +11,8 @@ import pytest
 import takt
 from machines import new_url, running
 from takt import Engine
+from takt.cli import main
+from takt.track_layout import TrackLayout
 
 # The network of the manual's chapter 6.2.10, as a machine file says it.
 LINES_ONE = [((250, 120), (650, 120)), ((700, 170), (800, 450)), ((650, 500), (250, 500))]
@@ -211,15 +213,15 @@ def test_a_whole_circle_becomes_a_loop(empty: Engine) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
-        ("starts_from: [one], ends_at", "starts_from: [ona], ends_at", "tracks[1].starts_from[0]: expected the name of a track, found 'ona'; did"),
+        ("starts_from: [one], ends_at", "starts_from: [ona], ends_at", "starts_from[0]: expected the name of a track, found 'ona'; did"),
         ("name: three, starts_from: [one]", "name: three, starts_from: [four, four]", "found 'four' again"),
         ("- name: one\n", "- name: one\n    starts_from: [four]\n", "in no circle, found one -> four -> one"),
         ("- name: one\n", "- name: one\n    ends_at: [one]\n", "in no circle, found one -> one"),
         ("- name: one\n", "- name: one\n    closed_loop: true\n", "the other track is a closed loop"),
-        ("{from: {x: 700, y: 170}, to", "{from: {x: 650, y: 120}, to", "tracks[0].elements[1]: two pieces of the track touch"),
+        ("{from: {x: 700, y: 170}, to", "{from: {x: 650, y: 120}, to", "tracks[0].elements[1]: two pieces of the"),
         ("{from: {x: 700, y: 170}, to", "{to", "must be given for a line or a circle"),
         ("to: {x: 800, y: 450}}", "to: {x: 800, y: 450}, center: {x: 0, y: 0}}", "must be given for a circle, and"),
-        ("from: {x: 650, y: 500}", "from: {x: 450, y: 20}", "tracks[0]: the track crosses or touches itself"),
+        ("from: {x: 650, y: 500}", "from: {x: 450, y: 20}", "tracks[0]: the track crosses or touches itself, "),
         ("name: four", "name: four, collision_range_at_end: -1", "collision_range_at_end: expected"),
         ("name: four", "name: one", "again"),
         ("name: four", "name: four, mover_width: 0", "mover_width: expected"),
@@ -280,3 +282,46 @@ def test_taktd_makes_tracks_and_its_log_replays(tmp_path: Path, pace: str) -> No
     with Engine(NETWORK) as engine:
         engine.step()
         assert engine.track("two").length == length
+
+
+def test_the_command_says_and_draws(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`takt track`: of a file with tracks alone."""
+    file, target = tmp_path / "layout.yaml", tmp_path / "layout.png"
+    file.write_text(NETWORK.replace("name: network\naxes: []\n", ""))
+    assert main(["track", str(file), "--draw", str(target)]) == 0
+    text = capsys.readouterr().out
+    layout = TrackLayout(file)
+    one, two, three, four = layout.tracks
+    assert f"{file}: 4 tracks, " in text
+    for track in layout.tracks:
+        assert f"{track.length:.3f}" in text
+        assert f"{track.smallest_radius:.4g}" in text
+    assert (one.subsequent, two.subsequent, three.previous) == (("two", "three", "four"), ("one",), ("one",))
+    assert target.read_bytes().startswith(b"\x89PNG")
+    # Two and four leave to either side, three goes straight on: behind their ranges movers of 155 mm, turned as they
+    # like, are a diagonal apart.
+    diagonal = math.hypot(155, 155)
+    assert 0 < two.range_at_start <= two.length
+    assert four.range_at_start == pytest.approx(two.range_at_start, rel=0.5)
+    assert one.range_at_start == pytest.approx(0)
+    assert two.range_at_end == pytest.approx(0)
+    for track in (two, three, four):
+        apart = [
+            min(float(np.hypot(o.points.x - x, o.points.y - y).min()) for o in (two, three, four) if o is not track)
+            for s, x, y in zip(track.points.s, track.points.x, track.points.y, strict=True)
+            if s > track.range_at_start + 1
+        ]
+        assert not apart or min(apart) >= diagonal - 0.1
+
+
+def test_the_command_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "layout.yaml"
+    file.write_text("tracks:\n  - {name: one, elements: [{from: {x: 0, y: 0}, to: {x: 0, y: 0}}]}\n")
+    assert main(["track", str(file)]) == 2
+    error = capsys.readouterr().err
+    assert f"{file}:2:" in error
+    assert "tracks[0].elements[0]: a line begins where it ends" in error
+    file.write_text("tracks: []\naxes: [{name: x, limits: {velocity: 1, acceleration: 1, jerk: 1}}]\n")
+    assert main(["track", str(file)]) == 2
+    assert "expected a section tracks" in capsys.readouterr().err
+    assert main(["track", str(file), "--draw", "picture.txt"]) == 2

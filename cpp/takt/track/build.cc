@@ -1,7 +1,9 @@
 #include "takt/track/build.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstdio>
 #include <string_view>
 
 #include "takt/core/problem.h"
@@ -122,7 +124,17 @@ class Builder {
     }
     const bool may_be_empty = !layout.closed && !layout.to;
     if (making.problem == Problem::kEmpty && may_be_empty) return true;
-    return Fail(path + PlaceOf(making, p), std::string(planar::Text(making.problem)));
+    return Fail(path + PlaceOf(making, p), std::string(planar::Text(making.problem)) + WhereItCrosses(making, layout));
+  }
+
+  static std::string WhereItCrosses(const planar::Making& making, const planar::Layout& layout) {
+    planar::Track way;
+    if (making.problem != Problem::kCrosses || planar::MakeTrack(layout, way).problem != Problem::kNone) return "";
+    const std::optional<planar::Crossing> crossing = planar::SelfCrossing(way);
+    if (!crossing) return "";
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), ", %.1f mm and %.1f mm along", crossing->first, crossing->second);
+    return text.data();
   }
 
   // The key that a problem is reported at.

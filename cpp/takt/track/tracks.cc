@@ -166,6 +166,8 @@ Tracks::Tracks(const std::vector<TrackParams>& all)
       ways(all.size()),
       start_nodes(all.size()),
       end_nodes(all.size()),
+      starts_at(2 * all.size()),
+      ends_at(2 * all.size()),
       desk(all.size()) {
   BuildResult built = Build(all);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -219,9 +221,6 @@ void Step(const Context& c) noexcept {
 
 void Publish(const Context& c) noexcept {
   const Tracks& t = c.tracks;
-  const auto count = [](const std::vector<std::uint32_t>& nodes, std::uint32_t node) {
-    return static_cast<std::uint32_t>(std::ranges::count(nodes, node));
-  };
   for (std::size_t i = 0; i < t.states.size(); ++i) {
     const State& s = t.states[i];
     Outputs& out = c.tracks.outputs[i];
@@ -232,8 +231,8 @@ void Publish(const Context& c) noexcept {
     out.closed_loop = s.sketch.closed;
     out.element_count = s.sketch.count;
     out.mover_count = 0;
-    out.previous_tracks = count(t.end_nodes, t.start_nodes[i]);
-    out.subsequent_tracks = count(t.start_nodes, t.end_nodes[i]);
+    out.previous_tracks = t.ends_at[t.start_nodes[i]];
+    out.subsequent_tracks = t.starts_at[t.end_nodes[i]];
   }
 }
 

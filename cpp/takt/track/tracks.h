@@ -33,9 +33,11 @@ struct Tracks {
 
   // What follows from the states.
   std::vector<const planar::Track*> ways;  // null: none, then the length is 0
-  // Where tracks are linked: ends and starts at one point have one number.
+  // Where tracks are linked: ends and starts at one point have one number, below twice that of tracks.
   std::vector<std::uint32_t> start_nodes;
   std::vector<std::uint32_t> end_nodes;
+  std::vector<std::uint32_t> starts_at;  // by node: so many tracks
+  std::vector<std::uint32_t> ends_at;
   std::uint64_t changes = 0;  // of ways and links, counted
 
   Desk desk;

@@ -227,6 +227,12 @@ void MakeNodes(Tracks& t) noexcept {
       for (const std::uint32_t other : All(t.states[i].ends_at)) changed |= join(t.end_nodes[i], t.start_nodes[other]);
     }
   }
+  std::ranges::fill(t.starts_at, 0u);
+  std::ranges::fill(t.ends_at, 0u);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    ++t.starts_at[t.start_nodes[i]];
+    ++t.ends_at[t.end_nodes[i]];
+  }
   ++t.changes;
 }
 
