@@ -299,12 +299,15 @@ def show_path(file: Path, **options: Any) -> int:
 @cli.command("track")
 @click.argument("file", type=FILE)
 @click.option("--plot", "--draw", "target", type=FILE, help="Draw them from above into this file (.png, .svg, .pdf).")
-def show_track(file: Path, target: Path | None) -> int:
-    """Check the tracks of a FILE: a machine file, or one with only the section `tracks`. Says how long they are, how
-    tightly they bend, where they lead and how near to switches movers come too near to each other; draws them."""
+@click.option("--corner", type=float, help="Drawings only: mm of the lines that a corner takes [40].")
+@click.option("--yaml", "yaml_file", type=FILE, help="Drawings only: write them into this file.")
+def show_track(file: Path, **options: Any) -> int:
+    """Check the tracks of a FILE: a machine file, one with only the section `tracks`, or a drawing (.svg, .dxf). Says
+    how long they are, how tightly they bend, where they lead and how near to switches movers come too near to each
+    other; draws and converts them."""
     from takt import track_command
 
-    return track_command.run(file, target, out)
+    return track_command.run(file, track_command.Options(**options), out)
 
 
 @cli.command("log")

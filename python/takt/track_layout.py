@@ -47,12 +47,12 @@ class LaidTrack:
 class TrackLayout:
     """All tracks of a machine file, or of a file with only the section `tracks`."""
 
-    def __init__(self, file: str | os.PathLike[str]) -> None:
-        text, name = read_machine(file)
+    def __init__(self, file: str | os.PathLike[str], name: str | None = None) -> None:
+        text, found = read_machine(file)
         for key, line in LACKING.items():
             if not re.search(rf"^{key}\s*:".encode(), text, re.MULTILINE):
                 text += f"\n{line}".encode()
-        self._core = _core.TrackLayout(text + b"\n", name)
+        self._core = _core.TrackLayout(text + b"\n", name or found)
 
     @cached_property
     def tracks(self) -> tuple[LaidTrack, ...]:

@@ -213,7 +213,7 @@ def test_a_whole_circle_becomes_a_loop(empty: Engine) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
-        ("starts_from: [one], ends_at", "starts_from: [ona], ends_at", "starts_from[0]: expected the name of a track, found 'ona'; did"),
+        ("[one], ends_at", "[ona], ends_at", "starts_from[0]: expected the name of a track, found 'ona'; did"),
         ("name: three, starts_from: [one]", "name: three, starts_from: [four, four]", "found 'four' again"),
         ("- name: one\n", "- name: one\n    starts_from: [four]\n", "in no circle, found one -> four -> one"),
         ("- name: one\n", "- name: one\n    ends_at: [one]\n", "in no circle, found one -> one"),
@@ -295,7 +295,8 @@ def test_the_command_says_and_draws(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert f"{file}: 4 tracks, " in text
     for track in layout.tracks:
         assert f"{track.length:.3f}" in text
-        assert f"{track.smallest_radius:.4g}" in text
+        if track.smallest_radius < math.inf:
+            assert f"{track.smallest_radius:.4g}" in text
     assert (one.subsequent, two.subsequent, three.previous) == (("two", "three", "four"), ("one",), ("one",))
     assert target.read_bytes().startswith(b"\x89PNG")
     # Two and four leave to either side, three goes straight on: behind their ranges movers of 155 mm, turned as they
@@ -325,3 +326,59 @@ def test_the_command_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     assert main(["track", str(file)]) == 2
     assert "expected a section tracks" in capsys.readouterr().err
     assert main(["track", str(file), "--draw", "picture.txt"]) == 2
+
+
+SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="1000mm" height="600mm" viewBox="0 0 1000 600">
+<rect x="100" y="100" width="800" height="300"/><circle cx="500" cy="250" r="90"/>
+<path d="M 50 500 L 400 500 A 80 80 0 0 1 480 580 L 480 590"/></svg>
+"""
+
+
+def drawn(directory: Path, suffix: str) -> Path:
+    """A rectangle of 800 by 300 mm, a circle of 90 mm radius, and a line that becomes an arc and a line again."""
+    file = directory / f"drawing{suffix}"
+    if suffix == ".svg":
+        file.write_text(SVG)
+        return file
+    import ezdxf
+
+    drawing = ezdxf.new(units=ezdxf.units.CM)
+    space = drawing.modelspace()
+    space.add_lwpolyline([(10, 20), (90, 20), (90, 50), (10, 50)], close=True)
+    space.add_circle((50, 35), 9)
+    space.add_line((48, 2), (48, 1))  # the last one first, and against its sense
+    space.add_line((40, 10), (5, 10))
+    space.add_arc((40, 2), 8, 0, 90)
+    drawing.saveas(file)
+    return file
+
+
+@pytest.mark.parametrize("suffix", [".svg", ".dxf"])
+def test_drawings_become_tracks(tmp_path: Path, capsys: pytest.CaptureFixture[str], suffix: str) -> None:
+    file, target = drawn(tmp_path, suffix), tmp_path / "layout.yaml"
+    assert main(["track", str(file), "--corner", "30", "--yaml", str(target)]) == 0
+    assert f"{file}: 3 tracks" in capsys.readouterr().out
+    rectangle, circle, open_one = TrackLayout(target).tracks
+    assert rectangle.closed
+    corners = 4 * (2 * 30 - math.hypot(30, 30))  # at most that is saved by cutting the corners
+    assert 2200 - corners < rectangle.length < 2200
+    assert circle.closed
+    assert circle.length == pytest.approx(2 * math.pi * 90, rel=1e-9)
+    assert not open_one.closed
+    assert open_one.length == pytest.approx(350 + math.pi / 2 * 80 + 10, abs=5)
+    ends = {(round(float(open_one.points.x[i])), round(float(open_one.points.y[i]))) for i in (0, -1)}
+    assert ends == {(50, 100), (480, 10)}
+    assert main(["track", str(target)]) == 0
+
+
+def test_what_is_no_drawing_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, text, sentence in (
+        ("a.svg", "<svg", "is no SVG"),
+        ("b.svg", SVG[: SVG.index("<rect")] + "</svg>", "no lines, polylines"),
+        ("c.dxf", "no drawing", "is no DXF"),
+        ("d.yaml", EMPTY, "are for drawings"),
+    ):
+        (tmp_path / name).write_text(text)
+        arguments = ["--corner", "5"] if name.endswith("yaml") else []
+        assert main(["track", str(tmp_path / name), *arguments]) == 2
+        assert sentence in capsys.readouterr().err
