@@ -61,7 +61,7 @@ def _refuse_nonsense(file: Path, options: Options) -> None:
 def _say(file: Path, layout: TrackLayout, out: Console) -> None:
     total = sum(track.length for track in layout.tracks)
     print(f"{file}: {len(layout.tracks)} tracks, {total:.6g} mm")
-    columns = ("track", "length", "least radius", "from", "to", "range at start", "range at end")
+    columns = ("track", "length", "least radius", "from", "to", "at start", "at end")
     grid = Grid(*columns, box=None)
     for i in (1, 2, 5, 6):
         grid.columns[i].justify = "right"
@@ -74,4 +74,4 @@ def _say(file: Path, layout: TrackLayout, out: Console) -> None:
             track.name, length, radius, before, behind, f"{track.range_at_start:.1f}", f"{track.range_at_end:.1f}"
         )
     out.print(grid)
-    print("all in mm")
+    print("all in mm; at start and at end: the collision ranges")

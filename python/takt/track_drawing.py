@@ -154,15 +154,17 @@ def _arc_through(begin: complex, via: complex, end: complex) -> Piece:
 
 def _of_dxf(file: str | PathLike[str]) -> Iterator[list[Piece]]:
     try:
-        import ezdxf
-        from ezdxf import units
+        from ezdxf.enums import InsertUnits
+        from ezdxf.filemanagement import readfile
+        from ezdxf.lldxf.const import DXFError
+        from ezdxf.units import conversion_factor
     except ImportError:
         raise TaktError(f"{file}: DXF needs ezdxf (pip install takt-motion[dxf])") from None
     try:
-        drawing = ezdxf.readfile(str(file))
-    except (OSError, ezdxf.DXFError) as error:
+        drawing = readfile(str(file))
+    except (OSError, DXFError) as error:
         raise TaktError(f"{file}: is no DXF: {error}") from None
-    scale = units.conversion_factor(drawing.units, units.MM) if drawing.units else 1.0
+    scale = conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters) if drawing.units else 1.0
     loose: list[Piece] = []
     for entity in drawing.modelspace():
         if entity.dxftype() in ("LWPOLYLINE", "POLYLINE"):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +15,7 @@ from takt import plot, style
 from takt.track_layout import LaidTrack, TrackLayout
 
 ARROW_EVERY = 0.08  # of the larger side of the picture
-MARK = {"ms": 7, "mfc": "white", "mew": 1.6, "zorder": 5}
+MARK: dict[str, Any] = {"ms": 7, "mfc": "white", "mew": 1.6, "zorder": 5}
 
 
 def picture(layout: TrackLayout, target: str | os.PathLike[str], title: str = "") -> Path:
