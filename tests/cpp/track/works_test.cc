@@ -212,10 +212,39 @@ TEST(Works, TakeTheAnswerTheyWaitForAlone) {
   rig.Step();
   refuse(0, {.number = 1});  // nothing was made
   refuse(0, {.number = 2});
+  refuse(0, {.number = 2, .problem = Problem::kKink});
   refuse(1, {.number = 1});
   EXPECT_EQ(rig.End(line), Problem::kNone);
   refuse(0, {.number = 1});  // once is enough
   EXPECT_EQ(rig.state(0).length, 300);
+}
+
+// What was made and is not wanted is no answer to the next question.
+TEST(Works, ForgetWhatWasMadeForNothing) {
+  Rig rig(1);
+  const Ticket first = rig.Give(0, Line(0, 0, 300, 0));
+  rig.Step();
+  ASSERT_TRUE(Make(rig.tracks.desk));
+  Apply(rig.context(), 0, 0, TrackMade{.number = 1, .problem = Problem::kKink});
+  EXPECT_EQ(rig.End(first), Problem::kKink);
+  EXPECT_FALSE(rig.state(0).has_length);
+  EXPECT_EQ(rig.Do(0, Line(0, 0, 500, 0)), Problem::kNone);
+  EXPECT_EQ(rig.state(0).length, 500);
+}
+
+// PL-20: only while it is disabled.
+TEST(Works, StandStillWhileEnabled) {
+  Rig rig(2);
+  rig.Do(0, Line(0, 0, 300, 0));
+  rig.Do(1, Line(300, 0, 500, 0));
+  rig.Give(0, Enable{});
+  for (const Command& change :
+       {Command(Line(400, 100, 400, 300)), Command(AppendPosition{900, 900}), Command(AppendCircle{}),
+        Command(CloseLoop{}), Command(Clear{}), Command(To(1)), Command(From(1))}) {
+    EXPECT_EQ(rig.Do(0, change), Problem::kNotDisabled);  // while it is being enabled, too
+    EXPECT_EQ(rig.state(0).length, 300);
+  }
+  EXPECT_EQ(rig.state(0).state, planar::ObjectState::kEnabled);
 }
 
 }  // namespace
