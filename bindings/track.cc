@@ -28,7 +28,7 @@ class Layout {
     return names;
   }
   double Length(std::size_t i) const { return tracks_.states.at(i).length; }
-  bool Closed(std::size_t i) const { return tracks_.states.at(i).sketch.closed; }
+  bool Closed(std::size_t i) const { return tracks_.sketches.at(i).closed; }
 
   // mm; infinite where it is straight all the way.
   double SmallestRadius(std::size_t i) const {

@@ -70,7 +70,7 @@ enum class ErrorId : std::uint16_t {
   kTooFast = 3030,            // what carries the target is faster than the group can follow
   kOffPath = 3031,            // the tool is not where its path was left
   kNoWorkpiece = 3032,        // there is no such workpiece
-  kTrackGeometry = 3040,      // a track cannot be so; the value of the feedback says why
+  kTrackGeometry = 3050,      // a track cannot be so; the value of the feedback says why
   kGroupDeviation = 8001,
   kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual
   // A cam module is in error; numbers of the Flex Cam manual.

@@ -216,6 +216,7 @@ World::World(const Machine& machine)
   TypeOf<ServoInputs>();
   TypeOf<track::State>();
   TypeOf<track::Works>();
+  TypeOf<track::Sketch>();
   TouchTypes(static_cast<const track::Command*>(nullptr));
   for (const cam::CamParams& cam : machine.cams) cams.push_back(cam::Build(cam).table.value());
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {

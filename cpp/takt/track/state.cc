@@ -42,7 +42,7 @@ void describe(Description<State>& d) {
   d.internal<&S::ticket>("Of the command that changes the state.");
   d.internal<&S::error>("The fault.");
   d.internal<&S::reaction>("What the fault does.");
-  d.internal<&S::sketch>("What it is given by.");
+  d.internal<&S::sketch_hash>("Of what it is given by.");
   d.internal<&S::starts_from>("Tracks at whose ends it starts.");
   d.internal<&S::ends_at>("Tracks at whose starts it ends.");
   d.internal<&S::has_length>("There is a way.");

@@ -41,9 +41,9 @@ struct State {
   Ticket ticket = 0;  // of the command that changes the state; 0: none
   ErrorId error = ErrorId::kNone;
   ErrorReaction reaction = ErrorReaction::kQuickStop;
-  Sketch sketch;
-  Links starts_from;  // at the ends of these tracks
-  Links ends_at;      // at the starts of these
+  std::uint64_t sketch_hash = 0;  // of what it is given by (Tracks), which changes rarely and is large
+  Links starts_from;              // at the ends of these tracks
+  Links ends_at;                  // at the starts of these
   bool has_length = false;
   double length = 0;  // mm
 };

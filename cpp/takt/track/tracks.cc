@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "takt/core/hash.h"
 #include "takt/core/in_range.h"
 #include "takt/track/build.h"
 #include "takt/track/works.h"
@@ -162,6 +163,7 @@ struct Applier {
 Tracks::Tracks(const std::vector<TrackParams>& all)
     : params(all),
       states(all.size()),
+      sketches(all.size()),
       outputs(all.size()),
       ways(all.size()),
       start_nodes(all.size()),
@@ -172,7 +174,7 @@ Tracks::Tracks(const std::vector<TrackParams>& all)
   BuildResult built = Build(all);
   for (std::size_t i = 0; i < all.size(); ++i) {
     State& s = states[i];
-    s.sketch = ToSketch(built.tracks[i].layout);
+    SetSketch(i, ToSketch(built.tracks[i].layout));
     const auto link = [this](const std::vector<std::string>& names, Links& links) {
       for (const std::string& name : names) {
         links.tracks[links.count++] = static_cast<std::uint32_t>(Find(*this, name).value());
@@ -186,6 +188,11 @@ Tracks::Tracks(const std::vector<TrackParams>& all)
     s.length = ways[i]->length;
   }
   MakeNodes(*this);
+}
+
+void Tracks::SetSketch(std::size_t track, const Sketch& sketch) noexcept {
+  sketches[track] = sketch;
+  states[track].sketch_hash = HashOf(sketch, 0);
 }
 
 Tracks::~Tracks() {
@@ -228,8 +235,8 @@ void Publish(const Context& c) noexcept {
     out.operation_mode = s.mode;
     out.error = s.error;
     out.length = s.length;
-    out.closed_loop = s.sketch.closed;
-    out.element_count = s.sketch.count;
+    out.closed_loop = t.sketches[i].closed;
+    out.element_count = t.sketches[i].count;
     out.mover_count = 0;
     out.previous_tracks = t.ends_at[t.start_nodes[i]];
     out.subsequent_tracks = t.starts_at[t.end_nodes[i]];

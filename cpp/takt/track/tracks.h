@@ -26,8 +26,11 @@ struct Tracks {
   Tracks(const Tracks&) = delete;
   Tracks& operator=(const Tracks&) = delete;
 
+  void SetSketch(std::size_t track, const Sketch& sketch) noexcept;
+
   std::vector<TrackParams> params;
   std::vector<State> states;
+  std::vector<Sketch> sketches;  // what each is given by; the states have their hashes
   std::vector<Outputs> outputs;
   Works works;
 

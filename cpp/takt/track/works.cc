@@ -36,45 +36,47 @@ struct Look {
   planar::TrackPoint point{};  // where it is to start or end
 };
 
-Look LookAtLink(const Tracks& t, const Order& order, const State& s) {
+Look LookAtLink(const Tracks& t, const Order& order) {
+  const State& s = t.states[order.track];
+  const Sketch& sketch = t.sketches[order.track];
   const bool starts = order.kind == OrderKind::kStartFrom;
   const planar::Track* other = t.ways[order.other];
   const planar::Track* own = t.ways[order.track];
   const Links& links = starts ? s.starts_from : s.ends_at;
   if (!other) return {Problem::kOtherEmpty};
   if (other->closed) return {Problem::kOtherClosed};
-  if (s.sketch.closed) return {Problem::kLinked};
+  if (sketch.closed) return {Problem::kLinked};
   if (links.count == kLinks && !Holds(links, order.other)) return {Problem::kTooMany};
   Look look{.makes = true, .may_be_empty = starts, .point = planar::At(*other, starts ? other->length : 0)};
-  if (starts && (own || s.sketch.from || s.sketch.count > 0)) {
+  if (starts && (own || sketch.from || sketch.count > 0)) {
     // It has a start: it can only be the same one.
-    const bool same = own ? Same(planar::At(*own, 0), look.point) : s.sketch.from && Same(*s.sketch.from, look.point);
+    const bool same = own ? Same(planar::At(*own, 0), look.point) : sketch.from && Same(*sketch.from, look.point);
     return {same ? Problem::kNone : Problem::kNotItsStart};
   }
-  if (!starts && s.sketch.to) {
-    return {Same(*s.sketch.to, look.point) ? Problem::kNone : Problem::kNotItsEnd};
+  if (!starts && sketch.to) {
+    return {Same(*sketch.to, look.point) ? Problem::kNone : Problem::kNotItsEnd};
   }
   return look;
 }
 
 Look LookAt(const Tracks& t, const Order& order) {
-  const State& s = t.states[order.track];
+  const Sketch& sketch = t.sketches[order.track];
   const bool links = order.kind == OrderKind::kStartFrom || order.kind == OrderKind::kEndAt;
   Look look{.makes = true, .may_be_empty = true};
   if (links) {
-    look = LookAtLink(t, order, s);
+    look = LookAtLink(t, order);
     if (look.problem != Problem::kNone || !look.makes) return look;
   }
   if (IsInUse(t, order.track)) return {Problem::kInUse};
   if (links) return look;
   if (order.kind == OrderKind::kClear) return {};
-  if (s.sketch.closed) return {Problem::kClosed};
+  if (sketch.closed) return {Problem::kClosed};
   if (order.kind == OrderKind::kCloseLoop) {
     look.may_be_empty = false;
     return look;
   }
-  if (s.sketch.to) return {Problem::kEnded};
-  if (s.sketch.count == kElements) return {Problem::kTooMany};
+  if (sketch.to) return {Problem::kEnded};
+  if (sketch.count == kElements) return {Problem::kTooMany};
   return look;
 }
 
@@ -118,7 +120,7 @@ void AddLink(Tracks& t, const Order& order) {
 
 void TakeAway(Tracks& t, std::uint32_t track) {
   State& s = t.states[track];
-  s.sketch = {};
+  t.SetSketch(track, {});
   s.starts_from = s.ends_at = {};
   Use(t, track, nullptr);
   MakeNodes(t);
@@ -148,7 +150,7 @@ const planar::Track* Fetch(Desk& desk, std::uint64_t number) {
 void Send(Tracks& t) {
   if (t.sent) return;
   const Order& order = t.works.orders[t.works.first];
-  const Sketch& sketch = t.states[order.track].sketch;
+  const Sketch& sketch = t.sketches[order.track];
   t.sent = t.desk.questions.TryPush({t.works.question, order.track, With(order, LookAt(t, order), sketch)});
 }
 
@@ -196,8 +198,7 @@ bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) no
   if (made.problem == Problem::kNone || empty) {
     const planar::Track* way = empty ? nullptr : Fetch(t.desk, made.number);
     if (!way && !empty) return false;
-    State& s = t.states[track];
-    s.sketch = With(order, look, s.sketch);
+    t.SetSketch(track, With(order, look, t.sketches[track]));
     Use(t, track, way);
     AddLink(t, order);
   }

@@ -76,9 +76,10 @@ TEST(Works, BuildWhatTheBuilderBuilds) {
       if (expected == Problem::kNone) model = next;
       ASSERT_EQ(rig.state(0).length, model.track() ? model.track()->length : 0);
       ASSERT_EQ(rig.state(0).has_length, model.track() != nullptr);
-      ASSERT_EQ(rig.state(0).sketch.count, model.layout().elements.size());
+      ASSERT_EQ(rig.tracks.sketches[0].count, model.layout().elements.size());
+      ASSERT_EQ(rig.state(0).sketch_hash, HashOf(rig.tracks.sketches[0], 0));
     }
-    closed += rig.state(0).sketch.closed ? 1 : 0;
+    closed += rig.tracks.sketches[0].closed ? 1 : 0;
   }
   EXPECT_GT(made, 60);
   EXPECT_GT(crossed, 20);
@@ -191,7 +192,7 @@ TEST(Works, TakeSoManyAtOnce) {
   for (std::size_t i = 0; i < given.size(); ++i) {
     EXPECT_EQ(rig.End(given[i]), i < kOrders ? Problem::kNone : Problem::kBusy) << i;
   }
-  EXPECT_EQ(rig.state(0).sketch.count, kOrders / 2);
+  EXPECT_EQ(rig.tracks.sketches[0].count, kOrders / 2);
   EXPECT_DOUBLE_EQ(rig.state(0).length, 100 * (kOrders / 2) - 50);
 }
 
