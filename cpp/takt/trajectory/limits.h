@@ -1,6 +1,8 @@
 // How fast a motion may change.
 #pragma once
 
+#include "takt/core/describe_fwd.h"
+
 namespace takt::trajectory {
 
 struct Limits {
@@ -9,5 +11,7 @@ struct Limits {
   double deceleration = 0;  // u/s², > 0: largest while the speed falls
   double jerk = 0;          // u/s³, >= 0; 0: unlimited (trapezoid)
 };
+
+void describe(Description<Limits>&);
 
 }  // namespace takt::trajectory

@@ -1,0 +1,99 @@
+// Tracks that go on into one another: a graph whose edges are tracks. From the end of a track one gets to the start of
+// those linked with it, never the other way.
+//
+// Links change while the machine runs (parts move, tracks are configured), so everything here has its memory from the
+// start; only where stated it takes some.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/planar/clearance.h"
+#include "takt/planar/track.h"
+
+namespace takt::planar {
+
+inline constexpr std::uint32_t kNoTrack = 0xffffffff;
+inline constexpr std::uint32_t kNoNode = 0xffffffff;
+inline constexpr std::size_t kLinks = 16;  // from one end of a track
+
+// A stretch of a track whose curvature varies little.
+struct Bend {
+  double from = 0;       // mm along the track; it reaches to the next one
+  double curvature = 0;  // 1/mm, the largest, without sign
+};
+// Allocates; not for the cycle.
+std::vector<Bend> BendsOf(const Track& track);
+
+// Tracks linked with one end of a track.
+struct Links {
+  std::array<std::uint32_t, kLinks> tracks{};
+  std::uint32_t count = 0;
+
+  std::span<const std::uint32_t> all() const noexcept { return {tracks.data(), count}; }
+  bool Add(std::uint32_t track) noexcept;
+};
+
+// A track as the traffic sees it.
+struct Road {
+  const Track* track = nullptr;  // null: not to be used
+  std::span<const Bend> bends{};
+  double length = 0;  // mm
+  bool closed = false;
+  Links before{}, behind{};  // tracks that end at its start, that start from its end
+  // mm from its ends, within which movers on other tracks that meet it there may be too near.
+  double range_at_start = 0;
+  double range_at_end = 0;
+  // Where its ends meet others; kNoNode: nowhere.
+  std::uint32_t start_node = kNoNode;
+  std::uint32_t end_node = kNoNode;
+};
+
+struct Network {
+  std::vector<Road> roads;
+  std::uint32_t node_count = 0;
+
+  const Road& operator[](std::uint32_t track) const noexcept { return roads[track]; }
+};
+
+// The end of `from` goes on into the start of `to`. False: too many links.
+bool Link(std::uint32_t from, std::uint32_t to, Network& network) noexcept;
+// Names the nodes anew, after links have changed.
+void NameNodes(Network& network) noexcept;
+
+// The ranges at both ends of a track, as far as movers with this area may come too near to each other there. Allocates.
+void SetRanges(std::uint32_t track, const Footprint& mover, Network& network);
+
+// Tracks one after the other, the first one is where the mover is.
+inline constexpr std::size_t kRouteTracks = 32;
+struct Route {
+  std::array<std::uint32_t, kRouteTracks> tracks{};
+  std::uint32_t count = 0;
+
+  std::uint32_t first() const noexcept { return tracks[0]; }
+  std::uint32_t last() const noexcept { return tracks[count - 1]; }
+  std::span<const std::uint32_t> all() const noexcept { return {tracks.data(), count}; }
+  bool Contains(std::uint32_t track) const noexcept;
+  bool operator==(const Route&) const = default;
+};
+
+// Memory of a search, for as many tracks as the network has.
+struct RouteSearch {
+  std::vector<double> way;
+  std::vector<std::uint32_t> came_from;
+  std::vector<std::uint8_t> settled;
+
+  explicit RouteSearch(std::size_t tracks = 0) : way(tracks), came_from(tracks), settled(tracks) {}
+};
+
+// The shortest way from the end of `from` (which is its first track) to the start of `to`, by length; of ways that are
+// equally long that over the tracks with the smaller numbers. False: there is none, or it has too many tracks.
+bool FindRoute(const Network& network, std::uint32_t from, std::uint32_t to, RouteSearch& search, Route& out) noexcept;
+
+void describe(Description<Route>&);
+
+}  // namespace takt::planar

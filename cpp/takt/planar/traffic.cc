@@ -1,0 +1,578 @@
+#include "takt/planar/traffic.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "takt/core/describe.h"
+
+namespace takt::planar {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+// mm: rounding. What is nearer than the gap by less than this is not.
+constexpr double kTolerance = 1e-7;
+// mm: so far before the place where it would get active at a node a mover stops.
+constexpr double kBeforeNode = 1e-3;
+// Of the dynamics that follower and leader both have, what following plans with: the rest is for the delay of a cycle.
+constexpr double kReserve = 0.95;
+// s, in which a mover takes back what it is too fast, and cycles in which it can at the least.
+constexpr double kCalm = 0.1;
+constexpr double kQuick = 5;
+// Standing is slower than this, mm/s, and nearer than this to where it has to stop, mm.
+constexpr double kStands = 0.1;
+constexpr double kAtLimit = 0.01;
+constexpr std::size_t kPresences = 8;  // nodes at which a mover can be active at once
+
+bool Rests(const KinematicState& x) {
+  return x.velocity == 0 && x.acceleration == 0;
+}
+
+// Where it has to be able to stop: so far from here, and how fast that place goes away.
+struct Limit {
+  double room = kInfinite;
+  double rate = 0;
+  Brakes brakes;
+  std::uint32_t by = kNobody;
+};
+
+Brakes Weaker(const Brakes& a, const Brakes& b) {
+  return {std::min(a.deceleration, b.deceleration), std::min(a.jerk, b.jerk)};
+}
+
+// The acceleration with which a mover follows a limit. With so much room R left it may have the speed v(R) from which
+// it just gets to rest in it. Held at that speed its stop keeps its distance to the limit; so a chain of movers hands on
+// the stop of the first, and each settles on the speed of the one before it without swinging.
+double Follow(const Limit& limit, double speed, double period_s) {
+  const Brakes brakes{kReserve * limit.brakes.deceleration, kReserve * limit.brakes.jerk};
+  const double allowed = SpeedForWay(limit.room, brakes);
+  const double full = brakes.deceleration * brakes.deceleration / brakes.jerk;
+  // How the way to rest grows with the speed.
+  const double slope = allowed >= full ? allowed / brakes.deceleration + 0.5 * brakes.deceleration / brakes.jerk
+                                       : 1.5 * std::sqrt(allowed / brakes.jerk);
+  const double quick = kQuick * period_s;
+  const double goes_along = (limit.rate - speed) / std::max(slope, quick);
+  return goes_along + (allowed - speed) / std::clamp(slope, quick, kCalm);
+}
+
+}  // namespace
+
+class Traffic::Step_ {
+ public:
+  Step_(Traffic& traffic, const Cycle& cycle, trajectory::Planner& planner, const Network& network,
+        std::span<Rider> riders)
+      : t_(traffic), cycle_(cycle), planner_(planner), network_(network), riders_(riders) {}
+
+  void Run() {
+    t_.refused_ = 0;
+    t_.presence_count_ = 0;
+    std::ranges::fill(t_.heads_, kNobody);
+    for (std::uint32_t i = 0; i < riders_.size(); ++i) TakeToBrake(i);
+    Sort();
+    for (std::uint32_t i = 0; i < riders_.size(); ++i) {
+      if (!riders_[i].on) continue;
+      t_.now_[i].leader = FindLeader(i, riders_[i].direction, t_.now_[i].leader_offset);
+      EnterNodes(i, t_.now_[i].next, t_.now_[i].braking);
+    }
+    // Those in front first: who follows sees what the one before it does in this cycle.
+    for (std::uint32_t i = 0; i < riders_.size(); ++i) SettleInOrder(i);
+    for (std::uint32_t i = 0; i < riders_.size(); ++i) {
+      if (riders_[i].on) GoOn(i);
+    }
+  }
+
+ private:
+  double period() const { return cycle_.period_s; }
+
+  void TakeToBrake(std::uint32_t i) {
+    Rider& r = riders_[i];
+    Now& now = t_.now_[i];
+    now = {};
+    if (!r.on) return;
+    if (Rests(r.at)) {
+      now.next = r.at;
+      now.braking.rest = now.braking.lowest = now.braking.highest = now.rest_before = r.at.position;
+      return;
+    }
+    const Braking braking = Brake(r.at, r.brakes);
+    now.next = braking.At(period());
+    now.braking = Brake(now.next, r.brakes);
+    now.rest_before = braking.rest;
+  }
+
+  void Sort() {
+    std::ranges::fill(t_.begins_, 0U);
+    for (const Rider& r : riders_) {
+      if (r.on) ++t_.begins_[r.route.first() + 1];
+    }
+    for (std::size_t i = 1; i < t_.begins_.size(); ++i) t_.begins_[i] += t_.begins_[i - 1];
+    // Filled from their begins on, which are put back behind that.
+    for (std::uint32_t i = 0; i < riders_.size(); ++i) {
+      if (riders_[i].on) t_.order_[t_.begins_[riders_[i].route.first()]++] = i;
+    }
+    for (std::size_t i = t_.begins_.size() - 1; i > 0; --i) t_.begins_[i] = t_.begins_[i - 1];
+    t_.begins_[0] = 0;
+    for (std::size_t track = 0; track + 1 < t_.begins_.size(); ++track) {
+      const auto first = t_.order_.begin() + t_.begins_[track], last = t_.order_.begin() + t_.begins_[track + 1];
+      std::sort(first, last, [&](std::uint32_t a, std::uint32_t b) {
+        const double at_a = riders_[a].at.position, at_b = riders_[b].at.position;
+        return at_a < at_b || (at_a == at_b && a < b);
+      });
+      for (auto k = first; k != last; ++k) t_.index_[*k] = static_cast<std::uint32_t>(k - t_.order_.begin());
+    }
+  }
+
+  // Who is next in this direction, on the track or the rest of the route.
+  std::uint32_t FindLeader(std::uint32_t i, int direction, double& offset) const {
+    const Rider& r = riders_[i];
+    const std::uint32_t track = r.route.first();
+    const std::uint32_t first = t_.begins_[track], last = t_.begins_[track + 1], index = t_.index_[i];
+    offset = 0;
+    if (direction > 0 && index + 1 < last) return t_.order_[index + 1];
+    if (direction < 0 && index > first) return t_.order_[index - 1];
+    if (network_[track].closed) {
+      const std::uint32_t round = t_.order_[direction > 0 ? first : last - 1];
+      offset = direction > 0 ? network_[track].length : -network_[track].length;
+      return round == i ? kNobody : round;
+    }
+    if (direction < 0) return kNobody;
+    const double reach = t_.now_[i].braking.highest + r.gap + 2 * WayToRest(r.pace.limits.velocity, r.pace.brakes());
+    for (std::uint32_t k = 1; k < r.route.count; ++k) {
+      offset += network_[r.route.tracks[k - 1]].length;
+      if (offset > reach) break;
+      const std::uint32_t next = r.route.tracks[k];
+      if (t_.begins_[next] == t_.begins_[next + 1]) continue;
+      const std::uint32_t found = t_.order_[t_.begins_[next]];
+      return found == i ? kNobody : found;
+    }
+    return kNobody;
+  }
+
+  // Calls `look` for the nodes on the way: number, where it is on the mover's first track, and the ranges before and
+  // behind it.
+  template <typename Look>
+  void AlongNodes(const Rider& r, double reach, const Look& look) const {
+    const Road& here = network_[r.route.first()];
+    if (here.closed) return;
+    double offset = 0;
+    const double range_before = r.passed_count > 0 ? network_[r.passed[0]].range_at_end : 0;
+    if (here.start_node != kNoNode) look(here.start_node, 0.0, range_before, here.range_at_start);
+    for (std::uint32_t k = 0; k < r.route.count; ++k) {
+      const Road& road = network_[r.route.tracks[k]];
+      offset += road.length;
+      const double behind = k + 1 < r.route.count ? network_[r.route.tracks[k + 1]].range_at_start : 0;
+      if (road.end_node != kNoNode) look(road.end_node, offset, road.range_at_end, behind);
+      if (offset > reach) break;
+    }
+    offset = 0;
+    for (std::uint32_t k = 0; k < r.passed_count; ++k) {
+      const Road& road = network_[r.passed[k]];
+      offset -= road.length;
+      const double before = k + 1 < r.passed_count ? network_[r.passed[k + 1]].range_at_end : 0;
+      if (road.start_node != kNoNode) look(road.start_node, offset, before, road.range_at_start);
+    }
+  }
+
+  static bool IsActive(const Rider& r, const KinematicState& next, const Braking& braking, double offset,
+                       double range_before, double range_behind) {
+    const double lowest = std::min(next.position, braking.lowest), highest = std::max(next.position, braking.highest);
+    if (highest < offset) return offset - highest < std::max(r.gap, range_before);
+    if (lowest > offset) return lowest - offset < std::max(r.gap, range_behind);
+    return true;
+  }
+
+  const Presence* PresenceOf(std::uint32_t mover, std::uint32_t node) const {
+    for (std::uint32_t k = t_.heads_[node]; k != kNobody; k = t_.presences_[k].next) {
+      if (t_.presences_[k].mover == mover) return &t_.presences_[k];
+    }
+    return nullptr;
+  }
+
+  void EnterNodes(std::uint32_t i, const KinematicState& next, const Braking& braking) {
+    const Rider& r = riders_[i];
+    AlongNodes(r, braking.highest + r.gap, [&](std::uint32_t node, double offset, double before, double behind) {
+      if (!IsActive(r, next, braking, offset, before, behind) || PresenceOf(i, node)) return;
+      if (t_.presence_count_ == t_.presences_.size()) return;
+      t_.presences_[t_.presence_count_] = {i, offset, t_.heads_[node]};
+      t_.heads_[node] = t_.presence_count_++;
+    });
+  }
+
+  // The other is on this one's way as far as the places of both differ by `apart`.
+  bool IsOnRoute(const Rider& r, const Rider& other, double apart) const {
+    double begin = 0;
+    for (const std::uint32_t track : r.route.all()) {
+      if (begin > apart + kSame) return false;
+      if (track == other.route.first() && begin >= apart - kSame) return true;
+      begin += network_[track].length;
+    }
+    return false;
+  }
+
+  // Calls `look` for those at a node with whom this mover has to do there: the presence, and the offset from their
+  // places to own ones.
+  template <typename Look>
+  void OthersAt(std::uint32_t i, std::uint32_t node, double offset, const Look& look) const {
+    for (std::uint32_t k = t_.heads_[node]; k != kNobody; k = t_.presences_[k].next) {
+      const Presence& other = t_.presences_[k];
+      if (other.mover == i) continue;
+      const double apart = offset - other.offset;
+      // Their order along the way sees to it.
+      const Rider &r = riders_[i], &o = riders_[other.mover];
+      if (!IsOnRoute(r, o, apart) && !IsOnRoute(o, r, -apart)) look(other.mover, apart);
+    }
+  }
+
+  // How far apart two have to stay: what is less already must not get less.
+  static double Required(double gap, double apart_now) { return std::min(gap - kTolerance, apart_now); }
+
+  double GapTo(std::uint32_t i, std::uint32_t leader, int direction) const {
+    const Rider& other = riders_[leader];
+    const bool faces = other.at.velocity * direction < 0;
+    return faces ? std::max(riders_[i].gap, other.gap) : riders_[i].gap;
+  }
+
+  static bool Holds(const Braking& of_behind, const Braking& of_ahead, double apart, double required) {
+    // Mostly there is room enough.
+    if (of_ahead.lowest + apart - of_behind.highest >= required) return true;
+    return LeastDistance(of_behind, of_ahead, apart) >= required;
+  }
+
+  // Whether this step keeps the invariant with everyone.
+  bool MayTake(std::uint32_t i, const KinematicState& next, const Braking& braking) const {
+    const Rider& r = riders_[i];
+    const Now& now = t_.now_[i];
+    const bool forward = braking.highest > now.braking.highest || next.position > now.next.position;
+    const bool back = braking.lowest < now.braking.lowest || next.position < now.next.position;
+    const bool closed = network_[r.route.first()].closed;
+    if (back && !closed && std::min(braking.lowest, next.position) < std::min(0.0, now.braking.lowest) - kTolerance) {
+      return false;
+    }
+    if (forward && !closed) {
+      double end = 0;
+      for (const std::uint32_t track : r.route.all()) end += network_[track].length;
+      if (braking.highest > std::max(end, now.braking.highest) + kTolerance) return false;
+    }
+    if (forward) {
+      double apart = now.leader_offset;
+      const std::uint32_t leader = r.direction > 0 ? now.leader : FindLeader(i, 1, apart);
+      if (leader != kNobody) {
+        const double required =
+            Required(GapTo(i, leader, 1), riders_[leader].at.position + apart - r.at.position);
+        if (!Holds(braking, t_.now_[leader].braking, apart, required)) return false;
+      }
+    }
+    if (back) {
+      double apart = now.leader_offset;
+      const std::uint32_t leader = r.direction < 0 ? now.leader : FindLeader(i, -1, apart);
+      if (leader != kNobody) {
+        const double required =
+            Required(GapTo(i, leader, -1), r.at.position - riders_[leader].at.position - apart);
+        if (!Holds(t_.now_[leader].braking, braking, -apart, required)) return false;
+      }
+      for (std::uint32_t k = 0; k < riders_.size(); ++k) {
+        const Now& other = t_.now_[k];
+        if (!riders_[k].on || other.leader != i || riders_[k].direction < 0) continue;
+        const double required = Required(std::max(riders_[k].gap, r.gap),
+                                         r.at.position + other.leader_offset - riders_[k].at.position);
+        if (!Holds(other.braking, braking, other.leader_offset, required)) return false;
+      }
+    }
+    bool may = true;
+    AlongNodes(r, braking.highest + r.gap, [&](std::uint32_t node, double offset, double before, double behind) {
+      if (!may || !IsActive(r, next, braking, offset, before, behind)) return;
+      const bool anew = !PresenceOf(i, node);
+      OthersAt(i, node, offset, [&](std::uint32_t other, double apart) {
+        const double distance = riders_[other].at.position + apart - r.at.position;
+        const bool ahead = distance > 0 || (distance == 0 && other > i);
+        if (!may || !(anew || (ahead ? forward : back))) return;
+        const double gap = std::max(r.gap, riders_[other].gap);
+        // Who was not active has kept away by other means, and has to have all of it now.
+        const double required = anew ? gap - kTolerance : Required(gap, std::abs(distance));
+        const Braking& theirs = t_.now_[other].braking;
+        may = ahead ? Holds(braking, theirs, apart, required) : Holds(theirs, braking, -apart, required);
+      });
+    });
+    return may;
+  }
+
+  void SettleInOrder(std::uint32_t i) {
+    std::size_t depth = 0;
+    for (std::uint32_t k = i; k != kNobody && riders_[k].on && !t_.now_[k].entered; k = t_.now_[k].leader) {
+      t_.now_[k].entered = true;
+      t_.stack_[depth++] = k;
+    }
+    while (depth > 0) Settle(t_.stack_[--depth]);
+  }
+
+  // A plan from this state on, on the first track. At rest the direction is that of the target.
+  void Plan(Rider& r, double place, double speed, double acceleration) {
+    double end = r.target;
+    for (std::uint32_t k = 0; k + 1 < r.route.count; ++k) end += network_[r.route.tracks[k]].length;
+    if (speed == 0 && acceleration == 0) r.direction = end < place ? -1 : 1;
+    const double way = r.direction * (end - place);
+    const Start start{&r.route, place, r.direction, speed, acceleration};
+    PlanWay(planner_, network_, start, way, r.pace, r.plan, r.plan_ends);
+    r.plan_from = place;
+    r.plan_time = 0;
+    r.planned = true;
+  }
+
+  // Where its own plan has it at the end of the cycle.
+  KinematicState Wish(Rider& r) {
+    if (!r.planned) Plan(r, r.at.position, r.direction * r.at.velocity, r.direction * r.at.acceleration);
+    double time = r.plan_time + period();
+    for (int i = 0; i < 3 && time >= r.plan.duration() && !r.plan_ends; ++i) {
+      const KinematicState end = r.plan.end();
+      time -= r.plan.duration();
+      Plan(r, r.plan_from + r.direction * end.position, end.velocity, end.acceleration);
+    }
+    r.plan_time = time;
+    const KinematicState way = r.plan.At(time);
+    return {r.plan_from + r.direction * way.position, r.direction * way.velocity, r.direction * way.acceleration};
+  }
+
+  // What holds this mover back, in its direction: the one before it, and those at nodes.
+  void LimitBy(std::uint32_t i, double speed, Limit& limit, double& least) const {
+    const Rider& r = riders_[i];
+    const Now& now = t_.now_[i];
+    const int direction = r.direction;
+    const auto take = [&](const Limit& one) {
+      const double acceleration = Follow(one, speed, period());
+      if (acceleration < least) {
+        least = acceleration;
+        limit = one;
+      }
+    };
+    const auto behind = [&](std::uint32_t other, double apart, double gap) {
+      const Rider& before = riders_[other];
+      const Now& its = t_.now_[other];
+      const double stop = its.rest_before + apart;
+      Limit one;
+      one.room = direction * (stop - r.at.position) - gap;
+      one.rate = direction * (its.braking.rest - its.rest_before) / period();
+      one.brakes = Weaker(r.pace.brakes(), before.brakes);
+      one.by = other;
+      return one;
+    };
+    if (now.leader != kNobody) {
+      take(behind(now.leader, now.leader_offset, GapTo(i, now.leader, direction)));
+    }
+    const double reach = 2 * WayToRest(r.pace.limits.velocity, r.pace.brakes()) + r.gap;
+    AlongNodes(r, r.at.position + reach, [&](std::uint32_t node, double offset, double range_before, double range_behind) {
+      const double way = direction * (offset - r.at.position);
+      if (way > reach + std::max(range_before, range_behind)) return;
+      const bool active = PresenceOf(i, node) != nullptr;
+      const double zone = std::max(r.gap, direction > 0 ? range_before : range_behind);
+      if (!active && way < 0) return;  // it goes away from it
+      OthersAt(i, node, offset, [&](std::uint32_t other, double apart) {
+        const double gap = std::max(r.gap, riders_[other].gap);
+        const double distance = direction * (riders_[other].at.position + apart - r.at.position);
+        Limit one = behind(other, apart, gap);
+        if (distance < 0) {
+          // It comes behind; it must have room to stop there.
+          const double rest = direction * (r.at.position - t_.now_[other].rest_before - apart);
+          if (active || rest >= gap) return;
+          one.room = -kInfinite;
+        }
+        if (!active && way - zone - kBeforeNode > one.room) {
+          one.room = way - zone - kBeforeNode;
+          one.rate = 0;
+          one.brakes = r.pace.brakes();
+        }
+        take(one);
+      });
+    });
+  }
+
+  // It goes just as the one before it, or falls behind: the gap needs no more than the invariant.
+  bool GoesAlong(std::uint32_t i, const KinematicState& wish, const Limit& limit) const {
+    const Rider& r = riders_[i];
+    if (limit.by == kNobody || limit.by != t_.now_[i].leader) return false;
+    const Rider& before = riders_[limit.by];
+    const KinematicState& other = t_.now_[limit.by].next;
+    return r.brakes.deceleration >= before.brakes.deceleration && r.brakes.jerk >= before.brakes.jerk &&
+           r.direction * (wish.velocity - other.velocity) <= 1e-9 &&
+           r.direction * (wish.acceleration - other.acceleration) <= 1e-6;
+  }
+
+  bool Take(std::uint32_t i, const KinematicState& next) {
+    Now& now = t_.now_[i];
+    const Braking braking = Brake(next, riders_[i].brakes);
+    if (!MayTake(i, next, braking)) {
+      t_.refused_ += std::abs(riders_[i].at.velocity) > kStands ? 1 : 0;
+      return false;
+    }
+    now.next = next;
+    now.braking = braking;
+    EnterNodes(i, next, braking);
+    return true;
+  }
+
+  void WaitFor(Rider& r, Waits why, std::uint32_t whom) {
+    if (r.waits == why && r.waits_for == whom) return;
+    if (r.waits == Waits::kNot || why == Waits::kNot) r.waits_since = cycle_.count;
+    r.waits = why;
+    r.waits_for = whom;
+  }
+
+  void Settle(std::uint32_t i) {
+    Rider& r = riders_[i];
+    Now& now = t_.now_[i];
+    now.settled = true;
+    if (r.aim == Aim::kRest || (r.aim == Aim::kTarget && r.there)) {
+      r.planned = false;
+      return WaitFor(r, Waits::kNot, kNobody);
+    }
+    const KinematicState wish = r.aim == Aim::kTarget ? Wish(r) : r.demand;
+    if (r.aim == Aim::kFollow && Rests(r.at) && wish.velocity != 0) r.direction = wish.velocity < 0 ? -1 : 1;
+    if (r.aim == Aim::kTarget && now.leader == kNobody) now.leader = FindLeader(i, r.direction, now.leader_offset);
+    const int direction = r.direction;
+    const double speed = direction * r.at.velocity;
+    Limit limit;
+    double most = kInfinite;
+    LimitBy(i, speed, limit, most);
+    const double before = direction * r.at.acceleration;
+    // With constant jerk neither faster than wished at the end of the cycle, nor with more acceleration.
+    const double mean = (direction * wish.velocity - speed) / period();
+    const double wished = std::min(direction * wish.acceleration, 2 * mean - before);
+    const bool limited = mean > most + 1e-9 && !GoesAlong(i, wish, limit);
+    if (!limited && Take(i, wish)) {
+      if (r.aim == Aim::kTarget && r.plan_ends && r.plan_time >= r.plan.duration()) r.there = true;
+      return WaitFor(r, Waits::kNot, kNobody);
+    }
+    r.planned = false;
+    const bool stands = std::abs(r.at.velocity) < kStands;
+    // Slower than it wishes, as fast as it may behind the other.
+    const double change = r.pace.limits.jerk * period();
+    double next = std::clamp(std::min(most, wished), before - change, before + change);
+    next = std::clamp(next, -r.brakes.deceleration, r.pace.limits.acceleration);
+    const double jerk = (next - before) / period();
+    const trajectory::Piece piece{r.at.position, r.at.velocity, r.at.acceleration, direction * jerk};
+    const KinematicState step = piece.At(period());
+    const bool goes = direction * step.velocity > 0 && !(stands && limit.room < kAtLimit);
+    if (goes && Take(i, step)) {
+      return stands ? WaitFor(r, Waits::kMover, limit.by) : WaitFor(r, Waits::kNot, kNobody);
+    }
+    if (stands) WaitFor(r, limit.by != kNobody ? Waits::kMover : Waits::kRoute, limit.by);
+  }
+
+  // The end of the cycle: places are those on the track where the mover is now.
+  void GoOn(std::uint32_t i) {
+    Rider& r = riders_[i];
+    r.at = t_.now_[i].next;
+    if (std::abs(r.at.velocity) < 1e-9 && std::abs(r.at.acceleration) < 1e-6) r.at.velocity = r.at.acceleration = 0;
+    const auto shift = [&r](double by) {
+      r.at.position -= by;
+      r.plan_from -= by;
+      r.demand.position -= by;
+      r.origin += by;
+    };
+    const Road& here = network_[r.route.first()];
+    if (here.closed) {
+      while (r.at.position >= here.length || r.at.position < 0) {
+        const double by = r.at.position < 0 ? -here.length : here.length;
+        shift(by);
+        r.target -= by;
+      }
+      return;
+    }
+    while (r.route.count > 1 && r.at.position >= network_[r.route.first()].length) {
+      shift(network_[r.route.first()].length);
+      std::copy_backward(r.passed.begin(), r.passed.end() - 1, r.passed.end());
+      r.passed[0] = r.route.first();
+      r.passed_count = std::min<std::uint32_t>(r.passed_count + 1, kPassed);
+      std::copy(r.route.tracks.begin() + 1, r.route.tracks.begin() + r.route.count, r.route.tracks.begin());
+      r.route.tracks[--r.route.count] = 0;
+    }
+  }
+
+  Traffic& t_;
+  const Cycle& cycle_;
+  trajectory::Planner& planner_;
+  const Network& network_;
+  std::span<Rider> riders_;
+};
+
+Traffic::Traffic(const TrafficSettings& settings)
+    : now_(settings.movers),
+      order_(settings.movers),
+      begins_(settings.tracks + 1),
+      index_(settings.movers),
+      heads_(2 * settings.tracks),
+      presences_(settings.movers * kPresences),
+      stack_(settings.movers) {}
+
+void Traffic::Step(const Cycle& cycle, trajectory::Planner& planner, const Network& network,
+                   std::span<Rider> riders) noexcept {
+  Step_(*this, cycle, planner, network, riders).Run();
+}
+
+std::span<const std::uint32_t> Traffic::On(std::uint32_t track) const noexcept {
+  return {order_.data() + begins_[track], order_.data() + begins_[track + 1]};
+}
+
+bool IsDeadlocked(std::span<const Rider> riders, std::uint32_t mover) noexcept {
+  std::uint32_t at = mover;
+  for (std::size_t i = 0; i < riders.size(); ++i) {
+    if (riders[at].waits != Waits::kMover || riders[at].waits_for == kNobody) return false;
+    at = riders[at].waits_for;
+    if (at == mover) return true;
+  }
+  return false;
+}
+
+void describe(Enumeration<Aim>& e) {
+  e.about("What a mover on a track is about.");
+  e.value(Aim::kRest, "rest", "Come to rest and stay.");
+  e.value(Aim::kTarget, "target", "Go to a place on its route.");
+  e.value(Aim::kFollow, "follow", "Go along with a master.");
+}
+
+void describe(Enumeration<Waits>& e) {
+  e.about("Why a mover does not go on.");
+  e.value(Waits::kNot, "not", "It does, or has nothing to do.");
+  e.value(Waits::kMover, "mover", "Another mover is in its way.");
+  e.value(Waits::kRoute, "route", "Its route ends here.");
+}
+
+void describe(Description<Brakes>& d) {
+  d.about("How hard a mover brakes.");
+  d.internal<&Brakes::deceleration>(unit::mm_s2, "Deceleration.");
+  d.internal<&Brakes::jerk>(unit::mm_s3, "Jerk.");
+}
+
+void describe(Description<Pace>& d) {
+  d.about("How fast a mover may go.");
+  d.internal<&Pace::limits>("Along the way.");
+  d.internal<&Pace::lateral>(unit::mm_s2, "Across it, in curves.");
+}
+
+void describe(Description<Rider>& d) {
+  using R = Rider;
+  d.about("A mover on a track.");
+  d.internal<&R::on>("It is on a track.");
+  d.internal<&R::at>("On the first track of the route.");
+  d.internal<&R::route>("The tracks it goes along.");
+  d.internal<&R::passed>("Those it has come from, the last one first.");
+  d.internal<&R::passed_count>("So many.");
+  d.internal<&R::direction>("Of its way.");
+  d.internal<&R::aim>("What it is about.");
+  d.internal<&R::target>(unit::mm, "On the last track of the route.");
+  d.internal<&R::demand>("What it is to go along with.");
+  d.internal<&R::pace>("As commanded.");
+  d.internal<&R::brakes>("Its greatest.");
+  d.internal<&R::gap>(unit::mm, "To the mover before it.");
+  d.internal<&R::planned>("It has a plan.");
+  d.internal<&R::plan>("Along the way.");
+  d.internal<&R::plan_from>(unit::mm, "Where that began.");
+  d.internal<&R::plan_time>(unit::s, "Since that began.");
+  d.internal<&R::plan_ends>("It goes all the way to the target.");
+  d.internal<&R::there>("It rests at its target.");
+  d.internal<&R::origin>(unit::mm, "Of all tracks it has left behind.");
+  d.internal<&R::waits>("Why it does not go on.");
+  d.internal<&R::waits_for>("The mover that is in its way.");
+  d.internal<&R::waits_since>("Cycle since when.");
+}
+
+}  // namespace takt::planar

@@ -1,0 +1,216 @@
+#include "takt/planar/way.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace takt::planar {
+namespace {
+
+// From here on the way may be gone so fast.
+struct Cap {
+  double way = 0;    // mm from here
+  double speed = 0;  // mm/s
+};
+
+constexpr std::size_t kCaps = 32;
+constexpr double kSlight = 1e-9;  // share of a speed, or mm
+
+struct Caps {
+  std::array<Cap, kCaps> of{};
+  std::size_t count = 0;
+  bool cut = false;  // there are more than it has room for
+
+  void Add(double way, double speed) {
+    if (cut) return;
+    if (count > 0 && std::abs(of[count - 1].speed - speed) <= kSlight * speed) return;
+    // What was passed already, or is too short to be seen.
+    if (count > 0 && way <= of[count - 1].way + kSlight) {
+      of[count - 1].speed = count == 1 && way <= 0 ? speed : std::min(of[count - 1].speed, speed);
+      return;
+    }
+    if (count == kCaps) {
+      cut = true;
+      return;
+    }
+    of[count++] = {way, speed};
+  }
+};
+
+double SpeedIn(const Bend& bend, const Pace& pace) {
+  const double most = pace.limits.velocity;
+  return bend.curvature > 0 ? std::min(most, std::sqrt(pace.lateral / bend.curvature)) : most;
+}
+
+// The number of the bend that s lies in; at a border, that on the far side.
+std::size_t BendAt(const Road& road, double s, std::int8_t direction) {
+  const auto& bends = road.bends;
+  const auto behind = std::ranges::upper_bound(bends, s, {}, &Bend::from);
+  auto i = static_cast<std::size_t>(behind - bends.begin());
+  if (i > 0) --i;
+  if (direction < 0 && i > 0 && s <= bends[i].from) --i;
+  return i;
+}
+
+// Along one track from s on; `gone`: the way to there. Returns the way to its end.
+double AlongTrack(const Road& road, double s, double gone, double until, const Pace& pace, Caps& caps) {
+  if (road.bends.empty()) {
+    caps.Add(gone, pace.limits.velocity);
+    return gone + road.length - s;
+  }
+  for (std::size_t i = BendAt(road, s, 1); i < road.bends.size(); ++i) {
+    const double way = gone + std::max(0.0, road.bends[i].from - s);
+    if (way > until) return until;
+    caps.Add(way, SpeedIn(road.bends[i], pace));
+  }
+  return gone + road.length - s;
+}
+
+double BackAlongTrack(const Road& road, double s, double gone, double until, const Pace& pace, Caps& caps) {
+  if (road.bends.empty()) {
+    caps.Add(gone, pace.limits.velocity);
+    return gone + s;
+  }
+  double way = gone;
+  for (std::size_t i = BendAt(road, s, -1) + 1; i-- > 0;) {
+    if (way > until) return until;
+    caps.Add(way, SpeedIn(road.bends[i], pace));
+    way = gone + s - road.bends[i].from;
+  }
+  return gone + s;
+}
+
+Caps CapsAhead(const Network& network, const Start& start, double until, const Pace& pace) {
+  Caps caps;
+  const Road& road = network[start.route->first()];
+  double gone = start.direction > 0 ? AlongTrack(road, start.s, 0, until, pace, caps)
+                                    : BackAlongTrack(road, start.s, 0, until, pace, caps);
+  for (std::uint32_t i = 1; i < start.route->count && gone < until; ++i) {
+    gone = AlongTrack(network[start.route->tracks[i]], 0, gone, until, pace, caps);
+  }
+  while (road.closed && gone < until && !caps.cut) {
+    gone = start.direction > 0 ? AlongTrack(road, 0, gone, until, pace, caps)
+                               : BackAlongTrack(road, road.length, gone, until, pace, caps);
+  }
+  return caps;
+}
+
+// A place that is to be passed no faster than this, without acceleration.
+struct Gate {
+  double way = 0;
+  double speed = 0;
+};
+
+// Whether a motion keeps to the caps up to its end. Speeds are looked at where they are largest: at borders, and where
+// the motion turns from faster to slower.
+bool Keeps(const trajectory::Profile& plan, const Caps& caps) {
+  const double fastest = plan.VelocityRange().max;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < caps.count && caps.of[i].way < plan.end().position; ++i) {
+    least = std::min(least, caps.of[i].speed);
+  }
+  // What it began with too fast it may keep.
+  const double allowance = 1e-9 * fastest;
+  if (fastest <= least + allowance) return true;
+  double begin = 0;
+  for (std::size_t i = 0; i < caps.count && caps.of[i].way < plan.end().position; ++i) {
+    const double border = i + 1 < caps.count ? caps.of[i + 1].way : plan.end().position;
+    const double end = border < plan.end().position ? plan.TimeAt(border, begin) : plan.duration();
+    if (!(end >= begin)) return false;
+    double most = std::max(plan.At(begin).velocity, plan.At(end).velocity);
+    for (int k = 0; k < plan.size(); ++k) {
+      const double from = k == 0 ? 0 : plan.piece_ends_s[static_cast<std::size_t>(k - 1)];
+      const trajectory::Piece& piece = plan.pieces[static_cast<std::size_t>(k)];
+      const double to = plan.piece_ends_s[static_cast<std::size_t>(k)];
+      for (const double t : {from, piece.jerk != 0 ? from - piece.acceleration / piece.jerk : from}) {
+        if (t >= from && t <= to && t > begin && t < end) most = std::max(most, plan.At(t).velocity);
+      }
+    }
+    const double allowed = i == 0 ? std::max(caps.of[0].speed, plan.start().velocity) : caps.of[i].speed;
+    if (most > allowed + allowance) return false;
+    begin = end;
+  }
+  return true;
+}
+
+}  // namespace
+
+double SpeedAt(const Network& network, std::uint32_t track, double s, const Pace& pace) noexcept {
+  const Road& road = network[track];
+  return road.bends.empty() ? pace.limits.velocity : SpeedIn(road.bends[BendAt(road, s, 1)], pace);
+}
+
+bool PlanWay(trajectory::Planner& planner, const Network& network, const Start& start, double way, const Pace& pace,
+             trajectory::Profile& out, bool& ends) noexcept {
+  const KinematicState from{0, start.speed, start.acceleration};
+  const Brakes brakes = pace.brakes();
+  const auto stop = [&] {
+    ends = false;
+    if (planner.Stop(from, pace.limits, out).failed()) out = trajectory::Profile(KinematicState{});
+    return false;
+  };
+  if (!(way >= 0)) return stop();
+  ends = true;
+  const Caps caps = CapsAhead(network, start, way, pace);
+
+  std::array<Gate, kCaps + 1> gates{};
+  const std::size_t count = caps.count;  // gate k is where cap k + 1 begins, the last one the end
+  for (std::size_t k = 0; k + 1 < count; ++k) {
+    gates[k] = {caps.of[k + 1].way, std::min(caps.of[k].speed, caps.of[k + 1].speed)};
+  }
+  // What comes behind the last cap that there is room for is not known: it must be able to stop there, but does not.
+  gates[count - 1] = {caps.cut ? caps.of[count - 1].way : way, 0};
+  for (std::size_t k = count - 1; k-- > 0;) {
+    const double room = gates[k + 1].way - gates[k].way;
+    gates[k].speed = std::min(gates[k].speed, SpeedBefore(room, gates[k + 1].speed, brakes));
+  }
+
+  trajectory::Limits limits = pace.limits;
+  const double v = start.speed;
+  for (std::size_t k = caps.cut ? count - 1 : count; k-- > 0;) {
+    const Gate& gate = gates[k];
+    // Not to be reached that fast.
+    if (gate.speed * gate.speed > v * v + 2 * limits.acceleration * gate.way + kSlight && k > 0) continue;
+    if (gate.way <= 0 && k + 1 < count) break;
+    limits.velocity = 0;
+    for (std::size_t i = 0; i <= k; ++i) limits.velocity = std::max(limits.velocity, caps.of[i].speed);
+    limits.velocity = std::max(limits.velocity, gate.speed);
+    trajectory::Profile plan;
+    if (planner.ToPosition(from, gate.way, gate.speed, limits, plan).failed()) continue;
+    // It would have to run back: too near to stop, or too near to get so fast.
+    const trajectory::Profile::Range range = plan.PositionRange();
+    const bool straight = range.min >= -1e-6 && range.max <= gate.way + 1e-6 && plan.VelocityRange().min >= -1e-9;
+    if (straight && Keeps(plan, caps)) {
+      out = plan;
+      ends = k + 1 == count;
+      return true;
+    }
+  }
+  // Up to the first gate as fast as may be, or slower from here on.
+  const double cap = caps.of[0].speed;
+  const Gate& gate = gates[0];
+  double low = 0, high = std::min(cap, gate.speed);
+  limits.velocity = std::max(cap, high);
+  bool found = false;
+  for (int i = 0; i < 12; ++i) {
+    const double speed = 0.5 * (low + high);
+    trajectory::Profile plan;
+    const bool planned = planner.ToPosition(from, gate.way, speed, limits, plan).ok();
+    const bool straight = planned && plan.PositionRange().max <= gate.way + 1e-6 && plan.VelocityRange().min >= -1e-9;
+    if (straight) {
+      out = plan;
+      found = true;
+    }
+    // Too fast to get there slower, or too slow to get there faster.
+    const bool faster = straight || (planned && plan.PositionRange().max > gate.way + 1e-6 && v > speed);
+    (faster ? low : high) = speed;
+  }
+  if (found) {
+    ends = count == 1 && out.end().velocity == 0;
+    return true;
+  }
+  return stop();
+}
+
+}  // namespace takt::planar

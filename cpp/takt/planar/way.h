@@ -1,0 +1,41 @@
+// One mover on its way along tracks, as if it were alone: the quickest motion that keeps its limits and slows down
+// before curves.
+#pragma once
+
+#include <cstdint>
+
+#include "takt/planar/braking.h"
+#include "takt/planar/network.h"
+#include "takt/trajectory/limits.h"
+#include "takt/trajectory/planner.h"
+#include "takt/trajectory/profile.h"
+
+namespace takt::planar {
+
+// How fast a mover may go.
+struct Pace {
+  trajectory::Limits limits;  // along the way; jerk > 0
+  double lateral = 0;         // mm/s², in curves; > 0
+
+  Brakes brakes() const noexcept { return {limits.deceleration, limits.jerk}; }
+};
+
+// Where a mover is and where it goes: place, speed and acceleration along the way, >= 0 in its direction.
+struct Start {
+  const Route* route = nullptr;
+  double s = 0;               // mm, on the first track
+  std::int8_t direction = 1;  // -1: back along the first track
+  double speed = 0;
+  double acceleration = 0;
+};
+
+// The quickest way to rest so far on (mm from here, along the way, >= 0), or as much of it as can be planned in one go;
+// `out` begins at 0. `ends`: it is all of it. A mover that cannot stop there any more brakes as its limits allow.
+// False: nothing could be planned, `out` is a stop.
+bool PlanWay(trajectory::Planner& planner, const Network& network, const Start& start, double way, const Pace& pace,
+             trajectory::Profile& out, bool& ends) noexcept;
+
+// mm/s: how fast it may be here, by its own limit and the bend of the track.
+double SpeedAt(const Network& network, std::uint32_t track, double s, const Pace& pace) noexcept;
+
+}  // namespace takt::planar

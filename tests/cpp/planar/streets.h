@@ -1,0 +1,86 @@
+// Movers on a network of tracks, cycle by cycle, and what is measured of them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "takt/planar/traffic.h"
+#include "tracks.h"
+
+namespace takt::planar::testing {
+
+inline constexpr double kPeriod = 0.001;  // s
+
+inline Pace PaceOf(double velocity, double acceleration, double jerk, double lateral = 5000) {
+  return {{velocity, acceleration, acceleration, jerk}, lateral};
+}
+
+class Streets {
+ public:
+  // Tracks by their layout; links from ends to starts that are at the same place.
+  explicit Streets(const std::vector<Layout>& layouts, std::uint32_t movers, double size = 100);
+
+  Network& network() { return network_; }
+  std::vector<Rider>& riders() { return riders_; }
+  Rider& operator[](std::size_t i) { return riders_[i]; }
+  const Track& track(std::size_t i) const { return *tracks_[i]; }
+
+  // Puts a mover there, at rest.
+  Rider& Put(std::uint32_t mover, std::uint32_t track, double s, const Pace& pace, double gap = 120);
+  // To a place on a track; false: there is no way.
+  bool Send(std::uint32_t mover, std::uint32_t track, double s);
+  void Halt(std::uint32_t mover) { riders_[mover].aim = Aim::kRest; }
+
+  void Step();
+  // Steps until all that have a target are there, or so long; true: they are.
+  bool Run(double seconds);
+  double now() const { return static_cast<double>(cycle_.count) * kPeriod; }
+  Traffic& traffic() { return traffic_; }
+
+  TrackPoint PointOf(std::uint32_t mover) const;
+  // Along their ways: how much less than its gap the nearest pair of movers on one track, or one route, is apart.
+  double Missing() const;
+  // mm between the bodies of the nearest two movers anywhere, turned in the worst way.
+  double Nearest() const;
+
+  // Called after each step.
+  std::function<void()> watch;
+
+ private:
+  std::vector<std::unique_ptr<Track>> tracks_;
+  std::vector<std::vector<Bend>> bends_;
+  Network network_;
+  std::vector<Rider> riders_;
+  Traffic traffic_;
+  RouteSearch search_;
+  trajectory::Planner planner_;
+  Cycle cycle_{0, kPeriod};
+  Footprint body_;
+};
+
+// Tracks between random crossings, with merges, splits and rings; bodies of this size can only meet where tracks do.
+std::vector<Layout> RandomCity(Random& random, int tracks, double size);
+
+// Limits of every mover, cycle by cycle: of speed, acceleration, jerk along the way and acceleration across it.
+class Watcher {
+ public:
+  explicit Watcher(Streets& streets) : streets_(streets) {}
+  void Look();
+
+  double speed = 0;         // largest share of the limit
+  double acceleration = 0;  // of the greatest brakes where it slows down
+  double jerk = 0;
+  double lateral = 0;
+
+ private:
+  Streets& streets_;
+  std::vector<KinematicState> before_;
+  std::vector<double> ways_;
+};
+
+}  // namespace takt::planar::testing
