@@ -78,7 +78,9 @@ using DriveRow = py::typing::Tuple<std::uint64_t, std::uint32_t, std::int64_t, W
 using Foreseen = py::typing::Tuple<axis::Forecast, py::str>;
 using PoseRow = py::typing::Tuple<double, double, double, double, double, double>;
 using ObjectRow = py::typing::Tuple<std::uint32_t, int, double, PoseRow, bool, std::uint32_t, std::uint32_t,
-                                    double>;              // number, state, place, pose, in range, kind, colour, quality
+                                    double>;  // number, state, place, pose, in range, kind, colour, quality
+using RecordRow = py::typing::Tuple<Ticket, py::str, int, int, std::uint64_t,
+                                    std::uint64_t>;       // ticket, verb, state, error, cycles: given, changed
 using State = py::typing::Tuple<double, double, double>;  // position, velocity, acceleration
 using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::uint64_t>>;  // cycles, hashes
 
@@ -240,6 +242,23 @@ class VirtualEngine {
       list.append(py::make_tuple(object.number, static_cast<int>(object.state), place,
                                  py::make_tuple(pose.x, pose.y, pose.z, pose.a, pose.b, pose.c), in_range, kind, colour,
                                  quality));
+    }
+    return list;
+  }
+
+  // The last commands of a mover, the oldest first.
+  py::typing::List<RecordRow> MoverHistory(std::size_t mover) {
+    const auto lock = Lock();
+    if (mover >= engine_.machine().movers.size()) throw std::out_of_range("no such mover");
+    const mover::History& history = engine_.mover_state(mover).history;
+    py::typing::List<RecordRow> list;
+    for (std::uint64_t i = history.count - std::min<std::uint64_t>(history.count, mover::kHistory); i < history.count;
+         ++i) {
+      const mover::Record& r = history.records[i % mover::kHistory];
+      const Type& type = mover::TypeOfCommand(r.command);
+      const auto verb = std::ranges::find(engine::Verbs(), &type, &engine::Verb::arguments);
+      list.append(py::make_tuple(r.ticket, verb->name, static_cast<int>(r.state), static_cast<int>(r.error), r.cycle,
+                                 r.changed));
     }
     return list;
   }
@@ -437,6 +456,7 @@ void BindEngine(py::module_& m) {
       .def("take_journal", &E::TakeJournal)
       .def("take_hashes", &E::TakeHashes)
       .def("belt_objects", &E::BeltObjects, py::arg("belt"))
+      .def("mover_history", &E::MoverHistory, py::arg("mover"))
       .def("value", &E::Value, py::arg("component"), py::arg("field"))
       .def("foresee", &E::Foresee, py::arg("axis"))
       .def("foresee_command", &E::ForeseeCommand, py::arg("target"), py::arg("verb"), py::arg("arguments"))

@@ -15,6 +15,7 @@
 #include "takt/core/describe_fwd.h"
 #include "takt/flexcam/params.h"
 #include "takt/group/params.h"
+#include "takt/mover/params.h"
 #include "takt/pickplace/params.h"
 #include "takt/plant/servo.h"
 
@@ -75,6 +76,7 @@ struct Machine {
   std::vector<conveyor::BeltParams> belts;
   std::vector<conveyor::PoseParams> poses;
   std::vector<pickplace::PickPlaceParams> pick_and_place;
+  std::vector<mover::MoverParams> movers;
   Simulation simulation;
   External external;
 };
