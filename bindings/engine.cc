@@ -81,6 +81,8 @@ using Foreseen = py::typing::Tuple<axis::Forecast, py::str>;
 using PoseRow = py::typing::Tuple<double, double, double, double, double, double>;
 using ObjectRow = py::typing::Tuple<std::uint32_t, int, double, PoseRow, bool, std::uint32_t, std::uint32_t,
                                     double>;  // number, state, place, pose, in range, kind, colour, quality
+using RecordRow = py::typing::Tuple<Ticket, py::str, int, int, std::uint64_t,
+                                    std::uint64_t>;  // ticket, verb, state, error, cycles: given, changed
 using TrackRow = py::typing::Tuple<double, double, double, double>;  // x, y, direction in deg, curvature
 using TrackLinks = py::typing::Tuple<py::typing::List<std::size_t>, py::typing::List<std::size_t>>;
 using State = py::typing::Tuple<double, double, double>;  // position, velocity, acceleration
@@ -245,6 +247,23 @@ class VirtualEngine {
       list.append(py::make_tuple(object.number, static_cast<int>(object.state), place,
                                  py::make_tuple(pose.x, pose.y, pose.z, pose.a, pose.b, pose.c), in_range, kind, colour,
                                  quality));
+    }
+    return list;
+  }
+
+  // The last commands of a mover, the oldest first.
+  py::typing::List<RecordRow> MoverHistory(std::size_t mover) {
+    const auto lock = Lock();
+    if (mover >= engine_.machine().movers.size()) throw std::out_of_range("no such mover");
+    const mover::History& history = engine_.mover_state(mover).history;
+    py::typing::List<RecordRow> list;
+    for (std::uint64_t i = history.count - std::min<std::uint64_t>(history.count, mover::kHistory); i < history.count;
+         ++i) {
+      const mover::Record& r = history.records[i % mover::kHistory];
+      const Type& type = mover::TypeOfCommand(r.command);
+      const auto verb = std::ranges::find(engine::Verbs(), &type, &engine::Verb::arguments);
+      list.append(py::make_tuple(r.ticket, verb->name, static_cast<int>(r.state), static_cast<int>(r.error), r.cycle,
+                                 r.changed));
     }
     return list;
   }
@@ -473,6 +492,7 @@ void BindEngine(py::module_& m) {
       .def("take_journal", &E::TakeJournal)
       .def("take_hashes", &E::TakeHashes)
       .def("belt_objects", &E::BeltObjects, py::arg("belt"))
+      .def("mover_history", &E::MoverHistory, py::arg("mover"))
       .def("track_at", &E::TrackAt, py::arg("track"), py::arg("s"))
       .def("track_closest_to", &E::TrackClosestTo, py::arg("track"), py::arg("x"), py::arg("y"))
       .def("track_links", &E::LinksOf, py::arg("track"))

@@ -21,6 +21,7 @@ from takt.flex_cam import FlexCam
 from takt.forecast import Forecast, Moment
 from takt.group import Group
 from takt.lcmlog import LogError, read_log
+from takt.mover import Mover, MoverRecord
 from takt.pick_place import PickPlace
 from takt.pose import FreePose
 from takt.recording import Recording, RecordingError
@@ -48,6 +49,8 @@ __all__ = [
     "PickPlace",
     "LogError",
     "Moment",
+    "Mover",
+    "MoverRecord",
     "Recorder",
     "Recording",
     "RecordingError",

@@ -20,6 +20,7 @@ from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.flex_cam import FlexCam
 from takt.group import Group
+from takt.mover import Mover
 from takt.pick_place import PickPlace
 from takt.pose import FreePose
 from takt.recording import Recording
@@ -36,7 +37,7 @@ P = TypeVar("P", bound=Program)
 C = TypeVar("C", bound=Component)
 
 CLASSES: dict[str, type[Component]] = {
-    component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace, Track)
+    component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace, Mover, Track)
 }
 
 
@@ -94,6 +95,7 @@ class Session(MachineCommands):
         self._belts = {name: c for name, c in self._components.items() if isinstance(c, Belt)}
         self._poses = {name: c for name, c in self._components.items() if isinstance(c, FreePose)}
         self._pick_places = {name: c for name, c in self._components.items() if isinstance(c, PickPlace)}
+        self._movers = {name: c for name, c in self._components.items() if isinstance(c, Mover)}
         self._tracks = {name: c for name, c in self._components.items() if isinstance(c, Track)}
         self._programs: list[Program] = []
         self._scanning = False
@@ -153,6 +155,14 @@ class Session(MachineCommands):
 
     def pick_place(self, name: str) -> PickPlace:
         return _named(self._pick_places, name, "pick and place module")
+
+    @property
+    def movers(self) -> Mapping[str, Mover]:
+        """All planar movers by name, in the order of the machine file."""
+        return MappingProxyType(self._movers)
+
+    def mover(self, name: str) -> Mover:
+        return _named(self._movers, name, "mover")
 
     @property
     def tracks(self) -> Mapping[str, Track]:
@@ -338,6 +348,10 @@ class Session(MachineCommands):
     @abstractmethod
     def _objects(self, belt: Belt) -> Iterable[tuple[Any, ...]]:
         """What lies on a belt: the fields of a BeltObject, the state by number."""
+
+    def _history(self, mover: Mover) -> Iterable[tuple[Any, ...]]:
+        """The last commands of a mover: the fields of a MoverRecord, the state by number."""
+        raise TaktError("a mover's last commands are known in process only")
 
     def _track_at(self, track: Track, s: float) -> tuple[float, float, float, float]:
         """A place along a track: x, y, direction in deg, curvature."""

@@ -23,6 +23,7 @@ constexpr std::string_view kGroup = "group";
 constexpr std::string_view kBelt = "belt";
 constexpr std::string_view kPose = "pose";
 constexpr std::string_view kPickPlace = "pick_place";
+constexpr std::string_view kMover = "mover";
 constexpr std::string_view kTrack = "track";
 
 // A verb together with how its struct gets in and out of a command.
@@ -158,6 +159,19 @@ const std::vector<Entry>& Entries() {
       Make<pickplace::Command, pickplace::Configure>(kPickPlace, "configure"),
       Make<pickplace::Command, pickplace::ConfigureBelt>(kPickPlace, "configure_belt"),
       Make<pickplace::Command, pickplace::ResetCounters>(kPickPlace, "reset_counters"),
+      Make<mover::Command, mover::Enable>(kMover, "enable"),
+      Make<mover::Command, mover::Disable>(kMover, "disable"),
+      Make<mover::Command, mover::Reset>(kMover, "reset"),
+      Make<mover::Command, mover::Halt>(kMover, "halt"),
+      Make<mover::Command, mover::SetPosition>(kMover, "set_position"),
+      Make<mover::Command, mover::MoveToPosition>(kMover, "move_to_position"),
+      Make<mover::Command, mover::MoveZ>(kMover, "move_z"),
+      Make<mover::Command, mover::MoveA>(kMover, "move_a"),
+      Make<mover::Command, mover::MoveB>(kMover, "move_b"),
+      Make<mover::Command, mover::MoveC>(kMover, "move_c"),
+      Make<mover::Command, mover::StartExternalSetpointGeneration>(kMover, "start_external_setpoint_generation"),
+      Make<mover::Command, mover::SetExternalSetpoint>(kMover, "set_external_setpoint"),
+      Make<mover::Command, mover::StopExternalSetpointGeneration>(kMover, "stop_external_setpoint_generation"),
       Make<track::Command, track::AppendLine>(kTrack, "append_line"),
       Make<track::Command, track::AppendCircle>(kTrack, "append_circle"),
       Make<track::Command, track::AppendPosition>(kTrack, "append_position"),
@@ -357,6 +371,10 @@ bool LetsGo(const Command& command) noexcept {
                                    control->stop_all.value_or(false) || control->path_interrupt.value_or(false) ||
                                    !control->regulator_on.value_or(true));
     return stops || (jog && !jog->positive && !jog->negative);
+  }
+  if (const auto* mover = std::get_if<mover::Command>(&command.body)) {
+    return std::holds_alternative<mover::Halt>(*mover) || std::holds_alternative<mover::Disable>(*mover) ||
+           std::holds_alternative<mover::StopExternalSetpointGeneration>(*mover);
   }
   const auto* axis = std::get_if<axis::Command>(&command.body);
   const auto* power = axis ? std::get_if<axis::Power>(axis) : nullptr;

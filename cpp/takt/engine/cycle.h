@@ -23,6 +23,7 @@
 #include "takt/engine/order.h"
 #include "takt/flexcam/module.h"
 #include "takt/group/group.h"
+#include "takt/mover/mover.h"
 #include "takt/pickplace/module.h"
 #include "takt/plant/servo.h"
 #include "takt/track/tracks.h"
@@ -121,6 +122,11 @@ struct World {
   std::vector<pickplace::Outputs> pick_place_outputs;
   std::vector<std::uint32_t> pick_place_of;  // the module that moves each group, from 1; 0: none
 
+  std::vector<mover::MoverParams> movers;
+  std::vector<mover::Inputs> mover_inputs;
+  std::vector<mover::State> mover_states;
+  std::vector<mover::Outputs> mover_outputs;
+
   track::Tracks tracks;
 
   std::vector<ServoInputs> servo_inputs;
@@ -141,6 +147,7 @@ struct World {
   void MakeGroups(const Machine& machine);
   void MakeBelts(const Machine& machine);
   void MakePickPlaces(const Machine& machine);
+  void MakeMovers(const Machine& machine);
 };
 
 // Not for the cycle (axis/forecast.h).

@@ -81,6 +81,7 @@ struct Engine::Impl {
         poses(machine, o, machine.poses, world.pose_outputs),
         belt_objects(o.publish ? kObjectLists * machine.belts.size() : 2),
         pick_places(machine, o, machine.pick_and_place, world.pick_place_outputs),
+        movers(machine, o, machine.movers, world.mover_outputs),
         tracks(machine, o, machine.tracks, world.tracks.outputs),
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
@@ -163,7 +164,7 @@ struct Engine::Impl {
   }
 
   // All kinds of components, in the order of their numbers.
-  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses, pick_places, tracks); }
+  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses, pick_places, movers, tracks); }
 
   template <typename Outputs>
   void PublishAll(OfKind<Outputs>& kind) noexcept {
@@ -221,6 +222,7 @@ struct Engine::Impl {
   OfKind<conveyor::PoseOutputs> poses;
   SpscQueue<ObjectsSnapshot> belt_objects;
   OfKind<pickplace::Outputs> pick_places;
+  OfKind<mover::Outputs> movers;
   OfKind<track::Outputs> tracks;
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
@@ -325,6 +327,12 @@ const conveyor::State& Engine::belt_state(std::size_t belt) const noexcept {
 const pickplace::Outputs& Engine::pick_place_outputs(std::size_t module) const noexcept {
   return impl_->world.pick_place_outputs[module];
 }
+const mover::Outputs& Engine::mover_outputs(std::size_t mover) const noexcept {
+  return impl_->world.mover_outputs[mover];
+}
+const mover::State& Engine::mover_state(std::size_t mover) const noexcept {
+  return impl_->world.mover_states[mover];
+}
 const track::Tracks& Engine::tracks() const noexcept {
   return impl_->world.tracks;
 }
@@ -367,12 +375,14 @@ plant::ServoFaults& Engine::faults(std::size_t axis) noexcept {
 
 bool Engine::all_disabled() const noexcept {
   return std::all_of(impl_->world.axis_states.begin(), impl_->world.axis_states.end(),
-                     [](const axis::State& s) { return !s.enable && !s.loop_closed; });
+                     [](const axis::State& s) { return !s.enable && !s.loop_closed; }) &&
+         std::ranges::all_of(impl_->world.mover_states, mover::IsOff);
 }
 
 bool Engine::at_rest() const noexcept {
   return std::all_of(impl_->world.axis_states.begin(), impl_->world.axis_states.end(),
-                     [](const axis::State& s) { return s.setpoint.velocity == 0 && s.setpoint.acceleration == 0; });
+                     [](const axis::State& s) { return s.setpoint.velocity == 0 && s.setpoint.acceleration == 0; }) &&
+         std::ranges::all_of(impl_->world.mover_states, mover::AtRest);
 }
 
 void Engine::RequestShutdown() noexcept {
@@ -405,6 +415,7 @@ template SpscQueue<GroupSnapshot>& Engine::snapshots<group::Outputs>() noexcept;
 template SpscQueue<BeltSnapshot>& Engine::snapshots<conveyor::Outputs>() noexcept;
 template SpscQueue<PoseSnapshot>& Engine::snapshots<conveyor::PoseOutputs>() noexcept;
 template SpscQueue<PickPlaceSnapshot>& Engine::snapshots<pickplace::Outputs>() noexcept;
+template SpscQueue<MoverSnapshot>& Engine::snapshots<mover::Outputs>() noexcept;
 template SpscQueue<TrackSnapshot>& Engine::snapshots<track::Outputs>() noexcept;
 
 SpscQueue<ObjectsSnapshot>& Engine::belt_objects() noexcept {

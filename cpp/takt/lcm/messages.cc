@@ -389,6 +389,50 @@ msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, cons
   return m;
 }
 
+msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine::Machine& machine) {
+  const mover::Outputs& o = snapshot.outputs;
+  msgs::mover_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.movers[snapshot.index].name;
+  m.state = static_cast<std::int8_t>(o.state);
+  m.command_mode = static_cast<std::int8_t>(o.command_mode);
+  m.error = static_cast<std::int32_t>(o.error);
+  m.limited_by = static_cast<std::int8_t>(o.limited_by);
+  m.x = o.x;
+  m.y = o.y;
+  m.z = o.z;
+  m.a = o.a;
+  m.b = o.b;
+  m.c = o.c;
+  m.velocity_x = o.velocity_x;
+  m.velocity_y = o.velocity_y;
+  m.velocity_z = o.velocity_z;
+  m.velocity_a = o.velocity_a;
+  m.velocity_b = o.velocity_b;
+  m.velocity_c = o.velocity_c;
+  m.acceleration_x = o.acceleration_x;
+  m.acceleration_y = o.acceleration_y;
+  m.acceleration_z = o.acceleration_z;
+  m.acceleration_a = o.acceleration_a;
+  m.acceleration_b = o.acceleration_b;
+  m.acceleration_c = o.acceleration_c;
+  m.actual_x = o.actual_x;
+  m.actual_y = o.actual_y;
+  m.actual_z = o.actual_z;
+  m.actual_a = o.actual_a;
+  m.actual_b = o.actual_b;
+  m.actual_c = o.actual_c;
+  m.busy_xyc = o.busy_xyc;
+  m.busy_z = o.busy_z;
+  m.busy_a = o.busy_a;
+  m.busy_b = o.busy_b;
+  m.busy_c = o.busy_c;
+  m.external = static_cast<std::int8_t>(o.external);
+  m.commands = Signed(o.commands);
+  return m;
+}
+
 msgs::histogram ToMessage(const engine::Histogram& histogram) {
   msgs::histogram m{};
   std::transform(histogram.buckets.begin(), histogram.buckets.end(), m.buckets, Signed);
