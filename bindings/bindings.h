@@ -45,6 +45,7 @@ void BindCam(py::module_& m);
 void BindKinematics(py::module_& m);
 void BindAxis(py::module_& m);
 void BindEngine(py::module_& m);
+void BindTrack(py::module_& m);
 void BindServo(py::module_& m);
 
 }  // namespace takt::bindings

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -25,6 +26,7 @@
 #include "takt/engine/reference.h"
 #include "takt/lcm/clock.h"
 #include "takt/lcm/drives.h"
+#include "takt/planar/nearest.h"
 #include "takt/workspace/trouble.h"
 
 namespace takt::bindings {
@@ -78,7 +80,11 @@ using DriveRow = py::typing::Tuple<std::uint64_t, std::uint32_t, std::int64_t, W
 using Foreseen = py::typing::Tuple<axis::Forecast, py::str>;
 using PoseRow = py::typing::Tuple<double, double, double, double, double, double>;
 using ObjectRow = py::typing::Tuple<std::uint32_t, int, double, PoseRow, bool, std::uint32_t, std::uint32_t,
-                                    double>;              // number, state, place, pose, in range, kind, colour, quality
+                                    double>;  // number, state, place, pose, in range, kind, colour, quality
+using RecordRow = py::typing::Tuple<Ticket, py::str, int, int, std::uint64_t,
+                                    std::uint64_t>;  // ticket, verb, state, error, cycles: given, changed
+using TrackRow = py::typing::Tuple<double, double, double, double>;  // x, y, direction in deg, curvature
+using TrackLinks = py::typing::Tuple<py::typing::List<std::size_t>, py::typing::List<std::size_t>>;
 using State = py::typing::Tuple<double, double, double>;  // position, velocity, acceleration
 using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::uint64_t>>;  // cycles, hashes
 
@@ -88,12 +94,13 @@ class VirtualEngine {
  public:
   // Of a machine that LoadMachine has made. With `drives_url` external drives are reached there; without, they are what
   // Hear says.
-  VirtualEngine(engine::LoadResult loaded, bool journal, const std::optional<std::string>& drives_url)
+  VirtualEngine(engine::LoadResult loaded, bool journal, const std::optional<std::string>& drives_url, bool checks)
       : journaling_(journal),
         engine_(std::move(*loaded.machine),
                 {.drives = drives_url.has_value(), .journal = journal, .command_queue = kCommandQueue}) {
     const auto made = [](const auto& checker) { return checker.has_value(); };
-    if (std::ranges::any_of(loaded.checkers, made)) checks_.emplace(engine_, std::move(loaded.checkers));
+    const bool asks = std::ranges::any_of(loaded.checkers, made) || !engine_.machine().tracks.empty();
+    if (checks && asks) checks_.emplace(engine_, std::move(loaded.checkers));
     if (!drives_url || engine_.machine().external.drives.empty()) return;
     std::string problem;
     drives_ = lcm::Drives::Open(engine_,
@@ -244,6 +251,47 @@ class VirtualEngine {
     return list;
   }
 
+  // The last commands of a mover, the oldest first.
+  py::typing::List<RecordRow> MoverHistory(std::size_t mover) {
+    const auto lock = Lock();
+    if (mover >= engine_.machine().movers.size()) throw std::out_of_range("no such mover");
+    const mover::History& history = engine_.mover_state(mover).history;
+    py::typing::List<RecordRow> list;
+    for (std::uint64_t i = history.count - std::min<std::uint64_t>(history.count, mover::kHistory); i < history.count;
+         ++i) {
+      const mover::Record& r = history.records[i % mover::kHistory];
+      const Type& type = mover::TypeOfCommand(r.command);
+      const auto verb = std::ranges::find(engine::Verbs(), &type, &engine::Verb::arguments);
+      list.append(py::make_tuple(r.ticket, verb->name, static_cast<int>(r.state), static_cast<int>(r.error), r.cycle,
+                                 r.changed));
+    }
+    return list;
+  }
+
+  // Of the way as it is now: x, y and the direction in deg.
+  TrackRow TrackAt(std::size_t track, double s) {
+    const auto lock = Lock();
+    const planar::TrackPoint point = planar::At(WayOf(track), s);
+    return py::make_tuple(point.place.x, point.place.y, point.direction * 180 / std::numbers::pi, point.curvature);
+  }
+
+  double TrackClosestTo(std::size_t track, double x, double y) {
+    const auto lock = Lock();
+    return planar::NearestTo(WayOf(track), {x, y}).s;
+  }
+
+  // Tracks that end where this one starts, and that start where it ends.
+  TrackLinks LinksOf(std::size_t track) {
+    const auto lock = Lock();
+    const track::Tracks& tracks = engine_.tracks();
+    std::vector<std::size_t> before, behind;
+    for (std::size_t i = 0; i < tracks.states.size(); ++i) {
+      if (tracks.end_nodes[i] == tracks.start_nodes.at(track)) before.push_back(i);
+      if (tracks.start_nodes[i] == tracks.end_nodes.at(track)) behind.push_back(i);
+    }
+    return py::make_tuple(before, behind);
+  }
+
   py::object Value(std::size_t component, std::size_t field) {
     const auto lock = Lock();
     CheckComponent(component);
@@ -341,6 +389,12 @@ class VirtualEngine {
     if (axis >= engine_.machine().axes.size()) throw std::out_of_range("no such axis");
   }
 
+  const planar::Track& WayOf(std::size_t track) const {
+    const planar::Track* way = engine_.tracks().ways.at(track);
+    if (!way) throw std::invalid_argument("the track has no length yet");
+    return *way;
+  }
+
   void CheckComponent(std::size_t component) const {
     if (component >= engine_.components()) throw std::out_of_range("no such component");
   }
@@ -365,7 +419,8 @@ class VirtualEngine {
   std::vector<std::shared_ptr<Recorder>> recorders_;
 };
 
-// `checks`: groups with a workspace are answered when they ask about a path; without, the journal does.
+// `checks`: groups with a workspace are answered when they ask about a path, and tracks are made; without, the journal
+// does it.
 std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::string& file_name, bool journal,
                                           std::optional<double> period_s, const std::optional<std::string>& drives_url,
                                           bool checks) {
@@ -378,7 +433,7 @@ std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::stri
     if (!field.range.Holds(*period_s)) ThrowConfigError({"the cycle's period must be " + Text(field.range) + " s"});
     loaded.machine->cycle.period_s = *period_s;
   }
-  return std::make_unique<VirtualEngine>(std::move(loaded), journal, drives_url);
+  return std::make_unique<VirtualEngine>(std::move(loaded), journal, drives_url, checks);
 }
 
 }  // namespace
@@ -437,6 +492,10 @@ void BindEngine(py::module_& m) {
       .def("take_journal", &E::TakeJournal)
       .def("take_hashes", &E::TakeHashes)
       .def("belt_objects", &E::BeltObjects, py::arg("belt"))
+      .def("mover_history", &E::MoverHistory, py::arg("mover"))
+      .def("track_at", &E::TrackAt, py::arg("track"), py::arg("s"))
+      .def("track_closest_to", &E::TrackClosestTo, py::arg("track"), py::arg("x"), py::arg("y"))
+      .def("track_links", &E::LinksOf, py::arg("track"))
       .def("value", &E::Value, py::arg("component"), py::arg("field"))
       .def("foresee", &E::Foresee, py::arg("axis"))
       .def("foresee_command", &E::ForeseeCommand, py::arg("target"), py::arg("verb"), py::arg("arguments"))

@@ -8,5 +8,6 @@ PYBIND11_MODULE(_core, m) {
   takt::bindings::BindKinematics(m);
   takt::bindings::BindAxis(m);
   takt::bindings::BindEngine(m);
+  takt::bindings::BindTrack(m);
   takt::bindings::BindServo(m);
 }

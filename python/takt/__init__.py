@@ -21,12 +21,14 @@ from takt.flex_cam import FlexCam
 from takt.forecast import Forecast, Moment
 from takt.group import Group
 from takt.lcmlog import LogError, read_log
+from takt.mover import Mover, MoverRecord
 from takt.pick_place import PickPlace
 from takt.pose import FreePose
 from takt.recording import Recording, RecordingError
 from takt.remote import RemoteSession, connect
 from takt.replay import ReplayResult, replay
 from takt.session import Recorder, Session
+from takt.track import Track, TrackPosition
 
 __all__ = [
     "Axis",
@@ -47,6 +49,8 @@ __all__ = [
     "PickPlace",
     "LogError",
     "Moment",
+    "Mover",
+    "MoverRecord",
     "Recorder",
     "Recording",
     "RecordingError",
@@ -55,6 +59,8 @@ __all__ = [
     "Session",
     "TaktError",
     "TimeoutError",
+    "Track",
+    "TrackPosition",
     "__version__",
     "connect",
     "error_name",

@@ -296,6 +296,20 @@ def show_path(file: Path, **options: Any) -> int:
     return toolpath_command.run(file, toolpath_command.Options(**options), out)
 
 
+@cli.command("track")
+@click.argument("file", type=FILE)
+@click.option("--plot", "--draw", "target", type=FILE, help="Draw them from above into this file (.png, .svg, .pdf).")
+@click.option("--corner", type=float, help="Drawings only: mm of the lines that a corner takes [40].")
+@click.option("--yaml", "yaml_file", type=FILE, help="Drawings only: write them into this file.")
+def show_track(file: Path, **options: Any) -> int:
+    """Check the tracks of a FILE: a machine file, one with only the section `tracks`, or a drawing (.svg, .dxf). Says
+    how long they are, how tightly they bend, where they lead and how near to switches movers come too near to each
+    other; draws and converts them."""
+    from takt import track_command
+
+    return track_command.run(file, track_command.Options(**options), out)
+
+
 @cli.command("log")
 @click.argument("log", type=FILE)
 @click.option("--save", type=FILE, help="Keep the last run as a recording (.npz) or a table (.csv).")

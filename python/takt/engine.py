@@ -21,9 +21,11 @@ from takt.component import Component
 from takt.errors import ConfigError, DriveWarning, seconds, whole
 from takt.feedback import Feedback
 from takt.forecast import Forecast
+from takt.mover import Mover
 from takt.recording import Recording
 from takt.session import Recorder, Session
 from takt.tables import KINDS, fields_of_kind, make_recording, named
+from takt.track import Track
 
 CHUNK = 20_000  # cycles between two looks at Ctrl-C
 
@@ -139,6 +141,18 @@ class Engine(Session):
 
     def _objects(self, belt: Belt) -> Iterable[tuple[Any, ...]]:
         return self._core.belt_objects(list(self.belts).index(belt.name))
+
+    def _history(self, mover: Mover) -> Iterable[tuple[Any, ...]]:
+        return self._core.mover_history(list(self.movers).index(mover.name))
+
+    def _track_at(self, track: Track, s: float) -> tuple[float, float, float, float]:
+        return self._core.track_at(list(self.tracks).index(track.name), s)
+
+    def _track_closest_to(self, track: Track, x: float, y: float) -> float:
+        return self._core.track_closest_to(list(self.tracks).index(track.name), x, y)
+
+    def _track_links(self, track: Track) -> tuple[list[int], list[int]]:
+        return self._core.track_links(list(self.tracks).index(track.name))
 
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
         self._check_open()

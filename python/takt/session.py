@@ -20,10 +20,12 @@ from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.flex_cam import FlexCam
 from takt.group import Group
+from takt.mover import Mover
 from takt.pick_place import PickPlace
 from takt.pose import FreePose
 from takt.recording import Recording
 from takt.tables import components_of
+from takt.track import Track
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -35,8 +37,11 @@ P = TypeVar("P", bound=Program)
 C = TypeVar("C", bound=Component)
 
 CLASSES: dict[str, type[Component]] = {
-    component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace)
+    component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace, Mover, Track)
 }
+
+
+IN_PROCESS = "the geometry of tracks is known in process only"
 
 
 class Recorder:
@@ -90,6 +95,8 @@ class Session(MachineCommands):
         self._belts = {name: c for name, c in self._components.items() if isinstance(c, Belt)}
         self._poses = {name: c for name, c in self._components.items() if isinstance(c, FreePose)}
         self._pick_places = {name: c for name, c in self._components.items() if isinstance(c, PickPlace)}
+        self._movers = {name: c for name, c in self._components.items() if isinstance(c, Mover)}
+        self._tracks = {name: c for name, c in self._components.items() if isinstance(c, Track)}
         self._programs: list[Program] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
@@ -148,6 +155,22 @@ class Session(MachineCommands):
 
     def pick_place(self, name: str) -> PickPlace:
         return _named(self._pick_places, name, "pick and place module")
+
+    @property
+    def movers(self) -> Mapping[str, Mover]:
+        """All planar movers by name, in the order of the machine file."""
+        return MappingProxyType(self._movers)
+
+    def mover(self, name: str) -> Mover:
+        return _named(self._movers, name, "mover")
+
+    @property
+    def tracks(self) -> Mapping[str, Track]:
+        """All tracks by name, in the order of the machine file."""
+        return MappingProxyType(self._tracks)
+
+    def track(self, name: str) -> Track:
+        return _named(self._tracks, name, "track")
 
     @property
     def components(self) -> Mapping[str, Component]:
@@ -325,6 +348,22 @@ class Session(MachineCommands):
     @abstractmethod
     def _objects(self, belt: Belt) -> Iterable[tuple[Any, ...]]:
         """What lies on a belt: the fields of a BeltObject, the state by number."""
+
+    def _history(self, mover: Mover) -> Iterable[tuple[Any, ...]]:
+        """The last commands of a mover: the fields of a MoverRecord, the state by number."""
+        raise TaktError("a mover's last commands are known in process only")
+
+    def _track_at(self, track: Track, s: float) -> tuple[float, float, float, float]:
+        """A place along a track: x, y, direction in deg, curvature."""
+        raise TaktError(IN_PROCESS)
+
+    def _track_closest_to(self, track: Track, x: float, y: float) -> float:
+        """Where along a track it is nearest to a place."""
+        raise TaktError(IN_PROCESS)
+
+    def _track_links(self, track: Track) -> tuple[list[int], list[int]]:
+        """Numbers of the tracks before and behind a track."""
+        raise TaktError(IN_PROCESS)
 
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
         raise TaktError("forecasts are made in process only; over LCM a feedback has travel_time_s")

@@ -61,6 +61,12 @@ STATES = {
     "path_interrupt": "#8c6a55",
     "stop": "#e08a3c",
     "error": "#d6453d",
+    # Of what is in the plane; Disabled and Error are above.
+    "Enabling": "#d0a03a",
+    "Enabled": "#7fb08a",
+    "Disabling": "#e08a3c",
+    "ErrorPending": "#c2703d",
+    "Resetting": "#37a3b5",
 }
 
 GOOD = "#2f9e6b"

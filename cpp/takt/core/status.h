@@ -70,6 +70,13 @@ enum class ErrorId : std::uint16_t {
   kTooFast = 3030,            // what carries the target is faster than the group can follow
   kOffPath = 3031,            // the tool is not where its path was left
   kNoWorkpiece = 3032,        // there is no such workpiece
+  kMoverDisabled = 3040,      // the mover is not enabled
+  kCommandMode = 3041,        // the mover does not accept the command in its command mode
+  kOutsideWindow = 3042,      // the mover would turn out of its window while it moves
+  kNoSetPoint = 3043,         // a set point from outside is missing
+  kWildSetPoint = 3044,       // a mover cannot follow a set point from outside
+  kMoverDeviation = 3045,     // the mover is too far from where it is to be
+  kTrackGeometry = 3050,      // a track cannot be so; the value of the feedback says why
   kGroupDeviation = 8001,
   kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual
   // A cam module is in error; numbers of the Flex Cam manual.

@@ -23,6 +23,8 @@ constexpr std::string_view kGroup = "group";
 constexpr std::string_view kBelt = "belt";
 constexpr std::string_view kPose = "pose";
 constexpr std::string_view kPickPlace = "pick_place";
+constexpr std::string_view kMover = "mover";
+constexpr std::string_view kTrack = "track";
 
 // A verb together with how its struct gets in and out of a command.
 struct Entry {
@@ -48,7 +50,7 @@ Entry Make(std::string_view target_kind, std::string_view name, bool level_sensi
 
 // What the engine alone gives.
 bool IsInternal(const Verb& verb) {
-  return verb.arguments == &TypeOf<group::PathChecked>();
+  return verb.arguments == &TypeOf<group::PathChecked>() || verb.arguments == &TypeOf<track::TrackMade>();
 }
 
 // Every command there is: the one list.
@@ -157,6 +159,30 @@ const std::vector<Entry>& Entries() {
       Make<pickplace::Command, pickplace::Configure>(kPickPlace, "configure"),
       Make<pickplace::Command, pickplace::ConfigureBelt>(kPickPlace, "configure_belt"),
       Make<pickplace::Command, pickplace::ResetCounters>(kPickPlace, "reset_counters"),
+      Make<mover::Command, mover::Enable>(kMover, "enable"),
+      Make<mover::Command, mover::Disable>(kMover, "disable"),
+      Make<mover::Command, mover::Reset>(kMover, "reset"),
+      Make<mover::Command, mover::Halt>(kMover, "halt"),
+      Make<mover::Command, mover::SetPosition>(kMover, "set_position"),
+      Make<mover::Command, mover::MoveToPosition>(kMover, "move_to_position"),
+      Make<mover::Command, mover::MoveZ>(kMover, "move_z"),
+      Make<mover::Command, mover::MoveA>(kMover, "move_a"),
+      Make<mover::Command, mover::MoveB>(kMover, "move_b"),
+      Make<mover::Command, mover::MoveC>(kMover, "move_c"),
+      Make<mover::Command, mover::StartExternalSetpointGeneration>(kMover, "start_external_setpoint_generation"),
+      Make<mover::Command, mover::SetExternalSetpoint>(kMover, "set_external_setpoint"),
+      Make<mover::Command, mover::StopExternalSetpointGeneration>(kMover, "stop_external_setpoint_generation"),
+      Make<track::Command, track::AppendLine>(kTrack, "append_line"),
+      Make<track::Command, track::AppendCircle>(kTrack, "append_circle"),
+      Make<track::Command, track::AppendPosition>(kTrack, "append_position"),
+      Make<track::Command, track::CloseLoop>(kTrack, "close_loop"),
+      Make<track::Command, track::Clear>(kTrack, "clear"),
+      Make<track::Command, track::StartFromTrack>(kTrack, "start_from_track"),
+      Make<track::Command, track::EndAtTrack>(kTrack, "end_at_track"),
+      Make<track::Command, track::Enable>(kTrack, "enable"),
+      Make<track::Command, track::Disable>(kTrack, "disable"),
+      Make<track::Command, track::Reset>(kTrack, "reset"),
+      Make<track::Command, track::TrackMade>(kTrack, "track_made"),
   };
   return entries;
 }
@@ -258,6 +284,18 @@ std::string WhyNot(const Machine& machine, const group::Command& command, std::s
   return why;
 }
 
+std::string WhyNot(const Machine& machine, const track::Command& command, std::string_view target) {
+  std::vector<std::string_view> others = NamesOf(machine.tracks);
+  std::erase(others, target);
+  if (const auto* from = std::get_if<track::StartFromTrack>(&command)) {
+    return WhyNotNamed("track", from->track, others, "another track");
+  }
+  if (const auto* to = std::get_if<track::EndAtTrack>(&command)) {
+    return WhyNotNamed("track", to->track, others, "another track");
+  }
+  return {};
+}
+
 // Why this component cannot do it, as far as its description tells; empty: it can.
 std::string WhyNot(const Machine& machine, const Command& command) {
   if (const auto* body = std::get_if<axis::Command>(&command.body)) {
@@ -267,6 +305,9 @@ std::string WhyNot(const Machine& machine, const Command& command) {
     return flexcam::WhyNot(*body, machine.cams);
   }
   if (const auto* body = std::get_if<group::Command>(&command.body)) {
+    return WhyNot(machine, *body, NameOf(machine, command.target));
+  }
+  if (const auto* body = std::get_if<track::Command>(&command.body)) {
     return WhyNot(machine, *body, NameOf(machine, command.target));
   }
   return {};
@@ -330,6 +371,10 @@ bool LetsGo(const Command& command) noexcept {
                                    control->stop_all.value_or(false) || control->path_interrupt.value_or(false) ||
                                    !control->regulator_on.value_or(true));
     return stops || (jog && !jog->positive && !jog->negative);
+  }
+  if (const auto* mover = std::get_if<mover::Command>(&command.body)) {
+    return std::holds_alternative<mover::Halt>(*mover) || std::holds_alternative<mover::Disable>(*mover) ||
+           std::holds_alternative<mover::StopExternalSetpointGeneration>(*mover);
   }
   const auto* axis = std::get_if<axis::Command>(&command.body);
   const auto* power = axis ? std::get_if<axis::Power>(axis) : nullptr;

@@ -16,7 +16,9 @@
 #include "takt/engine/machine.h"
 #include "takt/flexcam/commands.h"
 #include "takt/group/commands.h"
+#include "takt/mover/commands.h"
 #include "takt/pickplace/commands.h"
+#include "takt/track/commands.h"
 
 namespace takt::engine {
 
@@ -43,7 +45,7 @@ void describe(Description<Renew>&);
 
 using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
 using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command,
-                                 conveyor::PoseCommand, pickplace::Command>;
+                                 conveyor::PoseCommand, pickplace::Command, mover::Command, track::Command>;
 
 // Component i (components.h) is target i + 1.
 inline constexpr std::uint32_t kMachineTarget = 0;
@@ -55,7 +57,8 @@ struct Command {
   CommandBody body;
 };
 
-// Lets go of something or stops it: release, stop_all, stop, power(enable: false); halt and interrupt of groups.
+// Lets go of something or stops it: release, stop_all, stop, power(enable: false); halt and interrupt of groups; halt
+// and disable of movers.
 bool LetsGo(const Command& command) noexcept;
 
 // One verb a kind of component understands; `arguments` describes its struct.

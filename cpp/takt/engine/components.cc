@@ -8,7 +8,9 @@
 #include "takt/core/describe.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
+#include "takt/mover/outputs.h"
 #include "takt/pickplace/outputs.h"
+#include "takt/track/outputs.h"
 
 namespace takt::engine {
 
@@ -36,6 +38,8 @@ std::span<const ComponentKind> ComponentKinds() {
       Make<conveyor::PoseOutputs, &Machine::poses>("pose", "poses", "a pose", "poses"),
       Make<pickplace::Outputs, &Machine::pick_and_place>("pick_place", "pick_and_place", "a pick and place module",
                                                          "pick and place modules"),
+      Make<mover::Outputs, &Machine::movers>("mover", "movers", "a mover", "movers"),
+      Make<track::Outputs, &Machine::tracks>("track", "tracks", "a track", "tracks"),
   };
   return kinds;
 }

@@ -20,6 +20,7 @@ constexpr std::size_t kEventsPerAxis = 4 * (axis::kBufferSize + 5);
 constexpr std::size_t kEventsPerCommand = 4;
 // A question may be given up and the next one asked before anybody has looked.
 constexpr std::size_t kQuestionsPerGroup = 4;
+constexpr std::size_t kEventsPerMover = 4 * mover::kSlots;
 constexpr std::size_t kEventsPerGroup = 4 * (group::kQueue + group::kSynced + 5);  // likewise
 
 axis::Context ContextOf(World& w, std::size_t i) {
@@ -61,8 +62,17 @@ pickplace::Context ContextOf(World& w, const PickPlace& module) {
   return c;
 }
 
-// AX-82: after an internal fault nothing may move on: all loops open, all outputs are zero.
+mover::Context MoverContext(World& w, std::size_t i) {
+  return {w.movers[i], w.cycle, w.planner, w.feedback};
+}
+
+void FailMovers(World& w, ErrorId error) {
+  for (std::size_t i = 0; i < w.movers.size(); ++i) mover::Fail(MoverContext(w, i), error, w.mover_states[i]);
+}
+
+// AX-82: after an internal fault nothing may move on: all loops open, all outputs are zero. Movers brake.
 void OpenAllLoops(World& w) {
+  FailMovers(w, ErrorId::kInternal);
   for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
     axis::Fail(ContextOf(w, i), ErrorId::kInternal, true, w.axis_states[i]);
     axis::Control(ContextOf(w, i), w.axis_states[i], w.servo_outputs[i]);
@@ -129,9 +139,13 @@ struct MachineApplier {
         axis::Apply(ContextOf(world, i), 0, 0, axis::Stop{}, state);
       }
     }
+    for (std::size_t i = 0; i < world.movers.size(); ++i) {
+      ToMover(i, c.open_loops ? mover::Command(mover::Disable{}) : StopOf(world.movers[i]));
+    }
     Report(FeedbackState::kDone);
   }
   void operator()(const EmergencyStop&) const {
+    for (std::size_t i = 0; i < world.movers.size(); ++i) ToMover(i, mover::Disable{});
     for (std::size_t i = 0; i < world.axis_states.size(); ++i) {
       axis::EmergencyStop(ContextOf(world, i), world.axis_states[i]);
     }
@@ -141,6 +155,7 @@ struct MachineApplier {
     for (std::size_t i = 0; i < world.axis_states.size(); ++i) {
       axis::Fail(ContextOf(world, i), ErrorId::kOverrun, false, world.axis_states[i]);
     }
+    FailMovers(world, ErrorId::kOverrun);
     Report(FeedbackState::kDone);
   }
   void operator()(const Release& c) const {
@@ -148,6 +163,15 @@ struct MachineApplier {
   }
   void operator()(const Renew& c) const {
     ToOwner(c.ticket, axis::Renew, flexcam::Renew, group::Renew, pickplace::Renew);
+  }
+
+  // A mover cannot be let go: it comes to rest with its maximum dynamics.
+  static mover::Command StopOf(const mover::MoverParams& params) {
+    const trajectory::Limits most = params.xy.maximum.limits();
+    return mover::Halt{.deceleration = most.deceleration, .jerk = most.jerk};
+  }
+  void ToMover(std::size_t i, const mover::Command& command) const {
+    mover::Apply(MoverContext(world, i), 0, command, world.mover_states[i]);
   }
 
   template <typename OfAxis, typename OfModule, typename OfGroup, typename OfPickPlace>
@@ -202,16 +226,22 @@ World::World(const Machine& machine)
       axis_outputs(machine.axes.size()),
       axis_order(machine.axes.size()),
       questions(kQuestionsPerGroup * machine.groups.size()),
+      tracks(machine.tracks),
       servo_inputs(machine.axes.size()),
       servo_outputs(machine.axes.size()),
       samplings(machine.axes.size()),
       feedback_storage(machine.axes.size() * kEventsPerAxis + machine.groups.size() * kEventsPerGroup +
+                       machine.movers.size() * kEventsPerMover + track::EventsOf(machine.tracks.size()) +
                        (kCommandsPerCycle + kRenewalsPerCycle) * kEventsPerCommand),
       feedback(feedback_storage) {
   TypeOf<axis::State>();  // the first use of a type allocates
   TypeOf<plant::ServoState>();
   TypeOf<HeardDrive>();
   TypeOf<ServoInputs>();
+  TypeOf<track::State>();
+  TypeOf<track::Works>();
+  TypeOf<track::Sketch>();
+  TouchTypes(static_cast<const track::Command*>(nullptr));
   for (const cam::CamParams& cam : machine.cams) cams.push_back(cam::Build(cam).table.value());
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axis_states.push_back(axis::MakeState(axis_params[i]));
@@ -232,6 +262,7 @@ World::World(const Machine& machine)
   MakeGroups(machine);
   MakeBelts(machine);
   MakePickPlaces(machine);
+  MakeMovers(machine);
   surrounding = {axis_states, axis_params, cam_switches, cams};
   MakeOrder(*this);
 }
@@ -322,6 +353,18 @@ void World::MakePickPlaces(const Machine& machine) {
   pick_place_outputs.resize(pick_places.size());
 }
 
+void World::MakeMovers(const Machine& machine) {
+  TypeOf<mover::State>();
+  TypeOf<mover::Inputs>();
+  TouchTypes(static_cast<const mover::Command*>(nullptr));
+  movers = machine.movers;
+  for (const mover::MoverParams& params : movers) {
+    mover_states.push_back(mover::MakeState(params));
+    mover_inputs.push_back(mover::Simulate(mover_states.back()));
+  }
+  mover_outputs.resize(movers.size());
+}
+
 std::uint64_t World::StateHash() const noexcept {
   std::uint64_t hash = cycle.count;
   for (const axis::State& state : axis_states) hash = HashOf(state, hash);
@@ -331,6 +374,10 @@ std::uint64_t World::StateHash() const noexcept {
   for (const conveyor::State& state : belt_states) hash = HashOf(state, hash);
   for (const conveyor::PoseState& state : pose_states) hash = HashOf(state, hash);
   for (const pickplace::State& state : pick_place_states) hash = HashOf(state, hash);
+  for (const mover::State& state : mover_states) hash = HashOf(state, hash);
+  for (const mover::Inputs& inputs : mover_inputs) hash = HashOf(inputs, hash);
+  for (const track::State& state : tracks.states) hash = HashOf(state, hash);
+  if (!tracks.states.empty()) hash = HashOf(tracks.works, hash);
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
   for (const HeardDrive& drive : drives) hash = HashOf(servo_inputs[drive.axis], HashOf(drive, hash));
   return hash;
@@ -401,6 +448,16 @@ void Apply(World& w, const Command& command) noexcept {
     const PickPlace& module = w.pick_places[i];
     pickplace::Apply(ContextOf(w, module), command.ticket, command.lease_s, *for_module, w.group_states[module.group],
                      w.pick_place_states[i]);
+  } else if (const auto* for_mover = std::get_if<mover::Command>(&command.body)) {
+    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
+                          w.pick_places.size();  // likewise
+    if (i >= w.movers.size()) return refuse(ErrorId::kUnknownTarget);
+    mover::Apply(MoverContext(w, i), command.ticket, *for_mover, w.mover_states[i]);
+  } else if (const auto* for_track = std::get_if<track::Command>(&command.body)) {
+    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
+                          w.pick_places.size() - w.movers.size();  // likewise
+    if (i >= w.tracks.states.size()) return refuse(ErrorId::kUnknownTarget);
+    track::Apply({w.tracks, w.cycle, w.feedback}, i, command.ticket, *for_track);
   }
 }
 
@@ -426,6 +483,7 @@ void Move(World& w) noexcept {
   for (const std::uint32_t i : w.axis_order.sequence()) {
     if (w.axis_states[i].plc == axis::PlcState::kErrorStop) StopMasters(w, i);
   }
+  track::Step({w.tracks, w.cycle, w.feedback});
   std::ranges::fill(w.group_stepped, std::uint8_t{0});
   StepBelts(w, w.measured_belts);
   for (const std::uint32_t i : w.axis_order.sequence()) {
@@ -437,6 +495,9 @@ void Move(World& w) noexcept {
     StepBelts(w, w.belts_after[i]);
   }
   for (std::size_t i = 0; i < w.groups.size(); ++i) StepOnce(w, i);  // without members
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    mover::Step(MoverContext(w, i), w.mover_inputs[i], w.mover_states[i]);
+  }
 }
 
 void Control(World& w) noexcept {
@@ -467,12 +528,17 @@ void Control(World& w) noexcept {
     pickplace::Publish(ContextOf(w, module), w.group_states[module.group], w.pick_place_states[i],
                        w.pick_place_outputs[i]);
   }
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    mover::Publish(MoverContext(w, i), w.mover_inputs[i], w.mover_states[i], w.mover_outputs[i]);
+  }
+  track::Publish({w.tracks, w.cycle, w.feedback});
 }
 
 void Actuate(World& w) noexcept {
   for (const std::uint32_t i : w.simulated) {
     plant::Step(w.servo_params[i], w.servo_outputs[i], w.cycle.period_s, w.servo_states[i], w.servo_inputs[i]);
   }
+  for (std::size_t i = 0; i < w.movers.size(); ++i) w.mover_inputs[i] = mover::Simulate(w.mover_states[i]);
 }
 
 }  // namespace takt::engine

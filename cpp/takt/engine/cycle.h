@@ -23,8 +23,10 @@
 #include "takt/engine/order.h"
 #include "takt/flexcam/module.h"
 #include "takt/group/group.h"
+#include "takt/mover/mover.h"
 #include "takt/pickplace/module.h"
 #include "takt/plant/servo.h"
+#include "takt/track/tracks.h"
 #include "takt/trajectory/planner.h"
 
 namespace takt::engine {
@@ -120,6 +122,13 @@ struct World {
   std::vector<pickplace::Outputs> pick_place_outputs;
   std::vector<std::uint32_t> pick_place_of;  // the module that moves each group, from 1; 0: none
 
+  std::vector<mover::MoverParams> movers;
+  std::vector<mover::Inputs> mover_inputs;
+  std::vector<mover::State> mover_states;
+  std::vector<mover::Outputs> mover_outputs;
+
+  track::Tracks tracks;
+
   std::vector<ServoInputs> servo_inputs;
   std::vector<ServoOutputs> servo_outputs;
   std::vector<plant::ServoParams> servo_params;
@@ -138,6 +147,7 @@ struct World {
   void MakeGroups(const Machine& machine);
   void MakeBelts(const Machine& machine);
   void MakePickPlaces(const Machine& machine);
+  void MakeMovers(const Machine& machine);
 };
 
 // Not for the cycle (axis/forecast.h).

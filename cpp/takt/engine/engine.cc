@@ -52,6 +52,11 @@ constexpr std::size_t kJournalledPerCycle = kCommandsPerCycle + kRenewalsPerCycl
 // looks at.
 constexpr std::size_t kDriveQueue = 16;
 
+bool IsTrackMade(const Command& command) {
+  const auto* track = std::get_if<track::Command>(&command.body);
+  return track && std::holds_alternative<track::TrackMade>(*track);
+}
+
 bool IsRenewal(const Command& command) {
   const auto* machine = std::get_if<MachineCommand>(&command.body);
   return machine && std::holds_alternative<Renew>(*machine);
@@ -76,6 +81,8 @@ struct Engine::Impl {
         poses(machine, o, machine.poses, world.pose_outputs),
         belt_objects(o.publish ? kObjectLists * machine.belts.size() : 2),
         pick_places(machine, o, machine.pick_and_place, world.pick_place_outputs),
+        movers(machine, o, machine.movers, world.mover_outputs),
+        tracks(machine, o, machine.tracks, world.tracks.outputs),
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
         hashes(o.journal ? o.snapshot_queue : 2),
@@ -157,7 +164,7 @@ struct Engine::Impl {
   }
 
   // All kinds of components, in the order of their numbers.
-  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses, pick_places); }
+  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses, pick_places, movers, tracks); }
 
   template <typename Outputs>
   void PublishAll(OfKind<Outputs>& kind) noexcept {
@@ -215,6 +222,8 @@ struct Engine::Impl {
   OfKind<conveyor::PoseOutputs> poses;
   SpscQueue<ObjectsSnapshot> belt_objects;
   OfKind<pickplace::Outputs> pick_places;
+  OfKind<mover::Outputs> movers;
+  OfKind<track::Outputs> tracks;
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
   SpscQueue<HashEntry> hashes;
@@ -253,6 +262,7 @@ Ticket Engine::Submit(const Command& command) noexcept {
 
 bool Engine::Resubmit(const Command& command) noexcept {
   impl_->next_ticket = std::max(impl_->next_ticket, command.ticket + 1);
+  if (IsTrackMade(command)) track::Make(impl_->world.tracks.desk);  // what the journal says of it is given anyhow
   return impl_->journalled.TryPush(command);
 }
 
@@ -264,6 +274,14 @@ bool Engine::Answer(std::size_t group, const group::PathChecked& answer) noexcep
   const Machine& m = impl_->machine;
   const std::size_t target = m.axes.size() + m.flex_cams.size() + group + 1;
   return impl_->answers.TryPush({0, static_cast<std::uint32_t>(target), 0, group::Command(answer)});
+}
+
+void Engine::MakeTracks() {
+  const std::size_t before = components() - impl_->machine.tracks.size();
+  while (const std::optional<track::Answer> answer = track::Make(impl_->world.tracks.desk)) {
+    const auto target = static_cast<std::uint32_t>(before + answer->track + 1);
+    impl_->answers.TryPush({0, target, 0, track::Command(answer->made)});
+  }
 }
 
 group::Fixed Engine::fixed(std::size_t group) const noexcept {
@@ -309,6 +327,15 @@ const conveyor::State& Engine::belt_state(std::size_t belt) const noexcept {
 const pickplace::Outputs& Engine::pick_place_outputs(std::size_t module) const noexcept {
   return impl_->world.pick_place_outputs[module];
 }
+const mover::Outputs& Engine::mover_outputs(std::size_t mover) const noexcept {
+  return impl_->world.mover_outputs[mover];
+}
+const mover::State& Engine::mover_state(std::size_t mover) const noexcept {
+  return impl_->world.mover_states[mover];
+}
+const track::Tracks& Engine::tracks() const noexcept {
+  return impl_->world.tracks;
+}
 std::size_t Engine::components() const noexcept {
   return std::apply([](const auto&... kind) { return (kind.outputs.size() + ...); }, impl_->kinds());
 }
@@ -348,12 +375,14 @@ plant::ServoFaults& Engine::faults(std::size_t axis) noexcept {
 
 bool Engine::all_disabled() const noexcept {
   return std::all_of(impl_->world.axis_states.begin(), impl_->world.axis_states.end(),
-                     [](const axis::State& s) { return !s.enable && !s.loop_closed; });
+                     [](const axis::State& s) { return !s.enable && !s.loop_closed; }) &&
+         std::ranges::all_of(impl_->world.mover_states, mover::IsOff);
 }
 
 bool Engine::at_rest() const noexcept {
   return std::all_of(impl_->world.axis_states.begin(), impl_->world.axis_states.end(),
-                     [](const axis::State& s) { return s.setpoint.velocity == 0 && s.setpoint.acceleration == 0; });
+                     [](const axis::State& s) { return s.setpoint.velocity == 0 && s.setpoint.acceleration == 0; }) &&
+         std::ranges::all_of(impl_->world.mover_states, mover::AtRest);
 }
 
 void Engine::RequestShutdown() noexcept {
@@ -386,6 +415,8 @@ template SpscQueue<GroupSnapshot>& Engine::snapshots<group::Outputs>() noexcept;
 template SpscQueue<BeltSnapshot>& Engine::snapshots<conveyor::Outputs>() noexcept;
 template SpscQueue<PoseSnapshot>& Engine::snapshots<conveyor::PoseOutputs>() noexcept;
 template SpscQueue<PickPlaceSnapshot>& Engine::snapshots<pickplace::Outputs>() noexcept;
+template SpscQueue<MoverSnapshot>& Engine::snapshots<mover::Outputs>() noexcept;
+template SpscQueue<TrackSnapshot>& Engine::snapshots<track::Outputs>() noexcept;
 
 SpscQueue<ObjectsSnapshot>& Engine::belt_objects() noexcept {
   return impl_->belt_objects;

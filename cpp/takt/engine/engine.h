@@ -20,7 +20,11 @@
 #include "takt/group/outputs.h"
 #include "takt/group/question.h"
 #include "takt/group/survey.h"
+#include "takt/mover/outputs.h"
+#include "takt/mover/state.h"
 #include "takt/pickplace/outputs.h"
+#include "takt/planar/track.h"
+#include "takt/track/tracks.h"
 
 namespace takt::engine {
 
@@ -67,6 +71,9 @@ class Engine {
   const conveyor::PoseOutputs& pose_outputs(std::size_t pose) const noexcept;
   const conveyor::State& belt_state(std::size_t belt) const noexcept;
   const pickplace::Outputs& pick_place_outputs(std::size_t module) const noexcept;
+  const mover::Outputs& mover_outputs(std::size_t mover) const noexcept;
+  const mover::State& mover_state(std::size_t mover) const noexcept;
+  const track::Tracks& tracks() const noexcept;
   // The same for components of any kind, by the number that is their target, less one.
   struct Published {
     const Type* type;
@@ -80,7 +87,7 @@ class Engine {
   // changes; takes memory and time, so not between two cycles that have a deadline.
   axis::Forecast Foresee(std::size_t axis) const;
   axis::Forecast Foresee(std::size_t axis, const axis::Command& command) const;
-  // Every axis at rest with its loop open.
+  // Every axis at rest with its loop open, every mover disabled.
   bool all_disabled() const noexcept;
   bool at_rest() const noexcept;
 
@@ -93,10 +100,12 @@ class Engine {
   // Counts what an external drive sent and nobody could use.
   void CountRefusedSample() noexcept;
 
-  // --- one thread that answers groups (PathChecks) ---
+  // --- one thread that answers groups and makes tracks (PathChecks) ---
   SpscQueue<group::Question>& questions() noexcept;
   // The next cycle takes it. False: there is no room; then nobody waits for it, either.
   bool Answer(std::size_t group, const group::PathChecked& answer) noexcept;
+  // Makes the tracks that the cycle asks for (track/desk.h), and tells it in the next cycle.
+  void MakeTracks();
   // Never changes.
   group::Fixed fixed(std::size_t group) const noexcept;
 

@@ -8,6 +8,7 @@
 #include "takt/engine/load_cams.h"
 #include "takt/engine/load_groups.h"
 #include "takt/engine/order.h"
+#include "takt/track/build.h"
 
 namespace takt::engine {
 
@@ -53,6 +54,10 @@ class CrossCheck {
     CheckBelts();
     CheckNames("pick_and_place", machine_.pick_and_place);
     CheckPickPlaces();
+    CheckNames("movers", machine_.movers);
+    CheckMovers();
+    CheckNames("tracks", machine_.tracks);
+    CheckTracks();
     CheckCamSwitches();
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
@@ -72,7 +77,9 @@ class CrossCheck {
   }
 
   void CheckAxes() {
-    if (machine_.axes.empty()) Add("axes", "expected at least one axis");
+    if (machine_.axes.empty() && machine_.movers.empty() && machine_.tracks.empty()) {
+      Add("axes", "expected at least one axis");
+    }
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
       const std::string path = "axes[" + std::to_string(i) + "]";
       const std::string& name = machine_.axes[i].name;
@@ -170,7 +177,9 @@ class CrossCheck {
   // Belts and the axes that they name; several may go by the same. And poses.
   void CheckBelts() {
     const std::vector<std::string_view> names = Components();
-    const auto modules = names.end() - static_cast<std::ptrdiff_t>(machine_.pick_and_place.size());
+    const auto tracks = names.end() - static_cast<std::ptrdiff_t>(machine_.tracks.size());
+    const auto movers = tracks - static_cast<std::ptrdiff_t>(machine_.movers.size());
+    const auto modules = movers - static_cast<std::ptrdiff_t>(machine_.pick_and_place.size());
     const auto poses = modules - static_cast<std::ptrdiff_t>(machine_.poses.size());
     const auto belts = poses - static_cast<std::ptrdiff_t>(machine_.belts.size());
     const auto check_name = [&](const std::string& path, std::string_view name, auto others) {
@@ -198,7 +207,8 @@ class CrossCheck {
     for (std::size_t i = 0; i < machine_.pick_and_place.size(); ++i) {
       const pickplace::PickPlaceParams& module = machine_.pick_and_place[i];
       const std::string path = "pick_and_place[" + std::to_string(i) + "]";
-      const std::size_t others = names.size() - machine_.pick_and_place.size();
+      const std::size_t others =
+          names.size() - machine_.tracks.size() - machine_.movers.size() - machine_.pick_and_place.size();
       if (module.name == "machine" || std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(others),
                                                 module.name) != names.begin() + static_cast<std::ptrdiff_t>(others)) {
         Add(path + ".name", "expected a name that nothing else has, and not machine, found " + Quoted(module.name));
@@ -220,7 +230,35 @@ class CrossCheck {
     }
   }
 
-  // Names of all, belts, poses and pick and place modules last.
+  void CheckMovers() {
+    const std::vector<std::string_view> names = Components();
+    const auto others = names.end() - static_cast<std::ptrdiff_t>(machine_.tracks.size() + machine_.movers.size());
+    for (std::size_t i = 0; i < machine_.movers.size(); ++i) {
+      const std::string& name = machine_.movers[i].name;
+      if (name == "machine" || std::find(names.begin(), others, name) != others) {
+        Add("movers[" + std::to_string(i) + "].name",
+            "expected a name that nothing else has, and not machine, found " + Quoted(name));
+      }
+    }
+  }
+
+  // Tracks, their geometry and their links.
+  void CheckTracks() {
+    const std::vector<std::string_view> names = Components();
+    const auto others = names.end() - static_cast<std::ptrdiff_t>(machine_.tracks.size());
+    for (std::size_t i = 0; i < machine_.tracks.size(); ++i) {
+      const std::string& name = machine_.tracks[i].name;
+      if (name == "machine" || std::find(names.begin(), others, name) != others) {
+        Add("tracks[" + std::to_string(i) + "].name",
+            "expected a name that nothing else has, and not machine, found " + Quoted(name));
+      }
+    }
+    for (const track::BuildProblem& problem : track::Build(machine_.tracks).problems) {
+      Add("tracks" + problem.path, problem.message);
+    }
+  }
+
+  // Names of all, belts, poses, pick and place modules, movers and tracks last.
   std::vector<std::string_view> Components() const {
     std::vector<std::string_view> names = names_;
     for (const flexcam::FlexCamParams& module : machine_.flex_cams) names.push_back(module.name);
@@ -228,6 +266,8 @@ class CrossCheck {
     for (const conveyor::BeltParams& belt : machine_.belts) names.push_back(belt.name);
     for (const conveyor::PoseParams& pose : machine_.poses) names.push_back(pose.name);
     for (const pickplace::PickPlaceParams& module : machine_.pick_and_place) names.push_back(module.name);
+    for (const mover::MoverParams& mover : machine_.movers) names.push_back(mover.name);
+    for (const track::TrackParams& track : machine_.tracks) names.push_back(track.name);
     return names;
   }
 
@@ -312,7 +352,7 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name, Worksp
     cams = LoadCams(source, machine);
     groups = LoadGroups(source, machine, workspaces == Workspaces::kMake);
   }
-  if (readable && !machine.axes.empty()) {
+  if (readable && (!machine.axes.empty() || !machine.movers.empty() || !machine.tracks.empty())) {
     std::vector<Problem> more = CrossCheck(machine, source).Run();
     problems.insert(problems.end(), more.begin(), more.end());
   } else if (problems.empty()) {

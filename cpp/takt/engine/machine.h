@@ -15,8 +15,10 @@
 #include "takt/core/describe_fwd.h"
 #include "takt/flexcam/params.h"
 #include "takt/group/params.h"
+#include "takt/mover/params.h"
 #include "takt/pickplace/params.h"
 #include "takt/plant/servo.h"
+#include "takt/track/params.h"
 
 namespace takt::engine {
 
@@ -75,6 +77,8 @@ struct Machine {
   std::vector<conveyor::BeltParams> belts;
   std::vector<conveyor::PoseParams> poses;
   std::vector<pickplace::PickPlaceParams> pick_and_place;
+  std::vector<mover::MoverParams> movers;
+  std::vector<track::TrackParams> tracks;
   Simulation simulation;
   External external;
 };

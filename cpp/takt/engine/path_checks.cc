@@ -5,6 +5,8 @@
 #include <string_view>
 
 #include "takt/group/survey.h"
+#include "takt/planar/problem.h"
+#include "takt/track/sketch.h"
 #include "takt/workspace/trouble.h"
 
 namespace takt::engine {
@@ -30,6 +32,12 @@ std::string_view UnitOf(path::Measure measure) {
 
 std::string InElement(std::uint32_t element) {
   return element == 0 ? "" : ", in element " + std::to_string(element);
+}
+
+std::string TrackSentence(double value) {
+  const std::string_view text = planar::Text(track::ProblemOf(value));
+  const std::string why(text.empty() ? ErrorText(ErrorId::kTrackGeometry) : text);
+  return why + InElement(track::ElementOf(value));
 }
 
 // One question: what goes on without a gap is looked at together.
@@ -126,6 +134,7 @@ PathChecks::PathChecks(Engine& engine, Checkers checkers) : engine_(engine) {
 PathChecks::~PathChecks() = default;
 
 void PathChecks::Run() {
+  engine_.MakeTracks();
   group::Question question;
   bool any = false;
   while (engine_.questions().TryPop(question)) {  // what was asked before is not waited for any more
@@ -184,6 +193,7 @@ std::string Sentence(const FeedbackEvent& event) {
   if (event.error == ErrorId::kNone) return {};
   const bool of_path = event.error == ErrorId::kCollision || event.error == ErrorId::kUnreachable ||
                        event.error == ErrorId::kSingular || event.error == ErrorId::kPathGeometry;
+  if (event.error == ErrorId::kTrackGeometry) return TrackSentence(event.value);
   const std::string text(ErrorText(event.error));
   return of_path && event.value > 0 ? text + InElement(static_cast<std::uint32_t>(event.value)) : text;
 }

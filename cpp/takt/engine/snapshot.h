@@ -13,13 +13,15 @@
 #include "takt/engine/command.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
+#include "takt/mover/outputs.h"
 #include "takt/pickplace/outputs.h"
+#include "takt/track/outputs.h"
 
 namespace takt::engine {
 
 // What each kind of components publishes, in the order of ComponentKinds().
 using PublishedKinds = std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs,
-                                  conveyor::PoseOutputs, pickplace::Outputs>;
+                                  conveyor::PoseOutputs, pickplace::Outputs, mover::Outputs, track::Outputs>;
 
 // What a component published.
 template <typename Outputs>
@@ -35,6 +37,8 @@ using GroupSnapshot = SnapshotOf<group::Outputs>;
 using BeltSnapshot = SnapshotOf<conveyor::Outputs>;
 using PoseSnapshot = SnapshotOf<conveyor::PoseOutputs>;
 using PickPlaceSnapshot = SnapshotOf<pickplace::Outputs>;
+using MoverSnapshot = SnapshotOf<mover::Outputs>;
+using TrackSnapshot = SnapshotOf<track::Outputs>;
 
 // What lies on a belt, at the rate of its channel.
 struct ObjectsSnapshot {

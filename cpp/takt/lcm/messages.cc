@@ -320,6 +320,24 @@ msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::M
   return m;
 }
 
+msgs::track_state ToMessage(const engine::TrackSnapshot& snapshot, const engine::Machine& machine) {
+  const track::Outputs& o = snapshot.outputs;
+  msgs::track_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.tracks[snapshot.index].name;
+  m.state = static_cast<std::int8_t>(o.state);
+  m.operation_mode = static_cast<std::int8_t>(o.operation_mode);
+  m.error = static_cast<std::int32_t>(o.error);
+  m.length = o.length;
+  m.closed_loop = o.closed_loop;
+  m.element_count = o.element_count;
+  m.mover_count = o.mover_count;
+  m.previous_tracks = o.previous_tracks;
+  m.subsequent_tracks = o.subsequent_tracks;
+  return m;
+}
+
 msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, const engine::Machine& machine) {
   const pickplace::Outputs& o = snapshot.outputs;
   msgs::pick_place_state m{};
@@ -368,6 +386,50 @@ msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, cons
   m.synchronised = o.synchronised;
   m.in_target = o.in_target;
   m.in_park_position = o.in_park_position;
+  return m;
+}
+
+msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine::Machine& machine) {
+  const mover::Outputs& o = snapshot.outputs;
+  msgs::mover_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.movers[snapshot.index].name;
+  m.state = static_cast<std::int8_t>(o.state);
+  m.command_mode = static_cast<std::int8_t>(o.command_mode);
+  m.error = static_cast<std::int32_t>(o.error);
+  m.limited_by = static_cast<std::int8_t>(o.limited_by);
+  m.x = o.x;
+  m.y = o.y;
+  m.z = o.z;
+  m.a = o.a;
+  m.b = o.b;
+  m.c = o.c;
+  m.velocity_x = o.velocity_x;
+  m.velocity_y = o.velocity_y;
+  m.velocity_z = o.velocity_z;
+  m.velocity_a = o.velocity_a;
+  m.velocity_b = o.velocity_b;
+  m.velocity_c = o.velocity_c;
+  m.acceleration_x = o.acceleration_x;
+  m.acceleration_y = o.acceleration_y;
+  m.acceleration_z = o.acceleration_z;
+  m.acceleration_a = o.acceleration_a;
+  m.acceleration_b = o.acceleration_b;
+  m.acceleration_c = o.acceleration_c;
+  m.actual_x = o.actual_x;
+  m.actual_y = o.actual_y;
+  m.actual_z = o.actual_z;
+  m.actual_a = o.actual_a;
+  m.actual_b = o.actual_b;
+  m.actual_c = o.actual_c;
+  m.busy_xyc = o.busy_xyc;
+  m.busy_z = o.busy_z;
+  m.busy_a = o.busy_a;
+  m.busy_b = o.busy_b;
+  m.busy_c = o.busy_c;
+  m.external = static_cast<std::int8_t>(o.external);
+  m.commands = Signed(o.commands);
   return m;
 }
 

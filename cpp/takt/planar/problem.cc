@@ -40,6 +40,20 @@ std::string_view Text(Problem problem) noexcept {
       return "the track starts elsewhere, or in another direction or curvature, than the other track ends";
     case Problem::kNotItsEnd:
       return "the track ends elsewhere, or in another direction or curvature, than the other track starts";
+    case Problem::kCrosses:
+      return "the track crosses or touches itself";
+    case Problem::kTooMany:
+      return "a track has at most 64 elements, starts from at most 8 tracks and ends at as many";
+    case Problem::kOtherEmpty:
+      return "the other track has no length yet";
+    case Problem::kOtherClosed:
+      return "the other track is a closed loop, which neither starts nor ends";
+    case Problem::kInUse:
+      return "other tracks start from this one or end at it: its geometry stays until they are cleared";
+    case Problem::kNotDisabled:
+      return "the geometry of a track can be changed only while it is disabled";
+    case Problem::kBusy:
+      return "too many changes of tracks wait to be made";
   }
   return "";
 }
@@ -79,6 +93,13 @@ void describe(Enumeration<Problem>& e) {
   e.value(Problem::kLinked, "linked", "A track with links cannot be a closed loop.");
   e.value(Problem::kNotItsStart, "not_its_start", "The track starts elsewhere than the other one ends.");
   e.value(Problem::kNotItsEnd, "not_its_end", "The track ends elsewhere than the other one starts.");
+  e.value(Problem::kCrosses, "crosses", "The track crosses itself.");
+  e.value(Problem::kTooMany, "too_many", "A track cannot have so many elements or links.");
+  e.value(Problem::kOtherEmpty, "other_empty", "The other track has no length.");
+  e.value(Problem::kOtherClosed, "other_closed", "The other track is a closed loop.");
+  e.value(Problem::kInUse, "in_use", "Other tracks start from it or end at it.");
+  e.value(Problem::kNotDisabled, "not_disabled", "The track is not disabled.");
+  e.value(Problem::kBusy, "busy", "Too many changes wait.");
 }
 
 }  // namespace takt::planar

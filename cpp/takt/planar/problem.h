@@ -27,6 +27,13 @@ enum class Problem : std::uint8_t {
   kLinked,         // a track that starts from or ends at another one is no loop
   kNotItsStart,    // it has a start already, which is not where the other track ends
   kNotItsEnd,      // it ends at another track already, which is not where this one starts
+  kCrosses,        // it crosses or touches itself
+  kTooMany,        // more elements or links than a track can have
+  kOtherEmpty,     // the other track has no length
+  kOtherClosed,    // the other track is a closed loop: it neither starts nor ends
+  kInUse,          // other tracks start from it or end at it
+  kNotDisabled,    // it is enabled, or not quite disabled
+  kBusy,           // too many changes of tracks wait to be made
 };
 
 // One sentence without a full stop; empty for kNone.

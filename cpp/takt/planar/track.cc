@@ -68,7 +68,7 @@ void describe(Enumeration<ElementShape>& e) {
   e.about("What a track is given by.");
   e.value(ElementShape::kPosition, "position", "A place to go through.");
   e.value(ElementShape::kLine, "line", "A straight line.");
-  e.value(ElementShape::kArc, "arc", "A circular arc.");
+  e.value(ElementShape::kArc, "circle", "A circular arc; a whole circle where it ends where it starts.");
 }
 
 void describe(Description<Element>& d) {

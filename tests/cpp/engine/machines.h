@@ -3,13 +3,14 @@
 
 #include <string>
 
+#include "takt/engine/components.h"
 #include "takt/engine/engine.h"
 #include "takt/engine/load.h"
 
 namespace takt::engine {
 
 // Linear and rotary, all three kinds of drives, an absolute encoder, a follower, a cam module, a group, belts, a pose,
-// switches and a real-looking servo.
+// tracks, switches and a real-looking servo.
 inline const char* kFullMachine = R"(
 name: full
 cycle: {period_s: 0.001}
@@ -69,6 +70,9 @@ belts:
   - {name: table, kind: turning, axis: c, source: actual_value, filter_s: 0.01, lower_limit: -90, upper_limit: 3600}
 poses:
   - {name: mover, goes_on_s: 0.2}
+tracks:
+  - {name: main, elements: [{from: {x: 0, y: 0}, to: {x: 300, y: 0}}]}
+  - {name: branch, starts_from: [main]}
 simulation:
   servos:
     - axis: z
@@ -119,6 +123,10 @@ inline Command ToBelt(const Machine& machine, std::size_t index, const conveyor:
       static_cast<std::uint32_t>(machine.axes.size() + machine.flex_cams.size() + machine.groups.size() + index + 1);
   command.body = body;
   return command;
+}
+
+inline Command ToTrack(const Machine& machine, std::string_view name, const track::Command& body) {
+  return {.target = FindComponent(machine, name).value() + 1, .body = body};
 }
 
 // The first pose.
@@ -176,6 +184,11 @@ inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m)
   commands.push_back({650, ToBelt(m, 1, conveyor::TakeObject{3})});
   commands.push_back({660, ToBelt(m, 1, conveyor::RemoveObject{3})});
   commands.push_back({2400, ToBelt(m, 1, conveyor::ClearObjects{})});
+  commands.push_back({355, ToTrack(m, "main", track::Enable{})});
+  commands.push_back({420, ToTrack(m, "main", track::Disable{})});
+  commands.push_back({460, ToTrack(m, "branch", track::AppendLine{400, 100, 400, 300})});
+  commands.push_back({470, ToTrack(m, "branch", track::EndAtTrack{Name::Of("main")})});
+  commands.push_back({2400, ToTrack(m, "branch", track::Clear{})});
   commands.push_back({350, ToPose(m, conveyor::SetPose{.x = 5, .vx = 10, .wy = 3})});
   using flexcam::Control;
   commands.push_back({6, ToModule(m, Control{.regulator_on = true})});

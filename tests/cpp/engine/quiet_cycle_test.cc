@@ -13,6 +13,7 @@
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
@@ -109,6 +110,8 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
   bool moved = false;
   bool group_moved = false;
   bool failed = false;
+  bool linked = false;
+  std::atomic<bool> ended{false};
   const Command flood = ToAxis(machine, "z", axis::Halt{});
   long cycle_allocations = -1;
   long cycle_locks = -1;
@@ -131,6 +134,7 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
       engine.RunCycle({500, 5000, late});
       moved |= engine.outputs(AxisNamed(machine, "c")).set_velocity > 1000;
       group_moved |= engine.group_outputs(0).path_velocity > 100;
+      linked |= engine.tracks().outputs[1].length > 400 && engine.tracks().outputs[1].subsequent_tracks == 1;
       failed |= engine.outputs(AxisNamed(machine, "c")).error == ErrorId::kOverrun;
     }
     watching = false;
@@ -138,11 +142,17 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
     cycle_locks = locks;
     EndThread();
   });
+  std::thread maker([&] {
+    while (!ended) engine.MakeTracks();
+  });
   thread.join();
+  ended = true;
+  maker.join();
   EXPECT_TRUE(filtered) << "the kernel refused the filter: system calls were not watched";
   EXPECT_TRUE(moved);
   EXPECT_TRUE(group_moved);
   EXPECT_TRUE(failed);
+  EXPECT_TRUE(linked);
   EXPECT_TRUE(lost);
   EXPECT_GT(engine.figures().set_points_dropped, 0u);
   EXPECT_TRUE(engine.all_disabled());

@@ -178,6 +178,12 @@ TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   ExpectSameConstants("group_state.lcm", "STATE_", TypeOf<group::GroupState>());
   ExpectSameConstants("group_state.lcm", "TRACK_", TypeOf<group::TrackState>());
   ExpectSameConstants("belt_object.lcm", "STATE_", TypeOf<conveyor::ObjectState>());
+  ExpectSameConstants("mover_state.lcm", "STATE_", TypeOf<planar::ObjectState>());
+  ExpectSameConstants("mover_state.lcm", "MODE_", TypeOf<mover::CommandMode>());
+  ExpectSameConstants("mover_state.lcm", "LIMITED_BY_", TypeOf<LimitedBy>());
+  ExpectSameConstants("mover_state.lcm", "EXTERNAL_", TypeOf<mover::SetpointMode>());
+  ExpectSameConstants("track_state.lcm", "STATE_", TypeOf<planar::ObjectState>());
+  ExpectSameConstants("track_state.lcm", "MODE_", TypeOf<track::OperationMode>());
   ExpectSameConstants("group_state.lcm", "REASON_", TypeOf<kinematics::Reason>());
   ExpectSameConstants("group_state.lcm", "PROBLEM_", TypeOf<path::Problem>());
 
@@ -206,7 +212,7 @@ TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
       EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
     }
   }
-  EXPECT_EQ(files, 22);
+  EXPECT_EQ(files, 24);
 }
 
 }  // namespace

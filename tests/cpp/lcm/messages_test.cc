@@ -339,6 +339,27 @@ TEST(Messages, BeltStateKeepsEveryNumber) {
       machine, "infeed");
 }
 
+// EN-20
+TEST(Messages, TrackStateKeepsEveryNumber) {
+  engine::Machine machine = TestMachine();
+  machine.tracks.resize(2);
+  machine.tracks[1].name = "loop";
+  machine.cycle.period_s = 0.00025;
+  ExpectKeepsEveryNumber<msgs::track_state, track::Outputs>(
+      {
+          FIELD(track_state, state),
+          FIELD(track_state, operation_mode),
+          FIELD(track_state, error),
+          FIELD(track_state, length),
+          FIELD(track_state, closed_loop),
+          FIELD(track_state, element_count),
+          FIELD(track_state, mover_count),
+          FIELD(track_state, previous_tracks),
+          FIELD(track_state, subsequent_tracks),
+      },
+      machine, "loop");
+}
+
 // EN-20, CV-42
 TEST(Messages, PoseStateKeepsEveryNumber) {
   engine::Machine machine = TestMachine();
@@ -353,6 +374,55 @@ TEST(Messages, PoseStateKeepsEveryNumber) {
           FIELD(pose_state, fresh),
       },
       machine, "mover");
+}
+
+// EN-20, PL-01
+TEST(Messages, MoverStateKeepsEveryNumber) {
+  engine::Machine machine = TestMachine();
+  machine.movers = {{.name = "other"}, {.name = "shuttle"}};
+  machine.cycle.period_s = 0.00025;
+  ExpectKeepsEveryNumber<msgs::mover_state, mover::Outputs>(
+      {
+          FIELD(mover_state, state),
+          FIELD(mover_state, command_mode),
+          FIELD(mover_state, error),
+          FIELD(mover_state, limited_by),
+          FIELD(mover_state, x),
+          FIELD(mover_state, y),
+          FIELD(mover_state, z),
+          FIELD(mover_state, a),
+          FIELD(mover_state, b),
+          FIELD(mover_state, c),
+          FIELD(mover_state, velocity_x),
+          FIELD(mover_state, velocity_y),
+          FIELD(mover_state, velocity_z),
+          FIELD(mover_state, velocity_a),
+          FIELD(mover_state, velocity_b),
+          FIELD(mover_state, velocity_c),
+          FIELD(mover_state, acceleration_x),
+          FIELD(mover_state, acceleration_y),
+          FIELD(mover_state, acceleration_z),
+          FIELD(mover_state, acceleration_a),
+          FIELD(mover_state, acceleration_b),
+          FIELD(mover_state, acceleration_c),
+          FIELD(mover_state, actual_x),
+          FIELD(mover_state, actual_y),
+          FIELD(mover_state, actual_z),
+          FIELD(mover_state, actual_a),
+          FIELD(mover_state, actual_b),
+          FIELD(mover_state, actual_c),
+          FIELD(mover_state, busy_xyc),
+          FIELD(mover_state, busy_z),
+          FIELD(mover_state, busy_a),
+          FIELD(mover_state, busy_b),
+          FIELD(mover_state, busy_c),
+          FIELD(mover_state, external),
+          FIELD(mover_state, commands),
+      },
+      machine, "shuttle");
+  EXPECT_EQ(static_cast<int>(planar::ObjectState::kResetting), msgs::mover_state::STATE_RESETTING);
+  EXPECT_EQ(static_cast<int>(mover::CommandMode::kExternalSetpointGeneration),
+            msgs::mover_state::MODE_EXTERNAL_SETPOINT_GENERATION);
 }
 #undef FIELD
 #undef FIELD_OF

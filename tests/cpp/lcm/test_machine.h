@@ -75,6 +75,19 @@ inline engine::Machine WithPicker(engine::Machine machine) {
   return machine;
 }
 
+// With a planar mover "shuttle".
+inline engine::Machine WithMover(engine::Machine machine) {
+  machine.movers = {{.name = "shuttle"}};
+  return machine;
+}
+
+// With a track "loop".
+inline engine::Machine WithTrack(engine::Machine machine) {
+  machine.tracks.resize(1);
+  machine.tracks[0].name = "loop";
+  return machine;
+}
+
 // An LCM network that no other test uses; its port is below those that systems give away by themselves.
 inline std::string NewUrl() {
   static int port = 10'000 + getpid() % 500 * 4;

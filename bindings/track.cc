@@ -1,0 +1,102 @@
+// The tracks of a machine file, made without an engine: what takt track looks at.
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bindings.h"
+#include "takt/track/ranges.h"
+
+namespace takt::bindings {
+namespace {
+
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using RangePair = py::typing::Tuple<double, double>;
+
+class Layout {
+ public:
+  Layout(const py::bytes& text, const std::string& file_name) : tracks_(Load(text, file_name, false).machine->tracks) {}
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const track::TrackParams& params : tracks_.params) names.push_back(params.name);
+    return names;
+  }
+  double Length(std::size_t i) const { return tracks_.states.at(i).length; }
+  bool Closed(std::size_t i) const { return tracks_.sketches.at(i).closed; }
+
+  // mm; infinite where it is straight all the way.
+  double SmallestRadius(std::size_t i) const {
+    const planar::Track* way = tracks_.ways.at(i);
+    const double curvature = way ? planar::PeakCurvature(*way, 0, way->length) : 0;
+    return curvature > 0 ? 1 / curvature : std::numeric_limits<double>::infinity();
+  }
+
+  // Numbers of the tracks that end where it starts, or start where it ends.
+  std::vector<std::size_t> Before(std::size_t i) const { return Meeting(tracks_.end_nodes, tracks_.start_nodes.at(i)); }
+  std::vector<std::size_t> Behind(std::size_t i) const { return Meeting(tracks_.start_nodes, tracks_.end_nodes.at(i)); }
+
+  RangePair Ranges(std::size_t i) const {
+    CheckTrack(i);
+    const track::CollisionRanges ranges = track::RangesOf(tracks_, i);
+    return py::make_tuple(ranges.at_start, ranges.at_end);
+  }
+
+  // Rows of s, x, y, direction in deg, curvature in 1/mm, and 1 where a piece was given; `step` mm apart or nearer.
+  Array Points(std::size_t i, double step) const {
+    CheckTrack(i);
+    const planar::Track* way = tracks_.ways[i];
+    if (!(step > 0)) throw std::invalid_argument("step must be above 0");
+    std::vector<double> rows;
+    for (const planar::Piece& piece : way ? way->pieces : std::vector<planar::Piece>{}) {
+      const double length = piece.segment.length;
+      const double count = std::ceil(length / step);
+      for (double k = 0; k <= count; ++k) {
+        const planar::TrackPoint point = planar::At(piece, length * k / count);
+        rows.insert(rows.end(), {piece.start + length * k / count, point.place.x, point.place.y,
+                                 point.direction * 180 / std::numbers::pi, point.curvature, piece.given ? 1.0 : 0.0});
+      }
+    }
+    constexpr py::ssize_t kColumns = 6;
+    Array array({static_cast<py::ssize_t>(rows.size()) / kColumns, kColumns});
+    std::copy(rows.begin(), rows.end(), array.mutable_data());
+    return array;
+  }
+
+ private:
+  void CheckTrack(std::size_t i) const {
+    if (i >= tracks_.ways.size()) throw std::out_of_range("no such track");
+  }
+  static std::vector<std::size_t> Meeting(const std::vector<std::uint32_t>& nodes, std::uint32_t node) {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (nodes[i] == node) found.push_back(i);
+    }
+    return found;
+  }
+
+  track::Tracks tracks_;
+};
+
+}  // namespace
+
+void BindTrack(py::module_& m) {
+  using L = Layout;
+  py::class_<L>(m, "TrackLayout", "The tracks of a machine file. Raises takt.ConfigError with every problem.")
+      .def(py::init<const py::bytes&, const std::string&>(), py::arg("text"), py::arg("file_name"))
+      .def_property_readonly("names", &L::names)
+      .def("length", &L::Length, py::arg("track"))
+      .def("closed", &L::Closed, py::arg("track"))
+      .def("smallest_radius", &L::SmallestRadius, py::arg("track"))
+      .def("before", &L::Before, py::arg("track"))
+      .def("behind", &L::Behind, py::arg("track"))
+      .def("collision_ranges", &L::Ranges, py::arg("track"))
+      .def("points", &L::Points, py::arg("track"), py::arg("step"));
+}
+
+}  // namespace takt::bindings

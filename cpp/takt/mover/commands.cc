@@ -1,0 +1,157 @@
+#include "takt/mover/commands.h"
+
+#include <array>
+#include <utility>
+
+#include "takt/mover/texts.h"
+
+namespace takt::mover {
+
+namespace {
+
+template <typename T>
+void DescribeDynamics(Description<T>& d, Unit speed, Unit acceleration, Unit jerk) {
+  d.template defaulted<&T::velocity>(speed, kSpeeds,
+                                     "Largest speed; unset, as all that follows: the mover's standard.");
+  d.template defaulted<&T::acceleration>(acceleration, kAccelerations, "Largest acceleration.");
+  d.template defaulted<&T::deceleration>(acceleration, kAccelerations, "Largest deceleration.");
+  d.template defaulted<&T::jerk>(jerk, kJerks, "Largest jerk.");
+}
+
+template <typename T>
+void DescribeAngle(Description<T>& d) {
+  d.template required<&T::position>(unit::deg, kAngles, "Where to stop.");
+  DescribeDynamics(d, unit::deg_s, unit::deg_s2, unit::deg_s3);
+}
+
+}  // namespace
+
+const Type& TypeOfCommand(std::size_t index) {
+  static const auto types = []<std::size_t... i>(std::index_sequence<i...>) {
+    return std::array{&TypeOf<std::variant_alternative_t<i, Command>>()...};
+  }
+  (std::make_index_sequence<std::variant_size_v<Command>>());
+  return *types.at(index);
+}
+
+void describe(Enumeration<TurnDirection>& e) {
+  using D = TurnDirection;
+  e.about("Which way a mover turns.");
+  e.value(D::kNonModulo, "non_modulo", "To the very position, over as many turns as it takes.");
+  e.value(D::kPositive, "positive", "Upwards to the next place that is the same but for whole turns.");
+  e.value(D::kShortestWay, "shortest_way", "To the nearest of them.");
+  e.value(D::kNegative, "negative", "Downwards to the next.");
+}
+
+void describe(Enumeration<SetpointMode>& e) {
+  e.about("How set points from outside move a mover.");
+  e.value(SetpointMode::kNone, "none", "Not at all.");
+  e.value(SetpointMode::kAbsolute, "absolute", "It follows them alone.");
+  e.value(SetpointMode::kRelative, "relative", "They come on top of whatever else it does.");
+}
+
+void describe(Description<Enable>& d) {
+  d.named("MoverEnable");
+  d.about("Enables the mover; while it is being disabled, too.");
+}
+void describe(Description<Disable>& d) {
+  d.named("MoverDisable");
+  d.about(
+      "Disables the mover: it comes to rest with its maximum dynamics first. After a fault: a reset leads to "
+      "Disabled.");
+}
+void describe(Description<Reset>& d) {
+  d.named("MoverReset");
+  d.about("Takes the mover out of Error: back to Enabled, or to Disabled if it was disabled after the fault.");
+}
+
+void describe(Description<Halt>& d) {
+  d.named("MoverHalt");
+  d.about("Brings all coordinates to rest; X and Y on the line that they are on. Ends external set points, too.");
+  d.defaulted<&Halt::deceleration>(unit::mm_s2, kAccelerations, "Of X and Y; unset: the mover's standard.");
+  d.defaulted<&Halt::jerk>(unit::mm_s3, kJerks, "Of X and Y; unset: the mover's standard.");
+}
+
+void describe(Description<SetPosition>& d) {
+  using S = SetPosition;
+  d.named("MoverSetPosition");
+  d.about("Tells a mover that is disabled where it is.");
+  d.required<&S::x>(unit::mm, kPlaces, "X of its middle.");
+  d.required<&S::y>(unit::mm, kPlaces, "Y of it.");
+  d.defaulted<&S::c>(unit::deg, kAngles, "How it is turned.");
+}
+
+void describe(Description<MoveToPosition>& d) {
+  using M = MoveToPosition;
+  d.about("Moves X and Y on a straight line, as fast as the dynamics allow; from a motion in progress it goes on.");
+  d.required<&M::x>(unit::mm, kPlaces, "X of the target.");
+  d.required<&M::y>(unit::mm, kPlaces, "Y of it.");
+  d.defaulted<&M::c>(unit::deg, kAngles, "C of it; counts with use_orientation.");
+  d.defaulted<&M::use_orientation>("True: C moves along, and is there at the same time where both begin at rest.");
+  DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+}
+
+void describe(Description<MoveZ>& d) {
+  d.about("Moves Z, whatever the other coordinates do.");
+  d.required<&MoveZ::position>(unit::mm, kPlaces, "Where to stop.");
+  DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+}
+void describe(Description<MoveA>& d) {
+  d.about("Tilts the mover about X, whatever the other coordinates do.");
+  DescribeAngle(d);
+}
+void describe(Description<MoveB>& d) {
+  d.about("Tilts the mover about Y, whatever the other coordinates do.");
+  DescribeAngle(d);
+}
+void describe(Description<MoveC>& d) {
+  d.about(
+      "Turns the mover. Within a window of C whatever the other coordinates do; out of it only where it stands, and X "
+      "and Y are locked until it rests within a window.");
+  DescribeAngle(d);
+  d.defaulted<&MoveC::direction>("Which way, by the mover's c_modulus.");
+  d.defaulted<&MoveC::additional_turns>(between(0, 1000), "So many turns more; positive and negative only.");
+  d.rule<&MoveC::additional_turns>("must be 0 unless the direction is positive or negative", [](const MoveC& c) {
+    return c.additional_turns == 0 || c.direction == TurnDirection::kPositive ||
+           c.direction == TurnDirection::kNegative;
+  });
+}
+
+void describe(Description<StartExternalSetpointGeneration>& d) {
+  using S = StartExternalSetpointGeneration;
+  d.about(
+      "The mover follows set points from outside, from the first one on in every cycle; active until that is stopped.");
+  d.defaulted<&S::mode>("absolute: alone, beginning at rest; relative: on top of whatever else it does.");
+  d.rule<&S::mode>("must be absolute or relative", [](const S& s) { return s.mode != SetpointMode::kNone; });
+}
+
+void describe(Description<SetExternalSetpoint>& d) {
+  using S = SetExternalSetpoint;
+  d.about(
+      "The set point for the end of this cycle. One that the mover cannot follow by its maximum dynamics, or none, is "
+      "an error, and it comes to rest.");
+  d.defaulted<&S::x>(unit::mm, kPlaces, "X.");
+  d.defaulted<&S::y>(unit::mm, kPlaces, "Y.");
+  d.defaulted<&S::z>(unit::mm, kPlaces, "Z.");
+  d.defaulted<&S::a>(unit::deg, kAngles, "A.");
+  d.defaulted<&S::b>(unit::deg, kAngles, "B.");
+  d.defaulted<&S::c>(unit::deg, kAngles, "C.");
+  d.defaulted<&S::velocity_x>(unit::mm_s, kPlaces, "Velocity of X; as the positions say, else they are wrong.");
+  d.defaulted<&S::velocity_y>(unit::mm_s, kPlaces, "Of Y.");
+  d.defaulted<&S::velocity_z>(unit::mm_s, kPlaces, "Of Z.");
+  d.defaulted<&S::velocity_a>(unit::deg_s, kPlaces, "Of A.");
+  d.defaulted<&S::velocity_b>(unit::deg_s, kPlaces, "Of B.");
+  d.defaulted<&S::velocity_c>(unit::deg_s, kPlaces, "Of C.");
+  d.defaulted<&S::acceleration_x>(unit::mm_s2, kPlaces, "Acceleration of X.");
+  d.defaulted<&S::acceleration_y>(unit::mm_s2, kPlaces, "Of Y.");
+  d.defaulted<&S::acceleration_z>(unit::mm_s2, kPlaces, "Of Z.");
+  d.defaulted<&S::acceleration_a>(unit::deg_s2, kPlaces, "Of A.");
+  d.defaulted<&S::acceleration_b>(unit::deg_s2, kPlaces, "Of B.");
+  d.defaulted<&S::acceleration_c>(unit::deg_s2, kPlaces, "Of C.");
+}
+
+void describe(Description<StopExternalSetpointGeneration>& d) {
+  d.about("Ends external set points: the mover comes to rest with its maximum dynamics.");
+}
+
+}  // namespace takt::mover

@@ -1,0 +1,116 @@
+// What people tell a mover.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "takt/core/describe_fwd.h"
+
+namespace takt::mover {
+
+enum class TurnDirection : std::uint8_t {
+  kNonModulo,    // to the very position
+  kPositive,     // to the next place upwards that looks the same
+  kShortestWay,  // to the nearest
+  kNegative,     // to the next downwards
+};
+
+enum class SetpointMode : std::uint8_t {
+  kNone,
+  kAbsolute,  // the mover follows the set points alone
+  kRelative,  // they come on top of whatever else it does
+};
+
+struct Enable {};
+struct Disable {};
+struct Reset {};
+
+struct Halt {  // dynamics of X and Y; all other coordinates stop, too, with their standard ones
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+};
+
+struct SetPosition {
+  double x = 0, y = 0;  // mm
+  double c = 0;         // deg
+};
+
+struct MoveToPosition {
+  double x = 0, y = 0;                   // mm
+  double c = 0;                          // deg; counts with use_orientation
+  bool use_orientation = false;          // else C stays
+  std::optional<double> velocity{};      // mm/s
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+};
+
+struct MoveZ {
+  double position = 0;                   // mm
+  std::optional<double> velocity{};      // mm/s
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+};
+struct MoveA {
+  double position = 0;                   // deg
+  std::optional<double> velocity{};      // deg/s
+  std::optional<double> acceleration{};  // deg/s²
+  std::optional<double> deceleration{};  // deg/s²
+  std::optional<double> jerk{};          // deg/s³
+};
+struct MoveB {
+  double position = 0;                   // deg
+  std::optional<double> velocity{};      // deg/s
+  std::optional<double> acceleration{};  // deg/s²
+  std::optional<double> deceleration{};  // deg/s²
+  std::optional<double> jerk{};          // deg/s³
+};
+struct MoveC {
+  double position = 0;  // deg
+  TurnDirection direction = TurnDirection::kNonModulo;
+  std::uint32_t additional_turns = 0;    // positive, negative
+  std::optional<double> velocity{};      // deg/s
+  std::optional<double> acceleration{};  // deg/s²
+  std::optional<double> deceleration{};  // deg/s²
+  std::optional<double> jerk{};          // deg/s³
+};
+
+struct StartExternalSetpointGeneration {
+  SetpointMode mode = SetpointMode::kAbsolute;
+};
+struct SetExternalSetpoint {                                          // for the end of the cycle that applies it
+  double x = 0, y = 0, z = 0;                                         // mm
+  double a = 0, b = 0, c = 0;                                         // deg
+  double velocity_x = 0, velocity_y = 0, velocity_z = 0;              // mm/s
+  double velocity_a = 0, velocity_b = 0, velocity_c = 0;              // deg/s
+  double acceleration_x = 0, acceleration_y = 0, acceleration_z = 0;  // mm/s²
+  double acceleration_a = 0, acceleration_b = 0, acceleration_c = 0;  // deg/s²
+};
+struct StopExternalSetpointGeneration {};
+
+using Command = std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC,
+                             StartExternalSetpointGeneration, SetExternalSetpoint, StopExternalSetpointGeneration>;
+
+// Table of the arguments of the command at this place of the variant.
+const Type& TypeOfCommand(std::size_t index);
+
+void describe(Enumeration<TurnDirection>&);
+void describe(Enumeration<SetpointMode>&);
+void describe(Description<Enable>&);
+void describe(Description<Disable>&);
+void describe(Description<Reset>&);
+void describe(Description<Halt>&);
+void describe(Description<SetPosition>&);
+void describe(Description<MoveToPosition>&);
+void describe(Description<MoveZ>&);
+void describe(Description<MoveA>&);
+void describe(Description<MoveB>&);
+void describe(Description<MoveC>&);
+void describe(Description<StartExternalSetpointGeneration>&);
+void describe(Description<SetExternalSetpoint>&);
+void describe(Description<StopExternalSetpointGeneration>&);
+
+}  // namespace takt::mover

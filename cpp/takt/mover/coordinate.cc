@@ -1,0 +1,87 @@
+#include "takt/mover/coordinate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace takt::mover {
+
+namespace {
+
+using trajectory::Limits;
+using trajectory::Profile;
+
+constexpr double kSlack = 1e-9;  // of a limit or window, deg or mm
+constexpr double kWindow = 90;   // deg from one window to the next
+
+bool Holds(const Profile& profile, const CoordinateParams& params) {
+  const double speed = params.maximum.velocity * (1 + 1e-9);
+  const Profile::Range velocity = profile.VelocityRange();
+  if (velocity.max > speed || velocity.min < -speed) return false;
+  const Profile::Range range = profile.PositionRange();
+  // One that is outside already may come back.
+  return range.min >= std::min(params.lower, profile.start().position) - kSlack &&
+         range.max <= std::max(params.upper, profile.start().position) + kSlack;
+}
+
+// By how much the window is turned that begins at or below this position.
+double WindowAt(const CoordinateParams& c, double position) {
+  return kWindow * std::floor((position - c.lower + kSlack) / kWindow);
+}
+
+}  // namespace
+
+bool PlanCoordinate(trajectory::Planner& planner, const KinematicState& from, double position, const Limits& limits,
+                    const CoordinateParams& params, Profile& out) noexcept {
+  Profile plan;
+  for (const Limits& as : {limits, params.maximum.limits()}) {
+    if (!planner.ToPosition(from, position, 0, as, plan).ok() || !Holds(plan, params)) continue;
+    out = plan;
+    return true;
+  }
+  return false;
+}
+
+bool PlanRest(trajectory::Planner& planner, const KinematicState& from, const Limits& limits,
+              const CoordinateParams& params, Profile& out) noexcept {
+  Profile plan;
+  if (!planner.Stop(from, limits, plan).ok()) return false;
+  if (!Holds(plan, params) && !planner.Stop(from, params.maximum.limits(), plan).ok()) return false;
+  out = plan;
+  return true;
+}
+
+CoordinateParams Windowed(const CoordinateParams& c, double position, bool bounded) noexcept {
+  CoordinateParams params = c;
+  if (bounded && InOneWindow(c, position, position)) {
+    params.lower += WindowAt(c, position);
+    params.upper += WindowAt(c, position);
+  } else {
+    params.lower = -std::numeric_limits<double>::infinity();
+    params.upper = std::numeric_limits<double>::infinity();
+  }
+  return params;
+}
+
+bool InOneWindow(const CoordinateParams& c, double lower, double upper) noexcept {
+  const double turned = WindowAt(c, lower);
+  return lower >= turned + c.lower - kSlack && upper <= turned + c.upper + kSlack;
+}
+
+double TargetOf(const MoverParams& params, const KinematicState& from, double stop, const MoveC& command) noexcept {
+  const double turn = params.c_modulus;
+  const double slack = std::max(1e-9 * turn, params.c_modulo_tolerance);
+  const double p = command.position;
+  switch (command.direction) {
+    case TurnDirection::kPositive:
+      return p + turn * (std::ceil((std::max(stop, from.position) - slack - p) / turn) + command.additional_turns);
+    case TurnDirection::kNegative:
+      return p + turn * (std::floor((std::min(stop, from.position) + slack - p) / turn) - command.additional_turns);
+    case TurnDirection::kShortestWay:
+      return p + turn * std::round((stop - p) / turn);
+    default:
+      return p;
+  }
+}
+
+}  // namespace takt::mover

@@ -1,0 +1,16 @@
+// Set points from outside (PL-13).
+#pragma once
+
+#include "takt/mover/mover.h"
+
+namespace takt::mover {
+
+// Takes the set point of this cycle into `at`, which holds where the mover would be without it. kNoSetPoint,
+// kWildSetPoint: `at` means nothing.
+ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept;
+
+// Whether the mover can go from one set point to the next within a cycle, and stop from there, by its maximum dynamics
+// and within its limits.
+bool CanFollow(const Context& c, const State& s, const SetPoint& from, const SetPoint& to) noexcept;
+
+}  // namespace takt::mover

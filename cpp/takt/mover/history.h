@@ -1,0 +1,48 @@
+// The last commands of a mover and what became of them (PL-70).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/feedback.h"
+
+namespace takt::mover {
+
+struct Record {
+  Ticket ticket = 0;          // 0: none
+  std::uint64_t cycle = 0;    // that took the command
+  std::uint64_t changed = 0;  // cycle in which it came to be what it is
+  std::uint8_t command = 0;   // place in mover::Command
+  FeedbackState state = FeedbackState::kBusy;
+  ErrorId error = ErrorId::kNone;
+};
+
+inline constexpr std::size_t kHistory = 100;
+
+struct History {
+  std::array<Record, kHistory> records;  // a ring
+  std::uint64_t count = 0;               // of all commands so far
+
+  void Begin(Ticket ticket, std::uint64_t cycle, std::uint8_t command) noexcept {
+    records[count++ % kHistory] = {ticket, cycle, cycle, command, FeedbackState::kBusy, ErrorId::kNone};
+  }
+  // One that is too old is forgotten.
+  void Note(const FeedbackEvent& event) noexcept {
+    const std::uint64_t oldest = count > kHistory ? count - kHistory : 0;
+    for (std::uint64_t i = count; i-- > oldest;) {
+      Record& record = records[i % kHistory];
+      if (record.ticket != event.ticket) continue;
+      record.changed = event.cycle;
+      record.state = event.state;
+      record.error = event.error;
+      return;
+    }
+  }
+};
+
+void describe(Description<Record>&);
+void describe(Description<History>&);
+
+}  // namespace takt::mover

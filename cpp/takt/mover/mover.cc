@@ -1,0 +1,198 @@
+#include "takt/mover/mover.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/core/describe.h"
+#include "takt/mover/coordinate.h"
+#include "takt/mover/follow.h"
+#include "takt/mover/run.h"
+
+namespace takt::mover {
+
+namespace {
+
+using planar::ObjectState;
+
+// At rest on its old line it goes on to its target.
+void GoOn(const Context& c, State& s) {
+  if (!s.plane.waits || Elapsed(c, s.plane.begin) < DurationOf(s.plane.motion)) return;
+  const MoveToPosition next = s.plane.next;
+  const trajectory::Limits limits{*next.velocity, *next.acceleration, *next.deceleration, *next.jerk};
+  PlaneMotion motion;
+  const PlaneState from = At(s.plane.motion, Elapsed(c, s.plane.begin));
+  if (!PlanMove(c.planner, from, next.x, next.y, limits, motion)) return Fail(c, ErrorId::kPlanning, s);
+  s.plane.motion = motion;
+  s.plane.begin = c.cycle.count;
+  s.plane.waits = false;
+}
+
+// Where X and Y are at the end of this cycle as planned. On a track they are where that says: here is its place.
+PlaneState PlaneOf(const Context& c, const State& s) {
+  return At(s.plane.motion, Elapsed(c, s.plane.begin) + c.cycle.period_s);
+}
+
+// Where the mover is at the end of this cycle as planned, without set points from outside.
+SetPoint Planned(const Context& c, const State& s) {
+  SetPoint at;
+  const PlaneState plane = PlaneOf(c, s);
+  at[kX] = plane.x;
+  at[kY] = plane.y;
+  for (std::size_t i = 0; i < kOthers.size(); ++i) {
+    const CoordinateMove& other = s.others[i];
+    at[kOthers[i]] = other.profile.At(Elapsed(c, other.begin) + c.cycle.period_s);
+  }
+  return at;
+}
+
+void MoveOn(const Context& c, State& s) {
+  GoOn(c, s);
+  SetPoint at = Planned(c, s);
+  if (s.external.mode != SetpointMode::kNone) {
+    const ErrorId error = Follow(c, at, s);
+    if (error != ErrorId::kNone) {
+      Fail(c, error, s);
+      at = Planned(c, s);
+    }
+  }
+  s.set_point = at;
+}
+
+// The mode that goes with how the mover is turned, where it rests.
+CommandMode Settled(const Context& c, const State& s) {
+  const double turned = s.set_point[kC].position;
+  const bool inside = InOneWindow(c.params.c, turned, turned);
+  switch (s.mode) {
+    case CommandMode::kFreeMovement:
+    case CommandMode::kCRotationFreeMovement:
+    case CommandMode::kExternalSetpointGeneration:
+      return inside ? CommandMode::kFreeMovement : CommandMode::kCRotationFreeMovement;
+    case CommandMode::kCRotationOnTrack:
+      return inside ? CommandMode::kOnTrack : s.mode;
+    default:
+      return s.mode;
+  }
+}
+
+// Commands that have what they wanted. The next cycle begins where this one ends.
+void Finish(const Context& now, State& s) {
+  const Context c{now.params, {now.cycle.count + 1, now.cycle.period_s}, now.planner, now.feedback};
+  const auto done = [&](Slot slot) { End(now, slot, FeedbackState::kDone, ErrorId::kNone, s); };
+  const bool turned = IsOver(c, s.others.back());
+  if (s.external.mode != SetpointMode::kAbsolute) {
+    if (IsOver(c, s.plane) && (!s.plane.turns || turned)) {
+      done(kPlane);
+      s.plane.turns = false;
+    }
+    for (std::size_t i = 0; i < kOthers.size(); ++i) {
+      if (IsOver(c, s.others[i])) done(static_cast<Slot>(kMoveZ + i));
+    }
+    const bool rests = IsResting(c, s);
+    if (rests) {
+      done(kHalt);
+      done(kStopExternal);
+    }
+    const bool settles = s.mode == CommandMode::kExternalSetpointGeneration ? rests : turned;
+    if (settles && s.external.mode == SetpointMode::kNone) s.mode = Settled(c, s);
+  }
+}
+
+void Change(const Context& c, State& s) {
+  if (s.since == c.cycle.count) return;
+  const bool rests = AtRest(s);
+  const auto done = [&](ObjectState state) {
+    Enter(c, state, s);
+    End(c, kPower, FeedbackState::kDone, ErrorId::kNone, s);
+  };
+  switch (s.state) {
+    case ObjectState::kEnabling:
+      if (rests) done(ObjectState::kEnabled);
+      return;
+    case ObjectState::kDisabling:
+      if (rests) done(ObjectState::kDisabled);
+      return;
+    case ObjectState::kErrorPending:
+      if (rests) Enter(c, ObjectState::kError, s);
+      return;
+    case ObjectState::kResetting:
+      s.error = ErrorId::kNone;
+      done(s.aborts ? ObjectState::kDisabled : ObjectState::kEnabled);
+      s.aborts = false;
+      return;
+    default:
+      return;
+  }
+}
+
+// What is measured is held against the set point of the cycle before.
+void Watch(const Context& c, const Inputs& inputs, State& s) {
+  if (!c.params.deviation || s.state == ObjectState::kDisabled) return;
+  const double off = std::hypot(inputs.actual.x - s.set_point[kX].position, inputs.actual.y - s.set_point[kY].position);
+  if (!(off <= *c.params.deviation)) Fail(c, ErrorId::kMoverDeviation, s);
+}
+
+}  // namespace
+
+Inputs Simulate(const State& s) noexcept {
+  const auto at = [&](Coordinate i) { return s.set_point[i].position; };
+  return {{at(kX), at(kY), at(kZ), at(kA), at(kB), at(kC)}};
+}
+
+void Step(const Context& c, const Inputs& inputs, State& s) noexcept {
+  Watch(c, inputs, s);
+  MoveOn(c, s);
+  Finish(c, s);
+  Change(c, s);
+}
+
+bool AtRest(const State& s) noexcept {
+  return std::ranges::all_of(s.set_point,
+                             [](const KinematicState& k) { return k.velocity == 0 && k.acceleration == 0; });
+}
+
+bool IsOff(const State& s) noexcept {
+  return AtRest(s) && (s.state == ObjectState::kDisabled || (s.state == ObjectState::kError && s.aborts));
+}
+
+void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& out) noexcept {
+  const Context next{c.params, {c.cycle.count + 1, c.cycle.period_s}, c.planner, c.feedback};
+  const SetPoint& at = s.set_point;
+  out = {};
+  out.state = s.state;
+  out.command_mode = s.mode;
+  out.error = s.error;
+  out.limited_by = s.limited_by;
+  const std::array positions = {&out.x, &out.y, &out.z, &out.a, &out.b, &out.c};
+  const std::array velocities = {&out.velocity_x, &out.velocity_y, &out.velocity_z,
+                                 &out.velocity_a, &out.velocity_b, &out.velocity_c};
+  const std::array accelerations = {&out.acceleration_x, &out.acceleration_y, &out.acceleration_z,
+                                    &out.acceleration_a, &out.acceleration_b, &out.acceleration_c};
+  for (std::size_t i = 0; i < kCoordinates; ++i) {
+    *positions[i] = at[i].position;
+    *velocities[i] = at[i].velocity;
+    *accelerations[i] = at[i].acceleration;
+  }
+  out.actual_x = inputs.actual.x;
+  out.actual_y = inputs.actual.y;
+  out.actual_z = inputs.actual.z;
+  out.actual_a = inputs.actual.a;
+  out.actual_b = inputs.actual.b;
+  out.actual_c = inputs.actual.c;
+  if (s.external.mode != SetpointMode::kAbsolute) {
+    out.busy_xyc = !IsOver(next, s.plane) || s.plane.turns;
+    out.busy_z = !IsOver(next, s.others[0]);
+    out.busy_a = !IsOver(next, s.others[1]);
+    out.busy_b = !IsOver(next, s.others[2]);
+    out.busy_c = !IsOver(next, s.others[3]);
+  }
+  out.external = s.external.mode;
+  out.commands = s.history.count;
+}
+
+void describe(Description<Inputs>& d) {
+  d.named("MoverInputs");
+  d.about("What is measured of a mover.");
+  d.internal<&Inputs::actual>("Where it was when the cycle began.");
+}
+
+}  // namespace takt::mover

@@ -1,0 +1,48 @@
+// One planar mover, stage by stage of the cycle. Free functions over plain state; nothing here allocates, locks, throws
+// or reads a clock.
+#pragma once
+
+#include "takt/core/cycle.h"
+#include "takt/core/feedback.h"
+#include "takt/mover/commands.h"
+#include "takt/mover/outputs.h"
+#include "takt/mover/params.h"
+#include "takt/mover/state.h"
+#include "takt/trajectory/planner.h"
+
+namespace takt::mover {
+
+// What every stage gets besides the mover itself.
+struct Context {
+  const MoverParams& params;
+  Cycle cycle;
+  trajectory::Planner& planner;
+  FeedbackSink& feedback;
+};
+
+// What is measured, at the beginning of a cycle.
+struct Inputs {
+  Place actual;
+};
+
+// What an ideal mover measures after this cycle: it is where it is to be.
+Inputs Simulate(const State& s) noexcept;
+
+// command: carries it out or refuses it; reports either way.
+void Apply(const Context& c, Ticket ticket, const Command& command, State& s) noexcept;
+
+// move
+void Step(const Context& c, const Inputs& inputs, State& s) noexcept;
+
+// Comes to rest with the maximum dynamics, and is in Error then.
+void Fail(const Context& c, ErrorId error, State& s) noexcept;
+
+void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& out) noexcept;
+
+bool AtRest(const State& s) noexcept;
+// At rest and without power: disabled, or after a fault that leads there.
+bool IsOff(const State& s) noexcept;
+
+void describe(Description<Inputs>&);
+
+}  // namespace takt::mover

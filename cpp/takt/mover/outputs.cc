@@ -1,0 +1,48 @@
+#include "takt/mover/outputs.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::mover {
+
+void describe(Description<Outputs>& d) {
+  using O = Outputs;
+  d.named("MoverOutputs");
+  d.about("State of a planar mover after a cycle.");
+  d.internal<&O::state>("What it can do.");
+  d.internal<&O::command_mode>("What kind of command it carries out.");
+  d.internal<&O::error>("Of the last fault; 0 without one.");
+  d.internal<&O::limited_by>("What of the dynamics of the last command was more than the mover can do, and reduced.");
+  d.internal<&O::x>(unit::mm, "Set position of X at the end of the cycle.");
+  d.internal<&O::y>(unit::mm, "Of Y.");
+  d.internal<&O::z>(unit::mm, "Of Z.");
+  d.internal<&O::a>(unit::deg, "Of A.");
+  d.internal<&O::b>(unit::deg, "Of B.");
+  d.internal<&O::c>(unit::deg, "Of C, over all turns.");
+  d.internal<&O::velocity_x>(unit::mm_s, "Set velocity of X.");
+  d.internal<&O::velocity_y>(unit::mm_s, "Of Y.");
+  d.internal<&O::velocity_z>(unit::mm_s, "Of Z.");
+  d.internal<&O::velocity_a>(unit::deg_s, "Of A.");
+  d.internal<&O::velocity_b>(unit::deg_s, "Of B.");
+  d.internal<&O::velocity_c>(unit::deg_s, "Of C.");
+  d.internal<&O::acceleration_x>(unit::mm_s2, "Set acceleration of X.");
+  d.internal<&O::acceleration_y>(unit::mm_s2, "Of Y.");
+  d.internal<&O::acceleration_z>(unit::mm_s2, "Of Z.");
+  d.internal<&O::acceleration_a>(unit::deg_s2, "Of A.");
+  d.internal<&O::acceleration_b>(unit::deg_s2, "Of B.");
+  d.internal<&O::acceleration_c>(unit::deg_s2, "Of C.");
+  d.internal<&O::actual_x>(unit::mm, "Actual position of X, as it was when the cycle began.");
+  d.internal<&O::actual_y>(unit::mm, "Of Y.");
+  d.internal<&O::actual_z>(unit::mm, "Of Z.");
+  d.internal<&O::actual_a>(unit::deg, "Of A.");
+  d.internal<&O::actual_b>(unit::deg, "Of B.");
+  d.internal<&O::actual_c>(unit::deg, "Of C.");
+  d.internal<&O::busy_xyc>("X and Y move, or C with them.");
+  d.internal<&O::busy_z>("Z moves.");
+  d.internal<&O::busy_a>("A moves.");
+  d.internal<&O::busy_b>("B moves.");
+  d.internal<&O::busy_c>("C moves.");
+  d.internal<&O::external>("How set points from outside move it.");
+  d.internal<&O::commands>("So many commands have come, external set points apart.");
+}
+
+}  // namespace takt::mover

@@ -1,0 +1,37 @@
+// What a mover publishes every cycle.
+#pragma once
+
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/status.h"
+#include "takt/mover/command_mode.h"
+#include "takt/mover/commands.h"
+#include "takt/planar/object_state.h"
+
+namespace takt::mover {
+
+struct Outputs {
+  planar::ObjectState state = planar::ObjectState::kDisabled;
+  CommandMode command_mode = CommandMode::kFreeMovement;
+  ErrorId error = ErrorId::kNone;
+  LimitedBy limited_by = LimitedBy::kNothing;  // what of the dynamics of the last command was reduced
+  // Set points at the end of this cycle.
+  double x = 0, y = 0, z = 0;                                         // mm
+  double a = 0, b = 0, c = 0;                                         // deg
+  double velocity_x = 0, velocity_y = 0, velocity_z = 0;              // mm/s
+  double velocity_a = 0, velocity_b = 0, velocity_c = 0;              // deg/s
+  double acceleration_x = 0, acceleration_y = 0, acceleration_z = 0;  // mm/s²
+  double acceleration_a = 0, acceleration_b = 0, acceleration_c = 0;  // deg/s²
+  // What is measured, at the beginning of this cycle.
+  double actual_x = 0, actual_y = 0, actual_z = 0;  // mm
+  double actual_a = 0, actual_b = 0, actual_c = 0;  // deg
+  bool busy_xyc = false;                            // a move of X and Y, and of what turns with them
+  bool busy_z = false, busy_a = false, busy_b = false, busy_c = false;
+  SetpointMode external = SetpointMode::kNone;
+  std::uint64_t commands = 0;  // so many have come
+};
+
+void describe(Description<Outputs>&);
+
+}  // namespace takt::mover

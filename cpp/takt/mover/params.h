@@ -1,0 +1,68 @@
+// What a machine file says about one planar mover.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/trajectory/limits.h"
+
+namespace takt::mover {
+
+// How fast a coordinate may change; of X and Y together: along the way. In mm; of angles in deg.
+struct Dynamics {
+  double velocity = 1;                   // u/s
+  double acceleration = 1;               // u/s²
+  std::optional<double> deceleration{};  // u/s²; unset: as the acceleration
+  double jerk = 1;                       // u/s³
+
+  trajectory::Limits limits() const noexcept {
+    return {velocity, acceleration, deceleration.value_or(acceleration), jerk};
+  }
+};
+
+struct PlaneParams {  // X and Y
+  Dynamics maximum{2000, 10000, {}, 200000};
+  std::optional<Dynamics> standard{};  // of commands that say nothing; unset: the maximum
+};
+
+struct CoordinateParams {  // one of the others
+  Dynamics maximum;
+  std::optional<Dynamics> standard{};
+  double lower = 0;  // mm, deg
+  double upper = 0;
+};
+
+// Where a mover is at the start.
+struct Place {
+  double x = 0, y = 0, z = 0;  // mm
+  double a = 0, b = 0, c = 0;  // deg
+};
+
+struct MoverParams {
+  std::string name{};
+  double width = 113;   // mm, along X when it is not turned
+  double height = 113;  // mm, along Y
+  Place initial{};
+  PlaneParams xy{};
+  CoordinateParams z{{100, 1000, {}, 20000}, {}, 0, 5};
+  CoordinateParams a{{30, 300, {}, 6000}, {}, -5, 5};
+  CoordinateParams b{{30, 300, {}, 6000}, {}, -5, 5};
+  // The limits are those of a window, which is there four times, each turned by 90 deg.
+  CoordinateParams c{{360, 3600, {}, 72000}, {}, -15, 15};
+  double c_modulus = 360;               // deg, a turn of move_c
+  double c_modulo_tolerance = 0;        // deg that it may go against its direction
+  double lateral_acceleration = 5000;   // mm/s², in curves of tracks
+  double gap = 200;                     // mm to the mover ahead on tracks, unless a command says otherwise
+  std::optional<double> deviation{};    // mm between set and actual position that are an error; unset: not watched
+  std::uint32_t missing_setpoints = 1;  // so many external set points missing in a row are an error
+};
+
+void describe(Description<Dynamics>&);
+void describe(Description<PlaneParams>&);
+void describe(Description<CoordinateParams>&);
+void describe(Description<Place>&);
+void describe(Description<MoverParams>&);
+
+}  // namespace takt::mover

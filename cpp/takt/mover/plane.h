@@ -1,0 +1,49 @@
+// Motions of X and Y: on a straight line, from one line onto another, to rest.
+//
+// Limits hold along the way. A motion has a frame: one coordinate along a direction, the other across it, each with a
+// profile of its own. On a line there is nothing across. Where a move begins in the middle of another one the new line
+// is the direction; what the mover has across it, it brakes and takes back while it already goes along. For that the
+// limits are split: the share s of each for across, sqrt(1 - s²) for along, so that velocity, acceleration and jerk as
+// vectors stay within their limits at all times, whatever the two profiles do. Once across is over, along has all of
+// them. Where no share fits, or it would take longer, the mover comes to rest on its old line first.
+#pragma once
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/kinematic_state.h"
+#include "takt/trajectory/planner.h"
+
+namespace takt::mover {
+
+struct PlaneState {
+  KinematicState x, y;  // mm
+};
+
+struct PlaneMotion {
+  double origin_x = 0, origin_y = 0;        // mm
+  double direction_x = 1, direction_y = 0;  // of along; across is to its left
+  double share = 0;                         // of the limits, for across as long as that lasts; 0: a line
+  double end_x = 0, end_y = 0;              // mm
+  trajectory::Profile along, across;        // mm, from the origin
+};
+
+PlaneMotion StandingAt(double x, double y) noexcept;
+// At `t` seconds from its beginning; behind its end it rests there, bit for bit.
+PlaneState At(const PlaneMotion& motion, double t) noexcept;
+double DurationOf(const PlaneMotion& motion) noexcept;  // s
+// What the speed does not exceed, mm/s.
+double SpeedBound(const PlaneMotion& motion) noexcept;
+
+// Straight to a place and there to rest, or onto the line to it. False: not within these limits.
+bool PlanMove(trajectory::Planner& planner, const PlaneState& from, double x, double y,
+              const trajectory::Limits& limits, PlaneMotion& out) noexcept;
+// To rest, from `t` of a motion, in its own frame.
+bool PlanRest(trajectory::Planner& planner, const PlaneMotion& motion, double t, const trajectory::Limits& limits,
+              PlaneMotion& out) noexcept;
+// To rest from any state: on a line if it is on one, else the acceleration goes first, at full jerk in its own
+// direction, and then the velocity on a line.
+bool PlanRest(trajectory::Planner& planner, const PlaneState& from, const trajectory::Limits& limits,
+              PlaneMotion& out) noexcept;
+
+void describe(Description<PlaneMotion>&);
+
+}  // namespace takt::mover

@@ -1,0 +1,86 @@
+#include "takt/mover/run.h"
+
+#include <algorithm>
+
+#include "takt/mover/coordinate.h"
+
+namespace takt::mover {
+
+namespace {
+
+const CoordinateParams& Described(const MoverParams& p, std::size_t other) {
+  const std::array all = {&p.z, &p.a, &p.b, &p.c};
+  return *all[other];
+}
+
+}  // namespace
+
+void Report(const Context& c, Ticket ticket, FeedbackState state, ErrorId error, double value, State& s) noexcept {
+  const FeedbackEvent event{ticket, c.cycle.count, state, false, error, value};
+  c.feedback.Report(event);
+  if (ticket != 0) s.history.Note(event);
+}
+
+void End(const Context& c, Slot slot, FeedbackState state, ErrorId error, State& s) noexcept {
+  if (s.tickets[slot] != 0) Report(c, s.tickets[slot], state, error, 0, s);
+  s.tickets[slot] = 0;
+}
+
+void EndAll(const Context& c, bool power, FeedbackState state, ErrorId error, State& s) noexcept {
+  for (std::size_t slot = power ? 0 : kPower + 1; slot < kSlots; ++slot) {
+    End(c, static_cast<Slot>(slot), state, error, s);
+  }
+}
+
+void Enter(const Context& c, planar::ObjectState state, State& s) noexcept {
+  s.state = state;
+  s.since = c.cycle.count;
+}
+
+bool IsResting(const Context& c, const State& s) noexcept {
+  const auto over = [&](const CoordinateMove& move) { return IsOver(c, move); };
+  return s.external.mode == SetpointMode::kNone && IsOver(c, s.plane) && std::ranges::all_of(s.others, over) &&
+         AtRest(s);
+}
+
+CoordinateParams ParamsOf(const Context& c, const State& s, std::size_t other) noexcept {
+  const CoordinateParams& params = Described(c.params, other);
+  if (kOthers[other] != kC) return params;
+  const bool bound = s.mode == CommandMode::kFreeMovement || s.mode == CommandMode::kOnTrack;
+  return Windowed(params, s.set_point[kC].position, bound);
+}
+
+void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) noexcept {
+  const trajectory::Limits maximum = c.params.xy.maximum.limits();
+  const SetPoint& at = s.set_point;
+  PlaneMotion rest = StandingAt(at[kX].position, at[kY].position);
+  const auto plan = [&](const trajectory::Limits& limits) {
+    const bool found = s.external.mode == SetpointMode::kNone
+                           ? PlanRest(c.planner, s.plane.motion, Elapsed(c, s.plane.begin), limits, rest)
+                           : PlanRest(c.planner, {at[kX], at[kY]}, limits, rest);
+    return found && SpeedBound(rest) <= maximum.velocity * (1 + 1e-9);
+  };
+  if (plane == nullptr || !plan(*plane)) plan(maximum);
+  s.plane = {};
+  s.plane.motion = rest;
+  s.plane.begin = c.cycle.count;
+  for (std::size_t i = 0; i < kOthers.size(); ++i) {
+    const CoordinateParams params = ParamsOf(c, s, i);
+    const trajectory::Limits limits = plane ? StandardOf(params) : params.maximum.limits();
+    PlanRest(c.planner, at[kOthers[i]], limits, params, s.others[i].profile);
+    s.others[i].begin = c.cycle.count;
+  }
+  s.external = {};
+}
+
+void Fail(const Context& c, ErrorId error, State& s) noexcept {
+  using enum planar::ObjectState;
+  if (s.state == kResetting || s.state == kErrorPending || s.state == kError) return;
+  EndAll(c, true, FeedbackState::kError, error, s);
+  s.error = error;
+  s.aborts = s.state == kDisabled || s.state == kDisabling;
+  BringToRest(c, nullptr, s);
+  Enter(c, kErrorPending, s);
+}
+
+}  // namespace takt::mover

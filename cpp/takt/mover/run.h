@@ -1,0 +1,49 @@
+// What commands and the mover's own steps have in common.
+#pragma once
+
+#include <cstddef>
+
+#include "takt/mover/mover.h"
+
+namespace takt::mover {
+
+void Report(const Context& c, Ticket ticket, FeedbackState state, ErrorId error, double value, State& s) noexcept;
+// The command in a slot is over.
+void End(const Context& c, Slot slot, FeedbackState state, ErrorId error, State& s) noexcept;
+// Those of all slots, but for enabling and the like if not `power`.
+void EndAll(const Context& c, bool power, FeedbackState state, ErrorId error, State& s) noexcept;
+void Enter(const Context& c, planar::ObjectState state, State& s) noexcept;
+
+// s since `begin` when this cycle begins.
+inline double Elapsed(const Context& c, std::uint64_t begin) noexcept {
+  return static_cast<double>(c.cycle.count - begin) * c.cycle.period_s;
+}
+// As planned, without set points from outside: when this cycle begins.
+inline KinematicState Now(const Context& c, const CoordinateMove& move) noexcept {
+  return move.profile.At(Elapsed(c, move.begin));
+}
+// Whether a motion is over when this cycle begins.
+inline bool IsOver(const Context& c, const CoordinateMove& move) noexcept {
+  return Elapsed(c, move.begin) >= move.profile.duration();
+}
+inline bool IsOver(const Context& c, const PlaneMove& move) noexcept {
+  return !move.waits && Elapsed(c, move.begin) >= DurationOf(move.motion);
+}
+// Nothing moves or is about to when this cycle begins.
+bool IsResting(const Context& c, const State& s) noexcept;
+
+// The parameters of one of kOthers; C limited to its window where that binds it.
+CoordinateParams ParamsOf(const Context& c, const State& s, std::size_t other) noexcept;
+
+// All coordinates come to rest from where they are, X and Y within `plane`, or all with the maximum (null). Set points
+// from outside are over.
+void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) noexcept;
+
+inline trajectory::Limits StandardOf(const PlaneParams& p) noexcept {
+  return p.standard.value_or(p.maximum).limits();
+}
+inline trajectory::Limits StandardOf(const CoordinateParams& p) noexcept {
+  return p.standard.value_or(p.maximum).limits();
+}
+
+}  // namespace takt::mover

@@ -1,0 +1,82 @@
+#include "takt/mover/state.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::mover {
+
+State MakeState(const MoverParams& params) {
+  State s;
+  const Place& p = params.initial;
+  const std::array at = {p.x, p.y, p.z, p.a, p.b, p.c};
+  for (std::size_t i = 0; i < kCoordinates; ++i) s.set_point[i].position = at[i];
+  s.plane.motion = StandingAt(p.x, p.y);
+  for (std::size_t i = 0; i < kOthers.size(); ++i) s.others[i].profile = {s.set_point[kOthers[i]]};
+  for (CoordinateMove& other : s.others) other.profile.end_state = other.profile.start_state;
+  return s;
+}
+
+void describe(Description<Record>& d) {
+  using R = Record;
+  d.named("MoverRecord");
+  d.about("A command of a mover and what became of it.");
+  d.internal<&R::ticket>("Of the command; 0: none.");
+  d.internal<&R::cycle>("That took the command.");
+  d.internal<&R::changed>("Cycle in which it came to be what it is.");
+  d.internal<&R::command>("Its place among the mover's commands.");
+  d.internal<&R::state>("What it is.");
+  d.internal<&R::error>("Why it failed.");
+}
+
+void describe(Description<History>& d) {
+  d.named("MoverHistory");
+  d.about("The last commands of a mover.");
+  d.internal<&History::records>("A ring of them.");
+  d.internal<&History::count>("Of all commands so far.");
+}
+
+void describe(Description<PlaneMove>& d) {
+  using P = PlaneMove;
+  d.about("A motion of X and Y in progress.");
+  d.internal<&P::motion>("Where it leads.");
+  d.internal<&P::begin>("Cycle in which it began.");
+  d.internal<&P::waits>("It only comes to rest, and then goes to next.");
+  d.internal<&P::next>("What follows.");
+  d.internal<&P::turns>("C belongs to it.");
+}
+
+void describe(Description<CoordinateMove>& d) {
+  d.about("A motion of a coordinate in progress.");
+  d.internal<&CoordinateMove::profile>("Where it leads.");
+  d.internal<&CoordinateMove::begin>("Cycle in which it began.");
+}
+
+void describe(Description<External>& d) {
+  using E = External;
+  d.named("MoverExternal");
+  d.about("Set points from outside.");
+  d.internal<&E::mode>("What they do.");
+  d.internal<&E::given>("The last one, or what it went on to.");
+  d.internal<&E::begun>("One has come.");
+  d.internal<&E::fresh>("One has come in this cycle.");
+  d.internal<&E::missing>("So many in a row.");
+}
+
+void describe(Description<State>& d) {
+  using S = State;
+  d.named("MoverState");
+  d.about("A planar mover.");
+  d.internal<&S::state>("What it can do.");
+  d.internal<&S::since>("Cycle in which it came to be so.");
+  d.internal<&S::mode>("What it does.");
+  d.internal<&S::aborts>("The fault is to lead to Disabled.");
+  d.internal<&S::error>("Of the fault.");
+  d.internal<&S::limited_by>("What of the last command was reduced.");
+  d.internal<&S::tickets>("Of the commands in progress.");
+  d.internal<&S::plane>("Motion of X and Y.");
+  d.internal<&S::others>("Motions of Z, A, B, C.");
+  d.internal<&S::external>("Set points from outside.");
+  d.internal<&S::set_point>("Where it is at the end of the last cycle.");
+  d.internal<&S::history>("Its last commands.");
+}
+
+}  // namespace takt::mover

@@ -1,0 +1,76 @@
+// All memory of a mover: plain, so that it can be copied, compared, hashed and replayed.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/feedback.h"
+#include "takt/core/kinematic_state.h"
+#include "takt/core/status.h"
+#include "takt/mover/command_mode.h"
+#include "takt/mover/commands.h"
+#include "takt/mover/history.h"
+#include "takt/mover/params.h"
+#include "takt/mover/plane.h"
+#include "takt/planar/object_state.h"
+#include "takt/trajectory/profile.h"
+
+namespace takt::mover {
+
+enum Coordinate : std::size_t { kX, kY, kZ, kA, kB, kC, kCoordinates };
+inline constexpr std::array kOthers = {kZ, kA, kB, kC};  // besides X and Y
+
+using SetPoint = std::array<KinematicState, kCoordinates>;  // mm, deg
+
+// A motion of X and Y in progress.
+struct PlaneMove {
+  PlaneMotion motion;
+  std::uint64_t begin = 0;  // cycle
+  bool waits = false;       // it only comes to rest, and then goes to `next`
+  MoveToPosition next;      // with all its dynamics
+  bool turns = false;       // C belongs to it
+};
+
+// One of another coordinate.
+struct CoordinateMove {
+  trajectory::Profile profile;
+  std::uint64_t begin = 0;  // cycle
+};
+
+// Set points from outside.
+struct External {
+  SetpointMode mode = SetpointMode::kNone;
+  SetPoint given{};           // the last one, or what it went on to
+  bool begun = false;         // one has come
+  bool fresh = false;         // one has come in this cycle
+  std::uint32_t missing = 0;  // so many in a row
+};
+
+// What commands there may be at a time, each with a ticket of its own.
+enum Slot : std::size_t { kPower, kPlane, kMoveZ, kMoveA, kMoveB, kMoveC, kHalt, kExternal, kStopExternal, kSlots };
+
+struct State {
+  planar::ObjectState state = planar::ObjectState::kDisabled;
+  std::uint64_t since = 0;  // cycle in which it came to be so
+  CommandMode mode = CommandMode::kFreeMovement;
+  bool aborts = false;  // the fault is to lead to Disabled
+  ErrorId error = ErrorId::kNone;
+  LimitedBy limited_by = LimitedBy::kNothing;  // what of the dynamics of the last command was reduced
+  std::array<Ticket, kSlots> tickets{};
+  PlaneMove plane;
+  std::array<CoordinateMove, kOthers.size()> others;  // in the order of kOthers
+  External external;
+  SetPoint set_point{};  // at the end of the last cycle
+  History history;
+};
+
+State MakeState(const MoverParams& params);
+
+void describe(Description<PlaneMove>&);
+void describe(Description<CoordinateMove>&);
+void describe(Description<External>&);
+void describe(Description<State>&);
+
+}  // namespace takt::mover

@@ -1,0 +1,168 @@
+#include "takt/track/build.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <string_view>
+
+#include "takt/core/problem.h"
+#include "takt/planar/crossing.h"
+#include "takt/track/sketch.h"
+#include "takt/track/state.h"
+
+namespace takt::track {
+
+namespace {
+
+using planar::Problem;
+
+bool Same(const planar::TrackPoint& a, const planar::TrackPoint& b) {
+  return SamePlace(a.place, b.place) && SameDirection(a, b) && SameCurvature(a, b);
+}
+
+std::string Index(std::size_t i) {
+  return "[" + std::to_string(i) + "]";
+}
+
+class Builder {
+ public:
+  explicit Builder(const std::vector<TrackParams>& params) : params_(params), marks_(params.size(), Mark::kNew) {
+    result_.tracks.resize(params.size());
+    for (const TrackParams& track : params) names_.push_back(track.name);
+  }
+
+  BuildResult Run() {
+    for (std::size_t i = 0; i < params_.size(); ++i) Visit(i);
+    return std::move(result_);
+  }
+
+ private:
+  enum class Mark : std::uint8_t { kNew, kOpen, kDone, kFailed };
+
+  bool Fail(const std::string& path, std::string message) {
+    result_.problems.push_back({path, std::move(message)});
+    return false;
+  }
+  bool Fail(const std::string& path, Problem problem) { return Fail(path, std::string(planar::Text(problem))); }
+
+  // False: it cannot be made; then a problem says why.
+  bool Visit(std::size_t i) {
+    if (marks_[i] == Mark::kDone || marks_[i] == Mark::kFailed) return marks_[i] == Mark::kDone;
+    marks_[i] = Mark::kOpen;
+    open_.push_back(i);
+    const bool made = Make(i);
+    open_.pop_back();
+    marks_[i] = made ? Mark::kDone : Mark::kFailed;
+    return made;
+  }
+
+  // The tracks that a list names; each is made first. A problem with one of them is told there and not here.
+  bool Others(const std::string& path, const std::vector<std::string>& names, std::vector<const planar::Track*>& out) {
+    bool good = true;
+    if (names.size() > kLinks) good = Fail(path, Problem::kTooMany);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const std::string place = path + Index(k);
+      const auto found = std::ranges::find(names_, names[k]);
+      if (found == names_.end()) {
+        good = Fail(place, "expected the name of a track, found " + Quoted(names[k]) + DidYouMean(names[k], names_));
+        continue;
+      }
+      if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) !=
+          names.begin() + static_cast<std::ptrdiff_t>(k)) {
+        good = Fail(place, "expected each track once, found " + Quoted(names[k]) + " again");
+        continue;
+      }
+      const auto other = static_cast<std::size_t>(found - names_.begin());
+      if (marks_[other] == Mark::kOpen) {
+        good = Fail(place, "expected tracks that refer to one another in no circle, found " + CircleFrom(other));
+      } else if (!Visit(other)) {
+        good = false;
+      } else if (!result_.tracks[other].way) {
+        good = Fail(place, Problem::kOtherEmpty);
+      } else if (params_[other].closed_loop) {
+        good = Fail(place, Problem::kOtherClosed);
+      } else {
+        out.push_back(&*result_.tracks[other].way);
+      }
+    }
+    return good;
+  }
+
+  std::string CircleFrom(std::size_t track) const {
+    std::string text;
+    for (auto at = std::ranges::find(open_, track); at != open_.end(); ++at) text += params_[*at].name + " -> ";
+    return text + params_[track].name;
+  }
+
+  bool Make(std::size_t i) {
+    const TrackParams& p = params_[i];
+    const std::string path = Index(i);
+    std::vector<const planar::Track*> before, behind;
+    const bool starts = Others(path + ".starts_from", p.starts_from, before);
+    const bool ends = Others(path + ".ends_at", p.ends_at, behind);
+    if (p.elements.size() > kElements) return Fail(path + ".elements", Problem::kTooMany);
+    if (!starts || !ends) return false;
+    planar::Layout& layout = result_.tracks[i].layout;
+    for (const ElementParams& element : p.elements) layout.elements.push_back(ToElement(element));
+    layout.closed = p.closed_loop;
+    if (!before.empty()) layout.from = At(*before.front(), before.front()->length);
+    if (!behind.empty()) layout.to = At(*behind.front(), 0);
+    for (std::size_t k = 1; k < before.size(); ++k) {
+      const bool same = Same(*layout.from, At(*before[k], before[k]->length));
+      if (!same) return Fail(path + ".starts_from" + Index(k), Problem::kNotItsStart);
+    }
+    for (std::size_t k = 1; k < behind.size(); ++k) {
+      const bool same = Same(*layout.to, At(*behind[k], 0));
+      if (!same) return Fail(path + ".ends_at" + Index(k), Problem::kNotItsEnd);
+    }
+    planar::Track way;
+    const planar::Making making = MakeWay(layout, way);
+    if (making.problem == Problem::kNone) {
+      result_.tracks[i].way = std::move(way);
+      return true;
+    }
+    const bool may_be_empty = !layout.closed && !layout.to;
+    if (making.problem == Problem::kEmpty && may_be_empty) return true;
+    return Fail(path + PlaceOf(making, p), std::string(planar::Text(making.problem)) + WhereItCrosses(making, layout));
+  }
+
+  static std::string WhereItCrosses(const planar::Making& making, const planar::Layout& layout) {
+    planar::Track way;
+    if (making.problem != Problem::kCrosses || planar::MakeTrack(layout, way).problem != Problem::kNone) return "";
+    const std::optional<planar::Crossing> crossing = planar::SelfCrossing(way);
+    if (!crossing) return "";
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), ", %.1f mm and %.1f mm along", crossing->first, crossing->second);
+    return text.data();
+  }
+
+  // The key that a problem is reported at.
+  static std::string PlaceOf(const planar::Making& making, const TrackParams& p) {
+    switch (making.problem) {
+      case Problem::kEmpty:
+      case Problem::kCrosses:
+        return "";
+      case Problem::kLinked:
+        return ".closed_loop";
+      default:
+        break;
+    }
+    if (making.element < p.elements.size()) return ".elements" + Index(making.element);
+    return p.closed_loop ? ".closed_loop" : ".ends_at[0]";
+  }
+
+  const std::vector<TrackParams>& params_;
+  std::vector<std::string_view> names_;
+  std::vector<Mark> marks_;
+  std::vector<std::size_t> open_;  // from the one first asked for to the one at hand
+  BuildResult result_;
+};
+
+}  // namespace
+
+BuildResult Build(const std::vector<TrackParams>& params) {
+  return Builder(params).Run();
+}
+
+}  // namespace takt::track

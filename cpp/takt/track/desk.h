@@ -1,0 +1,45 @@
+// Where the cycle has tracks made. It puts what a track is to be into a queue; whoever works outside the cycle makes
+// the track, hands it over and answers with the command TrackMade. What is not used any more goes back to be freed. A
+// replay takes the answer from the journal and makes the track once more: it depends on nothing else.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "takt/core/spsc_queue.h"
+#include "takt/track/commands.h"
+#include "takt/track/sketch.h"
+
+namespace takt::track {
+
+struct Question {
+  std::uint64_t number = 0;
+  std::uint32_t track = 0;  // from 0
+  Sketch sketch;
+};
+
+struct Delivery {
+  std::uint64_t number = 0;  // of the question
+  const planar::Track* way = nullptr;
+};
+
+struct Desk {
+  explicit Desk(std::size_t tracks) : retired(2 * tracks + 8) {}
+  ~Desk();
+  Desk(const Desk&) = delete;
+  Desk& operator=(const Desk&) = delete;
+
+  SpscQueue<Question> questions{2};  // one at a time
+  SpscQueue<Delivery> deliveries{8};
+  SpscQueue<const planar::Track*> retired;
+};
+
+// Outside the cycle, one thread: answers the next question. Frees what is retired.
+struct Answer {
+  std::uint32_t track = 0;
+  TrackMade made;
+};
+std::optional<Answer> Make(Desk& desk);
+
+}  // namespace takt::track

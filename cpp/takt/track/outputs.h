@@ -1,0 +1,27 @@
+// What a track publishes every cycle.
+#pragma once
+
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/status.h"
+#include "takt/planar/object_state.h"
+#include "takt/track/state.h"
+
+namespace takt::track {
+
+struct Outputs {
+  planar::ObjectState state = planar::ObjectState::kDisabled;
+  OperationMode operation_mode = OperationMode::kUninitialized;
+  ErrorId error = ErrorId::kNone;
+  double length = 0;  // mm; 0: nothing to go along
+  bool closed_loop = false;
+  std::uint32_t element_count = 0;
+  std::uint32_t mover_count = 0;
+  std::uint32_t previous_tracks = 0;    // that end where it starts
+  std::uint32_t subsequent_tracks = 0;  // that start where it ends
+};
+
+void describe(Description<Outputs>&);
+
+}  // namespace takt::track

@@ -1,0 +1,49 @@
+#include "takt/track/params.h"
+
+#include "takt/core/describe.h"
+#include "takt/track/texts.h"
+
+namespace takt::track {
+
+planar::Element ToElement(const ElementParams& p) {
+  return {p.shape, p.from.value_or(planar::Place{}), p.to, p.center.value_or(planar::Place{}), p.clockwise};
+}
+
+void describe(Enumeration<CollisionRangeMode>& e) {
+  e.about("Where the collision ranges of a track come from.");
+  e.value(CollisionRangeMode::kAutomatic, "automatic", "From the size of the movers and the geometry.");
+  e.value(CollisionRangeMode::kManual, "manual", "As given.");
+}
+
+void describe(Description<ElementParams>& d) {
+  using P = ElementParams;
+  using planar::ElementShape;
+  d.about("A piece that a track is given by. Gaps between pieces are filled without a step of direction or curvature.");
+  d.defaulted<&P::shape>("What it is.");
+  d.defaulted<&P::from>("Where a line or a circle begins.");
+  d.required<&P::to>("Where it ends; the place of a position.");
+  d.defaulted<&P::center>("Of a circle.");
+  d.defaulted<&P::clockwise>("Which way round a circle goes.");
+  d.rule<&P::from>("must be given for a line or a circle, and for no position",
+                   [](const P& p) { return p.from.has_value() == (p.shape != ElementShape::kPosition); });
+  d.rule<&P::center>("must be given for a circle, and for nothing else",
+                     [](const P& p) { return p.center.has_value() == (p.shape == ElementShape::kArc); });
+}
+
+void describe(Description<TrackParams>& d) {
+  using P = TrackParams;
+  d.about("A track: a way in the plane along which movers go one behind the other.");
+  d.required<&P::name>("Of the track; commands go to it.");
+  d.defaulted<&P::elements>("What it is given by, in the order of the way; 64 at most.");
+  d.defaulted<&P::closed_loop>("It goes on from its last element to its first.");
+  d.defaulted<&P::starts_from>("Names of tracks at whose ends it starts.");
+  d.defaulted<&P::ends_at>("Names of tracks at whose starts it ends.");
+  d.defaulted<&P::mover_width>(unit::mm, kSizes, "Width of the largest mover on it.");
+  d.defaulted<&P::mover_height>(unit::mm, kSizes, "Height of the largest mover on it.");
+  d.defaulted<&P::collision_range_mode>("Where the collision ranges come from.");
+  d.defaulted<&P::collision_range_at_start>(
+      unit::mm, kRanges, "So near to its start a mover counts for movers on other tracks; if they are given.");
+  d.defaulted<&P::collision_range_at_end>(unit::mm, kRanges, "The same at its end.");
+}
+
+}  // namespace takt::track

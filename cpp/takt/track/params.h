@@ -1,0 +1,47 @@
+// What a machine file says about one track: a way in the plane along which movers go.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/planar/point.h"
+#include "takt/planar/track.h"
+
+namespace takt::track {
+
+struct ElementParams {
+  planar::ElementShape shape = planar::ElementShape::kLine;
+  std::optional<planar::Place> from{};  // of a line or a circle
+  planar::Place to{};                   // where it ends; the place of a position
+  std::optional<planar::Place> center{};
+  bool clockwise = false;  // of a circle
+};
+
+enum class CollisionRangeMode : std::uint8_t {
+  kAutomatic,  // reckoned from the movers' size and the geometry
+  kManual,     // as it is given
+};
+
+struct TrackParams {
+  std::string name;
+  std::vector<ElementParams> elements;
+  bool closed_loop = false;
+  std::vector<std::string> starts_from;  // names of tracks at whose ends it starts
+  std::vector<std::string> ends_at;      // names of tracks at whose starts it ends
+  double mover_width = 155;              // mm, of the largest mover on it
+  double mover_height = 155;             // mm
+  CollisionRangeMode collision_range_mode = CollisionRangeMode::kAutomatic;
+  double collision_range_at_start = 0;  // mm along the track, where it is manual
+  double collision_range_at_end = 0;
+};
+
+planar::Element ToElement(const ElementParams& params);
+
+void describe(Enumeration<CollisionRangeMode>&);
+void describe(Description<ElementParams>&);
+void describe(Description<TrackParams>&);
+
+}  // namespace takt::track

@@ -1,0 +1,74 @@
+// All tracks of a machine, stage by stage of the cycle. Free functions over plain state; nothing here allocates, locks,
+// throws or reads a clock, but for the making and the end of all tracks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "takt/core/cycle.h"
+#include "takt/core/feedback.h"
+#include "takt/planar/track.h"
+#include "takt/track/commands.h"
+#include "takt/track/desk.h"
+#include "takt/track/outputs.h"
+#include "takt/track/params.h"
+#include "takt/track/state.h"
+
+namespace takt::track {
+
+// Of what the machine file says, which must have been checked (build.h). Index i is track i of the machine.
+struct Tracks {
+  explicit Tracks(const std::vector<TrackParams>& params);
+  ~Tracks();
+  Tracks(const Tracks&) = delete;
+  Tracks& operator=(const Tracks&) = delete;
+
+  void SetSketch(std::size_t track, const Sketch& sketch) noexcept;
+
+  std::vector<TrackParams> params;
+  std::vector<State> states;
+  std::vector<Sketch> sketches;  // what each is given by; the states have their hashes
+  std::vector<Outputs> outputs;
+  Works works;
+
+  // What follows from the states.
+  std::vector<const planar::Track*> ways;  // null: none, then the length is 0
+  // Where tracks are linked: ends and starts at one point have one number, below twice that of tracks.
+  std::vector<std::uint32_t> start_nodes;
+  std::vector<std::uint32_t> end_nodes;
+  std::vector<std::uint32_t> starts_at;  // by node: so many tracks
+  std::vector<std::uint32_t> ends_at;
+  std::uint64_t changes = 0;  // of ways and links, counted
+
+  Desk desk;
+  bool sent = false;  // the question has found room in the queue
+};
+
+struct Context {
+  Tracks& tracks;
+  Cycle cycle;
+  FeedbackSink& feedback;
+};
+
+// Events that one cycle may report besides those of the commands that come in it.
+constexpr std::size_t EventsOf(std::size_t tracks) {
+  return tracks == 0 ? 0 : 2 * tracks + 2 * kOrders;
+}
+
+// command: carries it out, puts it into the works, or refuses it.
+void Apply(const Context& c, std::size_t track, Ticket ticket, const Command& command) noexcept;
+
+// A fault of a track: of whatever happens on it.
+void Fail(const Context& c, std::size_t track, ErrorId error, ErrorReaction reaction) noexcept;
+
+// move: before the movers.
+void Step(const Context& c) noexcept;
+
+void Publish(const Context& c) noexcept;
+
+std::optional<std::size_t> Find(const Tracks& tracks, std::string_view name) noexcept;
+
+}  // namespace takt::track

@@ -1,0 +1,240 @@
+#include "takt/track/works.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace takt::track {
+
+namespace {
+
+using planar::Problem;
+
+bool Same(const planar::TrackPoint& a, const planar::TrackPoint& b) {
+  return SamePlace(a.place, b.place) && SameDirection(a, b) && SameCurvature(a, b);
+}
+
+std::span<const std::uint32_t> All(const Links& links) {
+  return std::span(links.tracks).first(links.count);
+}
+
+bool Holds(const Links& links, std::uint32_t track) {
+  return std::ranges::find(All(links), track) != All(links).end();
+}
+
+// Others start from it or end at it.
+bool IsInUse(const Tracks& t, std::uint32_t track) {
+  return std::ranges::any_of(t.states,
+                             [&](const State& s) { return Holds(s.starts_from, track) || Holds(s.ends_at, track); });
+}
+
+// What is known of an order before anything is made.
+struct Look {
+  Problem problem = Problem::kNone;
+  bool makes = false;          // the track has to be made anew ...
+  bool may_be_empty = false;   // ... and need not have a length then
+  planar::TrackPoint point{};  // where it is to start or end
+};
+
+Look LookAtLink(const Tracks& t, const Order& order) {
+  const State& s = t.states[order.track];
+  const Sketch& sketch = t.sketches[order.track];
+  const bool starts = order.kind == OrderKind::kStartFrom;
+  const planar::Track* other = t.ways[order.other];
+  const planar::Track* own = t.ways[order.track];
+  const Links& links = starts ? s.starts_from : s.ends_at;
+  if (!other) return {Problem::kOtherEmpty};
+  if (other->closed) return {Problem::kOtherClosed};
+  if (sketch.closed) return {Problem::kLinked};
+  if (links.count == kLinks && !Holds(links, order.other)) return {Problem::kTooMany};
+  Look look{.makes = true, .may_be_empty = starts, .point = planar::At(*other, starts ? other->length : 0)};
+  if (starts && (own || sketch.from || sketch.count > 0)) {
+    // It has a start: it can only be the same one.
+    const bool same = own ? Same(planar::At(*own, 0), look.point) : sketch.from && Same(*sketch.from, look.point);
+    return {same ? Problem::kNone : Problem::kNotItsStart};
+  }
+  if (!starts && sketch.to) {
+    return {Same(*sketch.to, look.point) ? Problem::kNone : Problem::kNotItsEnd};
+  }
+  return look;
+}
+
+Look LookAt(const Tracks& t, const Order& order) {
+  const Sketch& sketch = t.sketches[order.track];
+  const bool links = order.kind == OrderKind::kStartFrom || order.kind == OrderKind::kEndAt;
+  Look look{.makes = true, .may_be_empty = true};
+  if (links) {
+    look = LookAtLink(t, order);
+    if (look.problem != Problem::kNone || !look.makes) return look;
+  }
+  if (IsInUse(t, order.track)) return {Problem::kInUse};
+  if (links) return look;
+  if (order.kind == OrderKind::kClear) return {};
+  if (sketch.closed) return {Problem::kClosed};
+  if (order.kind == OrderKind::kCloseLoop) {
+    look.may_be_empty = false;
+    return look;
+  }
+  if (sketch.to) return {Problem::kEnded};
+  if (sketch.count == kElements) return {Problem::kTooMany};
+  return look;
+}
+
+// What the track is given by with this order.
+Sketch With(const Order& order, const Look& look, Sketch sketch) {
+  switch (order.kind) {
+    case OrderKind::kAppend:
+      sketch.elements[sketch.count++] = order.element;
+      break;
+    case OrderKind::kCloseLoop:
+      sketch.closed = true;
+      break;
+    case OrderKind::kClear:
+      sketch = {};
+      break;
+    case OrderKind::kStartFrom:
+      sketch.from = look.point;
+      break;
+    case OrderKind::kEndAt:
+      sketch.to = look.point;
+      break;
+  }
+  return sketch;
+}
+
+void Use(Tracks& t, std::uint32_t track, const planar::Track* way) {
+  if (const planar::Track* old = std::exchange(t.ways[track], way)) t.desk.retired.TryPush(old);
+  State& s = t.states[track];
+  s.has_length = way != nullptr;
+  s.length = way ? way->length : 0;
+  ++t.changes;
+}
+
+void AddLink(Tracks& t, const Order& order) {
+  State& s = t.states[order.track];
+  if (order.kind != OrderKind::kStartFrom && order.kind != OrderKind::kEndAt) return;
+  Links& links = order.kind == OrderKind::kStartFrom ? s.starts_from : s.ends_at;
+  if (!Holds(links, order.other)) links.tracks[links.count++] = order.other;
+  MakeNodes(t);
+}
+
+void TakeAway(Tracks& t, std::uint32_t track) {
+  State& s = t.states[track];
+  t.SetSketch(track, {});
+  s.starts_from = s.ends_at = {};
+  Use(t, track, nullptr);
+  MakeNodes(t);
+}
+
+void End(const Context& c, Problem problem, std::uint32_t element) {
+  Works& w = c.tracks.works;
+  const bool good = problem == Problem::kNone;
+  c.feedback.Report({w.orders[w.first].ticket, c.cycle.count, good ? FeedbackState::kDone : FeedbackState::kError,
+                     false, good ? ErrorId::kNone : ErrorId::kTrackGeometry, good ? 0 : ToValue(problem, element)});
+  w.orders[w.first] = {};
+  w.first = (w.first + 1) % kOrders;
+  --w.count;
+}
+
+// What was made for this question; what was made for others is retired. Null: it is not there.
+const planar::Track* Fetch(Desk& desk, std::uint64_t number) {
+  Delivery delivery;
+  while (desk.deliveries.TryPop(delivery)) {
+    if (delivery.number == number) return delivery.way;
+    desk.retired.TryPush(delivery.way);
+  }
+  return nullptr;
+}
+
+// Whether it could be sent changes nothing in the state: a replay may have nobody to ask.
+void Send(Tracks& t) {
+  if (t.sent) return;
+  const Order& order = t.works.orders[t.works.first];
+  const Sketch& sketch = t.sketches[order.track];
+  t.sent = t.desk.questions.TryPush({t.works.question, order.track, With(order, LookAt(t, order), sketch)});
+}
+
+}  // namespace
+
+bool Put(const Order& order, Works& w) noexcept {
+  if (w.count == kOrders) return false;
+  w.orders[(w.first + w.count++) % kOrders] = order;
+  return true;
+}
+
+bool IsInWorks(const Works& w, std::uint32_t track) noexcept {
+  for (std::uint32_t i = 0; i < w.count; ++i) {
+    if (w.orders[(w.first + i) % kOrders].track == track) return true;
+  }
+  return false;
+}
+
+void StepWorks(const Context& c) noexcept {
+  Tracks& t = c.tracks;
+  Works& w = t.works;
+  while (w.count > 0 && !w.asked) {
+    const Order& order = w.orders[w.first];
+    const Look look = LookAt(t, order);
+    c.feedback.Report({order.ticket, c.cycle.count, FeedbackState::kActive, false, ErrorId::kNone, 0});
+    if (look.problem == Problem::kNone && look.makes) {
+      ++w.question;
+      w.asked = true;
+      t.sent = false;
+      break;
+    }
+    if (look.problem == Problem::kNone) order.kind == OrderKind::kClear ? TakeAway(t, order.track) : AddLink(t, order);
+    End(c, look.problem, 0);
+  }
+  if (w.asked) Send(t);
+}
+
+bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) noexcept {
+  Tracks& t = c.tracks;
+  Works& w = t.works;
+  const Order order = w.orders[w.first];
+  if (!w.asked || made.number != w.question || track != order.track) return false;
+  const Look look = LookAt(t, order);
+  const bool empty = made.problem == Problem::kEmpty && look.may_be_empty;
+  if (made.problem == Problem::kNone || empty) {
+    const planar::Track* way = empty ? nullptr : Fetch(t.desk, made.number);
+    if (!way && !empty) return false;
+    t.SetSketch(track, With(order, look, t.sketches[track]));
+    Use(t, track, way);
+    AddLink(t, order);
+  }
+  w.asked = false;
+  End(c, empty ? Problem::kNone : made.problem, made.element);
+  return true;
+}
+
+void MakeNodes(Tracks& t) noexcept {
+  const auto count = static_cast<std::uint32_t>(t.states.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    t.start_nodes[i] = 2 * i;
+    t.end_nodes[i] = 2 * i + 1;
+  }
+  const auto join = [](std::uint32_t& a, std::uint32_t& b) {
+    const bool differ = a != b;
+    a = b = std::min(a, b);
+    return differ;
+  };
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (const std::uint32_t other : All(t.states[i].starts_from)) {
+        changed |= join(t.start_nodes[i], t.end_nodes[other]);
+      }
+      for (const std::uint32_t other : All(t.states[i].ends_at)) changed |= join(t.end_nodes[i], t.start_nodes[other]);
+    }
+  }
+  std::ranges::fill(t.starts_at, 0u);
+  std::ranges::fill(t.ends_at, 0u);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    ++t.starts_at[t.start_nodes[i]];
+    ++t.ends_at[t.end_nodes[i]];
+  }
+  ++t.changes;
+}
+
+}  // namespace takt::track

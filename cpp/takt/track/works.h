@@ -1,0 +1,21 @@
+// Changes of geometry on their way: each is looked at, made outside the cycle (desk.h) and taken over, one at a time.
+#pragma once
+
+#include "takt/track/tracks.h"
+
+namespace takt::track {
+
+// False: no room.
+bool Put(const Order& order, Works& works) noexcept;
+bool IsInWorks(const Works& works, std::uint32_t track) noexcept;
+
+// Ends what needs nobody's help, and asks about the next one.
+void StepWorks(const Context& c) noexcept;
+
+// False: nobody waits for this answer, or what was made is not there.
+bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) noexcept;
+
+// Numbers the points where tracks start and end, anew.
+void MakeNodes(Tracks& tracks) noexcept;
+
+}  // namespace takt::track

@@ -1,0 +1,65 @@
+"""Planar movers.
+
+A mover floats over stators and moves in six coordinates ([what it does](../../docs/movers.md)). Here it goes to a place
+and, in the middle of that, to another one, turns where it stands, and follows set points from outside.
+"""
+
+import takt
+from takt import expect
+
+COMMANDS = (
+    "mover.enable",
+    "mover.disable",
+    "mover.reset",
+    "mover.halt",
+    "mover.set_position",
+    "mover.move_to_position",
+    "mover.move_z",
+    "mover.move_a",
+    "mover.move_b",
+    "mover.move_c",
+    "mover.start_external_setpoint_generation",
+    "mover.set_external_setpoint",
+    "mover.stop_external_setpoint_generation",
+)
+ERRORS = (5, 8, 3004, 3005, 3007, 3040, 3041, 3042, 3043, 3044, 3045)
+SIGNALS = ("shuttle.x", "shuttle.y", "shuttle.velocity_x", "shuttle.velocity_y", "shuttle.c", "shuttle.command_mode")
+
+
+def scenario(session: takt.Session) -> None:
+    shuttle = session.mover("shuttle")
+    shuttle.set_position(x=60, y=60).wait()
+    shuttle.enable().wait()
+    session.mark("to a place, and on to another")
+    shuttle.move_to_position(x=500, y=60)
+    session.run(0.25)
+    shuttle.move_to_position(x=600, y=160).wait()
+    session.mark("turned where it stands")
+    shuttle.move_z(position=3)
+    shuttle.move_c(position=90).wait()
+    session.mark("set points from outside")
+    shuttle.start_external_setpoint_generation()
+    for i in range(200):
+        t = i * session.period
+        shuttle.set_external_setpoint(
+            x=600 - 1000 * t * t, y=160, z=3, c=90, velocity_x=-2000 * t, acceleration_x=-2000 if i else 0
+        )
+        session.run(session.period)
+    shuttle.stop_external_setpoint_generation().wait()
+    session.mark("halted on its way")
+    shuttle.move_to_position(x=60, y=60)
+    session.run(0.2)
+    shuttle.halt().wait()
+    session.run(0.1)
+    shuttle.disable().wait()
+
+
+def verify(recording: takt.Recording) -> None:
+    expect.reaches(recording, "shuttle", 600, tolerance=1e-9, by=2, signal="x")
+    expect.visits_states(
+        recording,
+        "shuttle",
+        ["FreeMovement", "CRotationFreeMovement", "FreeMovement", "ExternalSetpointGeneration", "FreeMovement"],
+        field="command_mode",
+    )
+    expect.stays(recording, "shuttle.error == 0")

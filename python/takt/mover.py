@@ -1,0 +1,35 @@
+"""One planar mover of a session: it floats over stators and moves in six coordinates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from takt._commands import MoverCommands, MoverOutputs
+from takt.component import Component
+from takt.feedback import FeedbackState
+
+
+@dataclass(frozen=True)
+class MoverRecord:
+    """A command of a mover and what became of it."""
+
+    ticket: int
+    verb: str
+    state: FeedbackState
+    error_id: int  # 0: none
+    cycle: int  # that took the command
+    changed: int  # cycle in which it came to be what it is
+
+
+class Mover(Component, MoverCommands, MoverOutputs):
+    """A planar mover."""
+
+    KIND = "mover"
+
+    def __repr__(self) -> str:
+        return f"<Mover {self.name}: {self.state.value}, {self.command_mode.value} at ({self.x:.6g}, {self.y:.6g})>"
+
+    def history(self) -> tuple[MoverRecord, ...]:
+        """Its last 100 commands, the oldest first; external set points apart. In process only."""
+        rows = self.session._history(self)
+        return tuple(MoverRecord(ticket, verb, FeedbackState(state), *rest) for ticket, verb, state, *rest in rows)

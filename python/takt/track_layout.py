@@ -1,0 +1,76 @@
+"""The tracks of a machine file, as they are made when it is loaded: lengths, curvature, links, collision ranges."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from takt import _core
+from takt.engine import read_machine
+
+Array = npt.NDArray[np.float64]
+STEP = 2.0  # mm between points of a curve, at most
+# What a file with tracks alone lacks; at its end, so that lines keep their numbers.
+LACKING = {"name": "name: tracks", "axes": "axes: []"}
+
+
+@dataclass(frozen=True)
+class Points:
+    """Places along a track, in order."""
+
+    s: Array  # mm
+    x: Array
+    y: Array
+    direction: Array  # deg
+    curvature: Array  # 1/mm, above 0 to the left
+    given: npt.NDArray[np.bool_]  # false: of a transition
+
+
+@dataclass(frozen=True)
+class LaidTrack:
+    name: str
+    length: float  # mm
+    closed: bool
+    smallest_radius: float  # mm; infinite where it is straight
+    previous: tuple[str, ...]  # tracks that end where it starts
+    subsequent: tuple[str, ...]  # tracks that start where it ends
+    range_at_start: float  # mm, collision ranges
+    range_at_end: float
+    points: Points
+
+
+class TrackLayout:
+    """All tracks of a machine file, or of a file with only the section `tracks`."""
+
+    def __init__(self, file: str | os.PathLike[str], name: str | None = None) -> None:
+        text, found = read_machine(file)
+        for key, line in LACKING.items():
+            if not re.search(rf"^{key}\s*:".encode(), text, re.MULTILINE):
+                text += f"\n{line}".encode()
+        self._core = _core.TrackLayout(text + b"\n", name or found)
+
+    @cached_property
+    def tracks(self) -> tuple[LaidTrack, ...]:
+        """In the order of the file."""
+        return tuple(self._track(i) for i in range(len(self._core.names)))
+
+    def _track(self, i: int) -> LaidTrack:
+        names = self._core.names
+        at_start, at_end = self._core.collision_ranges(i)
+        s, x, y, direction, curvature, given = np.asarray(self._core.points(i, STEP)).T
+        return LaidTrack(
+            names[i],
+            self._core.length(i),
+            self._core.closed(i),
+            self._core.smallest_radius(i),
+            tuple(names[k] for k in self._core.before(i)),
+            tuple(names[k] for k in self._core.behind(i)),
+            at_start,
+            at_end,
+            Points(s, x, y, direction, curvature, given > 0),
+        )

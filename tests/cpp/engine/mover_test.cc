@@ -1,0 +1,189 @@
+// PL-01 to PL-03, PL-13, EN-22: planar movers in a machine: loading, commands as text, what stops everything.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "takt/core/describe.h"
+#include "takt/engine/engine.h"
+#include "takt/engine/load.h"
+#include "wrong.h"
+
+namespace takt::engine {
+namespace {
+
+using planar::ObjectState;
+using testing::HasSubstr;
+
+const std::string kText = R"(
+name: plane
+axes:
+  - {name: x, limits: {velocity: 1500, acceleration: 10000, jerk: 500000}}
+movers:
+  - name: one
+    initial: {x: 60, y: 60}
+    xy: {maximum: {velocity: 1000, acceleration: 8000, jerk: 200000}}
+  - {name: two, initial: {x: 300, y: 60, c: 90}, z: {maximum: {velocity: 50, acceleration: 500, jerk: 9000}, lower: 0, upper: 3}}
+)";
+
+Machine PlaneMachine() {
+  LoadResult loaded = LoadMachine(kText, "plane.yaml");
+  if (!loaded.machine) throw std::runtime_error(loaded.problems.front());
+  return *loaded.machine;
+}
+
+std::string ProblemOf(const std::string& what, const std::string& instead) {
+  std::string text = kText;
+  text.replace(text.find(what), what.size(), instead);
+  const LoadResult loaded = LoadMachine(text, "plane.yaml");
+  return loaded.machine ? "" : loaded.problems.front();
+}
+
+std::vector<mover::Command> GoodCommands() {
+  return {mover::Enable{},
+          mover::Disable{},
+          mover::Reset{},
+          mover::Halt{},
+          mover::SetPosition{},
+          mover::MoveToPosition{},
+          mover::MoveZ{},
+          mover::MoveA{},
+          mover::MoveB{},
+          mover::MoveC{},
+          mover::StartExternalSetpointGeneration{},
+          mover::SetExternalSetpoint{},
+          mover::StopExternalSetpointGeneration{}};
+}
+
+Command To(std::uint32_t mover, const mover::Command& body) {
+  return {0, 1 + 1 + mover, 0, body};
+}
+
+TEST(MoverMachine, SaysWhatWasExpected) {
+  EXPECT_THAT(ProblemOf("name: two", "name: one"), HasSubstr("one"));
+  EXPECT_THAT(ProblemOf("name: one", "name: x"), HasSubstr("expected a name that nothing else has"));
+  EXPECT_THAT(ProblemOf("name: one", "name: 'o n e'"), HasSubstr("expected 1 to 40 letters"));
+  EXPECT_THAT(ProblemOf("upper: 3", "upper: -3"), HasSubstr("must not lie below lower"));
+  EXPECT_THAT(ProblemOf("y: 60, c: 90", "y: 60, z: 4"), HasSubstr("must lie within the limits of z, a and b"));
+  EXPECT_THAT(ProblemOf("jerk: 200000}}", "jerk: 0}}"), HasSubstr("jerk: expected"));
+}
+
+// A machine may be made of movers alone.
+TEST(MoverMachine, NeedsNoAxes) {
+  EXPECT_TRUE(LoadMachine("name: plane\naxes: []\nmovers: [{name: one}]\n", "plane.yaml").machine.has_value());
+}
+
+// EN-22, PL-02: every number made wrong is refused with a sentence.
+TEST(MoverMachine, BadNumbersAreRefusedAsText) {
+  const Machine machine = PlaneMachine();
+  ASSERT_EQ(GoodCommands().size(), std::variant_size_v<mover::Command>);
+  int refused = 0;
+  std::size_t index = 0;
+  for (const mover::Command& good : GoodCommands()) {
+    EXPECT_EQ(good.index(), index++);
+    const CommandText fine = ToText(machine, To(1, good));
+    EXPECT_EQ(fine.target, "two");
+    ASSERT_EQ(ParseCommand(machine, fine.target, fine.verb, fine.arguments).sentence, "") << fine.verb;
+    for (const Wrong<mover::Command>& wrong : WrongVersionsOf(good)) {
+      const CommandText text = ToText(machine, To(1, wrong.command));
+      const ParsedCommand parsed = ParseCommand(machine, text.target, text.verb, text.arguments);
+      EXPECT_EQ(parsed.error, ErrorId::kParameter) << wrong.what;
+      EXPECT_THAT(parsed.sentence, HasSubstr(std::string(wrong.field) + ": expected ")) << wrong.what;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 200);
+  EXPECT_THAT(ParseCommand(machine, "one", "move_c", "{position: 1, additional_turns: 1}").sentence,
+              HasSubstr("must be 0 unless"));
+  EXPECT_THAT(ParseCommand(machine, "one", "start_external_setpoint_generation", "{mode: none}").sentence,
+              HasSubstr("must be absolute or relative"));
+}
+
+// The same commands made in C++, past the reader: nothing of them gets into the state.
+TEST(MoverMachine, BadNumbersAreRefusedInTheCycle) {
+  Engine engine(PlaneMachine());
+  engine.Submit(To(0, mover::Enable{}));
+  for (int i = 0; i < 5; ++i) engine.RunCycle();
+  FeedbackEvent event;
+  while (engine.feedback().TryPop(event)) {
+  }
+  for (const mover::Command& good : GoodCommands()) {
+    for (const Wrong<mover::Command>& wrong : WrongVersionsOf(good)) {
+      const Ticket ticket = engine.Submit(To(0, wrong.command));
+      engine.RunCycle();
+      ASSERT_TRUE(engine.feedback().TryPop(event));
+      EXPECT_EQ(event.ticket, ticket);
+      EXPECT_EQ(event.error, ErrorId::kParameter) << wrong.what;
+    }
+  }
+  EXPECT_EQ(engine.mover_outputs(0).x, 60);
+}
+
+// What stops everything stops movers, with their maximum dynamics.
+TEST(MoverMachine, WhatStopsEverythingStopsMovers) {
+  const auto stops = [](const auto& how, ObjectState then) {
+    Engine engine(PlaneMachine());
+    engine.Submit(To(0, mover::Enable{}));
+    for (int i = 0; i < 5; ++i) engine.RunCycle();
+    EXPECT_FALSE(engine.all_disabled());
+    engine.Submit(To(0, mover::MoveToPosition{.x = 2000, .y = 60, .velocity = 900.0, .jerk = 20000.0}));
+    for (int i = 0; i < 700; ++i) engine.RunCycle();
+    EXPECT_NEAR(engine.mover_outputs(0).velocity_x, 900, 1);
+    EXPECT_FALSE(engine.at_rest());
+    const double rest = trajectory::StopPosition(engine.mover_state(0).set_point[mover::kX],
+                                                 engine.machine().movers[0].xy.maximum.limits());
+    how(engine);
+    for (int i = 0; i < 400; ++i) engine.RunCycle();
+    EXPECT_EQ(engine.mover_outputs(0).state, then);
+    EXPECT_NEAR(engine.mover_outputs(0).x, rest, 1e-3);
+    EXPECT_TRUE(engine.at_rest());
+    EXPECT_EQ(engine.all_disabled(), then == ObjectState::kDisabled);
+  };
+  const auto machine = [](const MachineCommand& command) {
+    return [command](Engine& engine) { engine.Submit({0, kMachineTarget, 0, command}); };
+  };
+  stops(machine(StopAll{}), ObjectState::kEnabled);
+  stops(machine(StopAll{.open_loops = true}), ObjectState::kDisabled);
+  stops(machine(EmergencyStop{}), ObjectState::kDisabled);
+  stops(machine(FailAllAxes{}), ObjectState::kError);
+  stops([](Engine& engine) { engine.RequestShutdown(); }, ObjectState::kDisabled);
+}
+
+// A mover in Error does not keep the engine from its end.
+TEST(MoverMachine, AFaultDoesNotHinderShutdown) {
+  Engine engine(PlaneMachine());
+  engine.Submit(To(0, mover::Enable{}));
+  for (int i = 0; i < 5; ++i) engine.RunCycle();
+  engine.Submit({0, kMachineTarget, 0, MachineCommand(FailAllAxes{})});
+  for (int i = 0; i < 5; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.mover_outputs(0).error, ErrorId::kOverrun);
+  EXPECT_FALSE(engine.all_disabled());
+  engine.RequestShutdown();
+  for (int i = 0; i < 5; ++i) engine.RunCycle();
+  EXPECT_TRUE(engine.all_disabled());
+}
+
+// EN-07: what a mover does is in the hash of the state.
+TEST(MoverMachine, IsPartOfTheHash) {
+  Engine one(PlaneMachine());
+  Engine other(PlaneMachine());
+  for (int i = 0; i < 300; ++i) {
+    if (i == 10 || i == 50) {
+      const mover::Command body = i == 10 ? mover::Command(mover::Enable{}) : mover::MoveToPosition{.x = 200};
+      one.Submit(To(1, body));
+      other.Submit(To(1, body));
+    }
+    one.RunCycle();
+    other.RunCycle();
+    ASSERT_EQ(one.StateHash(), other.StateHash());
+  }
+  one.Submit(To(1, mover::MoveZ{.position = 1}));
+  one.RunCycle();
+  other.RunCycle();
+  EXPECT_NE(one.StateHash(), other.StateHash());
+}
+
+}  // namespace
+}  // namespace takt::engine
