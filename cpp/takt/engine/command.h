@@ -57,8 +57,8 @@ struct Command {
   CommandBody body;
 };
 
-// Lets go of something or stops it: release, stop_all, stop, power(enable: false); halt and interrupt of groups; halt
-// and disable of movers.
+// Lets go of something or stops it: release, stop_all, stop, power(enable: false); halt and interrupt of groups;
+// halt, disable and stop_external_setpoint_generation of movers.
 bool LetsGo(const Command& command) noexcept;
 
 // One verb a kind of component understands; `arguments` describes its struct.

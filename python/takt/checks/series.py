@@ -193,14 +193,14 @@ def words(field: str) -> str:
 
 
 def quantity(field: str) -> str:
-    """ "set_position" -> "position", "set_x_position" -> "x position"; the field's own name where it ends in nothing
-    known."""
+    """ "set_position" -> "position", "set_x_position" -> "x position", "velocity_x" -> "velocity"; the field's own name
+    where it ends in nothing known."""
     name = words(field)
     if name == "following error":
         return name
     *before, last = name.split(" ")
     if last in TOOL:
-        return TOOL[last]
+        return before[-1] if before and before[-1] in QUANTITIES else TOOL[last]
     if last not in QUANTITIES:
         return name
     return f"{before[-1]} {last}" if before and before[-1] in CAM_AXES else last

@@ -151,6 +151,16 @@ TEST(MoverMachine, WhatStopsEverythingStopsMovers) {
   stops([](Engine& engine) { engine.RequestShutdown(); }, ObjectState::kDisabled);
 }
 
+// EN-22: what stops a mover finds room in a queue that is full of others.
+TEST(MoverMachine, WhatStopsAMoverLetsGo) {
+  std::size_t lets_go = 0;
+  for (const mover::Command& command : GoodCommands()) lets_go += LetsGo(To(0, command)) ? 1 : 0;
+  EXPECT_EQ(lets_go, 3u);
+  EXPECT_TRUE(LetsGo(To(0, mover::Halt{})));
+  EXPECT_TRUE(LetsGo(To(0, mover::Disable{})));
+  EXPECT_TRUE(LetsGo(To(0, mover::StopExternalSetpointGeneration{})));
+}
+
 // A mover in Error does not keep the engine from its end.
 TEST(MoverMachine, AFaultDoesNotHinderShutdown) {
   Engine engine(PlaneMachine());

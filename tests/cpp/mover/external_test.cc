@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "rig.h"
+#include "takt/mover/follow.h"
 
 namespace takt::mover {
 namespace {
@@ -103,6 +104,11 @@ TEST(MoverExternal, WildSetPointsAreErrors) {
   const std::vector<Change> changes = {
       [](auto& p) { p.x += 0.1; },
       [](auto& p) { p.velocity_y += 30; },
+      [](auto& p) {  // 9 mm/s more than the acceleration makes
+        const double more = 9 / std::hypot(p.acceleration_x, p.acceleration_y);
+        p.velocity_x += more * p.acceleration_x;
+        p.velocity_y += more * p.acceleration_y;
+      },
       [](auto& p) { p.acceleration_x += 20000; },
       [](auto& p) { p.velocity_x = 2500; },
       [](auto& p) { p.z = -0.1; },
@@ -135,6 +141,42 @@ TEST(MoverExternal, WildSetPointsAreErrors) {
     }
     EXPECT_EQ(rig.out.state, ObjectState::kError);
   }
+}
+
+// One that is within all limits, but leads beyond the largest speed whatever the mover does then.
+TEST(MoverExternal, SpeedsThatCannotBeHeldAreWild) {
+  Rig rig;
+  rig.Enable();
+  rig.Give(StartExternalSetpointGeneration{});
+  double x = 0;
+  double v = 0;
+  for (int i = 1; rig.out.error == ErrorId::kNone; ++i) {
+    const double a = std::min(9000.0, 180.0 * i);  // as jerk allows
+    const double before = std::min(9000.0, 180.0 * (i - 1));
+    x += 0.001 * v + 1e-6 * (before / 3 + a / 6);
+    v += 0.0005 * (before + a);
+    ASSERT_LT(v, 1900);
+    rig.Give(SetExternalSetpoint{.x = x, .velocity_x = v, .acceleration_x = a});
+    rig.Step();
+  }
+  EXPECT_EQ(rig.out.error, ErrorId::kWildSetPoint);
+  // a² / 2j is what it takes to get rid of 9000 mm/s².
+  EXPECT_NEAR(v, 2000 - 9000.0 * 9000 / (2 * 200000), 9.1);
+  Watch watch(rig);
+  for (int i = 0; i < 1000; ++i) {
+    rig.Step();
+    watch.Look();
+  }
+  // Nor may it be faster for as long as it brakes.
+  const auto can = [&](double from, double to) {
+    SetPoint before{};
+    SetPoint after{};
+    before[kX] = {0, from, 0};
+    after[kX] = {0.0005 * (from + to), to, -9000};
+    return CanFollow(rig.context(), rig.state, before, after);
+  };
+  EXPECT_TRUE(can(1990, 1999));
+  EXPECT_FALSE(can(1996, 2001));
 }
 
 // So many may be missing as the machine file says; meanwhile it goes on as it went.

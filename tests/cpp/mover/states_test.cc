@@ -95,6 +95,26 @@ TEST(MoverStates, ErrorsLeadBackByReset) {
   }
 }
 
+// A mover that was disabled anyway is disabled after its reset, too.
+TEST(MoverStates, AFaultOfADisabledMoverLeadsToDisabled) {
+  for (const bool disabling : {true, false}) {
+    Rig rig;
+    if (disabling) {
+      rig.Enable();
+      rig.Give(MoveToPosition{.x = 1000});
+      rig.Run(200);
+      rig.Give(Disable{});
+      rig.Run(3);
+    }
+    Fail(rig.context(), ErrorId::kOverrun, rig.state);
+    rig.Run(500);
+    EXPECT_EQ(rig.out.state, ObjectState::kError);
+    EXPECT_TRUE(IsOff(rig.state));
+    rig.Finish(rig.Give(Reset{}));
+    EXPECT_EQ(rig.out.state, ObjectState::kDisabled);
+  }
+}
+
 // Every command, every mode: what the table of modes does not name is refused.
 TEST(MoverStates, WhatAModeDoesNotAcceptIsRefused) {
   Rig rig({.initial = {.c = 20}});
