@@ -1,0 +1,210 @@
+#include "takt/planar/area.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "takt/core/describe.h"
+#include "takt/planar/flat.h"
+
+namespace takt::planar {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+// All that the mover covers while it turns in its place is a circle through its corners.
+bool CoversCircle(const Area& area) {
+  if (area.mover.any_angle) return true;
+  // Its corners are so far apart, seen from its centre: each has to come to where the next one began.
+  const double corner = 2 * std::atan2(area.mover.height, area.mover.width);
+  return (area.most_c - area.least_c) * kDegree >= std::max(corner, std::numbers::pi - corner);
+}
+
+// The hull of an area: that of its places, at each of them all points of what the mover covers while it turns there.
+struct Hull {
+  std::array<Flat, 3> places;
+  int count = 0;
+  double radius = 0;  // around all the rest
+  // Of the mover in its place, without those that mirror them: both corners at the least angle, and at the most.
+  std::array<Flat, 4> corners{Flat::Zero(), Flat::Zero(), Flat::Zero(), Flat::Zero()};
+  double far = 0;  // of the corners from the centre
+  bool turns = false;
+  // Across the sides of what it covers there; where it turns, also along what leads to its corners.
+  std::array<Flat, 6> normals;
+  int normal_count = 0;
+};
+
+Hull HullOf(const Area& area) {
+  Hull hull;
+  hull.count = area.count;
+  for (int i = 0; i < hull.count; ++i)
+    hull.places[static_cast<std::size_t>(i)] = ToFlat(area.places[static_cast<std::size_t>(i)]);
+  hull.radius = area.margin;
+  const double along = area.mover.width / 2, across = area.mover.height / 2;
+  if (along == 0 && across == 0) return hull;
+  hull.far = std::hypot(along, across);
+  if (CoversCircle(area)) {
+    hull.radius += hull.far;
+    return hull;
+  }
+  hull.turns = area.most_c > area.least_c;
+  const Flat middle = Heading((area.least_c + area.most_c) / 2 * kDegree);
+  hull.normals = {middle, Left(middle)};
+  hull.normal_count = 2;
+  const auto corners = [&](const Flat& heading, std::size_t first) {
+    hull.corners[first] = along * heading + across * Left(heading);
+    hull.corners[first + 1] = along * heading - across * Left(heading);
+  };
+  corners(hull.turns ? Heading(area.least_c * kDegree) : middle, 0);
+  if (!hull.turns) return hull;
+  corners(Heading(area.most_c * kDegree), 2);
+  for (const Flat& corner : hull.corners)
+    hull.normals[static_cast<std::size_t>(hull.normal_count++)] = corner / hull.far;
+  return hull;
+}
+
+// How far what the mover covers in its place reaches along a unit vector, to both sides.
+double Reach(const Hull& hull, const Flat& along) {
+  const auto passes = [&](const Flat& from, const Flat& to) { return Cross(from, along) * Cross(along, to) >= 0; };
+  if (hull.turns && (passes(hull.corners[0], hull.corners[2]) || passes(hull.corners[1], hull.corners[3]))) {
+    return hull.far;
+  }
+  double most = 0;
+  for (const Flat& corner : hull.corners) most = std::max(most, std::abs(corner.dot(along)));
+  return most;
+}
+
+// How far b is off a along a unit vector, or against it: the larger of both.
+double Off(const Hull& a, const Hull& b, const Flat& along) {
+  const auto span = [&](const Hull& hull) {
+    double least = hull.places[0].dot(along), most = least;
+    for (int i = 1; i < hull.count; ++i) {
+      const double place = hull.places[static_cast<std::size_t>(i)].dot(along);
+      least = std::min(least, place);
+      most = std::max(most, place);
+    }
+    return std::pair{least, most};
+  };
+  const auto [least_a, most_a] = span(a);
+  const auto [least_b, most_b] = span(b);
+  return std::max(least_b - most_a, least_a - most_b) - Reach(a, along) - Reach(b, along) - a.radius - b.radius;
+}
+
+// A point that reaches furthest along a vector, without the radius.
+Flat Furthest(const Hull& hull, const Flat& along) {
+  Flat place = hull.places[0];
+  for (int i = 1; i < hull.count; ++i) {
+    const Flat& other = hull.places[static_cast<std::size_t>(i)];
+    if (other.dot(along) > place.dot(along)) place = other;
+  }
+  const auto less = [&](const Flat& p, const Flat& q) { return std::abs(p.dot(along)) < std::abs(q.dot(along)); };
+  const Flat& corner = *std::max_element(hull.corners.begin(), hull.corners.end(), less);
+  return corner.dot(along) < 0 ? Flat(place - corner) : Flat(place + corner);
+}
+
+// Looks for an axis along which the hulls are at least so far apart. Those of polygons that are apart are among the
+// normals of their sides, and the sides of a sum of polygons are those of its parts.
+class Axes {
+ public:
+  Axes(const Hull& a, const Hull& b, double clearance) : a_(a), b_(b), clearance_(clearance) {}
+
+  bool Separate() {
+    if (Try(Centre(b_) - Centre(a_)) || TryNormals(a_) || TryNormals(b_)) return true;
+    // Round corners face each other along what leads from one to the other.
+    if (a_.radius == 0 && b_.radius == 0) return false;
+    for (int i = 0; i < 3; ++i) {
+      const Flat along = Centre(b_).dot(best_) >= Centre(a_).dot(best_) ? best_ : Flat(-best_);
+      if (Try(Furthest(b_, -along) - Furthest(a_, along))) return true;
+    }
+    return false;
+  }
+
+ private:
+  static Flat Centre(const Hull& hull) {
+    Flat sum = hull.places[0];
+    for (int i = 1; i < hull.count; ++i) sum += hull.places[static_cast<std::size_t>(i)];
+    return sum / hull.count;
+  }
+
+  bool Try(const Flat& axis) {
+    const double length = axis.norm();
+    return length > kSame && TryUnit(axis / length);
+  }
+  bool TryUnit(const Flat& axis) {
+    const double off = Off(a_, b_, axis);
+    if (off > most_) {
+      most_ = off;
+      best_ = axis;
+    }
+    return off >= clearance_;
+  }
+  bool TryNormals(const Hull& hull) {
+    for (int i = 0; i < hull.normal_count; ++i) {
+      if (TryUnit(hull.normals[static_cast<std::size_t>(i)])) return true;
+    }
+    for (int i = 1; i < hull.count; ++i) {
+      for (int k = 0; k < i; ++k) {
+        if (Try(Left(hull.places[static_cast<std::size_t>(i)] - hull.places[static_cast<std::size_t>(k)]))) return true;
+      }
+    }
+    return false;
+  }
+
+  const Hull& a_;
+  const Hull& b_;
+  double clearance_;
+  double most_ = -INFINITY;
+  Flat best_ = Flat::UnitX();
+};
+
+// How much further than the area its hull reaches: between where a corner ends and the next one began.
+double SlackOf(const Area& area) {
+  if (area.most_c <= area.least_c || CoversCircle(area)) return 0;
+  return std::max(area.mover.width, area.mover.height) / 2 * std::sin((area.most_c - area.least_c) / 2 * kDegree);
+}
+
+}  // namespace
+
+Extent ExtentOf(const Area& area) noexcept {
+  const Hull hull = HullOf(area);
+  const double x = Reach(hull, Flat::UnitX()) + hull.radius, y = Reach(hull, Flat::UnitY()) + hull.radius;
+  Extent out{area.places[0], area.places[0]};
+  for (std::size_t i = 1; i < area.count; ++i) {
+    const Place& p = area.places[i];
+    out.lower = {std::min(out.lower.x, p.x), std::min(out.lower.y, p.y)};
+    out.upper = {std::max(out.upper.x, p.x), std::max(out.upper.y, p.y)};
+  }
+  return {{out.lower.x - x, out.lower.y - y}, {out.upper.x + x, out.upper.y + y}};
+}
+
+bool Near(const Area& a, const Area& b, double clearance) noexcept {
+  if (Axes(HullOf(a), HullOf(b), clearance).Separate()) return false;
+  const double slack_a = SlackOf(a), slack_b = SlackOf(b);
+  if (slack_a + slack_b < kSlack / 2) return true;
+  // Neither all of it is free, nor is it known where it is not: by halves of the angle.
+  const auto either = [](const Area& area, const auto& near) {
+    const double middle = (area.least_c + area.most_c) / 2;
+    Area half = area;
+    half.most_c = middle;
+    if (near(half)) return true;
+    half = area;
+    half.least_c = middle;
+    return near(half);
+  };
+  if (slack_a >= slack_b) return either(a, [&](const Area& half) { return Near(half, b, clearance); });
+  return either(b, [&](const Area& half) { return Near(a, half, clearance); });
+}
+
+void describe(Description<Pose>& d) {
+  d.about("Where a mover is in the plane, and how it is turned.");
+  d.required<&Pose::place>("Its centre.");
+  d.defaulted<&Pose::c>(unit::deg, "Its angle, counterclockwise.");
+}
+
+void describe(Description<Extent>& d) {
+  d.about("The sides of a rectangle along X and Y.");
+  d.internal<&Extent::lower>("Its corner at the least X and Y.");
+  d.internal<&Extent::upper>("Its corner at the largest X and Y.");
+}
+
+}  // namespace takt::planar
