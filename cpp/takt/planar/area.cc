@@ -63,15 +63,33 @@ Hull HullOf(const Area& area) {
   return hull;
 }
 
+// Where what the mover covers in its place passes this direction with a corner.
+bool CornerPasses(const Hull& hull, const Flat& along) {
+  const auto passes = [&](std::size_t from, std::size_t to) {
+    return Cross(hull.corners[from], along) * Cross(along, hull.corners[to]) >= 0;
+  };
+  return hull.turns && (passes(0, 2) || passes(1, 3));
+}
+
 // How far what the mover covers in its place reaches along a unit vector, to both sides.
 double Reach(const Hull& hull, const Flat& along) {
-  const auto passes = [&](const Flat& from, const Flat& to) { return Cross(from, along) * Cross(along, to) >= 0; };
-  if (hull.turns && (passes(hull.corners[0], hull.corners[2]) || passes(hull.corners[1], hull.corners[3]))) {
-    return hull.far;
-  }
+  if (CornerPasses(hull, along)) return hull.far;
   double most = 0;
   for (const Flat& corner : hull.corners) most = std::max(most, std::abs(corner.dot(along)));
   return most;
+}
+
+// A point that reaches furthest along a unit vector, without the radius.
+Flat Furthest(const Hull& hull, const Flat& along) {
+  Flat place = hull.places[0];
+  for (int i = 1; i < hull.count; ++i) {
+    const Flat& other = hull.places[static_cast<std::size_t>(i)];
+    if (other.dot(along) > place.dot(along)) place = other;
+  }
+  if (CornerPasses(hull, along)) return place + hull.far * along;
+  const auto less = [&](const Flat& p, const Flat& q) { return std::abs(p.dot(along)) < std::abs(q.dot(along)); };
+  const Flat& corner = *std::max_element(hull.corners.begin(), hull.corners.end(), less);
+  return corner.dot(along) < 0 ? Flat(place - corner) : Flat(place + corner);
 }
 
 // How far b is off a along a unit vector, or against it: the larger of both.
@@ -90,33 +108,24 @@ double Off(const Hull& a, const Hull& b, const Flat& along) {
   return std::max(least_b - most_a, least_a - most_b) - Reach(a, along) - Reach(b, along) - a.radius - b.radius;
 }
 
-// A point that reaches furthest along a vector, without the radius.
-Flat Furthest(const Hull& hull, const Flat& along) {
-  Flat place = hull.places[0];
-  for (int i = 1; i < hull.count; ++i) {
-    const Flat& other = hull.places[static_cast<std::size_t>(i)];
-    if (other.dot(along) > place.dot(along)) place = other;
-  }
-  const auto less = [&](const Flat& p, const Flat& q) { return std::abs(p.dot(along)) < std::abs(q.dot(along)); };
-  const Flat& corner = *std::max_element(hull.corners.begin(), hull.corners.end(), less);
-  return corner.dot(along) < 0 ? Flat(place - corner) : Flat(place + corner);
+// Nearest to the origin on the way from one point to another.
+Flat NearestOn(const Flat& from, const Flat& to) {
+  const Flat way = to - from;
+  const double squared = way.squaredNorm();
+  return squared > 0 ? Flat(from + std::clamp(-from.dot(way) / squared, 0.0, 1.0) * way) : from;
 }
 
-// Looks for an axis along which the hulls are at least so far apart. Those of polygons that are apart are among the
-// normals of their sides, and the sides of a sum of polygons are those of its parts.
+// Looks for an axis along which the hulls are at least so far apart.
 class Axes {
  public:
   Axes(const Hull& a, const Hull& b, double clearance) : a_(a), b_(b), clearance_(clearance) {}
 
-  bool Separate() {
+  bool Separate() const {
+    // Those of polygons that do not touch are among the normals of their sides, and the sides of a sum of polygons are
+    // those of its parts.
     if (Try(Centre(b_) - Centre(a_)) || TryNormals(a_) || TryNormals(b_)) return true;
-    // Round corners face each other along what leads from one to the other.
-    if (a_.radius == 0 && b_.radius == 0) return false;
-    for (int i = 0; i < 3; ++i) {
-      const Flat along = Centre(b_).dot(best_) >= Centre(a_).dot(best_) ? best_ : Flat(-best_);
-      if (Try(Furthest(b_, -along) - Furthest(a_, along))) return true;
-    }
-    return false;
+    const bool round = a_.radius > 0 || b_.radius > 0 || a_.turns || b_.turns;
+    return (round || clearance_ > kSame) && TryCorners();
   }
 
  private:
@@ -126,21 +135,14 @@ class Axes {
     return sum / hull.count;
   }
 
-  bool Try(const Flat& axis) {
+  bool Try(const Flat& axis) const {
     const double length = axis.norm();
-    return length > kSame && TryUnit(axis / length);
+    return Off(a_, b_, length > kSame ? Flat(axis / length) : Flat::UnitX()) >= clearance_;
   }
-  bool TryUnit(const Flat& axis) {
-    const double off = Off(a_, b_, axis);
-    if (off > most_) {
-      most_ = off;
-      best_ = axis;
-    }
-    return off >= clearance_;
-  }
-  bool TryNormals(const Hull& hull) {
+
+  bool TryNormals(const Hull& hull) const {
     for (int i = 0; i < hull.normal_count; ++i) {
-      if (TryUnit(hull.normals[static_cast<std::size_t>(i)])) return true;
+      if (Off(a_, b_, hull.normals[static_cast<std::size_t>(i)]) >= clearance_) return true;
     }
     for (int i = 1; i < hull.count; ++i) {
       for (int k = 0; k < i; ++k) {
@@ -150,11 +152,31 @@ class Axes {
     return false;
   }
 
+  // Corners that face each other are apart along what leads from one to the other: the way of Gilbert, Johnson and
+  // Keerthi to the shortest one.
+  bool TryCorners() const {
+    constexpr int kSteps = 10;
+    Flat one = Centre(b_) - Centre(a_), other = one;
+    for (int i = 0; i < kSteps; ++i) {
+      const Flat nearest = NearestOn(one, other);
+      const double length = nearest.norm();
+      if (length < kSame) return false;
+      if (Try(nearest)) return true;
+      const Flat along = nearest / length;
+      const Flat next = Furthest(b_, -along) - Furthest(a_, along);
+      if (next.dot(along) >= length - kSame) return false;
+      if (NearestOn(one, next).squaredNorm() < NearestOn(other, next).squaredNorm()) {
+        other = next;
+      } else {
+        one = next;
+      }
+    }
+    return false;
+  }
+
   const Hull& a_;
   const Hull& b_;
   double clearance_;
-  double most_ = -INFINITY;
-  Flat best_ = Flat::UnitX();
 };
 
 // How much further than the area its hull reaches: between where a corner ends and the next one began.
