@@ -121,10 +121,11 @@ class Axes {
   Axes(const Hull& a, const Hull& b, double clearance) : a_(a), b_(b), clearance_(clearance) {}
 
   bool Separate() const {
+    const bool round = a_.radius > 0 || b_.radius > 0 || a_.turns || b_.turns;
+    if (round && clearance_ >= 0) return TryCorners();
     // Those of polygons that do not touch are among the normals of their sides, and the sides of a sum of polygons are
     // those of its parts.
     if (Try(Centre(b_) - Centre(a_)) || TryNormals(a_) || TryNormals(b_)) return true;
-    const bool round = a_.radius > 0 || b_.radius > 0 || a_.turns || b_.turns;
     return (round || clearance_ > kSame) && TryCorners();
   }
 
@@ -185,6 +186,20 @@ double SlackOf(const Area& area) {
   return std::max(area.mover.width, area.mover.height) / 2 * std::sin((area.most_c - area.least_c) / 2 * kDegree);
 }
 
+bool Near(const Area& a, const Hull& hull_a, const Area& b, const Hull& hull_b, double clearance) {
+  if (Axes(hull_a, hull_b, clearance).Separate()) return false;
+  const double slack_a = SlackOf(a), slack_b = SlackOf(b);
+  if (slack_a + slack_b < kSlack) return true;
+  if (slack_b > slack_a) return Near(b, hull_b, a, hull_a, clearance);
+  // Neither all of it is free, nor is it known where it is not: by halves of the angle.
+  Area half = a;
+  half.most_c = (a.least_c + a.most_c) / 2;
+  if (Near(half, HullOf(half), b, hull_b, clearance)) return true;
+  half.least_c = half.most_c;
+  half.most_c = a.most_c;
+  return Near(half, HullOf(half), b, hull_b, clearance);
+}
+
 }  // namespace
 
 Extent ExtentOf(const Area& area) noexcept {
@@ -200,21 +215,7 @@ Extent ExtentOf(const Area& area) noexcept {
 }
 
 bool Near(const Area& a, const Area& b, double clearance) noexcept {
-  if (Axes(HullOf(a), HullOf(b), clearance).Separate()) return false;
-  const double slack_a = SlackOf(a), slack_b = SlackOf(b);
-  if (slack_a + slack_b < kSlack / 2) return true;
-  // Neither all of it is free, nor is it known where it is not: by halves of the angle.
-  const auto either = [](const Area& area, const auto& near) {
-    const double middle = (area.least_c + area.most_c) / 2;
-    Area half = area;
-    half.most_c = middle;
-    if (near(half)) return true;
-    half = area;
-    half.least_c = middle;
-    return near(half);
-  };
-  if (slack_a >= slack_b) return either(a, [&](const Area& half) { return Near(half, b, clearance); });
-  return either(b, [&](const Area& half) { return Near(a, half, clearance); });
+  return Near(a, HullOf(a), b, HullOf(b), clearance);
 }
 
 void describe(Description<Pose>& d) {

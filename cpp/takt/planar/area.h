@@ -43,11 +43,11 @@ inline bool Apart(const Extent& a, const Extent& b, double clearance) noexcept {
          b.lower.y - a.upper.y >= clearance || a.lower.y - b.upper.y >= clearance;
 }
 
-// What turns, or has a margin, counts as larger than it is by less than this, both areas together.
+// What turns counts as larger than it is by less than this, both areas together.
 inline constexpr double kSlack = 1;  // mm
 
-// Whether they come nearer than `clearance`; below 0: whether they overlap by more. Of what is not so, there is an axis
-// that separates them; what neither turns nor has a margin is decided to 1e-9 mm.
+// Whether they come nearer than `clearance`, mm; below 0: whether they overlap by more. Where not, there is an axis that
+// separates them. Takes longest where both turn far and nearly touch.
 bool Near(const Area& a, const Area& b, double clearance) noexcept;
 
 void describe(Description<Pose>&);

@@ -29,11 +29,11 @@ class Cut {
 
   // Which stators overlap, if any do.
   Surfacing Cover() {
-    for (std::size_t s = 0; s < stators_.size(); ++s) {
+    for (std::uint32_t s = 0; s < stators_.size(); ++s) {
       const Place& p = stators_[s];
       for (std::size_t y = LineOf(ys_, p.y); y < LineOf(ys_, p.y + kStatorSide); ++y) {
         for (std::size_t x = LineOf(xs_, p.x); x < LineOf(xs_, p.x + kStatorSide); ++x) {
-          std::size_t& owner = owner_[y * xs_.size() + x];
+          std::uint32_t& owner = owner_[y * xs_.size() + x];
           if (owner != kNobody) return {StatorProblem::kOverlap, s, owner};
           owner = s;
         }
@@ -56,7 +56,7 @@ class Cut {
   }
 
  private:
-  static constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+  static constexpr std::uint32_t kNobody = static_cast<std::uint32_t>(-1);
   enum Way : int { kEast, kNorth, kWest, kSouth };
 
   // From a crossing of two lines to the next one.
@@ -126,7 +126,7 @@ class Cut {
   std::span<const Place> stators_;
   std::vector<double> xs_;
   std::vector<double> ys_;
-  std::vector<std::size_t> owner_;
+  std::vector<std::uint32_t> owner_;
 };
 
 // Calls this for all sides; until it says true.
@@ -159,7 +159,7 @@ std::string_view Text(StatorProblem problem) noexcept {
     case StatorProblem::kEmpty:
       return "there are no stators";
     case StatorProblem::kTooMany:
-      return "there are more than 1000 stators";
+      return "there are more than 2000 stators";
     case StatorProblem::kNotFinite:
       return "the corner of a stator is not finite, or more than 1 km away";
     case StatorProblem::kOverlap:

@@ -14,7 +14,7 @@
 namespace takt::planar {
 
 inline constexpr double kStatorSide = 240;         // mm
-inline constexpr std::size_t kMostStators = 1000;  // of one surface
+inline constexpr std::size_t kMostStators = 2000;  // of one surface
 
 // Why there is no surface of some stators.
 enum class StatorProblem : std::uint8_t {
