@@ -28,11 +28,13 @@ Area AreaOf(const Reservation& mover, const Move& move) noexcept {
   return area;
 }
 
-double FromLine(const Place& place, const Place& from, const Place& to) {
-  const Flat line = ToFlat(to) - ToFlat(from), off = ToFlat(place) - ToFlat(from);
-  const double squared = line.squaredNorm();
-  const double share = squared > 0 ? std::clamp(off.dot(line) / squared, 0.0, 1.0) : 0;
-  return (off - share * line).norm();
+// Whether a mover that came from one place to another has got onto the straight way to its target, and goes along it.
+// Sent back the way it came, it is on it all the time, but goes the other way at first.
+bool HasTurned(const Flat& before, const Flat& now, const Place& over, const Place& target) {
+  const Flat line = ToFlat(target) - ToFlat(over), off = now - ToFlat(over);
+  if ((now - before).dot(line) <= 0) return false;
+  const double share = std::clamp(off.dot(line) / line.squaredNorm(), 0.0, 1.0);
+  return (off - share * line).norm() < kSame;
 }
 
 void Reserve(Reservation& mover) noexcept {
@@ -97,9 +99,9 @@ void Take(std::uint32_t mover, const Move& move, Reservations& r) noexcept {
 
 void Advance(std::uint32_t mover, const Pose& pose, Reservations& r) noexcept {
   Reservation& own = r.movers[mover];
-  own.pose = pose;
   std::optional<Place>& over = own.move.over;
-  if (own.moving && over && FromLine(pose.place, *over, own.move.target.place) < kSame) over.reset();
+  if (over && HasTurned(ToFlat(own.pose.place), ToFlat(pose.place), *over, own.move.target.place)) over.reset();
+  own.pose = pose;
   Reserve(own);
 }
 

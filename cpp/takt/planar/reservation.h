@@ -31,8 +31,9 @@ struct ObjectInfo {
 // Straight to the target; the angle goes there without turning back.
 struct Move {
   Pose target{};
-  // Of a mover that has somewhere else to go first, since it is in motion: it comes to the line from here to the target
-  // somewhere, and stays within the triangle of this, the target and where it is. From then on it goes straight.
+  // Of a mover in motion, that has to go on along its old way for a while: where it would come to rest there. It stays
+  // within the triangle of where it is, this and the target until it is on the line from this to the target; once it is
+  // and goes towards the target, it goes straight.
   std::optional<Place> over{};
   // The angle may come to here before it goes to that of the target; deg.
   std::optional<double> over_c{};

@@ -77,6 +77,9 @@ TEST(Areas, AreCircles) {
     EXPECT_NEAR(extent.upper.y - extent.lower.y, 100, 1e-9);
   }
   // Beside the corner of a rectangle, and beside its side.
+  const auto beside = [](double distance) { return Standing(Ahead({50, 50}, 0.3, distance), {60, 80, true}); };
+  EXPECT_FALSE(Near(Standing({0, 0}, {100, 100}), beside(50.01), kSame));
+  EXPECT_TRUE(Near(Standing({0, 0}, {100, 100}), beside(49.99), kSame));
   EXPECT_NEAR(Between(Standing({0, 0}, {100, 100}), Standing({130, 110}, {60, 80, true})), 50, 1e-6);
   EXPECT_NEAR(Between(Standing({0, 0}, {100, 100}), Standing({130, 40}, {60, 80, true})), 30, 1e-6);
 }
