@@ -209,6 +209,29 @@ void MoveInTree(benchmark::State& state) {
   }
 }
 
+// Whether a track may be Moving: a zigzag between rows of movers.
+void AskForTrack(benchmark::State& state) {
+  const TrackArea track = MakeTrackArea(Make(Zigzag(10)), {155, 155}, 0);
+  const TrackArea* tracks[] = {&track};
+  std::vector<Place> stators;
+  for (int i = 0; i < 80; ++i) stators.push_back({240.0 * (i % 20) - 240, 240.0 * (i / 20) - 360});
+  Environment environment;
+  MakeEnvironment(stators, environment);
+  const auto count = static_cast<std::uint32_t>(state.range(0));
+  Reservations r = MakeReservations(count, 1);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double row = i / 40;
+    Settle(i, {155, 155}, {{200.0 * (i / 2 % 20), i % 2 == 0 ? -200 - 200 * row : 400 + 200 * row}, 0}, r);
+  }
+  std::size_t asked = 0, free = 0;
+  for (auto _ : state) {
+    free += AskTrack(0, {.environment = &environment, .tracks = tracks}, r).kind == ObjectKind::kNone ? 1 : 0;
+    ++asked;
+  }
+  state.counters["free"] = static_cast<double>(free) / static_cast<double>(asked);
+  state.counters["stretches"] = static_cast<double>(track.stretches.size());
+}
+
 // Two areas that nearly touch.
 struct Pair {
   Area a{.places = {{{0, 0}, {200, 100}}}, .count = 2, .mover = {155, 155}};
@@ -269,6 +292,7 @@ BENCHMARK_CAPTURE(AskFor, straight, false)->Name("Reservation/takt")->Arg(200)->
 BENCHMARK_CAPTURE(BroadPhase, straight, false)->Name("Reservation/fcl")->Arg(200)->Arg(800);
 BENCHMARK_CAPTURE(AskFor, turning, true)->Name("ReservationOfTurns/takt")->Arg(200)->Arg(800);
 BENCHMARK_CAPTURE(BroadPhase, turning, true)->Name("ReservationOfTurns/fcl")->Arg(200)->Arg(800);
+BENCHMARK(AskForTrack)->Name("ReservationOfTrack")->Arg(200);
 BENCHMARK(PairByAxes)->Name("PairOfAreas/takt");
 BENCHMARK(PairByFcl)->Name("PairOfAreas/fcl");
 BENCHMARK(PairOfTurns);

@@ -1,10 +1,11 @@
 // What movers cover of the plane on their ways, and whether two of them come near each other. Fit for the cycle.
 //
 // The geometry is our own, by separating axes, and FCL the yardstick in tests and benchmark. FCL has no place in the
-// cycle: its collide() of two convex prisms allocates 11 times with libccd and, where they overlap, 3 times with its
-// own solver (which calls prisms 1e-6 mm apart touching, or not, as it comes); a shape of it must be built for each
-// command, on the heap; its tree of boxes allocates nothing once it is filled, but is no plain state: it cannot be
-// copied, hashed or replayed, and going through 200 boxes one after the other is as fast.
+// cycle. Its collide() of two convex prisms allocates 11 times with libccd and, where they overlap, 3 times with its
+// own solver, which takes prisms 1e-6 mm apart for touching or not as it comes. Its shapes would have to be built on
+// the heap for each command. Its tree of boxes allocates nothing once it is filled, but is no plain state: it cannot be
+// copied, hashed or replayed; and it takes longer to move one of 200 boxes in it than to go through all of them. libccd
+// alone, without FCL, allocates nothing, but calls apart what it could not decide, and cannot tell flush from across.
 #pragma once
 
 #include <array>
@@ -46,8 +47,8 @@ inline bool Apart(const Extent& a, const Extent& b, double clearance) noexcept {
 // What turns counts as larger than it is by less than this, both areas together.
 inline constexpr double kSlack = 1;  // mm
 
-// Whether they come nearer than `clearance`, mm; below 0: whether they overlap by more. Where not, there is an axis that
-// separates them. Takes longest where both turn far and nearly touch.
+// Whether they come nearer than `clearance`, mm; below 0: whether they overlap by more. Where not, there is an axis
+// that separates them. Takes longest where both turn far and nearly touch.
 bool Near(const Area& a, const Area& b, double clearance) noexcept;
 
 void describe(Description<Pose>&);

@@ -183,15 +183,16 @@ Surfacing MakeEnvironment(std::span<const Place> stators, Environment& out) {
 }
 
 bool Carries(const Environment& environment, const Area& area) noexcept {
-  // The border does not get into it, so all of it is on one side.
-  const Extent extent = ExtentOf(area);
-  const bool crossed = AnySide(environment, [&](const Place& from, const Place& to) {
+  return !Crosses(environment, area, ExtentOf(area)) && IsOn(environment, area.places[0]);
+}
+
+bool Crosses(const Environment& environment, const Area& area, const Extent& extent) noexcept {
+  return AnySide(environment, [&](const Place& from, const Place& to) {
     const Extent side{{std::min(from.x, to.x), std::min(from.y, to.y)},
                       {std::max(from.x, to.x), std::max(from.y, to.y)}};
     if (Apart(extent, side, -kSame)) return false;
     return Near(area, {.places = {from, to}, .count = 2}, -kSame);
   });
-  return !crossed && IsOn(environment, area.places[0]);
 }
 
 void describe(Enumeration<StatorProblem>& e) {

@@ -54,6 +54,9 @@ Surfacing MakeEnvironment(std::span<const Place> stators, Environment& out);
 // Whether all of an area lies on the surface; flush with the border it does. Fit for the cycle.
 bool Carries(const Environment& environment, const Area& area) noexcept;
 
+// Whether the border gets into an area whose extent this is; else all of it is on one side. Fit for the cycle.
+bool Crosses(const Environment& environment, const Area& area, const Extent& extent) noexcept;
+
 void describe(Enumeration<StatorProblem>&);
 
 }  // namespace takt::planar

@@ -45,6 +45,14 @@ bool Meets(const Area& area, const Extent& extent, const Reservation& other) noe
   return other.present && !Apart(extent, other.extent, kClearance) && Near(area, AreaOf(other), kClearance);
 }
 
+// The stretches hang together.
+bool Carries(const Environment& environment, const TrackArea& track) noexcept {
+  for (std::size_t i = 0; i < track.stretches.size(); ++i) {
+    if (Crosses(environment, track.stretches[i], track.extents[i])) return false;
+  }
+  return planar::Carries(environment, track.stretches.front());
+}
+
 const TrackArea* Moving(std::size_t track, const Surroundings& around, const Reservations& r) noexcept {
   return track < around.tracks.size() && r.tracks[track].moving ? around.tracks[track] : nullptr;
 }
@@ -133,8 +141,7 @@ ObjectInfo AskTrack(std::uint32_t track, const Surroundings& around, const Reser
       if (Near(own.stretches[k], own.extents[k], *other, kClearance)) return Object(ObjectKind::kTrack, i);
     }
   }
-  const auto carried = [&](const Area& area) { return Carries(*around.environment, area); };
-  if (around.environment && !std::ranges::all_of(own.stretches, carried)) return Object(ObjectKind::kEnvironment, 0);
+  if (around.environment && !Carries(*around.environment, own)) return Object(ObjectKind::kEnvironment, 0);
   return {};
 }
 

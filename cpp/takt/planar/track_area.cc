@@ -25,7 +25,7 @@ Area Stretch(const Track& track, const Footprint& mover, const Cell& cell, doubl
 
 void Append(const Track& track, const Footprint& mover, const Cell& cell, double from, double to, TrackArea& out) {
   const Area area = Stretch(track, mover, cell, from, to);
-  if (area.margin > kSlack / 4) {
+  if (area.margin > kTrackSlack / 2) {
     const double middle = (from + to) / 2;
     Append(track, mover, cell, from, middle, out);
     Append(track, mover, cell, middle, to, out);

@@ -17,8 +17,12 @@ struct TrackArea {
   std::uint32_t network = 0;
 };
 
-// All that this mover covers anywhere on the track, and nothing that is further off than kSlack / 2. Allocates; not for
-// the cycle.
+// What the area of a track may be too large by. Finer takes more stretches: one for each 2 mm that the mover's corners
+// go round.
+inline constexpr double kTrackSlack = 2;  // mm
+
+// All that this mover covers anywhere on the track, and nothing that is further off than kTrackSlack. Allocates; not
+// for the cycle.
 TrackArea MakeTrackArea(const Track& track, const Footprint& mover, std::uint32_t network);
 
 // Whether an area comes nearer to that of a track than `clearance`, as Near says. Fit for the cycle.

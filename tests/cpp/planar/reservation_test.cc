@@ -235,9 +235,9 @@ TEST(AreasOfTracks, FollowBends) {
       return Near(probe, ExtentOf(probe), area, kSame);
     };
     EXPECT_TRUE(near(outer)) << degrees;
-    EXPECT_FALSE(near(outer + kSlack / 2 + 0.02)) << degrees;
+    EXPECT_FALSE(near(outer + kTrackSlack + 0.02)) << degrees;
     EXPECT_TRUE(near(22.5)) << degrees;
-    EXPECT_FALSE(near(22.5 - kSlack / 2 - 0.02)) << degrees;
+    EXPECT_FALSE(near(22.5 - kTrackSlack - 0.02)) << degrees;
   }
 }
 
@@ -272,7 +272,7 @@ TEST(AreasOfTracks, AreThoseOfTheirMovers) {
         // Between samples a corner goes on by so much.
         const double sampling =
             0.25 * (1 + std::hypot(mover.width, mover.height) / 2 * PeakCurvature(track, 0, track.length));
-        EXPECT_LT(least, kSlack + sampling);
+        EXPECT_LT(least, kTrackSlack + sampling);
       }
       (said ? near : far) += 1;
     }
