@@ -1,9 +1,21 @@
-// PL-20, PL-24, PL-60: what it costs to look up a place on a track, to find the nearest one, and to make tracks.
+// PL-20, PL-24, PL-60: what it costs to look up a place on a track, to find the nearest one, and to make tracks; and to
+// ask whether a mover may go somewhere, beside FCL's tree with the same boxes, which answers only where a closer look
+// is needed.
 
 #include <benchmark/benchmark.h>
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/geometry/shape/box.h>
 
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "cpp/planar/fcl_reference.h"
 #include "takt/planar/clearance.h"
 #include "takt/planar/nearest.h"
+#include "takt/planar/reservation.h"
 #include "takt/planar/track.h"
 
 namespace takt::planar {
@@ -76,11 +88,217 @@ void FindConflicts(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(Conflicts(left, mover, right, mover, 1, 0.1));
 }
 
+// Movers on every other stator of a square, half of them on their way to a neighbouring one, and moves to ask for.
+struct Crowd {
+  struct Wish {
+    std::uint32_t mover = 0;
+    Move move{};
+  };
+
+  Crowd(int count, bool turning) : r(MakeReservations(static_cast<std::size_t>(count), 0)) {
+    std::mt19937 random(1);
+    const auto between = [&](double lower, double upper) {
+      return std::uniform_real_distribution<>(lower, upper)(random);
+    };
+    const int side = static_cast<int>(std::ceil(std::sqrt(2 * count)));
+    std::vector<Place> stators;
+    for (int i = 0; i < side * side; ++i) stators.push_back({240.0 * (i % side), 240.0 * (i / side)});
+    MakeEnvironment(stators, environment);
+    const auto move = [&](std::uint32_t mover, double distance) {
+      const Pose& at = r.movers[mover].pose;
+      const double direction = between(-3.14, 3.14);
+      Move out{
+          .target = {{at.place.x + distance * std::cos(direction), at.place.y + distance * std::sin(direction)}, at.c}};
+      if (turning) out.target.c += between(-90, 90);
+      return out;
+    };
+    for (int i = 0; i < count; ++i) {
+      const auto mover = static_cast<std::uint32_t>(i);
+      const int stator = 2 * i + (2 * i / side) % 2;
+      Settle(mover, {155, 155}, {{240.0 * (stator % side) + 120, 240.0 * (stator / side) + 120}, 0}, r);
+      const Move way = move(mover, 200);
+      if (i % 2 == 0 && Ask(mover, way, {.environment = &environment}, r).kind == ObjectKind::kNone)
+        Take(mover, way, r);
+    }
+    for (int i = 0; i < 1000; ++i) {
+      const auto mover = static_cast<std::uint32_t>(random() % static_cast<unsigned>(count));
+      wishes.push_back({mover, move(mover, between(0, 500))});
+    }
+  }
+
+  Reservations r;
+  Environment environment;
+  std::vector<Wish> wishes;
+};
+
+void AskFor(benchmark::State& state, bool turning) {
+  const Crowd crowd(static_cast<int>(state.range(0)), turning);
+  const Surroundings around{.environment = &crowd.environment};
+  std::size_t i = 0, free = 0, asked = 0;
+  std::vector<double> least(crowd.wishes.size(), INFINITY);
+  for (auto _ : state) {
+    const auto start = std::chrono::steady_clock::now();
+    const ObjectInfo object = Ask(crowd.wishes[i].mover, crowd.wishes[i].move, around, crowd.r);
+    const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - start;
+    least[i] = std::min(least[i], time.count());
+    free += object.kind == ObjectKind::kNone ? 1 : 0;
+    ++asked;
+    i = (i + 1) % crowd.wishes.size();
+  }
+  state.counters["free"] = static_cast<double>(free) / static_cast<double>(asked);
+  // Of the wishes, each as fast as it ever was.
+  std::erase(least, INFINITY);
+  state.counters["largest_ns"] = *std::ranges::max_element(least);
+}
+
+// The same boxes in a tree.
+struct Tree {
+  explicit Tree(const Crowd& crowd) {
+    for (const Reservation& mover : crowd.r.movers) {
+      Add(objects, mover.extent);
+      manager.registerObject(objects.back().get());
+    }
+    manager.setup();
+    for (const Crowd::Wish& wish : crowd.wishes) {
+      Reservation mover = crowd.r.movers[wish.mover];
+      mover.moving = true;
+      mover.move = wish.move;
+      Add(wishes, ExtentOf(AreaOf(mover)));
+    }
+  }
+
+  using Objects = std::vector<std::unique_ptr<fcl::CollisionObjectd>>;
+  static void Add(Objects& to, const Extent& e) {
+    const auto box = std::make_shared<fcl::Boxd>(e.upper.x - e.lower.x, e.upper.y - e.lower.y, 100);
+    to.push_back(std::make_unique<fcl::CollisionObjectd>(box));
+    to.back()->setTranslation({(e.lower.x + e.upper.x) / 2, (e.lower.y + e.upper.y) / 2, 0});
+    to.back()->computeAABB();
+  }
+
+  fcl::DynamicAABBTreeCollisionManagerd manager;
+  Objects objects;
+  Objects wishes;
+};
+
+// Which boxes that of a wish meets.
+void BroadPhase(benchmark::State& state, bool turning) {
+  Tree tree(Crowd(static_cast<int>(state.range(0)), turning));
+  const auto meets = [](fcl::CollisionObjectd*, fcl::CollisionObjectd*, void* count) {
+    ++*static_cast<long*>(count);
+    return false;
+  };
+  std::size_t i = 0;
+  for (auto _ : state) {
+    long count = 0;
+    tree.manager.collide(tree.wishes[i].get(), &count, meets);
+    benchmark::DoNotOptimize(count);
+    i = (i + 1) % tree.wishes.size();
+  }
+}
+
+// A box of the tree is where the mover is.
+void MoveInTree(benchmark::State& state) {
+  Tree tree(Crowd(static_cast<int>(state.range(0)), false));
+  std::size_t i = 0;
+  for (auto _ : state) {
+    fcl::CollisionObjectd& object = *tree.objects[i];
+    object.setTranslation(object.getTranslation() + fcl::Vector3d(0.1, 0.1, 0));
+    object.computeAABB();
+    tree.manager.update(&object);
+    i = (i + 1) % tree.objects.size();
+  }
+}
+
+// Whether a track may be Moving: a zigzag between rows of movers.
+void AskForTrack(benchmark::State& state) {
+  const TrackArea track = MakeTrackArea(Make(Zigzag(10)), {155, 155}, 0);
+  const TrackArea* tracks[] = {&track};
+  std::vector<Place> stators;
+  for (int i = 0; i < 80; ++i) stators.push_back({240.0 * (i % 20) - 240, 240.0 * (i / 20) - 360});
+  Environment environment;
+  MakeEnvironment(stators, environment);
+  const auto count = static_cast<std::uint32_t>(state.range(0));
+  Reservations r = MakeReservations(count, 1);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double row = i / 40;
+    Settle(i, {155, 155}, {{200.0 * (i / 2 % 20), i % 2 == 0 ? -200 - 200 * row : 400 + 200 * row}, 0}, r);
+  }
+  std::size_t asked = 0, free = 0;
+  for (auto _ : state) {
+    free += AskTrack(0, {.environment = &environment, .tracks = tracks}, r).kind == ObjectKind::kNone ? 1 : 0;
+    ++asked;
+  }
+  state.counters["free"] = static_cast<double>(free) / static_cast<double>(asked);
+  state.counters["stretches"] = static_cast<double>(track.stretches.size());
+}
+
+// Two areas that nearly touch.
+struct Pair {
+  Area a{.places = {{{0, 0}, {200, 100}}}, .count = 2, .mover = {155, 155}};
+  Area b{.places = {{{240, -60}, {500, -300}}}, .count = 2, .mover = {155, 155}};
+};
+
+void PairByAxes(benchmark::State& state) {
+  const Pair pair;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(&pair);
+    benchmark::DoNotOptimize(Near(pair.a, pair.b, 0));
+  }
+}
+
+void PairByFcl(benchmark::State& state) {
+  const auto a =
+      testing::PrismOf({{-77.5, -77.5}, {77.5, -77.5}, {277.5, 22.5}, {277.5, 177.5}, {122.5, 177.5}, {-77.5, 77.5}});
+  const auto b = testing::PrismOf(
+      {{162.5, -137.5}, {422.5, -377.5}, {577.5, -377.5}, {577.5, -222.5}, {317.5, 17.5}, {162.5, 17.5}});
+  for (auto _ : state) benchmark::DoNotOptimize(testing::Collide(*a, *b));
+}
+
+// The most there can be: both turn far while they pass each other closely.
+void PairOfTurns(benchmark::State& state) {
+  const Area a{.places = {{{0, 0}, {200, 0}}}, .count = 2, .most_c = 80, .mover = {155, 155}};
+  std::vector<double> least(200, INFINITY);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const double gap = 150 + 0.3 * static_cast<double>(i);
+    const Area b{.places = {{{0, gap}, {200, gap}}}, .count = 2, .least_c = 5, .most_c = 85, .mover = {155, 155}};
+    const auto start = std::chrono::steady_clock::now();
+    benchmark::DoNotOptimize(Near(a, b, 0));
+    const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - start;
+    least[i] = std::min(least[i], time.count());
+    i = (i + 1) % least.size();
+  }
+  std::erase(least, INFINITY);
+  state.counters["largest_ns"] = *std::ranges::max_element(least);
+}
+
+void AdvanceAll(benchmark::State& state, bool turning) {
+  Crowd crowd(200, turning);
+  std::uint32_t i = 0;
+  for (auto _ : state) {
+    Pose pose = crowd.r.movers[i].pose;
+    pose.place = {pose.place.x + 0.1, pose.place.y + 0.1};
+    Advance(i, pose, crowd.r);
+    i = (i + 1) % 200;
+  }
+}
+
 BENCHMARK_CAPTURE(LookUp, given, false)->Name("AtGiven")->Arg(5)->Arg(100);
 BENCHMARK_CAPTURE(LookUp, transitions, true)->Name("AtTransition")->Arg(5)->Arg(100);
 BENCHMARK(FindNearest)->Name("NearestTo")->Arg(5)->Arg(20)->Arg(100);
 BENCHMARK(MakeOne)->Name("MakeTrack")->Unit(benchmark::kMicrosecond);
 BENCHMARK(FindConflicts)->Name("Conflicts")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(AskFor, straight, false)->Name("Reservation/takt")->Arg(200)->Arg(800);
+BENCHMARK_CAPTURE(BroadPhase, straight, false)->Name("Reservation/fcl")->Arg(200)->Arg(800);
+BENCHMARK_CAPTURE(AskFor, turning, true)->Name("ReservationOfTurns/takt")->Arg(200)->Arg(800);
+BENCHMARK_CAPTURE(BroadPhase, turning, true)->Name("ReservationOfTurns/fcl")->Arg(200)->Arg(800);
+BENCHMARK(AskForTrack)->Name("ReservationOfTrack")->Arg(200);
+BENCHMARK(PairByAxes)->Name("PairOfAreas/takt");
+BENCHMARK(PairByFcl)->Name("PairOfAreas/fcl");
+BENCHMARK(PairOfTurns);
+BENCHMARK_CAPTURE(AdvanceAll, straight, false)->Name("Advance/takt/200");
+BENCHMARK(MoveInTree)->Name("Advance/fcl")->Arg(200);
+BENCHMARK_CAPTURE(AdvanceAll, turning, true)->Name("AdvanceInATurn");
 
 }  // namespace
 }  // namespace takt::planar

@@ -94,6 +94,12 @@ void AppendQuintic(const path::Segment& segment, double u0, double u1, double s0
 
 }  // namespace
 
+double StrayOf(const Cell& cell, double half, double radius) noexcept {
+  // The curvature of a cell is known to a thousandth.
+  const double turn = std::min(cell.turn, 1.01 * cell.curvature * half);
+  return 2 * std::sin(turn / 2) * (half + radius);
+}
+
 void AppendCells(const path::Segment& segment, double start, std::uint32_t piece, std::vector<Cell>& out) {
   Cell pattern;
   pattern.from = start;

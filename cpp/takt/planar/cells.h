@@ -27,6 +27,10 @@ struct Cell {
 // rad: cells turn less.
 inline constexpr double kCellTurn = 0.25;
 
+// Something fixed to the track that reaches so far from it: how far it may come, within `half` mm around a place of the
+// cell, from where it would be on the straight line through that place.
+double StrayOf(const Cell& cell, double half, double radius) noexcept;
+
 // Appends those of a piece that begins at `start` along the track.
 void AppendCells(const path::Segment& segment, double start, std::uint32_t piece, std::vector<Cell>& out);
 

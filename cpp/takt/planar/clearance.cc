@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/core/describe.h"
 #include "takt/planar/flat.h"
 
 namespace takt::planar {
@@ -76,11 +77,10 @@ struct Stretch {
 Stretch StretchOf(const Track& track, const Footprint& mover, const Cell& cell, double from, double to) {
   const double half = (to - from) / 2;
   const TrackPoint point = At(track, from + half);
-  // The curvature of a cell is known to a thousandth.
-  const double turn = std::min(cell.turn, 1.01 * cell.curvature * half);
-  const double step = 2 * std::sin(turn / 2);
-  const double corner = mover.any_angle ? 0 : step * Radius(mover);
-  Stretch out{from, to, Heading(point.direction), BoxOf(point, mover), {}, step * half + corner, half + corner};
+  const double radius = mover.any_angle ? 0 : Radius(mover);
+  const double stray = StrayOf(cell, half, radius);
+  const double corner = stray - StrayOf(cell, half, 0);
+  Stretch out{from, to, Heading(point.direction), BoxOf(point, mover), {}, stray, half + corner};
   out.swept = out.middle;
   out.swept.along += half * out.heading;
   return out;
@@ -170,6 +170,13 @@ double ReachFromStart(const std::vector<Range>& ranges) noexcept {
 
 double ReachFromEnd(const std::vector<Range>& ranges, double length) noexcept {
   return !ranges.empty() && ranges.back().to >= length ? length - ranges.back().from : 0;
+}
+
+void describe(Description<Footprint>& d) {
+  d.about("What a mover covers: a rectangle.");
+  d.required<&Footprint::width>(unit::mm, positive, "Along its own x.");
+  d.required<&Footprint::height>(unit::mm, positive, "Across that.");
+  d.defaulted<&Footprint::any_angle>("Whether it may be turned at will: then it covers the circle around it.");
 }
 
 }  // namespace takt::planar

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "takt/core/describe_fwd.h"
 #include "takt/planar/track.h"
 
 namespace takt::planar {
@@ -32,5 +33,7 @@ std::vector<Range> Conflicts(const Track& a, const Footprint& on_a, const Track&
 // From the start or the end of a track, how far the range that begins there reaches; 0 if there is none.
 double ReachFromStart(const std::vector<Range>& ranges) noexcept;
 double ReachFromEnd(const std::vector<Range>& ranges, double length) noexcept;
+
+void describe(Description<Footprint>&);
 
 }  // namespace takt::planar

@@ -1,0 +1,233 @@
+#include "takt/planar/area.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "takt/core/describe.h"
+#include "takt/planar/flat.h"
+
+namespace takt::planar {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+// All that the mover covers while it turns in its place is a circle through its corners.
+bool CoversCircle(const Area& area) {
+  if (area.mover.any_angle) return true;
+  // Its corners are so far apart, seen from its centre: each has to come to where the next one began.
+  const double corner = 2 * std::atan2(area.mover.height, area.mover.width);
+  return (area.most_c - area.least_c) * kDegree >= std::max(corner, std::numbers::pi - corner);
+}
+
+// The hull of an area: that of its places, at each of them all points of what the mover covers while it turns there.
+struct Hull {
+  std::array<Flat, 3> places;
+  int count = 0;
+  double radius = 0;  // around all the rest
+  // Of the mover in its place, without those that mirror them: both corners at the least angle, and at the most.
+  std::array<Flat, 4> corners{Flat::Zero(), Flat::Zero(), Flat::Zero(), Flat::Zero()};
+  double far = 0;  // of the corners from the centre
+  bool turns = false;
+  // Across the sides of what it covers there; where it turns, also along what leads to its corners.
+  std::array<Flat, 6> normals;
+  int normal_count = 0;
+};
+
+Hull HullOf(const Area& area) {
+  Hull hull;
+  hull.count = area.count;
+  for (int i = 0; i < hull.count; ++i)
+    hull.places[static_cast<std::size_t>(i)] = ToFlat(area.places[static_cast<std::size_t>(i)]);
+  hull.radius = area.margin;
+  const double along = area.mover.width / 2, across = area.mover.height / 2;
+  if (along == 0 && across == 0) return hull;
+  hull.far = std::hypot(along, across);
+  if (CoversCircle(area)) {
+    hull.radius += hull.far;
+    return hull;
+  }
+  hull.turns = area.most_c > area.least_c;
+  const Flat middle = Heading((area.least_c + area.most_c) / 2 * kDegree);
+  hull.normals = {middle, Left(middle)};
+  hull.normal_count = 2;
+  const auto corners = [&](const Flat& heading, std::size_t first) {
+    hull.corners[first] = along * heading + across * Left(heading);
+    hull.corners[first + 1] = along * heading - across * Left(heading);
+  };
+  corners(hull.turns ? Heading(area.least_c * kDegree) : middle, 0);
+  if (!hull.turns) return hull;
+  corners(Heading(area.most_c * kDegree), 2);
+  for (const Flat& corner : hull.corners)
+    hull.normals[static_cast<std::size_t>(hull.normal_count++)] = corner / hull.far;
+  return hull;
+}
+
+// Where what the mover covers in its place passes this direction with a corner.
+bool CornerPasses(const Hull& hull, const Flat& along) {
+  const auto passes = [&](std::size_t from, std::size_t to) {
+    return Cross(hull.corners[from], along) * Cross(along, hull.corners[to]) >= 0;
+  };
+  return hull.turns && (passes(0, 2) || passes(1, 3));
+}
+
+// How far what the mover covers in its place reaches along a unit vector, to both sides.
+double Reach(const Hull& hull, const Flat& along) {
+  if (CornerPasses(hull, along)) return hull.far;
+  double most = 0;
+  for (const Flat& corner : hull.corners) most = std::max(most, std::abs(corner.dot(along)));
+  return most;
+}
+
+// A point that reaches furthest along a unit vector, without the radius.
+Flat Furthest(const Hull& hull, const Flat& along) {
+  Flat place = hull.places[0];
+  for (int i = 1; i < hull.count; ++i) {
+    const Flat& other = hull.places[static_cast<std::size_t>(i)];
+    if (other.dot(along) > place.dot(along)) place = other;
+  }
+  if (CornerPasses(hull, along)) return place + hull.far * along;
+  const auto less = [&](const Flat& p, const Flat& q) { return std::abs(p.dot(along)) < std::abs(q.dot(along)); };
+  const Flat& corner = *std::max_element(hull.corners.begin(), hull.corners.end(), less);
+  return corner.dot(along) < 0 ? Flat(place - corner) : Flat(place + corner);
+}
+
+// How far b is off a along a unit vector, or against it: the larger of both.
+double Off(const Hull& a, const Hull& b, const Flat& along) {
+  const auto span = [&](const Hull& hull) {
+    double least = hull.places[0].dot(along), most = least;
+    for (int i = 1; i < hull.count; ++i) {
+      const double place = hull.places[static_cast<std::size_t>(i)].dot(along);
+      least = std::min(least, place);
+      most = std::max(most, place);
+    }
+    return std::pair{least, most};
+  };
+  const auto [least_a, most_a] = span(a);
+  const auto [least_b, most_b] = span(b);
+  return std::max(least_b - most_a, least_a - most_b) - Reach(a, along) - Reach(b, along) - a.radius - b.radius;
+}
+
+// Nearest to the origin on the way from one point to another.
+Flat NearestOn(const Flat& from, const Flat& to) {
+  const Flat way = to - from;
+  const double squared = way.squaredNorm();
+  return squared > 0 ? Flat(from + std::clamp(-from.dot(way) / squared, 0.0, 1.0) * way) : from;
+}
+
+// Looks for an axis along which the hulls are at least so far apart.
+class Axes {
+ public:
+  Axes(const Hull& a, const Hull& b, double clearance) : a_(a), b_(b), clearance_(clearance) {}
+
+  bool Separate() const {
+    const bool round = a_.radius > 0 || b_.radius > 0 || a_.turns || b_.turns;
+    if (round && clearance_ >= 0) return TryCorners();
+    // Those of polygons that do not touch are among the normals of their sides, and the sides of a sum of polygons are
+    // those of its parts.
+    if (Try(Centre(b_) - Centre(a_)) || TryNormals(a_) || TryNormals(b_)) return true;
+    return (round || clearance_ > kSame) && TryCorners();
+  }
+
+ private:
+  static Flat Centre(const Hull& hull) {
+    Flat sum = hull.places[0];
+    for (int i = 1; i < hull.count; ++i) sum += hull.places[static_cast<std::size_t>(i)];
+    return sum / hull.count;
+  }
+
+  bool Try(const Flat& axis) const {
+    const double length = axis.norm();
+    return Off(a_, b_, length > kSame ? Flat(axis / length) : Flat::UnitX()) >= clearance_;
+  }
+
+  bool TryNormals(const Hull& hull) const {
+    for (int i = 0; i < hull.normal_count; ++i) {
+      if (Off(a_, b_, hull.normals[static_cast<std::size_t>(i)]) >= clearance_) return true;
+    }
+    for (int i = 1; i < hull.count; ++i) {
+      for (int k = 0; k < i; ++k) {
+        if (Try(Left(hull.places[static_cast<std::size_t>(i)] - hull.places[static_cast<std::size_t>(k)]))) return true;
+      }
+    }
+    return false;
+  }
+
+  // Corners that face each other are apart along what leads from one to the other: the way of Gilbert, Johnson and
+  // Keerthi to the shortest one.
+  bool TryCorners() const {
+    constexpr int kSteps = 10;
+    Flat one = Centre(b_) - Centre(a_), other = one;
+    for (int i = 0; i < kSteps; ++i) {
+      const Flat nearest = NearestOn(one, other);
+      const double length = nearest.norm();
+      if (length < kSame) return false;
+      if (Try(nearest)) return true;
+      const Flat along = nearest / length;
+      const Flat next = Furthest(b_, -along) - Furthest(a_, along);
+      if (next.dot(along) >= length - kSame) return false;
+      if (NearestOn(one, next).squaredNorm() < NearestOn(other, next).squaredNorm()) {
+        other = next;
+      } else {
+        one = next;
+      }
+    }
+    return false;
+  }
+
+  const Hull& a_;
+  const Hull& b_;
+  double clearance_;
+};
+
+// How much further than the area its hull reaches: between where a corner ends and the next one began.
+double SlackOf(const Area& area) {
+  if (area.most_c <= area.least_c || CoversCircle(area)) return 0;
+  return std::max(area.mover.width, area.mover.height) / 2 * std::sin((area.most_c - area.least_c) / 2 * kDegree);
+}
+
+bool Near(const Area& a, const Hull& hull_a, const Area& b, const Hull& hull_b, double clearance) {
+  if (Axes(hull_a, hull_b, clearance).Separate()) return false;
+  const double slack_a = SlackOf(a), slack_b = SlackOf(b);
+  if (slack_a + slack_b < kSlack) return true;
+  if (slack_b > slack_a) return Near(b, hull_b, a, hull_a, clearance);
+  // Neither all of it is free, nor is it known where it is not: by halves of the angle.
+  Area half = a;
+  half.most_c = (a.least_c + a.most_c) / 2;
+  if (Near(half, HullOf(half), b, hull_b, clearance)) return true;
+  half.least_c = half.most_c;
+  half.most_c = a.most_c;
+  return Near(half, HullOf(half), b, hull_b, clearance);
+}
+
+}  // namespace
+
+Extent ExtentOf(const Area& area) noexcept {
+  const Hull hull = HullOf(area);
+  const double x = Reach(hull, Flat::UnitX()) + hull.radius, y = Reach(hull, Flat::UnitY()) + hull.radius;
+  Extent out{area.places[0], area.places[0]};
+  for (std::size_t i = 1; i < area.count; ++i) {
+    const Place& p = area.places[i];
+    out.lower = {std::min(out.lower.x, p.x), std::min(out.lower.y, p.y)};
+    out.upper = {std::max(out.upper.x, p.x), std::max(out.upper.y, p.y)};
+  }
+  return {{out.lower.x - x, out.lower.y - y}, {out.upper.x + x, out.upper.y + y}};
+}
+
+bool Near(const Area& a, const Area& b, double clearance) noexcept {
+  return Near(a, HullOf(a), b, HullOf(b), clearance);
+}
+
+void describe(Description<Pose>& d) {
+  d.about("Where a mover is in the plane, and how it is turned.");
+  d.required<&Pose::place>("Its centre.");
+  d.defaulted<&Pose::c>(unit::deg, "Its angle, counterclockwise.");
+}
+
+void describe(Description<Extent>& d) {
+  d.about("The sides of a rectangle along X and Y.");
+  d.internal<&Extent::lower>("Its corner at the least X and Y.");
+  d.internal<&Extent::upper>("Its corner at the largest X and Y.");
+}
+
+}  // namespace takt::planar

@@ -1,0 +1,200 @@
+#include "takt/planar/reservation.h"
+
+#include <algorithm>
+
+#include "takt/core/describe.h"
+#include "takt/planar/flat.h"
+
+namespace takt::planar {
+namespace {
+
+// Two that touch are too near.
+constexpr double kClearance = kSame;
+
+Area AreaOf(const Reservation& mover, const Move& move) noexcept {
+  Area area;
+  area.mover = mover.mover;
+  const auto place = [&](const Place& p) { area.places[area.count++] = p; };
+  const auto angle = [&](double c) {
+    area.least_c = std::min(area.least_c, c);
+    area.most_c = std::max(area.most_c, c);
+  };
+  area.places[0] = mover.pose.place;
+  area.least_c = area.most_c = mover.pose.c;
+  if (move.over) place(*move.over);
+  if (!SamePlace(mover.pose.place, move.target.place)) place(move.target.place);
+  if (move.over_c) angle(*move.over_c);
+  angle(move.target.c);
+  return area;
+}
+
+// Whether a mover that came from one place to another has got onto the straight way to its target, and goes along it.
+// Sent back the way it came, it is on it all the time, but goes the other way at first.
+bool HasTurned(const Flat& before, const Flat& now, const Place& over, const Place& target) {
+  const Flat line = ToFlat(target) - ToFlat(over), off = now - ToFlat(over);
+  if ((now - before).dot(line) <= 0) return false;
+  const double share = std::clamp(off.dot(line) / line.squaredNorm(), 0.0, 1.0);
+  return (off - share * line).norm() < kSame;
+}
+
+void Reserve(Reservation& mover) noexcept {
+  mover.extent = ExtentOf(planar::AreaOf(mover));
+}
+
+bool Meets(const Area& area, const Extent& extent, const Reservation& other) noexcept {
+  return other.present && !Apart(extent, other.extent, kClearance) && Near(area, AreaOf(other), kClearance);
+}
+
+// The stretches hang together.
+bool Carries(const Environment& environment, const TrackArea& track) noexcept {
+  for (std::size_t i = 0; i < track.stretches.size(); ++i) {
+    if (Crosses(environment, track.stretches[i], track.extents[i])) return false;
+  }
+  return planar::Carries(environment, track.stretches.front());
+}
+
+const TrackArea* Moving(std::size_t track, const Surroundings& around, const Reservations& r) noexcept {
+  return track < around.tracks.size() && r.tracks[track].moving ? around.tracks[track] : nullptr;
+}
+
+ObjectInfo Object(ObjectKind kind, std::size_t number) noexcept {
+  return {kind, static_cast<std::uint32_t>(number)};
+}
+
+}  // namespace
+
+Reservations MakeReservations(std::size_t movers, std::size_t tracks) {
+  Reservations r;
+  r.movers.resize(movers);
+  r.tracks.resize(tracks);
+  return r;
+}
+
+Area AreaOf(const Reservation& mover) noexcept {
+  return AreaOf(mover, mover.moving ? mover.move : Move{.target = mover.pose});
+}
+
+void Settle(std::uint32_t mover, const Footprint& footprint, const Pose& pose, Reservations& r) noexcept {
+  r.movers[mover] = {.present = true, .mover = footprint, .pose = pose};
+  Reserve(r.movers[mover]);
+}
+
+void Leave(std::uint32_t mover, Reservations& r) noexcept {
+  r.movers[mover] = {};
+}
+
+ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around, const Reservations& r) noexcept {
+  const Area area = AreaOf(r.movers[mover], move);
+  const Extent extent = ExtentOf(area);
+  for (std::size_t i = 0; i < r.movers.size(); ++i) {
+    if (i != mover && Meets(area, extent, r.movers[i])) return Object(ObjectKind::kMover, i);
+  }
+  for (std::size_t i = 0; i < r.tracks.size(); ++i) {
+    const TrackArea* track = Moving(i, around, r);
+    if (track && Near(area, extent, *track, kClearance)) return Object(ObjectKind::kTrack, i);
+  }
+  if (around.environment && !Carries(*around.environment, area)) return Object(ObjectKind::kEnvironment, 0);
+  return {};
+}
+
+void Take(std::uint32_t mover, const Move& move, Reservations& r) noexcept {
+  Reservation& own = r.movers[mover];
+  own.moving = true;
+  own.linked = false;
+  own.move = move;
+  Reserve(own);
+}
+
+void Advance(std::uint32_t mover, const Pose& pose, Reservations& r) noexcept {
+  Reservation& own = r.movers[mover];
+  std::optional<Place>& over = own.move.over;
+  if (over && HasTurned(ToFlat(own.pose.place), ToFlat(pose.place), *over, own.move.target.place)) over.reset();
+  own.pose = pose;
+  Reserve(own);
+}
+
+void End(std::uint32_t mover, Reservations& r) noexcept {
+  Reservation& own = r.movers[mover];
+  own.moving = false;
+  own.move = {};
+  Reserve(own);
+}
+
+void Link(std::uint32_t mover, std::uint32_t network, Reservations& r) noexcept {
+  End(mover, r);
+  r.movers[mover].linked = true;
+  r.movers[mover].network = network;
+}
+
+ObjectInfo AskTrack(std::uint32_t track, const Surroundings& around, const Reservations& r) noexcept {
+  if (track >= around.tracks.size() || !around.tracks[track]) return {};
+  const TrackArea& own = *around.tracks[track];
+  for (std::size_t i = 0; i < r.movers.size(); ++i) {
+    const Reservation& mover = r.movers[i];
+    if (!mover.present || (mover.linked && mover.network == own.network)) continue;
+    if (Near(AreaOf(mover), mover.extent, own, kClearance)) return Object(ObjectKind::kMover, i);
+  }
+  for (std::size_t i = 0; i < r.tracks.size(); ++i) {
+    const TrackArea* other = Moving(i, around, r);
+    if (!other || other->network == own.network) continue;
+    for (std::size_t k = 0; k < own.stretches.size(); ++k) {
+      if (Near(own.stretches[k], own.extents[k], *other, kClearance)) return Object(ObjectKind::kTrack, i);
+    }
+  }
+  if (around.environment && !Carries(*around.environment, own)) return Object(ObjectKind::kEnvironment, 0);
+  return {};
+}
+
+void TakeTrack(std::uint32_t track, Reservations& r) noexcept {
+  r.tracks[track].moving = true;
+}
+
+void EndTrack(std::uint32_t track, Reservations& r) noexcept {
+  r.tracks[track].moving = false;
+}
+
+void describe(Enumeration<ObjectKind>& e) {
+  e.about("What one would collide with.");
+  e.value(ObjectKind::kNone, "none", "Nothing.");
+  e.value(ObjectKind::kMover, "mover", "A mover, or what it has reserved.");
+  e.value(ObjectKind::kTrack, "track", "A track that is Moving.");
+  e.value(ObjectKind::kEnvironment, "environment", "The border of the environment.");
+}
+
+void describe(Description<ObjectInfo>& d) {
+  d.about("What one would collide with.");
+  d.internal<&ObjectInfo::kind>("Of what kind it is.");
+  d.internal<&ObjectInfo::number>("Which of them, from 0.");
+}
+
+void describe(Description<Move>& d) {
+  d.about("Where a mover is to go.");
+  d.internal<&Move::target>("The end.");
+  d.internal<&Move::over>("Where it may come on its way to the line to the target.");
+  d.internal<&Move::over_c>(unit::deg, "An angle that it may come to on its way.");
+}
+
+void describe(Description<Reservation>& d) {
+  d.about("What a mover has reserved.");
+  d.internal<&Reservation::present>("Whether it is in the group.");
+  d.internal<&Reservation::moving>("Whether it is on its way.");
+  d.internal<&Reservation::linked>("Whether it goes along tracks.");
+  d.internal<&Reservation::network>("Of which network.");
+  d.internal<&Reservation::mover>("What it covers.");
+  d.internal<&Reservation::pose>("Where it is.");
+  d.internal<&Reservation::move>("Where it goes.");
+  d.internal<&Reservation::extent>("Of its area.");
+}
+
+void describe(Description<TrackReservation>& d) {
+  d.about("What a track has reserved.");
+  d.internal<&TrackReservation::moving>("Whether it is Moving: then all that its movers may cover.");
+}
+
+void describe(Description<Reservations>& d) {
+  d.about("The areas of a group of movers.");
+  d.internal<&Reservations::movers>("Of movers.");
+  d.internal<&Reservations::tracks>("Of tracks.");
+}
+
+}  // namespace takt::planar

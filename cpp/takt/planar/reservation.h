@@ -1,0 +1,100 @@
+// The areas of a group of movers: who may go where, so that nothing of the group meets.
+//
+// A mover reserves what it covers on its way: from where it is to where its command leads it, however fast it goes and
+// however it turns meanwhile. What it has left is free again. A track reserves all that its movers may cover while it
+// is Moving. All of it is fit for the cycle; movers and tracks are numbered from 0, and there are as many as there were
+// made for.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/planar/area.h"
+#include "takt/planar/environment.h"
+#include "takt/planar/track_area.h"
+
+namespace takt::planar {
+
+enum class ObjectKind : std::uint8_t { kNone, kMover, kTrack, kEnvironment };
+
+struct ObjectInfo {
+  ObjectKind kind = ObjectKind::kNone;
+  std::uint32_t number = 0;  // of movers and tracks
+
+  bool operator==(const ObjectInfo&) const = default;
+};
+
+// Straight to the target; the angle goes there without turning back.
+struct Move {
+  Pose target{};
+  // Of a mover in motion, that has to go on along its old way for a while: where it would come to rest there. It stays
+  // within the triangle of where it is, this and the target until it is on the line from this to the target; once it is
+  // and goes towards the target, it goes straight.
+  std::optional<Place> over{};
+  // The angle may come to here before it goes to that of the target; deg.
+  std::optional<double> over_c{};
+};
+
+struct Reservation {
+  bool present = false;  // in the group
+  bool moving = false;   // to the target of `move`
+  bool linked = false;   // goes along tracks of `network`
+  std::uint32_t network = 0;
+  Footprint mover{};
+  Pose pose{};
+  Move move{};
+  Extent extent{};  // of its area
+};
+
+struct TrackReservation {
+  bool moving = false;
+};
+
+struct Reservations {
+  std::vector<Reservation> movers{};
+  std::vector<TrackReservation> tracks{};
+};
+Reservations MakeReservations(std::size_t movers, std::size_t tracks);
+
+// What does not change from cycle to cycle. Tracks that are not in the group have no area.
+struct Surroundings {
+  const Environment* environment = nullptr;  // none: no border
+  std::span<const TrackArea* const> tracks{};
+};
+
+// What a mover has reserved.
+Area AreaOf(const Reservation& mover) noexcept;
+
+// A mover comes into the group, or is set to another place; it stands. It is not asked whether it may.
+void Settle(std::uint32_t mover, const Footprint& footprint, const Pose& pose, Reservations& r) noexcept;
+void Leave(std::uint32_t mover, Reservations& r) noexcept;
+
+// With what the mover would collide: the first of movers, then of tracks that are Moving, then the environment. kNone:
+// the way is free. What only touches counts, except the border of the environment.
+ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around, const Reservations& r) noexcept;
+// From now on it has that reserved, in place of what it had.
+void Take(std::uint32_t mover, const Move& move, Reservations& r) noexcept;
+// Where it is now.
+void Advance(std::uint32_t mover, const Pose& pose, Reservations& r) noexcept;
+// It stands where it is.
+void End(std::uint32_t mover, Reservations& r) noexcept;
+// It stands, and from now on goes along tracks of this network, until it is given a move.
+void Link(std::uint32_t mover, std::uint32_t network, Reservations& r) noexcept;
+
+// With what the track would collide if it were Moving; movers and tracks of its own network do not count.
+ObjectInfo AskTrack(std::uint32_t track, const Surroundings& around, const Reservations& r) noexcept;
+void TakeTrack(std::uint32_t track, Reservations& r) noexcept;
+void EndTrack(std::uint32_t track, Reservations& r) noexcept;
+
+void describe(Enumeration<ObjectKind>&);
+void describe(Description<ObjectInfo>&);
+void describe(Description<Move>&);
+void describe(Description<Reservation>&);
+void describe(Description<TrackReservation>&);
+void describe(Description<Reservations>&);
+
+}  // namespace takt::planar
