@@ -76,6 +76,32 @@ Problem Stand(const Element& element, Standing& out) {
   return Problem::kNone;
 }
 
+constexpr double kStep = 1;         // mm, in which bends are looked at
+constexpr double kUneven = 1.2;     // within a bend curvature varies by this factor, which is 1.18 in speed
+constexpr double kStraight = 1e-5;  // 1/mm: what bends less is straight
+
+std::vector<Bend> BendsOf(const Track& track) {
+  std::vector<Bend> bends;
+  double least = 0;
+  const auto steps = static_cast<std::size_t>(std::ceil(track.length / kStep));
+  for (std::size_t i = 0; i < steps; ++i) {
+    const double from = track.length * static_cast<double>(i) / static_cast<double>(steps);
+    const double to = track.length * static_cast<double>(i + 1) / static_cast<double>(steps);
+    double most = 0;
+    for (const double s : {from, 0.5 * (from + to), to}) most = std::max(most, std::abs(At(track, s).curvature));
+    if (most < kStraight) most = 0;
+    const bool goes_on = !bends.empty() && std::max(bends.back().curvature, most) <= kUneven * std::min(least, most);
+    if (goes_on) {
+      bends.back().curvature = std::max(bends.back().curvature, most);
+      least = std::min(least, most);
+    } else {
+      bends.push_back({from, most});
+      least = most;
+    }
+  }
+  return bends;
+}
+
 class Maker {
  public:
   explicit Maker(const Layout& layout) : layout_(layout), standing_(layout.elements.size()) {}
@@ -226,6 +252,7 @@ class Maker {
       AppendCells(piece.segment, piece.start, static_cast<std::uint32_t>(i), track_.cells);
     }
     track_.closed = layout_.closed;
+    track_.bends = BendsOf(track_);
   }
 
   const Layout& layout_;

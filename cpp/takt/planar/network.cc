@@ -5,14 +5,12 @@
 #include <limits>
 
 #include "takt/core/describe.h"
+#include "takt/planar/nearest.h"
 
 namespace takt::planar {
 namespace {
 
-constexpr double kStep = 1;             // mm, in which bends are looked at
-constexpr double kUneven = 1.4;         // within a bend curvature varies by this factor, which is 1.18 in speed
-constexpr double kStraight = 1e-5;      // 1/mm: what bends less is straight
-constexpr double kRangeResolution = 1;  // mm
+constexpr double kStride = 0.5 * kRangeSlack;  // mm
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 void Name(std::uint32_t Road::* of, std::uint32_t track, std::uint32_t node, Network& network) noexcept {
@@ -27,28 +25,6 @@ void Name(std::uint32_t Road::* of, std::uint32_t track, std::uint32_t node, Net
 }
 
 }  // namespace
-
-std::vector<Bend> BendsOf(const Track& track) {
-  std::vector<Bend> bends;
-  double least = 0;
-  const auto steps = static_cast<std::size_t>(std::ceil(track.length / kStep));
-  for (std::size_t i = 0; i < steps; ++i) {
-    const double from = track.length * static_cast<double>(i) / static_cast<double>(steps);
-    const double to = track.length * static_cast<double>(i + 1) / static_cast<double>(steps);
-    double most = 0;
-    for (const double s : {from, 0.5 * (from + to), to}) most = std::max(most, std::abs(At(track, s).curvature));
-    if (most < kStraight) most = 0;
-    const bool goes_on = !bends.empty() && std::max(bends.back().curvature, most) <= kUneven * std::min(least, most);
-    if (goes_on) {
-      bends.back().curvature = std::max(bends.back().curvature, most);
-      least = std::min(least, most);
-    } else {
-      bends.push_back({from, most});
-      least = most;
-    }
-  }
-  return bends;
-}
 
 bool Links::Add(std::uint32_t track) noexcept {
   if (std::ranges::find(all(), track) != all().end()) return true;
@@ -74,19 +50,34 @@ void NameNodes(Network& network) noexcept {
   }
 }
 
-void SetRanges(std::uint32_t track, const Footprint& mover, Network& network) {
+void SetRanges(std::uint32_t track, double reach, Network& network) noexcept {
   Road& road = network.roads[track];
   road.range_at_start = road.range_at_end = 0;
   if (!road.track) return;
+  // From the end on, as long as there is anything near. Between two places looked at it is no nearer than at these, less
+  // the way there.
+  const auto range = [&](const Track& other, bool at_end) {
+    double near = 0;
+    for (double s = 0; s < road.length + kStride; s += kStride) {
+      const double place = std::min(s, road.length);
+      const TrackPoint point = At(*road.track, at_end ? road.length - place : place);
+      if (NearestTo(other, point.place).distance < reach + 0.5 * kStride) {
+        near = std::min(s + kStride, road.length);
+      } else if (s > near + 5 * reach) {
+        break;
+      }
+    }
+    return near;
+  };
   for (std::uint32_t i = 0; i < network.roads.size(); ++i) {
     const Road& other = network.roads[i];
     if (i == track || !other.track) continue;
-    const bool at_start = road.start_node != kNoNode && other.start_node == road.start_node;
-    const bool at_end = road.end_node != kNoNode && other.end_node == road.end_node;
-    if (!at_start && !at_end) continue;
-    const std::vector<Range> ranges = Conflicts(*road.track, mover, *other.track, mover, 0, kRangeResolution);
-    if (at_start) road.range_at_start = std::max(road.range_at_start, ReachFromStart(ranges));
-    if (at_end) road.range_at_end = std::max(road.range_at_end, ReachFromEnd(ranges, road.length));
+    if (road.start_node != kNoNode && other.start_node == road.start_node) {
+      road.range_at_start = std::max(road.range_at_start, range(*other.track, false));
+    }
+    if (road.end_node != kNoNode && other.end_node == road.end_node) {
+      road.range_at_end = std::max(road.range_at_end, range(*other.track, true));
+    }
   }
 }
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "takt/core/describe_fwd.h"
-#include "takt/planar/clearance.h"
 #include "takt/planar/track.h"
 
 namespace takt::planar {
@@ -20,14 +19,6 @@ namespace takt::planar {
 inline constexpr std::uint32_t kNoTrack = 0xffffffff;
 inline constexpr std::uint32_t kNoNode = 0xffffffff;
 inline constexpr std::size_t kLinks = 16;  // from one end of a track
-
-// A stretch of a track whose curvature varies little.
-struct Bend {
-  double from = 0;       // mm along the track; it reaches to the next one
-  double curvature = 0;  // 1/mm, the largest, without sign
-};
-// Allocates; not for the cycle.
-std::vector<Bend> BendsOf(const Track& track);
 
 // Tracks linked with one end of a track.
 struct Links {
@@ -41,7 +32,6 @@ struct Links {
 // A track as the traffic sees it.
 struct Road {
   const Track* track = nullptr;  // null: not to be used
-  std::span<const Bend> bends{};
   double length = 0;  // mm
   bool closed = false;
   Links before{}, behind{};  // tracks that end at its start, that start from its end
@@ -65,8 +55,11 @@ bool Link(std::uint32_t from, std::uint32_t to, Network& network) noexcept;
 // Names the nodes anew, after links have changed.
 void NameNodes(Network& network) noexcept;
 
-// The ranges at both ends of a track, as far as movers with this area may come too near to each other there. Allocates.
-void SetRanges(std::uint32_t track, const Footprint& mover, Network& network);
+// The ranges at both ends of a track: beyond them movers no wider than `reach` (mm, the largest distance at which their
+// centres may still touch, however they are turned) cannot touch those on tracks that meet it there. At most
+// kRangeSlack too long. Takes up to some 100 µs for a pair of tracks.
+inline constexpr double kRangeSlack = 40;  // mm
+void SetRanges(std::uint32_t track, double reach, Network& network) noexcept;
 
 // Tracks one after the other, the first one is where the mover is.
 inline constexpr std::size_t kRouteTracks = 32;

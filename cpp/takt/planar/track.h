@@ -48,10 +48,17 @@ struct Piece {
 // 0 <= s <= length of the segment.
 TrackPoint At(const Piece& piece, double s) noexcept;
 
+// A stretch of a track whose curvature varies little.
+struct Bend {
+  double from = 0;       // mm along the track; it reaches to the next one
+  double curvature = 0;  // 1/mm, the largest, without sign
+};
+
 struct Track {
   std::vector<Piece> pieces;
   std::vector<double> ends;  // mm, of the pieces
   std::vector<Cell> cells;   // in the order of the way
+  std::vector<Bend> bends;   // likewise
   double length = 0;         // mm
   bool closed = false;
 };

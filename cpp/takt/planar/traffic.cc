@@ -371,7 +371,11 @@ class Traffic::Step_ {
       const double stop = its.rest_before + apart;
       Limit one;
       one.room = direction * (stop - r.at.position) - gap;
-      one.rate = direction * (its.braking.rest - its.rest_before) / period();
+      // By its speed and acceleration; its jerk moves the place to and fro, and with it all that follow.
+      const double its_speed = direction * before.at.velocity;
+      one.rate = its_speed >= 0
+                     ? std::max(0.0, its_speed + SlopeOfWayToRest(its_speed, before.brakes) * direction * before.at.acceleration)
+                     : direction * (its.braking.rest - its.rest_before) / period();
       one.brakes = Common(r.pace.brakes(), before.brakes);
       one.by = other;
       return one;

@@ -45,7 +45,7 @@ double SpeedIn(const Bend& bend, const Pace& pace) {
 
 // The number of the bend that s lies in; at a border, that on the far side.
 std::size_t BendAt(const Road& road, double s, std::int8_t direction) {
-  const auto& bends = road.bends;
+  const std::vector<Bend>& bends = road.track->bends;
   const auto behind = std::ranges::upper_bound(bends, s, {}, &Bend::from);
   auto i = static_cast<std::size_t>(behind - bends.begin());
   if (i > 0) --i;
@@ -55,28 +55,21 @@ std::size_t BendAt(const Road& road, double s, std::int8_t direction) {
 
 // Along one track from s on; `gone`: the way to there. Returns the way to its end.
 double AlongTrack(const Road& road, double s, double gone, double until, const Pace& pace, Caps& caps) {
-  if (road.bends.empty()) {
-    caps.Add(gone, pace.limits.velocity);
-    return gone + road.length - s;
-  }
-  for (std::size_t i = BendAt(road, s, 1); i < road.bends.size(); ++i) {
-    const double way = gone + std::max(0.0, road.bends[i].from - s);
+  const std::vector<Bend>& bends = road.track->bends;
+  for (std::size_t i = BendAt(road, s, 1); i < bends.size(); ++i) {
+    const double way = gone + std::max(0.0, bends[i].from - s);
     if (way > until) return until;
-    caps.Add(way, SpeedIn(road.bends[i], pace));
+    caps.Add(way, SpeedIn(bends[i], pace));
   }
   return gone + road.length - s;
 }
 
 double BackAlongTrack(const Road& road, double s, double gone, double until, const Pace& pace, Caps& caps) {
-  if (road.bends.empty()) {
-    caps.Add(gone, pace.limits.velocity);
-    return gone + s;
-  }
   double way = gone;
   for (std::size_t i = BendAt(road, s, -1) + 1; i-- > 0;) {
     if (way > until) return until;
-    caps.Add(way, SpeedIn(road.bends[i], pace));
-    way = gone + s - road.bends[i].from;
+    caps.Add(way, SpeedIn(road.track->bends[i], pace));
+    way = gone + s - road.track->bends[i].from;
   }
   return gone + s;
 }
@@ -135,11 +128,6 @@ bool Keeps(const trajectory::Profile& plan, const Caps& caps) {
 }
 
 }  // namespace
-
-double SpeedAt(const Network& network, std::uint32_t track, double s, const Pace& pace) noexcept {
-  const Road& road = network[track];
-  return road.bends.empty() ? pace.limits.velocity : SpeedIn(road.bends[BendAt(road, s, 1)], pace);
-}
 
 bool PlanWay(trajectory::Planner& planner, const Network& network, const Start& start, double way, const Pace& pace,
              trajectory::Profile& out, bool& ends) noexcept {

@@ -35,7 +35,4 @@ struct Start {
 bool PlanWay(trajectory::Planner& planner, const Network& network, const Start& start, double way, const Pace& pace,
              trajectory::Profile& out, bool& ends) noexcept;
 
-// mm/s: how fast it may be here, by its own limit and the bend of the track.
-double SpeedAt(const Network& network, std::uint32_t track, double s, const Pace& pace) noexcept;
-
 }  // namespace takt::planar

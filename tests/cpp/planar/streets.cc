@@ -81,13 +81,11 @@ Streets::Streets(const std::vector<Layout>& layouts, std::uint32_t movers, doubl
       body_{size, size, true} {
   for (const Layout& layout : layouts) {
     tracks_.push_back(std::make_unique<Track>(Make(layout)));
-    bends_.push_back(BendsOf(*tracks_.back()));
   }
   network_.roads.resize(layouts.size());
   for (std::size_t i = 0; i < layouts.size(); ++i) {
     Road& road = network_.roads[i];
     road.track = tracks_[i].get();
-    road.bends = bends_[i];
     road.length = tracks_[i]->length;
     road.closed = tracks_[i]->closed;
   }
@@ -101,7 +99,7 @@ Streets::Streets(const std::vector<Layout>& layouts, std::uint32_t movers, doubl
     }
   }
   NameNodes(network_);
-  for (std::uint32_t i = 0; i < layouts.size(); ++i) SetRanges(i, body_, network_);
+  for (std::uint32_t i = 0; i < layouts.size(); ++i) SetRanges(i, std::hypot(size, size), network_);
 }
 
 Rider& Streets::Put(std::uint32_t mover, std::uint32_t track, double s, const Pace& pace, double gap) {
@@ -118,27 +116,7 @@ Rider& Streets::Put(std::uint32_t mover, std::uint32_t track, double s, const Pa
 }
 
 bool Streets::Send(std::uint32_t mover, std::uint32_t track, double s) {
-  Rider& r = riders_[mover];
-  Route route = r.route;
-  // What it can no longer leave stays.
-  const double rest = Brake(r.at, r.brakes).highest;
-  std::uint32_t kept = 0;
-  double end = 0;
-  while (kept < route.count && (kept == 0 || end <= rest)) end += network_[route.tracks[kept++]].length;
-  route.count = kept;
-  const bool same = route.last() == track && (kept > 1 || s >= r.at.position || (r.at.velocity == 0 && kept == 1));
-  if (!same) {
-    Route more;
-    if (!FindRoute(network_, route.last(), track, search_, more)) return false;
-    if (route.count + more.count - 1 > kRouteTracks) return false;
-    for (std::uint32_t i = 1; i < more.count; ++i) route.tracks[route.count++] = more.tracks[i];
-  }
-  for (std::uint32_t i = route.count; i < kRouteTracks; ++i) route.tracks[i] = 0;
-  r.route = route;
-  r.target = s;
-  r.aim = Aim::kTarget;
-  r.planned = r.there = false;
-  return true;
+  return planar::Send(network_, search_, {.track = track, .position = s}, riders_[mover]);
 }
 
 void Streets::Step() {

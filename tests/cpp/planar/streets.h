@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "takt/planar/clearance.h"
+#include "takt/planar/send.h"
 #include "takt/planar/traffic.h"
 #include "tracks.h"
 
@@ -53,7 +55,6 @@ class Streets {
 
  private:
   std::vector<std::unique_ptr<Track>> tracks_;
-  std::vector<std::vector<Bend>> bends_;
   Network network_;
   std::vector<Rider> riders_;
   Traffic traffic_;

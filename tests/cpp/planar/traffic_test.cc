@@ -179,8 +179,8 @@ TEST(Traffic, TakesCurvesNotMuchSlowerThanCanBe) {  // PL-15, PL-21
     worst = std::max(worst, streets.now() / best);
     EXPECT_GT(streets.now(), 0.98 * best);
   }
-  EXPECT_LT(worst, 1.05);
-  std::printf("worst %g\n", worst);
+  // Against a bound that has to do with jerk only at both ends.
+  EXPECT_LT(worst, 1.07);
   RecordProperty("worst", std::to_string(worst));
 }
 
@@ -223,7 +223,7 @@ TEST(Traffic, StopsWhereTheRangeBegins) {  // PL-24
     const double expected = length - std::min(std::max(gap, range), 100 + gap);
     EXPECT_NEAR(streets[1].at.position, expected, 0.05) << gap;
     EXPECT_EQ(streets[1].waits_for, 0U);
-    streets.Send(0, 2, 1300);
+    streets.Send(0, 2, 1350);
     EXPECT_TRUE(streets.Run(5));
   }
 }

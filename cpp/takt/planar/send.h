@@ -1,0 +1,29 @@
+// Where a mover on tracks is sent.
+#pragma once
+
+#include <cstdint>
+
+#include "takt/planar/network.h"
+#include "takt/planar/traffic.h"
+
+namespace takt::planar {
+
+enum class Way : std::uint8_t {
+  kNonModulo,  // to the very place: on a loop turns count; elsewhere forward through the network, or back on its track
+  kPositive,   // forward only
+  kShortestWay,
+  kNegative,  // back only
+};
+
+struct Destination {
+  std::uint32_t track = 0;
+  double position = 0;  // mm along it
+  Way way = Way::kNonModulo;
+  std::uint32_t additional_turns = 0;  // of a closed loop, positive and negative
+  double modulo_tolerance = 0;         // mm, of a closed loop: so far it may go against its direction
+};
+
+// False: no way leads there from where the mover can still turn off; it keeps what it had.
+bool Send(const Network& network, RouteSearch& search, const Destination& to, Rider& rider) noexcept;
+
+}  // namespace takt::planar
