@@ -49,8 +49,8 @@ Braking Brake(const KinematicState& from, const Brakes& brakes) noexcept {
   KinematicState at = from;
   double time = 0;
   out.lowest = out.highest = from.position;
-  const trajectory::Ramp ramp = trajectory::QuickestRamp(
-      from.velocity, from.acceleration, 0, {brakes.deceleration, brakes.deceleration, brakes.jerk});
+  const trajectory::Ramp ramp = trajectory::QuickestRamp(from.velocity, from.acceleration, 0,
+                                                         {brakes.deceleration, brakes.deceleration, brakes.jerk});
   for (std::size_t i = 0; i < ramp.size(); ++i) {
     const trajectory::Stretch& stretch = ramp[i];
     trajectory::Piece& piece = out.pieces[i];

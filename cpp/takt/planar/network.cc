@@ -13,7 +13,7 @@ namespace {
 constexpr double kStride = 0.5 * kRangeSlack;  // mm
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-void Name(std::uint32_t Road::* of, std::uint32_t track, std::uint32_t node, Network& network) noexcept {
+void Name(std::uint32_t Road::*of, std::uint32_t track, std::uint32_t node, Network& network) noexcept {
   Road& road = network.roads[track];
   if (road.*of == node) return;
   road.*of = node;
@@ -54,8 +54,8 @@ void SetRanges(std::uint32_t track, double reach, Network& network) noexcept {
   Road& road = network.roads[track];
   road.range_at_start = road.range_at_end = 0;
   if (!road.track) return;
-  // From the end on, as long as there is anything near. Between two places looked at it is no nearer than at these, less
-  // the way there.
+  // From the end on, as long as there is anything near. Between two places looked at it is no nearer than at these,
+  // less the way there.
   const auto range = [&](const Track& other, bool at_end) {
     double near = 0;
     for (double s = 0; s < road.length + kStride; s += kStride) {

@@ -32,7 +32,7 @@ struct Links {
 // A track as the traffic sees it.
 struct Road {
   const Track* track = nullptr;  // null: not to be used
-  double length = 0;  // mm
+  double length = 0;             // mm
   bool closed = false;
   Links before{}, behind{};  // tracks that end at its start, that start from its end
   // mm from its ends, within which movers on other tracks that meet it there may be too near.

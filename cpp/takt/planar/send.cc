@@ -48,8 +48,7 @@ bool Send(const Network& network, RouteSearch& search, const Destination& to, Ri
     bool there = route.last() == to.track && (ahead ? to.way != Way::kNegative : may_go_back);
     if (!there && to.way != Way::kNegative) {
       Route more;
-      there = FindRoute(network, route.last(), to.track, search, more) &&
-              route.count + more.count - 1 <= kRouteTracks;
+      there = FindRoute(network, route.last(), to.track, search, more) && route.count + more.count - 1 <= kRouteTracks;
       for (std::uint32_t i = 1; there && i < more.count; ++i) route.tracks[route.count++] = more.tracks[i];
     }
     if (!there) return false;

@@ -3,8 +3,8 @@
 //
 // The invariant, held after every cycle for every pair of movers that can meet: if from now on both brake, each with
 // its greatest dynamics, they never come nearer than the gap. It holds by construction. A mover that only brakes keeps
-// it: so at first each is taken to brake, and then one after the other may go on as it wishes, if the pair it makes with
-// everyone in its way keeps the invariant; otherwise it brakes. Nobody has to know what others are up to.
+// it: so at first each is taken to brake, and then one after the other may go on as it wishes, if the pair it makes
+// with everyone in its way keeps the invariant; otherwise it brakes. Nobody has to know what others are up to.
 //
 // Which pairs can meet: neighbours on a track, a mover and the first one on the rest of its route, and around a place
 // where tracks meet (a node) all those that are active there. A mover is active at a node if a place that it passes
@@ -50,29 +50,29 @@ enum class Waits : std::uint8_t {
 
 // Everything that is remembered of a mover on a track.
 struct Rider {
-  bool on = false;  // on a track; else nothing else counts
-  KinematicState at;  // mm on the first track of the route, and its derivatives
-  Route route;        // from where it is
+  bool on = false;                              // on a track; else nothing else counts
+  KinematicState at;                            // mm on the first track of the route, and its derivatives
+  Route route;                                  // from where it is
   std::array<std::uint32_t, kPassed> passed{};  // the tracks before, the last one first
   std::uint32_t passed_count = 0;
   std::int8_t direction = 1;  // of its way; changes at rest only
 
   Aim aim = Aim::kRest;
-  double target = 0;  // mm on the last track of the route; of a closed loop turns are counted in
+  double target = 0;      // mm on the last track of the route; of a closed loop turns are counted in
   KinematicState demand;  // kFollow: mm on the first track, for the end of this cycle
   Pace pace;              // as commanded
   Brakes brakes;          // its greatest
   double gap = 0;         // mm to the mover before it, from centre to centre
 
-  bool planned = false;      // `plan` is good
-  trajectory::Profile plan;  // along the way, 0 at `plan_from`
-  double plan_from = 0;      // mm on the first track
-  double plan_time = 0;      // s since it began
-  bool plan_ends = false;    // it goes all the way to the target
-  bool there = false;        // it rests at its target
+  bool planned = false;           // `plan` is good
+  trajectory::Profile plan;       // along the way, 0 at `plan_from`
+  double plan_from = 0;           // mm on the first track
+  double plan_time = 0;           // s since it began
+  bool plan_ends = false;         // it goes all the way to the target
+  bool there = false;             // it rests at its target
   std::uint32_t calm_cycles = 0;  // so long it does not speed up more, having had to brake
-  double eased = 0;  // mm/s², what following asks for, without the shaking of those before it
-  double origin = 0;         // mm, of all tracks that it has left behind: at + origin goes on over borders
+  double eased = 0;               // mm/s², what following asks for, without the shaking of those before it
+  double origin = 0;              // mm, of all tracks that it has left behind: at + origin goes on over borders
 
   Waits waits = Waits::kNot;
   std::uint32_t waits_for = kNobody;
@@ -90,8 +90,7 @@ class Traffic {
   explicit Traffic(const TrafficSettings& settings);
 
   // One cycle of all movers.
-  void Step(const Cycle& cycle, trajectory::Planner& planner, const Network& network,
-            std::span<Rider> riders) noexcept;
+  void Step(const Cycle& cycle, trajectory::Planner& planner, const Network& network, std::span<Rider> riders) noexcept;
 
   // The movers on a track, from its start to its end. As the last step left it.
   std::span<const std::uint32_t> On(std::uint32_t track) const noexcept;

@@ -32,7 +32,9 @@ std::vector<Layout> RandomCity(Random& random, int count, double size) {
   for (int x = 0; x < 4; ++x) {
     for (int y = 0; y < 4; ++y) {
       crossings.push_back({{900.0 * x + random.Between(-100, 100), 900.0 * y + random.Between(-100, 100)},
-                           random.Between(-M_PI, M_PI), 0, 0});
+                           random.Between(-M_PI, M_PI),
+                           0,
+                           0});
     }
   }
   std::vector<Layout> layouts;
@@ -48,7 +50,9 @@ std::vector<Layout> RandomCity(Random& random, int count, double size) {
     Track track;
     if (MakeTrack(layout, track).problem != Problem::kNone || track.length > 3000) continue;
     if (PeakCurvature(track, 0, track.length) > 1 / 150.0) continue;
-    const auto fits = [&](const Track& other) { return GoTogether(track, other, body) && GoTogether(other, track, body); };
+    const auto fits = [&](const Track& other) {
+      return GoTogether(track, other, body) && GoTogether(other, track, body);
+    };
     if (!std::ranges::all_of(tracks, fits)) continue;
     layouts.push_back(layout);
     tracks.push_back(track);
@@ -184,11 +188,12 @@ void Watcher::Look() {
     const KinematicState& b = before_[i];
     speed = std::max(speed, std::abs(r.at.velocity) / r.pace.limits.velocity);
     const bool slows = r.at.velocity * r.at.acceleration < 0;
-    acceleration = std::max(
-        acceleration, std::abs(r.at.acceleration) / (slows ? r.brakes.deceleration : r.pace.limits.acceleration));
+    acceleration = std::max(acceleration,
+                            std::abs(r.at.acceleration) / (slows ? r.brakes.deceleration : r.pace.limits.acceleration));
     const double most = std::max(r.brakes.jerk, r.pace.limits.jerk);
     jerk = std::max(jerk, std::abs(r.at.acceleration - b.acceleration) / kPeriod / most);
-    lateral = std::max(lateral, r.at.velocity * r.at.velocity * std::abs(streets_.PointOf(i).curvature) / r.pace.lateral);
+    lateral =
+        std::max(lateral, r.at.velocity * r.at.velocity * std::abs(streets_.PointOf(i).curvature) / r.pace.lateral);
     // What is said of speed and place is one motion.
     const double way = r.at.position + r.origin;
     if (ways_[i] != 0) {

@@ -100,7 +100,8 @@ TEST(Traffic, AStreamOpensAndClosesLikeAnAccordion) {  // PL-25
   testing::Random random(3);
   Streets streets({Straight(60000)}, 20);
   for (std::uint32_t i = 0; i < 20; ++i) {
-    const Pace pace = testing::PaceOf(random.Between(1500, 2000), random.Between(8000, 12000), random.Between(1e5, 3e5));
+    const Pace pace =
+        testing::PaceOf(random.Between(1500, 2000), random.Between(8000, 12000), random.Between(1e5, 3e5));
     streets.Put(i, 0, 6000 - 200.0 * i, pace, 200);
     streets.Send(i, 0, 59000 - 200.0 * i);
   }
@@ -286,9 +287,11 @@ TEST(Traffic, NobodyComesTooNear) {  // PL-23, PL-24
       if (i % 5 == 0) nearest = std::min(nearest, streets.Nearest());
     }
     for (std::uint32_t k = 0; k < put; ++k) travelled += streets[k].origin;
-    std::printf("trial %d: %zu tracks %.0f mm, %u movers, arrived %d refused %d, travelled %.0f, missing %g nearest %g; "
-                "speed %g acc %g jerk %g lateral %g\n", trial, layouts.size(), length, put, arrived, refused, travelled,
-                missing, nearest, watcher.speed, watcher.acceleration, watcher.jerk, watcher.lateral);
+    std::printf(
+        "trial %d: %zu tracks %.0f mm, %u movers, arrived %d refused %d, travelled %.0f, missing %g nearest %g; "
+        "speed %g acc %g jerk %g lateral %g\n",
+        trial, layouts.size(), length, put, arrived, refused, travelled, missing, nearest, watcher.speed,
+        watcher.acceleration, watcher.jerk, watcher.lateral);
     EXPECT_LT(missing, 1e-3);
     EXPECT_GT(nearest, 0);
     EXPECT_LE(watcher.acceleration, 1 + 1e-6);
