@@ -76,20 +76,15 @@ Problem Stand(const Element& element, Standing& out) {
   return Problem::kNone;
 }
 
-constexpr double kStep = 1;         // mm, in which bends are looked at
-constexpr double kUneven = 1.2;     // within a bend curvature varies by this factor, which is 1.18 in speed
+constexpr double kStep = 1;         // mm, in which bends are looked at ...
+constexpr double kMostSteps = 16;   // ... or so many in a cell, which turns little
+constexpr double kUneven = 1.2;     // within a bend curvature varies by this factor, which is 1.1 in speed
 constexpr double kStraight = 1e-5;  // 1/mm: what bends less is straight
 
 std::vector<Bend> BendsOf(const Track& track) {
   std::vector<Bend> bends;
   double least = 0;
-  const auto steps = static_cast<std::size_t>(std::ceil(track.length / kStep));
-  for (std::size_t i = 0; i < steps; ++i) {
-    const double from = track.length * static_cast<double>(i) / static_cast<double>(steps);
-    const double to = track.length * static_cast<double>(i + 1) / static_cast<double>(steps);
-    double most = 0;
-    for (const double s : {from, 0.5 * (from + to), to}) most = std::max(most, std::abs(At(track, s).curvature));
-    if (most < kStraight) most = 0;
+  const auto add = [&](double from, double most) {
     const bool goes_on = !bends.empty() && std::max(bends.back().curvature, most) <= kUneven * std::min(least, most);
     if (goes_on) {
       bends.back().curvature = std::max(bends.back().curvature, most);
@@ -97,6 +92,19 @@ std::vector<Bend> BendsOf(const Track& track) {
     } else {
       bends.push_back({from, most});
       least = most;
+    }
+  };
+  for (const Cell& cell : track.cells) {
+    const bool straight = cell.curvature < kStraight;
+    const double steps = straight ? 1 : std::clamp(std::ceil((cell.to - cell.from) / kStep), 1.0, kMostSteps);
+    const double step = (cell.to - cell.from) / steps;
+    for (double i = 0; i < steps; ++i) {
+      const double from = cell.from + i * step;
+      double most = 0;
+      for (const double s : {from, from + 0.5 * step, from + step}) {
+        if (!straight) most = std::max(most, std::abs(At(track, s).curvature));
+      }
+      add(from, most < kStraight ? 0 : most);
     }
   }
   return bends;

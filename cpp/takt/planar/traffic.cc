@@ -19,7 +19,8 @@ constexpr double kReserve = 0.95;
 // s, in which a mover takes back what it is too fast, and cycles in which it can at the least.
 constexpr double kCalm = 0.1;
 constexpr double kQuick = 5;
-// Cycles in which a mover that had to brake against its wish speeds up no more than it did: it would soon have to again.
+// Cycles in which a mover that had to brake against its wish speeds up no more than it did: it would soon have to
+// again.
 constexpr std::uint32_t kCalmCycles = 20;
 // Shares of a change in what following asks for that count in one cycle.
 constexpr double kEaseUp = 0.15;
@@ -53,8 +54,8 @@ double SlopeOfWayToRest(double speed, const Brakes& b) {
 }
 
 // The acceleration with which a mover follows a limit. With so much room R left it may have the speed v(R) from which
-// it just gets to rest in it. Held at that speed its stop keeps its distance to the limit; so a chain of movers hands on
-// the stop of the first, and each settles on the speed of the one before it without swinging.
+// it just gets to rest in it. Held at that speed its stop keeps its distance to the limit; so a chain of movers hands
+// on the stop of the first, and each settles on the speed of the one before it without swinging.
 double Follow(const Limit& limit, double speed, double period_s) {
   const Brakes& brakes = limit.brakes;
   const double allowed = SpeedForWay(limit.room, brakes);
@@ -268,8 +269,7 @@ class Traffic::Step_ {
       double apart = now.leader_offset;
       const std::uint32_t leader = r.direction > 0 ? now.leader : FindLeader(i, 1, apart);
       if (leader != kNobody) {
-        const double required =
-            Required(GapTo(i, leader, 1), riders_[leader].at.position + apart - r.at.position);
+        const double required = Required(GapTo(i, leader, 1), riders_[leader].at.position + apart - r.at.position);
         if (!Holds(braking, t_.now_[leader].braking, apart, required)) return false;
       }
     }
@@ -277,15 +277,14 @@ class Traffic::Step_ {
       double apart = now.leader_offset;
       const std::uint32_t leader = r.direction < 0 ? now.leader : FindLeader(i, -1, apart);
       if (leader != kNobody) {
-        const double required =
-            Required(GapTo(i, leader, -1), r.at.position - riders_[leader].at.position - apart);
+        const double required = Required(GapTo(i, leader, -1), r.at.position - riders_[leader].at.position - apart);
         if (!Holds(t_.now_[leader].braking, braking, -apart, required)) return false;
       }
       for (std::uint32_t k = 0; k < riders_.size(); ++k) {
         const Now& other = t_.now_[k];
         if (!riders_[k].on || other.leader != i || riders_[k].direction < 0) continue;
-        const double required = Required(std::max(riders_[k].gap, r.gap),
-                                         r.at.position + other.leader_offset - riders_[k].at.position);
+        const double required =
+            Required(std::max(riders_[k].gap, r.gap), r.at.position + other.leader_offset - riders_[k].at.position);
         if (!Holds(other.braking, braking, other.leader_offset, required)) return false;
       }
     }
@@ -348,7 +347,13 @@ class Traffic::Step_ {
     const Rider& r = riders_[i];
     const Now& now = t_.now_[i];
     const int direction = r.direction;
+    // Where its own plan ends.
+    const bool plans = r.aim == Aim::kTarget && r.planned && r.plan_ends;
+    const double end = r.plan_from + direction * r.plan.end().position;
     const auto take = [&](const Limit& one) {
+      // Before one that stands it comes to rest anyhow.
+      const bool stands = one.by != kNobody && Rests(riders_[one.by].at) && Rests(t_.now_[one.by].next);
+      if (plans && stands && direction * (end - r.at.position) <= one.room + kTolerance) return;
       const double acceleration = Follow(one, speed, period());
       if (acceleration < least) {
         least = acceleration;
@@ -373,9 +378,9 @@ class Traffic::Step_ {
       one.room = direction * (stop - r.at.position) - gap;
       // By its speed and acceleration; its jerk moves the place to and fro, and with it all that follow.
       const double its_speed = direction * before.at.velocity;
-      one.rate = its_speed >= 0
-                     ? std::max(0.0, its_speed + SlopeOfWayToRest(its_speed, before.brakes) * direction * before.at.acceleration)
-                     : direction * (its.braking.rest - its.rest_before) / period();
+      one.rate = its_speed >= 0 ? std::max(0.0, its_speed + SlopeOfWayToRest(its_speed, before.brakes) * direction *
+                                                                before.at.acceleration)
+                                : direction * (its.braking.rest - its.rest_before) / period();
       one.brakes = Common(r.pace.brakes(), before.brakes);
       one.by = other;
       return one;
@@ -386,31 +391,32 @@ class Traffic::Step_ {
       as_fast(one);
     }
     const double reach = 2 * WayToRest(r.pace.limits.velocity, r.pace.brakes()) + r.gap;
-    AlongNodes(r, r.at.position + reach, [&](std::uint32_t node, double offset, double range_before, double range_behind) {
-      const double way = direction * (offset - r.at.position);
-      if (way > reach + std::max(range_before, range_behind)) return;
-      const bool active = PresenceOf(i, node) != nullptr;
-      const double zone = std::max(r.gap, direction > 0 ? range_before : range_behind);
-      if (!active && way < 0) return;  // it goes away from it
-      OthersAt(i, node, offset, [&](std::uint32_t other, double apart) {
-        const double gap = std::max(r.gap, riders_[other].gap);
-        const double distance = direction * (riders_[other].at.position + apart - r.at.position);
-        Limit one = behind(other, apart, gap);
-        if (distance < 0) {
-          // It comes behind; it must have room to stop there.
-          const double rest = direction * (r.at.position - t_.now_[other].rest_before - apart);
-          if (active || rest >= gap) return;
-          one.room = -kInfinite;
-        }
-        if (!active && way - zone - kBeforeNode > one.room) {
-          one.room = way - zone - kBeforeNode;
-          one.rate = 0;
-          one.brakes = Common(r.pace.brakes(), r.brakes);
-        }
-        take(one);
-        if (active && distance > 0) as_fast(one);
-      });
-    });
+    AlongNodes(r, r.at.position + reach,
+               [&](std::uint32_t node, double offset, double range_before, double range_behind) {
+                 const double way = direction * (offset - r.at.position);
+                 if (way > reach + std::max(range_before, range_behind)) return;
+                 const bool active = PresenceOf(i, node) != nullptr;
+                 const double zone = std::max(r.gap, direction > 0 ? range_before : range_behind);
+                 if (!active && way < 0) return;  // it goes away from it
+                 OthersAt(i, node, offset, [&](std::uint32_t other, double apart) {
+                   const double gap = std::max(r.gap, riders_[other].gap);
+                   const double distance = direction * (riders_[other].at.position + apart - r.at.position);
+                   Limit one = behind(other, apart, gap);
+                   if (distance < 0) {
+                     // It comes behind; it must have room to stop there.
+                     const double rest = direction * (r.at.position - t_.now_[other].rest_before - apart);
+                     if (active || rest >= gap) return;
+                     one.room = -kInfinite;
+                   }
+                   if (!active && way - zone - kBeforeNode > one.room) {
+                     one.room = way - zone - kBeforeNode;
+                     one.rate = 0;
+                     one.brakes = Common(r.pace.brakes(), r.brakes);
+                   }
+                   take(one);
+                   if (active && distance > 0) as_fast(one);
+                 });
+               });
   }
 
   // It goes just as the one before it, or falls behind: the gap needs no more than the invariant.
@@ -485,7 +491,10 @@ class Traffic::Step_ {
     // Slower than it wishes, as fast as it may behind the other.
     const double change = r.pace.limits.jerk * period();
     double next = std::clamp(std::min(most, wished), before - change, before + change);
-    next = std::clamp(next, -r.brakes.deceleration, r.pace.limits.acceleration);
+    // What is braked with must be gone when it stands, or it would run back.
+    const double gone = std::sqrt(1.8 * r.pace.limits.jerk * std::max(0.0, speed));
+    next = std::clamp(next, -std::min(gone, r.brakes.deceleration), r.pace.limits.acceleration);
+    next = std::clamp(next, before - change, before + change);
     const double jerk = (next - before) / period();
     const trajectory::Piece piece{r.at.position, r.at.velocity, r.at.acceleration, direction * jerk};
     const KinematicState step = piece.At(period());
