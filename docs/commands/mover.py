@@ -1,7 +1,8 @@
 """Planar movers.
 
 A mover floats over stators and moves in six coordinates ([what it does](../../docs/movers.md)). Here it goes to a place
-and, in the middle of that, to another one, turns where it stands, and follows set points from outside.
+and, in the middle of that, to another one, turns where it stands, follows set points from outside, and goes along a
+track.
 """
 
 import takt
@@ -18,11 +19,15 @@ COMMANDS = (
     "mover.move_a",
     "mover.move_b",
     "mover.move_c",
+    "mover.join_track",
+    "mover.leave_track",
+    "mover.move_on_track",
+    "mover.adopt_track_orientation",
     "mover.start_external_setpoint_generation",
     "mover.set_external_setpoint",
     "mover.stop_external_setpoint_generation",
 )
-ERRORS = (5, 8, 3004, 3005, 3007, 3040, 3041, 3042, 3043, 3044, 3045)
+ERRORS = (5, 8, 3004, 3005, 3007, 3024, 3040, 3041, 3042, 3043, 3044, 3045, 3046, 3047)
 SIGNALS = ("shuttle.x", "shuttle.y", "shuttle.velocity_x", "shuttle.velocity_y", "shuttle.c", "shuttle.command_mode")
 
 
@@ -51,6 +56,13 @@ def scenario(session: takt.Session) -> None:
     session.run(0.2)
     shuttle.halt().wait()
     session.run(0.1)
+    session.mark("along a track")
+    session.track("line").enable().wait()
+    shuttle.join_track(track="line").wait()
+    shuttle.move_on_track(position=500).wait()
+    shuttle.move_c(position=180).wait()
+    shuttle.adopt_track_orientation().wait()
+    shuttle.leave_track(x=60, y=60, use_orientation=False).wait()
     shuttle.disable().wait()
 
 
@@ -59,7 +71,9 @@ def verify(recording: takt.Recording) -> None:
     expect.visits_states(
         recording,
         "shuttle",
-        ["FreeMovement", "CRotationFreeMovement", "FreeMovement", "ExternalSetpointGeneration", "FreeMovement"],
+        ["FreeMovement", "CRotationFreeMovement", "FreeMovement", "ExternalSetpointGeneration", "FreeMovement"]
+        + ["JoiningTrack", "OnTrack", "CRotationOnTrack", "OnTrack", "CRotationOnTrack", "OnTrack", "LeavingTrack"]
+        + ["FreeMovement"],
         field="command_mode",
     )
     expect.stays(recording, "shuttle.error == 0")

@@ -76,6 +76,8 @@ enum class ErrorId : std::uint16_t {
   kNoSetPoint = 3043,         // a set point from outside is missing
   kWildSetPoint = 3044,       // a mover cannot follow a set point from outside
   kMoverDeviation = 3045,     // the mover is too far from where it is to be
+  kTrackMode = 3046,          // the track is not enabled, or movers on it do what does not go with this
+  kNoRoute = 3047,            // no way along tracks leads there
   kTrackGeometry = 3050,      // a track cannot be so; the value of the feedback says why
   kGroupDeviation = 8001,
   kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual

@@ -169,6 +169,10 @@ const std::vector<Entry>& Entries() {
       Make<mover::Command, mover::MoveA>(kMover, "move_a"),
       Make<mover::Command, mover::MoveB>(kMover, "move_b"),
       Make<mover::Command, mover::MoveC>(kMover, "move_c"),
+      Make<mover::Command, mover::JoinTrack>(kMover, "join_track"),
+      Make<mover::Command, mover::LeaveTrack>(kMover, "leave_track"),
+      Make<mover::Command, mover::MoveOnTrack>(kMover, "move_on_track"),
+      Make<mover::Command, mover::AdoptTrackOrientation>(kMover, "adopt_track_orientation"),
       Make<mover::Command, mover::StartExternalSetpointGeneration>(kMover, "start_external_setpoint_generation"),
       Make<mover::Command, mover::SetExternalSetpoint>(kMover, "set_external_setpoint"),
       Make<mover::Command, mover::StopExternalSetpointGeneration>(kMover, "stop_external_setpoint_generation"),
@@ -296,6 +300,15 @@ std::string WhyNot(const Machine& machine, const track::Command& command, std::s
   return {};
 }
 
+std::string WhyNot(const Machine& machine, const mover::Command& command) {
+  const auto check = [&](const Name& track) {
+    return WhyNotNamed("track", track, NamesOf(machine.tracks), "a track of the machine");
+  };
+  if (const auto* join = std::get_if<mover::JoinTrack>(&command)) return check(join->track);
+  const auto* move = std::get_if<mover::MoveOnTrack>(&command);
+  return move && !move->track.empty() ? check(move->track) : std::string();
+}
+
 // Why this component cannot do it, as far as its description tells; empty: it can.
 std::string WhyNot(const Machine& machine, const Command& command) {
   if (const auto* body = std::get_if<axis::Command>(&command.body)) {
@@ -307,6 +320,7 @@ std::string WhyNot(const Machine& machine, const Command& command) {
   if (const auto* body = std::get_if<group::Command>(&command.body)) {
     return WhyNot(machine, *body, NameOf(machine, command.target));
   }
+  if (const auto* body = std::get_if<mover::Command>(&command.body)) return WhyNot(machine, *body);
   if (const auto* body = std::get_if<track::Command>(&command.body)) {
     return WhyNot(machine, *body, NameOf(machine, command.target));
   }

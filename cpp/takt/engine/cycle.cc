@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <type_traits>
 #include <utility>
 
@@ -63,7 +64,44 @@ pickplace::Context ContextOf(World& w, const PickPlace& module) {
 }
 
 mover::Context MoverContext(World& w, std::size_t i) {
-  return {w.movers[i], w.cycle, w.planner, w.feedback};
+  return {w.movers[i], w.cycle, w.planner, w.feedback, w.streets, static_cast<std::uint32_t>(i)};
+}
+
+// The tracks as movers see them.
+void RefreshStreets(World& w) {
+  for (std::size_t i = 0; i < w.tracks_now.size(); ++i) {
+    const track::TrackParams& params = w.tracks.params[i];
+    w.tracks_now[i] = {w.tracks.ways[i],
+                       w.tracks.states[i].length,
+                       w.tracks.states[i].state == planar::ObjectState::kEnabled,
+                       w.tracks.start_nodes[i],
+                       w.tracks.end_nodes[i],
+                       std::hypot(params.mover_width, params.mover_height),
+                       params.collision_range_mode == track::CollisionRangeMode::kManual,
+                       params.collision_range_at_start,
+                       params.collision_range_at_end};
+  }
+  mover::Refresh(w.tracks_now, w.streets);
+}
+
+// What movers do on each track, for the commands of the next cycle, and the modes of tracks.
+void UseTracks(World& w) {
+  std::ranges::fill(w.streets.uses, mover::TrackUse{});
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    const mover::State& s = w.mover_states[i];
+    const planar::Rider& rider = w.streets.riders[i];
+    if (!rider.on) continue;
+    ++w.streets.uses[rider.route.first()].movers;
+    if (s.mode == mover::CommandMode::kJoiningTrack || s.mode == mover::CommandMode::kLeavingTrack) {
+      ++w.streets.uses[s.track].configuring;
+    } else if ((rider.aim != planar::Aim::kRest && !rider.there) || rider.at.velocity != 0) {
+      for (const std::uint32_t track : rider.route.all()) ++w.streets.uses[track].moving;
+    }
+  }
+  for (std::size_t i = 0; i < w.streets.uses.size(); ++i) {
+    const mover::TrackUse& use = w.streets.uses[i];
+    track::Use(use.movers, use.moving > 0, use.configuring > 0, i, w.tracks);
+  }
 }
 
 void FailMovers(World& w, ErrorId error) {
@@ -203,6 +241,12 @@ template <typename T>
 std::uint32_t IndexNamed(const std::vector<T>& list, const std::string& name) {
   return static_cast<std::uint32_t>(std::ranges::find(list, name, &T::name) - list.begin());
 }
+template <typename T>
+std::vector<std::string> NamesOf(const std::vector<T>& list) {
+  std::vector<std::string> names;
+  for (const T& one : list) names.push_back(one.name);
+  return names;
+}
 std::uint32_t CamNamed(const Machine& machine, const std::string& name) {
   return IndexNamed(machine.cams, name);
 }
@@ -226,6 +270,8 @@ World::World(const Machine& machine)
       axis_outputs(machine.axes.size()),
       axis_order(machine.axes.size()),
       questions(kQuestionsPerGroup * machine.groups.size()),
+      streets(machine.movers.size(), NamesOf(machine.tracks)),
+      tracks_now(machine.tracks.size()),
       tracks(machine.tracks),
       servo_inputs(machine.axes.size()),
       servo_outputs(machine.axes.size()),
@@ -356,6 +402,7 @@ void World::MakePickPlaces(const Machine& machine) {
 void World::MakeMovers(const Machine& machine) {
   TypeOf<mover::State>();
   TypeOf<mover::Inputs>();
+  TypeOf<planar::Rider>();
   TouchTypes(static_cast<const mover::Command*>(nullptr));
   movers = machine.movers;
   for (const mover::MoverParams& params : movers) {
@@ -376,6 +423,9 @@ std::uint64_t World::StateHash() const noexcept {
   for (const pickplace::State& state : pick_place_states) hash = HashOf(state, hash);
   for (const mover::State& state : mover_states) hash = HashOf(state, hash);
   for (const mover::Inputs& inputs : mover_inputs) hash = HashOf(inputs, hash);
+  if (!streets.names.empty()) {
+    for (const planar::Rider& rider : streets.riders) hash = HashOf(rider, hash);
+  }
   for (const track::State& state : tracks.states) hash = HashOf(state, hash);
   if (!tracks.states.empty()) hash = HashOf(tracks.works, hash);
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
@@ -495,9 +545,12 @@ void Move(World& w) noexcept {
     StepBelts(w, w.belts_after[i]);
   }
   for (std::size_t i = 0; i < w.groups.size(); ++i) StepOnce(w, i);  // without members
+  RefreshStreets(w);
+  if (!w.streets.names.empty()) w.streets.traffic.Step(w.cycle, w.planner, w.streets.network, w.streets.riders);
   for (std::size_t i = 0; i < w.movers.size(); ++i) {
     mover::Step(MoverContext(w, i), w.mover_inputs[i], w.mover_states[i]);
   }
+  UseTracks(w);
 }
 
 void Control(World& w) noexcept {

@@ -126,6 +126,8 @@ struct World {
   std::vector<mover::Inputs> mover_inputs;
   std::vector<mover::State> mover_states;
   std::vector<mover::Outputs> mover_outputs;
+  mover::Streets streets;
+  std::vector<mover::TrackNow> tracks_now;  // of this cycle
 
   track::Tracks tracks;
 

@@ -429,6 +429,12 @@ msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine:
   m.busy_b = o.busy_b;
   m.busy_c = o.busy_c;
   m.external = static_cast<std::int8_t>(o.external);
+  m.track = o.track;
+  m.track_position = o.track_position;
+  m.track_velocity = o.track_velocity;
+  m.track_acceleration = o.track_acceleration;
+  m.waits_for = o.waits_for;
+  m.deadlocked = o.deadlocked;
   m.commands = Signed(o.commands);
   return m;
 }

@@ -117,6 +117,58 @@ void describe(Description<MoveC>& d) {
   });
 }
 
+void describe(Description<JoinTrack>& d) {
+  using J = JoinTrack;
+  d.about("Moves X and Y straight to the nearest place of a track, and is on it then. The mover must be at rest.");
+  d.required<&J::track>("Name of the track; it is enabled, and no mover moves along it.");
+  d.defaulted<&J::use_orientation>("True: C turns to that of the track, 0, meanwhile. False: it stays.");
+  DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+}
+void describe(Description<LeaveTrack>& d) {
+  using L = LeaveTrack;
+  d.about("Leaves the track and moves X and Y straight to a place. The mover must be at rest.");
+  d.required<&L::x>(unit::mm, kPlaces, "X of the target.");
+  d.required<&L::y>(unit::mm, kPlaces, "Y of it.");
+  d.defaulted<&L::c>(unit::deg, kAngles, "C of it; counts with use_orientation.");
+  d.defaulted<&L::use_orientation>("True: C moves along. False: it stays.");
+  DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+}
+void describe(Description<MoveOnTrack>& d) {
+  using M = MoveOnTrack;
+  d.about(
+      "Moves along the track, or over a network of tracks on the shortest way, and keeps its gap to the mover ahead. "
+      "From one track to the next it goes only forwards. It waits where others are in its way, and goes on by itself.");
+  d.required<&M::position>(unit::mm, kPlaces, "Where to stop, along the track.");
+  d.defaulted<&M::track>("Name of the track on which the target lies; unset: that where the mover is.");
+  d.defaulted<&M::gap>(unit::mm, between(0, 1e5),
+                       "From its centre to that of the mover ahead, along the track, from now on; unset: the mover's.");
+  d.defaulted<&M::direction>(
+      "non_modulo: on a closed loop turns count, elsewhere forwards, or back on its own track; positive and negative: "
+      "only that way; shortest_way: on a closed loop.");
+  d.defaulted<&M::additional_turns>(between(0, 1000), "Of a closed loop; positive and negative only.");
+  d.defaulted<&M::modulo_tolerance>(unit::mm, between(0, 1e5),
+                                    "Of a closed loop: to a target as near as that it goes the shortest way.");
+  DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+  d.rule<&M::additional_turns>("must be 0 unless the direction is positive or negative", [](const M& m) {
+    return m.additional_turns == 0 || m.direction == TurnDirection::kPositive ||
+           m.direction == TurnDirection::kNegative;
+  });
+  d.rule<&M::modulo_tolerance>("must be 0 where the direction is non_modulo", [](const M& m) {
+    return m.modulo_tolerance == 0 || m.direction != TurnDirection::kNonModulo;
+  });
+}
+void describe(Description<AdoptTrackOrientation>& d) {
+  using A = AdoptTrackOrientation;
+  d.about("Turns the mover as its track is turned, which is C = 0 but for whole turns.");
+  d.defaulted<&A::direction>("Which way, by the mover's c_modulus.");
+  d.defaulted<&A::additional_turns>(between(0, 1000), "So many turns more; positive and negative only.");
+  DescribeDynamics(d, unit::deg_s, unit::deg_s2, unit::deg_s3);
+  d.rule<&A::additional_turns>("must be 0 unless the direction is positive or negative", [](const A& a) {
+    return a.additional_turns == 0 || a.direction == TurnDirection::kPositive ||
+           a.direction == TurnDirection::kNegative;
+  });
+}
+
 void describe(Description<StartExternalSetpointGeneration>& d) {
   using S = StartExternalSetpointGeneration;
   d.about(

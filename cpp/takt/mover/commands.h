@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "takt/core/describe_fwd.h"
+#include "takt/core/name.h"
 
 namespace takt::mover {
 
@@ -78,6 +79,44 @@ struct MoveC {
   std::optional<double> jerk{};          // deg/s³
 };
 
+struct JoinTrack {
+  Name track{};
+  bool use_orientation = true;           // C goes to that of the track, which is 0
+  std::optional<double> velocity{};      // mm/s
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+};
+struct LeaveTrack {
+  double x = 0, y = 0;                   // mm
+  double c = 0;                          // deg; counts with use_orientation
+  bool use_orientation = true;           // else C stays
+  std::optional<double> velocity{};      // mm/s
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+};
+struct MoveOnTrack {
+  double position = 0;          // mm along the track
+  Name track{};                 // empty: that where the mover is
+  std::optional<double> gap{};  // mm to the mover ahead, from centre to centre
+  TurnDirection direction = TurnDirection::kNonModulo;
+  std::uint32_t additional_turns = 0;    // of a closed loop; positive, negative
+  double modulo_tolerance = 0;           // mm, of a closed loop
+  std::optional<double> velocity{};      // mm/s
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+};
+struct AdoptTrackOrientation {  // C turns to that of the track, which is 0
+  TurnDirection direction = TurnDirection::kShortestWay;
+  std::uint32_t additional_turns = 0;    // positive, negative
+  std::optional<double> velocity{};      // deg/s
+  std::optional<double> acceleration{};  // deg/s²
+  std::optional<double> deceleration{};  // deg/s²
+  std::optional<double> jerk{};          // deg/s³
+};
+
 struct StartExternalSetpointGeneration {
   SetpointMode mode = SetpointMode::kAbsolute;
 };
@@ -92,7 +131,8 @@ struct SetExternalSetpoint {                                          // for the
 struct StopExternalSetpointGeneration {};
 
 using Command = std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC,
-                             StartExternalSetpointGeneration, SetExternalSetpoint, StopExternalSetpointGeneration>;
+                             JoinTrack, LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration,
+                             SetExternalSetpoint, StopExternalSetpointGeneration>;
 
 // Table of the arguments of the command at this place of the variant.
 const Type& TypeOfCommand(std::size_t index);
@@ -109,6 +149,10 @@ void describe(Description<MoveZ>&);
 void describe(Description<MoveA>&);
 void describe(Description<MoveB>&);
 void describe(Description<MoveC>&);
+void describe(Description<JoinTrack>&);
+void describe(Description<LeaveTrack>&);
+void describe(Description<MoveOnTrack>&);
+void describe(Description<AdoptTrackOrientation>&);
 void describe(Description<StartExternalSetpointGeneration>&);
 void describe(Description<SetExternalSetpoint>&);
 void describe(Description<StopExternalSetpointGeneration>&);

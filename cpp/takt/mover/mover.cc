@@ -29,6 +29,14 @@ void GoOn(const Context& c, State& s) {
 
 // Where X and Y are at the end of this cycle as planned. On a track they are where that says: here is its place.
 PlaneState PlaneOf(const Context& c, const State& s) {
+  if (IsOnTrack(s)) {
+    const KinematicState& way = c.rider().at;
+    const planar::TrackPoint at = planar::At(*c.streets.network[s.track].track, way.position);
+    const double cosine = std::cos(at.direction), sine = std::sin(at.direction);
+    const double across = way.velocity * way.velocity * at.curvature;
+    return {{at.place.x, way.velocity * cosine, way.acceleration * cosine - across * sine},
+            {at.place.y, way.velocity * sine, way.acceleration * sine + across * cosine}};
+  }
   return At(s.plane.motion, Elapsed(c, s.plane.begin) + c.cycle.period_s);
 }
 
@@ -74,15 +82,27 @@ CommandMode Settled(const Context& c, const State& s) {
   }
 }
 
+// A move onto or from a track is over.
+void EndOfWay(const Context& c, State& s) {
+  if (s.mode == CommandMode::kJoiningTrack) s.mode = CommandMode::kOnTrack;
+  if (s.mode == CommandMode::kLeavingTrack) {
+    LeaveStreets(c, s);
+    s.mode = CommandMode::kFreeMovement;
+  }
+}
+
 // Commands that have what they wanted. The next cycle begins where this one ends.
 void Finish(const Context& now, State& s) {
-  const Context c{now.params, {now.cycle.count + 1, now.cycle.period_s}, now.planner, now.feedback};
+  const Context c{now.params, {now.cycle.count + 1, now.cycle.period_s}, now.planner, now.feedback, now.streets,
+                  now.index};
   const auto done = [&](Slot slot) { End(now, slot, FeedbackState::kDone, ErrorId::kNone, s); };
   const bool turned = IsOver(c, s.others.back());
   if (s.external.mode != SetpointMode::kAbsolute) {
-    if (IsOver(c, s.plane) && (!s.plane.turns || turned)) {
+    const bool there = IsOnTrack(s) ? c.rider().there : IsOver(c, s.plane);
+    if (there && (!s.plane.turns || turned)) {
       done(kPlane);
       s.plane.turns = false;
+      EndOfWay(c, s);
     }
     for (std::size_t i = 0; i < kOthers.size(); ++i) {
       if (IsOver(c, s.others[i])) done(static_cast<Slot>(kMoveZ + i));
@@ -139,6 +159,7 @@ Inputs Simulate(const State& s) noexcept {
 }
 
 void Step(const Context& c, const Inputs& inputs, State& s) noexcept {
+  if (IsOnTrack(s)) s.track = c.rider().route.first();
   Watch(c, inputs, s);
   MoveOn(c, s);
   Finish(c, s);
@@ -155,7 +176,7 @@ bool IsOff(const State& s) noexcept {
 }
 
 void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& out) noexcept {
-  const Context next{c.params, {c.cycle.count + 1, c.cycle.period_s}, c.planner, c.feedback};
+  const Context next{c.params, {c.cycle.count + 1, c.cycle.period_s}, c.planner, c.feedback, c.streets, c.index};
   const SetPoint& at = s.set_point;
   out = {};
   out.state = s.state;
@@ -179,13 +200,22 @@ void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& ou
   out.actual_b = inputs.actual.b;
   out.actual_c = inputs.actual.c;
   if (s.external.mode != SetpointMode::kAbsolute) {
-    out.busy_xyc = !IsOver(next, s.plane) || s.plane.turns;
+    out.busy_xyc = !IsPlaneResting(next, s) || s.plane.turns;
     out.busy_z = !IsOver(next, s.others[0]);
     out.busy_a = !IsOver(next, s.others[1]);
     out.busy_b = !IsOver(next, s.others[2]);
     out.busy_c = !IsOver(next, s.others[3]);
   }
   out.external = s.external.mode;
+  const planar::Rider& rider = c.rider();
+  out.track = s.track == planar::kNoTrack ? 0 : s.track + 1;
+  if (IsOnTrack(s)) {
+    out.track_position = rider.at.position;
+    out.track_velocity = rider.at.velocity;
+    out.track_acceleration = rider.at.acceleration;
+    out.waits_for = rider.waits == planar::Waits::kMover ? rider.waits_for + 1 : 0;
+    out.deadlocked = out.waits_for != 0 && planar::IsDeadlocked(c.streets.riders, c.index);
+  }
   out.commands = s.history.count;
 }
 

@@ -8,6 +8,7 @@
 #include "takt/mover/outputs.h"
 #include "takt/mover/params.h"
 #include "takt/mover/state.h"
+#include "takt/mover/streets.h"
 #include "takt/trajectory/planner.h"
 
 namespace takt::mover {
@@ -18,6 +19,10 @@ struct Context {
   Cycle cycle;
   trajectory::Planner& planner;
   FeedbackSink& feedback;
+  Streets& streets;
+  std::uint32_t index = 0;  // of the mover
+
+  planar::Rider& rider() const noexcept { return streets.riders[index]; }
 };
 
 // What is measured, at the beginning of a cycle.

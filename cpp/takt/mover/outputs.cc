@@ -42,6 +42,12 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::busy_b>("B moves.");
   d.internal<&O::busy_c>("C moves.");
   d.internal<&O::external>("How set points from outside move it.");
+  d.internal<&O::track>("Number of the track that it joins, is on, or leaves, from 1; 0: none.");
+  d.internal<&O::track_position>(unit::mm, "Along the track that it is on.");
+  d.internal<&O::track_velocity>(unit::mm_s, "Along it.");
+  d.internal<&O::track_acceleration>(unit::mm_s2, "Along it.");
+  d.internal<&O::waits_for>("Number of the mover that is in its way and that it waits for, from 1; 0: none.");
+  d.internal<&O::deadlocked>("The mover that it waits for waits for it, be it over others.");
   d.internal<&O::commands>("So many commands have come, external set points apart.");
 }
 

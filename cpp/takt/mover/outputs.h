@@ -29,7 +29,13 @@ struct Outputs {
   bool busy_xyc = false;                            // a move of X and Y, and of what turns with them
   bool busy_z = false, busy_a = false, busy_b = false, busy_c = false;
   SetpointMode external = SetpointMode::kNone;
-  std::uint64_t commands = 0;  // so many have come
+  std::uint32_t track = 0;        // number of the track that it joins, is on, or leaves, from 1; 0: none
+  double track_position = 0;      // mm along it, where it is on it
+  double track_velocity = 0;      // mm/s
+  double track_acceleration = 0;  // mm/s²
+  std::uint32_t waits_for = 0;    // number of the mover that is in its way, from 1; 0: none
+  bool deadlocked = false;        // that one waits for it, over others or not
+  std::uint64_t commands = 0;     // so many have come
 };
 
 void describe(Description<Outputs>&);

@@ -37,9 +37,21 @@ void Enter(const Context& c, planar::ObjectState state, State& s) noexcept {
   s.since = c.cycle.count;
 }
 
+bool IsPlaneResting(const Context& c, const State& s) noexcept {
+  const auto rests = [](const KinematicState& k) { return k.velocity == 0 && k.acceleration == 0; };
+  const planar::Rider& rider = c.rider();
+  const bool goes = IsOnTrack(s) && rider.aim != planar::Aim::kRest && !rider.there;
+  return !goes && IsOver(c, s.plane) && rests(s.set_point[kX]) && rests(s.set_point[kY]);
+}
+
+void LeaveStreets(const Context& c, State& s) noexcept {
+  c.rider() = {};
+  s.track = planar::kNoTrack;
+}
+
 bool IsResting(const Context& c, const State& s) noexcept {
   const auto over = [&](const CoordinateMove& move) { return IsOver(c, move); };
-  return s.external.mode == SetpointMode::kNone && IsOver(c, s.plane) && std::ranges::all_of(s.others, over) &&
+  return s.external.mode == SetpointMode::kNone && IsPlaneResting(c, s) && std::ranges::all_of(s.others, over) &&
          AtRest(s);
 }
 
@@ -60,7 +72,15 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
                            : PlanRest(c.planner, {at[kX], at[kY]}, limits, rest);
     return found && SpeedBound(rest) <= maximum.velocity * (1 + 1e-9);
   };
-  if (plane == nullptr || !plan(*plane)) plan(maximum);
+  if (IsOnTrack(s)) {
+    c.rider().aim = planar::Aim::kRest;  // with its greatest dynamics, as all others reckon
+  } else {
+    if (plane == nullptr || !plan(*plane)) plan(maximum);
+    if (s.mode == CommandMode::kJoiningTrack || s.mode == CommandMode::kLeavingTrack) {
+      LeaveStreets(c, s);
+      s.mode = CommandMode::kFreeMovement;
+    }
+  }
   s.plane = {};
   s.plane.motion = rest;
   s.plane.begin = c.cycle.count;

@@ -29,6 +29,15 @@ inline bool IsOver(const Context& c, const CoordinateMove& move) noexcept {
 inline bool IsOver(const Context& c, const PlaneMove& move) noexcept {
   return !move.waits && Elapsed(c, move.begin) >= DurationOf(move.motion);
 }
+// X and Y are where a track says.
+inline bool IsOnTrack(const State& s) noexcept {
+  return s.mode == CommandMode::kOnTrack || s.mode == CommandMode::kCRotationOnTrack;
+}
+// X and Y do not move when this cycle begins, and are not going to.
+bool IsPlaneResting(const Context& c, const State& s) noexcept;
+// The mover is on no track any more.
+void LeaveStreets(const Context& c, State& s) noexcept;
+
 // Nothing moves or is about to when this cycle begins.
 bool IsResting(const Context& c, const State& s) noexcept;
 

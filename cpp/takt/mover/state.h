@@ -14,6 +14,7 @@
 #include "takt/mover/history.h"
 #include "takt/mover/params.h"
 #include "takt/mover/plane.h"
+#include "takt/planar/network.h"
 #include "takt/planar/object_state.h"
 #include "takt/trajectory/profile.h"
 
@@ -60,6 +61,8 @@ struct State {
   LimitedBy limited_by = LimitedBy::kNothing;  // what of the dynamics of the last command was reduced
   std::array<Ticket, kSlots> tickets{};
   PlaneMove plane;
+  std::uint32_t track = planar::kNoTrack;             // that it joins, is on, or leaves
+  double joins_at = 0;                                // mm along it
   std::array<CoordinateMove, kOthers.size()> others;  // in the order of kOthers
   External external;
   SetPoint set_point{};  // at the end of the last cycle

@@ -347,7 +347,13 @@ class Traffic::Step_ {
     const Rider& r = riders_[i];
     const Now& now = t_.now_[i];
     const int direction = r.direction;
+    // Where its own plan ends.
+    const bool plans = r.aim == Aim::kTarget && r.planned && r.plan_ends;
+    const double end = r.plan_from + direction * r.plan.end().position;
     const auto take = [&](const Limit& one) {
+      // Before one that stands it comes to rest anyhow.
+      const bool stands = one.by != kNobody && Rests(riders_[one.by].at) && Rests(t_.now_[one.by].next);
+      if (plans && stands && direction * (end - r.at.position) <= one.room + kTolerance) return;
       const double acceleration = Follow(one, speed, period());
       if (acceleration < least) {
         least = acceleration;

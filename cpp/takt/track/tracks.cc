@@ -94,6 +94,7 @@ struct Applier {
 
   void ToWorks(Order order) const {
     if (s.state != ObjectState::kDisabled) return Refuse(planar::Problem::kNotDisabled);
+    if (c.tracks.mover_counts[track] > 0) return Refuse(ErrorId::kTrackMode);
     order.ticket = ticket;
     order.track = track;
     if (!Put(order, c.tracks.works)) Refuse(planar::Problem::kBusy);
@@ -170,6 +171,7 @@ Tracks::Tracks(const std::vector<TrackParams>& all)
       end_nodes(all.size()),
       starts_at(2 * all.size()),
       ends_at(2 * all.size()),
+      mover_counts(all.size()),
       desk(all.size()) {
   BuildResult built = Build(all);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -221,6 +223,13 @@ void Fail(const Context& c, std::size_t track, ErrorId error, ErrorReaction reac
   Enter(c, ObjectState::kErrorPending, s);
 }
 
+void Use(std::uint32_t movers, bool moves, bool configures, std::size_t track, Tracks& tracks) noexcept {
+  tracks.mover_counts[track] = movers;
+  State& s = tracks.states[track];
+  if (s.state != ObjectState::kEnabled) return;
+  s.mode = moves ? OperationMode::kMoving : configures ? OperationMode::kConfiguring : OperationMode::kStanding;
+}
+
 void Step(const Context& c) noexcept {
   StepWorks(c);
   for (std::uint32_t i = 0; i < c.tracks.states.size(); ++i) StepOne(c, i, c.tracks.states[i]);
@@ -237,7 +246,7 @@ void Publish(const Context& c) noexcept {
     out.length = s.length;
     out.closed_loop = t.sketches[i].closed;
     out.element_count = t.sketches[i].count;
-    out.mover_count = 0;
+    out.mover_count = t.mover_counts[i];
     out.previous_tracks = t.ends_at[t.start_nodes[i]];
     out.subsequent_tracks = t.starts_at[t.end_nodes[i]];
   }

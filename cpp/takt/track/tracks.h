@@ -41,7 +41,8 @@ struct Tracks {
   std::vector<std::uint32_t> end_nodes;
   std::vector<std::uint32_t> starts_at;  // by node: so many tracks
   std::vector<std::uint32_t> ends_at;
-  std::uint64_t changes = 0;  // of ways and links, counted
+  std::uint64_t changes = 0;                // of ways and links, counted
+  std::vector<std::uint32_t> mover_counts;  // movers on each
 
   Desk desk;
   bool sent = false;  // the question has found room in the queue
@@ -63,6 +64,9 @@ void Apply(const Context& c, std::size_t track, Ticket ticket, const Command& co
 
 // A fault of a track: of whatever happens on it.
 void Fail(const Context& c, std::size_t track, ErrorId error, ErrorReaction reaction) noexcept;
+
+// What movers do on a track.
+void Use(std::uint32_t movers, bool moves, bool configures, std::size_t track, Tracks& tracks) noexcept;
 
 // move: before the movers.
 void Step(const Context& c) noexcept;

@@ -26,6 +26,8 @@ movers:
     initial: {x: 60, y: 60}
     xy: {maximum: {velocity: 1000, acceleration: 8000, jerk: 200000}}
   - {name: two, initial: {x: 300, y: 60, c: 90}, z: {maximum: {velocity: 50, acceleration: 500, jerk: 9000}, lower: 0, upper: 3}}
+tracks:
+  - {name: way, elements: [{from: {x: 0, y: 400}, to: {x: 900, y: 400}}]}
 )";
 
 Machine PlaneMachine() {
@@ -52,6 +54,10 @@ std::vector<mover::Command> GoodCommands() {
           mover::MoveA{},
           mover::MoveB{},
           mover::MoveC{},
+          mover::JoinTrack{.track = Name::Of("way")},
+          mover::LeaveTrack{},
+          mover::MoveOnTrack{.track = Name::Of("way")},
+          mover::AdoptTrackOrientation{},
           mover::StartExternalSetpointGeneration{},
           mover::SetExternalSetpoint{},
           mover::StopExternalSetpointGeneration{}};

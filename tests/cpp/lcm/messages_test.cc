@@ -417,6 +417,12 @@ TEST(Messages, MoverStateKeepsEveryNumber) {
           FIELD(mover_state, busy_b),
           FIELD(mover_state, busy_c),
           FIELD(mover_state, external),
+          FIELD(mover_state, track),
+          FIELD(mover_state, track_position),
+          FIELD(mover_state, track_velocity),
+          FIELD(mover_state, track_acceleration),
+          FIELD(mover_state, waits_for),
+          FIELD(mover_state, deadlocked),
           FIELD(mover_state, commands),
       },
       machine, "shuttle");

@@ -23,7 +23,7 @@ class Rig {
     Publish(context(), inputs, state, out);
   }
 
-  Context context() { return {params, cycle, planner, feedback}; }
+  Context context() { return {params, cycle, planner, feedback, streets}; }
 
   // Given in the cycle that comes.
   Ticket Give(const Command& command) {
@@ -60,6 +60,7 @@ class Rig {
   const FeedbackEvent& Of(Ticket of) { return answers[of]; }
 
   MoverParams params;
+  Streets streets{1, {}};
   Cycle cycle;
   trajectory::Planner planner;
   std::vector<FeedbackEvent> storage = std::vector<FeedbackEvent>(64);

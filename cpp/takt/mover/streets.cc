@@ -1,0 +1,71 @@
+#include "takt/mover/streets.h"
+
+#include <algorithm>
+
+namespace takt::mover {
+
+namespace {
+
+bool SameShape(const TrackNow& a, const TrackNow& b) {
+  return a.way == b.way && a.length == b.length && a.start_node == b.start_node && a.end_node == b.end_node;
+}
+
+void LinkAll(std::span<const TrackNow> tracks, planar::Network& network) {
+  for (std::uint32_t i = 0; i < tracks.size(); ++i) {
+    planar::Road& road = network.roads[i];
+    road.track = tracks[i].way;
+    road.length = road.track ? road.track->length : 0;
+    road.closed = road.track && road.track->closed;
+    road.before = road.behind = {};
+  }
+  for (std::uint32_t i = 0; i < tracks.size(); ++i) {
+    for (std::uint32_t k = 0; k < tracks.size(); ++k) {
+      const bool both = tracks[i].way && tracks[k].way && !tracks[i].way->closed && !tracks[k].way->closed;
+      if (both && tracks[i].end_node == tracks[k].start_node) planar::Link(i, k, network);
+    }
+  }
+  planar::NameNodes(network);
+}
+
+}  // namespace
+
+Streets::Streets(std::size_t movers, std::vector<std::string> of_tracks)
+    : names(std::move(of_tracks)),
+      search(names.size()),
+      traffic({static_cast<std::uint32_t>(movers), static_cast<std::uint32_t>(names.size())}),
+      riders(movers),
+      uses(names.size()),
+      tracks(names.size()) {
+  network.roads.resize(names.size());
+}
+
+std::uint32_t Streets::Find(std::string_view track) const noexcept {
+  const auto found = std::ranges::find(names, track);
+  return found == names.end() ? planar::kNoTrack : static_cast<std::uint32_t>(found - names.begin());
+}
+
+void Refresh(std::span<const TrackNow> now, Streets& s) noexcept {
+  if (!std::ranges::equal(now, s.tracks, SameShape)) {
+    LinkAll(now, s.network);
+    for (std::uint32_t i = 0; i < now.size(); ++i) {
+      planar::Road& road = s.network.roads[i];
+      if (now[i].manual) {
+        road.range_at_start = now[i].range_at_start;
+        road.range_at_end = now[i].range_at_end;
+        continue;
+      }
+      // Those that meet a track which is another now are looked at, too.
+      const auto meets = [&](std::uint32_t k) {
+        return now[k].start_node == now[i].start_node || now[k].end_node == now[i].end_node;
+      };
+      bool changed = false;
+      for (std::uint32_t k = 0; k < now.size() && !changed; ++k) {
+        changed = !SameShape(now[k], s.tracks[k]) && (k == i || meets(k));
+      }
+      if (changed) planar::SetRanges(i, now[i].reach, s.network);
+    }
+  }
+  std::ranges::copy(now, s.tracks.begin());
+}
+
+}  // namespace takt::mover

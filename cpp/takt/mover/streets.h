@@ -1,0 +1,56 @@
+// What all movers share that go on tracks: the network, and who is where on it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "takt/core/cycle.h"
+#include "takt/planar/network.h"
+#include "takt/planar/send.h"
+#include "takt/planar/traffic.h"
+#include "takt/trajectory/planner.h"
+
+namespace takt::mover {
+
+// A track as the machine has it now.
+struct TrackNow {
+  const planar::Track* way = nullptr;  // null: none
+  double length = 0;                   // mm; another way may lie at the same address
+  bool enabled = false;
+  std::uint32_t start_node = 0;  // ends and starts at one point share a number
+  std::uint32_t end_node = 0;
+  double reach = 0;           // mm, at which the centres of two of its largest movers may touch
+  bool manual = false;        // the ranges are given
+  double range_at_start = 0;  // mm
+  double range_at_end = 0;
+};
+
+// What movers do on a track now.
+struct TrackUse {
+  std::uint32_t movers = 0;       // on it, with those that join
+  std::uint32_t moving = 0;       // along it
+  std::uint32_t configuring = 0;  // joining or leaving
+};
+
+struct Streets {
+  Streets(std::size_t movers, std::vector<std::string> tracks);
+
+  // kNoTrack: there is none of that name.
+  std::uint32_t Find(std::string_view track) const noexcept;
+
+  std::vector<std::string> names;
+  planar::Network network;
+  planar::RouteSearch search;
+  planar::Traffic traffic;
+  std::vector<planar::Rider> riders;  // by mover
+  std::vector<TrackUse> uses;         // by track
+  std::vector<TrackNow> tracks;       // as the network was made of
+};
+
+// Takes over what has changed. Only where geometry or links did it takes more than a look.
+void Refresh(std::span<const TrackNow> tracks, Streets& streets) noexcept;
+
+}  // namespace takt::mover

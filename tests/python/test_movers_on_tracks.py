@@ -1,0 +1,232 @@
+"""Planar movers on tracks: the manual's programs, and what movers in one another's way do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import takt
+from machines import new_url, running
+from takt import Engine, expect
+
+TWO_ON_A_LINE = """
+name: line
+axes: []
+movers:
+  - {name: one}
+  - {name: two, initial: {x: 240}}
+tracks: [{name: track}]
+"""
+
+
+def join(session: takt.Session, **options: bool) -> tuple[takt.Mover, takt.Mover]:
+    """The first states of the manual's programs 6.2.4, 6.2.6 and 6.2.7, by states, not by feedback."""
+    one, two, track = session.mover("one"), session.mover("two"), session.track("track")
+    track.append_line(start_x=0, start_y=0, end_x=400, end_y=0)
+    track.enable()
+    session.wait(lambda: track.state == "Enabled", 1)
+    one.enable()
+    two.enable()
+    session.wait(lambda: one.state == two.state == "Enabled", 1)
+    one.join_track(track="track", **options)
+    two.join_track(track="track", **options)
+    session.wait(lambda: one.command_mode == two.command_mode == "OnTrack", 1)
+    return one, two
+
+
+@pytest.fixture
+def engine() -> Engine:
+    return Engine(TWO_ON_A_LINE)
+
+
+def test_two_movers_on_a_track(engine: Engine) -> None:
+    """PL-12, PL-50, example 6.2.4: they stand at 150 and 350."""
+    recorder = engine.record()
+    one, two = join(engine)
+    track = engine.track("track")
+    assert track.operation_mode == "Standing"
+    assert track.mover_count == 2
+    one.move_on_track(position=30)
+    engine.step()
+    assert track.operation_mode == "Moving"
+    with pytest.raises(takt.CommandError, match="movers on it do what does not go with this"):
+        two.leave_track(x=0, y=0).wait()
+    moves = [one.move_on_track(position=150), two.move_on_track(position=350)]
+    engine.wait(lambda: one.track_position >= 149.9 and two.track_position >= 349.9, 5)
+    engine.run(0.5)
+    assert (one.x, one.y, one.track_position) == (150, 0, 150)
+    assert (two.x, two.y, two.track_position) == (350, 0, 350)
+    assert all(move.done for move in moves)
+    assert track.operation_mode == "Standing"
+    recording = recorder.stop()
+    assert np.min(recording["two"]["x"] - recording["one"]["x"]) > 200 - 1e-6
+    assert expect.visits_states(recording, "track", ["Enabling", "Enabled"])
+
+
+def test_the_same_over_lcm(tmp_path: Path) -> None:
+    """PL-50, example 6.2.4 against taktd."""
+    url = new_url()
+    with running(tmp_path, url, machine=TWO_ON_A_LINE), takt.connect(url) as session:
+        one, two = join(session)
+        one.move_on_track(position=150)
+        two.move_on_track(position=350)
+        session.wait(lambda: one.track_position >= 149.9 and two.track_position >= 349.9, 10)
+
+
+def test_turning_on_a_track(engine: Engine) -> None:
+    """PL-10, PL-50, example 6.2.6: 20 degrees stay CRotationOnTrack, 90 degrees come back to OnTrack."""
+    one, two = join(engine, use_orientation=False)
+    turns = [one.move_c(position=20), two.move_c(position=90)]
+    engine.step()
+    assert one.command_mode == two.command_mode == "CRotationOnTrack"
+    engine.wait(lambda: one.c >= 19.9 and two.c >= 89.9, 5)
+    for turn in turns:
+        turn.wait()
+    assert one.command_mode == "CRotationOnTrack"
+    assert two.command_mode == "OnTrack"
+    with pytest.raises(takt.CommandError, match="command mode"):
+        one.move_on_track(position=10).wait()
+    two.move_on_track(position=350).wait()
+    two.leave_track(x=350, y=200, use_orientation=False).wait()
+    assert (two.x, two.y, two.c, two.command_mode) == (350, 200, 90, "FreeMovement")
+
+
+def test_adopting_the_orientation_of_a_track(engine: Engine) -> None:
+    """PL-11, PL-50, example 6.2.7."""
+    one, two = join(engine)
+    turns = [one.move_c(position=20), two.move_c(position=190)]
+    engine.wait(lambda: all(turn.final for turn in turns), 5)
+    assert (one.c, two.c) == (20, 190)
+    turns = [one.adopt_track_orientation(), two.adopt_track_orientation()]
+    engine.wait(lambda: all(turn.final for turn in turns), 5)
+    assert one.command_mode == two.command_mode == "OnTrack"
+    assert (one.c, two.c) == (0, 360)
+
+
+NETWORK = """
+name: network
+axes: []
+movers:
+  - {name: red, initial: {x: 500, y: 120}}
+  - {name: blue, initial: {x: 200, y: 200}}
+tracks:
+  - name: one
+    elements:
+      - {from: {x: 250, y: 120}, to: {x: 650, y: 120}}
+      - {from: {x: 700, y: 170}, to: {x: 800, y: 450}}
+      - {from: {x: 650, y: 500}, to: {x: 250, y: 500}}
+  - {name: two, starts_from: [one], ends_at: [one], elements: [{from: {x: 200, y: 450}, to: {x: 200, y: 170}}]}
+  - {name: three, starts_from: [one], elements: [{from: {x: 200, y: 500}, to: {x: 120, y: 500}}]}
+  - {name: four, starts_from: [one], elements: [{from: {x: 200, y: 550}, to: {x: 200, y: 750}}]}
+"""
+
+
+@pytest.fixture
+def network() -> Engine:
+    engine = Engine(NETWORK)
+    feedback = [track.enable() for track in engine.tracks.values()]
+    feedback += [mover.enable() for mover in engine.movers.values()]
+    engine.wait(lambda: all(f.final for f in feedback), 1)
+    engine.mover("red").join_track(track="one").wait()
+    engine.mover("blue").join_track(track="two").wait()
+    return engine
+
+
+def test_through_a_network(network: Engine) -> None:
+    """PL-12, PL-23, PL-24: round the ring of tracks one and two; nobody comes nearer than its gap."""
+    red, blue = network.mover("red"), network.mover("blue")
+    recorder = network.record()
+    there = red.move_on_track(position=100, track="four")
+    network.run(4)
+    # Blue stands on another branch, out of the way.
+    assert there.done
+    assert red.track == 4
+    assert red.track_position == 100
+    blue.move_on_track(position=700, track="one").wait()
+    back = blue.move_on_track(position=50, track="two")
+    network.run(4)
+    # Red stands where one on track two could touch it.
+    assert not back.final
+    assert blue.waits_for == 1
+    with pytest.raises(takt.CommandError, match="no way along tracks leads there"):
+        red.move_on_track(position=0, track="one").wait()
+    red.leave_track(x=600, y=900).wait()
+    network.run(4)
+    assert back.done
+    assert blue.track == 2
+    recording = recorder.stop()
+    r = recording["red"]
+    speed = np.hypot(r["velocity_x"], r["velocity_y"])
+    assert speed.max() < 2000 + 1e-6
+    across = np.hypot(r["acceleration_x"], r["acceleration_y"])
+    assert across.max() < np.hypot(10000, 5000) * (1 + 1e-3)
+
+
+def test_who_waits_for_whom(network: Engine) -> None:
+    """PL-26, PL-70: two movers face to face on one track say so, and go on when one of them gives way."""
+    red, blue = network.mover("red"), network.mover("blue")
+    blue.leave_track(x=760, y=300).wait()
+    blue.join_track(track="one").wait()
+    place = blue.track_position
+    assert place == pytest.approx(650, abs=60)
+    first = red.move_on_track(position=1000)
+    network.run(3)
+    assert not first.final
+    assert red.waits_for == 2
+    assert not red.deadlocked
+    assert red.track_position == pytest.approx(place - 200, abs=0.05)
+    second = blue.move_on_track(position=100)
+    network.run(3)
+    assert red.deadlocked
+    assert blue.deadlocked
+    assert not second.final
+    blue.move_on_track(position=250, track="four")
+    network.run(4)
+    assert first.done
+    assert not red.deadlocked
+    assert second.aborted
+
+
+def test_a_place_that_is_taken(engine: Engine) -> None:
+    """PL-24: a mover does not join a track nearer than its gap to another."""
+    join(engine)
+    one, two = engine.mover("one"), engine.mover("two")
+    two.leave_track(x=240, y=150).wait()
+    one.move_on_track(position=100).wait()
+    with pytest.raises(takt.CommandError, match="would touch"):
+        two.join_track(track="track").wait()
+    one.move_on_track(position=0).wait()
+    two.join_track(track="track").wait()
+
+
+def test_bad_commands(network: Engine) -> None:
+    """PL-02, PL-22."""
+    red = network.mover("red")
+    with pytest.raises(takt.CommandError, match="did you mean four"):
+        red.move_on_track(position=0, track="fuor").wait()
+    with pytest.raises(takt.CommandError):
+        red.move_on_track(position=1e4).wait()
+    with pytest.raises(takt.CommandError, match="additional_turns"):
+        red.move_on_track(position=0, additional_turns=1).wait()
+    with pytest.raises(takt.CommandError, match="command mode"):
+        red.move_to_position(x=0, y=0).wait()
+    network.track("three").disable().wait()
+    with pytest.raises(takt.CommandError, match="not enabled"):
+        red.move_on_track(position=0, track="three").wait()
+    network.track("one").disable().wait()
+    with pytest.raises(takt.CommandError, match="movers on it"):
+        network.track("one").clear().wait()
+
+
+def test_replay_is_the_same(tmp_path: Path) -> None:
+    """Two engines, one story: the same to the last bit."""
+    hashes = []
+    for _ in range(2):
+        engine = Engine(TWO_ON_A_LINE)
+        one, two = join(engine)
+        one.move_on_track(position=150)
+        two.move_on_track(position=350)
+        engine.run(1)
+        hashes.append(engine.state_hash)
+    assert hashes[0] == hashes[1]
