@@ -71,9 +71,11 @@ def verify(recording: takt.Recording) -> None:
     expect.visits_states(
         recording,
         "shuttle",
-        ["FreeMovement", "CRotationFreeMovement", "FreeMovement", "ExternalSetpointGeneration", "FreeMovement"]
-        + ["JoiningTrack", "OnTrack", "CRotationOnTrack", "OnTrack", "CRotationOnTrack", "OnTrack", "LeavingTrack"]
-        + ["FreeMovement"],
+        [
+            *("FreeMovement", "CRotationFreeMovement", "FreeMovement", "ExternalSetpointGeneration", "FreeMovement"),
+            *("JoiningTrack", "OnTrack", "CRotationOnTrack", "OnTrack", "CRotationOnTrack", "OnTrack", "LeavingTrack"),
+            "FreeMovement",
+        ],
         field="command_mode",
     )
     expect.stays(recording, "shuttle.error == 0")
