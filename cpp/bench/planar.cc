@@ -1,11 +1,12 @@
-// PL-20, PL-24, PL-60: what it costs to look up a place on a track, to find the nearest one, and to make tracks; and to
-// ask whether a mover may go somewhere, beside FCL's tree with the same boxes, which answers only where a closer look
-// is needed.
+// PL-20, PL-24, PL-60: one cycle of movers on tracks; what it costs to look up a place on a track, to find the nearest
+// one, and to make tracks; and to ask whether a mover may go somewhere, beside FCL's tree with the same boxes, which
+// answers only where a closer look is needed.
 
 #include <benchmark/benchmark.h>
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/shape/box.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -16,7 +17,9 @@
 #include "takt/planar/clearance.h"
 #include "takt/planar/nearest.h"
 #include "takt/planar/reservation.h"
+#include "takt/planar/send.h"
 #include "takt/planar/track.h"
+#include "takt/planar/traffic.h"
 
 namespace takt::planar {
 namespace {
@@ -283,11 +286,119 @@ void AdvanceAll(benchmark::State& state, bool turning) {
   }
 }
 
+// A ring of modules: a way on the ring, and a bypass around it. So many movers are on their ways to random places, and
+// are sent on when they are there.
+class Ring {
+ public:
+  explicit Ring(std::uint32_t movers)
+      : movers_(movers), traffic_({movers, Tracks()}), search_(Tracks()), riders_(movers) {
+    const double radius = 450.0 * movers / (2 * M_PI);
+    const auto at = [&](double share, double r) {
+      const double angle = 2 * M_PI * share / modules();
+      return Place{r * std::cos(angle), r * std::sin(angle)};
+    };
+    network_.roads.resize(Tracks());
+    for (std::uint32_t i = 0; i < modules(); ++i) {
+      const auto arc = [&](double from, double to) {
+        return Element{ElementShape::kArc, at(i + from, radius), at(i + to, radius), {0, 0}, false};
+      };
+      Add(3 * i, {.elements = {arc(0, 0.2)}});
+      Add(3 * i + 1, {.elements = {arc(0.2, 1)}});
+      const auto outside = [&](double share) { return at(i + share, radius + 300); };
+      const Track& begin = *tracks_[3 * i];
+      const Track& beside = *tracks_[3 * i + 1];
+      Add(3 * i + 2, {.elements = {Line(outside(0.4), outside(0.8))},
+                      .from = At(begin, begin.length),
+                      .to = At(beside, beside.length)});
+    }
+    for (std::uint32_t i = 0; i < modules(); ++i) {
+      const std::uint32_t next = 3 * ((i + 1) % modules());
+      for (const std::uint32_t way : {3 * i + 1, 3 * i + 2}) {
+        Link(3 * i, way, network_);
+        Link(way, next, network_);
+      }
+    }
+    NameNodes(network_);
+    for (std::uint32_t i = 0; i < Tracks(); ++i) SetRanges(i, 160, network_);
+    for (std::uint32_t i = 0; i < movers; ++i) {
+      Rider& r = riders_[i];
+      r.on = true;
+      r.route.count = 1;
+      r.route.tracks[0] = 3 * (i % modules()) + 1;
+      r.at.position = 700 + 230.0 * (i / modules());
+      r.pace = {{2000, 10000, 10000, 200000}, 5000};
+      r.brakes = r.pace.brakes();
+      r.gap = 200;
+    }
+  }
+
+  void Step() {
+    for (Rider& r : riders_) {
+      if (r.aim == Aim::kTarget && !r.there) continue;
+      const auto on = static_cast<std::uint32_t>(3 * (random_() % modules()) + random_() % 3);
+      Send(network_, search_, {.track = on, .position = 0.5 * network_[on].length}, r);
+    }
+    traffic_.Step(cycle_, planner_, network_, riders_);
+    ++cycle_.count;
+  }
+  double moving() const {
+    double count = 0;
+    for (const Rider& r : riders_) count += r.at.velocity != 0 ? 1 : 0;
+    return count / movers_;
+  }
+
+ private:
+  std::uint32_t modules() const { return std::max(2U, movers_ / 10); }
+  std::uint32_t Tracks() const { return 3 * modules(); }
+  void Add(std::uint32_t number, const Layout& layout) {
+    tracks_.push_back(std::make_unique<Track>(Make(layout)));
+    network_.roads[number].track = tracks_.back().get();
+    network_.roads[number].length = tracks_.back()->length;
+  }
+
+  std::uint32_t movers_;
+  std::vector<std::unique_ptr<Track>> tracks_;
+  Network network_;
+  Traffic traffic_;
+  RouteSearch search_;
+  std::vector<Rider> riders_;
+  trajectory::Planner planner_;
+  std::mt19937 random_{1};
+  Cycle cycle_{0, 0.001};
+};
+
+// PL-60: one cycle of all movers, orders and routes included.
+void OneCycle(benchmark::State& state) {
+  Ring ring(static_cast<std::uint32_t>(state.range(0)));
+  for (int i = 0; i < 3000; ++i) ring.Step();
+  double moving = 0, slowest = 0;
+  std::vector<double> cycles;
+  for (auto _ : state) {
+    const auto begin = std::chrono::steady_clock::now();
+    ring.Step();
+    cycles.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
+    moving += ring.moving();
+  }
+  std::sort(cycles.begin(), cycles.end());
+  slowest = cycles.back();
+  state.counters["moving"] = moving / static_cast<double>(cycles.size());
+  state.counters["p99_us"] = cycles[cycles.size() * 99 / 100];
+  state.counters["max_us"] = slowest;
+}
+
 BENCHMARK_CAPTURE(LookUp, given, false)->Name("AtGiven")->Arg(5)->Arg(100);
 BENCHMARK_CAPTURE(LookUp, transitions, true)->Name("AtTransition")->Arg(5)->Arg(100);
 BENCHMARK(FindNearest)->Name("NearestTo")->Arg(5)->Arg(20)->Arg(100);
 BENCHMARK(MakeOne)->Name("MakeTrack")->Unit(benchmark::kMicrosecond);
 BENCHMARK(FindConflicts)->Name("Conflicts")->Unit(benchmark::kMicrosecond);
+BENCHMARK(OneCycle)
+    ->Name("TrafficCycle")
+    ->Arg(50)
+    ->Arg(100)
+    ->Arg(200)
+    ->Arg(400)
+    ->Arg(800)
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(AskFor, straight, false)->Name("Reservation/takt")->Arg(200)->Arg(800);
 BENCHMARK_CAPTURE(BroadPhase, straight, false)->Name("Reservation/fcl")->Arg(200)->Arg(800);
 BENCHMARK_CAPTURE(AskFor, turning, true)->Name("ReservationOfTurns/takt")->Arg(200)->Arg(800);

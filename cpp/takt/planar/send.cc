@@ -58,6 +58,8 @@ bool Send(const Network& network, RouteSearch& search, const Destination& to, Ri
   r.target = target;
   r.aim = Aim::kTarget;
   r.planned = r.there = false;
+  r.waits = Waits::kNot;
+  r.waits_for = kNobody;
   return true;
 }
 

@@ -459,6 +459,13 @@ class Traffic::Step_ {
       r.planned = false;
       return WaitFor(r, Waits::kNot, kNobody);
     }
+    // Who stands and waits has nothing to plan until there is room.
+    if (r.aim == Aim::kTarget && r.waits == Waits::kMover && !r.planned && Rests(r.at)) {
+      Limit limit;
+      double most = kInfinite;
+      LimitBy(i, 0, limit, most);
+      if (limit.room < kAtLimit) return WaitFor(r, Waits::kMover, limit.by);
+    }
     // Who is held back stays so until there is room: else it would swing between both.
     const bool was_free = r.aim == Aim::kFollow || r.planned || Rests(r.at);
     const KinematicState wish = r.aim == Aim::kTarget ? Wish(r) : r.demand;
