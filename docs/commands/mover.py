@@ -58,7 +58,7 @@ def scenario(session: takt.Session) -> None:
     session.run(0.1)
     session.mark("along a track")
     session.track("line").enable().wait()
-    shuttle.join_track(track="line").wait()
+    shuttle.join_track(track="line", use_orientation=False).wait()
     shuttle.move_on_track(position=500).wait()
     shuttle.move_c(position=180).wait()
     shuttle.adopt_track_orientation().wait()
