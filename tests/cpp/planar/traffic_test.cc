@@ -248,7 +248,7 @@ TEST(Traffic, FaceToFaceIsADeadlock) {  // PL-26
 
 // Random commands to random movers in random cities: the invariant, by what is seen of it.
 TEST(Traffic, NobodyComesTooNear) {  // PL-23, PL-24
-  const int trials = testing::Trials(3);
+  const int trials = testing::Trials(2);
   for (int trial = 0; trial < trials; ++trial) {
     testing::Random random(static_cast<unsigned>(trial));
     const std::vector<Layout> layouts = testing::RandomCity(random, 14, 100);
