@@ -319,7 +319,7 @@ class Ring {
       }
     }
     NameNodes(network_);
-    for (std::uint32_t i = 0; i < Tracks(); ++i) SetRanges(i, 160, network_);
+    for (std::uint32_t i = 0; i < Tracks(); ++i) SetRanges(i, network_);
     for (std::uint32_t i = 0; i < movers; ++i) {
       Rider& r = riders_[i];
       r.on = true;
@@ -354,6 +354,7 @@ class Ring {
     tracks_.push_back(std::make_unique<Track>(Make(layout)));
     network_.roads[number].track = tracks_.back().get();
     network_.roads[number].length = tracks_.back()->length;
+    network_.roads[number].reach = 160;
   }
 
   std::uint32_t movers_;

@@ -344,7 +344,6 @@ Answer CarryOut(const Given& g, const JoinTrack& command) {
   const Limits most = g.c.params.xy.maximum.limits();
   rider.brakes = {most.deceleration, most.jerk};
   s.track = track;
-  s.joins_at = nearest.s;
   s.mode = CommandMode::kJoiningTrack;
   ++streets.uses[track].configuring;
   return answer;

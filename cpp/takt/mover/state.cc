@@ -74,7 +74,6 @@ void describe(Description<State>& d) {
   d.internal<&S::tickets>("Of the commands in progress.");
   d.internal<&S::plane>("Motion of X and Y.");
   d.internal<&S::track>("Track that it joins, is on, or leaves.");
-  d.internal<&S::joins_at>(unit::mm, "Where on it.");
   d.internal<&S::others>("Motions of Z, A, B, C.");
   d.internal<&S::external>("Set points from outside.");
   d.internal<&S::set_point>("Where it is at the end of the last cycle.");

@@ -62,7 +62,6 @@ struct State {
   std::array<Ticket, kSlots> tickets{};
   PlaneMove plane;
   std::uint32_t track = planar::kNoTrack;             // that it joins, is on, or leaves
-  double joins_at = 0;                                // mm along it
   std::array<CoordinateMove, kOthers.size()> others;  // in the order of kOthers
   External external;
   SetPoint set_point{};  // at the end of the last cycle

@@ -7,7 +7,8 @@ namespace takt::mover {
 namespace {
 
 bool SameShape(const TrackNow& a, const TrackNow& b) {
-  return a.way == b.way && a.length == b.length && a.start_node == b.start_node && a.end_node == b.end_node;
+  return a.way == b.way && a.length == b.length && a.reach == b.reach && a.start_node == b.start_node &&
+         a.end_node == b.end_node;
 }
 
 void LinkAll(std::span<const TrackNow> tracks, planar::Network& network) {
@@ -16,6 +17,7 @@ void LinkAll(std::span<const TrackNow> tracks, planar::Network& network) {
     road.track = tracks[i].way;
     road.length = road.track ? road.track->length : 0;
     road.closed = road.track && road.track->closed;
+    road.reach = tracks[i].reach;
     road.before = road.behind = {};
   }
   for (std::uint32_t i = 0; i < tracks.size(); ++i) {
@@ -62,7 +64,7 @@ void Refresh(std::span<const TrackNow> now, Streets& s) noexcept {
       for (std::uint32_t k = 0; k < now.size() && !changed; ++k) {
         changed = !SameShape(now[k], s.tracks[k]) && (k == i || meets(k));
       }
-      if (changed) planar::SetRanges(i, now[i].reach, s.network);
+      if (changed) planar::SetRanges(i, s.network);
     }
   }
   std::ranges::copy(now, s.tracks.begin());

@@ -50,13 +50,15 @@ void NameNodes(Network& network) noexcept {
   }
 }
 
-void SetRanges(std::uint32_t track, double reach, Network& network) noexcept {
+void SetRanges(std::uint32_t track, Network& network) noexcept {
   Road& road = network.roads[track];
   road.range_at_start = road.range_at_end = 0;
   if (!road.track) return;
   // From the end on, as long as there is anything near. Between two places looked at it is no nearer than at these,
   // less the way there.
-  const auto range = [&](const Track& other, bool at_end) {
+  const auto range = [&](const Road& of, bool at_end) {
+    const Track& other = *of.track;
+    const double reach = 0.5 * (road.reach + of.reach);
     double near = 0;
     for (double s = 0; s < road.length + kStride; s += kStride) {
       const double place = std::min(s, road.length);
@@ -73,10 +75,10 @@ void SetRanges(std::uint32_t track, double reach, Network& network) noexcept {
     const Road& other = network.roads[i];
     if (i == track || !other.track) continue;
     if (road.start_node != kNoNode && other.start_node == road.start_node) {
-      road.range_at_start = std::max(road.range_at_start, range(*other.track, false));
+      road.range_at_start = std::max(road.range_at_start, range(other, false));
     }
     if (road.end_node != kNoNode && other.end_node == road.end_node) {
-      road.range_at_end = std::max(road.range_at_end, range(*other.track, true));
+      road.range_at_end = std::max(road.range_at_end, range(other, true));
     }
   }
 }

@@ -34,6 +34,7 @@ struct Road {
   const Track* track = nullptr;  // null: not to be used
   double length = 0;             // mm
   bool closed = false;
+  double reach = 0;          // mm, at which the centres of two of its largest movers may touch, however they are turned
   Links before{}, behind{};  // tracks that end at its start, that start from its end
   // mm from its ends, within which movers on other tracks that meet it there may be too near.
   double range_at_start = 0;
@@ -55,11 +56,10 @@ bool Link(std::uint32_t from, std::uint32_t to, Network& network) noexcept;
 // Names the nodes anew, after links have changed.
 void NameNodes(Network& network) noexcept;
 
-// The ranges at both ends of a track: beyond them movers no wider than `reach` (mm, the largest distance at which their
-// centres may still touch, however they are turned) cannot touch those on tracks that meet it there. At most
+// The ranges at both ends of a track: beyond them its movers cannot touch those on tracks that meet it there. At most
 // kRangeSlack too long. Takes up to some 100 µs for a pair of tracks.
 inline constexpr double kRangeSlack = 40;  // mm
-void SetRanges(std::uint32_t track, double reach, Network& network) noexcept;
+void SetRanges(std::uint32_t track, Network& network) noexcept;
 
 // Tracks one after the other, the first one is where the mover is.
 inline constexpr std::size_t kRouteTracks = 32;

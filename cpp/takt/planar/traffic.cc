@@ -28,7 +28,8 @@ constexpr double kEaseDown = 0.4;
 // Standing is slower than this, mm/s, and nearer than this to where it has to stop, mm.
 constexpr double kStands = 0.1;
 constexpr double kAtLimit = 0.01;
-constexpr std::size_t kPresences = 8;  // nodes at which a mover can be active at once
+// Nodes at which a mover can be active at once: those of its route, where it begins, and those it has passed.
+constexpr std::size_t kPresences = kRouteTracks + 1 + kPassed;
 
 bool Rests(const KinematicState& x) {
   return x.velocity == 0 && x.acceleration == 0;
@@ -204,7 +205,6 @@ class Traffic::Step_ {
     const Rider& r = riders_[i];
     AlongNodes(r, braking.highest + r.gap, [&](std::uint32_t node, double offset, double before, double behind) {
       if (!IsActive(r, next, braking, offset, before, behind) || PresenceOf(i, node)) return;
-      if (t_.presence_count_ == t_.presences_.size()) return;
       t_.presences_[t_.presence_count_] = {i, offset, t_.heads_[node]};
       t_.heads_[node] = t_.presence_count_++;
     });
@@ -454,7 +454,6 @@ class Traffic::Step_ {
   void Settle(std::uint32_t i) {
     Rider& r = riders_[i];
     Now& now = t_.now_[i];
-    now.settled = true;
     if (r.aim == Aim::kRest || (r.aim == Aim::kTarget && r.there)) {
       r.planned = false;
       return WaitFor(r, Waits::kNot, kNobody);

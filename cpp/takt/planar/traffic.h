@@ -107,8 +107,7 @@ class Traffic {
     double rest_before = 0;  // where it would stand if it only braked
     std::uint32_t leader = kNobody;
     double leader_offset = 0;  // from the leader's places to its own
-    bool settled = false;
-    bool entered = false;  // in the search for an order
+    bool entered = false;      // in the search for an order
   };
   // A mover that is active at a node.
   struct Presence {

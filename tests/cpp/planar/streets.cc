@@ -92,6 +92,7 @@ Streets::Streets(const std::vector<Layout>& layouts, std::uint32_t movers, doubl
     road.track = tracks_[i].get();
     road.length = tracks_[i]->length;
     road.closed = tracks_[i]->closed;
+    road.reach = std::hypot(size, size);
   }
   for (std::uint32_t i = 0; i < layouts.size(); ++i) {
     for (std::uint32_t k = 0; k < layouts.size(); ++k) {
@@ -103,7 +104,7 @@ Streets::Streets(const std::vector<Layout>& layouts, std::uint32_t movers, doubl
     }
   }
   NameNodes(network_);
-  for (std::uint32_t i = 0; i < layouts.size(); ++i) SetRanges(i, std::hypot(size, size), network_);
+  for (std::uint32_t i = 0; i < layouts.size(); ++i) SetRanges(i, network_);
 }
 
 Rider& Streets::Put(std::uint32_t mover, std::uint32_t track, double s, const Pace& pace, double gap) {

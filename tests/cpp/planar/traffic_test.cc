@@ -253,10 +253,8 @@ TEST(Traffic, NobodyComesTooNear) {  // PL-23, PL-24
     testing::Random random(static_cast<unsigned>(trial));
     const std::vector<Layout> layouts = testing::RandomCity(random, 14, 100);
     Streets streets(layouts, 50);
-    double length = 0;
     std::uint32_t put = 0;
     for (std::uint32_t track = 0; track < layouts.size(); ++track) {
-      length += streets.track(track).length;
       const Road& road = streets.network()[track];
       const double from = std::max(170.0, road.range_at_start) + 1,
                    to = road.length - std::max(170.0, road.range_at_end) - 1;
@@ -269,13 +267,12 @@ TEST(Traffic, NobodyComesTooNear) {  // PL-23, PL-24
     }
     double missing = -INFINITY, nearest = INFINITY, travelled = 0;
     Watcher watcher(streets);
-    int arrived = 0, refused = 0;
+    int refused = 0;
     for (int i = 0; i < 20000; ++i) {
       for (std::uint32_t k = 0; k < put; ++k) {
         Rider& r = streets[k];
         if (random.Below(2000) == 0) streets.Halt(k);
         if (((r.aim == Aim::kRest || r.there) && random.Below(300) == 0) || random.Below(5000) == 0) {
-          arrived += r.there ? 1 : 0;
           const auto track = static_cast<std::uint32_t>(random.Below(static_cast<int>(layouts.size())));
           streets.Send(k, track, random.Between(0, streets.track(track).length));
         }
@@ -287,11 +284,8 @@ TEST(Traffic, NobodyComesTooNear) {  // PL-23, PL-24
       if (i % 5 == 0) nearest = std::min(nearest, streets.Nearest());
     }
     for (std::uint32_t k = 0; k < put; ++k) travelled += streets[k].origin;
-    std::printf(
-        "trial %d: %zu tracks %.0f mm, %u movers, arrived %d refused %d, travelled %.0f, missing %g nearest %g; "
-        "speed %g acc %g jerk %g lateral %g\n",
-        trial, layouts.size(), length, put, arrived, refused, travelled, missing, nearest, watcher.speed,
-        watcher.acceleration, watcher.jerk, watcher.lateral);
+    EXPECT_GT(travelled, 10000) << trial;  // else it would prove nothing
+    EXPECT_LT(refused, 20000);
     EXPECT_LT(missing, 1e-3);
     EXPECT_GT(nearest, 0);
     EXPECT_LE(watcher.acceleration, 1 + 1e-6);
