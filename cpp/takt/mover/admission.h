@@ -1,0 +1,85 @@
+// Commands as they arrive: what carrying them out has in common. Each family has a file of its own beside this one:
+// power.cc, moves.cc, on_tracks.cc, setpoints.cc.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "takt/mover/run.h"
+
+namespace takt::mover {
+
+// A command that has arrived.
+struct Given {
+  const Context& c;
+  Ticket ticket;
+  State& s;
+};
+
+// What becomes of it.
+struct Answer {
+  Status status;
+  double value = 0;     // s that it takes, as planned
+  bool goes_on = true;  // it is done later
+};
+
+inline Answer Refused(ErrorId error) noexcept {
+  return {Status::Failed(error)};
+}
+inline Answer Done() noexcept {
+  return {Status::Ok(), 0, false};
+}
+
+// The command gets this slot; who had it is aborted.
+inline void Take(const Given& g, Slot slot) noexcept {
+  End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, g.s);
+  g.s.tickets[slot] = g.ticket;
+}
+
+// Why the mover does not do this now.
+inline ErrorId WhyNot(const State& s, Ask ask) noexcept {
+  if (s.state != planar::ObjectState::kEnabled) return ErrorId::kMoverDisabled;
+  return Accepts(s.mode, ask) ? ErrorId::kNone : ErrorId::kCommandMode;
+}
+
+// Dynamics of a command, no more than the maximum.
+template <typename Move, typename Params>
+trajectory::Limits LimitsOf(const Move& m, const Params& params, LimitedBy& limited_by) noexcept {
+  const trajectory::Limits standard = StandardOf(params);
+  const trajectory::Limits most = params.maximum.limits();
+  limited_by = LimitedBy::kNothing;
+  const auto take = [&](const std::optional<double>& given, double otherwise, double maximum, LimitedBy what) {
+    const double wanted = given.value_or(otherwise);
+    if (wanted > maximum && limited_by == LimitedBy::kNothing) limited_by = what;
+    return std::min(wanted, maximum);
+  };
+  return {take(m.velocity, standard.velocity, most.velocity, LimitedBy::kVelocity),
+          take(m.acceleration, standard.acceleration, most.acceleration, LimitedBy::kAcceleration),
+          take(m.deceleration, standard.deceleration, most.deceleration, LimitedBy::kAcceleration),
+          take(m.jerk, standard.jerk, most.jerk, LimitedBy::kJerk)};
+}
+
+// A move of X and Y in the plane, whatever the mode.
+Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept;
+// One of C, if it may do what `ask` says.
+Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept;
+
+Answer CarryOut(const Given& g, const Enable& command) noexcept;
+Answer CarryOut(const Given& g, const Disable& command) noexcept;
+Answer CarryOut(const Given& g, const Reset& command) noexcept;
+Answer CarryOut(const Given& g, const Halt& command) noexcept;
+Answer CarryOut(const Given& g, const SetPosition& command) noexcept;
+Answer CarryOut(const Given& g, const MoveToPosition& command) noexcept;
+Answer CarryOut(const Given& g, const MoveZ& command) noexcept;
+Answer CarryOut(const Given& g, const MoveA& command) noexcept;
+Answer CarryOut(const Given& g, const MoveB& command) noexcept;
+Answer CarryOut(const Given& g, const MoveC& command) noexcept;
+Answer CarryOut(const Given& g, const JoinTrack& command) noexcept;
+Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept;
+Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept;
+Answer CarryOut(const Given& g, const AdoptTrackOrientation& command) noexcept;
+Answer CarryOut(const Given& g, const StartExternalSetpointGeneration& command) noexcept;
+Answer CarryOut(const Given& g, const SetExternalSetpoint& command) noexcept;
+Answer CarryOut(const Given& g, const StopExternalSetpointGeneration& command) noexcept;
+
+}  // namespace takt::mover

@@ -1,0 +1,158 @@
+// Moves of one's own: X and Y in the plane, and the other coordinates.
+#include <algorithm>
+#include <optional>
+
+#include "takt/mover/admission.h"
+#include "takt/mover/coordinate.h"
+
+namespace takt::mover {
+
+using trajectory::Limits;
+
+namespace {
+
+// As slow as a motion from rest that takes `share` of the time.
+Limits Slower(const Limits& l, double share) {
+  const double square = share * share;
+  return {share * l.velocity, square * l.acceleration, square * l.deceleration, square * share * l.jerk};
+}
+
+// From one motion to another place: at once if that is quicker, else by way of rest. Nothing: no such motion.
+std::optional<PlaneMove> PlanPlane(const Given& g, const MoveToPosition& to, const Limits& limits, double& duration) {
+  const Context& c = g.c;
+  const double most = c.params.xy.maximum.velocity * (1 + 1e-9);
+  const double now = Elapsed(c, g.s.plane.begin);
+  PlaneMove at_once{.motion = {}, .begin = c.cycle.count, .waits = false, .next = {}, .turns = false};
+  const bool found = PlanMove(c.planner, At(g.s.plane.motion, now), to.x, to.y, limits, at_once.motion) &&
+                     SpeedBound(at_once.motion) <= most;
+  duration = DurationOf(at_once.motion);
+  if (found && at_once.motion.share == 0) return at_once;
+
+  PlaneMove stops{.motion = {}, .begin = c.cycle.count, .waits = true, .next = to, .turns = false};
+  bool can_stop = PlanRest(c.planner, g.s.plane.motion, now, limits, stops.motion);
+  if (can_stop && SpeedBound(stops.motion) > most) {
+    can_stop = PlanRest(c.planner, g.s.plane.motion, now, c.params.xy.maximum.limits(), stops.motion);
+  }
+  const double rests = DurationOf(stops.motion);
+  PlaneMotion line;
+  can_stop = can_stop && PlanMove(c.planner, At(stops.motion, rests), to.x, to.y, limits, line);
+  if (!can_stop || (found && duration <= rests + DurationOf(line))) {
+    return found ? std::optional(at_once) : std::nullopt;
+  }
+  duration = rests + DurationOf(line);
+  stops.next.velocity = limits.velocity;
+  stops.next.acceleration = limits.acceleration;
+  stops.next.deceleration = limits.deceleration;
+  stops.next.jerk = limits.jerk;
+  return stops;
+}
+
+template <typename Move>
+Answer MoveOne(const Given& g, const Move& command, std::size_t other, Ask ask) {
+  if (const ErrorId why = WhyNot(g.s, ask); why != ErrorId::kNone) return Refused(why);
+  const CoordinateParams params = ParamsOf(g.c, g.s, other);
+  LimitedBy limited_by;
+  const Limits limits = LimitsOf(command, params, limited_by);
+  if (command.position < params.lower || command.position > params.upper) return Refused(ErrorId::kTargetBehindLimit);
+  CoordinateMove& move = g.s.others[other];
+  if (!PlanCoordinate(g.c.planner, Now(g.c, move), command.position, limits, params, move.profile)) {
+    return Refused(ErrorId::kPlanning);
+  }
+  move.begin = g.c.cycle.count;
+  End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, g.s);
+  Take(g, static_cast<Slot>(kMoveZ + other));
+  g.s.limited_by = limited_by;
+  return {Status::Ok(), move.profile.duration()};
+}
+
+}  // namespace
+
+Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
+  State& s = g.s;
+  LimitedBy limited_by;
+  const Limits limits = LimitsOf(command, g.c.params.xy, limited_by);
+  double duration = 0;
+  std::optional<PlaneMove> move = PlanPlane(g, command, limits, duration);
+  if (!move) return Refused(ErrorId::kPlanning);
+
+  CoordinateMove turn = s.others.back();
+  const KinematicState turned = Now(g.c, turn);
+  const CoordinateParams free = Windowed(g.c.params.c, turned.position, false);
+  if (command.use_orientation) {
+    const auto plan = [&](const Limits& as) {
+      return PlanCoordinate(g.c.planner, turned, command.c, as, free, turn.profile);
+    };
+    if (!plan(StandardOf(free))) return Refused(ErrorId::kPlanning);
+    const trajectory::Profile::Range range = turn.profile.PositionRange();
+    if (!InOneWindow(g.c.params.c, range.min, range.max)) return Refused(ErrorId::kOutsideWindow);
+    // From rest both arrive together.
+    const double turns = turn.profile.duration();
+    if (IsOver(g.c, s.plane) && IsOver(g.c, s.others.back()) && turns > 0 && duration > 0) {
+      if (turns > duration) {
+        if (std::optional<PlaneMove> slow = PlanPlane(g, command, Slower(limits, duration / turns), duration)) {
+          move = slow;
+        }
+      } else {
+        plan(Slower(StandardOf(free), turns / duration));
+      }
+    }
+    duration = std::max(duration, turn.profile.duration());
+    turn.begin = g.c.cycle.count;
+    End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
+  } else if (s.plane.turns) {  // that turn belonged to the move before
+    PlanRest(g.c.planner, turned, StandardOf(free), ParamsOf(g.c, s, kOthers.size() - 1), turn.profile);
+    turn.begin = g.c.cycle.count;
+  }
+  End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
+  Take(g, kPlane);
+  s.others.back() = turn;
+  s.plane = *move;
+  s.plane.turns = command.use_orientation;
+  s.limited_by = limited_by;
+  return {Status::Ok(), duration};
+}
+
+Answer CarryOut(const Given& g, const MoveToPosition& command) noexcept {
+  if (const ErrorId why = WhyNot(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
+  return MoveTo(g, command);
+}
+
+Answer CarryOut(const Given& g, const MoveZ& command) noexcept {
+  return MoveOne(g, command, 0, Ask::kMoveAuxiliary);
+}
+Answer CarryOut(const Given& g, const MoveA& command) noexcept {
+  return MoveOne(g, command, 1, Ask::kMoveAuxiliary);
+}
+Answer CarryOut(const Given& g, const MoveB& command) noexcept {
+  return MoveOne(g, command, 2, Ask::kMoveAuxiliary);
+}
+
+Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept {
+  State& s = g.s;
+  if (const ErrorId why = WhyNot(s, ask); why != ErrorId::kNone) return Refused(why);
+  if (s.plane.turns) return Refused(ErrorId::kCommandMode);  // C belongs to another move
+  CoordinateMove move = s.others.back();
+  const KinematicState from = Now(g.c, move);
+  const CoordinateParams free = Windowed(g.c.params.c, from.position, false);
+  LimitedBy limited_by;
+  const Limits limits = LimitsOf(command, free, limited_by);
+  const double target = TargetOf(g.c.params, from, trajectory::StopPosition(from, limits), command);
+  if (!PlanCoordinate(g.c.planner, from, target, limits, free, move.profile)) return Refused(ErrorId::kPlanning);
+  const trajectory::Profile::Range range = move.profile.PositionRange();
+  const bool inside = InOneWindow(g.c.params.c, range.min, range.max);
+  if (!inside && !IsPlaneResting(g.c, s)) return Refused(ErrorId::kOutsideWindow);
+  if (!inside && s.mode == CommandMode::kFreeMovement) s.mode = CommandMode::kCRotationFreeMovement;
+  if (!inside && s.mode == CommandMode::kOnTrack) s.mode = CommandMode::kCRotationOnTrack;
+  move.begin = g.c.cycle.count;
+  s.others.back() = move;
+  End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
+  Take(g, kMoveC);
+  s.limited_by = limited_by;
+  return {Status::Ok(), move.profile.duration()};
+}
+
+Answer CarryOut(const Given& g, const MoveC& command) noexcept {
+  return Turn(g, command, Ask::kMoveC);
+}
+
+}  // namespace takt::mover

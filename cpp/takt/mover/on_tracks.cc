@@ -1,0 +1,137 @@
+// Onto tracks, along them, and off them.
+#include <algorithm>
+#include <cmath>
+
+#include "takt/mover/admission.h"
+#include "takt/mover/coordinate.h"
+#include "takt/planar/nearest.h"
+
+namespace takt::mover {
+
+using trajectory::Limits;
+
+namespace {
+
+// Too near to others on a track to stand there, or to one that is to stand on a track that meets it.
+bool IsTaken(const Context& c, std::uint32_t track, double s) {
+  const Streets& streets = c.streets;
+  const planar::Road& road = streets.network[track];
+  const planar::Place place = planar::At(*road.track, s).place;
+  for (std::uint32_t i = 0; i < streets.riders.size(); ++i) {
+    const planar::Rider& other = streets.riders[i];
+    if (!other.on || i == c.index) continue;
+    const double gap = std::max(c.params.gap, other.gap);
+    if (other.route.first() == track) {
+      const double apart = std::abs(other.at.position - s);
+      if (std::min(apart, road.closed ? road.length - apart : apart) < gap) return true;
+      continue;
+    }
+    const planar::Place its = planar::At(*streets.network[other.route.first()].track, other.at.position).place;
+    if (std::hypot(its.x - place.x, its.y - place.y) < streets.tracks[track].reach) return true;
+  }
+  return false;
+}
+
+planar::Way WayOf(TurnDirection direction) {
+  switch (direction) {
+    case TurnDirection::kPositive:
+      return planar::Way::kPositive;
+    case TurnDirection::kShortestWay:
+      return planar::Way::kShortestWay;
+    case TurnDirection::kNegative:
+      return planar::Way::kNegative;
+    default:
+      return planar::Way::kNonModulo;
+  }
+}
+
+}  // namespace
+
+Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
+  State& s = g.s;
+  Streets& streets = g.c.streets;
+  if (const ErrorId why = WhyNot(s, Ask::kJoinTrack); why != ErrorId::kNone) return Refused(why);
+  if (!IsPlaneResting(g.c, s)) return Refused(ErrorId::kCommandMode);
+  const std::uint32_t track = streets.Find(command.track.view());
+  if (track == planar::kNoTrack) return Refused(ErrorId::kParameter);
+  if (!streets.tracks[track].enabled || streets.uses[track].moving > 0) return Refused(ErrorId::kTrackMode);
+  const planar::Nearest nearest =
+      planar::NearestTo(*streets.network[track].track, {s.set_point[kX].position, s.set_point[kY].position});
+  if (IsTaken(g.c, track, nearest.s)) return Refused(ErrorId::kCollision);
+  const KinematicState turned = Now(g.c, s.others.back());
+  const double c = TargetOf(g.c.params, turned, turned.position, {.direction = TurnDirection::kShortestWay});
+  const Answer answer = MoveTo(g, {nearest.place.x, nearest.place.y, c, command.use_orientation, command.velocity,
+                                   command.acceleration, command.deceleration, command.jerk});
+  if (answer.status.failed()) return answer;
+  // The place is its own from now on.
+  planar::Rider& rider = g.c.rider();
+  rider = {};
+  rider.on = true;
+  rider.at.position = nearest.s;
+  rider.route.tracks[0] = track;
+  rider.route.count = 1;
+  rider.gap = g.c.params.gap;
+  rider.pace = {StandardOf(g.c.params.xy), g.c.params.lateral_acceleration};
+  const Limits most = g.c.params.xy.maximum.limits();
+  rider.brakes = {most.deceleration, most.jerk};
+  s.track = track;
+  s.mode = CommandMode::kJoiningTrack;
+  ++streets.uses[track].configuring;
+  return answer;
+}
+
+Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
+  State& s = g.s;
+  Streets& streets = g.c.streets;
+  if (const ErrorId why = WhyNot(s, Ask::kLeaveTrack); why != ErrorId::kNone) return Refused(why);
+  if (!IsPlaneResting(g.c, s)) return Refused(ErrorId::kCommandMode);
+  if (streets.uses[s.track].moving > 0) return Refused(ErrorId::kTrackMode);
+  s.plane = {};
+  s.plane.motion = StandingAt(s.set_point[kX].position, s.set_point[kY].position);
+  s.plane.begin = g.c.cycle.count;
+  const Answer answer = MoveTo(g, {command.x, command.y, command.c, command.use_orientation, command.velocity,
+                                   command.acceleration, command.deceleration, command.jerk});
+  if (answer.status.failed()) return answer;
+  s.mode = CommandMode::kLeavingTrack;
+  ++streets.uses[s.track].configuring;
+  return answer;
+}
+
+Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
+  State& s = g.s;
+  Streets& streets = g.c.streets;
+  if (const ErrorId why = WhyNot(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
+  const std::uint32_t track = command.track.empty() ? s.track : streets.Find(command.track.view());
+  if (track == planar::kNoTrack) return Refused(ErrorId::kParameter);
+  const planar::Road& road = streets.network[track];
+  const bool turns_count = road.closed && command.direction == TurnDirection::kNonModulo;
+  const bool outside = !(command.position >= 0 && command.position <= road.length);
+  if (outside && !turns_count) return Refused(ErrorId::kTargetBehindLimit);
+  planar::Rider next = g.c.rider();
+  const planar::Destination to{track, command.position, WayOf(command.direction), command.additional_turns,
+                               command.modulo_tolerance};
+  if (!planar::Send(streets.network, streets.search, to, next)) return Refused(ErrorId::kNoRoute);
+  for (const std::uint32_t on : next.route.all()) {
+    if (!streets.tracks[on].enabled || streets.uses[on].configuring > 0) return Refused(ErrorId::kTrackMode);
+  }
+  next.pace = {LimitsOf(command, g.c.params.xy, s.limited_by), g.c.params.lateral_acceleration};
+  next.gap = command.gap.value_or(g.c.params.gap);
+  End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
+  Take(g, kPlane);
+  g.c.rider() = next;
+  for (const std::uint32_t on : next.route.all()) ++streets.uses[on].moving;
+  return {};
+}
+Answer CarryOut(const Given& g, const AdoptTrackOrientation& command) noexcept {
+  return Turn(g,
+              {.position = 0,
+               .direction = command.direction,
+               .additional_turns = command.additional_turns,
+               .velocity = command.velocity,
+               .acceleration = command.acceleration,
+               .deceleration = command.deceleration,
+               .jerk = command.jerk},
+              Ask::kAdoptTrackOrientation);
+}
+
+}  // namespace takt::mover

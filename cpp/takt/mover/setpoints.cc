@@ -1,0 +1,43 @@
+// Set points from outside.
+#include "takt/mover/admission.h"
+
+namespace takt::mover {
+
+Answer CarryOut(const Given& g, const StartExternalSetpointGeneration& command) noexcept {
+  State& s = g.s;
+  const bool alone = command.mode == SetpointMode::kAbsolute;
+  if (command.mode == SetpointMode::kNone) return Refused(ErrorId::kParameter);
+  const ErrorId why = WhyNot(s, alone ? Ask::kExternalAbsolute : Ask::kExternalRelative);
+  if (why != ErrorId::kNone) return Refused(why);
+  if (s.external.mode != SetpointMode::kNone) return Refused(ErrorId::kCommandMode);
+  if (alone && !IsResting(g.c, s)) return Refused(ErrorId::kCommandMode);
+  s.external = {};
+  s.external.mode = command.mode;
+  if (alone) s.mode = CommandMode::kExternalSetpointGeneration;
+  Take(g, kExternal);
+  return {};
+}
+
+Answer CarryOut(const Given& g, const SetExternalSetpoint& p) noexcept {
+  External& external = g.s.external;
+  if (external.mode == SetpointMode::kNone) return Refused(ErrorId::kCommandMode);
+  external.given = {{{p.x, p.velocity_x, p.acceleration_x},
+                     {p.y, p.velocity_y, p.acceleration_y},
+                     {p.z, p.velocity_z, p.acceleration_z},
+                     {p.a, p.velocity_a, p.acceleration_a},
+                     {p.b, p.velocity_b, p.acceleration_b},
+                     {p.c, p.velocity_c, p.acceleration_c}}};
+  external.begun = external.fresh = true;
+  return Done();
+}
+
+Answer CarryOut(const Given& g, const StopExternalSetpointGeneration&) noexcept {
+  State& s = g.s;
+  if (s.external.mode == SetpointMode::kNone) return Refused(ErrorId::kCommandMode);
+  End(g.c, kExternal, FeedbackState::kDone, ErrorId::kNone, s);
+  EndAll(g.c, false, FeedbackState::kAborted, ErrorId::kNone, s);
+  BringToRest(g.c, nullptr, s);
+  s.tickets[kStopExternal] = g.ticket;
+  return {Status::Ok(), DurationOf(s.plane.motion)};
+}
+}  // namespace takt::mover
