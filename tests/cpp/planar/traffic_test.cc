@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "streets.h"
 #include "takt/trajectory/planner.h"
@@ -246,52 +248,62 @@ TEST(Traffic, FaceToFaceIsADeadlock) {  // PL-26
   EXPECT_FALSE(IsDeadlocked(streets.riders(), 0));
 }
 
-// Random commands to random movers in random cities: the invariant, by what is seen of it.
-TEST(Traffic, NobodyComesTooNear) {  // PL-23, PL-24
-  const int trials = testing::Trials(2);
-  for (int trial = 0; trial < trials; ++trial) {
-    testing::Random random(static_cast<unsigned>(trial));
-    const std::vector<Layout> layouts = testing::RandomCity(random, 14, 100);
-    Streets streets(layouts, 50);
-    std::uint32_t put = 0;
-    for (std::uint32_t track = 0; track < layouts.size(); ++track) {
-      const Road& road = streets.network()[track];
-      const double from = std::max(170.0, road.range_at_start) + 1,
-                   to = road.length - std::max(170.0, road.range_at_end) - 1;
-      for (double s = from; s < to && put < 50; s += 180 + random.Between(0, 500)) {
-        const Pace pace = testing::PaceOf(random.Between(300, 2000), random.Between(2000, 15000),
-                                          random.Between(5e4, 4e5), random.Between(2000, 10000));
-        Rider& r = streets.Put(put++, track, s, pace, 170);
-        r.brakes.deceleration *= random.Between(1, 2);
-      }
+// Random commands, halts and faults of random movers in random cities: the invariant, by what is seen of it.
+class CityProperty : public ::testing::TestWithParam<int> {};
+
+TEST_P(CityProperty, NobodyComesTooNear) {  // PL-23, PL-24
+  const int cycles = std::getenv("TAKT_LONG") ? 600000 : 20000;
+  testing::Random random(static_cast<unsigned>(GetParam()));
+  const std::vector<Layout> layouts = testing::RandomCity(random, 14, 100);
+  Streets streets(layouts, 50);
+  std::uint32_t put = 0;
+  for (std::uint32_t track = 0; track < layouts.size(); ++track) {
+    const Road& road = streets.network()[track];
+    const double from = std::max(170.0, road.range_at_start) + 1,
+                 to = road.length - std::max(170.0, road.range_at_end) - 1;
+    for (double s = from; s < to && put < 50; s += 180 + random.Between(0, 500)) {
+      const Pace pace = testing::PaceOf(random.Between(300, 2000), random.Between(2000, 15000),
+                                        random.Between(5e4, 4e5), random.Between(2000, 10000));
+      Rider& r = streets.Put(put++, track, s, pace, 170);
+      r.brakes.deceleration *= random.Between(1, 2);
     }
-    double missing = -INFINITY, nearest = INFINITY, travelled = 0;
-    Watcher watcher(streets);
-    int refused = 0;
-    for (int i = 0; i < 20000; ++i) {
-      for (std::uint32_t k = 0; k < put; ++k) {
-        Rider& r = streets[k];
-        if (random.Below(2000) == 0) streets.Halt(k);
-        if (((r.aim == Aim::kRest || r.there) && random.Below(300) == 0) || random.Below(5000) == 0) {
-          const auto track = static_cast<std::uint32_t>(random.Below(static_cast<int>(layouts.size())));
-          streets.Send(k, track, random.Between(0, streets.track(track).length));
-        }
-      }
-      streets.Step();
-      refused += static_cast<int>(streets.traffic().refused());
-      watcher.Look();
-      missing = std::max(missing, streets.Missing());
-      if (i % 5 == 0) nearest = std::min(nearest, streets.Nearest());
-    }
-    for (std::uint32_t k = 0; k < put; ++k) travelled += streets[k].origin;
-    EXPECT_GT(travelled, 10000) << trial;  // else it would prove nothing
-    EXPECT_LT(refused, 20000);
-    EXPECT_LT(missing, 1e-3);
-    EXPECT_GT(nearest, 0);
-    EXPECT_LE(watcher.acceleration, 1 + 1e-6);
-    EXPECT_LE(watcher.jerk, 1 + 1e-6);
   }
+  double missing = -INFINITY, nearest = INFINITY, travelled = 0;
+  std::vector<int> down(put);  // until this cycle, by a fault
+  Watcher watcher(streets);
+  int refused = 0;
+  for (int i = 0; i < cycles && !HasFailure(); ++i) {
+    for (std::uint32_t k = 0; k < put; ++k) {
+      Rider& r = streets[k];
+      if (random.Below(2000) == 0) streets.Halt(k);
+      if (random.Below(20000) == 0) {
+        streets.Halt(k);
+        down[k] = i + random.Below(3000);
+      }
+      if (i < down[k]) continue;
+      if (((r.aim == Aim::kRest || r.there) && random.Below(300) == 0) || random.Below(5000) == 0) {
+        const auto track = static_cast<std::uint32_t>(random.Below(static_cast<int>(layouts.size())));
+        streets.Send(k, track, random.Between(0, streets.track(track).length));
+      }
+    }
+    streets.Step();
+    refused += static_cast<int>(streets.traffic().refused());
+    watcher.Look();
+    missing = std::max(missing, streets.Missing());
+    EXPECT_LT(missing, 1e-3) << i;
+    if (i % 5 == 0) nearest = std::min(nearest, streets.Nearest());
+    EXPECT_GT(nearest, 0) << i;
+  }
+  for (std::uint32_t k = 0; k < put; ++k) travelled += streets[k].origin;
+  EXPECT_GT(travelled, 10000);  // else it would prove nothing
+  EXPECT_LT(refused, cycles);
+  EXPECT_LE(watcher.acceleration, 1 + 1e-6);
+  EXPECT_LE(watcher.jerk, 1 + 1e-6);
+  std::printf("%u movers on %zu tracks, %.0f m: gap kept to %.1e mm, bodies %.1f mm apart, %.1f refusals a second\n",
+              put, layouts.size(), travelled / 1000, std::max(0.0, missing), nearest, 1000.0 * refused / cycles);
 }
+
+INSTANTIATE_TEST_SUITE_P(Seeds, CityProperty, ::testing::Range(0, std::getenv("TAKT_LONG") ? 300 : 2));
 
 }  // namespace
 }  // namespace takt::planar
