@@ -26,8 +26,10 @@ COMMANDS = (
     "mover.start_external_setpoint_generation",
     "mover.set_external_setpoint",
     "mover.stop_external_setpoint_generation",
+    "mover.wait",
+    "mover.release",
 )
-ERRORS = (5, 8, 3004, 3005, 3007, 3024, 3040, 3041, 3042, 3043, 3044, 3045, 3046, 3047)
+ERRORS = (5, 8, 3003, 3004, 3005, 3007, 3024, 3040, 3041, 3042, 3043, 3044, 3045, 3046, 3047)
 SIGNALS = ("shuttle.x", "shuttle.y", "shuttle.velocity_x", "shuttle.velocity_y", "shuttle.c", "shuttle.command_mode")
 
 
@@ -56,6 +58,13 @@ def scenario(session: takt.Session) -> None:
     session.run(0.2)
     shuttle.halt().wait()
     session.run(0.1)
+    session.mark("one after the other")
+    shuttle.move_to_position(x=300, y=60)
+    shuttle.move_to_position(x=300, y=160, buffer_mode="buffered", blending=30)
+    shuttle.wait(duration=0.1, for_release=True)
+    last = shuttle.move_to_position(x=60, y=60, buffer_mode="buffered")
+    shuttle.release()
+    last.wait()
     session.mark("along a track")
     session.track("line").enable().wait()
     shuttle.join_track(track="line", use_orientation=False).wait()

@@ -42,7 +42,7 @@ class Feedback:
         self.sentence = ""  # what went wrong; empty while nothing has
         self.cycle = -1  # of the last change; -1: before the command came to a cycle
         self.travel_time_s = 0.0  # s, how long the motion takes as planned when it began; 0: not known (AX-96)
-        self.value = 0.0  # what a command was to read or capture, or has covered, once it has ended
+        self.value = 0.0  # what a command was to read or capture, has covered, or (movers) s it took, once it has ended
         self.released = False  # let go of, whether or not the engine has taken up the release yet
         self._release: Feedback | None = None  # the last try to
 

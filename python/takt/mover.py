@@ -18,6 +18,7 @@ class MoverRecord:
     state: FeedbackState
     error_id: int  # 0: none
     cycle: int  # that took the command
+    begun: int  # cycle in which it began; of buffered ones later than it was given
     changed: int  # cycle in which it came to be what it is
 
 

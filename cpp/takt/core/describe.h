@@ -24,6 +24,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "takt/core/describe_fwd.h"
@@ -35,7 +36,18 @@ namespace takt {
 
 struct Type;
 
-enum class Kind : std::uint8_t { kBool, kInteger, kReal, kString, kEnum, kStruct, kArray, kVector, kOptional };
+enum class Kind : std::uint8_t {
+  kBool,
+  kInteger,
+  kReal,
+  kString,
+  kEnum,
+  kStruct,
+  kArray,
+  kVector,
+  kOptional,
+  kVariant
+};
 
 enum class Presence : std::uint8_t {
   kRequired,   // must be given
@@ -105,6 +117,10 @@ struct Type {
   const void* (*optional_value)(const void* optional) noexcept = nullptr;  // null: empty
   void (*optional_reset)(void* optional) = nullptr;
   void* (*optional_emplace)(void* optional) = nullptr;  // a default-made value, its address
+  // Variants: of state only.
+  std::vector<const Type*> alternatives;
+  std::size_t (*variant_index)(const void* variant) noexcept = nullptr;
+  const void* (*variant_value)(const void* variant) noexcept = nullptr;
 
   std::vector<HashStep> hash_steps;
 
@@ -315,6 +331,21 @@ struct TypeMaker<std::optional<T>> {
     };
     type.optional_reset = [](void* o) { static_cast<Optional*>(o)->reset(); };
     type.optional_emplace = [](void* o) -> void* { return &static_cast<Optional*>(o)->emplace(); };
+    return type;
+  }
+};
+
+template <typename... T>
+struct TypeMaker<std::variant<T...>> {
+  using Variant = std::variant<T...>;
+  static Type Make() {
+    Type type;
+    type.kind = Kind::kVariant;
+    type.alternatives = {&TypeOf<T>()...};
+    type.variant_index = [](const void* v) noexcept { return static_cast<const Variant*>(v)->index(); };
+    type.variant_value = [](const void* v) noexcept {
+      return std::visit([](const auto& value) -> const void* { return &value; }, *static_cast<const Variant*>(v));
+    };
     return type;
   }
 };

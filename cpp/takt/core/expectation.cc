@@ -54,6 +54,7 @@ std::string Expectation(const Type& type, const Field* field) {
       return text;
     }
     case Kind::kStruct:
+    case Kind::kVariant:
       return "a mapping";
     case Kind::kArray:
       return "a list of " + std::to_string(type.count);

@@ -35,7 +35,8 @@ struct FeedbackEvent {
   FeedbackState state = FeedbackState::kBusy;
   bool reached = false;
   ErrorId error = ErrorId::kNone;
-  // What the command found out: done: what it was to read or capture; active: s its motion takes as planned (AX-96).
+  // What the command found out: done: what it was to read or capture, of movers' moves: s that it took; active: s its
+  // motion takes as planned (AX-96).
   double value = 0;
 };
 

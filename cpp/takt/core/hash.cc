@@ -102,6 +102,10 @@ std::uint64_t HashOf(const Type& type, const void* object, std::uint64_t seed) n
       const void* value = type.optional_value(object);
       return value ? HashOf(*type.element, value, Mix(seed, 1)) : Mix(seed, 0);
     }
+    case Kind::kVariant: {
+      const std::size_t index = type.variant_index(object);
+      return HashOf(*type.alternatives[index], type.variant_value(object), Mix(seed, index));
+    }
     case Kind::kVector:
     case Kind::kArray:
       return HashElements(type, object, seed);
@@ -122,6 +126,11 @@ bool Equal(const Type& type, const void* a, const void* b) noexcept {
       const void* value_a = type.optional_value(a);
       const void* value_b = type.optional_value(b);
       return value_a && value_b ? Equal(*type.element, value_a, value_b) : value_a == value_b;
+    }
+    case Kind::kVariant: {
+      const std::size_t index = type.variant_index(a);
+      return index == type.variant_index(b) &&
+             Equal(*type.alternatives[index], type.variant_value(a), type.variant_value(b));
     }
     case Kind::kVector:
     case Kind::kArray:

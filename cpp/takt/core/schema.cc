@@ -165,6 +165,11 @@ Json ReferenceJson(const Type& type) {
       for (const Enumerator& e : type.enumerators) values.push_back({{"name", e.name}, {"about", e.about}});
       return {{"kind", "enum"}, {"name", type.name}, {"about", type.about}, {"values", std::move(values)}};
     }
+    case Kind::kVariant: {
+      Json alternatives = Json::array();
+      for (const Type* alternative : type.alternatives) alternatives.push_back(ReferenceJson(*alternative));
+      return {{"kind", "variant"}, {"alternatives", std::move(alternatives)}};
+    }
     case Kind::kStruct:
       break;
   }
@@ -206,6 +211,8 @@ Json ToJson(const Type& type, const void* object, const Field* field) {
         list.push_back(ToJson(*type.element, ElementAt(type, object, i), field));
       return list;
     }
+    case Kind::kVariant:
+      return ToJson(*type.alternatives[type.variant_index(object)], type.variant_value(object), field);
     case Kind::kStruct:
       break;
   }

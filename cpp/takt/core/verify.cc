@@ -14,6 +14,7 @@ class Verifier {
   void Check(const Type& type) {
     if (!seen_.insert(&type).second) return;
     if (type.element) Check(*type.element);
+    for (const Type* alternative : type.alternatives) Check(*alternative);
     if (type.kind == Kind::kEnum) CheckEnum(type);
     if (type.kind == Kind::kStruct) CheckStruct(type);
   }
@@ -46,6 +47,9 @@ class Verifier {
     for (const Field& field : type.fields) {
       if (field.about.empty()) Fault(type, field.name, "says nothing about itself");
       if (NeedsQuotes(field.name)) Fault(type, field.name, "YAML does not read this name as text");
+      if (field.type->kind == Kind::kVariant && field.presence != Presence::kInternal) {
+        Fault(type, field.name, "a variant is of state only");
+      }
       if (field.presence == Presence::kDefaulted) CheckDefault(type, field, *field.type, FieldAt(field, type.defaults));
       Check(*field.type);
     }

@@ -176,6 +176,8 @@ const std::vector<Entry>& Entries() {
       Make<mover::Command, mover::StartExternalSetpointGeneration>(kMover, "start_external_setpoint_generation"),
       Make<mover::Command, mover::SetExternalSetpoint>(kMover, "set_external_setpoint"),
       Make<mover::Command, mover::StopExternalSetpointGeneration>(kMover, "stop_external_setpoint_generation"),
+      Make<mover::Command, mover::Wait>(kMover, "wait"),
+      Make<mover::Command, mover::Release>(kMover, "release"),
       Make<track::Command, track::AppendLine>(kTrack, "append_line"),
       Make<track::Command, track::AppendCircle>(kTrack, "append_circle"),
       Make<track::Command, track::AppendPosition>(kTrack, "append_position"),

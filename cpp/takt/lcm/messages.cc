@@ -435,6 +435,9 @@ msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine:
   m.track_acceleration = o.track_acceleration;
   m.waits_for = o.waits_for;
   m.deadlocked = o.deadlocked;
+  m.delay = static_cast<std::int8_t>(o.delay);
+  m.delay_since = Signed(o.delay_since);
+  m.buffered = o.buffered;
   m.commands = Signed(o.commands);
   return m;
 }

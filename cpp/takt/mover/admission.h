@@ -1,5 +1,5 @@
 // Commands as they arrive: what carrying them out has in common. Each family has a file of its own beside this one:
-// power.cc, moves.cc, on_tracks.cc, setpoints.cc.
+// power.cc, moves.cc, on_tracks.cc, setpoints.cc, buffer.cc.
 #pragma once
 
 #include <algorithm>
@@ -34,6 +34,7 @@ inline Answer Done() noexcept {
 inline void Take(const Given& g, Slot slot) noexcept {
   End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, g.s);
   g.s.tickets[slot] = g.ticket;
+  g.s.begun[slot] = g.c.cycle.count;
 }
 
 // Why the mover does not do this now.
@@ -59,6 +60,11 @@ trajectory::Limits LimitsOf(const Move& m, const Params& params, LimitedBy& limi
           take(m.jerk, standard.jerk, most.jerk, LimitedBy::kJerk)};
 }
 
+// Carries it out, or refuses it; reports either way. Whether it was accepted.
+bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) noexcept;
+
+// Sends a mover on its way as `command` asks; not yet with its dynamics.
+ErrorId FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept;
 // A move of X and Y in the plane, whatever the mode.
 Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept;
 // One of C, if it may do what `ask` says.
@@ -81,5 +87,7 @@ Answer CarryOut(const Given& g, const AdoptTrackOrientation& command) noexcept;
 Answer CarryOut(const Given& g, const StartExternalSetpointGeneration& command) noexcept;
 Answer CarryOut(const Given& g, const SetExternalSetpoint& command) noexcept;
 Answer CarryOut(const Given& g, const StopExternalSetpointGeneration& command) noexcept;
+Answer CarryOut(const Given& g, const Wait& command) noexcept;
+Answer CarryOut(const Given& g, const Release& command) noexcept;
 
 }  // namespace takt::mover

@@ -16,6 +16,7 @@ void DescribeDynamics(Description<T>& d, Unit speed, Unit acceleration, Unit jer
   d.template defaulted<&T::acceleration>(acceleration, kAccelerations, "Largest acceleration.");
   d.template defaulted<&T::deceleration>(acceleration, kAccelerations, "Largest deceleration.");
   d.template defaulted<&T::jerk>(jerk, kJerks, "Largest jerk.");
+  d.template defaulted<&T::buffer_mode>("Whether it waits until all that were given before it are done.");
 }
 
 template <typename T>
@@ -48,6 +49,12 @@ void describe(Enumeration<SetpointMode>& e) {
   e.value(SetpointMode::kNone, "none", "Not at all.");
   e.value(SetpointMode::kAbsolute, "absolute", "It follows them alone.");
   e.value(SetpointMode::kRelative, "relative", "They come on top of whatever else it does.");
+}
+
+void describe(Enumeration<Buffering>& e) {
+  e.about("When a command of a mover begins.");
+  e.value(Buffering::kAborting, "aborting", "At once.");
+  e.value(Buffering::kBuffered, "buffered", "When all that were given before it are done.");
 }
 
 void describe(Description<Enable>& d) {
@@ -89,6 +96,10 @@ void describe(Description<MoveToPosition>& d) {
   d.defaulted<&M::c>(unit::deg, kAngles, "C of it; counts with use_orientation.");
   d.defaulted<&M::use_orientation>("True: C moves along, and is there at the same time where both begin at rest.");
   DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+  d.defaulted<&M::blending>(unit::mm, between(0, 1e5),
+                            "Buffered behind another one: it begins that far before the end of that, without a stop.");
+  d.rule<&M::blending>("must be 0 unless buffered",
+                       [](const M& m) { return m.blending == 0 || m.buffer_mode == Buffering::kBuffered; });
 }
 
 void describe(Description<MoveZ>& d) {
@@ -167,6 +178,18 @@ void describe(Description<AdoptTrackOrientation>& d) {
     return a.additional_turns == 0 || a.direction == TurnDirection::kPositive ||
            a.direction == TurnDirection::kNegative;
   });
+}
+
+void describe(Description<Wait>& d) {
+  d.named("MoverWait");
+  d.about("Holds back what is buffered behind it. It begins when all that were given before it are done.");
+  d.defaulted<&Wait::duration>(unit::s, between(0, 1e6), "At least so long.");
+  d.defaulted<&Wait::for_release>("Until a release, which it takes.");
+}
+void describe(Description<Release>& d) {
+  d.named("MoverRelease");
+  d.about(
+      "Lets a wait of the mover go on that waits for it. They count: one that comes first is there for a later wait.");
 }
 
 void describe(Description<StartExternalSetpointGeneration>& d) {

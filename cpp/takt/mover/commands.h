@@ -24,6 +24,11 @@ enum class SetpointMode : std::uint8_t {
   kRelative,  // they come on top of whatever else it does
 };
 
+enum class Buffering : std::uint8_t {
+  kAborting,  // at once; what waits is aborted
+  kBuffered,  // when all before it is done
+};
+
 struct Enable {};
 struct Disable {};
 struct Reset {};
@@ -46,6 +51,8 @@ struct MoveToPosition {
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
+  Buffering buffer_mode = Buffering::kAborting;
+  double blending = 0;  // mm before the end of the move before, buffered
 };
 
 struct MoveZ {
@@ -54,6 +61,7 @@ struct MoveZ {
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
+  Buffering buffer_mode = Buffering::kAborting;
 };
 struct MoveA {
   double position = 0;                   // deg
@@ -61,6 +69,7 @@ struct MoveA {
   std::optional<double> acceleration{};  // deg/s²
   std::optional<double> deceleration{};  // deg/s²
   std::optional<double> jerk{};          // deg/s³
+  Buffering buffer_mode = Buffering::kAborting;
 };
 struct MoveB {
   double position = 0;                   // deg
@@ -68,6 +77,7 @@ struct MoveB {
   std::optional<double> acceleration{};  // deg/s²
   std::optional<double> deceleration{};  // deg/s²
   std::optional<double> jerk{};          // deg/s³
+  Buffering buffer_mode = Buffering::kAborting;
 };
 struct MoveC {
   double position = 0;  // deg
@@ -77,6 +87,7 @@ struct MoveC {
   std::optional<double> acceleration{};  // deg/s²
   std::optional<double> deceleration{};  // deg/s²
   std::optional<double> jerk{};          // deg/s³
+  Buffering buffer_mode = Buffering::kAborting;
 };
 
 struct JoinTrack {
@@ -86,6 +97,7 @@ struct JoinTrack {
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
+  Buffering buffer_mode = Buffering::kAborting;
 };
 struct LeaveTrack {
   double x = 0, y = 0;                   // mm
@@ -95,6 +107,7 @@ struct LeaveTrack {
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
+  Buffering buffer_mode = Buffering::kAborting;
 };
 struct MoveOnTrack {
   double position = 0;          // mm along the track
@@ -107,6 +120,7 @@ struct MoveOnTrack {
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
+  Buffering buffer_mode = Buffering::kAborting;
 };
 struct AdoptTrackOrientation {  // C turns to that of the track, which is 0
   TurnDirection direction = TurnDirection::kShortestWay;
@@ -115,7 +129,15 @@ struct AdoptTrackOrientation {  // C turns to that of the track, which is 0
   std::optional<double> acceleration{};  // deg/s²
   std::optional<double> deceleration{};  // deg/s²
   std::optional<double> jerk{};          // deg/s³
+  Buffering buffer_mode = Buffering::kAborting;
 };
+
+// The buffer: both wait their turn there.
+struct Wait {
+  double duration = 0;       // s, at least
+  bool for_release = false;  // until there is a release; takes it
+};
+struct Release {};  // lets one Wait go on, be it the next to come
 
 struct StartExternalSetpointGeneration {
   SetpointMode mode = SetpointMode::kAbsolute;
@@ -132,13 +154,14 @@ struct StopExternalSetpointGeneration {};
 
 using Command = std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC,
                              JoinTrack, LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration,
-                             SetExternalSetpoint, StopExternalSetpointGeneration>;
+                             SetExternalSetpoint, StopExternalSetpointGeneration, Wait, Release>;
 
 // Table of the arguments of the command at this place of the variant.
 const Type& TypeOfCommand(std::size_t index);
 
 void describe(Enumeration<TurnDirection>&);
 void describe(Enumeration<SetpointMode>&);
+void describe(Enumeration<Buffering>&);
 void describe(Description<Enable>&);
 void describe(Description<Disable>&);
 void describe(Description<Reset>&);
@@ -156,5 +179,7 @@ void describe(Description<AdoptTrackOrientation>&);
 void describe(Description<StartExternalSetpointGeneration>&);
 void describe(Description<SetExternalSetpoint>&);
 void describe(Description<StopExternalSetpointGeneration>&);
+void describe(Description<Wait>&);
+void describe(Description<Release>&);
 
 }  // namespace takt::mover

@@ -13,6 +13,7 @@ namespace takt::mover {
 struct Record {
   Ticket ticket = 0;          // 0: none
   std::uint64_t cycle = 0;    // that took the command
+  std::uint64_t begun = 0;    // cycle in which it began; buffered ones later
   std::uint64_t changed = 0;  // cycle in which it came to be what it is
   std::uint8_t command = 0;   // place in mover::Command
   FeedbackState state = FeedbackState::kBusy;
@@ -26,7 +27,7 @@ struct History {
   std::uint64_t count = 0;               // of all commands so far
 
   void Begin(Ticket ticket, std::uint64_t cycle, std::uint8_t command) noexcept {
-    records[count++ % kHistory] = {ticket, cycle, cycle, command, FeedbackState::kBusy, ErrorId::kNone};
+    records[count++ % kHistory] = {ticket, cycle, cycle, cycle, command, FeedbackState::kBusy, ErrorId::kNone};
   }
   // One that is too old is forgotten.
   void Note(const FeedbackEvent& event) noexcept {
@@ -35,6 +36,7 @@ struct History {
       Record& record = records[i % kHistory];
       if (record.ticket != event.ticket) continue;
       record.changed = event.cycle;
+      if (event.state == FeedbackState::kActive) record.begun = event.cycle;
       record.state = event.state;
       record.error = event.error;
       return;

@@ -151,6 +151,19 @@ void Watch(const Context& c, const Inputs& inputs, State& s) {
   if (!(off <= *c.params.deviation)) Fail(c, ErrorId::kMoverDeviation, s);
 }
 
+// Why the mover does not go on.
+void PublishDelay(const Context& c, const State& s, Outputs& out) {
+  const planar::Rider& rider = c.rider();
+  if (s.tickets[kWait] != 0) {
+    const bool for_time = c.cycle.count < s.buffer.until;
+    out.delay = for_time ? Delay::kTime : Delay::kRelease;
+    out.delay_since = s.begun[kWait];
+  } else if (IsOnTrack(s) && rider.waits != planar::Waits::kNot) {
+    out.delay = rider.waits == planar::Waits::kMover ? Delay::kMover : Delay::kTrackEnd;
+    out.delay_since = rider.waits_since;
+  }
+}
+
 }  // namespace
 
 Inputs Simulate(const State& s) noexcept {
@@ -161,7 +174,9 @@ Inputs Simulate(const State& s) noexcept {
 void Step(const Context& c, const Inputs& inputs, State& s) noexcept {
   if (IsOnTrack(s)) s.track = c.rider().route.first();
   Watch(c, inputs, s);
+  TakeTurns(c, s);
   MoveOn(c, s);
+  LookBack(c, s);
   Finish(c, s);
   Change(c, s);
 }
@@ -216,6 +231,8 @@ void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& ou
     out.waits_for = rider.waits == planar::Waits::kMover ? rider.waits_for + 1 : 0;
     out.deadlocked = out.waits_for != 0 && planar::IsDeadlocked(c.streets.riders, c.index);
   }
+  PublishDelay(c, s, out);
+  out.buffered = s.buffer.count;
   out.commands = s.history.count;
 }
 

@@ -20,15 +20,32 @@ Limits Slower(const Limits& l, double share) {
 // From one motion to another place: at once if that is quicker, else by way of rest. Nothing: no such motion.
 std::optional<PlaneMove> PlanPlane(const Given& g, const MoveToPosition& to, const Limits& limits, double& duration) {
   const Context& c = g.c;
+  if (IsAtCorner(c, g.s.plane)) {
+    const PlaneMove& from = g.s.plane;
+    Limits even = limits;
+    even.acceleration = even.deceleration = std::min(limits.acceleration, limits.deceleration);
+    PlaneMove round;
+    round.begin = c.cycle.count;
+    const PlaneState corner{{from.corner_x, 0, 0}, {from.corner_y, 0, 0}};
+    const PlaneState now = At(from.motion, Elapsed(c, from.begin));
+    if (PlanRound(c.planner, now, corner, to.x, to.y, from.share, even, round.motion)) {
+      duration = DurationOf(round.motion);
+      return round;
+    }
+  }
   const double most = c.params.xy.maximum.velocity * (1 + 1e-9);
   const double now = Elapsed(c, g.s.plane.begin);
-  PlaneMove at_once{.motion = {}, .begin = c.cycle.count, .waits = false, .next = {}, .turns = false};
+  PlaneMove at_once;
+  at_once.begin = c.cycle.count;
   const bool found = PlanMove(c.planner, At(g.s.plane.motion, now), to.x, to.y, limits, at_once.motion) &&
                      SpeedBound(at_once.motion) <= most;
   duration = DurationOf(at_once.motion);
   if (found && at_once.motion.share == 0) return at_once;
 
-  PlaneMove stops{.motion = {}, .begin = c.cycle.count, .waits = true, .next = to, .turns = false};
+  PlaneMove stops;
+  stops.begin = c.cycle.count;
+  stops.waits = true;
+  stops.next = to;
   bool can_stop = PlanRest(c.planner, g.s.plane.motion, now, limits, stops.motion);
   if (can_stop && SpeedBound(stops.motion) > most) {
     can_stop = PlanRest(c.planner, g.s.plane.motion, now, c.params.xy.maximum.limits(), stops.motion);
@@ -108,6 +125,7 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
   s.others.back() = turn;
   s.plane = *move;
   s.plane.turns = command.use_orientation;
+  s.plane.limits = limits;
   s.limited_by = limited_by;
   return {Status::Ok(), duration};
 }

@@ -97,29 +97,34 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
   return answer;
 }
 
-Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
-  State& s = g.s;
-  Streets& streets = g.c.streets;
-  if (const ErrorId why = WhyNot(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
+ErrorId FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept {
+  Streets& streets = c.streets;
   const std::uint32_t track = command.track.empty() ? s.track : streets.Find(command.track.view());
-  if (track == planar::kNoTrack) return Refused(ErrorId::kParameter);
+  if (track == planar::kNoTrack) return ErrorId::kParameter;
   const planar::Road& road = streets.network[track];
   const bool turns_count = road.closed && command.direction == TurnDirection::kNonModulo;
   const bool outside = !(command.position >= 0 && command.position <= road.length);
-  if (outside && !turns_count) return Refused(ErrorId::kTargetBehindLimit);
-  planar::Rider next = g.c.rider();
+  if (outside && !turns_count) return ErrorId::kTargetBehindLimit;
   const planar::Destination to{track, command.position, WayOf(command.direction), command.additional_turns,
                                command.modulo_tolerance};
-  if (!planar::Send(streets.network, streets.search, to, next)) return Refused(ErrorId::kNoRoute);
-  for (const std::uint32_t on : next.route.all()) {
-    if (!streets.tracks[on].enabled || streets.uses[on].configuring > 0) return Refused(ErrorId::kTrackMode);
+  if (!planar::Send(streets.network, streets.search, to, rider)) return ErrorId::kNoRoute;
+  for (const std::uint32_t on : rider.route.all()) {
+    if (!streets.tracks[on].enabled || streets.uses[on].configuring > 0) return ErrorId::kTrackMode;
   }
+  return ErrorId::kNone;
+}
+
+Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
+  State& s = g.s;
+  if (const ErrorId why = WhyNot(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
+  planar::Rider next = g.c.rider();
+  if (const ErrorId why = FindWay(g.c, command, s, next); why != ErrorId::kNone) return Refused(why);
   next.pace = {LimitsOf(command, g.c.params.xy, s.limited_by), g.c.params.lateral_acceleration};
   next.gap = command.gap.value_or(g.c.params.gap);
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);
   g.c.rider() = next;
-  for (const std::uint32_t on : next.route.all()) ++streets.uses[on].moving;
+  for (const std::uint32_t on : next.route.all()) ++g.c.streets.uses[on].moving;
   return {};
 }
 Answer CarryOut(const Given& g, const AdoptTrackOrientation& command) noexcept {

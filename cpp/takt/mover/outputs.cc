@@ -4,6 +4,15 @@
 
 namespace takt::mover {
 
+void describe(Enumeration<Delay>& e) {
+  e.about("Why a mover that has a command does not go on.");
+  e.value(Delay::kNone, "none", "It goes on, or has nothing to do.");
+  e.value(Delay::kMover, "mover", "Another one is in its way: waits_for.");
+  e.value(Delay::kTrackEnd, "track_end", "Its way ends here.");
+  e.value(Delay::kTime, "time", "It is told to wait for some time.");
+  e.value(Delay::kRelease, "release", "It is told to wait for a release.");
+}
+
 void describe(Description<Outputs>& d) {
   using O = Outputs;
   d.named("MoverOutputs");
@@ -48,6 +57,9 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::track_acceleration>(unit::mm_s2, "Along it.");
   d.internal<&O::waits_for>("Number of the mover that is in its way and that it waits for, from 1; 0: none.");
   d.internal<&O::deadlocked>("The mover that it waits for waits for it, be it over others.");
+  d.internal<&O::delay>("Why it does not go on.");
+  d.internal<&O::delay_since>("Cycle since which it does not; 0: it goes on.");
+  d.internal<&O::buffered>("So many commands wait for their turn.");
   d.internal<&O::commands>("So many commands have come, external set points apart.");
 }
 

@@ -11,6 +11,15 @@
 
 namespace takt::mover {
 
+// Why a mover that has a command does not go on (PL-70).
+enum class Delay : std::uint8_t {
+  kNone,
+  kMover,     // another one is in its way: waits_for
+  kTrackEnd,  // its way ends here
+  kTime,      // a wait for some time
+  kRelease,   // one for a release
+};
+
 struct Outputs {
   planar::ObjectState state = planar::ObjectState::kDisabled;
   CommandMode command_mode = CommandMode::kFreeMovement;
@@ -35,9 +44,13 @@ struct Outputs {
   double track_acceleration = 0;  // mm/s²
   std::uint32_t waits_for = 0;    // number of the mover that is in its way, from 1; 0: none
   bool deadlocked = false;        // that one waits for it, over others or not
+  Delay delay = Delay::kNone;     // why it does not go on
+  std::uint64_t delay_since = 0;  // cycle; 0: it goes on
+  std::uint32_t buffered = 0;     // commands that wait for their turn
   std::uint64_t commands = 0;     // so many have come
 };
 
+void describe(Enumeration<Delay>&);
 void describe(Description<Outputs>&);
 
 }  // namespace takt::mover

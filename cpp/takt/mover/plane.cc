@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "takt/core/describe.h"
+#include "takt/planar/braking.h"
 
 namespace takt::mover {
 
@@ -17,21 +18,28 @@ using trajectory::Profile;
 
 constexpr double kNothing = 1e-9;  // of a limit: nothing across
 constexpr int kShares = 8;         // that are tried
+constexpr int kTries = 4;          // of ways before a corner
+constexpr int kHalvings = 30;      // of a way
 
 struct Direction {
   double x = 1, y = 0;
 };
 
-// A state seen in a frame with this direction, from where it is.
+// A state seen in a frame with this direction.
 struct Framed {
   KinematicState along, across;
 };
 
-Framed InFrame(const PlaneState& s, const Direction& d) {
+Framed InFrame(const PlaneState& s, const Direction& d, double origin_x, double origin_y) {
   const auto along = [&](double x, double y) { return d.x * x + d.y * y; };
   const auto across = [&](double x, double y) { return d.x * y - d.y * x; };
-  return {{0, along(s.x.velocity, s.y.velocity), along(s.x.acceleration, s.y.acceleration)},
-          {0, across(s.x.velocity, s.y.velocity), across(s.x.acceleration, s.y.acceleration)}};
+  const double x = s.x.position - origin_x, y = s.y.position - origin_y;
+  return {{along(x, y), along(s.x.velocity, s.y.velocity), along(s.x.acceleration, s.y.acceleration)},
+          {across(x, y), across(s.x.velocity, s.y.velocity), across(s.x.acceleration, s.y.acceleration)}};
+}
+// From where it is.
+Framed InFrame(const PlaneState& s, const Direction& d) {
+  return InFrame(s, d, s.x.position, s.y.position);
 }
 
 std::optional<Direction> DirectionOf(double x, double y) {
@@ -85,10 +93,9 @@ bool PlanOntoLine(Planner& planner, const Framed& from, double distance, double 
   const double rest = std::sqrt(std::max(0.0, 1 - share * share));
   if (!Fits(from.across, share, limits) || !Fits(from.along, rest, limits)) return false;
   motion.share = share;
-  if (!planner.ToPosition(from.along, distance, 0, Times(rest, limits), motion.along).ok() ||
-      !planner.ToPosition(from.across, 0, 0, Times(share, limits), motion.across).ok()) {
-    return false;
-  }
+  if (!planner.ToPosition(from.along, distance, 0, Times(rest, limits), motion.along).ok()) return false;
+  if (share == 0) return true;
+  if (!planner.ToPosition(from.across, 0, 0, Times(share, limits), motion.across).ok()) return false;
   const double alone = motion.across.duration();
   Profile quicker = motion.along;
   quicker.Cut(alone);
@@ -167,6 +174,94 @@ bool PlanMove(Planner& planner, const PlaneState& from, double x, double y, cons
   best.end_y = y;
   out = best;
   return true;
+}
+
+bool PlanRound(Planner& planner, const PlaneState& from, const PlaneState& corner, double x, double y, double share,
+               const Limits& limits, PlaneMotion& out) noexcept {
+  const double way_x = x - corner.x.position, way_y = y - corner.y.position;
+  const auto direction = DirectionOf(way_x, way_y);
+  if (!direction) return false;
+  const Framed framed = InFrame(from, *direction, corner.x.position, corner.y.position);
+  PlaneMotion motion = Begin(corner, *direction);
+  if (!PlanOntoLine(planner, framed, std::hypot(way_x, way_y), share, limits, motion)) return false;
+  motion.end_x = x;
+  motion.end_y = y;
+  out = motion;
+  return true;
+}
+
+bool PlanCorner(Planner& planner, double x, double y, double most, const Limits& limits, const Limits& then, double t,
+                PlaneMotion& motion, Corner& best) noexcept {
+  const PlaneState corner{{motion.end_x, 0, 0}, {motion.end_y, 0, 0}};
+  const auto direction = DirectionOf(x - motion.end_x, y - motion.end_y);
+  // What is left of the first line once the mover is on it.
+  const double on_line = std::max(t, motion.across.duration());
+  const double end = motion.along.end().position;
+  if (!direction || on_line >= motion.along.duration()) return false;
+  Profile head = motion.along;
+  head.Cut(on_line);
+  const double left = end - head.end().position;
+  if (left <= 0) return false;
+  const double cosine = motion.direction_x * direction->x + motion.direction_y * direction->y;
+  const double sine = std::abs(motion.direction_x * direction->y - motion.direction_y * direction->x);
+  Limits even = then;
+  even.acceleration = even.deceleration = std::min(then.acceleration, then.deceleration);
+  const double angle = std::atan2(sine, std::abs(cosine));
+  bool found = false;
+  double least = 0;
+  PlaneMotion passing;
+  // Where the mover is too fast already to slow down so far before the corner, it is nearer to it.
+  for (int i = 0; i < kTries * (kShares + 1); ++i) {
+    const int part = i % (kShares + 1);
+    if (part == 0 && found) break;
+    if (part == 0 && i > 0) most *= 0.4;
+    const double share = std::sin(angle * part / kShares);
+    const double rest = std::cos(angle * part / kShares);
+    if (sine > kNothing ? part == 0 || rest < 0.05 : part > 0) continue;
+    const auto brakes = [](double part, const Limits& l) {
+      return planar::Brakes{part * l.deceleration, part * l.jerk};
+    };
+    double highest = std::min(limits.velocity, then.velocity);
+    if (sine > kNothing) highest = std::min(highest, share * then.velocity / sine);
+    if (std::abs(cosine) > kNothing) highest = std::min(highest, rest * then.velocity / std::abs(cosine));
+    // From so far before, it can stop at the corner; it gets rid of what is across before the second line, and of what
+    // leads away from it.
+    const auto allowed = [&](double way) {
+      double speed = std::min(highest, planar::SpeedForWay(way, brakes(1, limits)));
+      if (sine > kNothing) speed = std::min(speed, planar::SpeedForWay(way * sine, brakes(share, even)) / sine);
+      if (cosine < -kNothing) speed = std::min(speed, planar::SpeedForWay(-way * cosine, brakes(rest, even)) / -cosine);
+      return speed;
+    };
+    const double now = std::max(0.0, head.end().velocity);
+    const auto reached = [&](double way) {
+      return planar::SpeedBefore(left - way, now, {limits.acceleration, limits.jerk});
+    };
+    // Further before it may be quicker, but has less way to get so quick.
+    double before = std::min(most, left), nearer = 0;
+    for (int k = 0; k < kHalvings && reached(before) < allowed(before); ++k) {
+      const double middle = 0.5 * (nearer + before);
+      (reached(middle) < allowed(middle) ? before : nearer) = middle;
+    }
+    const double speed = std::min(allowed(before), reached(before)) * (1 - 1e-6);
+    if (before <= 0 || speed <= 0) continue;
+    PlaneMotion first = motion, second;
+    Profile tail;
+    if (!planner.ToPosition(head.end(), end - before, speed, limits, tail).ok()) continue;
+    if (tail.VelocityRange().min < 0 || tail.PositionRange().max > end - before + 1e-6) continue;
+    first.along = head;
+    if (!first.along.Append(tail)) continue;
+    const PlaneState from{{corner.x.position - motion.direction_x * before, motion.direction_x * speed, 0},
+                          {corner.y.position - motion.direction_y * before, motion.direction_y * speed, 0}};
+    if (!PlanRound(planner, from, corner, x, y, share, even, second)) continue;
+    const double takes = first.along.duration() + DurationOf(second);
+    if (found && takes >= least) continue;
+    found = true;
+    least = takes;
+    passing = first;
+    best = {before, speed, share};
+  }
+  if (found) motion = passing;
+  return found;
 }
 
 bool PlanRest(Planner& planner, const PlaneMotion& motion, double t, const Limits& limits, PlaneMotion& out) noexcept {

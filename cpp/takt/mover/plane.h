@@ -36,6 +36,19 @@ double SpeedBound(const PlaneMotion& motion) noexcept;
 // Straight to a place and there to rest, or onto the line to it. False: not within these limits.
 bool PlanMove(trajectory::Planner& planner, const PlaneState& from, double x, double y,
               const trajectory::Limits& limits, PlaneMotion& out) noexcept;
+// How a corner is gone round: `before` it on the first line with `speed`, there over onto the second one.
+struct Corner {
+  double before = 0;  // mm, > 0
+  double speed = 0;   // mm/s; from it the mover can still stop at the corner
+  double share = 0;   // of the limits, across the second line
+};
+// The quickest one from the end of a motion to a place; the motion may be left at `most` mm before its end.
+// Motion and limits are those of the first line, changed so that it passes; `then` those of the second.
+bool PlanCorner(trajectory::Planner& planner, double x, double y, double most, const trajectory::Limits& limits,
+                const trajectory::Limits& then, double t, PlaneMotion& motion, Corner& corner) noexcept;
+// From there onto the line from the corner to the place.
+bool PlanRound(trajectory::Planner& planner, const PlaneState& from, const PlaneState& corner, double x, double y,
+               double share, const trajectory::Limits& limits, PlaneMotion& out) noexcept;
 // To rest, from `t` of a motion, in its own frame.
 bool PlanRest(trajectory::Planner& planner, const PlaneMotion& motion, double t, const trajectory::Limits& limits,
               PlaneMotion& out) noexcept;

@@ -75,7 +75,7 @@ Answer CarryOut(const Given& g, const Halt& command) noexcept {
   const Limits limits = LimitsOf(as, g.c.params.xy, g.s.limited_by);
   EndAll(g.c, false, FeedbackState::kAborted, ErrorId::kNone, g.s);
   BringToRest(g.c, &limits, g.s);
-  g.s.tickets[kHalt] = g.ticket;
+  Take(g, kHalt);
   return {Status::Ok(), DurationOf(g.s.plane.motion)};
 }
 

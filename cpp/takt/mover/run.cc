@@ -22,7 +22,8 @@ void Report(const Context& c, Ticket ticket, FeedbackState state, ErrorId error,
 }
 
 void End(const Context& c, Slot slot, FeedbackState state, ErrorId error, State& s) noexcept {
-  if (s.tickets[slot] != 0) Report(c, s.tickets[slot], state, error, 0, s);
+  const bool done = state == FeedbackState::kDone;
+  if (s.tickets[slot] != 0) Report(c, s.tickets[slot], state, error, done ? Elapsed(c, s.begun[slot]) : 0, s);
   s.tickets[slot] = 0;
 }
 
@@ -30,6 +31,8 @@ void EndAll(const Context& c, bool power, FeedbackState state, ErrorId error, St
   for (std::size_t slot = power ? 0 : kPower + 1; slot < kSlots; ++slot) {
     End(c, static_cast<Slot>(slot), state, error, s);
   }
+  AbortBuffered(c, s);
+  s.buffer.releases = 0;
 }
 
 void Enter(const Context& c, planar::ObjectState state, State& s) noexcept {

@@ -27,7 +27,11 @@ inline bool IsOver(const Context& c, const CoordinateMove& move) noexcept {
   return Elapsed(c, move.begin) >= move.profile.duration();
 }
 inline bool IsOver(const Context& c, const PlaneMove& move) noexcept {
-  return !move.waits && Elapsed(c, move.begin) >= DurationOf(move.motion);
+  return !move.waits && !move.passes && Elapsed(c, move.begin) >= DurationOf(move.motion);
+}
+// A motion of X and Y that goes round a corner ends within this cycle.
+inline bool IsAtCorner(const Context& c, const PlaneMove& move) noexcept {
+  return move.passes && Elapsed(c, move.begin) + c.cycle.period_s > DurationOf(move.motion);
 }
 // X and Y are where a track says.
 inline bool IsOnTrack(const State& s) noexcept {

@@ -37,7 +37,7 @@ Answer CarryOut(const Given& g, const StopExternalSetpointGeneration&) noexcept 
   End(g.c, kExternal, FeedbackState::kDone, ErrorId::kNone, s);
   EndAll(g.c, false, FeedbackState::kAborted, ErrorId::kNone, s);
   BringToRest(g.c, nullptr, s);
-  s.tickets[kStopExternal] = g.ticket;
+  Take(g, kStopExternal);
   return {Status::Ok(), DurationOf(s.plane.motion)};
 }
 }  // namespace takt::mover

@@ -21,6 +21,7 @@ void describe(Description<Record>& d) {
   d.about("A command of a mover and what became of it.");
   d.internal<&R::ticket>("Of the command; 0: none.");
   d.internal<&R::cycle>("That took the command.");
+  d.internal<&R::begun>("Cycle in which it began.");
   d.internal<&R::changed>("Cycle in which it came to be what it is.");
   d.internal<&R::command>("Its place among the mover's commands.");
   d.internal<&R::state>("What it is.");
@@ -42,6 +43,11 @@ void describe(Description<PlaneMove>& d) {
   d.internal<&P::waits>("It only comes to rest, and then goes to next.");
   d.internal<&P::next>("What follows.");
   d.internal<&P::turns>("C belongs to it.");
+  d.internal<&P::limits>("Of the command.");
+  d.internal<&P::passes>("What is buffered takes over where it ends.");
+  d.internal<&P::share>("Of the limits then, across the second line.");
+  d.internal<&P::corner_x>(unit::mm, "The corner it goes round then.");
+  d.internal<&P::corner_y>(unit::mm, "Of it.");
 }
 
 void describe(Description<CoordinateMove>& d) {
@@ -72,6 +78,8 @@ void describe(Description<State>& d) {
   d.internal<&S::error>("Of the fault.");
   d.internal<&S::limited_by>("What of the last command was reduced.");
   d.internal<&S::tickets>("Of the commands in progress.");
+  d.internal<&S::begun>("Cycles in which those began.");
+  d.internal<&S::buffer>("Commands that wait for their turn.");
   d.internal<&S::plane>("Motion of X and Y.");
   d.internal<&S::track>("Track that it joins, is on, or leaves.");
   d.internal<&S::others>("Motions of Z, A, B, C.");

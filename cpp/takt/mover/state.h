@@ -9,6 +9,7 @@
 #include "takt/core/feedback.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
+#include "takt/mover/buffer.h"
 #include "takt/mover/command_mode.h"
 #include "takt/mover/commands.h"
 #include "takt/mover/history.h"
@@ -32,6 +33,10 @@ struct PlaneMove {
   bool waits = false;       // it only comes to rest, and then goes to `next`
   MoveToPosition next;      // with all its dynamics
   bool turns = false;       // C belongs to it
+  trajectory::Limits limits;
+  bool passes = false;  // it goes round a corner at its end: what is buffered next takes over where it ends
+  double share = 0;     // of the limits then, across the second line
+  double corner_x = 0, corner_y = 0;  // mm
 };
 
 // One of another coordinate.
@@ -50,7 +55,20 @@ struct External {
 };
 
 // What commands there may be at a time, each with a ticket of its own.
-enum Slot : std::size_t { kPower, kPlane, kMoveZ, kMoveA, kMoveB, kMoveC, kHalt, kExternal, kStopExternal, kSlots };
+enum Slot : std::size_t {
+  kPower,
+  kPlane,
+  kMoveZ,
+  kMoveA,
+  kMoveB,
+  kMoveC,
+  kHalt,
+  kExternal,
+  kStopExternal,
+  kWait,
+  kPassing,
+  kSlots
+};
 
 struct State {
   planar::ObjectState state = planar::ObjectState::kDisabled;
@@ -60,6 +78,8 @@ struct State {
   ErrorId error = ErrorId::kNone;
   LimitedBy limited_by = LimitedBy::kNothing;  // what of the dynamics of the last command was reduced
   std::array<Ticket, kSlots> tickets{};
+  std::array<std::uint64_t, kSlots> begun{};  // cycle in which each took its slot
+  Buffer buffer;
   PlaneMove plane;
   std::uint32_t track = planar::kNoTrack;             // that it joins, is on, or leaves
   std::array<CoordinateMove, kOthers.size()> others;  // in the order of kOthers

@@ -8,6 +8,7 @@
 #include <limits>
 #include <new>
 #include <set>
+#include <variant>
 
 #include "example.h"
 #include "takt/core/columns.h"
@@ -44,6 +45,7 @@ struct Nested {
   std::array<std::optional<double>, 3> optionals{};
   std::vector<Padded> list;
   std::string text;
+  std::variant<Padded, Plenty> either;
 };
 void describe(Description<Nested>& d) {
   d.about("Nested.");
@@ -52,6 +54,7 @@ void describe(Description<Nested>& d) {
   d.internal<&Nested::optionals>("Optionals.");
   d.internal<&Nested::list>("List.");
   d.internal<&Nested::text>("Text.");
+  d.internal<&Nested::either>("One of two.");
 }
 
 TEST(Hash, DoesNotSeePadding) {
@@ -115,6 +118,9 @@ TEST(Hash, SeesWhatLiesInListsAndArraysOfStructs) {
   check("longer list", [](Nested& n) { n.list.resize(2); });
   check("list element", [](Nested& n) { n.list.resize(2), n.list[1].b = 1; });
   check("text", [](Nested& n) { n.text = "a"; });
+  check("in a variant", [](Nested& n) { std::get<0>(n.either).b = 1; });
+  check("another alternative", [](Nested& n) { n.either = Plenty{}; });
+  check("in it", [](Nested& n) { n.either = Plenty{}, std::get<1>(n.either).values[999] = 1; });
 }
 
 TEST(Hash, ListsOfListsDoNotFlowIntoOneAnother) {

@@ -60,7 +60,9 @@ std::vector<mover::Command> GoodCommands() {
           mover::AdoptTrackOrientation{},
           mover::StartExternalSetpointGeneration{},
           mover::SetExternalSetpoint{},
-          mover::StopExternalSetpointGeneration{}};
+          mover::StopExternalSetpointGeneration{},
+          mover::Wait{},
+          mover::Release{}};
 }
 
 Command To(std::uint32_t mover, const mover::Command& body) {

@@ -423,10 +423,14 @@ TEST(Messages, MoverStateKeepsEveryNumber) {
           FIELD(mover_state, track_acceleration),
           FIELD(mover_state, waits_for),
           FIELD(mover_state, deadlocked),
+          FIELD(mover_state, delay),
+          FIELD(mover_state, delay_since),
+          FIELD(mover_state, buffered),
           FIELD(mover_state, commands),
       },
       machine, "shuttle");
   EXPECT_EQ(static_cast<int>(planar::ObjectState::kResetting), msgs::mover_state::STATE_RESETTING);
+  EXPECT_EQ(static_cast<int>(mover::Delay::kRelease), msgs::mover_state::DELAY_RELEASE);
   EXPECT_EQ(static_cast<int>(mover::CommandMode::kExternalSetpointGeneration),
             msgs::mover_state::MODE_EXTERNAL_SETPOINT_GENERATION);
 }

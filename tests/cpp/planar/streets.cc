@@ -185,7 +185,11 @@ void Watcher::Look() {
   ways_.resize(riders.size());
   for (std::uint32_t i = 0; i < riders.size(); ++i) {
     const Rider& r = riders[i];
-    if (!r.on) continue;
+    if (!r.on) {
+      before_[i] = {};
+      ways_[i] = 0;
+      continue;
+    }
     const KinematicState& b = before_[i];
     speed = std::max(speed, std::abs(r.at.velocity) / r.pace.limits.velocity);
     const bool slows = r.at.velocity * r.at.acceleration < 0;

@@ -1,0 +1,237 @@
+#include "takt/mover/buffer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/core/describe.h"
+#include "takt/mover/admission.h"
+
+namespace takt::mover {
+
+namespace {
+
+// Nothing is in progress but what may be left behind on the way.
+bool IsFree(const State& s, Slot but) {
+  for (std::size_t slot = kPlane; slot < kSlots; ++slot) {
+    if (slot != kPassing && slot != but && s.tickets[slot] != 0) return false;
+  }
+  return true;
+}
+
+void Pop(Buffer& buffer) {
+  std::shift_left(buffer.waiting.begin(), buffer.waiting.begin() + buffer.count, 1);
+  buffer.waiting[--buffer.count] = {};
+}
+
+// Hardly a corner: the line goes on.
+bool IsStraightOn(const PlaneMove& plane, const MoveToPosition& next) {
+  const double x = next.x - plane.motion.end_x, y = next.y - plane.motion.end_y;
+  const double ahead = plane.motion.direction_x * x + plane.motion.direction_y * y;
+  return ahead > 0.996 * std::hypot(x, y);  // 5 deg
+}
+
+// There it goes on where the move in progress is to be braked for.
+bool LeadsInto(const Context& c, const MoveToPosition& next, const State& s) {
+  const PlaneMove& plane = s.plane;
+  if (plane.passes) return IsAtCorner(c, plane);
+  const double t = Elapsed(c, plane.begin);
+  if (next.blending == 0 || plane.waits || plane.turns || s.mode != CommandMode::kFreeMovement) return false;
+  if (t < plane.motion.across.duration() || !IsStraightOn(plane, next)) return false;
+  const KinematicState now = plane.motion.along.At(t);
+  const double left = plane.motion.along.end().position - now.position;
+  const double rest = planar::Brake(now, {plane.limits.deceleration, plane.limits.jerk}).rest - now.position;
+  return left <= next.blending && left <= rest + 4 * now.velocity * c.cycle.period_s;
+}
+
+// Leads the move of X and Y in progress round the corner at its end.
+void PrepareCorner(const Context& c, const MoveToPosition& next, State& s) {
+  PlaneMove& plane = s.plane;
+  if (next.blending == 0 || plane.passes || plane.waits || plane.turns) return;
+  if (s.mode != CommandMode::kFreeMovement || s.tickets[kPlane] == 0 || !IsFree(s, kPlane)) return;
+  if (IsStraightOn(plane, next)) return;
+  LimitedBy unused;
+  const trajectory::Limits then = LimitsOf(next, c.params.xy, unused);
+  PlaneMotion motion = plane.motion;
+  Corner corner;
+  if (!PlanCorner(c.planner, next.x, next.y, next.blending, plane.limits, then, Elapsed(c, plane.begin), motion,
+                  corner)) {
+    return;
+  }
+  plane.corner_x = motion.end_x;
+  plane.corner_y = motion.end_y;
+  plane.motion = motion;
+  plane.share = corner.share;
+  plane.passes = true;
+}
+
+// It does not go round after all.
+void StopAtCorner(const Context& c, State& s) {
+  PlaneMotion motion;
+  const PlaneState now = At(s.plane.motion, Elapsed(c, s.plane.begin));
+  if (!PlanMove(c.planner, now, s.plane.corner_x, s.plane.corner_y, s.plane.limits, motion)) {
+    return Fail(c, ErrorId::kPlanning, s);
+  }
+  s.plane.motion = motion;
+  s.plane.begin = c.cycle.count;
+  s.plane.passes = false;
+}
+
+// mm from where a mover is to its target, in its direction.
+double WayLeft(const planar::Network& network, const planar::Rider& r) {
+  double left = r.target - r.at.position;
+  for (std::uint32_t i = 0; i + 1 < r.route.count; ++i) left += network[r.route.tracks[i]].length;
+  return r.direction * left;
+}
+
+// The way along tracks in progress is to be braked for now, and the next one goes on behind its end.
+bool LeadsInto(const Context& c, const MoveOnTrack& next, const State& s) {
+  const planar::Rider& rider = c.rider();
+  if (s.mode != CommandMode::kOnTrack || s.tickets[kPassing] != 0) return false;
+  if (rider.aim != planar::Aim::kTarget || rider.there) return false;
+  const double rest = std::abs(planar::Brake(rider.at, rider.pace.brakes()).rest - rider.at.position);
+  const double in_time =
+      4 * std::abs(rider.at.velocity) * c.cycle.period_s;  // it begins to brake within a cycle or two
+  const double left = WayLeft(c.streets.network, rider);
+  if (left > rest + in_time) return false;
+  planar::Rider then = rider;
+  if (FindWay(c, next, s, then) != ErrorId::kNone) return false;
+  const auto old = rider.route.all();
+  return then.route.count >= old.size() && std::ranges::equal(old, then.route.all().first(old.size())) &&
+         WayLeft(c.streets.network, then) >= left;
+}
+
+// Whether the next one may begin, be it without a stop.
+bool IsNext(const Context& c, const Command& next, const State& s) {
+  if (IsFree(s, kSlots)) return true;
+  if (s.tickets[kPlane] == 0 || !IsFree(s, kPlane)) return false;
+  if (const auto* move = std::get_if<MoveToPosition>(&next)) return LeadsInto(c, *move, s);
+  if (const auto* move = std::get_if<MoveOnTrack>(&next)) return LeadsInto(c, *move, s);
+  return false;
+}
+
+void Wake(const Context& c, State& s) {
+  Buffer& b = s.buffer;
+  if (s.tickets[kWait] == 0 || c.cycle.count < b.until || (b.for_release && b.releases == 0)) return;
+  if (b.for_release) --b.releases;
+  End(c, kWait, FeedbackState::kDone, ErrorId::kNone, s);
+}
+
+// A release that is there already holds nobody back.
+void PassReleases(const Context& c, State& s) {
+  Buffer& b = s.buffer;
+  while (b.count > 0 && b.releases > 0 && s.tickets[kWait] == 0) {
+    const auto* wait = std::get_if<Wait>(&b.waiting[0].command);
+    if (!wait || wait->duration > 0 || !wait->for_release) return;
+    --b.releases;
+    Report(c, b.waiting[0].ticket, FeedbackState::kActive, ErrorId::kNone, 0, s);
+    Report(c, b.waiting[0].ticket, FeedbackState::kDone, ErrorId::kNone, 0, s);
+    Pop(b);
+  }
+}
+
+// The next one begins, if it is its turn.
+void GiveTurn(const Context& c, State& s) {
+  Buffer& b = s.buffer;
+  if (b.count > 0) {
+    if (const auto* move = std::get_if<MoveToPosition>(&b.waiting[0].command)) PrepareCorner(c, *move, s);
+  }
+  if (b.count == 0 || !IsNext(c, b.waiting[0].command, s)) return;
+  const Queued next = b.waiting[0];
+  Pop(b);
+  // What it takes over from without a stop is done when its end is passed; in the plane that is now.
+  const Ticket before = std::exchange(s.tickets[kPlane], 0);
+  const bool on_track = IsOnTrack(s);
+  const planar::Rider& rider = c.rider();
+  const double passing_at = rider.origin + rider.at.position + rider.direction * WayLeft(c.streets.network, rider);
+  const std::int8_t direction = rider.direction;
+  if (!Begin(c, next.ticket, next.command, s)) {
+    s.tickets[kPlane] = before;
+    return AbortBuffered(c, s);
+  }
+  if (before == 0) return;
+  s.tickets[kPassing] = before;
+  s.begun[kPassing] = s.begun[kPlane];
+  if (on_track) {
+    b.passing_at = passing_at;
+    b.direction = direction;
+  } else {
+    End(c, kPassing, FeedbackState::kDone, ErrorId::kNone, s);
+  }
+}
+
+}  // namespace
+
+bool IsBuffered(const Command& command) noexcept {
+  return std::visit(
+      [](const auto& body) {
+        if constexpr (requires { body.buffer_mode; }) {
+          return body.buffer_mode == Buffering::kBuffered;
+        } else {
+          return std::is_same_v<std::decay_t<decltype(body)>, Wait>;
+        }
+      },
+      command);
+}
+
+bool Push(Ticket ticket, const Command& command, Buffer& buffer) noexcept {
+  if (buffer.count == kBuffered) return false;
+  buffer.waiting[buffer.count++] = {ticket, command};
+  return true;
+}
+
+void AbortBuffered(const Context& c, State& s) noexcept {
+  for (std::uint32_t i = 0; i < s.buffer.count; ++i) {
+    Report(c, s.buffer.waiting[i].ticket, FeedbackState::kAborted, ErrorId::kNone, 0, s);
+  }
+  s.buffer.waiting = {};
+  s.buffer.count = 0;
+}
+
+void TakeTurns(const Context& c, State& s) noexcept {
+  if (s.state != planar::ObjectState::kEnabled) return;
+  Wake(c, s);
+  PassReleases(c, s);
+  GiveTurn(c, s);
+  if (IsAtCorner(c, s.plane)) StopAtCorner(c, s);
+}
+
+void LookBack(const Context& c, State& s) noexcept {
+  if (s.tickets[kPassing] == 0) return;
+  const planar::Rider& rider = c.rider();
+  if (s.buffer.direction * (rider.origin + rider.at.position - s.buffer.passing_at) < -1e-9) return;
+  End(c, kPassing, FeedbackState::kDone, ErrorId::kNone, s);
+}
+
+Answer CarryOut(const Given& g, const Wait& command) noexcept {
+  g.s.buffer.until = g.c.cycle.count + static_cast<std::uint64_t>(std::llround(command.duration / g.c.cycle.period_s));
+  g.s.buffer.for_release = command.for_release;
+  Take(g, kWait);
+  return {};
+}
+
+Answer CarryOut(const Given& g, const Release&) noexcept {
+  if (g.s.state != planar::ObjectState::kEnabled) return Refused(ErrorId::kMoverDisabled);
+  ++g.s.buffer.releases;
+  return Done();
+}
+
+void describe(Description<Queued>& d) {
+  d.about("A command of a mover that waits for its turn.");
+  d.internal<&Queued::ticket>("Of the command.");
+  d.internal<&Queued::command>("It.");
+}
+
+void describe(Description<Buffer>& d) {
+  using B = Buffer;
+  d.named("MoverBuffer");
+  d.about("Commands of a mover that wait for their turn.");
+  d.internal<&B::waiting>("They, the next one first.");
+  d.internal<&B::count>("So many.");
+  d.internal<&B::releases>("That no wait has taken yet.");
+  d.internal<&B::until>("Cycle at which a wait is over.");
+  d.internal<&B::for_release>("It waits for a release, too.");
+  d.internal<&B::passing_at>("Where the way ends that went over into another one.");
+  d.internal<&B::direction>("Of that way.");
+}
+
+}  // namespace takt::mover

@@ -1,0 +1,49 @@
+// Commands of a mover that wait for their turn (PL-71): each begins when all that were given before it are done.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/feedback.h"
+#include "takt/mover/commands.h"
+
+namespace takt::mover {
+
+struct Context;
+struct State;
+
+inline constexpr std::size_t kBuffered = 16;
+
+struct Queued {
+  Ticket ticket = 0;
+  Command command;
+};
+
+struct Buffer {
+  std::array<Queued, kBuffered> waiting{};  // the next one first
+  std::uint32_t count = 0;
+  std::uint32_t releases = 0;  // that nobody has taken
+  std::uint64_t until = 0;     // cycle at which a Wait is over
+  bool for_release = false;    // what it waits for, too
+  // A way along tracks that went over into the next one is done where it was to end (Slot kPassing).
+  double passing_at = 0;  // mm, with those of all tracks left behind
+  std::int8_t direction = 1;
+};
+
+// Whether this one waits for its turn.
+bool IsBuffered(const Command& command) noexcept;
+// Lets it wait. False: there is no room.
+bool Push(Ticket ticket, const Command& command, Buffer& buffer) noexcept;
+// None waits any more.
+void AbortBuffered(const Context& c, State& s) noexcept;
+// move: ends a Wait, and gives the next one its turn if it is that.
+void TakeTurns(const Context& c, State& s) noexcept;
+// At the end of a cycle: what was passed is done.
+void LookBack(const Context& c, State& s) noexcept;
+
+void describe(Description<Queued>&);
+void describe(Description<Buffer>&);
+
+}  // namespace takt::mover
