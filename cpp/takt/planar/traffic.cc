@@ -281,11 +281,15 @@ class Traffic::Step_ {
         if (!Holds(t_.now_[leader].braking, braking, -apart, required)) return false;
       }
       for (std::uint32_t k = 0; k < riders_.size(); ++k) {
-        const Now& other = t_.now_[k];
-        if (!riders_[k].on || other.leader != i || riders_[k].direction < 0) continue;
-        const double required =
-            Required(std::max(riders_[k].gap, r.gap), r.at.position + other.leader_offset - riders_[k].at.position);
-        if (!Holds(other.braking, braking, other.leader_offset, required)) return false;
+        const Rider& other = riders_[k];
+        if (!other.on || k == i) continue;
+        std::uint32_t its_leader = t_.now_[k].leader;
+        double offset = t_.now_[k].leader_offset;
+        // One that goes back now still has its way ahead, and who is on it there is nobody's neighbour.
+        if (other.direction < 0) its_leader = other.route.count > 1 ? FindLeader(k, 1, offset) : kNobody;
+        if (its_leader != i) continue;
+        const double required = Required(std::max(other.gap, r.gap), r.at.position + offset - other.at.position);
+        if (!Holds(t_.now_[k].braking, braking, offset, required)) return false;
       }
     }
     bool may = true;
@@ -467,9 +471,11 @@ class Traffic::Step_ {
     }
     // Who is held back stays so until there is room: else it would swing between both.
     const bool was_free = r.aim == Aim::kFollow || r.planned || Rests(r.at);
+    const std::int8_t went = r.direction;
     const KinematicState wish = r.aim == Aim::kTarget ? Wish(r) : r.demand;
     if (r.aim == Aim::kFollow && Rests(r.at) && wish.velocity != 0) r.direction = wish.velocity < 0 ? -1 : 1;
-    if (r.aim == Aim::kTarget && now.leader == kNobody) now.leader = FindLeader(i, r.direction, now.leader_offset);
+    // Who turns has somebody else before it now; a new way may have, too.
+    if (r.direction != went || now.leader == kNobody) now.leader = FindLeader(i, r.direction, now.leader_offset);
     const int direction = r.direction;
     const double speed = direction * r.at.velocity;
     const double before = direction * r.at.acceleration;

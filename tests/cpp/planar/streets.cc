@@ -11,6 +11,17 @@ bool Meet(const TrackPoint& a, const TrackPoint& b) {
   return SamePlace(a.place, b.place) && SameDirection(a, b);
 }
 
+// The track comes near itself, which traffic does not look at.
+bool ComesBack(const Track& track, double near) {
+  constexpr double kStep = 25;
+  for (double s = 0; s < track.length; s += kStep) {
+    for (double t = s + 3 * near; t < track.length; t += kStep) {
+      if (Distance(At(track, s).place, At(track, t).place) < near + kStep) return true;
+    }
+  }
+  return false;
+}
+
 // Bodies on both tracks come too near only from a common start, or to a common end, on; or from the end of one to the
 // start of the other.
 bool GoTogether(const Track& a, const Track& b, const Footprint& body) {
@@ -49,7 +60,7 @@ std::vector<Layout> RandomCity(Random& random, int count, double size) {
     layout.elements = {Line(from.place, a), Line(b, to.place)};
     Track track;
     if (MakeTrack(layout, track).problem != Problem::kNone || track.length > 3000) continue;
-    if (PeakCurvature(track, 0, track.length) > 1 / 150.0) continue;
+    if (PeakCurvature(track, 0, track.length) > 1 / 150.0 || ComesBack(track, 1.5 * size)) continue;
     const auto fits = [&](const Track& other) {
       return GoTogether(track, other, body) && GoTogether(other, track, body);
     };
@@ -173,7 +184,7 @@ double Streets::Nearest() const {
     for (std::uint32_t k = 0; k < i; ++k) {
       if (!riders_[i].on || !riders_[k].on) continue;
       const Place a = PointOf(i).place, b = PointOf(k).place;
-      least = std::min(least, Distance(a, b) - std::hypot(body_.width, body_.height));
+      least = std::min(least, std::max(std::abs(a.x - b.x) - body_.width, std::abs(a.y - b.y) - body_.height));
     }
   }
   return least;

@@ -47,7 +47,7 @@ class Streets {
   TrackPoint PointOf(std::uint32_t mover) const;
   // Along their ways: how much less than its gap the nearest pair of movers on one track, or one route, is apart.
   double Missing() const;
-  // mm between the bodies of the nearest two movers anywhere, turned in the worst way.
+  // mm between the bodies of the nearest two movers anywhere, at C = 0 as tracks are.
   double Nearest() const;
 
   // Called after each step.

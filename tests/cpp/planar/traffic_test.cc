@@ -325,7 +325,7 @@ TEST_P(CityProperty, NobodyComesTooNear) {  // PL-23, PL-24
     refused += static_cast<int>(streets.traffic().refused());
     watcher.Look();
     missing = std::max(missing, streets.Missing());
-    EXPECT_LT(missing, 1e-3) << i;
+    EXPECT_LT(missing, 1e-5) << i;
     if (i % 5 == 0) nearest = std::min(nearest, streets.Nearest());
     EXPECT_GT(nearest, 0) << i;
   }
