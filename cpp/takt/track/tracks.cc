@@ -167,6 +167,7 @@ Tracks::Tracks(const std::vector<TrackParams>& all)
       sketches(all.size()),
       outputs(all.size()),
       ways(all.size()),
+      areas(all.size()),
       start_nodes(all.size()),
       end_nodes(all.size()),
       starts_at(2 * all.size()),
@@ -186,6 +187,7 @@ Tracks::Tracks(const std::vector<TrackParams>& all)
     link(all[i].ends_at, s.ends_at);
     if (!built.tracks[i].way) continue;
     ways[i] = new planar::Track(std::move(*built.tracks[i].way));
+    areas[i] = new planar::TrackArea(planar::MakeTrackArea(*ways[i], LargestOn(all[i]), 0));
     s.has_length = true;
     s.length = ways[i]->length;
   }
@@ -199,6 +201,7 @@ void Tracks::SetSketch(std::size_t track, const Sketch& sketch) noexcept {
 
 Tracks::~Tracks() {
   for (const planar::Track* way : ways) delete way;
+  for (const planar::TrackArea* area : areas) delete area;
 }
 
 std::optional<std::size_t> Find(const Tracks& tracks, std::string_view name) noexcept {

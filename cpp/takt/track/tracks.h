@@ -36,6 +36,7 @@ struct Tracks {
 
   // What follows from the states.
   std::vector<const planar::Track*> ways;  // null: none, then the length is 0
+  std::vector<planar::TrackArea*> areas;   // what movers on it may cover; null: none
   // Where tracks are linked: ends and starts at one point have one number, below twice that of tracks.
   std::vector<std::uint32_t> start_nodes;
   std::vector<std::uint32_t> end_nodes;
