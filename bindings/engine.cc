@@ -99,7 +99,8 @@ class VirtualEngine {
         engine_(std::move(*loaded.machine),
                 {.drives = drives_url.has_value(), .journal = journal, .command_queue = kCommandQueue}) {
     const auto made = [](const auto& checker) { return checker.has_value(); };
-    const bool asks = std::ranges::any_of(loaded.checkers, made) || !engine_.machine().tracks.empty();
+    const bool asks = std::ranges::any_of(loaded.checkers, made) || !engine_.machine().tracks.empty() ||
+                      !engine_.machine().environments.empty();
     if (checks && asks) checks_.emplace(engine_, std::move(loaded.checkers));
     if (!drives_url || engine_.machine().external.drives.empty()) return;
     std::string problem;
@@ -199,7 +200,8 @@ class VirtualEngine {
     py::typing::List<FeedbackRow> list;
     for (const FeedbackEvent& e : events) {
       list.append(py::make_tuple(e.ticket, e.cycle, static_cast<int>(e.state), e.reached, static_cast<int>(e.error),
-                                 e.value, checks_ ? checks_->Sentence(e) : engine::Sentence(e)));
+                                 e.value, checks_ ? checks_->Sentence(e) : engine::Sentence(e, engine_.machine()),
+                                 static_cast<int>(e.object.kind), e.object.number));
     }
     return list;
   }

@@ -80,7 +80,7 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kObjectMoves, "ObjectMoves", "what is in the group has to rest for this"},
     ErrorInfo{ErrorId::kStators, "Stators", "the stators cannot be so"},
     ErrorInfo{ErrorId::kEnvironmentUsed, "EnvironmentUsed",
-              "the environment is in a group that is not disabled, or its boundary is being made"},
+              "the environment is in an enabled group, or its boundary is being made"},
     ErrorInfo{ErrorId::kNoBoundary, "NoBoundary", "the environment has no boundary"},
     ErrorInfo{ErrorId::kOtherPlanarGroup, "OtherPlanarGroup",
               "it is in another group, or the group has another environment"},

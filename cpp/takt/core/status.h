@@ -81,7 +81,7 @@ enum class ErrorId : std::uint16_t {
   kTrackGeometry = 3050,      // a track cannot be so; the value of the feedback says why
   kObjectMoves = 3060,        // movers have to rest for this
   kStators = 3061,            // stators cannot be so; the value of the feedback says why
-  kEnvironmentUsed = 3062,    // a group that is not disabled holds the environment, or its boundary is being made
+  kEnvironmentUsed = 3062,    // the environment is in an enabled group, or its boundary is being made
   kNoBoundary = 3063,         // the environment has no boundary
   kOtherPlanarGroup = 3064,   // it is in another group, or the group has another environment
   kNoPlanarGroup = 3065,      // it is in no group

@@ -21,10 +21,11 @@ struct Answer {
   Status status;
   double value = 0;     // s that it takes, as planned
   bool goes_on = true;  // it is done later
+  ObjectInfo object{};  // that is in the way
 };
 
-inline Answer Refused(ErrorId error) noexcept {
-  return {Status::Failed(error)};
+inline Answer Refused(ErrorId error, const ObjectInfo& object = {}) noexcept {
+  return {.status = Status::Failed(error), .object = object};
 }
 inline Answer Done() noexcept {
   return {Status::Ok(), 0, false};
@@ -81,5 +82,7 @@ Answer CarryOut(const Given& g, const AdoptTrackOrientation& command) noexcept;
 Answer CarryOut(const Given& g, const StartExternalSetpointGeneration& command) noexcept;
 Answer CarryOut(const Given& g, const SetExternalSetpoint& command) noexcept;
 Answer CarryOut(const Given& g, const StopExternalSetpointGeneration& command) noexcept;
+Answer CarryOut(const Given& g, const AddToGroup& command) noexcept;
+Answer CarryOut(const Given& g, const RemoveFromGroup& command) noexcept;
 
 }  // namespace takt::mover

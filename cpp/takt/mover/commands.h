@@ -130,9 +130,14 @@ struct SetExternalSetpoint {                                          // for the
 };
 struct StopExternalSetpointGeneration {};
 
+struct AddToGroup {  // of movers that do not collide
+  Name group{};
+};
+struct RemoveFromGroup {};
+
 using Command = std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC,
                              JoinTrack, LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration,
-                             SetExternalSetpoint, StopExternalSetpointGeneration>;
+                             SetExternalSetpoint, StopExternalSetpointGeneration, AddToGroup, RemoveFromGroup>;
 
 // Table of the arguments of the command at this place of the variant.
 const Type& TypeOfCommand(std::size_t index);
@@ -156,5 +161,7 @@ void describe(Description<AdoptTrackOrientation>&);
 void describe(Description<StartExternalSetpointGeneration>&);
 void describe(Description<SetExternalSetpoint>&);
 void describe(Description<StopExternalSetpointGeneration>&);
+void describe(Description<AddToGroup>&);
+void describe(Description<RemoveFromGroup>&);
 
 }  // namespace takt::mover

@@ -4,6 +4,7 @@
 
 #include "takt/mover/admission.h"
 #include "takt/mover/coordinate.h"
+#include "takt/mover/ground.h"
 
 namespace takt::mover {
 
@@ -98,17 +99,19 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
     }
     duration = std::max(duration, turn.profile.duration());
     turn.begin = g.c.cycle.count;
-    End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
   } else if (s.plane.turns) {  // that turn belonged to the move before
     PlanRest(g.c.planner, turned, StandardOf(free), ParamsOf(g.c, s, kOthers.size() - 1), turn.profile);
     turn.begin = g.c.cycle.count;
   }
+  if (const ObjectInfo object = InTheWay(g.c, *move, turn, false)) return Refused(ErrorId::kCollision, object);
+  if (command.use_orientation) End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);
   s.others.back() = turn;
   s.plane = *move;
   s.plane.turns = command.use_orientation;
   s.limited_by = limited_by;
+  Reserve(g.c, s, false);
   return {Status::Ok(), duration};
 }
 
@@ -141,10 +144,12 @@ Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept {
   const trajectory::Profile::Range range = move.profile.PositionRange();
   const bool inside = InOneWindow(g.c.params.c, range.min, range.max);
   if (!inside && !IsPlaneResting(g.c, s)) return Refused(ErrorId::kOutsideWindow);
+  move.begin = g.c.cycle.count;
+  if (const ObjectInfo object = InTheWay(g.c, s.plane, move, IsOnTrack(s))) return Refused(ErrorId::kCollision, object);
   if (!inside && s.mode == CommandMode::kFreeMovement) s.mode = CommandMode::kCRotationFreeMovement;
   if (!inside && s.mode == CommandMode::kOnTrack) s.mode = CommandMode::kCRotationOnTrack;
-  move.begin = g.c.cycle.count;
   s.others.back() = move;
+  Reserve(g.c, s, IsOnTrack(s));
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kMoveC);
   s.limited_by = limited_by;

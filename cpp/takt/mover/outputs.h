@@ -35,6 +35,7 @@ struct Outputs {
   double track_acceleration = 0;  // mm/s²
   std::uint32_t waits_for = 0;    // number of the mover that is in its way, from 1; 0: none
   bool deadlocked = false;        // that one waits for it, over others or not
+  std::uint32_t group = 0;        // number of the group of movers that it is in, from 1; 0: none
   std::uint64_t commands = 0;     // so many have come
 };
 

@@ -21,7 +21,7 @@ Verdict Collision(const ObjectInfo& object) noexcept {
 }
 
 // It stands there, or on a track.
-void Place(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept {
+void PutIn(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept {
   const MoverNow& now = g.movers[mover];
   Reservations& r = ReservedBy(group, g);
   Settle(mover, now.mover, now.pose, r);
@@ -130,6 +130,7 @@ Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, co
 
 void TakeTracks(std::span<const std::uint32_t> tracks, Grounds& g) noexcept {
   for (const std::uint32_t track : tracks) {
+    g.moving[track] = 1;
     if (const std::uint32_t group = g.Watching(g.group_of_track[track])) TakeTrack(track, ReservedBy(group, g));
   }
 }
@@ -139,7 +140,7 @@ Verdict AddMover(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept 
   if (g.group_of_mover[mover] != 0) return {ErrorId::kOtherPlanarGroup, {}};
   if (g.Watching(group) != 0) {
     if (!g.movers[mover].rests) return {ErrorId::kObjectMoves, Object(ObjectKind::kMover, mover)};
-    Place(mover, group, g);
+    PutIn(mover, group, g);
     if (const ObjectInfo object = AskStanding(mover, group, g)) {
       Leave(mover, ReservedBy(group, g));
       return Collision(object);
@@ -172,7 +173,7 @@ Verdict AddEnvironment(std::uint32_t environment, std::uint32_t group, Grounds& 
   }
   for (std::uint32_t i = 0; i < g.movers.size() && verdict.error == ErrorId::kNone; ++i) {
     if (g.group_of_mover[i] != group) continue;
-    if (!g.movers[i].rests) {
+    if (!g.movers[i].rests || g.grounds[group - 1].reserved.movers[i].moving) {
       verdict = {ErrorId::kObjectMoves, Object(ObjectKind::kMover, i)};
     } else if (AskStanding(i, group, g)) {
       verdict = Collision(Object(ObjectKind::kMover, i));
@@ -211,7 +212,7 @@ Verdict Watch(std::uint32_t group, Grounds& g) noexcept {
     if (!g.movers[i].rests) {
       verdict = {ErrorId::kObjectMoves, Object(ObjectKind::kMover, i)};
     } else {
-      Place(i, group, g);
+      PutIn(i, group, g);
       if (AskStanding(i, group, g)) verdict = Collision(Object(ObjectKind::kMover, i));
     }
   }

@@ -153,6 +153,16 @@ struct Applier {
     if (s.state != ObjectState::kError && s.state != ObjectState::kResetting) return Refuse(ErrorId::kState);
     Become(ObjectState::kResetting);
   }
+  void Answer(const planar::Verdict& verdict) const {
+    if (verdict.error == ErrorId::kNone) return DoneAtOnce();
+    c.feedback.Report({ticket, c.cycle.count, FeedbackState::kError, false, verdict.error, 0, verdict.object});
+  }
+  void operator()(const AddToGroup& a) const {
+    const std::uint32_t group = c.grounds.Find(a.group.view());
+    if (group == 0) return Refuse(ErrorId::kParameter);
+    Answer(planar::AddTrack(track, group, c.grounds));
+  }
+  void operator()(const RemoveFromGroup&) const { Answer(planar::RemoveTrack(track, c.grounds)); }
   void operator()(const TrackMade& made) const {
     if (!TakeAnswer(c, track, made)) return Refuse(ErrorId::kState);
     DoneAtOnce();
@@ -252,6 +262,7 @@ void Publish(const Context& c) noexcept {
     out.mover_count = t.mover_counts[i];
     out.previous_tracks = t.ends_at[t.start_nodes[i]];
     out.subsequent_tracks = t.starts_at[t.end_nodes[i]];
+    out.group = c.grounds.group_of_track[i];
   }
 }
 

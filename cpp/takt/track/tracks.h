@@ -10,6 +10,7 @@
 
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
+#include "takt/planar/grounds.h"
 #include "takt/planar/track.h"
 #include "takt/track/commands.h"
 #include "takt/track/desk.h"
@@ -51,6 +52,7 @@ struct Tracks {
 
 struct Context {
   Tracks& tracks;
+  planar::Grounds& grounds;
   Cycle cycle;
   FeedbackSink& feedback;
 };

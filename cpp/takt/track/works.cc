@@ -109,6 +109,7 @@ void Use(Tracks& t, std::uint32_t track, const Delivery& made) {
   State& s = t.states[track];
   s.has_length = way != nullptr;
   s.length = way ? way->length : 0;
+  NameNetworks(t);
   ++t.changes;
 }
 
@@ -203,7 +204,6 @@ bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) no
     t.SetSketch(track, With(order, look, t.sketches[track]));
     Use(t, track, way);
     AddLink(t, order);
-    NameNetworks(t);
   }
   w.asked = false;
   End(c, empty ? Problem::kNone : made.problem, made.element);
