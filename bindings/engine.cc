@@ -71,8 +71,9 @@ py::typing::Dict<py::str, py::typing::List<py::str>> PartsOfGroups(const py::byt
 }
 
 using Submitted = py::typing::Tuple<Ticket, int, py::str>;  // ticket, error number, sentence
-using FeedbackRow = py::typing::Tuple<Ticket, std::uint64_t, int, bool, int, double,
-                                      py::str>;  // ticket, cycle, state, reached, error, value, sentence
+using FeedbackRow =
+    py::typing::Tuple<Ticket, std::uint64_t, int, bool, int, double, py::str, int,
+                      std::uint32_t>;  // ticket, cycle, state, reached, error, value, sentence, object: kind and number
 using JournalRow =
     py::typing::Tuple<std::uint64_t, Ticket, double, py::str, py::str, py::str>;  // cycle, ticket, lease, command
 using Wires = py::typing::Dict<py::str, py::object>;
@@ -81,8 +82,8 @@ using Foreseen = py::typing::Tuple<axis::Forecast, py::str>;
 using PoseRow = py::typing::Tuple<double, double, double, double, double, double>;
 using ObjectRow = py::typing::Tuple<std::uint32_t, int, double, PoseRow, bool, std::uint32_t, std::uint32_t,
                                     double>;  // number, state, place, pose, in range, kind, colour, quality
-using RecordRow = py::typing::Tuple<Ticket, py::str, int, int, std::uint64_t,
-                                    std::uint64_t>;  // ticket, verb, state, error, cycles: given, changed
+using RecordRow = py::typing::Tuple<Ticket, py::str, int, int, std::uint64_t, std::uint64_t, int,
+                                    std::uint32_t>;  // ticket, verb, state, error, cycles: given, changed, object
 using TrackRow = py::typing::Tuple<double, double, double, double>;  // x, y, direction in deg, curvature
 using TrackLinks = py::typing::Tuple<py::typing::List<std::size_t>, py::typing::List<std::size_t>>;
 using State = py::typing::Tuple<double, double, double>;  // position, velocity, acceleration
@@ -265,7 +266,7 @@ class VirtualEngine {
       const Type& type = mover::TypeOfCommand(r.command);
       const auto verb = std::ranges::find(engine::Verbs(), &type, &engine::Verb::arguments);
       list.append(py::make_tuple(r.ticket, verb->name, static_cast<int>(r.state), static_cast<int>(r.error), r.cycle,
-                                 r.changed));
+                                 r.changed, static_cast<int>(r.object.kind), r.object.number));
     }
     return list;
   }

@@ -19,6 +19,7 @@ class MoverRecord:
     error_id: int  # 0: none
     cycle: int  # that took the command
     changed: int  # cycle in which it came to be what it is
+    object: Component | None  # that was in the way
 
 
 class Mover(Component, MoverCommands, MoverOutputs):
@@ -32,4 +33,7 @@ class Mover(Component, MoverCommands, MoverOutputs):
     def history(self) -> tuple[MoverRecord, ...]:
         """Its last 100 commands, the oldest first; external set points apart. In process only."""
         rows = self.session._history(self)
-        return tuple(MoverRecord(ticket, verb, FeedbackState(state), *rest) for ticket, verb, state, *rest in rows)
+        return tuple(
+            MoverRecord(ticket, verb, FeedbackState(state), error, cycle, changed, self.session._object(kind, number))
+            for ticket, verb, state, error, cycle, changed, kind, number in rows
+        )

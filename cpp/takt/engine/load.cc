@@ -9,6 +9,7 @@
 #include "takt/engine/load_cams.h"
 #include "takt/engine/load_groups.h"
 #include "takt/engine/order.h"
+#include "takt/planar/environment.h"
 #include "takt/track/build.h"
 
 namespace takt::engine {

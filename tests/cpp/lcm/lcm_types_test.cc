@@ -184,6 +184,8 @@ TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   ExpectSameConstants("mover_state.lcm", "EXTERNAL_", TypeOf<mover::SetpointMode>());
   ExpectSameConstants("track_state.lcm", "STATE_", TypeOf<planar::ObjectState>());
   ExpectSameConstants("track_state.lcm", "MODE_", TypeOf<track::OperationMode>());
+  ExpectSameConstants("planar_group_state.lcm", "STATE_", TypeOf<planar::ObjectState>());
+  ExpectSameConstants("feedback.lcm", "OBJECT_", TypeOf<ObjectKind>());
   ExpectSameConstants("group_state.lcm", "REASON_", TypeOf<kinematics::Reason>());
   ExpectSameConstants("group_state.lcm", "PROBLEM_", TypeOf<path::Problem>());
 
