@@ -216,6 +216,24 @@ def test_a_turn_needs_room() -> None:
     one.move_c(position=0.4).wait()
 
 
+def test_a_turn_that_goes_too_far() -> None:
+    """PL-30: sent back in the middle of a turn, a mover has as its own what it goes on by."""
+    engine = Engine(TWO_IN_A_GROUP)
+    one, two = gather(engine)
+    recorder = engine.record()
+    one.move_c(position=90)
+    engine.wait(lambda: one.c >= 15, 1)
+    back = one.move_c(position=0)
+    engine.step()
+    # At 20 degrees a corner is 72.4 mm out, at 30 degrees 77.2 mm, at 45 degrees 79.9 mm.
+    refused = two.move_to_position(x=133, y=0).wait_final()
+    assert refused.object is one
+    two.move_to_position(x=137, y=0).wait()
+    back.wait()
+    assert 25 < recorder.stop()["one"]["c"].max() < 45
+    two.move_to_position(x=133, y=0).wait()
+
+
 def test_a_track_outside_the_group() -> None:
     """PL-30: a mover of a group moves along tracks of the group alone."""
     engine = Engine(TWO_IN_A_GROUP.replace("[{name: track}]", "[{name: track, elements: [{from: {x: 0}, to: {x: 100}}]}]"))

@@ -1,6 +1,7 @@
 #include "takt/mover/run.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "takt/mover/coordinate.h"
 #include "takt/mover/ground.h"
@@ -72,6 +73,11 @@ struct Rest {
   std::array<CoordinateMove, kOthers.size()> others;
 };
 
+bool MoveAlike(const KinematicState& a, const KinematicState& b) {
+  constexpr double kAlike = 1e-9;  // mm/s, mm/s²: rounding
+  return std::abs(a.velocity - b.velocity) <= kAlike && std::abs(a.acceleration - b.acceleration) <= kAlike;
+}
+
 // Within `plane`, or all with the maximum (null).
 Rest PlanRest(const Context& c, const trajectory::Limits* plane, const State& s) {
   const trajectory::Limits maximum = c.params.xy.maximum.limits();
@@ -80,10 +86,17 @@ Rest PlanRest(const Context& c, const trajectory::Limits* plane, const State& s)
   PlaneMotion& rest = all.plane.motion;
   rest = StandingAt(at[kX].position, at[kY].position);
   all.plane.begin = c.cycle.count;
+  // As long as nothing from outside moves it, it brakes along what it does, and so within what it has reserved.
+  const PlaneState planned = At(s.plane.motion, Elapsed(c, s.plane.begin));
+  const bool beside = s.external.mode == SetpointMode::kRelative && MoveAlike(planned.x, at[kX]) &&
+                      MoveAlike(planned.y, at[kY]);
   const auto plan = [&](const trajectory::Limits& limits) {
-    const bool found = s.external.mode == SetpointMode::kNone
+    const bool found = s.external.mode == SetpointMode::kNone || beside
                            ? PlanRest(c.planner, s.plane.motion, Elapsed(c, s.plane.begin), limits, rest)
                            : PlanRest(c.planner, {at[kX], at[kY]}, limits, rest);
+    if (found && beside) {
+      Shift(at[kX].position - planned.x.position, at[kY].position - planned.y.position, rest);
+    }
     return found && SpeedBound(rest) <= maximum.velocity * (1 + 1e-9);
   };
   if (!IsOnTrack(s) && (plane == nullptr || !plan(*plane))) plan(maximum);
