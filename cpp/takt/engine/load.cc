@@ -366,8 +366,8 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name, Worksp
     cams = LoadCams(source, machine);
     groups = LoadGroups(source, machine, workspaces == Workspaces::kMake);
   }
-  if (readable && (!machine.axes.empty() || !machine.movers.empty() || !machine.tracks.empty() ||
-                   !machine.environments.empty())) {
+  if (readable &&
+      (!machine.axes.empty() || !machine.movers.empty() || !machine.tracks.empty() || !machine.environments.empty())) {
     std::vector<Problem> more = CrossCheck(machine, source).Run();
     problems.insert(problems.end(), more.begin(), more.end());
   } else if (problems.empty()) {

@@ -22,9 +22,9 @@
 namespace takt::engine {
 
 // What each kind of components publishes, in the order of ComponentKinds().
-using PublishedKinds = std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs,
-                                  conveyor::PoseOutputs, pickplace::Outputs, mover::Outputs, track::Outputs,
-                                  planargroup::Outputs, environment::Outputs>;
+using PublishedKinds =
+    std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs, conveyor::PoseOutputs,
+               pickplace::Outputs, mover::Outputs, track::Outputs, planargroup::Outputs, environment::Outputs>;
 
 // What a component published.
 template <typename Outputs>

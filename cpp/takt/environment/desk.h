@@ -14,7 +14,7 @@ namespace takt::environment {
 
 struct Question {
   std::uint64_t number = 0;
-  std::uint32_t environment = 0;                           // from 0
+  std::uint32_t environment = 0;                        // from 0
   const std::vector<planar::Place>* stators = nullptr;  // they stay as they are until the answer is taken
 };
 

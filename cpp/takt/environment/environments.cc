@@ -32,7 +32,8 @@ struct Applier {
   Ticket ticket;
   State& s;
 
-  void Report(FeedbackState state, ErrorId error = ErrorId::kNone, double value = 0, const ObjectInfo& object = {}) const {
+  void Report(FeedbackState state, ErrorId error = ErrorId::kNone, double value = 0,
+              const ObjectInfo& object = {}) const {
     c.feedback.Report({ticket, c.cycle.count, state, false, error, value, object});
   }
   void Refuse(ErrorId error) const { Report(FeedbackState::kError, error); }
@@ -152,8 +153,7 @@ double ToValue(planar::StatorProblem problem, std::uint32_t stator) noexcept {
 }
 
 planar::StatorProblem ProblemOf(double value) noexcept {
-  return static_cast<planar::StatorProblem>(static_cast<std::uint64_t>(value) %
-                                            static_cast<std::uint64_t>(kPerStator));
+  return static_cast<planar::StatorProblem>(static_cast<std::uint64_t>(value) % static_cast<std::uint64_t>(kPerStator));
 }
 
 std::uint32_t StatorOf(double value) noexcept {

@@ -88,8 +88,8 @@ Rest PlanRest(const Context& c, const trajectory::Limits* plane, const State& s)
   all.plane.begin = c.cycle.count;
   // As long as nothing from outside moves it, it brakes along what it does, and so within what it has reserved.
   const PlaneState planned = At(s.plane.motion, Elapsed(c, s.plane.begin));
-  const bool beside = s.external.mode == SetpointMode::kRelative && MoveAlike(planned.x, at[kX]) &&
-                      MoveAlike(planned.y, at[kY]);
+  const bool beside =
+      s.external.mode == SetpointMode::kRelative && MoveAlike(planned.x, at[kX]) && MoveAlike(planned.y, at[kY]);
   const auto plan = [&](const trajectory::Limits& limits) {
     const bool found = s.external.mode == SetpointMode::kNone || beside
                            ? PlanRest(c.planner, s.plane.motion, Elapsed(c, s.plane.begin), limits, rest)

@@ -70,8 +70,7 @@ std::uint32_t Grounds::Find(std::string_view group) const noexcept {
 
 std::uint32_t Grounds::EnvironmentOf(std::uint32_t group) const noexcept {
   const auto found = std::ranges::find(group_of_environment, group);
-  return found == group_of_environment.end() ? 0
-                                             : static_cast<std::uint32_t>(found - group_of_environment.begin() + 1);
+  return found == group_of_environment.end() ? 0 : static_cast<std::uint32_t>(found - group_of_environment.begin() + 1);
 }
 
 Surroundings Grounds::Around(std::uint32_t group) const noexcept {
@@ -166,10 +165,10 @@ Verdict AddEnvironment(std::uint32_t environment, std::uint32_t group, Grounds& 
   own = group;
   if (g.Watching(group) == 0) return {};
   Verdict verdict;
-  if (!g.surfaces[environment]) {
-    verdict = {ErrorId::kNoBoundary, Object(ObjectKind::kEnvironment, environment)};
-  } else if (std::ranges::any_of(g.grounds[group - 1].reserved.tracks, &TrackReservation::moving)) {
-    verdict = {ErrorId::kObjectMoves, {}};
+  if (!g.surfaces[environment]) verdict = {ErrorId::kNoBoundary, Object(ObjectKind::kEnvironment, environment)};
+  for (std::uint32_t i = 0; i < g.moving.size() && verdict.error == ErrorId::kNone; ++i) {
+    const bool moves = g.grounds[group - 1].reserved.tracks[i].moving;
+    if (moves) verdict = {ErrorId::kObjectMoves, Object(ObjectKind::kTrack, i)};
   }
   for (std::uint32_t i = 0; i < g.movers.size() && verdict.error == ErrorId::kNone; ++i) {
     if (g.group_of_mover[i] != group) continue;

@@ -45,7 +45,9 @@ struct Grounds {
   // The environment of a group, from 1; 0: none.
   std::uint32_t EnvironmentOf(std::uint32_t group) const noexcept;
   Surroundings Around(std::uint32_t group) const noexcept;
-  std::uint32_t NetworkOf(std::uint32_t track) const noexcept { return areas[track] ? areas[track]->network : kNoTrack; }
+  std::uint32_t NetworkOf(std::uint32_t track) const noexcept {
+    return areas[track] ? areas[track]->network : kNoTrack;
+  }
 
   std::vector<std::string> names;  // of the groups
   std::vector<std::uint32_t> group_of_mover;

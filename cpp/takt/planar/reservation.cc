@@ -43,7 +43,8 @@ void Reserve(Reservation& mover) noexcept {
 }
 
 bool Meets(const Area& area, const Extent& extent, std::uint32_t level, const Reservation& other) noexcept {
-  return other.present && other.level == level && !Apart(extent, other.extent, kClearance) && Near(area, AreaOf(other), kClearance);
+  return other.present && other.level == level && !Apart(extent, other.extent, kClearance) &&
+         Near(area, AreaOf(other), kClearance);
 }
 
 // The stretches hang together.

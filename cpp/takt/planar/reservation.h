@@ -75,7 +75,8 @@ void Settle(std::uint32_t mover, const Footprint& footprint, const Pose& pose, R
 void Leave(std::uint32_t mover, Reservations& r) noexcept;
 
 // With what the mover would collide: the first of movers, then of tracks that are Moving, then the environment (number
-// 1). None: the way is free. A track of its own network does not count for a mover that turns on it. What only touches counts, except the border of the environment.
+// 1). None: the way is free. A track of its own network does not count for a mover that turns on it. What only touches
+// counts, except the border of the environment.
 ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around, const Reservations& r) noexcept;
 // From now on it has that reserved, in place of what it had.
 void Take(std::uint32_t mover, const Move& move, Reservations& r) noexcept;

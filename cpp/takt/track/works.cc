@@ -154,7 +154,8 @@ void Send(Tracks& t) {
   if (t.sent) return;
   const Order& order = t.works.orders[t.works.first];
   const Sketch& sketch = t.sketches[order.track];
-  t.sent = t.desk.questions.TryPush({t.works.question, order.track, LargestOn(t.params[order.track]), With(order, LookAt(t, order), sketch)});
+  t.sent = t.desk.questions.TryPush(
+      {t.works.question, order.track, LargestOn(t.params[order.track]), With(order, LookAt(t, order), sketch)});
 }
 
 }  // namespace

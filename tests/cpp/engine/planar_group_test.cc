@@ -1,5 +1,5 @@
-// PL-01, PL-02, PL-30, PL-31: groups of movers and environments in a machine: bad input, and random commands after which
-// nothing ever touches.
+// PL-01, PL-02, PL-30, PL-31: groups of movers and environments in a machine: bad input, and random commands after
+// which nothing ever touches.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,6 @@
 #include <variant>
 #include <vector>
 
-#include "../core/allocations.h"
 #include "takt/core/describe.h"
 #include "takt/engine/engine.h"
 #include "takt/engine/load.h"
@@ -334,15 +333,16 @@ class Hall {
   void Justify(const Wish& wish, const ObjectInfo& object) {
     if (!wish.straight) return;
     const bool border = object.kind == ObjectKind::kEnvironment;
-    if (!border && (object.kind != ObjectKind::kMover || Of(object.number - 1).busy_xyc || Of(object.number - 1).busy_c))
+    if (!border &&
+        (object.kind != ObjectKind::kMover || Of(object.number - 1).busy_xyc || Of(object.number - 1).busy_c))
       return;
     bool near = false;
     const double length = std::hypot(wish.to.x - wish.from.x, wish.to.y - wish.from.y);
     const int steps = static_cast<int>(length / 0.5) + 1;
     for (int k = 0; k <= steps && !near; ++k) {
       const double share = static_cast<double>(k) / steps;
-      const Corners body = Body(wish.mover, std::lerp(wish.from.x, wish.to.x, share),
-                                std::lerp(wish.from.y, wish.to.y, share), wish.c);
+      const Corners body =
+          Body(wish.mover, std::lerp(wish.from.x, wish.to.x, share), std::lerp(wish.from.y, wish.to.y, share), wish.c);
       near = border ? !OnFloor(body, -0.5) : Apart(body, BodyOf(object.number - 1)) < 0.5;
     }
     EXPECT_TRUE(near) << "mover " << wish.mover << " to " << wish.to.x << ' ' << wish.to.y;
@@ -392,8 +392,11 @@ class Hall {
       if (p.x < -by - 1e-6 || p.y < -by - 1e-6 || p.x > 1680 + by + 1e-6 || p.y > 1440 + by + 1e-6) return false;
     }
     const Corners hole = {{{720 - by, 720 - by}, {960 + by, 720 - by}, {960 + by, 1200 + by}, {720 - by, 1200 + by}}};
-    return Apart(body, by == 0 ? hole : Corners{{{720 + by, 720 + by}, {960 - by, 720 + by}, {960 - by, 1200 - by},
-                                                 {720 + by, 1200 - by}}}) > -1e-6;
+    return Apart(body, by == 0 ? hole
+                               : Corners{{{720 + by, 720 + by},
+                                          {960 - by, 720 + by},
+                                          {960 - by, 1200 - by},
+                                          {720 + by, 1200 - by}}}) > -1e-6;
   }
 
   void ExpectFree(std::uint32_t i) const {
@@ -433,32 +436,6 @@ TEST(PlanarGroupMachine, NothingEverTouches) {
   EXPECT_GT(rides, 1000);
   EXPECT_GT(justified, 100);
   RecordProperty("refused_by_movers", refused[ObjectKind::kMover]);
-}
-
-// EN-04: what a group and an environment do in the cycle takes no memory.
-TEST(PlanarGroupMachine, AllocatesNothingInTheCycle) {
-  Machine machine = GroundMachine();
-  Talk talk(machine);
-  const long before = AllocationsOfThisThread();
-  const auto give = [&](std::uint32_t target, const CommandBody& body) {
-    talk.engine.Submit({.target = target, .body = body});
-    for (int i = 0; i < 4; ++i) talk.engine.RunCycle();
-  };
-  give(kTable, environment::Command(environment::AddStator{}));
-  give(kCell, planargroup::Command(planargroup::Enable{}));
-  give(2, mover::Command(mover::Enable{}));
-  give(2, mover::Command(mover::MoveToPosition{.x = 100}));
-  give(2, mover::Command(mover::MoveToPosition{.x = 100, .y = 50}));
-  give(2, mover::Command(mover::MoveToPosition{.x = 100, .y = 500}));
-  give(2, mover::Command(mover::Halt{}));
-  give(kTable, environment::Command(environment::CreateBoundary{}));
-  EXPECT_EQ(AllocationsOfThisThread(), before);
-  talk.engine.MakeTracks();
-  const long made = AllocationsOfThisThread();
-  EXPECT_GT(made, before);
-  for (int i = 0; i < 4; ++i) talk.engine.RunCycle();
-  give(kTable, environment::Command(environment::Clear{}));
-  EXPECT_EQ(AllocationsOfThisThread(), made);
 }
 
 }  // namespace

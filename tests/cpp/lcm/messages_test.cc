@@ -510,8 +510,8 @@ TEST(Messages, FeedbackSaysItsErrorInASentence) {
   EXPECT_EQ(error.state, msgs::feedback::STATE_ERROR);
   EXPECT_EQ(error.error_id, 8);
   EXPECT_EQ(error.sentence, ErrorText(ErrorId::kTargetBehindLimit));
-  const msgs::feedback blocked = ThroughBytes(ToMessage(FeedbackEvent{
-      7, 8, FeedbackState::kError, false, ErrorId::kCollision, 0, {ObjectKind::kEnvironment, 3}}));
+  const msgs::feedback blocked = ThroughBytes(ToMessage(
+      FeedbackEvent{7, 8, FeedbackState::kError, false, ErrorId::kCollision, 0, {ObjectKind::kEnvironment, 3}}));
   EXPECT_EQ(blocked.object_kind, msgs::feedback::OBJECT_ENVIRONMENT);
   EXPECT_EQ(blocked.object_number, 3);
   const msgs::feedback reached =
