@@ -34,7 +34,6 @@ struct Ground {
 };
 
 struct Grounds {
-  Grounds() = default;
   Grounds(std::size_t movers, std::size_t tracks, std::size_t environments, std::vector<std::string> groups);
 
   std::uint32_t Find(std::string_view group) const noexcept;
