@@ -201,7 +201,7 @@ class VirtualEngine {
     py::typing::List<FeedbackRow> list;
     for (const FeedbackEvent& e : events) {
       list.append(py::make_tuple(e.ticket, e.cycle, static_cast<int>(e.state), e.reached, static_cast<int>(e.error),
-                                 e.value, checks_ ? checks_->Sentence(e) : engine::Sentence(e, engine_.machine()),
+                                 e.value, checks_ ? checks_->Sentence(e) : engine::SentenceNaming(e, engine_.machine()),
                                  static_cast<int>(e.object.kind), e.object.number));
     }
     return list;

@@ -207,13 +207,13 @@ std::string PathChecks::Sentence(const FeedbackEvent& event) {
   if (event.error == ErrorId::kNone) return {};
   const std::lock_guard lock(mutex_);
   const auto found = std::ranges::find(sentences_, event.ticket, &std::pair<Ticket, std::string>::first);
-  if (found == sentences_.end()) return engine::Sentence(event, engine_.machine());
+  if (found == sentences_.end()) return SentenceNaming(event, engine_.machine());
   std::string sentence = std::move(found->second);
   sentences_.erase(found);
   // Something else may have ended the move meanwhile.
   const bool of_path =
       event.error == ErrorId::kCollision || event.error == ErrorId::kUnreachable || event.error == ErrorId::kSingular;
-  return of_path ? sentence : engine::Sentence(event, engine_.machine());
+  return of_path ? sentence : SentenceNaming(event, engine_.machine());
 }
 
 std::string Sentence(const FeedbackEvent& event) {
@@ -226,7 +226,7 @@ std::string Sentence(const FeedbackEvent& event) {
   return of_path && event.value > 0 ? text + InElement(static_cast<std::uint32_t>(event.value)) : text;
 }
 
-std::string Sentence(const FeedbackEvent& event, const Machine& machine) {
+std::string SentenceNaming(const FeedbackEvent& event, const Machine& machine) {
   const std::string object = NameOf(event.object, machine);
   return Sentence(event) + (object.empty() ? "" : ": " + object);
 }

@@ -47,7 +47,7 @@ class PathChecks {
 // What is wrong, for people, where nobody has looked at the workspace; empty: nothing is. The machine has names for
 // what is in the way.
 std::string Sentence(const FeedbackEvent& event);
-std::string Sentence(const FeedbackEvent& event, const Machine& machine);
+std::string SentenceNaming(const FeedbackEvent& event, const Machine& machine);
 
 // Runs them again and again, for as long as this lives.
 class PathCheckThread {

@@ -164,7 +164,7 @@ TEST(PlanarGroupMachine, HasMembers) {
   const FeedbackEvent refused = talk.Give(1, mover::Command(cell(mover::AddToGroup{})));
   EXPECT_EQ(refused.error, ErrorId::kCollision);
   EXPECT_EQ(refused.object, (ObjectInfo{ObjectKind::kMover, 2}));
-  EXPECT_EQ(Sentence(refused, talk.engine.machine()), std::string(ErrorText(ErrorId::kCollision)) + ": mover two");
+  EXPECT_EQ(SentenceNaming(refused, talk.engine.machine()), std::string(ErrorText(ErrorId::kCollision)) + ": mover two");
 }
 
 // A random walk in a hall: stators with a hole, movers that go, turn, halt and fail, and some that ride on a track.
@@ -254,7 +254,7 @@ class Hall {
 
   void Must(std::uint32_t target, const CommandBody& body) {
     const FeedbackEvent event = talk_.Give(target, body);
-    ASSERT_EQ(event.error, ErrorId::kNone) << target << ' ' << Sentence(event, talk_.engine.machine());
+    ASSERT_EQ(event.error, ErrorId::kNone) << target << ' ' << SentenceNaming(event, talk_.engine.machine());
   }
 
   struct Wish {
