@@ -163,7 +163,8 @@ TEST(PlanarGroupMachine, HasMembers) {
   const FeedbackEvent refused = talk.Give(1, mover::Command(cell(mover::AddToGroup{})));
   EXPECT_EQ(refused.error, ErrorId::kCollision);
   EXPECT_EQ(refused.object, (ObjectInfo{ObjectKind::kMover, 2}));
-  EXPECT_EQ(SentenceNaming(refused, talk.engine.machine()), std::string(ErrorText(ErrorId::kCollision)) + ": mover two");
+  EXPECT_EQ(SentenceNaming(refused, talk.engine.machine()),
+            std::string(ErrorText(ErrorId::kCollision)) + ": mover two");
 }
 
 // A random walk in a hall: stators with a hole, movers that go, turn, halt and fail, and some that ride on a track.
@@ -304,10 +305,13 @@ class Hall {
       default:
         break;
     }
-    if (on_track) return Give(i, mover::MoveOnTrack{.position = Between(0, 1200)});
-    const bool far = Below(3) == 0;
-    const double x = far ? Between(40, 1640) : at.x + Between(-300, 300);
-    const double y = far ? Between(40, 1400) : std::max(at.y + Between(-300, 300), Below(10) == 0 ? 0.0 : 260.0);
+    if (on_track) return Give(i, mover::MoveOnTrack{.position = Between(0, 1200), .velocity = Between(100, 1500)});
+    // Near, far, or across the track.
+    const std::uint32_t how = Below(8);
+    const double x = how < 2 ? Between(40, 1640) : at.x + Between(-300, 300);
+    const double y = how < 2   ? Between(260, 1400)
+                     : how < 4 ? Between(70, 170)
+                               : std::max(at.y + Between(-300, 300), 260.0);
     const bool turns = Below(4) == 0;
     mover::MoveToPosition move{.x = x, .y = y, .c = at.c + Between(-5, 5), .use_orientation = turns};
     if (Below(3) == 0) move.velocity = Between(100, 2000);
