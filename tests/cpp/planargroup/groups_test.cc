@@ -206,11 +206,11 @@ TEST(Environments, HoldSoManyStators) {
 
 // EN-04: a mover in a group, the group and its environment take no memory in the cycle.
 TEST(PlanarGroups, AllocateNothingInTheCycle) {
-  []<typename... T>(const std::variant<T...>*) {
+  const auto touch = []<typename... T>(const std::variant<T...>*) {
     (TypeOf<T>(), ...);  // the first use allocates
-  }(static_cast<const mover::Command*>(nullptr));
-  TypeOf<environment::AddStator>();
-  TypeOf<environment::AddToGroup>();
+  };
+  touch(static_cast<const mover::Command*>(nullptr));
+  touch(static_cast<const environment::Command*>(nullptr));
   TypeOf<planar::Place>();
   Rig rig;
   const mover::MoverParams params{.name = "one"};
