@@ -119,7 +119,7 @@ def test_a_track_and_a_group() -> None:
     assert (two.x, two.y) == (240, 320)
     # Standing it is not.
     two.move_to_position(x=350, y=0).wait()
-    with pytest.raises(takt.CommandError, match="would touch something else on the way: mover one|mover one"):
+    with pytest.raises(takt.CommandError, match="mover one"):
         two.move_to_position(x=240, y=0).wait()
 
 
@@ -184,6 +184,7 @@ def test_what_a_group_needs_to_be_enabled() -> None:
         .replace("[{name: environment}]", "[{name: environment, stators: [{x: -120, y: -120}, {x: 120, y: -120}]}]")
     )
     mover, other, group = engine.mover("mover"), engine.mover("other"), engine.planar_group("group")
+    engine.step()
     assert engine.environment("environment").border_count == 4
     refused = group.enable().wait_final()
     assert refused.error_id == 3024
@@ -229,14 +230,15 @@ def test_a_turn_that_goes_too_far() -> None:
     refused = two.move_to_position(x=133, y=0).wait_final()
     assert refused.object is one
     two.move_to_position(x=137, y=0).wait()
-    back.wait()
-    assert 25 < recorder.stop()["one"]["c"].max() < 45
+    if not back.final:
+        back.wait()
+    assert recorder.stop()["one"]["c"].max() > 40
     two.move_to_position(x=133, y=0).wait()
 
 
 def test_a_track_outside_the_group() -> None:
     """PL-30: a mover of a group moves along tracks of the group alone."""
-    engine = Engine(TWO_IN_A_GROUP.replace("[{name: track}]", "[{name: track, elements: [{from: {x: 0}, to: {x: 100}}]}]"))
+    engine = Engine(TWO_IN_A_GROUP.replace("[{name: track}]", "[{name: track, elements: [{from: {x: 0, y: 0}, to: {x: 100, y: 0}}]}]"))
     engine.track("track").enable().wait()
     one, _ = gather(engine)
     one.join_track(track="track").wait()
@@ -247,7 +249,7 @@ def test_a_track_outside_the_group() -> None:
 
 def test_who_is_in_the_way_on_tracks() -> None:
     """PL-02: without any group, too: who is too near to join, and the track where others move."""
-    engine = Engine(TWO_IN_A_GROUP.replace("[{name: track}]", "[{name: track, elements: [{from: {x: 0}, to: {x: 400}}]}]"))
+    engine = Engine(TWO_IN_A_GROUP.replace("[{name: track}]", "[{name: track, elements: [{from: {x: 0, y: 0}, to: {x: 400, y: 0}}]}]"))
     track = engine.track("track")
     one, two = engine.mover("one"), engine.mover("two")
     for component in (track, one, two):
@@ -274,4 +276,5 @@ def test_replay_is_the_same(tmp_path: Path) -> None:
         feedback = mover.move_to_position(x=100, y=100).wait_final()
         assert feedback.object is environment
         mover.move_to_position(x=50, y=50).wait()
-    assert takt.replay(log).ok
+    result = takt.replay(log)
+    assert result.same, result.sentence
