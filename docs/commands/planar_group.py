@@ -1,7 +1,7 @@
 """Groups of movers, and environments.
 
-A mover of a group asks for the area that it needs before it moves ([what is reserved](../../docs/planar_groups.md)). Here
-one is refused, as another one stands on its way, and as its target lies off the stators; then the other one leaves.
+A mover of a group asks for the area that it needs before it moves ([what is reserved](../../docs/planar_groups.md)).
+Here one is refused, as another one stands on its way, and as its target lies off the stators; then the other leaves.
 """
 
 import takt

@@ -344,7 +344,8 @@ class Session(MachineCommands):
         """What the engine calls so."""
         if not kind or not number:
             return None
-        return [c for c in self._components.values() if c.KIND == OBJECTS[kind]][number - 1]
+        alike = [component for component in self._components.values() if OBJECTS[kind] == component.KIND]
+        return alike[number - 1]
 
     # --- the end ---
 

@@ -18,9 +18,11 @@ movers:
 tracks: [{name: track}]
 planar_groups: [{name: group}]
 """
+LINE = "[{name: track, elements: [{from: {x: 0, y: 0}, to: {x: 400, y: 0}}]}]"
+WITH_A_LINE = TWO_IN_A_GROUP.replace("[{name: track}]", LINE)
 
 
-def gather(session: takt.Session, *names: str) -> list[takt.Mover]:
+def gather(session: takt.Session) -> list[takt.Mover]:
     """Movers and the group enabled, and the movers put into it: by states, as the manual's programs do."""
     movers, group = list(session.movers.values()), session.planar_group("group")
     for mover in movers:
@@ -238,7 +240,7 @@ def test_a_turn_that_goes_too_far() -> None:
 
 def test_a_track_outside_the_group() -> None:
     """PL-30: a mover of a group moves along tracks of the group alone."""
-    engine = Engine(TWO_IN_A_GROUP.replace("[{name: track}]", "[{name: track, elements: [{from: {x: 0, y: 0}, to: {x: 100, y: 0}}]}]"))
+    engine = Engine(WITH_A_LINE)
     engine.track("track").enable().wait()
     one, _ = gather(engine)
     one.join_track(track="track").wait()
@@ -249,7 +251,7 @@ def test_a_track_outside_the_group() -> None:
 
 def test_who_is_in_the_way_on_tracks() -> None:
     """PL-02: without any group, too: who is too near to join, and the track where others move."""
-    engine = Engine(TWO_IN_A_GROUP.replace("[{name: track}]", "[{name: track, elements: [{from: {x: 0, y: 0}, to: {x: 400, y: 0}}]}]"))
+    engine = Engine(WITH_A_LINE)
     track = engine.track("track")
     one, two = engine.mover("one"), engine.mover("two")
     for component in (track, one, two):
