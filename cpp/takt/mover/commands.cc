@@ -207,7 +207,8 @@ void describe(Description<StopExternalSetpointGeneration>& d) {
 }
 
 void describe(Description<AddToGroup>& d) {
-  d.about("Puts the mover into a group. If that is enabled the mover has to rest, and to stand where it meets nothing.");
+  d.about(
+      "Puts the mover into a group. If that is enabled the mover has to rest, and to stand where it meets nothing.");
   d.required<&AddToGroup::group>("Its name.");
 }
 
