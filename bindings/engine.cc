@@ -71,8 +71,9 @@ py::typing::Dict<py::str, py::typing::List<py::str>> PartsOfGroups(const py::byt
 }
 
 using Submitted = py::typing::Tuple<Ticket, int, py::str>;  // ticket, error number, sentence
-using FeedbackRow = py::typing::Tuple<Ticket, std::uint64_t, int, bool, int, double,
-                                      py::str>;  // ticket, cycle, state, reached, error, value, sentence
+using FeedbackRow =
+    py::typing::Tuple<Ticket, std::uint64_t, int, bool, int, double, py::str, int,
+                      std::uint32_t>;  // ticket, cycle, state, reached, error, value, sentence, object: kind and number
 using JournalRow =
     py::typing::Tuple<std::uint64_t, Ticket, double, py::str, py::str, py::str>;  // cycle, ticket, lease, command
 using Wires = py::typing::Dict<py::str, py::object>;
@@ -81,8 +82,9 @@ using Foreseen = py::typing::Tuple<axis::Forecast, py::str>;
 using PoseRow = py::typing::Tuple<double, double, double, double, double, double>;
 using ObjectRow = py::typing::Tuple<std::uint32_t, int, double, PoseRow, bool, std::uint32_t, std::uint32_t,
                                     double>;  // number, state, place, pose, in range, kind, colour, quality
-using RecordRow = py::typing::Tuple<Ticket, py::str, int, int, std::uint64_t, std::uint64_t,
-                                    std::uint64_t>;  // ticket, verb, state, error, cycles: given, begun, changed
+using RecordRow =
+    py::typing::Tuple<Ticket, py::str, int, int, std::uint64_t, std::uint64_t, std::uint64_t, int,
+                      std::uint32_t>;  // ticket, verb, state, error, cycles: given, begun, changed, object
 using TrackRow = py::typing::Tuple<double, double, double, double>;  // x, y, direction in deg, curvature
 using TrackLinks = py::typing::Tuple<py::typing::List<std::size_t>, py::typing::List<std::size_t>>;
 using State = py::typing::Tuple<double, double, double>;  // position, velocity, acceleration
@@ -99,7 +101,8 @@ class VirtualEngine {
         engine_(std::move(*loaded.machine),
                 {.drives = drives_url.has_value(), .journal = journal, .command_queue = kCommandQueue}) {
     const auto made = [](const auto& checker) { return checker.has_value(); };
-    const bool asks = std::ranges::any_of(loaded.checkers, made) || !engine_.machine().tracks.empty();
+    const bool asks = std::ranges::any_of(loaded.checkers, made) || !engine_.machine().tracks.empty() ||
+                      !engine_.machine().environments.empty();
     if (checks && asks) checks_.emplace(engine_, std::move(loaded.checkers));
     if (!drives_url || engine_.machine().external.drives.empty()) return;
     std::string problem;
@@ -199,7 +202,8 @@ class VirtualEngine {
     py::typing::List<FeedbackRow> list;
     for (const FeedbackEvent& e : events) {
       list.append(py::make_tuple(e.ticket, e.cycle, static_cast<int>(e.state), e.reached, static_cast<int>(e.error),
-                                 e.value, checks_ ? checks_->Sentence(e) : engine::Sentence(e)));
+                                 e.value, checks_ ? checks_->Sentence(e) : engine::SentenceNaming(e, engine_.machine()),
+                                 static_cast<int>(e.object.kind), e.object.number));
     }
     return list;
   }
@@ -263,7 +267,7 @@ class VirtualEngine {
       const Type& type = mover::TypeOfCommand(r.command);
       const auto verb = std::ranges::find(engine::Verbs(), &type, &engine::Verb::arguments);
       list.append(py::make_tuple(r.ticket, verb->name, static_cast<int>(r.state), static_cast<int>(r.error), r.cycle,
-                                 r.begun, r.changed));
+                                 r.begun, r.changed, static_cast<int>(r.object.kind), r.object.number));
     }
     return list;
   }

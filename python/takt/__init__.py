@@ -15,6 +15,7 @@ from takt._core import __version__
 from takt.axis import Axis
 from takt.belt import Belt, BeltObject
 from takt.engine import Engine, error_name, error_text, read_machine
+from takt.environment import Environment
 from takt.errors import ClosedError, CommandError, ConfigError, ConnectionError, DriveWarning, TaktError, TimeoutError
 from takt.feedback import Feedback, FeedbackState
 from takt.flex_cam import FlexCam
@@ -23,6 +24,7 @@ from takt.group import Group
 from takt.lcmlog import LogError, read_log
 from takt.mover import Mover, MoverRecord
 from takt.pick_place import PickPlace
+from takt.planar_group import PlanarGroup
 from takt.pose import FreePose
 from takt.recording import Recording, RecordingError
 from takt.remote import RemoteSession, connect
@@ -40,6 +42,7 @@ __all__ = [
     "ConnectionError",
     "DriveWarning",
     "Engine",
+    "Environment",
     "Feedback",
     "FeedbackState",
     "FlexCam",
@@ -47,6 +50,7 @@ __all__ = [
     "Forecast",
     "FreePose",
     "PickPlace",
+    "PlanarGroup",
     "LogError",
     "Moment",
     "Mover",

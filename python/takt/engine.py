@@ -183,11 +183,11 @@ class Engine(Session):
             warnings.warn(sentence, DriveWarning, stacklevel=2)
 
     def _take_feedback(self) -> None:
-        for ticket, cycle, state, reached, error_id, value, sentence in self._core.take_feedback():
+        for ticket, cycle, state, reached, error_id, value, sentence, *place in self._core.take_feedback():
             feedback = self._unfinished.get(ticket)
             if feedback is None:
                 continue
-            self._report(feedback, state, reached, error_id, sentence, cycle, value)
+            self._report(feedback, state, reached, error_id, sentence, cycle, value, *place)
             if feedback.final:
                 del self._unfinished[ticket]
 

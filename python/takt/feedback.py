@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from takt.errors import CommandError, TimeoutError, seconds
 
 if TYPE_CHECKING:
+    from takt.component import Component
     from takt.session import Session
 
 Until = Literal["final", "done", "active", "reached"]
@@ -43,6 +44,7 @@ class Feedback:
         self.cycle = -1  # of the last change; -1: before the command came to a cycle
         self.travel_time_s = 0.0  # s, how long the motion takes as planned when it began; 0: not known (AX-96)
         self.value = 0.0  # what a command was to read or capture, has covered, or (movers) s it took, once it has ended
+        self.object: Component | None = None  # that is in the way: a mover, a track, an environment ...
         self.released = False  # let go of, whether or not the engine has taken up the release yet
         self._release: Feedback | None = None  # the last try to
 

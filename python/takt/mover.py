@@ -20,6 +20,7 @@ class MoverRecord:
     cycle: int  # that took the command
     begun: int  # cycle in which it began; of buffered ones later than it was given
     changed: int  # cycle in which it came to be what it is
+    object: Component | None  # that was in the way
 
 
 class Mover(Component, MoverCommands, MoverOutputs):
@@ -33,4 +34,7 @@ class Mover(Component, MoverCommands, MoverOutputs):
     def history(self) -> tuple[MoverRecord, ...]:
         """Its last 100 commands, the oldest first; external set points apart. In process only."""
         rows = self.session._history(self)
-        return tuple(MoverRecord(ticket, verb, FeedbackState(state), *rest) for ticket, verb, state, *rest in rows)
+        return tuple(
+            MoverRecord(ticket, verb, FeedbackState(state), error, cycle, changed, self.session._object(kind, number))
+            for ticket, verb, state, error, cycle, changed, kind, number in rows
+        )

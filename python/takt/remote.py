@@ -243,7 +243,15 @@ class RemoteSession(Session):
         feedback = sent.feedback
         feedback.ticket = message.ticket or feedback.ticket
         self._report(
-            feedback, message.state, message.reached, message.error_id, message.sentence, message.cycle, message.value
+            feedback,
+            message.state,
+            message.reached,
+            message.error_id,
+            message.sentence,
+            message.cycle,
+            message.value,
+            message.object_kind,
+            message.object_number,
         )
         if feedback.final:
             del self._sent[message.id]

@@ -16,12 +16,14 @@ from takt.axis import Axis
 from takt.belt import Belt
 from takt.component import Component
 from takt.couplings import why_refused
+from takt.environment import Environment
 from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.flex_cam import FlexCam
 from takt.group import Group
 from takt.mover import Mover
 from takt.pick_place import PickPlace
+from takt.planar_group import PlanarGroup
 from takt.pose import FreePose
 from takt.recording import Recording
 from takt.tables import components_of
@@ -37,8 +39,11 @@ P = TypeVar("P", bound=Program)
 C = TypeVar("C", bound=Component)
 
 CLASSES: dict[str, type[Component]] = {
-    component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace, Mover, Track)
+    component.KIND: component
+    for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace, Mover, Track, PlanarGroup, Environment)
 }
+# What can be in the way, by the numbers that the engine has for it.
+OBJECTS = ("", "mover", "track", "planar_group", "environment", "part", "coordinate_system")
 
 
 IN_PROCESS = "the geometry of tracks is known in process only"
@@ -97,6 +102,8 @@ class Session(MachineCommands):
         self._pick_places = {name: c for name, c in self._components.items() if isinstance(c, PickPlace)}
         self._movers = {name: c for name, c in self._components.items() if isinstance(c, Mover)}
         self._tracks = {name: c for name, c in self._components.items() if isinstance(c, Track)}
+        self._planar_groups = {name: c for name, c in self._components.items() if isinstance(c, PlanarGroup)}
+        self._environments = {name: c for name, c in self._components.items() if isinstance(c, Environment)}
         self._programs: list[Program] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
@@ -171,6 +178,22 @@ class Session(MachineCommands):
 
     def track(self, name: str) -> Track:
         return _named(self._tracks, name, "track")
+
+    @property
+    def planar_groups(self) -> Mapping[str, PlanarGroup]:
+        """All groups of movers by name, in the order of the machine file."""
+        return MappingProxyType(self._planar_groups)
+
+    def planar_group(self, name: str) -> PlanarGroup:
+        return _named(self._planar_groups, name, "group of movers")
+
+    @property
+    def environments(self) -> Mapping[str, Environment]:
+        """All environments by name, in the order of the machine file."""
+        return MappingProxyType(self._environments)
+
+    def environment(self, name: str) -> Environment:
+        return _named(self._environments, name, "environment")
 
     @property
     def components(self) -> Mapping[str, Component]:
@@ -302,8 +325,11 @@ class Session(MachineCommands):
         sentence: str,
         cycle: int,
         value: float = 0.0,
+        object_kind: int = 0,
+        object_number: int = 0,
     ) -> None:
         """Passes on what the engine says of a command."""
+        feedback.object = self._object(object_kind, object_number) or feedback.object
         if error_id:
             sentence = why_refused(error_id, feedback.target, feedback.arguments, self._axes) or sentence
         if not feedback._update(state, reached, error_id, sentence, cycle, value) or not feedback.final:
@@ -313,6 +339,13 @@ class Session(MachineCommands):
             self._event(feedback.target, f"{name}: {feedback.sentence}", "error", feedback.time_s)
         else:
             self._event(feedback.target, f"{name}: {feedback.state.name.lower()}", "end", feedback.time_s)
+
+    def _object(self, kind: int, number: int) -> Component | None:
+        """What the engine calls so."""
+        if not kind or not number:
+            return None
+        alike = [component for component in self._components.values() if OBJECTS[kind] == component.KIND]
+        return alike[number - 1]
 
     # --- the end ---
 

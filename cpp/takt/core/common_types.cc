@@ -2,6 +2,7 @@
 #include "takt/core/describe.h"
 #include "takt/core/feedback.h"
 #include "takt/core/kinematic_state.h"
+#include "takt/core/object.h"
 #include "takt/core/ports.h"
 
 namespace takt {
@@ -12,6 +13,24 @@ void describe(Description<KinematicState>& d) {
   d.internal<&K::position>(unit::u, "Position.");
   d.internal<&K::velocity>(unit::u_s, "Velocity.");
   d.internal<&K::acceleration>(unit::u_s2, "Acceleration.");
+}
+
+void describe(Enumeration<ObjectKind>& e) {
+  using K = ObjectKind;
+  e.about("What kind of component is in the way.");
+  e.value(K::kNone, "none", "Nothing.");
+  e.value(K::kMover, "mover", "A mover, or what it has reserved.");
+  e.value(K::kTrack, "track", "A track.");
+  e.value(K::kGroup, "planar_group", "A group of movers.");
+  e.value(K::kEnvironment, "environment", "The border of an environment.");
+  e.value(K::kPart, "part", "A part of the surface.");
+  e.value(K::kCoordinateSystem, "coordinate_system", "A coordinate system.");
+}
+
+void describe(Description<ObjectInfo>& d) {
+  d.about("Which component is in the way.");
+  d.internal<&ObjectInfo::kind>("Of what kind it is.");
+  d.internal<&ObjectInfo::number>("Which of them, from 1; 0: none.");
 }
 
 void describe(Enumeration<FeedbackState>& e) {
@@ -32,6 +51,7 @@ void describe(Description<FeedbackEvent>& d) {
   d.internal<&F::reached>("A command that never ends by itself has what it was given for.");
   d.internal<&F::error>("Why it failed.");
   d.internal<&F::value>("What it found out; active: s its motion takes.");
+  d.internal<&F::object>("What is in the way.");
 }
 
 void describe(Enumeration<DriveMode>& e) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "takt/core/describe_fwd.h"
+#include "takt/core/object.h"
 #include "takt/core/status.h"
 
 namespace takt {
@@ -38,6 +39,7 @@ struct FeedbackEvent {
   // What the command found out: done: what it was to read or capture, of movers' moves: s that it took; active: s its
   // motion takes as planned (AX-96).
   double value = 0;
+  ObjectInfo object{};  // that is in the way; none where nothing is
 };
 
 // Where components report during a cycle. Storage is given from outside and sized so that it cannot overflow in normal

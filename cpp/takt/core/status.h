@@ -79,6 +79,13 @@ enum class ErrorId : std::uint16_t {
   kTrackMode = 3046,          // the track is not enabled, or movers on it do what does not go with this
   kNoRoute = 3047,            // no way along tracks leads there
   kTrackGeometry = 3050,      // a track cannot be so; the value of the feedback says why
+  kObjectMoves = 3060,        // movers have to rest for this
+  kStators = 3061,            // stators cannot be so; the value of the feedback says why
+  kEnvironmentUsed = 3062,    // the environment is in an enabled group, or its boundary is being made
+  kNoBoundary = 3063,         // the environment has no boundary
+  kOtherPlanarGroup = 3064,   // it is in another group, or the group has another environment
+  kNoPlanarGroup = 3065,      // it is in no group
+  kTrackOutside = 3066,       // the mover is in a group, the track is not in it
   kGroupDeviation = 8001,
   kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual
   // A cam module is in error; numbers of the Flex Cam manual.

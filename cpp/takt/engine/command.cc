@@ -25,6 +25,8 @@ constexpr std::string_view kPose = "pose";
 constexpr std::string_view kPickPlace = "pick_place";
 constexpr std::string_view kMover = "mover";
 constexpr std::string_view kTrack = "track";
+constexpr std::string_view kPlanarGroup = "planar_group";
+constexpr std::string_view kEnvironment = "environment";
 
 // A verb together with how its struct gets in and out of a command.
 struct Entry {
@@ -50,7 +52,8 @@ Entry Make(std::string_view target_kind, std::string_view name, bool level_sensi
 
 // What the engine alone gives.
 bool IsInternal(const Verb& verb) {
-  return verb.arguments == &TypeOf<group::PathChecked>() || verb.arguments == &TypeOf<track::TrackMade>();
+  return verb.arguments == &TypeOf<group::PathChecked>() || verb.arguments == &TypeOf<track::TrackMade>() ||
+         verb.arguments == &TypeOf<environment::BoundaryMade>();
 }
 
 // Every command there is: the one list.
@@ -178,6 +181,8 @@ const std::vector<Entry>& Entries() {
       Make<mover::Command, mover::StopExternalSetpointGeneration>(kMover, "stop_external_setpoint_generation"),
       Make<mover::Command, mover::Wait>(kMover, "wait"),
       Make<mover::Command, mover::Release>(kMover, "release"),
+      Make<mover::Command, mover::AddToGroup>(kMover, "add_to_group"),
+      Make<mover::Command, mover::RemoveFromGroup>(kMover, "remove_from_group"),
       Make<track::Command, track::AppendLine>(kTrack, "append_line"),
       Make<track::Command, track::AppendCircle>(kTrack, "append_circle"),
       Make<track::Command, track::AppendPosition>(kTrack, "append_position"),
@@ -188,7 +193,18 @@ const std::vector<Entry>& Entries() {
       Make<track::Command, track::Enable>(kTrack, "enable"),
       Make<track::Command, track::Disable>(kTrack, "disable"),
       Make<track::Command, track::Reset>(kTrack, "reset"),
+      Make<track::Command, track::AddToGroup>(kTrack, "add_to_group"),
+      Make<track::Command, track::RemoveFromGroup>(kTrack, "remove_from_group"),
       Make<track::Command, track::TrackMade>(kTrack, "track_made"),
+      Make<planargroup::Command, planargroup::Enable>(kPlanarGroup, "enable"),
+      Make<planargroup::Command, planargroup::Disable>(kPlanarGroup, "disable"),
+      Make<planargroup::Command, planargroup::Reset>(kPlanarGroup, "reset"),
+      Make<environment::Command, environment::AddStator>(kEnvironment, "add_stator"),
+      Make<environment::Command, environment::CreateBoundary>(kEnvironment, "create_boundary"),
+      Make<environment::Command, environment::Clear>(kEnvironment, "clear"),
+      Make<environment::Command, environment::AddToGroup>(kEnvironment, "add_to_group"),
+      Make<environment::Command, environment::RemoveFromGroup>(kEnvironment, "remove_from_group"),
+      Make<environment::Command, environment::BoundaryMade>(kEnvironment, "boundary_made"),
   };
   return entries;
 }
@@ -290,7 +306,13 @@ std::string WhyNot(const Machine& machine, const group::Command& command, std::s
   return why;
 }
 
+// Of what comes into a group of movers.
+std::string WhyNotGroup(const Machine& machine, const Name& group) {
+  return WhyNotNamed("group", group, NamesOf(machine.planar_groups), "a group of movers");
+}
+
 std::string WhyNot(const Machine& machine, const track::Command& command, std::string_view target) {
+  if (const auto* add = std::get_if<track::AddToGroup>(&command)) return WhyNotGroup(machine, add->group);
   std::vector<std::string_view> others = NamesOf(machine.tracks);
   std::erase(others, target);
   if (const auto* from = std::get_if<track::StartFromTrack>(&command)) {
@@ -306,6 +328,7 @@ std::string WhyNot(const Machine& machine, const mover::Command& command) {
   const auto check = [&](const Name& track) {
     return WhyNotNamed("track", track, NamesOf(machine.tracks), "a track of the machine");
   };
+  if (const auto* add = std::get_if<mover::AddToGroup>(&command)) return WhyNotGroup(machine, add->group);
   if (const auto* join = std::get_if<mover::JoinTrack>(&command)) return check(join->track);
   const auto* move = std::get_if<mover::MoveOnTrack>(&command);
   return move && !move->track.empty() ? check(move->track) : std::string();
@@ -325,6 +348,10 @@ std::string WhyNot(const Machine& machine, const Command& command) {
   if (const auto* body = std::get_if<mover::Command>(&command.body)) return WhyNot(machine, *body);
   if (const auto* body = std::get_if<track::Command>(&command.body)) {
     return WhyNot(machine, *body, NameOf(machine, command.target));
+  }
+  if (const auto* body = std::get_if<environment::Command>(&command.body)) {
+    const auto* add = std::get_if<environment::AddToGroup>(body);
+    return add ? WhyNotGroup(machine, add->group) : std::string();
   }
   return {};
 }

@@ -14,10 +14,12 @@
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
 #include "takt/engine/machine.h"
+#include "takt/environment/commands.h"
 #include "takt/flexcam/commands.h"
 #include "takt/group/commands.h"
 #include "takt/mover/commands.h"
 #include "takt/pickplace/commands.h"
+#include "takt/planargroup/commands.h"
 #include "takt/track/commands.h"
 
 namespace takt::engine {
@@ -45,7 +47,8 @@ void describe(Description<Renew>&);
 
 using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
 using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command,
-                                 conveyor::PoseCommand, pickplace::Command, mover::Command, track::Command>;
+                                 conveyor::PoseCommand, pickplace::Command, mover::Command, track::Command,
+                                 planargroup::Command, environment::Command>;
 
 // Component i (components.h) is target i + 1.
 inline constexpr std::uint32_t kMachineTarget = 0;

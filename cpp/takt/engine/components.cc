@@ -6,10 +6,12 @@
 #include "takt/conveyor/outputs.h"
 #include "takt/conveyor/pose.h"
 #include "takt/core/describe.h"
+#include "takt/environment/outputs.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
 #include "takt/mover/outputs.h"
 #include "takt/pickplace/outputs.h"
+#include "takt/planargroup/outputs.h"
 #include "takt/track/outputs.h"
 
 namespace takt::engine {
@@ -40,6 +42,10 @@ std::span<const ComponentKind> ComponentKinds() {
                                                          "pick and place modules"),
       Make<mover::Outputs, &Machine::movers>("mover", "movers", "a mover", "movers"),
       Make<track::Outputs, &Machine::tracks>("track", "tracks", "a track", "tracks"),
+      Make<planargroup::Outputs, &Machine::planar_groups>("planar_group", "planar_groups", "a group of movers",
+                                                          "groups of movers"),
+      Make<environment::Outputs, &Machine::environments>("environment", "environments", "an environment",
+                                                         "environments"),
   };
   return kinds;
 }

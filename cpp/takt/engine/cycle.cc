@@ -64,7 +64,17 @@ pickplace::Context ContextOf(World& w, const PickPlace& module) {
 }
 
 mover::Context MoverContext(World& w, std::size_t i) {
-  return {w.movers[i], w.cycle, w.planner, w.feedback, w.streets, static_cast<std::uint32_t>(i)};
+  return {w.movers[i], w.cycle, w.planner, w.feedback, w.streets, w.grounds, static_cast<std::uint32_t>(i)};
+}
+
+track::Context TrackContext(World& w) {
+  return {w.tracks, w.grounds, w.cycle, w.feedback};
+}
+planargroup::Context PlanarGroupContext(World& w) {
+  return {w.planar_groups, w.grounds, w.cycle, w.feedback};
+}
+environment::Context EnvironmentContext(World& w) {
+  return {w.environments, w.grounds, w.cycle, w.feedback};
 }
 
 // The tracks as movers see them.
@@ -82,6 +92,7 @@ void RefreshStreets(World& w) {
                        params.collision_range_at_end};
   }
   mover::Refresh(w.tracks_now, w.streets);
+  std::ranges::copy(w.tracks.areas, w.grounds.areas.begin());
 }
 
 // What movers do on each track, for the commands of the next cycle, and the modes of tracks.
@@ -101,7 +112,9 @@ void UseTracks(World& w) {
   for (std::size_t i = 0; i < w.streets.uses.size(); ++i) {
     const mover::TrackUse& use = w.streets.uses[i];
     track::Use(use.movers, use.moving > 0, use.configuring > 0, i, w.tracks);
+    w.grounds.moving[i] = use.moving > 0 ? 1 : 0;
   }
+  planar::AdvanceTracks(w.grounds);
 }
 
 void FailMovers(World& w, ErrorId error) {
@@ -273,11 +286,16 @@ World::World(const Machine& machine)
       streets(machine.movers.size(), NamesOf(machine.tracks)),
       tracks_now(machine.tracks.size()),
       tracks(machine.tracks),
+      grounds(machine.movers.size(), machine.tracks.size(), machine.environments.size(),
+              NamesOf(machine.planar_groups)),
+      planar_groups(machine.planar_groups.size()),
+      environments(machine.environments),
       servo_inputs(machine.axes.size()),
       servo_outputs(machine.axes.size()),
       samplings(machine.axes.size()),
       feedback_storage(machine.axes.size() * kEventsPerAxis + machine.groups.size() * kEventsPerGroup +
                        machine.movers.size() * kEventsPerMover + track::EventsOf(machine.tracks.size()) +
+                       planargroup::EventsOf(machine.planar_groups.size()) + machine.environments.size() +
                        (kCommandsPerCycle + kRenewalsPerCycle) * kEventsPerCommand),
       feedback(feedback_storage) {
   TypeOf<axis::State>();  // the first use of a type allocates
@@ -309,6 +327,7 @@ World::World(const Machine& machine)
   MakeBelts(machine);
   MakePickPlaces(machine);
   MakeMovers(machine);
+  MakePlanarGroups(machine);
   surrounding = {axis_states, axis_params, cam_switches, cams};
   MakeOrder(*this);
 }
@@ -412,6 +431,25 @@ void World::MakeMovers(const Machine& machine) {
   mover_outputs.resize(movers.size());
 }
 
+void World::MakePlanarGroups(const Machine& machine) {
+  TypeOf<planar::Ground>();
+  TypeOf<planargroup::State>();
+  TypeOf<environment::State>();
+  TypeOf<planar::Place>();
+  TouchTypes(static_cast<const planargroup::Command*>(nullptr));
+  TouchTypes(static_cast<const environment::Command*>(nullptr));
+  for (std::uint32_t i = 0; i < machine.planar_groups.size(); ++i) {
+    const planargroup::PlanarGroupParams& params = machine.planar_groups[i];
+    for (const std::string& name : params.movers) grounds.group_of_mover[IndexNamed(machine.movers, name)] = i + 1;
+    for (const std::string& name : params.tracks) grounds.group_of_track[IndexNamed(machine.tracks, name)] = i + 1;
+    if (params.environment) {
+      grounds.group_of_environment[IndexNamed(machine.environments, *params.environment)] = i + 1;
+    }
+  }
+  grounds.surfaces = environments.surfaces;
+  for (std::size_t i = 0; i < movers.size(); ++i) mover::Arrive(MoverContext(*this, i), mover_states[i]);
+}
+
 std::uint64_t World::StateHash() const noexcept {
   std::uint64_t hash = cycle.count;
   for (const axis::State& state : axis_states) hash = HashOf(state, hash);
@@ -428,6 +466,15 @@ std::uint64_t World::StateHash() const noexcept {
   }
   for (const track::State& state : tracks.states) hash = HashOf(state, hash);
   if (!tracks.states.empty()) hash = HashOf(tracks.works, hash);
+  for (const planargroup::State& state : planar_groups.states) hash = HashOf(state, hash);
+  for (const environment::State& state : environments.states) hash = HashOf(state, hash);
+  if (!environments.states.empty()) hash = HashOf(environments.questions, hash);
+  for (const planar::Ground& ground : grounds.grounds) hash = HashOf(ground, hash);
+  if (!grounds.grounds.empty()) {
+    for (const auto* groups : {&grounds.group_of_mover, &grounds.group_of_track, &grounds.group_of_environment}) {
+      for (const std::uint32_t group : *groups) hash = HashOf(group, hash);
+    }
+  }
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
   for (const HeardDrive& drive : drives) hash = HashOf(servo_inputs[drive.axis], HashOf(drive, hash));
   return hash;
@@ -507,7 +554,18 @@ void Apply(World& w, const Command& command) noexcept {
     const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
                           w.pick_places.size() - w.movers.size();  // likewise
     if (i >= w.tracks.states.size()) return refuse(ErrorId::kUnknownTarget);
-    track::Apply({w.tracks, w.cycle, w.feedback}, i, command.ticket, *for_track);
+    track::Apply(TrackContext(w), i, command.ticket, *for_track);
+  } else if (const auto* for_planar_group = std::get_if<planargroup::Command>(&command.body)) {
+    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
+                          w.pick_places.size() - w.movers.size() - w.tracks.states.size();  // likewise
+    if (i >= w.planar_groups.states.size()) return refuse(ErrorId::kUnknownTarget);
+    planargroup::Apply(PlanarGroupContext(w), i, command.ticket, *for_planar_group);
+  } else if (const auto* for_environment = std::get_if<environment::Command>(&command.body)) {
+    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
+                          w.pick_places.size() - w.movers.size() - w.tracks.states.size() -
+                          w.planar_groups.states.size();  // likewise
+    if (i >= w.environments.states.size()) return refuse(ErrorId::kUnknownTarget);
+    environment::Apply(EnvironmentContext(w), i, command.ticket, *for_environment);
   }
 }
 
@@ -533,7 +591,7 @@ void Move(World& w) noexcept {
   for (const std::uint32_t i : w.axis_order.sequence()) {
     if (w.axis_states[i].plc == axis::PlcState::kErrorStop) StopMasters(w, i);
   }
-  track::Step({w.tracks, w.cycle, w.feedback});
+  track::Step(TrackContext(w));
   std::ranges::fill(w.group_stepped, std::uint8_t{0});
   StepBelts(w, w.measured_belts);
   for (const std::uint32_t i : w.axis_order.sequence()) {
@@ -551,6 +609,7 @@ void Move(World& w) noexcept {
     mover::Step(MoverContext(w, i), w.mover_inputs[i], w.mover_states[i]);
   }
   UseTracks(w);
+  planargroup::Step(PlanarGroupContext(w));
 }
 
 void Control(World& w) noexcept {
@@ -584,7 +643,9 @@ void Control(World& w) noexcept {
   for (std::size_t i = 0; i < w.movers.size(); ++i) {
     mover::Publish(MoverContext(w, i), w.mover_inputs[i], w.mover_states[i], w.mover_outputs[i]);
   }
-  track::Publish({w.tracks, w.cycle, w.feedback});
+  track::Publish(TrackContext(w));
+  planargroup::Publish(PlanarGroupContext(w));
+  environment::Publish(EnvironmentContext(w));
 }
 
 void Actuate(World& w) noexcept {

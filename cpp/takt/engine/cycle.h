@@ -21,10 +21,12 @@
 #include "takt/engine/drives.h"
 #include "takt/engine/machine.h"
 #include "takt/engine/order.h"
+#include "takt/environment/environments.h"
 #include "takt/flexcam/module.h"
 #include "takt/group/group.h"
 #include "takt/mover/mover.h"
 #include "takt/pickplace/module.h"
+#include "takt/planargroup/groups.h"
 #include "takt/plant/servo.h"
 #include "takt/track/tracks.h"
 #include "takt/trajectory/planner.h"
@@ -131,6 +133,10 @@ struct World {
 
   track::Tracks tracks;
 
+  planar::Grounds grounds;  // of movers, tracks, groups of movers and environments
+  planargroup::Groups planar_groups;
+  environment::Environments environments;
+
   std::vector<ServoInputs> servo_inputs;
   std::vector<ServoOutputs> servo_outputs;
   std::vector<plant::ServoParams> servo_params;
@@ -150,6 +156,7 @@ struct World {
   void MakeBelts(const Machine& machine);
   void MakePickPlaces(const Machine& machine);
   void MakeMovers(const Machine& machine);
+  void MakePlanarGroups(const Machine& machine);
 };
 
 // Not for the cycle (axis/forecast.h).

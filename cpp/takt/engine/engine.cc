@@ -57,6 +57,11 @@ bool IsTrackMade(const Command& command) {
   return track && std::holds_alternative<track::TrackMade>(*track);
 }
 
+bool IsBoundaryMade(const Command& command) {
+  const auto* environment = std::get_if<environment::Command>(&command.body);
+  return environment && std::holds_alternative<environment::BoundaryMade>(*environment);
+}
+
 bool IsRenewal(const Command& command) {
   const auto* machine = std::get_if<MachineCommand>(&command.body);
   return machine && std::holds_alternative<Renew>(*machine);
@@ -83,6 +88,8 @@ struct Engine::Impl {
         pick_places(machine, o, machine.pick_and_place, world.pick_place_outputs),
         movers(machine, o, machine.movers, world.mover_outputs),
         tracks(machine, o, machine.tracks, world.tracks.outputs),
+        planar_groups(machine, o, machine.planar_groups, world.planar_groups.outputs),
+        environments(machine, o, machine.environments, world.environments.outputs),
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
         hashes(o.journal ? o.snapshot_queue : 2),
@@ -164,7 +171,9 @@ struct Engine::Impl {
   }
 
   // All kinds of components, in the order of their numbers.
-  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses, pick_places, movers, tracks); }
+  auto kinds() noexcept {
+    return std::tie(axes, flex_cams, groups, belts, poses, pick_places, movers, tracks, planar_groups, environments);
+  }
 
   template <typename Outputs>
   void PublishAll(OfKind<Outputs>& kind) noexcept {
@@ -224,6 +233,8 @@ struct Engine::Impl {
   OfKind<pickplace::Outputs> pick_places;
   OfKind<mover::Outputs> movers;
   OfKind<track::Outputs> tracks;
+  OfKind<planargroup::Outputs> planar_groups;
+  OfKind<environment::Outputs> environments;
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
   SpscQueue<HashEntry> hashes;
@@ -263,6 +274,7 @@ Ticket Engine::Submit(const Command& command) noexcept {
 bool Engine::Resubmit(const Command& command) noexcept {
   impl_->next_ticket = std::max(impl_->next_ticket, command.ticket + 1);
   if (IsTrackMade(command)) track::Make(impl_->world.tracks.desk);  // what the journal says of it is given anyhow
+  if (IsBoundaryMade(command)) environment::Make(impl_->world.environments.desk);
   return impl_->journalled.TryPush(command);
 }
 
@@ -277,10 +289,16 @@ bool Engine::Answer(std::size_t group, const group::PathChecked& answer) noexcep
 }
 
 void Engine::MakeTracks() {
-  const std::size_t before = components() - impl_->machine.tracks.size();
+  const Machine& m = impl_->machine;
+  const std::size_t environments = components() - m.environments.size();
+  const std::size_t before = environments - m.planar_groups.size() - m.tracks.size();
   while (const std::optional<track::Answer> answer = track::Make(impl_->world.tracks.desk)) {
     const auto target = static_cast<std::uint32_t>(before + answer->track + 1);
     impl_->answers.TryPush({0, target, 0, track::Command(answer->made)});
+  }
+  while (const std::optional<environment::Answer> answer = environment::Make(impl_->world.environments.desk)) {
+    const auto target = static_cast<std::uint32_t>(environments + answer->environment + 1);
+    impl_->answers.TryPush({0, target, 0, environment::Command(answer->made)});
   }
 }
 
@@ -335,6 +353,9 @@ const mover::State& Engine::mover_state(std::size_t mover) const noexcept {
 }
 const track::Tracks& Engine::tracks() const noexcept {
   return impl_->world.tracks;
+}
+const planar::Grounds& Engine::grounds() const noexcept {
+  return impl_->world.grounds;
 }
 std::size_t Engine::components() const noexcept {
   return std::apply([](const auto&... kind) { return (kind.outputs.size() + ...); }, impl_->kinds());
@@ -417,6 +438,8 @@ template SpscQueue<PoseSnapshot>& Engine::snapshots<conveyor::PoseOutputs>() noe
 template SpscQueue<PickPlaceSnapshot>& Engine::snapshots<pickplace::Outputs>() noexcept;
 template SpscQueue<MoverSnapshot>& Engine::snapshots<mover::Outputs>() noexcept;
 template SpscQueue<TrackSnapshot>& Engine::snapshots<track::Outputs>() noexcept;
+template SpscQueue<PlanarGroupSnapshot>& Engine::snapshots<planargroup::Outputs>() noexcept;
+template SpscQueue<EnvironmentSnapshot>& Engine::snapshots<environment::Outputs>() noexcept;
 
 SpscQueue<ObjectsSnapshot>& Engine::belt_objects() noexcept {
   return impl_->belt_objects;

@@ -16,6 +16,7 @@
 #include "takt/engine/drives.h"
 #include "takt/engine/machine.h"
 #include "takt/engine/snapshot.h"
+#include "takt/environment/environments.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
 #include "takt/group/question.h"
@@ -74,6 +75,7 @@ class Engine {
   const mover::Outputs& mover_outputs(std::size_t mover) const noexcept;
   const mover::State& mover_state(std::size_t mover) const noexcept;
   const track::Tracks& tracks() const noexcept;
+  const planar::Grounds& grounds() const noexcept;
   // The same for components of any kind, by the number that is their target, less one.
   struct Published {
     const Type* type;
@@ -104,7 +106,7 @@ class Engine {
   SpscQueue<group::Question>& questions() noexcept;
   // The next cycle takes it. False: there is no room; then nobody waits for it, either.
   bool Answer(std::size_t group, const group::PathChecked& answer) noexcept;
-  // Makes the tracks that the cycle asks for (track/desk.h), and tells it in the next cycle.
+  // Makes the tracks and boundaries that the cycle asks for (track/desk.h), and tells it in the next cycle.
   void MakeTracks();
   // Never changes.
   group::Fixed fixed(std::size_t group) const noexcept;

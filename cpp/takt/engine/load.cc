@@ -5,9 +5,11 @@
 
 #include "takt/axis/following.h"
 #include "takt/core/yaml_reader.h"
+#include "takt/engine/components.h"
 #include "takt/engine/load_cams.h"
 #include "takt/engine/load_groups.h"
 #include "takt/engine/order.h"
+#include "takt/planar/environment.h"
 #include "takt/track/build.h"
 
 namespace takt::engine {
@@ -58,6 +60,10 @@ class CrossCheck {
     CheckMovers();
     CheckNames("tracks", machine_.tracks);
     CheckTracks();
+    CheckNames("planar_groups", machine_.planar_groups);
+    CheckPlanarGroups();
+    CheckNames("environments", machine_.environments);
+    CheckEnvironments();
     CheckCamSwitches();
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
@@ -77,7 +83,7 @@ class CrossCheck {
   }
 
   void CheckAxes() {
-    if (machine_.axes.empty() && machine_.movers.empty() && machine_.tracks.empty()) {
+    if (machine_.axes.empty() && machine_.movers.empty() && machine_.tracks.empty() && machine_.environments.empty()) {
       Add("axes", "expected at least one axis");
     }
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
@@ -176,43 +182,26 @@ class CrossCheck {
 
   // Belts and the axes that they name; several may go by the same. And poses.
   void CheckBelts() {
-    const std::vector<std::string_view> names = Components();
-    const auto tracks = names.end() - static_cast<std::ptrdiff_t>(machine_.tracks.size());
-    const auto movers = tracks - static_cast<std::ptrdiff_t>(machine_.movers.size());
-    const auto modules = movers - static_cast<std::ptrdiff_t>(machine_.pick_and_place.size());
-    const auto poses = modules - static_cast<std::ptrdiff_t>(machine_.poses.size());
-    const auto belts = poses - static_cast<std::ptrdiff_t>(machine_.belts.size());
-    const auto check_name = [&](const std::string& path, std::string_view name, auto others) {
-      if (name == "machine" || std::find(names.begin(), others, name) != others) {
-        Add(path + ".name", "expected a name that nothing else has, and not machine, found " + Quoted(name));
-      }
-    };
     for (std::size_t i = 0; i < machine_.belts.size(); ++i) {
       const std::string path = "belts[" + std::to_string(i) + "]";
-      check_name(path, machine_.belts[i].name, belts);
+      CheckUnique("belts", i, machine_.belts[i].name);
       std::vector<std::string_view> any;
       CheckReference(path + ".axis", machine_.belts[i].axis, any);
     }
     for (std::size_t i = 0; i < machine_.poses.size(); ++i) {
-      check_name("poses[" + std::to_string(i) + "]", machine_.poses[i].name, poses);
+      CheckUnique("poses", i, machine_.poses[i].name);
     }
   }
 
   // Pick and place modules, and what they name. A group has one at most.
   void CheckPickPlaces() {
-    std::vector<std::string_view> names = Components();
     std::vector<std::string_view> groups, belts, moved;
     for (const group::GroupParams& group : machine_.groups) groups.push_back(group.name);
     for (const conveyor::BeltParams& belt : machine_.belts) belts.push_back(belt.name);
     for (std::size_t i = 0; i < machine_.pick_and_place.size(); ++i) {
       const pickplace::PickPlaceParams& module = machine_.pick_and_place[i];
       const std::string path = "pick_and_place[" + std::to_string(i) + "]";
-      const std::size_t others =
-          names.size() - machine_.tracks.size() - machine_.movers.size() - machine_.pick_and_place.size();
-      if (module.name == "machine" || std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(others),
-                                                module.name) != names.begin() + static_cast<std::ptrdiff_t>(others)) {
-        Add(path + ".name", "expected a name that nothing else has, and not machine, found " + Quoted(module.name));
-      }
+      CheckUnique("pick_and_place", i, module.name);
       CheckReference(path + ".group", module.group, moved, groups, "group");
       std::vector<std::string_view> used;
       for (std::size_t k = 0; k < module.belts.size(); ++k) {
@@ -231,45 +220,70 @@ class CrossCheck {
   }
 
   void CheckMovers() {
-    const std::vector<std::string_view> names = Components();
-    const auto others = names.end() - static_cast<std::ptrdiff_t>(machine_.tracks.size() + machine_.movers.size());
-    for (std::size_t i = 0; i < machine_.movers.size(); ++i) {
-      const std::string& name = machine_.movers[i].name;
-      if (name == "machine" || std::find(names.begin(), others, name) != others) {
-        Add("movers[" + std::to_string(i) + "].name",
-            "expected a name that nothing else has, and not machine, found " + Quoted(name));
-      }
-    }
+    for (std::size_t i = 0; i < machine_.movers.size(); ++i) CheckUnique("movers", i, machine_.movers[i].name);
   }
 
   // Tracks, their geometry and their links.
   void CheckTracks() {
-    const std::vector<std::string_view> names = Components();
-    const auto others = names.end() - static_cast<std::ptrdiff_t>(machine_.tracks.size());
-    for (std::size_t i = 0; i < machine_.tracks.size(); ++i) {
-      const std::string& name = machine_.tracks[i].name;
-      if (name == "machine" || std::find(names.begin(), others, name) != others) {
-        Add("tracks[" + std::to_string(i) + "].name",
-            "expected a name that nothing else has, and not machine, found " + Quoted(name));
-      }
-    }
+    for (std::size_t i = 0; i < machine_.tracks.size(); ++i) CheckUnique("tracks", i, machine_.tracks[i].name);
     for (const track::BuildProblem& problem : track::Build(machine_.tracks).problems) {
       Add("tracks" + problem.path, problem.message);
     }
   }
 
-  // Names of all, belts, poses, pick and place modules, movers and tracks last.
-  std::vector<std::string_view> Components() const {
-    std::vector<std::string_view> names = names_;
-    for (const flexcam::FlexCamParams& module : machine_.flex_cams) names.push_back(module.name);
-    for (const group::GroupParams& group : machine_.groups) names.push_back(group.name);
-    for (const conveyor::BeltParams& belt : machine_.belts) names.push_back(belt.name);
-    for (const conveyor::PoseParams& pose : machine_.poses) names.push_back(pose.name);
-    for (const pickplace::PickPlaceParams& module : machine_.pick_and_place) names.push_back(module.name);
-    for (const mover::MoverParams& mover : machine_.movers) names.push_back(mover.name);
-    for (const track::TrackParams& track : machine_.tracks) names.push_back(track.name);
+  // Groups of movers and what is in them: each in one at most.
+  void CheckPlanarGroups() {
+    std::vector<std::string_view> movers, tracks, environments, in_groups;
+    for (const mover::MoverParams& mover : machine_.movers) movers.push_back(mover.name);
+    for (const track::TrackParams& track : machine_.tracks) tracks.push_back(track.name);
+    for (const environment::EnvironmentParams& one : machine_.environments) environments.push_back(one.name);
+    for (std::size_t i = 0; i < machine_.planar_groups.size(); ++i) {
+      const planargroup::PlanarGroupParams& group = machine_.planar_groups[i];
+      const std::string path = "planar_groups[" + std::to_string(i) + "]";
+      CheckUnique("planar_groups", i, group.name);
+      for (std::size_t k = 0; k < group.movers.size(); ++k) {
+        CheckReference(path + ".movers[" + std::to_string(k) + "]", group.movers[k], in_groups, movers, "mover");
+      }
+      for (std::size_t k = 0; k < group.tracks.size(); ++k) {
+        CheckReference(path + ".tracks[" + std::to_string(k) + "]", group.tracks[k], in_groups, tracks, "track");
+      }
+      if (group.environment) {
+        CheckReference(path + ".environment", *group.environment, in_groups, environments, "environment");
+      }
+    }
+  }
+
+  void CheckEnvironments() {
+    for (std::size_t i = 0; i < machine_.environments.size(); ++i) {
+      const environment::EnvironmentParams& environment = machine_.environments[i];
+      CheckUnique("environments", i, environment.name);
+      if (environment.stators.empty()) continue;
+      planar::Environment surface;
+      const planar::Surfacing surfacing = planar::MakeEnvironment(environment.stators, surface);
+      if (surfacing.problem == planar::StatorProblem::kNone) continue;
+      std::string path = "environments[" + std::to_string(i) + "].stators";
+      if (surfacing.stator < environment.stators.size()) path += "[" + std::to_string(surfacing.stator) + "]";
+      Add(path, std::string(planar::Text(surfacing.problem)));
+    }
+  }
+
+  // No two components have one name; it is said of the later one. Those of one section are looked at by others.
+  void CheckUnique(std::string_view section, std::size_t index, std::string_view name) {
+    const std::vector<std::string_view> others = NamesBefore(section);
+    if (name != "machine" && std::ranges::find(others, name) == others.end()) return;
+    Add(std::string(section) + "[" + std::to_string(index) + "].name",
+        "expected a name that nothing else has, and not machine, found " + Quoted(name));
+  }
+
+  std::vector<std::string_view> NamesBefore(std::string_view section) const {
+    std::vector<std::string_view> names;
+    for (const ComponentKind& kind : ComponentKinds()) {
+      if (kind.section == section) break;
+      for (std::size_t i = 0; i < kind.count(machine_); ++i) names.push_back(kind.name_of(machine_, i));
+    }
     return names;
   }
+  std::vector<std::string_view> Components() const { return ComponentNames(machine_); }
 
   // A member goes by its group alone.
   void CheckMember(const std::string& path, std::string_view name) {
@@ -352,7 +366,8 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name, Worksp
     cams = LoadCams(source, machine);
     groups = LoadGroups(source, machine, workspaces == Workspaces::kMake);
   }
-  if (readable && (!machine.axes.empty() || !machine.movers.empty() || !machine.tracks.empty())) {
+  if (readable &&
+      (!machine.axes.empty() || !machine.movers.empty() || !machine.tracks.empty() || !machine.environments.empty())) {
     std::vector<Problem> more = CrossCheck(machine, source).Run();
     problems.insert(problems.end(), more.begin(), more.end());
   } else if (problems.empty()) {

@@ -127,6 +127,8 @@ void describe(Description<Machine>& d) {
   d.defaulted<&M::pick_and_place>("Pick and place modules.");
   d.defaulted<&M::movers>("Planar movers.");
   d.defaulted<&M::tracks>("Tracks for movers in the plane.");
+  d.defaulted<&M::planar_groups>("Groups of movers that do not collide.");
+  d.defaulted<&M::environments>("Surfaces that movers float on.");
   d.defaulted<&M::simulation>("What stands in for the metal.");
   d.defaulted<&M::external>("What lives in other processes.");
 }

@@ -13,10 +13,12 @@
 #include "takt/conveyor/params.h"
 #include "takt/conveyor/pose.h"
 #include "takt/core/describe_fwd.h"
+#include "takt/environment/params.h"
 #include "takt/flexcam/params.h"
 #include "takt/group/params.h"
 #include "takt/mover/params.h"
 #include "takt/pickplace/params.h"
+#include "takt/planargroup/params.h"
 #include "takt/plant/servo.h"
 #include "takt/track/params.h"
 
@@ -79,6 +81,8 @@ struct Machine {
   std::vector<pickplace::PickPlaceParams> pick_and_place;
   std::vector<mover::MoverParams> movers;
   std::vector<track::TrackParams> tracks;
+  std::vector<planargroup::PlanarGroupParams> planar_groups;
+  std::vector<environment::EnvironmentParams> environments;
   Simulation simulation;
   External external;
 };

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <string_view>
 
+#include "takt/environment/environments.h"
 #include "takt/group/survey.h"
 #include "takt/planar/problem.h"
 #include "takt/track/sketch.h"
@@ -38,6 +39,32 @@ std::string TrackSentence(double value) {
   const std::string_view text = planar::Text(track::ProblemOf(value));
   const std::string why(text.empty() ? ErrorText(ErrorId::kTrackGeometry) : text);
   return why + InElement(track::ElementOf(value));
+}
+
+std::string StatorSentence(double value) {
+  const std::string_view text = planar::Text(environment::ProblemOf(value));
+  const std::string why(text.empty() ? ErrorText(ErrorId::kStators) : text);
+  const std::uint32_t stator = environment::StatorOf(value);
+  return stator == 0 ? why : why + ", found with stator " + std::to_string(stator);
+}
+
+// "mover two"; empty: none.
+std::string NameOf(const ObjectInfo& object, const Machine& machine) {
+  const auto name = [&](const char* kind, const auto& list) {
+    return object.number == 0 || object.number > list.size() ? std::string() : kind + list[object.number - 1].name;
+  };
+  switch (object.kind) {
+    case ObjectKind::kMover:
+      return name("mover ", machine.movers);
+    case ObjectKind::kTrack:
+      return name("track ", machine.tracks);
+    case ObjectKind::kGroup:
+      return name("group ", machine.planar_groups);
+    case ObjectKind::kEnvironment:
+      return name("environment ", machine.environments);
+    default:
+      return {};
+  }
 }
 
 // One question: what goes on without a gap is looked at together.
@@ -180,13 +207,13 @@ std::string PathChecks::Sentence(const FeedbackEvent& event) {
   if (event.error == ErrorId::kNone) return {};
   const std::lock_guard lock(mutex_);
   const auto found = std::ranges::find(sentences_, event.ticket, &std::pair<Ticket, std::string>::first);
-  if (found == sentences_.end()) return engine::Sentence(event);
+  if (found == sentences_.end()) return SentenceNaming(event, engine_.machine());
   std::string sentence = std::move(found->second);
   sentences_.erase(found);
   // Something else may have ended the move meanwhile.
   const bool of_path =
       event.error == ErrorId::kCollision || event.error == ErrorId::kUnreachable || event.error == ErrorId::kSingular;
-  return of_path ? sentence : engine::Sentence(event);
+  return of_path ? sentence : SentenceNaming(event, engine_.machine());
 }
 
 std::string Sentence(const FeedbackEvent& event) {
@@ -194,8 +221,14 @@ std::string Sentence(const FeedbackEvent& event) {
   const bool of_path = event.error == ErrorId::kCollision || event.error == ErrorId::kUnreachable ||
                        event.error == ErrorId::kSingular || event.error == ErrorId::kPathGeometry;
   if (event.error == ErrorId::kTrackGeometry) return TrackSentence(event.value);
+  if (event.error == ErrorId::kStators) return StatorSentence(event.value);
   const std::string text(ErrorText(event.error));
   return of_path && event.value > 0 ? text + InElement(static_cast<std::uint32_t>(event.value)) : text;
+}
+
+std::string SentenceNaming(const FeedbackEvent& event, const Machine& machine) {
+  const std::string object = NameOf(event.object, machine);
+  return Sentence(event) + (object.empty() ? "" : ": " + object);
 }
 
 PathCheckThread::PathCheckThread(PathChecks& checks)

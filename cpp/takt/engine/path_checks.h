@@ -44,8 +44,10 @@ class PathChecks {
   std::deque<std::pair<Ticket, std::string>> sentences_;
 };
 
-// What is wrong, for people, where nobody has looked at the workspace; empty: nothing is.
+// What is wrong, for people, where nobody has looked at the workspace; empty: nothing is. The machine has names for
+// what is in the way.
 std::string Sentence(const FeedbackEvent& event);
+std::string SentenceNaming(const FeedbackEvent& event, const Machine& machine);
 
 // Runs them again and again, for as long as this lives.
 class PathCheckThread {

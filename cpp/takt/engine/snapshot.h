@@ -11,17 +11,20 @@
 #include "takt/conveyor/state.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/engine/command.h"
+#include "takt/environment/outputs.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
 #include "takt/mover/outputs.h"
 #include "takt/pickplace/outputs.h"
+#include "takt/planargroup/outputs.h"
 #include "takt/track/outputs.h"
 
 namespace takt::engine {
 
 // What each kind of components publishes, in the order of ComponentKinds().
-using PublishedKinds = std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs,
-                                  conveyor::PoseOutputs, pickplace::Outputs, mover::Outputs, track::Outputs>;
+using PublishedKinds =
+    std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs, conveyor::PoseOutputs,
+               pickplace::Outputs, mover::Outputs, track::Outputs, planargroup::Outputs, environment::Outputs>;
 
 // What a component published.
 template <typename Outputs>
@@ -39,6 +42,8 @@ using PoseSnapshot = SnapshotOf<conveyor::PoseOutputs>;
 using PickPlaceSnapshot = SnapshotOf<pickplace::Outputs>;
 using MoverSnapshot = SnapshotOf<mover::Outputs>;
 using TrackSnapshot = SnapshotOf<track::Outputs>;
+using PlanarGroupSnapshot = SnapshotOf<planargroup::Outputs>;
+using EnvironmentSnapshot = SnapshotOf<environment::Outputs>;
 
 // What lies on a belt, at the rate of its channel.
 struct ObjectsSnapshot {

@@ -335,6 +335,33 @@ msgs::track_state ToMessage(const engine::TrackSnapshot& snapshot, const engine:
   m.mover_count = o.mover_count;
   m.previous_tracks = o.previous_tracks;
   m.subsequent_tracks = o.subsequent_tracks;
+  m.group = o.group;
+  return m;
+}
+
+msgs::planar_group_state ToMessage(const engine::PlanarGroupSnapshot& snapshot, const engine::Machine& machine) {
+  const planargroup::Outputs& o = snapshot.outputs;
+  msgs::planar_group_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.planar_groups[snapshot.index].name;
+  m.state = static_cast<std::int8_t>(o.state);
+  m.error = static_cast<std::int32_t>(o.error);
+  m.mover_count = o.mover_count;
+  m.track_count = o.track_count;
+  m.environment = o.environment;
+  return m;
+}
+
+msgs::environment_state ToMessage(const engine::EnvironmentSnapshot& snapshot, const engine::Machine& machine) {
+  const environment::Outputs& o = snapshot.outputs;
+  msgs::environment_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.environments[snapshot.index].name;
+  m.stator_count = o.stator_count;
+  m.border_count = o.border_count;
+  m.group = o.group;
   return m;
 }
 
@@ -438,6 +465,7 @@ msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine:
   m.delay = static_cast<std::int8_t>(o.delay);
   m.delay_since = Signed(o.delay_since);
   m.buffered = o.buffered;
+  m.group = o.group;
   m.commands = Signed(o.commands);
   return m;
 }
@@ -480,6 +508,8 @@ msgs::feedback ToMessage(const FeedbackEvent& event) {
   m.error_id = static_cast<std::int32_t>(event.error);
   m.value = event.value;
   m.sentence = engine::Sentence(event);
+  m.object_kind = static_cast<std::int8_t>(event.object.kind);
+  m.object_number = event.object.number;
   return m;
 }
 

@@ -20,6 +20,7 @@
 #include "takt/msgs/drive_feedback.hpp"
 #include "takt/msgs/drive_setpoint.hpp"
 #include "takt/msgs/engine_state.hpp"
+#include "takt/msgs/environment_state.hpp"
 #include "takt/msgs/feedback.hpp"
 #include "takt/msgs/flex_cam_state.hpp"
 #include "takt/msgs/group_state.hpp"
@@ -31,6 +32,7 @@
 #include "takt/msgs/machine_description.hpp"
 #include "takt/msgs/mover_state.hpp"
 #include "takt/msgs/pick_place_state.hpp"
+#include "takt/msgs/planar_group_state.hpp"
 #include "takt/msgs/pose_state.hpp"
 #include "takt/msgs/track_state.hpp"
 
@@ -45,6 +47,8 @@ msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, cons
 msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine::Machine& machine);
 msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::Machine& machine);
 msgs::track_state ToMessage(const engine::TrackSnapshot& snapshot, const engine::Machine& machine);
+msgs::planar_group_state ToMessage(const engine::PlanarGroupSnapshot& snapshot, const engine::Machine& machine);
+msgs::environment_state ToMessage(const engine::EnvironmentSnapshot& snapshot, const engine::Machine& machine);
 msgs::histogram ToMessage(const engine::Histogram& histogram);
 msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine::Machine& machine);
 // Client, session and id are left empty.

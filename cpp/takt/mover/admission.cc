@@ -24,7 +24,7 @@ bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) no
   const Answer answer = std::visit(
       [&](const auto& body) { return InRange(body) ? CarryOut(given, body) : Refused(ErrorId::kParameter); }, command);
   if (answer.status.failed()) {
-    Report(c, ticket, FeedbackState::kError, answer.status.error, 0, s);
+    Report(c, ticket, FeedbackState::kError, answer.status.error, 0, s, answer.object);
     return false;
   }
   Report(c, ticket, FeedbackState::kActive, ErrorId::kNone, answer.value, s);

@@ -21,10 +21,11 @@ struct Answer {
   Status status;
   double value = 0;     // s that it takes, as planned
   bool goes_on = true;  // it is done later
+  ObjectInfo object{};  // that is in the way
 };
 
-inline Answer Refused(ErrorId error) noexcept {
-  return {Status::Failed(error)};
+inline Answer Refused(ErrorId error, const ObjectInfo& object = {}) noexcept {
+  return {.status = Status::Failed(error), .object = object};
 }
 inline Answer Done() noexcept {
   return {Status::Ok(), 0, false};
@@ -64,7 +65,7 @@ trajectory::Limits LimitsOf(const Move& m, const Params& params, LimitedBy& limi
 bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) noexcept;
 
 // Sends a mover on its way as `command` asks; not yet with its dynamics.
-ErrorId FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept;
+planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept;
 // A move of X and Y in the plane, whatever the mode.
 Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept;
 // One of C, if it may do what `ask` says.
@@ -89,5 +90,7 @@ Answer CarryOut(const Given& g, const SetExternalSetpoint& command) noexcept;
 Answer CarryOut(const Given& g, const StopExternalSetpointGeneration& command) noexcept;
 Answer CarryOut(const Given& g, const Wait& command) noexcept;
 Answer CarryOut(const Given& g, const Release& command) noexcept;
+Answer CarryOut(const Given& g, const AddToGroup& command) noexcept;
+Answer CarryOut(const Given& g, const RemoveFromGroup& command) noexcept;
 
 }  // namespace takt::mover

@@ -94,7 +94,7 @@ bool LeadsInto(const Context& c, const MoveOnTrack& next, const State& s) {
   const double left = WayLeft(c.streets.network, rider);
   if (left > rest + in_time) return false;
   planar::Rider then = rider;
-  if (FindWay(c, next, s, then) != ErrorId::kNone) return false;
+  if (FindWay(c, next, s, then).error != ErrorId::kNone) return false;
   const auto old = rider.route.all();
   return then.route.count >= old.size() && std::ranges::equal(old, then.route.all().first(old.size())) &&
          WayLeft(c.streets.network, then) >= left;

@@ -229,4 +229,14 @@ void describe(Description<StopExternalSetpointGeneration>& d) {
   d.about("Ends external set points: the mover comes to rest with its maximum dynamics.");
 }
 
+void describe(Description<AddToGroup>& d) {
+  d.about(
+      "Puts the mover into a group. If that is enabled the mover has to rest, and to stand where it meets nothing.");
+  d.required<&AddToGroup::group>("Its name.");
+}
+
+void describe(Description<RemoveFromGroup>& d) {
+  d.about("Takes the mover out of its group: nobody looks any more what it collides with.");
+}
+
 }  // namespace takt::mover

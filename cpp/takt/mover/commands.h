@@ -152,9 +152,15 @@ struct SetExternalSetpoint {                                          // for the
 };
 struct StopExternalSetpointGeneration {};
 
-using Command = std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC,
-                             JoinTrack, LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration,
-                             SetExternalSetpoint, StopExternalSetpointGeneration, Wait, Release>;
+struct AddToGroup {  // of movers that do not collide
+  Name group{};
+};
+struct RemoveFromGroup {};
+
+using Command =
+    std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC, JoinTrack,
+                 LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration, SetExternalSetpoint,
+                 StopExternalSetpointGeneration, Wait, Release, AddToGroup, RemoveFromGroup>;
 
 // Table of the arguments of the command at this place of the variant.
 const Type& TypeOfCommand(std::size_t index);
@@ -181,5 +187,7 @@ void describe(Description<SetExternalSetpoint>&);
 void describe(Description<StopExternalSetpointGeneration>&);
 void describe(Description<Wait>&);
 void describe(Description<Release>&);
+void describe(Description<AddToGroup>&);
+void describe(Description<RemoveFromGroup>&);
 
 }  // namespace takt::mover

@@ -18,6 +18,7 @@ struct Record {
   std::uint8_t command = 0;   // place in mover::Command
   FeedbackState state = FeedbackState::kBusy;
   ErrorId error = ErrorId::kNone;
+  ObjectInfo object{};  // that was in the way
 };
 
 inline constexpr std::size_t kHistory = 100;
@@ -39,6 +40,7 @@ struct History {
       if (event.state == FeedbackState::kActive) record.begun = event.cycle;
       record.state = event.state;
       record.error = event.error;
+      record.object = event.object;
       return;
     }
   }

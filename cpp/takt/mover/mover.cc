@@ -6,6 +6,7 @@
 #include "takt/core/describe.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/follow.h"
+#include "takt/mover/ground.h"
 #include "takt/mover/run.h"
 
 namespace takt::mover {
@@ -13,6 +14,13 @@ namespace takt::mover {
 namespace {
 
 using planar::ObjectState;
+
+// As the next cycle begins.
+Context NextTo(const Context& c) {
+  Context next = c;
+  ++next.cycle.count;
+  return next;
+}
 
 // At rest on its old line it goes on to its target.
 void GoOn(const Context& c, State& s) {
@@ -93,8 +101,7 @@ void EndOfWay(const Context& c, State& s) {
 
 // Commands that have what they wanted. The next cycle begins where this one ends.
 void Finish(const Context& now, State& s) {
-  const Context c{now.params, {now.cycle.count + 1, now.cycle.period_s}, now.planner, now.feedback, now.streets,
-                  now.index};
+  const Context c = NextTo(now);
   const auto done = [&](Slot slot) { End(now, slot, FeedbackState::kDone, ErrorId::kNone, s); };
   const bool turned = IsOver(c, s.others.back());
   if (s.external.mode != SetpointMode::kAbsolute) {
@@ -179,6 +186,11 @@ void Step(const Context& c, const Inputs& inputs, State& s) noexcept {
   LookBack(c, s);
   Finish(c, s);
   Change(c, s);
+  Stand(NextTo(c), s);
+}
+
+void Arrive(const Context& c, const State& s) noexcept {
+  Stand(c, s);
 }
 
 bool AtRest(const State& s) noexcept {
@@ -191,7 +203,7 @@ bool IsOff(const State& s) noexcept {
 }
 
 void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& out) noexcept {
-  const Context next{c.params, {c.cycle.count + 1, c.cycle.period_s}, c.planner, c.feedback, c.streets, c.index};
+  const Context next = NextTo(c);
   const SetPoint& at = s.set_point;
   out = {};
   out.state = s.state;
@@ -233,6 +245,7 @@ void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& ou
   }
   PublishDelay(c, s, out);
   out.buffered = s.buffer.count;
+  out.group = c.grounds.group_of_mover[c.index];
   out.commands = s.history.count;
 }
 

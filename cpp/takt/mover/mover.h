@@ -9,6 +9,7 @@
 #include "takt/mover/params.h"
 #include "takt/mover/state.h"
 #include "takt/mover/streets.h"
+#include "takt/planar/grounds.h"
 #include "takt/trajectory/planner.h"
 
 namespace takt::mover {
@@ -20,6 +21,7 @@ struct Context {
   trajectory::Planner& planner;
   FeedbackSink& feedback;
   Streets& streets;
+  planar::Grounds& grounds;
   std::uint32_t index = 0;  // of the mover
 
   planar::Rider& rider() const noexcept { return streets.riders[index]; }
@@ -38,6 +40,9 @@ void Apply(const Context& c, Ticket ticket, const Command& command, State& s) no
 
 // move
 void Step(const Context& c, const Inputs& inputs, State& s) noexcept;
+
+// Where it is at the start, for others.
+void Arrive(const Context& c, const State& s) noexcept;
 
 // Comes to rest with the maximum dynamics, and is in Error then.
 void Fail(const Context& c, ErrorId error, State& s) noexcept;

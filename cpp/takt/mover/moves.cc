@@ -4,6 +4,7 @@
 
 #include "takt/mover/admission.h"
 #include "takt/mover/coordinate.h"
+#include "takt/mover/ground.h"
 
 namespace takt::mover {
 
@@ -115,11 +116,12 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
     }
     duration = std::max(duration, turn.profile.duration());
     turn.begin = g.c.cycle.count;
-    End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
   } else if (s.plane.turns) {  // that turn belonged to the move before
     PlanRest(g.c.planner, turned, StandardOf(free), ParamsOf(g.c, s, kOthers.size() - 1), turn.profile);
     turn.begin = g.c.cycle.count;
   }
+  if (const ObjectInfo object = InTheWay(g.c, *move, turn, false)) return Refused(ErrorId::kCollision, object);
+  if (command.use_orientation) End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);
   s.others.back() = turn;
@@ -127,6 +129,7 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
   s.plane.turns = command.use_orientation;
   s.plane.limits = limits;
   s.limited_by = limited_by;
+  Reserve(g.c, s, false);
   return {Status::Ok(), duration};
 }
 
@@ -159,10 +162,12 @@ Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept {
   const trajectory::Profile::Range range = move.profile.PositionRange();
   const bool inside = InOneWindow(g.c.params.c, range.min, range.max);
   if (!inside && !IsPlaneResting(g.c, s)) return Refused(ErrorId::kOutsideWindow);
+  move.begin = g.c.cycle.count;
+  if (const ObjectInfo object = InTheWay(g.c, s.plane, move, IsOnTrack(s))) return Refused(ErrorId::kCollision, object);
   if (!inside && s.mode == CommandMode::kFreeMovement) s.mode = CommandMode::kCRotationFreeMovement;
   if (!inside && s.mode == CommandMode::kOnTrack) s.mode = CommandMode::kCRotationOnTrack;
-  move.begin = g.c.cycle.count;
   s.others.back() = move;
+  Reserve(g.c, s, IsOnTrack(s));
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kMoveC);
   s.limited_by = limited_by;

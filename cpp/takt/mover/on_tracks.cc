@@ -12,8 +12,15 @@ using trajectory::Limits;
 
 namespace {
 
-// Too near to others on a track to stand there, or to one that is to stand on a track that meets it.
-bool IsTaken(const Context& c, std::uint32_t track, double s) {
+ObjectInfo MoverOf(std::uint32_t index) {
+  return {ObjectKind::kMover, index + 1};
+}
+ObjectInfo TrackOf(std::uint32_t index) {
+  return {ObjectKind::kTrack, index + 1};
+}
+
+// Who is too near on a track for one to stand there, or is to stand on a track that meets it.
+ObjectInfo TakenBy(const Context& c, std::uint32_t track, double s) {
   const Streets& streets = c.streets;
   const planar::Road& road = streets.network[track];
   const planar::Place place = planar::At(*road.track, s).place;
@@ -23,13 +30,13 @@ bool IsTaken(const Context& c, std::uint32_t track, double s) {
     const double gap = std::max(c.params.gap, other.gap);
     if (other.route.first() == track) {
       const double apart = std::abs(other.at.position - s);
-      if (std::min(apart, road.closed ? road.length - apart : apart) < gap) return true;
+      if (std::min(apart, road.closed ? road.length - apart : apart) < gap) return MoverOf(i);
       continue;
     }
     const planar::Place its = planar::At(*streets.network[other.route.first()].track, other.at.position).place;
-    if (std::hypot(its.x - place.x, its.y - place.y) < streets.tracks[track].reach) return true;
+    if (std::hypot(its.x - place.x, its.y - place.y) < streets.tracks[track].reach) return MoverOf(i);
   }
-  return false;
+  return {};
 }
 
 planar::Way WayOf(TurnDirection direction) {
@@ -54,10 +61,12 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   if (!IsPlaneResting(g.c, s)) return Refused(ErrorId::kCommandMode);
   const std::uint32_t track = streets.Find(command.track.view());
   if (track == planar::kNoTrack) return Refused(ErrorId::kParameter);
-  if (!streets.tracks[track].enabled || streets.uses[track].moving > 0) return Refused(ErrorId::kTrackMode);
+  if (!streets.tracks[track].enabled || streets.uses[track].moving > 0) {
+    return Refused(ErrorId::kTrackMode, TrackOf(track));
+  }
   const planar::Nearest nearest =
       planar::NearestTo(*streets.network[track].track, {s.set_point[kX].position, s.set_point[kY].position});
-  if (IsTaken(g.c, track, nearest.s)) return Refused(ErrorId::kCollision);
+  if (const ObjectInfo who = TakenBy(g.c, track, nearest.s)) return Refused(ErrorId::kCollision, who);
   const KinematicState turned = Now(g.c, s.others.back());
   const double c = TargetOf(g.c.params, turned, turned.position, {.direction = TurnDirection::kShortestWay});
   const Answer answer = MoveTo(g, {nearest.place.x, nearest.place.y, c, command.use_orientation, command.velocity,
@@ -85,7 +94,7 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
   Streets& streets = g.c.streets;
   if (const ErrorId why = WhyNot(s, Ask::kLeaveTrack); why != ErrorId::kNone) return Refused(why);
   if (!IsPlaneResting(g.c, s)) return Refused(ErrorId::kCommandMode);
-  if (streets.uses[s.track].moving > 0) return Refused(ErrorId::kTrackMode);
+  if (streets.uses[s.track].moving > 0) return Refused(ErrorId::kTrackMode, TrackOf(s.track));
   s.plane = {};
   s.plane.motion = StandingAt(s.set_point[kX].position, s.set_point[kY].position);
   s.plane.begin = g.c.cycle.count;
@@ -97,34 +106,37 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
   return answer;
 }
 
-ErrorId FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept {
+planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept {
   Streets& streets = c.streets;
   const std::uint32_t track = command.track.empty() ? s.track : streets.Find(command.track.view());
-  if (track == planar::kNoTrack) return ErrorId::kParameter;
+  if (track == planar::kNoTrack) return {ErrorId::kParameter, {}};
   const planar::Road& road = streets.network[track];
   const bool turns_count = road.closed && command.direction == TurnDirection::kNonModulo;
   const bool outside = !(command.position >= 0 && command.position <= road.length);
-  if (outside && !turns_count) return ErrorId::kTargetBehindLimit;
+  if (outside && !turns_count) return {ErrorId::kTargetBehindLimit, {}};
   const planar::Destination to{track, command.position, WayOf(command.direction), command.additional_turns,
                                command.modulo_tolerance};
-  if (!planar::Send(streets.network, streets.search, to, rider)) return ErrorId::kNoRoute;
+  if (!planar::Send(streets.network, streets.search, to, rider)) return {ErrorId::kNoRoute, {}};
   for (const std::uint32_t on : rider.route.all()) {
-    if (!streets.tracks[on].enabled || streets.uses[on].configuring > 0) return ErrorId::kTrackMode;
+    if (!streets.tracks[on].enabled || streets.uses[on].configuring > 0) return {ErrorId::kTrackMode, TrackOf(on)};
   }
-  return ErrorId::kNone;
+  return planar::AskTracks(c.index, rider.route.all(), c.grounds);
 }
 
 Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
   State& s = g.s;
   if (const ErrorId why = WhyNot(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
   planar::Rider next = g.c.rider();
-  if (const ErrorId why = FindWay(g.c, command, s, next); why != ErrorId::kNone) return Refused(why);
+  if (const planar::Verdict way = FindWay(g.c, command, s, next); way.error != ErrorId::kNone) {
+    return Refused(way.error, way.object);
+  }
   next.pace = {LimitsOf(command, g.c.params.xy, s.limited_by), g.c.params.lateral_acceleration};
   next.gap = command.gap.value_or(g.c.params.gap);
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);
   g.c.rider() = next;
   for (const std::uint32_t on : next.route.all()) ++g.c.streets.uses[on].moving;
+  planar::TakeTracks(next.route.all(), g.c.grounds);
   return {};
 }
 Answer CarryOut(const Given& g, const AdoptTrackOrientation& command) noexcept {

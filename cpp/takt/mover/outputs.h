@@ -47,6 +47,7 @@ struct Outputs {
   Delay delay = Delay::kNone;     // why it does not go on
   std::uint64_t delay_since = 0;  // cycle; 0: it goes on
   std::uint32_t buffered = 0;     // commands that wait for their turn
+  std::uint32_t group = 0;        // number of the group of movers that it is in, from 1; 0: none
   std::uint64_t commands = 0;     // so many have come
 };
 

@@ -276,8 +276,15 @@ bool PlanRest(Planner& planner, const PlaneMotion& motion, double t, const Limit
     };
     const double along = std::sqrt(1 - rest.share * rest.share);
     if (!planner.Stop(begin(motion.along), Times(along, limits), rest.along).ok()) return false;
-    if (rest.share > 0 && !planner.Stop(begin(motion.across), Times(rest.share, limits), rest.across).ok()) {
-      return false;
+    if (rest.share > 0) {
+      if (!planner.Stop(begin(motion.across), Times(rest.share, limits), rest.across).ok()) return false;
+      // As the motion itself may have reckoned with: else this would lead beyond its end.
+      Profile harder = rest.along, then;
+      harder.Cut(rest.across.duration());
+      if (rest.across.duration() < rest.along.duration() && planner.Stop(harder.end(), limits, then).ok() &&
+          harder.Append(then)) {
+        rest.along = harder;
+      }
     }
     PutEnd(rest);
   }

@@ -57,6 +57,14 @@ bool PlanRest(trajectory::Planner& planner, const PlaneMotion& motion, double t,
 bool PlanRest(trajectory::Planner& planner, const PlaneState& from, const trajectory::Limits& limits,
               PlaneMotion& out) noexcept;
 
+// Moves all of it.
+inline void Shift(double x, double y, PlaneMotion& motion) noexcept {
+  motion.origin_x += x;
+  motion.origin_y += y;
+  motion.end_x += x;
+  motion.end_y += y;
+}
+
 void describe(Description<PlaneMotion>&);
 
 }  // namespace takt::mover

@@ -58,6 +58,8 @@ Answer CarryOut(const Given& g, const Reset&) noexcept {
 
 Answer CarryOut(const Given& g, const SetPosition& command) noexcept {
   if (g.s.state != ObjectState::kDisabled) return Refused(ErrorId::kState);
+  const planar::Verdict room = planar::SetDown(g.c.index, {{command.x, command.y}, command.c}, g.c.grounds);
+  if (room.error != ErrorId::kNone) return Refused(room.error, room.object);
   g.s.set_point[kX].position = command.x;
   g.s.set_point[kY].position = command.y;
   g.s.set_point[kC].position = command.c;

@@ -1,8 +1,10 @@
 #include "takt/mover/run.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "takt/mover/coordinate.h"
+#include "takt/mover/ground.h"
 
 namespace takt::mover {
 
@@ -15,8 +17,9 @@ const CoordinateParams& Described(const MoverParams& p, std::size_t other) {
 
 }  // namespace
 
-void Report(const Context& c, Ticket ticket, FeedbackState state, ErrorId error, double value, State& s) noexcept {
-  const FeedbackEvent event{ticket, c.cycle.count, state, false, error, value};
+void Report(const Context& c, Ticket ticket, FeedbackState state, ErrorId error, double value, State& s,
+            const ObjectInfo& object) noexcept {
+  const FeedbackEvent event{ticket, c.cycle.count, state, false, error, value, object};
   c.feedback.Report(event);
   if (ticket != 0) s.history.Note(event);
 }
@@ -65,35 +68,66 @@ CoordinateParams ParamsOf(const Context& c, const State& s, std::size_t other) n
   return Windowed(params, s.set_point[kC].position, bound);
 }
 
-void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) noexcept {
+namespace {
+
+// How X, Y and C, and the others come to rest.
+struct Rest {
+  PlaneMove plane;
+  std::array<CoordinateMove, kOthers.size()> others;
+};
+
+bool MoveAlike(const KinematicState& a, const KinematicState& b) {
+  constexpr double kAlike = 1e-9;  // mm/s, mm/s²: rounding
+  return std::abs(a.velocity - b.velocity) <= kAlike && std::abs(a.acceleration - b.acceleration) <= kAlike;
+}
+
+// Within `plane`, or all with the maximum (null).
+Rest PlanRest(const Context& c, const trajectory::Limits* plane, const State& s) {
   const trajectory::Limits maximum = c.params.xy.maximum.limits();
   const SetPoint& at = s.set_point;
-  PlaneMotion rest = StandingAt(at[kX].position, at[kY].position);
+  Rest all;
+  PlaneMotion& rest = all.plane.motion;
+  rest = StandingAt(at[kX].position, at[kY].position);
+  all.plane.begin = c.cycle.count;
+  // As long as nothing from outside moves it, it brakes along what it does, and so within what it has reserved.
+  const PlaneState planned = At(s.plane.motion, Elapsed(c, s.plane.begin));
+  const bool beside =
+      s.external.mode == SetpointMode::kRelative && MoveAlike(planned.x, at[kX]) && MoveAlike(planned.y, at[kY]);
   const auto plan = [&](const trajectory::Limits& limits) {
-    const bool found = s.external.mode == SetpointMode::kNone
+    const bool found = s.external.mode == SetpointMode::kNone || beside
                            ? PlanRest(c.planner, s.plane.motion, Elapsed(c, s.plane.begin), limits, rest)
                            : PlanRest(c.planner, {at[kX], at[kY]}, limits, rest);
+    if (found && beside) {
+      Shift(at[kX].position - planned.x.position, at[kY].position - planned.y.position, rest);
+    }
     return found && SpeedBound(rest) <= maximum.velocity * (1 + 1e-9);
   };
-  if (IsOnTrack(s)) {
-    c.rider().aim = planar::Aim::kRest;  // with its greatest dynamics, as all others reckon
-  } else {
-    if (plane == nullptr || !plan(*plane)) plan(maximum);
-    if (s.mode == CommandMode::kJoiningTrack || s.mode == CommandMode::kLeavingTrack) {
-      LeaveStreets(c, s);
-      s.mode = CommandMode::kFreeMovement;
-    }
-  }
-  s.plane = {};
-  s.plane.motion = rest;
-  s.plane.begin = c.cycle.count;
+  if (!IsOnTrack(s) && (plane == nullptr || !plan(*plane))) plan(maximum);
   for (std::size_t i = 0; i < kOthers.size(); ++i) {
     const CoordinateParams params = ParamsOf(c, s, i);
     const trajectory::Limits limits = plane ? StandardOf(params) : params.maximum.limits();
-    PlanRest(c.planner, at[kOthers[i]], limits, params, s.others[i].profile);
-    s.others[i].begin = c.cycle.count;
+    all.others[i] = s.others[i];
+    PlanRest(c.planner, at[kOthers[i]], limits, params, all.others[i].profile);
+    all.others[i].begin = c.cycle.count;
   }
+  return all;
+}
+
+}  // namespace
+
+void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) noexcept {
+  if (s.mode == CommandMode::kJoiningTrack || s.mode == CommandMode::kLeavingTrack) {
+    LeaveStreets(c, s);
+    s.mode = CommandMode::kFreeMovement;
+  }
+  Rest rest = PlanRest(c, plane, s);
+  // As hard as it can it stays within what it has reserved.
+  if (plane && InTheWay(c, rest.plane, rest.others.back(), IsOnTrack(s))) rest = PlanRest(c, nullptr, s);
+  s.plane = rest.plane;
+  s.others = rest.others;
+  if (IsOnTrack(s)) c.rider().aim = planar::Aim::kRest;  // with its greatest dynamics, as all others reckon
   s.external = {};
+  Reserve(c, s, IsOnTrack(s));
 }
 
 void Fail(const Context& c, ErrorId error, State& s) noexcept {

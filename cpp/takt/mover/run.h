@@ -7,7 +7,8 @@
 
 namespace takt::mover {
 
-void Report(const Context& c, Ticket ticket, FeedbackState state, ErrorId error, double value, State& s) noexcept;
+void Report(const Context& c, Ticket ticket, FeedbackState state, ErrorId error, double value, State& s,
+            const ObjectInfo& object = {}) noexcept;
 // The command in a slot is over.
 void End(const Context& c, Slot slot, FeedbackState state, ErrorId error, State& s) noexcept;
 // Those of all slots, but for enabling and the like if not `power`.

@@ -26,6 +26,7 @@ void describe(Description<Record>& d) {
   d.internal<&R::command>("Its place among the mover's commands.");
   d.internal<&R::state>("What it is.");
   d.internal<&R::error>("Why it failed.");
+  d.internal<&R::object>("What was in the way.");
 }
 
 void describe(Description<History>& d) {

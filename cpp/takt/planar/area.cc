@@ -22,7 +22,7 @@ bool CoversCircle(const Area& area) {
 
 // The hull of an area: that of its places, at each of them all points of what the mover covers while it turns there.
 struct Hull {
-  std::array<Flat, 3> places;
+  std::array<Flat, 7> places;
   int count = 0;
   double radius = 0;  // around all the rest
   // Of the mover in its place, without those that mirror them: both corners at the least angle, and at the most.

@@ -24,7 +24,7 @@ struct Pose {
 
 // A mover whose centre is anywhere in the hull of some places, turned by any angle between two.
 struct Area {
-  std::array<Place, 3> places{};
+  std::array<Place, 7> places{};
   std::uint8_t count = 1;  // how many of them
   double least_c = 0;      // deg
   double most_c = 0;

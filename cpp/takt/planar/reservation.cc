@@ -22,7 +22,8 @@ Area AreaOf(const Reservation& mover, const Move& move) noexcept {
   area.places[0] = mover.pose.place;
   area.least_c = area.most_c = mover.pose.c;
   if (move.over) place(*move.over);
-  if (!SamePlace(mover.pose.place, move.target.place)) place(move.target.place);
+  for (std::size_t i = 0; i < move.corner_count; ++i) place(move.corners[i]);
+  if (!move.on_track && !SamePlace(mover.pose.place, move.target.place)) place(move.target.place);
   if (move.over_c) angle(*move.over_c);
   angle(move.target.c);
   return area;
@@ -41,8 +42,9 @@ void Reserve(Reservation& mover) noexcept {
   mover.extent = ExtentOf(planar::AreaOf(mover));
 }
 
-bool Meets(const Area& area, const Extent& extent, const Reservation& other) noexcept {
-  return other.present && !Apart(extent, other.extent, kClearance) && Near(area, AreaOf(other), kClearance);
+bool Meets(const Area& area, const Extent& extent, std::uint32_t level, const Reservation& other) noexcept {
+  return other.present && other.level == level && !Apart(extent, other.extent, kClearance) &&
+         Near(area, AreaOf(other), kClearance);
 }
 
 // The stretches hang together.
@@ -53,12 +55,14 @@ bool Carries(const Environment& environment, const TrackArea& track) noexcept {
   return planar::Carries(environment, track.stretches.front());
 }
 
-const TrackArea* Moving(std::size_t track, const Surroundings& around, const Reservations& r) noexcept {
-  return track < around.tracks.size() && r.tracks[track].moving ? around.tracks[track] : nullptr;
+const TrackArea* Moving(std::size_t track, std::uint32_t level, const Surroundings& around,
+                        const Reservations& r) noexcept {
+  const bool counts = track < around.tracks.size() && r.tracks[track].moving && r.tracks[track].level == level;
+  return counts ? around.tracks[track] : nullptr;
 }
 
 ObjectInfo Object(ObjectKind kind, std::size_t number) noexcept {
-  return {kind, static_cast<std::uint32_t>(number)};
+  return {kind, static_cast<std::uint32_t>(number + 1)};
 }
 
 }  // namespace
@@ -74,8 +78,9 @@ Area AreaOf(const Reservation& mover) noexcept {
   return AreaOf(mover, mover.moving ? mover.move : Move{.target = mover.pose});
 }
 
-void Settle(std::uint32_t mover, const Footprint& footprint, const Pose& pose, Reservations& r) noexcept {
-  r.movers[mover] = {.present = true, .mover = footprint, .pose = pose};
+void Settle(std::uint32_t mover, const Footprint& footprint, const Pose& pose, Reservations& r,
+            std::uint32_t level) noexcept {
+  r.movers[mover] = {.present = true, .level = level, .mover = footprint, .pose = pose};
   Reserve(r.movers[mover]);
 }
 
@@ -84,14 +89,16 @@ void Leave(std::uint32_t mover, Reservations& r) noexcept {
 }
 
 ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around, const Reservations& r) noexcept {
-  const Area area = AreaOf(r.movers[mover], move);
+  const Reservation& own = r.movers[mover];
+  const Area area = AreaOf(own, move);
   const Extent extent = ExtentOf(area);
   for (std::size_t i = 0; i < r.movers.size(); ++i) {
-    if (i != mover && Meets(area, extent, r.movers[i])) return Object(ObjectKind::kMover, i);
+    if (i != mover && Meets(area, extent, own.level, r.movers[i])) return Object(ObjectKind::kMover, i);
   }
   for (std::size_t i = 0; i < r.tracks.size(); ++i) {
-    const TrackArea* track = Moving(i, around, r);
-    if (track && Near(area, extent, *track, kClearance)) return Object(ObjectKind::kTrack, i);
+    const TrackArea* track = Moving(i, own.level, around, r);
+    if (!track || (move.on_track && own.linked && own.network == track->network)) continue;
+    if (Near(area, extent, *track, kClearance)) return Object(ObjectKind::kTrack, i);
   }
   if (around.environment && !Carries(*around.environment, area)) return Object(ObjectKind::kEnvironment, 0);
   return {};
@@ -100,7 +107,7 @@ ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around
 void Take(std::uint32_t mover, const Move& move, Reservations& r) noexcept {
   Reservation& own = r.movers[mover];
   own.moving = true;
-  own.linked = false;
+  own.linked = own.linked && move.on_track;
   own.move = move;
   Reserve(own);
 }
@@ -129,13 +136,14 @@ void Link(std::uint32_t mover, std::uint32_t network, Reservations& r) noexcept 
 ObjectInfo AskTrack(std::uint32_t track, const Surroundings& around, const Reservations& r) noexcept {
   if (track >= around.tracks.size() || !around.tracks[track]) return {};
   const TrackArea& own = *around.tracks[track];
+  const std::uint32_t level = r.tracks[track].level;
   for (std::size_t i = 0; i < r.movers.size(); ++i) {
     const Reservation& mover = r.movers[i];
-    if (!mover.present || (mover.linked && mover.network == own.network)) continue;
+    if (!mover.present || mover.level != level || (mover.linked && mover.network == own.network)) continue;
     if (Near(AreaOf(mover), mover.extent, own, kClearance)) return Object(ObjectKind::kMover, i);
   }
   for (std::size_t i = 0; i < r.tracks.size(); ++i) {
-    const TrackArea* other = Moving(i, around, r);
+    const TrackArea* other = Moving(i, level, around, r);
     if (!other || other->network == own.network) continue;
     for (std::size_t k = 0; k < own.stretches.size(); ++k) {
       if (Near(own.stretches[k], own.extents[k], *other, kClearance)) return Object(ObjectKind::kTrack, i);
@@ -153,25 +161,14 @@ void EndTrack(std::uint32_t track, Reservations& r) noexcept {
   r.tracks[track].moving = false;
 }
 
-void describe(Enumeration<ObjectKind>& e) {
-  e.about("What one would collide with.");
-  e.value(ObjectKind::kNone, "none", "Nothing.");
-  e.value(ObjectKind::kMover, "mover", "A mover, or what it has reserved.");
-  e.value(ObjectKind::kTrack, "track", "A track that is Moving.");
-  e.value(ObjectKind::kEnvironment, "environment", "The border of the environment.");
-}
-
-void describe(Description<ObjectInfo>& d) {
-  d.about("What one would collide with.");
-  d.internal<&ObjectInfo::kind>("Of what kind it is.");
-  d.internal<&ObjectInfo::number>("Which of them, from 0.");
-}
-
 void describe(Description<Move>& d) {
   d.about("Where a mover is to go.");
   d.internal<&Move::target>("The end.");
   d.internal<&Move::over>("Where it may come on its way to the line to the target.");
   d.internal<&Move::over_c>(unit::deg, "An angle that it may come to on its way.");
+  d.internal<&Move::corners>("Of what a curve onto the line keeps within.");
+  d.internal<&Move::corner_count>("So many.");
+  d.internal<&Move::on_track>("It only turns, on a track.");
 }
 
 void describe(Description<Reservation>& d) {
@@ -180,6 +177,7 @@ void describe(Description<Reservation>& d) {
   d.internal<&Reservation::moving>("Whether it is on its way.");
   d.internal<&Reservation::linked>("Whether it goes along tracks.");
   d.internal<&Reservation::network>("Of which network.");
+  d.internal<&Reservation::level>("Those of different ones never meet.");
   d.internal<&Reservation::mover>("What it covers.");
   d.internal<&Reservation::pose>("Where it is.");
   d.internal<&Reservation::move>("Where it goes.");
@@ -189,6 +187,7 @@ void describe(Description<Reservation>& d) {
 void describe(Description<TrackReservation>& d) {
   d.about("What a track has reserved.");
   d.internal<&TrackReservation::moving>("Whether it is Moving: then all that its movers may cover.");
+  d.internal<&TrackReservation::level>("Those of different ones never meet.");
 }
 
 void describe(Description<Reservations>& d) {

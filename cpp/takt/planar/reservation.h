@@ -6,6 +6,7 @@
 // made for.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -13,20 +14,12 @@
 #include <vector>
 
 #include "takt/core/describe_fwd.h"
+#include "takt/core/object.h"
 #include "takt/planar/area.h"
 #include "takt/planar/environment.h"
 #include "takt/planar/track_area.h"
 
 namespace takt::planar {
-
-enum class ObjectKind : std::uint8_t { kNone, kMover, kTrack, kEnvironment };
-
-struct ObjectInfo {
-  ObjectKind kind = ObjectKind::kNone;
-  std::uint32_t number = 0;  // of movers and tracks
-
-  bool operator==(const ObjectInfo&) const = default;
-};
 
 // Straight to the target; the angle goes there without turning back.
 struct Move {
@@ -37,6 +30,11 @@ struct Move {
   std::optional<Place> over{};
   // The angle may come to here before it goes to that of the target; deg.
   std::optional<double> over_c{};
+  // Of one that goes over to its new line in a curve: within the hull of these and all of the above, until it is taken
+  // anew.
+  std::array<Place, 4> corners{};
+  std::uint8_t corner_count = 0;
+  bool on_track = false;  // only the angle counts: the mover is where its track has it, and stays linked
 };
 
 struct Reservation {
@@ -44,6 +42,7 @@ struct Reservation {
   bool moving = false;   // to the target of `move`
   bool linked = false;   // goes along tracks of `network`
   std::uint32_t network = 0;
+  std::uint32_t level = 0;  // those of different ones never meet
   Footprint mover{};
   Pose pose{};
   Move move{};
@@ -52,6 +51,7 @@ struct Reservation {
 
 struct TrackReservation {
   bool moving = false;
+  std::uint32_t level = 0;
 };
 
 struct Reservations {
@@ -70,11 +70,13 @@ struct Surroundings {
 Area AreaOf(const Reservation& mover) noexcept;
 
 // A mover comes into the group, or is set to another place; it stands. It is not asked whether it may.
-void Settle(std::uint32_t mover, const Footprint& footprint, const Pose& pose, Reservations& r) noexcept;
+void Settle(std::uint32_t mover, const Footprint& footprint, const Pose& pose, Reservations& r,
+            std::uint32_t level = 0) noexcept;
 void Leave(std::uint32_t mover, Reservations& r) noexcept;
 
-// With what the mover would collide: the first of movers, then of tracks that are Moving, then the environment. kNone:
-// the way is free. What only touches counts, except the border of the environment.
+// With what the mover would collide: the first of movers, then of tracks that are Moving, then the environment (number
+// 1). None: the way is free. A track of its own network does not count for a mover that turns on it. What only touches
+// counts, except the border of the environment.
 ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around, const Reservations& r) noexcept;
 // From now on it has that reserved, in place of what it had.
 void Take(std::uint32_t mover, const Move& move, Reservations& r) noexcept;
@@ -90,8 +92,6 @@ ObjectInfo AskTrack(std::uint32_t track, const Surroundings& around, const Reser
 void TakeTrack(std::uint32_t track, Reservations& r) noexcept;
 void EndTrack(std::uint32_t track, Reservations& r) noexcept;
 
-void describe(Enumeration<ObjectKind>&);
-void describe(Description<ObjectInfo>&);
 void describe(Description<Move>&);
 void describe(Description<Reservation>&);
 void describe(Description<TrackReservation>&);

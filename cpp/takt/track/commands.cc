@@ -68,6 +68,17 @@ void describe(Description<Reset>& d) {
   d.about("Acknowledges a fault.");
 }
 
+void describe(Description<AddToGroup>& d) {
+  d.named("AddTrackToGroup");
+  d.about("Puts the track into a group of movers: while movers move along it, it keeps its area.");
+  d.required<&AddToGroup::group>("Name of the group.");
+}
+
+void describe(Description<RemoveFromGroup>& d) {
+  d.named("RemoveTrackFromGroup");
+  d.about("Takes the track out of its group: nobody looks any more what its movers collide with.");
+}
+
 void describe(Description<TrackMade>& d) {
   using C = TrackMade;
   d.about("Tells whether a track could be made.");

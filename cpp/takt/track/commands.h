@@ -38,6 +38,11 @@ struct Enable {};
 struct Disable {};
 struct Reset {};
 
+struct AddToGroup {  // of movers
+  Name group;
+};
+struct RemoveFromGroup {};
+
 // The answer to a question (desk.h); no command of people.
 struct TrackMade {
   std::uint64_t number = 0;  // of the question
@@ -46,7 +51,7 @@ struct TrackMade {
 };
 
 using Command = std::variant<AppendLine, AppendCircle, AppendPosition, CloseLoop, Clear, StartFromTrack, EndAtTrack,
-                             Enable, Disable, Reset, TrackMade>;
+                             Enable, Disable, Reset, AddToGroup, RemoveFromGroup, TrackMade>;
 
 void describe(Description<AppendLine>&);
 void describe(Description<AppendCircle>&);
@@ -58,6 +63,8 @@ void describe(Description<EndAtTrack>&);
 void describe(Description<Enable>&);
 void describe(Description<Disable>&);
 void describe(Description<Reset>&);
+void describe(Description<AddToGroup>&);
+void describe(Description<RemoveFromGroup>&);
 void describe(Description<TrackMade>&);
 
 }  // namespace takt::track

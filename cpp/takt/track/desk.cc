@@ -6,19 +6,22 @@ namespace takt::track {
 
 namespace {
 
-void FreeRetired(Desk& desk) {
-  for (const planar::Track* way = nullptr; desk.retired.TryPop(way);) delete way;
+void Free(SpscQueue<Delivery>& queue) {
+  for (Delivery delivery; queue.TryPop(delivery);) {
+    delete delivery.way;
+    delete delivery.area;
+  }
 }
 
 }  // namespace
 
 Desk::~Desk() {
-  FreeRetired(*this);
-  for (Delivery delivery; deliveries.TryPop(delivery);) delete delivery.way;
+  Free(retired);
+  Free(deliveries);
 }
 
 std::optional<Answer> Make(Desk& desk) {
-  FreeRetired(desk);
+  Free(desk.retired);
   Question question;
   if (!desk.questions.TryPop(question)) return std::nullopt;
   auto way = std::make_unique<planar::Track>();
@@ -27,8 +30,12 @@ std::optional<Answer> Make(Desk& desk) {
   Answer answer{question.track, {question.number, making.problem, 0}};
   if (making.problem != planar::Problem::kNone) {
     if (making.element < layout.elements.size()) answer.made.element = static_cast<std::uint32_t>(making.element + 1);
-  } else if (desk.deliveries.TryPush({question.number, way.get()})) {
+    return answer;
+  }
+  auto area = std::make_unique<planar::TrackArea>(planar::MakeTrackArea(*way, question.mover, 0));
+  if (desk.deliveries.TryPush({question.number, way.get(), area.get()})) {
     way.release();
+    area.release();
   }
   return answer;
 }

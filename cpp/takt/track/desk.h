@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "takt/core/spsc_queue.h"
+#include "takt/planar/track_area.h"
 #include "takt/track/commands.h"
 #include "takt/track/sketch.h"
 
@@ -15,13 +16,15 @@ namespace takt::track {
 
 struct Question {
   std::uint64_t number = 0;
-  std::uint32_t track = 0;  // from 0
+  std::uint32_t track = 0;    // from 0
+  planar::Footprint mover{};  // the largest one
   Sketch sketch;
 };
 
 struct Delivery {
   std::uint64_t number = 0;  // of the question
   const planar::Track* way = nullptr;
+  planar::TrackArea* area = nullptr;  // what movers on it may cover
 };
 
 struct Desk {
@@ -32,7 +35,7 @@ struct Desk {
 
   SpscQueue<Question> questions{2};  // one at a time
   SpscQueue<Delivery> deliveries{8};
-  SpscQueue<const planar::Track*> retired;
+  SpscQueue<Delivery> retired;
 };
 
 // Outside the cycle, one thread: answers the next question. Frees what is retired.

@@ -16,6 +16,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::mover_count>("Movers on it.");
   d.internal<&O::previous_tracks>("Tracks that end where it starts.");
   d.internal<&O::subsequent_tracks>("Tracks that start where it ends.");
+  d.internal<&O::group>("Number of the group of movers that it is in, from 1; 0: none.");
 }
 
 }  // namespace takt::track

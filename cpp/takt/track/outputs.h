@@ -20,6 +20,7 @@ struct Outputs {
   std::uint32_t mover_count = 0;
   std::uint32_t previous_tracks = 0;    // that end where it starts
   std::uint32_t subsequent_tracks = 0;  // that start where it ends
+  std::uint32_t group = 0;              // number of the group of movers that it is in, from 1; 0: none
 };
 
 void describe(Description<Outputs>&);

@@ -9,6 +9,10 @@ planar::Element ToElement(const ElementParams& p) {
   return {p.shape, p.from.value_or(planar::Place{}), p.to, p.center.value_or(planar::Place{}), p.clockwise};
 }
 
+planar::Footprint LargestOn(const TrackParams& params) {
+  return {params.mover_width, params.mover_height, true};
+}
+
 void describe(Enumeration<CollisionRangeMode>& e) {
   e.about("Where the collision ranges of a track come from.");
   e.value(CollisionRangeMode::kAutomatic, "automatic", "From the size of the movers and the geometry.");

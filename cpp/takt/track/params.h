@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "takt/core/describe_fwd.h"
+#include "takt/planar/clearance.h"
 #include "takt/planar/point.h"
 #include "takt/planar/track.h"
 
@@ -39,6 +40,8 @@ struct TrackParams {
 };
 
 planar::Element ToElement(const ElementParams& params);
+// What the largest mover on it covers, however it is turned.
+planar::Footprint LargestOn(const TrackParams& params);
 
 void describe(Enumeration<CollisionRangeMode>&);
 void describe(Description<ElementParams>&);

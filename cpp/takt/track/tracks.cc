@@ -153,6 +153,16 @@ struct Applier {
     if (s.state != ObjectState::kError && s.state != ObjectState::kResetting) return Refuse(ErrorId::kState);
     Become(ObjectState::kResetting);
   }
+  void Answer(const planar::Verdict& verdict) const {
+    if (verdict.error == ErrorId::kNone) return DoneAtOnce();
+    c.feedback.Report({ticket, c.cycle.count, FeedbackState::kError, false, verdict.error, 0, verdict.object});
+  }
+  void operator()(const AddToGroup& a) const {
+    const std::uint32_t group = c.grounds.Find(a.group.view());
+    if (group == 0) return Refuse(ErrorId::kParameter);
+    Answer(planar::AddTrack(track, group, c.grounds));
+  }
+  void operator()(const RemoveFromGroup&) const { Answer(planar::RemoveTrack(track, c.grounds)); }
   void operator()(const TrackMade& made) const {
     if (!TakeAnswer(c, track, made)) return Refuse(ErrorId::kState);
     DoneAtOnce();
@@ -167,6 +177,7 @@ Tracks::Tracks(const std::vector<TrackParams>& all)
       sketches(all.size()),
       outputs(all.size()),
       ways(all.size()),
+      areas(all.size()),
       start_nodes(all.size()),
       end_nodes(all.size()),
       starts_at(2 * all.size()),
@@ -186,6 +197,7 @@ Tracks::Tracks(const std::vector<TrackParams>& all)
     link(all[i].ends_at, s.ends_at);
     if (!built.tracks[i].way) continue;
     ways[i] = new planar::Track(std::move(*built.tracks[i].way));
+    areas[i] = new planar::TrackArea(planar::MakeTrackArea(*ways[i], LargestOn(all[i]), 0));
     s.has_length = true;
     s.length = ways[i]->length;
   }
@@ -199,6 +211,7 @@ void Tracks::SetSketch(std::size_t track, const Sketch& sketch) noexcept {
 
 Tracks::~Tracks() {
   for (const planar::Track* way : ways) delete way;
+  for (const planar::TrackArea* area : areas) delete area;
 }
 
 std::optional<std::size_t> Find(const Tracks& tracks, std::string_view name) noexcept {
@@ -249,6 +262,7 @@ void Publish(const Context& c) noexcept {
     out.mover_count = t.mover_counts[i];
     out.previous_tracks = t.ends_at[t.start_nodes[i]];
     out.subsequent_tracks = t.starts_at[t.end_nodes[i]];
+    out.group = c.grounds.group_of_track[i];
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
+#include "takt/planar/grounds.h"
 #include "takt/planar/track.h"
 #include "takt/track/commands.h"
 #include "takt/track/desk.h"
@@ -36,6 +37,7 @@ struct Tracks {
 
   // What follows from the states.
   std::vector<const planar::Track*> ways;  // null: none, then the length is 0
+  std::vector<planar::TrackArea*> areas;   // what movers on it may cover; null: none
   // Where tracks are linked: ends and starts at one point have one number, below twice that of tracks.
   std::vector<std::uint32_t> start_nodes;
   std::vector<std::uint32_t> end_nodes;
@@ -50,6 +52,7 @@ struct Tracks {
 
 struct Context {
   Tracks& tracks;
+  planar::Grounds& grounds;
   Cycle cycle;
   FeedbackSink& feedback;
 };

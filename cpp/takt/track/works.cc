@@ -102,11 +102,14 @@ Sketch With(const Order& order, const Look& look, Sketch sketch) {
   return sketch;
 }
 
-void Use(Tracks& t, std::uint32_t track, const planar::Track* way) {
-  if (const planar::Track* old = std::exchange(t.ways[track], way)) t.desk.retired.TryPush(old);
+void Use(Tracks& t, std::uint32_t track, const Delivery& made) {
+  const planar::Track* way = made.way;
+  const Delivery old{0, std::exchange(t.ways[track], way), std::exchange(t.areas[track], made.area)};
+  if (old.way) t.desk.retired.TryPush(old);
   State& s = t.states[track];
   s.has_length = way != nullptr;
   s.length = way ? way->length : 0;
+  NameNetworks(t);
   ++t.changes;
 }
 
@@ -122,7 +125,7 @@ void TakeAway(Tracks& t, std::uint32_t track) {
   State& s = t.states[track];
   t.SetSketch(track, {});
   s.starts_from = s.ends_at = {};
-  Use(t, track, nullptr);
+  Use(t, track, {});
   MakeNodes(t);
 }
 
@@ -136,14 +139,14 @@ void End(const Context& c, Problem problem, std::uint32_t element) {
   --w.count;
 }
 
-// What was made for this question; what was made for others is retired. Null: it is not there.
-const planar::Track* Fetch(Desk& desk, std::uint64_t number) {
+// What was made for this question; what was made for others is retired. Without a way: it is not there.
+Delivery Fetch(Desk& desk, std::uint64_t number) {
   Delivery delivery;
   while (desk.deliveries.TryPop(delivery)) {
-    if (delivery.number == number) return delivery.way;
-    desk.retired.TryPush(delivery.way);
+    if (delivery.number == number) return delivery;
+    desk.retired.TryPush(delivery);
   }
-  return nullptr;
+  return {};
 }
 
 // Whether it could be sent changes nothing in the state: a replay may have nobody to ask.
@@ -151,7 +154,8 @@ void Send(Tracks& t) {
   if (t.sent) return;
   const Order& order = t.works.orders[t.works.first];
   const Sketch& sketch = t.sketches[order.track];
-  t.sent = t.desk.questions.TryPush({t.works.question, order.track, With(order, LookAt(t, order), sketch)});
+  t.sent = t.desk.questions.TryPush(
+      {t.works.question, order.track, LargestOn(t.params[order.track]), With(order, LookAt(t, order), sketch)});
 }
 
 }  // namespace
@@ -196,8 +200,8 @@ bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) no
   const Look look = LookAt(t, order);
   const bool empty = made.problem == Problem::kEmpty && look.may_be_empty;
   if (made.problem == Problem::kNone || empty) {
-    const planar::Track* way = empty ? nullptr : Fetch(t.desk, made.number);
-    if (!way && !empty) return false;
+    const Delivery way = empty ? Delivery{} : Fetch(t.desk, made.number);
+    if (!way.way && !empty) return false;
     t.SetSketch(track, With(order, look, t.sketches[track]));
     Use(t, track, way);
     AddLink(t, order);
@@ -205,6 +209,28 @@ bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) no
   w.asked = false;
   End(c, empty ? Problem::kNone : made.problem, made.element);
   return true;
+}
+
+void NameNetworks(Tracks& t) noexcept {
+  const auto count = static_cast<std::uint32_t>(t.areas.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (t.areas[i]) t.areas[i]->network = i;
+  }
+  const auto meet = [&](std::uint32_t a, std::uint32_t b) {
+    return t.end_nodes[a] == t.start_nodes[b] || t.start_nodes[a] == t.end_nodes[b] ||
+           t.start_nodes[a] == t.start_nodes[b] || t.end_nodes[a] == t.end_nodes[b];
+  };
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (std::uint32_t k = 0; k < i; ++k) {
+        if (!t.areas[i] || !t.areas[k] || !meet(i, k) || t.areas[i]->network == t.areas[k]->network) continue;
+        t.areas[i]->network = t.areas[k]->network = std::min(t.areas[i]->network, t.areas[k]->network);
+        changed = true;
+      }
+    }
+  }
 }
 
 void MakeNodes(Tracks& t) noexcept {
@@ -234,6 +260,7 @@ void MakeNodes(Tracks& t) noexcept {
     ++t.starts_at[t.start_nodes[i]];
     ++t.ends_at[t.end_nodes[i]];
   }
+  NameNetworks(t);
   ++t.changes;
 }
 

@@ -15,7 +15,9 @@ void StepWorks(const Context& c) noexcept;
 // False: nobody waits for this answer, or what was made is not there.
 bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) noexcept;
 
-// Numbers the points where tracks start and end, anew.
+// Numbers the points where tracks start and end, anew, and what hangs together.
 void MakeNodes(Tracks& tracks) noexcept;
+// Tracks that hang together get one number.
+void NameNetworks(Tracks& tracks) noexcept;
 
 }  // namespace takt::track

@@ -28,6 +28,7 @@ movers:
   - {name: two, initial: {x: 300, y: 60, c: 90}, z: {maximum: {velocity: 50, acceleration: 500, jerk: 9000}, lower: 0, upper: 3}}
 tracks:
   - {name: way, elements: [{from: {x: 0, y: 400}, to: {x: 900, y: 400}}]}
+planar_groups: [{name: cell}]
 )";
 
 Machine PlaneMachine() {
@@ -62,7 +63,9 @@ std::vector<mover::Command> GoodCommands() {
           mover::SetExternalSetpoint{},
           mover::StopExternalSetpointGeneration{},
           mover::Wait{},
-          mover::Release{}};
+          mover::Release{},
+          mover::AddToGroup{Name::Of("cell")},
+          mover::RemoveFromGroup{}};
 }
 
 Command To(std::uint32_t mover, const mover::Command& body) {

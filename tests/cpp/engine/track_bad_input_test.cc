@@ -21,6 +21,7 @@ axes: []
 tracks:
   - {name: main, elements: [{from: {x: 0, y: 0}, to: {x: 300, y: 0}}]}
   - {name: branch, starts_from: [main]}
+planar_groups: [{name: cell}]
 )";
 
 Machine TrackMachine() {
@@ -40,6 +41,8 @@ std::vector<track::Command> GoodCommands() {
           track::Enable{},
           track::Disable{},
           track::Reset{},
+          track::AddToGroup{Name::Of("cell")},
+          track::RemoveFromGroup{},
           track::TrackMade{}};
 }
 

@@ -79,7 +79,8 @@ class ClientsTest : public testing::Test {
     return tickets;
   }
 
-  const engine::Machine machine_ = WithTrack(WithMover(WithPicker(WithBelt(WithGroup(WithModule(TestMachine()))))));
+  const engine::Machine machine_ =
+      WithGround(WithTrack(WithMover(WithPicker(WithBelt(WithGroup(WithModule(TestMachine())))))));
   std::vector<engine::Command> submitted_;
   bool queue_is_full_ = false;
 };

@@ -184,6 +184,8 @@ TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   ExpectSameConstants("mover_state.lcm", "EXTERNAL_", TypeOf<mover::SetpointMode>());
   ExpectSameConstants("track_state.lcm", "STATE_", TypeOf<planar::ObjectState>());
   ExpectSameConstants("track_state.lcm", "MODE_", TypeOf<track::OperationMode>());
+  ExpectSameConstants("planar_group_state.lcm", "STATE_", TypeOf<planar::ObjectState>());
+  ExpectSameConstants("feedback.lcm", "OBJECT_", TypeOf<ObjectKind>());
   ExpectSameConstants("group_state.lcm", "REASON_", TypeOf<kinematics::Reason>());
   ExpectSameConstants("group_state.lcm", "PROBLEM_", TypeOf<path::Problem>());
 
@@ -212,7 +214,7 @@ TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
       EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
     }
   }
-  EXPECT_EQ(files, 24);
+  EXPECT_EQ(files, 26);
 }
 
 }  // namespace

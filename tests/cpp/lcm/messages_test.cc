@@ -356,8 +356,41 @@ TEST(Messages, TrackStateKeepsEveryNumber) {
           FIELD(track_state, mover_count),
           FIELD(track_state, previous_tracks),
           FIELD(track_state, subsequent_tracks),
+          FIELD(track_state, group),
       },
       machine, "loop");
+}
+
+// EN-20, PL-30
+TEST(Messages, PlanarGroupStateKeepsEveryNumber) {
+  engine::Machine machine = TestMachine();
+  machine.planar_groups.resize(2);
+  machine.planar_groups[1].name = "cell";
+  machine.cycle.period_s = 0.00025;
+  ExpectKeepsEveryNumber<msgs::planar_group_state, planargroup::Outputs>(
+      {
+          FIELD(planar_group_state, state),
+          FIELD(planar_group_state, error),
+          FIELD(planar_group_state, mover_count),
+          FIELD(planar_group_state, track_count),
+          FIELD(planar_group_state, environment),
+      },
+      machine, "cell");
+}
+
+// EN-20, PL-31
+TEST(Messages, EnvironmentStateKeepsEveryNumber) {
+  engine::Machine machine = TestMachine();
+  machine.environments.resize(2);
+  machine.environments[1].name = "floor";
+  machine.cycle.period_s = 0.00025;
+  ExpectKeepsEveryNumber<msgs::environment_state, environment::Outputs>(
+      {
+          FIELD(environment_state, stator_count),
+          FIELD(environment_state, border_count),
+          FIELD(environment_state, group),
+      },
+      machine, "floor");
 }
 
 // EN-20, CV-42
@@ -426,6 +459,7 @@ TEST(Messages, MoverStateKeepsEveryNumber) {
           FIELD(mover_state, delay),
           FIELD(mover_state, delay_since),
           FIELD(mover_state, buffered),
+          FIELD(mover_state, group),
           FIELD(mover_state, commands),
       },
       machine, "shuttle");
@@ -480,6 +514,10 @@ TEST(Messages, FeedbackSaysItsErrorInASentence) {
   EXPECT_EQ(error.state, msgs::feedback::STATE_ERROR);
   EXPECT_EQ(error.error_id, 8);
   EXPECT_EQ(error.sentence, ErrorText(ErrorId::kTargetBehindLimit));
+  const msgs::feedback blocked = ThroughBytes(ToMessage(
+      FeedbackEvent{7, 8, FeedbackState::kError, false, ErrorId::kCollision, 0, {ObjectKind::kEnvironment, 3}}));
+  EXPECT_EQ(blocked.object_kind, msgs::feedback::OBJECT_ENVIRONMENT);
+  EXPECT_EQ(blocked.object_number, 3);
   const msgs::feedback reached =
       ThroughBytes(ToMessage(FeedbackEvent{7, 8, FeedbackState::kActive, true, ErrorId::kNone, 2.5}));
   EXPECT_EQ(reached.reached, 1);

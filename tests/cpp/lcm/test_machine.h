@@ -88,6 +88,13 @@ inline engine::Machine WithTrack(engine::Machine machine) {
   return machine;
 }
 
+// With a group of movers "cell" and an environment "floor".
+inline engine::Machine WithGround(engine::Machine machine) {
+  machine.planar_groups = {{.name = "cell", .movers = {}, .tracks = {}}};
+  machine.environments = {{.name = "floor", .stators = {}}};
+  return machine;
+}
+
 // An LCM network that no other test uses; its port is below those that systems give away by themselves.
 inline std::string NewUrl() {
   static int port = 10'000 + getpid() % 500 * 4;

@@ -23,7 +23,7 @@ class Rig {
     Publish(context(), inputs, state, out);
   }
 
-  Context context() { return {params, cycle, planner, feedback, streets}; }
+  Context context() { return {params, cycle, planner, feedback, streets, grounds}; }
 
   // Given in the cycle that comes.
   Ticket Give(const Command& command) {
@@ -61,6 +61,7 @@ class Rig {
 
   MoverParams params;
   Streets streets{1, {}};
+  planar::Grounds grounds{1, 0, 0, {}};
   Cycle cycle;
   trajectory::Planner planner;
   std::vector<FeedbackEvent> storage = std::vector<FeedbackEvent>(64);

@@ -15,13 +15,14 @@
 #include "takt/core/hash.h"
 #include "takt/core/verify.h"
 
-namespace takt::planar {
+namespace takt {
 
 void PrintTo(const ObjectInfo& object, std::ostream* stream) {
-  const char* kinds[] = {"nothing", "mover", "track", "environment"};
+  const char* kinds[] = {"nothing", "mover", "track", "group", "environment", "part", "coordinate system"};
   *stream << kinds[static_cast<int>(object.kind)] << ' ' << object.number;
 }
 
+namespace planar {
 namespace {
 
 using testing::AsPoint;
@@ -33,13 +34,13 @@ using testing::Trials;
 
 constexpr Footprint kMover{155, 155};
 constexpr ObjectInfo kFree{};
-constexpr ObjectInfo kBorder{ObjectKind::kEnvironment, 0};
+constexpr ObjectInfo kBorder{ObjectKind::kEnvironment, 1};
 
 ObjectInfo Mover(std::uint32_t number) {
-  return {ObjectKind::kMover, number};
+  return {ObjectKind::kMover, number + 1};
 }
 ObjectInfo TrackOf(std::uint32_t number) {
-  return {ObjectKind::kTrack, number};
+  return {ObjectKind::kTrack, number + 1};
 }
 Move To(double x, double y, double c = 0) {
   return {.target = {{x, y}, c}};
@@ -370,7 +371,7 @@ class Traffic {
     if (object.kind == ObjectKind::kEnvironment) {
       ++at_border;
     } else if (refused++ % 10 == 0) {
-      EXPECT_LT(Nearest(area, AreaOf(r.movers[object.number])), kSlack);
+      EXPECT_LT(Nearest(area, AreaOf(r.movers[object.number - 1])), kSlack);
     }
   }
 
@@ -464,4 +465,5 @@ TEST(ReservationsOfMovers, AreDescribed) {
 }
 
 }  // namespace
-}  // namespace takt::planar
+}  // namespace planar
+}  // namespace takt

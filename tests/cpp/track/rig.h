@@ -11,7 +11,8 @@ namespace takt::track {
 
 class Rig {
  public:
-  explicit Rig(std::size_t count) : tracks(Named(count)), storage(2 * EventsOf(count) + 256), feedback(storage) {}
+  explicit Rig(std::size_t count)
+      : tracks(Named(count)), grounds(0, count, 0, {}), storage(2 * EventsOf(count) + 256), feedback(storage) {}
 
   static std::vector<TrackParams> Named(std::size_t count) {
     std::vector<TrackParams> params(count);
@@ -20,7 +21,7 @@ class Rig {
   }
   static std::string NameOf(std::size_t i) { return "t" + std::to_string(i); }
 
-  Context context() { return {tracks, cycle, feedback}; }
+  Context context() { return {tracks, grounds, cycle, feedback}; }
 
   // Its ticket. It is carried out in the next cycle's stage of commands.
   Ticket Give(std::size_t track, const Command& command) {
@@ -59,6 +60,7 @@ class Rig {
   const State& state(std::size_t track) const { return tracks.states[track]; }
 
   Tracks tracks;
+  planar::Grounds grounds;
   Cycle cycle{1, 0.001};
   std::vector<FeedbackEvent> storage;
   FeedbackSink feedback;

@@ -95,7 +95,7 @@ TEST(Works, AllocateNothingInTheCycle) {
   Rig rig(3);
   std::vector<FeedbackEvent> storage(1000);
   FeedbackSink feedback(storage);
-  const Context c{rig.tracks, rig.cycle, feedback};
+  const Context c{rig.tracks, rig.grounds, rig.cycle, feedback};
   const auto quietly = [&](auto&& what) {
     const long before = AllocationsOfThisThread();
     what();

@@ -1,0 +1,32 @@
+// What somebody is told about another component of a machine: which one is in the way.
+#pragma once
+
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+
+namespace takt {
+
+// The numbers stay: they are part of messages.
+enum class ObjectKind : std::uint8_t {
+  kNone = 0,
+  kMover = 1,
+  kTrack = 2,
+  kGroup = 3,  // of movers
+  kEnvironment = 4,
+  kPart = 5,
+  kCoordinateSystem = 6,
+};
+
+struct ObjectInfo {
+  ObjectKind kind = ObjectKind::kNone;
+  std::uint32_t number = 0;  // from 1, in the order of the machine file; 0: none
+
+  bool operator==(const ObjectInfo&) const = default;
+  explicit operator bool() const { return kind != ObjectKind::kNone; }
+};
+
+void describe(Enumeration<ObjectKind>&);
+void describe(Description<ObjectInfo>&);
+
+}  // namespace takt

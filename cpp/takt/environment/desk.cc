@@ -1,0 +1,37 @@
+#include "takt/environment/desk.h"
+
+#include <memory>
+
+namespace takt::environment {
+
+namespace {
+
+void FreeRetired(Desk& desk) {
+  for (const planar::Environment* surface = nullptr; desk.retired.TryPop(surface);) delete surface;
+}
+
+}  // namespace
+
+Desk::~Desk() {
+  FreeRetired(*this);
+  for (Delivery delivery; deliveries.TryPop(delivery);) delete delivery.surface;
+}
+
+std::optional<Answer> Make(Desk& desk) {
+  FreeRetired(desk);
+  Question question;
+  if (!desk.questions.TryPop(question)) return std::nullopt;
+  auto surface = std::make_unique<planar::Environment>();
+  const planar::Surfacing surfacing = planar::MakeEnvironment(*question.stators, *surface);
+  Answer answer{question.environment, {question.number, surfacing.problem, 0}};
+  if (surfacing.problem != planar::StatorProblem::kNone) {
+    if (surfacing.problem != planar::StatorProblem::kEmpty) {
+      answer.made.stator = static_cast<std::uint32_t>(surfacing.stator + 1);
+    }
+  } else if (desk.deliveries.TryPush({question.number, surface.get()})) {
+    surface.release();
+  }
+  return answer;
+}
+
+}  // namespace takt::environment

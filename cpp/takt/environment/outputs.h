@@ -1,0 +1,18 @@
+// What an environment publishes every cycle.
+#pragma once
+
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+
+namespace takt::environment {
+
+struct Outputs {
+  std::uint32_t stator_count = 0;
+  std::uint32_t border_count = 0;  // straight pieces of its boundary; 0: it has none
+  std::uint32_t group = 0;         // number of the group that it is in, from 1; 0: none
+};
+
+void describe(Description<Outputs>&);
+
+}  // namespace takt::environment

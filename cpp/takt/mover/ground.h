@@ -1,0 +1,16 @@
+// What a mover needs of the ground for its motions, and how it gets it from its group (planar/grounds.h).
+#pragma once
+
+#include "takt/mover/run.h"
+
+namespace takt::mover {
+
+// What is in the way of motions of X, Y and C that begin when this cycle does, or go on; on a track: of C alone. None:
+// they may be.
+ObjectInfo InTheWay(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) noexcept;
+// Those of the state are reserved, whatever is in the way.
+void Reserve(const Context& c, const State& s, bool on_track) noexcept;
+// Where the mover is when this cycle begins, for others; what it has left is free.
+void Stand(const Context& c, const State& s) noexcept;
+
+}  // namespace takt::mover

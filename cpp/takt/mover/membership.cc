@@ -1,0 +1,20 @@
+// Into a group of movers and out of it.
+#include "takt/mover/admission.h"
+#include "takt/mover/ground.h"
+
+namespace takt::mover {
+
+Answer CarryOut(const Given& g, const AddToGroup& command) noexcept {
+  const std::uint32_t group = g.c.grounds.Find(command.group.view());
+  if (group == 0) return Refused(ErrorId::kParameter);
+  Stand(g.c, g.s);
+  const planar::Verdict verdict = planar::AddMover(g.c.index, group, g.c.grounds);
+  return verdict.error == ErrorId::kNone ? Done() : Refused(verdict.error, verdict.object);
+}
+
+Answer CarryOut(const Given& g, const RemoveFromGroup&) noexcept {
+  const planar::Verdict verdict = planar::RemoveMover(g.c.index, g.c.grounds);
+  return verdict.error == ErrorId::kNone ? Done() : Refused(verdict.error, verdict.object);
+}
+
+}  // namespace takt::mover

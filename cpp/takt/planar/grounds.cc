@@ -1,0 +1,247 @@
+#include "takt/planar/grounds.h"
+
+#include <algorithm>
+
+#include "takt/core/describe.h"
+
+namespace takt::planar {
+
+namespace {
+
+Reservations& ReservedBy(std::uint32_t group, Grounds& g) noexcept {
+  return g.grounds[group - 1].reserved;
+}
+
+ObjectInfo Object(ObjectKind kind, std::uint32_t number) noexcept {
+  return {kind, number + 1};
+}
+
+Verdict Collision(const ObjectInfo& object) noexcept {
+  return object ? Verdict{ErrorId::kCollision, object} : Verdict{};
+}
+
+// It stands there, or on a track.
+void PutIn(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept {
+  const MoverNow& now = g.movers[mover];
+  Reservations& r = ReservedBy(group, g);
+  Settle(mover, now.mover, now.pose, r);
+  if (now.on_track) Link(mover, g.NetworkOf(now.track), r);
+}
+
+// An environment has its number in the machine.
+ObjectInfo Numbered(const ObjectInfo& object, std::uint32_t group, const Grounds& g) noexcept {
+  if (object.kind != ObjectKind::kEnvironment) return object;
+  return {ObjectKind::kEnvironment, g.EnvironmentOf(group)};
+}
+
+// Of a mover that is settled.
+ObjectInfo AskStanding(std::uint32_t mover, std::uint32_t group, const Grounds& g) noexcept {
+  const Reservations& r = g.grounds[group - 1].reserved;
+  const Reservation& own = r.movers[mover];
+  return Numbered(Ask(mover, {.target = own.pose, .on_track = own.linked}, g.Around(group), r), group, g);
+}
+
+Verdict Leaves(std::uint32_t& group) noexcept {
+  if (group == 0) return {ErrorId::kNoPlanarGroup, {}};
+  group = 0;
+  return {};
+}
+
+}  // namespace
+
+Grounds::Grounds(std::size_t of_movers, std::size_t of_tracks, std::size_t of_environments,
+                 std::vector<std::string> groups)
+    : names(std::move(groups)),
+      group_of_mover(of_movers),
+      group_of_track(of_tracks),
+      group_of_environment(of_environments),
+      grounds(names.size()),
+      movers(of_movers),
+      areas(of_tracks),
+      moving(of_tracks),
+      surfaces(of_environments) {
+  for (Ground& ground : grounds) ground.reserved = MakeReservations(of_movers, of_tracks);
+}
+
+std::uint32_t Grounds::Find(std::string_view group) const noexcept {
+  const auto found = std::ranges::find(names, group);
+  return found == names.end() ? 0 : static_cast<std::uint32_t>(found - names.begin() + 1);
+}
+
+std::uint32_t Grounds::EnvironmentOf(std::uint32_t group) const noexcept {
+  const auto found = std::ranges::find(group_of_environment, group);
+  return found == group_of_environment.end() ? 0 : static_cast<std::uint32_t>(found - group_of_environment.begin() + 1);
+}
+
+Surroundings Grounds::Around(std::uint32_t group) const noexcept {
+  const std::uint32_t environment = EnvironmentOf(group);
+  return {.environment = environment == 0 ? nullptr : surfaces[environment - 1], .tracks = areas};
+}
+
+ObjectInfo AskMove(std::uint32_t mover, const Move& move, const Grounds& g) noexcept {
+  const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
+  if (group == 0) return {};
+  return Numbered(Ask(mover, move, g.Around(group), g.grounds[group - 1].reserved), group, g);
+}
+
+void TakeMove(std::uint32_t mover, const Move& move, Grounds& g) noexcept {
+  if (const std::uint32_t group = g.Watching(g.group_of_mover[mover])) Take(mover, move, ReservedBy(group, g));
+}
+
+void AdvanceMover(std::uint32_t mover, Grounds& g) noexcept {
+  const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
+  if (group == 0) return;
+  const MoverNow& now = g.movers[mover];
+  Reservations& r = ReservedBy(group, g);
+  Reservation& own = r.movers[mover];
+  const std::uint32_t network = now.on_track ? g.NetworkOf(now.track) : kNoTrack;
+  if (now.on_track && !own.linked) Link(mover, network, r);
+  own.network = network;
+  const Pose& was = own.pose;
+  const bool stays = was.place.x == now.pose.place.x && was.place.y == now.pose.place.y && was.c == now.pose.c;
+  if (!stays) Advance(mover, now.pose, r);
+  if (now.rests && own.moving) End(mover, r);
+}
+
+Verdict SetDown(std::uint32_t mover, const Pose& pose, Grounds& g) noexcept {
+  const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
+  if (group == 0) return {};
+  Reservations& r = ReservedBy(group, g);
+  const Reservation before = r.movers[mover];
+  Settle(mover, before.mover, pose, r, before.level);
+  const ObjectInfo object = AskStanding(mover, group, g);
+  if (object) r.movers[mover] = before;
+  return Collision(object);
+}
+
+Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, const Grounds& g) noexcept {
+  const std::uint32_t own = g.Watching(g.group_of_mover[mover]);
+  for (const std::uint32_t track : tracks) {
+    const std::uint32_t group = g.Watching(g.group_of_track[track]);
+    if (own != 0 && group != own) return {ErrorId::kTrackOutside, Object(ObjectKind::kTrack, track)};
+    if (group == 0) continue;
+    const Reservations& r = g.grounds[group - 1].reserved;
+    if (r.tracks[track].moving) continue;
+    if (const ObjectInfo object = AskTrack(track, g.Around(group), r)) return Collision(Numbered(object, group, g));
+  }
+  return {};
+}
+
+void TakeTracks(std::span<const std::uint32_t> tracks, Grounds& g) noexcept {
+  for (const std::uint32_t track : tracks) {
+    g.moving[track] = 1;
+    if (const std::uint32_t group = g.Watching(g.group_of_track[track])) TakeTrack(track, ReservedBy(group, g));
+  }
+}
+
+Verdict AddMover(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept {
+  if (g.group_of_mover[mover] == group) return {};
+  if (g.group_of_mover[mover] != 0) return {ErrorId::kOtherPlanarGroup, {}};
+  if (g.Watching(group) != 0) {
+    if (!g.movers[mover].rests) return {ErrorId::kObjectMoves, Object(ObjectKind::kMover, mover)};
+    PutIn(mover, group, g);
+    if (const ObjectInfo object = AskStanding(mover, group, g)) {
+      Leave(mover, ReservedBy(group, g));
+      return Collision(object);
+    }
+  }
+  g.group_of_mover[mover] = group;
+  return {};
+}
+
+Verdict AddTrack(std::uint32_t track, std::uint32_t group, Grounds& g) noexcept {
+  if (g.group_of_track[track] == group) return {};
+  if (g.group_of_track[track] != 0) return {ErrorId::kOtherPlanarGroup, {}};
+  // While it stands it covers nothing.
+  if (g.Watching(group) != 0 && g.moving[track]) return {ErrorId::kObjectMoves, Object(ObjectKind::kTrack, track)};
+  g.group_of_track[track] = group;
+  return {};
+}
+
+Verdict AddEnvironment(std::uint32_t environment, std::uint32_t group, Grounds& g) noexcept {
+  std::uint32_t& own = g.group_of_environment[environment];
+  if (own == group) return {};
+  if (own != 0 || g.EnvironmentOf(group) != 0) return {ErrorId::kOtherPlanarGroup, {}};
+  own = group;
+  if (g.Watching(group) == 0) return {};
+  Verdict verdict;
+  if (!g.surfaces[environment]) verdict = {ErrorId::kNoBoundary, Object(ObjectKind::kEnvironment, environment)};
+  for (std::uint32_t i = 0; i < g.moving.size() && verdict.error == ErrorId::kNone; ++i) {
+    const bool moves = g.grounds[group - 1].reserved.tracks[i].moving;
+    if (moves) verdict = {ErrorId::kObjectMoves, Object(ObjectKind::kTrack, i)};
+  }
+  for (std::uint32_t i = 0; i < g.movers.size() && verdict.error == ErrorId::kNone; ++i) {
+    if (g.group_of_mover[i] != group) continue;
+    if (!g.movers[i].rests || g.grounds[group - 1].reserved.movers[i].moving) {
+      verdict = {ErrorId::kObjectMoves, Object(ObjectKind::kMover, i)};
+    } else if (AskStanding(i, group, g)) {
+      verdict = Collision(Object(ObjectKind::kMover, i));
+    }
+  }
+  if (verdict.error != ErrorId::kNone) own = 0;
+  return verdict;
+}
+
+Verdict RemoveMover(std::uint32_t mover, Grounds& g) noexcept {
+  if (const std::uint32_t group = g.group_of_mover[mover]) Leave(mover, ReservedBy(group, g));
+  return Leaves(g.group_of_mover[mover]);
+}
+
+Verdict RemoveTrack(std::uint32_t track, Grounds& g) noexcept {
+  if (const std::uint32_t group = g.group_of_track[track]) EndTrack(track, ReservedBy(group, g));
+  return Leaves(g.group_of_track[track]);
+}
+
+Verdict RemoveEnvironment(std::uint32_t environment, Grounds& g) noexcept {
+  return Leaves(g.group_of_environment[environment]);
+}
+
+Verdict Watch(std::uint32_t group, Grounds& g) noexcept {
+  const std::uint32_t environment = g.EnvironmentOf(group);
+  if (environment != 0 && !g.surfaces[environment - 1]) {
+    return {ErrorId::kNoBoundary, {ObjectKind::kEnvironment, environment}};
+  }
+  for (std::uint32_t i = 0; i < g.moving.size(); ++i) {
+    const bool moves = g.group_of_track[i] == group && g.moving[i];
+    if (moves) return {ErrorId::kObjectMoves, Object(ObjectKind::kTrack, i)};
+  }
+  Verdict verdict;
+  for (std::uint32_t i = 0; i < g.movers.size() && verdict.error == ErrorId::kNone; ++i) {
+    if (g.group_of_mover[i] != group) continue;
+    if (!g.movers[i].rests) {
+      verdict = {ErrorId::kObjectMoves, Object(ObjectKind::kMover, i)};
+    } else {
+      PutIn(i, group, g);
+      if (AskStanding(i, group, g)) verdict = Collision(Object(ObjectKind::kMover, i));
+    }
+  }
+  if (verdict.error != ErrorId::kNone) {
+    Unwatch(group, g);
+  } else {
+    g.grounds[group - 1].watches = true;
+  }
+  return verdict;
+}
+
+void Unwatch(std::uint32_t group, Grounds& g) noexcept {
+  g.grounds[group - 1].watches = false;
+  Reservations& r = ReservedBy(group, g);
+  for (std::uint32_t i = 0; i < r.movers.size(); ++i) Leave(i, r);
+  for (std::uint32_t i = 0; i < r.tracks.size(); ++i) EndTrack(i, r);
+}
+
+void AdvanceTracks(Grounds& g) noexcept {
+  for (std::uint32_t i = 0; i < g.moving.size(); ++i) {
+    const std::uint32_t group = g.Watching(g.group_of_track[i]);
+    if (group == 0) continue;
+    g.moving[i] ? TakeTrack(i, ReservedBy(group, g)) : EndTrack(i, ReservedBy(group, g));
+  }
+}
+
+void describe(Description<Ground>& d) {
+  d.about("What a group of movers has reserved.");
+  d.internal<&Ground::watches>("Only then it has.");
+  d.internal<&Ground::reserved>("For whom what.");
+}
+
+}  // namespace takt::planar

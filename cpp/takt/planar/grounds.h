@@ -1,0 +1,99 @@
+// Who is in which group of movers, and what each group has reserved: what movers, tracks, environments and the groups
+// themselves share. Groups are numbered from 1; 0: none. All of it is fit for the cycle.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/status.h"
+#include "takt/planar/environment.h"
+#include "takt/planar/network.h"
+#include "takt/planar/reservation.h"
+#include "takt/planar/track_area.h"
+
+namespace takt::planar {
+
+// A mover as it is at the end of a cycle.
+struct MoverNow {
+  Footprint mover{};
+  Pose pose{};
+  bool rests = true;               // in X, Y and C
+  bool on_track = false;           // and else it goes nowhere
+  std::uint32_t track = kNoTrack;  // that one
+};
+
+// What is remembered of a group.
+struct Ground {
+  bool watches = false;  // it is enabled: only then anything is reserved or refused
+  Reservations reserved;
+};
+
+struct Grounds {
+  Grounds(std::size_t movers, std::size_t tracks, std::size_t environments, std::vector<std::string> groups);
+
+  std::uint32_t Find(std::string_view group) const noexcept;
+  // 0: none, or it does not watch.
+  std::uint32_t Watching(std::uint32_t group) const noexcept {
+    return group != 0 && grounds[group - 1].watches ? group : 0;
+  }
+  // The environment of a group, from 1; 0: none.
+  std::uint32_t EnvironmentOf(std::uint32_t group) const noexcept;
+  Surroundings Around(std::uint32_t group) const noexcept;
+  std::uint32_t NetworkOf(std::uint32_t track) const noexcept {
+    return areas[track] ? areas[track]->network : kNoTrack;
+  }
+
+  std::vector<std::string> names;  // of the groups
+  std::vector<std::uint32_t> group_of_mover;
+  std::vector<std::uint32_t> group_of_track;
+  std::vector<std::uint32_t> group_of_environment;
+  std::vector<Ground> grounds;  // by group, from 0
+
+  // What follows from the states of others.
+  std::vector<MoverNow> movers;
+  std::vector<const TrackArea*> areas;       // by track; null: it has no length
+  std::vector<std::uint8_t> moving;          // by track: it is Moving
+  std::vector<const Environment*> surfaces;  // by environment; null: it has no boundary
+};
+
+// Whether something of a group that watches is or would be in the way. `error` is none, or why not.
+struct Verdict {
+  ErrorId error = ErrorId::kNone;
+  ObjectInfo object{};
+};
+
+// With what a mover would collide in its group; none where that does not watch. And what follows for what is reserved.
+ObjectInfo AskMove(std::uint32_t mover, const Move& move, const Grounds& g) noexcept;
+void TakeMove(std::uint32_t mover, const Move& move, Grounds& g) noexcept;
+// As `movers` says it is now.
+void AdvanceMover(std::uint32_t mover, Grounds& g) noexcept;
+// It is set to another place, if there is room.
+Verdict SetDown(std::uint32_t mover, const Pose& pose, Grounds& g) noexcept;
+
+// Whether a mover may move along these tracks, each of which is in the mover's group if that watches; and it does.
+Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, const Grounds& g) noexcept;
+void TakeTracks(std::span<const std::uint32_t> tracks, Grounds& g) noexcept;
+
+// Into a group and out of it. What comes into a group that watches must rest, and have room there.
+Verdict AddMover(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept;
+Verdict AddTrack(std::uint32_t track, std::uint32_t group, Grounds& g) noexcept;
+Verdict AddEnvironment(std::uint32_t environment, std::uint32_t group, Grounds& g) noexcept;
+Verdict RemoveMover(std::uint32_t mover, Grounds& g) noexcept;
+Verdict RemoveTrack(std::uint32_t track, Grounds& g) noexcept;
+Verdict RemoveEnvironment(std::uint32_t environment, Grounds& g) noexcept;
+
+// From now on the group watches, if all that is in it rests and has room; else the object is who does not.
+Verdict Watch(std::uint32_t group, Grounds& g) noexcept;
+void Unwatch(std::uint32_t group, Grounds& g) noexcept;
+
+// The tracks that are Moving: at the end of a cycle.
+void AdvanceTracks(Grounds& g) noexcept;
+
+void describe(Description<Ground>&);
+
+}  // namespace takt::planar
