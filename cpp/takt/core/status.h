@@ -79,6 +79,10 @@ enum class ErrorId : std::uint16_t {
   kTrackMode = 3046,          // the track is not enabled, or movers on it do what does not go with this
   kNoRoute = 3047,            // no way along tracks leads there
   kTrackGeometry = 3050,      // a track cannot be so; the value of the feedback says why
+  kTrackEnd = 3080,           // a geared mover's way ends where its master leads it
+  kTrail = 3081,              // tracks do not make such a trail, or the mover is not on it
+  kMasterOffTrack = 3082,     // a mover that is to be followed is not on a track, or not enabled
+  kMasterLost = 3083,         // the master turned off where the mover that follows it cannot
   kGroupDeviation = 8001,
   kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual
   // A cam module is in error; numbers of the Flex Cam manual.

@@ -1,11 +1,12 @@
 // Commands as they arrive: what carrying them out has in common. Each family has a file of its own beside this one:
-// power.cc, moves.cc, on_tracks.cc, setpoints.cc.
+// power.cc, moves.cc, on_tracks.cc, gear.cc, setpoints.cc.
 #pragma once
 
 #include <algorithm>
 #include <optional>
 
 #include "takt/mover/run.h"
+#include "takt/planar/send.h"
 
 namespace takt::mover {
 
@@ -59,6 +60,7 @@ trajectory::Limits LimitsOf(const Move& m, const Params& params, LimitedBy& limi
           take(m.jerk, standard.jerk, most.jerk, LimitedBy::kJerk)};
 }
 
+planar::Way WayOf(TurnDirection direction) noexcept;
 // A move of X and Y in the plane, whatever the mode.
 Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept;
 // One of C, if it may do what `ask` says.
@@ -78,6 +80,8 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept;
 Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept;
 Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept;
 Answer CarryOut(const Given& g, const AdoptTrackOrientation& command) noexcept;
+Answer CarryOut(const Given& g, const GearInPosOnTrack& command) noexcept;
+Answer CarryOut(const Given& g, const GearInPosOnTrackWithMasterMover& command) noexcept;
 Answer CarryOut(const Given& g, const StartExternalSetpointGeneration& command) noexcept;
 Answer CarryOut(const Given& g, const SetExternalSetpoint& command) noexcept;
 Answer CarryOut(const Given& g, const StopExternalSetpointGeneration& command) noexcept;

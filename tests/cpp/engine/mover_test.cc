@@ -60,7 +60,12 @@ std::vector<mover::Command> GoodCommands() {
           mover::AdoptTrackOrientation{},
           mover::StartExternalSetpointGeneration{},
           mover::SetExternalSetpoint{},
-          mover::StopExternalSetpointGeneration{}};
+          mover::StopExternalSetpointGeneration{},
+          mover::GearInPosOnTrack{.master = Name::Of("x"),
+                                  .direction_slave_sync_position = mover::TurnDirection::kPositive},
+          mover::GearInPosOnTrackWithMasterMover{.master = Name::Of("one"),
+                                                 .direction_slave_sync_position = mover::TurnDirection::kPositive,
+                                                 .direction_master_sync_position = mover::TurnDirection::kPositive}};
 }
 
 Command To(std::uint32_t mover, const mover::Command& body) {
