@@ -35,17 +35,16 @@ bool IsTaken(const Context& c, std::uint32_t track, double s) {
 }  // namespace
 
 planar::Way WayOf(TurnDirection direction) noexcept {
-  switch (direction)
-    noexcept {
-      case TurnDirection::kPositive:
-        return planar::Way::kPositive;
-      case TurnDirection::kShortestWay:
-        return planar::Way::kShortestWay;
-      case TurnDirection::kNegative:
-        return planar::Way::kNegative;
-      default:
-        return planar::Way::kNonModulo;
-    }
+  switch (direction) {
+    case TurnDirection::kPositive:
+      return planar::Way::kPositive;
+    case TurnDirection::kShortestWay:
+      return planar::Way::kShortestWay;
+    case TurnDirection::kNegative:
+      return planar::Way::kNegative;
+    default:
+      return planar::Way::kNonModulo;
+  }
 }
 
 Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {

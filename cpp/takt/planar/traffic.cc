@@ -43,6 +43,13 @@ bool Rests(const KinematicState& x) {
   return x.velocity == 0 && x.acceleration == 0;
 }
 
+// It goes back before it rests.
+bool TurnsRound(const Braking& b) {
+  const double start = b.pieces[0].position;
+  const bool up = b.lowest == start && b.highest == b.rest, down = b.highest == start && b.lowest == b.rest;
+  return b.lowest < b.highest && !up && !down;
+}
+
 // Where it has to be able to stop: so far from here, and how fast that place goes away.
 struct Limit {
   double room = kInfinite;
@@ -268,8 +275,10 @@ class Traffic::Step_ {
   bool MayTake(std::uint32_t i, const KinematicState& next, const Braking& braking) const {
     const Rider& r = riders_[i];
     const Now& now = t_.now_[i];
-    const bool forward = braking.highest > now.braking.highest || next.position > now.next.position;
-    const bool back = braking.lowest < now.braking.lowest || next.position < now.next.position;
+    // Who turns round goes both ways.
+    const bool turns = TurnsRound(braking) || TurnsRound(now.braking);
+    const bool forward = turns || braking.highest > now.braking.highest || next.position > now.next.position;
+    const bool back = turns || braking.lowest < now.braking.lowest || next.position < now.next.position;
     const bool closed = network_[r.route.first()].closed;
     if (back && !closed && std::min(braking.lowest, next.position) < std::min(0.0, now.braking.lowest) - kTolerance) {
       return false;
