@@ -414,21 +414,37 @@ class Traffic::Step_ {
     return Wish(r);
   }
 
-  // Behind one that goes on by itself: the distance falls to the gap as fast as both could still stop, without a
-  // reserve for swinging, so that in the end they go as one.
+  // The acceleration with which a mover comes up behind something that goes on by itself: so much room is left to where
+  // it is to be, which goes at this speed and acceleration. Both could still stop, and it would not have passed.
+  double ComeUp(const Rider& r, double room, const KinematicState& there, const Brakes& brakes, double share) const {
+    const double speed = r.direction * r.at.velocity, its_speed = r.direction * there.velocity;
+    const double slope = std::max(SlopeOfWayToRest(std::max({0.0, speed, its_speed}), brakes), kQuick * period());
+    const double closing = share / slope, faster = speed - its_speed;
+    return r.direction * there.acceleration - closing * faster + (closing * room - faster) / std::min(slope, kCalm);
+  }
+
+  // Behind the mover ahead: down to the gap, without a reserve for swinging, so that in the end both go as one.
   double CloseUp(std::uint32_t i, const Limit& limit) const {
     const Rider& r = riders_[i];
     if (limit.by == kNobody || limit.by != t_.now_[i].leader) return -kInfinite;
     const Rider& before = riders_[limit.by];
     if (r.brakes.deceleration < before.brakes.deceleration || r.brakes.jerk < before.brakes.jerk) return -kInfinite;
-    const int direction = r.direction;
-    const double speed = direction * r.at.velocity, its_speed = direction * before.at.velocity;
-    const double room = direction * (before.at.position + t_.now_[i].leader_offset - r.at.position) - r.gap;
-    if (room < 0 || its_speed < 0) return -kInfinite;
-    const double slope = std::max(SlopeOfWayToRest(std::max(speed, its_speed), r.brakes), kQuick * period());
-    const double closing = kClosing / slope, faster = speed - its_speed;
-    return direction * t_.now_[limit.by].next.acceleration - closing * faster +
-           (closing * room - faster) / std::min(slope, kCalm);
+    const double room = r.direction * (before.at.position + t_.now_[i].leader_offset - r.at.position) - r.gap;
+    if (room < 0 || r.direction * before.at.velocity < 0) return -kInfinite;
+    return ComeUp(r, room, {0, before.at.velocity, t_.now_[limit.by].next.acceleration}, r.brakes, kClosing);
+  }
+
+  // It gets into step from behind and may not come back, so it must not pass its master's place.
+  bool ComesFromBehind(const Rider& r, const KinematicState& demand) const {
+    return !r.gear.was_in_step && r.gear.sense == r.direction && RoomTo(r, demand) > 0;
+  }
+  double RoomTo(const Rider& r, const KinematicState& demand) const {
+    return r.direction * (demand.position - period() * demand.velocity - r.at.position);
+  }
+  // It would pass it if both braked from here on as this one can.
+  static bool Passes(const Rider& r, const KinematicState& next, const KinematicState& demand) {
+    const Braking own = Brake(next, r.pace.brakes()), its = Brake(demand, r.pace.brakes());
+    return r.direction > 0 ? LeastDistance(own, its, 0) < -kTolerance : LeastDistance(its, own, 0) < -kTolerance;
   }
 
   // How far from its master's place it is at the end of the cycle.
@@ -620,10 +636,12 @@ class Traffic::Step_ {
       --r.calm_cycles;
       most = std::min(most, std::max(0.0, before));
     }
+    const bool comes = follows && !exact && ComesFromBehind(r, demand);
     if (follows) {
       most = std::max(most, CloseUp(i, limit));
       // To a master that stands it comes to rest anyhow.
       if (Rests(demand) && direction * (demand.position - r.at.position) <= limit.room + kTolerance) most = kInfinite;
+      if (comes) most = std::min(most, ComeUp(r, RoomTo(r, demand), demand, r.pace.brakes(), kClosing));
     }
     // With constant jerk neither faster than wished at the end of the cycle, nor with more acceleration.
     const double mean = (direction * wish.velocity - speed) / period();
@@ -636,7 +654,7 @@ class Traffic::Step_ {
         follows ? std::max(least_end, std::sqrt(r.pace.limits.jerk * std::max(0.0, fastest))) : least_end;
     const double wished = std::min(end, as_fast);
     const bool limited = mean > most + 1e-9 && !(was_free && GoesAlong(i, wish, limit));
-    if (!limited && Take(i, wish)) {
+    if (!limited && !(comes && Passes(r, wish, demand)) && Take(i, wish)) {
       if (r.aim == Aim::kTarget && r.plan_ends && r.plan_time >= r.plan.duration()) r.there = true;
       return WaitFor(r, Waits::kNot, kNobody);
     }
@@ -653,7 +671,7 @@ class Traffic::Step_ {
     const trajectory::Piece piece{r.at.position, r.at.velocity, r.at.acceleration, direction * jerk};
     const KinematicState step = piece.At(period());
     const bool goes = direction * step.velocity > 0 && !(stands && limit.room < kAtLimit);
-    if (goes && Take(i, step)) {
+    if (goes && !(comes && Passes(r, step, demand)) && Take(i, step)) {
       return stands ? WaitFor(r, Waits::kMover, limit.by) : WaitFor(r, Waits::kNot, kNobody);
     }
     if (stands) WaitFor(r, limit.by != kNobody ? Waits::kMover : Waits::kRoute, limit.by);

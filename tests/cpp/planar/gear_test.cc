@@ -155,6 +155,33 @@ TEST(Gear, GetsIntoStepTheWayItMay) {  // PL-14
   }
 }
 
+// Coupled late, it comes from behind and does not pass its master's place: it could not come back.
+TEST(Gear, ComesFromBehindWithoutPassing) {  // PL-14
+  for (unsigned trial = 0; trial < 30; ++trial) {
+    testing::Random random(trial);
+    const Pace pace = testing::PaceOf(random.Between(500, 2000), random.Between(3000, 15000), random.Between(5e4, 4e5));
+    const Pace its =
+        testing::PaceOf(random.Between(0.5, 1) * pace.limits.velocity, pace.limits.acceleration, pace.limits.jerk);
+    Streets streets({Straight(5000), Straight(5000)}, 2);
+    streets.Put(0, 0, 0, pace);
+    streets.Put(1, 1, 0, its);
+    const double target = random.Between(50, 4000);
+    streets.Send(1, 1, target);
+    const int late = 1 + random.Below(1500);
+    for (int i = 0; i < late; ++i) streets.Step();
+    Couple(streets, 0, 0, 1);
+    streets[0].gear.sense = 1;
+    double most = -INFINITY;
+    for (int i = 0; i < 15000; ++i) {
+      streets.Step();
+      if (!streets[0].gear.was_in_step) most = std::max(most, streets[0].gear.error);
+    }
+    EXPECT_LT(most, 1e-5) << trial;
+    EXPECT_TRUE(streets[0].gear.in_step) << trial;
+    EXPECT_NEAR(streets[0].at.position, target, 1e-6);
+  }
+}
+
 TEST(Gear, StopsWhereItsWayEnds) {  // PL-14
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   for (const bool forward : {true, false}) {
