@@ -381,6 +381,51 @@ def test_axes_that_follow_movers() -> None:
     assert gear.error_id != 0
 
 
+LOOP = f"""
+name: loop
+axes: [{AXIS}]
+movers: [{{name: mover, initial: {{x: 350, y: 100}}}}]
+tracks:
+  - name: ring
+    closed_loop: true
+    elements:
+      - {{from: {{x: 200, y: 100}}, to: {{x: 500, y: 100}}}}
+      - {{from: {{x: 500, y: 400}}, to: {{x: 200, y: 400}}}}
+"""
+
+
+@pytest.mark.parametrize(("direction", "way"), [("positive", "on"), ("negative", "back"), ("shortest_way", "back")])
+def test_round_a_loop(direction: str, way: str) -> None:
+    """PL-14: places of a loop are the same but for whole turns; turns are counted on."""
+    engine = Engine(LOOP)
+    mover, axis, ring = engine.mover("mover"), engine.axis("axis"), engine.track("ring")
+    ring.enable().wait()
+    mover.enable().wait()
+    mover.join_track(track="ring").wait()
+    axis.power().wait()
+    begin = mover.track_position
+    assert begin == pytest.approx(150, abs=1e-6)
+    # A place behind the mover, and the same one a turn on.
+    gear = mover.gear_in_pos_on_track(
+        master="axis",
+        master_sync_position=0,
+        slave_sync_position=100,
+        direction_slave_sync_position=direction,
+        allowed_slave_sync_directions="both",
+    )
+    engine.run(0.1)
+    assert np.sign(mover.track_velocity) == (1 if way == "on" else -1)
+    gear.wait(until="reached")
+    recorder = engine.record()
+    engine.run(0.01)
+    assert mover.track_position == pytest.approx(100, abs=1e-6)
+    axis.move_absolute(position=2.5 * ring.length, velocity=500).wait()
+    engine.run(0.01)
+    assert mover.track_position == pytest.approx((100 + 2.5 * ring.length) % ring.length, abs=1e-6)
+    recording = recorder.stop()
+    assert np.max(np.abs(recording["mover"]["sync_error"])) < 1e-6
+
+
 def test_a_master_that_leaves() -> None:
     """PL-14: a master that is disabled is none any more."""
     engine = Engine(TWO_TRACKS)

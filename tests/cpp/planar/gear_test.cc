@@ -323,6 +323,43 @@ TEST(Gear, SlowsDownInCurves) {  // PL-14, PL-21
   }
 }
 
+// Over a switch each goes where the first one went, as one body.
+TEST(Gear, AConvoyGoesThroughSwitches) {  // PL-14, PL-34
+  const Layout in{{testing::Line({0, 0}, {2000, 0})}};
+  const Layout left{{testing::Line({2000, 0}, {2300, 0}), testing::Line({2600, 300}, {4000, 300})}};
+  const Layout right{{testing::Line({2000, 0}, {2300, 0}), testing::Line({2600, -300}, {4000, -300})}};
+  const Layout on{{testing::Line({4000, 300}, {6000, 300})}};
+  Streets streets({in, left, right, on}, 6);
+  const Pace pace = testing::PaceOf(600, 5000, 100000, 8000);
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    streets.Put(i, 0, 1500 - 200.0 * i, pace, 200);
+    if (i > 0) Couple(streets, i, -200, i - 1);
+    streets[i].gear.takes_masters_way = i > 0;
+  }
+  ASSERT_TRUE(streets.Send(0, 3, 1900));
+  Watcher watcher(streets);
+  double nearest = INFINITY;
+  const auto step = [&] {
+    for (std::uint32_t i = 1; i < 6; ++i) ASSERT_TRUE(TakeMastersWay(streets.network(), streets[i - 1], streets[i]));
+    streets.Step();
+    watcher.Look();
+    nearest = std::min(nearest, streets.Nearest());
+    for (std::uint32_t i = 1; i < 6; ++i) ASSERT_TRUE(streets[i].gear.in_step) << i << " " << streets.now();
+  };
+  for (int i = 0; i < 1500; ++i) step();
+  // The first one is over the switch, the last one not yet: all go where the first one went.
+  EXPECT_GT(streets[0].origin, 0);
+  EXPECT_EQ(streets[5].origin, 0);
+  EXPECT_FALSE(streets[0].route.Contains(2));
+  EXPECT_TRUE(streets[5].route.Contains(1));
+  for (int i = 0; i < 12000 && !streets[0].there; ++i) step();
+  EXPECT_TRUE(streets[0].there);
+  EXPECT_EQ(streets[5].route.first(), 3U);
+  EXPECT_NEAR(streets[5].at.position, 900, 1e-6);
+  EXPECT_GT(nearest, 0);
+  EXPECT_LE(watcher.lateral, 1 + 1e-6);
+}
+
 bool Follows(Streets& streets, std::uint32_t mover, std::uint32_t master) {
   while (mover != master) {
     const Rider& r = streets[mover];
