@@ -354,8 +354,8 @@ def test_axes_that_follow_movers() -> None:
     mover, axis, other = engine.mover("mover"), engine.axis("axis"), engine.axis("other")
     for track in engine.tracks.values():
         track.enable().wait()
+    axis.power().wait()
     with pytest.raises(takt.CommandError, match="not powered"):
-        axis.power().wait()
         axis.gear_in(master="mover").wait(until="active")
     other.power().wait()
     mover.enable().wait()
