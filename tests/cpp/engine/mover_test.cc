@@ -62,6 +62,7 @@ std::vector<mover::Command> GoodCommands() {
           mover::SetExternalSetpoint{},
           mover::StopExternalSetpointGeneration{},
           mover::GearInPosOnTrack{.master = Name::Of("x"),
+                                  .trail = {{Name::Of("way")}, 1},
                                   .direction_slave_sync_position = mover::TurnDirection::kPositive},
           mover::GearInPosOnTrackWithMasterMover{.master = Name::Of("one"),
                                                  .direction_slave_sync_position = mover::TurnDirection::kPositive,
