@@ -28,7 +28,7 @@ HEAD = '''"""Commands, published fields and enumerations of components. Made by 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -94,7 +94,7 @@ def type_text(node: Json, argument: bool) -> str:
     if kind == "optional":
         return type_text(node["element"], argument) + " | None"
     if kind == "list":
-        return f"list[{type_text(node['element'], argument)}]"
+        return f"{'Sequence' if argument else 'list'}[{type_text(node['element'], argument)}]"
     if kind == "enum":
         if node["name"] in NUMBERS:
             return "int"
@@ -105,6 +105,8 @@ def type_text(node: Json, argument: bool) -> str:
 def default_text(field: Json) -> str:
     """What stands behind the = of an argument."""
     value = field.get("default")
+    if isinstance(value, list):
+        value = tuple(value)  # nobody changes it
     return f'"{value}"' if isinstance(value, str) else repr(value)
 
 

@@ -2,7 +2,7 @@
 
 A mover floats over stators and moves in six coordinates ([what it does](../../docs/movers.md)). Here it goes to a place
 and, in the middle of that, to another one, turns where it stands, follows set points from outside, and goes along a
-track.
+track, on which another one goes along with it.
 """
 
 import takt
@@ -22,6 +22,8 @@ COMMANDS = (
     "mover.join_track",
     "mover.leave_track",
     "mover.move_on_track",
+    "mover.gear_in_pos_on_track",
+    "mover.gear_in_pos_on_track_with_master_mover",
     "mover.adopt_track_orientation",
     "mover.start_external_setpoint_generation",
     "mover.set_external_setpoint",
@@ -29,7 +31,10 @@ COMMANDS = (
     "mover.wait",
     "mover.release",
 )
-ERRORS = (5, 8, 3003, 3004, 3005, 3007, 3024, 3040, 3041, 3042, 3043, 3044, 3045, 3046, 3047)
+ERRORS = (
+    *(5, 8, 3003, 3004, 3005, 3007, 3018, 3019, 3024, 3040, 3041, 3042, 3043, 3044, 3045, 3046, 3047),
+    *(3080, 3081, 3082, 3083),
+)
 SIGNALS = ("shuttle.x", "shuttle.y", "shuttle.velocity_x", "shuttle.velocity_y", "shuttle.c", "shuttle.command_mode")
 
 
@@ -71,6 +76,23 @@ def scenario(session: takt.Session) -> None:
     shuttle.move_on_track(position=500).wait()
     shuttle.move_c(position=180).wait()
     shuttle.adopt_track_orientation().wait()
+    session.mark("another goes along with it, then with an axis")
+    trailer = session.mover("trailer")
+    trailer.enable().wait()
+    trailer.join_track(track="line", use_orientation=False).wait()
+    gear = trailer.gear_in_pos_on_track_with_master_mover(
+        master="shuttle", master_sync_position=500, slave_sync_position=200, follow_mover=True
+    )
+    gear.wait(until="reached")
+    shuttle.move_on_track(position=550).wait()
+    session.axis("x").power().wait()
+    trailer.gear_in_pos_on_track(
+        master="x",
+        master_sync_position=session.axis("x").set_position,
+        slave_sync_position=250,
+        allowed_slave_sync_directions="both",
+    ).wait(until="reached")
+    trailer.halt().wait()
     shuttle.leave_track(x=60, y=60, use_orientation=False).wait()
     shuttle.disable().wait()
 

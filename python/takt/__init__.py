@@ -31,6 +31,7 @@ from takt.remote import RemoteSession, connect
 from takt.replay import ReplayResult, replay
 from takt.session import Recorder, Session
 from takt.track import Track, TrackPosition
+from takt.trail import TrackTrail
 
 __all__ = [
     "Axis",
@@ -65,6 +66,7 @@ __all__ = [
     "TimeoutError",
     "Track",
     "TrackPosition",
+    "TrackTrail",
     "__version__",
     "connect",
     "error_name",

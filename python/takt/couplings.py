@@ -39,7 +39,8 @@ def masters_of(axis: Axis, axes: Mapping[str, Axis]) -> list[str]:
     names = list(axes)
     follows = axis.parameters.get("follows")
     from_load = [follows["axis"]] if follows else []
-    return from_load + [names[number - 1] for number in (axis.master1, axis.master2) if number > 0]
+    # Beyond all axes: what else an axis may follow, which follows none.
+    return from_load + [names[number - 1] for number in (axis.master1, axis.master2) if 0 < number <= len(names)]
 
 
 def loop_sentence(target: str, arguments: str, axes: Mapping[str, Axis]) -> str:

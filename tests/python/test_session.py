@@ -351,7 +351,7 @@ def test_methods_are_as_described(verb: dict[str, Any]) -> None:
         parameter = signature.parameters[name]
         assert parameter.kind is inspect.Parameter.KEYWORD_ONLY
         default = inspect.Parameter.empty if field["presence"] == "required" else field.get("default")
-        assert parameter.default == default
+        assert parameter.default == (tuple(default) if isinstance(default, list) else default)
         assert field["about"] in text
         assert field.get("unit", "") in text
         assert field.get("range", {}).get("text", "") in text

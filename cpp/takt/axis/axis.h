@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "takt/axis/commands.h"
 #include "takt/axis/outputs.h"
@@ -11,10 +12,19 @@
 #include "takt/cam/table.h"
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
+#include "takt/core/kinematic_state.h"
 #include "takt/core/ports.h"
 #include "takt/trajectory/planner.h"
 
 namespace takt::axis {
+
+// Something besides axes that they can be coupled to: a coordinate of a mover.
+struct OutsideMaster {
+  std::string name;
+  double velocity = 0;  // u/s, its largest
+  KinematicState at{};  // over all turns, at the end of the cycle
+  bool known = false;   // `at` means something
+};
 
 // What there is in a machine besides one axis, to be looked up by number or name.
 struct Surrounding {
@@ -23,6 +33,7 @@ struct Surrounding {
   std::span<const AxisParams> params{};
   std::span<const CamSwitches> cam_switches{};
   std::span<const cam::Table> cams{};
+  std::span<const OutsideMaster> outside{};  // as masters they are numbered behind all axes
 };
 inline constexpr Surrounding kAlone{};
 

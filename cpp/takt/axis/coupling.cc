@@ -19,8 +19,27 @@ KinematicState PhaseAt(const Context& c, const CouplingState& k) {
   return k.phase.At(static_cast<double>(c.cycle.count - k.phase_start) * c.cycle.period_s);
 }
 
+// What is no axis; null: an axis.
+const OutsideMaster* Outside(const Context& c, std::uint32_t master) {
+  const std::size_t axes = c.machine.states.size();
+  return master < axes ? nullptr : &c.machine.outside[master - axes];
+}
+double OriginOf(const Context& c, std::uint32_t master) {
+  return Outside(c, master) ? 0 : c.machine.states[master].origin;
+}
+double TurnOf(const Context& c, std::uint32_t master) {
+  return Outside(c, master) ? 0 : c.machine.params[master].turn();
+}
+double ReportedOf(const Context& c, std::uint32_t master, double position) {
+  return Outside(c, master) ? position : Reported(c.machine.params[master], position);
+}
+
 // A master as this axis sees it: over all turns, with the phase.
 KinematicState Seen(const Context& c, const CouplingTerm& term, const KinematicState& phase) {
+  if (const OutsideMaster* outside = Outside(c, term.master)) {
+    const KinematicState& its = outside->at;
+    return {its.position + phase.position, its.velocity + phase.velocity, its.acceleration + phase.acceleration};
+  }
   const State& master = c.machine.states[term.master];
   const bool measured = term.source == MasterSource::kActualValue;
   KinematicState its = measured ? master.actual : master.setpoint;
@@ -64,8 +83,9 @@ double SlaveSync(const AxisParams& p, double position, double expected, SyncMode
 }
 
 // Speeds below this are standstill: there is no slope over the master's position then.
-double Standing(const AxisParams& p) {
-  return 1e-6 * p.limits.velocity;
+double Standing(const Context& c, std::uint32_t master) {
+  const OutsideMaster* outside = Outside(c, master);
+  return 1e-6 * (outside ? outside->velocity : c.machine.params[master].limits.velocity);
 }
 
 // By place from the beginning, not from when they are in step.
@@ -113,7 +133,7 @@ void BeginCurve(const Context& c, const KinematicState& master, State& s) {
   const double own = s.setpoint.position + s.origin - k.chase.offset;
   double slope = 0;
   double bend = 0;
-  if (std::abs(master.velocity) > Standing(c.machine.params[k.law.terms[0].master])) {
+  if (std::abs(master.velocity) > Standing(c, k.law.terms[0].master)) {
     slope = s.setpoint.velocity / master.velocity;
     bend = (s.setpoint.acceleration - slope * master.acceleration) / (master.velocity * master.velocity);
   }
@@ -136,9 +156,9 @@ void Wait(double master, double distance, CouplingState& k) {
 
 // Whether the master is where the waiting ends: past the beginning, or already behind it on its way to the place. One
 // that turns round on a circle meets the place from the other side.
-bool HasBegun(const AxisParams& its, const KinematicState& master, CouplingState& k) {
+bool HasBegun(double standing, const KinematicState& master, CouplingState& k) {
   const double way = k.master_sync - k.curve_begin;
-  if (std::abs(master.velocity) > Standing(its)) {
+  if (std::abs(master.velocity) > standing) {
     const double sense = master.velocity < 0 ? -1 : 1;
     const double left = k.master_sync - master.position;
     if (left * way > 0 && std::abs(left) <= std::abs(way) && left * sense > 0) return true;
@@ -160,7 +180,7 @@ bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, Kinem
   const CouplingTerm& term = k.law.terms[0];
   const KinematicState master = Seen(c, term, phase);
   if (k.joining == Joining::kWaiting) {
-    if (!HasBegun(c.machine.params[term.master], master, k)) return false;
+    if (!HasBegun(Standing(c, term.master), master, k)) return false;
     BeginCurve(c, master, s);
   }
   if (k.joining == Joining::kOnCurve) {
@@ -180,13 +200,12 @@ bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, Kinem
 void BeginJoining(const Context& c, const Request& r, State& s) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
-  const State& master = c.machine.states[term.master];
+  const double origin = OriginOf(c, term.master);
   const KinematicState seen = Seen(c, term, {});
   const double sense = seen.velocity < 0 ? -1 : 1;
   const double distance = std::max(0.0, r.coupling.master_start_distance);
-  k.turn = c.machine.params[term.master].turn();
-  k.master_sync =
-      NextAhead(k.turn, r.coupling.master_sync_position + master.origin, seen.position + sense * distance, sense);
+  k.turn = TurnOf(c, term.master);
+  k.master_sync = NextAhead(k.turn, r.coupling.master_sync_position + origin, seen.position + sense * distance, sense);
   k.slave_sync = r.coupling.slave_sync_position + s.origin;
   if (r.coupling.master_start_distance < 0) {
     const double own = s.setpoint.position + s.origin;
@@ -202,25 +221,25 @@ void BeginJoining(const Context& c, const Request& r, State& s) {
 void BeginCam(const Context& c, const Request& r, State& s) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
-  const AxisParams& its = c.machine.params[term.master];
-  const State& master = c.machine.states[term.master];
+  const double origin = OriginOf(c, term.master);
+  const double turn = TurnOf(c, term.master);
   const CamLaw law = CamOf(c, r);
   const KinematicState seen = Seen(c, term, {});
   const bool takes_over = s.end_of_profile && k.cam.end_axis == term.master;
   const double sense = seen.velocity < 0 ? -1 : 1;
   const bool waits = k.law.master_start_distance >= 0;
   const double distance = std::max(0.0, k.law.master_start_distance);
-  double at = takes_over ? k.cam.end_master : seen.position;  // the place that counts, over all turns ...
-  double zero = at - Reported(its, at - master.origin);       // ... and the master's zero in that turn
+  double at = takes_over ? k.cam.end_master : seen.position;   // the place that counts, over all turns ...
+  double zero = at - ReportedOf(c, term.master, at - origin);  // ... and the master's zero in that turn
   const double begin = (law.table.begin() - k.law.master_offset) / law.ratio;  // from zero
   if (k.law.at_sync_position) {
-    k.turn = its.turn();
-    at = NextAhead(k.turn, k.law.master_sync_position + master.origin, seen.position + sense * distance, sense);
+    k.turn = turn;
+    at = NextAhead(k.turn, k.law.master_sync_position + origin, seen.position + sense * distance, sense);
     zero = at - k.law.master_sync_position;
   } else if (waits && !k.law.master_absolute) {
     at = seen.position + sense * distance;
   } else if (waits) {
-    k.turn = law.periodic ? std::abs(law.way()) : its.turn();
+    k.turn = law.periodic ? std::abs(law.way()) : turn;
     at = NextAhead(k.turn, zero + begin, seen.position + sense * distance, sense);
     zero = at - begin;
   }
@@ -237,7 +256,7 @@ void BeginCam(const Context& c, const Request& r, State& s) {
 double Blur(const Context& c, const State& s) {
   double blur = 0;
   for (const CouplingTerm& term : s.coupling.law.terms) {
-    if (term.master == kNoAxis || term.source == MasterSource::kSetValue) continue;
+    if (term.master == kNoAxis || term.source == MasterSource::kSetValue || Outside(c, term.master)) continue;
     const double slope =
         Joins(s.active.kind) ? InStep(c, Seen(c, term, PhaseAt(c, s.coupling)).position, s).dy : term.ratio;
     blur += std::abs(slope) * kBlurredIncrements / c.machine.params[term.master].encoder.increments_per_unit;
@@ -265,7 +284,9 @@ void NoteEnd(const Context& c, const KinematicState& phase, State& s) {
 
 bool MastersStand(const Context& c, const CouplingRequest& law) {
   return std::all_of(law.terms.begin(), law.terms.end(), [&](const CouplingTerm& term) {
-    return term.master == kNoAxis || IsKnown(c.machine.states[term.master], term.source);
+    if (term.master == kNoAxis) return true;
+    const OutsideMaster* outside = Outside(c, term.master);
+    return outside ? outside->known : IsKnown(c.machine.states[term.master], term.source);
   });
 }
 
@@ -308,10 +329,18 @@ bool IsKnown(const State& master, MasterSource source) noexcept {
   return heard && (master.loop_closed || master.error == ErrorId::kNone);
 }
 
+std::uint32_t FindMaster(const Surrounding& machine, std::string_view name) noexcept {
+  const std::uint32_t axis = FindAxis(machine.params, name);
+  if (axis != kNoAxis) return axis;
+  const auto found = std::ranges::find(machine.outside, name, &OutsideMaster::name);
+  if (found == machine.outside.end()) return kNoAxis;
+  return static_cast<std::uint32_t>(machine.states.size() + static_cast<std::size_t>(found - machine.outside.begin()));
+}
+
 Status FindNamed(const Context& c, Request& r) noexcept {
   for (CouplingTerm& term : r.coupling.terms) {
     if (term.name.empty()) continue;
-    if (term.master == kNoAxis) term.master = FindAxis(c.machine.params, term.name.view());
+    if (term.master == kNoAxis) term.master = FindMaster(c.machine, term.name.view());
     if (term.master == kNoAxis) return Status::Failed(ErrorId::kUnknownTarget);
   }
   if (r.table.name.empty()) return Status::Ok();
@@ -382,12 +411,12 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     demand = {s.setpoint.position + s.origin + s.setpoint.velocity * c.cycle.period_s, s.setpoint.velocity, 0};
   }
   demand.position -= s.origin;
-  const Chaser chaser = {c.params.planner_limits(), c.planner, s.active.limits(), c.cycle.period_s};
+  const trajectory::Chaser chaser = {c.params.planner_limits(), c.planner, s.active.limits(), c.cycle.period_s};
   if (k.locked) {
     if (begun) demand.position += k.chase.offset;
-    s.setpoint = Chase(chaser, ChaseMode::kPosition, s.setpoint, demand, k.chase);
+    s.setpoint = Chase(chaser, trajectory::ChaseMode::kPosition, s.setpoint, demand, k.chase);
   } else {
-    s.setpoint = Chase(chaser, ChaseMode::kVelocity, s.setpoint, demand, k.chase);
+    s.setpoint = Chase(chaser, trajectory::ChaseMode::kVelocity, s.setpoint, demand, k.chase);
     k.locked = k.chase.in_step;
   }
   const auto near = [&] { return k.locked && std::abs(s.setpoint.position - demand.position) <= Blur(c, s); };

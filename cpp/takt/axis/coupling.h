@@ -2,13 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "takt/axis/cam_law.h"
-#include "takt/axis/chase.h"
 #include "takt/axis/request.h"
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
 #include "takt/core/status.h"
+#include "takt/trajectory/chase.h"
 #include "takt/trajectory/profile.h"
 #include "takt/trajectory/quintic.h"
 
@@ -16,6 +17,7 @@ namespace takt::axis {
 
 struct Context;
 struct State;
+struct Surrounding;
 
 // How far the way into step has come (GearInPos, CamIn).
 enum class Joining : std::uint8_t {
@@ -26,7 +28,7 @@ enum class Joining : std::uint8_t {
 
 struct CouplingState {
   CouplingRequest law;  // in force
-  ChaseState chase;
+  trajectory::ChaseState chase;
   bool in_step = false;  // with the masters, as far as they are known
   bool locked = false;   // followed by place: gears and sums are from when they were in step first
   Joining joining = Joining::kJoined;
@@ -52,6 +54,8 @@ inline bool Couples(RequestKind kind) noexcept {
 // Whether that position of a master is known. What is measured does without power, but not with a fault until it was
 // reset: nobody knows how far the master goes meanwhile.
 bool IsKnown(const State& master, MasterSource source) noexcept;
+// The number of an axis, or of what else can be followed; kNoAxis: there is none of that name.
+std::uint32_t FindMaster(const Surrounding& machine, std::string_view name) noexcept;
 // Finds the masters and the table of a request. kUnknownTarget: there is no such axis, or no such table.
 Status FindNamed(const Context& c, Request& r) noexcept;
 // kNoReference: positions of this axis mean nothing yet.

@@ -1,22 +1,22 @@
 // An axis whose set points come from another component of the machine, cycle by cycle: a cam module, a group.
 #pragma once
 
-#include "takt/axis/chase.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
+#include "takt/trajectory/chase.h"
 
 namespace takt::axis {
 
 struct Context;
 struct State;
 
-// The component writes `demand` before the axis moves; the axis follows it within its limits (axis/chase.h). A demand
-// that they allow is taken bit for bit.
+// The component writes `demand` before the axis moves; the axis follows it within its limits (trajectory/chase.h). A
+// demand that they allow is taken bit for bit.
 struct GuidanceState {
   KinematicState demand;  // over all turns: position + origin
-  ChaseState chase;
+  trajectory::ChaseState chase;
   // In a fault with the loop closed the axis goes on by the set points, which the component brings to rest; else it
   // brakes by itself.
   bool brakes_with_others = false;

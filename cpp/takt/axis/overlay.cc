@@ -236,7 +236,7 @@ KinematicState NextSetpoint(const Context& c, const KinematicState& before, Stat
   const KinematicState demand = Plus(o.base, added);
   const Limits own = c.params.planner_limits();
   const KinematicState next =
-      Chase({own, c.planner, own, c.cycle.period_s}, ChaseMode::kPosition, before, demand, o.chase);
+      Chase({own, c.planner, own, c.cycle.period_s}, trajectory::ChaseMode::kPosition, before, demand, o.chase);
   o.limited_by = WhatHoldsBack(own, demand, o);
   const bool other = o.base_start_cycle != s.motion.start_cycle || o.base_start_offset_s != s.motion.start_offset_s;
   if (other || o.factors != s.override_factors) PlanAgain(c, added, s);

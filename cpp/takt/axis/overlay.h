@@ -4,7 +4,7 @@
 // The axis has two set points then: that of the motion beneath, as if nothing lay on top of it, and that of the axis,
 // which follows the sum of both. Invariants, whatever both motions are:
 //   - Every set point of the axis keeps its velocity, acceleration, deceleration and jerk, and continues the one before
-//     (axis/chase.h). Where the sum does so itself, it is taken bit for bit; else the axis lags behind the sum,
+//     (trajectory/chase.h). Where the sum does so itself, it is taken bit for bit; else the axis lags behind the sum,
 //     `limited_by` says why, and it catches up as soon as the limits leave room.
 //   - The motion beneath is what it would be alone: its command is done when it would be done alone.
 //   - From every set point a stop ends inside the SW limits. Beneath a motion with an end the axis waits before them;
@@ -23,12 +23,12 @@
 
 #include <cstdint>
 
-#include "takt/axis/chase.h"
 #include "takt/axis/commands/overlay.h"
 #include "takt/axis/override.h"
 #include "takt/core/feedback.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
+#include "takt/trajectory/chase.h"
 #include "takt/trajectory/profile.h"
 
 namespace takt::axis {
@@ -43,7 +43,7 @@ struct OverlayState {
   std::uint64_t start_cycle = 0;
   std::uint64_t base_start_cycle = 0;  // of the motion beneath for which it was planned ...
   double base_start_offset_s = 0;      // ... and s
-  ChaseState chase;
+  trajectory::ChaseState chase;
   Ticket ticket = 0;
   Override factors;    // for which it was planned
   double target = 0;   // u, what is to be added in all

@@ -160,8 +160,9 @@ bool FollowTime(const Context& c, State& s) noexcept {
   k.demand = demand;
   demand.position -= s.origin;
   if (positions) demand.position += k.chase.offset;
-  const Chaser chaser = {c.params.planner_limits(), c.planner, s.active.limits(), c.cycle.period_s};
-  s.setpoint = Chase(chaser, positions ? ChaseMode::kPosition : ChaseMode::kVelocity, s.setpoint, demand, k.chase);
+  const trajectory::Chaser chaser = {c.params.planner_limits(), c.planner, s.active.limits(), c.cycle.period_s};
+  s.setpoint = Chase(chaser, positions ? trajectory::ChaseMode::kPosition : trajectory::ChaseMode::kVelocity,
+                     s.setpoint, demand, k.chase);
   s.limited_by = Beyond(c.params.planner_limits(), demand, k.chase.in_step);
   if (t >= curve.duration() && k.chase.in_step) {
     k.over = true;

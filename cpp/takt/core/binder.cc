@@ -290,7 +290,13 @@ Binder::Slot Binder::Next(Place place) {
       if (&type.fields[type.rules[i].field] == frame.field) frame.rule_places[i] = place;
     }
   } else if (const Type& type = *frame.type; type.kind == Kind::kVector) {
-    slot = {type.element, type.vector_append(frame.object), frame.quantity};
+    void* const element = type.vector_append(frame.object);
+    if (!element) {
+      if (frame.index == type.count)
+        problems_.Add(place, Path(), "expected " + Expectation(type, frame.quantity) + ", found more");
+      return {};
+    }
+    slot = {type.element, element, frame.quantity};
   } else if (frame.index < type.count) {
     slot = {type.element, static_cast<std::byte*>(frame.object) + frame.index * type.element->size, frame.quantity};
   } else {

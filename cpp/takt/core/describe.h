@@ -13,7 +13,7 @@
 //   }
 //
 // A described struct is an aggregate whose members are bool, integers, double, std::string, Name, described enums and
-// structs, or std::array, std::vector, std::optional of these. Texts are literals: the tables keep views of them.
+// structs, or std::array, std::vector, Few, std::optional of these. Texts are literals: the tables keep views of them.
 #pragma once
 
 #include <array>
@@ -107,12 +107,12 @@ struct Type {
 
   // Arrays, vectors, optionals.
   const Type* element = nullptr;
-  std::size_t count = 0;  // arrays
+  std::size_t count = 0;  // arrays; of vectors: room, 0: any
   // Vectors. Elements lie one behind the other, element->size bytes apart.
   std::size_t (*vector_size)(const void* vector) noexcept = nullptr;
   const void* (*vector_data)(const void* vector) noexcept = nullptr;
   void (*vector_clear)(void* vector) = nullptr;
-  void* (*vector_append)(void* vector) = nullptr;  // a default-made element, its address
+  void* (*vector_append)(void* vector) = nullptr;  // a default-made element, its address; null: no room
   // Optionals.
   const void* (*optional_value)(const void* optional) noexcept = nullptr;  // null: empty
   void (*optional_reset)(void* optional) = nullptr;

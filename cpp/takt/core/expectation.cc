@@ -59,7 +59,7 @@ std::string Expectation(const Type& type, const Field* field) {
     case Kind::kArray:
       return "a list of " + std::to_string(type.count);
     case Kind::kVector:
-      return "a list";
+      return type.count > 0 ? "a list of at most " + std::to_string(type.count) : "a list";
     case Kind::kOptional:
       return Expectation(*type.element, field) + ", or null";
   }

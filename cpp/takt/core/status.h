@@ -86,6 +86,10 @@ enum class ErrorId : std::uint16_t {
   kOtherPlanarGroup = 3064,   // it is in another group, or the group has another environment
   kNoPlanarGroup = 3065,      // it is in no group
   kTrackOutside = 3066,       // the mover is in a group, the track is not in it
+  kTrackEnd = 3080,           // a geared mover's way ends where its master leads it
+  kTrail = 3081,              // tracks do not make such a trail, or the mover is not on it
+  kMasterOffTrack = 3082,     // a mover that is to be followed is not on a track, or not enabled
+  kMasterLost = 3083,         // the master turned off where the mover that follows it cannot
   kGroupDeviation = 8001,
   kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual
   // A cam module is in error; numbers of the Flex Cam manual.

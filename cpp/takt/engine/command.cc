@@ -175,6 +175,8 @@ const std::vector<Entry>& Entries() {
       Make<mover::Command, mover::JoinTrack>(kMover, "join_track"),
       Make<mover::Command, mover::LeaveTrack>(kMover, "leave_track"),
       Make<mover::Command, mover::MoveOnTrack>(kMover, "move_on_track"),
+      Make<mover::Command, mover::GearInPosOnTrack>(kMover, "gear_in_pos_on_track"),
+      Make<mover::Command, mover::GearInPosOnTrackWithMasterMover>(kMover, "gear_in_pos_on_track_with_master_mover"),
       Make<mover::Command, mover::AdoptTrackOrientation>(kMover, "adopt_track_orientation"),
       Make<mover::Command, mover::StartExternalSetpointGeneration>(kMover, "start_external_setpoint_generation"),
       Make<mover::Command, mover::SetExternalSetpoint>(kMover, "set_external_setpoint"),
@@ -324,12 +326,42 @@ std::string WhyNot(const Machine& machine, const track::Command& command, std::s
   return {};
 }
 
-std::string WhyNot(const Machine& machine, const mover::Command& command) {
+// Its names; how its tracks lie is found in the cycle.
+template <typename Gear>
+std::string WhyNotGear(const Machine& machine, const Gear& gear, std::string_view target) {
+  std::string why;
+  const auto check_track = [&](const char* field, const Name& track) {
+    if (why.empty() && !track.empty())
+      why = WhyNotNamed(field, track, NamesOf(machine.tracks), "a track of the machine");
+  };
+  if constexpr (std::is_same_v<Gear, mover::GearInPosOnTrack>) {
+    why = WhyNotNamed("master", gear.master, NamesOf(machine.axes), "an axis");
+  } else {
+    std::vector<std::string_view> others = NamesOf(machine.movers);
+    std::erase(others, target);
+    why = WhyNotNamed("master", gear.master, others, "another mover");
+    check_track("master_sync_track", gear.master_sync_track);
+  }
+  check_track("slave_sync_track", gear.slave_sync_track);
+  for (const Name& track : gear.trail.all()) {
+    check_track("trail", track);
+    if (why.empty() && std::ranges::count(gear.trail.all(), track) > 1) {
+      why = "trail: expected each track once, found " + Quoted(track.view()) + " more often";
+    }
+  }
+  return why;
+}
+
+std::string WhyNot(const Machine& machine, const mover::Command& command, std::string_view target) {
   const auto check = [&](const Name& track) {
     return WhyNotNamed("track", track, NamesOf(machine.tracks), "a track of the machine");
   };
   if (const auto* add = std::get_if<mover::AddToGroup>(&command)) return WhyNotGroup(machine, add->group);
   if (const auto* join = std::get_if<mover::JoinTrack>(&command)) return check(join->track);
+  if (const auto* gear = std::get_if<mover::GearInPosOnTrack>(&command)) return WhyNotGear(machine, *gear, target);
+  if (const auto* gear = std::get_if<mover::GearInPosOnTrackWithMasterMover>(&command)) {
+    return WhyNotGear(machine, *gear, target);
+  }
   const auto* move = std::get_if<mover::MoveOnTrack>(&command);
   return move && !move->track.empty() ? check(move->track) : std::string();
 }
@@ -345,7 +377,9 @@ std::string WhyNot(const Machine& machine, const Command& command) {
   if (const auto* body = std::get_if<group::Command>(&command.body)) {
     return WhyNot(machine, *body, NameOf(machine, command.target));
   }
-  if (const auto* body = std::get_if<mover::Command>(&command.body)) return WhyNot(machine, *body);
+  if (const auto* body = std::get_if<mover::Command>(&command.body)) {
+    return WhyNot(machine, *body, NameOf(machine, command.target));
+  }
   if (const auto* body = std::get_if<track::Command>(&command.body)) {
     return WhyNot(machine, *body, NameOf(machine, command.target));
   }

@@ -11,6 +11,8 @@
 #include "takt/core/hash.h"
 #include "takt/engine/carriers.h"
 #include "takt/engine/masters.h"
+#include "takt/engine/mover_masters.h"
+#include "takt/mover/gear.h"
 
 namespace takt::engine {
 
@@ -140,7 +142,7 @@ void StopMasters(World& w, std::uint32_t follower) {
   };
   if (w.axis_masters[follower]) stop(*w.axis_masters[follower]);
   for (axis::CouplingTerm& term : s.coupling.law.terms) {
-    if (term.master != axis::kNoAxis) stop(term.master);
+    if (term.master < w.axis_states.size()) stop(term.master);  // movers go on
     term.master = axis::kNoAxis;
   }
 }
@@ -281,7 +283,7 @@ World::World(const Machine& machine)
       axis_params(machine.axes),
       cam_switches(machine.cam_switches),
       axis_outputs(machine.axes.size()),
-      axis_order(machine.axes.size()),
+      axis_order(machine.axes.size() + 1),
       questions(kQuestionsPerGroup * machine.groups.size()),
       streets(machine.movers.size(), NamesOf(machine.tracks)),
       tracks_now(machine.tracks.size()),
@@ -328,7 +330,8 @@ World::World(const Machine& machine)
   MakePickPlaces(machine);
   MakeMovers(machine);
   MakePlanarGroups(machine);
-  surrounding = {axis_states, axis_params, cam_switches, cams};
+  NameMasters(*this);
+  surrounding = {axis_states, axis_params, cam_switches, cams, mover_masters};
   MakeOrder(*this);
 }
 
@@ -549,6 +552,8 @@ void Apply(World& w, const Command& command) noexcept {
     const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
                           w.pick_places.size();  // likewise
     if (i >= w.movers.size()) return refuse(ErrorId::kUnknownTarget);
+    const Wanted wanted{.movers = AxisFollowedBy(w, *for_mover)};
+    if (Changes(wanted) && !MakeOrder(w, wanted)) return refuse(ErrorId::kCouplingLoop);
     mover::Apply(MoverContext(w, i), command.ticket, *for_mover, w.mover_states[i]);
   } else if (const auto* for_track = std::get_if<track::Command>(&command.body)) {
     const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
@@ -584,17 +589,36 @@ void StepBelts(World& w, std::span<const std::uint32_t> belts) {
   for (const std::uint32_t i : belts) conveyor::Step(ContextOf(w, w.belts[i]), w.belt_states[i]);
 }
 
+// All movers: behind the axes that they follow, before those that follow them.
+void StepMovers(World& w) {
+  RefreshStreets(w);
+  ShowAxesToMovers(w);
+  ShowMovers(w);  // commands have changed some
+  for (std::size_t i = 0; i < w.movers.size(); ++i) mover::Lead(MoverContext(w, i), w.mover_states[i]);
+  if (!w.streets.names.empty()) w.streets.traffic.Step(w.cycle, w.planner, w.streets.network, w.streets.riders);
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    mover::Step(MoverContext(w, i), w.mover_inputs[i], w.mover_states[i]);
+  }
+  ShowMovers(w);
+  UseTracks(w);
+  planargroup::Step(PlanarGroupContext(w));
+}
+
 }  // namespace
 
 void Move(World& w) noexcept {
   // A master does not go on without a follower that has failed.
   for (const std::uint32_t i : w.axis_order.sequence()) {
-    if (w.axis_states[i].plc == axis::PlcState::kErrorStop) StopMasters(w, i);
+    if (i < w.axis_states.size() && w.axis_states[i].plc == axis::PlcState::kErrorStop) StopMasters(w, i);
   }
   track::Step(TrackContext(w));
   std::ranges::fill(w.group_stepped, std::uint8_t{0});
   StepBelts(w, w.measured_belts);
   for (const std::uint32_t i : w.axis_order.sequence()) {
+    if (i == w.axis_states.size()) {
+      StepMovers(w);
+      continue;
+    }
     if (w.group_of[i] != 0) StepOnce(w, w.group_of[i] - 1);
     if (const std::uint32_t module = w.module_of[i]; module != 0) {
       flexcam::Step(ContextOf(w, w.flex_cams[module - 1]), w.axis_states[i], w.flex_cam_states[module - 1]);
@@ -603,13 +627,6 @@ void Move(World& w) noexcept {
     StepBelts(w, w.belts_after[i]);
   }
   for (std::size_t i = 0; i < w.groups.size(); ++i) StepOnce(w, i);  // without members
-  RefreshStreets(w);
-  if (!w.streets.names.empty()) w.streets.traffic.Step(w.cycle, w.planner, w.streets.network, w.streets.riders);
-  for (std::size_t i = 0; i < w.movers.size(); ++i) {
-    mover::Step(MoverContext(w, i), w.mover_inputs[i], w.mover_states[i]);
-  }
-  UseTracks(w);
-  planargroup::Step(PlanarGroupContext(w));
 }
 
 void Control(World& w) noexcept {

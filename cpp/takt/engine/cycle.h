@@ -91,7 +91,7 @@ struct World {
   std::vector<axis::State> axis_states;
   std::vector<axis::Outputs> axis_outputs;
   axis::Surrounding surrounding;                           // all axes, as each of them sees it
-  Order axis_order;                                        // masters before followers
+  Order axis_order;                                        // masters before followers; behind all axes: the movers
   std::vector<std::optional<std::uint32_t>> axis_masters;  // which axis each follows, if any
 
   std::vector<FlexCam> flex_cams;
@@ -129,7 +129,8 @@ struct World {
   std::vector<mover::State> mover_states;
   std::vector<mover::Outputs> mover_outputs;
   mover::Streets streets;
-  std::vector<mover::TrackNow> tracks_now;  // of this cycle
+  std::vector<mover::TrackNow> tracks_now;         // of this cycle
+  std::vector<axis::OutsideMaster> mover_masters;  // the coordinates of movers, as axes follow them
 
   track::Tracks tracks;
 

@@ -16,10 +16,12 @@ enum class Belts : std::uint8_t { kFirst, kAnywhere };
 // The n-th that is seen is what is looked for.
 struct Nth {
   std::uint32_t n;
+  std::uint32_t movers;  // the number of all of them
   std::optional<std::uint32_t> found{};
 
-  void See(std::uint32_t axis) {
-    if (!found && axis != axis::kNoAxis && n-- == 0) found = axis;
+  // Masters that are no axes are movers.
+  void See(std::uint32_t master) {
+    if (!found && master != axis::kNoAxis && n-- == 0) found = std::min(master, movers);
   }
 };
 
@@ -78,13 +80,24 @@ void SeeCarriers(const World& w, std::size_t group, Nth& nth) {
   }
 }
 
+// The axes that movers follow.
+std::optional<std::uint32_t> MasterOfMovers(const World& w, Nth nth, const Wanted& wanted) {
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    const planar::Rider& rider = w.streets.riders[i];
+    if (rider.on && rider.aim == planar::Aim::kFollow) nth.See(w.mover_states[i].gear.axis);
+  }
+  nth.See(wanted.movers);
+  return nth.found;
+}
+
 // The k-th axis that axis i must not step before: the one it follows from load on or by a cam module, those it is
 // coupled to, those it will be coupled to by buffered commands, those that its group follows or rides on, the members
 // of the group that it follows itself. Last come those of `wanted`.
 std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted,
                                       Belts belts) {
+  Nth nth{k, static_cast<std::uint32_t>(w.axis_states.size())};
+  if (i == nth.movers) return MasterOfMovers(w, nth, wanted);
   const axis::State& s = w.axis_states[i];
-  Nth nth{k};
   if (w.axis_masters[i]) nth.See(*w.axis_masters[i]);
   if (w.module_of[i] != 0) nth.See(w.flex_cams[w.module_of[i] - 1].master.value_or(axis::kNoAxis));
   SeeMasters(s.active.coupling, nth);

@@ -1,4 +1,5 @@
-// Which axes must not step before which: followers behind masters, groups behind what they ride on (EN-03).
+// Which axes must not step before which: followers behind masters, groups behind what they ride on (EN-03). All movers
+// step together: they are one more, numbered behind the axes.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +17,7 @@ struct Wanted {
   std::uint32_t master = axis::kNoAxis;  // that its members follow
   std::uint32_t synced = axis::kNoAxis;  // that follows its members
   std::uint32_t carrier = 0;             // number of what it is to ride on; 0: nothing
+  std::uint32_t movers = axis::kNoAxis;  // that a mover follows
 };
 
 // Makes the order of the axes anew, with what is wanted. False: there would be a loop; the order stays as it was.
@@ -25,7 +27,8 @@ bool MakeOrder(World& world, const Wanted& wanted = {}) noexcept;
 Wanted WantedBy(World& world, const group::Command& command, std::size_t index) noexcept;
 
 inline bool Changes(const Wanted& wanted) noexcept {
-  return wanted.master != axis::kNoAxis || wanted.synced != axis::kNoAxis || wanted.carrier != 0;
+  return wanted.master != axis::kNoAxis || wanted.synced != axis::kNoAxis || wanted.carrier != 0 ||
+         wanted.movers != axis::kNoAxis;
 }
 
 }  // namespace takt::engine

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "takt/axis/chase.h"
 #include "takt/group/join.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
 #include "takt/group/run.h"
+#include "takt/trajectory/chase.h"
 #include "takt/trajectory/quintic.h"
 
 namespace takt::group {
@@ -149,9 +149,9 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
     return;
   }
   clutch.catches_up = false;
-  axis::ChaseState chase;
-  const axis::Chaser chaser = {limits_now, planner, catching_up, period};
-  clutch.travel = axis::Chase(chaser, axis::ChaseMode::kPosition, clutch.travel, demand, chase);
+  trajectory::ChaseState chase;
+  const trajectory::Chaser chaser = {limits_now, planner, catching_up, period};
+  clutch.travel = trajectory::Chase(chaser, trajectory::ChaseMode::kPosition, clutch.travel, demand, chase);
   clutch.coupled = chase.in_step && !law;
 }
 

@@ -460,6 +460,8 @@ msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine:
   m.track_position = o.track_position;
   m.track_velocity = o.track_velocity;
   m.track_acceleration = o.track_acceleration;
+  m.in_sync = o.in_sync;
+  m.sync_error = o.sync_error;
   m.waits_for = o.waits_for;
   m.deadlocked = o.deadlocked;
   m.delay = static_cast<std::int8_t>(o.delay);

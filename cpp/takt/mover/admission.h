@@ -1,11 +1,12 @@
 // Commands as they arrive: what carrying them out has in common. Each family has a file of its own beside this one:
-// power.cc, moves.cc, on_tracks.cc, setpoints.cc, buffer.cc.
+// power.cc, moves.cc, on_tracks.cc, gear.cc, setpoints.cc, buffer.cc, membership.cc.
 #pragma once
 
 #include <algorithm>
 #include <optional>
 
 #include "takt/mover/run.h"
+#include "takt/planar/send.h"
 
 namespace takt::mover {
 
@@ -64,8 +65,12 @@ trajectory::Limits LimitsOf(const Move& m, const Params& params, LimitedBy& limi
 // Carries it out, or refuses it; reports either way. Whether it was accepted.
 bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) noexcept;
 
+// Whether a mover may go along these tracks now; and then it does.
+planar::Verdict AskRoute(const Context& c, const planar::Route& route) noexcept;
+void TakeRoute(const Context& c, const planar::Route& route) noexcept;
 // Sends a mover on its way as `command` asks; not yet with its dynamics.
 planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept;
+planar::Way WayOf(TurnDirection direction) noexcept;
 // A move of X and Y in the plane, whatever the mode.
 Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept;
 // One of C, if it may do what `ask` says.
@@ -85,6 +90,8 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept;
 Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept;
 Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept;
 Answer CarryOut(const Given& g, const AdoptTrackOrientation& command) noexcept;
+Answer CarryOut(const Given& g, const GearInPosOnTrack& command) noexcept;
+Answer CarryOut(const Given& g, const GearInPosOnTrackWithMasterMover& command) noexcept;
 Answer CarryOut(const Given& g, const StartExternalSetpointGeneration& command) noexcept;
 Answer CarryOut(const Given& g, const SetExternalSetpoint& command) noexcept;
 Answer CarryOut(const Given& g, const StopExternalSetpointGeneration& command) noexcept;

@@ -16,7 +16,9 @@ void DescribeDynamics(Description<T>& d, Unit speed, Unit acceleration, Unit jer
   d.template defaulted<&T::acceleration>(acceleration, kAccelerations, "Largest acceleration.");
   d.template defaulted<&T::deceleration>(acceleration, kAccelerations, "Largest deceleration.");
   d.template defaulted<&T::jerk>(jerk, kJerks, "Largest jerk.");
-  d.template defaulted<&T::buffer_mode>("Whether it waits until all that were given before it are done.");
+  if constexpr (requires { &T::buffer_mode; }) {
+    d.template defaulted<&T::buffer_mode>("Whether it waits until all that were given before it are done.");
+  }
 }
 
 template <typename T>
@@ -168,6 +170,75 @@ void describe(Description<MoveOnTrack>& d) {
     return m.modulo_tolerance == 0 || m.direction != TurnDirection::kNonModulo;
   });
 }
+void describe(Enumeration<SyncDirections>& e) {
+  e.about("Which way a slave may go until it has been in step.");
+  e.value(SyncDirections::kPositive, "positive", "Forwards.");
+  e.value(SyncDirections::kNegative, "negative", "Back.");
+  e.value(SyncDirections::kBoth, "both", "Either.");
+}
+
+namespace {
+
+// What both gears have in common.
+template <typename G>
+void DescribeSlave(Description<G>& d) {
+  d.template required<&G::slave_sync_position>(
+      unit::mm, kPlaces, "Where this mover is when the master is at its own sync position, along the track.");
+  d.template defaulted<&G::slave_sync_track>("Name of that track; unset: that where the mover is.");
+  d.template defaulted<&G::trail>("Tracks along which it goes, one behind the other; unset: that where it is.");
+  d.template defaulted<&G::gap>(
+      unit::mm, between(0, 1e5),
+      "From its centre to that of the mover ahead, along the track, from now on; unset: the mover's.");
+  d.template defaulted<&G::in_sync_tolerance>(unit::mm, between(0, 1e5), "So near to its place it is in step.");
+  d.template defaulted<&G::direction_slave_sync_position>(
+      "On a closed loop: which of the places that are the same but for whole turns.");
+  d.template defaulted<&G::modulo_tolerance_slave_sync_position>(
+      unit::mm, between(0, 1e5), "Of a closed loop: a place as near as that is the nearest one.");
+  d.template defaulted<&G::allowed_slave_sync_directions>("Which way it may go until it has been in step.");
+  DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+  d.template rule<&G::modulo_tolerance_slave_sync_position>(
+      "must be 0 where the direction is non_modulo", [](const G& g) {
+        return g.modulo_tolerance_slave_sync_position == 0 ||
+               g.direction_slave_sync_position != TurnDirection::kNonModulo;
+      });
+}
+
+}  // namespace
+
+void describe(Description<GearInPosOnTrack>& d) {
+  using G = GearInPosOnTrack;
+  d.about(
+      "Goes along with an axis, 1 mm for each of its units, over the tracks of a trail: into step as soon as its "
+      "limits "
+      "allow, and again where it was lost. Active until another command or an error ends it.");
+  d.required<&G::master>("Name of the axis.");
+  d.required<&G::master_sync_position>(unit::u, kPlaces, "Where the master is when both are in step.");
+  DescribeSlave(d);
+}
+void describe(Description<GearInPosOnTrackWithMasterMover>& d) {
+  using G = GearInPosOnTrackWithMasterMover;
+  d.about(
+      "Goes along with another mover on tracks, whose way is counted over all tracks that it goes along: into step as "
+      "soon as its limits allow, and again where it was lost. Active until another command or an error ends it.");
+  d.required<&G::master>("Name of the mover.");
+  d.required<&G::master_sync_position>(unit::mm, kPlaces, "Where the master is when both are in step.");
+  d.defaulted<&G::master_sync_track>(
+      "Name of the track on which that is, on the master's way; unset: that where it is now.");
+  d.defaulted<&G::direction_master_sync_position>(
+      "On a closed loop: which of the places that are the same but for whole turns.");
+  d.defaulted<&G::modulo_tolerance_master_sync_position>(
+      unit::mm, between(0, 1e5), "Of a closed loop: a place as near as that is the nearest one.");
+  d.defaulted<&G::follow_mover>(
+      "True: from the track of the master's sync position on it goes where the master goes; the trail, and the "
+      "shortest "
+      "way behind it, lead there.");
+  DescribeSlave(d);
+  d.rule<&G::modulo_tolerance_master_sync_position>("must be 0 where the direction is non_modulo", [](const G& g) {
+    return g.modulo_tolerance_master_sync_position == 0 ||
+           g.direction_master_sync_position != TurnDirection::kNonModulo;
+  });
+}
+
 void describe(Description<AdoptTrackOrientation>& d) {
   using A = AdoptTrackOrientation;
   d.about("Turns the mover as its track is turned, which is C = 0 but for whole turns.");

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "takt/core/describe_fwd.h"
+#include "takt/core/few.h"
 #include "takt/core/name.h"
 
 namespace takt::mover {
@@ -122,6 +123,48 @@ struct MoveOnTrack {
   std::optional<double> jerk{};          // mm/s³
   Buffering buffer_mode = Buffering::kAborting;
 };
+// Which way a slave may go until it has been in step.
+enum class SyncDirections : std::uint8_t { kPositive, kNegative, kBoth };
+
+// Tracks one behind the other, each once.
+using Trail = Few<Name, 16>;
+
+struct GearInPosOnTrack {  // along tracks, with an axis
+  Name master{};
+  double master_sync_position = 0;  // u of the master
+  double slave_sync_position = 0;   // mm along the track
+  Name slave_sync_track{};          // empty: that where the mover is
+  Trail trail{};                    // empty: that track alone
+  std::optional<double> gap{};      // mm to the mover ahead, from centre to centre
+  double in_sync_tolerance = 0;     // mm
+  TurnDirection direction_slave_sync_position = TurnDirection::kNonModulo;
+  double modulo_tolerance_slave_sync_position = 0;  // mm, of a closed loop
+  SyncDirections allowed_slave_sync_directions = SyncDirections::kPositive;
+  std::optional<double> velocity{};      // mm/s
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+};
+struct GearInPosOnTrackWithMasterMover {
+  Name master{};
+  double master_sync_position = 0;  // mm along the track
+  Name master_sync_track{};         // empty: that where the master is
+  double slave_sync_position = 0;   // mm along the track
+  Name slave_sync_track{};          // empty: that where the mover is
+  Trail trail{};                    // empty: that track alone
+  std::optional<double> gap{};      // mm to the mover ahead, from centre to centre
+  double in_sync_tolerance = 0;     // mm
+  TurnDirection direction_slave_sync_position = TurnDirection::kNonModulo;
+  double modulo_tolerance_slave_sync_position = 0;  // mm, of a closed loop
+  TurnDirection direction_master_sync_position = TurnDirection::kNonModulo;
+  double modulo_tolerance_master_sync_position = 0;  // mm, of a closed loop
+  SyncDirections allowed_slave_sync_directions = SyncDirections::kPositive;
+  bool follow_mover = false;             // goes on where the master goes
+  std::optional<double> velocity{};      // mm/s
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+};
 struct AdoptTrackOrientation {  // C turns to that of the track, which is 0
   TurnDirection direction = TurnDirection::kShortestWay;
   std::uint32_t additional_turns = 0;    // positive, negative
@@ -157,10 +200,10 @@ struct AddToGroup {  // of movers that do not collide
 };
 struct RemoveFromGroup {};
 
-using Command =
-    std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC, JoinTrack,
-                 LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration, SetExternalSetpoint,
-                 StopExternalSetpointGeneration, Wait, Release, AddToGroup, RemoveFromGroup>;
+using Command = std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC,
+                             JoinTrack, LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration,
+                             SetExternalSetpoint, StopExternalSetpointGeneration, Wait, Release, AddToGroup,
+                             RemoveFromGroup, GearInPosOnTrack, GearInPosOnTrackWithMasterMover>;
 
 // Table of the arguments of the command at this place of the variant.
 const Type& TypeOfCommand(std::size_t index);
@@ -181,6 +224,9 @@ void describe(Description<MoveC>&);
 void describe(Description<JoinTrack>&);
 void describe(Description<LeaveTrack>&);
 void describe(Description<MoveOnTrack>&);
+void describe(Enumeration<SyncDirections>&);
+void describe(Description<GearInPosOnTrack>&);
+void describe(Description<GearInPosOnTrackWithMasterMover>&);
 void describe(Description<AdoptTrackOrientation>&);
 void describe(Description<StartExternalSetpointGeneration>&);
 void describe(Description<SetExternalSetpoint>&);

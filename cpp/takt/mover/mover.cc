@@ -6,6 +6,7 @@
 #include "takt/core/describe.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/follow.h"
+#include "takt/mover/gear.h"
 #include "takt/mover/ground.h"
 #include "takt/mover/run.h"
 
@@ -180,6 +181,7 @@ Inputs Simulate(const State& s) noexcept {
 
 void Step(const Context& c, const Inputs& inputs, State& s) noexcept {
   if (IsOnTrack(s)) s.track = c.rider().route.first();
+  NoteGear(c, s);
   Watch(c, inputs, s);
   TakeTurns(c, s);
   MoveOn(c, s);
@@ -240,6 +242,8 @@ void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& ou
     out.track_position = rider.at.position;
     out.track_velocity = rider.at.velocity;
     out.track_acceleration = rider.at.acceleration;
+    out.in_sync = IsGeared(c, s) && rider.gear.in_step;
+    out.sync_error = IsGeared(c, s) ? rider.gear.error : 0;
     out.waits_for = rider.waits == planar::Waits::kMover ? rider.waits_for + 1 : 0;
     out.deadlocked = out.waits_for != 0 && planar::IsDeadlocked(c.streets.riders, c.index);
   }

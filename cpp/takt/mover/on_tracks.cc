@@ -39,7 +39,9 @@ ObjectInfo TakenBy(const Context& c, std::uint32_t track, double s) {
   return {};
 }
 
-planar::Way WayOf(TurnDirection direction) {
+}  // namespace
+
+planar::Way WayOf(TurnDirection direction) noexcept {
   switch (direction) {
     case TurnDirection::kPositive:
       return planar::Way::kPositive;
@@ -51,8 +53,6 @@ planar::Way WayOf(TurnDirection direction) {
       return planar::Way::kNonModulo;
   }
 }
-
-}  // namespace
 
 Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   State& s = g.s;
@@ -106,6 +106,19 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
   return answer;
 }
 
+planar::Verdict AskRoute(const Context& c, const planar::Route& route) noexcept {
+  for (const std::uint32_t on : route.all()) {
+    const bool used = c.streets.uses[on].configuring > 0;
+    if (used || !c.streets.tracks[on].enabled) return {ErrorId::kTrackMode, TrackOf(on)};
+  }
+  return planar::AskTracks(c.index, route.all(), c.grounds);
+}
+
+void TakeRoute(const Context& c, const planar::Route& route) noexcept {
+  for (const std::uint32_t on : route.all()) ++c.streets.uses[on].moving;
+  planar::TakeTracks(route.all(), c.grounds);
+}
+
 planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept {
   Streets& streets = c.streets;
   const std::uint32_t track = command.track.empty() ? s.track : streets.Find(command.track.view());
@@ -117,10 +130,7 @@ planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const Stat
   const planar::Destination to{track, command.position, WayOf(command.direction), command.additional_turns,
                                command.modulo_tolerance};
   if (!planar::Send(streets.network, streets.search, to, rider)) return {ErrorId::kNoRoute, {}};
-  for (const std::uint32_t on : rider.route.all()) {
-    if (!streets.tracks[on].enabled || streets.uses[on].configuring > 0) return {ErrorId::kTrackMode, TrackOf(on)};
-  }
-  return planar::AskTracks(c.index, rider.route.all(), c.grounds);
+  return AskRoute(c, rider.route);
 }
 
 Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
@@ -135,8 +145,7 @@ Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);
   g.c.rider() = next;
-  for (const std::uint32_t on : next.route.all()) ++g.c.streets.uses[on].moving;
-  planar::TakeTracks(next.route.all(), g.c.grounds);
+  TakeRoute(g.c, next.route);
   return {};
 }
 Answer CarryOut(const Given& g, const AdoptTrackOrientation& command) noexcept {

@@ -55,6 +55,8 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::track_position>(unit::mm, "Along the track that it is on.");
   d.internal<&O::track_velocity>(unit::mm_s, "Along it.");
   d.internal<&O::track_acceleration>(unit::mm_s2, "Along it.");
+  d.internal<&O::in_sync>("It goes along with a master and is in step.");
+  d.internal<&O::sync_error>(unit::mm, "Of one that goes along with a master: its place minus where it should be.");
   d.internal<&O::waits_for>("Number of the mover that is in its way and that it waits for, from 1; 0: none.");
   d.internal<&O::deadlocked>("The mover that it waits for waits for it, be it over others.");
   d.internal<&O::delay>("Why it does not go on.");

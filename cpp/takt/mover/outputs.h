@@ -42,6 +42,8 @@ struct Outputs {
   double track_position = 0;      // mm along it, where it is on it
   double track_velocity = 0;      // mm/s
   double track_acceleration = 0;  // mm/s²
+  bool in_sync = false;           // it is where its master wants it
+  double sync_error = 0;          // mm, its place minus that
   std::uint32_t waits_for = 0;    // number of the mover that is in its way, from 1; 0: none
   bool deadlocked = false;        // that one waits for it, over others or not
   Delay delay = Delay::kNone;     // why it does not go on

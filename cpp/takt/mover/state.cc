@@ -68,6 +68,13 @@ void describe(Description<External>& d) {
   d.internal<&E::missing>("So many in a row.");
 }
 
+void describe(Description<GearState>& d) {
+  d.named("MoverGear");
+  d.about("What a mover goes along with.");
+  d.internal<&GearState::axis>("Number of the axis.");
+  d.internal<&GearState::in_sync>("As last said.");
+}
+
 void describe(Description<State>& d) {
   using S = State;
   d.named("MoverState");
@@ -83,6 +90,7 @@ void describe(Description<State>& d) {
   d.internal<&S::buffer>("Commands that wait for their turn.");
   d.internal<&S::plane>("Motion of X and Y.");
   d.internal<&S::track>("Track that it joins, is on, or leaves.");
+  d.internal<&S::gear>("What it goes along with.");
   d.internal<&S::others>("Motions of Z, A, B, C.");
   d.internal<&S::external>("Set points from outside.");
   d.internal<&S::set_point>("Where it is at the end of the last cycle.");

@@ -54,6 +54,13 @@ struct External {
   std::uint32_t missing = 0;  // so many in a row
 };
 
+// What a mover goes along with; the rest of it lies with its place on tracks (planar/gear.h).
+inline constexpr std::uint32_t kNoMaster = 0xffffffff;
+struct GearState {
+  std::uint32_t axis = kNoMaster;  // number of the master among Streets::masters; kNoMaster: a mover, or nothing
+  bool in_sync = false;            // as last said
+};
+
 // What commands there may be at a time, each with a ticket of its own.
 enum Slot : std::size_t {
   kPower,
@@ -81,7 +88,8 @@ struct State {
   std::array<std::uint64_t, kSlots> begun{};  // cycle in which each took its slot
   Buffer buffer;
   PlaneMove plane;
-  std::uint32_t track = planar::kNoTrack;             // that it joins, is on, or leaves
+  std::uint32_t track = planar::kNoTrack;  // that it joins, is on, or leaves
+  GearState gear;
   std::array<CoordinateMove, kOthers.size()> others;  // in the order of kOthers
   External external;
   SetPoint set_point{};  // at the end of the last cycle
@@ -93,6 +101,7 @@ State MakeState(const MoverParams& params);
 void describe(Description<PlaneMove>&);
 void describe(Description<CoordinateMove>&);
 void describe(Description<External>&);
+void describe(Description<GearState>&);
 void describe(Description<State>&);
 
 }  // namespace takt::mover

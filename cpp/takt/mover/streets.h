@@ -28,6 +28,20 @@ struct TrackNow {
   double range_at_end = 0;
 };
 
+// An axis that movers may follow.
+struct Master {
+  std::string name;
+  double turn = 0;      // u, after which it is where it was; 0: never
+  KinematicState at{};  // over all turns, at the end of this cycle
+  bool known = false;   // `at` means something
+};
+// A mover that others may follow.
+struct MoverNow {
+  std::string name;
+  bool enabled = false;
+  bool on_track = false;  // and neither joining nor leaving it
+};
+
 // What movers do on a track now.
 struct TrackUse {
   std::uint32_t movers = 0;       // on it, with those that join
@@ -48,6 +62,8 @@ struct Streets {
   std::vector<planar::Rider> riders;  // by mover
   std::vector<TrackUse> uses;         // by track
   std::vector<TrackNow> tracks;       // as the network was made of
+  std::vector<Master> masters;
+  std::vector<MoverNow> movers;
 };
 
 // Takes over what has changed. Only where geometry or links did it takes more than a look.

@@ -6,25 +6,28 @@
 namespace takt::planar {
 namespace {
 
-// A place on a loop, turns counted from the one the mover is in.
 double OnLoop(const Destination& to, const Rider& r, double rest, double length) {
-  if (to.way == Way::kNonModulo) return to.position;
   const double now = r.at.position;
-  const double up = std::fmod(std::fmod(to.position - now, length) + length, length);
-  const double nearest = up > 0.5 * length ? up - length : up;
-  if (to.way == Way::kShortestWay || std::abs(nearest) <= to.modulo_tolerance) return now + nearest;
-  const double turns = length * to.additional_turns;
-  if (to.way == Way::kPositive) {
-    double target = now + up + turns;
-    while (target < rest) target += length;
-    return target;
-  }
-  double target = now + (up > 0 ? up - length : 0) - turns;
-  while (target > rest) target -= length;
+  double target = OnLoop(to.way, to.position, to.modulo_tolerance, now, length);
+  if (to.way == Way::kNonModulo || to.way == Way::kShortestWay) return target;
+  // Near enough to go the shortest way.
+  if (std::abs(target - now) <= to.modulo_tolerance) return target;
+  const double sense = to.way == Way::kPositive ? 1 : -1;
+  target += sense * length * to.additional_turns;
+  while (sense * (rest - target) > 0) target += sense * length;
   return target;
 }
 
 }  // namespace
+
+double OnLoop(Way way, double position, double modulo_tolerance, double now, double length) noexcept {
+  if (way == Way::kNonModulo) return position;
+  const double up = std::fmod(std::fmod(position - now, length) + length, length);
+  const double nearest = up > 0.5 * length ? up - length : up;
+  if (way == Way::kShortestWay || std::abs(nearest) <= modulo_tolerance) return now + nearest;
+  if (way == Way::kPositive) return now + up;
+  return now + (up > 0 ? up - length : 0);
+}
 
 bool Send(const Network& network, RouteSearch& search, const Destination& to, Rider& r) noexcept {
   if (!network[to.track].track) return false;

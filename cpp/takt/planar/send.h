@@ -15,6 +15,10 @@ enum class Way : std::uint8_t {
   kNegative,  // back only
 };
 
+// A place on a loop, turns counted from the one in which `now` is: the next such place that way. To one as near as the
+// tolerance the way is the shortest.
+double OnLoop(Way way, double position, double modulo_tolerance, double now, double length) noexcept;
+
 struct Destination {
   std::uint32_t track = 0;
   double position = 0;  // mm along it

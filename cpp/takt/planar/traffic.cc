@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "takt/core/describe.h"
+#include "takt/planar/going_along.h"
 
 namespace takt::planar {
 namespace {
@@ -28,11 +29,25 @@ constexpr double kEaseDown = 0.4;
 // Standing is slower than this, mm/s, and nearer than this to where it has to stop, mm.
 constexpr double kStands = 0.1;
 constexpr double kAtLimit = 0.01;
+// A geared mover is in step where it is so near to where it should be, mm, and as fast, mm/s.
+constexpr double kInStep = 1e-6;
+constexpr double kInStepSpeed = 1e-3;
+// mm: further than anything is planned on a loop.
+constexpr double kFarAhead = 1e5;
+// Share of the speed with which two movers get nearer that could still be stopped.
+constexpr double kClosing = 0.5;
 // Nodes at which a mover can be active at once: those of its route, where it begins, and those it has passed.
 constexpr std::size_t kPresences = kRouteTracks + 1 + kPassed;
 
 bool Rests(const KinematicState& x) {
   return x.velocity == 0 && x.acceleration == 0;
+}
+
+// It goes back before it rests.
+bool TurnsRound(const Braking& b) {
+  const double start = b.pieces[0].position;
+  const bool up = b.lowest == start && b.highest == b.rest, down = b.highest == start && b.lowest == b.rest;
+  return b.lowest < b.highest && !up && !down;
 }
 
 // Where it has to be able to stop: so far from here, and how fast that place goes away.
@@ -83,12 +98,18 @@ class Traffic::Step_ {
     for (std::uint32_t i = 0; i < riders_.size(); ++i) TakeToBrake(i);
     Sort();
     for (std::uint32_t i = 0; i < riders_.size(); ++i) {
-      if (!riders_[i].on) continue;
+      Rider& r = riders_[i];
+      if (!r.on) continue;
+      // A master may turn round on the way.
+      if (r.aim == Aim::kFollow && r.at.velocity != 0) r.direction = r.at.velocity < 0 ? -1 : 1;
       t_.now_[i].leader = FindLeader(i, riders_[i].direction, t_.now_[i].leader_offset);
       EnterNodes(i, t_.now_[i].next, t_.now_[i].braking);
     }
     // Those in front first: who follows sees what the one before it does in this cycle.
     for (std::uint32_t i = 0; i < riders_.size(); ++i) SettleInOrder(i);
+    for (std::uint32_t i = 0; i < riders_.size(); ++i) {
+      if (riders_[i].on && riders_[i].aim == Aim::kFollow) NoteStep(i);
+    }
     for (std::uint32_t i = 0; i < riders_.size(); ++i) {
       if (riders_[i].on) GoOn(i);
     }
@@ -254,8 +275,10 @@ class Traffic::Step_ {
   bool MayTake(std::uint32_t i, const KinematicState& next, const Braking& braking) const {
     const Rider& r = riders_[i];
     const Now& now = t_.now_[i];
-    const bool forward = braking.highest > now.braking.highest || next.position > now.next.position;
-    const bool back = braking.lowest < now.braking.lowest || next.position < now.next.position;
+    // Who turns round goes both ways.
+    const bool turns = TurnsRound(braking) || TurnsRound(now.braking);
+    const bool forward = turns || braking.highest > now.braking.highest || next.position > now.next.position;
+    const bool back = turns || braking.lowest < now.braking.lowest || next.position < now.next.position;
     const bool closed = network_[r.route.first()].closed;
     if (back && !closed && std::min(braking.lowest, next.position) < std::min(0.0, now.braking.lowest) - kTolerance) {
       return false;
@@ -312,11 +335,128 @@ class Traffic::Step_ {
 
   void SettleInOrder(std::uint32_t i) {
     std::size_t depth = 0;
-    for (std::uint32_t k = i; k != kNobody && riders_[k].on && !t_.now_[k].entered; k = t_.now_[k].leader) {
+    const auto enter = [&](std::uint32_t k) {
+      if (k == kNobody || !riders_[k].on || t_.now_[k].entered) return false;
       t_.now_[k].entered = true;
       t_.stack_[depth++] = k;
+      return true;
+    };
+    enter(i);
+    while (depth > 0) {
+      const std::uint32_t k = t_.stack_[depth - 1];
+      if (enter(t_.now_[k].leader) || enter(MasterBefore(k))) continue;
+      --depth;
+      Settle(k);
+      t_.now_[k].settled = true;
     }
-    while (depth > 0) Settle(t_.stack_[--depth]);
+  }
+
+  // The master that has to be settled before this one. One that has this one before it has to see what that does.
+  std::uint32_t MasterBefore(std::uint32_t i) const {
+    const Rider& r = riders_[i];
+    if (r.aim != Aim::kFollow || r.gear.master == kNobody) return kNobody;
+    return t_.now_[r.gear.master].leader == i ? kNobody : r.gear.master;
+  }
+
+  // Where a master will be at the end of the cycle, as far as is known, over all tracks.
+  KinematicState Foresee(std::uint32_t master) const {
+    const Rider& m = riders_[master];
+    KinematicState at = t_.now_[master].next;
+    if (!t_.now_[master].settled) {
+      const double t = period();
+      at = {m.at.position + t * (m.at.velocity + 0.5 * t * m.at.acceleration), m.at.velocity + t * m.at.acceleration,
+            m.at.acceleration};
+      if (m.aim == Aim::kTarget && m.planned) {
+        const KinematicState way = m.plan.At(m.plan_time + t);
+        at = {m.plan_from + m.direction * way.position, m.direction * way.velocity, m.direction * way.acceleration};
+      }
+    }
+    at.position += m.origin;
+    return at;
+  }
+
+  // Where it is to be at the end of the cycle, on its first track.
+  KinematicState DemandOn(Rider& r) const {
+    if (r.gear.master != kNobody) r.demand = Foresee(r.gear.master);
+    KinematicState demand = r.demand;
+    demand.position += r.gear.offset - r.origin;
+    return demand;
+  }
+
+  // Of its route in its direction, on the last track.
+  double EndOf(const Rider& r) const {
+    double end = network_[r.route.last()].length;
+    for (const std::uint32_t track : r.route.all()) end -= r.direction < 0 ? network_[track].length : 0;
+    return end;
+  }
+
+  // What a geared mover wishes to do; where its way ends it goes to that end instead.
+  KinematicState WishAlong(Rider& r, const KinematicState& demand, bool& exact) {
+    KinematicState wish = GoAlong(planner_, r, demand, period(), exact);
+    const bool ahead = r.direction * wish.velocity > 0 && r.direction * r.at.velocity >= 0;
+    if (!exact && ahead && CurvesAhead(network_, r)) {
+      // No faster than to the end of its way.
+      r.target = network_[r.route.last()].closed ? r.at.position + r.direction * kFarAhead : EndOf(r);
+      const KinematicState alone = Wish(r);
+      if (r.direction * (wish.velocity - alone.velocity) > 0) return alone;
+    }
+    r.planned = false;
+    const int out = RunsOut(network_, r, wish);
+    if (out == 0) return wish;
+    exact = false;
+    r.aim = Aim::kTarget;
+    r.gear.end = GearEnd::kWay;
+    r.gear.in_step = false;
+    r.direction = out < 0 ? -1 : 1;
+    if (out < 0) r.route.count = 1;
+    std::fill(r.route.tracks.begin() + r.route.count, r.route.tracks.end(), 0U);
+    r.target = out < 0 ? 0 : network_[r.route.last()].length;
+    r.planned = r.there = false;
+    return Wish(r);
+  }
+
+  // The acceleration with which a mover comes up behind something that goes on by itself: so much room is left to where
+  // it is to be, which goes at this speed and acceleration. Both could still stop, and it would not have passed.
+  double ComeUp(const Rider& r, double room, const KinematicState& there, const Brakes& brakes, double share) const {
+    const double speed = r.direction * r.at.velocity, its_speed = r.direction * there.velocity;
+    const double slope = std::max(SlopeOfWayToRest(std::max({0.0, speed, its_speed}), brakes), kQuick * period());
+    const double closing = share / slope, faster = speed - its_speed;
+    return r.direction * there.acceleration - closing * faster + (closing * room - faster) / std::min(slope, kCalm);
+  }
+
+  // Behind the mover ahead: down to the gap, without a reserve for swinging, so that in the end both go as one.
+  double CloseUp(std::uint32_t i, const Limit& limit) const {
+    const Rider& r = riders_[i];
+    if (limit.by == kNobody || limit.by != t_.now_[i].leader) return -kInfinite;
+    const Rider& before = riders_[limit.by];
+    if (r.brakes.deceleration < before.brakes.deceleration || r.brakes.jerk < before.brakes.jerk) return -kInfinite;
+    const double room = r.direction * (before.at.position + t_.now_[i].leader_offset - r.at.position) - r.gap;
+    if (room < 0 || r.direction * before.at.velocity < 0) return -kInfinite;
+    return ComeUp(r, room, {0, before.at.velocity, t_.now_[limit.by].next.acceleration}, r.brakes, kClosing);
+  }
+
+  // It gets into step from behind and may not come back, so it must not pass its master's place.
+  bool ComesFromBehind(const Rider& r, const KinematicState& demand) const {
+    return !r.gear.was_in_step && r.gear.sense == r.direction && RoomTo(r, demand) > 0;
+  }
+  double RoomTo(const Rider& r, const KinematicState& demand) const {
+    return r.direction * (demand.position - period() * demand.velocity - r.at.position);
+  }
+  // It would pass it if both braked from here on as this one can.
+  static bool Passes(const Rider& r, const KinematicState& next, const KinematicState& demand) {
+    const Braking own = Brake(next, r.pace.brakes()), its = Brake(demand, r.pace.brakes());
+    return r.direction > 0 ? LeastDistance(own, its, 0) < -kTolerance : LeastDistance(its, own, 0) < -kTolerance;
+  }
+
+  // How far from its master's place it is at the end of the cycle.
+  void NoteStep(std::uint32_t i) {
+    Rider& r = riders_[i];
+    const KinematicState demand = DemandOn(r);
+    const KinematicState& next = t_.now_[i].next;
+    r.gear.error = next.position - demand.position;
+    const bool exact = std::abs(r.gear.error) <= kInStep && std::abs(next.velocity - demand.velocity) <= kInStepSpeed;
+    r.gear.in_step = exact || std::abs(r.gear.error) <= r.gear.tolerance;
+    r.gear.was_in_step |= r.gear.in_step;
   }
 
   // A plan from this state on, on the first track. At rest the direction is that of the target.
@@ -326,10 +466,11 @@ class Traffic::Step_ {
     if (speed == 0 && acceleration == 0) r.direction = end < place ? -1 : 1;
     const double way = r.direction * (end - place);
     const Start start{&r.route, place, r.direction, speed, acceleration};
-    PlanWay(planner_, network_, start, way, r.pace, r.plan, r.plan_ends);
+    const bool found = PlanWay(planner_, network_, start, way, r.pace, r.plan, r.plan_ends);
     r.plan_from = place;
     r.plan_time = 0;
-    r.planned = true;
+    // A geared mover that only brakes for a curve looks again in each cycle.
+    r.planned = found || r.aim != Aim::kFollow;
   }
 
   // Where its own plan has it at the end of the cycle.
@@ -437,7 +578,8 @@ class Traffic::Step_ {
   bool Take(std::uint32_t i, const KinematicState& next) {
     Now& now = t_.now_[i];
     const Braking braking = Brake(next, riders_[i].brakes);
-    if (!MayTake(i, next, braking)) {
+    const bool curves = riders_[i].aim != Aim::kFollow || KeepsToCurves(network_, riders_[i], next, braking);
+    if (!curves || !MayTake(i, next, braking)) {
       riders_[i].calm_cycles = kCalmCycles;
       t_.refused_ += std::abs(riders_[i].at.velocity) > kStands ? 1 : 0;
       return false;
@@ -469,13 +611,18 @@ class Traffic::Step_ {
       LimitBy(i, 0, limit, most);
       if (limit.room < kAtLimit) return WaitFor(r, Waits::kMover, limit.by);
     }
+    bool exact = false;  // a geared mover is where it should be
+    KinematicState demand;
+    if (r.aim == Aim::kFollow) demand = DemandOn(r);
     // Who is held back stays so until there is room: else it would swing between both.
     const bool was_free = r.aim == Aim::kFollow || r.planned || Rests(r.at);
     const std::int8_t went = r.direction;
-    const KinematicState wish = r.aim == Aim::kTarget ? Wish(r) : r.demand;
-    if (r.aim == Aim::kFollow && Rests(r.at) && wish.velocity != 0) r.direction = wish.velocity < 0 ? -1 : 1;
+    const KinematicState wish = r.aim == Aim::kTarget ? Wish(r) : WishAlong(r, demand, exact);
+    const bool follows = r.aim == Aim::kFollow;
+    if (follows && Rests(r.at) && wish.velocity * r.direction < 0) r.direction = wish.velocity < 0 ? -1 : 1;
     // Who turns has somebody else before it now; a new way may have, too.
-    if (r.direction != went || now.leader == kNobody) now.leader = FindLeader(i, r.direction, now.leader_offset);
+    const bool anew = r.direction != went || (r.aim == Aim::kTarget && now.leader == kNobody);
+    if (anew) now.leader = FindLeader(i, r.direction, now.leader_offset);
     const int direction = r.direction;
     const double speed = direction * r.at.velocity;
     const double before = direction * r.at.acceleration;
@@ -490,11 +637,25 @@ class Traffic::Step_ {
       --r.calm_cycles;
       most = std::min(most, std::max(0.0, before));
     }
+    const bool comes = follows && !exact && ComesFromBehind(r, demand);
+    if (follows) {
+      most = std::max(most, CloseUp(i, limit));
+      // To a master that stands it comes to rest anyhow.
+      if (Rests(demand) && direction * (demand.position - r.at.position) <= limit.room + kTolerance) most = kInfinite;
+      if (comes) most = std::min(most, ComeUp(r, RoomTo(r, demand), demand, r.pace.brakes(), kClosing));
+    }
     // With constant jerk neither faster than wished at the end of the cycle, nor with more acceleration.
     const double mean = (direction * wish.velocity - speed) / period();
-    const double wished = std::min(direction * wish.acceleration, 2 * mean - before);
+    const double as_fast = 2 * mean - before;
+    // A wish that is small may begin and end without acceleration; on the way to the master that would be no way at
+    // all.
+    const double least_end = direction * wish.acceleration;
+    const double fastest = r.pace.limits.velocity - direction * wish.velocity;
+    const double end =
+        follows ? std::max(least_end, std::sqrt(r.pace.limits.jerk * std::max(0.0, fastest))) : least_end;
+    const double wished = std::min(end, as_fast);
     const bool limited = mean > most + 1e-9 && !(was_free && GoesAlong(i, wish, limit));
-    if (!limited && Take(i, wish)) {
+    if (!limited && !(comes && Passes(r, wish, demand)) && Take(i, wish)) {
       if (r.aim == Aim::kTarget && r.plan_ends && r.plan_time >= r.plan.duration()) r.there = true;
       return WaitFor(r, Waits::kNot, kNobody);
     }
@@ -511,7 +672,7 @@ class Traffic::Step_ {
     const trajectory::Piece piece{r.at.position, r.at.velocity, r.at.acceleration, direction * jerk};
     const KinematicState step = piece.At(period());
     const bool goes = direction * step.velocity > 0 && !(stands && limit.room < kAtLimit);
-    if (goes && Take(i, step)) {
+    if (goes && !(comes && Passes(r, step, demand)) && Take(i, step)) {
       return stands ? WaitFor(r, Waits::kMover, limit.by) : WaitFor(r, Waits::kNot, kNobody);
     }
     if (stands) WaitFor(r, limit.by != kNobody ? Waits::kMover : Waits::kRoute, limit.by);
@@ -525,7 +686,6 @@ class Traffic::Step_ {
     const auto shift = [&r](double by) {
       r.at.position -= by;
       r.plan_from -= by;
-      r.demand.position -= by;
       r.origin += by;
     };
     const Road& here = network_[r.route.first()];
@@ -619,7 +779,8 @@ void describe(Description<Rider>& d) {
   d.internal<&R::direction>("Of its way.");
   d.internal<&R::aim>("What it is about.");
   d.internal<&R::target>(unit::mm, "On the last track of the route.");
-  d.internal<&R::demand>("What it is to go along with.");
+  d.internal<&R::gear>("Whom it goes along with, and how.");
+  d.internal<&R::demand>("Where that one is, over all tracks.");
   d.internal<&R::pace>("As commanded.");
   d.internal<&R::brakes>("Its greatest.");
   d.internal<&R::gap>(unit::mm, "To the mover before it.");

@@ -24,6 +24,7 @@
 #include "takt/core/describe_fwd.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/planar/braking.h"
+#include "takt/planar/gear.h"
 #include "takt/planar/network.h"
 #include "takt/planar/way.h"
 #include "takt/trajectory/planner.h"
@@ -59,7 +60,8 @@ struct Rider {
 
   Aim aim = Aim::kRest;
   double target = 0;      // mm on the last track of the route; of a closed loop turns are counted in
-  KinematicState demand;  // kFollow: mm on the first track, for the end of this cycle
+  Gear gear;              // kFollow: whom, and how
+  KinematicState demand;  // kFollow: mm, where its master is at the end of this cycle, over all tracks
   Pace pace;              // as commanded
   Brakes brakes;          // its greatest
   double gap = 0;         // mm to the mover before it, from centre to centre
@@ -108,6 +110,7 @@ class Traffic {
     std::uint32_t leader = kNobody;
     double leader_offset = 0;  // from the leader's places to its own
     bool entered = false;      // in the search for an order
+    bool settled = false;      // `next` is what it is going to do
   };
   // A mover that is active at a node.
   struct Presence {

@@ -8,35 +8,7 @@
 namespace takt::planar {
 namespace {
 
-// From here on the way may be gone so fast.
-struct Cap {
-  double way = 0;    // mm from here
-  double speed = 0;  // mm/s
-};
-
-constexpr std::size_t kCaps = 32;
 constexpr double kSlight = 1e-9;  // share of a speed, or mm
-
-struct Caps {
-  std::array<Cap, kCaps> of{};
-  std::size_t count = 0;
-  bool cut = false;  // there are more than it has room for
-
-  void Add(double way, double speed) {
-    if (cut) return;
-    if (count > 0 && std::abs(of[count - 1].speed - speed) <= kSlight * speed) return;
-    // What was passed already, or is too short to be seen.
-    if (count > 0 && way <= of[count - 1].way + kSlight) {
-      of[count - 1].speed = count == 1 && way <= 0 ? speed : std::min(of[count - 1].speed, speed);
-      return;
-    }
-    if (count == kCaps) {
-      cut = true;
-      return;
-    }
-    of[count++] = {way, speed};
-  }
-};
 
 double SpeedIn(const Bend& bend, const Pace& pace) {
   const double most = pace.limits.velocity;
@@ -74,7 +46,24 @@ double BackAlongTrack(const Road& road, double s, double gone, double until, con
   return gone + s;
 }
 
-Caps CapsAhead(const Network& network, const Start& start, double until, const Pace& pace) {
+}  // namespace
+
+void Caps::Add(double way, double speed) noexcept {
+  if (cut) return;
+  if (count > 0 && std::abs(of[count - 1].speed - speed) <= kSlight * speed) return;
+  // What was passed already, or is too short to be seen.
+  if (count > 0 && way <= of[count - 1].way + kSlight) {
+    of[count - 1].speed = count == 1 && way <= 0 ? speed : std::min(of[count - 1].speed, speed);
+    return;
+  }
+  if (count == kCaps) {
+    cut = true;
+    return;
+  }
+  of[count++] = {way, speed};
+}
+
+Caps CapsAhead(const Network& network, const Start& start, double until, const Pace& pace) noexcept {
   Caps caps;
   const Road& road = network[start.route->first()];
   double gone = start.direction > 0 ? AlongTrack(road, start.s, 0, until, pace, caps)
@@ -88,6 +77,8 @@ Caps CapsAhead(const Network& network, const Start& start, double until, const P
   }
   return caps;
 }
+
+namespace {
 
 // A place that is to be passed no faster than this, without acceleration.
 struct Gate {

@@ -2,6 +2,8 @@
 // before curves.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "takt/planar/braking.h"
@@ -28,6 +30,22 @@ struct Start {
   double speed = 0;
   double acceleration = 0;
 };
+
+// From here on the way may be gone so fast.
+struct Cap {
+  double way = 0;    // mm from here
+  double speed = 0;  // mm/s
+};
+inline constexpr std::size_t kCaps = 32;
+struct Caps {
+  std::array<Cap, kCaps> of{};  // the first one is where the mover is
+  std::size_t count = 0;
+  bool cut = false;  // there are more than it has room for
+
+  void Add(double way, double speed) noexcept;
+};
+// How fast curves may be gone through, so far on.
+Caps CapsAhead(const Network& network, const Start& start, double until, const Pace& pace) noexcept;
 
 // The quickest way to rest so far on (mm from here, along the way, >= 0), or as much of it as can be planned in one go;
 // `out` begins at 0. `ends`: it is all of it. A mover that cannot stop there any more brakes as its limits allow.

@@ -1,5 +1,5 @@
 // Following a demand: within limits whatever it does, and in step with it where that is possible. AX-13, AX-43, AX-45.
-#include "takt/axis/chase.h"
+#include "takt/trajectory/chase.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,9 @@
 
 namespace takt::axis {
 namespace {
+
+using trajectory::ChaseMode;
+using trajectory::ChaseState;
 
 // A master that goes from one random velocity to the next.
 class Master {

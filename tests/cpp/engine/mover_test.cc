@@ -65,7 +65,13 @@ std::vector<mover::Command> GoodCommands() {
           mover::Wait{},
           mover::Release{},
           mover::AddToGroup{Name::Of("cell")},
-          mover::RemoveFromGroup{}};
+          mover::RemoveFromGroup{},
+          mover::GearInPosOnTrack{.master = Name::Of("x"),
+                                  .trail = {{Name::Of("way")}, 1},
+                                  .direction_slave_sync_position = mover::TurnDirection::kPositive},
+          mover::GearInPosOnTrackWithMasterMover{.master = Name::Of("one"),
+                                                 .direction_slave_sync_position = mover::TurnDirection::kPositive,
+                                                 .direction_master_sync_position = mover::TurnDirection::kPositive}};
 }
 
 Command To(std::uint32_t mover, const mover::Command& body) {

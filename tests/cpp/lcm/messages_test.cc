@@ -454,6 +454,8 @@ TEST(Messages, MoverStateKeepsEveryNumber) {
           FIELD(mover_state, track_position),
           FIELD(mover_state, track_velocity),
           FIELD(mover_state, track_acceleration),
+          FIELD(mover_state, in_sync),
+          FIELD(mover_state, sync_error),
           FIELD(mover_state, waits_for),
           FIELD(mover_state, deadlocked),
           FIELD(mover_state, delay),

@@ -1,15 +1,16 @@
-// Following something that moves: the one way in which an axis gets onto, and stays on, a demand that comes anew in
-// each cycle (a geared master, a cam, a table over time, a motion on top of another).
+// Following something that moves: the one way in which an axis, or a mover on a track, gets onto, and stays on, a
+// demand that comes anew in each cycle (a geared master, a cam, a table over time, a motion on top of another).
 #pragma once
 
 #include <cstdint>
 
-#include "takt/axis/params.h"
+#include "takt/core/describe_fwd.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
+#include "takt/trajectory/limits.h"
 #include "takt/trajectory/planner.h"
 
-namespace takt::axis {
+namespace takt::trajectory {
 
 // What the axis shall agree with.
 enum class ChaseMode : std::uint8_t {
@@ -24,9 +25,9 @@ struct ChaseState {
 };
 
 struct Chaser {
-  trajectory::Limits own;  // of the axis
-  trajectory::Planner& planner;
-  trajectory::Limits catching_up;  // of the command: how fast to get into step; within the axis' own
+  Limits own;  // of the axis
+  Planner& planner;
+  Limits catching_up;  // of the command: how fast to get into step; within the axis' own
   double period_s;
 };
 
@@ -45,8 +46,8 @@ KinematicState Chase(const Chaser& chaser, ChaseMode mode, const KinematicState&
                      ChaseState& state) noexcept;
 
 // What of a demand is more than the axis can; out of step: more than leaves it room to catch up.
-LimitedBy Beyond(const trajectory::Limits& own, const KinematicState& demand, bool in_step) noexcept;
+LimitedBy Beyond(const Limits& own, const KinematicState& demand, bool in_step) noexcept;
 
 void describe(Description<ChaseState>&);
 
-}  // namespace takt::axis
+}  // namespace takt::trajectory

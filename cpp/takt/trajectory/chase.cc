@@ -1,15 +1,11 @@
-#include "takt/axis/chase.h"
+#include "takt/trajectory/chase.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "takt/core/describe.h"
 
-namespace takt::axis {
-
-using trajectory::Bounds;
-using trajectory::Limits;
-using trajectory::Profile;
+namespace takt::trajectory {
 
 namespace {
 
@@ -166,4 +162,4 @@ void describe(Description<ChaseState>& d) {
   d.internal<&ChaseState::in_step>("The last set point was the demand itself.");
 }
 
-}  // namespace takt::axis
+}  // namespace takt::trajectory

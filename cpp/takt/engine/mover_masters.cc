@@ -1,0 +1,71 @@
+#include "takt/engine/mover_masters.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <variant>
+
+#include "takt/mover/run.h"
+
+namespace takt::engine {
+
+namespace {
+
+// What axes can follow of a mover: its way along tracks, which goes by its name alone, and coordinates.
+constexpr std::array kCoordinates = {mover::kX, mover::kY, mover::kC};
+constexpr std::array kSuffixes = {"", ".x", ".y", ".c"};
+
+}  // namespace
+
+void NameMasters(World& w) {
+  for (const axis::AxisParams& params : w.axis_params) {
+    w.streets.masters.push_back({.name = params.name, .turn = params.turn()});
+  }
+  for (const mover::MoverParams& params : w.movers) {
+    w.streets.movers.push_back({.name = params.name});
+    for (const char* suffix : kSuffixes) {
+      const bool turns = std::string_view(suffix) == ".c";
+      const double velocity = turns ? params.c.maximum.velocity : params.xy.maximum.velocity;
+      w.mover_masters.push_back({.name = params.name + suffix, .velocity = velocity});
+    }
+  }
+  ShowAxesToMovers(w);
+  ShowMovers(w);
+}
+
+void ShowAxesToMovers(World& w) noexcept {
+  for (std::size_t i = 0; i < w.streets.masters.size(); ++i) {
+    const axis::State& s = w.axis_states[i];
+    mover::Master& master = w.streets.masters[i];
+    master.known = axis::IsKnown(s, axis::MasterSource::kSetValue);
+    master.at = s.setpoint;
+    master.at.position += s.origin;
+    master.turn = w.axis_params[i].turn();
+  }
+}
+
+void ShowMovers(World& w) noexcept {
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    const mover::State& s = w.mover_states[i];
+    const planar::Rider& rider = w.streets.riders[i];
+    const bool enabled = s.state == planar::ObjectState::kEnabled;
+    const bool on_track = rider.on && mover::IsOnTrack(s);
+    w.streets.movers[i].enabled = enabled;
+    w.streets.movers[i].on_track = on_track;
+    axis::OutsideMaster* const masters = &w.mover_masters[kSuffixes.size() * i];
+    masters[0].known = enabled && on_track;
+    masters[0].at = rider.at;
+    masters[0].at.position += rider.origin;
+    for (std::size_t k = 0; k < kCoordinates.size(); ++k) {
+      masters[k + 1].known = enabled;
+      masters[k + 1].at = s.set_point[kCoordinates[k]];
+    }
+  }
+}
+
+std::uint32_t AxisFollowedBy(const World& w, const mover::Command& command) noexcept {
+  const auto* gear = std::get_if<mover::GearInPosOnTrack>(&command);
+  return gear ? axis::FindAxis(w.axis_params, gear->master.view()) : axis::kNoAxis;
+}
+
+}  // namespace takt::engine

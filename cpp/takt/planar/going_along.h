@@ -1,0 +1,34 @@
+// What a mover that goes along with a master (gear.h) does by itself; what is left of that in traffic: traffic.h.
+#pragma once
+
+#include "takt/planar/braking.h"
+#include "takt/planar/network.h"
+#include "takt/planar/traffic.h"
+#include "takt/planar/way.h"
+#include "takt/trajectory/planner.h"
+
+namespace takt::planar {
+
+// Its state at the end of the cycle if it were alone on a straight way: the demand itself where its limits allow.
+// `exact`: it is that. Places are those on the first track of its route.
+KinematicState GoAlong(trajectory::Planner& planner, const Rider& rider, const KinematicState& demand, double period_s,
+                       bool& exact) noexcept;
+
+// Where it could not come to rest on its route any more from here, with the dynamics that it was given: 1, beyond the
+// end; -1, before the start; 0: nowhere.
+int RunsOut(const Network& network, const Rider& rider, const KinematicState& at) noexcept;
+
+// Whether it keeps its lateral acceleration in curves if from this step on it brakes.
+bool KeepsToCurves(const Network& network, const Rider& rider, const KinematicState& next,
+                   const Braking& braking) noexcept;
+// Whether it has to look out for curves.
+bool CurvesAhead(const Network& network, const Rider& rider) noexcept;
+
+// Whether its route may become this one: tracks that it gets onto whatever happens stay.
+bool MayTake(const Network& network, const Rider& rider, const Route& route) noexcept;
+
+// Takes over where the master's route leads on, from where both routes are the same. False: it is past the place where
+// the master turns off, or the master is out of its sight.
+bool TakeMastersWay(const Network& network, const Rider& master, Rider& rider) noexcept;
+
+}  // namespace takt::planar
