@@ -1,0 +1,215 @@
+"""Movers on their planned ways: commands as far as the order allows, extended while they move."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Literal
+
+from takt.errors import TimeoutError
+from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
+from takt.routing.plan import EFFORT, RoutePlan, Target, plan_routes
+from takt.routing.streets import RoutingError, Streets
+
+if TYPE_CHECKING:
+    from takt.mover import Mover
+    from takt.session import Session
+
+LOOK_S = 0.005  # s of engine time between two looks at the movers
+NEAR = 0.05  # mm that a mover may be off its place
+TRIES = 3
+
+
+class _Interrupted(RoutingError):
+    """A mover does not do any more what it was told."""
+
+
+class _Traveller:
+    """One mover of the plan. Its levels: so many of its hops may be done."""
+
+    def __init__(self, number: int, mover: Mover, plan: RoutePlan) -> None:
+        self.mover = mover
+        self.plan = plan
+        self.number = number
+        self.steps = plan.steps[number]
+        self.way = [plan.task.starts[number].street]  # streets, one after the other
+        self.reach = [0]  # by level: where on the way that ends
+        for step in self.steps:
+            self.way += step.hop.sweep.streets[1:]
+            self.reach.append(len(self.way) - 1)
+        self.at = 0  # where on the way it is
+        self.s = plan.task.starts[number].s
+        self.over = 0  # hops that are over
+        self.level = 0  # that it may go to
+        self.sent = -1  # that it was told
+        self.feedback: Feedback | None = None
+        self.waited_s = 0.0
+        self.arrived_s = math.nan
+
+    @property
+    def there(self) -> bool:
+        return self.sent == len(self.steps) and (self.feedback is None or self.feedback.done)
+
+    def look(self, streets: Streets) -> None:
+        """Where it is now, and which hops are over."""
+        while True:  # both from one message
+            track = self.mover.track
+            self.s = self.mover.track_position
+            if self.mover.track == track:
+                break
+        for at in range(self.at, self.reach[self.level] + 1):
+            if self.way[at] == track - 1:
+                self.at = at
+                break
+        while self.over < self.level and self._is_over(streets):
+            self.over += 1
+
+    def _is_over(self, streets: Streets) -> bool:
+        hop, end = self.steps[self.over].hop, self.reach[self.over + 1]
+        if self.at != end:
+            return self.at > end
+        if not hop.to_row:
+            return abs(self.s - hop.place) < NEAR
+        return streets[hop.street].first - NEAR <= self.s <= streets[hop.street].last + NEAR
+
+    def destination(self, level: int) -> float:
+        """mm along the last street of this level."""
+        if level == len(self.steps):
+            return self.plan.ends[self.number]
+        hop = self.steps[level].hop
+        return hop.sweep.end if hop.backward else hop.sweep.start
+
+    def go_on(self, streets: Streets) -> None:
+        """Sends it as far as it may go, or as far as the engine finds the planned way by itself."""
+        for level in range(self.level, self.sent, -1):
+            rest = self.way[self.at : self.reach[level] + 1]
+            if len(rest) > 1 and not streets.is_the_way(rest):
+                continue
+            s = self.destination(level)
+            self.sent = level
+            if level < len(self.steps) and len(rest) == 1 and abs(s - self.s) < NEAR:
+                return
+            options = dict(self.plan.dynamics)
+            if self.plan.gap is not None:
+                options["gap"] = self.plan.gap
+            track = "" if streets[rest[-1]].closed else streets[rest[-1]].name
+            self.feedback = self.mover.move_on_track(position=s, track=track, **options)
+            return
+
+
+class Journey:
+    """A plan that is carried out. `scan` from time to time, or `wait`."""
+
+    def __init__(self, session: Session, plan: RoutePlan) -> None:
+        self.session = session
+        self.plan = plan
+        self.started_s = session.now
+        self.plans = 1  # so many were made on the way
+        self._all = [_Traveller(i, session.mover(plan.names[i]), plan) for i in sorted(plan.ends)]
+        self._by_number = {t.number: t for t in self._all}
+        self._looked_s = -math.inf
+
+    @property
+    def arrived_s(self) -> dict[str, float]:
+        """By mover: s from the start on, when it was where it stays; NaN: it is not yet."""
+        return {t.mover.name: t.arrived_s - self.started_s for t in self._all}
+
+    @property
+    def waited_s(self) -> dict[str, float]:
+        """By mover: s for which it stood on its way."""
+        return {t.mover.name: t.waited_s for t in self._all}
+
+    @property
+    def duration_s(self) -> float:
+        """s until the last one was there."""
+        return max(self.arrived_s.values(), default=0.0)
+
+    def scan(self) -> bool:
+        """Lets movers go on whose turn it is. True: all are there."""
+        now = self.session.now
+        elapsed = now - self._looked_s
+        if elapsed < LOOK_S:
+            return False
+        self._looked_s = now
+        streets = self.plan.task.streets
+        for one in self._all:
+            if not one.there:
+                one.look(streets)
+                self._check(one)
+                if elapsed < math.inf and abs(one.mover.track_velocity) < NEAR:
+                    one.waited_s += elapsed
+        for one in self._all:
+            while one.level < len(one.steps) and self._may(one):
+                one.level += 1
+            if one.sent < one.level:
+                one.go_on(streets)
+            if one.there and math.isnan(one.arrived_s):
+                one.arrived_s = now
+        return all(one.there for one in self._all)
+
+    def _may(self, one: _Traveller) -> bool:
+        return all(self._by_number[i].over > k for i, k in one.steps[one.level].after)
+
+    def _check(self, one: _Traveller) -> None:
+        name, state = one.mover.name, one.mover.state.value
+        if state != "Enabled":
+            raise _Interrupted(f"mover {name} is {state} on its way")
+        if one.feedback is not None and (one.feedback.error or one.feedback.aborted):
+            raise _Interrupted(f"mover {name} does not go its way any more: {one.feedback.sentence}")
+
+    def wait(self, timeout: float = DEFAULT_TIMEOUT_S) -> Journey:
+        """Lets engine time pass until all are there."""
+        try:
+            self.session.wait(self.scan, timeout)
+        except TimeoutError:
+            movers = list(self.session.movers)
+            late = [
+                t.mover.name + (f" (waits for {movers[t.mover.waits_for - 1]})" if t.mover.waits_for else "")
+                for t in self._all
+                if not t.there
+            ]
+            raise TimeoutError(f"not there within {timeout:g} s: {', '.join(late)}") from None
+        return self
+
+    def halt(self) -> None:
+        """Brings all to rest that are not there yet."""
+        going = [t.mover for t in self._all if not t.there and t.mover.state.value == "Enabled"]
+        for feedback in [mover.halt() for mover in going]:
+            feedback.wait_final()
+
+
+def move_on_tracks(
+    session: Session,
+    targets: Mapping[str, Target],
+    *,
+    route: Literal["auto", "shortest"] = "auto",
+    may_move: bool | Iterable[str] = False,
+    gap: float | None = None,
+    timeout: float = DEFAULT_TIMEOUT_S,
+    effort: int = EFFORT,
+    **dynamics: float,
+) -> Journey | None:
+    """As Session.move_on_tracks."""
+    if route not in ("auto", "shortest"):
+        raise ValueError(f"route is one of auto, shortest, not {route!r}")
+    if route == "shortest":
+        options = dynamics if gap is None else {**dynamics, "gap": gap}
+        moves = [
+            session.mover(name).move_on_track(position=s, track=track, **options)
+            for name, (track, s) in targets.items()
+        ]
+        for move in moves:
+            move.wait(timeout)
+        return None
+    end = session.now + timeout
+    for tries in range(1, TRIES + 1):
+        plan = plan_routes(session, targets, may_move=may_move, gap=gap, effort=effort, **dynamics)
+        journey = Journey(session, plan)
+        journey.plans = tries
+        try:
+            return journey.wait(end - session.now)
+        except _Interrupted as interruption:
+            journey.halt()
+            if tries == TRIES:
+                raise RoutingError(f"given up after {tries} plans: {interruption}") from None
+    raise AssertionError
