@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from takt.errors import TimeoutError
@@ -41,14 +42,15 @@ class _Traveller:
         self.s = plan.task.starts[number].s
         self.over = 0  # hops that are over
         self.level = 0  # that it may go to
-        self.sent = -1  # that it was told
+        self.sent: tuple[int, float] | None = None  # level and place that it was told
         self.feedback: Feedback | None = None
         self.waited_s = 0.0
         self.arrived_s = math.nan
 
     @property
     def there(self) -> bool:
-        return self.sent == len(self.steps) and (self.feedback is None or self.feedback.done)
+        last = (len(self.steps), self.plan.ends[self.number])
+        return self.over == len(self.steps) and self.sent == last and (self.feedback is None or self.feedback.done)
 
     def look(self, streets: Streets) -> None:
         """Where it is now, and which hops are over."""
@@ -72,22 +74,40 @@ class _Traveller:
             return abs(self.s - hop.place) < NEAR
         return streets[hop.street].first - NEAR <= self.s <= streets[hop.street].last + NEAR
 
-    def destination(self, level: int) -> float:
-        """mm along the last street of this level."""
-        if level == len(self.steps):
-            return self.plan.ends[self.number]
-        hop = self.steps[level].hop
-        return hop.sweep.end if hop.backward else hop.sweep.start
+    @property
+    def may_plan_on(self) -> bool:
+        """Where it stops on its way, the next hop has to wait until it was there."""
+        last = self.steps[self.level - 1].hop if self.level else None
+        stops = last is not None and (not last.to_row or len(self.steps[self.level].hop.sweep.streets) == 1)
+        return not stops or self.over == self.level
 
-    def go_on(self, streets: Streets) -> None:
+    def destination(self, level: int, row: _Row | None) -> float:
+        """mm along the last street of this level."""
+        street = self.plan.task.streets[self.way[self.reach[level]]]
+        ends = level == len(self.steps)
+        if not ends:
+            hop = self.steps[level].hop
+            s = hop.sweep.end if hop.backward else hop.sweep.start
+        else:
+            s = self.plan.ends[self.number]
+        if row is None or (level > 0 and not self.steps[level - 1].hop.to_row) or not street.in_row(s):
+            return s
+        if row.back:
+            return min(s, street.last - self.plan.task.streets.gap * row.back.get(self.number, 0))
+        return street.last if ends else s
+
+    def go_on(self, streets: Streets, rows: Mapping[int, _Row]) -> None:
         """Sends it as far as it may go, or as far as the engine finds the planned way by itself."""
-        for level in range(self.level, self.sent, -1):
+        least = self.sent[0] if self.sent else 0
+        for level in range(self.level, least - 1, -1):
             rest = self.way[self.at : self.reach[level] + 1]
             if len(rest) > 1 and not streets.is_the_way(rest):
                 continue
-            s = self.destination(level)
-            self.sent = level
-            if level < len(self.steps) and len(rest) == 1 and abs(s - self.s) < NEAR:
+            s = self.destination(level, rows.get(rest[-1]))
+            if self.sent == (level, s):
+                return
+            first, self.sent = self.sent is None, (level, s)
+            if first and len(rest) == 1 and abs(s - self.s) < NEAR:
                 return
             options = dict(self.plan.dynamics)
             if self.plan.gap is not None:
@@ -95,6 +115,13 @@ class _Traveller:
             track = "" if streets[rest[-1]].closed else streets[rest[-1]].name
             self.feedback = self.mover.move_on_track(position=s, track=track, **options)
             return
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A row that is not yet to be as it will be in the end: by mover, so many places further back."""
+
+    back: Mapping[int, int]
 
 
 class Journey:
@@ -133,19 +160,28 @@ class Journey:
         self._looked_s = now
         streets = self.plan.task.streets
         for one in self._all:
-            if not one.there:
+            if math.isnan(one.arrived_s):
                 one.look(streets)
                 self._check(one)
                 if elapsed < math.inf and abs(one.mover.track_velocity) < NEAR:
                     one.waited_s += elapsed
+        rows = self._rows()
         for one in self._all:
-            while one.level < len(one.steps) and self._may(one):
+            while one.level < len(one.steps) and one.may_plan_on and self._may(one):
                 one.level += 1
-            if one.sent < one.level:
-                one.go_on(streets)
+            if math.isnan(one.arrived_s):
+                one.go_on(streets, rows)
             if one.there and math.isnan(one.arrived_s):
                 one.arrived_s = now
         return all(one.there for one in self._all)
+
+    def _rows(self) -> dict[int, _Row]:
+        rows = {}
+        for street, shifts in self.plan.shifts.items():
+            left = [shift for shift in shifts if self._by_number[shift.hop[0]].over <= shift.hop[1]]
+            if any(shift.temporary for shift in left):
+                rows[street] = _Row(left[0].back)
+        return rows
 
     def _may(self, one: _Traveller) -> bool:
         return all(self._by_number[i].over > k for i, k in one.steps[one.level].after)

@@ -8,8 +8,8 @@ that comes first in the order they were found in can always be done.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from takt.routing.arrangement import Arrangement, Hop, Place, Task, search
@@ -32,6 +32,16 @@ class Step:
 
 
 @dataclass(frozen=True)
+class Shift:
+    """A hop that needs the row of a street elsewhere than at the targets: (mover, number of its hop). Whoever comes into
+    the row from before it has to find the others so many places further back."""
+
+    hop: tuple[int, int]
+    temporary: bool
+    back: Mapping[int, int]  # by mover
+
+
+@dataclass(frozen=True)
 class RoutePlan:
     """Ways for movers, and who passes before whom. `str(plan)` says it in words."""
 
@@ -39,6 +49,7 @@ class RoutePlan:
     targets: Mapping[str, Target]
     task: Task
     steps: tuple[tuple[Step, ...], ...]  # by mover
+    shifts: Mapping[int, tuple[Shift, ...]]  # by street, in the order of the plan
     ends: Mapping[int, float]  # by mover that moves: mm along its last street; of a closed loop turns are counted in
     tried: int = 0  # arrangements that were looked at
     gap: float | None = None  # as asked for
@@ -124,10 +135,10 @@ def plan_routes(
     if found.hops is None:
         raise RoutingError(f"no plan was found after {found.tried} arrangements of movers; there may be one")
     pace = dynamics.get("velocity") or max((_velocity(m.parameters) for m in movers.values()), default=1.0)
-    hops = in_time(task, found.hops, pace)
+    hops = in_time(task, shorter(task, found.hops), pace)
     steps = _steps(task, hops)
     ends |= _ends(task, hops)
-    return RoutePlan(names, dict(targets), task, steps, ends, found.tried, gap, dynamics)
+    return RoutePlan(names, dict(targets), task, steps, _shifts(task, hops), ends, found.tried, gap, dynamics)
 
 
 def _velocity(parameters: Mapping[str, object]) -> float:
@@ -286,6 +297,60 @@ def _still_possible(task: Task, a: Arrangement, hops: Sequence[Hop], first: int)
     return one is not None
 
 
+def shorter(task: Task, hops: Sequence[Hop]) -> list[Hop]:
+    """The hops without those that lead round to where their mover was, or to a place that it only leaves again, as far as
+    the rest can do without."""
+    best = list(hops)
+    for i in sorted({hop.mover for hop in hops}):
+        again = True
+        while again:
+            again = any(_leads_there(task, one) and _put(best, one) for one in _shortcuts(task, best, i))
+    return best
+
+
+def _put(hops: list[Hop], better: list[Hop]) -> bool:
+    hops[:] = better
+    return True
+
+
+def _leads_there(task: Task, hops: Sequence[Hop]) -> bool:
+    a: Arrangement | None = task.start
+    for hop in hops:
+        a = task.after(hop, a) if a is not None else None
+    return a is not None and task.is_done(a)
+
+
+def _shortcuts(task: Task, hops: Sequence[Hop], mover: int) -> Iterator[list[Hop]]:
+    own = [n for n, hop in enumerate(hops) if hop.mover == mover]
+    begins = [hops[n].sweep.streets[0] for n in own]
+    for size in range(len(own) - 1, 0, -1):
+        for first in range(len(own) - size):
+            cut, after = own[first : first + size], own[first + size]
+            if begins[first] != begins[first + size]:
+                continue
+            # From where it was at first, or after all of the cut, on to where the hop after that leads.
+            then, before = hops[after], hops[cut[0]]
+            entry = before.sweep.end if before.backward else before.sweep.start
+            if then.backward:
+                joined = replace(then, sweep=replace(then.sweep, end=max(entry, then.sweep.start)))
+            else:
+                joined = replace(then, sweep=replace(then.sweep, start=entry))
+            if len(joined.sweep.streets) == 1 and joined.sweep.start >= joined.sweep.end:
+                continue
+            for at in (after, cut[0]):
+                kept = [n for n in range(len(hops)) if n not in cut and n != after]
+                new = [hops[n] for n in kept if n < at] + [joined] + [hops[n] for n in kept if n > at]
+                yield new
+    # A place that it comes to and leaves again.
+    for first, second in zip(own, own[1:], strict=False):
+        one, two = hops[first], hops[second]
+        if not one.to_row and two.to_row and not one.backward and not two.backward and one.street == two.street:
+            joined = replace(one, sweep=replace(one.sweep, end=two.sweep.end), to_row=True)
+            rest = [hop for n, hop in enumerate(hops) if n not in (first, second)]
+            yield [*rest[:first], joined, *rest[first:]]
+            yield [*rest[: second - 1], joined, *rest[second - 1 :]]
+
+
 def _steps(task: Task, hops: Sequence[Hop]) -> tuple[tuple[Step, ...], ...]:
     steps: list[list[Step]] = [[] for _ in task.starts]
     numbered: list[tuple[Hop, int]] = []
@@ -298,6 +363,24 @@ def _steps(task: Task, hops: Sequence[Hop]) -> tuple[tuple[Step, ...], ...]:
         steps[hop.mover].append(Step(hop, tuple(after.items())))
         numbered.append((hop, number))
     return tuple(tuple(own) for own in steps)
+
+
+def _shifts(task: Task, hops: Sequence[Hop]) -> dict[int, tuple[Shift, ...]]:
+    shifts: dict[int, list[Shift]] = {}
+    numbers = [0] * len(task.starts)
+    a: Arrangement | None = task.start
+    for hop in hops:
+        assert a is not None
+        a = task.after(hop, a)
+        assert a is not None
+        one = (hop.mover, numbers[hop.mover])
+        numbers[hop.mover] += 1
+        if hop.to_row and hop.backward:
+            back = {i: n for n, i in enumerate(a.rows[hop.street])}
+            shifts.setdefault(hop.street, []).append(Shift(one, True, back))
+        elif hop.to_row or len(hop.sweep.streets) == 1:
+            shifts.setdefault(hop.street, []).append(Shift(one, hop.backward, {}))
+    return {k: tuple(own) for k, own in shifts.items() if any(shift.temporary for shift in own)}
 
 
 def _ends(task: Task, hops: Collection[Hop]) -> dict[int, float]:
