@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 from takt.errors import TimeoutError
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.routing.plan import EFFORT, RoutePlan, Target, plan_routes
-from takt.routing.streets import RoutingError, Streets
+from takt.routing.streets import SAME, RoutingError, Streets
 
 if TYPE_CHECKING:
     from takt.mover import Mover
@@ -107,7 +107,7 @@ class _Traveller:
             if self.sent == (level, s):
                 return
             first, self.sent = self.sent is None, (level, s)
-            if first and len(rest) == 1 and abs(s - self.s) < NEAR:
+            if first and len(rest) == 1 and abs(s - self.s) < SAME:
                 return
             options = dict(self.plan.dynamics)
             if self.plan.gap is not None:
@@ -184,6 +184,14 @@ class Journey:
         return rows
 
     def _may(self, one: _Traveller) -> bool:
+        hop = one.steps[one.level].hop
+        if hop.to_row and hop.backward:
+            # The row makes room for it, once it is its turn.
+            for shift in self.plan.shifts[hop.street]:
+                if shift.hop == (one.number, one.level):
+                    break
+                if self._by_number[shift.hop[0]].over <= shift.hop[1]:
+                    return False
         return all(self._by_number[i].over > k for i, k in one.steps[one.level].after)
 
     def _check(self, one: _Traveller) -> None:

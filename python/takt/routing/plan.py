@@ -294,7 +294,7 @@ def _still_possible(task: Task, a: Arrangement, hops: Sequence[Hop], first: int)
                 return True
             continue
         one = task.after(hop, one)
-    return one is not None
+    return one is not None and task.is_done(one)
 
 
 def shorter(task: Task, hops: Sequence[Hop]) -> list[Hop]:

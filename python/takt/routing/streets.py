@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -22,8 +22,7 @@ from takt.track_layout import LaidTrack, TrackLayout
 if TYPE_CHECKING:
     from takt.session import Session
 
-SLACK = 40.0  # mm that the engine's automatic ranges may be longer than those of TrackLayout
-MARGIN = 1.0  # mm that rows stay away from zones
+MARGIN = 2e-3  # mm that rows stay away from zones; the engine lets movers wait half as far away
 SAME = 1e-6  # mm
 LONGEST = 32  # tracks in one way, as in the engine
 
@@ -49,7 +48,16 @@ class Street:
         return self.last >= self.first
 
     def in_row(self, s: float) -> bool:
-        return self.has_room and self.first - SAME <= s <= self.last + SAME
+        return self.has_room and self.zone_ends <= s <= self.zone_begins
+
+    @property
+    def zone_ends(self) -> float:
+        """mm; before it is the zone of the node at its start. A mover that waits there is out of it."""
+        return self.first - 0.9 * MARGIN if self.start_node >= 0 else -SAME
+
+    @property
+    def zone_begins(self) -> float:
+        return self.last + 0.9 * MARGIN if self.end_node >= 0 else self.length + SAME
 
 
 @dataclass(frozen=True)
@@ -64,7 +72,7 @@ class Sweep:
 class Streets:
     """All tracks by number, from 0, with a gap that all movers keep."""
 
-    def __init__(self, tracks: Sequence[LaidTrack], slack: Mapping[str, float], gap: float) -> None:
+    def __init__(self, tracks: Sequence[LaidTrack], gap: float) -> None:
         self.gap = gap
         numbers = {track.name: i for i, track in enumerate(tracks)}
         links = [tuple(numbers[name] for name in t.subsequent if name != t.name) for t in tracks]
@@ -78,8 +86,8 @@ class Streets:
                 links[i],
                 starts[i],
                 ends[i],
-                self._zone(t.range_at_start + slack[t.name]) if starts[i] >= 0 else 0.0,
-                t.length - (self._zone(t.range_at_end + slack[t.name]) if ends[i] >= 0 else 0.0),
+                self._zone(t.traffic_ranges[0]) if starts[i] >= 0 else 0.0,
+                t.length - (self._zone(t.traffic_ranges[1]) if ends[i] >= 0 else 0.0),
             )
             for i, t in enumerate(tracks)
         )
@@ -191,25 +199,23 @@ class Streets:
         streets = [self[k] for k in sweep.streets]
         end = sum(street.length for street in streets[:-1]) + sweep.end
         low, high = min(sweep.start, end), max(sweep.start, end)
-        if streets[0].start_node >= 0 and low < streets[0].first:
-            yield streets[0].start_node, low, min(high, streets[0].first)
+        if streets[0].start_node >= 0 and low < streets[0].zone_ends:
+            yield streets[0].start_node, low, min(high, streets[0].zone_ends)
         at = 0.0
         for i, street in enumerate(streets):
             at += street.length
-            if street.end_node < 0:
-                continue
-            from_ = max(low - at, street.last - street.length)
-            to = min(high - at, streets[i + 1].first if i + 1 < len(streets) else math.inf)
-            if from_ < to or (from_ == to and from_ > street.last - street.length):
-                yield street.end_node, from_, to
+            behind = streets[i + 1].zone_ends if i + 1 < len(streets) else math.inf
+            before = street.zone_begins - street.length
+            if street.end_node >= 0 and high - at > before and low - at < behind:
+                yield street.end_node, max(low - at, before), min(high - at, behind)
         # Nodes that whoever is here may have come over shortly before count on.
         yield from self._behind(streets[0], low, high, 0)
 
     def _behind(self, street: Street, low: float, high: float, depth: int) -> Iterator[tuple[int, float, float]]:
         for k in self.before[street.index]:
             previous = self[k]
-            if previous.start_node >= 0 and low + previous.length < previous.first and depth < 4:
-                yield previous.start_node, low + previous.length, min(high + previous.length, previous.first)
+            if previous.start_node >= 0 and low + previous.length < previous.zone_ends and depth < 4:
+                yield previous.start_node, low + previous.length, min(high + previous.length, previous.zone_ends)
                 yield from self._behind(previous, low + previous.length, high + previous.length, depth + 1)
 
 
@@ -221,8 +227,7 @@ def read_streets(session: Session, gap: float) -> Streets:
     for laid in layout.tracks:
         if abs(laid.length - session.track(laid.name).length) > 1e-3:
             raise RoutingError(f"track {laid.name} is not as the machine file has it: ways are planned on its tracks")
-    manual = {t["name"] for t in session.machine["tracks"] if t["collision_range_mode"] == "manual"}
-    return Streets(layout.tracks, {t.name: 0.0 if t.name in manual else SLACK for t in layout.tracks}, gap)
+    return Streets(layout.tracks, gap)
 
 
 def _nodes(links: Sequence[tuple[int, ...]]) -> tuple[list[int], list[int]]:
