@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from takt.routing.streets import SAME, Street, Streets, Sweep
+from takt.routing.streets import MARGIN, SAME, Street, Streets, Sweep
 
 HOP = 100.0  # mm that a hop costs besides its way
 
@@ -108,12 +108,12 @@ class Task:
             if i in self.fixed:
                 aim = self.starts[i]
             if aim is not None:
-                if aim.street != street.index or aim.s > place + SAME:
+                if aim.street != street.index or aim.s > place + MARGIN:
                     return False
                 place = aim.s
             last = place
             place -= self.streets.gap
-        return last >= low - SAME
+        return last >= low - MARGIN
 
     def is_free(self, sweep: Sweep, mover: int, a: Arrangement) -> bool:
         return not any(

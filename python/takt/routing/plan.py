@@ -357,7 +357,11 @@ def _steps(task: Task, hops: Sequence[Hop]) -> tuple[tuple[Step, ...], ...]:
     for hop in hops:
         after: dict[int, int] = {}
         for before, number in numbered:
-            if before.mover != hop.mover and task.streets.meet(hop.sweep, before.sweep) and not _follows(hop, before):
+            if before.mover == hop.mover:
+                continue
+            # Into a row that has to make room at its front comes nobody before that.
+            comes_back = before.to_row and before.backward and before.street == hop.street
+            if comes_back or (task.streets.meet(hop.sweep, before.sweep) and not _follows(hop, before)):
                 after[before.mover] = number
         number = len(steps[hop.mover])
         steps[hop.mover].append(Step(hop, tuple(after.items())))
