@@ -48,6 +48,10 @@ class Hop:
         """Where it ends, mm along the street."""
         return self.sweep.start if self.backward else self.sweep.end
 
+    def comes_back(self, street: Street) -> bool:
+        """Towards the row of this street from before it, which has to make room."""
+        return self.backward and self.street == street.index and (self.to_row or self.place > street.last)
+
 
 @dataclass(frozen=True)
 class Task:
@@ -165,10 +169,13 @@ class Task:
             aim = self.targets.get(i)
             if not street.has_room or s > street.last:
                 yield from self._onward(i, street, s)
+            if aim is not None and aim.street == index and aim.s != s and (not street.has_room or (
+                not street.in_row(aim.s) and (aim.s < street.first) == (s < street.first)
+            )):
+                yield Hop(i, Sweep((index,), min(s, aim.s), max(s, aim.s)), aim.s < s, False)
             if not street.has_room:
-                if aim is not None and aim.street == index and aim.s != s:
-                    yield Hop(i, Sweep((index,), min(s, aim.s), max(s, aim.s)), aim.s < s, False)
-            elif s < street.first:
+                continue
+            if s < street.first:
                 yield Hop(i, Sweep((index,), s, street.first), False, True)
             else:
                 yield Hop(i, Sweep((index,), street.last, s), True, True)
@@ -203,14 +210,15 @@ class Task:
     def far(self, a: Arrangement) -> float:
         """mm that are left to go for all together, guessed; infinite: from here it is not possible."""
         total = 0.0
-        needed: set[tuple[int, int]] = set()  # from street to street: someone has to pass there
+        needed: set[tuple[int, int]] = set()  # from street to street: someone has to pass there, and on
+        last: set[tuple[int, Place]] = set()  # from a street to a target
         arrive: dict[int, float] = {}  # by street: how far up someone has its target who is not there yet
         stay: list[tuple[int, Place]] = []  # movers that may stay on their street, and where
 
         def go(here: int, aim: Place | None) -> float:
             if aim is not None:
                 arrive[aim.street] = max(aim.s, arrive.get(aim.street, 0.0))
-            return self._way(here, aim, needed)
+            return self._way(here, aim, needed, last)
 
         for street in self.streets.all:
             if street.closed:
@@ -236,20 +244,28 @@ class Task:
                 total += 2.0
             else:
                 total += go(place.street, aim)
-        passed = {here for here, _ in needed} & {there for _, there in needed}
+        passed = {there for _, there in needed}
         for i, place in stay:
             if i in self.fixed:
                 continue
             in_the_way = place.street in passed or arrive.get(place.street, -1.0) > place.s
             if not self.streets[place.street].in_row(place.s):
                 in_the_way |= not needed.isdisjoint(self._blocked_by(place))
+                point = Sweep((place.street,), place.s, place.s)
+                in_the_way |= any(self.streets.meet(point, self._arrival(k, aim)) for k, aim in last)
             if i in self.targets:
                 total += self._round(place.street) if in_the_way else 0.0
             elif in_the_way or (place.street in arrive and not self._leaves_room(i, place.street, a)):
                 total += self.streets[place.street].length + HOP
         return total
 
-    def _way(self, here: int, aim: Place | None, needed: set[tuple[int, int]]) -> float:
+    def _arrival(self, here: int, aim: Place) -> Sweep:
+        street = self.streets[aim.street]
+        return Sweep((here, aim.street), max(self.streets[here].last, 0.0), min(aim.s, max(street.first, 0.0)))
+
+    def _way(
+        self, here: int, aim: Place | None, needed: set[tuple[int, int]], last: set[tuple[int, Place]]
+    ) -> float:
         if aim is None:
             return HOP
         way, after = self.ways[aim.street]
@@ -257,10 +273,11 @@ class Task:
             return math.inf
         total, k = way[here] + HOP, here
         while True:
+            if after[k] == aim.street:
+                last.add((k, aim))
+                return total
             needed.add((k, after[k]))
             k = after[k]
-            if k == aim.street:
-                return total
             total += HOP
 
     def _leaves_room(self, i: int, index: int, a: Arrangement) -> bool:

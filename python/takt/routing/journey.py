@@ -90,10 +90,12 @@ class _Traveller:
             s = hop.sweep.end if hop.backward else hop.sweep.start
         else:
             s = self.plan.ends[self.number]
+        if not ends and hop.backward and row is not None and row.next != (self.number, level):
+            s = street.last  # others leave before it
         if row is None or (level > 0 and not self.steps[level - 1].hop.to_row) or not street.in_row(s):
             return s
-        if row.back:
-            return min(s, street.last - self.plan.task.streets.gap * row.back.get(self.number, 0))
+        if row.most:
+            return min(s, row.most.get(self.number, s))
         return street.last if ends else s
 
     def go_on(self, streets: Streets, rows: Mapping[int, _Row]) -> None:
@@ -119,9 +121,10 @@ class _Traveller:
 
 @dataclass(frozen=True)
 class _Row:
-    """A row that is not yet to be as it will be in the end: by mover, so many places further back."""
+    """A row that is not yet to be as it will be in the end."""
 
-    back: Mapping[int, int]
+    next: tuple[int, int]  # the hop that changes it next: mover, number
+    most: Mapping[int, float]  # by mover: mm, no further than this
 
 
 class Journey:
@@ -179,13 +182,13 @@ class Journey:
         rows = {}
         for street, shifts in self.plan.shifts.items():
             left = [shift for shift in shifts if self._by_number[shift.hop[0]].over <= shift.hop[1]]
-            if any(shift.temporary for shift in left):
-                rows[street] = _Row(left[0].back)
+            if any(shift.compact for shift in left):
+                rows[street] = _Row(left[0].hop, left[0].most)
         return rows
 
     def _may(self, one: _Traveller) -> bool:
         hop = one.steps[one.level].hop
-        if hop.to_row and hop.backward:
+        if hop.comes_back(self.plan.task.streets[hop.street]):
             # The row makes room for it, once it is its turn.
             for shift in self.plan.shifts[hop.street]:
                 if shift.hop == (one.number, one.level):

@@ -33,12 +33,11 @@ class Step:
 
 @dataclass(frozen=True)
 class Shift:
-    """A hop that needs the row of a street elsewhere than at the targets: (mover, number of its hop). Whoever comes into
-    the row from before it has to find the others so many places further back."""
+    """A hop to or from the row of a street, and where that has to be for it."""
 
-    hop: tuple[int, int]
-    temporary: bool
-    back: Mapping[int, int]  # by mover
+    hop: tuple[int, int]  # mover, and number of its hop
+    compact: bool  # nobody is at its target yet: as far on as possible
+    most: Mapping[int, float]  # by mover: mm, no further than this
 
 
 @dataclass(frozen=True)
@@ -360,8 +359,7 @@ def _steps(task: Task, hops: Sequence[Hop]) -> tuple[tuple[Step, ...], ...]:
             if before.mover == hop.mover:
                 continue
             # Into a row that has to make room at its front comes nobody before that.
-            comes_back = before.to_row and before.backward and before.street == hop.street
-            if comes_back or (task.streets.meet(hop.sweep, before.sweep) and not _follows(hop, before)):
+            if before.comes_back(task.streets[hop.street]) or (task.streets.meet(hop.sweep, before.sweep) and not _follows(hop, before)):
                 after[before.mover] = number
         number = len(steps[hop.mover])
         steps[hop.mover].append(Step(hop, tuple(after.items())))
@@ -379,12 +377,14 @@ def _shifts(task: Task, hops: Sequence[Hop]) -> dict[int, tuple[Shift, ...]]:
         assert a is not None
         one = (hop.mover, numbers[hop.mover])
         numbers[hop.mover] += 1
-        if hop.to_row and hop.backward:
-            back = {i: n for n, i in enumerate(a.rows[hop.street])}
-            shifts.setdefault(hop.street, []).append(Shift(one, True, back))
+        street = task.streets[hop.street]
+        if hop.comes_back(street):
+            high = task.bounds(street, a)[1]
+            most = {i: high - n * task.streets.gap for n, i in enumerate(a.rows[hop.street])}
+            shifts.setdefault(hop.street, []).append(Shift(one, True, most))
         elif hop.to_row or len(hop.sweep.streets) == 1:
             shifts.setdefault(hop.street, []).append(Shift(one, hop.backward, {}))
-    return {k: tuple(own) for k, own in shifts.items() if any(shift.temporary for shift in own)}
+    return {k: tuple(own) for k, own in shifts.items() if any(shift.compact for shift in own)}
 
 
 def _ends(task: Task, hops: Collection[Hop]) -> dict[int, float]:
