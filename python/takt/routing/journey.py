@@ -90,10 +90,10 @@ class _Traveller:
             s = hop.sweep.end if hop.backward else hop.sweep.start
         else:
             s = self.plan.ends[self.number]
-        if not ends and hop.backward and row is not None and row.next != (self.number, level):
-            s = street.last  # others leave before it
         if row is None or (level > 0 and not self.steps[level - 1].hop.to_row) or not street.in_row(s):
             return s
+        if not ends and hop.backward and row.next != (self.number, level):
+            s = street.last  # others leave before it
         if row.most:
             return min(s, row.most.get(self.number, s))
         return street.last if ends else s
