@@ -1,7 +1,7 @@
-"""Ways for many movers at once: `plan_routes` finds them, `Session.move_on_tracks` goes them."""
+"""Ways for many movers at once: `plan_routes` finds them, `Session.move_on_tracks` has them gone."""
 
-from takt.routing.journey import Journey, move_on_tracks
+from takt.routing.journey import Journey
 from takt.routing.plan import RoutePlan, plan_routes
 from takt.routing.streets import RoutingError
 
-__all__ = ["Journey", "RoutePlan", "RoutingError", "move_on_tracks", "plan_routes"]
+__all__ = ["Journey", "RoutePlan", "RoutingError", "plan_routes"]

@@ -224,8 +224,12 @@ class Task:
             if street.closed:
                 continue
             leaves, most = False, -math.inf
-            for i in reversed(a.rows[street.index]):
+            row = a.rows[street.index]
+            crowded = row and not self.fits(street, row, a, aims=True)
+            for i in reversed(row):
                 aim = self.aim(i)
+                # With a free one before it, one at the front of the street does not get to its target.
+                leaves |= bool(crowded) and aim is None and most > street.last - self.streets.gap
                 if not leaves and (aim is None or (aim.street == street.index and aim.s > most)):
                     stay.append((i, aim or Place(street.index, street.last)))
                     if aim is not None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from takt.errors import TimeoutError
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
-from takt.routing.plan import EFFORT, RoutePlan, Target, plan_routes
+from takt.routing.plan import RoutePlan, Target, plan_routes
 from takt.routing.streets import SAME, RoutingError, Streets
 
 if TYPE_CHECKING:
@@ -134,7 +134,6 @@ class Journey:
         self.session = session
         self.plan = plan
         self.started_s = session.now
-        self.plans = 1  # so many were made on the way
         self._all = [_Traveller(i, session.mover(plan.names[i]), plan) for i in sorted(plan.ends)]
         self._by_number = {t.number: t for t in self._all}
         self._looked_s = -math.inf
@@ -229,34 +228,30 @@ def move_on_tracks(
     session: Session,
     targets: Mapping[str, Target],
     *,
-    route: Literal["auto", "shortest"] = "auto",
-    may_move: bool | Iterable[str] = False,
-    gap: float | None = None,
-    timeout: float = DEFAULT_TIMEOUT_S,
-    effort: int = EFFORT,
+    route: Literal["auto", "shortest"],
+    may_move: bool | Iterable[str],
+    gap: float | None,
+    timeout: float,
     **dynamics: float,
-) -> Journey | None:
+) -> dict[str, float]:
     """As Session.move_on_tracks."""
     if route not in ("auto", "shortest"):
         raise ValueError(f"route is one of auto, shortest, not {route!r}")
+    start, tries = session.now, 1
     if route == "shortest":
         options = dynamics if gap is None else {**dynamics, "gap": gap}
-        moves = [
-            session.mover(name).move_on_track(position=s, track=track, **options)
-            for name, (track, s) in targets.items()
-        ]
-        for move in moves:
-            move.wait(timeout)
-        return None
-    end = session.now + timeout
-    for tries in range(1, TRIES + 1):
-        plan = plan_routes(session, targets, may_move=may_move, gap=gap, effort=effort, **dynamics)
+        moves = {m: session.mover(m).move_on_track(position=s, track=track, **options) for m, (track, s) in targets.items()}
+        for move in moves.values():
+            move.wait(max(start + timeout - session.now, 0.0))
+        return {m: move.time_s - start for m, move in moves.items()}
+    while True:
+        plan = plan_routes(session, targets, may_move=may_move, gap=gap, **dynamics)
         journey = Journey(session, plan)
-        journey.plans = tries
         try:
-            return journey.wait(end - session.now)
+            journey.wait(max(start + timeout - session.now, 0.0))
+            return {m: s + journey.started_s - start for m, s in journey.arrived_s.items()}
         except _Interrupted as interruption:
             journey.halt()
             if tries == TRIES:
                 raise RoutingError(f"given up after {tries} plans: {interruption}") from None
-    raise AssertionError
+            tries += 1
