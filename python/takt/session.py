@@ -259,9 +259,7 @@ class Session(MachineCommands):
         from takt.routing.journey import move_on_tracks
 
         self._check_open()
-        return move_on_tracks(
-            self, targets, route=route, may_move=may_move, gap=gap, timeout=timeout, **dynamics
-        )
+        return move_on_tracks(self, targets, route=route, may_move=may_move, gap=gap, timeout=timeout, **dynamics)
 
     # --- time ---
 

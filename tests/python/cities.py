@@ -63,7 +63,9 @@ def random_city(rng: random.Random, count: int, side: int = 4) -> list[Road]:
             (line((a.x, a.y), a.ahead(rng.uniform(50, 200))), line(b.ahead(-rng.uniform(50, 200)), (b.x, b.y)))
         )
         try:
-            laid = TrackLayout(f"tracks:\n  - {{name: r, mover_width: {SIZE}, mover_height: {SIZE}, elements: [{elements}]}}\n").tracks[0]
+            laid = TrackLayout(
+                f"tracks:\n  - {{name: r, mover_width: {SIZE}, mover_height: {SIZE}, elements: [{elements}]}}\n"
+            ).tracks[0]
         except takt.ConfigError:
             continue
         road = Road(start, end, elements, laid)
@@ -118,15 +120,11 @@ def machine(roads: list[Road], places: list[tuple[float, float]]) -> str:
         links = (f", starts_from: [{', '.join(before)}]" if before else "") + (
             f", ends_at: [{', '.join(behind)}]" if behind else ""
         )
-        text += (
-            f"  - {{name: t{i}, mover_width: {SIZE}, mover_height: {SIZE}, elements: [{r.elements}]{links}}}\n"
-        )
+        text += f"  - {{name: t{i}, mover_width: {SIZE}, mover_height: {SIZE}, elements: [{r.elements}]{links}}}\n"
     return text
 
 
-def random_places(
-    rng: random.Random, tracks: list[LaidTrack], streets: Streets, count: int
-) -> list[tuple[int, float]]:
+def random_places(rng: random.Random, tracks: list[LaidTrack], streets: Streets, count: int) -> list[tuple[int, float]]:
     """Places on tracks where movers can stand at a time, as many of them as are found."""
     places: list[tuple[int, float]] = []
     lengths = [track.length for track in tracks]
@@ -150,8 +148,6 @@ def put_on_tracks(engine: takt.Session, starts: list[tuple[int, float]], names: 
     everything = [*engine.tracks.values(), *engine.movers.values()]
     for feedback in [one.enable() for one in everything]:
         feedback.wait()
-    joins = [
-        mover.join_track(track=names[k]) for mover, (k, _) in zip(engine.movers.values(), starts, strict=True)
-    ]
+    joins = [mover.join_track(track=names[k]) for mover, (k, _) in zip(engine.movers.values(), starts, strict=True)]
     for feedback in joins:
         feedback.wait()

@@ -38,14 +38,17 @@ class Watch:
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         self.deadlocked: set[str] = set()
+        self._before: set[str] = set()
         self.nearest = math.inf
         engine.program(self.look)
 
     def look(self) -> None:
         by_track: dict[int, list[float]] = {}
+        # Those that set out together, one at its gap behind the other, may say so for one cycle.
+        now = {mover.name for mover in self.engine.movers.values() if mover.deadlocked}
+        self.deadlocked |= now & self._before
+        self._before = now
         for mover in self.engine.movers.values():
-            if mover.deadlocked:
-                self.deadlocked.add(mover.name)
             by_track.setdefault(mover.track, []).append(mover.track_position)
         for places in by_track.values():
             places.sort()
@@ -164,40 +167,168 @@ def test_one_that_is_in_the_way() -> None:
 
 # --- a ring of four switches ---
 
-
-def square() -> str:
-    """Four tracks round a square, and at each corner one that leads in and one that leads out."""
-    corners = [(0, 0), (2400, 0), (2400, 2400), (0, 2400)]
-    along = [(1, 0), (0, 1), (-1, 0), (0, -1)]
-    text = ""
-    for i, ((x, y), (u, v)) in enumerate(zip(corners, along, strict=True)):
-        a, b = (x + 300 * u, y + 300 * v), (x + 2100 * u, y + 2100 * v)
-        last = ", ends_at: [side0]" if i == 3 else ""
-        first = f", starts_from: [side{i - 1}]" if i else ""
-        text += f"  - {{name: side{i}{first}, elements: [{line(a, b)}]{last}}}\n"
-    for i, ((x, y), (u, v)) in enumerate(zip(corners, along, strict=True)):
-        a = (x + 2700 * u, y + 2700 * v)
-        b = (x + 3700 * u, y + 3700 * v)
-        text += f"  - {{name: out{i}, starts_from: [side{i}], elements: [{line(a, b)}]}}\n"
-    return text
+STATIONS = f"""  - {{name: west, elements: [{line((1500, 1500), (500, 1500))}, {line((500, 0), (1500, 0))}]}}
+  - {{name: south1, starts_from: [west], elements: [{line((1500, 0), (3500, 0))}]}}
+  - {{name: east, starts_from: [south1], elements: [{line((3500, 0), (4500, 0))}, {line((4500, 1500), (3500, 1500))}]}}
+  - {{name: south2, starts_from: [west], elements: [{line((2200, -700), (2800, -700))}], ends_at: [east]}}
+  - {{name: north1, starts_from: [east], elements: [{line((3500, 1500), (1500, 1500))}], ends_at: [west]}}
+  - {{name: north2, starts_from: [east], elements: [{line((2800, 2200), (2200, 2200))}], ends_at: [west]}}
+"""
 
 
 def test_a_ring_of_four_switches() -> None:
-    """The ring is full of movers that want to the other side of it: each waits for the next, unless they are planned."""
-    layout = TrackLayout(f"tracks:\n{square()}").tracks
-    streets = Streets(layout, GAP)
-    movers, targets = {}, {}
+    """Both ends of a ring with two stations of two tracks each: the movers there are to stand in another order."""
+    places = {"west": [1900.0, 1500.0, 1100.0], "east": [1800.0, 1400.0, 1000.0]}
+    movers = {f"{track}{k}": (track, s) for track, own in places.items() for k, s in enumerate(own)}
+    targets = {
+        f"{track}{k}": (track, s) for track, own in places.items() for k, s in enumerate((own[2], own[0], own[1]))
+    }
+    assert len(naive(on_tracks(STATIONS, movers), targets, 20)) >= 4
+    engine = on_tracks(STATIONS, movers)
+    plan = takt.plan_routes(engine, targets)
+    assert {track for name in movers for track in plan.way(name)} >= {"south1", "south2"} or (
+        {track for name in movers for track in plan.way(name)} >= {"north1", "north2"}
+    )
+    check(engine, targets, timeout=120)
+
+
+def test_a_roundabout() -> None:
+    """Four ways into a ring and four out of it: from each side five movers, three quarters round."""
+    length = TrackLayout(f"tracks:\n{roundabout()}").tracks[-1].length
+    movers = {f"m{i}{k}": (f"in{i}", 1600.0 - 210 * k) for i in range(4) for k in range(5)}
+    targets = {f"m{i}{k}": (f"out{(i + 3) % 4}", length - 10 - 210 * k) for i in range(4) for k in range(5)}
+    times = check(on_tracks(roundabout(), movers), targets)
+    assert set(times) == set(movers)
+
+
+def roundabout() -> str:
+    """Four tracks in a ring; where one goes on into the next, another one leads in and a third one out."""
+    radius = 700.0
+
+    def at(i: int, ahead: float, turned: float = 0.0) -> tuple[float, float]:
+        angle = i * math.pi / 2
+        tangent = angle + math.pi / 2 - math.copysign(math.radians(turned), ahead)
+        x, y = radius * math.cos(angle), radius * math.sin(angle)
+        return x + ahead * math.cos(tangent), y + ahead * math.sin(tangent)
+
+    text = ""
     for i in range(4):
-        side = streets[i]
-        count = math.floor((side.last - side.first) / GAP) + 1
-        for k in range(count):
-            name = f"m{i}{k}"
-            movers[name] = (f"side{i}", side.first + GAP * k + 0.1 * k)
-            targets[name] = (f"out{(i + 2) % 4}", streets[4 + (i + 2) % 4].last - (GAP + 1) * k)
-        while targets[name][1] < streets[4].first:
-            del targets[name]
-            name = f"m{i}{int(name[2:]) - 1}"
-    deadlocked = naive(on_tracks(square(), movers), targets, 20)
-    assert len(deadlocked) >= 4
-    engine = on_tracks(square(), movers)
-    check(engine, targets, may_move=True, timeout=120)
+        links = (f", starts_from: [side{i - 1}]" if i else "") + (", ends_at: [side0]" if i == 3 else "")
+        pieces = f"{line(at(i, 0), at(i, 40))}, {line(at(i + 1, -40), at(i + 1, 0))}"
+        text += f"  - {{name: side{i}, elements: [{pieces}]{links}}}\n"
+    for i in range(4):
+        pieces = f"{line(at(i, -2000, 60), at(i, -600, 60))}, {line(at(i, -40), at(i, 0))}"
+        text += f"  - {{name: in{i}, elements: [{pieces}], ends_at: [side{i}]}}\n"
+        pieces = f"{line(at(i, 0), at(i, 40))}, {line(at(i, 600, 60), at(i, 2000, 60))}"
+        text += f"  - {{name: out{i}, starts_from: [side{(i - 1) % 4}], elements: [{pieces}]}}\n"
+    return text
+
+
+# --- in random networks ---
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_networks(seed: int) -> None:
+    """Where movers can get by being sent about at random one after the other, they get at once when planned."""
+    rng = random.Random(seed)
+    roads = random_city(rng, 24)
+    tracks = TrackLayout(machine(roads, [])).tracks
+    starts = random_places(rng, list(tracks), Streets(tracks, GAP + 5), 10)
+    text = machine(roads, [point(tracks[k], s) for k, s in starts])
+    names = [track.name for track in tracks]
+    engine = Engine(text)
+    put_on_tracks(engine, starts, names)
+    targets = wander(rng, engine)
+    engine = Engine(text)
+    put_on_tracks(engine, starts, names)
+    check(engine, targets, may_move=True)
+
+
+def wander(rng: random.Random, engine: Engine) -> dict[str, tuple[str, float]]:
+    """Sends one mover after the other to random places, as far as it gets; where they are in the end."""
+    tracks, movers = list(engine.tracks.values()), list(engine.movers.values())
+    for _ in range(5 * len(movers)):
+        mover, track = rng.choice(movers), rng.choice(tracks)
+        move = mover.move_on_track(track=track.name, position=rng.uniform(0, track.length), gap=GAP + 5)
+        engine.wait(lambda m=mover, f=move: f.final or (m.waits_for and abs(m.track_velocity) < 1e-3), 30)  # type: ignore[misc]
+        if not move.final:  # where it waits is as near to a switch as can be: a little further back
+            mover.halt().wait()
+            if mover.track_position > 1:
+                mover.move_on_track(position=mover.track_position - 1, gap=GAP + 1)
+                engine.run(0.3)
+                mover.halt().wait()
+    return {mover.name: (tracks[mover.track - 1].name, mover.track_position) for mover in movers}
+
+
+# --- what goes wrong on the way, and what cannot be ---
+
+
+def test_planned_anew() -> None:
+    """One that is halted by somebody else does not end it: all come to rest, and a new plan is made."""
+    targets = {"a": ("main", 1300.0), "b": ("main", 300.0)}
+    engine = on_tracks(RING, {"a": ("main", 300.0), "b": ("main", 1300.0)})
+    halted = []
+
+    @engine.program
+    def meddle() -> None:
+        if not halted and engine.mover("b").track == 2 and engine.mover("b").track_position > 700:
+            halted.append(engine.mover("b").halt())
+
+    check(engine, targets)
+    assert halted
+
+    engine = on_tracks(RING, {"a": ("main", 300.0), "b": ("main", 1300.0)})
+    broken = []
+
+    @engine.program
+    def break_down() -> None:
+        if not broken and engine.mover("b").track == 2:
+            broken.append(engine.mover("b").disable())
+
+    with pytest.raises(takt.RoutingError, match="mover b cannot move along tracks now: Disabl"):
+        engine.move_on_tracks(targets)
+    engine.run(1)
+    assert engine.mover("a").track_velocity == 0
+
+
+def test_bad_requests() -> None:
+    engine = on_tracks(RING, {"a": ("main", 300.0), "b": ("main", 1300.0)})
+    with pytest.raises(takt.TaktError, match="no mover 'c'"):
+        engine.move_on_tracks({"c": ("main", 1.0)})
+    with pytest.raises(takt.TaktError, match="no track 'mian'; did you mean 'main'"):
+        engine.move_on_tracks({"a": ("mian", 1.0)})
+    with pytest.raises(takt.RoutingError, match="from 0 to 2000 mm, not to 2001"):
+        engine.move_on_tracks({"a": ("main", 2001.0)})
+    with pytest.raises(takt.RoutingError, match="target of mover a is too near to that of b for a gap of 200 mm"):
+        engine.move_on_tracks({"a": ("main", 1000.0), "b": ("main", 1150.0)})
+    with pytest.raises(takt.RoutingError, match="target of mover a is too near to where b stands"):
+        engine.move_on_tracks({"a": ("main", 1150.0)})
+    with pytest.raises(ValueError, match="auto, shortest"):
+        engine.move_on_tracks({"a": ("main", 1.0)}, route="best")  # type: ignore[arg-type]
+    assert set(engine.move_on_tracks({"a": ("main", 900.0)}, route="shortest")) == {"a"}
+    engine.mover("b").leave_track(x=0, y=-500).wait()
+    with pytest.raises(takt.RoutingError, match="b is on no track"):
+        engine.move_on_tracks({"b": ("main", 1.0)})
+    engine.track("main").append_line(start_x=0, start_y=0, end_x=1, end_y=0).wait_final()
+
+
+def test_over_lcm(tmp_path: Path) -> None:
+    """The same against taktd."""
+    url = new_url()
+    engine = on_tracks(RING, {"a": ("main", 300.0), "b": ("main", 1300.0)})
+    with running(tmp_path, url, machine=engine.machine_text), takt.connect(url) as session:
+        put_on_tracks(session, [(0, 300.0), (0, 1300.0)], ["main", "back"])
+        times = session.move_on_tracks({"a": ("main", 1300.0), "b": ("main", 300.0)})
+        assert session.mover("b").track_position == pytest.approx(300, abs=1e-6)
+    assert 1 < times["b"] < 10
+
+
+def test_the_same_each_time() -> None:
+    """Plans depend on nothing but what they are made of: two engines, one story, the same to the last bit."""
+    hashes = []
+    for _ in range(2):
+        engine = on_tracks(RING, {"a": ("main", 300.0), "b": ("main", 1300.0)})
+        engine.move_on_tracks({"a": ("main", 1300.0), "b": ("main", 300.0)})
+        hashes.append(engine.state_hash)
+    assert hashes[0] == hashes[1]
+    assert np.isfinite(engine.mover("a").x)

@@ -169,9 +169,12 @@ class Task:
             aim = self.targets.get(i)
             if not street.has_room or s > street.last:
                 yield from self._onward(i, street, s)
-            if aim is not None and aim.street == index and aim.s != s and (not street.has_room or (
-                not street.in_row(aim.s) and (aim.s < street.first) == (s < street.first)
-            )):
+            if (
+                aim is not None
+                and aim.street == index
+                and aim.s != s
+                and (not street.has_room or (not street.in_row(aim.s) and (aim.s < street.first) == (s < street.first)))
+            ):
                 yield Hop(i, Sweep((index,), min(s, aim.s), max(s, aim.s)), aim.s < s, False)
             if not street.has_room:
                 continue
@@ -186,17 +189,26 @@ class Task:
             last = self.streets[way[-1]]
             if last.has_room:
                 yield Hop(i, Sweep(way, s, last.first), False, True)
-            if aim is not None and aim.street == last.index and aim.s < max(last.first, SAME) or (
-                aim is not None and aim.street == last.index and not last.has_room
+            if (
+                aim is not None
+                and aim.street == last.index
+                and aim.s < max(last.first, SAME)
+                or (aim is not None and aim.street == last.index and not last.has_room)
             ):
                 yield Hop(i, Sweep(way, s, aim.s), False, False)
 
     # --- how far it is ---
 
     def is_done(self, a: Arrangement) -> bool:
-        return all(
-            self.fits(street, a.rows[street.index], a, aims=True) for street in self.streets.all if not street.closed
-        ) and all(self.targets.get(i, place) == place for i, place in a.apart) and not self._missing(a)
+        return (
+            all(
+                self.fits(street, a.rows[street.index], a, aims=True)
+                for street in self.streets.all
+                if not street.closed
+            )
+            and all(self.targets.get(i, place) == place for i, place in a.apart)
+            and not self._missing(a)
+        )
 
     def _missing(self, a: Arrangement) -> bool:
         """Someone is in a row and not on the street, or within the stretch, where its target is."""
@@ -267,9 +279,7 @@ class Task:
         street = self.streets[aim.street]
         return Sweep((here, aim.street), max(self.streets[here].last, 0.0), min(aim.s, max(street.first, 0.0)))
 
-    def _way(
-        self, here: int, aim: Place | None, needed: set[tuple[int, int]], last: set[tuple[int, Place]]
-    ) -> float:
+    def _way(self, here: int, aim: Place | None, needed: set[tuple[int, int]], last: set[tuple[int, Place]]) -> float:
         if aim is None:
             return HOP
         way, after = self.ways[aim.street]

@@ -215,6 +215,7 @@ class Journey:
                 if not t.there
             ]
             raise TimeoutError(f"not there within {timeout:g} s: {', '.join(late)}") from None
+        self.session._catch_up(max((t.feedback.cycle for t in self._all if t.feedback), default=0))
         return self
 
     def halt(self) -> None:
@@ -240,7 +241,9 @@ def move_on_tracks(
     start, tries = session.now, 1
     if route == "shortest":
         options = dynamics if gap is None else {**dynamics, "gap": gap}
-        moves = {m: session.mover(m).move_on_track(position=s, track=track, **options) for m, (track, s) in targets.items()}
+        moves = {
+            m: session.mover(m).move_on_track(position=s, track=track, **options) for m, (track, s) in targets.items()
+        }
         for move in moves.values():
             move.wait(max(start + timeout - session.now, 0.0))
         return {m: move.time_s - start for m, move in moves.items()}

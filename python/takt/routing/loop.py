@@ -34,7 +34,9 @@ def go_round(loop: Loop, streets: Streets, names: Sequence[str]) -> dict[int, fl
             best = ends
     if best is None:
         stay = f", and {', '.join(names[i] for i in loop.fixed)} may not be moved" if loop.fixed else ""
-        raise RoutingError(f"on loop {loop.street.name} nobody overtakes: the targets are in another order than the movers{stay}")
+        raise RoutingError(
+            f"on loop {loop.street.name} nobody overtakes: the targets are in another order than the movers{stay}"
+        )
     moving = {i: s for i, s in best.items() if i in loop.targets or abs(s - starts[i]) > SAME}
     # As the engine counts: from where each of them is within the loop.
     return {i: s - (starts[i] - loop.starts[i]) for i, s in moving.items() if i not in loop.fixed}

@@ -118,7 +118,9 @@ def plan_routes(
     for name in targets:
         if name not in able:
             mover = movers[name]
-            raise RoutingError(f"mover {name} cannot move along tracks now: {mover.state.value}, {mover.command_mode.value}")
+            raise RoutingError(
+                f"mover {name} cannot move along tracks now: {mover.state.value}, {mover.command_mode.value}"
+            )
     fixed = frozenset(i for i, name in enumerate(names) if i not in aims and not (name in free and name in able))
     starts = tuple(Place(m.track - 1, m.track_position) for m in movers.values())
     task = Task(streets, starts, aims, fixed)
@@ -169,7 +171,9 @@ def _check_targets(task: Task, names: Sequence[str]) -> None:
             if near or streets.meet(_point(a), _point(b)):
                 one, two = (names[j], names[i]) if j not in task.fixed else (names[i], names[j])
                 stands = f"where {two} stands" if i in task.fixed or j in task.fixed else f"that of {two}"
-                raise RoutingError(f"the target of mover {one} is too near to {stands} for a gap of {streets.gap:.6g} mm")
+                raise RoutingError(
+                    f"the target of mover {one} is too near to {stands} for a gap of {streets.gap:.6g} mm"
+                )
 
 
 def _check_ways(task: Task, names: Sequence[str]) -> None:
@@ -178,17 +182,21 @@ def _check_ways(task: Task, names: Sequence[str]) -> None:
         here = task.starts[i].street
         if streets[here].closed or streets[aim.street].closed:
             if here != aim.street:
-                raise RoutingError(f"mover {names[i]}: no way leads from {streets[here].name} to {streets[aim.street].name}")
+                raise RoutingError(
+                    f"mover {names[i]}: no way leads from {streets[here].name} to {streets[aim.street].name}"
+                )
             continue
         if here == aim.street:
             continue
         open_ways, _ = streets.way_to(aim.street)
         if open_ways[here] == math.inf:
-            raise RoutingError(f"mover {names[i]}: no way leads from {streets[here].name} to {streets[aim.street].name}")
+            raise RoutingError(
+                f"mover {names[i]}: no way leads from {streets[here].name} to {streets[aim.street].name}"
+            )
         if task.ways[aim.street][0][here] == math.inf:
-            standing = sorted(
-                names[j] for j in task.fixed if _frees(task, j, here, aim.street)
-            ) or sorted(names[j] for j in task.fixed)
+            standing = sorted(names[j] for j in task.fixed if _frees(task, j, here, aim.street)) or sorted(
+                names[j] for j in task.fixed
+            )
             raise RoutingError(
                 f"mover {names[i]}: {' and '.join(standing)} on the way to {streets[aim.street].name} may not be moved"
             )
@@ -359,7 +367,9 @@ def _steps(task: Task, hops: Sequence[Hop]) -> tuple[tuple[Step, ...], ...]:
             if before.mover == hop.mover:
                 continue
             # Into a row that has to make room at its front comes nobody before that.
-            if before.comes_back(task.streets[hop.street]) or (task.streets.meet(hop.sweep, before.sweep) and not _follows(hop, before)):
+            if before.comes_back(task.streets[hop.street]) or (
+                task.streets.meet(hop.sweep, before.sweep) and not _follows(hop, before)
+            ):
                 after[before.mover] = number
         number = len(steps[hop.mover])
         steps[hop.mover].append(Step(hop, tuple(after.items())))
