@@ -87,7 +87,7 @@ def _go_together(a: Road, b: Road) -> bool:
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         at_start = first == 0 and a.start in (b.start, b.end)
         at_end = last == len(near) and a.end in (b.start, b.end)
-        if not at_start and not at_end or last - first > 0.6 * len(near):
+        if (not at_start and not at_end) or last - first > 0.6 * len(near):
             return False
     return True
 

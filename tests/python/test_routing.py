@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import random
 from collections.abc import Mapping
@@ -52,7 +53,7 @@ class Watch:
             by_track.setdefault(mover.track, []).append(mover.track_position)
         for places in by_track.values():
             places.sort()
-            for a, b in zip(places, places[1:], strict=False):
+            for a, b in itertools.pairwise(places):
                 self.nearest = min(self.nearest, b - a)
 
 
@@ -151,7 +152,7 @@ def test_one_that_is_in_the_way() -> None:
     targets = {"a": ("main", 1500.0)}
     engine = on_tracks(SIDING, movers)
     here = engine.mover("b").track_position
-    with pytest.raises(takt.RoutingError, match="b may not be moved|; b may not be moved"):
+    with pytest.raises(takt.RoutingError, match="b may not be moved"):
         engine.move_on_tracks(targets)
     engine.run(0.1)
     assert (engine.mover("a").track_velocity, engine.mover("b").track_position) == (0, here)

@@ -1,5 +1,5 @@
-"""Who is where on streets, as far as it matters for who can pass, and the search for an order of hops that brings all to
-their targets.
+"""Who is where on streets, as far as it matters for who can pass, and the search for an order of hops that brings all
+to their targets.
 
 On one street nobody overtakes; so it matters who stands before whom, not where. An arrangement is a row of movers for
 each street, and those who stand within the zones of nodes by themselves. A hop takes one mover from a row to the next,
@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from takt.routing.streets import MARGIN, SAME, Street, Streets, Sweep
+from takt.routing.streets import MARGIN, Street, Streets, Sweep
 
 HOP = 100.0  # mm that a hop costs besides its way
 
@@ -189,12 +189,7 @@ class Task:
             last = self.streets[way[-1]]
             if last.has_room:
                 yield Hop(i, Sweep(way, s, last.first), False, True)
-            if (
-                aim is not None
-                and aim.street == last.index
-                and aim.s < max(last.first, SAME)
-                or (aim is not None and aim.street == last.index and not last.has_room)
-            ):
+            if aim is not None and aim.street == last.index and (not last.has_room or aim.s < last.first):
                 yield Hop(i, Sweep(way, s, aim.s), False, False)
 
     # --- how far it is ---

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from takt.errors import TimeoutError
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
@@ -21,7 +21,7 @@ NEAR = 0.05  # mm that a mover may be off its place
 TRIES = 3
 
 
-class _Interrupted(RoutingError):
+class _InterruptedError(RoutingError):
     """A mover does not do any more what it was told."""
 
 
@@ -111,7 +111,7 @@ class _Traveller:
             first, self.sent = self.sent is None, (level, s)
             if first and len(rest) == 1 and abs(s - self.s) < SAME:
                 return
-            options = dict(self.plan.dynamics)
+            options: dict[str, Any] = dict(self.plan.dynamics)
             if self.plan.gap is not None:
                 options["gap"] = self.plan.gap
             track = "" if streets[rest[-1]].closed else streets[rest[-1]].name
@@ -199,9 +199,9 @@ class Journey:
     def _check(self, one: _Traveller) -> None:
         name, state = one.mover.name, one.mover.state.value
         if state != "Enabled":
-            raise _Interrupted(f"mover {name} is {state} on its way")
+            raise _InterruptedError(f"mover {name} is {state} on its way")
         if one.feedback is not None and (one.feedback.error or one.feedback.aborted):
-            raise _Interrupted(f"mover {name} does not go its way any more: {one.feedback.sentence}")
+            raise _InterruptedError(f"mover {name} does not go its way any more: {one.feedback.sentence}")
 
     def wait(self, timeout: float = DEFAULT_TIMEOUT_S) -> Journey:
         """Lets engine time pass until all are there."""
@@ -233,14 +233,14 @@ def move_on_tracks(
     may_move: bool | Iterable[str],
     gap: float | None,
     timeout: float,
-    **dynamics: float,
+    **dynamics: Any,
 ) -> dict[str, float]:
     """As Session.move_on_tracks."""
     if route not in ("auto", "shortest"):
         raise ValueError(f"route is one of auto, shortest, not {route!r}")
     start, tries = session.now, 1
     if route == "shortest":
-        options = dynamics if gap is None else {**dynamics, "gap": gap}
+        options: dict[str, Any] = dynamics if gap is None else {**dynamics, "gap": gap}
         moves = {
             m: session.mover(m).move_on_track(position=s, track=track, **options) for m, (track, s) in targets.items()
         }
@@ -253,7 +253,7 @@ def move_on_tracks(
         try:
             journey.wait(max(start + timeout - session.now, 0.0))
             return {m: s + journey.started_s - start for m, s in journey.arrived_s.items()}
-        except _Interrupted as interruption:
+        except _InterruptedError as interruption:
             journey.halt()
             if tries == TRIES:
                 raise RoutingError(f"given up after {tries} plans: {interruption}") from None

@@ -1,4 +1,4 @@
-"""Movers on a closed loop: their order stays what it is, so all that there is to find is who goes how many times round."""
+"""Movers on a closed loop: their order stays what it is; all that there is to find is who goes how many times round."""
 
 from __future__ import annotations
 

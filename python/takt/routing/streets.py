@@ -1,7 +1,7 @@
-"""The tracks of a machine as a planner of ways sees them: where movers can rest out of everyone's way, how they get from
-one such place to the next, and which of these passages do not go together.
+"""The tracks of a machine as a planner of ways sees them: where movers can rest out of everyone's way, how they get
+from one such place to the next, and which of these passages do not go together.
 
-The engine keeps movers apart by their gap, along the way; around a node, where tracks meet, everyone is looked at who is
+The engine keeps movers apart by their gap, along the way; around a node, where tracks meet, it looks at everyone who is
 nearer to it than its gap or the collision range of its track. Out of these zones movers on different tracks have
 nothing to do with one another. So a track has room for a row of movers between the zones at its ends, and whoever
 passes from one row to another has the zones between to itself.
@@ -10,6 +10,7 @@ passes from one row to another has the zones between to itself.
 from __future__ import annotations
 
 import heapq
+import itertools
 import math
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
@@ -144,7 +145,7 @@ class Streets:
         if target in streets[:-1] or len(streets) > LONGEST:
             return False
         way = self._ways_to(target)
-        for here, there in zip(streets[:-1], streets[1:], strict=True):
+        for here, there in itertools.pairwise(streets):
             costs = {k: 0.0 if k == target else self[k].length + way[k] for k in self[here].behind}
             if any(costs[k] < costs[there] + SAME for k in costs if k != there):
                 return False
