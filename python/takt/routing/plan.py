@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 EFFORT = 20_000  # arrangements looked at before a plan is given up
 DYNAMICS = ("velocity", "acceleration", "deceleration", "jerk")
+STANDS = 1e-3  # mm/s
 Target = tuple[str, float]  # a track, and mm along it
 
 
@@ -83,8 +84,11 @@ def plan_routes(
     for key in dynamics:
         if key not in DYNAMICS:
             raise TypeError(f"dynamics are {', '.join(DYNAMICS)}, not {key}")
-    movers = {name: m for name, m in session.movers.items() if m.track and m.command_mode.value != "JoiningTrack"}
+    movers = {name: mover for name, mover in session.movers.items() if mover.track}
     names = tuple(movers)
+    for name, mover in movers.items():
+        if mover.command_mode.value in ("JoiningTrack", "LeavingTrack") or abs(mover.track_velocity) > STANDS:
+            raise RoutingError(f"mover {name} is in motion: ways are planned for movers that stand")
     if may_move is True:
         free: set[str] = set(names)
     else:
