@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from takt.routing.arrangement import Arrangement, Hop, Place, Task
@@ -198,8 +198,9 @@ def shifts_of(task: Task, hops: Sequence[Hop]) -> dict[int, tuple[Shift, ...]]:
     return {k: tuple(own) for k, own in shifts.items() if any(shift.compact for shift in own)}
 
 
-def ends_of(task: Task, hops: Sequence[Hop]) -> dict[int, float]:
-    """Where the movers of rows come to stand in the end: at their targets; others no further than they have to."""
+def ends_of(task: Task, hops: Sequence[Hop], shifted: Collection[int]) -> dict[int, float]:
+    """Where those that move come to stand in the end: at their targets; others no further than they have to. All
+    in rows that are shifted on the way do move."""
     a: Arrangement | None = task.start
     for hop in hops:
         assert a is not None
@@ -227,6 +228,7 @@ def ends_of(task: Task, hops: Sequence[Hop]) -> dict[int, float]:
             else:
                 s = min(max(task.starts[i].s, least[i]), high)
             high = s - gap
-            if i not in task.fixed and (aim is not None or i in moved or abs(s - task.starts[i].s) > SAME):
+            moves = street.index in shifted or i in moved or abs(s - task.starts[i].s) > SAME
+            if i not in task.fixed and (aim is not None or moves):
                 ends[i] = s
     return ends

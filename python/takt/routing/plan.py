@@ -129,9 +129,9 @@ def plan_routes(
         raise RoutingError(f"no plan was found after {found.tried} arrangements of movers; there may be one")
     pace = dynamics.get("velocity") or max((_velocity(m.parameters) for m in movers.values()), default=1.0)
     hops = in_time(task, shorter(task, found.hops), pace)
-    steps = steps_of(task, hops)
-    ends |= ends_of(task, hops)
-    return RoutePlan(names, dict(targets), task, steps, shifts_of(task, hops), ends, found.tried, gap, dynamics)
+    steps, shifts = steps_of(task, hops), shifts_of(task, hops)
+    ends |= ends_of(task, hops, shifts)
+    return RoutePlan(names, dict(targets), task, steps, shifts, ends, found.tried, gap, dynamics)
 
 
 def _velocity(parameters: Mapping[str, object]) -> float:
