@@ -121,8 +121,10 @@ def plan_routes(
     _check_ways(task, names)
     found = search(task, effort)
     if found.hops is None and found.complete:
+        switches = any(street.end_node >= 0 for street in streets.all)
+        resting = " by movers that wait outside the zones of switches" if switches else ""
         raise RoutingError(
-            "the targets cannot all be reached: every order of passing was tried "
+            f"the targets cannot all be reached{resting}: every order of passing was tried "
             f"({found.tried} arrangements{_aside(task, names)})"
         )
     if found.hops is None:
