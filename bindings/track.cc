@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bindings.h"
+#include "takt/mover/streets.h"
 #include "takt/track/ranges.h"
 
 namespace takt::bindings {
@@ -47,6 +48,29 @@ class Layout {
     return py::make_tuple(ranges.at_start, ranges.at_end);
   }
 
+  // The ranges at both ends that movers keep to: as they are given, or as the engine finds them in passing.
+  RangePair TrafficRanges(std::size_t i) {
+    CheckTrack(i);
+    const track::TrackParams& params = tracks_.params[i];
+    if (params.collision_range_mode == track::CollisionRangeMode::kManual) {
+      return py::make_tuple(params.collision_range_at_start, params.collision_range_at_end);
+    }
+    if (!streets_) {
+      streets_ = std::make_unique<mover::Streets>(0, names());
+      std::vector<mover::TrackNow> now(tracks_.ways.size());
+      for (std::size_t k = 0; k < now.size(); ++k) {
+        const track::TrackParams& its = tracks_.params[k];
+        now[k].way = tracks_.ways[k];
+        now[k].length = tracks_.states[k].length;
+        now[k].start_node = tracks_.start_nodes[k];
+        now[k].end_node = tracks_.end_nodes[k];
+        now[k].reach = std::hypot(its.mover_width, its.mover_height);
+      }
+      mover::Refresh(now, *streets_);
+    }
+    return py::make_tuple(streets_->network.roads[i].range_at_start, streets_->network.roads[i].range_at_end);
+  }
+
   // Rows of s, x, y, direction in deg, curvature in 1/mm, and 1 where a piece was given; `step` mm apart or nearer.
   Array Points(std::size_t i, double step) const {
     CheckTrack(i);
@@ -81,6 +105,7 @@ class Layout {
   }
 
   track::Tracks tracks_;
+  std::unique_ptr<mover::Streets> streets_;  // made when it is asked for
 };
 
 }  // namespace
@@ -96,6 +121,7 @@ void BindTrack(py::module_& m) {
       .def("before", &L::Before, py::arg("track"))
       .def("behind", &L::Behind, py::arg("track"))
       .def("collision_ranges", &L::Ranges, py::arg("track"))
+      .def("traffic_ranges", &L::TrafficRanges, py::arg("track"))
       .def("points", &L::Points, py::arg("track"), py::arg("step"));
 }
 

@@ -29,6 +29,7 @@ from takt.pose import FreePose
 from takt.recording import Recording, RecordingError
 from takt.remote import RemoteSession, connect
 from takt.replay import ReplayResult, replay
+from takt.routing import Journey, RoutePlan, RoutingError, plan_routes
 from takt.session import Recorder, Session
 from takt.track import Track, TrackPosition
 from takt.trail import TrackTrail
@@ -50,6 +51,7 @@ __all__ = [
     "Group",
     "Forecast",
     "FreePose",
+    "Journey",
     "PickPlace",
     "PlanarGroup",
     "LogError",
@@ -61,6 +63,8 @@ __all__ = [
     "RecordingError",
     "RemoteSession",
     "ReplayResult",
+    "RoutePlan",
+    "RoutingError",
     "Session",
     "TaktError",
     "TimeoutError",
@@ -72,6 +76,7 @@ __all__ = [
     "error_name",
     "error_text",
     "expect",
+    "plan_routes",
     "read_log",
     "read_machine",
     "replay",

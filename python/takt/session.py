@@ -8,7 +8,7 @@ import sys
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType, TracebackType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from takt._commands import DEFAULTS, LEVEL_SENSITIVE, MachineCommands
 from takt.arguments import to_text, without_arguments
@@ -256,6 +256,33 @@ class Session(MachineCommands):
 
     def _command(self, verb: str, arguments: Mapping[str, Any]) -> Feedback:
         return self.command("machine", verb, arguments)
+
+    def move_on_tracks(
+        self,
+        targets: Mapping[str, tuple[str, float]],
+        *,
+        route: Literal["auto", "shortest"] = "auto",
+        may_move: bool | Iterable[str] = False,
+        gap: float | None = None,
+        timeout: float = DEFAULT_TIMEOUT_S,
+        **dynamics: float,
+    ) -> dict[str, float]:
+        """Moves many movers along tracks at once, and lets engine time pass until all are there. How long each of those
+        that were moved took, in s.
+
+        targets: by mover, a track and mm along it.
+        route: "auto" finds ways and an order of passing in which nobody waits for ever (takt.plan_routes), or raises
+            RoutingError before anything moves; should a mover be held up, it plans anew. "shortest" sends each its
+            shortest way at once, whatever the others do.
+        may_move: movers without a target that may be moved out of the way, or all of them (True).
+        gap: mm from centre to centre along the way, instead of the movers' own.
+        timeout: s of engine time for all of it.
+        dynamics: velocity, acceleration, deceleration, jerk of all moves.
+        """
+        from takt.routing.journey import move_on_tracks
+
+        self._check_open()
+        return move_on_tracks(self, targets, route=route, may_move=may_move, gap=gap, timeout=timeout, **dynamics)
 
     # --- time ---
 

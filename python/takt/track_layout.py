@@ -41,6 +41,7 @@ class LaidTrack:
     subsequent: tuple[str, ...]  # tracks that start where it ends
     range_at_start: float  # mm, collision ranges
     range_at_end: float
+    traffic_ranges: tuple[float, float]  # mm, at start and end: what movers keep to
     points: Points
 
 
@@ -72,5 +73,6 @@ class TrackLayout:
             tuple(names[k] for k in self._core.behind(i)),
             at_start,
             at_end,
+            self._core.traffic_ranges(i),
             Points(s, x, y, direction, curvature, given > 0),
         )

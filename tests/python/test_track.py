@@ -299,6 +299,10 @@ def test_the_command_says_and_draws(tmp_path: Path, capsys: pytest.CaptureFixtur
             assert f"{track.smallest_radius:.4g}" in text
     assert (one.subsequent, two.subsequent, three.previous) == (("two", "three", "four"), ("one",), ("one",))
     assert target.read_bytes().startswith(b"\x89PNG")
+    # What movers keep to is found in passing: no less, and at most 40 mm more.
+    for track in layout.tracks:
+        for kept, range_ in zip(track.traffic_ranges, (track.range_at_start, track.range_at_end), strict=True):
+            assert range_ - 1 <= kept <= range_ + 40 or range_ == kept == 0
     # Two and four leave to either side, three goes straight on: behind their ranges movers of 155 mm, turned as they
     # like, are a diagonal apart.
     diagonal = math.hypot(155, 155)

@@ -1,0 +1,354 @@
+"""Who is where on streets, as far as it matters for who can pass, and the search for an order of hops that brings all
+to their targets.
+
+On one street nobody overtakes; so it matters who stands before whom, not where. An arrangement is a row of movers for
+each street, and those who stand within the zones of nodes by themselves. A hop takes one mover from a row to the next,
+or to and from a place within a zone. Between two hops a row may be moved along its street as one likes.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from takt.routing.streets import MARGIN, Street, Streets, Sweep
+
+HOP = 100.0  # mm that a hop costs besides its way
+
+
+class Place(NamedTuple):
+    street: int
+    s: float  # mm
+
+
+class Arrangement(NamedTuple):
+    rows: tuple[tuple[int, ...], ...]  # by street: movers, the one that is furthest on first
+    apart: tuple[tuple[int, Place], ...]  # movers that stand within zones, by number
+
+
+@dataclass(frozen=True)
+class Hop:
+    mover: int
+    sweep: Sweep  # what it needs for itself meanwhile
+    backward: bool  # to its end, or from its end to its start
+    to_row: bool  # ends in the row of the last street; else stands at the end of the sweep
+
+    @property
+    def street(self) -> int:
+        """Where it ends."""
+        return self.sweep.streets[-1]
+
+    @property
+    def place(self) -> float:
+        """Where it ends, mm along the street."""
+        return self.sweep.start if self.backward else self.sweep.end
+
+    def comes_back(self, street: Street) -> bool:
+        """Towards the row of this street from before it, which has to make room."""
+        return self.backward and self.street == street.index and (self.to_row or self.place > street.last)
+
+
+@dataclass(frozen=True)
+class Task:
+    """Movers by number, from 0."""
+
+    streets: Streets
+    starts: tuple[Place, ...]
+    targets: Mapping[int, Place]
+    fixed: frozenset[int]  # that stay where they are
+
+    @cached_property
+    def start(self) -> Arrangement:
+        rows: list[list[int]] = [[] for _ in self.streets.all]
+        apart = []
+        for i, place in enumerate(self.starts):
+            if self.streets[place.street].in_row(place.s):
+                rows[place.street].append(i)
+            elif not self.streets[place.street].closed:
+                apart.append((i, place))
+        for row in rows:
+            row.sort(key=lambda i: -self.starts[i].s)
+        return Arrangement(tuple(tuple(row) for row in rows), tuple(apart))
+
+    @cached_property
+    def closed_off(self) -> frozenset[int]:
+        """Streets that nobody passes: one who stays stands there."""
+        return frozenset(self.starts[i].street for i in self.fixed)
+
+    @cached_property
+    def ways(self) -> dict[int, tuple[list[float], list[int]]]:
+        """To each street: as Streets.way_to."""
+        shut = set().union(*(self._blocked_by(self.starts[i]) for i in self.fixed))
+        return {street.index: self.streets.way_to(street.index, self.closed_off, shut) for street in self.streets.all}
+
+    def aim(self, mover: int) -> Place | None:
+        """Where it is to be in the end, if it matters."""
+        return self.starts[mover] if mover in self.fixed else self.targets.get(mover)
+
+    # --- what is possible ---
+
+    def bounds(self, street: Street, a: Arrangement, without: int = -1) -> tuple[float, float]:
+        """Where the row of a street can be, those in its zones being where they are."""
+        low, high = street.first, street.last
+        for i, place in a.apart:
+            if place.street == street.index and i != without:
+                if place.s < street.first:
+                    low = max(low, place.s + self.streets.gap)
+                else:
+                    high = min(high, place.s - self.streets.gap)
+        return low, high
+
+    def fits(self, street: Street, row: Sequence[int], a: Arrangement, aims: bool = False) -> bool:
+        """There is room for this row; `aims`: with all in it at their targets."""
+        low, place = self.bounds(street, a)
+        last = math.inf
+        for i in row:
+            aim = self.targets.get(i) if aims else None
+            if i in self.fixed:
+                aim = self.starts[i]
+            if aim is not None:
+                if aim.street != street.index or aim.s > place + MARGIN:
+                    return False
+                place = aim.s
+            last = place
+            place -= self.streets.gap
+        return last >= low - MARGIN
+
+    def is_free(self, sweep: Sweep, mover: int, a: Arrangement) -> bool:
+        return not any(
+            i != mover and self.streets.meet(sweep, Sweep((place.street,), place.s, place.s)) for i, place in a.apart
+        )
+
+    def after(self, hop: Hop, a: Arrangement) -> Arrangement | None:
+        """None: the hop is not possible."""
+        if not self.is_free(hop.sweep, hop.mover, a):
+            return None
+        i, street = hop.mover, self.streets[hop.street]
+        rows, apart = list(a.rows), [one for one in a.apart if one[0] != i]
+        if len(apart) == len(a.apart):
+            come_from = hop.sweep.streets[0]
+            row = rows[come_from]
+            front = len(hop.sweep.streets) > 1 or hop.place > street.last
+            if not row or row[0 if front else -1] != i:
+                return None
+            rows[come_from] = row[1:] if front else row[:-1]
+        if hop.to_row:
+            front = hop.backward
+            rows[street.index] = (i, *rows[street.index]) if front else (*rows[street.index], i)
+        else:
+            apart.append((i, Place(street.index, hop.place)))
+            apart.sort()
+        after = Arrangement(tuple(rows), tuple(apart))
+        return after if self.fits(street, rows[street.index], after) else None
+
+    def hops(self, a: Arrangement) -> Iterator[Hop]:
+        """All that may be worth a try."""
+        for street in self.streets.all:
+            row = a.rows[street.index]
+            if not row or street.closed:
+                continue
+            if row[0] not in self.fixed:
+                yield from self._onward(row[0], street, street.last)
+            for i, backward in ((row[0], False), (row[-1], True)):
+                aim = self.targets.get(i)
+                if i in self.fixed or aim is None or aim.street != street.index or street.in_row(aim.s):
+                    continue
+                if backward and aim.s < street.first:
+                    yield Hop(i, Sweep((street.index,), aim.s, street.first), True, False)
+                elif not backward and aim.s > street.last:
+                    yield Hop(i, Sweep((street.index,), street.last, aim.s), False, False)
+        for i, (index, s) in a.apart:
+            if i in self.fixed:
+                continue
+            street = self.streets[index]
+            aim = self.targets.get(i)
+            if not street.has_room or s > street.last:
+                yield from self._onward(i, street, s)
+            if (
+                aim is not None
+                and aim.street == index
+                and aim.s != s
+                and (not street.has_room or (not street.in_row(aim.s) and (aim.s < street.first) == (s < street.first)))
+            ):
+                yield Hop(i, Sweep((index,), min(s, aim.s), max(s, aim.s)), aim.s < s, False)
+            if not street.has_room:
+                continue
+            if s < street.first:
+                yield Hop(i, Sweep((index,), s, street.first), False, True)
+            else:
+                yield Hop(i, Sweep((index,), street.last, s), True, True)
+
+    def _onward(self, i: int, street: Street, s: float) -> Iterator[Hop]:
+        aim = self.targets.get(i)
+        for way in self.streets.passages[street.index]:
+            last = self.streets[way[-1]]
+            if last.has_room:
+                yield Hop(i, Sweep(way, s, last.first), False, True)
+            if aim is not None and aim.street == last.index and (not last.has_room or aim.s < last.first):
+                yield Hop(i, Sweep(way, s, aim.s), False, False)
+
+    # --- how far it is ---
+
+    def is_done(self, a: Arrangement) -> bool:
+        return (
+            all(
+                self.fits(street, a.rows[street.index], a, aims=True)
+                for street in self.streets.all
+                if not street.closed
+            )
+            and all(self.targets.get(i, place) == place for i, place in a.apart)
+            and not self._missing(a)
+        )
+
+    def _missing(self, a: Arrangement) -> bool:
+        """Someone is in a row and not on the street, or within the stretch, where its target is."""
+        for street in self.streets.all:
+            for i in a.rows[street.index]:
+                aim = self.targets.get(i)
+                if aim is not None and not street.closed and (aim.street != street.index or not street.in_row(aim.s)):
+                    return True
+        return False
+
+    def far(self, a: Arrangement) -> float:
+        """mm that are left to go for all together, guessed; infinite: from here it is not possible."""
+        total = 0.0
+        needed: set[tuple[int, int]] = set()  # from street to street: someone has to pass there, and on
+        last: set[tuple[int, Place]] = set()  # from a street to a target
+        arrive: dict[int, float] = {}  # by street: how far up someone has its target who is not there yet
+        stay: list[tuple[int, Place]] = []  # movers that may stay on their street, and where
+
+        def go(here: int, aim: Place | None) -> float:
+            if aim is not None:
+                arrive[aim.street] = max(aim.s, arrive.get(aim.street, 0.0))
+            return self._way(here, aim, needed, last)
+
+        for street in self.streets.all:
+            if street.closed:
+                continue
+            leaves, most = False, -math.inf
+            row = a.rows[street.index]
+            crowded = row and not self.fits(street, row, a, aims=True)
+            for i in reversed(row):
+                aim = self.aim(i)
+                # With a free one before it, one at the front of the street does not get to its target.
+                leaves |= bool(crowded) and aim is None and most > street.last - self.streets.gap
+                if not leaves and (aim is None or (aim.street == street.index and aim.s > most)):
+                    stay.append((i, aim or Place(street.index, street.last)))
+                    if aim is not None:
+                        most = aim.s
+                        total += 0.0 if street.in_row(aim.s) else 1.0
+                    continue
+                leaves = True
+                if i in self.fixed:
+                    return math.inf
+                total += go(street.index, aim)
+        for i, place in a.apart:
+            aim = self.aim(i)
+            if aim is None or aim == place:
+                stay.append((i, place))
+            elif aim.street == place.street:
+                total += 2.0
+            else:
+                total += go(place.street, aim)
+        passed = {there for _, there in needed}
+        for i, place in stay:
+            if i in self.fixed:
+                continue
+            in_the_way = place.street in passed or arrive.get(place.street, -1.0) > place.s
+            if not self.streets[place.street].in_row(place.s):
+                in_the_way |= not needed.isdisjoint(self._blocked_by(place))
+                point = Sweep((place.street,), place.s, place.s)
+                in_the_way |= any(self.streets.meet(point, self._arrival(k, aim)) for k, aim in last)
+            if i in self.targets:
+                total += self._round(place.street) if in_the_way else 0.0
+            elif in_the_way or (place.street in arrive and not self._leaves_room(i, place.street, a)):
+                total += self.streets[place.street].length + HOP
+        return total
+
+    def _arrival(self, here: int, aim: Place) -> Sweep:
+        street = self.streets[aim.street]
+        return Sweep((here, aim.street), max(self.streets[here].last, 0.0), min(aim.s, max(street.first, 0.0)))
+
+    def _way(self, here: int, aim: Place | None, needed: set[tuple[int, int]], last: set[tuple[int, Place]]) -> float:
+        if aim is None:
+            return HOP
+        way, after = self.ways[aim.street]
+        if way[here] == math.inf:
+            return math.inf
+        total, k = way[here] + HOP, here
+        while True:
+            if after[k] == aim.street:
+                last.add((k, aim))
+                return total
+            needed.add((k, after[k]))
+            k = after[k]
+            total += HOP
+
+    def _leaves_room(self, i: int, index: int, a: Arrangement) -> bool:
+        """Another one could still come into the row."""
+        street = self.streets[index]
+        return self.fits(street, (*a.rows[index], i), a)
+
+    def _round(self, street: int) -> float:
+        way = self.ways[street][0][street]
+        return 1e4 if way == math.inf else way + HOP
+
+    def _blocked_by(self, place: Place) -> set[tuple[int, int]]:
+        if place not in self._blocks:
+            point = Sweep((place.street,), place.s, place.s)
+            self._blocks[place] = {
+                (a.index, b)
+                for a in self.streets.all
+                for b in a.behind
+                if self.streets.meet(point, Sweep((a.index, b), max(a.last, 0.0), min(self.streets[b].first, 1e9)))
+            }
+        return self._blocks[place]
+
+    @cached_property
+    def _blocks(self) -> dict[Place, set[tuple[int, int]]]:
+        return {}
+
+
+class Search(NamedTuple):
+    hops: tuple[Hop, ...] | None  # None: not found
+    tried: int  # arrangements looked at
+    complete: bool  # there are no others
+
+
+def search(task: Task, effort: int) -> Search:
+    """An order of hops: always on from where least is left to go. Looks at so many arrangements at most."""
+    start = task.start
+    if task.is_done(start):
+        return Search((), 0, True)
+    came: dict[Arrangement, tuple[Arrangement, Hop] | None] = {start: None}
+    count = itertools.count()
+    heap = [(task.far(start), 0, start)] if task.far(start) < math.inf else []
+    while heap:
+        _, _, a = heapq.heappop(heap)
+        for hop in task.hops(a):
+            b = task.after(hop, a)
+            if b is None or b in came:
+                continue
+            came[b] = (a, hop)
+            far = task.far(b)
+            if far == math.inf:
+                continue
+            if task.is_done(b):
+                return Search(_hops_to(b, came), len(came), False)
+            heapq.heappush(heap, (far, -next(count), b))
+        if len(came) > effort:
+            return Search(None, len(came), False)
+    return Search(None, len(came), True)
+
+
+def _hops_to(a: Arrangement, came: Mapping[Arrangement, tuple[Arrangement, Hop] | None]) -> tuple[Hop, ...]:
+    hops = []
+    while (step := came[a]) is not None:
+        a, hop = step
+        hops.append(hop)
+    return tuple(reversed(hops))

@@ -1,0 +1,255 @@
+"""The tracks of a machine as a planner of ways sees them: where movers can rest out of everyone's way, how they get
+from one such place to the next, and which of these passages do not go together.
+
+The engine keeps movers apart by their gap, along the way; around a node, where tracks meet, it looks at everyone who is
+nearer to it than its gap or the collision range of its track. Out of these zones movers on different tracks have
+nothing to do with one another. So a track has room for a row of movers between the zones at its ends, and whoever
+passes from one row to another has the zones between to itself.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import math
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from takt.errors import TaktError
+from takt.track_layout import LaidTrack, TrackLayout
+
+if TYPE_CHECKING:
+    from takt.session import Session
+
+MARGIN = 2e-3  # mm that rows stay away from zones; the engine lets movers wait half as far away
+SAME = 1e-6  # mm
+LONGEST = 32  # tracks in one way, as in the engine
+
+
+class RoutingError(TaktError):
+    """No plan of ways was found, or it could not be carried out."""
+
+
+@dataclass(frozen=True)
+class Street:
+    index: int
+    name: str
+    length: float  # mm
+    closed: bool
+    behind: tuple[int, ...]  # streets that start where it ends
+    start_node: int  # -1: none
+    end_node: int
+    first: float  # mm, where the row of movers that are in nobody's way begins
+    last: float  # and ends; before `first`: it has no room for one
+
+    @property
+    def has_room(self) -> bool:
+        return self.last >= self.first
+
+    def in_row(self, s: float) -> bool:
+        return self.has_room and self.zone_ends <= s <= self.zone_begins
+
+    @property
+    def zone_ends(self) -> float:
+        """mm; before it is the zone of the node at its start. A mover that waits there is out of it."""
+        return self.first - 0.9 * MARGIN if self.start_node >= 0 else -SAME
+
+    @property
+    def zone_begins(self) -> float:
+        return self.last + 0.9 * MARGIN if self.end_node >= 0 else self.length + SAME
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A stretch of way: over these streets, from a place on the first one to a place on the last one."""
+
+    streets: tuple[int, ...]
+    start: float  # mm
+    end: float
+
+
+class Streets:
+    """All tracks by number, from 0, with a gap that all movers keep."""
+
+    def __init__(self, tracks: Sequence[LaidTrack], gap: float) -> None:
+        self.gap = gap
+        numbers = {track.name: i for i, track in enumerate(tracks)}
+        links = [tuple(numbers[name] for name in t.subsequent if name != t.name) for t in tracks]
+        starts, ends = _nodes(links)
+        self.all = tuple(
+            Street(
+                i,
+                t.name,
+                t.length,
+                t.closed,
+                links[i],
+                starts[i],
+                ends[i],
+                self._zone(t.traffic_ranges[0]) if starts[i] >= 0 else 0.0,
+                t.length - (self._zone(t.traffic_ranges[1]) if ends[i] >= 0 else 0.0),
+            )
+            for i, t in enumerate(tracks)
+        )
+        self.before: tuple[tuple[int, ...], ...] = tuple(
+            tuple(k for k, behind in enumerate(links) if i in behind) for i in range(len(tracks))
+        )
+        self._presences: dict[Sweep, tuple[tuple[int, float, float], ...]] = {}
+        self._meetings: dict[tuple[Sweep, Sweep], bool] = {}
+
+    def __getitem__(self, index: int) -> Street:
+        return self.all[index]
+
+    def _zone(self, reach: float) -> float:
+        return max(self.gap, reach) + MARGIN
+
+    # --- from row to row ---
+
+    @cached_property
+    def passages(self) -> tuple[tuple[tuple[int, ...], ...], ...]:
+        """By street: the ways from its end to the next streets, those in between having no room to rest."""
+        return tuple(tuple(self._passages((street.index,))) for street in self.all)
+
+    def _passages(self, way: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
+        for k in self[way[-1]].behind:
+            if k in way and (k != way[0] or not self[k].has_room):
+                continue
+            yield (*way, k)
+            if not self[k].has_room and len(way) < LONGEST - 1:
+                yield from self._passages((*way, k))
+
+    def way_to(
+        self,
+        target: int,
+        closed_off: Collection[int] = (),
+        shut: Collection[tuple[int, int]] = (),
+    ) -> tuple[list[float], list[int]]:
+        """By street: mm from its end to the start of the target, and the next street there. Infinite and -1: none leads
+        there. Not through streets that are closed off, nor from one to the next where that is shut."""
+        way, after = [math.inf] * len(self.all), [-1] * len(self.all)
+        heap = [(0.0, k, target) for k in self.before[target]]
+        while heap:
+            cost, k, via = heapq.heappop(heap)
+            if cost >= way[k] or (k, via) in shut:
+                continue
+            way[k], after[k] = cost, via
+            if k != target and k not in closed_off:
+                for previous in self.before[k]:
+                    heapq.heappush(heap, (cost + self[k].length, previous, k))
+        return way, after
+
+    def is_the_way(self, streets: Sequence[int]) -> bool:
+        """The engine goes this way by itself from each of these streets to the last one: no other is as short."""
+        target = streets[-1]
+        if target in streets[:-1] or len(streets) > LONGEST:
+            return False
+        way = self._ways_to(target)
+        for here, there in itertools.pairwise(streets):
+            costs = {k: 0.0 if k == target else self[k].length + way[k] for k in self[here].behind}
+            if any(costs[k] < costs[there] + SAME for k in costs if k != there):
+                return False
+        return True
+
+    def _ways_to(self, target: int) -> list[float]:
+        if target not in self._open_ways:
+            self._open_ways[target] = self.way_to(target)[0]
+        return self._open_ways[target]
+
+    @cached_property
+    def _open_ways(self) -> dict[int, list[float]]:
+        return {}
+
+    # --- what goes together ---
+
+    def length(self, sweep: Sweep) -> float:
+        return sum(self[k].length for k in sweep.streets[:-1]) + sweep.end - sweep.start
+
+    def meet(self, a: Sweep, b: Sweep) -> bool:
+        """Movers somewhere on both may come too near to each other."""
+        known = self._meetings.get((a, b))
+        if known is None:
+            known = self._meetings[a, b] = self._meetings[b, a] = self._meet(a, b)
+        return known
+
+    def _meet(self, a: Sweep, b: Sweep) -> bool:
+        near = self.gap - SAME
+        for street, low, high in self._stretches(a):
+            for other, its_low, its_high in self._stretches(b):
+                if street == other and max(low, its_low) - min(high, its_high) < near:
+                    return True
+        for node, low, high in self._at_nodes(a):
+            for other, its_low, its_high in self._at_nodes(b):
+                if node == other and max(low, its_low) - min(high, its_high) < near:
+                    return True
+        return False
+
+    def _stretches(self, sweep: Sweep) -> Iterator[tuple[int, float, float]]:
+        for i, k in enumerate(sweep.streets):
+            low = sweep.start if i == 0 else 0.0
+            high = sweep.end if i == len(sweep.streets) - 1 else self[k].length
+            yield k, min(low, high), max(low, high)
+
+    def _at_nodes(self, sweep: Sweep) -> tuple[tuple[int, float, float], ...]:
+        """Nodes, and from where to where it is within their zones; mm from the node along the way."""
+        if sweep not in self._presences:
+            self._presences[sweep] = tuple(self._find_nodes(sweep))
+        return self._presences[sweep]
+
+    def _find_nodes(self, sweep: Sweep) -> Iterator[tuple[int, float, float]]:
+        streets = [self[k] for k in sweep.streets]
+        end = sum(street.length for street in streets[:-1]) + sweep.end
+        low, high = min(sweep.start, end), max(sweep.start, end)
+        if streets[0].start_node >= 0 and low < streets[0].zone_ends:
+            yield streets[0].start_node, low, min(high, streets[0].zone_ends)
+        at = 0.0
+        for i, street in enumerate(streets):
+            at += street.length
+            behind = streets[i + 1].zone_ends if i + 1 < len(streets) else math.inf
+            before = street.zone_begins - street.length
+            if street.end_node >= 0 and high - at > before and low - at < behind:
+                yield street.end_node, max(low - at, before), min(high - at, behind)
+        # Nodes that whoever is here may have come over shortly before count on.
+        yield from self._behind(streets[0], low, high, 0)
+
+    def _behind(self, street: Street, low: float, high: float, depth: int) -> Iterator[tuple[int, float, float]]:
+        for k in self.before[street.index]:
+            previous = self[k]
+            if previous.start_node >= 0 and low + previous.length < previous.zone_ends and depth < 4:
+                yield previous.start_node, low + previous.length, min(high + previous.length, previous.zone_ends)
+                yield from self._behind(previous, low + previous.length, high + previous.length, depth + 1)
+
+
+def read_streets(session: Session, gap: float) -> Streets:
+    """Those of a session's machine file, with the links and lengths its engine has now."""
+    layout = TrackLayout(session.machine_text) if session.tracks else None
+    if layout is None:
+        raise RoutingError("the machine has no tracks")
+    for laid in layout.tracks:
+        if abs(laid.length - session.track(laid.name).length) > 1e-3:
+            raise RoutingError(f"track {laid.name} is not as the machine file has it: ways are planned on its tracks")
+    return Streets(layout.tracks, gap)
+
+
+def _nodes(links: Sequence[tuple[int, ...]]) -> tuple[list[int], list[int]]:
+    """Numbers of the nodes where streets start and end; -1: nothing meets them there."""
+    starts, ends = [-1] * len(links), [-1] * len(links)
+    count = 0
+
+    def name(k: int, of: list[int], node: int) -> None:
+        if of[k] == node:
+            return
+        of[k] = node
+        if of is ends:
+            for other in links[k]:
+                name(other, starts, node)
+        else:
+            for other, behind in enumerate(links):
+                if k in behind:
+                    name(other, ends, node)
+
+    for k, behind in enumerate(links):
+        if behind and ends[k] < 0:
+            name(k, ends, count)
+            count += 1
+    return starts, ends
