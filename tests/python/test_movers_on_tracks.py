@@ -230,3 +230,85 @@ def test_replay_is_the_same(tmp_path: Path) -> None:
         engine.run(1)
         hashes.append(engine.state_hash)
     assert hashes[0] == hashes[1]
+
+
+TWO_TRACKS = """
+name: two
+axes: []
+movers: [{name: one, gap: 120}, {name: two, initial: {x: 240}}]
+tracks:
+  - {name: first, elements: [{from: {x: 0, y: 0}, to: {x: 400, y: 0}}]}
+  - {name: second, starts_from: [first], elements: [{from: {x: 500, y: 0}, to: {x: 900, y: 0}}]}
+"""
+
+
+def alone_on_two_tracks() -> tuple[Engine, takt.Mover]:
+    engine = Engine(TWO_TRACKS)
+    mover = engine.mover("one")
+    for name in ("first", "second"):
+        engine.track(name).enable().wait()
+    mover.enable().wait()
+    mover.join_track(track="first").wait()
+    return engine, mover
+
+
+def test_buffered_ways_lead_into_one_another() -> None:
+    """PL-71: through the targets without a stop, as quick as one way; each is done where its target is passed."""
+    engine, mover = alone_on_two_tracks()
+    start = engine.cycle
+    mover.move_on_track(track="second", position=400).wait()
+    alone = engine.cycle - start
+
+    engine, mover = alone_on_two_tracks()
+    start = engine.cycle
+    moves = [
+        mover.move_on_track(position=250),
+        mover.move_on_track(track="second", position=100, buffer_mode="buffered"),
+        mover.move_on_track(track="second", position=400, buffer_mode="buffered"),
+    ]
+    engine.step()
+    assert mover.buffered == 2
+    passed = []
+    while moves[-1].busy:
+        engine.step()
+        if len(passed) < 2 and moves[len(passed)].done:
+            passed.append((mover.x, abs(mover.velocity_x)))
+    assert engine.cycle - start <= alone + 10
+    assert [place for place, _ in passed] == [pytest.approx(250, abs=2.1), pytest.approx(500, abs=2.1)]
+    assert min(speed for _, speed in passed) > 1000
+    assert [move.value > 0 for move in moves] == [True] * 3
+    records = mover.history()[-3:]
+    assert [(r.changed - r.begun) * engine.period for r in records] == pytest.approx([move.value for move in moves])
+
+
+def test_a_buffered_way_back_begins_at_rest() -> None:
+    """PL-71: it reaches its target before it turns."""
+    engine, mover = alone_on_two_tracks()
+    there = mover.move_on_track(position=300)
+    back = mover.move_on_track(position=100, buffer_mode="buffered")
+    there.wait()
+    assert mover.track_position == 300
+    back.wait()
+    assert mover.track_position == 100
+
+
+def test_a_mover_says_why_and_since_when_it_waits() -> None:
+    """PL-70: for another one; for a release."""
+    engine, mover = alone_on_two_tracks()
+    other = engine.mover("two")
+    other.enable().wait()
+    other.join_track(track="first").wait()
+    way = mover.move_on_track(position=300)
+    engine.run(2)
+    assert (mover.delay, mover.waits_for) == ("mover", 2)
+    assert 0 < engine.cycle - mover.delay_since < 2 / engine.period
+    other.move_on_track(position=390)
+    engine.run(2)
+    other.move_on_track(track="second", position=300)
+    way.wait()
+    assert (mover.delay, mover.delay_since) == ("none", 0)
+    held = mover.wait(for_release=True)
+    engine.run(0.1)
+    assert mover.delay == "release"
+    mover.release()
+    held.wait()
