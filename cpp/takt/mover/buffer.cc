@@ -140,6 +140,7 @@ void GiveTurn(const Context& c, State& s) {
   Pop(b);
   // What it takes over from without a stop is done when its end is passed; in the plane that is now.
   const Ticket before = std::exchange(s.tickets[kPlane], 0);
+  const std::uint64_t begun = s.begun[kPlane];
   const bool on_track = IsOnTrack(s);
   const planar::Rider& rider = c.rider();
   const double passing_at = rider.origin + rider.at.position + rider.direction * WayLeft(c.streets.network, rider);
@@ -150,7 +151,7 @@ void GiveTurn(const Context& c, State& s) {
   }
   if (before == 0) return;
   s.tickets[kPassing] = before;
-  s.begun[kPassing] = s.begun[kPlane];
+  s.begun[kPassing] = begun;
   if (on_track) {
     b.passing_at = passing_at;
     b.direction = direction;
