@@ -39,6 +39,7 @@ class Scenario:
     scenario: Callable[[Session], object]
     verify: Callable[[Recording], object] | None
     pictures: Callable[[Recording], Mapping[str, Figure]] | None = None
+    every: int = 1  # cycles from one recorded sample to the next: EVERY in the file
 
     @property
     def machine(self) -> Path:
@@ -100,14 +101,17 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
             raise ScenarioError(f"{file}: {name} is no function")
         if not _takes_one(function):
             raise ScenarioError(f"{file}: {name} must take one argument, {name}({argument})")
+    every: Any = getattr(module, "EVERY", 1)
+    if not isinstance(every, int) or every < 1:
+        raise ScenarioError(f"{file}: EVERY must be a whole number of cycles from 1 on, found {every!r}")
     lines = (module.__doc__ or "").strip().splitlines()
-    return Scenario(file, lines[0].rstrip(".") if lines else file.stem, scenario, verify, pictures)
+    return Scenario(file, lines[0].rstrip(".") if lines else file.stem, scenario, verify, pictures, every)
 
 
 def run_scenario(scenario: Scenario, session: Session, directory: Path | None = None) -> Outcome:
     """Runs it with everything recorded, then asks `verify`. The recording is kept in `directory`, also when the
     scenario breaks off."""
-    recorder = session.record()
+    recorder = session.record(every=scenario.every)
     complaint = ""
     try:
         scenario.play(session)
