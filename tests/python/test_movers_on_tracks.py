@@ -283,7 +283,7 @@ def test_buffered_ways_lead_into_one_another() -> None:
 
 def test_a_buffered_way_back_begins_at_rest() -> None:
     """PL-71: it reaches its target before it turns."""
-    engine, mover = alone_on_two_tracks()
+    _, mover = alone_on_two_tracks()
     there = mover.move_on_track(position=300)
     back = mover.move_on_track(position=100, buffer_mode="buffered")
     there.wait()

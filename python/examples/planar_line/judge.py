@@ -40,8 +40,8 @@ class Judgement:
         held = ", ".join(f"{name} {100 * share:.0f} %" for name, share in self.held_by.items())
         return (
             f"{len(self.pieces_s)} pieces in {self.seconds:.0f} s, {self.pieces_a_minute:.1f} a minute; busy: {busy}; "
-            f"movers go {100 * self.going:.0f} % of their time, are worked on {100 * self.worked_on:.0f} %, wait before "
-            f"{held}; nearest two {self.nearest:.1f} mm"
+            f"movers go {100 * self.going:.0f} % of their time, are worked on {100 * self.worked_on:.0f} %, "
+            f"wait before {held}; nearest two {self.nearest:.1f} mm"
         )
 
 
@@ -91,4 +91,3 @@ def nearest(x: Array, y: Array) -> float:
         apart = np.maximum(np.abs(x[i + 1 :] - x[i]), np.abs(y[i + 1 :] - y[i]))
         least = min(least, float(apart.min(initial=np.inf)))
     return least
-
