@@ -79,6 +79,14 @@ enum class ErrorId : std::uint16_t {
   kTrackMode = 3046,          // the track is not enabled, or movers on it do what does not go with this
   kNoRoute = 3047,            // no way along tracks leads there
   kTrackGeometry = 3050,      // a track cannot be so; the value of the feedback says why
+  kReference = 3070,          // no such part or coordinate system, or a position in another one than the mover is in
+  kOffStators = 3071,         // a mover would leave the stators
+  kPartDisabled = 3072,       // a part is not enabled, or on its way
+  kPartMover = 3073,          // a mover hinders a part from going; the value of the feedback is its number
+  kPartTrack = 3074,          // so does a track that is in use
+  kPartPlace = 3075,          // so does another part
+  kPartFault = 3076,          // of the part under a mover
+  kPartPosition = 3077,       // a part is not where it is to be
   kGroupDeviation = 8001,
   kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual
   // A cam module is in error; numbers of the Flex Cam manual.
