@@ -17,6 +17,7 @@
 #include "takt/flexcam/commands.h"
 #include "takt/group/commands.h"
 #include "takt/mover/commands.h"
+#include "takt/part/commands.h"
 #include "takt/pickplace/commands.h"
 #include "takt/track/commands.h"
 
@@ -44,8 +45,9 @@ void describe(Description<Release>&);
 void describe(Description<Renew>&);
 
 using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
-using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command,
-                                 conveyor::PoseCommand, pickplace::Command, mover::Command, track::Command>;
+using CommandBody =
+    std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command,
+                 conveyor::PoseCommand, pickplace::Command, mover::Command, track::Command, part::Command>;
 
 // Component i (components.h) is target i + 1.
 inline constexpr std::uint32_t kMachineTarget = 0;
@@ -58,7 +60,7 @@ struct Command {
 };
 
 // Lets go of something or stops it: release, stop_all, stop, power(enable: false); halt and interrupt of groups;
-// halt, disable and stop_external_setpoint_generation of movers.
+// halt, disable and stop_external_setpoint_generation of movers; force_disable of parts.
 bool LetsGo(const Command& command) noexcept;
 
 // One verb a kind of component understands; `arguments` describes its struct.

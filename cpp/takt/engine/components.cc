@@ -9,6 +9,7 @@
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
 #include "takt/mover/outputs.h"
+#include "takt/part/outputs.h"
 #include "takt/pickplace/outputs.h"
 #include "takt/track/outputs.h"
 
@@ -40,6 +41,7 @@ std::span<const ComponentKind> ComponentKinds() {
                                                          "pick and place modules"),
       Make<mover::Outputs, &Machine::movers>("mover", "movers", "a mover", "movers"),
       Make<track::Outputs, &Machine::tracks>("track", "tracks", "a track", "tracks"),
+      Make<part::Outputs, &Machine::parts>("part", "parts", "a part", "parts"),
   };
   return kinds;
 }

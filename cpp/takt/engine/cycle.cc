@@ -11,6 +11,8 @@
 #include "takt/core/hash.h"
 #include "takt/engine/carriers.h"
 #include "takt/engine/masters.h"
+#include "takt/engine/parts.h"
+#include "takt/mover/on_parts.h"
 
 namespace takt::engine {
 
@@ -22,6 +24,7 @@ constexpr std::size_t kEventsPerCommand = 4;
 // A question may be given up and the next one asked before anybody has looked.
 constexpr std::size_t kQuestionsPerGroup = 4;
 constexpr std::size_t kEventsPerMover = 4 * mover::kSlots;
+constexpr std::size_t kEventsPerPart = 6;
 constexpr std::size_t kEventsPerGroup = 4 * (group::kQueue + group::kSynced + 5);  // likewise
 
 axis::Context ContextOf(World& w, std::size_t i) {
@@ -63,20 +66,21 @@ pickplace::Context ContextOf(World& w, const PickPlace& module) {
   return c;
 }
 
-mover::Context MoverContext(World& w, std::size_t i) {
-  return {w.movers[i], w.cycle, w.planner, w.feedback, w.streets, static_cast<std::uint32_t>(i)};
-}
-
 // The tracks as movers see them.
 void RefreshStreets(World& w) {
   for (std::size_t i = 0; i < w.tracks_now.size(); ++i) {
     const track::TrackParams& params = w.tracks.params[i];
+    const std::uint32_t part = w.tracks.part_of[i];
+    const planar::PartNow* on = part == planar::kNoPart ? nullptr : &w.surface.now[part];
+    const bool carried = !on || (!on->away && (on->enabled || on->enabling));
     w.tracks_now[i] = {w.tracks.ways[i],
                        w.tracks.states[i].length,
-                       w.tracks.states[i].state == planar::ObjectState::kEnabled,
+                       w.tracks.states[i].state == planar::ObjectState::kEnabled && carried,
                        w.tracks.start_nodes[i],
                        w.tracks.end_nodes[i],
                        std::hypot(params.mover_width, params.mover_height),
+                       part,
+                       w.tracks.spot(i),
                        params.collision_range_mode == track::CollisionRangeMode::kManual,
                        params.collision_range_at_start,
                        params.collision_range_at_end};
@@ -263,6 +267,10 @@ void LimitToAxes(const Machine& machine, const group::GroupParams& group, kinema
 
 }  // namespace
 
+mover::Context MoverContext(World& w, std::size_t i) {
+  return {w.movers[i], w.cycle, w.planner, w.feedback, w.streets, static_cast<std::uint32_t>(i)};
+}
+
 World::World(const Machine& machine)
     : cycle{0, machine.cycle.period_s},
       axis_params(machine.axes),
@@ -270,14 +278,20 @@ World::World(const Machine& machine)
       axis_outputs(machine.axes.size()),
       axis_order(machine.axes.size()),
       questions(kQuestionsPerGroup * machine.groups.size()),
-      streets(machine.movers.size(), NamesOf(machine.tracks)),
+      parts(machine.parts),
+      part_inputs(machine.parts.size()),
+      part_outputs(machine.parts.size()),
+      part_faults(machine.parts.size()),
+      surface(part::Make(machine.coordinate_systems, machine.parts)),
+      streets(machine.movers.size(), NamesOf(machine.tracks), &surface),
       tracks_now(machine.tracks.size()),
-      tracks(machine.tracks),
+      tracks(machine.tracks, &surface),
       servo_inputs(machine.axes.size()),
       servo_outputs(machine.axes.size()),
       samplings(machine.axes.size()),
       feedback_storage(machine.axes.size() * kEventsPerAxis + machine.groups.size() * kEventsPerGroup +
-                       machine.movers.size() * kEventsPerMover + track::EventsOf(machine.tracks.size()) +
+                       machine.movers.size() * kEventsPerMover + machine.parts.size() * kEventsPerPart +
+                       track::EventsOf(machine.tracks.size()) +
                        (kCommandsPerCycle + kRenewalsPerCycle) * kEventsPerCommand),
       feedback(feedback_storage) {
   TypeOf<axis::State>();  // the first use of a type allocates
@@ -308,6 +322,7 @@ World::World(const Machine& machine)
   MakeGroups(machine);
   MakeBelts(machine);
   MakePickPlaces(machine);
+  MakeParts(machine);
   MakeMovers(machine);
   surrounding = {axis_states, axis_params, cam_switches, cams};
   MakeOrder(*this);
@@ -399,6 +414,16 @@ void World::MakePickPlaces(const Machine& machine) {
   pick_place_outputs.resize(pick_places.size());
 }
 
+void World::MakeParts(const Machine& machine) {
+  TypeOf<part::State>();
+  TypeOf<part::Inputs>();
+  TouchTypes(static_cast<const part::Command*>(nullptr));
+  for (const part::PartParams& params : machine.parts) {
+    part_states.push_back(part::MakeState(params));
+    part_inputs[part_states.size() - 1] = part::Simulate(part_states.back());
+  }
+}
+
 void World::MakeMovers(const Machine& machine) {
   TypeOf<mover::State>();
   TypeOf<mover::Inputs>();
@@ -407,6 +432,10 @@ void World::MakeMovers(const Machine& machine) {
   movers = machine.movers;
   for (const mover::MoverParams& params : movers) {
     mover_states.push_back(mover::MakeState(params));
+    planar::Spot at;
+    mover::Stand(params, surface, params.reference, {{params.initial.x, params.initial.y}, params.initial.c}, at);
+    mover::PutAt(at, mover_states.back());
+    mover_states.back().part = planar::PartAt(surface, at.system, at.origin, planar::kNoPart);
     mover_inputs.push_back(mover::Simulate(mover_states.back()));
   }
   mover_outputs.resize(movers.size());
@@ -421,6 +450,8 @@ std::uint64_t World::StateHash() const noexcept {
   for (const conveyor::State& state : belt_states) hash = HashOf(state, hash);
   for (const conveyor::PoseState& state : pose_states) hash = HashOf(state, hash);
   for (const pickplace::State& state : pick_place_states) hash = HashOf(state, hash);
+  for (const part::State& state : part_states) hash = HashOf(state, hash);
+  for (const part::Inputs& inputs : part_inputs) hash = HashOf(inputs, hash);
   for (const mover::State& state : mover_states) hash = HashOf(state, hash);
   for (const mover::Inputs& inputs : mover_inputs) hash = HashOf(inputs, hash);
   if (!streets.names.empty()) {
@@ -508,6 +539,11 @@ void Apply(World& w, const Command& command) noexcept {
                           w.pick_places.size() - w.movers.size();  // likewise
     if (i >= w.tracks.states.size()) return refuse(ErrorId::kUnknownTarget);
     track::Apply({w.tracks, w.cycle, w.feedback}, i, command.ticket, *for_track);
+  } else if (const auto* for_part = std::get_if<part::Command>(&command.body)) {
+    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
+                          w.pick_places.size() - w.movers.size() - w.tracks.states.size();  // likewise
+    if (i >= w.parts.size()) return refuse(ErrorId::kUnknownTarget);
+    ApplyToPart(w, i, command.ticket, *for_part);
   }
 }
 
@@ -533,6 +569,7 @@ void Move(World& w) noexcept {
   for (const std::uint32_t i : w.axis_order.sequence()) {
     if (w.axis_states[i].plc == axis::PlcState::kErrorStop) StopMasters(w, i);
   }
+  StepParts(w);
   track::Step({w.tracks, w.cycle, w.feedback});
   std::ranges::fill(w.group_stepped, std::uint8_t{0});
   StepBelts(w, w.measured_belts);
@@ -585,6 +622,7 @@ void Control(World& w) noexcept {
     mover::Publish(MoverContext(w, i), w.mover_inputs[i], w.mover_states[i], w.mover_outputs[i]);
   }
   track::Publish({w.tracks, w.cycle, w.feedback});
+  PublishParts(w);
 }
 
 void Actuate(World& w) noexcept {
@@ -592,6 +630,7 @@ void Actuate(World& w) noexcept {
     plant::Step(w.servo_params[i], w.servo_outputs[i], w.cycle.period_s, w.servo_states[i], w.servo_inputs[i]);
   }
   for (std::size_t i = 0; i < w.movers.size(); ++i) w.mover_inputs[i] = mover::Simulate(w.mover_states[i]);
+  SimulateParts(w);
 }
 
 }  // namespace takt::engine

@@ -83,6 +83,7 @@ struct Engine::Impl {
         pick_places(machine, o, machine.pick_and_place, world.pick_place_outputs),
         movers(machine, o, machine.movers, world.mover_outputs),
         tracks(machine, o, machine.tracks, world.tracks.outputs),
+        parts(machine, o, machine.parts, world.part_outputs),
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
         hashes(o.journal ? o.snapshot_queue : 2),
@@ -164,7 +165,7 @@ struct Engine::Impl {
   }
 
   // All kinds of components, in the order of their numbers.
-  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses, pick_places, movers, tracks); }
+  auto kinds() noexcept { return std::tie(axes, flex_cams, groups, belts, poses, pick_places, movers, tracks, parts); }
 
   template <typename Outputs>
   void PublishAll(OfKind<Outputs>& kind) noexcept {
@@ -224,6 +225,7 @@ struct Engine::Impl {
   OfKind<pickplace::Outputs> pick_places;
   OfKind<mover::Outputs> movers;
   OfKind<track::Outputs> tracks;
+  OfKind<part::Outputs> parts;
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
   SpscQueue<HashEntry> hashes;
@@ -277,7 +279,7 @@ bool Engine::Answer(std::size_t group, const group::PathChecked& answer) noexcep
 }
 
 void Engine::MakeTracks() {
-  const std::size_t before = components() - impl_->machine.tracks.size();
+  const std::size_t before = components() - impl_->machine.tracks.size() - impl_->machine.parts.size();
   while (const std::optional<track::Answer> answer = track::Make(impl_->world.tracks.desk)) {
     const auto target = static_cast<std::uint32_t>(before + answer->track + 1);
     impl_->answers.TryPush({0, target, 0, track::Command(answer->made)});
@@ -332,6 +334,12 @@ const mover::Outputs& Engine::mover_outputs(std::size_t mover) const noexcept {
 }
 const mover::State& Engine::mover_state(std::size_t mover) const noexcept {
   return impl_->world.mover_states[mover];
+}
+const part::Outputs& Engine::part_outputs(std::size_t part) const noexcept {
+  return impl_->world.part_outputs[part];
+}
+PartFaults& Engine::part_faults(std::size_t part) noexcept {
+  return impl_->world.part_faults[part];
 }
 const track::Tracks& Engine::tracks() const noexcept {
   return impl_->world.tracks;
@@ -417,6 +425,7 @@ template SpscQueue<PoseSnapshot>& Engine::snapshots<conveyor::PoseOutputs>() noe
 template SpscQueue<PickPlaceSnapshot>& Engine::snapshots<pickplace::Outputs>() noexcept;
 template SpscQueue<MoverSnapshot>& Engine::snapshots<mover::Outputs>() noexcept;
 template SpscQueue<TrackSnapshot>& Engine::snapshots<track::Outputs>() noexcept;
+template SpscQueue<PartSnapshot>& Engine::snapshots<part::Outputs>() noexcept;
 
 SpscQueue<ObjectsSnapshot>& Engine::belt_objects() noexcept {
   return impl_->belt_objects;

@@ -7,6 +7,7 @@
 #include "takt/core/yaml_reader.h"
 #include "takt/engine/load_cams.h"
 #include "takt/engine/load_groups.h"
+#include "takt/engine/load_parts.h"
 #include "takt/engine/order.h"
 #include "takt/track/build.h"
 
@@ -57,7 +58,11 @@ class CrossCheck {
     CheckNames("movers", machine_.movers);
     CheckMovers();
     CheckNames("tracks", machine_.tracks);
-    CheckTracks();
+    CheckNames("coordinate_systems", machine_.coordinate_systems);
+    CheckNames("parts", machine_.parts);
+    const std::vector<Problem> of_parts = CheckParts(source_, machine_);
+    problems_.insert(problems_.end(), of_parts.begin(), of_parts.end());
+    CheckTracks(of_parts.empty());
     CheckCamSwitches();
     std::vector<std::string_view> servos;
     for (std::size_t i = 0; i < machine_.simulation.servos.size(); ++i) {
@@ -77,7 +82,7 @@ class CrossCheck {
   }
 
   void CheckAxes() {
-    if (machine_.axes.empty() && machine_.movers.empty() && machine_.tracks.empty()) {
+    if (machine_.axes.empty() && machine_.movers.empty() && machine_.tracks.empty() && machine_.parts.empty()) {
       Add("axes", "expected at least one axis");
     }
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
@@ -243,7 +248,7 @@ class CrossCheck {
   }
 
   // Tracks, their geometry and their links.
-  void CheckTracks() {
+  void CheckTracks(bool parts_are_good) {
     const std::vector<std::string_view> names = Components();
     const auto others = names.end() - static_cast<std::ptrdiff_t>(machine_.tracks.size());
     for (std::size_t i = 0; i < machine_.tracks.size(); ++i) {
@@ -253,7 +258,9 @@ class CrossCheck {
             "expected a name that nothing else has, and not machine, found " + Quoted(name));
       }
     }
-    for (const track::BuildProblem& problem : track::Build(machine_.tracks).problems) {
+    if (!parts_are_good) return;
+    const planar::Parts parts = part::Make(machine_.coordinate_systems, machine_.parts);
+    for (const track::BuildProblem& problem : track::Build(machine_.tracks, &parts).problems) {
       Add("tracks" + problem.path, problem.message);
     }
   }
@@ -261,6 +268,7 @@ class CrossCheck {
   // Names of all, belts, poses, pick and place modules, movers and tracks last.
   std::vector<std::string_view> Components() const {
     std::vector<std::string_view> names = names_;
+    for (const part::PartParams& part : machine_.parts) names.push_back(part.name);
     for (const flexcam::FlexCamParams& module : machine_.flex_cams) names.push_back(module.name);
     for (const group::GroupParams& group : machine_.groups) names.push_back(group.name);
     for (const conveyor::BeltParams& belt : machine_.belts) names.push_back(belt.name);
@@ -352,7 +360,8 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name, Worksp
     cams = LoadCams(source, machine);
     groups = LoadGroups(source, machine, workspaces == Workspaces::kMake);
   }
-  if (readable && (!machine.axes.empty() || !machine.movers.empty() || !machine.tracks.empty())) {
+  if (readable &&
+      (!machine.axes.empty() || !machine.movers.empty() || !machine.tracks.empty() || !machine.parts.empty())) {
     std::vector<Problem> more = CrossCheck(machine, source).Run();
     problems.insert(problems.end(), more.begin(), more.end());
   } else if (problems.empty()) {

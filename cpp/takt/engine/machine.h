@@ -16,6 +16,7 @@
 #include "takt/flexcam/params.h"
 #include "takt/group/params.h"
 #include "takt/mover/params.h"
+#include "takt/part/params.h"
 #include "takt/pickplace/params.h"
 #include "takt/plant/servo.h"
 #include "takt/track/params.h"
@@ -77,6 +78,8 @@ struct Machine {
   std::vector<conveyor::BeltParams> belts;
   std::vector<conveyor::PoseParams> poses;
   std::vector<pickplace::PickPlaceParams> pick_and_place;
+  std::vector<part::CoordinateSystemParams> coordinate_systems;
+  std::vector<part::PartParams> parts;
   std::vector<mover::MoverParams> movers;
   std::vector<track::TrackParams> tracks;
   Simulation simulation;

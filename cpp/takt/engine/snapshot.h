@@ -14,14 +14,16 @@
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
 #include "takt/mover/outputs.h"
+#include "takt/part/outputs.h"
 #include "takt/pickplace/outputs.h"
 #include "takt/track/outputs.h"
 
 namespace takt::engine {
 
 // What each kind of components publishes, in the order of ComponentKinds().
-using PublishedKinds = std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs,
-                                  conveyor::PoseOutputs, pickplace::Outputs, mover::Outputs, track::Outputs>;
+using PublishedKinds =
+    std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs, conveyor::PoseOutputs,
+               pickplace::Outputs, mover::Outputs, track::Outputs, part::Outputs>;
 
 // What a component published.
 template <typename Outputs>
@@ -39,6 +41,7 @@ using PoseSnapshot = SnapshotOf<conveyor::PoseOutputs>;
 using PickPlaceSnapshot = SnapshotOf<pickplace::Outputs>;
 using MoverSnapshot = SnapshotOf<mover::Outputs>;
 using TrackSnapshot = SnapshotOf<track::Outputs>;
+using PartSnapshot = SnapshotOf<part::Outputs>;
 
 // What lies on a belt, at the rate of its channel.
 struct ObjectsSnapshot {

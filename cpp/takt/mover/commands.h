@@ -36,13 +36,16 @@ struct Halt {  // dynamics of X and Y; all other coordinates stop, too, with the
 struct SetPosition {
   double x = 0, y = 0;  // mm
   double c = 0;         // deg
+  Name reference{};     // part or coordinate system that X and Y belong to
 };
 
 struct MoveToPosition {
-  double x = 0, y = 0;                   // mm
-  double c = 0;                          // deg; counts with use_orientation
-  bool use_orientation = false;          // else C stays
-  std::optional<double> velocity{};      // mm/s
+  double x = 0, y = 0;           // mm
+  double c = 0;                  // deg; counts with use_orientation
+  bool use_orientation = false;  // else C stays
+  std::optional<double> velocity {
+    Name reference{};                    // part or coordinate system that X and Y belong to
+  };                                     // mm/s
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
@@ -88,10 +91,12 @@ struct JoinTrack {
   std::optional<double> jerk{};          // mm/s³
 };
 struct LeaveTrack {
-  double x = 0, y = 0;                   // mm
-  double c = 0;                          // deg; counts with use_orientation
-  bool use_orientation = true;           // else C stays
-  std::optional<double> velocity{};      // mm/s
+  double x = 0, y = 0;          // mm
+  double c = 0;                 // deg; counts with use_orientation
+  bool use_orientation = true;  // else C stays
+  std::optional<double> velocity {
+    Name reference{};                    // part or coordinate system that X and Y belong to
+  };                                     // mm/s
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
@@ -127,6 +132,7 @@ struct SetExternalSetpoint {                                          // for the
   double velocity_a = 0, velocity_b = 0, velocity_c = 0;              // deg/s
   double acceleration_x = 0, acceleration_y = 0, acceleration_z = 0;  // mm/s²
   double acceleration_a = 0, acceleration_b = 0, acceleration_c = 0;  // deg/s²
+  Name reference{};                                                   // part or coordinate system, of absolute ones
 };
 struct StopExternalSetpointGeneration {};
 

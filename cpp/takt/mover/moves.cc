@@ -4,6 +4,7 @@
 
 #include "takt/mover/admission.h"
 #include "takt/mover/coordinate.h"
+#include "takt/mover/on_parts.h"
 
 namespace takt::mover {
 
@@ -98,12 +99,13 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
     }
     duration = std::max(duration, turn.profile.duration());
     turn.begin = g.c.cycle.count;
-    End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
   } else if (s.plane.turns) {  // that turn belonged to the move before
     PlanRest(g.c.planner, turned, StandardOf(free), ParamsOf(g.c, s, kOthers.size() - 1), turn.profile);
     turn.begin = g.c.cycle.count;
   }
+  if (const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, *move, turn)); why != ErrorId::kNone) return Refused(why);
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
+  if (command.use_orientation) End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);
   s.others.back() = turn;
   s.plane = *move;
@@ -114,7 +116,9 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
 
 Answer CarryOut(const Given& g, const MoveToPosition& command) noexcept {
   if (const ErrorId why = WhyNot(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
-  return MoveTo(g, command);
+  MoveToPosition to = command;
+  const ErrorId why = ToItsSystem(g.c, g.s, command.reference, to.x, to.y);
+  return why == ErrorId::kNone ? MoveTo(g, to) : Refused(why);
 }
 
 Answer CarryOut(const Given& g, const MoveZ& command) noexcept {
@@ -141,9 +145,13 @@ Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept {
   const trajectory::Profile::Range range = move.profile.PositionRange();
   const bool inside = InOneWindow(g.c.params.c, range.min, range.max);
   if (!inside && !IsPlaneResting(g.c, s)) return Refused(ErrorId::kOutsideWindow);
+  move.begin = g.c.cycle.count;
+  if (!IsOnTrack(s)) {
+    const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, s.plane, move));
+    if (why != ErrorId::kNone) return Refused(why);
+  }
   if (!inside && s.mode == CommandMode::kFreeMovement) s.mode = CommandMode::kCRotationFreeMovement;
   if (!inside && s.mode == CommandMode::kOnTrack) s.mode = CommandMode::kCRotationOnTrack;
-  move.begin = g.c.cycle.count;
   s.others.back() = move;
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kMoveC);

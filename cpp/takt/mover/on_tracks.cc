@@ -4,6 +4,7 @@
 
 #include "takt/mover/admission.h"
 #include "takt/mover/coordinate.h"
+#include "takt/mover/on_parts.h"
 #include "takt/planar/nearest.h"
 
 namespace takt::mover {
@@ -16,7 +17,7 @@ namespace {
 bool IsTaken(const Context& c, std::uint32_t track, double s) {
   const Streets& streets = c.streets;
   const planar::Road& road = streets.network[track];
-  const planar::Place place = planar::At(*road.track, s).place;
+  const planar::Place place = streets.At(track, s).place;
   for (std::uint32_t i = 0; i < streets.riders.size(); ++i) {
     const planar::Rider& other = streets.riders[i];
     if (!other.on || i == c.index) continue;
@@ -26,7 +27,8 @@ bool IsTaken(const Context& c, std::uint32_t track, double s) {
       if (std::min(apart, road.closed ? road.length - apart : apart) < gap) return true;
       continue;
     }
-    const planar::Place its = planar::At(*streets.network[other.route.first()].track, other.at.position).place;
+    if (streets.tracks[other.route.first()].spot.system != streets.tracks[track].spot.system) continue;
+    const planar::Place its = streets.At(other.route.first(), other.at.position).place;
     if (std::hypot(its.x - place.x, its.y - place.y) < streets.tracks[track].reach) return true;
   }
   return false;
@@ -55,8 +57,11 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   const std::uint32_t track = streets.Find(command.track.view());
   if (track == planar::kNoTrack) return Refused(ErrorId::kParameter);
   if (!streets.tracks[track].enabled || streets.uses[track].moving > 0) return Refused(ErrorId::kTrackMode);
-  const planar::Nearest nearest =
-      planar::NearestTo(*streets.network[track].track, {s.set_point[kX].position, s.set_point[kY].position});
+  const planar::Spot& spot = streets.tracks[track].spot;
+  if (spot.system != s.system) return Refused(ErrorId::kReference);
+  const planar::Place from{s.set_point[kX].position, s.set_point[kY].position};
+  planar::Nearest nearest = planar::NearestTo(*streets.network[track].track, from - spot.origin);
+  nearest.place = nearest.place + spot.origin;
   if (IsTaken(g.c, track, nearest.s)) return Refused(ErrorId::kCollision);
   const KinematicState turned = Now(g.c, s.others.back());
   const double c = TargetOf(g.c.params, turned, turned.position, {.direction = TurnDirection::kShortestWay});
@@ -86,11 +91,13 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
   if (const ErrorId why = WhyNot(s, Ask::kLeaveTrack); why != ErrorId::kNone) return Refused(why);
   if (!IsPlaneResting(g.c, s)) return Refused(ErrorId::kCommandMode);
   if (streets.uses[s.track].moving > 0) return Refused(ErrorId::kTrackMode);
+  double x = command.x, y = command.y;
+  if (const ErrorId why = ToItsSystem(g.c, s, command.reference, x, y); why != ErrorId::kNone) return Refused(why);
   s.plane = {};
   s.plane.motion = StandingAt(s.set_point[kX].position, s.set_point[kY].position);
   s.plane.begin = g.c.cycle.count;
-  const Answer answer = MoveTo(g, {command.x, command.y, command.c, command.use_orientation, command.velocity,
-                                   command.acceleration, command.deceleration, command.jerk});
+  const Answer answer = MoveTo(g, {x, y, command.c, command.use_orientation, command.velocity, command.acceleration,
+                                   command.deceleration, command.jerk});
   if (answer.status.failed()) return answer;
   s.mode = CommandMode::kLeavingTrack;
   ++streets.uses[s.track].configuring;

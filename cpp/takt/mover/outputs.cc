@@ -48,6 +48,8 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::track_acceleration>(unit::mm_s2, "Along it.");
   d.internal<&O::waits_for>("Number of the mover that is in its way and that it waits for, from 1; 0: none.");
   d.internal<&O::deadlocked>("The mover that it waits for waits for it, be it over others.");
+  d.internal<&O::coordinate_system>("Number of the coordinate system that its positions are in, from 1; 0: none.");
+  d.internal<&O::part>("Number of the part that its middle is on, from 1; 0: none.");
   d.internal<&O::commands>("So many commands have come, external set points apart.");
 }
 

@@ -35,7 +35,10 @@ struct Outputs {
   double track_acceleration = 0;  // mm/s²
   std::uint32_t waits_for = 0;    // number of the mover that is in its way, from 1; 0: none
   bool deadlocked = false;        // that one waits for it, over others or not
-  std::uint64_t commands = 0;     // so many have come
+  // Numbers, from 1, of the coordinate system that positions are in, and of the part that its middle is on; 0: none.
+  std::uint32_t coordinate_system = 0;
+  std::uint32_t part = 0;
+  std::uint64_t commands = 0;  // so many have come
 };
 
 void describe(Description<Outputs>&);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "takt/mover/coordinate.h"
+#include "takt/mover/on_parts.h"
 
 namespace takt::mover {
 
@@ -62,6 +63,19 @@ CoordinateParams ParamsOf(const Context& c, const State& s, std::size_t other) n
   return Windowed(params, s.set_point[kC].position, bound);
 }
 
+namespace {
+
+// A motion on the plane that begins now, and does not lead off the stators.
+bool Stays(const Context& c, const State& s, const PlaneMotion& motion) {
+  if (c.streets.parts->none() || IsOnTrack(s)) return true;
+  PlaneMove move;
+  move.motion = motion;
+  move.begin = c.cycle.count;
+  return WhyNotOn(c, s, CoverOf(c, move, s.others.back())) == ErrorId::kNone;
+}
+
+}  // namespace
+
 void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) noexcept {
   const trajectory::Limits maximum = c.params.xy.maximum.limits();
   const SetPoint& at = s.set_point;
@@ -70,7 +84,7 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
     const bool found = s.external.mode == SetpointMode::kNone
                            ? PlanRest(c.planner, s.plane.motion, Elapsed(c, s.plane.begin), limits, rest)
                            : PlanRest(c.planner, {at[kX], at[kY]}, limits, rest);
-    return found && SpeedBound(rest) <= maximum.velocity * (1 + 1e-9);
+    return found && SpeedBound(rest) <= maximum.velocity * (1 + 1e-9) && Stays(c, s, rest);
   };
   if (IsOnTrack(s)) {
     c.rider().aim = planar::Aim::kRest;  // with its greatest dynamics, as all others reckon
@@ -93,12 +107,12 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
   s.external = {};
 }
 
-void Fail(const Context& c, ErrorId error, State& s) noexcept {
+void Fail(const Context& c, ErrorId error, State& s, bool aborts) noexcept {
   using enum planar::ObjectState;
   if (s.state == kResetting || s.state == kErrorPending || s.state == kError) return;
   EndAll(c, true, FeedbackState::kError, error, s);
   s.error = error;
-  s.aborts = s.state == kDisabled || s.state == kDisabling;
+  s.aborts = aborts || s.state == kDisabled || s.state == kDisabling;
   BringToRest(c, nullptr, s);
   Enter(c, kErrorPending, s);
 }

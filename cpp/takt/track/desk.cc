@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include "takt/track/on_parts.h"
+
 namespace takt::track {
 
 namespace {
@@ -27,6 +29,8 @@ std::optional<Answer> Make(Desk& desk) {
   Answer answer{question.track, {question.number, making.problem, 0}};
   if (making.problem != planar::Problem::kNone) {
     if (making.element < layout.elements.size()) answer.made.element = static_cast<std::uint32_t>(making.element + 1);
+  } else if (!LiesOn(desk.parts, question.part, *way)) {
+    answer.made.problem = planar::Problem::kOffPart;
   } else if (desk.deliveries.TryPush({question.number, way.get()})) {
     way.release();
   }

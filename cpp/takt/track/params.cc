@@ -34,6 +34,8 @@ void describe(Description<TrackParams>& d) {
   using P = TrackParams;
   d.about("A track: a way in the plane along which movers go one behind the other.");
   d.required<&P::name>("Of the track; commands go to it.");
+  d.defaulted<&P::part>(
+      "Name of the part it lies on, whose coordinates its places belong to; needed if there are two.");
   d.defaulted<&P::elements>("What it is given by, in the order of the way; 64 at most.");
   d.defaulted<&P::closed_loop>("It goes on from its last element to its first.");
   d.defaulted<&P::starts_from>("Names of tracks at whose ends it starts.");

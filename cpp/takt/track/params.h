@@ -27,6 +27,7 @@ enum class CollisionRangeMode : std::uint8_t {
 
 struct TrackParams {
   std::string name;
+  std::string part{};  // name of the part it lies on; empty: the only one
   std::vector<ElementParams> elements;
   bool closed_loop = false;
   std::vector<std::string> starts_from;  // names of tracks at whose ends it starts

@@ -1,0 +1,213 @@
+#include "takt/engine/parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/mover/on_parts.h"
+#include "takt/track/works.h"
+
+namespace takt::engine {
+
+namespace {
+
+using part::Hindrance;
+using planar::ObjectState;
+
+part::Context ContextOf(World& w, std::size_t i) {
+  return {w.parts[i], w.cycle, w.feedback};
+}
+
+Hindrance By(ErrorId error, std::size_t index) {
+  return {error, static_cast<std::uint32_t>(index + 1)};
+}
+
+// What a part does has changed: others see it.
+void Show(World& w, std::size_t i) {
+  planar::PartNow& now = w.surface.now[i];
+  const planar::PartNow before = now;
+  now = part::Show(w.part_states[i]);
+  if (now.position == before.position && now.away == before.away) return;
+  planar::MakeBorders(w.surface);
+  track::MakeNodes(w.tracks);
+}
+
+bool IsOnTrackOf(const World& w, std::size_t mover, std::size_t part) {
+  const planar::Rider& rider = w.streets.riders[mover];
+  return rider.on && w.tracks.part_of[rider.route.first()] == part;
+}
+
+bool TouchesPart(World& w, std::size_t mover, std::size_t part) {
+  const mover::Cover cover = mover::CoverOf(MoverContext(w, mover), w.mover_states[mover]);
+  return std::ranges::any_of(cover.all(), [&](const planar::Area& area) {
+    return planar::Touches(w.surface.all[part], w.surface.spot(static_cast<std::uint32_t>(part)),
+                           w.mover_states[mover].system, area);
+  });
+}
+
+// It stands on the part, or its way leads over it.
+bool Uses(World& w, std::size_t mover, std::size_t part) {
+  if (w.mover_states[mover].part == part || TouchesPart(w, mover, part)) return true;
+  const planar::Rider& rider = w.streets.riders[mover];
+  return rider.on &&
+         std::ranges::any_of(rider.route.all(), [&](std::uint32_t track) { return w.tracks.part_of[track] == part; });
+}
+
+void FailMoversOn(World& w, std::size_t part, ErrorId error) {
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    if (Uses(w, i, part)) mover::Fail(MoverContext(w, i), error, w.mover_states[i], true);
+  }
+}
+
+planar::Area Shifted(planar::Area area, const planar::Place& by) {
+  for (std::size_t i = 0; i < area.count; ++i) area.places[i] = area.places[i] + by;
+  return area;
+}
+
+// Whether two movers on tracks of different parts, which stand, would be nearer to each other than movers come there.
+bool AreTooNear(const World& w, std::size_t one, std::size_t other) {
+  const planar::Rider& a = w.streets.riders[one];
+  const planar::Rider& b = w.streets.riders[other];
+  const std::uint32_t of_a = a.route.first(), of_b = b.route.first();
+  const double gap = std::max(a.gap, b.gap);
+  const auto rest = [&](std::uint32_t track, const planar::Rider& r) {
+    return w.tracks.states[track].length - r.at.position;
+  };
+  if (w.tracks.end_nodes[of_a] == w.tracks.start_nodes[of_b] && rest(of_a, a) + b.at.position < gap) return true;
+  if (w.tracks.end_nodes[of_b] == w.tracks.start_nodes[of_a] && rest(of_b, b) + a.at.position < gap) return true;
+  const planar::Place off = w.tracks.At(of_a, a.at.position).place - w.tracks.At(of_b, b.at.position).place;
+  const bool together = w.tracks.spot(of_a).system == w.tracks.spot(of_b).system;
+  return together && std::hypot(off.x, off.y) < w.streets.tracks[of_a].reach;
+}
+
+// Who would be too near to a mover on a track of the part, were that there.
+Hindrance TooNear(World& w, std::uint32_t part, std::uint32_t position) {
+  const planar::PartNow before = w.surface.now[part];
+  w.surface.now[part].position = position;
+  track::MakeNodes(w.tracks);
+  Hindrance found;
+  for (std::size_t i = 0; i < w.movers.size() && found.error == ErrorId::kNone; ++i) {
+    if (!IsOnTrackOf(w, i, part)) continue;
+    for (std::size_t k = 0; k < w.movers.size(); ++k) {
+      if (!w.streets.riders[k].on || IsOnTrackOf(w, k, part) || !AreTooNear(w, i, k)) continue;
+      found = By(ErrorId::kPartMover, k);
+      break;
+    }
+  }
+  w.surface.now[part] = before;
+  track::MakeNodes(w.tracks);
+  return found;
+}
+
+// Movers that hinder a part from leaving where it is: those on it that move or reach over its border, and others that
+// reach over it.
+bool Holds(World& w, std::size_t mover, std::uint32_t part, const mover::Cover& cover) {
+  const mover::State& s = w.mover_states[mover];
+  const auto touches = [&](std::uint32_t k) {
+    return std::ranges::any_of(cover.all(), [&](const planar::Area& area) {
+      return planar::Touches(w.surface.all[k], w.surface.spot(k), s.system, area);
+    });
+  };
+  if (s.part != part) return touches(part);
+  if (!mover::IsStill(MoverContext(w, mover), s)) return true;
+  for (std::uint32_t k = 0; k < w.surface.all.size(); ++k) {
+    if (k != part && !w.surface.now[k].away && touches(k)) return true;
+  }
+  return false;
+}
+
+Hindrance HindranceOf(World& w, std::uint32_t part, std::uint32_t position) {
+  const planar::Part& shape = w.surface.all[part];
+  const planar::Spot& from = w.surface.spot(part);
+  const planar::Spot& to = shape.positions[position];
+  for (std::uint32_t k = 0; k < w.surface.all.size(); ++k) {
+    if (k == part) continue;
+    const planar::Part& other = w.surface.all[k];
+    const planar::Spot& its = other.positions[w.surface.now[k].commanded];
+    if (Overlap(shape, to, other, w.surface.spot(k)) || Overlap(shape, to, other, its)) {
+      return By(ErrorId::kPartPlace, k);
+    }
+  }
+  for (std::size_t k = 0; k < w.tracks.states.size(); ++k) {
+    const mover::TrackUse& use = w.streets.uses[k];
+    if (w.tracks.part_of[k] == part && use.moving + use.configuring > 0) return By(ErrorId::kPartTrack, k);
+  }
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    const mover::State& s = w.mover_states[i];
+    const mover::Cover cover = mover::CoverOf(MoverContext(w, i), s);
+    if (Holds(w, i, part, cover)) return By(ErrorId::kPartMover, i);
+    const bool below = std::ranges::any_of(
+        cover.all(), [&](const planar::Area& area) { return planar::Touches(shape, to, s.system, area); });
+    if (s.part != part && below) return By(ErrorId::kPartMover, i);
+    if (s.part != part) continue;
+    // Those that are there already.
+    for (std::size_t k = 0; k < w.movers.size(); ++k) {
+      const mover::State& other = w.mover_states[k];
+      if (other.part == part || other.system != to.system) continue;
+      const mover::Cover its = mover::CoverOf(MoverContext(w, k), other);
+      for (const planar::Area& a : cover.all()) {
+        const planar::Area there = Shifted(a, to.origin - from.origin);
+        const auto near = [&](const planar::Area& b) { return planar::Near(there, b, planar::kSame); };
+        if (std::ranges::any_of(its.all(), near)) return By(ErrorId::kPartMover, k);
+      }
+    }
+  }
+  return TooNear(w, part, position);
+}
+
+}  // namespace
+
+void ApplyToPart(World& w, std::size_t i, Ticket ticket, const part::Command& command) noexcept {
+  Hindrance hindrance;
+  const auto* goes = std::get_if<part::ActivatePosition>(&command);
+  if (goes && goes->index >= 1 && goes->index <= w.parts[i].positions.size()) {
+    hindrance = HindranceOf(w, static_cast<std::uint32_t>(i), goes->index - 1);
+  }
+  part::Apply(ContextOf(w, i), ticket, command, hindrance, w.part_states[i]);
+  Show(w, i);
+  if (std::holds_alternative<part::ForceDisable>(command)) FailMoversOn(w, i, ErrorId::kPartDisabled);
+}
+
+void StepParts(World& w) noexcept {
+  for (std::uint32_t i = 0; i < w.parts.size(); ++i) {
+    part::State& s = w.part_states[i];
+    const planar::Spot from = w.surface.spot(i);
+    const bool ends = s.state == ObjectState::kDisabling || s.state == ObjectState::kErrorPending;
+    part::Around around;
+    for (std::size_t k = 0; k < w.movers.size(); ++k) {
+      const mover::State& mover = w.mover_states[k];
+      if (mover.system == from.system) {
+        around.wanted |= mover::NeedsParts(mover);
+        around.reset |= mover.state == ObjectState::kResetting;
+      }
+      if (!ends || !Uses(w, k, i)) continue;
+      around.movers_rest &= mover::AtRest(mover);
+      around.movers_failed &= mover.state == ObjectState::kError;
+    }
+    const bool gone = part::Step(ContextOf(w, i), w.part_inputs[i], around, s);
+    Show(w, i);
+    for (std::size_t k = 0; gone && k < w.movers.size(); ++k) {
+      if (w.mover_states[k].part != i) continue;
+      mover::Carry(MoverContext(w, k), from, w.surface.spot(i), w.mover_inputs[k], w.mover_states[k]);
+    }
+    if (s.state == ObjectState::kErrorPending) FailMoversOn(w, i, s.error);
+  }
+}
+
+void PublishParts(World& w) noexcept {
+  for (std::uint32_t i = 0; i < w.parts.size(); ++i) {
+    const auto on = std::ranges::count(w.mover_states, i, &mover::State::part);
+    part::Publish(w.surface.spot(i), static_cast<std::uint32_t>(on), w.part_states[i], w.part_outputs[i]);
+  }
+}
+
+void SimulateParts(World& w) noexcept {
+  for (std::size_t i = 0; i < w.parts.size(); ++i) {
+    w.part_inputs[i] = part::Simulate(w.part_states[i]);
+    const PartFaults& faults = w.part_faults[i];
+    const bool goes = w.part_states[i].commanded != w.part_states[i].position;
+    if (faults.lost || (faults.stuck && goes)) w.part_inputs[i].position = 0;
+    w.part_inputs[i].fault = faults.fault;
+  }
+}
+
+}  // namespace takt::engine

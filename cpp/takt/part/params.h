@@ -1,0 +1,37 @@
+// What a machine file says about coordinate systems and the parts in them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/planar/parts.h"
+#include "takt/planar/point.h"
+
+namespace takt::part {
+
+struct CoordinateSystemParams {
+  std::string name;
+};
+
+struct PositionParams {
+  std::string coordinate_system;  // its name
+  double x = 0, y = 0;            // mm, of the part's origin
+};
+
+struct PartParams {
+  std::string name;
+  std::vector<planar::Place> stators{{}};  // mm, their lower left corners in the part's own coordinates
+  std::vector<PositionParams> positions;
+  std::uint32_t initial_position = 1;  // from 1
+};
+
+// All of them; they must have been checked.
+planar::Parts Make(const std::vector<CoordinateSystemParams>& systems, const std::vector<PartParams>& parts);
+
+void describe(Description<CoordinateSystemParams>&);
+void describe(Description<PositionParams>&);
+void describe(Description<PartParams>&);
+
+}  // namespace takt::part
