@@ -40,15 +40,14 @@ struct SetPosition {
 };
 
 struct MoveToPosition {
-  double x = 0, y = 0;           // mm
-  double c = 0;                  // deg; counts with use_orientation
-  bool use_orientation = false;  // else C stays
-  std::optional<double> velocity {
-    Name reference{};                    // part or coordinate system that X and Y belong to
-  };                                     // mm/s
+  double x = 0, y = 0;                   // mm
+  double c = 0;                          // deg; counts with use_orientation
+  bool use_orientation = false;          // else C stays
+  std::optional<double> velocity{};      // mm/s
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
+  Name reference{};                      // part or coordinate system that X and Y belong to
 };
 
 struct MoveZ {
@@ -91,15 +90,14 @@ struct JoinTrack {
   std::optional<double> jerk{};          // mm/s³
 };
 struct LeaveTrack {
-  double x = 0, y = 0;          // mm
-  double c = 0;                 // deg; counts with use_orientation
-  bool use_orientation = true;  // else C stays
-  std::optional<double> velocity {
-    Name reference{};                    // part or coordinate system that X and Y belong to
-  };                                     // mm/s
+  double x = 0, y = 0;                   // mm
+  double c = 0;                          // deg; counts with use_orientation
+  bool use_orientation = true;           // else C stays
+  std::optional<double> velocity{};      // mm/s
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
+  Name reference{};                      // part or coordinate system that X and Y belong to
 };
 struct MoveOnTrack {
   double position = 0;          // mm along the track

@@ -166,10 +166,10 @@ void Locate(const Context& c, State& s) noexcept {
 }
 
 void Carry(const Context& c, const planar::Spot& from, const planar::Spot& to, Inputs& inputs, State& s) noexcept {
-  const Place by = to.origin - from.origin;
+  const planar::Place by = to.origin - from.origin;
   inputs.actual.x += by.x;
   inputs.actual.y += by.y;
-  PutAt({to.system, Place{s.set_point[kX].position, s.set_point[kY].position} + by}, s);
+  PutAt({to.system, planar::Place{s.set_point[kX].position, s.set_point[kY].position} + by}, s);
   s.plane.begin = c.cycle.count;
 }
 
@@ -179,12 +179,12 @@ ErrorId Stand(const MoverParams& params, const planar::Parts& parts, std::string
   if (!from) return ErrorId::kReference;
   out = {from->system, from->origin + pose.place};
   if (parts.none()) return ErrorId::kNone;
-  const Area area{.places = {out.origin},
-                  .count = 1,
-                  .least_c = pose.c,
-                  .most_c = pose.c,
-                  .mover = {params.width, params.height},
-                  .margin = 0};
+  const planar::Area area{.places = {out.origin},
+                          .count = 1,
+                          .least_c = pose.c,
+                          .most_c = pose.c,
+                          .mover = {params.width, params.height},
+                          .margin = 0};
   return planar::Carries(parts, out.system, area) ? ErrorId::kNone : ErrorId::kOffStators;
 }
 
