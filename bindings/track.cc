@@ -20,7 +20,10 @@ using RangePair = py::typing::Tuple<double, double>;
 
 class Layout {
  public:
-  Layout(const py::bytes& text, const std::string& file_name) : tracks_(Load(text, file_name, false).machine->tracks) {}
+  Layout(const py::bytes& text, const std::string& file_name)
+      : machine_(*Load(text, file_name, false).machine),
+        parts_(part::Make(machine_.coordinate_systems, machine_.parts)),
+        tracks_(machine_.tracks, &parts_) {}
 
   std::vector<std::string> names() const {
     std::vector<std::string> names;
@@ -80,6 +83,8 @@ class Layout {
     return found;
   }
 
+  engine::Machine machine_;
+  planar::Parts parts_;
   track::Tracks tracks_;
 };
 

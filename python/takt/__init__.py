@@ -22,6 +22,7 @@ from takt.forecast import Forecast, Moment
 from takt.group import Group
 from takt.lcmlog import LogError, read_log
 from takt.mover import Mover, MoverRecord
+from takt.part import Part
 from takt.pick_place import PickPlace
 from takt.pose import FreePose
 from takt.recording import Recording, RecordingError

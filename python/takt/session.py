@@ -21,6 +21,7 @@ from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.flex_cam import FlexCam
 from takt.group import Group
 from takt.mover import Mover
+from takt.part import Part
 from takt.pick_place import PickPlace
 from takt.pose import FreePose
 from takt.recording import Recording
@@ -37,7 +38,7 @@ P = TypeVar("P", bound=Program)
 C = TypeVar("C", bound=Component)
 
 CLASSES: dict[str, type[Component]] = {
-    component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace, Mover, Track)
+    component.KIND: component for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace, Mover, Track, Part)
 }
 
 
@@ -97,6 +98,7 @@ class Session(MachineCommands):
         self._pick_places = {name: c for name, c in self._components.items() if isinstance(c, PickPlace)}
         self._movers = {name: c for name, c in self._components.items() if isinstance(c, Mover)}
         self._tracks = {name: c for name, c in self._components.items() if isinstance(c, Track)}
+        self._parts = {name: c for name, c in self._components.items() if isinstance(c, Part)}
         self._programs: list[Program] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
@@ -171,6 +173,14 @@ class Session(MachineCommands):
 
     def track(self, name: str) -> Track:
         return _named(self._tracks, name, "track")
+
+    @property
+    def parts(self) -> Mapping[str, Part]:
+        """All parts of the surface by name, in the order of the machine file."""
+        return MappingProxyType(self._parts)
+
+    def part(self, name: str) -> Part:
+        return _named(self._parts, name, "part")
 
     @property
     def components(self) -> Mapping[str, Component]:

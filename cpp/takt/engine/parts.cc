@@ -154,6 +154,23 @@ Hindrance HindranceOf(World& w, std::uint32_t part, std::uint32_t position) {
   return TooNear(w, part, position);
 }
 
+part::Around AroundOf(World& w, std::uint32_t part) {
+  const ObjectState state = w.part_states[part].state;
+  const bool ends = state == ObjectState::kDisabling || state == ObjectState::kErrorPending;
+  part::Around around;
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    const mover::State& s = w.mover_states[i];
+    if (s.system == w.surface.spot(part).system) {
+      around.wanted |= mover::NeedsParts(s);
+      around.reset |= s.state == ObjectState::kResetting;
+    }
+    if (!ends || !Uses(w, i, part)) continue;
+    around.movers_rest &= mover::AtRest(s);
+    around.movers_failed &= s.state == ObjectState::kError;
+  }
+  return around;
+}
+
 }  // namespace
 
 void ApplyToPart(World& w, std::size_t i, Ticket ticket, const part::Command& command) noexcept {
@@ -169,26 +186,18 @@ void ApplyToPart(World& w, std::size_t i, Ticket ticket, const part::Command& co
 
 void StepParts(World& w) noexcept {
   for (std::uint32_t i = 0; i < w.parts.size(); ++i) {
-    part::State& s = w.part_states[i];
     const planar::Spot from = w.surface.spot(i);
-    const bool ends = s.state == ObjectState::kDisabling || s.state == ObjectState::kErrorPending;
-    part::Around around;
-    for (std::size_t k = 0; k < w.movers.size(); ++k) {
-      const mover::State& mover = w.mover_states[k];
-      if (mover.system == from.system) {
-        around.wanted |= mover::NeedsParts(mover);
-        around.reset |= mover.state == ObjectState::kResetting;
-      }
-      if (!ends || !Uses(w, k, i)) continue;
-      around.movers_rest &= mover::AtRest(mover);
-      around.movers_failed &= mover.state == ObjectState::kError;
-    }
-    const bool gone = part::Step(ContextOf(w, i), w.part_inputs[i], around, s);
+    const bool gone = part::Arrive(ContextOf(w, i), w.part_inputs[i], w.part_states[i]);
     Show(w, i);
     for (std::size_t k = 0; gone && k < w.movers.size(); ++k) {
       if (w.mover_states[k].part != i) continue;
       mover::Carry(MoverContext(w, k), from, w.surface.spot(i), w.mover_inputs[k], w.mover_states[k]);
     }
+  }
+  for (std::uint32_t i = 0; i < w.parts.size(); ++i) {
+    part::State& s = w.part_states[i];
+    part::Step(ContextOf(w, i), AroundOf(w, i), s);
+    Show(w, i);
     if (s.state == ObjectState::kErrorPending) FailMoversOn(w, i, s.error);
   }
 }

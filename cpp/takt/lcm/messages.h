@@ -30,6 +30,7 @@
 #include "takt/msgs/journal_start.hpp"
 #include "takt/msgs/machine_description.hpp"
 #include "takt/msgs/mover_state.hpp"
+#include "takt/msgs/part_state.hpp"
 #include "takt/msgs/pick_place_state.hpp"
 #include "takt/msgs/pose_state.hpp"
 #include "takt/msgs/track_state.hpp"
@@ -45,6 +46,7 @@ msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, cons
 msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine::Machine& machine);
 msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::Machine& machine);
 msgs::track_state ToMessage(const engine::TrackSnapshot& snapshot, const engine::Machine& machine);
+msgs::part_state ToMessage(const engine::PartSnapshot& snapshot, const engine::Machine& machine);
 msgs::histogram ToMessage(const engine::Histogram& histogram);
 msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine::Machine& machine);
 // Client, session and id are left empty.

@@ -131,7 +131,7 @@ void Fail(const Context& c, ErrorId error, State& s) noexcept {
   Enter(c, ObjectState::kErrorPending, s);
 }
 
-bool Step(const Context& c, const Inputs& inputs, const Around& around, State& s) noexcept {
+bool Arrive(const Context& c, const Inputs& inputs, State& s) noexcept {
   const std::uint32_t before = s.position;
   const std::uint32_t reported = inputs.position;
   const bool arrived = reported == s.commanded + 1;
@@ -144,8 +144,11 @@ bool Step(const Context& c, const Inputs& inputs, const Around& around, State& s
   // Going, it may be nowhere for a while; but nowhere else.
   if (s.away && !(goes && reported == 0)) Fail(c, ErrorId::kPartPosition, s);
   if (inputs.fault) Fail(c, ErrorId::kPartFault, s);
-  Change(c, around, s);
   return s.position != before;
+}
+
+void Step(const Context& c, const Around& around, State& s) noexcept {
+  Change(c, around, s);
 }
 
 void Publish(const planar::Spot& spot, std::uint32_t movers, const State& s, Outputs& out) noexcept {

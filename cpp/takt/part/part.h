@@ -47,8 +47,10 @@ struct Around {
   bool movers_rest = true;    // those on it do
   bool movers_failed = true;  // and are in Error
 };
-// move: before the movers. True: it is somewhere else now than it was.
-bool Step(const Context& c, const Inputs& inputs, const Around& around, State& s) noexcept;
+// move: before the movers. Whether it is where it is to be. True: it is somewhere else now than it was.
+bool Arrive(const Context& c, const Inputs& inputs, State& s) noexcept;
+// Behind that.
+void Step(const Context& c, const Around& around, State& s) noexcept;
 
 void Fail(const Context& c, ErrorId error, State& s) noexcept;
 

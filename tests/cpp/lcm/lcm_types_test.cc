@@ -184,6 +184,7 @@ TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   ExpectSameConstants("mover_state.lcm", "EXTERNAL_", TypeOf<mover::SetpointMode>());
   ExpectSameConstants("track_state.lcm", "STATE_", TypeOf<planar::ObjectState>());
   ExpectSameConstants("track_state.lcm", "MODE_", TypeOf<track::OperationMode>());
+  ExpectSameConstants("part_state.lcm", "STATE_", TypeOf<planar::ObjectState>());
   ExpectSameConstants("group_state.lcm", "REASON_", TypeOf<kinematics::Reason>());
   ExpectSameConstants("group_state.lcm", "PROBLEM_", TypeOf<path::Problem>());
 
