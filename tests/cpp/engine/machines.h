@@ -73,6 +73,9 @@ poses:
 tracks:
   - {name: main, elements: [{from: {x: 0, y: 0}, to: {x: 300, y: 0}}]}
   - {name: branch, starts_from: [main]}
+coordinate_systems: [{name: plane}]
+parts:
+  - {name: floor, stators: [{x: 0, y: 0}, {x: 240, y: 0}], positions: [{coordinate_system: plane}]}
 simulation:
   servos:
     - axis: z

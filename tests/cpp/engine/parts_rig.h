@@ -59,7 +59,9 @@ class PartsRig {
     return Do(target, verb, arguments).error;
   }
 
-  const mover::Outputs& Mover(const std::string& name) const { return engine.mover_outputs(Index(machine.movers, name)); }
+  const mover::Outputs& Mover(const std::string& name) const {
+    return engine.mover_outputs(Index(machine.movers, name));
+  }
   const part::Outputs& Part(const std::string& name) const { return engine.part_outputs(Index(machine.parts, name)); }
 
   Engine engine;

@@ -41,9 +41,10 @@ TEST(Parts, SayWhatWasExpected) {
   };
   EXPECT_THAT(problem("name: two,", "name: one,"), HasSubstr("expected each name once"));
   EXPECT_THAT(problem("name: two,", "name: lower,"), HasSubstr("expected a name that nothing else has"));
-  EXPECT_THAT(problem("{coordinate_system: upper}]", "{coordinate_system: uper}]"),
-              HasSubstr("parts[1].positions[0].coordinate_system: expected the name of a coordinate system, found 'uper'; "
-                        "did you mean upper?"));
+  EXPECT_THAT(
+      problem("{coordinate_system: upper}]", "{coordinate_system: uper}]"),
+      HasSubstr("parts[1].positions[0].coordinate_system: expected the name of a coordinate system, found 'uper'; "
+                "did you mean upper?"));
   EXPECT_THAT(problem("initial_position: 2", "initial_position: 3"), HasSubstr("one of its 2 positions"));
   EXPECT_THAT(problem("positions: [{coordinate_system: upper}]", "positions: []"),
               HasSubstr("expected at least one position"));
@@ -51,14 +52,17 @@ TEST(Parts, SayWhatWasExpected) {
               HasSubstr("expected stators that hang together"));
   EXPECT_THAT(problem("{name: one,", "{name: one, stators: [{x: 0, y: 0}, {x: 239, y: 0}],"),
               HasSubstr("two stators overlap"));
-  EXPECT_THAT(problem("lower, y: 240", "lower, y: 239"), HasSubstr("expected a place beside other parts, found one on"));
-  EXPECT_THAT(problem("upper, y: 240", "upper, y: 239"), HasSubstr("expected a place beside other parts, found one on"));
+  EXPECT_THAT(problem("lower, y: 240", "lower, y: 239"),
+              HasSubstr("expected a place beside other parts, found one on"));
+  EXPECT_THAT(problem("upper, y: 240", "upper, y: 239"),
+              HasSubstr("expected a place beside other parts, found one on"));
   EXPECT_THAT(problem("reference: one, ", ""), HasSubstr("expected the name of the part or coordinate system"));
   EXPECT_THAT(problem("reference: one", "reference: oen"), HasSubstr("did you mean one?"));
   EXPECT_THAT(problem("x: 120, y: 120", "x: 56, y: 120"), HasSubstr("all of the mover is on stators"));
   EXPECT_THAT(problem("movers:", "tracks: [{name: track}]\nmovers:"), HasSubstr("expected the name of a part"));
-  EXPECT_THAT(problem("movers:", "tracks: [{name: track, part: one, elements: [{from: {x: 0, y: 0}, to: {x: 250, y: 0}}]}]"
-                                 "\nmovers:"),
+  EXPECT_THAT(problem("movers:",
+                      "tracks: [{name: track, part: one, elements: [{from: {x: 0, y: 0}, to: {x: 250, y: 0}}]}]"
+                      "\nmovers:"),
               HasSubstr("the track leaves its part"));
 }
 
@@ -105,7 +109,9 @@ TEST(Parts, TheLiftOfTheManual) {
 
 // Refused with what is in the way, and nothing has changed then.
 TEST(Parts, GoOnlyWhenThatIsSafe) {
-  const std::string text = With(kLift, "movers:", R"(  - {name: four, positions: [{coordinate_system: upper, x: 240}, {coordinate_system: lower, y: 240}]}
+  const std::string text =
+      With(kLift, "movers:",
+           R"(  - {name: four, positions: [{coordinate_system: upper, x: 240}, {coordinate_system: lower, y: 240}]}
 movers:
   - {name: other, reference: two, initial: {x: 120, y: 120}})");
   PartsRig rig(text);
@@ -305,8 +311,9 @@ void MakeNetwork(PartsRig& rig) {
   line("track_three", "two", "start_x: 120, start_y: 320, end_x: 120, end_y: 160");
   line("track_three", "two", "start_x: 80, start_y: 120, end_x: 0, end_y: 120");
   const auto link = [&](const std::string& track, const std::string& verb, int other) {
-    EXPECT_EQ(rig.ErrorOf(track, verb, "{track: track_three, this_position_index: 1, other_position_index: " +
-                                           std::to_string(other) + "}"),
+    EXPECT_EQ(rig.ErrorOf(
+                  track, verb,
+                  "{track: track_three, this_position_index: 1, other_position_index: " + std::to_string(other) + "}"),
               ErrorId::kNone);
   };
   link("track_two", "start_from_track", 2);
@@ -369,10 +376,12 @@ TEST(PartTracks, AreLinkedOnTheBorderAlone) {
   EXPECT_EQ(problem(rig.Do("track_one", "end_at_track", "{track: track_three}")), planar::Problem::kNotOnBorder);
   rig.Do("track_three", "clear");
   rig.Do("track_three", "append_line", "{start_x: 0, start_y: 120, end_x: 100, end_y: 120, reference: two}");
-  EXPECT_EQ(problem(rig.Do("track_three", "append_line", "{start_x: 120, start_y: 120, end_x: 300, end_y: 120, reference: two}")),
+  EXPECT_EQ(problem(rig.Do("track_three", "append_line",
+                           "{start_x: 120, start_y: 120, end_x: 300, end_y: 120, reference: two}")),
             planar::Problem::kOffPart);
   rig.Do("track_one", "append_line", "{start_x: 100, start_y: 120, end_x: 440, end_y: 120, reference: plane}");
-  EXPECT_EQ(problem(rig.Do("track_one", "end_at_track", "{track: track_three, this_position_index: 1, other_position_index: 7}")),
+  EXPECT_EQ(problem(rig.Do("track_one", "end_at_track",
+                           "{track: track_three, this_position_index: 1, other_position_index: 7}")),
             planar::Problem::kApart);
   EXPECT_EQ(rig.ErrorOf("track_one", "end_at_track", "{track: track_three}"), ErrorId::kNone);
   const track::Tracks& tracks = rig.engine.tracks();
@@ -381,7 +390,8 @@ TEST(PartTracks, AreLinkedOnTheBorderAlone) {
   rig.Do("two", "activate_position", "{index: 2}");
   EXPECT_NE(tracks.end_nodes[0], tracks.start_nodes[2]);
   EXPECT_NEAR(tracks.At(2, 0).place.y, 600, 1e-9);
-  EXPECT_EQ(rig.ErrorOf("track_one", "append_line", "{start_x: 0, start_y: 0, end_x: 10, end_y: 0}"), ErrorId::kReference);
+  EXPECT_EQ(rig.ErrorOf("track_one", "append_line", "{start_x: 0, start_y: 0, end_x: 10, end_y: 0}"),
+            ErrorId::kReference);
 }
 
 }  // namespace
