@@ -27,7 +27,7 @@ COMMANDS = (
     "mover.set_external_setpoint",
     "mover.stop_external_setpoint_generation",
 )
-ERRORS = (5, 8, 3004, 3005, 3007, 3024, 3040, 3041, 3042, 3043, 3044, 3045, 3046, 3047)
+ERRORS = (5, 8, 3004, 3005, 3007, 3024, 3040, 3041, 3042, 3043, 3044, 3045, 3046, 3047, 3070, 3071, 3072, 3076, 3077)
 SIGNALS = ("shuttle.x", "shuttle.y", "shuttle.velocity_x", "shuttle.velocity_y", "shuttle.c", "shuttle.command_mode")
 
 

@@ -75,11 +75,12 @@ class Checker {
                                           " positions, found " + std::to_string(part.initial_position));
     }
     planar::Environment shape;
-    const planar::Surfacing made = planar::MakeEnvironment(part.stators, shape);
+    const std::vector<planar::Place> stators = part::StatorsOf(part);
+    const planar::Surfacing made = planar::MakeEnvironment(stators, shape);
     if (made.problem != planar::StatorProblem::kNone) {
       const bool one = made.stator < part.stators.size();
       Add(path + (one ? At(".stators", made.stator) : ".stators"), std::string(planar::Text(made.problem)));
-    } else if (!planar::HangTogether(part.stators)) {
+    } else if (!planar::HangTogether(stators)) {
       Add(path + ".stators", "expected stators that hang together, each beside another one");
     }
   }

@@ -7,6 +7,17 @@
 
 namespace takt::part {
 
+std::vector<planar::Place> StatorsOf(const PartParams& params) {
+  if (!params.stators.empty()) return params.stators;
+  std::vector<planar::Place> stators;
+  for (std::uint32_t row = 0; row < params.rows; ++row) {
+    for (std::uint32_t column = 0; column < params.columns; ++column) {
+      stators.push_back({column * planar::kStatorSide, row * planar::kStatorSide});
+    }
+  }
+  return stators;
+}
+
 planar::Parts Make(const std::vector<CoordinateSystemParams>& systems, const std::vector<PartParams>& parts) {
   std::vector<std::string> names;
   for (const CoordinateSystemParams& system : systems) names.push_back(system.name);
@@ -15,7 +26,7 @@ planar::Parts Make(const std::vector<CoordinateSystemParams>& systems, const std
   for (const PartParams& params : parts) {
     planar::Part& part = made.emplace_back();
     part.name = params.name;
-    planar::MakeEnvironment(params.stators, part.shape);
+    planar::MakeEnvironment(StatorsOf(params), part.shape);
     for (const PositionParams& p : params.positions) {
       const auto system = std::ranges::find(names, p.coordinate_system) - names.begin();
       part.positions.push_back({static_cast<std::uint32_t>(system), {p.x, p.y}});
@@ -45,7 +56,9 @@ void describe(Description<PartParams>& d) {
   using P = PartParams;
   d.about("A part of the surface that movers float on: stators that hang together.");
   d.required<&P::name>("Of the part; commands go to it, and positions refer to it.");
-  d.defaulted<&P::stators>("Lower left corners of its stators, squares of 240 mm, from the part's origin.");
+  d.defaulted<&P::columns>(between(1, 1000), "So many stators side by side, squares of 240 mm.");
+  d.defaulted<&P::rows>(between(1, 1000), "So many such rows, from the part's origin upwards.");
+  d.defaulted<&P::stators>("Instead of columns and rows: lower left corners of its stators, from the part's origin.");
   d.required<&P::positions>("Where it can be; the first has the index 1.");
   d.defaulted<&P::initial_position>(between(1, 1000), "Index of that where it is at the start.");
 }

@@ -22,10 +22,15 @@ struct PositionParams {
 
 struct PartParams {
   std::string name;
-  std::vector<planar::Place> stators{{}};  // mm, their lower left corners in the part's own coordinates
+  std::uint32_t columns = 1;  // of stators, if they are not given one by one
+  std::uint32_t rows = 1;
+  std::vector<planar::Place> stators{};  // mm, their lower left corners in the part's own coordinates
   std::vector<PositionParams> positions;
   std::uint32_t initial_position = 1;  // from 1
 };
+
+// The lower left corners of its stators.
+std::vector<planar::Place> StatorsOf(const PartParams& params);
 
 // All of them; they must have been checked.
 planar::Parts Make(const std::vector<CoordinateSystemParams>& systems, const std::vector<PartParams>& parts);

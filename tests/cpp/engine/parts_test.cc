@@ -293,7 +293,7 @@ name: network
 axes: []
 coordinate_systems: [{name: plane}]
 parts:
-  - {name: one, stators: [{x: 0, y: 0}, {x: 240, y: 0}, {x: 0, y: 240}, {x: 240, y: 240}, {x: 0, y: 480}, {x: 240, y: 480}, {x: 0, y: 720}, {x: 240, y: 720}], positions: [{coordinate_system: plane}]}
+  - {name: one, columns: 2, rows: 4, positions: [{coordinate_system: plane}]}
   - {name: two, stators: [{x: 0, y: 0}, {x: 0, y: 240}], positions: [{coordinate_system: plane, x: 480, y: 0}, {coordinate_system: plane, x: 480, y: 480}]}
 tracks:
   - {name: track_one, part: one}

@@ -47,6 +47,7 @@ class Walk {
  public:
   Walk(std::uint32_t seed, bool faults)
       : rig(kTwoLevels, {.journal = true, .snapshot_queue = 1 << 15}), random_(seed), faults_(faults) {
+    for (const part::PartParams& part : rig.machine.parts) stators_.push_back(part::StatorsOf(part));
     rig.Run();
     Look();
     rig.each_cycle = [this] { Check(); };
@@ -94,7 +95,8 @@ class Walk {
   }
   bool IsOn(std::size_t part, const Seen& where, std::uint32_t system, const Place& p, double slack) const {
     if (where.system != system) return false;
-    return std::ranges::any_of(machine().parts[part].stators, [&](const Place& corner) {
+    const std::vector<Place>& stators = stators_[part];
+    return std::ranges::any_of(stators, [&](const Place& corner) {
       const double x = p.x - where.origin.x - corner.x, y = p.y - where.origin.y - corner.y;
       return x > -slack && y > -slack && x < 240 + slack && y < 240 + slack;
     });
@@ -275,8 +277,8 @@ class Walk {
       }
       for (std::size_t k = 0; k < were.size(); ++k) {
         if (k == p) continue;
-        for (const Place& a : part.stators) {
-          for (const Place& b : machine().parts[k].stators) {
+        for (const Place& a : part::StatorsOf(part)) {
+          for (const Place& b : part::StatorsOf(machine().parts[k])) {
             const bool same = were[k].system == to.system;
             const double x = to.origin.x + a.x - were[k].origin.x - b.x, y = to.origin.y + a.y - were[k].origin.y - b.y;
             EXPECT_FALSE(same && std::abs(x) < 239.99 && std::abs(y) < 239.99);
@@ -289,8 +291,8 @@ class Walk {
     const auto number = static_cast<std::size_t>(answer.value);
     if (answer.error == ErrorId::kPartPlace) {
       bool overlap = false;
-      for (const Place& a : part.stators) {
-        for (const Place& b : machine().parts.at(number - 1).stators) {
+      for (const Place& a : part::StatorsOf(part)) {
+        for (const Place& b : part::StatorsOf(machine().parts.at(number - 1))) {
           const Seen& its = were[number - 1];
           const double x = to.origin.x + a.x - its.origin.x - b.x, y = to.origin.y + a.y - its.origin.y - b.y;
           overlap |= its.system == to.system && std::abs(x) < 240 && std::abs(y) < 240;
@@ -310,6 +312,7 @@ class Walk {
 
   std::mt19937 random_;
   bool faults_;
+  std::vector<std::vector<Place>> stators_;  // by part
   std::vector<Seen> parts_;
   std::vector<mover::Outputs> movers_;
 };
