@@ -6,6 +6,7 @@ another, with the movers that stand on them.
 """
 
 import takt
+from takt import expect
 
 COMMANDS = ("part.activate_position", "part.allow_enable", "part.force_disable", "part.reset")
 ERRORS = (5, 3005, 3072, 3073, 3074, 3075, 3076, 3077)
@@ -36,4 +37,4 @@ def scenario(session: takt.Session) -> None:
 def verify(recording: takt.Recording) -> None:
     assert recording["shuttle"]["x"][-1] == 500
     states = ["Disabled", "Enabling", "Enabled", "Disabling"]
-    takt.expect.visits_states(recording, "floor", [*states, *states, "Disabled"])
+    expect.visits_states(recording, "floor", [*states, *states, "Disabled"])
