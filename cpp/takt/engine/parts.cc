@@ -146,7 +146,10 @@ Hindrance HindranceOf(World& w, std::uint32_t part, std::uint32_t position) {
       const mover::Cover its = mover::CoverOf(MoverContext(w, k), other);
       for (const planar::Area& a : cover.all()) {
         const planar::Area there = Shifted(a, to.origin - from.origin);
-        const auto near = [&](const planar::Area& b) { return planar::Near(there, b, planar::kSame); };
+        const planar::Extent extent = planar::ExtentOf(there);
+        const auto near = [&](const planar::Area& b) {
+          return !planar::Apart(extent, planar::ExtentOf(b), planar::kSame) && planar::Near(there, b, planar::kSame);
+        };
         if (std::ranges::any_of(its.all(), near)) return By(ErrorId::kPartMover, k);
       }
     }

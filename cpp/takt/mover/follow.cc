@@ -74,7 +74,9 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept {
     }
   }
   if (!CanFollow(c, s, s.set_point, to)) return ErrorId::kWildSetPoint;
-  if (const ErrorId why = WhyNotOn(c, s, CoverOfStop(c, to)); why != ErrorId::kNone && !IsOnTrack(s)) return why;
+  if (!IsOnTrack(s)) {
+    if (const ErrorId why = WhyNotOn(c, s, CoverOfStop(c, to)); why != ErrorId::kNone) return why;
+  }
   at = to;
   return ErrorId::kNone;
 }

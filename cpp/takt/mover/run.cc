@@ -100,7 +100,9 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
   s.plane.begin = c.cycle.count;
   for (std::size_t i = 0; i < kOthers.size(); ++i) {
     const CoordinateParams params = ParamsOf(c, s, i);
-    const trajectory::Limits limits = plane ? StandardOf(params) : params.maximum.limits();
+    // C turns no further than it was to, where that counts.
+    const bool hard = plane == nullptr || (kOthers[i] == kC && !c.streets.parts->none());
+    const trajectory::Limits limits = hard ? params.maximum.limits() : StandardOf(params);
     PlanRest(c.planner, at[kOthers[i]], limits, params, s.others[i].profile);
     s.others[i].begin = c.cycle.count;
   }

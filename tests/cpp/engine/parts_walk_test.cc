@@ -30,6 +30,10 @@ parts:
     positions: [{coordinate_system: lower, x: 240, y: 240}, {coordinate_system: lower, x: 480, y: 120}, {coordinate_system: upper, x: 100, y: 240}]
   - name: drawer
     positions: [{coordinate_system: lower, x: 0, y: 480}, {coordinate_system: lower, x: -240}, {coordinate_system: upper, x: 240, y: 240}]
+tracks:
+  - {name: hall_way, part: hall, elements: [{from: {x: 40, y: 120}, to: {x: 480, y: 120}}]}
+  - {name: attic_way, part: attic, elements: [{from: {x: 40, y: 120}, to: {x: 480, y: 120}}]}
+  - {name: lift_way, part: lift, starts_from: [hall_way], elements: [{from: {x: 20, y: 120}, to: {x: 200, y: 120}}]}
 movers:
   - {name: a, reference: hall, initial: {x: 100, y: 100}}
   - {name: b, reference: hall, initial: {x: 340, y: 100}, width: 155, height: 113}
@@ -48,7 +52,10 @@ class Walk {
   Walk(std::uint32_t seed, bool faults)
       : rig(kTwoLevels, {.journal = true, .snapshot_queue = 1 << 15}), random_(seed), faults_(faults) {
     for (const part::PartParams& part : rig.machine.parts) stators_.push_back(part::StatorsOf(part));
-    rig.Run();
+    // The lift's track goes on from either.
+    rig.Do("lift", "activate_position", "{index: 2}");
+    EXPECT_EQ(rig.ErrorOf("lift_way", "start_from_track", "{track: attic_way}"), ErrorId::kNone);
+    for (const char* track : {"hall_way", "attic_way", "lift_way"}) rig.Do(track, "enable");
     Look();
     rig.each_cycle = [this] { Check(); };
   }
@@ -61,7 +68,7 @@ class Walk {
   }
 
   PartsRig rig;
-  int activated = 0, hindered = 0, off = 0, crossed = 0, moved = 0, carried = 0;
+  int activated = 0, hindered = 0, off = 0, crossed = 0, moved = 0, carried = 0, on_track = 0, changed_track = 0;
 
  private:
   double Uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
@@ -116,13 +123,27 @@ class Walk {
            IsOn(part, where, system, at, -1e-9);
   }
 
+  static bool IsOnTrack(const mover::Outputs& o) {
+    return o.command_mode == mover::CommandMode::kOnTrack || o.command_mode == mover::CommandMode::kCRotationOnTrack;
+  }
+
   void Check() {
     const std::vector<mover::Outputs> before = movers_;
     const std::vector<Seen> were = parts_;
     Look();
     for (std::size_t i = 0; i < movers_.size(); ++i) {
       const mover::Outputs& now = movers_[i];
-      EXPECT_TRUE(OnStators(now.coordinate_system, OutlineOf(i, {now.x, now.y}, now.c, 0, 20), 1e-5))
+      // On a track its middle alone is.
+      const std::vector<Place> body =
+          IsOnTrack(now) ? std::vector<Place>{{now.x, now.y}} : OutlineOf(i, {now.x, now.y}, now.c, 0, 20);
+      on_track += IsOnTrack(now) && now.velocity_x != 0 ? 1 : 0;
+      changed_track += IsOnTrack(now) && IsOnTrack(before[i]) && now.track != before[i].track ? 1 : 0;
+      for (std::size_t k = 0; k < i; ++k) {
+        const mover::Outputs& other = movers_[k];
+        const bool meet = IsOnTrack(now) && IsOnTrack(other) && now.coordinate_system == other.coordinate_system;
+        if (meet) EXPECT_GE(std::hypot(now.x - other.x, now.y - other.y), 200 - 1e-3);
+      }
+      EXPECT_TRUE(OnStators(now.coordinate_system, body, 1e-5))
           << machine().movers[i].name << " at " << now.x << ", " << now.y << " turned " << now.c << " in "
           << now.coordinate_system << ", cycle " << rig.engine.cycle().count;
       ASSERT_NE(now.part, 0u);
@@ -147,7 +168,8 @@ class Walk {
     const std::size_t m = any(machine().movers), p = any(machine().parts);
     const std::string& mover = machine().movers[m].name;
     const std::string& part = machine().parts[p].name;
-    switch (Whole(0, faults_ ? 15 : 11)) {
+    const std::string track = machine().tracks[any(machine().tracks)].name;
+    switch (Whole(0, faults_ ? 20 : 16)) {
       case 0:
       case 1:
         rig.Give(mover, "enable");
@@ -171,12 +193,24 @@ class Walk {
         rig.Give(mover, "reset");
         break;
       case 12:
-        rig.Give(mover, "disable");
+        rig.Give(mover, "join_track", "{track: " + track + "}");
         break;
       case 13:
+      case 14:
+      case 15:
+        rig.Give(mover, "move_on_track", "{track: " + track + ", position: " + std::to_string(Uniform(0, 240)) + "}");
+        break;
+      case 16:
+        rig.Give(mover, "leave_track",
+                 "{x: " + std::to_string(Uniform(60, 180)) + ", y: 120, reference: " + part + "}");
+        break;
+      case 17:
+        rig.Give(mover, "disable");
+        break;
+      case 18:
         rig.Give(part, Whole(0, 3) == 0 ? "force_disable" : "allow_enable");
         break;
-      case 14:
+      case 19:
         rig.Give(part, "reset");
         break;
       default:
@@ -246,6 +280,8 @@ class Walk {
     const bool faulty = PartAt(p).error != ErrorId::kNone;
     const std::vector<Seen> were = parts_;
     const std::vector<mover::Outputs> stood = movers_;
+    std::vector<track::OperationMode> modes;
+    for (const track::Outputs& o : rig.engine.tracks().outputs) modes.push_back(o.operation_mode);
     const Ticket ticket = rig.Give(part.name, "activate_position", "{index: " + std::to_string(index) + "}");
     rig.Run();
     const FeedbackEvent answer = rig.answers[ticket];
@@ -287,7 +323,14 @@ class Walk {
       }
       return;
     }
+    if (faults_ && answer.error == ErrorId::kPartFault) return;  // in the same cycle
     ++hindered;
+    if (answer.error == ErrorId::kPartTrack) {
+      const auto mode = rig.engine.tracks().outputs.at(static_cast<std::size_t>(answer.value) - 1).operation_mode;
+      EXPECT_TRUE(mode == track::OperationMode::kMoving || mode == track::OperationMode::kConfiguring ||
+                  modes.at(static_cast<std::size_t>(answer.value) - 1) > track::OperationMode::kStanding);
+      return;
+    }
     const auto number = static_cast<std::size_t>(answer.value);
     if (answer.error == ErrorId::kPartPlace) {
       bool overlap = false;
@@ -318,8 +361,8 @@ class Walk {
 };
 
 TEST(PartsWalk, NobodyLeavesTheStators) {
-  int activated = 0, hindered = 0, off = 0, crossed = 0, moved = 0, carried = 0;
-  for (std::uint32_t seed = 0; seed < 40 && !HasFailure(); ++seed) {
+  int activated = 0, hindered = 0, off = 0, crossed = 0, moved = 0, carried = 0, on_track = 0, changed_track = 0;
+  for (std::uint32_t seed = 0; seed < 30 && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
     Walk walk(seed, seed % 2 == 1);
     walk.Go(400);
@@ -329,12 +372,18 @@ TEST(PartsWalk, NobodyLeavesTheStators) {
     crossed += walk.crossed;
     moved += walk.moved;
     carried += walk.carried;
+    on_track += walk.on_track;
+    changed_track += walk.changed_track;
   }
-  std::printf("moved %d, over borders %d, off the stators %d; parts went %d, hindered %d, movers carried %d\n", moved,
-              crossed, off, activated, hindered, carried);
-  EXPECT_GT(moved, 150);
+  std::printf(
+      "moved %d, over borders %d, off the stators %d; parts went %d, hindered %d, movers carried %d; cycles on "
+      "tracks %d, from track to track %d\n",
+      moved, crossed, off, activated, hindered, carried, on_track, changed_track);
+  EXPECT_GT(on_track, 1000);
+  EXPECT_GT(changed_track, 3);
+  EXPECT_GT(moved, 80);
   EXPECT_GT(crossed, 20);
-  EXPECT_GT(off, 250);
+  EXPECT_GT(off, 150);
   EXPECT_GT(activated, 300);
   EXPECT_GT(hindered, 100);
   EXPECT_GT(carried, 50);
@@ -343,7 +392,7 @@ TEST(PartsWalk, NobodyLeavesTheStators) {
 // EN-06: what was given to one engine gives the same bits in another.
 TEST(PartsWalk, CanBeReplayed) {
   Walk walk(7, false);
-  walk.Go(300);
+  walk.Go(500);
   ASSERT_GT(walk.carried, 3);
   Engine again(walk.rig.machine, {.journal = true, .snapshot_queue = 1 << 15});
   std::vector<JournalEntry> entries;
