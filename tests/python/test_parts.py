@@ -75,7 +75,7 @@ def test_across_parts() -> None:
         with pytest.raises(takt.CommandError, match="leave the stators"):
             mover.move_to_position(x=120, y=200).wait()
         with pytest.raises(takt.CommandError, match="did you mean right"):
-            mover.move_to_position(x=120, y=100, reference="rihgt")
+            mover.move_to_position(x=120, y=100, reference="rihgt").wait()
 
 
 @pytest.mark.parametrize("reference", [None, "plane", "left"])
