@@ -47,6 +47,7 @@ __all__ = [
     "Group",
     "Forecast",
     "FreePose",
+    "Part",
     "PickPlace",
     "LogError",
     "Moment",

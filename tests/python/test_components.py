@@ -62,7 +62,9 @@ def test_components_are_numbered_by_kind() -> None:
         assert cutter.slave is engine.axis("knife")
         assert cutter.master is engine.axis("web")
         unknown = engine.command("cuter", "control")
-        kinds = "an axis, a cam module, a group of axes, a belt, a pose, a pick and place module, a mover, a track, a part"
+        kinds = (
+            "an axis, a cam module, a group of axes, a belt, a pose, a pick and place module, a mover, a track, a part"
+        )
         assert f"expected the name of {kinds} or machine, found 'cuter'" in unknown.sentence
 
 

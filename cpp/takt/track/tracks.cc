@@ -204,13 +204,15 @@ Tracks::Tracks(const std::vector<TrackParams>& all, const planar::Parts* on)
   for (std::size_t i = 0; i < all.size(); ++i) {
     State& s = states[i];
     SetSketch(i, ToSketch(built.tracks[i].layout));
-    const auto link = [this](const std::vector<std::string>& names, Links& links) {
-      for (const std::string& name : names) {
-        links.tracks[links.count++] = static_cast<std::uint32_t>(Find(*this, name).value());
+    const auto link = [this](const std::vector<LinkParams>& all, Links& links) {
+      for (const LinkParams& one : all) {
+        links.tracks[links.count] = static_cast<std::uint32_t>(Find(*this, one.track).value());
+        links.own_positions[links.count] = one.only_there ? one.this_position_index : 0;
+        links.other_positions[links.count++] = one.only_there ? one.other_position_index : 0;
       }
     };
-    link(all[i].starts_from, s.starts_from);
-    link(all[i].ends_at, s.ends_at);
+    link(LinksOf(all[i].starts_from, all[i].starts_from_positions), s.starts_from);
+    link(LinksOf(all[i].ends_at, all[i].ends_at_positions), s.ends_at);
     if (!built.tracks[i].way) continue;
     ways[i] = new planar::Track(std::move(*built.tracks[i].way));
     s.has_length = true;

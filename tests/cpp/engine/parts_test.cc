@@ -294,7 +294,8 @@ axes: []
 coordinate_systems: [{name: plane}]
 parts:
   - {name: one, columns: 2, rows: 4, positions: [{coordinate_system: plane}]}
-  - {name: two, stators: [{x: 0, y: 0}, {x: 0, y: 240}], positions: [{coordinate_system: plane, x: 480, y: 0}, {coordinate_system: plane, x: 480, y: 480}]}
+  - {name: two, stators: [{x: 0, y: 0}, {x: 0, y: 240}], 
+     positions: [{coordinate_system: plane, x: 480, y: 0}, {coordinate_system: plane, x: 480, y: 480}]}
 tracks:
   - {name: track_one, part: one}
   - {name: track_two, part: one}
@@ -364,6 +365,57 @@ TEST(PartTracks, TheNetworkOfTheManual) {
   EXPECT_NEAR(rig.Mover("mover").track_position, 160, 1e-9);
   EXPECT_EQ(rig.ErrorOf("mover", "move_on_track", "{track: track_two, position: 100}"), ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("mover", "leave_track", "{x: 300, y: 480, reference: plane}"), ErrorId::kNone);
+}
+
+// The same network from the machine file.
+TEST(PartTracks, TheNetworkInTheFile) {
+  const std::string tracks = R"(tracks:
+  - name: track_one
+    part: one
+    starts_from_positions: [{track: track_three, this_position_index: 1, other_position_index: 1}]
+    elements:
+      - {from: {x: 440, y: 120}, to: {x: 160, y: 120}}
+      - {from: {x: 120, y: 160}, to: {x: 120, y: 800}}
+      - {from: {x: 160, y: 840}, to: {x: 440, y: 840}}
+    ends_at_positions: [{track: track_three, this_position_index: 1, other_position_index: 2}]
+  - name: track_two
+    part: one
+    starts_from_positions: [{track: track_three, this_position_index: 1, other_position_index: 2, only_there: true}]
+    elements:
+      - {from: {x: 440, y: 600}, to: {x: 400, y: 600}}
+      - {from: {x: 360, y: 560}, to: {x: 360, y: 400}}
+      - {from: {x: 400, y: 360}, to: {x: 440, y: 360}}
+    ends_at_positions: [{track: track_three, this_position_index: 1, other_position_index: 1}]
+  - name: track_three
+    part: two
+    elements:
+      - {from: {x: 0, y: 360}, to: {x: 80, y: 360}}
+      - {from: {x: 120, y: 320}, to: {x: 120, y: 160}}
+      - {from: {x: 80, y: 120}, to: {x: 0, y: 120}}
+movers:)";
+  const std::string before = kNetwork.substr(0, kNetwork.find("tracks:"));
+  const std::string text = before + tracks + kNetwork.substr(kNetwork.find("movers:") + 7);
+  PartsRig by_file(text), by_commands(kNetwork);
+  MakeNetwork(by_commands);
+  by_file.Run();
+  for (int position = 1; position <= 2; ++position) {
+    const std::string index = "{index: " + std::to_string(position) + "}";
+    by_file.Do("two", "activate_position", index);
+    by_commands.Do("two", "activate_position", index);
+    const track::Tracks& a = by_file.engine.tracks();
+    const track::Tracks& b = by_commands.engine.tracks();
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_DOUBLE_EQ(a.outputs[i].length, b.outputs[i].length);
+      EXPECT_EQ(a.start_nodes[i], b.start_nodes[i]);
+      EXPECT_EQ(a.end_nodes[i], b.end_nodes[i]);
+    }
+  }
+  const auto problem = [&](const std::string& what, const std::string& instead) {
+    return FirstProblemOf(With(text, what, instead));
+  };
+  EXPECT_THAT(problem("other_position_index: 2, only", "other_position_index: 3, only"),
+              HasSubstr("tracks[1].starts_from_positions[0].track: the parts of the tracks are not in one"));
+  EXPECT_THAT(problem("{from: {x: 0, y: 360}", "{from: {x: 10, y: 360}"), HasSubstr("on the border of both"));
 }
 
 // Linked only on the border of both parts, and only while they are where that was meant.

@@ -24,12 +24,15 @@ parts:
   - {name: hall, stators: [{x: 0, y: 0}, {x: 240, y: 0}, {x: 0, y: 240}], positions: [{coordinate_system: lower}]}
   - {name: attic, stators: [{x: 0, y: 0}, {x: 240, y: 0}], positions: [{coordinate_system: upper}]}
   - name: lift
-    positions: [{coordinate_system: lower, x: 480}, {coordinate_system: upper, x: 480}, {coordinate_system: upper, x: 0, y: 240}]
+    positions:
+      [{coordinate_system: lower, x: 480}, {coordinate_system: upper, x: 480}, {coordinate_system: upper, y: 240}]
   - name: shuttle
     stators: [{x: 0, y: 0}, {x: 0, y: 240}]
-    positions: [{coordinate_system: lower, x: 240, y: 240}, {coordinate_system: lower, x: 480, y: 120}, {coordinate_system: upper, x: 100, y: 240}]
+    positions: [{coordinate_system: lower, x: 240, y: 240}, {coordinate_system: lower, x: 480, y: 120},
+                {coordinate_system: upper, x: 100, y: 240}]
   - name: drawer
-    positions: [{coordinate_system: lower, x: 0, y: 480}, {coordinate_system: lower, x: -240}, {coordinate_system: upper, x: 240, y: 240}]
+    positions: [{coordinate_system: lower, x: 0, y: 480}, {coordinate_system: lower, x: -240},
+                {coordinate_system: upper, x: 240, y: 240}]
 tracks:
   - {name: hall_way, part: hall, elements: [{from: {x: 40, y: 120}, to: {x: 480, y: 120}}]}
   - {name: attic_way, part: attic, elements: [{from: {x: 40, y: 120}, to: {x: 480, y: 120}}]}
