@@ -60,7 +60,8 @@ class Layout {
       const double length = piece.segment.length;
       const double count = std::ceil(length / step);
       for (double k = 0; k <= count; ++k) {
-        const planar::TrackPoint point = planar::At(piece, length * k / count);
+        planar::TrackPoint point = planar::At(piece, length * k / count);
+        point.place = point.place + tracks_.spot(i).origin;
         rows.insert(rows.end(), {piece.start + length * k / count, point.place.x, point.place.y,
                                  point.direction * 180 / std::numbers::pi, point.curvature, piece.given ? 1.0 : 0.0});
       }

@@ -418,6 +418,45 @@ movers:)";
   EXPECT_THAT(problem("{from: {x: 0, y: 360}", "{from: {x: 10, y: 360}"), HasSubstr("on the border of both"));
 }
 
+// A gap counts over the border, too, and none comes too near by a part that arrives.
+TEST(PartTracks, KeepTheGapOverTheBorder) {
+  const std::string text = With(With(kNetwork, "  - {name: track_one, part: one}\n", R"(  - name: track_one
+    part: one
+    elements: [{from: {x: 40, y: 120}, to: {x: 480, y: 120}}]
+)"),
+                                "  - {name: track_three, part: two}\n", R"(  - name: track_three
+    part: two
+    starts_from: [track_one]
+    elements: [{from: {x: 20, y: 120}, to: {x: 200, y: 120}}]
+)");
+  PartsRig rig(text + "  - {name: other, reference: one, initial: {x: 300, y: 120}}\n");
+  rig.Do("track_one", "enable");
+  rig.Do("track_three", "enable");
+  rig.Do("mover", "enable");
+  rig.Do("other", "enable");
+  EXPECT_EQ(rig.ErrorOf("mover", "join_track", "{track: track_three}"), ErrorId::kNone);
+  EXPECT_EQ(rig.ErrorOf("other", "join_track", "{track: track_one}"), ErrorId::kNone);
+  EXPECT_EQ(rig.ErrorOf("mover", "move_on_track", "{position: 80}"), ErrorId::kNone);
+  const Ticket behind = rig.Give("other", "move_on_track", "{track: track_three, position: 150}");
+  rig.Run(3000);
+  EXPECT_NEAR(rig.Mover("other").x, 480 + 80 - 200, 0.1);
+  EXPECT_EQ(rig.Mover("other").waits_for, 1u);
+  const FeedbackEvent refused = rig.Do("two", "activate_position", "{index: 2}");
+  EXPECT_EQ(refused.error, ErrorId::kPartTrack);  // one waits to come
+  rig.Do("other", "halt");
+  EXPECT_EQ(rig.ErrorOf("two", "activate_position", "{index: 2}"), ErrorId::kNone);
+  EXPECT_EQ(rig.answers[behind].state, FeedbackState::kAborted);
+  EXPECT_EQ(rig.ErrorOf("other", "move_on_track", "{track: track_three, position: 150}"), ErrorId::kNoRoute);
+  EXPECT_EQ(rig.ErrorOf("other", "move_on_track", "{position: 380}"), ErrorId::kNone);
+  const FeedbackEvent near = rig.Do("two", "activate_position", "{index: 1}");
+  EXPECT_EQ(near.error, ErrorId::kPartMover);
+  EXPECT_EQ(near.value, 2);
+  EXPECT_EQ(rig.ErrorOf("other", "move_on_track", "{position: 300}"), ErrorId::kNone);
+  EXPECT_EQ(rig.ErrorOf("two", "activate_position", "{index: 1}"), ErrorId::kNone);
+  EXPECT_EQ(rig.ErrorOf("mover", "move_on_track", "{position: 170}"), ErrorId::kNone);
+  EXPECT_EQ(rig.ErrorOf("other", "move_on_track", "{position: 400}"), ErrorId::kNone);
+}
+
 // Linked only on the border of both parts, and only while they are where that was meant.
 TEST(PartTracks, AreLinkedOnTheBorderAlone) {
   PartsRig rig(kNetwork);
