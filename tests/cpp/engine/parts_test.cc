@@ -248,6 +248,31 @@ TEST(Parts, FailWithTheirMovers) {
   EXPECT_EQ(rig.Mover("mover").state, ObjectState::kError);
 }
 
+// A mover that is reset waits for its part, which waits for the last of its movers.
+TEST(Parts, AreResetBeforeTheirMovers) {
+  PartsRig rig(With(kLift, "{name: one, positions", "{name: one, columns: 8, positions") +
+               "  - {name: other, reference: one, initial: {x: 400, y: 120}}\n");
+  rig.Do("mover", "enable");
+  rig.Do("other", "enable");
+  rig.Run(3);
+  rig.Give("other", "move_to_position", "{x: 1800, y: 120, reference: one}");
+  rig.Run(400);
+  rig.engine.part_faults(0).fault = true;
+  rig.Run(3);
+  rig.engine.part_faults(0).fault = false;
+  EXPECT_EQ(rig.Mover("mover").state, ObjectState::kError);
+  EXPECT_EQ(rig.Mover("other").state, ObjectState::kErrorPending);
+  const Ticket reset = rig.Give("mover", "reset");
+  rig.Run(20);
+  EXPECT_EQ(rig.Mover("other").state, ObjectState::kErrorPending);
+  EXPECT_EQ(rig.Part("one").state, ObjectState::kErrorPending);
+  EXPECT_EQ(rig.Mover("mover").state, ObjectState::kResetting);
+  EXPECT_EQ(rig.End(reset).state, FeedbackState::kDone);
+  EXPECT_EQ(rig.Part("one").state, ObjectState::kDisabled);
+  EXPECT_EQ(rig.Mover("mover").state, ObjectState::kDisabled);
+  EXPECT_EQ(rig.Mover("other").state, ObjectState::kError);
+}
+
 // Set points from outside: part or coordinate system, and no further than the stators.
 TEST(Parts, HoldSetPointsFromOutside) {
   PartsRig rig(With(kLift, "initial_position: 2", "initial_position: 1"));
