@@ -169,7 +169,7 @@ part::Around AroundOf(World& w, std::uint32_t part) {
     }
     if (!ends || !Uses(w, i, part)) continue;
     around.movers_rest &= mover::AtRest(s);
-    around.movers_failed &= s.state == ObjectState::kError;
+    around.movers_failed &= s.state != ObjectState::kErrorPending;
   }
   return around;
 }

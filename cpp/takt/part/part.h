@@ -45,7 +45,7 @@ struct Around {
   bool wanted = false;        // one in its coordinate system is enabled
   bool reset = false;         // one of those is being reset
   bool movers_rest = true;    // those on it do
-  bool movers_failed = true;  // and are in Error
+  bool movers_failed = true;  // and the reaction of those with a fault is over
 };
 // move: before the movers. Whether it is where it is to be. True: it is somewhere else now than it was.
 bool Arrive(const Context& c, const Inputs& inputs, State& s) noexcept;
