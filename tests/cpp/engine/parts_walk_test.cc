@@ -394,7 +394,7 @@ TEST(PartsWalk, NobodyLeavesTheStators) {
 
 // EN-06: what was given to one engine gives the same bits in another.
 TEST(PartsWalk, CanBeReplayed) {
-  Walk walk(7, false);
+  Walk walk(2, false);
   walk.Go(500);
   ASSERT_GT(walk.carried, 3);
   Engine again(walk.rig.machine, {.journal = true, .snapshot_queue = 1 << 15});
