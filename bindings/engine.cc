@@ -275,13 +275,14 @@ class VirtualEngine {
   // Of the way as it is now: x, y and the direction in deg.
   TrackRow TrackAt(std::size_t track, double s) {
     const auto lock = Lock();
-    const planar::TrackPoint point = planar::At(WayOf(track), s);
+    WayOf(track);
+    const planar::TrackPoint point = engine_.tracks().At(track, s);
     return py::make_tuple(point.place.x, point.place.y, point.direction * 180 / std::numbers::pi, point.curvature);
   }
 
   double TrackClosestTo(std::size_t track, double x, double y) {
     const auto lock = Lock();
-    return planar::NearestTo(WayOf(track), {x, y}).s;
+    return planar::NearestTo(WayOf(track), planar::Place{x, y} - engine_.tracks().spot(track).origin).s;
   }
 
   // Tracks that end where this one starts, and that start where it ends.

@@ -21,7 +21,10 @@ using RangePair = py::typing::Tuple<double, double>;
 
 class Layout {
  public:
-  Layout(const py::bytes& text, const std::string& file_name) : tracks_(Load(text, file_name, false).machine->tracks) {}
+  Layout(const py::bytes& text, const std::string& file_name)
+      : machine_(*Load(text, file_name, false).machine),
+        parts_(part::Make(machine_.coordinate_systems, machine_.parts)),
+        tracks_(machine_.tracks, &parts_) {}
 
   std::vector<std::string> names() const {
     std::vector<std::string> names;
@@ -81,7 +84,8 @@ class Layout {
       const double length = piece.segment.length;
       const double count = std::ceil(length / step);
       for (double k = 0; k <= count; ++k) {
-        const planar::TrackPoint point = planar::At(piece, length * k / count);
+        planar::TrackPoint point = planar::At(piece, length * k / count);
+        point.place = point.place + tracks_.spot(i).origin;
         rows.insert(rows.end(), {piece.start + length * k / count, point.place.x, point.place.y,
                                  point.direction * 180 / std::numbers::pi, point.curvature, piece.given ? 1.0 : 0.0});
       }
@@ -104,6 +108,8 @@ class Layout {
     return found;
   }
 
+  engine::Machine machine_;
+  planar::Parts parts_;
   track::Tracks tracks_;
   std::unique_ptr<mover::Streets> streets_;  // made when it is asked for
 };

@@ -33,7 +33,7 @@ COMMANDS = (
 )
 ERRORS = (
     *(5, 8, 3003, 3004, 3005, 3007, 3018, 3019, 3024, 3040, 3041, 3042, 3043, 3044, 3045, 3046, 3047),
-    *(3080, 3081, 3082, 3083),
+    *(3070, 3071, 3072, 3076, 3077, 3080, 3081, 3082, 3083),
 )
 SIGNALS = ("shuttle.x", "shuttle.y", "shuttle.velocity_x", "shuttle.velocity_y", "shuttle.c", "shuttle.command_mode")
 

@@ -20,7 +20,7 @@ COMMANDS = (
     "track.disable",
     "track.reset",
 )
-ERRORS = (5, 3005, 3050)
+ERRORS = (5, 3005, 3050, 3070)
 SIGNALS = ("main.length", "siding.length", "siding.state", "siding.previous_tracks")
 
 

@@ -23,6 +23,7 @@ from takt.forecast import Forecast, Moment
 from takt.group import Group
 from takt.lcmlog import LogError, read_log
 from takt.mover import Mover, MoverRecord
+from takt.part import Part
 from takt.pick_place import PickPlace
 from takt.planar_group import PlanarGroup
 from takt.pose import FreePose
@@ -52,6 +53,7 @@ __all__ = [
     "Forecast",
     "FreePose",
     "Journey",
+    "Part",
     "PickPlace",
     "PlanarGroup",
     "LogError",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from takt._commands import MoverCommands, MoverOutputs
 from takt.component import Component
+from takt.errors import TaktError
 from takt.feedback import FeedbackState
 
 
@@ -30,6 +31,14 @@ class Mover(Component, MoverCommands, MoverOutputs):
 
     def __repr__(self) -> str:
         return f"<Mover {self.name}: {self.state.value}, {self.command_mode.value} at ({self.x:.6g}, {self.y:.6g})>"
+
+    @property
+    def position_on_current_part(self) -> tuple[float, float, float]:
+        """X, Y (mm) and C (deg), X and Y in the coordinates of the part that its middle is on."""
+        if self.part == 0:
+            raise TaktError(f"mover {self.name} is on no part")
+        part = list(self.session.parts.values())[self.part - 1]
+        return self.x - part.x, self.y - part.y, self.c
 
     def history(self) -> tuple[MoverRecord, ...]:
         """Its last 100 commands, the oldest first; external set points apart. In process only."""

@@ -22,6 +22,7 @@ from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.flex_cam import FlexCam
 from takt.group import Group
 from takt.mover import Mover
+from takt.part import Part
 from takt.pick_place import PickPlace
 from takt.planar_group import PlanarGroup
 from takt.pose import FreePose
@@ -40,7 +41,7 @@ C = TypeVar("C", bound=Component)
 
 CLASSES: dict[str, type[Component]] = {
     component.KIND: component
-    for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace, Mover, Track, PlanarGroup, Environment)
+    for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace, Mover, Track, PlanarGroup, Environment, Part)
 }
 # What can be in the way, by the numbers that the engine has for it.
 OBJECTS = ("", "mover", "track", "planar_group", "environment", "part", "coordinate_system")
@@ -104,6 +105,7 @@ class Session(MachineCommands):
         self._tracks = {name: c for name, c in self._components.items() if isinstance(c, Track)}
         self._planar_groups = {name: c for name, c in self._components.items() if isinstance(c, PlanarGroup)}
         self._environments = {name: c for name, c in self._components.items() if isinstance(c, Environment)}
+        self._parts = {name: c for name, c in self._components.items() if isinstance(c, Part)}
         self._programs: list[Program] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
@@ -194,6 +196,14 @@ class Session(MachineCommands):
 
     def environment(self, name: str) -> Environment:
         return _named(self._environments, name, "environment")
+
+    @property
+    def parts(self) -> Mapping[str, Part]:
+        """All parts of the surface by name, in the order of the machine file."""
+        return MappingProxyType(self._parts)
+
+    def part(self, name: str) -> Part:
+        return _named(self._parts, name, "part")
 
     @property
     def components(self) -> Mapping[str, Component]:

@@ -141,7 +141,7 @@ def _units(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]
     """What the units in the descriptions stand for. A cam module has those of slave, master and its first cam."""
     if kind.name == "axis":
         return {"u": parameters["unit"]}
-    if kind.name in ("group", "pose", "pick_place", "mover", "track", "planar_group", "environment"):
+    if kind.name in ("group", "pose", "pick_place", "mover", "track", "planar_group", "environment", "part"):
         return {"u": "mm"}
     if kind.name == "belt":
         return {"u": "deg" if parameters["kind"] == "turning" else "mm"}

@@ -64,7 +64,7 @@ def test_components_are_numbered_by_kind() -> None:
         unknown = engine.command("cuter", "control")
         kinds = (
             "an axis, a cam module, a group of axes, a belt, a pose, a pick and place module, a mover, a track, "
-            "a group of movers, an environment"
+            "a group of movers, an environment, a part"
         )
         assert f"expected the name of {kinds} or machine, found 'cuter'" in unknown.sentence
 

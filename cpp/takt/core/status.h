@@ -86,6 +86,14 @@ enum class ErrorId : std::uint16_t {
   kOtherPlanarGroup = 3064,   // it is in another group, or the group has another environment
   kNoPlanarGroup = 3065,      // it is in no group
   kTrackOutside = 3066,       // the mover is in a group, the track is not in it
+  kReference = 3070,          // no such part or coordinate system, or a position in another one than the mover is in
+  kOffStators = 3071,         // a mover would leave the stators
+  kPartDisabled = 3072,       // a part is not enabled, or on its way
+  kPartMover = 3073,          // a mover hinders a part from going; the object of the feedback says which
+  kPartTrack = 3074,          // so does a track that is in use
+  kPartPlace = 3075,          // so does another part
+  kPartFault = 3076,          // of the part under a mover
+  kPartPosition = 3077,       // a part is not where it is to be
   kTrackEnd = 3080,           // a geared mover's way ends where its master leads it
   kTrail = 3081,              // tracks do not make such a trail, or the mover is not on it
   kMasterOffTrack = 3082,     // a mover that is to be followed is not on a track, or not enabled

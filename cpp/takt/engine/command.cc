@@ -27,6 +27,7 @@ constexpr std::string_view kMover = "mover";
 constexpr std::string_view kTrack = "track";
 constexpr std::string_view kPlanarGroup = "planar_group";
 constexpr std::string_view kEnvironment = "environment";
+constexpr std::string_view kPart = "part";
 
 // A verb together with how its struct gets in and out of a command.
 struct Entry {
@@ -207,6 +208,10 @@ const std::vector<Entry>& Entries() {
       Make<environment::Command, environment::AddToGroup>(kEnvironment, "add_to_group"),
       Make<environment::Command, environment::RemoveFromGroup>(kEnvironment, "remove_from_group"),
       Make<environment::Command, environment::BoundaryMade>(kEnvironment, "boundary_made"),
+      Make<part::Command, part::ActivatePosition>(kPart, "activate_position"),
+      Make<part::Command, part::AllowEnable>(kPart, "allow_enable"),
+      Make<part::Command, part::ForceDisable>(kPart, "force_disable"),
+      Make<part::Command, part::Reset>(kPart, "reset"),
   };
   return entries;
 }
@@ -313,6 +318,25 @@ std::string WhyNotGroup(const Machine& machine, const Name& group) {
   return WhyNotNamed("group", group, NamesOf(machine.planar_groups), "a group of movers");
 }
 
+// Whether this is a part or a coordinate system; without a name: whether it can do without.
+std::string WhyNotReference(const Machine& machine, const Name& reference) {
+  if (reference.empty()) return {};
+  std::vector<std::string_view> names = NamesOf(machine.parts);
+  std::ranges::copy(NamesOf(machine.coordinate_systems), std::back_inserter(names));
+  return WhyNotNamed("reference", reference, names, "a part or a coordinate system");
+}
+
+// Of a command that has one.
+template <typename Command>
+std::string WhyNotReferenceOf(const Machine& machine, const Command& command) {
+  return std::visit(
+      [&]<typename T>(const T& body) {
+        if constexpr (requires { body.reference; }) return WhyNotReference(machine, body.reference);
+        return std::string();
+      },
+      command);
+}
+
 std::string WhyNot(const Machine& machine, const track::Command& command, std::string_view target) {
   if (const auto* add = std::get_if<track::AddToGroup>(&command)) return WhyNotGroup(machine, add->group);
   std::vector<std::string_view> others = NamesOf(machine.tracks);
@@ -323,7 +347,7 @@ std::string WhyNot(const Machine& machine, const track::Command& command, std::s
   if (const auto* to = std::get_if<track::EndAtTrack>(&command)) {
     return WhyNotNamed("track", to->track, others, "another track");
   }
-  return {};
+  return WhyNotReferenceOf(machine, command);
 }
 
 // Its names; how its tracks lie is found in the cycle.
@@ -363,7 +387,7 @@ std::string WhyNot(const Machine& machine, const mover::Command& command, std::s
     return WhyNotGear(machine, *gear, target);
   }
   const auto* move = std::get_if<mover::MoveOnTrack>(&command);
-  return move && !move->track.empty() ? check(move->track) : std::string();
+  return move && !move->track.empty() ? check(move->track) : WhyNotReferenceOf(machine, command);
 }
 
 // Why this component cannot do it, as far as its description tells; empty: it can.
@@ -452,6 +476,9 @@ bool LetsGo(const Command& command) noexcept {
   if (const auto* mover = std::get_if<mover::Command>(&command.body)) {
     return std::holds_alternative<mover::Halt>(*mover) || std::holds_alternative<mover::Disable>(*mover) ||
            std::holds_alternative<mover::StopExternalSetpointGeneration>(*mover);
+  }
+  if (const auto* part = std::get_if<part::Command>(&command.body)) {
+    return std::holds_alternative<part::ForceDisable>(*part);
   }
   const auto* axis = std::get_if<axis::Command>(&command.body);
   const auto* power = axis ? std::get_if<axis::Power>(axis) : nullptr;

@@ -18,6 +18,7 @@
 #include "takt/flexcam/commands.h"
 #include "takt/group/commands.h"
 #include "takt/mover/commands.h"
+#include "takt/part/commands.h"
 #include "takt/pickplace/commands.h"
 #include "takt/planargroup/commands.h"
 #include "takt/track/commands.h"
@@ -46,9 +47,10 @@ void describe(Description<Release>&);
 void describe(Description<Renew>&);
 
 using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
+// Behind those of the machine itself, in the order of ComponentKinds().
 using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command,
                                  conveyor::PoseCommand, pickplace::Command, mover::Command, track::Command,
-                                 planargroup::Command, environment::Command>;
+                                 planargroup::Command, environment::Command, part::Command>;
 
 // Component i (components.h) is target i + 1.
 inline constexpr std::uint32_t kMachineTarget = 0;
@@ -61,7 +63,7 @@ struct Command {
 };
 
 // Lets go of something or stops it: release, stop_all, stop, power(enable: false); halt and interrupt of groups;
-// halt, disable and stop_external_setpoint_generation of movers.
+// halt, disable and stop_external_setpoint_generation of movers; force_disable of parts.
 bool LetsGo(const Command& command) noexcept;
 
 // One verb a kind of component understands; `arguments` describes its struct.

@@ -10,6 +10,7 @@
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
 #include "takt/mover/outputs.h"
+#include "takt/part/outputs.h"
 #include "takt/pickplace/outputs.h"
 #include "takt/planargroup/outputs.h"
 #include "takt/track/outputs.h"
@@ -46,6 +47,7 @@ std::span<const ComponentKind> ComponentKinds() {
                                                           "groups of movers"),
       Make<environment::Outputs, &Machine::environments>("environment", "environments", "an environment",
                                                          "environments"),
+      Make<part::Outputs, &Machine::parts>("part", "parts", "a part", "parts"),
   };
   return kinds;
 }
@@ -57,6 +59,14 @@ ComponentPlace PlaceOf(const Machine& machine, std::size_t component) {
     component -= count;
   }
   return {};
+}
+
+std::vector<std::uint32_t> FirstNumbers(const Machine& machine) {
+  std::vector<std::uint32_t> numbers{0};
+  for (const ComponentKind& kind : ComponentKinds()) {
+    numbers.push_back(numbers.back() + static_cast<std::uint32_t>(kind.count(machine)));
+  }
+  return numbers;
 }
 
 std::optional<std::uint32_t> FindComponent(const Machine& machine, std::string_view name) {

@@ -32,6 +32,8 @@ struct ComponentPlace {
   std::size_t index = 0;                // among those of its kind
 };
 ComponentPlace PlaceOf(const Machine& machine, std::size_t component);
+// Of each kind the number of its first component; behind them all how many there are.
+std::vector<std::uint32_t> FirstNumbers(const Machine& machine);
 std::optional<std::uint32_t> FindComponent(const Machine& machine, std::string_view name);
 std::vector<std::string_view> ComponentNames(const Machine& machine);
 

@@ -10,9 +10,12 @@
 #include "takt/core/describe.h"
 #include "takt/core/hash.h"
 #include "takt/engine/carriers.h"
+#include "takt/engine/components.h"
 #include "takt/engine/masters.h"
 #include "takt/engine/mover_masters.h"
+#include "takt/engine/parts.h"
 #include "takt/mover/gear.h"
+#include "takt/mover/on_parts.h"
 
 namespace takt::engine {
 
@@ -24,6 +27,7 @@ constexpr std::size_t kEventsPerCommand = 4;
 // A question may be given up and the next one asked before anybody has looked.
 constexpr std::size_t kQuestionsPerGroup = 4;
 constexpr std::size_t kEventsPerMover = 4 * mover::kSlots;
+constexpr std::size_t kEventsPerPart = 6;
 constexpr std::size_t kEventsPerGroup = 4 * (group::kQueue + group::kSynced + 5);  // likewise
 
 axis::Context ContextOf(World& w, std::size_t i) {
@@ -65,10 +69,6 @@ pickplace::Context ContextOf(World& w, const PickPlace& module) {
   return c;
 }
 
-mover::Context MoverContext(World& w, std::size_t i) {
-  return {w.movers[i], w.cycle, w.planner, w.feedback, w.streets, w.grounds, static_cast<std::uint32_t>(i)};
-}
-
 track::Context TrackContext(World& w) {
   return {w.tracks, w.grounds, w.cycle, w.feedback};
 }
@@ -83,18 +83,26 @@ environment::Context EnvironmentContext(World& w) {
 void RefreshStreets(World& w) {
   for (std::size_t i = 0; i < w.tracks_now.size(); ++i) {
     const track::TrackParams& params = w.tracks.params[i];
+    const std::uint32_t part = w.tracks.part_of[i];
+    const planar::PartNow* on = part == planar::kNoPart ? nullptr : &w.surface.now[part];
+    const bool carried = !on || (!on->away && (on->enabled || on->enabling));
     w.tracks_now[i] = {w.tracks.ways[i],
                        w.tracks.states[i].length,
-                       w.tracks.states[i].state == planar::ObjectState::kEnabled,
+                       w.tracks.states[i].state == planar::ObjectState::kEnabled && carried,
                        w.tracks.start_nodes[i],
                        w.tracks.end_nodes[i],
                        std::hypot(params.mover_width, params.mover_height),
+                       part,
+                       w.tracks.spot(i),
                        params.collision_range_mode == track::CollisionRangeMode::kManual,
                        params.collision_range_at_start,
                        params.collision_range_at_end};
   }
   mover::Refresh(w.tracks_now, w.streets);
-  std::ranges::copy(w.tracks.areas, w.grounds.areas.begin());
+  for (std::size_t i = 0; i < w.tracks_now.size(); ++i) {
+    w.grounds.areas[i] = w.tracks.areas[i];
+    w.grounds.spots[i] = w.tracks.spot(i);
+  }
 }
 
 // What movers do on each track, for the commands of the next cycle, and the modes of tracks.
@@ -278,16 +286,26 @@ void LimitToAxes(const Machine& machine, const group::GroupParams& group, kinema
 
 }  // namespace
 
+mover::Context MoverContext(World& w, std::size_t i) {
+  return {w.movers[i], w.cycle, w.planner, w.feedback, w.streets, w.grounds, static_cast<std::uint32_t>(i)};
+}
+
 World::World(const Machine& machine)
     : cycle{0, machine.cycle.period_s},
+      first_of(FirstNumbers(machine)),
       axis_params(machine.axes),
       cam_switches(machine.cam_switches),
       axis_outputs(machine.axes.size()),
       axis_order(machine.axes.size() + 1),
       questions(kQuestionsPerGroup * machine.groups.size()),
-      streets(machine.movers.size(), NamesOf(machine.tracks)),
+      parts(machine.parts),
+      part_inputs(machine.parts.size()),
+      part_outputs(machine.parts.size()),
+      part_faults(machine.parts.size()),
+      surface(part::Make(machine.coordinate_systems, machine.parts)),
+      streets(machine.movers.size(), NamesOf(machine.tracks), &surface),
       tracks_now(machine.tracks.size()),
-      tracks(machine.tracks),
+      tracks(machine.tracks, &surface),
       grounds(machine.movers.size(), machine.tracks.size(), machine.environments.size(),
               NamesOf(machine.planar_groups)),
       planar_groups(machine.planar_groups.size()),
@@ -296,9 +314,9 @@ World::World(const Machine& machine)
       servo_outputs(machine.axes.size()),
       samplings(machine.axes.size()),
       feedback_storage(machine.axes.size() * kEventsPerAxis + machine.groups.size() * kEventsPerGroup +
-                       machine.movers.size() * kEventsPerMover + track::EventsOf(machine.tracks.size()) +
-                       planargroup::EventsOf(machine.planar_groups.size()) + machine.environments.size() +
-                       (kCommandsPerCycle + kRenewalsPerCycle) * kEventsPerCommand),
+                       machine.movers.size() * kEventsPerMover + machine.parts.size() * kEventsPerPart +
+                       track::EventsOf(machine.tracks.size()) + planargroup::EventsOf(machine.planar_groups.size()) +
+                       machine.environments.size() + (kCommandsPerCycle + kRenewalsPerCycle) * kEventsPerCommand),
       feedback(feedback_storage) {
   TypeOf<axis::State>();  // the first use of a type allocates
   TypeOf<plant::ServoState>();
@@ -328,6 +346,7 @@ World::World(const Machine& machine)
   MakeGroups(machine);
   MakeBelts(machine);
   MakePickPlaces(machine);
+  MakeParts(machine);
   MakeMovers(machine);
   MakePlanarGroups(machine);
   NameMasters(*this);
@@ -421,6 +440,16 @@ void World::MakePickPlaces(const Machine& machine) {
   pick_place_outputs.resize(pick_places.size());
 }
 
+void World::MakeParts(const Machine& machine) {
+  TypeOf<part::State>();
+  TypeOf<part::Inputs>();
+  TouchTypes(static_cast<const part::Command*>(nullptr));
+  for (const part::PartParams& params : machine.parts) {
+    part_states.push_back(part::MakeState(params));
+    part_inputs[part_states.size() - 1] = part::Simulate(part_states.back());
+  }
+}
+
 void World::MakeMovers(const Machine& machine) {
   TypeOf<mover::State>();
   TypeOf<mover::Inputs>();
@@ -429,6 +458,10 @@ void World::MakeMovers(const Machine& machine) {
   movers = machine.movers;
   for (const mover::MoverParams& params : movers) {
     mover_states.push_back(mover::MakeState(params));
+    planar::Spot at;
+    mover::FindSpot(params, surface, params.reference, {{params.initial.x, params.initial.y}, params.initial.c}, at);
+    mover::PutAt(at, mover_states.back());
+    mover_states.back().part = planar::PartAt(surface, at.system, at.origin, planar::kNoPart);
     mover_inputs.push_back(mover::Simulate(mover_states.back()));
   }
   mover_outputs.resize(movers.size());
@@ -462,6 +495,8 @@ std::uint64_t World::StateHash() const noexcept {
   for (const conveyor::State& state : belt_states) hash = HashOf(state, hash);
   for (const conveyor::PoseState& state : pose_states) hash = HashOf(state, hash);
   for (const pickplace::State& state : pick_place_states) hash = HashOf(state, hash);
+  for (const part::State& state : part_states) hash = HashOf(state, hash);
+  for (const part::Inputs& inputs : part_inputs) hash = HashOf(inputs, hash);
   for (const mover::State& state : mover_states) hash = HashOf(state, hash);
   for (const mover::Inputs& inputs : mover_inputs) hash = HashOf(inputs, hash);
   if (!streets.names.empty()) {
@@ -508,69 +543,49 @@ void Apply(World& w, const Command& command) noexcept {
   const auto refuse = [&](ErrorId error) {
     w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, error, 0});
   };
-  const std::uint32_t component = command.target - 1;  // none has the machine's number less one
-  const std::size_t axes = w.axis_states.size();
   if (const auto* for_machine = std::get_if<MachineCommand>(&command.body)) {
-    std::visit(MachineApplier{w, command.ticket}, *for_machine);
-  } else if (const auto* for_axis = std::get_if<axis::Command>(&command.body)) {
-    if (component >= axes) return refuse(ErrorId::kUnknownTarget);
-    if (IsOwned(w, component) && !IsForMembers(*for_axis)) return refuse(ErrorId::kGroupMember);
+    return std::visit(MachineApplier{w, command.ticket}, *for_machine);
+  }
+  const std::size_t kind = command.body.index() - 1;
+  const std::uint32_t component = command.target - 1;  // none has the machine's number less one
+  if (component < w.first_of[kind] || component >= w.first_of[kind + 1]) return refuse(ErrorId::kUnknownTarget);
+  const std::size_t i = component - w.first_of[kind];
+  if (const auto* for_axis = std::get_if<axis::Command>(&command.body)) {
+    if (IsOwned(w, i) && !IsForMembers(*for_axis)) return refuse(ErrorId::kGroupMember);
     axis::CouplingRequest coupling;
-    if (axis::CouplingOf(ContextOf(w, component), *for_axis, coupling) &&
+    if (axis::CouplingOf(ContextOf(w, i), *for_axis, coupling) &&
         !MakeOrder(w, {.coupling = &coupling, .of = component})) {
       return refuse(ErrorId::kCouplingLoop);
     }
-    axis::Apply(ContextOf(w, component), command.ticket, command.lease_s, *for_axis, w.axis_states[component]);
+    axis::Apply(ContextOf(w, i), command.ticket, command.lease_s, *for_axis, w.axis_states[i]);
   } else if (const auto* for_module = std::get_if<flexcam::Command>(&command.body)) {
-    const std::size_t i = component - axes;  // of an axis: beyond all
-    if (i >= w.flex_cams.size()) return refuse(ErrorId::kUnknownTarget);
     const FlexCam& module = w.flex_cams[i];
     flexcam::Apply(ContextOf(w, module), command.ticket, command.lease_s, *for_module, w.axis_states[module.slave],
                    w.flex_cam_states[i]);
   } else if (const auto* for_group = std::get_if<group::Command>(&command.body)) {
-    const std::size_t i = component - axes - w.flex_cams.size();  // likewise
-    if (i >= w.groups.size()) return refuse(ErrorId::kUnknownTarget);
     const Wanted wanted = WantedBy(w, *for_group, i);
     if (Changes(wanted) && !MakeOrder(w, wanted)) return refuse(ErrorId::kCouplingLoop);
     group::Apply(ContextOf(w, w.groups[i]), command.ticket, command.lease_s, *for_group, w.group_states[i]);
   } else if (const auto* for_belt = std::get_if<conveyor::Command>(&command.body)) {
-    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size();  // likewise
-    if (i >= w.belts.size()) return refuse(ErrorId::kUnknownTarget);
     conveyor::Apply(ContextOf(w, w.belts[i]), command.ticket, *for_belt, w.belt_states[i]);
   } else if (const auto* for_pose = std::get_if<conveyor::PoseCommand>(&command.body)) {
-    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size();  // likewise
-    if (i >= w.poses.size()) return refuse(ErrorId::kUnknownTarget);
     conveyor::Apply(w.cycle, w.feedback, command.ticket, *for_pose, w.pose_states[i]);
-  } else if (const auto* for_module = std::get_if<pickplace::Command>(&command.body)) {
-    const std::size_t i =
-        component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size();  // likewise
-    if (i >= w.pick_places.size()) return refuse(ErrorId::kUnknownTarget);
+  } else if (const auto* for_pick_place = std::get_if<pickplace::Command>(&command.body)) {
     const PickPlace& module = w.pick_places[i];
-    pickplace::Apply(ContextOf(w, module), command.ticket, command.lease_s, *for_module, w.group_states[module.group],
-                     w.pick_place_states[i]);
+    pickplace::Apply(ContextOf(w, module), command.ticket, command.lease_s, *for_pick_place,
+                     w.group_states[module.group], w.pick_place_states[i]);
   } else if (const auto* for_mover = std::get_if<mover::Command>(&command.body)) {
-    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
-                          w.pick_places.size();  // likewise
-    if (i >= w.movers.size()) return refuse(ErrorId::kUnknownTarget);
     const Wanted wanted{.movers = AxisFollowedBy(w, *for_mover)};
     if (Changes(wanted) && !MakeOrder(w, wanted)) return refuse(ErrorId::kCouplingLoop);
     mover::Apply(MoverContext(w, i), command.ticket, *for_mover, w.mover_states[i]);
   } else if (const auto* for_track = std::get_if<track::Command>(&command.body)) {
-    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
-                          w.pick_places.size() - w.movers.size();  // likewise
-    if (i >= w.tracks.states.size()) return refuse(ErrorId::kUnknownTarget);
     track::Apply(TrackContext(w), i, command.ticket, *for_track);
   } else if (const auto* for_planar_group = std::get_if<planargroup::Command>(&command.body)) {
-    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
-                          w.pick_places.size() - w.movers.size() - w.tracks.states.size();  // likewise
-    if (i >= w.planar_groups.states.size()) return refuse(ErrorId::kUnknownTarget);
     planargroup::Apply(PlanarGroupContext(w), i, command.ticket, *for_planar_group);
   } else if (const auto* for_environment = std::get_if<environment::Command>(&command.body)) {
-    const std::size_t i = component - axes - w.flex_cams.size() - w.groups.size() - w.belts.size() - w.poses.size() -
-                          w.pick_places.size() - w.movers.size() - w.tracks.states.size() -
-                          w.planar_groups.states.size();  // likewise
-    if (i >= w.environments.states.size()) return refuse(ErrorId::kUnknownTarget);
     environment::Apply(EnvironmentContext(w), i, command.ticket, *for_environment);
+  } else if (const auto* for_part = std::get_if<part::Command>(&command.body)) {
+    ApplyToPart(w, i, command.ticket, *for_part);
   }
 }
 
@@ -611,6 +626,7 @@ void Move(World& w) noexcept {
   for (const std::uint32_t i : w.axis_order.sequence()) {
     if (i < w.axis_states.size() && w.axis_states[i].plc == axis::PlcState::kErrorStop) StopMasters(w, i);
   }
+  StepParts(w);
   track::Step(TrackContext(w));
   std::ranges::fill(w.group_stepped, std::uint8_t{0});
   StepBelts(w, w.measured_belts);
@@ -663,6 +679,7 @@ void Control(World& w) noexcept {
   track::Publish(TrackContext(w));
   planargroup::Publish(PlanarGroupContext(w));
   environment::Publish(EnvironmentContext(w));
+  PublishParts(w);
 }
 
 void Actuate(World& w) noexcept {
@@ -670,6 +687,7 @@ void Actuate(World& w) noexcept {
     plant::Step(w.servo_params[i], w.servo_outputs[i], w.cycle.period_s, w.servo_states[i], w.servo_inputs[i]);
   }
   for (std::size_t i = 0; i < w.movers.size(); ++i) w.mover_inputs[i] = mover::Simulate(w.mover_states[i]);
+  SimulateParts(w);
 }
 
 }  // namespace takt::engine

@@ -25,6 +25,7 @@
 #include "takt/flexcam/module.h"
 #include "takt/group/group.h"
 #include "takt/mover/mover.h"
+#include "takt/part/part.h"
 #include "takt/pickplace/module.h"
 #include "takt/planargroup/groups.h"
 #include "takt/plant/servo.h"
@@ -76,6 +77,13 @@ struct PickPlace {
   std::vector<std::uint32_t> belts;
 };
 
+// What is broken in the simulation of a part; for tests.
+struct PartFaults {
+  bool fault = false;  // it reports one
+  bool stuck = false;  // it never gets where it is to be
+  bool lost = false;   // it is nowhere
+};
+
 // Everything the cycle works on, in arrays by component; index i is axis i of the machine.
 struct World {
   explicit World(const Machine& machine);
@@ -84,6 +92,8 @@ struct World {
 
   Cycle cycle;
   trajectory::Planner planner;
+
+  std::vector<std::uint32_t> first_of;  // of each kind the number of its first component (components.h)
 
   std::vector<axis::AxisParams> axis_params;
   std::vector<axis::CamSwitches> cam_switches;
@@ -124,6 +134,13 @@ struct World {
   std::vector<pickplace::Outputs> pick_place_outputs;
   std::vector<std::uint32_t> pick_place_of;  // the module that moves each group, from 1; 0: none
 
+  std::vector<part::PartParams> parts;
+  std::vector<part::State> part_states;
+  std::vector<part::Inputs> part_inputs;
+  std::vector<part::Outputs> part_outputs;
+  std::vector<PartFaults> part_faults;
+  planar::Parts surface;  // as movers and tracks see the parts
+
   std::vector<mover::MoverParams> movers;
   std::vector<mover::Inputs> mover_inputs;
   std::vector<mover::State> mover_states;
@@ -156,9 +173,12 @@ struct World {
   void MakeGroups(const Machine& machine);
   void MakeBelts(const Machine& machine);
   void MakePickPlaces(const Machine& machine);
+  void MakeParts(const Machine& machine);
   void MakeMovers(const Machine& machine);
   void MakePlanarGroups(const Machine& machine);
 };
+
+mover::Context MoverContext(World& world, std::size_t mover);
 
 // Not for the cycle (axis/forecast.h).
 axis::Forecast Foresee(World& world, std::size_t axis);

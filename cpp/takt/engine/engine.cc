@@ -90,6 +90,7 @@ struct Engine::Impl {
         tracks(machine, o, machine.tracks, world.tracks.outputs),
         planar_groups(machine, o, machine.planar_groups, world.planar_groups.outputs),
         environments(machine, o, machine.environments, world.environments.outputs),
+        parts(machine, o, machine.parts, world.part_outputs),
         figure_queue(16),
         journal(o.journal ? o.snapshot_queue : 2),
         hashes(o.journal ? o.snapshot_queue : 2),
@@ -98,6 +99,12 @@ struct Engine::Impl {
         drive_journal(o.journal && !world.drives.empty() ? o.snapshot_queue : 2),
         figures_divisor(Divisor(machine.lcm.engine_rate_hz, machine.cycle.period_s)) {
     SendSetPoints(-1);
+  }
+
+  // To a component, with its number among those of its kind.
+  bool GiveAnswer(std::size_t index, const CommandBody& answer) noexcept {
+    const auto target = static_cast<std::uint32_t>(world.first_of[answer.index() - 1] + index + 1);
+    return answers.TryPush({0, target, 0, answer});
   }
 
   void SendSetPoints(std::int64_t cycle) noexcept {
@@ -172,7 +179,8 @@ struct Engine::Impl {
 
   // All kinds of components, in the order of their numbers.
   auto kinds() noexcept {
-    return std::tie(axes, flex_cams, groups, belts, poses, pick_places, movers, tracks, planar_groups, environments);
+    return std::tie(axes, flex_cams, groups, belts, poses, pick_places, movers, tracks, planar_groups, environments,
+                    parts);
   }
 
   template <typename Outputs>
@@ -235,6 +243,7 @@ struct Engine::Impl {
   OfKind<track::Outputs> tracks;
   OfKind<planargroup::Outputs> planar_groups;
   OfKind<environment::Outputs> environments;
+  OfKind<part::Outputs> parts;
   SpscQueue<EngineFigures> figure_queue;
   SpscQueue<JournalEntry> journal;
   SpscQueue<HashEntry> hashes;
@@ -283,22 +292,15 @@ SpscQueue<group::Question>& Engine::questions() noexcept {
 }
 
 bool Engine::Answer(std::size_t group, const group::PathChecked& answer) noexcept {
-  const Machine& m = impl_->machine;
-  const std::size_t target = m.axes.size() + m.flex_cams.size() + group + 1;
-  return impl_->answers.TryPush({0, static_cast<std::uint32_t>(target), 0, group::Command(answer)});
+  return impl_->GiveAnswer(group, group::Command(answer));
 }
 
 void Engine::MakeTracks() {
-  const Machine& m = impl_->machine;
-  const std::size_t environments = components() - m.environments.size();
-  const std::size_t before = environments - m.planar_groups.size() - m.tracks.size();
   while (const std::optional<track::Answer> answer = track::Make(impl_->world.tracks.desk)) {
-    const auto target = static_cast<std::uint32_t>(before + answer->track + 1);
-    impl_->answers.TryPush({0, target, 0, track::Command(answer->made)});
+    impl_->GiveAnswer(answer->track, track::Command(answer->made));
   }
   while (const std::optional<environment::Answer> answer = environment::Make(impl_->world.environments.desk)) {
-    const auto target = static_cast<std::uint32_t>(environments + answer->environment + 1);
-    impl_->answers.TryPush({0, target, 0, environment::Command(answer->made)});
+    impl_->GiveAnswer(answer->environment, environment::Command(answer->made));
   }
 }
 
@@ -350,6 +352,12 @@ const mover::Outputs& Engine::mover_outputs(std::size_t mover) const noexcept {
 }
 const mover::State& Engine::mover_state(std::size_t mover) const noexcept {
   return impl_->world.mover_states[mover];
+}
+const part::Outputs& Engine::part_outputs(std::size_t part) const noexcept {
+  return impl_->world.part_outputs[part];
+}
+PartFaults& Engine::part_faults(std::size_t part) noexcept {
+  return impl_->world.part_faults[part];
 }
 const track::Tracks& Engine::tracks() const noexcept {
   return impl_->world.tracks;
@@ -440,6 +448,7 @@ template SpscQueue<MoverSnapshot>& Engine::snapshots<mover::Outputs>() noexcept;
 template SpscQueue<TrackSnapshot>& Engine::snapshots<track::Outputs>() noexcept;
 template SpscQueue<PlanarGroupSnapshot>& Engine::snapshots<planargroup::Outputs>() noexcept;
 template SpscQueue<EnvironmentSnapshot>& Engine::snapshots<environment::Outputs>() noexcept;
+template SpscQueue<PartSnapshot>& Engine::snapshots<part::Outputs>() noexcept;
 
 SpscQueue<ObjectsSnapshot>& Engine::belt_objects() noexcept {
   return impl_->belt_objects;

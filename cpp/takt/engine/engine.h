@@ -23,6 +23,7 @@
 #include "takt/group/survey.h"
 #include "takt/mover/outputs.h"
 #include "takt/mover/state.h"
+#include "takt/part/outputs.h"
 #include "takt/pickplace/outputs.h"
 #include "takt/planar/track.h"
 #include "takt/track/tracks.h"
@@ -37,6 +38,8 @@ struct EngineOptions {
   std::size_t command_queue = 256;  // a stop behind a flood waits for this many, kCommandsPerCycle a cycle
   std::size_t snapshot_queue = 1 << 14;
 };
+
+struct PartFaults;
 
 class Engine {
  public:
@@ -74,6 +77,7 @@ class Engine {
   const pickplace::Outputs& pick_place_outputs(std::size_t module) const noexcept;
   const mover::Outputs& mover_outputs(std::size_t mover) const noexcept;
   const mover::State& mover_state(std::size_t mover) const noexcept;
+  const part::Outputs& part_outputs(std::size_t part) const noexcept;
   const track::Tracks& tracks() const noexcept;
   const planar::Grounds& grounds() const noexcept;
   // The same for components of any kind, by the number that is their target, less one.
@@ -95,6 +99,7 @@ class Engine {
 
   // What is broken in the simulated servo of an axis; for tests. Not part of a journal.
   plant::ServoFaults& faults(std::size_t axis) noexcept;
+  PartFaults& part_faults(std::size_t part) noexcept;
 
   // --- any thread ---
   // Stops everything along its ramps, opens the loops; further commands are refused.

@@ -8,6 +8,7 @@
 #include "takt/engine/components.h"
 #include "takt/engine/load_cams.h"
 #include "takt/engine/load_groups.h"
+#include "takt/engine/load_parts.h"
 #include "takt/engine/order.h"
 #include "takt/planar/environment.h"
 #include "takt/track/build.h"
@@ -59,7 +60,11 @@ class CrossCheck {
     CheckNames("movers", machine_.movers);
     CheckMovers();
     CheckNames("tracks", machine_.tracks);
-    CheckTracks();
+    CheckNames("coordinate_systems", machine_.coordinate_systems);
+    CheckNames("parts", machine_.parts);
+    const std::vector<Problem> of_parts = CheckParts(source_, machine_);
+    problems_.insert(problems_.end(), of_parts.begin(), of_parts.end());
+    CheckTracks(of_parts.empty());
     CheckNames("planar_groups", machine_.planar_groups);
     CheckPlanarGroups();
     CheckNames("environments", machine_.environments);
@@ -83,7 +88,7 @@ class CrossCheck {
   }
 
   void CheckAxes() {
-    if (machine_.axes.empty() && machine_.movers.empty() && machine_.tracks.empty() && machine_.environments.empty()) {
+    if (ComponentNames(machine_).empty()) {
       Add("axes", "expected at least one axis");
     }
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
@@ -224,9 +229,11 @@ class CrossCheck {
   }
 
   // Tracks, their geometry and their links.
-  void CheckTracks() {
+  void CheckTracks(bool parts_are_good) {
     for (std::size_t i = 0; i < machine_.tracks.size(); ++i) CheckUnique("tracks", i, machine_.tracks[i].name);
-    for (const track::BuildProblem& problem : track::Build(machine_.tracks).problems) {
+    if (!parts_are_good) return;
+    const planar::Parts parts = part::Make(machine_.coordinate_systems, machine_.parts);
+    for (const track::BuildProblem& problem : track::Build(machine_.tracks, &parts).problems) {
       Add("tracks" + problem.path, problem.message);
     }
   }
@@ -366,8 +373,8 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name, Worksp
     cams = LoadCams(source, machine);
     groups = LoadGroups(source, machine, workspaces == Workspaces::kMake);
   }
-  if (readable &&
-      (!machine.axes.empty() || !machine.movers.empty() || !machine.tracks.empty() || !machine.environments.empty())) {
+  const bool has_any = std::ranges::any_of(ComponentKinds(), [&](const ComponentKind& k) { return k.count(machine); });
+  if (readable && has_any) {
     std::vector<Problem> more = CrossCheck(machine, source).Run();
     problems.insert(problems.end(), more.begin(), more.end());
   } else if (problems.empty()) {

@@ -125,6 +125,8 @@ void describe(Description<Machine>& d) {
   d.defaulted<&M::belts>("Belts, and tables that turn.");
   d.defaulted<&M::poses>("Poses that come from elsewhere.");
   d.defaulted<&M::pick_and_place>("Pick and place modules.");
+  d.defaulted<&M::coordinate_systems>("Planes in which parts of the surface lie.");
+  d.defaulted<&M::parts>("Parts of the surface that movers float on; without any it goes on for ever.");
   d.defaulted<&M::movers>("Planar movers.");
   d.defaulted<&M::tracks>("Tracks for movers in the plane.");
   d.defaulted<&M::planar_groups>("Groups of movers that do not collide.");

@@ -17,6 +17,7 @@
 #include "takt/flexcam/params.h"
 #include "takt/group/params.h"
 #include "takt/mover/params.h"
+#include "takt/part/params.h"
 #include "takt/pickplace/params.h"
 #include "takt/planargroup/params.h"
 #include "takt/plant/servo.h"
@@ -79,6 +80,8 @@ struct Machine {
   std::vector<conveyor::BeltParams> belts;
   std::vector<conveyor::PoseParams> poses;
   std::vector<pickplace::PickPlaceParams> pick_and_place;
+  std::vector<part::CoordinateSystemParams> coordinate_systems;
+  std::vector<part::PartParams> parts;
   std::vector<mover::MoverParams> movers;
   std::vector<track::TrackParams> tracks;
   std::vector<planargroup::PlanarGroupParams> planar_groups;

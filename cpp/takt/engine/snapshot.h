@@ -15,6 +15,7 @@
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
 #include "takt/mover/outputs.h"
+#include "takt/part/outputs.h"
 #include "takt/pickplace/outputs.h"
 #include "takt/planargroup/outputs.h"
 #include "takt/track/outputs.h"
@@ -22,9 +23,9 @@
 namespace takt::engine {
 
 // What each kind of components publishes, in the order of ComponentKinds().
-using PublishedKinds =
-    std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs, conveyor::PoseOutputs,
-               pickplace::Outputs, mover::Outputs, track::Outputs, planargroup::Outputs, environment::Outputs>;
+using PublishedKinds = std::tuple<axis::Outputs, flexcam::Outputs, group::Outputs, conveyor::Outputs,
+                                  conveyor::PoseOutputs, pickplace::Outputs, mover::Outputs, track::Outputs,
+                                  planargroup::Outputs, environment::Outputs, part::Outputs>;
 
 // What a component published.
 template <typename Outputs>
@@ -44,6 +45,7 @@ using MoverSnapshot = SnapshotOf<mover::Outputs>;
 using TrackSnapshot = SnapshotOf<track::Outputs>;
 using PlanarGroupSnapshot = SnapshotOf<planargroup::Outputs>;
 using EnvironmentSnapshot = SnapshotOf<environment::Outputs>;
+using PartSnapshot = SnapshotOf<part::Outputs>;
 
 // What lies on a belt, at the rate of its channel.
 struct ObjectsSnapshot {

@@ -365,6 +365,24 @@ msgs::environment_state ToMessage(const engine::EnvironmentSnapshot& snapshot, c
   return m;
 }
 
+msgs::part_state ToMessage(const engine::PartSnapshot& snapshot, const engine::Machine& machine) {
+  const part::Outputs& o = snapshot.outputs;
+  msgs::part_state m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.parts[snapshot.index].name;
+  m.state = static_cast<std::int8_t>(o.state);
+  m.error = static_cast<std::int32_t>(o.error);
+  m.disable_forced = o.disable_forced;
+  m.position_index = o.position_index;
+  m.commanded_index = o.commanded_index;
+  m.coordinate_system = o.coordinate_system;
+  m.x = o.x;
+  m.y = o.y;
+  m.mover_count = o.mover_count;
+  return m;
+}
+
 msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, const engine::Machine& machine) {
   const pickplace::Outputs& o = snapshot.outputs;
   msgs::pick_place_state m{};
@@ -468,6 +486,8 @@ msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine:
   m.delay_since = Signed(o.delay_since);
   m.buffered = o.buffered;
   m.group = o.group;
+  m.coordinate_system = o.coordinate_system;
+  m.part = o.part;
   m.commands = Signed(o.commands);
   return m;
 }

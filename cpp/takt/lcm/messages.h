@@ -31,6 +31,7 @@
 #include "takt/msgs/journal_start.hpp"
 #include "takt/msgs/machine_description.hpp"
 #include "takt/msgs/mover_state.hpp"
+#include "takt/msgs/part_state.hpp"
 #include "takt/msgs/pick_place_state.hpp"
 #include "takt/msgs/planar_group_state.hpp"
 #include "takt/msgs/pose_state.hpp"
@@ -49,6 +50,7 @@ msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::M
 msgs::track_state ToMessage(const engine::TrackSnapshot& snapshot, const engine::Machine& machine);
 msgs::planar_group_state ToMessage(const engine::PlanarGroupSnapshot& snapshot, const engine::Machine& machine);
 msgs::environment_state ToMessage(const engine::EnvironmentSnapshot& snapshot, const engine::Machine& machine);
+msgs::part_state ToMessage(const engine::PartSnapshot& snapshot, const engine::Machine& machine);
 msgs::histogram ToMessage(const engine::Histogram& histogram);
 msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine::Machine& machine);
 // Client, session and id are left empty.

@@ -1,6 +1,10 @@
 #include "takt/mover/admission.h"
 
+#include <type_traits>
+#include <variant>
+
 #include "takt/core/in_range.h"
+#include "takt/mover/on_parts.h"
 
 namespace takt::mover {
 
@@ -17,12 +21,22 @@ ErrorId WhyNotBuffered(const Command& command, const State& s) {
   return s.state == planar::ObjectState::kEnabled ? ErrorId::kNone : ErrorId::kMoverDisabled;
 }
 
+// What a mover is told whatever its part does; the rest would move it.
+template <typename T>
+constexpr bool kAlways =
+    std::is_same_v<T, Enable> || std::is_same_v<T, Disable> || std::is_same_v<T, Reset> || std::is_same_v<T, Halt> ||
+    std::is_same_v<T, StopExternalSetpointGeneration> || std::is_same_v<T, Wait> || std::is_same_v<T, Release>;
+
 }  // namespace
 
 bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) noexcept {
   const Given given{c, ticket, s};
   const Answer answer = std::visit(
-      [&](const auto& body) { return InRange(body) ? CarryOut(given, body) : Refused(ErrorId::kParameter); }, command);
+      [&]<typename T>(const T& body) {
+        if (!InRange(body)) return Refused(ErrorId::kParameter);
+        return !kAlways<T> && IsAway(c, s) ? Refused(ErrorId::kPartDisabled) : CarryOut(given, body);
+      },
+      command);
   if (answer.status.failed()) {
     Report(c, ticket, FeedbackState::kError, answer.status.error, 0, s, answer.object);
     return false;

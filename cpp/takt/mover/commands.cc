@@ -22,6 +22,13 @@ void DescribeDynamics(Description<T>& d, Unit speed, Unit acceleration, Unit jer
 }
 
 template <typename T>
+void DescribeReference(Description<T>& d) {
+  d.template defaulted<&T::reference>(
+      "Name of the part or coordinate system that X and Y belong to; needed where there are several coordinate systems "
+      "or parts that move.");
+}
+
+template <typename T>
 void DescribeAngle(Description<T>& d) {
   d.template required<&T::position>(unit::deg, kAngles, "Where to stop.");
   DescribeDynamics(d, unit::deg_s, unit::deg_s2, unit::deg_s3);
@@ -88,6 +95,7 @@ void describe(Description<SetPosition>& d) {
   d.required<&S::x>(unit::mm, kPlaces, "X of its middle.");
   d.required<&S::y>(unit::mm, kPlaces, "Y of it.");
   d.defaulted<&S::c>(unit::deg, kAngles, "How it is turned.");
+  DescribeReference(d);
 }
 
 void describe(Description<MoveToPosition>& d) {
@@ -98,6 +106,7 @@ void describe(Description<MoveToPosition>& d) {
   d.defaulted<&M::c>(unit::deg, kAngles, "C of it; counts with use_orientation.");
   d.defaulted<&M::use_orientation>("True: C moves along, and is there at the same time where both begin at rest.");
   DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+  DescribeReference(d);
   d.defaulted<&M::blending>(unit::mm, between(0, 1e5),
                             "Buffered behind another one: it begins that far before the end of that, without a stop.");
   d.rule<&M::blending>("must be 0 unless buffered",
@@ -145,6 +154,7 @@ void describe(Description<LeaveTrack>& d) {
   d.defaulted<&L::c>(unit::deg, kAngles, "C of it; counts with use_orientation.");
   d.defaulted<&L::use_orientation>("True: C moves along. False: it stays.");
   DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+  DescribeReference(d);
 }
 void describe(Description<MoveOnTrack>& d) {
   using M = MoveOnTrack;
@@ -294,6 +304,7 @@ void describe(Description<SetExternalSetpoint>& d) {
   d.defaulted<&S::acceleration_a>(unit::deg_s2, kPlaces, "Of A.");
   d.defaulted<&S::acceleration_b>(unit::deg_s2, kPlaces, "Of B.");
   d.defaulted<&S::acceleration_c>(unit::deg_s2, kPlaces, "Of C.");
+  DescribeReference(d);
 }
 
 void describe(Description<StopExternalSetpointGeneration>& d) {

@@ -42,6 +42,7 @@ struct Halt {  // dynamics of X and Y; all other coordinates stop, too, with the
 struct SetPosition {
   double x = 0, y = 0;  // mm
   double c = 0;         // deg
+  Name reference{};     // part or coordinate system that X and Y belong to
 };
 
 struct MoveToPosition {
@@ -52,6 +53,7 @@ struct MoveToPosition {
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
+  Name reference{};                      // part or coordinate system that X and Y belong to
   Buffering buffer_mode = Buffering::kAborting;
   double blending = 0;  // mm before the end of the move before, buffered
 };
@@ -108,6 +110,7 @@ struct LeaveTrack {
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
+  Name reference{};                      // part or coordinate system that X and Y belong to
   Buffering buffer_mode = Buffering::kAborting;
 };
 struct MoveOnTrack {
@@ -192,6 +195,7 @@ struct SetExternalSetpoint {                                          // for the
   double velocity_a = 0, velocity_b = 0, velocity_c = 0;              // deg/s
   double acceleration_x = 0, acceleration_y = 0, acceleration_z = 0;  // mm/s²
   double acceleration_a = 0, acceleration_b = 0, acceleration_c = 0;  // deg/s²
+  Name reference{};                                                   // part or coordinate system, of absolute ones
 };
 struct StopExternalSetpointGeneration {};
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/mover/coordinate.h"
+#include "takt/mover/on_parts.h"
 #include "takt/mover/run.h"
 
 namespace takt::mover {
@@ -73,6 +74,9 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept {
     }
   }
   if (!CanFollow(c, s, s.set_point, to)) return ErrorId::kWildSetPoint;
+  if (!IsOnTrack(s)) {
+    if (const ErrorId why = WhyNotOn(c, s, CoverOfStop(c, to)); why != ErrorId::kNone) return why;
+  }
   at = to;
   return ErrorId::kNone;
 }

@@ -6,7 +6,7 @@
 namespace takt::mover {
 
 // Takes the set point of this cycle into `at`, which holds where the mover would be without it. kNoSetPoint,
-// kWildSetPoint: `at` means nothing.
+// kWildSetPoint, kOffStators, kPartDisabled: `at` means nothing.
 ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept;
 
 // Whether the mover can go from one set point to the next within a cycle, and stop from there, by its maximum dynamics

@@ -70,6 +70,7 @@ void Stand(const Context& c, const State& s) noexcept {
   planar::MoverNow& now = g.movers[c.index];
   const auto rests = [&](Coordinate i) { return s.set_point[i].velocity == 0 && s.set_point[i].acceleration == 0; };
   now.mover = {c.params.width, c.params.height};
+  now.system = s.system;
   now.pose = {{s.set_point[kX].position, s.set_point[kY].position}, s.set_point[kC].position};
   now.rests = s.external.mode == SetpointMode::kNone && IsPlaneResting(c, s) && IsOver(c, s.others.back()) &&
               rests(kX) && rests(kY) && rests(kC);

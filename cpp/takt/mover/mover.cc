@@ -8,6 +8,7 @@
 #include "takt/mover/follow.h"
 #include "takt/mover/gear.h"
 #include "takt/mover/ground.h"
+#include "takt/mover/on_parts.h"
 #include "takt/mover/run.h"
 
 namespace takt::mover {
@@ -40,7 +41,7 @@ void GoOn(const Context& c, State& s) {
 PlaneState PlaneOf(const Context& c, const State& s) {
   if (IsOnTrack(s)) {
     const KinematicState& way = c.rider().at;
-    const planar::TrackPoint at = planar::At(*c.streets.network[s.track].track, way.position);
+    const planar::TrackPoint at = c.streets.At(s.track, way.position);
     const double cosine = std::cos(at.direction), sine = std::sin(at.direction);
     const double across = way.velocity * way.velocity * at.curvature;
     return {{at.place.x, way.velocity * cosine, way.acceleration * cosine - across * sine},
@@ -134,7 +135,7 @@ void Change(const Context& c, State& s) {
   };
   switch (s.state) {
     case ObjectState::kEnabling:
-      if (rests) done(ObjectState::kEnabled);
+      if (rests && IsPartReady(c, s)) done(ObjectState::kEnabled);
       return;
     case ObjectState::kDisabling:
       if (rests) done(ObjectState::kDisabled);
@@ -143,6 +144,10 @@ void Change(const Context& c, State& s) {
       if (rests) Enter(c, ObjectState::kError, s);
       return;
     case ObjectState::kResetting:
+      // That of its part comes first; and it gets back to Enabled only on one that is.
+      if (!IsPartSound(c, s)) return;
+      s.aborts |= !CanPartBeReady(c, s);
+      if (!s.aborts && !IsPartReady(c, s)) return;
       s.error = ErrorId::kNone;
       done(s.aborts ? ObjectState::kDisabled : ObjectState::kEnabled);
       s.aborts = false;
@@ -185,6 +190,7 @@ void Step(const Context& c, const Inputs& inputs, State& s) noexcept {
   Watch(c, inputs, s);
   TakeTurns(c, s);
   MoveOn(c, s);
+  Locate(c, s);
   LookBack(c, s);
   Finish(c, s);
   Change(c, s);
@@ -250,6 +256,8 @@ void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& ou
   PublishDelay(c, s, out);
   out.buffered = s.buffer.count;
   out.group = c.grounds.group_of_mover[c.index];
+  out.coordinate_system = c.streets.parts->none() ? 0 : s.system + 1;
+  out.part = s.part == planar::kNoPart ? 0 : s.part + 1;
   out.commands = s.history.count;
 }
 

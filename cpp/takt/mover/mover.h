@@ -44,8 +44,8 @@ void Step(const Context& c, const Inputs& inputs, State& s) noexcept;
 // Where it is at the start, for others.
 void Arrive(const Context& c, const State& s) noexcept;
 
-// Comes to rest with the maximum dynamics, and is in Error then.
-void Fail(const Context& c, ErrorId error, State& s) noexcept;
+// Comes to rest with the maximum dynamics, and is in Error then. `aborts`: a reset leads to Disabled.
+void Fail(const Context& c, ErrorId error, State& s, bool aborts = false) noexcept;
 
 void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& out) noexcept;
 

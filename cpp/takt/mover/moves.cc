@@ -5,6 +5,7 @@
 #include "takt/mover/admission.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/ground.h"
+#include "takt/mover/on_parts.h"
 
 namespace takt::mover {
 
@@ -18,6 +19,14 @@ Limits Slower(const Limits& l, double share) {
   return {share * l.velocity, square * l.acceleration, square * l.deceleration, square * share * l.jerk};
 }
 
+MoveToPosition WithLimits(MoveToPosition move, const Limits& limits) {
+  move.velocity = limits.velocity;
+  move.acceleration = limits.acceleration;
+  move.deceleration = limits.deceleration;
+  move.jerk = limits.jerk;
+  return move;
+}
+
 // From one motion to another place: at once if that is quicker, else by way of rest. Nothing: no such motion.
 std::optional<PlaneMove> PlanPlane(const Given& g, const MoveToPosition& to, const Limits& limits, double& duration) {
   const Context& c = g.c;
@@ -29,8 +38,18 @@ std::optional<PlaneMove> PlanPlane(const Given& g, const MoveToPosition& to, con
     round.begin = c.cycle.count;
     const PlaneState corner{{from.corner_x, 0, 0}, {from.corner_y, 0, 0}};
     const PlaneState now = At(from.motion, Elapsed(c, from.begin));
-    if (PlanRound(c.planner, now, corner, to.x, to.y, from.share, even, round.motion)) {
+    if (PlanRound(c.planner, now, corner, to.x, to.y, from.share, even, round.motion) &&
+        WhyNotOn(c, g.s, CoverOf(c, round, g.s.others.back())) == ErrorId::kNone) {
       duration = DurationOf(round.motion);
+      return round;
+    }
+    // Where it cannot go round, it can stop.
+    PlaneMotion line;
+    if (PlanMove(c.planner, now, from.corner_x, from.corner_y, from.limits, round.motion) &&
+        PlanMove(c.planner, corner, to.x, to.y, limits, line)) {
+      round.waits = true;
+      round.next = WithLimits(to, limits);
+      duration = DurationOf(round.motion) + DurationOf(line);
       return round;
     }
   }
@@ -58,10 +77,7 @@ std::optional<PlaneMove> PlanPlane(const Given& g, const MoveToPosition& to, con
     return found ? std::optional(at_once) : std::nullopt;
   }
   duration = rests + DurationOf(line);
-  stops.next.velocity = limits.velocity;
-  stops.next.acceleration = limits.acceleration;
-  stops.next.deceleration = limits.deceleration;
-  stops.next.jerk = limits.jerk;
+  stops.next = WithLimits(to, limits);
   return stops;
 }
 
@@ -120,9 +136,10 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
     PlanRest(g.c.planner, turned, StandardOf(free), ParamsOf(g.c, s, kOthers.size() - 1), turn.profile);
     turn.begin = g.c.cycle.count;
   }
+  if (const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, *move, turn)); why != ErrorId::kNone) return Refused(why);
   if (const ObjectInfo object = InTheWay(g.c, *move, turn, false)) return Refused(ErrorId::kCollision, object);
-  if (command.use_orientation) End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
+  if (command.use_orientation) End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);
   s.others.back() = turn;
   s.plane = *move;
@@ -135,7 +152,9 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
 
 Answer CarryOut(const Given& g, const MoveToPosition& command) noexcept {
   if (const ErrorId why = WhyNot(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
-  return MoveTo(g, command);
+  MoveToPosition to = command;
+  const ErrorId why = ToItsSystem(g.c, g.s, command.reference, to.x, to.y);
+  return why == ErrorId::kNone ? MoveTo(g, to) : Refused(why);
 }
 
 Answer CarryOut(const Given& g, const MoveZ& command) noexcept {
@@ -163,6 +182,10 @@ Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept {
   const bool inside = InOneWindow(g.c.params.c, range.min, range.max);
   if (!inside && !IsPlaneResting(g.c, s)) return Refused(ErrorId::kOutsideWindow);
   move.begin = g.c.cycle.count;
+  if (!IsOnTrack(s)) {
+    const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, s.plane, move));
+    if (why != ErrorId::kNone) return Refused(why);
+  }
   if (const ObjectInfo object = InTheWay(g.c, s.plane, move, IsOnTrack(s))) return Refused(ErrorId::kCollision, object);
   if (!inside && s.mode == CommandMode::kFreeMovement) s.mode = CommandMode::kCRotationFreeMovement;
   if (!inside && s.mode == CommandMode::kOnTrack) s.mode = CommandMode::kCRotationOnTrack;

@@ -4,6 +4,7 @@
 
 #include "takt/mover/admission.h"
 #include "takt/mover/coordinate.h"
+#include "takt/mover/on_parts.h"
 #include "takt/planar/nearest.h"
 
 namespace takt::mover {
@@ -23,7 +24,7 @@ ObjectInfo TrackOf(std::uint32_t index) {
 ObjectInfo TakenBy(const Context& c, std::uint32_t track, double s) {
   const Streets& streets = c.streets;
   const planar::Road& road = streets.network[track];
-  const planar::Place place = planar::At(*road.track, s).place;
+  const planar::Place place = streets.At(track, s).place;
   for (std::uint32_t i = 0; i < streets.riders.size(); ++i) {
     const planar::Rider& other = streets.riders[i];
     if (!other.on || i == c.index) continue;
@@ -33,7 +34,9 @@ ObjectInfo TakenBy(const Context& c, std::uint32_t track, double s) {
       if (std::min(apart, road.closed ? road.length - apart : apart) < gap) return MoverOf(i);
       continue;
     }
-    const planar::Place its = planar::At(*streets.network[other.route.first()].track, other.at.position).place;
+    const std::uint32_t on = other.route.first();
+    if (streets.tracks[on].spot.system != streets.tracks[track].spot.system) continue;
+    const planar::Place its = streets.At(on, other.at.position).place;
     if (std::hypot(its.x - place.x, its.y - place.y) < streets.tracks[track].reach) return MoverOf(i);
   }
   return {};
@@ -64,13 +67,22 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   if (!streets.tracks[track].enabled || streets.uses[track].moving > 0) {
     return Refused(ErrorId::kTrackMode, TrackOf(track));
   }
-  const planar::Nearest nearest =
-      planar::NearestTo(*streets.network[track].track, {s.set_point[kX].position, s.set_point[kY].position});
+  const planar::Spot& spot = streets.tracks[track].spot;
+  if (spot.system != s.system) return Refused(ErrorId::kReference);
+  const planar::Place from{s.set_point[kX].position, s.set_point[kY].position};
+  planar::Nearest nearest = planar::NearestTo(*streets.network[track].track, from - spot.origin);
+  nearest.place = nearest.place + spot.origin;
   if (const ObjectInfo who = TakenBy(g.c, track, nearest.s)) return Refused(ErrorId::kCollision, who);
   const KinematicState turned = Now(g.c, s.others.back());
   const double c = TargetOf(g.c.params, turned, turned.position, {.direction = TurnDirection::kShortestWay});
-  const Answer answer = MoveTo(g, {nearest.place.x, nearest.place.y, c, command.use_orientation, command.velocity,
-                                   command.acceleration, command.deceleration, command.jerk});
+  const Answer answer = MoveTo(g, {.x = nearest.place.x,
+                                   .y = nearest.place.y,
+                                   .c = c,
+                                   .use_orientation = command.use_orientation,
+                                   .velocity = command.velocity,
+                                   .acceleration = command.acceleration,
+                                   .deceleration = command.deceleration,
+                                   .jerk = command.jerk});
   if (answer.status.failed()) return answer;
   // The place is its own from now on.
   planar::Rider& rider = g.c.rider();
@@ -95,11 +107,19 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
   if (const ErrorId why = WhyNot(s, Ask::kLeaveTrack); why != ErrorId::kNone) return Refused(why);
   if (!IsPlaneResting(g.c, s)) return Refused(ErrorId::kCommandMode);
   if (streets.uses[s.track].moving > 0) return Refused(ErrorId::kTrackMode, TrackOf(s.track));
+  double x = command.x, y = command.y;
+  if (const ErrorId why = ToItsSystem(g.c, s, command.reference, x, y); why != ErrorId::kNone) return Refused(why);
   s.plane = {};
   s.plane.motion = StandingAt(s.set_point[kX].position, s.set_point[kY].position);
   s.plane.begin = g.c.cycle.count;
-  const Answer answer = MoveTo(g, {command.x, command.y, command.c, command.use_orientation, command.velocity,
-                                   command.acceleration, command.deceleration, command.jerk});
+  const Answer answer = MoveTo(g, {.x = x,
+                                   .y = y,
+                                   .c = command.c,
+                                   .use_orientation = command.use_orientation,
+                                   .velocity = command.velocity,
+                                   .acceleration = command.acceleration,
+                                   .deceleration = command.deceleration,
+                                   .jerk = command.jerk});
   if (answer.status.failed()) return answer;
   s.mode = CommandMode::kLeavingTrack;
   ++streets.uses[s.track].configuring;

@@ -63,6 +63,8 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::delay_since>("Cycle since which it does not; 0: it goes on.");
   d.internal<&O::buffered>("So many commands wait for their turn.");
   d.internal<&O::group>("Number of the group of movers that it is in, from 1; 0: none.");
+  d.internal<&O::coordinate_system>("Number of the coordinate system that its positions are in, from 1; 0: none.");
+  d.internal<&O::part>("Number of the part that its middle is on, from 1; 0: none.");
   d.internal<&O::commands>("So many commands have come, external set points apart.");
 }
 

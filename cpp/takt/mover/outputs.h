@@ -50,7 +50,10 @@ struct Outputs {
   std::uint64_t delay_since = 0;  // cycle; 0: it goes on
   std::uint32_t buffered = 0;     // commands that wait for their turn
   std::uint32_t group = 0;        // number of the group of movers that it is in, from 1; 0: none
-  std::uint64_t commands = 0;     // so many have come
+  // Numbers, from 1, of the coordinate system that positions are in, and of the part that its middle is on; 0: none.
+  std::uint32_t coordinate_system = 0;
+  std::uint32_t part = 0;
+  std::uint64_t commands = 0;  // so many have come
 };
 
 void describe(Enumeration<Delay>&);

@@ -50,6 +50,9 @@ void describe(Description<MoverParams>& d) {
   d.defaulted<&P::width>(unit::mm, between(1, 1e4), "Along X when it is not turned.");
   d.defaulted<&P::height>(unit::mm, between(1, 1e4), "Along Y.");
   d.defaulted<&P::initial>("Where it is at the start.");
+  d.defaulted<&P::reference>(
+      "Name of the part or coordinate system that this place belongs to; needed where there are several coordinate "
+      "systems or parts that move.");
   d.defaulted<&P::xy>("X and Y, along the way.");
   d.defaulted<&P::z>("How high it floats.");
   d.defaulted<&P::a>("Tilted about X.");

@@ -45,6 +45,7 @@ struct MoverParams {
   double width = 113;   // mm, along X when it is not turned
   double height = 113;  // mm, along Y
   Place initial{};
+  std::string reference{};  // part or coordinate system that the initial place belongs to
   PlaneParams xy{};
   CoordinateParams z{{100, 1000, {}, 20000}, {}, 0, 5};
   CoordinateParams a{{30, 300, {}, 6000}, {}, -5, 5};

@@ -1,5 +1,6 @@
 // Enabled or not, and where; and coming to rest.
 #include "takt/mover/admission.h"
+#include "takt/mover/on_parts.h"
 
 namespace takt::mover {
 
@@ -13,6 +14,7 @@ Answer CarryOut(const Given& g, const Enable&) noexcept {
     case ObjectState::kDisabled:
     case ObjectState::kDisabling:
     case ObjectState::kEnabling:
+      if (!CanPartBeReady(g.c, g.s)) return Refused(ErrorId::kPartDisabled);
       Take(g, kPower);
       if (g.s.state != ObjectState::kEnabling) Enter(g.c, ObjectState::kEnabling, g.s);
       return {};
@@ -58,16 +60,19 @@ Answer CarryOut(const Given& g, const Reset&) noexcept {
 
 Answer CarryOut(const Given& g, const SetPosition& command) noexcept {
   if (g.s.state != ObjectState::kDisabled) return Refused(ErrorId::kState);
-  const planar::Verdict room = planar::SetDown(g.c.index, {{command.x, command.y}, command.c}, g.c.grounds);
+  planar::Spot at;
+  const ErrorId why =
+      FindSpot(g.c.params, *g.c.streets.parts, command.reference.view(), {{command.x, command.y}, command.c}, at);
+  if (why != ErrorId::kNone) return Refused(why);
+  const planar::Verdict room = planar::SetDown(g.c.index, {at.origin, command.c}, at.system, g.c.grounds);
   if (room.error != ErrorId::kNone) return Refused(room.error, room.object);
-  g.s.set_point[kX].position = command.x;
-  g.s.set_point[kY].position = command.y;
-  g.s.set_point[kC].position = command.c;
-  g.s.plane.motion = StandingAt(command.x, command.y);
   if (IsOnTrack(g.s)) g.s.mode = CommandMode::kFreeMovement;
   LeaveStreets(g.c, g.s);
+  g.s.set_point[kC].position = command.c;
   CoordinateMove& turn = g.s.others.back();
   turn.profile = {g.s.set_point[kC], g.s.set_point[kC]};
+  PutAt(at, g.s);
+  Locate(g.c, g.s);
   return Done();
 }
 

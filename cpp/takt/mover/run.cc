@@ -5,6 +5,7 @@
 
 #include "takt/mover/coordinate.h"
 #include "takt/mover/ground.h"
+#include "takt/mover/on_parts.h"
 
 namespace takt::mover {
 
@@ -81,6 +82,15 @@ bool MoveAlike(const KinematicState& a, const KinematicState& b) {
   return std::abs(a.velocity - b.velocity) <= kAlike && std::abs(a.acceleration - b.acceleration) <= kAlike;
 }
 
+// A motion on the plane that begins now, and does not lead off the stators.
+bool Stays(const Context& c, const State& s, const PlaneMotion& motion) {
+  if (c.streets.parts->none() || IsOnTrack(s)) return true;
+  PlaneMove move;
+  move.motion = motion;
+  move.begin = c.cycle.count;
+  return WhyNotOn(c, s, CoverOf(c, move, s.others.back())) == ErrorId::kNone;
+}
+
 // Within `plane`, or all with the maximum (null).
 Rest PlanRest(const Context& c, const trajectory::Limits* plane, const State& s) {
   const trajectory::Limits maximum = c.params.xy.maximum.limits();
@@ -100,12 +110,14 @@ Rest PlanRest(const Context& c, const trajectory::Limits* plane, const State& s)
     if (found && beside) {
       Shift(at[kX].position - planned.x.position, at[kY].position - planned.y.position, rest);
     }
-    return found && SpeedBound(rest) <= maximum.velocity * (1 + 1e-9);
+    return found && SpeedBound(rest) <= maximum.velocity * (1 + 1e-9) && Stays(c, s, rest);
   };
   if (!IsOnTrack(s) && (plane == nullptr || !plan(*plane))) plan(maximum);
   for (std::size_t i = 0; i < kOthers.size(); ++i) {
     const CoordinateParams params = ParamsOf(c, s, i);
-    const trajectory::Limits limits = plane ? StandardOf(params) : params.maximum.limits();
+    // C turns no further than it was to, where that counts.
+    const bool hard = plane == nullptr || (kOthers[i] == kC && !c.streets.parts->none());
+    const trajectory::Limits limits = hard ? params.maximum.limits() : StandardOf(params);
     all.others[i] = s.others[i];
     PlanRest(c.planner, at[kOthers[i]], limits, params, all.others[i].profile);
     all.others[i].begin = c.cycle.count;
@@ -130,12 +142,12 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
   Reserve(c, s, IsOnTrack(s));
 }
 
-void Fail(const Context& c, ErrorId error, State& s) noexcept {
+void Fail(const Context& c, ErrorId error, State& s, bool aborts) noexcept {
   using enum planar::ObjectState;
   if (s.state == kResetting || s.state == kErrorPending || s.state == kError) return;
   EndAll(c, true, FeedbackState::kError, error, s);
   s.error = error;
-  s.aborts = s.state == kDisabled || s.state == kDisabling;
+  s.aborts = aborts || s.state == kDisabled || s.state == kDisabling;
   BringToRest(c, nullptr, s);
   Enter(c, kErrorPending, s);
 }

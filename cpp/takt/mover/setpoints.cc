@@ -1,5 +1,6 @@
 // Set points from outside.
 #include "takt/mover/admission.h"
+#include "takt/mover/on_parts.h"
 
 namespace takt::mover {
 
@@ -21,8 +22,13 @@ Answer CarryOut(const Given& g, const StartExternalSetpointGeneration& command) 
 Answer CarryOut(const Given& g, const SetExternalSetpoint& p) noexcept {
   External& external = g.s.external;
   if (external.mode == SetpointMode::kNone) return Refused(ErrorId::kCommandMode);
-  external.given = {{{p.x, p.velocity_x, p.acceleration_x},
-                     {p.y, p.velocity_y, p.acceleration_y},
+  double x = p.x, y = p.y;
+  if (external.mode == SetpointMode::kAbsolute) {
+    const ErrorId why = ToItsSystem(g.c, g.s, p.reference, x, y);
+    if (why != ErrorId::kNone) return Refused(why);
+  }
+  external.given = {{{x, p.velocity_x, p.acceleration_x},
+                     {y, p.velocity_y, p.acceleration_y},
                      {p.z, p.velocity_z, p.acceleration_z},
                      {p.a, p.velocity_a, p.acceleration_a},
                      {p.b, p.velocity_b, p.acceleration_b},

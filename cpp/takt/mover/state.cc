@@ -91,6 +91,8 @@ void describe(Description<State>& d) {
   d.internal<&S::plane>("Motion of X and Y.");
   d.internal<&S::track>("Track that it joins, is on, or leaves.");
   d.internal<&S::gear>("What it goes along with.");
+  d.internal<&S::system>("Coordinate system where it is.");
+  d.internal<&S::part>("Part that its middle is on.");
   d.internal<&S::others>("Motions of Z, A, B, C.");
   d.internal<&S::external>("Set points from outside.");
   d.internal<&S::set_point>("Where it is at the end of the last cycle.");

@@ -17,6 +17,7 @@
 #include "takt/mover/plane.h"
 #include "takt/planar/network.h"
 #include "takt/planar/object_state.h"
+#include "takt/planar/parts.h"
 #include "takt/trajectory/profile.h"
 
 namespace takt::mover {
@@ -89,6 +90,8 @@ struct State {
   Buffer buffer;
   PlaneMove plane;
   std::uint32_t track = planar::kNoTrack;  // that it joins, is on, or leaves
+  std::uint32_t system = 0;                // coordinate system where it is, from 0
+  std::uint32_t part = planar::kNoPart;    // that its middle is on
   GearState gear;
   std::array<CoordinateMove, kOthers.size()> others;  // in the order of kOthers
   External external;

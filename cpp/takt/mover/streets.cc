@@ -6,9 +6,11 @@ namespace takt::mover {
 
 namespace {
 
+const planar::Parts kNoParts;
+
 bool SameShape(const TrackNow& a, const TrackNow& b) {
   return a.way == b.way && a.length == b.length && a.reach == b.reach && a.start_node == b.start_node &&
-         a.end_node == b.end_node;
+         a.end_node == b.end_node && a.spot == b.spot;
 }
 
 void LinkAll(std::span<const TrackNow> tracks, planar::Network& network) {
@@ -18,6 +20,7 @@ void LinkAll(std::span<const TrackNow> tracks, planar::Network& network) {
     road.length = road.track ? road.track->length : 0;
     road.closed = road.track && road.track->closed;
     road.reach = tracks[i].reach;
+    road.origin = tracks[i].spot.origin;
     road.before = road.behind = {};
   }
   for (std::uint32_t i = 0; i < tracks.size(); ++i) {
@@ -29,10 +32,31 @@ void LinkAll(std::span<const TrackNow> tracks, planar::Network& network) {
   planar::NameNodes(network);
 }
 
+// A mover that stands goes on over no link that is none any more, and has come over none.
+void CutRoute(const planar::Network& network, planar::Rider& rider) {
+  if (!rider.on) return;
+  const auto linked = [&](std::uint32_t from, std::uint32_t to) {
+    return std::ranges::find(network[from].behind.all(), to) != network[from].behind.all().end();
+  };
+  for (std::uint32_t k = 1; k < rider.route.count; ++k) {
+    if (linked(rider.route.tracks[k - 1], rider.route.tracks[k])) continue;
+    std::fill(rider.route.tracks.begin() + k, rider.route.tracks.begin() + rider.route.count, 0u);
+    rider.route.count = k;
+    rider.aim = planar::Aim::kRest;
+  }
+  std::uint32_t behind = rider.route.first();
+  for (std::uint32_t k = 0; k < rider.passed_count; behind = rider.passed[k++]) {
+    if (linked(rider.passed[k], behind)) continue;
+    std::fill(rider.passed.begin() + k, rider.passed.end(), 0u);
+    rider.passed_count = k;
+  }
+}
+
 }  // namespace
 
-Streets::Streets(std::size_t movers, std::vector<std::string> of_tracks)
-    : names(std::move(of_tracks)),
+Streets::Streets(std::size_t movers, std::vector<std::string> of_tracks, const planar::Parts* of_parts)
+    : parts(of_parts != nullptr ? of_parts : &kNoParts),
+      names(std::move(of_tracks)),
       search(names.size()),
       traffic({static_cast<std::uint32_t>(movers), static_cast<std::uint32_t>(names.size())}),
       riders(movers),
@@ -46,9 +70,16 @@ std::uint32_t Streets::Find(std::string_view track) const noexcept {
   return found == names.end() ? planar::kNoTrack : static_cast<std::uint32_t>(found - names.begin());
 }
 
+planar::TrackPoint Streets::At(std::uint32_t track, double s) const noexcept {
+  planar::TrackPoint point = planar::At(*network[track].track, s);
+  point.place = point.place + network[track].origin;
+  return point;
+}
+
 void Refresh(std::span<const TrackNow> now, Streets& s) noexcept {
   if (!std::ranges::equal(now, s.tracks, SameShape)) {
     LinkAll(now, s.network);
+    for (planar::Rider& rider : s.riders) CutRoute(s.network, rider);
     for (std::uint32_t i = 0; i < now.size(); ++i) {
       planar::Road& road = s.network.roads[i];
       if (now[i].manual) {

@@ -9,6 +9,7 @@
 
 #include "takt/core/cycle.h"
 #include "takt/planar/network.h"
+#include "takt/planar/parts.h"
 #include "takt/planar/send.h"
 #include "takt/planar/traffic.h"
 #include "takt/trajectory/planner.h"
@@ -22,9 +23,11 @@ struct TrackNow {
   bool enabled = false;
   std::uint32_t start_node = 0;  // ends and starts at one point share a number
   std::uint32_t end_node = 0;
-  double reach = 0;           // mm, at which the centres of two of its largest movers may touch
-  bool manual = false;        // the ranges are given
-  double range_at_start = 0;  // mm
+  double reach = 0;                      // mm, at which the centres of two of its largest movers may touch
+  std::uint32_t part = planar::kNoPart;  // that it lies on
+  planar::Spot spot{};                   // where that is, which its places count from
+  bool manual = false;                   // the ranges are given
+  double range_at_start = 0;             // mm
   double range_at_end = 0;
 };
 
@@ -50,11 +53,16 @@ struct TrackUse {
 };
 
 struct Streets {
-  Streets(std::size_t movers, std::vector<std::string> tracks);
+  // Without parts of a surface if they are not given; else they must live as long.
+  Streets(std::size_t movers, std::vector<std::string> tracks, const planar::Parts* parts = nullptr);
 
   // kNoTrack: there is none of that name.
   std::uint32_t Find(std::string_view track) const noexcept;
 
+  // Where a track leads, in the coordinate system where it is now.
+  planar::TrackPoint At(std::uint32_t track, double s) const noexcept;
+
+  const planar::Parts* parts;  // of the surface
   std::vector<std::string> names;
   planar::Network network;
   planar::RouteSearch search;

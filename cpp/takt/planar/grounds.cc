@@ -24,7 +24,7 @@ Verdict Collision(const ObjectInfo& object) noexcept {
 void PutIn(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept {
   const MoverNow& now = g.movers[mover];
   Reservations& r = ReservedBy(group, g);
-  Settle(mover, now.mover, now.pose, r);
+  Settle(mover, now.mover, now.pose, r, now.system);
   if (now.on_track) Link(mover, g.NetworkOf(now.track), r);
 }
 
@@ -58,6 +58,7 @@ Grounds::Grounds(std::size_t of_movers, std::size_t of_tracks, std::size_t of_en
       grounds(names.size()),
       movers(of_movers),
       areas(of_tracks),
+      spots(of_tracks),
       moving(of_tracks),
       surfaces(of_environments) {
   for (Ground& ground : grounds) ground.reserved = MakeReservations(of_movers, of_tracks);
@@ -75,7 +76,7 @@ std::uint32_t Grounds::EnvironmentOf(std::uint32_t group) const noexcept {
 
 Surroundings Grounds::Around(std::uint32_t group) const noexcept {
   const std::uint32_t environment = EnvironmentOf(group);
-  return {.environment = environment == 0 ? nullptr : surfaces[environment - 1], .tracks = areas};
+  return {.environment = environment == 0 ? nullptr : surfaces[environment - 1], .tracks = areas, .spots = spots};
 }
 
 ObjectInfo AskMove(std::uint32_t mover, const Move& move, const Grounds& g) noexcept {
@@ -97,18 +98,19 @@ void AdvanceMover(std::uint32_t mover, Grounds& g) noexcept {
   const std::uint32_t network = now.on_track ? g.NetworkOf(now.track) : kNoTrack;
   if (now.on_track && !own.linked) Link(mover, network, r);
   own.network = network;
+  own.level = now.system;
   const Pose& was = own.pose;
   const bool stays = was.place.x == now.pose.place.x && was.place.y == now.pose.place.y && was.c == now.pose.c;
   if (!stays) Advance(mover, now.pose, r);
   if (now.rests && own.moving) End(mover, r);
 }
 
-Verdict SetDown(std::uint32_t mover, const Pose& pose, Grounds& g) noexcept {
+Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, Grounds& g) noexcept {
   const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
   if (group == 0) return {};
   Reservations& r = ReservedBy(group, g);
   const Reservation before = r.movers[mover];
-  Settle(mover, before.mover, pose, r, before.level);
+  Settle(mover, before.mover, pose, r, system);
   const ObjectInfo object = AskStanding(mover, group, g);
   if (object) r.movers[mover] = before;
   return Collision(object);

@@ -21,7 +21,8 @@ namespace takt::planar {
 // A mover as it is at the end of a cycle.
 struct MoverNow {
   Footprint mover{};
-  Pose pose{};
+  std::uint32_t system = 0;        // coordinate system that it is in
+  Pose pose{};                     // in that
   bool rests = true;               // in X, Y and C
   bool on_track = false;           // and else it goes nowhere
   std::uint32_t track = kNoTrack;  // that one
@@ -57,6 +58,7 @@ struct Grounds {
   // What follows from the states of others.
   std::vector<MoverNow> movers;
   std::vector<const TrackArea*> areas;       // by track; null: it has no length
+  std::vector<Spot> spots;                   // by track: where the part that it lies on is
   std::vector<std::uint8_t> moving;          // by track: it is Moving
   std::vector<const Environment*> surfaces;  // by environment; null: it has no boundary
 };
@@ -72,8 +74,8 @@ ObjectInfo AskMove(std::uint32_t mover, const Move& move, const Grounds& g) noex
 void TakeMove(std::uint32_t mover, const Move& move, Grounds& g) noexcept;
 // As `movers` says it is now.
 void AdvanceMover(std::uint32_t mover, Grounds& g) noexcept;
-// It is set to another place, if there is room.
-Verdict SetDown(std::uint32_t mover, const Pose& pose, Grounds& g) noexcept;
+// It is set to another place in this coordinate system, if there is room.
+Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, Grounds& g) noexcept;
 
 // Whether a mover may move along these tracks, each of which is in the mover's group if that watches; and it does.
 Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, const Grounds& g) noexcept;

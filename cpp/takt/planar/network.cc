@@ -63,7 +63,8 @@ void SetRanges(std::uint32_t track, Network& network) noexcept {
     for (double s = 0; s < road.length + kStride; s += kStride) {
       const double place = std::min(s, road.length);
       const TrackPoint point = At(*road.track, at_end ? road.length - place : place);
-      if (NearestTo(other, point.place).distance < reach + 0.5 * kStride) {
+      const Place seen{point.place.x + road.origin.x - of.origin.x, point.place.y + road.origin.y - of.origin.y};
+      if (NearestTo(other, seen).distance < reach + 0.5 * kStride) {
         near = std::min(s + kStride, road.length);
       } else if (s > near + 5 * reach) {
         break;

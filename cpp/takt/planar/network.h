@@ -32,6 +32,7 @@ struct Links {
 // A track as the traffic sees it.
 struct Road {
   const Track* track = nullptr;  // null: not to be used
+  Place origin{};                // mm, which its places count from
   double length = 0;             // mm
   bool closed = false;
   double reach = 0;          // mm, at which the centres of two of its largest movers may touch, however they are turned

@@ -54,6 +54,12 @@ std::string_view Text(Problem problem) noexcept {
       return "the geometry of a track can be changed only while it is disabled";
     case Problem::kBusy:
       return "too many changes of tracks wait to be made";
+    case Problem::kApart:
+      return "the parts of the tracks are not in one coordinate system";
+    case Problem::kNotOnBorder:
+      return "tracks of two parts meet on the border of both and nowhere else";
+    case Problem::kOffPart:
+      return "the track leaves its part";
   }
   return "";
 }
@@ -100,6 +106,9 @@ void describe(Enumeration<Problem>& e) {
   e.value(Problem::kInUse, "in_use", "Other tracks start from it or end at it.");
   e.value(Problem::kNotDisabled, "not_disabled", "The track is not disabled.");
   e.value(Problem::kBusy, "busy", "Too many changes wait.");
+  e.value(Problem::kApart, "apart", "The parts of the tracks are not in one coordinate system.");
+  e.value(Problem::kNotOnBorder, "not_on_border", "The tracks do not meet on the border of their parts.");
+  e.value(Problem::kOffPart, "off_part", "The track leaves its part.");
 }
 
 }  // namespace takt::planar

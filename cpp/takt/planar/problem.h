@@ -34,6 +34,9 @@ enum class Problem : std::uint8_t {
   kInUse,          // other tracks start from it or end at it
   kNotDisabled,    // it is enabled, or not quite disabled
   kBusy,           // too many changes of tracks wait to be made
+  kApart,          // the part of the other track is not there, or not in this coordinate system
+  kNotOnBorder,    // tracks of two parts meet within one of them
+  kOffPart,        // the track leaves its part
 };
 
 // One sentence without a full stop; empty for kNone.

@@ -47,18 +47,32 @@ bool Meets(const Area& area, const Extent& extent, std::uint32_t level, const Re
          Near(area, AreaOf(other), kClearance);
 }
 
+Extent Shifted(const Extent& extent, const Place& by) noexcept {
+  return {extent.lower + by, extent.upper + by};
+}
+
 // The stretches hang together.
-bool Carries(const Environment& environment, const TrackArea& track) noexcept {
+bool Carries(const Environment& environment, const TrackArea& track, const Place& origin) noexcept {
   for (std::size_t i = 0; i < track.stretches.size(); ++i) {
-    if (Crosses(environment, track.stretches[i], track.extents[i])) return false;
+    if (Crosses(environment, Shifted(track.stretches[i], origin), Shifted(track.extents[i], origin))) return false;
   }
-  return planar::Carries(environment, track.stretches.front());
+  return planar::Carries(environment, Shifted(track.stretches.front(), origin));
+}
+
+Spot SpotOf(std::size_t track, const Surroundings& around) noexcept {
+  return track < around.spots.size() ? around.spots[track] : Spot{};
 }
 
 const TrackArea* Moving(std::size_t track, std::uint32_t level, const Surroundings& around,
                         const Reservations& r) noexcept {
-  const bool counts = track < around.tracks.size() && r.tracks[track].moving && r.tracks[track].level == level;
+  const bool counts = track < around.tracks.size() && r.tracks[track].moving && SpotOf(track, around).system == level;
   return counts ? around.tracks[track] : nullptr;
+}
+
+// An area in the coordinate system of a track.
+bool Near(const Area& area, const Extent& extent, std::size_t track, const Surroundings& around) noexcept {
+  const Place by = Place{} - SpotOf(track, around).origin;
+  return planar::Near(Shifted(area, by), Shifted(extent, by), *around.tracks[track], kClearance);
 }
 
 ObjectInfo Object(ObjectKind kind, std::size_t number) noexcept {
@@ -98,9 +112,10 @@ ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around
   for (std::size_t i = 0; i < r.tracks.size(); ++i) {
     const TrackArea* track = Moving(i, own.level, around, r);
     if (!track || (move.on_track && own.linked && own.network == track->network)) continue;
-    if (Near(area, extent, *track, kClearance)) return Object(ObjectKind::kTrack, i);
+    if (Near(area, extent, i, around)) return Object(ObjectKind::kTrack, i);
   }
-  if (around.environment && !Carries(*around.environment, area)) return Object(ObjectKind::kEnvironment, 0);
+  if (around.environment && own.level == 0 && !Carries(*around.environment, area))
+    return Object(ObjectKind::kEnvironment, 0);
   return {};
 }
 
@@ -136,20 +151,22 @@ void Link(std::uint32_t mover, std::uint32_t network, Reservations& r) noexcept 
 ObjectInfo AskTrack(std::uint32_t track, const Surroundings& around, const Reservations& r) noexcept {
   if (track >= around.tracks.size() || !around.tracks[track]) return {};
   const TrackArea& own = *around.tracks[track];
-  const std::uint32_t level = r.tracks[track].level;
+  const Spot spot = SpotOf(track, around);
   for (std::size_t i = 0; i < r.movers.size(); ++i) {
     const Reservation& mover = r.movers[i];
-    if (!mover.present || mover.level != level || (mover.linked && mover.network == own.network)) continue;
-    if (Near(AreaOf(mover), mover.extent, own, kClearance)) return Object(ObjectKind::kMover, i);
+    if (!mover.present || mover.level != spot.system || (mover.linked && mover.network == own.network)) continue;
+    if (Near(AreaOf(mover), mover.extent, track, around)) return Object(ObjectKind::kMover, i);
   }
   for (std::size_t i = 0; i < r.tracks.size(); ++i) {
-    const TrackArea* other = Moving(i, level, around, r);
+    const TrackArea* other = Moving(i, spot.system, around, r);
     if (!other || other->network == own.network) continue;
     for (std::size_t k = 0; k < own.stretches.size(); ++k) {
-      if (Near(own.stretches[k], own.extents[k], *other, kClearance)) return Object(ObjectKind::kTrack, i);
+      if (Near(Shifted(own.stretches[k], spot.origin), Shifted(own.extents[k], spot.origin), i, around))
+        return Object(ObjectKind::kTrack, i);
     }
   }
-  if (around.environment && !Carries(*around.environment, own)) return Object(ObjectKind::kEnvironment, 0);
+  if (around.environment && spot.system == 0 && !Carries(*around.environment, own, spot.origin))
+    return Object(ObjectKind::kEnvironment, 0);
   return {};
 }
 
@@ -177,7 +194,7 @@ void describe(Description<Reservation>& d) {
   d.internal<&Reservation::moving>("Whether it is on its way.");
   d.internal<&Reservation::linked>("Whether it goes along tracks.");
   d.internal<&Reservation::network>("Of which network.");
-  d.internal<&Reservation::level>("Those of different ones never meet.");
+  d.internal<&Reservation::level>("Its coordinate system: those of different ones never meet.");
   d.internal<&Reservation::mover>("What it covers.");
   d.internal<&Reservation::pose>("Where it is.");
   d.internal<&Reservation::move>("Where it goes.");
@@ -187,7 +204,6 @@ void describe(Description<Reservation>& d) {
 void describe(Description<TrackReservation>& d) {
   d.about("What a track has reserved.");
   d.internal<&TrackReservation::moving>("Whether it is Moving: then all that its movers may cover.");
-  d.internal<&TrackReservation::level>("Those of different ones never meet.");
 }
 
 void describe(Description<Reservations>& d) {

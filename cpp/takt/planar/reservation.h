@@ -17,6 +17,7 @@
 #include "takt/core/object.h"
 #include "takt/planar/area.h"
 #include "takt/planar/environment.h"
+#include "takt/planar/parts.h"
 #include "takt/planar/track_area.h"
 
 namespace takt::planar {
@@ -42,7 +43,7 @@ struct Reservation {
   bool moving = false;   // to the target of `move`
   bool linked = false;   // goes along tracks of `network`
   std::uint32_t network = 0;
-  std::uint32_t level = 0;  // those of different ones never meet
+  std::uint32_t level = 0;  // coordinate system that it is in: those of different ones never meet
   Footprint mover{};
   Pose pose{};
   Move move{};
@@ -51,7 +52,6 @@ struct Reservation {
 
 struct TrackReservation {
   bool moving = false;
-  std::uint32_t level = 0;
 };
 
 struct Reservations {
@@ -62,8 +62,9 @@ Reservations MakeReservations(std::size_t movers, std::size_t tracks);
 
 // What does not change from cycle to cycle. Tracks that are not in the group have no area.
 struct Surroundings {
-  const Environment* environment = nullptr;  // none: no border
+  const Environment* environment = nullptr;  // of coordinate system 0; none: no border
   std::span<const TrackArea* const> tracks{};
+  std::span<const Spot> spots{};  // where the coordinates of each track count from; none: all from the origin of 0
 };
 
 // What a mover has reserved.

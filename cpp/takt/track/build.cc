@@ -8,6 +8,7 @@
 
 #include "takt/core/problem.h"
 #include "takt/planar/crossing.h"
+#include "takt/track/on_parts.h"
 #include "takt/track/sketch.h"
 #include "takt/track/state.h"
 
@@ -27,7 +28,8 @@ std::string Index(std::size_t i) {
 
 class Builder {
  public:
-  explicit Builder(const std::vector<TrackParams>& params) : params_(params), marks_(params.size(), Mark::kNew) {
+  Builder(const std::vector<TrackParams>& params, const planar::Parts& parts)
+      : params_(params), parts_(parts), marks_(params.size(), Mark::kNew) {
     result_.tracks.resize(params.size());
     for (const TrackParams& track : params) names_.push_back(track.name);
   }
@@ -57,20 +59,29 @@ class Builder {
     return made;
   }
 
-  // The tracks that a list names; each is made first. A problem with one of them is told there and not here.
-  bool Others(const std::string& path, const std::vector<std::string>& names, std::vector<const planar::Track*>& out) {
+  // The key of a link: those with positions of parts stand behind the others, in a list of their own.
+  static std::string KeyOf(const std::string& list, std::size_t names, std::size_t k) {
+    return k < names ? list + Index(k) : list + "_positions" + Index(k - names) + ".track";
+  }
+
+  // The tracks that the lists name; each is made first. A problem with one of them is told there and not here.
+  // How they end, or start, in the coordinates of the track's part.
+  bool Others(const std::string& path, const std::vector<std::string>& names, const std::vector<LinkParams>& more,
+              std::uint32_t part, bool ends, std::vector<planar::TrackPoint>& out) {
+    const std::vector<LinkParams> links = LinksOf(names, more);
     bool good = true;
-    if (names.size() > kLinks) good = Fail(path, Problem::kTooMany);
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      const std::string place = path + Index(k);
-      const auto found = std::ranges::find(names_, names[k]);
+    if (links.size() > kLinks) good = Fail(path, Problem::kTooMany);
+    for (std::size_t k = 0; k < links.size(); ++k) {
+      const std::string place = KeyOf(path, names.size(), k);
+      const std::string& name = links[k].track;
+      const auto found = std::ranges::find(names_, name);
       if (found == names_.end()) {
-        good = Fail(place, "expected the name of a track, found " + Quoted(names[k]) + DidYouMean(names[k], names_));
+        good = Fail(place, "expected the name of a track, found " + Quoted(name) + DidYouMean(name, names_));
         continue;
       }
-      if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) !=
-          names.begin() + static_cast<std::ptrdiff_t>(k)) {
-        good = Fail(place, "expected each track once, found " + Quoted(names[k]) + " again");
+      const auto before = names.begin() + static_cast<std::ptrdiff_t>(std::min(k, names.size()));
+      if (k < names.size() && std::find(names.begin(), before, name) != before) {
+        good = Fail(place, "expected each track once, found " + Quoted(name) + " again");
         continue;
       }
       const auto other = static_cast<std::size_t>(found - names_.begin());
@@ -83,7 +94,12 @@ class Builder {
       } else if (params_[other].closed_loop) {
         good = Fail(place, Problem::kOtherClosed);
       } else {
-        out.push_back(&*result_.tracks[other].way);
+        const planar::Track& way = *result_.tracks[other].way;
+        planar::TrackPoint point = At(way, ends ? way.length : 0);
+        const Problem apart = Meet(parts_, {PartOf(params_[other], parts_), links[k].other_position_index},
+                                   {part, links[k].this_position_index}, point);
+        if (apart != Problem::kNone) good = Fail(place, apart);
+        out.push_back(point);
       }
     }
     return good;
@@ -98,27 +114,32 @@ class Builder {
   bool Make(std::size_t i) {
     const TrackParams& p = params_[i];
     const std::string path = Index(i);
-    std::vector<const planar::Track*> before, behind;
-    const bool starts = Others(path + ".starts_from", p.starts_from, before);
-    const bool ends = Others(path + ".ends_at", p.ends_at, behind);
+    const std::uint32_t part = PartOf(p, parts_);
+    if (!parts_.none() && part == planar::kNoPart) {
+      return Fail(path + ".part", "expected the name of a part, found " + Quoted(p.part));
+    }
+    std::vector<planar::TrackPoint> before, behind;
+    const bool starts = Others(path + ".starts_from", p.starts_from, p.starts_from_positions, part, true, before);
+    const bool ends = Others(path + ".ends_at", p.ends_at, p.ends_at_positions, part, false, behind);
     if (p.elements.size() > kElements) return Fail(path + ".elements", Problem::kTooMany);
     if (!starts || !ends) return false;
     planar::Layout& layout = result_.tracks[i].layout;
     for (const ElementParams& element : p.elements) layout.elements.push_back(ToElement(element));
     layout.closed = p.closed_loop;
-    if (!before.empty()) layout.from = At(*before.front(), before.front()->length);
-    if (!behind.empty()) layout.to = At(*behind.front(), 0);
+    if (!before.empty()) layout.from = before.front();
+    if (!behind.empty()) layout.to = behind.front();
     for (std::size_t k = 1; k < before.size(); ++k) {
-      const bool same = Same(*layout.from, At(*before[k], before[k]->length));
-      if (!same) return Fail(path + ".starts_from" + Index(k), Problem::kNotItsStart);
+      const bool same = Same(*layout.from, before[k]);
+      if (!same) return Fail(KeyOf(path + ".starts_from", p.starts_from.size(), k), Problem::kNotItsStart);
     }
     for (std::size_t k = 1; k < behind.size(); ++k) {
-      const bool same = Same(*layout.to, At(*behind[k], 0));
-      if (!same) return Fail(path + ".ends_at" + Index(k), Problem::kNotItsEnd);
+      const bool same = Same(*layout.to, behind[k]);
+      if (!same) return Fail(KeyOf(path + ".ends_at", p.ends_at.size(), k), Problem::kNotItsEnd);
     }
     planar::Track way;
     const planar::Making making = MakeWay(layout, way);
     if (making.problem == Problem::kNone) {
+      if (!LiesOn(parts_, part, way)) return Fail(path, Problem::kOffPart);
       result_.tracks[i].way = std::move(way);
       return true;
     }
@@ -149,10 +170,11 @@ class Builder {
         break;
     }
     if (making.element < p.elements.size()) return ".elements" + Index(making.element);
-    return p.closed_loop ? ".closed_loop" : ".ends_at[0]";
+    return p.closed_loop ? ".closed_loop" : KeyOf(".ends_at", p.ends_at.size(), 0);
   }
 
   const std::vector<TrackParams>& params_;
+  const planar::Parts& parts_;
   std::vector<std::string_view> names_;
   std::vector<Mark> marks_;
   std::vector<std::size_t> open_;  // from the one first asked for to the one at hand
@@ -161,8 +183,14 @@ class Builder {
 
 }  // namespace
 
-BuildResult Build(const std::vector<TrackParams>& params) {
-  return Builder(params).Run();
+BuildResult Build(const std::vector<TrackParams>& params, const planar::Parts* parts) {
+  return Builder(params, parts ? *parts : planar::Parts{}).Run();
+}
+
+std::uint32_t PartOf(const TrackParams& params, const planar::Parts& parts) {
+  if (params.part.empty()) return parts.all.size() == 1 ? 0 : planar::kNoPart;
+  const auto found = std::ranges::find(parts.all, params.part, &planar::Part::name);
+  return found == parts.all.end() ? planar::kNoPart : static_cast<std::uint32_t>(found - parts.all.begin());
 }
 
 }  // namespace takt::track

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "takt/planar/parts.h"
 #include "takt/planar/track.h"
 #include "takt/track/params.h"
 
@@ -25,6 +26,10 @@ struct BuildResult {
   std::vector<BuildProblem> problems;
 };
 
-BuildResult Build(const std::vector<TrackParams>& params);
+// On these parts as they are now; null: there are none.
+BuildResult Build(const std::vector<TrackParams>& params, const planar::Parts* parts = nullptr);
+
+// Number of the part that a track lies on; kNoPart: there is none, or none of this name.
+std::uint32_t PartOf(const TrackParams& params, const planar::Parts& parts);
 
 }  // namespace takt::track

@@ -14,11 +14,27 @@ void DescribeEnds(Description<T>& d) {
   d.template required<&T::end_y>(unit::mm, kPlaces, "Y of it.");
 }
 
+template <typename T>
+void DescribeReference(Description<T>& d) {
+  d.template defaulted<&T::reference>(
+      "Name of the part or coordinate system that the places belong to; needed where there are several coordinate "
+      "systems or parts that move.");
+}
+
+template <typename T>
+void DescribePositions(Description<T>& d) {
+  d.template defaulted<&T::this_position_index>(
+      between(0, 1000), "Index of the position of this track's part that this is meant for; 0: where it is.");
+  d.template defaulted<&T::other_position_index>(between(0, 1000), "The same of the other track's part.");
+  d.template defaulted<&T::only_there>("True: the tracks are linked there alone. False: wherever they meet.");
+}
+
 }  // namespace
 
 void describe(Description<AppendLine>& d) {
   d.about("Appends a straight line. A gap before it is filled with a transition.");
   DescribeEnds(d);
+  DescribeReference(d);
 }
 
 void describe(Description<AppendCircle>& d) {
@@ -28,12 +44,14 @@ void describe(Description<AppendCircle>& d) {
   d.required<&C::center_x>(unit::mm, kPlaces, "X of its centre.");
   d.required<&C::center_y>(unit::mm, kPlaces, "Y of it.");
   d.defaulted<&C::clockwise>("Which way round.");
+  DescribeReference(d);
 }
 
 void describe(Description<AppendPosition>& d) {
   d.about("Appends a place to go through. Its direction depends on the places before and behind it.");
   d.required<&AppendPosition::x>(unit::mm, kPlaces, "X of it.");
   d.required<&AppendPosition::y>(unit::mm, kPlaces, "Y of it.");
+  DescribeReference(d);
 }
 
 void describe(Description<CloseLoop>& d) {
@@ -47,11 +65,13 @@ void describe(Description<Clear>& d) {
 void describe(Description<StartFromTrack>& d) {
   d.about("Lets the track start where another one ends. The geometry of that one stays as it is from now on.");
   d.required<&StartFromTrack::track>("Name of the other track.");
+  DescribePositions(d);
 }
 
 void describe(Description<EndAtTrack>& d) {
   d.about("Lets the track end where another one starts. The geometry of that one stays as it is from now on.");
   d.required<&EndAtTrack::track>("Name of the other track.");
+  DescribePositions(d);
 }
 
 void describe(Description<Enable>& d) {

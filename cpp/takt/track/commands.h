@@ -15,23 +15,34 @@ namespace takt::track {
 struct AppendLine {
   double start_x = 0, start_y = 0;  // mm
   double end_x = 0, end_y = 0;
+  Name reference{};  // part or coordinate system that the places belong to
 };
 struct AppendCircle {  // a whole one if it ends where it starts
   double start_x = 0, start_y = 0;
   double end_x = 0, end_y = 0;
   double center_x = 0, center_y = 0;
   bool clockwise = false;
+  Name reference{};
 };
 struct AppendPosition {
   double x = 0, y = 0;
+  Name reference{};
 };
 struct CloseLoop {};
 struct Clear {};
 struct StartFromTrack {  // at the end of that one
   Name track;
+  // Indices of positions of the parts of both, which the geometry is made for; 0: as they are.
+  std::uint32_t this_position_index = 0;
+  std::uint32_t other_position_index = 0;
+  bool only_there = false;  // the link is in force there alone, not wherever the tracks meet
 };
 struct EndAtTrack {  // at the start of that one
   Name track;
+  // Indices of positions of the parts of both, which the geometry is made for; 0: as they are.
+  std::uint32_t this_position_index = 0;
+  std::uint32_t other_position_index = 0;
+  bool only_there = false;  // the link is in force there alone, not wherever the tracks meet
 };
 
 struct Enable {};

@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include "takt/track/on_parts.h"
+
 namespace takt::track {
 
 namespace {
@@ -30,12 +32,14 @@ std::optional<Answer> Make(Desk& desk) {
   Answer answer{question.track, {question.number, making.problem, 0}};
   if (making.problem != planar::Problem::kNone) {
     if (making.element < layout.elements.size()) answer.made.element = static_cast<std::uint32_t>(making.element + 1);
-    return answer;
-  }
-  auto area = std::make_unique<planar::TrackArea>(planar::MakeTrackArea(*way, question.mover, 0));
-  if (desk.deliveries.TryPush({question.number, way.get(), area.get()})) {
-    way.release();
-    area.release();
+  } else if (!LiesOn(desk.parts, question.part, *way)) {
+    answer.made.problem = planar::Problem::kOffPart;
+  } else {
+    auto area = std::make_unique<planar::TrackArea>(planar::MakeTrackArea(*way, question.mover, 0));
+    if (desk.deliveries.TryPush({question.number, way.get(), area.get()})) {
+      way.release();
+      area.release();
+    }
   }
   return answer;
 }

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "takt/core/spsc_queue.h"
+#include "takt/planar/parts.h"
 #include "takt/planar/track_area.h"
 #include "takt/track/commands.h"
 #include "takt/track/sketch.h"
@@ -16,8 +17,9 @@ namespace takt::track {
 
 struct Question {
   std::uint64_t number = 0;
-  std::uint32_t track = 0;    // from 0
-  planar::Footprint mover{};  // the largest one
+  std::uint32_t track = 0;               // from 0
+  std::uint32_t part = planar::kNoPart;  // that it lies on
+  planar::Footprint mover{};             // the largest one
   Sketch sketch;
 };
 
@@ -28,11 +30,12 @@ struct Delivery {
 };
 
 struct Desk {
-  explicit Desk(std::size_t tracks) : retired(2 * tracks + 8) {}
+  Desk(std::size_t tracks, const planar::Parts& of_parts) : parts(of_parts), retired(2 * tracks + 8) {}
   ~Desk();
   Desk(const Desk&) = delete;
   Desk& operator=(const Desk&) = delete;
 
+  const planar::Parts& parts;        // of which only the shapes are looked at: they never change
   SpscQueue<Question> questions{2};  // one at a time
   SpscQueue<Delivery> deliveries{8};
   SpscQueue<Delivery> retired;

@@ -1,6 +1,7 @@
 #include "takt/track/ranges.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "takt/planar/clearance.h"
 
@@ -12,6 +13,25 @@ constexpr double kResolution = 1;  // mm
 
 planar::Footprint MoverOn(const TrackParams& params) {
   return {params.mover_width, params.mover_height, true};
+}
+
+// A track in the coordinates of the part of another; nothing: they are not in one coordinate system.
+std::optional<planar::Track> SeenFrom(const Tracks& t, std::size_t other, std::size_t track) {
+  const planar::Spot& from = t.spot(other);
+  const planar::Spot& to = t.spot(track);
+  if (from.system != to.system) return std::nullopt;
+  if (from == to) return *t.ways[other];
+  const planar::Place by = from.origin - to.origin;
+  planar::Layout layout = ToLayout(t.sketches[other]);
+  for (planar::Element& element : layout.elements) {
+    for (planar::Place* place : {&element.start, &element.end, &element.center}) *place = *place + by;
+  }
+  for (std::optional<planar::TrackPoint>* end : {&layout.from, &layout.to}) {
+    if (*end) (*end)->place = (*end)->place + by;
+  }
+  planar::Track shifted;
+  if (MakeWay(layout, shifted).problem != planar::Problem::kNone) return std::nullopt;
+  return shifted;
 }
 
 }  // namespace
@@ -28,8 +48,10 @@ CollisionRanges RangesOf(const Tracks& t, std::size_t track) {
     const bool starts = t.start_nodes[other] == t.start_nodes[track];
     const bool ends = t.end_nodes[other] == t.end_nodes[track];
     if (other == track || !t.ways[other] || !(starts || ends)) continue;
+    const std::optional<planar::Track> seen = SeenFrom(t, other, track);
+    if (!seen) continue;
     const std::vector<planar::Range> near =
-        planar::Conflicts(*way, MoverOn(params), *t.ways[other], MoverOn(t.params[other]), 0, kResolution);
+        planar::Conflicts(*way, MoverOn(params), *seen, MoverOn(t.params[other]), 0, kResolution);
     if (starts) ranges.at_start = std::max(ranges.at_start, planar::ReachFromStart(near));
     if (ends) ranges.at_end = std::max(ranges.at_end, planar::ReachFromEnd(near, way->length));
   }

@@ -30,6 +30,8 @@ void describe(Enumeration<OrderKind>& e) {
 void describe(Description<Links>& d) {
   d.about("Tracks that a track is linked with.");
   d.internal<&Links::tracks>("Their numbers.");
+  d.internal<&Links::own_positions>("Of the track's part, where it is linked; 0: wherever they meet.");
+  d.internal<&Links::other_positions>("Of the parts of the others.");
   d.internal<&Links::count>("So many.");
 }
 
@@ -57,6 +59,9 @@ void describe(Description<Order>& d) {
   d.internal<&O::kind>("How.");
   d.internal<&O::element>("To append.");
   d.internal<&O::other>("Track to start from or end at.");
+  d.internal<&O::own_position>("Of its part, for which the geometry is made.");
+  d.internal<&O::other_position>("Of the other's part.");
+  d.internal<&O::only_there>("The link is in force there alone.");
 }
 
 void describe(Description<Works>& d) {

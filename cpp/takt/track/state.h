@@ -31,6 +31,9 @@ enum class ErrorReaction : std::uint8_t {
 
 struct Links {
   std::array<std::uint32_t, kLinks> tracks{};  // numbers of tracks, from 0
+  // Indices of the only positions of their parts where they are linked, from 1; 0: wherever they meet.
+  std::array<std::uint32_t, kLinks> own_positions{};
+  std::array<std::uint32_t, kLinks> other_positions{};
   std::uint32_t count = 0;
 };
 
@@ -57,6 +60,10 @@ struct Order {
   OrderKind kind = OrderKind::kAppend;
   planar::Element element;  // to append
   std::uint32_t other = 0;  // track to start from or end at
+  // Indices of positions of the parts of both tracks, for which the geometry is made; 0: as they are.
+  std::uint32_t own_position = 0;
+  std::uint32_t other_position = 0;
+  bool only_there = false;  // the link is in force there alone
 };
 
 // Changes of all tracks, one made after the other.

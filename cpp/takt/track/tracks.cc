@@ -6,6 +6,7 @@
 #include "takt/core/hash.h"
 #include "takt/core/in_range.h"
 #include "takt/track/build.h"
+#include "takt/track/on_parts.h"
 #include "takt/track/works.h"
 
 namespace takt::track {
@@ -13,6 +14,9 @@ namespace takt::track {
 namespace {
 
 using planar::ObjectState;
+
+const planar::Parts kNoParts;
+const planar::Spot kOrigin;
 
 void Enter(const Context& c, ObjectState state, State& s) {
   s.state = state;
@@ -99,30 +103,51 @@ struct Applier {
     order.track = track;
     if (!Put(order, c.tracks.works)) Refuse(planar::Problem::kBusy);
   }
-  void Append(const planar::Element& element) const { ToWorks({.kind = OrderKind::kAppend, .element = element}); }
-  void Link(OrderKind kind, const Name& name) const {
-    const std::optional<std::size_t> other = Find(c.tracks, name.view());
+  // Of places with a reference the element in the coordinates of the track's part.
+  void Append(const Name& reference, planar::Element element) const {
+    const planar::Parts& parts = c.tracks.parts;
+    const std::uint32_t part = c.tracks.part_of[track];
+    const bool own = part != planar::kNoPart && parts.all[part].name == reference.view();
+    if (!own) {
+      const std::optional<planar::Spot> from = planar::Resolve(parts, reference.view());
+      const std::optional<planar::Spot> to = SpotOf(parts, {.part = part});
+      if (!from || !to || from->system != to->system) return Refuse(ErrorId::kReference);
+      for (planar::Place* place : {&element.start, &element.end, &element.center}) {
+        *place = *place + from->origin - to->origin;
+      }
+    }
+    ToWorks({.kind = OrderKind::kAppend, .element = element});
+  }
+  template <typename LinkCommand>
+  void Link(OrderKind kind, const LinkCommand& a) const {
+    const std::optional<std::size_t> other = Find(c.tracks, a.track.view());
     if (!other || *other == track) return Refuse(ErrorId::kParameter);
-    ToWorks({.kind = kind, .element = {}, .other = static_cast<std::uint32_t>(*other)});
+    ToWorks({.kind = kind,
+             .element = {},
+             .other = static_cast<std::uint32_t>(*other),
+             .own_position = a.this_position_index,
+             .other_position = a.other_position_index,
+             .only_there = a.only_there});
   }
 
   void operator()(const AppendLine& a) const {
-    Append({.shape = planar::ElementShape::kLine, .start = {a.start_x, a.start_y}, .end = {a.end_x, a.end_y}});
+    Append(a.reference,
+           {.shape = planar::ElementShape::kLine, .start = {a.start_x, a.start_y}, .end = {a.end_x, a.end_y}});
   }
   void operator()(const AppendCircle& a) const {
-    Append({.shape = planar::ElementShape::kArc,
-            .start = {a.start_x, a.start_y},
-            .end = {a.end_x, a.end_y},
-            .center = {a.center_x, a.center_y},
-            .clockwise = a.clockwise});
+    Append(a.reference, {.shape = planar::ElementShape::kArc,
+                         .start = {a.start_x, a.start_y},
+                         .end = {a.end_x, a.end_y},
+                         .center = {a.center_x, a.center_y},
+                         .clockwise = a.clockwise});
   }
   void operator()(const AppendPosition& a) const {
-    Append({.shape = planar::ElementShape::kPosition, .start = {}, .end = {a.x, a.y}});
+    Append(a.reference, {.shape = planar::ElementShape::kPosition, .start = {}, .end = {a.x, a.y}});
   }
   void operator()(const CloseLoop&) const { ToWorks({.kind = OrderKind::kCloseLoop, .element = {}}); }
   void operator()(const Clear&) const { ToWorks({.kind = OrderKind::kClear, .element = {}}); }
-  void operator()(const StartFromTrack& a) const { Link(OrderKind::kStartFrom, a.track); }
-  void operator()(const EndAtTrack& a) const { Link(OrderKind::kEndAt, a.track); }
+  void operator()(const StartFromTrack& a) const { Link(OrderKind::kStartFrom, a); }
+  void operator()(const EndAtTrack& a) const { Link(OrderKind::kEndAt, a); }
 
   void operator()(const Enable&) const {
     switch (s.state) {
@@ -171,8 +196,9 @@ struct Applier {
 
 }  // namespace
 
-Tracks::Tracks(const std::vector<TrackParams>& all)
+Tracks::Tracks(const std::vector<TrackParams>& all, const planar::Parts* on)
     : params(all),
+      parts(on ? *on : kNoParts),
       states(all.size()),
       sketches(all.size()),
       outputs(all.size()),
@@ -183,18 +209,21 @@ Tracks::Tracks(const std::vector<TrackParams>& all)
       starts_at(2 * all.size()),
       ends_at(2 * all.size()),
       mover_counts(all.size()),
-      desk(all.size()) {
-  BuildResult built = Build(all);
+      desk(all.size(), parts) {
+  for (const TrackParams& p : all) part_of.push_back(PartOf(p, parts));
+  BuildResult built = Build(all, &parts);
   for (std::size_t i = 0; i < all.size(); ++i) {
     State& s = states[i];
     SetSketch(i, ToSketch(built.tracks[i].layout));
-    const auto link = [this](const std::vector<std::string>& names, Links& links) {
-      for (const std::string& name : names) {
-        links.tracks[links.count++] = static_cast<std::uint32_t>(Find(*this, name).value());
+    const auto link = [this](const std::vector<LinkParams>& all, Links& links) {
+      for (const LinkParams& one : all) {
+        links.tracks[links.count] = static_cast<std::uint32_t>(Find(*this, one.track).value());
+        links.own_positions[links.count] = one.only_there ? one.this_position_index : 0;
+        links.other_positions[links.count++] = one.only_there ? one.other_position_index : 0;
       }
     };
-    link(all[i].starts_from, s.starts_from);
-    link(all[i].ends_at, s.ends_at);
+    link(LinksOf(all[i].starts_from, all[i].starts_from_positions), s.starts_from);
+    link(LinksOf(all[i].ends_at, all[i].ends_at_positions), s.ends_at);
     if (!built.tracks[i].way) continue;
     ways[i] = new planar::Track(std::move(*built.tracks[i].way));
     areas[i] = new planar::TrackArea(planar::MakeTrackArea(*ways[i], LargestOn(all[i]), 0));
@@ -212,6 +241,16 @@ void Tracks::SetSketch(std::size_t track, const Sketch& sketch) noexcept {
 Tracks::~Tracks() {
   for (const planar::Track* way : ways) delete way;
   for (const planar::TrackArea* area : areas) delete area;
+}
+
+const planar::Spot& Tracks::spot(std::size_t track) const noexcept {
+  return part_of[track] == planar::kNoPart ? kOrigin : parts.spot(part_of[track]);
+}
+
+planar::TrackPoint Tracks::At(std::size_t track, double s) const noexcept {
+  planar::TrackPoint point = planar::At(*ways[track], s);
+  point.place = point.place + spot(track).origin;
+  return point;
 }
 
 std::optional<std::size_t> Find(const Tracks& tracks, std::string_view name) noexcept {

@@ -11,6 +11,7 @@
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
 #include "takt/planar/grounds.h"
+#include "takt/planar/parts.h"
 #include "takt/planar/track.h"
 #include "takt/track/commands.h"
 #include "takt/track/desk.h"
@@ -22,14 +23,21 @@ namespace takt::track {
 
 // Of what the machine file says, which must have been checked (build.h). Index i is track i of the machine.
 struct Tracks {
-  explicit Tracks(const std::vector<TrackParams>& params);
+  // On these parts, which must live as long; null: there are none.
+  explicit Tracks(const std::vector<TrackParams>& params, const planar::Parts* parts = nullptr);
   ~Tracks();
   Tracks(const Tracks&) = delete;
   Tracks& operator=(const Tracks&) = delete;
 
   void SetSketch(std::size_t track, const Sketch& sketch) noexcept;
 
+  // Where one is along a track that has a way, in the coordinate system where it is now; and where its part is.
+  planar::TrackPoint At(std::size_t track, double s) const noexcept;
+  const planar::Spot& spot(std::size_t track) const noexcept;
+
   std::vector<TrackParams> params;
+  const planar::Parts& parts;
+  std::vector<std::uint32_t> part_of;  // by track
   std::vector<State> states;
   std::vector<Sketch> sketches;  // what each is given by; the states have their hashes
   std::vector<Outputs> outputs;

@@ -4,6 +4,8 @@
 #include <span>
 #include <utility>
 
+#include "takt/track/on_parts.h"
+
 namespace takt::track {
 
 namespace {
@@ -20,6 +22,13 @@ std::span<const std::uint32_t> All(const Links& links) {
 
 bool Holds(const Links& links, std::uint32_t track) {
   return std::ranges::find(All(links), track) != All(links).end();
+}
+
+bool Holds(const Links& links, std::uint32_t track, std::uint32_t own, std::uint32_t other) {
+  for (std::uint32_t k = 0; k < links.count; ++k) {
+    if (links.tracks[k] == track && links.own_positions[k] == own && links.other_positions[k] == other) return true;
+  }
+  return false;
 }
 
 // Others start from it or end at it.
@@ -48,6 +57,9 @@ Look LookAtLink(const Tracks& t, const Order& order) {
   if (sketch.closed) return {Problem::kLinked};
   if (links.count == kLinks && !Holds(links, order.other)) return {Problem::kTooMany};
   Look look{.makes = true, .may_be_empty = starts, .point = planar::At(*other, starts ? other->length : 0)};
+  look.problem = Meet(t.parts, {t.part_of[order.other], order.other_position},
+                      {t.part_of[order.track], order.own_position}, look.point);
+  if (look.problem != Problem::kNone) return look;
   if (starts && (own || sketch.from || sketch.count > 0)) {
     // It has a start: it can only be the same one.
     const bool same = own ? Same(planar::At(*own, 0), look.point) : sketch.from && Same(*sketch.from, look.point);
@@ -117,7 +129,13 @@ void AddLink(Tracks& t, const Order& order) {
   State& s = t.states[order.track];
   if (order.kind != OrderKind::kStartFrom && order.kind != OrderKind::kEndAt) return;
   Links& links = order.kind == OrderKind::kStartFrom ? s.starts_from : s.ends_at;
-  if (!Holds(links, order.other)) links.tracks[links.count++] = order.other;
+  const std::uint32_t own = order.only_there ? order.own_position : 0;
+  const std::uint32_t other = order.only_there ? order.other_position : 0;
+  if (!Holds(links, order.other, own, other) && links.count < kLinks) {
+    links.tracks[links.count] = order.other;
+    links.own_positions[links.count] = own;
+    links.other_positions[links.count++] = other;
+  }
   MakeNodes(t);
 }
 
@@ -154,8 +172,25 @@ void Send(Tracks& t) {
   if (t.sent) return;
   const Order& order = t.works.orders[t.works.first];
   const Sketch& sketch = t.sketches[order.track];
-  t.sent = t.desk.questions.TryPush(
-      {t.works.question, order.track, LargestOn(t.params[order.track]), With(order, LookAt(t, order), sketch)});
+  t.sent = t.desk.questions.TryPush({t.works.question, order.track, t.part_of[order.track],
+                                     LargestOn(t.params[order.track]), With(order, LookAt(t, order), sketch)});
+}
+
+// Where a track starts or ends, in the coordinates of its part; one that has no length yet where it is to start.
+planar::TrackPoint EndOf(const Tracks& t, std::uint32_t track, bool start) {
+  if (const planar::Track* way = t.ways[track]) return planar::At(*way, start ? 0 : way->length);
+  return t.sketches[track].from.value_or(planar::TrackPoint{});
+}
+
+// Whether a link is in force as the parts of both are now.
+bool IsInForce(const Tracks& t, std::uint32_t track, const Links& links, std::uint32_t k, bool starts) {
+  const auto there = [&](std::uint32_t of, std::uint32_t position) {
+    const std::uint32_t part = t.part_of[of];
+    return position == 0 || part == planar::kNoPart || t.parts.now[part].position + 1 == position;
+  };
+  const std::uint32_t other = links.tracks[k];
+  return there(track, links.own_positions[k]) && there(other, links.other_positions[k]) &&
+         DoMeet(t.parts, t.part_of[track], EndOf(t, track, starts), t.part_of[other], EndOf(t, other, !starts));
 }
 
 }  // namespace
@@ -248,10 +283,14 @@ void MakeNodes(Tracks& t) noexcept {
   while (changed) {
     changed = false;
     for (std::uint32_t i = 0; i < count; ++i) {
-      for (const std::uint32_t other : All(t.states[i].starts_from)) {
-        changed |= join(t.start_nodes[i], t.end_nodes[other]);
+      const Links& from = t.states[i].starts_from;
+      const Links& to = t.states[i].ends_at;
+      for (std::uint32_t k = 0; k < from.count; ++k) {
+        if (IsInForce(t, i, from, k, true)) changed |= join(t.start_nodes[i], t.end_nodes[from.tracks[k]]);
       }
-      for (const std::uint32_t other : All(t.states[i].ends_at)) changed |= join(t.end_nodes[i], t.start_nodes[other]);
+      for (std::uint32_t k = 0; k < to.count; ++k) {
+        if (IsInForce(t, i, to, k, false)) changed |= join(t.end_nodes[i], t.start_nodes[to.tracks[k]]);
+      }
     }
   }
   std::ranges::fill(t.starts_at, 0u);

@@ -71,8 +71,12 @@ belts:
 poses:
   - {name: mover, goes_on_s: 0.2}
 tracks:
-  - {name: main, elements: [{from: {x: 0, y: 0}, to: {x: 300, y: 0}}]}
-  - {name: branch, starts_from: [main]}
+  - {name: main, part: floor, elements: [{from: {x: 1000, y: 1000}, to: {x: 1300, y: 1000}}]}
+  - {name: branch, part: floor, starts_from: [main]}
+coordinate_systems: [{name: plane}]
+parts:
+  - {name: floor, columns: 16, rows: 16, positions: [{coordinate_system: plane, x: -240}, {coordinate_system: plane}]}
+  - {name: drawer, positions: [{coordinate_system: plane, x: 4800}, {coordinate_system: plane, x: 4800, y: 100}]}
 simulation:
   servos:
     - axis: z
@@ -126,6 +130,10 @@ inline Command ToBelt(const Machine& machine, std::size_t index, const conveyor:
 }
 
 inline Command ToTrack(const Machine& machine, std::string_view name, const track::Command& body) {
+  return {.target = FindComponent(machine, name).value() + 1, .body = body};
+}
+
+inline Command ToPart(const Machine& machine, std::string_view name, const part::Command& body) {
   return {.target = FindComponent(machine, name).value() + 1, .body = body};
 }
 
@@ -186,9 +194,13 @@ inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m)
   commands.push_back({2400, ToBelt(m, 1, conveyor::ClearObjects{})});
   commands.push_back({355, ToTrack(m, "main", track::Enable{})});
   commands.push_back({420, ToTrack(m, "main", track::Disable{})});
-  commands.push_back({460, ToTrack(m, "branch", track::AppendLine{400, 100, 400, 300})});
+  commands.push_back({460, ToTrack(m, "branch", track::AppendLine{1400, 1100, 1400, 1300, Name::Of("floor")})});
   commands.push_back({470, ToTrack(m, "branch", track::EndAtTrack{Name::Of("main")})});
   commands.push_back({2400, ToTrack(m, "branch", track::Clear{})});
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    commands.push_back({500 + 300 * i, ToPart(m, "drawer", part::ActivatePosition{2 - i % 2})});
+    commands.push_back({600 + 300 * i, ToPart(m, "floor", part::ActivatePosition{2 - i % 2})});
+  }
   commands.push_back({350, ToPose(m, conveyor::SetPose{.x = 5, .vx = 10, .wy = 3})});
   using flexcam::Control;
   commands.push_back({6, ToModule(m, Control{.regulator_on = true})});

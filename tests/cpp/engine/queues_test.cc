@@ -96,7 +96,7 @@ TEST(Snapshots, AreDroppedAndCountedWhenNobodyReads) {
   const Machine machine = FullMachine();
   Engine engine(machine, {.publish = true, .every_cycle = true, .snapshot_queue = 64});
   for (int i = 0; i < 1000; ++i) engine.RunCycle();
-  const std::size_t kept = 6 * 64 + 2 * 64;  // a queue for each kind of components, one for what lies on belts
+  const std::size_t kept = 7 * 64 + 2 * 64;  // a queue for each kind of components, one for what lies on belts
   EXPECT_EQ(engine.figures().snapshots_dropped, 1000 * (engine.components() + machine.belts.size()) - kept);
 }
 

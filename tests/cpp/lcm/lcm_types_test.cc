@@ -186,6 +186,7 @@ TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   ExpectSameConstants("track_state.lcm", "MODE_", TypeOf<track::OperationMode>());
   ExpectSameConstants("planar_group_state.lcm", "STATE_", TypeOf<planar::ObjectState>());
   ExpectSameConstants("feedback.lcm", "OBJECT_", TypeOf<ObjectKind>());
+  ExpectSameConstants("part_state.lcm", "STATE_", TypeOf<planar::ObjectState>());
   ExpectSameConstants("group_state.lcm", "REASON_", TypeOf<kinematics::Reason>());
   ExpectSameConstants("group_state.lcm", "PROBLEM_", TypeOf<path::Problem>());
 
@@ -214,7 +215,7 @@ TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
       EXPECT_TRUE(!needs_unit || !field.unit.empty()) << entry.path() << ": " << name;
     }
   }
-  EXPECT_EQ(files, 26);
+  EXPECT_EQ(files, 27);
 }
 
 }  // namespace

@@ -393,6 +393,27 @@ TEST(Messages, EnvironmentStateKeepsEveryNumber) {
       machine, "floor");
 }
 
+// EN-20, PL-32
+TEST(Messages, PartStateKeepsEveryNumber) {
+  engine::Machine machine = TestMachine();
+  machine.parts.resize(2);
+  machine.parts[1].name = "lift";
+  machine.cycle.period_s = 0.00025;
+  ExpectKeepsEveryNumber<msgs::part_state, part::Outputs>(
+      {
+          FIELD(part_state, state),
+          FIELD(part_state, error),
+          FIELD(part_state, disable_forced),
+          FIELD(part_state, position_index),
+          FIELD(part_state, commanded_index),
+          FIELD(part_state, coordinate_system),
+          FIELD(part_state, x),
+          FIELD(part_state, y),
+          FIELD(part_state, mover_count),
+      },
+      machine, "lift");
+}
+
 // EN-20, CV-42
 TEST(Messages, PoseStateKeepsEveryNumber) {
   engine::Machine machine = TestMachine();
@@ -462,6 +483,8 @@ TEST(Messages, MoverStateKeepsEveryNumber) {
           FIELD(mover_state, delay_since),
           FIELD(mover_state, buffered),
           FIELD(mover_state, group),
+          FIELD(mover_state, coordinate_system),
+          FIELD(mover_state, part),
           FIELD(mover_state, commands),
       },
       machine, "shuttle");

@@ -1,0 +1,148 @@
+#include "takt/engine/load_parts.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "takt/core/describe.h"
+#include "takt/core/yaml_reader.h"
+#include "takt/engine/components.h"
+#include "takt/mover/on_parts.h"
+#include "takt/part/params.h"
+
+namespace takt::engine {
+
+namespace {
+
+std::string At(const char* list, std::size_t i) {
+  return std::string(list) + "[" + std::to_string(i) + "]";
+}
+
+class Checker {
+ public:
+  Checker(const SourceMap& source, const Machine& machine) : source_(source), machine_(machine) {}
+
+  std::vector<Problem> Run() {
+    if (machine_.parts.empty() && !machine_.coordinate_systems.empty()) {
+      Add("coordinate_systems", "expected parts in them, found none");
+    }
+    CheckNames();
+    for (std::size_t i = 0; i < machine_.parts.size(); ++i) CheckPart(i);
+    if (!problems_.empty()) return std::move(problems_);
+    const planar::Parts parts = part::Make(machine_.coordinate_systems, machine_.parts);
+    CheckPlaces(parts);
+    CheckMovers(parts);
+    return std::move(problems_);
+  }
+
+ private:
+  void Add(const std::string& path, const std::string& message) {
+    problems_.push_back(source_.ProblemAt(path, message));
+  }
+
+  // Positions refer to both.
+  void CheckNames() {
+    std::vector<std::string_view> names{"machine"};
+    for (const ComponentKind& kind : ComponentKinds()) {
+      if (kind.section == "parts") continue;
+      for (std::size_t i = 0; i < kind.count(machine_); ++i) names.push_back(kind.name_of(machine_, i));
+    }
+    const auto check = [&](const std::string& path, std::string_view name) {
+      if (std::ranges::find(names, name) != names.end()) {
+        Add(path + ".name", "expected a name that nothing else has, and not machine, found " + Quoted(name));
+      }
+      names.push_back(name);
+    };
+    for (std::size_t i = 0; i < machine_.coordinate_systems.size(); ++i) {
+      check(At("coordinate_systems", i), machine_.coordinate_systems[i].name);
+    }
+    for (std::size_t i = 0; i < machine_.parts.size(); ++i) check(At("parts", i), machine_.parts[i].name);
+  }
+
+  void CheckPart(std::size_t i) {
+    const part::PartParams& part = machine_.parts[i];
+    const std::string path = At("parts", i);
+    std::vector<std::string_view> systems;
+    for (const part::CoordinateSystemParams& system : machine_.coordinate_systems) systems.push_back(system.name);
+    for (std::size_t k = 0; k < part.positions.size(); ++k) {
+      const std::string& name = part.positions[k].coordinate_system;
+      if (std::ranges::find(systems, name) != systems.end()) continue;
+      Add(path + At(".positions", k) + ".coordinate_system",
+          "expected the name of a coordinate system, found " + Quoted(name) + DidYouMean(name, systems));
+    }
+    if (part.positions.empty()) {
+      Add(path + ".positions", "expected at least one position");
+    } else if (part.initial_position > part.positions.size()) {
+      Add(path + ".initial_position", "expected the index of one of its " + std::to_string(part.positions.size()) +
+                                          " positions, found " + std::to_string(part.initial_position));
+    }
+    planar::Environment shape;
+    const std::vector<planar::Place> stators = part::StatorsOf(part);
+    const planar::Surfacing made = planar::MakeEnvironment(stators, shape);
+    if (made.problem != planar::StatorProblem::kNone) {
+      const bool one = made.stator < part.stators.size();
+      Add(path + (one ? At(".stators", made.stator) : ".stators"), std::string(planar::Text(made.problem)));
+    } else if (!planar::HangTogether(stators)) {
+      Add(path + ".stators", "expected stators that hang together, each beside another one");
+    }
+  }
+
+  // Where parts are at first, and where they can never be.
+  void CheckPlaces(const planar::Parts& parts) {
+    const auto overlaps = [&](std::size_t i, std::size_t position, std::size_t k) {
+      const planar::Spot& spot = parts.all[i].positions[position];
+      return planar::Overlap(parts.all[i], spot, parts.all[k], parts.spot(static_cast<std::uint32_t>(k)));
+    };
+    for (std::size_t i = 0; i < parts.all.size(); ++i) {
+      for (std::size_t position = 0; position < parts.all[i].positions.size(); ++position) {
+        for (std::size_t k = 0; k < parts.all.size(); ++k) {
+          const bool first = position == parts.now[i].position && k < i;
+          const bool always = position != parts.now[i].position && k != i && parts.all[k].positions.size() == 1;
+          if (!(first || always) || !overlaps(i, position, k)) continue;
+          Add(At("parts", i) + At(".positions", position),
+              "expected a place beside other parts, found one on " + Quoted(parts.all[k].name));
+        }
+      }
+    }
+  }
+
+  void CheckMovers(const planar::Parts& parts) {
+    for (std::size_t i = 0; i < machine_.movers.size(); ++i) {
+      const mover::MoverParams& mover = machine_.movers[i];
+      const std::string path = At("movers", i);
+      planar::Spot at;
+      switch (
+          mover::FindSpot(mover, parts, mover.reference, {{mover.initial.x, mover.initial.y}, mover.initial.c}, at)) {
+        case ErrorId::kReference:
+          Add(path + ".reference", mover.reference.empty()
+                                       ? "expected the name of the part or coordinate system of its place at the start"
+                                       : "expected the name of a part or a coordinate system, found " +
+                                             Quoted(mover.reference) + DidYouMean(mover.reference, References(parts)));
+          break;
+        case ErrorId::kOffStators:
+          Add(path + ".initial", "expected a place where all of the mover is on stators");
+          break;
+        default:
+          break;
+      }
+    }
+  }
+
+  static std::vector<std::string_view> References(const planar::Parts& parts) {
+    std::vector<std::string_view> names(parts.systems.begin(), parts.systems.end());
+    for (const planar::Part& part : parts.all) names.push_back(part.name);
+    return names;
+  }
+
+  const SourceMap& source_;
+  const Machine& machine_;
+  std::vector<Problem> problems_;
+};
+
+}  // namespace
+
+std::vector<Problem> CheckParts(const SourceMap& source, const Machine& machine) {
+  return Checker(source, machine).Run();
+}
+
+}  // namespace takt::engine

@@ -1,0 +1,256 @@
+#include "takt/engine/parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/mover/on_parts.h"
+#include "takt/track/works.h"
+
+namespace takt::engine {
+
+namespace {
+
+using part::Hindrance;
+using planar::ObjectState;
+
+part::Context ContextOf(World& w, std::size_t i) {
+  return {w.parts[i], w.cycle, w.feedback};
+}
+
+Hindrance By(ErrorId error, ObjectKind kind, std::size_t index) {
+  return {error, {kind, static_cast<std::uint32_t>(index + 1)}};
+}
+
+// What a part does has changed: others see it.
+void Show(World& w, std::size_t i) {
+  planar::PartNow& now = w.surface.now[i];
+  const planar::PartNow before = now;
+  now = part::Show(w.part_states[i]);
+  if (now.position == before.position && now.away == before.away) return;
+  planar::MakeBorders(w.surface);
+  track::MakeNodes(w.tracks);
+}
+
+bool IsOnTrackOf(const World& w, std::size_t mover, std::size_t part) {
+  const planar::Rider& rider = w.streets.riders[mover];
+  return rider.on && w.tracks.part_of[rider.route.first()] == part;
+}
+
+bool TouchesPart(World& w, std::size_t mover, std::size_t part) {
+  const mover::Cover cover = mover::CoverOf(MoverContext(w, mover), w.mover_states[mover]);
+  return std::ranges::any_of(cover.all(), [&](const planar::Area& area) {
+    return planar::Touches(w.surface.all[part], w.surface.spot(static_cast<std::uint32_t>(part)),
+                           w.mover_states[mover].system, area);
+  });
+}
+
+// It stands on the part, or its way leads over it.
+bool Uses(World& w, std::size_t mover, std::size_t part) {
+  if (w.mover_states[mover].part == part || TouchesPart(w, mover, part)) return true;
+  const planar::Rider& rider = w.streets.riders[mover];
+  return rider.on &&
+         std::ranges::any_of(rider.route.all(), [&](std::uint32_t track) { return w.tracks.part_of[track] == part; });
+}
+
+void FailMoversOn(World& w, std::size_t part, ErrorId error) {
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    if (Uses(w, i, part)) mover::Fail(MoverContext(w, i), error, w.mover_states[i], true);
+  }
+}
+
+// Whether two movers on tracks of different parts, which stand, would be nearer to each other than movers come there.
+bool AreTooNear(const World& w, std::size_t one, std::size_t other) {
+  const planar::Rider& a = w.streets.riders[one];
+  const planar::Rider& b = w.streets.riders[other];
+  const std::uint32_t of_a = a.route.first(), of_b = b.route.first();
+  const double gap = std::max(a.gap, b.gap);
+  const auto rest = [&](std::uint32_t track, const planar::Rider& r) {
+    return w.tracks.states[track].length - r.at.position;
+  };
+  if (w.tracks.end_nodes[of_a] == w.tracks.start_nodes[of_b] && rest(of_a, a) + b.at.position < gap) return true;
+  if (w.tracks.end_nodes[of_b] == w.tracks.start_nodes[of_a] && rest(of_b, b) + a.at.position < gap) return true;
+  const planar::Place off = w.tracks.At(of_a, a.at.position).place - w.tracks.At(of_b, b.at.position).place;
+  const bool together = w.tracks.spot(of_a).system == w.tracks.spot(of_b).system;
+  return together && std::hypot(off.x, off.y) < w.streets.tracks[of_a].reach;
+}
+
+// What of a mover's group would be in its way where its part goes: of all that does not go along, and that movers on
+// tracks do not keep clear of by themselves.
+Hindrance InGroup(const World& w, std::size_t mover, std::uint32_t part, const planar::Spot& from,
+                  const planar::Spot& to) {
+  const planar::Grounds& g = w.grounds;
+  const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
+  if (group == 0) return {};
+  const planar::Reservations& r = g.grounds[group - 1].reserved;
+  const planar::Reservation& own = r.movers[mover];
+  const planar::Area there = Shifted(planar::AreaOf(own), to.origin - from.origin);
+  const planar::Extent extent = planar::ExtentOf(there);
+  for (std::size_t k = 0; k < r.movers.size(); ++k) {
+    const planar::Reservation& other = r.movers[k];
+    if (!other.present || other.level != to.system || w.mover_states[k].part == part) continue;
+    if (planar::Apart(extent, other.extent, planar::kSame)) continue;
+    if (planar::Near(there, planar::AreaOf(other), planar::kSame)) {
+      return By(ErrorId::kPartMover, ObjectKind::kMover, k);
+    }
+  }
+  const planar::TrackArea* below = own.linked ? w.tracks.areas[w.streets.riders[mover].route.first()] : nullptr;
+  for (std::size_t k = 0; k < r.tracks.size(); ++k) {
+    const planar::TrackArea* track = w.tracks.areas[k];
+    const planar::Spot& spot = w.tracks.spot(k);
+    if (!track || !r.tracks[k].moving || w.tracks.part_of[k] == part || spot.system != to.system) continue;
+    if (below && below->network == track->network) continue;
+    const planar::Area in_its = Shifted(there, planar::Place{} - spot.origin);
+    if (planar::Near(in_its, planar::ExtentOf(in_its), *track, planar::kSame)) {
+      return By(ErrorId::kPartTrack, ObjectKind::kTrack, k);
+    }
+  }
+  return {};
+}
+
+// Who would be too near to a mover that the part takes along, were that there.
+Hindrance TooNear(World& w, std::uint32_t part, std::uint32_t position) {
+  const planar::PartNow before = w.surface.now[part];
+  const planar::Spot from = w.surface.spot(part), to = w.surface.all[part].positions[position];
+  w.surface.now[part].position = position;
+  track::MakeNodes(w.tracks);
+  Hindrance found;
+  for (std::size_t i = 0; i < w.movers.size() && found.error == ErrorId::kNone; ++i) {
+    if (w.mover_states[i].part == part) found = InGroup(w, i, part, from, to);
+    if (!IsOnTrackOf(w, i, part) || found.error != ErrorId::kNone) continue;
+    for (std::size_t k = 0; k < w.movers.size(); ++k) {
+      if (!w.streets.riders[k].on || IsOnTrackOf(w, k, part) || !AreTooNear(w, i, k)) continue;
+      found = By(ErrorId::kPartMover, ObjectKind::kMover, k);
+      break;
+    }
+  }
+  w.surface.now[part] = before;
+  track::MakeNodes(w.tracks);
+  return found;
+}
+
+// Movers that hinder a part from leaving where it is: those on it that move or reach over its border, and others that
+// reach over it.
+bool Holds(World& w, std::size_t mover, std::uint32_t part, const mover::Cover& cover) {
+  const mover::State& s = w.mover_states[mover];
+  const auto touches = [&](std::uint32_t k) {
+    return std::ranges::any_of(cover.all(), [&](const planar::Area& area) {
+      return planar::Touches(w.surface.all[k], w.surface.spot(k), s.system, area);
+    });
+  };
+  if (s.part != part) return touches(part);
+  if (!mover::IsStill(MoverContext(w, mover), s)) return true;
+  for (std::uint32_t k = 0; k < w.surface.all.size(); ++k) {
+    if (k != part && !w.surface.now[k].away && touches(k)) return true;
+  }
+  return false;
+}
+
+Hindrance HindranceOf(World& w, std::uint32_t part, std::uint32_t position) {
+  const planar::Part& shape = w.surface.all[part];
+  const planar::Spot& from = w.surface.spot(part);
+  const planar::Spot& to = shape.positions[position];
+  for (std::uint32_t k = 0; k < w.surface.all.size(); ++k) {
+    if (k == part) continue;
+    const planar::Part& other = w.surface.all[k];
+    const planar::Spot& its = other.positions[w.surface.now[k].commanded];
+    if (Overlap(shape, to, other, w.surface.spot(k)) || Overlap(shape, to, other, its)) {
+      return By(ErrorId::kPartPlace, ObjectKind::kPart, k);
+    }
+  }
+  for (std::size_t k = 0; k < w.tracks.states.size(); ++k) {
+    const mover::TrackUse& use = w.streets.uses[k];
+    if (w.tracks.part_of[k] == part && use.moving + use.configuring > 0)
+      return By(ErrorId::kPartTrack, ObjectKind::kTrack, k);
+  }
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    const mover::State& s = w.mover_states[i];
+    const mover::Cover cover = mover::CoverOf(MoverContext(w, i), s);
+    if (Holds(w, i, part, cover)) return By(ErrorId::kPartMover, ObjectKind::kMover, i);
+    const bool below = std::ranges::any_of(
+        cover.all(), [&](const planar::Area& area) { return planar::Touches(shape, to, s.system, area); });
+    if (s.part != part && below) return By(ErrorId::kPartMover, ObjectKind::kMover, i);
+    if (s.part != part) continue;
+    // Those that are there already.
+    for (std::size_t k = 0; k < w.movers.size(); ++k) {
+      const mover::State& other = w.mover_states[k];
+      if (other.part == part || other.system != to.system) continue;
+      const mover::Cover its = mover::CoverOf(MoverContext(w, k), other);
+      for (const planar::Area& a : cover.all()) {
+        const planar::Area there = Shifted(a, to.origin - from.origin);
+        const planar::Extent extent = planar::ExtentOf(there);
+        const auto near = [&](const planar::Area& b) {
+          return !planar::Apart(extent, planar::ExtentOf(b), planar::kSame) && planar::Near(there, b, planar::kSame);
+        };
+        if (std::ranges::any_of(its.all(), near)) return By(ErrorId::kPartMover, ObjectKind::kMover, k);
+      }
+    }
+  }
+  return TooNear(w, part, position);
+}
+
+part::Around AroundOf(World& w, std::uint32_t part) {
+  const ObjectState state = w.part_states[part].state;
+  const bool ends = state == ObjectState::kDisabling || state == ObjectState::kErrorPending;
+  part::Around around;
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    const mover::State& s = w.mover_states[i];
+    if (s.system == w.surface.spot(part).system) {
+      around.wanted |= mover::NeedsParts(s);
+      around.reset |= s.state == ObjectState::kResetting;
+    }
+    if (!ends || !Uses(w, i, part)) continue;
+    around.movers_rest &= mover::AtRest(s);
+    around.movers_failed &= s.state != ObjectState::kErrorPending;
+  }
+  return around;
+}
+
+}  // namespace
+
+void ApplyToPart(World& w, std::size_t i, Ticket ticket, const part::Command& command) noexcept {
+  Hindrance hindrance;
+  const auto* goes = std::get_if<part::ActivatePosition>(&command);
+  if (goes && goes->index >= 1 && goes->index <= w.parts[i].positions.size()) {
+    hindrance = HindranceOf(w, static_cast<std::uint32_t>(i), goes->index - 1);
+  }
+  part::Apply(ContextOf(w, i), ticket, command, hindrance, w.part_states[i]);
+  Show(w, i);
+  if (std::holds_alternative<part::ForceDisable>(command)) FailMoversOn(w, i, ErrorId::kPartDisabled);
+}
+
+void StepParts(World& w) noexcept {
+  for (std::uint32_t i = 0; i < w.parts.size(); ++i) {
+    const planar::Spot from = w.surface.spot(i);
+    const bool gone = part::Arrive(ContextOf(w, i), w.part_inputs[i], w.part_states[i]);
+    Show(w, i);
+    for (std::size_t k = 0; gone && k < w.movers.size(); ++k) {
+      if (w.mover_states[k].part != i) continue;
+      mover::Carry(MoverContext(w, k), from, w.surface.spot(i), w.mover_inputs[k], w.mover_states[k]);
+    }
+  }
+  for (std::uint32_t i = 0; i < w.parts.size(); ++i) {
+    part::State& s = w.part_states[i];
+    part::Step(ContextOf(w, i), AroundOf(w, i), s);
+    Show(w, i);
+    if (s.state == ObjectState::kErrorPending) FailMoversOn(w, i, s.error);
+  }
+}
+
+void PublishParts(World& w) noexcept {
+  for (std::uint32_t i = 0; i < w.parts.size(); ++i) {
+    const auto on = std::ranges::count(w.mover_states, i, &mover::State::part);
+    part::Publish(w.surface.spot(i), static_cast<std::uint32_t>(on), w.part_states[i], w.part_outputs[i]);
+  }
+}
+
+void SimulateParts(World& w) noexcept {
+  for (std::size_t i = 0; i < w.parts.size(); ++i) {
+    w.part_inputs[i] = part::Simulate(w.part_states[i]);
+    const PartFaults& faults = w.part_faults[i];
+    const bool goes = w.part_states[i].commanded != w.part_states[i].position;
+    if (faults.lost || (faults.stuck && goes)) w.part_inputs[i].position = 0;
+    w.part_inputs[i].fault = faults.fault;
+  }
+}
+
+}  // namespace takt::engine

@@ -1,0 +1,216 @@
+#include "takt/mover/on_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/mover/ground.h"
+
+namespace takt::mover {
+
+namespace {
+
+using planar::Area;
+using planar::Place;
+
+const planar::Parts& PartsOf(const Context& c) {
+  return *c.streets.parts;
+}
+
+const planar::PartNow* PartNowOf(const Context& c, const State& s) {
+  const planar::Parts& parts = PartsOf(c);
+  return s.part < parts.now.size() ? &parts.now[s.part] : nullptr;
+}
+
+struct Angles {
+  double least = 0, most = 0;  // deg
+};
+
+Angles AnglesOf(const Context& c, const CoordinateMove& turn) {
+  const trajectory::Profile::Range range = turn.profile.PositionRange(Elapsed(c, turn.begin));
+  return {range.min, range.max};
+}
+
+Area AreaOf(const Context& c, const Angles& angles) {
+  return {.places = {},
+          .count = 0,
+          .least_c = angles.least,
+          .most_c = angles.most,
+          .mover = {c.params.width, c.params.height},
+          .margin = 0};
+}
+
+void Add(const Area& kind, std::initializer_list<Place> places, Cover& out) {
+  Area& area = out.areas[out.count++];
+  area = kind;
+  for (const Place& place : places) area.places[area.count++] = place;
+}
+
+// The rest of a motion: a rectangle in its frame, all that it can come to along and across as long as there is
+// anything across; then a line.
+void Add(const Area& kind, const PlaneMotion& m, double t, Cover& out) {
+  if (t >= DurationOf(m)) return Add(kind, {{m.end_x, m.end_y}}, out);
+  const auto at = [&](double along, double across) {
+    return Place{m.origin_x + m.direction_x * along - m.direction_y * across,
+                 m.origin_y + m.direction_y * along + m.direction_x * across};
+  };
+  const double alone = std::max(t, m.across.duration());
+  if (alone > t) {
+    trajectory::Profile beside = m.along;
+    beside.Cut(alone);
+    const trajectory::Profile::Range u = beside.PositionRange(t), w = m.across.PositionRange(t);
+    Add(kind, {at(u.min, w.min), at(u.max, w.min), at(u.max, w.max), at(u.min, w.max)}, out);
+  }
+  const trajectory::Profile::Range line = m.along.PositionRange(alone);
+  const double off = m.across.end().position;
+  Add(kind, {at(line.min, off), at(line.max, off)}, out);
+}
+
+void Add(const Context& c, const Area& kind, const PlaneMove& move, Cover& out) {
+  Add(kind, move.motion, Elapsed(c, move.begin), out);
+  if (move.waits) Add(kind, {{move.motion.end_x, move.motion.end_y}, {move.next.x, move.next.y}}, out);
+  // If nothing takes over before the corner it goes on to that.
+  if (move.passes) {
+    const PlaneMotion& m = move.motion;
+    const double along = m.along.end().position;
+    const Place end{m.origin_x + m.direction_x * along, m.origin_y + m.direction_y * along};
+    Add(kind, {end, {move.corner_x, move.corner_y}}, out);
+  }
+}
+
+// It stops with its maximum dynamics, as after a fault.
+void AddStop(const Context& c, const SetPoint& at, Cover& out) {
+  PlaneMotion rest;
+  const trajectory::Limits limits = c.params.xy.maximum.limits();
+  if (!PlanRest(c.planner, {at[kX], at[kY]}, limits, rest)) rest = StandingAt(at[kX].position, at[kY].position);
+  const double turned = at[kC].position;
+  const double stop = trajectory::StopPosition(at[kC], c.params.c.maximum.limits());
+  Add(AreaOf(c, {std::min(turned, stop), std::max(turned, stop)}), rest, 0, out);
+}
+
+}  // namespace
+
+ErrorId ToItsSystem(const Context& c, const State& s, const Name& reference, double& x, double& y) noexcept {
+  const std::optional<planar::Spot> from = planar::Resolve(PartsOf(c), reference.view());
+  if (!from || from->system != s.system) return ErrorId::kReference;
+  x += from->origin.x;
+  y += from->origin.y;
+  return ErrorId::kNone;
+}
+
+Cover CoverOf(const Context& c, const State& s) noexcept {
+  Cover cover;
+  const Angles angles = AnglesOf(c, s.others.back());
+  const double turned = s.set_point[kC].position;
+  if (s.external.mode != SetpointMode::kNone) {
+    AddStop(c, s.set_point, cover);
+  } else {
+    Add(AreaOf(c, {std::min(angles.least, turned), std::max(angles.most, turned)}),
+        {{s.set_point[kX].position, s.set_point[kY].position}}, cover);
+  }
+  if (!IsOnTrack(s) && s.external.mode != SetpointMode::kAbsolute) Add(c, AreaOf(c, angles), s.plane, cover);
+  return cover;
+}
+
+Cover CoverOfStop(const Context& c, const SetPoint& at) noexcept {
+  Cover cover;
+  if (!PartsOf(c).none()) AddStop(c, at, cover);
+  return cover;
+}
+
+Cover CoverOf(const Context& c, const PlaneMove& move, const CoordinateMove& turn) noexcept {
+  Cover cover;
+  Add(c, AreaOf(c, AnglesOf(c, turn)), move, cover);
+  return cover;
+}
+
+ErrorId WhyNotOn(const Context& c, const State& s, const Cover& cover) noexcept {
+  const planar::Parts& parts = PartsOf(c);
+  if (parts.none()) return ErrorId::kNone;
+  for (const Area& area : cover.all()) {
+    if (!planar::Carries(parts, s.system, area)) return ErrorId::kOffStators;
+    for (std::uint32_t i = 0; i < parts.all.size(); ++i) {
+      const planar::PartNow& now = parts.now[i];
+      if (now.away || now.enabled || now.enabling) continue;
+      if (planar::Touches(parts.all[i], parts.spot(i), s.system, area)) return ErrorId::kPartDisabled;
+    }
+  }
+  return ErrorId::kNone;
+}
+
+bool IsAway(const Context& c, const State& s) noexcept {
+  const planar::PartNow* part = PartNowOf(c, s);
+  return part && part->away;
+}
+
+bool IsPartReady(const Context& c, const State& s) noexcept {
+  const planar::PartNow* part = PartNowOf(c, s);
+  return part ? part->enabled : PartsOf(c).none();
+}
+
+bool IsPartSound(const Context& c, const State& s) noexcept {
+  const planar::PartNow* part = PartNowOf(c, s);
+  return !part || !part->faulty;
+}
+
+bool CanPartBeReady(const Context& c, const State& s) noexcept {
+  const planar::PartNow* part = PartNowOf(c, s);
+  return part ? part->allowed : PartsOf(c).none();
+}
+
+bool IsStill(const Context& c, const State& s) noexcept {
+  return IsResting(c, s) && !s.plane.waits && s.mode != CommandMode::kJoiningTrack &&
+         s.mode != CommandMode::kLeavingTrack;
+}
+
+bool NeedsParts(const State& s) noexcept {
+  switch (s.state) {
+    case planar::ObjectState::kDisabled:
+      return false;
+    case planar::ObjectState::kError:
+    case planar::ObjectState::kResetting:
+      return !s.aborts;
+    default:
+      return true;
+  }
+}
+
+void Locate(const Context& c, State& s) noexcept {
+  const planar::Parts& parts = PartsOf(c);
+  if (parts.none() || IsAway(c, s)) return;
+  s.part = IsOnTrack(s) ? c.streets.tracks[s.track].part
+                        : planar::PartAt(parts, s.system, {s.set_point[kX].position, s.set_point[kY].position}, s.part);
+}
+
+void Carry(const Context& c, const planar::Spot& from, const planar::Spot& to, Inputs& inputs, State& s) noexcept {
+  const planar::Place by = to.origin - from.origin;
+  inputs.actual.x += by.x;
+  inputs.actual.y += by.y;
+  PutAt({to.system, planar::Place{s.set_point[kX].position, s.set_point[kY].position} + by}, s);
+  s.plane.begin = c.cycle.count;
+  Stand(c, s);
+}
+
+ErrorId FindSpot(const MoverParams& params, const planar::Parts& parts, std::string_view reference,
+                 const planar::Pose& pose, planar::Spot& out) noexcept {
+  const std::optional<planar::Spot> from = planar::Resolve(parts, reference);
+  if (!from) return ErrorId::kReference;
+  out = {from->system, from->origin + pose.place};
+  if (parts.none()) return ErrorId::kNone;
+  const planar::Area area{.places = {out.origin},
+                          .count = 1,
+                          .least_c = pose.c,
+                          .most_c = pose.c,
+                          .mover = {params.width, params.height},
+                          .margin = 0};
+  return planar::Carries(parts, out.system, area) ? ErrorId::kNone : ErrorId::kOffStators;
+}
+
+void PutAt(const planar::Spot& at, State& s) noexcept {
+  s.system = at.system;
+  s.set_point[kX].position = at.origin.x;
+  s.set_point[kY].position = at.origin.y;
+  s.plane = {};
+  s.plane.motion = StandingAt(at.origin.x, at.origin.y);
+}
+
+}  // namespace takt::mover

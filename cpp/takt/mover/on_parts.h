@@ -1,0 +1,61 @@
+// Movers on a surface made of parts (planar/parts.h): coordinates with a reference, the part under a mover, and that it
+// goes nowhere else. Without parts there is nothing to hinder it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "takt/mover/run.h"
+#include "takt/planar/area.h"
+#include "takt/planar/parts.h"
+
+namespace takt::mover {
+
+// Brings coordinates with a reference into the coordinate system where the mover is. kReference: there is no such
+// reference, or it is of another coordinate system.
+ErrorId ToItsSystem(const Context& c, const State& s, const Name& reference, double& x, double& y) noexcept;
+
+// What a mover covers of the plane; tracks apart.
+struct Cover {
+  std::array<planar::Area, 5> areas{};
+  std::uint32_t count = 0;
+
+  std::span<const planar::Area> all() const noexcept { return {areas.data(), count}; }
+};
+// From now on: it stands there or goes on as planned, or stops at once where set points come from outside.
+Cover CoverOf(const Context& c, const State& s) noexcept;
+// If it had to stop from a set point, as after a fault.
+Cover CoverOfStop(const Context& c, const SetPoint& at) noexcept;
+// If X and Y went so, and C so.
+Cover CoverOf(const Context& c, const PlaneMove& move, const CoordinateMove& turn) noexcept;
+
+// Why the mover must not cover that: kOffStators, kPartDisabled.
+ErrorId WhyNotOn(const Context& c, const State& s, const Cover& cover) noexcept;
+
+// The part below it cannot take part in anything: it is on its way.
+bool IsAway(const Context& c, const State& s) noexcept;
+bool IsPartReady(const Context& c, const State& s) noexcept;  // enabled, or there are no parts
+bool IsPartSound(const Context& c, const State& s) noexcept;  // without a fault
+bool CanPartBeReady(const Context& c, const State& s) noexcept;
+
+// Nothing of it moves, or is going to; and its track does not lead it on.
+bool IsStill(const Context& c, const State& s) noexcept;
+// Parts in its coordinate system are enabled for it: until it is disabled, or has a fault that leads there.
+bool NeedsParts(const State& s) noexcept;
+
+// After each step: which part it is on.
+void Locate(const Context& c, State& s) noexcept;
+
+// Its part has gone so far, or the mover is set there; it rests.
+void Carry(const Context& c, const planar::Spot& from, const planar::Spot& to, Inputs& inputs, State& s) noexcept;
+
+// Where the mover is when it stands so, with this reference: the coordinate system and the place in that. Why it must
+// not: kReference, kOffStators.
+ErrorId FindSpot(const MoverParams& params, const planar::Parts& parts, std::string_view reference,
+                 const planar::Pose& pose, planar::Spot& out) noexcept;
+// It stands there.
+void PutAt(const planar::Spot& at, State& s) noexcept;
+
+}  // namespace takt::mover

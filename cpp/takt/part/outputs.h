@@ -1,0 +1,25 @@
+// What a part publishes every cycle.
+#pragma once
+
+#include <cstdint>
+
+#include "takt/core/describe_fwd.h"
+#include "takt/core/status.h"
+#include "takt/planar/object_state.h"
+
+namespace takt::part {
+
+struct Outputs {
+  planar::ObjectState state = planar::ObjectState::kDisabled;
+  ErrorId error = ErrorId::kNone;
+  bool disable_forced = false;
+  std::uint32_t position_index = 0;     // from 1; 0: on its way
+  std::uint32_t commanded_index = 0;    // from 1: where it is to be
+  std::uint32_t coordinate_system = 0;  // number of that it is in, from 1; 0: on its way
+  double x = 0, y = 0;                  // mm, its origin in that
+  std::uint32_t mover_count = 0;        // movers whose middle is on it
+};
+
+void describe(Description<Outputs>&);
+
+}  // namespace takt::part
