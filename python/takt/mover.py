@@ -44,6 +44,6 @@ class Mover(Component, MoverCommands, MoverOutputs):
         """Its last 100 commands, the oldest first; external set points apart. In process only."""
         rows = self.session._history(self)
         return tuple(
-            MoverRecord(ticket, verb, FeedbackState(state), error, cycle, changed, self.session._object(kind, number))
-            for ticket, verb, state, error, cycle, changed, kind, number in rows
+            MoverRecord(ticket, verb, FeedbackState(state), error, cycle, begun, changed, self.session._object(*where))
+            for ticket, verb, state, error, cycle, begun, changed, *where in rows
         )
