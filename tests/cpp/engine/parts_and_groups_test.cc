@@ -81,7 +81,7 @@ TEST(PartsAndGroups, PartsGoWhereNothingIsReserved) {
   EXPECT_EQ(meets.object, kBelow);
 }
 
-// However early it may leave the line before a corner, it does not cut across what is no stator.
+// However early it may leave the line before a corner, it does not cut across what is no stator: if need be it stops.
 TEST(PartsAndGroups, BlendedCornersStayOnStators) {
   double quickest = 1e9;
   for (const double blending : {0.0, 30.0, 80.0, 150.0, 200.0, 240.0}) {
@@ -112,14 +112,15 @@ movers:
     const Ticket first = rig.Give("mover", "move_to_position", "{x: 340, y: 140}");
     const Ticket second =
         rig.Give("mover", "move_to_position",
-                 "{x: 340, y: 400, buffer_mode: Buffered, blending: " + std::to_string(blending) + "}");
+                 "{x: 340, y: 400, buffer_mode: buffered, blending: " + std::to_string(blending) + "}");
     EXPECT_EQ(rig.End(second).error, ErrorId::kNone) << blending;
     EXPECT_EQ(rig.answers[first].state, FeedbackState::kDone);
     EXPECT_NEAR(rig.Mover("mover").x, 340, 1e-9);
     EXPECT_NEAR(rig.Mover("mover").y, 400, 1e-9);
     if (blending == 0) quickest = cycles;
-    if (blending == 30) EXPECT_LT(cycles, quickest - 3);
-    EXPECT_LE(cycles, quickest + 2) << blending;
+    if (blending == 30) {
+      EXPECT_LT(cycles, quickest - 3);
+    }
   }
 }
 

@@ -221,7 +221,9 @@ TEST(Parts, FailWithTheirMovers) {
   rig.each_cycle = [&] {
     if (of_part.empty() || of_part.back() != rig.Part("one").state) of_part.push_back(rig.Part("one").state);
     if (of_mover.empty() || of_mover.back() != rig.Mover("mover").state) of_mover.push_back(rig.Mover("mover").state);
-    if (rig.Part("one").state == ObjectState::kError) EXPECT_EQ(rig.Mover("mover").state, ObjectState::kError);
+    if (rig.Part("one").state == ObjectState::kError) {
+      EXPECT_EQ(rig.Mover("mover").state, ObjectState::kError);
+    }
   };
   rig.Run(100);
   EXPECT_EQ(rig.Part("one").state, ObjectState::kError);
@@ -231,7 +233,9 @@ TEST(Parts, FailWithTheirMovers) {
   rig.engine.part_faults(0).fault = false;
   rig.Run();
   rig.each_cycle = [&] {
-    if (rig.Mover("mover").state == ObjectState::kDisabled) EXPECT_EQ(rig.Part("one").error, ErrorId::kNone);
+    if (rig.Mover("mover").state == ObjectState::kDisabled) {
+      EXPECT_EQ(rig.Part("one").error, ErrorId::kNone);
+    }
   };
   rig.Do("mover", "reset");
   EXPECT_EQ(rig.Mover("mover").state, ObjectState::kDisabled);

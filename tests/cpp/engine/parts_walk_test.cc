@@ -144,7 +144,9 @@ class Walk {
       for (std::size_t k = 0; k < i; ++k) {
         const mover::Outputs& other = movers_[k];
         const bool meet = IsOnTrack(now) && IsOnTrack(other) && now.coordinate_system == other.coordinate_system;
-        if (meet) EXPECT_GE(std::hypot(now.x - other.x, now.y - other.y), 200 - 1e-3);
+        if (meet) {
+          EXPECT_GE(std::hypot(now.x - other.x, now.y - other.y), 200 - 1e-3);
+        }
       }
       EXPECT_TRUE(OnStators(now.coordinate_system, body, 1e-5))
           << machine().movers[i].name << " at " << now.x << ", " << now.y << " turned " << now.c << " in "
@@ -160,7 +162,9 @@ class Walk {
         ++carried;
       }
       EXPECT_EQ(now.coordinate_system, parts_[now.part - 1].system);
-      if (now.velocity_x != 0) EXPECT_EQ(before[i].part, on + 1);
+      if (now.velocity_x != 0) {
+        EXPECT_EQ(before[i].part, on + 1);
+      }
     }
   }
 

@@ -162,8 +162,8 @@ TEST(PartStates, RandomWalk) {
                 rig.state.state == ObjectState::kErrorPending);
     const planar::PartNow now = Show(rig.state);
     EXPECT_EQ(now.enabled, rig.state.state == ObjectState::kEnabled);
-    if (rig.state.forced) EXPECT_TRUE(rig.state.state != ObjectState::kEnabling);
-    if (now.faulty) EXPECT_NE(rig.state.error, ErrorId::kNone);
+    EXPECT_TRUE(!rig.state.forced || rig.state.state != ObjectState::kEnabling);
+    EXPECT_TRUE(!now.faulty || rig.state.error != ErrorId::kNone);
   }
   for (const planar::Transition& t : planar::kTransitions) {
     const bool never = (t.from == ObjectState::kResetting && t.to == ObjectState::kEnabled) ||
