@@ -63,18 +63,23 @@ def draw(recording: takt.Recording) -> None:
     time = recording.column(names[0], "time_s")
     time = time - time[0]
     period = float(np.median(np.diff(time)))
-    columns = {
-        "gap to the mover ahead, mm": lambda i: (
-            recording.column(names[i - 1], "track_position") - recording.column(names[i], "track_position")
-        ),
-        "speed, mm/s": lambda i: recording.column(names[i], "track_velocity"),
-        "acceleration, m/s²": lambda i: recording.column(names[i], "track_acceleration") / 1000,
-        "jerk, m/s³": lambda i: np.diff(recording.column(names[i], "track_acceleration"), prepend=0) / period / 1000,
-    }
-    for ax, (title, of) in zip(axes, columns.items(), strict=True):
+
+    def of(i: int, signal: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        return recording.column(names[i], f"track_{signal}")
+
+    def curve(title: str, i: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        if title.startswith("gap"):
+            return of(i - 1, "position") - of(i, "position")
+        if title.startswith("speed"):
+            return of(i, "velocity")
+        acceleration = of(i, "acceleration") / 1000
+        return acceleration if title.startswith("acc") else np.diff(acceleration, prepend=0) / period
+
+    titles = ("gap to the mover ahead, mm", "speed, mm/s", "acceleration, m/s²", "jerk, m/s³")
+    for ax, title in zip(axes, titles, strict=True):
         plot.dress(ax)
         for i in range(1 if "gap" in title else 0, MOVERS):
-            ax.plot(time, of(i), lw=0.9, color=str(0.1 + 0.65 * i / MOVERS))
+            ax.plot(time, curve(title, i), lw=0.9, color=str(0.1 + 0.65 * i / MOVERS))
         ax.set_ylabel(title)
     axes[0].axhline(GAP, color="tab:red", lw=0.8)
     axes[-1].set_xlabel("s; the first mover, darkest, is the slowest; it is halted at 3 s and goes on at 5 s")
