@@ -80,7 +80,7 @@ class ClientsTest : public testing::Test {
   }
 
   const engine::Machine machine_ =
-      WithGround(WithTrack(WithMover(WithPicker(WithBelt(WithGroup(WithModule(TestMachine())))))));
+      WithPart(WithGround(WithTrack(WithMover(WithPicker(WithBelt(WithGroup(WithModule(TestMachine()))))))));
   std::vector<engine::Command> submitted_;
   bool queue_is_full_ = false;
 };

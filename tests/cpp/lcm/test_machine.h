@@ -95,6 +95,15 @@ inline engine::Machine WithGround(engine::Machine machine) {
   return machine;
 }
 
+// With a coordinate system "plane" and a part "lift" in it.
+inline engine::Machine WithPart(engine::Machine machine) {
+  machine.coordinate_systems.resize(1);
+  machine.coordinate_systems[0].name = "plane";
+  machine.parts.resize(1);
+  machine.parts[0].name = "lift";
+  return machine;
+}
+
 // An LCM network that no other test uses; its port is below those that systems give away by themselves.
 inline std::string NewUrl() {
   static int port = 10'000 + getpid() % 500 * 4;
