@@ -35,7 +35,7 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kSoftLimitNegative, "ERRSWN", "the axis ran onto its negative SW limit"},
     ErrorInfo{ErrorId::kEncoder, "Encoder", "the encoder reports an error or jumped further than the axis can move"},
     ErrorInfo{ErrorId::kDrive, "Drive", "the drive reports a fault or does not get ready"},
-    ErrorInfo{ErrorId::kBufferFull, "BufferFull", "the axis already holds as many buffered commands as it can"},
+    ErrorInfo{ErrorId::kBufferFull, "BufferFull", "as many commands wait already as can be buffered"},
     ErrorInfo{ErrorId::kPlanning, "Planning", "no motion could be planned; the one in progress is kept"},
     ErrorInfo{ErrorId::kState, "State", "the command is not legal in this state"},
     ErrorInfo{ErrorId::kAwayFromLimitOnly, "AwayFromLimitOnly",

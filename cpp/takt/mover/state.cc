@@ -45,6 +45,7 @@ void describe(Description<PlaneMove>& d) {
   d.internal<&P::next>("What follows.");
   d.internal<&P::turns>("C belongs to it.");
   d.internal<&P::limits>("Of the command.");
+  d.internal<&P::tried>("Whether it can go round a corner has been looked at.");
   d.internal<&P::passes>("What is buffered takes over where it ends.");
   d.internal<&P::share>("Of the limits then, across the second line.");
   d.internal<&P::corner_x>(unit::mm, "The corner it goes round then.");

@@ -35,6 +35,7 @@ struct PlaneMove {
   MoveToPosition next;      // with all its dynamics
   bool turns = false;       // C belongs to it
   trajectory::Limits limits;
+  bool tried = false;   // whether it can go round a corner has been looked at
   bool passes = false;  // it goes round a corner at its end: what is buffered next takes over where it ends
   double share = 0;     // of the limits then, across the second line
   double corner_x = 0, corner_y = 0;  // mm
