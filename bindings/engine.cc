@@ -83,8 +83,8 @@ using PoseRow = py::typing::Tuple<double, double, double, double, double, double
 using ObjectRow = py::typing::Tuple<std::uint32_t, int, double, PoseRow, bool, std::uint32_t, std::uint32_t,
                                     double>;  // number, state, place, pose, in range, kind, colour, quality
 using RecordRow =
-    py::typing::Tuple<Ticket, py::str, int, int, std::uint64_t, std::uint64_t, std::uint64_t, int,
-                      std::uint32_t>;  // ticket, verb, state, error, cycles: given, begun, changed, object
+    py::typing::Tuple<Ticket, py::str, int, int, std::uint64_t, std::uint64_t, std::uint64_t, int, std::uint32_t,
+                      int>;  // ticket, verb, state, error, cycles: given, begun, changed, object, limited by
 using TrackRow = py::typing::Tuple<double, double, double, double>;  // x, y, direction in deg, curvature
 using TrackLinks = py::typing::Tuple<py::typing::List<std::size_t>, py::typing::List<std::size_t>>;
 using State = py::typing::Tuple<double, double, double>;  // position, velocity, acceleration
@@ -267,7 +267,8 @@ class VirtualEngine {
       const Type& type = mover::TypeOfCommand(r.command);
       const auto verb = std::ranges::find(engine::Verbs(), &type, &engine::Verb::arguments);
       list.append(py::make_tuple(r.ticket, verb->name, static_cast<int>(r.state), static_cast<int>(r.error), r.cycle,
-                                 r.begun, r.changed, static_cast<int>(r.object.kind), r.object.number));
+                                 r.begun, r.changed, static_cast<int>(r.object.kind), r.object.number,
+                                 static_cast<int>(r.limited_by)));
     }
     return list;
   }

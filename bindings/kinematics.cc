@@ -12,6 +12,7 @@
 
 #include "bindings.h"
 #include "takt/core/arguments.h"
+#include "takt/kinematics/links.h"
 
 namespace takt::bindings {
 namespace {
@@ -187,6 +188,31 @@ class Mechanism {
     return {out, verdicts.reasons()};
   }
 
+  std::vector<std::string> Links() const {
+    std::vector<std::string> names;
+    for (const kinematics::LinkInfo& link : kinematics::LinksOf(kinematics_)) names.push_back(link.name);
+    return names;
+  }
+
+  // Of every link its own axis and the next one, (rows, links, 6).
+  Answer LinkPlaces(const Numbers& joints) const {
+    const std::size_t rows = RowsOf(joints, axes());
+    const std::vector<kinematics::LinkInfo> links = kinematics::LinksOf(kinematics_);
+    Numbers places({rows, links.size(), std::size_t{6}});
+    std::fill_n(places.mutable_data(), rows * links.size() * 6, kNone);
+    Verdicts verdicts(rows);
+    for (std::size_t i = 0; i < rows; ++i) {
+      kinematics::LinkFrameArray frames;
+      if (!verdicts.Take(i, kinematics::LinkFrames(kinematics_, JointsAt(joints, i), frames))) continue;
+      for (std::size_t k = 0; k < links.size(); ++k) {
+        double* six = places.mutable_data() + (i * links.size() + k) * 6;
+        std::copy_n(frames[k].p.data, 3, six);
+        std::copy_n((frames[k] * links[k].span).data, 3, six + 3);
+      }
+    }
+    return {places, verdicts.reasons()};
+  }
+
   // Names of shoulder, elbow, wrist.
   std::vector<std::string> ConfigurationAt(const Numbers& joints) const {
     if (RowsOf(joints, axes()) != 1) throw std::invalid_argument("expected one row");
@@ -325,6 +351,8 @@ void BindKinematics(py::module_& m) {
       .def("inverse_motion", &Mechanism::InverseMotion, py::arg("poses"), py::arg("velocities"),
            py::arg("accelerations"), py::arg("near"), py::arg("configuration"), py::arg("path"))
       .def("jacobian", &Mechanism::JacobianAt, py::arg("joints"))
+      .def_property_readonly("links", &Mechanism::Links)
+      .def("link_places", &Mechanism::LinkPlaces, py::arg("joints"))
       .def("configuration", &Mechanism::ConfigurationAt, py::arg("joints"));
 }
 

@@ -2,7 +2,7 @@
 
 A mover floats over stators and moves in six coordinates ([what it does](../../docs/movers.md)). Here it goes to a place
 and, in the middle of that, to another one, turns where it stands, follows set points from outside, and goes along a
-track, on which another one goes along with it.
+track, on which another one goes along with it; then both move as one body.
 """
 
 import takt
@@ -30,10 +30,12 @@ COMMANDS = (
     "mover.stop_external_setpoint_generation",
     "mover.wait",
     "mover.release",
+    "mover.join_formation",
+    "mover.leave_formation",
 )
 ERRORS = (
-    *(5, 8, 3003, 3004, 3005, 3007, 3018, 3019, 3024, 3040, 3041, 3042, 3043, 3044, 3045, 3046, 3047),
-    *(3070, 3071, 3072, 3076, 3077, 3080, 3081, 3082, 3083),
+    *(5, 8, 3003, 3004, 3005, 3007, 3018, 3019, 3024, 3040, 3041, 3042, 3043, 3044, 3045, 3046, 3047, 3060),
+    *(3070, 3071, 3072, 3076, 3077, 3080, 3081, 3082, 3083, 3090, 3091, 3092, 3093, 3094),
 )
 SIGNALS = ("shuttle.x", "shuttle.y", "shuttle.velocity_x", "shuttle.velocity_y", "shuttle.c", "shuttle.command_mode")
 
@@ -94,6 +96,11 @@ def scenario(session: takt.Session) -> None:
     ).wait(until="reached")
     trailer.halt().wait()
     shuttle.leave_track(x=60, y=60, use_orientation=False).wait()
+    session.mark("both as one body")
+    trailer.leave_track(x=300, y=60, use_orientation=False).wait()
+    trailer.join_formation(star="shuttle").wait(until="reached")
+    shuttle.move_to_position(x=100, y=100, c=shuttle.c + 10, use_orientation=True).wait()
+    trailer.leave_formation().wait()
     shuttle.disable().wait()
 
 

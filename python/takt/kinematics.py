@@ -183,6 +183,19 @@ class Kinematics:
         _raise_first(reasons)
         return _like(matrices, single)
 
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Names of the links, from the base to the tool."""
+        return tuple(self._core.links)
+
+    def link_places(self, joints: npt.ArrayLike) -> Array:
+        """(n, links, 6): X, Y, Z of where each link begins, at its own axis, and where it ends, at the next one, in mm.
+        Links without such an extent end where they begin. Raises KinematicsError where a Delta's arms do not meet."""
+        rows, single = _rows(joints, self.axes)
+        places, reasons = self._core.link_places(rows)
+        _raise_first(reasons)
+        return _like(places, single)
+
     def configuration(self, joints: npt.ArrayLike) -> Configuration:
         """Which branch one position (axes,) is in; "keep" for what the mechanism has no choice of."""
         return Configuration(*self._core.configuration(_rows(joints, self.axes)[0]))  # type: ignore[arg-type]

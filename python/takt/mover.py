@@ -8,6 +8,7 @@ from takt._commands import MoverCommands, MoverOutputs
 from takt.component import Component
 from takt.errors import TaktError
 from takt.feedback import FeedbackState
+from takt.tables import named
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,7 @@ class MoverRecord:
     begun: int  # cycle in which it began; of buffered ones later than it was given
     changed: int  # cycle in which it came to be what it is
     object: Component | None  # that was in the way
+    limited_by: str  # what of its dynamics was more than the mover can do, and was reduced
 
 
 class Mover(Component, MoverCommands, MoverOutputs):
@@ -44,6 +46,16 @@ class Mover(Component, MoverCommands, MoverOutputs):
         """Its last 100 commands, the oldest first; external set points apart. In process only."""
         rows = self.session._history(self)
         return tuple(
-            MoverRecord(ticket, verb, FeedbackState(state), error, cycle, begun, changed, self.session._object(*where))
-            for ticket, verb, state, error, cycle, begun, changed, *where in rows
+            MoverRecord(
+                ticket,
+                verb,
+                FeedbackState(state),
+                error,
+                cycle,
+                begun,
+                changed,
+                self.session._object(*where),
+                named("mover", "limited_by", limited),
+            )
+            for ticket, verb, state, error, cycle, begun, changed, *where, limited in rows
         )

@@ -41,11 +41,11 @@ class Kind:
             names={field: names for field, _, _, names in fields if names and field not in NUMBERS},
             dtypes={field: dtype for field, (dtype, *_) in (_core.output_layout(name).fields or {}).items()},
             message=message,
-            getters={field: attrgetter(_place(field, message)) for field, *_ in fields},
+            getters={field: attrgetter(place_of(field, message)) for field, *_ in fields},
         )
 
 
-def _place(field: str, message: Any) -> str:
+def place_of(field: str, message: Any) -> str:
     """Where a message has a field: pcs1_x is the x of its pcs1."""
     return field if field in message.__slots__ else ".".join(field.rsplit("_", 1))
 
@@ -126,7 +126,7 @@ def make_recording(
 ) -> Recording:
     """A recording of components of `machine`; each table has time_s, cycle and published fields."""
     found = {name: of for name, of in components_of(machine).items() if name in tables}
-    units = {name: _units(machine, kind, parameters) for name, (kind, parameters) in found.items()}
+    units = {name: units_of(machine, kind, parameters) for name, (kind, parameters) in found.items()}
     return Recording(
         tables,
         {name: {f: unit_of(k.name, f, units[name]) for f in k.units} for name, (k, _) in found.items()},
@@ -137,7 +137,7 @@ def make_recording(
     )
 
 
-def _units(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]) -> dict[str, str]:
+def units_of(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]) -> dict[str, str]:
     """What the units in the descriptions stand for. A cam module has those of slave, master and its first cam."""
     if kind.name == "axis":
         return {"u": parameters["unit"]}
@@ -152,7 +152,7 @@ def _units(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]
 
 
 def _info(machine: Mapping[str, Any], kind: Kind, axis: Mapping[str, Any]) -> dict[str, Any]:
-    info: dict[str, Any] = {"unit": _units(machine, kind, axis)["u"], "limits": {}}
+    info: dict[str, Any] = {"unit": units_of(machine, kind, axis)["u"], "limits": {}}
     if kind.name != "axis":
         return info
     limits = axis["limits"]

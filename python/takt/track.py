@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from takt._commands import TrackCommands, TrackOutputs
@@ -30,11 +31,15 @@ class Track(Component, TrackCommands, TrackOutputs):
     def position_at(self, s: float) -> TrackPosition:
         """The place so many mm along the track. A closed loop goes round, an open track ends at its ends."""
         self._check_length()
+        if not math.isfinite(s):
+            raise TaktError(f"track {self.name}: {s} mm is no place on it")
         return TrackPosition(*self.session._track_at(self, s))
 
     def arc_length_closest_to(self, x: float, y: float) -> float:
         """mm along the track where it is nearest to a place."""
         self._check_length()
+        if not (math.isfinite(x) and math.isfinite(y)):
+            raise TaktError(f"track {self.name}: ({x}, {y}) is no place in the plane")
         return self.session._track_closest_to(self, x, y)
 
     @property

@@ -157,6 +157,29 @@ def test_single_rows_give_single_rows():
         robot.forward([1, 2])
 
 
+@pytest.mark.parametrize("name", MECHANISMS)
+@settings(deadline=None, max_examples=25)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_links_keep_their_lengths_and_hang_together(name, seed):
+    robot, _ = MECHANISMS[name]
+    joints = positions(name, 5, seed)
+    places = robot.link_places(joints)
+    assert robot.links[0] == "base"
+    np.testing.assert_allclose(places[:, -1, :3], robot.forward(joints)[:, :3], atol=1e-6)  # the last one is the tool
+    lengths = np.linalg.norm(places[..., 3:] - places[..., :3], axis=-1)
+    np.testing.assert_allclose(lengths, lengths[:1].repeat(5, axis=0), atol=1e-6)
+    if name == "delta":
+        link = {link: places[:, i] for i, link in enumerate(robot.links)}
+        for arm in "123":
+            upper, lower = link[f"upper_arm_{arm}"], link[f"lower_arm_{arm}_a"]
+            np.testing.assert_allclose(np.linalg.norm(upper[:, :3], axis=1), DELTA["base_radius"])
+            np.testing.assert_allclose(upper[:, 3:], lower[:, :3], atol=1e-6)
+            np.testing.assert_allclose(np.linalg.norm(upper[:, 3:] - upper[:, :3], axis=1), DELTA["upper_arm"])
+            np.testing.assert_allclose(np.linalg.norm(lower[:, 3:] - lower[:, :3], axis=1), DELTA["lower_arm"])
+            to_platform = np.linalg.norm(lower[:, 3:] - link["tool"][:, :3], axis=1)
+            np.testing.assert_allclose(to_platform, DELTA["platform_radius"])
+
+
 def test_reasons_say_why_not():
     """GR-12"""
     robot = kin.Kinematics(delta=DELTA)

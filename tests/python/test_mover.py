@@ -156,13 +156,14 @@ def test_too_much_is_reduced(engine: takt.Engine, mover: takt.Mover) -> None:
 def test_the_last_commands(engine: takt.Engine, mover: takt.Mover) -> None:
     """PL-70."""
     mover.move_z(position=99)
-    first = mover.move_to_position(x=500, y=0)
+    first = mover.move_to_position(x=500, y=0, velocity=9000)
     engine.step(10)
     mover.move_to_position(x=0, y=0).wait()
     records = mover.history()
     assert [record.verb for record in records] == ["enable", "move_z", "move_to_position", "move_to_position"]
     assert [record.state.name for record in records] == ["DONE", "ERROR", "ABORTED", "DONE"]
     assert records[1].error_id == 8
+    assert [record.limited_by for record in records] == ["nothing", "nothing", "velocity", "nothing"]
     assert records[2].ticket == first.ticket
     assert records[2].changed - records[2].cycle == 10
     for _ in range(200):

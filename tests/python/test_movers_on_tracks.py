@@ -200,6 +200,23 @@ def test_a_place_that_is_taken(engine: Engine) -> None:
     two.join_track(track="track").wait()
 
 
+def test_a_place_just_at_the_gap(engine: Engine) -> None:
+    """PL-24: rounding does not make it nearer."""
+    track = engine.track("track")
+    track.append_line(start_x=0, start_y=0, end_x=300, end_y=90)
+    track.enable().wait()
+    one, two = engine.mover("one"), engine.mover("two")
+    one.enable().wait()
+    two.enable().wait()
+    for s in (10, 20, 30, 40, 50):
+        for mover, place in ((one, s), (two, s + 200)):
+            at = track.position_at(place)
+            mover.move_to_position(x=at.x, y=at.y).wait()
+            mover.join_track(track="track").wait()
+        for mover in (one, two):
+            mover.leave_track(x=mover.x, y=mover.y).wait()
+
+
 def test_bad_commands(network: Engine) -> None:
     """PL-02, PL-22."""
     red = network.mover("red")

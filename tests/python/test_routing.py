@@ -145,6 +145,16 @@ def test_no_way_past_each_other() -> None:
     check(engine, {"a": ("line", 1100.0), "b": ("line", 1700.0)})
 
 
+@pytest.mark.parametrize(("key", "value"), [("gap", -5.0), ("gap", math.nan), ("velocity", -5.0), ("jerk", 0.0)])
+def test_numbers_that_no_move_can_have(key: str, value: float) -> None:
+    """They are refused before anything is planned."""
+    engine = on_tracks(RING, {"a": ("main", 300.0)})
+    with pytest.raises(takt.RoutingError, match=key):
+        engine.move_on_tracks({"a": ("main", 1300.0)}, **{key: value})
+    engine.step()
+    assert engine.mover("a").track_velocity == 0
+
+
 def test_one_that_is_in_the_way() -> None:
     """It is moved aside if it may be; else it is named."""
     movers = {"a": ("west", 300.0), "b": ("main", 1000.0)}

@@ -208,6 +208,11 @@ def test_a_whole_circle_becomes_a_loop(empty: Engine) -> None:
     assert one.length == pytest.approx(2 * math.pi * 200, rel=1e-12)
     assert one.position_at(2.5 * one.length).x == pytest.approx(-200)
     assert one.position_at(0).curvature == pytest.approx(1 / 200)
+    for bad in (math.nan, math.inf):
+        with pytest.raises(takt.TaktError, match="is no place on it"):
+            one.position_at(bad)
+        with pytest.raises(takt.TaktError, match="is no place in the plane"):
+            one.arc_length_closest_to(bad, 0)
 
 
 @pytest.mark.parametrize(

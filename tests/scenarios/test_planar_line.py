@@ -1,11 +1,12 @@
-"""The planar line: 32 movers on a network with stations, lanes that part and meet, and a bypass (PL-24, PL-26, PL-70,
-PL-71)."""
+"""The planar line: 32 movers on a network with stations, lanes that part and meet, a bypass and a lift (PL-24, PL-26,
+PL-32, PL-33, PL-70, PL-71)."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 import takt
 from takt.scenario import load_scenario, verify_recording
@@ -17,6 +18,7 @@ from judge import Judgement, judge  # noqa: E402
 from line import PRESSES  # noqa: E402
 from scenario import EVERY, play  # noqa: E402
 
+LOWER_TRACK = 11  # number of the track on the level below
 TEXT = (FOLDER / "machine.yaml").read_text(encoding="utf-8")
 
 
@@ -45,6 +47,17 @@ def test_presses_share_the_work(became: Judgement) -> None:
     busy = [became.busy[press.name] for press in PRESSES]
     assert min(busy) > 0.7
     assert max(busy) - min(busy) < 0.1
+
+
+def test_the_lift_takes_bad_pieces_down_and_up_again(recording: takt.Recording, became: Judgement) -> None:
+    """PL-32: one after the other, each of them there and back."""
+    assert became.busy["repair"] > 0.15
+    level = recording.column("lift", "coordinate_system")
+    arrivals = np.count_nonzero(np.diff(level[level > 0]))
+    assert arrivals >= 6
+    for mover in became.movers:
+        levels = recording.column(mover, "coordinate_system")
+        assert set(levels[recording.column(mover, "track") == LOWER_TRACK]) <= {2}
 
 
 def test_time_adds_up(became: Judgement) -> None:

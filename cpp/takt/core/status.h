@@ -98,6 +98,11 @@ enum class ErrorId : std::uint16_t {
   kTrail = 3081,              // tracks do not make such a trail, or the mover is not on it
   kMasterOffTrack = 3082,     // a mover that is to be followed is not on a track, or not enabled
   kMasterLost = 3083,         // the master turned off where the mover that follows it cannot
+  kFormationChain = 3090,     // a planet would be a star, too
+  kStarLost = 3091,           // the star of a formation is disabled, or has a fault
+  kPlanetLost = 3092,         // a planet of a formation is halted, disabled, or has a fault; the object says which
+  kFormationShare = 3093,    // a formation moves with all that it can, and would have to turn meanwhile, or the reverse
+  kFormationOnTrack = 3094,  // a formation moves in the free plane alone
   kGroupDeviation = 8001,
   kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual
   // A cam module is in error; numbers of the Flex Cam manual.

@@ -186,6 +186,8 @@ const std::vector<Entry>& Entries() {
       Make<mover::Command, mover::Release>(kMover, "release"),
       Make<mover::Command, mover::AddToGroup>(kMover, "add_to_group"),
       Make<mover::Command, mover::RemoveFromGroup>(kMover, "remove_from_group"),
+      Make<mover::Command, mover::JoinFormation>(kMover, "join_formation"),
+      Make<mover::Command, mover::LeaveFormation>(kMover, "leave_formation"),
       Make<track::Command, track::AppendLine>(kTrack, "append_line"),
       Make<track::Command, track::AppendCircle>(kTrack, "append_circle"),
       Make<track::Command, track::AppendPosition>(kTrack, "append_position"),
@@ -385,6 +387,11 @@ std::string WhyNot(const Machine& machine, const mover::Command& command, std::s
   if (const auto* gear = std::get_if<mover::GearInPosOnTrack>(&command)) return WhyNotGear(machine, *gear, target);
   if (const auto* gear = std::get_if<mover::GearInPosOnTrackWithMasterMover>(&command)) {
     return WhyNotGear(machine, *gear, target);
+  }
+  if (const auto* join = std::get_if<mover::JoinFormation>(&command)) {
+    std::vector<std::string_view> others = NamesOf(machine.movers);
+    std::erase(others, target);
+    return WhyNotNamed("star", join->star, others, "another mover");
   }
   const auto* move = std::get_if<mover::MoveOnTrack>(&command);
   return move && !move->track.empty() ? check(move->track) : WhyNotReferenceOf(machine, command);

@@ -14,6 +14,7 @@
 #include "takt/engine/masters.h"
 #include "takt/engine/mover_masters.h"
 #include "takt/engine/parts.h"
+#include "takt/mover/formation.h"
 #include "takt/mover/gear.h"
 #include "takt/mover/on_parts.h"
 
@@ -94,9 +95,12 @@ void RefreshStreets(World& w) {
                        std::hypot(params.mover_width, params.mover_height),
                        part,
                        w.tracks.spot(i),
+                       w.tracks.goal(i),
                        params.collision_range_mode == track::CollisionRangeMode::kManual,
                        params.collision_range_at_start,
-                       params.collision_range_at_end};
+                       params.collision_range_at_end,
+                       params.mover_width,
+                       params.mover_height};
   }
   mover::Refresh(w.tracks_now, w.streets);
   for (std::size_t i = 0; i < w.tracks_now.size(); ++i) {
@@ -287,7 +291,9 @@ void LimitToAxes(const Machine& machine, const group::GroupParams& group, kinema
 }  // namespace
 
 mover::Context MoverContext(World& w, std::size_t i) {
-  return {w.movers[i], w.cycle, w.planner, w.feedback, w.streets, w.grounds, static_cast<std::uint32_t>(i)};
+  const mover::Fleet fleet{w.movers, w.mover_states, w.bodies};
+  const auto index = static_cast<std::uint32_t>(i);
+  return {mover::ParamsIn(fleet, w.cycle, index), w.cycle, w.planner, w.feedback, w.streets, w.grounds, index, fleet};
 }
 
 World::World(const Machine& machine)
@@ -446,7 +452,7 @@ void World::MakeParts(const Machine& machine) {
   TouchTypes(static_cast<const part::Command*>(nullptr));
   for (const part::PartParams& params : machine.parts) {
     part_states.push_back(part::MakeState(params));
-    part_inputs[part_states.size() - 1] = part::Simulate(part_states.back());
+    part_inputs[part_states.size() - 1].position = part_states.back().commanded + 1;
   }
 }
 
@@ -458,6 +464,7 @@ void World::MakeMovers(const Machine& machine) {
   movers = machine.movers;
   for (const mover::MoverParams& params : movers) {
     mover_states.push_back(mover::MakeState(params));
+    bodies.emplace_back(params, movers.size());
     planar::Spot at;
     mover::FindSpot(params, surface, params.reference, {{params.initial.x, params.initial.y}, params.initial.c}, at);
     mover::PutAt(at, mover_states.back());
@@ -579,13 +586,16 @@ void Apply(World& w, const Command& command) noexcept {
     if (Changes(wanted) && !MakeOrder(w, wanted)) return refuse(ErrorId::kCouplingLoop);
     mover::Apply(MoverContext(w, i), command.ticket, *for_mover, w.mover_states[i]);
   } else if (const auto* for_track = std::get_if<track::Command>(&command.body)) {
+    UseTracks(w);  // as movers have been told in this cycle; and they see what becomes of the track
     track::Apply(TrackContext(w), i, command.ticket, *for_track);
+    RefreshStreets(w);
   } else if (const auto* for_planar_group = std::get_if<planargroup::Command>(&command.body)) {
     planargroup::Apply(PlanarGroupContext(w), i, command.ticket, *for_planar_group);
   } else if (const auto* for_environment = std::get_if<environment::Command>(&command.body)) {
     environment::Apply(EnvironmentContext(w), i, command.ticket, *for_environment);
   } else if (const auto* for_part = std::get_if<part::Command>(&command.body)) {
     ApplyToPart(w, i, command.ticket, *for_part);
+    RefreshStreets(w);  // what comes next in this cycle sees which tracks meet now
   }
 }
 
@@ -611,8 +621,12 @@ void StepMovers(World& w) {
   ShowMovers(w);  // commands have changed some
   for (std::size_t i = 0; i < w.movers.size(); ++i) mover::Lead(MoverContext(w, i), w.mover_states[i]);
   if (!w.streets.names.empty()) w.streets.traffic.Step(w.cycle, w.planner, w.streets.network, w.streets.riders);
-  for (std::size_t i = 0; i < w.movers.size(); ++i) {
-    mover::Step(MoverContext(w, i), w.mover_inputs[i], w.mover_states[i]);
+  // Planets of formations behind their stars.
+  for (const bool planets : {false, true}) {
+    for (std::size_t i = 0; i < w.movers.size(); ++i) {
+      if (mover::IsPlanet(w.mover_states[i]) != planets) continue;
+      mover::Step(MoverContext(w, i), w.mover_inputs[i], w.mover_states[i]);
+    }
   }
   ShowMovers(w);
   UseTracks(w);

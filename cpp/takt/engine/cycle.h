@@ -144,6 +144,7 @@ struct World {
   std::vector<mover::MoverParams> movers;
   std::vector<mover::Inputs> mover_inputs;
   std::vector<mover::State> mover_states;
+  std::vector<mover::Body> bodies;  // by star of a formation
   std::vector<mover::Outputs> mover_outputs;
   mover::Streets streets;
   std::vector<mover::TrackNow> tracks_now;         // of this cycle

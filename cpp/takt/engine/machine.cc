@@ -110,6 +110,12 @@ void describe(Description<External>& d) {
                                    "the cycle goes on without them.");
 }
 
+void describe(Description<ViewParams>& d) {
+  d.about("The live page, takt view.");
+  d.defaulted<&ViewParams::commands>(
+      "From the page one may switch on, jog, halt, reset and stop everything; else it only shows what is.");
+}
+
 void describe(Description<Machine>& d) {
   using M = Machine;
   d.about("A machine: everything an engine is made from.");
@@ -133,6 +139,7 @@ void describe(Description<Machine>& d) {
   d.defaulted<&M::environments>("Surfaces that movers float on.");
   d.defaulted<&M::simulation>("What stands in for the metal.");
   d.defaulted<&M::external>("What lives in other processes.");
+  d.defaulted<&M::view>("The live page.");
 }
 
 }  // namespace takt::engine

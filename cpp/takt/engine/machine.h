@@ -67,6 +67,11 @@ struct External {
   double answer_within_s = 2;  // simulated time: s of the wall clock to wait for the answers to one cycle
 };
 
+// The live page (`takt view`). The engine itself takes commands from whoever gives them.
+struct ViewParams {
+  bool commands = false;
+};
+
 struct Machine {
   std::string name;
   CycleParams cycle;
@@ -88,6 +93,7 @@ struct Machine {
   std::vector<environment::EnvironmentParams> environments;
   Simulation simulation;
   External external;
+  ViewParams view;
 };
 
 // The drive of this axis that lives in another process; null: it does not.
@@ -103,6 +109,7 @@ void describe(Description<SimulatedServo>&);
 void describe(Description<Simulation>&);
 void describe(Description<ExternalDrive>&);
 void describe(Description<External>&);
+void describe(Description<ViewParams>&);
 void describe(Description<Machine>&);
 
 }  // namespace takt::engine

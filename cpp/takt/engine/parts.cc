@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/mover/formation.h"
+#include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
+#include "takt/planar/nearest.h"
 #include "takt/track/works.h"
 
 namespace takt::engine {
@@ -26,7 +29,7 @@ void Show(World& w, std::size_t i) {
   planar::PartNow& now = w.surface.now[i];
   const planar::PartNow before = now;
   now = part::Show(w.part_states[i]);
-  if (now.position == before.position && now.away == before.away) return;
+  if (now.position == before.position && now.commanded == before.commanded && now.away == before.away) return;
   planar::MakeBorders(w.surface);
   track::MakeNodes(w.tracks);
 }
@@ -58,20 +61,60 @@ void FailMoversOn(World& w, std::size_t part, ErrorId error) {
   }
 }
 
-// Whether two movers on tracks of different parts, which stand, would be nearer to each other than movers come there.
-bool AreTooNear(const World& w, std::size_t one, std::size_t other) {
-  const planar::Rider& a = w.streets.riders[one];
-  const planar::Rider& b = w.streets.riders[other];
-  const std::uint32_t of_a = a.route.first(), of_b = b.route.first();
-  const double gap = std::max(a.gap, b.gap);
-  const auto rest = [&](std::uint32_t track, const planar::Rider& r) {
-    return w.tracks.states[track].length - r.at.position;
+constexpr double kStride = 10;  // mm
+
+// A place on a track, where its part is to be.
+planar::Place PlaceOn(const World& w, std::uint32_t track, double s) {
+  return planar::At(*w.tracks.ways[track], s).place + w.tracks.goal(track).origin;
+}
+
+// Whether a mover that stands on one track comes too near to another that goes between two places on the other track.
+bool IsTooNear(const World& w, const planar::Rider& one, double gap, std::uint32_t track, double from, double to) {
+  const track::Tracks& t = w.tracks;
+  const std::uint32_t own = one.route.first();
+  if (t.goal(own).system != t.goal(track).system) return false;
+  const double at = one.at.position, rest = t.states[own].length - at, length = t.states[track].length;
+  const planar::Place place = PlaceOn(w, own, at);
+  const double reach = w.streets.tracks[own].reach;
+  // One behind the other.
+  if (t.end_nodes[own] == t.start_nodes[track] && rest + from < gap) return true;
+  if (t.end_nodes[track] == t.start_nodes[own] && length - to + at < gap) return true;
+  // Both behind a node, or before it: where they may touch, or are near the node, they keep the gap along the way, too.
+  const bool touch =
+      planar::NearestTo(*t.ways[track], place - t.goal(track).origin).distance < reach + planar::kRangeSlack;
+  const auto beside = [&](double its, double least, double most) {
+    const bool active = touch || (its < gap && least < gap);
+    return active && std::max(least - its, its - most) < gap;
   };
-  if (w.tracks.end_nodes[of_a] == w.tracks.start_nodes[of_b] && rest(of_a, a) + b.at.position < gap) return true;
-  if (w.tracks.end_nodes[of_b] == w.tracks.start_nodes[of_a] && rest(of_b, b) + a.at.position < gap) return true;
-  const planar::Place off = w.tracks.At(of_a, a.at.position).place - w.tracks.At(of_b, b.at.position).place;
-  const bool together = w.tracks.spot(of_a).system == w.tracks.spot(of_b).system;
-  return together && std::hypot(off.x, off.y) < w.streets.tracks[of_a].reach;
+  if (t.start_nodes[own] == t.start_nodes[track] && beside(at, from, to)) return true;
+  if (t.end_nodes[own] == t.end_nodes[track] && beside(rest, length - to, length - from)) return true;
+  const auto strides = static_cast<int>(std::ceil((to - from) / kStride));
+  for (int i = 0; touch && i <= strides; ++i) {
+    const planar::Place off = PlaceOn(w, track, strides == 0 ? from : from + (to - from) * i / strides) - place;
+    if (std::hypot(off.x, off.y) < reach + (strides == 0 ? 0 : kStride / 2)) return true;
+  }
+  return false;
+}
+
+// Whether two movers on tracks of different parts would be nearer to each other than movers come there: one that its
+// part brings, and stands, and another that may be going, and stops as soon as it can.
+bool AreTooNear(const World& w, const planar::Rider& one, const planar::Rider& other) {
+  const double gap = std::max(one.gap, other.gap);
+  double least = other.at.position, most = least;
+  if (!planar::Rests(other.at)) {
+    const planar::Braking braking = planar::Brake(other.at, other.brakes);
+    least = braking.lowest;
+    most = braking.highest;
+  }
+  double begin = 0;  // of the track, seen from where its first one begins
+  for (const std::uint32_t track : other.route.all()) {
+    if (begin > most) break;
+    const double length = w.tracks.states[track].length;
+    const auto within = [&](double s) { return std::clamp(s - begin, 0.0, length); };
+    if (IsTooNear(w, one, gap, track, within(least), within(most))) return true;
+    begin += length;
+  }
+  return false;
 }
 
 // What of a mover's group would be in its way where its part goes: of all that does not go along, and that movers on
@@ -96,7 +139,7 @@ Hindrance InGroup(const World& w, std::size_t mover, std::uint32_t part, const p
   const planar::TrackArea* below = own.linked ? w.tracks.areas[w.streets.riders[mover].route.first()] : nullptr;
   for (std::size_t k = 0; k < r.tracks.size(); ++k) {
     const planar::TrackArea* track = w.tracks.areas[k];
-    const planar::Spot& spot = w.tracks.spot(k);
+    const planar::Spot& spot = w.tracks.goal(k);
     if (!track || !r.tracks[k].moving || w.tracks.part_of[k] == part || spot.system != to.system) continue;
     if (below && below->network == track->network) continue;
     const planar::Area in_its = Shifted(there, planar::Place{} - spot.origin);
@@ -111,14 +154,16 @@ Hindrance InGroup(const World& w, std::size_t mover, std::uint32_t part, const p
 Hindrance TooNear(World& w, std::uint32_t part, std::uint32_t position) {
   const planar::PartNow before = w.surface.now[part];
   const planar::Spot from = w.surface.spot(part), to = w.surface.all[part].positions[position];
-  w.surface.now[part].position = position;
+  w.surface.now[part].commanded = position;
   track::MakeNodes(w.tracks);
   Hindrance found;
   for (std::size_t i = 0; i < w.movers.size() && found.error == ErrorId::kNone; ++i) {
     if (w.mover_states[i].part == part) found = InGroup(w, i, part, from, to);
     if (!IsOnTrackOf(w, i, part) || found.error != ErrorId::kNone) continue;
     for (std::size_t k = 0; k < w.movers.size(); ++k) {
-      if (!w.streets.riders[k].on || IsOnTrackOf(w, k, part) || !AreTooNear(w, i, k)) continue;
+      if (!w.streets.riders[k].on || IsOnTrackOf(w, k, part) ||
+          !AreTooNear(w, w.streets.riders[i], w.streets.riders[k]))
+        continue;
       found = By(ErrorId::kPartMover, ObjectKind::kMover, k);
       break;
     }
@@ -145,6 +190,22 @@ bool Holds(World& w, std::size_t mover, std::uint32_t part, const mover::Cover& 
   return false;
 }
 
+// A mover on the part belongs to a formation that is not all on it.
+bool IsTorn(World& w, std::size_t mover, std::uint32_t part) {
+  const auto body = [&](std::size_t i) { return mover::BodyOf(MoverContext(w, i), w.mover_states[i]); };
+  if (w.mover_states[mover].part != part || body(mover) == 0) return false;
+  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+    if (w.mover_states[i].part != part && body(i) == body(mover)) return true;
+  }
+  return false;
+}
+
+// Another part brings a mover to where this one goes.
+bool ComesUnder(const World& w, std::size_t mover, const planar::Part& shape, const planar::Spot& to) {
+  const planar::MoverNow& now = w.grounds.movers[mover];
+  return now.comes && planar::Touches(shape, to, now.goal.system, planar::AreaThere(now));
+}
+
 Hindrance HindranceOf(World& w, std::uint32_t part, std::uint32_t position) {
   const planar::Part& shape = w.surface.all[part];
   const planar::Spot& from = w.surface.spot(part);
@@ -165,19 +226,21 @@ Hindrance HindranceOf(World& w, std::uint32_t part, std::uint32_t position) {
   for (std::size_t i = 0; i < w.movers.size(); ++i) {
     const mover::State& s = w.mover_states[i];
     const mover::Cover cover = mover::CoverOf(MoverContext(w, i), s);
-    if (Holds(w, i, part, cover)) return By(ErrorId::kPartMover, ObjectKind::kMover, i);
+    if (Holds(w, i, part, cover) || IsTorn(w, i, part)) return By(ErrorId::kPartMover, ObjectKind::kMover, i);
     const bool below = std::ranges::any_of(
         cover.all(), [&](const planar::Area& area) { return planar::Touches(shape, to, s.system, area); });
-    if (s.part != part && below) return By(ErrorId::kPartMover, ObjectKind::kMover, i);
+    if (s.part != part && (below || ComesUnder(w, i, shape, to))) return By(ErrorId::kPartMover, ObjectKind::kMover, i);
     if (s.part != part) continue;
-    // Those that are there already.
-    for (std::size_t k = 0; k < w.movers.size(); ++k) {
-      const mover::State& other = w.mover_states[k];
-      if (other.part == part || other.system != to.system) continue;
-      const mover::Cover its = mover::CoverOf(MoverContext(w, k), other);
-      for (const planar::Area& a : cover.all()) {
-        const planar::Area there = Shifted(a, to.origin - from.origin);
-        const planar::Extent extent = planar::ExtentOf(there);
+    // Those that are there already, or are to be.
+    for (const planar::Area& area : cover.all()) {
+      const planar::Area there = Shifted(area, to.origin - from.origin);
+      const ObjectInfo comes = planar::WhoComes(static_cast<std::uint32_t>(i), to.system, there, w.grounds);
+      if (comes) return {ErrorId::kPartMover, comes};
+      const planar::Extent extent = planar::ExtentOf(there);
+      for (std::size_t k = 0; k < w.movers.size(); ++k) {
+        const mover::State& other = w.mover_states[k];
+        if (other.part == part || other.system != to.system) continue;
+        const mover::Cover its = mover::CoverOf(MoverContext(w, k), other);
         const auto near = [&](const planar::Area& b) {
           return !planar::Apart(extent, planar::ExtentOf(b), planar::kSame) && planar::Near(there, b, planar::kSame);
         };
@@ -215,6 +278,10 @@ void ApplyToPart(World& w, std::size_t i, Ticket ticket, const part::Command& co
   }
   part::Apply(ContextOf(w, i), ticket, command, hindrance, w.part_states[i]);
   Show(w, i);
+  // From now on it has a place where it goes.
+  for (std::size_t k = 0; goes && k < w.movers.size(); ++k) {
+    if (w.mover_states[k].part == i) mover::Stand(MoverContext(w, k), w.mover_states[k]);
+  }
   if (std::holds_alternative<part::ForceDisable>(command)) FailMoversOn(w, i, ErrorId::kPartDisabled);
 }
 
@@ -245,7 +312,7 @@ void PublishParts(World& w) noexcept {
 
 void SimulateParts(World& w) noexcept {
   for (std::size_t i = 0; i < w.parts.size(); ++i) {
-    w.part_inputs[i] = part::Simulate(w.part_states[i]);
+    w.part_inputs[i] = part::Simulate(ContextOf(w, i), w.part_states[i]);
     const PartFaults& faults = w.part_faults[i];
     const bool goes = w.part_states[i].commanded != w.part_states[i].position;
     if (faults.lost || (faults.stuck && goes)) w.part_inputs[i].position = 0;

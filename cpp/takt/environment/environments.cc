@@ -80,16 +80,21 @@ struct Applier {
   void operator()(const RemoveFromGroup&) const { Answer(planar::RemoveEnvironment(environment, c.grounds)); }
   void operator()(const BoundaryMade& made) const {
     if (made.number == 0 || made.number != s.asked) return Refuse(ErrorId::kState);
-    ErrorId error = ErrorId::kStators;
-    if (made.problem == planar::StatorProblem::kNone) {
+    const bool good = made.problem == planar::StatorProblem::kNone;
+    ErrorId error = good ? ErrorId::kNone : ErrorId::kStators;
+    if (good) {
       const planar::Environment* surface = Fetch(made.number);
       if (!surface) return Refuse(ErrorId::kState);
-      Use(surface);
-      error = ErrorId::kNone;
+      // Meanwhile movers may have come to rely on the old one.
+      if (c.grounds.Watching(c.grounds.group_of_environment[environment]) != 0) {
+        c.environments.desk.retired.TryPush(surface);
+        error = ErrorId::kEnvironmentUsed;
+      } else {
+        Use(surface);
+      }
     }
-    const bool good = error == ErrorId::kNone;
-    c.feedback.Report({s.ticket, c.cycle.count, good ? FeedbackState::kDone : FeedbackState::kError, false, error,
-                       good ? 0 : ToValue(made.problem, made.stator)});
+    c.feedback.Report({s.ticket, c.cycle.count, error == ErrorId::kNone ? FeedbackState::kDone : FeedbackState::kError,
+                       false, error, good ? 0 : ToValue(made.problem, made.stator)});
     s.asked = 0;
     s.ticket = 0;
     DoneAtOnce();

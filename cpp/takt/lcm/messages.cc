@@ -488,6 +488,7 @@ msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine:
   m.group = o.group;
   m.coordinate_system = o.coordinate_system;
   m.part = o.part;
+  m.formation = o.formation;
   m.commands = Signed(o.commands);
   return m;
 }

@@ -4,21 +4,39 @@
 #include <variant>
 
 #include "takt/core/in_range.h"
+#include "takt/mover/formation.h"
 #include "takt/mover/on_parts.h"
 
 namespace takt::mover {
 
 namespace {
 
-// It has X and Y now.
+// It has X and Y now, and not on top of what they do.
 bool TookOver(Ticket ticket, const State& s) {
-  return ticket != 0 && (s.tickets[kPlane] == ticket || s.tickets[kExternal] == ticket);
+  const bool alone = s.external.mode == SetpointMode::kAbsolute;
+  return ticket != 0 && (s.tickets[kPlane] == ticket || (alone && s.tickets[kExternal] == ticket));
+}
+
+bool HasGoodNumbers(const Command& command) {
+  return std::visit([](const auto& body) { return InRange(body); }, command);
 }
 
 ErrorId WhyNotBuffered(const Command& command, const State& s) {
-  const bool in_range = std::visit([](const auto& body) { return InRange(body); }, command);
-  if (!in_range) return ErrorId::kParameter;
+  if (!HasGoodNumbers(command)) return ErrorId::kParameter;
   return s.state == planar::ObjectState::kEnabled ? ErrorId::kNone : ErrorId::kMoverDisabled;
+}
+
+// Of one that has dynamics.
+void NoteLimit(Ticket ticket, const Command& command, State& s) {
+  const bool has = std::visit(
+      [](const auto& body) {
+        return requires {
+          body.jerk;
+        };
+      },
+      command);
+  Record* record = has && ticket != 0 ? s.history.Find(ticket) : nullptr;
+  if (record) record->limited_by = s.limited_by;
 }
 
 // What a mover is told whatever its part does; the rest would move it.
@@ -30,10 +48,16 @@ constexpr bool kAlways =
 }  // namespace
 
 bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) noexcept {
-  const Given given{c, ticket, s};
+  if (!HasGoodNumbers(command)) {
+    Report(c, ticket, FeedbackState::kError, ErrorId::kParameter, 0, s);
+    return false;
+  }
+  const Terms terms = TermsOf(c, command, s);
+  const Context within = With(c, terms.params);
+  const Given given{within, ticket, s};
   const Answer answer = std::visit(
       [&]<typename T>(const T& body) {
-        if (!InRange(body)) return Refused(ErrorId::kParameter);
+        if (terms.error != ErrorId::kNone) return Refused(terms.error, terms.object);
         return !kAlways<T> && IsAway(c, s) ? Refused(ErrorId::kPartDisabled) : CarryOut(given, body);
       },
       command);
@@ -41,6 +65,8 @@ bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) no
     Report(c, ticket, FeedbackState::kError, answer.status.error, 0, s, answer.object);
     return false;
   }
+  if (terms.sets) s.formation.whole = terms.whole;
+  NoteLimit(ticket, command, s);
   Report(c, ticket, FeedbackState::kActive, ErrorId::kNone, answer.value, s);
   if (!answer.goes_on) Report(c, ticket, FeedbackState::kDone, ErrorId::kNone, 0, s);
   return true;
@@ -56,7 +82,9 @@ void Apply(const Context& c, Ticket ticket, const Command& command, State& s) no
     if (why != ErrorId::kNone) Report(c, ticket, FeedbackState::kError, why, 0, s);
     return;
   }
-  if (!Begin(c, ticket, command, s) || !TookOver(ticket, s)) return;
+  if (!Begin(c, ticket, command, s)) return;
+  GoBeside(ticket, s);
+  if (!TookOver(ticket, s)) return;
   End(c, kPassing, FeedbackState::kAborted, ErrorId::kNone, s);
   End(c, kWait, FeedbackState::kAborted, ErrorId::kNone, s);
   AbortBuffered(c, s);

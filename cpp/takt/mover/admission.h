@@ -1,5 +1,5 @@
 // Commands as they arrive: what carrying them out has in common. Each family has a file of its own beside this one:
-// power.cc, moves.cc, on_tracks.cc, gear.cc, setpoints.cc, buffer.cc, membership.cc.
+// power.cc, moves.cc, on_tracks.cc, gear.cc, setpoints.cc, buffer.cc, membership.cc, formation.cc.
 #pragma once
 
 #include <algorithm>
@@ -99,5 +99,7 @@ Answer CarryOut(const Given& g, const Wait& command) noexcept;
 Answer CarryOut(const Given& g, const Release& command) noexcept;
 Answer CarryOut(const Given& g, const AddToGroup& command) noexcept;
 Answer CarryOut(const Given& g, const RemoveFromGroup& command) noexcept;
+Answer CarryOut(const Given& g, const JoinFormation& command) noexcept;
+Answer CarryOut(const Given& g, const LeaveFormation& command) noexcept;
 
 }  // namespace takt::mover

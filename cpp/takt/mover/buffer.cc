@@ -5,17 +5,40 @@
 
 #include "takt/core/describe.h"
 #include "takt/mover/admission.h"
+#include "takt/mover/on_parts.h"
 
 namespace takt::mover {
 
 namespace {
 
-// Nothing is in progress but what may be left behind on the way.
-bool IsFree(const State& s, Slot but) {
+constexpr std::uint32_t BitOf(std::size_t slot) {
+  return 1u << slot;
+}
+
+// Nothing that was given before is in progress but what may be left behind on the way, and set points on top of all.
+bool IsFree(const State& s, const Queued& next, Slot but) {
   for (std::size_t slot = kPlane; slot < kSlots; ++slot) {
-    if (slot != kPassing && slot != but && s.tickets[slot] != 0) return false;
+    if (slot == kPassing || slot == but || (next.beside & BitOf(slot)) != 0) continue;
+    if (slot == kExternal && s.external.mode == SetpointMode::kRelative) continue;
+    if (s.tickets[slot] != 0) return false;
   }
   return true;
+}
+
+// Calls this for the slots of Z, A, B and C that this command has.
+void EachBeside(Ticket ticket, const State& s, const auto& what) {
+  for (std::size_t slot = kMoveZ; slot <= kMoveC; ++slot) {
+    if (ticket != 0 && s.tickets[slot] == ticket) what(BitOf(slot));
+  }
+}
+
+// One of X and Y, in the coordinate system where the mover is; nothing if it is none, or leads elsewhere.
+std::optional<MoveToPosition> MoveOf(const Context& c, const Command& command, const State& s) {
+  const auto* move = std::get_if<MoveToPosition>(&command);
+  if (!move) return {};
+  MoveToPosition to = *move;
+  if (ToItsSystem(c, s, move->reference, to.x, to.y) != ErrorId::kNone) return {};
+  return to;
 }
 
 void Pop(Buffer& buffer) {
@@ -45,11 +68,13 @@ bool LeadsInto(const Context& c, const MoveToPosition& next, const State& s) {
 
 // Leads the move of X and Y in progress round the corner at its end. Looked at once: later there is less room, and it
 // takes some 10 to 70 plans.
-void PrepareCorner(const Context& c, const MoveToPosition& next, State& s) {
+void PrepareCorner(const Context& c, const Queued& queued, State& s) {
   PlaneMove& plane = s.plane;
-  if (next.blending == 0 || plane.tried || plane.waits || plane.turns) return;
-  if (s.mode != CommandMode::kFreeMovement || s.tickets[kPlane] == 0 || !IsFree(s, kPlane)) return;
-  if (IsStraightOn(plane, next)) return;
+  if (plane.tried || plane.waits || plane.turns) return;
+  if (s.mode != CommandMode::kFreeMovement || s.tickets[kPlane] == 0 || !IsFree(s, queued, kPlane)) return;
+  const std::optional<MoveToPosition> to = MoveOf(c, queued.command, s);
+  if (!to || to->blending == 0 || IsStraightOn(plane, *to)) return;
+  const MoveToPosition& next = *to;
   plane.tried = true;
   LimitedBy unused;
   const trajectory::Limits then = LimitsOf(next, c.params.xy, unused);
@@ -103,11 +128,11 @@ bool LeadsInto(const Context& c, const MoveOnTrack& next, const State& s) {
 }
 
 // Whether the next one may begin, be it without a stop.
-bool IsNext(const Context& c, const Command& next, const State& s) {
-  if (IsFree(s, kSlots)) return true;
-  if (s.tickets[kPlane] == 0 || !IsFree(s, kPlane)) return false;
-  if (const auto* move = std::get_if<MoveToPosition>(&next)) return LeadsInto(c, *move, s);
-  if (const auto* move = std::get_if<MoveOnTrack>(&next)) return LeadsInto(c, *move, s);
+bool IsNext(const Context& c, const Queued& next, const State& s) {
+  if (IsFree(s, next, kSlots)) return true;
+  if (s.tickets[kPlane] == 0 || !IsFree(s, next, kPlane)) return false;
+  if (const std::optional<MoveToPosition> move = MoveOf(c, next.command, s)) return LeadsInto(c, *move, s);
+  if (const auto* move = std::get_if<MoveOnTrack>(&next.command)) return LeadsInto(c, *move, s);
   return false;
 }
 
@@ -134,10 +159,9 @@ void PassReleases(const Context& c, State& s) {
 // The next one begins, if it is its turn.
 void GiveTurn(const Context& c, State& s) {
   Buffer& b = s.buffer;
-  if (b.count > 0) {
-    if (const auto* move = std::get_if<MoveToPosition>(&b.waiting[0].command)) PrepareCorner(c, *move, s);
-  }
-  if (b.count == 0 || !IsNext(c, b.waiting[0].command, s)) return;
+  if (b.count == 0) return;
+  PrepareCorner(c, b.waiting[0], s);
+  if (!IsNext(c, b.waiting[0], s)) return;
   const Queued next = b.waiting[0];
   Pop(b);
   // What it takes over from without a stop is done when its end is passed; in the plane that is now.
@@ -151,6 +175,9 @@ void GiveTurn(const Context& c, State& s) {
     s.tickets[kPlane] = before;
     return AbortBuffered(c, s);
   }
+  EachBeside(next.ticket, s, [&](std::uint32_t bit) {
+    for (Queued& waiting : b.waiting) waiting.beside &= ~bit;  // for this one they do wait
+  });
   if (before == 0) return;
   s.tickets[kPassing] = before;
   s.begun[kPassing] = begun;
@@ -180,6 +207,12 @@ bool Push(Ticket ticket, const Command& command, Buffer& buffer) noexcept {
   if (buffer.count == kBuffered) return false;
   buffer.waiting[buffer.count++] = {ticket, command};
   return true;
+}
+
+void GoBeside(Ticket ticket, State& s) noexcept {
+  EachBeside(ticket, s, [&](std::uint32_t bit) {
+    for (std::uint32_t i = 0; i < s.buffer.count; ++i) s.buffer.waiting[i].beside |= bit;
+  });
 }
 
 void AbortBuffered(const Context& c, State& s) noexcept {
@@ -223,6 +256,7 @@ void describe(Description<Queued>& d) {
   d.about("A command of a mover that waits for its turn.");
   d.internal<&Queued::ticket>("Of the command.");
   d.internal<&Queued::command>("It.");
+  d.internal<&Queued::beside>("Bits of slots that it does not wait for.");
 }
 
 void describe(Description<Buffer>& d) {

@@ -19,6 +19,8 @@ inline constexpr std::size_t kBuffered = 16;
 struct Queued {
   Ticket ticket = 0;
   Command command;
+  std::uint32_t beside =
+      0;  // bits of slots of Z, A, B and C whose commands were given later: it does not wait for them
 };
 
 struct Buffer {
@@ -36,6 +38,8 @@ struct Buffer {
 bool IsBuffered(const Command& command) noexcept;
 // Lets it wait. False: there is no room.
 bool Push(Ticket ticket, const Command& command, Buffer& buffer) noexcept;
+// One of Z, A, B or C has begun at once: what waits already does not wait for it.
+void GoBeside(Ticket ticket, State& s) noexcept;
 // None waits any more.
 void AbortBuffered(const Context& c, State& s) noexcept;
 // move: ends a Wait, and gives the next one its turn if it is that.

@@ -14,6 +14,7 @@ void describe(Enumeration<CommandMode>& e) {
   e.value(M::kCRotationFreeMovement, "CRotationFreeMovement", "It is turned out of its windows: X and Y are locked.");
   e.value(M::kCRotationOnTrack, "CRotationOnTrack", "The same on a track.");
   e.value(M::kExternalSetpointGeneration, "ExternalSetpointGeneration", "It follows set points from outside.");
+  e.value(M::kFormation, "Formation", "It goes along with the star of its formation.");
 }
 
 }  // namespace takt::mover

@@ -19,8 +19,9 @@ enum class CommandMode : std::uint8_t {
   kCRotationFreeMovement,       // in: turns out of a window, or is turned so. out: at rest within one
   kCRotationOnTrack,            // the same on a track
   kExternalSetpointGeneration,  // in: absolute set points from outside. out: at rest after them
+  kFormation,                   // in: a formation joined. out: left, or its end
 };
-inline constexpr int kCommandModes = 7;
+inline constexpr int kCommandModes = 8;
 
 using ModeTransition = Transition<CommandMode>;
 
@@ -40,6 +41,8 @@ inline constexpr std::array kModeTransitions = [] {
       ModeTransition{M::kLeavingTrack, M::kFreeMovement, "done, halt, fault"},
       ModeTransition{M::kOnTrack, M::kCRotationOnTrack, "move_c, adopt_track_orientation out of a window"},
       ModeTransition{M::kCRotationOnTrack, M::kOnTrack, "at rest within a window"},
+      ModeTransition{M::kFreeMovement, M::kFormation, "join_formation"},
+      ModeTransition{M::kFormation, M::kFreeMovement, "leave_formation; disabled; a fault of the planet or the star"},
   };
 }();
 
@@ -58,8 +61,10 @@ enum class Ask : std::uint8_t {
   kLeaveTrack,
   kMoveOnTrack,  // to a position, or geared to something
   kAdoptTrackOrientation,
+  kJoinFormation,
+  kLeaveFormation,
 };
-inline constexpr int kAsks = 9;
+inline constexpr int kAsks = 11;
 
 struct Acceptance {
   CommandMode mode;
@@ -74,6 +79,7 @@ inline constexpr std::array kAccepted = [] {
       Acceptance{M::kFreeMovement, Ask::kExternalAbsolute},
       Acceptance{M::kFreeMovement, Ask::kExternalRelative},
       Acceptance{M::kFreeMovement, Ask::kJoinTrack},
+      Acceptance{M::kFreeMovement, Ask::kJoinFormation},
       Acceptance{M::kOnTrack, Ask::kMoveC},
       Acceptance{M::kOnTrack, Ask::kMoveAuxiliary},
       Acceptance{M::kOnTrack, Ask::kExternalRelative},
@@ -87,6 +93,8 @@ inline constexpr std::array kAccepted = [] {
       Acceptance{M::kCRotationOnTrack, Ask::kMoveAuxiliary},
       Acceptance{M::kCRotationOnTrack, Ask::kExternalRelative},
       Acceptance{M::kCRotationOnTrack, Ask::kAdoptTrackOrientation},
+      Acceptance{M::kFormation, Ask::kMoveAuxiliary},
+      Acceptance{M::kFormation, Ask::kLeaveFormation},
   };
 }();
 

@@ -103,8 +103,10 @@ void describe(Description<MoveToPosition>& d) {
   d.about("Moves X and Y on a straight line, as fast as the dynamics allow; from a motion in progress it goes on.");
   d.required<&M::x>(unit::mm, kPlaces, "X of the target.");
   d.required<&M::y>(unit::mm, kPlaces, "Y of it.");
-  d.defaulted<&M::c>(unit::deg, kAngles, "C of it; counts with use_orientation.");
-  d.defaulted<&M::use_orientation>("True: C moves along, and is there at the same time where both begin at rest.");
+  d.defaulted<&M::c>(
+      unit::deg, kAngles,
+      "C of it; it moves along, and is there at the same time where both begin at rest. Unset: it stays.");
+  d.defaulted<&M::use_orientation>("False: C stays in any case.");
   DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
   DescribeReference(d);
   d.defaulted<&M::blending>(unit::mm, between(0, 1e5),
@@ -319,6 +321,18 @@ void describe(Description<AddToGroup>& d) {
 
 void describe(Description<RemoveFromGroup>& d) {
   d.about("Takes the mover out of its group: nobody looks any more what it collides with.");
+}
+
+void describe(Description<JoinFormation>& d) {
+  d.about(
+      "Goes along with another mover, the star, as one body: whatever moves X, Y and C of that carries this one with "
+      "it, in the place relative to it and turned to it as now. Both must rest, enabled and in free movement. The star "
+      "keeps the limits of all its planets. Active until the formation is left.");
+  d.required<&JoinFormation::star>("Name of the mover that leads.");
+}
+
+void describe(Description<LeaveFormation>& d) {
+  d.about("Leaves the formation, which must rest: the mover stays where it is.");
 }
 
 }  // namespace takt::mover

@@ -47,8 +47,8 @@ struct SetPosition {
 
 struct MoveToPosition {
   double x = 0, y = 0;                   // mm
-  double c = 0;                          // deg; counts with use_orientation
-  bool use_orientation = false;          // else C stays
+  std::optional<double> c{};             // deg; unset: C stays
+  bool use_orientation = true;           // else C stays in any case
   std::optional<double> velocity{};      // mm/s
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
@@ -57,6 +57,9 @@ struct MoveToPosition {
   Buffering buffer_mode = Buffering::kAborting;
   double blending = 0;  // mm before the end of the move before, buffered
 };
+inline bool TurnsAlong(const MoveToPosition& move) noexcept {
+  return move.use_orientation && move.c.has_value();
+}
 
 struct MoveZ {
   double position = 0;                   // mm
@@ -204,10 +207,17 @@ struct AddToGroup {  // of movers that do not collide
 };
 struct RemoveFromGroup {};
 
-using Command = std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC,
-                             JoinTrack, LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration,
-                             SetExternalSetpoint, StopExternalSetpointGeneration, Wait, Release, AddToGroup,
-                             RemoveFromGroup, GearInPosOnTrack, GearInPosOnTrackWithMasterMover>;
+// Goes along with a star from now on, as one body with it.
+struct JoinFormation {
+  Name star{};
+};
+struct LeaveFormation {};
+
+using Command =
+    std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC, JoinTrack,
+                 LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration, SetExternalSetpoint,
+                 StopExternalSetpointGeneration, Wait, Release, AddToGroup, RemoveFromGroup, GearInPosOnTrack,
+                 GearInPosOnTrackWithMasterMover, JoinFormation, LeaveFormation>;
 
 // Table of the arguments of the command at this place of the variant.
 const Type& TypeOfCommand(std::size_t index);
@@ -239,5 +249,7 @@ void describe(Description<Wait>&);
 void describe(Description<Release>&);
 void describe(Description<AddToGroup>&);
 void describe(Description<RemoveFromGroup>&);
+void describe(Description<JoinFormation>&);
+void describe(Description<LeaveFormation>&);
 
 }  // namespace takt::mover

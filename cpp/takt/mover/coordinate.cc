@@ -29,6 +29,11 @@ double WindowAt(const CoordinateParams& c, double position) {
   return kWindow * std::floor((position - c.lower + kSlack) / kWindow);
 }
 
+// To the nearest whole number; of two that are as near the one towards 0, so that half a turn leads to what was given.
+double RoundTowardsZero(double x) {
+  return std::copysign(std::ceil(std::abs(x) - 0.5 - kSlack), x);
+}
+
 }  // namespace
 
 bool PlanCoordinate(trajectory::Planner& planner, const KinematicState& from, double position, const Limits& limits,
@@ -54,8 +59,10 @@ bool PlanRest(trajectory::Planner& planner, const KinematicState& from, const Li
 CoordinateParams Windowed(const CoordinateParams& c, double position, bool bounded) noexcept {
   CoordinateParams params = c;
   if (bounded && InOneWindow(c, position, position)) {
-    params.lower += WindowAt(c, position);
-    params.upper += WindowAt(c, position);
+    // Wide windows overlap: that in whose middle it is most.
+    const double turned = kWindow * std::round((position - 0.5 * (c.lower + c.upper)) / kWindow);
+    params.lower += turned;
+    params.upper += turned;
   } else {
     params.lower = -std::numeric_limits<double>::infinity();
     params.upper = std::numeric_limits<double>::infinity();
@@ -78,7 +85,7 @@ double TargetOf(const MoverParams& params, const KinematicState& from, double st
     case TurnDirection::kNegative:
       return p + turn * (std::floor((std::min(stop, from.position) + slack - p) / turn) - command.additional_turns);
     case TurnDirection::kShortestWay:
-      return p + turn * std::round((stop - p) / turn);
+      return p + turn * RoundTowardsZero((stop - p) / turn);
     default:
       return p;
   }

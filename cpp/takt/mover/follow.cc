@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "takt/mover/coordinate.h"
+#include "takt/mover/formation.h"
+#include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
 #include "takt/mover/run.h"
 
@@ -13,6 +16,7 @@ namespace {
 
 constexpr double kSlack = 1e-6;  // of the limits, for what programs add up
 constexpr double kStill = 1e-9;  // mm, deg
+constexpr int kHalvings = 12;    // of shares
 
 double Length(double x, double y) {
   return std::hypot(x, y);
@@ -43,24 +47,120 @@ void GoOn(double period, SetPoint& given) {
   }
 }
 
+// On a track, where the mover takes as much across its way besides: what is added keeps the limits by itself, and both
+// together are no more than a track alone may ask for.
+bool AddsNoMore(const Context& c, const External& external, const SetPoint& to) {
+  constexpr double kMore = 1 + kSlack;
+  const trajectory::Limits limits = c.params.xy.maximum.limits();
+  const SetPoint &was = external.taken, &is = external.given;
+  const double most = Length(std::max(limits.acceleration, limits.deceleration), c.params.lateral_acceleration);
+  return Keeps(was[kX], was[kY], is[kX], is[kY], limits, c.cycle.period_s) &&
+         Length(to[kX].velocity, to[kY].velocity) <= kMore * limits.velocity &&
+         Length(to[kX].acceleration, to[kY].acceleration) <= kMore * most;
+}
+
+// Where a coordinate comes past if it has to stop.
+trajectory::Profile::Range WayToRest(const Context& c, const KinematicState& from, const trajectory::Limits& limits) {
+  trajectory::Profile stop;
+  if (planar::Rests(from) || !c.planner.Stop(from, limits, stop).ok()) return {from.position, from.position};
+  return stop.PositionRange();
+}
+
+// How far off its place on a track it may get with such a set point, be it that it has to stop: no more than this.
+double ReachOf(const Context& c, const SetPoint& given) {
+  const planar::Brakes brakes{c.params.xy.maximum.limits().deceleration, c.params.xy.maximum.jerk};
+  const double a = Length(given[kX].acceleration, given[kY].acceleration), t = a / brakes.jerk;
+  const double v = Length(given[kX].velocity, given[kY].velocity);
+  return Length(given[kX].position, given[kY].position) + t * (v + a * t / 3) +
+         planar::WayToRest(v + 0.5 * a * t, brakes);
+}
+
+// The others on tracks keep as much more away from it; there has to be room for that.
+ErrorId GetOff(const Context& c, const State& s, const SetPoint& given) {
+  planar::Rider& rider = c.rider();
+  const double before = rider.off, reach = ReachOf(c, given);
+  if (reach <= before) {
+    if (IsOver(c, s.plane)) rider.off = reach;  // what is still on its way back counts on
+    return ErrorId::kNone;
+  }
+  rider.off = reach;
+  Streets& streets = c.streets;
+  if (streets.traffic.TooNear(c.cycle, streets.network, streets.riders, c.index) == planar::kNobody) {
+    return ErrorId::kNone;
+  }
+  rider.off = before;
+  return ErrorId::kCollision;
+}
+
 }  // namespace
 
 bool CanFollow(const Context& c, const State& s, const SetPoint& from, const SetPoint& to) noexcept {
   const double period = c.cycle.period_s;
-  if (!Keeps(from[kX], from[kY], to[kX], to[kY], c.params.xy.maximum.limits(), period)) return false;
+  // Relative ones leave to the mode what X, Y and C may do together; a formation turns within its window.
+  const double way = Length(to[kX].position - from[kX].position, to[kY].position - from[kY].position);
+  const bool moves = s.mode == CommandMode::kExternalSetpointGeneration &&
+                     (way > kStill || !planar::Rests(to[kX]) || !planar::Rests(to[kY]));
+  const bool keeps = IsOnTrack(s) ? AddsNoMore(c, s.external, to)
+                                  : Keeps(from[kX], from[kY], to[kX], to[kY], c.params.xy.maximum.limits(), period);
+  if (!keeps) return false;
   for (std::size_t i = 0; i < kOthers.size(); ++i) {
     const CoordinateParams params = ParamsOf(c, s, i);
     const KinematicState& k = to[kOthers[i]];
     if (!Keeps(from[kOthers[i]], {}, k, {}, params.maximum.limits(), period)) return false;
-    if (k.position < params.lower - kSlack || k.position > params.upper + kSlack) return false;
+    const trajectory::Profile::Range stop = WayToRest(c, k, params.maximum.limits());
+    if (kOthers[i] == kC) {
+      const bool bound = moves || IsStar(c) || std::isfinite(params.lower);
+      if (bound && !InOneWindow(c.params.c, stop.min, stop.max)) return false;
+    } else if (stop.min < params.lower - kSlack || stop.max > params.upper + kSlack) {
+      return false;
+    }
   }
   const bool locked = s.mode == CommandMode::kCRotationFreeMovement || s.mode == CommandMode::kCRotationOnTrack;
-  return !locked || Length(to[kX].position - from[kX].position, to[kY].position - from[kY].position) <= kStill;
+  return !locked || way <= kStill;
 }
+
+double ReachOf(const Context& c, const State& s) noexcept {
+  return s.external.mode == SetpointMode::kRelative ? ReachOf(c, s.external.taken) : 0;
+}
+
+namespace {
+
+// A star within the limits of its formation. Where it moves and turns, both share out the dynamics so that they could
+// stop from there, with what is left in equal parts.
+bool CanFollowAsBody(const Context& c, const SetPoint& to, State& s) {
+  const SetPoint& from = s.set_point;
+  if (!InOneWindow(c.params.c, to[kC].position, to[kC].position)) return false;
+  const Body& body = c.fleet.bodies[c.index];
+  const auto moves = [&](Coordinate i) {
+    return from[i].velocity != 0 || from[i].acceleration != 0 || to[i].velocity != 0 || to[i].acceleration != 0;
+  };
+  if (!(moves(kX) || moves(kY)) || !moves(kC)) return CanFollow(With(c, body.alone), s, from, to);
+  const auto may_turn = [&] { return Keeps(from[kC], {}, to[kC], {}, body.both.c.maximum.limits(), c.cycle.period_s); };
+  const auto may_move = [&] {
+    return Keeps(from[kX], from[kY], to[kX], to[kY], body.both.xy.maximum.limits(), c.cycle.period_s);
+  };
+  // The share from which on something holds, or up to which.
+  const auto bound = [&](const auto& holds_below) {
+    double below = 0, above = 1;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (below + above) / 2;
+      ShareOut(c, middle, s);
+      (holds_below() ? below : above) = middle;
+    }
+    return std::pair{below, above};
+  };
+  const double before = s.formation.share;
+  const double least = bound([&] { return !may_turn(); }).second, most = bound(may_move).first;
+  ShareOut(c, (least + most) / 2, s);
+  if (least <= most && CanFollow(With(c, body.both), s, from, to)) return true;
+  ShareOut(c, before, s);
+  return false;
+}
+
+}  // namespace
 
 ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept {
   External& external = s.external;
-  if (!external.begun) return ErrorId::kNone;
   external.missing = external.fresh ? 0 : external.missing + 1;
   if (external.missing >= c.params.missing_setpoints) return ErrorId::kNoSetPoint;
   if (!external.fresh) GoOn(c.cycle.period_s, external.given);
@@ -73,10 +173,22 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept {
       to[i].acceleration += at[i].acceleration;
     }
   }
-  if (!CanFollow(c, s, s.set_point, to)) return ErrorId::kWildSetPoint;
+  const bool follows = IsStar(c) ? CanFollowAsBody(c, to, s) : CanFollow(c, s, s.set_point, to);
+  if (!follows) return ErrorId::kWildSetPoint;
   if (!IsOnTrack(s)) {
     if (const ErrorId why = WhyNotOn(c, s, CoverOfStop(c, to)); why != ErrorId::kNone) return why;
+    if (external.mode == SetpointMode::kRelative) {
+      if (const ObjectInfo object = TakeStop(c, s, to)) {
+        Report(c, s.tickets[kExternal], FeedbackState::kError, ErrorId::kCollision, 0, s, object);
+        s.tickets[kExternal] = 0;
+        return ErrorId::kCollision;
+      }
+    }
   }
+  if (c.rider().on) {
+    if (const ErrorId why = GetOff(c, s, external.given); why != ErrorId::kNone) return why;
+  }
+  external.taken = external.given;
   at = to;
   return ErrorId::kNone;
 }

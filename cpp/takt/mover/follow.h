@@ -6,8 +6,11 @@
 namespace takt::mover {
 
 // Takes the set point of this cycle into `at`, which holds where the mover would be without it. kNoSetPoint,
-// kWildSetPoint, kOffStators, kPartDisabled: `at` means nothing.
+// kWildSetPoint, kOffStators, kPartDisabled, kCollision: `at` means nothing.
 ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept;
+
+// mm, no more than that a mover may get off its place on a track by set points from outside, as those are now.
+double ReachOf(const Context& c, const State& s) noexcept;
 
 // Whether the mover can go from one set point to the next within a cycle, and stop from there, by its maximum dynamics
 // and within its limits.

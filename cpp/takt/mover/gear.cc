@@ -131,6 +131,7 @@ Answer Couple(const Given& g, const Gear& command, Rider& next, std::uint32_t ax
 // The gear is over, and the mover comes to rest.
 void Lose(const Context& c, ErrorId error, State& s) {
   c.rider().aim = planar::Aim::kRest;
+  c.rider().softly = false;
   c.rider().gear = {};
   s.gear = {};
   End(c, kPlane, FeedbackState::kError, error, s);

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "takt/mover/formation.h"
+#include "takt/mover/on_parts.h"
+
 namespace takt::mover {
 
 namespace {
@@ -53,16 +56,77 @@ planar::Move MoveOf(const Context& c, const PlaneMove& plane, const CoordinateMo
   return move;
 }
 
+bool IsWatched(const Context& c, std::uint32_t mover) {
+  return c.grounds.Watching(c.grounds.group_of_mover[mover]) != 0;
+}
+
+// How a planet moves while its star does so.
+planar::Move MoveOfPlanet(const Context& star, std::uint32_t planet, const PlaneMove& plane,
+                          const CoordinateMove& turn) {
+  const PlaneState at = At(plane.motion, Elapsed(star, plane.begin));
+  const planar::Pose from{{at.x.position, at.y.position}, Now(star, turn).position};
+  const planar::Arm arm = ArmOf(star.fleet.params[planet], star.fleet.states[planet].formation);
+  return planar::MoveOf(arm, from, MoveOf(star, plane, turn, false));
+}
+
+void Take(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) {
+  if (IsWatched(c, c.index)) planar::TakeMove(c.index, MoveOf(c, plane, turn, on_track), c.grounds);
+  EachPlanet(c, [&](std::uint32_t i) {
+    if (IsWatched(c, i)) planar::TakeMove(i, MoveOfPlanet(c, i, plane, turn), c.grounds);
+  });
+}
+
+// Whom a part brings to where that leads.
+ObjectInfo WhoComes(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) {
+  const auto comes = [](const planar::MoverNow& now) { return now.comes; };
+  if (std::ranges::none_of(c.grounds.movers, comes)) return {};
+  const planar::MoverNow& own = c.grounds.movers[c.index];
+  Cover cover = CoverOf(c, plane, turn);
+  if (on_track) {
+    cover.count = 1;
+    cover.areas[0].count = 1;
+    cover.areas[0].places[0] = own.pose.place;
+  }
+  for (const planar::Area& area : cover.all()) {
+    if (const ObjectInfo who = planar::WhoComes(c.index, own.system, area, c.grounds)) return who;
+  }
+  return {};
+}
+
 }  // namespace
 
 ObjectInfo InTheWay(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) noexcept {
-  if (c.grounds.Watching(c.grounds.group_of_mover[c.index]) == 0) return {};
-  return planar::AskMove(c.index, MoveOf(c, plane, turn, on_track), c.grounds);
+  ObjectInfo object = WhoComes(c, plane, turn, on_track);
+  if (!object && IsWatched(c, c.index)) {
+    object = planar::AskMove(c.index, MoveOf(c, plane, turn, on_track), c.grounds);
+  }
+  EachPlanet(c, [&](std::uint32_t i) {
+    if (!object && IsWatched(c, i)) object = planar::AskMove(i, MoveOfPlanet(c, i, plane, turn), c.grounds);
+  });
+  return object;
 }
 
 void Reserve(const Context& c, const State& s, bool on_track) noexcept {
-  if (c.grounds.Watching(c.grounds.group_of_mover[c.index]) == 0) return;
-  planar::TakeMove(c.index, MoveOf(c, s.plane, s.others.back(), on_track), c.grounds);
+  Take(c, s.plane, s.others.back(), on_track);
+}
+
+ObjectInfo TakeStop(const Context& now, const State& s, const SetPoint& at) noexcept {
+  Context c = now;
+  ++c.cycle.count;
+  PlaneMove plane;
+  plane.begin = c.cycle.count;
+  if (!PlanStop(c, s, at, c.params.xy.maximum.limits(), plane.motion)) {
+    plane.motion = StandingAt(at[kX].position, at[kY].position);
+  }
+  CoordinateMove turn;
+  turn.begin = c.cycle.count;
+  if (!c.planner.Stop(at[kC], c.params.c.maximum.limits(), turn.profile).ok()) {
+    turn.profile = {at[kC]};
+    turn.profile.SnapEnd(at[kC]);
+  }
+  const ObjectInfo object = InTheWay(c, plane, turn, false);
+  if (!object) Take(c, plane, turn, false);
+  return object;
 }
 
 void Stand(const Context& c, const State& s) noexcept {
@@ -74,14 +138,28 @@ void Stand(const Context& c, const State& s) noexcept {
   now.pose = {{s.set_point[kX].position, s.set_point[kY].position}, s.set_point[kC].position};
   now.rests = s.external.mode == SetpointMode::kNone && IsPlaneResting(c, s) && IsOver(c, s.others.back()) &&
               rests(kX) && rests(kY) && rests(kC);
+  if (IsPlanet(s)) now.rests = g.movers[s.formation.star].rests;
+  now.body = BodyOf(c, s);
   now.on_track = IsOnTrack(s);
   now.track = s.track;
+  const planar::Parts& parts = *c.streets.parts;
+  now.comes = s.part < parts.all.size() && parts.now[s.part].commanded != parts.now[s.part].position;
+  if (now.comes) {
+    const planar::Spot &from = parts.spot(s.part), &to = parts.goal(s.part);
+    now.goal = {to.system, now.pose.place + (to.origin - from.origin)};
+  }
   const std::uint32_t group = g.Watching(g.group_of_mover[c.index]);
   if (group == 0) return;
   // What is not straight is looked at anew.
   const planar::Reservation& own = g.grounds[group - 1].reserved.movers[c.index];
   const bool bends = own.move.corner_count > 0 || own.move.over || own.move.over_c;
-  if (own.moving && bends) Reserve(c, s, now.on_track);
+  const State& leads = IsPlanet(s) ? StateOfStar(c, s) : s;
+  const bool led = leads.external.mode == SetpointMode::kRelative && !now.on_track;  // then TakeStop looks
+  if (own.moving && bends && !led && IsPlanet(s)) {
+    planar::TakeMove(c.index, MoveOfPlanet(StarOf(c, s), c.index, leads.plane, leads.others.back()), g);
+  } else if (own.moving && bends && !led) {
+    Reserve(c, s, now.on_track);
+  }
   planar::AdvanceMover(c.index, g);
 }
 

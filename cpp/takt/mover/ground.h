@@ -10,6 +10,9 @@ namespace takt::mover {
 ObjectInfo InTheWay(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) noexcept;
 // Those of the state are reserved, whatever is in the way.
 void Reserve(const Context& c, const State& s, bool on_track) noexcept;
+// What is in the way of a mover that comes to rest from this set point, at the end of this cycle, as hard as it can;
+// X and Y in the plane. None: that is reserved from now on, in place of what was.
+ObjectInfo TakeStop(const Context& c, const State& s, const SetPoint& at) noexcept;
 // Where the mover is when this cycle begins, for others; what it has left is free.
 void Stand(const Context& c, const State& s) noexcept;
 

@@ -7,6 +7,7 @@
 
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
+#include "takt/core/status.h"
 
 namespace takt::mover {
 
@@ -18,7 +19,8 @@ struct Record {
   std::uint8_t command = 0;   // place in mover::Command
   FeedbackState state = FeedbackState::kBusy;
   ErrorId error = ErrorId::kNone;
-  ObjectInfo object{};  // that was in the way
+  ObjectInfo object{};                         // that was in the way
+  LimitedBy limited_by = LimitedBy::kNothing;  // what of its dynamics was reduced
 };
 
 inline constexpr std::size_t kHistory = 100;
@@ -30,19 +32,22 @@ struct History {
   void Begin(Ticket ticket, std::uint64_t cycle, std::uint8_t command) noexcept {
     records[count++ % kHistory] = {ticket, cycle, cycle, cycle, command, FeedbackState::kBusy, ErrorId::kNone};
   }
-  // One that is too old is forgotten.
-  void Note(const FeedbackEvent& event) noexcept {
+  // Null: it is too old, and forgotten.
+  Record* Find(Ticket ticket) noexcept {
     const std::uint64_t oldest = count > kHistory ? count - kHistory : 0;
     for (std::uint64_t i = count; i-- > oldest;) {
-      Record& record = records[i % kHistory];
-      if (record.ticket != event.ticket) continue;
-      record.changed = event.cycle;
-      if (event.state == FeedbackState::kActive) record.begun = event.cycle;
-      record.state = event.state;
-      record.error = event.error;
-      record.object = event.object;
-      return;
+      if (records[i % kHistory].ticket == ticket) return &records[i % kHistory];
     }
+    return nullptr;
+  }
+  void Note(const FeedbackEvent& event) noexcept {
+    Record* record = Find(event.ticket);
+    if (!record) return;
+    record->changed = event.cycle;
+    if (event.state == FeedbackState::kActive) record->begun = event.cycle;
+    record->state = event.state;
+    record->error = event.error;
+    record->object = event.object;
   }
 };
 

@@ -6,6 +6,7 @@
 #include "takt/core/describe.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/follow.h"
+#include "takt/mover/formation.h"
 #include "takt/mover/gear.h"
 #include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
@@ -24,9 +25,10 @@ Context NextTo(const Context& c) {
   return next;
 }
 
-// At rest on its old line it goes on to its target.
+// At rest on its old line it goes on to its target; off its place on a track not before that leads it nowhere.
 void GoOn(const Context& c, State& s) {
   if (!s.plane.waits || Elapsed(c, s.plane.begin) < DurationOf(s.plane.motion)) return;
+  if (IsOnTrack(s) && GoesAlongTrack(c, s)) return;
   const MoveToPosition next = s.plane.next;
   const trajectory::Limits limits{*next.velocity, *next.acceleration, *next.deceleration, *next.jerk};
   PlaneMotion motion;
@@ -37,15 +39,22 @@ void GoOn(const Context& c, State& s) {
   s.plane.waits = false;
 }
 
-// Where X and Y are at the end of this cycle as planned. On a track they are where that says: here is its place.
+// Where X and Y are at the end of this cycle as planned. On a track they are where that says, with what they are still
+// off it: here is its place.
 PlaneState PlaneOf(const Context& c, const State& s) {
   if (IsOnTrack(s)) {
     const KinematicState& way = c.rider().at;
     const planar::TrackPoint at = c.streets.At(s.track, way.position);
     const double cosine = std::cos(at.direction), sine = std::sin(at.direction);
     const double across = way.velocity * way.velocity * at.curvature;
-    return {{at.place.x, way.velocity * cosine, way.acceleration * cosine - across * sine},
-            {at.place.y, way.velocity * sine, way.acceleration * sine + across * cosine}};
+    PlaneState off = At(s.plane.motion, Elapsed(c, s.plane.begin) + c.cycle.period_s);
+    off.x.position += at.place.x;
+    off.x.velocity += way.velocity * cosine;
+    off.x.acceleration += way.acceleration * cosine - across * sine;
+    off.y.position += at.place.y;
+    off.y.velocity += way.velocity * sine;
+    off.y.acceleration += way.acceleration * sine + across * cosine;
+    return off;
   }
   return At(s.plane.motion, Elapsed(c, s.plane.begin) + c.cycle.period_s);
 }
@@ -66,6 +75,11 @@ SetPoint Planned(const Context& c, const State& s) {
 void MoveOn(const Context& c, State& s) {
   GoOn(c, s);
   SetPoint at = Planned(c, s);
+  if (IsPlanet(s)) {
+    Compose(StateOfStar(c, s).set_point, s.formation, at);
+    s.set_point = at;
+    return;
+  }
   if (s.external.mode != SetpointMode::kNone) {
     const ErrorId error = Follow(c, at, s);
     if (error != ErrorId::kNone) {
@@ -74,6 +88,7 @@ void MoveOn(const Context& c, State& s) {
     }
   }
   s.set_point = at;
+  if (s.external.mode == SetpointMode::kNone && IsOver(NextTo(c), s.plane)) c.rider().off = 0;
 }
 
 // The mode that goes with how the mover is turned, where it rests.
@@ -94,7 +109,10 @@ CommandMode Settled(const Context& c, const State& s) {
 
 // A move onto or from a track is over.
 void EndOfWay(const Context& c, State& s) {
-  if (s.mode == CommandMode::kJoiningTrack) s.mode = CommandMode::kOnTrack;
+  if (s.mode == CommandMode::kJoiningTrack) {
+    s.mode = CommandMode::kOnTrack;
+    s.plane = {};
+  }
   if (s.mode == CommandMode::kLeavingTrack) {
     LeaveStreets(c, s);
     s.mode = CommandMode::kFreeMovement;
@@ -128,7 +146,7 @@ void Finish(const Context& now, State& s) {
 
 void Change(const Context& c, State& s) {
   if (s.since == c.cycle.count) return;
-  const bool rests = AtRest(s);
+  const bool rests = AtRest(s) && !s.plane.waits;
   const auto done = [&](ObjectState state) {
     Enter(c, state, s);
     End(c, kPower, FeedbackState::kDone, ErrorId::kNone, s);
@@ -188,8 +206,10 @@ void Step(const Context& c, const Inputs& inputs, State& s) noexcept {
   if (IsOnTrack(s)) s.track = c.rider().route.first();
   NoteGear(c, s);
   Watch(c, inputs, s);
+  MindPlanets(c, s);
   TakeTurns(c, s);
   MoveOn(c, s);
+  MindStar(c, s);
   Locate(c, s);
   LookBack(c, s);
   Finish(c, s);
@@ -253,6 +273,11 @@ void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& ou
     out.waits_for = rider.waits == planar::Waits::kMover ? rider.waits_for + 1 : 0;
     out.deadlocked = out.waits_for != 0 && planar::IsDeadlocked(c.streets.riders, c.index);
   }
+  if (IsPlanet(s)) {
+    out.busy_c = at[kC].velocity != 0 || at[kC].acceleration != 0;
+    out.in_sync = true;
+  }
+  out.formation = BodyOf(c, s);
   PublishDelay(c, s, out);
   out.buffered = s.buffer.count;
   out.group = c.grounds.group_of_mover[c.index];

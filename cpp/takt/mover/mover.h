@@ -2,6 +2,10 @@
 // or reads a clock.
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <vector>
+
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
 #include "takt/mover/commands.h"
@@ -14,6 +18,23 @@
 
 namespace takt::mover {
 
+// What a star can do with its planets (mover/formation.h): X and Y or C alone, and both at once.
+struct Body {
+  // With room for so many planets.
+  Body(const MoverParams& params, std::size_t most) : alone(params), both(params) { planets.reserve(most); }
+
+  std::vector<std::uint32_t> planets{};  // their numbers
+  MoverParams alone;
+  MoverParams both;
+};
+
+// All movers, as those of a formation see each other; by number.
+struct Fleet {
+  std::span<const MoverParams> params{};
+  std::span<const State> states{};
+  std::span<Body> bodies{};  // what follows from the planets of each
+};
+
 // What every stage gets besides the mover itself.
 struct Context {
   const MoverParams& params;
@@ -23,6 +44,7 @@ struct Context {
   Streets& streets;
   planar::Grounds& grounds;
   std::uint32_t index = 0;  // of the mover
+  Fleet fleet{};
 
   planar::Rider& rider() const noexcept { return streets.riders[index]; }
 };

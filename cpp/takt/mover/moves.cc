@@ -4,6 +4,7 @@
 
 #include "takt/mover/admission.h"
 #include "takt/mover/coordinate.h"
+#include "takt/mover/formation.h"
 #include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
 
@@ -112,9 +113,10 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
   CoordinateMove turn = s.others.back();
   const KinematicState turned = Now(g.c, turn);
   const CoordinateParams free = Windowed(g.c.params.c, turned.position, false);
-  if (command.use_orientation) {
+  const bool turns_along = TurnsAlong(command);
+  if (turns_along) {
     const auto plan = [&](const Limits& as) {
-      return PlanCoordinate(g.c.planner, turned, command.c, as, free, turn.profile);
+      return PlanCoordinate(g.c.planner, turned, *command.c, as, free, turn.profile);
     };
     if (!plan(StandardOf(free))) return Refused(ErrorId::kPlanning);
     const trajectory::Profile::Range range = turn.profile.PositionRange();
@@ -139,11 +141,11 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
   if (const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, *move, turn)); why != ErrorId::kNone) return Refused(why);
   if (const ObjectInfo object = InTheWay(g.c, *move, turn, false)) return Refused(ErrorId::kCollision, object);
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
-  if (command.use_orientation) End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
+  if (turns_along) End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);
   s.others.back() = turn;
   s.plane = *move;
-  s.plane.turns = command.use_orientation;
+  s.plane.turns = turns_along;
   s.plane.limits = limits;
   s.limited_by = limited_by;
   Reserve(g.c, s, false);
@@ -180,7 +182,7 @@ Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept {
   if (!PlanCoordinate(g.c.planner, from, target, limits, free, move.profile)) return Refused(ErrorId::kPlanning);
   const trajectory::Profile::Range range = move.profile.PositionRange();
   const bool inside = InOneWindow(g.c.params.c, range.min, range.max);
-  if (!inside && !IsPlaneResting(g.c, s)) return Refused(ErrorId::kOutsideWindow);
+  if (!inside && (IsStar(g.c) || !IsPlaneResting(g.c, s))) return Refused(ErrorId::kOutsideWindow);
   move.begin = g.c.cycle.count;
   if (!IsOnTrack(s)) {
     const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, s.plane, move));

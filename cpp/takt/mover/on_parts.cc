@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/mover/formation.h"
 #include "takt/mover/ground.h"
 
 namespace takt::mover {
@@ -87,6 +88,16 @@ void AddStop(const Context& c, const SetPoint& at, Cover& out) {
   Add(AreaOf(c, {std::min(turned, stop), std::max(turned, stop)}), rest, 0, out);
 }
 
+ErrorId WhyNotOn(const planar::Parts& parts, std::uint32_t system, const Area& area) {
+  if (!planar::Carries(parts, system, area)) return ErrorId::kOffStators;
+  for (std::uint32_t i = 0; i < parts.all.size(); ++i) {
+    const planar::PartNow& now = parts.now[i];
+    if (now.away || now.enabled || now.enabling) continue;
+    if (planar::Touches(parts.all[i], parts.spot(i), system, area)) return ErrorId::kPartDisabled;
+  }
+  return ErrorId::kNone;
+}
+
 }  // namespace
 
 ErrorId ToItsSystem(const Context& c, const State& s, const Name& reference, double& x, double& y) noexcept {
@@ -98,6 +109,11 @@ ErrorId ToItsSystem(const Context& c, const State& s, const Name& reference, dou
 }
 
 Cover CoverOf(const Context& c, const State& s) noexcept {
+  if (IsPlanet(s)) {
+    Cover cover = CoverOf(StarOf(c, s), StateOfStar(c, s));
+    for (Area& area : std::span(cover.areas).first(cover.count)) area = AreaOf(ArmOf(c.params, s.formation), area);
+    return cover;
+  }
   Cover cover;
   const Angles angles = AnglesOf(c, s.others.back());
   const double turned = s.set_point[kC].position;
@@ -125,16 +141,16 @@ Cover CoverOf(const Context& c, const PlaneMove& move, const CoordinateMove& tur
 
 ErrorId WhyNotOn(const Context& c, const State& s, const Cover& cover) noexcept {
   const planar::Parts& parts = PartsOf(c);
-  if (parts.none()) return ErrorId::kNone;
+  ErrorId why = ErrorId::kNone;
+  if (parts.none()) return why;
   for (const Area& area : cover.all()) {
-    if (!planar::Carries(parts, s.system, area)) return ErrorId::kOffStators;
-    for (std::uint32_t i = 0; i < parts.all.size(); ++i) {
-      const planar::PartNow& now = parts.now[i];
-      if (now.away || now.enabled || now.enabling) continue;
-      if (planar::Touches(parts.all[i], parts.spot(i), s.system, area)) return ErrorId::kPartDisabled;
-    }
+    if (why == ErrorId::kNone) why = WhyNotOn(parts, s.system, area);
+    EachPlanet(c, [&](std::uint32_t i) {
+      const planar::Arm arm = ArmOf(c.fleet.params[i], c.fleet.states[i].formation);
+      if (why == ErrorId::kNone) why = WhyNotOn(parts, s.system, planar::AreaOf(arm, area));
+    });
   }
-  return ErrorId::kNone;
+  return why;
 }
 
 bool IsAway(const Context& c, const State& s) noexcept {
@@ -158,6 +174,7 @@ bool CanPartBeReady(const Context& c, const State& s) noexcept {
 }
 
 bool IsStill(const Context& c, const State& s) noexcept {
+  if (IsPlanet(s)) return IsStill(StarOf(c, s), StateOfStar(c, s));
   return IsResting(c, s) && !s.plane.waits && s.mode != CommandMode::kJoiningTrack &&
          s.mode != CommandMode::kLeavingTrack;
 }
@@ -186,6 +203,7 @@ void Carry(const Context& c, const planar::Spot& from, const planar::Spot& to, I
   inputs.actual.x += by.x;
   inputs.actual.y += by.y;
   PutAt({to.system, planar::Place{s.set_point[kX].position, s.set_point[kY].position} + by}, s);
+  if (IsOnTrack(s)) s.plane = {};
   s.plane.begin = c.cycle.count;
   Stand(c, s);
 }

@@ -4,6 +4,7 @@
 
 #include "takt/mover/admission.h"
 #include "takt/mover/coordinate.h"
+#include "takt/mover/follow.h"
 #include "takt/mover/on_parts.h"
 #include "takt/planar/nearest.h"
 
@@ -20,26 +21,10 @@ ObjectInfo TrackOf(std::uint32_t index) {
   return {ObjectKind::kTrack, index + 1};
 }
 
-// Who is too near on a track for one to stand there, or is to stand on a track that meets it.
-ObjectInfo TakenBy(const Context& c, std::uint32_t track, double s) {
-  const Streets& streets = c.streets;
-  const planar::Road& road = streets.network[track];
-  const planar::Place place = streets.At(track, s).place;
-  for (std::uint32_t i = 0; i < streets.riders.size(); ++i) {
-    const planar::Rider& other = streets.riders[i];
-    if (!other.on || i == c.index) continue;
-    const double gap = std::max(c.params.gap, other.gap);
-    if (other.route.first() == track) {
-      const double apart = std::abs(other.at.position - s);
-      if (std::min(apart, road.closed ? road.length - apart : apart) < gap) return MoverOf(i);
-      continue;
-    }
-    const std::uint32_t on = other.route.first();
-    if (streets.tracks[on].spot.system != streets.tracks[track].spot.system) continue;
-    const planar::Place its = streets.At(on, other.at.position).place;
-    if (std::hypot(its.x - place.x, its.y - place.y) < streets.tracks[track].reach) return MoverOf(i);
-  }
-  return {};
+// As its geometry and its ranges have been made for.
+bool IsSmallEnough(const MoverParams& mover, const TrackNow& track) {
+  return std::max(mover.width, mover.height) <= std::max(track.width, track.height) &&
+         std::min(mover.width, mover.height) <= std::min(track.width, track.height);
 }
 
 }  // namespace
@@ -64,15 +49,33 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   if (!IsPlaneResting(g.c, s)) return Refused(ErrorId::kCommandMode);
   const std::uint32_t track = streets.Find(command.track.view());
   if (track == planar::kNoTrack) return Refused(ErrorId::kParameter);
-  if (!streets.tracks[track].enabled || streets.uses[track].moving > 0) {
-    return Refused(ErrorId::kTrackMode, TrackOf(track));
-  }
   const planar::Spot& spot = streets.tracks[track].spot;
   if (spot.system != s.system) return Refused(ErrorId::kReference);
+  if (!streets.tracks[track].enabled || streets.uses[track].moving > 0 ||
+      !IsSmallEnough(g.c.params, streets.tracks[track])) {
+    return Refused(ErrorId::kTrackMode, TrackOf(track));
+  }
   const planar::Place from{s.set_point[kX].position, s.set_point[kY].position};
   planar::Nearest nearest = planar::NearestTo(*streets.network[track].track, from - spot.origin);
   nearest.place = nearest.place + spot.origin;
-  if (const ObjectInfo who = TakenBy(g.c, track, nearest.s)) return Refused(ErrorId::kCollision, who);
+  // The place is its own from now on.
+  planar::Rider& rider = g.c.rider();
+  rider = {};
+  rider.on = true;
+  rider.at.position = nearest.s;
+  rider.off = ReachOf(g.c, s);
+  rider.route.tracks[0] = track;
+  rider.route.count = 1;
+  rider.gap = g.c.params.gap;
+  rider.pace = {StandardOf(g.c.params.xy), g.c.params.lateral_acceleration};
+  const Limits most = g.c.params.xy.maximum.limits();
+  rider.brakes = {most.deceleration, most.jerk};
+  rider.top_speed = most.velocity;
+  const std::uint32_t other = streets.traffic.TooNear(g.c.cycle, streets.network, streets.riders, g.c.index);
+  if (other != planar::kNobody) {
+    rider = {};
+    return Refused(ErrorId::kCollision, MoverOf(other));
+  }
   const KinematicState turned = Now(g.c, s.others.back());
   const double c = TargetOf(g.c.params, turned, turned.position, {.direction = TurnDirection::kShortestWay});
   const Answer answer = MoveTo(g, {.x = nearest.place.x,
@@ -83,18 +86,10 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
                                    .acceleration = command.acceleration,
                                    .deceleration = command.deceleration,
                                    .jerk = command.jerk});
-  if (answer.status.failed()) return answer;
-  // The place is its own from now on.
-  planar::Rider& rider = g.c.rider();
-  rider = {};
-  rider.on = true;
-  rider.at.position = nearest.s;
-  rider.route.tracks[0] = track;
-  rider.route.count = 1;
-  rider.gap = g.c.params.gap;
-  rider.pace = {StandardOf(g.c.params.xy), g.c.params.lateral_acceleration};
-  const Limits most = g.c.params.xy.maximum.limits();
-  rider.brakes = {most.deceleration, most.jerk};
+  if (answer.status.failed()) {
+    rider = {};
+    return answer;
+  }
   s.track = track;
   s.mode = CommandMode::kJoiningTrack;
   ++streets.uses[track].configuring;
@@ -110,7 +105,9 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
   double x = command.x, y = command.y;
   if (const ErrorId why = ToItsSystem(g.c, s, command.reference, x, y); why != ErrorId::kNone) return Refused(why);
   s.plane = {};
-  s.plane.motion = StandingAt(s.set_point[kX].position, s.set_point[kY].position);
+  // Without what set points from outside add.
+  const planar::Place at = streets.At(s.track, g.c.rider().at.position).place;
+  s.plane.motion = StandingAt(at.x, at.y);
   s.plane.begin = g.c.cycle.count;
   const Answer answer = MoveTo(g, {.x = x,
                                    .y = y,
@@ -120,7 +117,10 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
                                    .acceleration = command.acceleration,
                                    .deceleration = command.deceleration,
                                    .jerk = command.jerk});
-  if (answer.status.failed()) return answer;
+  if (answer.status.failed()) {
+    s.plane = {};  // it stays on its place
+    return answer;
+  }
   s.mode = CommandMode::kLeavingTrack;
   ++streets.uses[s.track].configuring;
   return answer;
@@ -144,6 +144,9 @@ planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const Stat
   const std::uint32_t track = command.track.empty() ? s.track : streets.Find(command.track.view());
   if (track == planar::kNoTrack) return {ErrorId::kParameter, {}};
   const planar::Road& road = streets.network[track];
+  if (!road.closed && (command.additional_turns != 0 || command.modulo_tolerance != 0)) {
+    return {ErrorId::kParameter, {}};
+  }
   const bool turns_count = road.closed && command.direction == TurnDirection::kNonModulo;
   const bool outside = !(command.position >= 0 && command.position <= road.length);
   if (outside && !turns_count) return {ErrorId::kTargetBehindLimit, {}};
@@ -166,8 +169,9 @@ Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
   Take(g, kPlane);
   g.c.rider() = next;
   TakeRoute(g.c, next.route);
-  return {};
+  return {Status::Ok(), planar::TimeAlone(g.c.planner, g.c.streets.network, next)};
 }
+
 Answer CarryOut(const Given& g, const AdoptTrackOrientation& command) noexcept {
   return Turn(g,
               {.position = 0,

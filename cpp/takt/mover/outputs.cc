@@ -55,7 +55,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::track_position>(unit::mm, "Along the track that it is on.");
   d.internal<&O::track_velocity>(unit::mm_s, "Along it.");
   d.internal<&O::track_acceleration>(unit::mm_s2, "Along it.");
-  d.internal<&O::in_sync>("It goes along with a master and is in step.");
+  d.internal<&O::in_sync>("It goes along with a master and is in step, or with the star of its formation.");
   d.internal<&O::sync_error>(unit::mm, "Of one that goes along with a master: its place minus where it should be.");
   d.internal<&O::waits_for>("Number of the mover that is in its way and that it waits for, from 1; 0: none.");
   d.internal<&O::deadlocked>("The mover that it waits for waits for it, be it over others.");
@@ -65,6 +65,8 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::group>("Number of the group of movers that it is in, from 1; 0: none.");
   d.internal<&O::coordinate_system>("Number of the coordinate system that its positions are in, from 1; 0: none.");
   d.internal<&O::part>("Number of the part that its middle is on, from 1; 0: none.");
+  d.internal<&O::formation>(
+      "Number of the star of the formation that it is in, itself or another mover, from 1; 0: none.");
   d.internal<&O::commands>("So many commands have come, external set points apart.");
 }
 

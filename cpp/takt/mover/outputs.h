@@ -42,7 +42,7 @@ struct Outputs {
   double track_position = 0;      // mm along it, where it is on it
   double track_velocity = 0;      // mm/s
   double track_acceleration = 0;  // mm/s²
-  bool in_sync = false;           // it is where its master wants it
+  bool in_sync = false;           // it is where its master or star wants it
   double sync_error = 0;          // mm, its place minus that
   std::uint32_t waits_for = 0;    // number of the mover that is in its way, from 1; 0: none
   bool deadlocked = false;        // that one waits for it, over others or not
@@ -53,7 +53,8 @@ struct Outputs {
   // Numbers, from 1, of the coordinate system that positions are in, and of the part that its middle is on; 0: none.
   std::uint32_t coordinate_system = 0;
   std::uint32_t part = 0;
-  std::uint64_t commands = 0;  // so many have come
+  std::uint32_t formation = 0;  // number of the star of the formation that it is in, itself or another; 0: none
+  std::uint64_t commands = 0;   // so many have come
 };
 
 void describe(Enumeration<Delay>&);

@@ -1,5 +1,6 @@
 // Enabled or not, and where; and coming to rest.
 #include "takt/mover/admission.h"
+#include "takt/mover/formation.h"
 #include "takt/mover/on_parts.h"
 
 namespace takt::mover {
@@ -76,14 +77,30 @@ Answer CarryOut(const Given& g, const SetPosition& command) noexcept {
   return Done();
 }
 
+namespace {
+
+// The star sees it and brings all of the formation to rest, which goes on.
+Answer HaltPlanet(const Given& g) {
+  for (const Slot slot : {kMoveZ, kMoveA, kMoveB}) End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, g.s);
+  AbortBuffered(g.c, g.s);
+  BringToRest(g.c, nullptr, g.s);
+  Take(g, kHalt);
+  return {};
+}
+
+}  // namespace
+
 Answer CarryOut(const Given& g, const Halt& command) noexcept {
   if (g.s.state != ObjectState::kEnabled) return Refused(ErrorId::kMoverDisabled);
+  if (IsPlanet(g.s)) return HaltPlanet(g);
   const MoveToPosition as{.deceleration = command.deceleration, .jerk = command.jerk};
   const Limits limits = LimitsOf(as, g.c.params.xy, g.s.limited_by);
   EndAll(g.c, false, FeedbackState::kAborted, ErrorId::kNone, g.s);
   BringToRest(g.c, &limits, g.s);
   Take(g, kHalt);
-  return {Status::Ok(), DurationOf(g.s.plane.motion)};
+  if (!IsOnTrack(g.s)) return {Status::Ok(), DurationOf(g.s.plane.motion)};
+  const planar::Rider& rider = g.c.rider();
+  return {Status::Ok(), planar::Brake(rider.at, rider.pace.brakes()).ends_s.back()};
 }
 
 }  // namespace takt::mover

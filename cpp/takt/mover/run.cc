@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/mover/coordinate.h"
+#include "takt/mover/formation.h"
 #include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
 
@@ -44,11 +45,14 @@ void Enter(const Context& c, planar::ObjectState state, State& s) noexcept {
   s.since = c.cycle.count;
 }
 
-bool IsPlaneResting(const Context& c, const State& s) noexcept {
-  const auto rests = [](const KinematicState& k) { return k.velocity == 0 && k.acceleration == 0; };
+bool GoesAlongTrack(const Context& c, const State& s) noexcept {
   const planar::Rider& rider = c.rider();
-  const bool goes = IsOnTrack(s) && rider.aim != planar::Aim::kRest && !rider.there;
-  return !goes && IsOver(c, s.plane) && rests(s.set_point[kX]) && rests(s.set_point[kY]);
+  return IsOnTrack(s) && ((rider.aim != planar::Aim::kRest && !rider.there) || !planar::Rests(rider.at));
+}
+
+bool IsPlaneResting(const Context& c, const State& s) noexcept {
+  return !GoesAlongTrack(c, s) && IsOver(c, s.plane) && planar::Rests(s.set_point[kX]) &&
+         planar::Rests(s.set_point[kY]);
 }
 
 void LeaveStreets(const Context& c, State& s) noexcept {
@@ -65,7 +69,9 @@ bool IsResting(const Context& c, const State& s) noexcept {
 CoordinateParams ParamsOf(const Context& c, const State& s, std::size_t other) noexcept {
   const CoordinateParams& params = Described(c.params, other);
   if (kOthers[other] != kC) return params;
-  const bool bound = s.mode == CommandMode::kFreeMovement || s.mode == CommandMode::kOnTrack;
+  const bool moves = !planar::Rests(s.set_point[kX]) || !planar::Rests(s.set_point[kY]);
+  const bool bound = s.mode == CommandMode::kFreeMovement || s.mode == CommandMode::kOnTrack ||
+                     (s.mode == CommandMode::kExternalSetpointGeneration && moves);
   return Windowed(params, s.set_point[kC].position, bound);
 }
 
@@ -91,6 +97,50 @@ bool Stays(const Context& c, const State& s, const PlaneMotion& motion) {
   return WhyNotOn(c, s, CoverOf(c, move, s.others.back())) == ErrorId::kNone;
 }
 
+// On a track: what set points from outside have added comes to rest by itself, and goes back to nothing once the mover
+// rests there.
+PlaneMove PlanBack(const Context& c, const State& s) {
+  PlaneMove back;
+  back.begin = c.cycle.count;
+  PlaneState off = At(s.plane.motion, Elapsed(c, s.plane.begin));
+  if (s.external.mode == SetpointMode::kRelative) {
+    for (const auto& [own, more] :
+         {std::pair(&off.x, &s.external.taken[kX]), std::pair(&off.y, &s.external.taken[kY])}) {
+      own->position += more->position;
+      own->velocity += more->velocity;
+      own->acceleration += more->acceleration;
+    }
+  }
+  const trajectory::Limits maximum = c.params.xy.maximum.limits();
+  if (off.x.position == 0 && off.y.position == 0 && planar::Rests(off.x) && planar::Rests(off.y)) return back;
+  PlanRest(c.planner, off, maximum, back.motion);
+  back.waits = true;
+  back.next = {.velocity = maximum.velocity,
+               .acceleration = maximum.acceleration,
+               .deceleration = maximum.deceleration,
+               .jerk = maximum.jerk};
+  return back;
+}
+
+}  // namespace
+
+bool PlanStop(const Context& c, const State& s, const SetPoint& at, const trajectory::Limits& limits,
+              PlaneMotion& rest) noexcept {
+  if (s.external.mode == SetpointMode::kNone) {
+    return PlanRest(c.planner, s.plane.motion, Elapsed(c, s.plane.begin), limits, rest);
+  }
+  // As long as nothing from outside moves it, it brakes along what it does, and so within what it has reserved.
+  const PlaneState planned = At(s.plane.motion, Elapsed(c, s.plane.begin));
+  const bool beside =
+      s.external.mode == SetpointMode::kRelative && MoveAlike(planned.x, at[kX]) && MoveAlike(planned.y, at[kY]);
+  if (!beside) return PlanRest(c.planner, {at[kX], at[kY]}, limits, rest);
+  if (!PlanRest(c.planner, s.plane.motion, Elapsed(c, s.plane.begin), limits, rest)) return false;
+  Shift(at[kX].position - planned.x.position, at[kY].position - planned.y.position, rest);
+  return true;
+}
+
+namespace {
+
 // Within `plane`, or all with the maximum (null).
 Rest PlanRest(const Context& c, const trajectory::Limits* plane, const State& s) {
   const trajectory::Limits maximum = c.params.xy.maximum.limits();
@@ -99,20 +149,15 @@ Rest PlanRest(const Context& c, const trajectory::Limits* plane, const State& s)
   PlaneMotion& rest = all.plane.motion;
   rest = StandingAt(at[kX].position, at[kY].position);
   all.plane.begin = c.cycle.count;
-  // As long as nothing from outside moves it, it brakes along what it does, and so within what it has reserved.
-  const PlaneState planned = At(s.plane.motion, Elapsed(c, s.plane.begin));
-  const bool beside =
-      s.external.mode == SetpointMode::kRelative && MoveAlike(planned.x, at[kX]) && MoveAlike(planned.y, at[kY]);
   const auto plan = [&](const trajectory::Limits& limits) {
-    const bool found = s.external.mode == SetpointMode::kNone || beside
-                           ? PlanRest(c.planner, s.plane.motion, Elapsed(c, s.plane.begin), limits, rest)
-                           : PlanRest(c.planner, {at[kX], at[kY]}, limits, rest);
-    if (found && beside) {
-      Shift(at[kX].position - planned.x.position, at[kY].position - planned.y.position, rest);
-    }
+    const bool found = PlanStop(c, s, at, limits, rest);
     return found && SpeedBound(rest) <= maximum.velocity * (1 + 1e-9) && Stays(c, s, rest);
   };
-  if (!IsOnTrack(s) && (plane == nullptr || !plan(*plane))) plan(maximum);
+  if (IsOnTrack(s)) {
+    all.plane = PlanBack(c, s);
+  } else if (plane == nullptr || !plan(*plane)) {
+    plan(maximum);
+  }
   for (std::size_t i = 0; i < kOthers.size(); ++i) {
     const CoordinateParams params = ParamsOf(c, s, i);
     // C turns no further than it was to, where that counts.
@@ -133,12 +178,25 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
     s.mode = CommandMode::kFreeMovement;
   }
   Rest rest = PlanRest(c, plane, s);
+  if (IsPlanet(s)) {  // X, Y and C are the star's
+    std::copy_n(rest.others.begin(), rest.others.size() - 1, s.others.begin());
+    return;
+  }
   // As hard as it can it stays within what it has reserved.
   if (plane && InTheWay(c, rest.plane, rest.others.back(), IsOnTrack(s))) rest = PlanRest(c, nullptr, s);
   s.plane = rest.plane;
   s.others = rest.others;
-  if (IsOnTrack(s)) c.rider().aim = planar::Aim::kRest;  // with its greatest dynamics, as all others reckon
+  if (IsOnTrack(s)) {
+    planar::Rider& rider = c.rider();
+    rider.aim = planar::Aim::kRest;
+    rider.softly = plane != nullptr;
+    if (plane) {
+      rider.pace.limits.deceleration = plane->deceleration;
+      rider.pace.limits.jerk = plane->jerk;
+    }
+  }
   s.external = {};
+  if (IsStar(c)) s.formation.whole = &c.params == &c.fleet.bodies[c.index].alone;
   Reserve(c, s, IsOnTrack(s));
 }
 

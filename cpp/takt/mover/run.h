@@ -38,6 +38,8 @@ inline bool IsAtCorner(const Context& c, const PlaneMove& move) noexcept {
 inline bool IsOnTrack(const State& s) noexcept {
   return s.mode == CommandMode::kOnTrack || s.mode == CommandMode::kCRotationOnTrack;
 }
+// Its track leads it on, or is going to.
+bool GoesAlongTrack(const Context& c, const State& s) noexcept;
 // X and Y do not move when this cycle begins, and are not going to.
 bool IsPlaneResting(const Context& c, const State& s) noexcept;
 // The mover is on no track any more.
@@ -49,8 +51,11 @@ bool IsResting(const Context& c, const State& s) noexcept;
 // The parameters of one of kOthers; C limited to its window where that binds it.
 CoordinateParams ParamsOf(const Context& c, const State& s, std::size_t other) noexcept;
 
+// How X and Y come to rest in the plane from this set point, where the mover is when this cycle begins.
+bool PlanStop(const Context& c, const State& s, const SetPoint& at, const trajectory::Limits& limits,
+              PlaneMotion& rest) noexcept;
 // All coordinates come to rest from where they are, X and Y within `plane`, or all with the maximum (null). Set points
-// from outside are over.
+// from outside are over; a mover that they have taken off its place on a track goes back there.
 void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) noexcept;
 
 inline trajectory::Limits StandardOf(const PlaneParams& p) noexcept {

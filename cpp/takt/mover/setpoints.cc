@@ -14,7 +14,10 @@ Answer CarryOut(const Given& g, const StartExternalSetpointGeneration& command) 
   if (alone && !IsResting(g.c, s)) return Refused(ErrorId::kCommandMode);
   s.external = {};
   s.external.mode = command.mode;
-  if (alone) s.mode = CommandMode::kExternalSetpointGeneration;
+  if (alone) {  // it stands, until the first one comes
+    s.external.given = s.external.taken = s.set_point;
+    s.mode = CommandMode::kExternalSetpointGeneration;
+  }
   Take(g, kExternal);
   return {};
 }
@@ -33,7 +36,7 @@ Answer CarryOut(const Given& g, const SetExternalSetpoint& p) noexcept {
                      {p.a, p.velocity_a, p.acceleration_a},
                      {p.b, p.velocity_b, p.acceleration_b},
                      {p.c, p.velocity_c, p.acceleration_c}}};
-  external.begun = external.fresh = true;
+  external.fresh = true;
   return Done();
 }
 

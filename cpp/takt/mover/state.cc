@@ -27,6 +27,7 @@ void describe(Description<Record>& d) {
   d.internal<&R::state>("What it is.");
   d.internal<&R::error>("Why it failed.");
   d.internal<&R::object>("What was in the way.");
+  d.internal<&R::limited_by>("What of its dynamics was reduced.");
 }
 
 void describe(Description<History>& d) {
@@ -64,8 +65,8 @@ void describe(Description<External>& d) {
   d.about("Set points from outside.");
   d.internal<&E::mode>("What they do.");
   d.internal<&E::given>("The last one, or what it went on to.");
-  d.internal<&E::begun>("One has come.");
   d.internal<&E::fresh>("One has come in this cycle.");
+  d.internal<&E::taken>("The last one that the mover followed.");
   d.internal<&E::missing>("So many in a row.");
 }
 
@@ -74,6 +75,20 @@ void describe(Description<GearState>& d) {
   d.about("What a mover goes along with.");
   d.internal<&GearState::axis>("Number of the axis.");
   d.internal<&GearState::in_sync>("As last said.");
+}
+
+void describe(Description<FormationState>& d) {
+  using F = FormationState;
+  d.named("MoverFormation");
+  d.about("Its place in a formation.");
+  d.internal<&F::star>("Number of the mover that it goes along with.");
+  d.internal<&F::x>(unit::mm, "Where it is, seen from the star.");
+  d.internal<&F::y>(unit::mm, "Of it.");
+  d.internal<&F::c>(unit::deg, "How it is turned, seen from the star.");
+  d.internal<&F::joined>("As last said.");
+  d.internal<&F::whole>("Of a star: what it does may have all of its dynamics.");
+  d.internal<&F::share>(unit::one, "Else: what turning has of them.");
+  d.internal<&F::brakes>("Of a star: for a planet that cannot go on.");
 }
 
 void describe(Description<State>& d) {
@@ -92,6 +107,7 @@ void describe(Description<State>& d) {
   d.internal<&S::plane>("Motion of X and Y.");
   d.internal<&S::track>("Track that it joins, is on, or leaves.");
   d.internal<&S::gear>("What it goes along with.");
+  d.internal<&S::formation>("Its place in a formation.");
   d.internal<&S::system>("Coordinate system where it is.");
   d.internal<&S::part>("Part that its middle is on.");
   d.internal<&S::others>("Motions of Z, A, B, C.");

@@ -51,16 +51,29 @@ struct CoordinateMove {
 struct External {
   SetpointMode mode = SetpointMode::kNone;
   SetPoint given{};           // the last one, or what it went on to
-  bool begun = false;         // one has come
   bool fresh = false;         // one has come in this cycle
+  SetPoint taken{};           // the last one that the mover followed
   std::uint32_t missing = 0;  // so many in a row
 };
+
+inline constexpr std::uint32_t kNoStar = 0xffffffff;
 
 // What a mover goes along with; the rest of it lies with its place on tracks (planar/gear.h).
 inline constexpr std::uint32_t kNoMaster = 0xffffffff;
 struct GearState {
   std::uint32_t axis = kNoMaster;  // number of the master among Streets::masters; kNoMaster: a mover, or nothing
   bool in_sync = false;            // as last said
+};
+
+// A planet's place in a formation (mover/formation.h), and what a star remembers of its own.
+struct FormationState {
+  std::uint32_t star = kNoStar;  // number of the mover that it goes along with, from 0
+  double x = 0, y = 0;           // mm, where it is seen from the star
+  double c = 0;                  // deg, to the star
+  bool joined = false;           // as last said
+  bool whole = false;            // of a star: what it does now may have all of its dynamics ...
+  double share = 0.5;            // ... else, what turning has of them
+  bool brakes = false;           // of a star: for a planet that cannot go on
 };
 
 // What commands there may be at a time, each with a ticket of its own.
@@ -76,6 +89,7 @@ enum Slot : std::size_t {
   kStopExternal,
   kWait,
   kPassing,
+  kFormation,
   kSlots
 };
 
@@ -89,11 +103,12 @@ struct State {
   std::array<Ticket, kSlots> tickets{};
   std::array<std::uint64_t, kSlots> begun{};  // cycle in which each took its slot
   Buffer buffer;
-  PlaneMove plane;
+  PlaneMove plane;                         // on a track: of where it is off its place there
   std::uint32_t track = planar::kNoTrack;  // that it joins, is on, or leaves
   std::uint32_t system = 0;                // coordinate system where it is, from 0
   std::uint32_t part = planar::kNoPart;    // that its middle is on
   GearState gear;
+  FormationState formation;
   std::array<CoordinateMove, kOthers.size()> others;  // in the order of kOthers
   External external;
   SetPoint set_point{};  // at the end of the last cycle
@@ -106,6 +121,7 @@ void describe(Description<PlaneMove>&);
 void describe(Description<CoordinateMove>&);
 void describe(Description<External>&);
 void describe(Description<GearState>&);
+void describe(Description<FormationState>&);
 void describe(Description<State>&);
 
 }  // namespace takt::mover

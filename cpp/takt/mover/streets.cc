@@ -10,7 +10,7 @@ const planar::Parts kNoParts;
 
 bool SameShape(const TrackNow& a, const TrackNow& b) {
   return a.way == b.way && a.length == b.length && a.reach == b.reach && a.start_node == b.start_node &&
-         a.end_node == b.end_node && a.spot == b.spot;
+         a.end_node == b.end_node && a.goal == b.goal;
 }
 
 void LinkAll(std::span<const TrackNow> tracks, planar::Network& network) {
@@ -20,7 +20,7 @@ void LinkAll(std::span<const TrackNow> tracks, planar::Network& network) {
     road.length = road.track ? road.track->length : 0;
     road.closed = road.track && road.track->closed;
     road.reach = tracks[i].reach;
-    road.origin = tracks[i].spot.origin;
+    road.origin = tracks[i].goal.origin;
     road.before = road.behind = {};
   }
   for (std::uint32_t i = 0; i < tracks.size(); ++i) {
@@ -43,6 +43,7 @@ void CutRoute(const planar::Network& network, planar::Rider& rider) {
     std::fill(rider.route.tracks.begin() + k, rider.route.tracks.begin() + rider.route.count, 0u);
     rider.route.count = k;
     rider.aim = planar::Aim::kRest;
+    rider.softly = false;
   }
   std::uint32_t behind = rider.route.first();
   for (std::uint32_t k = 0; k < rider.passed_count; behind = rider.passed[k++]) {
@@ -72,7 +73,7 @@ std::uint32_t Streets::Find(std::string_view track) const noexcept {
 
 planar::TrackPoint Streets::At(std::uint32_t track, double s) const noexcept {
   planar::TrackPoint point = planar::At(*network[track].track, s);
-  point.place = point.place + network[track].origin;
+  point.place = point.place + tracks[track].spot.origin;
   return point;
 }
 
@@ -80,22 +81,25 @@ void Refresh(std::span<const TrackNow> now, Streets& s) noexcept {
   if (!std::ranges::equal(now, s.tracks, SameShape)) {
     LinkAll(now, s.network);
     for (planar::Rider& rider : s.riders) CutRoute(s.network, rider);
+    // Those that meet a track which is another now are looked at, too.
+    const auto changed = [&](std::uint32_t i) {
+      for (std::uint32_t k = 0; k < now.size(); ++k) {
+        const bool meets = now[k].start_node == now[i].start_node || now[k].end_node == now[i].end_node;
+        if (!SameShape(now[k], s.tracks[k]) && (k == i || meets)) return true;
+      }
+      return false;
+    };
     for (std::uint32_t i = 0; i < now.size(); ++i) {
       planar::Road& road = s.network.roads[i];
       if (now[i].manual) {
         road.range_at_start = now[i].range_at_start;
         road.range_at_end = now[i].range_at_end;
-        continue;
+      } else if (changed(i)) {
+        planar::SetRanges(i, s.network);
       }
-      // Those that meet a track which is another now are looked at, too.
-      const auto meets = [&](std::uint32_t k) {
-        return now[k].start_node == now[i].start_node || now[k].end_node == now[i].end_node;
-      };
-      bool changed = false;
-      for (std::uint32_t k = 0; k < now.size() && !changed; ++k) {
-        changed = !SameShape(now[k], s.tracks[k]) && (k == i || meets(k));
-      }
-      if (changed) planar::SetRanges(i, s.network);
+    }
+    for (std::uint32_t i = 0; i < now.size(); ++i) {
+      if (changed(i)) planar::SetLeads(i, s.network);
     }
   }
   std::ranges::copy(now, s.tracks.begin());

@@ -26,9 +26,12 @@ struct TrackNow {
   double reach = 0;                      // mm, at which the centres of two of its largest movers may touch
   std::uint32_t part = planar::kNoPart;  // that it lies on
   planar::Spot spot{};                   // where that is, which its places count from
+  planar::Spot goal{};                   // where that is to be, as of where tracks meet
   bool manual = false;                   // the ranges are given
   double range_at_start = 0;             // mm
   double range_at_end = 0;
+  double width = 0;  // mm, of the largest movers that it is for
+  double height = 0;
 };
 
 // An axis that movers may follow.

@@ -61,6 +61,8 @@ void describe(Description<PartParams>& d) {
   d.defaulted<&P::stators>("Instead of columns and rows: lower left corners of its stators, from the part's origin.");
   d.required<&P::positions>("Where it can be; the first has the index 1.");
   d.defaulted<&P::initial_position>(between(1, 1000), "Index of that where it is at the start.");
+  d.defaulted<&P::travel_time_s>(unit::s, between(0, 3600),
+                                 "So long a simulated part takes from position to position.");
 }
 
 }  // namespace takt::part

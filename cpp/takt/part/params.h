@@ -27,6 +27,7 @@ struct PartParams {
   std::vector<planar::Place> stators{};  // mm, their lower left corners in the part's own coordinates
   std::vector<PositionParams> positions;
   std::uint32_t initial_position = 1;  // from 1
+  double travel_time_s = 0;            // s, that a simulated one takes from position to position
 };
 
 // The lower left corners of its stators.

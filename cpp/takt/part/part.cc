@@ -54,6 +54,7 @@ struct Applier {
     if (a.index == s.position + 1) return DoneAtOnce();
     if (hindrance.error != ErrorId::kNone) return Refuse(hindrance.error, hindrance.object);
     s.commanded = a.index - 1;
+    s.went = c.cycle.count;
     GoOn(s.going);
   }
   void operator()(const AllowEnable&) const {
@@ -112,8 +113,10 @@ void Change(const Context& c, const Around& around, State& s) {
 
 }  // namespace
 
-Inputs Simulate(const State& s) noexcept {
-  return {s.commanded + 1, false};
+Inputs Simulate(const Context& c, const State& s) noexcept {
+  const double gone_s = static_cast<double>(c.cycle.count - s.went) * c.cycle.period_s;
+  const bool goes = s.commanded != s.position && gone_s < c.params.travel_time_s;
+  return {goes ? 0 : s.commanded + 1, false};
 }
 
 void Apply(const Context& c, Ticket ticket, const Command& command, const Hindrance& hindrance, State& s) noexcept {

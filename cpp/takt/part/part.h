@@ -29,8 +29,9 @@ struct Inputs {
   bool fault = false;
 };
 
-// What an ideal part reports after this cycle: it is where it is to be.
-Inputs Simulate(const State& s) noexcept;
+// What a simulated part reports after this cycle: it is where it is to be, or nowhere for as long as it takes to get
+// there.
+Inputs Simulate(const Context& c, const State& s) noexcept;
 
 // What keeps it from going to another position.
 struct Hindrance {

@@ -34,6 +34,7 @@ void describe(Description<State>& d) {
   d.internal<&S::error>("Of the fault.");
   d.internal<&S::position>("Where it is, or was last.");
   d.internal<&S::commanded>("Where it is to be.");
+  d.internal<&S::went>("Cycle in which it was commanded there.");
   d.internal<&S::away>("It is not there.");
   d.internal<&S::going>("Command that brings it somewhere.");
   d.internal<&S::disabling>("Command that disables it.");

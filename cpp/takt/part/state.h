@@ -18,6 +18,7 @@ struct State {
   ErrorId error = ErrorId::kNone;
   std::uint32_t position = 0;   // where it is, or was last, from 0 ...
   std::uint32_t commanded = 0;  // ... and where it is to be
+  std::uint64_t went = 0;       // cycle in which it was commanded there
   bool away = false;            // it is not there
   Ticket going = 0;             // of activate_position
   Ticket disabling = 0;         // of force_disable

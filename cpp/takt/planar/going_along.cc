@@ -37,7 +37,7 @@ double TimeAt(const Braking& braking, int direction, double from, double way) {
 
 KinematicState GoAlong(trajectory::Planner& planner, const Rider& r, const KinematicState& demand, double period_s,
                        bool& exact) noexcept {
-  const trajectory::Limits& own = r.pace.limits;
+  const trajectory::Limits own = LimitsNow(r);
   trajectory::ChaseState chase;
   KinematicState next = Chase({own, planner, own, period_s}, trajectory::ChaseMode::kPosition, r.at, demand, chase);
   exact = chase.in_step;
@@ -61,11 +61,25 @@ int RunsOut(const Network& network, const Rider& r, const KinematicState& at) no
   return std::max(at.position, braking.highest) > end + kTolerance ? 1 : 0;
 }
 
-bool KeepsToCurves(const Network& network, const Rider& r, const KinematicState& next,
+bool KeepsToLimits(const Network& network, const Rider& r, const KinematicState& next,
                    const Braking& braking) noexcept {
+  if (Rests(next)) return true;
+  const Pace most = MostOf(r);
   const std::int8_t direction = next.velocity < 0 || (next.velocity == 0 && next.acceleration < 0) ? -1 : 1;
-  const double until = direction > 0 ? braking.highest - next.position : next.position - braking.lowest;
-  const Caps caps = CapsAhead(network, StartOf(r, next, direction), until, r.pace);
+  const double ahead = braking.highest - next.position, behind = next.position - braking.lowest;
+  const double until = direction > 0 ? ahead : behind, beyond = direction > 0 ? behind : ahead;
+  // Where it goes back in the end it is slow: it must be slower than everywhere on the way.
+  const double back = -direction * Peak(next, r.brakes.jerk);
+  if (back > 0) {
+    const auto reverse = static_cast<std::int8_t>(-direction);
+    KinematicState turn = next;
+    turn.position = direction > 0 ? braking.highest : braking.lowest;
+    const Caps caps = CapsAhead(network, StartOf(r, turn, reverse), until + beyond, most);
+    for (std::size_t k = 0; k < caps.count; ++k) {
+      if (back > caps.of[k].speed) return false;
+    }
+  }
+  const Caps caps = CapsAhead(network, StartOf(r, next, direction), until, most);
   const double fastest = std::max(direction * next.velocity, direction * Peak(next, r.brakes.jerk));
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < caps.count; ++k) least = std::min(least, caps.of[k].speed);

@@ -18,8 +18,8 @@ KinematicState GoAlong(trajectory::Planner& planner, const Rider& rider, const K
 // end; -1, before the start; 0: nowhere.
 int RunsOut(const Network& network, const Rider& rider, const KinematicState& at) noexcept;
 
-// Whether it keeps its lateral acceleration in curves if from this step on it brakes.
-bool KeepsToCurves(const Network& network, const Rider& rider, const KinematicState& next,
+// Whether it keeps its greatest speed, and its lateral acceleration in curves, if from this step on it brakes.
+bool KeepsToLimits(const Network& network, const Rider& rider, const KinematicState& next,
                    const Braking& braking) noexcept;
 // Whether it has to look out for curves.
 bool CurvesAhead(const Network& network, const Rider& rider) noexcept;

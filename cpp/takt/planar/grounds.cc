@@ -25,6 +25,7 @@ void PutIn(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept {
   const MoverNow& now = g.movers[mover];
   Reservations& r = ReservedBy(group, g);
   Settle(mover, now.mover, now.pose, r, now.system);
+  r.movers[mover].body = now.body;
   if (now.on_track) Link(mover, g.NetworkOf(now.track), r);
 }
 
@@ -39,6 +40,19 @@ ObjectInfo AskStanding(std::uint32_t mover, std::uint32_t group, const Grounds& 
   const Reservations& r = g.grounds[group - 1].reserved;
   const Reservation& own = r.movers[mover];
   return Numbered(Ask(mover, {.target = own.pose, .on_track = own.linked}, g.Around(group), r), group, g);
+}
+
+// Who of a group is brought to where this track is, and will not be linked with it.
+ObjectInfo WhoComesTo(std::uint32_t track, std::uint32_t group, const Grounds& g) noexcept {
+  if (!g.areas[track]) return {};
+  for (std::uint32_t i = 0; i < g.movers.size(); ++i) {
+    const MoverNow& now = g.movers[i];
+    if (!now.comes || g.group_of_mover[i] != group || now.goal.system != g.spots[track].system) continue;
+    if (now.on_track && g.NetworkOf(now.track) == g.NetworkOf(track)) continue;
+    const Area area = Shifted(AreaThere(now), Place{} - g.spots[track].origin);
+    if (Near(area, ExtentOf(area), *g.areas[track], kSame)) return Object(ObjectKind::kMover, i);
+  }
+  return {};
 }
 
 Verdict Leaves(std::uint32_t& group) noexcept {
@@ -99,13 +113,31 @@ void AdvanceMover(std::uint32_t mover, Grounds& g) noexcept {
   if (now.on_track && !own.linked) Link(mover, network, r);
   own.network = network;
   own.level = now.system;
+  own.body = now.body;
   const Pose& was = own.pose;
   const bool stays = was.place.x == now.pose.place.x && was.place.y == now.pose.place.y && was.c == now.pose.c;
   if (!stays) Advance(mover, now.pose, r);
   if (now.rests && own.moving) End(mover, r);
 }
 
+Area AreaThere(const MoverNow& now) noexcept {
+  return {.places = {now.goal.origin}, .count = 1, .least_c = now.pose.c, .most_c = now.pose.c, .mover = now.mover};
+}
+
+ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, const Grounds& g) noexcept {
+  for (std::uint32_t i = 0; i < g.movers.size(); ++i) {
+    const MoverNow& now = g.movers[i];
+    if (i != but && now.comes && now.goal.system == system && Near(area, AreaThere(now), kSame)) {
+      return Object(ObjectKind::kMover, i);
+    }
+  }
+  return {};
+}
+
 Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, Grounds& g) noexcept {
+  const Area area{
+      .places = {pose.place}, .count = 1, .least_c = pose.c, .most_c = pose.c, .mover = g.movers[mover].mover};
+  if (const ObjectInfo who = WhoComes(mover, system, area, g)) return Collision(who);
   const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
   if (group == 0) return {};
   Reservations& r = ReservedBy(group, g);
@@ -124,6 +156,7 @@ Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, co
     if (group == 0) continue;
     const Reservations& r = g.grounds[group - 1].reserved;
     if (r.tracks[track].moving) continue;
+    if (const ObjectInfo who = WhoComesTo(track, group, g)) return Collision(who);
     if (const ObjectInfo object = AskTrack(track, g.Around(group), r)) return Collision(Numbered(object, group, g));
   }
   return {};

@@ -24,8 +24,11 @@ struct MoverNow {
   std::uint32_t system = 0;        // coordinate system that it is in
   Pose pose{};                     // in that
   bool rests = true;               // in X, Y and C
+  std::uint32_t body = 0;          // those with the same number, from 1, move as one; 0: it moves alone
   bool on_track = false;           // and else it goes nowhere
   std::uint32_t track = kNoTrack;  // that one
+  bool comes = false;              // its part is on its way, and brings it
+  Spot goal{};                     // there
 };
 
 // What is remembered of a group.
@@ -74,6 +77,10 @@ ObjectInfo AskMove(std::uint32_t mover, const Move& move, const Grounds& g) noex
 void TakeMove(std::uint32_t mover, const Move& move, Grounds& g) noexcept;
 // As `movers` says it is now.
 void AdvanceMover(std::uint32_t mover, Grounds& g) noexcept;
+// Its area where its part brings it.
+Area AreaThere(const MoverNow& now) noexcept;
+// Whom a part brings to where this area is; whether or not they have a group. `but`: not this one.
+ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, const Grounds& g) noexcept;
 // It is set to another place in this coordinate system, if there is room.
 Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, Grounds& g) noexcept;
 

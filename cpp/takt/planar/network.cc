@@ -24,6 +24,66 @@ void Name(std::uint32_t Road::*of, std::uint32_t track, std::uint32_t node, Netw
   }
 }
 
+// Those that start, or end, where this track does, itself among them.
+std::span<const std::uint32_t> Alike(const Network& network, std::uint32_t track, bool at_end) noexcept {
+  const Road& road = network[track];
+  const Links& others = at_end ? road.behind : road.before;
+  if (others.count == 0) return {};
+  return (at_end ? network[others.tracks[0]].before : network[others.tracks[0]].behind).all();
+}
+
+double Lead(const Network& network, std::uint32_t ahead, std::uint32_t behind, bool at_end) noexcept {
+  if (ahead == kNoTrack || ahead == behind) return 0;
+  const auto alike = Alike(network, ahead, at_end);
+  const auto found = std::ranges::find(alike, behind);
+  if (found == alike.end()) return 0;
+  const Road& road = network[ahead];
+  return (at_end ? road.leads_at_end : road.leads_at_start)[static_cast<std::size_t>(found - alike.begin())];
+}
+
+// Places within the range of a track; each stands for those up to half a stride around it.
+struct Strip {
+  std::array<Place, 1024> places;
+  std::size_t count = 0;
+  double stride = 0;  // mm
+
+  Strip(const Road& road, bool at_end) noexcept {
+    const double range = std::min(road.length, at_end ? road.range_at_end : road.range_at_start);
+    stride = std::max(kLeadSlack, range / static_cast<double>(places.size() - 2));
+    count = static_cast<std::size_t>(range / stride) + 2;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double s = std::min(stride * static_cast<double>(i), range);
+      places[i] = At(*road.track, at_end ? road.length - s : s).place;
+      places[i].x += road.origin.x;
+      places[i].y += road.origin.y;
+    }
+  }
+};
+
+// Of all places on both tracks where movers touch: how much further from where the tracks meet that on `far` is.
+double MostApart(const Road& near, const Road& far, bool at_end) noexcept {
+  const Strip ours(near, at_end), theirs(far, at_end);
+  const double slack = 0.5 * (ours.stride + theirs.stride);
+  const double reach = 0.5 * (near.reach + far.reach) + slack;
+  double most = 0;
+  for (std::size_t i = 0; i < ours.count; ++i) {
+    const double s = ours.stride * static_cast<double>(i) - slack;
+    // From far away inwards: movers that are apart are so up to there.
+    for (std::size_t k = theirs.count; k-- > 0;) {
+      const double t = theirs.stride * static_cast<double>(k);
+      if (t - s <= most) break;
+      const Place &a = ours.places[i], &b = theirs.places[k];
+      const double apart = std::hypot(b.x - a.x, b.y - a.y) - reach;
+      if (apart < 0) {
+        most = t - s;
+        break;
+      }
+      k -= std::min(k, static_cast<std::size_t>(apart / theirs.stride));
+    }
+  }
+  return most;
+}
+
 }  // namespace
 
 bool Links::Add(std::uint32_t track) noexcept {
@@ -82,6 +142,28 @@ void SetRanges(std::uint32_t track, Network& network) noexcept {
       road.range_at_end = std::max(road.range_at_end, range(other, true));
     }
   }
+}
+
+void SetLeads(std::uint32_t track, Network& network) noexcept {
+  Road& road = network.roads[track];
+  for (const bool at_end : {false, true}) {
+    auto& leads = at_end ? road.leads_at_end : road.leads_at_start;
+    leads = {};
+    const auto alike = Alike(network, track, at_end);
+    for (std::size_t i = 0; i < alike.size(); ++i) {
+      const Road& other = network[alike[i]];
+      if (alike[i] == track || !road.track || !other.track) continue;
+      // On the way to where they end the one ahead is the nearer one.
+      leads[i] = at_end ? MostApart(road, other, true) : MostApart(other, road, false);
+    }
+  }
+}
+
+double LeadAtStart(const Network& network, std::uint32_t ahead, std::uint32_t behind) noexcept {
+  return Lead(network, ahead, behind, false);
+}
+double LeadAtEnd(const Network& network, std::uint32_t ahead, std::uint32_t behind) noexcept {
+  return Lead(network, ahead, behind, true);
 }
 
 bool Route::Contains(std::uint32_t track) const noexcept {

@@ -18,7 +18,7 @@ namespace takt::planar {
 
 inline constexpr std::uint32_t kNoTrack = 0xffffffff;
 inline constexpr std::uint32_t kNoNode = 0xffffffff;
-inline constexpr std::size_t kLinks = 16;  // from one end of a track
+inline constexpr std::size_t kLinks = 64;  // tracks that start, or end, at one point
 
 // Tracks linked with one end of a track.
 struct Links {
@@ -40,6 +40,9 @@ struct Road {
   // mm from its ends, within which movers on other tracks that meet it there may be too near.
   double range_at_start = 0;
   double range_at_end = 0;
+  // mm, by tracks that start where it starts, and that end where it ends (see LeadAtStart).
+  std::array<double, kLinks> leads_at_start{};
+  std::array<double, kLinks> leads_at_end{};
   // Where its ends meet others; kNoNode: nowhere.
   std::uint32_t start_node = kNoNode;
   std::uint32_t end_node = kNoNode;
@@ -61,6 +64,15 @@ void NameNodes(Network& network) noexcept;
 // kRangeSlack too long. Takes up to some 100 µs for a pair of tracks.
 inline constexpr double kRangeSlack = 40;  // mm
 void SetRanges(std::uint32_t track, Network& network) noexcept;
+
+// Within the ranges: how much further on a mover on `ahead` has to be than one on `behind`, counted from where both
+// tracks start (end), so that they cannot touch. That is more than their size where the way to there is longer on one
+// track than on the other. Too much only as if they were kLeadSlack larger, and by that. Once for each track, when the
+// ranges of all are known; takes up to some 100 µs for a pair of tracks.
+inline constexpr double kLeadSlack = 1;  // mm, in ranges up to a metre
+void SetLeads(std::uint32_t track, Network& network) noexcept;
+double LeadAtStart(const Network& network, std::uint32_t ahead, std::uint32_t behind) noexcept;
+double LeadAtEnd(const Network& network, std::uint32_t ahead, std::uint32_t behind) noexcept;
 
 // Tracks one after the other, the first one is where the mover is.
 inline constexpr std::size_t kRouteTracks = 32;

@@ -37,6 +37,29 @@ void AllSides(const Part& part, const Place& origin, const auto& what) noexcept 
   }
 }
 
+Extent ExtentOf(const Side& side) noexcept {
+  return {{std::min(side.from.x, side.to.x), std::min(side.from.y, side.to.y)},
+          {std::max(side.from.x, side.to.x), std::max(side.from.y, side.to.y)}};
+}
+
+Extent ExtentOf(const Environment& shape) noexcept {
+  Extent extent{shape.stators.front(), shape.stators.front()};
+  for (const Place& corner : shape.stators) {
+    extent.lower = {std::min(extent.lower.x, corner.x), std::min(extent.lower.y, corner.y)};
+    extent.upper = {std::max(extent.upper.x, corner.x + kStatorSide), std::max(extent.upper.y, corner.y + kStatorSide)};
+  }
+  return extent;
+}
+
+Extent Shifted(const Extent& extent, const Place& by) noexcept {
+  return {extent.lower + by, extent.upper + by};
+}
+
+bool IsOn(const Stretch& s, const Place& place) noexcept {
+  const double along = s.along_x ? place.x : place.y, across = s.along_x ? place.y : place.x;
+  return std::abs(across - s.line) < kSame && along > s.from - kSame && along < s.to + kSame;
+}
+
 bool IsThere(const Parts& parts, std::uint32_t part, std::uint32_t system) noexcept {
   return !parts.now[part].away && parts.spot(part).system == system;
 }
@@ -52,11 +75,13 @@ void KeepFree(const Parts& parts, std::uint32_t part, std::uint32_t system, cons
     const Place end = own.along_x ? Place{last, own.line} : Place{own.line, last};
     out.push_back({begin, end});
   };
+  const Extent stretch = ExtentOf(side);
   double at = own.from;
   while (at < own.to - kSame) {
     double from = own.to, to = own.to;  // the next stretch beside another part
     for (std::uint32_t k = 0; k < parts.all.size(); ++k) {
       if (k == part || !IsThere(parts, k, system)) continue;
+      if (Apart(stretch, Shifted(parts.all[k].extent, parts.spot(k).origin), kSame)) continue;
       AllSides(parts.all[k], parts.spot(k).origin, [&](const Side& other) {
         const Stretch its = StretchOf(other);
         const bool beside = its.along_x == own.along_x && std::abs(its.line - own.line) < kSame;
@@ -70,11 +95,14 @@ void KeepFree(const Parts& parts, std::uint32_t part, std::uint32_t system, cons
   }
 }
 
+// On the surface or on its border. Outlines have few sides where stators are many.
 bool InStators(const Part& part, const Place& place) noexcept {
-  return std::ranges::any_of(part.shape.stators, [&](const Place& corner) {
-    const Place off = place - corner;
-    return off.x >= -kSame && off.y >= -kSame && off.x <= kStatorSide + kSame && off.y <= kStatorSide + kSame;
+  bool inside = false, on_border = false;
+  AllSides(part, {}, [&](const Side& side) {
+    on_border |= IsOn(StretchOf(side), place);
+    if (side.from.x > place.x && (side.from.y > place.y) != (side.to.y > place.y)) inside = !inside;
   });
+  return inside || on_border;
 }
 
 }  // namespace
@@ -82,7 +110,8 @@ bool InStators(const Part& part, const Place& place) noexcept {
 Parts::Parts(std::vector<std::string> system_names, std::vector<Part> of_parts, std::vector<PartNow> at_first)
     : systems(std::move(system_names)), all(std::move(of_parts)), now(std::move(at_first)), borders(systems.size()) {
   std::size_t sides = 0;
-  for (const Part& part : all) {
+  for (Part& part : all) {
+    part.extent = ExtentOf(part.shape);
     fixed = fixed && part.positions.size() == 1;
     for (const Outline& outline : part.shape.outlines) sides += outline.corners.size();
   }
@@ -120,9 +149,7 @@ bool Carries(const Parts& parts, std::uint32_t system, const Area& area) noexcep
   const Place& place = area.places[0];
   bool on = false;
   for (const Side& side : parts.borders[system]) {
-    const Extent of_side{{std::min(side.from.x, side.to.x), std::min(side.from.y, side.to.y)},
-                         {std::max(side.from.x, side.to.x), std::max(side.from.y, side.to.y)}};
-    if (!Apart(extent, of_side, -kSame) && Near(area, {.places = {side.from, side.to}, .count = 2}, -kSame)) {
+    if (!Apart(extent, ExtentOf(side), -kSame) && Near(area, {.places = {side.from, side.to}, .count = 2}, -kSame)) {
       return false;
     }
     if ((side.from.y > place.y) != (side.to.y > place.y) && side.from.x > place.x) on = !on;
@@ -164,11 +191,7 @@ bool IsOn(const Part& part, const Place& place) noexcept {
 
 bool IsOnBorder(const Part& part, const Place& place) noexcept {
   bool on = false;
-  AllSides(part, {}, [&](const Side& side) {
-    const Stretch s = StretchOf(side);
-    const double along = s.along_x ? place.x : place.y, across = s.along_x ? place.y : place.x;
-    on |= std::abs(across - s.line) < kSame && along > s.from - kSame && along < s.to + kSame;
-  });
+  AllSides(part, {}, [&](const Side& side) { on |= IsOn(StretchOf(side), place); });
   return on;
 }
 

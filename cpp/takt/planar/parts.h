@@ -41,6 +41,7 @@ inline Area Shifted(Area area, const Place& by) noexcept {
 struct Part {
   std::string name{};
   Environment shape{};          // in its own coordinates
+  Extent extent{};              // of that
   std::vector<Spot> positions;  // where it can be
 };
 
@@ -68,6 +69,8 @@ struct Parts {
 
   bool none() const noexcept { return all.empty(); }
   const Spot& spot(std::uint32_t part) const noexcept { return all[part].positions[now[part].position]; }
+  // Where it is to be: there what it brings has its place already.
+  const Spot& goal(std::uint32_t part) const noexcept { return all[part].positions[now[part].commanded]; }
 
   std::vector<std::string> systems;  // their names
   std::vector<Part> all;

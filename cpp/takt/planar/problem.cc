@@ -43,7 +43,9 @@ std::string_view Text(Problem problem) noexcept {
     case Problem::kCrosses:
       return "the track crosses or touches itself";
     case Problem::kTooMany:
-      return "a track has at most 64 elements, starts from at most 8 tracks and ends at as many";
+      return "a track has at most 64 elements, starts from at most 8 tracks and ends at as many; at most 64 start, or "
+             "end, at one "
+             "point";
     case Problem::kOtherEmpty:
       return "the other track has no length yet";
     case Problem::kOtherClosed:

@@ -28,7 +28,7 @@ enum class Problem : std::uint8_t {
   kNotItsStart,    // it has a start already, which is not where the other track ends
   kNotItsEnd,      // it ends at another track already, which is not where this one starts
   kCrosses,        // it crosses or touches itself
-  kTooMany,        // more elements or links than a track can have
+  kTooMany,        // more elements or links than a track, or a point, can have
   kOtherEmpty,     // the other track has no length
   kOtherClosed,    // the other track is a closed loop: it neither starts nor ends
   kInUse,          // other tracks start from it or end at it

@@ -42,9 +42,9 @@ void Reserve(Reservation& mover) noexcept {
   mover.extent = ExtentOf(planar::AreaOf(mover));
 }
 
-bool Meets(const Area& area, const Extent& extent, std::uint32_t level, const Reservation& other) noexcept {
-  return other.present && other.level == level && !Apart(extent, other.extent, kClearance) &&
-         Near(area, AreaOf(other), kClearance);
+bool Meets(const Area& area, const Extent& extent, const Reservation& own, const Reservation& other) noexcept {
+  if (!other.present || other.level != own.level || (own.body != 0 && other.body == own.body)) return false;
+  return !Apart(extent, other.extent, kClearance) && Near(area, AreaOf(other), kClearance);
 }
 
 Extent Shifted(const Extent& extent, const Place& by) noexcept {
@@ -107,7 +107,7 @@ ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around
   const Area area = AreaOf(own, move);
   const Extent extent = ExtentOf(area);
   for (std::size_t i = 0; i < r.movers.size(); ++i) {
-    if (i != mover && Meets(area, extent, own.level, r.movers[i])) return Object(ObjectKind::kMover, i);
+    if (i != mover && Meets(area, extent, own, r.movers[i])) return Object(ObjectKind::kMover, i);
   }
   for (std::size_t i = 0; i < r.tracks.size(); ++i) {
     const TrackArea* track = Moving(i, own.level, around, r);
@@ -195,6 +195,7 @@ void describe(Description<Reservation>& d) {
   d.internal<&Reservation::linked>("Whether it goes along tracks.");
   d.internal<&Reservation::network>("Of which network.");
   d.internal<&Reservation::level>("Its coordinate system: those of different ones never meet.");
+  d.internal<&Reservation::body>("Of movers that move as one: those of the same never meet.");
   d.internal<&Reservation::mover>("What it covers.");
   d.internal<&Reservation::pose>("Where it is.");
   d.internal<&Reservation::move>("Where it goes.");

@@ -44,6 +44,7 @@ struct Reservation {
   bool linked = false;   // goes along tracks of `network`
   std::uint32_t network = 0;
   std::uint32_t level = 0;  // coordinate system that it is in: those of different ones never meet
+  std::uint32_t body = 0;   // of movers that move as one: those of the same never meet; 0: it moves alone
   Footprint mover{};
   Pose pose{};
   Move move{};

@@ -10,8 +10,8 @@ double OnLoop(const Destination& to, const Rider& r, double rest, double length)
   const double now = r.at.position;
   double target = OnLoop(to.way, to.position, to.modulo_tolerance, now, length);
   if (to.way == Way::kNonModulo || to.way == Way::kShortestWay) return target;
-  // Near enough to go the shortest way.
-  if (std::abs(target - now) <= to.modulo_tolerance) return target;
+  // Near enough to go the shortest way, unless there are turns to make.
+  if (to.additional_turns == 0 && std::abs(target - now) <= std::max(to.modulo_tolerance, kSame)) return target;
   const double sense = to.way == Way::kPositive ? 1 : -1;
   target += sense * length * to.additional_turns;
   while (sense * (rest - target) > 0) target += sense * length;
@@ -24,7 +24,9 @@ double OnLoop(Way way, double position, double modulo_tolerance, double now, dou
   if (way == Way::kNonModulo) return position;
   const double up = std::fmod(std::fmod(position - now, length) + length, length);
   const double nearest = up > 0.5 * length ? up - length : up;
-  if (way == Way::kShortestWay || std::abs(nearest) <= modulo_tolerance) return now + nearest;
+  if (way == Way::kShortestWay || std::abs(nearest) <= std::max(modulo_tolerance, kSame)) {
+    return now + nearest;
+  }
   if (way == Way::kPositive) return now + up;
   return now + (up > 0 ? up - length : 0);
 }
@@ -64,6 +66,34 @@ bool Send(const Network& network, RouteSearch& search, const Destination& to, Ri
   r.waits = Waits::kNot;
   r.waits_for = kNobody;
   return true;
+}
+
+void PlanOn(trajectory::Planner& planner, const Network& network, double place, double speed, double acceleration,
+            Rider& r) noexcept {
+  double end = r.target;
+  for (std::uint32_t k = 0; k + 1 < r.route.count; ++k) end += network[r.route.tracks[k]].length;
+  if (speed == 0 && acceleration == 0) r.direction = end < place ? -1 : 1;
+  const double way = r.direction * (end - place);
+  const Start start{&r.route, place, r.direction, speed, acceleration};
+  const Planned made = PlanWay(planner, network, start, way, r.pace, MostOf(r), r.plan, r.plan_ends);
+  r.plan_from = place;
+  r.plan_time = 0;
+  // A geared mover that only brakes for a curve looks again in each cycle.
+  r.planned = made == Planned::kWay || (made == Planned::kStop && r.aim != Aim::kFollow);
+}
+
+double TimeAlone(trajectory::Planner& planner, const Network& network, Rider r) noexcept {
+  constexpr int kParts = 16;  // at most; the rest is not counted
+  double time = 0;
+  KinematicState at{r.at.position, r.direction * r.at.velocity, r.direction * r.at.acceleration};
+  for (int i = 0; i < kParts; ++i) {
+    PlanOn(planner, network, at.position, at.velocity, at.acceleration, r);
+    time += r.plan.duration();
+    if (r.plan_ends) break;
+    at = r.plan.end();
+    at.position = r.plan_from + r.direction * at.position;
+  }
+  return time;
 }
 
 }  // namespace takt::planar

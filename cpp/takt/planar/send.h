@@ -4,7 +4,8 @@
 #include <cstdint>
 
 #include "takt/planar/network.h"
-#include "takt/planar/traffic.h"
+#include "takt/planar/rider.h"
+#include "takt/trajectory/planner.h"
 
 namespace takt::planar {
 
@@ -29,5 +30,12 @@ struct Destination {
 
 // False: no way leads there from where the mover can still turn off; it keeps what it had.
 bool Send(const Network& network, RouteSearch& search, const Destination& to, Rider& rider) noexcept;
+
+// Its way to its target, or a part of it, from a place on the first track on, with a speed and acceleration in its
+// direction. At rest the direction is that of the target.
+void PlanOn(trajectory::Planner& planner, const Network& network, double place, double speed, double acceleration,
+            Rider& rider) noexcept;
+// s that the way to its target takes if nobody else is on it; about, where its greatest dynamics are needed first.
+double TimeAlone(trajectory::Planner& planner, const Network& network, Rider rider) noexcept;
 
 }  // namespace takt::planar

@@ -66,8 +66,9 @@ void Caps::Add(double way, double speed) noexcept {
 Caps CapsAhead(const Network& network, const Start& start, double until, const Pace& pace) noexcept {
   Caps caps;
   const Road& road = network[start.route->first()];
-  double gone = start.direction > 0 ? AlongTrack(road, start.s, 0, until, pace, caps)
-                                    : BackAlongTrack(road, start.s, 0, until, pace, caps);
+  const double s = std::clamp(start.s, 0.0, road.length);
+  double gone =
+      start.direction > 0 ? AlongTrack(road, s, 0, until, pace, caps) : BackAlongTrack(road, s, 0, until, pace, caps);
   for (std::uint32_t i = 1; i < start.route->count && gone < until; ++i) {
     gone = AlongTrack(network[start.route->tracks[i]], 0, gone, until, pace, caps);
   }
@@ -99,6 +100,7 @@ bool Keeps(const trajectory::Profile& plan, const Caps& caps) {
   if (fastest <= least + allowance) return true;
   double begin = 0;
   for (std::size_t i = 0; i < caps.count && caps.of[i].way < plan.end().position; ++i) {
+    if (caps.cut && i + 1 == caps.count) return true;  // what comes is not known
     const double border = i + 1 < caps.count ? caps.of[i + 1].way : plan.end().position;
     const double end = border < plan.end().position ? plan.TimeAt(border, begin) : plan.duration();
     if (!(end >= begin)) return false;
@@ -118,18 +120,27 @@ bool Keeps(const trajectory::Profile& plan, const Caps& caps) {
   return true;
 }
 
-}  // namespace
+// One that is faster than it was told to be must still not take a curve too fast.
+bool KeepsMost(const Network& network, const Start& start, const trajectory::Profile& plan, const Pace& pace,
+               const Pace& most) {
+  if (plan.VelocityRange().max <= pace.limits.velocity * (1 + kSlight)) return true;
+  return Keeps(plan, CapsAhead(network, start, plan.PositionRange().max, most));
+}
 
-bool PlanWay(trajectory::Planner& planner, const Network& network, const Start& start, double way, const Pace& pace,
-             trajectory::Profile& out, bool& ends) noexcept {
+// Braking as it was told to it gets no faster than that, or than it is, and does not go back.
+bool StopsWithin(const Network& network, const Start& start, const trajectory::Profile& stop, const Pace& pace,
+                 const Pace& most) {
+  const trajectory::Profile::Range range = stop.VelocityRange();
+  if (range.max > std::max(pace.limits.velocity, start.speed) * (1 + kSlight) || range.min < -1e-6) return false;
+  return Keeps(stop, CapsAhead(network, start, stop.PositionRange().max, most));
+}
+
+// False: there is no such plan.
+bool TryWay(trajectory::Planner& planner, const Network& network, const Start& start, double way, const Pace& pace,
+            const Pace& most, trajectory::Profile& out, bool& ends) {
+  if (!(way >= 0)) return false;
   const KinematicState from{0, start.speed, start.acceleration};
   const Brakes brakes = pace.brakes();
-  const auto stop = [&] {
-    ends = false;
-    if (planner.Stop(from, pace.limits, out).failed()) out = trajectory::Profile(KinematicState{});
-    return false;
-  };
-  if (!(way >= 0)) return stop();
   ends = true;
   const Caps caps = CapsAhead(network, start, way, pace);
 
@@ -160,7 +171,7 @@ bool PlanWay(trajectory::Planner& planner, const Network& network, const Start& 
     // It would have to run back: too near to stop, or too near to get so fast.
     const trajectory::Profile::Range range = plan.PositionRange();
     const bool straight = range.min >= -1e-6 && range.max <= gate.way + 1e-6 && plan.VelocityRange().min >= -1e-9;
-    if (straight && Keeps(plan, caps)) {
+    if (straight && Keeps(plan, caps) && KeepsMost(network, start, plan, pace, most)) {
       out = plan;
       ends = k + 1 == count;
       return true;
@@ -185,11 +196,27 @@ bool PlanWay(trajectory::Planner& planner, const Network& network, const Start& 
     const bool faster = straight || (planned && plan.PositionRange().max > gate.way + 1e-6 && v > speed);
     (faster ? low : high) = speed;
   }
-  if (found) {
-    ends = count == 1 && out.end().velocity == 0;
-    return true;
-  }
-  return stop();
+  ends = count == 1 && out.end().velocity == 0;
+  return found && Keeps(out, caps) && KeepsMost(network, start, out, pace, most);
+}
+
+}  // namespace
+
+Planned PlanWay(trajectory::Planner& planner, const Network& network, const Start& start, double way, const Pace& pace,
+                const Pace& most, trajectory::Profile& out, bool& ends) noexcept {
+  if (TryWay(planner, network, start, way, pace, most, out, ends)) return Planned::kWay;
+  ends = false;
+  const KinematicState from{0, start.speed, start.acceleration};
+  if (planner.Stop(from, pace.limits, out).ok() && StopsWithin(network, start, out, pace, most)) return Planned::kStop;
+  // What would make it too fast is taken away; else it goes on, no faster than it is.
+  const double peak = start.speed + start.acceleration * start.acceleration / (2 * pace.limits.jerk);
+  const bool speeds_up = start.acceleration > 0 && peak > std::max(pace.limits.velocity, start.speed) * (1 + kSlight);
+  Pace hard = most;
+  hard.limits.velocity = std::min(pace.limits.velocity, start.speed);
+  if (!speeds_up && TryWay(planner, network, start, way, hard, most, out, ends)) return Planned::kHard;
+  ends = false;
+  if (planner.Stop(from, most.limits, out).failed()) out = trajectory::Profile(KinematicState{});
+  return Planned::kHard;
 }
 
 }  // namespace takt::planar

@@ -44,13 +44,19 @@ struct Caps {
 
   void Add(double way, double speed) noexcept;
 };
-// How fast curves may be gone through, so far on.
+// How fast curves may be gone through, so far on; one at least. A place before the start of the track, by rounding, is
+// that start.
 Caps CapsAhead(const Network& network, const Start& start, double until, const Pace& pace) noexcept;
 
-// The quickest way to rest so far on (mm from here, along the way, >= 0), or as much of it as can be planned in one go;
-// `out` begins at 0. `ends`: it is all of it. A mover that cannot stop there any more brakes as its limits allow.
-// False: nothing could be planned, `out` is a stop.
-bool PlanWay(trajectory::Planner& planner, const Network& network, const Start& start, double way, const Pace& pace,
-             trajectory::Profile& out, bool& ends) noexcept;
+// What came of a plan.
+enum class Planned : std::uint8_t {
+  kWay,   // it is the way, or as much of it as can be planned in one go
+  kStop,  // it cannot stop there any more: it brakes as it was told to
+  kHard,  // it would get too fast in that, or go back: it uses its greatest dynamics, until another plan can be made
+};
+// The quickest way to rest so far on (mm from here, along the way, >= 0); `out` begins at 0. `ends`: it is all of it.
+// `most`: what it never exceeds, whatever it is told; with that it can brake in time.
+Planned PlanWay(trajectory::Planner& planner, const Network& network, const Start& start, double way, const Pace& pace,
+                const Pace& most, trajectory::Profile& out, bool& ends) noexcept;
 
 }  // namespace takt::planar

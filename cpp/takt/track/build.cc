@@ -8,6 +8,7 @@
 
 #include "takt/core/problem.h"
 #include "takt/planar/crossing.h"
+#include "takt/planar/network.h"
 #include "takt/track/on_parts.h"
 #include "takt/track/sketch.h"
 #include "takt/track/state.h"
@@ -36,6 +37,7 @@ class Builder {
 
   BuildResult Run() {
     for (std::size_t i = 0; i < params_.size(); ++i) Visit(i);
+    if (result_.problems.empty()) CountAtPoints();
     return std::move(result_);
   }
 
@@ -57,6 +59,34 @@ class Builder {
     open_.pop_back();
     marks_[i] = made ? Mark::kDone : Mark::kFailed;
     return made;
+  }
+
+  // No more tracks start, or end, at one point than a network can link there; wherever the parts are.
+  void CountAtPoints() {
+    std::vector<std::size_t> points(2 * params_.size());  // starts, then ends
+    for (std::size_t k = 0; k < points.size(); ++k) points[k] = k;
+    const auto meet = [&](std::size_t a, std::size_t b) {
+      const std::size_t other = points[b], own = points[a];
+      std::ranges::replace(points, other, own);
+    };
+    const auto number = [&](const LinkParams& link) {
+      return static_cast<std::size_t>(std::ranges::find(names_, link.track) - names_.begin());
+    };
+    const std::size_t count = params_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const TrackParams& p = params_[i];
+      for (const LinkParams& link : LinksOf(p.starts_from, p.starts_from_positions)) meet(i, count + number(link));
+      for (const LinkParams& link : LinksOf(p.ends_at, p.ends_at_positions)) meet(count + i, number(link));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto alike = [&](std::size_t from, std::size_t point) {
+        const auto begin = points.begin() + static_cast<std::ptrdiff_t>(from);
+        return std::count(begin, begin + static_cast<std::ptrdiff_t>(i) + 1, point);
+      };
+      const bool crowded = alike(0, points[i]) > std::ptrdiff_t{planar::kLinks} ||
+                           alike(count, points[count + i]) > std::ptrdiff_t{planar::kLinks};
+      if (crowded) Fail(Index(i), Problem::kTooMany);
+    }
   }
 
   // The key of a link: those with positions of parts stand behind the others, in a list of their own.

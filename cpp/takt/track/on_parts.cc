@@ -28,10 +28,10 @@ Problem Meet(const planar::Parts& parts, const Standing& other, const Standing& 
 bool DoMeet(const planar::Parts& parts, std::uint32_t part_a, const planar::TrackPoint& a, std::uint32_t part_b,
             const planar::TrackPoint& b) noexcept {
   if (part_a == part_b) return true;
-  const std::optional<planar::Spot> at_a = SpotOf(parts, {.part = part_a}), at_b = SpotOf(parts, {.part = part_b});
-  return at_a && at_b && at_a->system == at_b->system &&
-         planar::SamePlace(a.place + at_a->origin, b.place + at_b->origin) && planar::SameDirection(a, b) &&
-         planar::SameCurvature(a, b);
+  if (part_a == planar::kNoPart || part_b == planar::kNoPart) return false;
+  const planar::Spot &at_a = parts.goal(part_a), &at_b = parts.goal(part_b);
+  return at_a.system == at_b.system && planar::SamePlace(a.place + at_a.origin, b.place + at_b.origin) &&
+         planar::SameDirection(a, b) && planar::SameCurvature(a, b);
 }
 
 bool LiesOn(const planar::Parts& parts, std::uint32_t part, const planar::Track& track) {

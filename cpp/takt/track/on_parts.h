@@ -25,7 +25,7 @@ std::optional<planar::Spot> SpotOf(const planar::Parts& parts, const Standing& s
 planar::Problem Meet(const planar::Parts& parts, const Standing& other, const Standing& own,
                      planar::TrackPoint& point) noexcept;
 
-// Whether two ends, each in the coordinates of its part, are at one place now.
+// Whether two ends, each in the coordinates of its part, are at one place where the parts are to be.
 bool DoMeet(const planar::Parts& parts, std::uint32_t part_a, const planar::TrackPoint& a, std::uint32_t part_b,
             const planar::TrackPoint& b) noexcept;
 

@@ -17,8 +17,8 @@ planar::Footprint MoverOn(const TrackParams& params) {
 
 // A track in the coordinates of the part of another; nothing: they are not in one coordinate system.
 std::optional<planar::Track> SeenFrom(const Tracks& t, std::size_t other, std::size_t track) {
-  const planar::Spot& from = t.spot(other);
-  const planar::Spot& to = t.spot(track);
+  const planar::Spot& from = t.goal(other);
+  const planar::Spot& to = t.goal(track);
   if (from.system != to.system) return std::nullopt;
   if (from == to) return *t.ways[other];
   const planar::Place by = from.origin - to.origin;

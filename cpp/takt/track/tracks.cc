@@ -164,6 +164,8 @@ struct Applier {
   void operator()(const Disable&) const {
     switch (s.state) {
       case ObjectState::kEnabled:
+        if (s.mode != OperationMode::kStanding) return Refuse(ErrorId::kTrackMode);
+        return Become(ObjectState::kDisabling);
       case ObjectState::kEnabling:
       case ObjectState::kDisabling:
         return Become(ObjectState::kDisabling);
@@ -245,6 +247,10 @@ Tracks::~Tracks() {
 
 const planar::Spot& Tracks::spot(std::size_t track) const noexcept {
   return part_of[track] == planar::kNoPart ? kOrigin : parts.spot(part_of[track]);
+}
+
+const planar::Spot& Tracks::goal(std::size_t track) const noexcept {
+  return part_of[track] == planar::kNoPart ? kOrigin : parts.goal(part_of[track]);
 }
 
 planar::TrackPoint Tracks::At(std::size_t track, double s) const noexcept {

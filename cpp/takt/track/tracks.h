@@ -34,6 +34,8 @@ struct Tracks {
   // Where one is along a track that has a way, in the coordinate system where it is now; and where its part is.
   planar::TrackPoint At(std::size_t track, double s) const noexcept;
   const planar::Spot& spot(std::size_t track) const noexcept;
+  // Where its part is to be: as of there it is linked with others.
+  const planar::Spot& goal(std::size_t track) const noexcept;
 
   std::vector<TrackParams> params;
   const planar::Parts& parts;

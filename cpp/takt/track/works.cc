@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "takt/planar/network.h"
 #include "takt/track/on_parts.h"
 
 namespace takt::track {
@@ -37,6 +38,12 @@ bool IsInUse(const Tracks& t, std::uint32_t track) {
                              [&](const State& s) { return Holds(s.starts_from, track) || Holds(s.ends_at, track); });
 }
 
+// More tracks would start or end there than a network can link at one point.
+bool IsCrowded(const Tracks& t, std::uint32_t a, std::uint32_t b) {
+  const auto too_many = [&](const std::vector<std::uint32_t>& at) { return a != b && at[a] + at[b] > planar::kLinks; };
+  return too_many(t.starts_at) || too_many(t.ends_at);
+}
+
 // What is known of an order before anything is made.
 struct Look {
   Problem problem = Problem::kNone;
@@ -56,6 +63,10 @@ Look LookAtLink(const Tracks& t, const Order& order) {
   if (other->closed) return {Problem::kOtherClosed};
   if (sketch.closed) return {Problem::kLinked};
   if (links.count == kLinks && !Holds(links, order.other)) return {Problem::kTooMany};
+  if (IsCrowded(t, starts ? t.start_nodes[order.track] : t.end_nodes[order.track],
+                starts ? t.end_nodes[order.other] : t.start_nodes[order.other])) {
+    return {Problem::kTooMany};
+  }
   Look look{.makes = true, .may_be_empty = starts, .point = planar::At(*other, starts ? other->length : 0)};
   look.problem = Meet(t.parts, {t.part_of[order.other], order.other_position},
                       {t.part_of[order.track], order.own_position}, look.point);
@@ -182,11 +193,11 @@ planar::TrackPoint EndOf(const Tracks& t, std::uint32_t track, bool start) {
   return t.sketches[track].from.value_or(planar::TrackPoint{});
 }
 
-// Whether a link is in force as the parts of both are now.
+// Whether a link is in force with the parts of both where they are to be.
 bool IsInForce(const Tracks& t, std::uint32_t track, const Links& links, std::uint32_t k, bool starts) {
   const auto there = [&](std::uint32_t of, std::uint32_t position) {
     const std::uint32_t part = t.part_of[of];
-    return position == 0 || part == planar::kNoPart || t.parts.now[part].position + 1 == position;
+    return position == 0 || part == planar::kNoPart || t.parts.now[part].commanded + 1 == position;
   };
   const std::uint32_t other = links.tracks[k];
   return there(track, links.own_positions[k]) && there(other, links.other_positions[k]) &&

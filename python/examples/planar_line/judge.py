@@ -26,7 +26,8 @@ class Judgement:
     going: float  # share of the movers' time
     worked_on: float  # likewise
     held_by: dict[str, float]  # likewise, by the station behind which they wait, or nearest before which
-    waited_at: tuple[Array, Array]  # X and Y, a place for each sample of a mover that waits for another one
+    # By level, X and Y: a place for each sample of a mover that waits for another one or for the lift.
+    waited_at: tuple[tuple[Array, Array], ...]
     nearest: float  # mm between the middles of two movers, the larger of both coordinates
     deadlocked: bool
 
@@ -48,8 +49,8 @@ class Judgement:
 def judge(recording: Recording) -> Judgement:
     marks = {event.text: event.time_s for event in recording.events if event.kind == "mark"}
     begin, end = marks[WORKS], marks[ENDS]
-    movers = tuple(name for name in recording.components if name.startswith("m"))
-    tracks = [name for name in recording.components if name not in movers]
+    movers = tuple(name for name in recording.components if "waits_for" in recording.fields(name))
+    tracks = [name for name in recording.components if "closed_loop" in recording.fields(name)]
     at_all = recording.column(movers[0], "time_s")
     inside = (at_all >= begin) & (at_all <= end)
     time = at_all[inside]
@@ -60,7 +61,9 @@ def judge(recording: Recording) -> Judgement:
     x, y, track, along = all_of("x"), all_of("y"), all_of("track"), all_of("track_position")
     codes = {name: code for code, name in recording.names(movers[0], "delay").items()}
     delay = all_of("delay")
+    level, speed = all_of("coordinate_system"), all_of("track_velocity")
     worked, waits = delay == codes["time"], delay == codes["mover"]
+    at_lift = ~worked & ~waits & (speed == 0)
     held: Counter[str] = Counter()
     at = {station: np.zeros_like(worked) for station in STATIONS}
     for station in STATIONS:
@@ -69,25 +72,26 @@ def judge(recording: Recording) -> Judgement:
         held[station.name] = int(np.sum(waits & here & (along <= station.position)))
     known = sum(held.values())
     held["where lanes meet"] = int(np.sum(waits)) - known
+    held["the lift"] = int(np.sum(at_lift))
     ended = at[TEST][:, :-1] & ~at[TEST][:, 1:]
     return Judgement(
         seconds=end - begin,
         movers=movers,
         pieces_s=tuple(np.sort(time[np.nonzero(ended)[1]]) - begin),
         busy={station.name: float(np.mean(at[station].any(axis=0))) for station in STATIONS},
-        going=float(np.mean(~worked & ~waits)),
+        going=float(np.mean(~worked & ~waits & ~at_lift)),
         worked_on=float(np.mean(worked)),
         held_by={name: count / waits.size for name, count in held.items()},
-        waited_at=(x[waits], y[waits]),
-        nearest=nearest(x, y),
+        waited_at=tuple((x[there], y[there]) for i in (1, 2) for there in [(waits | at_lift) & (level == i)]),
+        nearest=nearest(x, y, level),
         deadlocked=bool(all_of("deadlocked")[:, 2:].any()),
     )
 
 
-def nearest(x: Array, y: Array) -> float:
+def nearest(x: Array, y: Array, level: Array) -> float:
     """mm: the least, over time, of the larger of both distances between two middles; bodies are squares."""
     least = np.inf
     for i in range(len(x)):
         apart = np.maximum(np.abs(x[i + 1 :] - x[i]), np.abs(y[i + 1 :] - y[i]))
-        least = min(least, float(apart.min(initial=np.inf)))
+        least = min(least, float(apart.min(initial=np.inf, where=level[i + 1 :] == level[i])))
     return least

@@ -3,49 +3,59 @@
 from __future__ import annotations
 
 import numpy as np
-from judge import Judgement
+from judge import Array, Judgement
 from line import STATIONS
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from takt import plot, style
 from takt.recording import Recording
-from takt.track_layout import TrackLayout
+from takt.track_layout import LaidTrack, TrackLayout
 
-MOVER_MM = 113.0
+BELOW = ("repair", "car")
 
 
 def picture(recording: Recording, found: Judgement, machine: str) -> Figure:
     figure = Figure(figsize=(plot.WIDTH_IN, 10.0), dpi=plot.DPI, facecolor="white", layout="constrained")
     FigureCanvasAgg(figure)
-    grid = figure.add_gridspec(3, 2, height_ratios=[1.6, 1, 1])
-    _from_above(figure.add_subplot(grid[0, :]), found, TrackLayout(machine))
-    _pieces(figure.add_subplot(grid[1, :]), found)
-    _bars(figure.add_subplot(grid[2, 0]), "share of the time a station works", found.busy)
+    rows = figure.add_gridspec(3, 1, height_ratios=[1.6, 1, 1])
+    levels = rows[0].subgridspec(1, 2, width_ratios=[2.6, 1])
+    layout = TrackLayout(machine)
+    above = [track for track in layout.tracks if track.name != "repair"]
+    below = [track for track in layout.tracks if track.name in BELOW]
+    title = "above; dots: where movers waited, the larger the longer"
+    _from_above(figure.add_subplot(levels[0]), title, found.waited_at[0], above)
+    _from_above(figure.add_subplot(levels[1]), "below", found.waited_at[1], below)
+    _pieces(figure.add_subplot(rows[1]), found)
+    grid = rows[2].subgridspec(1, 2)
+    _bars(figure.add_subplot(grid[0]), "share of the time a station works", found.busy)
     shares = {"go": found.going, "are worked on": found.worked_on}
     shares |= {f"wait: {name}": share for name, share in found.held_by.items()}
-    _bars(figure.add_subplot(grid[2, 1]), "what movers do with their time", shares)
+    _bars(figure.add_subplot(grid[1]), "what movers do with their time", shares)
     title = f"{len(found.movers)} movers, {found.pieces_a_minute:.0f} pieces a minute"
     figure.suptitle(title, x=0.01, ha="left", color=plot.INK, weight="bold", size=14)
     return figure
 
 
-def _from_above(ax: Axes, found: Judgement, layout: TrackLayout) -> None:
+def _from_above(ax: Axes, name: str, waited_at: tuple[Array, Array], tracks: list[LaidTrack]) -> None:
     plot.dress(ax)
     ax.set_aspect("equal")
-    for track in layout.tracks:
+    for track in tracks:
         ax.plot(track.points.x, track.points.y, color=plot.FAINT, lw=1.2, zorder=1)
-    x, y = found.waited_at
+    x, y = waited_at
     cells, where = np.unique(np.round(np.stack([x, y]) / 50) * 50, axis=1, return_counts=True)
     most = max(1, int(where.max(initial=1)))
     ax.scatter(cells[0], cells[1], s=4 + 90 * where / most, color=style.PALETTE[1], alpha=0.55, lw=0, zorder=2)
-    tracks = {track.name: track for track in layout.tracks}
+    by_name = {track.name: track for track in tracks}
     for station in STATIONS:
-        points = tracks[station.track].points
+        if station.track not in by_name:
+            continue
+        points = by_name[station.track].points
         at = (np.interp(station.position, points.s, points.x), np.interp(station.position, points.s, points.y))
         ax.plot(*at, marker="s", ms=9, color=style.PALETTE[0], zorder=3)
         ax.annotate(station.name, at, (0, 9), textcoords="offset points", ha="center", color=plot.INK)
-    ax.set_xlabel("X, mm; dots: where movers waited for another one, the larger the longer")
+    ax.set_title(name, loc="left")
+    ax.set_xlabel("X, mm")
     ax.set_ylabel("Y, mm")
 
 

@@ -1,4 +1,4 @@
-"""An assembly line of 32 movers: loading, two presses in lanes of their own, a bypass, a test.
+"""An assembly line of 32 movers: loading, two presses in lanes of their own, a bypass, a test; and a lift to a repair.
 
 Nobody but the movers sees to it that they do not collide, where the lanes part and where they meet again: the program
 only says who is to go where and for how long. What came of it is read from the recording: how many pieces, how busy the
@@ -31,7 +31,7 @@ def play(session: takt.Session, seconds: float) -> Line:
         feedback.wait()
     for feedback in [mover.enable() for mover in session.movers.values()]:
         feedback.wait()
-    for feedback in [mover.join_track(track="back", use_orientation=False) for mover in session.movers.values()]:
+    for feedback in [mover.join_track(track=below(mover), use_orientation=False) for mover in session.movers.values()]:
         feedback.wait()
     session.mark(WORKS)
     line = Line(session)
@@ -41,6 +41,11 @@ def play(session: takt.Session, seconds: float) -> Line:
     for feedback in [mover.halt() for mover in session.movers.values()]:
         feedback.wait()
     return line
+
+
+def below(mover: takt.Mover) -> str:
+    """The track that it stands above at first."""
+    return "back" if mover.x > 5000 else "home" if mover.y > 1000 else "supply"
 
 
 def verify(recording: takt.Recording) -> None:

@@ -81,9 +81,13 @@ def plan_routes(
 
     Raises RoutingError, with the reason, if there is no plan.
     """
-    for key in dynamics:
+    for key, value in dynamics.items():
         if key not in DYNAMICS:
             raise TypeError(f"dynamics are {', '.join(DYNAMICS)}, not {key}")
+        if not 0 < value < math.inf:
+            raise RoutingError(f"{key} is above 0, not {value:.6g}")
+    if gap is not None and not 0 <= gap < math.inf:
+        raise RoutingError(f"the gap is 0 mm or more, not {gap:.6g}")
     movers = {name: mover for name, mover in session.movers.items() if mover.track}
     names = tuple(movers)
     for name, mover in movers.items():
@@ -98,7 +102,7 @@ def plan_routes(
         if name not in movers:
             raise RoutingError(f"mover {name} is on no track: let it join one first")
     gaps = [float(m.parameters["gap"]) for m in movers.values()]
-    streets = read_streets(session, max(gaps, default=0.0) if gap is None else max(gap, 0.0))
+    streets = read_streets(session, max(gaps, default=0.0) if gap is None else gap)
     numbers = {street.name: street.index for street in streets.all}
     aims = {}
     for name, (track, s) in targets.items():

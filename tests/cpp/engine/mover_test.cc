@@ -71,7 +71,9 @@ std::vector<mover::Command> GoodCommands() {
                                   .direction_slave_sync_position = mover::TurnDirection::kPositive},
           mover::GearInPosOnTrackWithMasterMover{.master = Name::Of("one"),
                                                  .direction_slave_sync_position = mover::TurnDirection::kPositive,
-                                                 .direction_master_sync_position = mover::TurnDirection::kPositive}};
+                                                 .direction_master_sync_position = mover::TurnDirection::kPositive},
+          mover::JoinFormation{Name::Of("one")},
+          mover::LeaveFormation{}};
 }
 
 Command To(std::uint32_t mover, const mover::Command& body) {

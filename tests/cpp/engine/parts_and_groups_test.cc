@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "parts_rig.h"
@@ -121,6 +124,191 @@ movers:
     if (blending == 30) {
       EXPECT_LT(cycles, quickest - 3);
     }
+  }
+}
+
+// The same with coordinates that count from a part.
+TEST(PartsAndGroups, BlendedCornersAreWhereTheReferenceSays) {
+  std::array<int, 2> cycles{};
+  for (const bool by_part : {false, true}) {
+    PartsRig rig(R"(
+name: halves
+axes: []
+coordinate_systems: [{name: plane}]
+parts:
+  - {name: left, columns: 4, rows: 4, positions: [{coordinate_system: plane}]}
+  - {name: right, columns: 4, rows: 4, positions: [{coordinate_system: plane, x: 960}]}
+movers:
+  - {name: mover, reference: left, initial: {x: 120, y: 120}}
+)");
+    rig.Run();
+    rig.Do("mover", "enable");
+    double nearest = 1e9;
+    rig.each_cycle = [&] {
+      ++cycles[by_part];
+      nearest = std::min(nearest, std::hypot(rig.Mover("mover").x - 1200, rig.Mover("mover").y - 120));
+    };
+    const std::string x = by_part ? "{x: 240, reference: right, " : "{x: 1200, reference: plane, ";
+    rig.Give("mover", "move_to_position", x + "y: 120}");
+    const Ticket second = rig.Give("mover", "move_to_position", x + "y: 800, buffer_mode: buffered, blending: 100}");
+    EXPECT_EQ(rig.End(second).error, ErrorId::kNone);
+    EXPECT_GT(nearest, 10);
+    EXPECT_LT(nearest, 100);
+    EXPECT_NEAR(rig.Mover("mover").x, 1200, 1e-9);
+    EXPECT_NEAR(rig.Mover("mover").y, 800, 1e-9);
+  }
+  EXPECT_EQ(cycles[0], cycles[1]);
+}
+
+// Two lifts side by side, each with a mover on a track up to its border, and a hall.
+std::string TwoLifts(double travel_s, bool grouped) {
+  const std::string time = "travel_time_s: " + std::to_string(travel_s);
+  return R"(
+name: lifts
+axes: []
+coordinate_systems: [{name: plane}, {name: other}]
+parts:
+  - {name: a, positions: [{coordinate_system: other}, {coordinate_system: plane, x: 480}], )" +
+         time + R"(}
+  - {name: b, positions: [{coordinate_system: plane, x: 1000}, {coordinate_system: plane, x: 720}], )" +
+         time + R"(}
+  - {name: hall, columns: 2, positions: [{coordinate_system: plane}]}
+movers:
+  - {name: one, reference: a, initial: {x: 120, y: 120}}
+  - {name: two, reference: b, initial: {x: 120, y: 120}}
+  - {name: three, reference: hall, initial: {x: 120, y: 120}}
+tracks:
+  - {name: on_a, part: a, elements: [{from: {x: 10, y: 120}, to: {x: 230, y: 120}}]}
+  - {name: on_b, part: b, elements: [{from: {x: 10, y: 120}, to: {x: 230, y: 120}}]}
+  - {name: on_hall, part: hall, elements: [{from: {x: 20, y: 120}, to: {x: 470, y: 120}}]}
+)" + (grouped ? "planar_groups: [{name: g, movers: [one, two, three], tracks: [on_a, on_b, on_hall]}]\n" : "");
+}
+
+class TwoLiftsRig : public PartsRig {
+ public:
+  TwoLiftsRig(double travel_s, bool grouped, int one, int two) : PartsRig(TwoLifts(travel_s, grouped)) {
+    Run();
+    for (const char* name : {"one", "two", "three"}) Do(name, "enable");
+    Run(20);
+    for (const char* name : {"on_a", "on_b", "on_hall"}) Do(name, "enable");
+    if (grouped) {
+      EXPECT_EQ(ErrorOf("g", "enable"), ErrorId::kNone);
+    }
+    EXPECT_EQ(ErrorOf("one", "join_track", "{track: on_a}"), ErrorId::kNone);
+    EXPECT_EQ(ErrorOf("two", "join_track", "{track: on_b}"), ErrorId::kNone);
+    EXPECT_EQ(ErrorOf("one", "move_on_track", "{position: " + std::to_string(one) + "}"), ErrorId::kNone);
+    EXPECT_EQ(ErrorOf("two", "move_on_track", "{position: " + std::to_string(two) + "}"), ErrorId::kNone);
+  }
+};
+
+// Both go in one cycle, or while the other is on its way: what one brings is in the way of what the other brings.
+TEST(PartsAndGroups, WhatTwoPartsBringDoesNotMeet) {
+  for (const bool grouped : {false, true}) {
+    for (const int later : {0, 1, 100}) {
+      for (const bool first_a : {false, true}) {
+        TwoLiftsRig rig(0.2, grouped, 220, 0);  // 10 and 10 mm from the border between them: one body in the other
+        const char *first = first_a ? "a" : "b", *second = first_a ? "b" : "a";
+        const Ticket goes = rig.Give(first, "activate_position", "{index: 2}");
+        rig.Run(later);
+        const FeedbackEvent refused = rig.Do(second, "activate_position", "{index: 2}");
+        EXPECT_EQ(refused.error, ErrorId::kPartMover);
+        EXPECT_EQ(refused.object, (ObjectInfo{ObjectKind::kMover, first_a ? 1u : 2u}));
+        EXPECT_EQ(rig.End(goes).error, ErrorId::kNone);
+        EXPECT_EQ(rig.ErrorOf(second, "activate_position", "{index: 2}"), ErrorId::kPartMover);
+      }
+    }
+  }
+  TwoLiftsRig rig(0.2, true, 100, 200);
+  const Ticket goes = rig.Give("a", "activate_position", "{index: 2}");
+  EXPECT_EQ(rig.ErrorOf("b", "activate_position", "{index: 2}"), ErrorId::kNone);
+  EXPECT_EQ(rig.End(goes).error, ErrorId::kNone);
+}
+
+// From the command on it has its place where it goes: nobody is sent there, turned or set into it, in whichever way.
+TEST(PartsAndGroups, WhatAPartBringsHasItsPlaceThere) {
+  const auto activate = [](PartsRig& rig) { return rig.Give("a", "activate_position", "{index: 2}"); };
+  for (const bool grouped : {false, true}) {
+    for (const int later : {0, 1, 100, 300}) {
+      TwoLiftsRig rig(0.2, grouped, 0, 200);
+      const Ticket goes = activate(rig);
+      rig.Run(later);
+      const FeedbackEvent refused = rig.Do("three", "move_to_position", "{x: 420, y: 120, reference: plane}");
+      if (grouped || later < 300) {
+        EXPECT_EQ(refused.error, ErrorId::kCollision);
+        EXPECT_EQ(refused.object, (ObjectInfo{ObjectKind::kMover, 1}));
+      }
+      EXPECT_EQ(rig.End(goes).error, ErrorId::kNone);
+    }
+    TwoLiftsRig set(0.2, grouped, 0, 200);
+    set.Do("three", "disable");
+    Ticket goes = activate(set);
+    set.Run(10);
+    EXPECT_EQ(set.ErrorOf("three", "set_position", "{x: 420, y: 120, reference: plane}"), ErrorId::kCollision);
+    EXPECT_EQ(set.ErrorOf("three", "set_position", "{x: 300, y: 120, reference: plane}"), ErrorId::kNone);
+    set.End(goes);
+    // The other way round.
+    TwoLiftsRig rig(0.2, grouped, 0, 200);
+    const Ticket moves = rig.Give("three", "move_to_position", "{x: 420, y: 120, reference: plane}");
+    goes = activate(rig);
+    EXPECT_EQ(rig.End(goes).error, ErrorId::kPartMover);
+    EXPECT_EQ(rig.answers[goes].object, (ObjectInfo{ObjectKind::kMover, 3}));
+    EXPECT_EQ(rig.End(moves).error, ErrorId::kNone);
+  }
+  // Along a track that is not going to be linked: in a group.
+  for (const int later : {0, 100}) {
+    TwoLiftsRig rig(0.2, true, 0, 200);
+    EXPECT_EQ(rig.ErrorOf("three", "join_track", "{track: on_hall}"), ErrorId::kNone);
+    const Ticket goes = activate(rig);
+    rig.Run(later);
+    const FeedbackEvent refused = rig.Do("three", "move_on_track", "{position: 450}");
+    EXPECT_EQ(refused.error, ErrorId::kCollision);
+    EXPECT_EQ(refused.object, (ObjectInfo{ObjectKind::kMover, 1}));
+    EXPECT_EQ(rig.End(goes).error, ErrorId::kNone);
+    // Back on its level it is in nobody's way.
+    EXPECT_EQ(rig.ErrorOf("one", "move_on_track", "{position: 200}"), ErrorId::kNone);
+    EXPECT_EQ(rig.ErrorOf("a", "activate_position", "{index: 1}"), ErrorId::kNone);
+    EXPECT_EQ(rig.ErrorOf("three", "move_on_track", "{position: 450}"), ErrorId::kNone);
+  }
+}
+
+// Relative set points carry nobody into another: the way to a stop is asked for in every cycle, as moves ask for
+// theirs.
+TEST(PartsAndGroups, RelativeSetPointsKeepClear) {
+  for (const double top : {100.0, 500.0, 1500.0}) {
+    PartsRig rig(R"(
+name: pair
+axes: []
+movers: [{name: one}, {name: two, initial: {x: 1500}}, {name: three, initial: {x: 1500, y: 300}}]
+planar_groups: [{name: cell, movers: [one, two, three]}]
+)");
+    rig.Run();
+    for (const char* name : {"one", "two", "three"}) rig.Do(name, "enable");
+    EXPECT_EQ(rig.ErrorOf("cell", "enable"), ErrorId::kNone);
+    const Ticket led = rig.Give("one", "start_external_setpoint_generation", "{mode: relative}");
+    double x = 0, v = 0, least = 1e9;
+    rig.each_cycle = [&] { least = std::min(least, rig.Mover("two").x - rig.Mover("one").x); };
+    Ticket into = 0;
+    for (int i = 0; i < 20000 && !IsFinal(rig.answers[led].state); ++i) {
+      const double a = v < top ? 1000 : 0;
+      x += v * 0.001 + a * 0.5e-6;
+      v += a * 0.001;
+      char text[200];
+      std::snprintf(text, sizeof text, "{x: %.12g, velocity_x: %.12g, acceleration_x: %.12g}", x, v, v < top ? a : 0);
+      rig.Give("one", "set_external_setpoint", text);
+      // Another one does not get what this one needs to stop.
+      if (into == 0 && x > 700) {
+        into = rig.Give("three", "move_to_position", "{x: " + std::to_string(x + 113 + v * v / 40000) + ", y: 0}");
+      }
+      rig.Run();
+    }
+    EXPECT_EQ(rig.answers[led].error, ErrorId::kCollision);
+    EXPECT_EQ(rig.answers[led].object, (ObjectInfo{ObjectKind::kMover, 2}));
+    EXPECT_EQ(rig.answers[into].error, ErrorId::kCollision);
+    EXPECT_EQ(rig.answers[into].object, (ObjectInfo{ObjectKind::kMover, 1}));
+    rig.Run(1000);
+    EXPECT_EQ(rig.Mover("one").state, planar::ObjectState::kError);
+    EXPECT_GT(least, 113);
+    EXPECT_LT(least, 113 + 6);
   }
 }
 

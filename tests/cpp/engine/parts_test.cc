@@ -107,6 +107,20 @@ TEST(Parts, TheLiftOfTheManual) {
   EXPECT_EQ(rig.Part("two").state, ObjectState::kDisabled);
 }
 
+// A simulated lift is nowhere for as long as it takes.
+TEST(Parts, ALiftTakesItsTime) {
+  PartsRig rig(With(kLift, "initial_position: 2", "initial_position: 2\n    travel_time_s: 0.05"));
+  rig.Run();
+  const Ticket going = rig.Give("three", "activate_position", "{index: 1}");
+  rig.Run(50);
+  EXPECT_EQ(rig.Part("three").position_index, 0u);
+  EXPECT_NE(rig.answers[going].state, FeedbackState::kDone);
+  rig.Run(2);
+  EXPECT_EQ(rig.answers[going].state, FeedbackState::kDone);
+  EXPECT_EQ(rig.Part("three").position_index, 1u);
+  EXPECT_EQ(rig.Part("three").error, ErrorId::kNone);
+}
+
 // Refused with what is in the way, and nothing has changed then.
 TEST(Parts, GoOnlyWhenThatIsSafe) {
   const std::string text =
@@ -284,7 +298,6 @@ TEST(Parts, HoldSetPointsFromOutside) {
   rig.Run(3);
   const Ticket external = rig.Give("mover", "start_external_setpoint_generation");
   double v = 0, y = 120;
-  rig.Run();
   const auto give = [&](const std::string& reference, double at) {
     char text[200];
     std::snprintf(text, sizeof text, "{x: 120, y: %.12g, velocity_y: %.12g, acceleration_y: 0, reference: %s}", at, v,
@@ -396,6 +409,35 @@ TEST(PartTracks, TheNetworkOfTheManual) {
   EXPECT_EQ(rig.ErrorOf("mover", "leave_track", "{x: 300, y: 480, reference: plane}"), ErrorId::kNone);
 }
 
+// Both in one cycle: whoever comes second is refused, in whichever order they come.
+TEST(PartTracks, AMoverAndItsPartDoNotMissEachOther) {
+  const std::string text = With(kLift, "movers:", R"(tracks:
+  - {name: below, part: one, elements: [{from: {x: 120, y: 60}, to: {x: 120, y: 240}}]}
+  - name: above
+    part: three
+    starts_from_positions: [{track: below, this_position_index: 1, other_position_index: 1}]
+    elements: [{from: {x: 120, y: 0}, to: {x: 120, y: 180}}]
+movers:)");
+  PartsRig rig(text);
+  rig.Do("three", "activate_position", "{index: 1}");
+  for (const char* track : {"below", "above"}) rig.Do(track, "enable");
+  rig.Do("mover", "enable");
+  rig.Do("mover", "join_track", "{track: below}");
+
+  Ticket goes = rig.Give("three", "activate_position", "{index: 2}");
+  Ticket moves = rig.Give("mover", "move_on_track", "{track: above, position: 100}");
+  EXPECT_EQ(rig.End(goes).error, ErrorId::kNone);
+  EXPECT_EQ(rig.End(moves).error, ErrorId::kNoRoute);
+  rig.Do("three", "activate_position", "{index: 1}");
+
+  moves = rig.Give("mover", "move_on_track", "{track: above, position: 100}");
+  goes = rig.Give("three", "activate_position", "{index: 2}");
+  const FeedbackEvent refused = rig.End(goes);
+  EXPECT_TRUE(refused.error == ErrorId::kPartMover || refused.error == ErrorId::kPartTrack);
+  EXPECT_EQ(rig.End(moves).error, ErrorId::kNone);
+  EXPECT_EQ(rig.Mover("mover").part, 3u);
+}
+
 // The same network from the machine file.
 TEST(PartTracks, TheNetworkInTheFile) {
   const std::string tracks = R"(tracks:
@@ -484,6 +526,83 @@ TEST(PartTracks, KeepTheGapOverTheBorder) {
   EXPECT_EQ(rig.ErrorOf("two", "activate_position", "{index: 1}"), ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("mover", "move_on_track", "{position: 170}"), ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("other", "move_on_track", "{position: 400}"), ErrorId::kNone);
+}
+
+// A part brings a mover in front of one that comes along: it is waited for, or the part does not go.
+TEST(PartTracks, WhoIsBroughtIsWaitedFor) {
+  int went = 0, refused = 0;
+  for (const double travel_s : {0.0, 0.3}) {
+    for (const bool grouped : {false, true}) {
+      for (const int at : {0, 100, 190}) {
+        for (const int later : {0, 1, 300, 400, 450, 500, 550, 600, 650}) {
+          PartsRig rig(R"(
+name: line
+axes: []
+coordinate_systems: [{name: plane}, {name: other}]
+parts:
+  - {name: a, columns: 2, positions: [{coordinate_system: other}, {coordinate_system: plane, x: 960}],
+     travel_time_s: )" +
+                       std::to_string(travel_s) + R"(}
+  - {name: b, columns: 4, positions: [{coordinate_system: plane}]}
+movers:
+  - {name: one, reference: a, initial: {x: 120, y: 120}}
+  - {name: two, reference: b, initial: {x: 120, y: 120}}
+tracks:
+  - {name: on_a, part: a, elements: [{from: {x: 0, y: 120}, to: {x: 460, y: 120}}],
+     starts_from_positions: [{track: on_b, this_position_index: 2, other_position_index: 1}]}
+  - {name: on_b, part: b, elements: [{from: {x: 20, y: 120}, to: {x: 960, y: 120}}]}
+planar_groups: [{name: cell, movers: [one, two], tracks: [on_a, on_b]}]
+)");
+          rig.Run();
+          for (const char* name : {"one", "two"}) rig.Do(name, "enable");
+          rig.Run(20);
+          for (const char* name : {"on_a", "on_b"}) rig.Do(name, "enable");
+          if (grouped) rig.Do("cell", "enable");
+          rig.Do("one", "join_track", "{track: on_a}");
+          rig.Do("two", "join_track", "{track: on_b}");
+          rig.Do("one", "move_on_track", "{position: " + std::to_string(at) + "}");
+          const mover::Outputs &one = rig.Mover("one"), &two = rig.Mover("two");
+          double last = two.velocity_x;
+          rig.each_cycle = [&] {
+            if (one.coordinate_system == two.coordinate_system) {
+              ASSERT_GE(one.x - two.x, 200 - 1e-3);
+            }
+            // It brakes, no harder than it can.
+            ASSERT_LE(std::abs(two.velocity_x - last), 10000 * 0.001 * 1.000001);
+            last = two.velocity_x;
+          };
+          const Ticket comes = rig.Give("two", "move_on_track", "{position: 940}");
+          rig.Run(later);
+          const Ticket goes = rig.Give("a", "activate_position", "{index: 2}");
+          rig.Run();
+          // On its way nothing gets onto it.
+          if (travel_s > 0 && rig.answers[goes].error == ErrorId::kNone) {
+            EXPECT_EQ(rig.ErrorOf("two", "move_on_track", "{track: on_a, position: 100}"), ErrorId::kTrackMode);
+          }
+          const FeedbackEvent gone = rig.End(goes);
+          rig.Run(1500);
+          SCOPED_TRACE(std::to_string(at) + " " + std::to_string(later));
+          if (gone.error == ErrorId::kNone) {
+            ++went;
+            EXPECT_EQ(one.coordinate_system, 1u);
+            EXPECT_EQ(two.waits_for, 1u);
+            EXPECT_NEAR(one.x - two.x, 200, 0.1);
+            EXPECT_EQ(rig.ErrorOf("one", "move_on_track", "{position: 300}"), ErrorId::kNone);
+          } else {
+            ++refused;
+            EXPECT_EQ(gone.error, ErrorId::kPartMover);
+            EXPECT_EQ(gone.object, (ObjectInfo{ObjectKind::kMover, 2}));
+            EXPECT_GE(later, 300);
+          }
+          EXPECT_EQ(rig.End(comes).error, ErrorId::kNone);
+          EXPECT_NEAR(two.x, 960, 1e-9);
+        }
+      }
+    }
+  }
+  std::printf("parts that went %d, that did not %d\n", went, refused);
+  EXPECT_GT(went, 30);
+  EXPECT_GT(refused, 10);
 }
 
 // Linked only on the border of both parts, and only while they are where that was meant.

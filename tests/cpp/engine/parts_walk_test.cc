@@ -1,6 +1,7 @@
 // PL-32: random commands to movers and parts on two levels, at any time. What they do is held against the outputs alone
-// and the machine file: whoever moves is on stators, nobody leaves its place on a part when that goes, what is refused
-// is not safe and what is accepted is. And all of it can be replayed.
+// and the machine file: whoever moves is on stators, nobody leaves its place on a part when that goes, movers on tracks
+// keep their gap and bodies of a group never touch, what is refused is not safe and what is accepted is. And all of it
+// can be replayed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,6 +25,7 @@ parts:
   - {name: hall, stators: [{x: 0, y: 0}, {x: 240, y: 0}, {x: 0, y: 240}], positions: [{coordinate_system: lower}]}
   - {name: attic, stators: [{x: 0, y: 0}, {x: 240, y: 0}], positions: [{coordinate_system: upper}]}
   - name: lift
+    travel_time_s: 0.12
     positions:
       [{coordinate_system: lower, x: 480}, {coordinate_system: upper, x: 480}, {coordinate_system: upper, y: 240}]
   - name: shuttle
@@ -31,6 +33,7 @@ parts:
     positions: [{coordinate_system: lower, x: 240, y: 240}, {coordinate_system: lower, x: 480, y: 120},
                 {coordinate_system: upper, x: 100, y: 240}]
   - name: drawer
+    travel_time_s: 0.03
     positions: [{coordinate_system: lower, x: 0, y: 480}, {coordinate_system: lower, x: -240},
                 {coordinate_system: upper, x: 240, y: 240}]
 tracks:
@@ -42,6 +45,8 @@ movers:
   - {name: b, reference: hall, initial: {x: 340, y: 100}, width: 155, height: 113}
   - {name: c, reference: attic, initial: {x: 100, y: 100}}
   - {name: d, reference: lift, initial: {x: 120, y: 120}}
+planar_groups:
+  - {name: cell, movers: [a, b, c, d], tracks: [hall_way, attic_way, lift_way]}
 )";
 
 // Where a part is, as it said last.
@@ -52,13 +57,19 @@ struct Seen {
 
 class Walk {
  public:
-  Walk(std::uint32_t seed, bool faults)
-      : rig(kTwoLevels, {.journal = true, .snapshot_queue = 1 << 15}), random_(seed), faults_(faults) {
+  Walk(std::uint32_t seed, bool faults, bool grouped)
+      : rig(kTwoLevels, {.journal = true, .snapshot_queue = 1 << 15}),
+        random_(seed),
+        faults_(faults),
+        grouped_(grouped) {
     for (const part::PartParams& part : rig.machine.parts) stators_.push_back(part::StatorsOf(part));
     // The lift's track goes on from either.
     rig.Do("lift", "activate_position", "{index: 2}");
     EXPECT_EQ(rig.ErrorOf("lift_way", "start_from_track", "{track: attic_way}"), ErrorId::kNone);
     for (const char* track : {"hall_way", "attic_way", "lift_way"}) rig.Do(track, "enable");
+    if (grouped) {
+      EXPECT_EQ(rig.ErrorOf("cell", "enable"), ErrorId::kNone);
+    }
     Look();
     rig.each_cycle = [this] { Check(); };
   }
@@ -72,6 +83,7 @@ class Walk {
 
   PartsRig rig;
   int activated = 0, hindered = 0, off = 0, crossed = 0, moved = 0, carried = 0, on_track = 0, changed_track = 0;
+  int collided = 0, beside = 0;  // beside: two bodies were less than 20 mm apart in a cycle
 
  private:
   double Uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
@@ -79,6 +91,12 @@ class Walk {
   const Machine& machine() const { return rig.machine; }
   const mover::Outputs& MoverAt(std::size_t i) const { return rig.engine.mover_outputs(i); }
   const part::Outputs& PartAt(std::size_t i) const { return rig.engine.part_outputs(i); }
+
+  std::vector<bool> Away() const {
+    std::vector<bool> away;
+    for (std::size_t i = 0; i < machine().parts.size(); ++i) away.push_back(PartAt(i).position_index == 0);
+    return away;
+  }
 
   void Look() {
     parts_.resize(machine().parts.size());
@@ -111,9 +129,12 @@ class Walk {
       return x > -slack && y > -slack && x < 240 + slack && y < 240 + slack;
     });
   }
-  bool OnStators(std::uint32_t system, const std::vector<Place>& places, double slack) const {
+  // Of all parts, also of those on their way where they were last, or not of these.
+  bool OnStators(std::uint32_t system, const std::vector<Place>& places, double slack,
+                 const std::vector<bool>& away = {}) const {
     return std::ranges::all_of(places, [&](const Place& p) {
       for (std::size_t i = 0; i < parts_.size(); ++i) {
+        if (!away.empty() && away[i]) continue;
         if (IsOn(i, parts_[i], system, p, slack)) return true;
       }
       return false;
@@ -124,6 +145,23 @@ class Walk {
     return std::ranges::any_of(OutlineOf(mover, at, c, larger, 4),
                                [&](const Place& p) { return IsOn(part, where, system, p, -1e-9); }) ||
            IsOn(part, where, system, at, -1e-9);
+  }
+
+  // How far two rectangles are apart along one of their sides; below 0: they overlap by so much at least.
+  double Apart(std::size_t a, const mover::Outputs& at_a, std::size_t b, const mover::Outputs& at_b) const {
+    double most = -1e9;
+    for (const double c : {at_a.c, at_a.c + 90, at_b.c, at_b.c + 90}) {
+      const double x = std::cos(c * M_PI / 180), y = std::sin(c * M_PI / 180);
+      const auto half = [&](std::size_t m, double turned) {
+        const double t = (turned - c) * M_PI / 180;
+        return (machine().movers[m].width * std::abs(std::cos(t)) +
+                machine().movers[m].height * std::abs(std::sin(t))) /
+               2;
+      };
+      const double off = std::abs((at_b.x - at_a.x) * x + (at_b.y - at_a.y) * y);
+      most = std::max(most, off - half(a, at_a.c) - half(b, at_b.c));
+    }
+    return most;
   }
 
   static bool IsOnTrack(const mover::Outputs& o) {
@@ -147,6 +185,11 @@ class Walk {
         if (meet) {
           EXPECT_GE(std::hypot(now.x - other.x, now.y - other.y), 200 - 1e-3);
         }
+        if (!grouped_ || now.coordinate_system != other.coordinate_system) continue;
+        const double apart = Apart(i, now, k, other);
+        beside += apart < 20 ? 1 : 0;
+        EXPECT_GT(apart, -1e-3) << machine().movers[i].name << " and " << machine().movers[k].name << ", cycle "
+                                << rig.engine.cycle().count;
       }
       EXPECT_TRUE(OnStators(now.coordinate_system, body, 1e-5))
           << machine().movers[i].name << " at " << now.x << ", " << now.y << " turned " << now.c << " in "
@@ -239,6 +282,8 @@ class Walk {
     const bool rests = o.velocity_x == 0 && o.velocity_y == 0 && !o.busy_xyc && !o.busy_c;
     const bool can = o.state == ObjectState::kEnabled && o.command_mode == mover::CommandMode::kFreeMovement;
     const bool here = from.system == o.coordinate_system;
+    const std::vector<bool> away = Away();
+    const bool stays = away[o.part - 1] || (by_part && away[r]);
     char text[200];
     std::snprintf(text, sizeof text, "{x: %.9g, y: %.9g, velocity: %.3g, reference: %s}", target.x, target.y,
                   Uniform(200, 2000), name.c_str());
@@ -246,7 +291,7 @@ class Walk {
     const Ticket ticket = rig.Give(machine().movers[m].name, "move_to_position", text);
     const std::vector<Seen> were = parts_;
     rig.Run();
-    if (!rests || !can) return;
+    if (!rests || !can || stays) return;
     const ErrorId error = rig.answers[ticket].error;
     if (!here) {
       EXPECT_EQ(error, ErrorId::kReference);
@@ -256,7 +301,7 @@ class Walk {
       const double way = std::hypot(to.x - o.x, to.y - o.y);
       for (double s = 0; s <= way; s += 0.5) {
         const Place at{o.x + (to.x - o.x) * s / way, o.y + (to.y - o.y) * s / way};
-        if (!OnStators(o.coordinate_system, OutlineOf(m, at, o.c, larger, 4), 1e-5)) return false;
+        if (!OnStators(o.coordinate_system, OutlineOf(m, at, o.c, larger, 4), 1e-5, away)) return false;
       }
       return true;
     };
@@ -268,6 +313,11 @@ class Walk {
       EXPECT_FALSE(free(2)) << machine().movers[m].name << " from " << o.x << ", " << o.y << " to " << to.x << ", "
                             << to.y;
       ++off;
+    } else if (error == ErrorId::kCollision) {
+      // With one of the group, or with whom a part brings.
+      EXPECT_TRUE(grouped_ || std::ranges::count(away, true) > 0);
+      EXPECT_NE(rig.answers[ticket].object.kind, ObjectKind::kNone);
+      ++collided;
     } else {
       EXPECT_TRUE(faults_ && (error == ErrorId::kPartDisabled || error == ErrorId::kPartFault))
           << static_cast<int>(error);
@@ -298,9 +348,10 @@ class Walk {
     const auto busy = [&](const mover::Outputs& o) {
       return o.busy_xyc || o.busy_z || o.busy_c || o.velocity_x != 0 || o.velocity_y != 0 || o.velocity_c != 0;
     };
+    const std::vector<bool> away = Away();
     const auto reaches = [&](std::size_t m, std::size_t k, double larger) {
       const mover::Outputs& o = stood[m];
-      return Reaches(m, {o.x, o.y}, o.c, o.coordinate_system, k, were[k], larger);
+      return !away[k] && Reaches(m, {o.x, o.y}, o.c, o.coordinate_system, k, were[k], larger);
     };
     const auto reaches_others = [&](std::size_t m, double larger) {
       for (std::size_t k = 0; k < were.size(); ++k) {
@@ -343,9 +394,10 @@ class Walk {
       bool overlap = false;
       for (const Place& a : part::StatorsOf(part)) {
         for (const Place& b : part::StatorsOf(machine().parts.at(number - 1))) {
-          const Seen& its = were[number - 1];
-          const double x = to.origin.x + a.x - its.origin.x - b.x, y = to.origin.y + a.y - its.origin.y - b.y;
-          overlap |= its.system == to.system && std::abs(x) < 240 && std::abs(y) < 240;
+          for (const Seen& its : {were[number - 1], parts_[number - 1]}) {
+            const double x = to.origin.x + a.x - its.origin.x - b.x, y = to.origin.y + a.y - its.origin.y - b.y;
+            overlap |= its.system == to.system && std::abs(x) < 240 && std::abs(y) < 240;
+          }
         }
       }
       EXPECT_TRUE(overlap || PartAt(number - 1).position_index == 0);
@@ -355,13 +407,14 @@ class Walk {
       const bool on = o.part == p + 1;
       // A mover that is neither in its way now nor going anywhere can only be under what it carries or where it goes.
       const bool reason = busy(o) || (on ? reaches_others(number - 1, 0.01) : reaches(number - 1, p, 0.01)) ||
-                          o.coordinate_system == to.system;
+                          o.coordinate_system == to.system || away[o.part - 1];
       EXPECT_TRUE(reason) << part.name << " to " << index << ", " << machine().movers[number - 1].name;
     }
   }
 
   std::mt19937 random_;
   bool faults_;
+  bool grouped_;
   std::vector<std::vector<Place>> stators_;  // by part
   std::vector<Seen> parts_;
   std::vector<mover::Outputs> movers_;
@@ -369,10 +422,13 @@ class Walk {
 
 TEST(PartsWalk, NobodyLeavesTheStators) {
   int activated = 0, hindered = 0, off = 0, crossed = 0, moved = 0, carried = 0, on_track = 0, changed_track = 0;
-  for (std::uint32_t seed = 0; seed < 30 && !HasFailure(); ++seed) {
+  int collided = 0, beside = 0;
+  for (std::uint32_t seed = 0; seed < 40 && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
-    Walk walk(seed, seed % 2 == 1);
+    Walk walk(seed, seed % 2 == 1, seed % 3 == 0);
     walk.Go(400);
+    collided += walk.collided;
+    beside += walk.beside;
     activated += walk.activated;
     hindered += walk.hindered;
     off += walk.off;
@@ -384,8 +440,10 @@ TEST(PartsWalk, NobodyLeavesTheStators) {
   }
   std::printf(
       "moved %d, over borders %d, off the stators %d; parts went %d, hindered %d, movers carried %d; cycles on "
-      "tracks %d, from track to track %d\n",
-      moved, crossed, off, activated, hindered, carried, on_track, changed_track);
+      "tracks %d, from track to track %d; collisions refused %d, cycles side by side %d\n",
+      moved, crossed, off, activated, hindered, carried, on_track, changed_track, collided, beside);
+  EXPECT_GT(collided, 10);
+  EXPECT_GT(beside, 100);
   EXPECT_GT(on_track, 1000);
   EXPECT_GT(changed_track, 3);
   EXPECT_GT(moved, 80);
@@ -398,7 +456,7 @@ TEST(PartsWalk, NobodyLeavesTheStators) {
 
 // EN-06: what was given to one engine gives the same bits in another.
 TEST(PartsWalk, CanBeReplayed) {
-  Walk walk(2, false);
+  Walk walk(3, false, true);
   walk.Go(500);
   ASSERT_GT(walk.carried, 3);
   Engine again(walk.rig.machine, {.journal = true, .snapshot_queue = 1 << 15});

@@ -485,13 +485,13 @@ TEST(Messages, MoverStateKeepsEveryNumber) {
           FIELD(mover_state, group),
           FIELD(mover_state, coordinate_system),
           FIELD(mover_state, part),
+          FIELD(mover_state, formation),
           FIELD(mover_state, commands),
       },
       machine, "shuttle");
   EXPECT_EQ(static_cast<int>(planar::ObjectState::kResetting), msgs::mover_state::STATE_RESETTING);
   EXPECT_EQ(static_cast<int>(mover::Delay::kRelease), msgs::mover_state::DELAY_RELEASE);
-  EXPECT_EQ(static_cast<int>(mover::CommandMode::kExternalSetpointGeneration),
-            msgs::mover_state::MODE_EXTERNAL_SETPOINT_GENERATION);
+  EXPECT_EQ(static_cast<int>(mover::CommandMode::kFormation), msgs::mover_state::MODE_FORMATION);
 }
 #undef FIELD
 #undef FIELD_OF

@@ -2,6 +2,7 @@
 #include "takt/mover/buffer.h"
 
 #include "rig.h"
+#include "takt/planar/environment.h"
 
 namespace takt::mover {
 namespace {
@@ -210,36 +211,179 @@ TEST(MoverBuffer, AFailureEndsWhatIsBehind) {
   EXPECT_EQ(rig.out.x, 100);
 }
 
-// Whatever is buffered and blended: limits are kept, targets without blending are stood at, every command ends once.
+// What turns or lifts it, given later, holds back nothing that was given before, nor its blending; given before, it
+// does.
+TEST(MoverBuffer, AuxiliaryMovesGivenLaterLeaveItAlone) {
+  int alone = 0;
+  for (const bool lifts : {false, true}) {
+    Rig rig;
+    rig.Enable();
+    rig.Give(MoveToPosition{.x = 1000});
+    const Ticket next = rig.Give(To(1000, 1000, 100));
+    rig.Run(10);
+    Ticket lift = 0;
+    if (lifts) lift = rig.Give(MoveZ{.position = 5, .velocity = 1});
+    double nearest = INFINITY;
+    int cycles = 10;
+    for (; !IsFinal(rig.Of(next).state) && cycles < 9000; ++cycles) {
+      rig.Step();
+      nearest = std::min(nearest, std::hypot(rig.out.x - 1000, rig.out.y));
+    }
+    EXPECT_GT(nearest, 1);
+    if (!lifts) alone = cycles;
+    if (!lifts) continue;
+    EXPECT_EQ(cycles, alone);
+    EXPECT_EQ(rig.Of(lift).state, FeedbackState::kActive);
+    const Ticket behind = rig.Give(To(0, 0));
+    rig.Run(1000);
+    EXPECT_EQ(rig.out.buffered, 1u);
+    rig.Finish(lift);
+    EXPECT_EQ(rig.out.x, 1000);
+    EXPECT_EQ(rig.Become(behind), FeedbackState::kDone);
+  }
+}
+
+// Set points on top of all that a mover does leave its buffer alone.
+TEST(MoverBuffer, GoesOnUnderRelativeSetPoints) {
+  Rig rig;
+  rig.Enable();
+  rig.Give(MoveToPosition{.x = 100});
+  const Ticket before = rig.Give(To(200, 0));
+  const Ticket start = rig.Give(StartExternalSetpointGeneration{.mode = SetpointMode::kRelative});
+  const Ticket behind = rig.Give(To(300, 0));
+  for (int i = 0; i < 3000 && !IsFinal(rig.Of(behind).state); ++i) {
+    rig.Give(SetExternalSetpoint{});
+    rig.Step();
+  }
+  EXPECT_EQ(rig.Of(before).state, FeedbackState::kDone);
+  EXPECT_EQ(rig.Of(behind).state, FeedbackState::kDone);
+  EXPECT_EQ(rig.Of(start).state, FeedbackState::kActive);
+  EXPECT_EQ(rig.out.x, 300);
+}
+
+// A surface of two parts, 2 m each: one has its origin elsewhere.
+planar::Parts TwoHalves() {
+  const auto part = [](const char* name, double x) {
+    planar::Part half;
+    half.name = name;
+    std::vector<planar::Place> stators;
+    for (int i = 0; i < 8; ++i) {
+      for (int k = 0; k < 16; ++k) stators.push_back({240.0 * i, 240.0 * k});
+    }
+    planar::MakeEnvironment(stators, half.shape);
+    half.positions = {{0, {x, -1920}}};
+    return half;
+  };
+  return {{"plane"}, {part("left", -1920), part("right", 0)}, {{.enabled = true}, {.enabled = true}}};
+}
+
+// Whatever is buffered and blended, released and turned, and comes on top: limits are kept, each command ends once, and
+// a move that no other one takes over without a stop is done where it was to go. Each in the order it was given.
 TEST(MoverBuffer, PropertyKeepsLimits) {
   std::mt19937 random(3);
   const auto between = [&](double a, double b) { return std::uniform_real_distribution(a, b)(random); };
+  const auto chance = [&](double p) { return between(0, 1) < p; };
+  const planar::Parts parts = TwoHalves();
+  struct Wish {
+    Ticket ticket = 0;
+    double x = 0, y = 0;
+    double blended = 0;  // mm, by what comes behind it
+  };
+  int done = 0, rounded = 0, failed = 0, released = 0, beside = 0;
   for (int run = 0; run < 60; ++run) {
     Rig rig;
+    const bool on_parts = run % 2 == 1;
+    if (on_parts) {
+      rig.streets.parts = &parts;
+      rig.state.part = 1;
+    }
     rig.Enable();
     Watch watch(rig);
-    for (int i = 0; i < 400; ++i) {
-      if (rig.state.buffer.count < 3) {
-        MoveToPosition move = To(between(-500, 500), between(-500, 500), between(-100, 200));
-        if (move.blending < 0) move.blending = 0;
-        move.velocity = between(50, 3000);
-        if (between(0, 1) < 0.5) move.velocity.reset();
-        if (between(0, 1) < 0.1) move.use_orientation = true, move.c = between(-10, 10);
-        if (between(0, 1) < 0.1) move.buffer_mode = Buffering::kAborting, move.blending = 0;
-        rig.Give(move);
-      }
-      if (between(0, 1) < 0.02) rig.Give(Wait{.duration = between(0, 0.1)});
-      if (between(0, 1) < 0.01) rig.Give(Halt{});
-      for (int k = 0; k < 20; ++k) {
+    std::vector<Wish> wishes;
+    bool reckoned = true;  // X and Y are where moves lead
+    const auto run_cycles = [&](int cycles, double amplitude = 0) {
+      for (int k = 0; k < cycles; ++k) {
+        if (amplitude != 0) {  // there and back, smoothly
+          const double u = static_cast<double>(k) / cycles, q = u * (1 - u), slope = 1 - 2 * u, w = 1000.0 / cycles;
+          rig.Give(SetExternalSetpoint{.x = amplitude * 64 * q * q * q,
+                                       .velocity_x = amplitude * 192 * w * q * q * slope,
+                                       .acceleration_x = amplitude * 384 * w * w * q * (slope * slope - q)});
+        }
         rig.Step();
-        watch.Look();
+        watch.Look(amplitude != 0);
+        if (rig.out.state != planar::ObjectState::kEnabled) reckoned = false;
+        for (const Wish& wish : wishes) {
+          if (rig.Of(wish.ticket).state != FeedbackState::kDone || rig.Of(wish.ticket).cycle + 1 != rig.cycle.count)
+            continue;
+          ++done;
+          if (!reckoned || amplitude != 0) continue;
+          const double off = std::hypot(rig.out.x - wish.x, rig.out.y - wish.y);
+          EXPECT_LE(off, wish.blended + 1e-9) << wish.ticket;
+          rounded += off > 1 ? 1 : 0;
+        }
       }
+    };
+    for (int i = 0; i < 400; ++i) {
+      if (rig.out.state == planar::ObjectState::kError) {
+        ++failed;
+        rig.Finish(rig.Give(Reset{}));
+        watch = Watch(rig);
+        reckoned = true;
+      }
+      if (rig.state.buffer.count < 3) {
+        const double x = between(-500, 500), y = between(-500, 500);
+        MoveToPosition move = To(x, y, std::max(0.0, between(-100, 200)));
+        if (on_parts) {
+          const int reference = Whole(random, 0, 2);
+          move.reference = Name::Of(reference == 0 ? "" : reference == 1 ? "left" : "right");
+          if (reference > 0) move.x += reference == 1 ? 1920 : 0, move.y += 1920;
+        }
+        move.velocity = between(50, 3000);
+        if (chance(0.5)) move.velocity.reset();
+        if (chance(0.1)) move.c = between(-10, 10);
+        if (chance(0.1)) move.buffer_mode = Buffering::kAborting, move.blending = 0;
+        if (!wishes.empty()) wishes.back().blended = move.buffer_mode == Buffering::kBuffered ? move.blending : 0;
+        wishes.push_back({rig.Give(move), x, y, 0});
+      }
+      const Buffering buffering = chance(0.5) ? Buffering::kBuffered : Buffering::kAborting;
+      if (chance(0.05)) {
+        ++beside;
+        rig.Give(MoveZ{.position = between(0, 5), .velocity = between(1, 100), .buffer_mode = buffering});
+      }
+      if (chance(0.03)) rig.Give(MoveA{.position = between(-1, 1), .buffer_mode = buffering});
+      if (chance(0.03)) rig.Give(MoveC{.position = between(-15, 15), .buffer_mode = buffering});
+      if (chance(0.02)) rig.Give(Wait{.duration = between(0, 0.1), .for_release = chance(0.5)});
+      if (chance(0.1)) {
+        ++released;
+        rig.Give(Release{});
+      }
+      if (chance(0.01)) rig.Give(Halt{});
+      if (chance(0.01) && rig.out.state == planar::ObjectState::kEnabled) {
+        rig.Give(StartExternalSetpointGeneration{.mode = SetpointMode::kRelative});
+        run_cycles(Whole(random, 200, 400), between(0.1, 5));
+        if (chance(0.5)) rig.Give(StopExternalSetpointGeneration{});
+        // Else none comes any more: a fault.
+        watch = Watch(rig);
+        reckoned = false;
+        for (int k = 0; k < 600; ++k) {
+          rig.Step();
+          watch.Look();
+        }
+        reckoned = rig.out.state == planar::ObjectState::kEnabled;
+        wishes.clear();
+      }
+      run_cycles(20);
       ASSERT_FALSE(testing::Test::HasFailure()) << run;
     }
     rig.Give(Disable{});
     rig.Run(2000);
     for (Ticket ticket = 1; ticket <= rig.ticket; ++ticket) ASSERT_TRUE(IsFinal(rig.Of(ticket).state)) << ticket;
   }
+  std::printf("moves done %d, of those round a corner %d; faults %d, releases %d, auxiliary moves %d\n", done, rounded,
+              failed, released, beside);
+  EXPECT_GT(done, 500);
+  EXPECT_GT(rounded, 50);
+  EXPECT_GT(failed, 10);
 }
 
 }  // namespace

@@ -179,14 +179,75 @@ TEST(MoverExternal, SpeedsThatCannotBeHeldAreWild) {
   EXPECT_FALSE(can(1996, 2001));
 }
 
+// Where a coordinate could not stop any more within its limits, or C within its window while X and Y move, it is wild.
+TEST(MoverExternal, WhatCannotStopWithinLimitsIsWild) {
+  struct Case {
+    SetpointMode mode;
+    double SetExternalSetpoint::*position;
+    double SetExternalSetpoint::*velocity;
+    double SetExternalSetpoint::*acceleration;
+    std::size_t coordinate;
+    double acceleration_is, limit;
+  };
+  using P = SetExternalSetpoint;
+  for (const Case& k : {Case{SetpointMode::kAbsolute, &P::z, &P::velocity_z, &P::acceleration_z, kZ, 500, 5},
+                        Case{SetpointMode::kRelative, &P::z, &P::velocity_z, &P::acceleration_z, kZ, 500, 5},
+                        Case{SetpointMode::kAbsolute, &P::b, &P::velocity_b, &P::acceleration_b, kB, -60, -5},
+                        Case{SetpointMode::kRelative, &P::c, &P::velocity_c, &P::acceleration_c, kC, 1500, 15},
+                        Case{SetpointMode::kAbsolute, &P::c, &P::velocity_c, &P::acceleration_c, kC, 1500, 15}}) {
+    Rig rig;
+    rig.Enable();
+    std::optional<Watch> watch;
+    if (k.mode == SetpointMode::kRelative) rig.Give(MoveToPosition{.x = 3000});
+    rig.Give(StartExternalSetpointGeneration{.mode = k.mode});
+    SetExternalSetpoint p;
+    double most = 0;
+    for (int i = 1; i <= 3000; ++i) {
+      const double t = i * 0.001, s = k.acceleration_is;
+      p.*k.position = 0.5 * s * t * t;
+      p.*k.velocity = s * t;
+      p.*k.acceleration = s;
+      if (k.mode == SetpointMode::kAbsolute) {
+        p.x = 100 * t * t;
+        p.velocity_x = 200 * t;
+        p.acceleration_x = 200;
+      }
+      if (rig.out.error == ErrorId::kNone) rig.Give(p);
+      rig.Step();
+      if (watch) watch->Look(rig.out.error == ErrorId::kNone);
+      if (!watch) watch.emplace(rig);  // it begins with its acceleration
+      most = std::max(most, std::abs(rig.state.set_point[k.coordinate].position));
+    }
+    EXPECT_EQ(rig.out.error, ErrorId::kWildSetPoint);
+    EXPECT_TRUE(AtRest(rig.state));
+    EXPECT_LE(most, std::abs(k.limit) + 1e-6) << k.coordinate;
+    EXPECT_GT(most, 0.8 * std::abs(k.limit)) << k.coordinate;  // not sooner than it has to be
+  }
+}
+
+// From the start on they are due.
+TEST(MoverExternal, NoneAtAllIsAnErrorToo) {
+  for (const std::uint32_t missing : {1u, 4u}) {
+    for (const SetpointMode mode : {SetpointMode::kAbsolute, SetpointMode::kRelative}) {
+      Rig rig({.initial = {.x = 30, .c = 5}, .missing_setpoints = missing});
+      rig.Enable();
+      const Ticket start = rig.Give(StartExternalSetpointGeneration{.mode = mode});
+      for (std::uint32_t i = 0; i < missing; ++i) {
+        EXPECT_EQ(rig.Of(start).state, FeedbackState::kActive);
+        rig.Step();
+        EXPECT_EQ(rig.out.x, 30);
+      }
+      EXPECT_EQ(rig.Of(start).error, ErrorId::kNoSetPoint);
+    }
+  }
+}
+
 // So many may be missing as the machine file says; meanwhile it goes on as it went.
 TEST(MoverExternal, SomeMayBeMissing) {
   Rig rig({.missing_setpoints = 4});
   rig.Enable();
   Watch watch(rig);
   rig.Give(StartExternalSetpointGeneration{});
-  rig.Run(100);  // until the first one it waits
-  EXPECT_EQ(rig.out.state, ObjectState::kEnabled);
   const auto at = [](int i) {
     const double t = i * 0.001;
     return SetExternalSetpoint{.x = 50 * t * t, .velocity_x = 100 * t, .acceleration_x = 100};

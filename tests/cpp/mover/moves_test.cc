@@ -211,12 +211,24 @@ TEST(MoverMoves, TurnsAlong) {
   }
   Rig rig;
   rig.Enable();
-  rig.Finish(rig.Give(MoveToPosition{.x = 100, .c = 12}));
+  rig.Finish(rig.Give(MoveToPosition{.x = 100, .c = 12, .use_orientation = false}));
   EXPECT_EQ(rig.out.c, 0);
   EXPECT_EQ(rig.Of(rig.Give(MoveToPosition{.x = 0, .c = 16, .use_orientation = true})).error, ErrorId::kOutsideWindow);
 }
 
 // PL-11: Z, A and B go their own ways, within their limits.
+// An angle that is given counts; without one, or if it is not to count, C stays.
+TEST(MoverMoves, TurnsWhereAnAngleIsGiven) {
+  Rig rig;
+  rig.Enable();
+  rig.Finish(rig.Give(MoveToPosition{.x = 100, .c = 10}));
+  EXPECT_EQ(rig.out.c, 10);
+  rig.Finish(rig.Give(MoveToPosition{.x = 0}));
+  EXPECT_EQ(rig.out.c, 10);
+  rig.Finish(rig.Give(MoveToPosition{.x = 100, .c = 5, .use_orientation = false}));
+  EXPECT_EQ(rig.out.c, 10);
+}
+
 TEST(MoverMoves, AuxiliaryCoordinatesHaveLimits) {
   Rig rig;
   rig.Enable();

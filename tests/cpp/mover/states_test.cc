@@ -259,5 +259,22 @@ TEST(MoverStates, KeepsItsLastCommands) {
   EXPECT_EQ(*kept.begin(), rig.ticket - kHistory + 1);
 }
 
+// What was reduced is told of the command, also once others have come.
+TEST(MoverStates, KeepsWhatWasReduced) {
+  Rig rig;
+  rig.Enable();
+  rig.Give(MoveToPosition{.x = 100, .velocity = 1e5});
+  rig.Give(MoveZ{.position = 1, .jerk = 1e9});
+  rig.Give(MoveToPosition{.x = 50, .buffer_mode = Buffering::kBuffered});
+  rig.Step();
+  const History& history = rig.state.history;
+  EXPECT_EQ(history.records[1].limited_by, LimitedBy::kVelocity);
+  EXPECT_EQ(history.records[2].limited_by, LimitedBy::kJerk);
+  rig.Run(2000);
+  EXPECT_EQ(history.records[1].limited_by, LimitedBy::kVelocity);
+  EXPECT_EQ(history.records[3].state, FeedbackState::kDone);
+  EXPECT_EQ(history.records[3].limited_by, LimitedBy::kNothing);
+}
+
 }  // namespace
 }  // namespace takt::mover

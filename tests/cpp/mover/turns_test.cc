@@ -91,6 +91,14 @@ TEST(MoverTurns, DirectionsFindTheirPlace) {
   }
 }
 
+// Both ways are as short: the one to the given target.
+TEST(MoverTurns, HalfATurnLeadsToWhatWasGiven) {
+  for (const double given : {180.0, -180.0}) {
+    const MoveC command{.position = given, .direction = TurnDirection::kShortestWay};
+    EXPECT_EQ(TargetOf({}, {}, 0, command), given);
+  }
+}
+
 TEST(MoverTurns, APositiveTurnDoesNotReverse) {
   Rig rig;
   rig.Enable();

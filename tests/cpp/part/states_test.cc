@@ -21,7 +21,7 @@ class Rig {
     params.name = "lift";
     params.positions = {{"lower", 0, 0}, {"upper", 0, 0}, {"upper", 240, 0}};
     state = MakeState(params);
-    inputs = Simulate(state);
+    inputs = Simulate(context(), state);
   }
   Context context() { return {params, cycle, feedback}; }
   Ticket Give(const Command& command, const Hindrance& hindrance = {}) {
@@ -36,7 +36,7 @@ class Rig {
     part::Step(context(), around, state);
     if (state.state != before) seen.insert({before, state.state});
     Hear();
-    inputs = Simulate(state);
+    inputs = Simulate(context(), state);
     ++cycle.count;
     return arrived;
   }

@@ -182,6 +182,71 @@ TEST(Gear, ComesFromBehindWithoutPassing) {  // PL-14
   }
 }
 
+// Its master's place is behind it and it may only go forwards: it waits for its master, which waits for it.
+TEST(Gear, MayWaitForItsMaster) {  // PL-14, PL-26
+  const Pace pace = testing::PaceOf(1000, 8000, 200000);
+  Streets streets({Straight(3000)}, 2);
+  streets.Put(0, 0, 600, testing::PaceOf(100, 8000, 200000), 200);
+  streets.Put(1, 0, 1000, pace, 200);
+  Couple(streets, 1, -300, 0);
+  streets[1].gear.sense = 1;
+  streets.Run(1);
+  EXPECT_EQ(streets[1].waits, Waits::kMover);
+  EXPECT_EQ(streets[1].waits_for, 0U);
+  EXPECT_FALSE(IsDeadlocked(streets.riders(), 1));
+  streets.Send(0, 0, 2000);
+  EXPECT_FALSE(streets.Run(5));
+  EXPECT_NEAR(streets[1].at.position - streets[0].at.position, 200, 0.05);
+  EXPECT_TRUE(IsDeadlocked(streets.riders(), 0) && IsDeadlocked(streets.riders(), 1));
+  Couple(streets, 1, 300, 0);
+  streets[1].gear.sense = 1;
+  EXPECT_TRUE(streets.Run(20));
+  EXPECT_EQ(streets[1].waits, Waits::kNot);
+  EXPECT_TRUE(streets[1].gear.in_step);
+  EXPECT_NEAR(streets[1].at.position, 2300, 1e-6);
+}
+
+// The place lies ahead and comes back; as long as it is on the track it can be waited for.
+TEST(Gear, LetsAPlaceComeThatIsOnItsWay) {  // PL-14
+  const Pace pace = testing::PaceOf(1000, 8000, 200000);
+  trajectory::Planner planner;
+  for (const double from : {0.0, 1000.0}) {
+    for (const int sense : {-1, 0, 1}) {
+      const double back = from > 0 ? -1 : 1;
+      Streets streets({Straight(1000)}, 1);
+      streets.Put(0, 0, from, pace);
+      Couple(streets, 0, from + 400 * back);
+      streets[0].gear.sense = static_cast<std::int8_t>(sense);
+      trajectory::Profile master;  // comes back to the end, and goes
+      ASSERT_TRUE(planner.ToPosition({}, -399 * back, 0, {900, 8000, 8000, 200000}, master).ok());
+      double furthest = from;
+      for (int i = 1; i < 3000; ++i) {
+        streets[0].demand = master.At(i * testing::kPeriod);
+        streets.Step();
+        ASSERT_EQ(streets[0].gear.end, GearEnd::kNot) << from << " " << sense << " " << i;
+        ASSERT_GE(streets[0].at.position, -1e-6);
+        ASSERT_LE(streets[0].at.position, 1000 + 1e-6);
+        furthest = back > 0 ? std::max(furthest, streets[0].at.position) : std::min(furthest, streets[0].at.position);
+      }
+      // Away from the end it goes only where it may.
+      const bool may = sense == 0 || sense == back;
+      EXPECT_EQ(streets[0].gear.in_step, may) << from << " " << sense;
+      if (!may) {
+        EXPECT_EQ(furthest, from);
+      }
+      // Beyond it nothing can be waited for.
+      trajectory::Profile on;
+      ASSERT_TRUE(planner.ToPosition(master.end(), -500 * back, 0, {900, 8000, 8000, 200000}, on).ok());
+      for (int i = 1; i < 2000; ++i) {
+        streets[0].demand = on.At(i * testing::kPeriod);
+        streets.Step();
+      }
+      EXPECT_EQ(streets[0].gear.end, GearEnd::kWay) << from << " " << sense;
+      EXPECT_NEAR(streets[0].at.position, from, 1e-6);
+    }
+  }
+}
+
 TEST(Gear, StopsWhereItsWayEnds) {  // PL-14
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   for (const bool forward : {true, false}) {
@@ -372,7 +437,7 @@ bool Follows(Streets& streets, std::uint32_t mover, std::uint32_t master) {
 // Random movers of random cities go along with axes, with movers anywhere, and behind movers wherever those go; others
 // go their own ways. Whatever masters do, nobody comes too near, limits are kept, and who says to be in step is.
 TEST(Gear, NobodyComesTooNear) {  // PL-14, PL-23, PL-24
-  const int trials = testing::Trials(4);
+  const int trials = testing::Trials(8);
   int behind = 0, in_step = 0, ended = 0, crossed = 0;
   for (int trial = 0; trial < trials; ++trial) {
     testing::Random random(static_cast<unsigned>(trial));
@@ -390,6 +455,14 @@ TEST(Gear, NobodyComesTooNear) {  // PL-14, PL-23, PL-24
         r.brakes.deceleration *= random.Between(1, 2);
       }
     }
+    std::vector<trajectory::Limits> most;
+    for (std::uint32_t k = 0; k < put; ++k) most.push_back(streets[k].pace.limits);
+    // Each command comes with dynamics of its own.
+    const auto some_of = [&](const trajectory::Limits& l) {
+      const auto share = [&] { return random.Coin() ? 1 : random.Between(0.2, 1); };
+      return trajectory::Limits{share() * l.velocity, share() * l.acceleration, share() * l.deceleration,
+                                share() * l.jerk};
+    };
     std::vector<Axis> axes;
     for (std::uint32_t k = 0; k < put; ++k) {
       const double more = random.Between(0.3, 2);
@@ -410,13 +483,16 @@ TEST(Gear, NobodyComesTooNear) {  // PL-14, PL-23, PL-24
         const auto track = static_cast<std::uint32_t>(random.Below(static_cast<int>(layouts.size())));
         const bool idle = r.aim == Aim::kRest || r.there;
         if (k % 2 == 0 && ((idle && random.Below(100) == 0) || random.Below(8000) == 0)) {
-          streets.Send(k, track, random.Between(0, streets.track(track).length));
+          if (streets.Send(k, track, random.Between(0, streets.track(track).length))) {
+            r.pace.limits = some_of(most[k]);
+          }
         } else if (k % 2 == 1 && ((idle && random.Below(100) == 0) || random.Below(3000) == 0)) {
           const auto master = static_cast<std::uint32_t>(random.Below(static_cast<int>(put)));
           Rider next = r;
           next.planned = next.there = false;
           next.aim = Aim::kFollow;
-          next.gear = {.tolerance = random.Coin() ? 0 : 0.5, .sense = static_cast<std::int8_t>(random.Below(2))};
+          next.pace.limits = some_of(most[k]);
+          next.gear = {.tolerance = random.Coin() ? 0 : 0.5, .sense = static_cast<std::int8_t>(random.Below(3) - 1)};
           const double place = r.at.position + r.origin + random.Between(-100, 100);
           if (random.Below(4) == 0 || Follows(streets, master, k)) {
             Route more;
@@ -474,12 +550,13 @@ TEST(Gear, NobodyComesTooNear) {  // PL-14, PL-23, PL-24
     EXPECT_GT(nearest, 0) << trial;
     EXPECT_LE(watcher.acceleration, 1 + 1e-6) << trial;
     EXPECT_LE(watcher.jerk, 1 + 1e-5) << trial;
-    EXPECT_LE(watcher.lateral, 1 + 1e-3) << trial;
+    EXPECT_LE(watcher.speed, 1 + 1e-8) << trial;
+    EXPECT_LE(watcher.lateral, 1 + 1e-4) << trial;
   }
   // Else it would prove nothing.
   EXPECT_GT(behind, 50);
   EXPECT_GT(in_step, 10000);
-  EXPECT_GT(ended, 10);
+  EXPECT_GT(ended, 3);
   EXPECT_GT(crossed, 0);
 }
 

@@ -93,7 +93,7 @@ Streets::Streets(const std::vector<Layout>& layouts, std::uint32_t movers, doubl
     : riders_(movers),
       traffic_({movers, static_cast<std::uint32_t>(layouts.size())}),
       search_(layouts.size()),
-      body_{size, size, true} {
+      reach_(std::hypot(size, size)) {
   for (const Layout& layout : layouts) {
     tracks_.push_back(std::make_unique<Track>(Make(layout)));
   }
@@ -103,7 +103,7 @@ Streets::Streets(const std::vector<Layout>& layouts, std::uint32_t movers, doubl
     road.track = tracks_[i].get();
     road.length = tracks_[i]->length;
     road.closed = tracks_[i]->closed;
-    road.reach = std::hypot(size, size);
+    road.reach = reach_;
   }
   for (std::uint32_t i = 0; i < layouts.size(); ++i) {
     for (std::uint32_t k = 0; k < layouts.size(); ++k) {
@@ -116,6 +116,7 @@ Streets::Streets(const std::vector<Layout>& layouts, std::uint32_t movers, doubl
   }
   NameNodes(network_);
   for (std::uint32_t i = 0; i < layouts.size(); ++i) SetRanges(i, network_);
+  for (std::uint32_t i = 0; i < layouts.size(); ++i) SetLeads(i, network_);
 }
 
 Rider& Streets::Put(std::uint32_t mover, std::uint32_t track, double s, const Pace& pace, double gap) {
@@ -127,12 +128,17 @@ Rider& Streets::Put(std::uint32_t mover, std::uint32_t track, double s, const Pa
   r.route.count = 1;
   r.pace = pace;
   r.brakes = pace.brakes();
+  r.top_speed = pace.limits.velocity;
   r.gap = gap;
   return r;
 }
 
 bool Streets::Send(std::uint32_t mover, std::uint32_t track, double s) {
-  return planar::Send(network_, search_, {.track = track, .position = s}, riders_[mover]);
+  return Send(mover, {.track = track, .position = s});
+}
+
+bool Streets::Send(std::uint32_t mover, const Destination& to) {
+  return planar::Send(network_, search_, to, riders_[mover]);
 }
 
 void Streets::Step() {
@@ -156,7 +162,7 @@ TrackPoint Streets::PointOf(std::uint32_t mover) const {
   return At(*tracks_[r.route.first()], r.at.position);
 }
 
-double Streets::Missing() const {
+double Streets::MissingOf(const std::function<double(const Rider&)>& gap) const {
   double most = -INFINITY;
   for (std::size_t i = 0; i < riders_.size(); ++i) {
     const Rider& a = riders_[i];
@@ -164,12 +170,13 @@ double Streets::Missing() const {
     for (std::size_t k = 0; k < riders_.size(); ++k) {
       const Rider& b = riders_[k];
       if (!b.on || i == k) continue;
+      const double between = gap(a) + a.off + b.off;
       double offset = 0;
       for (std::uint32_t n = 0; n < a.route.count; ++n) {
         const double apart = offset + b.at.position - a.at.position;
-        if (b.route.first() == a.route.tracks[n] && apart > 0) most = std::max(most, a.gap - apart);
+        if (b.route.first() == a.route.tracks[n] && apart > 0) most = std::max(most, between - apart);
         if (n == 0 && b.route.first() == a.route.first() && tracks_[a.route.first()]->closed) {
-          most = std::max(most, a.gap - (apart > 0 ? apart : apart + tracks_[a.route.first()]->length));
+          most = std::max(most, between - (apart > 0 ? apart : apart + tracks_[a.route.first()]->length));
         }
         offset += network_[a.route.tracks[n]].length;
       }
@@ -184,7 +191,7 @@ double Streets::Nearest() const {
     for (std::uint32_t k = 0; k < i; ++k) {
       if (!riders_[i].on || !riders_[k].on) continue;
       const Place a = PointOf(i).place, b = PointOf(k).place;
-      least = std::min(least, std::max(std::abs(a.x - b.x) - body_.width, std::abs(a.y - b.y) - body_.height));
+      least = std::min(least, Distance(a, b) - reach_);
     }
   }
   return least;
@@ -194,18 +201,20 @@ void Watcher::Look() {
   std::vector<Rider>& riders = streets_.riders();
   before_.resize(riders.size());
   ways_.resize(riders.size());
+  most_.resize(riders.size());
   for (std::uint32_t i = 0; i < riders.size(); ++i) {
     const Rider& r = riders[i];
     if (!r.on) {
       before_[i] = {};
-      ways_[i] = 0;
+      ways_[i] = most_[i] = 0;
       continue;
     }
     const KinematicState& b = before_[i];
-    speed = std::max(speed, std::abs(r.at.velocity) / r.pace.limits.velocity);
+    speed = std::max(speed, std::abs(r.at.velocity) / r.top_speed);
     const bool slows = r.at.velocity * r.at.acceleration < 0;
-    acceleration = std::max(acceleration,
-                            std::abs(r.at.acceleration) / (slows ? r.brakes.deceleration : r.pace.limits.acceleration));
+    // What it had by an earlier command it may still have.
+    most_[i] = std::max(most_[i], r.pace.limits.acceleration);
+    acceleration = std::max(acceleration, std::abs(r.at.acceleration) / (slows ? r.brakes.deceleration : most_[i]));
     const double most = std::max(r.brakes.jerk, r.pace.limits.jerk);
     jerk = std::max(jerk, std::abs(r.at.acceleration - b.acceleration) / kPeriod / most);
     lateral =

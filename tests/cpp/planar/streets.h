@@ -36,24 +36,44 @@ class Streets {
   Rider& Put(std::uint32_t mover, std::uint32_t track, double s, const Pace& pace, double gap = 120);
   // To a place on a track; false: there is no way.
   bool Send(std::uint32_t mover, std::uint32_t track, double s);
-  void Halt(std::uint32_t mover) { riders_[mover].aim = Aim::kRest; }
+  bool Send(std::uint32_t mover, const Destination& to);
+  void Halt(std::uint32_t mover) {
+    riders_[mover].aim = Aim::kRest;
+    riders_[mover].softly = false;
+  }
+  void HaltSoftly(std::uint32_t mover, double deceleration, double jerk) {
+    Halt(mover);
+    riders_[mover].softly = true;
+    riders_[mover].pace.limits.deceleration = deceleration;
+    riders_[mover].pace.limits.jerk = jerk;
+  }
 
   void Step();
+  // Who would keep it from being where it is.
+  std::uint32_t TooNear(std::uint32_t mover) { return traffic_.TooNear(cycle_, network_, riders_, mover); }
   // Steps until all that have a target are there, or so long; true: they are.
   bool Run(double seconds);
   double now() const { return static_cast<double>(cycle_.count) * kPeriod; }
   Traffic& traffic() { return traffic_; }
 
   TrackPoint PointOf(std::uint32_t mover) const;
-  // Along their ways: how much less than its gap the nearest pair of movers on one track, or one route, is apart.
-  double Missing() const;
-  // mm between the bodies of the nearest two movers anywhere, at C = 0 as tracks are.
+  // Along their ways: how much less than its gap, or this one, the nearest pair of movers on one track, or one route,
+  // is apart.
+  double Missing() const {
+    return MissingOf([](const Rider& r) { return r.gap; });
+  }
+  double Missing(double gap) const {
+    return MissingOf([gap](const Rider&) { return gap; });
+  }
+  // mm between the bodies of the nearest two movers anywhere, however they are turned.
   double Nearest() const;
 
   // Called after each step.
   std::function<void()> watch;
 
  private:
+  double MissingOf(const std::function<double(const Rider&)>& gap) const;
+
   std::vector<std::unique_ptr<Track>> tracks_;
   Network network_;
   std::vector<Rider> riders_;
@@ -61,7 +81,7 @@ class Streets {
   RouteSearch search_;
   trajectory::Planner planner_;
   Cycle cycle_{0, kPeriod};
-  Footprint body_;
+  double reach_;  // mm, at which the centres of two movers may touch
 };
 
 // Tracks between random crossings, with merges, splits and rings; bodies of this size can only meet where tracks do.
@@ -81,7 +101,7 @@ class Watcher {
  private:
   Streets& streets_;
   std::vector<KinematicState> before_;
-  std::vector<double> ways_;
+  std::vector<double> ways_, most_;
 };
 
 }  // namespace takt::planar::testing

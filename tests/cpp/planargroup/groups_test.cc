@@ -190,6 +190,35 @@ TEST(Environments, AreMadeOutsideTheCycle) {
   EXPECT_EQ(environment::ProblemOf(rig.last[rig.ticket].value), planar::StatorProblem::kEmpty);
 }
 
+// One that was being made while its group came to be enabled is not taken over: movers rely on the one that is there.
+TEST(Environments, DoNotChangeUnderAnEnabledGroup) {
+  Rig rig;
+  const auto give = [&](const environment::Command& command) {
+    environment::Apply(rig.environment(), 0, ++rig.ticket, command);
+    rig.Step();
+    return rig.ticket;
+  };
+  give(environment::AddToGroup{Name::Of("cell")});
+  give(environment::AddStator{1000, 1000});
+  const std::uint32_t borders = rig.environments.states[0].border_count;
+  const Ticket made = give(environment::CreateBoundary{});
+  EXPECT_EQ(rig.Do(Enable{}).error, ErrorId::kNone);
+  const auto answer = environment::Make(rig.environments.desk);
+  ASSERT_TRUE(answer.has_value());
+  environment::Apply(rig.environment(), answer->environment, 0, answer->made);
+  rig.Step();
+  EXPECT_EQ(rig.last[made].error, ErrorId::kEnvironmentUsed);
+  EXPECT_EQ(rig.environments.states[0].border_count, borders);
+  rig.Do(Disable{});
+  const Ticket again = give(environment::CreateBoundary{});
+  const auto second = environment::Make(rig.environments.desk);
+  ASSERT_TRUE(second.has_value());
+  environment::Apply(rig.environment(), second->environment, 0, second->made);
+  rig.Step();
+  EXPECT_EQ(rig.last[again].state, FeedbackState::kDone);
+  EXPECT_GT(rig.environments.states[0].border_count, borders);
+}
+
 // PL-31: there is an end to stators.
 TEST(Environments, HoldSoManyStators) {
   Rig rig;

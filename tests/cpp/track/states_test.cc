@@ -128,6 +128,28 @@ TEST(Tracks, ResetLeadsWhereTheReactionSays) {
   }
 }
 
+// PL-22: only a track that stands is disabled; nor is its geometry changed while movers stand on it.
+TEST(Tracks, AreNotDisabledInUse) {
+  Rig rig(1);
+  rig.Do(0, kLine);
+  rig.Do(0, Enable{});
+  for (const bool moves : {true, false}) {
+    Use(1, moves, !moves, 0, rig.tracks);
+    ASSERT_EQ(rig.state(0).mode, moves ? OperationMode::kMoving : OperationMode::kConfiguring);
+    const Ticket disable = rig.Give(0, Disable{});
+    rig.Steps(3);
+    EXPECT_EQ(rig.last[disable].error, ErrorId::kTrackMode);
+    EXPECT_EQ(rig.state(0).state, ObjectState::kEnabled);
+  }
+  Use(1, false, false, 0, rig.tracks);
+  rig.Do(0, Disable{});
+  EXPECT_EQ(rig.state(0).state, ObjectState::kDisabled);
+  const Ticket clear = rig.Give(0, Clear{});
+  rig.Steps(3);
+  EXPECT_EQ(rig.last[clear].error, ErrorId::kTrackMode);
+  EXPECT_EQ(rig.state(0).length, 500);
+}
+
 // What was given before enable is made first.
 TEST(Tracks, EnableWaitsForTheGeometry) {
   Rig rig(2);

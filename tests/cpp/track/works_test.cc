@@ -1,4 +1,5 @@
 // PL-20, PL-23: geometry that commands change, made outside the cycle; links and what they lock.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -10,6 +11,8 @@
 #include "takt/core/hash.h"
 #include "takt/planar/builder.h"
 #include "takt/planar/crossing.h"
+#include "takt/planar/network.h"
+#include "takt/track/build.h"
 
 namespace takt::track {
 namespace {
@@ -160,6 +163,27 @@ TEST(Works, LinkTracks) {
   ASSERT_EQ(rig.Do(4, To(1)), Problem::kNone);
   for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(out[i].previous_tracks, 2u);
   EXPECT_EQ(out[4].subsequent_tracks, 3u);
+}
+
+// As many at one point as a network has links for; said at once, by commands and in the machine file.
+TEST(Works, LinkSoManyAtOnePoint) {
+  const std::size_t most = planar::kLinks;
+  Rig rig(most + 2);
+  ASSERT_EQ(rig.Do(0, Line(0, 0, 300, 0)), Problem::kNone);
+  for (std::size_t i = 1; i <= most; ++i) ASSERT_EQ(rig.Do(i, From(0)), Problem::kNone) << i;
+  EXPECT_EQ(rig.tracks.outputs[0].subsequent_tracks, most);
+  EXPECT_EQ(rig.Do(most + 1, From(0)), Problem::kTooMany);
+  EXPECT_EQ(rig.tracks.outputs[0].subsequent_tracks, most);
+
+  std::vector<TrackParams> params = Rig::Named(most + 2);
+  params[0].elements.push_back({.shape = planar::ElementShape::kLine, .from = planar::Place{0, 0}, .to = {300, 0}});
+  for (std::size_t i = 1; i < params.size(); ++i) params[i].starts_from = {params[0].name};
+  const BuildResult result = Build(params);
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_EQ(result.problems[0].path, "[65]");
+  EXPECT_THAT(result.problems[0].message, testing::HasSubstr("at most 64 start, or end, at one point"));
+  params.pop_back();
+  EXPECT_TRUE(Build(params).problems.empty());
 }
 
 // PL-23: what others start from or end at stays as it is, until they are cleared.

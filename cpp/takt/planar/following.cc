@@ -1,0 +1,179 @@
+#include "takt/planar/following.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace takt::planar {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kTolerance = 1e-7;  // mm: rounding
+// mm: so far before the place where it would get active at a node a mover stops.
+constexpr double kBeforeNode = 1e-3;
+// Of the dynamics that follower and leader both have, what following plans with: the rest is for the delay of a cycle.
+constexpr double kReserve = 0.95;
+// s, in which a mover takes back what it is too fast, and cycles in which it can at the least.
+constexpr double kCalm = 0.1;
+constexpr double kQuick = 5;
+// mm: so much further away than has to be a mover stops, for rounding on its way there.
+constexpr double kShort = 1e-3;
+// Share of the speed with which two movers get nearer that could still be stopped.
+constexpr double kClosing = 0.5;
+
+// What following plans with: what both can do, less a reserve.
+Brakes Common(const Brakes& a, const Brakes& b) {
+  return {kReserve * std::min(a.deceleration, b.deceleration), kReserve * std::min(a.jerk, b.jerk)};
+}
+
+// How the way to rest grows with the speed, s.
+double SlopeOfWayToRest(double speed, const Brakes& b) {
+  const double ramp = b.deceleration / b.jerk;
+  return speed >= b.deceleration * ramp ? speed / b.deceleration + 0.5 * ramp : 1.5 * std::sqrt(speed / b.jerk);
+}
+
+// The acceleration with which a mover follows a limit. With so much room R left it may have the speed v(R) from which
+// it just gets to rest in it. Held at that speed its stop keeps its distance to the limit; so a chain of movers hands
+// on the stop of the first, and each settles on the speed of the one before it without swinging.
+double Follow(const Limit& limit, double speed, double period_s) {
+  const Brakes& brakes = limit.brakes;
+  const double allowed = SpeedForWay(limit.room - kShort, brakes);
+  const double slope = SlopeOfWayToRest(allowed, brakes);
+  const double quick = kQuick * period_s;
+  const double calm = std::clamp(slope, quick, kCalm);
+  const double acceleration = (limit.rate - speed) / std::max(slope, quick) + (allowed - speed) / calm;
+  if (acceleration <= 0) return acceleration;
+  // What it speeds up with, a, has to be taken back first, for which it needs more way: speed * a / jerk, and that of
+  // the speed that is gained meanwhile, slope * a² / (2 jerk).
+  const double jerk = brakes.jerk * calm, linear = 1 + speed / (jerk * std::max(slope, quick));
+  return jerk * (std::sqrt(linear * linear + 2 * acceleration / jerk) - linear);
+}
+
+}  // namespace
+
+void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, double& least) noexcept {
+  const Rider& r = w.rider(i);
+  const Now& now = w.now(i);
+  const int direction = r.direction;
+  // Where its own plan ends.
+  const bool plans = r.aim == Aim::kTarget && r.planned && r.plan_ends;
+  const double end = r.plan_from + direction * r.plan.end().position;
+  const auto take = [&](const Limit& one) {
+    // Before one that stands it comes to rest anyhow.
+    const bool stands = one.by != kNobody && Rests(w.rider(one.by).at) && Rests(w.now(one.by).next);
+    if (plans && stands && direction * (end - r.at.position) <= one.room + kTolerance) return;
+    const double acceleration = Follow(one, speed, w.period_s());
+    if (acceleration < least) {
+      least = acceleration;
+      limit = one;
+    }
+  };
+  // One that speeds up could stop further on than one of its speed; until it is there the way is not free. Behind one
+  // that is as fast the gap is enough, and no mover gets nearer that is faster.
+  const auto as_fast = [&](Limit one) {
+    const Rider& before = w.rider(one.by);
+    const double its_speed = direction * before.at.velocity;
+    if (its_speed <= 0 || direction * before.at.acceleration <= 0) return;
+    one.room += direction * (before.at.position - w.now(one.by).rest_before) + WayToRest(its_speed, one.brakes);
+    one.rate = its_speed + SlopeOfWayToRest(its_speed, one.brakes) * direction * before.at.acceleration;
+    take(one);
+  };
+  const auto behind = [&](std::uint32_t other, double apart, double gap) {
+    const Rider& before = w.rider(other);
+    const Now& its = w.now(other);
+    Limit one;
+    one.room = direction * (its.rest_before + apart - r.at.position) - gap;
+    one.brakes = Common(r.pace.brakes(), before.brakes);
+    one.by = other;
+    const double its_speed = direction * before.at.velocity, its_acceleration = direction * before.at.acceleration;
+    if (its_speed < 0) {
+      one.rate = direction * (its.braking.rest - its.rest_before) / w.period_s();
+      return one;
+    }
+    // By its speed and acceleration; its jerk moves the place to and fro, and with it all that follow.
+    one.rate = its_speed + SlopeOfWayToRest(its_speed, before.brakes) * its_acceleration;
+    // Follow goes by the speed alone. What one needs less of its way because it brakes already is room only for one
+    // that brakes as well: if not even for that one, it would brake more than the one before it.
+    const double spared = WayToRest(its_speed, before.brakes) - direction * (its.rest_before - before.at.position);
+    const double own = direction * r.at.acceleration;
+    if (spared > 0 && own < 0 && its_acceleration < 0) {
+      one.room += std::clamp(WayToRest(speed, one.brakes) - Brake({0, speed, own}, one.brakes).rest, 0.0, spared);
+    }
+    return one;
+  };
+  if (now.leader != kNobody) {
+    const Limit one = behind(now.leader, now.leader_offset, w.GapTo(i, now.leader, direction));
+    take(one);
+    as_fast(one);
+  }
+  if (direction < 0) {
+    // Who comes towards it over the start of its track.
+    w.Followers(i, [&](std::uint32_t k, double offset) {
+      if (w.rider(k).route.first() != r.route.first()) take(behind(k, -offset, std::max(r.gap, w.rider(k).gap)));
+    });
+  }
+  const double reach = 2 * WayToRest(r.pace.limits.velocity, r.pace.brakes()) + r.gap;
+  w.AlongNodes(r, r.at.position + reach, [&](const Passage& p) {
+    const double way = direction * (p.offset - r.at.position);
+    const double zone_before = w.RangeBefore(p), zone_behind = w.RangeBehind(p);
+    if (way > reach + std::max(zone_before, zone_behind)) return;
+    const bool active = w.IsAt(i, p.node);
+    const double zone = std::max(r.gap, direction > 0 ? zone_before : zone_behind);
+    if (!active && way < 0) return;  // it goes away from it
+    w.MeetAt(i, p, [&](const Meeting& m) {
+      const Now& its = w.now(m.other);
+      const double distance = direction * m.place;
+      // `free`: so far it may go whatever the other does.
+      const auto keep = [&](double gap, double free) {
+        if (gap == 0) return;
+        Limit one = behind(m.other, m.apart, gap);
+        if (distance < 0) {
+          // It comes behind; it must have room to stop there.
+          const double rest = direction * (r.at.position - its.rest_before - m.apart);
+          if (active || rest >= gap - kTolerance) return;
+          one.room = -kInfinite;
+        }
+        const bool is_free = free > one.room;
+        if (is_free) {
+          one.room = free;
+          one.rate = 0;
+          one.brakes = Common(r.pace.brakes(), r.brakes);
+        }
+        take(one);
+        if (active && distance > 0 && !is_free) as_fast(one);
+      };
+      const bool past = m.ahead ? r.at.position > p.offset : its.braking.highest + m.apart > p.offset;
+      keep(past ? std::max(m.gap, m.split) : m.gap, active ? -kInfinite : way - zone - kBeforeNode);
+      if (direction > 0 && m.ahead && !past) keep(m.split, way - kBeforeNode);
+    });
+  });
+}
+
+bool GoesAlong(const RightOfWay& w, std::uint32_t i, const KinematicState& wish, const Limit& limit) noexcept {
+  const Rider& r = w.rider(i);
+  if (limit.by == kNobody || limit.by != w.now(i).leader) return false;
+  const Rider& before = w.rider(limit.by);
+  const KinematicState& other = w.now(limit.by).next;
+  return r.brakes.deceleration >= before.brakes.deceleration && r.brakes.jerk >= before.brakes.jerk &&
+         r.direction * (wish.velocity - other.velocity) <= 1e-9 &&
+         r.direction * (wish.acceleration - other.acceleration) <= 1e-6;
+}
+
+double ComeUp(const Rider& r, double room, const KinematicState& there, const Brakes& brakes,
+              double period_s) noexcept {
+  const double speed = r.direction * r.at.velocity, its_speed = r.direction * there.velocity;
+  const double slope = std::max(SlopeOfWayToRest(std::max({0.0, speed, its_speed}), brakes), kQuick * period_s);
+  const double closing = kClosing / slope, faster = speed - its_speed;
+  return r.direction * there.acceleration - closing * faster + (closing * room - faster) / std::min(slope, kCalm);
+}
+
+double CloseUp(const RightOfWay& w, std::uint32_t i, const Limit& limit) noexcept {
+  const Rider& r = w.rider(i);
+  if (limit.by == kNobody || limit.by != w.now(i).leader) return -kInfinite;
+  const Rider& before = w.rider(limit.by);
+  if (r.brakes.deceleration < before.brakes.deceleration || r.brakes.jerk < before.brakes.jerk) return -kInfinite;
+  const double room = r.direction * (before.at.position + w.now(i).leader_offset - r.at.position) - r.gap;
+  if (room < 0 || r.direction * before.at.velocity < 0) return -kInfinite;
+  return ComeUp(r, room, {0, before.at.velocity, w.now(limit.by).next.acceleration}, r.brakes, w.period_s());
+}
+
+}  // namespace takt::planar

@@ -1,0 +1,218 @@
+// Who is where in a cycle, and who may go on: the invariant of traffic.h.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "takt/core/kinematic_state.h"
+#include "takt/planar/braking.h"
+#include "takt/planar/network.h"
+#include "takt/planar/rider.h"
+
+namespace takt::planar {
+
+// Nodes within its gap beyond either end of what a mover knows of its way; there is room for so many.
+inline constexpr std::size_t kBeyond = 24;
+
+// What is worked out of a mover in each cycle. Places are those on the track where it is when the cycle begins.
+struct Now {
+  KinematicState next;     // at the end of the cycle
+  Braking braking;         // from there
+  double rest_before = 0;  // where it would stand if it only braked
+  std::uint32_t leader = kNobody;
+  double leader_offset = 0;  // from the leader's places to its own
+  bool entered = false;      // in the search for an order
+  bool settled = false;      // `next` is what it is going to do
+};
+// A mover's way through a node.
+struct Passage {
+  std::uint32_t node = kNoNode;
+  double offset = 0;  // place - offset: its way from the node, < 0 before it
+  // The tracks before and behind it; kNoTrack: it does not come from there, or not go there.
+  std::uint32_t from = kNoTrack;
+  std::uint32_t to = kNoTrack;
+};
+// A mover that is active at a node.
+struct Presence {
+  std::uint32_t mover = kNobody;
+  Passage passage;
+  std::uint32_t next = kNobody;
+};
+
+// The memory of one cycle: what is worked out anew in each.
+struct Scene {
+  Scene(std::uint32_t movers, std::uint32_t tracks);
+
+  std::vector<Now> now;
+  std::vector<std::uint32_t> order;   // movers by track, and along it
+  std::vector<std::uint32_t> begins;  // by track: its first one in `order`; one more at the end
+  std::vector<std::uint32_t> index;   // by mover: where it stands in `order`
+  std::vector<std::uint32_t> heads;   // by node: its first presence
+  std::vector<Presence> presences;
+  std::uint32_t presence_count = 0;
+  double off = 0;  // mm, so far off its place may somebody be
+  std::vector<std::uint32_t> stack;
+};
+
+// What two movers at a node have to do with one another.
+struct Meeting {
+  std::uint32_t other = kNobody;
+  double apart = 0;    // from the other's places to own ones
+  double place = 0;    // of the other from here, now
+  bool ahead = false;  // it is further on
+  double gap = 0;      // what they have to be apart; 0: their order along the way sees to it
+  double split = 0;    // and if the one behind cannot stop before the node any more
+};
+
+class RightOfWay {
+ public:
+  RightOfWay(Scene& scene, const Network& network, std::span<const Rider> riders, double period_s) noexcept
+      : s_(scene), network_(network), riders_(riders), period_s_(period_s) {}
+
+  const Network& network() const noexcept { return network_; }
+  const Rider& rider(std::uint32_t i) const noexcept { return riders_[i]; }
+  const Now& now(std::uint32_t i) const noexcept { return s_.now[i]; }
+  double period_s() const noexcept { return period_s_; }
+
+  // At first all are taken to brake; nobody is at a node.
+  void Begin() noexcept;
+  // Whether this step keeps the invariant with everyone.
+  bool MayTake(std::uint32_t i, const KinematicState& next, const Braking& braking) const noexcept;
+  // Who would come too near to this one if from here on all braked; kNobody: nobody.
+  std::uint32_t TooNear(std::uint32_t i) const noexcept;
+  // It takes it.
+  void Take(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept;
+
+  // Who is next in this direction, on the track or the rest of the route.
+  std::uint32_t FindLeader(std::uint32_t i, int direction, double& offset) const noexcept;
+  double GapTo(std::uint32_t i, std::uint32_t leader, int direction) const noexcept;
+
+  // Calls `look` for those that have this one before them on their way forwards: who, and from its places to theirs.
+  template <typename Look>
+  void Followers(std::uint32_t i, const Look& look) const {
+    for (std::uint32_t k = 0; k < riders_.size(); ++k) {
+      const Rider& other = riders_[k];
+      if (!other.on || k == i) continue;
+      std::uint32_t its_leader = s_.now[k].leader;
+      double offset = s_.now[k].leader_offset;
+      // One that goes back now still has its way ahead, and who is on it there is nobody's neighbour.
+      if (other.direction < 0) its_leader = other.route.count > 1 ? FindLeader(k, 1, offset) : kNobody;
+      if (its_leader == i) look(k, offset);
+    }
+  }
+
+  // Calls `look` for the nodes on the way, and those beyond what is known of it that are no further than the gap: there
+  // it meets others that are on no track of it.
+  template <typename Look>
+  void AlongNodes(const Rider& r, double reach, const Look& look) const {
+    const Road& here = network_[r.route.first()];
+    if (here.closed) return;
+    const std::uint32_t last = r.passed_count > 0 ? r.passed[0] : kNoTrack;
+    if (here.start_node != kNoNode) look(Passage{here.start_node, 0, last, r.route.first()});
+    double offset = 0;
+    for (std::uint32_t k = 0; k < r.route.count; ++k) {
+      const std::uint32_t track = r.route.tracks[k];
+      const std::uint32_t next = k + 1 < r.route.count ? r.route.tracks[k + 1] : kNoTrack;
+      offset += network_[track].length;
+      if (network_[track].end_node != kNoNode) look(Passage{network_[track].end_node, offset, track, next});
+      if (offset > reach) break;
+    }
+    if (offset <= reach) Beyond(r.route.last(), offset, r.gap, true, look);
+    offset = 0;
+    for (std::uint32_t k = 0; k < r.passed_count; ++k) {
+      const std::uint32_t track = r.passed[k];
+      const std::uint32_t before = k + 1 < r.passed_count ? r.passed[k + 1] : kNoTrack;
+      offset -= network_[track].length;
+      if (network_[track].start_node != kNoNode) look(Passage{network_[track].start_node, offset, before, track});
+    }
+    if (offset > -r.gap)
+      Beyond(r.passed_count > 0 ? r.passed[r.passed_count - 1] : r.route.first(), offset, r.gap, false, look);
+  }
+
+  double RangeBefore(const Passage& p) const { return p.from != kNoTrack ? network_[p.from].range_at_end : 0; }
+  double RangeBehind(const Passage& p) const { return p.to != kNoTrack ? network_[p.to].range_at_start : 0; }
+
+  bool IsAt(std::uint32_t mover, std::uint32_t node) const noexcept;
+
+  // Calls `look` for those at a node with whom this mover has to do there.
+  template <typename Look>
+  void MeetAt(std::uint32_t i, const Passage& own, const Look& look) const {
+    const Rider& r = riders_[i];
+    for (std::uint32_t k = s_.heads[own.node]; k != kNobody; k = s_.presences[k].next) {
+      const std::uint32_t other = s_.presences[k].mover;
+      const Passage& its = s_.presences[k].passage;
+      if (other == i) continue;
+      const Rider& o = riders_[other];
+      Meeting m{.other = other, .apart = own.offset - its.offset};
+      m.place = o.at.position + m.apart - r.at.position;
+      m.ahead = m.place > 0 || (m.place == 0 && other > i);
+      const bool in_order = IsOnRoute(r, o, m.apart) || IsOnRoute(o, r, -m.apart);
+      const Passage &ahead = m.ahead ? its : own, &behind = m.ahead ? own : its;
+      if (!in_order) {
+        m.gap = std::max(r.gap, o.gap) + r.off + o.off;
+        const bool before = (m.ahead ? o : r).at.position < ahead.offset;
+        if (before) m.gap = std::max(m.gap, LeadAtEnd(network_, ahead.from, behind.from) + r.off + o.off);
+      }
+      const double kept = in_order ? (m.ahead ? r : o).gap + r.off + o.off : m.gap;
+      const double lead = LeadAtStart(network_, ahead.to, behind.to);
+      const double split = lead > 0 ? lead + r.off + o.off : 0;
+      if (split > kept) m.split = split;
+      if (m.gap > 0 || m.split > 0) look(m);
+    }
+  }
+
+ private:
+  // The nodes behind the end of a track that is at `offset`, or before its start, as near to that as `way`, the nearest
+  // first.
+  template <typename Look>
+  void Beyond(std::uint32_t track, double offset, double way, bool forward, const Look& look) const {
+    struct Reached {
+      std::uint32_t track;
+      double way;  // to its far end
+    };
+    std::array<Reached, kBeyond> open;
+    std::size_t count = 0;
+    const auto leave = [&](std::uint32_t from, double gone) {
+      const Links& links = forward ? network_[from].behind : network_[from].before;
+      for (const std::uint32_t next : links.all()) {
+        const double all = gone + network_[next].length;
+        const auto end = open.begin() + static_cast<std::ptrdiff_t>(count);
+        const auto known = std::find_if(open.begin(), end, [&](const Reached& one) { return one.track == next; });
+        if (known != end) {
+          known->way = std::min(known->way, all);
+        } else if (all <= way && count < kBeyond) {
+          open[count++] = {next, all};
+        }
+      }
+    };
+    leave(track, 0);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto rest = open.begin() + static_cast<std::ptrdiff_t>(k);
+      std::iter_swap(rest, std::min_element(rest, open.begin() + static_cast<std::ptrdiff_t>(count),
+                                            [](const Reached& a, const Reached& b) { return a.way < b.way; }));
+      const Reached here = *rest;
+      const Road& road = network_[here.track];
+      const std::uint32_t node = forward ? road.end_node : road.start_node;
+      const double place = forward ? offset + here.way : offset - here.way;
+      if (node != kNoNode) look(Passage{node, place, forward ? here.track : kNoTrack, forward ? kNoTrack : here.track});
+      leave(here.track, here.way);
+    }
+  }
+  void TakeToBrake(std::uint32_t i) noexcept;
+  void Sort() noexcept;
+  bool IsActive(const Rider& r, const KinematicState& next, const Braking& braking, const Passage& p) const noexcept;
+  void EnterNodes(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept;
+  // The other is on this one's way as far as the places of both differ by `apart`.
+  bool IsOnRoute(const Rider& r, const Rider& other, double apart) const noexcept;
+
+  Scene& s_;
+  const Network& network_;
+  std::span<const Rider> riders_;
+  double period_s_;
+};
+
+}  // namespace takt::planar

@@ -1,0 +1,75 @@
+// Commands to movers on tracks, as a machine carries them out: PL-11, PL-12, PL-15.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "parts_rig.h"
+
+namespace takt::engine {
+namespace {
+
+constexpr char kLine[] = R"(
+name: line
+axes: []
+movers: [{name: one, initial: {x: 0, y: 0}}]
+tracks:
+  - {name: way, elements: [{from: {x: 0, y: 0}, to: {x: 3000, y: 0}}, {from: {x: 3200, y: 200}, to: {x: 3200, y: 2000}}]}
+)";
+
+struct OnTracks : ::testing::Test {
+  OnTracks() : rig(kLine) {
+    rig.Do("way", "enable");
+    rig.Do("one", "enable");
+    EXPECT_EQ(rig.ErrorOf("one", "join_track", "{track: way}"), ErrorId::kNone);
+  }
+  // What the feedback of a command says as long as it is active.
+  double Value(Ticket ticket) {
+    rig.Run(2);
+    EXPECT_EQ(rig.answers[ticket].state, FeedbackState::kActive);
+    return rig.answers[ticket].value;
+  }
+
+  PartsRig rig;
+};
+
+// PL-11: in the plane and on a track alike.
+TEST_F(OnTracks, AHaltTakesItsDynamics) {
+  for (const double deceleration : {1000.0, 4000.0}) {
+    rig.Do("one", "move_on_track", "{position: 0}");
+    rig.Give("one", "move_on_track", "{position: 2900}");
+    rig.Run(500);
+    const double speed = rig.Mover("one").track_velocity, place = rig.Mover("one").track_position;
+    ASSERT_GT(speed, 1000);
+    double hardest = 0;
+    rig.each_cycle = [&] { hardest = std::max(hardest, -rig.Mover("one").track_acceleration); };
+    const Ticket halt = rig.Give("one", "halt", "{deceleration: " + std::to_string(deceleration) + ", jerk: 100000}");
+    const double takes = Value(halt);
+    EXPECT_EQ(rig.End(halt).error, ErrorId::kNone);
+    rig.each_cycle = nullptr;
+    EXPECT_NEAR(hardest, deceleration, 1);
+    const double expected = speed / deceleration + deceleration / 100000;
+    EXPECT_NEAR(takes, expected, 0.002);
+    EXPECT_NEAR(rig.Mover("one").track_position - place, 0.5 * speed * expected, 0.003 * speed);
+  }
+}
+
+// PL-15: how long it takes is known at the start.
+TEST_F(OnTracks, TheTimeOfAMoveIsKnown) {
+  for (const char* to : {"{position: 1000}", "{position: 4500}", "{position: 100, velocity: 300, jerk: 5000}"}) {
+    const Ticket move = rig.Give("one", "move_on_track", to);
+    const double takes = Value(move);
+    const FeedbackEvent end = rig.End(move);
+    EXPECT_EQ(end.error, ErrorId::kNone);
+    EXPECT_NEAR(takes, end.value, 0.0025) << to;
+  }
+  // On the way, with dynamics that do not suffice for what it does: about.
+  rig.Give("one", "move_on_track", "{position: 2500}");
+  rig.Run(200);
+  const Ticket move = rig.Give("one", "move_on_track", "{position: 4500, deceleration: 500, jerk: 10000}");
+  const double takes = Value(move);
+  EXPECT_NEAR(takes, rig.End(move).value, 0.2 * takes);
+}
+
+}  // namespace
+}  // namespace takt::engine
