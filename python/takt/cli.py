@@ -159,13 +159,20 @@ def run(file: Path, machine: Path | None, url: str | None, report: Path | None) 
 @click.option("--machine", type=FILE, help="The machine [machine.yaml beside FILE].")
 @click.option("--report", type=FILE, default=Path("reports/demo"), show_default=True, help="Where everything goes.")
 @click.option("--pace", type=click.Choice(["real", "paced"]), default="real", show_default=True, help="Of taktd.")
-def demo(file: Path, machine: Path | None, report: Path, pace: str) -> int:
+@click.option("--view", is_flag=True, help="Open the live page beside it (takt view).")
+def demo(file: Path, machine: Path | None, report: Path, pace: str, view: bool) -> int:
     """Run a scenario FILE on a taktd of its own, in real time over LCM; verify what lcm-logger recorded; report."""
     from takt.demo import run_demo
     from takt.report import write_report
 
     scenario = load_scenario(file)
-    result = run_demo(scenario, machine or scenario.machine, report, print, pace)
+    of = machine or scenario.machine
+    if view:
+        from takt.view.command import beside
+
+        result = run_demo(scenario, of, report, print, pace, lambda url: beside(url, of.parent, print))
+    else:
+        result = run_demo(scenario, of, report, print, pace)
     _show(result.outcome)
     timing = _timing(result.figures)
     table = Table(box=None, show_header=False)
@@ -178,6 +185,19 @@ def demo(file: Path, machine: Path | None, report: Path, pace: str) -> int:
     page = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": timing}, drawn)
     print(f"report: {page.html}")
     return 0 if result.passed else FAILED
+
+
+@cli.command()
+@click.argument("what", required=False, metavar="[MACHINE | URL]")
+@click.option("--port", default=8047, show_default=True, type=click.IntRange(0, 65535), help="Of the page; 0: any.")
+@click.option("--browser/--no-browser", default=True, help="Open it in the browser.")
+@click.option("--pace", type=click.Choice(["real", "paced"]), default="real", show_default=True, help="Of taktd.")
+def view(what: str | None, port: int, browser: bool, pace: str) -> int:
+    """Show what an engine does in a page on this host: of a MACHINE file, which then runs on a taktd of its own, or the
+    one of an LCM network [the usual one]."""
+    from takt.view import command
+
+    return command.run(what, port, browser, pace, lambda sentence: print(sentence, flush=True))
 
 
 @cli.command()

@@ -25,9 +25,14 @@ from takt.replay import ReplayResult, replay
 from takt.scenario import Outcome, Scenario, verify_recording
 
 Say = Callable[[str], None]
+Beside = Callable[[str], contextlib.AbstractContextManager[Any]]
 
 STILL_S = 0.5  # without anything new in the log: lcm-logger has written all
 LAGGING_S = 30.0  # that it may take for that
+
+
+def nothing(_: str) -> contextlib.AbstractContextManager[None]:
+    return contextlib.nullcontext()
 
 
 @dataclass(frozen=True)
@@ -45,16 +50,19 @@ class DemoResult:
         return self.outcome.passed and self.replayed.same
 
 
-def run_demo(scenario: Scenario, machine: Path, directory: Path, say: Say = print, pace: str = "real") -> DemoResult:
+def run_demo(
+    scenario: Scenario, machine: Path, directory: Path, say: Say = print, pace: str = "real", beside: Beside = nothing
+) -> DemoResult:
     """Starts taktd on the machine and lcm-logger beside it, runs the scenario through a connection, ends both, and
-    judges what lcm-logger wrote. Everything is kept in `directory`."""
+    judges what lcm-logger wrote. Everything is kept in `directory`. `beside`: what else runs meanwhile, on the network
+    with this URL."""
     _core.load_machine(*read_machine(machine))  # says what is wrong with it
     directory.mkdir(parents=True, exist_ok=True)
     log, journal = directory / "lcm-logger.log", directory / "taktd.log"
     for old in (log, journal):
         old.unlink(missing_ok=True)
-    url = _free_url()
-    with _taktd(machine, url, journal, pace, directory) as engine, _logger(url, log):
+    url = free_url()
+    with taktd(machine, url, journal, pace, directory) as engine, _logger(url, log), beside(url):
         say(f"taktd runs {machine} ({pace} time), lcm-logger records {url}")
         with _connected(url, engine, directory / "taktd.txt") as session:
             started = time.monotonic()
@@ -94,7 +102,7 @@ def _rate(hz: float) -> float:
     return max(float(hz), 0.1)
 
 
-def _free_url() -> str:
+def free_url() -> str:
     """A network that stays on this host, on a port nobody else is likely to use, with room for a burst."""
     url = f"udpm://239.255.76.67:{random.randint(20000, 60000)}?ttl=0&recv_buf_size=4194304"
     open_network(url)  # says in one line what is wrong with the network, before anything is started
@@ -112,9 +120,13 @@ def _program(name: str, *places: Path) -> str:
 
 
 @contextlib.contextmanager
-def _taktd(machine: Path, url: str, journal: Path, pace: str, directory: Path) -> Iterator[subprocess.Popen[bytes]]:
+def taktd(
+    machine: Path, url: str, journal: Path | None, pace: str, directory: Path
+) -> Iterator[subprocess.Popen[bytes]]:
+    """The engine as a process of its own, which is ended in order. What it says goes into taktd.txt."""
     program = _program("taktd", Path(sys.executable).parent)
-    command = [program, str(machine), "--pace", pace, "--lcm-url", url, "--log", str(journal)]
+    command = [program, str(machine), "--pace", pace, "--lcm-url", url]
+    command += ["--log", str(journal)] if journal else []
     with (
         (directory / "taktd.txt").open("wb") as text,
         _ended(subprocess.Popen(command, stdout=text, stderr=subprocess.STDOUT)) as process,

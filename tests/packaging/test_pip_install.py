@@ -49,8 +49,9 @@ def test_metadata(prefix):
         prefix,
         "python",
         "-c",
-        "from importlib.metadata import metadata, entry_points as e; m = metadata('takt-motion');"
-        "print(m['Name'], m['License-Expression'], m['Requires-Python'], [p.value for p in e(group='pytest11')])",
+        "from importlib.metadata import distribution; d = distribution('takt-motion'); m = d.metadata;"
+        "print(m['Name'], m['License-Expression'], m['Requires-Python'],"
+        " [p.value for p in d.entry_points.select(group='pytest11')])",
     )
     assert text == "takt-motion Apache-2.0 >=3.10 ['takt.pytest_plugin']\n"
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import takt
-from takt.demo import _free_url, _taktd
+from takt.demo import free_url, taktd
 from takt.feedback import Feedback
 from takt.remote import RemoteSession
 
@@ -133,9 +133,9 @@ def test_on_taktd(
     in_process: tuple[list[Ending], Sequence[float]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     chance = random.Random(1)
-    machine, log, url = tmp_path / "cell.yaml", tmp_path / "cell.log", _free_url()
+    machine, log, url = tmp_path / "cell.yaml", tmp_path / "cell.log", free_url()
     machine.write_text(CELL)
-    with _taktd(machine, url, log, "paced", tmp_path), takt.connect(url) as first:
+    with taktd(machine, url, log, "paced", tmp_path), takt.connect(url) as first:
         assert first.group("arm").state is takt.GroupState.GROUP_DISABLED
         for method, at, channel in (
             ("_on_state", 1, "takt/group"),

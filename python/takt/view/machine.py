@@ -1,0 +1,239 @@
+"""The machine that an engine runs, as the page needs it: its components, their signals, what stands where."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from takt import _core, msgs
+from takt.checks.series import quantity
+from takt.errors import ConfigError, TaktError
+from takt.kinematics import Kinematics, KinematicsError, pose_to_matrix
+from takt.recording import Array
+from takt.style import PALETTE, STATES, USUAL_FIELDS, is_set_point
+from takt.tables import KINDS, PREFIXES, components_of, unit_of, units_of
+from takt.track_layout import TrackLayout
+from takt.view.layout import Layout
+from takt.view.status import LIVE
+
+CAM_POINTS = 400
+TRACK_STEP = 10.0  # mm
+
+
+@dataclass(frozen=True)
+class Source:
+    """A component and where its messages come from."""
+
+    index: int
+    name: str
+    kind: str
+    layout: Layout
+    parameters: Mapping[str, Any]
+
+    @property
+    def channel(self) -> str:
+        return PREFIXES[self.kind] + self.name
+
+
+class Machine:
+    """What an engine said it runs. Raises ConfigError where this package cannot read it."""
+
+    def __init__(self, message: msgs.machine_description, folder: Path | None = None) -> None:
+        self.run_id = message.run_id
+        self.name = message.name
+        self.version = message.version
+        self.period_s = message.period_s
+        self.text = message.text
+        self.folder = folder or Path()
+        self.parameters: dict[str, Any] = json.loads(
+            _core.load_machine(self.text.encode(), str(self.folder / "machine"))
+        )
+        self.sources = [
+            Source(i, name, kind.name, Layout(kind.name, name), parameters)
+            for i, (name, (kind, parameters)) in enumerate(components_of(self.parameters).items())
+        ]
+        self.by_name = {source.name: source for source in self.sources}
+        self.names = {kind: [s.name for s in self.sources if s.kind == kind] for kind in KINDS}
+        self.mechanisms = self._mechanisms()
+
+    def describe(self) -> dict[str, Any]:
+        """Everything that does not change while it runs, for the page."""
+        used = [kind for kind in KINDS.values() if self.names[kind.name]]
+        about = {kind.name: {f: text for f, _, text, _ in _core.output_fields(kind.name)} for kind in used}
+        return {
+            "run": str(self.run_id),
+            "name": self.name,
+            "version": self.version,
+            "period_s": self.period_s,
+            "commands": self.parameters["view"]["commands"],
+            "dead_man_s": self.parameters["lcm"]["dead_man_s"],
+            "kinds": {
+                kind.name: {
+                    "live": LIVE.get(kind.name, ()),
+                    "fields": [
+                        {
+                            "name": field,
+                            "unit": kind.units[field],
+                            "about": about[kind.name][field],
+                            "names": {str(v): n for v, n in kind.names.get(field, {}).items()} or None,
+                            "flag": kind.dtypes[field] == np.bool_,
+                            "whole": np.issubdtype(kind.dtypes[field], np.integer),
+                            "set": is_set_point(field),
+                            "quantity": quantity(field),
+                        }
+                        for field in kind.units
+                    ],
+                }
+                for kind in used
+            },
+            "components": [self._component(source) for source in self.sources],
+            "usual": USUAL_FIELDS,
+            "palette": PALETTE,
+            "states": STATES,
+            "plan": self._plan(),
+            "cams": self._cams(),
+        }
+
+    def _component(self, source: Source) -> dict[str, Any]:
+        own = units_of(self.parameters, KINDS[source.kind], source.parameters)
+        shown: dict[str, Any] = {"name": source.name, "kind": source.kind}
+        shown["units"] = {unit: unit_of(source.kind, field, own) for field, unit in KINDS[source.kind].units.items()}
+        if source.parameters.get("kind") == "rotary":
+            shown["modulus"] = source.parameters["modulus"]
+        limits = source.parameters.get("limits", {}) if source.kind == "axis" else {}
+        if limits:
+            shown["velocity"] = limits["velocity"]
+        if "lower" in limits and "upper" in limits:
+            shown["range"] = [limits["lower"], limits["upper"]]
+        return shown
+
+    # --- from above ---
+
+    def _plan(self) -> dict[str, Any]:
+        of = self.parameters
+        return {
+            "systems": [system["name"] for system in of["coordinate_systems"]],
+            "tracks": self._tracks(),
+            "stators": [[place["x"], place["y"]] for e in of["environments"] for place in e["stators"]],
+            "parts": [self._part(part) for part in of["parts"]],
+            "movers": [{k: m[k] for k in ("name", "width", "height", "gap")} for m in of["movers"]],
+            "belts": [
+                {
+                    "name": belt["name"],
+                    "turning": belt["kind"] == "turning",
+                    "frame": np.asarray(pose_to_matrix(_pose(belt["origin"])))[:3].ravel().tolist(),
+                    "range": [belt.get("lower_limit"), belt.get("upper_limit")],
+                }
+                for belt in of["belts"]
+            ],
+            "groups": [
+                {"name": name, "links": mechanism.links, "base": base[:3].ravel().tolist()}
+                for name, (mechanism, _, base) in self.mechanisms.items()
+            ],
+        }
+
+    def _tracks(self) -> list[dict[str, Any]]:
+        """Those that have their geometry from the machine file; what commands made of them since is not known here."""
+        try:
+            tracks = TrackLayout(self.text).tracks if self.parameters["tracks"] else ()
+        except (TaktError, ConfigError):
+            return []
+        shown = []
+        part_of = {track["name"]: track["part"] for track in self.parameters["tracks"]}
+        only = self.names["part"][0] if len(self.names["part"]) == 1 else ""
+        for track in tracks:
+            if track.length > 0:
+                points = track.points
+                thin = _thin(np.asarray(points.s))
+                line = np.stack([points.s, points.x, points.y], axis=1)[thin]
+                shown.append(
+                    {
+                        "name": track.name,
+                        "part": part_of[track.name] or only,
+                        "closed": track.closed,
+                        "points": np.round(line, 2).ravel().tolist(),
+                    }
+                )
+        return shown
+
+    def _part(self, part: Mapping[str, Any]) -> dict[str, Any]:
+        stators = [[place["x"], place["y"]] for place in part.get("stators") or ()]
+        stators = stators or [
+            [240.0 * column, 240.0 * row]
+            for row in range(int(part.get("rows") or 0))
+            for column in range(int(part.get("columns") or 0))
+        ]
+        initial = part["positions"][part["initial_position"] - 1]
+        return {"name": part["name"], "stators": stators, "initial": [initial["x"], initial["y"]]}
+
+    # --- cams ---
+
+    def _cams(self) -> list[dict[str, Any]]:
+        if not self.parameters["cams"]:
+            return []
+        try:
+            tables = _core.cams_of_machine(self.text.encode(), str(self.folder / "machine"))
+        except ConfigError:
+            return []
+        cams = []
+        for table, _ in tables:
+            x = np.unique(np.concatenate([np.linspace(table.begin, table.end, CAM_POINTS), table.joints]))
+            y, v, a, _ = table.at(x)
+            cams.append(
+                {
+                    "name": table.name,
+                    "units": [table.x_unit, table.y_unit],
+                    "cyclic": table.cyclic,
+                    "x": _finite(x),
+                    "curves": [_finite(y), _finite(v), _finite(a)],
+                }
+            )
+        return cams
+
+    # --- arms ---
+
+    def _mechanisms(self) -> dict[str, tuple[Kinematics, list[str], Array]]:
+        """Of each group with kinematics: them, its axes, and where its base stands."""
+        found = {}
+        for group in self.parameters["groups"]:
+            given = {name: value for name, value in (group.get("kinematics") or {}).items() if value}
+            if not given:
+                continue
+            try:
+                mechanism = Kinematics(folder=self.folder, **given)
+            except (ConfigError, TaktError, TypeError):
+                continue  # its files are not to be found from here
+            found[group["name"]] = (mechanism, list(group["axes"]), np.asarray(pose_to_matrix(_pose(group["base"]))))
+        return found
+
+    def links_of(self, group: str, positions: Sequence[float]) -> Array:
+        """(links, 6): where each link of a group begins and ends, in the world; NaN where that cannot be said."""
+        mechanism, _, base = self.mechanisms[group]
+        try:
+            places = np.asarray(mechanism.link_places(positions[: mechanism.axes])).reshape(-1, 3)
+        except (KinematicsError, ValueError):
+            return np.full((len(mechanism.links), 6), math.nan)
+        world: Array = (places @ base[:3, :3].T + base[:3, 3]).reshape(-1, 6)
+        return world
+
+
+def _pose(pose: Mapping[str, float]) -> list[float]:
+    return [float(pose[axis]) for axis in "xyzabc"]
+
+
+def _finite(values: Array) -> list[float | None]:
+    return [float(f"{v:.9g}") if math.isfinite(v) else None for v in values]
+
+
+def _thin(s: Array) -> Array:
+    """Which points of a line are far enough from those before, the last one always."""
+    steps = np.floor(s / TRACK_STEP)
+    kept = np.concatenate(([True], np.diff(steps) > 0))
+    kept[-1] = True
+    return kept

@@ -1,0 +1,78 @@
+// Commands from the page, where the machine file allows it. What is jogged moves as long as the button is held: the page
+// says so again and again, and whoever does not hear it lets go.
+
+import { byId, el } from "./dom.js";
+
+const BUTTONS = {
+  axis: [["On", "power", { enable: true }], ["Off", "power", { enable: false }], ["Reset", "reset", {}], ["Halt", "halt", {}]],
+  group: [["On", "power", { enable: true }], ["Off", "power", { enable: false }], ["Enable", "enable", {}], ["Disable", "disable", {}], ["Reset", "reset", {}], ["Halt", "halt", {}]],
+  mover: [["Enable", "enable", {}], ["Disable", "disable", {}], ["Reset", "reset", {}], ["Halt", "halt", {}]],
+  track: [["Enable", "enable", {}], ["Disable", "disable", {}], ["Reset", "reset", {}]],
+  planar_group: [["Enable", "enable", {}], ["Disable", "disable", {}], ["Reset", "reset", {}]],
+};
+const LEAST_MS = 15;
+
+export class Commands {
+  constructor(model, connection) {
+    this.model = model;
+    this.connection = connection;
+    this.timer = null;
+    byId("emergency-stop").onclick = () => this.give("machine", "emergency_stop", {});
+    byId("stop-all").onclick = () => this.give("machine", "stop_all", {});
+    for (const event of ["blur", "pagehide"]) addEventListener(event, () => this.letGo());
+    document.addEventListener("visibilitychange", () => document.hidden && this.letGo());
+    for (const event of ["pointerup", "pointercancel"]) addEventListener(event, () => this.letGo());
+    connection.addEventListener("lost", () => this.letGo());
+  }
+
+  begin(epoch) {
+    this.letGo();
+    this.epoch = epoch;
+    byId("stops").hidden = !this.model.machine.commands;
+  }
+
+  give(target, verb, given) {
+    this.connection.send({ epoch: this.epoch, command: [target, verb, given] });
+  }
+
+  // The buttons of a component.
+  panel(component) {
+    const buttons = this.model.machine.commands ? BUTTONS[component.kind] : null;
+    if (!buttons) return [];
+    const plain = buttons.map(([text, verb, given]) => el("button", { textContent: text, onclick: () => this.give(component.name, verb, given) }));
+    const rows = [el("div", { className: "buttons" }, ...plain)];
+    if (component.kind === "axis") rows.push(this.jogRow(component));
+    return rows;
+  }
+
+  jogRow(component) {
+    const unit = this.model.unit(component, "set_velocity");
+    const velocity = el("input", { type: "number", min: 0, step: "any", value: Number((component.velocity / 10).toPrecision(2)), title: `Velocity, ${unit}` });
+    const button = (text, way) => {
+      const node = el("button", { className: "jog", textContent: text, title: "Moves while it is held" });
+      node.onpointerdown = (event) => {
+        if (event.button === 0) this.hold(component.name, { [way]: true, velocity: Number(velocity.value) }, node);
+      };
+      node.oncontextmenu = (event) => event.preventDefault();
+      return node;
+    };
+    return el("div", { className: "buttons" }, button("◀ jog", "backward"), velocity, el("span", { className: "soft", textContent: unit }), button("jog ▶", "forward"));
+  }
+
+  hold(target, given, node) {
+    this.letGo();
+    this.give(target, "jog", given);
+    this.held = node;
+    node.setAttribute("aria-pressed", "true");
+    const every = Math.max(LEAST_MS, Math.min(100, 250 * this.model.machine.dead_man_s));
+    this.timer = setInterval(() => this.connection.send({ epoch: this.epoch, hold: true }), every);
+  }
+
+  letGo() {
+    if (this.timer === null) return;
+    clearInterval(this.timer);
+    this.timer = null;
+    this.held.setAttribute("aria-pressed", "false");
+    this.connection.send({ epoch: this.epoch, hold: false });
+  }
+}

@@ -1,0 +1,114 @@
+"""What goes over the socket between server and page.
+
+To the page: the machine as JSON text, when there is a new one; then frames, twenty a second. A frame is a JSON header
+and float64 numbers behind it: 4 bytes with the header's length, the header, padding to 8 bytes, the numbers. The header
+says what the numbers are. To the server: JSON texts, see `Request`."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from takt.recording import Array
+from takt.view.machine import Machine
+
+MOST_SIGNALS = 256
+MOST_DETAILS = 16
+KEYS = dict.fromkeys(("ack", "epoch", "signals", "after", "details", "command", "hold")).keys()
+
+
+class RequestError(Exception):
+    """What is wrong with what a page asked for."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a page wants to know from now on; None: as before."""
+
+    ack: int | None = None  # the frame it has drawn
+    signals: Mapping[int, tuple[str, ...]] | None = None  # fields by component
+    after: Mapping[int, float] = field(default_factory=dict)  # by component: the newest cycle it has
+    details: tuple[int, ...] | None = None  # components of which it wants all that they publish
+    command: tuple[str, str, dict[str, Any]] | None = None  # target, verb, arguments
+    hold: bool | None = None  # a button is held; it is let go of
+
+
+def frame(header: Mapping[str, Any], numbers: Sequence[Array]) -> bytes:
+    text = json.dumps(header, allow_nan=False, separators=(",", ":")).encode()
+    padding = -(4 + len(text)) % 8
+    parts = [struct.pack("<I", len(text)), text, b" " * padding]
+    parts += [np.ascontiguousarray(one, dtype="<f8").tobytes() for one in numbers]
+    return b"".join(parts)
+
+
+def parse(text: str, machine: Machine | None, epoch: int) -> Request:
+    """What a page says. What it says of a machine that is gone is left out."""
+    try:
+        said = json.loads(text)
+    except ValueError:
+        raise RequestError("a request is JSON") from None
+    if not isinstance(said, dict) or not said.keys() <= KEYS:
+        raise RequestError(f"a request has some of {', '.join(KEYS)}")
+    ack = said.get("ack")
+    if ack is not None and type(ack) is not int:
+        raise RequestError("ack is the number of a frame")
+    if machine is None or said.get("epoch") != epoch:
+        return Request(ack)
+    return Request(
+        ack,
+        _signals(said["signals"], machine) if "signals" in said else None,
+        {_index(i, machine): _number(cycle) for i, cycle in _pairs(said.get("after", []))},
+        _details(said["details"], machine) if "details" in said else None,
+        _command(said["command"]) if "command" in said else None,
+        bool(said["hold"]) if "hold" in said else None,
+    )
+
+
+def _signals(said: Any, machine: Machine) -> dict[int, tuple[str, ...]]:
+    pairs = _pairs(said)
+    if len(pairs) > MOST_SIGNALS:
+        raise RequestError(f"{len(pairs)} signals are too many: {MOST_SIGNALS} at most")
+    wanted: dict[int, dict[str, None]] = {}
+    for at, name in pairs:
+        source = machine.sources[_index(at, machine)]
+        if name not in source.layout.dtype.fields:  # type: ignore[operator]
+            raise RequestError(f"{source.name} publishes no {name!r}")
+        wanted.setdefault(source.index, {})[name] = None
+    return {index: tuple(fields) for index, fields in wanted.items()}
+
+
+def _details(said: Any, machine: Machine) -> tuple[int, ...]:
+    if not isinstance(said, list):
+        raise RequestError("details are a list of components")
+    return tuple(_index(at, machine) for at in said[:MOST_DETAILS])
+
+
+def _command(said: Any) -> tuple[str, str, dict[str, Any]]:
+    match said:
+        case [str(target), str(verb), dict(arguments)]:
+            if all(type(value) in (bool, int, float) for value in arguments.values()):
+                return target, verb, arguments
+    raise RequestError("a command has a target, a verb and arguments that are numbers or switches")
+
+
+def _pairs(said: Any) -> list[list[Any]]:
+    if not isinstance(said, list) or not all(isinstance(one, list) and len(one) == 2 for one in said):
+        raise RequestError("expected a list of pairs")
+    return said
+
+
+def _index(said: Any, machine: Machine) -> int:
+    if type(said) is not int or not 0 <= said < len(machine.sources):
+        raise RequestError(f"there is no component {said!r}")
+    return said
+
+
+def _number(said: Any) -> float:
+    if type(said) not in (int, float):
+        raise RequestError(f"{said!r} is no number")
+    return float(said)

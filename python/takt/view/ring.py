@@ -1,0 +1,74 @@
+"""The last values of the signals of one component, in bounded memory."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+CAPACITY = 1 << 15  # rows: half a minute at 1 kHz
+
+
+class Piece(NamedTuple):
+    """What a reader has not seen yet."""
+
+    cursor: int  # where it goes on
+    skipped: int  # rows that were overwritten before it came
+    cycles: Floats
+    columns: Floats  # (fields, rows)
+
+
+class Ring:
+    """Rows are counted from the first one ever written; readers keep where they are themselves."""
+
+    def __init__(self, fields: Sequence[str], capacity: int = CAPACITY) -> None:
+        self.fields = tuple(fields)
+        self.written = 0
+        self._cycles = np.zeros(capacity)
+        self._columns = np.full((len(self.fields), capacity), np.nan)
+
+    @property
+    def capacity(self) -> int:
+        return len(self._cycles)
+
+    @property
+    def first(self) -> int:
+        """The oldest row there still is."""
+        return max(0, self.written - self.capacity)
+
+    def append(self, cycles: npt.NDArray[np.generic], columns: npt.NDArray[np.generic]) -> None:
+        """So many rows more; `columns` has a row for each field."""
+        count = len(cycles)
+        kept = min(count, self.capacity)
+        at = np.arange(self.written + count - kept, self.written + count) % self.capacity
+        self._cycles[at] = cycles[count - kept :]
+        self._columns[:, at] = columns[:, count - kept :]
+        self.written += count
+
+    def since(self, cursor: int, fields: Sequence[str], most: int) -> Piece:
+        """The rows from `cursor` on, `most` at most, of these fields."""
+        begin = min(max(cursor, self.first), self.written)
+        end = min(self.written, begin + most)
+        at = np.arange(begin, end) % self.capacity
+        which = [self.fields.index(field) for field in fields]
+        return Piece(
+            end, max(0, begin - cursor), self._cycles[at], self._columns[np.array(which, dtype=np.intp)[:, None], at]
+        )
+
+    def after(self, cycle: float) -> int:
+        """The first row later than a cycle."""
+        at = np.arange(self.first, self.written) % self.capacity
+        return self.first + int(np.searchsorted(self._cycles[at], cycle, side="right"))
+
+    def with_fields(self, fields: Sequence[str]) -> Ring:
+        """The same rows with other fields; what was not kept of them is NaN."""
+        ring = Ring(fields, self.capacity)
+        ring.written = self.written
+        ring._cycles[:] = self._cycles
+        for i, field in enumerate(ring.fields):
+            if field in self.fields:
+                ring._columns[i] = self._columns[self.fields.index(field)]
+        return ring

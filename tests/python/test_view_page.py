@@ -1,0 +1,442 @@
+"""The live page in a real browser: values against the engine's, trigger, cursors, connections that break."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import takt
+from machines import MACHINE, machine_with, new_url, running
+from pages import CHROMIUM, FLAGS, PATIENCE_S, free_port, needs_chromium, served
+from playwright.sync_api import Browser, Page, expect, sync_playwright
+
+pytestmark = needs_chromium
+
+FULL_RATE = machine_with("{axis_rate_hz: 1000, dead_man_s: 0.5}")
+expect.set_options(timeout=PATIENCE_S * 1000)
+
+SAW = (Path(__file__).parents[2] / "python" / "examples" / "flying_saw" / "machine.yaml").read_text()
+PLANE = """
+name: plane
+axes: []
+tracks:
+  - name: loop
+    closed_loop: true
+    elements: [{from: {x: 0, y: 0}, to: {x: 800, y: 0}}, {from: {x: 800, y: 600}, to: {x: 0, y: 600}}]
+movers:
+  - {name: one, initial: {x: 100, y: 0}, gap: 200, xy: {maximum: {velocity: 1000, acceleration: 5000, jerk: 100000}}}
+  - {name: two, initial: {x: 700, y: 0}, gap: 200, xy: {maximum: {velocity: 1000, acceleration: 5000, jerk: 100000}}}
+"""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+@contextlib.contextmanager
+def opened(browser: Browser, address: str, hash_: str = "", dark: bool = False) -> Iterator[Page]:
+    """The page in a profile of its own. It must not complain, and ask nobody but its server."""
+    complaints: list[str] = []
+    asked: set[str] = set()
+    context = browser.new_context(viewport={"width": 1440, "height": 860}, color_scheme="dark" if dark else "light")
+    page = context.new_page()
+    page.set_default_timeout(PATIENCE_S * 1000)
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("request", lambda request: asked.add(re.sub(r"^(\w+://[^/]*/).*", r"\1", request.url)))
+    page.goto(address + hash_)
+    yield page
+    context.close()
+    assert complaints == []
+    assert asked <= {address}, asked
+
+
+def until(page: Page, condition: str, *arguments: Any) -> None:
+    """Until an expression of the page's own world holds."""
+    page.wait_for_function(condition, arg=list(arguments))
+
+
+def column(page: Page, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Cycles and values that the page has of a signal."""
+    component, field = name.rsplit(".", 1)
+    script = """([component, field]) => {
+        const { model, scope } = window.takt;
+        const series = scope.store.series.get(model.byName.get(component).index);
+        return [[...series.cycles.subarray(0, series.end)], [...series.columns.get(field).subarray(0, series.end)]];
+    }"""
+    cycles, values = page.evaluate(script, [component, field])
+    return np.array(cycles), np.array(values, dtype=float)
+
+
+def wait_for_cycle(page: Page, cycle: int) -> None:
+    until(page, "([cycle]) => [...window.takt.scope.store.series.values()].every((s) => s.last >= cycle)", int(cycle))
+
+
+def row(page: Page, name: str) -> Any:
+    return page.locator("#list .row:visible", has=page.locator(f".name:text-is('{name}')"))
+
+
+def test_values_are_the_engines(tmp_path: Path, browser: Browser) -> None:
+    url = new_url()
+    chosen = "#tab=scope&signals=x.set_position,x.actual_velocity,x.state,r.set_position"
+    with (
+        running(tmp_path, url, machine=FULL_RATE),
+        served(url) as address,
+        opened(browser, address, chosen) as page,
+        takt.connect(url) as session,
+    ):
+        x = session.axis("x")
+        until(page, "() => window.takt.scope.store.series.size === 2")
+        wait_for_cycle(page, 1)
+        record = session.record()
+        x.power().wait()
+        x.move_absolute(position=123.25).wait()
+        recording = record.stop()
+        wait_for_cycle(page, recording["x"]["cycle"][-1])
+        for field in ("set_position", "actual_velocity", "state"):
+            cycles, values = column(page, f"x.{field}")
+            np.testing.assert_array_equal(np.diff(cycles), 1)
+            at = np.searchsorted(cycles, recording["x"]["cycle"])
+            np.testing.assert_array_equal(values[at], recording["x"][field].astype(float))
+        expect(page.locator("#legend .entry", has_text="x.set position").locator("output")).to_have_text("123.250")
+        expect(page.locator("#legend .entry", has_text="x.state").locator("output")).to_have_text("Standstill")
+
+        page.click("#tab-machine")
+        expect(row(page, "x").locator(".state")).to_have_text("Standstill")
+        expect(row(page, "x").locator(".place")).to_have_text("123.250 mm")
+        expect(row(page, "r").locator(".state")).to_have_text("Disabled")
+        x.move_velocity(velocity=12.5)
+        expect(row(page, "x").locator(".does")).to_contain_text("move_velocity: velocity: 12.5")
+        expect(row(page, "x").locator(".speed")).to_have_text("12.5 mm/s")
+        refused = x.move_absolute(position=9999)
+        expect(page.locator("#events .event.error").first).to_contain_text(refused.sentence)
+        x.move_velocity(velocity=400).wait_final()  # onto the SW limit
+        expect(row(page, "x").locator(".waits")).to_contain_text(f"{x.error:04}")
+        expect(page.locator("#faults")).to_have_text("x in error")
+        row(page, "x").click()
+        expect(page.locator("#details label", has_text="homed").locator("output")).to_have_text(
+            "yes" if x.homed else "no"
+        )
+
+
+def test_the_scope_is_triggered_pauses_zooms_and_measures(tmp_path: Path, browser: Browser) -> None:
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=FULL_RATE),
+        served(url) as address,
+        opened(browser, address, "#tab=scope&signals=x.set_position,x.set_velocity") as page,
+        takt.connect(url) as session,
+    ):
+        x = session.axis("x")
+        x.power().wait()
+        wait_for_cycle(page, 1)
+        page.select_option("#span", "0.5")
+        page.select_option("#trigger-mode", "single")
+        page.select_option("#trigger-signal", "x.set_position")
+        page.fill("#trigger-level", "50.5")
+        page.press("#trigger-level", "Enter")
+        expect(page.locator("#trigger-state")).to_have_text("armed")
+        record = session.record()
+        x.move_absolute(position=90).wait()
+        x.move_absolute(position=0).wait()
+        recording = record.stop()
+        expect(page.locator("#trigger-state")).to_contain_text("triggered at")
+        positions, cycles = recording["x"]["set_position"], recording["x"]["cycle"]
+        rising = int(np.flatnonzero((positions[1:] >= 50.5) & (positions[:-1] < 50.5))[0])
+        share = (50.5 - positions[rising]) / (positions[rising + 1] - positions[rising])
+        held = page.evaluate("() => ({ ...window.takt.scope.held, store: null })")
+        assert held["edge"] == pytest.approx(cycles[rising] + share, abs=1e-6)
+        assert (held["to"] - held["from"], held["edge"] - held["from"]) == pytest.approx((500, 100))
+        assert page.evaluate("() => window.takt.scope.paused")
+
+        # What is held stays, whatever comes after it.
+        x.move_absolute(position=400).wait()
+        store = page.evaluate(
+            "() => window.takt.scope.held.store.value(0, 'set_position', window.takt.scope.held.edge)"
+        )
+        assert store == positions[rising]
+
+        # Two cursors, by hand, and what is between them.
+        box = page.locator("#lanes").bounding_box()
+        assert box is not None
+        for share in (0.4, 0.7):
+            page.mouse.click(box["x"] + share * box["width"], box["y"] + 60)
+        a, b = page.evaluate("() => [window.takt.scope.a, window.takt.scope.b]")
+        assert held["from"] < a < b < held["to"]
+        at = np.searchsorted(cycles, [a, b], side="right") - 1
+        measured = page.locator("#measured tbody tr", has_text="x.set_position").locator("td")
+        expect(measured.nth(2)).not_to_have_text("\u2013")
+        numbers = [float(text.split()[0].replace("\u2212", "-")) for text in measured.all_inner_texts()[1:]]
+        expected = [*positions[at], positions[at[1]] - positions[at[0]]]
+        np.testing.assert_allclose(numbers[:3], expected, rtol=1e-5, atol=1e-9)
+        assert numbers[3] == pytest.approx(expected[2] / ((b - a) * 0.001), rel=1e-5)
+        between = positions[np.searchsorted(cycles, a) : np.searchsorted(cycles, b, side="right")]
+        np.testing.assert_allclose(numbers[4:6], [between.min(), between.max()], rtol=1e-5)
+
+        # A zoom by dragging, and back.
+        page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 40)
+        page.mouse.down()
+        page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 40, steps=3)
+        page.mouse.up()
+        zoom = page.evaluate("() => window.takt.scope.zoom")
+        assert held["from"] < zoom["from"] < zoom["to"] < held["to"]
+        page.keyboard.press("Escape")
+        assert page.evaluate("() => window.takt.scope.zoom") is None
+        page.click("#pause")
+        page.select_option("#trigger-mode", "off")
+        expect(page.locator("#pause")).to_have_text("Pause")
+        until(page, "() => window.takt.scope.shown().to > window.takt.scope.period")
+
+
+def test_connections_that_break(tmp_path: Path, browser: Browser) -> None:
+    """The server goes and comes; the engine goes, comes back, and is another machine then."""
+    url, port = new_url(), free_port()
+    with contextlib.ExitStack() as stack:
+        engine = stack.enter_context(contextlib.ExitStack())
+        server = stack.enter_context(contextlib.ExitStack())
+        address = server.enter_context(served(url, port=port))
+        page = stack.enter_context(opened(browser, address, "#tab=scope&signals=x.set_position,r.state"))
+        expect(page.locator("#banner")).to_have_text(f"no engine is heard on {url}")
+        engine.enter_context(running(tmp_path, url, machine=FULL_RATE))
+        expect(page.locator("#state")).to_have_text("live")
+        expect(page.locator("#banner")).to_be_hidden()
+        wait_for_cycle(page, 10)
+        before, _ = column(page, "x.set_position")
+
+        server.close()
+        expect(page.locator("#banner")).to_contain_text("the server of this page is gone")
+        server.enter_context(served(url, port=port))
+        expect(page.locator("#state")).to_have_text("live")
+        expect(page.locator("#banner")).to_be_hidden()
+        wait_for_cycle(page, int(before[-1]) + 2000)
+        after, _ = column(page, "x.set_position")
+        assert after[0] == before[0]  # the page goes on where it was
+        assert page.evaluate("() => window.takt.scope.signals.map((s) => s.name)") == ["x.set_position", "r.state"]
+
+        engine.close()
+        expect(page.locator("#banner")).to_contain_text("the engine is gone")
+        expect(page.locator("#state")).to_have_text("engine gone")
+        engine.enter_context(running(tmp_path, url, machine=FULL_RATE))
+        expect(page.locator("#state")).to_have_text("live")
+        expect(page.locator("#banner")).to_be_hidden()
+        wait_for_cycle(page, 10)
+        again, _ = column(page, "x.set_position")
+        np.testing.assert_array_equal(np.diff(again), 1)  # nothing of the engine before
+        assert page.evaluate("() => window.takt.scope.signals.map((s) => s.name)") == ["x.set_position", "r.state"]
+
+        engine.close()
+        engine.enter_context(
+            running(tmp_path, url, machine=MACHINE.replace("name: test", "name: another").replace("name: x", "name: y"))
+        )
+        expect(page.locator("#machine-name")).to_have_text("another")
+        assert page.evaluate("() => window.takt.scope.signals.map((s) => s.name)") == ["r.state"]
+        page.click("#tab-machine")
+        expect(row(page, "y").locator(".state")).to_have_text("Disabled")
+        expect(row(page, "x")).to_have_count(0)
+
+
+def test_a_page_that_was_slow_has_lost_nothing(tmp_path: Path, browser: Browser) -> None:
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=FULL_RATE),
+        served(url) as address,
+        opened(browser, address, "#tab=scope&signals=x.set_position") as slow,
+        opened(browser, address, "#tab=scope&signals=x.actual_position,r.actual_position") as other,
+    ):
+        wait_for_cycle(slow, 10)
+        slow.evaluate("() => { const end = performance.now() + 4000; while (performance.now() < end); }")
+        wait_for_cycle(other, 10)
+        cycle = int(column(other, "r.actual_position")[0][-1])
+        wait_for_cycle(slow, cycle)
+        for page, name in ((slow, "x.set_position"), (other, "x.actual_position"), (other, "r.actual_position")):
+            np.testing.assert_array_equal(np.diff(column(page, name)[0]), 1)
+            assert page.evaluate("() => [window.takt.model.health.lost, window.takt.model.health.skipped]") == [0, 0]
+
+
+def test_a_thousand_axes(tmp_path: Path, browser: Browser) -> None:
+    axes = "".join(
+        f"  - {{name: axis_{i:04}, limits: {{velocity: 100, acceleration: 1000, jerk: 20000}}}}\n" for i in range(1000)
+    )
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=f"name: many\nlcm: {{axis_rate_hz: 10}}\naxes:\n{axes}"),
+        served(url) as address,
+        opened(browser, address) as page,
+        takt.connect(url, timeout=PATIENCE_S) as session,
+    ):
+        until(page, "() => window.takt.model.rows.filter(Boolean).length === 1000")
+        assert page.locator("#list .row").count() < 60  # only those in sight
+        session.axis("axis_0777").power().wait()
+        page.fill("#list-filter", "777")
+        expect(row(page, "axis_0777").locator(".state")).to_have_text("Standstill")
+        expect(page.locator("#list-count")).to_have_text("1 of 1000")
+        page.fill("#list-filter", "")
+        page.locator("#list").evaluate("(box) => (box.scrollTop = box.scrollHeight)")
+        expect(row(page, "axis_0999").locator(".state")).to_have_text("Disabled")
+        page.click("#tab-scope")
+        page.fill("#filter", "0500 set position")
+        page.locator("#signals .row:visible", has_text="set position").click()
+        until(page, "() => window.takt.scope.signals.some((s) => s.name === 'axis_0500.set_position')")
+
+
+def test_the_plan_shows_movers_where_they_are(tmp_path: Path, browser: Browser) -> None:
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=PLANE),
+        served(url) as address,
+        opened(browser, address, "#tab=plan") as page,
+        takt.connect(url) as session,
+    ):
+        for feedback in [
+            *(t.enable() for t in session.tracks.values()),
+            *(m.enable() for m in session.movers.values()),
+        ]:
+            feedback.wait()
+        for mover in session.movers.values():
+            mover.join_track(track="loop", use_orientation=False).wait()
+        one, two = session.mover("one"), session.mover("two")
+        one.move_on_track(track="loop", position=1000)  # two is in its way, and it waits
+        session.wait(lambda: one.waits_for == 2, 10.0)
+        script = """() => {
+            const { model } = window.takt;
+            return ["x", "y", "waits_for"].map((field) => model.liveOf(model.byName.get("one"), field));
+        }"""
+        until(
+            page,
+            "([x]) => Math.abs(window.takt.model.liveOf(window.takt.model.byName.get('one'), 'x') - x) < 1e-9",
+            one.x,
+        )
+        assert page.evaluate(script) == pytest.approx([one.x, one.y, 2])
+        # Its middle is filled on the canvas; a place without anything is not.
+        pixel = """([x, y]) => {
+            const { plan } = window.takt;
+            const [px, py] = plan.at(x, y);
+            const ratio = devicePixelRatio;
+            return [...plan.canvas.getContext('2d').getImageData(px * ratio, py * ratio, 1, 1).data];
+        }"""
+        free = page.evaluate(pixel, [one.x + 20, one.y + 250])
+        for mover in (one, two):
+            assert page.evaluate(pixel, [mover.x + 30, mover.y + 30]) != free
+        page.click("#tab-machine")
+        expect(row(page, "one").locator(".waits")).to_contain_text("waits for two")
+        expect(page.locator("#waiting-count")).to_have_text("1 waiting")
+
+
+def test_cams_show_the_point_in_force(tmp_path: Path, browser: Browser) -> None:
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=SAW),
+        served(url) as address,
+        opened(browser, address, "#tab=cams", dark=True) as page,
+        takt.connect(url) as session,
+    ):
+        web, cutter = session.axis("web"), session.flex_cam("cutter")
+        web.power().wait()
+        cutter.control(regulator_on=True).wait()
+        session.wait(lambda: cutter.axis_enabled)
+        web.move_velocity(velocity=300)
+        cutter.control(sync_cam=True).wait()
+        web.halt().wait()
+        session.run(0.3)
+        card = page.locator(".cam").first
+        expect(card.locator("header .soft")).to_contain_text("product_600")
+        expect(card.locator("output")).to_have_text(
+            f"x {cutter.set_x_position:.3f} mm   y {cutter.set_y_position:.3f} mm"
+        )
+
+
+def test_engine_figures(tmp_path: Path, browser: Browser) -> None:
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=FULL_RATE, pace="real"),
+        served(url) as address,
+        opened(browser, address, "#tab=engine") as page,
+        takt.connect(url) as session,
+    ):
+        session.axis("x").power().wait()
+        card = lambda title: page.locator(".figure", has_text=re.compile(f"{title}$")).locator("b")  # noqa: E731
+        expect(card("cycle")).to_have_text("1 ms")
+        expect(card("pace")).to_have_text("real time")
+        expect(card("commands")).to_have_text("1")
+        expect(card("clients")).to_have_text("1")
+        expect(card("states lost on the way")).to_have_text("0")
+        expect(page.locator("#histogram-latency-note")).to_contain_text("median")
+        session.run(0.5)
+        engine = page.evaluate("() => window.takt.model.engine")
+        figures = session.figures
+        assert engine["execution"]["count"] <= figures["execution"]["count"] + 500
+        assert engine["execution"]["max"] <= max(figures["execution"]["max"], engine["execution"]["max"])
+        assert len(engine["latency"]["buckets"]) == 32
+
+
+@pytest.mark.parametrize(("how", "dead_man"), [("let go", 60), ("hangs", 3)])
+def test_jogging_by_hand(how: str, dead_man: float, tmp_path: Path, browser: Browser) -> None:  # EN-23
+    url = new_url()
+    machine = machine_with(f"{{dead_man_s: {dead_man}}}") + "view: {commands: true}\n"
+    with (
+        running(tmp_path, url, machine=machine),
+        served(url) as address,
+        opened(browser, address) as page,
+        takt.connect(url) as session,
+    ):
+        x = session.axis("x")
+        row(page, "x").click()
+        page.click("#details-commands button:text-is('On')")
+        session.wait(lambda: x.state is takt.PlcState.STANDSTILL, 10.0)
+        page.fill("#details-commands input", "12")
+        page.locator("#details-commands button", has_text="jog ▶").hover()
+        for _ in range(2):
+            page.mouse.down()
+            session.wait(lambda: x.set_velocity == pytest.approx(12.0), 10.0)
+            session.run(0.5 if how == "let go" else 4.0)
+            assert x.set_velocity == pytest.approx(12.0)
+            if how == "let go":
+                page.mouse.up()
+                session.wait(lambda: x.state is takt.PlcState.STANDSTILL, 10.0)
+            else:
+                page.evaluate("() => { const end = performance.now() + 8000; while (performance.now() < end); }")
+                assert x.set_velocity == 0  # when the page woke up the axis stood long since
+                page.mouse.up()
+        page.click("#emergency-stop")
+        session.wait(lambda: x.state is takt.PlcState.DISABLED, 10.0)
+
+
+def test_memory_is_bounded(tmp_path: Path, browser: Browser) -> None:
+    """Rings of the page move on; what they hold does not grow."""
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=FULL_RATE),
+        served(url) as address,
+        opened(browser, address, "#tab=scope&signals=x.set_position") as page,
+    ):
+        wait_for_cycle(page, 10)
+        script = """() => {
+            const { scope } = window.takt;
+            const series = scope.store.series.get(0);
+            const before = series.cycles.length;
+            const rows = series.moved + series.end;
+            for (let k = 0; k < 200; ++k) {
+                const cycles = Float64Array.from({ length: 5000 }, (_, i) => 1e9 + 5000 * k + i);
+                series.append(cycles, new Map([["set_position", cycles]]));
+            }
+            const held = [...series.cycles.subarray(0, series.end)];
+            const rises = held.every((cycle, i) => !i || cycle > held[i - 1]);
+            const appended = series.moved + series.end - rows;
+            const found = [series.find(1e9 + 999000), series.at("set_position", 1e9 + 999000.5)];
+            return [before, series.cycles.length, series.end, appended, held.at(-1), rises, ...found];
+        }"""
+        before, length, end, appended, last, rises, found, value = page.evaluate(script)
+        assert before == length >= end
+        assert appended == 1_000_000
+        assert rises
+        assert last >= 1e9 + 999_999
+        assert value == 1e9 + 999_000
+        assert found < end

@@ -1,0 +1,106 @@
+"""The pictures of the live page in docs/images: the examples on taktd, seen in a real browser.
+
+tools/page_pictures.py docs/images [NAME ...]
+"""
+
+from __future__ import annotations
+
+import contextlib
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from playwright.sync_api import Page, sync_playwright
+from takt.demo import free_url, taktd
+from takt.view.server import serving
+
+ROOT = Path(__file__).resolve().parents[1]
+SIZE = {"width": 1400, "height": 820}
+FLAGS = (
+    "--headless --no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync "
+    "--no-first-run"
+).split()
+
+# Name of the picture: example, dark, what the address says, s of engine time from the beginning of the scenario; what
+# is done on the page before the picture is taken.
+PICTURES: dict[str, tuple[str, bool, str, float, str]] = {
+    "view_scope": (
+        "flying_saw",
+        False,
+        "tab=scope&signals=web.set_velocity,saw.set_velocity,saw.set_position,saw.actual_position,"
+        "saw.set_acceleration,saw.following_error,saw.state,cutter.state,cutter.cam_synchronised",
+        11.5,
+        """() => {
+            const { scope } = window.takt;
+            scope.pause(true);
+            scope.a = scope.held.to - 4200;
+            scope.b = scope.held.to - 2750;
+        }""",
+    ),
+    "view_plan": ("pick_cell", False, "tab=plan", 12.0, ""),
+    "view_movers": ("planar_line", True, "tab=plan", 200.0, ""),
+    "view_machine": ("pick_cell", True, "tab=machine", 12.0, ""),
+    "view_cams": ("flying_saw", False, "tab=cams", 9.3, ""),
+}
+
+
+@contextlib.contextmanager
+def running(example: str) -> Iterator[tuple[str, str]]:
+    """The machine of an example on a taktd of its own: its LCM network, and the address of its page."""
+    folder = ROOT / "python" / "examples" / example
+    url = free_url()
+    with (
+        tempfile.TemporaryDirectory() as directory,
+        serving(url, folder) as address,
+        taktd(folder / "machine.yaml", url, None, "paced", Path(directory)),
+    ):
+        yield url, address
+
+
+@contextlib.contextmanager
+def playing(example: str, url: str) -> Iterator[None]:
+    """Its scenario."""
+    file = ROOT / "python" / "examples" / example / "scenario.py"
+    command = [sys.executable, "-m", "takt", "run", str(file), "--url", url]
+    scenario = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        yield
+    finally:
+        scenario.kill()
+        scenario.wait()
+
+
+def take(name: str, target: Path) -> None:
+    example, dark, hash_, seconds, before = PICTURES[name]
+    with running(example) as (url, address), sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
+        page: Page = browser.new_page(viewport=SIZE, color_scheme="dark" if dark else "light")  # type: ignore[arg-type]
+        page.goto(f"{address}#{hash_}")
+        page.wait_for_selector("body.ready", timeout=60_000)
+        with playing(example, url):
+            page.wait_for_function("() => window.takt.model.events.length", timeout=60_000)
+            page.wait_for_function(
+                "(s) => window.takt.model.now > s + window.takt.model.events[0][0] * window.takt.model.period",
+                arg=seconds,
+                timeout=600_000,
+            )
+            if before:
+                page.evaluate(before)
+                time.sleep(0.5)
+            page.screenshot(path=str(target))
+        browser.close()
+
+
+def main() -> int:
+    folder, *names = sys.argv[1:]
+    for name in names or PICTURES:
+        take(name, Path(folder) / f"{name}.png")
+        print(Path(folder) / f"{name}.png")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
