@@ -42,7 +42,7 @@ enum class ErrorId : std::uint16_t {
   // Ours.
   kEncoder = 3001,            // the encoder reports an error, or jumped further than the axis can move in a cycle
   kDrive = 3002,              // the drive reports a fault or does not get ready
-  kBufferFull = 3003,         // the axis already holds as many buffered commands as it can
+  kBufferFull = 3003,         // as many commands wait already as can be buffered
   kPlanning = 3004,           // no trajectory could be planned; the one in progress is kept
   kState = 3005,              // the command is not legal in the axis' state
   kAwayFromLimitOnly = 3006,  // while a limit switch is on, only moves away from it are accepted

@@ -19,8 +19,8 @@ inline constexpr std::size_t kBuffered = 16;
 struct Queued {
   Ticket ticket = 0;
   Command command;
-  std::uint32_t beside =
-      0;  // bits of slots of Z, A, B and C whose commands were given later: it does not wait for them
+  // Bits of the slots of Z, A, B and C whose commands were given later: it does not wait for them.
+  std::uint32_t beside = 0;
 };
 
 struct Buffer {

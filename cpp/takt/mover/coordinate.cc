@@ -12,7 +12,6 @@ using trajectory::Limits;
 using trajectory::Profile;
 
 constexpr double kSlack = 1e-9;  // of a limit or window, deg or mm
-constexpr double kWindow = 90;   // deg from one window to the next
 
 bool Holds(const Profile& profile, const CoordinateParams& params) {
   const double speed = params.maximum.velocity * (1 + 1e-9);

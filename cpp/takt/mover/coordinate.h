@@ -10,6 +10,8 @@
 
 namespace takt::mover {
 
+inline constexpr double kWindow = 90;  // deg from one window of C to the next
+
 // To a position, as these limits say; harder, up to the maximum, where the mover would leave the coordinate's limits or
 // its largest speed else. False: there is no such motion.
 bool PlanCoordinate(trajectory::Planner& planner, const KinematicState& from, double position,

@@ -129,7 +129,6 @@ namespace {
 // stop from there, with what is left in equal parts.
 bool CanFollowAsBody(const Context& c, const SetPoint& to, State& s) {
   const SetPoint& from = s.set_point;
-  if (!InOneWindow(c.params.c, to[kC].position, to[kC].position)) return false;
   const Body& body = c.fleet.bodies[c.index];
   const auto moves = [&](Coordinate i) {
     return from[i].velocity != 0 || from[i].acceleration != 0 || to[i].velocity != 0 || to[i].acceleration != 0;

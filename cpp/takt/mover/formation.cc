@@ -19,8 +19,7 @@ using planar::ObjectState;
 using trajectory::Limits;
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr int kShares = 8;      // the dynamics are split into, where both begin at once
-constexpr double kWindow = 90;  // deg from one window of C to the next
+constexpr int kShares = 8;  // the dynamics are split into, where both begin at once
 
 ObjectInfo MoverNumbered(std::uint32_t index) {
   return {ObjectKind::kMover, index + 1};

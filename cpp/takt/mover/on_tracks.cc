@@ -27,6 +27,18 @@ bool IsSmallEnough(const MoverParams& mover, const TrackNow& track) {
          std::min(mover.width, mover.height) <= std::min(track.width, track.height);
 }
 
+// To a place, as a command onto or from a track says.
+Answer MoveAs(const auto& command, const Given& g, double x, double y, double c) {
+  return MoveTo(g, {.x = x,
+                    .y = y,
+                    .c = c,
+                    .use_orientation = command.use_orientation,
+                    .velocity = command.velocity,
+                    .acceleration = command.acceleration,
+                    .deceleration = command.deceleration,
+                    .jerk = command.jerk});
+}
+
 }  // namespace
 
 planar::Way WayOf(TurnDirection direction) noexcept {
@@ -78,14 +90,7 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   }
   const KinematicState turned = Now(g.c, s.others.back());
   const double c = TargetOf(g.c.params, turned, turned.position, {.direction = TurnDirection::kShortestWay});
-  const Answer answer = MoveTo(g, {.x = nearest.place.x,
-                                   .y = nearest.place.y,
-                                   .c = c,
-                                   .use_orientation = command.use_orientation,
-                                   .velocity = command.velocity,
-                                   .acceleration = command.acceleration,
-                                   .deceleration = command.deceleration,
-                                   .jerk = command.jerk});
+  const Answer answer = MoveAs(command, g, nearest.place.x, nearest.place.y, c);
   if (answer.status.failed()) {
     rider = {};
     return answer;
@@ -109,14 +114,7 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
   const planar::Place at = streets.At(s.track, g.c.rider().at.position).place;
   s.plane.motion = StandingAt(at.x, at.y);
   s.plane.begin = g.c.cycle.count;
-  const Answer answer = MoveTo(g, {.x = x,
-                                   .y = y,
-                                   .c = command.c,
-                                   .use_orientation = command.use_orientation,
-                                   .velocity = command.velocity,
-                                   .acceleration = command.acceleration,
-                                   .deceleration = command.deceleration,
-                                   .jerk = command.jerk});
+  const Answer answer = MoveAs(command, g, x, y, command.c);
   if (answer.status.failed()) {
     s.plane = {};  // it stays on its place
     return answer;

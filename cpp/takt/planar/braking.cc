@@ -8,6 +8,8 @@
 namespace takt::planar {
 namespace {
 
+constexpr double kRounding = 1e-15;  // share of a root that a step of its search may leave out
+
 // The piece a braking is in at t, and s since it began; null: it stands.
 const trajectory::Piece* PieceAt(const Braking& b, double& t) {
   double begin = 0;
@@ -58,14 +60,17 @@ Braking Brake(const KinematicState& from, const Brakes& brakes) noexcept {
     time += stretch.duration;
     out.ends_s[i] = time;
     if (!(stretch.duration > 0)) continue;
+    const KinematicState end = piece.At(stretch.duration);
     // Velocity changes its sign once at most, where acceleration is left from before.
-    for (const double t : piece.VelocityZeros()) {
-      if (!(t > 0 && t < stretch.duration)) continue;
-      const double place = piece.At(t).position;
-      out.lowest = std::min(out.lowest, place);
-      out.highest = std::max(out.highest, place);
+    if (at.velocity * end.velocity < 0) {
+      for (const double t : piece.VelocityZeros()) {
+        if (!(t > 0 && t < stretch.duration)) continue;
+        const double place = piece.At(t).position;
+        out.lowest = std::min(out.lowest, place);
+        out.highest = std::max(out.highest, place);
+      }
     }
-    at = piece.At(stretch.duration);
+    at = end;
   }
   out.rest = at.position;
   out.lowest = std::min(out.lowest, out.rest);
@@ -117,7 +122,9 @@ double SpeedBefore(double way, double end, const Brakes& b) noexcept {
   double w = std::min(std::cbrt(way / b.jerk), end > 0 ? way / (2 * end) : INFINITY);
   for (int i = 0; i < 8; ++i) {
     const double f = (2 * end + b.jerk * w * w) * w - way;
-    w -= f / (2 * end + 3 * b.jerk * w * w);
+    const double step = f / (2 * end + 3 * b.jerk * w * w);
+    w -= step;
+    if (!(step > kRounding * w)) break;
   }
   return end + b.jerk * w * w;
 }
