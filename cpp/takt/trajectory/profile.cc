@@ -13,29 +13,28 @@ static_assert(std::is_trivially_copyable_v<Profile>);
 
 namespace {
 
-// Share of a time by which the search for a root steps over it.
-constexpr double kBeyondRoot = 4 * std::numeric_limits<double>::epsilon();
+constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();  // share of a time that does not count
 
 void Include(Profile::Range& range, double value) noexcept {
   range.min = std::min(range.min, value);
   range.max = std::max(range.max, value);
 }
 
-// When a piece that does not turn round between `left` and `right` is at `position`, to the last digit; NaN: not there.
+// When a piece that does not turn round between `left` and `right` is at `position`; NaN: not there.
 double MonotoneTime(const Piece& piece, double position, double left, double right) noexcept {
   const double begin = piece.At(left).position - position;
   const double end = piece.At(right).position - position;
   if (begin == 0) return left;
   if (begin * end > 0) return std::numeric_limits<double>::quiet_NaN();
+  // Newton's steps; where one leads out, half of what is left.
   double t = 0.5 * (left + right);
   for (int i = 0; i < 200 && t > left && t < right; ++i) {
     const KinematicState at = piece.At(t);
     const double off = at.position - position;
     (off * begin > 0 ? left : right) = t;
-    // Newton's step, a little longer: so both ends come close and not one alone. Where it leads out, half of what is
-    // left.
     const double step = -off / at.velocity;
-    t += step + std::copysign(kBeyondRoot * t, step);
+    if (std::abs(step) <= kRounding * t) return t;
+    t += step;
     if (!(t > left && t < right)) t = 0.5 * (left + right);
   }
   return right;
