@@ -1,7 +1,7 @@
 // What can carry something in a machine: its belts, then the tools of its groups, then poses.
 #pragma once
 
-#include "takt/engine/cycle.h"
+#include "takt/engine/world.h"
 #include "takt/group/carriers.h"
 
 namespace takt::engine {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "takt/engine/cycle.h"
+#include "takt/engine/world.h"
 
 namespace takt::engine {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "takt/engine/cycle.h"
+#include "takt/engine/world.h"
 
 namespace takt::engine {
 

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "takt/engine/cycle.h"
+#include "takt/engine/world.h"
 
 namespace takt::engine {
 

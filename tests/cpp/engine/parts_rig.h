@@ -17,6 +17,28 @@
 
 namespace takt::engine {
 
+// Example 6.6.1 of the manual: two levels, a lift between them.
+inline const std::string kLift = R"(
+name: lift
+axes: []
+coordinate_systems: [{name: lower}, {name: upper}]
+parts:
+  - {name: one, positions: [{coordinate_system: lower}]}
+  - {name: two, positions: [{coordinate_system: upper}]}
+  - name: three
+    positions: [{coordinate_system: lower, y: 240}, {coordinate_system: upper, y: 240}]
+    initial_position: 2
+movers:
+  - {name: mover, reference: one, initial: {x: 120, y: 120}}
+)";
+
+// A text with something else in one place.
+inline std::string With(std::string text, const std::string& what, const std::string& instead) {
+  const auto at = text.find(what);
+  if (at == std::string::npos) throw std::runtime_error("not in the text: " + what);
+  return text.replace(at, what.size(), instead);
+}
+
 inline Machine MachineOf(const std::string& text) {
   LoadResult loaded = LoadMachine(text, "parts.yaml");
   if (!loaded.machine) throw std::runtime_error(loaded.problems.front());
