@@ -64,6 +64,22 @@ def test_two_movers_on_a_track(engine: Engine) -> None:
     assert expect.visits_states(recording, "track", ["Enabling", "Enabled"])
 
 
+def test_a_mover_says_where_it_goes_and_how_far_it_keeps_away(engine: Engine) -> None:
+    """PL-24, PL-70: the track and the place on it, and the gap of the command."""
+    one, two = join(engine)
+    assert (one.target_track, one.gap) == (0, 200)
+    moves = [one.move_on_track(position=30, gap=210), two.move_on_track(position=350)]
+    engine.step()
+    assert (one.target_track, one.target_position, one.gap) == (1, 30, 210)
+    assert (two.target_track, two.target_position, two.gap) == (1, 350, 200)
+    for move in moves:
+        move.wait()
+    assert (one.track_position, one.target_position) == (30, 30)
+    two.leave_track(x=350, y=50).wait()
+    engine.step()
+    assert (two.target_track, two.target_x, two.target_y) == (0, 350, 50)
+
+
 def test_the_same_over_lcm(tmp_path: Path) -> None:
     """PL-50, example 6.2.4 against taktd."""
     url = new_url()

@@ -219,6 +219,34 @@ def test_a_turn_needs_room() -> None:
     one.move_c(position=0.4).wait()
 
 
+def test_a_mover_says_where_it_goes_and_what_it_has_reserved() -> None:
+    """PL-30, PL-70: the target at once; the rectangle around all that is covered on the way, less what is left."""
+    engine = Engine(TWO_IN_A_GROUP)
+    one, two = gather(engine)
+    size = 113.0  # mm, of movers as they are if nothing is said
+
+    def reserved(mover: takt.Mover) -> list[float]:
+        fields = ("reserved_lower_x", "reserved_lower_y", "reserved_upper_x", "reserved_upper_y")
+        return [float(getattr(mover, field)) for field in fields]
+
+    assert reserved(two) == [240 - size / 2, -size / 2, 240 + size / 2, size / 2]
+    move = one.move_to_position(x=60, y=200)
+    engine.run(0.1)
+    assert 0 < one.y < 100
+    assert (one.target_x, one.target_y, one.target_c) == (60, 200, 0)
+    assert reserved(one) == pytest.approx([one.x - size / 2, one.y - size / 2, 60 + size / 2, 200 + size / 2])
+    move.wait()
+    assert reserved(one) == pytest.approx([60 - size / 2, 200 - size / 2, 60 + size / 2, 200 + size / 2])
+    one.move_c(position=30)
+    engine.step()
+    assert one.target_c == 30
+    # The square turned by 30 degrees is wider by the cosine and the sine.
+    assert reserved(one)[2] == pytest.approx(60 + size / 2 * 1.3660254, abs=1)
+    one.remove_from_group().wait()
+    engine.step()
+    assert reserved(one) == [0, 0, 0, 0]
+
+
 def test_a_turn_that_goes_too_far() -> None:
     """PL-30: sent back in the middle of a turn, a mover has as its own what it goes on by."""
     engine = Engine(TWO_IN_A_GROUP)

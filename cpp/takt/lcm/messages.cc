@@ -478,6 +478,16 @@ msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine:
   m.track_position = o.track_position;
   m.track_velocity = o.track_velocity;
   m.track_acceleration = o.track_acceleration;
+  m.gap = o.gap;
+  m.target_x = o.target_x;
+  m.target_y = o.target_y;
+  m.target_c = o.target_c;
+  m.target_track = o.target_track;
+  m.target_position = o.target_position;
+  m.reserved_lower_x = o.reserved_lower_x;
+  m.reserved_lower_y = o.reserved_lower_y;
+  m.reserved_upper_x = o.reserved_upper_x;
+  m.reserved_upper_y = o.reserved_upper_y;
   m.in_sync = o.in_sync;
   m.sync_error = o.sync_error;
   m.waits_for = o.waits_for;

@@ -129,6 +129,22 @@ ObjectInfo TakeStop(const Context& now, const State& s, const SetPoint& at) noex
   return object;
 }
 
+planar::Pose GoalOf(const Context& c, const State& s) noexcept {
+  if (IsPlanet(s)) {
+    const State& leads = StateOfStar(c, s);
+    if (leads.external.mode == SetpointMode::kNone) {
+      return MoveOfPlanet(StarOf(c, s), c.index, leads.plane, leads.others.back()).target;
+    }
+  }
+  planar::Pose goal{{s.set_point[kX].position, s.set_point[kY].position}, s.set_point[kC].position};
+  if (IsPlanet(s) || s.external.mode != SetpointMode::kNone) return goal;
+  goal.c = s.others.back().profile.end().position;
+  if (IsOnTrack(s)) return goal;
+  const PlaneMotion& m = s.plane.motion;
+  goal.place = s.plane.waits ? planar::Place{s.plane.next.x, s.plane.next.y} : planar::Place{m.end_x, m.end_y};
+  return goal;
+}
+
 void Stand(const Context& c, const State& s) noexcept {
   planar::Grounds& g = c.grounds;
   planar::MoverNow& now = g.movers[c.index];

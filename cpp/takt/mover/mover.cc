@@ -195,6 +195,32 @@ void PublishDelay(const Context& c, const State& s, Outputs& out) {
   }
 }
 
+// Where it goes, and what nobody else may come into.
+void PublishWay(const Context& c, const State& s, Outputs& out) {
+  const planar::Pose goal = GoalOf(c, s);
+  out.target_x = goal.place.x;
+  out.target_y = goal.place.y;
+  out.target_c = goal.c;
+  out.gap = c.params.gap;
+  const planar::Rider& rider = c.rider();
+  if (IsOnTrack(s)) {
+    out.gap = rider.gap;
+    if (rider.aim == planar::Aim::kTarget) {
+      const planar::Road& road = c.streets.network[rider.route.last()];
+      out.target_track = rider.route.last() + 1;
+      out.target_position = road.closed ? std::fmod(rider.target, road.length) : rider.target;
+      if (out.target_position < 0) out.target_position += road.length;
+    }
+  }
+  if (const std::uint32_t group = c.grounds.Watching(c.grounds.group_of_mover[c.index])) {
+    const planar::Extent& reserved = c.grounds.grounds[group - 1].reserved.movers[c.index].extent;
+    out.reserved_lower_x = reserved.lower.x;
+    out.reserved_lower_y = reserved.lower.y;
+    out.reserved_upper_x = reserved.upper.x;
+    out.reserved_upper_y = reserved.upper.y;
+  }
+}
+
 }  // namespace
 
 Inputs Simulate(const State& s) noexcept {
@@ -279,6 +305,7 @@ void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& ou
   }
   out.formation = BodyOf(c, s);
   PublishDelay(c, s, out);
+  PublishWay(c, s, out);
   out.buffered = s.buffer.count;
   out.group = c.grounds.group_of_mover[c.index];
   out.coordinate_system = c.streets.parts->none() ? 0 : s.system + 1;

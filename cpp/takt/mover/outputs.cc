@@ -55,6 +55,18 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::track_position>(unit::mm, "Along the track that it is on.");
   d.internal<&O::track_velocity>(unit::mm_s, "Along it.");
   d.internal<&O::track_acceleration>(unit::mm_s2, "Along it.");
+  d.internal<&O::gap>(unit::mm, "Gap that it keeps to the mover before it on a track.");
+  d.internal<&O::target_x>(unit::mm, "Where its command leads X; on a track, or moved from outside: where it is.");
+  d.internal<&O::target_y>(unit::mm, "The same of Y.");
+  d.internal<&O::target_c>(unit::deg, "Where its command leads C.");
+  d.internal<&O::target_track>("Number of the track that its command leads it to, from 1; 0: none.");
+  d.internal<&O::target_position>(unit::mm, "Along that track.");
+  d.internal<&O::reserved_lower_x>(
+      unit::mm,
+      "Left side of the rectangle that what it has reserved in its group lies in; 0 where that does not watch.");
+  d.internal<&O::reserved_lower_y>(unit::mm, "Its lower side.");
+  d.internal<&O::reserved_upper_x>(unit::mm, "Its right side.");
+  d.internal<&O::reserved_upper_y>(unit::mm, "Its upper side.");
   d.internal<&O::in_sync>("It goes along with a master and is in step, or with the star of its formation.");
   d.internal<&O::sync_error>(unit::mm, "Of one that goes along with a master: its place minus where it should be.");
   d.internal<&O::waits_for>("Number of the mover that is in its way and that it waits for, from 1; 0: none.");

@@ -42,6 +42,14 @@ struct Outputs {
   double track_position = 0;      // mm along it, where it is on it
   double track_velocity = 0;      // mm/s
   double track_acceleration = 0;  // mm/s²
+  double gap = 0;                 // mm, that it keeps to the mover before it on a track
+  // Where its command leads it; on a track, or moved from outside, X and Y are where they are.
+  double target_x = 0, target_y = 0;  // mm
+  double target_c = 0;                // deg
+  std::uint32_t target_track = 0;     // number of the track that its command leads it to, from 1; 0: none
+  double target_position = 0;         // mm along that
+  // The rectangle that what it has reserved in its group lies in, mm; all 0: its group does not watch.
+  double reserved_lower_x = 0, reserved_lower_y = 0, reserved_upper_x = 0, reserved_upper_y = 0;
   bool in_sync = false;           // it is where its master or star wants it
   double sync_error = 0;          // mm, its place minus that
   std::uint32_t waits_for = 0;    // number of the mover that is in its way, from 1; 0: none
