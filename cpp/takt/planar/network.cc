@@ -124,10 +124,13 @@ void SetRanges(std::uint32_t track, Network& network) noexcept {
       const double place = std::min(s, road.length);
       const TrackPoint point = At(*road.track, at_end ? road.length - place : place);
       const Place seen{point.place.x + road.origin.x - of.origin.x, point.place.y + road.origin.y - of.origin.y};
-      if (NearestTo(other, seen).distance < reach + 0.5 * kStride) {
+      const double free = NearestTo(other, seen).distance - reach - 0.5 * kStride;
+      if (free < 0) {
         near = std::min(s + kStride, road.length);
       } else if (s > near + 5 * reach) {
         break;
+      } else {
+        s += kStride * std::floor(free / kStride);  // as far as it cannot get near
       }
     }
     return near;
