@@ -88,6 +88,8 @@ struct Engine::Impl {
         pick_places(machine, o, machine.pick_and_place, world.pick_place_outputs),
         movers(machine, o, machine.movers, world.mover_outputs),
         tracks(machine, o, machine.tracks, world.tracks.outputs),
+        track_places(o.publish ? 64 + 2 * machine.tracks.size() : 2),
+        track_shapes(machine.tracks.size()),
         planar_groups(machine, o, machine.planar_groups, world.planar_groups.outputs),
         environments(machine, o, machine.environments, world.environments.outputs),
         parts(machine, o, machine.parts, world.part_outputs),
@@ -219,6 +221,7 @@ struct Engine::Impl {
     if (!options.publish) return;
     std::apply([this](auto&... kind) { (PublishAll(kind), ...); }, kinds());
     PublishObjects();
+    track_shapes.Publish(world.cycle.count, world.tracks, track_places);
     if (figures_divisor > 0 && world.cycle.count % figures_divisor == 0) figure_queue.TryPush(figures);
   }
 
@@ -241,6 +244,8 @@ struct Engine::Impl {
   OfKind<pickplace::Outputs> pick_places;
   OfKind<mover::Outputs> movers;
   OfKind<track::Outputs> tracks;
+  SpscQueue<TrackPlaces> track_places;
+  TrackShapes track_shapes;
   OfKind<planargroup::Outputs> planar_groups;
   OfKind<environment::Outputs> environments;
   OfKind<part::Outputs> parts;
@@ -452,6 +457,9 @@ template SpscQueue<PartSnapshot>& Engine::snapshots<part::Outputs>() noexcept;
 
 SpscQueue<ObjectsSnapshot>& Engine::belt_objects() noexcept {
   return impl_->belt_objects;
+}
+SpscQueue<TrackPlaces>& Engine::track_places() noexcept {
+  return impl_->track_places;
 }
 SpscQueue<EngineFigures>& Engine::figure_queue() noexcept {
   return impl_->figure_queue;

@@ -16,6 +16,7 @@
 #include "takt/engine/drives.h"
 #include "takt/engine/machine.h"
 #include "takt/engine/snapshot.h"
+#include "takt/engine/track_shapes.h"
 #include "takt/environment/environments.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
@@ -126,6 +127,7 @@ class Engine {
   template <typename Outputs = axis::Outputs>
   SpscQueue<SnapshotOf<Outputs>>& snapshots() noexcept;
   SpscQueue<ObjectsSnapshot>& belt_objects() noexcept;
+  SpscQueue<TrackPlaces>& track_places() noexcept;
   SpscQueue<EngineFigures>& figure_queue() noexcept;
   SpscQueue<JournalEntry>& journal() noexcept;
   SpscQueue<DriveEntry>& drive_journal() noexcept;

@@ -27,6 +27,11 @@ inline std::string ObjectsChannel(std::string_view name) {
   return "takt/belt_objects/" + std::string(name);
 }
 
+// The shape of a track.
+inline std::string ShapeChannel(std::string_view name) {
+  return "takt/track_shapes/" + std::string(name);
+}
+
 // Of an axis whose drive lives in another process.
 inline std::string SetPointChannel(std::string_view name) {
   return "takt/drive/" + std::string(name) + "/setpoint";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "takt/conveyor/objects.h"
 #include "takt/engine/path_checks.h"
@@ -304,6 +305,24 @@ msgs::belt_objects ToMessage(const engine::ObjectsSnapshot& snapshot, const engi
   }
   m.count = static_cast<std::int32_t>(m.objects.size());
   return m;
+}
+
+void Add(const engine::TrackPlaces& places, const engine::Machine& machine, msgs::track_shape& m) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  m.cycle = Signed(places.cycle);
+  m.time_ns = TimeNs(places.cycle, machine);
+  m.name = machine.tracks[places.track].name;
+  m.part = places.part;
+  m.length = places.length;
+  m.closed = places.closed;
+  for (std::size_t i = 0; i < places.count; ++i) {
+    const engine::TrackPlaces::At& at = places.places[i];
+    m.position.push_back(at.position);
+    m.x.push_back(at.x);
+    m.y.push_back(at.y);
+    m.direction.push_back(at.direction / kDegree);
+  }
+  m.count = static_cast<std::int32_t>(m.x.size());
 }
 
 msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::Machine& machine) {

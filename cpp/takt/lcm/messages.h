@@ -13,6 +13,7 @@
 #include "takt/engine/drives.h"
 #include "takt/engine/machine.h"
 #include "takt/engine/snapshot.h"
+#include "takt/engine/track_shapes.h"
 #include "takt/msgs/axis_state.hpp"
 #include "takt/msgs/belt_objects.hpp"
 #include "takt/msgs/belt_state.hpp"
@@ -35,6 +36,7 @@
 #include "takt/msgs/pick_place_state.hpp"
 #include "takt/msgs/planar_group_state.hpp"
 #include "takt/msgs/pose_state.hpp"
+#include "takt/msgs/track_shape.hpp"
 #include "takt/msgs/track_state.hpp"
 
 namespace takt::lcm {
@@ -44,6 +46,8 @@ msgs::flex_cam_state ToMessage(const engine::FlexCamSnapshot& snapshot, const en
 msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine::Machine& machine);
 msgs::belt_state ToMessage(const engine::BeltSnapshot& snapshot, const engine::Machine& machine);
 msgs::belt_objects ToMessage(const engine::ObjectsSnapshot& snapshot, const engine::Machine& machine);
+// To the places that came before.
+void Add(const engine::TrackPlaces& places, const engine::Machine& machine, msgs::track_shape& shape);
 msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, const engine::Machine& machine);
 msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine::Machine& machine);
 msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::Machine& machine);

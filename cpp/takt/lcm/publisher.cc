@@ -41,6 +41,11 @@ Publisher::Publisher(engine::Engine& engine, Clients& clients, Outlet* network, 
   for (const conveyor::BeltParams& belt : engine_.machine().belts) {
     object_channels_.push_back({.name = ObjectsChannel(belt.name)});
   }
+  for (const track::TrackParams& track : engine_.machine().tracks) {
+    shape_channels_.push_back({.name = ShapeChannel(track.name)});
+  }
+  shapes_.resize(shape_channels_.size());
+  coming_.resize(shape_channels_.size());
   thread_ = std::thread([this] { Run(); });
 }
 
@@ -76,6 +81,7 @@ bool Publisher::Drain() {
     auto message = ToMessage(snapshot, engine_.machine());
     ToBoth(object_channels_[snapshot.index], message);
   });
+  any |= Take(engine_.track_places(), [this](const engine::TrackPlaces& places) { AddPlaces(places); });
   return any | DrainStates(static_cast<engine::PublishedKinds*>(nullptr));
 }
 
@@ -97,6 +103,15 @@ bool Publisher::DrainStates(SpscQueue<Snapshot>& queue, std::vector<Channel>& ch
   });
 }
 
+void Publisher::AddPlaces(const engine::TrackPlaces& places) {
+  msgs::track_shape& shape = coming_[places.track];
+  if (places.first == 0) shape = {};
+  Add(places, engine_.machine(), shape);
+  if (places.first + places.count < places.total) return;
+  shapes_[places.track] = shape;
+  ToBoth(shape_channels_[places.track], shapes_[places.track]);
+}
+
 void Publisher::PublishReplies() {
   msgs::feedback reply;
   while (clients_.TakeReply(reply)) ToBoth(feedback_channel_, reply);
@@ -111,6 +126,9 @@ void Publisher::PublishMachine() {
   message.text = info_.machine_text;
   ToNetwork(machine_channel_, message);
   if (next_machine_ns_ == 0) ToLog(machine_channel_, message);
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    if (!shapes_[i].name.empty()) ToNetwork(shape_channels_[i], shapes_[i]);
+  }
   next_machine_ns_ = SteadyNs() + kMachinePeriodNs;
 }
 

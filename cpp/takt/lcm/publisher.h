@@ -54,6 +54,8 @@ class Publisher {
   bool DrainStates(const std::tuple<Outputs...>* kinds);
   template <typename Snapshot>
   bool DrainStates(SpscQueue<Snapshot>& queue, std::vector<Channel>& channels);
+  // Puts them to those of its track; once all are there, sends them.
+  void AddPlaces(const engine::TrackPlaces& places);
   void PublishReplies();
   void PublishMachine();
   void PublishFigures(const engine::EngineFigures& figures);
@@ -79,6 +81,9 @@ class Publisher {
 
   std::vector<std::vector<Channel>> state_channels_;  // by kind, by component
   std::vector<Channel> object_channels_;              // by belt
+  std::vector<Channel> shape_channels_;               // by track
+  std::vector<msgs::track_shape> shapes_;             // whole ones, for who comes later
+  std::vector<msgs::track_shape> coming_;             // of which some places are there
   Channel engine_channel_, machine_channel_, feedback_channel_;
   std::int64_t next_machine_ns_ = 0;
   msgs::journal_hashes hashes_{};

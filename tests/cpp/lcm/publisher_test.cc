@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <map>
 #include <mutex>
 #include <set>
 
+#include "takt/engine/load.h"
 #include "takt/lcm/clock.h"
 #include "test_machine.h"
 
@@ -207,6 +209,57 @@ TEST(Publisher, GroupsArePublishedAsAxesAre) {
   EXPECT_NEAR(kept.back().x, 1, 1e-9);
   EXPECT_NEAR(kept.back().y, 2, 1e-9);
   EXPECT_EQ(kept.back().z, 0);
+}
+
+// EN-20, PL-10: the shape of a track, when it is made, as commands change it, and again for those who come later.
+TEST(Publisher, TheShapesOfTracksArePublishedWhenTheyChange) {
+  const engine::LoadResult loaded = engine::LoadMachine(R"(
+name: test
+axes: []
+tracks:
+  - {name: half, elements: [{shape: circle, from: {x: 0, y: 0}, to: {x: 0, y: 200}, center: {x: 0, y: 100}}]}
+  - {name: later}
+)",
+                                                        "test.yaml");
+  ASSERT_TRUE(loaded.machine) << loaded.problems.front();
+  TestRun run({.publish = true}, *loaded.machine);
+  TestOutlet network, log;
+  {
+    Publisher publisher(run.engine, run.clients, &network, &log, {});
+    run.Step(100);
+    run.clients.OnCommand(Command(1, "later", "append_line", "{start_x: 0, start_y: 50, end_x: 1000, end_y: 50}"),
+                          SteadyNs());
+    for (int i = 0; i < 100; ++i) {
+      run.Step(1);
+      run.engine.MakeTracks();
+    }
+    std::this_thread::sleep_for(1100ms);
+  }
+  const auto half = log.On<msgs::track_shape>("takt/track_shapes/half");
+  ASSERT_EQ(half.size(), 1u);
+  EXPECT_EQ(half[0].name, "half");
+  EXPECT_EQ(half[0].count, std::ceil(half[0].length / 10) + 1);
+  EXPECT_EQ(half[0].position.back(), half[0].length);
+  EXPECT_FALSE(half[0].closed);
+  EXPECT_EQ(half[0].part, 0);
+  for (int i = 0; i < half[0].count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    EXPECT_NEAR(std::hypot(half[0].x[k], half[0].y[k] - 100), 100, 1e-6) << i;
+  }
+  EXPECT_NEAR(half[0].direction.front(), 0, 1e-9);
+  EXPECT_NEAR(half[0].direction.back(), 180, 1e-9);
+  const auto later = log.On<msgs::track_shape>("takt/track_shapes/later");
+  ASSERT_EQ(later.size(), 2u);
+  EXPECT_EQ(later[0].count, 0);
+  EXPECT_EQ(later[0].length, 0);
+  EXPECT_EQ(later[1].length, 1000);
+  ASSERT_EQ(later[1].count, 101);
+  EXPECT_NEAR(later[1].x[50], 500, 1e-9);
+  EXPECT_NEAR(later[1].y[50], 50, 1e-9);
+  const auto sent = network.On<msgs::track_shape>("takt/track_shapes/later");
+  ExpectNoGaps(sent);
+  ASSERT_GE(sent.size(), 3u);
+  EXPECT_EQ(sent.back().count, 101);
 }
 
 // EN-07, EN-20: the log holds every cycle, every command and every hash; the network goes on at its own rate.
