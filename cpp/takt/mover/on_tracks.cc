@@ -78,7 +78,7 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   rider.off = ReachOf(g.c, s);
   rider.route.tracks[0] = track;
   rider.route.count = 1;
-  rider.gap = g.c.params.gap;
+  rider.gap = rider.zone = g.c.params.gap;
   rider.pace = {StandardOf(g.c.params.xy), g.c.params.lateral_acceleration};
   const Limits most = g.c.params.xy.maximum.limits();
   rider.brakes = {most.deceleration, most.jerk};

@@ -116,11 +116,14 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
     const double way = direction * (p.offset - r.at.position);
     const double zone_before = w.RangeBefore(p), zone_behind = w.RangeBehind(p);
     if (way > reach + std::max(zone_before, zone_behind)) return;
-    const bool active = w.IsAt(i, p.node);
-    const double zone = std::max(r.gap, direction > 0 ? zone_before : zone_behind);
-    if (!active && way < 0) return;  // it goes away from it
     w.MeetAt(i, p, [&](const Meeting& m) {
       const Now& its = w.now(m.other);
+      const Rider& other = w.rider(m.other);
+      const double off = r.off + other.off;
+      if (!w.IsActive(other.zone, off, its.next, its.braking, m.its)) return;
+      const bool active = w.IsActive(r.zone, off, now.next, now.braking, p);
+      if (!active && way < 0) return;  // it goes away from it
+      const double zone = std::max(r.zone, direction > 0 ? zone_before : zone_behind) + off;
       const double distance = direction * m.place;
       // `free`: so far it may go whatever the other does.
       const auto keep = [&](double gap, double free) {

@@ -62,6 +62,7 @@ void describe(Description<Rider>& d) {
   d.internal<&R::brakes>("Its greatest.");
   d.internal<&R::top_speed>(unit::mm_s, "Its greatest.");
   d.internal<&R::gap>(unit::mm, "To the mover before it.");
+  d.internal<&R::zone>(unit::mm, "So near to a node it is active there, at the least.");
   d.internal<&R::off>(unit::mm, "So far from its place it may be.");
   d.internal<&R::planned>("It has a plan.");
   d.internal<&R::plan>("Along the way.");

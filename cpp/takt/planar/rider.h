@@ -49,6 +49,7 @@ struct Rider {
   double top_speed = 0;   // mm/s, its greatest
   double gap = 0;         // mm to the mover before it, from centre to centre
   double off = 0;         // mm, so far from its place it may be; everybody's gap to it is as much larger
+  double zone = 0;        // mm around a node in which it is active at the least: its gap, once there is room for that
 
   bool planned = false;           // `plan` is good
   trajectory::Profile plan;       // along the way, 0 at `plan_from`

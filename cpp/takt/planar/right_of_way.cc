@@ -117,26 +117,36 @@ std::uint32_t RightOfWay::FindLeader(std::uint32_t i, int direction, double& off
   return kNobody;
 }
 
-bool RightOfWay::IsActive(const Rider& r, const KinematicState& next, const Braking& braking,
+bool RightOfWay::IsActive(double zone, double off, const KinematicState& next, const Braking& braking,
                           const Passage& p) const noexcept {
   const double lowest = std::min(next.position, braking.lowest), highest = std::max(next.position, braking.highest);
-  const double off = r.off + s_.off;
-  if (highest < p.offset) return p.offset - highest < std::max(r.gap, RangeBefore(p)) + off;
-  if (lowest > p.offset) return lowest - p.offset < std::max(r.gap, RangeBehind(p)) + off;
+  if (highest < p.offset) return p.offset - highest < std::max(zone, RangeBefore(p)) + off;
+  if (lowest > p.offset) return lowest - p.offset < std::max(zone, RangeBehind(p)) + off;
   return true;
 }
 
-bool RightOfWay::IsAt(std::uint32_t mover, std::uint32_t node) const noexcept {
-  for (std::uint32_t k = s_.heads[node]; k != kNobody; k = s_.presences[k].next) {
-    if (s_.presences[k].mover == mover) return true;
-  }
-  return false;
+bool RightOfWay::AreActive(std::uint32_t i, double zone, const KinematicState& next, const Braking& braking,
+                           const Passage& p, const Meeting& m) const noexcept {
+  const Rider& other = riders_[m.other];
+  const Now& its = s_.now[m.other];
+  const double off = riders_[i].off + other.off;
+  return IsActive(zone, off, next, braking, p) && IsActive(other.zone, off, its.next, its.braking, m.its);
 }
 
+bool RightOfWay::Keeps(const Braking& own, const Meeting& m, double required) const noexcept {
+  const Braking& its = s_.now[m.other].braking;
+  return m.ahead ? Holds(own, its, m.apart, required) : Holds(its, own, -m.apart, required);
+}
+
+// Whoever may be active with somebody.
 void RightOfWay::EnterNodes(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept {
   const Rider& r = riders_[i];
-  AlongNodes(r, braking.highest + r.gap + r.off + s_.off, [&](const Passage& p) {
-    if (!IsActive(r, next, braking, p) || IsAt(i, p.node)) return;
+  const double zone = std::max(r.zone, r.gap), off = r.off + s_.off;
+  AlongNodes(r, braking.highest + zone + off, [&](const Passage& p) {
+    if (!IsActive(zone, off, next, braking, p)) return;
+    for (std::uint32_t k = s_.heads[p.node]; k != kNobody; k = s_.presences[k].next) {
+      if (s_.presences[k].mover == i && s_.presences[k].passage == p) return;
+    }
     s_.presences[s_.presence_count] = {i, p, s_.heads[p.node]};
     s_.heads[p.node] = s_.presence_count++;
   });
@@ -199,17 +209,34 @@ bool RightOfWay::MayTake(std::uint32_t i, const KinematicState& next, const Brak
     if (!may) return false;
   }
   bool may = true;
-  AlongNodes(r, braking.highest + r.gap + r.off + s_.off, [&](const Passage& p) {
-    if (!may || !IsActive(r, next, braking, p)) return;
-    const bool anew = !IsAt(i, p.node);
+  const double off = r.off + s_.off;
+  AlongNodes(r, braking.highest + std::max(r.zone, r.gap) + off, [&](const Passage& p) {
+    if (!may || !IsActive(r.zone, off, next, braking, p)) return;
     MeetAt(i, p, [&](const Meeting& m) {
-      if (!may || !(anew || (m.ahead ? forward : back))) return;
-      const Braking& theirs = s_.now[m.other].braking;
-      // Who was not active has kept away by other means, and has to have all of it now.
+      if (!may || !AreActive(i, next, braking, p, m)) return;
+      const bool anew = !AreActive(i, now.next, now.braking, p, m);
+      if (!anew && !(m.ahead ? forward : back)) return;
+      // Two that were not active have kept away by other means, and have to have all of it now.
       double required = anew ? m.gap - kTolerance : Required(m.gap, std::abs(m.place));
-      const double furthest = m.ahead ? braking.highest : theirs.highest + m.apart;
+      const double furthest = m.ahead ? braking.highest : s_.now[m.other].braking.highest + m.apart;
       if (furthest > p.offset + kTolerance) required = std::max(required, m.split - kTolerance);
-      may = m.ahead ? Holds(braking, theirs, m.apart, required) : Holds(theirs, braking, -m.apart, required);
+      may = Keeps(braking, m, required);
+    });
+  });
+  return may;
+}
+
+bool RightOfWay::MayWiden(std::uint32_t i, double zone) const noexcept {
+  const Rider& r = riders_[i];
+  const Now& now = s_.now[i];
+  bool may = true;
+  AlongNodes(r, now.braking.highest + zone + r.off + s_.off, [&](const Passage& p) {
+    if (!may) return;
+    MeetAt(i, p, [&](const Meeting& m) {
+      const bool anew = AreActive(i, zone, now.next, now.braking, p, m) && !AreActive(i, now.next, now.braking, p, m);
+      if (!may || !anew) return;
+      const double furthest = m.ahead ? now.braking.highest : s_.now[m.other].braking.highest + m.apart;
+      may = Keeps(now.braking, m, (furthest > p.offset + kTolerance ? std::max(m.gap, m.split) : m.gap) - kTolerance);
     });
   });
   return may;
@@ -239,9 +266,9 @@ std::uint32_t RightOfWay::TooNear(std::uint32_t i) const noexcept {
     if (!riders_[k].on || k == i || FindLeader(k, 1, offset) != i) continue;
     look(k, -offset, false, gap(k));
   }
-  AlongNodes(r, now.braking.highest + r.gap + r.off + s_.off, [&](const Passage& p) {
-    if (!IsActive(r, now.next, now.braking, p)) return;
+  AlongNodes(r, now.braking.highest + std::max(r.zone, r.gap) + r.off + s_.off, [&](const Passage& p) {
     MeetAt(i, p, [&](const Meeting& m) {
+      if (!AreActive(i, now.next, now.braking, p, m)) return;
       const double furthest = m.ahead ? now.braking.highest : s_.now[m.other].braking.highest + m.apart;
       look(m.other, m.apart, m.ahead, furthest > p.offset + kTolerance ? std::max(m.gap, m.split) : m.gap);
     });

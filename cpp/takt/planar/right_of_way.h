@@ -15,7 +15,7 @@
 
 namespace takt::planar {
 
-// Nodes within its gap beyond either end of what a mover knows of its way; there is room for so many.
+// Nodes within its zone beyond either end of what a mover knows of its way; there is room for so many.
 inline constexpr std::size_t kBeyond = 24;
 
 // What is worked out of a mover in each cycle. Places are those on the track where it is when the cycle begins.
@@ -35,6 +35,8 @@ struct Passage {
   // The tracks before and behind it; kNoTrack: it does not come from there, or not go there.
   std::uint32_t from = kNoTrack;
   std::uint32_t to = kNoTrack;
+
+  bool operator==(const Passage&) const = default;
 };
 // A mover that is active at a node.
 struct Presence {
@@ -64,6 +66,7 @@ struct Meeting {
   double apart = 0;    // from the other's places to own ones
   double place = 0;    // of the other from here, now
   bool ahead = false;  // it is further on
+  Passage its;         // the other's way through the node
   double gap = 0;      // what they have to be apart; 0: their order along the way sees to it
   double split = 0;    // and if the one behind cannot stop before the node any more
 };
@@ -84,6 +87,16 @@ class RightOfWay {
   bool MayTake(std::uint32_t i, const KinematicState& next, const Braking& braking) const noexcept;
   // Who would come too near to this one if from here on all braked; kNobody: nobody.
   std::uint32_t TooNear(std::uint32_t i) const noexcept;
+  // Whether it may be active so far around nodes: whoever it would have to do with there is far enough away.
+  bool MayWiden(std::uint32_t i, double zone) const noexcept;
+  // Whether one with such a step is active at a node. `off`: how far it and the other may be off their places.
+  bool IsActive(double zone, double off, const KinematicState& next, const Braking& braking,
+                const Passage& p) const noexcept;
+  // Whether both are active at a node: this one with such a step on such a passage, and the other as it is taken to go.
+  bool AreActive(std::uint32_t i, const KinematicState& next, const Braking& braking, const Passage& p,
+                 const Meeting& m) const noexcept {
+    return AreActive(i, riders_[i].zone, next, braking, p, m);
+  }
   // It takes it.
   void Take(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept;
 
@@ -105,8 +118,8 @@ class RightOfWay {
     }
   }
 
-  // Calls `look` for the nodes on the way, and those beyond what is known of it that are no further than the gap: there
-  // it meets others that are on no track of it.
+  // Calls `look` for the nodes on the way, and those beyond what is known of it that are no further than its zone:
+  // there it meets others that are on no track of it.
   template <typename Look>
   void AlongNodes(const Rider& r, double reach, const Look& look) const {
     const Road& here = network_[r.route.first()];
@@ -121,7 +134,8 @@ class RightOfWay {
       if (network_[track].end_node != kNoNode) look(Passage{network_[track].end_node, offset, track, next});
       if (offset > reach) break;
     }
-    if (offset <= reach) Beyond(r.route.last(), offset, r.gap, true, look);
+    const double near = std::max(r.zone, r.gap) + r.off + s_.off;
+    if (offset <= reach) Beyond(r.route.last(), offset, near, true, look);
     offset = 0;
     for (std::uint32_t k = 0; k < r.passed_count; ++k) {
       const std::uint32_t track = r.passed[k];
@@ -129,16 +143,14 @@ class RightOfWay {
       offset -= network_[track].length;
       if (network_[track].start_node != kNoNode) look(Passage{network_[track].start_node, offset, before, track});
     }
-    if (offset > -r.gap)
-      Beyond(r.passed_count > 0 ? r.passed[r.passed_count - 1] : r.route.first(), offset, r.gap, false, look);
+    if (offset > -near)
+      Beyond(r.passed_count > 0 ? r.passed[r.passed_count - 1] : r.route.first(), offset, near, false, look);
   }
 
   double RangeBefore(const Passage& p) const { return p.from != kNoTrack ? network_[p.from].range_at_end : 0; }
   double RangeBehind(const Passage& p) const { return p.to != kNoTrack ? network_[p.to].range_at_start : 0; }
 
-  bool IsAt(std::uint32_t mover, std::uint32_t node) const noexcept;
-
-  // Calls `look` for those at a node with whom this mover has to do there.
+  // Calls `look` for those near a node with whom this mover has to do there if both are active.
   template <typename Look>
   void MeetAt(std::uint32_t i, const Passage& own, const Look& look) const {
     const Rider& r = riders_[i];
@@ -147,7 +159,7 @@ class RightOfWay {
       const Passage& its = s_.presences[k].passage;
       if (other == i) continue;
       const Rider& o = riders_[other];
-      Meeting m{.other = other, .apart = own.offset - its.offset};
+      Meeting m{.other = other, .apart = own.offset - its.offset, .its = its};
       m.place = o.at.position + m.apart - r.at.position;
       m.ahead = m.place > 0 || (m.place == 0 && other > i);
       const bool in_order = IsOnRoute(r, o, m.apart) || IsOnRoute(o, r, -m.apart);
@@ -204,7 +216,10 @@ class RightOfWay {
   }
   void TakeToBrake(std::uint32_t i) noexcept;
   void Sort() noexcept;
-  bool IsActive(const Rider& r, const KinematicState& next, const Braking& braking, const Passage& p) const noexcept;
+  bool AreActive(std::uint32_t i, double zone, const KinematicState& next, const Braking& braking, const Passage& p,
+                 const Meeting& m) const noexcept;
+  // Whether two keep so far apart if both brake.
+  bool Keeps(const Braking& own, const Meeting& m, double required) const noexcept;
   void EnterNodes(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept;
   // The other is on this one's way as far as the places of both differ by `apart`.
   bool IsOnRoute(const Rider& r, const Rider& other, double apart) const noexcept;

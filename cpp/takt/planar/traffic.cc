@@ -49,6 +49,10 @@ class Traffic::Step_ {
       if (r.on && r.aim != Aim::kTarget && r.at.velocity != 0) r.direction = r.at.velocity < 0 ? -1 : 1;
     }
     w_.Begin();
+    for (std::uint32_t i = 0; i < riders_.size(); ++i) {
+      Rider& r = riders_[i];
+      if (r.on && (r.gap < r.zone || (r.gap > r.zone && w_.MayWiden(i, r.gap)))) r.zone = r.gap;
+    }
     // Those in front first: who follows sees what the one before it does in this cycle.
     for (std::uint32_t i = 0; i < riders_.size(); ++i) SettleInOrder(i);
     for (std::uint32_t i = 0; i < riders_.size(); ++i) {

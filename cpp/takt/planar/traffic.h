@@ -8,18 +8,21 @@
 //
 // Which pairs can meet: neighbours on a track, a mover and the first one on the rest of its route, and around a place
 // where tracks meet (a node) all those that are active there. A mover is active at a node if a place that it passes
-// before it rests is nearer to the node than its gap, or than the collision range of the track there. Around a node the
-// distance is that of their ways to it. Two on different tracks there keep more than the gap where they could touch
-// else, side by side on tracks of different length (LeadAtStart in network.h). So two that a node is between or beside
-// never touch, however they are turned, if their gap is enough for that where one follows the other.
+// before it rests is nearer to the node than its zone, or than the collision range of the track there. The zone is its
+// gap; one that is told to keep a larger gap gets it as its zone once all with whom it gets active by that are far
+// enough away. Around a node the distance is that of their ways to it. Two on different tracks there keep more than the
+// gap where they could touch else, side by side on tracks of different length (LeadAtStart in network.h). So two that a
+// node is between or beside never touch, however they are turned, if their gap is enough for that where one follows the
+// other.
 //
 // Each mover alone has one as well: if from now on it brakes with its greatest dynamics, its speed stays within its
 // maximum, and in curves its lateral acceleration within its limit. So both are kept in every cycle, whatever command
 // comes, and when: where from the state it is in the commanded dynamics do not keep them, the greatest are used until
 // they do. They are used, too, to take away an acceleration that would make it faster than commanded.
 //
-// A mover may be off its place (Rider::off), as set points from outside have it: every gap to it, and every range, is
-// as much larger. Whoever gets onto a track, or further off its place, has to ask before (TooNear).
+// A mover may be off its place (Rider::off), as set points from outside have it: every gap to it is as much
+// larger, and so are zones and ranges around nodes between it and each other. Whoever gets onto a track, or further off
+// its place, has to ask before (TooNear).
 //
 // How a mover follows another is not part of that: its speed falls with the way left to where the one before it could
 // stop, in a way that does not swing (following.h). It keeps a little more than the invariant asks for.

@@ -129,7 +129,7 @@ Rider& Streets::Put(std::uint32_t mover, std::uint32_t track, double s, const Pa
   r.pace = pace;
   r.brakes = pace.brakes();
   r.top_speed = pace.limits.velocity;
-  r.gap = gap;
+  r.gap = r.zone = gap;
   return r;
 }
 

@@ -279,6 +279,35 @@ TEST(Traffic, StopsWhereTheRangeBegins) {  // PL-24
   }
 }
 
+// Side by side before the ranges of two tracks that join: neither counts there yet. A larger gap, or somebody off his
+// place elsewhere, does not bring both into the ranges as they are.
+TEST(Traffic, NobodyGetsSideBySideIntoAJoinByBeingTold) {  // PL-13, PL-24
+  Layout below{{testing::Line({0, 0}, {1000, 0}), testing::Line({1300, 200}, {1600, 200})}};
+  Layout above{{testing::Line({0, 400}, {1000, 400}), testing::Line({1300, 200}, {1600, 200})}};
+  Layout on{{testing::Line({1600, 200}, {3000, 200})}};
+  const Pace pace = testing::PaceOf(1000, 8000, 200000);
+  for (const bool gap : {true, false}) {
+    Streets streets({below, above, on}, 3);
+    for (const std::uint32_t k : {0U, 1U}) {
+      streets.Put(k, k, streets.track(k).length - streets.network()[k].range_at_end - 0.5, pace, 150);
+    }
+    if (gap) {
+      streets[0].gap = streets[1].gap = 700;
+    } else {
+      streets.Put(2, 2, 1390, pace, 150).off = 60;
+      EXPECT_EQ(streets.TooNear(2), kNobody);
+    }
+    double nearest = INFINITY;
+    streets.watch = [&] { nearest = std::min(nearest, streets.Nearest()); };
+    streets.Send(0, 2, 1100);
+    streets.Send(1, 2, 350);
+    ASSERT_TRUE(streets.Run(10)) << gap;
+    EXPECT_GT(nearest, 0) << gap;
+    EXPECT_DOUBLE_EQ(streets[0].at.position, 1100);
+    EXPECT_DOUBLE_EQ(streets[1].at.position, 350);
+  }
+}
+
 // Two bends side by side, that end or start together; the outer one is 157 mm longer.
 struct Bends {
   explicit Bends(bool end) {
@@ -550,8 +579,8 @@ TEST_P(CityProperty, NobodyComesTooNear) {  // PL-23, PL-24
     if (i % 5 == 0) nearest = std::min(nearest, streets.Nearest());
     EXPECT_GT(nearest, 0) << i;
   }
-  EXPECT_GT(travelled, cycles);    // mm; else it would prove nothing
-  EXPECT_LT(refused, cycles / 5);  // dynamics, gaps and places beside the track change from one cycle to the next
+  EXPECT_GT(travelled, 0.5 * cycles);  // mm; else it would prove nothing
+  EXPECT_LT(refused, cycles / 5);      // dynamics, gaps and places beside the track change from one cycle to the next
   EXPECT_LE(watcher.acceleration, 1 + 1e-6);
   EXPECT_LE(watcher.jerk, 1 + 1e-6);
   EXPECT_LE(watcher.speed, 1 + 1e-8);
