@@ -41,7 +41,7 @@ PICTURES: dict[str, tuple[str, bool, str, float, str]] = {
         }""",
     ),
     "view_plan": ("pick_cell", False, "tab=plan", 12.0, ""),
-    "view_movers": ("planar_line", True, "tab=plan", 200.0, ""),
+    "view_movers": ("planar_line", True, "tab=plan", 50.0, ""),
     "view_machine": ("pick_cell", True, "tab=machine", 12.0, ""),
     "view_cams": ("flying_saw", False, "tab=cams", 9.3, ""),
 }
