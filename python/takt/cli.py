@@ -200,8 +200,10 @@ def demo(
         _say(f"report: {written.html}")
         if page is not None and stays:
             page.stay()
+        else:
+            _say("its journal runs again ...")
 
-    result = run_demo(scenario, of, report, _say, pace, page or nothing, judged, journal=not stays)
+    result = run_demo(scenario, of, report, _say, pace, page or nothing, judged, stays)
     if result.replayed is not None:
         _show_figures({"journal": result.replayed.sentence})
     return 0 if result.passed else FAILED

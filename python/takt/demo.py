@@ -59,19 +59,19 @@ def run_demo(
     pace: str = "real",
     beside: Beside = nothing,
     judged: Judged = lambda *_: None,
-    journal: bool = True,
+    stays: bool = False,
 ) -> DemoResult:
-    """Starts taktd on the machine and lcm-logger beside it, runs the scenario through a connection, ends lcm-logger,
-    judges what it wrote, and ends taktd. Everything is kept in `directory`. `beside`: what else runs meanwhile, on the
-    network with this URL. `judged` hears the verdicts and the engine's figures; until it returns, the engine runs.
-    Without `journal` the engine keeps none: the only file that grows on and on with it."""
+    """Starts taktd on the machine and lcm-logger beside it, runs the scenario through a connection, ends both, and
+    judges what lcm-logger wrote. Everything is kept in `directory`. `beside`: what else runs meanwhile, on the network
+    with this URL. `judged` hears the verdicts and the engine's figures. When `stays`, the engine runs on until `judged`
+    returns; it keeps no journal then, which would grow on and on with it."""
     _core.load_machine(*read_machine(machine))  # says what is wrong with it
     directory.mkdir(parents=True, exist_ok=True)
     log, kept = directory / "lcm-logger.log", directory / "taktd.log"
     for old in (log, kept):
         old.unlink(missing_ok=True)
     url = free_url()
-    with taktd(machine, url, kept if journal else None, pace, directory) as engine, beside(url):
+    with taktd(machine, url, None if stays else kept, pace, directory) as engine, beside(url):
         with _logger(url, log):
             say(f"taktd runs {machine} ({pace} time), lcm-logger records {url}")
             with _connected(url, engine, directory / "taktd.txt") as session:
@@ -83,6 +83,8 @@ def run_demo(
                 session.run(1.5 / _rate(session.machine["lcm"]["engine_rate_hz"]))  # the last figures count everything
                 figures = session.figures
             _written(log, url)
+        if not stays:
+            _end(engine, directory / "taktd.txt")
         recording = read_log(log)
         say(f"{log.name} read back: {len(recording.components)} components, {recording.duration_s:.1f} s")
         marks = [event for event in notes.recording.events if event.kind == "mark"]
@@ -90,10 +92,9 @@ def run_demo(
         outcome = verify_recording(scenario, recording)
         recording.save(directory / "recording.npz")
         judged(outcome, figures)
-        engine.send_signal(signal.SIGINT)
-        if engine.wait(20):
-            raise TaktError(f"taktd ended with {engine.returncode}: see {directory / 'taktd.txt'}")
-    return DemoResult(outcome, figures, replay(kept) if journal else None, log)
+        if stays:
+            _end(engine, directory / "taktd.txt")
+    return DemoResult(outcome, figures, None if stays else replay(kept), log)
 
 
 def _connected(url: str, engine: subprocess.Popen[bytes], text: Path, timeout: float = 15.0) -> RemoteSession:
@@ -108,6 +109,13 @@ def _connected(url: str, engine: subprocess.Popen[bytes], text: Path, timeout: f
                 raise TaktError(f"taktd does not start: {said}") from None
             if time.monotonic() > end:
                 raise
+
+
+def _end(engine: subprocess.Popen[bytes], text: Path) -> None:
+    """In order, or says where it says why not."""
+    engine.send_signal(signal.SIGINT)
+    if engine.wait(20):
+        raise TaktError(f"taktd ended with {engine.returncode}: see {text}")
 
 
 def _rate(hz: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import signal
 import subprocess
 import sys
@@ -21,7 +22,7 @@ from takt.scenario import load_scenario
 
 NAMES = [one.name for one in ready_machines()]
 STAYS = "stay until Ctrl-C"
-SHORT = '''
+SHORT = """
 TAKES_S = 1
 VIEW = {"signals": ["x.set_position"]}
 
@@ -32,7 +33,7 @@ def scenario(session):
 
 def verify(recording):
     assert recording["x"]["set_position"][-1] == 50, "x did not get there"
-'''
+"""
 
 
 @pytest.fixture(scope="module")
@@ -98,9 +99,7 @@ def test_the_ready_machines_are_listed(capsys: pytest.CaptureFixture[str], monke
 @pytest.mark.parametrize(
     ("given", "nearest"), [("pickcell", "pick_cell"), ("saw", "flying_saw"), ("qqq", ", ".join(NAMES))]
 )
-def test_an_unknown_name_is_told_the_nearest_ones(
-    given: str, nearest: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_unknown_name_is_told_the_nearest_ones(given: str, nearest: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["demo", given]) == 2
     said = capsys.readouterr()
     assert said.out == ""
@@ -182,7 +181,7 @@ def test_a_demo_with_the_page(tmp_path: Path, browser: Browser) -> None:
         }"""
         states, places = page.evaluate(script, "state"), page.evaluate(script, "set_position")
         codes = page.evaluate("() => window.takt.model.field(window.takt.model.components[0], 'state').names")
-        seen = [codes[str(int(a))] for a, b in zip(states, states[1:], strict=False) if a != b]
+        seen = [codes[str(int(a))] for a, b in itertools.pairwise(states) if a != b]
         assert seen[:4] == ["Disabled", "Standstill", "Homing", "Standstill"]
         assert places[0] == 0
         assert max(places) == pytest.approx(550, abs=1e-6)

@@ -276,9 +276,7 @@ def _files(directory: str) -> Any:
 
 
 @contextlib.contextmanager
-def serving(
-    url: str, folder: Path | None = None, port: int = 0, drawn: threading.Event | None = None
-) -> Iterator[str]:
+def serving(url: str, folder: Path | None = None, port: int = 0, drawn: threading.Event | None = None) -> Iterator[str]:
     """The page of the engine on this network, on a thread of its own. Yields its address. `drawn` is set as soon as
     somebody's page has drawn something of the engine."""
     site = Site(Feed(url, folder), drawn or threading.Event())
