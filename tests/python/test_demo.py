@@ -96,6 +96,12 @@ def test_the_ready_machines_are_listed(capsys: pytest.CaptureFixture[str], monke
         assert rows[one.name].endswith(f" {one.takes_s:.0f} s ")
 
 
+def test_the_readme_lists_them_as_they_introduce_themselves() -> None:
+    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    for one in ready_machines():
+        assert f"| `{one.name}` | {one.sentence} | {one.takes_s:.0f} s |" in readme
+
+
 @pytest.mark.parametrize(
     ("given", "nearest"), [("pickcell", "pick_cell"), ("saw", "flying_saw"), ("qqq", ", ".join(NAMES))]
 )
