@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import os
 import signal
 import subprocess
 import sys
@@ -50,7 +51,12 @@ class Demo:
     def __init__(self, *arguments: str | Path) -> None:
         command = [sys.executable, "-m", "takt", "demo", *map(str, arguments)]
         self.process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
         )
         self.said = ""
 
@@ -62,6 +68,11 @@ class Demo:
             if text in line:
                 return line
         pytest.fail(f"the demo ended without a word of {text!r}: {self.said}")
+
+    def interrupt(self) -> int:
+        """As Ctrl-C on a terminal: all that it has started hears it, too."""
+        os.killpg(self.process.pid, signal.SIGINT)
+        return self.ended()
 
     def ended(self) -> int:
         rest, _ = self.process.communicate(timeout=60)
@@ -76,8 +87,7 @@ def demo(*arguments: str | Path) -> Iterator[Demo]:
         yield running
     finally:
         if running.process.poll() is None:
-            running.process.send_signal(signal.SIGINT)
-            running.ended()
+            running.interrupt()
 
 
 # --- which there are ---
@@ -198,8 +208,7 @@ def test_a_demo_with_the_page(tmp_path: Path, browser: Browser) -> None:
         page.click("#details-commands button:text-is('On')")
         expect(row.locator(".state")).to_have_text("Standstill", timeout=PATIENCE_S * 1000)
         page.close()
-        running.process.send_signal(signal.SIGINT)
-        assert running.ended() == 0
+        assert running.interrupt() == 0
     assert "journal" not in running.said
     assert takt.Recording.load(tmp_path / "recording.npz")["x"]["state"][-1] == 0
 
@@ -225,6 +234,5 @@ def test_a_verdict_is_the_exit_code_however_long_the_page_stays(tmp_path: Path) 
     with demo(tmp_path / "there.py", *arguments) as running:
         with Client(running.until("the live page: ").split()[3].partition("#")[0]):
             running.until(STAYS)
-        running.process.send_signal(signal.SIGINT)
-        assert running.ended() == 1
+        assert running.interrupt() == 1
     assert "x did not get there (there.py:" in running.said
