@@ -21,6 +21,10 @@ endforeach()
 file(CREATE_LINK "${PROJECT_SOURCE_DIR}/spec" "${package}/spec" SYMBOLIC)
 install(DIRECTORY spec/ DESTINATION takt/spec COMPONENT python)
 
+# The ready machines of `takt demo`.
+file(CREATE_LINK "${PROJECT_SOURCE_DIR}/python/examples" "${package}/examples" SYMBOLIC)
+install(DIRECTORY python/examples/ DESTINATION takt/examples COMPONENT python PATTERN __pycache__ EXCLUDE)
+
 set_target_properties(_core PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${package}")
 install(TARGETS _core LIBRARY DESTINATION takt COMPONENT python)
 

@@ -40,8 +40,15 @@ PICTURES: dict[str, tuple[str, bool, str, float, str]] = {
             scope.b = scope.held.to - 2750;
         }""",
     ),
+    "view_one_axis": (
+        "one_axis",
+        False,
+        "tab=scope&signals=x.set_position,x.actual_position,x.set_velocity,x.set_acceleration,x.state",
+        12.8,
+        "",
+    ),
     "view_plan": ("pick_cell", False, "tab=plan", 12.0, ""),
-    "view_movers": ("planar_line", True, "tab=plan", 200.0, ""),
+    "view_movers": ("planar_line", True, "tab=plan", 50.0, ""),
     "view_machine": ("pick_cell", True, "tab=machine", 12.0, ""),
     "view_cams": ("flying_saw", False, "tab=cams", 9.3, ""),
 }

@@ -155,35 +155,57 @@ def run(file: Path, machine: Path | None, url: str | None, report: Path | None) 
 
 
 @cli.command()
-@click.argument("file", type=FILE)
+@click.argument("what", required=False, metavar="[NAME | FILE]")
 @click.option("--machine", type=FILE, help="The machine [machine.yaml beside FILE].")
 @click.option("--report", type=FILE, default=Path("reports/demo"), show_default=True, help="Where everything goes.")
 @click.option("--pace", type=click.Choice(["real", "paced"]), default="real", show_default=True, help="Of taktd.")
 @click.option("--view", is_flag=True, help="Open the live page beside it (takt view).")
-def demo(file: Path, machine: Path | None, report: Path, pace: str, view: bool) -> int:
-    """Run a scenario FILE on a taktd of its own, in real time over LCM; verify what lcm-logger recorded; report."""
-    from takt.demo import run_demo
+@click.option("--port", default=0, type=click.IntRange(0, 65535), help="Of the page [any].")
+@click.option("--browser/--no-browser", default=True, help="Open the page in the browser.")
+@click.option("--stay/--no-stay", default=None, help="Keep engine and page until Ctrl-C [on a terminal].")
+def demo(
+    what: str | None,
+    machine: Path | None,
+    report: Path,
+    pace: str,
+    view: bool,
+    port: int,
+    browser: bool,
+    stay: bool | None,
+) -> int:
+    """Run a ready machine by its NAME, or a scenario FILE, on a taktd of its own, in real time over LCM; verify what
+    lcm-logger recorded; report. Without NAME: list the ready machines."""
+    from takt.ready import EXAMPLES, listing, scenario_of
+
+    if what is None:
+        out.print(listing())
+        _say(f"\nOne to begin with: takt demo one_axis --view\nThe files of all: {EXAMPLES}")
+        return 0
+
+    from takt.demo import nothing, run_demo
     from takt.report import write_report
+    from takt.view.command import Beside
 
-    scenario = load_scenario(file)
+    scenario = load_scenario(scenario_of(what))
     of = machine or scenario.machine
-    if view:
-        from takt.view.command import beside
+    page = Beside(of.parent, scenario.view, port, browser, _say) if view else None
+    stays = page is not None and (sys.stdin.isatty() if stay is None else stay)
 
-        result = run_demo(scenario, of, report, print, pace, lambda url: beside(url, of.parent, print))
-    else:
-        result = run_demo(scenario, of, report, print, pace)
-    _show(result.outcome)
-    timing = _timing(result.figures)
-    table = Table(box=None, show_header=False)
-    for name, value in timing.items():
-        table.add_row(name, str(value))
-    table.add_row("journal", result.replayed.sentence)
-    out.print(table)
-    outcome = result.outcome
-    drawn = scenario.draw(outcome.recording) if outcome.passed else {}
-    page = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": timing}, drawn)
-    print(f"report: {page.html}")
+    def judged(outcome: Outcome, figures: Mapping[str, Any]) -> None:
+        _show(outcome)
+        timing = _timing(figures)
+        _show_figures(timing)
+        drawn = scenario.draw(outcome.recording) if outcome.passed else {}
+        written = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": timing}, drawn)
+        _say(f"report: {written.html}")
+        if page is not None and stays:
+            page.stay()
+        else:
+            _say("its journal runs again ...")
+
+    result = run_demo(scenario, of, report, _say, pace, page or nothing, judged, stays)
+    if result.replayed is not None:
+        _show_figures({"journal": result.replayed.sentence})
     return 0 if result.passed else FAILED
 
 
@@ -197,7 +219,7 @@ def view(what: str | None, port: int, browser: bool, pace: str) -> int:
     one of an LCM network [the usual one]."""
     from takt.view import command
 
-    return command.run(what, port, browser, pace, lambda sentence: print(sentence, flush=True))
+    return command.run(what, port, browser, pace, _say)
 
 
 @cli.command()
@@ -375,6 +397,11 @@ def bench(machine: Path | None, axes: int, cycles: int) -> None:
 # --- what they share ---
 
 
+def _say(sentence: str) -> None:
+    """At once, whoever reads it."""
+    print(sentence, flush=True)
+
+
 def _read(file: Path) -> Recording:
     """A recording, or an LCM log as one."""
     if file.suffix == ".npz":
@@ -403,6 +430,13 @@ def _show(outcome: Outcome) -> None:
     passed = sum(verdict.passed for verdict in outcome.verdicts)
     failed = len(outcome.verdicts) - passed + bool(outcome.complaint)
     print(f"{passed} passed, {failed} failed; {outcome.recording.duration_s:.3f} s of engine time")
+
+
+def _show_figures(rows: Mapping[str, str]) -> None:
+    table = Table(box=None, show_header=False)
+    for name, value in rows.items():
+        table.add_row(name, value)
+    out.print(table)
 
 
 def _timing(figures: Mapping[str, Any]) -> dict[str, str]:

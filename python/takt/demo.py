@@ -26,9 +26,11 @@ from takt.scenario import Outcome, Scenario, verify_recording
 
 Say = Callable[[str], None]
 Beside = Callable[[str], contextlib.AbstractContextManager[Any]]
+Judged = Callable[["Outcome", dict[str, Any]], None]
 
-STILL_S = 0.5  # without anything new in the log: lcm-logger has written all
-LAGGING_S = 30.0  # that it may take for that
+AGAIN_S = 0.05  # from one look at the log to the next
+LAGGING_S = 30.0  # that lcm-logger may be behind
+ENDED_AT_ONCE = 130  # what taktd returns after a second signal
 
 
 def nothing(_: str) -> contextlib.AbstractContextManager[None]:
@@ -38,50 +40,62 @@ def nothing(_: str) -> contextlib.AbstractContextManager[None]:
 @dataclass(frozen=True)
 class DemoResult:
     """What became of it: the verdicts on the log, the engine's own figures, and whether its journal runs again bit for
-    bit."""
+    bit; None: none was kept."""
 
     outcome: Outcome
     figures: dict[str, Any]
-    replayed: ReplayResult
+    replayed: ReplayResult | None
     log: Path
 
     @property
     def passed(self) -> bool:
-        return self.outcome.passed and self.replayed.same
+        return self.outcome.passed and (self.replayed is None or self.replayed.same)
 
 
 def run_demo(
-    scenario: Scenario, machine: Path, directory: Path, say: Say = print, pace: str = "real", beside: Beside = nothing
+    scenario: Scenario,
+    machine: Path,
+    directory: Path,
+    say: Say = print,
+    pace: str = "real",
+    beside: Beside = nothing,
+    judged: Judged = lambda *_: None,
+    stays: bool = False,
 ) -> DemoResult:
     """Starts taktd on the machine and lcm-logger beside it, runs the scenario through a connection, ends both, and
     judges what lcm-logger wrote. Everything is kept in `directory`. `beside`: what else runs meanwhile, on the network
-    with this URL."""
+    with this URL. `judged` hears the verdicts and the engine's figures. When `stays`, the engine runs on until `judged`
+    returns; it keeps no journal then, which would grow on and on with it."""
     _core.load_machine(*read_machine(machine))  # says what is wrong with it
     directory.mkdir(parents=True, exist_ok=True)
-    log, journal = directory / "lcm-logger.log", directory / "taktd.log"
-    for old in (log, journal):
+    log, kept = directory / "lcm-logger.log", directory / "taktd.log"
+    for old in (log, kept):
         old.unlink(missing_ok=True)
     url = free_url()
-    with taktd(machine, url, journal, pace, directory) as engine, _logger(url, log), beside(url):
-        say(f"taktd runs {machine} ({pace} time), lcm-logger records {url}")
-        with _connected(url, engine, directory / "taktd.txt") as session:
-            started = time.monotonic()
-            with session.record(every=1000) as notes:  # for its marks, which do not travel over LCM
-                scenario.play(session)
-            say(f"scenario done: {session.now:.1f} s of engine time in {time.monotonic() - started:.1f} s")
-            session.run(1.5 / _rate(session.machine["lcm"]["engine_rate_hz"]))  # the last figures count everything
-            figures = session.figures
-        engine.send_signal(signal.SIGINT)
-        if engine.wait(20):
-            raise TaktError(f"taktd ended with {engine.returncode}: see {directory / 'taktd.txt'}")
-        _written(log)
-    recording = read_log(log)
-    say(f"{log.name} read back: {len(recording.components)} components, {recording.duration_s:.1f} s")
-    marks = [event for event in notes.recording.events if event.kind == "mark"]
-    recording.events = sorted([*recording.events, *marks], key=lambda event: event.time_s)
-    outcome = verify_recording(scenario, recording)
-    recording.save(directory / "recording.npz")
-    return DemoResult(outcome, figures, replay(journal), log)
+    with taktd(machine, url, None if stays else kept, pace, directory) as engine, beside(url):
+        with _logger(url, log):
+            say(f"taktd runs {machine} ({pace} time), lcm-logger records {url}")
+            with _connected(url, engine, directory / "taktd.txt") as session:
+                started, began = time.monotonic(), session.now
+                with session.record(every=1000) as notes:  # for its marks, which do not travel over LCM
+                    scenario.play(session)
+                took, seconds = session.now - began, time.monotonic() - started
+                say(f"scenario done: {took:.1f} s of engine time in {seconds:.1f} s")
+                session.run(1.5 / _rate(session.machine["lcm"]["engine_rate_hz"]))  # the last figures count everything
+                figures = session.figures
+            _written(log, url)
+        if not stays:
+            _end(engine, directory / "taktd.txt")
+        recording = read_log(log)
+        say(f"{log.name} read back: {len(recording.components)} components, {recording.duration_s:.1f} s")
+        marks = [event for event in notes.recording.events if event.kind == "mark"]
+        recording.events = sorted([*recording.events, *marks], key=lambda event: event.time_s)
+        outcome = verify_recording(scenario, recording)
+        recording.save(directory / "recording.npz")
+        judged(outcome, figures)
+        if stays:
+            _end(engine, directory / "taktd.txt", also=ENDED_AT_ONCE)  # the Ctrl-C that ends the stay reaches it, too
+    return DemoResult(outcome, figures, None if stays else replay(kept), log)
 
 
 def _connected(url: str, engine: subprocess.Popen[bytes], text: Path, timeout: float = 15.0) -> RemoteSession:
@@ -96,6 +110,13 @@ def _connected(url: str, engine: subprocess.Popen[bytes], text: Path, timeout: f
                 raise TaktError(f"taktd does not start: {said}") from None
             if time.monotonic() > end:
                 raise
+
+
+def _end(engine: subprocess.Popen[bytes], text: Path, also: int = 0) -> None:
+    """In order, or says where it says why not."""
+    engine.send_signal(signal.SIGINT)
+    if engine.wait(20) not in (0, also):
+        raise TaktError(f"taktd ended with {engine.returncode}: see {text}")
 
 
 def _rate(hz: float) -> float:
@@ -143,14 +164,19 @@ def _logger(url: str, log: Path) -> Iterator[None]:
         yield
 
 
-def _written(log: Path) -> None:
-    """Until lcm-logger is through with what it has heard: on a busy machine it is seconds behind, and what it has not
-    written when it is ended is lost."""
-    size, since, end = -1, time.monotonic(), time.monotonic() + LAGGING_S
-    while time.monotonic() < min(since + STILL_S, end):
-        time.sleep(0.05)
-        if log.stat().st_size != size:
-            size, since = log.stat().st_size, time.monotonic()
+def _written(log: Path, url: str) -> None:
+    """Until lcm-logger is through with what it has heard so far: on a busy machine it is seconds behind, and what it
+    has not written when it is ended is lost. So it is told something, again and again, until that is in the log."""
+    network, channel = open_network(url), f"takt-demo/{random.getrandbits(64):016x}"
+    end, seen = time.monotonic() + LAGGING_S, 0
+    while time.monotonic() < end:
+        network.publish(channel, b"")
+        time.sleep(AGAIN_S)
+        with log.open("rb") as file:
+            file.seek(max(0, seen - len(channel)))
+            if channel.encode() in file.read():
+                return
+            seen = file.tell()
 
 
 @contextlib.contextmanager

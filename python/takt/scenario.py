@@ -1,5 +1,7 @@
 """Scenario files: a module with `scenario(session)`, what to do, and `verify(recording)`, what must then be true of it.
-`pictures(recording)` may draw more for the report: Matplotlib's figures by their names.
+`pictures(recording)` may draw more for the report: Matplotlib's figures by their names. Constants say the rest:
+EVERY, how many cycles lie between two samples of the recording [1]; TAKES_S, about how many seconds of engine time it
+takes; VIEW, what the live page shows of it at first, as {"tab": "scope", "signals": ["x.set_position"]}.
 
 They run unchanged in virtual time and on a running engine. The machine is the one the command line names, or
 machine.yaml beside the file.
@@ -16,7 +18,9 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
+from urllib.parse import urlencode
 
 from takt import expect
 from takt.errors import TaktError
@@ -40,6 +44,8 @@ class Scenario:
     verify: Callable[[Recording], object] | None
     pictures: Callable[[Recording], Mapping[str, Figure]] | None = None
     every: int = 1  # cycles from one recorded sample to the next: EVERY in the file
+    takes_s: float | None = None  # TAKES_S in the file
+    view: str = ""  # VIEW in the file, as it stands behind the # of the live page's address
 
     @property
     def machine(self) -> Path:
@@ -79,6 +85,7 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     if spec is None or spec.loader is None:
         raise ScenarioError(f"{file}: is no Python file")
     module = importlib.util.module_from_spec(spec)
+    _forget_others(file.resolve().parent)
     sys.path.insert(0, str(file.resolve().parent))
     try:
         with _no_exit(file):
@@ -104,8 +111,35 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     every: Any = getattr(module, "EVERY", 1)
     if not isinstance(every, int) or every < 1:
         raise ScenarioError(f"{file}: EVERY must be a whole number of cycles from 1 on, found {every!r}")
+    takes_s: Any = getattr(module, "TAKES_S", None)
+    if takes_s is not None and (not isinstance(takes_s, (int, float)) or not 0 < takes_s < float("inf")):
+        raise ScenarioError(f"{file}: TAKES_S must be a number of seconds above 0, found {takes_s!r}")
     lines = (module.__doc__ or "").strip().splitlines()
-    return Scenario(file, lines[0].rstrip(".") if lines else file.stem, scenario, verify, pictures, every)
+    title = lines[0].rstrip(".") if lines else file.stem
+    return Scenario(file, title, scenario, verify, pictures, every, takes_s, _address(file, module))
+
+
+def _address(file: Path, module: ModuleType) -> str:
+    """VIEW of a scenario file, for the live page."""
+    match getattr(module, "VIEW", {}):
+        case dict() as view if view.keys() <= {"tab", "signals"}:
+            tab, signals = view.get("tab", ""), view.get("signals", ())
+            if isinstance(tab, str) and isinstance(signals, (list, tuple)) and all(isinstance(s, str) for s in signals):
+                chosen = {"tab": tab, "signals": ",".join(signals)}
+                return urlencode({key: text for key, text in chosen.items() if text}, safe=",")
+    raise ScenarioError(f'{file}: VIEW must be like {{"tab": "scope", "signals": ["x.set_position"]}}')
+
+
+_folders: set[Path] = set()  # of scenarios that were loaded
+
+
+def _forget_others(folder: Path) -> None:
+    """Modules that lie beside scenarios of other folders: another `judge` beside this one would be taken for them."""
+    for name, module in list(sys.modules.items()):
+        place = getattr(module, "__file__", None)
+        if place and Path(place).parent in _folders - {folder}:
+            del sys.modules[name]
+    _folders.add(folder)
 
 
 def run_scenario(scenario: Scenario, session: Session, directory: Path | None = None) -> Outcome:

@@ -23,6 +23,23 @@ def prefix(tmp_path_factory):
     return prefix
 
 
+def test_ready_machines_are_delivered(prefix, tmp_path):
+    """They need no checkout: listed, and one of them run, with files that lie beside its scenario."""
+    listed = {line.split()[0] for line in run(prefix, "takt", "demo").splitlines() if line.strip()}
+    examples = {folder.parent.name for folder in (ROOT / "python" / "examples").glob("*/scenario.py")}
+    assert len(examples) >= 5
+    assert examples <= listed
+    (package,) = prefix.glob("lib/python*/site-packages/takt/examples")
+    run(prefix, "takt", "check", *package.glob("*/machine.yaml"))
+    said = run(prefix, "takt", "demo", "one_axis", "--pace", "paced", "--report", tmp_path / "report")
+    assert str(package / "one_axis") in said
+    assert "0 failed" in said
+    assert "bit for bit" in said
+    for name in examples:  # judge.py and the like are found beside them
+        load = "import sys, takt.scenario, takt.ready; takt.scenario.load_scenario(takt.ready.scenario_of(sys.argv[1]))"
+        run(prefix, "python", "-c", load, name)
+
+
 def run(prefix: Path, program: str, *arguments: str | Path) -> str:
     environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
     command = [prefix / "bin" / program, *arguments]

@@ -49,6 +49,7 @@ def test_the_demo_in_virtual_time() -> None:
         outcome = run_scenario(scenario, session)
     assert outcome.passed, [outcome.complaint, *(v.sentence for v in outcome.verdicts if not v.passed)]
     assert len(outcome.verdicts) == 15
+    assert outcome.recording.duration_s == pytest.approx(scenario.takes_s, rel=0.1)
 
 
 def test_the_demo_on_taktd(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 import takt
 from takt.demo import run_demo
 from takt.scenario import load_scenario, run_scenario
@@ -17,6 +18,7 @@ def test_in_virtual_time() -> None:
         outcome = run_scenario(scenario, session)
     assert outcome.passed, [v.sentence for v in outcome.verdicts if not v.passed]
     assert len(outcome.verdicts) >= 20
+    assert outcome.recording.duration_s == pytest.approx(scenario.takes_s, rel=0.1)
 
 
 def test_on_taktd(tmp_path: Path) -> None:

@@ -26,6 +26,7 @@ def in_process() -> Outcome:
 def test_in_virtual_time(in_process: Outcome) -> None:
     assert in_process.passed, [v.sentence for v in in_process.verdicts if not v.passed]
     assert len(in_process.verdicts) >= 20
+    assert in_process.recording.duration_s == pytest.approx(load_scenario(SCENARIO).takes_s, rel=0.1)
 
 
 def test_twice_the_same(in_process: Outcome) -> None:

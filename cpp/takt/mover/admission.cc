@@ -79,7 +79,8 @@ void Apply(const Context& c, Ticket ticket, const Command& command, State& s) no
   if (IsBuffered(command)) {
     ErrorId why = WhyNotBuffered(command, s);
     if (why == ErrorId::kNone && !Push(ticket, command, s.buffer)) why = ErrorId::kBufferFull;
-    if (why != ErrorId::kNone) Report(c, ticket, FeedbackState::kError, why, 0, s);
+    const bool waits = why == ErrorId::kNone;
+    Report(c, ticket, waits ? FeedbackState::kBusy : FeedbackState::kError, why, 0, s);  // at once: clients wait for it
     return;
   }
   if (!Begin(c, ticket, command, s)) return;

@@ -4,7 +4,7 @@
 
 takt path python/examples/delta_cell/drawing.gcode --plot drawing.png    the drawing as it is in the file
 takt run python/examples/delta_cell/scenario.py       in process, in virtual time
-takt demo python/examples/delta_cell/scenario.py      on taktd in real time, over LCM
+takt demo delta_cell                                  on taktd in real time, over LCM
 """
 
 from pathlib import Path
@@ -13,6 +13,9 @@ import takt
 from matplotlib.figure import Figure
 from takt import expect, toolpath
 from takt.toolpath_picture import Followed, followed_picture
+
+TAKES_S = 25
+VIEW = {"tab": "plan", "signals": ["robot.velocity", "robot.path_error", "arm_1.set_velocity", "robot.state"]}
 
 SHEET = -800.0  # mm: Z of the sheet
 LIFT = 4.0  # mm above the sheet: where the drawing starts

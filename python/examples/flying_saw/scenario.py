@@ -1,12 +1,20 @@
 """A flying saw cuts a moving web at its print marks, changes to another length at full speed, and is stopped at once.
 
 takt run python/examples/flying_saw/scenario.py       in process, in virtual time
-takt demo python/examples/flying_saw/scenario.py      on taktd in real time, over LCM
+takt demo flying_saw                                  on taktd in real time, over LCM
 """
 
 import numpy as np
 import takt
 from takt import expect
+
+TAKES_S = 17
+VIEW = {
+    "tab": "scope",
+    "signals": (
+        "web.set_velocity saw.set_velocity saw.set_position saw.following_error cutter.state cutter.cam_synchronised"
+    ).split(),
+}
 
 SPEED = 500.0  # mm/s of the web
 FIRST_MARK = 190.0  # mm of the web at the sensor when the first mark passes it ...

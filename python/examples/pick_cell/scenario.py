@@ -4,7 +4,7 @@ Products come at random, both belts change their speeds, one path is interrupted
 is measured against where everything really was (cell.py), not against set points.
 
 takt run python/examples/pick_cell/scenario.py       in process, in virtual time
-takt demo python/examples/pick_cell/scenario.py      on taktd in real time, over LCM
+takt demo pick_cell                                  on taktd in real time, over LCM
 """
 
 from pathlib import Path
@@ -18,6 +18,9 @@ from matplotlib.figure import Figure
 from picker import Picker
 from pictures import picture
 from takt import expect
+
+TAKES_S = 41
+VIEW = {"tab": "plan", "signals": ["robot.z", "robot.velocity", "infeed.velocity", "outfeed.velocity", "robot.state"]}
 
 SETTINGS = Settings()
 SECONDS = 40.0

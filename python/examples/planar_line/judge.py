@@ -54,11 +54,18 @@ def judge(recording: Recording) -> Judgement:
     at_all = recording.column(movers[0], "time_s")
     inside = (at_all >= begin) & (at_all <= end)
     time = at_all[inside]
+    cycles = recording.column(movers[0], "cycle")[inside]
+    # Of each mover where it was then, and what it had said last: over LCM each has cycles of its own.
+    said = {name: np.searchsorted(recording.column(name, "cycle"), cycles, "right") - 1 for name in movers}
 
     def all_of(signal: str) -> Array:
-        return np.array([recording.column(name, signal)[inside] for name in movers], dtype=np.float64)
+        return np.array([recording.column(name, signal)[said[name]] for name in movers], dtype=np.float64)
 
-    x, y, track, along = all_of("x"), all_of("y"), all_of("track"), all_of("track_position")
+    def then(signal: str) -> Array:
+        columns = [(recording.column(name, "time_s"), recording.column(name, signal)) for name in movers]
+        return np.array([np.interp(time, *column) for column in columns])
+
+    x, y, track, along = then("x"), then("y"), all_of("track"), all_of("track_position")
     codes = {name: code for code, name in recording.names(movers[0], "delay").items()}
     delay = all_of("delay")
     level, speed = all_of("coordinate_system"), all_of("track_velocity")

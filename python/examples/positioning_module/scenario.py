@@ -1,11 +1,17 @@
 """A positioning module finds its references, measures an edge, runs coupled, stops at once and comes back.
 
 takt run python/examples/positioning_module/scenario.py       in process, in virtual time
-takt demo python/examples/positioning_module/scenario.py      on taktd in real time, over LCM
+takt demo positioning_module                                  on taktd in real time, over LCM
 """
 
 import takt
 from takt import expect
+
+TAKES_S = 7
+VIEW = {
+    "tab": "scope",
+    "signals": [f"{axis}.actual_position" for axis in "xyzabc"] + [f"{axis}.state" for axis in "xyzabc"],
+}
 
 READY = "all axes have their reference"
 

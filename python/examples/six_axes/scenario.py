@@ -1,11 +1,20 @@
 """Six axes with different units and drives: moves, a blended path, an abort, a halt, a SW limit and the way back.
 
 takt run python/examples/six_axes/scenario.py           in process, in virtual time
-takt demo python/examples/six_axes/scenario.py          on taktd in real time, over LCM
+takt demo six_axes                                      on taktd in real time, over LCM
 """
 
 import takt
 from takt import expect
+
+TAKES_S = 7
+VIEW = {
+    "tab": "scope",
+    "signals": (
+        "x.set_position y.set_position z.set_position a.set_position x.set_velocity y.set_velocity c.set_velocity "
+        "a.state c.state y.state"
+    ).split(),
+}
 
 
 def scenario(session: takt.Session) -> None:

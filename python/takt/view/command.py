@@ -10,6 +10,7 @@ import tempfile
 import threading
 import webbrowser
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from takt import _core
@@ -19,12 +20,12 @@ from takt.network import DEFAULT_URL
 from takt.view.server import serving
 
 LOOK_S = 0.2  # from one look at the engine's process to the next
+OPENS_S = 15.0  # that a browser may take to open the page, before the scenario begins without it
 
 
 def run(what: str | None, port: int, browser: bool, pace: str, say: Callable[[str], None]) -> int:
     """Shows the engine of a network (its URL, or nothing for the usual one), or one of its own for a machine file."""
-    for ending in (signal.SIGINT, signal.SIGTERM):  # either ends the engine in order, too
-        signal.signal(ending, signal.default_int_handler)
+    _end_in_order()
     if what is None or "://" in what:
         url = what or os.environ.get("LCM_DEFAULT_URL") or DEFAULT_URL
         with serving(url, None, port) as address:
@@ -41,13 +42,41 @@ def run(what: str | None, port: int, browser: bool, pace: str, say: Callable[[st
         return _until_it_ends(engine, directory / "taktd.txt", say)
 
 
-@contextlib.contextmanager
-def beside(url: str, folder: Path, say: Callable[[str], None]) -> Iterator[None]:
-    """The page of an engine that somebody else runs."""
-    with serving(url, folder) as address:
-        say(f"the live page: {address}")
-        webbrowser.open(address)
-        yield
+@dataclass(frozen=True)
+class Beside:
+    """The page of an engine that somebody else runs: a context for as long as that is, given the engine's network. It
+    begins when the page has drawn something, or when that takes too long."""
+
+    folder: Path  # where files are that the machine names
+    shows: str  # what the page shows at first, as in its address
+    port: int  # 0: any
+    browser: bool
+    say: Callable[[str], None]
+
+    @contextlib.contextmanager
+    def __call__(self, url: str) -> Iterator[None]:
+        _end_in_order()
+        drawn = threading.Event()
+        with serving(url, self.folder, self.port, drawn) as address:
+            address += f"#{self.shows}" if self.shows else ""
+            self.say(f"the live page: {address} (the scenario begins as soon as it is open)")
+            if self.browser:
+                webbrowser.open(address)
+            if not drawn.wait(OPENS_S):
+                self.say(f"no page was opened within {OPENS_S:g} s: the scenario begins without one")
+            yield
+
+    def stay(self) -> None:
+        """Until Ctrl-C."""
+        self.say("the engine and its page stay until Ctrl-C")
+        with contextlib.suppress(KeyboardInterrupt):
+            threading.Event().wait()
+
+
+def _end_in_order() -> None:
+    """Whichever signal ends this process, what it has started is ended too."""
+    for ending in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(ending, signal.default_int_handler)
 
 
 def _show(address: str, what: str, browser: bool, say: Callable[[str], None]) -> None:

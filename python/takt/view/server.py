@@ -47,7 +47,8 @@ HEADERS = [
 class Page:
     """One page that is open."""
 
-    def __init__(self, socket: WebSocket, feed: Feed) -> None:
+    def __init__(self, socket: WebSocket, feed: Feed, drawn: threading.Event) -> None:
+        self._drawn = drawn  # set as soon as it has drawn something of an engine
         self._wanted: dict[int, tuple[str, ...]] = {}
         self.ready = asyncio.Event()
         self._socket = socket
@@ -83,6 +84,7 @@ class Page:
     def _take(self, request: Request) -> None:
         if request.ack is not None:
             self._acked = min(max(self._acked, request.ack), self._sent)
+            self._drawn.set()
         now = time.monotonic()
         if self._commander is not None and self._epoch == self._feed.epoch:
             if request.command is not None:
@@ -190,8 +192,9 @@ class Page:
 class Site:
     """The page, its files and its socket."""
 
-    def __init__(self, feed: Feed) -> None:
+    def __init__(self, feed: Feed, drawn: threading.Event) -> None:
         self.feed = feed
+        self.drawn = drawn
         self.pages: set[Page] = set()
         root = resources.files("takt")
         self.app = Starlette(
@@ -242,7 +245,7 @@ class Site:
             await socket.close(1008)
             return
         await socket.accept()
-        page = Page(socket, self.feed)
+        page = Page(socket, self.feed, self.drawn)
         self.pages.add(page)
         tasks = [asyncio.create_task(page.listen()), asyncio.create_task(page.tell())]
         try:
@@ -273,9 +276,10 @@ def _files(directory: str) -> Any:
 
 
 @contextlib.contextmanager
-def serving(url: str, folder: Path | None = None, port: int = 0) -> Iterator[str]:
-    """The page of the engine on this network, on a thread of its own. Yields its address."""
-    site = Site(Feed(url, folder))
+def serving(url: str, folder: Path | None = None, port: int = 0, drawn: threading.Event | None = None) -> Iterator[str]:
+    """The page of the engine on this network, on a thread of its own. Yields its address. `drawn` is set as soon as
+    somebody's page has drawn something of the engine."""
+    site = Site(Feed(url, folder), drawn or threading.Event())
     with socket.socket() as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

@@ -24,6 +24,10 @@ TEST(MoverBuffer, EachBeginsWhenTheOneBeforeIsDoneAndSaysHowLongItTook) {
   rig.Step();
   EXPECT_EQ(rig.Of(first).state, FeedbackState::kActive);
   EXPECT_EQ(rig.out.buffered, 2u);
+  for (const Ticket waits : {second, third}) {  // and both know that they were taken
+    EXPECT_EQ(rig.Of(waits).ticket, waits);
+    EXPECT_EQ(rig.Of(waits).state, FeedbackState::kBusy);
+  }
   rig.Finish(first);
   EXPECT_EQ(rig.out.x, 100);
   EXPECT_EQ(rig.out.z, 0);
