@@ -20,13 +20,14 @@ from takt import _core
 from takt.drive import WATCHDOG, simulate
 from takt.engine import Engine, read_machine
 from takt.errors import ConfigError, TaktError
-from takt.lcmlog import Progress as Report
+from takt.lcmlog import Progress as Share
 from takt.lcmlog import open_log, read_log
 from takt.recording import Recording, RecordingError
 from takt.remote import connect
 from takt.replay import replay as replay_log
-from takt.scenario import Outcome, load_scenario, run_scenario
+from takt.scenario import Outcome, load_scenario, run_scenario, verify_recording
 from takt.session import Session
+from takt.source import read_run
 
 BAD_INPUT = 2
 FAILED = 1
@@ -145,12 +146,10 @@ def run(file: Path, machine: Path | None, url: str | None, report: Path | None) 
         figures = session.figures
     _show(outcome)
     if report is not None:
-        from takt.report import write_report
+        from takt.report.command import write_outcome
 
         counts = {name: value for name, value in figures.items() if isinstance(value, (int, float))}
-        drawn = scenario.draw(outcome.recording) if outcome.passed else {}
-        page = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": counts}, drawn)
-        print(f"report: {page.html}")
+        print(f"report: {write_outcome(outcome, scenario, report, counts).html}")
     return 0 if outcome.passed else FAILED
 
 
@@ -163,7 +162,7 @@ def run(file: Path, machine: Path | None, url: str | None, report: Path | None) 
 def demo(file: Path, machine: Path | None, report: Path, pace: str, view: bool) -> int:
     """Run a scenario FILE on a taktd of its own, in real time over LCM; verify what lcm-logger recorded; report."""
     from takt.demo import run_demo
-    from takt.report import write_report
+    from takt.report.command import write_outcome
 
     scenario = load_scenario(file)
     of = machine or scenario.machine
@@ -180,11 +179,31 @@ def demo(file: Path, machine: Path | None, report: Path, pace: str, view: bool) 
         table.add_row(name, str(value))
     table.add_row("journal", result.replayed.sentence)
     out.print(table)
-    outcome = result.outcome
-    drawn = scenario.draw(outcome.recording) if outcome.passed else {}
-    page = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": timing}, drawn)
-    print(f"report: {page.html}")
+    print(f"report: {write_outcome(result.outcome, scenario, report, timing).html}")
     return 0 if result.passed else FAILED
+
+
+@cli.command("report")
+@click.argument("run", type=FILE)
+@click.option("-o", "--output", type=FILE, help="The page (.html) [report.html in the directory; RUN.html].")
+@click.option("--scenario", "judge", type=FILE, help="Judge it again with `verify` of this scenario.")
+def show_report(run: Path, output: Path | None, judge: Path | None) -> int:
+    """Write the report of a RUN, one HTML page with everything inside: of a recording (.npz), an LCM log, or the
+    directory that `takt run --report` or `takt demo` wrote. Exit code 1: what --scenario verifies has failed."""
+    from takt.report.command import judged, target_of, write_page
+
+    target = _writable(output or target_of(run), (".html",)) if run.exists() else Path()
+    recording = _read(run)
+    passed = True
+    if judge is not None:
+        scenario = load_scenario(judge)
+        outcome = verify_recording(scenario, recording)
+        _show(outcome)
+        recording, passed = judged(outcome, scenario), outcome.passed
+    if trouble := recording.meta.get("trouble"):
+        print(trouble)
+    print(f"report: {write_page(recording, run, target)}")
+    return 0 if passed else FAILED
 
 
 @cli.command()
@@ -376,11 +395,9 @@ def bench(machine: Path | None, axes: int, cycles: int) -> None:
 
 
 def _read(file: Path) -> Recording:
-    """A recording, or an LCM log as one."""
-    if file.suffix == ".npz":
-        return Recording.load(file)
+    """A recording, an LCM log as one, or what there is in a directory."""
     with _bar(f"read {file.name}") as progress:
-        return read_log(file, progress=progress)
+        return read_run(file, progress)
 
 
 def _writable(target: Path, suffixes: Sequence[str]) -> Path:
@@ -453,7 +470,7 @@ def _watching(session: Session, title: str) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _bar(title: str) -> Iterator[Report]:
+def _bar(title: str) -> Iterator[Share]:
     """A progress bar, on a terminal; what it yields takes the share that is done."""
     share = TextColumn("{task.percentage:3.0f} %")
     columns: Any = (TextColumn("{task.description}"), BarColumn(), share, TimeElapsedColumn())

@@ -72,6 +72,7 @@ class Engine(Session):
         self._unfinished: dict[int, Feedback] = {}
         self._unreleased: list[Feedback] = []  # their release was refused
         self._core_recorders: dict[Recorder, _core.Recorder] = {}
+        self._folder = str(Path(file_name).resolve().parent)
         super().__init__(json.loads(self._core.machine_json), text.decode())
 
     @property
@@ -217,7 +218,8 @@ class Engine(Session):
         for i, name in enumerate(recorder.components):
             rows = core.table(i)
             tables[name] = base | {f: rows[f] for f in fields_of_kind(self._components[name].KIND)}
-        return make_recording(self.machine, tables, recorder.events, {"source": "engine", "period_s": self.period})
+        meta = {"source": "engine", "period_s": self.period, "version": _core.__version__}
+        return make_recording(self.machine, tables, recorder.events, meta, self.machine_text, self._folder)
 
 
 def error_text(error_id: int) -> str:

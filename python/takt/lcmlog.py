@@ -29,6 +29,7 @@ from takt.tables import (
 )
 
 STATE_TYPES = tuple(kind.message for kind in KINDS.values())
+OBJECTS_S = 0.04  # from one look at what lies on belts to the next
 EVENT_HEADER = 28  # bytes of an event beside its channel and data
 MESSAGES: dict[str, Any] = {
     "takt/machine": msgs.machine_description,
@@ -55,6 +56,7 @@ class Run:
 
     machine: msgs.machine_description | msgs.journal_start | None = None
     states: dict[str, list[Any]] = field(default_factory=dict)  # of components, by name
+    objects: dict[str, list[msgs.belt_objects]] = field(default_factory=dict)  # what lay on belts, by their names
     engine_states: list[msgs.engine_state] = field(default_factory=list)
     commands: list[msgs.command] = field(default_factory=list)
     feedback: list[msgs.feedback] = field(default_factory=list)
@@ -72,7 +74,22 @@ class Log:
     runs: list[Run]
     messages: Counter[str]  # by channel
     malformed: Counter[str]  # by channel
-    damaged: bool = False  # some of the file is no event: it was torn off, or bytes were changed
+    left_over: int = 0  # bytes of the file that are no event: it was torn off, or bytes were changed
+
+    @property
+    def damaged(self) -> bool:
+        return self.left_over > 0
+
+    @property
+    def trouble(self) -> str:
+        """What is not whole, in a sentence; empty: nothing."""
+        said = []
+        if self.damaged:
+            share = f"{self.left_over:,} of {self.path.stat().st_size:,} bytes"
+            said.append(f"it ends in the middle of a message, or bytes of it were changed: {share} are left out")
+        if count := sum(self.malformed.values()):
+            said.append(f"{count} {'message' if count == 1 else 'messages'} could not be decoded")
+        return f"The log is not whole: {'; '.join(said)}." if said else ""
 
 
 def read_events(path: str | os.PathLike[str], progress: Progress | None = None) -> Iterator[tuple[int, str, bytes]]:
@@ -108,6 +125,8 @@ def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> 
         log.messages[channel] += 1
         component = kind_of_channel(channel)
         kind = component.message if component else MESSAGES.get(channel)
+        if channel.startswith("takt/belt_objects/"):
+            kind = msgs.belt_objects
         if kind is None:
             continue
         try:
@@ -116,7 +135,7 @@ def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> 
             log.malformed[channel] += 1
             continue
         _sort_in(log.runs, message)
-    log.damaged = size < log.path.stat().st_size
+    log.left_over = max(log.path.stat().st_size - size, 0)
     return log
 
 
@@ -133,6 +152,8 @@ def _sort_in(runs: list[Run], message: Any) -> None:
             run.machine = message  # which also has the name
     elif isinstance(message, STATE_TYPES):
         run.states.setdefault(message.name, []).append(message)
+    elif isinstance(message, msgs.belt_objects):
+        run.objects.setdefault(message.name, []).append(message)
     elif isinstance(message, msgs.engine_state):
         run.engine_states.append(message)
     elif isinstance(message, msgs.command):
@@ -179,9 +200,11 @@ def to_recording(log: Log, run: int = -1) -> Recording:
         "period_s": period,
         "version": one.machine.version,
         "losses": _losses(one),
+        "trouble": log.trouble,
+        "objects": {belt: _objects(messages, period) for belt, messages in one.objects.items()},
         "engine": _figures(one.engine_states[-1]) if one.engine_states else {},
     }
-    return make_recording(machine, tables, _events(one, period), meta)
+    return make_recording(machine, tables, _events(one, period), meta, one.machine.text)
 
 
 def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:
@@ -240,6 +263,26 @@ def _losses(run: Run) -> dict[str, int]:
         if lost:
             losses[channel] = lost
     return losses
+
+
+def _objects(messages: list[msgs.belt_objects], period: float) -> dict[str, Array]:
+    """What lay on a belt, some times a second: `time_s` (n,), from which of the rows on each time is told of, `first`
+    (n + 1,), and `rows` (m, 7): number, x, y, z, c in the world, taken, within the work range."""
+    kept: list[msgs.belt_objects] = []
+    for message in messages:
+        if is_possible(message, period) and (not kept or message.cycle - kept[-1].cycle >= OBJECTS_S / period):
+            kept.append(message)
+    rows = [[object_row(o) for o in message.objects if o.pose.x == o.pose.x] for message in kept]
+    return {
+        "time_s": np.array([message.cycle * period for message in kept]),
+        "first": np.cumsum([0, *map(len, rows)]),
+        "rows": np.array([row for some in rows for row in some], dtype=np.float64).reshape(-1, 7),
+    }
+
+
+def object_row(o: msgs.belt_object) -> list[float]:
+    """What pictures need of an object: number, x, y, z, c in the world, taken, within the work range."""
+    return [o.number, o.pose.x, o.pose.y, o.pose.z, o.pose.c, int(o.state == o.STATE_TAKEN), int(o.in_range)]
 
 
 def _figures(state: msgs.engine_state) -> dict[str, Any]:

@@ -378,7 +378,7 @@ class RemoteSession(Session):
             for name, messages in rows.items()
         }
         meta = {"source": self.url, "period_s": self.period, "losses": dict(self.losses)}
-        return make_recording(self.machine, tables, recorder.events, meta)
+        return make_recording(self.machine, tables, recorder.events, meta, self.machine_text)
 
     # --- health ---
 

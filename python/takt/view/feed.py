@@ -18,6 +18,7 @@ import numpy as np
 
 from takt import msgs
 from takt.errors import ConfigError
+from takt.lcmlog import object_row
 from takt.network import open_network
 from takt.remote import JUMP_S
 from takt.tables import fields_of
@@ -260,15 +261,7 @@ class Feed:
         message = _decoded(msgs.belt_objects, data)
         if message is not None:
             self.objects[message.name] = [
-                [
-                    o.number,
-                    o.pose.x,
-                    o.pose.y,
-                    o.pose.z,
-                    o.pose.c,
-                    int(o.state == msgs.belt_object.STATE_TAKEN),
-                    int(o.in_range),
-                ]
+                object_row(o)
                 for o in message.objects
                 if o.pose.x == o.pose.x  # it is known where it lies
             ]
