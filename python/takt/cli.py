@@ -297,6 +297,33 @@ def plot(
     print(plotting.save(figure, target))
 
 
+@cli.command()
+@click.argument("run", type=FILE)
+@click.argument("signals", nargs=-1)
+@click.option("--mcap", type=FILE, help="Write MCAP (.mcap), for Foxglove and its like.")
+@click.option("--csv", type=FILE, help="Write one wide table (.csv).")
+@click.option("--from", "start", type=float, help="s, where to begin.")
+@click.option("--to", "end", type=float, help="s, where to end.")
+def export(
+    run: Path, signals: tuple[str, ...], mcap: Path | None, csv: Path | None, start: float | None, end: float | None
+) -> None:
+    """Write SIGNALS (x, x.set_position, "*.following_error") [all] of a RUN for other tools: of a recording (.npz), an
+    LCM log, or the directory that `takt run --report` or `takt demo` wrote."""
+    from takt.export import part, to_mcap, words_on_rates
+
+    if mcap is None and csv is None:
+        raise click.UsageError("give --mcap FILE or --csv FILE, or both")
+    targets = [_writable(file, (suffix,)) for file, suffix in ((mcap, ".mcap"), (csv, ".csv")) if file is not None]
+    recording = part(_read(run), signals, start, end)
+    if trouble := recording.meta.get("trouble"):
+        print(trouble)
+    for target in targets:
+        if target is mcap:
+            print(f"{target}: {to_mcap(recording, target):,} messages of {len(recording)} components and of events")
+        else:
+            print(f"{recording.to_csv(target)}: {words_on_rates(recording)}")
+
+
 @cli.command("cam")
 @click.argument("file", type=FILE)
 @click.option("--name", help="Which cam of a machine file [all].")

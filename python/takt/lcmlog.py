@@ -16,6 +16,7 @@ import numpy as np
 from takt import _core, msgs
 from takt.arguments import without_arguments
 from takt.errors import TaktError
+from takt.lying import Lying, objects_of
 from takt.recording import Array, Recording
 from takt.tables import (
     KINDS,
@@ -29,7 +30,6 @@ from takt.tables import (
 )
 
 STATE_TYPES = tuple(kind.message for kind in KINDS.values())
-OBJECTS_S = 0.04  # from one look at what lies on belts to the next
 EVENT_HEADER = 28  # bytes of an event beside its channel and data
 MESSAGES: dict[str, Any] = {
     "takt/machine": msgs.machine_description,
@@ -56,7 +56,7 @@ class Run:
 
     machine: msgs.machine_description | msgs.journal_start | None = None
     states: dict[str, list[Any]] = field(default_factory=dict)  # of components, by name
-    objects: dict[str, list[msgs.belt_objects]] = field(default_factory=dict)  # what lay on belts, by their names
+    objects: list[msgs.belt_objects] = field(default_factory=list)
     engine_states: list[msgs.engine_state] = field(default_factory=list)
     commands: list[msgs.command] = field(default_factory=list)
     feedback: list[msgs.feedback] = field(default_factory=list)
@@ -153,7 +153,7 @@ def _sort_in(runs: list[Run], message: Any) -> None:
     elif isinstance(message, STATE_TYPES):
         run.states.setdefault(message.name, []).append(message)
     elif isinstance(message, msgs.belt_objects):
-        run.objects.setdefault(message.name, []).append(message)
+        run.objects.append(message)
     elif isinstance(message, msgs.engine_state):
         run.engine_states.append(message)
     elif isinstance(message, msgs.command):
@@ -201,7 +201,7 @@ def to_recording(log: Log, run: int = -1) -> Recording:
         "version": one.machine.version,
         "losses": _losses(one),
         "trouble": log.trouble,
-        "objects": {belt: _objects(messages, period) for belt, messages in one.objects.items()},
+        "objects": _lying(one, period).columns(),
         "engine": _figures(one.engine_states[-1]) if one.engine_states else {},
     }
     return make_recording(machine, tables, _events(one, period), meta, one.machine.text)
@@ -265,25 +265,19 @@ def _losses(run: Run) -> dict[str, int]:
     return losses
 
 
-def _objects(messages: list[msgs.belt_objects], period: float) -> dict[str, Array]:
-    """What lay on a belt, some times a second: `time_s` (n,), from which of the rows on each time is told of, `first`
-    (n + 1,), and `rows` (m, 7): number, x, y, z, c in the world, taken, within the work range."""
-    kept: list[msgs.belt_objects] = []
-    for message in messages:
-        if is_possible(message, period) and (not kept or message.cycle - kept[-1].cycle >= OBJECTS_S / period):
-            kept.append(message)
-    rows = [[object_row(o) for o in message.objects if o.pose.x == o.pose.x] for message in kept]
-    return {
-        "time_s": np.array([message.cycle * period for message in kept]),
-        "first": np.cumsum([0, *map(len, rows)]),
-        "rows": np.array([row for some in rows for row in some], dtype=np.float64).reshape(-1, 7),
-    }
-
-
-def object_row(o: msgs.belt_object) -> list[float]:
-    """What pictures need of an object: number, x, y, z, c in the world, taken, within the work range."""
-    return [o.number, o.pose.x, o.pose.y, o.pose.z, o.pose.c, int(o.state == o.STATE_TAKEN), int(o.in_range)]
+def _lying(run: Run, period: float) -> Lying:
+    lying = Lying()
+    for message in run.objects:
+        if is_possible(message, period):
+            lying.look(message.name, message.cycle * period, objects_of(message))
+    return lying
 
 
 def _figures(state: msgs.engine_state) -> dict[str, Any]:
-    return {name: value for name, value in fields_of(state).items() if isinstance(value, (int, float))}
+    unsaid = (
+        "run_id",
+        "state_hash",
+        "time_ns",
+        "period_s",
+    )  # they tell people nothing
+    return {f: v for f, v in fields_of(state).items() if isinstance(v, (int, float)) and f not in unsaid}

@@ -51,7 +51,7 @@ function showHead() {
   const pill = byId("pill");
   pill.className = `pill ${failed ? "bad" : all ? "good" : ""}`;
   pill.textContent = !all ? "no verdicts" : failed ? `${failed} of ${all} failed` : `all ${all} passed`;
-  const trouble = [data.trouble, all ? "" : "Nothing was judged: this recording holds no verdicts. takt report --scenario FILE judges it.", empty ? "Nothing was recorded: there is no sample in it." : ""].filter(Boolean);
+  const trouble = [data.trouble, empty ? "Nothing was recorded: there is no sample in it." : all ? "" : "Nothing was judged: there are no verdicts in it. takt report --scenario FILE judges it."].filter(Boolean);
   byId("trouble").hidden = !trouble.length;
   byId("trouble").textContent = trouble.join(" ");
 }
