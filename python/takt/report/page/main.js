@@ -95,7 +95,8 @@ clock.set(failure ? failure.place[0] : span[0]);
 function goTo(verdict) {
   const block = curves.choose(verdict);
   if (verdict.place) clock.set(verdict.place[0]);
-  (scene ? byId("scene-section") : block)?.scrollIntoView({ behavior: "smooth", block: "start" });
+  const behavior = matchMedia("(prefers-reduced-motion: reduce)").matches ? "auto" : "smooth";
+  (scene ? byId("scene-section") : block)?.scrollIntoView({ behavior, block: "start" });
 }
 
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
