@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from takt import plot
 from takt.recording import Array, Recording
 from takt.verdict import Bound, Interval, Lane, Trace, Verdict, seconds
 
@@ -76,7 +77,8 @@ def plain(value: Any) -> Any:
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:
     place = verdict.place or (None if verdict.when_s is None else (verdict.when_s, verdict.when_s))
-    view = _view(verdict.lanes, place)
+    drawn = any(len(trace.time_s) for lane in verdict.lanes for trace in lane.traces)
+    view = plot.around(place, verdict.lanes) if place and drawn else place
     return {
         "title": verdict.title,
         "components": list(verdict.components),
@@ -87,17 +89,6 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "view": plain(view),
         "lanes": [_lane(lane, view) for lane in verdict.lanes],
     }
-
-
-def _view(lanes: Sequence[Lane], place: Interval | None) -> Interval | None:
-    """The place with room at its sides."""
-    times = [t.time_s for lane in lanes for t in lane.traces if len(t.time_s)]
-    if place is None or not times:
-        return place
-    first, last = min(float(t[0]) for t in times), max(float(t[-1]) for t in times)
-    step = max((float(np.median(np.diff(t))) for t in times if len(t) > 1), default=0.0)
-    room = max(0.6 * (place[1] - place[0]), 0.015 * (last - first), 12.0 * step)
-    return max(place[0] - room, first), min(place[1] + room, last)
 
 
 def _lane(lane: Lane, view: Interval | None) -> dict[str, Any]:

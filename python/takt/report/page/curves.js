@@ -99,7 +99,7 @@ class Block {
     if (this.events.length) {
       const row = el("div", { className: "lane" });
       node.append(row);
-      this.curves.plots.add(row, { ...flat, height: MARKS, last: false, hooks: { drawClear: [this.background(null)], draw: [this.labels()] } });
+      this.curves.plots.add(row, { ...flat, height: MARKS, last: false, hooks: { drawAxes: [this.background(null)], draw: [this.labels()] } });
     }
     lanes.forEach((lane, i) => this.addLane(lane, !states.length && i === lanes.length - 1));
     if (!states.length) return;
@@ -109,7 +109,7 @@ class Block {
     const rows = states.map((f) => ({ times: table.time, values: table.values(f.name), names: f.names }));
     this.curves.plots.add(row, {
       ...flat, height: BAND * states.length,
-      hooks: { drawClear: [this.background(null)], draw: [bands(rows)] },
+      hooks: { drawAxes: [this.background(null)], draw: [bands(rows)] },
       show: (at) => rows.forEach(({ values, names }, i) => { outputs[i].textContent = at < 0 ? "" : names[values[at]]?.[0] ?? String(values[at]); }),
     });
     row.append(el("div", { className: "legend" }, ...states.map((f, i) => el("div", {}, el("span", { textContent: `${f.label}  ` }), outputs[i]))));
@@ -141,7 +141,7 @@ class Block {
         points: { show: false },
         ...(component.modulus && f.quantity === "position" ? { gaps: wraps(columns[i], component.modulus) } : {}),
       })),
-      hooks: { drawClear: [this.background(lane)] },
+      hooks: { drawAxes: [this.background(lane)] },
       last,
       show: (at) => outputs.forEach((out, i) => { out.textContent = at < 0 ? "" : digits(columns[i][at]); }),
     });

@@ -4,6 +4,7 @@ import { byId, css, el } from "../../view/page/dom.js";
 import { bands, digits, Plots, wraps } from "./plots.js";
 
 const HEIGHT = 210; // px of a lane
+const PLACE_PX = 10; // that a place is wide at least
 const SEVERAL = 12; // that passed; more are folded
 
 export class Verdicts {
@@ -97,7 +98,7 @@ export class Verdicts {
         ? { paths: () => null, points: { show: false } }
         : { label: trace.label, stroke: colour(i), width: 1.7, points: { show: false }, ...(trace.modulus ? { gaps: wraps(columns[i], trace.modulus) } : {}) })),
       hooks: {
-        drawClear: [background(verdict, bounds)],
+        drawAxes: [background(verdict, bounds)], // over the grid, which would hide limits at round values
         ...(states ? { draw: [bands(curves.map((c) => ({ times: c.times, values: c.values, names: lane.names })))] } : {}),
       },
       show: (at) => outputs.forEach((out, i) => {
@@ -161,7 +162,8 @@ function background(verdict, bounds) {
       const [a, b] = verdict.place.map((t) => u.valToPos(t, "x", true));
       ctx.fillStyle = verdict.passed ? css("--good") : css("--bad");
       ctx.globalAlpha = 0.16;
-      ctx.fillRect(a - 1, top, Math.max(b - a, 0) + 2, height);
+      const room = Math.max(1, (PLACE_PX * devicePixelRatio - (b - a)) / 2); // to be seen beside the line of the time
+      ctx.fillRect(a - room, top, b - a + 2 * room, height);
     }
     for (const { times, values, forbidden } of bounds) {
       const line = [...times].map((t, i) => [u.valToPos(t, "x", true), u.valToPos(values[i], "y", true)]);
