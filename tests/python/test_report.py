@@ -344,12 +344,14 @@ def test_too_long_runs_are_thinned_but_not_where_they_fail(monkeypatch: pytest.M
     size = sum(rec["x"][f].nbytes for f in rec.fields("x")[2:])
     monkeypatch.setattr(writing, "BYTES", size // 10)
     data, page = payload(report.render(rec, [verdict], "t"))
-    assert data["every"] > 2
+    every = int(re.findall(r"one sample of (\d+) is shown", data["thinned"])[0])
+    assert every > 2
+    assert f"{1 / DT / every:.3g} a second" in data["thinned"]
     times = decoded(data["bases"][0], data["bases"][0]["n"], page)
     recorded = rec["x"]["time_s"]
     view = data["verdicts"][0]["view"]
     inside = recorded[(recorded >= view[0]) & (recorded <= view[1])]
     np.testing.assert_array_equal(times[(times >= view[0]) & (times <= view[1])], inside)
-    assert set(recorded[:: data["every"]]) < set(times) < set(recorded)
-    assert len(times) < len(inside) + len(recorded) / data["every"] + 2
+    assert set(recorded[::every]) < set(times) < set(recorded)
+    assert len(times) < len(inside) + len(recorded) / every + 2
     assert data["summary"]["rows"][0][1] == str(len(rec["x"]))  # of all samples

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 
 from takt import plot, style
 from takt.checks.series import quantity, words
+from takt.export import rates
 from takt.recording import Array, Recording
 from takt.report.columns import Block
 from takt.report.inlined import asset, import_map
@@ -160,7 +161,18 @@ def _columns(recording: Recording, block: Block, whole: Sequence[Sequence[float]
                 "fields": [_field(recording, component, f, rows, block) for f in recording.fields(component)[2:]],
             }
         )
-    return {"bases": bases, "components": components, "every": every}
+    return {"bases": bases, "components": components, "thinned": _thinned(recording, every)}
+
+
+def _thinned(recording: Recording, every: int) -> str:
+    """What is not shown, in a sentence; empty: nothing."""
+    if every == 1:
+        return ""
+    rate = max(rates(recording).values()) / every
+    return (
+        f"This run is long: one sample of {every} is shown, {rate:.3g} a second, and all where something failed. "
+        "Verdicts and figures are of all samples."
+    )
 
 
 def _every(recording: Recording) -> int:

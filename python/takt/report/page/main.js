@@ -85,10 +85,8 @@ const scene = data.scene && !empty ? new Scene(data.scene, columns, recorded, cl
 const curves = new Curves(data, recorded, clock);
 byId("curves-section").hidden = !data.components.length;
 if (!empty) showPlayer(clock);
-if (data.every > 1) {
-  byId("thinned").hidden = false;
-  byId("thinned").textContent = `One sample of ${data.every} is shown, and all at the places of what failed. Verdicts and figures are of all samples.`;
-}
+byId("thinned").hidden = !data.thinned;
+byId("thinned").textContent = data.thinned;
 const failure = data.verdicts.find((verdict) => !verdict.passed && verdict.place);
 clock.set(failure ? failure.place[0] : span[0]);
 
