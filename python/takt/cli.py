@@ -309,19 +309,13 @@ def export(
 ) -> None:
     """Write SIGNALS (x, x.set_position, "*.following_error") [all] of a RUN for other tools: of a recording (.npz), an
     LCM log, or the directory that `takt run --report` or `takt demo` wrote."""
-    from takt.export import part, to_mcap, words_on_rates
+    from takt.export import write
 
-    if mcap is None and csv is None:
-        raise click.UsageError("give --mcap FILE or --csv FILE, or both")
     targets = [_writable(file, (suffix,)) for file, suffix in ((mcap, ".mcap"), (csv, ".csv")) if file is not None]
-    recording = part(_read(run), signals, start, end)
-    if trouble := recording.meta.get("trouble"):
-        print(trouble)
-    for target in targets:
-        if target is mcap:
-            print(f"{target}: {to_mcap(recording, target):,} messages of {len(recording)} components and of events")
-        else:
-            print(f"{recording.to_csv(target)}: {words_on_rates(recording)}")
+    if not targets:
+        raise click.UsageError("give --mcap FILE or --csv FILE, or both")
+    for sentence in write(_read(run), targets, signals, start, end):
+        print(sentence)
 
 
 @cli.command("cam")

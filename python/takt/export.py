@@ -39,6 +39,20 @@ class ExportError(TaktError):
     """Something cannot be written as wanted."""
 
 
+def write(
+    recording: Recording, targets: Sequence[Path], signals: Sequence[str], start: float | None, end: float | None
+) -> Iterator[str]:
+    """Writes the part that is asked for into files, by the ends of their names, and says what is in each."""
+    chosen = part(recording, signals, start, end)
+    if trouble := recording.meta.get("trouble"):
+        yield str(trouble)
+    for target in targets:
+        if target.suffix == ".mcap":
+            yield f"{target}: {to_mcap(chosen, target):,} messages of {len(chosen)} components and of events"
+        else:
+            yield f"{chosen.to_csv(target)}: {words_on_rates(chosen)}"
+
+
 def part(recording: Recording, signals: Sequence[str], start: float | None, end: float | None) -> Recording:
     """Only these signals, as `takt plot` names them, or all; only from `start` to `end`, s, where they are given."""
     chosen = recording.pick(plot.select(recording, signals)) if signals else recording
@@ -64,8 +78,8 @@ def words_on_rates(recording: Recording) -> str:
 
 def to_mcap(recording: Recording, path: Path) -> int:
     """Writes MCAP and says how many messages: a channel of JSON for each component, named like it, and one for the
-    events. Log times are engine time in ns. Units stand in the descriptions of the schemas; enumerations are texts,
-    numbers that are none are null. The machine file is attached. Needs the package mcap."""
+    events. Log times are engine time in ns. Units stand in the descriptions of the schemas; enumerations are texts;
+    what is no number is left out, as JSON does not know it. The machine file is attached. Needs the package mcap."""
     try:
         from mcap.writer import Writer
     except ImportError:
@@ -114,7 +128,7 @@ def _property(recording: Recording, name: str, field: str) -> dict[str, Any]:
     if column.dtype.kind == "b":
         return {"type": "boolean"}
     about = {"description": unit} if unit not in ("", "1") else {}
-    return {"type": "integer" if column.dtype.kind == "i" else ["number", "null"], **about}
+    return {"type": "integer" if column.dtype.kind == "i" else "number", **about}
 
 
 def _rows(recording: Recording, name: str) -> Iterator[bytes]:
@@ -124,7 +138,7 @@ def _rows(recording: Recording, name: str) -> Iterator[bytes]:
     ]
     for row in zip(*columns, strict=True):
         yield json.dumps(
-            {f: None if isinstance(v, float) and not math.isfinite(v) else v for f, v in zip(fields, row, strict=True)}
+            {f: v for f, v in zip(fields, row, strict=True) if not isinstance(v, float) or math.isfinite(v)}
         ).encode()
 
 
