@@ -1,4 +1,4 @@
-"""The pictures of the live page in docs/images: the examples on taktd, seen in a real browser.
+"""The pictures of the live page and of a report in docs/images: the examples, seen in a real browser.
 
 tools/page_pictures.py docs/images [NAME ...]
 """
@@ -14,7 +14,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from playwright.sync_api import Page, sync_playwright
+from takt import Engine, checks
 from takt.demo import free_url, taktd
+from takt.report import write_report
+from takt.scenario import load_scenario, run_scenario
 from takt.view.server import serving
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -51,6 +54,18 @@ PICTURES: dict[str, tuple[str, bool, str, float, str]] = {
     "view_movers": ("planar_line", True, "tab=plan", 50.0, ""),
     "view_machine": ("pick_cell", True, "tab=machine", 12.0, ""),
     "view_cams": ("flying_saw", False, "tab=cams", 9.3, ""),
+}
+
+# Of the report of a run that failed: dark, what is done on the page before the picture is taken.
+REPORTS: dict[str, tuple[bool, str]] = {
+    "report": (False, ""),
+    "report_above": (
+        True,
+        """() => {
+            document.getElementById("scene-section").scrollIntoView();
+            window.takt.clock.set(window.takt.clock.from + 15.3);
+        }""",
+    ),
 }
 
 
@@ -101,10 +116,34 @@ def take(name: str, target: Path) -> None:
         browser.close()
 
 
+def take_report(name: str, target: Path) -> None:
+    dark, before = REPORTS[name]
+    with tempfile.TemporaryDirectory() as directory, sync_playwright() as playwright:
+        report = failed(Path(directory))
+        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
+        page: Page = browser.new_page(viewport=SIZE, color_scheme="dark" if dark else "light")  # type: ignore[arg-type]
+        page.goto(report.as_uri())
+        page.wait_for_selector("body.ready", timeout=60_000)
+        if before:
+            page.evaluate(before)
+        page.wait_for_timeout(1000)
+        page.screenshot(path=str(target))
+        browser.close()
+
+
+def failed(directory: Path) -> Path:
+    """The report of the picking Delta, of which more is asked than it does."""
+    scenario = load_scenario(ROOT / "python" / "examples" / "pick_cell" / "scenario.py")
+    with Engine(scenario.machine) as engine:
+        outcome = run_scenario(scenario, engine)
+    verdict = checks.stays(outcome.recording, "|arm_2.following_error| < 0.1")
+    return write_report(outcome.recording, [verdict, *outcome.verdicts], directory, scenario.title).html
+
+
 def main() -> int:
     folder, *names = sys.argv[1:]
-    for name in names or PICTURES:
-        take(name, Path(folder) / f"{name}.png")
+    for name in names or [*PICTURES, *REPORTS]:
+        (take if name in PICTURES else take_report)(name, Path(folder) / f"{name}.png")
         print(Path(folder) / f"{name}.png")
     return 0
 

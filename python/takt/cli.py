@@ -20,13 +20,14 @@ from takt import _core
 from takt.drive import WATCHDOG, simulate
 from takt.engine import Engine, read_machine
 from takt.errors import ConfigError, TaktError
-from takt.lcmlog import Progress as Report
+from takt.lcmlog import Progress as Share
 from takt.lcmlog import open_log, read_log
 from takt.recording import Recording, RecordingError
 from takt.remote import connect
 from takt.replay import replay as replay_log
-from takt.scenario import Outcome, load_scenario, run_scenario
+from takt.scenario import Outcome, load_scenario, run_scenario, verify_recording
 from takt.session import Session
+from takt.source import read_run
 
 BAD_INPUT = 2
 FAILED = 1
@@ -145,12 +146,10 @@ def run(file: Path, machine: Path | None, url: str | None, report: Path | None) 
         figures = session.figures
     _show(outcome)
     if report is not None:
-        from takt.report import write_report
+        from takt.report.command import write_outcome
 
         counts = {name: value for name, value in figures.items() if isinstance(value, (int, float))}
-        drawn = scenario.draw(outcome.recording) if outcome.passed else {}
-        page = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": counts}, drawn)
-        print(f"report: {page.html}")
+        print(f"report: {write_outcome(outcome, scenario, report, counts).html}")
     return 0 if outcome.passed else FAILED
 
 
@@ -183,7 +182,7 @@ def demo(
         return 0
 
     from takt.demo import nothing, run_demo
-    from takt.report import write_report
+    from takt.report.command import write_outcome
     from takt.view.command import Beside
 
     scenario = load_scenario(scenario_of(what))
@@ -195,9 +194,7 @@ def demo(
         _show(outcome)
         timing = _timing(figures)
         _show_figures(timing)
-        drawn = scenario.draw(outcome.recording) if outcome.passed else {}
-        written = write_report(outcome.recording, outcome.verdicts, report, scenario.title, {"engine": timing}, drawn)
-        _say(f"report: {written.html}")
+        _say(f"report: {write_outcome(outcome, scenario, report, timing).html}")
         if page is not None and stays:
             page.stay()
         else:
@@ -207,6 +204,29 @@ def demo(
     if result.replayed is not None:
         _show_figures({"journal": result.replayed.sentence})
     return 0 if result.passed else FAILED
+
+
+@cli.command("report")
+@click.argument("run", type=FILE)
+@click.option("-o", "--output", type=FILE, help="The page (.html) [report.html in the directory; RUN.html].")
+@click.option("--scenario", "judge", type=FILE, help="Judge it again with `verify` of this scenario.")
+def show_report(run: Path, output: Path | None, judge: Path | None) -> int:
+    """Write the report of a RUN, one HTML page with everything inside: of a recording (.npz), an LCM log, or the
+    directory that `takt run --report` or `takt demo` wrote. Exit code 1: what --scenario verifies has failed."""
+    from takt.report.command import judged, target_of, write_page
+
+    target = _writable(output or target_of(run), (".html",)) if run.exists() else Path()
+    recording = _read(run)
+    passed = True
+    if judge is not None:
+        scenario = load_scenario(judge)
+        outcome = verify_recording(scenario, recording)
+        _show(outcome)
+        recording, passed = judged(outcome, scenario), outcome.passed
+    if trouble := recording.meta.get("trouble"):
+        print(trouble)
+    print(f"report: {write_page(recording, run, target)}")
+    return 0 if passed else FAILED
 
 
 @cli.command()
@@ -298,6 +318,27 @@ def plot(
         window = (recording.start_s if start is None else start, recording.end_s if end is None else end)
     figure = plotting.draw(recording, *signals, title=title or file.name, window=window)
     print(plotting.save(figure, target))
+
+
+@cli.command()
+@click.argument("run", type=FILE)
+@click.argument("signals", nargs=-1)
+@click.option("--mcap", type=FILE, help="Write MCAP (.mcap), for Foxglove and its like.")
+@click.option("--csv", type=FILE, help="Write one wide table (.csv).")
+@click.option("--from", "start", type=float, help="s, where to begin.")
+@click.option("--to", "end", type=float, help="s, where to end.")
+def export(
+    run: Path, signals: tuple[str, ...], mcap: Path | None, csv: Path | None, start: float | None, end: float | None
+) -> None:
+    """Write SIGNALS (x, x.set_position, "*.following_error") [all] of a RUN for other tools: of a recording (.npz), an
+    LCM log, or the directory that `takt run --report` or `takt demo` wrote."""
+    from takt.export import write
+
+    targets = [_writable(file, (suffix,)) for file, suffix in ((mcap, ".mcap"), (csv, ".csv")) if file is not None]
+    if not targets:
+        raise click.UsageError("give --mcap FILE or --csv FILE, or both")
+    for sentence in write(_read(run), targets, signals, start, end):
+        print(sentence)
 
 
 @cli.command("cam")
@@ -403,11 +444,9 @@ def _say(sentence: str) -> None:
 
 
 def _read(file: Path) -> Recording:
-    """A recording, or an LCM log as one."""
-    if file.suffix == ".npz":
-        return Recording.load(file)
+    """A recording, an LCM log as one, or what there is in a directory."""
     with _bar(f"read {file.name}") as progress:
-        return read_log(file, progress=progress)
+        return read_run(file, progress)
 
 
 def _writable(target: Path, suffixes: Sequence[str]) -> Path:
@@ -487,7 +526,7 @@ def _watching(session: Session, title: str) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _bar(title: str) -> Iterator[Report]:
+def _bar(title: str) -> Iterator[Share]:
     """A progress bar, on a terminal; what it yields takes the share that is done."""
     share = TextColumn("{task.percentage:3.0f} %")
     columns: Any = (TextColumn("{task.description}"), BarColumn(), share, TimeElapsedColumn())

@@ -23,6 +23,7 @@ from takt.network import open_network
 from takt.remote import RemoteSession, connect
 from takt.replay import ReplayResult, replay
 from takt.scenario import Outcome, Scenario, verify_recording
+from takt.source import IN_DIRECTORY
 
 Say = Callable[[str], None]
 Beside = Callable[[str], contextlib.AbstractContextManager[Any]]
@@ -91,7 +92,8 @@ def run_demo(
         marks = [event for event in notes.recording.events if event.kind == "mark"]
         recording.events = sorted([*recording.events, *marks], key=lambda event: event.time_s)
         outcome = verify_recording(scenario, recording)
-        recording.save(directory / "recording.npz")
+        recording.meta["machine_file"]["folder"] = str(machine.resolve().parent)
+        recording.save(directory / IN_DIRECTORY)
         judged(outcome, figures)
         if stays:
             _end(engine, directory / "taktd.txt", also=ENDED_AT_ONCE)  # the Ctrl-C that ends the stay reaches it, too

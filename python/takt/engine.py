@@ -21,6 +21,7 @@ from takt.component import Component
 from takt.errors import ConfigError, DriveWarning, seconds, whole
 from takt.feedback import Feedback
 from takt.forecast import Forecast
+from takt.lying import LOOK_S
 from takt.mover import Mover
 from takt.recording import Recording
 from takt.session import Recorder, Session
@@ -72,6 +73,7 @@ class Engine(Session):
         self._unfinished: dict[int, Feedback] = {}
         self._unreleased: list[Feedback] = []  # their release was refused
         self._core_recorders: dict[Recorder, _core.Recorder] = {}
+        self._folder = str(Path(file_name).resolve().parent)
         super().__init__(json.loads(self._core.machine_json), text.decode())
 
     @property
@@ -172,10 +174,16 @@ class Engine(Session):
             self._scan()
         if self._programs or self._unreleased:
             cycles = 1
+        if any(recorder.belts for recorder in self._recorders):
+            cycles = min(cycles, max(1, round(LOOK_S / self.period)))
         while not (made := self._core.step(min(cycles, CHUNK), until_feedback)):
             self._warn()  # external drives let it wait: time for a look at Ctrl-C, too
         self._warn()
         self._take_feedback()
+        for recorder in self._recorders:
+            for belt in recorder.belts:
+                if recorder.lying.is_due(belt, self.now):
+                    recorder.lying.look(belt, self.now, self._objects(self.belts[belt]))
         return made
 
     def _warn(self) -> None:
@@ -217,7 +225,9 @@ class Engine(Session):
         for i, name in enumerate(recorder.components):
             rows = core.table(i)
             tables[name] = base | {f: rows[f] for f in fields_of_kind(self._components[name].KIND)}
-        return make_recording(self.machine, tables, recorder.events, {"source": "engine", "period_s": self.period})
+        meta = {"source": "engine", "period_s": self.period, "version": _core.__version__}
+        meta |= {"objects": recorder.lying.columns()}
+        return make_recording(self.machine, tables, recorder.events, meta, self.machine_text, self._folder)
 
 
 def error_text(error_id: int) -> str:

@@ -16,6 +16,7 @@ import numpy as np
 from takt import _core, msgs
 from takt.arguments import without_arguments
 from takt.errors import TaktError
+from takt.lying import Lying, objects_of
 from takt.recording import Array, Recording
 from takt.tables import (
     KINDS,
@@ -55,6 +56,7 @@ class Run:
 
     machine: msgs.machine_description | msgs.journal_start | None = None
     states: dict[str, list[Any]] = field(default_factory=dict)  # of components, by name
+    objects: list[msgs.belt_objects] = field(default_factory=list)
     engine_states: list[msgs.engine_state] = field(default_factory=list)
     commands: list[msgs.command] = field(default_factory=list)
     feedback: list[msgs.feedback] = field(default_factory=list)
@@ -72,7 +74,22 @@ class Log:
     runs: list[Run]
     messages: Counter[str]  # by channel
     malformed: Counter[str]  # by channel
-    damaged: bool = False  # some of the file is no event: it was torn off, or bytes were changed
+    left_over: int = 0  # bytes of the file that are no event: it was torn off, or bytes were changed
+
+    @property
+    def damaged(self) -> bool:
+        return self.left_over > 0
+
+    @property
+    def trouble(self) -> str:
+        """What is not whole, in a sentence; empty: nothing."""
+        said = []
+        if self.damaged:
+            share = f"{self.left_over:,} of {self.path.stat().st_size:,} bytes"
+            said.append(f"it ends in the middle of a message, or bytes of it were changed: {share} are left out")
+        if count := sum(self.malformed.values()):
+            said.append(f"{count} {'message' if count == 1 else 'messages'} could not be decoded")
+        return f"The log is not whole: {'; '.join(said)}." if said else ""
 
 
 def read_events(path: str | os.PathLike[str], progress: Progress | None = None) -> Iterator[tuple[int, str, bytes]]:
@@ -108,6 +125,8 @@ def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> 
         log.messages[channel] += 1
         component = kind_of_channel(channel)
         kind = component.message if component else MESSAGES.get(channel)
+        if channel.startswith("takt/belt_objects/"):
+            kind = msgs.belt_objects
         if kind is None:
             continue
         try:
@@ -116,7 +135,7 @@ def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> 
             log.malformed[channel] += 1
             continue
         _sort_in(log.runs, message)
-    log.damaged = size < log.path.stat().st_size
+    log.left_over = max(log.path.stat().st_size - size, 0)
     return log
 
 
@@ -133,6 +152,8 @@ def _sort_in(runs: list[Run], message: Any) -> None:
             run.machine = message  # which also has the name
     elif isinstance(message, STATE_TYPES):
         run.states.setdefault(message.name, []).append(message)
+    elif isinstance(message, msgs.belt_objects):
+        run.objects.append(message)
     elif isinstance(message, msgs.engine_state):
         run.engine_states.append(message)
     elif isinstance(message, msgs.command):
@@ -179,9 +200,11 @@ def to_recording(log: Log, run: int = -1) -> Recording:
         "period_s": period,
         "version": one.machine.version,
         "losses": _losses(one),
+        "trouble": log.trouble,
+        "objects": _lying(one, period).columns(),
         "engine": _figures(one.engine_states[-1]) if one.engine_states else {},
     }
-    return make_recording(machine, tables, _events(one, period), meta)
+    return make_recording(machine, tables, _events(one, period), meta, one.machine.text)
 
 
 def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:
@@ -242,5 +265,19 @@ def _losses(run: Run) -> dict[str, int]:
     return losses
 
 
+def _lying(run: Run, period: float) -> Lying:
+    lying = Lying()
+    for message in run.objects:
+        if is_possible(message, period):
+            lying.look(message.name, message.cycle * period, objects_of(message))
+    return lying
+
+
 def _figures(state: msgs.engine_state) -> dict[str, Any]:
-    return {name: value for name, value in fields_of(state).items() if isinstance(value, (int, float))}
+    unsaid = (
+        "run_id",
+        "state_hash",
+        "time_ns",
+        "period_s",
+    )  # they tell people nothing
+    return {f: v for f, v in fields_of(state).items() if isinstance(v, (int, float)) and f not in unsaid}

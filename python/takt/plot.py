@@ -432,11 +432,16 @@ def _around(verdict: Verdict, lanes: Sequence[Lane], whole: Interval) -> Interva
     """What to magnify: the place with room at its sides; None where that is most of the picture anyway."""
     if verdict.passed or verdict.place is None or not lanes:
         return None
-    first, last = verdict.place
-    steps = [np.median(np.diff(t.time_s)) for lane in lanes for t in lane.traces if len(t.time_s) > 1]
-    room = max(0.6 * (last - first), 0.015 * (whole[1] - whole[0]), 12.0 * float(max(steps, default=0.0)))
-    view = (max(first - room, whole[0]), min(last + room, whole[1]))
+    view = around(verdict.place, lanes)
     return view if 0 < view[1] - view[0] < 0.6 * (whole[1] - whole[0]) else None
+
+
+def around(place: Interval, lanes: Sequence[Lane]) -> Interval:
+    """A place with room at its sides, as far as the curves go."""
+    whole = _span(lanes)
+    steps = [np.median(np.diff(t.time_s)) for lane in lanes for t in lane.traces if len(t.time_s) > 1]
+    room = max(0.6 * (place[1] - place[0]), 0.008 * (whole[1] - whole[0]), 12.0 * float(max(steps, default=0.0)))
+    return max(place[0] - room, whole[0]), min(place[1] + room, whole[1])
 
 
 # --- the look ---

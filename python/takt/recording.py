@@ -13,10 +13,12 @@ from __future__ import annotations
 
 import csv
 import difflib
+import hashlib
 import importlib
 import json
 import math
 import zipfile
+import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
@@ -32,6 +34,7 @@ FloatArray = npt.NDArray[np.float64]
 Names = Mapping[int, str] | Sequence[str]
 
 FORMAT_VERSION = 1
+ARRAY = "$array"  # in the header of a file, instead of an array of `meta`: its number
 UNKNOWN_NAME = -1  # an enumerated value that was not a number when it was recorded
 
 
@@ -80,7 +83,7 @@ class Recording:
         info: what else is known of a component. `modulus` (rotary axes) and `limits` (`position`: [lower,
             upper], `velocity`, `acceleration`, `jerk`) are used by the assertions; the rest is carried along.
         events: (time_s, component, text) or (time_s, component, text, kind).
-        meta: anything that JSON can hold (machine, versions, engine figures).
+        meta: anything that JSON can hold, and NumPy arrays at any depth (machine, versions, engine figures, verdicts).
         """
         self._names = {c: {f: _name_table(t) for f, t in fields.items()} for c, fields in (names or {}).items()}
         self._units = {c: dict(fields) for c, fields in (units or {}).items()}
@@ -243,6 +246,21 @@ class Recording:
         events = [e for e in self.events if t0 <= e.time_s <= t1]
         return Recording(part, self._units, names=self._names, info=self._info, events=events, meta=self.meta)
 
+    def pick(self, signals: Iterable[tuple[str, str]]) -> Recording:
+        """Only these signals (component, field), and the events of their components and of the whole machine."""
+        fields: dict[str, list[str]] = {}
+        for component, field in signals:
+            self.column(component, field)
+            fields.setdefault(component, ["time_s", "cycle"]).append(field)
+        return Recording(
+            {c: self[c][list(dict.fromkeys(of))] for c, of in fields.items()},
+            {c: {f: u for f, u in self._units.get(c, {}).items() if f in of} for c, of in fields.items()},
+            names={c: {f: n for f, n in self._names.get(c, {}).items() if f in of} for c, of in fields.items()},
+            info={c: self.info(c) for c in fields},
+            events=[e for e in self.events if not e.component or e.component in fields],
+            meta=self.meta,
+        )
+
     # --- keeping and handing on ---
 
     def save(self, path: str | PathLike[str]) -> Path:
@@ -257,13 +275,14 @@ class Recording:
             },
             "info": self._info,
             "events": [list(e) for e in self.events],
-            "meta": self.meta,
         }
+        kept: dict[bytes, Array] = {}
         try:
-            text = json.dumps(header)
+            text = json.dumps(header | {"meta": _put_aside(self.meta, kept)})
         except TypeError as error:
             raise RecordingError(f"info or meta hold something that JSON cannot: {error}") from None
         arrays = {f"component{i}": a for i, a in enumerate(self._data.values())}
+        arrays |= {f"meta{i}": a for i, a in enumerate(kept.values())}
         target.parent.mkdir(parents=True, exist_ok=True)
         with target.open("wb") as file:
             np.savez_compressed(file, header=np.array(text), **arrays)  # type: ignore[arg-type]
@@ -280,6 +299,7 @@ class Recording:
                         f"{path} has recording format {header['takt_recording']}; this version reads {FORMAT_VERSION}"
                     )
                 data = {c: file[f"component{i}"] for i, c in enumerate(header["components"])}
+                kept = [file[name] for name in sorted(file.files, key=_number) if _number(name) >= 0]
             names = {
                 c: {f: {int(v): t for v, t in n.items()} for f, n in fs.items()} for c, fs in header["names"].items()
             }
@@ -289,7 +309,7 @@ class Recording:
                 names=names,
                 info=header["info"],
                 events=header["events"],
-                meta=header["meta"],
+                meta=_put_back(header["meta"], kept),
             )
         except FileNotFoundError:
             raise
@@ -302,7 +322,9 @@ class Recording:
             TypeError,
             AttributeError,
             zipfile.BadZipFile,
+            IndexError,
             EOFError,
+            zlib.error,
         ) as error:
             raise RecordingError(f"{path} is not a recording: {error}") from None
 
@@ -439,6 +461,30 @@ def _event(event: Sequence[Any]) -> Event:
     if not math.isfinite(time_s):
         raise RecordingError(f"the event '{event[2]}' has no time")
     return Event(time_s, *(str(part) for part in event[1:]))
+
+
+def _put_aside(value: Any, kept: dict[bytes, Array]) -> Any:
+    """What JSON can hold of `meta`: arrays go into `kept`, each once, and leave their number."""
+    if isinstance(value, np.ndarray):
+        key = hashlib.sha256(f"{value.dtype} {value.shape}".encode() + value.tobytes()).digest()
+        kept.setdefault(key, value)
+        return {ARRAY: list(kept).index(key)}
+    if isinstance(value, Mapping):
+        return {str(k): _put_aside(v, kept) for k, v in value.items()}
+    return [_put_aside(v, kept) for v in value] if isinstance(value, list | tuple) else value
+
+
+def _put_back(value: Any, kept: Sequence[Array]) -> Any:
+    if isinstance(value, dict):
+        if set(value) == {ARRAY}:
+            return kept[value[ARRAY]]
+        return {k: _put_back(v, kept) for k, v in value.items()}
+    return [_put_back(v, kept) for v in value] if isinstance(value, list) else value
+
+
+def _number(name: str) -> int:
+    """Of an array that belongs to `meta`; of others -1."""
+    return int(name[4:]) if name.startswith("meta") else -1
 
 
 def _spread(values: Array, rows: Array, length: int) -> Array:

@@ -17,6 +17,7 @@ from takt.belt import Belt
 from takt.component import Component
 from takt.errors import ConnectionError, TaktError
 from takt.feedback import Feedback
+from takt.lying import objects_of
 from takt.network import DEFAULT_URL, open_network
 from takt.recording import Recording
 from takt.session import Recorder, Session, release_of
@@ -222,6 +223,9 @@ class RemoteSession(Session):
         with self._news:
             if self._believable(message):
                 self._belt_objects[message.name] = message
+                for recorder in self._recorded:
+                    if message.name in recorder.belts:
+                        recorder.lying.look(message.name, message.cycle * self.period, objects_of(message))
                 self._hear(channel, message.sequence)
 
     def _on_feedback(self, channel: str, data: bytes) -> None:
@@ -331,9 +335,7 @@ class RemoteSession(Session):
 
     def _objects(self, belt: Belt) -> Iterable[tuple[Any, ...]]:
         message = self._belt_objects.get(belt.name)
-        for o in message.objects if message else ():
-            pose = (o.pose.x, o.pose.y, o.pose.z, o.pose.a, o.pose.b, o.pose.c)
-            yield o.number, o.state, o.place, pose, bool(o.in_range), o.kind, o.colour, o.quality
+        return objects_of(message) if message else ()
 
     def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
         end = self.now + timeout
@@ -377,8 +379,13 @@ class RemoteSession(Session):
             name: table_of(self._components[name].KIND, messages, self.period, recorder.every)
             for name, messages in rows.items()
         }
-        meta = {"source": self.url, "period_s": self.period, "losses": dict(self.losses)}
-        return make_recording(self.machine, tables, recorder.events, meta)
+        meta = {
+            "source": self.url,
+            "period_s": self.period,
+            "losses": dict(self.losses),
+            "objects": recorder.lying.columns(),
+        }
+        return make_recording(self.machine, tables, recorder.events, meta, self.machine_text)
 
     # --- health ---
 

@@ -26,6 +26,7 @@ from takt import expect
 from takt.errors import TaktError
 from takt.recording import Recording
 from takt.session import Session
+from takt.source import IN_DIRECTORY
 from takt.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -154,7 +155,7 @@ def run_scenario(scenario: Scenario, session: Session, directory: Path | None = 
     finally:
         recording = recorder.stop()
         if directory is not None:
-            recording.save(directory / "recording.npz")
+            recording.save(directory / IN_DIRECTORY)
     return Outcome(recording, (), complaint) if complaint else verify_recording(scenario, recording)
 
 

@@ -21,6 +21,7 @@ from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 from takt.flex_cam import FlexCam
 from takt.group import Group
+from takt.lying import Lying
 from takt.mover import Mover
 from takt.part import Part
 from takt.pick_place import PickPlace
@@ -59,6 +60,8 @@ class Recorder:
         self.components = tuple(components)
         self.every = every
         self.events: list[tuple[float, str, str, str]] = []
+        self.belts = [name for name in self.components if name in session.belts]
+        self.lying = Lying()  # on these
 
     @property
     def running(self) -> bool:

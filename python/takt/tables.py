@@ -123,8 +123,11 @@ def make_recording(
     tables: Mapping[str, Mapping[str, Array]],
     events: Iterable[tuple[float, str, str, str]],
     meta: Mapping[str, Any],
+    text: str,
+    folder: str = "",
 ) -> Recording:
-    """A recording of components of `machine`; each table has time_s, cycle and published fields."""
+    """A recording of components of `machine`, whose file has this `text` and stands in `folder`, where that is known;
+    each table has time_s, cycle and published fields."""
     found = {name: of for name, of in components_of(machine).items() if name in tables}
     units = {name: units_of(machine, kind, parameters) for name, (kind, parameters) in found.items()}
     return Recording(
@@ -133,7 +136,7 @@ def make_recording(
         names={name: {f: n for f, n in k.names.items() if f in tables[name]} for name, (k, _) in found.items()},
         info={name: _info(machine, k, parameters) for name, (k, parameters) in found.items()},
         events=events,
-        meta={"machine": machine["name"], **meta},
+        meta={"machine": machine["name"], **meta, "machine_file": {"text": text, "folder": folder}},
     )
 
 

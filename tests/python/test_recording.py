@@ -246,3 +246,31 @@ def test_an_empty_recording() -> None:
     assert math.isnan(rec.start_s)
     assert rec.gaps("x") == []
     assert "x: 0 samples" in repr(rec)
+
+
+def test_arrays_in_meta_are_kept(tmp_path: Path) -> None:
+    """At any depth, with their types and shapes, and equal ones once."""
+    large = np.random.default_rng(1).normal(size=100_000)
+    meta: dict[str, Any] = {"run": [{"values": large, "again": {"values": large.copy()}}], "n": 1}
+    meta |= {"bytes": np.arange(4, dtype=np.uint8), "table": np.zeros((0, 7))}
+    rec = Recording({"x": {"time_s": [0.0]}}, meta=meta)
+    read = Recording.load(rec.save(tmp_path / "a.npz"))
+    np.testing.assert_array_equal(read.meta["run"][0]["values"], large)
+    np.testing.assert_array_equal(read.meta["run"][0]["again"]["values"], large)
+    assert read.meta["bytes"].dtype == np.uint8
+    assert read.meta["bytes"].tolist() == [0, 1, 2, 3]
+    assert read.meta["table"].shape == (0, 7)
+    assert read.meta["n"] == 1
+    assert (tmp_path / "a.npz").stat().st_size < 1.1 * large.nbytes
+    assert rec.meta["run"][0]["values"] is large  # saving leaves it alone
+
+
+def test_some_signals() -> None:
+    part = two_rates().pick([("x", "state"), ("x", "set_position")])
+    assert part.components == ("x",)
+    assert part.fields("x") == ("time_s", "cycle", "state", "set_position")
+    assert part.unit("x", "set_position") == "mm"
+    assert part.text("x", "state").tolist() == two_rates().text("x", "state").tolist()
+    assert [e.component for e in part.events] == ["x"]
+    with pytest.raises(RecordingError, match="'x' has no field 'nothing'"):
+        two_rates().pick([("x", "nothing")])

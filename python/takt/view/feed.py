@@ -18,6 +18,7 @@ import numpy as np
 
 from takt import msgs
 from takt.errors import ConfigError
+from takt.lying import objects_of, rows_of
 from takt.network import open_network
 from takt.remote import JUMP_S
 from takt.tables import fields_of
@@ -259,19 +260,7 @@ class Feed:
     def _on_objects(self, _: str, data: bytes) -> None:
         message = _decoded(msgs.belt_objects, data)
         if message is not None:
-            self.objects[message.name] = [
-                [
-                    o.number,
-                    o.pose.x,
-                    o.pose.y,
-                    o.pose.z,
-                    o.pose.c,
-                    int(o.state == msgs.belt_object.STATE_TAKEN),
-                    int(o.in_range),
-                ]
-                for o in message.objects
-                if o.pose.x == o.pose.x  # it is known where it lies
-            ]
+            self.objects[message.name] = rows_of(objects_of(message))
 
     def _place_links(self) -> None:
         assert self.machine is not None

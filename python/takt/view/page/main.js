@@ -23,7 +23,7 @@ const chooser = new Chooser(model, scope);
 const list = new MachineList(model);
 const commands = new Commands(model, connection);
 const details = new Details(model, scope, commands);
-const plan = new Plan(model, scope);
+const plan = new Plan(model, () => scope.store.series);
 const cams = new Cams(model);
 const health = new Health(model, scope, connection);
 const views = { machine: list, scope, plan, cams, engine: health };

@@ -7,10 +7,14 @@ const STATOR = 240; // mm
 const TRAIL_S = 3;
 const BELT_WIDTH = 120; // mm, to be seen; how wide belts are nobody says
 
+// The live page and reports draw with this. `series` says the columns that trails of tools are made of, by
+// component; `ctrlZooms`: the wheel alone scrolls the page; `onchange` is called when what is to be seen was moved.
 export class Plan {
-  constructor(model, scope) {
+  constructor(model, series, { ctrlZooms = false, onchange = () => {} } = {}) {
     this.model = model;
-    this.scope = scope;
+    this.series = series;
+    this.ctrlZooms = ctrlZooms;
+    this.onchange = onchange;
     this.canvas = byId("plan-canvas");
     this.box = byId("plan-box");
     this.view = "above";
@@ -42,6 +46,13 @@ export class Plan {
     this.view = view;
     this.camera = null;
     for (const button of byId("plan-views").children) button.setAttribute("aria-pressed", String(button.value === view));
+    this.onchange();
+  }
+
+  // Everything is to be seen again.
+  fitAgain() {
+    this.camera = null;
+    this.onchange();
   }
 
   // --- where things are on the screen ---
@@ -443,19 +454,21 @@ export class Plan {
   }
 
   trails() {
-    const { c, model, scope } = this;
+    const { c, model } = this;
     const since = model.cycle - TRAIL_S / model.period;
     this.plan.groups.forEach((group) => {
-      const series = scope.store.series.get(model.byName.get(group.name).index);
+      const series = this.series().get(model.byName.get(group.name).index);
       const [x, y, z] = ["x", "y", "z"].map((field) => series?.columns.get(field));
       if (!x || !y || !z) return;
       const { base } = group;
       const step = Math.max(1, Math.floor(0.004 / model.period));
       const first = series.find(since);
+      const end = series.find(model.cycle + 1e-6);
+      if (end <= first) return;
       c.strokeStyle = css("--bad");
       c.lineWidth = 1.4;
       for (let part = 0; part < 6; ++part) {
-        const [from, to] = [part, part + 1].map((k) => first + Math.floor(((series.end - 1 - first) * k) / 6));
+        const [from, to] = [part, part + 1].map((k) => first + Math.floor(((end - 1 - first) * k) / 6));
         const line = [];
         for (let i = from; i <= to; i = i < to ? Math.min(to, i + step) : to + 1) {
           if (Number.isNaN(x[i])) continue;
@@ -475,9 +488,9 @@ export class Plan {
     for (const button of byId("plan-views").children) button.onclick = () => this.setView(button.value);
     this.systemSelect.onchange = () => {
       this.system = Number(this.systemSelect.value);
-      this.camera = null;
+      this.fitAgain();
     };
-    byId("plan-fit").onclick = () => (this.camera = null);
+    byId("plan-fit").onclick = () => this.fitAgain();
     this.canvas.onpointerdown = (event) => {
       this.drag = [event.offsetX, event.offsetY];
       this.canvas.setPointerCapture(event.pointerId);
@@ -487,9 +500,11 @@ export class Plan {
       this.camera.x -= (event.offsetX - this.drag[0]) / this.camera.scale;
       this.camera.y += (event.offsetY - this.drag[1]) / this.camera.scale;
       this.drag = [event.offsetX, event.offsetY];
+      this.onchange();
     };
     this.canvas.onpointerup = () => (this.drag = null);
     this.canvas.addEventListener("wheel", (event) => {
+      if (this.ctrlZooms && !event.ctrlKey && !event.metaKey) return;
       event.preventDefault();
       if (!this.camera) return;
       const factor = event.deltaY > 0 ? 0.85 : 1.18;
@@ -497,7 +512,8 @@ export class Plan {
       this.camera.x += (dx / this.camera.scale) * (1 - 1 / factor);
       this.camera.y -= (dy / this.camera.scale) * (1 - 1 / factor);
       this.camera.scale *= factor;
+      this.onchange();
     }, { passive: false });
-    new ResizeObserver(() => (this.camera = null)).observe(this.box);
+    new ResizeObserver(() => this.fitAgain()).observe(this.box);
   }
 }

@@ -11,6 +11,12 @@ export class Series {
     this.moved = 0; // rows that have left at the front: row + moved counts on for ever
   }
 
+  // Of columns that are all there.
+  static of(cycles, columns) {
+    const series = Object.create(Series.prototype);
+    return Object.assign(series, { cycles, columns, end: cycles.length, moved: 0 });
+  }
+
   get last() {
     return this.end ? this.cycles[this.end - 1] : -1;
   }
@@ -55,10 +61,7 @@ export class Series {
   // Those rows alone, to keep.
   piece(fromCycle, toCycle) {
     const [from, to] = [Math.max(0, this.find(fromCycle) - 1), Math.min(this.end, this.find(toCycle) + 1)];
-    const copy = Object.create(Series.prototype);
-    copy.cycles = this.cycles.slice(from, to);
-    copy.columns = new Map([...this.columns].map(([field, column]) => [field, column.slice(from, to)]));
-    copy.end = to - from;
+    const copy = Series.of(this.cycles.slice(from, to), new Map([...this.columns].map(([field, column]) => [field, column.slice(from, to)])));
     copy.moved = this.moved + from;
     return copy;
   }

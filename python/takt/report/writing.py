@@ -1,16 +1,13 @@
-"""A report of a run: one HTML page that needs nothing else, with curves to zoom into, and the pictures beside
-it."""
+"""Writes reports: the page with everything inside, and the pictures beside it."""
 
 from __future__ import annotations
 
 import base64
 import html
+import io
 import json
-import math
 import re
 from collections.abc import Mapping, Sequence
-from datetime import datetime, timezone
-from importlib import resources
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -20,11 +17,20 @@ from matplotlib.figure import Figure
 
 from takt import plot, style
 from takt.checks.series import quantity, words
+from takt.export import rates
 from takt.recording import Array, Recording
-from takt.verdict import Verdict, seconds
+from takt.report.columns import Block
+from takt.report.inlined import asset, import_map
+from takt.report.kept import KEY, keep, kept, plain, told
+from takt.report.scene import scene_of
+from takt.source import IN_DIRECTORY
+from takt.verdict import Verdict
 
 # What says where a component is, the best first: its own measured position, or the Y of a cam module.
 POSITIONS = ("actual_position", "position", "set_position", "set_y_position")
+PAGE = "report.html"
+BYTES = 128 << 20  # of all curves of a page before they are deflated; longer runs are thinned evenly
+ELSEWHERE = (KEY, "machine_file", "objects", "trouble")  # what the page does not show as a fact of its head
 
 
 class Report(NamedTuple):
@@ -39,25 +45,25 @@ def write_report(
     title: str,
     meta: Mapping[str, Any] | None = None,
     more: Mapping[str, Figure] | None = None,
+    complaint: str = "",
 ) -> Report:
-    """Writes report.html and the pictures into `out_dir`, replacing what an earlier run left under the same
-    names.
+    """Writes report.html, the recording with all that it was made of (recording.npz) and the pictures into `out_dir`,
+    replacing what an earlier run left under the same names.
 
-    meta: what to say about the run. Plain values stand in the head ("machine": "six_axes"); a dict is a group
-        of figures under its name
-    ("engine": {"longest cycle": "112 µs", "overruns": 0}). What the recording's own `meta` holds is shown as
-    well.
+    meta: what to say about the run, as `keep` takes it: figures. What the recording's own `meta` holds is shown as
+        well.
     more: pictures of the caller's by name, to be shown in the page and kept as NAME.png beside it.
+    complaint: a plain assertion that failed beside the verdicts.
     """
     directory = Path(out_dir)
     directory.mkdir(parents=True, exist_ok=True)
     pictures = _pictures(recording, verdicts, directory, title)
-    page = directory / "report.html"
     shown = {name: plot.save(figure, directory / f"{_file_name(name)}.png") for name, figure in (more or {}).items()}
-    pictures += shown.values()
-    text = render(recording, verdicts, title, {**recording.meta, **(meta or {})}, shown)
-    page.write_text(text, encoding="utf-8")
-    return Report(page, tuple(pictures))
+    whole = keep(recording, title, verdicts, complaint, meta, {name: path.read_bytes() for name, path in shown.items()})
+    whole.save(directory / IN_DIRECTORY)
+    page = directory / PAGE
+    page.write_text(render_kept(whole, title), encoding="utf-8")
+    return Report(page, (*pictures, *shown.values()))
 
 
 def render(
@@ -65,93 +71,144 @@ def render(
     verdicts: Sequence[Verdict],
     title: str,
     meta: Mapping[str, Any] | None = None,
-    pictures: Mapping[str, Path] | None = None,
+    complaint: str = "",
 ) -> str:
-    """The HTML page as text. `pictures`: PNG files to show in it."""
+    """The HTML page as text."""
+    return render_kept(keep(recording, title, verdicts, complaint, meta), title)
+
+
+def render_kept(recording: Recording, name: str) -> str:
+    """The HTML page of a recording and of what is kept with it. `name`: what it is called where nothing is."""
+    run = kept(recording) or {"title": name, "made": "", "verdicts": [], "complaint": "", "figures": {}, "pictures": {}}
+    block = Block()
+    facts = told({k: v for k, v in recording.meta.items() if k not in ELSEWHERE}) | run["figures"]
+    scene = scene_of(recording, block)
     payload = {
-        "title": title,
-        "made": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
-        "meta": _plain({name: value for name, value in (meta or {}).items() if value not in ({}, [], "", None)}),
-        "span": _plain([recording.start_s, recording.end_s]),
-        **_columns(recording),
+        "title": run["title"],
+        "made": run["made"],
+        "trouble": recording.meta.get("trouble", ""),
+        "meta": facts,
+        "span": plain([recording.start_s, recording.end_s]),
+        **_columns(recording, block, [v["view"] for v in run["verdicts"] if v["view"] and not v["passed"]]),
         "events": [[e.time_s, e.component, e.text, e.kind] for e in recording.events],
-        "verdicts": [_verdict(v) for v in sorted(verdicts, key=lambda v: v.passed)],
+        "complaint": run["complaint"],
+        "verdicts": [_verdict(v, block) for v in sorted(run["verdicts"], key=lambda v: bool(v["passed"]))],
         "summary": _summary(recording),
         "quantities": list(style.QUANTITY_ORDER),
-        "good": style.GOOD,
-        "bad": style.BAD,
+        "palette": list(style.PALETTE),
+        "scene": scene,
     }
     data = json.dumps(payload, ensure_ascii=False, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-    assets = resources.files("takt") / "assets"
     parts = {
-        "title": html.escape(title),
-        "style": _asset(assets, "uplot", "uPlot.min.css") + _asset(assets, "report.css"),
-        "uplot": _asset(assets, "uplot", "uPlot.iife.min.js"),
-        "script": _asset(assets, "report.js"),
+        "title": html.escape(str(run["title"])),
+        "style": "".join(asset(*path) for path in STYLES),
+        "uplot": asset("report", "page", "uplot", "uPlot.iife.min.js"),
+        "modules": import_map(MAIN),
+        "main": MAIN,
         "data": data,
-        "pictures": "".join(_shown(name, path) for name, path in (pictures or {}).items()),
+        "columns": block.text(),
+        "pictures": "".join(_shown(name, bytes(png)) for name, png in run["pictures"].items()),
     }
-    return re.sub(r"\{\{(\w+)\}\}", lambda m: parts[m[1]], _asset(assets, "report.html"))
+    return re.sub(r"\{\{(\w+)\}\}", lambda m: parts[m[1]], asset("report", "page", "page.html"))
 
 
-def _shown(name: str, path: Path) -> str:
-    data = base64.b64encode(path.read_bytes()).decode("ascii")
+MAIN = "takt/report/page/main.js"
+STYLES = (
+    ("view", "page", "look.css"),
+    ("report", "page", "uplot", "uPlot.min.css"),
+    ("report", "page", "style.css"),
+)
+
+
+def png_of(figure: Figure) -> bytes:
+    """A picture as the file that is kept of it."""
+    data = io.BytesIO()
+    figure.savefig(data, format="png", dpi=plot.DPI)
+    return data.getvalue()
+
+
+def _shown(name: str, png: bytes) -> str:
+    data = base64.b64encode(png).decode("ascii")
     return (
         f"<section><h2>{html.escape(name)}</h2>"
         f'<img class="picture" alt="{html.escape(name)}" src="data:image/png;base64,{data}"></section>'
     )
 
 
-def _asset(assets: Any, *path: str) -> str:
-    text: str = assets.joinpath(*path).read_text(encoding="utf-8")
-    return text
-
-
 # --- what the page is given ---
 
 
-def _columns(recording: Recording) -> dict[str, Any]:
-    """Time bases, shared where they are the same, and the columns of each component."""
+def _columns(recording: Recording, block: Block, whole: Sequence[Sequence[float]]) -> dict[str, Any]:
+    """Time bases, shared where they are the same, and the columns of each component; every n-th sample of recordings
+    that would be too long for a page, but all of the windows `whole`."""
+    every = _every(recording)
     bases: list[dict[str, Any]] = []
     known: dict[bytes, int] = {}
     components = []
     for component in recording.components:
         table = recording[component]
-        time_s = np.ascontiguousarray(table["time_s"])
+        rows = _rows(table, every, whole)
+        time_s = np.ascontiguousarray(table["time_s"][rows])
         base = known.setdefault(time_s.tobytes(), len(bases))
         if base == len(bases):
-            bases.append(_time_base(time_s))
+            bases.append(block.time(time_s))
         components.append(
             {
                 "name": component,
                 "base": base,
                 "colour": style.component_colour(component, recording.components),
                 "modulus": recording.info(component).get("modulus"),
-                "fields": [_field(recording, component, f) for f in recording.fields(component)[2:]],
+                "fields": [_field(recording, component, f, rows, block) for f in recording.fields(component)[2:]],
             }
         )
-    return {"bases": bases, "components": components}
+    return {"bases": bases, "components": components, "thinned": _thinned(recording, every)}
 
 
-def _time_base(time_s: Array) -> dict[str, Any]:
-    n = len(time_s)
-    if n > 1:
-        even = time_s[0] + np.arange(n) * ((time_s[-1] - time_s[0]) / (n - 1))
-        if np.max(np.abs(even - time_s)) < 1e-9 * max(1.0, float(time_s[-1])):
-            return {"n": n, "from": float(time_s[0]), "to": float(time_s[-1])}
-    return {"n": n, **_packed(time_s, "<f8", "f64")}
+def _thinned(recording: Recording, every: int) -> str:
+    """What is not shown, in a sentence; empty: nothing."""
+    if every == 1:
+        return ""
+    rate = max(rates(recording).values()) / every
+    return (
+        f"This run is long: one sample of {every} is shown, {rate:.3g} a second, and all where something failed. "
+        "Verdicts and figures are of all samples."
+    )
 
 
-def _field(recording: Recording, component: str, field: str) -> dict[str, Any]:
-    column = recording.column(component, field)
+def _every(recording: Recording) -> int:
+    """Of how many samples one is shown."""
+    size = sum(
+        table[f].nbytes // (2 if table[f].dtype.kind == "f" else 1)
+        for table in map(recording.__getitem__, recording.components)
+        for f in (table.dtype.names or ())[2:]
+        if len(table) and np.any(table[f] != table[f][0])
+    )
+    return max(1, -(-size // BYTES))
+
+
+def _rows(table: Array, every: int, whole: Sequence[Sequence[float]]) -> Any:
+    """Which rows of a component are shown, the last one always."""
+    if every == 1:
+        return slice(None)
+    time_s = table["time_s"]
+    shown = np.zeros(len(table), dtype=bool)
+    shown[::every] = shown[-1:] = True
+    for begin, end in whole:
+        shown |= (time_s >= begin) & (time_s <= end)
+    return shown
+
+
+def _field(recording: Recording, component: str, field: str, rows: Any, block: Block) -> dict[str, Any]:
+    column = recording.column(component, field)[rows]
     names = recording.names(component, field)
     flag = column.dtype.kind == "b"
     out: dict[str, Any] = {
+        "name": field,
         "label": words(field),
         "quantity": quantity(field),
         "unit": recording.unit(component, field),
         "set": style.is_set_point(field),
-        **_encoded(column),
+        **block.put(column),
     }
     if names or flag:
         shown = names or {1: words(field)}
@@ -159,43 +216,19 @@ def _field(recording: Recording, component: str, field: str) -> dict[str, Any]:
     return out
 
 
-def _encoded(column: Array) -> dict[str, Any]:
-    """As small as it can be without a difference that could be seen: one value where nothing changes, bytes
-    for states, 32-bit floats where their rounding is below a millionth of the column's range."""
-    if column.dtype.kind == "b" or column.dtype == np.int8:
-        return _packed(column, "i1", "i8")
-    values = column.astype(np.float64)
-    good = values[np.isfinite(values)]
-    if not len(good):
-        return {"constant": None}
-    if len(good) == len(values) and np.all(values == values[0]):
-        return {"constant": float(values[0])}
-    largest = float(np.max(np.abs(good)))
-    if largest < 1e38 and largest * 2.0**-24 <= 1e-6 * float(np.ptp(good)):
-        return _packed(values, "<f4", "f32")
-    return _packed(values, "<f8", "f64")
+def _verdict(verdict: Mapping[str, Any], block: Block) -> dict[str, Any]:
+    """As it is kept, with its curves in the block."""
 
+    def curve(kept: Mapping[str, Any]) -> dict[str, Any]:
+        rest = {k: v for k, v in kept.items() if k not in ("time_s", "values")}
+        return {**rest, "time": block.time(kept["time_s"]), "values": block.put(kept["values"])}
 
-def _packed(values: Array, dtype: str, name: str) -> dict[str, Any]:
-    return {name: base64.b64encode(np.ascontiguousarray(values, dtype=dtype).tobytes()).decode("ascii")}
+    def lane(kept: Mapping[str, Any]) -> dict[str, Any]:
+        names = {value: [name, style.state_colour(name, int(value))] for value, name in kept["names"].items()}
+        curves = {what: [curve(one) for one in kept[what]] for what in ("traces", "bounds")}
+        return {**kept, "names": names, **curves}
 
-
-def _verdict(verdict: Verdict) -> dict[str, Any]:
-    bounds = [
-        {"quantity": lane.quantity, "unit": lane.unit, "level": float(bound.values[0]), "label": bound.label}
-        for lane in verdict.lanes
-        for bound in lane.bounds
-        if len(bound.values) and np.all(bound.values == bound.values[0]) and math.isfinite(bound.values[0])
-    ]
-    return {
-        "title": verdict.title,
-        "components": list(verdict.components),
-        "passed": verdict.passed,
-        "sentence": verdict.sentence,
-        "when": None if verdict.when_s is None else seconds(verdict.when_s),
-        "place": _plain(verdict.place or ([verdict.when_s] * 2 if verdict.when_s is not None else None)),
-        "bounds": bounds,
-    }
+    return {**verdict, "lanes": [lane(one) for one in verdict["lanes"]]}
 
 
 def _summary(recording: Recording) -> dict[str, Any]:
@@ -249,20 +282,6 @@ def _summary(recording: Recording) -> dict[str, Any]:
         "lost",
     ]
     return {"head": head, "rows": rows}
-
-
-def _plain(value: Any) -> Any:
-    """Numbers that JSON does not know become null; NumPy's become Python's; what else there is becomes
-    text."""
-    if isinstance(value, Mapping):
-        return {str(k): _plain(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    return value if value is None or isinstance(value, bool | int | str) else str(value)
 
 
 def _pictures(recording: Recording, verdicts: Sequence[Verdict], directory: Path, title: str) -> list[Path]:

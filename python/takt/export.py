@@ -1,0 +1,175 @@
+"""Recordings for other tools: `takt export`."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from takt import plot
+from takt.errors import TaktError
+from takt.recording import Array, Recording
+
+EVENTS = "events"  # the channel of marks, starts and ends of commands, errors
+LEVELS = {"error": 4, "mark": 2}  # of foxglove.Log: ERROR, INFO; all others are DEBUG
+DEBUG = 1
+LOG = {
+    "title": "foxglove.Log",
+    "type": "object",
+    "properties": {
+        "timestamp": {
+            "type": "object",
+            "title": "time",
+            "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}},
+        },
+        "level": {"type": "integer"},
+        "message": {"type": "string"},
+        "name": {"type": "string", "description": "the component; empty: the whole machine"},
+        "file": {"type": "string", "description": "what it is: start, end, error or mark"},
+        "line": {"type": "integer"},
+    },
+}
+
+
+class ExportError(TaktError):
+    """Something cannot be written as wanted."""
+
+
+def write(
+    recording: Recording, targets: Sequence[Path], signals: Sequence[str], start: float | None, end: float | None
+) -> Iterator[str]:
+    """Writes the part that is asked for into files, by the ends of their names, and says what is in each."""
+    chosen = part(recording, signals, start, end)
+    if trouble := recording.meta.get("trouble"):
+        yield str(trouble)
+    for target in targets:
+        if target.suffix == ".mcap":
+            yield f"{target}: {to_mcap(chosen, target):,} messages of {len(chosen)} components and of events"
+        else:
+            yield f"{chosen.to_csv(target)}: {words_on_rates(chosen)}"
+
+
+def part(recording: Recording, signals: Sequence[str], start: float | None, end: float | None) -> Recording:
+    """Only these signals, as `takt plot` names them, or all; only from `start` to `end`, s, where they are given."""
+    chosen = recording.pick(plot.select(recording, signals)) if signals else recording
+    if start is None and end is None:
+        return chosen
+    return chosen.slice(-math.inf if start is None else start, math.inf if end is None else end)
+
+
+def rates(recording: Recording) -> dict[str, float]:
+    """Samples a second of each component that has two or more, as they are met most often."""
+    tables = {name: recording[name]["time_s"] for name in recording}
+    return {name: 1.0 / float(np.median(np.diff(time_s))) for name, time_s in tables.items() if len(time_s) > 1}
+
+
+def words_on_rates(recording: Recording) -> str:
+    """How the components stand in one table, in words."""
+    known = {name: round(rate, 3) for name, rate in rates(recording).items()}
+    if len(set(known.values())) < 2:
+        return "a row for each cycle that was recorded"
+    said = ", ".join(f"{name} {rate:g} Hz" for name, rate in known.items())
+    return f"rates differ ({said}): a row for each cycle of any component; cells of those without a sample are empty"
+
+
+def to_mcap(recording: Recording, path: Path) -> int:
+    """Writes MCAP and says how many messages: a channel of JSON for each component, named like it, and one for the
+    events. Log times are engine time in ns. Units stand in the descriptions of the schemas; enumerations are texts;
+    what is no number is left out, as JSON does not know it. The machine file is attached. Needs the package mcap."""
+    try:
+        from mcap.writer import Writer
+    except ImportError:
+        raise ExportError("writing MCAP needs the package mcap: pip install takt-motion[mcap]") from None
+    with path.open("wb") as file:
+        writer: Any = Writer(file)
+        writer.start(profile="", library="takt")
+        streams = [_component(writer, recording, name) for name in recording]
+        streams.append(_events(writer, recording))
+        count = 0
+        for time_ns, channel, data in sorted_by_time(streams):
+            writer.add_message(channel, log_time=time_ns, data=data, publish_time=time_ns, sequence=count)
+            count += 1
+        _about(writer, recording)
+        writer.finish()
+    return count
+
+
+Message = tuple[int, int, bytes]
+
+
+def sorted_by_time(streams: Sequence[tuple[Array, int, Iterator[bytes]]]) -> Iterator[Message]:
+    """Messages of all streams (times in ns, channel, data) in the order of time."""
+    times = np.concatenate([times for times, _, _ in streams])
+    which = np.concatenate([np.full(len(times), i) for i, (times, _, _) in enumerate(streams)])
+    for row in np.argsort(times, kind="stable").tolist():
+        _, channel, data = streams[which[row]]
+        yield int(times[row]), channel, next(data)
+
+
+def _component(writer: Any, recording: Recording, name: str) -> tuple[Array, int, Iterator[bytes]]:
+    fields = recording.fields(name)[1:]
+    properties = {"time_s": {"type": "number", "description": "s"}}
+    properties |= {field: _property(recording, name, field) for field in fields}
+    schema = {"title": name, "type": "object", "properties": properties}
+    number = writer.register_schema(name=f"takt.{name}", encoding="jsonschema", data=json.dumps(schema).encode())
+    channel = writer.register_channel(topic=f"/{name}", message_encoding="json", schema_id=number)
+    table = recording[name]
+    return _ns(table["time_s"]), channel, _rows(recording, name)
+
+
+def _property(recording: Recording, name: str, field: str) -> dict[str, Any]:
+    column, unit = recording.column(name, field), recording.unit(name, field)
+    if names := recording.names(name, field):
+        return {"type": "string", "description": ", ".join(names.values())}
+    if column.dtype.kind == "b":
+        return {"type": "boolean"}
+    about = {"description": unit} if unit not in ("", "1") else {}
+    return {"type": "integer" if column.dtype.kind == "i" else "number", **about}
+
+
+def _rows(recording: Recording, name: str) -> Iterator[bytes]:
+    fields = recording.fields(name)
+    columns = [
+        (recording.text(name, f) if recording.names(name, f) else recording.column(name, f)).tolist() for f in fields
+    ]
+    for row in zip(*columns, strict=True):
+        yield json.dumps(
+            {f: v for f, v in zip(fields, row, strict=True) if not isinstance(v, float) or math.isfinite(v)}
+        ).encode()
+
+
+def _events(writer: Any, recording: Recording) -> tuple[Array, int, Iterator[bytes]]:
+    number = writer.register_schema(name=LOG["title"], encoding="jsonschema", data=json.dumps(LOG).encode())
+    channel = writer.register_channel(topic=f"/{EVENTS}", message_encoding="json", schema_id=number)
+    times = _ns(np.array([event.time_s for event in recording.events]))
+
+    def messages() -> Iterator[bytes]:
+        for event, time_ns in zip(recording.events, times.tolist(), strict=True):
+            yield json.dumps(
+                {
+                    "timestamp": {"sec": time_ns // 10**9, "nsec": time_ns % 10**9},
+                    "level": LEVELS.get(event.kind, DEBUG),
+                    "message": event.text,
+                    "name": event.component,
+                    "file": event.kind,
+                    "line": 0,
+                }
+            ).encode()
+
+    return times, channel, messages()
+
+
+def _about(writer: Any, recording: Recording) -> None:
+    """Where it comes from, for people."""
+    plain = {name: str(v) for name, v in recording.meta.items() if isinstance(v, (str, int, float)) and v != ""}
+    writer.add_metadata("takt", plain)
+    if file := recording.meta.get("machine_file"):
+        writer.add_attachment(0, 0, "machine.yaml", "application/yaml", file["text"].encode())
+
+
+def _ns(time_s: Array) -> Array:
+    return np.round(np.asarray(time_s, dtype=np.float64) * 1e9).astype(np.int64)

@@ -1,0 +1,12 @@
+"""Reports of runs: one HTML page each that needs nothing else. `takt report`, `takt run --report` and `takt demo` write
+them, and so can programs:
+
+    write_report(recording, verdicts, "reports/mine", "A title")
+
+Everything that the page is made of is kept in the recording (`kept`), so that it can be made again from that alone.
+"""
+
+from takt.report.kept import keep
+from takt.report.writing import Report, render, render_kept, write_report
+
+__all__ = ["Report", "keep", "render", "render_kept", "write_report"]

@@ -1,0 +1,40 @@
+"""`takt report`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from takt.recording import Recording
+from takt.report.kept import keep
+from takt.report.writing import PAGE, Report, png_of, render_kept, write_report
+from takt.scenario import Outcome, Scenario
+
+
+def write_outcome(outcome: Outcome, scenario: Scenario, directory: Path, engine: Mapping[str, Any]) -> Report:
+    """The report of a scenario that was run; `engine`: what the engine says of itself."""
+    drawn = scenario.draw(outcome.recording) if outcome.passed else {}
+    figures = {"engine": engine}
+    return write_report(
+        outcome.recording, outcome.verdicts, directory, scenario.title, figures, drawn, outcome.complaint
+    )
+
+
+def target_of(run: Path) -> Path:
+    """Where the page of a run goes unless told: into its directory, or beside its file."""
+    return run / PAGE if run.is_dir() else run.with_suffix(".html")
+
+
+def judged(outcome: Outcome, scenario: Scenario) -> Recording:
+    """The recording with what its scenario says of it now. What the engine said of itself stays."""
+    drawn = scenario.draw(outcome.recording) if outcome.passed else {}
+    figures = (outcome.recording.meta.get("run") or {}).get("figures")
+    pictures = {name: png_of(figure) for name, figure in drawn.items()}
+    return keep(outcome.recording, scenario.title, outcome.verdicts, outcome.complaint, figures, pictures)
+
+
+def write_page(recording: Recording, run: Path, target: Path) -> Path:
+    """The page of a recording as it was kept."""
+    target.write_text(render_kept(recording, run.resolve().name), encoding="utf-8")
+    return target

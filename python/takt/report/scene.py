@@ -1,0 +1,94 @@
+"""The machine from above, for the page's own drawing of it: the model that the live page gets, and how its arms and
+what lies on its belts were at all times."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from takt import msgs
+from takt.errors import ConfigError
+from takt.kinematics import KinematicsError
+from takt.recording import Array, Recording
+from takt.report.columns import Block
+from takt.view.machine import Machine
+
+RATE_HZ = 50.0  # of the places of arms, where they stay below
+NUMBERS = 1_000_000  # of them
+LYING = ("tracks", "stators", "parts", "movers", "belts", "groups")  # what there is to see from above
+
+
+def scene_of(recording: Recording, block: Block) -> dict[str, Any] | None:
+    """None where nothing lies in the plane, or the recording does not know its machine."""
+    file = recording.meta.get("machine_file")
+    if not file:
+        return None
+    description = msgs.machine_description()
+    description.name = str(recording.meta.get("machine", ""))
+    description.version = str(recording.meta.get("version", ""))
+    description.period_s = float(recording.meta.get("period_s", 0.001))
+    description.text = file["text"]
+    try:
+        machine = Machine(description, Path(file["folder"]))
+    except ConfigError:
+        return None  # of another version
+    told = machine.describe()
+    if not any(told["plan"][what] for what in LYING):
+        return None
+    kinds = {name: {"live": kind["live"], "fields": []} for name, kind in told["kinds"].items()}
+    shown = {name: told[name] for name in ("name", "period_s", "components", "palette", "states", "plan")}
+    groups = {name: _links(machine, name, recording, block) for name in machine.mechanisms}
+    return {
+        "machine": {**shown, "kinds": kinds},
+        "links": {name: links for name, links in groups.items() if links is not None},
+        "objects": {belt: _objects(told, block) for belt, told in recording.meta.get("objects", {}).items()},
+    }
+
+
+def _links(machine: Machine, group: str, recording: Recording, block: Block) -> dict[str, Any] | None:
+    """Where the links of a group are, frame after frame: n frames from `from` to `to`, of `count` numbers each."""
+    mechanism, axes, base = machine.mechanisms[group]
+    axes = axes[: mechanism.axes]
+    if any(axis not in recording or len(recording[axis]) < 2 for axis in axes):
+        return None
+    first = max(float(recording[axis]["time_s"][0]) for axis in axes)
+    last = min(float(recording[axis]["time_s"][-1]) for axis in axes)
+    if not last > first:
+        return None
+    count = 6 * len(mechanism.links)
+    n = max(2, min(math.ceil((last - first) * RATE_HZ), NUMBERS // count))
+    times = np.linspace(first, last, n)
+    joints = np.stack([_at(recording, axis, "actual_position", times) for axis in axes], axis=1)
+    places = _places(mechanism, joints).reshape(n, -1, 3) @ base[:3, :3].T + base[:3, 3]
+    return {"from": first, "to": last, "n": n, "count": count, **block.exactly(np.round(places, 2), "f32")}
+
+
+def _places(mechanism: Any, joints: Array) -> Array:
+    """NaN where links cannot be said to be anywhere."""
+    try:
+        return np.asarray(mechanism.link_places(joints))
+    except (KinematicsError, ValueError):
+        nowhere = np.full((1, len(mechanism.links), 6), np.nan)
+        if len(joints) == 1:
+            return nowhere
+        half = len(joints) // 2
+        return np.concatenate([_places(mechanism, part) for part in (joints[:half], joints[half:])])
+
+
+def _at(recording: Recording, component: str, field: str, times: Array) -> Array:
+    """The last sample at or before each time."""
+    table = recording[component]
+    rows = np.searchsorted(table["time_s"], times + 1e-9, side="right") - 1
+    column: Array = table[field][np.maximum(rows, 0)].astype(np.float64)
+    return column
+
+
+def _objects(told: dict[str, Array], block: Block) -> dict[str, Any]:
+    return {
+        "time": block.time(told["time_s"]),
+        "first": block.exactly(told["first"], "f64"),
+        "rows": block.exactly(told["rows"], "f32"),
+    }

@@ -1,0 +1,34 @@
+"""Runs as they lie on a disk: recordings, LCM logs, and the directories that `takt run --report` and `takt demo`
+write."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from takt.lcmlog import Progress, read_log
+from takt.recording import Recording, RecordingError
+
+IN_DIRECTORY = "recording.npz"
+
+
+def recording_of(run: Path) -> Path:
+    """The file with a run: itself, or the recording of its directory."""
+    if not run.is_dir():
+        return run
+    if not (run / IN_DIRECTORY).is_file():
+        raise RecordingError(
+            f"{run}: holds no run: expected {IN_DIRECTORY} in it, as takt run --report and takt demo write it"
+        )
+    return run / IN_DIRECTORY
+
+
+def read_run(run: Path, progress: Progress | None = None) -> Recording:
+    """A run as a recording, whatever kind of file it is."""
+    file = recording_of(run)
+    with file.open("rb") as probe:
+        magic = probe.read(4)
+    if magic.startswith(b"PK"):
+        return Recording.load(file)
+    if magic == b"\xed\xa1\xda\x01":
+        return read_log(file, progress=progress)
+    raise RecordingError(f"{file}: is neither a recording (.npz) nor an LCM log")
