@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(ROOT))
 
 import takt  # noqa: E402
 
@@ -16,7 +16,7 @@ project_copyright = author
 release = takt.__version__
 version = release
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "doc_strings", "state_diagrams"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "tools.doc_strings", "tools.state_diagrams"]
 myst_enable_extensions = ["colon_fence", "deflist", "attrs_block"]
 myst_heading_anchors = 3
 myst_fence_as_directive = ["mermaid"]  # as other readers of Markdown know it; drawn by Graphviz here

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+MEANS_SOMETHING = re.compile(r"[|*\\]|(?<=\w)_(?=\W|$)")
 ITEM = re.compile(r"(\w+(?:, \w+)*): (.*)")
 
 
@@ -39,6 +40,10 @@ def _paragraph(lines: list[str]) -> Iterator[str]:
             in_item = True
             yield f"- **{item[1]}**: {_escaped(item[2])}"
             continue
+        if line.startswith("- "):
+            in_item = True
+            yield f"- {_escaped(line[2:])}"
+            continue
         if in_item and not line.startswith(" "):
             yield ""
             in_item = False
@@ -49,7 +54,7 @@ def _paragraph(lines: list[str]) -> Iterator[str]:
 def _escaped(text: str) -> str:
     """Without meaning to reStructuredText, but for `names`."""
     parts = re.split(r"(`[^`]*`)", text)
-    return "".join(part if part.startswith("`") else re.sub(r"([|*\\])|(?<=\w)_(?=\W|$)", r"\\\g<0>", part) for part in parts)
+    return "".join(part if part.startswith("`") else MEANS_SOMETHING.sub(r"\\\g<0>", part) for part in parts)
 
 
 def _process(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:

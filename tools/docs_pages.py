@@ -1,6 +1,6 @@
 """Makes the documentation as pages: gathers all of them, hand-written and generated, and has Sphinx make HTML of them.
 
-Usage: build/venv/bin/python tools/docs_pages.py [DIRECTORY]       (./dev docs calls it; without one: build/docs)
+Usage: build/venv/bin/python -m tools.docs_pages [DIRECTORY]       (./dev docs calls it; without one: build/docs)
 
 DIRECTORY/source has what Sphinx is given: docs/*.md, whose blocks are run (tools/page_blocks.py), the pages about
 commands with their pictures (tools/command_pages.py), the reference from the descriptions, the examples.
@@ -19,11 +19,11 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import click
-import command_pages
-import page_blocks
 from sphinx.cmd.build import build_main
 from takt import _core, reference
 from takt.cli import cli
+
+from tools import command_pages, page_blocks
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
@@ -32,13 +32,20 @@ SOURCES = {".py": "python", ".yaml": "yaml", ".gcode": "text", ".csv": "text"}
 LONGEST = 300  # lines: of a longer source the page shows the beginning only
 
 INTRODUCTIONS = {
-    "machine_file": f"All that a machine file may say, made from the descriptions in C++. {reference.UNITS} `takt check` holds a "
-    "file against this, `takt schema` prints it as JSON Schema for editors.",
-    "published": "What every component publishes at the end of each cycle: columns of recordings, properties in Python, fields of "
-    "messages.",
+    "machine_file": f"All that a machine file may say, made from the descriptions in C++. {reference.UNITS} `takt "
+    "check` holds a file against this, `takt schema` prints it as JSON Schema for editors.",
+    "published": "What every component publishes at the end of each cycle: columns of recordings, properties in "
+    "Python, fields of messages.",
     "states": "The state diagram of PLCopen, made from the table that the engine runs (`axis/state_table.h`).",
     "homing": "How a search for a reference goes, made from the table that the engine runs (`axis/homing.h`).",
-    "errors": "The numbers with which commands end and which components show. `takt.error_text(number)` has the sentences.",
+    "errors": "The numbers with which commands end and which components show; `takt.error_text(number)` has "
+    "the sentences.",
+    "commands": "Every command with its arguments, their units, ranges and defaults, the errors that it can end with, "
+    "and a scenario that shows it. They are methods of components in Python (`axis.move_absolute(position=100)`) and "
+    "messages on `takt/command`.",
+    "channels": "The messages on LCM, made from `lcmtypes/`. Each component has a channel, `takt/KIND/NAME`. "
+    "Positions, velocities and voltages are in the units given here; u is an axis' own.",
+    "examples": "Whole machines, run by the tests.",
 }
 
 
@@ -103,13 +110,7 @@ def _list_of_commands() -> str:
     groups = {name: group.stem for group in command_pages.GROUPS for name in command_pages.about(group).COMMANDS}
     described = json.loads(_core.reference())
     kinds = {"machine": "The machine"} | {kind["name"]: kind["many"].capitalize() for kind in described["kinds"]}
-    lines = [
-        "# Commands",
-        "",
-        "Every command with its arguments, their units, ranges and defaults, the errors that it can end with, and a scenario that "
-        "shows it. They are methods of components in Python (`axis.move_absolute(position=100)`) and messages on `takt/command`.",
-        "",
-    ]
+    lines = ["# Commands", "", INTRODUCTIONS["commands"], ""]
     for kind, title in kinds.items():
         verbs = [verb for verb in described["verbs"] if verb["target_kind"] == kind]
         if not verbs:
@@ -138,11 +139,7 @@ def _command_line() -> Iterator[str]:
 
 def _channels() -> Iterator[str]:
     """The messages of lcmtypes/, with what is said of them and of their fields there."""
-    yield "# LCM channels\n"
-    yield (
-        "The messages on LCM, made from `lcmtypes/`. Each component has a channel, `takt/KIND/NAME`. Positions, velocities and "
-        "voltages are in the units given here; u is an axis' own.\n"
-    )
+    yield f"# LCM channels\n\n{INTRODUCTIONS['channels']}\n"
     for file in sorted((ROOT / "lcmtypes").glob("*.lcm")):
         about, name, body = re.findall(r"((?:^//.*\n)*)struct (\w+) \{\n(.*?)^\}", file.read_text(), re.M | re.S)[0]
         yield f"## {name}\n\n{_prose(about)}\n\n| field | type | meaning |\n|---|---|---|"
@@ -160,7 +157,8 @@ def _example_pages() -> Iterator[tuple[str, str]]:
     """The sources of each example."""
     folders = sorted(folder for folder in EXAMPLES.iterdir() if (folder / "scenario.py").is_file())
     toctree = "\n".join(folder.name for folder in folders)
-    yield "index", f"# Examples\n\nWhole machines, run by the tests.\n\n```{{toctree}}\n:maxdepth: 1\n\n{toctree}\n```\n"
+    listed = f"```{{toctree}}\n:maxdepth: 1\n\n{toctree}\n```\n"
+    yield "index", f"# Examples\n\n{INTRODUCTIONS['examples']}\n\n{listed}"
     for folder in folders:
         about = command_pages.about(folder / "scenario.py").__doc__ or folder.name
         title, _, text = about.strip().partition("\n")
@@ -169,7 +167,8 @@ def _example_pages() -> Iterator[tuple[str, str]]:
         for file in sorted(folder.iterdir(), key=lambda file: (file.suffix != ".yaml", file.name)):
             if file.suffix in SOURCES:
                 lines = file.read_text(encoding="utf-8").splitlines()
-                parts += [f"## {file.name}", *([f"The first {LONGEST} of {len(lines)} lines:"] if lines[LONGEST:] else [])]
+                more = [f"The first {LONGEST} of {len(lines)} lines:"] if lines[LONGEST:] else []
+                parts += [f"## {file.name}", *more]
                 parts += ["\n".join([f"````{SOURCES[file.suffix]}", *lines[:LONGEST], "````"])]
         yield folder.name, "\n\n".join(parts) + "\n"
 

@@ -84,8 +84,10 @@ def dressed(text: str) -> str:
     def dress(match: re.Match[str]) -> str:
         language, words, code = match.groups()
         kind, *more = words.split()
-        if kind in ("run", "output"):
+        if kind == "run":
             return f"```{language}\n{code}```"
+        if kind == "output":
+            return f"```{{code-block}} {language}\n:class: output\n\n{code}```"
         caption = more[0] if kind == "from" else kind
         return f"```{{code-block}} {language}\n:caption: {caption}\n\n{code}```"
 
@@ -97,7 +99,7 @@ def _printed(language: str, text: str, directory: Path, where: str, fails: bool)
     env = os.environ | {
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
         "PYTHONDONTWRITEBYTECODE": "1",
-        "COLUMNS": "110",
+        "COLUMNS": "96",
         "NO_COLOR": "1",
     }
     done = subprocess.run(
