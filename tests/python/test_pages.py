@@ -105,6 +105,14 @@ def test_state_diagrams() -> None:
         arrows("stateDiagram-v2\n  A -> B")
 
 
+def test_states_of_groups_are_those_of_the_engine() -> None:
+    table = (ROOT / "cpp" / "takt" / "group" / "state_table.h").read_text(encoding="utf-8")
+    rows = re.findall(r'Transition\{GroupState::k(\w+), GroupState::k(\w+),\s*"([^"]*)"\}', table)
+    drawn = re.findall(r"```mermaid\n(.*?)```", (ROOT / "docs" / "groups.md").read_text(encoding="utf-8"), re.DOTALL)
+    assert len(rows) == 18
+    assert arrows(drawn[0]) == [(f"Group{a}", f"Group{b}", by) for a, b, by in rows]
+
+
 def test_doc_strings_become_what_they_look_like() -> None:
     text = "Draws |x| with `a|b`.\n\n    code * here\n\nfirst: what it is,\n    and more.\nsecond: the other."
     assert to_rst(text.splitlines()) == [
