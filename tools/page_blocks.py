@@ -56,8 +56,7 @@ def run(page: Path, directory: Path) -> str:
         elif kind == "from":
             _check_quotation(text, ROOT / more[0], where)
         else:
-            (directory / kind).parent.mkdir(exist_ok=True)
-            (directory / kind).write_text(text, encoding="utf-8")
+            _write(directory / kind, text)
         return f"```{language} {words}\n{text}```"
 
     page_text = page.read_text(encoding="utf-8")
@@ -67,6 +66,13 @@ def run(page: Path, directory: Path) -> str:
         if folder == page.stem and not (directory / name).is_file():
             raise PageError(f"{page.name}: no block makes the picture {name}")
     return said
+
+
+def unpack(page: Path, directory: Path) -> None:
+    """Writes the files of a page, and runs nothing."""
+    for _, words, text in BLOCK.findall(page.read_text(encoding="utf-8")):
+        if words.split()[0] not in ("run", "output", "from"):
+            _write(directory / words, text)
 
 
 def check(page: Path, directory: Path) -> None:
@@ -92,6 +98,11 @@ def dressed(text: str) -> str:
         return f"```{{code-block}} {language}\n:caption: {caption}\n\n{code}```"
 
     return BLOCK.sub(dress, text)
+
+
+def _write(file: Path, text: str) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, encoding="utf-8")
 
 
 def _printed(language: str, text: str, directory: Path, where: str, fails: bool) -> str:

@@ -1,6 +1,6 @@
-"""The pictures of the live page in docs/images: the examples on taktd, seen in a real browser.
+"""The pictures of the live page in docs/images: the examples, and what pages show, on taktd, seen in a real browser.
 
-tools/page_pictures.py docs/images [NAME ...]
+build/venv/bin/python -m tools.page_pictures docs/images [NAME ...]
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ from playwright.sync_api import Page, sync_playwright
 from takt.demo import free_url, taktd
 from takt.view.server import serving
 
+from tools import page_blocks
+
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = {"width": 1400, "height": 820}
 FLAGS = (
@@ -24,8 +26,8 @@ FLAGS = (
     "--no-first-run"
 ).split()
 
-# Name of the picture: example, dark, what the address says, s of engine time from the beginning of the scenario; what
-# is done on the page before the picture is taken.
+# Name of the picture: example, or page and the folder of its files, dark, what the address says, s of engine time from
+# the beginning of the scenario; what is done on the page before the picture is taken.
 PICTURES: dict[str, tuple[str, bool, str, float, str]] = {
     "view_scope": (
         "flying_saw",
@@ -43,14 +45,37 @@ PICTURES: dict[str, tuple[str, bool, str, float, str]] = {
     "view_plan": ("pick_cell", False, "tab=plan", 12.0, ""),
     "view_movers": ("planar_line", True, "tab=plan", 200.0, ""),
     "view_machine": ("pick_cell", True, "tab=machine", 12.0, ""),
+    "view_first": (
+        "tutorial/gear",
+        False,
+        "tab=scope&signals=web.set_position,knife.set_position,web.set_velocity,knife.set_velocity,knife.state,"
+        "knife.in_step",
+        1.25,
+        """() => {
+            const { scope } = window.takt;
+            scope.pause(true);
+            scope.setSpan(2);
+        }""",
+    ),
     "view_cams": ("flying_saw", False, "tab=cams", 9.3, ""),
 }
 
 
 @contextlib.contextmanager
-def running(example: str) -> Iterator[tuple[str, str]]:
-    """The machine of an example on a taktd of its own: its LCM network, and the address of its page."""
-    folder = ROOT / "python" / "examples" / example
+def machine_of(name: str) -> Iterator[Path]:
+    """The folder with the machine and the scenario of an example, or of a page."""
+    page, _, folder = name.partition("/")
+    if not folder:
+        yield ROOT / "python" / "examples" / name
+        return
+    with tempfile.TemporaryDirectory() as directory:
+        page_blocks.unpack(ROOT / "docs" / f"{page}.md", Path(directory))
+        yield Path(directory) / folder
+
+
+@contextlib.contextmanager
+def running(folder: Path) -> Iterator[tuple[str, str]]:
+    """The machine of a folder on a taktd of its own: its LCM network, and the address of its page."""
     url = free_url()
     with (
         tempfile.TemporaryDirectory() as directory,
@@ -61,10 +86,9 @@ def running(example: str) -> Iterator[tuple[str, str]]:
 
 
 @contextlib.contextmanager
-def playing(example: str, url: str) -> Iterator[None]:
+def playing(folder: Path, url: str) -> Iterator[None]:
     """Its scenario."""
-    file = ROOT / "python" / "examples" / example / "scenario.py"
-    command = [sys.executable, "-m", "takt", "run", str(file), "--url", url]
+    command = [sys.executable, "-m", "takt", "run", str(folder / "scenario.py"), "--url", url]
     scenario = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
         yield
@@ -75,12 +99,12 @@ def playing(example: str, url: str) -> Iterator[None]:
 
 def take(name: str, target: Path) -> None:
     example, dark, hash_, seconds, before = PICTURES[name]
-    with running(example) as (url, address), sync_playwright() as playwright:
+    with machine_of(example) as folder, running(folder) as (url, address), sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
         page: Page = browser.new_page(viewport=SIZE, color_scheme="dark" if dark else "light")  # type: ignore[arg-type]
         page.goto(f"{address}#{hash_}")
         page.wait_for_selector("body.ready", timeout=60_000)
-        with playing(example, url):
+        with playing(folder, url):
             page.wait_for_function("() => window.takt.model.events.length", timeout=60_000)
             page.wait_for_function(
                 "(s) => window.takt.model.now > s + window.takt.model.events[0][0] * window.takt.model.period",
