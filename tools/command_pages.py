@@ -1,6 +1,6 @@
 """Writes a page for each group of commands: what it does as a picture, its arguments and errors from the descriptions.
 
-Usage: build/venv/bin/python tools/command_pages.py [DIRECTORY]        (./dev docs calls it; without one: build/docs)
+tools/docs_pages.py makes them part of the documentation.
 
 A group is a file in docs/commands/ that says COMMANDS and ERRORS (their numbers); its doc string is the page's
 introduction. It is a scenario file with SIGNALS to draw, or has a folder of such files for more pictures than one:
@@ -16,7 +16,7 @@ from types import ModuleType
 
 import takt
 from takt import plot, reference
-from takt.scenario import load_scenario, run_scenario
+from takt.scenario import Scenario, load_scenario, run_scenario
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 GROUPS = sorted((DOCS / "commands").glob("*.py"))
@@ -27,13 +27,14 @@ def figures(group: Path) -> list[Path]:
     return sorted((DOCS / group.stem).glob("fig_*.py"))
 
 
-def write(group: Path, directory: Path) -> Path:
-    """Runs the scenarios of a group, draws them, writes its page. Raises when one of their assertions fails."""
+def write(group: Path, directory: Path, run: bool = True) -> Path:
+    """Runs the scenarios of a group, draws them, writes its page. Raises when one of their assertions fails. Without
+    `run` nothing runs, and the pictures are missing."""
     parts = [*heading("#", group)]
     for figure in figures(group):
-        parts += [*heading("##", figure), *drawn(figure, directory)]
+        parts += [*heading("##", figure), *drawn(figure, directory, run)]
     if not figures(group):
-        parts += drawn(group, directory)
+        parts += drawn(group, directory, run)
     said = about(group)
     parts += [
         "## Commands",
@@ -52,19 +53,26 @@ def heading(level: str, file: Path) -> tuple[str, str]:
     return f"{level} {title.rstrip('.')}", text.strip()
 
 
-def drawn(file: Path, directory: Path) -> tuple[str, str, str]:
-    """Runs a scenario; its picture, and what was run. Raises when one of its assertions fails."""
+def drawn(file: Path, directory: Path, run: bool) -> tuple[str, str, str]:
+    """A scenario's picture, and what was run."""
     scenario = load_scenario(file)
+    if run:
+        _draw(scenario, directory / f"{file.stem}.png")
+    code = f"```python\n{body(file)}\n```"
+    return f"![{scenario.title}]({file.stem}.png)", "The picture is what this does:", code
+
+
+def _draw(scenario: Scenario, target: Path) -> None:
+    """Runs a scenario and draws it from its first mark on. Raises when one of its assertions fails."""
     with takt.Engine(scenario.machine) as engine:
         outcome = run_scenario(scenario, engine)
     if not outcome.passed:
         failed = [verdict.sentence for verdict in outcome.verdicts if not verdict.passed]
-        raise RuntimeError(f"{file.name}: {outcome.complaint or failed[0]}")
+        raise RuntimeError(f"{scenario.path.name}: {outcome.complaint or failed[0]}")
     recording = outcome.recording
     begin = min(event.time_s for event in recording.events if event.kind == "mark")
-    picture = plot.draw(recording, *about(file).SIGNALS, window=(begin, recording.end_s))
-    path = plot.save(picture, directory / f"{file.stem}.png")
-    return f"![{scenario.title}]({path.name})", "The picture is what this does:", f"```python\n{body(file)}\n```"
+    picture = plot.draw(recording, *about(scenario.path).SIGNALS, window=(begin, recording.end_s))
+    plot.save(picture, target)
 
 
 def about(file: Path) -> ModuleType:
@@ -86,16 +94,3 @@ def body(file: Path) -> str:
     text = file.read_text(encoding="utf-8")
     begin = text.index("def scenario(")
     return text[begin : text.index("\n\n\n", begin)]
-
-
-def main(directory: Path) -> None:
-    pages = [write(group, directory) for group in GROUPS]
-    lines = [f"- [{page.read_text(encoding='utf-8').splitlines()[0][2:]}]({page.name})" for page in pages]
-    (directory / "index.md").write_text("# Commands by group\n\n" + "\n".join(lines) + "\n", encoding="utf-8")
-    print(directory / "index.md")
-
-
-if __name__ == "__main__":
-    where = Path(sys.argv[1]) if len(sys.argv) > 1 else DOCS.parent / "build" / "docs"
-    where.mkdir(parents=True, exist_ok=True)
-    main(where)

@@ -1,6 +1,6 @@
-"""The pictures of the live page and of a report in docs/images: the examples, seen in a real browser.
+"""The pictures of the live page and of a report in docs/images: examples, and what pages show, in a real browser.
 
-tools/page_pictures.py docs/images [NAME ...]
+build/venv/bin/python -m tools.page_pictures docs/images [NAME ...]
 """
 
 from __future__ import annotations
@@ -20,6 +20,8 @@ from takt.report import write_report
 from takt.scenario import load_scenario, run_scenario
 from takt.view.server import serving
 
+from tools import page_blocks
+
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = {"width": 1400, "height": 820}
 FLAGS = (
@@ -27,8 +29,8 @@ FLAGS = (
     "--no-first-run"
 ).split()
 
-# Name of the picture: example, dark, what the address says, s of engine time from the beginning of the scenario; what
-# is done on the page before the picture is taken.
+# Name of the picture: example, or page and the folder of its files, dark, what the address says, s of engine time from
+# the beginning of the scenario; what is done on the page before the picture is taken.
 PICTURES: dict[str, tuple[str, bool, str, float, str]] = {
     "view_scope": (
         "flying_saw",
@@ -53,6 +55,18 @@ PICTURES: dict[str, tuple[str, bool, str, float, str]] = {
     "view_plan": ("pick_cell", False, "tab=plan", 12.0, ""),
     "view_movers": ("planar_line", True, "tab=plan", 50.0, ""),
     "view_machine": ("pick_cell", True, "tab=machine", 12.0, ""),
+    "view_first": (
+        "tutorial/gear",
+        False,
+        "tab=scope&signals=web.set_position,knife.set_position,web.set_velocity,knife.set_velocity,knife.state,"
+        "knife.in_step",
+        1.25,
+        """() => {
+            const { scope } = window.takt;
+            scope.pause(true);
+            scope.setSpan(2);
+        }""",
+    ),
     "view_cams": ("flying_saw", False, "tab=cams", 9.3, ""),
 }
 
@@ -70,9 +84,20 @@ REPORTS: dict[str, tuple[bool, str]] = {
 
 
 @contextlib.contextmanager
-def running(example: str) -> Iterator[tuple[str, str]]:
-    """The machine of an example on a taktd of its own: its LCM network, and the address of its page."""
-    folder = ROOT / "python" / "examples" / example
+def machine_of(name: str) -> Iterator[Path]:
+    """The folder with the machine and the scenario of an example, or of a page."""
+    page, _, folder = name.partition("/")
+    if not folder:
+        yield ROOT / "python" / "examples" / name
+        return
+    with tempfile.TemporaryDirectory() as directory:
+        page_blocks.unpack(ROOT / "docs" / f"{page}.md", Path(directory))
+        yield Path(directory) / folder
+
+
+@contextlib.contextmanager
+def running(folder: Path) -> Iterator[tuple[str, str]]:
+    """The machine of a folder on a taktd of its own: its LCM network, and the address of its page."""
     url = free_url()
     with (
         tempfile.TemporaryDirectory() as directory,
@@ -83,10 +108,9 @@ def running(example: str) -> Iterator[tuple[str, str]]:
 
 
 @contextlib.contextmanager
-def playing(example: str, url: str) -> Iterator[None]:
+def playing(folder: Path, url: str) -> Iterator[None]:
     """Its scenario."""
-    file = ROOT / "python" / "examples" / example / "scenario.py"
-    command = [sys.executable, "-m", "takt", "run", str(file), "--url", url]
+    command = [sys.executable, "-m", "takt", "run", str(folder / "scenario.py"), "--url", url]
     scenario = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
         yield
@@ -97,12 +121,12 @@ def playing(example: str, url: str) -> Iterator[None]:
 
 def take(name: str, target: Path) -> None:
     example, dark, hash_, seconds, before = PICTURES[name]
-    with running(example) as (url, address), sync_playwright() as playwright:
+    with machine_of(example) as folder, running(folder) as (url, address), sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
         page: Page = browser.new_page(viewport=SIZE, color_scheme="dark" if dark else "light")  # type: ignore[arg-type]
         page.goto(f"{address}#{hash_}")
         page.wait_for_selector("body.ready", timeout=60_000)
-        with playing(example, url):
+        with playing(folder, url):
             page.wait_for_function("() => window.takt.model.events.length", timeout=60_000)
             page.wait_for_function(
                 "(s) => window.takt.model.now > s + window.takt.model.events[0][0] * window.takt.model.period",

@@ -205,9 +205,10 @@ def _curves(ax: Axes, recording: Recording, name: str, signals: Sequence[Signal]
     kinds = {style.is_set_point(f) for _, f in signals}
     sources = dict.fromkeys(_source(field) for _, field in signals)
     own = {source: style.PALETTE[i % len(style.PALETTE)] for i, source in enumerate(sources)}
+    by_component = len(components) > 1 and (len(own) == 1 or len({component for component, _ in signals}) > 1)
     for component, field in signals:
         table = recording[component]
-        colour = style.component_colour(component, components) if len(components) > 1 else own[_source(field)]
+        colour = style.component_colour(component, components) if by_component else own[_source(field)]
         dashed = style.is_set_point(field) and len(kinds) > 1
         look: dict[str, Any] = (
             {"color": _darker(colour), "ls": (0, (4, 2.2)), "lw": 1.3, "zorder": 3}

@@ -10,27 +10,44 @@ from takt import _core
 
 Type = dict[str, Any]
 
+UNITS = "u stands for an axis' own unit. Unset means that the key may be left out."
+
 
 def reference_page() -> str:
     """Machine file, commands, published values, states with their diagram, and error numbers."""
+    head = f"# Takt {_core.__version__}: reference\n\n{UNITS}\n"
+    return "\n".join([head, *sections().values()]) + "\n"
+
+
+def sections() -> dict[str, str]:
+    """The parts of the page, each under a heading of the second level."""
     reference: dict[str, Any] = json.loads(_core.reference())
-    return "\n".join(_page(reference)) + "\n"
+    return {name: "\n".join(write(reference)) for name, write in SECTIONS.items()}
 
 
-def _page(reference: dict[str, Any]) -> Iterator[str]:
-    yield f"# Takt {reference['version']}: reference\n"
-    yield "u stands for an axis' own unit. Unset means that the key may be left out.\n"
+def _machine_file(reference: dict[str, Any]) -> Iterator[str]:
     yield "## Machine file\n"
     for one in _structs(reference["machine"], {}).values():
-        yield from _struct(one, "###")
+        yield f"### {one['name']}\n"
+        yield f"{one['about']}\n"
+        yield from _fields(one, linked=True)
+
+
+def _commands(reference: dict[str, Any]) -> Iterator[str]:
     yield "## Commands\n"
     for verb in reference["verbs"]:
         yield from _verb(verb)
+
+
+def _published(reference: dict[str, Any]) -> Iterator[str]:
     yield "## Published\n"
     published = {**reference["outputs"], "engine": reference["figures"]}
     for name, fields in published.items():
         yield f"### {name}\n"
         yield from _fields(fields)
+
+
+def _states(reference: dict[str, Any]) -> Iterator[str]:
     yield "## States of an axis\n"
     for state in reference["states"]["values"]:
         yield f"- **{state['name']}**: {state['about']}"
@@ -38,10 +55,6 @@ def _page(reference: dict[str, Any]) -> Iterator[str]:
     for t in reference["transitions"]:
         yield f"  {t['from']} --> {t['to']}: {t['by']}"
     yield "```\n"
-    yield "## Homing\n"
-    yield from _homing(reference["homing"])
-    yield "## Errors\n"
-    yield from _errors(reference["errors"])
 
 
 def commands(names: Sequence[str]) -> str:
@@ -73,14 +86,21 @@ def _verb(verb: dict[str, Any]) -> Iterator[str]:
     yield from _fields(verb["arguments"])
 
 
+def _all_errors(reference: dict[str, Any]) -> Iterator[str]:
+    yield "## Errors\n"
+    yield from _errors(reference["errors"])
+
+
 def _errors(errors: Sequence[dict[str, Any]]) -> Iterator[str]:
     yield "| number | name | meaning |\n|---|---|---|"
     for error in errors:
         yield f"| {error['id']:04} | {error['name']} | {error['text']} |"
 
 
-def _homing(homing: dict[str, Any]) -> Iterator[str]:
+def _homing(reference: dict[str, Any]) -> Iterator[str]:
     """The stages of a homing step, drawn from the table that the engine runs."""
+    yield "## Homing\n"
+    homing = reference["homing"]
     for title in ("stages", "events", "actions", "steps"):
         yield f"{title.capitalize()}:\n"
         for value in homing[title]["values"]:
@@ -105,13 +125,8 @@ def _structs(kind: Type, found: dict[str, Type]) -> dict[str, Type]:
     return found
 
 
-def _struct(kind: Type, level: str) -> Iterator[str]:
-    yield f"{level} {kind['name']}\n"
-    yield f"{kind['about']}\n"
-    yield from _fields(kind)
-
-
-def _fields(kind: Type) -> Iterator[str]:
+def _fields(kind: Type, linked: bool = False) -> Iterator[str]:
+    """The table of a struct. `linked`: the structs that it holds have headings in the same text."""
     if not kind["fields"]:
         return
     yield "| name | type | unit | range | default | meaning |\n|---|---|---|---|---|---|"
@@ -119,7 +134,7 @@ def _fields(kind: Type) -> Iterator[str]:
         default = "required" if field["presence"] == "required" else _default(field)
         cells = (
             field["name"],
-            _type(field["type"]),
+            _type(field["type"], linked),
             field.get("unit", ""),
             field.get("range", {}).get("text", ""),
             default,
@@ -130,11 +145,13 @@ def _fields(kind: Type) -> Iterator[str]:
     yield ""
 
 
-def _type(kind: Type) -> str:
+def _type(kind: Type, linked: bool) -> str:
     if kind["kind"] == "enum":
         return " / ".join(value["name"] for value in kind["values"])
     if "element" in kind:
-        return ("" if kind["kind"] == "optional" else "list of ") + _type(kind["element"])
+        return ("" if kind["kind"] == "optional" else "list of ") + _type(kind["element"], linked)
+    if linked and kind["kind"] == "struct":
+        return f"[{kind['name']}](#{kind['name'].lower()})"
     return str(kind.get("name", kind["kind"]))
 
 
@@ -143,3 +160,13 @@ def _default(field: dict[str, Any]) -> str:
     if field["type"]["kind"] in ("struct", "list", "array"):
         return ""
     return "unset" if default is None else str(default)
+
+
+SECTIONS = {
+    "machine_file": _machine_file,
+    "commands": _commands,
+    "published": _published,
+    "states": _states,
+    "homing": _homing,
+    "errors": _all_errors,
+}

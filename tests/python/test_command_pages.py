@@ -11,9 +11,9 @@ from takt import reference
 from takt.scenario import load_scenario, run_scenario
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(ROOT))
 
-import command_pages  # noqa: E402
+from tools import command_pages  # noqa: E402
 
 FIGURES = {file.stem: file for file in command_pages.figures(ROOT / "docs" / "commands" / "flex_cam.py")}
 
