@@ -37,6 +37,33 @@ def follow_an_axis(session: takt.Session, to: float, velocity: float = 30) -> ta
     )
 
 
+@pytest.mark.parametrize("kind", ["linear", "rotary"])
+@pytest.mark.parametrize("how", ["home", "define_position"])
+def test_with_an_axis_that_counts_anew(kind: str, how: str) -> None:
+    """PL-14: positions of the master are those that it has now."""
+    machine = f"""
+name: line
+axes:
+  - {{name: web, kind: {kind}, limits: {{velocity: 1000, acceleration: 10000, jerk: 200000}}}}
+movers: [{{name: mover}}]
+tracks: [{{name: track, elements: [{{from: {{x: 0, y: 0}}, to: {{x: 1000, y: 0}}}}]}}]
+"""
+    engine = Engine(machine)
+    mover, web = engine.mover("mover"), engine.axis("web")
+    for enabled in (mover.enable(), engine.track("track").enable(), web.power()):
+        enabled.wait()
+    mover.join_track(track="track").wait()
+    getattr(web, how)(position=90).wait()
+    mover.gear_in_pos_on_track(
+        master="web", master_sync_position=40, slave_sync_position=300, allowed_slave_sync_directions="both"
+    )
+    engine.wait(lambda: mover.in_sync, 5)
+    assert mover.track_position == pytest.approx(350, abs=1e-6)
+    web.move_absolute(position=170).wait()
+    engine.wait(lambda: mover.in_sync, 5)
+    assert mover.track_position == pytest.approx(430, abs=1e-6)
+
+
 def test_with_an_axis() -> None:
     """PL-14, PL-50, example 6.2.8: the mover stands at 600 of 760, in step all the way."""
     engine = Engine(ONE_ON_A_LINE)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 import takt
 from machines import new_url, running
@@ -199,3 +200,26 @@ def test_who_is_in_the_way() -> None:
         three.force_disable()
         engine.run(0.1)
         assert (mover.state, three.state, three.disable_forced) == ("Error", "Disabled", True)
+
+
+def test_beside_its_track_a_mover_stays_on_the_stators() -> None:
+    """PL-13, PL-32: set points take it off its place on the track, but its middle not off the part."""
+    engine = Engine(
+        TWO_PARTS.replace("part: left}", "part: left, elements: [{from: {x: 60, y: 120}, to: {x: 180, y: 120}}]}")
+    )
+    mover = enabled(engine)
+    engine.track("track_one").enable().wait()
+    mover.join_track(track="track_one").wait()
+    feedback = mover.start_external_setpoint_generation(mode="relative")
+    furthest = 0.0
+    for k in range(1500):
+        t = 0.001 * k
+        mover.set_external_setpoint(
+            y=90 * (1 - np.cos(2 * t)), velocity_y=180 * np.sin(2 * t), acceleration_y=360 * np.cos(2 * t)
+        )
+        engine.step()
+        furthest = max(furthest, mover.y)
+    assert (feedback.error, feedback.error_id) == (True, 3071)
+    assert 230 < furthest < 240
+    engine.run(1)
+    assert (mover.x, mover.y, mover.part) == (120, 120, 1)

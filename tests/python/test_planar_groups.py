@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 import takt
 from machines import new_url, running
@@ -245,6 +246,60 @@ def test_a_mover_says_where_it_goes_and_what_it_has_reserved() -> None:
     one.remove_from_group().wait()
     engine.step()
     assert reserved(one) == [0, 0, 0, 0]
+
+
+def swing(engine: Engine, mover: takt.Mover, by: float) -> tuple[takt.Feedback, float]:
+    """Relative set points in Y, up to twice `by`, mm: how they end, and how far Y came."""
+    feedback = mover.start_external_setpoint_generation(mode="relative")
+    furthest = mover.y
+    for k in range(1600):
+        t = 0.001 * k
+        mover.set_external_setpoint(
+            y=by * (1 - np.cos(2 * t)), velocity_y=2 * by * np.sin(2 * t), acceleration_y=4 * by * np.cos(2 * t)
+        )
+        engine.step()
+        furthest = max(furthest, mover.y)
+    return feedback, furthest
+
+
+OFF_A_TRACK = """
+name: cell
+axes: []
+movers: [{name: one}, {name: two, initial: {x: 300, y: 300}}]
+tracks: [{name: track, elements: [{from: {x: 0, y: 0}, to: {x: 450, y: 0}}]}]
+environments: [{name: floor, stators: [{x: -120, y: -120}, {x: 120, y: -120}, {x: 360, y: -120}, {x: -120, y: 120},
+   {x: 120, y: 120}, {x: 360, y: 120}]}]
+planar_groups: [{name: group, movers: [one, two], tracks: [track], environment: floor}]
+"""
+
+
+@pytest.mark.parametrize("at", [300, 30], ids=["another mover", "the border"])
+def test_set_points_beside_a_track_are_watched(at: float) -> None:
+    """PL-13, PL-30: off its place on a track a mover comes near nothing of its group, and not over the border."""
+    engine = Engine(OFF_A_TRACK)
+    one, two = engine.mover("one"), engine.mover("two")
+    for enabled in (one.enable(), two.enable(), engine.track("track").enable(), engine.planar_group("group").enable()):
+        enabled.wait()
+    one.join_track(track="track").wait()
+    one.move_on_track(position=at).wait()
+    feedback, furthest = swing(engine, one, 200)
+    assert (feedback.error, feedback.error_id) == (True, 3024)
+    border = 300 - 113 if at == 300 else 360 - 56.5
+    assert border - 15 < furthest < border  # what it needs to stop is left
+    assert feedback.object is (two if at == 300 else engine.environment("floor"))
+    engine.run(2)
+    assert (one.x, one.y) == (at, 0)
+    # And nobody comes where it is off to.
+    one.reset().wait()
+    feedback = one.start_external_setpoint_generation(mode="relative")
+    for k in range(400):
+        t = 0.001 * k
+        one.set_external_setpoint(
+            y=60 * (1 - np.cos(2 * t)), velocity_y=120 * np.sin(2 * t), acceleration_y=240 * np.cos(2 * t)
+        )
+        engine.step()
+    refused = two.move_to_position(x=at, y=one.y + 100).wait_final()
+    assert (refused.error_id, refused.object) == (3024, one)
 
 
 def test_a_turn_that_goes_too_far() -> None:

@@ -40,6 +40,7 @@ void ShowAxesToMovers(World& w) noexcept {
     master.known = axis::IsKnown(s, axis::MasterSource::kSetValue);
     master.at = s.setpoint;
     master.at.position += s.origin;
+    master.origin = s.origin;
     master.turn = w.axis_params[i].turn();
   }
 }

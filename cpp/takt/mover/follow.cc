@@ -174,15 +174,19 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept {
   }
   const bool follows = IsStar(c) ? CanFollowAsBody(c, to, s) : CanFollow(c, s, s.set_point, to);
   if (!follows) return ErrorId::kWildSetPoint;
-  if (!IsOnTrack(s)) {
+  ObjectInfo object;
+  if (IsOnTrack(s)) {
+    const PlacesOff places = PlacesOffTrack(c, external.given);
+    if (const ErrorId why = WhyNotOn(c, s, CoverOf(places)); why != ErrorId::kNone) return why;
+    object = TakeStopOff(c, places, to);
+  } else {
     if (const ErrorId why = WhyNotOn(c, s, CoverOfStop(c, to)); why != ErrorId::kNone) return why;
-    if (external.mode == SetpointMode::kRelative) {
-      if (const ObjectInfo object = TakeStop(c, s, to)) {
-        Report(c, s.tickets[kExternal], FeedbackState::kError, ErrorId::kCollision, 0, s, object);
-        s.tickets[kExternal] = 0;
-        return ErrorId::kCollision;
-      }
-    }
+    if (external.mode == SetpointMode::kRelative) object = TakeStop(c, s, to);
+  }
+  if (object) {
+    Report(c, s.tickets[kExternal], FeedbackState::kError, ErrorId::kCollision, 0, s, object);
+    s.tickets[kExternal] = 0;
+    return ErrorId::kCollision;
   }
   if (c.rider().on) {
     if (const ErrorId why = GetOff(c, s, external.given); why != ErrorId::kNone) return why;

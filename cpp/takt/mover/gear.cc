@@ -169,7 +169,7 @@ Answer CarryOut(const Given& g, const GearInPosOnTrack& command) noexcept {
     return Refused(why);
   }
   // Of an axis that turns, the place nearest to where it is.
-  double master_sync = command.master_sync_position;
+  double master_sync = command.master_sync_position + master->origin;
   if (master->turn > 0) {
     master_sync += master->turn * std::round((master->at.position - master_sync) / master->turn);
   }

@@ -129,6 +129,16 @@ ObjectInfo TakeStop(const Context& now, const State& s, const SetPoint& at) noex
   return object;
 }
 
+ObjectInfo TakeStopOff(const Context& c, const PlacesOff& places, const SetPoint& at) noexcept {
+  if (!IsWatched(c, c.index)) return {};
+  planar::Move move{.on_track = true, .off_track = true};
+  for (const planar::Place& place : places) move.corners[move.corner_count++] = place;
+  move.target.c = trajectory::StopPosition(at[kC], c.params.c.maximum.limits());
+  const ObjectInfo object = planar::AskMove(c.index, move, c.grounds);
+  if (!object) planar::TakeMove(c.index, move, c.grounds);
+  return object;
+}
+
 planar::Pose GoalOf(const Context& c, const State& s) noexcept {
   if (IsPlanet(s)) {
     const State& leads = StateOfStar(c, s);
@@ -170,7 +180,12 @@ void Stand(const Context& c, const State& s) noexcept {
   const planar::Reservation& own = g.grounds[group - 1].reserved.movers[c.index];
   const bool bends = own.move.corner_count > 0 || own.move.over || own.move.over_c;
   const State& leads = IsPlanet(s) ? StateOfStar(c, s) : s;
-  const bool led = leads.external.mode == SetpointMode::kRelative && !now.on_track;  // then TakeStop looks
+  const bool led = leads.external.mode == SetpointMode::kRelative;  // then TakeStop looks
+  const bool returns = now.on_track && c.rider().off > 0;           // what TakeStopOff took is enough for that
+  if (returns) {
+    planar::AdvanceMover(c.index, g);
+    return;
+  }
   if (own.moving && bends && !led && IsPlanet(s)) {
     planar::TakeMove(c.index, MoveOfPlanet(StarOf(c, s), c.index, leads.plane, leads.others.back()), g);
   } else if (own.moving && bends && !led) {

@@ -1,6 +1,7 @@
 // What a mover needs of the ground for its motions, and how it gets it from its group (planar/grounds.h).
 #pragma once
 
+#include "takt/mover/on_parts.h"
 #include "takt/mover/run.h"
 
 namespace takt::mover {
@@ -13,6 +14,8 @@ void Reserve(const Context& c, const State& s, bool on_track) noexcept;
 // What is in the way of a mover that comes to rest from this set point, at the end of this cycle, as hard as it can;
 // X and Y in the plane. None: that is reserved from now on, in place of what was.
 ObjectInfo TakeStop(const Context& c, const State& s, const SetPoint& at) noexcept;
+// The same of one on a track whose middle stays between these places.
+ObjectInfo TakeStopOff(const Context& c, const PlacesOff& places, const SetPoint& at) noexcept;
 // Where X, Y and C lead as commanded; on a track, and moved from outside, X and Y are where they are.
 planar::Pose GoalOf(const Context& c, const State& s) noexcept;
 // Where the mover is when this cycle begins, for others; what it has left is free.

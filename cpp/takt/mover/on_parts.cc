@@ -133,6 +133,34 @@ Cover CoverOfStop(const Context& c, const SetPoint& at) noexcept {
   return cover;
 }
 
+PlacesOff PlacesOffTrack(const Context& c, const SetPoint& off) noexcept {
+  const planar::Rider& r = c.rider();
+  const planar::Network& network = c.streets.network;
+  const auto place = [&](std::uint32_t track, double s) {
+    const double length = network[track].length;
+    const double around = s - length * std::floor(s / length);
+    return c.streets.At(track, network[track].closed ? around : std::clamp(s, 0.0, length)).place;
+  };
+  double rest = planar::Brake(r.at, r.brakes).rest;
+  std::uint32_t k = 0;
+  while (k + 1 < r.route.count && rest > network[r.route.tracks[k]].length) rest -= network[r.route.tracks[k++]].length;
+  PlaneMotion stop;
+  if (!PlanRest(c.planner, {off[kX], off[kY]}, c.params.xy.maximum.limits(), stop)) {
+    stop = StandingAt(off[kX].position, off[kY].position);
+  }
+  const planar::Place by{stop.end_x, stop.end_y};
+  const planar::Place here = place(r.route.first(), r.at.position), there = place(r.route.tracks[k], rest);
+  return {here, there, here + by, there + by};
+}
+
+Cover CoverOf(const PlacesOff& places) noexcept {
+  Cover cover;
+  planar::Area& area = cover.areas[cover.count++];
+  area.count = 0;
+  for (const planar::Place& place : places) area.places[area.count++] = place;
+  return cover;
+}
+
 Cover CoverOf(const Context& c, const PlaneMove& move, const CoordinateMove& turn) noexcept {
   Cover cover;
   Add(c, AreaOf(c, AnglesOf(c, turn)), move, cover);

@@ -38,7 +38,8 @@ struct TrackNow {
 struct Master {
   std::string name;
   double turn = 0;      // u, after which it is where it was; 0: never
-  KinematicState at{};  // over all turns, at the end of this cycle
+  KinematicState at{};  // over all turns and renumberings, at the end of this cycle
+  double origin = 0;    // where its positions count from, on that scale
   bool known = false;   // `at` means something
 };
 // A mover that others may follow.

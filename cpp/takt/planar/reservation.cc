@@ -107,7 +107,9 @@ ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around
   const Area area = AreaOf(own, move);
   const Extent extent = ExtentOf(area);
   for (std::size_t i = 0; i < r.movers.size(); ++i) {
-    if (i != mover && Meets(area, extent, own, r.movers[i])) return Object(ObjectKind::kMover, i);
+    const Reservation& other = r.movers[i];
+    if (move.off_track && other.linked && other.network == own.network) continue;
+    if (i != mover && Meets(area, extent, own, other)) return Object(ObjectKind::kMover, i);
   }
   for (std::size_t i = 0; i < r.tracks.size(); ++i) {
     const TrackArea* track = Moving(i, own.level, around, r);
@@ -185,7 +187,8 @@ void describe(Description<Move>& d) {
   d.internal<&Move::over_c>(unit::deg, "An angle that it may come to on its way.");
   d.internal<&Move::corners>("Of what a curve onto the line keeps within.");
   d.internal<&Move::corner_count>("So many.");
-  d.internal<&Move::on_track>("It only turns, on a track.");
+  d.internal<&Move::on_track>("It stays on a track.");
+  d.internal<&Move::off_track>("It is off its place there.");
 }
 
 void describe(Description<Reservation>& d) {

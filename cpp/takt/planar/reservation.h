@@ -35,7 +35,9 @@ struct Move {
   // anew.
   std::array<Place, 4> corners{};
   std::uint8_t corner_count = 0;
-  bool on_track = false;  // only the angle counts: the mover is where its track has it, and stays linked
+  bool on_track = false;  // the mover is where its track has it, and stays linked: the target's angle counts alone
+  // On a track and off its place there. Those of its network keep away from it by their gaps, as far as it may be off.
+  bool off_track = false;
 };
 
 struct Reservation {
