@@ -330,6 +330,42 @@ def test_the_plan_shows_movers_where_they_are(tmp_path: Path, browser: Browser) 
         expect(page.locator("#waiting-count")).to_have_text("1 waiting")
 
 
+GROUND = """
+name: ground
+axes: []
+tracks: [{name: later}]
+movers: [{name: one, xy: {maximum: {velocity: 200, acceleration: 2000, jerk: 40000}}}, {name: two, initial: {y: 300}}]
+planar_groups: [{name: group, movers: [one, two]}]
+"""
+
+
+def test_the_plan_knows_tracks_that_commands_made_and_what_is_reserved(tmp_path: Path, browser: Browser) -> None:
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=GROUND),
+        served(url) as address,
+        opened(browser, address, "#tab=plan") as page,
+        takt.connect(url) as session,
+    ):
+        one, two, later = session.mover("one"), session.mover("two"), session.track("later")
+        for feedback in (one.enable(), two.enable(), session.planar_group("group").enable()):
+            feedback.wait()
+        later.append_line(start_x=0, start_y=500, end_x=800, end_y=500).wait()
+        until(page, "() => window.takt.model.shapes.get('later')?.points.length > 6")
+        points = np.reshape(page.evaluate("() => window.takt.model.shapes.get('later').points"), (-1, 3))
+        np.testing.assert_allclose(points[[0, -1]], [[0, 0, 500], [800, 800, 500]], atol=0.01)
+        assert np.all(np.diff(points[:, 0]) <= 10.01)
+        one.move_to_position(x=700, y=100)
+        field = "(name) => window.takt.model.liveOf(window.takt.model.byName.get('one'), name)"
+        until(page, f"() => ({field})('reserved_upper_x') === 756.5 && ({field})('x') > 100")
+        assert page.evaluate(field, "reserved_upper_y") == 156.5
+        assert page.evaluate(field, "target_x") == 700
+        session.wait(lambda: one.x == 700, 10)
+        until(page, f"() => ({field})('reserved_lower_x') === 643.5")
+        later.clear().wait()
+        until(page, "() => window.takt.model.shapes.get('later').points.length === 0")
+
+
 def test_cams_show_the_point_in_force(tmp_path: Path, browser: Browser) -> None:
     url = new_url()
     with (

@@ -26,6 +26,7 @@ from takt.view.ledger import Ledger
 from takt.view.machine import Machine, Source
 from takt.view.overview import Overview
 from takt.view.ring import Ring
+from takt.view.shapes import Shapes
 
 QUEUE = 200_000  # messages that wait for the next tick, of all that must not get lost
 AT_ONCE = 2000  # messages of one tick, besides states
@@ -99,6 +100,7 @@ class Feed:
         self.taps: dict[int, Tap] = {}
         self.engine: dict[str, Any] | None = None
         self.objects: dict[str, list[list[float]]] = {}  # what lies on belts
+        self.shapes = Shapes()  # of tracks
         self.links: dict[str, list[list[float]]] = {}  # where the links of groups are
         self.trouble = ""  # what is wrong beside the engine, in a sentence
         self.messages = 0  # of the scope, so far
@@ -209,11 +211,14 @@ class Feed:
         self.taps.clear()
         self.machine, self.overview, self.ledger = machine, Overview(machine), Ledger(machine.by_name)
         self.engine, self.objects, self.links, self.messages = None, {}, {}, 0
+        self.shapes = Shapes(machine.names["part"])
         self.epoch += 1
         self._heard = time.monotonic()
         self._subscriptions = [self._newest(source.channel, self._taker(source)) for source in machine.sources]
         for belt in machine.names["belt"]:
             self._subscriptions.append(self._newest(f"takt/belt_objects/{belt}", self._on_objects))
+        for track in machine.names["track"]:
+            self._subscriptions.append(self._newest(f"takt/track_shapes/{track}", self._on_shape))
 
     def _newest(self, channel: str, handler: Any) -> Any:
         """One message is enough until the next tick."""
@@ -261,6 +266,11 @@ class Feed:
         message = _decoded(msgs.belt_objects, data)
         if message is not None:
             self.objects[message.name] = rows_of(objects_of(message))
+
+    def _on_shape(self, _: str, data: bytes) -> None:
+        message = _decoded(msgs.track_shape, data)
+        if message is not None:
+            self.shapes.take(message)
 
     def _place_links(self) -> None:
         assert self.machine is not None

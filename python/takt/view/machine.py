@@ -20,6 +20,7 @@ from takt.style import PALETTE, STATES, USUAL_FIELDS, is_set_point
 from takt.tables import KINDS, PREFIXES, components_of, unit_of, units_of
 from takt.track_layout import TrackLayout
 from takt.view.layout import Layout
+from takt.view.shapes import track as shape_of
 from takt.view.status import LIVE
 
 CAM_POINTS = 400
@@ -139,7 +140,7 @@ class Machine:
         }
 
     def _tracks(self) -> list[dict[str, Any]]:
-        """Those that have their geometry from the machine file; what commands made of them since is not known here."""
+        """Those that have their geometry from the machine file; what commands made of them since the engine says."""
         try:
             tracks = TrackLayout(self.text).tracks if self.parameters["tracks"] else ()
         except (TaktError, ConfigError):
@@ -147,19 +148,14 @@ class Machine:
         shown = []
         part_of = {track["name"]: track["part"] for track in self.parameters["tracks"]}
         only = self.names["part"][0] if len(self.names["part"]) == 1 else ""
+        at = {part["name"]: self._initial(part) for part in self.parameters["parts"]}
         for track in tracks:
             if track.length > 0:
                 points = track.points
                 thin = _thin(np.asarray(points.s))
-                line = np.stack([points.s, points.x, points.y], axis=1)[thin]
-                shown.append(
-                    {
-                        "name": track.name,
-                        "part": part_of[track.name] or only,
-                        "closed": track.closed,
-                        "points": np.round(line, 2).ravel().tolist(),
-                    }
-                )
+                part = part_of[track.name] or only
+                line = np.stack([points.s, points.x, points.y], axis=1)[thin] - [0.0, *at.get(part, (0.0, 0.0))]
+                shown.append(shape_of(track.name, part, track.closed, line))
         return shown
 
     def _part(self, part: Mapping[str, Any]) -> dict[str, Any]:
@@ -169,8 +165,12 @@ class Machine:
             for row in range(int(part.get("rows") or 0))
             for column in range(int(part.get("columns") or 0))
         ]
+        return {"name": part["name"], "stators": stators}
+
+    @staticmethod
+    def _initial(part: Mapping[str, Any]) -> tuple[float, float]:
         initial = part["positions"][part["initial_position"] - 1]
-        return {"name": part["name"], "stators": stators, "initial": [initial["x"], initial["y"]]}
+        return initial["x"], initial["y"]
 
     # --- cams ---
 

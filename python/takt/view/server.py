@@ -59,6 +59,7 @@ class Page:
         self._details: tuple[int, ...] = ()
         self._revision = 0
         self._events = 0
+        self._shapes = 0
         self._engine: Any = None
         self._sent = 0
         self._acked = 0
@@ -136,7 +137,7 @@ class Page:
                 await self._socket.send_text(json.dumps(waiting))
             return
         self._epoch, self._wanted, self._cursors, self._details = feed.epoch, {}, {}, ()
-        self._revision = self._events = self._skipped = 0
+        self._revision = self._events = self._shapes = self._skipped = 0
         self._engine = None
         self.leave()
         self._commander = Commander(feed.network, feed.machine, self._answers.append)
@@ -181,6 +182,9 @@ class Page:
         if events := feed.ledger.since(self._events):
             header["events"] = events
         self._events = feed.ledger.count
+        if shapes := feed.shapes.since(self._shapes):
+            header["shapes"] = shapes
+        self._shapes = feed.shapes.count
         if self._answers:
             header["answers"] = self._answers.copy()
             self._answers.clear()

@@ -24,7 +24,8 @@ LIVE: dict[str, tuple[str, ...]] = {
     "pick_place": ("position_x", "position_y", "position_z", "set_path_velocity"),
     "mover": (
         *("x", "y", "z", "c", "track_position", "track_velocity", "velocity_x", "velocity_y", "track", "waits_for"),
-        "coordinate_system",
+        *("coordinate_system", "gap", "target_x", "target_y", "target_c"),
+        *("reserved_lower_x", "reserved_lower_y", "reserved_upper_x", "reserved_upper_y"),
     ),
     "track": ("length",),
     "part": ("x", "y", "coordinate_system"),

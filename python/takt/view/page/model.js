@@ -15,6 +15,7 @@ export class Model {
     this.cycle = 0;
     this.objects = {};
     this.links = {};
+    this.shapes = new Map(); // of tracks, by name
     this.health = {};
   }
 
@@ -33,6 +34,7 @@ export class Model {
       this.byName.set(component.name, component);
       (this.numbers[component.kind] ??= []).push(component);
     });
+    for (const track of machine.plan.tracks) this.shapes.set(track.name, track);
     for (const kind of Object.values(this.kinds)) {
       kind.byName = new Map(kind.fields.map((field, place) => [field.name, { ...field, place }]));
       kind.livePlace = new Map(kind.live.map((field, place) => [field, place]));
@@ -61,6 +63,7 @@ export class Model {
     for (const row of header.rows ?? []) this.rows[row.i] = row;
     if (header.events) this.events = [...this.events, ...header.events].slice(-500);
     if (header.engine) this.engine = header.engine;
+    for (const shape of header.shapes ?? []) this.shapes.set(shape.name, shape);
     this.objects = header.objects;
     this.links = header.links;
     this.health = header.health;

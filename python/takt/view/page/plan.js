@@ -26,8 +26,8 @@ export class Plan {
   begin() {
     this.plan = this.model.machine.plan;
     const { plan } = this;
-    this.tracks = new Map(plan.tracks.map((track) => [track.name, track]));
-    this.something = plan.tracks.length + plan.stators.length + plan.parts.length + plan.movers.length + plan.belts.length + plan.groups.length > 0;
+    this.shapes = this.model.shapes.size;
+    this.something = (this.model.numbers.track ?? []).length + plan.stators.length + plan.parts.length + plan.movers.length + plan.belts.length + plan.groups.length > 0;
     byId("plan-empty").hidden = this.something;
     const { systems } = plan;
     this.system = 1;
@@ -74,7 +74,10 @@ export class Plan {
       box[3] = Math.max(box[3], place[v]);
     };
     const { plan, model } = this;
-    for (const { points } of plan.tracks) for (let i = 0; i < points.length; i += 3) add(points[i + 1], points[i + 2], 0);
+    for (const track of model.shapes.values()) {
+      const shift = this.shiftOf(track);
+      for (let i = 0; shift && i < track.points.length; i += 3) add(track.points[i + 1] + shift[0], track.points[i + 2] + shift[1], 0);
+    }
     for (const [x, y] of plan.stators) [0, STATOR].forEach((d) => add(x + d, y + d, 0));
     for (const part of plan.parts) for (const [x, y] of this.statorsOf(part)) [0, STATOR].forEach((d) => add(x + d, y + d, 0));
     for (const mover of plan.movers) {
@@ -103,7 +106,7 @@ export class Plan {
     const component = this.model.byName.get(part.name);
     if (!this.isHere(component)) return null;
     const [x, y] = [this.model.liveOf(component, "x"), this.model.liveOf(component, "y")];
-    return [x - part.initial[0], y - part.initial[1]];
+    return [x, y];
   }
 
   statorsOf(part) {
@@ -132,8 +135,9 @@ export class Plan {
     c.fillRect(0, 0, this.width, this.height);
     if (!this.something) return;
     const known = Object.values(this.model.links).filter((links) => links.length).length;
-    if (known !== this.knownArms) this.camera = null; // one more arm to be seen
+    if (known !== this.knownArms || this.model.shapes.size !== this.shapes) this.camera = null; // one more to be seen
     this.knownArms = known;
+    this.shapes = this.model.shapes.size;
     this.camera ??= this.fit();
     if (!this.camera) return;
     c.font = `11px ${css("--font")}`;
@@ -201,8 +205,10 @@ export class Plan {
 
   drawTracks() {
     const { c, model } = this;
-    this.plan.tracks.forEach((track, i) => {
+    (model.numbers.track ?? []).forEach(({ name }, i) => {
       const colour = model.machine.palette[i % model.machine.palette.length];
+      const track = model.shapes.get(name);
+      if (!track?.points.length) return;
       const { points } = track;
       const line = [];
       const shift = this.shiftOf(track);
@@ -269,14 +275,19 @@ export class Plan {
     const all = plan.movers.map((mover) => {
       const component = model.byName.get(mover.name);
       const of = (field) => model.liveOf(component, field);
-      return { ...mover, component, row: model.rows[component.index], x: of("x"), y: of("y"), c: of("c"), s: of("track_position"), track: of("track"), waits: of("waits_for") };
+      const reserved = ["lower_x", "lower_y", "upper_x", "upper_y"].map((side) => of(`reserved_${side}`));
+      return {
+        ...mover, component, reserved, row: model.rows[component.index], x: of("x"), y: of("y"), c: of("c"), s: of("track_position"), track: of("track"),
+        waits: of("waits_for"), gap: of("gap"), target: { x: of("target_x"), y: of("target_y"), c: of("target_c") },
+      };
     });
     const known = all.filter((mover) => Number.isFinite(mover.x) && this.isHere(mover.component));
     // What each keeps free before it, centre to centre.
     c.lineCap = "butt";
+    for (const mover of known) this.reserved(mover);
     for (const mover of known) {
-      const track = this.tracks.get(model.numbers.track?.[mover.track - 1]?.name);
-      if (!track || !Number.isFinite(mover.s)) continue;
+      const track = model.shapes.get(model.numbers.track?.[mover.track - 1]?.name);
+      if (!track?.points.length || !Number.isFinite(mover.s)) continue;
       c.strokeStyle = css("--accent");
       c.globalAlpha = 0.16;
       c.lineWidth = mover.height * this.camera.scale * 0.8;
@@ -289,6 +300,35 @@ export class Plan {
       const other = known.find((one) => one.component === model.numbers.mover[mover.waits - 1]);
       if (other) this.arrow(mover, other);
     }
+  }
+
+  // What a mover has reserved of the plane: from where it is to where it goes; dashed the rectangle around all of it
+  // where that is more.
+  reserved({ x, y, c: turned, width, height, target, reserved }) {
+    const { c } = this;
+    const [left, lower, right, upper] = reserved;
+    if (!(right > left) || (left > x - width && right < x + width && lower > y - height && upper < y + height)) return;
+    const corners = (at) => {
+      const [cos, sin] = [Math.cos((at.c * Math.PI) / 180), Math.sin((at.c * Math.PI) / 180)];
+      return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([i, k]) => [at.x + (i * width * cos - k * height * sin) / 2, at.y + (i * width * sin + k * height * cos) / 2]);
+    };
+    c.globalAlpha = 0.16;
+    c.fillStyle = css("--accent");
+    const swept = hull([...corners({ x, y, c: turned }), ...corners(target)]);
+    this.line(swept.map(([px, py]) => this.at(px, py)), true);
+    c.fill();
+    c.globalAlpha = 1;
+    const [xs, ys] = [swept.map(([px]) => px), swept.map(([, py]) => py)];
+    const more = Math.max(Math.min(...xs) - left, Math.min(...ys) - lower, right - Math.max(...xs), upper - Math.max(...ys));
+    if (more < 1) return; // mm; else it swings out on its way, or turns
+    c.globalAlpha = 0.6;
+    c.strokeStyle = css("--accent");
+    c.lineWidth = 1;
+    c.setLineDash([4, 4]);
+    this.line([[left, lower], [right, lower], [right, upper], [left, upper]].map(([px, py]) => this.at(px, py)), true);
+    c.stroke();
+    c.setLineDash([]);
+    c.globalAlpha = 1;
   }
 
   mover(mover) {
@@ -516,4 +556,19 @@ export class Plan {
     }, { passive: false });
     new ResizeObserver(() => this.fitAgain()).observe(this.box);
   }
+}
+
+// The corners of the convex hull of some places, counterclockwise.
+function hull(places) {
+  const sorted = [...places].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const turn = (o, a, b) => (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
+  const half = (all) => {
+    const side = [];
+    for (const place of all) {
+      while (side.length > 1 && turn(side[side.length - 2], side[side.length - 1], place) <= 0) side.pop();
+      side.push(place);
+    }
+    return side.slice(0, -1);
+  };
+  return [...half(sorted), ...half(sorted.reverse())];
 }
