@@ -182,12 +182,7 @@ void RunMovers(benchmark::State& state) {
   state.counters["max_us"] = cycles.back();
 }
 
-BENCHMARK(RunMovers)->Name("CycleMovers")
-    ->UseManualTime()
-    ->Arg(50)
-    ->Arg(200)
-    ->Arg(800)
-    ->Iterations(3000);
+BENCHMARK(RunMovers)->Name("CycleMovers")->UseManualTime()->Arg(50)->Arg(200)->Arg(800)->Iterations(3000);
 BENCHMARK(RunIdle)->Name("CycleIdle")->Arg(1)->Arg(6);
 BENCHMARK_CAPTURE(RunCycles, csp, DriveMode::kCyclicPosition, false)
     ->Name("CycleStandstillCsp")
