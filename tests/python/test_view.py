@@ -482,6 +482,18 @@ def test_commands_from_a_page(tmp_path: Path) -> None:
         client.until(lambda: client.state("x") == "Disabled")
 
 
+def test_a_module_from_a_page(tmp_path: Path) -> None:
+    url = new_url()
+    machine = (EXAMPLES / "flying_saw" / "machine.yaml").read_text() + "\nview: {commands: true}\n"
+    with running(tmp_path, url, machine=machine), served(url) as address, Client(address) as client:
+        client.give("cutter", "control", regulator_on=True)
+        client.until(lambda: client.state("cutter") == "Ready")
+        client.give("cutter", "control", stop=True)
+        client.until(lambda: client.complaints and "with halt, regulator_on, reset_error alone" in client.complaints[-1])
+        client.give("cutter", "control", regulator_on=False)
+        client.until(lambda: client.state("saw") == "Disabled")
+
+
 @pytest.mark.parametrize("how", ["let go", "silent", "closed", "server killed"])
 def test_what_is_jogged_stops_whatever_falls_silent(how: str, tmp_path: Path) -> None:  # EN-23
     url = new_url()

@@ -32,6 +32,8 @@ ALLOWED: dict[str, dict[str, frozenset[str]]] = {
         **{verb: frozenset() for verb in ("enable", "disable", "reset", "halt")},
         "power": frozenset({"enable"}),
     },
+    "flex_cam": {"control": frozenset({"regulator_on", "reset_error", "halt"})},
+    "pick_place": {"control": frozenset({"regulator_on", "reset_error", "path_halt"})},
     "mover": {verb: frozenset() for verb in ("enable", "disable", "reset", "halt")},
     "track": {verb: frozenset() for verb in ("enable", "disable", "reset")},
     "planar_group": {verb: frozenset() for verb in ("enable", "disable", "reset")},

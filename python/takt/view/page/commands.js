@@ -3,14 +3,22 @@
 
 import { byId, el } from "./dom.js";
 
+// Modules have inputs; an error is acknowledged when one of them rises.
+const module = (halt) => [
+  ["On", "control", { regulator_on: true }], ["Off", "control", { regulator_on: false }], ["Reset", "control", { reset_error: true }, { reset_error: false }],
+  ["Halt", "control", { [halt]: true }], ["Go on", "control", { [halt]: false }],
+];
 const BUTTONS = {
   axis: [["On", "power", { enable: true }], ["Off", "power", { enable: false }], ["Reset", "reset", {}], ["Halt", "halt", {}]],
   group: [["On", "power", { enable: true }], ["Off", "power", { enable: false }], ["Enable", "enable", {}], ["Disable", "disable", {}], ["Reset", "reset", {}], ["Halt", "halt", {}]],
+  flex_cam: module("halt"),
+  pick_place: module("path_halt"),
   mover: [["Enable", "enable", {}], ["Disable", "disable", {}], ["Reset", "reset", {}], ["Halt", "halt", {}]],
   track: [["Enable", "enable", {}], ["Disable", "disable", {}], ["Reset", "reset", {}]],
   planar_group: [["Enable", "enable", {}], ["Disable", "disable", {}], ["Reset", "reset", {}]],
 };
 const LEAST_MS = 15;
+const APART_MS = 100; // from one command of a button to the next, so that the engine sees both
 
 export class Commands {
   constructor(model, connection) {
@@ -39,7 +47,7 @@ export class Commands {
   panel(component) {
     const buttons = this.model.machine.commands ? BUTTONS[component.kind] : null;
     if (!buttons) return [];
-    const plain = buttons.map(([text, verb, given]) => el("button", { textContent: text, onclick: () => this.give(component.name, verb, given) }));
+    const plain = buttons.map(([text, verb, ...all]) => el("button", { textContent: text, onclick: () => all.forEach((given, i) => setTimeout(() => this.give(component.name, verb, given), i * APART_MS)) }));
     const rows = [el("div", { className: "buttons" }, ...plain)];
     if (component.kind === "axis") rows.push(this.jogRow(component));
     return rows;
