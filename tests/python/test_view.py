@@ -490,7 +490,9 @@ def test_a_module_from_a_page(tmp_path: Path) -> None:
         client.give("cutter", "control", regulator_on=True)
         client.until(lambda: client.state("cutter") == "Ready")
         client.give("cutter", "control", stop=True)
-        client.until(lambda: client.complaints and "with halt, regulator_on, reset_error alone" in client.complaints[-1])
+        client.until(
+            lambda: client.complaints and "with halt, regulator_on, reset_error alone" in client.complaints[-1]
+        )
         client.give("cutter", "control", regulator_on=False)
         client.until(lambda: client.state("saw") == "Disabled")
 

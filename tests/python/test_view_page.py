@@ -196,6 +196,139 @@ def test_the_scope_is_triggered_pauses_zooms_and_measures(tmp_path: Path, browse
         until(page, "() => window.takt.scope.shown().to > window.takt.scope.period")
 
 
+COMMANDED = machine_with("{axis_rate_hz: 1000, dead_man_s: 1}") + "view: {commands: true}\n"
+
+
+def test_a_page_that_hears_no_engine_says_so_and_refuses_commands(tmp_path: Path, browser: Browser) -> None:
+    """The server and the engine go; the server comes back alone. In a narrow window, too, the stops are in sight."""
+    url, port = new_url(), free_port()
+    with contextlib.ExitStack() as stack:
+        engine = stack.enter_context(contextlib.ExitStack())
+        server = stack.enter_context(contextlib.ExitStack())
+        engine.enter_context(running(tmp_path, url, machine=COMMANDED))
+        page = stack.enter_context(opened(browser, server.enter_context(served(url, port=port)), "#tab=machine"))
+        expect(page.locator("#state")).to_have_text("live")
+        for width in (1440, 700):
+            page.set_viewport_size({"width": width, "height": 700})
+            box = page.locator("#emergency-stop").bounding_box()
+            assert box is not None
+            assert box["x"] + box["width"] <= width
+        server.close()
+        expect(page.locator("#banner")).to_contain_text("the server of this page is gone")
+        page.click("#emergency-stop")
+        expect(page.locator("#banner")).to_have_text(
+            "machine.emergency_stop was not given: the server of this page is gone"
+        )
+        engine.close()
+        server.enter_context(served(url, port=port))
+        expect(page.locator("#state")).to_have_text("waiting for an engine")
+        until(page, f"() => document.getElementById('banner').textContent === 'no engine is heard on {url}'")
+        page.click("#emergency-stop")
+        expect(page.locator("#banner")).to_have_text("machine.emergency_stop was not given: no engine is heard")
+        frames = page.evaluate("() => window.takt.connection.tries")
+        page.wait_for_timeout(6000)  # longer than a page takes a silent server for a living one
+        assert page.evaluate("() => window.takt.connection.tries") == frames
+        expect(page.locator("#state")).to_have_text("waiting for an engine")
+
+
+def test_the_trigger_takes_switches_states_and_what_leaves_rest(tmp_path: Path, browser: Browser) -> None:
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=FULL_RATE),
+        served(url) as address,
+        opened(browser, address, "#tab=scope&signals=x.set_velocity,x.state,x.loop_closed") as page,
+        takt.connect(url) as session,
+    ):
+        x = session.axis("x")
+        wait_for_cycle(page, 1)
+        page.select_option("#span", "0.1")
+
+        def armed(signal: str, level: str | None = None, state: str | None = None) -> None:
+            page.select_option("#trigger-mode", "single")
+            page.select_option("#trigger-signal", signal)
+            if level is not None:
+                page.fill("#trigger-level", level)
+                page.press("#trigger-level", "Enter")
+            if state is not None:
+                page.select_option("#trigger-name", label=state)
+            expect(page.locator("#trigger-state")).to_have_text("armed")
+
+        def edge() -> float:
+            expect(page.locator("#trigger-state")).to_contain_text("triggered at")
+            return float(page.evaluate("() => window.takt.scope.held.edge"))
+
+        record = session.record()
+        armed("x.loop_closed")
+        x.power().wait()
+        switched = edge()
+        armed("x.set_velocity", level="0")
+        x.move_velocity(velocity=50).wait(until="reached")
+        started = edge()
+        armed("x.state", state="Standstill")
+        x.halt().wait()
+        stood = edge()
+        recording = record.stop()
+        table = recording["x"]
+        assert (
+            table["cycle"][np.argmax(table["loop_closed"])] - 1
+            <= switched
+            <= table["cycle"][np.argmax(table["loop_closed"])]
+        )
+        moving = table["cycle"][np.argmax(table["set_velocity"] > 0)]
+        assert moving - 1 <= started <= moving
+        states = recording.text("x", "state")
+        last = np.flatnonzero((states[1:] == "Standstill") & (states[:-1] != "Standstill"))[-1]
+        assert stood == pytest.approx(table["cycle"][last + 1])
+
+
+def test_differences_between_cursors_are_those_of_the_motion(tmp_path: Path, browser: Browser) -> None:
+    """Wherever cursors are put at a constant velocity, the slope between them is that."""
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=FULL_RATE),
+        served(url) as address,
+        opened(browser, address, "#tab=scope&signals=x.set_position") as page,
+        takt.connect(url) as session,
+    ):
+        x = session.axis("x")
+        x.power().wait()
+        x.move_velocity(velocity=50).wait(until="reached")
+        page.select_option("#span", "0.2")
+        session.run(1)
+        page.evaluate("() => window.takt.scope.pause(true)")
+        begin = page.evaluate("() => window.takt.scope.held.from")
+        put = "([a, b]) => { const { scope } = window.takt; scope.setCursor(a); scope.setCursor(b, true); }"
+        measured = "([a, b]) => document.getElementById('measured').dataset.key.startsWith(`${a}|${b}|`)"
+        for a, b in ((20.3, 60.9), (33.5, 35.49), (150.2, 20.7)):
+            page.evaluate(put, [begin + a, begin + b])
+            until(page, measured, *page.evaluate("() => [window.takt.scope.a, window.takt.scope.b]"))
+            cells = page.locator("#measured tr").nth(1).locator("td")
+            assert cells.nth(4).inner_text() == "50 mm/s"
+            at_a, at_b, least, largest = (float(cells.nth(i).inner_text().split()[0]) for i in (1, 2, 5, 6))
+            assert (least, largest) == (min(at_a, at_b), max(at_a, at_b))
+
+
+def test_the_scope_by_keyboard(tmp_path: Path, browser: Browser) -> None:
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=FULL_RATE),
+        served(url) as address,
+        opened(browser, address, "#tab=scope&signals=x.set_position") as page,
+    ):
+        wait_for_cycle(page, 1)
+        page.focus("#filter")
+        page.keyboard.type("x.actual_velocity")
+        page.keyboard.press("Tab")
+        page.keyboard.press("Tab")
+        page.keyboard.press(" ")
+        until(page, "() => window.takt.scope.signals.some((s) => s.name === 'x.actual_velocity')")
+        assert not page.evaluate("() => window.takt.scope.paused")
+        page.focus("#tab-machine")
+        page.keyboard.press(" ")
+        expect(page.locator("#view-machine")).to_be_visible()
+        assert not page.evaluate("() => window.takt.scope.paused")
+
+
 def test_connections_that_break(tmp_path: Path, browser: Browser) -> None:
     """The server goes and comes; the engine goes, comes back, and is another machine then."""
     url, port = new_url(), free_port()

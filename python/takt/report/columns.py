@@ -30,6 +30,8 @@ class Block:
         """One value where nothing changes, bytes for states, 32-bit floats where their rounding is below a millionth of
         the column's range."""
         if column.dtype.kind == "b" or column.dtype == np.int8:
+            if len(column) and np.all(column == column[0]):
+                return {"constant": float(column[0])}
             return self.exactly(column, "i8")
         values = column.astype(np.float64)
         good = values[np.isfinite(values)]

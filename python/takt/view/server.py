@@ -36,6 +36,7 @@ HOST = "127.0.0.1"
 HOSTS = ["127.0.0.1", "localhost"]
 TICK_S = 0.05  # from frame to frame
 AHEAD = 4  # frames that a page may not have drawn yet: a slow one gets fewer and larger ones
+WAITING_S = 1.0  # from one time that a page is told that it waits for an engine to the next
 MOST_ROWS = 8192  # of one component in one frame
 HEADERS = [
     (b"cache-control", b"no-store"),
@@ -60,6 +61,7 @@ class Page:
         self._revision = 0
         self._events = 0
         self._shapes = 0
+        self._waited = 0.0  # when the page was told last that it waits
         self._engine: Any = None
         self._sent = 0
         self._acked = 0
@@ -132,8 +134,9 @@ class Page:
         feed = self._feed
         if feed.machine is None:
             waiting = {"waiting": feed.url, "trouble": feed.trouble}
-            if waiting != self._waiting:
-                self._waiting = waiting
+            now = time.monotonic()
+            if waiting != self._waiting or now - self._waited > WAITING_S:  # a page takes silence for a dead server
+                self._waiting, self._waited = waiting, now
                 await self._socket.send_text(json.dumps(waiting))
             return
         self._epoch, self._wanted, self._cursors, self._details = feed.epoch, {}, {}, ()

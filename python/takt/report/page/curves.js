@@ -86,7 +86,7 @@ class Block {
 
   head() {
     const { component, still, table } = this;
-    const said = still.map((f) => `${f.label} = ${digits(f.constant)}${f.unit && f.unit !== "1" ? ` ${f.unit}` : ""}`).join(", ");
+    const said = still.map((f) => `${f.label} = ${stillOf(f)}${f.unit && f.unit !== "1" ? ` ${f.unit}` : ""}`).join(", ");
     const text = !this.drawable ? `${table.time.length} samples: nothing to draw` : said ? `throughout: ${said}` : "";
     return el("h3", {}, component.name, text ? el("small", { textContent: text }) : null);
   }
@@ -231,4 +231,11 @@ function line(ctx, x, y, toX, toY) {
   ctx.moveTo(x, y);
   ctx.lineTo(toX, toY);
   ctx.stroke();
+}
+
+// What a field said throughout: states by name, switches as yes or no.
+function stillOf({ names, constant }) {
+  const known = Object.keys(names ?? {});
+  if (known.length === 1 && known[0] === "1") return constant ? "yes" : "no";
+  return names?.[String(constant)]?.[0] ?? digits(constant);
 }

@@ -48,6 +48,13 @@ export class Chooser {
 
   make() {
     const node = el("div", {}, el("i"), el("span"), el("output"));
+    node.tabIndex = 0;
+    node.role = "button";
+    node.onkeydown = (event) => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      node.click();
+    };
     node.onclick = () => {
       const { component, field } = node.item;
       if (field) {

@@ -24,6 +24,7 @@ export class Commands {
   constructor(model, connection) {
     this.model = model;
     this.connection = connection;
+    this.epoch = null;
     this.timer = null;
     byId("emergency-stop").onclick = () => this.give("machine", "emergency_stop", {});
     byId("stop-all").onclick = () => this.give("machine", "stop_all", {});
@@ -39,8 +40,18 @@ export class Commands {
     byId("stops").hidden = !this.model.machine.commands;
   }
 
+  // There is no engine that could be commanded.
+  end() {
+    this.letGo();
+    this.epoch = null;
+  }
+
+  // False: nobody hears it, and the user is told.
   give(target, verb, given) {
-    this.connection.send({ epoch: this.epoch, command: [target, verb, given] });
+    const nobody = !this.connection.connected ? "the server of this page is gone" : this.epoch === null ? "no engine is heard" : "";
+    if (!nobody) return this.connection.send({ epoch: this.epoch, command: [target, verb, given] });
+    this.connection.say("complaint", `${target}.${verb} was not given: ${nobody}`);
+    return false;
   }
 
   // The buttons of a component.
@@ -69,7 +80,7 @@ export class Commands {
 
   hold(target, given, node) {
     this.letGo();
-    this.give(target, "jog", given);
+    if (!this.give(target, "jog", given)) return;
     this.held = node;
     node.setAttribute("aria-pressed", "true");
     const every = Math.max(LEAST_MS, Math.min(100, 250 * this.model.machine.dead_man_s));

@@ -57,7 +57,9 @@ export class Connection extends EventTarget {
     this.send({ ack: header.n });
   }
 
+  // False: there is nobody to hear it.
   send(request) {
     if (this.connected) this.socket.send(JSON.stringify(request));
+    return this.connected;
   }
 }

@@ -12,7 +12,7 @@ const LEAST = 74;
 export const isBand = (signal) => Boolean(signal.field.names || signal.field.flag);
 
 // Positions of rotary axes wrap: that is no motion.
-const modulusOf = (signal) => (signal.component.modulus && signal.field.quantity === "position" ? signal.component.modulus : Infinity);
+export const modulusOf = (signal) => (signal.component.modulus && signal.field.quantity === "position" ? signal.component.modulus : Infinity);
 
 // Signals of a quantity and unit share a lane, unless one was given a lane of its own. States and switches are bands.
 export function layOut(signals, order, height) {
@@ -185,6 +185,7 @@ export class LaneDrawing {
     const { low, high, first, size } = envelope;
     const jump = modulusOf(signal) / 2;
     let down = false;
+    let last = NaN;
     for (let i = begin; i < end; ++i) {
       if (low[i] > high[i] || high[i] - low[i] > jump) {
         down = false;
@@ -192,10 +193,12 @@ export class LaneDrawing {
       }
       if (i > begin && Math.abs(high[i] - high[i - 1]) > jump) down = false;
       const px = x((first + i + 0.5) * size);
-      const [a, b] = [y(high[i]), y(low[i])];
+      let [a, b] = [y(high[i]), y(low[i])];
+      if (down && Math.abs(b - last) < Math.abs(a - last)) [a, b] = [b, a]; // on from the nearer end: rising and falling edges look alike
       if (!down) c.moveTo(px, a);
       else c.lineTo(px, a);
-      if (b - a > 0.6) c.lineTo(px, b);
+      if (Math.abs(b - a) > 0.6) c.lineTo(px, b);
+      last = Math.abs(b - a) > 0.6 ? b : a;
       down = true;
     }
   }

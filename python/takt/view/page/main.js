@@ -164,6 +164,9 @@ connection.addEventListener("lost", () => {
 connection.addEventListener("connected", () => say());
 connection.addEventListener("waiting", ({ detail }) => {
   waitingFor = detail;
+  epoch = null; // what is shown is how it was
+  asked = "";
+  commands.end();
   say();
 });
 connection.addEventListener("complaint", ({ detail }) => complain(detail));
@@ -211,7 +214,8 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", forgetColo
 
 addEventListener("keydown", (event) => {
   if (/INPUT|SELECT|TEXTAREA/.test(event.target.tagName)) return;
-  if (event.key === " " && tab === "scope") {
+  const presses = event.target.closest("button, [role=button]"); // Space is for that then
+  if (event.key === " " && !presses && tab === "scope") {
     event.preventDefault();
     scope.pause(!scope.paused);
   } else if (event.key === "Escape") {

@@ -1,7 +1,7 @@
 // The scope: signals over time, live, held by a trigger, or paused to be looked at and measured.
 
 import { byId, css, duration, el, exact, number } from "./dom.js";
-import { LaneDrawing, LEFT, layOut } from "./lanes.js";
+import { LaneDrawing, LEFT, layOut, modulusOf } from "./lanes.js";
 import { Store } from "./store.js";
 import { MODES, Trigger } from "./trigger.js";
 
@@ -210,7 +210,7 @@ export class Scope extends EventTarget {
     const head = el("tr", {}, ...["", `A  ${time(a)}`, `B  ${time(b)}`, b === null ? "B − A" : `B − A  ${duration((b - a) * this.period)}`, "per s", "least between", "largest between"].map((t) => el("th", { textContent: t })));
     const rows = this.signals.map((signal) => {
       const index = signal.component.index;
-      const value = (cycle) => (cycle === null ? NaN : shown.store.value(index, signal.field.name, cycle));
+      const value = (cycle) => (cycle === null ? NaN : shown.store.between(index, signal.field.name, cycle, signal.field.whole, modulusOf(signal)));
       const said = (v) => this.model.nameOf(signal.component, signal.field.name, v) ?? exact(v);
       const [va, vb] = [value(a), value(b)];
       const series = shown.store.series.get(index);
@@ -222,12 +222,13 @@ export class Scope extends EventTarget {
           low = Math.min(low, column[i]);
           high = Math.max(high, column[i]);
         }
+        [low, high] = [Math.min(low, va, vb), Math.max(high, va, vb)];
       }
       const band = Boolean(signal.field.names || signal.field.flag);
       const difference = band ? "" : exact(vb - va);
       const rate = band || b === null || a === b ? "" : exact((vb - va) / ((b - a) * this.period));
       const cells = [said(va), said(vb), difference, rate, band || low > high ? "" : exact(low), band || low > high ? "" : exact(high)];
-      return el("tr", {}, el("td", { textContent: signal.name }), ...cells.map((t, i) => el("td", { textContent: t && t !== "–" && !band && signal.unit && i !== 3 ? `${t} ${signal.unit}` : t })));
+      return el("tr", {}, el("td", { textContent: signal.name }), ...cells.map((t, i) => el("td", { textContent: t && t !== "–" && !band && signal.unit ? `${t} ${signal.unit}${i === 3 ? "/s" : ""}` : t })));
     });
     panel.replaceChildren(el("table", {}, el("thead", {}, head), el("tbody", {}, ...rows)));
   }
@@ -257,6 +258,7 @@ export class Scope extends EventTarget {
     mode.onchange = () => this.setTrigger({ mode: mode.value });
     byId("trigger-signal").onchange = ({ target }) => this.setTrigger({ name: target.value });
     byId("trigger-edge").onchange = ({ target }) => this.setTrigger({ edge: target.value });
+    byId("trigger-name").onchange = ({ target }) => this.setTrigger({ level: Number(target.value) });
     byId("trigger-level").onchange = ({ target }) => this.setTrigger({ level: Number(target.value) });
     byId("trigger-before").onchange = ({ target }) => this.setTrigger({ before: Number(target.value) / 100 });
     new ResizeObserver(() => this.layOut()).observe(this.box);
@@ -280,7 +282,15 @@ export class Scope extends EventTarget {
       const signal = this.signals.find((one) => one.name === name);
       this.trigger.signal = signal ? [signal.component.index, signal.field.name] : null;
       const lane = this.layout.lanes.find((one) => one.signals.includes(signal));
-      if (lane?.scale && more.level === undefined) this.trigger.level = Number(((lane.scale[0] + lane.scale[1]) / 2).toPrecision(3));
+      const { names, flag } = signal?.field ?? {};
+      this.trigger.ofState = Boolean(names);
+      const states = Object.entries(names ?? {}).map(([value, text]) => el("option", { value, textContent: text }));
+      byId("trigger-name").replaceChildren(...states);
+      byId("trigger-name").hidden = !names;
+      byId("trigger-level").parentElement.hidden = Boolean(names || flag);
+      if (flag) this.trigger.level = 0.5;
+      else if (names) this.trigger.level = more.level ?? Number(states[0].value);
+      else if (lane?.scale && more.level === undefined) this.trigger.level = Number(((lane.scale[0] + lane.scale[1]) / 2).toPrecision(3));
       byId("trigger-signal").value = signal ? name : "";
     }
     if (this.trigger.mode !== "off" && !this.trigger.signal && this.signals.length) {
@@ -288,7 +298,7 @@ export class Scope extends EventTarget {
     }
     byId("trigger-mode").value = this.trigger.mode;
     byId("trigger-edge").value = this.trigger.edge;
-    byId("trigger-level").value = String(this.trigger.level);
+    byId("trigger-level").value = byId("trigger-name").value = String(this.trigger.level);
     byId("trigger-before").value = String(100 * this.trigger.before);
     byId("trigger-more").hidden = this.trigger.mode === "off";
     this.held = null;
@@ -347,8 +357,9 @@ export class Scope extends EventTarget {
     canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
   }
 
-  setCursor(cycle, second) {
+  setCursor(at, second) {
     if (!this.paused) this.pause(true);
+    const cycle = Math.round(at);
     if (second || (this.a !== null && this.b === null)) this.b = cycle;
     else [this.a, this.b] = [cycle, null];
   }

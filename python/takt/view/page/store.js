@@ -118,6 +118,17 @@ export class Store {
     return copy;
   }
 
+  // The value on the line between two samples; of whole numbers, and where it goes round, of the sample before.
+  between(component, field, cycle, whole, modulus) {
+    const series = this.series.get(component);
+    const column = series?.columns.get(field);
+    if (!column) return NaN;
+    const row = series.find(cycle + 1e-6) - 1;
+    const [a, b] = [column[row], column[row + 1]];
+    if (row < 0 || whole || row + 1 >= series.end || !(Math.abs(b - a) < modulus / 2)) return series.at(field, cycle) ?? NaN;
+    return a + ((b - a) * (cycle - series.cycles[row])) / (series.cycles[row + 1] - series.cycles[row]);
+  }
+
   value(component, field, cycle) {
     return this.series.get(component)?.at(field, cycle) ?? NaN;
   }

@@ -8,6 +8,7 @@ export class Trigger {
     this.signal = null; // [component, field]
     this.edge = "rising"; // falling, either
     this.level = 0;
+    this.ofState = false; // the signal is a state: rising is getting to the one of this number, falling is leaving it
     this.before = 0.2; // share of the picture that lies before the edge
     this.arm();
   }
@@ -37,17 +38,29 @@ export class Trigger {
   }
 
   search(series, column) {
-    const from = this.seen === null ? series.end : Math.max(1, this.seen - series.moved);
+    const first = this.seen === null ? series.end : Math.max(1, this.seen - series.moved);
     this.seen = series.moved + series.end;
-    for (let i = Math.max(1, from); i < series.end; ++i) {
-      const [a, b] = [column[i - 1] - this.level, column[i] - this.level];
-      const rises = a < 0 && b >= 0;
-      const falls = a > 0 && b <= 0;
+    for (let i = Math.max(1, first); i < series.end; ++i) {
+      const [a, b] = [this.over(column[i - 1]), this.over(column[i])];
+      const from = a === 0 && b !== 0 ? this.cameFrom(column, i - 1) : a; // it rested at the level
+      const rises = (a < 0 && b >= 0) || (a === 0 && b > 0 && from >= 0);
+      const falls = (a > 0 && b <= 0) || (a === 0 && b < 0 && from <= 0);
       if ((rises && this.edge !== "falling") || (falls && this.edge !== "rising")) {
         this.seen = series.moved + i + 1;
-        return series.cycles[i - 1] + (series.cycles[i] - series.cycles[i - 1]) * (a / (a - b));
+        return series.cycles[i - 1] + (series.cycles[i] - series.cycles[i - 1]) * (a === 0 ? 0 : this.ofState ? 1 : a / (a - b));
       }
     }
     return null;
+  }
+
+  // How far above the level a value is.
+  over(value) {
+    return this.ofState ? (value === this.level ? 1 : -1) : value - this.level;
+  }
+
+  // How it got to the level that it is at: from above, > 0, or below; 0: it was there from the beginning.
+  cameFrom(column, i) {
+    while (i >= 0 && this.over(column[i]) === 0) --i;
+    return i < 0 ? 0 : this.over(column[i]);
   }
 }
