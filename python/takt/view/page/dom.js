@@ -82,5 +82,6 @@ export function ticks(from, to, most) {
   const step = [1, 2, 5, 10].find((k) => k * power >= rough * 0.999) * power;
   const at = [];
   for (let k = Math.ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; ++k) at.push(k * step);
+  if (at.length < 2 && most < 12) return ticks(from, to, 2 * most); // one alone is no scale
   return { at, step, decimals: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
 }
