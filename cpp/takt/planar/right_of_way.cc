@@ -7,8 +7,8 @@ namespace {
 constexpr double kTolerance = 1e-7;
 // mm: as exactly as a place is found that is to be just at the gap.
 constexpr double kJustThere = 1e-6;
-// Passages through nodes near which a mover can be at once, at those of its route, where it begins, those it has passed,
-// and beyond; when a cycle begins, and as it goes on.
+// Passages through nodes near which a mover can be at once, at those of its route, where it begins, those it has
+// passed, and beyond; when a cycle begins, and as it goes on.
 constexpr std::size_t kPresences = 2 * (kRouteTracks + 1 + kPassed + 2 * kBeyond);
 
 // It goes back before it rests.
