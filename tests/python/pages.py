@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 import shutil
 import signal
 import socket
@@ -16,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from playwright.sync_api import Browser, Page
 from websockets.sync.client import connect as connect_socket
 
 CHROMIUM = shutil.which("chromium")
@@ -24,6 +26,17 @@ FLAGS = (
     "--no-first-run"
 ).split()
 PATIENCE_S = 30.0  # for things that take a moment; nothing is judged by how long they take
+
+# A mover, another one before it, and a loop for both.
+TWO_ON_A_LOOP = """\
+tracks:
+  - name: loop
+    closed_loop: true
+    elements: [{from: {x: 0, y: 0}, to: {x: 800, y: 0}}, {from: {x: 800, y: 600}, to: {x: 0, y: 600}}]
+movers:
+  - {name: one, initial: {x: 100, y: 0}, gap: 200, xy: {maximum: {velocity: 1000, acceleration: 5000, jerk: 100000}}}
+  - {name: two, initial: {x: 700, y: 0}, gap: 200, xy: {maximum: {velocity: 1000, acceleration: 5000, jerk: 100000}}}
+"""
 
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 
@@ -144,3 +157,48 @@ class Client:
                 self.values.setdefault((index, field), []).append(numbers[at : at + count])
                 at += count
         assert at == len(numbers)
+
+
+# --- In a browser ---
+
+
+@contextlib.contextmanager
+def opened(browser: Browser, address: str, hash_: str = "", dark: bool = False) -> Iterator[Page]:
+    """The page in a profile of its own. It must not complain, and ask nobody but its server."""
+    complaints: list[str] = []
+    asked: set[str] = set()
+    context = browser.new_context(viewport={"width": 1440, "height": 860}, color_scheme="dark" if dark else "light")
+    page = context.new_page()
+    page.set_default_timeout(PATIENCE_S * 1000)
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("request", lambda request: asked.add(re.sub(r"^(\w+://[^/]*/).*", r"\1", request.url)))
+    page.goto(address + hash_)
+    yield page
+    context.close()
+    assert complaints == []
+    assert asked <= {address}, asked
+
+
+def until(page: Page, condition: str, *arguments: Any) -> None:
+    """Until an expression of the page's own world holds."""
+    page.wait_for_function(condition, arg=list(arguments))
+
+
+def column(page: Page, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Cycles and values that the page has of a signal."""
+    component, field = name.rsplit(".", 1)
+    script = """([component, field]) => {
+        const { model, scope } = window.takt;
+        const series = scope.store.series.get(model.byName.get(component).index);
+        return [[...series.cycles.subarray(0, series.end)], [...series.columns.get(field).subarray(0, series.end)]];
+    }"""
+    cycles, values = page.evaluate(script, [component, field])
+    return np.array(cycles), np.array(values, dtype=float)
+
+
+def wait_for_cycle(page: Page, cycle: int) -> None:
+    until(page, "([cycle]) => [...window.takt.scope.store.series.values()].every((s) => s.last >= cycle)", int(cycle))
+
+
+def row(page: Page, name: str) -> Any:
+    return page.locator("#list .row:visible", has=page.locator(f".name:text-is('{name}')"))

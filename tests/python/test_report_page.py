@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import takt
-from pages import CHROMIUM, FLAGS, PATIENCE_S, needs_chromium
+from pages import CHROMIUM, FLAGS, PATIENCE_S, TWO_ON_A_LOOP, needs_chromium
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 from takt import checks, report
 from takt.kinematics import Kinematics
@@ -18,7 +18,8 @@ from takt.kinematics import Kinematics
 pytestmark = needs_chromium
 expect.set_options(timeout=PATIENCE_S * 1000)
 
-CELL = """
+CELL = (
+    """
 name: cell
 axes:
   - {name: x, unit: mm, limits: {velocity: 500, acceleration: 5000, jerk: 100000}}
@@ -33,14 +34,9 @@ groups:
     base: {x: 1000, y: 200}
 belts:
   - {name: infeed, axis: drive, origin: {x: 900, y: 400}}
-tracks:
-  - name: loop
-    closed_loop: true
-    elements: [{from: {x: 0, y: 0}, to: {x: 800, y: 0}}, {from: {x: 800, y: 600}, to: {x: 0, y: 600}}]
-movers:
-  - {name: one, initial: {x: 100, y: 0}, gap: 200, xy: {maximum: {velocity: 1000, acceleration: 5000, jerk: 100000}}}
-  - {name: two, initial: {x: 700, y: 0}, gap: 200, xy: {maximum: {velocity: 1000, acceleration: 5000, jerk: 100000}}}
 """
+    + TWO_ON_A_LOOP
+)
 
 
 @pytest.fixture(scope="module")

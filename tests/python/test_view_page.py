@@ -6,14 +6,26 @@ import contextlib
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 import takt
 from machines import MACHINE, machine_with, new_url, running
-from pages import CHROMIUM, FLAGS, PATIENCE_S, free_port, needs_chromium, served
-from playwright.sync_api import Browser, Page, expect, sync_playwright
+from pages import (
+    CHROMIUM,
+    FLAGS,
+    PATIENCE_S,
+    TWO_ON_A_LOOP,
+    column,
+    free_port,
+    needs_chromium,
+    opened,
+    row,
+    served,
+    until,
+    wait_for_cycle,
+)
+from playwright.sync_api import Browser, expect, sync_playwright
 
 pytestmark = needs_chromium
 
@@ -21,17 +33,7 @@ FULL_RATE = machine_with("{axis_rate_hz: 1000, dead_man_s: 0.5}")
 expect.set_options(timeout=PATIENCE_S * 1000)
 
 SAW = (Path(__file__).parents[2] / "python" / "examples" / "flying_saw" / "machine.yaml").read_text()
-PLANE = """
-name: plane
-axes: []
-tracks:
-  - name: loop
-    closed_loop: true
-    elements: [{from: {x: 0, y: 0}, to: {x: 800, y: 0}}, {from: {x: 800, y: 600}, to: {x: 0, y: 600}}]
-movers:
-  - {name: one, initial: {x: 100, y: 0}, gap: 200, xy: {maximum: {velocity: 1000, acceleration: 5000, jerk: 100000}}}
-  - {name: two, initial: {x: 700, y: 0}, gap: 200, xy: {maximum: {velocity: 1000, acceleration: 5000, jerk: 100000}}}
-"""
+PLANE = "name: plane\naxes: []\n" + TWO_ON_A_LOOP
 
 
 @pytest.fixture(scope="module")
@@ -40,48 +42,6 @@ def browser() -> Iterator[Browser]:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         yield browser
         browser.close()
-
-
-@contextlib.contextmanager
-def opened(browser: Browser, address: str, hash_: str = "", dark: bool = False) -> Iterator[Page]:
-    """The page in a profile of its own. It must not complain, and ask nobody but its server."""
-    complaints: list[str] = []
-    asked: set[str] = set()
-    context = browser.new_context(viewport={"width": 1440, "height": 860}, color_scheme="dark" if dark else "light")
-    page = context.new_page()
-    page.set_default_timeout(PATIENCE_S * 1000)
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("request", lambda request: asked.add(re.sub(r"^(\w+://[^/]*/).*", r"\1", request.url)))
-    page.goto(address + hash_)
-    yield page
-    context.close()
-    assert complaints == []
-    assert asked <= {address}, asked
-
-
-def until(page: Page, condition: str, *arguments: Any) -> None:
-    """Until an expression of the page's own world holds."""
-    page.wait_for_function(condition, arg=list(arguments))
-
-
-def column(page: Page, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Cycles and values that the page has of a signal."""
-    component, field = name.rsplit(".", 1)
-    script = """([component, field]) => {
-        const { model, scope } = window.takt;
-        const series = scope.store.series.get(model.byName.get(component).index);
-        return [[...series.cycles.subarray(0, series.end)], [...series.columns.get(field).subarray(0, series.end)]];
-    }"""
-    cycles, values = page.evaluate(script, [component, field])
-    return np.array(cycles), np.array(values, dtype=float)
-
-
-def wait_for_cycle(page: Page, cycle: int) -> None:
-    until(page, "([cycle]) => [...window.takt.scope.store.series.values()].every((s) => s.last >= cycle)", int(cycle))
-
-
-def row(page: Page, name: str) -> Any:
-    return page.locator("#list .row:visible", has=page.locator(f".name:text-is('{name}')"))
 
 
 def test_values_are_the_engines(tmp_path: Path, browser: Browser) -> None:
