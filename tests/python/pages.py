@@ -197,7 +197,11 @@ def column(page: Page, name: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def wait_for_cycle(page: Page, cycle: int) -> None:
-    until(page, "([cycle]) => [...window.takt.scope.store.series.values()].every((s) => s.last >= cycle)", int(cycle))
+    script = """([cycle]) => {
+        const all = [...window.takt.scope.store.series.values()];
+        return all.length > 0 && all.every((series) => series.last >= cycle);
+    }"""
+    until(page, script, int(cycle))
 
 
 def row(page: Page, name: str) -> Any:

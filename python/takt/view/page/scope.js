@@ -75,7 +75,7 @@ export class Scope extends EventTarget {
     this.held = this.zoom = this.a = this.b = null;
     this.paused = false;
     this.drawing.scales.clear();
-    this.trigger.arm();
+    this.trigger.arm(this.store);
   }
 
   layOut() {
@@ -142,7 +142,7 @@ export class Scope extends EventTarget {
     this.paused = on;
     if (!on) {
       this.held = this.zoom = null;
-      this.trigger.arm();
+      this.trigger.arm(this.store);
     }
     byId("pause").setAttribute("aria-pressed", String(on));
     byId("pause").textContent = on ? "Run" : "Pause";
@@ -272,7 +272,7 @@ export class Scope extends EventTarget {
       this.held = { ...this.held, from: this.held.to - this.spanCycles };
     } else {
       this.held = null;
-      this.trigger.arm();
+      this.trigger.arm(this.store);
     }
   }
 
@@ -303,7 +303,7 @@ export class Scope extends EventTarget {
     byId("trigger-more").hidden = this.trigger.mode === "off";
     this.held = null;
     if (this.paused) this.pause(false);
-    this.trigger.arm();
+    this.trigger.arm(this.store);
   }
 
   fillTriggerSignals() {

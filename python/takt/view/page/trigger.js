@@ -13,10 +13,12 @@ export class Trigger {
     this.arm();
   }
 
-  arm() {
+  // What comes from now on counts, with the next frame, too.
+  arm(store = null) {
+    const series = store?.series.get(this.signal?.[0]);
     this.state = "armed"; // then filling, then held
     this.at = null; // cycle of the edge, with a fraction
-    this.seen = null; // rows of the series that were looked at, counted from the first one ever
+    this.seen = series ? series.moved + series.end : null; // rows that were looked at, counted from the first one ever
   }
 
   // Looks at what has come. True: a picture is complete, from `at` on.
@@ -61,6 +63,6 @@ export class Trigger {
   // How it got to the level that it is at: from above, > 0, or below; 0: it was there from the beginning.
   cameFrom(column, i) {
     while (i >= 0 && this.over(column[i]) === 0) --i;
-    return i < 0 ? 0 : this.over(column[i]);
+    return i < 0 ? 0 : this.over(column[i]) || 0; // nothing is known of what was before the signal was chosen
   }
 }
