@@ -28,7 +28,7 @@ using Pair = py::typing::Tuple<double, double>;                           // x, 
 using Values = py::typing::Tuple<Array, Array, Array, Array>;             // y, dy, ddy, dddy
 using Warned = py::typing::Tuple<cam::Table, py::typing::List<py::str>>;  // a table, what to know about it
 
-Pair ToPython(const cam::Extreme& extreme) {
+Pair PairOf(const cam::Extreme& extreme) {
   return py::make_tuple(extreme.x, extreme.value);
 }
 
@@ -151,7 +151,7 @@ py::typing::List<py::typing::Tuple<Pair, Pair>> Extremes(const cam::Table& table
   const cam::Extremes extremes = cam::ExtremesOf(table);
   py::typing::List<py::typing::Tuple<Pair, Pair>> list;
   for (const cam::Bounds& bounds : {extremes.y, extremes.dy, extremes.ddy, extremes.dddy}) {
-    list.append(py::make_tuple(ToPython(bounds.least), ToPython(bounds.greatest)));
+    list.append(py::make_tuple(PairOf(bounds.least), PairOf(bounds.greatest)));
   }
   return list;
 }
@@ -161,8 +161,8 @@ py::typing::Tuple<Pair, Pair, Pair, Pair> SlavePeaks(const cam::Table& table, do
     throw std::invalid_argument("the master's velocity and acceleration must be finite numbers, at least 0");
   }
   const cam::SlavePeaks peaks = cam::SlavePeaksOf(table, velocity, acceleration);
-  return py::make_tuple(ToPython(peaks.position.least), ToPython(peaks.position.greatest), ToPython(peaks.velocity),
-                        ToPython(peaks.acceleration));
+  return py::make_tuple(PairOf(peaks.position.least), PairOf(peaks.position.greatest), PairOf(peaks.velocity),
+                        PairOf(peaks.acceleration));
 }
 
 py::array_t<double> ArrayOf(const std::vector<double>& values) {
@@ -192,7 +192,7 @@ std::tuple<double, double, double> LawFactors(const std::string& law, double sin
   return {f.velocity, f.acceleration, f.jerk};
 }
 
-py::array_t<double> Joints(const cam::Table& table) {
+py::array_t<double> JointsOf(const cam::Table& table) {
   std::vector<double> joints;
   for (std::size_t i = 0; i < table.size(); ++i) joints.push_back(table.BeginOf(i));
   joints.push_back(table.end());
@@ -222,7 +222,7 @@ void BindCam(py::module_& m) {
       .def_property_readonly("begin", &T::begin)
       .def_property_readonly("end", &T::end)
       .def_property_readonly("stroke", &T::stroke)
-      .def_property_readonly("joints", &Joints)
+      .def_property_readonly("joints", &JointsOf)
       .def_property_readonly("points", &PointsOf)
       .def_property_readonly("source", [](const T& t) { return ToJson(TypeOf<cam::CamParams>(), &t.source()).dump(); })
       .def("at", &At, py::arg("x"))

@@ -4,13 +4,13 @@
 #include <pybind11/typing.h>
 
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
+#include "takt/core/angle.h"
 #include "takt/core/arguments.h"
 #include "takt/kinematics/links.h"
 
@@ -26,7 +26,6 @@ using kinematics::MovingFrame;
 using kinematics::Pose;
 using kinematics::Reason;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;

@@ -68,7 +68,8 @@ void RunIdle(benchmark::State& state) {
 // Two rows of lanes, each beside another one with a switch at both ends, joined to one ring: five movers to a lane.
 class Ring {
  public:
-  explicit Ring(std::int64_t movers) : lanes_(static_cast<int>(movers / 5)), engine_(Make()) {
+  explicit Ring(std::int64_t movers, double scale)
+      : lanes_(static_cast<int>(movers / 5)), scale_(scale), engine_(Make()) {
     Do("close", "enable");
     for (int i = 0; i < lanes_; ++i) Do("lane" + std::to_string(i), "enable"), Do("side" + std::to_string(i), "enable");
     for (int i = 0; i < 5 * lanes_; ++i) Do(Mover(i), "enable");
@@ -107,8 +108,9 @@ class Ring {
     const int row = lanes_ / 2;
     for (int i = 0; i < lanes_; ++i) {
       const bool back = i >= row;
-      const double at = 3000.0 * (back ? lanes_ - 1 - i : i), y = back ? 4000 : 0, side = back ? 400 : -400;
-      const double from = back ? at + 2400 : at, to = back ? at : at + 2400;
+      const double at = 3000.0 * scale_ * (back ? lanes_ - 1 - i : i), y = back ? 4000 : 0;
+      const double side = (back ? 400 : -400) * scale_;
+      const double length = 2400 * scale_, from = back ? at + length : at, to = back ? at : at + length;
       const std::string next = std::to_string((i + 1) % lanes_), n = std::to_string(i);
       const auto line = [](double a, double b, double height) {
         const std::string level = std::to_string(height);
@@ -119,13 +121,13 @@ class Ring {
       // Tracks refer to one another in no circle: the last one is joined to the first by one more.
       text += i + 1 < lanes_ ? ", ends_at: [lane" + next + "]}\n"
                              : "}\n  - {name: close, starts_from: [lane" + n + "], ends_at: [lane0]}\n";
-      const double in = from + (to > from ? 800 : -800), out = to - (to > from ? 800 : -800);
+      const double way = to > from ? scale_ : -scale_, in = from + 800 * way, out = to - 800 * way;
       const std::string before = std::to_string((i + lanes_ - 1) % lanes_);
       text += "  - {name: side" + n + ", starts_from: [lane" + before + "], elements: [" + line(in, out, y + side) +
               "], ends_at: [lane" + next + "]}\n";
       for (int k = 0; k < 5; ++k) {
         movers += "  - {name: " + Mover(5 * i + k) +
-                  ", gap: 160, initial: {x: " + std::to_string(from + (to > from ? 1 : -1) * (200 + 400 * k)) +
+                  ", gap: 160, initial: {x: " + std::to_string(from + way * (200 + 400 * k)) +
                   ", y: " + std::to_string(y) + "}}\n";
       }
     }
@@ -154,11 +156,12 @@ class Ring {
     const int ahead = std::uniform_int_distribution<int>(1, 5)(random_);
     const bool side = std::uniform_int_distribution<int>(0, 1)(random_) != 0;
     const std::string to = (side ? "side" : "lane") + std::to_string((lane + ahead) % lanes_);
-    const double place = std::uniform_real_distribution<double>(700, 1700)(random_);
+    const double place = scale_ * std::uniform_real_distribution<double>(700, 1700)(random_);
     sent_[Give(Mover(mover), "move_on_track", "{track: " + to + ", position: " + std::to_string(place) + "}")] = mover;
   }
 
   int lanes_;
+  double scale_;  // of all lengths but those of movers
   Engine engine_;
   std::unordered_map<Ticket, int> sent_;
   std::mt19937 random_{1};
@@ -166,8 +169,8 @@ class Ring {
 };
 
 // PL-60: everything that a cycle is, with commands that arrive and tracks that are looked for.
-void RunMovers(benchmark::State& state) {
-  Ring ring(state.range(0));
+void RunMovers(benchmark::State& state, double scale) {
+  Ring ring(state.range(0), scale);
   std::vector<double> cycles;
   double moving = 0;
   for (auto _ : state) {
@@ -182,7 +185,14 @@ void RunMovers(benchmark::State& state) {
   state.counters["max_us"] = cycles.back();
 }
 
-BENCHMARK(RunMovers)->Name("CycleMovers")->UseManualTime()->Arg(50)->Arg(200)->Arg(800)->Iterations(3000);
+BENCHMARK_CAPTURE(RunMovers, usual, 1)
+    ->Name("CycleMovers")
+    ->UseManualTime()
+    ->Arg(50)
+    ->Arg(200)
+    ->Arg(800)
+    ->Iterations(3000);
+BENCHMARK_CAPTURE(RunMovers, dense, 0.6)->Name("CycleMoversDense")->UseManualTime()->Arg(200)->Iterations(3000);
 BENCHMARK(RunIdle)->Name("CycleIdle")->Arg(1)->Arg(6);
 BENCHMARK_CAPTURE(RunCycles, csp, DriveMode::kCyclicPosition, false)
     ->Name("CycleStandstillCsp")

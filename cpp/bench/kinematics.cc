@@ -11,13 +11,13 @@
 #include <random>
 #include <vector>
 
+#include "takt/core/angle.h"
 #include "takt/kinematics/kinematics.h"
 
 namespace takt::kinematics {
 namespace {
 
 constexpr std::size_t kPoses = 1024;
-constexpr double kDegree = std::numbers::pi / 180;
 
 Kinematics Made(const KinematicsParams& params) {
   return *Make(params, std::string(TAKT_SOURCE_DIR) + "/tests/cpp/kinematics").kinematics;

@@ -46,7 +46,7 @@ void ChangeJog(const Context& c, const Request& r, State& s) {
   StartMotion(plan, FromCycleBefore(c), s);
 }
 
-Status Jog(const Context& c, const Request& r, State& s) {
+Status JogBy(const Context& c, const Request& r, State& s) {
   if (s.plc == PlcState::kHoming) return Status::Failed(ErrorId::kState);
   if (s.active.kind == RequestKind::kJog) {
     ChangeJog(c, r, s);
@@ -136,7 +136,7 @@ Status Admit(const Context& c, const Request& r, State& s) {
   if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
   if (r.kind == RequestKind::kInch && s.plc != PlcState::kStandstill) return Status::Failed(ErrorId::kState);
   if (r.kind == RequestKind::kLetGo) return LetGo(c, r, s);
-  return r.kind == RequestKind::kJog ? Jog(c, r, s) : TakeOver(c, r, s);
+  return r.kind == RequestKind::kJog ? JogBy(c, r, s) : TakeOver(c, r, s);
 }
 
 void BeginReset(const Context& c, Ticket ticket, State& s) {

@@ -23,6 +23,7 @@ struct OutsideMaster {
   std::string name;
   double velocity = 0;  // u/s, its largest
   KinematicState at{};  // over all turns, at the end of the cycle
+  double origin = 0;    // the place that it calls 0, in those of `at`; it changes where the place makes a jump
   bool known = false;   // `at` means something
 };
 

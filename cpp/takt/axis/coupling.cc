@@ -25,7 +25,8 @@ const OutsideMaster* Outside(const Context& c, std::uint32_t master) {
   return master < axes ? nullptr : &c.machine.outside[master - axes];
 }
 double OriginOf(const Context& c, std::uint32_t master) {
-  return Outside(c, master) ? 0 : c.machine.states[master].origin;
+  const OutsideMaster* outside = Outside(c, master);
+  return outside ? outside->origin : c.machine.states[master].origin;
 }
 double TurnOf(const Context& c, std::uint32_t master) {
   return Outside(c, master) ? 0 : c.machine.params[master].turn();

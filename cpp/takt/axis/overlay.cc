@@ -32,7 +32,7 @@ double OverlayTime(const Context& c, const OverlayState& o) {
 
 // What has been added up to the set point of the cycle before. Where the axis lags behind the sum, what is planned goes
 // on from what came of it: the lag is forgotten.
-KinematicState Added(const Context& c, const State& s) {
+KinematicState AddedMotion(const Context& c, const State& s) {
   if (!s.superimposed) return {};
   const OverlayState& o = s.overlay;
   KinematicState added = o.profile.At(OverlayTime(c, o) - c.cycle.period_s);
@@ -316,7 +316,7 @@ bool Fill(const Maker& m, const HaltSuperimposed& c) {
 Status CarryOut(const Context& c, Ticket ticket, const MoveSuperimposed& command, State& s) noexcept {
   if (const Status status = MayBeOnTop(c, s); status.failed()) return status;
   if (const Status status = CheckSwitches(command.distance, s); status.failed()) return status;
-  const KinematicState from = Added(c, s);
+  const KinematicState from = AddedMotion(c, s);
   const double target = from.position + command.distance;
   if (!EndsInside(c, target, s)) return Status::Failed(ErrorId::kTargetBehindLimit);
   Request r;
@@ -346,7 +346,7 @@ Status CarryOut(const Context& c, Ticket ticket, const HaltSuperimposed& command
   Request r;
   Refusal why;
   Fill(Maker{c.params, r, why}, command);
-  const KinematicState from = Added(c, s);
+  const KinematicState from = AddedMotion(c, s);
   OverlayState planned;
   if (const Status status = PlanHalt(c, from, r.limits(), s, planned.profile); status.failed()) return status;
   planned.factors = s.override_factors;

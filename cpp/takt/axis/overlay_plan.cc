@@ -14,7 +14,7 @@ using trajectory::Profile;
 
 namespace {
 
-constexpr double kTolerance = 1e-9;  // of a limit
+constexpr double kRounding = 1e-9;  // of a limit
 // Less than this share of the axis' own limits is not worth a plan: it would take forever.
 constexpr double kLeastShare = 0.02;
 constexpr std::size_t kMostTimes = 2 * Profile::kCapacity + 2;
@@ -130,7 +130,7 @@ bool Late(const Profile& plan, double delay_s, Profile& late) {
 bool SumKeeps(const AxisParams& params, const BaseAhead& base, const Profile& added) noexcept {
   const Limits own = params.planner_limits();
   const Times times = TimesOf(base, &added);
-  const double fastest = own.velocity * (1 + kTolerance);
+  const double fastest = own.velocity * (1 + kRounding);
   for (std::size_t i = 0; i + 1 < times.count; ++i) {
     const double begin = times.at[i];
     const double duration = times.at[i + 1] - begin;
@@ -142,7 +142,7 @@ bool SumKeeps(const AxisParams& params, const BaseAhead& base, const Profile& ad
                        under.acceleration + over.acceleration, under.jerk + over.jerk};
     const Profile::Range velocity = VelocityRange(sum, duration);
     if (velocity.max > fastest || velocity.min < -fastest) return false;
-    if (own.jerk > 0 && std::abs(sum.jerk) > own.jerk * (1 + kTolerance)) return false;
+    if (own.jerk > 0 && std::abs(sum.jerk) > own.jerk * (1 + kRounding)) return false;
     if (BreaksRamps(own, sum, duration)) return false;
     if (!KeepsPosition(params.limits, sum, duration)) return false;
   }

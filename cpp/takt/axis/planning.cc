@@ -15,7 +15,7 @@ using trajectory::Profile;
 
 namespace {
 
-constexpr int kBisections = 12;  // of a blending velocity: to 1/4096 of the velocity asked for
+constexpr int kBlendBisections = 12;  // of a blending velocity: to 1/4096 of the velocity asked for
 
 double Sense(double x) {
   return x < 0 ? -1.0 : 1.0;
@@ -54,7 +54,7 @@ double FastestThatStops(double speed, const Limits& braking, double room) {
   if (stops_in_time(speed)) return speed;
   double low = 0;
   double high = speed;
-  for (int i = 0; i < kBisections; ++i) {
+  for (int i = 0; i < kBlendBisections; ++i) {
     const double middle = 0.5 * (low + high);
     (stops_in_time(middle) ? low : high) = middle;
   }
@@ -155,7 +155,7 @@ Status PlanBlended(Planner& planner, const KinematicState& from, double target, 
     high = speed;
   }
   const Status standing = at_own_velocity ? Status::Ok() : PlanTo(planner, from, target, sense, 0, limits, out);
-  for (int i = 0; i < kBisections; ++i) {
+  for (int i = 0; i < kBlendBisections; ++i) {
     const double middle = 0.5 * (low + high);
     (PlanLeaving(planner, from, target, sense, middle, limits, out) ? low : high) = middle;
   }

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
+
+#include "takt/core/angle.h"
 
 namespace takt::conveyor {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // Along the belt, where the object lay when it was detected.

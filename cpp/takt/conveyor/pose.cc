@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
 
 #include "takt/conveyor/texts.h"
+#include "takt/core/angle.h"
 #include "takt/core/in_range.h"
 
 namespace takt::conveyor {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr Range kSpeeds = between(-1e9, 1e9);
 
 // s, at the end of this cycle.

@@ -1,6 +1,7 @@
 #include "takt/core/columns.h"
 
 #include <limits>
+#include <utility>
 
 namespace takt {
 namespace {
@@ -10,12 +11,22 @@ bool IsNumber(const Type& type) {
          type.kind == Kind::kEnum;
 }
 
+// Of the fields of a struct that is described as one per second: how fast such quantities change.
+Unit PerSecond(const Unit& quantity) {
+  for (const auto& [of, rate] :
+       {std::pair{unit::mm, unit::mm_s}, std::pair{unit::deg, unit::deg_s}, std::pair{unit::u, unit::u_s}}) {
+    if (quantity.text == of.text) return rate;
+  }
+  return quantity;
+}
+
 void Append(std::vector<Column>& columns, const Type& type, const std::string& path, std::size_t offset,
             const Field& field) {
   if (IsNumber(type) || (type.kind == Kind::kOptional && IsNumber(*type.element))) {
     columns.push_back({path, field.about, field.unit, offset, &type});
   } else if (type.kind == Kind::kStruct) {
-    for (const Field& inner : type.fields) {
+    for (Field inner : type.fields) {
+      if (field.unit.text == unit::one_s.text) inner.unit = PerSecond(inner.unit);
       const std::string name = (path.empty() ? "" : path + "_") + std::string(inner.name);
       Append(columns, *inner.type, name, offset + inner.offset, inner);
     }

@@ -1,6 +1,7 @@
 // What somebody is told about another component of a machine: which one is in the way.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "takt/core/describe_fwd.h"
@@ -25,6 +26,11 @@ struct ObjectInfo {
   bool operator==(const ObjectInfo&) const = default;
   explicit operator bool() const { return kind != ObjectKind::kNone; }
 };
+
+// That with this index, from 0, in the lists of its kind.
+inline ObjectInfo ObjectAt(ObjectKind kind, std::size_t index) noexcept {
+  return {kind, static_cast<std::uint32_t>(index + 1)};
+}
 
 void describe(Enumeration<ObjectKind>&);
 void describe(Description<ObjectInfo>&);

@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // A bound as a whole number where it is one: 0, not 0.0.
-Json Bound(double value) {
+Json BoundOf(double value) {
   if (value == std::floor(value) && std::abs(value) < 1e15) return static_cast<std::int64_t>(value);
   return value;
 }
@@ -54,8 +54,8 @@ class SchemaMaker {
   Json Number(const char* kind, const Type& type, const Field& field) {
     Json number = {{"type", kind}};
     if (field.range.bounded_below())
-      number[field.range.without_min ? "exclusiveMinimum" : "minimum"] = Bound(field.range.min);
-    if (field.range.bounded_above()) number["maximum"] = Bound(field.range.max);
+      number[field.range.without_min ? "exclusiveMinimum" : "minimum"] = BoundOf(field.range.min);
+    if (field.range.bounded_above()) number["maximum"] = BoundOf(field.range.max);
     if (type.kind != Kind::kInteger) return number;
     const int bits = static_cast<int>(8 * type.size) - (type.is_signed ? 1 : 0);
     if (!field.range.bounded_below() && !type.is_signed) number["minimum"] = 0;
@@ -126,8 +126,8 @@ Json FieldReference(const Type& type, const Field& field) {
   if (!field.unit.meaning.empty()) json["unit_meaning"] = field.unit.meaning;
   if (field.range.bounded()) {
     Json range = Json::object();
-    if (field.range.bounded_below()) range["min"] = Bound(field.range.min);
-    if (field.range.bounded_above()) range["max"] = Bound(field.range.max);
+    if (field.range.bounded_below()) range["min"] = BoundOf(field.range.min);
+    if (field.range.bounded_above()) range["max"] = BoundOf(field.range.max);
     if (field.range.without_min) range["without_min"] = true;
     range["text"] = Text(field.range);
     json["range"] = std::move(range);

@@ -71,13 +71,15 @@ enum class ErrorId : std::uint16_t {
   kOffPath = 3031,            // the tool is not where its path was left
   kNoWorkpiece = 3032,        // there is no such workpiece
   kMoverDisabled = 3040,      // the mover is not enabled
-  kCommandMode = 3041,        // the mover does not accept the command in its command mode
+  kCommandMode = 3041,        // the mover does not accept the command in its command mode, or while it moves
   kOutsideWindow = 3042,      // the mover would turn out of its window while it moves
   kNoSetPoint = 3043,         // a set point from outside is missing
   kWildSetPoint = 3044,       // a mover cannot follow a set point from outside
   kMoverDeviation = 3045,     // the mover is too far from where it is to be
-  kTrackMode = 3046,          // the track is not enabled, or movers on it do what does not go with this
+  kTrackMode = 3046,          // movers on the track do what does not go with this
   kNoRoute = 3047,            // no way along tracks leads there
+  kTrackDisabled = 3048,      // the track is not enabled
+  kMoverTooLarge = 3049,      // the mover is larger than those the track is for
   kTrackGeometry = 3050,      // a track cannot be so; the value of the feedback says why
   kObjectMoves = 3060,        // movers have to rest for this
   kStators = 3061,            // stators cannot be so; the value of the feedback says why

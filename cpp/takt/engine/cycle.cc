@@ -99,21 +99,29 @@ void RefreshStreets(World& w) {
 // What movers do on each track, for the commands of the next cycle, and the modes of tracks.
 void UseTracks(World& w) {
   std::ranges::fill(w.streets.uses, mover::TrackUse{});
-  for (std::size_t i = 0; i < w.movers.size(); ++i) {
+  const auto use = [&w](std::uint32_t track, std::uint32_t mover) -> mover::TrackUse& {
+    mover::TrackUse& its = w.streets.uses[track];
+    its.one = mover;
+    return its;
+  };
+  for (std::uint32_t i = 0; i < w.movers.size(); ++i) {
+    const planar::Rider& rider = w.streets.riders[i];
+    if (rider.on) ++use(rider.route.first(), i).movers;
+  }
+  for (std::uint32_t i = 0; i < w.movers.size(); ++i) {
     const mover::State& s = w.mover_states[i];
     const planar::Rider& rider = w.streets.riders[i];
     if (!rider.on) continue;
-    ++w.streets.uses[rider.route.first()].movers;
     if (s.mode == mover::CommandMode::kJoiningTrack || s.mode == mover::CommandMode::kLeavingTrack) {
-      ++w.streets.uses[s.track].configuring;
+      ++use(s.track, i).configuring;
     } else if ((rider.aim != planar::Aim::kRest && !rider.there) || rider.at.velocity != 0) {
-      for (const std::uint32_t track : rider.route.all()) ++w.streets.uses[track].moving;
+      for (const std::uint32_t track : rider.route.all()) ++use(track, i).moving;
     }
   }
   for (std::size_t i = 0; i < w.streets.uses.size(); ++i) {
-    const mover::TrackUse& use = w.streets.uses[i];
-    track::Use(use.movers, use.moving > 0, use.configuring > 0, i, w.tracks);
-    w.grounds.moving[i] = use.moving > 0 ? 1 : 0;
+    const mover::TrackUse& its = w.streets.uses[i];
+    track::Use({its.movers, its.moving > 0, its.configuring > 0, its.one}, i, w.tracks);
+    w.grounds.moving[i] = its.moving > 0 ? 1 : 0;
   }
   planar::AdvanceTracks(w.grounds);
 }

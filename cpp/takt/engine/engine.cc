@@ -20,26 +20,8 @@ std::uint64_t Divisor(double rate_hz, double period_s) {
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(1 / (rate_hz * period_s))));
 }
 
-// What the components of a kind publish.
-template <typename Outputs>
-struct OfKind {
-  template <typename Params>
-  OfKind(const Machine& m, const EngineOptions& options, const std::vector<Params>& components,
-         const std::vector<Outputs>& of_world)
-      : queue(options.publish && !components.empty() ? options.snapshot_queue : 2), outputs(of_world) {
-    for (const Params& component : components) {
-      double rate = m.lcm.axis_rate_hz;
-      for (const ChannelRate& own : m.lcm.rates) {
-        if (own.axis == component.name) rate = own.rate_hz;
-      }
-      divisors.push_back(Divisor(rate, m.cycle.period_s));
-    }
-  }
-
-  SpscQueue<SnapshotOf<Outputs>> queue;
-  const std::vector<Outputs>& outputs;
-  std::vector<std::uint64_t> divisors;  // due every so many cycles; 0: never
-};
+// Its multiples are spread evenly, whatever of them are taken.
+constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15;  // of 2^64
 
 // Of the command queue, for commands that let go.
 constexpr std::size_t kKeptShare = 16;
@@ -68,6 +50,27 @@ bool IsRenewal(const Command& command) {
 }
 
 }  // namespace
+
+// What the components of a kind publish.
+template <typename Outputs>
+struct OfKind {
+  template <typename Params>
+  OfKind(const Machine& m, const EngineOptions& options, const std::vector<Params>& components,
+         const std::vector<Outputs>& of_world)
+      : queue(options.publish && !components.empty() ? options.snapshot_queue : 2), outputs(of_world) {
+    for (const Params& component : components) {
+      double rate = m.lcm.axis_rate_hz;
+      for (const ChannelRate& own : m.lcm.rates) {
+        if (own.axis == component.name) rate = own.rate_hz;
+      }
+      divisors.push_back(Divisor(rate, m.cycle.period_s));
+    }
+  }
+
+  SpscQueue<SnapshotOf<Outputs>> queue;
+  const std::vector<Outputs>& outputs;
+  std::vector<std::uint64_t> divisors;  // due every so many cycles; 0: never
+};
 
 struct Engine::Impl {
   Impl(Machine m, const EngineOptions& o)
@@ -187,7 +190,11 @@ struct Engine::Impl {
 
   template <typename Outputs>
   void PublishAll(OfKind<Outputs>& kind) noexcept {
-    for (std::size_t i = 0; i < kind.divisors.size(); ++i) {
+    const std::size_t count = kind.divisors.size();
+    if (count == 0) return;
+    // What comes last is what a full queue or buffer does not take: somebody else in every cycle, whatever the rates.
+    std::size_t i = ((world.cycle.count * kGoldenRatio) >> 32) % count;
+    for (std::size_t k = 0; k < count; ++k, i = i + 1 < count ? i + 1 : 0) {
       // All components of a rate in the same cycle, so that a receiver can hold them against one another.
       const bool due = kind.divisors[i] != 0 && world.cycle.count % kind.divisors[i] == 0;
       if (!due && !options.every_cycle) continue;

@@ -57,9 +57,12 @@ void ShowMovers(World& w) noexcept {
     masters[0].known = enabled && on_track;
     masters[0].at = rider.at;
     masters[0].at.position += rider.origin;
+    const std::array carried = {s.carried.x, s.carried.y, 0.0};
     for (std::size_t k = 0; k < kCoordinates.size(); ++k) {
       masters[k + 1].known = enabled;
       masters[k + 1].at = s.set_point[kCoordinates[k]];
+      masters[k + 1].at.position -= carried[k];
+      masters[k + 1].origin = -carried[k];
     }
   }
 }

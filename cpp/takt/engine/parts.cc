@@ -16,12 +16,12 @@ namespace {
 using part::Hindrance;
 using planar::ObjectState;
 
-part::Context ContextOf(World& w, std::size_t i) {
+part::Context ContextOfPart(World& w, std::size_t i) {
   return {w.parts[i], w.cycle, w.feedback};
 }
 
 Hindrance By(ErrorId error, ObjectKind kind, std::size_t index) {
-  return {error, {kind, static_cast<std::uint32_t>(index + 1)}};
+  return {error, ObjectAt(kind, index)};
 }
 
 // What a part does has changed: others see it.
@@ -276,7 +276,7 @@ void ApplyToPart(World& w, std::size_t i, Ticket ticket, const part::Command& co
   if (goes && goes->index >= 1 && goes->index <= w.parts[i].positions.size()) {
     hindrance = HindranceOf(w, static_cast<std::uint32_t>(i), goes->index - 1);
   }
-  part::Apply(ContextOf(w, i), ticket, command, hindrance, w.part_states[i]);
+  part::Apply(ContextOfPart(w, i), ticket, command, hindrance, w.part_states[i]);
   Show(w, i);
   // From now on it has a place where it goes.
   for (std::size_t k = 0; goes && k < w.movers.size(); ++k) {
@@ -288,7 +288,7 @@ void ApplyToPart(World& w, std::size_t i, Ticket ticket, const part::Command& co
 void StepParts(World& w) noexcept {
   for (std::uint32_t i = 0; i < w.parts.size(); ++i) {
     const planar::Spot from = w.surface.spot(i);
-    const bool gone = part::Arrive(ContextOf(w, i), w.part_inputs[i], w.part_states[i]);
+    const bool gone = part::Arrive(ContextOfPart(w, i), w.part_inputs[i], w.part_states[i]);
     Show(w, i);
     for (std::size_t k = 0; gone && k < w.movers.size(); ++k) {
       if (w.mover_states[k].part != i) continue;
@@ -297,7 +297,7 @@ void StepParts(World& w) noexcept {
   }
   for (std::uint32_t i = 0; i < w.parts.size(); ++i) {
     part::State& s = w.part_states[i];
-    part::Step(ContextOf(w, i), AroundOf(w, i), s);
+    part::Step(ContextOfPart(w, i), AroundOf(w, i), s);
     Show(w, i);
     if (s.state == ObjectState::kErrorPending) FailMoversOn(w, i, s.error);
   }
@@ -312,7 +312,7 @@ void PublishParts(World& w) noexcept {
 
 void SimulateParts(World& w) noexcept {
   for (std::size_t i = 0; i < w.parts.size(); ++i) {
-    w.part_inputs[i] = part::Simulate(ContextOf(w, i), w.part_states[i]);
+    w.part_inputs[i] = part::Simulate(ContextOfPart(w, i), w.part_states[i]);
     const PartFaults& faults = w.part_faults[i];
     const bool goes = w.part_states[i].commanded != w.part_states[i].position;
     if (faults.lost || (faults.stuck && goes)) w.part_inputs[i].position = 0;

@@ -6,6 +6,7 @@
 
 #include "takt/environment/environments.h"
 #include "takt/group/survey.h"
+#include "takt/mover/command_mode.h"
 #include "takt/planar/problem.h"
 #include "takt/track/sketch.h"
 #include "takt/workspace/trouble.h"
@@ -46,6 +47,11 @@ std::string StatorSentence(double value) {
   const std::string why(text.empty() ? ErrorText(ErrorId::kStators) : text);
   const std::uint32_t stator = environment::StatorOf(value);
   return stator == 0 ? why : why + ", found with stator " + std::to_string(stator);
+}
+
+std::string ModeSentence(double value) {
+  const auto* mode = TypeOf<mover::CommandMode>().FindEnumerator(static_cast<std::int64_t>(value));
+  return std::string(ErrorText(ErrorId::kCommandMode)) + (mode ? "; it is in " + std::string(mode->name) : "");
 }
 
 // "mover two"; empty: none.
@@ -222,6 +228,7 @@ std::string Sentence(const FeedbackEvent& event) {
                        event.error == ErrorId::kSingular || event.error == ErrorId::kPathGeometry;
   if (event.error == ErrorId::kTrackGeometry) return TrackSentence(event.value);
   if (event.error == ErrorId::kStators) return StatorSentence(event.value);
+  if (event.error == ErrorId::kCommandMode) return ModeSentence(event.value);
   const std::string text(ErrorText(event.error));
   return of_path && event.value > 0 ? text + InElement(static_cast<std::uint32_t>(event.value)) : text;
 }

@@ -7,12 +7,12 @@ namespace takt::engine {
 
 namespace {
 
-constexpr double kStride = 10;          // mm from one place to the next, or more:
+constexpr double kShapeStride = 10;     // mm from one place to the next, or more:
 constexpr std::uint32_t kPlaces = 512;  // so many there are at most
 
 std::uint32_t CountOn(double length) {
   if (!(length > 0)) return 0;
-  return static_cast<std::uint32_t>(std::clamp(std::ceil(length / kStride) + 1, 2.0, double{kPlaces}));
+  return static_cast<std::uint32_t>(std::clamp(std::ceil(length / kShapeStride) + 1, 2.0, double{kPlaces}));
 }
 
 }  // namespace

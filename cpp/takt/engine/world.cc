@@ -37,7 +37,7 @@ std::uint32_t IndexNamed(const std::vector<T>& list, const std::string& name) {
   return static_cast<std::uint32_t>(std::ranges::find(list, name, &T::name) - list.begin());
 }
 template <typename T>
-std::vector<std::string> NamesOf(const std::vector<T>& list) {
+std::vector<std::string> CopiedNames(const std::vector<T>& list) {
   std::vector<std::string> names;
   for (const T& one : list) names.push_back(one.name);
   return names;
@@ -77,11 +77,11 @@ World::World(const Machine& machine)
       part_outputs(machine.parts.size()),
       part_faults(machine.parts.size()),
       surface(part::Make(machine.coordinate_systems, machine.parts)),
-      streets(machine.movers.size(), NamesOf(machine.tracks), &surface),
+      streets(machine.movers.size(), CopiedNames(machine.tracks), &surface),
       tracks_now(machine.tracks.size()),
       tracks(machine.tracks, &surface),
       grounds(machine.movers.size(), machine.tracks.size(), machine.environments.size(),
-              NamesOf(machine.planar_groups)),
+              CopiedNames(machine.planar_groups)),
       planar_groups(machine.planar_groups.size()),
       environments(machine.environments),
       servo_inputs(machine.axes.size()),

@@ -14,10 +14,10 @@ using trajectory::Quintic;
 
 constexpr int kBisections = 40;
 constexpr int kTurnsAhead = 3;
-constexpr double kNear = 1e-9;
+constexpr double kTiny = 1e-9;
 
-double TurnOf(const axis::AxisParams& p) {
-  return p.rotary() ? p.modulus : 0;
+double SlaveTurn(const ClutchContext& c) {
+  return c.slave.rotary() ? c.slave.modulus : 0;
 }
 
 bool KeepsSense(const ClutchContext& c) {
@@ -41,7 +41,7 @@ double LeastSlope(const Quintic& q) {
 
 // Whether it never turns round. What rounding makes of a slope of zero is none.
 bool Monotone(const Quintic& q) {
-  return LeastSlope(q) >= -kNear * (std::abs(q.c[1]) + std::abs(q.At(q.length).position - q.c[0])) / q.length;
+  return LeastSlope(q) >= -kTiny * (std::abs(q.c[1]) + std::abs(q.At(q.length).position - q.c[0])) / q.length;
 }
 
 // Whether the slave can do it while the master keeps its speed.
@@ -87,7 +87,7 @@ double NextAhead(double turn, double position, double from, double sense) {
 // The next sync position ahead of a master at `from` that leaves room for this way.
 double SyncPlace(const ClutchContext& c, double from, double distance, double sense) {
   const double place = c.settings.master_sync_in_position + c.master_zero;
-  return NextAhead(c.master_turn, place, from + sense * distance * (1 - kNear), sense);
+  return NextAhead(c.master_turn, place, from + sense * distance * (1 - kTiny), sense);
 }
 
 // In which the master goes, or will have to go; 0: nobody knows yet.
@@ -111,7 +111,7 @@ bool RightDirection(const ClutchContext& c, double velocity) {
 
 // Brings the place that the cam means to the turn of a rotary slave that is nearest to `position`.
 void NearestTurn(const ClutchContext& c, double wanted, double position, Way& way) {
-  const double turn = TurnOf(c.slave);
+  const double turn = SlaveTurn(c);
   if (turn != 0) way.to_slave.out_zero += turn * std::round((position - wanted) / turn);
 }
 
@@ -119,14 +119,14 @@ void NearestTurn(const ClutchContext& c, double wanted, double position, Way& wa
 bool KeepSense(const ClutchContext& c, const KinematicState& own, double place, double sense, Way& way,
                ClutchState& s) {
   const double full = c.settings.master_sync_in_distance;
-  const double turn = TurnOf(c.slave);
+  const double turn = SlaveTurn(c);
   const auto curve = [&](double distance, double shift) {
     KinematicState end = PlaceAt(way, c.table, place);
     end.position += shift;
     return trajectory::Connect(distance, InSense(own, sense), InSense(end, sense));
   };
   const double ahead = sense * (own.position - PlaceAt(way, c.table, place).position);
-  const double first = turn == 0 ? 0 : sense * turn * std::ceil(ahead / turn - kNear);
+  const double first = turn == 0 ? 0 : sense * turn * std::ceil(ahead / turn - kTiny);
   for (int k = 0; k < (turn == 0 ? 1 : kTurnsAhead); ++k) {
     const double shift = first + k * sense * turn;
     if (const Quintic whole = curve(full, shift); Monotone(whole)) {
@@ -139,7 +139,7 @@ bool KeepSense(const ClutchContext& c, const KinematicState& own, double place, 
       const double middle = 0.5 * (low + high);
       (Monotone(curve(middle, shift)) ? low : high) = middle;
     }
-    if (low <= kNear * full || !WithinLimits(c, curve(low, shift))) continue;
+    if (low <= kTiny * full || !WithinLimits(c, curve(low, shift))) continue;
     way.to_slave.out_zero += shift;
     s.distance = low;
     return true;
@@ -277,7 +277,7 @@ void EndCurve(const ClutchContext& c, const Way& way, ClutchState& s) {
   const KinematicState left = Shift(s.end, now);
   const double size = 1 + std::abs(now.position);
   s.phase = ClutchPhase::kClosed;
-  if (std::abs(left.position) < kNear * size && std::abs(left.velocity) < kNear * (1 + std::abs(now.velocity))) return;
+  if (std::abs(left.position) < kTiny * size && std::abs(left.velocity) < kTiny * (1 + std::abs(now.velocity))) return;
   s.phase = ClutchPhase::kClosing;
   s.mode = ClutchMode::kRampVelAcc;
   BeginShift(c, trajectory::AlongWay(left, c.master), s);
@@ -300,7 +300,7 @@ KinematicState Closing(const ClutchContext& c, const KinematicState& wanted, con
 // The turn of the sync-out position that lies nearest to where the slave comes.
 double OutPlace(const ClutchContext& c, double expected) {
   const double place = c.settings.slave_sync_out_position + c.slave_zero;
-  const double turn = TurnOf(c.slave);
+  const double turn = SlaveTurn(c);
   return turn == 0 ? place : place + turn * std::round((expected - place) / turn);
 }
 
@@ -310,7 +310,7 @@ bool BeginOut(const ClutchContext& c, ClutchState& s) {
   const double length = c.settings.master_sync_out_distance;
   const KinematicState own = OwnOver(c);
   s.out = OutPlace(c, own.position + 0.5 * sense * own.velocity * length);
-  const double turn = TurnOf(c.slave);
+  const double turn = SlaveTurn(c);
   for (int k = 0; k < kTurnsAhead; ++k, s.out += sense * turn) {
     ClutchState tried = s;
     BeginCurve(c, length, sense, {s.out, 0, 0}, tried);

@@ -9,14 +9,14 @@ namespace takt::flexcam {
 
 namespace {
 
-constexpr double kNear = 1e-9;  // of a cycle
+constexpr double kSliver = 1e-9;  // of a cycle
 
 double CyclesAt(const cam::Table& table, const ProfilerState& s, double x_total) {
   return (x_total - s.laid) / table.length();
 }
 
 std::int64_t CycleAt(const cam::Table& table, const ProfilerState& s, double x_total) {
-  return static_cast<std::int64_t>(std::floor(CyclesAt(table, s, x_total) + kNear));
+  return static_cast<std::int64_t>(std::floor(CyclesAt(table, s, x_total) + kSliver));
 }
 
 double BeginOf(const cam::Table& table, const ProfilerState& s, std::int64_t cycle) {
@@ -33,7 +33,7 @@ ProfilerValue ValueAt(const cam::Table& table, const ProfilerState& s, double x_
   const cam::Value value = table.At(at.x);
   at.y_in_cam = value.y;
   at.y = s.base + static_cast<double>(cycle) * table.stroke() + value.y;
-  const double near = kNear * table.length();
+  const double near = kSliver * table.length();
   const bool held = s.once && (in_cycle < -near || in_cycle > table.length() + near);
   at.dy = held ? 0 : value.dy;
   at.ddy = held ? 0 : value.ddy;

@@ -15,13 +15,13 @@ namespace takt::group {
 namespace {
 
 // Of the axes' limits; the rest is for what changes on the way.
-constexpr double kShare = 0.9;
+constexpr double kOfLimits = 0.9;
 constexpr double kBothShare = 0.5;
 // Of that, for carriers: bends of the path take their part, too, and a path that speeds up takes its acceleration back
 // at once.
 constexpr double kCarrierShare = 0.25;
 constexpr double kLeastAcceleration = 0.1;  // of an axis, left beside what its bends need
-constexpr int kPlaces = 4;
+constexpr int kLooks = 4;
 constexpr double kJump = 2;             // of the way that the axes could go along with in a cycle
 constexpr double kLeastClosing = 0.05;  // of the velocity, towards a carrier that is as fast itself
 constexpr double kCarriersOwn = 0.5;    // of the acceleration, at most
@@ -266,8 +266,8 @@ trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& 
   double length = 0;  // mm of the tool per unit of the travel
   kinematics::Joints near = s.joints;
   double velocity = trajectory::CoordinateLimits::kNone, acceleration = velocity, jerk = velocity;
-  for (int i = 0; i < kPlaces; ++i) {
-    const double travel = from.position + i * distance / (kPlaces - 1);
+  for (int i = 0; i < kLooks; ++i) {
+    const double travel = from.position + i * distance / (kLooks - 1);
     const KinematicState one = {travel, 1, 0};
     const MovingFrame tool = ToolAtTravel(c, stretch, way, ride, one);
     length = std::max(length, tool.p.v.Norm());
@@ -277,15 +277,15 @@ trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& 
     for (std::size_t k = 0; k < own.count && k < kMaxAxes; ++k) {
       const double slope = std::abs(motion.velocity[k]);
       if (s.members[k] == 0 || slope == 0) continue;
-      velocity = std::min(velocity, kShare * own.of[k].velocity / slope);
+      velocity = std::min(velocity, kOfLimits * own.of[k].velocity / slope);
       const double bend = std::abs(motion.acceleration[k]), most = kBendShare * own.of[k].acceleration;
       if (stands && bend * velocity * velocity > most) velocity = std::sqrt(most / bend);
       const double at = stands ? velocity : speed;
       const double bends = bend * at * at;
       const double left =
-          std::max(kShare * own.of[k].acceleration - bends, kLeastAcceleration * own.of[k].acceleration);
+          std::max(kOfLimits * own.of[k].acceleration - bends, kLeastAcceleration * own.of[k].acceleration);
       acceleration = std::min(acceleration, left / slope);
-      jerk = std::min(jerk, kShare * own.of[k].jerk / slope);
+      jerk = std::min(jerk, kOfLimits * own.of[k].jerk / slope);
     }
   }
   const double scale = length > 0 ? 1 / length : 1;

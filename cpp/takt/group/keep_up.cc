@@ -17,7 +17,7 @@ using trajectory::PathCoordinateValues;
 
 // Of the axes' limits; the rest is for what changes until the tool is there. More where only carriers are a little
 // faster or slower than was planned for.
-constexpr double kShare = 0.7, kNearlyAll = 0.9;
+constexpr double kMostWhenLate = 0.7, kNearlyAll = 0.9;
 constexpr double kLeast = 0.02;        // of the speed of the path: it goes on, however slowly
 constexpr double kBrakeShare = 0.7;    // of what the axes can do; the rest is for getting there
 constexpr double kLeastBrake = 0.03;   // of the path's
@@ -176,7 +176,7 @@ double SlowDown(const Context& c, const State& s, double wish) noexcept {
     if (!here || here->from_ride == here->to_ride || !Begin(c, s)) k = {};
   }
   if (!k.on && ((!late && !CarriersHaveChanged(c, s)) || !Begin(c, s))) return wish;
-  k.share = late ? kShare : std::min(k.share, kNearlyAll);
+  k.share = late ? kMostWhenLate : std::min(k.share, kNearlyAll);
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const double period = c.cycle.period_s;
   const double square = raw.velocity * raw.velocity;

@@ -36,7 +36,7 @@ bool GivesNobody(const Numbers& to, const State& s) {
   return false;
 }
 
-struct Maker {
+struct RequestMaker {
   const Context& c;
   const State& s;
   Request& r;
@@ -130,7 +130,7 @@ struct Maker {
 };
 
 template <typename T>
-concept IsMove = requires(const Maker& maker, const T& command) {
+concept IsMove = requires(const RequestMaker& maker, const T& command) {
   maker.Fill(command);
 };
 
@@ -141,7 +141,7 @@ std::optional<MadeRequest> MakeRequest(const Context& c, const State& s, const C
       [&]<typename T>(const T& m) -> std::optional<MadeRequest> {
         if constexpr (IsMove<T>) {
           MadeRequest made;
-          made.error = Maker{c, s, made.move}.Fill(m);
+          made.error = RequestMaker{c, s, made.move}.Fill(m);
           if (GivesNobody(made.move.to, s)) made.error = ErrorId::kNotGroupMember;
           if (!HasTool(c, s) && made.move.system != CoordinateSystem::kAcs) made.error = ErrorId::kState;
           return made;

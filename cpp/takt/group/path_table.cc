@@ -21,9 +21,9 @@ path::Point ToPoint(const Station& station) {
   return {kinematics::ToFrame(pose), {}};
 }
 
-class Maker {
+class TableMaker {
  public:
-  explicit Maker(const PathParams& params) : params_(params) {}
+  explicit TableMaker(const PathParams& params) : params_(params) {}
 
   PathTableResult Run() {
     PathTable table{params_.name, {}};
@@ -118,7 +118,7 @@ class Maker {
 }  // namespace
 
 PathTableResult MakePathTable(const PathParams& params) {
-  return Maker(params).Run();
+  return TableMaker(params).Run();
 }
 
 }  // namespace takt::group

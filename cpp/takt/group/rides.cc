@@ -12,7 +12,7 @@ namespace {
 
 // Of places along a path, which count on as long as the tool does not come to rest: so near to its ends a transition
 // has no effect yet, or all of it.
-constexpr double kRounding = 1e-14;
+constexpr double kOfPlace = 1e-14;
 constexpr double kLeastRounded = 1e5;  // mm
 
 // A motion over the way, as one over time.
@@ -144,7 +144,7 @@ KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double wa
   const Ride& ride = RideAt(ahead, stretch.to_ride);
   const double length = ride.end - ride.begin;
   const double place = stretch.begin + way - stretch.from;
-  const double rounding = kRounding * std::max(kLeastRounded, place);
+  const double rounding = kOfPlace * std::max(kLeastRounded, place);
   if (place > ride.end - rounding) return {1, 0, 0};
   if (place < ride.begin + rounding) return {0, 0, 0};
   const double x = std::clamp((place - ride.begin) / length, 0.0, 1.0);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/core/angle.h"
 #include "takt/group/clutch.h"
 #include "takt/group/members.h"
 #include "takt/group/plan.h"
@@ -15,7 +16,6 @@ namespace takt::group {
 
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
 constexpr double kCenter = 1e-6;       // mm from the axis of a table: at no angle
 constexpr double kBackwards = -1e-9;   // mm/s or rad/s
 constexpr double kRoundingWay = 1e-9;  // mm or rad
@@ -183,10 +183,10 @@ ErrorId BeginTracking(const Context& c, Ticket ticket, const TrackRotaryTable& m
   cargo.from = m.recorded_position ? c.carriers.TravelAt(cargo.carrier, *m.recorded_position) : carrier.travel.position;
   track.kind = kinematics::CarrierKind::kTurning;
   track.sense = carrier.travel.velocity < 0 ? -1 : 1;
-  track.begin = kRadians * m.start_angle;
-  track.end = m.end_angle ? kRadians * *m.end_angle : std::numeric_limits<double>::infinity();
-  track.in_distance = kRadians * m.sync_in_angle.value_or(0);
-  track.out_distance = kRadians * m.sync_out_angle.value_or(0);
+  track.begin = kDegree * m.start_angle;
+  track.end = m.end_angle ? kDegree * *m.end_angle : std::numeric_limits<double>::infinity();
+  track.in_distance = kDegree * m.sync_in_angle.value_or(0);
+  track.out_distance = kDegree * m.sync_out_angle.value_or(0);
   TakeMode(m.execution_mode, s, track);
   return Begin(c, ticket, m.pcs, 0, track, s);
 }

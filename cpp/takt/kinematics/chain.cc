@@ -3,27 +3,17 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "takt/kinematics/twist.h"
+
 namespace takt::kinematics {
 namespace {
 
-constexpr int kMost = static_cast<int>(kMaxJoints);
-using Tall = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMost, kMost>;
-using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMost, 1>;
-using Six = Eigen::Matrix<double, 6, 1>;
+using Tall = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostColumns, kMostColumns>;
 
 // Below the closed forms' kSingularSine: what they accept is not refused here.
 constexpr double kRankThreshold = 1e-7;
 // Of a motion that few axes cannot follow exactly.
 constexpr double kResidual = 1e-8;
-
-Six Scaled(const KDL::Twist& twist, double length) {
-  Six six;
-  for (int i = 0; i < 3; ++i) {
-    six(i) = twist.vel(i) / length;
-    six(i + 3) = twist.rot(i);
-  }
-  return six;
-}
 
 // Solves J x = y: exactly, or as well as few axes can, or with the smallest x.
 class Solver {

@@ -3,15 +3,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
+#include "takt/core/angle.h"
 #include "takt/core/describe.h"
 
 namespace takt::kinematics {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 // Of the cosine of B. Nearer to the lock than this, A is noise.
 constexpr double kGimbalLock = 1e-12;
 

@@ -1,15 +1,13 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 #include <sstream>
 
+#include "takt/core/angle.h"
 #include "takt/kinematics/kinematics.h"
 
 namespace takt::kinematics {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 MakeResult Refused(std::string path, std::string problem) {
   return {.kinematics = std::nullopt, .path = std::move(path), .problem = std::move(problem)};

@@ -3,14 +3,13 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "takt/kinematics/twist.h"
+
 namespace takt::kinematics {
 namespace {
 
-constexpr int kMost = static_cast<int>(kMaxJoints);
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMost, kMost>;
-using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMost>;
-using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMost, 1>;
-using Six = Eigen::Matrix<double, 6, 1>;
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostColumns, kMostColumns>;
+using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMostColumns>;
 
 constexpr int kSteps = 100;
 // Of the error, made comparable: below it is rounding.
@@ -26,15 +25,6 @@ constexpr double kLeastDamping = 1e-12;
 constexpr double kAlongPath = 0.5;
 // Of the smallest to the largest pivot.
 constexpr double kSingularPivot = 1e-6;
-
-Six Scaled(const KDL::Twist& twist, double length) {
-  Six six;
-  for (int i = 0; i < 3; ++i) {
-    six(i) = twist.vel(i) / length;
-    six(i + 3) = twist.rot(i);
-  }
-  return six;
-}
 
 Columns ScaledJacobian(const Chain& chain, const Joints& joints) {
   const Jacobian jacobian = JacobianAt(chain, joints);

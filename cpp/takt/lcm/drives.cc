@@ -13,8 +13,8 @@ namespace takt::lcm {
 
 namespace {
 
-constexpr int kQueueCapacity = 10'000;             // messages
-constexpr int kWaitMs = 20;                        // real time: between looks at stop; simulated: of one Ready
+constexpr int kDriveQueue = 10'000;                // messages
+constexpr int kDriveWaitMs = 20;                   // real time: between looks at stop; simulated: of one Ready
 constexpr std::int64_t kSendAgainNs = 50'000'000;  // simulated time
 constexpr int kLooksPerCycle = 10;                 // real time: for new set points
 constexpr std::int64_t kNsPerMs = 1'000'000;
@@ -39,7 +39,7 @@ std::unique_ptr<Drives> Drives::Open(engine::Engine& engine, const DrivesOptions
   if (!problem.empty()) return nullptr;
   ::lcm::LCM& receiving = *drives->receiving_.lcm;
   drives->subscription_ = receiving.subscribeFunction(kDriveFeedbackChannels, &Drives::OnFeedback, drives.get());
-  drives->subscription_->setQueueCapacity(kQueueCapacity);
+  drives->subscription_->setQueueCapacity(kDriveQueue);
   if (options.real_time) {
     drives->sender_ = std::thread([d = drives.get()] { d->SendThread(); });
     drives->receiver_ = std::thread([d = drives.get()] { d->ReceiveThread(); });
@@ -65,7 +65,7 @@ bool Drives::Ready() {
   }
   while (receiving_.lcm->handleTimeout(0) > 0) {
   }
-  const std::int64_t until = now + kWaitMs * kNsPerMs;
+  const std::int64_t until = now + kDriveWaitMs * kNsPerMs;
   while (waiting_ && !AllAnswered()) {
     const std::int64_t at = SteadyNs();
     if (at >= give_up_ns_) {
@@ -165,7 +165,7 @@ void Drives::SendThread() {
 }
 
 void Drives::ReceiveThread() {
-  while (!stop_) receiving_.lcm->handleTimeout(kWaitMs);
+  while (!stop_) receiving_.lcm->handleTimeout(kDriveWaitMs);
 }
 
 }  // namespace takt::lcm

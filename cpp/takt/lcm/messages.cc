@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numbers>
 
 #include "takt/conveyor/objects.h"
+#include "takt/core/angle.h"
 #include "takt/engine/path_checks.h"
 
 namespace takt::lcm {
@@ -308,7 +308,6 @@ msgs::belt_objects ToMessage(const engine::ObjectsSnapshot& snapshot, const engi
 }
 
 void Add(const engine::TrackPlaces& places, const engine::Machine& machine, msgs::track_shape& m) {
-  constexpr double kDegree = std::numbers::pi / 180;
   m.cycle = Signed(places.cycle);
   m.time_ns = TimeNs(places.cycle, machine);
   m.name = machine.tracks[places.track].name;

@@ -1,5 +1,6 @@
 #include "takt/lcm/publisher.h"
 
+#include <array>
 #include <chrono>
 #include <utility>
 
@@ -87,15 +88,20 @@ bool Publisher::Drain() {
 
 template <typename... Outputs>
 bool Publisher::DrainStates(const std::tuple<Outputs...>*) {
+  constexpr std::array kDrains = {&Publisher::DrainStatesOf<Outputs>...};
   bool any = false;
-  std::size_t kind = 0;
-  ((any |= DrainStates(engine_.snapshots<Outputs>(), state_channels_[kind++])), ...);
+  for (std::size_t k = 0; k < kDrains.size(); ++k) {
+    const std::size_t kind = (first_kind_ + k) % kDrains.size();
+    any |= (this->*kDrains[kind])(state_channels_[kind]);
+  }
+  // Who comes last is who a receiver with a small buffer does not hear: another kind every time.
+  if (any) first_kind_ = (first_kind_ + 1) % kDrains.size();
   return any;
 }
 
-template <typename Snapshot>
-bool Publisher::DrainStates(SpscQueue<Snapshot>& queue, std::vector<Channel>& channels) {
-  return Take(queue, [&](const Snapshot& snapshot) {
+template <typename Outputs>
+bool Publisher::DrainStatesOf(std::vector<Channel>& channels) {
+  return Take(engine_.snapshots<Outputs>(), [&](const auto& snapshot) {
     Channel& channel = channels[snapshot.index];
     auto message = ToMessage(snapshot, engine_.machine());
     if (snapshot.due) ToNetwork(channel, message);

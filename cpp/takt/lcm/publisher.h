@@ -52,8 +52,8 @@ class Publisher {
   // Whatever a component published: all of it to the log, what is due to the network.
   template <typename... Outputs>
   bool DrainStates(const std::tuple<Outputs...>* kinds);
-  template <typename Snapshot>
-  bool DrainStates(SpscQueue<Snapshot>& queue, std::vector<Channel>& channels);
+  template <typename Outputs>
+  bool DrainStatesOf(std::vector<Channel>& channels);
   // Puts them to those of its track; once all are there, sends them.
   void AddPlaces(const engine::TrackPlaces& places);
   void PublishReplies();
@@ -80,6 +80,7 @@ class Publisher {
   const RunInfo info_;
 
   std::vector<std::vector<Channel>> state_channels_;  // by kind, by component
+  std::size_t first_kind_ = 0;                        // that has its turn first
   std::vector<Channel> object_channels_;              // by belt
   std::vector<Channel> shape_channels_;               // by track
   std::vector<msgs::track_shape> shapes_;             // whole ones, for who comes later

@@ -62,7 +62,9 @@ bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) no
       },
       command);
   if (answer.status.failed()) {
-    Report(c, ticket, FeedbackState::kError, answer.status.error, 0, s, answer.object);
+    const bool by_mode = answer.status.error == ErrorId::kCommandMode;
+    const double value = by_mode ? static_cast<double>(s.mode) : 0;
+    Report(c, ticket, FeedbackState::kError, answer.status.error, value, s, answer.object);
     return false;
   }
   if (terms.sets) s.formation.whole = terms.whole;

@@ -14,9 +14,9 @@ namespace takt::mover {
 
 namespace {
 
-constexpr double kSlack = 1e-6;  // of the limits, for what programs add up
-constexpr double kStill = 1e-9;  // mm, deg
-constexpr int kHalvings = 12;    // of shares
+constexpr double kRounding = 1e-6;  // of the limits, for what programs add up
+constexpr double kStill = 1e-9;     // mm, deg
+constexpr int kHalvings = 12;       // of shares
 
 double Length(double x, double y) {
   return std::hypot(x, y);
@@ -25,7 +25,7 @@ double Length(double x, double y) {
 // Of one coordinate, or of two as a vector (the second one all 0 else).
 bool Keeps(const KinematicState& from_x, const KinematicState& from_y, const KinematicState& x, const KinematicState& y,
            const trajectory::Limits& limits, double period) {
-  constexpr double kMore = 1 + kSlack;
+  constexpr double kMore = 1 + kRounding;
   const double most = kMore * std::max(limits.acceleration, limits.deceleration);
   const double a = Length(x.acceleration, y.acceleration);
   // Where the speed gets to even if the acceleration is taken away at once.
@@ -50,7 +50,7 @@ void GoOn(double period, SetPoint& given) {
 // On a track, where the mover takes as much across its way besides: what is added keeps the limits by itself, and both
 // together are no more than a track alone may ask for.
 bool AddsNoMore(const Context& c, const External& external, const SetPoint& to) {
-  constexpr double kMore = 1 + kSlack;
+  constexpr double kMore = 1 + kRounding;
   const trajectory::Limits limits = c.params.xy.maximum.limits();
   const SetPoint &was = external.taken, &is = external.given;
   const double most = Length(std::max(limits.acceleration, limits.deceleration), c.params.lateral_acceleration);
@@ -111,7 +111,7 @@ bool CanFollow(const Context& c, const State& s, const SetPoint& from, const Set
     if (kOthers[i] == kC) {
       const bool bound = moves || IsStar(c) || std::isfinite(params.lower);
       if (bound && !InOneWindow(c.params.c, stop.min, stop.max)) return false;
-    } else if (stop.min < params.lower - kSlack || stop.max > params.upper + kSlack) {
+    } else if (stop.min < params.lower - kRounding || stop.max > params.upper + kRounding) {
       return false;
     }
   }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <variant>
 
+#include "takt/core/angle.h"
 #include "takt/mover/admission.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/ground.h"
@@ -18,7 +19,6 @@ namespace {
 using planar::ObjectState;
 using trajectory::Limits;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr int kShares = 8;  // the dynamics are split into, where both begin at once
 
 ObjectInfo MoverNumbered(std::uint32_t index) {
@@ -36,9 +36,6 @@ Limits Less(const Limits& a, const Limits& b) {
   return {std::min(a.velocity, b.velocity), std::min(a.acceleration, b.acceleration),
           std::min(a.deceleration, b.deceleration), std::min(a.jerk, b.jerk)};
 }
-Limits Times(double share, const Limits& l) {
-  return {share * l.velocity, share * l.acceleration, share * l.deceleration, share * l.jerk};
-}
 Dynamics DynamicsOf(const Limits& l) {
   return {l.velocity, l.acceleration, l.deceleration, l.jerk};
 }
@@ -47,7 +44,7 @@ Dynamics DynamicsOf(const Limits& l) {
 Limits TurningAt(double distance, const Limits& l) {
   const double v = l.velocity / distance, a = std::min(l.acceleration, l.deceleration) / distance / std::numbers::sqrt2;
   const double j = std::sqrt(3.0 / 20) * l.jerk / distance;
-  return Times(1 / kDegree, {std::min({v, std::sqrt(a), std::cbrt(j)}), a, a, j});
+  return trajectory::ShareOf(1 / kDegree, {std::min({v, std::sqrt(a), std::cbrt(j)}), a, a, j});
 }
 
 // The window of C that leaves most to both; the star is `here`, within that of `c`.
@@ -72,9 +69,9 @@ void MakeParams(const Context& c, double turning, double moving, MoverParams& bo
     const FormationState& f = c.fleet.states[i].formation;
     const Limits most = its.xy.maximum.limits();
     const double distance = std::hypot(f.x, f.y);
-    plane = Less(plane, Times(distance > 0 ? moving : 1, most));
+    plane = Less(plane, trajectory::ShareOf(distance > 0 ? moving : 1, most));
     turn = Less(turn, its.c.maximum.limits());
-    if (distance > 0) turn = Less(turn, TurningAt(distance, Times(turning, most)));
+    if (distance > 0) turn = Less(turn, TurningAt(distance, trajectory::ShareOf(turning, most)));
     KeepWindow(its.c, f, here, body.c);
   });
   body.xy.standard = DynamicsOf(Less(plane, StandardOf(own.xy)));

@@ -131,7 +131,7 @@ ObjectInfo TakeStop(const Context& now, const State& s, const SetPoint& at) noex
 
 ObjectInfo TakeStopOff(const Context& c, const PlacesOff& places, const SetPoint& at) noexcept {
   if (!IsWatched(c, c.index)) return {};
-  planar::Move move{.on_track = true, .off_track = true};
+  planar::Move move{.on_track = true, .kept_by_gaps = true};
   for (const planar::Place& place : places) move.corners[move.corner_count++] = place;
   move.target.c = trajectory::StopPosition(at[kC], c.params.c.maximum.limits());
   const ObjectInfo object = planar::AskMove(c.index, move, c.grounds);

@@ -11,7 +11,6 @@ namespace takt::mover {
 namespace {
 
 using planar::Area;
-using planar::Place;
 
 const planar::Parts& PartsOf(const Context& c) {
   return *c.streets.parts;
@@ -40,10 +39,10 @@ Area AreaOf(const Context& c, const Angles& angles) {
           .margin = 0};
 }
 
-void Add(const Area& kind, std::initializer_list<Place> places, Cover& out) {
+void Add(const Area& kind, std::initializer_list<planar::Place> places, Cover& out) {
   Area& area = out.areas[out.count++];
   area = kind;
-  for (const Place& place : places) area.places[area.count++] = place;
+  for (const planar::Place& place : places) area.places[area.count++] = place;
 }
 
 // The rest of a motion: a rectangle in its frame, all that it can come to along and across as long as there is
@@ -51,8 +50,8 @@ void Add(const Area& kind, std::initializer_list<Place> places, Cover& out) {
 void Add(const Area& kind, const PlaneMotion& m, double t, Cover& out) {
   if (t >= DurationOf(m)) return Add(kind, {{m.end_x, m.end_y}}, out);
   const auto at = [&](double along, double across) {
-    return Place{m.origin_x + m.direction_x * along - m.direction_y * across,
-                 m.origin_y + m.direction_y * along + m.direction_x * across};
+    return planar::Place{m.origin_x + m.direction_x * along - m.direction_y * across,
+                         m.origin_y + m.direction_y * along + m.direction_x * across};
   };
   const double alone = std::max(t, m.across.duration());
   if (alone > t) {
@@ -73,7 +72,7 @@ void Add(const Context& c, const Area& kind, const PlaneMove& move, Cover& out) 
   if (move.passes) {
     const PlaneMotion& m = move.motion;
     const double along = m.along.end().position;
-    const Place end{m.origin_x + m.direction_x * along, m.origin_y + m.direction_y * along};
+    const planar::Place end{m.origin_x + m.direction_x * along, m.origin_y + m.direction_y * along};
     Add(kind, {end, {move.corner_x, move.corner_y}}, out);
   }
 }
@@ -230,6 +229,7 @@ void Carry(const Context& c, const planar::Spot& from, const planar::Spot& to, I
   const planar::Place by = to.origin - from.origin;
   inputs.actual.x += by.x;
   inputs.actual.y += by.y;
+  s.carried = s.carried + by;
   PutAt({to.system, planar::Place{s.set_point[kX].position, s.set_point[kY].position} + by}, s);
   if (IsOnTrack(s)) s.plane = {};
   s.plane.begin = c.cycle.count;

@@ -63,10 +63,9 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   if (track == planar::kNoTrack) return Refused(ErrorId::kParameter);
   const planar::Spot& spot = streets.tracks[track].spot;
   if (spot.system != s.system) return Refused(ErrorId::kReference);
-  if (!streets.tracks[track].enabled || streets.uses[track].moving > 0 ||
-      !IsSmallEnough(g.c.params, streets.tracks[track])) {
-    return Refused(ErrorId::kTrackMode, TrackOf(track));
-  }
+  if (!streets.tracks[track].enabled) return Refused(ErrorId::kTrackDisabled, TrackOf(track));
+  if (!IsSmallEnough(g.c.params, streets.tracks[track])) return Refused(ErrorId::kMoverTooLarge, TrackOf(track));
+  if (streets.uses[track].moving > 0) return Refused(ErrorId::kTrackMode, TrackOf(track));
   const planar::Place from{s.set_point[kX].position, s.set_point[kY].position};
   planar::Nearest nearest = planar::NearestTo(*streets.network[track].track, from - spot.origin);
   nearest.place = nearest.place + spot.origin;
@@ -126,8 +125,8 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
 
 planar::Verdict AskRoute(const Context& c, const planar::Route& route) noexcept {
   for (const std::uint32_t on : route.all()) {
-    const bool used = c.streets.uses[on].configuring > 0;
-    if (used || !c.streets.tracks[on].enabled) return {ErrorId::kTrackMode, TrackOf(on)};
+    if (!c.streets.tracks[on].enabled) return {ErrorId::kTrackDisabled, TrackOf(on)};
+    if (c.streets.uses[on].configuring > 0) return {ErrorId::kTrackMode, TrackOf(on)};
   }
   return planar::AskTracks(c.index, route.all(), c.grounds);
 }

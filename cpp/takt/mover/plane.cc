@@ -17,9 +17,9 @@ using trajectory::Planner;
 using trajectory::Profile;
 
 constexpr double kNothing = 1e-9;  // of a limit: nothing across
-constexpr int kShares = 8;         // that are tried
+constexpr int kTriedShares = 8;    // that are tried
 constexpr int kTries = 4;          // of ways before a corner
-constexpr int kHalvings = 30;      // of a way
+constexpr int kWayHalvings = 30;   // of a way
 
 struct Direction {
   double x = 1, y = 0;
@@ -46,10 +46,6 @@ std::optional<Direction> DirectionOf(double x, double y) {
   const double length = std::hypot(x, y);
   if (!(length > 0)) return std::nullopt;
   return Direction{x / length, y / length};
-}
-
-Limits Times(double share, const Limits& l) {
-  return {share * l.velocity, share * l.acceleration, share * l.deceleration, share * l.jerk};
 }
 
 // Where a velocity ends when the acceleration is taken away at once.
@@ -93,9 +89,9 @@ bool PlanOntoLine(Planner& planner, const Framed& from, double distance, double 
   const double rest = std::sqrt(std::max(0.0, 1 - share * share));
   if (!Fits(from.across, share, limits) || !Fits(from.along, rest, limits)) return false;
   motion.share = share;
-  if (!planner.ToPosition(from.along, distance, 0, Times(rest, limits), motion.along).ok()) return false;
+  if (!planner.ToPosition(from.along, distance, 0, ShareOf(rest, limits), motion.along).ok()) return false;
   if (share == 0) return true;
-  if (!planner.ToPosition(from.across, 0, 0, Times(share, limits), motion.across).ok()) return false;
+  if (!planner.ToPosition(from.across, 0, 0, ShareOf(share, limits), motion.across).ok()) return false;
   const double alone = motion.across.duration();
   Profile quicker = motion.along;
   quicker.Cut(alone);
@@ -161,9 +157,9 @@ bool PlanMove(Planner& planner, const PlaneState& from, double x, double y, cons
     even.acceleration = even.deceleration = std::min(limits.acceleration, limits.deceleration);
     const double least = Least(framed.across, even);
     const double most = std::sqrt(std::max(0.0, 1 - std::pow(Least(framed.along, even), 2)));
-    for (int i = 0; i < kShares; ++i) {
+    for (int i = 0; i < kTriedShares; ++i) {
       PlaneMotion motion = Begin(from, *direction);
-      const double share = least + (std::max(most, least) - least) * i / (kShares - 1);
+      const double share = least + (std::max(most, least) - least) * i / (kTriedShares - 1);
       if (!(share < 1) || !PlanOntoLine(planner, framed, distance, share, even, motion)) continue;
       if (!found || DurationOf(motion) < DurationOf(best)) best = motion;
       found = true;
@@ -211,12 +207,12 @@ bool PlanCorner(Planner& planner, double x, double y, double most, const Limits&
   double least = 0;
   PlaneMotion passing;
   // Where the mover is too fast already to slow down so far before the corner, it is nearer to it.
-  for (int i = 0; i < kTries * (kShares + 1); ++i) {
-    const int part = i % (kShares + 1);
+  for (int i = 0; i < kTries * (kTriedShares + 1); ++i) {
+    const int part = i % (kTriedShares + 1);
     if (part == 0 && found) break;
     if (part == 0 && i > 0) most *= 0.4;
-    const double share = std::sin(angle * part / kShares);
-    const double rest = std::cos(angle * part / kShares);
+    const double share = std::sin(angle * part / kTriedShares);
+    const double rest = std::cos(angle * part / kTriedShares);
     if (sine > kNothing ? part == 0 || rest < 0.05 : part > 0) continue;
     const auto brakes = [](double part, const Limits& l) {
       return planar::Brakes{part * l.deceleration, part * l.jerk};
@@ -238,7 +234,7 @@ bool PlanCorner(Planner& planner, double x, double y, double most, const Limits&
     };
     // Further before it may be quicker, but has less way to get so quick.
     double before = std::min(most, left), nearer = 0;
-    for (int k = 0; k < kHalvings && reached(before) < allowed(before); ++k) {
+    for (int k = 0; k < kWayHalvings && reached(before) < allowed(before); ++k) {
       const double middle = 0.5 * (nearer + before);
       (reached(middle) < allowed(middle) ? before : nearer) = middle;
     }
@@ -275,9 +271,9 @@ bool PlanRest(Planner& planner, const PlaneMotion& motion, double t, const Limit
       return s;
     };
     const double along = std::sqrt(1 - rest.share * rest.share);
-    if (!planner.Stop(begin(motion.along), Times(along, limits), rest.along).ok()) return false;
+    if (!planner.Stop(begin(motion.along), ShareOf(along, limits), rest.along).ok()) return false;
     if (rest.share > 0) {
-      if (!planner.Stop(begin(motion.across), Times(rest.share, limits), rest.across).ok()) return false;
+      if (!planner.Stop(begin(motion.across), ShareOf(rest.share, limits), rest.across).ok()) return false;
       // As the motion itself may have reckoned with: else this would lead beyond its end.
       Profile harder = rest.along, then;
       harder.Cut(rest.across.duration());

@@ -113,6 +113,7 @@ void describe(Description<State>& d) {
   d.internal<&S::others>("Motions of Z, A, B, C.");
   d.internal<&S::external>("Set points from outside.");
   d.internal<&S::set_point>("Where it is at the end of the last cycle.");
+  d.internal<&S::carried>("By parts: its place was put so much further on, without any motion.");
   d.internal<&S::history>("Its last commands.");
 }
 

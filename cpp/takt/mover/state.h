@@ -111,7 +111,8 @@ struct State {
   FormationState formation;
   std::array<CoordinateMove, kOthers.size()> others;  // in the order of kOthers
   External external;
-  SetPoint set_point{};  // at the end of the last cycle
+  SetPoint set_point{};     // at the end of the last cycle
+  planar::Place carried{};  // mm, by parts: its place was put so much further on, without any motion
   History history;
 };
 

@@ -51,9 +51,10 @@ struct MoverNow {
 
 // What movers do on a track now.
 struct TrackUse {
-  std::uint32_t movers = 0;       // on it, with those that join
-  std::uint32_t moving = 0;       // along it
-  std::uint32_t configuring = 0;  // joining or leaving
+  std::uint32_t movers = 0;             // on it, with those that join
+  std::uint32_t moving = 0;             // along it
+  std::uint32_t configuring = 0;        // joining or leaving
+  std::uint32_t one = planar::kNobody;  // of them: who moves, joins or leaves rather than who stands
 };
 
 struct Streets {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/core/angle.h"
 #include "takt/path/ends.h"
 #include "takt/path/make.h"
 #include "takt/path/place.h"
@@ -12,7 +13,6 @@
 namespace takt::path {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 // Cosine of half the angle by which the path turns: less is a way back.
 constexpr double kReversal = 1e-4;
 // rad, that a curve may turn within a blend.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/core/angle.h"
 #include "takt/core/describe.h"
 #include "takt/path/ends.h"
 #include "takt/path/turn.h"
@@ -13,7 +14,6 @@
 namespace takt::path {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kWholeTurn = 2 * std::numbers::pi;
 constexpr double kSameAuxiliary = 1e-9;
 // Sine of the angle between two sides of a triangle: less, and its points lie on a line.

@@ -64,7 +64,7 @@ void describe(Description<Outputs>& d) {
       unit::s, "From the edge to the first set point of the profile. T&P: lrPathPreparationTime.");
   d.internal<&O::precalculated_profile_time>(unit::s, "The profile takes so long. T&P: lrPreCalcProfileTime.");
   d.internal<&O::position>("As measured. T&P: alrActPos.");
-  d.internal<&O::velocity>("As measured, the same per s. T&P: alrActVel.");
+  d.internal<&O::velocity>(unit::one_s, "As measured, the same per s. T&P: alrActVel.");
   d.internal<&O::profile_point_passed>("Number of the last point passed; 0: the start. T&P: iProfilePointPassed.");
   d.internal<&O::target>("What is approached: a belt, from 1; 0: the static target. T&P: eSetTargetOut.");
   d.internal<&O::workpiece>("Number of the workpiece that is approached; 0: none.");

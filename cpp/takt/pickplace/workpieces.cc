@@ -1,8 +1,8 @@
 // Which workpiece is next, and whether it can be reached in time (PP-44).
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "takt/core/angle.h"
 #include "takt/group/systems.h"
 #include "takt/pickplace/run.h"
 
@@ -198,7 +198,7 @@ ErrorId BindWorkpiece(const Context& c, const Object& object, group::State& g, O
   const double since = belt.state->travel.position - object.latch;
   Frame moved = kinematics::ToFrame(object.pose);
   if (belt.params->kind == conveyor::BeltKind::kTurning) {
-    moved = Frame(KDL::Rotation::RotZ(since * std::numbers::pi / 180)) * moved;
+    moved = Frame(KDL::Rotation::RotZ(since * kDegree)) * moved;
   } else {
     moved.p.x(moved.p.x() + since);
   }

@@ -4,13 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/core/angle.h"
 #include "takt/core/describe.h"
 #include "takt/planar/flat.h"
 
 namespace takt::planar {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // All that the mover covers while it turns in its place is a circle through its corners.
 bool CoversCircle(const Area& area) {

@@ -6,12 +6,12 @@
 #include <numbers>
 #include <span>
 
+#include "takt/core/angle.h"
 #include "takt/planar/flat.h"
 
 namespace takt::planar {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kRound = 270;  // deg from which on what an arm sweeps is as good as a circle
 constexpr std::size_t kApexes = 4;
 
@@ -20,12 +20,12 @@ struct Turning {
 };
 
 // What an arm sweeps, along a direction.
-struct Range {
+struct Between {
   double least = 0, most = 0;
 };
 
 // Of the cosine between two angles.
-Range CosineBetween(double from, double to) {
+Between CosineBetween(double from, double to) {
   const auto passes = [&](double angle) {
     constexpr double kTurn = 2 * std::numbers::pi;
     return angle + kTurn * std::ceil((from - angle) / kTurn) <= to;
@@ -43,17 +43,17 @@ struct Corners {
 Corners BoxOf(const Flat& off, std::span<const Place> places, const Turning& turning, const Flat& along) {
   const double length = off.norm(), angle = std::atan2(off.y(), off.x()) - std::atan2(along.y(), along.x());
   const auto reach = [&](const Flat& axis, double quarter) {
-    const Range arm =
+    const Between arm =
         CosineBetween(turning.least * kDegree + angle - quarter, turning.most * kDegree + angle - quarter);
-    Range all{ToFlat(places[0]).dot(axis), ToFlat(places[0]).dot(axis)};
+    Between all{ToFlat(places[0]).dot(axis), ToFlat(places[0]).dot(axis)};
     for (const Place& place : places) {
       all.least = std::min(all.least, ToFlat(place).dot(axis));
       all.most = std::max(all.most, ToFlat(place).dot(axis));
     }
-    return Range{all.least + length * arm.least, all.most + length * arm.most};
+    return Between{all.least + length * arm.least, all.most + length * arm.most};
   };
   const Flat across = Left(along);
-  const Range u = reach(along, 0), w = reach(across, std::numbers::pi / 2);
+  const Between u = reach(along, 0), w = reach(across, std::numbers::pi / 2);
   const auto corner = [&](double a, double b) { return ToPlace(a * along + b * across); };
   return {{corner(u.least, w.least), corner(u.most, w.least), corner(u.most, w.most), corner(u.least, w.most)}};
 }

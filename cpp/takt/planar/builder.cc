@@ -3,13 +3,6 @@
 #include <utility>
 
 namespace takt::planar {
-namespace {
-
-bool Same(const TrackPoint& a, const TrackPoint& b) {
-  return SamePlace(a.place, b.place) && SameDirection(a, b) && SameCurvature(a, b);
-}
-
-}  // namespace
 
 Problem TrackBuilder::AppendLine(const Place& start, const Place& end) {
   return Append({ElementShape::kLine, start, end});

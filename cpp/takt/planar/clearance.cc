@@ -64,7 +64,7 @@ double Separation(const Box& a, const Box& b) {
 
 // Part of a cell, seen from its middle. All that a mover covers on it lies within `stray` of `swept`, which is the
 // mover drawn out along its direction in the middle; and within `spread` of where it is in the middle.
-struct Stretch {
+struct CellStretch {
   double from = 0;
   double to = 0;
   Flat heading;
@@ -74,22 +74,22 @@ struct Stretch {
   double spread = 0;
 };
 
-Stretch StretchOf(const Track& track, const Footprint& mover, const Cell& cell, double from, double to) {
+CellStretch StretchOf(const Track& track, const Footprint& mover, const Cell& cell, double from, double to) {
   const double half = (to - from) / 2;
   const TrackPoint point = At(track, from + half);
   const double radius = mover.any_angle ? 0 : Radius(mover);
   const double stray = StrayOf(cell, half, radius);
   const double corner = stray - StrayOf(cell, half, 0);
-  Stretch out{from, to, Heading(point.direction), BoxOf(point, mover), {}, stray, half + corner};
+  CellStretch out{from, to, Heading(point.direction), BoxOf(point, mover), {}, stray, half + corner};
   out.swept = out.middle;
   out.swept.along += half * out.heading;
   return out;
 }
 
-class Search {
+class ConflictSearch {
  public:
-  Search(const Track& a, const Footprint& on_a, const Track& b, const Footprint& on_b, double clearance,
-         double resolution)
+  ConflictSearch(const Track& a, const Footprint& on_a, const Track& b, const Footprint& on_b, double clearance,
+                 double resolution)
       : a_(a), on_a_(on_a), b_(b), on_b_(on_b), clearance_(clearance), resolution_(std::max(kFinest, resolution)) {
     for (const Cell& cell : b.cells) others_.push_back(StretchOf(b, on_b, cell, cell.from, cell.to));
   }
@@ -105,7 +105,7 @@ class Search {
   enum class Answer { kFree, kPerhaps, kConflict };
 
   void Look(const Cell& cell, double from, double to) {
-    const Stretch stretch = StretchOf(a_, on_a_, cell, from, to);
+    const CellStretch stretch = StretchOf(a_, on_a_, cell, from, to);
     Answer answer = Answer::kFree;
     for (std::size_t i = 0; i < others_.size() && answer != Answer::kConflict; ++i) {
       answer = std::max(answer, Against(stretch, b_.cells[i], others_[i]));
@@ -116,7 +116,7 @@ class Search {
     Look(cell, (from + to) / 2, to);
   }
 
-  Answer Against(const Stretch& stretch, const Cell& cell, const Stretch& other) const {
+  Answer Against(const CellStretch& stretch, const Cell& cell, const CellStretch& other) const {
     const double least = (other.middle.center - stretch.middle.center).norm() - Radius(on_a_) - Radius(on_b_);
     if (least - (stretch.to - stretch.from + other.to - other.from) / 2 >= clearance_) return Answer::kFree;
     if (Separation(stretch.swept, other.swept) - stretch.stray - other.stray >= clearance_) return Answer::kFree;
@@ -129,7 +129,7 @@ class Search {
   }
 
   // The other mover about where it comes nearest to the middle of the stretch.
-  Box Facing(const Stretch& stretch, const Stretch& other) const {
+  Box Facing(const CellStretch& stretch, const CellStretch& other) const {
     const double half = (other.to - other.from) / 2;
     const double ahead = other.heading.dot(stretch.middle.center - other.middle.center);
     return BoxOf(At(b_, other.from + half + std::clamp(ahead, -half, half)), on_b_);
@@ -149,7 +149,7 @@ class Search {
   const Footprint& on_b_;
   const double clearance_;
   const double resolution_;
-  std::vector<Stretch> others_;
+  std::vector<CellStretch> others_;
   std::vector<Range> ranges_;
 };
 
@@ -161,7 +161,7 @@ double Separation(const TrackPoint& a, const Footprint& on_a, const TrackPoint& 
 
 std::vector<Range> Conflicts(const Track& a, const Footprint& on_a, const Track& b, const Footprint& on_b,
                              double clearance, double resolution) {
-  return Search(a, on_a, b, on_b, clearance, resolution).Run();
+  return ConflictSearch(a, on_a, b, on_b, clearance, resolution).Run();
 }
 
 double ReachFromStart(const std::vector<Range>& ranges) noexcept {

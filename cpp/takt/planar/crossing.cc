@@ -10,7 +10,7 @@ namespace takt::planar {
 namespace {
 
 // Part of a cell.
-struct Part {
+struct CellPart {
   double from = 0;
   double to = 0;
   Flat begin;
@@ -21,7 +21,7 @@ struct Part {
   double length() const { return to - from; }
 };
 
-Part PartOf(const Cell& cell) {
+CellPart CellPartOf(const Cell& cell) {
   return {cell.from, cell.to, ToFlat(cell.begin), ToFlat(cell.end), cell.off, cell.turn};
 }
 
@@ -30,15 +30,15 @@ double OffOf(double length, double turn) {
   return length / 2 * std::sin(std::min(turn, std::numbers::pi / 2));
 }
 
-double FromLine(const Flat& p, const Part& line) {
+double FromLine(const Flat& p, const CellPart& line) {
   const Flat way = line.end - line.begin;
   const double squared = way.squaredNorm();
   const double share = squared > 0 ? std::clamp((p - line.begin).dot(way) / squared, 0.0, 1.0) : 0;
   return (line.begin + share * way - p).norm();
 }
 
-double Distance(const Part& a, const Part& b) {
-  const auto sides = [](const Part& line, const Part& other) {
+double Distance(const CellPart& a, const CellPart& b) {
+  const auto sides = [](const CellPart& line, const CellPart& other) {
     const Flat way = line.end - line.begin;
     return Cross(way, other.begin - line.begin) * Cross(way, other.end - line.begin);
   };
@@ -46,18 +46,19 @@ double Distance(const Part& a, const Part& b) {
   return std::min({FromLine(a.begin, b), FromLine(a.end, b), FromLine(b.begin, a), FromLine(b.end, a)});
 }
 
-std::optional<Crossing> Meet(const Track& track, const Part& a, const Part& b) {
+std::optional<Crossing> Meet(const Track& track, const CellPart& a, const CellPart& b) {
   if (Distance(a, b) > a.off + b.off + kTouch / 2) return {};
   const bool first = a.length() >= b.length();
   if ((first ? a : b).length() < kTouch / 2) return Crossing{(a.from + a.to) / 2, (b.from + b.to) / 2};
   // The longer one in halves, which turn by no more than its curvature allows.
-  const Part& whole = first ? a : b;
+  const CellPart& whole = first ? a : b;
   const double s = (whole.from + whole.to) / 2;
   const Flat middle = ToFlat(At(track, s).place);
   const double turn = std::min(whole.turn, 1.01 * PeakCurvature(track, whole.from, whole.to) * whole.length() / 2);
   const double off = OffOf(whole.length() / 2, turn);
-  const Part halves[] = {{whole.from, s, whole.begin, middle, off, turn}, {s, whole.to, middle, whole.end, off, turn}};
-  for (const Part& half : halves) {
+  const CellPart halves[] = {{whole.from, s, whole.begin, middle, off, turn},
+                             {s, whole.to, middle, whole.end, off, turn}};
+  for (const CellPart& half : halves) {
     if (const auto found = first ? Meet(track, half, b) : Meet(track, a, half)) return found;
   }
   return {};
@@ -77,7 +78,7 @@ std::optional<Crossing> SelfCrossing(const Track& track) noexcept {
       // What turns by less than half a turn does not meet itself.
       if (turn < std::numbers::pi) continue;
       if (track.closed && others + track.cells[i].turn < std::numbers::pi) continue;
-      if (const auto found = Meet(track, PartOf(track.cells[i]), PartOf(track.cells[k]))) return found;
+      if (const auto found = Meet(track, CellPartOf(track.cells[i]), CellPartOf(track.cells[k]))) return found;
     }
   }
   return {};

@@ -6,8 +6,6 @@
 namespace takt::planar {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kTolerance = 1e-7;  // mm: rounding
 // mm: so far before the place where it would get active at a node a mover stops.
 constexpr double kBeforeNode = 1e-3;
 // Of the dynamics that follower and leader both have, what following plans with: the rest is for the delay of a cycle.
@@ -114,16 +112,17 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
   const double reach = 2 * WayToRest(r.pace.limits.velocity, r.pace.brakes()) + r.gap;
   w.AlongNodes(r, r.at.position + reach, [&](const Passage& p) {
     const double way = direction * (p.offset - r.at.position);
-    const double zone_before = w.RangeBefore(p), zone_behind = w.RangeBehind(p);
-    if (way > reach + std::max(zone_before, zone_behind)) return;
-    w.MeetAt(i, p, [&](const Meeting& m) {
+    if (way > reach + std::max(p.range_before, p.range_behind)) return;
+    bool active = false;
+    const auto counts = [&](const Meeting& m) {
+      active = w.IsActive(r.zone, m.off, now.next, now.braking, p);
+      // Away from it, or before somebody who is there.
+      if (active ? direction * m.place < 0 : way < 0) return false;
+      return w.IsActive(m);
+    };
+    w.MeetAt(i, p, counts, [&](const Meeting& m) {
       const Now& its = w.now(m.other);
-      const Rider& other = w.rider(m.other);
-      const double off = r.off + other.off;
-      if (!w.IsActive(other.zone, off, its.next, its.braking, m.its)) return;
-      const bool active = w.IsActive(r.zone, off, now.next, now.braking, p);
-      if (!active && way < 0) return;  // it goes away from it
-      const double zone = std::max(r.zone, direction > 0 ? zone_before : zone_behind) + off;
+      const double zone = std::max(r.zone, direction > 0 ? p.range_before : p.range_behind) + m.off;
       const double distance = direction * m.place;
       // `free`: so far it may go whatever the other does.
       const auto keep = [&](double gap, double free) {
@@ -132,7 +131,7 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
         if (distance < 0) {
           // It comes behind; it must have room to stop there.
           const double rest = direction * (r.at.position - its.rest_before - m.apart);
-          if (active || rest >= gap - kTolerance) return;
+          if (rest >= gap - kTolerance) return;
           one.room = -kInfinite;
         }
         const bool is_free = free > one.room;

@@ -5,12 +5,12 @@
 #include <limits>
 
 #include "takt/core/describe.h"
+#include "takt/planar/send.h"
 #include "takt/trajectory/chase.h"
 
 namespace takt::planar {
 namespace {
 
-constexpr double kTolerance = 1e-7;  // mm: rounding
 constexpr double kSamePlace = 1e-3;  // mm: of borders of tracks, counted in two ways
 constexpr double kNear = 10;         // mm: so far ahead it looks at the least
 
@@ -104,6 +104,16 @@ bool CurvesAhead(const Network& network, const Rider& r) noexcept {
   const Caps caps = CapsAhead(network, StartOf(r, r.at, r.direction), until, r.pace);
   return std::any_of(caps.of.begin(), caps.of.begin() + static_cast<std::ptrdiff_t>(caps.count),
                      [&](const Cap& cap) { return cap.speed < r.pace.limits.velocity; });
+}
+
+bool RunsFree(const Network& network, const Rider& r, const KinematicState& step) noexcept {
+  const double speed = std::max(r.direction * step.velocity, r.direction * Peak(step, r.pace.limits.jerk));
+  if (speed > r.pace.limits.velocity) return false;
+  const double until = 2 * WayToRest(speed, r.pace.brakes()) + kNear;
+  if (r.direction * (EndOfWay(network, r) - step.position) < until) return false;
+  const Caps caps = CapsAhead(network, StartOf(r, step, r.direction), until, r.pace);
+  return std::all_of(caps.of.begin(), caps.of.begin() + static_cast<std::ptrdiff_t>(caps.count),
+                     [&](const Cap& cap) { return cap.speed >= speed; });
 }
 
 bool MayTake(const Network& network, const Rider& r, const Route& route) noexcept {

@@ -23,6 +23,9 @@ bool KeepsToLimits(const Network& network, const Rider& rider, const KinematicSt
                    const Braking& braking) noexcept;
 // Whether it has to look out for curves.
 bool CurvesAhead(const Network& network, const Rider& rider) noexcept;
+// Whether from this step on it has to look out for nothing but others: no curve is so near that it would slow down for
+// it, nor the end of its way, and it gets no faster than it was told to.
+bool RunsFree(const Network& network, const Rider& rider, const KinematicState& step) noexcept;
 
 // Whether its route may become this one: tracks that it gets onto whatever happens stay.
 bool MayTake(const Network& network, const Rider& rider, const Route& route) noexcept;

@@ -12,10 +12,6 @@ Reservations& ReservedBy(std::uint32_t group, Grounds& g) noexcept {
   return g.grounds[group - 1].reserved;
 }
 
-ObjectInfo Object(ObjectKind kind, std::uint32_t number) noexcept {
-  return {kind, number + 1};
-}
-
 Verdict Collision(const ObjectInfo& object) noexcept {
   return object ? Verdict{ErrorId::kCollision, object} : Verdict{};
 }
@@ -39,7 +35,9 @@ ObjectInfo Numbered(const ObjectInfo& object, std::uint32_t group, const Grounds
 ObjectInfo AskStanding(std::uint32_t mover, std::uint32_t group, const Grounds& g) noexcept {
   const Reservations& r = g.grounds[group - 1].reserved;
   const Reservation& own = r.movers[mover];
-  return Numbered(Ask(mover, {.target = own.pose, .on_track = own.linked}, g.Around(group), r), group, g);
+  return Numbered(
+      Ask(mover, {.target = own.pose, .on_track = own.linked, .kept_by_gaps = own.linked}, g.Around(group), r), group,
+      g);
 }
 
 // Who of a group is brought to where this track is, and will not be linked with it.
@@ -50,7 +48,7 @@ ObjectInfo WhoComesTo(std::uint32_t track, std::uint32_t group, const Grounds& g
     if (!now.comes || g.group_of_mover[i] != group || now.goal.system != g.spots[track].system) continue;
     if (now.on_track && g.NetworkOf(now.track) == g.NetworkOf(track)) continue;
     const Area area = Shifted(AreaThere(now), Place{} - g.spots[track].origin);
-    if (Near(area, ExtentOf(area), *g.areas[track], kSame)) return Object(ObjectKind::kMover, i);
+    if (Near(area, ExtentOf(area), *g.areas[track], kSame)) return ObjectAt(ObjectKind::kMover, i);
   }
   return {};
 }
@@ -128,7 +126,7 @@ ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, c
   for (std::uint32_t i = 0; i < g.movers.size(); ++i) {
     const MoverNow& now = g.movers[i];
     if (i != but && now.comes && now.goal.system == system && Near(area, AreaThere(now), kSame)) {
-      return Object(ObjectKind::kMover, i);
+      return ObjectAt(ObjectKind::kMover, i);
     }
   }
   return {};
@@ -152,7 +150,7 @@ Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, co
   const std::uint32_t own = g.Watching(g.group_of_mover[mover]);
   for (const std::uint32_t track : tracks) {
     const std::uint32_t group = g.Watching(g.group_of_track[track]);
-    if (own != 0 && group != own) return {ErrorId::kTrackOutside, Object(ObjectKind::kTrack, track)};
+    if (own != 0 && group != own) return {ErrorId::kTrackOutside, ObjectAt(ObjectKind::kTrack, track)};
     if (group == 0) continue;
     const Reservations& r = g.grounds[group - 1].reserved;
     if (r.tracks[track].moving) continue;
@@ -173,7 +171,7 @@ Verdict AddMover(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept 
   if (g.group_of_mover[mover] == group) return {};
   if (g.group_of_mover[mover] != 0) return {ErrorId::kOtherPlanarGroup, {}};
   if (g.Watching(group) != 0) {
-    if (!g.movers[mover].rests) return {ErrorId::kObjectMoves, Object(ObjectKind::kMover, mover)};
+    if (!g.movers[mover].rests) return {ErrorId::kObjectMoves, ObjectAt(ObjectKind::kMover, mover)};
     PutIn(mover, group, g);
     if (const ObjectInfo object = AskStanding(mover, group, g)) {
       Leave(mover, ReservedBy(group, g));
@@ -188,7 +186,7 @@ Verdict AddTrack(std::uint32_t track, std::uint32_t group, Grounds& g) noexcept 
   if (g.group_of_track[track] == group) return {};
   if (g.group_of_track[track] != 0) return {ErrorId::kOtherPlanarGroup, {}};
   // While it stands it covers nothing.
-  if (g.Watching(group) != 0 && g.moving[track]) return {ErrorId::kObjectMoves, Object(ObjectKind::kTrack, track)};
+  if (g.Watching(group) != 0 && g.moving[track]) return {ErrorId::kObjectMoves, ObjectAt(ObjectKind::kTrack, track)};
   g.group_of_track[track] = group;
   return {};
 }
@@ -200,17 +198,17 @@ Verdict AddEnvironment(std::uint32_t environment, std::uint32_t group, Grounds& 
   own = group;
   if (g.Watching(group) == 0) return {};
   Verdict verdict;
-  if (!g.surfaces[environment]) verdict = {ErrorId::kNoBoundary, Object(ObjectKind::kEnvironment, environment)};
+  if (!g.surfaces[environment]) verdict = {ErrorId::kNoBoundary, ObjectAt(ObjectKind::kEnvironment, environment)};
   for (std::uint32_t i = 0; i < g.moving.size() && verdict.error == ErrorId::kNone; ++i) {
     const bool moves = g.grounds[group - 1].reserved.tracks[i].moving;
-    if (moves) verdict = {ErrorId::kObjectMoves, Object(ObjectKind::kTrack, i)};
+    if (moves) verdict = {ErrorId::kObjectMoves, ObjectAt(ObjectKind::kTrack, i)};
   }
   for (std::uint32_t i = 0; i < g.movers.size() && verdict.error == ErrorId::kNone; ++i) {
     if (g.group_of_mover[i] != group) continue;
     if (!g.movers[i].rests || g.grounds[group - 1].reserved.movers[i].moving) {
-      verdict = {ErrorId::kObjectMoves, Object(ObjectKind::kMover, i)};
+      verdict = {ErrorId::kObjectMoves, ObjectAt(ObjectKind::kMover, i)};
     } else if (AskStanding(i, group, g)) {
-      verdict = Collision(Object(ObjectKind::kMover, i));
+      verdict = Collision(ObjectAt(ObjectKind::kMover, i));
     }
   }
   if (verdict.error != ErrorId::kNone) own = 0;
@@ -238,16 +236,16 @@ Verdict Watch(std::uint32_t group, Grounds& g) noexcept {
   }
   for (std::uint32_t i = 0; i < g.moving.size(); ++i) {
     const bool moves = g.group_of_track[i] == group && g.moving[i];
-    if (moves) return {ErrorId::kObjectMoves, Object(ObjectKind::kTrack, i)};
+    if (moves) return {ErrorId::kObjectMoves, ObjectAt(ObjectKind::kTrack, i)};
   }
   Verdict verdict;
   for (std::uint32_t i = 0; i < g.movers.size() && verdict.error == ErrorId::kNone; ++i) {
     if (g.group_of_mover[i] != group) continue;
     if (!g.movers[i].rests) {
-      verdict = {ErrorId::kObjectMoves, Object(ObjectKind::kMover, i)};
+      verdict = {ErrorId::kObjectMoves, ObjectAt(ObjectKind::kMover, i)};
     } else {
       PutIn(i, group, g);
-      if (AskStanding(i, group, g)) verdict = Collision(Object(ObjectKind::kMover, i));
+      if (AskStanding(i, group, g)) verdict = Collision(ObjectAt(ObjectKind::kMover, i));
     }
   }
   if (verdict.error != ErrorId::kNone) {

@@ -81,6 +81,17 @@ constexpr double kMostSteps = 16;   // ... or so many in a cell, which turns lit
 constexpr double kUneven = 1.2;     // within a bend curvature varies by this factor, which is 1.1 in speed
 constexpr double kStraight = 1e-5;  // 1/mm: what bends less is straight
 
+// What the curvature between two places may come to: where it grows at the first and falls at the second, not more than
+// where the tangents meet.
+double MostBetween(const TrackPoint& a, const TrackPoint& b, double way) {
+  const double from = std::abs(a.curvature), to = std::abs(b.curvature);
+  const double grows = a.curvature < 0 ? -a.curvature_rate : a.curvature_rate;
+  const double falls = b.curvature < 0 ? b.curvature_rate : -b.curvature_rate;
+  if (grows <= 0 || falls <= 0) return std::max(from, to);
+  const double there = std::clamp((to - from + falls * way) / (grows + falls), 0.0, way);
+  return std::max({from, to, from + grows * there});
+}
+
 std::vector<Bend> BendsOf(const Track& track) {
   std::vector<Bend> bends;
   double least = 0;
@@ -101,8 +112,12 @@ std::vector<Bend> BendsOf(const Track& track) {
     for (double i = 0; i < steps; ++i) {
       const double from = cell.from + i * step;
       double most = 0;
-      for (const double s : {from, from + 0.5 * step, from + step}) {
-        if (!straight) most = std::max(most, std::abs(At(track, s).curvature));
+      if (!straight) {
+        const double half = 0.5 * step;
+        // The last place is one of this cell, not of the next: the rate may make a jump there.
+        const TrackPoint begin = At(track, from), middle = At(track, from + half);
+        const TrackPoint end = At(track, from + step * (1 - 1e-9));
+        most = std::max(MostBetween(begin, middle, half), MostBetween(middle, end, half));
       }
       add(from, most < kStraight ? 0 : most);
     }

@@ -22,9 +22,9 @@ double DistanceToLine(const Flat& begin, const Flat& end, const Flat& point) {
 }
 
 // The best so far.
-class Search {
+class NearestSearch {
  public:
-  Search(const Track& track, const Flat& point, double bound) : track_(track), point_(point), bound_(bound) {}
+  NearestSearch(const Track& track, const Flat& point, double bound) : track_(track), point_(point), bound_(bound) {}
 
   void Look(const Cell& cell) {
     const path::Segment& segment = track_.pieces[cell.piece].segment;
@@ -152,7 +152,7 @@ Nearest NearestTo(const Track& track, const Place& place) noexcept {
   for (const Cell& cell : track.cells) {
     bound = std::min(bound, DistanceToLine(ToFlat(cell.begin), ToFlat(cell.end), point) + cell.off);
   }
-  Search search(track, point, bound);
+  NearestSearch search(track, point, bound);
   for (const Cell& cell : track.cells) {
     const double least = DistanceToLine(ToFlat(cell.begin), ToFlat(cell.end), point) - cell.off;
     if (least <= bound + kAsNear) search.Look(cell);

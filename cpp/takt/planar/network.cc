@@ -11,7 +11,7 @@ namespace takt::planar {
 namespace {
 
 constexpr double kStride = 0.5 * kRangeSlack;  // mm
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kUnreached = std::numeric_limits<double>::infinity();
 
 void Name(std::uint32_t Road::*of, std::uint32_t track, std::uint32_t node, Network& network) noexcept {
   Road& road = network.roads[track];
@@ -175,7 +175,7 @@ bool Route::Contains(std::uint32_t track) const noexcept {
 
 bool FindRoute(const Network& network, std::uint32_t from, std::uint32_t to, RouteSearch& search, Route& out) noexcept {
   const auto count = static_cast<std::uint32_t>(network.roads.size());
-  std::ranges::fill(search.way, kInfinite);
+  std::ranges::fill(search.way, kUnreached);
   std::ranges::fill(search.settled, std::uint8_t{0});
   const auto leave = [&](std::uint32_t track, double way) {
     for (const std::uint32_t next : network[track].behind.all()) {
@@ -188,7 +188,7 @@ bool FindRoute(const Network& network, std::uint32_t from, std::uint32_t to, Rou
   for (;;) {
     std::uint32_t nearest = kNoTrack;
     for (std::uint32_t i = 0; i < count; ++i) {
-      if (search.settled[i] || search.way[i] == kInfinite) continue;
+      if (search.settled[i] || search.way[i] == kUnreached) continue;
       if (nearest == kNoTrack || search.way[i] < search.way[nearest]) nearest = i;
     }
     if (nearest == kNoTrack) return false;

@@ -12,14 +12,14 @@ double Common(double from_a, double to_a, double from_b, double to_b) noexcept {
 }
 
 // A side as a stretch of the line it lies on.
-struct Stretch {
+struct Edge {
   bool along_x = false;
   double line = 0;  // the coordinate that does not change
   double from = 0;  // the other, upwards
   double to = 0;
 };
 
-Stretch StretchOf(const Side& s) noexcept {
+Edge EdgeOf(const Side& s) noexcept {
   const bool along_x = s.from.y == s.to.y;
   const double from = along_x ? s.from.x : s.from.y;
   const double to = along_x ? s.to.x : s.to.y;
@@ -51,11 +51,7 @@ Extent ExtentOf(const Environment& shape) noexcept {
   return extent;
 }
 
-Extent Shifted(const Extent& extent, const Place& by) noexcept {
-  return {extent.lower + by, extent.upper + by};
-}
-
-bool IsOn(const Stretch& s, const Place& place) noexcept {
+bool IsOn(const Edge& s, const Place& place) noexcept {
   const double along = s.along_x ? place.x : place.y, across = s.along_x ? place.y : place.x;
   return std::abs(across - s.line) < kSame && along > s.from - kSame && along < s.to + kSame;
 }
@@ -67,7 +63,7 @@ bool IsThere(const Parts& parts, std::uint32_t part, std::uint32_t system) noexc
 // What is left of a side of one part where others are beside it.
 void KeepFree(const Parts& parts, std::uint32_t part, std::uint32_t system, const Side& side,
               std::vector<Side>& out) noexcept {
-  const Stretch own = StretchOf(side);
+  const Edge own = EdgeOf(side);
   const bool upwards = own.along_x ? side.to.x > side.from.x : side.to.y > side.from.y;
   const auto keep = [&](double from, double to) {
     const double first = upwards ? from : to, last = upwards ? to : from;
@@ -83,7 +79,7 @@ void KeepFree(const Parts& parts, std::uint32_t part, std::uint32_t system, cons
       if (k == part || !IsThere(parts, k, system)) continue;
       if (Apart(stretch, Shifted(parts.all[k].extent, parts.spot(k).origin), kSame)) continue;
       AllSides(parts.all[k], parts.spot(k).origin, [&](const Side& other) {
-        const Stretch its = StretchOf(other);
+        const Edge its = EdgeOf(other);
         const bool beside = its.along_x == own.along_x && std::abs(its.line - own.line) < kSame;
         if (!beside || its.to <= at + kSame || its.from >= from) return;
         from = its.from;
@@ -99,7 +95,7 @@ void KeepFree(const Parts& parts, std::uint32_t part, std::uint32_t system, cons
 bool InStators(const Part& part, const Place& place) noexcept {
   bool inside = false, on_border = false;
   AllSides(part, {}, [&](const Side& side) {
-    on_border |= IsOn(StretchOf(side), place);
+    on_border |= IsOn(EdgeOf(side), place);
     if (side.from.x > place.x && (side.from.y > place.y) != (side.to.y > place.y)) inside = !inside;
   });
   return inside || on_border;
@@ -191,7 +187,7 @@ bool IsOn(const Part& part, const Place& place) noexcept {
 
 bool IsOnBorder(const Part& part, const Place& place) noexcept {
   bool on = false;
-  AllSides(part, {}, [&](const Side& side) { on |= IsOn(StretchOf(side), place); });
+  AllSides(part, {}, [&](const Side& side) { on |= IsOn(EdgeOf(side), place); });
   return on;
 }
 

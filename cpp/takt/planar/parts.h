@@ -33,6 +33,10 @@ inline Place operator-(const Place& a, const Place& b) noexcept {
   return {a.x - b.x, a.y - b.y};
 }
 
+inline Extent Shifted(const Extent& extent, const Place& by) noexcept {
+  return {extent.lower + by, extent.upper + by};
+}
+
 inline Area Shifted(Area area, const Place& by) noexcept {
   for (std::size_t i = 0; i < area.count; ++i) area.places[i] = area.places[i] + by;
   return area;

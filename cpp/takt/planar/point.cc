@@ -28,6 +28,10 @@ bool SameCurvature(const TrackPoint& a, const TrackPoint& b) noexcept {
   return std::abs(b.curvature - a.curvature) <= kSameCurvature + kSameCurvatureRelative * larger;
 }
 
+bool Same(const TrackPoint& a, const TrackPoint& b) noexcept {
+  return SamePlace(a.place, b.place) && SameDirection(a, b) && SameCurvature(a, b);
+}
+
 void describe(Description<Place>& d) {
   d.about("A place in the plane.");
   d.required<&Place::x>(unit::mm, "X.");

@@ -27,6 +27,7 @@ inline constexpr double kSame = 1e-6;  // mm
 bool SamePlace(const Place& a, const Place& b) noexcept;
 bool SameDirection(const TrackPoint& a, const TrackPoint& b) noexcept;
 bool SameCurvature(const TrackPoint& a, const TrackPoint& b) noexcept;
+bool Same(const TrackPoint& a, const TrackPoint& b) noexcept;  // in all three
 
 void describe(Description<Place>&);
 void describe(Description<TrackPoint>&);

@@ -47,8 +47,10 @@ bool Meets(const Area& area, const Extent& extent, const Reservation& own, const
   return !Apart(extent, other.extent, kClearance) && Near(area, AreaOf(other), kClearance);
 }
 
-Extent Shifted(const Extent& extent, const Place& by) noexcept {
-  return {extent.lower + by, extent.upper + by};
+// However they are turned.
+bool LieOnEachOther(const Reservation& one, const Reservation& other) noexcept {
+  const double inner = std::min(one.mover.width, one.mover.height) + std::min(other.mover.width, other.mover.height);
+  return (ToFlat(one.pose.place) - ToFlat(other.pose.place)).norm() < 0.5 * inner;
 }
 
 // The stretches hang together.
@@ -73,10 +75,6 @@ const TrackArea* Moving(std::size_t track, std::uint32_t level, const Surroundin
 bool Near(const Area& area, const Extent& extent, std::size_t track, const Surroundings& around) noexcept {
   const Place by = Place{} - SpotOf(track, around).origin;
   return planar::Near(Shifted(area, by), Shifted(extent, by), *around.tracks[track], kClearance);
-}
-
-ObjectInfo Object(ObjectKind kind, std::size_t number) noexcept {
-  return {kind, static_cast<std::uint32_t>(number + 1)};
 }
 
 }  // namespace
@@ -108,16 +106,17 @@ ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around
   const Extent extent = ExtentOf(area);
   for (std::size_t i = 0; i < r.movers.size(); ++i) {
     const Reservation& other = r.movers[i];
-    if (move.off_track && other.linked && other.network == own.network) continue;
-    if (i != mover && Meets(area, extent, own, other)) return Object(ObjectKind::kMover, i);
+    const bool by_gaps = move.kept_by_gaps && other.linked && other.network == own.network;
+    if (by_gaps && !LieOnEachOther(own, other)) continue;
+    if (i != mover && Meets(area, extent, own, other)) return ObjectAt(ObjectKind::kMover, i);
   }
   for (std::size_t i = 0; i < r.tracks.size(); ++i) {
     const TrackArea* track = Moving(i, own.level, around, r);
     if (!track || (move.on_track && own.linked && own.network == track->network)) continue;
-    if (Near(area, extent, i, around)) return Object(ObjectKind::kTrack, i);
+    if (Near(area, extent, i, around)) return ObjectAt(ObjectKind::kTrack, i);
   }
   if (around.environment && own.level == 0 && !Carries(*around.environment, area))
-    return Object(ObjectKind::kEnvironment, 0);
+    return ObjectAt(ObjectKind::kEnvironment, 0);
   return {};
 }
 
@@ -157,18 +156,18 @@ ObjectInfo AskTrack(std::uint32_t track, const Surroundings& around, const Reser
   for (std::size_t i = 0; i < r.movers.size(); ++i) {
     const Reservation& mover = r.movers[i];
     if (!mover.present || mover.level != spot.system || (mover.linked && mover.network == own.network)) continue;
-    if (Near(AreaOf(mover), mover.extent, track, around)) return Object(ObjectKind::kMover, i);
+    if (Near(AreaOf(mover), mover.extent, track, around)) return ObjectAt(ObjectKind::kMover, i);
   }
   for (std::size_t i = 0; i < r.tracks.size(); ++i) {
     const TrackArea* other = Moving(i, spot.system, around, r);
     if (!other || other->network == own.network) continue;
     for (std::size_t k = 0; k < own.stretches.size(); ++k) {
       if (Near(Shifted(own.stretches[k], spot.origin), Shifted(own.extents[k], spot.origin), i, around))
-        return Object(ObjectKind::kTrack, i);
+        return ObjectAt(ObjectKind::kTrack, i);
     }
   }
   if (around.environment && spot.system == 0 && !Carries(*around.environment, own, spot.origin))
-    return Object(ObjectKind::kEnvironment, 0);
+    return ObjectAt(ObjectKind::kEnvironment, 0);
   return {};
 }
 
@@ -188,7 +187,7 @@ void describe(Description<Move>& d) {
   d.internal<&Move::corners>("Of what a curve onto the line keeps within.");
   d.internal<&Move::corner_count>("So many.");
   d.internal<&Move::on_track>("It stays on a track.");
-  d.internal<&Move::off_track>("It is off its place there.");
+  d.internal<&Move::kept_by_gaps>("Those of its network keep away from it by their gaps.");
 }
 
 void describe(Description<Reservation>& d) {

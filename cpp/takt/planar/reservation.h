@@ -36,8 +36,9 @@ struct Move {
   std::array<Place, 4> corners{};
   std::uint8_t corner_count = 0;
   bool on_track = false;  // the mover is where its track has it, and stays linked: the target's angle counts alone
-  // On a track and off its place there. Those of its network keep away from it by their gaps, as far as it may be off.
-  bool off_track = false;
+  // It stands on a track, or is off its place there. Those of its network keep away from it by their gaps; only where
+  // tracks of a network cross without a node they may still lie on one another.
+  bool kept_by_gaps = false;
 };
 
 struct Reservation {

@@ -4,7 +4,6 @@ namespace takt::planar {
 namespace {
 
 // mm: rounding. What is nearer than the gap by less than this is not.
-constexpr double kTolerance = 1e-7;
 // mm: as exactly as a place is found that is to be just at the gap.
 constexpr double kJustThere = 1e-6;
 // Passages through nodes near which a mover can be at once, at those of its route, where it begins, those it has
@@ -118,22 +117,6 @@ std::uint32_t RightOfWay::FindLeader(std::uint32_t i, int direction, double& off
   return kNobody;
 }
 
-bool RightOfWay::IsActive(double zone, double off, const KinematicState& next, const Braking& braking,
-                          const Passage& p) const noexcept {
-  const double lowest = std::min(next.position, braking.lowest), highest = std::max(next.position, braking.highest);
-  if (highest < p.offset) return p.offset - highest < std::max(zone, RangeBefore(p)) + off;
-  if (lowest > p.offset) return lowest - p.offset < std::max(zone, RangeBehind(p)) + off;
-  return true;
-}
-
-bool RightOfWay::AreActive(std::uint32_t i, double zone, const KinematicState& next, const Braking& braking,
-                           const Passage& p, const Meeting& m) const noexcept {
-  const Rider& other = riders_[m.other];
-  const Now& its = s_.now[m.other];
-  const double off = riders_[i].off + other.off;
-  return IsActive(zone, off, next, braking, p) && IsActive(other.zone, off, its.next, its.braking, m.its);
-}
-
 bool RightOfWay::Keeps(const Braking& own, const Meeting& m, double required) const noexcept {
   const Braking& its = s_.now[m.other].braking;
   return m.ahead ? Holds(own, its, m.apart, required) : Holds(its, own, -m.apart, required);
@@ -148,7 +131,7 @@ void RightOfWay::EnterNodes(std::uint32_t i, const KinematicState& next, const B
     for (std::uint32_t k = s_.heads[p.node]; k != kNobody; k = s_.presences[k].next) {
       if (s_.presences[k].mover == i && s_.presences[k].passage == p) return;
     }
-    s_.presences[s_.presence_count] = {i, p, s_.heads[p.node]};
+    s_.presences[s_.presence_count] = {i, p, s_.heads[p.node], r.at.position - p.offset, r.off};
     s_.heads[p.node] = s_.presence_count++;
   });
 }
@@ -213,10 +196,13 @@ bool RightOfWay::MayTake(std::uint32_t i, const KinematicState& next, const Brak
   const double off = r.off + s_.off;
   AlongNodes(r, braking.highest + std::max(r.zone, r.gap) + off, [&](const Passage& p) {
     if (!may || !IsActive(r.zone, off, next, braking, p)) return;
-    MeetAt(i, p, [&](const Meeting& m) {
-      if (!may || !AreActive(i, next, braking, p, m)) return;
-      const bool anew = !AreActive(i, now.next, now.braking, p, m);
-      if (!anew && !(m.ahead ? forward : back)) return;
+    bool anew = false;
+    const auto counts = [&](const Meeting& m) {
+      if (!may || !IsActive(r.zone, m.off, next, braking, p)) return false;
+      anew = !IsActive(r.zone, m.off, now.next, now.braking, p);
+      return (anew || (m.ahead ? forward : back)) && IsActive(m);
+    };
+    MeetAt(i, p, counts, [&](const Meeting& m) {
       // Two that were not active have kept away by other means, and have to have all of it now.
       double required = anew ? m.gap - kTolerance : Required(m.gap, std::abs(m.place));
       const double furthest = m.ahead ? braking.highest : s_.now[m.other].braking.highest + m.apart;
@@ -232,10 +218,11 @@ bool RightOfWay::MayWiden(std::uint32_t i, double zone) const noexcept {
   const Now& now = s_.now[i];
   bool may = true;
   AlongNodes(r, now.braking.highest + zone + r.off + s_.off, [&](const Passage& p) {
-    if (!may) return;
-    MeetAt(i, p, [&](const Meeting& m) {
-      const bool anew = AreActive(i, zone, now.next, now.braking, p, m) && !AreActive(i, now.next, now.braking, p, m);
-      if (!may || !anew) return;
+    const auto counts = [&](const Meeting& m) {
+      return may && IsActive(zone, m.off, now.next, now.braking, p) &&
+             !IsActive(r.zone, m.off, now.next, now.braking, p) && IsActive(m);
+    };
+    MeetAt(i, p, counts, [&](const Meeting& m) {
       const double furthest = m.ahead ? now.braking.highest : s_.now[m.other].braking.highest + m.apart;
       may = Keeps(now.braking, m, (furthest > p.offset + kTolerance ? std::max(m.gap, m.split) : m.gap) - kTolerance);
     });
@@ -268,8 +255,10 @@ std::uint32_t RightOfWay::TooNear(std::uint32_t i) const noexcept {
     look(k, -offset, false, gap(k));
   }
   AlongNodes(r, now.braking.highest + std::max(r.zone, r.gap) + r.off + s_.off, [&](const Passage& p) {
-    MeetAt(i, p, [&](const Meeting& m) {
-      if (!AreActive(i, now.next, now.braking, p, m)) return;
+    const auto counts = [&](const Meeting& m) {
+      return IsActive(r.zone, m.off, now.next, now.braking, p) && IsActive(m);
+    };
+    MeetAt(i, p, counts, [&](const Meeting& m) {
       const double furthest = m.ahead ? now.braking.highest : s_.now[m.other].braking.highest + m.apart;
       look(m.other, m.apart, m.ahead, furthest > p.offset + kTolerance ? std::max(m.gap, m.split) : m.gap);
     });

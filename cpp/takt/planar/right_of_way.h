@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,9 @@
 #include "takt/planar/rider.h"
 
 namespace takt::planar {
+
+inline constexpr double kTolerance = 1e-7;  // mm: rounding
+inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // Nodes within its zone beyond either end of what a mover knows of its way; there is room for so many.
 inline constexpr std::size_t kBeyond = 24;
@@ -35,6 +39,8 @@ struct Passage {
   // The tracks before and behind it; kNoTrack: it does not come from there, or not go there.
   std::uint32_t from = kNoTrack;
   std::uint32_t to = kNoTrack;
+  double range_before = 0;  // collision ranges of these tracks here, mm
+  double range_behind = 0;
 
   bool operator==(const Passage&) const = default;
 };
@@ -43,6 +49,9 @@ struct Presence {
   std::uint32_t mover = kNobody;
   Passage passage;
   std::uint32_t next = kNobody;
+  // What is looked at of all that are there, for few of which the rest counts.
+  double place = 0;  // when the cycle begins, from the node
+  double off = 0;    // Rider::off
 };
 
 // The memory of one cycle: what is worked out anew in each.
@@ -63,12 +72,13 @@ struct Scene {
 // What two movers at a node have to do with one another.
 struct Meeting {
   std::uint32_t other = kNobody;
-  double apart = 0;    // from the other's places to own ones
-  double place = 0;    // of the other from here, now
-  bool ahead = false;  // it is further on
-  Passage its;         // the other's way through the node
-  double gap = 0;      // what they have to be apart; 0: their order along the way sees to it
-  double split = 0;    // and if the one behind cannot stop before the node any more
+  double apart = 0;              // from the other's places to own ones
+  double place = 0;              // of the other from here, now
+  bool ahead = false;            // it is further on
+  double off = 0;                // so far from their places both together may be
+  const Passage* its = nullptr;  // the other's way through the node
+  double gap = 0;                // what they have to be apart; 0: their order along the way sees to it
+  double split = 0;              // and if the one behind cannot stop before the node any more
 };
 
 class RightOfWay {
@@ -90,12 +100,16 @@ class RightOfWay {
   // Whether it may be active so far around nodes: whoever it would have to do with there is far enough away.
   bool MayWiden(std::uint32_t i, double zone) const noexcept;
   // Whether one with such a step is active at a node. `off`: how far it and the other may be off their places.
-  bool IsActive(double zone, double off, const KinematicState& next, const Braking& braking,
-                const Passage& p) const noexcept;
-  // Whether both are active at a node: this one with such a step on such a passage, and the other as it is taken to go.
-  bool AreActive(std::uint32_t i, const KinematicState& next, const Braking& braking, const Passage& p,
-                 const Meeting& m) const noexcept {
-    return AreActive(i, riders_[i].zone, next, braking, p, m);
+  static bool IsActive(double zone, double off, const KinematicState& next, const Braking& braking, const Passage& p) {
+    const double lowest = std::min(next.position, braking.lowest), highest = std::max(next.position, braking.highest);
+    if (highest < p.offset) return p.offset - highest < std::max(zone, p.range_before) + off;
+    if (lowest > p.offset) return lowest - p.offset < std::max(zone, p.range_behind) + off;
+    return true;
+  }
+  // Whether the other one is, as it is taken to go.
+  bool IsActive(const Meeting& m) const noexcept {
+    const Now& its = s_.now[m.other];
+    return IsActive(riders_[m.other].zone, m.off, its.next, its.braking, *m.its);
   }
   // It takes it.
   void Take(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept;
@@ -125,13 +139,13 @@ class RightOfWay {
     const Road& here = network_[r.route.first()];
     if (here.closed) return;
     const std::uint32_t last = r.passed_count > 0 ? r.passed[0] : kNoTrack;
-    if (here.start_node != kNoNode) look(Passage{here.start_node, 0, last, r.route.first()});
+    if (here.start_node != kNoNode) look(Through(here.start_node, 0, last, r.route.first()));
     double offset = 0;
     for (std::uint32_t k = 0; k < r.route.count; ++k) {
       const std::uint32_t track = r.route.tracks[k];
       const std::uint32_t next = k + 1 < r.route.count ? r.route.tracks[k + 1] : kNoTrack;
       offset += network_[track].length;
-      if (network_[track].end_node != kNoNode) look(Passage{network_[track].end_node, offset, track, next});
+      if (network_[track].end_node != kNoNode) look(Through(network_[track].end_node, offset, track, next));
       if (offset > reach) break;
     }
     const double near = std::max(r.zone, r.gap) + r.off + s_.off;
@@ -141,43 +155,53 @@ class RightOfWay {
       const std::uint32_t track = r.passed[k];
       const std::uint32_t before = k + 1 < r.passed_count ? r.passed[k + 1] : kNoTrack;
       offset -= network_[track].length;
-      if (network_[track].start_node != kNoNode) look(Passage{network_[track].start_node, offset, before, track});
+      if (network_[track].start_node != kNoNode) look(Through(network_[track].start_node, offset, before, track));
     }
     if (offset > -near)
       Beyond(r.passed_count > 0 ? r.passed[r.passed_count - 1] : r.route.first(), offset, near, false, look);
   }
 
-  double RangeBefore(const Passage& p) const { return p.from != kNoTrack ? network_[p.from].range_at_end : 0; }
-  double RangeBehind(const Passage& p) const { return p.to != kNoTrack ? network_[p.to].range_at_start : 0; }
-
-  // Calls `look` for those near a node with whom this mover has to do there if both are active.
-  template <typename Look>
-  void MeetAt(std::uint32_t i, const Passage& own, const Look& look) const {
+  // Calls `look` for those near a node with whom this mover has to do there if both are active. `counts`: of a meeting
+  // without its distances, which cost more, whether it matters.
+  template <typename Counts, typename Look>
+  void MeetAt(std::uint32_t i, const Passage& own, const Counts& counts, const Look& look) const {
     const Rider& r = riders_[i];
+    const double here = r.at.position - own.offset;
+    Meeting m;
     for (std::uint32_t k = s_.heads[own.node]; k != kNobody; k = s_.presences[k].next) {
-      const std::uint32_t other = s_.presences[k].mover;
-      const Passage& its = s_.presences[k].passage;
-      if (other == i) continue;
-      const Rider& o = riders_[other];
-      Meeting m{.other = other, .apart = own.offset - its.offset, .its = its};
-      m.place = o.at.position + m.apart - r.at.position;
-      m.ahead = m.place > 0 || (m.place == 0 && other > i);
+      const Presence& there = s_.presences[k];
+      if (there.mover == i) continue;
+      const Passage& its = there.passage;
+      m.other = there.mover;
+      m.its = &its;
+      m.off = r.off + there.off;
+      m.apart = own.offset - its.offset;
+      m.place = there.place - here;
+      m.ahead = m.place > 0 || (m.place == 0 && m.other > i);
+      if (!counts(m)) continue;
+      const Rider& o = riders_[m.other];
+      m.gap = m.split = 0;
       const bool in_order = IsOnRoute(r, o, m.apart) || IsOnRoute(o, r, -m.apart);
       const Passage &ahead = m.ahead ? its : own, &behind = m.ahead ? own : its;
       if (!in_order) {
-        m.gap = std::max(r.gap, o.gap) + r.off + o.off;
+        m.gap = std::max(r.gap, o.gap) + m.off;
         const bool before = (m.ahead ? o : r).at.position < ahead.offset;
-        if (before) m.gap = std::max(m.gap, LeadAtEnd(network_, ahead.from, behind.from) + r.off + o.off);
+        if (before) m.gap = std::max(m.gap, LeadAtEnd(network_, ahead.from, behind.from) + m.off);
       }
-      const double kept = in_order ? (m.ahead ? r : o).gap + r.off + o.off : m.gap;
+      const double kept = in_order ? (m.ahead ? r : o).gap + m.off : m.gap;
       const double lead = LeadAtStart(network_, ahead.to, behind.to);
-      const double split = lead > 0 ? lead + r.off + o.off : 0;
+      const double split = lead > 0 ? lead + m.off : 0;
       if (split > kept) m.split = split;
       if (m.gap > 0 || m.split > 0) look(m);
     }
   }
 
  private:
+  Passage Through(std::uint32_t node, double offset, std::uint32_t from, std::uint32_t to) const {
+    const double before = from != kNoTrack ? network_[from].range_at_end : 0;
+    const double behind = to != kNoTrack ? network_[to].range_at_start : 0;
+    return {node, offset, from, to, before, behind};
+  }
   // The nodes behind the end of a track that is at `offset`, or before its start, as near to that as `way`, the nearest
   // first.
   template <typename Look>
@@ -210,14 +234,12 @@ class RightOfWay {
       const Road& road = network_[here.track];
       const std::uint32_t node = forward ? road.end_node : road.start_node;
       const double place = forward ? offset + here.way : offset - here.way;
-      if (node != kNoNode) look(Passage{node, place, forward ? here.track : kNoTrack, forward ? kNoTrack : here.track});
+      if (node != kNoNode) look(Through(node, place, forward ? here.track : kNoTrack, forward ? kNoTrack : here.track));
       leave(here.track, here.way);
     }
   }
   void TakeToBrake(std::uint32_t i) noexcept;
   void Sort() noexcept;
-  bool AreActive(std::uint32_t i, double zone, const KinematicState& next, const Braking& braking, const Passage& p,
-                 const Meeting& m) const noexcept;
   // Whether two keep so far apart if both brake.
   bool Keeps(const Braking& own, const Meeting& m, double required) const noexcept;
   void EnterNodes(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept;

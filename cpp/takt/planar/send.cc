@@ -68,10 +68,15 @@ bool Send(const Network& network, RouteSearch& search, const Destination& to, Ri
   return true;
 }
 
-void PlanOn(trajectory::Planner& planner, const Network& network, double place, double speed, double acceleration,
-            Rider& r) noexcept {
+double EndOfWay(const Network& network, const Rider& r) noexcept {
   double end = r.target;
   for (std::uint32_t k = 0; k + 1 < r.route.count; ++k) end += network[r.route.tracks[k]].length;
+  return end;
+}
+
+void PlanOn(trajectory::Planner& planner, const Network& network, double place, double speed, double acceleration,
+            Rider& r) noexcept {
+  const double end = EndOfWay(network, r);
   if (speed == 0 && acceleration == 0) r.direction = end < place ? -1 : 1;
   const double way = r.direction * (end - place);
   const Start start{&r.route, place, r.direction, speed, acceleration};

@@ -31,6 +31,8 @@ struct Destination {
 // False: no way leads there from where the mover can still turn off; it keeps what it had.
 bool Send(const Network& network, RouteSearch& search, const Destination& to, Rider& rider) noexcept;
 
+// mm on its first track, where its target is.
+double EndOfWay(const Network& network, const Rider& rider) noexcept;
 // Its way to its target, or a part of it, from a place on the first track on, with a speed and acceleration in its
 // direction. At rest the direction is that of the target.
 void PlanOn(trajectory::Planner& planner, const Network& network, double place, double speed, double acceleration,

@@ -11,8 +11,6 @@
 namespace takt::planar {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kTolerance = 1e-7;  // mm: rounding
 // Cycles in which a mover that had to brake against its wish speeds up no more than it did: it would soon have to
 // again.
 constexpr std::uint32_t kCalmCycles = 20;
@@ -222,6 +220,65 @@ class Traffic::Step_ {
     r.waits_for = whom;
   }
 
+  // What following asks for, `most`, without what those before it do in single cycles: that is not handed on, or it
+  // would grow along a chain of movers.
+  static double Eased(const Rider& r, double most) {
+    const double wanted = std::clamp(most, -2 * r.pace.limits.deceleration, 2 * r.pace.limits.acceleration);
+    return r.eased + (wanted < r.eased ? kEaseDown : kEaseUp) * (wanted - r.eased);
+  }
+  // After it had to brake it speeds up no more than it did.
+  static double Calmed(const Rider& r, double most) {
+    return r.calm_cycles > 0 ? std::min(most, std::max(0.0, r.direction * r.at.acceleration)) : most;
+  }
+  // The range of accelerations that it can have at the end of the cycle. What it has may have to be taken away quicker
+  // than it was told to change it.
+  trajectory::Profile::Range Reachable(const Rider& r) const {
+    const double before = r.direction * r.at.acceleration;
+    const double change = r.pace.limits.jerk * period(), away = LimitsNow(r).jerk * period();
+    return {before - (before > 0 ? away : change), before + (before < 0 ? away : change)};
+  }
+  // At the end of the cycle, with this acceleration or one as near to it as can be.
+  KinematicState StepWith(const Rider& r, double acceleration) const {
+    const double before = r.direction * r.at.acceleration, speed = r.direction * r.at.velocity;
+    const auto [lowest, highest] = Reachable(r);
+    double next = std::clamp(acceleration, lowest, highest);
+    // What is braked with must be gone when it stands, or it would run back: at the end of the cycle, with a tenth of
+    // the jerk to spare.
+    const double jerk_then = 0.9 * r.pace.limits.jerk, half = 0.5 * jerk_then * period();
+    const double left = std::max(0.0, speed + 0.5 * period() * before);
+    const double gone = std::sqrt(half * half + 2 * jerk_then * left) - half;
+    next = std::clamp(next, -std::min(gone, r.brakes.deceleration), r.pace.limits.acceleration);
+    next = std::clamp(next, lowest, highest);
+    const double jerk = (next - before) / period();
+    return trajectory::Piece{r.at.position, r.at.velocity, r.at.acceleration, r.direction * jerk}.At(period());
+  }
+
+  // The rest of its way, however short, is within this room.
+  bool Reaches(const Rider& r, double room) const {
+    return std::abs(EndOfWay(network_, r) - r.at.position) <= room + kTolerance;
+  }
+
+  // One that was held back, and still is, needs no plan of its own as long as nothing else is near that it would slow
+  // down for. False: it needs one.
+  bool StaysBehind(std::uint32_t i) {
+    Rider& r = riders_[i];
+    if (r.aim != Aim::kTarget || r.planned || std::abs(r.at.velocity) < kStands) return false;
+    Limit limit;
+    double most = kInfinite;
+    LimitBy(w_, i, r.direction * r.at.velocity, limit, most);
+    // With a plan it might be known that it comes to rest before that one.
+    if (limit.by == kNobody || Rests(riders_[limit.by].at)) return false;
+    const double eased = Eased(r, most);
+    most = Calmed(r, eased);
+    const KinematicState step = StepWith(r, most);
+    if (most >= Reachable(r).max || r.direction * step.velocity <= 0 || !RunsFree(network_, r, step)) return false;
+    r.eased = eased;
+    if (r.calm_cycles > 0) --r.calm_cycles;
+    Take(i, step);  // or it brakes
+    WaitFor(r, Waits::kNot, kNobody);
+    return true;
+  }
+
   void Settle(std::uint32_t i) {
     Rider& r = riders_[i];
     Now& now = s_.now[i];
@@ -230,13 +287,14 @@ class Traffic::Step_ {
       r.planned = false;
       return WaitFor(r, Waits::kNot, kNobody);
     }
-    // Who stands and waits has nothing to plan until there is room.
+    // Who stands and waits has nothing to plan until there is room, or room enough for the rest of its way.
     if (r.aim == Aim::kTarget && r.waits == Waits::kMover && !r.planned && Rests(r.at)) {
       Limit limit;
       double most = kInfinite;
       LimitBy(w_, i, 0, limit, most);
-      if (limit.room < kAtLimit) return WaitFor(r, Waits::kMover, limit.by);
+      if (limit.room < kAtLimit && !Reaches(r, limit.room)) return WaitFor(r, Waits::kMover, limit.by);
     }
+    if (StaysBehind(i)) return;
     bool exact = false;  // a geared mover is where it should be
     KinematicState demand;
     if (r.aim == Aim::kFollow) demand = DemandOn(r);
@@ -257,14 +315,9 @@ class Traffic::Step_ {
     Limit limit;
     double most = kInfinite;
     LimitBy(w_, i, speed, limit, most);
-    // What those before it do in single cycles is not handed on, or it would grow along a chain of movers.
-    const double wanted = std::clamp(most, -2 * r.pace.limits.deceleration, 2 * r.pace.limits.acceleration);
-    r.eased += (wanted < r.eased ? kEaseDown : kEaseUp) * (wanted - r.eased);
-    most = r.eased;
-    if (r.calm_cycles > 0) {
-      --r.calm_cycles;
-      most = std::min(most, std::max(0.0, before));
-    }
+    r.eased = Eased(r, most);
+    most = Calmed(r, r.eased);
+    if (r.calm_cycles > 0) --r.calm_cycles;
     const bool comes = follows && !exact && ComesFromBehind(r, demand);
     if (follows) {
       most = std::max(most, CloseUp(w_, i, limit));
@@ -291,17 +344,7 @@ class Traffic::Step_ {
     r.planned = false;
     const bool stands = std::abs(r.at.velocity) < kStands;
     // Slower than it wishes, as fast as it may behind the other.
-    // What it has may have to be taken away quicker than it was told to change it.
-    const double change = r.pace.limits.jerk * period(), away = LimitsNow(r).jerk * period();
-    const double lowest = before - (before > 0 ? away : change), highest = before + (before < 0 ? away : change);
-    double next = std::clamp(std::min(most, wished), lowest, highest);
-    // What is braked with must be gone when it stands, or it would run back.
-    const double gone = std::sqrt(1.8 * r.pace.limits.jerk * std::max(0.0, speed));
-    next = std::clamp(next, -std::min(gone, r.brakes.deceleration), r.pace.limits.acceleration);
-    next = std::clamp(next, lowest, highest);
-    const double jerk = (next - before) / period();
-    const trajectory::Piece piece{r.at.position, r.at.velocity, r.at.acceleration, direction * jerk};
-    const KinematicState step = piece.At(period());
+    const KinematicState step = StepWith(r, std::min(most, wished));
     const bool goes = direction * step.velocity > 0 && !(stands && limit.room < kAtLimit);
     if (goes && !(comes && Passes(r, step, demand)) && Take(i, step)) {
       return stands ? WaitFor(r, Waits::kMover, limit.by) : WaitFor(r, Waits::kNot, kNobody);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "takt/core/angle.h"
 #include "takt/path/place.h"
 #include "takt/path/vectors.h"
 #include "takt/planar/flat.h"
@@ -16,11 +16,11 @@ namespace {
 using path::VectorPolynomial;
 
 // rad, and of the chord: what lies on a line so nearly does not bend at all.
-constexpr double kStraight = 1e-12;
+constexpr double kNoBend = 1e-12;
 // rad: where the next piece lies so nearly behind the one before, or runs so nearly the other way.
-constexpr double kBehind = 170 * std::numbers::pi / 180;
+constexpr double kBehind = 170 * kDegree;
 // rad, to both sides of the direction in the middle.
-constexpr double kMostTurn = 171 * std::numbers::pi / 180;
+constexpr double kMostTurn = 171 * kDegree;
 
 // Both sides of a gap as seen along the line between them, whose length becomes 1.
 struct Gap {
@@ -41,7 +41,7 @@ VectorPolynomial CurveOf(const Gap& gap, double begin_length, double end_length)
 }
 
 // What is to be small; by the middle rule.
-double Bend(const VectorPolynomial& curve) {
+double BendOf(const VectorPolynomial& curve) {
   constexpr int kPlaces = 64;
   constexpr double kRateShare = 0.01;
   double length = 0, bend = 0, rate = 0;
@@ -59,9 +59,9 @@ double Bend(const VectorPolynomial& curve) {
 
 // The lengths of the derivatives that bend least, by their logarithms: the best of a grid, then Newton's steps on
 // differences.
-class Search {
+class TransitionSearch {
  public:
-  explicit Search(const Gap& gap) : gap_(gap) {
+  explicit TransitionSearch(const Gap& gap) : gap_(gap) {
     for (int i = 0; i < kGrid; ++i) {
       for (int k = 0; k < kGrid; ++k) Try({kFirst + i * kStep, kFirst + k * kStep});
     }
@@ -80,7 +80,7 @@ class Search {
   static constexpr double kDifference = 1e-3;
   static constexpr double kFlat = 1e-3;
 
-  double Value(const Flat& at) const { return std::log(Bend(CurveOf(gap_, std::exp(at.x()), std::exp(at.y())))); }
+  double Value(const Flat& at) const { return std::log(BendOf(CurveOf(gap_, std::exp(at.x()), std::exp(at.y())))); }
 
   bool Try(const Flat& at) {
     const double value = Value(at);
@@ -187,7 +187,7 @@ Problem MakeTransition(const TrackPoint& begin, const TrackPoint& end, std::vect
                 begin.curvature * distance, end.curvature * distance};
   const double off = std::max(std::abs(gap.begin_angle), std::abs(gap.end_angle));
   const double bend = std::max(std::abs(gap.begin_bend), std::abs(gap.end_bend));
-  if (off < kStraight && bend < kStraight) {
+  if (off < kNoBend && bend < kNoBend) {
     path::Segment segment;
     segment.length = distance;
     segment.place[0] = path::ToTriple(ToSpace(from));
@@ -196,7 +196,7 @@ Problem MakeTransition(const TrackPoint& begin, const TrackPoint& end, std::vect
     return Problem::kNone;
   }
   if (off > kBehind) return Problem::kReversal;
-  const Search search(gap);
+  const TransitionSearch search(gap);
   const VectorPolynomial curve = search.curve();
   const double peak = Peak(curve);
   if (std::isinf(peak)) return Problem::kLoop;

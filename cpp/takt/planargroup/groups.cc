@@ -112,9 +112,8 @@ struct Applier {
     }
   }
   void operator()(const Reset&) const {
-    if (s.state != ObjectState::kError && s.state != ObjectState::kResetting) {
-      return Report(FeedbackState::kError, ErrorId::kState);
-    }
+    if (s.state == ObjectState::kErrorPending) return Report(FeedbackState::kError, ErrorId::kState);
+    if (s.state != ObjectState::kError && s.state != ObjectState::kResetting) return DoneAtOnce();
     Become(ObjectState::kResetting);
   }
 };

@@ -19,10 +19,6 @@ namespace {
 
 using planar::Problem;
 
-bool Same(const planar::TrackPoint& a, const planar::TrackPoint& b) {
-  return SamePlace(a.place, b.place) && SameDirection(a, b) && SameCurvature(a, b);
-}
-
 std::string Index(std::size_t i) {
   return "[" + std::to_string(i) + "]";
 }

@@ -81,6 +81,10 @@ struct Applier {
     c.feedback.Report({ticket, c.cycle.count, state, false, error, value});
   }
   void Refuse(ErrorId error) const { Report(FeedbackState::kError, error); }
+  void RefuseInUse() const {
+    const ObjectInfo mover = ObjectAt(ObjectKind::kMover, c.tracks.usages[track].one);
+    c.feedback.Report({ticket, c.cycle.count, FeedbackState::kError, false, ErrorId::kTrackMode, 0, mover});
+  }
   void Refuse(planar::Problem problem) const {
     Report(FeedbackState::kError, ErrorId::kTrackGeometry, ToValue(problem, 0));
   }
@@ -98,7 +102,7 @@ struct Applier {
 
   void ToWorks(Order order) const {
     if (s.state != ObjectState::kDisabled) return Refuse(planar::Problem::kNotDisabled);
-    if (c.tracks.mover_counts[track] > 0) return Refuse(ErrorId::kTrackMode);
+    if (c.tracks.usages[track].movers > 0) return RefuseInUse();
     order.ticket = ticket;
     order.track = track;
     if (!Put(order, c.tracks.works)) Refuse(planar::Problem::kBusy);
@@ -164,7 +168,7 @@ struct Applier {
   void operator()(const Disable&) const {
     switch (s.state) {
       case ObjectState::kEnabled:
-        if (s.mode != OperationMode::kStanding) return Refuse(ErrorId::kTrackMode);
+        if (s.mode != OperationMode::kStanding) return RefuseInUse();
         return Become(ObjectState::kDisabling);
       case ObjectState::kEnabling:
       case ObjectState::kDisabling:
@@ -177,7 +181,8 @@ struct Applier {
     }
   }
   void operator()(const Reset&) const {
-    if (s.state != ObjectState::kError && s.state != ObjectState::kResetting) return Refuse(ErrorId::kState);
+    if (s.state == ObjectState::kErrorPending) return Refuse(ErrorId::kState);
+    if (s.state != ObjectState::kError && s.state != ObjectState::kResetting) return DoneAtOnce();
     Become(ObjectState::kResetting);
   }
   void Answer(const planar::Verdict& verdict) const {
@@ -210,7 +215,7 @@ Tracks::Tracks(const std::vector<TrackParams>& all, const planar::Parts* on)
       end_nodes(all.size()),
       starts_at(2 * all.size()),
       ends_at(2 * all.size()),
-      mover_counts(all.size()),
+      usages(all.size()),
       desk(all.size(), parts) {
   for (const TrackParams& p : all) part_of.push_back(PartOf(p, parts));
   BuildResult built = Build(all, &parts);
@@ -281,11 +286,13 @@ void Fail(const Context& c, std::size_t track, ErrorId error, ErrorReaction reac
   Enter(c, ObjectState::kErrorPending, s);
 }
 
-void Use(std::uint32_t movers, bool moves, bool configures, std::size_t track, Tracks& tracks) noexcept {
-  tracks.mover_counts[track] = movers;
+void Use(const Usage& usage, std::size_t track, Tracks& tracks) noexcept {
+  tracks.usages[track] = usage;
   State& s = tracks.states[track];
   if (s.state != ObjectState::kEnabled) return;
-  s.mode = moves ? OperationMode::kMoving : configures ? OperationMode::kConfiguring : OperationMode::kStanding;
+  s.mode = usage.moves        ? OperationMode::kMoving
+           : usage.configures ? OperationMode::kConfiguring
+                              : OperationMode::kStanding;
 }
 
 void Step(const Context& c) noexcept {
@@ -304,7 +311,7 @@ void Publish(const Context& c) noexcept {
     out.length = s.length;
     out.closed_loop = t.sketches[i].closed;
     out.element_count = t.sketches[i].count;
-    out.mover_count = t.mover_counts[i];
+    out.mover_count = t.usages[i].movers;
     out.previous_tracks = t.ends_at[t.start_nodes[i]];
     out.subsequent_tracks = t.starts_at[t.end_nodes[i]];
     out.group = c.grounds.group_of_track[i];

@@ -12,6 +12,7 @@
 #include "takt/core/feedback.h"
 #include "takt/planar/grounds.h"
 #include "takt/planar/parts.h"
+#include "takt/planar/rider.h"
 #include "takt/planar/track.h"
 #include "takt/track/commands.h"
 #include "takt/track/desk.h"
@@ -22,6 +23,14 @@
 namespace takt::track {
 
 // Of what the machine file says, which must have been checked (build.h). Index i is track i of the machine.
+// What movers do on a track.
+struct Usage {
+  std::uint32_t movers = 0;             // on it, with those that join
+  bool moves = false;                   // along it, or over it on their way
+  bool configures = false;              // joins or leaves
+  std::uint32_t one = planar::kNobody;  // of them: who moves, joins or leaves rather than who stands
+};
+
 struct Tracks {
   // On these parts, which must live as long; null: there are none.
   explicit Tracks(const std::vector<TrackParams>& params, const planar::Parts* parts = nullptr);
@@ -53,8 +62,8 @@ struct Tracks {
   std::vector<std::uint32_t> end_nodes;
   std::vector<std::uint32_t> starts_at;  // by node: so many tracks
   std::vector<std::uint32_t> ends_at;
-  std::uint64_t changes = 0;                // of ways and links, counted
-  std::vector<std::uint32_t> mover_counts;  // movers on each
+  std::uint64_t changes = 0;  // of ways and links, counted
+  std::vector<Usage> usages;  // of each
 
   Desk desk;
   bool sent = false;  // the question has found room in the queue
@@ -78,8 +87,7 @@ void Apply(const Context& c, std::size_t track, Ticket ticket, const Command& co
 // A fault of a track: of whatever happens on it.
 void Fail(const Context& c, std::size_t track, ErrorId error, ErrorReaction reaction) noexcept;
 
-// What movers do on a track.
-void Use(std::uint32_t movers, bool moves, bool configures, std::size_t track, Tracks& tracks) noexcept;
+void Use(const Usage& usage, std::size_t track, Tracks& tracks) noexcept;
 
 // move: before the movers.
 void Step(const Context& c) noexcept;

@@ -13,10 +13,6 @@ namespace {
 
 using planar::Problem;
 
-bool Same(const planar::TrackPoint& a, const planar::TrackPoint& b) {
-  return SamePlace(a.place, b.place) && SameDirection(a, b) && SameCurvature(a, b);
-}
-
 std::span<const std::uint32_t> All(const Links& links) {
   return std::span(links.tracks).first(links.count);
 }

@@ -12,6 +12,10 @@ struct Limits {
   double jerk = 0;          // u/s³, >= 0; 0: unlimited (trapezoid)
 };
 
+inline Limits ShareOf(double share, const Limits& l) noexcept {
+  return {share * l.velocity, share * l.acceleration, share * l.deceleration, share * l.jerk};
+}
+
 void describe(Description<Limits>&);
 
 }  // namespace takt::trajectory

@@ -12,8 +12,6 @@
 namespace takt::axis {
 namespace {
 
-constexpr Cycle kCycle{.count = 0, .period_s = 0.001};
-
 // One part at a time: whatever a test does not switch on is off.
 ControlLoop Silent() {
   ControlLoop p;
@@ -44,7 +42,7 @@ struct Loop {
     in.model_position = model;
     in.model_velocity = model_velocity;
     in.feedback = feedback;
-    Step(params, in, kCycle, state, out);
+    Step(params, in, Cycle{.count = 0, .period_s = 0.001}, state, out);
   }
 };
 

@@ -12,8 +12,6 @@
 namespace takt::axis {
 namespace {
 
-constexpr Cycle kCycle{.count = 0, .period_s = 0.001};
-
 struct Measurement {
   Encoder params;
   EncoderInputs in;
@@ -23,7 +21,7 @@ struct Measurement {
   const EncoderOutputs& Read(std::int64_t counts, bool error = false) {
     in.counts = static_cast<std::uint32_t>(counts);
     in.error = error;
-    Step(params, in, kCycle, state, out);
+    Step(params, in, Cycle{.count = 0, .period_s = 0.001}, state, out);
     return out;
   }
 };

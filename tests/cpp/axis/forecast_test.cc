@@ -11,18 +11,9 @@
 namespace takt::axis {
 namespace {
 
-// Ramps of 1000 without a jerk limit: times are those of a trapezoid.
-AxisParams Trapezoid() {
-  AxisParams p = LinearParams();
-  p.limits.acceleration = 1000;
-  p.limits.deceleration = 1000;
-  p.limits.jerk = 0;
-  return p;
-}
-
 // AX-96: s = 400, v = 200, a = 1000: 0.2 s of each ramp with 20 of the way, 1.8 s at speed.
 TEST(Forecast, TellsTheTimesOfATrapezoid) {
-  Rig rig(Trapezoid());
+  Rig rig(Trapezoid(1000));
   ASSERT_TRUE(rig.PowerOn());
   const Forecast f = Foresee(rig.Now(), MoveAbsolute{.position = 400, .velocity = 200}, rig.state);
   ASSERT_TRUE(f.known);
@@ -42,7 +33,7 @@ TEST(Forecast, TellsTheTimesOfATrapezoid) {
 
 // AX-96: the motion in progress, from where it is.
 TEST(Forecast, FollowsTheMotionInProgress) {
-  Rig rig(Trapezoid());
+  Rig rig(Trapezoid(1000));
   ASSERT_TRUE(rig.PowerOn());
   EXPECT_EQ(Foresee(rig.Now(), rig.state).duration_s(), 0);
   const Ticket move = rig.Give(MoveAbsolute{.position = 400, .velocity = 200});
@@ -63,7 +54,7 @@ TEST(Forecast, FollowsTheMotionInProgress) {
 
 // AX-96, AX-51: held there is no end.
 TEST(Forecast, OfAHeldMoveHasNoEnd) {
-  Rig rig(Trapezoid());
+  Rig rig(Trapezoid(1000));
   ASSERT_TRUE(rig.PowerOn());
   rig.Give(SetOverride{.velocity_factor = 0});
   rig.Step();
@@ -78,7 +69,7 @@ TEST(Forecast, OfAHeldMoveHasNoEnd) {
 TEST(Forecast, OfAVelocityGoesOn) {
   for (const Command& command :
        {Command(MoveVelocity{.velocity = 100}), Command(Jog{.forward = true, .velocity = 100})}) {
-    Rig rig(Trapezoid());
+    Rig rig(Trapezoid(1000));
     ASSERT_TRUE(rig.PowerOn());
     const Forecast f = Foresee(rig.Now(), command, rig.state);
     EXPECT_NEAR(f.duration_s(), 0.1, 1e-9);
@@ -90,7 +81,7 @@ TEST(Forecast, OfAVelocityGoesOn) {
 
 // AX-96: a SW limit ends it.
 TEST(Forecast, OfAVelocityEndsAtALimit) {
-  AxisParams p = Trapezoid();
+  AxisParams p = Trapezoid(1000);
   p.limits.upper = 400;
   Rig rig(p);
   ASSERT_TRUE(rig.PowerOn());
@@ -104,7 +95,7 @@ TEST(Forecast, OfAVelocityEndsAtALimit) {
 
 // AX-96, AX-14: rotary positions are those of the turn; the next one on the way counts.
 TEST(Forecast, OfARotaryAxisKnowsTurns) {
-  AxisParams p = Trapezoid();
+  AxisParams p = Trapezoid(1000);
   p.kind = AxisKind::kRotary;
   p.modulus = 360;
   Rig rig(p);

@@ -20,12 +20,6 @@ AxisParams Fenced(double upper, double acceleration = 5000, double deceleration 
   return p;
 }
 
-double Highest(const Rig& rig) {
-  double highest = -HUGE_VAL;
-  for (const Sample& s : rig.trace) highest = std::max(highest, s.setpoint.position);
-  return highest;
-}
-
 // AX-12, AX-13: a motion without an end, blended into a move that ends at the SW limit, does not carry the axis over
 // it.
 TEST(Interrupt, ABlendedVelocityKeepsTheSoftLimit) {

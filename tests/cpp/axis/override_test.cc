@@ -10,24 +10,10 @@ SetOverride Factors(double velocity, double acceleration = 1, double jerk = 1) {
   return {.velocity_factor = velocity, .acceleration_factor = acceleration, .jerk_factor = jerk};
 }
 
-// Limits without a jerk limit: times are those of a trapezoid.
-AxisParams Trapezoid() {
-  AxisParams p = LinearParams();
-  p.limits.deceleration = 5000;
-  p.limits.jerk = 0;
-  return p;
-}
-
 double SecondsOf(Rig& rig, Ticket move) {
   EXPECT_TRUE(rig.RunToEnd(move, 1000));
   EXPECT_TRUE(rig.lives[move].done);
   return static_cast<double>(rig.lives[move].final_cycle - rig.lives[move].active_cycle + 1) * rig.cycle.period_s;
-}
-
-double Highest(const Rig& rig) {
-  double highest = -HUGE_VAL;
-  for (const Sample& s : rig.trace) highest = std::max(highest, s.setpoint.position);
-  return highest;
 }
 
 double Fastest(const Rig& rig, std::size_t from = 0) {
@@ -38,20 +24,12 @@ double Fastest(const Rig& rig, std::size_t from = 0) {
   return fastest;
 }
 
-void ExpectWithinLimits(const Rig& rig, std::size_t from = 1) {
-  const Worst worst = WorstOf(rig.trace, rig.params.planner_limits(), rig.cycle.period_s, from);
-  EXPECT_LE(worst.velocity, 1 + 1e-9);
-  EXPECT_LE(worst.acceleration, 1 + 1e-9);
-  EXPECT_LE(worst.jerk, 1 + 1e-6);
-  EXPECT_LE(worst.position_step, 1 + 1e-6);
-}
-
 // AX-51: T = s / (f v) + f v / (g a), a trapezoid of velocity f v and ramps g a.
 TEST(Override, ScalesAMoveFromRest) {
   const double way = 400, velocity = 200, ramp = 1000;
   for (const double f : {1.0, 0.5, 0.1}) {
     for (const double g : {1.0, 0.25}) {
-      Rig rig(Trapezoid());
+      Rig rig(Trapezoid(5000));
       ASSERT_TRUE(rig.PowerOn());
       EXPECT_TRUE(rig.RunToEnd(rig.Give(Factors(f, g))));
       const Ticket move = rig.Give(

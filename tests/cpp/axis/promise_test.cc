@@ -9,20 +9,6 @@
 namespace takt::axis {
 namespace {
 
-double Highest(const Rig& rig) {
-  double highest = -HUGE_VAL;
-  for (const Sample& s : rig.trace) highest = std::max(highest, s.setpoint.position);
-  return highest;
-}
-
-void ExpectWithinLimits(const Rig& rig) {
-  const Worst worst = WorstOf(rig.trace, rig.params.planner_limits(), rig.cycle.period_s);
-  EXPECT_LE(worst.velocity, 1 + 1e-9);
-  EXPECT_LE(worst.acceleration, 1 + 1e-9);
-  EXPECT_LE(worst.jerk, 1 + 1e-6);
-  EXPECT_LE(worst.position_step, 1 + 1e-6);
-}
-
 // What lowers the ramps at some time of a move to 100.
 struct Lowering {
   const char* name;

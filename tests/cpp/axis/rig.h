@@ -1,6 +1,8 @@
 // One axis in front of an ideal drive: what is commanded in a cycle is measured in the next.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <functional>
 #include <map>
@@ -26,6 +28,15 @@ inline AxisParams RotaryParams() {
   p.unit = "deg";
   p.kind = AxisKind::kRotary;
   p.modulus = 360;
+  return p;
+}
+
+// Without a jerk limit: times are those of a trapezoid.
+inline AxisParams Trapezoid(double ramp) {
+  AxisParams p = LinearParams();
+  p.limits.acceleration = ramp;
+  p.limits.deceleration = ramp;
+  p.limits.jerk = 0;
   return p;
 }
 
@@ -166,6 +177,20 @@ inline Worst WorstOf(const std::vector<Sample>& trace, const trajectory::Limits&
     worst.position_step = std::max(worst.position_step, std::abs(b.position - a.position - mean) / bound);
   }
   return worst;
+}
+
+inline void ExpectWithinLimits(const Rig& rig, std::size_t from = 1) {
+  const Worst worst = WorstOf(rig.trace, rig.params.planner_limits(), rig.cycle.period_s, from);
+  EXPECT_LE(worst.velocity, 1 + 1e-9);
+  EXPECT_LE(worst.acceleration, 1 + 1e-9);
+  EXPECT_LE(worst.jerk, 1 + 1e-6);
+  EXPECT_LE(worst.position_step, 1 + 1e-6);
+}
+
+inline double Highest(const Rig& rig) {
+  double highest = -HUGE_VAL;
+  for (const Sample& s : rig.trace) highest = std::max(highest, s.setpoint.position);
+  return highest;
 }
 
 }  // namespace takt::axis

@@ -1,10 +1,9 @@
 // What lies on a belt: from its detection to where it is taken or lost.
 #include "rig.h"
+#include "takt/core/angle.h"
 
 namespace takt::conveyor {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 KinematicState At(double position, double velocity = 0) {
   return {position, velocity, 0};

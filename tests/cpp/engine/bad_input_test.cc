@@ -12,10 +12,8 @@
 namespace takt::engine {
 namespace {
 
-using axis::Command;
-
 // One command of each kind that would be fine by itself.
-std::vector<Command> GoodCommands() {
+std::vector<axis::Command> GoodAxisCommands() {
   const Name master = Name::Of("a0");
   return {axis::MoveAbsolute{.position = 10},
           axis::MoveRelative{.distance = 10},
@@ -59,14 +57,14 @@ std::vector<Command> GoodCommands() {
           axis::Touch{}};
 }
 
-struct Situation {
+struct AxisSituation {
   const char* name;
   axis::PlcState state;
   void (*bring)(Line&);
 };
 
 // Axis 1 is the one that is asked.
-const Situation kSituations[] = {
+const AxisSituation kAxisSituations[] = {
     {"disabled", axis::PlcState::kDisabled,
      [](Line& l) {
        l.Give(1, axis::Power{.enable = false});
@@ -115,7 +113,7 @@ const Situation kSituations[] = {
        l.Run(50);
      }}};
 
-class BadInput : public testing::TestWithParam<Situation> {};
+class BadInput : public testing::TestWithParam<AxisSituation> {};
 
 // AX-06, AX-11, AX-13
 TEST_P(BadInput, IsRefusedAndLeavesTheMachineLikeItsTwin) {
@@ -125,8 +123,8 @@ TEST_P(BadInput, IsRefusedAndLeavesTheMachineLikeItsTwin) {
   ASSERT_EQ(asked.At(1).state, GetParam().state);
   ASSERT_EQ(asked.engine.StateHash(), twin.engine.StateHash());
   int refused = 0;
-  for (const Command& good : GoodCommands()) {
-    for (const Wrong<Command>& wrong : WrongVersionsOf(good)) {
+  for (const axis::Command& good : GoodAxisCommands()) {
+    for (const Wrong<axis::Command>& wrong : WrongVersionsOf(good)) {
       const Ticket ticket = asked.Give(1, wrong.command);
       asked.Step();
       twin.Step();
@@ -140,21 +138,22 @@ TEST_P(BadInput, IsRefusedAndLeavesTheMachineLikeItsTwin) {
   EXPECT_EQ(asked.At(1).state, GetParam().state);  // the situation held to the end
 }
 
-INSTANTIATE_TEST_SUITE_P(AllStates, BadInput, testing::ValuesIn(kSituations),
+INSTANTIATE_TEST_SUITE_P(AllStates, BadInput, testing::ValuesIn(kAxisSituations),
                          [](const auto& info) { return std::string(info.param.name); });
 
 // Every command is among those that are made wrong, or has no number to be wrong.
 TEST(BadInput, KnowsEveryCommand) {
   std::set<std::size_t> known;
-  for (const Command& good : GoodCommands()) known.insert(good.index());
+  for (const axis::Command& good : GoodAxisCommands()) known.insert(good.index());
   const auto without_numbers = [](std::size_t index) {
-    return index == Command(axis::Power{}).index() || index == Command(axis::Reset{}).index() ||
-           index == Command(axis::GearOut{}).index() || index == Command(axis::CamTableSelect{}).index() ||
-           index == Command(axis::CamOut{}).index() || index == Command(axis::StepAbsolute{}).index() ||
-           index == Command(axis::ReadParameter{}).index() || index == Command(axis::AbortTrigger{}).index() ||
-           index == Command(axis::DigitalCamSwitch{}).index();
+    return index == axis::Command(axis::Power{}).index() || index == axis::Command(axis::Reset{}).index() ||
+           index == axis::Command(axis::GearOut{}).index() || index == axis::Command(axis::CamTableSelect{}).index() ||
+           index == axis::Command(axis::CamOut{}).index() || index == axis::Command(axis::StepAbsolute{}).index() ||
+           index == axis::Command(axis::ReadParameter{}).index() ||
+           index == axis::Command(axis::AbortTrigger{}).index() ||
+           index == axis::Command(axis::DigitalCamSwitch{}).index();
   };
-  for (std::size_t i = 0; i < std::variant_size_v<Command>; ++i) {
+  for (std::size_t i = 0; i < std::variant_size_v<axis::Command>; ++i) {
     EXPECT_TRUE(known.count(i) == 1 || without_numbers(i)) << "command " << i << " of axis::Command";
   }
 }

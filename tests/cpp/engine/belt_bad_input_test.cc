@@ -14,15 +14,15 @@ namespace {
 
 using testing::HasSubstr;
 
-std::vector<conveyor::Command> GoodCommands() {
+std::vector<conveyor::Command> GoodBeltCommands() {
   return {conveyor::Detect{.x = 5},  conveyor::Locate{.number = 2, .x = 5},
           conveyor::TakeObject{1},   conveyor::GiveBackObject{1},
           conveyor::RemoveObject{1}, conveyor::ClearObjects{}};
 }
 
 // With an object that is visible and one that is not.
-struct Twin {
-  Twin() {
+struct BeltTwin {
+  BeltTwin() {
     Give(conveyor::Detect{.x = 1});
     Give(conveyor::Detect{});
   }
@@ -42,10 +42,10 @@ struct Twin {
 
 // CV-02, EN-22
 TEST(BeltBadInput, IsRefusedWithASentenceAndChangesNothing) {
-  EXPECT_EQ(GoodCommands().size(), std::variant_size_v<conveyor::Command>);
-  Twin asked, twin;
+  EXPECT_EQ(GoodBeltCommands().size(), std::variant_size_v<conveyor::Command>);
+  BeltTwin asked, twin;
   int refused = 0;
-  for (const conveyor::Command& good : GoodCommands()) {
+  for (const conveyor::Command& good : GoodBeltCommands()) {
     const CommandText fine = ToText(asked.machine, ToBelt(asked.machine, 0, good));
     ASSERT_EQ(ParseCommand(asked.machine, fine.target, fine.verb, fine.arguments).error, ErrorId::kNone) << fine.verb;
     for (const Wrong<conveyor::Command>& wrong : WrongVersionsOf(good)) {
@@ -64,7 +64,7 @@ TEST(BeltBadInput, IsRefusedWithASentenceAndChangesNothing) {
 
 // CV-42, EN-22
 TEST(BeltBadInput, OfPosesIsRefusedToo) {
-  Twin asked, twin;
+  BeltTwin asked, twin;
   for (const Wrong<conveyor::PoseCommand>& wrong : WrongVersionsOf(conveyor::PoseCommand(conveyor::SetPose{}))) {
     EXPECT_EQ(asked.Give(ToPose(asked.machine, wrong.command)).error, ErrorId::kParameter) << wrong.what;
     twin.engine.RunCycle();

@@ -14,11 +14,10 @@
 namespace takt::engine {
 namespace {
 
-using flexcam::Command;
 using testing::HasSubstr;
 
 // A web that turns, a knife that follows it, two more cams to change to.
-const char* kText = R"(
+const char* kWebText = R"(
 name: bad
 axes:
   - {name: knife, limits: {velocity: 500, acceleration: 5000, jerk: 100000, lower: -200, upper: 200}}
@@ -36,12 +35,12 @@ flex_cams:
 )";
 
 Machine BadMachine() {
-  LoadResult loaded = LoadMachine(kText, "bad.yaml");
+  LoadResult loaded = LoadMachine(kWebText, "bad.yaml");
   if (!loaded.machine) throw std::runtime_error(loaded.problems.front());
   return *loaded.machine;
 }
 
-std::vector<Command> GoodCommands() {
+std::vector<flexcam::Command> GoodModuleCommands() {
   return {flexcam::Control{}, flexcam::Configure{}, flexcam::ChangeCam{.cam_table = 2, .position = 10}};
 }
 
@@ -59,10 +58,10 @@ void Synchronise(Line& line) {
 TEST(FlexCamBadInput, IsRefusedAsTextWithASentence) {
   const Machine machine = BadMachine();
   int refused = 0;
-  for (const Command& good : GoodCommands()) {
+  for (const flexcam::Command& good : GoodModuleCommands()) {
     const CommandText fine = ToText(machine, ToModule(machine, good));
     ASSERT_EQ(ParseCommand(machine, fine.target, fine.verb, fine.arguments).error, ErrorId::kNone) << fine.arguments;
-    for (const Wrong<Command>& wrong : WrongVersionsOf(good)) {
+    for (const Wrong<flexcam::Command>& wrong : WrongVersionsOf(good)) {
       const CommandText text = ToText(machine, ToModule(machine, wrong.command));
       const ParsedCommand parsed = ParseCommand(machine, text.target, text.verb, text.arguments);
       EXPECT_EQ(parsed.error, ErrorId::kParameter) << wrong.what;
@@ -118,20 +117,20 @@ TEST(FlexCamBadInput, SaysWhatWasExpected) {
 // the module is then told to do with it.
 TEST(FlexCamBadInput, MovesNoAxisOutOfItsLimits) {
   using flexcam::Control;
-  const std::vector<Command> then = {Control{.offset_slave = 3.0},
-                                     Control{.scaling_slave = 0.5},
-                                     Control{.cam_table = 2u},
-                                     Control{.sync_cam = false},
-                                     Control{.sync_cam = true},
-                                     Control{.sync_out_instant = true},
-                                     Control{.sync_cam = false, .sync_out_instant = false},
-                                     flexcam::Jog{.positive = true},
-                                     flexcam::Jog{},
-                                     Control{.halt = true},
-                                     Control{.halt = false},
-                                     Control{.stop = true}};
-  for (const Command& good : GoodCommands()) {
-    for (const Wrong<Command>& wrong : WrongVersionsOf(good)) {
+  const std::vector<flexcam::Command> then = {Control{.offset_slave = 3.0},
+                                              Control{.scaling_slave = 0.5},
+                                              Control{.cam_table = 2u},
+                                              Control{.sync_cam = false},
+                                              Control{.sync_cam = true},
+                                              Control{.sync_out_instant = true},
+                                              Control{.sync_cam = false, .sync_out_instant = false},
+                                              flexcam::Jog{.positive = true},
+                                              flexcam::Jog{},
+                                              Control{.halt = true},
+                                              Control{.halt = false},
+                                              Control{.stop = true}};
+  for (const flexcam::Command& good : GoodModuleCommands()) {
+    for (const Wrong<flexcam::Command>& wrong : WrongVersionsOf(good)) {
       Line line(BadMachine());
       Synchronise(line);
       ASSERT_EQ(line.engine.flex_cam_outputs(0).state, flexcam::ModuleState::kSync);
@@ -156,12 +155,12 @@ TEST(FlexCamBadInput, MovesNoAxisOutOfItsLimits) {
 // Every command is among those that are made wrong, or has no real number to be wrong.
 TEST(FlexCamBadInput, KnowsEveryCommand) {
   std::set<std::size_t> known;
-  for (const Command& good : GoodCommands()) known.insert(good.index());
-  for (std::size_t i : {Command(flexcam::Jog{}).index(), Command(flexcam::SetCam{}).index(),
-                        Command(flexcam::WithdrawChanges{}).index()}) {
+  for (const flexcam::Command& good : GoodModuleCommands()) known.insert(good.index());
+  for (std::size_t i : {flexcam::Command(flexcam::Jog{}).index(), flexcam::Command(flexcam::SetCam{}).index(),
+                        flexcam::Command(flexcam::WithdrawChanges{}).index()}) {
     known.insert(i);
   }
-  EXPECT_EQ(known.size(), std::variant_size_v<Command>);
+  EXPECT_EQ(known.size(), std::variant_size_v<flexcam::Command>);
 }
 
 // CAM-10, EN-22: a slot that no module has is refused, and nothing is different from a twin that was never asked.
@@ -170,13 +169,13 @@ TEST(FlexCamBadInput, RefusesSlotsThatAreNotThere) {
   Line twin(BadMachine());
   Synchronise(asked);
   Synchronise(twin);
-  std::vector<Command> wrong;
+  std::vector<flexcam::Command> wrong;
   for (const std::uint32_t slot : {0u, 5u, 4'000'000'000u}) {
     wrong.push_back(flexcam::SetCam{.slot = slot, .cam = Name::Of("hill")});
     wrong.push_back(flexcam::ChangeCam{.cam_table = slot});
     wrong.push_back(flexcam::Control{.cam_table = slot});
   }
-  for (const Command& command : wrong) {
+  for (const flexcam::Command& command : wrong) {
     const Ticket ticket = asked.engine.Submit(ToModule(asked.machine, command));
     asked.Step();
     twin.Step();
@@ -192,8 +191,8 @@ TEST(FlexCamBadInput, RefusesNumbersThatAreNone) {
   Line twin(BadMachine());
   Synchronise(asked);
   Synchronise(twin);
-  for (const Command& good : GoodCommands()) {
-    for (const Wrong<Command>& wrong : WrongVersionsOf(good)) {
+  for (const flexcam::Command& good : GoodModuleCommands()) {
+    for (const Wrong<flexcam::Command>& wrong : WrongVersionsOf(good)) {
       const Ticket ticket = asked.engine.Submit(ToModule(asked.machine, wrong.command));
       asked.Step();
       twin.Step();

@@ -12,7 +12,7 @@ namespace {
 using planar::ObjectState;
 
 // A lift beside each of two levels; the planet is the first mover of the file, the star comes behind it.
-const std::string kLevels = R"(
+const std::string kLevelsText = R"(
 name: levels
 axes:
   - {name: x, limits: {velocity: 5000, acceleration: 100000, jerk: 5000000}}
@@ -36,7 +36,7 @@ constexpr ObjectInfo kStar{ObjectKind::kMover, 2};
 std::string Levels() {
   const std::string name = "WIDE",
                     window = "{maximum: {velocity: 360, acceleration: 3600, jerk: 72000}, lower: -90, upper: 90}";
-  std::string text = kLevels;
+  std::string text = kLevelsText;
   for (std::size_t at = 0; (at = text.find(name)) != std::string::npos;) text.replace(at, name.size(), window);
   return text;
 }

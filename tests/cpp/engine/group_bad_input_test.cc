@@ -14,11 +14,10 @@
 namespace takt::engine {
 namespace {
 
-using group::Command;
 using testing::HasSubstr;
 
 // One command of each kind that would be fine by itself.
-std::vector<Command> GoodCommands() {
+std::vector<group::Command> GoodGroupCommands() {
   using group::CoordinateSystem;
   const Name square = Name::Of("square");
   return {group::MoveLinearAbsolute{.x = 10},
@@ -47,10 +46,10 @@ std::vector<Command> GoodCommands() {
 TEST(GroupBadInput, IsRefusedAsTextWithASentence) {
   const Machine machine = PortalMachine();
   int refused = 0;
-  for (const Command& good : GoodCommands()) {
+  for (const group::Command& good : GoodGroupCommands()) {
     const CommandText fine = ToText(machine, ToGroup(machine, good));
     ASSERT_EQ(ParseCommand(machine, fine.target, fine.verb, fine.arguments).sentence, "") << fine.verb;
-    for (const Wrong<Command>& wrong : WrongVersionsOf(good)) {
+    for (const Wrong<group::Command>& wrong : WrongVersionsOf(good)) {
       const CommandText text = ToText(machine, ToGroup(machine, wrong.command));
       const ParsedCommand parsed = ParseCommand(machine, text.target, text.verb, text.arguments);
       EXPECT_EQ(parsed.error, ErrorId::kParameter) << wrong.what;
@@ -128,7 +127,7 @@ TEST(GroupBadInput, KnowsDistancesThatDoNotFit) {
   Portal portal;
   const Name belt = Name::Of("belt"), table = Name::Of("table");
   const struct {
-    Command command;
+    group::Command command;
     ErrorId error;
     const char* sentence;
   } cases[] = {
@@ -154,13 +153,13 @@ TEST(GroupBadInput, KnowsDistancesThatDoNotFit) {
   }
 }
 
-struct Situation {
+struct GroupSituation {
   const char* name;
   group::GroupState state;
   void (*bring)(Portal&);
 };
 
-const Situation kSituations[] = {
+const GroupSituation kGroupSituations[] = {
     {"disabled", group::GroupState::kDisabled,
      [](Portal& p) {
        p.Tell(group::Disable{});
@@ -187,7 +186,7 @@ const Situation kSituations[] = {
        p.Run(50);
      }}};
 
-class GroupBadInputIn : public testing::TestWithParam<Situation> {};
+class GroupBadInputIn : public testing::TestWithParam<GroupSituation> {};
 
 // GR-02, GR-12
 TEST_P(GroupBadInputIn, IsRefusedAndLeavesTheMachineLikeItsTwin) {
@@ -195,8 +194,8 @@ TEST_P(GroupBadInputIn, IsRefusedAndLeavesTheMachineLikeItsTwin) {
   for (Portal* portal : {&asked, &twin}) GetParam().bring(*portal);
   ASSERT_EQ(asked.group().state, GetParam().state);
   ASSERT_EQ(asked.engine.StateHash(), twin.engine.StateHash());
-  for (const Command& good : GoodCommands()) {
-    for (const Wrong<Command>& wrong : WrongVersionsOf(good)) {
+  for (const group::Command& good : GoodGroupCommands()) {
+    for (const Wrong<group::Command>& wrong : WrongVersionsOf(good)) {
       const Ticket ticket = asked.Tell(wrong.command);
       asked.Step();
       twin.Step();
@@ -208,20 +207,20 @@ TEST_P(GroupBadInputIn, IsRefusedAndLeavesTheMachineLikeItsTwin) {
   EXPECT_EQ(asked.group().state, GetParam().state);  // the situation held to the end
 }
 
-INSTANTIATE_TEST_SUITE_P(AllStates, GroupBadInputIn, testing::ValuesIn(kSituations),
+INSTANTIATE_TEST_SUITE_P(AllStates, GroupBadInputIn, testing::ValuesIn(kGroupSituations),
                          [](const auto& info) { return std::string(info.param.name); });
 
 // Every command is among those that are made wrong, or has no real number to be wrong.
 TEST(GroupBadInput, KnowsEveryCommand) {
   std::set<std::size_t> known;
-  for (const Command& good : GoodCommands()) known.insert(good.index());
-  for (const Command& plain :
-       std::vector<Command>{group::Continue{}, group::AddAxis{}, group::RemoveAxis{}, group::UngroupAllAxes{},
-                            group::Enable{}, group::Disable{}, group::Reset{}, group::Power{}, group::Home{},
-                            group::SetKinTransform{}, group::PathChecked{}}) {  // no user's
+  for (const group::Command& good : GoodGroupCommands()) known.insert(good.index());
+  for (const group::Command& plain :
+       std::vector<group::Command>{group::Continue{}, group::AddAxis{}, group::RemoveAxis{}, group::UngroupAllAxes{},
+                                   group::Enable{}, group::Disable{}, group::Reset{}, group::Power{}, group::Home{},
+                                   group::SetKinTransform{}, group::PathChecked{}}) {  // no user's
     known.insert(plain.index());
   }
-  EXPECT_EQ(known.size(), std::variant_size_v<Command>);
+  EXPECT_EQ(known.size(), std::variant_size_v<group::Command>);
 }
 
 }  // namespace

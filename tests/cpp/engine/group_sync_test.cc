@@ -53,12 +53,12 @@ paths:
 constexpr std::size_t kX = 0, kY = 1, kM = 2, kF = 3;
 constexpr double kHook = 160 + 50 * std::numbers::pi;  // mm, its length
 
-struct Place {
+struct PathPlace {
   double x = 0, y = 0;
 };
 
 // Of "hook" at a way along it.
-Place OnHook(double way) {
+PathPlace OnHook(double way) {
   constexpr double kTurned = 100 + 50 * std::numbers::pi;
   way = std::clamp(way, 0.0, kHook);
   if (way <= 100) return {way, 0};
@@ -67,7 +67,7 @@ Place OnHook(double way) {
   return {100 + 50 * std::sin(angle), 50 - 50 * std::cos(angle)};
 }
 // Of "step".
-Place OnStep(double way) {
+PathPlace OnStep(double way) {
   return {std::clamp(way, 0.0, 50.0) + std::clamp(way - 100, 0.0, 50.0), std::clamp(way - 50, 0.0, 50.0)};
 }
 
@@ -78,7 +78,7 @@ struct Nearest {
 Nearest OnHookAt(double x, double y) {
   Nearest nearest;
   const auto look = [&](double way) {
-    const Place p = OnHook(way);
+    const PathPlace p = OnHook(way);
     const double off = std::hypot(p.x - x, p.y - y);
     if (off < nearest.off) nearest = {way, off};
   };
@@ -106,7 +106,7 @@ class Followers : public Line, public testing::Test {
   double y() const { return At(kY).set_position; }
   // How far the tool is from where the master wants it.
   double FromMaster(double begin, double ratio = 1) const {
-    const Place p = OnHook(ratio * (At(kM).set_position - begin));
+    const PathPlace p = OnHook(ratio * (At(kM).set_position - begin));
     return std::hypot(p.x - x(), p.y - y());
   }
   // Cycle by cycle: the tool stays on its path and never goes back.

@@ -16,6 +16,7 @@
 #include "takt/engine/cycle.h"
 
 // GCC 12 takes optionals that go into a variant for uninitialised.
+#pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 
 namespace takt::engine {
@@ -260,9 +261,9 @@ class Fancy {
   std::mt19937_64 random_;
 };
 
-class Walk {
+class RandomGroups {
  public:
-  explicit Walk(std::uint64_t seed) : machine_(TwoGroups()), world_(machine_), fancy_(seed) {
+  explicit RandomGroups(std::uint64_t seed) : machine_(TwoGroups()), world_(machine_), fancy_(seed) {
     for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) Give(OfAxis(axis, axis::Power{}));
     Run(200);
     Give(OfAxis(1, axis::SetPosition{.position = 60}));
@@ -458,7 +459,7 @@ TEST(TwoGroups, RandomWalk) {
   const std::uint64_t seeds = std::getenv("TAKT_LONG") ? 3000 : 40;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    Walk walk(seed);
+    RandomGroups walk(seed);
     walk.Go();
     if (!testing::Test::HasFailure()) walk.End();
     for (const auto& [state, cycles] : walk.seen) seen[state] += cycles;
@@ -471,3 +472,5 @@ TEST(TwoGroups, RandomWalk) {
 
 }  // namespace
 }  // namespace takt::engine
+
+#pragma GCC diagnostic pop

@@ -21,7 +21,7 @@ using testing::StartsWith;
 
 const std::string kAxis = "name: m\naxes: [{name: x, limits: {velocity: 1, acceleration: 1, jerk: 1}}]\ncams:\n";
 
-std::vector<std::string> Problems(const std::string& cams) {
+std::vector<std::string> CamProblems(const std::string& cams) {
   return LoadMachine(kAxis + cams, "m.yaml").problems;
 }
 
@@ -60,17 +60,17 @@ TEST(LoadCams, MakesTablesForTheAxes) {
 }
 
 TEST(LoadCams, NamesFilePlaceAndValue) {
-  EXPECT_THAT(Problems("  - {name: a, points: [{x: 0, y: 0}, {x: 2, y: 0}, {x: 2, y: 1}]}\n"),
+  EXPECT_THAT(CamProblems("  - {name: a, points: [{x: 0, y: 0}, {x: 2, y: 0}, {x: 2, y: 1}]}\n"),
               ElementsAre("m.yaml:4:56: cams[0].points[2].x: expected x above 2 of the point before, found 2"));
   EXPECT_THAT(
-      Problems("  - {name: a, points: [{x: 0, y: 0}]}\n"),
+      CamProblems("  - {name: a, points: [{x: 0, y: 0}]}\n"),
       ElementsAre(AllOf(StartsWith("m.yaml:4:23: cams[0].points: "), HasSubstr("2 to 100,000 points, found 1"))));
-  EXPECT_THAT(Problems("  - {name: a, points: [{x: 0, y: .nan}, {x: 1, y: 1}]}\n"),
+  EXPECT_THAT(CamProblems("  - {name: a, points: [{x: 0, y: .nan}, {x: 1, y: 1}]}\n"),
               ElementsAre(HasSubstr("points[0].y: expected a finite number")));
-  EXPECT_THAT(Problems("  - {name: a}\n"), ElementsAre(HasSubstr("must be given, or segments, or a file")));
-  EXPECT_THAT(Problems("  - {name: a b, points: [{x: 0, y: 0}, {x: 1, y: 0}]}\n"),
+  EXPECT_THAT(CamProblems("  - {name: a}\n"), ElementsAre(HasSubstr("must be given, or segments, or a file")));
+  EXPECT_THAT(CamProblems("  - {name: a b, points: [{x: 0, y: 0}, {x: 1, y: 0}]}\n"),
               ElementsAre(HasSubstr("1 to 40 letters")));
-  EXPECT_THAT(Problems("  - {name: a, interpolation: linear, points: [{x: 0, y: 0, v: 1}, {x: 1, y: 0}]}\n"),
+  EXPECT_THAT(CamProblems("  - {name: a, interpolation: linear, points: [{x: 0, y: 0, v: 1}, {x: 1, y: 0}]}\n"),
               ElementsAre(HasSubstr("points[0].v: expected no velocity in a linear cam, found 1")));
 }
 
@@ -93,11 +93,11 @@ TEST(LoadCams, ReadsSegments) {
   const LoadResult again = LoadMachine(WriteYaml(*loaded.machine), "again.yaml");
   EXPECT_THAT(again.problems, IsEmpty());
   EXPECT_EQ(World(*again.machine).cams[0].At(200), world.cams[0].At(200));
-  EXPECT_THAT(Problems("  - {name: a, segments: [{to: {x: 1, y: 1}}, {to: {x: 1, y: 2}}]}\n"),
+  EXPECT_THAT(CamProblems("  - {name: a, segments: [{to: {x: 1, y: 1}}, {to: {x: 1, y: 2}}]}\n"),
               ElementsAre(HasSubstr("m.yaml:4:55: cams[0].segments[1].to.x: expected x above 1 of its beginning")));
-  EXPECT_THAT(Problems("  - {name: a, segments: [{to: {x: 1, y: 1}, law: cycloidal}]}\n"),
+  EXPECT_THAT(CamProblems("  - {name: a, segments: [{to: {x: 1, y: 1}, law: cycloidal}]}\n"),
               ElementsAre(HasSubstr("did you mean cycloid?")));
-  EXPECT_THAT(Problems("  - {name: a, points: [{x: 0, y: 0}], segments: [{to: {x: 1, y: 1}}]}\n"),
+  EXPECT_THAT(CamProblems("  - {name: a, points: [{x: 0, y: 0}], segments: [{to: {x: 1, y: 1}}]}\n"),
               ElementsAre(HasSubstr("must be the only one of points, segments and file")));
 }
 

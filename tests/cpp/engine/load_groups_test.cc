@@ -19,7 +19,7 @@ using testing::IsEmpty;
 using testing::StartsWith;
 
 // What is added begins in line 13.
-const std::string kMachine = R"(name: m
+const std::string kWithAxes = R"(name: m
 axes:
   - {name: a, limits: {velocity: 1, acceleration: 1, jerk: 1, lower: -5, upper: 5}}
   - {name: b, limits: {velocity: 1, acceleration: 1, jerk: 1}}
@@ -35,8 +35,8 @@ groups:
 const std::string kPath = "path: {velocity: 100, acceleration: 1000, jerk: 10000}";
 const std::string kGantry = "kinematics: {gantry: {axes: [x, y]}}";
 
-std::vector<std::string> Problems(const std::string& more) {
-  return LoadMachine(kMachine + more, "m.yaml").problems;
+std::vector<std::string> GroupProblems(const std::string& more) {
+  return LoadMachine(kWithAxes + more, "m.yaml").problems;
 }
 
 std::string Group(const std::string& name, const std::string& axes, const std::string& more = kGantry) {
@@ -44,74 +44,74 @@ std::string Group(const std::string& name, const std::string& axes, const std::s
 }
 
 TEST(LoadGroups, TakesGoodOnes) {
-  EXPECT_THAT(Problems(Group("robot", "a, b")), IsEmpty());
-  EXPECT_THAT(Problems(Group("robot", "a, b, c")), IsEmpty());  // c is auxiliary
-  EXPECT_THAT(Problems(Group("robot", "a, b") + Group("other", "c", "")), IsEmpty());
-  EXPECT_THAT(Problems(Group("empty", "", "")), IsEmpty());  // filled by add_axis
+  EXPECT_THAT(GroupProblems(Group("robot", "a, b")), IsEmpty());
+  EXPECT_THAT(GroupProblems(Group("robot", "a, b, c")), IsEmpty());  // c is auxiliary
+  EXPECT_THAT(GroupProblems(Group("robot", "a, b") + Group("other", "c", "")), IsEmpty());
+  EXPECT_THAT(GroupProblems(Group("empty", "", "")), IsEmpty());  // filled by add_axis
 }
 
 TEST(LoadGroups, NamesWhatIsNotThere) {
-  EXPECT_THAT(Problems(Group("robot", "a, e")),
+  EXPECT_THAT(GroupProblems(Group("robot", "a, e")),
               ElementsAre(AllOf(StartsWith("m.yaml:13:"), HasSubstr("groups[0].axes[1]: expected the name of an axis, "
                                                                     "found 'e'"))));
 }
 
 TEST(LoadGroups, HasEachAxisOnce) {
-  EXPECT_THAT(Problems(Group("robot", "a, a")),
+  EXPECT_THAT(GroupProblems(Group("robot", "a, a")),
               ElementsAre(HasSubstr("groups[0].axes[1]: expected each axis once, found 'a' again")));
-  EXPECT_THAT(Problems(Group("robot", "a, b") + Group("other", "b, c")),
+  EXPECT_THAT(GroupProblems(Group("robot", "a, b") + Group("other", "b, c")),
               ElementsAre(AllOf(StartsWith("m.yaml:14:"), HasSubstr("groups[1].axes[0]: expected each axis once"))));
 }
 
 // A member goes by its group alone.
 TEST(LoadGroups, LeavesOtherMastersTheirAxes) {
   EXPECT_THAT(
-      Problems(Group("robot", "a, second")),
+      GroupProblems(Group("robot", "a, second")),
       ElementsAre(HasSubstr("groups[0].axes[1]: expected an axis that does not follow another, found 'second'")));
-  EXPECT_THAT(Problems(Group("robot", "a, d")),
+  EXPECT_THAT(GroupProblems(Group("robot", "a, d")),
               ElementsAre(HasSubstr("groups[0].axes[1]: expected an axis that no cam module moves, found 'd'")));
 }
 
 TEST(LoadGroups, HasANameOfItsOwn) {
   const std::string own = "groups[0].name: expected a name that no axis and no cam module has, and not machine, found ";
-  EXPECT_THAT(Problems(Group("c", "a, b")), ElementsAre(HasSubstr(own + "'c'")));
-  EXPECT_THAT(Problems(Group("cutter", "a, b")), ElementsAre(HasSubstr(own + "'cutter'")));
-  EXPECT_THAT(Problems(Group("machine", "a, b")), ElementsAre(HasSubstr(own + "'machine'")));
-  EXPECT_THAT(Problems(Group("g", "a, b") + Group("g", "c", "")), ElementsAre(HasSubstr("groups[1].name")));
-  EXPECT_THAT(Problems(Group("g g", "a, b")), ElementsAre(HasSubstr("groups[0].name: expected 1 to 40 letters")));
+  EXPECT_THAT(GroupProblems(Group("c", "a, b")), ElementsAre(HasSubstr(own + "'c'")));
+  EXPECT_THAT(GroupProblems(Group("cutter", "a, b")), ElementsAre(HasSubstr(own + "'cutter'")));
+  EXPECT_THAT(GroupProblems(Group("machine", "a, b")), ElementsAre(HasSubstr(own + "'machine'")));
+  EXPECT_THAT(GroupProblems(Group("g", "a, b") + Group("g", "c", "")), ElementsAre(HasSubstr("groups[1].name")));
+  EXPECT_THAT(GroupProblems(Group("g g", "a, b")), ElementsAre(HasSubstr("groups[0].name: expected 1 to 40 letters")));
 }
 
 // GR-11
 TEST(LoadGroups, HasTheAxesOfItsKinematics) {
-  EXPECT_THAT(Problems(Group("robot", "a")),
+  EXPECT_THAT(GroupProblems(Group("robot", "a")),
               ElementsAre(HasSubstr("groups[0].axes: expected the names of the 2 axes of the kinematics, found 1")));
-  EXPECT_THAT(Problems(Group("robot", "a, b", "kinematics: {}")),
+  EXPECT_THAT(GroupProblems(Group("robot", "a, b", "kinematics: {}")),
               ElementsAre(HasSubstr("groups[0].kinematics: expected exactly one of the keys gantry")));
-  EXPECT_THAT(Problems(Group("robot", "a, b", "kinematics: {gantry: {axes: [x, y]}, joints: [{}]}")),
+  EXPECT_THAT(GroupProblems(Group("robot", "a, b", "kinematics: {gantry: {axes: [x, y]}, joints: [{}]}")),
               ElementsAre(HasSubstr("groups[0].kinematics.joints: expected one entry for each of the 2 axes")));
-  EXPECT_THAT(Problems(Group("robot", "a, b", "kinematics: {serial: {urdf: nowhere.urdf}}")),
+  EXPECT_THAT(GroupProblems(Group("robot", "a, b", "kinematics: {serial: {urdf: nowhere.urdf}}")),
               ElementsAre(HasSubstr("groups[0].kinematics.serial.urdf: nowhere.urdf: ")));
 }
 
 TEST(LoadGroups, HasLimitsAlongThePath) {
-  EXPECT_THAT(Problems("  - {name: g, axes: [a]}\n"), ElementsAre(HasSubstr("groups[0].path: expected this key")));
-  EXPECT_THAT(Problems("  - {name: g, axes: [a], path: {velocity: 0, acceleration: 1, jerk: 1}}\n"),
+  EXPECT_THAT(GroupProblems("  - {name: g, axes: [a]}\n"), ElementsAre(HasSubstr("groups[0].path: expected this key")));
+  EXPECT_THAT(GroupProblems("  - {name: g, axes: [a], path: {velocity: 0, acceleration: 1, jerk: 1}}\n"),
               ElementsAre(HasSubstr("groups[0].path.velocity: expected a number in mm")));
-  EXPECT_THAT(Problems("  - {name: g, axes: [a], path: {velocity: 1, acceleration: 1, jerk: -1}}\n"),
+  EXPECT_THAT(GroupProblems("  - {name: g, axes: [a], path: {velocity: 1, acceleration: 1, jerk: -1}}\n"),
               ElementsAre(HasSubstr("groups[0].path.jerk: expected a number in mm")));
-  EXPECT_THAT(Problems("  - {name: g, axes: [a, b], " + kPath + ", tool_limits: {velocity: 0}}\n"),
+  EXPECT_THAT(GroupProblems("  - {name: g, axes: [a, b], " + kPath + ", tool_limits: {velocity: 0}}\n"),
               ElementsAre(HasSubstr("groups[0].tool_limits.velocity: expected a number in mm")));
 }
 
 TEST(LoadGroups, IsPublishedAtARateOfItsOwn) {
-  EXPECT_THAT(Problems(Group("robot", "a, b") + "lcm: {rates: [{axis: robot, rate_hz: 5}]}\n"), IsEmpty());
-  EXPECT_THAT(Problems(Group("robot", "a, b") + "lcm: {rates: [{axis: robott, rate_hz: 5}]}\n"),
+  EXPECT_THAT(GroupProblems(Group("robot", "a, b") + "lcm: {rates: [{axis: robot, rate_hz: 5}]}\n"), IsEmpty());
+  EXPECT_THAT(GroupProblems(Group("robot", "a, b") + "lcm: {rates: [{axis: robott, rate_hz: 5}]}\n"),
               ElementsAre(HasSubstr("expected the name of an axis or other component, found 'robott'; did you mean "
                                     "robot?")));
 }
 
 std::vector<std::string> PathProblems(const std::string& elements) {
-  return Problems(Group("robot", "a, b") + "paths:\n  - {name: p, elements: [" + elements + "]}\n");
+  return GroupProblems(Group("robot", "a, b") + "paths:\n  - {name: p, elements: [" + elements + "]}\n");
 }
 
 // GR-20
@@ -134,7 +134,7 @@ TEST(LoadPaths, SayWhatAnElementNeeds) {
               ElementsAre(HasSubstr("paths[0].elements[0].to: must be given for a line")));
   EXPECT_THAT(PathProblems("{shape: line, to: {x: 3, y: 0}}"),
               ElementsAre(HasSubstr("paths[0].elements[0].to.z: expected this key")));
-  EXPECT_THAT(Problems(Group("robot", "a, b") + "paths:\n  - {name: p}\n"),
+  EXPECT_THAT(GroupProblems(Group("robot", "a, b") + "paths:\n  - {name: p}\n"),
               ElementsAre(HasSubstr("paths[0].elements: must be given, or a file")));
   EXPECT_THAT(PathProblems("{shape: line, to: {x: 3, y: 0, z: 0}, velocity: 0}"),
               ElementsAre(HasSubstr("paths[0].elements[0].velocity: expected a number in mm")));
@@ -177,7 +177,7 @@ class PathFiles : public testing::Test {
 
   LoadResult Load(const std::string& csv) {
     std::ofstream(folder_ / "p.csv") << csv;
-    return LoadMachine(kMachine + Group("robot", "a, b") + "paths:\n  - {name: p, file: p.csv}\n",
+    return LoadMachine(kWithAxes + Group("robot", "a, b") + "paths:\n  - {name: p, file: p.csv}\n",
                        (folder_ / "m.yaml").string());
   }
   std::vector<std::string> ProblemsOf(const std::string& csv) { return Load(csv).problems; }
@@ -221,7 +221,7 @@ TEST_F(PathFiles, SayWhatIsWrongAndWhere) {
 // GR-11: a URDF becomes part of the machine, so that a journal can be replayed without the file.
 TEST(LoadGroups, TakesTheUrdfIntoTheMachine) {
   const std::string urdf = std::string(TAKT_SOURCE_DIR) + "/tests/cpp/kinematics/cobra.urdf";
-  const std::string text = kMachine +
+  const std::string text = kWithAxes +
                            Group("robot", "a, b, c, e", "kinematics: {serial: {urdf: " + urdf + ", tip: tool}}") +
                            "simulation: {}\n";
   const std::string with_e = std::string(text).replace(
@@ -236,7 +236,7 @@ TEST(LoadGroups, TakesTheUrdfIntoTheMachine) {
 }
 
 TEST(LoadGroups, AreComponents) {
-  const LoadResult loaded = LoadMachine(kMachine + Group("robot", "a, b"), "m.yaml");
+  const LoadResult loaded = LoadMachine(kWithAxes + Group("robot", "a, b"), "m.yaml");
   ASSERT_TRUE(loaded.machine);
   const std::optional<std::uint32_t> robot = FindComponent(*loaded.machine, "robot");
   ASSERT_EQ(robot, 6u);  // behind five axes and a cam module

@@ -15,7 +15,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::string With(const std::string& axes, const std::string& rest = "") {
+std::string FileOf(const std::string& axes, const std::string& rest = "") {
   return "name: m\n" + rest + "axes:\n" + axes;
 }
 
@@ -60,9 +60,9 @@ TEST(LoadMachine, ReportsEverythingAtOnceWithItsPlace) {
 TEST(LoadMachine, NamesTheMembersOfALoop) {
   const std::string limits = "    limits: {velocity: 1, acceleration: 1, jerk: 1}\n";
   const LoadResult result =
-      LoadMachine(With("  - name: a\n" + limits + "    follows: {axis: c}\n  - name: b\n" + limits +
-                       "    follows: {axis: a}\n  - name: c\n" + limits + "    follows: {axis: b}\n  - name: d\n" +
-                       limits + "    follows: {axis: a}\n"),
+      LoadMachine(FileOf("  - name: a\n" + limits + "    follows: {axis: c}\n  - name: b\n" + limits +
+                         "    follows: {axis: a}\n  - name: c\n" + limits + "    follows: {axis: b}\n  - name: d\n" +
+                         limits + "    follows: {axis: a}\n"),
                   "loop.yaml");
   ASSERT_EQ(result.problems.size(), 1u);
   EXPECT_THAT(result.problems[0], HasSubstr("in no loop, found b -> c -> a -> b"));
@@ -70,9 +70,9 @@ TEST(LoadMachine, NamesTheMembersOfALoop) {
 
 // EN-03: a follower that could not keep up with its master's limits is refused at load.
 TEST(LoadMachine, RefusesAFollowerThatCannotKeepUp) {
-  const LoadResult result = LoadMachine(With("  - name: a\n    limits: {velocity: 10, acceleration: 1, jerk: 1}\n"
-                                             "  - name: b\n    limits: {velocity: 10, acceleration: 9, jerk: 9}\n"
-                                             "    follows: {axis: a, ratio: -2}\n"),
+  const LoadResult result = LoadMachine(FileOf("  - name: a\n    limits: {velocity: 10, acceleration: 1, jerk: 1}\n"
+                                               "  - name: b\n    limits: {velocity: 10, acceleration: 9, jerk: 9}\n"
+                                               "    follows: {axis: a, ratio: -2}\n"),
                                         "m.yaml");
   EXPECT_THAT(result.problems,
               ElementsAre(AllOf(HasSubstr("m.yaml:7:21: axes[1].follows.axis"), HasSubstr("velocity"))));
@@ -81,8 +81,8 @@ TEST(LoadMachine, RefusesAFollowerThatCannotKeepUp) {
 // EN-03: each limit of its own counts, and a jerk limit is none that a master without one could keep.
 TEST(LoadMachine, LooksAtEveryLimitOfAFollower) {
   const auto problems = [](const std::string& master, const std::string& follower) {
-    return LoadMachine(With("  - name: a\n    limits: " + master + "\n  - name: b\n    limits: " + follower +
-                            "\n    follows: {axis: a, ratio: -2}\n"),
+    return LoadMachine(FileOf("  - name: a\n    limits: " + master + "\n  - name: b\n    limits: " + follower +
+                              "\n    follows: {axis: a, ratio: -2}\n"),
                        "m.yaml")
         .problems;
   };
@@ -105,10 +105,10 @@ TEST(LoadMachine, LooksAtEveryLimitOfAFollower) {
 TEST(LoadMachine, ChecksWhatRefersToAxes) {
   const std::string limits = "    limits: {velocity: 1, acceleration: 1, jerk: 1}\n";
   const LoadResult result =
-      LoadMachine(With("  - name: machine\n" + limits + "  - name: x\n" + limits + "    follows: {axis: y}\n" +
-                           "  - name: z\n    limits: {velocity: 0, acceleration: 1, jerk: 1}\n" +
-                           "simulation: {servos: [{axis: x}, {axis: x}]}\n",
-                       "lcm: {rates: [{axis: w, rate_hz: 1}, {axis: x, rate_hz: 1}, {axis: x, rate_hz: 2}]}\n"),
+      LoadMachine(FileOf("  - name: machine\n" + limits + "  - name: x\n" + limits + "    follows: {axis: y}\n" +
+                             "  - name: z\n    limits: {velocity: 0, acceleration: 1, jerk: 1}\n" +
+                             "simulation: {servos: [{axis: x}, {axis: x}]}\n",
+                         "lcm: {rates: [{axis: w, rate_hz: 1}, {axis: x, rate_hz: 1}, {axis: x, rate_hz: 2}]}\n"),
                   "m.yaml");
   EXPECT_THAT(
       result.problems,
@@ -120,14 +120,14 @@ TEST(LoadMachine, ChecksWhatRefersToAxes) {
 
 // A name that is missing is one problem, not two.
 TEST(LoadMachine, ReportsAMissingNameOnce) {
-  EXPECT_THAT(LoadMachine(With("  - limits: {velocity: 1, acceleration: 1, jerk: 1}\n"), "m.yaml").problems,
+  EXPECT_THAT(LoadMachine(FileOf("  - limits: {velocity: 1, acceleration: 1, jerk: 1}\n"), "m.yaml").problems,
               ElementsAre(HasSubstr("name")));
 }
 
 TEST(LoadMachine, TakesEveryGoodName) {
   for (const char* name : {"a.b", "A-b_9", "aaaaaaaaaabbbbbbbbbbccccccccccdddddddddd"}) {
     const std::string text =
-        With(std::string("  - name: ") + name + "\n    limits: {velocity: 1, acceleration: 1, jerk: 1}\n");
+        FileOf(std::string("  - name: ") + name + "\n    limits: {velocity: 1, acceleration: 1, jerk: 1}\n");
     EXPECT_THAT(LoadMachine(text, "m.yaml").problems, testing::IsEmpty()) << name;
   }
 }
@@ -135,9 +135,9 @@ TEST(LoadMachine, TakesEveryGoodName) {
 // AX-83: nor has a follower SW limits of its own, which its master would lead it out of.
 TEST(LoadMachine, RefusesAFollowerWithSoftLimits) {
   const LoadResult result =
-      LoadMachine(With("  - name: a\n    limits: {velocity: 10, acceleration: 1, jerk: 1}\n"
-                       "  - name: b\n    limits: {velocity: 10, acceleration: 9, jerk: 9, upper: 50}\n"
-                       "    follows: {axis: a}\n"),
+      LoadMachine(FileOf("  - name: a\n    limits: {velocity: 10, acceleration: 1, jerk: 1}\n"
+                         "  - name: b\n    limits: {velocity: 10, acceleration: 9, jerk: 9, upper: 50}\n"
+                         "    follows: {axis: a}\n"),
                   "m.yaml");
   EXPECT_THAT(result.problems, ElementsAre(AllOf(HasSubstr("axes[1].follows.axis"), HasSubstr("no lower and upper"))));
 }
@@ -151,7 +151,7 @@ TEST(LoadMachine, RefusesNamesThatCannotBeAddressed) {
   for (const char* name :
        {"machine", "a b", "a/b", "\"\"", "äxis", "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"}) {
     const std::string text =
-        With(std::string("  - name: ") + name + "\n    limits: {velocity: 1, acceleration: 1, jerk: 1}\n");
+        FileOf(std::string("  - name: ") + name + "\n    limits: {velocity: 1, acceleration: 1, jerk: 1}\n");
     EXPECT_FALSE(LoadMachine(text, "m.yaml").problems.empty()) << name;
   }
 }
@@ -159,7 +159,8 @@ TEST(LoadMachine, RefusesNamesThatCannotBeAddressed) {
 // AX-02: SW limits on an axis that goes round and round mean nothing.
 TEST(LoadMachine, RefusesSoftLimitsOnRotaryAxes) {
   const LoadResult result = LoadMachine(
-      With("  - name: c\n    kind: rotary\n    limits: {velocity: 1, acceleration: 1, jerk: 1, lower: 0}\n"), "m.yaml");
+      FileOf("  - name: c\n    kind: rotary\n    limits: {velocity: 1, acceleration: 1, jerk: 1, lower: 0}\n"),
+      "m.yaml");
   EXPECT_THAT(result.problems, ElementsAre(HasSubstr("axes[0].limits")));
 }
 

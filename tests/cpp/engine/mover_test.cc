@@ -9,6 +9,7 @@
 #include "takt/core/describe.h"
 #include "takt/engine/engine.h"
 #include "takt/engine/load.h"
+#include "texts.h"
 #include "wrong.h"
 
 namespace takt::engine {
@@ -17,7 +18,7 @@ namespace {
 using planar::ObjectState;
 using testing::HasSubstr;
 
-const std::string kText = R"(
+const std::string kPlaneText = R"(
 name: plane
 axes:
   - {name: x, limits: {velocity: 1500, acceleration: 10000, jerk: 500000}}
@@ -32,19 +33,10 @@ planar_groups: [{name: cell}]
 )";
 
 Machine PlaneMachine() {
-  LoadResult loaded = LoadMachine(kText, "plane.yaml");
-  if (!loaded.machine) throw std::runtime_error(loaded.problems.front());
-  return *loaded.machine;
+  return MachineOf(kPlaneText);
 }
 
-std::string ProblemOf(const std::string& what, const std::string& instead) {
-  std::string text = kText;
-  text.replace(text.find(what), what.size(), instead);
-  const LoadResult loaded = LoadMachine(text, "plane.yaml");
-  return loaded.machine ? "" : loaded.problems.front();
-}
-
-std::vector<mover::Command> GoodCommands() {
+std::vector<mover::Command> GoodMoverCommands() {
   return {mover::Enable{},
           mover::Disable{},
           mover::Reset{},
@@ -81,12 +73,13 @@ Command To(std::uint32_t mover, const mover::Command& body) {
 }
 
 TEST(MoverMachine, SaysWhatWasExpected) {
-  EXPECT_THAT(ProblemOf("name: two", "name: one"), HasSubstr("one"));
-  EXPECT_THAT(ProblemOf("name: one", "name: x"), HasSubstr("expected a name that nothing else has"));
-  EXPECT_THAT(ProblemOf("name: one", "name: 'o n e'"), HasSubstr("expected 1 to 40 letters"));
-  EXPECT_THAT(ProblemOf("upper: 3", "upper: -3"), HasSubstr("must not lie below lower"));
-  EXPECT_THAT(ProblemOf("y: 60, c: 90", "y: 60, z: 4"), HasSubstr("must lie within the limits of z, a and b"));
-  EXPECT_THAT(ProblemOf("jerk: 200000}}", "jerk: 0}}"), HasSubstr("jerk: expected"));
+  EXPECT_THAT(ProblemOf(kPlaneText, "name: two", "name: one"), HasSubstr("one"));
+  EXPECT_THAT(ProblemOf(kPlaneText, "name: one", "name: x"), HasSubstr("expected a name that nothing else has"));
+  EXPECT_THAT(ProblemOf(kPlaneText, "name: one", "name: 'o n e'"), HasSubstr("expected 1 to 40 letters"));
+  EXPECT_THAT(ProblemOf(kPlaneText, "upper: 3", "upper: -3"), HasSubstr("must not lie below lower"));
+  EXPECT_THAT(ProblemOf(kPlaneText, "y: 60, c: 90", "y: 60, z: 4"),
+              HasSubstr("must lie within the limits of z, a and b"));
+  EXPECT_THAT(ProblemOf(kPlaneText, "jerk: 200000}}", "jerk: 0}}"), HasSubstr("jerk: expected"));
 }
 
 // A machine may be made of movers alone.
@@ -97,10 +90,10 @@ TEST(MoverMachine, NeedsNoAxes) {
 // EN-22, PL-02: every number made wrong is refused with a sentence.
 TEST(MoverMachine, BadNumbersAreRefusedAsText) {
   const Machine machine = PlaneMachine();
-  ASSERT_EQ(GoodCommands().size(), std::variant_size_v<mover::Command>);
+  ASSERT_EQ(GoodMoverCommands().size(), std::variant_size_v<mover::Command>);
   int refused = 0;
   std::size_t index = 0;
-  for (const mover::Command& good : GoodCommands()) {
+  for (const mover::Command& good : GoodMoverCommands()) {
     EXPECT_EQ(good.index(), index++);
     const CommandText fine = ToText(machine, To(1, good));
     EXPECT_EQ(fine.target, "two");
@@ -128,7 +121,7 @@ TEST(MoverMachine, BadNumbersAreRefusedInTheCycle) {
   FeedbackEvent event;
   while (engine.feedback().TryPop(event)) {
   }
-  for (const mover::Command& good : GoodCommands()) {
+  for (const mover::Command& good : GoodMoverCommands()) {
     for (const Wrong<mover::Command>& wrong : WrongVersionsOf(good)) {
       const Ticket ticket = engine.Submit(To(0, wrong.command));
       engine.RunCycle();
@@ -173,7 +166,7 @@ TEST(MoverMachine, WhatStopsEverythingStopsMovers) {
 // EN-22: what stops a mover finds room in a queue that is full of others.
 TEST(MoverMachine, WhatStopsAMoverLetsGo) {
   std::size_t lets_go = 0;
-  for (const mover::Command& command : GoodCommands()) lets_go += LetsGo(To(0, command)) ? 1 : 0;
+  for (const mover::Command& command : GoodMoverCommands()) lets_go += LetsGo(To(0, command)) ? 1 : 0;
   EXPECT_EQ(lets_go, 3u);
   EXPECT_TRUE(LetsGo(To(0, mover::Halt{})));
   EXPECT_TRUE(LetsGo(To(0, mover::Disable{})));

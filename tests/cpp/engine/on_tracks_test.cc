@@ -9,7 +9,7 @@
 namespace takt::engine {
 namespace {
 
-constexpr char kLine[] = R"(
+constexpr char kLineText[] = R"(
 name: line
 axes: []
 movers: [{name: one, initial: {x: 0, y: 0}}]
@@ -18,7 +18,7 @@ tracks:
 )";
 
 struct OnTracks : ::testing::Test {
-  OnTracks() : rig(kLine) {
+  OnTracks() : rig(kLineText) {
     rig.Do("way", "enable");
     rig.Do("one", "enable");
     EXPECT_EQ(rig.ErrorOf("one", "join_track", "{track: way}"), ErrorId::kNone);

@@ -165,7 +165,7 @@ movers:)";
     }
   }
   const auto problem = [&](const std::string& what, const std::string& instead) {
-    return FirstProblemOf(With(text, what, instead));
+    return ProblemOf(text, what, instead);
   };
   EXPECT_THAT(problem("other_position_index: 2, only", "other_position_index: 3, only"),
               HasSubstr("tracks[1].starts_from_positions[0].track: the parts of the tracks are not in one"));
@@ -260,7 +260,7 @@ planar_groups: [{name: cell, movers: [one, two], tracks: [on_a, on_b]}]
           rig.Run();
           // On its way nothing gets onto it.
           if (travel_s > 0 && rig.answers[goes].error == ErrorId::kNone) {
-            EXPECT_EQ(rig.ErrorOf("two", "move_on_track", "{track: on_a, position: 100}"), ErrorId::kTrackMode);
+            EXPECT_EQ(rig.ErrorOf("two", "move_on_track", "{track: on_a, position: 100}"), ErrorId::kTrackDisabled);
           }
           const FeedbackEvent gone = rig.End(goes);
           rig.Run(1500);

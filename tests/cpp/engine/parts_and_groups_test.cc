@@ -13,7 +13,7 @@ namespace takt::engine {
 namespace {
 
 // Example 6.6.1 of the manual, with one mover on each level and both in a group.
-const std::string kLevels = R"(
+const std::string kGroupedLevels = R"(
 name: levels
 axes: []
 coordinate_systems: [{name: lower}, {name: upper}]
@@ -42,7 +42,7 @@ void EnableAll(PartsRig& rig) {
 }
 
 TEST(PartsAndGroups, MoversMeetOnlyInOneCoordinateSystem) {
-  PartsRig rig(kLevels);
+  PartsRig rig(kGroupedLevels);
   EnableAll(rig);
   const ErrorId free = rig.ErrorOf("above", "move_to_position", "{x: 120, y: 60, reference: upper}");
   EXPECT_EQ(free, ErrorId::kNone);
@@ -64,7 +64,7 @@ TEST(PartsAndGroups, MoversMeetOnlyInOneCoordinateSystem) {
 }
 
 TEST(PartsAndGroups, PartsGoWhereNothingIsReserved) {
-  PartsRig rig(kLevels);
+  PartsRig rig(kGroupedLevels);
   EnableAll(rig);
   rig.Do("below", "move_to_position", "{x: 120, y: 60, reference: three}");
   rig.Do("line", "enable");

@@ -13,7 +13,7 @@
 #include "takt/engine/components.h"
 #include "takt/engine/cycle.h"
 #include "takt/engine/engine.h"
-#include "takt/engine/load.h"
+#include "texts.h"
 
 namespace takt::engine {
 
@@ -31,24 +31,6 @@ parts:
 movers:
   - {name: mover, reference: one, initial: {x: 120, y: 120}}
 )";
-
-// A text with something else in one place.
-inline std::string With(std::string text, const std::string& what, const std::string& instead) {
-  const auto at = text.find(what);
-  if (at == std::string::npos) throw std::runtime_error("not in the text: " + what);
-  return text.replace(at, what.size(), instead);
-}
-
-inline Machine MachineOf(const std::string& text) {
-  LoadResult loaded = LoadMachine(text, "parts.yaml");
-  if (!loaded.machine) throw std::runtime_error(loaded.problems.front());
-  return *loaded.machine;
-}
-
-inline std::string FirstProblemOf(const std::string& text) {
-  const LoadResult loaded = LoadMachine(text, "parts.yaml");
-  return loaded.machine ? "" : loaded.problems.front();
-}
 
 class PartsRig {
  public:

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 TEST(Parts, SayWhatWasExpected) {
   const auto problem = [](const std::string& what, const std::string& instead) {
-    return FirstProblemOf(With(kLift, what, instead));
+    return ProblemOf(kLift, what, instead);
   };
   EXPECT_THAT(problem("name: two,", "name: one,"), HasSubstr("expected each name once"));
   EXPECT_THAT(problem("name: two,", "name: lower,"), HasSubstr("expected a name that nothing else has"));
@@ -306,6 +306,50 @@ TEST(Parts, SetPositionNamesTheCoordinateSystem) {
   EXPECT_EQ(rig.Mover("mover").coordinate_system, 2u);
   EXPECT_EQ(rig.Mover("mover").part, 3u);
   EXPECT_NEAR(rig.Mover("mover").y, 370, 1e-9);
+}
+
+// PL-14, PL-32: to axes that follow a coordinate of a mover, its part's arrival is no motion; commands from then on
+// speak of the new numbers.
+TEST(PartsOfMasters, TakeNobodyAlong) {
+  PartsRig rig(R"(
+name: shuttle
+axes:
+  - {name: x, limits: {velocity: 5000, acceleration: 100000, jerk: 5000000}}
+  - {name: z, limits: {velocity: 5000, acceleration: 100000, jerk: 5000000}}
+coordinate_systems: [{name: lower}]
+parts:
+  - name: tray
+    positions: [{coordinate_system: lower}, {coordinate_system: lower, x: 480, y: -240}]
+movers:
+  - {name: mover, reference: tray, initial: {x: 100, y: 120}}
+)");
+  rig.Do("mover", "enable");
+  for (const char* axis : {"x", "z"}) rig.Do(axis, "power");
+  const Ticket gear = rig.Give("x", "gear_in", "{master: mover.x}");
+  const Ticket in_place =
+      rig.Give("z", "gear_in_pos", "{master: mover.y, master_sync_position: 120, slave_sync_position: 30}");
+  rig.Run(1000);
+  const double z = rig.engine.outputs(1).set_position;
+  rig.each_cycle = [&] {
+    ASSERT_EQ(rig.engine.outputs(0).set_position, 0);
+    ASSERT_EQ(rig.engine.outputs(1).set_position, z);
+  };
+  EXPECT_EQ(rig.ErrorOf("tray", "activate_position", "{index: 2}"), ErrorId::kNone);
+  rig.Run(100);
+  EXPECT_EQ(rig.Mover("mover").x, 580);
+  EXPECT_EQ(rig.Mover("mover").y, -120);
+  rig.each_cycle = nullptr;
+  EXPECT_EQ(rig.ErrorOf("mover", "move_to_position", "{x: 590, y: -115, reference: lower}"), ErrorId::kNone);
+  EXPECT_EQ(rig.answers[gear].state, FeedbackState::kActive);
+  EXPECT_EQ(rig.answers[in_place].state, FeedbackState::kActive);
+  EXPECT_NEAR(rig.engine.outputs(0).set_position, 10, 1e-9);
+  EXPECT_NEAR(rig.engine.outputs(1).set_position, z + 5, 1e-9);
+  // By numbers of where it is now.
+  rig.Do("z", "move_absolute", "{position: 0, velocity: 100}");
+  rig.Give("z", "gear_in_pos", "{master: mover.y, master_sync_position: -100, slave_sync_position: 50}");
+  rig.Run(1000);
+  EXPECT_EQ(rig.ErrorOf("mover", "move_to_position", "{x: 590, y: -70, reference: lower}"), ErrorId::kNone);
+  EXPECT_NEAR(rig.engine.outputs(1).set_position, 50 + 30, 1e-9);
 }
 
 }  // namespace

@@ -55,9 +55,9 @@ struct Seen {
   Place origin;
 };
 
-class Walk {
+class RandomParts {
  public:
-  Walk(std::uint32_t seed, bool faults, bool grouped)
+  RandomParts(std::uint32_t seed, bool faults, bool grouped)
       : rig(kTwoLevels, {.journal = true, .snapshot_queue = 1 << 15}),
         random_(seed),
         faults_(faults),
@@ -425,7 +425,7 @@ TEST(PartsWalk, NobodyLeavesTheStators) {
   int collided = 0, beside = 0;
   for (std::uint32_t seed = 0; seed < 40 && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
-    Walk walk(seed, seed % 2 == 1, seed % 3 == 0);
+    RandomParts walk(seed, seed % 2 == 1, seed % 3 == 0);
     walk.Go(400);
     collided += walk.collided;
     beside += walk.beside;
@@ -456,7 +456,7 @@ TEST(PartsWalk, NobodyLeavesTheStators) {
 
 // EN-06: what was given to one engine gives the same bits in another.
 TEST(PartsWalk, CanBeReplayed) {
-  Walk walk(3, false, true);
+  RandomParts walk(3, false, true);
   walk.Go(500);
   ASSERT_GT(walk.carried, 3);
   Engine again(walk.rig.machine, {.journal = true, .snapshot_queue = 1 << 15});

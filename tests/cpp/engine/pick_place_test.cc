@@ -7,15 +7,15 @@
 
 #include "takt/engine/engine.h"
 #include "takt/engine/load.h"
+#include "texts.h"
 #include "wrong.h"
 
 namespace takt::engine {
 namespace {
 
-using pickplace::Command;
 using testing::HasSubstr;
 
-const std::string kText = R"(
+const std::string kCellText = R"(
 name: cell
 axes:
   - {name: x, limits: {velocity: 1500, acceleration: 10000, jerk: 500000}}
@@ -41,25 +41,18 @@ pick_and_place:
 constexpr std::uint32_t kPicker = 4 + 1 + 1 + 1;
 
 Machine CellMachine() {
-  LoadResult loaded = LoadMachine(kText, "cell.yaml");
-  if (!loaded.machine) throw std::runtime_error(loaded.problems.front());
-  return *loaded.machine;
-}
-
-std::string ProblemOf(std::string text, const std::string& what, const std::string& instead) {
-  text.replace(text.find(what), what.size(), instead);
-  const LoadResult loaded = LoadMachine(text, "cell.yaml");
-  return loaded.machine ? "" : loaded.problems.front();
+  return MachineOf(kCellText);
 }
 
 // PP-01: what a machine file says wrong.
 TEST(PickPlaceMachine, SaysWhatWasExpected) {
-  EXPECT_THAT(ProblemOf(kText, "group: portal", "group: portl"),
+  EXPECT_THAT(ProblemOf(kCellText, "group: portal", "group: portl"),
               HasSubstr("expected the name of a group, found 'portl'; did you mean portal?"));
-  EXPECT_THAT(ProblemOf(kText, "belt: infeed", "belt: infed"), HasSubstr("expected the name of a belt, found 'infed'"));
-  EXPECT_THAT(ProblemOf(kText, "name: picker", "name: portal"), HasSubstr("expected a name that nothing else has"));
-  EXPECT_THAT(ProblemOf(kText, "x_target: 100", "x_targt: 100"), HasSubstr("did you mean x_target?"));
-  EXPECT_THAT(ProblemOf(kText, "    group: portal", "    group: portal\n    homing: [{axis: drive, homing: {}}]"),
+  EXPECT_THAT(ProblemOf(kCellText, "belt: infeed", "belt: infed"),
+              HasSubstr("expected the name of a belt, found 'infed'"));
+  EXPECT_THAT(ProblemOf(kCellText, "name: picker", "name: portal"), HasSubstr("expected a name that nothing else has"));
+  EXPECT_THAT(ProblemOf(kCellText, "x_target: 100", "x_targt: 100"), HasSubstr("did you mean x_target?"));
+  EXPECT_THAT(ProblemOf(kCellText, "    group: portal", "    group: portal\n    homing: [{axis: drive, homing: {}}]"),
               HasSubstr("expected the name of an axis of its group, found 'drive'"));
 }
 
@@ -67,11 +60,12 @@ TEST(PickPlaceMachine, SaysWhatWasExpected) {
 TEST(PickPlaceMachine, BadNumbersAreRefusedAsText) {
   const Machine machine = CellMachine();
   int refused = 0;
-  for (const Command& good :
-       {Command(pickplace::Control{}), Command(pickplace::Configure{}), Command(pickplace::ConfigureBelt{})}) {
+  for (const pickplace::Command& good :
+       {pickplace::Command(pickplace::Control{}), pickplace::Command(pickplace::Configure{}),
+        pickplace::Command(pickplace::ConfigureBelt{})}) {
     const CommandText fine = ToText(machine, {0, kPicker, 0, good});
     ASSERT_EQ(ParseCommand(machine, fine.target, fine.verb, fine.arguments).sentence, "") << fine.verb;
-    for (const Wrong<Command>& wrong : WrongVersionsOf(good)) {
+    for (const Wrong<pickplace::Command>& wrong : WrongVersionsOf(good)) {
       const CommandText text = ToText(machine, {0, kPicker, 0, wrong.command});
       const ParsedCommand parsed = ParseCommand(machine, text.target, text.verb, text.arguments);
       EXPECT_EQ(parsed.error, ErrorId::kParameter) << wrong.what;
@@ -99,12 +93,12 @@ struct Cell {
 };
 
 void PickOne(Cell& run) {
-  run.Give(kPicker, Command(pickplace::Control{.regulator_on = true}));
+  run.Give(kPicker, pickplace::Command(pickplace::Control{.regulator_on = true}));
   run.Give(4, axis::Command(axis::Power{}));
   run.Cycles(1000);
   run.Give(4, axis::Command(axis::MoveVelocity{.velocity = 100}));
   run.Give(4 + 1 + 1, conveyor::Command(conveyor::Detect{.x = 50}));
-  run.Give(kPicker, Command(pickplace::Control{.execute = true, .set_target = 1}));
+  run.Give(kPicker, pickplace::Command(pickplace::Control{.execute = true, .set_target = 1}));
   run.Cycles(2500);
 }
 

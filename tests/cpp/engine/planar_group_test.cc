@@ -17,6 +17,7 @@
 #include "takt/engine/engine.h"
 #include "takt/engine/load.h"
 #include "takt/engine/path_checks.h"
+#include "texts.h"
 #include "wrong.h"
 
 namespace takt::engine {
@@ -24,7 +25,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kText = R"(
+const std::string kGroundText = R"(
 name: ground
 axes: []
 movers:
@@ -39,26 +40,20 @@ environments:
 )";
 
 Machine GroundMachine() {
-  LoadResult loaded = LoadMachine(kText, "ground.yaml");
-  if (!loaded.machine) throw std::runtime_error(loaded.problems.front());
-  return *loaded.machine;
-}
-
-std::string ProblemOf(const std::string& what, const std::string& instead) {
-  std::string text = kText;
-  text.replace(text.find(what), what.size(), instead);
-  const LoadResult loaded = LoadMachine(text, "ground.yaml");
-  return loaded.machine ? "" : loaded.problems.front();
+  return MachineOf(kGroundText);
 }
 
 TEST(PlanarGroupMachine, SaysWhatWasExpected) {
-  EXPECT_THAT(ProblemOf("movers: [two]", "movers: [tow]"), HasSubstr("movers[0]: expected the name of a mover"));
-  EXPECT_THAT(ProblemOf("movers: [two]", "movers: [two, two]"), HasSubstr("each mover once"));
-  EXPECT_THAT(ProblemOf("tracks: [way], env", "tracks: [one], env"), HasSubstr("expected the name of a track"));
-  EXPECT_THAT(ProblemOf("environment: floor", "environment: flor"), HasSubstr("did you mean floor"));
-  EXPECT_THAT(ProblemOf("name: cell", "name: one"), HasSubstr("expected a name that nothing else has"));
-  EXPECT_THAT(ProblemOf("name: table", "name: cell"), HasSubstr("expected a name that nothing else has"));
-  EXPECT_THAT(ProblemOf("x: 120, y: -120", "x: 100, y: -120"), HasSubstr("environments[0].stators[1]: two stators"));
+  EXPECT_THAT(ProblemOf(kGroundText, "movers: [two]", "movers: [tow]"),
+              HasSubstr("movers[0]: expected the name of a mover"));
+  EXPECT_THAT(ProblemOf(kGroundText, "movers: [two]", "movers: [two, two]"), HasSubstr("each mover once"));
+  EXPECT_THAT(ProblemOf(kGroundText, "tracks: [way], env", "tracks: [one], env"),
+              HasSubstr("expected the name of a track"));
+  EXPECT_THAT(ProblemOf(kGroundText, "environment: floor", "environment: flor"), HasSubstr("did you mean floor"));
+  EXPECT_THAT(ProblemOf(kGroundText, "name: cell", "name: one"), HasSubstr("expected a name that nothing else has"));
+  EXPECT_THAT(ProblemOf(kGroundText, "name: table", "name: cell"), HasSubstr("expected a name that nothing else has"));
+  EXPECT_THAT(ProblemOf(kGroundText, "x: 120, y: -120", "x: 100, y: -120"),
+              HasSubstr("environments[0].stators[1]: two stators"));
 }
 
 // The first of each kind.

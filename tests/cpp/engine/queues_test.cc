@@ -191,6 +191,25 @@ TEST(Snapshots, OfOneRateComeTogether) {
   for (const auto& [cycle, count] : axes) EXPECT_EQ(count, machine.axes.size()) << cycle;
 }
 
+// EN-21: what does not fit is dropped of another one every time, so that everybody is heard of.
+TEST(Snapshots, ThatDoNotFitAreNotAlwaysThoseOfTheSame) {
+  for (const double rate_hz : {1000.0, 500.0, 100.0}) {
+    Machine machine = FullMachine();
+    machine.lcm.axis_rate_hz = rate_hz;
+    Engine engine(machine, {.publish = true, .snapshot_queue = 2});
+    std::vector<int> counts(machine.axes.size());
+    AxisSnapshot snapshot;
+    for (int i = 0; i < 1000; ++i) {
+      engine.RunCycle();
+      while (engine.snapshots().TryPop(snapshot)) ++counts[snapshot.index];
+    }
+    const double fair = 2 * rate_hz / static_cast<double>(machine.axes.size());
+    ASSERT_LT(fair, rate_hz) << "all fit";
+    for (const int count : counts) EXPECT_NEAR(count, fair, 0.5 * fair) << rate_hz;
+    EXPECT_GT(engine.figures().snapshots_dropped, 0u);
+  }
+}
+
 // A command for a target that does not exist, handed in from C++ past the parser.
 TEST(CommandQueue, SurvivesAWrongTarget) {
   const Machine machine = FullMachine();

@@ -29,7 +29,7 @@ Machine TrackMachine() {
   return loaded.machine.value();
 }
 
-std::vector<track::Command> GoodCommands() {
+std::vector<track::Command> GoodTrackCommands() {
   const Name branch = Name::Of("branch");
   return {track::AppendLine{400, 0, 500, 0},
           track::AppendCircle{400, 0, 500, 0, 450, 0},
@@ -46,7 +46,7 @@ std::vector<track::Command> GoodCommands() {
           track::TrackMade{}};
 }
 
-struct Twin {
+struct TrackTwin {
   FeedbackEvent Give(const track::Command& body) {
     engine.Submit({.target = 1, .body = body});
     engine.RunCycle();
@@ -62,10 +62,10 @@ struct Twin {
 
 // PL-20, EN-22
 TEST(TrackBadInput, IsRefusedWithASentenceAndChangesNothing) {
-  EXPECT_EQ(GoodCommands().size(), std::variant_size_v<track::Command>);
-  Twin asked, twin;
+  EXPECT_EQ(GoodTrackCommands().size(), std::variant_size_v<track::Command>);
+  TrackTwin asked, twin;
   int refused = 0;
-  for (const track::Command& good : GoodCommands()) {
+  for (const track::Command& good : GoodTrackCommands()) {
     const CommandText fine = ToText(asked.machine, {.target = 1, .body = good});
     ASSERT_EQ(ParseCommand(asked.machine, fine.target, fine.verb, fine.arguments, Giver::kJournal).error,
               ErrorId::kNone)

@@ -1,4 +1,4 @@
-// PL-22, PL-23, PL-24: movers and the tracks under them, as the machine has both.
+// PL-22, PL-23, PL-24, PL-30: movers and the tracks under them, as the machine has both.
 #include "parts_rig.h"
 
 namespace takt::engine {
@@ -29,7 +29,9 @@ TEST(TracksInUse, ArePutAwayUnderNobody) {
     const Ticket going = rig.Give("a", "move_on_track", "{track: up, position: 800}");
     if (cycles > 0) rig.Run(cycles);
     const Ticket disable = rig.Give("up", "disable"), clear = rig.Give("up", "clear");
-    EXPECT_EQ(rig.End(disable).error, ErrorId::kTrackMode) << cycles;
+    const FeedbackEvent why = rig.End(disable);
+    EXPECT_EQ(why.error, ErrorId::kTrackMode) << cycles;
+    EXPECT_EQ(why.object, ObjectAt(ObjectKind::kMover, 0));
     EXPECT_EQ(rig.End(clear).error, ErrorId::kTrackGeometry);
     EXPECT_EQ(rig.End(going).error, ErrorId::kNone);
     EXPECT_EQ(rig.Mover("a").track, 2u);
@@ -39,7 +41,7 @@ TEST(TracksInUse, ArePutAwayUnderNobody) {
   const Ticket disable = rig.Give("up", "disable"),
                going = rig.Give("a", "move_on_track", "{track: up, position: 800}");
   EXPECT_EQ(rig.End(disable).error, ErrorId::kNone);
-  EXPECT_EQ(rig.End(going).error, ErrorId::kTrackMode);
+  EXPECT_EQ(rig.End(going).error, ErrorId::kTrackDisabled);
   // Where a mover has been halted on its way there it is free.
   rig.Do("up", "enable");
   rig.Give("a", "move_on_track", "{track: up, position: 800}");
@@ -58,10 +60,70 @@ TEST(TracksInUse, AreNotPutAwayWhileSomebodyJoins) {
   EXPECT_EQ(rig.End(disable).error, ErrorId::kTrackMode);
   EXPECT_EQ(rig.End(join).error, ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("up", "disable"), ErrorId::kNone);
-  EXPECT_EQ(rig.ErrorOf("b", "move_on_track", "{position: 300}"), ErrorId::kTrackMode);
-  EXPECT_EQ(rig.ErrorOf("up", "clear"), ErrorId::kTrackMode);
+  EXPECT_EQ(rig.ErrorOf("b", "move_on_track", "{position: 300}"), ErrorId::kTrackDisabled);
+  const FeedbackEvent clear = rig.End(rig.Give("up", "clear"));
+  EXPECT_EQ(clear.error, ErrorId::kTrackMode);
+  EXPECT_EQ(clear.object, ObjectAt(ObjectKind::kMover, 1));
   EXPECT_EQ(rig.ErrorOf("b", "leave_track", "{x: 1600, y: 300}"), ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("up", "clear"), ErrorId::kNone);
+}
+
+// PL-30: how near those on one network come is their gap's affair. A group that let them come so near is enabled again.
+TEST(TracksInGroups, HaveMoversAsNearAsTheirGapsLetThem) {
+  PartsRig rig(R"(
+name: near
+axes: []
+movers:
+  - {name: a, initial: {x: 300}, gap: 113.5}
+  - {name: b, initial: {x: 900}, gap: 113.5}
+  - {name: beside, initial: {x: 450, y: 200}}
+tracks: [{name: main, elements: [{from: {x: 0, y: 0}, to: {x: 1500, y: 0}}]}]
+planar_groups: [{name: cell, movers: [a, b, beside], tracks: [main]}]
+)");
+  for (const char* one : {"main", "a", "b", "beside", "cell"}) rig.Do(one, "enable");
+  for (const char* one : {"a", "b"}) {
+    EXPECT_EQ(rig.ErrorOf(one, "join_track", "{track: main}"), ErrorId::kNone);
+    EXPECT_EQ(rig.ErrorOf(one, "move_c", "{position: 15}"), ErrorId::kNone);
+  }
+  // Its corners come to lie beside those of the other.
+  EXPECT_EQ(rig.ErrorOf("b", "move_on_track", "{position: 413.5}"), ErrorId::kNone);
+  EXPECT_EQ(rig.ErrorOf("cell", "disable"), ErrorId::kNone);
+  EXPECT_EQ(rig.Do("cell", "enable").error, ErrorId::kNone);
+  EXPECT_EQ(rig.ErrorOf("b", "remove_from_group"), ErrorId::kNone);
+  EXPECT_EQ(rig.ErrorOf("b", "add_to_group", "{group: cell}"), ErrorId::kNone);
+  // Nobody else is let so near.
+  EXPECT_EQ(rig.ErrorOf("beside", "move_to_position", "{x: 450, y: 100}"), ErrorId::kCollision);
+  EXPECT_EQ(rig.ErrorOf("cell", "disable"), ErrorId::kNone);
+  EXPECT_EQ(rig.ErrorOf("beside", "move_to_position", "{x: 450, y: 100}"), ErrorId::kNone);
+  const FeedbackEvent refused = rig.Do("cell", "enable");
+  EXPECT_EQ(refused.error, ErrorId::kCollision);
+}
+
+TEST(TracksInGroups, HaveNobodyOnSomebodyElseWhereTheyCross) {
+  // One network: the second begins at the end of the first, and comes back over it.
+  PartsRig rig(R"(
+name: crossing
+axes: []
+movers:
+  - {name: one, initial: {x: 500}}
+  - {name: two, initial: {x: 500, y: 60}}
+tracks:
+  - {name: there, elements: [{from: {x: 0, y: 0}, to: {x: 2000, y: 0}}]}
+  - name: back
+    starts_from: [there]
+    elements:
+      - {from: {x: 2200, y: 200}, to: {x: 2200, y: 600}}
+      - {from: {x: 1500, y: 900}, to: {x: 900, y: 900}}
+      - {from: {x: 500, y: 500}, to: {x: 500, y: -500}}
+planar_groups: [{name: cell, movers: [one, two], tracks: [there, back]}]
+)");
+  for (const char* one : {"there", "back", "one", "two"}) rig.Do(one, "enable");
+  EXPECT_EQ(rig.ErrorOf("one", "join_track", "{track: there}"), ErrorId::kNone);
+  EXPECT_EQ(rig.ErrorOf("two", "join_track", "{track: back}"), ErrorId::kNone);
+  const FeedbackEvent refused = rig.Do("cell", "enable");
+  EXPECT_EQ(refused.error, ErrorId::kCollision);
+  EXPECT_EQ(rig.ErrorOf("two", "move_on_track", "{position: 2000}"), ErrorId::kNone);
+  EXPECT_EQ(rig.Do("cell", "enable").error, ErrorId::kNone);
 }
 
 }  // namespace

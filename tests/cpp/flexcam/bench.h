@@ -33,6 +33,11 @@ inline cam::CamParams UpAndDown(const char* name, double height, double length =
   p.points = {engine::Rest(0, 0), engine::Rest(length / 2, height), engine::Rest(length, 0)};
   return p;
 }
+// What a cam that goes up and down gives at x.
+inline double Hill(double x, double height = 50, double length = 360) {
+  const double in = x - length * std::floor(x / length);
+  return height * engine::Polynomial345::Y(in < length / 2 ? in / (length / 2) : (length - in) / (length / 2));
+}
 // On by `stroke` within `length`, at rest at its ends.
 inline cam::CamParams Onward(const char* name, double stroke, double length = 360) {
   cam::CamParams p;
@@ -68,6 +73,29 @@ inline Machine MachineOf(std::vector<cam::CamParams> cams, const Settings& setti
   }
   m.flex_cams = {module};
   return m;
+}
+
+// In by a ramp of a short time, and out by one, too.
+inline Settings Quick() {
+  Settings s;
+  s.sync_mode = ClutchMode::kRampTime;
+  s.sync_in_time_s = 0.1;
+  s.slave_absolute = true;
+  return s;
+}
+inline Settings QuickBothWays() {
+  Settings s = Quick();
+  s.sync_out_time_s = 0.1;
+  return s;
+}
+
+inline Machine OneHill(const Settings& s = QuickBothWays()) {
+  return MachineOf({UpAndDown("hill", 50)}, s);
+}
+
+// Of two positions on a turn.
+inline double Apart(double a, double b, double turn = 360) {
+  return std::abs(a - b - turn * std::round((a - b) / turn));
 }
 
 class Bench {

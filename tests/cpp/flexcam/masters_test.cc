@@ -7,22 +7,9 @@
 namespace takt::flexcam {
 namespace {
 
-Settings Quick() {
-  Settings s;
-  s.sync_mode = ClutchMode::kRampTime;
-  s.sync_in_time_s = 0.1;
-  s.sync_out_time_s = 0.1;
-  s.slave_absolute = true;
-  return s;
-}
-
-Machine Hill(const Settings& s = Quick()) {
-  return MachineOf({UpAndDown("hill", 50)}, s);
-}
-
 // CAM-50: a virtual master, which has no axis.
 TEST(Masters, Virtual) {
-  Machine m = Hill();
+  Machine m = OneHill();
   m.flex_cams[0].master.reset();
   Bench b(m);
   b.Tell(Control{.virtual_velocity = 360.0});
@@ -40,10 +27,10 @@ TEST(Masters, Virtual) {
 
 // CAM-50: what is measured of the master, with filter and dead time: at constant speed it lies where the master is.
 TEST(Masters, MeasuredWithAFilterAndDeadTime) {
-  Settings s = Quick();
+  Settings s = QuickBothWays();
   s.master_filter_s = 0.05;
   s.master_dead_time_s = 0.005;
-  Machine m = Hill(s);
+  Machine m = OneHill(s);
   m.flex_cams[0].source = axis::MasterSource::kActualValue;
   m.axes[Bench::kWeb].encoder.increments_per_unit = 20;  // a coarse encoder
   Bench b(m);
@@ -65,7 +52,7 @@ TEST(Masters, MeasuredWithAFilterAndDeadTime) {
 
 // CAM-50: an encoder without a drive is a master, too.
 TEST(Masters, AnEncoderAlone) {
-  Machine m = Hill();
+  Machine m = OneHill();
   m.flex_cams[0].source = axis::MasterSource::kActualValue;
   Bench b(m);
   b.Give(Bench::kWeb, axis::Power{.enable = false});
@@ -75,7 +62,7 @@ TEST(Masters, AnEncoderAlone) {
 
 // CAM-51
 TEST(Masters, AFaultStopsTheSlave) {
-  Bench b(Hill());
+  Bench b(OneHill());
   b.Web(360);
   b.Run(200);
   ASSERT_TRUE(b.Sync());
@@ -90,9 +77,9 @@ TEST(Masters, AFaultStopsTheSlave) {
 
 // CAM-51
 TEST(Masters, OrTheSlaveGoesOn) {
-  Settings s = Quick();
+  Settings s = QuickBothWays();
   s.on_master_fault = MasterFault::kCoast;
-  Bench b(Hill(s));
+  Bench b(OneHill(s));
   b.Web(360);
   b.Run(400);
   ASSERT_TRUE(b.Sync());
@@ -111,7 +98,7 @@ TEST(Masters, OrTheSlaveGoesOn) {
 }
 
 TEST(Masters, OneThatIsOffIsNotFollowed) {
-  Bench b(Hill());
+  Bench b(OneHill());
   b.Give(Bench::kWeb, axis::Power{.enable = false});
   b.Run(50);
   const Ticket sync = b.Tell(Control{.sync_cam = true});

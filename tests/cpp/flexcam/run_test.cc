@@ -11,23 +11,6 @@ namespace {
 
 using axis::AxisKind;
 
-Settings Quick() {
-  Settings s;
-  s.sync_mode = ClutchMode::kRampTime;
-  s.sync_in_time_s = 0.1;
-  s.slave_absolute = true;
-  return s;
-}
-
-double Hill(double x, double height = 50, double length = 360) {
-  const double in = x - length * std::floor(x / length);
-  return height * engine::Polynomial345::Y(in < length / 2 ? in / (length / 2) : (length - in) / (length / 2));
-}
-
-double Apart(double a, double b, double turn = 360) {
-  return std::abs(a - b - turn * std::round((a - b) / turn));
-}
-
 // CAM-20
 TEST(Cyclic, BothWaysAndOverMasterTurns) {
   Bench b(MachineOf({UpAndDown("hill", 50)}, Quick()));

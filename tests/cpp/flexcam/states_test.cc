@@ -9,22 +9,9 @@ namespace {
 
 using axis::AxisKind;
 
-Settings Quick() {
-  Settings s;
-  s.sync_mode = ClutchMode::kRampTime;
-  s.sync_in_time_s = 0.1;
-  s.sync_out_time_s = 0.1;
-  s.slave_absolute = true;
-  return s;
-}
-
-Machine Hill(const Settings& s = Quick()) {
-  return MachineOf({UpAndDown("hill", 50)}, s);
-}
-
 // CAM-10
 TEST(States, ReadyNeedsEnableAlone) {
-  Machine m = Hill();
+  Machine m = OneHill();
   Bench b(m);
   EXPECT_EQ(b.Module().state, ModuleState::kReady);
   b.Tell(Control{.enable = false});
@@ -41,7 +28,7 @@ TEST(States, ReadyNeedsEnableAlone) {
 
 // CAM-10: what was asked for while the axis was off has to be asked for again.
 TEST(States, AnEdgeBeforeTheAxisIsOnDoesNotCount) {
-  Bench b(Hill());
+  Bench b(OneHill());
   b.Tell(Control{.regulator_on = false});
   b.Run(200);
   const Ticket early = b.Tell(Control{.sync_cam = true});
@@ -63,10 +50,10 @@ TEST(States, AnEdgeBeforeTheAxisIsOnDoesNotCount) {
 // CAM-10
 TEST(States, StopAndHaltLastAsLongAsTheyAreHeld) {
   for (const bool stop : {true, false}) {
-    Settings s = Quick();
+    Settings s = QuickBothWays();
     s.stop_deceleration = 4000;
     s.halt_deceleration = 3000;
-    Bench b(Hill(s));
+    Bench b(OneHill(s));
     b.Web(720);
     b.Run(200);
     ASSERT_TRUE(b.Sync());
@@ -89,7 +76,7 @@ TEST(States, StopAndHaltLastAsLongAsTheyAreHeld) {
 
 // CAM-10: the first key counts, and the module is ready again when none is held.
 TEST(States, Jogging) {
-  Bench b(Hill());
+  Bench b(OneHill());
   const Ticket up = b.Tell(Jog{.positive = true});
   b.Run(300);
   EXPECT_EQ(b.Module().state, ModuleState::kJogPos);
@@ -115,7 +102,7 @@ TEST(States, Jogging) {
 
 // A key whose client is gone.
 TEST(States, AJogEndsWithItsLease) {
-  Bench b(Hill());
+  Bench b(OneHill());
   const Ticket jog = b.Tell(Jog{.positive = true}, 0.1);
   b.Run(90);
   EXPECT_EQ(b.Module().state, ModuleState::kJogPos);
@@ -133,9 +120,9 @@ TEST(States, AJogEndsWithItsLease) {
 
 // CAM-10
 TEST(States, Homing) {
-  Settings s = Quick();
+  Settings s = QuickBothWays();
   s.home_position = 77;
-  Bench b(Hill(s));
+  Bench b(OneHill(s));
   const Ticket home = b.Tell(Control{.home_execute = true});
   b.Run(20);
   EXPECT_EQ(b.Of(home), FeedbackState::kDone);
@@ -146,7 +133,7 @@ TEST(States, Homing) {
 
 // CAM-10: homing by the module's own section; taking the input back does not break it off, a stop does.
 TEST(States, HomingByTheModule) {
-  Machine m = Hill();
+  Machine m = OneHill();
   m.flex_cams[0].settings.home_by_module = true;
   axis::HomingParams homing;
   homing.method = axis::HomingMethod::kSwitch;
@@ -174,7 +161,7 @@ TEST(States, HomingByTheModule) {
 
 // CAM-10: commands of the axis' own.
 TEST(States, Service) {
-  Bench b(Hill());
+  Bench b(OneHill());
   b.Give(Bench::kKnife, axis::MoveAbsolute{.position = 20, .velocity = 50});
   b.Run(20);
   EXPECT_EQ(b.Module().state, ModuleState::kService);
@@ -195,7 +182,7 @@ TEST(States, Service) {
 
 // One that comes in the middle of a cam takes the slave away, without a jump.
 TEST(States, ACommandOfTheAxisTakesTheSlaveAway) {
-  Bench b(Hill());
+  Bench b(OneHill());
   b.Web(360);
   b.Run(200);
   ASSERT_TRUE(b.Sync());
@@ -218,10 +205,10 @@ TEST(Limits, SwitchesAtTheModule) {
       {Control{.hw_limit_positive = true}, Control{.hw_limit_positive = false}, ErrorId::kModuleLimitSwitchPositive},
       {Control{.hw_limit_negative = true}, Control{.hw_limit_negative = false}, ErrorId::kModuleLimitSwitchNegative}};
   for (const Case& c : cases) {
-    Settings s = Quick();
+    Settings s = QuickBothWays();
     s.stop_deceleration = 2500;
     s.stop_jerk = 200000;
-    Bench b(Hill(s));
+    Bench b(OneHill(s));
     b.Web(720);
     b.Run(200);
     ASSERT_TRUE(b.Sync());
@@ -253,7 +240,7 @@ TEST(Limits, SwitchesAtTheModule) {
 // CAM-12
 TEST(Limits, SoftLimitsOfTheSlave) {
   for (const double sense : {1.0, -1.0}) {
-    Machine m = MachineOf({UpAndDown("hill", 50 * sense)}, Quick());
+    Machine m = MachineOf({UpAndDown("hill", 50 * sense)}, QuickBothWays());
     m.axes[Bench::kKnife].limits.lower = -40;
     m.axes[Bench::kKnife].limits.upper = 40;
     Bench b(m);
@@ -275,7 +262,7 @@ TEST(Limits, SoftLimitsOfTheSlave) {
 
 // CAM-12: the switches of the axis itself.
 TEST(Limits, SwitchesOfTheSlave) {
-  Machine m = Hill();
+  Machine m = OneHill();
   engine::SimulatedServo servo;
   servo.axis = "knife";
   servo.switches.limit_positive.from = 49;
@@ -294,7 +281,7 @@ TEST(Limits, SwitchesOfTheSlave) {
 
 // Every ticket ends, once, whatever comes in the same cycle; what is refused does not touch what runs.
 TEST(Tickets, End) {
-  Bench b(Hill());
+  Bench b(OneHill());
   b.Web(360);
   b.Run(200);
   const Ticket in = b.Tell(Control{.sync_cam = true});
@@ -322,7 +309,7 @@ TEST(Tickets, End) {
 
 // A key that was pressed when something else began moves nothing later.
 TEST(States, AJogDoesNotWait) {
-  Bench b(Hill());
+  Bench b(OneHill());
   const Ticket jog = b.Tell(Jog{.positive = true});
   b.Give(Bench::kKnife, axis::MoveAbsolute{.position = 20, .velocity = 50});
   b.Run(1500);
@@ -333,7 +320,7 @@ TEST(States, AJogDoesNotWait) {
 
 // Switching off works always, and an error is not forgotten by disabling.
 TEST(States, DisablingForgetsNothing) {
-  Bench b(Hill());
+  Bench b(OneHill());
   b.Tell(Control{.enable = false});
   b.Run(2);
   b.Tell(Control{.regulator_on = false});
@@ -355,7 +342,7 @@ TEST(States, DisablingForgetsNothing) {
 // Held means that nothing else moves the slave either; and what others hold is theirs.
 TEST(States, HeldIsHeld) {
   for (const Control& hold : {Control{.halt = true}, Control{.stop = true}}) {
-    Bench b(Hill());
+    Bench b(OneHill());
     b.Tell(hold);
     b.Run(20);
     b.Give(Bench::kKnife, axis::MoveAbsolute{.position = 20});
@@ -363,7 +350,7 @@ TEST(States, HeldIsHeld) {
     EXPECT_LT(std::abs(b.Knife().set_position), 0.1);
     EXPECT_EQ(b.Module().state, ModuleState::kStop);
   }
-  Bench b(Hill());
+  Bench b(OneHill());
   b.Give(Bench::kKnife, axis::Stop{.hold = true});
   b.Run(10);
   b.Tell(Control{.enable = false});
@@ -373,7 +360,7 @@ TEST(States, HeldIsHeld) {
 
 // The section of the module is for its own homing alone.
 TEST(States, HomingByTheModuleLeavesTheAxisItsOwn) {
-  Machine m = Hill();
+  Machine m = OneHill();
   m.flex_cams[0].settings.home_by_module = true;
   axis::HomingParams homing;
   homing.method = axis::HomingMethod::kSwitch;

@@ -43,6 +43,28 @@ inline Belt BeltAt(const std::string& name, const Pose& origin, std::function<Ki
   return {name, carrier, std::move(travel)};
 }
 
+inline constexpr double kOnObject = 1e-9;  // mm
+
+// The same on an object, and in another buffer mode; with a radius round the corner before it.
+template <typename Move>
+Move On(Move m, std::uint32_t pcs, BufferMode buffer, double radius) {
+  if (pcs != 0) {
+    m.coordinate_system = CoordinateSystem::kPcs;
+    m.pcs = pcs;
+  }
+  m.buffer_mode = buffer;
+  if (radius > 0) {
+    m.transition_mode = TransitionMode::kCornerDistance;
+    m.transition_parameter = radius;
+  }
+  return m;
+}
+
+inline MoveLinearAbsolute Line(double x, double y, double z, std::uint32_t pcs = 0,
+                               BufferMode buffer = BufferMode::kAborting, double radius = 0) {
+  return On(MoveLinearAbsolute{.x = x, .y = y, .z = z}, pcs, buffer, radius);
+}
+
 // Puts belts into the rig's machine; they live as long as what is returned.
 inline std::unique_ptr<Belts> Put(Rig& rig, std::vector<Belt> all) {
   auto belts = std::make_unique<Belts>(Belts{std::move(all), &rig.cycle});

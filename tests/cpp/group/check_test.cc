@@ -393,15 +393,15 @@ TEST(Check, ABadElementOfAPathIsNamed) {
   EXPECT_EQ(rig.out().x, 0);
 }
 
-struct Seen {
+struct SeenPart {
   std::uint32_t element = 0;
   bool on_blend = false;
   std::vector<workspace::Sample> samples;
 };
 
-std::vector<Seen> Surveyed(Rig& rig, const Question& question) {
+std::vector<SeenPart> Surveyed(Rig& rig, const Question& question) {
   Survey survey({rig.params, rig.mounting, *rig.kinematics, rig.paths, rig.cycle});
-  std::vector<Seen> seen;
+  std::vector<SeenPart> seen;
   EXPECT_EQ(survey.Run(question,
                        [&](const Survey::Part& part) {
                          seen.push_back({part.element, part.on_blend, {part.samples.begin(), part.samples.end()}});
@@ -441,7 +441,7 @@ TEST(Survey, IsWhatIsGone) {
       rig.Step();
       const std::optional<Question> question = Asked(rig);
       if (!question) continue;
-      for (const Seen& part : Surveyed(rig, *question)) {
+      for (const SeenPart& part : Surveyed(rig, *question)) {
         all.insert(all.end(), part.samples.begin(), part.samples.end());
         blends += part.on_blend;
       }
@@ -480,7 +480,7 @@ TEST(Survey, CountsTheWayAndTheElements) {
   rig.Give(MovePath{
       .path = Name::Of("long"), .transition_mode = TransitionMode::kCornerDistance, .transition_parameter = 1});
   rig.Run(0.05);
-  const std::vector<Seen> seen = Surveyed(rig, *Asked(rig));
+  const std::vector<SeenPart> seen = Surveyed(rig, *Asked(rig));
   ASSERT_EQ(seen.size(), 7u);
   const double length = std::hypot(5, 4);
   for (std::size_t i = 0; i < seen.size(); ++i) {

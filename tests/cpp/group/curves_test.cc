@@ -11,7 +11,6 @@
 namespace takt::group {
 namespace {
 
-constexpr double kOnPath = 1e-6;    // mm
 constexpr double kTurned = 1e-7;    // rad
 constexpr double kWithPath = 1e-6;  // u, of an auxiliary axis
 

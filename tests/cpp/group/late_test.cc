@@ -9,20 +9,12 @@
 namespace takt::group {
 namespace {
 
-constexpr double kOnObject = 1e-9;  // mm
-constexpr double kSame = 0.02;      // u
+constexpr double kSame = 0.02;  // u
 constexpr int kTrips = 50;
 
-MoveLinearAbsolute Line(double x, double y, double z, std::uint32_t pcs, double radius = 0) {
-  MoveLinearAbsolute m{.x = x, .y = y, .z = z};
-  m.coordinate_system = pcs != 0 ? CoordinateSystem::kPcs : CoordinateSystem::kMcs;
-  m.pcs = pcs;
-  m.buffer_mode = radius > 0 ? BufferMode::kBlendingNext : BufferMode::kBuffered;
-  if (radius > 0) {
-    m.transition_mode = TransitionMode::kCornerDistance;
-    m.transition_parameter = radius;
-  }
-  return m;
+// After the move before, or rounding its end.
+MoveLinearAbsolute Then(double x, double y, double z, std::uint32_t pcs, double radius = 0) {
+  return Line(x, y, z, pcs, radius > 0 ? BufferMode::kBlendingNext : BufferMode::kBuffered, radius);
 }
 
 // How far the axes are behind what is asked of them, u.
@@ -49,8 +41,8 @@ struct Trip {
     from = rig.state.cargoes[1].from;
     const bool rides = Uniform(random, 0, 1) < 0.7;
     if (rides) {
-      EXPECT_TRUE(rig.RunToEnd(rig.Give(Line(0, 0, 0, 1)), 10));
-      rig.Give(Line(0, 0, 25, 1));
+      EXPECT_TRUE(rig.RunToEnd(rig.Give(Then(0, 0, 0, 1)), 10));
+      rig.Give(Then(0, 0, 25, 1));
     }
     if (direct) {
       MoveDirectAbsolute over{.x = 0, .y = 0, .z = 25};
@@ -59,9 +51,9 @@ struct Trip {
       over.buffer_mode = BufferMode::kBuffered;
       rig.Give(over);
     } else {
-      rig.Give(Line(0, 0, 25, 2, rides ? 10 : 0));
+      rig.Give(Then(0, 0, 25, 2, rides ? 10 : 0));
     }
-    last = rig.Give(Line(0, 0, 0, 2, 10));
+    last = rig.Give(Then(0, 0, 0, 2, 10));
   }
 
   // Goes on evenly, swings, or turns round.
@@ -197,13 +189,13 @@ TEST(ShortWays, FromBeltToBelt) {
               rig.Give(SetDynCoordTransform{.pcs = pcs, .carrier = Name::Of(pcs == 1 ? "first" : "second"), .x = x}));
         };
         bind(1, 0);
-        ASSERT_TRUE(rig.RunToEnd(rig.Give(Line(0, 0, 0, 1)), 5));
+        ASSERT_TRUE(rig.RunToEnd(rig.Give(Then(0, 0, 0, 1)), 5));
         bind(2, rig.out().x);
         const double from = rig.state.cargoes[1].from;
         const double x = rig.state.cargoes[1].lies.x;
-        if (lifts) rig.Give(Line(0, 0, 25, 1));
-        if (lifts) rig.Give(Line(0, 0, 25, 2, 10));
-        const Ticket last = rig.Give(Line(0, 0, 0, 2, lifts ? 10 : 0));
+        if (lifts) rig.Give(Then(0, 0, 25, 1));
+        if (lifts) rig.Give(Then(0, 0, 25, 2, 10));
+        const Ticket last = rig.Give(Then(0, 0, 0, 2, lifts ? 10 : 0));
         double lag = 0;
         while (!rig.lives[last].ended() && rig.cycle.count < 20000) {
           rig.Step();

@@ -8,10 +8,6 @@
 namespace takt::group {
 namespace {
 
-// How far the tool may be from its path, mm: not at all. Axes that are asked for too much keep their limits, so it
-// shows here if timing asks for it.
-constexpr double kOnPath = 1e-6;
-
 struct Seen {
   double off_path = 0;
   int moves = 0;

@@ -2,12 +2,12 @@
 #include <random>
 
 #include "machines.h"
+#include "takt/core/angle.h"
 #include "watch.h"
 
 namespace takt::group {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 const Pose kBase{1000, 200, 50, 0, 0, 90};  // of the MCS in the world
 const Pose kProduct{40, 30, 10, 0, 0, 30};  // of PCS 3 in the MCS
 constexpr double kSlow = 200;               // mm/s: what the axes can do is no matter here; see limits_test.cc

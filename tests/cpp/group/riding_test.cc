@@ -7,25 +7,8 @@
 namespace takt::group {
 namespace {
 
-constexpr double kOnObject = 1e-9;  // mm
-
-MoveLinearAbsolute Line(double x, double y, double z, std::uint32_t pcs = 0, BufferMode buffer = BufferMode::kAborting,
-                        double radius = 0) {
-  MoveLinearAbsolute m{.x = x, .y = y, .z = z};
-  if (pcs != 0) {
-    m.coordinate_system = CoordinateSystem::kPcs;
-    m.pcs = pcs;
-  }
-  m.buffer_mode = buffer;
-  if (radius > 0) {
-    m.transition_mode = TransitionMode::kCornerDistance;
-    m.transition_parameter = radius;
-  }
-  return m;
-}
-
 // How far the tool is from a place on an object in the cycle recorded last.
-double Off(const Rig& rig, const Belts& belts, std::size_t belt, double from, const Pose& on, const Pose& place) {
+double OffPlace(const Rig& rig, const Belts& belts, std::size_t belt, double from, const Pose& on, const Pose& place) {
   const Frame object = ObjectOn(belts, belt, from, on, rig.cycle.count - 1);
   return (ToolOf(rig).p - object * kinematics::ToFrame(place).p).Norm();
 }
@@ -46,7 +29,7 @@ TEST(Riding, OntoABeltAndAlongWithIt) {
     ASSERT_TRUE(rig.lives[move].done) << static_cast<int>(rig.lives[move].error_id);
     for (int i = 0; i < 300; ++i) {
       rig.Step();
-      ASSERT_LE(Off(rig, *belts, 0, 30, on, {0, 0, 40}), kOnObject);
+      ASSERT_LE(OffPlace(rig, *belts, 0, 30, on, {0, 0, 40}), kOnObject);
     }
     EXPECT_EQ(rig.out().state, speed == 0 ? rig.out().state : GroupState::kMoving);
     ExpectSmooth(rig);
@@ -71,7 +54,7 @@ Pick Across(Rig rig, double z, const Travel& first, const Travel& second, double
   const Ticket down = rig.Give(Line(0, 0, 0, 2, BufferMode::kBlendingNext, radius));
   EXPECT_TRUE(rig.RunToEnd(down, 5));
   EXPECT_TRUE(rig.lives[down].done) << static_cast<int>(rig.lives[down].error_id);
-  EXPECT_LE(Off(rig, *belts, 1, 0, {}, {}), kOnObject);
+  EXPECT_LE(OffPlace(rig, *belts, 1, 0, {}, {}), kOnObject);
   ExpectSmooth(rig);
   Pick pick;
   const double begin = rig.trace.front().out.path_position, end = rig.trace.back().out.path_position;
@@ -195,17 +178,7 @@ TEST(Riding, BlendsBehindAMotionThatEnds) {
 }
 
 MoveArch Arch(double x, double y, double z, double height, std::uint32_t pcs, BufferMode buffer, double radius = 0) {
-  MoveArch m{.x = x, .y = y, .z = z, .height = height};
-  if (pcs != 0) {
-    m.coordinate_system = CoordinateSystem::kPcs;
-    m.pcs = pcs;
-  }
-  m.buffer_mode = buffer;
-  if (radius > 0) {
-    m.transition_mode = TransitionMode::kCornerDistance;
-    m.transition_parameter = radius;
-  }
-  return m;
+  return On(MoveArch{.x = x, .y = y, .z = z, .height = height}, pcs, buffer, radius);
 }
 
 // PP-11: an arch that stands keeps to its ellipse.
@@ -237,7 +210,7 @@ TEST(Arch, LeadsOntoABelt) {
   const Ticket down = rig.Give(Line(0, 0, 0, 1, BufferMode::kBlendingNext, 10));
   ASSERT_TRUE(rig.RunToEnd(down, 5));
   ASSERT_TRUE(rig.lives[down].done) << static_cast<int>(rig.lives[down].error_id);
-  EXPECT_LE(Off(rig, *belts, 0, 0, {}, {}), kOnObject);
+  EXPECT_LE(OffPlace(rig, *belts, 0, 0, {}, {}), kOnObject);
   ExpectSmooth(rig);
   // No stop on the way.
   bool moving = false;
@@ -260,7 +233,7 @@ struct Seated {
     EXPECT_TRUE(rig.RunToEnd(move, 5));
     EXPECT_TRUE(rig.lives[move].done) << static_cast<int>(rig.lives[move].error_id);
   }
-  double off(const Pose& place = {}) const { return Off(rig, *belts, 0, from, {}, place); }
+  double off(const Pose& place = {}) const { return OffPlace(rig, *belts, 0, from, {}, place); }
 
   Rig rig = Gantry();
   std::unique_ptr<Belts> belts;
@@ -383,7 +356,7 @@ TEST(Riding, StaysNearTheMiddleOfATable) {
   ASSERT_TRUE(rig.RunToEnd(rig.Give(on), 5));
   for (int i = 0; i < 6000; ++i) {
     rig.Step();
-    ASSERT_LE(Off(rig, *belts, 0, from, {}, {30, 0, 0}), kOnObject) << i;
+    ASSERT_LE(OffPlace(rig, *belts, 0, from, {}, {30, 0, 0}), kOnObject) << i;
     ASSERT_TRUE(rig.out().in_sync);
   }
   const Ticket next = rig.Give(Line(-30, 0, 0, 1));

@@ -5,6 +5,7 @@
 #include "watch.h"
 
 // GCC 12 takes optionals that go into a variant for uninitialised.
+#pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 
 namespace takt::group {
@@ -339,3 +340,5 @@ TEST(States, RandomWalk) {
 
 }  // namespace
 }  // namespace takt::group
+
+#pragma GCC diagnostic pop

@@ -20,7 +20,7 @@ TrackConveyorBelt Example() {
   return m;
 }
 
-double Travel(const Rig& rig, const Belts& belts) {
+double TravelOf(const Rig& rig, const Belts& belts) {
   return belts.all[0].travel(static_cast<double>(rig.cycle.count - 1) * rig.cycle.period_s).position;
 }
 
@@ -33,18 +33,18 @@ TEST(Track, TheManualsExample) {
   const Ticket track = rig.Give(Example());
   rig.Step();
   EXPECT_EQ(rig.out().track_state, TrackState::kWaiting);  // CV-11
-  while (Travel(rig, *belts) < 9) {
+  while (TravelOf(rig, *belts) < 9) {
     ASSERT_EQ(rig.out().x, 0);
     ASSERT_EQ(rig.out().state, GroupState::kStandby);
     rig.Step();
   }
   EXPECT_EQ(rig.out().state, GroupState::kMoving);
-  while (Travel(rig, *belts) < 12 - 1e-9) {
+  while (TravelOf(rig, *belts) < 12 - 1e-9) {
     ASSERT_EQ(rig.out().track_state, TrackState::kSynchronizing);
     ASSERT_LE(rig.out().velocity, kSpeed * (1 + 1e-9));  // never faster than the belt
     rig.Step();
   }
-  EXPECT_NEAR(Travel(rig, *belts), 12, 1e-9);
+  EXPECT_NEAR(TravelOf(rig, *belts), 12, 1e-9);
   EXPECT_NEAR(rig.out().x, 1.5, 1e-6);
   EXPECT_NEAR(rig.out().velocity, kSpeed, 1e-6);
   rig.Step();
@@ -53,7 +53,7 @@ TEST(Track, TheManualsExample) {
   EXPECT_TRUE(rig.out().in_sync);
   for (int i = 0; i < 1000; ++i) {
     rig.Step();
-    ASSERT_NEAR(rig.out().x, kOrigin + Travel(rig, *belts), 1e-9);  // CV-20
+    ASSERT_NEAR(rig.out().x, kOrigin + TravelOf(rig, *belts), 1e-9);  // CV-20
     ASSERT_NEAR(rig.out().object_x, 0, 1e-9);
   }
   EXPECT_FALSE(rig.lives[track].ended());
@@ -78,7 +78,7 @@ TEST(Track, WithoutDistancesInTheShortestTime) {
   m.recorded_position = 0.0;
   m.start_distance = 40;
   const Ticket track = rig.Give(m);
-  while (Travel(rig, *belts) < 40) rig.Step();
+  while (TravelOf(rig, *belts) < 40) rig.Step();
   const std::uint64_t begin = rig.cycle.count;
   while (!rig.out().in_sync && rig.cycle.count < begin + 2000) rig.Step();
   // The object is ahead: in its frame the tool has to catch up 29.5 mm, from -200 mm/s.
@@ -134,7 +134,7 @@ TEST(Track, EndsWhenTheBeltGoesBack) {
   double last = 0;
   rig.Step();
   while (!rig.lives[track].ended() && rig.cycle.count < 9000) {
-    last = Travel(rig, *belts);
+    last = TravelOf(rig, *belts);
     rig.Step();
     in_sync |= rig.out().in_sync;
   }
@@ -177,7 +177,7 @@ TEST(Track, MovesRunOnTop) {
   down.coordinate_system = CoordinateSystem::kPcs;
   down.pcs = 2;
   const Ticket early = rig.Give(down);  // waits until it is tracked
-  while (Travel(rig, *belts) < 9) {
+  while (TravelOf(rig, *belts) < 9) {
     rig.Step();
     ASSERT_EQ(rig.out().z, 0);
   }
@@ -225,14 +225,14 @@ TEST(Track, OnATableEitherWayRound) {
     while (!rig.out().in_sync && ++steps < 5000) rig.Step();
     ASSERT_TRUE(rig.out().in_sync);
     const double c0 = rig.out().c;
-    const double turned = Travel(rig, *belts);
+    const double turned = TravelOf(rig, *belts);
     for (int i = 0; i < 1000; ++i) {
       rig.Step();
-      const double angle = Travel(rig, *belts);
+      const double angle = TravelOf(rig, *belts);
       ASSERT_NEAR(rig.out().x, 100 * std::cos(angle), 1e-9);
       ASSERT_NEAR(rig.out().y, 100 * std::sin(angle), 1e-9);
     }
-    EXPECT_NEAR(rig.out().c - c0, (Travel(rig, *belts) - turned) * 180 / std::numbers::pi, 1e-6);
+    EXPECT_NEAR(rig.out().c - c0, (TravelOf(rig, *belts) - turned) * 180 / std::numbers::pi, 1e-6);
     EXPECT_TRUE(rig.RunToEnd(track, 20));
     EXPECT_TRUE(rig.lives[track].done);
     ExpectSmooth(rig);
@@ -255,7 +255,7 @@ TEST(Track, PublishesWithAndWithoutTheBeltsShare) {
   double before = rig.out().object_x;
   while (!rig.lives[ticket].ended()) {
     rig.Step();
-    ASSERT_NEAR(rig.out().object_x, rig.out().x - kOrigin - Travel(rig, *belts), 1e-9);
+    ASSERT_NEAR(rig.out().object_x, rig.out().x - kOrigin - TravelOf(rig, *belts), 1e-9);
     ASSERT_LE(rig.out().object_x - before, 50 * 0.001 + 1e-9);  // the move's own speed
     before = rig.out().object_x;
   }
@@ -288,7 +288,7 @@ Sample HardestOf(AfterSync after, double& out_of_step) {
     if (!rig.out().in_sync) out_of_step += rig.cycle.period_s;
   }
   EXPECT_TRUE(rig.out().in_sync);  // and back
-  EXPECT_NEAR(rig.out().x, kOrigin + Travel(rig, *belts), 1e-9);
+  EXPECT_NEAR(rig.out().x, kOrigin + TravelOf(rig, *belts), 1e-9);
   ExpectSmooth(rig);
   return hardest;
 }
@@ -317,7 +317,7 @@ TEST(Track, ToleranceAndOverride) {
     m.recorded_position = 0.0;
     m.start_distance = 80;
     rig.Give(m);
-    while (Travel(rig, *belts) < 80) rig.Step();
+    while (TravelOf(rig, *belts) < 80) rig.Step();
     const std::uint64_t begin = rig.cycle.count;
     while (!rig.out().in_sync && rig.cycle.count < begin + 3000) rig.Step();
     ExpectSmooth(rig);

@@ -27,13 +27,13 @@ struct Corner {
   double parameter;
 };
 
-struct Gone {
+struct Taken {
   double nearest = 1e99;  // to the corner, mm
   double slowest = 1e99;  // where it is nearest, mm/s
   double off_path = 0;    // from the two lines, mm
 };
 
-Gone Go(const Corner& corner, const KDL::Vector& at, const KDL::Vector& to, double v1 = 300, double v2 = 600) {
+Taken Go(const Corner& corner, const KDL::Vector& at, const KDL::Vector& to, double v1 = 300, double v2 = 600) {
   Rig rig = Gantry();
   rig.Start();
   rig.Give(MoveLinearAbsolute{.x = at.x(), .y = at.y(), .z = at.z(), .velocity = v1});
@@ -49,7 +49,7 @@ Gone Go(const Corner& corner, const KDL::Vector& at, const KDL::Vector& to, doub
   EXPECT_LE((ToolOf(rig).p - to).Norm(), 1e-9);
   ExpectSmooth(rig);
   EXPECT_LE(WorstAccelerationStep(rig), std::sqrt(3) * 500000 * rig.cycle.period_s * (1 + 1e-6));
-  Gone gone;
+  Taken gone;
   for (const Sample& sample : rig.trace) {
     const KDL::Vector p = ToolOf(rig, sample).p;
     gone.off_path = std::max(gone.off_path, std::min(FromLine(p, KDL::Vector::Zero(), at), FromLine(p, at, to)));
@@ -70,7 +70,7 @@ TEST(Transitions, OfEveryMode) {
           TransitionMode::kCornerDistance, TransitionMode::kMaxCornerDeviation}) {
       const bool velocity =
           transition == TransitionMode::kStartVelocity || transition == TransitionMode::kConstantVelocity;
-      const Gone gone = Go({buffer, transition, velocity ? 150.0 : 10.0}, at, to);
+      const Taken gone = Go({buffer, transition, velocity ? 150.0 : 10.0}, at, to);
       SCOPED_TRACE(testing::Message() << static_cast<int>(buffer) << " " << static_cast<int>(transition));
       if (buffer == BufferMode::kBuffered || transition == TransitionMode::kNone) {
         EXPECT_LE(gone.nearest, 1e-9);  // through the corner, where it stops
@@ -95,7 +95,7 @@ TEST(Transitions, KeepTheDeviation) {
     const KDL::Vector at(Uniform(random, 30, 200), Uniform(random, -50, 50), Uniform(random, -50, 50));
     const KDL::Vector to(Uniform(random, -100, 300), Uniform(random, -200, 200), Uniform(random, -100, 100));
     const double deviation = std::exp(Uniform(random, std::log(0.05), std::log(20)));
-    const Gone gone =
+    const Taken gone =
         Go({BufferMode::kBlendingNext, TransitionMode::kMaxCornerDeviation, deviation}, at, to, 1000, 1000);
     // It may have been nearest in the middle between two cycles.
     EXPECT_LE(gone.nearest, std::hypot(deviation, 0.5 * gone.slowest * 0.001) * (1 + 1e-3) + 0.01) << i;

@@ -45,6 +45,10 @@ inline void ExpectSmooth(const Rig& rig, const std::string& what = {}) {
   EXPECT_LE(use.step, 1e-4) << what;
 }
 
+// How far the tool may be from its path, mm: not at all. Axes that are asked for too much keep their limits, so it
+// shows here if timing asks for it.
+inline constexpr double kOnPath = 1e-6;
+
 // The tool where the axes are told to be, in the MCS.
 inline Frame ToolOf(const Rig& rig, const Sample& sample) {
   kinematics::Joints joints{};

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "mechanisms.h"
+#include "takt/core/angle.h"
 
 namespace takt::kinematics {
 namespace {
@@ -17,8 +17,6 @@ using testing::FromYaml;
 using testing::kFlexPicker;
 using testing::Random;
 using testing::Trials;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 void ExpectPlace(const Kinematics& k, const Joints& joints, double x, double y, double z, double tolerance) {
   const Frame tool = ForwardOrFail(k, joints);

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
-#include <numbers>
 
 #include "mechanisms.h"
+#include "takt/core/angle.h"
 
 namespace takt::kinematics {
 namespace {
@@ -18,7 +18,6 @@ using testing::FromYaml;
 using testing::Random;
 using testing::Trials;
 
-constexpr double kDegree = std::numbers::pi / 180;
 const char* const kCobra = "{scara: {first_arm: 325, second_arm: 275, height: 387}}";
 
 void ExpectJoints(const Kinematics& k, const Pose& pose, Elbow elbow, const Joints& expected) {

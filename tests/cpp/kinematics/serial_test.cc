@@ -8,10 +8,10 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainiksolverpos_nr.hpp>
 #include <kdl/chainiksolvervel_wdls.hpp>
-#include <numbers>
 #include <sstream>
 
 #include "mechanisms.h"
+#include "takt/core/angle.h"
 
 // The URDF library keeps what it has read of a robot without a root for ever, and says only that it is none.
 extern "C" const char* __lsan_default_suppressions() {
@@ -28,8 +28,6 @@ using testing::FromYaml;
 using testing::kPuma;
 using testing::Random;
 using testing::Trials;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::string TextOf(const std::string& name) {
   std::ifstream file(std::string(TAKT_SOURCE_DIR) + "/tests/cpp/kinematics/" + name);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mechanisms.h"
+#include "takt/core/angle.h"
 
 namespace takt::kinematics {
 namespace {
@@ -24,8 +25,6 @@ using testing::kAgilus;
 using testing::kPuma;
 using testing::Random;
 using testing::Trials;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // The Puma 560 by its Denavit-Hartenberg table (Corke's; lengths in mm).
 KDL::Chain PumaOfKdl() {

@@ -27,18 +27,6 @@ bool Eventually(const std::function<bool()>& holds) {
   return false;
 }
 
-msgs::command Command(std::int64_t id, const std::string& verb, const std::string& arguments = "") {
-  msgs::command m{};
-  m.run_id = kRunId;
-  m.client = "test";
-  m.session = 1;
-  m.id = id;
-  m.target = "x";
-  m.verb = verb;
-  m.arguments = arguments;
-  return m;
-}
-
 template <typename Message>
 Bytes Encoded(const Message& message) {
   Bytes bytes;
@@ -70,7 +58,7 @@ class Fuzz {
     heartbeat.run_id = kRunId;
     heartbeat.client = "test";
     heartbeat.session = Uniform(0, 3);
-    msgs::command command = Command(Uniform(-2, 1'000'000), verb, arguments);
+    msgs::command command = Command(Uniform(-2, 1'000'000), "x", verb, arguments);
     if (kind == 1 && !command.arguments.empty()) {  // well-formed message, odd text
       for (int i = Uniform(1, 4); i > 0; --i)
         command.arguments[Index(command.arguments.size())] = static_cast<char>(Uniform(1, 255));
@@ -113,7 +101,7 @@ struct GatewayTest : testing::Test {
 TEST_F(GatewayTest, CommandsAndHeartbeatsArriveMalformedBytesAreCounted) {
   ::lcm::LCM network("memq://");
   Gateway gateway(network, clients);
-  const Bytes command = Encoded(Command(1, "no_such_verb"));
+  const Bytes command = Encoded(Command(1, "x", "no_such_verb"));
   ASSERT_EQ(network.publish(kCommandChannel, command.data(), static_cast<unsigned>(command.size())), 0);
   std::vector<msgs::feedback> replies;
   ASSERT_TRUE(Eventually([&] { return !(replies = Replies()).empty(); }));
@@ -147,7 +135,7 @@ TEST_F(GatewayTest, AnotherEngineOnTheNetworkIsSaidOnceInOneLine) {
     machine.run_id = kRunId + 1;
     network.publish(kMachineChannel, &machine);
     network.publish(kMachineChannel, &machine);
-    const Bytes command = Encoded(Command(1, "no_such_verb"));
+    const Bytes command = Encoded(Command(1, "x", "no_such_verb"));
     network.publish(kCommandChannel, command.data(), static_cast<unsigned>(command.size()));
     EXPECT_TRUE(Eventually([&] { return !Replies().empty(); }));  // all before has arrived
   }
@@ -185,7 +173,7 @@ TEST_F(GatewayTest, Fuzz) {
   }
   EXPECT_GT(malformed, 50'000u);
   EXPECT_GT(taken, 50'000u);
-  msgs::command command = Command(1, "power");
+  msgs::command command = Command(1, "x", "power");
   command.client = "afterwards";
   clients.OnCommand(command, now_ns + 3'000'000'000);
   for (int i = 0; i < 200; ++i) Step();
@@ -210,7 +198,7 @@ TEST_F(GatewayTest, FuzzThroughLcm) {
   ASSERT_TRUE(Eventually([&] {  // the last ones have arrived
     Step();
     Replies();
-    msgs::command command = Command(1, "no_such_verb");
+    msgs::command command = Command(1, "x", "no_such_verb");
     command.client = "afterwards";
     network.publish(kCommandChannel, &command);
     std::this_thread::sleep_for(1ms);
@@ -235,12 +223,13 @@ TEST_F(GatewayTest, CommandsAtAHundredTimesTheCyclesRate) {
     }
   };
   std::int64_t id = 0;
-  clients.OnCommand(Command(++id, "power"), 0);
+  clients.OnCommand(Command(++id, "x", "power"), 0);
   for (int i = 0; i < 300; ++i) Step();
   for (int cycle = 0; cycle < 500; ++cycle) {
     for (int i = 0; i < 100; ++i) {
       ++id;
-      clients.OnCommand(Command(id, "move_absolute", "{position: " + std::to_string(id % 50) + "}"), cycle * 1'000'000);
+      clients.OnCommand(Command(id, "x", "move_absolute", "{position: " + std::to_string(id % 50) + "}"),
+                        cycle * 1'000'000);
     }
     Step();
     count();
@@ -271,10 +260,10 @@ TEST_F(GatewayTest, DeadMan) {
       for (const msgs::feedback& reply : Replies()) replies.push_back(reply);
     }
   };
-  clients.OnCommand(Command(1, "power"), now_ns);
+  clients.OnCommand(Command(1, "x", "power"), now_ns);
   run(0.5, true);
   ASSERT_EQ(engine.outputs(0).state, axis::PlcState::kStandstill) << replies.back().sentence;
-  clients.OnCommand(Command(2, "jog", "{forward: true, velocity: 20}"), now_ns);
+  clients.OnCommand(Command(2, "x", "jog", "{forward: true, velocity: 20}"), now_ns);
   run(2, true);
   EXPECT_EQ(engine.outputs(0).state, axis::PlcState::kContinuousMotion);
   EXPECT_NEAR(engine.outputs(0).set_velocity, 20, 1e-9);

@@ -24,16 +24,8 @@ Message ThroughBytes(const Message& message) {
   return decoded;
 }
 
-msgs::command Command() {
-  msgs::command m{};
-  m.run_id = 4711;
-  m.client = "test";
-  m.session = 1;
-  m.id = 2;
-  m.target = "x";
-  m.verb = "move_absolute";
-  m.arguments = "{position: 10}";
-  return m;
+msgs::command GoodCommand() {
+  return Command(2, "x", "move_absolute", "{position: 10}");
 }
 
 // EN-20
@@ -592,7 +584,7 @@ TEST(Messages, JournalHashesKeepTheirBits) {
 
 TEST(Messages, CommandAndHeartbeatDecode) {
   std::vector<std::uint8_t> bytes;
-  Encode(Command(), bytes);
+  Encode(GoodCommand(), bytes);
   const auto command = DecodeCommand(bytes);
   ASSERT_TRUE(command);
   EXPECT_EQ(command->run_id, 4711);
@@ -618,7 +610,7 @@ TEST(Messages, CommandAndHeartbeatDecode) {
 // EN-22: what the generated decoder alone would read beyond its bytes for, or throw at.
 TEST(Messages, WrongLengthsAreRefused) {
   std::vector<std::uint8_t> good;
-  Encode(Command(), good);
+  Encode(GoodCommand(), good);
   for (std::size_t size = 0; size < good.size(); ++size) {
     EXPECT_FALSE(DecodeCommand(std::span(good).first(size))) << size;
   }

@@ -27,6 +27,7 @@ class TestOutlet : public Outlet {
     open_.wait(lock, [this] { return !blocked_; });
     if (refuse_) return false;
     messages_[channel].emplace_back(bytes.begin(), bytes.end());
+    order_.push_back(channel);
     return true;
   }
   void Block(bool blocked) {
@@ -49,6 +50,11 @@ class TestOutlet : public Outlet {
     }
     return decoded;
   }
+  // In the order in which they came.
+  std::vector<std::string> Order() {
+    const std::lock_guard lock(mutex_);
+    return order_;
+  }
   std::set<std::string> Channels() {
     const std::lock_guard lock(mutex_);
     std::set<std::string> names;
@@ -61,6 +67,7 @@ class TestOutlet : public Outlet {
   std::condition_variable open_;
   bool blocked_ = false, refuse_ = false;
   std::map<std::string, std::vector<std::vector<std::uint8_t>>> messages_;
+  std::vector<std::string> order_;
 };
 
 struct TestRun {
@@ -82,19 +89,6 @@ struct TestRun {
   engine::Engine engine;
   Clients clients;
 };
-
-msgs::command Command(std::int64_t id, const std::string& target, const std::string& verb,
-                      const std::string& arguments = "") {
-  msgs::command m{};
-  m.run_id = kRunId;
-  m.client = "test";
-  m.session = 1;
-  m.id = id;
-  m.target = target;
-  m.verb = verb;
-  m.arguments = arguments;
-  return m;
-}
 
 template <typename Message>
 void ExpectNoGaps(const std::vector<Message>& messages) {
@@ -339,6 +333,29 @@ TEST(Publisher, ASlowNetworkCostsCountedDropsAndNoCycle) {
   const auto engine = network.On<msgs::engine_state>("takt/engine");
   ASSERT_FALSE(engine.empty());
   EXPECT_EQ(engine.back().snapshots_dropped, static_cast<std::int64_t>(dropped));
+}
+
+// EN-20: the end of a burst is what a receiver with a small buffer loses; it is not always the same component's.
+TEST(Publisher, EndsEachBurstWithAnother) {
+  engine::Machine machine = WithModule(TestMachine());
+  machine.lcm.axis_rate_hz = 1000;
+  machine.lcm.engine_rate_hz = 0;
+  TestRun run({.publish = true}, machine);
+  TestOutlet network;
+  Publisher publisher(run.engine, run.clients, &network, nullptr, {});
+  const auto states = [&] {
+    std::vector<std::string> order = network.Order();
+    std::erase(order, "takt/machine");
+    return order;
+  };
+  std::map<std::string, int> last;
+  for (std::size_t burst = 1; burst <= 200; ++burst) {
+    run.engine.RunCycle();
+    while (states().size() < burst * (machine.axes.size() + 1)) std::this_thread::sleep_for(100us);
+    ++last[states().back()];
+  }
+  EXPECT_EQ(last.size(), machine.axes.size() + 1);
+  for (const auto& [channel, times] : last) EXPECT_GT(times, 1) << channel;
 }
 
 // EN-20: what the network refuses is counted, and a receiver sees the gap.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "takt/engine/machine.h"
+#include "takt/lcm/messages.h"
 
 namespace takt::lcm {
 
@@ -102,6 +103,19 @@ inline engine::Machine WithPart(engine::Machine machine) {
   machine.parts.resize(1);
   machine.parts[0].name = "lift";
   return machine;
+}
+
+inline msgs::command Command(std::int64_t id, const std::string& target, const std::string& verb,
+                             const std::string& arguments = "") {
+  msgs::command m{};
+  m.run_id = kRunId;
+  m.client = "test";
+  m.session = 1;
+  m.id = id;
+  m.target = target;
+  m.verb = verb;
+  m.arguments = arguments;
+  return m;
 }
 
 // An LCM network that no other test uses; its port is below those that systems give away by themselves.

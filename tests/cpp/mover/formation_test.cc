@@ -2,14 +2,13 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "takt/core/angle.h"
 #include "troop.h"
 
 namespace takt::mover {
 namespace {
 
 using planar::ObjectState;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::vector<MoverParams> Plate() {
   return {Turning(200, 200), Turning(500, 200), Turning(500, 500), Turning(200, 500)};

@@ -406,7 +406,7 @@ TEST(MoverOnTracks, RefusesWhatTheTrackIsNotFor) {
   rig.params[0].width = 156;
   rig.now[1].spot.system = 1;
   rig.Start({{100, 0}, {500, 0}});
-  EXPECT_EQ(rig.Join(0, "t0"), ErrorId::kTrackMode);
+  EXPECT_EQ(rig.Join(0, "t0"), ErrorId::kMoverTooLarge);
   EXPECT_FALSE(rig.streets.riders[0].on);
   // In another coordinate system, enabled or not.
   EXPECT_EQ(rig.Join(1, "t1"), ErrorId::kReference);

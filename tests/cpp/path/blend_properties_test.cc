@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "paths.h"
+#include "takt/core/angle.h"
 #include "takt/path/blend.h"
 
 namespace takt::path {
@@ -20,8 +20,6 @@ using testing::Random;
 using testing::RandomCorner;
 using testing::StepBetween;
 using testing::Trials;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 class Corners : public ::testing::TestWithParam<std::pair<Kind, Kind>> {};
 

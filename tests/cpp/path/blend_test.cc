@@ -9,6 +9,7 @@
 
 #include "../core/allocations.h"
 #include "paths.h"
+#include "takt/core/angle.h"
 
 namespace takt::path {
 namespace {
@@ -17,8 +18,6 @@ using testing::Length;
 using testing::Line;
 using testing::PeakCurvature;
 using testing::StepBetween;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // Two lines of 100 mm that meet at the origin, where the path turns by an angle.
 struct Lines {
@@ -31,7 +30,7 @@ struct Lines {
   Segment second;
 };
 
-Segment Blended(const Segment& first, double s_first, const Segment& second, double s_second) {
+Segment BlendBetween(const Segment& first, double s_first, const Segment& second, double s_second) {
   Segment out;
   EXPECT_EQ(Blend(first, s_first, second, s_second, out), Problem::kNone);
   return out;
@@ -41,7 +40,7 @@ Segment Blended(const Segment& first, double s_first, const Segment& second, dou
 // curve is (16 - 5 * 1.7472) / 32 d from it along each leg; by hand from the rule: 0.3210 d in all.
 TEST(Blend, RightAngleByHand) {
   const Lines lines(90);
-  const Segment blend = Blended(lines.first, 90, lines.second, 10);
+  const Segment blend = BlendBetween(lines.first, 90, lines.second, 10);
   const double q = std::sqrt(0.5);
   const double c = q / (0.2067 + 0.28 * q);
   const double along = 10 * (16 - 5 * c) / 32;
@@ -70,7 +69,7 @@ double PeakGrowth(const Segment& blend) {
 TEST(Blend, BendsLittleMoreThanACircle) {
   for (const double degrees : {0.1, 1.0, 10.0, 30.0, 60.0, 90.0, 120.0, 150.0, 170.0, 179.0}) {
     const Lines lines(degrees);
-    const Segment blend = Blended(lines.first, 90, lines.second, 10);
+    const Segment blend = BlendBetween(lines.first, 90, lines.second, 10);
     const double circle = std::tan(degrees / 2 * kDegree) / 10;
     EXPECT_LT(PeakCurvature(blend, 4000) / circle, 1.65) << degrees;
     EXPECT_GT(PeakCurvature(blend, 4000) / circle, 1.0) << degrees;
@@ -87,7 +86,7 @@ TEST(Blend, BendsLittleWithDifferentDistances) {
   for (const double degrees : {1.0, 30.0, 60.0, 90.0}) {
     for (const double behind : {10.0, 20.0, 50.0, 100.0}) {
       const Lines lines(degrees);
-      const Segment blend = Blended(lines.first, 95, lines.second, behind);
+      const Segment blend = BlendBetween(lines.first, 95, lines.second, behind);
       EXPECT_LT(PeakCurvature(blend, 4000), 4 * std::tan(degrees / 2 * kDegree) / 5) << degrees << " " << behind;
     }
   }
@@ -100,7 +99,7 @@ TEST(CornerDistances, UsesTheDeviation) {
     for (const double deviation : {1e-4, 0.01, 1.0}) {
       const double d = CornerDistance(lines.first, lines.second, deviation, HalfOf(lines.first, lines.second));
       ASSERT_LE(d, 50);
-      const Segment blend = Blended(lines.first, 100 - d, lines.second, d);
+      const Segment blend = BlendBetween(lines.first, 100 - d, lines.second, d);
       const double used = Deviation(lines.first, lines.second, blend) / deviation;
       EXPECT_LE(used, 1 + 1e-9);
       if (d < 50) {
@@ -138,7 +137,7 @@ TEST(Blend, EasesTurnsOnAStraightWay) {
   const Lines lines(0, 60, 90);
   EXPECT_FALSE(Smooth(lines.first, lines.second));
   EXPECT_DOUBLE_EQ(CornerDistance(lines.first, lines.second, 1e-3, HalfOf(lines.first, lines.second)), 50);
-  const Segment blend = Blended(lines.first, 80, lines.second, 20);
+  const Segment blend = BlendBetween(lines.first, 80, lines.second, 20);
   EXPECT_NEAR(blend.length, 40, 1e-9);
   EXPECT_NEAR(Deviation(lines.first, lines.second, blend), 0, 1e-12);
   const KDL::Vector before(0, 0, 60 * kDegree / 100), behind(90 * kDegree / 100, 0, 0);
@@ -159,7 +158,7 @@ TEST(Blend, JoinsTurnsAndAuxiliaries) {
   ASSERT_EQ(a.measure, Measure::kTurn);
   const double d = CornerDistance(a, b, 2, HalfOf(a, b));
   EXPECT_NEAR(d, 2 / (std::sqrt(2) * 3 / 16), 1e-9);
-  const Segment turn = Blended(a, a.length - d, b, d);
+  const Segment turn = BlendBetween(a, a.length - d, b, d);
   EXPECT_NEAR(Deviation(a, b, turn), 2, 1e-6);
   EXPECT_LT(StepBetween(a, a.length - d, turn, 0).turning, 1e-14);
   EXPECT_LT(StepBetween(turn, turn.length, b, d).turning, 1e-14);
@@ -167,7 +166,7 @@ TEST(Blend, JoinsTurnsAndAuxiliaries) {
   ASSERT_EQ(c.measure, Measure::kAuxiliaries);
   const double f = CornerDistance(c, e, 1, HalfOf(c, e));
   EXPECT_NEAR(f, 1 / (2.0 * 3 / 16), 1e-9);
-  const Segment moved = Blended(c, c.length - f, e, f);
+  const Segment moved = BlendBetween(c, c.length - f, e, f);
   EXPECT_NEAR(Deviation(c, e, moved), 1, 1e-6);
   EXPECT_LT(StepBetween(c, c.length - f, moved, 0).auxiliary_rate, 1e-14);
   EXPECT_LT(StepBetween(moved, moved.length, e, f).auxiliary_rate, 1e-14);
@@ -177,7 +176,7 @@ TEST(Blend, JoinsTurnsAndAuxiliaries) {
 TEST(Blend, KeepsTheWayOfAHalfTurn) {
   const Segment a = Line({Frame(KDL::Rotation::RotZ(std::numbers::pi), {-100, 0, 0}), {}}, {});
   const Segment b = Line({}, {Frame({0, 100, 0}), {}});
-  const Segment blend = Blended(a, 0, b, 100);
+  const Segment blend = BlendBetween(a, 0, b, 100);
   const double way = At(a, 0).M.w.z();
   for (int i = 0; i < 100; ++i) EXPECT_GE(At(blend, blend.length * i / 100).M.w.z() * way, -1e-12) << i;
 }

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "paths.h"
+#include "takt/core/angle.h"
 #include "takt/path/blend.h"
 
 namespace takt::path {
@@ -18,8 +18,6 @@ using testing::PeakCurvature;
 using testing::Random;
 using testing::StepBetween;
 using testing::Trials;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // From its middle to that of the next.
 Segment Round(const Segment& first, const Segment& second, const Bends& bends) {

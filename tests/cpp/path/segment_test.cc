@@ -5,10 +5,10 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <type_traits>
 
 #include "paths.h"
+#include "takt/core/angle.h"
 #include "takt/core/describe.h"
 #include "takt/core/verify.h"
 #include "takt/path/blend.h"
@@ -26,8 +26,6 @@ using testing::MakeCorner;
 using testing::PeakCurvature;
 using testing::Random;
 using testing::Trials;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // GR-20: a segment is state: plain data whose members are all described.
 TEST(Segments, ArePlainAndDescribed) {

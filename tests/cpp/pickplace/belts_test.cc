@@ -6,8 +6,6 @@ namespace {
 
 using M = PickPlaceState;
 
-constexpr double kOnWorkpiece = 1e-6;  // mm
-
 // Along X of its origin, from x = 0 on.
 CellBelt BeltAt(const char* name, const Pose& origin, double speed) {
   CellBelt belt;

@@ -35,6 +35,18 @@ inline Settings Fast() {
   return s;
 }
 
+inline Configure To(double x, double y, double z) {
+  Configure c;
+  c.x_target = x;
+  c.y_target = y;
+  c.z_target = z;
+  return c;
+}
+
+// How far the tool may be from its workpiece: where it holds it, and to its side on the way down and up, mm.
+inline constexpr double kOnWorkpiece = 1e-6, kBeside = 0.01;
+inline constexpr double kHalfWidth = 60;  // mm, of a belt
+
 struct CellBelt {
   conveyor::BeltParams params;
   BeltSettings settings;

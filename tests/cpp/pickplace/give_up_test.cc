@@ -13,8 +13,6 @@ using M = PickPlaceState;
 
 constexpr double kBeltY = 200, kBeltZ = -50;
 constexpr double kDistance = 25, kRadius = 10;  // mm, of the way down and its rounding
-constexpr double kBeside = 0.01;                // mm
-constexpr double kHalfWidth = 60;               // mm, of the belt
 
 // From one speed to another, from a time on, in so long a time: with no jerk that axes could not follow.
 std::function<KinematicState(double)> Changing(double before, double after, double from_s, double takes_s) {

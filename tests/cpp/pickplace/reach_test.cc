@@ -11,12 +11,9 @@
 namespace takt::pickplace {
 namespace {
 
-constexpr double kOnWorkpiece = 1e-6;  // mm
-constexpr double kBeside = 0.01;       // mm
-constexpr double kTop = 10;            // mm, of products above the belt
-constexpr double kRise = 25;           // mm, of the way down that is straight but for its rounding
+constexpr double kTop = 10;   // mm, of products above the belt
+constexpr double kRise = 25;  // mm, of the way down that is straight but for its rounding
 constexpr double kRounding = 10;
-constexpr double kHalfWidth = 60;  // mm, of the belt
 
 struct Point {
   double x = 0, y = 0, z = 0;
@@ -103,9 +100,9 @@ struct Figures {
   double beside = 0;    // mm to the side of its workpiece
 };
 
-class Watched {
+class RandomRun {
  public:
-  Watched(Given made, std::mt19937_64& random)
+  RandomRun(Given made, std::mt19937_64& random)
       : gap_s_(made.gap_s), random_(random), cell_(made.settings, {made.belt}, made.machine()) {
     cell_.Start({made.start.x, made.start.y, made.start.z, 0, 0, 0});
     cell_.Execute();
@@ -213,7 +210,7 @@ Figures RunCells(bool says_how_fast) {
   for (int seed = 1; seed <= cells && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
-    Watched run(AtRandom(says_how_fast, random), random);
+    RandomRun run(AtRandom(says_how_fast, random), random);
     run.Until(25, figures);
   }
   std::cout << figures.products << " products: " << figures.picked << " picked, " << figures.too_late << " too late, "

@@ -8,13 +8,6 @@ namespace {
 
 using M = PickPlaceState;
 
-Configure To(double x, double y, double z) {
-  Configure c;
-  c.x_target = x;
-  c.y_target = y;
-  c.z_target = z;
-  return c;
-}
 Ticket Begin(Cell& cell) {
   cell.Do(To(400, 0, 0));
   const Ticket ticket = cell.Execute();

@@ -4,14 +4,6 @@
 namespace takt::pickplace {
 namespace {
 
-Configure To(double x, double y, double z) {
-  Configure c;
-  c.x_target = x;
-  c.y_target = y;
-  c.z_target = z;
-  return c;
-}
-
 // First cycle of the trace from which on the set points stand at a place.
 std::size_t ArrivalAt(const Cell& cell, double x, double y, double z) {
   std::size_t i = cell.rig.trace.size();

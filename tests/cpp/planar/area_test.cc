@@ -15,18 +15,15 @@ namespace {
 
 using testing::Ahead;
 using testing::AsPoint;
+using testing::DistanceByAngles;
 using testing::HullAt;
-using testing::Nearest;
+using testing::kPi;
 using testing::Polygon;
 using testing::Random;
 using testing::RandomArea;
+using testing::Standing;
 using testing::Trials;
 
-constexpr double kPi = 3.14159265358979323846;
-
-Area Standing(const Place& place, const Footprint& mover, double c = 0) {
-  return {.places = {place}, .least_c = c, .most_c = c, .mover = mover};
-}
 Area Straight(const Place& from, const Place& to, const Footprint& mover) {
   return {.places = {from, to}, .count = 2, .mover = mover};
 }
@@ -148,7 +145,7 @@ TEST(Areas, AreAllAndNoMore) {
     const Place push = Ahead({}, random.Between(-3, 3), random.Between(0, 600));
     for (Place& p : b.places) p = {p.x + push.x, p.y + push.y};
     const double said = Between(a, b);
-    const double nearest = Nearest(a, b);
+    const double nearest = DistanceByAngles(a, b);
     if (said <= 0) {
       EXPECT_LT(nearest, kSlack);
       ++near;

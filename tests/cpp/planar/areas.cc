@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "takt/core/angle.h"
 
 namespace takt::planar::testing {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 double Cross(const Place& o, const Place& a, const Place& b) {
   return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
@@ -46,6 +45,13 @@ void AppendCorners(const Area& area, double c, std::vector<Place>& out) {
 
 }  // namespace
 
+Environment Surface(const std::vector<Place>& stators) {
+  Environment environment;
+  const Surfacing made = MakeEnvironment(stators, environment);
+  EXPECT_EQ(made.problem, StatorProblem::kNone) << made.stator << ' ' << made.other;
+  return environment;
+}
+
 Polygon HullAt(const Area& area, double least_c, double most_c) {
   std::vector<Place> corners;
   constexpr int kAngles = 64;
@@ -77,7 +83,7 @@ double Distance(const Polygon& a, const Polygon& b) {
   return least;
 }
 
-double Nearest(const Area& a, const Area& b) {
+double DistanceByAngles(const Area& a, const Area& b) {
   struct Span {
     double least, most;
   };

@@ -4,9 +4,17 @@
 #include <vector>
 
 #include "takt/planar/area.h"
+#include "takt/planar/environment.h"
 #include "tracks.h"
 
 namespace takt::planar::testing {
+
+// Of stators, by their lower left corners.
+Environment Surface(const std::vector<Place>& stators);
+
+inline Area Standing(const Place& place, const Footprint& mover, double c = 0) {
+  return {.places = {place}, .least_c = c, .most_c = c, .mover = mover};
+}
 
 // Convex, counterclockwise.
 using Polygon = std::vector<Place>;
@@ -18,7 +26,7 @@ bool IsIn(const Polygon& polygon, const Place& place);
 
 // How near they come, by trying angles: 0 if they overlap; never less than it is, and more by less than 0.05 mm. Areas
 // without margins.
-double Nearest(const Area& a, const Area& b);
+double DistanceByAngles(const Area& a, const Area& b);
 
 TrackPoint AsPoint(const Pose& pose);
 // Anywhere within 400 mm; half of them turn.

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <random>
 
+#include "areas.h"
+
 namespace takt::planar {
 namespace {
 
@@ -21,7 +23,7 @@ class Chance {
   std::mt19937 random_;
 };
 
-Place Random(Chance& chance, double most) {
+Place RandomPlace(Chance& chance, double most) {
   return {chance.between(-most, most), chance.between(-most, most)};
 }
 
@@ -37,19 +39,16 @@ Place Within(std::span<const Place> places, Chance& chance) {
   return sum > 0 ? Place{place.x / sum, place.y / sum} : places.front();
 }
 
-Area Standing(const Pose& pose, const Footprint& mover) {
-  return {.places = {pose.place}, .count = 1, .least_c = pose.c, .most_c = pose.c, .mover = mover, .margin = 0};
-}
-
 // The place is in the hull: the arm's end is nowhere else, so a mover of no size there touches it.
 bool Covers(const Area& area, const Pose& pose) {
   Area places = area;
   places.mover = {};
-  return Near(places, Standing(pose, {}), 1e-6) && pose.c >= area.least_c - 1e-9 && pose.c <= area.most_c + 1e-9;
+  return Near(places, testing::Standing(pose.place, {}, pose.c), 1e-6) && pose.c >= area.least_c - 1e-9 &&
+         pose.c <= area.most_c + 1e-9;
 }
 
 Arm RandomArm(Chance& chance) {
-  return {Random(chance, 500), chance.between(-180, 180), {chance.between(20, 200), chance.between(20, 200)}};
+  return {RandomPlace(chance, 500), chance.between(-180, 180), {chance.between(20, 200), chance.between(20, 200)}};
 }
 
 TEST(Arms, StandWhereTheCarrierHasThem) {
@@ -90,14 +89,14 @@ TEST(Arms, PropertyCoverAllThatTheyComeTo) {
     Chance chance(seed);
     const Arm arm = RandomArm(chance);
     const double turn = chance.whole(0, 3) == 0 ? 0 : chance.between(0, 400);
-    Pose from{Random(chance, 500), chance.between(-300, 300)};
-    Move move{.target = {chance.whole(0, 1) == 0 ? from.place : Random(chance, 500),
+    Pose from{RandomPlace(chance, 500), chance.between(-300, 300)};
+    Move move{.target = {chance.whole(0, 1) == 0 ? from.place : RandomPlace(chance, 500),
                          from.c + (chance.whole(0, 1) == 0 ? turn : -turn)}};
-    if (chance.whole(0, 2) == 0) move.over = Random(chance, 500);
+    if (chance.whole(0, 2) == 0) move.over = RandomPlace(chance, 500);
     if (turn > 0 && chance.whole(0, 2) == 0) move.over_c = from.c + chance.between(-20, 20);
     if (chance.whole(0, 2) == 0) {
       move.corner_count = 4;
-      for (Place& corner : move.corners) corner = Random(chance, 500);
+      for (Place& corner : move.corners) corner = RandomPlace(chance, 500);
     }
     const auto reserved = [](const Footprint& mover, const Pose& at, const Move& way) {
       return AreaOf(Reservation{.present = true, .moving = true, .mover = mover, .pose = at, .move = way});

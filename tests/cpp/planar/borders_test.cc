@@ -12,7 +12,7 @@ namespace {
 using testing::Streets;
 using testing::Watcher;
 
-const Pace kPace = testing::PaceOf(1000, 8000, 200000);
+const Pace kEasyPace = testing::PaceOf(1000, 8000, 200000);
 
 // A way along y = 0 cut into tracks of these lengths.
 std::vector<Layout> Cut(const std::vector<double>& lengths) {
@@ -37,8 +37,8 @@ TEST(Borders, TheGapReachesOverShortTracks) {  // PL-24
       const auto last = static_cast<std::uint32_t>(between + 1);
       for (const double gap : {120.0, 300.0}) {
         Streets streets(layouts, 2);
-        streets.Put(0, 0, 100, kPace, 120);
-        streets.Put(1, last, 5, kPace, gap);  // the larger one counts
+        streets.Put(0, 0, 100, kEasyPace, 120);
+        streets.Put(1, last, 5, kEasyPace, gap);  // the larger one counts
         streets.Send(0, 0, 1500);
         const bool free = way + 5 >= gap;
         EXPECT_EQ(streets.Run(5), free) << way;
@@ -66,8 +66,8 @@ TEST(Borders, TheGapReachesBackOverShortTracks) {  // PL-24
     std::vector<Layout> layouts = Cut({1000, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 1000});
     layouts.push_back({{testing::Line({0, 500}, {400, 500}), testing::Line({990, 0}, {1000, 0})}});
     Streets streets(layouts, 2);
-    streets.Put(0, 0, 500, kPace, 120);
-    streets.Put(1, 14, 100, kPace, 120);
+    streets.Put(0, 0, 500, kEasyPace, 120);
+    streets.Put(1, 14, 100, kEasyPace, 120);
     streets.Send(0, over, 5);
     ASSERT_TRUE(streets.Run(5));
     ASSERT_EQ(streets[0].route.first(), over);
@@ -90,8 +90,8 @@ TEST(Borders, FaceToFaceIsADeadlock) {  // PL-26
   for (const int later : {1300, 1500, 1700}) {
     for (const double from : {300.0, 400.0}) {
       Streets streets(Cut({1500, 1500}), 2);
-      streets.Put(0, 1, from, kPace, 120);
-      streets.Put(1, 0, 0, kPace, 200);
+      streets.Put(0, 1, from, kEasyPace, 120);
+      streets.Put(1, 0, 0, kEasyPace, 200);
       ASSERT_TRUE(streets.Send(1, 1, from - 100));
       for (int i = 0; i < later; ++i) streets.Step();
       ASSERT_TRUE(streets.Send(0, 1, 0));
@@ -128,7 +128,7 @@ TEST(Borders, TurnsOfALoopAreMade) {  // PL-12
         return Destination{.position = position, .way = way, .additional_turns = turns, .modulo_tolerance = tolerance};
       };
       const double all = turns * length;
-      streets.Put(0, 0, 100, kPace);
+      streets.Put(0, 0, 100, kEasyPace);
       EXPECT_NEAR(Went(streets, to(100, Way::kPositive)), all, 1e-6);
       EXPECT_NEAR(Went(streets, to(100, Way::kNegative)), -all, 1e-6);
       EXPECT_NEAR(Went(streets, to(400, Way::kPositive)), 300 + all, 1e-6);

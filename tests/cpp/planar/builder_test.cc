@@ -3,18 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "tracks.h"
 
 namespace takt::planar {
 namespace {
 
 using testing::Distance;
-using testing::End;
-using testing::Start;
-
-constexpr double kPi = std::numbers::pi;
+using testing::EndOf;
+using testing::kPi;
+using testing::StartOf;
 
 // PL-23, the manual's example of a network: four tracks, three of which start where the first ends.
 TEST(Builders, LinkTheExamplesNetwork) {
@@ -22,10 +19,10 @@ TEST(Builders, LinkTheExamplesNetwork) {
   EXPECT_EQ(one.AppendLine({250, 120}, {650, 120}), Problem::kNone);
   EXPECT_EQ(one.AppendLine({700, 170}, {800, 450}), Problem::kNone);
   EXPECT_EQ(one.AppendLine({650, 500}, {250, 500}), Problem::kNone);
-  const TrackPoint end = End(*one.track());
+  const TrackPoint end = EndOf(*one.track());
   EXPECT_EQ(two.StartFrom(end), Problem::kNone);
   EXPECT_EQ(two.AppendLine({200, 450}, {200, 170}), Problem::kNone);
-  EXPECT_EQ(two.EndAt(Start(*one.track())), Problem::kNone);
+  EXPECT_EQ(two.EndAt(StartOf(*one.track())), Problem::kNone);
   EXPECT_EQ(three.StartFrom(end), Problem::kNone);
   EXPECT_EQ(three.AppendLine({200, 500}, {120, 500}), Problem::kNone);
   EXPECT_EQ(four.StartFrom(end), Problem::kNone);
@@ -34,8 +31,8 @@ TEST(Builders, LinkTheExamplesNetwork) {
   EXPECT_NEAR(three.track()->length, 130, 1e-9);
   EXPECT_NEAR(four.track()->pieces[0].segment.length, two.track()->pieces[0].segment.length, 1e-9);
   EXPECT_NEAR(two.track()->pieces[2].segment.length, two.track()->pieces[0].segment.length, 1e-9);
-  EXPECT_LT(Distance(Start(*two.track()).place, {250, 500}), 1e-9);
-  EXPECT_LT(Distance(End(*two.track()).place, {250, 120}), 1e-9);
+  EXPECT_LT(Distance(StartOf(*two.track()).place, {250, 500}), 1e-9);
+  EXPECT_LT(Distance(EndOf(*two.track()).place, {250, 120}), 1e-9);
   EXPECT_LT(Distance(At(*two.track(), two.track()->pieces[1].start).place, {200, 450}), 1e-9);
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "takt/planar/nearest.h"
 #include "tracks.h"
@@ -14,14 +13,12 @@ namespace takt::planar {
 namespace {
 
 using testing::Distance;
-using testing::End;
+using testing::kPi;
 using testing::Line;
 using testing::Make;
 using testing::Random;
 using testing::RandomTrack;
 using testing::Trials;
-
-constexpr double kPi = std::numbers::pi;
 
 // PL-24: two squares of 100 mm: side by side, corner to corner, turned by 45°, in one another.
 TEST(Separations, AreThoseOfRectangles) {

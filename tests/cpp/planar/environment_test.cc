@@ -21,14 +21,8 @@ void PrintTo(StatorProblem problem, std::ostream* stream) {
 namespace {
 
 using testing::Random;
+using testing::Surface;
 using testing::Trials;
-
-Environment Make(const std::vector<Place>& stators) {
-  Environment environment;
-  const Surfacing made = MakeEnvironment(stators, environment);
-  EXPECT_EQ(made.problem, StatorProblem::kNone) << made.stator << ' ' << made.other;
-  return environment;
-}
 
 // On a grid, rows from the top: one stator for each '#'.
 std::vector<Place> Grid(const std::vector<std::string>& rows) {
@@ -50,36 +44,36 @@ std::vector<std::pair<double, double>> CornersOf(const Outline& outline) {
 }
 using Corners = std::vector<std::pair<double, double>>;
 
-Area At(double x, double y, double c = 0, const Footprint& mover = {155, 155}) {
-  return {.places = {{{x, y}}}, .least_c = c, .most_c = c, .mover = mover};
+Area StandingAt(double x, double y, double c = 0, const Footprint& mover = {155, 155}) {
+  return testing::Standing({x, y}, mover, c);
 }
 
 // PL-31: the manual's program 6.4.2: four stators have a border of four sides, each two stators long.
 TEST(Environments, HaveABorder) {
-  const Environment e = Make({{0, 0}, {240, 0}, {0, 240}, {240, 240}});
+  const Environment e = Surface({{0, 0}, {240, 0}, {0, 240}, {240, 240}});
   ASSERT_EQ(e.outlines.size(), 1u);
   EXPECT_FALSE(e.outlines[0].hole);
   EXPECT_EQ(CornersOf(e.outlines[0]), (Corners{{0, 0}, {480, 0}, {480, 480}, {0, 480}}));
-  EXPECT_TRUE(Carries(e, At(240, 240)));
+  EXPECT_TRUE(Carries(e, StandingAt(240, 240)));
   // Flush with the border, and beyond it.
-  EXPECT_TRUE(Carries(e, At(77.5, 77.5)));
-  EXPECT_TRUE(Carries(e, At(402.5, 402.5)));
-  EXPECT_FALSE(Carries(e, At(77.49, 240)));
-  EXPECT_FALSE(Carries(e, At(240, 402.51)));
-  EXPECT_FALSE(Carries(e, At(1000, 240)));
+  EXPECT_TRUE(Carries(e, StandingAt(77.5, 77.5)));
+  EXPECT_TRUE(Carries(e, StandingAt(402.5, 402.5)));
+  EXPECT_FALSE(Carries(e, StandingAt(77.49, 240)));
+  EXPECT_FALSE(Carries(e, StandingAt(240, 402.51)));
+  EXPECT_FALSE(Carries(e, StandingAt(1000, 240)));
   // Turned, it needs more room: 155 / sqrt(2) to each side.
   const double corner = 155 / std::sqrt(2);
-  EXPECT_TRUE(Carries(e, At(corner + 1e-9, 240, 45)));
-  EXPECT_FALSE(Carries(e, At(corner - 0.01, 240, 45)));
+  EXPECT_TRUE(Carries(e, StandingAt(corner + 1e-9, 240, 45)));
+  EXPECT_FALSE(Carries(e, StandingAt(corner - 0.01, 240, 45)));
 }
 
 // PL-31: the manual's program 6.7.2: on one stator about the origin a mover cannot get to (100, 100).
 TEST(Environments, EndWhereStatorsEnd) {
-  const Environment e = Make({{-120, -120}});
-  EXPECT_TRUE(Carries(e, At(0, 0)));
-  EXPECT_FALSE(Carries(e, At(100, 100)));
+  const Environment e = Surface({{-120, -120}});
+  EXPECT_TRUE(Carries(e, StandingAt(0, 0)));
+  EXPECT_FALSE(Carries(e, StandingAt(100, 100)));
   // It can turn there: a circle of 109.6 mm.
-  Area turning = At(0, 0);
+  Area turning = StandingAt(0, 0);
   turning.most_c = 90;
   EXPECT_TRUE(Carries(e, turning));
   turning.places[0] = {11, 0};
@@ -88,9 +82,9 @@ TEST(Environments, EndWhereStatorsEnd) {
 
 // PL-31: the surface is to the left of its outline: outer ones go counterclockwise, holes clockwise.
 TEST(Environments, HaveHolesAndIslands) {
-  const Environment e = Make(Grid({"###..##",  //
-                                   "#.#...#",  //
-                                   "###...."}));
+  const Environment e = Surface(Grid({"###..##",  //
+                                      "#.#...#",  //
+                                      "###...."}));
   ASSERT_EQ(e.outlines.size(), 3u);
   EXPECT_EQ(CornersOf(e.outlines[0]), (Corners{{0, 0}, {720, 0}, {720, 720}, {0, 720}}));
   EXPECT_TRUE(e.outlines[1].hole || e.outlines[2].hole);
@@ -98,29 +92,29 @@ TEST(Environments, HaveHolesAndIslands) {
   const Outline& island = e.outlines[e.outlines[1].hole ? 2 : 1];
   EXPECT_EQ(CornersOf(hole), (Corners{{240, 480}, {480, 480}, {480, 240}, {240, 240}}));
   EXPECT_EQ(CornersOf(island), (Corners{{1440, 240}, {1680, 240}, {1680, 720}, {1200, 720}, {1200, 480}, {1440, 480}}));
-  EXPECT_TRUE(Carries(e, At(120, 120)));
-  EXPECT_FALSE(Carries(e, At(360, 360)));
-  EXPECT_FALSE(Carries(e, At(360, 360, 0, {20, 20})));
-  EXPECT_FALSE(Carries(e, At(200, 360)));
+  EXPECT_TRUE(Carries(e, StandingAt(120, 120)));
+  EXPECT_FALSE(Carries(e, StandingAt(360, 360)));
+  EXPECT_FALSE(Carries(e, StandingAt(360, 360, 0, {20, 20})));
+  EXPECT_FALSE(Carries(e, StandingAt(200, 360)));
   // A hole all inside of what is covered, a way across it, a way around it.
-  EXPECT_FALSE(Carries(e, At(360, 360, 0, {400, 400})));
+  EXPECT_FALSE(Carries(e, StandingAt(360, 360, 0, {400, 400})));
   const auto way = [](const Place& from, const Place& to) {
     return Area{.places = {from, to}, .count = 2, .mover = {155, 155}};
   };
   EXPECT_FALSE(Carries(e, way({120, 360}, {600, 360})));
   EXPECT_TRUE(Carries(e, way({120, 120}, {600, 120})));
   // No way from one island to another.
-  EXPECT_TRUE(Carries(e, At(1320, 600)));
+  EXPECT_TRUE(Carries(e, StandingAt(1320, 600)));
   EXPECT_FALSE(Carries(e, way({600, 600}, {1320, 600})));
 }
 
 // PL-31: where stators meet in a corner alone there is no way across; outlines that touch there do not cross.
 TEST(Environments, DoNotMeetInCorners) {
-  const Environment apart = Make(Grid({".#", "#."}));
+  const Environment apart = Surface(Grid({".#", "#."}));
   ASSERT_EQ(apart.outlines.size(), 2u);
   for (const Outline& outline : apart.outlines) EXPECT_EQ(outline.corners.size(), 4u);
   EXPECT_FALSE(Carries(apart, {.places = {{{120, 120}, {360, 360}}}, .count = 2, .mover = {10, 10}}));
-  const Environment holes = Make(Grid({"####", "##.#", "#.##", "####"}));
+  const Environment holes = Surface(Grid({"####", "##.#", "#.##", "####"}));
   ASSERT_EQ(holes.outlines.size(), 2u);
   EXPECT_TRUE(holes.outlines[1].hole);
   EXPECT_EQ(holes.outlines[1].corners.size(), 8u);
@@ -128,18 +122,18 @@ TEST(Environments, DoNotMeetInCorners) {
 
 // PL-31: stators need no grid. Shifted by half a stator, and in steps that no computer knows exactly.
 TEST(Environments, NeedNoGrid) {
-  const Environment e = Make({{0, 0}, {240, 0}, {120, 240}});
+  const Environment e = Surface({{0, 0}, {240, 0}, {120, 240}});
   ASSERT_EQ(e.outlines.size(), 1u);
   EXPECT_EQ(CornersOf(e.outlines[0]),
             (Corners{{0, 0}, {480, 0}, {480, 240}, {360, 240}, {360, 480}, {120, 480}, {120, 240}, {0, 240}}));
   std::vector<Place> row;
   for (int i = 0; i < 100; ++i) row.push_back({0.1 + 240 * i * (1 + 1e-13), 0.1 * 3});
-  EXPECT_EQ(Make(row).outlines.at(0).corners.size(), 4u);
+  EXPECT_EQ(Surface(row).outlines.at(0).corners.size(), 4u);
 }
 
 // PL-31: what cannot be is named.
 TEST(Environments, NameWhatIsWrong) {
-  Environment e = Make({{0, 0}});
+  Environment e = Surface({{0, 0}});
   const auto problem = [&](const std::vector<Place>& stators) { return MakeEnvironment(stators, e); };
   EXPECT_EQ(problem({}).problem, StatorProblem::kEmpty);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), double{INFINITY}, 2e6}) {
@@ -174,7 +168,7 @@ TEST(Environments, CarryWhatLiesOnStators) {
       }
     }
     if (stators.empty()) continue;
-    const Environment e = Make(stators);
+    const Environment e = Surface(stators);
     for (const Outline& outline : e.outlines) holes += outline.hole ? 1 : 0;
     const auto on_stator = [&](const Place& p, double room) {
       return std::ranges::any_of(stators, [&](const Place& s) {
@@ -216,7 +210,7 @@ TEST(Environments, CarryWhatLiesOnStators) {
 
 // PL-31: fit for the cycle.
 TEST(Environments, CarryWithoutAllocating) {
-  const Environment e = Make(Grid({"###", "#.#", "###"}));
+  const Environment e = Surface(Grid({"###", "#.#", "###"}));
   Random random(42);
   std::vector<Area> areas;
   for (int i = 0; i < 100; ++i) areas.push_back(testing::RandomArea(random));

@@ -26,10 +26,11 @@ namespace planar {
 namespace {
 
 using testing::AsPoint;
+using testing::DistanceByAngles;
 using testing::Line;
-using testing::Nearest;
 using testing::Random;
 using testing::RandomTrack;
+using testing::Surface;
 using testing::Trials;
 
 constexpr Footprint kMover{155, 155};
@@ -47,12 +48,6 @@ Move To(double x, double y, double c = 0) {
 }
 Pose At(double x, double y, double c = 0) {
   return {{x, y}, c};
-}
-
-Environment Surface(const std::vector<Place>& stators) {
-  Environment environment;
-  EXPECT_EQ(MakeEnvironment(stators, environment).problem, StatorProblem::kNone);
-  return environment;
 }
 
 // PL-30: the manual's program 6.3.2: mover one goes from (0, 0) to (0, 240), mover two stands at (240, 0) and is to go
@@ -284,9 +279,9 @@ TEST(AreasOfTracks, AreThoseOfTheirMovers) {
 
 // Movers on a surface with a hole that are sent about at random, each as fast along its way and in its turn as it
 // likes.
-class Traffic {
+class RandomTraffic {
  public:
-  Traffic(unsigned seed, bool turning) : random_(seed), turning_(turning) {
+  RandomTraffic(unsigned seed, bool turning) : random_(seed), turning_(turning) {
     std::vector<Place> stators;
     for (int x = 0; x < 7; ++x) {
       for (int y = 0; y < 7; ++y) {
@@ -371,7 +366,7 @@ class Traffic {
     if (object.kind == ObjectKind::kEnvironment) {
       ++at_border;
     } else if (refused++ % 10 == 0) {
-      EXPECT_LT(Nearest(area, AreaOf(r.movers[object.number - 1])), kSlack);
+      EXPECT_LT(DistanceByAngles(area, AreaOf(r.movers[object.number - 1])), kSlack);
     }
   }
 
@@ -410,7 +405,7 @@ class Traffic {
 // PL-30: whatever is asked, no two movers ever touch and none leaves the surface; and what is refused has a reason.
 TEST(ReservationsOfMovers, KeepMoversApart) {
   for (const bool turning : {false, true}) {
-    Traffic traffic(52, turning);
+    RandomTraffic traffic(52, turning);
     for (int i = 0; i < Trials(3000) && !::testing::Test::HasFailure(); ++i) {
       traffic.Step();
       traffic.ExpectApart();

@@ -25,8 +25,8 @@ bool ComesBack(const Track& track, double near) {
 // Bodies on both tracks come too near only from a common start, or to a common end, on; or from the end of one to the
 // start of the other.
 bool GoTogether(const Track& a, const Track& b, const Footprint& body) {
-  const bool starts = Meet(Start(a), Start(b)), ends = Meet(End(a), End(b));
-  const bool ab = Meet(End(a), Start(b)), ba = Meet(End(b), Start(a));
+  const bool starts = Meet(StartOf(a), StartOf(b)), ends = Meet(EndOf(a), EndOf(b));
+  const bool ab = Meet(EndOf(a), StartOf(b)), ba = Meet(EndOf(b), StartOf(a));
   for (const Range& range : Conflicts(a, body, b, body, 0, 5)) {
     const bool at_start = range.from <= 0 && (starts || ba), at_end = range.to >= a.length && (ends || ab);
     if (!at_start && !at_end) return false;
@@ -78,7 +78,7 @@ std::vector<Layout> RandomCity(Random& random, int count, double size) {
       }
       return alike == 1 || linked > 0;
     };
-    if (linked(Start(tracks[i]), Start, End) && linked(End(tracks[i]), End, Start)) {
+    if (linked(StartOf(tracks[i]), StartOf, EndOf) && linked(EndOf(tracks[i]), EndOf, StartOf)) {
       ++i;
     } else {
       tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(i));
@@ -107,7 +107,7 @@ Streets::Streets(const std::vector<Layout>& layouts, std::uint32_t movers, doubl
   }
   for (std::uint32_t i = 0; i < layouts.size(); ++i) {
     for (std::uint32_t k = 0; k < layouts.size(); ++k) {
-      const TrackPoint end = End(*tracks_[i]), start = Start(*tracks_[k]);
+      const TrackPoint end = EndOf(*tracks_[i]), start = StartOf(*tracks_[k]);
       const bool open = !tracks_[i]->closed && !tracks_[k]->closed;
       if (open && SamePlace(end.place, start.place) && SameDirection(end, start)) {
         EXPECT_TRUE(Link(i, k, network_));

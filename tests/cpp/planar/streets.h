@@ -22,6 +22,11 @@ inline Pace PaceOf(double velocity, double acceleration, double jerk, double lat
   return {{velocity, acceleration, acceleration, jerk}, lateral};
 }
 
+// From the origin along X.
+inline Layout Straight(double length) {
+  return {{Line({0, 0}, {length, 0})}};
+}
+
 class Streets {
  public:
   // Tracks by their layout; links from ends to starts that are at the same place.

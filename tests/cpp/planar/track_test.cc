@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "../core/allocations.h"
 #include "takt/core/describe.h"
@@ -18,7 +17,8 @@ namespace {
 
 using testing::Arc;
 using testing::Distance;
-using testing::End;
+using testing::EndOf;
+using testing::kPi;
 using testing::LengthTo;
 using testing::Line;
 using testing::Make;
@@ -26,10 +26,8 @@ using testing::Position;
 using testing::Random;
 using testing::RandomLayout;
 using testing::RandomTrack;
-using testing::Start;
+using testing::StartOf;
 using testing::Trials;
-
-constexpr double kPi = std::numbers::pi;
 
 void ExpectPoint(const TrackPoint& p, const Place& place, double direction, double curvature) {
   EXPECT_NEAR(p.place.x, place.x, 1e-10);
@@ -90,7 +88,7 @@ TEST(Tracks, GoRoundStadiums) {
     EXPECT_GE(track.pieces[i].segment.length, length);
   }
   // Once round.
-  EXPECT_NEAR(End(track).direction, 2 * kPi, 1e-9);
+  EXPECT_NEAR(EndOf(track).direction, 2 * kPi, 1e-9);
 }
 
 // PL-20: position, direction and curvature go on from piece to piece: steps of the curvature are below a millionth of
@@ -156,7 +154,7 @@ TEST(Tracks, GoThroughPositions) {
     for (std::size_t i = 0; i < track.pieces.size(); ++i) {
       EXPECT_LT(Distance(At(track, track.pieces[i].start).place, places[i]), 1e-9);
     }
-    EXPECT_LT(Distance(End(track).place, places[closed ? 0 : 4]), 1e-9);
+    EXPECT_LT(Distance(EndOf(track).place, places[closed ? 0 : 4]), 1e-9);
   }
   // Where one begins to count is nothing to a loop.
   const Track one = Make({.elements = {Position({0, 0}), Position({200, 50}), Position({100, 300})}, .closed = true});
@@ -185,15 +183,15 @@ TEST(Tracks, TakeOverTheirNeighbours) {
   for (int i = 0; i < Trials(200); ++i) {
     const Track first = RandomTrack(random), second = RandomTrack(random);
     if (first.closed || second.closed) continue;
-    Layout layout{.from = End(first), .to = Start(second)};
-    const TrackPoint end = End(first);
+    Layout layout{.from = EndOf(first), .to = StartOf(second)};
+    const TrackPoint end = EndOf(first);
     const Place middle = testing::Ahead(end.place, end.direction + random.Between(-1, 1), random.Between(50, 200));
     if (random.Coin()) layout.elements.push_back(Position(middle));
     Track track;
     if (MakeTrack(layout, track).problem != Problem::kNone) continue;
     ++made;
     const double peak = PeakCurvature(track, 0, track.length);
-    for (const auto& [a, b] : {std::pair{Start(track), End(first)}, std::pair{End(track), Start(second)}}) {
+    for (const auto& [a, b] : {std::pair{StartOf(track), EndOf(first)}, std::pair{EndOf(track), StartOf(second)}}) {
       EXPECT_LT(Distance(a.place, b.place), 1e-9);
       EXPECT_NEAR(std::remainder(a.direction - b.direction, 2 * kPi), 0, 1e-11);
       EXPECT_LE(std::abs(a.curvature - b.curvature), 1e-9 * peak);
@@ -246,6 +244,21 @@ TEST(Tracks, KnowWhereTheyBendMost) {
     const double from = random.Between(0, track.length), to = random.Between(from, track.length);
     const double s = random.Between(from, to);
     EXPECT_LE(std::abs(At(track, s).curvature), 1.001 * PeakCurvature(track, from, to) + 1e-12);
+  }
+}
+
+// PL-21: what movers slow down by is nowhere less than how a track bends. What bends less than 1e-5 / mm is straight.
+TEST(Tracks, BendNoMoreThanTheirBendsSay) {
+  Random random(8);
+  for (int i = 0; i < Trials(200); ++i) {
+    const Track track = RandomTrack(random);
+    std::size_t bend = 0;
+    double worst = 0;
+    for (double s = 0; s < track.length; s += 0.05) {
+      while (bend + 1 < track.bends.size() && track.bends[bend + 1].from <= s) ++bend;
+      worst = std::max(worst, (std::abs(At(track, s).curvature) - 1e-5) / (track.bends[bend].curvature + 1e-12));
+    }
+    EXPECT_LE(worst, 1 + 1e-5) << i;
   }
 }
 

@@ -72,11 +72,11 @@ Track RandomTrack(Random& random) {
   return {};
 }
 
-TrackPoint Start(const Track& track) {
+TrackPoint StartOf(const Track& track) {
   return At(track, 0);
 }
 
-TrackPoint End(const Track& track) {
+TrackPoint EndOf(const Track& track) {
   return At(track.pieces.back(), track.pieces.back().segment.length);
 }
 

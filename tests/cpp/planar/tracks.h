@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <ostream>
 #include <random>
 #include <vector>
@@ -17,6 +18,8 @@ inline void PrintTo(Problem problem, std::ostream* stream) {
 }
 
 namespace testing {
+
+inline constexpr double kPi = std::numbers::pi;
 
 class Random {
  public:
@@ -43,8 +46,8 @@ Layout RandomLayout(Random& random);
 // One that can be made.
 Track RandomTrack(Random& random);
 
-TrackPoint Start(const Track& track);
-TrackPoint End(const Track& track);
+TrackPoint StartOf(const Track& track);
+TrackPoint EndOf(const Track& track);
 
 // mm from the start to s, from places only: sums of straight lines, finer and finer.
 double LengthTo(const Track& track, double s);

@@ -15,12 +15,9 @@
 namespace takt::planar {
 namespace {
 
+using testing::Straight;
 using testing::Streets;
 using testing::Watcher;
-
-Layout Straight(double length) {
-  return {{testing::Line({0, 0}, {length, 0})}};
-}
 
 TEST(Traffic, AMoverAloneTakesNoLongerThanThePlannerNeeds) {  // PL-12, PL-15
   testing::Random random(1);
@@ -210,7 +207,7 @@ TEST(Traffic, TakesCurvesNotMuchSlowerThanCanBe) {  // PL-15, PL-21
     Watcher watcher(streets);
     streets.watch = [&] { watcher.Look(); };
     ASSERT_TRUE(streets.Run(30));
-    EXPECT_LE(watcher.lateral, 1 + 1e-3);
+    EXPECT_LE(watcher.lateral, 1 + 1e-6);
     EXPECT_LE(watcher.speed, 1 + 1e-9);
     // Without jerk: up from the start, down to the end, and below the bound everywhere.
     const auto steps = static_cast<std::size_t>(track.length);
@@ -584,7 +581,7 @@ TEST_P(CityProperty, NobodyComesTooNear) {  // PL-23, PL-24
   EXPECT_LE(watcher.acceleration, 1 + 1e-6);
   EXPECT_LE(watcher.jerk, 1 + 1e-6);
   EXPECT_LE(watcher.speed, 1 + 1e-8);
-  EXPECT_LE(watcher.lateral, 1 + 1e-4);
+  EXPECT_LE(watcher.lateral, 1 + 1e-6);
   std::printf(
       "%u movers on %zu tracks, %.0f m: gap kept to %.1e mm, bodies %.1f mm apart, %.1f refusals a second, %d"
       " taken off, %d joined, %d not\n",

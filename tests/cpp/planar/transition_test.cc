@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/core/angle.h"
 #include "takt/path/segment.h"
 #include "tracks.h"
 
@@ -15,14 +16,12 @@ namespace {
 using testing::Random;
 using testing::Trials;
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 using Segments = std::vector<path::Segment>;
 
-struct End {
+struct PlanePoint {
   double x, y, cosine, sine, curvature;
 };
-End EndOf(const path::Segment& segment, double s) {
+PlanePoint PlanePointAt(const path::Segment& segment, double s) {
   const auto p = path::At(segment, s).p;
   return {p.p.x(), p.p.y(), p.v.x(), p.v.y(), p.v.x() * p.dv.y() - p.v.y() * p.dv.x()};
 }
@@ -31,7 +30,7 @@ double Peak(const Segments& segments) {
   double peak = 0;
   for (const path::Segment& segment : segments) {
     for (int i = 0; i <= 1000; ++i) {
-      peak = std::max(peak, std::abs(EndOf(segment, segment.length * i / 1000).curvature));
+      peak = std::max(peak, std::abs(PlanePointAt(segment, segment.length * i / 1000).curvature));
     }
   }
   return peak;
@@ -90,7 +89,8 @@ TEST(Transitions, GoOnFromBothSides) {
     const double peak = Peak(transition);
     for (const bool first : {true, false}) {
       const TrackPoint& side = first ? begin : end;
-      const End e = first ? EndOf(transition.front(), 0) : EndOf(transition.back(), transition.back().length);
+      const PlanePoint e =
+          first ? PlanePointAt(transition.front(), 0) : PlanePointAt(transition.back(), transition.back().length);
       EXPECT_NEAR(e.x, side.place.x, 1e-9);
       EXPECT_NEAR(e.y, side.place.y, 1e-9);
       EXPECT_NEAR(e.cosine, std::cos(side.direction), 1e-11);

@@ -109,6 +109,7 @@ TEST(PlanarGroups, ResetLeadsWhereTheReactionSays) {
     for (const bool disable : {false, true}) {
       Rig rig;
       rig.Do(Enable{});
+      EXPECT_EQ(rig.Do(Reset{}).state, FeedbackState::kDone);  // nothing to reset
       ASSERT_EQ(rig.state().state, ObjectState::kEnabled);
       Fail(rig.context(), 0, ErrorId::kInternal, abort);
       EXPECT_EQ(rig.state().state, ObjectState::kErrorPending);

@@ -112,6 +112,7 @@ TEST(Tracks, ResetLeadsWhereTheReactionSays) {
       Rig rig(1);
       rig.Do(0, kLine);
       rig.Do(0, Enable{});
+      rig.Do(0, Reset{});  // nothing to reset
       ASSERT_EQ(rig.state(0).state, ObjectState::kEnabled);
       Fail(rig.context(), 0, ErrorId::kInternal, abort ? ErrorReaction::kAbort : ErrorReaction::kQuickStop);
       EXPECT_EQ(rig.state(0).state, ObjectState::kErrorPending);
@@ -134,19 +135,21 @@ TEST(Tracks, AreNotDisabledInUse) {
   rig.Do(0, kLine);
   rig.Do(0, Enable{});
   for (const bool moves : {true, false}) {
-    Use(1, moves, !moves, 0, rig.tracks);
+    Use({1, moves, !moves, 4}, 0, rig.tracks);
     ASSERT_EQ(rig.state(0).mode, moves ? OperationMode::kMoving : OperationMode::kConfiguring);
     const Ticket disable = rig.Give(0, Disable{});
     rig.Steps(3);
     EXPECT_EQ(rig.last[disable].error, ErrorId::kTrackMode);
+    EXPECT_EQ(rig.last[disable].object, ObjectAt(ObjectKind::kMover, 4));
     EXPECT_EQ(rig.state(0).state, ObjectState::kEnabled);
   }
-  Use(1, false, false, 0, rig.tracks);
+  Use({1, false, false, 2}, 0, rig.tracks);
   rig.Do(0, Disable{});
   EXPECT_EQ(rig.state(0).state, ObjectState::kDisabled);
   const Ticket clear = rig.Give(0, Clear{});
   rig.Steps(3);
   EXPECT_EQ(rig.last[clear].error, ErrorId::kTrackMode);
+  EXPECT_EQ(rig.last[clear].object, ObjectAt(ObjectKind::kMover, 2));
   EXPECT_EQ(rig.state(0).length, 500);
 }
 

@@ -6,9 +6,9 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "rig.h"
+#include "takt/core/angle.h"
 
 namespace takt::workspace {
 namespace {
@@ -20,7 +20,6 @@ using testing::kScara;
 using testing::Line;
 using testing::Say;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kResolution = 0.1;  // of all tests here, mm
 
 const char* const kBall = "gripper: [{name: ball, sphere: {radius: 10}}]";

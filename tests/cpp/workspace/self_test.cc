@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "rig.h"
+#include "takt/core/angle.h"
 
 namespace takt::workspace {
 namespace {
@@ -18,12 +18,6 @@ using ::testing::Pair;
 using testing::Say;
 using ::testing::UnorderedElementsAre;
 
-constexpr double kDegree = std::numbers::pi / 180;
-
-std::optional<Finding> Found(Checker& checker, const std::vector<Sample>& path) {
-  return checker.Check(path);
-}
-
 // GR-13: as the elbow closes the gripper, at the end of the second arm, comes to the first one.
 TEST(SelfCollision, OfAScara) {
   const std::string cell =
@@ -31,7 +25,7 @@ TEST(SelfCollision, OfAScara) {
       "{link: arm, capsule: {radius: 30}}], gripper: [{name: bit, cylinder: {radius: 20, height: "
       "100}}]";
   Checker checker = CheckerOf(kScara, cell + "}");
-  const std::optional<Finding> found = Found(checker, Line({0, 0}, {0, 179}, 179));
+  const std::optional<Finding> found = checker.Check(Line({0, 0}, {0, 179}, 179));
   ASSERT_TRUE(found);
   EXPECT_EQ(found->first + "/" + found->second, "arm_1/bit");
   EXPECT_NEAR(found->s, 180 - std::asin((30 + 20 + 5) / 200.0) / kDegree, 0.1);
@@ -51,8 +45,8 @@ TEST(SelfCollision, DoesNotDependOnTheSteps) {
                               "gripper: [{name: valve, cylinder: {radius: 60, height: 100}, pose: {z: 150}}]}");
   const kinematics::Joints from{30, 30, 30};
   const kinematics::Joints to{95, -30, -30};
-  const std::optional<Finding> coarse = Found(checker, Line(from, to, 100, 1));
-  const std::optional<Finding> fine = Found(checker, Line(from, to, 100, 500));
+  const std::optional<Finding> coarse = checker.Check(Line(from, to, 100, 1));
+  const std::optional<Finding> fine = checker.Check(Line(from, to, 100, 500));
   ASSERT_TRUE(coarse && fine);
   EXPECT_EQ(coarse->first, fine->first);
   EXPECT_EQ(coarse->second, "valve");
