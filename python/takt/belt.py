@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from takt._commands import BeltCommands, BeltOutputs
 from takt.axis import Axis
 from takt.component import Component
+from takt.counted import counted
 from takt.group import Pose
 
 STATES = ("detected", "visible", "taken")
@@ -32,7 +33,8 @@ class Belt(Component, BeltCommands, BeltOutputs):
     KIND = "belt"
 
     def __repr__(self) -> str:
-        return f"<Belt {self.name}: at {self.position:.6g}, {self.velocity:.6g}/s, {self.object_count} objects>"
+        lying = counted(self.object_count, "object")
+        return f"<Belt {self.name}: at {self.position:.6g}, {self.velocity:.6g}/s, {lying}>"
 
     @property
     def axis(self) -> Axis:

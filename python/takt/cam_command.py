@@ -13,6 +13,7 @@ from rich.text import Text
 
 from takt import cam
 from takt.cam_check import TOUCHING, Check, Limits, check, figure
+from takt.counted import counted
 from takt.engine import read_machine
 
 FAILED = 1
@@ -97,9 +98,9 @@ def _read(file: Path, name: str | None, options: Options) -> list[cam.Table]:
 
 def _say(table: cam.Table, result: Check, options: Options, out: Console) -> None:
     u = table.x_unit
-    source = f"{len(table.points.x)} points, {table.source['interpolation'].replace('_', ' ')}"
+    source = f"{counted(len(table.points.x), 'point')}, {table.source['interpolation'].replace('_', ' ')}"
     if not len(table.points.x):
-        source = f"{len(table.source['segments'])} segments"
+        source = f"{counted(len(table.source['segments']), 'segment')}"
     kind = "cyclic cam" if table.cyclic else "cam"
     span = f"x {table.begin:g} to {table.end:g} {u}, stroke {table.stroke:g} {table.y_unit}"
     print(f"{table.name}: {kind} of {source}; {span}")

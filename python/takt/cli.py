@@ -17,11 +17,14 @@ from rich.table import Table
 from rich.text import Text
 
 from takt import _core
+from takt.counted import counted
 from takt.drive import WATCHDOG, simulate
 from takt.engine import Engine, read_machine
 from takt.errors import ConfigError, TaktError
+from takt.figures import in_words
 from takt.lcmlog import Progress as Share
-from takt.lcmlog import open_log, read_log
+from takt.lcmlog import open_log, to_recording
+from takt.missing import missing, troubles
 from takt.recording import Recording, RecordingError
 from takt.remote import connect
 from takt.replay import replay as replay_log
@@ -35,7 +38,21 @@ FAILED = 1
 out = Console(highlight=False)
 err = Console(stderr=True, highlight=False)
 
+
+def _counted_from_0(_context: click.Context, _option: click.Parameter, number: int | None) -> int | None:
+    if number is not None and number < 0:
+        raise click.BadParameter(f"there is no run {number}: they are counted from 0")
+    return number
+
+
 FILE = click.Path(path_type=Path)
+START = click.option(
+    "--run",
+    "start_number",
+    type=int,
+    callback=_counted_from_0,
+    help="Which start of the engine, from 0 on, of several in a log [the last].",
+)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -148,8 +165,7 @@ def run(file: Path, machine: Path | None, url: str | None, report: Path | None) 
     if report is not None:
         from takt.report.command import write_outcome
 
-        counts = {name: value for name, value in figures.items() if isinstance(value, (int, float))}
-        print(f"report: {write_outcome(outcome, scenario, report, counts).html}")
+        print(f"report: {write_outcome(outcome, scenario, report, figures).html}")
     return 0 if outcome.passed else FAILED
 
 
@@ -192,9 +208,8 @@ def demo(
 
     def judged(outcome: Outcome, figures: Mapping[str, Any]) -> None:
         _show(outcome)
-        timing = _timing(figures)
-        _show_figures(timing)
-        _say(f"report: {write_outcome(outcome, scenario, report, timing).html}")
+        _show_figures(in_words(figures))
+        _say(f"report: {write_outcome(outcome, scenario, report, figures).html}")
         if page is not None and stays:
             page.stay()
         else:
@@ -210,21 +225,22 @@ def demo(
 @click.argument("run", type=FILE)
 @click.option("-o", "--output", type=FILE, help="The page (.html) [report.html in the directory; RUN.html].")
 @click.option("--scenario", "judge", type=FILE, help="Judge it again with `verify` of this scenario.")
-def show_report(run: Path, output: Path | None, judge: Path | None) -> int:
+@START
+def show_report(run: Path, output: Path | None, judge: Path | None, start_number: int | None) -> int:
     """Write the report of a RUN, one HTML page with everything inside: of a recording (.npz), an LCM log, or the
     directory that `takt run --report` or `takt demo` wrote. Exit code 1: what --scenario verifies has failed."""
     from takt.report.command import judged, target_of, write_page
 
     target = _writable(output or target_of(run), (".html",)) if run.exists() else Path()
-    recording = _read(run)
+    recording = _read(run, start_number)
     passed = True
     if judge is not None:
         scenario = load_scenario(judge)
         outcome = verify_recording(scenario, recording)
         _show(outcome)
         recording, passed = judged(outcome, scenario), outcome.passed
-    if trouble := recording.meta.get("trouble"):
-        print(trouble)
+    for sentence in troubles(recording):
+        print(sentence)
     print(f"report: {write_page(recording, run, target)}")
     return 0 if passed else FAILED
 
@@ -278,7 +294,7 @@ def tune(
             found.power().wait()
         result = tuning.tune(session, found, distance, watch, out.print, keep=keep)
     print(f"before: {result.before.text}")
-    print(f"after {result.steps} steps: {result.after.text}")
+    print(f"after {counted(result.steps, 'step')}: {result.after.text}")
     if result.remark:
         print(f"but {result.remark}")
     print(result.yaml)
@@ -289,11 +305,11 @@ def tune(
 
 @cli.command()
 @click.argument("log", type=FILE)
-@click.option("--run", "run_number", default=-1, help="Which start of the engine, of several [the last].")
-def replay(log: Path, run_number: int) -> int:
+@START
+def replay(log: Path, start_number: int | None) -> int:
     """Run the journal of a LOG of taktd again and compare every cycle, bit for bit."""
     with _bar(f"replay {log.name}") as progress:
-        result = replay_log(log, run=run_number, progress=progress)
+        result = replay_log(log, run=-1 if start_number is None else start_number, progress=progress)
     print(f"{log}: {result.sentence}")
     return 0 if result.same else FAILED
 
@@ -305,18 +321,27 @@ def replay(log: Path, run_number: int) -> int:
 @click.option("--from", "start", type=float, help="s, where to begin.")
 @click.option("--to", "end", type=float, help="s, where to end.")
 @click.option("--title", help="Above the picture [FILE].")
+@START
 def plot(
-    file: Path, signals: tuple[str, ...], output: Path | None, start: float | None, end: float | None, title: str | None
+    file: Path,
+    signals: tuple[str, ...],
+    output: Path | None,
+    start: float | None,
+    end: float | None,
+    title: str | None,
+    start_number: int | None,
 ) -> None:
     """Draw SIGNALS (x, x.set_position, "*.following_error") of a FILE: a recording (.npz) or an LCM log."""
     from takt import plot as plotting
 
     target = _writable(output or file.with_suffix(".png"), plotting.PICTURES)
-    recording = _read(file)
+    recording = _read(file, start_number).between(start, end)
     window = None
     if start is not None or end is not None:
         window = (recording.start_s if start is None else start, recording.end_s if end is None else end)
     figure = plotting.draw(recording, *signals, title=title or file.name, window=window)
+    if starts := recording.meta.get("starts"):
+        print(starts)
     print(plotting.save(figure, target))
 
 
@@ -327,8 +352,15 @@ def plot(
 @click.option("--csv", type=FILE, help="Write one wide table (.csv).")
 @click.option("--from", "start", type=float, help="s, where to begin.")
 @click.option("--to", "end", type=float, help="s, where to end.")
+@START
 def export(
-    run: Path, signals: tuple[str, ...], mcap: Path | None, csv: Path | None, start: float | None, end: float | None
+    run: Path,
+    signals: tuple[str, ...],
+    mcap: Path | None,
+    csv: Path | None,
+    start: float | None,
+    end: float | None,
+    start_number: int | None,
 ) -> None:
     """Write SIGNALS (x, x.set_position, "*.following_error") [all] of a RUN for other tools: of a recording (.npz), an
     LCM log, or the directory that `takt run --report` or `takt demo` wrote."""
@@ -337,7 +369,7 @@ def export(
     targets = [_writable(file, (suffix,)) for file, suffix in ((mcap, ".mcap"), (csv, ".csv")) if file is not None]
     if not targets:
         raise click.UsageError("give --mcap FILE or --csv FILE, or both")
-    for sentence in write(_read(run), targets, signals, start, end):
+    for sentence in write(_read(run, start_number), targets, signals, start, end):
         print(sentence)
 
 
@@ -395,8 +427,9 @@ def show_track(file: Path, **options: Any) -> int:
 
 @cli.command("log")
 @click.argument("log", type=FILE)
-@click.option("--save", type=FILE, help="Keep the last run as a recording (.npz) or a table (.csv).")
-def show_log(log: Path, save: Path | None) -> int:
+@click.option("--save", type=FILE, help="Keep one run as a recording (.npz) or a table (.csv).")
+@START
+def show_log(log: Path, save: Path | None, start_number: int | None) -> int:
     """Say what an LCM LOG holds."""
     if save is not None:
         _writable(save, (".npz", ".csv"))
@@ -411,10 +444,12 @@ def show_log(log: Path, save: Path | None) -> int:
         states = [s for states in one.states.values() for s in (states[0], states[-1])]
         period = one.machine.period_s if one.machine else 0.0
         span = (max(s.cycle for s in states) - min(s.cycle for s in states)) * period if states else 0.0
-        journal = f"journal of {len(one.journal)} commands" if one.start else "no journal"
-        print(f"run {number}: {name}, {len(one.states)} components, {span:.3f} s, {journal}")
+        journal = f"journal of {counted(len(one.journal), 'command')}" if one.start else "no journal"
+        print(f"run {number}: {name}, {counted(len(one.states), 'component')}, {span:.3f} s, {journal}")
     if save is not None:
-        recording = read_log(log)
+        recording = to_recording(content, -1 if start_number is None else start_number)
+        if starts := recording.meta.get("starts"):
+            print(starts)
         print(recording.to_csv(save) if save.suffix == ".csv" else recording.save(save))
     return 0
 
@@ -443,10 +478,10 @@ def _say(sentence: str) -> None:
     print(sentence, flush=True)
 
 
-def _read(file: Path) -> Recording:
+def _read(file: Path, start_number: int | None) -> Recording:
     """A recording, an LCM log as one, or what there is in a directory."""
     with _bar(f"read {file.name}") as progress:
-        return read_run(file, progress)
+        return read_run(file, progress, start_number)
 
 
 def _writable(target: Path, suffixes: Sequence[str]) -> Path:
@@ -463,12 +498,14 @@ def _show(outcome: Outcome) -> None:
     for verdict in outcome.verdicts:
         mark = Text("passed", "green") if verdict.passed else Text("failed", "bold red")
         table.add_row(mark, Text(verdict.title), Text(verdict.sentence))
-    if outcome.complaint:
-        table.add_row(Text("failed", "bold red"), Text("assert"), Text(outcome.complaint))
+    if outcome.assertion is not None:
+        table.add_row(Text("failed", "bold red"), Text(outcome.assertion.title), Text(outcome.assertion.sentence))
     out.print(table)
     passed = sum(verdict.passed for verdict in outcome.verdicts)
-    failed = len(outcome.verdicts) - passed + bool(outcome.complaint)
-    print(f"{passed} passed, {failed} failed; {outcome.recording.duration_s:.3f} s of engine time")
+    failed = len(outcome.verdicts) - passed + (outcome.assertion is not None)
+    lacks = missing(outcome.recording)
+    whole = f"; missing: {lacks}" if lacks else ", no sample missing"
+    print(f"{passed} passed, {failed} failed; {outcome.recording.duration_s:.3f} s of engine time{whole}")
 
 
 def _show_figures(rows: Mapping[str, str]) -> None:
@@ -476,35 +513,6 @@ def _show_figures(rows: Mapping[str, str]) -> None:
     for name, value in rows.items():
         table.add_row(name, value)
     out.print(table)
-
-
-def _timing(figures: Mapping[str, Any]) -> dict[str, str]:
-    """What the engine says of itself, in words."""
-    rows = {"cycles": f"{figures['cycle']:,}", "overruns": str(figures["overruns"])}
-    for name, title in (("execution", "execution of a cycle"), ("latency", "wake-up latency")):
-        histogram = figures[name]
-        if histogram["count"]:
-            median, late = (_quantile(histogram, share) / 1e3 for share in (0.5, 0.99))
-            rows[title] = f"median {median:.0f} µs, 99 % below {late:.0f} µs, longest {histogram['max'] / 1e3:.0f} µs"
-    rows["commands"] = f"{figures['commands_applied']} applied, {figures['commands_refused']} refused"
-    rows["dropped"] = f"{figures['snapshots_dropped']} states, {figures['feedback_dropped']} feedbacks"
-    if figures["set_points_dropped"] or figures["samples_refused"]:
-        rows["drives"] = (
-            f"{figures['set_points_dropped']} set points lost, {figures['samples_refused']} answers refused"
-        )
-    return rows
-
-
-def _quantile(histogram: Mapping[str, Any], share: float) -> float:
-    """ns below which so many of the counted times lie, the longest at most; bucket i holds those in [2^i, 2^(i+1)), the
-    last one all above."""
-    wanted = share * histogram["count"]
-    longest = float(histogram["max"])
-    for i, count in enumerate(histogram["buckets"][:-1]):
-        if count >= wanted and count:
-            return min(float(2**i * (1 + wanted / count)), longest)
-        wanted -= count
-    return longest
 
 
 class _EngineTime(ProgressColumn):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
 import itertools
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING
 
 import yaml
@@ -13,21 +14,28 @@ if TYPE_CHECKING:
 
 COUPLING_LOOP = 3018  # error numbers: the axis would follow itself ...
 UNKNOWN_TARGET = 3010  # ... there is no such component
+COORDINATES = ("", ".x", ".y", ".c")  # of a mover, that axes can follow; without: its way along tracks
 
 
-def why_refused(error_id: int, target: str, arguments: str, axes: Mapping[str, Axis]) -> str:
+def why_refused(
+    error_id: int, target: str, arguments: str, axes: Mapping[str, Axis], movers: Collection[str] = ()
+) -> str:
     """Why a command for an axis was refused, with the names it is about. Empty: there is nothing to add."""
     if error_id == COUPLING_LOOP:
         return loop_sentence(target, arguments, axes)
-    return unknown_sentence(arguments, axes) if error_id == UNKNOWN_TARGET and target in axes else ""
+    return unknown_sentence(arguments, axes, movers) if error_id == UNKNOWN_TARGET and target in axes else ""
 
 
-def unknown_sentence(arguments: str, axes: Mapping[str, Axis]) -> str:
+def unknown_sentence(arguments: str, axes: Mapping[str, Axis], movers: Collection[str]) -> str:
     """Which name among the arguments nobody has."""
     asked = yaml.safe_load(arguments) or {}
+    coordinates = [name + suffix for name in movers for suffix in COORDINATES]
     for key in ("master", "master1", "master2"):
-        if asked.get(key) and asked[key] not in axes:
-            return f"{key}: there is no axis '{asked[key]}'; there are {', '.join(axes)}"
+        if not asked.get(key) or asked[key] in axes or asked[key] in coordinates:
+            continue
+        near = difflib.get_close_matches(asked[key], coordinates, 1) or coordinates[1:2]
+        others = f", and movers with their coordinates, such as {near[0]}" if near else ""
+        return f"{key}: there is no axis '{asked[key]}'; there are {', '.join(axes)}{others}"
     for key, what in (("cam", "cam"), ("profile", "cam"), ("switches", "list of cam switches")):
         if asked.get(key):
             return f"{key}: the machine has no {what} '{asked[key]}'"

@@ -16,13 +16,14 @@ from pathlib import Path
 from typing import Any
 
 from takt import _core
+from takt.counted import counted
 from takt.engine import read_machine
 from takt.errors import ConnectionError, TaktError
 from takt.lcmlog import read_log
 from takt.network import open_network
 from takt.remote import RemoteSession, connect
 from takt.replay import ReplayResult, replay
-from takt.scenario import Outcome, Scenario, verify_recording
+from takt.scenario import Outcome, Scenario, play, verify_recording
 from takt.source import IN_DIRECTORY
 
 Say = Callable[[str], None]
@@ -79,7 +80,7 @@ def run_demo(
             with _connected(url, engine, directory / "taktd.txt") as session:
                 started, began = time.monotonic(), session.now
                 with session.record(every=1000) as notes:  # for its marks, which do not travel over LCM
-                    scenario.play(session)
+                    complaint = play(scenario, session)
                 took, seconds = session.now - began, time.monotonic() - started
                 say(f"scenario done: {took:.1f} s of engine time in {seconds:.1f} s")
                 session.run(1.5 / _rate(session.machine["lcm"]["engine_rate_hz"]))  # the last figures count everything
@@ -88,10 +89,10 @@ def run_demo(
         if not stays:
             _end(engine, directory / "taktd.txt")
         recording = read_log(log)
-        say(f"{log.name} read back: {len(recording.components)} components, {recording.duration_s:.1f} s")
+        say(f"{log.name} read back: {counted(len(recording.components), 'component')}, {recording.duration_s:.1f} s")
         marks = [event for event in notes.recording.events if event.kind == "mark"]
         recording.events = sorted([*recording.events, *marks], key=lambda event: event.time_s)
-        outcome = verify_recording(scenario, recording)
+        outcome = verify_recording(scenario, recording, complaint)
         recording.meta["machine_file"]["folder"] = str(machine.resolve().parent)
         recording.save(directory / IN_DIRECTORY)
         judged(outcome, figures)

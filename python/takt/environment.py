@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from takt._commands import EnvironmentCommands, EnvironmentOutputs
 from takt.component import Component
+from takt.counted import counted
 
 
 class Environment(Component, EnvironmentCommands, EnvironmentOutputs):
@@ -12,4 +13,5 @@ class Environment(Component, EnvironmentCommands, EnvironmentOutputs):
     KIND = "environment"
 
     def __repr__(self) -> str:
-        return f"<Environment {self.name}: {self.stator_count} stators, {self.border_count} pieces of border>"
+        stators, border = counted(self.stator_count, "stator"), counted(self.border_count, "piece")
+        return f"<Environment {self.name}: {stators}, {border} of border>"

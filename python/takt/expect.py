@@ -84,14 +84,14 @@ def _asserting(
         if collected is not None:
             collected.append(verdict)
         elif not verdict.passed:
-            verdict, note = _with_picture(verdict)
+            verdict, note = _with_picture(verdict, recording)
             raise MotionAssertionError(verdict, note)
         return verdict
 
     return asserting
 
 
-def _with_picture(verdict: Verdict) -> tuple[Verdict, str]:
+def _with_picture(verdict: Verdict, recording: Recording) -> tuple[Verdict, str]:
     """Saves the picture; a picture that cannot be made must not hide the failure."""
     if pictures is None or not verdict.lanes:
         return verdict, ""
@@ -100,7 +100,7 @@ def _with_picture(verdict: Verdict) -> tuple[Verdict, str]:
     try:
         from takt import plot
 
-        plot.save(plot.draw_verdict(verdict), path)
+        plot.save(plot.draw_verdict(verdict, recording), path)
     except Exception as error:
         return verdict, f"(no picture: {error})"
     return replace(verdict, picture=path), f"picture: {path}"

@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 
 from takt import plot
+from takt.counted import counted
 from takt.errors import TaktError
+from takt.missing import troubles
 from takt.recording import Array, Recording
 
 EVENTS = "events"  # the channel of marks, starts and ends of commands, errors
@@ -44,11 +46,11 @@ def write(
 ) -> Iterator[str]:
     """Writes the part that is asked for into files, by the ends of their names, and says what is in each."""
     chosen = part(recording, signals, start, end)
-    if trouble := recording.meta.get("trouble"):
-        yield str(trouble)
+    yield from troubles(chosen)
     for target in targets:
         if target.suffix == ".mcap":
-            yield f"{target}: {to_mcap(chosen, target):,} messages of {len(chosen)} components and of events"
+            said = counted(to_mcap(chosen, target), "message")
+            yield f"{target}: {said} of {counted(len(chosen), 'component')} and of events"
         else:
             yield f"{chosen.to_csv(target)}: {words_on_rates(chosen)}"
 
@@ -56,9 +58,7 @@ def write(
 def part(recording: Recording, signals: Sequence[str], start: float | None, end: float | None) -> Recording:
     """Only these signals, as `takt plot` names them, or all; only from `start` to `end`, s, where they are given."""
     chosen = recording.pick(plot.select(recording, signals)) if signals else recording
-    if start is None and end is None:
-        return chosen
-    return chosen.slice(-math.inf if start is None else start, math.inf if end is None else end)
+    return chosen.between(start, end)
 
 
 def rates(recording: Recording) -> dict[str, float]:

@@ -15,14 +15,15 @@ import numpy as np
 
 from takt import _core, msgs
 from takt.arguments import without_arguments
+from takt.counted import counted
 from takt.errors import TaktError
+from takt.figures import figures_of
 from takt.lying import Lying, objects_of
 from takt.recording import Array, Recording
 from takt.tables import (
     KINDS,
     PREFIXES,
     components_of,
-    fields_of,
     is_possible,
     kind_of_channel,
     make_recording,
@@ -88,8 +89,15 @@ class Log:
             share = f"{self.left_over:,} of {self.path.stat().st_size:,} bytes"
             said.append(f"it ends in the middle of a message, or bytes of it were changed: {share} are left out")
         if count := sum(self.malformed.values()):
-            said.append(f"{count} {'message' if count == 1 else 'messages'} could not be decoded")
+            said.append(f"{counted(count, 'message')} could not be decoded")
         return f"The log is not whole: {'; '.join(said)}." if said else ""
+
+    def starts(self, run: int) -> str:
+        """Which one of several starts of the engine a run is, in a sentence; empty: there is but one."""
+        if len(self.runs) == 1:
+            return ""
+        count, which = len(self.runs), run % len(self.runs)
+        return f"The log holds {count} starts of the engine, from 0 on: this is number {which}; --run chooses another."
 
 
 def read_events(path: str | os.PathLike[str], progress: Progress | None = None) -> Iterator[tuple[int, str, bytes]]:
@@ -179,8 +187,8 @@ def run_of(log: Log, run: int) -> Run:
     try:
         return log.runs[run]
     except IndexError:
-        runs = "1 run" if len(log.runs) == 1 else f"{len(log.runs)} runs"
-        raise LogError(f"{log.path}: holds {runs}; there is no run {run}") from None
+        count = counted(len(log.runs), "run")
+        raise LogError(f"{log.path}: holds {count}; there is no run {run}: they are counted from 0") from None
 
 
 def to_recording(log: Log, run: int = -1) -> Recording:
@@ -201,8 +209,9 @@ def to_recording(log: Log, run: int = -1) -> Recording:
         "version": one.machine.version,
         "losses": _losses(one),
         "trouble": log.trouble,
+        "starts": log.starts(run),
         "objects": _lying(one, period).columns(),
-        "engine": _figures(one.engine_states[-1]) if one.engine_states else {},
+        "engine": figures_of(one.engine_states[-1]) if one.engine_states else {},
     }
     return make_recording(machine, tables, _events(one, period), meta, one.machine.text)
 
@@ -271,13 +280,3 @@ def _lying(run: Run, period: float) -> Lying:
         if is_possible(message, period):
             lying.look(message.name, message.cycle * period, objects_of(message))
     return lying
-
-
-def _figures(state: msgs.engine_state) -> dict[str, Any]:
-    unsaid = (
-        "run_id",
-        "state_hash",
-        "time_ns",
-        "period_s",
-    )  # they tell people nothing
-    return {f: v for f, v in fields_of(state).items() if isinstance(v, (int, float)) and f not in unsaid}

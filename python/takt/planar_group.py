@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from takt._commands import PlanarGroupCommands, PlanarGroupOutputs
 from takt.component import Component
+from takt.counted import counted
 
 
 class PlanarGroup(Component, PlanarGroupCommands, PlanarGroupOutputs):
@@ -12,4 +13,5 @@ class PlanarGroup(Component, PlanarGroupCommands, PlanarGroupOutputs):
     KIND = "planar_group"
 
     def __repr__(self) -> str:
-        return f"<PlanarGroup {self.name}: {self.state.value}, {self.mover_count} movers, {self.track_count} tracks>"
+        inside = f"{counted(self.mover_count, 'mover')}, {counted(self.track_count, 'track')}"
+        return f"<PlanarGroup {self.name}: {self.state.value}, {inside}>"

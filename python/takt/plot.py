@@ -9,9 +9,10 @@ Drawn without any window system and without matplotlib's global state.
 from __future__ import annotations
 
 import fnmatch
+import math
 import re
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -25,7 +26,8 @@ from matplotlib.ticker import MaxNLocator
 
 from takt import style
 from takt.checks.series import quantity, words
-from takt.recording import Event, FloatArray, Recording, RecordingError
+from takt.missing import holes
+from takt.recording import Array, Event, FloatArray, Recording, RecordingError
 from takt.verdict import Bound, Interval, Lane, Verdict
 
 WIDTH_IN = 14.0  # 1400 pixels at 100 dpi
@@ -53,10 +55,7 @@ def select(recording: Recording, patterns: Sequence[str] = ()) -> list[Signal]:
         else:
             matches = [s for s in everything if fnmatch.fnmatchcase(".".join(s), pattern)]
         if not matches:
-            components = ", ".join(recording.components)
-            raise RecordingError(
-                f"no signal matches '{pattern}' (the recording has the components {components or 'none'})"
-            )
+            raise RecordingError(f"no signal matches '{pattern}': {recording.why_no(pattern)}")
         chosen |= dict.fromkeys(matches)
     return list(chosen)
 
@@ -106,9 +105,15 @@ def draw(
     return figure
 
 
-def draw_verdict(verdict: Verdict) -> Figure:
-    """The data that a verdict is about with its bounds; beside it, where it failed, the place magnified."""
+def draw_verdict(verdict: Verdict, recording: Recording | None = None) -> Figure:
+    """The data that a verdict is about with its bounds; beside it, where it failed, the place magnified. The recording
+    that was judged says where samples are missing."""
     lanes = list(verdict.lanes)
+    torn = {
+        trace.label: holes(recording, verdict.components, trace.label) if recording is not None else []
+        for lane in lanes
+        for trace in lane.traces
+    }
     whole = _span(lanes)
     zoom = _around(verdict, lanes, whole)
     mark = style.GOOD if verdict.passed else style.BAD
@@ -138,7 +143,7 @@ def draw_verdict(verdict: Verdict) -> Figure:
     for column, view in enumerate([whole] if zoom is None else [whole, zoom]):
         for row, lane in enumerate(lanes):
             ax = figure.add_subplot(grid[row, column])
-            _verdict_lane(ax, lane, view, dots=column == 1)
+            _verdict_lane(ax, lane, view, torn, dots=column == 1, passed=verdict.passed)
             if verdict.place is not None and not verdict.passed:
                 first, last = verdict.place
                 ax.axvspan(first, last, color=style.BAD, alpha=0.13, lw=0, zorder=0)
@@ -202,14 +207,15 @@ def _stack(sizes: Sequence[float], title: str | None) -> tuple[Figure, list[Axes
 
 def _curves(ax: Axes, recording: Recording, name: str, signals: Sequence[Signal], components: Sequence[str]) -> None:
     dress(ax)
-    kinds = {style.is_set_point(f) for _, f in signals}
-    sources = dict.fromkeys(_source(field) for _, field in signals)
+    fields = {field for _, field in signals}
+    kinds = {style.is_set_point(f, fields) for f in fields}
+    sources = dict.fromkeys(style.source(field) for _, field in signals)
     own = {source: style.PALETTE[i % len(style.PALETTE)] for i, source in enumerate(sources)}
     by_component = len(components) > 1 and (len(own) == 1 or len({component for component, _ in signals}) > 1)
     for component, field in signals:
         table = recording[component]
-        colour = style.component_colour(component, components) if by_component else own[_source(field)]
-        dashed = style.is_set_point(field) and len(kinds) > 1
+        colour = style.component_colour(component, components) if by_component else own[style.source(field)]
+        dashed = style.is_set_point(field, fields) and len(kinds) > 1
         look: dict[str, Any] = (
             {"color": _darker(colour), "ls": (0, (4, 2.2)), "lw": 1.3, "zorder": 3}
             if dashed
@@ -218,18 +224,14 @@ def _curves(ax: Axes, recording: Recording, name: str, signals: Sequence[Signal]
         label = f"{component}  {words(field)}" if len(components) > 1 else words(field)
         modulus = recording.info(component).get("modulus") if name == "position" else None
         label = textwrap.fill(label, 24, subsequent_indent="  ")  # longer ones leave the picture
-        ax.plot(*unjoined(table["time_s"], table[field], modulus), label=label, **look)
+        torn = holes(recording, (component,))
+        ax.plot(*unjoined(table["time_s"], table[field], modulus, torn), label=label, **look)
     _calm_limits(ax)
     handles, labels = ax.get_legend_handles_labels()
     ax.legend(
         handles, labels, loc="upper left", bbox_to_anchor=(1.008, 1.03), borderaxespad=0, frameon=False,
         fontsize=9.5, labelcolor=INK, handlelength=2.2, labelspacing=0.25,
     )  # fmt: skip
-
-
-def _source(field: str) -> str:
-    """What set points and measured values of the same thing have in common."""
-    return re.sub("^(set|actual|commanded|target)_", "", field)
 
 
 def _band_lane(ax: Axes, recording: Recording, signals: Sequence[Signal], several: bool) -> None:
@@ -240,7 +242,8 @@ def _band_lane(ax: Axes, recording: Recording, signals: Sequence[Signal], severa
     for row, (component, field) in enumerate(signals):
         names = recording.names(component, field) or {1: words(field)}
         table = recording[component]
-        _band(ax, total - 1 - row, table["time_s"], table[field], names, span)
+        torn = holes(recording, (component,))
+        _band(ax, total - 1 - row, table["time_s"], table[field], names, span, torn)
     ax.set_ylim(-0.5, total - 0.5)
     labels = [f"{c} {words(f)}" if several else words(f) for c, f in reversed(signals)]
     labels = [textwrap.fill(label, 14) for label in labels]  # wider ones leave the picture
@@ -248,10 +251,18 @@ def _band_lane(ax: Axes, recording: Recording, signals: Sequence[Signal], severa
     ax.tick_params(axis="y", length=0)
 
 
-def _band(ax: Axes, y: float, time_s: FloatArray, values: Any, names: dict[int, str], span: Interval) -> None:
+def _band(
+    ax: Axes,
+    y: float,
+    time_s: FloatArray,
+    values: Any,
+    names: dict[int, str],
+    span: Interval,
+    torn: Sequence[Interval],
+) -> None:
     """One row of coloured stretches; a switch (only 1 has a name) shows where it is on."""
     length = max(span[1] - span[0], 1e-9)
-    for first, last, value in stretches(time_s, values):
+    for first, last, value in stretches(time_s, values, torn):
         if value == 0 and 0 not in names:
             continue
         name = names.get(value, f"?{value}")
@@ -269,23 +280,34 @@ def _lane_width(ax: Axes) -> float:
     return float(ax.get_position().width)
 
 
-def stretches(time_s: FloatArray, values: Any) -> list[tuple[float, float, int]]:
-    """(from, to, value) of each stretch in which a column does not change."""
+def stretches(time_s: FloatArray, values: Any, torn: Sequence[Interval] = ()) -> list[tuple[float, float, int]]:
+    """(from, to, value) of each stretch in which a column does not change, and no samples are missing."""
     if not len(values):
         return []
     whole = np.nan_to_num(np.asarray(values, dtype=np.float64), nan=-1).astype(np.int64)
-    starts = np.concatenate(([0], np.flatnonzero(np.diff(whole)) + 1))
-    ends = np.append(time_s[starts[1:]], time_s[-1])
-    return [(float(time_s[i]), float(e), int(whole[i])) for i, e in zip(starts, ends, strict=True)]
+    behind = _behind(time_s, torn)
+    starts = np.unique(np.concatenate(([0], np.flatnonzero(np.diff(whole)) + 1, behind)))
+    ends = np.append(starts[1:] - np.isin(starts[1:], behind), len(whole) - 1)
+    return [(float(time_s[a]), float(time_s[b]), int(whole[a])) for a, b in zip(starts, ends, strict=True)]
 
 
-def unjoined(time_s: FloatArray, values: Any, modulus: float | None) -> tuple[FloatArray, FloatArray]:
-    """The curve with a break wherever a rotary position wraps."""
+def unjoined(
+    time_s: FloatArray, values: Any, modulus: float | None, torn: Sequence[Interval] = ()
+) -> tuple[FloatArray, FloatArray]:
+    """The curve with a break wherever a rotary position wraps, and where samples are missing."""
     numbers = np.asarray(values, dtype=np.float64)
-    if not modulus:
+    if not modulus and not torn:
         return time_s, numbers
-    jumps = np.flatnonzero(np.abs(np.diff(numbers)) > modulus / 2) + 1
+    jumps = _behind(time_s, torn)
+    if modulus:
+        jumps = np.union1d(jumps, np.flatnonzero(np.abs(np.diff(numbers)) > modulus / 2) + 1)
     return np.insert(time_s, jumps, time_s[jumps]), np.insert(numbers, jumps, np.nan)
+
+
+def _behind(time_s: FloatArray, torn: Sequence[Interval]) -> Array:
+    """The first row behind each of these that lies between rows."""
+    rows = np.unique(np.searchsorted(time_s, [until for _, until in torn]))
+    return rows[(rows > 0) & (rows < len(time_s))]
 
 
 def _event_rows(events: Sequence[Event], span: Interval) -> list[tuple[Event, int, bool]]:
@@ -354,7 +376,9 @@ def _mark(ax: Axes, events: Sequence[Event]) -> None:
 # --- lanes of a verdict ---
 
 
-def _verdict_lane(ax: Axes, lane: Lane, view: Interval, dots: bool) -> None:
+def _verdict_lane(
+    ax: Axes, lane: Lane, view: Interval, torn: Mapping[str, Sequence[Interval]], dots: bool, passed: bool
+) -> None:
     dress(ax)
     ax.set_xlim(*view)
     if lane.names:
@@ -362,17 +386,17 @@ def _verdict_lane(ax: Axes, lane: Lane, view: Interval, dots: bool) -> None:
         ax.set_yticks([])
         ax.set_ylim(-0.7, len(lane.traces) - 0.3)
         for i, trace in enumerate(lane.traces):
-            _band(ax, i, trace.time_s, trace.values, lane.names, view)
+            _band(ax, i, trace.time_s, trace.values, lane.names, view, torn[trace.label])
         return
     for i, trace in enumerate(lane.traces):
         inside = (trace.time_s >= view[0]) & (trace.time_s <= view[1])
         points = dots and np.count_nonzero(inside) < 120
         ax.plot(
-            *unjoined(trace.time_s, trace.values, trace.modulus), color=style.PALETTE[i % len(style.PALETTE)],
-            lw=1.6, label=trace.label, zorder=3,
+            *unjoined(trace.time_s, trace.values, trace.modulus, torn[trace.label]),
+            color=style.PALETTE[i % len(style.PALETTE)], lw=1.6, label=trace.label, zorder=3,
             marker="." if points else None, ms=5,
         )  # fmt: skip
-    low, high = _value_range(lane, view)
+    low, high = _value_range(lane, view, passed)
     ax.set_ylim(low, high)
     for bound in lane.bounds:
         at_most = bound.values if len(bound.values) else np.zeros(0)
@@ -395,30 +419,35 @@ def _verdict_lane(ax: Axes, lane: Lane, view: Interval, dots: bool) -> None:
         )  # fmt: skip
 
 
-def _value_range(lane: Lane, view: Interval) -> Interval:
-    """Of the curves in view, and of those bounds that are near enough not to flatten them."""
+def _value_range(lane: Lane, view: Interval, passed: bool) -> Interval:
+    """Of the curves in view, of those bounds that are near enough not to flatten them, and of what was broken the
+    nearest."""
     seen = [t.values[(t.time_s >= view[0]) & (t.time_s <= view[1])].astype(np.float64) for t in lane.traces]
     values = np.concatenate([*seen, np.zeros(0)])
     values = values[np.isfinite(values)]
     if not len(values):
         values = np.zeros(1)
-    low, high = float(values.min()), float(values.max())
-    extent = high - low
-    for level in _levels(lane.bounds, view):
-        if low - 1.5 * extent - abs(level) * 1e-3 <= level <= high + 1.5 * extent + abs(level) * 1e-3:
-            low, high = min(low, level), max(high, level)
-    pad = 0.12 * (high - low) or max(abs(high) * 1e-3, 1e-6)
+    least, most = float(values.min()), float(values.max())
+    extent = most - least
+    shown, broken = [least, most], []
+    for bound in lane.bounds:
+        for level in _levels(bound, view):
+            if least - 1.5 * extent - abs(level) * 1e-3 <= level <= most + 1.5 * extent + abs(level) * 1e-3:
+                shown.append(level)
+            if {"above": level < most, "below": level > least, "none": True}[bound.forbidden]:
+                broken.append(level)
+    if broken and not passed:
+        shown.append(min(broken, key=lambda level: max(least - level, level - most, 0.0)))
+    low, high = min(shown), max(shown)
+    pad = 0.12 * (high - low) or abs(high) * 1e-3 or 1.0
     return low - pad, high + pad
 
 
-def _levels(bounds: Sequence[Bound], view: Interval) -> list[float]:
-    levels = []
-    for bound in bounds:
-        inside = bound.values[(bound.time_s >= view[0]) & (bound.time_s <= view[1])]
-        if not len(inside):
-            inside = np.interp(view, bound.time_s, bound.values) if len(bound.values) else inside
-        levels += [float(v) for v in (inside.min(), inside.max())] if len(inside) else []
-    return levels
+def _levels(bound: Bound, view: Interval) -> list[float]:
+    inside = bound.values[(bound.time_s >= view[0]) & (bound.time_s <= view[1])]
+    if not len(inside):
+        inside = np.interp(view, bound.time_s, bound.values) if len(bound.values) else inside
+    return [float(v) for v in (inside.min(), inside.max()) if math.isfinite(v)] if len(inside) else []
 
 
 def _span(lanes: Sequence[Lane]) -> Interval:

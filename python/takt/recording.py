@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import csv
 import difflib
+import fnmatch
 import hashlib
 import importlib
 import json
@@ -27,6 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from takt.counted import counted
 from takt.errors import TaktError
 
 Array = npt.NDArray[Any]
@@ -58,6 +60,7 @@ class Gap(NamedTuple):
     before_cycle: int
     missing: int
     time_s: float  # of the last sample before the gap
+    until_s: float  # of the first one behind it
 
 
 class Recording:
@@ -170,8 +173,8 @@ class Recording:
         return len(self._data)
 
     def __repr__(self) -> str:
-        parts = ", ".join(f"{c}: {len(a)} samples" for c, a in self._data.items())
-        return f"<Recording {self.duration_s:.3f} s; {parts or 'empty'}; {len(self.events)} events>"
+        parts = ", ".join(f"{c}: {counted(len(a), 'sample')}" for c, a in self._data.items())
+        return f"<Recording {self.duration_s:.3f} s; {parts or 'empty'}; {counted(len(self.events), 'event')}>"
 
     def fields(self, component: str) -> tuple[str, ...]:
         """The fields of a component, `time_s` and `cycle` first."""
@@ -184,6 +187,15 @@ class Recording:
             raise RecordingError(_nothing("field", field, table.dtype.names or (), f"'{component}'"))
         column: Array = table[field]
         return column
+
+    def why_no(self, pattern: str) -> str:
+        """Why no signal is named so, in a sentence: which component, or which field of it, is not there."""
+        component, dot, field = pattern.rpartition(".")
+        of = [name for name in self if fnmatch.fnmatchcase(name, component)]
+        if not dot or not of:
+            return _nothing("component", component or pattern, self, "this recording")
+        fields = dict.fromkeys(f for name in of for f in self.fields(name)[2:])
+        return _nothing("field", field, fields, " or ".join(f"'{name}'" for name in of))
 
     def unit(self, component: str, field: str) -> str:
         """The unit as people write it, "" for pure numbers."""
@@ -234,7 +246,10 @@ class Recording:
             step = int(values[np.argmax(counts)])
         cycle, time_s = table["cycle"], table["time_s"]
         return [
-            Gap(int(cycle[i]), int(cycle[i + 1]), math.ceil(int(steps[i]) / step) - 1, float(time_s[i]))
+            Gap(
+                *(int(cycle[i]), int(cycle[i + 1]), math.ceil(int(steps[i]) / step) - 1),
+                *(float(time_s[i]), float(time_s[i + 1])),
+            )
             for i in np.flatnonzero(steps > step)
         ]
 
@@ -245,6 +260,19 @@ class Recording:
         part = {c: a[(a["time_s"] >= t0) & (a["time_s"] <= t1)] for c, a in self._data.items()}
         events = [e for e in self.events if t0 <= e.time_s <= t1]
         return Recording(part, self._units, names=self._names, info=self._info, events=events, meta=self.meta)
+
+    def between(self, start: float | None, end: float | None) -> Recording:
+        """A slice as people ask for one, all before or behind where a time is not given: an error where it holds no
+        sample."""
+        if start is None and end is None:
+            return self
+        part = self.slice(-math.inf if start is None else start, math.inf if end is None else end)
+        if math.isnan(part.start_s):
+            asked = [f"from {start:g} s on" if end is None else f"from {start:g} s"] if start is not None else []
+            asked += [f"to {end:g} s"] if end is not None else []
+            there = "no samples" if math.isnan(self.start_s) else f"samples from {self.start_s:g} s to {self.end_s:g} s"
+            raise RecordingError(f"nothing was recorded {' '.join(asked)}: there are {there}")
+        return part
 
     def pick(self, signals: Iterable[tuple[str, str]]) -> Recording:
         """Only these signals (component, field), and the events of their components and of the whole machine."""

@@ -17,11 +17,12 @@ from takt.belt import Belt
 from takt.component import Component
 from takt.errors import ConnectionError, TaktError
 from takt.feedback import Feedback
+from takt.figures import figures_of
 from takt.lying import objects_of
 from takt.network import DEFAULT_URL, open_network
 from takt.recording import Recording
 from takt.session import Recorder, Session, release_of
-from takt.tables import KINDS, PREFIXES, State, fields_of, is_possible, kind_of_channel, make_recording, named, table_of
+from takt.tables import KINDS, PREFIXES, State, is_possible, kind_of_channel, make_recording, named, table_of
 
 QUEUE = 100_000  # messages waiting to be received before LCM drops some
 SILENCE_S = 3.0  # without any message: the engine is gone (it sends its own state, and the machine every second)
@@ -32,6 +33,8 @@ LATE_S = 1.0  # how long published values may take to catch up with a feedback
 IDLE_BEAT_S = 0.5  # between heartbeats that hold nothing but the client's name
 POLL_S = 0.1  # longest wait before looking at clocks and Ctrl-C again
 STILL_S = 10.0  # how long an engine that is heard may stay at one cycle
+OTHER_RUN = 3017  # error of what was meant for another start of the engine
+ANOTHER = "another engine runs on this network now: it was started again, or there are two"
 JUMP_S = 3600.0  # of engine time between two messages: a component that says more is not believed
 
 
@@ -41,6 +44,24 @@ class _Sent:
     feedback: Feedback
     at: float
     answered: bool = False
+
+
+class _Kept:
+    """Every n-th message of a component; a repeated or late one counts once."""
+
+    def __init__(self, every: int) -> None:
+        self.messages: list[State] = []
+        self._every = every
+        self._count = 0
+        self._last = -1
+
+    def take(self, message: State) -> None:
+        if message.cycle <= self._last:
+            return
+        self._last = message.cycle
+        if self._count % self._every == 0:
+            self.messages.append(message)
+        self._count += 1
 
 
 class RemoteSession(Session):
@@ -64,11 +85,12 @@ class RemoteSession(Session):
         self._sent: dict[int, _Sent] = {}
         self._held: list[Feedback] = []  # level-sensitive commands that need heartbeats
         self._last_id = 0
-        self._recorded: dict[Recorder, dict[str, list[State]]] = {}
+        self._recorded: dict[Recorder, dict[str, _Kept]] = {}
         self._stop = threading.Event()
         self._beat_now = threading.Event()
 
         self._lcm = open_network(url)
+        self._subscriptions: list[Any] = []
         for channel, handler in (
             ("takt/machine", self._on_machine),
             ("takt/engine", self._on_engine),
@@ -76,7 +98,9 @@ class RemoteSession(Session):
             ("takt/belt_objects/.*", self._on_objects),
             *((f"{prefix}.*", self._on_state) for prefix in PREFIXES.values()),
         ):
-            self._lcm.subscribe(channel, handler).set_queue_capacity(QUEUE)
+            subscription = self._lcm.subscribe(channel, handler)
+            subscription.set_queue_capacity(QUEUE)
+            self._subscriptions.append(subscription)
         self._receiver = threading.Thread(target=self._receive, name="takt receiver", daemon=True)
         self._receiver.start()
         try:
@@ -93,7 +117,7 @@ class RemoteSession(Session):
         except BaseException:
             self._stop.set()
             self._beat_now.set()
-            self._receiver.join()
+            self._leave()
             raise
 
     # --- the machine ---
@@ -108,15 +132,7 @@ class RemoteSession(Session):
 
     @property
     def figures(self) -> dict[str, Any]:
-        state = self._engine_state
-        if state is None:
-            return {}
-        plain = fields_of(state)
-        plain["state_hash"] &= 2**64 - 1  # LCM has no unsigned numbers
-        for name in ("execution", "latency"):
-            histogram = plain[name]
-            plain[name] = {"count": histogram.count, "max": histogram.max, "buckets": list(histogram.buckets)}
-        return plain
+        return figures_of(self._engine_state) if self._engine_state is not None else {}
 
     def close(self) -> None:
         """Releases what is held and leaves the network; the engine runs on."""
@@ -137,7 +153,13 @@ class RemoteSession(Session):
         self._stop.set()
         self._beat_now.set()
         self._beater.join()
+        self._leave()
+
+    def _leave(self) -> None:
+        """Hears nothing any more; else LCM would gather messages for as long as somebody knows the session."""
         self._receiver.join()
+        while self._subscriptions:
+            self._lcm.unsubscribe(self._subscriptions.pop())
 
     # --- receiving, on a thread of its own ---
 
@@ -165,7 +187,7 @@ class RemoteSession(Session):
 
     def _check_run(self, run_id: int) -> None:
         if self._description is not None and run_id != self._description.run_id and not self._trouble:
-            self._trouble = "another engine runs on this network now: it was started again, or there are two"
+            self._trouble = ANOTHER
 
     def _believable(self, message: msgs.engine_state | State) -> bool:
         """Cycle and time say the same. A component besides cannot be far ahead of all that was heard; the engine's own
@@ -213,7 +235,7 @@ class RemoteSession(Session):
             self._cycle = max(self._cycle, message.cycle)
             for rows in self._recorded.values():
                 if message.name in rows:
-                    rows[message.name].append(message)
+                    rows[message.name].take(message)
             self._hear(channel, message.sequence)
 
     def _on_objects(self, channel: str, data: bytes) -> None:
@@ -241,7 +263,7 @@ class RemoteSession(Session):
         sent = self._sent.get(message.id)
         if sent is None:
             if message.id == 0 and message.error_id:
-                self._trouble = message.sentence
+                self._trouble = ANOTHER if message.error_id == OTHER_RUN else message.sentence
             return
         sent.answered = True
         feedback = sent.feedback
@@ -370,14 +392,13 @@ class RemoteSession(Session):
 
     def _begin(self, recorder: Recorder) -> None:
         with self._news:
-            self._recorded[recorder] = {name: [] for name in recorder.components}
+            self._recorded[recorder] = {name: _Kept(recorder.every) for name in recorder.components}
 
     def _finish(self, recorder: Recorder) -> Recording:
         with self._news:
             rows = self._recorded.pop(recorder)
         tables = {
-            name: table_of(self._components[name].KIND, messages, self.period, recorder.every)
-            for name, messages in rows.items()
+            name: table_of(self._components[name].KIND, kept.messages, self.period) for name, kept in rows.items()
         }
         meta = {
             "source": self.url,

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from takt import _core, msgs
+from takt.counted import counted
 from takt.lcmlog import LogError, Progress, Run, open_log, run_of
 
 CHUNK = 10_000  # cycles between two reports of progress
@@ -54,13 +55,15 @@ class ReplayResult:
 
     @property
     def sentence(self) -> str:
-        what = f"{self.cycles:,} cycles ({self.cycles * self.period_s:.3f} s) with {self.commands:,} commands"
+        span = f"{counted(self.cycles, 'cycle')} ({self.cycles * self.period_s:.3f} s)"
+        what = f"{span} with {counted(self.commands, 'command')}"
         if self.difference is not None:
             at = self.difference.cycle
             missing = f" ({self.missing})" if self.missing else ""
             return f"{what}: differs from cycle {at} ({at * self.period_s:.4f} s) on{missing}"
         if self.missing:
-            return f"{self.cycles:,} of {self.of:,} cycles compared and equal, so not proven the same: {self.missing}"
+            compared = f"{self.cycles:,} of {counted(self.of, 'cycle')}"
+            return f"{compared} compared and equal, so not proven the same: {self.missing}"
         return f"{what}: the same, bit for bit"
 
 

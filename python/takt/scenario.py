@@ -14,7 +14,6 @@ import importlib.util
 import inspect
 import os
 import sys
-import traceback
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlencode
 
 from takt import expect
+from takt.complaint import Complaint
 from takt.errors import TaktError
 from takt.recording import Recording
 from takt.session import Session
@@ -70,11 +70,16 @@ class Scenario:
 class Outcome:
     recording: Recording
     verdicts: tuple[Verdict, ...]
-    complaint: str = ""  # a plain `assert` that failed
+    assertion: Verdict | None = None  # a plain `assert` that failed
+
+    @property
+    def complaint(self) -> str:
+        """What it says; empty: none failed."""
+        return self.assertion.sentence if self.assertion is not None else ""
 
     @property
     def passed(self) -> bool:
-        return not self.complaint and all(verdict.passed for verdict in self.verdicts)
+        return self.assertion is None and all(verdict.passed for verdict in self.verdicts)
 
 
 def load_scenario(path: str | os.PathLike[str]) -> Scenario:
@@ -86,13 +91,8 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     if spec is None or spec.loader is None:
         raise ScenarioError(f"{file}: is no Python file")
     module = importlib.util.module_from_spec(spec)
-    _forget_others(file.resolve().parent)
-    sys.path.insert(0, str(file.resolve().parent))
-    try:
-        with _no_exit(file):
-            spec.loader.exec_module(module)
-    finally:
-        sys.path.pop(0)
+    with modules_of(file.resolve().parent), _no_exit(file):
+        spec.loader.exec_module(module)
     scenario: Any = getattr(module, "scenario", None)
     verify: Any = getattr(module, "verify", None)
     pictures: Any = getattr(module, "pictures", None)
@@ -134,42 +134,57 @@ def _address(file: Path, module: ModuleType) -> str:
 _folders: set[Path] = set()  # of scenarios that were loaded
 
 
-def _forget_others(folder: Path) -> None:
-    """Modules that lie beside scenarios of other folders: another `judge` beside this one would be taken for them."""
+@contextlib.contextmanager
+def modules_of(folder: Path) -> Iterator[None]:
+    """Here modules are imported that lie in the folder of a scenario. Those of other scenarios are forgotten: another
+    `judge` beside this one would be taken for them."""
+    folder = folder.resolve()
     for name, module in list(sys.modules.items()):
         place = getattr(module, "__file__", None)
         if place and Path(place).parent in _folders - {folder}:
             del sys.modules[name]
     _folders.add(folder)
+    sys.path.insert(0, str(folder))
+    try:
+        yield
+    finally:
+        sys.path.remove(str(folder))
 
 
 def run_scenario(scenario: Scenario, session: Session, directory: Path | None = None) -> Outcome:
     """Runs it with everything recorded, then asks `verify`. The recording is kept in `directory`, also when the
     scenario breaks off."""
     recorder = session.record(every=scenario.every)
-    complaint = ""
     try:
-        scenario.play(session)
-    except AssertionError as error:
-        complaint = _complaint(error, scenario.path)
+        complaint = play(scenario, session)
     finally:
         recording = recorder.stop()
         if directory is not None:
             recording.save(directory / IN_DIRECTORY)
-    return Outcome(recording, (), complaint) if complaint else verify_recording(scenario, recording)
+    return verify_recording(scenario, recording, complaint)
 
 
-def verify_recording(scenario: Scenario, recording: Recording) -> Outcome:
-    """Asks `verify` of a recording, wherever it comes from."""
-    complaint = ""
+def play(scenario: Scenario, session: Session) -> Complaint | None:
+    """Does what it does; a plain `assert` that fails ends it."""
+    try:
+        scenario.play(session)
+    except AssertionError as error:
+        return Complaint.of(error, scenario.path, session.now)
+    return None
+
+
+def verify_recording(scenario: Scenario, recording: Recording, complaint: Complaint | None = None) -> Outcome:
+    """Asks `verify` of a recording, wherever it comes from, unless the scenario has broken off with a complaint."""
+    if complaint is not None:
+        return Outcome(recording, (), complaint.verdict(recording))
     with expect.collect() as verdicts:
         if scenario.verify is not None:
             try:
                 with _no_exit(scenario.path):
                     scenario.verify(recording)
             except AssertionError as error:
-                complaint = _complaint(error, scenario.path)
-    return Outcome(recording, tuple(verdicts), complaint)
+                complaint = Complaint.of(error, scenario.path)
+    return Outcome(recording, tuple(verdicts), complaint.verdict(recording) if complaint else None)
 
 
 @contextlib.contextmanager
@@ -187,10 +202,3 @@ def _takes_one(function: Callable[..., object]) -> bool:
     except TypeError:
         return False
     return True
-
-
-def _complaint(error: AssertionError, path: Path) -> str:
-    """What a plain `assert` says, and where it stands."""
-    frames = [f for f in traceback.extract_tb(error.__traceback__) if Path(f.filename).name == path.name]
-    said = str(error) or (frames[-1].line if frames else "") or "an assertion failed"
-    return f"{said} ({path.name}:{frames[-1].lineno})" if frames else said

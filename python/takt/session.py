@@ -371,7 +371,7 @@ class Session(MachineCommands):
         """Passes on what the engine says of a command."""
         feedback.object = self._object(object_kind, object_number) or feedback.object
         if error_id:
-            sentence = why_refused(error_id, feedback.target, feedback.arguments, self._axes) or sentence
+            sentence = why_refused(error_id, feedback.target, feedback.arguments, self._axes, self._movers) or sentence
         if not feedback._update(state, reached, error_id, sentence, cycle, value) or not feedback.final:
             return
         name = without_arguments(feedback.text)

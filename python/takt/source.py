@@ -22,13 +22,16 @@ def recording_of(run: Path) -> Path:
     return run / IN_DIRECTORY
 
 
-def read_run(run: Path, progress: Progress | None = None) -> Recording:
-    """A run as a recording, whatever kind of file it is."""
+def read_run(run: Path, progress: Progress | None = None, start: int | None = None) -> Recording:
+    """A run as a recording, whatever kind of file it is. `start`: which one of the engine, of several in a log; the
+    last unless told."""
     file = recording_of(run)
     with file.open("rb") as probe:
         magic = probe.read(4)
     if magic.startswith(b"PK"):
+        if start is not None:
+            raise RecordingError(f"{file}: is a recording, which holds one run: there is none to choose")
         return Recording.load(file)
     if magic == b"\xed\xa1\xda\x01":
-        return read_log(file, progress=progress)
+        return read_log(file, run=-1 if start is None else start, progress=progress)
     raise RecordingError(f"{file}: is neither a recording (.npz) nor an LCM log")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Container, Sequence
 
 # One per component, told apart by hue and by lightness; readable on white and on dark grey.
 PALETTE = (
@@ -112,5 +113,11 @@ def state_colour(name: str, value: int) -> str:
     return STATES.get(name, PALETTE[value % len(PALETTE)])
 
 
-def is_set_point(field: str) -> bool:
-    return field.startswith(("set_", "commanded_", "target_"))
+def is_set_point(field: str, fields: Container[str] = ()) -> bool:
+    """By its name, or because what was measured of it is among `fields`: "x" beside "actual_x"."""
+    return field.startswith(("set_", "commanded_", "target_")) or f"actual_{field}" in fields
+
+
+def source(field: str) -> str:
+    """What set points and measured values of the same thing have in common."""
+    return re.sub("^(set|actual|commanded)_", "", field)

@@ -96,15 +96,14 @@ def is_possible(message: State | msgs.engine_state, period: float) -> bool:
     return bool(message.cycle >= 0 and abs(message.time_ns - message.cycle * period * 1e9) <= message.cycle)
 
 
-def table_of(kind: str, messages: Sequence[State], period: float, every: int = 1) -> dict[str, Array]:
-    """The columns of messages of one component, of every n-th message (`every`). A repeated or late one counts once."""
+def table_of(kind: str, messages: Sequence[State], period: float) -> dict[str, Array]:
+    """The columns of messages of one component. A repeated or late one counts once."""
     rows = []
     last = -1
     for message in messages:
         if message.cycle > last:
             rows.append(message)
             last = message.cycle
-    rows = rows[::every]
     cycle = np.array([m.cycle for m in rows], dtype=np.int64)
     return {"time_s": cycle * period, "cycle": cycle} | {f: _column(kind, rows, f) for f in fields_of_kind(kind)}
 
@@ -156,6 +155,9 @@ def units_of(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, An
 
 def _info(machine: Mapping[str, Any], kind: Kind, axis: Mapping[str, Any]) -> dict[str, Any]:
     info: dict[str, Any] = {"unit": units_of(machine, kind, axis)["u"], "limits": {}}
+    if kind.name == "mover":
+        info["limits"] = {name: dict(axis[name]) for name in "zabc"}
+        info["limits"] |= {"xy": dict(axis["xy"]["maximum"]), "lateral_acceleration": axis["lateral_acceleration"]}
     if kind.name != "axis":
         return info
     limits = axis["limits"]

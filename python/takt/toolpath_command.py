@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table as Grid
 
 from takt import toolpath
+from takt.counted import counted
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ def _refuse_nonsense(options: Options) -> None:
 def _say(file: Path, path: toolpath.Toolpath, out: Console) -> None:
     arcs = int(np.count_nonzero(path.is_arc))
     lines = len(path.elements) - arcs
-    print(f"{file}: {lines} lines and {arcs} arcs, {path.length:.6g} mm")
+    print(f"{file}: {counted(lines, 'line')} and {counted(arcs, 'arc')}, {path.length:.6g} mm")
     if not path.elements:
         return
     lengths = np.diff(path.at)

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from takt import plot, style
+from takt.counted import counted
 from takt.recording import Recording
 from takt.toolpath import Array, Toolpath
 
@@ -32,7 +33,7 @@ def picture(path: Toolpath, target: str | os.PathLike[str], title: str = "") -> 
     FigureCanvasAgg(figure)
     ax = figure.add_subplot()
     plan(ax, path)
-    span = f"{len(path.elements)} elements, {path.length:.6g} mm, Z {low[2]:.6g} to {high[2]:.6g} mm"
+    span = f"{counted(len(path.elements), 'element')}, {path.length:.6g} mm, Z {low[2]:.6g} to {high[2]:.6g} mm"
     ax.set_title(f"{title}   {span}", loc="left", color=plot.INK, weight="bold", size=13)
     return plot.save(figure, target)
 

@@ -10,6 +10,7 @@ import click
 from rich.console import Console
 from rich.table import Table as Grid
 
+from takt.counted import counted
 from takt.track_drawing import CORNER, DRAWINGS, read
 from takt.track_layout import TrackLayout
 
@@ -60,7 +61,7 @@ def _refuse_nonsense(file: Path, options: Options) -> None:
 
 def _say(file: Path, layout: TrackLayout, out: Console) -> None:
     total = sum(track.length for track in layout.tracks)
-    print(f"{file}: {len(layout.tracks)} tracks, {total:.6g} mm")
+    print(f"{file}: {counted(len(layout.tracks), 'track')}, {total:.6g} mm")
     columns = ("track", "length", "least radius", "from", "to", "at start", "at end")
     grid = Grid(*columns, box=None)
     for i in (1, 2, 5, 6):

@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from takt import plot, style
+from takt.counted import counted
 from takt.track_layout import LaidTrack, TrackLayout
 
 ARROW_EVERY = 0.08  # of the larger side of the picture
@@ -26,7 +27,7 @@ def picture(layout: TrackLayout, target: str | os.PathLike[str], title: str = ""
     plan, bends = figure.subplots(2, 1, height_ratios=[3, 1])
     total = sum(track.length for track in tracks)
     plan.set_title(
-        f"{title}   {len(tracks)} tracks, {total:.6g} mm", loc="left", color=plot.INK, weight="bold", size=13
+        f"{title}   {counted(len(tracks), 'track')}, {total:.6g} mm", loc="left", color=plot.INK, weight="bold", size=13
     )
     for ax in (plan, bends):
         plot.dress(ax)

@@ -71,7 +71,7 @@ class Verdict:
 
     @property
     def title(self) -> str:
-        return f"{self.name}({', '.join(self.components)})"
+        return f"{self.name}({', '.join(self.components)})" if self.components else self.name
 
 
 class MotionAssertionError(AssertionError):

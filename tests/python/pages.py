@@ -25,7 +25,7 @@ FLAGS = (
     "--headless --no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync "
     "--no-first-run"
 ).split()
-PATIENCE_S = 30.0  # for things that take a moment; nothing is judged by how long they take
+PATIENCE_S = 60.0  # for things that take a moment; nothing is judged by how long they take
 
 # A mover, another one before it, and a loop for both.
 TWO_ON_A_LOOP = """\
@@ -84,6 +84,7 @@ class Client:
         self.rows: dict[int, dict[str, Any]] = {}
         self.cycles: dict[int, list[np.ndarray]] = {}
         self.values: dict[tuple[int, str], list[np.ndarray]] = {}
+        self.holes: dict[int, int] = {}  # frames that say that rows before them were overwritten, by component
         self.live = np.empty(0)
         self.answers: list[dict[str, str]] = []
 
@@ -150,7 +151,8 @@ class Client:
         at = self.header["live"]
         for index in self.header["details"]:
             at += len(self.machine["kinds"][self.machine["components"][index]["kind"]]["fields"])
-        for index, count, fields, _ in self.header["signals"]:
+        for index, count, fields, skipped in self.header["signals"]:
+            self.holes[index] = self.holes.get(index, 0) + (skipped > 0)
             self.cycles.setdefault(index, []).append(numbers[at : at + count])
             at += count
             for field in fields:

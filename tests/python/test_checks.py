@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from motion_curves import DT, LIMITS, one_axis, positions
 from numpy.lib import recfunctions
-from takt import checks
+from takt import checks, plot, report
 from takt.recording import Recording
 from takt.verdict import Verdict
 
@@ -163,6 +163,46 @@ def test_a_sine_is_within_its_closed_form_extremes(start: float, amplitude: floa
     assert kept.passed is (over == 1.0)
     if over == 1.0:
         assert checks.continuous(rec, "x", velocity=a * w, acceleration=a * w**2, jerk=a * w**3).passed
+
+
+@pytest.mark.parametrize(
+    ("window", "says", "place"),
+    [
+        ((0.5, 20.0), "the recording of x ends at 1.999 s, before 20 s", (1.999, 1.999)),
+        ((-5.0, 1.0), "the recording of x starts at 0 s, after -5 s", (0.0, 0.0)),
+        ((5.0, 9.0), "the recording has no sample of x between 5 s and 9 s", None),
+    ],
+)
+def test_what_cannot_be_judged_shows_what_was_recorded(window: Any, says: str, place: Any) -> None:
+    verdicts = [
+        checks.stays(one_axis(), condition, window=window) for condition in ("x.set_position < 3", "x.state == 1")
+    ]
+    for verdict in verdicts:
+        assert not verdict.passed
+        assert verdict.sentence == says
+        assert verdict.place == (None if place is None else pytest.approx(place))
+        ((trace,),) = (lane.traces for lane in verdict.lanes)
+        assert trace.time_s.tolist() == T.tolist()
+    assert verdicts[1].lanes[0].names
+    plot.draw_verdict(verdicts[0]).canvas.draw()
+    report.render(one_axis(), verdicts, "t")
+
+
+def test_what_is_broken_again_and_again_is_not_told_as_one() -> None:
+    """The place that is shown is the first one, and the sentence says so."""
+    at = np.zeros(1000)
+    at[100:111] = 3
+    rec = positions(x=at)
+    once = "x.set_position < 2 did not hold from 0.1 s to 0.11 s, 11 samples: "
+    assert checks.stays(rec, "x.set_position < 2").sentence.startswith(once)
+    at[500] = at[800:900] = 3
+    verdict = checks.stays(positions(x=at), "x.set_position < 2")
+    assert verdict.sentence.startswith(f"{once[:-2]}, and 2 more times until 0.899 s: ")
+    assert verdict.place == pytest.approx((0.1, 0.11))
+    at[101:900] = 0
+    at[899] = 3
+    verdict = checks.stays(positions(x=at), "x.set_position < 2")
+    assert verdict.sentence.startswith("x.set_position < 2 did not hold at 0.1 s, and 1 more time until 0.899 s: ")
 
 
 # --- continuous ---

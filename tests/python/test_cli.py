@@ -12,7 +12,8 @@ import pytest
 import takt
 from machines import MACHINE, new_url, running
 from takt import demo, msgs
-from takt.cli import _quantile, main
+from takt.cli import main
+from takt.figures import quantile
 from takt.tables import is_possible
 
 SCENARIO = '''"""Goes and comes back.
@@ -228,10 +229,10 @@ def test_quantiles() -> None:
     """EN-05: inside a bucket in proportion, never beyond the longest time; the last bucket is known by that alone."""
     buckets = [0] * 32
     buckets[10] = 100
-    assert _quantile({"buckets": buckets, "count": 100, "max": 2000}, 0.5) == 1536
-    assert _quantile({"buckets": buckets, "count": 100, "max": 1100}, 0.99) == 1100
+    assert quantile({"buckets": buckets, "count": 100, "max": 2000}, 0.5) == 1536
+    assert quantile({"buckets": buckets, "count": 100, "max": 1100}, 0.99) == 1100
     buckets[31] = 100
-    assert _quantile({"buckets": buckets, "count": 200, "max": 2**40}, 0.99) == 2**40
+    assert quantile({"buckets": buckets, "count": 200, "max": 2**40}, 0.99) == 2**40
 
 
 def test_bench(capsys: pytest.CaptureFixture[str]) -> None:

@@ -41,6 +41,16 @@ def test_every_kind_is_known_everywhere() -> None:
         assert PREFIXES[kind["name"]] == f"takt/{kind['name']}/"
 
 
+def test_speeds_have_units_of_speeds() -> None:
+    """PY-04: also where a field is one of several of a struct."""
+    for kind in KINDS.values():
+        for field, unit in kind.units.items():
+            if "velocity" in field:
+                assert unit.endswith("/s"), field
+            if "acceleration" in field:
+                assert unit.endswith("/s2"), field
+
+
 def test_arguments_left_out_go_by_the_kind_of_component() -> None:
     """PY-03: an axis and a cam module both have a command jog, with arguments of their own."""
     assert set(_commands.DEFAULTS["axis", "jog"]) == {"forward", "backward"}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import resource
 import shutil
 import signal
 import socket
@@ -316,6 +317,31 @@ def test_losses_are_seen(tmp_path: Path) -> None:
         session.run(0.2)
         assert session.losses.keys() == {"takt/axis/x"}
         assert 900 < session.losses["takt/axis/x"] < 1000
+
+
+@pytest.mark.parametrize("how", ["closed", "found no engine"])
+def test_a_session_that_is_over_gathers_nothing(how: str, tmp_path: Path) -> None:
+    """However long somebody still knows it, and however much is published."""
+    url = new_url()
+    if how == "closed":
+        with running(tmp_path, url), takt.connect(url) as session:
+            session.run(0.1)
+    else:
+        with pytest.raises(takt.ConnectionError, match="no engine answers"):
+            takt.connect(url, timeout=0.1)
+    network = lcm.LCM(url)
+    before = resident_mb()
+    for i in range(1500):
+        network.publish("takt/axis/x", bytes(60_000))
+        if i % 20 == 0:
+            time.sleep(0.002)  # so that it gets there
+    time.sleep(0.2)
+    assert resident_mb() - before < 20
+
+
+def resident_mb() -> float:
+    """Of this process."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / 2**20
 
 
 def test_rates_are_as_configured(tmp_path: Path) -> None:

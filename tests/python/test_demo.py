@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -224,7 +226,25 @@ def test_a_demo_without_a_terminal_ends_by_itself(tmp_path: Path) -> None:
             running.until("scenario done")
         assert running.ended() == 0
     assert STAYS not in running.said
+    kept = json.loads(re.findall(r'id="data">(.*?)</script>', (tmp_path / "report" / "report.html").read_text())[0])
+    shown = kept["meta"]["engine"]
+    assert "cycles" in shown
+    assert "commands" in shown
+    for name, text in shown.items():  # the report says what the terminal does
+        assert re.search(rf"^ {name} +{re.escape(text)} *$", running.said, re.MULTILINE)
     assert "the same, bit for bit" in running.said
+
+
+def test_a_demo_whose_scenario_breaks_off_is_judged_too(tmp_path: Path) -> None:
+    (tmp_path / "machine.yaml").write_text(MACHINE)
+    (tmp_path / "there.py").write_text(
+        SHORT.replace("position=50).wait()", "position=50).wait()\n    assert x.error, 'no'")
+    )
+    with demo(tmp_path / "there.py", "--pace", "paced", "--report", tmp_path / "report") as running:
+        assert running.ended() == 1
+    assert re.search(r"failed +assert\(x\) +no \(there.py:9\) at [\d.]+ s", running.said)
+    assert "0 passed, 1 failed" in running.said
+    assert '"assertion":{"title":"assert(x)"' in (tmp_path / "report" / "report.html").read_text()
 
 
 def test_a_verdict_is_the_exit_code_however_long_the_page_stays(tmp_path: Path) -> None:
@@ -235,4 +255,4 @@ def test_a_verdict_is_the_exit_code_however_long_the_page_stays(tmp_path: Path) 
         with Client(running.until("the live page: ").split()[3].partition("#")[0]):
             running.until(STAYS)
         assert running.interrupt() == 1
-    assert "x did not get there (there.py:" in running.said
+    assert "x did not get there (there.py:" in " ".join(running.said.split())

@@ -94,8 +94,27 @@ def test_complete() -> None:
     rec = Recording({"x": np.delete(one_axis()["x"], [100, 101, 500])})
     verdict = checks.complete(rec, "x")
     assert not verdict.passed
+    assert "3 samples of x lost in 2 gaps, the first after cycle 99 at 0.099 s" in verdict.sentence
+    one = checks.complete(Recording({"x": np.delete(one_axis()["x"], [100])}), "x")
+    assert "1 sample of x lost in 1 gap, the first" in one.sentence
     assert verdict.by_how_much == 3
     assert verdict.when_s == pytest.approx(0.099)
+
+
+# EN-20, PY-05: of the samples that an assertion asks for, of its components and in its window alone
+def test_an_assertion_says_what_it_had_to_do_without() -> None:
+    x = one_axis()["x"]
+    rec = Recording({"x": np.delete(x, [100, 101, 500]), "y": x})
+    whole = checks.stays(rec, "x.set_position > -1")
+    assert whole.passed
+    assert whole.sentence.endswith("; missing: 3 samples of x in 2 gaps, the first after 0.099 s")
+    after = checks.stays(rec, "x.set_position > -1", window=(0.3, 0.6))
+    assert after.sentence.endswith("; missing: 1 sample of x in 1 gap, after 0.499 s")
+    assert "missing" not in checks.stays(rec, "x.set_position > -1", window=(0.6, 1.0)).sentence
+    assert "missing" not in checks.stays(rec, "y.set_position > -1").sentence
+    failed = checks.stays(rec, "x.set_position < 50")
+    assert not failed.passed
+    assert "missing: 3 samples of x" in failed.sentence
 
 
 # --- what can be said of every assertion ---

@@ -11,7 +11,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mcap.reader import make_reader
+import takt
+from machines import MACHINE
+from mcap.reader import NonSeekingReader, SeekingReader, make_reader
+from mcap.stream_reader import StreamReader
 from motion_curves import one_axis
 from takt.cli import main
 from takt.recording import Recording
@@ -86,6 +89,65 @@ def test_mcap_has_all_of_a_recording(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert about.metadata == {"machine": "two", "period_s": "0.001"}
 
 
+def test_mcap_is_sound_and_says_all_by_itself(tmp_path: Path) -> None:
+    """By the package's own readers, from front to back and by the index at the end, with check sums; and every message
+    by the schema in the file alone, against the CSV of the same run."""
+    with takt.Engine(MACHINE) as engine, engine.record() as recorder:
+        x = engine.axis("x")
+        x.power().wait()
+        x.move_absolute(position=20.0).wait()
+    recorder.recording.save(tmp_path / "a.npz")
+    files = ["--mcap", str(tmp_path / "a.mcap"), "--csv", str(tmp_path / "a.csv")]
+    assert main(["export", str(tmp_path / "a.npz"), *files]) == 0
+
+    seeking = SeekingReader((tmp_path / "a.mcap").open("rb"), validate_crcs=True)
+    summary = seeking.get_summary()
+    assert summary is not None
+    assert summary.statistics is not None
+    through = list(NonSeekingReader((tmp_path / "a.mcap").open("rb"), validate_crcs=True).iter_messages())
+    by_index = list(seeking.iter_messages())
+    assert through == by_index
+    assert summary.statistics.message_count == len(through) == sum(summary.statistics.channel_message_counts.values())
+    assert [message.sequence for _, _, message in through] == list(range(len(through)))
+    assert summary.statistics.message_start_time == through[0][2].log_time
+    assert summary.statistics.message_end_time == through[-1][2].log_time
+    records = [type(record).__name__ for record in StreamReader((tmp_path / "a.mcap").open("rb")).records]
+    assert (records[0], records[-1]) == ("Header", "Footer")
+
+    kinds: dict[str, Any] = {"number": (int, float), "integer": int, "boolean": bool, "string": str, "object": dict}
+    shown: dict[int, dict[str, Any]] = {}
+    for schema, channel, message in through:
+        assert schema is not None
+        said = json.loads(schema.data)
+        fields = json.loads(message.data)
+        assert said["type"] == "object"
+        assert fields.keys() <= said["properties"].keys()
+        for field, value in fields.items():
+            kind = said["properties"][field]["type"]
+            assert isinstance(value, kinds[kind]), field
+            assert isinstance(value, bool) == (kind == "boolean"), field
+        if channel.topic == "/x":
+            shown[fields["cycle"]] = fields
+            units = {f: about.get("description", "") for f, about in said["properties"].items()}
+    with (tmp_path / "a.csv").open(newline="") as file:
+        table = list(csv.DictReader(file))
+    columns = [name for name in table[0] if name.startswith("x.")]
+    assert len(columns) > 20
+    assert [int(row["cycle"]) for row in table] == sorted(shown)
+    for name in columns:
+        field, _, unit = name.removeprefix("x.").removesuffix("]").partition(" [")
+        assert units[field] == unit or unit in ("", "1")
+        for row in table:
+            value = shown[int(row["cycle"])].get(field)
+            if value is None:
+                assert not math.isfinite(float(row[name])), name
+            else:
+                assert row[name] == str(value) or float(row[name]) == value, name
+    last = table[-1]
+    assert float(last["x.set_position [mm]"]) == pytest.approx(20)
+    assert last["x.state"] == "Standstill"
+
+
 def test_a_part_of_it(tmp_path: Path) -> None:
     """Signals by pattern and a window of time, in both formats."""
     two_rates().save(tmp_path / "a.npz")
@@ -116,6 +178,12 @@ def test_csv_says_how_rates_are_joined(tmp_path: Path, capsys: pytest.CaptureFix
     assert "a row for each cycle that was recorded" in capsys.readouterr().out
 
 
+def test_one_of_each_is_said_in_the_singular(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    Recording({"x": {"time_s": [0.0], "p": [1.0]}}).save(tmp_path / "a.npz")
+    assert main(["export", str(tmp_path / "a.npz"), "--mcap", str(tmp_path / "a.mcap")]) == 0
+    assert "1 message of 1 component and of events" in capsys.readouterr().out
+
+
 NOTHING = {"no component": Recording({}), "no sample": Recording({"x": {"time_s": [], "p": []}})}
 
 
@@ -135,9 +203,33 @@ BAD = {
     "folder": (["a.npz", "--mcap", "no/a.mcap"], "no/a.mcap: there is no directory no"),
     "signal": (
         ["a.npz", "y.*", "--csv", "a.csv"],
-        "no signal matches 'y.*' (the recording has the components x, belt)",
+        "no signal matches 'y.*': this recording has no component 'y' (it has x, belt)",
+    ),
+    "field": (
+        ["a.npz", "x.plaec", "--csv", "a.csv"],
+        "no signal matches 'x.plaec': 'x' has no field 'plaec'; did you mean 'place'? (it has place, state, count)",
+    ),
+    "component": (
+        ["a.npz", "bett.on", "--csv", "a.csv"],
+        "no signal matches 'bett.on': this recording has no component 'bett'; did you mean 'belt'? (it has x, belt)",
+    ),
+    "field of several": (
+        ["a.npz", "*.velocty", "--csv", "a.csv"],
+        "'x' or 'belt' has no field 'velocty'; did you mean 'velocity'? (it has place, state, count, velocity, on)",
     ),
     "window": (["a.npz", "--csv", "a.csv", "--from", "3", "--to", "2"], "a slice from 3.0 s to 2.0 s has no length"),
+    "behind the end": (
+        ["a.npz", "--csv", "a.csv", "--mcap", "a.mcap", "--from", "3"],
+        "nothing was recorded from 3 s on: there are samples from 2 s to 2.079 s",
+    ),
+    "before the beginning": (
+        ["a.npz", "x.place", "--csv", "a.csv", "--to", "1.5"],
+        "nothing was recorded to 1.5 s: there are samples from 2 s to 2.079 s",
+    ),
+    "between two samples": (
+        ["a.npz", "belt.*", "--csv", "a.csv", "--from", "2.001", "--to", "2.003"],
+        "nothing was recorded from 2.001 s to 2.003 s: there are samples from 2 s to 2.076 s",
+    ),
     "directory": (["a.npz", "--mcap", "taken.mcap"], "taken.mcap: Is a directory"),
     "package": (["a.npz", "--mcap", "a.mcap"], "writing MCAP needs the package mcap: pip install takt-motion[mcap]"),
 }
@@ -157,3 +249,4 @@ def test_mistakes_are_one_line(
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert sentence in said
+    assert sorted(path.name for path in Path().glob("a.*")) == ["a.npz"]  # nothing was written

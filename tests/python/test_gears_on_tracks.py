@@ -408,6 +408,18 @@ def test_axes_that_follow_movers() -> None:
     assert gear.error_id != 0
 
 
+def test_a_master_that_nobody_is() -> None:
+    """The sentence names what an axis can follow, and what is wrong beside a master that there is."""
+    engine = Engine(TRAIL)
+    axis = engine.axis("axis")
+    axis.power().wait()
+    for wrong, near in (("mover.yy", "mover.y"), ("nobody", "mover.x")):
+        there = f"there are axis, and movers with their coordinates, such as {near}"
+        assert axis.gear_in(master=wrong).wait_final().sentence == f"master: there is no axis '{wrong}'; {there}"
+    cam = axis.cam_in(master="mover.x", cam="none").wait_final()
+    assert cam.sentence == "cam: the machine has no cam 'none'"
+
+
 LOOP = f"""
 name: loop
 axes: [{AXIS}]

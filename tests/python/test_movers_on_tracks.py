@@ -50,7 +50,7 @@ def test_two_movers_on_a_track(engine: Engine) -> None:
     one.move_on_track(position=30)
     engine.step()
     assert track.operation_mode == "Moving"
-    with pytest.raises(takt.CommandError, match="movers on it do what does not go with this"):
+    with pytest.raises(takt.CommandError, match="movers on the track do what does not go with this"):
         two.leave_track(x=0, y=0).wait()
     moves = [one.move_on_track(position=150), two.move_on_track(position=350)]
     engine.wait(lambda: one.track_position >= 149.9 and two.track_position >= 349.9, 5)
@@ -233,6 +233,54 @@ def test_a_place_just_at_the_gap(engine: Engine) -> None:
             mover.leave_track(x=mover.x, y=mover.y).wait()
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_each_stops_just_at_its_gap(seed: int) -> None:
+    """PL-12, PL-24: whoever may go to its place gets there, however gently those before it come to rest. Nobody goes
+    back on the way."""
+    rng = np.random.default_rng(seed)
+    count, gap = 6, float(rng.uniform(120, 300))
+    xy = [
+        f"{{velocity: {rng.uniform(500, 2e3)}, acceleration: {rng.uniform(1500, 1e4)}, jerk: {rng.uniform(2e4, 5e5)}}}"
+        for _ in range(count)
+    ]
+    movers = "".join(
+        f"  - {{name: m{i}, gap: {gap}, initial: {{x: {i * (gap + 20)}}}, xy: {{maximum: {xy[i]}}}}}\n"
+        for i in range(count)
+    )
+    line = "tracks: [{name: track, elements: [{from: {x: 0, y: 0}, to: {x: 6000, y: 0}}]}]\n"
+    with Engine(f"name: row\naxes: []\nmovers:\n{movers}{line}") as engine:
+        engine.track("track").enable().wait()
+        all_movers = list(engine.movers.values())
+        for mover in all_movers:
+            mover.enable().wait()
+            mover.join_track(track="track").wait()
+        recorder = engine.record()
+        first = all_movers[-1].move_on_track(position=2000, velocity=100, jerk=5000)
+        others = [mover.move_on_track(position=2000 - (count - 1 - i) * gap) for i, mover in enumerate(all_movers[:-1])]
+        engine.wait(lambda: all(move.done for move in (first, *others)), 60)
+        for place in (2000.0, 3500.0):
+            moves = [
+                mover.move_on_track(
+                    position=place + i * gap,
+                    velocity=rng.uniform(50, 2500),
+                    acceleration=rng.uniform(500, 15_000),
+                    jerk=rng.uniform(5e3, 5e5),
+                )
+                for i, mover in enumerate(all_movers)
+            ]
+            if place == 3500.0:  # the others run up to the first, which goes on
+                engine.run(0.3)
+                all_movers[-1].halt()
+                engine.run(0.3)
+                moves[-1] = all_movers[-1].move_on_track(position=place + (count - 1) * gap)
+            engine.wait(lambda moves=moves: all(move.done for move in moves), 60)
+            assert [mover.track_position for mover in all_movers] == [place + i * gap for i in range(count)]
+            assert all(mover.waits_for == 0 for mover in all_movers)
+        recording = recorder.stop()
+    for mover in all_movers:
+        assert np.min(recording[mover.name]["track_velocity"]) > -1e-6
+
+
 def test_bad_commands(network: Engine) -> None:
     """PL-02, PL-22."""
     red = network.mover("red")
@@ -248,7 +296,7 @@ def test_bad_commands(network: Engine) -> None:
     with pytest.raises(takt.CommandError, match="not enabled"):
         red.move_on_track(position=0, track="three").wait()
     network.track("one").disable().wait()
-    with pytest.raises(takt.CommandError, match="movers on it"):
+    with pytest.raises(takt.CommandError, match=r"movers on the track .*: mover red"):
         network.track("one").clear().wait()
 
 

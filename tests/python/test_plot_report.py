@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 from motion_curves import DT, one_axis, positions
 from takt import checks, plot, report
@@ -57,7 +58,9 @@ def test_signals_of_one_component_can_be_told_apart() -> None:
     figure = plot.draw(Recording({"robot": columns}), "robot.*")
     looks = {line.get_label(): line.get_color() for ax in figure.axes for line in ax.get_lines()}
     assert len({looks["x"], looks["y"], looks["z"]}) == 3
-    assert looks["actual x"] == looks["x"]
+    np.testing.assert_allclose(looks["x"], 0.45 * np.array(to_rgb(looks["actual x"])))
+    styles = {line.get_label(): line.get_linestyle() for ax in figure.axes for line in ax.get_lines()}
+    assert (styles["x"], styles["actual x"]) == ("--", "-")
 
 
 def test_signals_by_pattern() -> None:
@@ -65,7 +68,9 @@ def test_signals_by_pattern() -> None:
     assert plot.select(rec, ["*.set_position"]) == [("x", "set_position"), ("y", "set_position")]
     assert plot.select(rec, ["y"]) == [("y", "set_position"), ("y", "actual_position")]
     assert plot.select(rec, ["x.a*", "x.a*"]) == [("x", "actual_position")]
-    with pytest.raises(RecordingError, match=r"no signal matches 'z\.\*' \(the recording has the components x, y\)"):
+    with pytest.raises(
+        RecordingError, match=r"no signal matches 'z\.\*': this recording has no component 'z' \(it has x, y\)"
+    ):
         plot.draw(rec, "z.*")
 
 
@@ -83,6 +88,22 @@ def test_a_wrap_is_not_drawn_as_a_line() -> None:
     assert time_s.tolist() == [0, 1, 2, 2, 3]
     assert math.isnan(values[2])
     assert values[[0, 1, 3, 4]].tolist() == [350, 359, 2, 9]
+
+
+def test_nothing_is_drawn_where_samples_are_missing() -> None:
+    cycle = np.delete(np.arange(10), [4, 5])
+    rec = Recording({"x": {"time_s": cycle * DT, "cycle": cycle, "set_position": cycle, "on": [True] * 8}})
+    verdicts = [checks.stays(rec, "x.set_position < 20"), checks.never_both(rec, "x.set_position > 20", "x.on")]
+    for curve in (plot.draw(rec, "x.*").axes[0], *(plot.draw_verdict(verdict, rec).axes[0] for verdict in verdicts)):
+        values = np.asarray(curve.get_lines()[0].get_ydata())
+        assert math.isnan(values[4])
+        assert np.delete(values, 4).tolist() == cycle.tolist()
+    band = plot.draw(rec, "x.*").axes[1]
+    ends = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in band.patches]
+    np.testing.assert_allclose(ends, [(0.0, 0.003), (0.006, 0.009)])
+    assert plot.stretches(cycle[:5] * DT, [1] * 5, [(0.003, 0.006)]) == [(0, 0.003, 1), (0.006, 0.006, 1)]
+    late = checks.stays(rec, "x.set_position < 20", window=(0.0065, 0.0085))
+    assert np.asarray(plot.draw_verdict(late, rec).axes[0].get_lines()[0].get_ydata()).tolist() == [7, 8]
 
 
 @pytest.mark.parametrize(
@@ -128,3 +149,13 @@ def test_every_kind_of_verdict_can_be_drawn() -> None:
     for verdict in verdicts:
         assert not verdict.passed
         assert colours_of(plot.draw_verdict(verdict)) > 50, verdict.title
+
+
+def test_the_picture_shows_the_broken_limit_however_far_away_it_is() -> None:
+    rec = Recording({"x": {"time_s": np.arange(50) * DT, "still": np.full(50, 0.7), "nothing": np.zeros(50)}})
+    for condition, limit in (("x.still < 0.1", 0.1), ("x.still > 30", 30), ("x.nothing == 2", 2)):
+        (ax,) = plot.draw_verdict(checks.stays(rec, condition)).axes
+        low, high = ax.get_ylim()
+        assert low < limit < high
+    (ax,) = plot.draw_verdict(checks.stays(rec, "x.nothing < 400")).axes
+    assert ax.get_ylim() == (-1, 1)

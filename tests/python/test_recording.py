@@ -125,7 +125,7 @@ def test_slice_takes_samples_and_events() -> None:
 def test_gaps() -> None:
     cycle = np.array([0, 4, 8, 20, 24, 32])
     rec = Recording({"x": {"time_s": cycle / 1000, "cycle": cycle}})
-    assert rec.gaps("x") == [Gap(8, 20, 2, 0.008), Gap(24, 32, 1, 0.024)]
+    assert rec.gaps("x") == [Gap(8, 20, 2, 0.008, 0.02), Gap(24, 32, 1, 0.024, 0.032)]
     assert sum(g.missing for g in rec.gaps("x", step=1)) == 33 - 6
     assert two_rates().gaps("belt") == []
 

@@ -80,7 +80,7 @@ def test_the_report_needs_nothing_else(tmp_path: Path) -> None:
     assert not re.search(r"""(url\(|@import|fetch\(|import\(|https?://[^\s"']+\.(js|css))""", text)
     assert "<title>A &lt;move&gt; &amp; more</title>" in text
     assert data["title"] == "A <move> & more"
-    assert data["meta"] == {"engine": {"overruns": 0}, "nan": None}
+    assert data["meta"] == {"engine": {"overruns": 0}, "nan": None, "lost samples": "none"}
     assert [v["passed"] for v in data["verdicts"]] == [False, True]
     assert {p.name for p in made.pictures} == {"x.png", "failed_1_within_limits_x.png"}
     for picture in made.pictures:
@@ -175,6 +175,25 @@ def test_the_library_inside_says_whose_it_is() -> None:
     assert f"(v{version[1]})" in (folder / "uPlot.iife.min.js").read_text(encoding="utf-8")[:200]
 
 
+def test_the_summary_knows_movers() -> None:
+    """As axes: how fast, how hard and how far beside, of X and Y together."""
+    still = np.zeros(3)
+    columns = {
+        **{"x": [0.0, 3.0, 6.0], "y": [0.0, 4.0, 8.0], "z": still},
+        **{"actual_x": [0.0, 2.7, 6.0], "actual_y": [0.0, 3.6, 8.0], "actual_z": still},
+        **{"velocity_x": [0.0, 3.0, -30.0], "velocity_y": [0.0, 4.0, 40.0]},
+        **{"acceleration_x": [0.0, 600.0, 0.0], "acceleration_y": [0.0, -800.0, 0.0]},
+    }
+    units = {"actual_x": "mm", "velocity_x": "mm/s", "acceleration_x": "mm/s²"}
+    rec = Recording({"one": {"time_s": np.arange(3) * DT, **columns}}, {"one": units})
+    data, _ = payload(report.render(rec, [], "t"))
+    (row,) = data["summary"]["rows"]
+    told = dict(zip(data["summary"]["head"], row, strict=True))
+    assert told["max. velocity"] == "50 mm/s"
+    assert told["max. acceleration"] == "1000 mm/s²"
+    assert told["max. following error"] == "0.5 mm"
+
+
 # --- what is kept of a run ---
 
 SCENARIO = '''"""Goes there."""
@@ -210,6 +229,71 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+def test_figures_of_the_engine_are_said_in_words(here: Path) -> None:
+    """Of a log, whose last message of the engine has them."""
+    url = new_url()
+    with running(here, url, "--log", "run.log"), takt.connect(url) as session:
+        session.axis("x").power().wait()
+        session.run(0.3)  # the next figures count it
+    assert main(["report", "run.log"]) == 0
+    data, _ = payload(Path("run.html").read_text())
+    assert data["meta"]["cycle"] == "1 ms"
+    last = takt.read_log("run.log").meta["engine"]
+    rows = data["meta"]["engine"]
+    assert rows["cycles"] == f"{last['cycle']:,}"
+    assert rows["commands"] == "1 applied, 0 refused"
+    assert rows["dropped"] == "0 states, 0 feedbacks"
+    assert set(rows) <= {"cycles", "overruns", "execution of a cycle", "wake-up latency", "commands", "dropped"}
+
+
+def test_counts_of_the_engine_that_should_be_0_are_said_where_they_are_not() -> None:
+    figures = takt.Engine(MACHINE).figures
+    times = {"count": 2, "max": 3000, "buckets": [0] * 11 + [2] + [0] * 20}
+    figures |= {"overruns": 1234, "snapshots_dropped": 1, "journal_dropped": 3, "latency": times}
+    data, _ = payload(report.render(one_axis(), [], "t", {"engine": figures, "mine": {"a_b": 1}}))
+    assert data["meta"] == {
+        "engine": {
+            "cycles": "0",
+            "overruns": "1,234",
+            "wake-up latency": "median 3 µs, 99 % below 3 µs, longest 3 µs",
+            "commands": "0 applied, 0 refused",
+            "dropped": "1 state, 0 feedbacks",
+            "journal entries dropped": "3",
+        },
+        "mine": {"a_b": 1},
+        "lost samples": "none",
+    }
+
+
+def test_what_was_judged_without_samples_says_so(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Which are missing and where: in the page, on the terminal, and in every verdict that had to do without them."""
+    assert main(["run", "passes.py", "--report", "whole"]) == 0
+    assert "2 passed, 0 failed" in (said := capsys.readouterr().out)
+    assert "s of engine time, no sample missing" in said
+    data, _ = payload(Path("whole/report.html").read_text())
+    assert (data["meta"]["lost samples"], data["trouble"]) == ("none", "")
+
+    whole = takt.Recording.load("whole/recording.npz")
+    first = whole["x"]["cycle"][0]
+    losses = {"takt/axis/x": 1234, "takt/engine": 1}
+    holed = Recording(
+        {"x": np.delete(whole["x"], [50, 51, 200]), "r": whole["r"]},
+        info={"x": whole.info("x")},
+        names={"x": {"state": whole.names("x", "state")}},
+        meta={"losses": losses},
+    )
+    holed.save("holed.npz")
+    lacks = f"3 samples of x in 2 gaps, the first after {(first + 49) / 1000:g} s"
+    assert main(["report", "holed.npz", "--scenario", "passes.py"]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert f"s of engine time; missing: {lacks} Samples are missing: {lacks}. report:" in said
+    data, _ = payload(Path("holed.html").read_text())
+    assert data["trouble"] == f"Samples are missing: {lacks}."
+    assert "lost samples" not in data["meta"]
+    assert data["meta"]["messages lost on the way, of"] == {"x": "1,234", "engine": "1"}
+    assert [v["sentence"].endswith(f"; missing: {lacks}") for v in data["verdicts"]] == [True, True]
+
+
 @pytest.mark.parametrize(("scenario", "code"), [("fails.py", 1), ("passes.py", 0)])
 def test_a_report_made_later_is_the_one_made_at_once(scenario: str, code: int, here: Path) -> None:
     """Verdicts, figures, pictures and the machine are kept in the recording: nothing else is asked."""
@@ -223,7 +307,7 @@ def test_a_report_made_later_is_the_one_made_at_once(scenario: str, code: int, h
     assert Path("moved.html").read_bytes() == at_once
     data, page = payload(at_once.decode())
     assert data["title"] == "Goes there"
-    assert data["meta"]["engine"]["commands_applied"] == 2
+    assert data["meta"]["engine"]["commands"] == "2 applied, 0 refused"
     found = [(v["title"], v["passed"]) for v in data["verdicts"]]
     failing_first = [("within_limits(x)", False), ("reaches(x)", True)]
     assert found == (failing_first if code else [("reaches(x)", True), ("within_limits(x)", True)])
@@ -231,6 +315,48 @@ def test_a_report_made_later_is_the_one_made_at_once(scenario: str, code: int, h
     pictures = [load for load in page.loads if load.startswith("data:image/png;base64,")]
     assert len(pictures) == (0 if code else 1)
     assert (b"<h2>x over time</h2>" in at_once) == (code == 0)
+
+
+@pytest.mark.parametrize(
+    ("line", "components", "quantities"),
+    [
+        ("assert axis.set_position > 1000, 'too near'", ["x"], ["position"]),
+        ("assert session.axis('x').state == 'Nothing', 'too near'", ["x"], ["x.state"]),
+        ("assert x.in_position > 1000, 'too near'", ["x"], ["x.in_position"]),
+        ("assert x is None, 'too near'", ["x"], ["position", "velocity", "acceleration", "following error", "x.state"]),
+        ("assert session.now < 0, 'too near'", [], []),
+    ],
+)
+def test_a_plain_assertion_says_when_and_shows_what_it_names(
+    line: str, components: list[str], quantities: list[str], here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Where a component is named its curves, of the fields that are named or the usual ones; always the time."""
+    broken = SCENARIO.replace("    session.run(0.1)", f"    axis = x\n    {line}\n    session.run(0.1)")
+    Path("broken.py").write_text(broken)
+    assert main(["run", "broken.py", "--report", "out"]) == 1
+    when = takt.Recording.load("out/recording.npz").end_s
+    data, page = payload(Path("out/report.html").read_text())
+    assertion = data["assertion"]
+    (said,) = re.findall(r"too near \(broken.py:10\) at ([\d.]+) s", assertion["sentence"])
+    assert float(said) == pytest.approx(when, abs=0.0015)
+    assert "too near (broken.py:10) at" in " ".join(capsys.readouterr().out.split())
+    assert assertion["components"] == components
+    assert assertion["place"] == [pytest.approx(when, abs=0.0015)] * 2
+    assert assertion["view"][0] < assertion["place"][0] <= assertion["view"][1] + 0.0015
+    assert [lane["quantity"] for lane in assertion["lanes"]] == quantities
+    if line.startswith("assert axis"):
+        (trace,) = assertion["lanes"][0]["traces"]
+        assert trace["label"] == "x.set_position"
+        values = decoded(trace["values"], trace["time"]["n"], page)
+        assert values[-1] == pytest.approx(60)
+
+
+def test_a_plain_assertion_on_the_recording_shows_what_it_names(here: Path) -> None:
+    assert main(["run", "fails.py", "--report", "out"]) == 1
+    data, _ = payload(Path("out/report.html").read_text())
+    assertion = data["assertion"]
+    assert (assertion["sentence"], assertion["place"]) == ("it went too far (fails.py:14)", None)
+    assert [trace["label"] for lane in assertion["lanes"] for trace in lane["traces"]] == ["x.actual_position"]
 
 
 def test_the_failing_verdict_has_its_curve_and_limit(here: Path) -> None:
@@ -308,7 +434,49 @@ def test_a_log_that_ends_in_the_middle_of_a_message(here: Path, capsys: pytest.C
     np.testing.assert_array_equal(torn["x"], whole["x"][: len(torn["x"])])
 
 
+def test_a_log_of_two_starts_says_which_one_is_shown(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, place in (("first", 20.0), ("second", 30.0)):
+        url = new_url()
+        with running(here, url, "--log", f"{name}.log"), takt.connect(url) as session:
+            session.axis("x").power().wait()
+            session.axis("x").move_absolute(position=place).wait()
+    Path("both.log").write_bytes(Path("first.log").read_bytes() + Path("second.log").read_bytes())
+
+    def last_place(*arguments: str) -> tuple[float, str, str]:
+        """What is shown, what the terminal says, and what the page does."""
+        capsys.readouterr()
+        assert main(["report", "both.log", *arguments]) == 0
+        data, page = payload(Path("both.html").read_text())
+        (x,) = (c for c in data["components"] if c["name"] == "x")
+        (field,) = (f for f in x["fields"] if f["name"] == "set_position")
+        values = decoded(field, data["bases"][x["base"]]["n"], page)
+        return float(values[-1]), capsys.readouterr().out, data["trouble"]
+
+    said = "The log holds 2 starts of the engine, from 0 on: this is number {}; --run chooses another."
+    for arguments, place, number in (((), 30, 1), (("--run", "0"), 20, 0), (("--run", "1"), 30, 1)):
+        shown, terminal, page = last_place(*arguments)
+        assert shown == pytest.approx(place)
+        assert said.format(number) in terminal
+        assert said.format(number) in page
+    assert main(["report", "first.log"]) == 0
+    assert "starts of the engine" not in capsys.readouterr().out
+
+    # The other commands choose likewise.
+    assert main(["log", "both.log", "--run", "0", "--save", "a.npz"]) == 0
+    assert takt.Recording.load("a.npz")["x"]["set_position"][-1] == pytest.approx(20)
+    assert main(["export", "both.log", "x.set_position", "--csv", "a.csv", "--run", "0"]) == 0
+    assert float(Path("a.csv").read_text().splitlines()[-1].split(",")[2]) == pytest.approx(20)
+    assert main(["plot", "both.log", "x", "--run", "0", "-o", "a.png"]) == 0
+    assert capsys.readouterr().out.count(said.format(0)) == 3
+
+
 BAD = {
+    "no such start": (
+        ["strange.log", "--run", "1"],
+        "strange.log: holds 1 run; there is no run 1: they are counted from 0",
+    ),
+    "a start from the end": (["strange.log", "--run", "-1"], "there is no run -1: they are counted from 0"),
+    "one start": (["good.npz", "--run", "0"], "good.npz: is a recording, which holds one run: there is none to choose"),
     "nothing there": (["none.npz"], "none.npz: No such file or directory"),
     "another file": (["fails.py"], "fails.py: is neither a recording (.npz) nor an LCM log"),
     "no run": (["empty"], "empty: holds no run: expected recording.npz in it"),

@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 import takt
+from motion_curves import one_axis
 from pages import CHROMIUM, FLAGS, PATIENCE_S, TWO_ON_A_LOOP, needs_chromium
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 from takt import checks, report
+from takt.complaint import Complaint
 from takt.kinematics import Kinematics
 
 pytestmark = needs_chromium
@@ -155,6 +157,28 @@ def test_the_failing_assertion_is_the_first_thing_seen(browser: Browser, failed:
         expect(folded.locator("canvas")).to_have_count(0)
         folded.locator("summary").click()
         expect(folded.locator("canvas").first).to_be_visible()
+
+
+def test_a_plain_assertion_has_its_curve_and_its_place(
+    browser: Browser, recording: takt.Recording, tmp_path: Path
+) -> None:
+    """And where it names nothing, at least the place, which all curves of the machine then show."""
+    (mark,) = (event.time_s for event in recording.events if event.text == "it waits")
+    for components, shown in (({"one"}, 1), (set(), 0)):
+        assertion = Complaint("no (a.py:1)", mark, frozenset(components), frozenset({"x"})).verdict(recording)
+        file = tmp_path / "report.html"
+        file.write_text(report.render(recording, [], "t", assertion=assertion), encoding="utf-8")
+        with opened(browser, file) as page:
+            expect(page.locator("#pill")).to_have_text("1 of 1 failed")
+            first = page.locator("article.verdict").first
+            expect(first.locator("strong").first).to_have_text("assert(one)" if components else "assert")
+            expect(first.locator(".sentence")).to_have_text("no (a.py:1)")
+            expect(first.locator("canvas")).to_have_count(shown)
+            assert page.evaluate("() => window.takt.clock.time") == pytest.approx(mark)
+            first.get_by_role("button", name="Go to place").click()
+            begin, end = page.evaluate("() => window.takt.curves.plots.window")
+            assert begin < mark < end
+            assert end - begin < 1.01
 
 
 def test_all_values_come_through(browser: Browser, failed: Path, recording: takt.Recording) -> None:
@@ -305,6 +329,88 @@ def test_curves_zoom(browser: Browser, failed: Path) -> None:
         assert window() == pytest.approx(whole)
 
 
+def blue(page: Page, plots: str, times: list[float]) -> list[list[bool]]:
+    """Of each of these plots: whether something blue, as the first curve is, stands at these times."""
+    script = """([plots, times]) => eval(plots).map(({ plot: u }) => times.map((time) => {
+        const { data } = u.ctx.getImageData(Math.round(u.valToPos(time, "x", true)), u.bbox.top, 1, u.bbox.height);
+        for (let i = 0; i < data.length; i += 4) if (data[i + 2] > data[i] + 60 && data[i + 3] > 128) return true;
+        return false;
+    }))"""
+    found: list[list[bool]] = page.evaluate(script, [plots, times])
+    return found
+
+
+def test_nothing_is_drawn_where_samples_are_missing(browser: Browser, tmp_path: Path) -> None:
+    """Curves, bands of states and the curves of verdicts end there; what was recorded at a lower rate does not."""
+    whole = one_axis()
+    x = whole["x"]
+    tables = {"x": np.delete(x, range(400, 600)), "slow": x[::20]}
+    of_both = {
+        "info": {name: whole.info("x") for name in tables},
+        "names": {name: {"state": whole.names("x", "state")} for name in tables},
+    }
+    units = {name: {field: whole.unit("x", field) for field in whole.fields("x")[2:]} for name in tables}
+    holed = takt.Recording(tables, units, **of_both)
+    verdicts = [
+        checks.within_limits(holed, "x", velocity=100),
+        checks.stays(holed, "x.state == Standstill"),
+        checks.keeps_distance(holed, "x", "slow", 1.0),
+        checks.stays(holed, "slow.set_position < 50"),
+    ]
+    assert not any(verdicts)
+    file = tmp_path / "report.html"
+    file.write_text(report.render(holed, verdicts, "holed"), encoding="utf-8")
+    with opened(browser, file) as page:
+        page.evaluate("() => { for (const block of window.takt.curves.blocks.values()) block.make(); }")
+        page.evaluate("() => { for (const card of window.takt.verdicts.cards) window.takt.verdicts.make(card); }")
+        times = [0.3, 0.41, 0.5, 0.59, 0.7]
+        of = lambda name: f"takt.curves.plots.items.filter(({{ node }}) => node.closest('[data-name={name}]'))"  # noqa: E731
+        positions, *_, states = blue(page, of("x"), times)
+        assert positions == states == [True, False, False, False, True]
+        page.evaluate("() => { for (const { plots } of window.takt.verdicts.cards) plots.zoom(0.2, 0.8); }")
+        seen = [blue(page, f"takt.verdicts.cards[{i}].plots.items", times)[0] for i in range(4)]
+        assert seen == [[True, False, False, False, True]] * 3 + [[True] * 5]
+
+
+def test_a_broken_limit_is_seen_however_far_away_it_is(browser: Browser, tmp_path: Path) -> None:
+    """Of a curve that does not change, too; where all is well and 0, its axis has a range for people."""
+    rec = takt.Recording({"x": {"time_s": np.arange(50) * 0.01, "still": np.full(50, 0.7), "nothing": np.zeros(50)}})
+    conditions = {"x.still < 0.1": 0.1, "x.still > 30": 30.0, "x.nothing == 2": 2.0, "x.nothing < 400": None}
+    file = tmp_path / "report.html"
+    file.write_text(report.render(rec, [checks.stays(rec, condition) for condition in conditions], "t"), "utf-8")
+    with opened(browser, file) as page:
+        page.evaluate("() => window.takt.verdicts.cards.forEach((card) => window.takt.verdicts.make(card))")
+        script = "() => window.takt.verdicts.cards.map(({ plots }) => plots.items[0].plot.scales.y)"
+        for seen, limit in zip(page.evaluate(script), conditions.values(), strict=True):
+            low, high = seen["min"], seen["max"]
+            assert (low, high) == (-1, 1) if limit is None else low < limit < high
+
+
+def test_curves_of_a_mover_can_be_told_apart(browser: Browser, failed: Path) -> None:
+    """As those of an axis: each thing has its colour, and what is commanded is dashed beside what was measured."""
+    with opened(browser, failed) as page:
+        page.evaluate("() => window.takt.curves.blocks.get('one').make()")
+        script = """() => {
+            const buttons = [...document.querySelectorAll("[data-name=one] .legend button")];
+            return Object.fromEntries(buttons.map((button) => {
+                const line = button.querySelector("i");
+                return [button.querySelector("span").textContent, [line.style.borderColor, line.className]];
+            }));
+        }"""
+        looks = {label: tuple(look) for label, look in page.evaluate(script).items()}
+        places = ["x", "actual x", "track position"]
+        assert len({looks[label] for label in places}) == len(places)
+        assert [looks[label][1] for label in places] == ["dashed", "", ""]
+
+
+def test_the_summary_is_seen_whole_on_a_narrow_page(browser: Browser, failed: Path) -> None:
+    with opened(browser, failed) as page:
+        page.set_viewport_size({"width": 800, "height": 900})
+        box = page.locator("#summary-section .scroll")
+        assert box.evaluate("(node) => node.scrollWidth <= node.clientWidth")
+        expect(page.locator("#summary tr", has_text="one").locator("td").last).to_have_text("0")
+
+
 @pytest.mark.parametrize("empty", [{}, {"x": {"time_s": [], "p": []}}, {"x": {"time_s": [1.0], "p": [2.0]}}], ids=str)
 def test_empty_runs_can_be_looked_at(empty: Any, tmp_path: Path, browser: Browser) -> None:
     page_file = tmp_path / "report.html"
@@ -315,4 +421,4 @@ def test_empty_runs_can_be_looked_at(empty: Any, tmp_path: Path, browser: Browse
         expect(page.locator("#trouble")).to_contain_text(said)
         expect(page.locator("#pill")).to_have_text("no verdicts")
         if few:
-            expect(page.locator(".component small")).to_have_text("1 samples: nothing to draw")
+            expect(page.locator(".component small")).to_have_text("1 sample: nothing to draw")

@@ -411,7 +411,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
     Path("part.nc").write_text("G0 Z5\nG1 X30 Y40 F600\nG3 X30 Y40 I0 J10\nM5\n")
     assert main(["path", "part.nc", "--start", "0", "0", "5", "--csv", "part.csv", "--plot", "part.png"]) == 0
     text = capsys.readouterr().out
-    assert "part.nc: 1 lines and 2 arcs, 112.832 mm" in text
+    assert "part.nc: 1 line and 2 arcs, 112.832 mm" in text
     assert "velocities: 10 mm/s" in text
     assert "left out: M5 (1 time)" in text
     assert "elements: part.csv\npicture: part.png\n" in text

@@ -144,9 +144,9 @@ def test_states_and_modes() -> None:
         assert one.operation_mode.value == "Standing"
         one.disable().wait()
         assert (one.state.value, one.operation_mode.value) == ("Disabled", "Uninitialized")
-        refused = one.reset()
+        reset = one.reset()
         engine.step()
-        assert (refused.error, refused.error_id) == (True, 3005)
+        assert reset.done  # there is nothing to reset
 
 
 def refuse(engine: Engine, feedback: takt.Feedback, sentence: str) -> None:
@@ -322,6 +322,13 @@ def test_the_command_says_and_draws(tmp_path: Path, capsys: pytest.CaptureFixtur
             if s > track.range_at_start + 1
         ]
         assert not apart or min(apart) >= diagonal - 0.1
+
+
+def test_the_command_counts_one_track(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "layout.yaml"
+    file.write_text("tracks:\n  - {name: one, elements: [{from: {x: 0, y: 0}, to: {x: 500, y: 0}}]}\n")
+    assert main(["track", str(file)]) == 0
+    assert f"{file}: 1 track, 500 mm" in capsys.readouterr().out
 
 
 def test_the_command_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

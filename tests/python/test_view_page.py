@@ -204,6 +204,7 @@ def test_the_trigger_takes_switches_states_and_what_leaves_rest(tmp_path: Path, 
         page.select_option("#span", "0.1")
 
         def armed(signal: str, level: str | None = None, state: str | None = None) -> None:
+            wait_for_cycle(page, session.cycle)  # it counts what the page gets from then on, however late that is
             page.select_option("#trigger-mode", "single")
             page.select_option("#trigger-signal", signal)
             if level is not None:
@@ -354,6 +355,58 @@ def test_a_page_that_was_slow_has_lost_nothing(tmp_path: Path, browser: Browser)
             assert page.evaluate("() => [window.takt.model.health.lost, window.takt.model.health.skipped]") == [0, 0]
 
 
+def test_what_cursors_measure_is_seen_whole_in_a_narrow_window(tmp_path: Path, browser: Browser) -> None:
+    url = new_url()
+    chosen = "#tab=scope&signals=x.set_position,x.set_velocity,x.actual_velocity,x.state,r.set_position"
+    with (
+        running(tmp_path, url, machine=FULL_RATE),
+        served(url) as address,
+        opened(browser, address, chosen) as page,
+    ):
+        wait_for_cycle(page, 1)
+        page.set_viewport_size({"width": 900, "height": 860})
+        page.keyboard.press("a")
+        page.keyboard.press("b")
+        page.keyboard.press("ArrowLeft")
+        expect(page.locator("#measured th").last).to_have_text("largest between")
+        expect(page.locator("#measured td").nth(3)).not_to_be_empty()
+        assert page.locator("#measured").evaluate("(box) => box.scrollWidth <= box.clientWidth")
+
+
+def test_nothing_is_drawn_where_nothing_was_received(tmp_path: Path, browser: Browser) -> None:
+    """Neither curves nor bands of states."""
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=FULL_RATE),
+        served(url) as address,
+        opened(browser, address, "#tab=scope&signals=x.set_position,x.state") as page,
+    ):
+        wait_for_cycle(page, 1)
+        first = column(page, "x.state")[0][0]
+        wait_for_cycle(page, first + 1200)
+        script = """() => {
+            const { scope } = window.takt;
+            scope.setSpan(1);
+            scope.pause(true);
+            const { store, from } = scope.held;
+            const [index, series] = [...store.series][0];
+            const rows = [...series.cycles.keys()].filter((i) => Math.abs(series.cycles[i] - from - 500) > 100);
+            const kept = (column) => Float64Array.from(rows, (i) => column[i]);
+            const columns = new Map([...series.columns].map(([field, column]) => [field, kept(column)]));
+            store.series.set(index, series.constructor.of(kept(series.cycles), columns));
+            scope.draw();
+            const { canvas, inner, ratio } = scope.drawing;
+            const inkAt = (lane, part) => {
+                const at = Math.round((64 + part * inner) * ratio);
+                const [top, height] = [lane.top * ratio + 4, lane.height * ratio - 8];
+                const { data } = canvas.getContext("2d").getImageData(at, top, 1, height);
+                return [...data.keys()].some((i) => i % 4 === 0 && data[i] < 200);
+            };
+            return scope.layout.lanes.map((lane) => [0.21, 0.43, 0.57, 0.79].map((part) => inkAt(lane, part)));
+        }"""
+        assert page.evaluate(script) == [[True, False, False, True]] * 2
+
+
 def test_a_thousand_axes(tmp_path: Path, browser: Browser) -> None:
     axes = "".join(
         f"  - {{name: axis_{i:04}, limits: {{velocity: 100, acceleration: 1000, jerk: 20000}}}}\n" for i in range(1000)
@@ -397,7 +450,7 @@ def test_the_plan_shows_movers_where_they_are(tmp_path: Path, browser: Browser) 
             mover.join_track(track="loop", use_orientation=False).wait()
         one, two = session.mover("one"), session.mover("two")
         one.move_on_track(track="loop", position=1000)  # two is in its way, and it waits
-        session.wait(lambda: one.waits_for == 2, 10.0)
+        session.wait(lambda: one.waits_for == 2 and one.x > 200 and one.track_velocity == 0, PATIENCE_S)
         script = """() => {
             const { model } = window.takt;
             return ["x", "y", "waits_for"].map((field) => model.liveOf(model.byName.get("one"), field));

@@ -3,7 +3,6 @@ CV-02, CV-20, CV-21, CV-23, PP-40, PP-42, PP-51)."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,16 +10,15 @@ import pytest
 import takt
 from takt import expect
 from takt.demo import run_demo
-from takt.scenario import load_scenario, run_scenario
+from takt.scenario import load_scenario, modules_of, run_scenario
 
 FOLDER = Path(__file__).parents[2] / "python/examples/pick_cell"
 SCENARIO = FOLDER / "scenario.py"
-sys.path.insert(0, str(FOLDER))
-
-from cell import Settings  # noqa: E402
-from judge import Judgement, judge  # noqa: E402
-from picker import LEFT, NOT_HELD, UNREACHABLE  # noqa: E402
-from scenario import MACHINE, play  # noqa: E402
+with modules_of(FOLDER):
+    from cell import Settings
+    from judge import Judgement, judge
+    from picker import LEFT, NOT_HELD, UNREACHABLE
+    from scenario import MACHINE, play
 
 TEXT = (FOLDER / "machine.yaml").read_text(encoding="utf-8")
 EXACT = {"noise": 0.0, "slip": 0.0, "slides": 0.0}  # nothing but belts, arms and gripper can be wrong

@@ -3,20 +3,18 @@ PL-32, PL-33, PL-70, PL-71)."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import takt
-from takt.scenario import load_scenario, verify_recording
+from takt.scenario import load_scenario, modules_of, verify_recording
 
 FOLDER = Path(__file__).parents[2] / "python/examples/planar_line"
-sys.path.insert(0, str(FOLDER))
-
-from judge import Judgement, judge  # noqa: E402
-from line import PRESSES  # noqa: E402
-from scenario import EVERY, play  # noqa: E402
+with modules_of(FOLDER):
+    from judge import Judgement, judge
+    from line import PRESSES
+    from scenario import EVERY, play
 
 LOWER_TRACK = 11  # number of the track on the level below
 TEXT = (FOLDER / "machine.yaml").read_text(encoding="utf-8")

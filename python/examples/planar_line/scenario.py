@@ -59,7 +59,7 @@ def verify(recording: takt.Recording) -> None:
     assert became.pieces_a_minute > 25, became.sentence
     assert became.nearest > 113, f"two movers were {became.nearest:.1f} mm apart"
     for mover in became.movers:
-        expect.stays(recording, f"{mover}.track_velocity < 1500.001")
+        expect.within_limits(recording, mover)
 
 
 def pictures(recording: takt.Recording) -> dict[str, Figure]:

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from takt.checks.series import Check, Mask, Series, decided, extent, nearest
+from takt.counted import counted
 from takt.recording import FloatArray, Recording, RecordingError, split_signal
 from takt.verdict import Bound, Interval, Lane, Verdict, number, seconds
 
@@ -150,14 +151,15 @@ def visits_states(
 @decided
 def complete(recording: Recording, component: str, *, step: int | None = None) -> Verdict:
     """No sample was lost: cycle numbers follow each other evenly (`step` cycles apart, where it is known)."""
-    check = Check("complete", recording, (component,), None)
+    check = Check("complete", recording, (component,), None, says_missing=False)
     s = check.series(component, "cycle")
     gaps = recording.gaps(component, step)
     if not gaps:
-        return check.verdict(True, f"all {len(s.values)} samples of {component} are there", lanes=(s.lane(),))
+        text = f"{component} is complete: {counted(len(s.values), 'sample')}"
+        return check.verdict(True, text, lanes=(s.lane(),))
     missing = sum(g.missing for g in gaps)
     text = (
-        f"{missing} samples of {component} are missing in {len(gaps)} gaps, "
+        f"{counted(missing, 'sample')} of {component} lost in {counted(len(gaps), 'gap')}, "
         f"the first after cycle {gaps[0].after_cycle} at {seconds(gaps[0].time_s)}"
     )
     return check.verdict(False, text, when_s=gaps[0].time_s, by=float(missing), unit="samples", lanes=(s.lane(),))

@@ -5,18 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
-from takt.checks.series import Check, Mask, decided, extent, nearest, sibling, wrap
+from takt.checks.measured import EPS, Measured, against, in_range, jerk_against, judge
+from takt.checks.movers import of_mover
+from takt.checks.series import Check, Mask, decided, sibling, wrap
 from takt.recording import FloatArray, Recording
-from takt.verdict import Bound, Interval, Lane, Trace, Verdict, number, seconds
-
-_ABOVE: Literal["above"] = "above"
-_BELOW: Literal["below"] = "below"
-_TINY = 1e-300
-EPS = float(np.finfo(np.float64).eps)
+from takt.verdict import Interval, Verdict
 
 
 @dataclass(frozen=True)
@@ -25,28 +22,6 @@ class _Limits:
     velocity: float | None
     acceleration: float | None
     jerk: float | None
-
-
-@dataclass(frozen=True)
-class _Measured:
-    """One quantity held against its bounds; excess > 0 breaks it."""
-
-    what: str  # "velocity"
-    unit: str
-    time_s: FloatArray
-    values: FloatArray
-    excess: FloatArray
-    scale: float  # what excesses of different quantities are compared by
-    bounds: tuple[Bound, ...]
-    label: str
-    says: str  # "velocity limit of 100 mm/s"
-
-    @property
-    def broken(self) -> Mask:
-        return self.excess > 0
-
-    def lane(self) -> Lane:
-        return Lane(self.what, self.unit, (Trace(self.label, self.time_s, self.values),), self.bounds)
 
 
 @decided
@@ -66,7 +41,9 @@ def within_limits(
     """Position, velocity, acceleration and jerk stay within limits.
 
     position: (lower, upper); the others are largest absolute values. What is not given is taken from the
-        component's `limits`; what is not known there either is not checked.
+        component's `limits`; what is not known there either is not checked. Of a planar mover they are those along
+        its way: in the plane the lengths of the vectors, on a track along that; `lateral_acceleration` in curves
+        of tracks, and Z, A, B and C, are held against its own limits. Jerk is not asked of set points from outside.
     tolerance: relative to the limit, for rounding.
     jerk_tolerance: relative. Jerk is not recorded; it is the difference of two accelerations over the time
         between them, which is the mean jerk of that stretch. The mean of a jerk that keeps its limit keeps it
@@ -76,51 +53,33 @@ def within_limits(
         measured.
     """
     check = Check("within_limits", recording, (component,), window)
+    if signal == "set_position" and "xy" in (recording.info(component).get("limits") or {}):
+        if position is not None:
+            raise ValueError(f"within_limits: for positions of the mover {component} say which: signal='x'")
+        given = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
+        return of_mover(check, component, given, tolerance, jerk_tolerance)
     limits = _limits(recording, component, position, velocity, acceleration, jerk)
-    found: list[_Measured] = []
+    found: list[Measured] = []
     if limits.position is not None:
         lower, upper = limits.position
         s = check.series(component, signal)
-        sides = [limit for limit in (lower, upper) if math.isfinite(limit)]
-        scale = max((abs(limit) for limit in sides), default=0.0)
-        excess = np.maximum(s.values - upper, lower - s.values)
-        kept = excess <= tolerance * scale
-        excess[kept] = np.minimum(excess[kept], 0)
-        bounds = tuple(
-            Bound.level(f"{name} limit {number(limit, s.unit)}", limit, s.span, side)
-            for name, limit, side in (("upper", upper, _ABOVE), ("lower", lower, _BELOW))
-            if math.isfinite(limit)
-        )
-        says = f"position range {number(lower)} … {number(upper, s.unit)}"
-        if sides:
-            found.append(
-                _Measured("position", s.unit, s.time_s, s.values, excess, max(scale, _TINY), bounds, s.label, says)
-            )
+        if math.isfinite(lower) or math.isfinite(upper):
+            found.append(in_range("position", s, lower, upper, tolerance))
     for what, limit in (("velocity", limits.velocity), ("acceleration", limits.acceleration)):
         if limit is not None:
             s = check.series(component, sibling(signal, what))
-            found.append(_against(what, s.unit, s.time_s, s.values, limit, tolerance * limit, s.label))
+            found.append(against(what, s.unit, s.time_s, s.values, limit, tolerance * limit, s.label))
     if limits.jerk is not None:
         s = check.series(component, sibling(signal, "acceleration"))
         if len(s.values) > 1:
-            dt = np.diff(s.time_s)
-            rounding = 4 * EPS * (np.max(np.abs(s.values)) + limits.jerk * np.max(np.abs(s.time_s))) / dt
-            margin_j = limits.jerk * jerk_tolerance + rounding
+            own = _set_by_engine(check, component, signal)
             label = f"{component}.{sibling(signal, 'jerk')} (by differences)"
             found.append(
-                _against(
-                    "jerk",
-                    s.unit.replace("s²", "s³"),
-                    s.time_s[:-1],
-                    np.where(_set_by_engine(check, component, signal), np.diff(s.values) / dt, 0),
-                    limits.jerk,
-                    margin_j,
-                    label,
-                )
+                jerk_against("jerk", s, np.where(own, np.diff(s.values), 0), limits.jerk, jerk_tolerance, label)
             )
     if not found:
         raise ValueError(f"within_limits: no limit is given, and the recording knows none of '{component}'")
-    return _judge(check, component, found, f"stayed within its {', '.join(m.says for m in found)}", "left")
+    return judge(check, component, found, f"stayed within its {', '.join(m.says for m in found)}", "left")
 
 
 @decided
@@ -168,8 +127,8 @@ def continuous(
     step_p = wrap(np.diff(p.values), p.modulus)
     own = _set_by_engine(check, component, signal)
     if step is not None:
-        found = [_against("step of position", p.unit, time_s[own], step_p[own], step, tolerance * step, p.label)]
-        return _judge(check, component, found, "made no step", "went beyond")
+        found = [against("step of position", p.unit, time_s[own], step_p[own], step, tolerance * step, p.label)]
+        return judge(check, component, found, "made no step", "went beyond")
 
     limits = _limits(recording, component, None, velocity, acceleration, jerk)
     v_max, a_max, j_max = limits.velocity, limits.acceleration, limits.jerk
@@ -180,7 +139,7 @@ def continuous(
     def add(what: str, unit: str, change: FloatArray, bound: FloatArray, values: FloatArray, rate: float) -> None:
         margin = tolerance * bound + slack + 8 * EPS * float(np.max(np.abs(values))) + time_rounding * rate
         label = f"{component}: {what}"
-        found.append(_against(what, unit, time_s[own], change[own], bound[own], margin[own], label))
+        found.append(against(what, unit, time_s[own], change[own], bound[own], margin[own], label))
 
     rate_p = v_max if v_max is not None else 0.0
     if v_max is not None:
@@ -213,7 +172,7 @@ def continuous(
         add("step of acceleration", unit_a, np.diff(a), j_max * dt, a, j_max)
     if not found:
         raise ValueError(f"continuous: no bound is given, and the recording knows no limits of '{component}'")
-    return _judge(check, component, found, "made no step", "went beyond", (p.lane(),))
+    return judge(check, component, found, "made no step", "went beyond", (p.lane(),))
 
 
 def _set_by_engine(check: Check, component: str, signal: str) -> Mask:
@@ -258,67 +217,4 @@ def _limits(
         pick("velocity", velocity),
         pick("acceleration", acceleration),
         pick("jerk", jerk) or None,
-    )
-
-
-def _against(
-    what: str,
-    unit: str,
-    time_s: FloatArray,
-    values: FloatArray,
-    limit: float | FloatArray,
-    margin: float | FloatArray,
-    label: str,
-) -> _Measured:
-    """Absolute values against a limit; within the margin above it counts as kept."""
-    levels = np.broadcast_to(np.asarray(limit, dtype=np.float64), values.shape)
-    excess = np.abs(values) - levels
-    kept = excess <= margin
-    excess[kept] = np.minimum(excess[kept], 0)
-    typical = float(np.median(levels))
-    amount = number(typical, unit)
-    says = f"limit of {amount} for the {what}" if " " in what else f"{what} limit of {amount}"
-    bounds = (
-        Bound(f"limit ±{number(typical, unit)}", time_s, levels, _ABOVE),
-        Bound("", time_s, -levels, _BELOW),
-    )
-    return _Measured(what, unit, time_s, values, excess, max(typical, _TINY), bounds, label, says)
-
-
-def _judge(
-    check: Check,
-    component: str,
-    found: Sequence[_Measured],
-    kept: str,
-    broke: str,
-    lanes: Sequence[Lane] = (),
-) -> Verdict:
-    worst = max(found, key=lambda m: float(np.max(m.excess)) / m.scale)
-    at = int(np.argmax(worst.excess))
-    amount, when = float(worst.excess[at]), float(worst.time_s[at])
-    if amount <= 0:
-        return check.verdict(
-            True,
-            f"{component} {kept}; {nearest(abs(amount), worst.unit, when)} ({worst.what})",
-            when_s=when,
-            by=abs(amount),
-            unit=worst.unit,
-            lanes=(*lanes, *(m.lane() for m in found)),
-        )
-    place, where = extent(worst.time_s, worst.broken)
-    others = [m.what for m in found if m is not worst and m.broken.any()]
-    sentence = (
-        f"{component} {broke} its {worst.says} by {number(amount, worst.unit)}: "
-        f"{number(float(worst.values[at]), worst.unit)} at {seconds(when)} ({where})"
-    )
-    if others:
-        sentence += f"; also {', '.join(others)}"
-    return check.verdict(
-        False,
-        sentence,
-        when_s=place[0],
-        by=amount,
-        unit=worst.unit,
-        place=place,
-        lanes=(*lanes, worst.lane()),
     )

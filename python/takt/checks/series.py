@@ -10,6 +10,8 @@ from typing import Any, ParamSpec
 import numpy as np
 import numpy.typing as npt
 
+from takt.counted import counted
+from takt.missing import missing
 from takt.recording import Array, FloatArray, Recording
 from takt.verdict import Interval, Lane, Trace, Verdict, number, seconds
 
@@ -89,13 +91,22 @@ class Series:
 class Check:
     """One check being made: hands out series that can be judged, and makes the verdict."""
 
-    def __init__(self, name: str, recording: Recording, components: Sequence[str], window: Interval | None) -> None:
+    def __init__(
+        self,
+        name: str,
+        recording: Recording,
+        components: Sequence[str],
+        window: Interval | None,
+        says_missing: bool = True,
+    ) -> None:
+        """`says_missing`: its sentences end with the samples that it had to do without."""
         if window is not None and not window[0] <= window[1]:
             raise ValueError(f"{name}: the window {window} does not run forward")
         self.name = name
         self.recording = recording
         self.components = tuple(components)
         self.window = window
+        self.says_missing = says_missing
 
     def series(self, component: str, field: str) -> Series:
         """The column in the window. Undecided, so failed, where there is no sample, where the recording does
@@ -103,34 +114,35 @@ class Check:
         column = self.recording.column(component, field)
         table = self.recording[component]
         time_s: FloatArray = table["time_s"]
+        names = self.recording.names(component, field)
+        info = self.recording.info(component)
+        whole = Series(
+            component,
+            field,
+            self.recording.unit(component, field),
+            time_s,
+            table["cycle"],
+            column.astype(np.float64),
+            float(info["modulus"]) if info.get("modulus") and quantity(field) == "position" else None,
+        )
+        there = [whole.lane(names=names)] if len(time_s) else []  # what else there is to show
         inside = np.ones(len(time_s), dtype=np.bool_)
         if self.window is not None:
             inside = (time_s >= self.window[0]) & (time_s <= self.window[1])
         if not inside.any():
             where = "" if self.window is None else f" between {seconds(self.window[0])} and {seconds(self.window[1])}"
-            self._give_up(f"the recording has no sample of {component}{where}")
+            self._give_up(f"the recording has no sample of {component}{where}", lanes=there)
         if self.window is not None:
-            self._spans(component, time_s, self.window)
-        info = self.recording.info(component)
-        values = column[inside].astype(np.float64)
-        taken = Series(
-            component,
-            field,
-            self.recording.unit(component, field),
-            time_s[inside],
-            table["cycle"][inside],
-            values,
-            float(info["modulus"]) if info.get("modulus") and quantity(field) == "position" else None,
-        )
-        broken = np.flatnonzero(~np.isfinite(values))
+            self._spans(component, time_s, self.window, there)
+        taken = whole.take(inside)
+        broken = np.flatnonzero(~np.isfinite(taken.values))
         if len(broken):
             when = float(taken.time_s[broken[0]])
             count = f" ({len(broken)} samples)" if len(broken) > 1 else ""
-            lane = taken.lane(names=self.recording.names(component, field))
             self._give_up(
-                f"{taken.label} is not a number ({values[broken[0]]}) at {seconds(when)}{count}",
+                f"{taken.label} is not a number ({taken.values[broken[0]]}) at {seconds(when)}{count}",
                 when,
-                (lane,),
+                (taken.lane(names=names),),
             )
         return taken
 
@@ -145,6 +157,8 @@ class Check:
         place: Interval | None = None,
         lanes: Sequence[Lane] = (),
     ) -> Verdict:
+        if self.says_missing and (lacks := missing(self.recording, self.components, self.window)):
+            sentence += f"; missing: {lacks}"
         if place is None and when_s is not None and not passed:
             place = (when_s, when_s)
         return Verdict(self.name, self.components, passed, sentence, when_s, by, unit, place, tuple(lanes))
@@ -162,22 +176,25 @@ class Check:
             self._give_up(f"{a.component} and {b.component} have no cycle in common: {advice}")
         if len(rows_a) < SHARE_IN_COMMON * wanted:
             self._give_up(
-                f"{a.component} and {b.component} have only {len(rows_a)} of {wanted} cycles in common: {advice}"
+                f"{a.component} and {b.component} have only {len(rows_a)} of {counted(wanted, 'cycle')} in common: "
+                f"{advice}"
             )
         return a.take(rows_a), b.take(rows_b)
 
-    def _spans(self, component: str, time_s: FloatArray, window: Interval) -> None:
+    def _spans(self, component: str, time_s: FloatArray, window: Interval, lanes: Sequence[Lane]) -> None:
         """A window is covered when at most one usual sample distance is missing at each end."""
         slack = 1.5 * float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0
         if time_s[-1] < window[1] - slack:
             self._give_up(
                 f"the recording of {component} ends at {seconds(time_s[-1])}, before {seconds(window[1])}",
                 float(time_s[-1]),
+                lanes,
             )
         if time_s[0] > window[0] + slack:
             self._give_up(
                 f"the recording of {component} starts at {seconds(time_s[0])}, after {seconds(window[0])}",
                 float(time_s[0]),
+                lanes,
             )
 
     def _give_up(self, sentence: str, when_s: float | None = None, lanes: Sequence[Lane] = ()) -> None:
@@ -234,14 +251,15 @@ def runs(mask: Mask) -> list[tuple[int, int]]:
 
 
 def extent(time_s: FloatArray, mask: Mask) -> tuple[Interval, str]:
-    """Where a mask holds at first, and a text for "from … to …, n samples"."""
-    first, last = runs(mask)[0]
+    """Where a mask holds at first, and a text for "from … to …, n samples", with how often it does so again."""
+    (first, last), *others = runs(mask)
     place = (float(time_s[first]), float(time_s[last]))
-    count = int(np.count_nonzero(mask))
-    if count == 1:
-        return place, f"at {seconds(place[0])}"
-    final = float(time_s[np.flatnonzero(mask)[-1]])
-    return place, f"from {seconds(place[0])} to {seconds(final)}, {count} samples"
+    text = f"at {seconds(place[0])}"
+    if last > first:
+        text = f"from {seconds(place[0])} to {seconds(place[1])}, {counted(last - first + 1, 'sample')}"
+    if others:
+        text += f", and {counted(len(others), 'more time')} until {seconds(float(time_s[others[-1][1]]))}"
+    return place, text
 
 
 def nearest(value: float, unit: str, time_s: float) -> str:

@@ -17,7 +17,7 @@ def write_outcome(outcome: Outcome, scenario: Scenario, directory: Path, engine:
     drawn = scenario.draw(outcome.recording) if outcome.passed else {}
     figures = {"engine": engine}
     return write_report(
-        outcome.recording, outcome.verdicts, directory, scenario.title, figures, drawn, outcome.complaint
+        outcome.recording, outcome.verdicts, directory, scenario.title, figures, drawn, outcome.assertion
     )
 
 
@@ -31,7 +31,7 @@ def judged(outcome: Outcome, scenario: Scenario) -> Recording:
     drawn = scenario.draw(outcome.recording) if outcome.passed else {}
     figures = (outcome.recording.meta.get("run") or {}).get("figures")
     pictures = {name: png_of(figure) for name, figure in drawn.items()}
-    return keep(outcome.recording, scenario.title, outcome.verdicts, outcome.complaint, figures, pictures)
+    return keep(outcome.recording, scenario.title, outcome.verdicts, outcome.assertion, figures, pictures)
 
 
 def write_page(recording: Recording, run: Path, target: Path) -> Path:

@@ -19,19 +19,20 @@ from takt.verdict import Bound, Interval, Lane, Trace, Verdict, seconds
 KEY = "run"
 POINTS = 2000  # of a curve of a verdict away from its place; there all are kept, up to
 POINTS_AT_PLACE = 20_000
+AROUND_S = 0.5  # of a plain assertion that names nothing, what is shown before and behind
 
 
 def keep(
     recording: Recording,
     title: str,
     verdicts: Sequence[Verdict] = (),
-    complaint: str = "",
+    assertion: Verdict | None = None,
     figures: Mapping[str, Any] | None = None,
     pictures: Mapping[str, bytes] | None = None,
 ) -> Recording:
     """The same recording with all that its report says in its `meta`.
 
-    complaint: a plain assertion that failed beside the verdicts. figures: what else to say about the run; plain values
+    assertion: a plain one that failed beside the verdicts. figures: what else to say about the run; plain values
     stand in the head ("machine": "six_axes"), a dict is a group of figures under its name ("engine": {"longest cycle":
     "112 µs", "overruns": 0}). pictures: PNG files by their titles.
     """
@@ -42,7 +43,8 @@ def keep(
             "title": title,
             "made": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
             "verdicts": [_verdict(verdict) for verdict in verdicts],
-            "complaint": complaint,
+            "complaint": assertion.sentence if assertion is not None else "",
+            "assertion": _assertion(assertion, recording) if assertion is not None else None,
             "figures": told(figures or {}),
             "pictures": {name: np.frombuffer(data, np.uint8) for name, data in (pictures or {}).items()},
         },
@@ -89,6 +91,15 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "view": plain(view),
         "lanes": [_lane(lane, view) for lane in verdict.lanes],
     }
+
+
+def _assertion(assertion: Verdict, recording: Recording) -> dict[str, Any]:
+    """Where no curve belongs to it, what is around its time is to be seen in those of the machine."""
+    told = _verdict(assertion)
+    if assertion.place and not assertion.lanes:
+        at = assertion.place[0]
+        told["view"] = plain([max(recording.start_s, at - AROUND_S), min(recording.end_s, at + AROUND_S)])
+    return told
 
 
 def _lane(lane: Lane, view: Interval | None) -> dict[str, Any]:

@@ -18,6 +18,8 @@ from matplotlib.figure import Figure
 from takt import plot, style
 from takt.checks.series import quantity, words
 from takt.export import rates
+from takt.figures import in_words
+from takt.missing import holes, missing, troubles
 from takt.recording import Array, Recording
 from takt.report.columns import Block
 from takt.report.inlined import asset, import_map
@@ -28,9 +30,23 @@ from takt.verdict import Verdict
 
 # What says where a component is, the best first: its own measured position, or the Y of a cam module.
 POSITIONS = ("actual_position", "position", "set_position", "set_y_position")
+# What the summary says the largest of: the first one that there is. Several fields count as one vector, and measured
+# places from where they should be.
+LARGEST = {
+    "max. velocity": (
+        *("actual_velocity", "velocity", "set_velocity", "set_y_velocity", "set_path_velocity"),
+        "velocity_x velocity_y",
+    ),
+    "max. acceleration": (
+        *("set_acceleration", "acceleration", "actual_acceleration", "set_y_acceleration"),
+        "acceleration_x acceleration_y",
+    ),
+    "max. following error": ("following_error", "actual_x actual_y actual_z"),
+}
 PAGE = "report.html"
 BYTES = 128 << 20  # of all curves of a page before they are deflated; longer runs are thinned evenly
-ELSEWHERE = (KEY, "machine_file", "objects", "trouble")  # what the page does not show as a fact of its head
+# What the page does not show as a fact of its head.
+ELSEWHERE = (KEY, "machine_file", "objects", "trouble", "starts", "period_s", "losses")
 
 
 class Report(NamedTuple):
@@ -45,7 +61,7 @@ def write_report(
     title: str,
     meta: Mapping[str, Any] | None = None,
     more: Mapping[str, Figure] | None = None,
-    complaint: str = "",
+    assertion: Verdict | None = None,
 ) -> Report:
     """Writes report.html, the recording with all that it was made of (recording.npz) and the pictures into `out_dir`,
     replacing what an earlier run left under the same names.
@@ -53,13 +69,14 @@ def write_report(
     meta: what to say about the run, as `keep` takes it: figures. What the recording's own `meta` holds is shown as
         well.
     more: pictures of the caller's by name, to be shown in the page and kept as NAME.png beside it.
-    complaint: a plain assertion that failed beside the verdicts.
+    assertion: a plain one that failed beside the verdicts.
     """
     directory = Path(out_dir)
     directory.mkdir(parents=True, exist_ok=True)
-    pictures = _pictures(recording, verdicts, directory, title)
+    judged = [*verdicts, *([assertion] if assertion is not None else [])]
+    pictures = _pictures(recording, judged, directory, title)
     shown = {name: plot.save(figure, directory / f"{_file_name(name)}.png") for name, figure in (more or {}).items()}
-    whole = keep(recording, title, verdicts, complaint, meta, {name: path.read_bytes() for name, path in shown.items()})
+    whole = keep(recording, title, verdicts, assertion, meta, {name: path.read_bytes() for name, path in shown.items()})
     whole.save(directory / IN_DIRECTORY)
     page = directory / PAGE
     page.write_text(render_kept(whole, title), encoding="utf-8")
@@ -71,28 +88,35 @@ def render(
     verdicts: Sequence[Verdict],
     title: str,
     meta: Mapping[str, Any] | None = None,
-    complaint: str = "",
+    assertion: Verdict | None = None,
 ) -> str:
     """The HTML page as text."""
-    return render_kept(keep(recording, title, verdicts, complaint, meta), title)
+    return render_kept(keep(recording, title, verdicts, assertion, meta), title)
 
 
 def render_kept(recording: Recording, name: str) -> str:
     """The HTML page of a recording and of what is kept with it. `name`: what it is called where nothing is."""
     run = kept(recording) or {"title": name, "made": "", "verdicts": [], "complaint": "", "figures": {}, "pictures": {}}
     block = Block()
-    facts = told({k: v for k, v in recording.meta.items() if k not in ELSEWHERE}) | run["figures"]
+    facts = _facts(recording, run["figures"])
     scene = scene_of(recording, block)
+    judged = [v for v in (*run["verdicts"], run.get("assertion")) if v is not None]
+    failing = [v["view"] for v in judged if v["view"] and not v["passed"]]
     payload = {
         "title": run["title"],
         "made": run["made"],
-        "trouble": recording.meta.get("trouble", ""),
+        "trouble": " ".join(troubles(recording)),
         "meta": facts,
         "span": plain([recording.start_s, recording.end_s]),
-        **_columns(recording, block, [v["view"] for v in run["verdicts"] if v["view"] and not v["passed"]]),
+        **_columns(
+            recording,
+            block,
+            failing,
+        ),
         "events": [[e.time_s, e.component, e.text, e.kind] for e in recording.events],
         "complaint": run["complaint"],
-        "verdicts": [_verdict(v, block) for v in sorted(run["verdicts"], key=lambda v: bool(v["passed"]))],
+        "assertion": _verdict(run["assertion"], block, recording) if run.get("assertion") else None,
+        "verdicts": [_verdict(v, block, recording) for v in sorted(run["verdicts"], key=lambda v: bool(v["passed"]))],
         "summary": _summary(recording),
         "quantities": list(style.QUANTITY_ORDER),
         "palette": list(style.PALETTE),
@@ -127,6 +151,22 @@ def png_of(figure: Figure) -> bytes:
     return data.getvalue()
 
 
+def _facts(recording: Recording, figures: Mapping[str, Any]) -> dict[str, Any]:
+    """What the head says of the run: that of the recording's own `meta`, and what was kept besides, in words."""
+    facts: dict[str, Any] = {**told({k: v for k, v in recording.meta.items() if k not in ELSEWHERE}), **figures}
+    if isinstance(engine := facts.get("engine"), Mapping):
+        facts["engine"] = in_words(engine)
+    if (period := recording.meta.get("period_s")) is not None:
+        facts["cycle"] = f"{1e3 * period:g} ms"
+    if not missing(recording):
+        facts["lost samples"] = "none"
+    if losses := recording.meta.get("losses"):
+        facts["messages lost on the way, of"] = {
+            channel.split("/")[-1]: f"{count:,}" for channel, count in losses.items()
+        }
+    return facts
+
+
 def _shown(name: str, png: bytes) -> str:
     data = base64.b64encode(png).decode("ascii")
     return (
@@ -158,6 +198,7 @@ def _columns(recording: Recording, block: Block, whole: Sequence[Sequence[float]
                 "base": base,
                 "colour": style.component_colour(component, recording.components),
                 "modulus": recording.info(component).get("modulus"),
+                "holes": holes(recording, (component,)),
                 "fields": [_field(recording, component, f, rows, block) for f in recording.fields(component)[2:]],
             }
         )
@@ -207,7 +248,8 @@ def _field(recording: Recording, component: str, field: str, rows: Any, block: B
         "label": words(field),
         "quantity": quantity(field),
         "unit": recording.unit(component, field),
-        "set": style.is_set_point(field),
+        "set": style.is_set_point(field, recording.fields(component)),
+        "source": style.source(field),
         **block.put(column),
     }
     if names or flag:
@@ -216,11 +258,12 @@ def _field(recording: Recording, component: str, field: str, rows: Any, block: B
     return out
 
 
-def _verdict(verdict: Mapping[str, Any], block: Block) -> dict[str, Any]:
+def _verdict(verdict: Mapping[str, Any], block: Block, recording: Recording) -> dict[str, Any]:
     """As it is kept, with its curves in the block."""
 
     def curve(kept: Mapping[str, Any]) -> dict[str, Any]:
         rest = {k: v for k, v in kept.items() if k not in ("time_s", "values")}
+        rest["holes"] = holes(recording, verdict["components"], kept["label"])
         return {**rest, "time": block.time(kept["time_s"]), "values": block.put(kept["values"])}
 
     def lane(kept: Mapping[str, Any]) -> dict[str, Any]:
@@ -238,15 +281,6 @@ def _summary(recording: Recording) -> dict[str, Any]:
         table = recording[component]
         fields = recording.fields(component)
 
-        def largest(*candidates: str, _component: str = component, _fields: tuple[str, ...] = fields) -> str:
-            field = next((f for f in candidates if f in _fields), None)
-            if field is None or not len(recording[_component]):
-                return "—"
-            values = np.abs(recording[_component][field].astype(np.float64))
-            if np.all(np.isnan(values)):
-                return "—"
-            return f"{float(np.nanmax(values)):.5g} {recording.unit(_component, field)}".rstrip()
-
         position = next((f for f in POSITIONS if f in fields), None)
         travelled = "—"
         if position is not None and len(table) and np.any(np.isfinite(table[position])):
@@ -262,9 +296,7 @@ def _summary(recording: Recording) -> dict[str, Any]:
                 component,
                 f"{len(table)}",
                 travelled,
-                largest("actual_velocity", "velocity", "set_velocity", "set_y_velocity"),
-                largest("set_acceleration", "acceleration", "actual_acceleration", "set_y_acceleration"),
-                largest("following_error"),
+                *(_largest(recording, component, what) for what in LARGEST),
                 state,
                 f"{errors}",
                 f"{lost}",
@@ -274,14 +306,26 @@ def _summary(recording: Recording) -> dict[str, Any]:
         "",
         "samples",
         "position",
-        "max. velocity",
-        "max. acceleration",
-        "max. following error",
+        *LARGEST,
         "ended in",
         "errors",
         "lost",
     ]
     return {"head": head, "rows": rows}
+
+
+def _largest(recording: Recording, component: str, what: str) -> str:
+    table, fields = recording[component], recording.fields(component)
+    found = next((names.split() for names in LARGEST[what] if set(names.split()) <= set(fields)), None)
+    if found is None:
+        return "—"
+    columns = [table[field].astype(np.float64) for field in found]
+    if found[0] == "actual_x":
+        columns = [there - table[field.removeprefix("actual_")] for there, field in zip(columns, found, strict=True)]
+    lengths = np.sqrt(np.sum(np.square(columns), axis=0))
+    if not np.any(np.isfinite(lengths)):
+        return "—"
+    return f"{float(np.nanmax(lengths)):.5g} {recording.unit(component, found[0])}".rstrip()
 
 
 def _pictures(recording: Recording, verdicts: Sequence[Verdict], directory: Path, title: str) -> list[Path]:
@@ -300,7 +344,7 @@ def _pictures(recording: Recording, verdicts: Sequence[Verdict], directory: Path
             pictures.append(plot.save(figure, directory / f"{_file_name(component)}.png"))
     for i, verdict in enumerate(v for v in verdicts if not v.passed and v.lanes):
         name = "_".join(("failed", str(i + 1), verdict.name, *verdict.components))
-        pictures.append(plot.save(plot.draw_verdict(verdict), directory / f"{_file_name(name)}.png"))
+        pictures.append(plot.save(plot.draw_verdict(verdict, recording), directory / f"{_file_name(name)}.png"))
     return pictures
 
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from takt.counted import counted
 from takt.routing.streets import SAME, RoutingError, Street, Streets
 
 
@@ -21,7 +22,8 @@ def go_round(loop: Loop, streets: Streets, names: Sequence[str]) -> dict[int, fl
     """Where the movers that move go, turns counted in; all of them set out at once."""
     length, gap = loop.street.length, streets.gap
     if len(loop.starts) * gap > length - SAME:
-        raise RoutingError(f"loop {loop.street.name} is full: {len(loop.starts)} movers with a gap of {gap:.6g} mm")
+        movers = counted(len(loop.starts), "mover")
+        raise RoutingError(f"loop {loop.street.name} is full: {movers} with a gap of {gap:.6g} mm")
     best: dict[int, float] | None = None
     aims = {**loop.targets, **loop.fixed}
     one = next(iter(loop.fixed), next(iter(loop.targets)))

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from takt.counted import counted
 from takt.routing.arrangement import Place, Task, search
 from takt.routing.loop import Loop, go_round
 from takt.routing.order import Shift, Step, ends_of, in_time, shifts_of, shorter, steps_of
@@ -129,10 +130,10 @@ def plan_routes(
         resting = " by movers that wait outside the zones of switches" if switches else ""
         raise RoutingError(
             f"the targets cannot all be reached{resting}: every order of passing was tried "
-            f"({found.tried} arrangements{_aside(task, names)})"
+            f"({counted(found.tried, 'arrangement')}{_aside(task, names)})"
         )
     if found.hops is None:
-        raise RoutingError(f"no plan was found after {found.tried} arrangements of movers; there may be one")
+        raise RoutingError(f"no plan was found after {counted(found.tried, 'arrangement')} of movers; there may be one")
     pace = dynamics.get("velocity") or max((_velocity(m.parameters) for m in movers.values()), default=1.0)
     hops = in_time(task, shorter(task, found.hops), pace)
     steps, shifts = steps_of(task, hops), shifts_of(task, hops)

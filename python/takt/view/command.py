@@ -68,8 +68,8 @@ class Beside:
 
     def stay(self) -> None:
         """Until Ctrl-C."""
-        self.say("the engine and its page stay until Ctrl-C")
-        with contextlib.suppress(KeyboardInterrupt):
+        with contextlib.suppress(KeyboardInterrupt):  # it may come as soon as it is said
+            self.say("the engine and its page stay until Ctrl-C")
             threading.Event().wait()
 
 

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from takt import _core, msgs
-from takt.checks.series import quantity
+from takt.checks.series import quantity, words
 from takt.errors import ConfigError, TaktError
+from takt.figures import COUNTS
 from takt.kinematics import Kinematics, KinematicsError, pose_to_matrix
 from takt.recording import Array
 from takt.style import PALETTE, STATES, USUAL_FIELDS, is_set_point
@@ -72,6 +73,7 @@ class Machine:
             "name": self.name,
             "version": self.version,
             "period_s": self.period_s,
+            "counts": [[name, *said] for name, said in COUNTS.items()],
             "commands": self.parameters["view"]["commands"],
             "dead_man_s": self.parameters["lcm"]["dead_man_s"],
             "kinds": {
@@ -80,6 +82,7 @@ class Machine:
                     "fields": [
                         {
                             "name": field,
+                            "label": words(field),
                             "unit": kind.units[field],
                             "about": about[kind.name][field],
                             "names": {str(v): n for v, n in kind.names.get(field, {}).items()} or None,

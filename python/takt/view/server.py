@@ -9,6 +9,7 @@ import socket
 import threading
 import time
 import traceback
+from collections import deque
 from collections.abc import AsyncIterator, Iterator
 from importlib import resources
 from pathlib import Path
@@ -38,6 +39,7 @@ TICK_S = 0.05  # from frame to frame
 AHEAD = 4  # frames that a page may not have drawn yet: a slow one gets fewer and larger ones
 WAITING_S = 1.0  # from one time that a page is told that it waits for an engine to the next
 MOST_ROWS = 8192  # of one component in one frame
+MOST_ANSWERS = 256  # kept for a page that takes no frames: the newest
 HEADERS = [
     (b"cache-control", b"no-store"),
     (b"x-content-type-options", b"nosniff"),
@@ -67,7 +69,7 @@ class Page:
         self._acked = 0
         self._skipped = 0
         self._commander: Commander | None = None
-        self._answers: list[dict[str, Any]] = []  # what became of commands
+        self._answers: deque[dict[str, Any]] = deque(maxlen=MOST_ANSWERS)  # what became of commands
 
     @property
     def signals(self) -> list[tuple[int, str]]:
@@ -189,7 +191,7 @@ class Page:
             header["shapes"] = shapes
         self._shapes = feed.shapes.count
         if self._answers:
-            header["answers"] = self._answers.copy()
+            header["answers"] = list(self._answers)
             self._answers.clear()
         if feed.engine is not self._engine:
             header["engine"] = self._engine = feed.engine

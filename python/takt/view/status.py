@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from takt.counted import counted
 from takt.tables import KINDS, named
 
 Values = Mapping[str, Any]
@@ -89,10 +90,6 @@ def words(kind: str, values: Values, name_of: NamesOf) -> Words:
     return Words(str(state), int(values.get("error", 0)), ", ".join(more), ", ".join(waits), since)
 
 
-def _count(number: Any, one: str, many: str = "") -> str:
-    return f"{int(number)} {one if number == 1 else many or one + 's'}"
-
-
 def _plain(kind: str, field: str, value: Any) -> str:
     name = str(named(kind, field, int(value))).replace("_", " ")
     return re.sub("(?<=[a-z])(?=[A-Z])", " ", name).lower()
@@ -116,7 +113,7 @@ def _axis(v: Values, name_of: NamesOf, more: list[str], waits: list[str]) -> int
     if v["superimposed"]:
         more.append("another motion on top")
     if v["buffered_commands"]:
-        more.append(f"{_count(v['buffered_commands'], 'command')} behind it")
+        more.append(f"{counted(v['buffered_commands'], 'command')} behind it")
     if state not in ("Disabled", "Standstill", "ErrorStop"):
         _override(v, more, waits)
     if state == "SynchronizedMotion" and not v["in_step"]:
@@ -132,7 +129,7 @@ def _flex_cam(v: Values, _: NamesOf, more: list[str], waits: list[str]) -> int:
     if v["next_cam_table"]:
         more.append(f"then cam {int(v['next_cam_table'])}")
     if v["pending_changes"]:
-        waits.append(f"{_count(v['pending_changes'], 'change')} of cam at its end")
+        waits.append(f"{counted(v['pending_changes'], 'change')} of cam at its end")
     if v["acc_dec_sync"]:
         waits.append("the clutch closes or opens")
     if v["internal_control_active"]:
@@ -154,7 +151,7 @@ def _group(v: Values, _: NamesOf, more: list[str], waits: list[str]) -> int:
     if state == "GroupMoving":
         _override(v, more, waits)
     if v["buffered"]:
-        more.append(f"{_count(v['buffered'], 'move')} behind it")
+        more.append(f"{counted(v['buffered'], 'move')} behind it")
     for field in ("reason", "problem", "trouble"):
         if v[field] and v["error"]:
             more.append(_plain("group", field, v[field]))
@@ -164,7 +161,7 @@ def _group(v: Values, _: NamesOf, more: list[str], waits: list[str]) -> int:
 def _belt(v: Values, _: NamesOf, more: list[str], waits: list[str]) -> int:
     if not v["known"]:
         waits.append("its axis does not say where it is")
-    more.append(_count(v["object_count"], "object"))
+    more.append(counted(v["object_count"], "object"))
     for field, text in (("in_range_count", "in range"), ("taken_count", "taken"), ("lost_count", "lost")):
         if v[field]:
             more.append(f"{int(v[field])} {text}")
@@ -181,7 +178,7 @@ def _pick_place(v: Values, name_of: NamesOf, more: list[str], waits: list[str]) 
     if v["workpiece"]:
         more.append(f"goes for workpiece {int(v['workpiece'])} on belt {int(v['target'])}")
     if v["profiles"]:
-        more.append(_count(v["profiles"], "profile"))
+        more.append(counted(v["profiles"], "profile"))
     more += [f"{int(v[field])} {field}" for field in ("picked", "placed", "missed") if v[field]]
     if v["path_hold"]:
         waits.append("away from its path" if v["off_path"] else "rests on its path")
@@ -199,7 +196,7 @@ def _mover(v: Values, name_of: NamesOf, more: list[str], waits: list[str]) -> in
     if v["limited_by"]:
         more.append(f"held back by its limit of {_plain('mover', 'limited_by', v['limited_by'])}")
     if v["buffered"]:
-        more.append(f"{_count(v['buffered'], 'command')} behind it")
+        more.append(f"{counted(v['buffered'], 'command')} behind it")
     delay = named("mover", "delay", int(v["delay"]))
     if delay == "mover" or v["waits_for"]:
         waits.append(f"waits for {name_of('mover', int(v['waits_for']))}")
@@ -214,22 +211,22 @@ def _mover(v: Values, name_of: NamesOf, more: list[str], waits: list[str]) -> in
 
 def _track(v: Values, _: NamesOf, more: list[str], waits: list[str]) -> int:
     more.append(_plain("track", "operation_mode", v["operation_mode"]))
-    more.append(_count(v["mover_count"], "mover"))
+    more.append(counted(v["mover_count"], "mover"))
     return 0
 
 
 def _planar_group(v: Values, _: NamesOf, more: list[str], waits: list[str]) -> int:
-    more += [_count(v["mover_count"], "mover"), _count(v["track_count"], "track")]
+    more += [counted(v["mover_count"], "mover"), counted(v["track_count"], "track")]
     return 0
 
 
 def _environment(v: Values, _: NamesOf, more: list[str], waits: list[str]) -> int:
-    more += [_count(v["stator_count"], "stator"), f"a border of {_count(v['border_count'], 'piece')}"]
+    more += [counted(v["stator_count"], "stator"), f"a border of {counted(v['border_count'], 'piece')}"]
     return 0
 
 
 def _part(v: Values, _: NamesOf, more: list[str], waits: list[str]) -> int:
-    more.append(_count(v["mover_count"], "mover"))
+    more.append(counted(v["mover_count"], "mover"))
     if v["position_index"] != v["commanded_index"]:
         waits.append(f"on its way to position {int(v['commanded_index'])}")
     elif v["position_index"]:

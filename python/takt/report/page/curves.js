@@ -1,7 +1,7 @@
 // All that was recorded, a block for each component, made when it comes into sight.
 
 import { byId, css, el } from "../../view/page/dom.js";
-import { bands, digits, font, Plots, wraps } from "./plots.js";
+import { bands, breaks, digits, font, Plots } from "./plots.js";
 
 const BLOCK_PX = 60; // of a block beside its lanes
 const [TALL, LOW, MARKS, BAND] = [150, 104, 40, 28]; // px: lanes of positions, others, marks, a state
@@ -87,7 +87,7 @@ class Block {
   head() {
     const { component, still, table } = this;
     const said = still.map((f) => `${f.label} = ${stillOf(f)}${f.unit && f.unit !== "1" ? ` ${f.unit}` : ""}`).join(", ");
-    const text = !this.drawable ? `${table.time.length} samples: nothing to draw` : said ? `throughout: ${said}` : "";
+    const text = !this.drawable ? `${table.time.length} ${table.time.length === 1 ? "sample" : "samples"}: nothing to draw` : said ? `throughout: ${said}` : "";
     return el("h3", {}, component.name, text ? el("small", { textContent: text }) : null);
   }
 
@@ -106,7 +106,7 @@ class Block {
     const row = el("div", { className: "lane" });
     node.append(row);
     const outputs = states.map(() => el("output"));
-    const rows = states.map((f) => ({ times: table.time, values: table.values(f.name), names: f.names }));
+    const rows = states.map((f) => ({ times: table.time, values: table.values(f.name), names: f.names, holes: this.component.holes }));
     this.curves.plots.add(row, {
       ...flat, height: BAND * states.length,
       hooks: { drawAxes: [this.background(null)], draw: [bands(rows)] },
@@ -115,8 +115,12 @@ class Block {
     row.append(el("div", { className: "legend" }, ...states.map((f, i) => el("div", {}, el("span", { textContent: `${f.label}  ` }), outputs[i]))));
   }
 
-  tone(field, pair) {
-    return field.set && pair ? mix(this.component.colour, css("--ink"), 0.55) : this.component.colour;
+  // Set point and measured value of a thing have one colour: the first thing of a lane the component's, others the next ones.
+  tone(field, lane, pair) {
+    const { palette } = this.curves.data;
+    const sources = [...new Set(lane.fields.map((f) => f.source))];
+    const colour = palette[(palette.indexOf(this.component.colour) + sources.indexOf(field.source)) % palette.length];
+    return field.set && pair ? mix(colour, css("--ink"), 0.55) : colour;
   }
 
   addLane(lane, last) {
@@ -135,11 +139,11 @@ class Block {
       columns,
       series: fields.map((f, i) => ({
         label: f.label,
-        stroke: () => this.tone(f, pair),
+        stroke: () => this.tone(f, lane, pair),
         width: f.set && pair ? 1.25 : 1.5,
         dash: f.set && pair ? [6, 4] : undefined,
         points: { show: false },
-        ...(component.modulus && f.quantity === "position" ? { gaps: wraps(columns[i], component.modulus) } : {}),
+        gaps: breaks(component.holes, columns[i], f.quantity === "position" ? component.modulus : null),
       })),
       hooks: { drawAxes: [this.background(lane)] },
       last,
@@ -148,7 +152,7 @@ class Block {
     fields.forEach((field, i) => {
       const out = el("output");
       const line = el("i", { className: field.set && pair ? "dashed" : "" });
-      line.style.borderColor = this.tone(field, pair);
+      line.style.borderColor = this.tone(field, lane, pair);
       outputs.push(out);
       const button = el("button", { type: "button" }, line, el("span", { textContent: field.label }), out);
       button.onclick = () => {

@@ -87,7 +87,7 @@ byId("curves-section").hidden = !data.components.length;
 if (!empty) showPlayer(clock);
 byId("thinned").hidden = !data.thinned;
 byId("thinned").textContent = data.thinned;
-const failure = data.verdicts.find((verdict) => !verdict.passed && verdict.place);
+const failure = [data.assertion, ...data.verdicts].find((verdict) => verdict && !verdict.passed && verdict.place);
 clock.set(failure ? failure.place[0] : span[0]);
 
 function goTo(verdict) {

@@ -120,16 +120,16 @@ export class Plots {
   }
 }
 
-// Stretches in which states do not change, as bands one below the other. Rows: {times, values, names}.
+// Stretches in which states do not change, as bands one below the other. Rows: {times, values, names, holes}.
 export function bands(rows) {
-  const stretches = rows.map(({ times, values }) => {
+  const stretches = rows.map(({ times, values, holes }) => {
     const found = [];
     for (let i = 0, from = 0; i < times.length; i++) {
       if (i < times.length - 1 && values[i + 1] === values[i]) continue;
       found.push([times[from], times[Math.min(i + 1, times.length - 1)], values[i]]);
       from = i + 1;
     }
-    return found;
+    return outside(holes, found);
   });
   return (u) => {
     const { ctx } = u;
@@ -162,13 +162,29 @@ export function bands(rows) {
   };
 }
 
-// Where a rotary position wraps, its curve is not joined.
-export function wraps(values, modulus) {
+// What of stretches is known. Both are in the order of time.
+function outside(holes, stretches) {
+  let next = 0;
+  return stretches.flatMap(([from, to, value]) => {
+    const parts = [];
+    while (next < holes.length && holes[next][1] <= from) next++;
+    for (let i = next; i < holes.length && holes[i][0] < to; i++) {
+      parts.push([from, holes[i][0], value]);
+      from = holes[i][1];
+    }
+    return [...parts, [from, to, value]];
+  });
+}
+
+// Where samples are missing a curve is not joined, nor where a rotary position wraps.
+export function breaks(holes, values, modulus) {
   const jumps = [];
-  for (let i = 1; i < values.length; i++) if (Math.abs(values[i] - values[i - 1]) > modulus / 2) jumps.push(i);
+  if (modulus) for (let i = 1; i < values.length; i++) if (Math.abs(values[i] - values[i - 1]) > modulus / 2) jumps.push(i);
   return (u, _, from, to, gaps) => {
-    const more = jumps.filter((i) => i > from && i <= to)
-      .map((i) => [u.data[0][i - 1], u.data[0][i]].map((t) => Math.round(u.valToPos(t, "x", true))));
-    return gaps.concat(more).sort((a, b) => a[0] - b[0]);
+    const wraps = jumps.filter((i) => i > from && i <= to).map((i) => [u.data[0][i - 1], u.data[0][i]]);
+    const more = [...holes, ...wraps].map((ends) => ends.map((t) => Math.round(u.valToPos(t, "x", true))));
+    const all = gaps.concat(more).sort((a, b) => a[0] - b[0]);
+    for (let i = 1; i < all.length; i++) all[i][1] = Math.max(all[i][1], all[i - 1][1]); // uPlot goes on at the last one's end
+    return all;
   };
 }

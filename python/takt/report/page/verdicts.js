@@ -1,7 +1,7 @@
 // What was judged: those that failed with their curves at once, the others folded.
 
 import { byId, css, el } from "../../view/page/dom.js";
-import { bands, digits, Plots, wraps } from "./plots.js";
+import { bands, breaks, digits, Plots } from "./plots.js";
 
 const HEIGHT = 210; // px of a lane
 const PLACE_PX = 10; // that a place is wide at least
@@ -11,12 +11,8 @@ export class Verdicts {
   // `goTo(verdict)`: shows its place in the rest of the page.
   constructor(data, columns, clock, goTo) {
     Object.assign(this, { data, columns, clock, goTo });
-    this.cards = data.verdicts.map((verdict) => (verdict.passed ? this.folded(verdict) : this.open(verdict)));
-    if (data.complaint) {
-      byId("failed").prepend(el("article", { className: "verdict card" },
-        el("header", {}, el("b", { className: "bad", textContent: "failed" }), el("strong", { textContent: "assert" })),
-        el("p", { className: "sentence", textContent: data.complaint })));
-    }
+    const assertion = data.assertion ?? (data.complaint && { title: "assert", sentence: data.complaint, components: [], place: null, view: null, lanes: [] });
+    this.cards = [...(assertion ? [assertion] : []), ...data.verdicts].map((verdict) => (verdict.passed ? this.folded(verdict) : this.open(verdict)));
     const passed = data.verdicts.filter((verdict) => verdict.passed).length;
     byId("passed-section").hidden = !passed;
     byId("passed-section").open = passed <= SEVERAL;
@@ -93,13 +89,13 @@ export class Verdicts {
       columns,
       last,
       yAxis: !states,
-      yRange: states ? [0, 1] : () => range(curves, bounds, plots.window),
+      yRange: states ? [0, 1] : () => range(curves, bounds, plots.window, verdict.passed),
       series: curves.map((trace, i) => (states
         ? { paths: () => null, points: { show: false } }
-        : { label: trace.label, stroke: colour(i), width: 1.7, points: { show: false }, ...(trace.modulus ? { gaps: wraps(columns[i], trace.modulus) } : {}) })),
+        : { label: trace.label, stroke: colour(i), width: 1.7, points: { show: false }, gaps: breaks(trace.holes, columns[i], trace.modulus) })),
       hooks: {
         drawAxes: [background(verdict, bounds)], // over the grid, which would hide limits at round values
-        ...(states ? { draw: [bands(curves.map((c) => ({ times: c.times, values: c.values, names: lane.names })))] } : {}),
+        ...(states ? { draw: [bands(curves.map((c) => ({ times: c.times, values: c.values, names: lane.names, holes: c.holes })))] } : {}),
       },
       show: (at) => outputs.forEach((out, i) => {
         const value = at < 0 ? null : columns[i][at];
@@ -119,8 +115,8 @@ export class Verdicts {
   }
 }
 
-// Of the curves in view, and of those bounds that are near enough not to flatten them.
-function range(curves, bounds, [from, to]) {
+// Of the curves in view, of those bounds that are near enough not to flatten them, and of what was broken the nearest.
+function range(curves, bounds, [from, to], passed) {
   let [low, high] = [Infinity, -Infinity];
   for (const { times, values } of curves) {
     for (let i = 0; i < times.length; ++i) {
@@ -131,13 +127,19 @@ function range(curves, bounds, [from, to]) {
   }
   if (!(low <= high)) [low, high] = [0, 0];
   const extent = high - low;
-  const near = (level) => level >= low - 1.5 * extent - Math.abs(level) * 1e-3 && level <= high + 1.5 * extent + Math.abs(level) * 1e-3;
-  for (const { times, values } of bounds) {
-    for (const level of levels(times, values, from, to).filter((v) => Number.isFinite(v) && near(v))) {
-      [low, high] = [Math.min(low, level), Math.max(high, level)];
+  const [least, most] = [low, high];
+  const near = (level) => level >= least - 1.5 * extent - Math.abs(level) * 1e-3 && level <= most + 1.5 * extent + Math.abs(level) * 1e-3;
+  const breaks = { above: (level) => level < most, below: (level) => level > least, none: () => true };
+  const away = (level) => Math.max(least - level, level - most, 0);
+  let nearest = null;
+  for (const { times, values, forbidden } of bounds) {
+    for (const level of levels(times, values, from, to).filter(Number.isFinite)) {
+      if (near(level)) [low, high] = [Math.min(low, level), Math.max(high, level)];
+      if (!passed && breaks[forbidden](level) && (nearest === null || away(level) < away(nearest))) nearest = level;
     }
   }
-  const room = 0.12 * (high - low) || Math.abs(high) * 1e-3 || 1e-6;
+  if (nearest !== null) [low, high] = [Math.min(low, nearest), Math.max(high, nearest)];
+  const room = 0.12 * (high - low) || Math.abs(high) * 1e-3 || 1;
   return [low - room, high + room];
 }
 

@@ -76,7 +76,7 @@ export class Chooser {
     node.classList.toggle("chosen", Boolean(field) && this.scope.has(`${component.name}.${field.name}`));
     node.title = field ? field.about : "";
     put(mark, field ? "" : isOpen ? "▾" : "▸");
-    put(name, field ? field.name.replaceAll("_", " ") : component.name);
+    put(name, field ? field.label : component.name);
     if (!field) {
       put(value, component.kind.replaceAll("_", " "));
       return;

@@ -30,7 +30,7 @@ export class Commands {
     byId("stop-all").onclick = () => this.give("machine", "stop_all", {});
     for (const event of ["blur", "pagehide"]) addEventListener(event, () => this.letGo());
     document.addEventListener("visibilitychange", () => document.hidden && this.letGo());
-    for (const event of ["pointerup", "pointercancel"]) addEventListener(event, () => this.letGo());
+    for (const event of ["pointerup", "pointercancel", "keyup"]) addEventListener(event, () => this.letGo());
     connection.addEventListener("lost", () => this.letGo());
   }
 
@@ -68,10 +68,16 @@ export class Commands {
     const unit = this.model.unit(component, "set_velocity");
     const velocity = el("input", { type: "number", min: 0, step: "any", value: Number((component.velocity / 10).toPrecision(2)), title: `Velocity, ${unit}` });
     const button = (text, way) => {
-      const node = el("button", { className: "jog", textContent: text, title: "Moves while it is held" });
+      const node = el("button", { className: "jog", textContent: text, title: "Moves while it is held; Space or Enter holds it, too" });
       node.onpointerdown = (event) => {
         if (event.button === 0) this.hold(component.name, { [way]: true, velocity: Number(velocity.value) }, node);
       };
+      node.onkeydown = (event) => {
+        if (event.key !== " " && event.key !== "Enter") return;
+        event.preventDefault();
+        if (!event.repeat) this.hold(component.name, { [way]: true, velocity: Number(velocity.value) }, node);
+      };
+      node.onblur = () => this.letGo();
       node.oncontextmenu = (event) => event.preventDefault();
       return node;
     };

@@ -39,8 +39,6 @@ export function duration(seconds) {
 // "move_absolute {position: 100.0}" as it is read with ease.
 export const commandWords = (text) => text.replace(/^(\w+) \{(.*)\}$/, "$1: $2").replace(/(\.\d{3})\d+/g, "$1").replace(/(\d)\.0+\b/g, "$1");
 
-export const fieldWords = (name) => name.replaceAll("_", " ");
-
 // --- colours ---
 
 let cache = new Map();

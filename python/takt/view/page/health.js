@@ -6,21 +6,6 @@ import { put } from "./rows.js";
 const PACES = ["real time", "paced by the clock", "as fast as it goes"];
 const RECENT = 100; // states of the engine, 10 s at 10 Hz
 
-// [name, what it is of, sentence]: counts that should stay 0
-const COUNTS = [
-  ["overruns", "overruns", "Cycles that ended after the next one should have begun"],
-  ["snapshots_dropped", "states dropped", "States lost because their queue was full: a slow network or disk"],
-  ["feedback_dropped", "feedbacks dropped", "Feedbacks lost because their queue was full"],
-  ["journal_dropped", "journal entries dropped", "The journal cannot be replayed"],
-  ["commands_refused", "commands refused", "The queue to the cycle was full"],
-  ["set_points_dropped", "set points dropped", "For external drives, lost because their queue was full"],
-  ["samples_refused", "samples refused", "Of external drives: wrong, old or not asked for"],
-  ["malformed", "messages malformed", "On the command and heartbeat channels"],
-  ["send_failures", "send failures", "Messages the network or the log file did not take"],
-  ["replies_dropped", "replies dropped", "Too many waited"],
-  ["planner_failures", "plans failed", "The motion in progress was kept"],
-];
-
 export class Health {
   constructor(model, scope, connection) {
     Object.assign(this, { model, scope, connection });
@@ -42,7 +27,7 @@ export class Health {
     const group = (title, ...cards) => el("section", {}, el("h2", { textContent: title }), el("div", { className: "cards" }, ...cards));
     byId("figures").replaceChildren(
       group("Engine", card("machine", "machine", ""), card("period", "cycle", "Length of a cycle"), card("pace", "pace", "Who makes time go on"), card("time", "time", "Since the start of the engine"), card("applied", "commands", "Taken up by the cycle"), card("clients", "clients", "That gave a sign of life within 2 s")),
-      group("Counts that should stay 0", ...COUNTS.map(([key, title, about]) => card(key, title, about))),
+      group("Counts that should stay 0", ...this.model.machine.counts.map(([key, title, about]) => card(key, title, about))),
       group("This page", card("lost", "states lost on the way", "Gaps in the sequence of what is looked at, over LCM"), card("skipped", "rows skipped", "Overwritten before this page took them: it is too slow"), card("signals", "signals", "In the scope"), card("values", "messages/s", "Taken by the scope, of all that are looked at"), card("frames", "frames/s", "From the server"), card("redraws", "redraws/s", "Of the scope, while it is seen"), card("took", "a redraw takes", "Mean"), card("memory", "memory", "Of this page, as the browser says it")),
     );
   }
@@ -72,7 +57,7 @@ export class Health {
       this.put("pace", PACES[engine.pace] ?? "");
       this.put("applied", whole(engine.commands_applied));
       this.put("clients", String(engine.clients));
-      for (const [key] of COUNTS) this.put(key, whole(engine[key]), engine[key] > 0);
+      for (const [key] of machine.counts) this.put(key, whole(engine[key]), engine[key] > 0);
     }
     this.put("lost", whole(health.lost ?? 0), health.lost > 0);
     this.put("skipped", whole(health.skipped ?? 0), health.skipped > 0);

@@ -1,13 +1,16 @@
 // How the signals of the scope are laid out, one below the other, and drawn.
 
-import { css, fitCanvas, fieldWords, ticks, tone } from "./dom.js";
+import { css, fitCanvas, ticks, tone } from "./dom.js";
 import { Envelope } from "./envelope.js";
+import { Roll } from "./roll.js";
 
 export const LEFT = 64; // px for the numbers
 export const BOTTOM = 22;
 const BAND = 20;
 const BETWEEN = 8;
 const LEAST = 74;
+const MANY = 8; // signals: of more of them each has a hairline, which is drawn much faster
+const OVER = 4; // px: how far the end of a curve reaches back
 
 export const isBand = (signal) => Boolean(signal.field.names || signal.field.flag);
 
@@ -54,6 +57,11 @@ function rangeOf(series, column, from, to) {
   return [low, high];
 }
 
+// More cycles than these between two rows, and something between them was not received.
+function longestStep({ cycles }, from, to) {
+  return to - from > 2 ? Math.max((5 * (cycles[to - 1] - cycles[from])) / (to - from - 1), 50) : Infinity;
+}
+
 // The scale of a lane: grows at once, shrinks only when much of it is empty, so that it stands still.
 function scaleFor(lane, low, high, scales) {
   if (!(low <= high)) return scales.get(lane.key) ?? [0, 1];
@@ -75,35 +83,47 @@ function fitting(c, text, room) {
 export class LaneDrawing {
   constructor(canvas) {
     this.canvas = canvas;
+    canvas.getContext("2d", { alpha: false }); // so that nothing has to be mixed with what lies behind it
+    this.roll = new Roll();
     this.scales = new Map();
   }
 
-  // window: {from, to} in cycles; layout as from layOut.
+  // window: {from, to} in cycles, which are moved to whole pixels of the screen; layout as from layOut.
   // `seen`: from and to where the lanes are in sight.
   draw(store, layout, window, width, period, marks, seen) {
     const c = fitCanvas(this.canvas, width, seen.height);
-    const inner = Math.max(10, Math.floor(width - LEFT - 2));
-    this.inner = inner;
-    this.window = window;
+    const ratio = c.getTransform().a;
+    const pixels = Math.max(10, Math.floor((width - LEFT - 2) * ratio));
+    const size = (window.to - window.from) / pixels; // cycles
+    const first = Math.ceil(window.to / size) - pixels;
+    const inner = pixels / ratio;
+    Object.assign(this, { size, inner, ratio, window: { from: first * size, to: (first + pixels) * size } });
     c.fillStyle = css("--card");
     c.fillRect(0, 0, width, seen.height);
     c.translate(0, -seen.top);
-    const inSight = (lane) => lane.top + lane.height > seen.top && lane.top < seen.top + seen.height;
+    const lanes = layout.lanes.filter((lane) => lane.top + lane.height > seen.top && lane.top < seen.top + seen.height);
     c.font = `11px ${css("--font")}`;
-    const x = (cycle) => LEFT + ((cycle - window.from) / (window.to - window.from)) * inner;
-    this.timeGrid(c, layout, window, period, inner, x);
-    for (const lane of layout.lanes.filter(inSight)) {
+    const x = (cycle) => LEFT + (cycle / size - first) / ratio;
+    this.timeGrid(c, layout, period, x);
+    const places = layout.lanes.map((lane) => `${lane.key} ${lane.top} ${lane.height}`);
+    this.roll.begin(pixels, this.canvas.height, first, size, [seen.top, ...places]);
+    for (const lane of lanes) {
       c.save();
-      if (lane.band) this.bands(c, lane, store, window, x, inner);
-      else this.curves(c, lane, store, window, x, inner);
+      if (lane.band) this.bands(c, lane, store, x);
+      else this.curves(c, lane, store, seen.top, layout);
       c.restore();
     }
+    c.save();
+    c.resetTransform();
+    this.roll.show(c, Math.round(LEFT * ratio));
+    c.restore();
     this.bottom = Math.min(layout.height, seen.top + seen.height) - BOTTOM;
-    this.timeAxis(c, window, width, period, inner, x);
-    for (const mark of marks) this.mark(c, mark, layout, x, inner);
+    this.timeAxis(c, width, period, x);
+    for (const mark of marks) this.mark(c, mark, layout, x);
   }
 
-  timeGrid(c, layout, window, period, inner, x) {
+  timeGrid(c, layout, period, x) {
+    const { inner, window } = this;
     c.lineWidth = 1;
     c.strokeStyle = css("--grid");
     c.beginPath();
@@ -118,7 +138,8 @@ export class LaneDrawing {
   }
 
   // Below what is in sight of the lanes.
-  timeAxis(c, window, width, period, inner, x) {
+  timeAxis(c, width, period, x) {
+    const { inner, window } = this;
     c.fillStyle = css("--card");
     c.fillRect(0, this.bottom, width, BOTTOM);
     c.fillStyle = css("--soft");
@@ -134,7 +155,8 @@ export class LaneDrawing {
     c.fillText("s", LEFT + inner, this.bottom + 5);
   }
 
-  curves(c, lane, store, window, x, inner) {
+  curves(c, lane, store, above, layout) {
+    const { ratio, window } = this;
     const found = [];
     let [low, high] = [Infinity, -Infinity];
     for (const signal of lane.signals) {
@@ -144,8 +166,8 @@ export class LaneDrawing {
       const from = Math.max(0, series.find(window.from) - 1);
       const to = Math.min(series.end, series.find(window.to) + 1);
       const one = { signal, series, column, from, to };
-      if (to - from > 2.5 * inner) this.envelope(one, window, inner);
-      const [a, b] = one.envelope ? one.envelope.range(one.begin, one.end) : rangeOf(series, column, from, to);
+      this.envelope(one);
+      const [a, b] = one.envelope ? one.envelope.range(...one.envelope.part(window.from, window.to)) : rangeOf(series, column, from, to);
       low = Math.min(low, a);
       high = Math.max(high, b);
       found.push(one);
@@ -153,37 +175,40 @@ export class LaneDrawing {
     const [bottom, top] = scaleFor(lane, low, high, this.scales);
     lane.scale = [bottom, top];
     const y = (value) => lane.top + lane.height * (1 - (value - bottom) / (top - bottom));
-    this.frame(c, lane, bottom, top, y, inner);
-    c.beginPath();
-    c.rect(LEFT, lane.top - 1, inner, lane.height + 2);
-    c.clip();
-    c.lineJoin = "bevel";
-    for (const one of found) {
-      c.strokeStyle = tone(one.signal.colour);
-      c.lineWidth = one.envelope ? 1 : 1.35; // hairlines are drawn much faster
-      c.beginPath();
-      if (one.envelope) this.trace(c, one, x, y);
-      else this.points(c, one, x, y);
-      c.stroke();
-    }
+    this.frame(c, lane, bottom, top, y);
+    const many = layout.lanes.reduce((sum, one) => sum + one.signals.length, 0) > MANY;
+    const made = [bottom, top, many, ...found.flatMap(({ signal, series, column, envelope }) => [tone(signal.colour), series, column, envelope])];
+    const [upper, lower] = [lane.top - 1, lane.top + lane.height + 1].map((at) => Math.round((at - above) * ratio));
+    this.roll.update(lane.key, upper, lower - upper, made, found.map((one) => one.series.last), OVER * Math.ceil(ratio), (roll, x, from, to) => {
+      roll.lineJoin = "bevel";
+      for (const one of found) {
+        roll.strokeStyle = tone(one.signal.colour);
+        roll.lineWidth = (one.envelope || many ? 1 : 1.35) * ratio;
+        roll.beginPath();
+        const py = (value) => (y(value) - above) * ratio;
+        if (one.envelope) this.trace(roll, one, from, to, x, py);
+        else this.points(roll, one, from, to, x, py);
+        roll.stroke();
+      }
+    });
   }
 
-  // What is drawn of a signal with more rows than there are pixels; kept with its series.
-  envelope(one, window, inner) {
-    const size = (window.to - window.from) / inner;
+  // What is drawn of a signal with many more rows than there are pixels; kept with its series.
+  envelope(one) {
+    const size = this.size * this.ratio; // of a pixel of CSS
     const known = (one.series.envelopes ??= new Map());
     const name = one.signal.field.name;
-    if (known.get(name)?.size !== size || known.get(name).column !== one.column) {
-      known.set(name, Object.assign(new Envelope(size), { column: one.column }));
-    }
+    const fits = known.get(name)?.size === size && known.get(name).column === one.column;
+    if (one.to - one.from < (fits ? 2 : 2.5) * this.inner) return; // does not go to and fro between the two
+    if (!fits) known.set(name, Object.assign(new Envelope(size), { column: one.column }));
     one.envelope = known.get(name);
     one.envelope.update(one.series, one.column);
-    [one.begin, one.end] = one.envelope.part(window.from, window.to);
   }
 
-  trace(c, { signal, envelope, begin, end }, x, y) {
+  trace(c, { signal, envelope }, from, to, x, y) {
     const { low, high, first, size } = envelope;
     const jump = modulusOf(signal) / 2;
+    const [begin, end] = envelope.part(from, to);
     let down = false;
     let last = NaN;
     for (let i = begin; i < end; ++i) {
@@ -203,19 +228,21 @@ export class LaneDrawing {
     }
   }
 
-  points(c, { signal, series, column, from, to }, x, y) {
+  points(c, { signal, series, column, ...seen }, from, to, x, y) {
     const stairs = signal.field.whole;
     const modulus = modulusOf(signal);
-    const usual = to - from > 2 ? (series.cycles[to - 1] - series.cycles[from]) / (to - from - 1) : Infinity;
+    const longest = longestStep(series, seen.from, seen.to);
+    const begin = Math.max(0, series.find(from) - 1);
+    const end = Math.min(series.end, series.find(to) + 1);
     let last = NaN;
-    for (let i = from; i < to; ++i) {
+    for (let i = begin; i < end; ++i) {
       const value = column[i];
       if (value !== value) {
         last = NaN;
         continue;
       }
       const px = x(series.cycles[i]);
-      const hole = i > from && series.cycles[i] - series.cycles[i - 1] > Math.max(5 * usual, 50);
+      const hole = i > begin && series.cycles[i] - series.cycles[i - 1] > longest;
       if (last !== last || hole || Math.abs(value - last) > modulus / 2) c.moveTo(px, y(value));
       else {
         if (stairs) c.lineTo(px, y(last));
@@ -225,7 +252,8 @@ export class LaneDrawing {
     }
   }
 
-  frame(c, lane, bottom, top, y, inner) {
+  frame(c, lane, bottom, top, y) {
+    const { inner } = this;
     const { at, decimals } = ticks(bottom, top, Math.max(3, lane.height / 34));
     c.lineWidth = 1;
     c.textAlign = "right";
@@ -246,37 +274,39 @@ export class LaneDrawing {
     c.strokeRect(LEFT + 0.5, Math.round(lane.top) + 0.5, inner - 1, Math.round(lane.height) - 1);
   }
 
-  bands(c, lane, store, window, x, inner) {
+  bands(c, lane, store, x) {
     lane.signals.forEach((signal, row) => {
       const top = lane.top + row * BAND;
       c.fillStyle = css("--soft");
       c.textAlign = "right";
       c.textBaseline = "middle";
-      c.fillText(fitting(c, `${signal.component.name} ${fieldWords(signal.field.name)}`, LEFT - 10), LEFT - 6, top + BAND / 2);
+      c.fillText(fitting(c, `${signal.component.name} ${signal.field.label}`, LEFT - 10), LEFT - 6, top + BAND / 2);
       c.save();
       c.beginPath();
-      c.rect(LEFT, top, inner, BAND);
+      c.rect(LEFT, top, this.inner, BAND);
       c.clip();
-      this.band(c, signal, store, window, x, top);
+      this.band(c, signal, store, x, top);
       c.restore();
     });
   }
 
-  band(c, signal, store, window, x, top) {
+  band(c, signal, store, x, top) {
+    const { window } = this;
     const series = store.series.get(signal.component.index);
     const column = series?.columns.get(signal.field.name);
     if (!column) return;
     const from = Math.max(0, series.find(window.from) - 1);
     const to = Math.min(series.end, series.find(window.to) + 1);
+    const longest = longestStep(series, from, to);
     let begin = from;
     for (let i = from; i < to; ++i) {
-      const ends = i + 1 >= to;
+      const ends = i + 1 >= to || series.cycles[i + 1] - series.cycles[i] > longest;
       if (!ends && Object.is(column[i + 1], column[begin])) continue;
       const value = column[begin];
       const [a, b] = [x(series.cycles[begin]), x(series.cycles[ends ? i : i + 1])];
       begin = i + 1;
       if (value !== value) continue;
-      const name = signal.field.names ? (signal.field.names[value] ?? `?${value}`) : value ? fieldWords(signal.field.name) : "";
+      const name = signal.field.names ? (signal.field.names[value] ?? `?${value}`) : value ? signal.field.label : "";
       if (!name) continue;
       c.fillStyle = signal.states[name] ?? signal.palette[Math.abs(value) % signal.palette.length];
       c.globalAlpha = 0.85;
@@ -292,7 +322,8 @@ export class LaneDrawing {
   }
 
   // A line down all lanes: {cycle, text, colour}; or a level in one: {lane, level, colour}.
-  mark(c, mark, layout, x, inner) {
+  mark(c, mark, layout, x) {
+    const { inner } = this;
     c.strokeStyle = c.fillStyle = mark.colour;
     c.lineWidth = 1;
     if (mark.lane !== undefined) {

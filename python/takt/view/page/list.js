@@ -138,7 +138,7 @@ export class Details {
       const output = el("output");
       const tick = el("input", { type: "checkbox", title: "In the scope", checked: this.scope.has(`${component.name}.${field.name}`) });
       tick.onchange = () => this.scope.toggle(`${component.name}.${field.name}`);
-      return { field, output, node: el("label", { title: field.about }, tick, el("span", { textContent: field.name.replaceAll("_", " ") }), output) };
+      return { field, output, node: el("label", { title: field.about }, tick, el("span", { textContent: field.label }), output) };
     });
     byId("details-commands").replaceChildren(...this.commands.panel(component));
     byId("details-fields").replaceChildren(...this.outputs.map((one) => one.node));

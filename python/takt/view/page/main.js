@@ -6,6 +6,7 @@ import { Commands } from "./commands.js";
 import { Connection } from "./connection.js";
 import { byId, forgetColours, number } from "./dom.js";
 import { Health } from "./health.js";
+import { listen } from "./keys.js";
 import { Details, MachineList } from "./list.js";
 import { Model } from "./model.js";
 import { Plan } from "./plan.js";
@@ -90,7 +91,7 @@ connection.addEventListener("machine", ({ detail }) => {
     model.begin(detail);
     for (const view of [list, chooser, plan, cams, health]) view.begin();
     details.show(null);
-    scope.choose(names ?? usualSignals());
+    choose(names ?? usualSignals());
     if (names?.length && !scope.signals.length) scope.choose(usualSignals());
     document.title = `${detail.name} – Takt`;
     put(byId("machine-name"), detail.name);
@@ -137,6 +138,13 @@ function header() {
   faults.hidden = !bad.length;
   put(faults, bad.length === 1 ? `${model.components[bad[0].i].name} in error` : `${bad.length} in error`);
   put(byId("waiting-count"), waits ? `${waits} waiting` : "");
+}
+
+// What is not there is said; all else is shown.
+function choose(names) {
+  scope.choose(names);
+  const missing = names.map((name) => model.whyNo(name)).filter(Boolean);
+  if (missing.length) complain(missing.join("; "));
 }
 
 function complain(text) {
@@ -227,8 +235,9 @@ addEventListener("keydown", (event) => {
 addEventListener("hashchange", () => {
   const said = fromAddress();
   if (said.tab !== tab) show(said.tab);
-  if (said.signals && model.machine && said.signals.join() !== scope.signals.map((s) => s.name).join()) scope.choose(said.signals);
+  if (said.signals && model.machine && said.signals.join() !== scope.signals.map((s) => s.name).join()) choose(said.signals);
 });
 
+listen(() => tab, scope, plan);
 show(fromAddress().tab);
 window.takt = { model, scope, connection, plan, health }; // to look at from the console, and for tests

@@ -84,6 +84,14 @@ export class Model {
     return unit === "1" ? "" : (component.units[unit] ?? unit);
   }
 
+  // Why no signal is named so; empty where one is.
+  whyNo(signal) {
+    const [, name, field] = /^(?:(.*)\.)?(.*)$/.exec(signal);
+    const component = this.byName.get(name ?? signal);
+    if (!component) return `there is no component ${name ?? signal}`;
+    return this.field(component, field) ? "" : `${name} publishes no ${field}`;
+  }
+
   // The value of an enumeration or a switch by name; null for numbers.
   nameOf(component, name, value) {
     const field = this.field(component, name);

@@ -36,7 +36,7 @@ export class Scope extends EventTarget {
   }
 
   get spanCycles() {
-    return this.span / this.period;
+    return Math.max(1, Math.round(this.span / this.period));
   }
 
   // --- signals ---
@@ -104,9 +104,9 @@ export class Scope extends EventTarget {
           const swatch = el("i");
           swatch.style.background = lane.band ? "transparent" : signal.colour;
           const title = `${signal.field.about}${signal.unit ? ` [${signal.unit}]` : ""}`;
-          return el("div", { className: "entry", title }, swatch, el("span", { textContent: signal.name.replaceAll("_", " ") }), signal.output, el("span", { className: "tools" }, lane.band ? null : alone, remove));
+          return el("div", { className: "entry", title }, swatch, el("span", { textContent: `${signal.component.name}.${signal.field.label}` }), signal.output, el("span", { className: "tools" }, lane.band ? null : alone, remove));
         });
-        const head = lane.band ? [] : [el("strong", { textContent: lane.unit ? `${lane.title}, ${lane.unit}` : lane.title })];
+        const head = lane.band ? [] : [el("strong", { textContent: lane.unit ? `${lane.title} [${lane.unit}]` : lane.title })];
         const node = el("div", { className: lane.band ? "lane-legend band" : "lane-legend" }, ...head, ...rows);
         node.style.top = `${lane.top}px`;
         node.style.height = `${lane.height}px`;
@@ -318,10 +318,16 @@ export class Scope extends EventTarget {
     this.a = this.b = null;
   }
 
+  // No further than there are samples, or than the window went when it was paused.
   setZoom(from, to) {
     if (!(to - from > 2)) return;
     if (!this.paused) this.pause(true);
-    this.zoom = { from, to };
+    const { held } = this;
+    const [first, last] = held.store.extent() ?? [held.from, held.to];
+    const [least, most] = [Math.min(first, held.from), Math.max(last, held.to)];
+    const length = Math.min(to - from, most - least);
+    const begin = Math.min(Math.max(from, least), most - length);
+    this.zoom = { from: begin, to: begin + length };
   }
 
   pointer() {

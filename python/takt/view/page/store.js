@@ -118,6 +118,12 @@ export class Store {
     return copy;
   }
 
+  // The first and the last cycle that is there of anything; none of nothing.
+  extent() {
+    const all = [...this.series.values()].filter((series) => series.end);
+    return all.length ? [Math.min(...all.map((series) => series.cycles[0])), Math.max(...all.map((series) => series.last))] : null;
+  }
+
   // The value on the line between two samples; of whole numbers, and where it goes round, of the sample before.
   between(component, field, cycle, whole, modulus) {
     const series = this.series.get(component);

@@ -1,0 +1,112 @@
+"""Is a planar mover within what it can do?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from takt.checks.measured import Measured, against, in_range, jerk_against, judge
+from takt.checks.series import Check, Mask, Series
+from takt.recording import FloatArray
+from takt.verdict import Verdict
+
+ON_TRACK = ("OnTrack", "CRotationOnTrack")
+CURVATURE = 1e-6  # relative: what rounding makes of directions and curvatures
+SAME = 1e-6  # mm/s: what is faster or slower than its way along the track has set points from outside on top
+
+
+def of_mover(
+    check: Check, mover: str, given: Mapping[str, float | None], tolerance: float, jerk_tolerance: float
+) -> Verdict:
+    """Along its way (in the plane the length of the vectors, on a track along that), across it in curves of tracks, and
+    each of Z, A, B and C by itself. `given` is for along the way, instead of the mover's own."""
+    own = check.recording.info(mover)["limits"]
+    limits = {**own["xy"], **{what: limit for what, limit in given.items() if limit is not None}}
+    found = _along(check, mover, limits, tolerance, jerk_tolerance)
+    found += _across(check, mover, own["lateral_acceleration"], max(tolerance, CURVATURE))
+    says = ", ".join(one.says for one in found)
+    others = []
+    for name in "zabc":
+        alone = _alone(check, mover, name, own[name], tolerance, jerk_tolerance)
+        # Of what rests all the time there is nothing to say.
+        if moves := [one for one in alone if one.broken.any() or np.ptp(one.values) > 0]:
+            found += moves
+            others.append(name.upper())
+    says += f", those of {' and '.join(others)}" if others else ""
+    return judge(check, mover, found, f"stayed within its {says}", "left")
+
+
+def _along(
+    check: Check, mover: str, limits: Mapping[str, float], tolerance: float, jerk_tolerance: float
+) -> list[Measured]:
+    on = _modes(check, mover)
+    v, a = (_vector(check, mover, what) for what in ("velocity", "acceleration"))
+    track_v, track_a = (check.series(mover, f"track_{what}") for what in ("velocity", "acceleration"))
+    speed = np.where(on, np.abs(track_v.values), np.hypot(*v))
+    push = np.where(on, np.abs(track_a.values), np.hypot(*a))
+    found = [
+        against(what, s.unit, s.time_s, values, limits[what], tolerance * limits[what], f"{mover}: {what}")
+        for what, s, values in (("velocity", track_v, speed), ("acceleration", track_a, push))
+    ]
+    if len(on) > 1:
+        both, none = on[1:] & on[:-1], ~(on[1:] | on[:-1])
+        steps = np.where(both, np.diff(track_a.values), np.where(none, np.hypot(*(np.diff(one) for one in a)), 0))
+        steps[_pushed(check, mover)] = 0
+        label = f"{mover}: jerk (by differences)"
+        found.append(jerk_against("jerk", replace(track_a, values=push), steps, limits["jerk"], jerk_tolerance, label))
+    return found
+
+
+def _across(check: Check, mover: str, limit: float, tolerance: float) -> list[Measured]:
+    """The acceleration across the way, on tracks."""
+    (vx, vy), (ax, ay) = (_vector(check, mover, what) for what in ("velocity", "acceleration"))
+    along = check.series(mover, "track_velocity")
+    speed = np.hypot(vx, vy)
+    curve = _modes(check, mover) & (speed > SAME) & (np.abs(speed - np.abs(along.values)) < SAME)
+    if not curve.any():
+        return []
+    across = np.where(curve, (vx * ay - vy * ax) / np.maximum(speed, SAME), 0)
+    unit = check.recording.unit(mover, "acceleration_x")
+    what = "lateral acceleration"
+    return [against(what, unit, along.time_s, across, limit, tolerance * limit, f"{mover}: {what}")]
+
+
+def _alone(
+    check: Check, mover: str, name: str, own: Mapping[str, Any], tolerance: float, jerk_tolerance: float
+) -> list[Measured]:
+    """One coordinate; the window of C holds only while X and Y move, and is there four times: it is not asked."""
+    p, v, a = (check.series(mover, field) for field in (name, f"velocity_{name}", f"acceleration_{name}"))
+    most, big = own["maximum"], name.upper()
+    found = [
+        against(f"{what} of {big}", s.unit, s.time_s, s.values, most[what], tolerance * most[what], s.label)
+        for what, s in (("velocity", v), ("acceleration", a))
+    ]
+    if len(a.values) > 1:
+        steps = np.where(_pushed(check, mover), 0, np.diff(a.values))
+        label = f"{mover}.jerk_{name} (by differences)"
+        found.append(jerk_against(f"jerk of {big}", a, steps, most["jerk"], jerk_tolerance, label))
+    if name != "c":
+        found.append(in_range(f"position of {big}", p, own["lower"], own["upper"], tolerance))
+    return found
+
+
+def _vector(check: Check, mover: str, what: str) -> tuple[FloatArray, FloatArray]:
+    x, y = (check.series(mover, f"{what}_{axis}").values for axis in "xy")
+    return x, y
+
+
+def _modes(check: Check, mover: str) -> Mask:
+    """Where it goes along a track."""
+    mode = check.series(mover, "command_mode").values
+    codes = [code for code, name in check.recording.names(mover, "command_mode").items() if name in ON_TRACK]
+    return np.isin(mode, codes)
+
+
+def _pushed(check: Check, mover: str) -> Mask:
+    """For each pair of neighbouring samples: set points came from outside, of whose jerk nobody asks."""
+    outside: Series = check.series(mover, "external")
+    given: Mask = outside.values > 0
+    return given[1:] | given[:-1]

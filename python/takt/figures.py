@@ -1,0 +1,67 @@
+"""What an engine says of itself, in words: on the terminal, in reports and in the live page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from takt import msgs
+from takt.counted import counted
+from takt.tables import fields_of
+
+# Counts that should stay 0: what they are called, and what they count.
+COUNTS = {
+    "overruns": ("overruns", "Cycles that ended after the next one should have begun"),
+    "snapshots_dropped": ("states dropped", "States lost because their queue was full: a slow network or disk"),
+    "feedback_dropped": ("feedbacks dropped", "Feedbacks lost because their queue was full"),
+    "journal_dropped": ("journal entries dropped", "The journal cannot be replayed"),
+    "commands_refused": ("commands refused", "The queue to the cycle was full"),
+    "set_points_dropped": ("set points dropped", "For external drives, lost because their queue was full"),
+    "samples_refused": ("samples refused", "Of external drives: wrong, old or not asked for"),
+    "malformed": ("messages malformed", "On the command and heartbeat channels"),
+    "send_failures": ("send failures", "Messages the network or the log file did not take"),
+    "replies_dropped": ("replies dropped", "Too many waited"),
+    "planner_failures": ("plans failed", "The motion in progress was kept"),
+}
+TIMES = {"execution": "execution of a cycle", "latency": "wake-up latency"}
+ALWAYS = ("overruns", "commands_refused", "snapshots_dropped", "feedback_dropped")  # said, be they 0 or not
+
+
+def figures_of(state: msgs.engine_state) -> dict[str, Any]:
+    """All that an engine says of itself, as plain values."""
+    plain = fields_of(state)
+    plain["state_hash"] &= 2**64 - 1  # LCM has no unsigned numbers
+    for name in ("execution", "latency"):
+        histogram = plain[name]
+        plain[name] = {"count": histogram.count, "max": histogram.max, "buckets": list(histogram.buckets)}
+    return plain
+
+
+def in_words(figures: Mapping[str, Any]) -> dict[str, Any]:
+    """Rows of a name and a text. Figures that are none of an engine's stay as they are."""
+    if not figures.keys() >= {"cycle", "commands_applied", *ALWAYS}:
+        return dict(figures)
+    rows = {"cycles": f"{figures['cycle']:,}", "overruns": f"{figures['overruns']:,}"}
+    for name, title in TIMES.items():
+        histogram = figures.get(name) or {}
+        if histogram.get("count"):
+            median, late = (quantile(histogram, share) / 1e3 for share in (0.5, 0.99))
+            rows[title] = f"median {median:.0f} µs, 99 % below {late:.0f} µs, longest {histogram['max'] / 1e3:.0f} µs"
+    rows["commands"] = f"{figures['commands_applied']:,} applied, {figures['commands_refused']:,} refused"
+    states, feedbacks = figures["snapshots_dropped"], figures["feedback_dropped"]
+    rows["dropped"] = f"{counted(states, 'state')}, {counted(feedbacks, 'feedback')}"
+    others = {title: figures.get(name) for name, (title, _) in COUNTS.items() if name not in ALWAYS}
+    rows |= {title: f"{count:,}" for title, count in others.items() if count}
+    return rows
+
+
+def quantile(histogram: Mapping[str, Any], share: float) -> float:
+    """ns below which so many of the counted times lie, the longest at most; bucket i holds those in [2^i, 2^(i+1)), the
+    last one all above."""
+    wanted = share * histogram["count"]
+    longest = float(histogram["max"])
+    for i, count in enumerate(histogram["buckets"][:-1]):
+        if count >= wanted and count:
+            return min(float(2**i * (1 + wanted / count)), longest)
+        wanted -= count
+    return longest

@@ -1,0 +1,43 @@
+"""What a recording lacks, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from takt.counted import counted
+from takt.recording import Recording
+from takt.verdict import Interval, seconds
+
+NAMED = 3  # components; more are only counted
+
+
+def missing(recording: Recording, components: Iterable[str] | None = None, window: Interval | None = None) -> str:
+    """ "3 samples of x in 2 gaps, the first after 0.099 s": of these components, or all; empty: nothing is missing."""
+    lacking = []
+    for component in dict.fromkeys(recording if components is None else components):
+        gaps = recording.gaps(component)
+        if window is not None:
+            gaps = [gap for gap in gaps if gap.time_s < window[1] and gap.until_s > window[0]]
+        if gaps:
+            first = f"{', the first' if len(gaps) > 1 else ','} after {seconds(gaps[0].time_s)}"
+            count = sum(gap.missing for gap in gaps)
+            lacking.append((-count, f"{counted(count, 'sample')} of {component} in {counted(len(gaps), 'gap')}{first}"))
+    said = [text for _, text in sorted(lacking)]
+    others = [f"some of {counted(len(said) - NAMED, 'other component')}"] if len(said) > NAMED else []
+    return "; ".join(said[:NAMED] + others)
+
+
+def holes(recording: Recording, components: Iterable[str], curve: str = "") -> list[Interval]:
+    """From when to when samples are missing of a curve that was made of these components: of the one that it is named
+    after ("x.set_position"), else of any."""
+    there = [name for name in components if name in recording]
+    named = [name for name in there if curve.startswith((f"{name}.", f"{name}:"))]
+    return sorted((gap.time_s, gap.until_s) for name in named or there for gap in recording.gaps(name))
+
+
+def troubles(recording: Recording) -> list[str]:
+    """What whoever reads verdicts on it ought to know, in sentences."""
+    lacks = missing(recording)
+    said = [str(recording.meta.get(what) or "") for what in ("starts", "trouble")]
+    said += [f"Samples are missing: {lacks}." if lacks else ""]
+    return [sentence for sentence in said if sentence]

@@ -1,0 +1,162 @@
+"""PY-05, PL-50: `within_limits` of planar movers, in the plane, on tracks and of each other coordinate."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import takt
+from takt import checks, expect
+from takt.recording import Recording
+from takt.verdict import MotionAssertionError
+
+MACHINE = """
+name: plane
+axes: []
+movers:
+  - name: one
+    xy: {maximum: {velocity: 1500, acceleration: 8000, jerk: 160000}}
+    lateral_acceleration: 3000
+tracks:
+  - name: loop
+    closed_loop: true
+    elements:
+      - {from: {x: 200, y: 100}, to: {x: 800, y: 100}}
+      - {from: {x: 900, y: 200}, to: {x: 900, y: 500}}
+      - {from: {x: 800, y: 600}, to: {x: 200, y: 600}}
+      - {from: {x: 100, y: 500}, to: {x: 100, y: 200}}
+"""
+
+
+def drive(number: int) -> Recording:
+    """Whatever comes: targets while it moves, blended, beyond what it can do, halts; up and round; onto a track."""
+    rng = random.Random(number)
+    with takt.Engine(MACHINE) as engine, engine.record() as recorder:
+        one, loop = engine.mover("one"), engine.track("loop")
+        loop.enable().wait()
+        one.enable().wait()
+        for _ in range(15):
+            dynamics = {"velocity": rng.uniform(50, 4000), "acceleration": rng.uniform(500, 30_000)}
+            buffered = {"buffer_mode": "buffered", "blending": rng.uniform(0, 100)} if rng.random() < 0.3 else {}
+            one.move_to_position(x=rng.uniform(0, 2000), y=rng.uniform(0, 2000), **dynamics, **buffered)
+            one.move_z(position=rng.uniform(0, 5))
+            one.move_c(position=rng.uniform(-15, 15))
+            engine.run(rng.uniform(0.01, 0.6))
+            if rng.random() < 0.2:
+                one.halt()
+        one.halt().wait()
+        one.join_track(track="loop", use_orientation=False).wait()
+        for _ in range(6):
+            one.move_on_track(track="loop", position=rng.uniform(0, 2000), velocity=rng.uniform(500, 4000))
+            engine.run(rng.uniform(0.1, 1.2))
+        one.move_on_track(track="loop", position=0).wait()
+        one.leave_track(x=60, y=60).wait()
+    return recorder.recording
+
+
+@pytest.fixture(scope="module")
+def recording() -> Recording:
+    return drive(1)
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_a_mover_keeps_its_limits_whatever_comes(number: int) -> None:
+    verdict = checks.within_limits(drive(number), "one")
+    assert verdict.passed, verdict.sentence
+    for text in ("velocity limit of 1500 mm/s", "acceleration limit of 8000 mm/s²", "jerk limit of 160000 mm/s³"):
+        assert text in verdict.sentence
+    assert "limit of 3000 mm/s² for the lateral acceleration, those of Z and C; closest call" in verdict.sentence
+
+
+def test_it_uses_what_it_has(recording: Recording) -> None:
+    """So the limits are those that bind: a thousandth less of any is not kept."""
+    assert not checks.within_limits(recording, "one", velocity=1500 * 0.999).passed
+    assert not checks.within_limits(recording, "one", acceleration=8000 * 0.999).passed
+    assert not checks.within_limits(recording, "one", jerk=160_000 * 0.999).passed
+    tight = Recording(
+        {"one": recording["one"]},
+        {"one": {f: recording.unit("one", f) for f in recording.fields("one")[2:]}},
+        names={"one": {"command_mode": recording.names("one", "command_mode")}},
+        info={"one": {"limits": {**recording.info("one")["limits"], "lateral_acceleration": 2990.0}}},
+    )
+    verdict = checks.within_limits(tight, "one")
+    assert not verdict.passed
+    over = re.search(
+        r"one left its limit of 2990 mm/s² for the lateral acceleration by ([\d.]+) mm/s²", verdict.sentence
+    )
+    assert over, verdict.sentence
+    assert 9.9 < float(over[1]) <= 10.001
+
+
+def changed(recording: Recording, field: str, change: Callable[[np.ndarray], object]) -> Recording:
+    """The same with one column that `change` has had in its hands."""
+    table = recording["one"].copy()
+    change(table[field])
+    fields = recording.fields("one")[2:]
+    return Recording(
+        {"one": table},
+        {"one": {f: recording.unit("one", f) for f in fields}},
+        names={"one": {f: recording.names("one", f) for f in fields if recording.names("one", f)}},
+        info={"one": recording.info("one")},
+    )
+
+
+def put(at: int, value: float) -> Callable[[np.ndarray], object]:
+    def change(column: np.ndarray) -> None:
+        column[at] = value
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "on_track", "sentence"),
+    [
+        ("velocity_y", 1600, False, "left its velocity limit of 1500 mm/s by"),
+        ("acceleration_x", 8100, False, "; also acceleration"),
+        ("acceleration_y", 200, False, "left its jerk limit of 160000 mm/s³ by"),
+        ("track_velocity", -1501, True, "left its velocity limit of 1500 mm/s by 1 mm/s: 1501 mm/s"),
+        ("track_acceleration", 170, True, "left its jerk limit of 160000 mm/s³ by"),
+        ("z", 5.1, False, "left its range 0 … 5 mm for the position of Z by 0.1 mm: 5.1 mm"),
+        ("velocity_c", 400, True, "left its limit of 360 deg/s for the velocity of C by 40 deg/s"),
+        ("acceleration_b", -301, True, "; also acceleration of B"),
+        ("velocity_x", np.nan, False, "one.velocity_x is not a number"),
+    ],
+)
+def test_each_limit_is_asked(recording: Recording, field: str, value: float, on_track: bool, sentence: str) -> None:
+    """At rest in the plane before it moves, or standing on the track."""
+    mode = recording.text("one", "command_mode")
+    at = int(np.flatnonzero(mode == "OnTrack")[0]) + 1 if on_track else 50
+    verdict = checks.within_limits(changed(recording, field, put(at, value)), "one")
+    assert not verdict.passed
+    assert sentence in verdict.sentence
+    assert verdict.when_s == pytest.approx(recording["one"]["time_s"][at], abs=0.0015)
+    assert verdict.lanes
+
+
+def test_set_points_from_outside_may_have_any_jerk() -> None:
+    with takt.Engine(MACHINE) as engine, engine.record() as recorder:
+        one = engine.mover("one")
+        one.enable().wait()
+        one.start_external_setpoint_generation()
+        x, v = one.x, 0.0
+        for i in range(200):
+            a = 5000.0 if i < 100 else -5000.0
+            x, v = x + v * engine.period + a * engine.period**2 / 2, v + a * engine.period
+            one.set_external_setpoint(x=x, y=one.y, velocity_x=v, acceleration_x=a)
+            engine.step()
+        one.stop_external_setpoint_generation().wait()
+    assert np.abs(np.diff(recorder.recording["one"]["acceleration_x"])).max() > 9000
+    verdict = checks.within_limits(recorder.recording, "one")
+    assert verdict.passed, verdict.sentence
+    with pytest.raises(MotionAssertionError, match="acceleration limit of 4000"):
+        expect.within_limits(recorder.recording, "one", acceleration=4000)
+
+
+def test_positions_in_the_plane_are_asked_by_name(recording: Recording) -> None:
+    with pytest.raises(ValueError, match="for positions of the mover one say which: signal='x'"):
+        checks.within_limits(recording, "one", position=(0, 100))
+    assert not checks.within_limits(recording, "one", position=(0, 100), signal="x").passed
+    assert checks.within_limits(recording, "one", position=(0, 2000.1), signal="x").passed
