@@ -34,7 +34,6 @@ void FromPython(const Type& type, const py::dict& values, void* object);
 
 // Raises an exception of takt.errors.
 [[noreturn]] void Throw(const char* kind, const py::object& about);
-[[noreturn]] void ThrowConfigError(const std::vector<std::string>& problems);
 
 // A machine file: there is a machine in it, or takt.ConfigError says every problem.
 // `workspaces`: what knows whether paths are free is made, too.
@@ -47,5 +46,6 @@ void BindAxis(py::module_& m);
 void BindEngine(py::module_& m);
 void BindTrack(py::module_& m);
 void BindServo(py::module_& m);
+void BindLcm(py::module_& m);
 
 }  // namespace takt::bindings

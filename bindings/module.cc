@@ -10,4 +10,5 @@ PYBIND11_MODULE(_core, m) {
   takt::bindings::BindEngine(m);
   takt::bindings::BindTrack(m);
   takt::bindings::BindServo(m);
+  takt::bindings::BindLcm(m);
 }

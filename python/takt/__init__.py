@@ -21,7 +21,7 @@ from takt.feedback import Feedback, FeedbackState
 from takt.flex_cam import FlexCam
 from takt.forecast import Forecast, Moment
 from takt.group import Group
-from takt.lcmlog import LogError, read_log
+from takt.lcmlog import LogError, read_log, write_log
 from takt.mover import Mover, MoverRecord
 from takt.part import Part
 from takt.pick_place import PickPlace
@@ -82,5 +82,6 @@ __all__ = [
     "read_log",
     "read_machine",
     "replay",
+    "write_log",
     *_names,
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+import threading
 import traceback
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -19,12 +20,14 @@ from rich.text import Text
 from takt import _core
 from takt.counted import counted
 from takt.drive import WATCHDOG, simulate
+from takt.ending import end_in_order
 from takt.engine import Engine, read_machine
 from takt.errors import ConfigError, TaktError
 from takt.figures import in_words
 from takt.lcmlog import Progress as Share
-from takt.lcmlog import open_log, to_recording
+from takt.lcmlog import open_log, to_recording, write_log
 from takt.missing import missing, troubles
+from takt.network import usual_url
 from takt.recording import Recording, RecordingError
 from takt.remote import connect
 from takt.replay import replay as replay_log
@@ -189,7 +192,7 @@ def demo(
     stay: bool | None,
 ) -> int:
     """Run a ready machine by its NAME, or a scenario FILE, on a taktd of its own, in real time over LCM; verify what
-    lcm-logger recorded; report. Without NAME: list the ready machines."""
+    the network's log holds; report. Without NAME: list the ready machines."""
     from takt.ready import EXAMPLES, listing, scenario_of
 
     if what is None:
@@ -301,6 +304,20 @@ def tune(
     if drawing:
         print(f"picture: {tuning.picture(result, drawing)}")
     return 0
+
+
+@cli.command()
+@click.argument("file", type=FILE)
+@click.option("--url", help="Of this LCM network [the usual one].")
+def record(file: Path, url: str | None) -> None:
+    """Write all that is said on an LCM network into FILE, an LCM log, until Ctrl-C. Unlike lcm-logger it drops nothing
+    that has come to this host."""
+    end_in_order()
+    url = url or usual_url()
+    with write_log(file, url), contextlib.suppress(KeyboardInterrupt):
+        _say(f"{file} records {url}; Ctrl-C ends it")
+        threading.Event().wait()
+    _say(f"{file}: {file.stat().st_size / 1e6:,.1f} MB")
 
 
 @cli.command()

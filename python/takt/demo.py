@@ -1,4 +1,4 @@
-"""A scenario on an engine of its own, in real time and over LCM, judged from what LCM's own logger recorded."""
+"""A scenario on an engine of its own, in real time and over LCM, judged from a log of the network."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from takt import _core
 from takt.counted import counted
 from takt.engine import read_machine
 from takt.errors import ConnectionError, TaktError
-from takt.lcmlog import read_log
+from takt.lcmlog import read_log, write_log
 from takt.network import open_network
 from takt.remote import RemoteSession, connect
 from takt.replay import ReplayResult, replay
@@ -30,8 +30,6 @@ Say = Callable[[str], None]
 Beside = Callable[[str], contextlib.AbstractContextManager[Any]]
 Judged = Callable[["Outcome", dict[str, Any]], None]
 
-AGAIN_S = 0.05  # from one look at the log to the next
-LAGGING_S = 30.0  # that lcm-logger may be behind
 ENDED_AT_ONCE = 130  # what taktd returns after a second signal
 
 
@@ -64,19 +62,19 @@ def run_demo(
     judged: Judged = lambda *_: None,
     stays: bool = False,
 ) -> DemoResult:
-    """Starts taktd on the machine and lcm-logger beside it, runs the scenario through a connection, ends both, and
-    judges what lcm-logger wrote. Everything is kept in `directory`. `beside`: what else runs meanwhile, on the network
+    """Starts taktd on the machine, logs the network beside it, runs the scenario through a connection, ends both, and
+    judges what the log holds. Everything is kept in `directory`. `beside`: what else runs meanwhile, on the network
     with this URL. `judged` hears the verdicts and the engine's figures. When `stays`, the engine runs on until `judged`
     returns; it keeps no journal then, which would grow on and on with it."""
     _core.load_machine(*read_machine(machine))  # says what is wrong with it
     directory.mkdir(parents=True, exist_ok=True)
-    log, kept = directory / "lcm-logger.log", directory / "taktd.log"
+    log, kept = directory / "network.log", directory / "taktd.log"
     for old in (log, kept):
         old.unlink(missing_ok=True)
     url = free_url()
     with taktd(machine, url, None if stays else kept, pace, directory) as engine, beside(url):
-        with _logger(url, log):
-            say(f"taktd runs {machine} ({pace} time), lcm-logger records {url}")
+        with write_log(log, url):
+            say(f"taktd runs {machine} ({pace} time), {log.name} records {url}")
             with _connected(url, engine, directory / "taktd.txt") as session:
                 started, began = time.monotonic(), session.now
                 with session.record(every=1000) as notes:  # for its marks, which do not travel over LCM
@@ -85,7 +83,6 @@ def run_demo(
                 say(f"scenario done: {took:.1f} s of engine time in {seconds:.1f} s")
                 session.run(1.5 / _rate(session.machine["lcm"]["engine_rate_hz"]))  # the last figures count everything
                 figures = session.figures
-            _written(log, url)
         if not stays:
             _end(engine, directory / "taktd.txt")
         recording = read_log(log)
@@ -156,30 +153,6 @@ def taktd(
         _ended(subprocess.Popen(command, stdout=text, stderr=subprocess.STDOUT)) as process,
     ):
         yield process
-
-
-@contextlib.contextmanager
-def _logger(url: str, log: Path) -> Iterator[None]:
-    # PyPI's lcm brings a wrapper of the same name whose child survives it: the real one comes first.
-    program = _program("lcm-logger", Path("/usr/bin"))
-    with _ended(subprocess.Popen([program, f"--lcm-url={url}", "--quiet", log], stdout=subprocess.DEVNULL)):
-        time.sleep(0.3)  # until it listens
-        yield
-
-
-def _written(log: Path, url: str) -> None:
-    """Until lcm-logger is through with what it has heard so far: on a busy machine it is seconds behind, and what it
-    has not written when it is ended is lost. So it is told something, again and again, until that is in the log."""
-    network, channel = open_network(url), f"takt-demo/{random.getrandbits(64):016x}"
-    end, seen = time.monotonic() + LAGGING_S, 0
-    while time.monotonic() < end:
-        network.publish(channel, b"")
-        time.sleep(AGAIN_S)
-        with log.open("rb") as file:
-            file.seek(max(0, seen - len(channel)))
-            if channel.encode() in file.read():
-                return
-            seen = file.tell()
 
 
 @contextlib.contextmanager

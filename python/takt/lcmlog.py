@@ -1,7 +1,8 @@
-"""LCM logs, those of taktd and those of lcm-logger, as recordings and journals."""
+"""LCM logs: written of a network; and read, those of taktd and of any logger, as recordings and journals."""
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 from collections import Counter
@@ -19,6 +20,7 @@ from takt.counted import counted
 from takt.errors import TaktError
 from takt.figures import figures_of
 from takt.lying import Lying, objects_of
+from takt.network import usual_url
 from takt.recording import Array, Recording
 from takt.tables import (
     KINDS,
@@ -47,8 +49,29 @@ STATES = ("busy", "active", "done", "aborted", "error")
 Progress = Callable[[float], None]
 
 
+PATIENCE_S = 30.0  # that writing may be behind
+
+
 class LogError(TaktError, ValueError):
     """A file is no LCM log, or has not in it what is wanted."""
+
+
+@contextlib.contextmanager
+def write_log(path: str | os.PathLike[str], url: str | None = None) -> Iterator[None]:
+    """While the block runs, all that is said on an LCM network [the usual one] goes into an LCM log.
+
+    However busy the host is, what has come to it is written, on a thread of its own: lcm-logger drops what it gets more
+    than 30 messages behind with. What the socket has no room for is lost here, too: `recv_buf_size` of the URL.
+
+    An existing log is written anew. Raises ConnectionError when the network cannot be joined or the file not be
+    written, LogError when it has become incomplete."""
+    log = _core.NetworkLog(url or usual_url(), os.fspath(path))
+    try:
+        yield
+    finally:
+        whole = log.close(PATIENCE_S)
+    if not whole:
+        raise LogError(f"{os.fspath(path)}: not all that was said is in it")
 
 
 @dataclass

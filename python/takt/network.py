@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import socket
 
@@ -10,6 +11,11 @@ import lcm
 from takt.errors import ConnectionError
 
 DEFAULT_URL = "udpm://239.255.76.67:7667?ttl=0"  # ttl 0: stays on this host
+
+
+def usual_url() -> str:
+    """The network of whoever names none: that of the environment (LCM_DEFAULT_URL), else DEFAULT_URL."""
+    return os.environ.get("LCM_DEFAULT_URL") or DEFAULT_URL
 
 
 def open_network(url: str) -> lcm.LCM:

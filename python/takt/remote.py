@@ -19,7 +19,7 @@ from takt.errors import ConnectionError, TaktError
 from takt.feedback import Feedback
 from takt.figures import figures_of
 from takt.lying import objects_of
-from takt.network import DEFAULT_URL, open_network
+from takt.network import open_network, usual_url
 from takt.recording import Recording
 from takt.session import Recorder, Session, release_of
 from takt.tables import KINDS, PREFIXES, State, is_possible, kind_of_channel, make_recording, named, table_of
@@ -443,7 +443,7 @@ def connect(url: str | None = None, *, client: str | None = None, timeout: float
     url: "udpm://239.255.76.67:7667?ttl=0" unless given here or in the environment (LCM_DEFAULT_URL).
     client: a name of one's own; two clients of one name are refused by the engine. Made up unless given.
     """
-    url = url or os.environ.get("LCM_DEFAULT_URL") or DEFAULT_URL
+    url = url or usual_url()
     name = client if client is not None else f"python-{os.getpid()}-{random.SystemRandom().getrandbits(24):06x}"
     return RemoteSession(url, name, timeout)
 

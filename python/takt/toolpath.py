@@ -133,32 +133,60 @@ class Toolpath:
         places = np.concatenate([np.array([self.start]), self._places(which, ways)])
         return places, np.concatenate([[0.0], g.at[which] + ways])
 
-    def follow(self, points: npt.ArrayLike, slack: float = SLACK) -> Followed:
+    def follow(self, points: npt.ArrayLike, slack: float = SLACK, time_s: npt.ArrayLike | None = None) -> Followed:
         """How points (m, 3) that were gone through one after the other, from the start on, lie beside the path.
 
         Looked for is the nearest place not far along the path from the one before, so a path that crosses itself, or
-        leaves a corner out, is not mistaken. `slack`: mm that the points may be beside, before or behind."""
+        leaves a corner out, is not mistaken. `slack`: mm that the points may be beside, before or behind. `time_s`
+        (m,): when they were gone through; where some are missing, more of the path may lie between two points than
+        their distance, as much as was gone at the greatest speed."""
         rows = np.asarray(points, float)
         if rows.ndim != 2 or rows.shape[1] != 3:
             raise ValueError(f"expected rows of 3 numbers, found an array of shape {rows.shape}")
         if not self.elements:
             raise ToolpathError("a path without elements cannot be followed")
-        g = self._geometry
-        distance, position = np.empty(len(rows)), np.empty(len(rows))
         way = np.concatenate([[0.0], np.linalg.norm(np.diff(rows, axis=0), axis=1)])
-        here = 0.0
-        for first in range(0, len(rows), _BLOCK):
-            block = slice(first, min(first + _BLOCK, len(rows)))
-            low, high = here - slack, here + float(np.sum(way[block])) + slack
-            begin = max(int(np.searchsorted(g.at, low, "right")) - 1, 0)
-            end = min(int(np.searchsorted(g.at, high)), len(self.elements))
-            away, ways = self._distances(rows[block], slice(begin, max(end, begin + 1)))
-            nearest = np.argmin(away, axis=1)
-            row = np.arange(len(nearest))
-            distance[block] = away[row, nearest]
-            position[block] = g.at[begin + nearest] + ways[row, nearest]
-            here = float(position[block][-1])
+        holes = np.zeros(len(rows), bool)
+        if time_s is not None and len(rows) > 1:
+            way[1:], holes[1:] = _gone(way[1:], np.diff(np.asarray(time_s, float)))
+        distance, position = np.empty(len(rows)), np.empty(len(rows))
+        here, first = 0.0, 0
+        while first < len(rows):
+            behind = np.flatnonzero(holes[first + 1 : first + _BLOCK])
+            many = 1 + int(behind[0]) if len(behind) else _BLOCK
+            block = slice(first, min(first + many, len(rows)))
+            ahead = float(np.sum(way[first + 1 : block.stop]))
+            low, high = here - slack, here + float(way[first]) + slack
+            if holes[first]:  # it may be at any place near here: at the one that those after it lie best from
+                places = self._places_by(rows[first], low, high, slack)
+                each = [self._near(rows[block], place - slack, place + ahead + slack) for place in places]
+                found = min(each, key=lambda one: float(np.max(one.distance)))
+            else:
+                found = self._near(rows[block], low, high + ahead)
+            distance[block], position[block] = found
+            here, first = float(found.position[-1]), block.stop
         return Followed(distance, position)
+
+    def _between(self, low: float, high: float) -> slice:
+        """The elements that lie, in part at least, between so many mm along the path."""
+        begin = max(int(np.searchsorted(self.at, low, "right")) - 1, 0)
+        return slice(begin, max(min(int(np.searchsorted(self.at, high)), len(self.elements)), begin + 1))
+
+    def _near(self, points: Array, low: float, high: float) -> Followed:
+        """The nearest places on these elements."""
+        part = self._between(low, high)
+        away, ways = self._distances(points, part)
+        nearest = np.argmin(away, axis=1)
+        row = np.arange(len(nearest))
+        return Followed(away[row, nearest], self.at[part.start + nearest] + ways[row, nearest])
+
+    def _places_by(self, point: Array, low: float, high: float, slack: float) -> Array:
+        """How far along the path a point may lie: the nearest place on each of these elements that is no further away
+        than `slack`, or on the nearest of all."""
+        part = self._between(low, high)
+        away, ways = (one[0] for one in self._distances(point[np.newaxis], part))
+        near = away <= max(slack, float(np.min(away)))
+        return np.asarray((self.at[part] + ways)[near])
 
     def shifted(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Toolpath:
         """The same, elsewhere."""
@@ -267,6 +295,14 @@ def read(path: str | PathLike[str], start: Point = (0.0, 0.0, 0.0), tolerance: f
     if suffix == ".csv":
         return Toolpath.from_csv(path, start)
     raise ToolpathError(f"{path}: expected a file of G-code (.gcode, .nc, .ngc, .tap), .svg or .csv")
+
+
+def _gone(way: Array, took: Array) -> tuple[Array, npt.NDArray[np.bool_]]:
+    """How far it may have gone between neighbours this far (mm) and this long (s) apart; and whether samples are
+    missing between them."""
+    usual = took <= 1.5 * np.median(took)
+    fastest = float(np.max(way[usual] / took[usual]))
+    return np.where(usual, way, np.maximum(way, fastest * took)), ~usual
 
 
 def split_turn(sweep: float) -> int:

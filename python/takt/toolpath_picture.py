@@ -87,9 +87,10 @@ class Followed:
             return np.stack([table[prefix + axis] for axis in "xyz"], axis=1)
 
         commanded, actual = places(""), places("actual_")
-        along = path.follow(commanded)
+        times = table["time_s"]
+        along, measured = (path.follow(points, time_s=times) for points in (commanded, actual))
         return cls(
-            path, table["time_s"], commanded, actual, along.position, along.distance, path.follow(actual).distance,
+            path, times, commanded, actual, along.position, along.distance, measured.distance,
             table["velocity"], table["actual_velocity"],
         )  # fmt: skip
 

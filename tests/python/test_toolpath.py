@@ -261,6 +261,35 @@ def test_a_path_that_crosses_itself_is_followed_in_order() -> None:
     assert loop.follow(shortcut.points(0.2)[0]).distance.max() > 10
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_where_samples_are_missing_the_path_is_followed_on(seed: int) -> None:
+    """Holes of up to 60 samples, 12 mm of the way: round corners and arcs, and over places where it crosses itself."""
+    rng = np.random.default_rng(seed)
+    path = toolpath.read(EXAMPLE / "drawing.gcode", (0, 0, 4))
+    points, _ = path.points(0.2)
+    kept = np.ones(len(points), bool)
+    for first in rng.integers(1, len(points) - 100, 40):
+        kept[first : first + rng.integers(5, 60)] = False
+    times = 0.001 * np.arange(len(points))[kept]
+    on = path.follow(points[kept], time_s=times)
+    assert on.distance.max() < 1e-6
+    assert on.position[-1] == pytest.approx(path.length)
+
+
+def test_who_leaves_out_a_loop_cannot_say_that_samples_are_missing() -> None:
+    """In the time of a hole no more of the path counts as gone than is possible."""
+    loop = parse_gcode("G1 X50\nG3 I0 J20\nG1 X100")
+    points = parse_gcode("G1 X100").points(0.2)[0]
+    times = 0.001 * np.arange(len(points))
+    hole = np.abs(points[:, 0] - 50) > 3
+    assert loop.follow(points[hole], time_s=times[hole]).distance.max() > 10
+    there = loop.points(0.2)[0]
+    turned = np.concatenate([there[:240], there[-240:]])  # in the time of the turn nothing was heard
+    times = 0.001 * np.concatenate([np.arange(240), np.arange(len(there) - 240, len(there))])
+    assert loop.follow(turned, time_s=times).distance.max() < 1e-9
+    assert loop.follow(turned).distance.max() > 10
+
+
 def test_nearest_place_of_an_arc() -> None:
     """Beyond the ends of an arc they are the nearest places, each on its side."""
     arc = parse_gcode("G3 X0 Y10 I-10", start=(10, 0, 0))

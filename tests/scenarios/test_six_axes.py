@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import signal
+import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 import takt
 from takt.demo import run_demo
@@ -38,10 +43,28 @@ def test_twice_the_same(in_process: Outcome) -> None:
         assert again[axis].tobytes() == in_process.recording[axis].tobytes()
 
 
+@contextlib.contextmanager
+def lcm_logger(url: str, file: Path) -> Iterator[None]:
+    logger = subprocess.Popen(["/usr/bin/lcm-logger", f"--lcm-url={url}", "--quiet", file])
+    try:
+        yield
+    finally:
+        logger.send_signal(signal.SIGINT)
+        logger.wait(20)
+
+
 def test_on_taktd_with_the_real_tools(in_process: Outcome, tmp_path: Path) -> None:
-    """Over LCM, recorded by lcm-logger, replayed from taktd's journal."""
+    """Over LCM, replayed from taktd's journal; lcm-logger, beside, has heard the same, though not always all of it."""
     scenario = load_scenario(SCENARIO)
-    result = run_demo(scenario, scenario.machine, tmp_path, pace="paced")
+    file = tmp_path / "theirs.log"
+    result = run_demo(scenario, scenario.machine, tmp_path, pace="paced", beside=lambda url: lcm_logger(url, file))
     assert result.passed, [v.sentence for v in result.outcome.verdicts if not v.passed]
     assert verdicts(result.outcome) == verdicts(in_process)
     assert result.replayed.same
+    ours, theirs = result.outcome.recording, takt.read_log(file)
+    assert theirs.components == ours.components
+    for axis in ours.components:
+        both = np.isin(ours[axis]["cycle"], theirs[axis]["cycle"])
+        assert np.mean(both) > 0.5
+        assert ours[axis][both].tobytes() == theirs[axis][np.isin(theirs[axis]["cycle"], ours[axis]["cycle"])].tobytes()
+        assert not ours.gaps(axis)

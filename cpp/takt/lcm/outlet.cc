@@ -9,6 +9,19 @@
 #include <lcm/lcm-cpp.hpp>
 
 namespace takt::lcm {
+namespace {
+
+bool MayBecomeLog(const std::string& path) {
+  constexpr std::array<char, 4> kSyncWord = {'\xED', '\xA1', '\xDA', '\x01'};  // before every event of a log
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return true;
+  std::array<char, 4> begin{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), begin.size());
+  return file.gcount() == 0 || begin == kSyncWord;
+}
+
+}  // namespace
 
 bool NetworkOutlet::Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t) {
   return network_.publish(channel, bytes.data(), static_cast<unsigned int>(bytes.size())) == 0;
@@ -43,14 +56,15 @@ void LogOutlet::Fail() {
   failed_ = true;
 }
 
-bool MayBecomeLog(const std::string& path) {
-  constexpr std::array<char, 4> kSyncWord = {'\xED', '\xA1', '\xDA', '\x01'};  // before every event of a log
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return true;
-  std::array<char, 4> begin{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(begin.data(), begin.size());
-  return file.gcount() == 0 || begin == kSyncWord;
+std::unique_ptr<LogOutlet> OpenLog(const std::string& path, std::string& problem) {
+  if (!MayBecomeLog(path)) {
+    problem = "log file " + path + " exists and is no LCM log; it is left as it is";
+    return nullptr;
+  }
+  auto log = std::make_unique<LogOutlet>(path);
+  if (log->good()) return log;
+  problem = "log file " + path + " cannot be written";
+  return nullptr;
 }
 
 }  // namespace takt::lcm

@@ -52,7 +52,7 @@ class LogOutlet : public Outlet {
   bool failed_ = false;
 };
 
-// Whether a log may be written there: nothing is there yet, or an LCM log, or something that is no plain file.
-bool MayBecomeLog(const std::string& path);
+// A log there, where nothing is yet, or an LCM log, or something that is no plain file. Null: `problem` says why.
+std::unique_ptr<LogOutlet> OpenLog(const std::string& path, std::string& problem);
 
 }  // namespace takt::lcm

@@ -17,15 +17,8 @@ std::unique_ptr<Service> Service::Open(engine::Engine& engine, const ServiceOpti
     service->network_ = std::make_unique<NetworkOutlet>(*service->sending_.lcm);
   }
   if (!options.log_path.empty()) {
-    if (!MayBecomeLog(options.log_path)) {
-      problem = "log file " + options.log_path + " exists and is no LCM log; it is left as it is";
-      return nullptr;
-    }
-    service->log_ = std::make_unique<LogOutlet>(options.log_path);
-    if (!service->log_->good()) {
-      problem = "log file " + options.log_path + " cannot be written";
-      return nullptr;
-    }
+    service->log_ = OpenLog(options.log_path, problem);
+    if (!service->log_) return nullptr;
   }
   service->publisher_ = std::make_unique<Publisher>(engine, service->clients_, service->network_.get(),
                                                     service->log_.get(), options.info);

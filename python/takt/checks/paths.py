@@ -30,7 +30,7 @@ def follows_path(
     prefix = "actual_" if actual else ""
     columns = [check.series(group, prefix + axis) for axis in "xyz"]
     x = columns[0]
-    beside = path.follow(np.stack([column.values for column in columns], axis=1))
+    beside = path.follow(np.stack([column.values for column in columns], axis=1), time_s=x.time_s)
     bound = Bound.level(f"at most {number(within, x.unit)}", within, x.span, "above")
     name = f"{'measured' if actual else 'commanded'} place beside the path"
     lane = Lane("deviation", x.unit, (Trace(f"{group}: {name}", x.time_s, beside.distance),), (bound,))

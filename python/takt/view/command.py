@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
-import signal
 import subprocess
 import tempfile
 import threading
@@ -15,8 +13,9 @@ from pathlib import Path
 
 from takt import _core
 from takt.demo import free_url, taktd
+from takt.ending import end_in_order
 from takt.engine import read_machine
-from takt.network import DEFAULT_URL
+from takt.network import usual_url
 from takt.view.server import serving
 
 LOOK_S = 0.2  # from one look at the engine's process to the next
@@ -25,9 +24,9 @@ OPENS_S = 15.0  # that a browser may take to open the page, before the scenario 
 
 def run(what: str | None, port: int, browser: bool, pace: str, say: Callable[[str], None]) -> int:
     """Shows the engine of a network (its URL, or nothing for the usual one), or one of its own for a machine file."""
-    _end_in_order()
+    end_in_order()
     if what is None or "://" in what:
-        url = what or os.environ.get("LCM_DEFAULT_URL") or DEFAULT_URL
+        url = what or usual_url()
         with serving(url, None, port) as address:
             _show(address, f"the engine on {url}", browser, say)
             threading.Event().wait()
@@ -55,7 +54,7 @@ class Beside:
 
     @contextlib.contextmanager
     def __call__(self, url: str) -> Iterator[None]:
-        _end_in_order()
+        end_in_order()
         drawn = threading.Event()
         with serving(url, self.folder, self.port, drawn) as address:
             address += f"#{self.shows}" if self.shows else ""
@@ -71,12 +70,6 @@ class Beside:
         with contextlib.suppress(KeyboardInterrupt):  # it may come as soon as it is said
             self.say("the engine and its page stay until Ctrl-C")
             threading.Event().wait()
-
-
-def _end_in_order() -> None:
-    """Whichever signal ends this process, what it has started is ended too."""
-    for ending in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(ending, signal.default_int_handler)
 
 
 def _show(address: str, what: str, browser: bool, say: Callable[[str], None]) -> None:

@@ -21,13 +21,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-struct TemporaryFile {
-  explicit TemporaryFile(const std::string& name)
-      : path((std::filesystem::temp_directory_path() / (name + std::to_string(getpid()))).string()) {}
-  ~TemporaryFile() { std::filesystem::remove(path); }
-  std::string path;
-};
-
 // What a client has heard.
 struct Received {
   std::map<std::int64_t, msgs::feedback> last;  // by id

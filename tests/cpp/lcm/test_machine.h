@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "takt/engine/machine.h"
@@ -117,6 +118,14 @@ inline msgs::command Command(std::int64_t id, const std::string& target, const s
   m.arguments = arguments;
   return m;
 }
+
+// Of this process alone; gone with this.
+struct TemporaryFile {
+  explicit TemporaryFile(const std::string& name)
+      : path((std::filesystem::temp_directory_path() / (name + std::to_string(getpid()))).string()) {}
+  ~TemporaryFile() { std::filesystem::remove(path); }
+  std::string path;
+};
 
 // An LCM network that no other test uses; its port is below those that systems give away by themselves.
 inline std::string NewUrl() {

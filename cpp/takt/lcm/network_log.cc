@@ -1,0 +1,87 @@
+#include "takt/lcm/network_log.h"
+
+#include <lcm/lcm-cpp.hpp>
+#include <random>
+#include <utility>
+
+namespace takt::lcm {
+namespace {
+
+constexpr int kQuietMs = 100;                       // after so long a silence what was said stands in the file
+constexpr std::chrono::milliseconds kSayAgain{50};  // the last word: on a busy network that may be lost, too
+constexpr std::chrono::milliseconds kLookAgain{1};
+
+// Nobody else's: several may listen to one network.
+std::string LastWord() {
+  std::random_device random;
+  return "takt/log_ends/" + std::to_string(random()) + "." + std::to_string(random());
+}
+
+}  // namespace
+
+std::unique_ptr<NetworkLog> NetworkLog::Open(const std::string& url, const std::string& path, std::string& problem) {
+  Network network = OpenNetwork(url);
+  if (!network.lcm) {
+    problem = network.problem;
+    return nullptr;
+  }
+  std::unique_ptr<LogOutlet> log = OpenLog(path, problem);
+  if (!log) return nullptr;
+  return std::unique_ptr<NetworkLog>(new NetworkLog(std::move(network), std::move(log)));
+}
+
+NetworkLog::NetworkLog(Network network, std::unique_ptr<LogOutlet> log)
+    : network_(std::move(network)), log_(std::move(log)), last_(LastWord()) {
+  ::lcm::Subscription* all = network_.lcm->subscribeFunction<NetworkLog*>(
+      ".*",
+      [](const ::lcm::ReceiveBuffer* message, const std::string& channel, NetworkLog* self) {
+        self->Hear(message, channel);
+      },
+      this);
+  all->setQueueCapacity(0);  // as many as come
+  thread_ = std::thread([this] {
+    while (!heard_all_ && !stop_) {
+      if (network_.lcm->handleTimeout(kQuietMs) == 0) log_->Flush();
+    }
+  });
+}
+
+NetworkLog::~NetworkLog() {
+  End();
+}
+
+void NetworkLog::Hear(const ::lcm::ReceiveBuffer* message, const std::string& channel) {
+  if (channel == last_) {
+    heard_all_ = true;
+  } else if (!heard_all_) {
+    const auto* bytes = static_cast<const std::uint8_t*>(message->data);
+    log_->Send(channel, {bytes, message->data_size}, message->recv_utime);  // remembers itself that it failed
+  }
+}
+
+bool NetworkLog::Close(std::chrono::milliseconds patience) {
+  if (!thread_.joinable()) return complete_;
+  const auto until = std::chrono::steady_clock::now() + patience;
+  auto say = std::chrono::steady_clock::now();
+  while (!heard_all_ && std::chrono::steady_clock::now() < until) {
+    if (std::chrono::steady_clock::now() >= say) {
+      network_.lcm->publish(last_, nullptr, 0);
+      say += kSayAgain;
+    }
+    std::this_thread::sleep_for(kLookAgain);
+  }
+  const bool all = heard_all_;
+  End();
+  return complete_ = complete_ && all;
+}
+
+void NetworkLog::End() {
+  if (!thread_.joinable()) return;
+  stop_ = true;
+  thread_.join();
+  log_->Flush();
+  complete_ = !log_->failed();
+  log_.reset();
+}
+
+}  // namespace takt::lcm

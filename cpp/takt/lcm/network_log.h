@@ -1,0 +1,46 @@
+// Writes down what is said on an LCM network, without gaps: what lcm-logger is for, but that holds 30 messages which it
+// has not got to and forgets the others (1.3.1 and 1.5), so a busy host makes holes in what it writes.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "takt/lcm/network.h"
+#include "takt/lcm/outlet.h"
+
+namespace lcm {
+struct ReceiveBuffer;
+}  // namespace lcm
+
+namespace takt::lcm {
+
+class NetworkLog {
+ public:
+  // Listens at once, on a thread of its own. An existing log is written anew; anything else that is there is left as it
+  // is. Null: `problem` says why, in one line.
+  static std::unique_ptr<NetworkLog> Open(const std::string& url, const std::string& path, std::string& problem);
+  // Closes it, if nobody has, without waiting for what is still to be written.
+  ~NetworkLog();
+
+  // Ends it when all that was said before the call is written. It may take as long as `patience`; false: that was not
+  // enough, or the file is incomplete.
+  bool Close(std::chrono::milliseconds patience);
+
+ private:
+  NetworkLog(Network network, std::unique_ptr<LogOutlet> log);
+  void Hear(const ::lcm::ReceiveBuffer* message, const std::string& channel);
+  void End();
+
+  Network network_;
+  std::unique_ptr<LogOutlet> log_;  // of the thread, while that runs
+  const std::string last_;          // the channel of the last word
+  std::atomic<bool> heard_all_{false};
+  std::atomic<bool> stop_{false};
+  bool complete_ = false;
+  std::thread thread_;
+};
+
+}  // namespace takt::lcm

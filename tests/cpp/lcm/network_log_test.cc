@@ -1,0 +1,122 @@
+#include "takt/lcm/network_log.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <lcm/lcm-cpp.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "test_machine.h"
+
+namespace takt::lcm {
+namespace {
+
+using namespace std::chrono_literals;
+
+// The numbers said on the channel "n", as they stand in a log.
+std::vector<int> Said(const std::string& path) {
+  std::vector<int> numbers;
+  ::lcm::LogFile log(path, "r");
+  for (const ::lcm::LogEvent* event = log.readNextEvent(); event != nullptr; event = log.readNextEvent()) {
+    if (event->channel != "n") continue;
+    int number = 0;
+    std::memcpy(&number, event->data, sizeof number);
+    EXPECT_GT(event->timestamp, 1'000'000'000'000'000) << "wall clock in us";
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+void Say(::lcm::LCM& network, int first, int last) {
+  std::array<char, 300> bytes{};
+  for (int i = first; i < last; ++i) {
+    std::memcpy(bytes.data(), &i, sizeof i);
+    network.publish("n", bytes.data(), bytes.size());
+  }
+}
+
+std::vector<int> Numbers(int last) {
+  std::vector<int> numbers;
+  for (int i = 0; i < last; ++i) numbers.push_back(i);
+  return numbers;
+}
+
+// EN-24: what is said before it is closed is in it, and nothing else of the kind.
+TEST(NetworkLog, HoldsAllThatWasSaidBeforeItWasClosed) {
+  const TemporaryFile place("takt_network_log_");
+  const std::string url = NewUrl();
+  const Network client = OpenNetwork(url);
+  std::string problem;
+  const auto log = NetworkLog::Open(url, place.path, problem);
+  ASSERT_TRUE(log) << problem;
+  Say(*client.lcm, 0, 100);
+  EXPECT_TRUE(log->Close(20s));
+  EXPECT_TRUE(log->Close(0s)) << "closed already";
+  Say(*client.lcm, 100, 110);
+  EXPECT_EQ(Said(place.path), Numbers(100));
+}
+
+// EN-24: lcm-logger would hold 30 of them.
+TEST(NetworkLog, HoldsAsManyAsComeWhileNobodyTakesThem) {
+  const TemporaryFile pipe("takt_network_log_pipe_");
+  const TemporaryFile place("takt_network_log_read_");
+  ASSERT_EQ(mkfifo(pipe.path.c_str(), 0600), 0);
+  const int end = open(pipe.path.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(end, 0);
+  ASSERT_EQ(fcntl(end, F_SETPIPE_SZ, 4096), 4096);
+  ASSERT_EQ(fcntl(end, F_SETFL, 0), 0);  // waits from now on
+  const std::string url = NewUrl();
+  const Network client = OpenNetwork(url);
+  std::string problem;
+  const auto log = NetworkLog::Open(url, pipe.path, problem);
+  ASSERT_TRUE(log) << problem;
+  constexpr int kMany = 100;  // the pipe holds two dozen, a socket buffer as systems give them more than these
+  Say(*client.lcm, 0, kMany);
+  std::this_thread::sleep_for(300ms);  // so long nobody reads
+  std::thread reader([&] {
+    std::ofstream file(place.path, std::ios::binary);
+    std::array<char, 4096> bytes;
+    for (ssize_t count = read(end, bytes.data(), bytes.size()); count > 0;
+         count = read(end, bytes.data(), bytes.size()))
+      file.write(bytes.data(), count);
+  });
+  EXPECT_TRUE(log->Close(20s));
+  reader.join();
+  close(end);
+  EXPECT_EQ(Said(place.path), Numbers(kMany)) << Said(place.path).size();
+}
+
+TEST(NetworkLog, IsClosedInOrderByWhoForgetsTo) {
+  const TemporaryFile place("takt_network_log_left_");
+  const std::string url = NewUrl();
+  const Network client = OpenNetwork(url);
+  std::string problem;
+  { ASSERT_TRUE(NetworkLog::Open(url, place.path, problem)) << problem; }
+  EXPECT_TRUE(std::filesystem::exists(place.path));
+}
+
+TEST(NetworkLog, SaysWhyNot) {
+  const TemporaryFile place("takt_network_log_text_");
+  std::ofstream(place.path) << "a letter";
+  std::string problem;
+  EXPECT_FALSE(NetworkLog::Open("udp://nowhere", place.path, problem));
+  EXPECT_NE(problem.find("LCM URL 'udp://nowhere': expected one like"), std::string::npos) << problem;
+  EXPECT_FALSE(NetworkLog::Open(NewUrl(), place.path, problem));
+  EXPECT_EQ(problem, "log file " + place.path + " exists and is no LCM log; it is left as it is");
+  EXPECT_FALSE(NetworkLog::Open(NewUrl(), "/there/is/no/such/folder.lcm", problem));
+  EXPECT_EQ(problem, "log file /there/is/no/such/folder.lcm cannot be written");
+  std::string text;
+  std::ifstream(place.path) >> text;
+  EXPECT_EQ(text, "a");
+}
+
+}  // namespace
+}  // namespace takt::lcm
