@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-import threading
 import traceback
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -20,7 +19,7 @@ from rich.text import Text
 from takt import _core
 from takt.counted import counted
 from takt.drive import WATCHDOG, simulate
-from takt.ending import end_in_order
+from takt.ending import end_in_order, wait_until_ended
 from takt.engine import Engine, read_machine
 from takt.errors import ConfigError, TaktError
 from takt.figures import in_words
@@ -316,7 +315,7 @@ def record(file: Path, url: str | None) -> None:
     url = url or usual_url()
     with write_log(file, url), contextlib.suppress(KeyboardInterrupt):
         _say(f"{file} records {url}; Ctrl-C ends it")
-        threading.Event().wait()
+        wait_until_ended()
     _say(f"{file}: {file.stat().st_size / 1e6:,.1f} MB")
 
 

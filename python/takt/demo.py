@@ -20,7 +20,7 @@ from takt.counted import counted
 from takt.engine import read_machine
 from takt.errors import ConnectionError, TaktError
 from takt.lcmlog import read_log, write_log
-from takt.network import open_network
+from takt.network import open_network, roomy
 from takt.remote import RemoteSession, connect
 from takt.replay import ReplayResult, replay
 from takt.scenario import Outcome, Scenario, play, verify_recording
@@ -125,7 +125,7 @@ def _rate(hz: float) -> float:
 
 def free_url() -> str:
     """A network that stays on this host, on a port nobody else is likely to use, with room for a burst."""
-    url = f"udpm://239.255.76.67:{random.randint(20000, 60000)}?ttl=0&recv_buf_size=4194304"
+    url = roomy(f"udpm://239.255.76.67:{random.randint(20000, 60000)}?ttl=0")
     open_network(url)  # says in one line what is wrong with the network, before anything is started
     return url
 

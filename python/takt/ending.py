@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 import signal
+import time
+from typing import NoReturn
+
+LOOK_S = 0.2
 
 
 def end_in_order() -> None:
     """Whichever signal ends this process, it comes as KeyboardInterrupt: what was begun is ended, too."""
     for ending in (signal.SIGINT, signal.SIGTERM):
         signal.signal(ending, signal.default_int_handler)
+
+
+def wait_until_ended() -> NoReturn:
+    """Until KeyboardInterrupt. Wakes up now and then: where the system hands a signal to another thread, one of LCM's,
+    nothing tells this one."""
+    while True:
+        time.sleep(LOOK_S)

@@ -20,7 +20,7 @@ from takt.counted import counted
 from takt.errors import TaktError
 from takt.figures import figures_of
 from takt.lying import Lying, objects_of
-from takt.network import usual_url
+from takt.network import open_network, roomy, usual_url
 from takt.recording import Array, Recording
 from takt.tables import (
     KINDS,
@@ -46,10 +46,9 @@ MESSAGES: dict[str, Any] = {
 }
 STATES = ("busy", "active", "done", "aborted", "error")
 
-Progress = Callable[[float], None]
-
-
 PATIENCE_S = 30.0  # that writing may be behind
+
+Progress = Callable[[float], None]
 
 
 class LogError(TaktError, ValueError):
@@ -61,11 +60,14 @@ def write_log(path: str | os.PathLike[str], url: str | None = None) -> Iterator[
     """While the block runs, all that is said on an LCM network [the usual one] goes into an LCM log.
 
     However busy the host is, what has come to it is written, on a thread of its own: lcm-logger drops what it gets more
-    than 30 messages behind with. What the socket has no room for is lost here, too: `recv_buf_size` of the URL.
+    than 30 messages behind with. What the socket has no room for is lost here, too: it gets 4 MiB, where the system
+    allows that (net.core.rmem_max), unless the URL says otherwise (recv_buf_size).
 
     An existing log is written anew. Raises ConnectionError when the network cannot be joined or the file not be
     written, LogError when it has become incomplete."""
-    log = _core.NetworkLog(url or usual_url(), os.fspath(path))
+    network = url or usual_url()
+    open_network(network)  # says what is wrong with it as it was given
+    log = _core.NetworkLog(roomy(network), os.fspath(path))
     try:
         yield
     finally:

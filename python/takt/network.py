@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 import re
 import socket
+from pathlib import Path
 
 import lcm
 
 from takt.errors import ConnectionError
 
 DEFAULT_URL = "udpm://239.255.76.67:7667?ttl=0"  # ttl 0: stays on this host
+BUFFER = 4 << 20  # bytes of a socket that must not lose anything
 
 
 def usual_url() -> str:
@@ -18,8 +20,21 @@ def usual_url() -> str:
     return os.environ.get("LCM_DEFAULT_URL") or DEFAULT_URL
 
 
-def open_network(url: str) -> lcm.LCM:
-    """LCM itself answers an absent network with a page of advice on stderr: this looks first."""
+def roomy(url: str) -> str:
+    """The network with a receive buffer that takes bursts, as far as the system allows."""
+    if not url.startswith("udpm://") or "recv_buf_size" in url:
+        return url
+    try:
+        allowed = int(Path("/proc/sys/net/core/rmem_max").read_text())
+    except (OSError, ValueError):
+        return url
+    return f"{url}{'&' if '?' in url else '?'}recv_buf_size={min(BUFFER, allowed)}"
+
+
+def open_network(url: str, *, room: bool = False) -> lcm.LCM:
+    """LCM itself answers an absent network with a page of advice on stderr: this looks first.
+
+    room: for bursts (`roomy`)."""
     if url.startswith("udpm://"):
         parts = re.fullmatch(r"udpm://(\d+(?:\.\d+){3}):(\d{1,5})(?:\?.*)?", url)
         if not parts or not 0 < int(parts[2]) < 65536:
@@ -35,7 +50,7 @@ def open_network(url: str) -> lcm.LCM:
     elif not url.startswith(("tcpq://", "memq://")):
         raise ConnectionError(_wrong(url))
     try:
-        network = lcm.LCM(url)
+        network = lcm.LCM(roomy(url) if room else url)
     except RuntimeError as error:
         raise ConnectionError(f"the LCM network {url} cannot be joined: {error}") from None
     if network.fileno() < 0:  # it could send, but not receive

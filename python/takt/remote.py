@@ -89,7 +89,7 @@ class RemoteSession(Session):
         self._stop = threading.Event()
         self._beat_now = threading.Event()
 
-        self._lcm = open_network(url)
+        self._lcm = open_network(url, room=True)
         self._subscriptions: list[Any] = []
         for channel, handler in (
             ("takt/machine", self._on_machine),

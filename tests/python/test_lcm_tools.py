@@ -13,6 +13,9 @@ import pytest
 import takt
 from machines import new_url, running
 from takt import msgs
+from takt.cli import main
+from takt.lcmlog import read_events
+from takt.network import open_network
 
 LOGGER, PLAYER = Path("/usr/bin/lcm-logger"), Path("/usr/bin/lcm-logplayer")
 OURS = "takt record"
@@ -93,3 +96,38 @@ def test_lcm_logplayer_plays(logged: tuple[Path, takt.Recording]) -> None:
     finally:
         player.kill()
         player.wait()
+
+
+def rmem_max() -> int:
+    return int(Path("/proc/sys/net/core/rmem_max").read_text())
+
+
+@pytest.mark.skipif(rmem_max() < 4 << 20, reason="the system gives sockets no room (net.core.rmem_max)")
+def test_a_logger_that_is_held_up_loses_nothing(tmp_path: Path) -> None:
+    """As long as the socket has room; with what systems give unasked that would be a fifth of these."""
+    url, file = new_url(), tmp_path / "network.log"
+    network = open_network(url)
+    logger = subprocess.Popen(
+        [sys.executable, "-m", "takt", "record", f"--url={url}", file], stdout=subprocess.PIPE, text=True
+    )
+    assert logger.stdout
+    assert logger.stdout.readline() == f"{file} records {url}; Ctrl-C ends it\n"
+    logger.send_signal(signal.SIGSTOP)
+    for number in range(1500):
+        network.publish("n", number.to_bytes(2, "big") * 100)
+    logger.send_signal(signal.SIGCONT)
+    logger.send_signal(signal.SIGTERM)
+    assert logger.communicate(timeout=60)[0] == f"{file}: 0.3 MB\n"
+    assert logger.returncode == 0
+    said = [int.from_bytes(data[:2], "big") for _, channel, data in read_events(file) if channel == "n"]
+    assert said == list(range(1500))
+
+
+def test_recording_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = tmp_path / "letter.txt"
+    text.write_text("a letter")
+    assert main(["record", str(text), "--url", new_url()]) == 2
+    assert capsys.readouterr().err == f"takt: log file {text} exists and is no LCM log; it is left as it is\n"
+    assert text.read_text() == "a letter"
+    assert main(["record", str(tmp_path / "x.lcm"), "--url", "udpm://239.255.76.67:99999"]) == 2
+    assert 'takt: LCM URL "udpm://239.255.76.67:99999": expected one like' in capsys.readouterr().err

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from takt import _core
 from takt.demo import free_url, taktd
-from takt.ending import end_in_order
+from takt.ending import end_in_order, wait_until_ended
 from takt.engine import read_machine
 from takt.network import usual_url
 from takt.view.server import serving
@@ -29,7 +29,7 @@ def run(what: str | None, port: int, browser: bool, pace: str, say: Callable[[st
         url = what or usual_url()
         with serving(url, None, port) as address:
             _show(address, f"the engine on {url}", browser, say)
-            threading.Event().wait()
+            wait_until_ended()
     file = Path(what or "")
     _core.load_machine(*read_machine(file))  # says what is wrong with it
     url = free_url()
@@ -69,7 +69,7 @@ class Beside:
         """Until Ctrl-C."""
         with contextlib.suppress(KeyboardInterrupt):  # it may come as soon as it is said
             self.say("the engine and its page stay until Ctrl-C")
-            threading.Event().wait()
+            wait_until_ended()
 
 
 def _show(address: str, what: str, browser: bool, say: Callable[[str], None]) -> None:

@@ -30,21 +30,9 @@ from takt.view.shapes import Shapes
 
 QUEUE = 200_000  # messages that wait for the next tick, of all that must not get lost
 AT_ONCE = 2000  # messages of one tick, besides states
-BUFFER = 4 << 20  # bytes of the socket, where the system allows it
 LONELY_S = 3.0  # without a message of the engine: it is gone
 TAKEN_OVER_S = 1.5  # without one, and another engine is heard: that one took its place
 KEPT_S = 30.0  # how long signals are kept that nobody looks at, for a page that comes back
-
-
-def roomy(url: str) -> str:
-    """The network with a receive buffer that takes bursts, as far as the system allows."""
-    if not url.startswith("udpm://") or "recv_buf_size" in url:
-        return url
-    try:
-        allowed = int(Path("/proc/sys/net/core/rmem_max").read_text())
-    except (OSError, ValueError):
-        return url
-    return f"{url}{'&' if '?' in url else '?'}recv_buf_size={min(BUFFER, allowed)}"
 
 
 class Tap:
@@ -108,8 +96,8 @@ class Feed:
         self.listeners: set[Callable[[msgs.feedback], None]] = set()  # to what becomes of commands
         self._heard = 0.0
         self._other_heard = 0.0
-        self._news: lcm.LCM = open_network(roomy(url))
-        self._scope: lcm.LCM = open_network(roomy(url))
+        self._news: lcm.LCM = open_network(url, room=True)
+        self._scope: lcm.LCM = open_network(url, room=True)
         self._subscriptions: list[Any] = []
         self._tap_subscriptions: dict[int, Any] = {}
         for channel, handler in (
