@@ -301,13 +301,15 @@ class Session(MachineCommands):
 
     def wait(self, condition: Callable[[], object], timeout: float = DEFAULT_TIMEOUT_S, *, what: str = "") -> None:
         """Lets engine time pass until `condition()` is true; takt.TimeoutError when it is not within `timeout` s of
-        engine time. In process it is asked after every cycle, over LCM whenever something new has come."""
+        engine time. In process it is asked after every cycle, over LCM whenever something new has come; what is
+        published is then nowhere older than what the condition saw."""
         self._check_open()
         if not callable(condition):
             raise TypeError(f"a condition is a function, not {condition!r}")
         timeout = seconds(timeout, "a timeout")
         if not self._wait_for(lambda: bool(condition()), timeout, on_feedback=False):
             raise TimeoutError(f"{what or 'the condition'}: not met within {timeout:g} s")
+        self._catch_up(self.cycle)
 
     def run(self, duration: float) -> None:
         """Lets so many seconds of engine time pass."""

@@ -357,6 +357,24 @@ def test_rates_are_as_configured(tmp_path: Path) -> None:
         assert len(recording["r"]) == pytest.approx(250, abs=25)
 
 
+def test_after_waiting_everything_is_as_new_as_what_was_waited_for(tmp_path: Path) -> None:
+    """Whoever waits for one component may ask for another: `follower`, in gear with x, is published once in 50 ms."""
+    url, machine = (
+        new_url(),
+        machine_with("{axis_rate_hz: 1000, rates: [{axis: follower, rate_hz: 20}], dead_man_s: 1}"),
+    )
+    machine += machine[machine.index("  - name: x") : machine.index("  - name: r")].replace("name: x", "name: follower")
+    with running(tmp_path, url, machine=machine), takt.connect(url) as session:
+        x, follower = session.axis("x"), session.axis("follower")
+        x.power().wait()
+        follower.power().wait()
+        follower.gear_in(master="x").wait(until="active")
+        x.move_velocity(velocity=200)
+        for place in range(20, 320, 15):
+            session.wait(lambda place=place: x.set_position >= place)
+            assert follower.set_position >= place - 0.21  # one cycle behind its master at most
+
+
 def test_every_nth_published_sample(tmp_path: Path) -> None:
     """PY-04: also where an axis is published in cycles that are no multiples of `every`."""
     url = new_url()
