@@ -8,10 +8,14 @@
 namespace takt::bindings {
 namespace {
 
-std::unique_ptr<lcm::NetworkLog> OpenNetworkLog(const std::string& url, const std::string& path) {
+std::unique_ptr<lcm::NetworkLog> OpenNetworkLog(const std::string& url, const py::bytes& path) {
   std::string problem;
   auto log = lcm::NetworkLog::Open(url, path, problem);
-  if (!log) Throw("ConnectionError", py::str(problem));
+  if (!log) {
+    const auto text = py::reinterpret_steal<py::object>(
+        PyUnicode_DecodeFSDefaultAndSize(problem.data(), static_cast<Py_ssize_t>(problem.size())));
+    Throw("ConnectionError", text);
+  }
   return log;
 }
 

@@ -356,8 +356,8 @@ def plot(
     if start is not None or end is not None:
         window = (recording.start_s if start is None else start, recording.end_s if end is None else end)
     figure = plotting.draw(recording, *signals, title=title or file.name, window=window)
-    if starts := recording.meta.get("starts"):
-        print(starts)
+    for sentence in troubles(recording):
+        print(sentence)
     print(plotting.save(figure, target))
 
 

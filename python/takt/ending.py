@@ -10,9 +10,11 @@ LOOK_S = 0.2
 
 
 def end_in_order() -> None:
-    """Whichever signal ends this process, it comes as KeyboardInterrupt: what was begun is ended, too."""
-    for ending in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(ending, signal.default_int_handler)
+    """Ctrl-C, a request to end, the end of the terminal: each comes as KeyboardInterrupt, so what was begun is ended,
+    too. Who ignores the end of terminals (nohup) goes on."""
+    for ending in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if ending is not signal.SIGHUP or signal.getsignal(ending) is not signal.SIG_IGN:
+            signal.signal(ending, signal.default_int_handler)
 
 
 def wait_until_ended() -> NoReturn:

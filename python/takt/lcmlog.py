@@ -64,10 +64,10 @@ def write_log(path: str | os.PathLike[str], url: str | None = None) -> Iterator[
     allows that (net.core.rmem_max), unless the URL says otherwise (recv_buf_size).
 
     An existing log is written anew. Raises ConnectionError when the network cannot be joined or the file not be
-    written, LogError when it has become incomplete."""
+    written, LogError when it has become incomplete (unless the block raised something itself)."""
     network = url or usual_url()
     open_network(network)  # says what is wrong with it as it was given
-    log = _core.NetworkLog(roomy(network), os.fspath(path))
+    log = _core.NetworkLog(roomy(network), os.fsencode(path))
     try:
         yield
     finally:
@@ -136,7 +136,7 @@ def read_events(path: str | os.PathLike[str], progress: Progress | None = None) 
     except OSError as error:
         raise LogError(f"{file}: cannot be read: {error.strerror}") from None
     if magic != b"\xed\xa1\xda\x01":
-        raise LogError(f"{file}: is not an LCM log")
+        raise LogError(f"{file}: {'is not an LCM log' if magic else 'is empty'}")
     log = lcm.EventLog(str(file), "r")
     try:
         for count, event in enumerate(log):

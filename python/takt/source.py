@@ -34,4 +34,4 @@ def read_run(run: Path, progress: Progress | None = None, start: int | None = No
         return Recording.load(file)
     if magic == b"\xed\xa1\xda\x01":
         return read_log(file, run=-1 if start is None else start, progress=progress)
-    raise RecordingError(f"{file}: is neither a recording (.npz) nor an LCM log")
+    raise RecordingError(f"{file}: {'is neither a recording (.npz) nor an LCM log' if magic else 'is empty'}")

@@ -32,6 +32,9 @@ SLACK = 2.0  # mm: how far beside, before or behind a path points may lie that a
 TOLERANCE = 0.005  # mm between a curve and the lines that stand for it
 COLUMNS = ("shape", "x", "y", "z", "via_x", "via_y", "via_z", "velocity")
 _BLOCK = 64  # points looked at together in `follow`
+_HOPELESS = (
+    10 * SLACK
+)  # mm by which one way to lay points onto a path may be worse than another and still turn out best
 
 
 class ToolpathError(TaktError, ValueError):
@@ -136,57 +139,93 @@ class Toolpath:
     def follow(self, points: npt.ArrayLike, slack: float = SLACK, time_s: npt.ArrayLike | None = None) -> Followed:
         """How points (m, 3) that were gone through one after the other, from the start on, lie beside the path.
 
-        Looked for is the nearest place not far along the path from the one before, so a path that crosses itself, or
-        leaves a corner out, is not mistaken. `slack`: mm that the points may be beside, before or behind. `time_s`
-        (m,): when they were gone through; where some are missing, more of the path may lie between two points than
-        their distance, as much as was gone at the greatest speed."""
+        Each lies by a place on the path that is hardly further on from the place before than the points are apart: so a
+        path may cross itself or go back over itself, and who leaves a loop out is not mistaken for who goes round it.
+        `slack`: mm that the points may be beside, before or behind. `time_s` (m,), rising: when they were gone through;
+        where some are missing, more of the path may lie between two points than their distance, as much as was gone
+        elsewhere at the greatest speed (of 99 in 100 steps)."""
         rows = np.asarray(points, float)
         if rows.ndim != 2 or rows.shape[1] != 3:
             raise ValueError(f"expected rows of 3 numbers, found an array of shape {rows.shape}")
         if not self.elements:
             raise ToolpathError("a path without elements cannot be followed")
-        way = np.concatenate([[0.0], np.linalg.norm(np.diff(rows, axis=0), axis=1)])
-        holes = np.zeros(len(rows), bool)
-        if time_s is not None and len(rows) > 1:
-            way[1:], holes[1:] = _gone(way[1:], np.diff(np.asarray(time_s, float)))
+        way = np.concatenate([[0.0], np.linalg.norm(np.diff(rows, axis=0), axis=1)])[: len(rows)]
+        most = way if time_s is None else _most(way, np.asarray(time_s, float))
+        found = self._follow_quickly(rows, most, slack)
+        if not len(rows) or not np.all(np.isfinite(rows)):
+            return found
+        # That it is right shows: it leads along the path, to its end where the points are there.
+        lost = np.max(found.distance) > slack
+        behind = self.length - found.position[-1] > 2 * np.linalg.norm(rows[-1] - self.end) + 1e-6
+        gone = np.diff(found.position)
+        if lost or behind or np.any((gone < -slack) | (gone > most[1:] + slack)):
+            sure = self._follow_surely(rows, way, most, slack)
+            if not lost or np.max(sure.distance) <= np.max(found.distance):
+                return sure
+        return found
+
+    def _follow_quickly(self, rows: Array, most: Array, slack: float) -> Followed:
+        """Many points at once: the nearest places within reach of them all. Where a path goes back over itself, or
+        crosses itself in a hole, they may be on the wrong part of it."""
         distance, position = np.empty(len(rows)), np.empty(len(rows))
-        here, first = 0.0, 0
-        while first < len(rows):
-            behind = np.flatnonzero(holes[first + 1 : first + _BLOCK])
-            many = 1 + int(behind[0]) if len(behind) else _BLOCK
-            block = slice(first, min(first + many, len(rows)))
-            ahead = float(np.sum(way[first + 1 : block.stop]))
-            low, high = here - slack, here + float(way[first]) + slack
-            if holes[first]:  # it may be at any place near here: at the one that those after it lie best from
-                places = self._places_by(rows[first], low, high, slack)
-                each = [self._near(rows[block], place - slack, place + ahead + slack) for place in places]
-                found = min(each, key=lambda one: float(np.max(one.distance)))
-            else:
-                found = self._near(rows[block], low, high + ahead)
-            distance[block], position[block] = found
-            here, first = float(found.position[-1]), block.stop
+        here = 0.0
+        for first in range(0, len(rows), _BLOCK):
+            block = slice(first, min(first + _BLOCK, len(rows)))
+            part = self._between(here - slack, here + float(np.sum(most[block])) + slack)
+            away, ways = self._distances(rows[block], part)
+            nearest = np.argmin(away, axis=1)
+            row = np.arange(len(nearest))
+            distance[block] = away[row, nearest]
+            position[block] = self.at[part.start + nearest] + ways[row, nearest]
+            here = float(position[block][-1])
+        return Followed(distance, position)
+
+    def _follow_surely(self, rows: Array, way: Array, most: Array, slack: float) -> Followed:
+        """The cheapest of all ways to lay the points onto the path in order (Viterbi's algorithm over the nearest place
+        on each element within reach). It costs, in mm, what points are beside the path, and what the path goes more or
+        less than they did."""
+        places, costs, steps = np.zeros(1), np.zeros(1), []
+        first, known = 0, slice(0, 0)  # the point, and the elements, from which on distances are known
+        for i, point in enumerate(rows):
+            low, high = float(np.min(places)) - slack, float(np.max(places)) + float(most[i]) + slack
+            part = self._between(low, high)
+            if i == first + _BLOCK or part.start < known.start or part.stop > known.stop:
+                first, ahead = i, float(np.sum(most[i : i + _BLOCK]))
+                known = self._between(low - slack, high + ahead + slack)
+                aways, ways = self._distances(rows[i : i + _BLOCK], known)
+                wheres = self.at[known] + ways
+            these = slice(part.start - known.start, part.stop - known.start)
+            away, where = aways[i - first, these], wheres[i - first, these]
+            near = np.flatnonzero(away <= np.min(away) + slack)
+            stay = places[np.argmin(costs)]  # always possible, however far off the point is
+            there = np.append(where[near], stay)
+            beside = np.append(away[near], np.linalg.norm(point - self._place(stay)))
+            gone = there - places[:, np.newaxis]
+            unlike = np.maximum(np.maximum(way[i] - gone, gone - most[i]), 0.0)
+            unlike[(gone < -slack) | (gone > most[i] + slack)] = np.inf
+            total = costs[:, np.newaxis] + unlike
+            before = np.argmin(total, axis=0)
+            cost = total[before, np.arange(len(there))] + beside
+            good = np.flatnonzero(cost <= np.min(cost) + _HOPELESS)
+            places, costs = there[good], cost[good]
+            steps.append((places, beside[good], before[good]))
+        best = int(np.argmin(costs + 1e-3 * np.abs(self.length - places)))  # of equals the one that got there
+        distance, position = np.empty(len(rows)), np.empty(len(rows))
+        for i in range(len(rows) - 1, -1, -1):
+            places, beside, before = steps[i]
+            distance[i], position[i], best = beside[best], places[best], before[best]
         return Followed(distance, position)
 
     def _between(self, low: float, high: float) -> slice:
         """The elements that lie, in part at least, between so many mm along the path."""
         begin = max(int(np.searchsorted(self.at, low, "right")) - 1, 0)
+        begin = min(begin, len(self.elements) - 1)
         return slice(begin, max(min(int(np.searchsorted(self.at, high)), len(self.elements)), begin + 1))
 
-    def _near(self, points: Array, low: float, high: float) -> Followed:
-        """The nearest places on these elements."""
-        part = self._between(low, high)
-        away, ways = self._distances(points, part)
-        nearest = np.argmin(away, axis=1)
-        row = np.arange(len(nearest))
-        return Followed(away[row, nearest], self.at[part.start + nearest] + ways[row, nearest])
-
-    def _places_by(self, point: Array, low: float, high: float, slack: float) -> Array:
-        """How far along the path a point may lie: the nearest place on each of these elements that is no further away
-        than `slack`, or on the nearest of all."""
-        part = self._between(low, high)
-        away, ways = (one[0] for one in self._distances(point[np.newaxis], part))
-        near = away <= max(slack, float(np.min(away)))
-        return np.asarray((self.at[part] + ways)[near])
+    def _place(self, way: float) -> Array:
+        """The point so many mm along the path."""
+        part = self._between(way, way)
+        return np.asarray(self._places(np.array([part.start]), np.array([way - self.at[part.start]]))[0])
 
     def shifted(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Toolpath:
         """The same, elsewhere."""
@@ -297,12 +336,16 @@ def read(path: str | PathLike[str], start: Point = (0.0, 0.0, 0.0), tolerance: f
     raise ToolpathError(f"{path}: expected a file of G-code (.gcode, .nc, .ngc, .tap), .svg or .csv")
 
 
-def _gone(way: Array, took: Array) -> tuple[Array, npt.NDArray[np.bool_]]:
-    """How far it may have gone between neighbours this far (mm) and this long (s) apart; and whether samples are
-    missing between them."""
+def _most(way: Array, time_s: Array) -> Array:
+    """How far it may have gone at most from each point to the next, by their distances (the first is 0) and times."""
+    if time_s.shape != way.shape or not np.all(np.isfinite(time_s)) or not np.all(np.diff(time_s) > 0):
+        raise ValueError(f"time_s: expected {len(way)} rising numbers, one for each point")
+    if len(way) < 2:
+        return way
+    took = np.diff(time_s)
     usual = took <= 1.5 * np.median(took)
-    fastest = float(np.max(way[usual] / took[usual]))
-    return np.where(usual, way, np.maximum(way, fastest * took)), ~usual
+    fastest = np.quantile(way[1:][usual] / took[usual], 0.99)
+    return np.concatenate([[0.0], np.where(usual, way[1:], np.maximum(way[1:], fastest * took))])
 
 
 def split_turn(sweep: float) -> int:

@@ -325,11 +325,11 @@ def test_a_killed_client_lets_go_of_a_jog(tmp_path: Path) -> None:
         session.run(0.9)  # three times the dead man's time: it lives
         assert knife.set_velocity == pytest.approx(30.0)
         assert cutter.state is takt.ModuleState.JOG_POS
+        killed = session.now  # before: a busy host may take longer to end it than the dead man does
         client.send_signal(signal.SIGKILL)
         client.wait()
-        killed = session.now
         session.wait(lambda: knife.set_velocity == 0, 2.0, what="the knife at rest")
-        assert 0.1 < session.now - killed < 1.0
+        assert 0.02 < session.now - killed < 1.5
         session.wait(lambda: cutter.state is takt.ModuleState.READY, 0.5)
 
 

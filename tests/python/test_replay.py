@@ -235,7 +235,7 @@ def test_a_burst_of_commands_is_reproduced(tmp_path: Path) -> None:
 def test_files_that_are_no_logs(tmp_path: Path) -> None:
     for name, content, sentence in (
         ("text", b"hello", "is not an LCM log"),
-        ("empty", b"", "is not an LCM log"),
+        ("empty", b"", "is empty"),
     ):
         file = tmp_path / name
         file.write_bytes(content)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from takt import checks, toolpath
 from takt.cli import main
@@ -259,6 +259,56 @@ def test_a_path_that_crosses_itself_is_followed_in_order() -> None:
     shortcut = parse_gcode("G1 X100")
     assert loop.follow(loop.points(0.2)[0]).distance.max() < 1e-9
     assert loop.follow(shortcut.points(0.2)[0]).distance.max() > 10
+
+
+@pytest.mark.parametrize("step", [0.01, 0.2, 1.0])
+@pytest.mark.parametrize(
+    "code",
+    ["G1 X20\nG1 X0", "G1 X15\nG1 X0\nG1 Y30", "G1 Z-5\nG1 Z0\nG1 X30", "G1 X10\nG1 X0\nG1 X10\nG1 X0\nG1 Y5"],
+)
+def test_a_path_that_goes_back_over_itself_is_followed_in_order(code: str, step: float) -> None:
+    path = parse_gcode(code)
+    points, ways = path.points(step)
+    on = path.follow(points)
+    assert on.distance.max() < 1e-9
+    assert on.position == pytest.approx(ways, abs=2 * toolpath.SLACK)  # where it turns both ways are as near
+    assert on.position[-1] == pytest.approx(path.length)
+    noise = np.random.default_rng(1).normal(0, 0.01, points.shape)
+    on = path.follow(points + noise)
+    assert on.distance.max() < 0.1
+    assert on.position[-1] == pytest.approx(path.length, abs=0.1)
+
+
+@given(
+    st.lists(st.tuples(st.integers(-20, 20), st.integers(-20, 20), st.booleans()), min_size=2, max_size=6),
+    st.lists(st.tuples(st.floats(0, 1), st.integers(3, 40)), max_size=3),
+)
+def test_property_points_on_a_path_are_found_on_it(
+    moves: list[tuple[int, int, bool]], cuts: list[tuple[float, int]]
+) -> None:
+    """Lines, also back over the line before, with holes: nothing is said to be off the path that is on it."""
+    ends = [(0.0, 0.0, 0.0)]
+    for x, y, back in moves:
+        end = ends[-2] if back and len(ends) > 1 else (float(x), float(y), 0.0)
+        if math.dist(end, ends[-1]) > 0.5:
+            ends.append(end)
+    assume(len(ends) > 1)
+    path = Toolpath(ends[0], tuple(Element(end) for end in ends[1:]))
+    points, _ = path.points(0.2)
+    kept = np.ones(len(points), bool)
+    for share, many in cuts:
+        first = 1 + int(share * (len(points) - 2))
+        kept[first : min(first + many, len(points) - 1)] = False
+    assume(np.median(np.diff(np.flatnonzero(kept))) == 1)
+    on = path.follow(points[kept], time_s=0.001 * np.flatnonzero(kept))
+    assert on.distance.max() < 1e-6
+    assert on.position[-1] == pytest.approx(path.length)
+
+
+@pytest.mark.parametrize("times", [[0, 1], [0, 2, 1], [0, 1, 1], [0, 1, math.nan], [[0, 1, 2]], 3])
+def test_times_of_points_that_are_none(times: object) -> None:
+    with pytest.raises(ValueError, match="time_s: expected 3 rising numbers, one for each point"):
+        parse_gcode("G1 X2").follow([[0, 0, 0], [1, 0, 0], [2, 0, 0]], time_s=times)
 
 
 @pytest.mark.parametrize("seed", range(12))

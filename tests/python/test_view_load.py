@@ -178,7 +178,7 @@ def test_memory_stays_when_buffers_are_full(tmp_path: Path, browser: Browser) ->
         until(page, "() => window.takt.scope.store.series.size === 2")
         until(page, "() => [...window.takt.scope.store.series.values()].every((one) => one.moved > 0)")
         before, before_page = resident(process), heap(page)
-        more = 28_000
+        more = 48_000
         wait_for_rows(page, rows(page) + more)
         kept = more * (len(signals) + 2) * 8e-6  # MB: what would be there if rows were kept for ever
         assert resident(process) - before < 0.6 * kept

@@ -63,7 +63,7 @@ bool Drives::Ready() {
     give_up_ns_ = now + std::llround(engine_.machine().external.answer_within_s * 1e9);
     send_again_ns_ = now + kSendAgainNs;
   }
-  while (receiving_.lcm->handleTimeout(0) > 0) {
+  while (Handle(*receiving_.lcm, 0) > 0) {
   }
   const std::int64_t until = now + kDriveWaitMs * kNsPerMs;
   while (waiting_ && !AllAnswered()) {
@@ -80,7 +80,7 @@ bool Drives::Ready() {
     }
     if (at >= until) return false;
     const std::int64_t wait_ns = std::min({until, give_up_ns_, send_again_ns_}) - at;
-    receiving_.lcm->handleTimeout(static_cast<int>(wait_ns / kNsPerMs) + 1);
+    Handle(*receiving_.lcm, static_cast<int>(wait_ns / kNsPerMs) + 1);
   }
   if (waiting_) {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
@@ -165,7 +165,7 @@ void Drives::SendThread() {
 }
 
 void Drives::ReceiveThread() {
-  while (!stop_) receiving_.lcm->handleTimeout(kDriveWaitMs);
+  while (!stop_) Handle(*receiving_.lcm, kDriveWaitMs);
 }
 
 }  // namespace takt::lcm

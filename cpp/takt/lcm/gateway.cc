@@ -36,7 +36,7 @@ Gateway::~Gateway() {
 }
 
 void Gateway::Listen() {
-  while (!stop_) network_.handleTimeout(kWaitMs);
+  while (!stop_) Handle(network_, kWaitMs);
 }
 
 void Gateway::OnCommand(const ::lcm::ReceiveBuffer* received, const std::string&, Clients* clients) {

@@ -7,8 +7,10 @@
 
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cstring>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include "takt/core/problem.h"
@@ -66,6 +68,12 @@ Network OpenNetwork(const std::string& url) {
                 " cannot be joined; with the loopback interface alone it needs: ip route add 224.0.0.0/4 dev lo"};
   }
   return network;
+}
+
+int Handle(::lcm::LCM& network, int wait_ms) {
+  if (network.getFileno() >= 0) return network.handleTimeout(wait_ms);
+  std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+  return -1;
 }
 
 }  // namespace takt::lcm

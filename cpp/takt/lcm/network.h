@@ -18,4 +18,8 @@ std::string WhyNotUrl(const std::string& url);
 // "udpm://239.255.76.67:7667?ttl=0"; also tcpq:// and memq://.
 Network OpenNetwork(const std::string& url);
 
+// Handles what has come, or comes within `wait_ms`: how many messages. Below 0: the server of a tcpq:// network is
+// gone. LCM's own handle() then ends the program the next time; this just waits.
+int Handle(::lcm::LCM& network, int wait_ms);
+
 }  // namespace takt::lcm

@@ -41,7 +41,9 @@ NetworkLog::NetworkLog(Network network, std::unique_ptr<LogOutlet> log)
   all->setQueueCapacity(0);  // as many as come
   thread_ = std::thread([this] {
     while (!heard_all_ && !stop_) {
-      if (network_.lcm->handleTimeout(kQuietMs) == 0) log_->Flush();
+      const int heard = Handle(*network_.lcm, kQuietMs);
+      if (heard <= 0) log_->Flush();
+      broken_ = broken_ || heard < 0;
     }
   });
 }
@@ -63,14 +65,14 @@ bool NetworkLog::Close(std::chrono::milliseconds patience) {
   if (!thread_.joinable()) return complete_;
   const auto until = std::chrono::steady_clock::now() + patience;
   auto say = std::chrono::steady_clock::now();
-  while (!heard_all_ && std::chrono::steady_clock::now() < until) {
+  while (!heard_all_ && !broken_ && std::chrono::steady_clock::now() < until) {
     if (std::chrono::steady_clock::now() >= say) {
       network_.lcm->publish(last_, nullptr, 0);
       say += kSayAgain;
     }
     std::this_thread::sleep_for(kLookAgain);
   }
-  const bool all = heard_all_;
+  const bool all = heard_all_ && !broken_;
   End();
   return complete_ = complete_ && all;
 }

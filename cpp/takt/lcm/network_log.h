@@ -25,8 +25,8 @@ class NetworkLog {
   // Closes it, if nobody has, without waiting for what is still to be written.
   ~NetworkLog();
 
-  // Ends it when all that was said before the call is written. It may take as long as `patience`; false: that was not
-  // enough, or the file is incomplete.
+  // Ends it when all that was said before the call is written, or after `patience`; where the file itself takes
+  // nothing, not before that does. False: that was not enough, the network broke meanwhile, or the file is incomplete.
   bool Close(std::chrono::milliseconds patience);
 
  private:
@@ -38,6 +38,7 @@ class NetworkLog {
   std::unique_ptr<LogOutlet> log_;  // of the thread, while that runs
   const std::string last_;          // the channel of the last word
   std::atomic<bool> heard_all_{false};
+  std::atomic<bool> broken_{false};
   std::atomic<bool> stop_{false};
   bool complete_ = false;
   std::thread thread_;

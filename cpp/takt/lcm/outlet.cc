@@ -1,5 +1,9 @@
 #include "takt/lcm/outlet.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -21,13 +25,26 @@ bool MayBecomeLog(const std::string& path) {
   return file.gcount() == 0 || begin == kSyncWord;
 }
 
+// Whoever writes a log holds a lock on it: two would write across each other.
+bool IsTaken(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  const int file = open(path.c_str(), O_WRONLY);
+  if (file < 0) return false;
+  const bool taken = flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(file);
+  return taken;
+}
+
 }  // namespace
 
 bool NetworkOutlet::Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t) {
   return network_.publish(channel, bytes.data(), static_cast<unsigned int>(bytes.size())) == 0;
 }
 
-LogOutlet::LogOutlet(const std::string& path) : path_(path), file_(std::make_unique<::lcm::LogFile>(path, "w")) {}
+LogOutlet::LogOutlet(const std::string& path) : path_(path), file_(std::make_unique<::lcm::LogFile>(path, "w")) {
+  if (good()) flock(fileno(file_->getFilePtr()), LOCK_EX | LOCK_NB);  // for as long as it is open
+}
 
 LogOutlet::~LogOutlet() = default;
 
@@ -61,9 +78,13 @@ std::unique_ptr<LogOutlet> OpenLog(const std::string& path, std::string& problem
     problem = "log file " + path + " exists and is no LCM log; it is left as it is";
     return nullptr;
   }
+  if (IsTaken(path)) {
+    problem = "log file " + path + " is being written already";
+    return nullptr;
+  }
   auto log = std::make_unique<LogOutlet>(path);
   if (log->good()) return log;
-  problem = "log file " + path + " cannot be written";
+  problem = "log file " + path + " cannot be written: " + std::strerror(errno);
   return nullptr;
 }
 

@@ -52,7 +52,8 @@ class LogOutlet : public Outlet {
   bool failed_ = false;
 };
 
-// A log there, where nothing is yet, or an LCM log, or something that is no plain file. Null: `problem` says why.
+// A log there, where nothing is yet, or an LCM log that nobody writes, or something that is no plain file. Null:
+// `problem` says why.
 std::unique_ptr<LogOutlet> OpenLog(const std::string& path, std::string& problem);
 
 }  // namespace takt::lcm

@@ -1,7 +1,10 @@
 #include "takt/lcm/network_log.h"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -103,6 +106,78 @@ TEST(NetworkLog, IsClosedInOrderByWhoForgetsTo) {
   EXPECT_TRUE(std::filesystem::exists(place.path));
 }
 
+// A server of tcpq:// that takes one client, and goes away when told.
+class Server {
+ public:
+  Server() : listening_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    EXPECT_EQ(bind(listening_, reinterpret_cast<sockaddr*>(&address), size), 0);
+    EXPECT_EQ(getsockname(listening_, reinterpret_cast<sockaddr*>(&address), &size), 0);
+    EXPECT_EQ(listen(listening_, 1), 0);
+    url = "tcpq://127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+    thread_ = std::thread([this] {
+      client_ = accept(listening_, nullptr, nullptr);
+      std::array<char, 8> hello;
+      EXPECT_EQ(read(client_, hello.data(), hello.size()), 8);
+      const std::array<std::uint32_t, 2> answer = {htonl(0x287617fa), htonl(0x0100)};  // magic, version
+      EXPECT_EQ(write(client_, answer.data(), 8), 8);
+    });
+  }
+  ~Server() { GoAway(); }
+  void GoAway() {
+    if (!thread_.joinable()) return;
+    thread_.join();
+    close(client_);
+    close(listening_);
+  }
+  std::string url;
+
+ private:
+  int listening_, client_ = -1;
+  std::thread thread_;
+};
+
+// LCM itself ends a program that goes on listening to a server that is gone.
+TEST(NetworkLog, SaysThatItsServerWentAway) {
+  const TemporaryFile place("takt_network_log_server_");
+  Server server;
+  std::string problem;
+  const auto log = NetworkLog::Open(server.url, place.path, problem);
+  ASSERT_TRUE(log) << problem;
+  server.GoAway();
+  std::this_thread::sleep_for(500ms);  // it goes on listening
+  EXPECT_FALSE(log->Close(1s));
+}
+
+TEST(Network, IsHandledWhenItsServerIsGone) {
+  Server server;
+  const Network network = OpenNetwork(server.url);
+  ASSERT_TRUE(network.lcm) << network.problem;
+  server.GoAway();
+  int heard = 0;
+  for (int i = 0; i < 10; ++i) heard = Handle(*network.lcm, 10);
+  EXPECT_LT(heard, 0);
+}
+
+// Two of them in one file would write across each other.
+TEST(NetworkLog, LeavesAloneWhatIsBeingWritten) {
+  const TemporaryFile place("takt_network_log_twice_");
+  const std::string url = NewUrl();
+  const Network client = OpenNetwork(url);
+  std::string problem;
+  const auto log = NetworkLog::Open(url, place.path, problem);
+  ASSERT_TRUE(log) << problem;
+  EXPECT_FALSE(NetworkLog::Open(url, place.path, problem));
+  EXPECT_EQ(problem, "log file " + place.path + " is being written already");
+  Say(*client.lcm, 0, 20);
+  EXPECT_TRUE(log->Close(20s));
+  EXPECT_EQ(Said(place.path), Numbers(20));
+  EXPECT_TRUE(NetworkLog::Open(url, place.path, problem)) << problem;
+}
+
 TEST(NetworkLog, SaysWhyNot) {
   const TemporaryFile place("takt_network_log_text_");
   std::ofstream(place.path) << "a letter";
@@ -112,7 +187,7 @@ TEST(NetworkLog, SaysWhyNot) {
   EXPECT_FALSE(NetworkLog::Open(NewUrl(), place.path, problem));
   EXPECT_EQ(problem, "log file " + place.path + " exists and is no LCM log; it is left as it is");
   EXPECT_FALSE(NetworkLog::Open(NewUrl(), "/there/is/no/such/folder.lcm", problem));
-  EXPECT_EQ(problem, "log file /there/is/no/such/folder.lcm cannot be written");
+  EXPECT_EQ(problem, "log file /there/is/no/such/folder.lcm cannot be written: No such file or directory");
   std::string text;
   std::ifstream(place.path) >> text;
   EXPECT_EQ(text, "a");

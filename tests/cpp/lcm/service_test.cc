@@ -129,7 +129,7 @@ TEST(Service, ALogThatCannotBeWrittenIsSaidInOneLine) {
   engine::Engine engine(TestMachine());
   std::string problem;
   EXPECT_FALSE(Service::Open(engine, {.log_path = "/no/such/folder/log"}, problem));
-  EXPECT_EQ(problem, "log file /no/such/folder/log cannot be written");
+  EXPECT_EQ(problem, "log file /no/such/folder/log cannot be written: No such file or directory");
 }
 
 // EN-07, EN-20: a log that lost something is an error, said in one line when it happens first.
