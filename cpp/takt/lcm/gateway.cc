@@ -7,6 +7,7 @@
 #include "takt/lcm/channels.h"
 #include "takt/lcm/clock.h"
 #include "takt/lcm/messages.h"
+#include "takt/lcm/network.h"
 
 namespace takt::lcm {
 namespace {
