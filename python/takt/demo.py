@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import random
 import shutil
 import signal
@@ -130,22 +129,15 @@ def free_url() -> str:
     return url
 
 
-def _program(name: str, *places: Path) -> str:
-    for place in places:
-        if os.access(place / name, os.X_OK):
-            return str(place / name)
-    found = shutil.which(name)
-    if found is None:
-        raise TaktError(f"{name} is not installed (or not on PATH)")
-    return found
-
-
 @contextlib.contextmanager
 def taktd(
     machine: Path, url: str, journal: Path | None, pace: str, directory: Path
 ) -> Iterator[subprocess.Popen[bytes]]:
     """The engine as a process of its own, which is ended in order. What it says goes into taktd.txt."""
-    program = _program("taktd", Path(sys.executable).parent)
+    beside = str(Path(sys.executable).parent)  # the one that came with this package comes first
+    program = shutil.which("taktd", path=beside) or shutil.which("taktd")
+    if program is None:
+        raise TaktError("taktd is not installed (or not on PATH)")
     command = [program, str(machine), "--pace", pace, "--lcm-url", url]
     command += ["--log", str(journal)] if journal else []
     with (

@@ -17,8 +17,8 @@ from urllib.parse import parse_qs
 import pytest
 import takt
 from machines import MACHINE
-from pages import CHROMIUM, FLAGS, PATIENCE_S, Client, needs_chromium, served
-from playwright.sync_api import Browser, expect, sync_playwright
+from pages import PATIENCE_S, Client, needs_chromium, served
+from playwright.sync_api import Browser, expect
 from takt.cli import main
 from takt.ready import ready_machines
 from takt.scenario import load_scenario
@@ -37,14 +37,6 @@ def scenario(session):
 def verify(recording):
     assert recording["x"]["set_position"][-1] == 50, "x did not get there"
 """
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield browser
-        browser.close()
 
 
 class Demo:

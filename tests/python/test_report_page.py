@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import takt
 from motion_curves import one_axis
-from pages import CHROMIUM, FLAGS, PATIENCE_S, TWO_ON_A_LOOP, needs_chromium
-from playwright.sync_api import Browser, Page, expect, sync_playwright
+from pages import PATIENCE_S, TWO_ON_A_LOOP, needs_chromium
+from playwright.sync_api import Browser, Page, expect
 from takt import checks, report
 from takt.complaint import Complaint
 from takt.kinematics import Kinematics
@@ -76,14 +76,6 @@ def failed(recording: takt.Recording, tmp_path_factory: pytest.TempPathFactory) 
     assert [verdict.passed for verdict in verdicts] == [True, False, False, True]
     page = report.write_report(recording, verdicts, tmp_path_factory.mktemp("failed"), "A cell", {"engine": {"a": 1}})
     return page.html
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield browser
-        browser.close()
 
 
 @contextlib.contextmanager

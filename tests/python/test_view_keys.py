@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 import takt
 from machines import machine_with, new_url, running
 from pages import (
-    CHROMIUM,
-    FLAGS,
     PATIENCE_S,
     TWO_ON_A_LOOP,
     column,
@@ -21,18 +18,10 @@ from pages import (
     until,
     wait_for_cycle,
 )
-from playwright.sync_api import Browser, expect, sync_playwright
+from playwright.sync_api import Browser, expect
 
 pytestmark = needs_chromium
 expect.set_options(timeout=PATIENCE_S * 1000)
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield browser
-        browser.close()
 
 
 def test_cursors_and_zoom(tmp_path: Path, browser: Browser) -> None:

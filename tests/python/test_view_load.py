@@ -11,12 +11,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-import pytest
 import takt
 from machines import new_url, running
 from pages import (
-    CHROMIUM,
-    FLAGS,
     PATIENCE_S,
     Client,
     column,
@@ -27,7 +24,7 @@ from pages import (
     until,
     wait_for_cycle,
 )
-from playwright.sync_api import Browser, Page, expect, sync_playwright
+from playwright.sync_api import Browser, Page, expect
 from takt.tables import KINDS
 from takt.view.ring import CAPACITY
 from takt.view.server import AHEAD, MOST_ROWS
@@ -42,14 +39,6 @@ expect.set_options(timeout=PATIENCE_S * 1000)
 def machine(names: list[str], period_s: float = 0.001, rate_hz: float = 1000) -> str:
     axes = "".join(f"  - {AXIS.format(name)}\n" for name in names)
     return f"name: load\ncycle: {{period_s: {period_s}}}\nlcm: {{axis_rate_hz: {rate_hz}}}\naxes:\n{axes}"
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield browser
-        browser.close()
 
 
 @contextlib.contextmanager

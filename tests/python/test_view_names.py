@@ -3,24 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
 from machines import MACHINE
-from pages import CHROMIUM, FLAGS, PATIENCE_S, needs_chromium, opened, served
-from playwright.sync_api import Browser, expect, sync_playwright
+from pages import PATIENCE_S, needs_chromium, opened, served
+from playwright.sync_api import Browser, expect
 
 pytestmark = needs_chromium
 expect.set_options(timeout=PATIENCE_S * 1000)
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield browser
-        browser.close()
 
 
 def test_names_that_are_not_there_are_said(tmp_path: Path, browser: Browser) -> None:

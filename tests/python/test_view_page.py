@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +11,6 @@ import pytest
 import takt
 from machines import MACHINE, machine_with, new_url, running
 from pages import (
-    CHROMIUM,
-    FLAGS,
     PATIENCE_S,
     TWO_ON_A_LOOP,
     column,
@@ -25,7 +22,7 @@ from pages import (
     until,
     wait_for_cycle,
 )
-from playwright.sync_api import Browser, expect, sync_playwright
+from playwright.sync_api import Browser, expect
 
 pytestmark = needs_chromium
 
@@ -34,14 +31,6 @@ expect.set_options(timeout=PATIENCE_S * 1000)
 
 SAW = (Path(__file__).parents[2] / "python" / "examples" / "flying_saw" / "machine.yaml").read_text()
 PLANE = "name: plane\naxes: []\n" + TWO_ON_A_LOOP
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield browser
-        browser.close()
 
 
 def test_values_are_the_engines(tmp_path: Path, browser: Browser) -> None:
