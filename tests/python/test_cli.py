@@ -11,7 +11,7 @@ import lcm
 import pytest
 import takt
 from machines import MACHINE, new_url, running
-from takt import demo, msgs
+from takt import msgs
 from takt.cli import main
 from takt.figures import quantile
 from takt.tables import is_possible
@@ -132,13 +132,21 @@ BAD = {
 }
 
 
+def _stand_in(taktd: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A taktd that ends at once, found before any other: beside the interpreter."""
+    taktd.parent.mkdir()
+    taktd.write_text("#!/bin/sh\nexit 1\n")
+    taktd.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(taktd.with_name("python")))
+
+
 @pytest.mark.parametrize("case", BAD)
 def test_mistakes_are_one_line(
     case: str, files: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """PY-07: errors in one line with exit code 2."""
     monkeypatch.chdir(files)
-    monkeypatch.setattr(demo, "_program", lambda name, *_: "false" if name == "taktd" else "true")
+    _stand_in(files / "bin" / "taktd", monkeypatch)
     Path("empty.py").write_text("")
     Path("exits.py").write_text("import sys\ndef scenario(session):\n    sys.exit(7)\n")
     Path("exits_at_once.py").write_text("exit(8)\n")
@@ -158,6 +166,14 @@ def test_mistakes_are_one_line(
     assert sentence in captured.err
     assert not Path("nowhere").exists()
     assert captured.err.count("\n") == 1
+
+
+def test_a_demo_without_taktd(files: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """PY-07: neither beside the interpreter nor on the path."""
+    monkeypatch.setattr(sys, "executable", str(files / "python"))
+    monkeypatch.setenv("PATH", str(files))
+    assert main(["demo", str(files / "there.py")]) == 2
+    assert capsys.readouterr().err.strip().endswith("taktd is not installed (or not on PATH)")
 
 
 def test_tracebacks_on_request(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
