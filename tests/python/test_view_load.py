@@ -73,9 +73,10 @@ def rows(page: Page) -> int:
 
 
 def wait_for_rows(page: Page, count: int) -> None:
-    script = (
-        """([count]) => [...window.takt.scope.store.series.values()].every((one) => one.moved + one.end >= count)"""
-    )
+    script = """([count]) => {
+        const all = [...window.takt.scope.store.series.values()];
+        return all.length > 0 && all.every((one) => one.moved + one.end >= count);
+    }"""
     until(page, script, count)
 
 
