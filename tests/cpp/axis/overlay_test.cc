@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <random>
 #include <vector>
 
+#include "../core/trials.h"
 #include "rig.h"
 #include "takt/cam/build.h"
 
@@ -528,7 +528,7 @@ TEST_P(OverlayProperty, LimitsHoldAndBothEndsAreReached) {
     if (HasFailure()) FAIL();
   }
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, OverlayProperty, testing::Range(0u, std::getenv("TAKT_LONG") ? 5000u : 100u));
+INSTANTIATE_TEST_SUITE_P(Seeds, OverlayProperty, testing::Range(0u, static_cast<unsigned>(Trials(100, 50))));
 
 }  // namespace
 }  // namespace takt::axis

@@ -1,9 +1,9 @@
 // Lowering a limit while moving: AX-97. Overrides at random: AX-51.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <random>
 
+#include "../core/trials.h"
 #include "rig.h"
 
 namespace takt::axis {
@@ -171,7 +171,7 @@ TEST_P(OverrideProperty, ChangesNothingOfWhereMovesEnd) {
     ExpectWithinLimits(rig);
   }
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, OverrideProperty, testing::Range(1, std::getenv("TAKT_LONG") ? 1000 : 13));
+INSTANTIATE_TEST_SUITE_P(Seeds, OverrideProperty, testing::Range(1, 1 + Trials(12, 80)));
 
 }  // namespace
 }  // namespace takt::axis

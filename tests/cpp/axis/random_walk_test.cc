@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdlib>
 #include <random>
 #include <set>
 
+#include "../core/trials.h"
 #include "rig.h"
 #include "takt/cam/build.h"
 
@@ -293,7 +293,7 @@ TEST_P(RandomWalkProperty, MeetsNoIllegalTransitionAndHoldsAllLimits) {
   EXPECT_LE(open, 12);  // what is in control, waits or watches at the end
 }
 // More of them in the long run (`./dev bench --long`).
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomWalkProperty, testing::Range(1, std::getenv("TAKT_LONG") ? 2000 : 25));
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomWalkProperty, testing::Range(1, 1 + Trials(24, 80)));
 
 }  // namespace
 }  // namespace takt::axis

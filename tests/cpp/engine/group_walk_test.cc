@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "../core/trials.h"
 #include "machines.h"
 #include "takt/axis/guidance.h"
 #include "takt/engine/cycle.h"
@@ -456,7 +456,7 @@ class RandomGroups {
 
 TEST(TwoGroups, RandomWalk) {
   std::map<GroupState, int> seen;
-  const std::uint64_t seeds = std::getenv("TAKT_LONG") ? 3000 : 40;
+  const auto seeds = static_cast<std::uint64_t>(Trials(40, 75));
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     RandomGroups walk(seed);
@@ -466,7 +466,7 @@ TEST(TwoGroups, RandomWalk) {
     if (testing::Test::HasFailure()) return;
   }
   for (int state = 0; state < group::kGroupStates; ++state) {
-    EXPECT_GT(seen[static_cast<GroupState>(state)], 100) << state;
+    EXPECT_GT(seen[static_cast<GroupState>(state)], Trials(100, 75)) << state;
   }
 }
 

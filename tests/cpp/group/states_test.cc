@@ -1,6 +1,7 @@
 // GR-01: states of groups, and of their members in each of them.
 #include <random>
 
+#include "../core/trials.h"
 #include "machines.h"
 #include "watch.h"
 
@@ -329,7 +330,7 @@ class RandomWalk {
 // GR-01: whatever is commanded in whatever state, and whatever breaks: no transition outside the table, members are as
 // the group's state says, every axis keeps its limits and never jumps, and every command ends once.
 TEST(States, RandomWalk) {
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(Trials(300)); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     RandomWalk walk(seed);
     walk.Go();

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "../core/trials.h"
 #include "mechanisms.h"
 #include "takt/core/angle.h"
 
@@ -16,7 +17,6 @@ using testing::ForwardOrFail;
 using testing::FromYaml;
 using testing::kFlexPicker;
 using testing::Random;
-using testing::Trials;
 
 void ExpectPlace(const Kinematics& k, const Joints& joints, double x, double y, double z, double tolerance) {
   const Frame tool = ForwardOrFail(k, joints);

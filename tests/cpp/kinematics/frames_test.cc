@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "../core/trials.h"
 #include "mechanisms.h"
 #include "takt/core/verify.h"
 
@@ -17,7 +18,6 @@ namespace {
 using testing::DegreesBetween;
 using testing::Difference;
 using testing::Random;
-using testing::Trials;
 
 constexpr double kPi = std::numbers::pi;
 

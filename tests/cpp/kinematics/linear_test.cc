@@ -6,6 +6,7 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <numbers>
 
+#include "../core/trials.h"
 #include "mechanisms.h"
 
 namespace takt::kinematics {
@@ -14,7 +15,6 @@ namespace {
 using testing::ForwardOrFail;
 using testing::FromYaml;
 using testing::Random;
-using testing::Trials;
 
 // GR-11: one to three linear axes and C, in any order.
 TEST(Gantry, MovesWhatItsAxesSay) {

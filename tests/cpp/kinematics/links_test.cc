@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "../core/trials.h"
 #include "mechanisms.h"
 
 namespace takt::kinematics {
@@ -142,7 +143,7 @@ TEST(Links, MoveNoFurtherThanSaid) {
     const std::size_t count = LinksOf(c.kinematics).size();
     int bounded = 0;
     double tightest = 0;
-    for (int trial = 0; trial < testing::Trials(300); ++trial) {
+    for (int trial = 0; trial < Trials(300); ++trial) {
       const Joints from = random.In(c);
       Joints to = random.In(c);
       const double scale = std::pow(10, random.Between(-3, 0));
@@ -170,7 +171,7 @@ TEST(Links, MoveNoFurtherThanSaid) {
         if (most > 0) tightest = std::max(tightest, move / most);
       }
     }
-    EXPECT_GT(bounded, testing::Trials(300) / 4);
+    EXPECT_GT(bounded, Trials(300) / 4);
     EXPECT_GT(tightest, 0.5);  // and it is no empty promise
   }
 }

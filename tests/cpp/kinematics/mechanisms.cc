@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
 #include "takt/core/yaml_reader.h"
@@ -116,10 +115,6 @@ double DegreesBetween(const KDL::Rotation& a, const KDL::Rotation& b) {
 
 KDL::Twist Difference(const Frame& from, const Frame& to) {
   return {to.p - from.p, TurnBetween(from.M, to.M)};
-}
-
-int Trials(int usual) {
-  return std::getenv("TAKT_LONG") ? usual * 100 : usual;
 }
 
 }  // namespace takt::kinematics::testing

@@ -59,8 +59,5 @@ double DegreesBetween(const KDL::Rotation& a, const KDL::Rotation& b);
 // What a tool moves and turns from one frame to another, mm and rad.
 KDL::Twist Difference(const Frame& from, const Frame& to);
 
-// How many random trials: many with TAKT_LONG=1.
-int Trials(int usual);
-
 }  // namespace testing
 }  // namespace takt::kinematics

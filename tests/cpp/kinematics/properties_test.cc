@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "../core/allocations.h"
+#include "../core/trials.h"
 #include "mechanisms.h"
 
 namespace takt::kinematics {
@@ -18,7 +19,6 @@ using testing::DegreesBetween;
 using testing::Difference;
 using testing::ForwardOrFail;
 using testing::Random;
-using testing::Trials;
 
 class Every : public ::testing::TestWithParam<std::size_t> {
  protected:
@@ -227,7 +227,7 @@ TEST_P(Every, PropertyBranchNeverJumpsAlongAPath) {
       period = std::min(2 * period, 1e-3);
     }
   }
-  EXPECT_GT(points, 20000);
+  EXPECT_GT(points, Trials(20000));
   RecordProperty("refused", refused);
 }
 

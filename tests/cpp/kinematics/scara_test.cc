@@ -7,6 +7,7 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 
+#include "../core/trials.h"
 #include "mechanisms.h"
 #include "takt/core/angle.h"
 
@@ -16,7 +17,6 @@ namespace {
 using testing::ForwardOrFail;
 using testing::FromYaml;
 using testing::Random;
-using testing::Trials;
 
 const char* const kCobra = "{scara: {first_arm: 325, second_arm: 275, height: 387}}";
 

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "../core/trials.h"
 #include "mechanisms.h"
 #include "takt/core/angle.h"
 
@@ -24,7 +25,6 @@ using testing::FromYaml;
 using testing::kAgilus;
 using testing::kPuma;
 using testing::Random;
-using testing::Trials;
 
 // The Puma 560 by its Denavit-Hartenberg table (Corke's; lengths in mm).
 KDL::Chain PumaOfKdl() {
@@ -151,7 +151,7 @@ TEST(SixAxis, PropertyHasEightBranches) {
       ASSERT_GE(found.size(), 2u);
       complete += found.size() == 8;
     }
-    EXPECT_GT(complete, 100) << name;
+    EXPECT_GT(complete, Trials(100)) << name;
   }
 }
 

@@ -1,7 +1,7 @@
 // PL-73, PL-51: formations in a group of movers: the area of all members is asked for and reserved.
 #include <algorithm>
-#include <cstdlib>
 
+#include "../core/trials.h"
 #include "troop.h"
 
 namespace takt::mover {
@@ -110,7 +110,7 @@ TEST(FormationGroup, StaysWithinTheBorder) {
 
 // Two formations and movers of their own among each other: nobody meets anybody, whatever fails in whatever cycle.
 TEST(FormationGroup, PropertyNothingMeets) {
-  const int seeds = std::getenv("TAKT_LONG") ? 600 : 12;
+  const int seeds = Trials(12, 50);
   int accepted = 0, refused = 0, turned = 0;
   for (int seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE(seed);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "../core/trials.h"
 #include "paths.h"
 
 namespace takt::path {
@@ -15,7 +16,6 @@ namespace {
 using testing::Length;
 using testing::Random;
 using testing::StepBetween;
-using testing::Trials;
 
 constexpr Triple kUp{0, 0, 1};
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/trials.h"
 #include "paths.h"
 #include "takt/core/angle.h"
 #include "takt/path/blend.h"
@@ -19,7 +20,6 @@ using testing::PeakCurvature;
 using testing::Random;
 using testing::RandomCorner;
 using testing::StepBetween;
-using testing::Trials;
 
 class Corners : public ::testing::TestWithParam<std::pair<Kind, Kind>> {};
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "../core/trials.h"
 #include "paths.h"
 #include "takt/core/angle.h"
 #include "takt/path/blend.h"
@@ -17,7 +18,6 @@ using testing::Line;
 using testing::PeakCurvature;
 using testing::Random;
 using testing::StepBetween;
-using testing::Trials;
 
 // From its middle to that of the next.
 Segment Round(const Segment& first, const Segment& second, const Bends& bends) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "takt/path/spline.h"
 
@@ -174,10 +173,6 @@ double PeakCurvature(const Segment& segment, int places) {
     peak = std::max(peak, Length(path::At(segment, segment.length * i / places).p.dv));
   }
   return peak;
-}
-
-int Trials(int usual) {
-  return std::getenv("TAKT_LONG") ? usual * 100 : usual;
 }
 
 }  // namespace takt::path::testing

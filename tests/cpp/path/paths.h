@@ -77,8 +77,5 @@ double Length(const KDL::Vector& v);
 // The largest of the curvature at so many places evenly along it.
 double PeakCurvature(const Segment& segment, int places = 400);
 
-// How many random trials: many with TAKT_LONG=1.
-int Trials(int usual);
-
 }  // namespace testing
 }  // namespace takt::path

@@ -7,6 +7,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "../core/trials.h"
 #include "paths.h"
 #include "takt/core/angle.h"
 #include "takt/core/describe.h"
@@ -25,7 +26,6 @@ using testing::Line;
 using testing::MakeCorner;
 using testing::PeakCurvature;
 using testing::Random;
-using testing::Trials;
 
 // GR-20: a segment is state: plain data whose members are all described.
 TEST(Segments, ArePlainAndDescribed) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "../core/trials.h"
 #include "paths.h"
 #include "takt/path/blend.h"
 
@@ -17,7 +18,6 @@ using testing::Length;
 using testing::PeakCurvature;
 using testing::Random;
 using testing::StepBetween;
-using testing::Trials;
 
 std::vector<Segment> Spline(const std::vector<Point>& points, const SplineOptions& options = {}) {
   std::vector<Segment> pieces;

@@ -2,10 +2,10 @@
 // over its workpiece and within the work range, and every product is accounted for. No pick is given up on its way down
 // where it was said how fast the belt may go; where that was not said some are, and the rest holds all the same.
 // TAKT_LONG in the environment: 10,000 products instead of 300.
-#include <cstdlib>
 #include <iostream>
 #include <random>
 
+#include "../core/trials.h"
 #include "cell.h"
 
 namespace takt::pickplace {
@@ -205,7 +205,7 @@ class RandomRun {
 };
 
 Figures RunCells(bool says_how_fast) {
-  const int cells = std::getenv("TAKT_LONG") ? 400 : 12;
+  const int cells = Trials(12, 30);
   Figures figures;
   for (int seed = 1; seed <= cells && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "../core/allocations.h"
+#include "../core/trials.h"
 #include "areas.h"
 #include "fcl_reference.h"
 
@@ -22,7 +23,6 @@ using testing::Polygon;
 using testing::Random;
 using testing::RandomArea;
 using testing::Standing;
-using testing::Trials;
 
 Area Straight(const Place& from, const Place& to, const Footprint& mover) {
   return {.places = {from, to}, .count = 2, .mover = mover};
@@ -128,8 +128,8 @@ TEST(Areas, AreThoseOfFcl) {
     EXPECT_EQ(near, Near(b, a, 0));
     (near ? together : apart) += 1;
   }
-  EXPECT_GT(together, 300);
-  EXPECT_GT(apart, 300);
+  EXPECT_GT(together, Trials(300));
+  EXPECT_GT(apart, Trials(300));
 }
 
 // PL-30: what is called apart never comes near, at any place and any angle; what is called near comes that near at
@@ -161,8 +161,8 @@ TEST(Areas, AreAllAndNoMore) {
       EXPECT_GE(Separation(AsPoint(on_a), a.mover, AsPoint(on_b), b.mover), said - 1e-6);
     }
   }
-  EXPECT_GT(near, 80);
-  EXPECT_GT(apart, 80);
+  EXPECT_GT(near, Trials(80));
+  EXPECT_GT(apart, Trials(80));
   EXPECT_GT(most, 0.05);  // so the bound is looked at
 }
 
@@ -197,7 +197,7 @@ TEST(Areas, AllocateNothing) {
     for (const Area& b : areas) near += Near(a, b, 0) ? 1 : 0;
   }
   EXPECT_EQ(AllocationsOfThisThread(), before);
-  EXPECT_GT(near, 40);
+  EXPECT_GT(near, Trials(40));
 }
 
 }  // namespace

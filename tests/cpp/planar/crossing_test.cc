@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "../core/trials.h"
 #include "tracks.h"
 
 namespace takt::planar {
@@ -16,7 +17,6 @@ using testing::Line;
 using testing::Make;
 using testing::Random;
 using testing::RandomTrack;
-using testing::Trials;
 
 // A bow over a line: through (100, 0) and again, coming down.
 TEST(Crossings, AreFoundByHand) {

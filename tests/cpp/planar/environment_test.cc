@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../core/allocations.h"
+#include "../core/trials.h"
 #include "areas.h"
 
 namespace takt::planar {
@@ -22,7 +23,6 @@ namespace {
 
 using testing::Random;
 using testing::Surface;
-using testing::Trials;
 
 // On a grid, rows from the top: one stator for each '#'.
 std::vector<Place> Grid(const std::vector<std::string>& rows) {
@@ -202,9 +202,9 @@ TEST(Environments, CarryWhatLiesOnStators) {
       }
     }
   }
-  EXPECT_GT(carried, 200);
-  EXPECT_GT(refused, 200);
-  EXPECT_GT(holes, 20);
+  EXPECT_GT(carried, Trials(200));
+  EXPECT_GT(refused, Trials(200));
+  EXPECT_GT(holes, Trials(20));
   EXPECT_LT(narrow, refused / 20);
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "../core/allocations.h"
+#include "../core/trials.h"
 #include "tracks.h"
 
 namespace takt::planar {
@@ -19,7 +20,6 @@ using testing::Line;
 using testing::Make;
 using testing::Random;
 using testing::RandomTrack;
-using testing::Trials;
 
 TEST(NearestPlaces, AreThoseOfLinesAndArcs) {
   const Track line = Make({.elements = {Line({0, 0}, {400, 0})}});

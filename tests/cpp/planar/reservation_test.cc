@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../core/allocations.h"
+#include "../core/trials.h"
 #include "areas.h"
 #include "takt/core/describe.h"
 #include "takt/core/hash.h"
@@ -31,7 +32,6 @@ using testing::Line;
 using testing::Random;
 using testing::RandomTrack;
 using testing::Surface;
-using testing::Trials;
 
 constexpr Footprint kMover{155, 155};
 constexpr ObjectInfo kFree{};
@@ -273,8 +273,8 @@ TEST(AreasOfTracks, AreThoseOfTheirMovers) {
       (said ? near : far) += 1;
     }
   }
-  EXPECT_GT(near, 300);
-  EXPECT_GT(far, 300);
+  EXPECT_GT(near, Trials(300));
+  EXPECT_GT(far, Trials(300));
 }
 
 // Movers on a surface with a hole that are sent about at random, each as fast along its way and in its turn as it
@@ -410,10 +410,10 @@ TEST(ReservationsOfMovers, KeepMoversApart) {
       traffic.Step();
       traffic.ExpectApart();
     }
-    EXPECT_GT(traffic.taken, 2000);
-    EXPECT_GT(traffic.arrived, 500);
-    EXPECT_GT(traffic.refused, 1000);
-    EXPECT_GT(traffic.at_border, 150);
+    EXPECT_GT(traffic.taken, Trials(2000));
+    EXPECT_GT(traffic.arrived, Trials(500));
+    EXPECT_GT(traffic.refused, Trials(1000));
+    EXPECT_GT(traffic.at_border, Trials(150));
   }
 }
 

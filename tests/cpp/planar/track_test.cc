@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "../core/allocations.h"
+#include "../core/trials.h"
 #include "takt/core/describe.h"
 #include "takt/core/verify.h"
 #include "tracks.h"
@@ -27,7 +28,6 @@ using testing::Random;
 using testing::RandomLayout;
 using testing::RandomTrack;
 using testing::StartOf;
-using testing::Trials;
 
 void ExpectPoint(const TrackPoint& p, const Place& place, double direction, double curvature) {
   EXPECT_NEAR(p.place.x, place.x, 1e-10);
@@ -197,7 +197,7 @@ TEST(Tracks, TakeOverTheirNeighbours) {
       EXPECT_LE(std::abs(a.curvature - b.curvature), 1e-9 * peak);
     }
   }
-  EXPECT_GT(made, 20);
+  EXPECT_GT(made, Trials(20));
 }
 
 // PL-20: an open track ends, a loop goes round; what is no number is the start.
@@ -338,7 +338,7 @@ TEST(Tracks, StandAnyNumbers) {
       EXPECT_TRUE(std::isfinite(p.place.x + p.place.y + p.direction + p.curvature + p.curvature_rate));
     }
   }
-  EXPECT_GT(made, 100);
+  EXPECT_GT(made, Trials(100));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 namespace takt::planar::testing {
 
@@ -105,10 +104,6 @@ double LengthTo(const Track& track, double s) {
     }
   }
   return sum;
-}
-
-int Trials(int usual) {
-  return std::getenv("TAKT_LONG") ? usual * 100 : usual;
 }
 
 }  // namespace takt::planar::testing

@@ -52,8 +52,5 @@ TrackPoint EndOf(const Track& track);
 // mm from the start to s, from places only: sums of straight lines, finer and finer.
 double LengthTo(const Track& track, double s);
 
-// How many random trials: many with TAKT_LONG=1.
-int Trials(int usual);
-
 }  // namespace testing
 }  // namespace takt::planar

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "../core/trials.h"
 #include "streets.h"
 #include "takt/trajectory/planner.h"
 
@@ -528,7 +529,7 @@ class CityProperty : public ::testing::TestWithParam<int> {
 };
 
 TEST_P(CityProperty, NobodyComesTooNear) {  // PL-23, PL-24
-  const int cycles = std::getenv("TAKT_LONG") ? 600000 : 20000;
+  const int cycles = Trials(20000, 30);
   std::uint32_t put = 0;
   std::vector<double> was;  // where each was
   for (std::uint32_t track = 0; track < layouts.size(); ++track) {
@@ -594,8 +595,7 @@ int FirstSeed() {
   const char* seed = std::getenv("TAKT_SEED");
   return seed ? std::atoi(seed) : 0;
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, CityProperty,
-                         ::testing::Range(FirstSeed(), FirstSeed() + (std::getenv("TAKT_LONG") ? 300 : 2)),
+INSTANTIATE_TEST_SUITE_P(Seeds, CityProperty, ::testing::Range(FirstSeed(), FirstSeed() + Trials(2, 150)),
                          [](const auto& seed) { return std::to_string(seed.param); });
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "../core/trials.h"
 #include "takt/core/angle.h"
 #include "takt/path/segment.h"
 #include "tracks.h"
@@ -14,7 +15,6 @@ namespace takt::planar {
 namespace {
 
 using testing::Random;
-using testing::Trials;
 
 using Segments = std::vector<path::Segment>;
 

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "../core/allocations.h"
+#include "../core/trials.h"
 #include "rig.h"
 #include "takt/core/describe.h"
 #include "takt/core/hash.h"
@@ -59,7 +60,7 @@ Attempt Any(std::mt19937& random) {
 TEST(Works, BuildWhatTheBuilderBuilds) {
   std::mt19937 random(11);
   int made = 0, crossed = 0, refused = 0, closed = 0;
-  for (int run = 0; run < 60; ++run) {
+  for (int run = 0; run < Trials(60); ++run) {
     Rig rig(1);
     planar::TrackBuilder model;
     for (int i = 0; i < 12; ++i) {
@@ -84,10 +85,10 @@ TEST(Works, BuildWhatTheBuilderBuilds) {
     }
     closed += rig.tracks.sketches[0].closed ? 1 : 0;
   }
-  EXPECT_GT(made, 60);
-  EXPECT_GT(crossed, 20);
-  EXPECT_GT(refused, 120);
-  EXPECT_GT(closed, 2);
+  EXPECT_GT(made, Trials(60));
+  EXPECT_GT(crossed, Trials(20));
+  EXPECT_GT(refused, Trials(120));
+  EXPECT_GT(closed, Trials(2));
 }
 
 // EN-04: the cycle's part takes no memory.

@@ -4,6 +4,7 @@
 #include <random>
 #include <sstream>
 
+#include "../core/trials.h"
 #include "reference.h"
 #include "rig.h"
 
@@ -47,7 +48,7 @@ class Random {
 // GR-13: FCL's own distances.
 TEST(Scene, MeasuresAsWellAsItSays) {
   Random random(5);
-  for (int trial = 0; trial < testing::Trials(1500); ++trial) {
+  for (int trial = 0; trial < Trials(1500); ++trial) {
     const std::string text = "{obstacles: [{name: a, " + random.ShapeText(300) + ", " + random.PoseText(200, 0) +
                              "}, {name: b, " + random.ShapeText(300) + ", " + random.PoseText(200, 100) + "}]}";
     const auto read = ReadYaml<WorkspaceParams>(text, "test.yaml");
@@ -111,7 +112,7 @@ TEST(Checker, KeepsItsPromises) {
   Random random(6);
   int free = 0;
   int met = 0;
-  for (int trial = 0; trial < testing::Trials(80); ++trial) {
+  for (int trial = 0; trial < Trials(80); ++trial) {
     const Machine& machine = kMachines[trial % 4];
     const double margin = random.Between(1, 30);
     const double resolution = margin * random.Between(0.05, 0.9);
@@ -151,8 +152,8 @@ TEST(Checker, KeepsItsPromises) {
       ASSERT_GT(Nearest(*cell.cell, joints), margin - resolution - kDistanceError) << "at " << s << " of " << end;
     }
   }
-  EXPECT_GT(free, testing::Trials(80) / 10);
-  EXPECT_GT(met, testing::Trials(80) / 4);
+  EXPECT_GT(free, Trials(80) / 10);
+  EXPECT_GT(met, Trials(80) / 4);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -51,10 +50,6 @@ inline std::vector<Sample> Line(const kinematics::Joints& from, const kinematics
 inline std::string Say(Checker& checker, const std::vector<Sample>& path) {
   const std::optional<Finding> found = checker.Check(path);
   return found ? checker.Describe(*found) : "free";
-}
-
-inline int Trials(int usual) {
-  return std::getenv("TAKT_LONG") ? usual * 100 : usual;
 }
 
 }  // namespace takt::workspace::testing

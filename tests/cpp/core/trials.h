@@ -1,0 +1,23 @@
+// How often tests try something at random.
+#pragma once
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace takt {
+
+// Under a sanitizer each trial takes several times as long, and what it looks for a few of them show.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
+// So many; `longer` times as many with TAKT_LONG in the environment; a fifth of that under a sanitizer, one at least.
+// What the test has to have seen by then scales the same.
+inline int Trials(int usual, int longer = 100) {
+  const int trials = std::getenv("TAKT_LONG") ? usual * longer : usual;
+  return kSanitized ? std::max(1, trials / 5) : trials;
+}
+
+}  // namespace takt
