@@ -245,6 +245,7 @@ def test_differences_between_cursors_are_those_of_the_motion(tmp_path: Path, bro
         x.move_velocity(velocity=50).wait(until="reached")
         page.select_option("#span", "0.2")
         session.run(1)
+        wait_for_cycle(page, session.cycle)
         page.evaluate("() => window.takt.scope.pause(true)")
         begin = page.evaluate("() => window.takt.scope.held.from")
         put = "([a, b]) => { const { scope } = window.takt; scope.setCursor(a); scope.setCursor(b, true); }"
