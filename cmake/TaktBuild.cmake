@@ -22,7 +22,11 @@ endif()
 
 add_library(takt_options INTERFACE)
 # No fused multiply-add: the same bits whatever the compiler contracts. -Wrestrict: GCC 12 raises it on std::string's own code (its bug 105651).
-target_compile_options(takt_options INTERFACE -Wall -Wextra -Wconversion -Werror -Wno-restrict -ffp-contract=off)
+target_compile_options(takt_options INTERFACE -Wall -Wextra -Wconversion -Werror $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+                       $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion;-Wno-missing-braces;-Wno-c99-designator;-Wno-unknown-warning-option> -ffp-contract=off)
+if(TAKT_SANITIZE)
+  target_compile_definitions(takt_options INTERFACE TAKT_SANITIZED)
+endif()
 if(TAKT_SANITIZE STREQUAL "address")
   # Without what would be checked at each pointer, which is a third of the time to compile: null pointers fault by themselves.
   target_compile_options(takt_options INTERFACE -fsanitize=address,undefined -fno-sanitize=null,alignment,vptr

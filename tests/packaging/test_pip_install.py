@@ -15,9 +15,8 @@ ROOT = Path(__file__).parents[2]
 def prefix(tmp_path_factory):
     prefix = tmp_path_factory.mktemp("venv")
     venv.create(prefix, with_pip=True)
-    build = (
-        Path(os.environ["TAKT_BUILD_DIR"]) / "wheel"
-    )  # always the same place: so the compiler's cache knows the files
+    # As deep as the release build: so the compiler's cache knows what was compiled there.
+    build = Path(os.environ["TAKT_BUILD_DIR"]).parent / "wheel"
     shutil.rmtree(build, ignore_errors=True)
     run(prefix, "python", "-m", "pip", "install", ROOT, f"--config-settings=build-dir={build}")
     return prefix

@@ -63,7 +63,6 @@ TEST(Arguments, SpeaksLikeTheYamlReader) {  // EN-10, EN-11
         "{position: .nan, velocity: 1}", "{position: 1e999, velocity: 1}", "{position: [1], velocity: 1}",
         "{position: {a: 1}, velocity: 1}", "{position: , velocity: 1}", "{position: 010, velocity: 1}", "[1, 2]", "5",
         "{position: &a 1, velocity: 1}", "{position: !!int 1, velocity: 1}", "{<<: 1, position: 1, velocity: 1}"}) {
-    MoveAbsolute move;
     const auto yaml = ReadYaml<MoveAbsolute>(text, "arguments");
     ASSERT_FALSE(yaml.ok()) << text;
     EXPECT_EQ(ProblemOf(text), yaml.problems.front().Text()) << text;

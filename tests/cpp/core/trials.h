@@ -7,7 +7,7 @@
 namespace takt {
 
 // Under a sanitizer each trial takes several times as long, and what it looks for a few of them show.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef TAKT_SANITIZED
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;

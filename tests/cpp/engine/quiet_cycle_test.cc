@@ -3,7 +3,7 @@
 // and of pthread_mutex_lock, and a filter of the kernel reports every system call it makes.
 #include <gtest/gtest.h>
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef TAKT_SANITIZED
 
 #include <dlfcn.h>
 #include <linux/audit.h>

@@ -218,6 +218,7 @@ TEST(Environments, CarryWithoutAllocating) {
   int carried = 0;
   for (const Area& area : areas) carried += Carries(e, area) ? 1 : 0;
   EXPECT_EQ(AllocationsOfThisThread(), before);
+  EXPECT_GT(carried, 0);
 }
 
 }  // namespace

@@ -253,7 +253,6 @@ TEST(Gear, StopsWhereItsWayEnds) {  // PL-14
     Couple(streets, 0, 500);
     Watcher watcher(streets);
     const double velocity = forward ? 300 : -300;
-    KinematicState master;
     trajectory::Planner planner;
     trajectory::Profile up;
     ASSERT_TRUE(planner.ToVelocity({}, velocity, pace.limits, up).ok());
