@@ -41,6 +41,7 @@ def test_ready_machines_are_delivered(prefix, tmp_path):
 
 def run(prefix: Path, program: str, *arguments: str | Path) -> str:
     environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
+    environment["CXX"] = "c++"  # by the name that CMake calls it by: the compiler's cache looks at it
     command = [prefix / "bin" / program, *arguments]
     done = subprocess.run(
         command, cwd=prefix, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False
