@@ -419,6 +419,30 @@ def show_cam(file: Path, name: str | None, **options: Any) -> int:
 @click.option("--tolerance", type=float, default=0.005, show_default=True, help="mm from curves to lines for them.")
 @click.option("--plot", "target", type=FILE, help="Draw it as seen from above into this file (.png, .svg, .pdf).")
 @click.option("--csv", type=FILE, help="Write its elements into this file, for the paths of a machine file.")
+@click.option(
+    "--dialect",
+    type=click.Choice(["rs274", "linuxcnc", "fanuc", "grbl", "marlin"]),
+    help="G-code only: [what the file tells].",
+)
+@click.option("--leave-out", multiple=True, metavar="WORDS", help="G-code only: words to leave out, such as M7,G41,A.")
+@click.option("--delete-blocks", is_flag=True, help="G-code only: skip lines that begin with /.")
+@click.option(
+    "--offset",
+    "offsets",
+    multiple=True,
+    nargs=4,
+    metavar="G54 X Y Z",
+    help="G-code only: where a coordinate system's zero lies on the machine, mm.",
+)
+@click.option(
+    "--set", "parameters", multiple=True, metavar="NAME=NUMBER", help="G-code only: a parameter, by number or name."
+)
+@click.option(
+    "--subroutines",
+    multiple=True,
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="G-code only: a folder with files of subs.",
+)
 def show_path(file: Path, **options: Any) -> int:
     """Check the path of a FILE: G-code (.gcode, .nc, .ngc, .tap), a drawing (.svg) or elements (.csv). Says how long it
     is, what it consists of and how far it extends; draws and converts it."""

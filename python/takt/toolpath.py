@@ -17,12 +17,15 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from takt.errors import TaktError
+
+if TYPE_CHECKING:
+    from takt.gcode import Options
 
 Array = npt.NDArray[np.float64]
 Point = tuple[float, float, float]
@@ -30,7 +33,10 @@ Point = tuple[float, float, float]
 SAME = 1e-6  # mm: nearer than this, points are the same, as for the engine
 SLACK = 2.0  # mm: how far beside, before or behind a path points may lie that are said to follow it
 TOLERANCE = 0.005  # mm between a curve and the lines that stand for it
+REACH = 1e8  # mm: coordinates of what is read are no larger, so that their errors stay below SAME
+MOST_ELEMENTS = 2_000_000  # of a path that is read
 COLUMNS = ("shape", "x", "y", "z", "via_x", "via_y", "via_z", "velocity")
+GCODE = (".gcode", ".nc", ".ngc", ".tap")
 _BLOCK = 64  # points looked at together in `follow`
 _HOPELESS = (
     10 * SLACK
@@ -77,6 +83,7 @@ class Toolpath:
     start: Point
     elements: tuple[Element, ...]
     left_out: tuple[str, ...] = ()  # what the file said besides, a sentence each
+    read_as: str = ""  # the dialect of G-code, and by what it was recognised
 
     @classmethod
     def from_csv(cls, path: str | PathLike[str], start: Point = (0.0, 0.0, 0.0)) -> Toolpath:
@@ -236,7 +243,7 @@ class Toolpath:
         elements = tuple(
             Element(move(one.end), None if one.via is None else move(one.via), one.velocity) for one in self.elements
         )
-        return Toolpath(move(self.start), elements, self.left_out)
+        return Toolpath(move(self.start), elements, self.left_out, self.read_as)
 
     def to_csv(self, path: str | PathLike[str]) -> Path:
         """Writes the elements as the `file` of a path in a machine file. It does not say where the path starts."""
@@ -317,23 +324,30 @@ class Toolpath:
         return self
 
 
-def read(path: str | PathLike[str], start: Point = (0.0, 0.0, 0.0), tolerance: float = TOLERANCE) -> Toolpath:
+def read(
+    path: str | PathLike[str],
+    start: Point = (0.0, 0.0, 0.0),
+    tolerance: float = TOLERANCE,
+    gcode: Options | None = None,
+) -> Toolpath:
     """Reads G-code (.gcode, .nc, .ngc, .tap), a drawing (.svg) or elements (.csv).
 
     `start`: where the tool is when it begins, in mm. `tolerance`: how far lines that stand for curves may be from
-    them, in mm. Raises ToolpathError."""
+    them, in mm. `gcode`: how to read G-code (takt.gcode.Options); None: as it tells itself. Raises ToolpathError."""
     suffix = Path(path).suffix.lower()
-    if suffix in (".gcode", ".nc", ".ngc", ".tap"):
+    if suffix in GCODE:
         from takt.gcode import read_gcode
 
-        return read_gcode(path, start, tolerance)
+        return read_gcode(path, start, tolerance, gcode)
+    if gcode is not None and suffix in (".svg", ".csv"):
+        raise ToolpathError(f"{path}: options of G-code do not hold for {suffix}")
     if suffix == ".svg":
         from takt.svg import read_svg
 
         return read_svg(path, start, tolerance)
     if suffix == ".csv":
         return Toolpath.from_csv(path, start)
-    raise ToolpathError(f"{path}: expected a file of G-code (.gcode, .nc, .ngc, .tap), .svg or .csv")
+    raise ToolpathError(f"{path}: expected a file of G-code ({', '.join(GCODE)}), .svg or .csv")
 
 
 def _most(way: Array, time_s: Array) -> Array:
@@ -359,6 +373,14 @@ def chords(sweep: float, radius: float, tolerance: float) -> int:
     if radius <= tolerance:
         return max(math.ceil(abs(sweep) / 1.0), 1)
     return max(math.ceil(abs(sweep) / (2 * math.acos(1 - tolerance / radius))), 1)
+
+
+def chords_of_bezier(control: Sequence[complex], tolerance: float) -> int:
+    """How many chords of equal shares keep within a tolerance of a Bézier curve. A chord over a share h is off by at
+    most h² / 8 times the curve's second derivative, which the second differences of its control points bound."""
+    n = len(control) - 1
+    second = max(abs(control[i + 2] - 2 * control[i + 1] + control[i]) for i in range(n - 1)) * n * (n - 1)
+    return max(math.ceil(math.sqrt(second / (8 * tolerance))), 1)
 
 
 def _arcs(begin: Array, via: Array, end: Array) -> tuple[Array, Array, Array, Array, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table as Grid
 
-from takt import toolpath
+from takt import gcode, toolpath
 from takt.counted import counted
 
 
@@ -22,12 +23,30 @@ class Options:
     tolerance: float = toolpath.TOLERANCE
     csv: Path | None = None
     target: Path | None = None
+    dialect: str | None = None
+    leave_out: tuple[str, ...] = ()
+    delete_blocks: bool = False
+    offsets: tuple[tuple[str, str, str, str], ...] = ()
+    parameters: tuple[str, ...] = ()
+    subroutines: tuple[Path, ...] = ()
+
+    def of_gcode(self) -> gcode.Options | None:
+        """How to read G-code; None: as without any of these options. Raises click.UsageError."""
+        given = gcode.Options(
+            self.dialect,
+            self.leave_out,
+            self.delete_blocks,
+            {name: _numbers(f"--offset {name}", values) for name, *values in self.offsets},
+            dict(map(_parameter, self.parameters)),
+            self.subroutines,
+        )
+        return None if given == gcode.Options(subroutines=()) else given
 
 
 def run(file: Path, options: Options, out: Console) -> int:
     """Reads, says, draws, writes."""
     _refuse_nonsense(options)
-    path = toolpath.read(file, options.start, options.tolerance)
+    path = toolpath.read(file, options.start, options.tolerance, options.of_gcode())
     _say(file, path, out)
     if options.csv is not None:
         print(f"elements: {path.to_csv(options.csv)}")
@@ -56,8 +75,15 @@ def _say(file: Path, path: toolpath.Toolpath, out: Console) -> None:
     arcs = int(np.count_nonzero(path.is_arc))
     lines = len(path.elements) - arcs
     print(f"{file}: {counted(lines, 'line')} and {counted(arcs, 'arc')}, {path.length:.6g} mm")
-    if not path.elements:
-        return
+    if path.elements:
+        _say_elements(path, out)
+    if path.read_as:
+        print(f"read as: {path.read_as}")
+    for word in path.left_out:
+        print(f"left out: {word}")
+
+
+def _say_elements(path: toolpath.Toolpath, out: Console) -> None:
     lengths = np.diff(path.at)
     quick = sum(float(length) for one, length in zip(path.elements, lengths, strict=True) if one.velocity is None)
     print(f"elements of {lengths.min():.4g} to {lengths.max():.4g} mm; {quick:.6g} mm at the velocity of the command")
@@ -71,5 +97,19 @@ def _say(file: Path, path: toolpath.Toolpath, out: Console) -> None:
     if feeds:
         shown = ", ".join(f"{feed:.6g}" for feed in feeds[:8]) + (" ..." if len(feeds) > 8 else "")
         print(f"velocities: {shown} mm/s")
-    for word in path.left_out:
-        print(f"left out: {word}")
+
+
+def _numbers(name: str, values: Sequence[str]) -> toolpath.Point:
+    try:
+        x, y, z = map(float, values)
+    except ValueError:
+        raise click.UsageError(f"{name}: expected three numbers of mm, found {' '.join(values)}") from None
+    return (x, y, z)
+
+
+def _parameter(text: str) -> tuple[str, float]:
+    name, _, value = text.rpartition("=")
+    try:
+        return name, float(value)
+    except ValueError:
+        raise click.UsageError(f"--set: expected NAME=NUMBER, found '{text}'") from None

@@ -1,0 +1,163 @@
+"""Lines, arcs, helices and splines of G-code as the elements of a path."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from takt.gcode.errors import LineError
+from takt.toolpath import MOST_ELEMENTS, REACH, SAME, Element, Point, chords, chords_of_bezier, split_turn
+
+# The manual of LinuxCNC, G2 G3: the ends of an arc may be unequally far from its centre by ALWAYS, or by SHARE of its
+# radius if that is more, but never by more than NEVER; mm, and the same in programs in inches.
+ALWAYS, SHARE, NEVER = (0.005, 0.0005 * 25.4), 0.001, (0.5, 0.05 * 25.4)
+PLANES = {"G17": (0, 1, 2), "G18": (2, 0, 1), "G19": (1, 2, 0)}  # counterclockwise as seen from the third axis
+
+
+class Arc(NamedTuple):
+    """An arc about an axis, or a helix, or no motion at all (sweep 0); mm and rad."""
+
+    begin: Point
+    end: Point
+    axes: tuple[int, int, int]
+    centre: tuple[float, float]
+    radius: float  # where it begins
+    last: float  # the radius where it ends
+    angle: float  # where it begins
+    sweep: float  # above 0 counterclockwise
+
+    @property
+    def rise(self) -> float:
+        return self.end[self.axes[2]] - self.begin[self.axes[2]]
+
+    @property
+    def length(self) -> float:
+        return math.hypot(abs(self.sweep) * (self.radius + self.last) / 2, self.rise)
+
+    def at(self, share: float) -> Point:
+        """The point at a share of its sweep."""
+        if share == 1:
+            return self.end
+        angle, r = self.angle + share * self.sweep, self.radius + share * (self.last - self.radius)
+        first, second, third = self.axes
+        point = [0.0, 0.0, 0.0]
+        point[first] = self.centre[0] + r * math.cos(angle)
+        point[second] = self.centre[1] + r * math.sin(angle)
+        point[third] = self.begin[third] + share * self.rise
+        return (point[0], point[1], point[2])
+
+
+def arc_about(
+    begin: Point,
+    end: Point,
+    plane: str,
+    centre: tuple[float, float],
+    *,
+    clockwise: bool,
+    more_turns: float,
+    inches: bool = False,
+) -> Arc:
+    """The arc from `begin` to `end`, a whole turn where these are the same in the plane, and `more_turns` besides.
+    Raises LineError where its ends are unequally far from the centre."""
+    axes = PLANES[plane]
+    first, second, _ = axes
+    out = (begin[first] - centre[0], begin[second] - centre[1])
+    back = (end[first] - centre[0], end[second] - centre[1])
+    radius, last = math.hypot(*out), math.hypot(*back)
+    apart = abs(radius - last)
+    if max(radius, last) < SAME:
+        return Arc(begin, end, axes, centre, radius, last, 0.0, 0.0)
+    if min(radius, last) < SAME:
+        raise LineError("the centre of the arc is where it " + ("begins" if radius < SAME else "ends"))
+    if apart > NEVER[inches] or apart > max(ALWAYS[inches], SHARE * max(radius, last)):
+        raise LineError(f"the arc begins {radius:.6g} mm from its centre, but ends {last:.6g} mm from it")
+    sign = -1 if clockwise else 1
+    angle = math.atan2(out[1], out[0])
+    sweep = (sign * (math.atan2(back[1], back[0]) - angle)) % (2 * math.pi)
+    whole = math.hypot(end[first] - begin[first], end[second] - begin[second]) < SAME
+    sweep = 2 * math.pi if whole else sweep
+    return Arc(begin, end, axes, centre, radius, last, angle, sign * (sweep + 2 * math.pi * more_turns))
+
+
+def centre_by_radius(
+    begin: Point, end: Point, plane: str, given: float, *, clockwise: bool, inches: bool = False
+) -> tuple[float, float]:
+    """Of an arc of a radius; below 0: of the one that is more than half a turn. Raises LineError."""
+    first, second, _ = PLANES[plane]
+    along = (end[first] - begin[first], end[second] - begin[second])
+    chord, radius = math.hypot(*along), abs(given)
+    if chord < SAME:
+        raise LineError("an arc by R must end elsewhere than it begins; use I, J, K for whole turns")
+    if radius < chord / 2 - min(max(ALWAYS[inches], SHARE * radius), NEVER[inches]):
+        raise LineError(f"R: the ends of the arc are {chord:.6g} mm apart, too far for a radius of {radius:.6g} mm")
+    # The centre lies to the left of the chord of a counterclockwise arc of less than half a turn.
+    side = 1 if clockwise == (given < 0) else -1
+    height = side * math.sqrt(max(radius**2 - chord**2 / 4, 0.0)) / chord
+    return (begin[first] + along[0] / 2 - height * along[1], begin[second] + along[1] / 2 + height * along[0])
+
+
+class PathBuilder:
+    """Appends elements to a path. Raises LineError where one would lie beyond REACH, or where there are too many."""
+
+    def __init__(self, start: Point, tolerance: float) -> None:
+        self.elements: list[Element] = []
+        self.here = start
+        self._end = start  # of the last element: moves shorter than SAME add up until they are an element
+        self._tolerance = tolerance
+
+    def line(self, end: Point, velocity: float | None) -> None:
+        x, y, z = end
+        if not (-REACH <= x <= REACH and -REACH <= y <= REACH and -REACH <= z <= REACH):
+            raise LineError(f"a move to ({x:.6g}, {y:.6g}, {z:.6g}) mm: expected numbers up to {REACH:.0e} mm")
+        self.here = end
+        if math.dist(self._end, end) >= SAME:
+            self._append(Element(end, None, velocity))
+
+    def arc(self, arc: Arc, velocity: float | None) -> None:
+        if arc.sweep == 0 and abs(arc.rise) < SAME:
+            self.here = arc.end
+            return
+        if not max(map(abs, (*arc.centre, arc.radius, *arc.end))) <= REACH:
+            raise LineError(f"an arc of a radius of {arc.radius:.6g} mm: expected numbers up to {REACH:.0e} mm")
+        if abs(arc.rise) < SAME:
+            count = self._room(split_turn(arc.sweep))
+            # Of a flat arc three points do not say well enough where it bends: within SAME it is its chord.
+            flat = arc.radius * (1 - math.cos(min(abs(arc.sweep) / count / 2, math.pi / 2))) < SAME
+            for i in range(count):
+                end = arc.at((i + 1) / count)
+                if flat:
+                    self.line(end, velocity)
+                else:
+                    self.here = end
+                    self._append(Element(end, arc.at((i + 0.5) / count), velocity))
+        else:
+            count = self._room(chords(arc.sweep, max(arc.radius, arc.last), self._tolerance))
+            for i in range(count):
+                self.line(arc.at((i + 1) / count), velocity)
+
+    def bezier(self, control: Sequence[complex], velocity: float | None) -> None:
+        """In X and Y, from where the tool is; `control`: the points behind that."""
+        x, y, z = self.here
+        points = [complex(x, y), *control]
+        if not all(abs(point) <= REACH for point in points):
+            raise LineError(f"a spline: expected numbers up to {REACH:.0e} mm")
+        count = self._room(chords_of_bezier(points, self._tolerance))
+        for i in range(1, count + 1):
+            share = i / count
+            ends = points
+            while len(ends) > 1:  # de Casteljau
+                ends = [(1 - share) * a + share * b for a, b in pairwise(ends)]
+            point = control[-1] if i == count else ends[0]
+            self.line((point.real, point.imag, z), velocity)
+
+    def _append(self, element: Element) -> None:
+        self._room(1)
+        self._end = element.end
+        self.elements.append(element)
+
+    def _room(self, count: int) -> int:
+        if len(self.elements) + count > MOST_ELEMENTS:
+            raise LineError(f"the path has more than {MOST_ELEMENTS:,} elements")
+        return count
