@@ -1,22 +1,43 @@
 """Reads drawings (SVG) into a path for a tool, a pen say.
 
 X goes to the right and Y up from the drawing's lower left corner, in mm; the pen draws at Z 0 and is lifted between
-lines. Circular arcs stay arcs; ellipses and Béziers become lines that keep within a tolerance. Only outlines are
-drawn: texts, pictures and fillings are not. Needs svgelements (pip install takt-motion[svg]).
+lines. Circular arcs stay arcs; ellipses and Béziers become lines that keep within a tolerance. Outlines of what a
+browser shows are drawn, whether stroked or filled; texts and pictures are left out, and said to be. Needs svgelements
+(pip install takt-motion[svg]).
+
+`svg_tree` finds the shapes that are rendered; svgelements reads them, their styles, units and transforms. Shapes are
+taken as they are in their own coordinates, and each point is moved by the shape's matrix.
 """
 
 from __future__ import annotations
 
+import io
 import math
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from os import PathLike
+from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import ParseError
+from xml.etree import ElementTree
 
-from takt.toolpath import SAME, TOLERANCE, Element, Point, Toolpath, ToolpathError, chords, split_turn
+from takt.svg_tree import CLIP, CLIPPED, Rendered, TreeError
+from takt.toolpath import (
+    MOST_ELEMENTS,
+    REACH,
+    SAME,
+    TOLERANCE,
+    Element,
+    Point,
+    Toolpath,
+    ToolpathError,
+    chords,
+    chords_of_bezier,
+    split_turn,
+)
 
 LIFT = 5.0  # mm
 _MM = 1 / (96 * 0.0393701)  # of a pixel; svgelements rounds so, and drawings in mm come out exactly
+_CUT = 0.01  # mm by which a shape may lie beyond its clip and count as within
 
 
 def read_svg(
@@ -33,19 +54,136 @@ def read_svg(
         import svgelements  # type: ignore[import-untyped]
     except ImportError:
         raise ToolpathError(f"{path}: SVG needs svgelements (pip install takt-motion[svg])") from None
+    data = Path(path).read_bytes()
     try:
-        drawing = svgelements.SVG.parse(str(path), reify=True, ppi=96)
-    except ParseError as error:
+        tree = Rendered(ElementTree.fromstring(data), svgelements.Viewbox.viewbox_transform)
+        drawing, wrong = _parsed(svgelements, tree.root)
+        pen = _Pen(start, _height(drawing), tolerance, lift, velocity)
+        left_out = tree.left_out + wrong
+        _draw(svgelements, drawing, pen, left_out)
+        pen.up()
+    except ElementTree.ParseError as error:
         raise ToolpathError(f"{path}: is no SVG: {error}") from None
-    pen = _Pen(start, drawing.height * _MM if drawing.height else 0.0, tolerance, lift, velocity)
-    for shape in drawing.elements(lambda one: isinstance(one, svgelements.Shape)):
-        outline = shape if isinstance(shape, svgelements.Path) else svgelements.Path(shape)
-        for segment in outline:
-            pen.draw(segment, type(segment).__name__)
-    pen.up()
-    skipped = drawing.elements(lambda one: isinstance(one, (svgelements.Text, svgelements.Image)))
-    left_out = tuple(type(one).__name__.lower() for one in skipped)
-    return Toolpath(start, tuple(pen.elements), left_out)
+    except TreeError as error:
+        raise ToolpathError(f"{path}: {error}") from None
+    said = tuple(what if count == 1 else f"{what} ({count} times)" for what, count in left_out.items())
+    return Toolpath(start, tuple(pen.elements), said)._checked(str(path))
+
+
+def _parsed(svgelements: Any, root: ElementTree.Element) -> tuple[Any, Counter[str]]:
+    """The drawing, and the paths whose data have an error: of these there is what stands before it, as SVG has it."""
+    text = ElementTree.tostring(root)
+    wrong: Counter[str] = Counter()
+    try:
+        return svgelements.SVG.parse(io.BytesIO(text), reify=False, ppi=96, on_error="raise"), wrong
+    except RecursionError:
+        raise TreeError("elements nest too deeply") from None
+    except Exception:  # svgelements raises whatever the data make it raise
+        for one in root.iter():
+            data = one.attrib.get("d")
+            if data is not None:
+                try:
+                    svgelements.Path(data)
+                except Exception:
+                    shown = data if len(data) < 40 else data[:37] + "..."
+                    wrong[f"what follows an error in the path '{shown}'"] += 1
+    try:
+        return svgelements.SVG.parse(io.BytesIO(text), reify=False, ppi=96, on_error="ignore"), wrong
+    except Exception as error:
+        raise TreeError(f"svgelements cannot read it: {error}") from None
+
+
+def _height(drawing: Any) -> float:
+    height = getattr(drawing, "height", None) or 0.0
+    if not 0 <= height * _MM <= REACH:
+        raise TreeError(f"a height of {height * _MM:.6g} mm: expected numbers up to {REACH:.0e} mm")
+    return float(height) * _MM
+
+
+def _draw(svgelements: Any, drawing: Any, pen: _Pen, left_out: Counter[str]) -> None:
+    clips: dict[str, list[Any]] = {}
+    shapes = list(drawing.elements(lambda one: isinstance(one, svgelements.Shape)))
+    for shape in shapes:
+        if CLIP in shape.values["attributes"]:
+            clips.setdefault(shape.values["attributes"][CLIP], []).append(shape)
+    for shape in shapes:
+        attributes = shape.values["attributes"]
+        if CLIP in attributes or _is_hidden(shape.values):
+            continue
+        if shape.values.get("fill") == "none" == shape.values.get("stroke", "none"):
+            left_out[f"<{shape.values['tag']}> with neither fill nor stroke"] += 1
+            continue
+        outline = _Outline(svgelements, shape)
+        for clip in attributes.get(CLIPPED, "").split():
+            if clip != "0":
+                _hold_against(svgelements, clips.get(clip, []), outline, shape)
+        for segment in outline.segments:
+            pen.draw(segment, type(segment).__name__, outline.matrix)
+
+
+def _is_hidden(values: Any) -> bool:
+    return values.get("visibility") in ("hidden", "collapse") or values.get("opacity") in ("0", "0.0", "0%")
+
+
+class _Outline:
+    def __init__(self, svgelements: Any, shape: Any) -> None:
+        m = shape.transform
+        self.matrix = (float(m.a), float(m.b), float(m.c), float(m.d), float(m.e), float(m.f))
+        self.segments = shape if isinstance(shape, svgelements.Path) else shape.segments(transformed=False)
+
+    def box(self, svgelements: Any) -> tuple[float, float, float, float] | None:
+        """The least and greatest X and Y, px; None: it is empty."""
+        box = abs(svgelements.Path(*self.segments) * svgelements.Matrix(*self.matrix)).bbox()
+        return None if box is None else tuple(map(float, box))
+
+
+def _hold_against(svgelements: Any, clip: list[Any], outline: _Outline, shape: Any) -> None:
+    """Raises TreeError where a clip would cut something off a shape, or hide it; only rectangles are known not to."""
+    box = outline.box(svgelements)
+    if box is None:
+        return
+    if len(clip) == 1:
+        frame = _Outline(svgelements, clip[0])
+        corners = _corners(frame)
+        around = frame.box(svgelements)
+        if around is not None and corners:
+            slack = _CUT / _MM
+            low = box[0] >= around[0] - slack and box[1] >= around[1] - slack
+            if low and box[2] <= around[2] + slack and box[3] <= around[3] + slack:
+                return
+    name = shape.values["attributes"].get("id")
+    label = f"<{shape.values['tag']}>" + (f" '{name}'" if name else "")
+    raise TreeError(f"a clip-path would cut {label}, and outlines are drawn whole; cut them in the drawing program first")
+
+
+def _corners(outline: _Outline) -> bool:
+    """Whether it is a rectangle whose sides go along X and Y."""
+    ends = []
+    for segment in outline.segments:
+        if type(segment).__name__ not in ("Move", "Line", "Close"):
+            return False
+        if segment.end is not None:
+            ends.append(_moved(outline.matrix, segment.end))
+    if len(ends) > 1 and abs(ends[0] - ends[-1]) < 1e-9:
+        ends.pop()
+    if len(ends) != 4:
+        return False
+    sides = [ends[i] - ends[i - 1] for i in range(4)]
+    flat = all(min(abs(side.real), abs(side.imag)) <= 1e-6 * abs(side) for side in sides)
+    return flat and abs(sides[0] + sides[2]) <= 1e-6 * abs(sides[0])
+
+
+def _moved(matrix: tuple[float, ...], point: Any) -> complex:
+    a, b, c, d, e, f = matrix
+    x, y = float(point.x), float(point.y)
+    return complex(a * x + c * y + e, b * x + d * y + f)
+
+
+def _stretch(matrix: tuple[float, ...]) -> tuple[float, bool]:
+    """By how much a matrix makes lengths greater at most, and whether it does so in all directions (a similarity)."""
+    a, b, c, d = matrix[:4]
+    mean, apart = (a * a + b * b + c * c + d * d) / 2, math.hypot((a * a + b * b - c * c - d * d) / 2, a * c + b * d)
+    return math.sqrt(mean + apart), apart <= 1e-9 * mean
 
 
 class _Pen:
@@ -53,19 +191,21 @@ class _Pen:
         self.elements: list[Element] = []
         self._here = start
         self._height, self._tolerance, self._lift, self._velocity = height, tolerance, lift, velocity
-        self._next: tuple[float, float] | None = None  # where the pen goes down
+        self._matrix: tuple[float, ...] = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 
     def up(self) -> None:
         if self.elements:
             self._to((self._here[0], self._here[1], self._lift), None)
 
-    def draw(self, segment: Any, kind: str) -> None:
-        if kind == "Move":
-            self._next = self._place(segment.end)
+    def draw(self, segment: Any, kind: str, matrix: tuple[float, ...]) -> None:
+        """A segment of an outline in coordinates that a matrix takes to those of the drawing (px)."""
+        if kind == "Move" or segment.start is None or segment.end is None:
             return
-        if segment.start is None or segment.end is None:
-            return
+        self._matrix = matrix
         begin = self._place(segment.start)
+        end = self._place(segment.end)
+        if kind in ("Line", "Close") and math.dist(begin, end) < SAME:
+            return
         if math.dist(begin, self._here[:2]) >= SAME or self._here[2] != 0.0:
             if self.elements or self._here[2] != self._lift:
                 self._to((self._here[0], self._here[1], self._lift), None)
@@ -73,41 +213,56 @@ class _Pen:
             self._to((*begin, 0.0), self._velocity)
         for element in self._elements(segment, kind):
             if math.dist(self._here, element.end) >= SAME:
-                self.elements.append(element)
-                self._here = element.end
+                self._append(element)
 
-    def _elements(self, segment: Any, kind: str) -> Iterator[Element]:
+    def _elements(self, segment: Any, kind: str) -> Iterable[Element]:
         if kind == "Arc":
-            sweep, rx, ry = abs(segment.sweep), segment.rx * _MM, segment.ry * _MM
-            if abs(rx - ry) <= 1e-9 * max(rx, ry):
-                count = split_turn(sweep)
-                for i in range(count):
-                    yield Element(
-                        self._at(segment, (i + 1) / count), self._at(segment, (i + 0.5) / count), self._velocity
-                    )
-                return
-            count = chords(sweep, max(rx, ry), self._tolerance)  # a circle pressed flat: its chords come nearer too
+            yield from self._arc(segment)
         elif kind in ("QuadraticBezier", "CubicBezier"):
-            count = self._chords_of_bezier([complex(*self._place(p)) for p in segment if p is not None])
+            control = [complex(*self._place(point)) for point in segment]
+            yield from self._chords(segment, chords_of_bezier(control, self._tolerance))
         else:
-            count = 1
+            yield from self._chords(segment, 1)
+
+    def _arc(self, segment: Any) -> Iterator[Element]:
+        sweep, rx, ry = abs(segment.sweep), segment.rx * _MM, segment.ry * _MM
+        if not (rx > 0 and ry > 0 and sweep > 0):  # SVG 1.1, 8.3.8: it is a line
+            yield from self._chords(segment, 1)
+            return
+        stretch, similar = _stretch(self._matrix)
+        radius = stretch * max(rx, ry)
+        if not radius <= REACH:
+            raise TreeError(f"an arc with a radius of {radius:.6g} mm: expected numbers up to {REACH:.0e} mm")
+        count = split_turn(sweep)
+        flat = radius * (1 - math.cos(min(sweep / count / 2, math.pi / 2))) < SAME
+        if similar and abs(rx - ry) <= 1e-9 * max(rx, ry) and not flat:
+            for i in range(count):
+                yield Element(self._at(segment, (i + 1) / count), self._at(segment, (i + 0.5) / count), self._velocity)
+        else:  # a circle pressed flat: its chords come nearer, too
+            yield from self._chords(segment, chords(sweep, radius, self._tolerance))
+
+    def _chords(self, segment: Any, count: int) -> Iterator[Element]:
+        if len(self.elements) + count > MOST_ELEMENTS:
+            raise TreeError(f"the path has more than {MOST_ELEMENTS:,} elements")
         for i in range(count):
             yield Element(self._at(segment, (i + 1) / count), None, self._velocity)
 
-    def _chords_of_bezier(self, control: list[complex]) -> int:
-        """So many of equal share keep within the tolerance: a chord over h is off by h² / 8 times the curve's second
-        derivative, which its control points bound."""
-        n = len(control) - 1
-        second = max(abs(control[i + 2] - 2 * control[i + 1] + control[i]) for i in range(n - 1)) * n * (n - 1)
-        return max(math.ceil(math.sqrt(second / (8 * self._tolerance))), 1)
-
     def _to(self, point: Point, velocity: float | None) -> None:
         if math.dist(self._here, point) >= SAME:
-            self.elements.append(Element(point, None, velocity))
-            self._here = point
+            self._append(Element(point, None, velocity))
+
+    def _append(self, element: Element) -> None:
+        if len(self.elements) >= MOST_ELEMENTS:
+            raise TreeError(f"the path has more than {MOST_ELEMENTS:,} elements")
+        self.elements.append(element)
+        self._here = element.end
 
     def _at(self, segment: Any, share: float) -> Point:
         return (*self._place(segment.end if share == 1 else segment.point(share)), 0.0)
 
     def _place(self, point: Any) -> tuple[float, float]:
-        return (float(point.x) * _MM, self._height - float(point.y) * _MM)
+        at = _moved(self._matrix, point) * _MM
+        x, y = at.real, self._height - at.imag
+        if not (abs(x) <= REACH and abs(y) <= REACH):
+            raise TreeError(f"a point at ({x:.6g}, {y:.6g}) mm: expected numbers up to {REACH:.0e} mm")
+        return (x, y)

@@ -68,9 +68,9 @@ def test_moves_to_where_the_tool_is_are_none() -> None:
 
 
 def test_what_says_nothing_about_the_path_is_left_out_and_said() -> None:
-    path = parse_gcode("G40 G49 G54 G80\nM3 S1000\nT1 M6\nG1 X1 E0.5\nG4 P2\nM5\nM3")
+    path = parse_gcode("G40 G49 G54 G80\nM3 S1000\nT1 M6\nG1 X1 H2\nG4 P2\nM5\nM3")
     assert ends(path) == [(1, 0, 0)]
-    assert path.left_out == ("M3 (2 times)", "S (1 time)", "M6 (1 time)", "T (1 time)", "E (1 time)", "G4 (1 time)",
+    assert path.left_out == ("M3 (2 times)", "S (1 time)", "M6 (1 time)", "T (1 time)", "H (1 time)", "G4 (1 time)",
                              "M5 (1 time)")  # fmt: skip
 
 
