@@ -134,7 +134,10 @@ class _Outline:
     def box(self, svgelements: Any) -> tuple[float, float, float, float] | None:
         """The least and greatest X and Y, px; None: it is empty."""
         box = abs(svgelements.Path(*self.segments) * svgelements.Matrix(*self.matrix)).bbox()
-        return None if box is None else tuple(map(float, box))
+        if box is None:
+            return None
+        left, top, right, bottom = map(float, box)
+        return (left, top, right, bottom)
 
 
 def _hold_against(svgelements: Any, clip: list[Any], outline: _Outline, shape: Any) -> None:
@@ -153,7 +156,9 @@ def _hold_against(svgelements: Any, clip: list[Any], outline: _Outline, shape: A
                 return
     name = shape.values["attributes"].get("id")
     label = f"<{shape.values['tag']}>" + (f" '{name}'" if name else "")
-    raise TreeError(f"a clip-path would cut {label}, and outlines are drawn whole; cut them in the drawing program first")
+    raise TreeError(
+        f"a clip-path would cut {label}, and outlines are drawn whole; cut them in the drawing program first"
+    )
 
 
 def _corners(outline: _Outline) -> bool:

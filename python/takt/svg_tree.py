@@ -1,7 +1,7 @@
 """The elements of an SVG drawing that are rendered, as a tree of groups and shapes with nothing else in it.
 
-SVG's structure (SVG 1.1, chapter 5): `use` stands for a copy of what it refers to, a `symbol` is drawn only by `use` and
-then has a viewport of its own, and `defs`, `mask`, `marker`, `clipPath`, `pattern` and the like are never drawn
+SVG's structure (SVG 1.1, chapter 5): `use` stands for a copy of what it refers to, a `symbol` is drawn only by `use`
+and then has a viewport of its own, and `defs`, `mask`, `marker`, `clipPath`, `pattern` and the like are never drawn
 themselves. Copies are counted before they are made: a drawing of a few lines can ask for millions.
 """
 

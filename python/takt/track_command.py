@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table as Grid
 
 from takt.counted import counted
-from takt.track_drawing import CORNER, DRAWINGS, read
+from takt.track_drawing import CORNER, DRAWINGS, read_drawing
 from takt.track_layout import TrackLayout
 
 
@@ -28,11 +28,13 @@ def run(file: Path, options: Options, out: Console) -> int:
     """Reads, checks, says, draws, writes."""
     _refuse_nonsense(file, options)
     drawing = file.suffix.lower() in DRAWINGS
-    text = read(file, options.corner or CORNER) if drawing else ""
+    text, left_out = read_drawing(file, options.corner or CORNER) if drawing else ("", ())
     layout = TrackLayout(text or file, str(file))
     if not layout.tracks:
         raise click.UsageError(f"{file}: expected a section tracks, found a machine without")
     _say(file, layout, out)
+    for what in left_out:
+        print(f"left out: {what}")
     if options.target is not None:
         from takt.track_picture import picture
 

@@ -1,24 +1,29 @@
 """Tracks from drawings (SVG, DXF): a track for each line that is drawn in one go.
 
-Lines and arcs are taken as they are. Where two of them meet with a corner, or where a line becomes an arc, both are
-shortened, so that a transition can lead from one to the other. DXF needs ezdxf (pip install takt-motion[dxf]).
+Lines and arcs are taken as they are, ellipses and splines become lines. Ends nearer to each other than JOIN are joined.
+Where two elements meet with a corner, or where a line becomes an arc, both are shortened, so that a transition can lead
+from one to the other. What is left out of a drawing is said in comments before the tracks.
 """
 
 from __future__ import annotations
 
 import cmath
 import math
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, NamedTuple
 
 from takt.errors import TaktError
+
+if TYPE_CHECKING:
+    from takt.track_dxf import Run
 
 CORNER = 40.0  # mm that a corner takes of the lines that meet there
 TOLERANCE = 0.5  # mm from curves to lines for them
 SAME = 1e-6  # mm
+JOIN = 0.01  # mm: ends that are apart by less are one
 SMOOTH = 1e-6  # rad
 SHARE = 0.45  # a corner takes no more of a line
 DRAWINGS = (".svg", ".dxf")
@@ -61,23 +66,49 @@ class Piece:
     def reversed(self) -> Piece:
         return replace(self, begin=self.end, end=self.begin, sweep=-self.sweep)
 
+    def joined(self, begin: complex | None = None, end: complex | None = None) -> Piece:
+        """With an end moved by less than JOIN; an arc keeps its sweep."""
+        first, last = self.begin if begin is None else begin, self.end if end is None else end
+        if self.centre is None or abs(self.sweep) > 2 * math.pi - SMOOTH or abs(last - first) < SAME:
+            return replace(self, begin=first, end=last)
+        half = (last - first) / 2
+        return replace(self, begin=first, end=last, centre=first + half * (1 + 1j / math.tan(self.sweep / 2)))
+
     def goes_on_to(self, other: Piece) -> bool:
         """Without a step of direction or curvature."""
         turn = abs(cmath.phase(other.direction(0) / self.direction(1)))
         return turn < SMOOTH and math.isclose(self.curvature, other.curvature, rel_tol=1e-6, abs_tol=1e-12)
 
 
+class Drawing(NamedTuple):
+    tracks: str  # the section of a machine file
+    left_out: tuple[str, ...]  # what the drawing has besides, a sentence each
+
+
 def read(file: Path, corner: float = CORNER) -> str:
     """The section `tracks` of a machine file that says what is drawn. Raises TaktError."""
-    strokes = list(_of_svg(file) if file.suffix.lower() == ".svg" else _of_dxf(file))
+    return read_drawing(file, corner).tracks
+
+
+def read_drawing(file: Path, corner: float = CORNER) -> Drawing:
+    """The same, and what was left out. Raises TaktError."""
+    left_out: Counter[str] = Counter()
+    if file.suffix.lower() == ".svg":
+        strokes = list(_of_svg(file, left_out))
+    else:
+        from takt.track_dxf import read_dxf
+
+        strokes = [_chained(pieces) for pieces in _connected(read_dxf(file, left_out))]
+    said = tuple(what if count == 1 else f"{what} ({count} times)" for what, count in left_out.items())
     if not strokes:
-        raise TaktError(f"{file}: no lines, polylines, arcs or circles are drawn in it")
-    lines = ["tracks:"]
+        besides = f"; left out: {', '.join(said)}" if said else ""
+        raise TaktError(f"{file}: no lines, polylines, arcs or circles are drawn in it{besides}")
+    lines = [f"# left out: {what}" for what in said] + ["tracks:"]
     for number, pieces in enumerate(map(_merged, strokes), 1):
         closed = abs(pieces[-1].end - pieces[0].begin) < SAME
         lines += [f"  - name: track{number}", f"    closed_loop: {str(closed).lower()}", "    elements:"]
         lines += [f"      - {_text(piece)}" for piece in _rounded(pieces, closed, corner)]
-    return "\n".join(lines) + "\n"
+    return Drawing("\n".join(lines) + "\n", said)
 
 
 def _merged(pieces: list[Piece]) -> list[Piece]:
@@ -124,10 +155,11 @@ def _number(value: float) -> str:
     return text if "e" not in text else f"{value:.12f}"
 
 
-def _of_svg(file: Path) -> Iterator[list[Piece]]:
+def _of_svg(file: Path, left_out: Counter[str]) -> Iterator[list[Piece]]:
     from takt.svg import LIFT, read_svg
 
     path = read_svg(file, (0.0, 0.0, LIFT), TOLERANCE)
+    left_out.update(path.left_out)
     stroke: list[Piece] = []
     here = path.start
     for element in path.elements:
@@ -152,71 +184,78 @@ def _arc_through(begin: complex, via: complex, end: complex) -> Piece:
     return Piece(begin, end, centre, sweep)
 
 
-def _of_dxf(file: str | PathLike[str]) -> Iterator[list[Piece]]:
-    try:
-        from ezdxf.enums import InsertUnits
-        from ezdxf.filemanagement import readfile
-        from ezdxf.lldxf.const import DXFError
-        from ezdxf.units import conversion_factor
-    except ImportError:
-        raise TaktError(f"{file}: DXF needs ezdxf (pip install takt-motion[dxf])") from None
-    try:
-        drawing = readfile(str(file))
-    except (OSError, DXFError) as error:
-        raise TaktError(f"{file}: is no DXF: {error}") from None
-    scale = conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters) if drawing.units else 1.0
-    loose: list[Piece] = []
-    for entity in drawing.modelspace():
-        if entity.dxftype() in ("LWPOLYLINE", "POLYLINE"):
-            yield _chained([_piece(one, scale) for one in entity.virtual_entities()])  # type: ignore[attr-defined]
-        elif entity.dxftype() == "CIRCLE":
-            yield [_piece(entity, scale)]
-        elif entity.dxftype() in ("LINE", "ARC"):
-            loose.append(_piece(entity, scale))
-    while loose:
-        yield _grown([loose.pop(0)], loose)
+def _connected(runs: Sequence[Run]) -> Iterator[list[Piece]]:
+    """Strokes: what was drawn in one go, and loose runs with all that goes on at their ends, in whatever order and
+    sense they were drawn."""
+    loose = [run.pieces for run in runs if run.loose and not _is_closed(run.pieces)]
+    yield from (run.pieces for run in runs if not run.loose or _is_closed(run.pieces))
+    ends = _Ends(loose)
+    for i, pieces in enumerate(loose):
+        if not ends.take(i):
+            continue
+        ahead, before = list(pieces), list[Piece]()  # before: from the beginning backwards
+        while (after := ends.at(ahead[-1].end)) is not None:
+            ends.take(after)
+            ahead += _from(loose[after], ahead[-1].end)
+        while (after := ends.at(before[-1].end if before else ahead[0].begin)) is not None:
+            ends.take(after)
+            before += _from(loose[after], before[-1].end if before else ahead[0].begin)
+        yield _turned(before) + ahead
 
 
-def _piece(entity: Any, scale: float) -> Piece:
-    def place(point: Any) -> complex:
-        return scale * complex(point.x, point.y)
+def _from(pieces: list[Piece], begin: complex) -> list[Piece]:
+    """In the sense in which they begin there."""
+    return pieces if abs(pieces[0].begin - begin) < JOIN else _turned(pieces)
 
-    if entity.dxftype() == "LINE":
-        return Piece(place(entity.dxf.start), place(entity.dxf.end))
-    centre = place(entity.dxf.center)
-    if entity.dxftype() == "CIRCLE":
-        return Piece(centre + scale * entity.dxf.radius, centre + scale * entity.dxf.radius, centre, 2 * math.pi)
-    sweep = math.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360)
-    return Piece(place(entity.start_point), place(entity.end_point), centre, sweep)
+
+def _turned(pieces: list[Piece]) -> list[Piece]:
+    return [piece.reversed() for piece in reversed(pieces)]
+
+
+def _is_closed(pieces: Sequence[Piece]) -> bool:
+    return abs(pieces[-1].end - pieces[0].begin) < JOIN
+
+
+class _Ends:
+    """Where runs of pieces end, in squares of JOIN, so that each is compared with its neighbours only."""
+
+    def __init__(self, runs: Sequence[list[Piece]]) -> None:
+        self._ends = [(pieces[0].begin, pieces[-1].end) for pieces in runs]
+        self._left = set(range(len(runs)))
+        self._squares: dict[tuple[int, int], list[int]] = {}
+        for i, ends in enumerate(self._ends):
+            for end in ends:
+                self._squares.setdefault(self._square(end), []).append(i)
+
+    def take(self, i: int) -> bool:
+        """False: it is taken already."""
+        if i not in self._left:
+            return False
+        self._left.remove(i)
+        return True
+
+    def at(self, place: complex) -> int | None:
+        """The first run left that has an end there."""
+        x, y = self._square(place)
+        near = [
+            i
+            for dx in (-1, 0, 1)
+            for dy in (-1, 0, 1)
+            for i in self._squares.get((x + dx, y + dy), ())
+            if i in self._left and min(abs(end - place) for end in self._ends[i]) < JOIN
+        ]
+        return min(near, default=None)
+
+    @staticmethod
+    def _square(place: complex) -> tuple[int, int]:
+        return (math.floor(place.real / JOIN), math.floor(place.imag / JOIN))
 
 
 def _chained(pieces: list[Piece]) -> list[Piece]:
-    """In the order given, each turned so that it goes on where the one before it ends."""
-    pieces = [piece for piece in pieces if piece.length > SAME]
-    if len(pieces) > 1 and min(abs(pieces[0].end - e) for e in (pieces[1].begin, pieces[1].end)) > SAME:
-        pieces[0] = pieces[0].reversed()
-    for i in range(1, len(pieces)):
-        if abs(pieces[i].begin - pieces[i - 1].end) > SAME:
-            pieces[i] = pieces[i].reversed()
-    return pieces
-
-
-def _grown(stroke: list[Piece], loose: list[Piece]) -> list[Piece]:
-    """With all that goes on at its ends, in whatever order and sense it was drawn."""
-    grew = True
-    while grew:
-        grew = False
-        for piece in loose:
-            for one in (piece, piece.reversed()):
-                if abs(one.begin - stroke[-1].end) < SAME:
-                    stroke.append(one)
-                elif abs(one.end - stroke[0].begin) < SAME:
-                    stroke.insert(0, one)
-                else:
-                    continue
-                loose.remove(piece)
-                grew = True
-                break
-            if grew:
-                break
-    return stroke
+    """With each piece beginning exactly where the one before it ends, also round a closed one."""
+    chained = pieces[:1]
+    for piece in pieces[1:]:
+        chained.append(piece.joined(begin=chained[-1].end))
+    if len(chained) > 1 and _is_closed(chained):
+        chained[-1] = chained[-1].joined(end=chained[0].begin)
+    return chained

@@ -1,0 +1,202 @@
+"""Lines and arcs of a DXF drawing, in mm (needs ezdxf: pip install takt-motion[dxf]).
+
+Of the model space: lines, arcs, circles, polylines, ellipses, splines, helices as seen from above, also within blocks.
+Coordinate systems of entities (extrusion) and blocks are ezdxf's matter. Texts, dimensions, hatchings and the like are
+left out; surfaces and bodies, and curves that do not lie in a plane parallel to X and Y, are errors.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from os import PathLike
+from typing import Any, NamedTuple
+
+from takt.errors import TaktError
+from takt.toolpath import REACH
+from takt.track_drawing import SAME, TOLERANCE, Piece
+
+MOST = 100_000  # entities, with those of blocks, and lines of curves
+DEPTH = 50  # of blocks in one another
+FLAT = 1e-6  # mm by which an entity may leave its plane; also of the direction of its extrusion
+_SAY_NOTHING = {"VIEWPORT", "SEQEND", "ATTDEF", "ATTRIB"}
+_SURFACES = {
+    "3DFACE", "3DSOLID", "BODY", "EXTRUDEDSURFACE", "LOFTEDSURFACE", "MESH", "PLANESURFACE", "REGION",
+    "REVOLVEDSURFACE", "SURFACE", "SWEPTSURFACE",
+}  # fmt: skip
+_ANNOTATIONS = {
+    "ACAD_TABLE", "ARC_DIMENSION", "DIMENSION", "HATCH", "IMAGE", "LARGE_RADIAL_DIMENSION", "LEADER", "LIGHT",
+    "MPOLYGON", "MTEXT", "MULTILEADER", "OLE2FRAME", "PDFUNDERLAY",
+    "DWFUNDERLAY", "DGNUNDERLAY", "POINT", "SOLID", "SUN", "TEXT",
+    "TOLERANCE", "TRACE", "WIPEOUT",
+}  # fmt: skip
+
+
+class Run(NamedTuple):
+    """What an entity draws. `loose`: it may go on in others that it meets; polylines are complete."""
+
+    pieces: list[Piece]
+    loose: bool
+
+
+def read_dxf(file: str | PathLike[str], left_out: Counter[str]) -> list[Run]:
+    """What the entities draw, in their order. Counts what is left out. Raises TaktError."""
+    try:
+        from ezdxf.enums import InsertUnits
+        from ezdxf.filemanagement import readfile
+        from ezdxf.units import conversion_factor
+    except ImportError:
+        raise TaktError(f"{file}: DXF needs ezdxf (pip install takt-motion[dxf])") from None
+    try:
+        drawing = readfile(str(file))
+        space = drawing.modelspace()
+    except Exception as error:  # ezdxf raises whatever the data make it raise
+        raise TaktError(f"{file}: is no DXF: {error}") from None
+    try:
+        scale = conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters) if drawing.units else 1.0
+    except (ValueError, KeyError):
+        raise TaktError(f"{file}: its unit ($INSUNITS) is {drawing.units}, which is not known") from None
+    reader = _Reader(drawing, scale, left_out)
+    try:
+        return list(reader.runs(space, 0))
+    except _EntityError as error:
+        raise TaktError(f"{file}: {error}") from None
+
+
+class _EntityError(Exception):
+    """What is wrong with an entity."""
+
+
+class _Reader:
+    def __init__(self, drawing: Any, scale: float, left_out: Counter[str]) -> None:
+        self._scale, self._left_out, self._count = scale, left_out, 0
+        self._hidden = {layer.dxf.name.lower() for layer in drawing.layers if layer.is_off() or layer.is_frozen()}
+
+    def runs(self, entities: Iterable[Any], depth: int) -> Iterator[Run]:
+        for entity in entities:
+            self._room(1)
+            if entity.dxf.get("invisible", 0) or entity.dxf.get("layer", "0").lower() in self._hidden:
+                self._left_out["what is invisible, or on a layer that is off or frozen"] += 1
+                continue
+            if entity.dxftype() == "INSERT":
+                yield from self._block(entity, depth)
+                continue
+            try:
+                found = self._of(entity)
+            except _EntityError:
+                raise
+            except Exception as error:  # damaged entities
+                raise _EntityError(f"{_label(entity)} cannot be read: {error}") from None
+            kept = [piece for piece in found if piece.length > SAME]
+            if found and not kept:
+                self._left_out[f"{entity.dxftype()} without length"] += 1
+            if kept:
+                yield Run(kept, entity.dxftype() not in ("LWPOLYLINE", "POLYLINE"))
+
+    def _block(self, insert: Any, depth: int) -> Iterator[Run]:
+        if depth >= DEPTH:
+            raise _EntityError(f"blocks nest deeper than {DEPTH}")
+        if insert.block() is None:
+            self._left_out[f"INSERT of the block '{insert.dxf.get('name', '')}', which is not in the file"] += 1
+            return
+        self._room(insert.mcount)
+        for one in insert.multi_insert() if insert.mcount > 1 else [insert]:
+
+            def skip(entity: Any, reason: str) -> None:
+                raise _EntityError(f"{_label(entity)} in the block '{insert.dxf.name}': {reason}")
+
+            yield from self.runs(one.virtual_entities(skipped_entity_callback=skip), depth + 1)
+
+    def _of(self, entity: Any) -> list[Piece]:
+        kind = entity.dxftype()
+        if kind in ("LWPOLYLINE", "POLYLINE"):
+            return self._polyline(entity)
+        if kind == "LINE":
+            return [Piece(self._point(entity.dxf.start, entity), self._point(entity.dxf.end, entity, entity.dxf.start))]
+        if kind in ("ARC", "CIRCLE"):
+            return [self._arc(entity)]
+        if kind in ("ELLIPSE", "SPLINE", "HELIX"):
+            return self._curve(entity)
+        if kind in _SURFACES:
+            raise _EntityError(f"{_label(entity)} is a surface or body; expected lines, arcs and curves")
+        if kind in _ANNOTATIONS:
+            self._left_out[kind] += 1
+            return []
+        if kind in _SAY_NOTHING:
+            return []
+        raise _EntityError(
+            f"{_label(entity)} is not read; expected lines, polylines, arcs, circles, ellipses and splines"
+        )
+
+    def _polyline(self, entity: Any) -> list[Piece]:
+        if entity.dxftype() == "POLYLINE" and (entity.is_polygon_mesh or entity.is_poly_face_mesh):
+            raise _EntityError(f"{_label(entity)} is a mesh; expected lines, arcs and curves")
+        parts = list(entity.virtual_entities())
+        self._room(len(parts))
+        if not parts:
+            self._left_out[f"{entity.dxftype()} of one point"] += 1
+            return []
+        pieces = [piece for part in parts for piece in self._of(part)]
+        kept = [piece for piece in pieces if piece.length > SAME]
+        for i, piece in enumerate(kept):  # arcs of ezdxf run counterclockwise, whatever their sense in the polyline
+            if len(kept) > 1:
+                other = kept[1] if i == 0 else kept[i - 1]
+                ends = (other.begin, other.end) if i == 0 else (other.end,)
+                here, turned = (piece.end, piece.begin) if i == 0 else (piece.begin, piece.end)
+                if min(abs(turned - end) for end in ends) < min(abs(here - end) for end in ends):
+                    kept[i] = piece.reversed()
+        return kept or pieces
+
+    def _arc(self, entity: Any) -> Piece:
+        """ezdxf takes its points to the coordinates of the drawing; seen from below it turns the other way."""
+        extrusion = entity.dxf.get("extrusion", (0, 0, 1))
+        x, y, z = (float(value) for value in extrusion)
+        if math.hypot(x, y) > FLAT * abs(z):
+            raise _EntityError(f"{_label(entity)} does not lie in a plane parallel to X and Y")
+        sense = 1 if z > 0 else -1
+        ocs = entity.ocs()
+        centre = self._point(ocs.to_wcs(entity.dxf.center), entity)
+        if entity.dxftype() == "CIRCLE":
+            begin = centre + self._scale * entity.dxf.radius
+            self._check(entity, begin.real, begin.imag)
+            return Piece(begin, begin, centre, sense * 2 * math.pi)
+        sweep = math.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360)
+        begin, end = self._point(entity.start_point, entity), self._point(entity.end_point, entity)
+        if sweep < 1e-12 or 2 * math.pi - sweep < 1e-12:  # from 0 to 360
+            return Piece(begin, begin, centre, sense * 2 * math.pi)
+        return Piece(begin, end, centre, sense * sweep)
+
+    def _curve(self, entity: Any) -> list[Piece]:
+        from ezdxf.path import make_path
+
+        path = make_path(entity)
+        first, points = None, []
+        for vertex in path.flattening(TOLERANCE / self._scale, segments=4):
+            first = vertex if first is None else first
+            points.append(self._point(vertex, entity, first))
+            self._room(1)
+        return [Piece(points[i - 1], points[i]) for i in range(1, len(points)) if abs(points[i] - points[i - 1]) > SAME]
+
+    def _point(self, point: Any, entity: Any, level: Any = None) -> complex:
+        """mm; `level`: a point of the same Z."""
+        x, y, z = (self._scale * float(value) for value in (point.x, point.y, point.z))
+        self._check(entity, x, y, z)
+        if level is not None and abs(z - self._scale * float(level.z)) > FLAT:
+            raise _EntityError(f"{_label(entity)} rises in Z; tracks lie in a plane parallel to X and Y")
+        return complex(x, y)
+
+    def _check(self, entity: Any, *values: float) -> None:
+        for value in values:
+            if not abs(value) <= REACH:
+                raise _EntityError(f"{_label(entity)} reaches to {value:.6g} mm; expected numbers up to {REACH:.0e} mm")
+
+    def _room(self, count: int) -> None:
+        self._count += count
+        if self._count > MOST:
+            raise _EntityError(f"more than {MOST:,} entities, with those of blocks and the lines of curves")
+
+
+def _label(entity: Any) -> str:
+    handle = entity.dxf.get("handle")
+    return f"{entity.dxftype()}" + (f" #{handle}" if handle else "")
