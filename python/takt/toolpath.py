@@ -34,7 +34,7 @@ SAME = 1e-6  # mm: nearer than this, points are the same, as for the engine
 SLACK = 2.0  # mm: how far beside, before or behind a path points may lie that are said to follow it
 TOLERANCE = 0.005  # mm between a curve and the lines that stand for it
 REACH = 1e8  # mm: coordinates of what is read are no larger, so that their errors stay below SAME
-MOST_ELEMENTS = 2_000_000  # of a path that is read
+MOST_ELEMENTS = 1_000_000  # of a path that is read
 COLUMNS = ("shape", "x", "y", "z", "via_x", "via_y", "via_z", "velocity")
 GCODE = (".gcode", ".nc", ".ngc", ".tap")
 _BLOCK = 64  # points looked at together in `follow`
@@ -47,7 +47,7 @@ class ToolpathError(TaktError, ValueError):
     """A file is no path for a tool; the text says where and why."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Element:
     """A line to `end`, or an arc through `via` to it, from where the element before it ends."""
 

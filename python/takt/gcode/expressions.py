@@ -64,7 +64,10 @@ class Reader:
         number = NUMBER.match(self.text, self.at)
         if number:
             self.at = number.end()
-            return float(number[0])
+            value = float(number[0])
+            if math.isinf(value):
+                raise LineError("a number has too many digits")
+            return value
         ch = self.text[self.at : self.at + 1]
         if ch == "[":
             return self.bracket(depth)

@@ -116,12 +116,11 @@ class PathBuilder:
             self._append(Element(end, None, velocity))
 
     def arc(self, arc: Arc, velocity: float | None) -> None:
-        if arc.sweep == 0 and abs(arc.rise) < SAME:
-            self.here = arc.end
-            return
         if not max(map(abs, (*arc.centre, arc.radius, *arc.end))) <= REACH:
             raise LineError(f"an arc of a radius of {arc.radius:.6g} mm: expected numbers up to {REACH:.0e} mm")
-        if abs(arc.rise) < SAME:
+        if max(arc.radius, arc.last) < SAME:
+            self.line(arc.end, velocity)
+        elif abs(arc.rise) < SAME:
             count = self._room(split_turn(arc.sweep))
             # Of a flat arc three points do not say well enough where it bends: within SAME it is its chord.
             flat = arc.radius * (1 - math.cos(min(abs(arc.sweep) / count / 2, math.pi / 2))) < SAME

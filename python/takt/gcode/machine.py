@@ -19,6 +19,7 @@ Numbers = dict[str, float]
 _PLAIN = frozenset("XYZ")
 _MOVES = frozenset(("G0", "G1", "G2", "G3"))
 _POLAR = frozenset("@^")
+_CYCLES = frozenset(f"G{number}" for number in range(70, 90))
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,7 @@ class Machine:
                     self.modal = replace(self.modal, motion=codes[0])
             else:
                 told, machine_coordinates, flow = self._codes(codes, numbers)
+        self._feed_number = None
         if numbers.keys() - _PLAIN:
             self._other_words(numbers)
         if numbers or (told and self.modal.motion not in ("G0", "G1", None)):
@@ -101,7 +103,6 @@ class Machine:
         return flow
 
     def _other_words(self, numbers: Numbers) -> None:
-        self._feed_number = None
         if "F" in numbers:
             feed = numbers.pop("F")
             if not 0 < feed < math.inf:
@@ -146,8 +147,7 @@ class Machine:
         self.left_out[code] += 1
         for letter in words.words_of(code, self._dialect, has_motion):
             numbers.pop(letter, None)
-        number = float(code[1:])
-        if code[0] == "G" and (words.GROUP_OF.get(code) == "motion" or 33 <= number < 39 or 70 <= number < 90):
+        if code[0] == "G" and (words.GROUP_OF.get(code) == "motion" or 33 <= float(code[1:]) < 39 or code in _CYCLES):
             self.modal = replace(self.modal, motion=None)
 
     def _state(self, codes: set[str]) -> None:
@@ -192,16 +192,11 @@ class Machine:
             return Flow(code)
         self.left_out[code] += 1
         own = words.M_WORDS.get(code, "PQ")
-        if self._dialect == "rs274" and code not in words.M_WORDS and (number >= 20 or number in (17, 18)):
-            if number >= 70:
-                own = "ABCDEHIJKLPQRSTUVWXYZ"
-            if has_motion and numbers.keys() - _PLAIN - set("FEST") and not numbers.keys() & set("IJKR"):
-                raise LineError(
-                    f"{code} and a motion in one line: whose the words are depends on the dialect (--dialect)"
-                )
-            if number < 70 and not has_motion and numbers.keys() & _PLAIN:
-                raise LineError(f"{code} with X, Y or Z: whose the words are depends on the dialect (--dialect)")
-            own = "" if has_motion else own
+        if code not in words.M_WORDS and not has_motion:
+            if self._dialect == "rs274" and number >= 70:
+                own = "ABCDEHIJKLPQRSTUVWXYZ"  # controllers of machine tools have no such codes
+            elif numbers.keys() & _PLAIN:
+                raise LineError(f"{code} with X, Y or Z: the dialect does not say whose these are ({words.hint(code)})")
         for letter in own:
             if not (letter in "PR" and has_motion and numbers.keys() & set("IJKR")):
                 numbers.pop(letter, None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,10 +11,12 @@ from takt.gcode import words
 from takt.gcode.errors import LineError
 from takt.gcode.expressions import NUMBER, Reader, Value, Values, evaluate
 
+_WITHOUT_EXPRESSIONS = ("grbl", "marlin")
 MOST_BYTES = 500_000_000
 _COMMENT = re.compile(r"\([^()]*\)|;.*", re.DOTALL)
 _ENDS = re.compile(r"\r\n|\n|\r")  # of lines; U+2028 and vertical tabs end none
 _BINARY = re.compile(r"[\x00-\x08\x0e-\x10\x15-\x19\x1b-\x1f]")
+_PAPER_TAPE = dict.fromkeys((0x11, 0x12, 0x13, 0x14, 0x1A), " ")  # control characters of serial lines and old files
 _WORD = re.compile(r"([A-Z@^$])([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[-+][0-9]+)?)")
 _LETTER = re.compile(r"[A-Z@^$]")
 _EXPONENT = re.compile(r"(?<=[0-9.])[Ee]([-+][0-9]+)(?![0-9.])")
@@ -41,7 +44,7 @@ def decode(data: bytes) -> str:
     control = _BINARY.search(text)
     if control:
         raise LineError(f"is no text (byte {ord(control[0]):#04x} at character {control.start()})")
-    return text
+    return text.translate(_PAPER_TAPE)
 
 
 @dataclass
@@ -146,9 +149,14 @@ class Text:
         code = "".join(upper.split()) if upper.isascii() else _ascii(upper)
         if code.startswith("/"):
             code = _SLASH.sub("", code)
-        if _O_WORD.match(code):
+        is_o_word = _O_WORD.match(code) is not None
+        if dialect in _WITHOUT_EXPRESSIONS and (is_o_word or "#" in code or "[" in code):
+            raise LineError(f"the dialect {dialect} has no o-words, parameters, expressions (--dialect linuxcnc has)")
+        if is_o_word:
             return _o_word(code)
         found = _WORD.findall(code)
+        if len(code) > 300 and any(math.isinf(float(number)) for _, number in found):
+            raise LineError("a number has too many digits")
         if len("".join(map("".join, found))) == len(code):  # words with numbers and nothing else
             codes, numbers = sorted_words([(letter, float(number)) for letter, number in found])
             return Block(codes, numbers)
@@ -190,7 +198,7 @@ class Text:
             if "o" not in raw and "O" not in raw and ":" not in raw:
                 continue
             code = _SLASH.sub("", "".join(_COMMENT.sub("", raw).upper().split()))
-            if not _O_WORD.match(code) or (self._dialect == "marlin"):
+            if not _O_WORD.match(code) or self._dialect in _WITHOUT_EXPRESSIONS:
                 continue
             try:
                 self._pair(self.line(at), at, opened)
@@ -331,7 +339,7 @@ def _with_expressions(code: str, leave_out: frozenset[str]) -> Block:
             raise reader.unexpected("a letter and a number")
         begin = reader.at
         reader.at += 1
-        if not NUMBER.match(code, reader.at) and not re.match(r"[-+]*(?:[#\[]|[A-Z]{2,6}\[)", code[reader.at :]):
+        if not NUMBER.match(code, reader.at) and not re.match(r"[-+]*(?:[.0-9#\[]|[A-Z]{2,6}\[)", code[reader.at :]):
             reader.at = begin
             raise reader.unexpected("a letter and a number")
         value = reader.value()

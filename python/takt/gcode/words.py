@@ -49,9 +49,9 @@ WORDS_OF = {
 }
 # Words that M codes have of their own, beside axes, which are those of a motion in the same line.
 M_WORDS = {
-    "M3": "$", "M4": "$", "M5": "$", "M6": "", "M19": "RQP$", "M48": "P", "M49": "P", "M50": "P", "M51": "P$",
-    "M52": "P", "M53": "P", "M60": "", "M61": "Q", "M62": "P", "M63": "P", "M64": "P", "M65": "P", "M66": "PELQ",
-    "M67": "EQ", "M68": "EQ",
+    "M0": "", "M1": "", "M3": "$", "M4": "$", "M5": "$", "M6": "", "M7": "", "M8": "", "M9": "", "M19": "RQP$",
+    "M48": "P", "M49": "P", "M50": "P", "M51": "P$", "M52": "P", "M53": "P", "M60": "", "M61": "Q", "M62": "P",
+    "M63": "P", "M64": "P", "M65": "P", "M66": "PELQ", "M67": "EQ", "M68": "EQ",
 }  # fmt: skip
 WHY_NOT = {
     "A": "no rotary axis is known",
@@ -89,7 +89,11 @@ def code_name(letter: str, number: float) -> str:
 def refused(word: str) -> str:
     """The sentence, with what to do."""
     why = f": {WHY_NOT[word]}" if word in WHY_NOT else ""
-    return f"{word} is not read{why} (--leave-out {word} leaves it out)"
+    return f"{word} is not read{why} ({hint(word)})"
+
+
+def hint(word: str) -> str:
+    return f"--leave-out {word} leaves it out"
 
 
 def words_of(code: str, dialect: str, has_motion: bool) -> str:
