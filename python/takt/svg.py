@@ -15,10 +15,13 @@ import io
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from os import PathLike
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
+
+import numpy as np
 
 from takt.svg_tree import CLIP, CLIPPED, Rendered, TreeError
 from takt.toolpath import (
@@ -224,8 +227,7 @@ class _Pen:
         if kind == "Arc":
             yield from self._arc(segment)
         elif kind in ("QuadraticBezier", "CubicBezier"):
-            control = [complex(*self._place(point)) for point in segment]
-            yield from self._chords(segment, chords_of_bezier(control, self._tolerance))
+            yield from self._bezier([complex(*self._place(point)) for point in segment])
         else:
             yield from self._chords(segment, 1)
 
@@ -246,19 +248,31 @@ class _Pen:
         else:  # a circle pressed flat: its chords come nearer, too
             yield from self._chords(segment, chords(sweep, radius, self._tolerance))
 
+    def _bezier(self, control: list[complex]) -> Iterator[Element]:
+        count = self._room(chords_of_bezier(control, self._tolerance))
+        share = np.arange(1, count + 1) / count
+        rest = 1 - share
+        ends = [np.full(count, point) for point in control]
+        while len(ends) > 1:  # de Casteljau
+            ends = [rest * a + share * b for a, b in pairwise(ends)]
+        for x, y in zip(ends[0].real.tolist(), ends[0].imag.tolist(), strict=True):
+            yield Element((x, y, 0.0), None, self._velocity)
+
     def _chords(self, segment: Any, count: int) -> Iterator[Element]:
+        for i in range(self._room(count)):
+            yield Element(self._at(segment, (i + 1) / count), None, self._velocity)
+
+    def _room(self, count: int) -> int:
         if len(self.elements) + count > MOST_ELEMENTS:
             raise TreeError(f"the path has more than {MOST_ELEMENTS:,} elements")
-        for i in range(count):
-            yield Element(self._at(segment, (i + 1) / count), None, self._velocity)
+        return count
 
     def _to(self, point: Point, velocity: float | None) -> None:
         if math.dist(self._here, point) >= SAME:
             self._append(Element(point, None, velocity))
 
     def _append(self, element: Element) -> None:
-        if len(self.elements) >= MOST_ELEMENTS:
-            raise TreeError(f"the path has more than {MOST_ELEMENTS:,} elements")
+        self._room(1)
         self.elements.append(element)
         self._here = element.end
 

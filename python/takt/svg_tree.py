@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-MOST = 200_000  # elements, with those that use copies
+MOST = 100_000  # elements, with those that use copies
 DEPTH = 100
 SVG = "{http://www.w3.org/2000/svg}"
 _HREF = ("href", "{http://www.w3.org/1999/xlink}href")
