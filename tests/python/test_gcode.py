@@ -409,8 +409,10 @@ def test_words_are_left_out_on_request(line: str, leave_out: str | list[str]) ->
     assert path.left_out[0].split()[0] in str(leave_out).upper()
 
 
-def test_a_motion_that_is_left_out_does_not_hold_on() -> None:
-    assert "p.nc:3: expected G0, G1, G2 or G3 before X" in wrong("G1 X1\nG33 Z-5 K1\nX3", leave_out="G33")
+def test_lines_that_rest_on_a_motion_are_left_out_with_it() -> None:
+    path = parse_gcode("G1 X1 F60\nG33 Z-5 K1\nX3\nG1 X4\nY2", options=Options(leave_out="G33"))
+    assert [one.end for one in path.elements] == [(1, 0, 0), (4, 0, 0), (4, 2, 0)]
+    assert path.left_out == ("G33 (2 times)",)
 
 
 @pytest.mark.parametrize("name", ["1", "G1.2.3", "M-1", "ä"])

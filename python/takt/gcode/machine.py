@@ -148,7 +148,7 @@ class Machine:
         for letter in words.words_of(code, self._dialect, has_motion):
             numbers.pop(letter, None)
         if code[0] == "G" and (words.GROUP_OF.get(code) == "motion" or 33 <= float(code[1:]) < 39 or code in _CYCLES):
-            self.modal = replace(self.modal, motion=None)
+            self.modal = replace(self.modal, motion=code)  # lines that rest on it are left out, too
 
     def _state(self, codes: set[str]) -> None:
         modal = self.modal
@@ -177,11 +177,13 @@ class Machine:
         number = float(code[1:])
         if code in ("M2", "M30"):
             return Flow("M2")
+        if code in ("M98", "M99") and self._dialect in ("grbl", "marlin"):
+            raise LineError(words.refused(code))
         if self._dialect == "marlin":
             numbers.clear()
             self.left_out[code] += 1
             return None
-        if code in ("M98", "M99") and self._dialect != "grbl":
+        if code in ("M98", "M99"):
             if code == "M98" and "P" not in numbers:
                 raise LineError("M98: expected P, the number of a subprogram")
             if code == "M99" and numbers.pop("P", None) is not None:
@@ -341,6 +343,9 @@ class Machine:
     def _move(self, numbers: Numbers, in_machine: bool) -> None:
         modal = self.modal
         motion = modal.motion
+        if motion in self._leave_out:
+            self.left_out[str(motion)] += 1
+            return
         if motion is None:
             letter = next(iter(numbers))
             if letter not in _PLAIN | _POLAR | set("IJKRP"):
