@@ -58,7 +58,7 @@ class Machine:
     ) -> None:
         self.path, self.offsets, self.modal = path, offsets, Modal()
         self.left_out: Counter[str] = Counter()
-        self.homes: dict[str, Point] = {"G28": (0.0, 0.0, 0.0), "G30": (0.0, 0.0, 0.0)}  # in the machine's coordinates
+        self._homes: dict[str, Point] = {}  # of G28 and G30, if the program has set them; else the machine's zero
         self._dialect, self._leave_out, self._place = dialect, leave_out, place
         self._letters_left_out = [name for name in leave_out if len(name) == 1]
         self._shift: Point | None = None
@@ -211,6 +211,8 @@ class Machine:
             self.modal = replace(self.modal, motion=None)
             self._cycle = Cycle()
         elif code in words.NOTHING:
+            if code in words.WITHOUT_AXES and not told and numbers.keys() & _PLAIN:
+                raise LineError(words.refused(code))
             for letter in words.NOTHING[code]:
                 if not (letter in "PR" and numbers.keys() & set("IJK")):
                     numbers.pop(letter, None)
@@ -223,9 +225,7 @@ class Machine:
             self._reference(code, numbers)
             told = False
         elif code in ("G28.1", "G30.1"):
-            zero = self._machine_zero(code)
-            x, y, z = (here - there for here, there in zip(self.path.here, zero, strict=True))
-            self.homes[code[:3]] = (x, y, z)
+            self._homes[code[:3]] = self.path.here
         elif code in ("G10", "G52", "G92", "G92.1", "G92.2", "G92.3"):
             self._set_offsets(code, numbers)
             self._shift = None
@@ -237,11 +237,13 @@ class Machine:
     def _left_out_code(self, code: str, numbers: Numbers, told: bool) -> None:
         self.left_out[code] += 1
         own = words.LEFT_OUT[code]
-        if code == "G4":
-            if not told and self._dialect in ("fanuc", "marlin", "rs274"):
+        if code == "G4" and not told:
+            if self._dialect in ("fanuc", "marlin", "rs274"):
                 own = "PSXU"
-            elif not told and numbers.keys() & {"X", "U"}:
+            elif numbers.keys() & {"X", "U"}:
                 raise LineError(f"G4 with X or U is not read in the dialect {self._dialect}; P is the time")
+            if "F" in numbers and not numbers.keys() & set(own):
+                raise LineError("G4 F: a time, or a feed? Expected P for the time")
         for letter in own:
             numbers.pop(letter, None)
 
@@ -319,7 +321,7 @@ class Machine:
         one they are left out where that place is unknown: the path begins at its start and ends with its last move."""
         named = [axis for axis, letter in enumerate("XYZ") if letter in numbers]
         try:
-            zero = self._machine_zero(code)
+            home = self._homes[code] if code in self._homes else self._machine_zero(code)
         except LineError as error:
             self._be_away(code, error)
             for letter in "ABCEUVWPRSHILO" + "XYZ":
@@ -329,7 +331,7 @@ class Machine:
             self.path.line(self._target(numbers), None)
         target = list(self.path.here)
         for axis in named or range(3):
-            target[axis] = zero[axis] + self.homes[code][axis]
+            target[axis] = home[axis]
         self._go((target[0], target[1], target[2]), None)
         self._take_axes(numbers)
 

@@ -14,6 +14,7 @@ from takt.gcode.expressions import Value, evaluate
 from takt.gcode.machine import Flow, Machine, Modal
 from takt.gcode.parameters import Parameters
 from takt.gcode.source import Block, OWord, Text
+from takt.gcode.words import program_name
 
 MOST_LINES = 1_000_000  # run more often than once
 MOST_CALLS = 10  # in one another, as LinuxCNC
@@ -122,10 +123,10 @@ class Runner:
 
     def _call_program(self, flow: Flow) -> None:
         number, count = flow.program, flow.count
-        name = f"{number:g}"
+        name = program_name(number)
         if name not in self._text.programs and self._dialect in ("fanuc", "rs274") and number >= 10_000 and count == 1:
             count, number = divmod(number, 10_000)
-            name = f"{number:g}"
+            name = program_name(number)
         if count != int(count) or count < 0:
             raise LineError(f"M98: L: expected a whole number of repeats, found {count:g}")
         first = self._text.programs.get(name)
@@ -211,7 +212,7 @@ class Runner:
         return evaluate(line.arguments[0], self._parameters)
 
     def _call(self, line: OWord) -> None:
-        name = line.name if isinstance(line.name, str) else f"{evaluate(line.name, self._parameters):g}"
+        name = line.name if isinstance(line.name, str) else program_name(evaluate(line.name, self._parameters))
         arguments = [evaluate(one, self._parameters) for one in line.arguments]
         text = self._where(name)
         kept = self._parameters.enter(arguments)

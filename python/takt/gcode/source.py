@@ -304,7 +304,7 @@ def _o_word(code: str) -> OWord:
     plain = re.compile(r"<([^<>]*)>|[0-9]+(?:\.[0-9]+)?").match(code, reader.at)
     if plain:
         reader.at = plain.end()
-        name = f"<{plain[1]}>" if plain[1] is not None else f"{float(plain[0]):g}"
+        name = f"<{plain[1]}>" if plain[1] is not None else words.program_name(float(plain[0]))
     else:
         name = reader.value()
     keyword = _KEYWORD.match(code, reader.at)

@@ -19,6 +19,8 @@ CYCLES = ("G73", "G81", "G82", "G83", "G85", "G89")
 # They say how a controller rounds corners, or what a path does not know of: nothing to do.
 NOTHING = {"G40": "D", "G49": "", "G61": "", "G61.1": "", "G64": "PQR", "G97": "", "G50": "", "G69": "", "G15": ""}
 # Said to be left out: a tool's length (the path is that of its tip), speeds of spindles, dwells.
+# Of those, some set coordinates in a dialect if axes stand beside them.
+WITHOUT_AXES = ("G15", "G50", "G69")
 LEFT_OUT = {"G43": "", "G96": "", "G4": "P"}
 AXES = "XYZ"
 # The other words of a line that are a code's own, where it is left out by name.
@@ -84,6 +86,11 @@ WHY_NOT = {
 def code_name(letter: str, number: float) -> str:
     """G01 and G1.0 are G1."""
     return f"{letter}{number:g}"
+
+
+def program_name(number: float) -> str:
+    """O0010 is O10."""
+    return str(int(number)) if number == int(number) else repr(number)
 
 
 def refused(word: str) -> str:
