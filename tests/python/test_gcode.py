@@ -222,6 +222,7 @@ def test_order_of_lines_that_is_none(text: str, said: str) -> None:
 
 def test_programs_that_fanuc_calls() -> None:
     assert along_x("M98 P30022\nM30\nO22\nG91 G1 X1 F60\nM99", dialect="fanuc") == [1, 2, 3]
+    assert along_x("M98 P1000001\nM30\nO1000000\nG1 X2\nM99\nO1000001\nG1 X1 F60\nM99") == [1]
     assert "O30022" in wrong("M98 P30022\nM30\nO22\nM99", dialect="linuxcnc")
     assert parse_gcode("O1234\nG1 X1 F60\nM99").left_out == ("M99, which repeats the program for ever (1 time)",)
 
@@ -432,6 +433,7 @@ def test_reference_moves_in_the_middle_need_the_machine() -> None:
     assert ends("G1 X1 F60\nG91 G28 Z5\nG90 G1 X2", offsets={"G54": (10, 20, 30)}) == [
         (1, 0, 0), (1, 0, 5), (1, 0, -30), (2, 0, -30),
     ]  # fmt: skip
+    assert along_x("G1 X4 F60\nG28.1\nG1 X9\nG28\nG1 X2") == [4, 9, 4, 2]
     assert ends("G1 X1 F60\nG53 G0 Z0\nG1 X2", offsets={"g54": (0, 0, -40)}) == [(1, 0, 0), (1, 0, 40), (2, 0, 40)]
 
 
@@ -527,6 +529,55 @@ def test_splines() -> None:
     assert second - first == pytest.approx(np.broadcast_to([1, 1, 0], first.shape))
     assert "G5: expected I and J" in wrong("G5 P0 Q-3 X1 Y1")
     assert "G5.1: expected I or J" in wrong("G5.1 X1 Y1")
+
+
+QUARTER = math.sqrt(0.5)  # the weight in the middle of a quarter of a circle
+
+
+@pytest.mark.parametrize(
+    ("text", "plane"),
+    [
+        (f"G5.2 X10 Y10 P{QUARTER}\nX0 Y10 P1\nG5.3", (0, 1)),
+        (f"G5.2 P1 L3\nX10 Y10 P{QUARTER}\nX0 Y10\nG5.3", (0, 1)),
+        (f"G19\nG5.2 Y10 Z10 P{QUARTER}\nY0 Z10 P1\nG5.3", (1, 2)),
+        (f"G6.2 X10 Y0 R1 K0 P3 Q1\nX10 Y10 R{QUARTER} K0\nX0 Y10 R1 K0\nG6.2 K2\nG6.2 K2\nG6.2 K2\nG1 X0", (0, 1)),
+    ],
+)
+def test_a_quarter_of_a_circle_as_a_nurbs(text: str, plane: tuple[int, int]) -> None:
+    """Rational and quadratic: exactly round (Piegl, Tiller, 7.3)."""
+    start = [0.0, 0.0, 0.0]
+    start[plane[0]] = 10.0
+    path = parse_gcode("F60\n" + text, start=(start[0], start[1], start[2]), tolerance=1e-4)
+    points = np.array([one.end for one in path.elements])
+    assert np.hypot(points[:, plane[0]], points[:, plane[1]]) == pytest.approx(10)
+    assert path.length == pytest.approx(5 * math.pi, rel=1e-4)
+    assert points[-1][list(plane)] == pytest.approx([0, 10])
+
+
+def test_a_nurbs_of_weight_one_is_a_bezier() -> None:
+    nurbs = parse_gcode("G5.2 X0 Y3 P1 L4\nX1 Y-2\nX1 Y1\nG5.3", tolerance=1e-5)
+    bezier = parse_gcode("G5 I0 J3 P0 Q-3 X1 Y1", tolerance=1e-5)
+    assert nurbs.length == pytest.approx(bezier.length, rel=1e-5)
+    assert bezier.follow(np.array([(0, 0, 0), *(one.end for one in nurbs.elements)])).distance.max() < 2e-5
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("G5.3", "G5.3 has no G5.2 before it"),
+        ("G5.2 X1 Y1\nG5.3", "a NURBS of order 3: expected as many control points at least, found 2"),
+        ("G5.2 X1 Y1 L2", "the order of a NURBS: expected a whole number from 3 to 20, found 2"),
+        ("G5.2 X1", "G5.2: expected X and Y of a control point"),
+        ("G5.2 X1 Y1 Z1", "G5.2: expected X and Y of a control point"),
+        ("G5.2 X1 Y1 P0", "the weight of a control point: expected a number above 0, found 0"),
+        ("G5.2 X1 Y1\nG1 X5", "G1: the NURBS before it is not complete"),
+        ("G5.2 X1 Y1\nM2", "the program ends within a NURBS"),
+        ("G6.2 X1 Y1 K0", "G6.2: expected P, the order of the NURBS"),
+        ("G6.2 X1 Y1 K1 P3\nX2 Y2 K0", "K: expected a knot from 1 on, found 0"),
+    ],
+)
+def test_nurbs_that_are_none(text: str, said: str) -> None:
+    assert said in wrong(text)
 
 
 @pytest.mark.parametrize(

@@ -105,7 +105,7 @@ class PathBuilder:
         self.elements: list[Element] = []
         self.here = start
         self._end = start  # of the last element: moves shorter than SAME add up until they are an element
-        self._tolerance = tolerance
+        self.tolerance = tolerance
 
     def line(self, end: Point, velocity: float | None) -> None:
         x, y, z = end
@@ -132,7 +132,7 @@ class PathBuilder:
                     self.here = end
                     self._append(Element(end, arc.at((i + 0.5) / count), velocity))
         else:
-            count = self._room(chords(arc.sweep, max(arc.radius, arc.last), self._tolerance))
+            count = self._room(chords(arc.sweep, max(arc.radius, arc.last), self.tolerance))
             for i in range(count):
                 self.line(arc.at((i + 1) / count), velocity)
 
@@ -142,7 +142,7 @@ class PathBuilder:
         points = [complex(x, y), *control]
         if not all(abs(point) <= REACH for point in points):
             raise LineError(f"a spline: expected numbers up to {REACH:.0e} mm")
-        count = self._room(chords_of_bezier(points, self._tolerance))
+        count = self._room(chords_of_bezier(points, self.tolerance))
         for i in range(1, count + 1):
             share = i / count
             ends = points

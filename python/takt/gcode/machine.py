@@ -6,11 +6,13 @@ import math
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from takt.gcode import words
 from takt.gcode.cycles import Cycle
 from takt.gcode.errors import LineError
 from takt.gcode.geometry import PLANES, PathBuilder, arc_about, centre_by_radius
+from takt.gcode.nurbs import Nurbs
 from takt.gcode.offsets import SYSTEMS, Offsets
 from takt.toolpath import Point
 
@@ -64,6 +66,7 @@ class Machine:
         self._shift: Point | None = None
         self._away: LineError | None = None  # the tool is where the program cannot say
         self._cycle = Cycle()
+        self._nurbs: Nurbs | None = None  # between G5.2 and G5.3, or of G6.2
         self._spline: tuple[float, float] | None = None  # P and Q of the G5 before
         self._feed_number: float | None = None  # of this line, in G93
 
@@ -73,6 +76,11 @@ class Machine:
         """Where the tool is in the active coordinates and units of the program."""
         shift = self.offsets.shift()
         return [(here - s) / self.modal.unit for here, s in zip(self.path.here, shift, strict=True)]
+
+    def end(self) -> None:
+        """What a program must not leave open. Raises LineError."""
+        if self._nurbs is not None:
+            raise LineError("the program ends within a NURBS")
 
     def restore(self, modal: Modal) -> None:
         self.modal = replace(modal, motion=self.modal.motion)
@@ -89,7 +97,7 @@ class Machine:
                 self.left_out[letter] += 1
         told, flow, machine_coordinates = False, None, False
         if codes:
-            if len(codes) == 1 and codes[0] in _MOVES and codes[0] not in self._leave_out:
+            if len(codes) == 1 and codes[0] in _MOVES and codes[0] not in self._leave_out and self._nurbs is None:
                 told = True
                 if self.modal.motion != codes[0]:
                     self.modal = replace(self.modal, motion=codes[0])
@@ -138,6 +146,8 @@ class Machine:
             elif code not in state:
                 told = self._g_code(code, numbers, told)
         if motions:
+            if self._nurbs is not None and motions[0] not in (self.modal.motion, "G5.3"):
+                raise LineError(f"{motions[0]}: the NURBS before it is not complete")
             if motions[0] != self.modal.motion:
                 self._cycle, self._spline = Cycle(), None
             self.modal = replace(self.modal, motion=motions[0])
@@ -366,6 +376,8 @@ class Machine:
             self._arc(numbers)
         elif motion in ("G5", "G5.1"):
             self._splines(motion, numbers)
+        elif motion in ("G5.2", "G5.3", "G6.2"):
+            self._nurbs_line(motion, numbers)
         else:
             self._refuse(numbers, "IJKRPQL")
             if self._away:
@@ -523,3 +535,49 @@ class Machine:
             self._spline = (numbers["P"], numbers["Q"])
             control = [here + unit * out, end + unit * complex(*self._spline), end]
         self.path.bezier(control, self.modal.feed if not self.modal.inverse_time else self._velocity(abs(end - here)))
+
+    def _nurbs_line(self, motion: str, numbers: Numbers) -> None:
+        """A control point of G5.2 (P: its weight, L: the order) or of G6.2 (R: its weight, K: a knot, P: the order), or
+        the end of them."""
+        if self._away:
+            raise self._away
+        self._refuse(numbers, {"G5.2": "PL", "G5.3": "", "G6.2": "PRKQ"}[motion])
+        first, second, _ = PLANES[self.modal.plane]
+        letters = ["XYZ"[axis] for axis in (first, second)]
+        given = [letter in numbers for letter in letters]
+        if any(given) and (not all(given) or (numbers.keys() & _PLAIN) - set(letters)):
+            raise LineError(f"{motion}: expected {letters[0]} and {letters[1]} of a control point")
+        if self._nurbs is None:
+            if motion == "G5.3":
+                raise LineError("G5.3 has no G5.2 before it")
+            with_knots = motion == "G6.2"
+            if with_knots and "P" not in numbers:
+                raise LineError("G6.2: expected P, the order of the NURBS")
+            self._nurbs = Nurbs(with_knots)
+            self._nurbs.set_order(numbers["P"] if with_knots else numbers.get("L", 3.0))
+            here = complex(self.path.here[first], self.path.here[second])
+            if not with_knots:  # the first control point is where the tool is
+                self._nurbs.add(here, 1.0 if any(given) else numbers.get("P", 1.0))
+        nurbs = self._nurbs
+        if "L" in numbers:
+            nurbs.set_order(numbers["L"])
+        if all(given):
+            target = self._target(numbers)
+            point = complex(target[first], target[second])
+            nurbs.add(point, numbers.get("R" if nurbs.with_knots else "P", 1.0))
+        if nurbs.with_knots and "K" in numbers:
+            nurbs.add_knot(numbers["K"])
+        if motion == "G5.3" or (nurbs.is_complete and nurbs.with_knots):
+            self._nurbs = None
+            if motion == "G5.3":
+                self.modal = replace(self.modal, motion=None)
+            self._draw_nurbs(nurbs, first, second)
+
+    def _draw_nurbs(self, nurbs: Nurbs, first: int, second: int) -> None:
+        points = nurbs.chords(self.path.tolerance)
+        here = complex(self.path.here[first], self.path.here[second])
+        velocity = self._velocity(sum(abs(b - a) for a, b in pairwise([here, *points])))
+        for point in points:
+            end = list(self.path.here)
+            end[first], end[second] = point.real, point.imag
+            self.path.line((end[0], end[1], end[2]), velocity)

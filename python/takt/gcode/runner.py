@@ -52,6 +52,7 @@ class Runner:
         """Raises LineError; its place is that of the line, unless it has one."""
         try:
             self._run()
+            self._machine.end()
         except LineError as error:
             raise LineError(str(error), error.place or self.place()) from None
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 # Of each group one may stand in a line.
 GROUPS = {
-    "motion": ("G0", "G1", "G2", "G3", "G5", "G5.1", "G73", "G81", "G82", "G83", "G85", "G89"),
+    "motion": ("G0", "G1", "G2", "G3", "G5", "G5.1", "G5.2", "G5.3", "G6.2", "G73", "G81", "G82", "G83", "G85", "G89"),
     "plane": ("G17", "G18", "G19"),
     "units": ("G20", "G21"),
     "distances": ("G90", "G91"),
