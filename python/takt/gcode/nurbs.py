@@ -26,8 +26,11 @@ class Nurbs:
         self._knots: list[float] = []
 
     def set_order(self, order: float) -> None:
-        if order != int(order) or not 3 <= order <= MOST_ORDER:
-            raise LineError(f"the order of a NURBS: expected a whole number from 3 to {MOST_ORDER}, found {order:g}")
+        least = 2 if self.with_knots else 3
+        if order != int(order) or not least <= order <= MOST_ORDER:
+            raise LineError(
+                f"the order of a NURBS: expected a whole number from {least} to {MOST_ORDER}, found {order:g}"
+            )
         self.order = int(order)
 
     def add(self, point: complex, weight: float) -> None:
