@@ -44,6 +44,9 @@ class Rendered:
         if _name(root) != "svg":
             raise TreeError(f"expected <svg> in it, found <{_name(root) or 'something else'}>")
         self.root = self._copied(root, (), (), 0)
+        for i, style in enumerate(one for one in root.iter() if _name(one) == "style"):
+            _check_style(style)
+            self.root.insert(i, copy.deepcopy(style))  # wherever they stand, they hold for all
 
     def _copied(
         self, one: ElementTree.Element, within: tuple[str, ...], clips: tuple[int, ...], depth: int
@@ -69,9 +72,6 @@ class Rendered:
         depth: int,
     ) -> None:
         name = _name(child)
-        if name == "style":
-            parent.append(copy.deepcopy(child))
-            return
         if name not in (*SHAPES, *_CONTAINERS, *_TEXTS, "use"):
             return
         self._count += 1
@@ -164,6 +164,21 @@ def _name(one: ElementTree.Element) -> str:
     """Of an element of SVG; "" of another one."""
     tag = one.tag if isinstance(one.tag, str) else ""
     return tag.removeprefix(SVG) if tag.startswith(SVG) or not tag.startswith("{") else ""
+
+
+def _check_style(style: ElementTree.Element) -> None:
+    """Raises TreeError where rules that say what is seen, or where, are of a kind that is not read."""
+    text = re.sub(r"/\*.*?\*/", "", style.text or "", flags=re.DOTALL)
+    for selectors, rules in re.findall(r"([^{}]*)\{([^{}]*)\}?", text):
+        found = re.search(r"(?:^|[;\s])(display|visibility|opacity|transform|clip-path|mask|d)\s*:", rules)
+        if not found:
+            continue
+        for selector in selectors.split(","):
+            plain = re.fullmatch(r"\s*(?:\*|[\w-]*[.#]?[\w-]+)\s*", selector)
+            if not plain or found[1] in ("clip-path", "mask"):
+                raise TreeError(
+                    f"<style>: '{found[1]}' for '{selector.strip()}' is not read; expected it at the elements"
+                )
 
 
 def _label(one: ElementTree.Element) -> str:

@@ -97,6 +97,8 @@ def test_transforms(tmp_path: Path, shape: str, transform: str, how: str) -> Non
         '<rect style="visibility:hidden" width="50" height="50"/>',
         "<style>.a{visibility:hidden} .b{display:none}</style><rect class='a' width='5' height='5'/><g class='b'><rect"
         " width='5' height='5'/></g>",
+        "<defs><style>.a{fill:red;visibility:hidden}</style></defs><rect class='a' width='5' height='5'/>",
+        "<rect id='a' width='5' height='5'/><style>/* g .b{} */ #a,rect.b{display:none}</style>",
         '<rect display="none" width="50" height="50"/>',
         '<g style="fill:red;display:none"><rect width="50" height="50"/></g>',
         '<mask id="m"><rect width="90" height="90"/></mask>',
@@ -188,6 +190,26 @@ def test_clips(tmp_path: Path, clip: str, shape: str, taken: bool) -> None:
     if taken:
         assert drawn(read(tmp_path, moved))[0] == pytest.approx(7)
     assert "has a mask" in wrong(tmp_path, '<g mask="url(#m)">' + LINE + "</g>")
+
+
+@pytest.mark.parametrize(
+    ("rule", "said"),
+    [
+        ("g .a{fill:red;display:none}", "'display' for 'g .a'"),
+        ("rect, path:hover {visibility:hidden}", "'visibility' for 'path:hover'"),
+        ("@media print{.a{opacity:0}}", "'opacity' for"),
+        (".a{clip-path:url(#c)}", "'clip-path' for '.a'"),
+        ("g .a{fill:red}", ""),
+        (".a{stroke:red}", ""),
+    ],
+)
+def test_styles_that_are_not_read(tmp_path: Path, rule: str, said: str) -> None:
+    """They are an error if they say what is seen, or where."""
+    body = f"<style>{rule}</style>{LINE}"
+    if said:
+        assert f"a.svg: <style>: {said}" in wrong(tmp_path, body)
+    else:
+        assert drawn(read(tmp_path, body))[0] == pytest.approx(7)
 
 
 BOMB = '<defs><path id="u0" d="M0 0 H1"/>' + "".join(
