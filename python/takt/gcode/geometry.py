@@ -116,9 +116,10 @@ class PathBuilder:
             self._append(Element(end, None, velocity))
 
     def arc(self, arc: Arc, velocity: float | None) -> None:
-        if not max(map(abs, (*arc.centre, arc.radius, *arc.end))) <= REACH:
+        (x, y), (u, v, w) = arc.centre, arc.end
+        if not max(abs(x), abs(y), arc.radius, abs(u), abs(v), abs(w)) <= REACH:
             raise LineError(f"an arc of a radius of {arc.radius:.6g} mm: expected numbers up to {REACH:.0e} mm")
-        if max(arc.radius, arc.last) < SAME:
+        if arc.radius < SAME and arc.last < SAME:
             self.line(arc.end, velocity)
         elif abs(arc.rise) < SAME:
             count = self._room(split_turn(arc.sweep))

@@ -21,6 +21,7 @@ Numbers = dict[str, float]
 _PLAIN = frozenset("XYZ")
 _MOVES = frozenset(("G0", "G1", "G2", "G3"))
 _POLAR = frozenset("@^")
+_ARC_WORDS = frozenset("XYZIJKRP")
 _CYCLES = frozenset(f"G{number}" for number in range(70, 90))
 
 
@@ -470,7 +471,8 @@ class Machine:
     def _arc(self, numbers: Numbers) -> None:
         if self._away:
             raise self._away
-        self._refuse(numbers, "IJKRP")
+        if not _ARC_WORDS.issuperset(numbers):
+            self._refuse(numbers, "IJKRP")
         modal, here = self.modal, self.path.here
         target = self._target(numbers)
         turns = numbers.get("P", 0.0 if self._dialect == "marlin" else 1.0)
@@ -490,7 +492,7 @@ class Machine:
         letters = "IJK"
         if letters[third] in numbers:
             raise LineError(f"{letters[third]} is not in the plane of {modal.plane}")
-        given = [letters[axis] in numbers for axis in (first, second)]
+        given = (letters[first] in numbers, letters[second] in numbers)
         if "R" in numbers:
             if any(given):
                 raise LineError(f"R and {letters[first]}, {letters[second]} exclude each other")

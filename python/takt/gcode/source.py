@@ -106,7 +106,9 @@ class Text:
     def line(self, at: int) -> Line:
         found = self._compiled[at]
         if found is None:
-            found = self._compiled[at] = self._compile(self.lines[at])
+            found = self._compile(self.lines[at])
+            if self.links or self.programs:  # else no line is run twice
+                self._compiled[at] = found
         return found
 
     def _cut(self) -> None:
