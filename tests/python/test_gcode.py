@@ -605,7 +605,7 @@ def test_drilling(text: str, heights: list[float]) -> None:
     ("text", "said"),
     [
         ("G81 X1 R1", "G81: expected Z, the depth, and R"),
-        ("G81 X1 Z2 R1", "G81: R lies 1 mm below the ground of the hole"),
+        ("G81 X1 Z2 R1", "G81: R lies 1 mm below the bottom of the hole"),
         ("G83 X1 Z-1 R1", "G83: expected Q"),
         ("G83 X1 Z-1 R1 Q0.0000001", "more than 100,000 pecks"),
         ("G81 X1 Z-1 R1 L0", "L: expected a whole number of repeats from 1"),

@@ -1,7 +1,7 @@
 """Canned cycles of drilling: G73, G81, G82, G83, G85, G89.
 
 Source: the manual of LinuxCNC, G80 to G89. Between two pecks the tool goes up by CLEARANCE (G73) or to R and down again
-to CLEARANCE above the hole's ground (G83); how far that is, each controller keeps in a setting of its own."""
+to CLEARANCE above the bottom reached (G83); other controllers have other clearances, in their settings."""
 
 from __future__ import annotations
 
@@ -50,9 +50,9 @@ class Cycle:
         here = list(path.here)
         self._old = here[third] if self._old is None else self._old
         retract = self._retract + (self._old if modal.relative else shift[third])
-        ground = self._depth + (retract if modal.relative else shift[third])
-        if retract < ground:
-            raise LineError(f"{code}: R lies {ground - retract:.6g} mm below the ground of the hole")
+        bottom = self._depth + (retract if modal.relative else shift[third])
+        if retract < bottom:
+            raise LineError(f"{code}: R lies {bottom - retract:.6g} mm below the bottom of the hole")
         clear = retract if modal.retract_to_r else max(self._old, retract)
 
         def rapid(height: float) -> None:
@@ -68,13 +68,13 @@ class Cycle:
                     here[axis] = here[axis] + value if modal.relative else value + shift[axis]
             rapid(here[third])
             rapid(retract)
-            self._hole(code, here, third, (retract, ground), modal, path)
+            self._hole(code, here, third, (retract, bottom), modal, path)
             rapid(clear)
 
     def _hole(
         self, code: str, here: list[float], third: int, heights: tuple[float, float], modal: Modal, path: PathBuilder
     ) -> None:
-        retract, ground = heights
+        retract, bottom = heights
 
         def go(height: float, velocity: float | None) -> None:
             here[third] = height
@@ -82,10 +82,10 @@ class Cycle:
 
         if code in ("G73", "G83"):
             peck = self._peck or 0.0
-            if (retract - ground) / peck > MOST:
+            if (retract - bottom) / peck > MOST:
                 raise LineError(f"{code}: more than {MOST:,} pecks of {peck:.6g} mm")
             depth = retract - peck
-            while depth > ground:
+            while depth > bottom:
                 go(depth, modal.feed)
                 if code == "G73":
                     go(depth + CLEARANCE, None)
@@ -93,6 +93,6 @@ class Cycle:
                     go(retract, None)
                     go(depth + CLEARANCE, None)
                 depth -= peck
-        go(ground, modal.feed)
+        go(bottom, modal.feed)
         if code in ("G85", "G89"):
             go(retract, modal.feed)

@@ -258,7 +258,7 @@ class Machine:
         for letter in own:
             numbers.pop(letter, None)
 
-    # --- Offsets and places of the machine ---
+    # --- Offsets and machine coordinates ---
 
     def _take_axes(self, numbers: Numbers) -> dict[int, float]:
         """The words X, Y, Z, in mm by axis."""
@@ -322,13 +322,13 @@ class Machine:
             name = self.offsets.active
             raise LineError(
                 f"{code} needs the machine's zero, which is not in the program; --offset {name} X Y Z gives the"
-                f" place of {name} on the machine, --leave-out {code} leaves it out",
+                f" position of {name} on the machine, --leave-out {code} leaves it out",
                 self._place(),
             )
         return zero
 
     def _reference(self, code: str, numbers: Numbers) -> None:
-        """G28, G30: by a point, if one is given, to a place of the machine. Before the first move and behind the last
+        """G28, G30: by a point, if one is given, to a machine position. Before the first move and behind the last
         one they are left out where that place is unknown: the path begins at its start and ends with its last move."""
         named = [axis for axis, letter in enumerate("XYZ") if letter in numbers]
         try:

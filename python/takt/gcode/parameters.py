@@ -134,7 +134,9 @@ def _absolute(machine: Machine, axis: int) -> float:
     zero = machine.offsets.machine_zero()
     if zero is None:
         name = machine.offsets.active
-        raise LineError(f"a place of the machine is asked for, which is not in the program; --offset {name} X Y Z")
+        raise LineError(
+            f"a machine coordinate is asked for, and the program does not say where the zero is; --offset {name} X Y Z"
+        )
     return (machine.path.here[axis] - zero[axis]) / machine.modal.unit
 
 
