@@ -132,7 +132,10 @@ class _Outline:
     def __init__(self, svgelements: Any, shape: Any) -> None:
         m = shape.transform
         self.matrix = (float(m.a), float(m.b), float(m.c), float(m.d), float(m.e), float(m.f))
-        self.segments = shape if isinstance(shape, svgelements.Path) else shape.segments(transformed=False)
+        try:
+            self.segments = list(shape if isinstance(shape, svgelements.Path) else shape.segments(transformed=False))
+        except Exception as error:  # svgelements raises whatever the data make it raise
+            raise TreeError(f"<{shape.values['tag']}> cannot be read: {error}") from None
 
     def box(self, svgelements: Any) -> tuple[float, float, float, float] | None:
         """The least and greatest X and Y, px; None: it is empty."""
@@ -183,6 +186,8 @@ def _corners(outline: _Outline) -> bool:
 
 def _moved(matrix: tuple[float, ...], point: Any) -> complex:
     a, b, c, d, e, f = matrix
+    if point.x is None or point.y is None:
+        raise TreeError("a shape has a point without coordinates")
     x, y = float(point.x), float(point.y)
     return complex(a * x + c * y + e, b * x + d * y + f)
 

@@ -57,11 +57,12 @@ def read_dxf(file: str | PathLike[str], left_out: Counter[str]) -> list[Run]:
         scale = conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters) if drawing.units else 1.0
     except (ValueError, KeyError):
         raise TaktError(f"{file}: its unit ($INSUNITS) is {drawing.units}, which is not known") from None
-    reader = _Reader(drawing, scale, left_out)
     try:
-        return list(reader.runs(space, 0))
+        return list(_Reader(drawing, scale, left_out).runs(space, 0))
     except _EntityError as error:
         raise TaktError(f"{file}: {error}") from None
+    except Exception as error:  # damaged tables and blocks
+        raise TaktError(f"{file}: is damaged: {error}") from None
 
 
 class _EntityError(Exception):
@@ -76,7 +77,7 @@ class _Reader:
     def runs(self, entities: Iterable[Any], depth: int) -> Iterator[Run]:
         for entity in entities:
             self._room(1)
-            if entity.dxf.get("invisible", 0) or entity.dxf.get("layer", "0").lower() in self._hidden:
+            if self._is_hidden(entity):
                 self._left_out["what is invisible, or on a layer that is off or frozen"] += 1
                 continue
             if entity.dxftype() == "INSERT":
@@ -93,6 +94,11 @@ class _Reader:
                 self._left_out[f"{entity.dxftype()} without length"] += 1
             if kept:
                 yield Run(kept, entity.dxftype() not in ("LWPOLYLINE", "POLYLINE"))
+
+    def _is_hidden(self, entity: Any) -> bool:
+        invisible = entity.dxf.is_supported("invisible") and entity.dxf.get("invisible", 0)
+        layer = entity.dxf.get("layer", "0") if entity.dxf.is_supported("layer") else "0"
+        return bool(invisible) or str(layer).lower() in self._hidden
 
     def _block(self, insert: Any, depth: int) -> Iterator[Run]:
         if depth >= DEPTH:

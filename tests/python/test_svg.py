@@ -229,6 +229,7 @@ BOMB = '<defs><path id="u0" d="M0 0 H1"/>' + "".join(
         ('<path d="M0 0 C 9e7 9e7 9e7 -9e7 0 1" transform="scale(1)"/>' * 40, "more than 1,000,000 elements"),
         ('<circle r="1" transform="scale(1e20)"/>', "expected numbers up to 1e+08 mm"),
         ('<rect width="1" height="1" transform="translate(1e200)"/>', "expected numbers up to 1e+08 mm"),
+        ('<rect x="1mm" width="5%" height="3em" rx="2%"/><line x1="1ex" x2="5%" y2="q"/>', "a.svg: "),
         ('<use href="#x" x="nan"/><path id="x" d="M0 0H1"/>', "expected a number, found 'nan'"),
     ],
 )
