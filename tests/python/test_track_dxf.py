@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import contextlib
 import math
 import time
 from collections.abc import Callable
@@ -264,6 +265,23 @@ def nested(model: Any, document: Any, depth: int, count: int) -> None:
         for k in range(count):
             block.add_blockref(f"B{i - 1}", (k, i))
     model.add_blockref(f"B{depth - 1}", (0, 0))
+
+
+@given(st.lists(st.tuples(st.floats(0, 1), st.sampled_from([b"", b"-", b"nan", b"9" * 20, b"\n", b"x"])), max_size=6))
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=30, deadline=None)
+def test_property_a_damaged_drawing_is_read_or_refused(tmp_path: Path, damage: list[tuple[float, bytes]]) -> None:
+    whole, file = tmp_path / "whole.dxf", tmp_path / "a.dxf"
+    if not whole.exists():
+        read(tmp_path, lambda m, d: (m.add_arc((0, 0), 5, 0, 90), m.add_spline([(9, 0), (12, 3), (15, 0)])))
+        whole.write_bytes(file.read_bytes())
+    data = whole.read_bytes()
+    first = data.index(b"ENTITIES")
+    for share, piece in damage:
+        at = first + int(share * (len(data) - first))
+        data = data[:at] + piece + data[at + 3 :]
+    file.write_bytes(data)
+    with contextlib.suppress(TaktError):
+        assert yaml.safe_load(read_drawing(file).tracks)["tracks"]
 
 
 @pytest.mark.parametrize(
