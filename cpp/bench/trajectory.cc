@@ -7,6 +7,7 @@
 
 #include "takt/trajectory/planner.h"
 #include "trajectory/problems.h"
+#include "trajectory/reference_motions.h"
 
 namespace takt::trajectory {
 namespace {
@@ -117,6 +118,44 @@ void StopPositionTakt(benchmark::State& state) {
   }
 }
 
+// A staircase with corners as overlaps, six coordinates: the whole plan, checks included, and each Newton step and
+// interval of it.
+void PlanAlongPath(benchmark::State& state) {
+  const Limits limits{500, 5000, 5000, 100000};
+  std::vector<testing::Point> points{{0, 0, 0}};
+  for (int i = 0; i < 6; ++i) {
+    testing::Point p = points.back();
+    p[i % 2] += 25;
+    points.push_back(p);
+  }
+  const testing::Polyline stairs(points, 0.05, limits, 0.0125);
+  PathPlanner planner(500, 6);
+  PathPlan plan(500);
+  double steps = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(planner.Plan(stairs.Request(), plan));
+    steps += planner.steps();
+  }
+  const double intervals = static_cast<double>(stairs.lengths.size());
+  state.counters["intervals"] = intervals;
+  state.counters["steps"] = planner.steps();
+  state.counters["per_step_and_interval"] =
+      benchmark::Counter(steps * intervals, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void PathPlanAt(benchmark::State& state) {
+  const testing::Polyline line({{0, 0, 0}, {100, 0, 0}}, 0.05, {500, 5000, 5000, 100000}, 0.0125);
+  PathPlanner planner(500, 6);
+  PathPlan plan(500);
+  (void)planner.Plan(line.Request(), plan);
+  double t = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(plan.At(t));
+    t += 0.001;
+    if (t > plan.duration()) t = 0;
+  }
+}
+
 BENCHMARK_CAPTURE(PlanTakt, from_any, false)->Name("PlanFromMotion/takt");
 BENCHMARK_CAPTURE(PlanRuckig, from_any, false, false)->Name("PlanFromMotion/ruckig");
 BENCHMARK_CAPTURE(PlanTakt, from_rest, true)->Name("PlanFromRest/takt");
@@ -126,6 +165,8 @@ BENCHMARK_CAPTURE(PlanRuckig, velocity, false, true)->Name("PlanToVelocity/rucki
 BENCHMARK(AtTakt)->Name("At/takt");
 BENCHMARK(AtRuckig)->Name("At/ruckig");
 BENCHMARK(StopPositionTakt)->Name("StopPosition");
+BENCHMARK(PlanAlongPath);
+BENCHMARK(PathPlanAt);
 
 }  // namespace
 }  // namespace takt::trajectory

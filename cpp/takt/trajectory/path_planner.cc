@@ -1,0 +1,524 @@
+#include "takt/trajectory/path_planner.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace takt::trajectory {
+
+namespace {
+
+constexpr double kPlanShare = 0.99;  // of the limits that rows leave: the rest is for what lies between knots
+constexpr int kFadeIntervals = 8;    // behind a given pace, which may use all of a limit, the share comes down to that
+constexpr int kVerifyRounds = 8;     // of checking and tightening
+constexpr double kTighter = 1.002;   // than what a check found
+constexpr double kNearly = 1.05;     // a plan that uses less of a limit is good at a lower rate
+constexpr double kLowerRounding = 1e-9;
+constexpr double kPrecision = 1e-3;
+constexpr double kToBoundary = 0.99;
+constexpr double kLeastLeft = 0.2;  // of an ordinate after a step
+constexpr int kStepsPerRound = 80;
+constexpr double kBetween = 0.2;    // of a second difference: more than a parabola through three samples rises (1/8)
+constexpr double kOfUniform = 0.7;  // of the fastest uniform rate: where steps begin
+
+double Series(double x) {  // (cosh √x - 1) / x and its like for x < 0, for small x
+  return 0.5 + x * (1.0 / 24 + x * (1.0 / 720));
+}
+
+// Position and rate after `t` of a motion with acceleration slope + bend * (position - begin).
+ReferenceState Move(double root, double slope, double bend, double t) {
+  const double x = bend * t * t;
+  double c = 0, s = 0, integral = 0;  // cosh, sinh / w, (cosh - 1) / w²
+  if (std::abs(x) < 1e-3) {
+    integral = t * t * Series(x);
+    c = 1 + bend * integral;
+    s = t * (1 + x * (1.0 / 6 + x * (1.0 / 120 + x * (1.0 / 5040))));
+  } else {
+    const double w = std::sqrt(std::abs(bend));
+    c = bend > 0 ? std::cosh(w * t) : std::cos(w * t);
+    s = (bend > 0 ? std::sinh(w * t) : std::sin(w * t)) / w;
+    integral = (c - 1) / bend;
+  }
+  const double way = root * s + slope * integral;
+  const double rate = root * c + slope * s;
+  return {way, rate, slope + bend * way, bend * rate};
+}
+
+// Time over an interval: with x = length / (sum of both rates) it is 2/w atanh(w x), w² the bend.
+double Duration(double length, double before, double after, double bend) {
+  const double x = length / (std::sqrt(before) + std::sqrt(after));
+  const double y = bend * x * x;
+  if (std::abs(y) < 1e-3) return 2 * x * (1 + y * (1.0 / 3 + y * (1.0 / 5 + y * (1.0 / 7))));
+  const double w = std::sqrt(std::abs(bend));
+  return 2 / w * (bend > 0 ? std::atanh(w * x) : std::atan(w * x));
+}
+
+bool Above0(double number) {
+  return number > 0 && std::isfinite(number);
+}
+
+}  // namespace
+
+ReferenceState PathPlan::Within(std::size_t interval, double share) const noexcept {
+  const Knot& knot = knots_[interval];
+  const double way = share * (knots_[interval + 1].reference_s - knot.reference_s);
+  const double slope = knot.slope + knot.bend * way;
+  const double rate = std::sqrt(knot.square + way * (knot.slope + slope));
+  return {knot.reference_s + way, rate, slope, knot.bend * rate};
+}
+
+ReferenceState PathPlan::At(double time_s) const noexcept {
+  if (count_ == 0) return {};
+  const auto end = knots_.begin() + static_cast<std::ptrdiff_t>(count_);
+  if (!(time_s > 0)) return Within(0, 0);
+  if (time_s >= duration()) return Within(count_ - 2, 1);
+  const auto behind = std::upper_bound(knots_.begin(), end, time_s, [](double t, const Knot& k) { return t < k.at_s; });
+  const Knot& knot = *(behind - 1);
+  ReferenceState state = Move(std::sqrt(knot.square), knot.slope, knot.bend, time_s - knot.at_s);
+  state.time = std::min(knot.reference_s + state.time, behind->reference_s);
+  return state;
+}
+
+PathPlanner::PathPlanner(std::size_t intervals, std::size_t coordinates)
+    : most_intervals_(intervals),
+      most_coordinates_(coordinates),
+      ends_(2 * intervals * coordinates),
+      at_(coordinates),
+      ordinates_(intervals),
+      tighten_(intervals),
+      use_(intervals),
+      signed_(9 * coordinates),
+      rows_(intervals * (6 * coordinates + 3) + 2),
+      diagonal_(intervals),
+      next_(intervals),
+      second_next_(intervals),
+      right_(intervals),
+      step_(intervals) {}
+
+// False: the request is none.
+bool PathPlanner::Read() noexcept {
+  for (const double length : request_->lengths) {
+    if (!Above0(length)) return false;
+  }
+  for (const RateLimits& l : request_->limits) {
+    for (const double limit : {l.velocity, l.acceleration, l.deceleration, l.jerk}) {
+      if (!(limit > 0)) return false;
+    }
+  }
+  for (const auto& pace : {request_->begin, request_->end}) {
+    if (pace && !(Above0(pace->square) && std::isfinite(pace->slope))) return false;
+  }
+  for (std::size_t k = 0; k < n_; ++k) {
+    for (std::size_t e = 0; e < 2; ++e) {
+      const std::span<ReferenceRate> out(&ends_[(2 * k + e) * count_], count_);
+      request_->motion.rates(request_->motion.owner, k, static_cast<double>(e), out);
+      for (const ReferenceRate& r : out) {
+        if (!std::isfinite(r.first + r.second + r.third)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+// The largest R that is within all limits where it is the same everywhere; 0: the rates are not finite.
+double PathPlanner::UniformSquare() noexcept {
+  double velocity = 0, acceleration = 0, jerk = 0;
+  for (std::size_t k = 0; k < n_; ++k) {
+    for (int i = 0; i <= kSamples; ++i) {
+      request_->motion.rates(request_->motion.owner, k, static_cast<double>(i) / kSamples, at_);
+      for (std::size_t q = 0; q < count_; ++q) {
+        const RateLimits& l = request_->limits[q];
+        velocity = std::max(velocity, std::abs(at_[q].first) / l.velocity);
+        acceleration = std::max({acceleration, at_[q].second / l.acceleration, -at_[q].second / l.deceleration});
+        jerk = std::max(jerk, std::abs(at_[q].third) / l.jerk);
+        if (!std::isfinite(at_[q].first + at_[q].second + at_[q].third)) return 0;
+      }
+    }
+  }
+  const double rate = std::max({velocity, std::sqrt(acceleration), std::cbrt(jerk)});
+  return rate > 0 && std::isfinite(rate) ? 1 / (rate * rate) : 0;
+}
+
+PathPlanner::Shape PathPlanner::ShapeOf(std::size_t k) const noexcept {
+  const std::span<const double> lengths = request_->lengths;
+  Shape shape;
+  // At the knot between the intervals i - 1 and i, whose ordinates are `at` and the next of the three.
+  const auto knot = [&](std::size_t i, std::size_t at, Linear& square, Linear& slope) {
+    const double sum = 1 / (lengths[i - 1] + lengths[i]);
+    const double before = lengths[i] * sum, after = lengths[i - 1] * sum;
+    square.value = before * ordinates_[i - 1] + after * ordinates_[i];
+    square.of[at] = before;
+    square.of[at + 1] = after;
+    slope.value = (ordinates_[i] - ordinates_[i - 1]) * sum;
+    slope.of[at] = -sum;
+    slope.of[at + 1] = sum;
+  };
+  // At an end of all: as given, or R is constant in the interval.
+  const auto end = [&](const std::optional<ReferencePace>& pace, Linear& square, Linear& slope) {
+    if (pace) {
+      square.value = pace->square;
+      slope.value = pace->slope;
+    } else {
+      square.value = ordinates_[k];
+      square.of[1] = 1;
+    }
+  };
+  if (k == 0) {
+    end(request_->begin, shape.square[0], shape.slope[0]);
+  } else {
+    knot(k, 0, shape.square[0], shape.slope[0]);
+  }
+  if (k + 1 == n_) {
+    end(request_->end, shape.square[1], shape.slope[1]);
+  } else {
+    knot(k + 1, 1, shape.square[1], shape.slope[1]);
+  }
+  const double inverse = 1 / lengths[k];
+  shape.bend.value = (shape.slope[1].value - shape.slope[0].value) * inverse;
+  for (std::size_t i = 0; i < 3; ++i) shape.bend.of[i] = (shape.slope[1].of[i] - shape.slope[0].of[i]) * inverse;
+  return shape;
+}
+
+void PathPlanner::SettleEnds() noexcept {
+  const auto& begin = request_->begin;
+  const auto& end = request_->end;
+  ordinates_[0] = begin ? begin->square + begin->slope * request_->lengths[0] : ordinates_[1];
+  ordinates_[n_ - 1] = end ? end->square - end->slope * request_->lengths[n_ - 1] : ordinates_[n_ - 2];
+}
+
+void PathPlanner::Add(std::size_t k, double value, const std::array<double, 3>& gradient) noexcept {
+  Row& row = rows_[row_count_++];
+  row.value = value;
+  row.gradient = gradient;
+  row.first = static_cast<std::ptrdiff_t>(k) - 1;
+}
+
+void PathPlanner::MakeRows() noexcept {
+  row_count_ = 0;
+  for (std::size_t k = 0; k < n_; ++k) {
+    const Shape shape = ShapeOf(k);
+    const double f = tighten_[k];
+    for (std::size_t e = 0; e < 2; ++e) {
+      const Linear& b = shape.square[e];
+      const Linear& a = shape.slope[e];
+      const double root = 1 / std::sqrt(b.value);
+      const double root_slope = -0.5 * root / b.value;
+      // What holds at a knot is asked for once; a given pace is as it is.
+      const bool free_knot = e == 1 ? k + 1 < n_ || !request_->end : k == 0 && !request_->begin;
+      double cap = std::numeric_limits<double>::infinity();
+      for (std::size_t q = 0; q < count_; ++q) {
+        const ReferenceRate& rate = ends_[(2 * k + e) * count_ + q];
+        const RateLimits& l = request_->limits[q];
+        const double d1 = f * rate.first, d2 = f * rate.second, d3 = f * rate.third;
+        if (d1 != 0) cap = std::min(cap, l.velocity * l.velocity / (d1 * d1));
+        if (d1 == 0 && d2 == 0 && d3 == 0) continue;
+        if (std::isfinite(l.jerk)) {
+          const double value = d1 * shape.bend.value + 3 * d2 * a.value + d3 * b.value;
+          std::array<double, 3> up{}, down{};
+          for (std::size_t i = 0; i < 3; ++i) {
+            const double own = d1 * shape.bend.of[i] + 3 * d2 * a.of[i] + d3 * b.of[i];
+            const double room = l.jerk * root_slope * b.of[i];
+            up[i] = room - own;
+            down[i] = room + own;
+          }
+          Add(k, l.jerk * root - value, up);
+          Add(k, l.jerk * root + value, down);
+        }
+        if (!free_knot || !std::isfinite(l.acceleration + l.deceleration)) continue;
+        std::array<double, 3> up{}, down{};
+        for (std::size_t i = 0; i < 3; ++i) {
+          down[i] = d1 * a.of[i] + d2 * b.of[i];
+          up[i] = -down[i];
+        }
+        const double value = d1 * a.value + d2 * b.value;
+        Add(k, l.acceleration - value, up);
+        Add(k, l.deceleration + value, down);
+      }
+      if (free_knot && std::isfinite(cap)) Add(k, cap - b.value, {-b.of[0], -b.of[1], -b.of[2]});
+    }
+    if (k > 0 && k + 1 < n_) Add(k, ordinates_[k], {0, 1, 0});
+  }
+}
+
+// LDLᵀ of the five-diagonal matrix between both ends; false: it is not positive definite.
+bool PathPlanner::SolveLinear() noexcept {
+  const std::size_t first = 1, last = n_ - 2;
+  for (std::size_t i = first; i <= last; ++i) {
+    if (!(diagonal_[i] > 0) || !std::isfinite(diagonal_[i])) return false;
+    const double l1 = i + 1 <= last ? next_[i] : 0;
+    const double l2 = i + 2 <= last ? second_next_[i] : 0;
+    const double m1 = l1 / diagonal_[i], m2 = l2 / diagonal_[i];
+    if (i + 1 <= last) {
+      diagonal_[i + 1] -= m1 * l1;
+      right_[i + 1] -= m1 * right_[i];
+    }
+    if (i + 2 <= last) {
+      next_[i + 1] -= m1 * l2;
+      diagonal_[i + 2] -= m2 * l2;
+      right_[i + 2] -= m2 * right_[i];
+    }
+    next_[i] = m1;
+    second_next_[i] = m2;
+  }
+  for (std::size_t i = last + 1; i-- > first;) {
+    step_[i] = right_[i] / diagonal_[i];
+    if (i + 1 <= last) step_[i] -= next_[i] * step_[i + 1];
+    if (i + 2 <= last) step_[i] -= second_next_[i] * step_[i + 2];
+  }
+  return true;
+}
+
+// One primal-dual step. False, with the ordinates as they were: rounding has spoilt it.
+bool PathPlanner::Step(double centring, double start_share, bool first) noexcept {
+  MakeRows();
+  const auto rows = std::span(rows_).first(row_count_);
+  for (auto* vector : {&diagonal_, &next_, &second_next_, &right_}) {
+    std::fill_n(vector->begin(), static_cast<std::ptrdiff_t>(n_), 0.0);
+  }
+  const auto of_row = [&](const Row& row, auto&& use) {  // its ordinates that there are
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::ptrdiff_t at = row.first + static_cast<std::ptrdiff_t>(i);
+      if (at >= 0 && at < static_cast<std::ptrdiff_t>(n_)) use(static_cast<std::size_t>(at), i);
+    }
+  };
+  // The time: h / √R at each knot, h half of both neighbours.
+  const std::span<const double> lengths = request_->lengths;
+  double time = 0;
+  for (std::size_t i = 1; i < n_; ++i) {
+    const double sum = 1 / (lengths[i - 1] + lengths[i]);
+    const double before = lengths[i] * sum, after = lengths[i - 1] * sum;
+    const double b = before * ordinates_[i - 1] + after * ordinates_[i];
+    double h = 0.5 * (lengths[i - 1] + lengths[i]);
+    if (i == 1 && !request_->begin) h += 0.5 * lengths[0];
+    if (i + 1 == n_ && !request_->end) h += 0.5 * lengths[n_ - 1];
+    const double f = h / std::sqrt(b);
+    const double slope = -0.5 * f / b, bend = 0.75 * f / (b * b);
+    time += f;
+    right_[i - 1] -= slope * before;
+    right_[i] -= slope * after;
+    diagonal_[i - 1] += bend * before * before;
+    diagonal_[i] += bend * after * after;
+    next_[i - 1] += bend * before * after;
+  }
+  if (!std::isfinite(time)) return false;
+  const double per_row = time / static_cast<double>(row_count_);
+  for (Row& row : rows) {
+    if (first) {
+      double scale = std::abs(row.value);
+      of_row(row, [&](std::size_t at, std::size_t i) { scale += std::abs(row.gradient[i] * ordinates_[at]); });
+      row.slack = std::max(row.value, start_share * scale + 1e-9);
+      row.multiplier = (start_share < 0.1 ? 0.02 : 1.0) * per_row / row.slack;
+    } else {
+      row.slack = std::max(row.slack, row.value);
+    }
+  }
+  gap_ = infeasible_ = 0;
+  std::copy_n(right_.begin(), n_, step_.begin());
+  for (const Row& row : rows) {
+    gap_ += row.multiplier * row.slack;
+    infeasible_ = std::max(infeasible_, 1 - row.value / row.slack);
+    of_row(row, [&](std::size_t at, std::size_t i) { step_[at] += row.multiplier * row.gradient[i]; });
+  }
+  if (!request_->begin) step_[1] += step_[0];
+  if (!request_->end) step_[n_ - 2] += step_[n_ - 1];
+  residual_ = 0;
+  for (std::size_t i = 1; i + 1 < n_; ++i) residual_ += std::abs(step_[i] * ordinates_[i]);
+  residual_ /= time;
+  const double target = std::max(centring * gap_ / static_cast<double>(row_count_), 0.3 * residual_ * per_row);
+  gap_ /= time;
+  for (const Row& row : rows) {
+    const double weight = row.multiplier / row.slack;
+    const double pull = target / row.slack - weight * (row.value - row.slack);
+    const auto& g = row.gradient;
+    of_row(row, [&](std::size_t at, std::size_t i) {
+      diagonal_[at] += weight * g[i] * g[i];
+      right_[at] += pull * g[i];
+      if (i + 1 < 3) next_[at] += weight * g[i] * g[i + 1];
+      if (i == 0) second_next_[at] += weight * g[0] * g[2];
+    });
+  }
+  if (!request_->begin) {
+    diagonal_[1] += 2 * next_[0] + diagonal_[0];
+    next_[1] += second_next_[0];
+    right_[1] += right_[0];
+  }
+  if (!request_->end) {
+    diagonal_[n_ - 2] += 2 * next_[n_ - 2] + diagonal_[n_ - 1];
+    next_[n_ - 3] += second_next_[n_ - 3];
+    right_[n_ - 2] += right_[n_ - 1];
+  }
+  if (!SolveLinear()) return false;
+  step_[0] = request_->begin ? 0 : step_[1];
+  step_[n_ - 1] = request_->end ? 0 : step_[n_ - 2];
+  primal_ = dual_ = 1;
+  for (Row& row : rows) {
+    row.change = row.value - row.slack;
+    of_row(row, [&](std::size_t at, std::size_t i) { row.change += row.gradient[i] * step_[at]; });
+    row.multiplier_change = (target - row.multiplier * row.change) / row.slack - row.multiplier;
+    if (-row.change * primal_ > kToBoundary * row.slack) primal_ = kToBoundary * row.slack / -row.change;
+    if (-row.multiplier_change * dual_ > kToBoundary * row.multiplier) {
+      dual_ = kToBoundary * row.multiplier / -row.multiplier_change;
+    }
+  }
+  for (std::size_t i = 1; i + 1 < n_; ++i) {
+    if (!std::isfinite(step_[i])) return false;
+    if (-step_[i] * primal_ > (1 - kLeastLeft) * ordinates_[i]) primal_ = (1 - kLeastLeft) * ordinates_[i] / -step_[i];
+  }
+  for (std::size_t i = 1; i + 1 < n_; ++i) ordinates_[i] += primal_ * step_[i];
+  SettleEnds();
+  for (Row& row : rows) {
+    row.slack += primal_ * row.change;
+    row.multiplier += dual_ * row.multiplier_change;
+  }
+  return true;
+}
+
+// Towards the least time from where the ordinates are, as far as steps lead.
+void PathPlanner::Solve(double start_share) noexcept {
+  double centring = 0.2;
+  for (int i = 0; i < kStepsPerRound && steps_ < kMostSteps; ++i) {
+    ++steps_;
+    if (!Step(centring, start_share, i == 0)) return;
+    if (gap_ < kPrecision && residual_ < kPrecision && infeasible_ < 1e-6) return;
+    const double share = std::min(primal_, dual_);
+    centring = share > 0.9 ? 0.1 : share > 0.5 ? 0.25 : share > 0.2 ? 0.5 : 0.8;
+  }
+}
+
+// The largest share of a limit that an interval uses; infinite where R is not above 0 or something is not finite.
+double PathPlanner::UseOf(std::size_t k) noexcept {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  const Shape shape = ShapeOf(k);
+  const double b = shape.square[0].value, a = shape.slope[0].value, bend = shape.bend.value;
+  const std::size_t width = 3 * count_;
+  double use = 0;
+  const auto shares = [&](int i) {
+    const double share = static_cast<double>(i) / kSamples;
+    const double way = share * request_->lengths[k];
+    const double slope = i == kSamples ? shape.slope[1].value : a + bend * way;
+    const double square = i == kSamples ? shape.square[1].value : b + way * (a + slope);
+    if (!(square > 0) || !std::isfinite(square)) return false;
+    const double rate = std::sqrt(square);
+    request_->motion.rates(request_->motion.owner, k, share, at_);
+    double* to = &signed_[static_cast<std::size_t>(i % 3) * width];
+    for (std::size_t q = 0; q < count_; ++q) {
+      const ReferenceRate& r = at_[q];
+      to[3 * q] = r.first * rate;
+      to[3 * q + 1] = r.first * slope + r.second * square;
+      to[3 * q + 2] = rate * (r.first * bend + 3 * r.second * slope + r.third * square);
+      if (!std::isfinite(to[3 * q] + to[3 * q + 1] + to[3 * q + 2])) return false;
+    }
+    return true;
+  };
+  for (int i = 0; i <= kSamples; ++i) {
+    if (!shares(i)) return kInfinite;
+    if (i < 2) continue;
+    for (std::size_t q = 0; q < count_; ++q) {
+      const RateLimits& l = request_->limits[q];
+      for (std::size_t order = 0; order < 3; ++order) {
+        const std::size_t at = 3 * q + order;
+        const auto value = [&](int j) { return signed_[static_cast<std::size_t>(j % 3) * width + at]; };
+        const double bent = kBetween * std::abs(value(i) - 2 * value(i - 1) + value(i - 2));
+        double high = std::max({value(i), value(i - 1), value(i - 2)});
+        double low = std::min({value(i), value(i - 1), value(i - 2)});
+        // What lies between samples counts where there may be an extreme: not where they rise or fall steadily.
+        const bool steady = (value(i) - value(i - 1)) * (value(i - 1) - value(i - 2)) > 0;
+        if (!steady || i == 2 || i == kSamples) {
+          high += bent;
+          low -= bent;
+        }
+        const double up = order == 1 ? l.acceleration : order == 0 ? l.velocity : l.jerk;
+        const double down = order == 1 ? l.deceleration : up;
+        use = std::max({use, high / up, -low / down});
+      }
+    }
+  }
+  return use;
+}
+
+// True: all are within. Else the intervals where they are not are tightened, and their neighbours.
+bool PathPlanner::Verify() noexcept {
+  most_use_ = 0;
+  for (std::size_t k = 0; k < n_; ++k) {
+    use_[k] = UseOf(k);
+    most_use_ = std::max(most_use_, use_[k]);
+  }
+  if (most_use_ <= 1) return true;
+  for (std::size_t k = 0; k < n_; ++k) {
+    double use = use_[k];
+    if (k > 0) use = std::max(use, use_[k - 1] > 1 ? use_[k - 1] : 0);
+    if (k + 1 < n_) use = std::max(use, use_[k + 1] > 1 ? use_[k + 1] : 0);
+    if (use > 1) tighten_[k] *= kTighter * std::min(use, 2.0);
+  }
+  return false;
+}
+
+void PathPlanner::Publish(PathPlan& out) const noexcept {
+  out.count_ = n_ + 1;
+  double reference = 0, time = 0;
+  for (std::size_t k = 0; k < n_; ++k) {
+    const Shape shape = ShapeOf(k);
+    out.knots_[k] = {reference, time, shape.square[0].value, shape.slope[0].value, shape.bend.value};
+    reference += request_->lengths[k];
+    time += Duration(request_->lengths[k], shape.square[0].value, shape.square[1].value, shape.bend.value);
+    if (k + 1 == n_) out.knots_[n_] = {reference, time, shape.square[1].value, shape.slope[1].value, shape.bend.value};
+  }
+}
+
+PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) noexcept {
+  request_ = &request;
+  n_ = request.lengths.size();
+  count_ = request.limits.size();
+  steps_ = 0;
+  most_use_ = 0;
+  if (n_ > most_intervals_ || count_ > most_coordinates_ || out.knots_.size() < n_ + 1)
+    return PathPlanStatus::kTooLarge;
+  if (n_ < 4 || count_ == 0 || request.motion.rates == nullptr) return PathPlanStatus::kInvalid;
+  at_.resize(count_);  // no larger than it was made
+  if (!Read()) return PathPlanStatus::kInvalid;
+  const double uniform = UniformSquare();
+  if (!(uniform > 0)) return PathPlanStatus::kInvalid;
+  for (std::size_t k = 0; k < n_; ++k) {
+    const double from_begin = request.begin ? static_cast<double>(k) / kFadeIntervals : 1;
+    const double from_end = request.end ? static_cast<double>(n_ - 1 - k) / kFadeIntervals : 1;
+    tighten_[k] = 1 + (1 / kPlanShare - 1) * std::min({1.0, from_begin, from_end});
+  }
+  double start = kOfUniform * uniform;
+  if (request.begin) start = std::max(start, kOfUniform * request.begin->square);
+  std::fill_n(ordinates_.begin(), n_, start);
+  SettleEnds();
+  if (ordinates_[0] > 0 && ordinates_[n_ - 1] > 0) {
+    double start_share = 0.1;
+    for (int round = 0; round < kVerifyRounds && steps_ < kMostSteps; ++round) {
+      Solve(start_share);
+      if (Verify()) {
+        Publish(out);
+        return PathPlanStatus::kPlanned;
+      }
+      start_share = 0.02;
+    }
+  }
+  if (request.begin || request.end) return PathPlanStatus::kNoPlan;
+  // A lower rate brings everything within that is only a little outside: shares of limits fall with it, or its square
+  // or cube.
+  if (most_use_ < kNearly) {
+    const double lower = (1 - kLowerRounding) / (most_use_ * most_use_);
+    for (std::size_t k = 0; k < n_; ++k) ordinates_[k] *= lower;
+    if (Verify()) {
+      Publish(out);
+      return PathPlanStatus::kPlanned;
+    }
+  }
+  // A rate low enough, the same everywhere.
+  double square = uniform;
+  for (int i = 0; i < kVerifyRounds; ++i) {
+    std::fill_n(ordinates_.begin(), n_, square);
+    if (Verify()) {
+      Publish(out);
+      return PathPlanStatus::kScaled;
+    }
+    square *= 0.9 / std::min(most_use_ * most_use_, 4.0);
+  }
+  return PathPlanStatus::kNoPlan;
+}
+
+}  // namespace takt::trajectory

@@ -1,0 +1,185 @@
+// Time along a path within limits of velocity, acceleration and jerk of the path and of every coordinate: an
+// interior-point method over a reference time.
+//
+// A reference motion over a reference time t gives each coordinate as q(t): where the path may stand it stands
+// (q' = q'' = 0), so nothing is singular there. It need not keep any limit. The plan says at which rate the reference
+// time passes: R(t) = (dt/dtime)², a quadratic spline, with the slope a = R'/2. Then
+//   velocity q' √R,   acceleration q' a + q'' R,   jerk √R (q' a' + 3 q'' a + q''' R).
+// Divided by √R the jerk limit becomes a row that is convex in R, and the inside of its linearisation lies inside of
+// it: Newton steps with rows linearised where they are stay within the true ones.
+//
+// Sources: the squared rate as variable: Verscheure et al., Time-Optimal Path Tracking for Robots: A Convex
+// Optimization Approach, IEEE TAC 54 (2009); third-order rows, linearised one after the other: arXiv 2105.15095 and
+// 2404.07889; primal-dual steps with slacks: Nocedal and Wright, Numerical Optimization, chapter 19. The reference
+// time, the fold of its ends and the check between knots are ours: with R constant in the first and the last interval
+// the motion begins and ends like the reference does, at another scale.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace takt::trajectory {
+
+// Derivatives of one coordinate of the reference motion by the reference time.
+struct ReferenceRate {
+  double first = 0;
+  double second = 0;
+  double third = 0;
+};
+
+// Limits of one coordinate, above 0; infinite: none. The deceleration bounds negative accelerations: of the path, those
+// at which its speed falls; of an axis it equals the acceleration.
+struct RateLimits {
+  double velocity = std::numeric_limits<double>::infinity();
+  double acceleration = std::numeric_limits<double>::infinity();
+  double deceleration = std::numeric_limits<double>::infinity();
+  double jerk = std::numeric_limits<double>::infinity();
+};
+
+// The reference motion. `rates` writes the derivatives of all coordinates at `share` (0 to 1) of an interval, at 0 and
+// 1 those of its inside. They have to be smooth within an interval: borders of pieces are knots.
+struct ReferenceMotion {
+  void (*rates)(const void* owner, std::size_t interval, double share, std::span<ReferenceRate> out) noexcept = nullptr;
+  const void* owner = nullptr;
+};
+
+// How fast the reference time passes at an end of a plan.
+struct ReferencePace {
+  double square = 1;  // R > 0
+  double slope = 0;   // R' / 2 [1/s]
+};
+
+struct PathPlanRequest {
+  std::span<const double> lengths;     // of the intervals of the reference time [s], > 0
+  std::span<const RateLimits> limits;  // of each coordinate
+  ReferenceMotion motion;
+  // At the beginning and at the end; none: the reference stands there, and so does the motion.
+  std::optional<ReferencePace> begin;
+  std::optional<ReferencePace> end;
+};
+
+enum class PathPlanStatus : std::uint8_t {
+  kPlanned,   // within the limits, as fast as the steps found
+  kScaled,    // within the limits: the reference motion at a constant rate, as no better plan was found
+  kInvalid,   // a number is not finite, a length or a limit is not above 0, or there are fewer than 4 intervals
+  kTooLarge,  // more intervals or coordinates than the planner has room for
+  kNoPlan,    // from or to the given pace no plan was found within the limits
+};
+
+// A place on a plan: the reference time and its derivatives by time.
+struct ReferenceState {
+  double time = 0;          // reference time [s]
+  double rate = 0;          // 1
+  double acceleration = 0;  // 1/s
+  double jerk = 0;          // 1/s²
+};
+
+// A plan: R at the knots, quadratic between them. Evaluation is pure.
+class PathPlan {
+ public:
+  explicit PathPlan(std::size_t intervals) : knots_(intervals + 1) {}
+
+  double duration() const noexcept { return count_ > 0 ? knots_[count_ - 1].at_s : 0; }  // s
+  std::size_t intervals() const noexcept { return count_ > 0 ? count_ - 1 : 0; }
+  // The pace at a knot, to go on from there with another plan.
+  ReferencePace pace(std::size_t knot) const noexcept { return {knots_[knot].square, knots_[knot].slope}; }
+  double knot_time(std::size_t knot) const noexcept { return knots_[knot].at_s; }  // s from the beginning
+  // At `time_s` from the beginning; before it and behind the end what is there, at the ends exactly.
+  ReferenceState At(double time_s) const noexcept;
+  // Of an interval at `share` (0 to 1) of its length.
+  ReferenceState Within(std::size_t interval, double share) const noexcept;
+
+ private:
+  friend class PathPlanner;
+  struct Knot {
+    double reference_s = 0;
+    double at_s = 0;
+    double square = 0;
+    double slope = 0;
+    double bend = 0;  // of the slope, up to the next knot
+  };
+  std::vector<Knot> knots_;
+  std::size_t count_ = 0;
+};
+
+// What holds for every plan handed out (kPlanned, kScaled), whatever was asked:
+//
+// Velocity, acceleration and jerk of every coordinate stay within its limits, to 1e-6 of them, if the rates are smooth
+// within the intervals: each interval is looked at in kSamples places, and what may lie between two of them is bounded
+// by their second differences.
+//
+// The plan begins and ends with the paces asked for, bit for bit, and covers the whole reference time. R is above 0 and
+// nothing is NaN. From rest to rest there always is a plan.
+//
+// With any other status `out` is untouched. Takes memory only when it is made; Plan neither allocates nor throws, and
+// its time is bounded by kMostSteps Newton steps, each linear in intervals times coordinates. Not for two threads at
+// once.
+class PathPlanner {
+ public:
+  static constexpr int kSamples = 16;
+  static constexpr int kMostSteps = 400;
+
+  PathPlanner(std::size_t intervals, std::size_t coordinates);
+
+  // `out` must have room for the intervals.
+  PathPlanStatus Plan(const PathPlanRequest& request, PathPlan& out) noexcept;
+
+  int steps() const noexcept { return steps_; }           // Newton steps of the last call
+  double most_use() const noexcept { return most_use_; }  // largest share of a limit that the last plan uses
+
+ private:
+  // A value that is linear in three neighbouring ordinates.
+  struct Linear {
+    double value = 0;
+    std::array<double, 3> of{};
+  };
+  // value >= 0 is asked for.
+  struct Row {
+    double value = 0;
+    std::array<double, 3> gradient{};
+    std::ptrdiff_t first = 0;  // the ordinate of gradient[0]
+    double slack = 0, change = 0;
+    double multiplier = 0, multiplier_change = 0;
+  };
+  // Of an interval: square and slope at both ends and the bend between, over the ordinates k - 1, k, k + 1.
+  struct Shape {
+    std::array<Linear, 2> square, slope;
+    Linear bend;
+  };
+
+  bool Read() noexcept;
+  double UniformSquare() noexcept;
+  Shape ShapeOf(std::size_t k) const noexcept;
+  void SettleEnds() noexcept;
+  void Add(std::size_t k, double value, const std::array<double, 3>& gradient) noexcept;
+  void MakeRows() noexcept;
+  void Solve(double start_share) noexcept;
+  bool Step(double centring, double start_share, bool first) noexcept;
+  bool SolveLinear() noexcept;
+  double UseOf(std::size_t k) noexcept;
+  bool Verify() noexcept;
+  void Publish(PathPlan& out) const noexcept;
+
+  const PathPlanRequest* request_ = nullptr;
+  std::size_t n_ = 0, count_ = 0;  // intervals, coordinates
+  std::size_t most_intervals_, most_coordinates_;
+  std::vector<ReferenceRate> ends_;  // of all coordinates at the beginning and at the end of each interval
+  std::vector<ReferenceRate> at_;    // of all coordinates
+  std::vector<double> ordinates_;    // c: R's control ordinate above the middle of each interval
+  std::vector<double> tighten_;      // factor of the rates of each interval
+  std::vector<double> use_;          // of the limits in each interval
+  std::vector<double> signed_;       // velocity, acceleration and jerk of all coordinates at three samples
+  std::vector<Row> rows_;
+  std::vector<double> diagonal_, next_, second_next_, right_, step_;
+  std::size_t row_count_ = 0;
+  int steps_ = 0;
+  double most_use_ = 0;
+  double gap_ = 0, residual_ = 0, infeasible_ = 0, primal_ = 0, dual_ = 0;  // of the last step
+};
+
+}  // namespace takt::trajectory
