@@ -16,6 +16,9 @@ namespace {
 
 constexpr double kWholeTurn = 2 * std::numbers::pi;
 constexpr double kSameAuxiliary = 1e-9;
+// A displacement up to this (mm or deg) does not count the length beside one a thousand times as long.
+constexpr double kTiny = 2e-4;
+constexpr double kTinyShare = 1e-3;
 // Sine of the angle between two sides of a triangle: less, and its points lie on a line.
 constexpr double kOnALine = 1e-7;
 // The same where start, centre and end shall say what plane they are in: less, and it would be that of their errors.
@@ -126,6 +129,11 @@ bool Finite(const Circle& circle) {
   return ToVector(circle.auxiliary_point).allFinite() && ToVector(circle.normal).allFinite();
 }
 
+// Whether a displacement is one, and the length may count it beside those that it drags along.
+bool Counts(double displacement, double least, double others) {
+  return displacement >= least && (displacement > kTiny || displacement >= kTinyShare * others);
+}
+
 }  // namespace
 
 Problem MakeLine(const Point& from, const Point& to, Segment& out) noexcept {
@@ -138,9 +146,9 @@ Problem MakeLine(const Point& from, const Point& to, Segment& out) noexcept {
   for (std::size_t i = 0; i < kMaxAuxiliaries; ++i) {
     furthest = std::max(furthest, std::abs(to.auxiliaries[i] - from.auxiliaries[i]));
   }
-  if (way.norm() >= kSame) {
+  if (Counts(way.norm(), kSame, std::max(turn, furthest))) {
     segment.length = way.norm();
-  } else if (turn >= kSameTurn) {
+  } else if (Counts(turn, kSameTurn, furthest)) {
     segment.measure = Measure::kTurn;
     segment.length = turn;
   } else if (furthest >= kSameAuxiliary) {

@@ -11,8 +11,9 @@
 
 namespace takt::path {
 
-// Straight on. Where the tool's way is less than kSame the segment counts its turn, where that is less than kSameTurn
-// the way of its auxiliary axes.
+// Straight on. The length counts the tool's displacement; where that is less than kSame, or up to 0.2 um and less than
+// a thousandth of the others, its turn; where the same holds of that (kSameTurn, 0.0002 deg), the displacement of the
+// auxiliary axes. What the length does not count moves evenly along with it.
 Problem MakeLine(const Point& from, const Point& to, Segment& out) noexcept;
 
 // Where nothing moves: a place as a segment, of which only the beginning is of use.
