@@ -7,8 +7,8 @@ master's position; two masters may be added. Let go, it keeps its velocity.
 import takt
 from takt import expect
 
-COMMANDS = ("gear_in", "gear_in_pos", "gear_out", "phasing_absolute", "phasing_relative", "combine_axes")
-ERRORS = (5, 6, 8, 10, 11, 13, 2006, 2007, 3004, 3005, 3010, 3018, 3019)
+COMMANDS = ("gear_in", "gear_in_pos", "gear_out", "phasing_absolute", "phasing_relative", "combine_axes", "straighten")
+ERRORS = (5, 6, 8, 10, 11, 13, 2006, 2007, 3004, 3005, 3010, 3018, 3019, 3101, 3102)
 SIGNALS = ("[xyz].set_position", "[xyz].set_velocity", "y.in_step", "z.in_step", "y.state", "z.state")
 
 

@@ -19,8 +19,9 @@ COMMANDS = (
     "finish_homing",
     "step_ref_flying_switch",
     "step_ref_flying_ref_pulse",
+    "abort_passive_homing",
 )
-ERRORS = (1, 2, 5, 10, 11, 13, 2004, 2005, 3005, 3006)
+ERRORS = (1, 2, 5, 8, 10, 11, 13, 2004, 2005, 3005, 3006)
 SIGNALS = ("x.set_position", "x.set_velocity", "x.reference", "x.homed", "x.state")
 
 

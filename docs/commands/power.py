@@ -1,14 +1,23 @@
 """Power, reset, emergency stop.
 
 An axis is switched on and off with power. A fault ends in ErrorStop, which only reset leaves; the emergency stop opens
-all loops at once and leaves the axes Disabled.
+all loops at once and leaves the axes Disabled; held, it keeps them so.
 """
 
 import takt
 from takt import expect
 
-COMMANDS = ("power", "reset", "stop_all", "emergency_stop", "fail_all_axes", "release", "renew")
-ERRORS = (5, 7, 11, 13, 2001, 2004, 2005, 2006, 2007, 3001, 3002, 3007, 3016)
+COMMANDS = (
+    "power",
+    "reset",
+    "stop_all",
+    "emergency_stop",
+    "release_emergency_stop",
+    "fail_all_axes",
+    "release",
+    "renew",
+)
+ERRORS = (5, 7, 11, 13, 2001, 2004, 2005, 2006, 2007, 3001, 3002, 3007, 3016, 3100)
 SIGNALS = ("x.set_velocity", "x.actual_position", "x.loop_closed", "x.state")
 
 

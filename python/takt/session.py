@@ -45,7 +45,7 @@ CLASSES: dict[str, type[Component]] = {
     for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace, Mover, Track, PlanarGroup, Environment, Part)
 }
 # What can be in the way, by the numbers that the engine has for it.
-OBJECTS = ("", "mover", "track", "planar_group", "environment", "part", "coordinate_system")
+OBJECTS = ("", "mover", "track", "planar_group", "environment", "part", "coordinate_system", "axis")
 
 
 IN_PROCESS = "the geometry of tracks is known in process only"
@@ -374,6 +374,8 @@ class Session(MachineCommands):
         feedback.object = self._object(object_kind, object_number) or feedback.object
         if error_id:
             sentence = why_refused(error_id, feedback.target, feedback.arguments, self._axes, self._movers) or sentence
+            if isinstance(feedback.object, Axis):
+                sentence = f"axis '{feedback.object.name}', which follows this one, failed"
         if not feedback._update(state, reached, error_id, sentence, cycle, value) or not feedback.final:
             return
         name = without_arguments(feedback.text)

@@ -122,6 +122,7 @@ def test_aliases_are_the_same_input_output_and_axis() -> None:
         assert (stop.Execute, stop().Done) == (True, True)
         status = plc.MC_ReadStatus(x, Enable=True)()
         assert (status.Disabled, status.Standstill, status.StandStill) == (True, False, False)
+        stop(Enable=False)
         x.power().wait()
         assert (status().Standstill, status.StandStill) == (True, True)
 

@@ -1,5 +1,6 @@
 // Commands as they arrive: carried out, buffered or refused.
 #include "takt/axis/cam_switch.h"
+#include "takt/axis/following.h"
 #include "takt/axis/override.h"
 #include "takt/axis/probe.h"
 #include "takt/axis/sequence.h"
@@ -82,6 +83,7 @@ Status TakeOver(const Context& c, const Request& r, State& s) {
 }
 
 Status SwitchOn(const Context& c, const Request& r, State& s) {
+  if (s.emergency == Emergency::kHeld) return Status::Failed(ErrorId::kEmergencyStop);
   if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
   if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
   if (s.loop_closed) {
@@ -99,6 +101,7 @@ Status SwitchOn(const Context& c, const Request& r, State& s) {
   Grant(c, r, s);
   if (!s.enable) s.enable_cycle = c.cycle.count;
   s.enable = true;
+  s.emergency = Emergency::kNone;
   s.direct_voltage_v = 0;
   return Status::Ok();
 }
@@ -175,16 +178,37 @@ Request* Find(Ticket ticket, State& s) {
 
 }  // namespace
 
+bool AsksToMove(const Command& command) noexcept {
+  return std::visit(
+      []<typename T>(const T& body) {
+        if constexpr (std::is_same_v<T, Power>) return body.enable;
+        constexpr bool kRests = std::is_same_v<T, Reset> || std::is_same_v<T, Halt> || std::is_same_v<T, Stop> ||
+                                std::is_same_v<T, HaltSuperimposed> || std::is_same_v<T, CamTableSelect> ||
+                                std::is_same_v<T, SetConstants> || std::is_same_v<T, WriteParameter> ||
+                                std::is_same_v<T, ReadParameter> || std::is_same_v<T, SetSoftLimits> ||
+                                std::is_same_v<T, SetPosition> || std::is_same_v<T, SetOverride> ||
+                                std::is_same_v<T, TouchProbe> || std::is_same_v<T, AbortTrigger> ||
+                                std::is_same_v<T, AbortPassiveHoming> || std::is_same_v<T, DigitalCamSwitch>;
+        return !kRests;
+      },
+      command);
+}
+
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept {
   Request request;
   Status status = MakeRequest(command, c.params, request);
   if (status.ok()) status = FindNamed(c, request);
+  if (status.ok() && s.leads && s.loop_closed && s.plc != PlcState::kErrorStop && AsksToMove(command)) {
+    status = FollowersReady(c, s);
+  }
   if (status.ok() && request.kind == RequestKind::kNone) {
     status = std::visit([&](const auto& body) { return CarryOut(c, ticket, body, s); }, command);
   } else if (status.ok()) {
     request.ticket = ticket;
     request.lease_s = lease_s;
     status = Admit(c, request, s);
+    const bool halts = request.kind == RequestKind::kHalt || request.kind == RequestKind::kStop;
+    if (halts && status.ok()) EndFlyingByHalt(c, s);
   }
   if (status.failed()) Report(c, ticket, FeedbackState::kError, status.error);
 }

@@ -192,6 +192,7 @@ void StayOpen(const Context& c, State& s) {
   s.torque = TorqueState{};
   s.setpoint = {s.actual.position, 0, 0};
   AwaitDrive(c, s);
+  if (s.loop_closed && c.params.follows) Follow(c, s);  // a member of a gantry is one from its first cycle on
 }
 
 // The next set point of the motion in progress. What is unlikely is laid out of the way of a move with an end.
@@ -219,6 +220,7 @@ void FinishReset(const Context& c, State& s) {
     return;
   }
   s.error = ErrorId::kNone;
+  s.fault_of = kNoAxis;
   Trust(s.encoder);
   if (s.plc == PlcState::kErrorStop) {
     Enter(s, s.loop_closed ? PlcState::kStandstill : PlcState::kDisabled);
@@ -226,10 +228,33 @@ void FinishReset(const Context& c, State& s) {
   Report(c, s.reset_ticket, FeedbackState::kDone);
 }
 
+// Limit switches and faults may have ramps of their own, but none that are gentler than the axis' (AX-112). A SW limit
+// is braked for in time: with the limits of the axis.
+trajectory::Limits StopLimits(const AxisParams& p, ErrorId error) {
+  trajectory::Limits limits = p.planner_limits();
+  if (error == ErrorId::kSoftLimitPositive || error == ErrorId::kSoftLimitNegative) return limits;
+  const bool at_switch = error == ErrorId::kLimitSwitchPositive || error == ErrorId::kLimitSwitchNegative;
+  const StopRamp& ramp = at_switch ? p.limit_stop : p.fault_stop;
+  limits.deceleration = std::max(limits.deceleration, ramp.deceleration.value_or(0));
+  if (limits.jerk != 0 && ramp.jerk) limits.jerk = *ramp.jerk == 0 ? 0 : std::max(limits.jerk, *ramp.jerk);
+  return limits;
+}
+
+// A ramp of its own is stronger than any that planning would take for the axis'.
+void BrakeInFault(const Context& c, ErrorId error, State& s) {
+  const trajectory::Limits own = c.params.planner_limits();
+  const trajectory::Limits limits = StopLimits(c.params, error);
+  if (limits.deceleration == own.deceleration && limits.jerk == own.jerk) return Brake(c, own, FromCycleBefore(c), s);
+  trajectory::Profile profile{s.setpoint};
+  c.planner.Stop(s.setpoint, limits, profile);
+  StartMotion(profile, profile.end().position, FromCycleBefore(c), s);
+}
+
 }  // namespace
 
 State MakeState(const AxisParams& params) noexcept {
   State s;
+  s.system = params.planner_limits();
   s.homing.homed = params.encoder.type == EncoderType::kAbsoluteSsi;
   s.motion.arrived = true;
   return s;
@@ -273,6 +298,7 @@ void Sense(const Context& c, const ServoInputs& in, State& s, const Sampling& sa
 void Move(const Context& c, State& s) noexcept {
   s.end_of_profile = false;
   Supervise(c, s);
+  if (c.params.follows) WatchSkew(c, s);
   // What seldom happens is asked for here: a call that finds nothing to do would cost as much as the set point.
   if (s.homing.flying_ticket != 0) WatchFlying(c, s);
   if (s.probe.watch != ProbeWatch::kNothing) FollowProbe(c, s);
@@ -345,7 +371,7 @@ void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
     AbortBuffer(c, s);
     AbortOverlay(c, FeedbackState::kError, error, s);
     Enter(s, PlcState::kErrorStop);
-    if (!opens) Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);
+    if (!opens) BrakeInFault(c, error, s);
   }
   if (!opens) return;
   if (IsGuided(s)) s.active = Request{};
@@ -358,7 +384,13 @@ void EmergencyStop(const Context& c, State& s) noexcept {
   OpenLoop(s);
   s.direct_voltage_v = 0;
   s.error = ErrorId::kNone;
+  s.fault_of = kNoAxis;
+  s.emergency = Emergency::kHeld;
   Enter(s, PlcState::kDisabled);
+}
+
+void ReleaseEmergencyStop(State& s) noexcept {
+  if (s.emergency == Emergency::kHeld) s.emergency = Emergency::kStopped;
 }
 
 void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
@@ -384,9 +416,16 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.homed = s.homing.homed;
   out.end_of_profile = s.end_of_profile;
   out.profile_ends = s.profile_ends;
+  out.drive_heard = s.sampling.link == DriveLink::kHeard;
+  out.drive_ready = s.drive_ready;
+  out.skew = s.skew.measured;
+  out.skewed = p.follows && s.skew.known && std::abs(s.skew.measured) > p.follows->skew_warning.value_or(HUGE_VAL);
+  out.emergency_stopped = s.emergency != Emergency::kNone;
+  out.fault_of = s.fault_of == kNoAxis ? 0 : s.fault_of + 1;
   const bool coupled = Couples(s.active.kind);
   const auto& terms = s.coupling.law.terms;
-  out.in_step = (coupled && s.coupling.in_step) || (s.active.kind == RequestKind::kGuided && s.guidance.chase.in_step);
+  out.in_step = (s.coupled && InStep(p, s)) || (coupled && s.coupling.in_step) ||
+                (s.active.kind == RequestKind::kGuided && s.guidance.chase.in_step);
   out.synchronizing = coupled && !out.in_step && s.coupling.joining != Joining::kWaiting;
   out.master1 = coupled ? terms[0].master + 1 : 0;  // none: 0
   out.master2 = coupled ? terms[1].master + 1 : 0;

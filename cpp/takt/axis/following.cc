@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "takt/axis/coordinates.h"
+#include "takt/axis/request_maker.h"
 #include "takt/axis/sequence.h"
 
 namespace takt::axis {
@@ -35,29 +37,196 @@ std::string CannotFollow(const AxisParams& follower, const AxisParams& master) {
   return std::string("expected a limit of ") + what + " not below that of axis " + master.name + " times the ratio";
 }
 
+namespace {
+
+// Of the axis with this number among all of a machine. The two are the same axis if their parameters are.
+template <typename Visit>
+void ForFollowers(const Context& c, const Visit& visit) {
+  for (std::size_t i = 0; i < c.machine.params.size(); ++i) {
+    const AxisParams& p = c.machine.params[i];
+    if (p.follows && p.follows->axis == c.params.name) visit(p, c.machine.states[i]);
+  }
+}
+
+// Where the master has it without a skew.
+double Due(const Context& c, const State& s) {
+  return c.params.follows->ratio * Total(*c.master) + s.follow_offset - s.origin;
+}
+
+// Set points that lie so close to one another belong together.
+bool IsStraight(const AxisParams& p, const State& s) {
+  return std::abs(s.skew.commanded) <= p.follows->in_step && !s.skew.straightens;
+}
+
+void EndStraightening(const Context& c, FeedbackState end, State& s) {
+  s.skew.straightens = false;
+  if (s.skew.ticket != 0) Report(c, s.skew.ticket, end);
+  s.skew.ticket = 0;
+}
+
+// The skew of this cycle, with its derivatives.
+KinematicState Skew(const Context& c, State& s) {
+  if (!s.skew.straightens) return {s.skew.commanded, 0, 0};
+  const double t = static_cast<double>(c.cycle.count - s.skew.start_cycle) * c.cycle.period_s;
+  const KinematicState now = s.skew.way.At(t);
+  s.skew.commanded = now.position;
+  if (t >= s.skew.way.duration()) EndStraightening(c, FeedbackState::kDone, s);
+  return now;
+}
+
+bool BeginStraightening(const Context& c, double velocity, State& s) {
+  trajectory::Limits limits = c.params.planner_limits();
+  limits.velocity = velocity;
+  if (c.planner.ToPosition({s.skew.commanded, 0, 0}, 0, 0, limits, s.skew.way).failed()) return false;
+  s.skew.straightens = true;
+  s.skew.start_cycle = c.cycle.count - 1;
+  return true;
+}
+
+bool Couple(const Context& c, State& s) {
+  const State& master = *c.master;
+  if (s.plc != PlcState::kStandstill || !master.loop_closed || !AtRest(master) || !master.motion.arrived) return false;
+  if (!s.skew.known) {
+    s.skew.known = true;
+    s.follow_offset =
+        c.params.follows->offset.value_or(s.setpoint.position + s.origin - c.params.follows->ratio * Total(master));
+  }
+  s.skew.commanded = s.setpoint.position - Due(c, s);
+  s.coupled = true;
+  Enter(s, PlcState::kSynchronizedMotion);
+  return true;
+}
+
+// While the master searches its reference switch this axis looks for its own. Once both are found they are one place:
+// the offset is what lies between them, and what is left is the skew.
+void WatchSquaring(const Context& c, State& s) {
+  const HomingState& search = c.master->homing;
+  SkewState& skew = s.skew;
+  const bool searches = c.master->active.kind == RequestKind::kStepAbsSwitch && search.stage == HomingStage::kSearching;
+  const bool fresh = skew.edge_cycle < search.begin_cycle;
+  if (searches && fresh &&
+      EndsSearch(c.master->active.homing.switch_mode, s.reference, skew.reference_before, search.sense)) {
+    skew.edge = s.actual.position + s.origin;
+    skew.edge_cycle = c.cycle.count;
+  }
+  skew.reference_before = s.reference;
+  if (!s.coupled || search.found_cycle <= skew.squared_cycle || search.found_cycle != c.cycle.count) return;
+  skew.squared_cycle = search.found_cycle;
+  const double ratio = c.params.follows->ratio;
+  const double offset = skew.edge - ratio * search.edge;
+  skew.commanded += s.follow_offset - offset;  // nothing moves by it
+  s.follow_offset = offset;
+  ShiftCoordinates(ratio * c.master->setpoint.position - Due(c, s), s);  // it is called as its master is
+  s.homing.homed = true;
+  BeginStraightening(c, 0.1 * c.params.limits.velocity, s);
+}
+
+// Comes to rest by itself: there is no set point to follow any more.
+void Uncouple(const Context& c, State& s) {
+  s.coupled = false;
+  if (!s.loop_closed) return;
+  if (s.plc == PlcState::kSynchronizedMotion) {
+    return ComeToRest(c, c.params.planner_limits(), FromCycleBefore(c), s);
+  }
+  Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);  // in a fault, or being switched off
+}
+
+}  // namespace
+
 bool Follow(const Context& c, State& s) noexcept {
-  if (!c.params.follows || !c.master) return false;
+  if (!c.master) return false;
+  if (s.coupled && !c.master->loop_closed) Uncouple(c, s);
+  // A fault that left the loop closed was reset.
+  if (s.coupled && s.plc == PlcState::kStandstill) Enter(s, PlcState::kSynchronizedMotion);
+  if (!s.coupled && !Couple(c, s)) return false;
   const State& master = *c.master;
   const double ratio = c.params.follows->ratio;
-  if (!s.coupled && s.plc == PlcState::kStandstill && master.loop_closed && AtRest(master) && master.motion.arrived) {
-    s.coupled = true;
-    s.follow_offset = s.setpoint.position + s.origin - ratio * Total(master);
-    Enter(s, PlcState::kSynchronizedMotion);
-  }
-  if (!s.coupled) return false;
-  if (s.plc != PlcState::kSynchronizedMotion) {  // a fault or power off has taken over
-    s.coupled = false;
-    return false;
-  }
-  if (!master.loop_closed) {  // nothing to follow any more: come to rest
-    s.coupled = false;
-    ComeToRest(c, c.params.planner_limits(), FromCycleBefore(c), s);
-    return false;
-  }
-  s.setpoint = {ratio * Total(master) + s.follow_offset - s.origin, ratio * master.setpoint.velocity,
-                ratio * master.setpoint.acceleration};
+  const KinematicState skew = Skew(c, s);
+  s.setpoint = {Due(c, s) + skew.position, ratio * master.setpoint.velocity + skew.velocity,
+                ratio * master.setpoint.acceleration + skew.acceleration};
   if (!AtRest(s)) s.motion.arrived_cycle = c.cycle.count;
+  const bool switches_off = s.active.kind == RequestKind::kPower && !s.active.enable;
+  if (switches_off && AtRest(s)) Conclude(c, 0, s);
   return true;
+}
+
+bool InStep(const AxisParams& p, const State& s) noexcept {
+  const double off = s.skew.measured - s.skew.commanded;
+  return s.plc == PlcState::kSynchronizedMotion && IsStraight(p, s) &&
+         std::abs(off) <= p.follows->largest_skew.value_or(HUGE_VAL);
+}
+
+void WatchSkew(const Context& c, State& s) noexcept {
+  if (!c.master) return;
+  SkewState& skew = s.skew;
+  if (!s.loop_closed) s.coupled = false;
+  if (!s.coupled && skew.straightens) EndStraightening(c, FeedbackState::kAborted, s);
+  if (c.params.follows->square) WatchSquaring(c, s);
+  if (!skew.known) return;
+  const State& master = *c.master;
+  // As of the cycle before, both: the master may have made its step already.
+  const double due = c.params.follows->ratio * (master.actual.position + master.origin) + s.follow_offset - s.origin;
+  skew.measured = s.actual.position - due;
+  const auto& largest = c.params.follows->largest_skew;
+  if (largest && s.coupled && std::abs(skew.measured - skew.commanded) > *largest) Fail(c, ErrorId::kSkew, false, s);
+}
+
+Status FollowersReady(const Context& c, const State& s) noexcept {
+  bool ready = true;
+  if (!s.leads) return Status::Ok();
+  ForFollowers(c, [&](const AxisParams& p, const State& follower) {
+    ready &= follower.coupled && follower.plc == PlcState::kSynchronizedMotion && IsStraight(p, follower);
+  });
+  return ready ? Status::Ok() : Status::Failed(ErrorId::kNotInStep);
+}
+
+bool FollowersFound(const Context& c, const State& s) noexcept {
+  bool found = true;
+  if (!s.leads) return found;
+  ForFollowers(c, [&](const AxisParams& p, const State& follower) {
+    found &= !p.follows->square || follower.skew.edge_cycle >= s.homing.begin_cycle;
+  });
+  return found;
+}
+
+bool FollowersSquared(const Context& c, const State& s) noexcept {
+  bool straight = true;
+  if (!s.leads || !s.homing.found) return straight;
+  ForFollowers(c, [&](const AxisParams& p, const State& follower) {
+    straight &= !p.follows->square || !follower.skew.straightens;
+  });
+  return straight;
+}
+
+bool FollowerOnLimit(const Context& c, const State& s, int sense) noexcept {
+  bool on = false;
+  if (!s.leads) return on;
+  ForFollowers(c, [&](const AxisParams& p, const State& follower) {
+    on |= (p.follows->ratio > 0) == (sense > 0) ? follower.limit_positive : follower.limit_negative;
+  });
+  return on;
+}
+
+bool Fill(const Maker& m, const Straighten& straighten) {
+  double velocity = 0;
+  return m.Take("velocity", straighten.velocity, m.params.limits.velocity, velocity);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const Straighten& straighten, State& s) noexcept {
+  constexpr double kShare = 0.1;  // of the largest velocity, where none is given
+  if (!c.params.follows || !c.master) return Status::Failed(ErrorId::kState);
+  if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
+  if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
+  const State& master = *c.master;
+  const bool stands = AtRest(master) && master.active.kind == RequestKind::kNone && !master.superimposed;
+  if (!s.coupled || s.plc != PlcState::kSynchronizedMotion || !stands) return Status::Failed(ErrorId::kState);
+  if (s.skew.straightens) return Status::Failed(ErrorId::kState);
+  if (!BeginStraightening(c, straighten.velocity.value_or(kShare * c.params.limits.velocity), s)) {
+    return Status::Failed(ErrorId::kPlanning);
+  }
+  s.skew.ticket = ticket;
+  Report(c, ticket, FeedbackState::kActive);
+  return Status::Ok();
 }
 
 }  // namespace takt::axis

@@ -1,4 +1,11 @@
-// Axes that follow a master from load on, in the same cycle, without a loop of their own around it.
+// Axes that follow a master from load on (gantry, line shaft), in the same cycle, without a loop of their own around
+// it.
+//
+// A follower whose loop is closed is coupled to a master whose loop is closed, in every state: its set point is the
+// master's times the ratio, plus an offset that belongs to the machine, plus the skew of the set points. The offset is
+// found once and never again by power on: where a follower stands elsewhere when it is powered, that is a skew. The
+// skew stays as it is until it is straightened, and a master with a skewed or unpowered follower takes no motion. So
+// members cannot move against one another, but where a drive fails to follow its set point; and that is watched.
 #pragma once
 
 #include <string>
@@ -14,5 +21,24 @@ std::string CannotFollow(const AxisParams& follower, const AxisParams& master);
 // False: not coupled, the axis goes on by itself. A follower never leaves its limits: they were held against the
 // master's at load.
 bool Follow(const Context& context, State& state) noexcept;
+
+// A coupled axis is where its master has it, and well.
+bool InStep(const AxisParams& params, const State& state) noexcept;
+
+// Every cycle of an axis that follows: measures the skew and watches it.
+void WatchSkew(const Context& context, State& state) noexcept;
+
+// Whether all that follow this axis from load on are powered, well and in step (kNotInStep). Ok: nothing follows it.
+Status FollowersReady(const Context& context, const State& state) noexcept;
+
+// Whether an axis that follows this one is on a limit switch that lies ahead in this sense.
+bool FollowerOnLimit(const Context& context, const State& state, int sense) noexcept;
+
+// While this axis searches its reference switch: all that are squared by it have found theirs ...
+bool FollowersFound(const Context& context, const State& state) noexcept;
+// ... and, it being found, stand straight.
+bool FollowersSquared(const Context& context, const State& state) noexcept;
+
+Status CarryOut(const Context& context, Ticket ticket, const Straighten& command, State& state) noexcept;
 
 }  // namespace takt::axis

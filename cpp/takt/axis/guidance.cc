@@ -1,5 +1,6 @@
 #include "takt/axis/guidance.h"
 
+#include "takt/axis/following.h"
 #include "takt/axis/sequence.h"
 #include "takt/core/describe.h"
 
@@ -13,7 +14,7 @@ Status MayGuide(const Context& c, const State& s) {
   if (c.params.follows || s.plc == PlcState::kHoming) return Status::Failed(ErrorId::kState);
   if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
   if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
-  return Status::Ok();
+  return FollowersReady(c, s);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "takt/axis/coordinates.h"
 #include "takt/axis/fit.h"
+#include "takt/axis/following.h"
 #include "takt/axis/sequence.h"
 
 namespace takt::axis {
@@ -108,12 +109,19 @@ std::optional<HomingEvent> EventOf(const Context& c, State& s) {
       const bool on = SwitchOf(r, s);
       const Edge edge = {on && !h.switch_before, !on && h.switch_before};
       h.switch_before = on;
-      if (Ends(r.homing.switch_mode, on, edge, h.sense)) {
+      if (!h.found && Ends(r.homing.switch_mode, on, edge, h.sense)) {
         h.captured = s.actual.position;
+        h.found = true;
+        h.edge = s.actual.position + s.origin;
+      }
+      // On until those that follow have found theirs.
+      const bool waits = h.found && r.kind == RequestKind::kStepAbsSwitch && !FollowersFound(c, s);
+      if (h.found && !waits) {
+        h.found_cycle = c.cycle.count;
         return HomingEvent::kFound;
       }
-      if (Reverses(r.homing.switch_mode, edge)) return HomingEvent::kWrongEdge;
-      if (LimitAhead(s, h.sense)) return HomingEvent::kLimit;
+      if (!waits && Reverses(r.homing.switch_mode, edge)) return HomingEvent::kWrongEdge;
+      if (LimitAhead(s, h.sense)) return waits ? HomingEvent::kTooFar : HomingEvent::kLimit;
     } else if (r.kind == RequestKind::kStepRefPulse && s.index_pulse) {
       h.captured = PulsePosition(c, s);
       return HomingEvent::kFound;
@@ -130,11 +138,13 @@ std::optional<HomingEvent> EventOf(const Context& c, State& s) {
     if (r.homing.distance_limit > 0 && h.way > r.homing.distance_limit) return HomingEvent::kTooFar;
     if (h.turns > kMostTurns) return HomingEvent::kTooFar;
   }
-  if (h.stage != HomingStage::kSearching && s.motion.arrived && AtRest(s)) return HomingEvent::kStopped;
+  const bool stands = h.stage != HomingStage::kSearching && s.motion.arrived && AtRest(s);
+  if (stands && FollowersSquared(c, s)) return HomingEvent::kStopped;
   return std::nullopt;
 }
 
 void Search(const Context& c, const MotionStart& start, State& s) {
+  s.homing.found = false;
   Profile profile{s.setpoint};
   if (c.planner.ToVelocity(s.setpoint, s.homing.sense * s.active.velocity, s.active.limits(), profile).failed()) {
     return Fail(c, ErrorId::kPlanning, false, s);
@@ -221,6 +231,7 @@ void Act(const Context& c, const HomingRow& row, State& s) {
 Status BeginFlying(const Context& c, Ticket ticket, bool pulse, const HomingRequest& request, State& s) {
   if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
   if (s.plc == PlcState::kHoming || s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kState);
+  if (!Inside(c.params.limits, request.set_position)) return Status::Failed(ErrorId::kTargetBehindLimit);
   HomingState& h = s.homing;
   if (h.flying_ticket != 0) Report(c, h.flying_ticket, FeedbackState::kAborted);
   h.flying_ticket = ticket;
@@ -251,6 +262,10 @@ void EndFlying(const Context& c, FeedbackState feedback, ErrorId error, State& s
 
 }  // namespace
 
+bool EndsSearch(SwitchMode mode, bool on, bool before, int sense) noexcept {
+  return Ends(mode, on, {on && !before, !on && before}, sense);
+}
+
 bool Homes(RequestKind kind) noexcept {
   return kind >= RequestKind::kStepAbsSwitch && kind <= RequestKind::kFinishHoming;
 }
@@ -280,6 +295,10 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
   if (Searches(r.kind) && !BySwitch(r.kind) && LimitAhead(s, FirstSense(r, s))) {
     return Status::Failed(ErrorId::kAwayFromLimitOnly);
   }
+  // As define_position: no place beyond a SW limit.
+  const bool names =
+      r.homing.sets_position && r.kind != RequestKind::kFinishHoming && r.kind != RequestKind::kStepAbsolute;
+  if (names && !Inside(c.params.limits, r.homing.set_position)) return Status::Failed(ErrorId::kTargetBehindLimit);
   HomingState& h = s.homing;
   const MotionStart start = aborts ? FromCycleBefore(c) : FromThisCycle(c);  // a buffered one: this cycle is done
   Plan plan;
@@ -292,6 +311,7 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
     if (status.failed()) return status;
   }
   if (aborts) AbortAll(c, s);
+  if (h.flying_ticket != 0) EndFlying(c, FeedbackState::kAborted, ErrorId::kNone, s);  // this reference is newer
   Grant(c, r, s);
   Enter(s, PlcState::kHoming);
   s.limited_by = LimitedBy::kNothing;
@@ -372,6 +392,7 @@ Status CarryOut(const Context& c, Ticket ticket, const StepRefFlyingSwitch& f, S
   request.set_position = f.set_position;
   request.time_limit = f.time_limit;
   request.distance_limit = f.distance_limit;
+  request.until_halt = f.until_halt;
   return BeginFlying(c, ticket, false, request, s);
 }
 
@@ -380,7 +401,20 @@ Status CarryOut(const Context& c, Ticket ticket, const StepRefFlyingRefPulse& f,
   request.set_position = f.set_position;
   request.time_limit = f.time_limit;
   request.distance_limit = f.distance_limit;
+  request.until_halt = f.until_halt;
   return BeginFlying(c, ticket, true, request, s);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const AbortPassiveHoming&, State& s) noexcept {
+  if (s.homing.flying_ticket != 0) EndFlying(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  Report(c, ticket, FeedbackState::kActive);
+  Report(c, ticket, FeedbackState::kDone);
+  return Status::Ok();
+}
+
+void EndFlyingByHalt(const Context& c, State& s) noexcept {
+  if (s.homing.flying_ticket == 0 || !s.homing.flying.until_halt) return;
+  EndFlying(c, FeedbackState::kAborted, ErrorId::kNone, s);
 }
 
 }  // namespace takt::axis

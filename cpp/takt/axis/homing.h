@@ -91,6 +91,9 @@ struct HomingState {
   std::uint8_t turns = 0;      // how often it turned round
   double way = 0;              // u, gone since the step began
   std::uint64_t begin_cycle = 0;
+  bool found = false;             // its switch; those that follow it look for theirs
+  double edge = 0;                // u, over all turns: where it was
+  std::uint64_t found_cycle = 0;  // in which all had found theirs
 
   // References taken while another motion goes on.
   Ticket flying_ticket = 0;   // 0: none is awaited
@@ -111,6 +114,8 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
 void StepHoming(const Context& c, State& s) noexcept;
 // Each cycle in which a reference is awaited in passing (flying_ticket), before the set point is made.
 void WatchFlying(const Context& c, State& s) noexcept;
+// Whether this state or edge of a switch is what the search is for.
+bool EndsSearch(SwitchMode mode, bool on, bool before, int sense) noexcept;
 // The limit switches belong to the search for now: no fault.
 bool OwnsLimitSwitches(const State& s) noexcept;
 // The axis is meant to lag behind, pushing against an end stop: no fault.
@@ -118,6 +123,9 @@ bool OwnsLag(const State& s) noexcept;
 
 Status CarryOut(const Context& c, Ticket ticket, const StepRefFlyingSwitch& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const StepRefFlyingRefPulse& command, State& s) noexcept;
+Status CarryOut(const Context& c, Ticket ticket, const AbortPassiveHoming& command, State& s) noexcept;
+// A halt or stop has been given.
+void EndFlyingByHalt(const Context& c, State& s) noexcept;
 
 void describe(Enumeration<HomingStage>&);
 void describe(Enumeration<HomingEvent>&);

@@ -170,6 +170,7 @@ void describe(Description<HomingRequest>& d) {
   d.internal<&H::deviation>(unit::u, "Following error at an end stop.");
   d.internal<&H::time_limit>(unit::s, "Longest search; 0: any.");
   d.internal<&H::distance_limit>(unit::u, "Longest way; 0: any.");
+  d.internal<&H::until_halt>("A halt ends a search in passing.");
   d.internal<&H::ends>("The search of a switch ends homing.");
   d.internal<&H::pulse_velocity>(unit::u_s, "Of the search of the index pulse after it; 0: none.");
   d.internal<&H::pulse_direction>("Of that.");

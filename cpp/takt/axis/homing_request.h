@@ -15,6 +15,8 @@ struct HomingRequest {
   double time_limit = 0;      // s; 0: none
   double distance_limit = 0;  // u; 0: none
 
+  bool until_halt = false;  // in passing: a halt or a stop ends it
+
   // MC_Home: a step that ends homing, where it was to end the search of a switch after one of the index pulse.
   bool ends = false;
   double pulse_velocity = 0;  // u/s; 0: the switch itself is the reference

@@ -19,12 +19,15 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::probe_position>(unit::u, "Where the touch probe was captured last.");
   d.internal<&O::covered_distance>(unit::u, "By the motion on top of the one in progress; 0: there is none.");
   d.internal<&O::override_factor>(unit::one, "Velocity factor of the override; 0: held.");
+  d.internal<&O::skew>(unit::u,
+                       "Measured distance to where its master has it, of an axis that follows another from load on.");
   d.internal<&O::active_command>("Ticket of the command in control; 0: none.");
   d.internal<&O::error>("Fault of the axis, not of a command; 0: none.");
   d.internal<&O::state>("PLCopen state after the cycle; several transitions may lie in one.");
   d.internal<&O::limited_by>("What holds the motion in progress back from what was asked.");
   d.internal<&O::master1>("Number of the axis that it follows, from 1; 0: none.");
   d.internal<&O::master2>("The same of a second one.");
+  d.internal<&O::fault_of>("Number of the axis whose fault stopped this one, its master, from 1; 0: none.");
   d.internal<&O::buffered_commands>("Commands waiting behind the one in control.");
   d.internal<&O::loop_closed>("The position loop is closed and the brake released.");
   d.internal<&O::in_position>("The following error is inside the in-position window.");
@@ -34,6 +37,10 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::end_of_profile>("The end of its cam was passed in this cycle.");
   d.internal<&O::profile_ends>("How often the end of its cam was passed.");
   d.internal<&O::homed>("Its position is known: it has a reference.");
+  d.internal<&O::emergency_stopped>("An emergency stop switched it off, and nothing has switched it on since.");
+  d.internal<&O::drive_heard>("What is measured is of now; false: a drive in another process is silent.");
+  d.internal<&O::drive_ready>("The drive says that it is switched on.");
+  d.internal<&O::skewed>("Its skew is beyond follows.skew_warning.");
   d.internal<&O::limit_positive>("LIM+ after inversion.");
   d.internal<&O::limit_negative>("LIM- after inversion.");
   d.internal<&O::reference>("REF after inversion.");

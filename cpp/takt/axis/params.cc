@@ -65,6 +65,25 @@ void describe(Description<Following>& d) {
   d.required<&F::axis>("Name of the master.");
   d.defaulted<&F::ratio>("Own units per unit of the master; negative: the other way round.");
   d.rule<&F::ratio>("must not be 0", [](const F& f) { return f.ratio != 0; });
+  d.defaulted<&F::offset>(unit::u,
+                          "Its position where the master's is 0. Unset: as both stand when they are powered for the "
+                          "first time. Homing with a switch at each of them finds it anew.");
+  d.defaulted<&F::skew_warning>(unit::u, positive, "Measured skew from which the axis says skewed; unset: never.");
+  d.defaulted<&F::largest_skew>(unit::u, positive,
+                                "Largest difference of the measured skew from the commanded one; beyond it: ErrorStop "
+                                "3101, and all members stop. Unset: not watched.");
+  d.defaulted<&F::in_step>(unit::u, positive,
+                           "Skew up to which master and follower move; beyond it commands are refused with error 3102 "
+                           "until it is straightened.");
+  d.defaulted<&F::square>(
+      "It has a reference switch of its own: step_abs_switch of the master goes on until both have found theirs, and "
+      "what lies between them is the skew, which is straightened before the step is done.");
+}
+
+void describe(Description<StopRamp>& d) {
+  d.about("The ramp of a stop that nobody asked for. An axis never stops more gently than with its own limits.");
+  d.defaulted<&StopRamp::deceleration>(unit::u_s2, positive, "Deceleration; unset: that of the limits.");
+  d.defaulted<&StopRamp::jerk>(unit::u_s3, not_negative, "Jerk, 0: unlimited; unset: that of the limits.");
 }
 
 void describe(Description<AxisParams>& d) {
@@ -83,6 +102,8 @@ void describe(Description<AxisParams>& d) {
   d.defaulted<&A::requires_reference>("Refuse absolute moves with error 0009 until the axis is homed.");
   d.defaulted<&A::await_constants>("Refuse motion with error 0012 until GT_SetConstant was given.");
   d.defaulted<&A::follows>("The axis it follows, if any.");
+  d.defaulted<&A::fault_stop>("How it stops in a fault that leaves the loop closed.");
+  d.defaulted<&A::limit_stop>("How it stops on a limit switch or in front of a SW limit.");
   d.defaulted<&A::homing>("What MC_Home does.");
   d.rule<&A::homing>("must search no faster than the axis' largest velocity", [](const A& a) {
     return a.homing.velocity <= a.limits.velocity && a.homing.pulse_velocity.value_or(0) <= a.limits.velocity;

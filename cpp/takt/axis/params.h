@@ -55,8 +55,19 @@ struct InputSense {
 
 // A second axis on the same mechanics (gantry, line shaft): it follows a master from load on.
 struct Following {
-  std::string axis;  // name of the master
-  double ratio = 1;  // own u per master's u, not 0
+  std::string axis;                      // name of the master
+  double ratio = 1;                      // own u per master's u, not 0
+  std::optional<double> offset{};        // u, own position where the master's is 0; unset: as both are first powered
+  std::optional<double> skew_warning{};  // u, of what is measured
+  std::optional<double> largest_skew{};  // u, of what is measured against what is commanded; unset: not watched
+  double in_step = 0.1;                  // u, a skew of the set points up to which members may move
+  bool square = false;                   // homing the master by its reference switch squares by this axis' own
+};
+
+// Ramps of their own for stops that are not asked for (AX-112). Unset: as the limits of the axis.
+struct StopRamp {
+  std::optional<double> deceleration{};  // u/s²
+  std::optional<double> jerk{};          // u/s³; 0: unlimited
 };
 
 struct AxisParams {
@@ -73,6 +84,8 @@ struct AxisParams {
   bool requires_reference = false;  // absolute moves need a reference: error 0009 without one (AX-71)
   bool await_constants = false;     // no motion before GT_SetConstant: error 0012 (AX-27)
   std::optional<Following> follows;
+  StopRamp fault_stop;  // faults
+  StopRamp limit_stop;  // hardware and SW limits
   HomingParams homing;
 
   bool rotary() const { return kind == AxisKind::kRotary; }
@@ -108,6 +121,7 @@ void describe(Description<Supervision>&);
 void describe(Description<Drive>&);
 void describe(Description<InputSense>&);
 void describe(Description<Following>&);
+void describe(Description<StopRamp>&);
 void describe(Description<AxisParams>&);
 
 }  // namespace takt::axis

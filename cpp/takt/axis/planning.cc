@@ -82,7 +82,12 @@ double TakeOverSpeed(const AxisParams& params, const Request& request, double ta
     default:
       return 0;
   }
+  // A gear takes over from any velocity; homing begins at rest, and so does what follows a table.
+  const bool gear = next.kind == RequestKind::kGearIn;
+  if (gear)
+    return FastestThatStops(request.velocity, params.planner_limits(), RoomToLimit(params.limits, target, sense));
   const bool endless = next.kind == RequestKind::kMoveVelocity;
+  if (!endless && !next.positions()) return 0;
   if (endless && SenseOf(next, static_cast<std::int8_t>(sense)) != static_cast<int>(sense)) return 0;
   const Limits braking = endless ? params.planner_limits() : next.limits();
   const double room = endless ? RoomToLimit(params.limits, target, sense) : RoomToTarget(params, target, sense, next);
@@ -187,7 +192,7 @@ Profile Open(const AxisParams& params, Planner& planner, const KinematicState& f
 // inside the SW limits from there.
 bool PassAt(const AxisParams& params, Planner& planner, const KinematicState& from, double target, double sense,
             double speed, const Limits& limits, Profile& out) {
-  if (sense * from.velocity <= 0) return false;
+  if (sense * from.velocity < 0) return false;
   Limits ramps = limits;
   ramps.velocity = std::max(limits.velocity, speed);
   Profile whole;
@@ -215,6 +220,7 @@ bool PassAt(const AxisParams& params, Planner& planner, const KinematicState& fr
 // Left otherwise than planned: at `speed` if it can be, else braking.
 bool PlanPast(const AxisParams& params, Planner& planner, const KinematicState& from, double target, double sense,
               double speed, const Limits& limits, Profile& out) {
+  if (sense * from.velocity <= 0) return false;
   return PassAt(params, planner, from, target, sense, speed, limits, out) ||
          PassAt(params, planner, from, target, sense, 0, params.planner_limits(), out);
 }
@@ -238,6 +244,14 @@ Status PlanOn(const AxisParams& params, const Surroundings& around, Planner& pla
   } else if (next) {
     speed = TakeOverSpeed(params, request, out.target, sense, *next);
     if (speed == 0) out.limited_by = LimitedBy::kDistance;
+  }
+  // Too near to have its end velocity there, it passes as near to that as it can, and gets it beyond (AX-102).
+  if (request.continuous() && speed > 0) {
+    if (PlanLeaving(planner, from, out.target, sense, speed, limits, out)) return Status::Ok();
+    if (PassAt(params, planner, from, out.target, sense, speed, limits, out.profile)) {
+      out.limited_by = LimitedBy::kDistance;
+      return Status::Ok();
+    }
   }
   const Status status = speed > 0 ? PlanBlended(planner, from, out.target, sense, speed, limits, out)
                                   : PlanTo(planner, from, out.target, sense, 0, limits, out);

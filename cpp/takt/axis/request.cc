@@ -24,7 +24,7 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kMoveContinuousRelative, true, true, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kInch, false, false, false, PlcState::kDiscreteMotion},
     RequestRules{RequestKind::kTorqueControl, true, false, true, PlcState::kContinuousMotion},
-    RequestRules{RequestKind::kGearIn, true, false, false, PlcState::kSynchronizedMotion},
+    RequestRules{RequestKind::kGearIn, true, true, false, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kGearInPos, true, false, true, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kCombineAxes, true, false, true, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kCamIn, true, false, true, PlcState::kSynchronizedMotion},
@@ -32,13 +32,13 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kVelocityProfile, true, false, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kAccelerationProfile, true, false, true, PlcState::kContinuousMotion},
     RequestRules{RequestKind::kLetGo, false, false, true, PlcState::kContinuousMotion},
-    RequestRules{RequestKind::kStepAbsSwitch, true, false, true, PlcState::kHoming},
-    RequestRules{RequestKind::kStepLimitSwitch, true, false, true, PlcState::kHoming},
+    RequestRules{RequestKind::kStepAbsSwitch, true, true, true, PlcState::kHoming},
+    RequestRules{RequestKind::kStepLimitSwitch, true, true, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepBlock, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepRefPulse, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepDirect, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepAbsolute, true, false, true, PlcState::kHoming},
-    RequestRules{RequestKind::kFinishHoming, true, false, true, PlcState::kHoming},
+    RequestRules{RequestKind::kFinishHoming, true, true, true, PlcState::kHoming},
     RequestRules{RequestKind::kTouch, false, false, true, PlcState::kDiscreteMotion},
     RequestRules{RequestKind::kGuided, false, false, false, PlcState::kSynchronizedMotion},
 };
@@ -154,6 +154,22 @@ Status MakeRequest(const Command& command, const AxisParams& params, Request& ou
   return Status::Ok();
 }
 
+namespace {
+
+// The buffer modes that a command takes, for people.
+std::string ModesOf(const Command& command, const AxisParams& params) {
+  Request request;
+  Refusal refusal;
+  std::visit([maker = Maker{params, request, refusal}](const auto& c) { return Fill(maker, c); }, command);
+  const RequestRules& rules = RulesOf(request.kind);
+  std::string modes = "aborting";
+  if (rules.may_be_buffered) modes += rules.may_be_blended ? ", buffered" : " or buffered";
+  if (rules.may_be_blended) modes += " or one of the blending modes";
+  return modes;
+}
+
+}  // namespace
+
 std::string WhyNot(const Command& command, const AxisParams& params) {
   Request request;
   Refusal why;
@@ -162,6 +178,7 @@ std::string WhyNot(const Command& command, const AxisParams& params) {
   if (field == "master" && why.high == 0) return "master: expected the name of another axis than " + params.name;
   if (why.high == 0 && (field == "cam" || field == "profile")) return field + ": expected the name of a cam";
   if (field == "master_scaling") return "master_scaling: expected a number other than 0, at most 1e12 either way";
+  if (field == "buffer_mode") return "buffer_mode: expected " + ModesOf(command, params);
   if (why.high == 0) return field + ": expected another value, this command has no such " + field;
   const bool of_axis = field == "velocity" || field == "acceleration" || field == "deceleration" || field == "jerk" ||
                        field == "end_velocity";

@@ -50,6 +50,7 @@ struct Maker {
 
 bool Fill(const Maker& m, const Power& c);
 bool Fill(const Maker& m, const Reset& c);
+bool Fill(const Maker& m, const Straighten& c);
 bool Fill(const Maker& m, const MoveAbsolute& c);
 bool Fill(const Maker& m, const MoveRelative& c);
 bool Fill(const Maker& m, const MoveAdditive& c);

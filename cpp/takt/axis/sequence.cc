@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/axis/fit.h"
+#include "takt/axis/following.h"
 #include "takt/axis/promise.h"
 
 namespace takt::axis {
@@ -24,7 +25,7 @@ namespace {
 
 // A continuous move that has passed its position is a velocity.
 bool HasPassed(const State& s) {
-  return s.active.continuous() && s.reported;
+  return s.active.continuous() && s.passed;
 }
 
 // How far the positioning command in control has promised to get at most.
@@ -37,8 +38,8 @@ double FurthestOf(const Context& c, const State& s) {
 
 Surroundings SurroundingsOf(const Context& c, const State& s) noexcept {
   Surroundings around;
-  around.limit_positive = s.limit_positive;
-  around.limit_negative = s.limit_negative;
+  around.limit_positive = s.limit_positive || FollowerOnLimit(c, s, 1);
+  around.limit_negative = s.limit_negative || FollowerOnLimit(c, s, -1);
   around.homed = s.homing.homed;
   around.last_sense = s.last_sense;
   around.factors = s.override_factors;
@@ -142,24 +143,47 @@ Request Onward(const State& s) {
   return onward;
 }
 
-// On from the position of a continuous move that got there faster than it was to.
-void GoOn(const Context& c, double late_s, State& s) {
+// On from the position of a continuous move that got there with another velocity than it is to have.
+// kTargetBehindLimit: there is no room for that.
+Status GoOn(const Context& c, double late_s, State& s) {
   const KinematicState from = s.motion.profile.end();
   Plan plan;
-  if (PlanRequest(c.params, SurroundingsOf(c, s), c.planner, from, Onward(s), nullptr, plan).failed()) {
+  const Status status = PlanRequest(c.params, SurroundingsOf(c, s), c.planner, from, Onward(s), nullptr, plan);
+  if (status.failed()) {
     s.setpoint = from;
     Brake(c, c.params.planner_limits(), {c.cycle.count, late_s}, s);
   } else {
     plan.target = s.motion.target;
+    if (plan.limited_by == LimitedBy::kNothing) plan.limited_by = s.limited_by;  // until it is there
     StartMotion(plan, {c.cycle.count, late_s}, s);
   }
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
+  return status;
 }
 
+// The velocity that a continuous move goes on with, as the override has it.
+bool HasEndVelocity(const Context& c, const State& s) {
+  LimitedBy clamped = LimitedBy::kNothing;
+  const double due = Scaled(c.params, s.override_factors, s.active, clamped).end_velocity;
+  const KinematicState end = s.motion.profile.end();
+  return end.acceleration == 0 && std::abs(std::abs(end.velocity) - due) <= Rounding(due);
+}
+
+// Reached is its end velocity, beyond its position (AX-102).
 void ConcludeContinuous(const Context& c, double late_s, State& s) {
-  if (!s.reported) s.active.direction = s.last_sense < 0 ? Direction::kNegative : Direction::kPositive;
-  NoteReached(c, s);
-  if (s.motion.profile.end().acceleration != 0) GoOn(c, late_s, s);
+  const bool arrives = !s.passed;
+  s.passed = true;
+  if (arrives) s.active.direction = s.last_sense < 0 ? Direction::kNegative : Direction::kPositive;
+  if (!arrives || HasEndVelocity(c, s)) {
+    if (!s.reported && s.limited_by == LimitedBy::kDistance) s.limited_by = LimitedBy::kNothing;
+    NoteReached(c, s);
+  } else if (s.buffered == 0 || s.motion.profile.end().acceleration != 0) {
+    const Status status = GoOn(c, late_s, s);
+    if (status.failed() && s.buffered == 0) {
+      EndActive(c, FeedbackState::kError, status.error, s);
+      return ComeToRest(c, c.params.planner_limits(), FromThisCycle(c), s);
+    }
+  }
   GiveWay(c, s);
 }
 
@@ -174,13 +198,15 @@ void ConcludeVelocityProfile(const Context& c, double late_s, State& s) {
   if (s.buffered > 0) StartNext(c, late_s, s);
 }
 
+// Done when the next command may be given: at rest, and where it is not held, out of Stopping, which is seen for one
+// cycle at least.
 void ConcludeStop(const Context& c, State& s) {
-  if (!s.reported) {
+  const bool stays = s.active.hold || c.cycle.count == s.motion.arrived_cycle;
+  if (!s.reported && (s.active.hold || !stays)) {
     Report(c, s.active.ticket, FeedbackState::kDone);
     s.reported = true;
   }
-  // Stopping is seen for one cycle at least.
-  if (s.active.hold || c.cycle.count == s.motion.arrived_cycle) return;
+  if (stays) return;
   s.active = Request{};
   StartNext(c, 0, s);
 }
@@ -190,6 +216,7 @@ void ConcludeStop(const Context& c, State& s) {
 void Grant(const Context& c, const Request& request, State& s, double travel_s) noexcept {
   s.active = request;
   s.reported = false;
+  s.passed = false;
   s.lease_end_cycle = CycleIn(c.cycle, request.lease_s);
   Report(c, request.ticket, FeedbackState::kActive, ErrorId::kNone, false, travel_s);
 }
@@ -215,10 +242,15 @@ void BeginFollowing(const Context& c, const Request& request, const MotionStart&
 
 void EndActive(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
   const bool final_is_out = s.active.kind == RequestKind::kStop && s.reported;
-  if (s.active.kind != RequestKind::kNone && !final_is_out) Report(c, s.active.ticket, feedback, error);
+  if (s.active.kind != RequestKind::kNone && !final_is_out) {
+    FeedbackEvent end{s.active.ticket, c.cycle.count, feedback, false, error, 0};
+    if (error == ErrorId::kAxisFault && s.fault_of != kNoAxis) end.object = {ObjectKind::kAxis, s.fault_of + 1};
+    c.feedback.Report(end);
+  }
   if (Couples(s.active.kind)) Uncouple(c, feedback == FeedbackState::kError, s);
   s.active = Request{};
   s.reported = false;
+  s.passed = false;
   s.motion.held = false;
   s.jog_sense = 0;
 }
@@ -293,9 +325,14 @@ void StartNext(const Context& c, double late_s, State& s, bool committed) noexce
     Plan plan;
     const bool homes = Homes(next.kind);
     const bool follows = FollowsDemand(next.kind);
-    Status status = homes     ? BeginHoming(c, next, false, s)
-                    : follows ? MayFollow(c, next, s)
-                              : PlanRequest(c.params, around, c.planner, from, next, Follower(s), plan);
+    const bool begins = AtRest(s) && next.kind != RequestKind::kHalt && next.kind != RequestKind::kStop &&
+                        next.kind != RequestKind::kPower;
+    Status status = begins ? FollowersReady(c, s) : Status::Ok();
+    if (status.ok()) {
+      status = homes     ? BeginHoming(c, next, false, s)
+               : follows ? MayFollow(c, next, s)
+                         : PlanRequest(c.params, around, c.planner, from, next, Follower(s), plan);
+    }
     if (status.ok() && next.positions() && !Inside(c.params.limits, plan.target + AddedAtEnd(s)))
       status = Status::Failed(ErrorId::kTargetBehindLimit);
     if (status.ok() && homes) return;

@@ -75,6 +75,38 @@ Status SetLimits(const Context& c, Ticket ticket, const Watch& lower, const Watc
   return Done(c, ticket);
 }
 
+// A limit of the application (PLCopen's ...Appl): at most that of the machine file. Motions were planned with those
+// there are, so only while there is none; a follower keeps those that its master was held against.
+Status SetLimit(const Context& c, const WriteParameter& w, const State& s) {
+  if (c.params.follows || !AtRest(s) || s.active.kind != RequestKind::kNone || s.superimposed) {
+    return Status::Failed(ErrorId::kState);
+  }
+  AxisLimits& limits = c.params.limits;
+  const auto within = [&](double most) { return w.value > 0 && w.value <= most; };
+  switch (static_cast<Parameter>(w.number)) {
+    case Parameter::kMaxVelocity:
+      if (!within(s.system.velocity)) break;
+      limits.velocity = w.value;
+      return Status::Ok();
+    case Parameter::kMaxAcceleration:
+      if (!within(s.system.acceleration)) break;
+      limits.deceleration = limits.deceleration.value_or(limits.acceleration);  // it was that, and stays so
+      limits.acceleration = w.value;
+      return Status::Ok();
+    case Parameter::kMaxDeceleration:
+      if (!within(s.system.deceleration)) break;
+      limits.deceleration = w.value;
+      return Status::Ok();
+    default: {
+      const bool unlimited = s.system.jerk == 0;
+      if (!(unlimited ? w.value >= 0 : within(s.system.jerk))) break;
+      limits.jerk = w.value;
+      return Status::Ok();
+    }
+  }
+  return Status::Failed(ErrorId::kParameter);
+}
+
 bool IsYesOrNo(double value) {
   return value == 0 || value == 1;
 }
@@ -103,6 +135,7 @@ std::optional<double> ValueOf(const AxisParams& p, const State& s, std::int32_t 
     case Parameter::kMaxPositionLag:
       return OrInfinity(p.supervision.deviation_moving, s.dormant.lag);
     case Parameter::kMaxVelocitySystem:
+      return s.system.velocity;
     case Parameter::kMaxVelocity:
       return own.velocity;
     case Parameter::kActualVelocity:
@@ -110,12 +143,15 @@ std::optional<double> ValueOf(const AxisParams& p, const State& s, std::int32_t 
     case Parameter::kCommandedVelocity:
       return s.setpoint.velocity;
     case Parameter::kMaxAccelerationSystem:
+      return s.system.acceleration;
     case Parameter::kMaxAcceleration:
       return own.acceleration;
     case Parameter::kMaxDecelerationSystem:
+      return s.system.deceleration;
     case Parameter::kMaxDeceleration:
       return own.deceleration;
     case Parameter::kMaxJerkSystem:
+      return s.system.jerk;
     case Parameter::kMaxJerk:
       return own.jerk;
     case Parameter::kLoopKp:
@@ -188,6 +224,13 @@ Status CarryOut(const Context& c, Ticket ticket, const WriteParameter& w, State&
       if (!(w.value > 0)) return Status::Failed(ErrorId::kParameter);
       c.params.supervision.deviation_standstill = w.value;
       return Done(c, ticket);
+    case Parameter::kMaxVelocity:
+    case Parameter::kMaxAcceleration:
+    case Parameter::kMaxDeceleration:
+    case Parameter::kMaxJerk: {
+      const Status status = SetLimit(c, w, s);
+      return status.failed() ? status : Done(c, ticket);
+    }
     default:
       good = false;
   }

@@ -31,6 +31,29 @@ void describe(Description<Pulse>& d) {
   d.internal<&P::end_cycle>("When it is over.");
 }
 
+void describe(Enumeration<Emergency>& e) {
+  e.about("What an emergency stop has left behind.");
+  e.value(Emergency::kNone, "none", "Nothing.");
+  e.value(Emergency::kHeld, "held", "It is on.");
+  e.value(Emergency::kStopped, "stopped", "It is over, and the axis not powered since.");
+}
+
+void describe(Description<SkewState>& d) {
+  using K = SkewState;
+  d.about("Distance of an axis that follows another from load on to where its master has it.");
+  d.internal<&K::commanded>(unit::u, "Of the set points.");
+  d.internal<&K::measured>(unit::u, "Of what is measured.");
+  d.internal<&K::known>("Where it belongs is known.");
+  d.internal<&K::ticket>("Of the command that straightens it.");
+  d.internal<&K::straightens>("It is being straightened.");
+  d.internal<&K::start_cycle>("Since when.");
+  d.internal<&K::way>("From the skew to 0.");
+  d.internal<&K::edge>(unit::u, "Where its reference switch was found.");
+  d.internal<&K::edge_cycle>("When.");
+  d.internal<&K::squared_cycle>("Of the master's edge that it was squared by.");
+  d.internal<&K::reference_before>("Its reference switch a cycle ago.");
+}
+
 void describe(Description<State>& d) {
   using S = State;
   d.about("All memory of an axis.");
@@ -41,6 +64,7 @@ void describe(Description<State>& d) {
   d.internal<&S::limited_by>("What holds the motion back.");
   d.internal<&S::active>("Command in control.");
   d.internal<&S::reported>("Its final feedback is out.");
+  d.internal<&S::passed>("A continuous move is beyond its position.");
   d.internal<&S::jog_sense>("Jogging up (1), down (-1) or not.");
   d.internal<&S::jog_armed>("Both keys were seen up.");
   d.internal<&S::last_sense>("Sense of the last motion.");
@@ -78,7 +102,12 @@ void describe(Description<State>& d) {
   d.internal<&S::pulse>("Which, and how long.");
   d.internal<&S::superimposed>("Something is on top of the motion in progress.");
   d.internal<&S::coupled>("Follows its master.");
-  d.internal<&S::follow_offset>(unit::u, "Distance to the master's position times the ratio.");
+  d.internal<&S::follow_offset>(unit::u, "Distance to the master's position times the ratio, without a skew.");
+  d.internal<&S::leads>("Others follow it from load on.");
+  d.internal<&S::system>("Largest values of the machine file.");
+  d.internal<&S::skew>("How far it is from where its master has it.");
+  d.internal<&S::emergency>("What an emergency stop has left behind.");
+  d.internal<&S::fault_of>("The follower whose fault stopped it.");
   d.internal<&S::origin>(unit::u, "Whole turns taken out of all positions.");
   d.internal<&S::encoder>("Encoder.");
   d.internal<&S::loop>("Position loop.");

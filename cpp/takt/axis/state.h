@@ -38,6 +38,30 @@ struct Motion {
   std::uint64_t arrived_cycle = 0;
 };
 
+// What an emergency stop has left behind (AX-100).
+enum class Emergency : std::uint8_t {
+  kNone,
+  kHeld,     // it is on: the axis cannot be powered
+  kStopped,  // it is over; nothing powers the axis but a command that asks for it
+};
+
+// The distance of an axis that follows another from load on to where its master has it (AX-101). u, own minus due.
+struct SkewState {
+  double commanded = 0;      // of the set points: found when both loops were closed, kept until straightened
+  double measured = 0;       // of what is measured
+  bool known = false;        // where it belongs: at load, or when both loops were closed for the first time
+  Ticket ticket = 0;         // of the command that straightens it; 0: none
+  bool straightens = false;  // with or without a command
+  std::uint64_t start_cycle = 0;
+  trajectory::Profile way;  // from the skew to 0
+
+  // Squaring: the edge of the reference switch that its master's search is for.
+  double edge = 0;                  // u, over all turns
+  std::uint64_t edge_cycle = 0;     // in which it was found
+  std::uint64_t squared_cycle = 0;  // of the master's edge that it was squared by
+  bool reference_before = false;
+};
+
 // Supervision that was switched off at run time, to be switched on again.
 struct Dormant {
   std::optional<double> lower{}, upper{};  // u, SW limits
@@ -65,12 +89,15 @@ struct State {
   LimitedBy limited_by = LimitedBy::kNothing;
   bool reported =
       false;  // its final feedback is out although it stays in control (held stop), or `reached` is (velocity)
+  bool passed = false;         // the continuous move in control is beyond its position
   std::int8_t jog_sense = 0;   // 1, -1: jogging that way; 0: not
   bool jog_armed = false;      // a key may start a motion: a new jog, or both keys were seen up since the last one
   std::int8_t last_sense = 1;  // sense of the last motion, for Direction::kCurrent
   bool reset_pending = false;
-  bool constants_set = false;   // by GT_SetConstant
-  bool coupled = false;         // follows a master from load on
+  bool constants_set = false;  // by GT_SetConstant
+  bool coupled = false;        // follows a master from load on: its set point is the master's
+  bool leads = false;          // others follow it from load on
+  Emergency emergency = Emergency::kNone;
   bool end_of_profile = false;  // the end of a cam was passed in this cycle
   bool pulsing = false;         // a voltage is put out for a time: see `pulse`
   bool superimposed = false;    // something is on top of the motion in progress: see `overlay`
@@ -107,7 +134,7 @@ struct State {
   double voltage_v = 0;
   double direct_voltage_v = 0;  // V, put out while the axis is Disabled (GT_Analog)
   double origin = 0;            // rotary axes: whole turns taken out of all positions, so that they stay small (in u)
-  double follow_offset = 0;     // u, own position minus ratio times the master's when they were coupled
+  double follow_offset = 0;     // u, own position minus ratio times the master's without a skew
   Override override_factors;    // of commands in control and waiting
   EncoderState encoder;
   ControlLoopState loop;
@@ -127,8 +154,14 @@ struct State {
   Ticket reset_ticket = 0;
   std::array<Request, kBufferSize> buffer;  // [0] is next
   std::uint64_t illegal_transitions = 0;    // always 0: the state table holds
+  trajectory::Limits system;  // of the machine file; those of the application, in the parameters, keep within them
   OverlayState overlay;
+  SkewState skew;
+  std::uint32_t fault_of = kNoAxis;  // the axis that follows this one and whose fault stopped it
 };
+
+void describe(Enumeration<Emergency>&);
+void describe(Description<SkewState>&);
 
 void describe(Description<Motion>&);
 void describe(Description<Dormant>&);

@@ -25,6 +25,7 @@ void describe(Enumeration<ObjectKind>& e) {
   e.value(K::kEnvironment, "environment", "The border of an environment.");
   e.value(K::kPart, "part", "A part of the surface.");
   e.value(K::kCoordinateSystem, "coordinate_system", "A coordinate system.");
+  e.value(K::kAxis, "axis", "An axis: one that follows this one, and failed.");
 }
 
 void describe(Description<ObjectInfo>& d) {

@@ -17,6 +17,7 @@ enum class ObjectKind : std::uint8_t {
   kEnvironment = 4,
   kPart = 5,
   kCoordinateSystem = 6,
+  kAxis = 7,
 };
 
 struct ObjectInfo {

@@ -105,6 +105,9 @@ enum class ErrorId : std::uint16_t {
   kPlanetLost = 3092,         // a planet of a formation is halted, disabled, or has a fault; the object says which
   kFormationShare = 3093,    // a formation moves with all that it can, and would have to turn meanwhile, or the reverse
   kFormationOnTrack = 3094,  // a formation moves in the free plane alone
+  kEmergencyStop = 3100,     // an emergency stop is on, or has switched the axis off: nothing is powered or moved
+  kSkew = 3101,              // a member of a gantry is too far from where its master has it
+  kNotInStep = 3102,         // a member of a gantry is not powered, has a fault, or stands askew
   kGroupDeviation = 8001,
   kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual
   // A cam module is in error; numbers of the Flex Cam manual.

@@ -62,11 +62,13 @@ const std::vector<Entry>& Entries() {
   static const std::vector<Entry> entries = {
       Make<MachineCommand, StopAll>(kMachine, "stop_all"),
       Make<MachineCommand, EmergencyStop>(kMachine, "emergency_stop"),
+      Make<MachineCommand, ReleaseEmergencyStop>(kMachine, "release_emergency_stop"),
       Make<MachineCommand, FailAllAxes>(kMachine, "fail_all_axes"),
       Make<MachineCommand, Release>(kMachine, "release"),
       Make<MachineCommand, Renew>(kMachine, "renew"),
       Make<axis::Command, axis::Power>(kAxis, "power"),
       Make<axis::Command, axis::Reset>(kAxis, "reset"),
+      Make<axis::Command, axis::Straighten>(kAxis, "straighten"),
       Make<axis::Command, axis::MoveAbsolute>(kAxis, "move_absolute"),
       Make<axis::Command, axis::MoveRelative>(kAxis, "move_relative"),
       Make<axis::Command, axis::MoveAdditive>(kAxis, "move_additive"),
@@ -102,6 +104,7 @@ const std::vector<Entry>& Entries() {
       Make<axis::Command, axis::FinishHoming>(kAxis, "finish_homing"),
       Make<axis::Command, axis::StepRefFlyingSwitch>(kAxis, "step_ref_flying_switch"),
       Make<axis::Command, axis::StepRefFlyingRefPulse>(kAxis, "step_ref_flying_ref_pulse"),
+      Make<axis::Command, axis::AbortPassiveHoming>(kAxis, "abort_passive_homing"),
       Make<axis::Command, axis::SetConstants>(kAxis, "set_constants"),
       Make<axis::Command, axis::WriteParameter>(kAxis, "write_parameter"),
       Make<axis::Command, axis::ReadParameter>(kAxis, "read_parameter"),
@@ -542,7 +545,18 @@ void describe(Description<StopAll>& d) {
 void describe(Description<EmergencyStop>& d) {
   d.about(
       "Switches every drive off and lets every brake fall at once, without a ramp; faults are cleared, every axis is "
-      "Disabled (GT_EStop).");
+      "Disabled (GT_EStop). What is to move again has to be powered anew.");
+  d.defaulted<&EmergencyStop::hold>(
+      "True: it stays on until it is released (by `release`, or release_emergency_stop); commands that ask for power "
+      "or "
+      "motion are refused with error 3100 until then. A client that is lost does not release it.");
+}
+
+void describe(Description<ReleaseEmergencyStop>& d) {
+  d.about(
+      "Ends the emergency stop, whoever holds it. Nothing moves by itself thereafter: axes stay Disabled until they "
+      "are "
+      "powered anew.");
 }
 
 void describe(Description<FailAllAxes>& d) {

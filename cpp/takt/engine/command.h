@@ -30,6 +30,9 @@ struct StopAll {            // every axis stops along its ramp
   bool open_loops = false;  // and then opens its loop
 };
 struct EmergencyStop {  // GT_EStop: every drive off and every brake on at once
+  bool hold = false;    // until it is released; else for the cycle
+};
+struct ReleaseEmergencyStop {  // whoever holds it
 };
 struct FailAllAxes {  // every axis brakes and goes to ErrorStop with error 3007 (overruns)
 };
@@ -42,11 +45,12 @@ struct Renew {  // a heartbeat: extends the lease of a level-sensitive command
 
 void describe(Description<StopAll>&);
 void describe(Description<EmergencyStop>&);
+void describe(Description<ReleaseEmergencyStop>&);
 void describe(Description<FailAllAxes>&);
 void describe(Description<Release>&);
 void describe(Description<Renew>&);
 
-using MachineCommand = std::variant<StopAll, EmergencyStop, FailAllAxes, Release, Renew>;
+using MachineCommand = std::variant<StopAll, EmergencyStop, ReleaseEmergencyStop, FailAllAxes, Release, Renew>;
 // Behind those of the machine itself, in the order of ComponentKinds().
 using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command,
                                  conveyor::PoseCommand, pickplace::Command, mover::Command, track::Command,

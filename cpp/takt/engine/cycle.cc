@@ -145,7 +145,10 @@ void StopMasters(World& w, std::uint32_t follower) {
   axis::State& s = w.axis_states[follower];
   const auto stop = [&](std::uint32_t master) {
     axis::State& its = w.axis_states[master];
-    if (!axis::AtRest(its)) axis::Fail(ContextOf(w, master), ErrorId::kAxisFault, false, its);
+    const bool moves = !axis::AtRest(its) || its.active.kind != axis::RequestKind::kNone || its.superimposed;
+    if (!moves || its.plc == axis::PlcState::kErrorStop) return;
+    its.fault_of = follower;
+    axis::Fail(ContextOf(w, master), ErrorId::kAxisFault, false, its);
   };
   if (w.axis_masters[follower]) stop(*w.axis_masters[follower]);
   for (axis::CouplingTerm& term : s.coupling.law.terms) {
@@ -162,13 +165,39 @@ bool IsForMembers(const axis::Command& command) {
         return std::is_same_v<T, axis::Power> || std::is_same_v<T, axis::Reset> ||
                std::is_same_v<T, axis::ReadParameter> || std::is_same_v<T, axis::CamTableSelect> ||
                std::is_same_v<T, axis::TouchProbe> || std::is_same_v<T, axis::AbortTrigger> ||
-               std::is_same_v<T, axis::DigitalCamSwitch>;
+               std::is_same_v<T, axis::AbortPassiveHoming> || std::is_same_v<T, axis::DigitalCamSwitch>;
       },
       command);
 }
 
 bool IsOwned(const World& w, std::size_t axis) {
   return w.group_of[axis] != 0 && group::Owns(w.group_states[w.group_of[axis] - 1]);
+}
+
+// The axis that all members of a gantry follow.
+std::size_t LeaderOf(const World& w, std::size_t axis) {
+  while (w.axis_masters[axis]) axis = *w.axis_masters[axis];
+  return axis;
+}
+
+// What stops one member of a gantry stops all, along the ramp of the one that leads (AX-101).
+void ApplyToMember(World& w, std::size_t i, const Command& command, const axis::Command& body) {
+  const auto apply = [&](std::size_t to, Ticket ticket) {
+    axis::Apply(ContextOf(w, to), ticket, command.lease_s, body, w.axis_states[to]);
+  };
+  const bool alone = !w.axis_masters[i] && !w.axis_states[i].leads;
+  if (alone) return apply(i, command.ticket);
+  const std::size_t leader = LeaderOf(w, i);
+  if (std::holds_alternative<axis::Stop>(body) || std::holds_alternative<axis::Halt>(body)) {
+    return apply(leader, command.ticket);
+  }
+  const auto* power = std::get_if<axis::Power>(&body);
+  const bool off = power && !power->enable && power->buffer_mode == axis::BufferMode::kAborting;
+  for (std::size_t k = 0; off && k < w.axis_states.size(); ++k) {
+    const bool on = w.axis_states[k].enable || w.axis_states[k].loop_closed;
+    if (k != i && on && LeaderOf(w, k) == leader) apply(k, 0);
+  }
+  apply(i, command.ticket);
 }
 
 struct MachineApplier {
@@ -204,12 +233,28 @@ struct MachineApplier {
     }
     Report(FeedbackState::kDone);
   }
-  void operator()(const EmergencyStop&) const {
+  // Modules and groups first, as long as they can tell what they were about.
+  void operator()(const EmergencyStop& c) const {
+    for (pickplace::State& state : world.pick_place_states) state.enables = false;
+    for (std::size_t i = 0; i < world.groups.size(); ++i) {
+      group::EmergencyStop(ContextOf(world, world.groups[i]), world.group_states[i]);
+    }
     for (std::size_t i = 0; i < world.movers.size(); ++i) ToMover(i, mover::Disable{});
     for (std::size_t i = 0; i < world.axis_states.size(); ++i) {
       axis::EmergencyStop(ContextOf(world, i), world.axis_states[i]);
     }
+    if (c.hold) world.emergency.Add(ticket);
+    EndEmergency();
     Report(FeedbackState::kDone);
+  }
+  void operator()(const ReleaseEmergencyStop&) const {
+    world.emergency.Clear();
+    EndEmergency();
+    Report(FeedbackState::kDone);
+  }
+  void EndEmergency() const {
+    if (world.emergency.held()) return;
+    for (axis::State& state : world.axis_states) axis::ReleaseEmergencyStop(state);
   }
   void operator()(const FailAllAxes&) const {
     for (std::size_t i = 0; i < world.axis_states.size(); ++i) {
@@ -219,6 +264,10 @@ struct MachineApplier {
     Report(FeedbackState::kDone);
   }
   void operator()(const Release& c) const {
+    if (world.emergency.Remove(c.ticket)) {
+      EndEmergency();
+      return Report(FeedbackState::kDone);
+    }
     ToOwner(c.ticket, axis::Release, flexcam::Release, group::Release, pickplace::Release);
   }
   void operator()(const Renew& c) const {
@@ -287,6 +336,7 @@ void Apply(World& w, const Command& command) noexcept {
   const std::uint32_t component = command.target - 1;  // none has the machine's number less one
   if (component < w.first_of[kind] || component >= w.first_of[kind + 1]) return refuse(ErrorId::kUnknownTarget);
   const std::size_t i = component - w.first_of[kind];
+  if (w.emergency.held() && AsksToMove(command)) return refuse(ErrorId::kEmergencyStop);
   if (const auto* for_axis = std::get_if<axis::Command>(&command.body)) {
     if (IsOwned(w, i) && !IsForMembers(*for_axis)) return refuse(ErrorId::kGroupMember);
     axis::CouplingRequest coupling;
@@ -294,7 +344,7 @@ void Apply(World& w, const Command& command) noexcept {
         !MakeOrder(w, {.coupling = &coupling, .of = component})) {
       return refuse(ErrorId::kCouplingLoop);
     }
-    axis::Apply(ContextOf(w, i), command.ticket, command.lease_s, *for_axis, w.axis_states[i]);
+    ApplyToMember(w, i, command, *for_axis);
   } else if (const auto* for_module = std::get_if<flexcam::Command>(&command.body)) {
     const FlexCam& module = w.flex_cams[i];
     flexcam::Apply(ContextOf(w, module), command.ticket, command.lease_s, *for_module, w.axis_states[module.slave],

@@ -115,6 +115,7 @@ World::World(const Machine& machine)
   }
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axis_masters.push_back(engine::MasterOf(machine, i));
+    if (axis_masters.back()) axis_states[*axis_masters.back()].leads = true;
   }
   MakeModules(machine);
   MakeGroups(machine);

@@ -17,6 +17,7 @@
 #include "takt/core/feedback.h"
 #include "takt/core/ports.h"
 #include "takt/engine/drives.h"
+#include "takt/engine/emergency.h"
 #include "takt/engine/machine.h"
 #include "takt/engine/order.h"
 #include "takt/environment/environments.h"
@@ -90,6 +91,7 @@ struct World {
 
   Cycle cycle;
   trajectory::Planner planner;
+  EmergencyHolders emergency;
 
   std::vector<std::uint32_t> first_of;  // of each kind the number of its first component (components.h)
 

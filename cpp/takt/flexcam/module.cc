@@ -320,7 +320,8 @@ void InError(const Context& c, axis::State& slave, State& s) {
   const bool stands = !slave.loop_closed || axis::AtRest(slave);
   if (s.error == ErrorId::kNone && slave.error == ErrorId::kNone && stands && !slave.reset_pending) {
     s.state = ModuleState::kReady;
-    if (s.inputs.regulator_on && !slave.enable) Tell(c, axis::Power{.enable = true}, slave);
+    const bool stopped = slave.emergency != axis::Emergency::kNone;  // then power has to be asked for anew
+    if (s.inputs.regulator_on && !slave.enable && !stopped) Tell(c, axis::Power{.enable = true}, slave);
   }
 }
 

@@ -179,6 +179,7 @@ struct Applier {
     Report(c, ticket, FeedbackState::kActive);
   }
   void operator()(const Power& m) const {
+    if (m.enable && Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
     if (m.enable && Is(GroupState::kStopping)) return Refuse(ErrorId::kAxisStopping);
     if (m.enable && Is(GroupState::kHoming)) return Refuse(ErrorId::kState);
     if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);

@@ -181,6 +181,13 @@ void WatchMembers(const Context& c, State& s) {
 
 }  // namespace
 
+void EmergencyStop(const Context& c, State& s) noexcept {
+  const bool moves = s.guides || s.begun || s.queue.count > 0 || s.state == GroupState::kMoving ||
+                     s.state == GroupState::kHoming || s.state == GroupState::kStopping;
+  if (moves && s.state != GroupState::kDisabled) return Fail(c, ErrorId::kEmergencyStop, s);
+  EndTask(c, FeedbackState::kAborted, ErrorId::kEmergencyStop, s);
+}
+
 State MakeState(std::span<const std::uint32_t> axes) noexcept {
   State s;
   for (std::size_t k = 0; k < std::min<std::size_t>(axes.size(), kMaxAxes); ++k) s.members[k] = axes[k] + 1;

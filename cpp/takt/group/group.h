@@ -66,6 +66,9 @@ void Apply(const Context& c, Ticket ticket, double lease_s, const Command& comma
 bool Release(const Context& c, Ticket ticket, State& s) noexcept;
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept;
 
+// What the group is about ends before its axes are switched off: it goes to ErrorStop where it moved (AX-100).
+void EmergencyStop(const Context& c, State& s) noexcept;
+
 // move: before the members, behind the axis that a path follows.
 void Step(const Context& c, State& s) noexcept;
 

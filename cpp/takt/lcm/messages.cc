@@ -105,6 +105,12 @@ msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::M
   m.cam_outputs = o.cam_outputs;
   m.override_factor = o.override_factor;
   m.true_position = o.true_position;
+  m.emergency_stopped = o.emergency_stopped;
+  m.drive_heard = o.drive_heard;
+  m.drive_ready = o.drive_ready;
+  m.skew = o.skew;
+  m.skewed = o.skewed;
+  m.fault_of = o.fault_of;
   m.limit_positive = o.limit_positive;
   m.limit_negative = o.limit_negative;
   m.reference = o.reference;

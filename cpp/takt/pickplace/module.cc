@@ -212,7 +212,9 @@ void InError(const Context& c, group::State& g, State& s) {
   const bool well = g.state != GroupState::kErrorStop && !g.resetting && Stands(c, g);
   if (s.error != ErrorId::kNone || !well) return;
   Enter(PickPlaceState::kReady, s);
-  if (!s.inputs.regulator_on || IsOn(c, g)) return;
+  const bool stopped =
+      !group::AllMembers(c.group, g, [](const axis::State& m) { return m.emergency == axis::Emergency::kNone; });
+  if (!s.inputs.regulator_on || IsOn(c, g) || stopped) return;  // after an emergency stop it has to be asked for anew
   Tell(c, group::Power{.enable = true}, g);
   s.enables = true;
 }

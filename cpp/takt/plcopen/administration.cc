@@ -15,6 +15,7 @@ void MC_Power::operator()() noexcept {
   out_ = {};
   TakeEnd();
   if (Enable != level_ || (refusal_ && refusal_->state != axis.state)) refusal_.reset();
+  anew_ = Enable && !axis.loop_closed && (anew_ || !level_);
   level_ = Enable;
   if (IsDue()) {
     given_ = {.enable = Enable, .buffer_mode = buffer_mode};
@@ -24,6 +25,7 @@ void MC_Power::operator()() noexcept {
   out_.status = axis.loop_closed;
   if (refusal_) out_.error = refusal_->error;
   if (Enable && !axis.loop_closed && axis.state == axis::PlcState::kErrorStop) out_.error = axis.error;
+  if (IsHeldOff()) out_.error = ErrorId::kEmergencyStop;
   if (out_.aborted) {
     out_.error = ErrorId::kNone;
   } else if (out_.error == ErrorId::kNone) {
@@ -38,6 +40,7 @@ void MC_Power::TakeEnd() noexcept {
   if (!feedback_.given() || feedback_.busy()) return;
   out_.aborted = feedback_.aborted();
   out_.error = feedback_.error();
+  if (out_.error == ErrorId::kEmergencyStop) anew_ = false;
   const bool hopeless = out_.error == ErrorId::kParameter || !given_.enable;
   const bool refused = feedback_.failed() && out_.error != ErrorId::kQueueFull && hopeless;
   if (given_.enable == Enable && (refused || (out_.aborted && !Enable))) {
@@ -46,8 +49,13 @@ void MC_Power::TakeEnd() noexcept {
   feedback_.Forget();
 }
 
+// An emergency stop has switched the axis off, and nobody has asked for power since.
+bool MC_Power::IsHeldOff() const noexcept {
+  return Enable && !anew_ && axis_.outputs().emergency_stopped;
+}
+
 bool MC_Power::IsDue() const noexcept {
-  if (refusal_) return false;
+  if (refusal_ || IsHeldOff()) return false;
   if (feedback_.given()) return given_.enable && !Enable;
   const axis::Outputs& axis = axis_.outputs();
   const bool disabled = axis.state == axis::PlcState::kDisabled;
@@ -66,8 +74,10 @@ ExecuteBlock::End MC_Reset::EndOfReset() noexcept {
 }
 
 void GT_EStop::operator()() noexcept {
-  if (Rises()) Start(engine::kMachineTarget, engine::MachineCommand(engine::EmergencyStop{}), false);
+  if (Rises()) Start(engine::kMachineTarget, engine::MachineCommand(engine::EmergencyStop{.hold = true}), false);
+  if (!Execute) feedback().Release();
   Show();
+  done_ = Execute && ExecuteBlock::Done() && axis().program().AllDisabled();
 }
 
 void MC_DigitalCamSwitch::operator()() noexcept {

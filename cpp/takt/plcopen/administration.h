@@ -12,7 +12,8 @@ namespace takt::plcopen {
 //
 // A fault that opened the loop is shown by Error until the axis is reset; then the loop is closed again. Enable true on
 // a Disabled axis with a fault leads to ErrorStop. A command that is refused is given again once the axis is in another
-// state. One instance an axis: two with different Enable switch it to and fro.
+// state. After an emergency stop it shows error 3100 until Enable has risen anew: nothing resumes by itself (AX-100).
+// One instance an axis: two with different Enable switch it to and fro.
 class MC_Power {
  public:
   bool Enable = false;
@@ -43,12 +44,14 @@ class MC_Power {
     ErrorId error = ErrorId::kNone;
   };
   bool IsDue() const noexcept;
+  bool IsHeldOff() const noexcept;
   void TakeEnd() noexcept;
 
   AxisRef axis_;
   Feedback feedback_;   // of the command in progress ...
   axis::Power given_;   // ... and that command
   bool level_ = false;  // Enable in the call before
+  bool anew_ = false;   // it has risen, and the axis has not been on since
   std::optional<Refusal> refusal_;
   Outputs out_;
 };
@@ -64,11 +67,16 @@ class MC_Reset : public AxisBlock {
   End EndOfReset() noexcept;
 };
 
-// All drives of the machine off and all brakes on at once; faults are cleared, every axis is Disabled.
+// All drives of the machine off and all brakes on at once; faults are cleared, every axis is Disabled, and stays so as
+// long as Execute is true, whatever asks for power (AX-100). Done: they all are.
 class GT_EStop : public AxisBlock {
  public:
   using AxisBlock::AxisBlock;
   void operator()() noexcept;
+  bool Done() const noexcept { return done_; }
+
+ private:
+  bool done_ = false;
 };
 
 // Keeps the factors of the override as they are at the inputs as long as Enable is true; false, the last ones stay.

@@ -37,6 +37,13 @@ GroupRef Program::Group(std::string_view name) {
   return {*this, *engine::FindComponent(machine, name) + 1, index};
 }
 
+bool Program::AllDisabled() const noexcept {
+  for (std::size_t i = 0; i < engine_.machine().axes.size(); ++i) {
+    if (engine_.outputs(i).state != axis::PlcState::kDisabled) return false;
+  }
+  return true;
+}
+
 void Program::Update() noexcept {
   for (FeedbackEvent event; engine_.feedback().TryPop(event);) {
     const auto waiting = Find(event.ticket);

@@ -80,6 +80,9 @@ class Program {
   GroupRef Group(std::string_view name);
   engine::Engine& engine() noexcept { return engine_; }
 
+  // Every axis of the machine is in Disabled, as of the last cycle.
+  bool AllDisabled() const noexcept;
+
   // To be called once a cycle, before the blocks.
   void Update() noexcept;
 

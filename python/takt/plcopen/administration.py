@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from takt import _commands
@@ -13,6 +14,7 @@ from takt.plcopen.base import AxisName, ExecuteBlock, FunctionBlock, Input, Outp
 PARAMETER = 5  # error of a command: an input is out of its range
 CAM_OUTPUTS = 32
 AXIS_FAULT = 7  # error of a command: the fault of the axis is still there
+EMERGENCY_STOP = 3100  # error of a command: an emergency stop is on, or nobody has asked for power since
 
 
 class MC_Reset(ExecuteBlock):  # noqa: N801
@@ -39,7 +41,8 @@ class MC_Power(FunctionBlock):  # noqa: N801
 
     A fault that opened the loop is shown by Error until the axis is reset; then the loop is closed again. Enable true
     on a Disabled axis with a fault leads to ErrorStop. A command that is refused is given again once the axis is in
-    another state. One instance an axis: two with different Enable switch it to and fro."""
+    another state. After an emergency stop it shows error 3100 until Enable has risen anew: nothing resumes by itself.
+    One instance an axis: two with different Enable switch it to and fro."""
 
     Enable = Input(False)
     BufferMode = Input(_commands.BufferMode.ABORTING, "buffer_mode")
@@ -52,6 +55,7 @@ class MC_Power(FunctionBlock):  # noqa: N801
 
     def __init__(self, axis: Axis, **inputs: Any) -> None:
         self._level: bool | None = None  # Enable in the call before
+        self._anew = False  # Enable has risen, and the axis has not been on since
         self._feedback: Feedback | None = None  # of the command in progress ...
         self._given: dict[str, Any] = {}  # ... and its arguments
         self._refusal: tuple[_commands.PlcState, int] | None = None  # of the last command: the axis' state, the error
@@ -63,6 +67,7 @@ class MC_Power(FunctionBlock):  # noqa: N801
         state = self.Axis.state
         if enable is not self._level or (self._refusal and self._refusal[0] is not state):
             self._refusal = None
+        self._anew = enable and not self.Axis.loop_closed and (self._anew or not self._level)
         self._level = enable
         if self._is_due(enable, state):
             self._given = {"enable": enable, **self._arguments()}
@@ -77,6 +82,8 @@ class MC_Power(FunctionBlock):  # noqa: N801
             return None
         self._feedback = None
         self.Axis.session._catch_up(ended.cycle)
+        if ended.error_id == EMERGENCY_STOP:
+            self._anew = False
         refused = ended.error and (ended.ticket == 0 or not enable)
         if self._given["enable"] is enable and (refused or (ended.aborted and not enable)):
             self._refusal = (self.Axis.state, ended.error_id)
@@ -84,12 +91,16 @@ class MC_Power(FunctionBlock):  # noqa: N801
 
     def _is_due(self, enable: bool, state: _commands.PlcState) -> bool:
         """Whether a command is to be given now."""
-        if self._refusal is not None:
+        if self._refusal is not None or self._is_held_off(enable):
             return False
         if self._feedback is not None:
             return bool(self._given["enable"]) and not enable
         disabled = state is _commands.PlcState.DISABLED
         return disabled and not self.Axis.active_command if enable else not disabled
+
+    def _is_held_off(self, enable: bool) -> bool:
+        """An emergency stop has switched the axis off, and nobody has asked for power since."""
+        return enable and not self._anew and self.Axis.emergency_stopped
 
     def _show_all(self, enable: bool, state: _commands.PlcState, ended: Feedback | None) -> None:
         status = self.Axis.loop_closed
@@ -98,6 +109,8 @@ class MC_Power(FunctionBlock):  # noqa: N801
             error_id = self._refusal[1]
         if enable and not status and state is _commands.PlcState.ERROR_STOP:
             error_id = self.Axis.error
+        if self._is_held_off(enable):
+            error_id = EMERGENCY_STOP
         self._show(Status=status, Valid=enable and not error_id)
         if ended is not None and ended.aborted:
             self._show(CommandAborted=True)
@@ -169,7 +182,7 @@ class MC_ReadActualTorque(ReadBlock):  # noqa: N801
 
 
 class MC_ReadMotionState(ReadBlock):  # noqa: N801
-    """How the axis moves, by its set point (Source SET_VALUE) or as measured, where acceleration is not known."""
+    """How the axis moves, by its set point (Source SET_VALUE) or as measured since the call before."""
 
     Source = Input(_commands.MasterSource.SET_VALUE)
     ConstantVelocity = Output(False)
@@ -178,10 +191,17 @@ class MC_ReadMotionState(ReadBlock):  # noqa: N801
     DirectionPositive = Output(False)
     DirectionNegative = Output(False)
 
+    def __init__(self, subject: Axis, **inputs: Any) -> None:
+        self._before: tuple[int, float, float] = (0, 0.0, 0.0)  # cycle, measured velocity and acceleration till then
+        super().__init__(subject, **inputs)
+
     def _read(self) -> None:
-        by_set_value = self.Source == _commands.MasterSource.SET_VALUE
-        velocity = self.Axis.set_velocity if by_set_value else self.Axis.actual_velocity
-        growing = self.Axis.set_acceleration * (self.Axis.set_velocity or self.Axis.set_acceleration)
+        axis = self.Axis
+        if self.Source == _commands.MasterSource.SET_VALUE:
+            velocity, acceleration = axis.set_velocity, axis.set_acceleration
+        else:
+            velocity, acceleration = axis.actual_velocity, self._measured_acceleration()
+        growing = acceleration * (velocity or acceleration)
         self._show(
             ConstantVelocity=growing == 0,
             Accelerating=growing > 0,
@@ -189,6 +209,18 @@ class MC_ReadMotionState(ReadBlock):  # noqa: N801
             DirectionPositive=velocity > 0,
             DirectionNegative=velocity < 0,
         )
+
+    def _measured_acceleration(self) -> float:
+        """From the measured velocities of the call before and of now. Less than a hundredth of the largest acceleration
+        of the axis is none: encoders count in steps."""
+        cycle, velocity, acceleration = self._before
+        now = self.Axis.session.cycle
+        if now != cycle:
+            period = self.Axis.session.period
+            acceleration = (self.Axis.actual_velocity - velocity) / ((now - cycle) * period)
+            self._before = (now, self.Axis.actual_velocity, acceleration)
+        least = 0.01 * self.Axis.parameters["limits"]["acceleration"]
+        return acceleration if abs(acceleration) >= least else 0.0
 
 
 class MC_ReadAxisInfo(ReadBlock):  # noqa: N801
@@ -210,9 +242,9 @@ class MC_ReadAxisInfo(ReadBlock):  # noqa: N801
             HomeAbsSwitch=axis.reference,
             LimitSwitchPos=axis.limit_positive,
             LimitSwitchNeg=axis.limit_negative,
-            Simulation=True,  # every drive is a simulated one for now
-            CommunicationReady=True,
-            ReadyForPowerOn=axis.error == 0,
+            Simulation=not math.isnan(axis.true_position),  # a servo simulated in the engine
+            CommunicationReady=axis.drive_heard,
+            ReadyForPowerOn=axis.error == 0 and axis.drive_heard and not axis.emergency_stopped,
             PowerOn=axis.loop_closed,
             IsHomed=axis.homed,
             AxisWarning=axis.limited_by is not _commands.LimitedBy.NOTHING,
@@ -289,12 +321,31 @@ class MC_ReadDigitalOutput(ReadBlock):  # noqa: N801
 
 
 class GT_EStop(ExecuteBlock):  # noqa: N801
-    """All drives of the machine off and all brakes on at once; faults are cleared, every axis is Disabled. Enable is
-    another name of Execute."""
+    """All drives of the machine off and all brakes on at once; faults are cleared, every axis is Disabled, and stays so
+    as long as Execute is true, whatever asks for power (error 3100). Done: they all are. Nothing resumes when Execute
+    falls. Enable is another name of Execute."""
 
     VERB = "emergency_stop"
     Enable = Input(False, alias="Execute")
     Done = Output(False)
 
+    def __init__(self, subject: Axis, **inputs: Any) -> None:
+        self._holding: list[Feedback] = []  # to be released
+        super().__init__(subject, **inputs)
+
     def _command(self) -> Feedback:
-        return self.Axis.session.command("machine", self.VERB, self._given)
+        feedback = self.Axis.session.command("machine", self.VERB, {"hold": True})
+        self._holding.append(feedback)
+        return feedback
+
+    def _scan(self) -> None:
+        super()._scan()
+        axes = self.Axis.session.axes.values()
+        if self.Done and not (self.Execute and all(a.state is _commands.PlcState.DISABLED for a in axes)):
+            self._show(Done=False)
+        if self.Execute:
+            return
+        for feedback in [f for f in self._holding if f.ticket or f.final]:  # over LCM its ticket is not known at once
+            if feedback.ticket:
+                feedback.release()
+            self._holding.remove(feedback)

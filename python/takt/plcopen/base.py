@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Generic, TypeVar, overload
 from takt import _commands
 from takt.axis import Axis
 from takt.component import Component
+from takt.engine import error_text
 from takt.feedback import Feedback, FeedbackState
 
 ENDINGS = {FeedbackState.DONE: "Done", FeedbackState.ABORTED: "CommandAborted", FeedbackState.ERROR: "Error"}
@@ -92,6 +93,7 @@ class FunctionBlock:
 
     Error = Output(False)
     ErrorID = Output(0)
+    ErrorText = Output("")  # the sentence of the error
 
     def __init_subclass__(cls) -> None:
         members = [(n, m) for base in reversed(cls.__mro__) for n, m in vars(base).items()]
@@ -140,7 +142,7 @@ class FunctionBlock:
 
     def _arguments(self) -> dict[str, Any]:
         """The inputs that are arguments of the command."""
-        return {i.argument: getattr(self, n) for n, i in self.INPUTS.items() if i.argument}
+        return {i.argument: named(i.initial, getattr(self, n)) for n, i in self.INPUTS.items() if i.argument}
 
     def _show(self, **outputs: Any) -> None:
         for name in outputs:
@@ -148,11 +150,18 @@ class FunctionBlock:
                 raise AttributeError(f"{type(self).__name__} has no output '{name}'")
         self._outputs.update(outputs)
 
-    def _show_error(self, error_id: int) -> None:
-        self._show(Error=True, ErrorID=error_id)
+    def _show_error(self, error_id: int, text: str = "") -> None:
+        self._show(Error=True, ErrorID=error_id, ErrorText=text or error_text(error_id))
 
     def _scan(self) -> None:
         raise NotImplementedError
+
+
+def named(usual: Any, value: Any) -> Any:
+    """A buffer mode may be given by its number, too: 0 aborting to 5 blending_high (PLCopen's mcAborting ...)."""
+    by_number = isinstance(usual, _commands.BufferMode) and isinstance(value, int) and not isinstance(value, bool)
+    modes = list(_commands.BufferMode)
+    return modes[value] if by_number and 0 <= value < len(modes) else value
 
 
 def in_control(feedback: Feedback, arguments: Mapping[str, Any]) -> bool:
@@ -202,7 +211,7 @@ class ExecuteBlock(FunctionBlock):
             self._run(feedback)
         elif self._is_due(self._ending[0]):
             name, error_id = self._ending
-            self._show_error(error_id) if name == "Error" else self._show(**{name: True})
+            self._show_error(error_id, feedback.sentence) if name == "Error" else self._show(**{name: True})
 
     def _end(self, feedback: Feedback) -> tuple[str, int] | None:
         """How the command ended; None: it has not."""

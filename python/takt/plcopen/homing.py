@@ -97,6 +97,7 @@ class FlyingBlock(ExecuteBlock):
     SetPosition = Input(0.0, "set_position")
     TimeLimit = Input(0.0, "time_limit")
     DistanceLimit = Input(0.0, "distance_limit")
+    UntilHalt = Input(False, "until_halt")
     Done = Output(False)
     CommandAborted = Output(False)
     Aborted = Output(False, alias="CommandAborted")
@@ -119,6 +120,14 @@ class MC_StepRefFlyingRefPulse(FlyingBlock):  # noqa: N801
     """Takes the reference from the index pulse of the encoder in passing."""
 
     VERB = "step_ref_flying_ref_pulse"
+
+
+class MC_AbortPassiveHoming(ExecuteBlock):  # noqa: N801
+    """Gives up a reference that is to be taken in passing; nothing else changes."""
+
+    VERB = "abort_passive_homing"
+    Done = Output(False)
+    CommandAborted = Output(False)
 
 
 class MC_StepAbsoluteSwitch(MC_StepAbsSwitch):  # noqa: N801

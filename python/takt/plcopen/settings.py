@@ -130,15 +130,20 @@ class MC_ReadParameter(FunctionBlock):  # noqa: N801
         if not self.Enable:
             self._asked = self._answer = None
             return
-        if self._asked is not None and self._asked.final:
-            self._answer, self._asked = self._asked, None
+        self._take_answer()
         if self._asked is None:
             self._asked = self.Axis.session.command(self.Axis.name, "read_parameter", self._arguments())
-        self._show(Busy=True)
+            self._take_answer()  # what cannot be is refused at once
         if self._answer is not None and self._answer.error:
-            self._show_error(self._answer.error_id)
-        elif self._answer is not None:
+            self._show_error(self._answer.error_id, self._answer.sentence)
+            return
+        self._show(Busy=True)
+        if self._answer is not None:
             self._show(Valid=True, Value=self._value(self._answer.value))
+
+    def _take_answer(self) -> None:
+        if self._asked is not None and self._asked.final:
+            self._answer, self._asked = self._asked, None
 
     def _value(self, value: float) -> Any:
         return value

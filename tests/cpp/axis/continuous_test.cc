@@ -67,6 +67,60 @@ TEST(MoveContinuous, SaysWhatHoldsItBack) {
   EXPECT_EQ(shorter.out.limited_by, LimitedBy::kDistance);
 }
 
+// AX-102: whatever the distance, from rest or in motion, faster or slower than it is to be: it passes its position
+// once, never turns back on the way, has the end velocity in the end, and says `reached` then and not before.
+TEST(MoveContinuous, ReachesItsEndVelocityHoweverNearItsPosition) {
+  for (const double start : {0.0, 60.0, 290.0}) {
+    for (const double distance : {0.02, 0.7, 4.0, 9.0, 25.0, 90.0}) {
+      for (const double end : {7.0, 120.0, 300.0}) {
+        for (const double sign : {1.0, -1.0}) {
+          SCOPED_TRACE(testing::Message() << start << " to " << end << " within " << sign * distance);
+          AxisParams p = LinearParams();
+          p.limits.lower = p.limits.upper = {};
+          Rig rig(p);
+          ASSERT_TRUE(rig.PowerOn());
+          const Direction direction = sign > 0 ? Direction::kPositive : Direction::kNegative;
+          if (start > 0) rig.Give(MoveVelocity{.velocity = start, .direction = direction});
+          rig.Run(0.6);
+          const double begin = rig.position();
+          const Ticket move = rig.Give(MoveContinuousRelative{.distance = sign * distance, .end_velocity = end});
+          bool passed = false;
+          for (int i = 0; i < 4000 && !rig.lives[move].reached; ++i) {
+            rig.Step();
+            const double v = sign * rig.out.set_velocity;
+            ASSERT_GE(v, -1e-9);
+            passed |= sign * (rig.position() - begin) >= distance;
+            if (rig.lives[move].reached) {
+              ASSERT_NEAR(v, end, 1e-6);
+              ASSERT_TRUE(passed);
+            } else if (passed) {
+              ASSERT_NE(rig.out.limited_by, LimitedBy::kNothing);
+            }
+          }
+          ASSERT_TRUE(rig.lives[move].reached);
+          rig.Run(0.2);
+          EXPECT_NEAR(sign * rig.out.set_velocity, end, 1e-6);
+          EXPECT_EQ(rig.out.state, PlcState::kContinuousMotion);
+          EXPECT_EQ(rig.out.limited_by, LimitedBy::kNothing);
+        }
+      }
+    }
+  }
+}
+
+// AX-102: where a SW limit leaves no room to go on at all, it ends in an error, and not reached for ever.
+TEST(MoveContinuous, DoesNotStandReachedAtALimit) {
+  AxisParams p = LinearParams();
+  p.limits.upper = 100;
+  Rig rig(p);
+  ASSERT_TRUE(rig.PowerOn());
+  const Ticket move = rig.Give(MoveContinuousAbsolute{.position = 100, .end_velocity = 50});
+  rig.Run(3);
+  EXPECT_FALSE(rig.lives[move].reached);
+  EXPECT_TRUE(rig.Ended(move));
+  EXPECT_LE(rig.position(), 100 + 1e-6);
+}
+
 // What waits behind it begins at its position.
 TEST(MoveContinuous, IsFollowed) {
   Rig rig(LinearParams());

@@ -347,9 +347,10 @@ TEST(Stop, WorksAtStandstill) {
   const Ticket stop = rig.Give(Stop{});
   rig.Step();
   EXPECT_EQ(rig.out.state, PlcState::kStopping);
-  EXPECT_TRUE(rig.lives[stop].done);
+  EXPECT_FALSE(rig.lives[stop].done);
   rig.Step();
   EXPECT_EQ(rig.out.state, PlcState::kStandstill);
+  EXPECT_TRUE(rig.lives[stop].done);  // with the state that takes the next command
 }
 
 // AX-05: done only inside the in-position window; too late is error 0003, not a fault.

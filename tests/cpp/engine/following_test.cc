@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "machines.h"
 
@@ -73,7 +74,8 @@ class Couple {
   FeedbackEvent last;
 };
 
-// AX-10: it takes no motion commands of its own and does not let itself be disturbed by one.
+// AX-10: it takes no motion commands of its own and does not let itself be disturbed by one. (Halt and stop of a
+// follower are the master's: AX-101.)
 TEST(Following, RefusesCommandsOfItsOwn) {
   Couple c(Pair(2));
   c.PowerOn();
@@ -81,7 +83,7 @@ TEST(Following, RefusesCommandsOfItsOwn) {
   c.Give(kMaster, axis::MoveAbsolute{.position = 100});
   c.Run(50);
   for (const axis::Command& own :
-       {axis::Command(axis::MoveAbsolute{.position = 5}), axis::Command(axis::Halt{}), axis::Command(axis::Stop{}),
+       {axis::Command(axis::MoveAbsolute{.position = 5}), axis::Command(axis::MoveSuperimposed{.distance = 5}),
         axis::Command(axis::MoveVelocity{.velocity = 5}), axis::Command(axis::Jog{.forward = true})}) {
     const Ticket ticket = c.Give(kFollower, own);
     c.Run(1);
@@ -108,28 +110,32 @@ TEST(Following, MovesAsTheMasterTimesTheRatio) {
   }
 }
 
-// It couples when both stand with their loops closed, not before.
-TEST(Following, WaitsUntilTheMasterStandsWithItsLoopClosed) {
-  Couple c(Pair(1));
-  c.Give(kFollower, axis::Power{});
-  for (int i = 0; i < 300; ++i) {
-    c.Run(1);
-    ASSERT_TRUE(c.follower().state == PlcState::kDisabled || c.follower().state == PlcState::kStandstill);
+// AX-101: the master does not move until its follower is powered, well and where it belongs; then at once, in step.
+TEST(Following, TheMasterWaitsForItsFollower) {
+  for (const int pause : {0, 1, 2, 3, 5, 50}) {
+    Couple c(Pair(1));
+    c.Give(kMaster, axis::Power{});
+    c.Run(300);
+    for (const axis::Command& move :
+         {axis::Command(axis::MoveAbsolute{.position = 3}), axis::Command(axis::MoveVelocity{.velocity = 5}),
+          axis::Command(axis::MoveSuperimposed{.distance = 3}), axis::Command(axis::Jog{.forward = true}),
+          axis::Command(axis::StepAbsSwitch{.velocity = 5})}) {
+      const Ticket ticket = c.Give(kMaster, move);
+      c.Run(1);
+      EXPECT_EQ(c.last.ticket, ticket);
+      EXPECT_EQ(c.last.error, ErrorId::kNotInStep);
+    }
+    c.Give(kFollower, axis::Power{});
+    while (!c.follower().loop_closed) c.Run(1);
+    c.Run(pause);
+    c.Give(kMaster, axis::MoveAbsolute{.position = 100});
+    for (int i = 0; i < 1000; ++i) {
+      c.Run(1);
+      ASSERT_NEAR(c.follower().set_position, c.master().set_position, 1e-9) << pause;
+    }
+    EXPECT_NEAR(c.master().set_position, 100, 1e-9);
+    EXPECT_TRUE(c.follower().in_step);
   }
-  c.Give(kFollower, axis::Power{.enable = false});
-  c.Give(kMaster, axis::Power{});
-  c.Run(300);
-  c.Give(kMaster, axis::MoveAbsolute{.position = 300});
-  c.Run(100);
-  c.Give(kFollower, axis::Power{});
-  c.Run(300);
-  ASSERT_NE(c.master().set_velocity, 0);
-  EXPECT_EQ(c.follower().state, PlcState::kStandstill);
-  EXPECT_EQ(c.follower().set_velocity, 0);
-  c.Run(1000);
-  ASSERT_EQ(c.master().state, PlcState::kStandstill);
-  EXPECT_EQ(c.follower().state, PlcState::kSynchronizedMotion);
-  EXPECT_NEAR(c.follower().set_position, 0, 1e-9);
 }
 
 // AX-02: over thousands of turns of either, which are taken out of their positions now and then.
@@ -154,9 +160,9 @@ TEST(Following, GoesOnOverThousandsOfTurns) {
     c.Give(kFollower, axis::Power{.enable = false});
     c.Run(100);
     ASSERT_EQ(c.follower().state, PlcState::kDisabled);
+    ASSERT_EQ(c.master().state, PlcState::kDisabled);  // AX-101: what switches one off switches all off
     const double stands = c.follower().actual_position;
-    c.Give(kFollower, axis::Power{});
-    c.Run(300);
+    c.PowerOn();
     EXPECT_EQ(c.follower().state, PlcState::kSynchronizedMotion);
     EXPECT_NEAR(c.follower().set_position, stands, 0.02);
     EXPECT_LT(std::abs(c.follower().following_error), 0.1);
@@ -192,8 +198,8 @@ TEST(Following, ComesToRestWhenTheMasterIsLost) {
   EXPECT_EQ(c.follower().state, PlcState::kSynchronizedMotion);
 }
 
-// A fault of the follower: the master stops with error 7, its loop closed; one that stands has no fault, but does not
-// get far. After a reset of both they are coupled again.
+// A fault of the follower: the master stops with error 7, its loop closed; one that stands has no fault, and does not
+// begin to move (AX-101). After a reset of both they are coupled again.
 TEST(Following, FaultStopsTheMaster) {
   Couple c(Pair(1));
   c.PowerOn();
@@ -204,10 +210,8 @@ TEST(Following, FaultStopsTheMaster) {
   EXPECT_EQ(c.master().error, ErrorId::kNone);
   c.Give(kMaster, axis::MoveVelocity{.velocity = 400});
   c.Run(20);
-  EXPECT_EQ(c.master().state, PlcState::kErrorStop);
-  EXPECT_EQ(c.master().error, ErrorId::kAxisFault);
-  EXPECT_TRUE(c.master().loop_closed);
-  EXPECT_LT(c.master().set_position, 0.01);
+  EXPECT_EQ(c.last.error, ErrorId::kNotInStep);
+  EXPECT_EQ(c.master().set_position, 0);
   c.engine.faults(kFollower).drive_fault = false;
   c.Run(10);
   c.Give(kMaster, axis::Reset{});
@@ -219,7 +223,17 @@ TEST(Following, FaultStopsTheMaster) {
   c.Give(kMaster, axis::MoveAbsolute{.position = 50});
   c.Run(1000);
   EXPECT_NEAR(c.follower().set_position - c.master().set_position, 0, 0.01);
-  EXPECT_EQ(c.master().state, PlcState::kStandstill);
+  // AX-113: in motion the one whose fault it was is named.
+  c.Give(kMaster, axis::MoveVelocity{.velocity = 400});
+  c.Run(300);
+  c.engine.faults(kFollower).drive_fault = true;
+  c.Run(10);
+  EXPECT_EQ(c.master().state, PlcState::kErrorStop);
+  EXPECT_EQ(c.master().error, ErrorId::kAxisFault);
+  EXPECT_EQ(c.master().fault_of, kFollower + 1);
+  EXPECT_EQ(c.last.error, ErrorId::kAxisFault);
+  EXPECT_EQ(c.last.object, (ObjectInfo{ObjectKind::kAxis, kFollower + 1}));
+  EXPECT_TRUE(c.master().loop_closed);
 }
 
 // AX-83: a follower that was switched on while it stood on a limit switch is not taken further out by its master.
@@ -240,14 +254,9 @@ TEST(Following, DoesNotFollowFurtherOntoALimitSwitch) {
       ASSERT_EQ(c.follower().state, PlcState::kSynchronizedMotion);
       c.Give(kMaster, axis::MoveAbsolute{.position = way * 0.5});
       c.Run(300);
-      if (way == side) {
-        EXPECT_EQ(c.follower().state, PlcState::kErrorStop);
-        EXPECT_EQ(c.follower().error, side > 0 ? ErrorId::kLimitSwitchPositive : ErrorId::kLimitSwitchNegative);
-        EXPECT_EQ(c.master().error, ErrorId::kAxisFault);
-        EXPECT_LT(std::abs(c.follower().set_position), 0.1);
-      } else {
-        EXPECT_EQ(c.follower().state, PlcState::kSynchronizedMotion);
-      }
+      EXPECT_EQ(c.follower().state, PlcState::kSynchronizedMotion);
+      EXPECT_EQ(c.last.error, way == side ? ErrorId::kAwayFromLimitOnly : ErrorId::kNone);
+      EXPECT_NEAR(c.follower().set_position, way == side ? 0 : way * 0.5, 1e-9);
     }
   }
 }
@@ -296,6 +305,127 @@ TEST(Following, FaultInMotionBrakesTheMasterSmoothly) {
   }
   EXPECT_EQ(c.master().error, ErrorId::kAxisFault);
   EXPECT_EQ(c.master().set_velocity, 0);
+}
+
+// AX-101: whatever stops one of them, all stop together, along the master's ramp and in step.
+TEST(Following, WhatStopsOneStopsAll) {
+  struct Cause {
+    const char* name;
+    void (*happens)(Couple& c);
+    PlcState master, follower;
+    std::optional<std::size_t> on_switch{};
+  };
+  const Cause causes[] = {
+      {"stop of the master", [](Couple& c) { c.Give(kMaster, axis::Stop{}); }, PlcState::kStandstill,
+       PlcState::kSynchronizedMotion},
+      {"stop of the follower", [](Couple& c) { c.Give(kFollower, axis::Stop{}); }, PlcState::kStandstill,
+       PlcState::kSynchronizedMotion},
+      {"halt of the follower", [](Couple& c) { c.Give(kFollower, axis::Halt{}); }, PlcState::kStandstill,
+       PlcState::kSynchronizedMotion},
+      {"power off of the master", [](Couple& c) { c.Give(kMaster, axis::Power{.enable = false}); }, PlcState::kDisabled,
+       PlcState::kDisabled},
+      {"power off of the follower", [](Couple& c) { c.Give(kFollower, axis::Power{.enable = false}); },
+       PlcState::kDisabled, PlcState::kDisabled},
+      {"limit switch of the follower", [](Couple&) {}, PlcState::kErrorStop, PlcState::kErrorStop, kFollower},
+      {"limit switch of the master", [](Couple&) {}, PlcState::kErrorStop, PlcState::kSynchronizedMotion, kMaster},
+  };
+  constexpr double kSwitch = 150;  // u of the master, further than it is when the others happen
+  for (const double ratio : {1.0, 2.0}) {
+    for (const Cause& cause : causes) {
+      SCOPED_TRACE(cause.name);
+      Machine machine = Pair(ratio);
+      if (cause.on_switch) {
+        SimulatedServo servo;
+        servo.axis = machine.axes[*cause.on_switch].name;
+        servo.encoder = ServoOf(machine, *cause.on_switch).encoder;
+        servo.switches.limit_positive.from = kSwitch * (*cause.on_switch == kFollower ? ratio : 1);
+        servo.switches.limit_positive.to = 10000;
+        machine.simulation.servos = {servo};
+      }
+      Couple c(machine);
+      c.PowerOn();
+      c.Give(kMaster, axis::MoveVelocity{.velocity = 300});
+      c.Run(400);
+      ASSERT_NEAR(c.follower().set_velocity, 300 * ratio, 1e-9);
+      cause.happens(c);
+      for (int i = 0; i < 300 && c.master().loop_closed && c.follower().loop_closed; ++i) {
+        c.Run(1);
+        if (!c.master().loop_closed || !c.follower().loop_closed) break;
+        ASSERT_NEAR(c.follower().set_position, ratio * c.master().set_position, 1e-9) << i;
+        ASSERT_NEAR(c.follower().set_velocity, ratio * c.master().set_velocity, 1e-9) << i;
+      }
+      c.Run(20);
+      EXPECT_EQ(c.master().set_velocity, 0);
+      EXPECT_EQ(c.follower().set_velocity, 0);
+      EXPECT_EQ(c.master().state, cause.master);
+      EXPECT_EQ(c.follower().state, cause.follower);
+      EXPECT_LT(std::abs(c.follower().skew), 0.5);
+    }
+  }
+}
+
+// AX-101: where a follower stands elsewhere when it is powered anew, that is a skew, and no new zero. Nothing moves
+// until a command straightens it, at its velocity.
+TEST(Following, ASkewSurvivesPowerOff) {
+  Machine machine = Pair(1);
+  machine.axes[kFollower].follows->skew_warning = 0.5;
+  machine.axes[kFollower].follows->offset = 5;  // and it stands at 0
+  Couple c(machine);
+  for (int times = 0; times < 3; ++times) {
+    c.PowerOn();
+    EXPECT_EQ(c.follower().state, PlcState::kSynchronizedMotion);
+    EXPECT_FALSE(c.follower().in_step);
+    EXPECT_TRUE(c.follower().skewed);
+    EXPECT_NEAR(c.follower().skew, -5, 0.01);
+    c.Give(kMaster, axis::MoveAbsolute{.position = 10});
+    c.Run(5);
+    EXPECT_EQ(c.last.error, ErrorId::kNotInStep);
+    c.Give(times == 1 ? kMaster : kFollower, axis::Power{.enable = false});
+    c.Run(50);
+    ASSERT_EQ(c.follower().state, PlcState::kDisabled);
+  }
+  c.PowerOn();
+  const Ticket straighten = c.Give(kFollower, axis::Straighten{.velocity = 20});
+  double fastest = 0;
+  for (int i = 0; i < 5000 && (c.last.ticket != straighten || c.last.state != FeedbackState::kDone); ++i) {
+    c.Run(1);
+    fastest = std::max(fastest, std::abs(c.follower().set_velocity));
+    ASSERT_EQ(c.master().set_velocity, 0);
+  }
+  EXPECT_EQ(c.last.ticket, straighten);
+  EXPECT_NEAR(fastest, 20, 1e-6);
+  c.Run(500);
+  EXPECT_TRUE(c.follower().in_step);
+  EXPECT_FALSE(c.follower().skewed);
+  EXPECT_NEAR(c.follower().skew, 0, 0.05);
+  c.Give(kMaster, axis::MoveAbsolute{.position = 10});
+  c.Run(1000);
+  EXPECT_NEAR(c.follower().set_position, c.master().set_position + 5, 1e-9);
+  c.Give(kMaster, axis::Power{.enable = false});
+  c.Run(50);
+  c.PowerOn();
+  EXPECT_TRUE(c.follower().in_step);
+}
+
+// AX-101: a follower that does not keep up stops all.
+TEST(Following, SupervisesTheSkew) {
+  Machine machine = Pair(1);
+  machine.axes[kFollower].follows->largest_skew = 1;
+  SimulatedServo servo;
+  servo.axis = "f";
+  servo.encoder = ServoOf(machine, kFollower).encoder;
+  servo.mechanics.upper_stop = 40;
+  machine.simulation.servos = {servo};
+  Couple c(machine);
+  c.PowerOn();
+  c.Give(kMaster, axis::MoveAbsolute{.position = 100, .velocity = 100});
+  c.Run(1500);
+  EXPECT_EQ(c.follower().error, ErrorId::kSkew);
+  EXPECT_EQ(c.follower().state, PlcState::kErrorStop);
+  EXPECT_EQ(c.master().error, ErrorId::kAxisFault);
+  EXPECT_EQ(c.master().fault_of, kFollower + 1);
+  EXPECT_LT(c.master().set_position, 48);
+  EXPECT_FALSE(c.follower().in_step);
 }
 
 }  // namespace

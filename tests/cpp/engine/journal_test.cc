@@ -108,6 +108,7 @@ TEST(Journal, ReplaysTheFullestCycleBitForBit) {
   machine.cycle.overruns_in_a_row = 1;
   Engine engine(machine, {.journal = true, .snapshot_queue = 1 << 13});
   engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
   for (int i = 0; i < 300; ++i) engine.RunCycle();
   Command jog = ToAxis(machine, "y1", axis::Jog{.forward = true, .velocity = 100});
   jog.lease_s = 0.1;

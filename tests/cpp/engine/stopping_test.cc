@@ -18,6 +18,7 @@ TEST(Overruns, InARowStopEverything) {
   Engine engine(machine, {.publish = true});
   const std::size_t y1 = AxisNamed(machine, "y1");
   engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
   for (int i = 0; i < 300; ++i) engine.RunCycle({1000, 20000, false});
   engine.Submit(ToAxis(machine, "y1", axis::MoveVelocity{.velocity = 400}));
   for (int i = 0; i < 300; ++i) engine.RunCycle({1000, 20000, false});
@@ -46,6 +47,7 @@ TEST(Overruns, CountAnewAfterAStopOrNever) {
     Engine engine(machine);
     const std::size_t y1 = AxisNamed(machine, "y1");
     engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+    engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
     for (int i = 0; i < 300; ++i) engine.RunCycle();
     for (int i = 0; i < 5; ++i) engine.RunCycle({0, 30000, true});
     EXPECT_EQ(engine.outputs(y1).error, allowed ? ErrorId::kOverrun : ErrorId::kNone);
@@ -82,6 +84,7 @@ TEST(Machine, StopAll) {
     const std::size_t y1 = AxisNamed(machine, "y1");
     const std::size_t c = AxisNamed(machine, "c");
     engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+    engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
     engine.Submit(ToAxis(machine, "c", axis::Power{}));
     for (int i = 0; i < 300; ++i) engine.RunCycle();
     const Ticket move = engine.Submit(ToAxis(machine, "y1", axis::MoveVelocity{.velocity = 400}));
@@ -218,8 +221,64 @@ TEST(EmergencyStop, SwitchesEverythingOffAtOnce) {
   for (int i = 0; i < 500; ++i) engine.RunCycle();
   EXPECT_NEAR(engine.outputs(y1).actual_velocity, 0, 1);  // the brake holds
   engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
   for (int i = 0; i < 300; ++i) engine.RunCycle();
   EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kStandstill);
+}
+
+// AX-100: while an emergency stop is held nothing is powered or moved, whatever asks, with an error of its own; what is
+// held by several is on until the last lets go; and nothing comes back by itself.
+TEST(EmergencyStop, HoldsUntilEveryHolderLetsGo) {
+  const Machine machine = FullMachine();
+  Engine engine(machine);
+  Answers answers;
+  for (const axis::AxisParams& a : machine.axes) engine.Submit(ToAxis(machine, a.name, axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  engine.Submit(ToAxis(machine, "y1", axis::MoveVelocity{.velocity = 300}));
+  engine.Submit(ToAxis(machine, "c", axis::MoveAbsolute{.position = 90, .velocity = 50}));
+  engine.Submit(ToAxis(machine, "c", axis::MoveAbsolute{.position = 10, .buffer_mode = axis::BufferMode::kBuffered}));
+  for (int i = 0; i < 200; ++i) engine.RunCycle();
+  const Ticket first = GiveMachine(engine, EmergencyStop{.hold = true});
+  const Ticket second = GiveMachine(engine, EmergencyStop{.hold = true});
+  const auto expect_disabled = [&](int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      engine.RunCycle();
+      for (std::size_t k = 0; k < machine.axes.size(); ++k) {
+        ASSERT_EQ(engine.outputs(k).state, axis::PlcState::kDisabled) << machine.axes[k].name;
+        ASSERT_FALSE(engine.outputs(k).loop_closed);
+        ASSERT_TRUE(engine.outputs(k).emergency_stopped);
+        ASSERT_EQ(engine.outputs(k).error, ErrorId::kNone);
+      }
+    }
+  };
+  const auto expect_refused = [&] {
+    const Ticket ask = engine.Submit(ToAxis(machine, "c", axis::Power{}));
+    expect_disabled(300);
+    answers.Take(engine);
+    const bool refused = std::any_of(answers.events.begin(), answers.events.end(), [&](const FeedbackEvent& e) {
+      return e.ticket == ask && e.error == ErrorId::kEmergencyStop;
+    });
+    EXPECT_TRUE(refused);
+  };
+  expect_refused();
+  GiveMachine(engine, Release{first});
+  expect_refused();
+  GiveMachine(engine, EmergencyStop{});  // for a cycle, meanwhile
+  expect_refused();
+  GiveMachine(engine, Release{second});
+  expect_disabled(500);  // and nothing goes on
+  engine.Submit(ToAxis(machine, "c", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  const std::size_t c = AxisNamed(machine, "c");
+  EXPECT_EQ(engine.outputs(c).state, axis::PlcState::kStandstill);
+  EXPECT_FALSE(engine.outputs(c).emergency_stopped);
+  for (int i = 0; i < 40; ++i) GiveMachine(engine, EmergencyStop{.hold = true});  // more than it can tell apart
+  for (int i = 0; i < 5; ++i) engine.RunCycle();
+  expect_refused();
+  GiveMachine(engine, ReleaseEmergencyStop{});
+  engine.Submit(ToAxis(machine, "c", axis::Power{}));
+  for (int i = 0; i < 300; ++i) engine.RunCycle();
+  EXPECT_EQ(engine.outputs(c).state, axis::PlcState::kStandstill);
 }
 
 // EN-08: what an overrun ended in the same cycle was not ended by the shutdown.
@@ -229,6 +288,7 @@ TEST(Shutdown, IsNotTheReasonForWhatEndedBeforeIt) {
   Engine engine(machine);
   Answers answers;
   engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+  engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
   for (int i = 0; i < 300; ++i) engine.RunCycle();
   engine.Submit(ToAxis(machine, "y1", axis::MoveAbsolute{.position = 100}));
   const Ticket waits = engine.Submit(

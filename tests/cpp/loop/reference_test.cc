@@ -119,6 +119,70 @@ TEST(Flying, TakesTheReferenceInPassing) {
   }
 }
 
+// AX-106: it does not stay armed: a newer reference ends it, a halt or a stop where that was asked for, and the command
+// that is for it. What passes the switch later keeps its numbers.
+TEST(Flying, EndsWithANewerReferenceAHaltOrWhenToldTo) {
+  struct Case {
+    const char* name;
+    Command ends;
+    bool until_halt, aborted;
+  };
+  const Case cases[] = {
+      {"a reference on the spot", StepDirect{.set_position = 5}, false, true},
+      {"a halt", Halt{}, false, false},
+      {"a halt that ends it", Halt{}, true, true},
+      {"a stop that ends it", Stop{}, true, true},
+      {"the command", AbortPassiveHoming{}, false, true},
+      {"another number", SetPosition{.position = 5}, false, false},
+  };
+  for (const bool pulse : {false, true}) {
+    for (const Case& c : cases) {
+      SCOPED_TRACE(c.name);
+      Bench bench(-5);
+      bench.On();
+      const Command by_pulse = StepRefFlyingRefPulse{.set_position = 300, .until_halt = c.until_halt};
+      const Command by_switch = StepRefFlyingSwitch{.set_position = 300, .until_halt = c.until_halt};
+      const Ticket flying = bench.Give(pulse ? by_pulse : by_switch);
+      bench.Run(0.01);
+      const Ticket ends = bench.Give(c.ends);
+      bench.Run(0.05);
+      EXPECT_EQ(bench.last[ends].state, FeedbackState::kDone);
+      EXPECT_EQ(bench.last[flying].state, c.aborted ? FeedbackState::kAborted : FeedbackState::kActive);
+      const double begin = bench.seen.set_position;
+      ASSERT_TRUE(bench.RunToEnd(bench.Give(MoveRelative{.distance = 60, .velocity = 100})));
+      if (c.aborted) {
+        EXPECT_NEAR(bench.seen.set_position, begin + 60, 1e-6);
+      } else {
+        EXPECT_EQ(bench.last[flying].state, FeedbackState::kDone);
+        EXPECT_GT(bench.seen.set_position, 300);
+      }
+    }
+  }
+}
+
+// AX-100: one rule for a place beyond a SW limit, whoever would call it so.
+TEST(Reference, NoPlaceIsBeyondALimit) {
+  StepAbsSwitch by_switch;
+  by_switch.velocity = 50;
+  by_switch.set_position = 201;
+  StepRefPulse by_pulse;
+  by_pulse.velocity = 50;
+  by_pulse.set_position = 201;
+  for (const Command& names : {Command(SetPosition{.position = 201}), Command(StepDirect{.set_position = 201}),
+                               Command(by_switch), Command(by_pulse), Command(StepRefFlyingSwitch{.set_position = 201}),
+                               Command(StepRefFlyingRefPulse{.set_position = 201})}) {
+    Bench bench(-5);
+    bench.params.limits.upper = 200;
+    bench.On();
+    const double before = bench.seen.set_position;
+    const Ticket ticket = bench.Give(names);
+    bench.Run(0.05);
+    EXPECT_EQ(bench.last[ticket].error, ErrorId::kTargetBehindLimit) << names.index();
+    EXPECT_EQ(bench.seen.set_position, before);
+    EXPECT_EQ(bench.state.plc, PlcState::kStandstill);
+  }
+}
+
 TEST(Flying, GivesUp) {
   Bench bench(40);
   bench.On();

@@ -4,6 +4,12 @@
 
 namespace takt::axis {
 
+namespace {
+// Homing begins at rest.
+constexpr const char* kBlendedHoming =
+    "How the command follows the one before it; blended: at its end, with velocity 0.";
+}  // namespace
+
 void describe(Enumeration<HomingDirection>& e) {
   e.about("Where a search goes first.");
   e.value(HomingDirection::kPositive, "positive", "Upwards.");
@@ -43,7 +49,7 @@ void describe(Description<StepAbsSwitch>& d) {
   DescribeRamps(d);
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
-  d.defaulted<&C::buffer_mode>("aborting or buffered.");
+  d.defaulted<&C::buffer_mode>(kBlendedHoming);
 }
 
 void describe(Description<StepLimitSwitch>& d) {
@@ -56,7 +62,7 @@ void describe(Description<StepLimitSwitch>& d) {
   DescribeRamps(d);
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
-  d.defaulted<&C::buffer_mode>("aborting or buffered.");
+  d.defaulted<&C::buffer_mode>(kBlendedHoming);
 }
 
 void describe(Description<StepBlock>& d) {
@@ -104,7 +110,7 @@ void describe(Description<FinishHoming>& d) {
   d.defaulted<&C::distance>(unit::u, "How far; 0: stay.");
   d.defaulted<&C::velocity>(unit::u_s, positive, "How fast; unset: the axis' limit.");
   DescribeRamps(d);
-  d.defaulted<&C::buffer_mode>(kBufferMode);
+  d.defaulted<&C::buffer_mode>(kBlendedHoming);
 }
 
 void describe(Description<StepRefFlyingSwitch>& d) {
@@ -114,6 +120,7 @@ void describe(Description<StepRefFlyingSwitch>& d) {
   d.defaulted<&C::set_position>(unit::u, "What the position is called there.");
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.defaulted<&C::until_halt>("True: a halt or a stop of the axis ends it, too.");
 }
 
 void describe(Description<StepRefFlyingRefPulse>& d) {
@@ -123,6 +130,11 @@ void describe(Description<StepRefFlyingRefPulse>& d) {
   d.defaulted<&C::set_position>(unit::u, "What the position is called there.");
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.defaulted<&C::until_halt>("True: a halt or a stop of the axis ends it, too.");
+}
+
+void describe(Description<AbortPassiveHoming>& d) {
+  d.about("Gives up a reference that is to be taken in passing (MC_AbortPassiveHoming). Done also without one.");
 }
 
 }  // namespace takt::axis

@@ -74,11 +74,15 @@ struct StepRefFlyingSwitch {  // MC_StepRefFlyingSwitch
   double set_position = 0;
   double time_limit = 0;
   double distance_limit = 0;
+  bool until_halt = false;  // a halt or a stop ends it, too
 };
 struct StepRefFlyingRefPulse {  // MC_StepRefFlyingRefPulse
   double set_position = 0;
   double time_limit = 0;
   double distance_limit = 0;
+  bool until_halt = false;
+};
+struct AbortPassiveHoming {  // MC_AbortPassiveHoming
 };
 
 void describe(Enumeration<HomingDirection>&);
@@ -93,5 +97,6 @@ void describe(Description<StepAbsolute>&);
 void describe(Description<FinishHoming>&);
 void describe(Description<StepRefFlyingSwitch>&);
 void describe(Description<StepRefFlyingRefPulse>&);
+void describe(Description<AbortPassiveHoming>&);
 
 }  // namespace takt::axis

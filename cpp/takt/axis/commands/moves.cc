@@ -113,6 +113,13 @@ void describe(Description<Halt>& d) {
   d.defaulted<&Halt::buffer_mode>("aborting or buffered.");
 }
 
+void describe(Description<Straighten>& d) {
+  d.about(
+      "Straightens a gantry: an axis that follows another from load on goes to where its master, which stands, has it. "
+      "Done when the skew of the set points is 0.");
+  d.defaulted<&Straighten::velocity>(unit::u_s, positive, "Largest velocity; unset: a tenth of the limit.");
+}
+
 void describe(Description<Stop>& d) {
   d.about("Brakes to standstill; nothing may take over until it is released (MC_Stop).");
   d.defaulted<&Stop::deceleration>(unit::u_s2, positive, kDeceleration);

@@ -53,6 +53,9 @@ struct Halt {  // MC_Halt
   std::optional<double> deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
 };
+struct Straighten {                  // the skew of an axis that follows another from load on goes to 0
+  std::optional<double> velocity{};  // u/s, of the follower against its master; unset: a tenth of the limit
+};
 struct Stop {  // MC_Stop
   std::optional<double> deceleration{}, jerk{};
   bool hold = false;                               // stay in Stopping until released (Execute kept true)
@@ -93,6 +96,7 @@ void describe(Description<MoveContinuousAbsolute>&);
 void describe(Description<MoveContinuousRelative>&);
 void describe(Description<Inch>&);
 void describe(Description<Halt>&);
+void describe(Description<Straighten>&);
 void describe(Description<Stop>&);
 void describe(Description<Jog>&);
 

@@ -20,7 +20,10 @@ void describe(Description<SetConstants>& d) {
 void describe(Description<WriteParameter>& d) {
   using C = WriteParameter;
   d.about("Sets a parameter by its number (MC_WriteParameter).");
-  d.required<&C::number>(at_least(1), "PLCopen's number, 2 to 7; or 1007: largest following error at rest.");
+  d.required<&C::number>(at_least(1),
+                         "PLCopen's number, 2 to 7; 9, 13, 15, 17: limits of the application, at most those of the "
+                         "machine file, while the "
+                         "axis rests; or 1007: largest following error at rest.");
   d.required<&C::value>("In the parameter's unit; 0 and 1 of yes and no.");
 }
 
