@@ -1,4 +1,4 @@
-"""Axes that are one from load on (docs/couplings.md): homing squares them, ramps of faults, limits of the application."""
+"""Axes that are one from load on (docs/couplings.md), ramps of faults, limits of the application, what blocks say."""
 
 from __future__ import annotations
 
@@ -62,7 +62,8 @@ def test_a_follower_without_its_switch_is_no_reference() -> None:
 SWITCH = """
 name: switch
 axes:
-  - {{name: x, limits: {{velocity: 400, acceleration: 2000, jerk: 40000}}, {ramp}, encoder: {{increments_per_unit: 10000}}}}
+  - {{name: x, limits: {{velocity: 400, acceleration: 2000, jerk: 40000}}, {ramp},
+     encoder: {{increments_per_unit: 10000}}}}
 simulation:
   servos:
     - {{axis: x, switches: {{limit_positive: {{from: 100}}}}, encoder: {{increments_per_unit: 10000}}}}

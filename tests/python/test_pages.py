@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from takt import reference
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
@@ -41,6 +42,15 @@ def test_a_component_has_a_machine_and_a_scenario_with_a_picture(name: str) -> N
 def test_every_group_of_commands_is_named_on_a_page() -> None:
     text = "".join(page.read_text(encoding="utf-8") for page in PAGES)
     assert [group.stem for group in command_pages.GROUPS if f"(commands/{group.stem}.md)" not in text] == []
+
+
+def test_commands_that_the_page_of_axes_lists_are_there() -> None:
+    """AX-107: its table of commands."""
+    text = (ROOT / "docs" / "axis.md").read_text(encoding="utf-8")
+    rows = [row for row in text.splitlines() if row.startswith("|") and "(commands/" in row]
+    named = {name for row in rows for name in re.findall(r"`([a-z_]+)`", row)}
+    assert len(named) > 15
+    assert named - {verb.rpartition(".")[2] for verb in reference.verbs()} == set()
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
