@@ -1,6 +1,7 @@
 #include "takt/core/schema.h"
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -21,13 +22,14 @@ class SchemaMaker {
  public:
   Json Root(const Type& type) {
     Json root = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}};
-    root.update(Struct(type));
+    root.update(Struct(type, std::string(type.name)));
     if (!definitions_.empty()) root["$defs"] = definitions_;
     return root;
   }
 
  private:
-  Json Value(const Type& type, const Field& field) {
+  // `where`: the field that holds it, "Axis.limits".
+  Json Value(const Type& type, const Field& field, const std::string& where) {
     switch (type.kind) {
       case Kind::kBool:
         return {{"type", "boolean"}};
@@ -38,16 +40,16 @@ class SchemaMaker {
       case Kind::kString:
         return type.longest ? Json{{"type", "string"}, {"maxLength", type.longest}} : Json{{"type", "string"}};
       case Kind::kVector:
-        return {{"type", "array"}, {"items", Value(*type.element, field)}};
+        return {{"type", "array"}, {"items", Value(*type.element, field, where)}};
       case Kind::kArray:
         return {{"type", "array"},
-                {"items", Value(*type.element, field)},
+                {"items", Value(*type.element, field, where)},
                 {"minItems", type.count},
                 {"maxItems", type.count}};
       case Kind::kOptional:
-        return {{"anyOf", Json::array({Value(*type.element, field), Json{{"type", "null"}}})}};
+        return {{"anyOf", Json::array({Value(*type.element, field, where), Json{{"type", "null"}}})}};
       default:
-        return Reference(type);
+        return Reference(type, where);
     }
   }
 
@@ -64,14 +66,19 @@ class SchemaMaker {
     return number;
   }
 
-  Json Reference(const Type& type) {
-    const std::string name(type.name);
-    if (!definitions_.contains(name)) {
+  // Types are told apart by themselves, since two of different namespaces may share their name: the second one is
+  // called after the field that holds it.
+  Json Reference(const Type& type, const std::string& where) {
+    auto known = names_.find(&type);
+    if (known == names_.end()) {
+      const std::string own(type.name);
+      const std::string& name = definitions_.contains(own) ? where : own;
+      known = names_.emplace(&type, name).first;
       definitions_[name] = nullptr;  // keeps the order of first use
-      Json definition = type.kind == Kind::kEnum ? Enum(type) : Struct(type);
+      Json definition = type.kind == Kind::kEnum ? Enum(type) : Struct(type, name);
       definitions_[name] = std::move(definition);
     }
-    return {{"$ref", "#/$defs/" + name}};
+    return {{"$ref", "#/$defs/" + known->second}};
   }
 
   Json Enum(const Type& type) {
@@ -80,12 +87,12 @@ class SchemaMaker {
     return {{"description", type.about}, {"oneOf", std::move(values)}};
   }
 
-  Json Struct(const Type& type) {
+  Json Struct(const Type& type, const std::string& name) {
     Json properties = Json::object();
     Json required = Json::array();
     for (const Field& field : type.fields) {
       if (field.presence == Presence::kInternal) continue;
-      Json property = Value(*field.type, field);
+      Json property = Value(*field.type, field, name + "." + std::string(field.name));
       std::string about(field.about);
       if (!field.unit.text.empty()) {
         about += " Unit: " + LongText(field.unit) + ".";
@@ -99,14 +106,14 @@ class SchemaMaker {
       }
       properties[std::string(field.name)] = std::move(property);
     }
-    Json schema = {
-        {"title", type.name}, {"description", type.about}, {"type", "object"}, {"additionalProperties", false}};
+    Json schema = {{"title", name}, {"description", type.about}, {"type", "object"}, {"additionalProperties", false}};
     schema["properties"] = std::move(properties);
     if (!required.empty()) schema["required"] = std::move(required);
     return schema;
   }
 
   Json definitions_ = Json::object();
+  std::map<const Type*, std::string> names_;  // of the definitions
 };
 
 const char* PresenceText(Presence presence) {

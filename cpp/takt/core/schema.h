@@ -8,7 +8,7 @@
 
 namespace takt {
 
-// JSON Schema, draft 2020-12. Units stand in the descriptions and in "x-unit".
+// JSON Schema, draft 2020-12. Units stand in the descriptions and in "x-unit". Each definition is of one type.
 nlohmann::ordered_json JsonSchema(const Type& type);
 
 // Everything the description says.

@@ -38,7 +38,7 @@ planar::Parts Make(const std::vector<CoordinateSystemParams>& systems, const std
 }
 
 void describe(Description<CoordinateSystemParams>& d) {
-  d.named("CoordinateSystem");
+  d.named("PlanarCoordinateSystem");
   d.about("A plane of its own, in which parts lie.");
   d.required<&CoordinateSystemParams::name>("Of the coordinate system; positions refer to it.");
 }

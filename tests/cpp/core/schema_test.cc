@@ -56,6 +56,51 @@ TEST(JsonSchema, ListsOptionalsAndNestedStructs) {
   EXPECT_TRUE(schema["$defs"].contains("DriveMode"));
 }
 
+// Two types of one name, as namespaces allow.
+namespace bolt {
+enum class Shape { kHex };
+struct Bolt {
+  Shape shape = Shape::kHex;
+};
+void describe(Enumeration<Shape>& e) {
+  e.about("Of a head.");
+  e.value(Shape::kHex, "hex", "Six sides.");
+}
+void describe(Description<Bolt>& d) {
+  d.about("A bolt.");
+  d.defaulted<&Bolt::shape>("Its head.");
+}
+}  // namespace bolt
+namespace hole {
+enum class Shape { kRound };
+struct Hole {
+  Shape shape = Shape::kRound;
+  bolt::Bolt bolt{};
+  Shape counterbore = Shape::kRound;
+};
+void describe(Enumeration<Shape>& e) {
+  e.about("Of a hole.");
+  e.value(Shape::kRound, "round", "A circle.");
+}
+void describe(Description<Hole>& d) {
+  d.about("A hole.");
+  d.defaulted<&Hole::shape>("Its edge.");
+  d.defaulted<&Hole::bolt>("What is in it.");
+  d.defaulted<&Hole::counterbore>("Its upper edge.");
+}
+}  // namespace hole
+
+TEST(JsonSchema, TellsTypesOfOneNameApart) {  // PY-21
+  const Json schema = JsonSchema(TypeOf<hole::Hole>());
+  const Json& own = schema["properties"];
+  EXPECT_EQ(own["shape"]["$ref"], "#/$defs/Shape");
+  EXPECT_EQ(own["counterbore"]["$ref"], "#/$defs/Shape");
+  EXPECT_EQ(schema["$defs"]["Bolt"]["properties"]["shape"]["$ref"], "#/$defs/Bolt.shape");
+  EXPECT_EQ(schema["$defs"]["Shape"]["oneOf"][0]["const"], "round");
+  EXPECT_EQ(schema["$defs"]["Bolt.shape"]["oneOf"][0]["const"], "hex");
+  EXPECT_EQ(schema["$defs"].size(), 3);
+}
+
 TEST(Reference, SaysEverything) {  // EN-11
   const Json reference = ReferenceJson(TypeOf<example::Axis>());
   EXPECT_EQ(reference["name"], "Axis");
