@@ -21,7 +21,7 @@ class FlexCam(Component, FlexCamCommands, FlexCamOutputs):
         return self.session.axis(self.parameters["slave"])
 
     @property
-    def master(self) -> Axis | None:
-        """The axis that it follows; None: a virtual one."""
-        name = self.parameters["master"]
-        return None if name is None else self.session.axis(name)
+    def master(self) -> Component | None:
+        """The axis or other component that it follows; None: a virtual one."""
+        name = self.parameters.get("master")
+        return None if name is None else self.session.components[name]

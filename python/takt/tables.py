@@ -140,17 +140,27 @@ def make_recording(
 
 
 def units_of(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]) -> dict[str, str]:
-    """What the units in the descriptions stand for. A cam module has those of slave, master and its first cam."""
+    """What the units in the descriptions stand for: "u" is the component's own. A cam module has those of slave, master
+    and its first cam; a virtual master has that of the cam's x."""
     if kind.name == "axis":
-        return {"u": parameters["unit"]}
-    if kind.name in ("group", "pose", "pick_place", "mover", "track", "planar_group", "environment", "part"):
-        return {"u": "mm"}
+        return {"u": str(parameters["unit"])}
     if kind.name == "belt":
         return {"u": "deg" if parameters["kind"] == "turning" else "mm"}
-    of_axes = {a["name"]: str(a["unit"]) for a in machine["axes"]}
+    if kind.name != "flex_cam":
+        return {"u": "mm"}
+    components = components_of(machine)
+
+    def unit(name: str) -> str:
+        return units_of(machine, *components[name])["u"]
+
     cam = next(c for c in machine["cams"] if c["name"] == parameters["cams"][0])
-    master = of_axes.get(parameters["master"], cam["x_unit"])
-    return {"u": of_axes[parameters["slave"]], "u_m": master, "x": cam["x_unit"], "y": cam["y_unit"]}
+    master = parameters.get("master")
+    return {
+        "u": unit(parameters["slave"]),
+        "u_m": cam["x_unit"] if master is None else unit(master),
+        "x": cam["x_unit"],
+        "y": cam["y_unit"],
+    }
 
 
 def _info(machine: Mapping[str, Any], kind: Kind, axis: Mapping[str, Any]) -> dict[str, Any]:
