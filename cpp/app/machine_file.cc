@@ -1,5 +1,7 @@
 #include "app/machine_file.h"
 
+#include <cstdlib>
+
 #include "takt/core/describe.h"
 #include "takt/core/writer.h"
 #include "takt/core/yaml_reader.h"
@@ -7,6 +9,28 @@
 #include "takt/lcm/network.h"
 
 namespace takt::app {
+namespace {
+
+constexpr char kEnvironment[] = "LCM_DEFAULT_URL";
+constexpr char kDefaultUrl[] = "udpm://239.255.76.67:7667?ttl=0";  // EN-25: stays on this host
+
+// Appends what is wrong with the URL of the machine file or of the environment; the command line's was checked there.
+std::string NetworkOf(const Options& options, const engine::Machine& machine, std::vector<std::string>& problems) {
+  const auto checked = [&](const std::string& where, const std::string& url) {
+    const std::string problem = lcm::WhyNotUrl(url);
+    if (!problem.empty()) problems.push_back(where + ": " + problem);
+    return url;
+  };
+  const std::string own =
+      machine.lcm.url ? checked(options.machine_file + ": lcm.url", *machine.lcm.url) : std::string();
+  if (!options.lcm || options.task != Task::kRun) return {};
+  if (options.lcm_url) return *options.lcm_url;
+  if (machine.lcm.url) return own;
+  const char* const usual = std::getenv(kEnvironment);
+  return usual && *usual ? checked(kEnvironment, usual) : kDefaultUrl;
+}
+
+}  // namespace
 
 MachineFile ReadMachineFile(const Options& options) {
   MachineFile file;
@@ -27,10 +51,7 @@ MachineFile ReadMachineFile(const Options& options) {
     if (!range.Holds(*options.cycle_time_s)) file.problems.push_back("--cycle-time: expected seconds " + Text(range));
     if (loaded.machine) loaded.machine->cycle.period_s = *options.cycle_time_s;
   }
-  if (loaded.machine) {
-    const std::string problem = lcm::WhyNotUrl(loaded.machine->lcm.url);
-    if (!problem.empty()) file.problems.push_back(options.machine_file + ": lcm.url: " + problem);
-  }
+  if (loaded.machine) file.url = NetworkOf(options, *loaded.machine, file.problems);
   file.checkers = std::move(loaded.checkers);
   if (file.problems.empty()) file.machine = std::move(loaded.machine);
   return file;

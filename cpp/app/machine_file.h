@@ -14,6 +14,7 @@ namespace takt::app {
 struct MachineFile {
   std::optional<engine::Machine> machine;  // empty: see problems
   std::string text;                        // as it was read; with files it names written out
+  std::string url;                         // the LCM network it runs on; empty: none
   engine::Checkers checkers;               // of its groups
   std::vector<std::string> problems;       // one line each
   std::vector<std::string> warnings;       // likewise

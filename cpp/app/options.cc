@@ -50,7 +50,8 @@ std::optional<Options> ParseOptions(int argc, char** argv, int& exit_code) {
       ->check(CLI::IsMember({"real", "paced", "fast"}))
       ->option_text("real|paced|fast");
   cli.add_option("--duration", run.duration_s, "Seconds of machine time, then stop [until SIGINT]")->check(IsDuration);
-  auto* url = cli.add_option("--lcm-url", options.lcm_url, "LCM network [machine file]")->check(lcm::WhyNotUrl);
+  auto* url = cli.add_option("--lcm-url", options.lcm_url, "LCM network [machine file, LCM_DEFAULT_URL]")
+                  ->check(lcm::WhyNotUrl);
   cli.add_flag("--no-lcm", no_lcm, "Neither publish nor listen")->excludes(url);
   cli.add_option("--log", options.log_file, "Record everything of every cycle, and the journal, into this LCM log")
       ->option_text("FILE");

@@ -65,14 +65,13 @@ int Run(const Options& options, MachineFile file) {
                         {.publish = options.lcm || log, .every_cycle = log, .drives = has_drives, .journal = log});
   engine::PathChecks checks(engine, std::move(file.checkers));
   engine::SchedulerOptions scheduler = options.scheduler;
-  const std::string url = options.lcm ? options.lcm_url.value_or(machine.lcm.url) : "";
   const lcm::RunInfo info{file.text, TAKT_VERSION, static_cast<std::int8_t>(scheduler.pace)};
   std::string problem;
   std::unique_ptr<lcm::Service> service;
   if (options.lcm || log) {
     const auto explain = [&checks](const FeedbackEvent& event) { return checks.Sentence(event); };
-    service = lcm::Service::Open(engine, {.url = url, .log_path = options.log_file, .info = info, .explain = explain},
-                                 problem);
+    service = lcm::Service::Open(
+        engine, {.url = file.url, .log_path = options.log_file, .info = info, .explain = explain}, problem);
     if (!service) return Refuse(problem);
     scheduler.wait_for_reader = log;
   }
@@ -80,7 +79,7 @@ int Run(const Options& options, MachineFile file) {
   const bool real_time = scheduler.pace == engine::Pace::kRealTime;
   if (has_drives) {
     drives = lcm::Drives::Open(
-        engine, {.url = url, .run_id = info.run_id, .real_time = real_time, .complain = SayOnStderr}, problem);
+        engine, {.url = file.url, .run_id = info.run_id, .real_time = real_time, .complain = SayOnStderr}, problem);
     if (!drives) return Refuse(problem);
   }
   scheduler.ready = [&] {  // in simulated time
@@ -88,7 +87,7 @@ int Run(const Options& options, MachineFile file) {
     return !drives || drives->Ready();
   };
 
-  std::cout << Greeting(machine, scheduler.pace) << std::endl;
+  std::cout << Greeting(machine, scheduler.pace) << (file.url.empty() ? "" : ", on " + file.url) << std::endl;
   std::optional<engine::PathCheckThread> checking;
   if (real_time) checking.emplace(checks);
   cycle_runs = true;

@@ -21,7 +21,7 @@ from typing import Any, Final
 
 from takt import _core, msgs
 from takt.errors import TaktError
-from takt.network import DEFAULT_URL, open_network
+from takt.network import DEFAULT_URL, network_of, open_network
 
 CYCLIC_POSITION: Final = msgs.drive_setpoint.MODE_CYCLIC_POSITION
 CYCLIC_VELOCITY: Final = msgs.drive_setpoint.MODE_CYCLIC_VELOCITY
@@ -275,7 +275,7 @@ def simulate(
     if not external:
         raise TaktError(f"{file_name}: has no external drives (external: drives: - axis: NAME)")
     drives = {axis: SimulatedServo(machine, axis) for axis in axes or external}
-    plant = Plant(drives, url or described["lcm"]["url"], watchdog=watchdog)
+    plant = Plant(drives, url or network_of(described), watchdog=watchdog)
     before = [signal.signal(number, lambda *_: plant.stop()) for number in (signal.SIGINT, signal.SIGTERM)]
     print(f"simulating {', '.join(drives)}", file=sys.stderr, flush=True)
     plant.run()

@@ -23,6 +23,7 @@ from takt.feedback import Feedback
 from takt.forecast import Forecast
 from takt.lying import LOOK_S
 from takt.mover import Mover
+from takt.network import network_of
 from takt.recording import Recording
 from takt.session import Recorder, Session
 from takt.tables import KINDS, fields_of_kind, make_recording, named
@@ -53,7 +54,8 @@ class Engine(Session):
     machine: the path of a machine file, or its text.
     period: s, instead of the machine file's.
     journal: keep the journal and a hash of the whole state after every cycle (`take_journal`, `take_hashes`).
-    url: LCM network of external drives, instead of the machine file's. Time stands still until they have answered.
+    url: LCM network of external drives, instead of the machine file's (`lcm.url`, else LCM_DEFAULT_URL). Time stands
+        still until they have answered.
     """
 
     def __init__(
@@ -68,7 +70,7 @@ class Engine(Session):
         if period is not None:
             period = seconds(period, "a period")
         described = json.loads(_core.load_machine(text, file_name))
-        drives_url = (url or described["lcm"]["url"]) if described["external"]["drives"] else None
+        drives_url = (url or network_of(described)) if described["external"]["drives"] else None
         self._core = _core.Engine(text, file_name, journal=journal, period_s=period, drives_url=drives_url)
         self._unfinished: dict[int, Feedback] = {}
         self._unreleased: list[Feedback] = []  # their release was refused

@@ -5,7 +5,9 @@ from __future__ import annotations
 import os
 import re
 import socket
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import lcm
 
@@ -18,6 +20,12 @@ BUFFER = 4 << 20  # bytes of a socket that must not lose anything
 def usual_url() -> str:
     """The network of whoever names none: that of the environment (LCM_DEFAULT_URL), else DEFAULT_URL."""
     return os.environ.get("LCM_DEFAULT_URL") or DEFAULT_URL
+
+
+def network_of(machine: Mapping[str, Any]) -> str:
+    """The network that taktd runs a machine on unless its command line says otherwise: the machine file's `lcm.url`,
+    else the usual one."""
+    return machine["lcm"].get("url") or usual_url()
 
 
 def roomy(url: str) -> str:

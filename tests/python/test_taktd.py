@@ -139,6 +139,39 @@ def test_check_refuses_names_and_urls_that_cannot_be(machine: Path, name: str, u
     assert "name: expected" in result.stderr or "lcm.url: " in result.stderr
 
 
+@pytest.mark.parametrize(
+    ("usual", "in_file", "option", "joined"),
+    [
+        ("", "", "", "udpm://239.255.76.67:7667?ttl=0"),
+        ("memq://usual", "", "", "memq://usual"),
+        ("memq://usual", "memq://file", "", "memq://file"),
+        ("memq://usual", "memq://file", "memq://option", "memq://option"),
+        ("nonsense", "", "memq://option", "memq://option"),
+    ],
+)
+def test_the_network_of_a_run(
+    machine: Path, monkeypatch: pytest.MonkeyPatch, usual: str, in_file: str, option: str, joined: str
+) -> None:
+    """EN-01: --lcm-url, else the machine file, else LCM_DEFAULT_URL, as clients have it, else the one on this host."""
+    monkeypatch.setenv("LCM_DEFAULT_URL", usual)
+    if in_file:
+        machine.write_text(f'{MACHINE}lcm: {{url: "{in_file}"}}\n')
+    options = ["--lcm-url", option] if option else []
+    result = taktd(machine, "--duration", 0.01, "--pace", "fast", *options)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.splitlines()[0].endswith(f", on {joined}")
+    assert result.stdout.count(" on ") == 1
+
+
+def test_a_usual_network_that_cannot_be(machine: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LCM_DEFAULT_URL", "nonsense")
+    result = taktd(machine, "--duration", 0.01)
+    assert result.returncode == 2
+    assert result.stderr.startswith("LCM_DEFAULT_URL: LCM URL 'nonsense': expected one like udpm://")
+    assert taktd("--check", machine).returncode == 0
+    assert " on " not in taktd(machine, "--no-lcm", "--pace", "fast", "--duration", 0.01).stdout
+
+
 @pytest.mark.skipif(
     subprocess.run(["unshare", "-n", "true"], capture_output=True, check=False).returncode != 0,
     reason="no right to make a network of one's own",

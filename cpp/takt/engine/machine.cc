@@ -67,7 +67,9 @@ void describe(Description<ChannelRate>& d) {
 void describe(Description<LcmParams>& d) {
   using L = LcmParams;
   d.about("What goes out and comes in over LCM.");
-  d.defaulted<&L::url>("LCM's provider; as it is, messages stay on this host (ttl 0).");
+  d.defaulted<&L::url>(
+      "LCM's provider. Unset: that of the environment (LCM_DEFAULT_URL), else udpm://239.255.76.67:7667?ttl=0, whose "
+      "messages stay on this host (ttl 0).");
   d.defaulted<&L::axis_rate_hz>(
       unit::hz, between(0, 4000),
       "How often each axis and each other component is published, at most once a cycle; 0: never.");

@@ -36,11 +36,11 @@ struct ChannelRate {
 };
 
 struct LcmParams {
-  std::string url = "udpm://239.255.76.67:7667?ttl=0";  // EN-25: stays on this host
-  double axis_rate_hz = 100;                            // of each component's state channel; at most once a cycle
-  std::vector<ChannelRate> rates;                       // components with a rate of their own
-  double engine_rate_hz = 10;                           // of the engine's own channel
-  double dead_man_s = 0.25;  // s without a heartbeat after which a level-sensitive command is released
+  std::optional<std::string> url{};  // unset: that of the environment, else one that stays on this host (EN-25)
+  double axis_rate_hz = 100;         // of each component's state channel; at most once a cycle
+  std::vector<ChannelRate> rates{};  // components with a rate of their own
+  double engine_rate_hz = 10;        // of the engine's own channel
+  double dead_man_s = 0.25;          // s without a heartbeat after which a level-sensitive command is released
 };
 
 // The simulated servo behind an axis. Axes without one get an ideal servo that fits their own parameters.
