@@ -17,11 +17,12 @@ from takt.belt import Belt, BeltObject
 from takt.engine import Engine, error_name, error_text, read_machine
 from takt.environment import Environment
 from takt.errors import ClosedError, CommandError, ConfigError, ConnectionError, DriveWarning, TaktError, TimeoutError
+from takt.events import LogError
 from takt.feedback import Feedback, FeedbackState
 from takt.flex_cam import FlexCam
 from takt.forecast import Forecast, Moment
 from takt.group import Group
-from takt.lcmlog import LogError, read_log, write_log
+from takt.lcmlog import read_log, write_log
 from takt.mover import Mover, MoverRecord
 from takt.part import Part
 from takt.pick_place import PickPlace

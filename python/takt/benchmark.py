@@ -7,7 +7,7 @@ import time
 from dataclasses import dataclass
 
 from takt.engine import Engine
-from takt.lcmlog import Progress
+from takt.events import Progress
 
 ROUNDS = 3  # of each measurement; the best counts
 

@@ -6,12 +6,12 @@ import contextlib
 import os
 import sys
 import traceback
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
-from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, SpinnerColumn, Task, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
@@ -22,10 +22,10 @@ from takt.drive import WATCHDOG, simulate
 from takt.ending import end_in_order, wait_until_ended
 from takt.engine import Engine, read_machine
 from takt.errors import ConfigError, TaktError
+from takt.events import Progress as Share
 from takt.figures import in_words
-from takt.lcmlog import Progress as Share
 from takt.lcmlog import open_log, to_recording, write_log
-from takt.missing import missing, troubles
+from takt.missing import all_missing, troubles
 from takt.network import usual_url
 from takt.recording import Recording, RecordingError
 from takt.remote import connect
@@ -33,12 +33,13 @@ from takt.replay import replay as replay_log
 from takt.scenario import Outcome, load_scenario, run_scenario, verify_recording
 from takt.session import Session
 from takt.source import read_run
+from takt.terminal import Output
 
 BAD_INPUT = 2
 FAILED = 1
 
-out = Console(highlight=False)
-err = Console(stderr=True, highlight=False)
+out = Output()
+err = Output(stderr=True)
 
 
 def _counted_from_0(_context: click.Context, _option: click.Parameter, number: int | None) -> int | None:
@@ -470,14 +471,17 @@ def show_track(file: Path, **options: Any) -> int:
 @click.option("--save", type=FILE, help="Keep one run as a recording (.npz) or a table (.csv).")
 @START
 def show_log(log: Path, save: Path | None, start_number: int | None) -> int:
-    """Say what an LCM LOG holds."""
+    """Say what an LCM LOG holds. Exit code 1: it is not whole, and what is missing is said."""
     if save is not None:
         _writable(save, (".npz", ".csv"))
     with _bar(f"read {log.name}") as progress:
         content = open_log(log, progress)
-    table = Table("channel", "messages", "not decoded", box=None)
+    lost: Counter[str] = Counter()
+    for one in content.runs:
+        lost.update(one.sequences.lost())
+    table = Table("channel", "messages", "lost", "not decoded", box=None)
     for channel, count in sorted(content.messages.items()):
-        table.add_row(channel, str(count), str(content.malformed[channel] or ""))
+        table.add_row(channel, str(count), str(lost[channel] or ""), str(content.malformed[channel] or ""))
     out.print(table)
     for number, one in enumerate(content.runs):
         name = getattr(one.machine, "name", "") or "a machine"
@@ -491,7 +495,9 @@ def show_log(log: Path, save: Path | None, start_number: int | None) -> int:
         if starts := recording.meta.get("starts"):
             print(starts)
         print(recording.to_csv(save) if save.suffix == ".csv" else recording.save(save))
-    return 0
+    if content.trouble:
+        print(content.trouble)
+    return FAILED if content.trouble else 0
 
 
 @cli.command()
@@ -543,7 +549,7 @@ def _show(outcome: Outcome) -> None:
     out.print(table)
     passed = sum(verdict.passed for verdict in outcome.verdicts)
     failed = len(outcome.verdicts) - passed + (outcome.assertion is not None)
-    lacks = missing(outcome.recording)
+    lacks = all_missing(outcome.recording)
     whole = f"; missing: {lacks}" if lacks else ", no sample missing"
     print(f"{passed} passed, {failed} failed; {outcome.recording.duration_s:.3f} s of engine time{whole}")
 

@@ -23,6 +23,15 @@ COUNTS = {
     "replies_dropped": ("replies dropped", "Too many waited"),
     "planner_failures": ("plans failed", "The motion in progress was kept"),
 }
+# Of these what the engine had no room for: what they are called, one and many.
+DROPPED = {
+    "snapshots_dropped": ("state", "states"),
+    "feedback_dropped": ("feedback", "feedbacks"),
+    "set_points_dropped": ("set point for a drive", "set points for drives"),
+    "journal_dropped": ("journal entry", "journal entries"),
+    "replies_dropped": ("reply to a client", "replies to clients"),
+    "send_failures": ("message that was not taken", "messages that were not taken"),
+}
 TIMES = {"execution": "execution of a cycle", "latency": "wake-up latency"}
 ALWAYS = ("overruns", "commands_refused", "snapshots_dropped", "feedback_dropped")  # said, be they 0 or not
 

@@ -3,37 +3,28 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import json
 import os
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
-
-import lcm
-import numpy as np
 
 from takt import _core, msgs
 from takt.arguments import without_arguments
 from takt.counted import counted
-from takt.errors import TaktError
-from takt.figures import figures_of
+from takt.errors import ConfigError
+from takt.events import Event, EventLog, LogError, Progress
+from takt.figures import DROPPED, figures_of
 from takt.lying import Lying, objects_of
 from takt.network import open_network, roomy, usual_url
 from takt.recording import Array, Recording
-from takt.tables import (
-    KINDS,
-    PREFIXES,
-    components_of,
-    is_possible,
-    kind_of_channel,
-    make_recording,
-    table_of,
-)
+from takt.sequences import Sequences
+from takt.tables import KINDS, PREFIXES, components_of, is_possible, make_recording, table_of
 
 STATE_TYPES = tuple(kind.message for kind in KINDS.values())
-EVENT_HEADER = 28  # bytes of an event beside its channel and data
 MESSAGES: dict[str, Any] = {
     "takt/machine": msgs.machine_description,
     "takt/engine": msgs.engine_state,
@@ -44,15 +35,19 @@ MESSAGES: dict[str, Any] = {
     "takt/journal/drive": msgs.journal_drive,
     "takt/journal/hashes": msgs.journal_hashes,
 }
+# Of channels that end in the name of a component.
+NAMED: dict[str, Any] = {
+    **{prefix: KINDS[kind].message for kind, prefix in PREFIXES.items()},
+    "takt/belt_objects/": msgs.belt_objects,
+    "takt/track_shapes/": msgs.track_shape,
+}
+NAMED_TYPES = tuple(NAMED.values())
+# Of channels takt/drive/AXIS/...
+DRIVES: dict[str, Any] = {"setpoint": msgs.drive_setpoint, "feedback": msgs.drive_feedback}
 STATES = ("busy", "active", "done", "aborted", "error")
 
 PATIENCE_S = 30.0  # that writing may be behind
-
-Progress = Callable[[float], None]
-
-
-class LogError(TaktError, ValueError):
-    """A file is no LCM log, or has not in it what is wanted."""
+EARLY_S = 1.0  # of engine time: a log that begins by then holds all that was said
 
 
 @contextlib.contextmanager
@@ -90,6 +85,11 @@ class Run:
     journal: list[msgs.journal_command] = field(default_factory=list)
     drives: list[msgs.journal_drive] = field(default_factory=list)
     hashes: list[msgs.journal_hashes] = field(default_factory=list)
+    descriptions: Counter[tuple[str, float, str]] = field(
+        default_factory=Counter
+    )  # of the machine: text, period, version
+    sequences: Sequences = field(default_factory=Sequences)
+    impossible: int = 0  # messages that were decoded, but cannot be true
 
 
 @dataclass
@@ -101,6 +101,7 @@ class Log:
     messages: Counter[str]  # by channel
     malformed: Counter[str]  # by channel
     left_over: int = 0  # bytes of the file that are no event: it was torn off, or bytes were changed
+    wrong: int = 0  # states with numbers that their types have no room for
 
     @property
     def damaged(self) -> bool:
@@ -115,6 +116,8 @@ class Log:
             said.append(f"it ends in the middle of a message, or bytes of it were changed: {share} are left out")
         if count := sum(self.malformed.values()):
             said.append(f"{counted(count, 'message')} could not be decoded")
+        if count := sum(run.impossible for run in self.runs) + self.wrong:
+            said.append(f"{counted(count, 'message')} cannot be true")
         return f"The log is not whole: {'; '.join(said)}." if said else ""
 
     def starts(self, run: int) -> str:
@@ -125,64 +128,72 @@ class Log:
         return f"The log holds {count} starts of the engine, from 0 on: this is number {which}; --run chooses another."
 
 
-def read_events(path: str | os.PathLike[str], progress: Progress | None = None) -> Iterator[tuple[int, str, bytes]]:
-    """Every event of a log: wall clock in us, channel, bytes. A torn end, as a killed logger leaves it, just ends the
-    log."""
-    file = Path(path)
-    try:
-        size = file.stat().st_size
-        with file.open("rb") as probe:
-            magic = probe.read(4)
-    except OSError as error:
-        raise LogError(f"{file}: cannot be read: {error.strerror}") from None
-    if magic != b"\xed\xa1\xda\x01":
-        raise LogError(f"{file}: {'is not an LCM log' if magic else 'is empty'}")
-    log = lcm.EventLog(str(file), "r")
-    try:
-        for count, event in enumerate(log):
-            if progress is not None and count % 1024 == 0:
-                progress(log.tell() / size)
-            yield event.timestamp, event.channel, event.data
-    finally:
-        log.close()
-    if progress is not None:
-        progress(1.0)
+def read_events(path: str | os.PathLike[str], progress: Progress | None = None) -> Iterator[Event]:
+    """Every event of a log that is whole: wall clock in us, channel, bytes."""
+    return EventLog(path).events(progress)
 
 
 def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> Log:
-    """Reads all messages of a log that are Takt's."""
-    log = Log(Path(path), [Run()], Counter(), Counter())
-    size = 0
-    for _, channel, data in read_events(path, progress):
-        size += EVENT_HEADER + len(channel.encode()) + len(data)
-        log.messages[channel] += 1
-        component = kind_of_channel(channel)
-        kind = component.message if component else MESSAGES.get(channel)
-        if channel.startswith("takt/belt_objects/"):
-            kind = msgs.belt_objects
+    """Reads all messages of a log that are Takt's. What is damaged costs itself alone (`Log.trouble`)."""
+    events = EventLog(path)
+    log = Log(events.path, [Run()], Counter(), Counter())
+    for event in events.events(progress):
+        log.messages[event.channel] += 1
+        kind = _kind_of(event.channel)
         if kind is None:
             continue
         try:
-            message = kind.decode(data)
+            message = kind.decode(event.data)
         except Exception:  # generated code raises whatever comes
-            log.malformed[channel] += 1
+            message = None
+        if message is None or not _belongs(message, event.channel):
+            log.malformed[event.channel] += 1
             continue
         _sort_in(log.runs, message)
-    log.left_over = max(log.path.stat().st_size - size, 0)
+        _run_of(log.runs, message).sequences.hear(event.channel, message)
+    log.left_over = events.left_over
+    for run in log.runs:
+        _leave_out_impossible(run)
     return log
 
 
+def _leave_out_impossible(run: Run) -> None:
+    """Keeps the messages of components and of the engine whose cycle and time say the same."""
+    if not run.descriptions:
+        return
+    (_, period, _), _ = run.descriptions.most_common(1)[0]
+    for messages in (*run.states.values(), run.objects, run.engine_states):
+        possible = [message for message in messages if is_possible(message, period)]
+        run.impossible += len(messages) - len(possible)
+        messages[:] = possible
+
+
+@functools.lru_cache(4096)
+def _kind_of(channel: str) -> Any:
+    """The type of a channel's messages; None: it is none of Takt's, or not looked at."""
+    if channel in MESSAGES:
+        return MESSAGES[channel]
+    if channel.startswith("takt/drive/"):
+        return DRIVES.get(channel.rsplit("/", 1)[-1])
+    return next((kind for prefix, kind in NAMED.items() if channel.startswith(prefix)), None)
+
+
+def _belongs(message: Any, channel: str) -> bool:
+    """A component's message comes on its own channel; states of commands are those that there are."""
+    if isinstance(message, msgs.feedback):
+        return 0 <= message.state < len(STATES)
+    return not isinstance(message, NAMED_TYPES) or channel.endswith(f"/{message.name}")
+
+
 def _sort_in(runs: list[Run], message: Any) -> None:
-    run = runs[-1]
+    run = _run_of(runs, message)
     if isinstance(message, (msgs.machine_description, msgs.journal_start)):
-        if run.machine is not None and run.machine.run_id != message.run_id:
-            run = Run()
-            runs.append(run)
         if isinstance(message, msgs.journal_start):
             run.start = message
             run.machine = run.machine or message
         else:
             run.machine = message  # which also has the name
+        run.descriptions[message.text, message.period_s, message.version] += 1
     elif isinstance(message, STATE_TYPES):
         run.states.setdefault(message.name, []).append(message)
     elif isinstance(message, msgs.belt_objects):
@@ -199,6 +210,18 @@ def _sort_in(runs: list[Run], message: Any) -> None:
         run.drives.append(message)
     elif isinstance(message, msgs.journal_hashes):
         run.hashes.append(message)
+
+
+def _run_of(runs: list[Run], message: Any) -> Run:
+    """The run that a message is of: the last one, unless it says which one itself."""
+    if isinstance(message, (msgs.machine_description, msgs.journal_start)):
+        known = [run for run in runs if run.machine is None or run.machine.run_id == message.run_id]
+        if not known:
+            runs.append(Run())
+        elif known[-1] is not runs[-1]:
+            runs.remove(known[-1])
+            runs.append(known[-1])
+    return runs[-1]
 
 
 def read_log(path: str | os.PathLike[str], *, run: int = -1, progress: Progress | None = None) -> Recording:
@@ -221,24 +244,48 @@ def to_recording(log: Log, run: int = -1) -> Recording:
     one = run_of(log, run)
     if one.machine is None:
         raise LogError(f"{log.path}: holds no description of a machine (channel takt/machine)")
-    machine = json.loads(_core.load_machine(one.machine.text.encode(), str(log.path)))
-    period = one.machine.period_s
-    tables: dict[str, dict[str, Array]] = {
-        name: table_of(kind.name, [s for s in one.states[name] if is_possible(s, period)], period)
-        for name, (kind, _) in components_of(machine).items()
-        if name in one.states
-    }
+    text, period, version = _description(one)
+    machine = json.loads(_core.load_machine(text.encode(), str(log.path)))
+    tables: dict[str, dict[str, Array]] = {}
+    wrong = 0
+    for name, (kind, _) in components_of(machine).items():
+        if name in one.states:
+            tables[name], left_out = table_of(kind.name, one.states[name], period)
+            wrong += left_out
     meta = {
         "source": str(log.path),
         "period_s": period,
-        "version": one.machine.version,
-        "losses": _losses(one),
-        "trouble": log.trouble,
+        "version": version,
+        "losses": one.sequences.lost(),
+        "dropped": _dropped(one, period),
+        "trouble": log.trouble if not wrong else replace(log, wrong=wrong).trouble,
         "starts": log.starts(run),
         "objects": _lying(one, period).columns(),
         "engine": figures_of(one.engine_states[-1]) if one.engine_states else {},
     }
-    return make_recording(machine, tables, _events(one, period), meta, one.machine.text)
+    return make_recording(machine, tables, _events(one, period), meta, text)
+
+
+def _description(run: Run) -> tuple[str, float, str]:
+    """Text, period and version of a run's machine: those said most often of those that can be, as bytes of one may have
+    been changed."""
+    said = [one for one, _ in run.descriptions.most_common()]
+    for text, period, version in said:
+        with contextlib.suppress(ConfigError):
+            if 0 < period < 1:
+                _core.load_machine(text.encode(), "machine")
+                return text, period, version
+    return said[0]
+
+
+def _dropped(run: Run, period: float) -> dict[str, int]:
+    """What the engine had no room for while the log was written: by its own count, less what it had counted before."""
+    if not run.engine_states:
+        return {}
+    first, last = run.engine_states[0], run.engine_states[-1]
+    early = first.cycle * period <= EARLY_S
+    counts = {name: getattr(last, name) - (0 if early else getattr(first, name)) for name in DROPPED}
+    return {name: count for name, count in counts.items() if count > 0}
 
 
 def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:
@@ -280,28 +327,8 @@ def _component(target: str) -> str:
     return "" if target == "machine" else target
 
 
-def _channel(state: Any) -> str:
-    """On which a state was published."""
-    kind = next(kind for kind in KINDS.values() if isinstance(state, kind.message))
-    return PREFIXES[kind.name] + str(state.name)
-
-
-def _losses(run: Run) -> dict[str, int]:
-    """Messages missing by their sequence numbers, by channel."""
-    channels: dict[str, list[Any]] = {_channel(states[0]): list(states) for states in run.states.values()}
-    channels |= {"takt/engine": list(run.engine_states), "takt/feedback": list(run.feedback)}
-    losses = {}
-    for channel, messages in channels.items():
-        steps = np.diff([m.sequence for m in messages])
-        lost = int(np.sum(steps[steps > 1] - 1))
-        if lost:
-            losses[channel] = lost
-    return losses
-
-
 def _lying(run: Run, period: float) -> Lying:
     lying = Lying()
     for message in run.objects:
-        if is_possible(message, period):
-            lying.look(message.name, message.cycle * period, objects_of(message))
+        lying.look(message.name, message.cycle * period, objects_of(message))
     return lying

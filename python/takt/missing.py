@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from takt.counted import counted
+from takt.figures import DROPPED
 from takt.recording import Recording
+from takt.tables import PREFIXES
 from takt.verdict import Interval, seconds
 
 NAMED = 3  # components; more are only counted
+# Channels that say the same again and again, so that a message lost costs nothing. Losses of states show as samples.
+REPEATING = ("takt/engine", "takt/machine", "takt/track_shapes/", *PREFIXES.values())
 
 
 def missing(recording: Recording, components: Iterable[str] | None = None, window: Interval | None = None) -> str:
@@ -27,6 +31,24 @@ def missing(recording: Recording, components: Iterable[str] | None = None, windo
     return "; ".join(said[:NAMED] + others)
 
 
+def lost(recording: Recording) -> str:
+    """What is missing besides samples, in words: messages of other channels that were lost on the way, and what the
+    engine had no room for. Empty: nothing is."""
+    losses = recording.meta.get("losses") or {}
+    counts = [(-count, channel) for channel, count in losses.items() if not channel.startswith(REPEATING)]
+    worst = [(channel, -count) for count, channel in sorted(counts)]
+    said = [f"{counted(count, 'message')} of {name}" for name, count in worst[:NAMED]]
+    said += [f"some of {counted(len(worst) - NAMED, 'other channel')}"] if len(worst) > NAMED else []
+    dropped = [counted(count, *DROPPED[name]) for name, count in (recording.meta.get("dropped") or {}).items()]
+    said += [f"{' and '.join(dropped)} that the engine had no room for"] if dropped else []
+    return "; ".join(said)
+
+
+def all_missing(recording: Recording) -> str:
+    """Samples and all else that is missing, in words; empty: the recording is complete."""
+    return "; ".join(said for said in (missing(recording), lost(recording)) if said)
+
+
 def holes(recording: Recording, components: Iterable[str], curve: str = "") -> list[Interval]:
     """From when to when samples are missing of a curve that was made of these components: of the one that it is named
     after ("x.set_position"), else of any."""
@@ -37,7 +59,7 @@ def holes(recording: Recording, components: Iterable[str], curve: str = "") -> l
 
 def troubles(recording: Recording) -> list[str]:
     """What whoever reads verdicts on it ought to know, in sentences."""
-    lacks = missing(recording)
+    lacks, others = missing(recording), lost(recording)
     said = [str(recording.meta.get(what) or "") for what in ("starts", "trouble")]
-    said += [f"Samples are missing: {lacks}." if lacks else ""]
+    said += [f"Samples are missing: {lacks}." if lacks else "", f"Messages are missing: {others}." if others else ""]
     return [sentence for sentence in said if sentence]

@@ -17,7 +17,7 @@ from takt.belt import Belt
 from takt.component import Component
 from takt.errors import ConnectionError, TaktError
 from takt.feedback import Feedback
-from takt.figures import figures_of
+from takt.figures import DROPPED, figures_of
 from takt.lying import objects_of
 from takt.network import open_network, usual_url
 from takt.recording import Recording
@@ -86,6 +86,7 @@ class RemoteSession(Session):
         self._held: list[Feedback] = []  # level-sensitive commands that need heartbeats
         self._last_id = 0
         self._recorded: dict[Recorder, dict[str, _Kept]] = {}
+        self._before: dict[Recorder, tuple[dict[str, int], dict[str, int]]] = {}  # lost and dropped when it began
         self._stop = threading.Event()
         self._beat_now = threading.Event()
 
@@ -393,20 +394,31 @@ class RemoteSession(Session):
     def _begin(self, recorder: Recorder) -> None:
         with self._news:
             self._recorded[recorder] = {name: _Kept(recorder.every) for name in recorder.components}
+            self._before[recorder] = (self.losses.copy(), self._dropped())
 
     def _finish(self, recorder: Recorder) -> Recording:
         with self._news:
             rows = self._recorded.pop(recorder)
+            lost, dropped = (
+                _more(now, then)
+                for now, then in zip((self.losses, self._dropped()), self._before.pop(recorder), strict=True)
+            )
         tables = {
-            name: table_of(self._components[name].KIND, kept.messages, self.period) for name, kept in rows.items()
+            name: table_of(self._components[name].KIND, kept.messages, self.period)[0] for name, kept in rows.items()
         }
         meta = {
             "source": self.url,
             "period_s": self.period,
-            "losses": dict(self.losses),
+            "losses": lost,
+            "dropped": dropped,
             "objects": recorder.lying.columns(),
         }
         return make_recording(self.machine, tables, recorder.events, meta, self.machine_text)
+
+    def _dropped(self) -> dict[str, int]:
+        """What the engine had no room for so far, by its last word."""
+        state = self._engine_state
+        return {name: getattr(state, name) for name in DROPPED} if state is not None else {}
 
     # --- health ---
 
@@ -446,6 +458,11 @@ def connect(url: str | None = None, *, client: str | None = None, timeout: float
     url = url or usual_url()
     name = client if client is not None else f"python-{os.getpid()}-{random.SystemRandom().getrandbits(24):06x}"
     return RemoteSession(url, name, timeout)
+
+
+def _more(now: dict[str, int], then: dict[str, int]) -> dict[str, int]:
+    """By how much counts have grown; those that have not are left out."""
+    return {name: count - then.get(name, 0) for name, count in now.items() if count > then.get(name, 0)}
 
 
 def _decoded(kind: Any, data: bytes) -> Any:

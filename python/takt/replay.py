@@ -12,7 +12,8 @@ import numpy.typing as npt
 
 from takt import _core, msgs
 from takt.counted import counted
-from takt.lcmlog import LogError, Progress, Run, open_log, run_of
+from takt.events import LogError, Progress
+from takt.lcmlog import Run, open_log, run_of
 
 CHUNK = 10_000  # cycles between two reports of progress
 WIRES = tuple(_core.servo_inputs())

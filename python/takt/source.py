@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from takt.lcmlog import Progress, read_log
+from takt.events import Progress, is_log
+from takt.lcmlog import read_log
 from takt.recording import Recording, RecordingError
 
 IN_DIRECTORY = "recording.npz"
@@ -32,6 +33,6 @@ def read_run(run: Path, progress: Progress | None = None, start: int | None = No
         if start is not None:
             raise RecordingError(f"{file}: is a recording, which holds one run: there is none to choose")
         return Recording.load(file)
-    if magic == b"\xed\xa1\xda\x01":
+    if is_log(file):
         return read_log(file, run=-1 if start is None else start, progress=progress)
     raise RecordingError(f"{file}: {'is neither a recording (.npz) nor an LCM log' if magic else 'is empty'}")

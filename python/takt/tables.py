@@ -71,6 +71,12 @@ def kind_of_channel(channel: str) -> Kind | None:
     return next((KINDS[kind] for kind, prefix in PREFIXES.items() if channel.startswith(prefix)), None)
 
 
+def short_name(channel: str) -> str:
+    """A channel for people: of a component's states its name, of others what stands behind "takt/"."""
+    kind = kind_of_channel(channel)
+    return channel.removeprefix(PREFIXES[kind.name] if kind else "takt/")
+
+
 def unit_of(kind: str, field: str, own: Mapping[str, str]) -> str:
     """The unit of a published field of a component whose own units are called so: u/s2 -> mm/s²."""
     text = KINDS[kind].units[field]
@@ -96,25 +102,42 @@ def is_possible(message: State | msgs.engine_state, period: float) -> bool:
     return bool(message.cycle >= 0 and abs(message.time_ns - message.cycle * period * 1e9) <= message.cycle)
 
 
-def table_of(kind: str, messages: Sequence[State], period: float) -> dict[str, Array]:
-    """The columns of messages of one component. A repeated or late one counts once."""
+def table_of(kind: str, messages: Sequence[State], period: float) -> tuple[dict[str, Array], int]:
+    """The columns of messages of one component, and how many were left out since a field's type has no room for a
+    number of theirs. A repeated or late message counts once. Raises RecordingError if all are left out."""
     rows = []
     last = -1
     for message in messages:
         if message.cycle > last:
             rows.append(message)
             last = message.cycle
+    count = len(rows)
+    try:
+        columns = {field: _column(kind, rows, field) for field in fields_of_kind(kind)}
+    except OverflowError:
+        wrong = [_wrong_field(kind, row) for row in rows]
+        rows = [row for row, field in zip(rows, wrong, strict=True) if not field]
+        if not rows:
+            raise RecordingError(
+                f"{messages[0].name}.{wrong[0]} holds a number that no engine publishes: bytes of the log were changed"
+            ) from None
+        columns = {field: _column(kind, rows, field) for field in fields_of_kind(kind)}
     cycle = np.array([m.cycle for m in rows], dtype=np.int64)
-    return {"time_s": cycle * period, "cycle": cycle} | {f: _column(kind, rows, f) for f in fields_of_kind(kind)}
+    return {"time_s": cycle * period, "cycle": cycle} | columns, count - len(rows)
 
 
 def _column(kind: str, messages: Sequence[State], field: str) -> Array:
-    try:
-        return np.array([KINDS[kind].getters[field](m) for m in messages], dtype=KINDS[kind].dtypes[field])
-    except OverflowError:
-        raise RecordingError(
-            f"{messages[0].name}.{field} holds a number that no engine publishes: bytes of the log were changed"
-        ) from None
+    return np.array([KINDS[kind].getters[field](m) for m in messages], dtype=KINDS[kind].dtypes[field])
+
+
+def _wrong_field(kind: str, message: State) -> str:
+    """The first field that holds what its type has no room for; empty: none."""
+    for field in fields_of_kind(kind):
+        try:
+            _column(kind, [message], field)
+        except OverflowError:
+            return field
+    return ""
 
 
 def make_recording(

@@ -19,13 +19,14 @@ from takt import plot, style
 from takt.checks.series import quantity, words
 from takt.export import rates
 from takt.figures import in_words
-from takt.missing import holes, missing, troubles
+from takt.missing import all_missing, holes, troubles
 from takt.recording import Array, Recording
 from takt.report.columns import Block
 from takt.report.inlined import asset, import_map
 from takt.report.kept import KEY, keep, kept, plain, told
 from takt.report.scene import scene_of
 from takt.source import IN_DIRECTORY
+from takt.tables import short_name
 from takt.verdict import Verdict
 
 # What says where a component is, the best first: its own measured position, or the Y of a cam module.
@@ -46,7 +47,7 @@ LARGEST = {
 PAGE = "report.html"
 BYTES = 128 << 20  # of all curves of a page before they are deflated; longer runs are thinned evenly
 # What the page does not show as a fact of its head.
-ELSEWHERE = (KEY, "machine_file", "objects", "trouble", "starts", "period_s", "losses")
+ELSEWHERE = (KEY, "machine_file", "objects", "trouble", "starts", "period_s", "losses", "dropped")
 
 
 class Report(NamedTuple):
@@ -158,12 +159,10 @@ def _facts(recording: Recording, figures: Mapping[str, Any]) -> dict[str, Any]:
         facts["engine"] = in_words(engine)
     if (period := recording.meta.get("period_s")) is not None:
         facts["cycle"] = f"{1e3 * period:g} ms"
-    if not missing(recording):
+    if not all_missing(recording):
         facts["lost samples"] = "none"
     if losses := recording.meta.get("losses"):
-        facts["messages lost on the way, of"] = {
-            channel.split("/")[-1]: f"{count:,}" for channel, count in losses.items()
-        }
+        facts["messages lost on the way, of"] = {short_name(channel): f"{count:,}" for channel, count in losses.items()}
     return facts
 
 
@@ -322,10 +321,10 @@ def _largest(recording: Recording, component: str, what: str) -> str:
     columns = [table[field].astype(np.float64) for field in found]
     if found[0] == "actual_x":
         columns = [there - table[field.removeprefix("actual_")] for there, field in zip(columns, found, strict=True)]
-    lengths = np.sqrt(np.sum(np.square(columns), axis=0))
-    if not np.any(np.isfinite(lengths)):
-        return "—"
-    return f"{float(np.nanmax(lengths)):.5g} {recording.unit(component, found[0])}".rstrip()
+    with np.errstate(over="ignore"):  # numbers that no engine publishes, of damaged logs
+        lengths = np.sqrt(np.sum(np.square(columns), axis=0))
+    lengths = lengths[np.isfinite(lengths)]
+    return f"{float(lengths.max()):.5g} {recording.unit(component, found[0])}".rstrip() if len(lengths) else "—"
 
 
 def _pictures(recording: Recording, verdicts: Sequence[Verdict], directory: Path, title: str) -> list[Path]:
