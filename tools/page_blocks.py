@@ -110,8 +110,8 @@ def _printed(language: str, text: str, directory: Path, where: str, fails: bool)
     env = os.environ | {
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
         "PYTHONDONTWRITEBYTECODE": "1",
-        "COLUMNS": "96",
-        "NO_COLOR": "1",
+        **{"COLUMNS": "96", "LINES": "40", "TERM": "dumb", "TTY_COMPATIBLE": "1"},  # a terminal without colours
+        "TTY_INTERACTIVE": "0",  # and without progress bars
     }
     done = subprocess.run(
         command,

@@ -481,7 +481,7 @@ def show_log(log: Path, save: Path | None, start_number: int | None) -> int:
         lost.update(one.sequences.lost())
     table = Table("channel", "messages", "lost", "not decoded", box=None)
     for channel, count in sorted(content.messages.items()):
-        table.add_row(channel, str(count), str(lost[channel] or ""), str(content.malformed[channel] or ""))
+        table.add_row(channel, *map(str, (count, lost[channel], content.malformed[channel])))
     out.print(table)
     for number, one in enumerate(content.runs):
         name = getattr(one.machine, "name", "") or "a machine"
@@ -541,11 +541,9 @@ def _writable(target: Path, suffixes: Sequence[str]) -> Path:
 
 def _show(outcome: Outcome) -> None:
     table = Table("", "check", "", box=None, show_header=False)
-    for verdict in outcome.verdicts:
+    for verdict in (*([outcome.assertion] if outcome.assertion is not None else []), *outcome.verdicts):
         mark = Text("passed", "green") if verdict.passed else Text("failed", "bold red")
         table.add_row(mark, Text(verdict.title), Text(verdict.sentence))
-    if outcome.assertion is not None:
-        table.add_row(Text("failed", "bold red"), Text(outcome.assertion.title), Text(outcome.assertion.sentence))
     out.print(table)
     passed = sum(verdict.passed for verdict in outcome.verdicts)
     failed = len(outcome.verdicts) - passed + (outcome.assertion is not None)
@@ -574,7 +572,7 @@ class _EngineTime(ProgressColumn):
 def _watching(session: Session, title: str) -> Iterator[None]:
     """Shows how far engine time has come, on a terminal."""
     columns: Any = (SpinnerColumn(), TextColumn("{task.description}"), _EngineTime(session), TimeElapsedColumn())
-    with Progress(*columns, console=err, transient=True, disable=not err.is_terminal) as progress:
+    with Progress(*columns, console=err, transient=True, disable=not err.is_interactive) as progress:
         progress.add_task(title, total=None)
         yield
 
@@ -584,6 +582,6 @@ def _bar(title: str) -> Iterator[Share]:
     """A progress bar, on a terminal; what it yields takes the share that is done."""
     share = TextColumn("{task.percentage:3.0f} %")
     columns: Any = (TextColumn("{task.description}"), BarColumn(), share, TimeElapsedColumn())
-    with Progress(*columns, console=err, transient=True, disable=not err.is_terminal) as progress:
+    with Progress(*columns, console=err, transient=True, disable=not err.is_interactive) as progress:
         task = progress.add_task(title, total=1.0)
         yield lambda share: progress.update(task, completed=share)

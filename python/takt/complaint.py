@@ -1,10 +1,11 @@
-"""A plain `assert` that failed in a scenario, as a verdict: when, and curves of what its line names."""
+"""What a scenario ends with besides verdicts, as a verdict: a plain `assert` that failed, a command that was refused,
+nothing that was judged. When it was, where it stands, and curves of what its line names."""
 
 from __future__ import annotations
 
 import re
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,10 +13,15 @@ import numpy as np
 
 from takt.checks.series import quantity
 from takt.component import Component
+from takt.counted import counted
+from takt.errors import CommandError, TaktError
+from takt.feedback import Feedback, Place
 from takt.recording import Recording
 from takt.verdict import Lane, Trace, Verdict, seconds
 
-NAME = "assert"
+ASSERT = "assert"
+COMMAND = "command"
+VERIFY = "verify"
 
 Signal = tuple[str, str]
 
@@ -24,8 +30,9 @@ Signal = tuple[str, str]
 class Complaint:
     text: str  # what it says, and where it stands
     when_s: float | None  # None: it was asked of the whole recording
-    components: frozenset[str]  # what its line names, some of which are components
-    words: frozenset[str]  # of its line, some of which are fields of them
+    components: frozenset[str] = frozenset()  # what it names, some of which are components
+    words: frozenset[str] = frozenset()  # of its line, some of which are fields of them
+    name: str = ASSERT
 
     @staticmethod
     def of(error: AssertionError, path: Path, when_s: float | None = None) -> Complaint:
@@ -35,21 +42,42 @@ class Complaint:
         frames = [frame for frame in stack if Path(frame.filename).name == path.name]
         said = str(error) or (frames[-1].line if frames else "") or "an assertion failed"
         where = f" ({path.name}:{frames[-1].lineno})" if frames else ""
-        when = "" if when_s is None else f" at {seconds(when_s)}"
         line = stack[-1].line or "" if stack else ""
         *_, (last, _) = traceback.walk_tb(error.__traceback__)
         words = frozenset(re.findall(r"\w+", line))
         known = {**last.f_globals, **last.f_locals}
         variables = {one.name for word in words if isinstance(one := known.get(word), Component)}
         quoted = frozenset(re.findall(r"[\"']([^\"']+)[\"']", line))
-        return Complaint(said + where + when, when_s, quoted.union(variables), words)
+        return Complaint(said + where + _at(when_s), when_s, quoted.union(variables), words)
+
+    @staticmethod
+    def of_broken(error: TaktError, path: Path, when_s: float) -> Complaint:
+        """A command that was waited for ended in an error, or something that was waited for did not happen."""
+        stack = traceback.extract_tb(error.__traceback__)
+        places: Sequence[Place] = [(frame.filename, frame.lineno or 0) for frame in reversed(stack)]
+        name, target = "wait", frozenset[str]()
+        if isinstance(error, CommandError):  # where it was given says more than where it was waited for
+            name, target, places = COMMAND, frozenset({error.feedback.target}), error.feedback.given_at or places
+        return Complaint(f"{error}{_where(places, path)}{_at(when_s)}", when_s, target, name=name)
+
+    @staticmethod
+    def of_ignored(ignored: Sequence[Feedback], path: Path) -> Complaint | None:
+        """Commands that were refused, which the scenario never noticed; None: there are none."""
+        if not ignored:
+            return None
+        first = ignored[0]
+        where, when_s = _where(first.given_at, path), first.time_s
+        others = f", and {counted(len(ignored) - 1, 'command')} more" if len(ignored) > 1 else ""
+        text = f"{CommandError(first)}{where}: nothing asked what became of it{others}"
+        when = when_s if np.isfinite(when_s) else None
+        return Complaint(text, when, frozenset({first.target}), name=COMMAND)
 
     def verdict(self, recording: Recording) -> Verdict:
         """With the curves of the components that are named; of the fields that are, or of the usual ones."""
         named = tuple(name for name in recording if name in self.components)
         place = None if self.when_s is None else (self.when_s, self.when_s)
         lanes = _lanes(recording, [signal for name in named for signal in self._signals(recording, name)])
-        return Verdict(NAME, named, False, self.text, self.when_s, None, "", place, lanes)
+        return Verdict(self.name, named, False, self.text, self.when_s, None, "", place, lanes)
 
     def _signals(self, recording: Recording, name: str) -> list[Signal]:
         from takt import plot  # which takes long to import, and few need it
@@ -69,3 +97,17 @@ def _lanes(recording: Recording, signals: Sequence[Signal]) -> tuple[Lane, ...]:
         others = lanes[key].traces if key in lanes else ()
         lanes[key] = Lane(key[0], unit, (*others, trace), names=states)
     return tuple(lanes.values())
+
+
+def _at(when_s: float | None) -> str:
+    return "" if when_s is None else f" at {seconds(when_s)}"
+
+
+def _where(places: Iterable[Place], path: Path) -> str:
+    """The line in the scenario's folder that did it, and the lines there that called that one."""
+    folder = path.resolve().parent
+    own = [(Path(file).resolve(), line) for file, line in places if not file.startswith("<")]
+    lines = [f"{file.relative_to(folder)}:{line}" for file, line in own if file.is_relative_to(folder)]
+    if not lines:
+        return ""
+    return f" ({lines[0]}, called from {', '.join(lines[1:])})" if len(lines) > 1 else f" ({lines[0]})"

@@ -77,7 +77,7 @@ def run_demo(
             with _connected(url, engine, directory / "taktd.txt") as session:
                 started, began = time.monotonic(), session.now
                 with session.record(every=1000) as notes:  # for its marks, which do not travel over LCM
-                    complaint = play(scenario, session)
+                    played = play(scenario, session)
                 took, seconds = session.now - began, time.monotonic() - started
                 say(f"scenario done: {took:.1f} s of engine time in {seconds:.1f} s")
                 session.run(1.5 / _rate(session.machine["lcm"]["engine_rate_hz"]))  # the last figures count everything
@@ -88,7 +88,7 @@ def run_demo(
         say(f"{log.name} read back: {counted(len(recording.components), 'component')}, {recording.duration_s:.1f} s")
         marks = [event for event in notes.recording.events if event.kind == "mark"]
         recording.events = sorted([*recording.events, *marks], key=lambda event: event.time_s)
-        outcome = verify_recording(scenario, recording, complaint)
+        outcome = verify_recording(scenario, recording, played)
         recording.meta["machine_file"]["folder"] = str(machine.resolve().parent)
         recording.save(directory / IN_DIRECTORY)
         judged(outcome, figures)

@@ -198,7 +198,7 @@ class Engine(Session):
             if feedback is None:
                 continue
             self._report(feedback, state, reached, error_id, sentence, cycle, value, *place)
-            if feedback.final:
+            if feedback._final:
                 del self._unfinished[ticket]
 
     def _run(self, cycles: int) -> None:

@@ -83,7 +83,7 @@ def to_mcap(recording: Recording, path: Path) -> int:
     try:
         from mcap.writer import Writer
     except ImportError:
-        raise ExportError("writing MCAP needs the package mcap: pip install takt-motion[mcap]") from None
+        raise ExportError("writing MCAP needs the package mcap: pip install mcap") from None
     with path.open("wb") as file:
         writer: Any = Writer(file)
         writer.start(profile="", library="takt")

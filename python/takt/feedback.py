@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from takt.component import Component
     from takt.session import Session
 
+Place = tuple[str, int]  # file and line
 Until = Literal["final", "done", "active", "reached"]
 
 DEFAULT_TIMEOUT_S = 60.0
@@ -36,17 +37,38 @@ class Feedback:
         self.verb = verb
         self.arguments = arguments  # as given to the engine
         self.level_sensitive = level_sensitive  # acts until `release`d
+        self.given_at: tuple[Place, ...] = ()  # where the program gave it, the innermost call first
         self.ticket = 0  # the engine's number of the command; 0: refused
-        self.state = FeedbackState.BUSY
         self.reached = False  # a command that never ends by itself has what it was given for
-        self.error_id = 0
-        self.sentence = ""  # what went wrong; empty while nothing has
         self.cycle = -1  # of the last change; -1: before the command came to a cycle
         self.travel_time_s = 0.0  # s, how long the motion takes as planned when it began; 0: not known (AX-96)
         self.value = 0.0  # what a command was to read or capture, has covered, or (movers) s it took, once it has ended
         self.object: Component | None = None  # that is in the way: a mover, a track, an environment ...
         self.released = False  # let go of, whether or not the engine has taken up the release yet
         self._release: Feedback | None = None  # the last try to
+        self._state = FeedbackState.BUSY
+        self._error_id = 0
+        self._sentence = ""
+        self._refused = False  # an error before it ever came to control anything
+        self._heeded = False  # the program has asked what became of it when it was final
+
+    @property
+    def state(self) -> FeedbackState:
+        """What has become of it so far."""
+        self._heeded |= self._final
+        return self._state
+
+    @property
+    def error_id(self) -> int:
+        """Number of what went wrong; 0: nothing has."""
+        self._heeded |= self._final
+        return self._error_id
+
+    @property
+    def sentence(self) -> str:
+        """What went wrong; empty while nothing has."""
+        self._heeded |= self._final
+        return self._sentence
 
     @property
     def busy(self) -> bool:
@@ -116,11 +138,24 @@ class Feedback:
     @property
     def _release_is_settled(self) -> bool:
         """The release has done what it can: it need not be given again."""
-        return self._release is not None and self._release.final and self._release.error_id != QUEUE_FULL
+        return self._release is not None and self._release._final and self._release._error_id != QUEUE_FULL
 
     @property
     def _release_is_refused(self) -> bool:
-        return self._release is not None and self._release.error_id == QUEUE_FULL
+        return self._release is not None and self._release._error_id == QUEUE_FULL
+
+    @property
+    def _final(self) -> bool:
+        return self._state > FeedbackState.ACTIVE
+
+    @property
+    def _done(self) -> bool:
+        return self._state is FeedbackState.DONE
+
+    @property
+    def _ignored(self) -> bool:
+        """Refused, and the program has not asked."""
+        return self._refused and not self._heeded
 
     def _wait(self, arrived: Arrived, timeout: float, until: str) -> None:
         if not self._session._wait_for(arrived, seconds(timeout, "a timeout"), on_feedback=True):
@@ -131,17 +166,18 @@ class Feedback:
     def _update(self, state: int, reached: bool, error_id: int, sentence: str, cycle: int, value: float = 0.0) -> bool:
         """Takes over a report. False: it says nothing new (final states stay)."""
         new = FeedbackState(state)
-        if self.final or new < self.state or (new, reached) == (self.state, self.reached):
+        if self._final or new < self._state or (new, reached) == (self._state, self.reached):
             return False
-        self.error_id = error_id
-        self.sentence = sentence or ("aborted by another command" if new is FeedbackState.ABORTED else "")
+        self._refused = new is FeedbackState.ERROR and self._state is FeedbackState.BUSY
+        self._error_id = error_id
+        self._sentence = sentence or ("aborted by another command" if new is FeedbackState.ABORTED else "")
         self.cycle = cycle
         self.reached = reached or self.reached
         if new is FeedbackState.ACTIVE and not math.isnan(value) and not reached:
             self.travel_time_s = value
         elif new > FeedbackState.ACTIVE:
             self.value = value
-        self.state = new  # last: who sees it on another thread sees the rest too
+        self._state = new  # last: who sees it on another thread sees the rest too
         return True
 
 

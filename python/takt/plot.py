@@ -3,12 +3,14 @@
     figure = plot.draw(rec, "x.*_position", "x.following_error", title="first move")
     plot.save(figure, "first_move.png")
 
-Drawn without any window system and without matplotlib's global state.
+Drawn without any window system and without matplotlib's global state. In a notebook a figure shows itself as the last
+value of a cell.
 """
 
 from __future__ import annotations
 
 import fnmatch
+import io
 import math
 import re
 import textwrap
@@ -43,6 +45,25 @@ EVENT_COLOURS = {"error": style.BAD, "end": "#9aa3ae", "start": "#4b5563", "mark
 Signal = tuple[str, str]
 
 
+class Picture(Figure):
+    """A figure that shows itself where notebooks show the last value of a cell."""
+
+    def __init__(self, height: float, **options: Any) -> None:
+        """`height` in inches."""
+        super().__init__(figsize=(WIDTH_IN, height), dpi=DPI, facecolor="white", **options)
+        FigureCanvasAgg(self)
+
+    def _repr_png_(self) -> bytes:
+        return png(self)
+
+
+def png(figure: Figure) -> bytes:
+    """A figure as the bytes of a PNG file."""
+    data = io.BytesIO()
+    figure.savefig(data, format="png", dpi=DPI)
+    return data.getvalue()
+
+
 def select(recording: Recording, patterns: Sequence[str] = ()) -> list[Signal]:
     """The signals that match any of the patterns ("x.set_position", "*.following_error", "x.*", or a
     component's name alone); the usual ones of each component when there are no patterns. A pattern that
@@ -66,7 +87,7 @@ def draw(
     title: str | None = None,
     window: Interval | None = None,
     events: bool = True,
-) -> Figure:
+) -> Picture:
     """Stacked lanes over time: one for each quantity and unit, one band for states and switches; command
     marks above."""
     if window is not None:
@@ -105,7 +126,7 @@ def draw(
     return figure
 
 
-def draw_verdict(verdict: Verdict, recording: Recording | None = None) -> Figure:
+def draw_verdict(verdict: Verdict, recording: Recording | None = None) -> Picture:
     """The data that a verdict is about with its bounds; beside it, where it failed, the place magnified. The recording
     that was judged says where samples are missing."""
     lanes = list(verdict.lanes)
@@ -120,8 +141,7 @@ def draw_verdict(verdict: Verdict, recording: Recording | None = None) -> Figure
     columns = 1 if zoom is None else 2
     shares = [0.6 if lane.names else 2.6 for lane in lanes] or [2.6]
     height = 1.5 + sum(shares)
-    figure = Figure(figsize=(WIDTH_IN, height), dpi=DPI, facecolor="white")
-    FigureCanvasAgg(figure)
+    figure = Picture(height)
     text = textwrap.fill(verdict.sentence, 150)
     head = 0.8 + 0.2 * (text.count("\n") + 1)
     figure.text(
@@ -187,11 +207,10 @@ def _lane_inches(name: str) -> float:
     return 2.3 if name.endswith("position") else 1.7
 
 
-def _stack(sizes: Sequence[float], title: str | None) -> tuple[Figure, list[Axes]]:
+def _stack(sizes: Sequence[float], title: str | None) -> tuple[Picture, list[Axes]]:
     top, bottom, between = (0.62 if title else 0.22), 0.6, 0.16
     height = top + bottom + sum(sizes) + between * (len(sizes) - 1)
-    figure = Figure(figsize=(WIDTH_IN, height), dpi=DPI, facecolor="white")
-    FigureCanvasAgg(figure)
+    figure = Picture(height)
     if title:
         figure.text(0.075, 1 - 0.2 / height, title, color=INK, weight="bold", size=14, va="top")
     axes: list[Axes] = []

@@ -280,9 +280,9 @@ class RemoteSession(Session):
             message.object_kind,
             message.object_number,
         )
-        if feedback.final:
+        if feedback._final:
             del self._sent[message.id]
-        self._held = [f for f in self._held if not (f.error or f.aborted or (f.done and f._release_is_settled))]
+        self._held = [f for f in self._held if not f._final or (f._done and not f._release_is_settled)]
 
     # --- heartbeats and second tries, on a thread of their own ---
 

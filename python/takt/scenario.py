@@ -14,17 +14,21 @@ import importlib.util
 import inspect
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlencode
 
+import numpy as np
+
 from takt import expect
-from takt.complaint import Complaint
-from takt.errors import TaktError
+from takt.complaint import VERIFY, Complaint
+from takt.errors import CommandError, TaktError, TimeoutError
+from takt.judging import asserts
 from takt.recording import Recording
+from takt.routing import RoutingError
 from takt.session import Session
 from takt.source import IN_DIRECTORY
 from takt.verdict import Verdict
@@ -70,7 +74,7 @@ class Scenario:
 class Outcome:
     recording: Recording
     verdicts: tuple[Verdict, ...]
-    assertion: Verdict | None = None  # a plain `assert` that failed
+    assertion: Verdict | None = None  # a plain `assert` that failed, a command that was refused, nothing judged
 
     @property
     def complaint(self) -> str:
@@ -156,35 +160,70 @@ def run_scenario(scenario: Scenario, session: Session, directory: Path | None = 
     scenario breaks off."""
     recorder = session.record(every=scenario.every)
     try:
-        complaint = play(scenario, session)
+        played = play(scenario, session)
     finally:
         recording = recorder.stop()
         if directory is not None:
             recording.save(directory / IN_DIRECTORY)
-    return verify_recording(scenario, recording, complaint)
+    return verify_recording(scenario, recording, played)
 
 
-def play(scenario: Scenario, session: Session) -> Complaint | None:
-    """Does what it does; a plain `assert` that fails ends it."""
+@dataclass(frozen=True)
+class Played:
+    """What became of a scenario."""
+
+    broken_off: Complaint | None = None  # by a plain `assert`, a command that ended in an error, a wait in vain
+    ignored: Complaint | None = None  # commands that were refused without its asking
+
+
+def play(scenario: Scenario, session: Session) -> Played:
+    """Does what it does. A plain `assert` that fails, a command that is waited for and ends in an error, and something
+    that does not happen in time end it."""
+    before = set(map(id, session.unheeded))
     try:
         scenario.play(session)
     except AssertionError as error:
-        return Complaint.of(error, scenario.path, session.now)
-    return None
+        return Played(Complaint.of(error, scenario.path, session.now))
+    except (CommandError, TimeoutError, RoutingError) as error:
+        return Played(Complaint.of_broken(error, scenario.path, session.now))
+    ignored = [feedback for feedback in session.unheeded if id(feedback) not in before]
+    return Played(ignored=Complaint.of_ignored(ignored, scenario.path))
 
 
-def verify_recording(scenario: Scenario, recording: Recording, complaint: Complaint | None = None) -> Outcome:
-    """Asks `verify` of a recording, wherever it comes from, unless the scenario has broken off with a complaint."""
-    if complaint is not None:
-        return Outcome(recording, (), complaint.verdict(recording))
+def verify_recording(scenario: Scenario, recording: Recording, played: Played | None = None) -> Outcome:
+    """Asks `verify` of a recording, wherever it comes from, unless the scenario has broken off."""
+    played = played or Played()
+    if played.broken_off is not None:
+        return Outcome(recording, (), played.broken_off.verdict(recording))
+    complaint = None
     with expect.collect() as verdicts:
-        if scenario.verify is not None:
-            try:
-                with _no_exit(scenario.path):
-                    scenario.verify(recording)
-            except AssertionError as error:
-                complaint = Complaint.of(error, scenario.path)
-    return Outcome(recording, tuple(verdicts), complaint.verdict(recording) if complaint else None)
+        try:
+            complaint = _judge(scenario, recording, verdicts)
+        except AssertionError as error:
+            complaint = Complaint.of(error, scenario.path)
+    verdict = complaint.verdict(recording) if complaint is not None else None
+    if played.ignored is not None:
+        judged = (verdict, *verdicts) if verdict is not None else tuple(verdicts)
+        return Outcome(recording, judged, played.ignored.verdict(recording))
+    return Outcome(recording, tuple(verdicts), verdict)
+
+
+def _judge(scenario: Scenario, recording: Recording, verdicts: Sequence[Verdict]) -> Complaint | None:
+    """Asks `verify`. The complaint that it says no, or has judged nothing."""
+    folder = scenario.path.parent
+    if scenario.verify is None:
+        if asserts(scenario.scenario, folder):
+            return None
+        return Complaint(f"nothing was judged: {scenario.path.name} has no verify(recording)", None, name=VERIFY)
+    with _no_exit(scenario.path):
+        answer = scenario.verify(recording)
+    code = getattr(scenario.verify, "__code__", None)
+    where = f"{scenario.path.name}:{code.co_firstlineno}" if code else scenario.path.name
+    if isinstance(answer, bool | np.bool_):
+        return None if answer else Complaint(f"verify returned False ({where})", None, name=VERIFY)
+    if verdicts or asserts(scenario.verify, folder):
+        return None
+    return Complaint(f"nothing was judged: verify has no assertion, and returns no True ({where})", None, name=VERIFY)
 
 
 @contextlib.contextmanager

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import difflib
 import math
+import os
 import sys
 from abc import abstractmethod
+from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from types import MappingProxyType, TracebackType
+from pathlib import Path
+from types import FrameType, MappingProxyType, TracebackType
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from takt._commands import DEFAULTS, LEVEL_SENSITIVE, MachineCommands
@@ -18,7 +21,7 @@ from takt.component import Component
 from takt.couplings import why_refused
 from takt.environment import Environment
 from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
-from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
+from takt.feedback import DEFAULT_TIMEOUT_S, Feedback, FeedbackState, Place
 from takt.flex_cam import FlexCam
 from takt.group import Group
 from takt.lying import Lying
@@ -47,6 +50,11 @@ CLASSES: dict[str, type[Component]] = {
 # What can be in the way, by the numbers that the engine has for it.
 OBJECTS = ("", "mover", "track", "planar_group", "environment", "part", "coordinate_system", "axis")
 
+
+PACKAGE = f"{Path(__file__).parent}{os.sep}"
+EXAMPLES = f"{PACKAGE}examples{os.sep}"  # in its folder, but programs like others
+CALLS = 8  # kept of where a command was given
+REFUSED = 1000  # commands, kept at most
 
 IN_PROCESS = "the geometry of tracks is known in process only"
 
@@ -112,6 +120,7 @@ class Session(MachineCommands):
         self._programs: list[Program] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
+        self._refused: deque[Feedback] = deque(maxlen=REFUSED)
         self._closed = False
 
     # --- the machine ---
@@ -250,8 +259,15 @@ class Session(MachineCommands):
             not isinstance(arguments, str) and asked in LEVEL_SENSITIVE and any(v is True for v in arguments.values())
         )
         feedback = Feedback(self, _clean(target), _clean(verb), _clean(text), level_sensitive=level)
+        feedback.given_at = _places()
         self._give(feedback)
         return feedback
+
+    @property
+    def unheeded(self) -> list[Feedback]:
+        """Commands that were refused, which the program has not noticed: it never asked what became of them. The last
+        1,000."""
+        return [feedback for feedback in self._refused if feedback._ignored]
 
     def _kind(self, target: str) -> str:
         component = self._components.get(target)
@@ -376,13 +392,15 @@ class Session(MachineCommands):
             sentence = why_refused(error_id, feedback.target, feedback.arguments, self._axes, self._movers) or sentence
             if isinstance(feedback.object, Axis):
                 sentence = f"axis '{feedback.object.name}', which follows this one, failed"
-        if not feedback._update(state, reached, error_id, sentence, cycle, value) or not feedback.final:
+        if not feedback._update(state, reached, error_id, sentence, cycle, value) or not feedback._final:
             return
         name = without_arguments(feedback.text)
-        if feedback.error:
-            self._event(feedback.target, f"{name}: {feedback.sentence}", "error", feedback.time_s)
+        if feedback._state is FeedbackState.ERROR:
+            self._event(feedback.target, f"{name}: {feedback._sentence}", "error", feedback.time_s)
+            if feedback._refused and feedback.verb != "release":
+                self._refused.append(feedback)
         else:
-            self._event(feedback.target, f"{name}: {feedback.state.name.lower()}", "end", feedback.time_s)
+            self._event(feedback.target, f"{name}: {feedback._state.name.lower()}", "end", feedback.time_s)
 
     def _object(self, kind: int, number: int) -> Component | None:
         """What the engine calls so."""
@@ -485,6 +503,18 @@ def release_of(feedback: Feedback) -> Feedback:
     feedback._release = release
     feedback.released = True
     return release
+
+
+def _places() -> tuple[Place, ...]:
+    """Where the program is that gives a command: calls outside of this package, the innermost first."""
+    places: list[Place] = []
+    frame: FrameType | None = sys._getframe(2)
+    while frame is not None and len(places) < CALLS:
+        name = frame.f_code.co_filename
+        if not name.startswith(PACKAGE) or name.startswith(EXAMPLES):
+            places.append((name, frame.f_lineno))
+        frame = frame.f_back
+    return tuple(places)
 
 
 def _clean(text: str) -> str:

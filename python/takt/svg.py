@@ -3,7 +3,7 @@
 X goes to the right and Y up from the drawing's lower left corner, in mm; the pen draws at Z 0 and is lifted between
 lines. Circular arcs stay arcs; ellipses and Béziers become lines that keep within a tolerance. Outlines of what a
 browser shows are drawn, whether stroked or filled; texts and pictures are left out, and said to be. Needs svgelements
-(pip install takt-motion[svg]).
+(pip install svgelements).
 
 `svg_tree` finds the shapes that are rendered; svgelements reads them, their styles, units and transforms. Shapes are
 taken as they are in their own coordinates, and each point is moved by the shape's matrix.
@@ -56,7 +56,7 @@ def read_svg(
     try:
         import svgelements  # type: ignore[import-untyped]
     except ImportError:
-        raise ToolpathError(f"{path}: SVG needs svgelements (pip install takt-motion[svg])") from None
+        raise ToolpathError(f"{path}: SVG needs svgelements (pip install svgelements)") from None
     data = Path(path).read_bytes()
     try:
         tree = Rendered(ElementTree.fromstring(data), svgelements.Viewbox.viewbox_transform)

@@ -1,5 +1,5 @@
 """What the command line prints: tables and colours on a terminal; into pipes and files plain lines, neither wrapped nor
-padded, with the cells of tables apart by tabs."""
+padded, with two blanks between the cells of tables that are not empty."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _rows(table: Table) -> list[str]:
     heads = tuple(_plain(column.header) for column in table.columns)
     if table.show_header and any(heads):
         lines.insert(0, heads)
-    return ["\t".join(line).rstrip() for line in lines]
+    return ["  ".join(filter(None, line)) for line in lines]
 
 
 def _plain(cell: Any) -> str:

@@ -97,11 +97,10 @@ class Followed:
 
 def followed_picture(
     followed: Followed, title: str, *, bound: float, detail: tuple[float, float, float] | None = None
-) -> Figure:
+) -> plot.Picture:
     """The path with what was commanded and measured from above; below, over the way, the deviation from the path with
     what was allowed (`bound`, mm) and the speed. `detail`: X, Y and width in mm of a place to magnify."""
-    figure = Figure(figsize=(plot.WIDTH_IN, 11.0), dpi=plot.DPI, facecolor="white", layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = plot.Picture(11.0, layout="constrained")
     grid = figure.add_gridspec(3, 2, height_ratios=[2.7, 1, 1], width_ratios=[1.55, 1])
     places = [grid[0, 0], grid[0, 1]] if detail else [grid[0, :]]
     views = [figure.add_subplot(place) for place in places]

@@ -36,6 +36,38 @@ def failed(verdict: Verdict, *, when: float, by: float, unit: str, rel: float = 
     assert verdict.sentence.startswith(verdict.components[0])
 
 
+# --- conditions ---
+
+
+@pytest.mark.parametrize("level", [100.0, -0.3, 1e6, 1e-9, 0.0])
+@pytest.mark.parametrize("share", [0.0, 0.4, -0.4, 3.0, -3.0])
+def test_numbers_that_rounding_told_apart_are_equal(level: float, share: float) -> None:
+    """PY-05: to a billionth, near zero to 1e-12. Each comparison is the contrary of another one, so that of a condition
+    and its contrary one holds."""
+    off = share * max(abs(level) * 1e-9, 1e-12)
+    rec = Recording({"x": {"time_s": [0.0, 0.1], "v": [level + off] * 2}})
+    above, below = share > 1, share < -1
+    said = {
+        "<=": not above,
+        ">": above,
+        ">=": not below,
+        "<": below,
+        "==": not above and not below,
+        "!=": above or below,
+    }
+    for comparison, holds in said.items():
+        assert checks.stays(rec, f"x.v {comparison} {level!r}").passed == holds, comparison
+    for one, other in (("<=", ">"), (">=", "<"), ("==", "!=")):
+        assert checks.never_both(rec, f"x.v {one} {level!r}", f"x.v {other} {level!r}").passed
+
+
+def test_the_margin_of_a_condition() -> None:
+    rec = Recording({"x": {"time_s": [0.0, 0.1, 0.2], "v": [3.0, 100.00000000000001, 5.0]}})
+    verdict = checks.stays(rec, "|x.v| <= 100")
+    assert verdict.sentence == "|x.v| <= 100 held throughout; closest call at 0.1 s, margin 0"
+    assert checks.stays(rec, "x.v < 100.5").sentence.endswith("closest call at 0.1 s, margin 0.5")
+
+
 # --- within limits ---
 
 

@@ -110,7 +110,6 @@ BAD = {
     "no scenario": (["run", "empty.py"], "has no function scenario"),
     "syntax": (["run", "syntax.py"], "syntax.py:1: "),
     "mistake": (["run", "mistake.py"], "ZeroDivisionError: division by zero (mistake.py:2)"),
-    "refused": (["run", "refused.py"], "x.halt: the axis is not"),
     "no engine": (["run", "there.py", "--url", "udpm://239.255.76.67:19999?ttl=0"], "no engine answers"),
     "wrong url": (["run", "there.py", "--url", "tin can"], "expected one like udpm://"),
     "both": (["run", "there.py", "--url", "a", "--machine", "b"], "give one of them"),
@@ -158,7 +157,6 @@ def test_mistakes_are_one_line(
     log.close()
     Path("syntax.py").write_text("def :\n")
     Path("mistake.py").write_text("def scenario(session):\n    1 / 0\n")
-    Path("refused.py").write_text("def scenario(session):\n    session.axis('x').halt().wait()\n")
     arguments, sentence = BAD[case]
     assert main(arguments) == 2
     captured = capsys.readouterr()

@@ -231,7 +231,7 @@ BAD = {
         "nothing was recorded from 2.001 s to 2.003 s: there are samples from 2 s to 2.076 s",
     ),
     "directory": (["a.npz", "--mcap", "taken.mcap"], "taken.mcap: Is a directory"),
-    "package": (["a.npz", "--mcap", "a.mcap"], "writing MCAP needs the package mcap: pip install takt-motion[mcap]"),
+    "package": (["a.npz", "--mcap", "a.mcap"], "writing MCAP needs the package mcap: pip install mcap"),
 }
 
 

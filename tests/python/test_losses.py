@@ -90,7 +90,7 @@ def test_messages_lost_on_the_way(channel: str, tmp_path: Path, capsys: pytest.C
     shown = page(run)
     assert list(shown["meta"]["messages lost on the way, of"].values()) == [str(count)]
     assert main(["log", str(run)]) == 0
-    assert f"{channel}\t{CYCLES // step - count}\t{count}\n" in capsys.readouterr().out
+    assert f"{channel}  {CYCLES // step - count}  {count}  0\n" in capsys.readouterr().out
     if channel in REPEATING:  # the next one says all that was in it
         assert all_missing(recording) == ""
         return

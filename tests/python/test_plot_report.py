@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,15 @@ def colours_of(figure: Any) -> int:
 
 
 # --- plots ---
+
+
+def test_figures_show_themselves() -> None:
+    """PY-25: notebooks ask the last value of a cell for its picture."""
+    rec = one_axis()
+    for figure in (plot.draw(rec, "x"), plot.draw_verdict(checks.within_limits(rec, "x"), rec)):
+        shown = imread(io.BytesIO(figure._repr_png_()))
+        assert shown.shape[1] == 1400
+        assert len(np.unique(shown.reshape(-1, shown.shape[2]), axis=0)) > 20
 
 
 def test_usual_signals_in_lanes_with_units(tmp_path: Path) -> None:

@@ -2,13 +2,14 @@
 
 A condition is a text such as "x.actual_position > 10", "|x.following_error| <= 0.5", "x.state == Standstill",
 "x.in_position", "not x.in_position", or several of them joined by " and ".
+
+Numbers that differ by no more than rounding count as equal (`slack`): 100.00000000000001 is not above 100.
 """
 
 from __future__ import annotations
 
 import difflib
 import math
-import operator
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -21,13 +22,16 @@ from takt.counted import counted
 from takt.recording import FloatArray, Recording, RecordingError, split_signal
 from takt.verdict import Bound, Interval, Lane, Verdict, number, seconds
 
-_COMPARE: dict[str, Callable[[Any, Any], Any]] = {
-    "<=": operator.le,
-    ">=": operator.ge,
-    "==": operator.eq,
-    "!=": operator.ne,
-    "<": operator.lt,
-    ">": operator.gt,
+ROUNDING = 1e-9  # relative difference of numbers that count as equal
+NEAR_ZERO = 1e-3  # to numbers smaller than that it is relative to that: 1e-12, in the signal's unit
+# Of a value minus what it is compared with, and of the difference that counts as none.
+_COMPARE: dict[str, Callable[[Any, float], Any]] = {
+    "<=": lambda difference, slack: difference <= slack,
+    ">=": lambda difference, slack: difference >= -slack,
+    "==": lambda difference, slack: np.abs(difference) <= slack,
+    "!=": lambda difference, slack: np.abs(difference) > slack,
+    "<": lambda difference, slack: difference < -slack,
+    ">": lambda difference, slack: difference > slack,
 }
 _COMPARISON = re.compile(
     r"^(?P<bar>\|?)\s*(?P<signal>[^\s|<>=!]+)\s*(?P<bar2>\|?)\s*(?P<op><=|>=|==|!=|<|>)\s*(?P<value>\S.*)$"
@@ -48,7 +52,8 @@ class _Term:
 
 @decided
 def stays(recording: Recording, condition: str, *, window: Interval | None = None) -> Verdict:
-    """A condition holds at every sample: stays(rec, "x.state == Standstill", window=(1.0, 2.0))."""
+    """A condition holds at every sample: stays(rec, "x.state == Standstill", window=(1.0, 2.0)). Numbers that differ by
+    less than a billionth count as equal."""
     terms = _parse(condition)
     check = Check("stays", recording, _components(terms), window)
     evaluated = [_evaluate(check, *term) for term in terms]
@@ -194,7 +199,7 @@ def _evaluate(check: Check, text: str, signal: str, op: str, value: str, absolut
     )
     s = check.series(component, field)
     values = np.abs(s.values) if absolute else s.values
-    holds: Mask = np.asarray(_COMPARE[op](values, level), dtype=np.bool_)
+    holds: Mask = np.asarray(_COMPARE[op](values - level, slack(level)), dtype=np.bool_)
     excess: FloatArray | None = None
     if not names and check.recording.column(component, field).dtype.kind != "b":
         excess = {"<": values - level, ">": level - values, "=": np.abs(values - level)}.get(op[0])
@@ -205,6 +210,11 @@ def _evaluate(check: Check, text: str, signal: str, op: str, value: str, absolut
         if absolute:
             bounds += (Bound.level("", -level, s.span, "below" if op[0] == "<" else "none"),)
     return _Term(text, s, holds, excess, s.lane(bounds=bounds, names=names))
+
+
+def slack(level: float) -> float:
+    """What a value may differ from a number and still count as equal to it."""
+    return ROUNDING * max(abs(level), NEAR_ZERO)
 
 
 def _all_hold(check: Check, terms: Sequence[_Term]) -> Series:

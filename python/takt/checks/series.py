@@ -263,5 +263,5 @@ def extent(time_s: FloatArray, mask: Mask) -> tuple[Interval, str]:
 
 
 def nearest(value: float, unit: str, time_s: float) -> str:
-    """The closest call of a check that passed."""
-    return f"closest call {number(value, unit)} at {seconds(time_s)}"
+    """The closest call of a check that passed: when, and the margin that was left."""
+    return f"closest call at {seconds(time_s)}, margin {number(value, unit)}"

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from takt.plot import png
 from takt.recording import Recording
 from takt.report.kept import keep
-from takt.report.writing import PAGE, Report, png_of, render_kept, write_report
+from takt.report.writing import PAGE, Report, render_kept, write_report
 from takt.scenario import Outcome, Scenario
 
 
@@ -30,7 +31,7 @@ def judged(outcome: Outcome, scenario: Scenario) -> Recording:
     """The recording with what its scenario says of it now. What the engine said of itself stays."""
     drawn = scenario.draw(outcome.recording) if outcome.passed else {}
     figures = (outcome.recording.meta.get("run") or {}).get("figures")
-    pictures = {name: png_of(figure) for name, figure in drawn.items()}
+    pictures = {name: png(figure) for name, figure in drawn.items()}
     return keep(outcome.recording, scenario.title, outcome.verdicts, outcome.assertion, figures, pictures)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import html
-import io
 import json
 import re
 from collections.abc import Mapping, Sequence
@@ -143,13 +142,6 @@ STYLES = (
     ("report", "page", "uplot", "uPlot.min.css"),
     ("report", "page", "style.css"),
 )
-
-
-def png_of(figure: Figure) -> bytes:
-    """A picture as the file that is kept of it."""
-    data = io.BytesIO()
-    figure.savefig(data, format="png", dpi=plot.DPI)
-    return data.getvalue()
 
 
 def _facts(recording: Recording, figures: Mapping[str, Any]) -> dict[str, Any]:

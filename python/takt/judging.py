@@ -1,0 +1,46 @@
+"""Whether a function judges anything: a `verify` without an assertion passes whatever the motion was."""
+
+from __future__ import annotations
+
+import dis
+import inspect
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import CodeType, FunctionType
+from typing import Any
+
+
+def asserts(function: Callable[..., object], folder: Path) -> bool:
+    """Whether the function, or one of the folder's that it names, has a plain `assert` in it."""
+    folder = folder.resolve()
+    waiting: list[Any] = [function]
+    known: set[int] = set()
+    while waiting:
+        one = inspect.unwrap(waiting.pop()) if callable(waiting[-1]) else waiting.pop()
+        if id(one) in known:
+            continue
+        known.add(id(one))
+        if inspect.isclass(one):
+            waiting += [member for member in vars(one).values() if isinstance(member, FunctionType)]
+        elif isinstance(one, FunctionType) and _lies_in(one, folder):
+            for code in _codes(one.__code__):
+                if any(_asserts(instruction) for instruction in dis.get_instructions(code)):
+                    return True
+                waiting += [one.__globals__[name] for name in code.co_names if name in one.__globals__]
+    return False
+
+
+def _asserts(instruction: dis.Instruction) -> bool:
+    return "ASSERTION_ERROR" in instruction.opname or "AssertionError" in instruction.argrepr
+
+
+def _lies_in(function: FunctionType, folder: Path) -> bool:
+    return Path(function.__code__.co_filename).resolve().is_relative_to(folder)
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    """Its own, and those of the functions inside."""
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _codes(constant)
