@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import itertools
 import json
 import os
 from collections import Counter
@@ -21,7 +22,7 @@ from takt.figures import DROPPED, figures_of
 from takt.lying import Lying, objects_of
 from takt.network import open_network, roomy, usual_url
 from takt.recording import Array, Recording
-from takt.sequences import Sequences
+from takt.sequences import OBJECTS, Sequences
 from takt.tables import KINDS, PREFIXES, components_of, is_possible, make_recording, table_of
 
 STATE_TYPES = tuple(kind.message for kind in KINDS.values())
@@ -38,7 +39,7 @@ MESSAGES: dict[str, Any] = {
 # Of channels that end in the name of a component.
 NAMED: dict[str, Any] = {
     **{prefix: KINDS[kind].message for kind, prefix in PREFIXES.items()},
-    "takt/belt_objects/": msgs.belt_objects,
+    OBJECTS: msgs.belt_objects,
     "takt/track_shapes/": msgs.track_shape,
 }
 NAMED_TYPES = tuple(NAMED.values())
@@ -47,6 +48,7 @@ DRIVES: dict[str, Any] = {"setpoint": msgs.drive_setpoint, "feedback": msgs.driv
 STATES = ("busy", "active", "done", "aborted", "error")
 
 PATIENCE_S = 30.0  # that writing may be behind
+SILENCE_S = 0.25  # of one component while others are heard, and three of its samples at least
 EARLY_S = 1.0  # of engine time: a log that begins by then holds all that was said
 
 
@@ -258,6 +260,7 @@ def to_recording(log: Log, run: int = -1) -> Recording:
         "version": version,
         "losses": one.sequences.lost(),
         "dropped": _dropped(one, period),
+        "silent": _silent(machine, tables, one, period),
         "trouble": log.trouble if not wrong else replace(log, wrong=wrong).trouble,
         "starts": log.starts(run),
         "objects": _lying(one, period).columns(),
@@ -286,6 +289,24 @@ def _dropped(run: Run, period: float) -> dict[str, int]:
     early = first.cycle * period <= EARLY_S
     counts = {name: getattr(last, name) - (0 if early else getattr(first, name)) for name in DROPPED}
     return {name: count for name, count in counts.items() if count > 0}
+
+
+def _silent(machine: dict[str, Any], tables: dict[str, dict[str, Array]], run: Run, period: float) -> dict[str, float]:
+    """Components, and channels of what lies on belts, that were not heard any more although others were: since when, in
+    s."""
+    rates = {own["axis"]: own["rate_hz"] for own in machine["lcm"]["rates"]}
+    published = [name for name in components_of(machine) if rates.get(name, machine["lcm"]["axis_rate_hz"]) > 0]
+    heard = {name: tables[name]["cycle"].tolist() if name in tables else [] for name in published}
+    for belt in machine["belts"]:
+        if belt["name"] in published:
+            heard[OBJECTS + belt["name"]] = [message.cycle for message in run.objects if message.name == belt["name"]]
+    end = max((cycles[-1] for cycles in heard.values() if cycles), default=0)
+    silent = {}
+    for name, cycles in heard.items():
+        usual = Counter(b - a for a, b in itertools.pairwise(cycles)).most_common(1)
+        if not cycles or end - cycles[-1] > max(SILENCE_S / period, 3 * usual[0][0] if usual else 0):
+            silent[name] = cycles[-1] * period if cycles else 0.0
+    return silent
 
 
 def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:

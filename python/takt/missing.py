@@ -32,13 +32,16 @@ def missing(recording: Recording, components: Iterable[str] | None = None, windo
 
 
 def lost(recording: Recording) -> str:
-    """What is missing besides samples, in words: messages of other channels that were lost on the way, and what the
-    engine had no room for. Empty: nothing is."""
+    """What is missing besides samples, in words: messages of other channels that were lost on the way, what was
+    not heard any more before the end, and what the engine had no room for. Empty: nothing is."""
     losses = recording.meta.get("losses") or {}
     counts = [(-count, channel) for channel, count in losses.items() if not channel.startswith(REPEATING)]
     worst = [(channel, -count) for count, channel in sorted(counts)]
     said = [f"{counted(count, 'message')} of {name}" for name, count in worst[:NAMED]]
     said += [f"some of {counted(len(worst) - NAMED, 'other channel')}"] if len(worst) > NAMED else []
+    silent = (recording.meta.get("silent") or {}).items()
+    said += [f"{name} from {seconds(since)} on" for name, since in list(silent)[:NAMED]]
+    said += [f"{counted(len(silent) - NAMED, 'other component')}"] if len(silent) > NAMED else []
     dropped = [counted(count, *DROPPED[name]) for name, count in (recording.meta.get("dropped") or {}).items()]
     said += [f"{' and '.join(dropped)} that the engine had no room for"] if dropped else []
     return "; ".join(said)

@@ -10,9 +10,11 @@ from typing import Any
 import pytest
 import takt
 from every_kind import FULL, MINIMAL, left_out, text_of
-from machines import taktd
+from machines import new_url, running, taktd
+from pages import Client, served
 from takt import _core, msgs
 from takt.cli import main
+from takt.missing import all_missing
 from takt.report.columns import Block
 from takt.report.scene import scene_of
 from takt.view.machine import Machine
@@ -83,6 +85,28 @@ def test_with_anything_left_out() -> None:
         assert [one["name"] for one in shown["components"]] == list(recording), where
     assert len(tried) > 100
     assert {"flex_cams.0.master", "groups.0.path.deceleration", "movers.0.z", "belts.0.upper_limit"} <= set(tried)
+
+
+@pytest.mark.parametrize("name", ["all of them", "flex_cam without a master", "mover"])
+def test_over_lcm(name: str, tmp_path: Path) -> None:
+    """PY-02: a session, its recording, a log of the network and the live page."""
+    url, log = new_url(), tmp_path / "network.log"
+    with (
+        running(tmp_path, url, machine=text_of(ALL[name])),
+        served(url) as address,
+        takt.write_log(log, url),
+        takt.connect(url) as session,
+        Client(address) as page,
+    ):
+        assert [repr(component) for component in session.components.values()]
+        page.look_at(details=list(range(len(session.components))))
+        with session.record() as recorder:
+            session.run(0.3)
+        page.until(lambda: len(page.rows) == len(session.components))
+    assert set(recorder.recording) == set(session.components) == set(takt.read_log(log))
+    assert all_missing(recorder.recording) == ""
+    recorder.recording.save(tmp_path / "run.npz")
+    assert main(["report", str(tmp_path / "run.npz")]) == 0
 
 
 def test_units_of_a_cam_module() -> None:

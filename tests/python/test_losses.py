@@ -21,6 +21,7 @@ PERIOD = 0.002
 CHANNELS: dict[str, tuple[Any, str, int]] = {
     "takt/axis/feed": (msgs.axis_state, "feed", 1),
     "takt/belt/belt": (msgs.belt_state, "belt", 2),
+    "takt/belt/turntable": (msgs.belt_state, "turntable", 2),
     "takt/belt_objects/belt": (msgs.belt_objects, "belt", 2),
     "takt/belt_objects/turntable": (msgs.belt_objects, "turntable", 2),
     "takt/feedback": (msgs.feedback, "", 5),
@@ -28,7 +29,9 @@ CHANNELS: dict[str, tuple[Any, str, int]] = {
     "takt/engine": (msgs.engine_state, "", 20),
     "takt/track_shapes/line": (msgs.track_shape, "line", 40),
 }
-STATES = ("takt/axis/feed", "takt/belt/belt")
+# Nothing else is published.
+QUIET = {"axis_rate_hz": 0, "rates": [{"axis": name, "rate_hz": 500} for name in ("feed", "belt", "turntable")]}
+STATES = ("takt/axis/feed", "takt/belt/belt", "takt/belt/turntable")
 REPEATING = ("takt/engine", "takt/track_shapes/line")
 
 
@@ -36,7 +39,7 @@ def write(path: Path, left_out: dict[str, range], *, on_the_way: bool = True, dr
     """A log without the messages of these cycles, by channel: lost on the way, or never sent."""
     log = lcm.EventLog(str(path), "w", overwrite=True)
     machine = msgs.machine_description()
-    machine.text, machine.period_s = text_of(FULL), PERIOD
+    machine.text, machine.period_s = text_of({**FULL, "lcm": QUIET}), PERIOD
     log.write_event(1, "takt/machine", machine.encode())
     sequences = dict.fromkeys(CHANNELS, 0)
     for cycle in range(CYCLES):
@@ -119,6 +122,19 @@ def test_what_the_engine_had_no_room_for(channel: str, tmp_path: Path) -> None:
     shown = page(run)
     assert "lost samples" not in shown["meta"]
     assert "20 states that the engine had no room for" in shown["trouble"]
+
+
+@pytest.mark.parametrize("channel", ["takt/axis/feed", "takt/belt/belt", "takt/belt_objects/belt"])
+@pytest.mark.parametrize("since", [0, 60])
+def test_what_is_not_heard_any_more(channel: str, since: int, tmp_path: Path) -> None:
+    """Neither numbers nor cycles show what is missing at the end."""
+    run = write(tmp_path / "run.log", {channel: range(since, CYCLES)})
+    recording = takt.read_log(run)
+    name = CHANNELS[channel][1] if channel in STATES else channel
+    last = since - CHANNELS[channel][2] if since else 0
+    assert recording.meta["silent"] == {name: pytest.approx(last * PERIOD)}
+    assert all_missing(recording) == f"{name} from {last * PERIOD:g} s on"
+    assert "lost samples" not in page(run)["meta"]
 
 
 def test_many_channels_are_counted(tmp_path: Path) -> None:
