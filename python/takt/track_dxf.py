@@ -1,4 +1,4 @@
-"""Lines and arcs of a DXF drawing, in mm (needs ezdxf: pip install takt-motion[dxf]).
+"""Lines and arcs of a DXF drawing, in mm (needs ezdxf: pip install ezdxf).
 
 Of the model space: lines, arcs, circles, polylines, ellipses, splines, helices as seen from above, also within blocks.
 Coordinate systems of entities (extrusion) and blocks are ezdxf's matter. Texts, dimensions, hatchings and the like are
@@ -47,7 +47,7 @@ def read_dxf(file: str | PathLike[str], left_out: Counter[str]) -> list[Run]:
         from ezdxf.filemanagement import readfile
         from ezdxf.units import conversion_factor
     except ImportError:
-        raise TaktError(f"{file}: DXF needs ezdxf (pip install takt-motion[dxf])") from None
+        raise TaktError(f"{file}: DXF needs ezdxf (pip install ezdxf)") from None
     try:
         drawing = readfile(str(file))
         space = drawing.modelspace()
