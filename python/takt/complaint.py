@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import re
 import traceback
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -71,6 +72,16 @@ class Complaint:
         text = f"{CommandError(first)}{where}: nothing asked what became of it{others}"
         when = when_s if np.isfinite(when_s) else None
         return Complaint(text, when, frozenset({first.target}), name=COMMAND)
+
+    def told(self) -> dict[str, Any]:
+        """As recordings keep it."""
+        return {**asdict(self), "components": sorted(self.components), "words": sorted(self.words)}
+
+    @staticmethod
+    def again(told: Mapping[str, Any]) -> Complaint:
+        """The one that was told."""
+        sets = {name: frozenset(told[name]) for name in ("components", "words")}
+        return Complaint(told["text"], told["when_s"], **sets, name=told["name"])
 
     def verdict(self, recording: Recording) -> Verdict:
         """With the curves of the components that are named; of the fields that are, or of the usual ones."""

@@ -88,7 +88,8 @@ def run_demo(
         say(f"{log.name} read back: {counted(len(recording.components), 'component')}, {recording.duration_s:.1f} s")
         marks = [event for event in notes.recording.events if event.kind == "mark"]
         recording.events = sorted([*recording.events, *marks], key=lambda event: event.time_s)
-        outcome = verify_recording(scenario, recording, played)
+        played.keep(recording)
+        outcome = verify_recording(scenario, recording)
         recording.meta["machine_file"]["folder"] = str(machine.resolve().parent)
         recording.save(directory / IN_DIRECTORY)
         judged(outcome, figures)

@@ -37,6 +37,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+PLAYED = "played"  # in the `meta` of recordings
+
+
 class ScenarioError(TaktError):
     """A scenario file cannot be used."""
 
@@ -159,13 +162,15 @@ def run_scenario(scenario: Scenario, session: Session, directory: Path | None = 
     """Runs it with everything recorded, then asks `verify`. The recording is kept in `directory`, also when the
     scenario breaks off."""
     recorder = session.record(every=scenario.every)
+    played = Played()
     try:
         played = play(scenario, session)
     finally:
         recording = recorder.stop()
+        played.keep(recording)
         if directory is not None:
             recording.save(directory / IN_DIRECTORY)
-    return verify_recording(scenario, recording, played)
+    return verify_recording(scenario, recording)
 
 
 @dataclass(frozen=True)
@@ -174,6 +179,17 @@ class Played:
 
     broken_off: Complaint | None = None  # by a plain `assert`, a command that ended in an error, a wait in vain
     ignored: Complaint | None = None  # commands that were refused without its asking
+
+    def keep(self, recording: Recording) -> None:
+        """Puts it into the recording, which is judged by it whenever it is judged."""
+        complaints = {"broken_off": self.broken_off, "ignored": self.ignored}
+        recording.meta[PLAYED] = {name: one.told() for name, one in complaints.items() if one is not None}
+
+    @staticmethod
+    def of(recording: Recording) -> Played:
+        """What a recording says became of its scenario."""
+        told = recording.meta.get(PLAYED) or {}
+        return Played(**{name: Complaint.again(one) for name, one in told.items()})
 
 
 def play(scenario: Scenario, session: Session) -> Played:
@@ -190,9 +206,10 @@ def play(scenario: Scenario, session: Session) -> Played:
     return Played(ignored=Complaint.of_ignored(ignored, scenario.path))
 
 
-def verify_recording(scenario: Scenario, recording: Recording, played: Played | None = None) -> Outcome:
-    """Asks `verify` of a recording, wherever it comes from, unless the scenario has broken off."""
-    played = played or Played()
+def verify_recording(scenario: Scenario, recording: Recording) -> Outcome:
+    """Asks `verify` of a recording, wherever it comes from, unless its scenario broke off. A command that was refused
+    then without the scenario's asking comes first."""
+    played = Played.of(recording)
     if played.broken_off is not None:
         return Outcome(recording, (), played.broken_off.verdict(recording))
     complaint = None

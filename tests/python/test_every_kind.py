@@ -87,7 +87,7 @@ def test_with_anything_left_out() -> None:
     assert {"flex_cams.0.master", "groups.0.path.deceleration", "movers.0.z", "belts.0.upper_limit"} <= set(tried)
 
 
-@pytest.mark.parametrize("name", ["all of them", "flex_cam without a master", "mover"])
+@pytest.mark.parametrize("name", ["all of them", "flex_cam without a master"])
 def test_over_lcm(name: str, tmp_path: Path) -> None:
     """PY-02: a session, its recording, a log of the network and the live page."""
     url, log = new_url(), tmp_path / "network.log"

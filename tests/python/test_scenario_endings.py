@@ -66,8 +66,10 @@ BROKEN = {
 }
 
 
-@pytest.mark.parametrize("where", ["in process", "over LCM"])
-@pytest.mark.parametrize("case", BROKEN)
+@pytest.mark.parametrize(
+    ("case", "where"),
+    [*((case, "in process") for case in BROKEN), ("waited for", "over LCM"), ("never asked for", "over LCM")],
+)
 def test_a_refused_command(case: str, where: str, here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Exit code 1, and the first thing that is said and shown: what was refused, why, where it stands."""
     lines, place, breaks_off = BROKEN[case]
@@ -89,6 +91,9 @@ def test_a_refused_command(case: str, where: str, here: Path, capsys: pytest.Cap
     assert [v["passed"] for v in data["verdicts"]] == ([] if breaks_off else [True])
     assert data["assertion"]["lanes"]
     assert takt.Recording.load("out/recording.npz").duration_s > 0
+    # Judged again, it is what it was.
+    assert main(["report", "out", "--scenario", "program.py", "-o", "again.html"]) == 1
+    assert first_of(Path("again.html"))[:2] == (title, sentence)
 
 
 HEEDED = {

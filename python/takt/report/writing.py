@@ -46,7 +46,7 @@ LARGEST = {
 PAGE = "report.html"
 BYTES = 128 << 20  # of all curves of a page before they are deflated; longer runs are thinned evenly
 # What the page does not show as a fact of its head.
-ELSEWHERE = (KEY, "machine_file", "objects", "trouble", "starts", "period_s", "losses", "dropped", "silent")
+ELSEWHERE = (KEY, "machine_file", "objects", "trouble", "starts", "period_s", "losses", "dropped", "silent", "played")
 
 
 class Report(NamedTuple):
