@@ -1,9 +1,17 @@
+#include <pybind11/stl.h>
+
 #include <chrono>
 #include <memory>
+#include <optional>
+#include <regex>
 #include <string>
+#include <vector>
 
 #include "bindings.h"
+#include "takt/engine/command.h"
+#include "takt/lcm/checksum.h"
 #include "takt/lcm/network_log.h"
+#include "takt/lcm/receiver.h"
 
 namespace takt::bindings {
 namespace {
@@ -24,6 +32,51 @@ bool Close(lcm::NetworkLog& log, double patience_s) {
   return log.Close(std::chrono::milliseconds(static_cast<std::int64_t>(patience_s * 1000)));
 }
 
+// What Python clients hear on udpm:// networks (takt/network.py): handlers are Python's, by number of subscription.
+class PythonReceiver {
+ public:
+  explicit PythonReceiver(const std::string& url) {
+    std::string problem;
+    receiver_ = lcm::OpenReceiver(url, problem);
+    if (!receiver_) Throw("ConnectionError", py::str(problem));
+  }
+
+  int Subscribe(const std::string& channels, std::size_t capacity) {
+    try {
+      auto number = std::make_shared<int>(0);
+      *number = receiver_->Subscribe(channels, capacity, [this, number](const lcm::Heard& heard) {
+        channel_ = heard.channel;
+        data_.assign(heard.data.begin(), heard.data.end());
+        takers_.push_back(*number);
+      });
+      return *number;
+    } catch (const std::regex_error& error) {
+      throw py::value_error("channels " + channels + ": " + error.what());
+    }
+  }
+
+  void Unsubscribe(int number) { receiver_->Unsubscribe(number); }
+  void SetCapacity(int number, std::size_t capacity) { receiver_->SetCapacity(number, capacity); }
+
+  py::object Receive(double timeout_s) {
+    takers_.clear();
+    {
+      const py::gil_scoped_release others_go_on;
+      receiver_->Handle(static_cast<int>(timeout_s * 1000));
+    }
+    if (takers_.empty()) return py::none();
+    return py::make_tuple(takers_, channel_, py::bytes(data_));
+  }
+
+  int file() const { return receiver_->file(); }
+  std::uint64_t malformed() const { return receiver_->malformed(); }
+
+ private:
+  std::unique_ptr<lcm::Receiver> receiver_;
+  std::vector<int> takers_;
+  std::string channel_, data_;
+};
+
 }  // namespace
 
 void BindLcm(py::module_& m) {
@@ -33,6 +86,38 @@ void BindLcm(py::module_& m) {
           "close", &Close, py::arg("patience_s"),
           "Ends it when all that was said before is written. False: that took longer than the patience, or the file is "
           "incomplete.");
+  m.def(
+      "checksum_holds",
+      [](const std::string& channel, const py::bytes& data) -> std::optional<bool> {
+        const std::string_view bytes = data;
+        const auto state =
+            lcm::CheckChecksum(channel, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+        if (state == lcm::ChecksumState::kNone) return {};
+        return state == lcm::ChecksumState::kHolds;
+      },
+      py::arg("channel"), py::arg("data"),
+      "The data of a log's event are as taktd wrote them; None: there is no checksum in them.");
+  m.def(
+      "lets_go",
+      [](const std::string& kind, const std::string& verb, const std::string& arguments) {
+        return engine::LetsGo(kind, verb, arguments);
+      },
+      py::arg("kind"), py::arg("verb"), py::arg("arguments"),
+      "The command of this kind of component stops something, releases it or switches it off: it is always taken.");
+  py::class_<PythonReceiver>(m, "Receiver", "Hears what is said on an LCM network over UDP, whatever comes.")
+      .def(py::init<const std::string&>(), py::arg("url"))
+      .def("subscribe", &PythonReceiver::Subscribe, py::arg("channels"), py::arg("capacity"),
+           "Hears the channels that this regular expression matches; returns the number of the subscription. Of more "
+           "messages than `capacity` (0: any number) the newest are dropped. Raises ValueError where it is no "
+           "expression.")
+      .def("unsubscribe", &PythonReceiver::Unsubscribe, py::arg("number"))
+      .def("set_capacity", &PythonReceiver::SetCapacity, py::arg("number"), py::arg("capacity"),
+           "Of more messages that wait than this (0: any number) the newest are dropped from now on.")
+      .def("receive", &PythonReceiver::Receive, py::arg("timeout_s"),
+           "The next message, waiting so long at most: (numbers of subscriptions, channel, bytes), or None.")
+      .def("fileno", &PythonReceiver::file, "Readable while messages wait.")
+      .def_property_readonly("malformed", &PythonReceiver::malformed,
+                             "Datagrams that were none of LCM's, or from elsewhere where only this host is heard.");
 }
 
 }  // namespace takt::bindings

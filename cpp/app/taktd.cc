@@ -36,10 +36,15 @@ void OnSignal(int) {
   if (signals.fetch_add(1, std::memory_order_relaxed) > 0 && !cycle_runs) _exit(kEndedAtOnce);
 }
 
+// Whatever would end the program without ramps, unless it is a fault of the program itself (EN-34).
 void HandleSignals() {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, OnSignal);
-  std::signal(SIGALRM, OnSignal);
-  std::signal(SIGPIPE, SIG_IGN);  // a reader of the log that has gone is an error of writing it
+  for (const int signal :
+       {SIGINT, SIGTERM, SIGQUIT, SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU, SIGVTALRM, SIGPROF, SIGIO, SIGPWR}) {
+    std::signal(signal, OnSignal);
+  }
+  if (std::signal(SIGHUP, OnSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup: runs on without its terminal
+  // A reader of the log that has gone, and a file that is as long as it may be, are errors of writing it.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
 int ExitCode(engine::RunEnd end, const lcm::Losses& losses) {

@@ -12,6 +12,7 @@ from takt.tables import fields_of
 # Counts that should stay 0: what they are called, and what they count.
 COUNTS = {
     "overruns": ("overruns", "Cycles that ended after the next one should have begun"),
+    "cycles_skipped": ("cycles left out", "Periods that passed without a cycle because one before them came too late"),
     "snapshots_dropped": ("states dropped", "States lost because their queue was full: a slow network or disk"),
     "feedback_dropped": ("feedbacks dropped", "Feedbacks lost because their queue was full"),
     "journal_dropped": ("journal entries dropped", "The journal cannot be replayed"),
@@ -19,6 +20,7 @@ COUNTS = {
     "set_points_dropped": ("set points dropped", "For external drives, lost because their queue was full"),
     "samples_refused": ("samples refused", "Of external drives: wrong, old or not asked for"),
     "malformed": ("messages malformed", "On the command and heartbeat channels"),
+    "ignored": ("messages ignored", "Commands and heartbeats that came too late, or without the right key"),
     "send_failures": ("send failures", "Messages the network or the log file did not take"),
     "replies_dropped": ("replies dropped", "Too many waited"),
     "planner_failures": ("plans failed", "The motion in progress was kept"),

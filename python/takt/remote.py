@@ -34,6 +34,7 @@ IDLE_BEAT_S = 0.5  # between heartbeats that hold nothing but the client's name
 POLL_S = 0.1  # longest wait before looking at clocks and Ctrl-C again
 STILL_S = 10.0  # how long an engine that is heard may stay at one cycle
 OTHER_RUN = 3017  # error of what was meant for another start of the engine
+QUEUE_FULL = 3012  # error of what there is no room for
 ANOTHER = "another engine runs on this network now: it was started again, or there are two"
 JUMP_S = 3600.0  # of engine time between two messages: a component that says more is not believed
 
@@ -111,6 +112,8 @@ class RemoteSession(Session):
             machine = json.loads(_core.load_machine(description.text.encode(), "machine"))
             super().__init__(machine, description.text)
             self._dead_man_s = float(machine["lcm"]["dead_man_s"])
+            self._command_age_s = float(machine["lcm"]["command_age_s"])
+            self._answer_s = max(ANSWER_S, self._command_age_s)  # then the engine refuses it
             self._still_s = max(STILL_S, 3.0 / float(machine["lcm"]["engine_rate_hz"]))
             self._beater = threading.Thread(target=self._beat, name="takt heartbeat", daemon=True)
             self._beater.start()
@@ -263,7 +266,7 @@ class RemoteSession(Session):
     def _take(self, message: msgs.feedback) -> None:
         sent = self._sent.get(message.id)
         if sent is None:
-            if message.id == 0 and message.error_id:
+            if message.id == 0 and message.error_id not in (0, QUEUE_FULL):  # a client without a place may stop things
                 self._trouble = ANOTHER if message.error_id == OTHER_RUN else message.sentence
             return
         sent.answered = True
@@ -297,8 +300,9 @@ class RemoteSession(Session):
                 for feedback in ending:
                     if feedback.ticket and (feedback._release is None or feedback._release_is_refused):
                         self._send(release_of(feedback))
-                # Beats renew whatever the client holds: without them the dead man ends what cannot be released.
-                beats = not ending or len(ending) < len(self._held)
+                # Beats renew whatever the client holds: without them the dead man ends what cannot be released, and
+                # what is held by a client that cannot command any more.
+                beats = not self._trouble and (not ending or len(ending) < len(self._held))
                 again = [s for s in self._sent.values() if now - s.at > (REFRESH_S if s.answered else RESEND_S)]
                 for sent in again:
                     sent.at = now
@@ -306,6 +310,7 @@ class RemoteSession(Session):
                 if ending or any(not s.answered for s in self._sent.values()):
                     interval = min(interval, RESEND_S / 2)
             if beats:
+                beat.utime = _now_us()
                 self._publish("takt/heartbeat", beat.encode())
             for sent in again:
                 self._publish("takt/command", sent.message.encode())
@@ -326,7 +331,7 @@ class RemoteSession(Session):
         message = msgs.command()
         message.client, message.session = self.client, self._session_id
         message.target, message.verb, message.arguments = feedback.target, feedback.verb, feedback.arguments
-        message.run_id = self._run_id
+        message.run_id, message.utime = self._run_id, _now_us()
         with self._news:
             self._last_id += 1
             message.id = self._last_id
@@ -338,17 +343,23 @@ class RemoteSession(Session):
         return sent
 
     def _submit(self, feedback: Feedback) -> None:
+        # What stops, releases or switches off is sent whatever state the session is in (EN-32).
+        lets_go = _core.lets_go(self._kind(feedback.target), feedback.verb, feedback.arguments)
         with self._news:
-            self._check_alive()
+            if lets_go:
+                self._check_open()
+            else:
+                self._check_alive()
         sent = self._send(feedback)
         with self._news:
-            if not self._news.wait_for(lambda: sent.answered or self._trouble, ANSWER_S):
+            if not self._news.wait_for(lambda: sent.answered or (self._trouble and not lets_go), self._answer_s):
                 if feedback.level_sensitive:
                     feedback.released = True  # should the engine have taken it up: goes on until it answers
                 elif feedback.verb != "release":
                     del self._sent[sent.message.id]
+                late = "" if lets_go else f"; it refuses what reaches it later than {self._command_age_s:g} s"
                 raise ConnectionError(
-                    f"{feedback.text}: the engine on {self.url} does not answer within {ANSWER_S:g} s"
+                    f"{feedback.text}: the engine on {self.url} does not answer within {self._answer_s:g} s{late}"
                 )
             if not sent.answered:
                 raise ConnectionError(self._trouble)
@@ -463,6 +474,10 @@ def connect(url: str | None = None, *, client: str | None = None, timeout: float
 def _more(now: dict[str, int], then: dict[str, int]) -> dict[str, int]:
     """By how much counts have grown; those that have not are left out."""
     return {name: count - then.get(name, 0) for name, count in now.items() if count > then.get(name, 0)}
+
+
+def _now_us() -> int:
+    return time.time_ns() // 1000
 
 
 def _decoded(kind: Any, data: bytes) -> Any:

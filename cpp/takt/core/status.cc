@@ -68,6 +68,7 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kTooFast, "TooFast", "what carries the target is faster than the group can follow"},
     ErrorInfo{ErrorId::kOffPath, "OffPath", "the tool is not where its path was left"},
     ErrorInfo{ErrorId::kNoWorkpiece, "NoWorkpiece", "there is no such workpiece"},
+    ErrorInfo{ErrorId::kTooOld, "TooOld", "the command was not taken within its age limit (lcm.command_age_s)"},
     ErrorInfo{ErrorId::kMoverDisabled, "MoverDisabled", "the mover is not enabled"},
     ErrorInfo{ErrorId::kCommandMode, "CommandMode",
               "the mover does not accept this in its command mode, or while it moves"},

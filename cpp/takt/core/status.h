@@ -70,6 +70,7 @@ enum class ErrorId : std::uint16_t {
   kTooFast = 3030,            // what carries the target is faster than the group can follow
   kOffPath = 3031,            // the tool is not where its path was left
   kNoWorkpiece = 3032,        // there is no such workpiece
+  kTooOld = 3033,             // the command was not taken within its age limit
   kMoverDisabled = 3040,      // the mover is not enabled
   kCommandMode = 3041,        // the mover does not accept the command in its command mode, or while it moves
   kOutsideWindow = 3042,      // the mover would turn out of its window while it moves

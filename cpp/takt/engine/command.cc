@@ -29,11 +29,101 @@ constexpr std::string_view kPlanarGroup = "planar_group";
 constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kPart = "part";
 
+// Which commands stop something, release it or switch it off, with these arguments (EN-32): the one list. All others do
+// not.
+template <typename T>
+bool Releases(const T&) noexcept {
+  return false;
+}
+bool Releases(const StopAll&) noexcept {
+  return true;
+}
+bool Releases(const EmergencyStop&) noexcept {
+  return true;
+}
+bool Releases(const FailAllAxes&) noexcept {
+  return true;
+}
+bool Releases(const Release&) noexcept {
+  return true;
+}
+bool Releases(const axis::Halt&) noexcept {
+  return true;
+}
+bool Releases(const axis::Stop&) noexcept {
+  return true;
+}
+bool Releases(const axis::HaltSuperimposed&) noexcept {
+  return true;
+}
+bool Releases(const axis::Power& c) noexcept {
+  return !c.enable;
+}
+bool Releases(const axis::Jog& c) noexcept {
+  return !c.forward && !c.backward;
+}
+bool Releases(const axis::SetOverride& c) noexcept {
+  return c.velocity_factor == 0;
+}
+bool Releases(const axis::DirectOutput& c) noexcept {
+  return c.voltage == 0;
+}
+bool Releases(const flexcam::Control& c) noexcept {
+  return !c.enable.value_or(true) || !c.regulator_on.value_or(true) || c.stop.value_or(false) ||
+         c.halt.value_or(false) || c.sync_out_instant.value_or(false) || !c.sync_cam.value_or(true) ||
+         c.virtual_velocity.value_or(1) == 0;
+}
+bool Releases(const flexcam::Jog& c) noexcept {
+  return !c.positive && !c.negative;
+}
+bool Releases(const group::Stop&) noexcept {
+  return true;
+}
+bool Releases(const group::Halt&) noexcept {
+  return true;
+}
+bool Releases(const group::Interrupt&) noexcept {
+  return true;
+}
+bool Releases(const group::Disable&) noexcept {
+  return true;
+}
+bool Releases(const group::Power& c) noexcept {
+  return !c.enable;
+}
+bool Releases(const group::SetOverride& c) noexcept {
+  return c.velocity_factor == 0;
+}
+bool Releases(const pickplace::Control& c) noexcept {
+  return !c.enable.value_or(true) || !c.regulator_on.value_or(true) || c.path_stop.value_or(false) ||
+         c.path_halt.value_or(false) || c.stop_all.value_or(false) || c.path_interrupt.value_or(false) ||
+         c.abort.value_or(false) || c.override_factor.value_or(1) == 0;
+}
+bool Releases(const pickplace::Jog& c) noexcept {
+  return !c.positive && !c.negative;
+}
+bool Releases(const mover::Halt&) noexcept {
+  return true;
+}
+bool Releases(const mover::Disable&) noexcept {
+  return true;
+}
+bool Releases(const mover::StopExternalSetpointGeneration&) noexcept {
+  return true;
+}
+bool Releases(const track::Disable&) noexcept {
+  return true;
+}
+bool Releases(const part::ForceDisable&) noexcept {
+  return true;
+}
+
 // A verb together with how its struct gets in and out of a command.
 struct Entry {
   Verb verb;
   bool (*read)(std::string_view text, CommandBody& body, Problem& problem);
   const void* (*find)(const CommandBody& body);  // null: the body is another verb's
+  bool (*lets_go)(const void* arguments) noexcept;
 };
 
 template <typename Kind, typename T>
@@ -48,7 +138,8 @@ Entry Make(std::string_view target_kind, std::string_view name, bool level_sensi
           [](const CommandBody& body) -> const void* {
             const Kind* kind = std::get_if<Kind>(&body);
             return kind ? std::get_if<T>(kind) : nullptr;
-          }};
+          },
+          [](const void* arguments) noexcept { return Releases(*static_cast<const T*>(arguments)); }};
 }
 
 // What the engine alone gives.
@@ -459,40 +550,20 @@ ParsedCommand UnknownVerb(std::string_view kind, std::string_view verb) {
 }  // namespace
 
 bool LetsGo(const Command& command) noexcept {
-  if (const auto* machine = std::get_if<MachineCommand>(&command.body)) {
-    return std::holds_alternative<Release>(*machine) || std::holds_alternative<StopAll>(*machine) ||
-           std::holds_alternative<EmergencyStop>(*machine);
+  for (const Entry& entry : Entries()) {
+    if (const void* arguments = entry.find(command.body)) return entry.lets_go(arguments);
   }
-  if (const auto* module = std::get_if<flexcam::Command>(&command.body)) {
-    const auto* control = std::get_if<flexcam::Control>(module);
-    const auto* jog = std::get_if<flexcam::Jog>(module);
-    const bool stops = control && (control->stop.value_or(false) || control->halt.value_or(false) ||
-                                   control->sync_out_instant.value_or(false) || !control->regulator_on.value_or(true));
-    return stops || (jog && !jog->positive && !jog->negative);
+  return false;
+}
+
+bool LetsGo(std::string_view target_kind, std::string_view verb, std::string_view arguments) {
+  for (const Entry& entry : Entries()) {
+    if (entry.verb.target_kind != target_kind || entry.verb.name != verb) continue;
+    CommandBody body;
+    Problem ignored;
+    return entry.read(arguments, body, ignored) && entry.lets_go(entry.find(body));
   }
-  if (const auto* group = std::get_if<group::Command>(&command.body)) {
-    const auto* power = std::get_if<group::Power>(group);
-    return std::holds_alternative<group::Stop>(*group) || std::holds_alternative<group::Halt>(*group) ||
-           std::holds_alternative<group::Interrupt>(*group) || (power && !power->enable);
-  }
-  if (const auto* module = std::get_if<pickplace::Command>(&command.body)) {
-    const auto* control = std::get_if<pickplace::Control>(module);
-    const auto* jog = std::get_if<pickplace::Jog>(module);
-    const bool stops = control && (control->path_stop.value_or(false) || control->path_halt.value_or(false) ||
-                                   control->stop_all.value_or(false) || control->path_interrupt.value_or(false) ||
-                                   !control->regulator_on.value_or(true));
-    return stops || (jog && !jog->positive && !jog->negative);
-  }
-  if (const auto* mover = std::get_if<mover::Command>(&command.body)) {
-    return std::holds_alternative<mover::Halt>(*mover) || std::holds_alternative<mover::Disable>(*mover) ||
-           std::holds_alternative<mover::StopExternalSetpointGeneration>(*mover);
-  }
-  if (const auto* part = std::get_if<part::Command>(&command.body)) {
-    return std::holds_alternative<part::ForceDisable>(*part);
-  }
-  const auto* axis = std::get_if<axis::Command>(&command.body);
-  const auto* power = axis ? std::get_if<axis::Power>(axis) : nullptr;
-  return axis && (std::holds_alternative<axis::Stop>(*axis) || (power && !power->enable));
+  return false;
 }
 
 std::span<const Verb> Verbs() {

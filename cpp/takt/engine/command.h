@@ -63,12 +63,15 @@ struct Command {
   Ticket ticket = 0;
   std::uint32_t target = kMachineTarget;
   double lease_s = 0;  // > 0: a level-sensitive command releases itself so long after its last renewal
-  CommandBody body;
+  CommandBody body{};
+  // ns on the monotonic clock: a cycle that begins later refuses the command, unless it lets go (EN-33); 0: never.
+  std::int64_t expires_ns = 0;
 };
 
-// Lets go of something or stops it: release, stop_all, stop, power(enable: false); halt and interrupt of groups;
-// halt, disable and stop_external_setpoint_generation of movers; force_disable of parts.
+// Stops something, releases it or switches it off: such a command is always taken (EN-32).
 bool LetsGo(const Command& command) noexcept;
+// The same of a command in its text form; false where it cannot be read.
+bool LetsGo(std::string_view target_kind, std::string_view verb, std::string_view arguments);
 
 // One verb a kind of component understands; `arguments` describes its struct.
 struct Verb {

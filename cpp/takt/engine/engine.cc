@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "takt/core/describe.h"
+#include "takt/engine/components.h"
 #include "takt/engine/cycle.h"
 
 namespace takt::engine {
@@ -23,8 +24,10 @@ std::uint64_t Divisor(double rate_hz, double period_s) {
 // Its multiples are spread evenly, whatever of them are taken.
 constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15;  // of 2^64
 
-// Of the command queue, for commands that let go.
-constexpr std::size_t kKeptShare = 16;
+// Of the command queue, for commands that let go: for each component (EN-32) ...
+constexpr std::size_t kKeptPerComponent = 2;
+// ... and for those of the whole machine, whatever stops its components.
+constexpr std::size_t kKeptForAll = 16;
 // Answers to groups that one cycle takes.
 constexpr std::size_t kAnswersPerCycle = 16;
 // As many commands as a cycle can write into a journal: besides those of the queues one each of overruns and shutdown.
@@ -42,6 +45,12 @@ bool IsTrackMade(const Command& command) {
 bool IsBoundaryMade(const Command& command) {
   const auto* environment = std::get_if<environment::Command>(&command.body);
   return environment && std::holds_alternative<environment::BoundaryMade>(*environment);
+}
+
+// Stops the whole machine.
+bool StopsAll(const Command& command) {
+  const auto* machine = std::get_if<MachineCommand>(&command.body);
+  return machine && !std::holds_alternative<Release>(*machine) && LetsGo(command);
 }
 
 bool IsRenewal(const Command& command) {
@@ -77,7 +86,8 @@ struct Engine::Impl {
       : machine(std::move(m)),
         options(o),
         world(machine),
-        commands(o.command_queue),
+        kept(kKeptPerComponent * (FirstNumbers(machine).back() + 1)),
+        commands(o.command_queue + kept + kKeptForAll),
         renewals(kRenewalsPerCycle * 4),
         answers(4 * kAnswersPerCycle + 4 * machine.groups.size()),
         journalled(kJournalledPerCycle),
@@ -104,6 +114,7 @@ struct Engine::Impl {
         drive_journal(o.journal && !world.drives.empty() ? o.snapshot_queue : 2),
         figures_divisor(Divisor(machine.lcm.engine_rate_hz, machine.cycle.period_s)) {
     SendSetPoints(-1);
+    LetsGo(Command{});  // its first call takes memory
   }
 
   // To a component, with its number among those of its kind.
@@ -134,10 +145,14 @@ struct Engine::Impl {
     if (timing.execution_ns > 0) figures.execution.Add(timing.execution_ns);
     if (timing.latency_ns > 0 || timing.execution_ns > 0) figures.latency.Add(timing.latency_ns);
     figures.overruns += timing.overrun ? 1 : 0;
-    overruns_in_a_row = timing.overrun ? overruns_in_a_row + 1 : 0;
+    figures.cycles_skipped += timing.late_periods;
+    now_ns = timing.now_ns;
+    // A cycle that ends late counts as one period, however little it is late; a stall as many as passed in it (EN-34).
+    const bool late = timing.overrun || timing.late_periods > 0;
+    late_periods = late ? late_periods + std::max<std::uint64_t>(1, timing.late_periods) : 0;
     const std::uint32_t allowed = machine.cycle.overruns_in_a_row;
-    if (allowed > 0 && overruns_in_a_row >= allowed) {
-      overruns_in_a_row = 0;
+    if (allowed > 0 && late_periods >= allowed) {
+      late_periods = 0;
       ApplyOne({0, kMachineTarget, 0, MachineCommand(FailAllAxes{})});
     }
   }
@@ -169,6 +184,8 @@ struct Engine::Impl {
     for (std::size_t i = 0; i < at_most && queue.TryPop(command); ++i) {
       if (shutting_down) {
         world.feedback.Report({command.ticket, world.cycle.count, FeedbackState::kError, false, ErrorId::kShutdown, 0});
+      } else if (command.expires_ns != 0 && now_ns > command.expires_ns && !LetsGo(command)) {
+        world.feedback.Report({command.ticket, world.cycle.count, FeedbackState::kError, false, ErrorId::kTooOld, 0});
       } else {
         ApplyOne(command);
       }
@@ -178,8 +195,10 @@ struct Engine::Impl {
   // Producing thread.
   bool Queue(const Command& command) noexcept {
     if (IsRenewal(command)) return renewals.TryPush(command);
-    const std::size_t room = commands.capacity() - commands.size();
-    return (LetsGo(command) || room > commands.capacity() / kKeptShare) && commands.TryPush(command);
+    const std::size_t waiting = commands.size();
+    const bool room = waiting < options.command_queue || (waiting < options.command_queue + kept && LetsGo(command)) ||
+                      StopsAll(command);
+    return room && commands.TryPush(command);
   }
 
   // All kinds of components, in the order of their numbers.
@@ -237,6 +256,7 @@ struct Engine::Impl {
   World world;
   EngineFigures figures;
 
+  const std::size_t kept;  // places in the queue for commands that let go of a component
   SpscQueue<Command> commands;
   SpscQueue<Command> renewals;
   SpscQueue<Command> answers;
@@ -266,7 +286,8 @@ struct Engine::Impl {
   std::uint64_t figures_divisor;
   std::uint64_t feedback_dropped = 0;  // by the queue
   std::uint64_t samples_unused = 0;    // by the cycle
-  std::uint32_t overruns_in_a_row = 0;
+  std::uint64_t late_periods = 0;      // since the last cycle in time
+  std::int64_t now_ns = 0;             // CycleTiming's
   bool shutting_down = false;
   std::atomic<bool> shutdown{false};
   std::atomic<std::uint64_t> refused{0};

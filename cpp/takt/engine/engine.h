@@ -32,11 +32,13 @@
 namespace takt::engine {
 
 struct EngineOptions {
-  bool publish = false;             // hand snapshots and figures to the queues (a reader must drain them)
-  bool every_cycle = false;         // snapshots of every component in every cycle, whatever the machine's rates say
-  bool drives = false;              // hand the set points of external drives to a queue (a reader must drain it)
-  bool journal = false;             // journal entries and a state hash every cycle
-  std::size_t command_queue = 256;  // a stop behind a flood waits for this many, kCommandsPerCycle a cycle
+  bool publish = false;      // hand snapshots and figures to the queues (a reader must drain them)
+  bool every_cycle = false;  // snapshots of every component in every cycle, whatever the machine's rates say
+  bool drives = false;       // hand the set points of external drives to a queue (a reader must drain it)
+  bool journal = false;      // journal entries and a state hash every cycle
+  // Commands that may wait, besides those that let go. A stop behind a flood waits for this many, kCommandsPerCycle a
+  // cycle.
+  std::size_t command_queue = 256;
   std::size_t snapshot_queue = 1 << 14;
 };
 
@@ -53,9 +55,10 @@ class Engine {
   const Machine& machine() const;
 
   // --- one producing thread ---
-  // Queues a command for the next cycle. Its ticket, or 0: the queue is full. The last sixteenth of the queue is kept
-  // for commands that let go or stop: a flood of others does not keep them out. Commands are applied in the order they
-  // were given, a few in each cycle; renewals overtake the others, so that a lease does not run out in the queue.
+  // Queues a command for the next cycle. Its ticket, or 0: the queue is full. For commands that let go (LetsGo) there
+  // are places besides, some for each component and some for the whole machine: a flood of others does not keep them
+  // out. Commands are applied in the order they were given, a few in each cycle; renewals overtake the others, so that
+  // a lease does not run out in the queue.
   Ticket Submit(const Command& command) noexcept;
   // Takes a command out of a journal, which keeps its ticket (0: one that the engine gave itself). The next cycle
   // applies all of these, in the order given. False: more than a cycle ever writes into a journal.

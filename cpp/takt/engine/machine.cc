@@ -55,7 +55,8 @@ const ExternalDrive* ExternalOf(const Machine& machine, std::size_t axis) {
 void describe(Description<CycleParams>& d) {
   d.about("The engine's cycle.");
   d.defaulted<&CycleParams::period_s>(unit::s, between(0.00025, 0.02), "How long a cycle lasts.");
-  d.defaulted<&CycleParams::overruns_in_a_row>("So many late cycles in a row stop every axis; 0: never.");
+  d.defaulted<&CycleParams::overruns_in_a_row>(
+      "So many late cycles in a row, or so many periods without a cycle, stop every axis; 0: never.");
 }
 
 void describe(Description<ChannelRate>& d) {
@@ -77,6 +78,10 @@ void describe(Description<LcmParams>& d) {
   d.defaulted<&L::engine_rate_hz>(unit::hz, between(0.1, 1000), "How often the engine's own figures are published.");
   d.defaulted<&L::dead_man_s>(unit::s, between(0.02, 60),
                               "Without a heartbeat for so long, a client's level-sensitive commands are released.");
+  d.defaulted<&L::command_age_s>(
+      unit::s, between(0.05, 60),
+      "A command that the cycle did not take within this time after it was given is refused, "
+      "unless it stops, releases or switches off.");
 }
 
 void describe(Description<SimulatedServo>& d) {

@@ -26,8 +26,10 @@
 namespace takt::engine {
 
 struct CycleParams {
-  double period_s = 0.001;               // s, 250 µs to 20 ms
-  std::uint32_t overruns_in_a_row = 10;  // so many late cycles in a row stop everything; 0: never
+  double period_s = 0.001;  // s, 250 µs to 20 ms
+  // So many periods of lateness without a cycle in time between stop everything; 0: never. As long as the watchdog of
+  // an external drive (takt/drive.py).
+  std::uint32_t overruns_in_a_row = 100;
 };
 
 struct ChannelRate {
@@ -41,6 +43,7 @@ struct LcmParams {
   std::vector<ChannelRate> rates{};  // components with a rate of their own
   double engine_rate_hz = 10;        // of the engine's own channel
   double dead_man_s = 0.25;          // s without a heartbeat after which a level-sensitive command is released
+  double command_age_s = 1;          // s after which a command that was not taken is refused
 };
 
 // The simulated servo behind an axis. Axes without one get an ideal servo that fits their own parameters.

@@ -86,9 +86,13 @@ RunResult RunRealTime(Engine& engine, const SchedulerOptions& options, EndJudge&
   RunResult result;
   CycleTiming timing;
   std::int64_t deadline = NowNs() + period_ns;
+  std::int64_t skipped = 0;  // periods that the cycle before lost while it ran
   while (!judge.Ended(result)) {
     SleepUntil(deadline);
     const std::int64_t woken = NowNs();
+    const std::int64_t asleep = std::max<std::int64_t>(0, (woken - deadline) / period_ns);  // periods lost before it
+    timing.late_periods = static_cast<std::uint64_t>(skipped + asleep);
+    timing.now_ns = woken;
     RunOne(engine, options, timing);
     ++result.cycles;
     const std::int64_t end = NowNs();
@@ -97,6 +101,7 @@ RunResult RunRealTime(Engine& engine, const SchedulerOptions& options, EndJudge&
     timing.execution_ns = static_cast<std::uint64_t>(end - woken);
     timing.overrun = end > next;
     const std::int64_t missed = timing.overrun ? (end - next) / period_ns + 1 : 0;
+    skipped = std::max<std::int64_t>(0, missed - asleep);
     result.skipped += static_cast<std::uint64_t>(missed);
     deadline = next + missed * period_ns;
   }
@@ -109,7 +114,7 @@ RunResult RunPaced(Engine& engine, const SchedulerOptions& options, EndJudge& ju
   while (!judge.Ended(result)) {
     SleepUntil(start + static_cast<std::int64_t>(result.cycles) * period_ns);
     if (!IsReady(options)) continue;
-    RunOne(engine, options);
+    RunOne(engine, options, {.now_ns = NowNs()});
     ++result.cycles;
   }
   return result;
@@ -139,7 +144,7 @@ RunResult RunFast(Engine& engine, const SchedulerOptions& options, EndJudge& jud
       continue;
     }
     if (!IsReady(options)) continue;
-    RunOne(engine, options);
+    RunOne(engine, options, {.now_ns = NowNs()});
     ++result.cycles;
   }
   return result;

@@ -46,6 +46,7 @@ void describe(Description<EngineFigures>& d) {
   d.about("The engine's own figures. All counts run from the start of the engine and never fall.");
   d.internal<&F::cycle>("Cycle these figures belong to, 0 for the first after start.");
   d.internal<&F::overruns>("Cycles that ended after the next one should have begun.");
+  d.internal<&F::cycles_skipped>("Periods that passed without a cycle because a cycle before them came too late.");
   d.internal<&F::commands_applied>("Commands the cycle has taken up.");
   d.internal<&F::commands_refused>("Commands refused because the queue to the cycle was full.");
   d.internal<&F::snapshots_dropped>("States of components lost because their queue was full (a slow network or disk).");

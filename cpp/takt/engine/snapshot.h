@@ -75,16 +75,21 @@ struct Histogram {
   double Quantile(double share) const noexcept;
 };
 
-// What the scheduler measured about the cycle before; all 0 in virtual time.
+// What the scheduler measured; all 0 in virtual time.
 struct CycleTiming {
+  // Of the cycle before:
   std::uint64_t latency_ns = 0;    // wake-up after its deadline
   std::uint64_t execution_ns = 0;  // of the whole cycle
   bool overrun = false;            // it ended after the next deadline
+  // Of this cycle:
+  std::uint64_t late_periods = 0;  // whole periods by which it begins later than the cycle before let expect
+  std::int64_t now_ns = 0;         // its beginning on the monotonic clock; 0: unknown, no command expires
 };
 
 struct EngineFigures {
   std::uint64_t cycle = 0;
   std::uint64_t overruns = 0;
+  std::uint64_t cycles_skipped = 0;  // whole periods that passed without a cycle
   std::uint64_t commands_applied = 0;
   std::uint64_t commands_refused = 0;   // queue full
   std::uint64_t snapshots_dropped = 0;  // a slow reader

@@ -32,6 +32,7 @@ inline std::string ShapeChannel(std::string_view name) {
   return "takt/track_shapes/" + std::string(name);
 }
 
+inline constexpr std::string_view kDriveChannels = "takt/drive/";  // they begin with it
 // Of an axis whose drive lives in another process.
 inline std::string SetPointChannel(std::string_view name) {
   return "takt/drive/" + std::string(name) + "/setpoint";

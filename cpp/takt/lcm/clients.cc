@@ -1,6 +1,9 @@
 #include "takt/lcm/clients.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <utility>
 
 namespace takt::lcm {
@@ -66,18 +69,23 @@ Clients::Clients(const engine::Machine& machine, std::int64_t run_id, Submit sub
     : machine_(machine), run_id_(run_id), submit_(std::move(submit)), explain_(std::move(explain)), limits_(limits) {}
 
 template <typename Message>
-Clients::Client* Clients::Admit(const Message& message, std::int64_t now_ns, msgs::feedback& refusal) {
-  const std::string& name = message.client;
-  const std::int64_t session = message.session;
-  if (!IsGoodName(name)) {
+bool Clients::IsForUs(const Message& message, msgs::feedback& refusal) const {
+  if (!IsGoodName(message.client)) {
     Refuse(refusal, ErrorId::kParameter,
            "client: expected a name of 1 to " + std::to_string(kLongestName) + " printable ASCII characters");
-    return nullptr;
+    return false;
   }
   if (message.run_id != run_id_) {
     Refuse(refusal, ErrorId::kOtherRun, std::string(ErrorText(ErrorId::kOtherRun)));
-    return nullptr;
+    return false;
   }
+  return true;
+}
+
+template <typename Message>
+Clients::Client* Clients::Admit(const Message& message, std::int64_t now_ns, msgs::feedback& refusal) {
+  const std::string& name = message.client;
+  const std::int64_t session = message.session;
   auto found = clients_.find(name);
   if (found == clients_.end()) {
     if (!MakeRoomForClient(now_ns)) {
@@ -102,10 +110,44 @@ Clients::Client* Clients::Admit(const Message& message, std::int64_t now_ns, msg
   return &client;
 }
 
-void Clients::OnCommand(const msgs::command& message, std::int64_t now_ns) {
+Clients::Client* Clients::Guest(const Sender& sender, std::int64_t now_ns) {
+  auto found = guests_.find(sender);
+  if (found == guests_.end()) {
+    if (guests_.size() >= limits_.guests) {
+      const auto oldest = std::min_element(guests_.begin(), guests_.end(), [](const auto& a, const auto& b) {
+        return a.second.last_seen_ns < b.second.last_seen_ns;
+      });
+      Forget(oldest->second);
+      guests_.erase(oldest);
+    }
+    found = guests_.try_emplace(sender).first;
+    found->second.session = sender.second;
+  }
+  found->second.last_seen_ns = now_ns;
+  return &found->second;
+}
+
+engine::ParsedCommand Clients::Parse(const msgs::command& message) const {
+  if (message.arguments.size() <= limits_.arguments) {
+    return engine::ParseCommand(machine_, message.target, message.verb, message.arguments);
+  }
+  engine::ParsedCommand refused;
+  refused.error = ErrorId::kParameter;
+  refused.sentence = "arguments are longer than " + std::to_string(limits_.arguments) + " bytes";
+  return refused;
+}
+
+void Clients::OnCommand(const msgs::command& message, std::int64_t now_ns, std::int64_t age_ns) {
   const std::lock_guard lock(mutex_);
   msgs::feedback reply = EmptyReply(message.client, message.session, message.id);
+  if (!IsForUs(message, reply)) return Reply(reply);
+  const engine::ParsedCommand parsed = Parse(message);
+  const bool lets_go = parsed.error == ErrorId::kNone && engine::LetsGo(parsed.command);
   Client* client = Admit(message, now_ns, reply);
+  if (client == nullptr && lets_go) {
+    client = Guest({message.client, message.session}, now_ns);
+    reply = EmptyReply(message.client, message.session, message.id);
+  }
   if (client == nullptr) return Reply(reply);
 
   if (const auto known = client->records.find(message.id); known != client->records.end()) {
@@ -120,33 +162,44 @@ void Clients::OnCommand(const msgs::command& message, std::int64_t now_ns) {
            "id " + std::to_string(message.id) + " is too old to be known; ids of a session must rise");
     return Reply(reply);
   }
-  Give(*client, message, reply);
+  const auto limit_ns = std::llround(machine_.lcm.command_age_s * 1e9);
+  if (age_ns > limit_ns && !lets_go) {
+    ++ignored_;
+    client->forgotten_id = std::max(client->forgotten_id, message.id);
+    std::ostringstream sentence;
+    sentence << "the command is " << std::setprecision(3) << static_cast<double>(age_ns) / 1e9
+             << " s old, or the clocks of its sender and of the engine differ by that; the limit is "
+             << machine_.lcm.command_age_s << " s (lcm.command_age_s)";
+    Refuse(reply, ErrorId::kTooOld, sentence.str());
+    return Reply(reply);
+  }
+  Give(*client, message, parsed, now_ns + limit_ns - age_ns, reply);
   if (IsFinalReply(reply)) Reply(reply);  // what was accepted is answered by the cycle
 }
 
-void Clients::Give(Client& client, const msgs::command& message, msgs::feedback& reply) {
-  if (!MakeRoomForId(client)) {
+void Clients::Give(Client& client, const msgs::command& message, const engine::ParsedCommand& parsed,
+                   std::int64_t expires_ns, msgs::feedback& reply) {
+  const bool lets_go = parsed.error == ErrorId::kNone && engine::LetsGo(parsed.command);
+  if (!MakeRoomForId(client, lets_go)) {
     client.forgotten_id = std::max(client.forgotten_id, message.id);
     return Refuse(reply, ErrorId::kQueueFull,
                   std::to_string(limits_.ids_per_client) + " commands of this client are not finished yet");
   }
-  engine::ParsedCommand parsed;
-  if (message.arguments.size() > limits_.arguments) {
-    Refuse(reply, ErrorId::kParameter, "arguments are longer than " + std::to_string(limits_.arguments) + " bytes");
-  } else if (parsed = engine::ParseCommand(machine_, message.target, message.verb, message.arguments);
-             parsed.error != ErrorId::kNone) {
+  if (parsed.error != ErrorId::kNone) {
     Refuse(reply, parsed.error, parsed.sentence);
   } else {
-    if (parsed.level_sensitive) parsed.command.lease_s = machine_.lcm.dead_man_s;
+    engine::Command command = parsed.command;
+    command.expires_ns = expires_ns;
+    if (parsed.level_sensitive) command.lease_s = machine_.lcm.dead_man_s;
     // The lock is held from here to the entry in origins_: the answer may come before submit_ returns.
-    const Ticket ticket = submit_(parsed.command);
+    const Ticket ticket = submit_(command);
     if (ticket == 0) {
       Refuse(reply, ErrorId::kQueueFull, std::string(ErrorText(ErrorId::kQueueFull)));
     } else {
       reply.ticket = static_cast<std::int64_t>(ticket);
       origins_[ticket] = {&client, message.id};
       if (parsed.level_sensitive) client.level_sensitive.push_back(ticket);
-      LetGo(Released(parsed.command));
+      LetGo(Released(command));
     }
   }
   client.order.push_back(message.id);
@@ -158,14 +211,24 @@ void Clients::LetGo(Ticket ticket) {
     running->second.client->records.at(running->second.id).stays_in_force = false;
   } else {
     for (auto& [name, client] : clients_) std::erase(client.level_sensitive, ticket);
+    for (auto& [sender, guest] : guests_) std::erase(guest.level_sensitive, ticket);
   }
 }
 
-void Clients::OnHeartbeat(const msgs::heartbeat& message, std::int64_t now_ns) {
+void Clients::OnHeartbeat(const msgs::heartbeat& message, std::int64_t now_ns, std::int64_t age_ns) {
   const std::lock_guard lock(mutex_);
   msgs::feedback reply = EmptyReply(message.client, message.session, 0);
+  if (!IsForUs(message, reply)) return Reply(reply);
+  if (age_ns > std::llround(machine_.lcm.dead_man_s * 1e9)) {
+    ++ignored_;
+    return;
+  }
   Client* client = Admit(message, now_ns, reply);
-  if (client == nullptr) return Reply(reply);
+  if (client == nullptr) {
+    const auto guest = guests_.find({message.client, message.session});
+    if (guest == guests_.end()) return Reply(reply);
+    client = Guest(guest->first, now_ns);
+  }
   for (const Ticket ticket : client->level_sensitive) {
     // A full queue is no harm: the next heartbeat tries again.
     submit_({.target = engine::kMachineTarget, .body = engine::MachineCommand{engine::Renew{ticket}}});
@@ -210,7 +273,7 @@ ClientFigures Clients::figures(std::int64_t now_ns) const {
   const auto alive = std::count_if(clients_.begin(), clients_.end(), [&](const auto& entry) {
     return now_ns - entry.second.last_seen_ns <= limits_.alive_ns;
   });
-  return {malformed_, replies_dropped_, static_cast<std::uint32_t>(alive)};
+  return {malformed_, ignored_, replies_dropped_, static_cast<std::uint32_t>(alive)};
 }
 
 bool Clients::MakeRoomForClient(std::int64_t now_ns) {
@@ -224,8 +287,9 @@ bool Clients::MakeRoomForClient(std::int64_t now_ns) {
   return true;
 }
 
-bool Clients::MakeRoomForId(Client& client) {
+bool Clients::MakeRoomForId(Client& client, bool lets_go) {
   if (client.records.size() < limits_.ids_per_client) return true;
+  if (lets_go && client.records.size() < limits_.ids_per_client + limits_.stops_per_client) return true;
   const auto oldest = std::find_if(client.order.begin(), client.order.end(),
                                    [&](std::int64_t id) { return IsFinalReply(client.records.at(id).last); });
   if (oldest == client.order.end()) return false;

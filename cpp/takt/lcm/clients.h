@@ -9,6 +9,7 @@
 #include <mutex>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "takt/engine/command.h"
@@ -19,8 +20,10 @@
 namespace takt::lcm {
 
 struct ClientLimits {
-  std::size_t clients = 64;               // more are refused while all of these are alive
-  std::size_t ids_per_client = 1024;      // remembered; more unfinished ones are refused
+  std::size_t clients = 64;               // more are guests while all of these are alive
+  std::size_t guests = 64;                // senders without a place of whom the stops are remembered
+  std::size_t ids_per_client = 1024;      // remembered; more unfinished ones are refused ...
+  std::size_t stops_per_client = 64;      // ... but for so many that stop something
   std::size_t replies = 1 << 14;          // waiting to be published; more are dropped and counted
   std::size_t arguments = 1 << 16;        // bytes of a command's arguments
   std::int64_t alive_ns = 2'000'000'000;  // after the last sign of life; then the name is free for another session
@@ -28,6 +31,7 @@ struct ClientLimits {
 
 struct ClientFigures {
   std::uint64_t malformed = 0;
+  std::uint64_t ignored = 0;  // commands and heartbeats that came too late
   std::uint64_t replies_dropped = 0;
   std::uint32_t alive = 0;  // clients
 };
@@ -46,10 +50,13 @@ class Clients {
 
   std::int64_t run_id() const { return run_id_; }
 
-  // From the network. `now_ns` is any clock that only goes forward.
-  void OnCommand(const msgs::command& message, std::int64_t now_ns);
-  // Renews the lease of each of the client's level-sensitive commands. Answered (with id 0) only if it is refused.
-  void OnHeartbeat(const msgs::heartbeat& message, std::int64_t now_ns);
+  // From the network. `now_ns` is the monotonic clock; `age_ns`: how long ago the message was given.
+  // A command that is too old is refused (EN-33). One that stops something, releases it or switches it off is taken
+  // whatever the state of its sender (EN-32): too old, without a place among the clients, under another's name.
+  void OnCommand(const msgs::command& message, std::int64_t now_ns, std::int64_t age_ns = 0);
+  // Renews the lease of each of the client's level-sensitive commands. Answered (with id 0) only if it is refused. One
+  // that is older than the lease renews nothing.
+  void OnHeartbeat(const msgs::heartbeat& message, std::int64_t now_ns, std::int64_t age_ns = 0);
   void OnMalformed();
 
   // From the engine.
@@ -74,23 +81,33 @@ class Clients {
     std::deque<std::int64_t> order;       // ids of the records, the oldest first
     std::vector<Ticket> level_sensitive;  // those that heartbeats keep alive
   };
+  // A client's name and session.
+  using Sender = std::pair<std::string, std::int64_t>;
   struct Origin {
     Client* client;
     std::int64_t id;
   };
 
-  // The client of this name and session, made if there is room, seen alive now. Null, and `refusal` says why, if it
-  // must be refused. `Message`: command or heartbeat.
+  // It comes from a sender that has a name, for this start of the engine. False: `refusal` says why not. `Message`:
+  // command or heartbeat.
+  template <typename Message>
+  bool IsForUs(const Message& message, msgs::feedback& refusal) const;
+  // The client of this name and session, made if there is room, seen alive now. Null, and `refusal` says why, if there
+  // is no place for it.
   template <typename Message>
   Client* Admit(const Message& message, std::int64_t now_ns, msgs::feedback& refusal);
+  // A sender without a place, which may only let go. The one without news for longest makes room.
+  Client* Guest(const Sender& sender, std::int64_t now_ns);
   bool MakeRoomForClient(std::int64_t now_ns);
-  bool MakeRoomForId(Client& client);
+  bool MakeRoomForId(Client& client, bool lets_go);
   void Forget(Client& client);
   // After a release of this ticket, whoever gave it: no heartbeat keeps it in force any more once it is done. Until
   // then it is still on its way.
   void LetGo(Ticket ticket);
+  engine::ParsedCommand Parse(const msgs::command& message) const;
   // Hands the command on, or makes `reply` a refusal.
-  void Give(Client& client, const msgs::command& message, msgs::feedback& reply);
+  void Give(Client& client, const msgs::command& message, const engine::ParsedCommand& parsed, std::int64_t expires_ns,
+            msgs::feedback& reply);
   void Reply(const msgs::feedback& reply);
 
   const engine::Machine& machine_;
@@ -101,9 +118,11 @@ class Clients {
 
   mutable std::mutex mutex_;
   std::map<std::string, Client> clients_;
+  std::map<Sender, Client> guests_;
   std::unordered_map<Ticket, Origin> origins_;  // of tickets that are not final
   std::deque<msgs::feedback> replies_;
   std::uint64_t malformed_ = 0;
+  std::uint64_t ignored_ = 0;
   std::uint64_t replies_dropped_ = 0;
 };
 

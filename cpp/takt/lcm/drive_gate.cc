@@ -69,7 +69,6 @@ std::optional<engine::DriveSample> DriveGate::Take(std::string_view channel, std
     return {};
   }
   drive->answered = message->cycle;
-  drive->sequence = message->sequence;
   drive->plant = message->plant;
   return ToSample(*message, drive->axis);
 }
@@ -94,9 +93,10 @@ std::optional<DriveGate::Refusal> DriveGate::WhyNot(const msgs::drive_feedback& 
     if (sent - drive.answered > drive.missing_cycles) return {};
     return Refusal{Reason::kPlant, "a second plant answers for this axis; the first one is listened to"};
   }
-  if (m.cycle <= drive.answered || m.sequence <= drive.sequence) {
-    return Refusal{Reason::kOld, "cycle " + Number(m.cycle) + ", sequence " + Number(m.sequence) + " after cycle " +
-                                     Number(drive.answered) + ", sequence " + Number(drive.sequence) +
+  // The order is that of the cycles, which are the engine's own numbers: the sender's could be so large that nothing
+  // came after them.
+  if (m.cycle <= drive.answered) {
+    return Refusal{Reason::kOld, "cycle " + Number(m.cycle) + " after cycle " + Number(drive.answered) +
                                      ": old, out of order or twice"};
   }
   return {};

@@ -49,8 +49,7 @@ class DriveGate {
     std::uint32_t missing_cycles = 0;
     std::string channel;
     std::int64_t answered = kNothing;
-    std::int64_t sequence = 0;  // of that answer ...
-    std::int64_t plant = 0;     // ... and who gave it
+    std::int64_t plant = 0;  // who gave that answer
   };
 
   // Newest set point that went out; how it was given before.

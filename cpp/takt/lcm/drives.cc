@@ -13,7 +13,7 @@ namespace takt::lcm {
 
 namespace {
 
-constexpr int kDriveQueue = 10'000;                // messages
+constexpr std::size_t kDriveQueue = 10'000;        // messages
 constexpr int kDriveWaitMs = 20;                   // real time: between looks at stop; simulated: of one Ready
 constexpr std::int64_t kSendAgainNs = 50'000'000;  // simulated time
 constexpr int kLooksPerCycle = 10;                 // real time: for new set points
@@ -34,12 +34,11 @@ Drives::Drives(engine::Engine& engine, const DrivesOptions& options)
 std::unique_ptr<Drives> Drives::Open(engine::Engine& engine, const DrivesOptions& options, std::string& problem) {
   std::unique_ptr<Drives> drives(new Drives(engine, options));
   drives->sending_ = OpenNetwork(options.url);
-  if (drives->sending_.lcm) drives->receiving_ = OpenNetwork(options.url);
-  problem = drives->sending_.problem + drives->receiving_.problem;
-  if (!problem.empty()) return nullptr;
-  ::lcm::LCM& receiving = *drives->receiving_.lcm;
-  drives->subscription_ = receiving.subscribeFunction(kDriveFeedbackChannels, &Drives::OnFeedback, drives.get());
-  drives->subscription_->setQueueCapacity(kDriveQueue);
+  problem = drives->sending_.problem;
+  if (drives->sending_.lcm) drives->receiving_ = OpenReceiver(options.url, problem);
+  if (!drives->receiving_) return nullptr;
+  drives->receiving_->Subscribe(kDriveFeedbackChannels, kDriveQueue,
+                                [d = drives.get()](const Heard& heard) { d->Receive(heard); });
   if (options.real_time) {
     drives->sender_ = std::thread([d = drives.get()] { d->SendThread(); });
     drives->receiver_ = std::thread([d = drives.get()] { d->ReceiveThread(); });
@@ -51,9 +50,7 @@ Drives::~Drives() {
   stop_ = true;
   if (sender_.joinable()) sender_.join();
   if (receiver_.joinable()) receiver_.join();
-  if (subscription_ == nullptr) return;
-  SendNewest();
-  receiving_.lcm->unsubscribe(subscription_);
+  if (receiving_) SendNewest();
 }
 
 bool Drives::Ready() {
@@ -63,7 +60,7 @@ bool Drives::Ready() {
     give_up_ns_ = now + std::llround(engine_.machine().external.answer_within_s * 1e9);
     send_again_ns_ = now + kSendAgainNs;
   }
-  while (Handle(*receiving_.lcm, 0) > 0) {
+  for (std::size_t i = 0; i < kDriveQueue && receiving_->Handle(0) > 0; ++i) {
   }
   const std::int64_t until = now + kDriveWaitMs * kNsPerMs;
   while (waiting_ && !AllAnswered()) {
@@ -80,7 +77,7 @@ bool Drives::Ready() {
     }
     if (at >= until) return false;
     const std::int64_t wait_ns = std::min({until, give_up_ns_, send_again_ns_}) - at;
-    Handle(*receiving_.lcm, static_cast<int>(wait_ns / kNsPerMs) + 1);
+    receiving_->Handle(static_cast<int>(wait_ns / kNsPerMs) + 1);
   }
   if (waiting_) {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
@@ -140,12 +137,8 @@ void Drives::Send(Line& line) {
   sending_.lcm->publish(line.channel, buffer_.data(), static_cast<unsigned>(buffer_.size()));
 }
 
-void Drives::OnFeedback(const ::lcm::ReceiveBuffer* received, const std::string& channel, Drives* drives) {
-  drives->Receive(received, channel);
-}
-
-void Drives::Receive(const ::lcm::ReceiveBuffer* received, const std::string& channel) {
-  const auto sample = gate_.Take(channel, {static_cast<const std::uint8_t*>(received->data), received->data_size});
+void Drives::Receive(const Heard& heard) {
+  const auto sample = gate_.Take(heard.channel, heard.data);
   if (!sample) return;
   if (!engine_.drive_samples().TryPush(*sample)) engine_.CountRefusedSample();
   if (options_.real_time) return;
@@ -165,7 +158,7 @@ void Drives::SendThread() {
 }
 
 void Drives::ReceiveThread() {
-  while (!stop_) Handle(*receiving_.lcm, kDriveWaitMs);
+  while (!stop_) receiving_->Handle(kDriveWaitMs);
 }
 
 }  // namespace takt::lcm

@@ -13,7 +13,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <lcm/lcm-cpp.hpp>
 #include <memory>
 #include <string>
 #include <thread>
@@ -22,6 +21,7 @@
 #include "takt/engine/engine.h"
 #include "takt/lcm/drive_gate.h"
 #include "takt/lcm/network.h"
+#include "takt/lcm/receiver.h"
 
 namespace takt::lcm {
 
@@ -58,8 +58,7 @@ class Drives {
   };
 
   Drives(engine::Engine& engine, const DrivesOptions& options);
-  static void OnFeedback(const ::lcm::ReceiveBuffer* received, const std::string& channel, Drives* drives);
-  void Receive(const ::lcm::ReceiveBuffer* received, const std::string& channel);
+  void Receive(const Heard& heard);
   // True: something went out.
   bool SendNewest();
   void Send(Line& line);
@@ -72,8 +71,8 @@ class Drives {
   engine::Engine& engine_;
   const DrivesOptions options_;
   DriveGate gate_;
-  Network sending_, receiving_;
-  ::lcm::Subscription* subscription_ = nullptr;
+  Network sending_;
+  std::unique_ptr<Receiver> receiving_;
   std::vector<Line> lines_;
   std::vector<std::uint8_t> buffer_;
 

@@ -1,66 +1,79 @@
 #include "takt/lcm/gateway.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <span>
 
 #include "takt/core/problem.h"
 #include "takt/lcm/channels.h"
 #include "takt/lcm/clock.h"
 #include "takt/lcm/messages.h"
-#include "takt/lcm/network.h"
 
 namespace takt::lcm {
 namespace {
 
 // Messages. LCM's own default of 30 loses commands given at 100 times the cycle's rate.
-constexpr int kQueueCapacity = 10'000;
+constexpr std::size_t kQueueCapacity = 10'000;
 constexpr int kWaitMs = 50;  // between looks at stop_
 
-std::span<const std::uint8_t> Bytes(const ::lcm::ReceiveBuffer* received) {
-  return {static_cast<const std::uint8_t*>(received->data), received->data_size};
+// How long ago a message was given, by this host's clock: since it came to this host, and since its sender stamped it,
+// if it did. A stamp from the future is off by as much.
+std::int64_t AgeNs(const Heard& heard, std::int64_t given_us) {
+  const std::int64_t now_us = WallClockUs();
+  const std::int64_t waited = std::max<std::int64_t>(0, now_us - heard.utime);
+  if (given_us == 0) return waited * 1000;
+  // Stamps are anything: no difference of two of them may overflow.
+  const double apart = std::abs(static_cast<double>(now_us) - static_cast<double>(given_us));
+  return std::max(waited, static_cast<std::int64_t>(std::min(apart, 1e15))) * 1000;
 }
 
 }  // namespace
 
-Gateway::Gateway(::lcm::LCM& network, Clients& clients) : network_(network), clients_(clients) {
-  subscriptions_[0] = network_.subscribeFunction(kCommandChannel, &Gateway::OnCommand, &clients);
-  subscriptions_[1] = network_.subscribeFunction(kHeartbeatChannel, &Gateway::OnHeartbeat, &clients);
-  for (int i = 0; i < 2; ++i) subscriptions_[i]->setQueueCapacity(kQueueCapacity);
-  subscriptions_[2] = network_.subscribeFunction(kMachineChannel, &Gateway::OnMachine, this);
+Gateway::Gateway(Receiver& network, Clients& clients) : network_(network), clients_(clients) {
+  const auto hear = [this](const char* channel, void (Gateway::*handler)(const Heard&)) {
+    subscriptions_.push_back(
+        network_.Subscribe(channel, kQueueCapacity, [this, handler](const Heard& heard) { (this->*handler)(heard); }));
+  };
+  hear(kCommandChannel, &Gateway::OnCommand);
+  hear(kHeartbeatChannel, &Gateway::OnHeartbeat);
+  hear(kMachineChannel, &Gateway::OnMachine);
   thread_ = std::thread([this] { Listen(); });
 }
 
 Gateway::~Gateway() {
   stop_ = true;
   thread_.join();
-  for (::lcm::Subscription* subscription : subscriptions_) network_.unsubscribe(subscription);
+  for (const int subscription : subscriptions_) network_.Unsubscribe(subscription);
 }
 
 void Gateway::Listen() {
-  while (!stop_) Handle(network_, kWaitMs);
-}
-
-void Gateway::OnCommand(const ::lcm::ReceiveBuffer* received, const std::string&, Clients* clients) {
-  if (const auto message = DecodeCommand(Bytes(received))) {
-    clients->OnCommand(*message, SteadyNs());
-  } else {
-    clients->OnMalformed();
+  while (!stop_) {
+    network_.Handle(kWaitMs);
+    for (const std::uint64_t now = network_.malformed(); malformed_ != now; ++malformed_) clients_.OnMalformed();
   }
 }
 
-void Gateway::OnHeartbeat(const ::lcm::ReceiveBuffer* received, const std::string&, Clients* clients) {
-  if (const auto message = DecodeHeartbeat(Bytes(received))) {
-    clients->OnHeartbeat(*message, SteadyNs());
+void Gateway::OnCommand(const Heard& heard) {
+  if (const auto message = DecodeCommand(heard.data)) {
+    clients_.OnCommand(*message, SteadyNs(), AgeNs(heard, message->utime));
   } else {
-    clients->OnMalformed();
+    clients_.OnMalformed();
   }
 }
 
-void Gateway::OnMachine(const ::lcm::ReceiveBuffer* received, const std::string&, Gateway* gateway) {
-  if (gateway->met_another_engine_) return;
-  const auto message = DecodeMachine(Bytes(received));
-  if (!message || message->run_id == gateway->clients_.run_id()) return;
-  gateway->met_another_engine_ = true;
+void Gateway::OnHeartbeat(const Heard& heard) {
+  if (const auto message = DecodeHeartbeat(heard.data)) {
+    clients_.OnHeartbeat(*message, SteadyNs(), AgeNs(heard, message->utime));
+  } else {
+    clients_.OnMalformed();
+  }
+}
+
+void Gateway::OnMachine(const Heard& heard) {
+  if (met_another_engine_) return;
+  const auto message = DecodeMachine(heard.data);
+  if (!message || message->run_id == clients_.run_id()) return;
+  met_another_engine_ = true;
   std::fprintf(stderr, "another engine runs on this LCM network, machine %s\n", Quoted(message->name).c_str());
 }
 

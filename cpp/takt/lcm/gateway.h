@@ -3,32 +3,33 @@
 #pragma once
 
 #include <atomic>
-#include <lcm/lcm-cpp.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "takt/lcm/clients.h"
+#include "takt/lcm/receiver.h"
 
 namespace takt::lcm {
 
 class Gateway {
  public:
-  // Listens from now on. Both must outlive this; nobody else calls handle() of `network`.
-  Gateway(::lcm::LCM& network, Clients& clients);
+  // Listens from now on. Both must outlive this; nobody else uses `network`.
+  Gateway(Receiver& network, Clients& clients);
   ~Gateway();
   Gateway(const Gateway&) = delete;
   Gateway& operator=(const Gateway&) = delete;
 
  private:
-  // Plain functions: GCC 12's undefined-behaviour sanitizer breaks LCM's calls of member functions.
-  static void OnCommand(const ::lcm::ReceiveBuffer* received, const std::string& channel, Clients* clients);
-  static void OnHeartbeat(const ::lcm::ReceiveBuffer* received, const std::string& channel, Clients* clients);
-  static void OnMachine(const ::lcm::ReceiveBuffer* received, const std::string& channel, Gateway* gateway);
+  void OnCommand(const Heard& heard);
+  void OnHeartbeat(const Heard& heard);
+  void OnMachine(const Heard& heard);
   void Listen();
 
-  ::lcm::LCM& network_;
-  const Clients& clients_;
-  ::lcm::Subscription* subscriptions_[3];
+  Receiver& network_;
+  Clients& clients_;
+  std::vector<int> subscriptions_;
+  std::uint64_t malformed_ = 0;  // datagrams, as counted last
   bool met_another_engine_ = false;
   std::atomic<bool> stop_{false};
   std::thread thread_;

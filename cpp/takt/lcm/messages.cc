@@ -541,6 +541,7 @@ msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine:
   m.time_ns = TimeNs(figures.cycle, machine);
   m.period_s = machine.cycle.period_s;
   m.overruns = Signed(figures.overruns);
+  m.cycles_skipped = Signed(figures.cycles_skipped);
   m.commands_applied = Signed(figures.commands_applied);
   m.commands_refused = Signed(figures.commands_refused);
   m.snapshots_dropped = Signed(figures.snapshots_dropped);
@@ -652,11 +653,11 @@ engine::DriveSample ToSample(const msgs::drive_feedback& m, std::uint32_t axis) 
 }
 
 std::optional<msgs::command> DecodeCommand(std::span<const std::uint8_t> bytes) {
-  return Decode<msgs::command>(bytes, "isiisss");
+  return Decode<msgs::command>(bytes, "iisiisss");
 }
 
 std::optional<msgs::heartbeat> DecodeHeartbeat(std::span<const std::uint8_t> bytes) {
-  return Decode<msgs::heartbeat>(bytes, "isi");
+  return Decode<msgs::heartbeat>(bytes, "iisi");
 }
 
 std::optional<msgs::machine_description> DecodeMachine(std::span<const std::uint8_t> bytes) {

@@ -25,23 +25,19 @@ std::unique_ptr<NetworkLog> NetworkLog::Open(const std::string& url, const std::
     problem = network.problem;
     return nullptr;
   }
+  std::unique_ptr<Receiver> receiver = OpenReceiver(url, problem);
+  if (!receiver) return nullptr;
   std::unique_ptr<LogOutlet> log = OpenLog(path, problem);
   if (!log) return nullptr;
-  return std::unique_ptr<NetworkLog>(new NetworkLog(std::move(network), std::move(log)));
+  return std::unique_ptr<NetworkLog>(new NetworkLog(std::move(network), std::move(receiver), std::move(log)));
 }
 
-NetworkLog::NetworkLog(Network network, std::unique_ptr<LogOutlet> log)
-    : network_(std::move(network)), log_(std::move(log)), last_(LastWord()) {
-  ::lcm::Subscription* all = network_.lcm->subscribeFunction<NetworkLog*>(
-      ".*",
-      [](const ::lcm::ReceiveBuffer* message, const std::string& channel, NetworkLog* self) {
-        self->Hear(message, channel);
-      },
-      this);
-  all->setQueueCapacity(0);  // as many as come
+NetworkLog::NetworkLog(Network network, std::unique_ptr<Receiver> receiver, std::unique_ptr<LogOutlet> log)
+    : network_(std::move(network)), receiver_(std::move(receiver)), log_(std::move(log)), last_(LastWord()) {
+  receiver_->Subscribe(".*", Receiver::kAll, [this](const Heard& heard) { Hear(heard); });
   thread_ = std::thread([this] {
     while (!heard_all_ && !stop_) {
-      const int heard = Handle(*network_.lcm, kQuietMs);
+      const int heard = receiver_->Handle(kQuietMs);
       if (heard <= 0) log_->Flush();
       broken_ = broken_ || heard < 0;
     }
@@ -52,12 +48,11 @@ NetworkLog::~NetworkLog() {
   End();
 }
 
-void NetworkLog::Hear(const ::lcm::ReceiveBuffer* message, const std::string& channel) {
-  if (channel == last_) {
+void NetworkLog::Hear(const Heard& heard) {
+  if (heard.channel == last_) {
     heard_all_ = true;
   } else if (!heard_all_) {
-    const auto* bytes = static_cast<const std::uint8_t*>(message->data);
-    log_->Send(channel, {bytes, message->data_size}, message->recv_utime);  // remembers itself that it failed
+    log_->Send(heard.channel, heard.data, heard.utime);  // remembers itself that it failed
   }
 }
 

@@ -10,17 +10,14 @@
 
 #include "takt/lcm/network.h"
 #include "takt/lcm/outlet.h"
-
-namespace lcm {
-struct ReceiveBuffer;
-}  // namespace lcm
+#include "takt/lcm/receiver.h"
 
 namespace takt::lcm {
 
 class NetworkLog {
  public:
-  // Listens at once, on a thread of its own. An existing log is written anew; anything else that is there is left as it
-  // is. Null: `problem` says why, in one line.
+  // Listens at once, on a thread of its own. A log that is there is kept under another name; anything else that is
+  // there is left as it is. Null: `problem` says why, in one line.
   static std::unique_ptr<NetworkLog> Open(const std::string& url, const std::string& path, std::string& problem);
   // Closes it, if nobody has, without waiting for what is still to be written.
   ~NetworkLog();
@@ -30,11 +27,12 @@ class NetworkLog {
   bool Close(std::chrono::milliseconds patience);
 
  private:
-  NetworkLog(Network network, std::unique_ptr<LogOutlet> log);
-  void Hear(const ::lcm::ReceiveBuffer* message, const std::string& channel);
+  NetworkLog(Network network, std::unique_ptr<Receiver> receiver, std::unique_ptr<LogOutlet> log);
+  void Hear(const Heard& heard);
   void End();
 
-  Network network_;
+  Network network_;  // for the last word
+  std::unique_ptr<Receiver> receiver_;
   std::unique_ptr<LogOutlet> log_;  // of the thread, while that runs
   const std::string last_;          // the channel of the last word
   std::atomic<bool> heard_all_{false};

@@ -36,6 +36,24 @@ bool IsTaken(const std::string& path) {
   return taken;
 }
 
+// Gives a log that is there another name, which nothing has. False: errno says why not.
+bool KeepOld(const std::string& path) {
+  std::error_code none;
+  const std::filesystem::path old = path;
+  if (!std::filesystem::is_regular_file(old, none) || std::filesystem::file_size(old, none) == 0) return true;
+  for (int number = 1; number > 0; ++number) {
+    std::filesystem::path kept = old;
+    kept.replace_filename(old.stem().string() + "." + std::to_string(number) + old.extension().string());
+    if (link(old.c_str(), kept.c_str()) != 0) {  // unlike rename(), it replaces nothing
+      if (errno == EEXIST) continue;
+      return false;
+    }
+    std::fprintf(stderr, "log file %s is there already: kept as %s\n", path.c_str(), kept.c_str());
+    return unlink(old.c_str()) == 0;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool NetworkOutlet::Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t) {
@@ -82,8 +100,10 @@ std::unique_ptr<LogOutlet> OpenLog(const std::string& path, std::string& problem
     problem = "log file " + path + " is being written already";
     return nullptr;
   }
-  auto log = std::make_unique<LogOutlet>(path);
-  if (log->good()) return log;
+  if (KeepOld(path)) {
+    auto log = std::make_unique<LogOutlet>(path);
+    if (log->good()) return log;
+  }
   problem = "log file " + path + " cannot be written: " + std::strerror(errno);
   return nullptr;
 }

@@ -18,6 +18,8 @@ class Outlet {
   virtual ~Outlet() = default;
   // `utime` is the wall clock in µs. False: not taken. May block; never called by the cycle's thread.
   virtual bool Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t utime) = 0;
+  // Lets go of what is held back.
+  virtual void Flush() {}
 };
 
 class NetworkOutlet : public Outlet {
@@ -30,7 +32,7 @@ class NetworkOutlet : public Outlet {
   ::lcm::LCM& network_;
 };
 
-// An LCM log, as lcm-logger writes it. An existing log is written anew. The first thing that cannot be written is said
+// An LCM log, as lcm-logger writes it. The first thing that cannot be written is said
 // in one line on stderr.
 class LogOutlet : public Outlet {
  public:
@@ -39,8 +41,8 @@ class LogOutlet : public Outlet {
   // The file could be opened.
   bool good() const;
   bool Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t utime) override;
-  // Writes what is still held back.
-  void Flush();
+  // Hands what is still held back to the system: it is in the file then, should the program be killed.
+  void Flush() override;
   // Something could not be written.
   bool failed() const { return failed_; }
 
@@ -52,8 +54,9 @@ class LogOutlet : public Outlet {
   bool failed_ = false;
 };
 
-// A log there, where nothing is yet, or an LCM log that nobody writes, or something that is no plain file. Null:
-// `problem` says why.
+// A log there, where nothing is yet, or an LCM log that nobody writes, or something that is no plain file. A log that
+// is there is kept (EN-36): it gets the next free number, run.lcm becomes run.1.lcm, which is said in one line on
+// stderr. Null: `problem` says why.
 std::unique_ptr<LogOutlet> OpenLog(const std::string& path, std::string& problem);
 
 }  // namespace takt::lcm

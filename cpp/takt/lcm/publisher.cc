@@ -6,6 +6,7 @@
 
 #include "takt/engine/components.h"
 #include "takt/lcm/channels.h"
+#include "takt/lcm/checksum.h"
 
 namespace takt::lcm {
 namespace {
@@ -13,7 +14,8 @@ namespace {
 constexpr auto kIdleWait = std::chrono::milliseconds(1);
 constexpr std::int64_t kMachinePeriodNs = 1'000'000'000;
 constexpr std::size_t kHashesPerMessage = 1000;
-constexpr int kBatch = 4096;  // elements of one queue before the next has its turn
+constexpr std::int64_t kFlushNs = 50'000'000;  // a log proves a run to 100 ms before the program was killed (EN-36)
+constexpr int kBatch = 4096;                   // elements of one queue before the next has its turn
 
 template <typename T, typename Use>
 bool Take(SpscQueue<T>& queue, Use use) {
@@ -59,7 +61,13 @@ void Publisher::Run() {
   if (log_ != nullptr) StartJournal();
   for (;;) {
     const bool last = stop_;  // before the queues are looked at: what was put there earlier is not missed
-    if (SteadyNs() >= next_machine_ns_) PublishMachine();
+    const std::int64_t now_ns = SteadyNs();
+    if (now_ns >= next_machine_ns_) PublishMachine();
+    if (log_ != nullptr && now_ns >= next_flush_ns_) {
+      FlushHashes();
+      log_->Flush();
+      next_flush_ns_ = now_ns + kFlushNs;
+    }
     if (Drain()) continue;
     if (last) break;
     std::this_thread::sleep_for(kIdleWait);
@@ -144,6 +152,7 @@ void Publisher::PublishFigures(const engine::EngineFigures& figures) {
   message.run_id = info_.run_id;
   message.pace = info_.pace;
   message.malformed = static_cast<std::int64_t>(clients.malformed);
+  message.ignored = static_cast<std::int64_t>(clients.ignored);
   message.send_failures = static_cast<std::int64_t>(send_failures());
   message.replies_dropped = static_cast<std::int64_t>(clients.replies_dropped);
   message.clients = static_cast<std::int32_t>(clients.alive);
@@ -192,6 +201,7 @@ void Publisher::ToLog(Channel& channel, Message& message) {
   message.utime = WallClockUs();
   message.sequence = channel.log_sequence++;
   Encode(message, buffer_);
+  AppendChecksum(channel.name, buffer_);
   Send(*log_, channel.name, message.utime);
 }
 
@@ -204,6 +214,7 @@ void Publisher::ToBoth(Channel& channel, Message& message) {
 template <typename Message>
 void Publisher::ToJournal(const char* channel, const Message& message) {
   Encode(message, buffer_);
+  AppendChecksum(channel, buffer_);
   Send(*log_, channel, WallClockUs());
 }
 

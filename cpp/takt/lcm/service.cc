@@ -11,9 +11,9 @@ std::unique_ptr<Service> Service::Open(engine::Engine& engine, const ServiceOpti
   std::unique_ptr<Service> service(new Service(engine, options));
   if (!options.url.empty()) {
     service->sending_ = OpenNetwork(options.url);
-    if (service->sending_.lcm) service->receiving_ = OpenNetwork(options.url);
-    problem = service->sending_.problem + service->receiving_.problem;
-    if (!problem.empty()) return nullptr;
+    problem = service->sending_.problem;
+    if (service->sending_.lcm) service->receiving_ = OpenReceiver(options.url, problem);
+    if (!service->receiving_) return nullptr;
     service->network_ = std::make_unique<NetworkOutlet>(*service->sending_.lcm);
   }
   if (!options.log_path.empty()) {
@@ -22,8 +22,7 @@ std::unique_ptr<Service> Service::Open(engine::Engine& engine, const ServiceOpti
   }
   service->publisher_ = std::make_unique<Publisher>(engine, service->clients_, service->network_.get(),
                                                     service->log_.get(), options.info);
-  if (service->receiving_.lcm)
-    service->gateway_ = std::make_unique<Gateway>(*service->receiving_.lcm, service->clients_);
+  if (service->receiving_) service->gateway_ = std::make_unique<Gateway>(*service->receiving_, service->clients_);
   return service;
 }
 

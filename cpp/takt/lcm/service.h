@@ -10,6 +10,7 @@
 #include "takt/lcm/network.h"
 #include "takt/lcm/outlet.h"
 #include "takt/lcm/publisher.h"
+#include "takt/lcm/receiver.h"
 
 namespace takt::lcm {
 
@@ -40,7 +41,8 @@ class Service {
 
   Clients clients_;
   // Two members of the same network: sending and receiving do not wait for each other.
-  Network sending_, receiving_;
+  Network sending_;
+  std::unique_ptr<Receiver> receiving_;
   std::unique_ptr<NetworkOutlet> network_;
   std::unique_ptr<LogOutlet> log_;
   std::unique_ptr<Publisher> publisher_;

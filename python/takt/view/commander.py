@@ -12,8 +12,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import lcm
-
 from takt import msgs
 from takt.arguments import to_text
 from takt.tables import KINDS
@@ -63,7 +61,7 @@ class _Given:
 class Commander:
     """What one page commands. `tell` takes what becomes of it."""
 
-    def __init__(self, network: lcm.LCM, machine: Machine, tell: Tell) -> None:
+    def __init__(self, network: Any, machine: Machine, tell: Tell) -> None:
         self._network = network
         self._machine = machine
         self._tell = tell
@@ -146,6 +144,7 @@ class Commander:
 
     def _send(self, target: str, verb: str, arguments: str, now: float, held: bool = False) -> None:
         message = msgs.command()
+        message.utime = time.time_ns() // 1000
         message.run_id, message.client, message.session = self._machine.run_id, self._client, self._session
         self._last_id += 1
         message.id, message.target, message.verb, message.arguments = self._last_id, target, verb, arguments
@@ -154,6 +153,7 @@ class Commander:
 
     def _beat(self, now: float) -> None:
         beat = msgs.heartbeat()
+        beat.utime = time.time_ns() // 1000
         beat.run_id, beat.client, beat.session = self._machine.run_id, self._client, self._session
         self._beat_at = now
         self._network.publish("takt/heartbeat", beat.encode())

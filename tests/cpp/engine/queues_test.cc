@@ -7,6 +7,7 @@
 #include <map>
 
 #include "machines.h"
+#include "takt/engine/components.h"
 #include "takt/engine/cycle.h"
 
 namespace takt::engine {
@@ -19,11 +20,11 @@ TEST(CommandQueue, RefusesWhenFullAndLosesNothing) {
   std::vector<Ticket> accepted;
   int refused = 0;
   for (int i = 0; i < 1000; ++i) {
-    const Ticket ticket = engine.Submit(ToAxis(machine, "y1", axis::Halt{}));
+    const Ticket ticket = engine.Submit(ToAxis(machine, "y1", axis::MoveAbsolute{}));
     ticket ? accepted.push_back(ticket) : void(++refused);
   }
-  EXPECT_EQ(accepted.size(), 120u);  // the rest is kept for what lets go
-  EXPECT_EQ(refused, 1000 - 120);
+  EXPECT_EQ(accepted.size(), 128u);
+  EXPECT_EQ(refused, 1000 - 128);
   std::vector<Ticket> answered;
   for (int i = 0; i < 10; ++i) {
     engine.RunCycle();
@@ -33,9 +34,9 @@ TEST(CommandQueue, RefusesWhenFullAndLosesNothing) {
       EXPECT_EQ(answered.size(), kCommandsPerCycle);  // a cycle takes so many at most
     }
   }
-  EXPECT_EQ(engine.figures().commands_applied, 120u);
+  EXPECT_EQ(engine.figures().commands_applied, 128u);
   EXPECT_EQ(answered, accepted);
-  EXPECT_EQ(engine.figures().commands_refused, 880u);
+  EXPECT_EQ(engine.figures().commands_refused, 872u);
 }
 
 // EN-22, EN-23: a flood of commands keeps out neither heartbeats nor what lets go or stops. At the longest cycle the
@@ -78,6 +79,99 @@ TEST(CommandQueue, AFloodKeepsOutNeitherRenewalsNorStops) {
   EXPECT_FALSE(engine.outputs(y1).loop_closed);
 }
 
+// EN-32: with the queue full of others whatever stops, releases or switches off is taken, of every kind of component,
+// in its text form and as the parser reads it; nothing else is.
+TEST(CommandQueue, TakesWhatLetsGoOfEveryKind) {
+  const Machine machine = FullMachine();
+  const std::map<std::pair<std::string, std::string>, std::vector<std::string>> lets_go = {
+      {{"machine", "stop_all"}, {"", "{open_loops: true}"}},
+      {{"machine", "emergency_stop"}, {""}},
+      {{"machine", "fail_all_axes"}, {""}},
+      {{"machine", "release"}, {"{ticket: 7}"}},
+      {{"axis", "halt"}, {"", "{deceleration: 10}"}},
+      {{"axis", "stop"}, {"", "{hold: true}"}},
+      {{"axis", "power"}, {"{enable: false}"}},
+      {{"axis", "jog"}, {"", "{forward: false, backward: false, velocity: 3}"}},
+      {{"axis", "halt_superimposed"}, {""}},
+      {{"axis", "set_override"}, {"{velocity_factor: 0}"}},
+      {{"axis", "direct_output"}, {"{voltage: 0}"}},
+      {{"flex_cam", "control"}, {"{stop: true}", "{halt: true}", "{regulator_on: false}", "{sync_out_instant: true}"}},
+      {{"flex_cam", "jog"}, {""}},
+      {{"group", "stop"}, {""}},
+      {{"group", "halt"}, {""}},
+      {{"group", "interrupt"}, {""}},
+      {{"group", "disable"}, {""}},
+      {{"group", "power"}, {"{enable: false}"}},
+      {{"group", "set_override"}, {"{velocity_factor: 0}"}},
+      {{"pick_place", "control"}, {"{stop_all: true}", "{path_stop: true}", "{path_halt: true}", "{abort: true}"}},
+      {{"pick_place", "jog"}, {""}},
+      {{"mover", "halt"}, {""}},
+      {{"mover", "disable"}, {""}},
+      {{"mover", "stop_external_setpoint_generation"}, {""}},
+      {{"track", "disable"}, {""}},
+      {{"part", "force_disable"}, {""}},
+  };
+  std::map<std::string, std::string> target_of = {{"machine", "machine"}};
+  for (const ComponentKind& kind : ComponentKinds()) {
+    if (kind.count(machine) > 0) target_of[std::string(kind.name)] = std::string(kind.name_of(machine, 0));
+  }
+  for (const auto& [verb, all_arguments] : lets_go) {
+    for (const std::string& arguments : all_arguments) {
+      EXPECT_TRUE(LetsGo(verb.first, verb.second, arguments)) << verb.first << ' ' << verb.second << ' ' << arguments;
+      if (!target_of.contains(verb.first)) continue;
+      Engine engine(machine, {.command_queue = 32});
+      while (engine.Submit(ToAxis(machine, "y1", axis::Reset{}))) {
+      }
+      const ParsedCommand parsed = ParseCommand(machine, target_of[verb.first], verb.second, arguments);
+      ASSERT_EQ(parsed.error, ErrorId::kNone) << parsed.sentence;
+      EXPECT_NE(engine.Submit(parsed.command), 0u) << verb.first << ' ' << verb.second << ' ' << arguments;
+    }
+  }
+  for (const Verb& verb : Verbs()) {  // with nothing given most verbs cannot be read, or move nothing
+    if (lets_go.contains({std::string(verb.target_kind), std::string(verb.name)})) continue;
+    EXPECT_FALSE(LetsGo(verb.target_kind, verb.name, "")) << verb.target_kind << ' ' << verb.name;
+  }
+  EXPECT_FALSE(LetsGo("axis", "power", ""));
+  EXPECT_FALSE(LetsGo("axis", "jog", "{forward: true}"));
+  EXPECT_FALSE(LetsGo("axis", "set_override", "{velocity_factor: 0.5}"));
+  EXPECT_FALSE(LetsGo("flex_cam", "control", "{sync_cam: true}"));
+  EXPECT_FALSE(LetsGo("axis", "halt", "{no_such: 1}"));
+  EXPECT_FALSE(LetsGo("axis", "no_such", ""));
+}
+
+// EN-32: there is a place for every component's stop at once, and one for the whole machine behind a flood of those.
+TEST(CommandQueue, HasAPlaceForEveryStopAtOnce) {
+  const Machine machine = FullMachine();
+  Engine engine(machine, {.command_queue = 16});
+  while (engine.Submit(ToAxis(machine, "y1", axis::Reset{}))) {
+  }
+  for (const axis::AxisParams& axis : machine.axes) {
+    EXPECT_NE(engine.Submit(ToAxis(machine, axis.name, axis::Halt{})), 0u) << axis.name;
+    EXPECT_NE(engine.Submit(ToAxis(machine, axis.name, axis::Power{.enable = false})), 0u) << axis.name;
+  }
+  while (engine.Submit(ToAxis(machine, "y1", axis::Halt{}))) {
+  }
+  EXPECT_NE(engine.Submit({.body = MachineCommand(EmergencyStop{})}), 0u);
+  EXPECT_EQ(engine.Submit({.body = MachineCommand(Release{3})}), 0u);
+}
+
+// EN-33: what waited in the queue beyond its age limit is refused, unless it lets go; without a clock nothing is.
+TEST(CommandQueue, RefusesWhatExpiredMeanwhile) {
+  const Machine machine = FullMachine();
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  for (const std::int64_t now : {std::int64_t{0}, 2 * kSecond, 2 * kSecond + 1, 60 * kSecond}) {
+    Engine engine(machine);
+    Command power = ToAxis(machine, "y1", axis::Power{}), halt = ToAxis(machine, "z", axis::Halt{});
+    power.expires_ns = halt.expires_ns = 2 * kSecond;
+    const Ticket first = engine.Submit(power), second = engine.Submit(halt);
+    engine.RunCycle({.now_ns = now});
+    std::map<Ticket, ErrorId> errors;
+    for (FeedbackEvent event; engine.feedback().TryPop(event);) errors[event.ticket] = event.error;
+    EXPECT_EQ(errors[first], now > 2 * kSecond ? ErrorId::kTooOld : ErrorId::kNone) << now;
+    EXPECT_NE(errors[second], ErrorId::kTooOld) << now;
+  }
+}
+
 // What lets go keeps its place behind what was given before it.
 TEST(CommandQueue, KeepsTheOrder) {
   const Machine machine = FullMachine();
@@ -106,7 +200,8 @@ TEST(FeedbackQueue, CountsWhatItLost) {
   Engine engine(machine);
   std::uint64_t given = 0;
   for (int i = 0; i < 1000; ++i) {
-    for (std::size_t k = 0; k < kCommandsPerCycle; ++k) given += engine.Submit(ToAxis(machine, "y1", axis::Halt{})) > 0;
+    for (std::size_t k = 0; k < kCommandsPerCycle; ++k)
+      given += engine.Submit(ToAxis(machine, "y1", axis::MoveAbsolute{})) > 0;
     engine.RunCycle();
   }
   std::uint64_t taken = 0;

@@ -58,6 +58,50 @@ TEST(Overruns, CountAnewAfterAStopOrNever) {
   }
 }
 
+// EN-34: lateness is judged as time: a stall counts as many periods as passed in it, however it comes about.
+TEST(Overruns, AStallCountsItsPeriods) {
+  struct Stall {
+    const char* what;
+    std::vector<CycleTiming> timings;
+    bool stops;
+    std::uint64_t skipped;
+  };
+  const CycleTiming good{1000, 20000, false}, late{2'000'000, 30000, true};
+  const auto stalled = [](std::uint64_t periods, bool overrun) {
+    CycleTiming timing{1000, 20000, overrun};
+    timing.late_periods = periods;
+    return timing;
+  };
+  const std::vector<Stall> stalls = {
+      {"asleep for the limit", {stalled(5, false)}, true, 5},
+      {"asleep for less", {stalled(4, false), good}, false, 4},
+      {"asleep for hours", {stalled(100'000'000, false)}, true, 100'000'000},
+      {"lost while the cycle ran", {stalled(5, true)}, true, 5},
+      {"several short ones in a row", {stalled(2, true), stalled(2, false), stalled(1, true)}, true, 5},
+      {"several short ones with a good cycle between",
+       {stalled(2, true), stalled(2, true), good, stalled(4, true)},
+       false,
+       8},
+      {"overruns that skip nothing and then a stall", {late, late, stalled(3, false)}, true, 3},
+  };
+  for (const Stall& stall : stalls) {
+    Machine machine = FullMachine();
+    machine.cycle.overruns_in_a_row = 5;
+    Engine engine(machine);
+    engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+    for (int i = 0; i < 300; ++i) engine.RunCycle(good);
+    engine.Submit(ToAxis(machine, "y1", axis::MoveVelocity{.velocity = 400}));
+    for (int i = 0; i < 300; ++i) engine.RunCycle(good);
+    for (const CycleTiming& timing : stall.timings) engine.RunCycle(timing);
+    const axis::Outputs& y1 = engine.outputs(AxisNamed(machine, "y1"));
+    EXPECT_EQ(y1.error, stall.stops ? ErrorId::kOverrun : ErrorId::kNone) << stall.what;
+    EXPECT_GT(y1.set_velocity, 300) << stall.what << ": along its ramp, not dropped";
+    EXPECT_EQ(engine.figures().cycles_skipped, stall.skipped) << stall.what;
+    for (int i = 0; i < 300; ++i) engine.RunCycle(good);
+    EXPECT_EQ(y1.set_velocity, stall.stops ? 0 : 400) << stall.what;
+  }
+}
+
 // What became of one command, from the queue of an engine.
 struct Answers {
   std::vector<FeedbackEvent> events;

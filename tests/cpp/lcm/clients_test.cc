@@ -411,5 +411,124 @@ TEST_F(ClientsTest, OddNamesAreRefused) {
   EXPECT_EQ(clients.figures(0).alive, 0u);
 }
 
+// EN-32: with all places taken by others a stranger's stop is taken and answered, of every kind; nothing else is.
+TEST_F(ClientsTest, AStrangerMayStop) {
+  Clients clients = Make({.clients = 3, .guests = 2});
+  for (int i = 0; i < 3; ++i) {
+    msgs::heartbeat squatter = Heartbeat();
+    squatter.client = "squatter " + std::to_string(i);
+    clients.OnHeartbeat(squatter, 0);
+  }
+  std::int64_t session = 100;
+  const auto give = [&](const std::string& target, const std::string& verb, const std::string& arguments) {
+    msgs::command message = Command(1, verb, arguments);
+    message.client = "stranger";
+    message.session = ++session;
+    message.target = target;
+    clients.OnCommand(message, kSecond / 10);
+    return message;
+  };
+  struct Given {
+    const char *target, *verb, *arguments;
+    bool taken;
+  };
+  for (const Given& one : std::vector<Given>{{"machine", "emergency_stop", "", true},
+                                             {"machine", "stop_all", "", true},
+                                             {"x", "halt", "", true},
+                                             {"x", "power", "{enable: false}", true},
+                                             {"x", "power", "", false},
+                                             {"x", "jog", "{forward: true}", false},
+                                             {"portal", "stop", "", true},
+                                             {"cutter", "control", "{stop: true}", true},
+                                             {"picker", "control", "{path_halt: true}", true},
+                                             {"shuttle", "halt", "", true},
+                                             {"shuttle", "enable", "", false},
+                                             {"lift", "force_disable", "", true}}) {
+    submitted_.clear();
+    give(one.target, one.verb, one.arguments);
+    if (!one.taken) {
+      EXPECT_TRUE(submitted_.empty()) << one.verb;
+      ExpectError(OneReply(clients), ErrorId::kQueueFull, "there are 3 clients already");
+      continue;
+    }
+    ASSERT_EQ(submitted_.size(), 1u) << one.target << ' ' << one.verb;
+    clients.OnFeedback({1, 3, FeedbackState::kDone, false, ErrorId::kNone});
+    const msgs::feedback done = OneReply(clients);
+    EXPECT_EQ(done.client, "stranger");
+    EXPECT_EQ(done.session, session);
+    EXPECT_EQ(done.state, msgs::feedback::STATE_DONE);
+  }
+  // Sent again it is answered, not given again; the stranger's heartbeats keep a held stop.
+  submitted_.clear();
+  const msgs::command held = give("x", "stop", "{hold: true}");
+  clients.OnCommand(held, kSecond / 10);
+  EXPECT_EQ(submitted_.size(), 1u);
+  msgs::heartbeat beat = Heartbeat(held.session);
+  beat.client = "stranger";
+  clients.OnHeartbeat(beat, kSecond / 5);
+  EXPECT_EQ(Renewed(), std::vector<Ticket>{1});
+  EXPECT_EQ(clients.figures(kSecond / 5).alive, 3u);
+}
+
+// EN-32: somebody else has taken the name meanwhile: the client before may still stop what it began.
+TEST_F(ClientsTest, AClientThatLostItsNameMayStop) {
+  Clients clients = Make();
+  clients.OnCommand(Jog(1), 0);
+  msgs::command other = Command(1, "move_absolute");
+  other.session = 2;
+  clients.OnCommand(other, 3 * kSecond);
+  ASSERT_EQ(submitted_.size(), 2u);
+  Replies(clients);
+  clients.OnCommand(Jog(2), 3 * kSecond);
+  ExpectError(OneReply(clients), ErrorId::kClientName, "another client uses the name anna");
+  clients.OnCommand(Command(3, "halt", ""), 3 * kSecond);
+  msgs::command release = Command(4, "release", "{ticket: 1}");
+  release.target = "machine";
+  clients.OnCommand(release, 3 * kSecond);
+  EXPECT_EQ(submitted_.size(), 4u);
+  EXPECT_TRUE(Replies(clients).empty());  // the cycle answers
+}
+
+// EN-32: as many commands are unfinished as may be; what stops is taken besides.
+TEST_F(ClientsTest, ACrowdedClientMayStop) {
+  Clients clients = Make({.ids_per_client = 5, .stops_per_client = 2});
+  for (int id = 1; id <= 6; ++id) clients.OnCommand(Command(id), 0);
+  EXPECT_EQ(submitted_.size(), 5u);
+  for (int id = 7; id <= 9; ++id) clients.OnCommand(Command(id, "halt", ""), 0);
+  EXPECT_EQ(submitted_.size(), 7u);
+}
+
+// EN-33: commands grow old, and the one that gave them is told; what lets go does not.
+TEST_F(ClientsTest, OldCommandsAreRefused) {
+  Clients clients = Make();
+  clients.OnCommand(Command(1), 10 * kSecond, kSecond);
+  ASSERT_EQ(submitted_.size(), 1u);
+  EXPECT_EQ(submitted_[0].expires_ns, 10 * kSecond);
+  clients.OnCommand(Command(2), 10 * kSecond, kSecond / 4);
+  EXPECT_EQ(submitted_[1].expires_ns, 10 * kSecond + 3 * kSecond / 4);
+  clients.OnCommand(Command(3), 10 * kSecond, 8 * kSecond + kSecond / 2);
+  EXPECT_EQ(submitted_.size(), 2u);
+  ExpectError(OneReply(clients), ErrorId::kTooOld, "the command is 8.5 s old");
+  clients.OnCommand(Command(3), 10 * kSecond, 0);  // it does not become young again
+  EXPECT_EQ(submitted_.size(), 2u);
+  EXPECT_EQ(OneReply(clients).state, msgs::feedback::STATE_ERROR);
+  clients.OnCommand(Command(4, "stop", ""), 10 * kSecond, 100 * kSecond);
+  EXPECT_EQ(submitted_.size(), 3u);
+  clients.OnCommand(Command(1), 10 * kSecond, 100 * kSecond);  // asked after once more: answered as it stands
+  EXPECT_EQ(OneReply(clients).state, msgs::feedback::STATE_BUSY);
+  EXPECT_EQ(clients.figures(0).ignored, 1u);
+}
+
+// EN-33: heartbeats that waited longer than the lease keep nothing alive.
+TEST_F(ClientsTest, OldHeartbeatsRenewNothing) {
+  Clients clients = Make();
+  clients.OnCommand(Jog(1), 0);
+  clients.OnHeartbeat(Heartbeat(), kSecond, kSecond / 5);
+  EXPECT_EQ(Renewed().size(), 1u);
+  clients.OnHeartbeat(Heartbeat(), kSecond, kSecond / 3);
+  EXPECT_EQ(Renewed().size(), 1u);
+  EXPECT_EQ(clients.figures(0).ignored, 1u);
+}
+
 }  // namespace
 }  // namespace takt::lcm

@@ -149,12 +149,20 @@ TEST_F(DriveGateTest, EdgesComeBeforeTheSample) {
 
 TEST_F(DriveGateTest, OldOnesAndDoublesAreIgnored) {
   EXPECT_TRUE(Take(Answer(5, 7)));
-  ExpectRefused(Answer(5, 7), "cycle 5, sequence 7 after cycle 5, sequence 7: old, out of order or twice");
+  ExpectRefused(Answer(5, 7), "cycle 5 after cycle 5: old, out of order or twice");
   ExpectRefused(Answer(5, 8), "");
   ExpectRefused(Answer(4, 6), "");
-  ExpectRefused(Answer(6, 6), "");
   EXPECT_TRUE(Take(Answer(6, 9)));
   EXPECT_EQ(gate->answered(0), 6);
+}
+
+// EN-31: the sender's own numbers decide nothing: one message with the largest of them does not lock the drive out.
+TEST_F(DriveGateTest, NoSequenceLocksTheDriveOut) {
+  EXPECT_TRUE(Take(Answer(5, std::numeric_limits<std::int64_t>::max())));
+  EXPECT_TRUE(Take(Answer(6, 3)));
+  EXPECT_TRUE(Take(Answer(10, std::numeric_limits<std::int64_t>::max())));
+  Send(11);
+  EXPECT_TRUE(Take(Answer(11, std::numeric_limits<std::int64_t>::min())));
 }
 
 TEST_F(DriveGateTest, DoublesThatWereAskedForAreNoFault) {

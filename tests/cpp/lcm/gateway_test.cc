@@ -100,7 +100,8 @@ struct GatewayTest : testing::Test {
 // EN-22
 TEST_F(GatewayTest, CommandsAndHeartbeatsArriveMalformedBytesAreCounted) {
   ::lcm::LCM network("memq://");
-  Gateway gateway(network, clients);
+  const auto receiver = ReceiverOf(network);
+  Gateway gateway(*receiver, clients);
   const Bytes command = Encoded(Command(1, "x", "no_such_verb"));
   ASSERT_EQ(network.publish(kCommandChannel, command.data(), static_cast<unsigned>(command.size())), 0);
   std::vector<msgs::feedback> replies;
@@ -123,9 +124,10 @@ TEST_F(GatewayTest, CommandsAndHeartbeatsArriveMalformedBytesAreCounted) {
 
 TEST_F(GatewayTest, AnotherEngineOnTheNetworkIsSaidOnceInOneLine) {
   ::lcm::LCM network("memq://");
+  const auto receiver = ReceiverOf(network);
   testing::internal::CaptureStderr();
   {
-    Gateway gateway(network, clients);
+    Gateway gateway(*receiver, clients);
     msgs::machine_description machine{};
     machine.name = "other\nmachine";
     machine.run_id = kRunId;
@@ -185,7 +187,8 @@ TEST_F(GatewayTest, Fuzz) {
 // EN-22: the same through LCM itself.
 TEST_F(GatewayTest, FuzzThroughLcm) {
   ::lcm::LCM network("memq://");
-  Gateway gateway(network, clients);
+  const auto receiver = ReceiverOf(network);
+  Gateway gateway(*receiver, clients);
   Fuzz fuzz;
   for (int i = 0; i < 20'000; ++i) {
     const Bytes bytes = fuzz.Next();

@@ -149,8 +149,8 @@ TEST(LcmTypes, FlexCamStateSaysWhatTheDescriptionOfOutputsSays) {
 // EN-11
 TEST(LcmTypes, EngineStateSaysWhatTheDescriptionOfFiguresSays) {
   ExpectSameFields("engine_state.lcm", TypeOf<engine::EngineFigures>(),
-                   {"utime", "time_ns", "sequence", "run_id", "pace", "period_s", "malformed", "send_failures",
-                    "replies_dropped", "clients"});
+                   {"utime", "time_ns", "sequence", "run_id", "pace", "period_s", "malformed", "ignored",
+                    "send_failures", "replies_dropped", "clients"});
   ExpectSameFields("histogram.lcm", TypeOf<engine::Histogram>(), {});
 }
 

@@ -617,7 +617,7 @@ TEST(Messages, WrongLengthsAreRefused) {
   std::vector<std::uint8_t> longer = good;
   longer.push_back(0);
   EXPECT_FALSE(DecodeCommand(longer));
-  constexpr std::size_t kClientLength = 16;  // behind the fingerprint and run_id
+  constexpr std::size_t kClientLength = 24;  // behind the fingerprint, utime and run_id
   for (const std::uint32_t length : {0u, 1u, 4u, 6u, 0x7fff'ffffu, 0x8000'0000u, 0x8000'0001u, 0xffff'ffffu}) {
     std::vector<std::uint8_t> bad = good;
     for (std::size_t i = 0; i < 4; ++i) bad[kClientLength + i] = static_cast<std::uint8_t>(length >> (24 - 8 * i));

@@ -154,11 +154,12 @@ TEST(NetworkLog, SaysThatItsServerWentAway) {
 
 TEST(Network, IsHandledWhenItsServerIsGone) {
   Server server;
-  const Network network = OpenNetwork(server.url);
-  ASSERT_TRUE(network.lcm) << network.problem;
+  std::string problem;
+  const auto network = OpenReceiver(server.url, problem);
+  ASSERT_TRUE(network) << problem;
   server.GoAway();
   int heard = 0;
-  for (int i = 0; i < 10; ++i) heard = Handle(*network.lcm, 10);
+  for (int i = 0; i < 10; ++i) heard = network->Handle(10);
   EXPECT_LT(heard, 0);
 }
 
@@ -175,7 +176,30 @@ TEST(NetworkLog, LeavesAloneWhatIsBeingWritten) {
   Say(*client.lcm, 0, 20);
   EXPECT_TRUE(log->Close(20s));
   EXPECT_EQ(Said(place.path), Numbers(20));
-  EXPECT_TRUE(NetworkLog::Open(url, place.path, problem)) << problem;
+}
+
+// EN-36: a log that is there is kept, each under a name of its own.
+TEST(NetworkLog, ReplacesNoLog) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("takt_kept_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  const std::string path = (folder / "run.lcm").string(), url = NewUrl();
+  const Network client = OpenNetwork(url);
+  std::string problem, said;
+  for (int run = 1; run <= 3; ++run) {
+    testing::internal::CaptureStderr();
+    const auto log = NetworkLog::Open(url, path, problem);
+    said += testing::internal::GetCapturedStderr();
+    ASSERT_TRUE(log) << problem;
+    Say(*client.lcm, 0, 10 * run);
+    EXPECT_TRUE(log->Close(20s));
+  }
+  EXPECT_EQ(Said((folder / "run.1.lcm").string()), Numbers(10));
+  EXPECT_EQ(Said((folder / "run.2.lcm").string()), Numbers(20));
+  EXPECT_EQ(Said(path), Numbers(30));
+  const std::string kept = "log file " + path + " is there already: kept as " + (folder / "run.").string();
+  EXPECT_EQ(said, kept + "1.lcm\n" + kept + "2.lcm\n");
+  std::filesystem::remove_all(folder);
 }
 
 TEST(NetworkLog, SaysWhyNot) {

@@ -1,0 +1,27 @@
+// The receiver of udpm:// networks; see receiver.h.
+#pragma once
+
+#include <netinet/in.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "takt/lcm/receiver.h"
+
+namespace takt::lcm {
+
+struct UdpAddress {
+  in_addr group{};
+  std::uint16_t port = 0;
+  bool this_host_only = true;  // ttl 0
+  int buffer = 0;              // bytes of the socket's buffer; 0: as the system has it
+};
+// Of "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=1000000"; nothing: it is none.
+std::optional<UdpAddress> ParseUdp(const std::string& url);
+
+// Null: errno says why.
+std::unique_ptr<Receiver> OpenUdpReceiver(const UdpAddress& address);
+
+}  // namespace takt::lcm

@@ -1,0 +1,166 @@
+// What reads the network, at the socket.
+#include "takt/lcm/receiver.h"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <map>
+#include <numeric>
+#include <random>
+#include <thread>
+
+#include "packets.h"
+#include "takt/lcm/clock.h"
+#include "takt/lcm/network.h"
+#include "takt/lcm/udp_receiver.h"
+#include "test_machine.h"
+
+namespace takt::lcm {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A socket of which nobody knows what comes out.
+class Anybody {
+ public:
+  explicit Anybody(const std::string& url, const char* host = nullptr) {
+    const UdpAddress address = *ParseUdp(url);
+    to_.sin_family = AF_INET;
+    to_.sin_port = htons(address.port);
+    to_.sin_addr = address.group;
+    if (host != nullptr) inet_pton(AF_INET, host, &to_.sin_addr);
+    const unsigned char ttl = 0;
+    if (host == nullptr) setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
+  }
+  ~Anybody() { close(socket_); }
+  void Send(const Packet& packet) const {
+    sendto(socket_, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to_), sizeof to_);
+  }
+
+ private:
+  const int socket_ = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in to_{};
+};
+
+std::unique_ptr<Receiver> Open(const std::string& url) {
+  std::string problem;
+  auto receiver = OpenReceiver(url, problem);
+  EXPECT_TRUE(receiver) << problem;
+  return receiver;
+}
+
+// EN-30: liblcm sends, this hears, short and long ones.
+TEST(Receiver, HearsWhatLiblcmSends) {
+  const std::string url = NewUrl();
+  const auto receiver = Open(url);
+  std::map<std::string, std::size_t> heard;
+  receiver->Subscribe("takt/.*", Receiver::kAll, [&](const Heard& message) {
+    heard[message.channel] = message.data.size();
+    EXPECT_LT(std::abs(WallClockUs() - message.utime), 5'000'000);
+  });
+  receiver->Subscribe("takt/two", Receiver::kAll, [&](const Heard& message) {
+    heard["again"] = static_cast<std::size_t>(std::accumulate(message.data.begin(), message.data.end(), 0));
+  });
+  const Network sender = OpenNetwork(url);
+  Packet bytes(300'000, 1);
+  sender.lcm->publish("takt/one", bytes.data(), 5);
+  sender.lcm->publish("other", bytes.data(), 5);
+  sender.lcm->publish("takt/two", bytes.data(), static_cast<unsigned>(bytes.size()));
+  for (int i = 0; i < 200 && heard.size() < 3; ++i) receiver->Handle(50);
+  EXPECT_EQ(heard, (std::map<std::string, std::size_t>{{"takt/one", 5}, {"takt/two", 300'000}, {"again", 300'000}}));
+}
+
+// What waits beyond a subscription's capacity is dropped; others still get it.
+TEST(Receiver, KeepsToTheCapacity) {
+  const std::string url = NewUrl();
+  const auto receiver = Open(url);
+  int few = 0, all = 0;
+  receiver->Subscribe("c", 10, [&](const Heard&) { ++few; });
+  receiver->Subscribe("c", Receiver::kAll, [&](const Heard&) { ++all; });
+  const int gone = receiver->Subscribe("c", Receiver::kAll, [&](const Heard&) { ADD_FAILURE(); });
+  receiver->Unsubscribe(gone);
+  const Anybody sender(url);
+  for (std::uint32_t i = 0; i < 100; ++i) sender.Send(ShortPacket(i, "c", {1}));
+  std::this_thread::sleep_for(200ms);
+  while (receiver->Handle(50) > 0) {
+  }
+  EXPECT_EQ(few, 10);
+  EXPECT_EQ(all, 100);
+}
+
+// EN-25, EN-30: the socket has the group's address: what is sent to this host itself does not come in.
+TEST(Receiver, HearsTheGroupAlone) {
+  const std::string url = NewUrl();
+  const auto receiver = Open(url);
+  std::vector<std::string> heard;
+  receiver->Subscribe(".*", Receiver::kAll, [&](const Heard& message) { heard.push_back(message.channel); });
+  for (const char* host : {"127.0.0.1", "127.0.0.2"}) Anybody(url, host).Send(ShortPacket(1, "unicast", {1}));
+  Anybody(url).Send(ShortPacket(1, "group", {1}));
+  while (receiver->Handle(200) > 0) {
+  }
+  EXPECT_EQ(heard, std::vector<std::string>{"group"});
+}
+
+TEST(Receiver, ReadsUrls) {
+  EXPECT_TRUE(ParseUdp("udpm://239.255.76.67:7667")->this_host_only);
+  EXPECT_TRUE(ParseUdp("udpm://239.255.76.67:7667?ttl=0&recv_buf_size=1000")->this_host_only);
+  EXPECT_EQ(ParseUdp("udpm://239.255.76.67:7667?ttl=0&recv_buf_size=1000")->buffer, 1000);
+  EXPECT_FALSE(ParseUdp("udpm://239.255.76.67:7667?recv_buf_size=1000&ttl=1")->this_host_only);
+  for (const char* wrong : {"udpm://239.255.76.67", "udpm://239.255.76.67:0", "udpm://239.255.76.67:65536",
+                            "udpm://10.0.0.1:7667", "udpm://host:7667", "tcpq://127.0.0.1:7700", ""}) {
+    EXPECT_FALSE(ParseUdp(wrong)) << wrong;
+  }
+}
+
+// EN-30: several senders say all kinds of things; what is right among them still arrives. With TAKT_LONG by the
+// million.
+TEST(Receiver, FuzzAtTheSocket) {
+  const std::string url = NewUrl();
+  const auto receiver = Open(url + "&recv_buf_size=4194304");
+  std::mt19937 random(30);
+  const auto uniform = [&](std::uint32_t low, std::uint32_t high) {
+    return std::uniform_int_distribution<std::uint32_t>(low, high)(random);
+  };
+  std::uint64_t heard = 0, sent = 0, right = 0;
+  Packet data(5000);
+  std::iota(data.begin(), data.end(), std::uint8_t{0});
+  receiver->Subscribe("genuine", Receiver::kAll, [&](const Heard& message) {
+    ++heard;
+    right += std::ranges::equal(message.data, data) ? 1 : 0;
+  });
+  receiver->Subscribe(".*", 100, [](const Heard&) {});
+  const std::vector<std::unique_ptr<Anybody>> senders = [&] {
+    std::vector<std::unique_ptr<Anybody>> all;
+    for (int i = 0; i < 5; ++i) all.push_back(std::make_unique<Anybody>(url));
+    return all;
+  }();
+  const std::uint32_t rounds = std::getenv("TAKT_LONG") ? 1'000'000 : 4'000;
+  for (std::uint32_t round = 0; round < rounds; ++round) {
+    FragmentHeader header{uniform(0, 3), static_cast<std::uint32_t>(random()), static_cast<std::uint32_t>(random()),
+                          static_cast<std::uint16_t>(uniform(0, 3)), static_cast<std::uint16_t>(uniform(0, 4))};
+    if (uniform(0, 2) > 0) header.size = uniform(0, 100'000);
+    if (uniform(0, 2) > 0) header.offset = uniform(0, 100'000);
+    Packet packet = FragmentPacket(header, std::string(uniform(0, 70), static_cast<char>(uniform(1, 255))),
+                                   Packet(uniform(0, 3) == 0 ? uniform(0, 60'000) : uniform(0, 300), 0xab));
+    if (uniform(0, 3) == 0) packet.resize(uniform(0, static_cast<std::uint32_t>(packet.size())));
+    senders[uniform(1, 4)]->Send(packet);
+    if (round % 100 == 0) {
+      for (const Packet& fragment : Fragments(round, "genuine", data, 2000)) senders[0]->Send(fragment);
+      ++sent;
+      while (receiver->Handle(0) > 0) {
+      }
+      for (int i = 0; i < 100 && heard < sent; ++i) receiver->Handle(10);
+    }
+  }
+  EXPECT_EQ(heard, right);
+  EXPECT_GE(heard, sent * 9 / 10) << "of " << sent;  // a loaded host may lose some
+  EXPECT_GT(receiver->malformed(), rounds / 4);
+}
+
+}  // namespace
+}  // namespace takt::lcm
