@@ -4,6 +4,8 @@
 #include <random>
 #include <utility>
 
+#include "takt/lcm/udp_receiver.h"
+
 namespace takt::lcm {
 namespace {
 
@@ -25,7 +27,8 @@ std::unique_ptr<NetworkLog> NetworkLog::Open(const std::string& url, const std::
     problem = network.problem;
     return nullptr;
   }
-  std::unique_ptr<Receiver> receiver = OpenReceiver(url, problem);
+  // Where liblcm reads, one member does both.
+  std::unique_ptr<Receiver> receiver = ParseUdp(url) ? OpenReceiver(url, problem) : ReceiverOf(*network.lcm);
   if (!receiver) return nullptr;
   std::unique_ptr<LogOutlet> log = OpenLog(path, problem);
   if (!log) return nullptr;

@@ -16,7 +16,7 @@ struct UdpAddress {
   in_addr group{};
   std::uint16_t port = 0;
   bool this_host_only = true;  // ttl 0
-  int buffer = 0;              // bytes of the socket's buffer; 0: as the system has it
+  int buffer = 4 << 20;        // bytes of the socket's buffer, as far as the system allows
 };
 // Of "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=1000000"; nothing: it is none.
 std::optional<UdpAddress> ParseUdp(const std::string& url);
