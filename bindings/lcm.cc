@@ -58,12 +58,11 @@ class PythonReceiver {
   void Unsubscribe(int number) { receiver_->Unsubscribe(number); }
   void SetCapacity(int number, std::size_t capacity) { receiver_->SetCapacity(number, capacity); }
 
-  py::object Receive(double timeout_s) {
+  // Does not wait, and keeps the interpreter's lock: a thread that asks for the lock while the interpreter ends is
+  // unwound by force, which C++ answers by ending the process. Python waits for the file.
+  py::object Receive() {
     takers_.clear();
-    {
-      const py::gil_scoped_release others_go_on;
-      receiver_->Handle(static_cast<int>(timeout_s * 1000));
-    }
+    receiver_->Handle(0);
     if (takers_.empty()) return py::none();
     return py::make_tuple(takers_, channel_, py::bytes(data_));
   }
@@ -113,8 +112,8 @@ void BindLcm(py::module_& m) {
       .def("unsubscribe", &PythonReceiver::Unsubscribe, py::arg("number"))
       .def("set_capacity", &PythonReceiver::SetCapacity, py::arg("number"), py::arg("capacity"),
            "Of more messages that wait than this (0: any number) the newest are dropped from now on.")
-      .def("receive", &PythonReceiver::Receive, py::arg("timeout_s"),
-           "The next message, waiting so long at most: (numbers of subscriptions, channel, bytes), or None.")
+      .def("receive", &PythonReceiver::Receive,
+           "The next message that waits: (numbers of subscriptions, channel, bytes); None if there is none.")
       .def("fileno", &PythonReceiver::file, "Readable while messages wait.")
       .def_property_readonly("malformed", &PythonReceiver::malformed,
                              "Datagrams that were none of LCM's, or from elsewhere where only this host is heard.");

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import select
 import socket
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -90,7 +91,12 @@ class Network:
 
     def handle_timeout(self, timeout_ms: float) -> int:
         """Handles one message, waiting so long for it at most: how many there were."""
-        heard = self._receiver.receive(timeout_ms / 1000)
+        heard = self._receiver.receive()
+        if heard is None:
+            news = select.poll()
+            news.register(self._receiver.fileno(), select.POLLIN)
+            news.poll(max(0.0, timeout_ms))
+            heard = self._receiver.receive()
         if heard is None:
             return 0
         numbers, channel, data = heard

@@ -276,7 +276,10 @@ for name in sys.argv[1:]:
 def test_results_do_not_depend_on_the_cpu(name: str, tmp_path: Path) -> None:
     """EN-35: bit for bit, whatever the C library picks by what the CPU can do."""
     said = []
-    for less in ("", "-FMA,-AVX2,-FMA4,-AVX,-AVX512F", "-AVX2,-AVX512F"):
+    settings = ["", "-FMA,-AVX2,-FMA4,-AVX,-AVX512F"]
+    if os.environ.get("TAKT_LONG"):
+        settings.append("-AVX2,-AVX512F")
+    for less in settings:
         environment = os.environ | ({"GLIBC_TUNABLES": f"glibc.cpu.hwcaps={less}"} if less else {})
         environment["NPY_DISABLE_CPU_FEATURES"] = "AVX2 FMA3 AVX512F" if less else ""
         run = subprocess.run(
@@ -289,5 +292,5 @@ def test_results_do_not_depend_on_the_cpu(name: str, tmp_path: Path) -> None:
         )
         assert run.returncode == 0, run.stderr
         said.append(run.stdout)
-    assert said[0].endswith("None\n")
-    assert said[0] == said[1] == said[2]
+    assert "broken_off=None" in said[0]
+    assert len(set(said)) == 1
