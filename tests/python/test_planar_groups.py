@@ -183,12 +183,13 @@ def test_what_a_group_needs_to_be_enabled() -> None:
     """PL-30: all at rest, apart, and within the border; else it says who is not."""
     engine = Engine(
         ON_A_STATOR.replace("[{name: group}]", "[{name: group, movers: [mover, other], environment: environment}]")
-        .replace("[{name: mover}]", "[{name: mover}, {name: other, initial: {x: 110}}]")
+        .replace("[{name: mover}]", "[{name: mover}, {name: other, initial: {x: 250}}]")
         .replace("[{name: environment}]", "[{name: environment, stators: [{x: -120, y: -120}, {x: 120, y: -120}]}]")
     )
     mover, other, group = engine.mover("mover"), engine.mover("other"), engine.planar_group("group")
     engine.step()
     assert engine.environment("environment").border_count == 4
+    other.set_position(x=110, y=0).wait()
     refused = group.enable().wait_final()
     assert refused.error_id == 3024
     assert refused.object is other

@@ -1,14 +1,21 @@
 #include "takt/engine/load_parts.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "takt/core/angle.h"
 #include "takt/core/describe.h"
+#include "takt/core/scalar.h"
 #include "takt/core/yaml_reader.h"
 #include "takt/engine/components.h"
 #include "takt/mover/on_parts.h"
 #include "takt/part/params.h"
+#include "takt/planar/clearance.h"
 
 namespace takt::engine {
 
@@ -16,6 +23,14 @@ namespace {
 
 std::string At(const char* list, std::size_t i) {
   return std::string(list) + "[" + std::to_string(i) + "]";
+}
+
+// mm: rounding. What overlaps by less lies side by side.
+constexpr double kFlush = 1e-6;
+
+// Rounded up, so that it is never 0.
+std::string Micrometres(double mm) {
+  return FormatReal(std::ceil(mm * 1000) / 1000);
 }
 
 class Checker {
@@ -107,10 +122,11 @@ class Checker {
   }
 
   void CheckMovers(const planar::Parts& parts) {
+    std::vector<std::optional<planar::Spot>> spots;  // of the movers before; none: not known
     for (std::size_t i = 0; i < machine_.movers.size(); ++i) {
       const mover::MoverParams& mover = machine_.movers[i];
       const std::string path = At("movers", i);
-      planar::Spot at;
+      planar::Spot& at = spots.emplace_back(std::in_place).value();
       switch (
           mover::FindSpot(mover, parts, mover.reference, {{mover.initial.x, mover.initial.y}, mover.initial.c}, at)) {
         case ErrorId::kReference:
@@ -118,6 +134,7 @@ class Checker {
                                        ? "expected the name of the part or coordinate system of its place at the start"
                                        : "expected the name of a part or a coordinate system, found " +
                                              Quoted(mover.reference) + DidYouMean(mover.reference, References(parts)));
+          spots.back().reset();
           break;
         case ErrorId::kOffStators:
           Add(path + ".initial", "expected a place where all of the mover is on stators");
@@ -125,7 +142,22 @@ class Checker {
         default:
           break;
       }
+      for (std::size_t k = 0; k < i && spots.back(); ++k) {
+        if (spots[k]) CheckPair(k, *spots[k], i, at);
+      }
     }
+  }
+
+  // Two coordinate systems have nothing to do with each other.
+  void CheckPair(std::size_t k, const planar::Spot& at_k, std::size_t i, const planar::Spot& at_i) {
+    if (at_k.system != at_i.system) return;
+    const mover::MoverParams &one = machine_.movers[k], &other = machine_.movers[i];
+    const double apart =
+        planar::Separation({.place = at_k.origin, .direction = one.initial.c * kDegree}, {one.width, one.height},
+                           {.place = at_i.origin, .direction = other.initial.c * kDegree}, {other.width, other.height});
+    if (apart >= -kFlush) return;
+    Add(At("movers", i) + ".initial", "expected a place beside other movers, found " + Quoted(other.name) + " on " +
+                                          Quoted(one.name) + ": they overlap by " + Micrometres(-apart) + " mm");
   }
 
   static std::vector<std::string_view> References(const planar::Parts& parts) {

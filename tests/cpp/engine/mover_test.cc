@@ -87,6 +87,58 @@ TEST(MoverMachine, NeedsNoAxes) {
   EXPECT_TRUE(LoadMachine("name: plane\naxes: []\nmovers: [{name: one}]\n", "plane.yaml").machine.has_value());
 }
 
+// PL-87: a mover placed on another one is an error that names both and says by how much.
+TEST(MoverMachine, NoMoverIsPlacedOnAnother) {
+  const struct {
+    const char *one, *other, *by;  // by: nothing where they lie beside each other
+  } rows[] = {
+      {"initial: {x: 40, y: 7}", "initial: {x: 40, y: 7}", "113.0 mm"},
+      {"initial: {x: 40}", "initial: {x: 141.5}", "11.5 mm"},
+      {"initial: {x: 40}", "initial: {x: 153}", ""},
+      {"initial: {x: 40}", "initial: {x: 40, y: -113}", ""},
+      // A long one beside another, and turned across.
+      {"width: 240, initial: {x: 0}", "initial: {x: 150}", "26.5 mm"},
+      {"width: 240, initial: {x: 0, c: 90}", "initial: {x: 150}", ""},
+      // A corner turned towards a side reaches 79.903 mm from its middle; two sides at 45 deg clear at 79.903 mm in X
+      // and Y.
+      {"initial: {c: 45}", "initial: {x: 136}", "0.404 mm"},
+      {"initial: {c: 45}", "initial: {x: 136.5}", ""},
+      {"initial: {c: 45}", "initial: {x: 79.9, y: 79.9, c: 45}", "0.005 mm"},
+      {"initial: {c: 45}", "initial: {x: 79.91, y: 79.91, c: 45}", ""},
+  };
+  for (const auto& row : rows) {
+    const std::string text = std::string("name: plane\naxes: []\nmovers:\n  - {name: far, initial: {x: 5000}}\n") +
+                             "  - {name: one, " + row.one + "}\n  - {name: other, " + row.other + "}\n";
+    const LoadResult loaded = LoadMachine(text, "plane.yaml");
+    ASSERT_EQ(loaded.machine.has_value(), *row.by == '\0') << text;
+    if (loaded.machine) continue;
+    ASSERT_EQ(loaded.problems.size(), 1u);
+    EXPECT_THAT(loaded.problems.front(), HasSubstr("plane.yaml:6"));
+    EXPECT_THAT(loaded.problems.front(),
+                HasSubstr(std::string("found 'other' on 'one': they overlap by ") + row.by));
+  }
+}
+
+// PL-87: places count from parts; two coordinate systems have nothing to do with each other.
+TEST(MoverMachine, NoMoverIsPlacedOnAnotherAcrossParts) {
+  const std::string text = R"(
+name: halls
+axes: []
+coordinate_systems: [{name: below}, {name: above}]
+parts:
+  - {name: left, positions: [{coordinate_system: below}]}
+  - {name: right, positions: [{coordinate_system: below, x: 240}]}
+  - {name: top, positions: [{coordinate_system: above}]}
+movers:
+  - {name: one, reference: left, initial: {x: 180, y: 120}}
+  - {name: other, reference: right, initial: {x: 60, y: 120}}
+)";
+  EXPECT_EQ(ProblemOf(text, "x: 60,", "x: 60,"), "");
+  EXPECT_THAT(ProblemOf(text, "x: 60,", "x: 50,"), HasSubstr("'other' on 'one': they overlap by 3.0 mm"));
+  EXPECT_THAT(ProblemOf(text, "right, initial: {x: 60", "below, initial: {x: 180"), HasSubstr("overlap by 113.0 mm"));
+  EXPECT_EQ(ProblemOf(text, "right, initial: {x: 60", "top, initial: {x: 180"), "");
+}
+
 // EN-22, PL-02: every number made wrong is refused with a sentence.
 TEST(MoverMachine, BadNumbersAreRefusedAsText) {
   const Machine machine = PlaneMachine();

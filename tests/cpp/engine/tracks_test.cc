@@ -106,7 +106,7 @@ name: crossing
 axes: []
 movers:
   - {name: one, initial: {x: 500}}
-  - {name: two, initial: {x: 500, y: 60}}
+  - {name: two, initial: {x: 500, y: 120}}
 tracks:
   - {name: there, elements: [{from: {x: 0, y: 0}, to: {x: 2000, y: 0}}]}
   - name: back
@@ -119,6 +119,7 @@ planar_groups: [{name: cell, movers: [one, two], tracks: [there, back]}]
 )");
   for (const char* one : {"there", "back", "one", "two"}) rig.Do(one, "enable");
   EXPECT_EQ(rig.ErrorOf("one", "join_track", "{track: there}"), ErrorId::kNone);
+  EXPECT_EQ(rig.ErrorOf("two", "move_to_position", "{x: 500, y: 60}"), ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("two", "join_track", "{track: back}"), ErrorId::kNone);
   const FeedbackEvent refused = rig.Do("cell", "enable");
   EXPECT_EQ(refused.error, ErrorId::kCollision);
