@@ -313,6 +313,74 @@ def test_replay_is_the_same(tmp_path: Path) -> None:
     assert hashes[0] == hashes[1]
 
 
+# Where two movers of some size, turned by `c` against a straight track of some direction, touch: (width, height, c,
+# direction, mm). Sides flush; flush at 45 deg; corners beside sides at 30 deg and 20 deg.
+TOUCH = [
+    (113, 113, 0, 0, 113),
+    (155, 115, 0, 0, 155),
+    (155, 115, 90, 0, 115),
+    (120, 120, 0, 45, 169.706),
+    (120, 90, 0, 30, 138.565),
+    (120, 90, 0, 60, 103.924),
+]
+
+
+@pytest.mark.parametrize(("width", "height", "c", "direction", "least"), TOUCH)
+def test_no_gap_lets_movers_touch(width: float, height: float, c: float, direction: float, least: float) -> None:
+    """PL-81: a gap at which they would touch is refused with the least that would do; at that they go, and wait."""
+    along, across = np.cos(np.radians(direction)), np.sin(np.radians(direction))
+    size = f"width: {width}, height: {height}"
+    with Engine(f"""
+name: gap
+axes: []
+movers:
+  - {{name: behind, {size}, initial: {{c: {c}}}}}
+  - {{name: ahead, {size}, initial: {{x: {700 * along}, y: {700 * across}, c: {c}}}}}
+tracks:
+  - name: line
+    mover_width: {width}
+    mover_height: {height}
+    elements: [{{from: {{x: 0, y: 0}}, to: {{x: {900 * along}, y: {900 * across}}}}}]
+""") as engine:
+        behind, ahead = engine.mover("behind"), engine.mover("ahead")
+        engine.track("line").enable().wait()
+        for mover in (behind, ahead):
+            mover.enable().wait()
+            mover.join_track(track="line", use_orientation=False).wait()
+        for gap in (0, 0.5 * least, least - 0.01):
+            refused = behind.move_on_track(position=850, gap=gap).wait_final()
+            assert refused.error_id == 3051
+            assert refused.value == pytest.approx(least, abs=1e-3)
+            with pytest.raises(takt.CommandError, match=rf"touch at that gap: expected at least {least:.1f}"[:-2]):
+                refused.wait()
+        assert behind.track_position == 0
+        behind.move_on_track(position=850, gap=least + 0.001)
+        engine.run(3)
+        assert behind.track_position == pytest.approx(700 - least, abs=0.1)
+        assert behind.waits_for == 2
+
+
+def test_a_gap_that_is_not_given_grows_with_the_movers() -> None:
+    """PL-81: one of 260 mm behind one of 300 mm keeps more than the default of 200 mm, so that they never touch."""
+    with Engine("""
+name: large
+axes: []
+movers:
+  - {name: behind, width: 260, height: 260}
+  - {name: ahead, width: 300, height: 300, initial: {x: 900}}
+tracks: [{name: line, mover_width: 300, mover_height: 300, elements: [{from: {x: 0, y: 0}, to: {x: 1200, y: 0}}]}]
+""") as engine:
+        behind = engine.mover("behind")
+        engine.track("line").enable().wait()
+        for name in ("behind", "ahead"):
+            engine.mover(name).enable().wait()
+            engine.mover(name).join_track(track="line").wait()
+        behind.move_on_track(position=1000)
+        engine.run(3)
+        assert behind.gap == 300
+        assert behind.track_position == pytest.approx(600, abs=0.1)
+
+
 TWO_TRACKS = """
 name: two
 axes: []

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "takt/axis/following.h"
+#include "takt/core/scalar.h"
 #include "takt/core/yaml_reader.h"
 #include "takt/engine/components.h"
 #include "takt/engine/load_cams.h"
@@ -225,7 +226,16 @@ class CrossCheck {
   }
 
   void CheckMovers() {
-    for (std::size_t i = 0; i < machine_.movers.size(); ++i) CheckUnique("movers", i, machine_.movers[i].name);
+    for (std::size_t i = 0; i < machine_.movers.size(); ++i) {
+      const mover::MoverParams& mover = machine_.movers[i];
+      CheckUnique("movers", i, mover.name);
+      // However it is turned. One that is not written grows with the mover.
+      const double least = std::min(mover.width, mover.height);
+      const std::string path = "movers[" + std::to_string(i) + "]";
+      if (mover.gap >= least || !Written(path, ".gap")) continue;
+      Add(path + ".gap", "expected at least the smaller side of the mover, " + FormatReal(least) + " mm, found " +
+                             FormatReal(mover.gap) + " mm");
+    }
   }
 
   // Tracks, their geometry and their links.

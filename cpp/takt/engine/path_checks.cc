@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <string_view>
 
+#include "takt/core/scalar.h"
 #include "takt/environment/environments.h"
 #include "takt/group/survey.h"
 #include "takt/mover/command_mode.h"
@@ -47,6 +49,11 @@ std::string StatorSentence(double value) {
   const std::string why(text.empty() ? ErrorText(ErrorId::kStators) : text);
   const std::uint32_t stator = environment::StatorOf(value);
   return stator == 0 ? why : why + ", found with stator " + std::to_string(stator);
+}
+
+std::string GapSentence(double least) {
+  return std::string(ErrorText(ErrorId::kGapTooSmall)) + ": expected at least " +
+         FormatReal(std::ceil(least * 1000) / 1000) + " mm";
 }
 
 std::string ModeSentence(double value) {
@@ -228,6 +235,7 @@ std::string Sentence(const FeedbackEvent& event) {
                        event.error == ErrorId::kSingular || event.error == ErrorId::kPathGeometry;
   if (event.error == ErrorId::kTrackGeometry) return TrackSentence(event.value);
   if (event.error == ErrorId::kStators) return StatorSentence(event.value);
+  if (event.error == ErrorId::kGapTooSmall) return GapSentence(event.value);
   if (event.error == ErrorId::kCommandMode) return ModeSentence(event.value);
   const std::string text(ErrorText(event.error));
   return of_path && event.value > 0 ? text + InElement(static_cast<std::uint32_t>(event.value)) : text;

@@ -63,7 +63,7 @@ bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) no
       command);
   if (answer.status.failed()) {
     const bool by_mode = answer.status.error == ErrorId::kCommandMode;
-    const double value = by_mode ? static_cast<double>(s.mode) : 0;
+    const double value = by_mode ? static_cast<double>(s.mode) : answer.value;
     Report(c, ticket, FeedbackState::kError, answer.status.error, value, s, answer.object);
     return false;
   }

@@ -20,13 +20,16 @@ struct Given {
 // What becomes of it.
 struct Answer {
   Status status;
-  double value = 0;     // s that it takes, as planned
+  double value = 0;     // s that it takes, as planned; refused: what the error says of it
   bool goes_on = true;  // it is done later
   ObjectInfo object{};  // that is in the way
 };
 
 inline Answer Refused(ErrorId error, const ObjectInfo& object = {}) noexcept {
   return {.status = Status::Failed(error), .object = object};
+}
+inline Answer RefusedGap(double least) noexcept {
+  return {.status = Status::Failed(ErrorId::kGapTooSmall), .value = least, .object = {}};
 }
 inline Answer Done() noexcept {
   return {Status::Ok(), 0, false};
@@ -68,6 +71,9 @@ bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) no
 // Whether a mover may go along these tracks now; and then it does.
 planar::Verdict AskRoute(const Context& c, const planar::Route& route) noexcept;
 void TakeRoute(const Context& c, const planar::Route& route) noexcept;
+// The least gap, mm, at which it and those that are on its route now would not touch, turned as it will be, where the
+// tracks of that begin and end, and where it is.
+double LeastGap(const Context& c, const State& s, const planar::Rider& rider) noexcept;
 // Sends a mover on its way as `command` asks; not yet with its dynamics.
 planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept;
 planar::Way WayOf(TurnDirection direction) noexcept;

@@ -112,12 +112,14 @@ Answer Couple(const Given& g, const Gear& command, Rider& next, std::uint32_t ax
   if (const planar::Verdict way = AskRoute(g.c, next.route); way.error != ErrorId::kNone) {
     return Refused(way.error, way.object);
   }
+  const double least = LeastGap(g.c, s, next);
+  if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);
   next.aim = planar::Aim::kFollow;
   next.planned = next.there = false;
   next.waits = planar::Waits::kNot;
   next.waits_for = kNobody;
   next.pace = {LimitsOf(command, g.c.params.xy, s.limited_by), g.c.params.lateral_acceleration};
-  next.gap = command.gap.value_or(g.c.params.gap);
+  next.gap = command.gap.value_or(std::max(g.c.params.gap, least));
   next.gear.tolerance = command.in_sync_tolerance;
   next.gear.sense = SenseOf(command.allowed_slave_sync_directions);
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);

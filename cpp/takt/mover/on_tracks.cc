@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/core/angle.h"
 #include "takt/mover/admission.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/follow.h"
 #include "takt/mover/on_parts.h"
+#include "takt/planar/clearance.h"
 #include "takt/planar/nearest.h"
 
 namespace takt::mover {
@@ -77,7 +79,7 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   rider.off = ReachOf(g.c, s);
   rider.route.tracks[0] = track;
   rider.route.count = 1;
-  rider.gap = rider.zone = g.c.params.gap;
+  rider.gap = rider.zone = std::max(g.c.params.gap, LeastGap(g.c, s, rider));
   rider.pace = {StandardOf(g.c.params.xy), g.c.params.lateral_acceleration};
   const Limits most = g.c.params.xy.maximum.limits();
   rider.brakes = {most.deceleration, most.jerk};
@@ -123,6 +125,28 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
   return answer;
 }
 
+double LeastGap(const Context& c, const State& s, const planar::Rider& rider) noexcept {
+  planar::Footprint largest{c.params.width, c.params.height};
+  for (std::size_t k = 0; k < c.streets.riders.size(); ++k) {
+    const planar::Rider& other = c.streets.riders[k];
+    if (!other.on || !rider.route.Contains(other.route.first())) continue;
+    const planar::Footprint& its = c.grounds.movers[k].mover;
+    largest = {std::max(largest.width, its.width), std::max(largest.height, its.height)};
+  }
+  const double turned = s.others.back().profile.end().position * kDegree;
+  double least = 0;
+  const auto look = [&](std::uint32_t track, double at) {
+    const planar::TrackPoint point = planar::At(*c.streets.network[track].track, at);
+    least = std::max(least, planar::ClearGap(largest, turned - point.direction));
+  };
+  look(rider.route.first(), rider.at.position);
+  for (const std::uint32_t track : rider.route.all()) {
+    look(track, 0);
+    look(track, c.streets.network[track].length);
+  }
+  return least;
+}
+
 planar::Verdict AskRoute(const Context& c, const planar::Route& route) noexcept {
   for (const std::uint32_t on : route.all()) {
     if (!c.streets.tracks[on].enabled) return {ErrorId::kTrackDisabled, TrackOf(on)};
@@ -160,8 +184,10 @@ Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
   if (const planar::Verdict way = FindWay(g.c, command, s, next); way.error != ErrorId::kNone) {
     return Refused(way.error, way.object);
   }
+  const double least = LeastGap(g.c, s, next);
+  if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);
   next.pace = {LimitsOf(command, g.c.params.xy, s.limited_by), g.c.params.lateral_acceleration};
-  next.gap = command.gap.value_or(g.c.params.gap);
+  next.gap = command.gap.value_or(std::max(g.c.params.gap, least));
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);
   g.c.rider() = next;

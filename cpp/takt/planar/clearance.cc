@@ -155,6 +155,10 @@ class ConflictSearch {
 
 }  // namespace
 
+double ClearGap(const Footprint& mover, double turn) noexcept {
+  return std::min(mover.width / std::abs(std::cos(turn)), mover.height / std::abs(std::sin(turn)));
+}
+
 double Separation(const TrackPoint& a, const Footprint& on_a, const TrackPoint& b, const Footprint& on_b) noexcept {
   return Separation(BoxOf(a, on_a), BoxOf(b, on_b));
 }

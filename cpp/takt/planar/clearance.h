@@ -25,6 +25,10 @@ struct Range {
 // Signed distance of two movers: below 0, how far one has to be moved so that they only touch. mm.
 double Separation(const TrackPoint& a, const Footprint& on_a, const TrackPoint& b, const Footprint& on_b) noexcept;
 
+// From middle to middle along a straight track: so far apart two movers, both turned against it by `turn` (rad), clear
+// each other. mm
+double ClearGap(const Footprint& mover, double turn) noexcept;
+
 // Where on `a` a mover comes nearer than `clearance` to a mover somewhere on `b`, in order. Never too little; too much
 // only where they come nearer than `clearance` + `resolution` (mm, 0.001 or more). Allocates; not for the cycle.
 std::vector<Range> Conflicts(const Track& a, const Footprint& on_a, const Track& b, const Footprint& on_b,

@@ -114,8 +114,7 @@ TEST(MoverMachine, NoMoverIsPlacedOnAnother) {
     if (loaded.machine) continue;
     ASSERT_EQ(loaded.problems.size(), 1u);
     EXPECT_THAT(loaded.problems.front(), HasSubstr("plane.yaml:6"));
-    EXPECT_THAT(loaded.problems.front(),
-                HasSubstr(std::string("found 'other' on 'one': they overlap by ") + row.by));
+    EXPECT_THAT(loaded.problems.front(), HasSubstr(std::string("found 'other' on 'one': they overlap by ") + row.by));
   }
 }
 
@@ -137,6 +136,18 @@ movers:
   EXPECT_THAT(ProblemOf(text, "x: 60,", "x: 50,"), HasSubstr("'other' on 'one': they overlap by 3.0 mm"));
   EXPECT_THAT(ProblemOf(text, "right, initial: {x: 60", "below, initial: {x: 180"), HasSubstr("overlap by 113.0 mm"));
   EXPECT_EQ(ProblemOf(text, "right, initial: {x: 60", "top, initial: {x: 180"), "");
+}
+
+// PL-81: no gap may be smaller than the mover, however it is turned; one that is not written grows with it.
+TEST(MoverMachine, NoGapIsSmallerThanTheMover) {
+  const std::string text = "name: plane\naxes: []\nmovers:\n  - {name: one, width: 150, height: 230, gap: 155}\n";
+  EXPECT_EQ(ProblemOf(text, "gap: 155", "gap: 150"), "");
+  EXPECT_EQ(ProblemOf(text, "230, gap: 155", "230"), "");
+  EXPECT_EQ(ProblemOf(text, "150, height: 230, gap: 155", "250, height: 230"), "");
+  EXPECT_THAT(
+      ProblemOf(text, "gap: 155", "gap: 149.5"),
+      HasSubstr("test.yaml:4:47: movers[0].gap: expected at least the smaller side of the mover, 150.0 mm, found "
+                "149.5 mm"));
 }
 
 // EN-22, PL-02: every number made wrong is refused with a sentence.

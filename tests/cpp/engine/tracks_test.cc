@@ -74,8 +74,8 @@ TEST(TracksInGroups, HaveMoversAsNearAsTheirGapsLetThem) {
 name: near
 axes: []
 movers:
-  - {name: a, initial: {x: 300}, gap: 113.5}
-  - {name: b, initial: {x: 900}, gap: 113.5}
+  - {name: a, initial: {x: 300}, gap: 117}
+  - {name: b, initial: {x: 900}, gap: 117}
   - {name: beside, initial: {x: 450, y: 200}}
 tracks: [{name: main, elements: [{from: {x: 0, y: 0}, to: {x: 1500, y: 0}}]}]
 planar_groups: [{name: cell, movers: [a, b, beside], tracks: [main]}]
@@ -86,7 +86,7 @@ planar_groups: [{name: cell, movers: [a, b, beside], tracks: [main]}]
     EXPECT_EQ(rig.ErrorOf(one, "move_c", "{position: 15}"), ErrorId::kNone);
   }
   // Its corners come to lie beside those of the other.
-  EXPECT_EQ(rig.ErrorOf("b", "move_on_track", "{position: 413.5}"), ErrorId::kNone);
+  EXPECT_EQ(rig.ErrorOf("b", "move_on_track", "{position: 417}"), ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("cell", "disable"), ErrorId::kNone);
   EXPECT_EQ(rig.Do("cell", "enable").error, ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("b", "remove_from_group"), ErrorId::kNone);
