@@ -490,3 +490,35 @@ def test_replay_is_the_same() -> None:
         engine.run(1)
         hashes.append(engine.state_hash)
     assert hashes[0] == hashes[1]
+
+
+@pytest.mark.parametrize(("allowed", "begin", "end"), [("positive", 620, 480), ("negative", 300, 470)])
+def test_who_waits_for_an_axis_says_so(allowed: str, begin: float, end: float) -> None:
+    """PL-84: its place behind the axis is where it may not go; it stands until the axis brings that, and says why."""
+    with Engine(f"""
+name: waits
+axes: [{AXIS}]
+movers: [{{name: mover, initial: {{x: {begin}}}}}]
+tracks: [{{name: track, elements: [{{from: {{x: 0, y: 0}}, to: {{x: 900, y: 0}}}}]}}]
+""") as engine:
+        mover, axis = engine.mover("mover"), engine.axis("axis")
+        engine.track("track").enable().wait()
+        mover.enable().wait()
+        mover.join_track(track="track").wait()
+        axis.power().wait()
+        begun = engine.cycle
+        mover.gear_in_pos_on_track(
+            master="axis",
+            master_sync_position=0,
+            slave_sync_position=end,
+            allowed_slave_sync_directions=allowed,
+        )
+        engine.run(1)
+        assert (mover.delay, mover.waits_for, mover.in_sync) == ("master", 0, False)
+        assert begun <= mover.delay_since < begun + 5
+        assert mover.track_position == begin
+        way = begin - end + (20 if allowed == "positive" else -20)
+        axis.move_relative(distance=way, velocity=100, acceleration=100, deceleration=100, jerk=100).wait()
+        engine.run(2)
+        assert (mover.delay, mover.delay_since, mover.in_sync) == ("none", 0, True)
+        assert mover.track_position == pytest.approx(end + way, abs=1e-6)

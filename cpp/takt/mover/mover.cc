@@ -182,6 +182,19 @@ void Watch(const Context& c, const Inputs& inputs, State& s) {
   if (!(off <= *c.params.deviation)) Fail(c, ErrorId::kMoverDeviation, s);
 }
 
+Delay DelayOf(planar::Waits waits) {
+  switch (waits) {
+    case planar::Waits::kMover:
+      return Delay::kMover;
+    case planar::Waits::kRoute:
+      return Delay::kTrackEnd;
+    case planar::Waits::kMaster:
+      return Delay::kMaster;
+    default:
+      return Delay::kNone;
+  }
+}
+
 // Why the mover does not go on.
 void PublishDelay(const Context& c, const State& s, Outputs& out) {
   const planar::Rider& rider = c.rider();
@@ -190,7 +203,7 @@ void PublishDelay(const Context& c, const State& s, Outputs& out) {
     out.delay = for_time ? Delay::kTime : Delay::kRelease;
     out.delay_since = s.begun[kWait];
   } else if (IsOnTrack(s) && rider.waits != planar::Waits::kNot) {
-    out.delay = rider.waits == planar::Waits::kMover ? Delay::kMover : Delay::kTrackEnd;
+    out.delay = DelayOf(rider.waits);
     out.delay_since = rider.waits_since;
   }
 }

@@ -11,6 +11,7 @@ void describe(Enumeration<Delay>& e) {
   e.value(Delay::kTrackEnd, "track_end", "Its way ends here.");
   e.value(Delay::kTime, "time", "It is told to wait for some time.");
   e.value(Delay::kRelease, "release", "It is told to wait for a release.");
+  e.value(Delay::kMaster, "master", "It waits for its master, an axis, to come where it may go.");
 }
 
 void describe(Description<Outputs>& d) {

@@ -18,6 +18,7 @@ enum class Delay : std::uint8_t {
   kTrackEnd,  // its way ends here
   kTime,      // a wait for some time
   kRelease,   // one for a release
+  kMaster,    // the axis that it follows is where it may not go
 };
 
 struct Outputs {

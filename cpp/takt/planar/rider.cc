@@ -30,6 +30,7 @@ void describe(Enumeration<Waits>& e) {
   e.value(Waits::kNot, "not", "It does, or has nothing to do.");
   e.value(Waits::kMover, "mover", "Another mover is in its way.");
   e.value(Waits::kRoute, "route", "Its route ends here.");
+  e.value(Waits::kMaster, "master", "Its master, an axis, is where it may not go.");
 }
 
 void describe(Description<Brakes>& d) {

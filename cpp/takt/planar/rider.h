@@ -27,8 +27,9 @@ enum class Aim : std::uint8_t {
 // Why a mover does not go on.
 enum class Waits : std::uint8_t {
   kNot,
-  kMover,  // for a mover before it, or at a node
-  kRoute,  // its route ends here
+  kMover,   // for a mover before it, or at a node
+  kRoute,   // its route ends here
+  kMaster,  // for its master, an axis, to come where it may go
 };
 
 struct Rider {

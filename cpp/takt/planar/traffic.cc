@@ -153,7 +153,7 @@ class Traffic::Step_ {
   // Its master's place is where it may not go: that has to come.
   static bool AwaitsMaster(const Rider& r, const KinematicState& demand) {
     const bool may = r.gear.was_in_step || r.gear.sense * (demand.position - r.at.position) >= -kTolerance;
-    return r.gear.master != kNobody && Rests(r.at) && !may;
+    return Rests(r.at) && !may;
   }
 
   // It gets into step from behind and may not come back, so it must not pass its master's place.
@@ -338,7 +338,9 @@ class Traffic::Step_ {
     const bool limited = mean > most + 1e-9 && !(was_free && GoesAlong(w_, i, wish, limit));
     if (!limited && !(comes && Passes(r, wish, demand)) && Take(i, wish)) {
       if (r.aim == Aim::kTarget && r.plan_ends && r.plan_time >= r.plan.duration()) r.there = true;
-      if (follows && AwaitsMaster(r, demand)) return WaitFor(r, Waits::kMover, r.gear.master);
+      if (follows && AwaitsMaster(r, demand)) {
+        return WaitFor(r, r.gear.master == kNobody ? Waits::kMaster : Waits::kMover, r.gear.master);
+      }
       return WaitFor(r, Waits::kNot, kNobody);
     }
     r.planned = false;

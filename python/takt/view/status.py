@@ -203,9 +203,8 @@ def _mover(v: Values, name_of: NamesOf, more: list[str], waits: list[str]) -> in
         if v["deadlocked"]:
             waits.append("and that one for it: deadlocked")
     elif delay != "none":
-        waits.append(
-            {"track_end": "at the end of its track", "time": "stays for a time"}.get(delay, "waits to be released")
-        )
+        words = {"track_end": "at the end of its track", "time": "stays for a time", "master": "waits for its master"}
+        waits.append(words.get(delay, "waits to be released"))
     return int(v["delay_since"]) if waits else 0
 
 
