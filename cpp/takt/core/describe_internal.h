@@ -21,7 +21,9 @@ struct MemberPointer<V C::*> {
 // The last identifier of what the compiler says `parameter` stands for in the signature `pretty`.
 constexpr std::string_view LastName(std::string_view pretty, std::string_view parameter) {
   pretty.remove_prefix(pretty.find(parameter) + parameter.size());
-  pretty = pretty.substr(0, pretty.find_first_of(";])"));
+  pretty = pretty.substr(0, pretty.find_first_of(";]"));
+  if (pretty.ends_with(')'))
+    pretty.remove_suffix(1);  // GCC's (& Class::member); Clang has (anonymous namespace) before
   const std::size_t colon = pretty.rfind(':');
   return colon == std::string_view::npos ? pretty : pretty.substr(colon + 1);
 }

@@ -166,7 +166,8 @@ void describe(Description<MoveOnTrack>& d) {
   d.required<&M::position>(unit::mm, kPlaces, "Where to stop, along the track.");
   d.defaulted<&M::track>("Name of the track on which the target lies; unset: that where the mover is.");
   d.defaulted<&M::gap>(unit::mm, between(0, 1e5),
-                       "From its centre to that of the mover ahead, along the track, from now on; unset: the mover's.");
+                       "From its centre to that of the mover ahead, along the track, from now on; unset: the mover's, "
+                       "or the least at which the two do not touch where that is more.");
   d.defaulted<&M::direction>(
       "non_modulo: on a closed loop turns count, elsewhere forwards, or back on its own track; positive and negative: "
       "only that way; shortest_way: on a closed loop.");

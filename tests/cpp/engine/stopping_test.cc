@@ -89,6 +89,7 @@ TEST(Overruns, AStallCountsItsPeriods) {
     machine.cycle.overruns_in_a_row = 5;
     Engine engine(machine);
     engine.Submit(ToAxis(machine, "y1", axis::Power{}));
+    engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
     for (int i = 0; i < 300; ++i) engine.RunCycle(good);
     engine.Submit(ToAxis(machine, "y1", axis::MoveVelocity{.velocity = 400}));
     for (int i = 0; i < 300; ++i) engine.RunCycle(good);
