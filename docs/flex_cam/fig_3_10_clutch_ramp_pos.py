@@ -36,7 +36,7 @@ def verify(recording: takt.Recording) -> None:
     x, slave = turns(on), on["slave"]["set_position"]
     meets("the slave before 320°", slave[x < 320], -50)
     meets("the slave from 420° on", slave[x > 420], stroke(x[x > 420]))
-    begin = x[x >= 320][0]
+    begin = 320
     curve = (x >= begin) & (x <= 420)
     slope = 100 / 180 * 30 * (1 / 3) ** 2 * (2 / 3) ** 2
     bend = 100 / 180**2 * 60 / 3 * (2 / 3) * (1 / 3)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from takt._commands import FlexCamCommands, FlexCamOutputs
 from takt.axis import Axis
+from takt.belt import Belt
 from takt.component import Component
+from takt.mover import Mover
 
 
 class FlexCam(Component, FlexCamCommands, FlexCamOutputs):
@@ -21,7 +23,10 @@ class FlexCam(Component, FlexCamCommands, FlexCamOutputs):
         return self.session.axis(self.parameters["slave"])
 
     @property
-    def master(self) -> Component | None:
-        """The axis or other component that it follows; None: a virtual one."""
+    def master(self) -> Axis | Belt | Mover | None:
+        """The axis, belt or mover that it follows; None: a virtual master."""
         name = self.parameters.get("master")
-        return None if name is None else self.session.components[name]
+        if name is None:
+            return None
+        named: dict[str, Axis | Belt | Mover] = {**self.session.axes, **self.session.belts, **self.session.movers}
+        return named[name] if name in named else named[name.rpartition(".")[0]]

@@ -101,11 +101,21 @@ bool GoesOn(const State& s) {
          FollowsTable(s.active.kind) || s.motion.profile.end().velocity != 0;
 }
 
+// Whether the ramp for faults leads out of the SW limits from here, in the sense of the motion.
+bool StopsBeyond(const Context& c, const KinematicState& before, const State& s) {
+  const double stop = trajectory::StopPosition(s.setpoint, WithFaultRamp(c, s));
+  const AxisLimits& limits = c.params.limits;
+  return (limits.upper && stop > *limits.upper && s.setpoint.position > before.position) ||
+         (limits.lower && stop < *limits.lower && s.setpoint.position < before.position);
+}
+
 // Takes a set point back from which the axis could not stop in time, and brakes instead.
 void GuardLimits(const Context& c, const KinematicState& before, State& s) {
   if (s.superimposed) return;  // the limits are those of both motions together
   const bool positions_count = s.plc != PlcState::kErrorStop && s.plc != PlcState::kHoming;
-  if (!positions_count || !GoesOn(s) || CanStopInside(c.params, before, s.setpoint)) return;
+  if (!positions_count || !GoesOn(s)) return;
+  const bool early = s.fault_ramp.leaves_limits && IsGuided(s) && StopsBeyond(c, before, s);
+  if (!early && CanStopInside(c.params, before, s.setpoint)) return;
   const bool upwards = s.setpoint.position > before.position;
   s.setpoint = before;
   Fail(c, upwards ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
@@ -367,11 +377,13 @@ void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
   const bool soft_limit = error == ErrorId::kSoftLimitPositive || error == ErrorId::kSoftLimitNegative;
   if (IsGuided(s) && s.guidance.brakes_with_others && !opens && !soft_limit) return Enter(s, PlcState::kErrorStop);
   if (s.plc != PlcState::kErrorStop) {
+    const bool has_ramp = IsGuided(s) && s.fault_ramp.deceleration > 0;  // of the component in control
+    const trajectory::Limits braking = FaultLimits(c, s);
     EndActive(c, FeedbackState::kError, error, s);
     AbortBuffer(c, s);
     AbortOverlay(c, FeedbackState::kError, error, s);
     Enter(s, PlcState::kErrorStop);
-    if (!opens) BrakeInFault(c, error, s);
+    if (!opens) has_ramp ? Brake(c, braking, FromCycleBefore(c), s) : BrakeInFault(c, error, s);
   }
   if (!opens) return;
   if (IsGuided(s)) s.active = Request{};

@@ -1,5 +1,8 @@
 #include "takt/axis/guidance.h"
 
+#include <algorithm>
+
+#include "takt/axis/fit.h"
 #include "takt/axis/following.h"
 #include "takt/axis/sequence.h"
 #include "takt/core/describe.h"
@@ -61,6 +64,26 @@ void FollowGuidance(const Context& c, State& s) noexcept {
       Chase({own, c.planner, own, c.cycle.period_s}, trajectory::ChaseMode::kPosition, s.setpoint, demand, chase);
   s.limited_by = Beyond(own, demand, chase.in_step);
   if (!AtRest(s)) s.motion.arrived_cycle = c.cycle.count;
+}
+
+trajectory::Limits WithFaultRamp(const Context& c, const State& s) noexcept {
+  trajectory::Limits limits = c.params.planner_limits();
+  if (s.fault_ramp.deceleration == 0) return limits;
+  limits.deceleration = std::min(limits.deceleration, s.fault_ramp.deceleration);
+  limits.jerk = limits.jerk > 0 ? std::min(limits.jerk, s.fault_ramp.jerk) : s.fault_ramp.jerk;
+  return limits;
+}
+
+trajectory::Limits FaultLimits(const Context& c, const State& s) noexcept {
+  const trajectory::Limits limits = WithFaultRamp(c, s);
+  return Inside(c.params.limits, trajectory::StopPosition(s.setpoint, limits)) ? limits : c.params.planner_limits();
+}
+
+void describe(Description<FaultRamp>& d) {
+  d.about("The ramp on which an axis brakes after a fault.");
+  d.internal<&FaultRamp::deceleration>(unit::u_s2, "0: the axis' own.");
+  d.internal<&FaultRamp::jerk>(unit::u_s3, "Of it.");
+  d.internal<&FaultRamp::leaves_limits>("The demand is known to leave the SW limits.");
 }
 
 void describe(Description<GuidanceState>& d) {

@@ -6,6 +6,7 @@
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
 #include "takt/trajectory/chase.h"
+#include "takt/trajectory/limits.h"
 
 namespace takt::axis {
 
@@ -22,15 +23,29 @@ struct GuidanceState {
   bool brakes_with_others = false;
 };
 
+// Ramp on which an axis brakes after a fault, where a component has set one.
+struct FaultRamp {
+  double deceleration = 0;  // u/s²; 0: the axis' own
+  double jerk = 0;          // u/s³
+  // The demand is known to leave the SW limits: the axis brakes in time for this ramp. Else its own limits bring it to
+  // rest inside, and only where the demand does not turn before.
+  bool leaves_limits = false;
+};
+
 // Puts the component in control; what was in control is aborted. From the next Move on the axis follows `demand`, which
 // begins as the axis moves now. Refuses like a command: kErrorStop, kPowerOff, kAxisStopping, kNoConstants, kState.
 Status Guide(const Context& c, State& s) noexcept;
 bool IsGuided(const State& s) noexcept;
 // The component lets go: an axis that moves comes to rest.
 void LetGoOfGuidance(const Context& c, State& s) noexcept;
+// The axis' own limits, with the ramp for faults where there is one.
+trajectory::Limits WithFaultRamp(const Context& c, const State& s) noexcept;
+// The same; the axis' own limits where that ramp would end beyond the SW limits.
+trajectory::Limits FaultLimits(const Context& c, const State& s) noexcept;
 // The next set point of a guided axis.
 void FollowGuidance(const Context& c, State& s) noexcept;
 
 void describe(Description<GuidanceState>&);
+void describe(Description<FaultRamp>&);
 
 }  // namespace takt::axis

@@ -147,6 +147,7 @@ struct State {
   Motion motion;
   CouplingState coupling;
   GuidanceState guidance;
+  FaultRamp fault_ramp;
   TimeTableState time_table;
 
   Dormant dormant;

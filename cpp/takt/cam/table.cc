@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/cam/roots.h"
+
 namespace takt::cam {
 
 namespace {
@@ -32,6 +34,14 @@ Table::Table(CamParams source, std::span<const double> begins, std::span<const C
   for (std::size_t i = 1; i < before_.size(); ++i) before_[i] += before_[i - 1];
   first_ = ValueOf(curves.front(), 0);
   last_ = ValueOf(curves.back(), end - begins.back());
+  lowest_ = highest_ = first_.y;
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Curve curve = CurveOf(i);
+    for (const double d : ExtremePlaces(curve, EndOf(i) - BeginOf(i))) {
+      lowest_ = std::min(lowest_, curve.At(d));
+      highest_ = std::max(highest_, curve.At(d));
+    }
+  }
   last_.y = source_.segments.empty() ? source_.points.back().y : source_.segments.back().to.y;
 }
 

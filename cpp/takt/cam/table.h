@@ -26,6 +26,8 @@ class Table {
   double begin() const noexcept { return begin_; }               // x, master's unit
   double end() const noexcept { return end_; }                   // x
   double length() const noexcept { return end_ - begin_; }       // of a cycle, master's unit
+  double lowest() const noexcept { return lowest_; }             // y
+  double highest() const noexcept { return highest_; }           // y
   double stroke() const noexcept { return last_.y - first_.y; }  // slave's unit, At(end()).y - At(begin()).y
 
   // O(1): what it costs does not depend on the number of points, as long as they do not crowd together (CAM-04). No
@@ -60,6 +62,7 @@ class Table {
 
   double begin_ = 0;
   double end_ = 0;
+  double lowest_ = 0, highest_ = 0;
   double buckets_per_x_ = 0;
   Value first_, last_;
   std::vector<Piece> pieces_;

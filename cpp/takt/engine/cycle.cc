@@ -391,7 +391,10 @@ void StepOnce(World& w, std::size_t group) {
 }
 
 void StepBelts(World& w, std::span<const std::uint32_t> belts) {
-  for (const std::uint32_t i : belts) conveyor::Step(ContextOf(w, w.belts[i]), w.belt_states[i]);
+  for (const std::uint32_t i : belts) {
+    conveyor::Step(ContextOf(w, w.belts[i]), w.belt_states[i]);
+    ShowBelt(w, i);
+  }
 }
 
 // All movers: behind the axes that they follow, before those that follow them.

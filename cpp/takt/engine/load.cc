@@ -152,7 +152,11 @@ class CrossCheck {
       }
       CheckReference(path + ".slave", module.slave, slaves);
       std::vector<std::string_view> any;
-      if (module.master) CheckReference(path + ".master", *module.master, any);
+      const std::vector<std::string> masters = MasterNames(machine_);
+      const std::vector<std::string_view> views(masters.begin(), masters.end());
+      if (module.master) {
+        CheckReference(path + ".master", *module.master, any, views, "axis, a belt or a mover");
+      }
       for (const axis::AxisParams& axis : machine_.axes) {
         if (axis.name == module.slave && axis.follows) {
           Add(path + ".slave", "expected an axis that does not follow another, found " + Quoted(module.slave));

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "takt/engine/carriers.h"
+#include "takt/engine/mover_masters.h"
 
 namespace takt::engine {
 
@@ -15,13 +16,14 @@ enum class Belts : std::uint8_t { kFirst, kAnywhere };
 
 // The n-th that is seen is what is looked for.
 struct Nth {
+  const World& world;
   std::uint32_t n;
   std::uint32_t movers;  // the number of all of them
   std::optional<std::uint32_t> found{};
 
-  // Masters that are no axes are movers.
   void See(std::uint32_t master) {
-    if (!found && master != axis::kNoAxis && n-- == 0) found = std::min(master, movers);
+    const std::uint32_t first = StepsBefore(world, master);
+    if (!found && first != axis::kNoAxis && n-- == 0) found = first;
   }
 };
 
@@ -95,7 +97,7 @@ std::optional<std::uint32_t> MasterOfMovers(const World& w, Nth nth, const Wante
 // of the group that it follows itself. Last come those of `wanted`.
 std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted,
                                       Belts belts) {
-  Nth nth{k, static_cast<std::uint32_t>(w.axis_states.size())};
+  Nth nth{w, k, static_cast<std::uint32_t>(w.axis_states.size())};
   if (i == nth.movers) return MasterOfMovers(w, nth, wanted);
   const axis::State& s = w.axis_states[i];
   if (w.axis_masters[i]) nth.See(*w.axis_masters[i]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <variant>
 
@@ -29,8 +30,28 @@ void NameMasters(World& w) {
       w.mover_masters.push_back({.name = params.name + suffix, .velocity = velocity});
     }
   }
+  for (const Belt& belt : w.belts) {
+    const double velocity = std::abs(belt.params.ratio) * w.axis_params[belt.axis].limits.velocity;
+    w.mover_masters.push_back({.name = belt.params.name, .velocity = velocity});
+  }
   ShowAxesToMovers(w);
   ShowMovers(w);
+}
+
+void ShowBelt(World& w, std::uint32_t i) noexcept {
+  axis::OutsideMaster& master = w.mover_masters[kSuffixes.size() * w.movers.size() + i];
+  master.known = w.belt_states[i].known;
+  master.at = w.belt_states[i].travel;
+}
+
+std::uint32_t StepsBefore(const World& w, std::uint32_t master) noexcept {
+  const std::size_t axes = w.axis_states.size();
+  if (master == axis::kNoAxis || master < axes) return master;
+  const std::size_t outside = master - axes;
+  const std::size_t coordinates = kSuffixes.size() * w.movers.size();
+  if (outside < coordinates) return static_cast<std::uint32_t>(axes);
+  const Belt& belt = w.belts[outside - coordinates];
+  return IsMeasured(belt.params) ? axis::kNoAxis : belt.axis;
 }
 
 void ShowAxesToMovers(World& w) noexcept {

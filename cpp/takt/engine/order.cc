@@ -48,9 +48,23 @@ std::optional<std::uint32_t> MasterOf(const Machine& machine, std::size_t axis) 
   return follows ? Named(machine, follows->axis) : std::nullopt;
 }
 
+std::vector<std::string> MasterNames(const Machine& machine) {
+  std::vector<std::string> names;
+  for (const axis::AxisParams& axis : machine.axes) names.push_back(axis.name);
+  for (const conveyor::BeltParams& belt : machine.belts) names.push_back(belt.name);
+  for (const mover::MoverParams& mover : machine.movers) {
+    for (const char* suffix : {"", ".x", ".y", ".c"}) names.push_back(mover.name + suffix);
+  }
+  return names;
+}
+
 std::optional<std::uint32_t> MasterOfModule(const Machine& machine, std::size_t axis) {
   for (const flexcam::FlexCamParams& module : machine.flex_cams) {
-    if (module.slave == machine.axes[axis].name && module.master) return Named(machine, *module.master);
+    if (module.slave != machine.axes[axis].name || !module.master) continue;
+    for (const conveyor::BeltParams& belt : machine.belts) {
+      if (belt.name == *module.master && !IsMeasured(belt)) return Named(machine, belt.axis);
+    }
+    return Named(machine, *module.master);
   }
   return std::nullopt;
 }

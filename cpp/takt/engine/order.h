@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "takt/engine/machine.h"
@@ -67,6 +68,8 @@ class Order {
 // Index of the axis that this one follows from load on, if any.
 std::optional<std::uint32_t> MasterOf(const Machine& machine, std::size_t axis);
 // Index of the axis that the cam module which moves this one follows, if any.
+// The names of all that a cam module can follow: axes, belts, movers and their coordinates.
+std::vector<std::string> MasterNames(const Machine& machine);
 std::optional<std::uint32_t> MasterOfModule(const Machine& machine, std::size_t axis);
 
 }  // namespace takt::engine

@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include "takt/axis/coupling.h"
 #include "takt/cam/build.h"
 #include "takt/core/describe.h"
 #include "takt/core/hash.h"
@@ -126,6 +127,9 @@ World::World(const Machine& machine)
   MakePlanarGroups(machine);
   NameMasters(*this);
   surrounding = {axis_states, axis_params, cam_switches, cams, mover_masters};
+  for (FlexCam& module : flex_cams) {
+    if (module.params.master) module.master = axis::FindMaster(surrounding, *module.params.master);
+  }
   MakeOrder(*this);
 }
 
@@ -142,7 +146,6 @@ void World::MakeModules(const Machine& machine) {
   module_of.assign(machine.axes.size(), 0);
   for (const flexcam::FlexCamParams& params : machine.flex_cams) {
     FlexCam module{params, axis::FindAxis(machine.axes, params.slave), {}, {}};
-    if (params.master) module.master = axis::FindAxis(machine.axes, *params.master);
     module.homing = machine.axes[module.slave].homing;
     std::array<std::uint32_t, flexcam::kSlots> slots{};
     for (std::size_t i = 0; i < params.cams.size(); ++i) slots[i] = CamNamed(machine, params.cams[i]) + 1;

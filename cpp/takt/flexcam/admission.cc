@@ -1,4 +1,6 @@
 // Commands as they arrive: inputs and settings changed, changes of cam queued, or refused.
+#include <algorithm>
+
 #include "takt/axis/axis.h"
 #include "takt/core/describe.h"
 #include "takt/core/in_range.h"
@@ -17,14 +19,92 @@ Action AskedBy(const Control& command, const Inputs& was, const State& s) {
   return command.home_execute.value_or(false) && !was.home_execute ? Action::kHome : Action::kNone;
 }
 
+// Levels that rise with this command, beside those that rose in this cycle before.
+void Note(const Inputs& was, const Inputs& now, Inputs& rose) {
+  rose.enable |= now.enable && !was.enable;
+  rose.reset_error |= now.reset_error && !was.reset_error;
+  rose.regulator_on |= now.regulator_on && !was.regulator_on;
+  rose.stop |= now.stop && !was.stop;
+  rose.halt |= now.halt && !was.halt;
+  rose.enable_hw_limit |= now.enable_hw_limit && !was.enable_hw_limit;
+  rose.hw_limit_positive |= now.hw_limit_positive && !was.hw_limit_positive;
+  rose.hw_limit_negative |= now.hw_limit_negative && !was.hw_limit_negative;
+  rose.sync_out_instant |= now.sync_out_instant && !was.sync_out_instant;
+}
+
+// Every cam that a sequence runs has to be there.
+bool LacksCam(const State& s, SequenceMode mode) {
+  for (const SequencePart part : {SequencePart::kIn, SequencePart::kOut}) {
+    for (const SequenceStep& step : StepsOf(mode, part)) {
+      if (s.slots[step.slot - 1] == 0) return true;
+    }
+  }
+  return false;
+}
+
+bool WithMaster(const State& s) {
+  return s.settings.position_control == PositionControl::kMasterDirection;
+}
+
+// A command is told the end of a ramp only if there is one: where the slave follows, and the mode is that of a ramp.
+bool Ramps(const State& s, OffsetMode mode) {
+  return mode == OffsetMode::kRampIn || (WithMaster(s) && mode == OffsetMode::kDirect);
+}
+bool Ramps(const State& s, ScalingMode mode) {
+  const bool ramp = mode == ScalingMode::kRampAbsolute || mode == ScalingMode::kRampRelative;
+  return ramp || (WithMaster(s) && mode == ScalingMode::kAbsolute);
+}
+
+void Adjust(const Context& c, Ticket ticket, Adjustment what, State& s) {
+  Ticket& mine = s.adjusting[static_cast<std::size_t>(what)];
+  const Ticket before = mine;
+  mine = ticket;
+  if (before == 0 || before == ticket) return;
+  for (Ticket& other : s.adjusting) {
+    if (other == before) other = 0;
+  }
+  Report(c, before, FeedbackState::kAborted);
+}
+
+// Whether the end of a ramp is to be waited for.
+bool BeginAdjustments(const Context& c, Ticket ticket, const Inputs& was, State& s) {
+  if (s.state != ModuleState::kSync || !IsCoupled(s.clutch)) return false;
+  const Inputs& now = s.inputs;
+  const Settings& set = s.settings;
+  bool any = false;
+  const auto look = [&](bool changed, bool ramps, Adjustment what) {
+    if (!changed) return;
+    Adjust(c, ramps ? ticket : 0, what, s);
+    any |= ramps;
+  };
+  look(now.offset_master != was.offset_master, Ramps(s, set.offset_mode_master), Adjustment::kOffsetMaster);
+  look(now.offset_slave != was.offset_slave, Ramps(s, set.offset_mode_slave), Adjustment::kOffsetSlave);
+  look(now.scaling_master != was.scaling_master, Ramps(s, set.scaling_mode_master), Adjustment::kScalingMaster);
+  look(now.scaling_slave != was.scaling_slave, Ramps(s, set.scaling_mode_slave), Adjustment::kScalingSlave);
+  return any;
+}
+
+ErrorId MayControl(const Control& command, const State& s) {
+  if (command.cam_table && s.slots[*command.cam_table - 1] == 0) return ErrorId::kUnknownTarget;
+  const bool sequence = command.cam_sequencer.value_or(false) && !s.inputs.cam_sequencer;
+  if (sequence && LacksCam(s, s.settings.cam_sequence_mode)) return ErrorId::kEmptySlot;
+  // A slave that would have to come back to where its cam is zero.
+  const bool to_nothing = command.scaling_slave == 0.0 && s.inputs.scaling_slave != 0;
+  if (to_nothing && s.state == ModuleState::kSync && WithMaster(s)) return ErrorId::kWouldReverse;
+  return ErrorId::kNone;
+}
+
 void CarryOut(const Context& c, Ticket ticket, double, const Control& command, axis::State&, State& s) {
-  if (command.cam_table && s.slots[*command.cam_table - 1] == 0) {
-    return Report(c, ticket, FeedbackState::kError, ErrorId::kUnknownTarget);
+  if (const ErrorId error = MayControl(command, s); error != ErrorId::kNone) {
+    s.warning = error;
+    return Report(c, ticket, FeedbackState::kError, error);
   }
   const Inputs was = s.inputs;
   TakeGiven(command, s.inputs);
+  Note(was, s.inputs, s.rose);
   s.instant |= s.inputs.cam_change_instant && !was.cam_change_instant && s.state == ModuleState::kSync;
   Report(c, ticket, FeedbackState::kActive);
+  const bool ramps = BeginAdjustments(c, ticket, was, s);
   const Action asked = AskedBy(command, was, s);
   const bool no_edge = asked == Action::kSyncIn && was.sync_cam;
   if (no_edge) {
@@ -36,13 +116,23 @@ void CarryOut(const Context& c, Ticket ticket, double, const Control& command, a
     Report(c, s.request_ticket, FeedbackState::kAborted);
     s.request = Action::kNone;
   }
-  if (asked == Action::kNone || nothing_to_open) return Report(c, ticket, FeedbackState::kDone);
+  if (asked == Action::kNone || nothing_to_open) {
+    if (!ramps) Report(c, ticket, FeedbackState::kDone);
+    return;
+  }
+  for (Ticket& adjusting : s.adjusting) {
+    if (adjusting == ticket) adjusting = 0;  // its end is that of the clutch or of homing
+  }
   if (s.request != Action::kNone) Report(c, s.request_ticket, FeedbackState::kAborted);
   s.request = asked;
   s.request_ticket = ticket;
 }
 
 void CarryOut(const Context& c, Ticket ticket, double, const Configure& command, axis::State&, State& s) {
+  if (command.cam_sequence_mode && s.inputs.cam_sequencer && LacksCam(s, *command.cam_sequence_mode)) {
+    s.warning = ErrorId::kEmptySlot;
+    return Report(c, ticket, FeedbackState::kError, ErrorId::kEmptySlot);
+  }
   TakeGiven(command, s.settings);
   Report(c, ticket, FeedbackState::kActive);
   Report(c, ticket, FeedbackState::kDone);
@@ -90,6 +180,19 @@ void CarryOut(const Context& c, Ticket ticket, double, const WithdrawChanges&, a
 }
 
 }  // namespace
+
+void AbortAdjustments(const Context& c, State& s) noexcept {
+  for (std::size_t i = 0; i < kAdjustments; ++i) Adjust(c, 0, static_cast<Adjustment>(i), s);
+}
+
+void EndAdjustments(const Context& c, State& s) noexcept {
+  for (std::size_t i = 0; i < kAdjustments; ++i) {
+    const Ticket ticket = s.adjusting[i];
+    if (ticket == 0 || !IsSettled(s, static_cast<Adjustment>(i))) continue;
+    s.adjusting[i] = 0;
+    if (std::ranges::find(s.adjusting, ticket) == s.adjusting.end()) Report(c, ticket, FeedbackState::kDone);
+  }
+}
 
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, axis::State& slave,
            State& s) noexcept {

@@ -15,87 +15,93 @@ KinematicState Difference(const KinematicState& a, const KinematicState& b) {
   return {a.position - b.position, a.velocity - b.velocity, a.acceleration - b.acceleration};
 }
 
-WayRamp WayRampOf(const ConversionTarget& target, const KinematicState& before, const Conversion& c) {
-  return {c.factor, target.ramps, target.speed, before.velocity < 0 ? -1.0 : 1.0};
+Cycle Earlier(const Cycle& cycle) {
+  return {cycle.count - 1, cycle.period_s};
+}
+
+Ride RideOf(const ConversionTarget& target, const ConversionInputs& in, const Conversion& c) {
+  return {in.ride_before, in.before.velocity, c.factor, target.ramps};
+}
+
+// Begins the ramp from `old` to what `c` has become.
+bool RampFrom(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in, const Conversion& old,
+              trajectory::Planner& planner, Conversion& c) {
+  const KinematicState shift = Difference(Convert(old, Earlier(cycle), in.before), Law(c, in.before));
+  if (!target.with_master) return BeginProfile(shift, target.ramps, cycle, planner, c.ramp);
+  if (old.ramp.kind == RampKind::kWithMaster && old.factor == c.factor) {
+    return MoveZero(Law(old, in.before).position - Law(c, in.before).position, planner, c.ramp);
+  }
+  return BeginWithMaster(shift, RideOf(target, in, c), planner, c.ramp);
 }
 
 // What the output was under the old law, as a shift that goes to zero under the new one.
-void Ramped(const ConversionTarget& target, const Cycle& cycle, const KinematicState& before, const Conversion& old,
-            trajectory::Planner& planner, Conversion& c) {
-  const Cycle earlier = {cycle.count - 1, cycle.period_s};
-  if (target.with_master) {
-    KinematicState shift = OverWay(old.ramp, earlier, before);
-    shift.position += Law(old, before).position - Law(c, before).position;
-    shift.velocity += old.factor - c.factor;
-    if (!BeginWay(shift, WayRampOf(target, before, c), before.position, planner, c.ramp)) c = old;
+void TakeRamped(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in, const Conversion& old,
+                Ramped ramped, trajectory::Planner& planner, Conversion& c) {
+  if (!RampFrom(target, cycle, in, old, planner, c)) {
+    c = old;
     return;
   }
-  const KinematicState shift = Difference(Convert(old, earlier, before), Law(c, before));
-  if (!BeginProfile(shift, target.ramps, cycle, planner, c.ramp)) c = old;
+  c.ramped = ramped;
 }
 
-// Only the speed is to change: the place where the ramp of the speed ends is the place that counts.
-void RampSpeed(const ConversionTarget& target, const Cycle& cycle, const KinematicState& before, const Conversion& old,
+// Only the speed is to change: the position where the ramp of the speed ends is the one that counts.
+void RampSlope(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in, const Conversion& old,
                trajectory::Planner& planner, Conversion& c) {
-  const Cycle earlier = {cycle.count - 1, cycle.period_s};
-  const KinematicState was = Convert(old, earlier, before);
+  const KinematicState was = Convert(old, Earlier(cycle), in.before);
+  const KinematicState shift = Difference(was, Law(c, in.before));
   double begin = 0;
-  bool good = false;
-  if (target.with_master) {
-    KinematicState shift = OverWay(old.ramp, earlier, before);
-    shift.velocity += old.factor - c.factor;
-    good = BeginWaySlope(shift, WayRampOf(target, before, c), before.position, planner, begin, c.ramp);
-  } else {
-    const KinematicState shift = Difference(was, Law(c, before));
-    good = BeginSpeed(shift, target.ramps, cycle, planner, begin, c.ramp);
-  }
+  const bool good = target.with_master ? BeginSpeedWithMaster(shift, RideOf(target, in, c), planner, begin, c.ramp)
+                                       : BeginSpeed(shift, target.ramps, cycle, planner, begin, c.ramp);
   if (!good) {
     c = old;
     return;
   }
-  c.out_zero += was.position - begin - Law(c, before).position;
+  c.out_zero += was.position - begin - Law(c, in.before).position;
+  c.ramped = Ramped::kSlope;
 }
 
-// A ramp over the way of the master counts on the slope beneath it: a smaller one has to wait for its end.
+// A ramp with the master counts on the factor of what it is added to: a smaller one has to wait for its end.
 bool MustWait(const Conversion& c, double factor) {
-  return c.ramp.kind == RampKind::kWay && factor < c.factor;
+  return c.ramp.kind == RampKind::kWithMaster && factor < c.factor;
 }
 
-void TakeFactor(const ConversionTarget& target, const Cycle& cycle, const KinematicState& before,
+ScalingMode ModeOf(const ConversionTarget& target) {
+  if (target.at_once) return ScalingMode::kAbsolute;
+  return target.with_master && target.scaling_mode == ScalingMode::kAbsolute ? ScalingMode::kRampAbsolute
+                                                                             : target.scaling_mode;
+}
+
+void TakeFactor(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in,
                 trajectory::Planner& planner, Conversion& c) {
   const Conversion old = c;
-  const ScalingMode mode = target.at_once ? ScalingMode::kAbsolute : target.scaling_mode;
-  switch (mode) {
+  switch (ModeOf(target)) {
     case ScalingMode::kXZero:
       return;
     case ScalingMode::kAbsolute:
-      if (MustWait(c, target.factor)) return;
       CountFrom(target.absolute_zero, c);
       c.factor = target.factor;
       return;
     case ScalingMode::kRelative:
       if (MustWait(c, target.factor)) return;
-      CountFrom(before.position, c);
+      CountFrom(in.before.position, c);
       c.factor = target.factor;
       return;
     case ScalingMode::kRampAbsolute:
       CountFrom(target.absolute_zero, c);
       c.factor = target.factor;
-      return Ramped(target, cycle, before, old, planner, c);
+      return TakeRamped(target, cycle, in, old, Ramped::kFactor, planner, c);
     case ScalingMode::kRampRelative:
-      CountFrom(before.position, c);
+      CountFrom(in.before.position, c);
       c.factor = target.factor;
-      return RampSpeed(target, cycle, before, old, planner, c);
+      return RampSlope(target, cycle, in, old, planner, c);
   }
 }
 
-void TakeOffset(const ConversionTarget& target, const Cycle& cycle, const KinematicState& before,
+void TakeOffset(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in, bool ramped,
                 trajectory::Planner& planner, Conversion& c) {
   const Conversion old = c;
-  const OffsetMode mode = target.at_once ? OffsetMode::kDirect : target.offset_mode;
-  if (mode == OffsetMode::kXZero) return;
   c.offset = target.offset;
-  if (mode == OffsetMode::kRampIn) Ramped(target, cycle, before, old, planner, c);
+  if (ramped) TakeRamped(target, cycle, in, old, Ramped::kOffset, planner, c);
 }
 
 }  // namespace
@@ -103,7 +109,7 @@ void TakeOffset(const ConversionTarget& target, const Cycle& cycle, const Kinema
 KinematicState Convert(const Conversion& c, const Cycle& cycle, const KinematicState& in) noexcept {
   KinematicState out = Law(c, in);
   if (c.ramp.kind == RampKind::kNone) return out;
-  const KinematicState shift = At(c.ramp, cycle, in);
+  const KinematicState shift = At(c.ramp, cycle);
   return {out.position + shift.position, out.velocity + shift.velocity, out.acceleration + shift.acceleration};
 }
 
@@ -116,20 +122,50 @@ void CountFrom(double in_zero, Conversion& c) noexcept {
   c.in_zero = in_zero;
 }
 
-void Approach(const ConversionTarget& target, const Cycle& cycle, const KinematicState& before,
-              const KinematicState& now, trajectory::Planner& planner, Conversion& c) noexcept {
-  if (c.ramp.kind != RampKind::kNone && IsOver(c.ramp, cycle, before)) c.ramp.kind = RampKind::kNone;
-  if (target.factor != c.factor) TakeFactor(target, cycle, before, planner, c);
-  if (target.offset != c.offset) TakeOffset(target, cycle, before, planner, c);
-  if (c.ramp.kind == RampKind::kWay) TurnRound(WayRampOf(target, before, c), now.position, planner, c.ramp);
+void Approach(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in,
+              trajectory::Planner& planner, Conversion& c) noexcept {
+  if (c.ramp.kind != RampKind::kNone && IsOver(c.ramp, cycle)) {
+    c.ramp.kind = RampKind::kNone;
+    c.ramped = Ramped::kNothing;
+  }
+  if (target.factor != c.factor) TakeFactor(target, cycle, in, planner, c);
+  if (target.offset == c.offset) return;
+  if (target.at_once) {
+    c.offset = target.offset;
+  } else if (target.offset_mode != OffsetMode::kXZero) {
+    TakeOffset(target, cycle, in, target.with_master || target.offset_mode == OffsetMode::kRampIn, planner, c);
+  }
 }
 
-void ApproachAtZero(const ConversionTarget& target, double at, Conversion& c) noexcept {
+void ApproachAtZero(const ConversionTarget& target, double at, const Cycle& cycle, const ConversionInputs& in,
+                    trajectory::Planner& planner, Conversion& c) noexcept {
   if (target.scaling_mode == ScalingMode::kXZero && target.factor != c.factor && !MustWait(c, target.factor)) {
     CountFrom(at, c);
     c.factor = target.factor;
   }
-  if (target.offset_mode == OffsetMode::kXZero) c.offset = target.offset;
+  if (target.offset_mode == OffsetMode::kXZero && target.offset != c.offset) {
+    TakeOffset(target, cycle, in, target.with_master, planner, c);
+  }
+}
+
+double OffsetInForce(const Conversion& c, const Cycle& cycle) noexcept {
+  return c.ramped == Ramped::kOffset ? c.offset + At(c.ramp, cycle).position : c.offset;
+}
+
+double FactorInForce(const Conversion& c, const Cycle& cycle, const KinematicState& in) noexcept {
+  const KinematicState shift = At(c.ramp, cycle);
+  const double from_zero = in.position - c.in_zero;
+  if (c.ramped == Ramped::kFactor && from_zero != 0) return c.factor + shift.position / from_zero;
+  if (c.ramped == Ramped::kSlope && in.velocity != 0) return c.factor + shift.velocity / in.velocity;
+  return c.factor;
+}
+
+void describe(Enumeration<Ramped>& e) {
+  e.about("What a ramp takes over.");
+  e.value(Ramped::kNothing, "nothing", "There is none.");
+  e.value(Ramped::kOffset, "offset", "An offset.");
+  e.value(Ramped::kFactor, "factor", "A factor of the position.");
+  e.value(Ramped::kSlope, "slope", "A factor of the velocity.");
 }
 
 void describe(Description<Conversion>& d) {
@@ -140,6 +176,7 @@ void describe(Description<Conversion>& d) {
   d.internal<&C::in_zero>("Input that is counted from.");
   d.internal<&C::out_zero>("Output there, without offset.");
   d.internal<&C::ramp>("What is left of what was in force before.");
+  d.internal<&C::ramped>("What it takes over.");
 }
 
 }  // namespace takt::flexcam

@@ -4,6 +4,8 @@
 //   out = factor * (in - in_zero) + out_zero + offset + ramp
 #pragma once
 
+#include <cstdint>
+
 #include "takt/core/cycle.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/kinematic_state.h"
@@ -13,12 +15,16 @@
 
 namespace takt::flexcam {
 
+// What a ramp takes over.
+enum class Ramped : std::uint8_t { kNothing, kOffset, kFactor, kSlope };
+
 struct Conversion {
   double factor = 1;  // > 0 on the master's side, >= 0 on the slave's
   double offset = 0;
   double in_zero = 0;
   double out_zero = 0;
   Ramp ramp;
+  Ramped ramped = Ramped::kNothing;  // last; what is left of an earlier ramp is part of it
 };
 
 // What is wanted of it, and how it gets there.
@@ -28,8 +34,7 @@ struct ConversionTarget {
   ScalingMode scaling_mode = ScalingMode::kXZero;
   OffsetMode offset_mode = OffsetMode::kXZero;
   trajectory::Limits ramps;  // of the output
-  bool with_master = false;  // ramps go by the way of the input, never against it ...
-  double speed = 1;          // ... with limits for this speed of it, > 0
+  bool with_master = false;  // the output never moves against the input: what would step is ramped, too
   bool at_once = false;      // nothing follows the output: no modes, no ramps
   double absolute_zero = 0;  // input that absolute scaling counts from
 };
@@ -40,12 +45,26 @@ double InverseOf(const Conversion& conversion, double out) noexcept;
 // Counts from another input; the output stays what it is.
 void CountFrom(double in_zero, Conversion& conversion) noexcept;
 
-// Each cycle: takes over what has changed and may be taken over anywhere, from the input of the cycle before on.
-void Approach(const ConversionTarget& target, const Cycle& cycle, const KinematicState& before,
-              const KinematicState& now, trajectory::Planner& planner, Conversion& conversion) noexcept;
-// Where the cam begins or ends, at the input `at`: takes over what waits for that (x_zero).
-void ApproachAtZero(const ConversionTarget& target, double at, Conversion& conversion) noexcept;
+// The inputs that a conversion's ramps go by: of the cycle before and this one. `ride`: the same, with the sense of the
+// master where the input has another one.
+struct ConversionInputs {
+  KinematicState before;
+  KinematicState ride_before;
+};
 
+// Each cycle: takes over what has changed and may be taken over anywhere, from the input of the cycle before on.
+void Approach(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in,
+              trajectory::Planner& planner, Conversion& conversion) noexcept;
+// Where the cam begins or ends, at the input `at`: takes over what waits for that (x_zero).
+void ApproachAtZero(const ConversionTarget& target, double at, const Cycle& cycle, const ConversionInputs& in,
+                    trajectory::Planner& planner, Conversion& conversion) noexcept;
+
+// What is in force in this cycle, ramps included: of an offset the sum, of a factor what the output has of the input
+// (of a ramped slope: its velocity of the input's velocity).
+double OffsetInForce(const Conversion& conversion, const Cycle& cycle) noexcept;
+double FactorInForce(const Conversion& conversion, const Cycle& cycle, const KinematicState& in) noexcept;
+
+void describe(Enumeration<Ramped>&);
 void describe(Description<Conversion>&);
 
 }  // namespace takt::flexcam

@@ -16,7 +16,6 @@ double Elapsed(const Cycle& cycle, const MasterState& m) {
 
 // A master without an axis: a velocity, with ramps and jerk.
 void FollowVirtual(const axis::Context& c, const Settings& settings, double velocity, MasterState& m) {
-  m.known = true;
   if (velocity != m.velocity) {
     const trajectory::Limits limits = {std::max({std::abs(velocity), std::abs(m.now.velocity), 1e-9}),
                                        settings.virtual_acceleration, settings.virtual_acceleration,
@@ -29,9 +28,7 @@ void FollowVirtual(const axis::Context& c, const Settings& settings, double velo
   m.now = m.motion.At(Elapsed(c.cycle, m));
 }
 
-KinematicState Measured(const axis::Context& c, const axis::State& master, const Settings& settings, MasterState& m) {
-  const KinematicState raw = {master.actual.position + master.origin, master.actual.velocity,
-                              master.loop_closed ? master.setpoint.acceleration : 0};
+KinematicState Filtered(const axis::Context& c, const KinematicState& raw, const Settings& settings, MasterState& m) {
   if (settings.master_filter_s == 0) {
     m.filter.running = false;
     const double t = settings.master_dead_time_s;
@@ -42,31 +39,63 @@ KinematicState Measured(const axis::Context& c, const axis::State& master, const
                            raw.velocity, m.filter);
 }
 
+const axis::OutsideMaster* Outside(const axis::Context& c, std::uint32_t master) {
+  const std::size_t axes = c.machine.states.size();
+  return master < axes ? nullptr : &c.machine.outside[master - axes];
+}
+
 }  // namespace
+
+MasterSeen SeeMaster(const axis::Context& c, std::uint32_t master, axis::MasterSource source) noexcept {
+  if (const axis::OutsideMaster* outside = Outside(c, master)) {
+    return {outside->at, outside->origin, 0, outside->known, true};
+  }
+  const axis::State& s = c.machine.states[master];
+  const axis::AxisParams& params = c.machine.params[master];
+  const bool measured = source == axis::MasterSource::kActualValue;
+  KinematicState at = measured ? s.actual : s.setpoint;
+  at.position += s.origin;
+  if (measured) at.acceleration = s.loop_closed ? s.setpoint.acceleration : 0;
+  return {at, s.origin, params.turn(), axis::IsKnown(s, source), measured};
+}
 
 void Follow(const axis::Context& c, std::optional<std::uint32_t> index, axis::MasterSource source,
             const Settings& settings, double virtual_velocity, bool coast, MasterState& m) noexcept {
   m.before = m.now;
-  if (!index) return FollowVirtual(c, settings, virtual_velocity, m);
-  const axis::State& master = c.machine.states[*index];
-  m.known = axis::IsKnown(master, source);
-  if (!m.known) m.coasts = coast;
+  if (!index) {
+    m.known = true;
+    return FollowVirtual(c, settings, virtual_velocity, m);
+  }
+  const MasterSeen seen = SeeMaster(c, *index, source);
+  m.known = seen.known;
+  if (!m.known && coast && !m.coasts) {
+    m.coasts = true;
+    m.comes_to_rest = m.before.velocity * m.before.acceleration < 0;
+    m.velocity = m.before.velocity;
+    m.motion = trajectory::Profile{{m.before.position, m.before.velocity, 0}};
+    m.start_cycle = c.cycle.count - 1;
+  }
   if (m.coasts) {
     m.filter.running = false;
-    m.now = {m.before.position + c.cycle.period_s * m.before.velocity, m.before.velocity, 0};
-  } else if (source == axis::MasterSource::kActualValue) {
-    m.now = Measured(c, master, settings, m);
+    FollowVirtual(c, settings, m.comes_to_rest ? 0 : m.velocity, m);
   } else {
-    m.now = {master.setpoint.position + master.origin, master.setpoint.velocity, master.setpoint.acceleration};
+    m.now = source == axis::MasterSource::kActualValue ? Filtered(c, seen.at, settings, m) : seen.at;
   }
 }
 
 double ZeroOf(const axis::Context& c, std::optional<std::uint32_t> master) noexcept {
-  return master ? c.machine.states[*master].origin : 0;
+  if (!master) return 0;
+  const axis::OutsideMaster* outside = Outside(c, *master);
+  return outside ? outside->origin : c.machine.states[*master].origin;
 }
 
 double TurnOf(const axis::Context& c, std::optional<std::uint32_t> master) noexcept {
-  return master && c.machine.params[*master].rotary() ? c.machine.params[*master].modulus : 0;
+  return master && Outside(c, *master) == nullptr ? c.machine.params[*master].turn() : 0;
+}
+
+double ReportedOf(const axis::Context& c, std::optional<std::uint32_t> master, double position) noexcept {
+  if (!master || Outside(c, *master) != nullptr) return position;
+  return axis::Reported(c.machine.params[*master], position);
 }
 
 void describe(Description<MasterState>& d) {
@@ -76,6 +105,7 @@ void describe(Description<MasterState>& d) {
   d.internal<&M::before>("In the cycle before.");
   d.internal<&M::known>("Its position is known.");
   d.internal<&M::coasts>("It goes on as it was.");
+  d.internal<&M::comes_to_rest>("It was coming to rest.");
   d.internal<&M::filter>("Of what is measured.");
   d.internal<&M::motion>("Of a virtual master.");
   d.internal<&M::start_cycle>("Cycle its time counts from.");

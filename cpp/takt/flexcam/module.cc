@@ -76,6 +76,7 @@ void Abandon(const Context& c, State& s) {
   s.instant = false;
   s.master.coasts = false;
   AbortChanges(c, s);
+  AbortAdjustments(c, s);
   EndAction(c, FeedbackState::kAborted, ErrorId::kNone, s);
 }
 
@@ -110,17 +111,17 @@ void WatchLimits(const Context& c, axis::State& slave, State& s) {
   if (!s.inputs.enable_hw_limit) return;
   // On a new edge, or when the slave moves further out.
   const double v = slave.setpoint.velocity;
-  const auto hits = [&](bool now, bool before, double sense) { return now && (!before || sense * v > 0); };
-  const bool on = s.before.enable_hw_limit;
-  if (hits(s.inputs.hw_limit_positive, on && s.before.hw_limit_positive, 1)) {
+  const auto hits = [&](bool now, bool rose, double sense) { return rose || (now && sense * v > 0); };
+  const bool looks = s.rose.enable_hw_limit;
+  if (hits(s.inputs.hw_limit_positive, s.rose.hw_limit_positive || (looks && s.inputs.hw_limit_positive), 1)) {
     Fail(c, ErrorId::kModuleLimitSwitchPositive, slave, s);
-  } else if (hits(s.inputs.hw_limit_negative, on && s.before.hw_limit_negative, -1)) {
+  } else if (hits(s.inputs.hw_limit_negative, s.rose.hw_limit_negative || (looks && s.inputs.hw_limit_negative), -1)) {
     Fail(c, ErrorId::kModuleLimitSwitchNegative, slave, s);
   }
 }
 
 void SwitchPower(const Context& c, axis::State& slave, State& s) {
-  const bool rises = s.inputs.enable && s.inputs.regulator_on && (!s.before.regulator_on || !s.before.enable);
+  const bool rises = s.inputs.enable && s.inputs.regulator_on && (s.rose.regulator_on || s.rose.enable);
   const bool falls = !s.inputs.regulator_on && s.before.regulator_on;
   if (rises && !slave.enable) Tell(c, axis::Power{.enable = true}, slave);
   if (falls) Tell(c, axis::Power{.enable = false}, slave);
@@ -157,6 +158,7 @@ ClutchContext ClutchOf(const Context& c, const axis::State& slave, const Kinemat
           .table = TableOf(c, s),
           .master_turn = TurnOf(c.slave, c.master),
           .master_zero = ZeroOf(c.slave, c.master),
+          .measured = c.master && SeeMaster(c.slave, *c.master, c.params.source).measured,
           .slave_zero = slave.origin,
           .master = s.master.now,
           .master_before = s.master.before,
@@ -178,7 +180,7 @@ void BeginHoming(const Context& c, axis::State& slave, State& s) {
 }
 
 ErrorId MaySync(const Context& c, const axis::State& slave, const State& s) {
-  if (c.master && !axis::IsKnown(c.slave.machine.states[*c.master], c.params.source)) return ErrorId::kMasterOff;
+  if (c.master && !SeeMaster(c.slave, *c.master, c.params.source).known) return ErrorId::kMasterOff;
   const bool no_reference = c.slave.params.requires_reference && !slave.homing.homed;
   return s.settings.slave_absolute && no_reference ? ErrorId::kNoReference : ErrorId::kNone;
 }
@@ -190,11 +192,7 @@ void BeginSync(const Context& c, axis::State& slave, State& s) {
   s.state = ModuleState::kSync;
   s.master.coasts = false;
   TakeUp(c, slave, s);
-  BeginClosing(ClutchOf(c, slave, s.wanted, s), s.way, s.clutch);
-}
-
-bool Rises(bool now, bool before) {
-  return now && !before;
+  BeginClosing(ClutchOf(c, slave, s.wanted, s), s.clutch);
 }
 
 // What is asked for off has to be asked for again once the slave is on. In SYNC the clutch looks at requests itself.
@@ -210,7 +208,7 @@ void Requests(const Context& c, axis::State& slave, State& s) {
 }
 
 void BeginStop(const Context& c, axis::State& slave, State& s) {
-  const bool stop = s.inputs.stop;
+  const bool stop = s.inputs.stop || s.rose.stop;
   if (IsOn(slave)) {
     stop ? HoldStopped(c, slave, s) : Brake(c, s.settings.halt_deceleration, s.settings.jerk, false, slave);
   }
@@ -220,7 +218,7 @@ void BeginStop(const Context& c, axis::State& slave, State& s) {
 }
 
 void InStop(const Context& c, axis::State& slave, State& s) {
-  if (Rises(s.inputs.stop, s.before.stop)) return BeginStop(c, slave, s);
+  if (s.rose.stop) return BeginStop(c, slave, s);
   if (s.inputs.stop || s.inputs.halt) {
     // Nothing else moves it meanwhile.
     using K = axis::RequestKind;
@@ -268,6 +266,24 @@ void InHoming(const Context& c, const axis::State& slave, State& s) {
   EndAction(c, FeedbackState::kError, slave.error == ErrorId::kNone ? ErrorId::kNoReference : slave.error, s);
 }
 
+// Whether the cam, run on as it is, leads the slave out of its SW limits: then it is stopped early enough for the
+// module's own ramp.
+bool LeavesLimits(const Context& c, const axis::State& slave, const State& s) {
+  const axis::AxisLimits& limits = c.slave.params.limits;
+  if (s.clutch.phase != ClutchPhase::kClosed || (!limits.lower && !limits.upper)) return false;
+  const cam::Table& table = TableOf(c, s);
+  const double stroke = s.way.profiler.once ? 0 : table.stroke();
+  const double sense = s.x.velocity < 0 ? -1 : 1;
+  const Conversion& out = s.way.to_slave;
+  const double zero = s.at.y - s.at.y_in_cam;
+  const auto slave_at = [&](double y) {
+    return out.factor * (zero + y - out.in_zero) + out.out_zero + out.offset - slave.origin;
+  };
+  const bool over = limits.upper && (sense * stroke > 0 || slave_at(table.highest()) > *limits.upper);
+  const bool under = limits.lower && (sense * stroke < 0 || slave_at(table.lowest()) < *limits.lower);
+  return over || under;
+}
+
 void InSync(const Context& c, axis::State& slave, State& s) {
   if (s.clutch.phase == ClutchPhase::kReleased) {
     if (slave.active.kind != axis::RequestKind::kNone) return;
@@ -281,7 +297,7 @@ void InSync(const Context& c, axis::State& slave, State& s) {
     return;
   }
   if (!s.master.known && !s.master.coasts) return Fail(c, ErrorId::kMasterOff, slave, s);
-  if (s.inputs.sync_out_instant) {
+  if (s.inputs.sync_out_instant || s.rose.sync_out_instant) {
     Brake(c, s.settings.sync_out_instant_deceleration, s.settings.jerk, false, slave);
     s.clutch.phase = ClutchPhase::kReleased;
     return;
@@ -289,17 +305,24 @@ void InSync(const Context& c, axis::State& slave, State& s) {
   const KinematicState wanted_before = s.wanted;
   RunWay(c, s);
   ClutchContext clutch = ClutchOf(c, slave, wanted_before, s);
-  if (s.request != Action::kNone) {
-    s.request == Action::kSyncIn ? BeginClosing(clutch, s.way, s.clutch) : BeginOpening(clutch, s.clutch);
+  if (s.request == Action::kSyncIn) {
+    BeginClosing(clutch, s.clutch);
+    Accept(c, s);
+  } else if (s.request != Action::kNone) {
+    BeginOpening(clutch, s.clutch);
     Accept(c, s);
   }
   const double zero = s.way.to_slave.out_zero;
+  const bool on_ramp = IsOnRamp(s.clutch);
   KinematicState demand = {clutch.own_before.position, 0, 0};
   if (const Status status = StepClutch(clutch, s.wanted, s.way, s.clutch, demand); status.failed()) {
     EndAction(c, FeedbackState::kError, status.error, s);
   }
+  if (s.clutch.waits == ClutchWait::kAway) s.warning = ErrorId::kSyncPassed;
+  if (on_ramp && (s.clutch.stretched || !clutch.in_step)) s.warning = ErrorId::kSlaveLimits;
   s.wanted.position += s.way.to_slave.out_zero - zero;
   slave.guidance.demand = demand;
+  slave.fault_ramp.leaves_limits = LeavesLimits(c, slave, s);
   if (s.clutch.phase == ClutchPhase::kOpen) {
     axis::LetGoOfGuidance(c.slave, slave);
     if (s.action == Action::kSyncOut) EndAction(c, FeedbackState::kDone, ErrorId::kNone, s);
@@ -311,7 +334,7 @@ void InSync(const Context& c, axis::State& slave, State& s) {
 }
 
 void InError(const Context& c, axis::State& slave, State& s) {
-  if (Rises(s.inputs.reset_error, s.before.reset_error)) {
+  if (s.rose.reset_error) {
     LetGoOfStop(slave, s);
     Tell(c, axis::Reset{}, slave);
     s.error = ErrorId::kNone;
@@ -377,7 +400,8 @@ void RunStates(const Context& c, axis::State& slave, State& s) {
   if (s.state == ModuleState::kInit) s.state = s.error == ErrorId::kNone ? ModuleState::kReady : ModuleState::kError;
   const bool homed = s.state == ModuleState::kHoming;
   WatchLimits(c, slave, s);
-  if (s.state != ModuleState::kError && s.state != ModuleState::kStop && (s.inputs.stop || s.inputs.halt)) {
+  const bool stops = s.inputs.stop || s.inputs.halt || s.rose.stop || s.rose.halt;
+  if (s.state != ModuleState::kError && s.state != ModuleState::kStop && stops) {
     BeginStop(c, slave, s);
   }
   if (homed && s.state != ModuleState::kHoming) c.slave.params.homing = c.homing;
@@ -421,6 +445,7 @@ void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) n
 
 State MakeState(const FlexCamParams& params, const std::array<std::uint32_t, kSlots>& slots) noexcept {
   State s;
+  s.rose = Inputs{.enable = false};
   s.settings = params.settings;
   s.slots = slots;
   s.way.profiler.cam = slots[0] - 1;
@@ -430,10 +455,14 @@ State MakeState(const FlexCamParams& params, const std::array<std::uint32_t, kSl
 void Step(const Context& c, axis::State& slave, State& s) noexcept {
   const bool coast = s.state == ModuleState::kSync && s.settings.on_master_fault == MasterFault::kCoast;
   if (s.state != ModuleState::kSync) s.master.coasts = false;
+  const bool coasted = s.master.coasts;
   Follow(c.slave, c.master, c.params.source, s.settings, s.inputs.virtual_velocity, coast, s.master);
+  if (s.master.coasts && !coasted) s.warning = ErrorId::kMasterOff;
   slave.reference |= s.inputs.home_abs_switch;
   SwitchPower(c, slave, s);
+  slave.fault_ramp = {};
   if (s.inputs.enable) {
+    slave.fault_ramp = {s.settings.stop_deceleration, s.settings.stop_jerk, false};
     WatchLease(c, s);
     RunStates(c, slave, s);
   } else {
@@ -445,7 +474,9 @@ void Step(const Context& c, axis::State& slave, State& s) noexcept {
   } else if (s.bounds.valid) {
     s.bounds = {};
   }
+  EndAdjustments(c, s);
   s.before = s.inputs;
+  s.rose = Inputs{.enable = false};
 }
 
 }  // namespace takt::flexcam

@@ -17,13 +17,38 @@ void describe(Enumeration<ModuleState>& e) {
   e.value(ModuleState::kError, "Error", "Waits for a reset.");
 }
 
+void describe(Enumeration<ClutchPhase>& e) {
+  e.about("How far the clutch is.");
+  e.value(ClutchPhase::kOpen, "open", "The slave is on its own.");
+  e.value(ClutchPhase::kWaitingIn, "waiting_in", "It is to close, and waits to begin.");
+  e.value(ClutchPhase::kClosing, "closing", "On the way onto the cam.");
+  e.value(ClutchPhase::kClosed, "closed", "On the cam.");
+  e.value(ClutchPhase::kWaitingOut, "waiting_out", "On the cam, and waits to leave it.");
+  e.value(ClutchPhase::kOpening, "opening", "On the way to where the slave is to rest.");
+  e.value(ClutchPhase::kReleased, "released", "Opened at once; the slave comes to rest.");
+}
+
+void describe(Enumeration<ClutchWait>& e) {
+  e.about("For what a clutch waits.");
+  e.value(ClutchWait::kNothing, "nothing", "It does not wait.");
+  e.value(ClutchWait::kMasterStands, "master_stands", "For the master to move.");
+  e.value(ClutchWait::kDirection, "direction", "For the master to move in sync_direction.");
+  e.value(ClutchWait::kPosition, "position", "For the master to come to the begin of the curve.");
+  e.value(ClutchWait::kAway, "away", "The master has turned away from the sync position; for it to come back.");
+  e.value(ClutchWait::kRamps, "ramps", "For the end of offset and scaling ramps.");
+  e.value(ClutchWait::kSlave, "slave", "For the slave to be in step with what it follows, or at rest.");
+  e.value(ClutchWait::kReverse, "reverse", "For a curve on which the slave does not reverse.");
+  e.value(ClutchWait::kLimits, "limits", "For a curve that the slave's limits allow at the speed of the master.");
+}
+
 void describe(Description<Outputs>& d) {
   using O = Outputs;
   d.about("What a cam module publishes; ip, mp and op are points of its signal flow. Flex Cam: scSignalFlow.");
-  d.internal<&O::set_offset_master>(unit::x, "Master offset in force. Flex Cam: lrSetOffsetMasterOut.");
-  d.internal<&O::set_offset_slave>(unit::u, "Slave offset in force. Flex Cam: lrSetOffsetSlaveOut.");
-  d.internal<&O::set_scaling_master>(unit::one, "Master factor in force.");
-  d.internal<&O::set_scaling_slave>(unit::one, "Slave factor in force.");
+  d.internal<&O::set_offset_master>(unit::x,
+                                    "Master offset in force, a ramp included. Flex Cam: lrSetOffsetMasterOut.");
+  d.internal<&O::set_offset_slave>(unit::u, "Slave offset in force, a ramp included. Flex Cam: lrSetOffsetSlaveOut.");
+  d.internal<&O::set_scaling_master>(unit::one, "Master factor in force, a ramp included.");
+  d.internal<&O::set_scaling_slave>(unit::one, "Slave factor in force, a ramp included.");
   d.internal<&O::set_x_position>(unit::x, "X in the cycle of the cam. Flex Cam: lrSetXPosOut.");
   d.internal<&O::set_x_velocity>(unit::x_s, "Velocity of X. Flex Cam: lrSetXVelOut.");
   d.internal<&O::set_x_acceleration>(unit::x_s2, "Acceleration of X. Flex Cam: lrSetXAccOut.");
@@ -55,9 +80,17 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::mp06_y_to_slave_position>(unit::u, "Where Y wants the slave.");
   d.internal<&O::op01_set_x_position_out>(unit::x, "X in the cycle of the cam.");
   d.internal<&O::op02_set_y_position_out>(unit::y, "Y.");
+  d.internal<&O::clutch_position>(
+      unit::u_m, "Master's position in its turn at which the clutch is closed, or open (ramp_pos); 0: not known.");
+  d.internal<&O::clutch_distance>(unit::u_m, "Master's displacement until there; 0: not known.");
+  d.internal<&O::clutch_master_velocity>(
+      "Largest steady speed of the master, in its unit per second, at which the slave keeps its limits on the clutch's "
+      "curve; 0: it is on none.");
   d.internal<&O::error>("Why the module is in error. Flex Cam: xError, eErrorID.");
   d.internal<&O::warning>("What was not done as asked last. Flex Cam: xWarning, eErrorID.");
   d.internal<&O::state>("State of the module. Flex Cam: eTMState.");
+  d.internal<&O::clutch>("How far the clutch is.");
+  d.internal<&O::clutch_waits>("For what it waits.");
   d.internal<&O::cam_table>("Slot of the cam that runs. Flex Cam: eSetCamTableOut.");
   d.internal<&O::next_cam_table>("Slot of the cam that is to run next; 0: the same.");
   d.internal<&O::pending_changes>("Changes of cam that wait.");
@@ -76,6 +109,15 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::end_of_profile>("The last cycle of the cam. Flex Cam: xEndOfProfile.");
   d.internal<&O::sequencer_active>("A sequence of cams is being run. Flex Cam: xCamSequencerActive.");
   d.internal<&O::bounds_valid>("The extreme values are those of what is set.");
+  d.internal<&O::master_lost>("The master's position is not known: it is off, or has a fault.");
+  d.internal<&O::offset_master_busy>("A new master offset is waited for, or ramped.");
+  d.internal<&O::offset_slave_busy>("A new slave offset is waited for, or ramped.");
+  d.internal<&O::scaling_master_busy>("A new master factor is waited for, or ramped.");
+  d.internal<&O::scaling_slave_busy>("A new slave factor is waited for, or ramped.");
+  d.internal<&O::offset_master_done>("The master offset that is set is in force.");
+  d.internal<&O::offset_slave_done>("The slave offset that is set is in force.");
+  d.internal<&O::scaling_master_done>("The master factor that is set is in force.");
+  d.internal<&O::scaling_slave_done>("The slave factor that is set is in force.");
 }
 
 }  // namespace takt::flexcam

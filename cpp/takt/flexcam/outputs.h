@@ -11,6 +11,29 @@ namespace takt::flexcam {
 
 enum class ModuleState : std::uint8_t { kInit, kReady, kService, kJogPos, kJogNeg, kHoming, kSync, kStop, kError };
 
+enum class ClutchPhase : std::uint8_t {
+  kOpen,
+  kWaitingIn,  // the master is not yet where it begins to close
+  kClosing,
+  kClosed,
+  kWaitingOut,  // still on the cam: the master stands, or there is no curve
+  kOpening,
+  kReleased,  // opened at once; the slave comes to rest by itself
+};
+
+// For what a clutch waits.
+enum class ClutchWait : std::uint8_t {
+  kNothing,
+  kMasterStands,
+  kDirection,
+  kPosition,
+  kAway,
+  kRamps,
+  kSlave,
+  kReverse,
+  kLimits,
+};
+
 struct Outputs {
   double set_offset_master = 0;   // x, in force
   double set_offset_slave = 0;    // u, in force
@@ -48,9 +71,14 @@ struct Outputs {
   double mp06_y_to_slave_position = 0;        // u, where Y wants the slave
   double op01_set_x_position_out = 0;         // x, in the cam's cycle
   double op02_set_y_position_out = 0;         // y
+  double clutch_position = 0;                 // master's u, where the clutch is closed, or open
+  double clutch_distance = 0;                 // master's u, until there
+  double clutch_master_velocity = 0;          // master's u/s
   ErrorId error = ErrorId::kNone;
   ErrorId warning = ErrorId::kNone;
   ModuleState state = ModuleState::kInit;
+  ClutchPhase clutch = ClutchPhase::kOpen;
+  ClutchWait clutch_waits = ClutchWait::kNothing;
   std::uint32_t cam_table = 1;        // slot of the cam that runs
   std::uint32_t next_cam_table = 0;   // slot of the cam that is next; 0: none
   std::uint32_t pending_changes = 0;  // of change_cam
@@ -69,9 +97,20 @@ struct Outputs {
   bool end_of_profile = false;
   bool sequencer_active = false;
   bool bounds_valid = false;
+  bool master_lost = false;
+  bool offset_master_busy = false;
+  bool offset_slave_busy = false;
+  bool scaling_master_busy = false;
+  bool scaling_slave_busy = false;
+  bool offset_master_done = false;
+  bool offset_slave_done = false;
+  bool scaling_master_done = false;
+  bool scaling_slave_done = false;
 };
 
 void describe(Enumeration<ModuleState>&);
+void describe(Enumeration<ClutchPhase>&);
+void describe(Enumeration<ClutchWait>&);
 void describe(Description<Outputs>&);
 
 }  // namespace takt::flexcam

@@ -9,7 +9,10 @@ void describe(Description<FlexCamParams>& d) {
   d.about("A cam module: one slave that follows a master through one of up to four cams.");
   d.required<&P::name>("Of the module; commands go to it.");
   d.required<&P::slave>("Name of the axis that is moved.");
-  d.defaulted<&P::master>("Name of the axis that is followed; unset: a virtual master, see virtual_velocity.");
+  d.defaulted<&P::master>(
+      "What is followed: the name of an axis, of a belt (its travel), of a mover (its position along its tracks), or "
+      "of "
+      "a mover's coordinate (shuttle.x, .y, .c); unset: a virtual master, see virtual_velocity.");
   d.defaulted<&P::source>("Whether its set position or its measured one counts.");
   d.required<&P::cams>("Names of cams of the machine, for slots 1 to 4.");
   d.defaulted<&P::settings>("Settings at the start.");

@@ -15,8 +15,8 @@ namespace takt::flexcam {
 
 struct FlexCamParams {
   std::string name;
-  std::string slave;                                          // name of the axis
-  std::optional<std::string> master{};                        // name of the axis; unset: a virtual one
+  std::string slave;                    // name of the axis
+  std::optional<std::string> master{};  // name of the axis, belt, mover or its coordinate; unset: a virtual one
   axis::MasterSource source = axis::MasterSource::kSetValue;  // which position of it counts
   std::vector<std::string> cams;                              // for slots 1 to 4
   Settings settings;                                          // at the start

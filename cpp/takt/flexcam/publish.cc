@@ -2,15 +2,38 @@
 #include "takt/axis/axis.h"
 #include "takt/flexcam/run.h"
 
+#include <cmath>
+
 namespace takt::flexcam {
+
+namespace {
+
+void PublishClutch(const Context& c, const State& s, Outputs& out) {
+  const ClutchState& clutch = s.clutch;
+  out.clutch = clutch.phase;
+  out.clutch_waits = clutch.waits;
+  out.clutch_position = out.clutch_distance = out.clutch_master_velocity = 0;
+  const bool planned = clutch.phase == ClutchPhase::kWaitingIn && clutch.planned_sense != 0;
+  const ClutchCurve* curve = FollowedCurve(clutch);
+  if (curve != nullptr) out.clutch_master_velocity = curve->fastest;
+  if (!planned && curve == nullptr) return;
+  const double end = planned ? clutch.place : EndOf(*curve);
+  out.clutch_position = ReportedOf(c.slave, c.master, end - ZeroOf(c.slave, c.master));
+  out.clutch_distance = std::abs(end - s.master.now.position);
+}
+
+}  // namespace
 
 void Publish(const Context& c, const axis::State& slave, const State& s, Outputs& out) noexcept {
   const axis::AxisParams& p = c.slave.params;
   const double ky = s.inputs.scaling_slave;
-  out.set_offset_master = s.way.to_x.offset;
-  out.set_offset_slave = s.way.to_slave.offset;
-  out.set_scaling_master = s.way.to_x.factor;
-  out.set_scaling_slave = s.way.to_slave.factor;
+  const Cycle& cycle = c.slave.cycle;
+  const Conversion& to_x = s.way.to_x;
+  const Conversion& to_slave = s.way.to_slave;
+  out.set_offset_master = OffsetInForce(to_x, cycle);
+  out.set_offset_slave = OffsetInForce(to_slave, cycle);
+  out.set_scaling_master = FactorInForce(to_x, cycle, s.master.now);
+  out.set_scaling_slave = FactorInForce(to_slave, cycle, s.y);
   out.set_x_position = s.at.x;
   out.set_x_velocity = s.x.velocity;
   out.set_x_acceleration = s.x.acceleration;
@@ -38,7 +61,7 @@ void Publish(const Context& c, const axis::State& slave, const State& s, Outputs
   out.ip10_cam_table3 = s.slots[2];
   out.ip11_cam_table4 = s.slots[3];
   const double master = s.master.now.position - ZeroOf(c.slave, c.master);
-  out.mp01_set_master_position = c.master ? axis::Reported(c.slave.machine.params[*c.master], master) : master;
+  out.mp01_set_master_position = ReportedOf(c.slave, c.master, master);
   out.mp02_set_slave_position = axis::Reported(p, slave.setpoint.position);
   out.mp03_master_to_x_position = s.x.position;
   out.mp04_cam_profiler_position_out = s.at.y_in_cam;
@@ -46,6 +69,7 @@ void Publish(const Context& c, const axis::State& slave, const State& s, Outputs
   out.mp06_y_to_slave_position = axis::Reported(p, s.wanted.position - slave.origin);
   out.op01_set_x_position_out = s.at.x;
   out.op02_set_y_position_out = s.at.y_in_cam;
+  PublishClutch(c, s, out);
   out.error = s.error;
   out.warning = s.warning;
   out.state = s.state;
@@ -73,6 +97,15 @@ void Publish(const Context& c, const axis::State& slave, const State& s, Outputs
       sync && (phase == ClutchPhase::kClosing || phase == ClutchPhase::kOpening || phase == ClutchPhase::kReleased);
   out.end_of_profile = sync && s.end_of_profile;
   out.sequencer_active = sync && IsActive(SequencerOf(s), s.sequencer);
+  out.master_lost = !s.master.known;
+  out.offset_master_done = IsSettled(s, Adjustment::kOffsetMaster);
+  out.offset_slave_done = IsSettled(s, Adjustment::kOffsetSlave);
+  out.scaling_master_done = IsSettled(s, Adjustment::kScalingMaster);
+  out.scaling_slave_done = IsSettled(s, Adjustment::kScalingSlave);
+  out.offset_master_busy = !out.offset_master_done;
+  out.offset_slave_busy = !out.offset_slave_done;
+  out.scaling_master_busy = !out.scaling_master_done;
+  out.scaling_slave_busy = !out.scaling_slave_done;
 }
 
 }  // namespace takt::flexcam

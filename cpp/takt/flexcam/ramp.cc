@@ -13,62 +13,124 @@ double Elapsed(const Ramp& ramp, const Cycle& cycle) {
   return (static_cast<double>(cycle.count) - static_cast<double>(ramp.start_cycle)) * cycle.period_s;
 }
 
-double WayOn(const Ramp& ramp, const KinematicState& way) {
-  return ramp.sense * (way.position - ramp.way_begin);
-}
-
 // Sums are kept this far from standing still against a master that moves.
 constexpr double kShare = 0.999;
+// Speeds of a master below this share of the reference are standstill.
+constexpr double kStandstill = 1e-9;
 
-trajectory::Limits OverWayLimits(const WayRamp& ramp, const Ramp& before) {
-  const trajectory::Limits& l = ramp.limits;
-  const double v = ramp.speed;
-  double jerk = l.jerk / (v * v * v);
-  // No weaker than that of the ramp it takes over from: what that one could still ease out, this one can.
-  for (int i = 0; before.kind == RampKind::kWay && i < before.profile.size(); ++i) {
-    jerk = std::max(jerk, std::abs(before.profile.pieces[static_cast<std::size_t>(i)].jerk));
-  }
-  return {std::min(kShare * ramp.slope, l.velocity / v), l.acceleration / (v * v), l.deceleration / (v * v), jerk};
+double RateAt(const RampClock& clock, double speed) {
+  const double q = speed / clock.reference;
+  return q < 2 ? q * (1 - 0.25 * q) : 1;
+}
+double RateSlope(const RampClock& clock, double speed) {
+  const double q = speed / clock.reference;
+  return q < 2 ? (1 - 0.5 * q) / clock.reference : 0;
 }
 
-KinematicState Turned(const KinematicState& shift, double sense) {
-  return {shift.position, sense * shift.velocity, shift.acceleration};
+double SignOf(double x) {
+  return x < 0 ? -1 : 1;
+}
+
+// Acceleration of the master's speed.
+double SpeedChange(const KinematicState& master) {
+  return master.velocity == 0 ? std::abs(master.acceleration) : SignOf(master.velocity) * master.acceleration;
+}
+
+trajectory::Limits LimitsOf(const RampClock& clock) {
+  return {clock.velocity, clock.acceleration, clock.acceleration, clock.jerk};
+}
+
+// A clock for a shift with this motion, and that motion on the profile.
+RampClock ClockFor(const KinematicState& shift, const Ride& ride, KinematicState& on_profile) {
+  const trajectory::Limits& limits = ride.limits;
+  const KinematicState& master = ride.master;
+  RampClock clock;
+  clock.velocity = limits.velocity;
+  clock.acceleration = std::min(limits.acceleration, limits.deceleration);
+  clock.jerk = limits.jerk;
+  clock.sense = SignOf(master.velocity);
+  const double speed = std::abs(master.velocity);
+  const double bound = kShare * ride.factor;
+  clock.reference = limits.velocity / bound;
+  const bool against = shift.velocity * ride.base_velocity < 0 && speed > kStandstill * clock.reference;
+  const double left = against ? 1 - std::abs(shift.velocity) / (speed * bound) : 1;
+  clock.reference = std::max(clock.reference, 0.25 * speed / std::max(left, 1e-3));
+  // A shift that runs ahead is slowed down at the full rate, at the price of less speed on the way back.
+  if (shift.velocity * ride.base_velocity > 0) clock.reference = std::min(clock.reference, 2 * speed);
+  clock.velocity = std::min(clock.velocity, bound * clock.reference);
+  on_profile = {shift.position, 0, 0};
+  if (speed <= kStandstill * clock.reference) return clock;
+  clock.rate = RateAt(clock, speed);
+  clock.rate_change = RateSlope(clock, speed) * SpeedChange(master);
+  on_profile.velocity = shift.velocity / clock.rate;
+  const double own = (shift.acceleration - clock.rate_change * on_profile.velocity) / (clock.rate * clock.rate);
+  on_profile.acceleration = std::clamp(own, -clock.acceleration, clock.acceleration);
+  return clock;
+}
+
+bool PlanToZero(const KinematicState& from, const trajectory::Limits& limits, trajectory::Planner& planner,
+                trajectory::Profile& out) {
+  trajectory::Profile profile{from};
+  if (planner.ToPosition(from, 0, 0, limits, profile).failed()) return false;
+  out = profile;
+  return true;
+}
+
+// The part of the profile's motion from `from` that has no position to get to ends at zero.
+bool PlanToRest(const KinematicState& from, trajectory::Limits limits, trajectory::Planner& planner, double& begin,
+                trajectory::Profile& out) {
+  limits.velocity = std::max(limits.velocity, std::abs(from.velocity));
+  trajectory::Profile profile{from};
+  if (planner.ToVelocity(from, 0, limits, profile).failed()) return false;
+  begin = -profile.end().position;
+  profile.Shift(begin);
+  out = profile;
+  return true;
+}
+
+void Reverse(RampClock& clock) {
+  clock.rate = -clock.rate;
+  clock.rate_change = -clock.rate_change;
+  clock.sense = -clock.sense;
+}
+
+// The clock has gone back beyond its begin: the ramp is for the other sense of the master now.
+void TurnRound(trajectory::Planner& planner, Ramp& ramp) {
+  RampClock& clock = ramp.clock;
+  const KinematicState& start = ramp.profile.start();
+  if (!PlanToZero({start.position, -start.velocity, start.acceleration}, LimitsOf(clock), planner, ramp.profile))
+    return;
+  clock.time_s = -clock.time_s;
+  Reverse(clock);
 }
 
 }  // namespace
 
-KinematicState At(const Ramp& ramp, const Cycle& cycle, const KinematicState& way) noexcept {
+KinematicState At(const Ramp& ramp, const Cycle& cycle) noexcept {
   const double t = Elapsed(ramp, cycle);
   switch (ramp.kind) {
     case RampKind::kProfile:
       return ramp.profile.At(t);
     case RampKind::kTime:
       return t >= ramp.curve.length ? KinematicState{} : ramp.curve.At(t);
-    case RampKind::kWay:
-      return trajectory::AlongWay(OverWay(ramp, cycle, way), way);
+    case RampKind::kWithMaster: {
+      const KinematicState at = ramp.profile.At(ramp.clock.time_s);
+      const double rate = ramp.clock.rate;
+      return {at.position, rate * at.velocity, rate * rate * at.acceleration + ramp.clock.rate_change * at.velocity};
+    }
     default:
       return {};
   }
 }
 
-KinematicState OverWay(const Ramp& ramp, const Cycle& cycle, const KinematicState& way) noexcept {
-  if (ramp.kind == RampKind::kWay) {
-    return Turned(ramp.profile.At(WayOn(ramp, way)), ramp.sense);
-  }
-  const KinematicState at = At(ramp, cycle, way);
-  if (way.velocity == 0) return {at.position, 0, 0};
-  const double slope = at.velocity / way.velocity;
-  return {at.position, slope, (at.acceleration - slope * way.acceleration) / (way.velocity * way.velocity)};
-}
-
-bool IsOver(const Ramp& ramp, const Cycle& cycle, const KinematicState& way) noexcept {
+bool IsOver(const Ramp& ramp, const Cycle& cycle) noexcept {
   switch (ramp.kind) {
     case RampKind::kProfile:
       return Elapsed(ramp, cycle) >= ramp.profile.duration();
     case RampKind::kTime:
       return Elapsed(ramp, cycle) >= ramp.curve.length;
-    case RampKind::kWay:
-      return WayOn(ramp, way) >= ramp.profile.duration();
+    case RampKind::kWithMaster:
+      return ramp.clock.time_s >= ramp.profile.duration();
     default:
       return true;
   }
@@ -105,39 +167,75 @@ void BeginTime(const KinematicState& shift, double duration_s, const Cycle& cycl
   out.start_cycle = cycle.count - 1;
 }
 
-bool BeginWay(const KinematicState& shift, const WayRamp& ramp, double way, trajectory::Planner& planner,
-              Ramp& out) noexcept {
-  const KinematicState from = Turned(shift, ramp.sense);
-  trajectory::Profile profile{from};
-  if (planner.ToPosition(from, 0, 0, OverWayLimits(ramp, out), profile).failed()) return false;
-  out.kind = RampKind::kWay;
-  out.profile = profile;
-  out.way_begin = way;
-  out.sense = ramp.sense;
+bool BeginWithMaster(const KinematicState& shift, const Ride& ride, trajectory::Planner& planner, Ramp& out) noexcept {
+  if (!(ride.factor > 0)) return false;
+  KinematicState from;
+  const RampClock clock = ClockFor(shift, ride, from);
+  if (!PlanToZero(from, LimitsOf(clock), planner, out.profile)) return false;
+  out.kind = RampKind::kWithMaster;
+  out.clock = clock;
   return true;
 }
 
-bool BeginWaySlope(const KinematicState& shift, const WayRamp& ramp, double way, trajectory::Planner& planner,
-                   double& begin, Ramp& out) noexcept {
-  const KinematicState from = Turned({0, shift.velocity, shift.acceleration}, ramp.sense);
-  trajectory::Profile profile{from};
-  trajectory::Limits limits = OverWayLimits(ramp, out);
-  limits.velocity = std::max(limits.velocity, std::abs(from.velocity));
-  if (planner.ToVelocity(from, 0, limits, profile).failed()) return false;
-  begin = -profile.end().position;
-  profile.Shift(begin);
-  out.kind = RampKind::kWay;
-  out.profile = profile;
-  out.way_begin = way;
-  out.sense = ramp.sense;
+bool BeginSpeedWithMaster(const KinematicState& shift, const Ride& ride, trajectory::Planner& planner, double& begin,
+                          Ramp& out) noexcept {
+  if (!(ride.factor > 0)) return false;
+  KinematicState from;
+  const RampClock clock = ClockFor({0, shift.velocity, shift.acceleration}, ride, from);
+  if (!PlanToRest(from, LimitsOf(clock), planner, begin, out.profile)) return false;
+  out.kind = RampKind::kWithMaster;
+  out.clock = clock;
   return true;
 }
 
-void TurnRound(const WayRamp& ramp, double way, trajectory::Planner& planner, Ramp& out) noexcept {
-  if (out.kind != RampKind::kWay || out.sense * (way - out.way_begin) >= 0) return;
-  WayRamp back = ramp;
-  back.sense = -out.sense;
-  BeginWay(Turned(out.profile.start(), out.sense), back, out.way_begin, planner, out);
+bool MoveZero(double distance, trajectory::Planner& planner, Ramp& ramp) noexcept {
+  Ramp moved = ramp;
+  KinematicState from = ramp.profile.At(ramp.clock.time_s);
+  from.position += distance;
+  if (ramp.clock.rate < 0) {  // it goes back with its master: that is its way on from here
+    from.velocity = -from.velocity;
+    Reverse(moved.clock);
+  }
+  moved.clock.time_s = 0;
+  if (!PlanToZero(from, LimitsOf(moved.clock), planner, moved.profile)) return false;
+  ramp = moved;
+  return true;
+}
+
+void Advance(const KinematicState& before, const KinematicState& now, double displacement, const Cycle& cycle,
+             trajectory::Planner& planner, Ramp& ramp) noexcept {
+  if (ramp.kind != RampKind::kWithMaster) return;
+  RampClock& clock = ramp.clock;
+  const double t = cycle.period_s;
+  const double speed_before = std::abs(before.velocity), speed = std::abs(now.velocity);
+  const double most_before = RateAt(clock, speed_before), most = RateAt(clock, speed);
+  const double sign = clock.sense * SignOf(now.velocity == 0 ? before.velocity : now.velocity);
+  const bool turns = before.velocity * now.velocity < 0;
+  const double size = turns ? 0 : std::abs(clock.rate);
+  const double room = 1 - clock.share * clock.share;
+  const double growth = clock.acceleration / clock.velocity * (1 - size * size) * room;
+  double next = 0, next_change = 0;
+  if (!turns && speed < speed_before) {
+    next = size * most / most_before + t * growth;
+    next_change = clock.share * RateSlope(clock, speed) * SpeedChange(now) + growth;
+  } else {
+    // What it has of the master's acceleration from turning round ends with the ramp's jerk.
+    next_change = std::max(growth, sign * clock.rate_change - t * clock.jerk / clock.velocity);
+    next = size + t * next_change;
+  }
+  if (next >= most) {
+    next = most;
+    next_change = std::min(next_change, RateSlope(clock, speed) * SpeedChange(now));
+  }
+  clock.share = most > 0 ? next / most : clock.share;
+  const double rate_before = clock.rate, change_before = clock.rate_change;
+  clock.rate = sign * next;
+  clock.rate_change = sign * next_change;
+  // The integral of the rate, never more than the master's displacement allows.
+  const double step = 0.5 * t * (rate_before + clock.rate) + t * t / 12 * (change_before - clock.rate_change);
+  const double most_step = clock.sense * displacement / clock.reference;
+  clock.time_s += std::clamp(step, std::min(most_step, 0.0), std::max(most_step, 0.0));
+  if (clock.time_s < 0) TurnRound(planner, ramp);
 }
 
 void describe(Enumeration<RampKind>& e) {
@@ -145,18 +243,31 @@ void describe(Enumeration<RampKind>& e) {
   e.value(RampKind::kNone, "none", "It is zero.");
   e.value(RampKind::kProfile, "profile", "Limits of its own.");
   e.value(RampKind::kTime, "time", "A quintic over a time.");
-  e.value(RampKind::kWay, "way", "The same over the way of a master.");
+  e.value(RampKind::kWithMaster, "with_master", "Limits of its own, and never against a master.");
+}
+
+void describe(Description<RampClock>& d) {
+  using C = RampClock;
+  d.about("The clock of a ramp with a master.");
+  d.internal<&C::time_s>(unit::s, "On the profile.");
+  d.internal<&C::rate>(unit::one, "Of the clock.");
+  d.internal<&C::rate_change>(unit::one_s, "Of the rate.");
+  d.internal<&C::share>(unit::one, "Of the largest rate at the master's speed.");
+  d.internal<&C::reference>("Speed of the master.");
+  d.internal<&C::sense>("Of the master in which the clock goes on.");
+  d.internal<&C::velocity>("Of the ramp's own.");
+  d.internal<&C::acceleration>("Of the ramp's own.");
+  d.internal<&C::jerk>("Of the ramp's own.");
 }
 
 void describe(Description<Ramp>& d) {
   using R = Ramp;
   d.about("A shift on its way to zero.");
   d.internal<&R::kind>("What it goes by.");
-  d.internal<&R::profile>("Over time or way.");
+  d.internal<&R::profile>("Over time.");
   d.internal<&R::curve>("Over time.");
   d.internal<&R::start_cycle>("Cycle its time counts from.");
-  d.internal<&R::way_begin>("Master's position where it begins.");
-  d.internal<&R::sense>("In which the master goes on it.");
+  d.internal<&R::clock>("Of the profile, with a master.");
 }
 
 }  // namespace takt::flexcam

@@ -16,26 +16,47 @@
 namespace takt::flexcam {
 
 enum class RampKind : std::uint8_t {
-  kNone,     // zero
-  kProfile,  // with limits of its own
-  kTime,     // a quintic over a time
-  kWay,      // the same over the way of a master
+  kNone,        // zero
+  kProfile,     // with limits of its own
+  kTime,        // a quintic over a time
+  kWithMaster,  // with limits of its own, and never against a master
+};
+
+// A profile with a master runs on a clock of its own: the clock stands while the master stands, and goes back with it.
+// With the master's speed v, and f > 0 the factor of what the shift is added to (it moves at f v):
+//
+//   rate of the clock = share * G(v), 0 <= share <= 1, G(v) = q (1 - q / 4) with q = v / reference up to q = 2, then 1
+//
+// - Never against the master: no speed on the profile is more than kShare * f * reference, and G(v) <= v / reference,
+//   so the shift is never faster than kShare * f v.
+// - Its own velocity: the rate is at most 1, so the shift is never faster than on the profile.
+// - Its own acceleration a: while the master gets faster, the rate grows by a / velocity * (1 - rate^2) per second at
+//   most; with the profile's own part, rate^2 a, the sum is at most a. While the master gets slower the share stays:
+//   what has to stop with the master slows down with it.
+// - G is smooth, and so is the rate: nothing has a step in velocity or acceleration.
+struct RampClock {
+  double time_s = 0;       // on the profile
+  double rate = 0;         // of it; negative while it goes back
+  double rate_change = 0;  // 1/s
+  double share = 1;
+  double reference = 1;  // a speed of the master
+  double sense = 1;      // of the master in which the clock goes on
+  double velocity = 1;   // of the ramp's own ...
+  double acceleration = 1;
+  double jerk = 1;
 };
 
 struct Ramp {
   RampKind kind = RampKind::kNone;
-  trajectory::Profile profile;    // over s, or over the way in the sense below
+  trajectory::Profile profile;    // over s
   trajectory::Quintic curve;      // over s
   std::uint64_t start_cycle = 0;  // its time counts from
-  double way_begin = 0;           // master's u, where it begins
-  double sense = 1;               // in which the master goes on it
+  RampClock clock;
 };
 
-// The shift in this cycle, where the master is at `way`.
-KinematicState At(const Ramp& ramp, const Cycle& cycle, const KinematicState& way) noexcept;
-// The same over the way of the master: place, slope and bend per its unit. Other kinds: as for a master of that speed.
-KinematicState OverWay(const Ramp& ramp, const Cycle& cycle, const KinematicState& way) noexcept;
-bool IsOver(const Ramp& ramp, const Cycle& cycle, const KinematicState& way) noexcept;
+// The shift in this cycle; with a master: where Advance has brought it.
+KinematicState At(const Ramp& ramp, const Cycle& cycle) noexcept;
+bool IsOver(const Ramp& ramp, const Cycle& cycle) noexcept;
 
 // From `shift` (of the cycle before) to zero. False: there is no such plan, `out` stays.
 bool BeginProfile(const KinematicState& shift, const trajectory::Limits& limits, const Cycle& cycle,
@@ -46,24 +67,26 @@ bool BeginSpeed(const KinematicState& shift, const trajectory::Limits& limits, c
                 trajectory::Planner& planner, double& begin, Ramp& out) noexcept;
 void BeginTime(const KinematicState& shift, double duration_s, const Cycle& cycle, Ramp& out) noexcept;
 
-// Over the way of a master: what lies beneath has the slope `slope` > 0 over it, and the slope of the sum never falls
-// below 0, so that it never moves against the master, whatever the master does. `shift` is over the way; the slope of
-// the sum has to be >= 0 there. The limits are over time, for a master with the speed `speed` > 0.
-struct WayRamp {
-  double slope = 1;
+// What a ramp with a master goes by. The shift is added to something that moves at `factor` times `base_velocity`, a
+// velocity with the size of the master's; the sum must not move against that as it is.
+struct Ride {
+  KinematicState master;
+  double base_velocity = 0;
+  double factor = 1;  // > 0
   trajectory::Limits limits;
-  double speed = 1;
-  double sense = 1;  // in which the master goes
 };
-bool BeginWay(const KinematicState& shift, const WayRamp& ramp, double way, trajectory::Planner& planner,
-              Ramp& out) noexcept;
+bool BeginWithMaster(const KinematicState& shift, const Ride& ride, trajectory::Planner& planner, Ramp& out) noexcept;
 // As BeginSpeed.
-bool BeginWaySlope(const KinematicState& shift, const WayRamp& ramp, double way, trajectory::Planner& planner,
-                   double& begin, Ramp& out) noexcept;
-// A master that turned round before the ramp began goes on it the other way.
-void TurnRound(const WayRamp& ramp, double way, trajectory::Planner& planner, Ramp& out) noexcept;
+bool BeginSpeedWithMaster(const KinematicState& shift, const Ride& ride, trajectory::Planner& planner, double& begin,
+                          Ramp& out) noexcept;
+// Moves the zero of a ramp with a master by `distance`, at the rate it has.
+bool MoveZero(double distance, trajectory::Planner& planner, Ramp& ramp) noexcept;
+// Each cycle: the clock of a ramp with a master, which has moved by `displacement`. Other kinds need none.
+void Advance(const KinematicState& master_before, const KinematicState& master, double displacement, const Cycle& cycle,
+             trajectory::Planner& planner, Ramp& ramp) noexcept;
 
 void describe(Enumeration<RampKind>&);
+void describe(Description<RampClock>&);
 void describe(Description<Ramp>&);
 
 }  // namespace takt::flexcam

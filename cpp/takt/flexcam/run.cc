@@ -44,8 +44,6 @@ ConversionTarget MasterTarget(const Context& c, const State& s) {
   t.offset_mode = s.settings.offset_mode_master;
   t.ramps = MasterRamps(s.settings);
   t.with_master = s.settings.position_control == PositionControl::kMasterDirection;
-  // Ways are made for the master's speed of now, but not for a creeping one.
-  t.speed = std::max({std::abs(s.master.before.velocity), 0.1 * s.settings.master_max_velocity, 1e-6});
   t.absolute_zero = ZeroOfMaster(c, s);
   return t;
 }
@@ -57,8 +55,16 @@ ConversionTarget SlaveTarget(const Context& c, const State& s) {
   t.scaling_mode = s.settings.scaling_mode_slave;
   t.offset_mode = s.settings.offset_mode_slave;
   t.ramps = SlaveRamps(s.settings);
+  t.with_master = s.settings.position_control == PositionControl::kMasterDirection;
   t.absolute_zero = ZeroOfY(c, s);
   return t;
+}
+
+// Ramps of the slave ride on Y: they never move the slave against it. Where Y falls while X rises they go on all the
+// same, so they have the speed of Y and the sense of X.
+KinematicState RideOf(const KinematicState& y, const KinematicState& x) {
+  const double sign = y.velocity * x.velocity < 0 ? -1 : 1;
+  return {y.position, sign * y.velocity, sign * y.acceleration};
 }
 
 void TakeY(const Context& c, State& s) {
@@ -231,22 +237,48 @@ void TakeNext(const Context& c, const Passed& passed, State& s) {
   }
 }
 
+// The cam of a sequence is left over the side where X came in: it was not run, and the one before it goes on. One that
+// was taken up right there goes on itself, from its other end.
+bool ComesBack(const Context& c, const Passed& passed, State& s) {
+  if (s.sequencer.part == SequencePart::kNone || s.entry.sense == 0 || passed.sense != -s.entry.sense) return false;
+  if (s.entry.has_before) {
+    s.way.profiler = s.entry.profiler;
+    s.sequencer = s.entry.sequencer;
+    s.entry = {};
+    return true;
+  }
+  const cam::Table& table = TableOf(c, s);
+  s.way.profiler.laid += passed.sense * table.length();
+  s.way.profiler.base += passed.sense * table.stroke();
+  s.entry.sense = passed.sense;
+  return true;
+}
+
+void GoOnInSequence(const Context& c, const Passed& passed, State& s) {
+  const SequenceEntry before = {passed.sense, true, s.way.profiler, s.sequencer};
+  TakeNext(c, passed, s);
+  s.entry = s.way.profiler.slot == before.profiler.slot ? SequenceEntry{} : before;
+}
+
 void PassEnd(const Context& c, const Passed& passed, double x_before, State& s) {
   ProfilerState& p = s.way.profiler;
   const double master = MasterAt(s, passed.x_total, x_before);
   ++s.cam_ends;
   // A curve of the clutch that ends on this cam finds it there.
   const bool stays = IsOnCurve(s.clutch);
-  if (!stays && !TakePending(c, passed, s)) TakeNext(c, passed, s);
+  if (!stays && !ComesBack(c, passed, s) && !TakePending(c, passed, s)) GoOnInSequence(c, passed, s);
   const double turn = TurnOf(c.slave, c.master);
   if (turn == 0 || std::abs(TableOf(c, s).length() - turn) > 1e-9 * turn) s.assigned = false;
-  if (!stays) ApproachAtZero(MasterTarget(c, s), master, s.way.to_x);
+  const Cycle& cycle = c.slave.cycle;
+  const ConversionInputs masters = {s.master.before, s.master.before};
+  if (!stays) ApproachAtZero(MasterTarget(c, s), master, cycle, masters, c.slave.planner, s.way.to_x);
   s.x = Convert(s.way.to_x, c.slave.cycle, s.master.now);
   GoOn(TableOf(c, s), s.x.position, p);
   // Counted from where Y is: the end of a cam that is held there or entered backwards, else its beginning.
   const bool at_end = p.held ? passed.sense > 0 : passed.sense < 0;
   const double entered = ZeroOfY(c, s) + (at_end ? TableOf(c, s).stroke() : 0);
-  if (!IsFrozen(s.clutch)) ApproachAtZero(SlaveTarget(c, s), entered, s.way.to_slave);
+  const ConversionInputs ys = {s.y, RideOf(s.y, s.x)};
+  if (!IsFrozen(s.clutch)) ApproachAtZero(SlaveTarget(c, s), entered, cycle, ys, c.slave.planner, s.way.to_slave);
 }
 
 // What is to be run instead of the end of a cam that is held, if anything: what a command wants, a sequence, or what is
@@ -286,6 +318,23 @@ const cam::Table& TableOf(const Context& c, const State& s) noexcept {
   return c.slave.machine.cams[s.way.profiler.cam];
 }
 
+bool IsSettled(const State& s, Adjustment what) noexcept {
+  const Conversion& master = s.way.to_x;
+  const Conversion& slave = s.way.to_slave;
+  const bool x_ramps = master.ramp.kind != RampKind::kNone, y_ramps = slave.ramp.kind != RampKind::kNone;
+  switch (what) {
+    case Adjustment::kOffsetMaster:
+      return master.offset == s.inputs.offset_master && !(x_ramps && master.ramped == Ramped::kOffset);
+    case Adjustment::kOffsetSlave:
+      return slave.offset == s.inputs.offset_slave && !(y_ramps && slave.ramped == Ramped::kOffset);
+    case Adjustment::kScalingMaster:
+      return master.factor == s.inputs.scaling_master && !(x_ramps && master.ramped != Ramped::kOffset);
+    case Adjustment::kScalingSlave:
+      return slave.factor == s.inputs.scaling_slave && !(y_ramps && slave.ramped != Ramped::kOffset);
+  }
+  return true;
+}
+
 SequencerInputs SequencerOf(const State& s) noexcept {
   const ProfilerState& p = s.way.profiler;
   return {s.inputs.cam_sequencer,
@@ -310,6 +359,8 @@ void TakeUp(const Context& c, const axis::State& slave, State& s) noexcept {
   s.x = Convert(to_x, c.slave.cycle, s.master.before);
   const double x = s.assigned ? s.x.position : table.begin() + to_x.offset;
   Lay(table, s.x.position, x, !first.cyclic, s.way.profiler);
+  s.entry = {};
+  if (std::abs(x - table.begin()) <= 1e-9 * table.length()) s.entry.sense = 1;
   if (s.way.profiler.once) GoOn(table, s.x.position, s.way.profiler);
   TakeY(c, s);
   Conversion& to_slave = s.way.to_slave;
@@ -331,9 +382,11 @@ void ShowWay(const Context& c, const axis::State& slave, State& s) noexcept {
 void RunWay(const Context& c, State& s) noexcept {
   const Cycle& cycle = c.slave.cycle;
   const double x_before = s.x.position;
-  const KinematicState y_before = s.y;
-  if (!IsOnCurve(s.clutch))
-    Approach(MasterTarget(c, s), cycle, s.master.before, s.master.now, c.slave.planner, s.way.to_x);
+  const ConversionInputs masters = {s.master.before, s.master.before};
+  const ConversionInputs ys = {s.y, RideOf(s.y, s.x)};
+  if (!IsOnCurve(s.clutch)) Approach(MasterTarget(c, s), cycle, masters, c.slave.planner, s.way.to_x);
+  Advance(s.master.before, s.master.now, s.master.now.position - s.master.before.position, cycle, c.slave.planner,
+          s.way.to_x.ramp);
   s.x = Convert(s.way.to_x, cycle, s.master.now);
   if (!IsOnCurve(s.clutch)) TakeChanges(c, x_before, s);
   const std::optional<Passed> passed = PassedEnd(TableOf(c, s), s.way.profiler, s.x.position);
@@ -344,7 +397,9 @@ void RunWay(const Context& c, State& s) noexcept {
   }
   s.end_of_profile = AnnouncesEnd(TableOf(c, s), cycle, s.x, passed.has_value(), s.way.profiler);
   TakeY(c, s);
-  if (!IsFrozen(s.clutch)) Approach(SlaveTarget(c, s), cycle, y_before, s.y, c.slave.planner, s.way.to_slave);
+  if (!IsFrozen(s.clutch)) Approach(SlaveTarget(c, s), cycle, ys, c.slave.planner, s.way.to_slave);
+  const double y_moved = std::copysign(s.y.position - ys.before.position, s.x.position - x_before);
+  Advance(ys.ride_before, RideOf(s.y, s.x), y_moved, cycle, c.slave.planner, s.way.to_slave.ramp);
   s.wanted = Convert(s.way.to_slave, cycle, s.y);
 }
 

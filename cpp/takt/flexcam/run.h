@@ -18,6 +18,13 @@ void RunWay(const Context& c, State& s) noexcept;
 bool Enqueue(Ticket ticket, const ChangeCam& change, State& s) noexcept;
 void AbortChanges(const Context& c, State& s) noexcept;
 
+// Whether the offset or factor that is set is in force.
+bool IsSettled(const State& s, Adjustment what) noexcept;
+
+void AbortAdjustments(const Context& c, State& s) noexcept;
+// Tells the ends of ramps.
+void EndAdjustments(const Context& c, State& s) noexcept;
+
 SequencerInputs SequencerOf(const State& s) noexcept;
 // The slave is powered and takes commands.
 bool IsOn(const axis::State& slave) noexcept;

@@ -35,6 +35,9 @@ void DescribeSettings(Description<SettingsOf<Of>>& d) {
       between(-1e12, 1e12),
       "Master's position at which the clutch is closed (ramp_pos), in its unit. Flex Cam: "
       "lrMasterSyncInPos.");
+  d.template defaulted<&S::sync_in_passed>(
+      "What closing (ramp_pos) does where a master without a turn has no room left before master_sync_in_position. A "
+      "rotary master closes a turn later.");
   d.template defaulted<&S::master_sync_out_distance>(
       between(0, 1e12),
       "Way of the master over which the clutch opens (ramp_pos), in its unit; 0: at once. Flex Cam: "
@@ -79,7 +82,8 @@ void DescribeSettings(Description<SettingsOf<Of>>& d) {
   d.template defaulted<&S::offset_scaling_slave_deceleration>(
       unit::u_s2, factor, "Of the slave's ramps. Flex Cam: lrOffsetScalingSlaveDec.");
   d.template defaulted<&S::position_control>(
-      "Whether ramps of X and a clutch over the master's way may move against it. Flex Cam: ePosCtrlDirection.");
+      "Whether offsets and factors of both sides and a clutch over the master's displacement may move X and the slave "
+      "against the master. Flex Cam: ePosCtrlDirection.");
   d.template defaulted<&S::calculate_bounds>("True: the extreme values are worked out. Flex Cam: xCalcCamBounds.");
   d.template defaulted<&S::master_max_velocity>(
       between(0, 1e12), "Largest speed of the master for the extreme values. Flex Cam: lrMasterMaxVel.");
@@ -149,6 +153,13 @@ void describe(Enumeration<PositionControl>& e) {
   e.about("How the slave may move while it is being shifted.");
   e.value(PositionControl::kBoth, "both", "Either way.");
   e.value(PositionControl::kMasterDirection, "master_direction", "Never against the master's motion.");
+}
+
+void describe(Enumeration<PassedSync>& e) {
+  e.about("What happens where a master has passed the sync position.");
+  e.value(PassedSync::kRefuse, "refuse", "Closing fails with error 3110.");
+  e.value(PassedSync::kNextCycle, "next_cycle", "It closes a whole number of cycles of the cam later.");
+  e.value(PassedSync::kHere, "here", "It closes over the whole distance from where the master is.");
 }
 
 void describe(Enumeration<SequenceMode>& e) {

@@ -18,6 +18,8 @@ enum class OffsetMode : std::uint8_t { kXZero, kDirect, kRampIn };
 enum class ScalingMode : std::uint8_t { kXZero, kAbsolute, kRelative, kRampAbsolute, kRampRelative };
 // How ramps of the X axis and a clutch over the master's way may move.
 enum class PositionControl : std::uint8_t { kBoth, kMasterDirection };
+// What a clutch over the master's displacement does where a linear master has passed the sync position.
+enum class PassedSync : std::uint8_t { kRefuse, kNextCycle, kHere };
 enum class SequenceMode : std::uint8_t { kCam1, kCam3, kCam1Cam3, kCam1Cam2Cam3 };
 // What the slave does when its master's position is no longer known.
 enum class MasterFault : std::uint8_t { kStop, kCoast };
@@ -40,8 +42,9 @@ struct SettingsOf {
   // The clutch.
   Of<ClutchMode> sync_mode = Preset<Of>(ClutchMode::kAbsolute);
   Of<ClutchDirection> sync_direction = Preset<Of>(ClutchDirection::kCurrent);
-  Of<double> master_sync_in_distance = Preset<Of>(100.0);   // master's u
-  Of<double> master_sync_in_position = Preset<Of>(0.0);     // master's u
+  Of<double> master_sync_in_distance = Preset<Of>(100.0);  // master's u
+  Of<double> master_sync_in_position = Preset<Of>(0.0);    // master's u
+  Of<PassedSync> sync_in_passed = Preset<Of>(PassedSync::kRefuse);
   Of<double> master_sync_out_distance = Preset<Of>(100.0);  // master's u
   Of<double> slave_sync_out_position = Preset<Of>(0.0);     // u
   Of<double> sync_in_time_s = Preset<Of>(5.0);
@@ -92,6 +95,7 @@ void describe(Enumeration<ClutchDirection>&);
 void describe(Enumeration<OffsetMode>&);
 void describe(Enumeration<ScalingMode>&);
 void describe(Enumeration<PositionControl>&);
+void describe(Enumeration<PassedSync>&);
 void describe(Enumeration<SequenceMode>&);
 void describe(Enumeration<MasterFault>&);
 void describe(Description<Settings>&);

@@ -10,6 +10,15 @@ void describe(Description<PendingChange>& d) {
   d.internal<&PendingChange::change>("What is to change, and when.");
 }
 
+void describe(Description<SequenceEntry>& d) {
+  using E = SequenceEntry;
+  d.about("How X came into the cam of a sequence.");
+  d.internal<&E::sense>("Of X then; 0: not at an end.");
+  d.internal<&E::has_before>("What was left there is known.");
+  d.internal<&E::profiler>("The cam that was left.");
+  d.internal<&E::sequencer>("Where the sequence was.");
+}
+
 void describe(Description<JogKeys>& d) {
   d.about("Keys of a jog.");
   d.internal<&JogKeys::ticket>("Of the command; 0: none is held.");
@@ -31,6 +40,7 @@ void describe(Description<State>& d) {
   d.about("A cam module.");
   d.internal<&S::inputs>("Levels of this cycle.");
   d.internal<&S::before>("Levels of the cycle before.");
+  d.internal<&S::rose>("Levels that rose in this cycle.");
   d.internal<&S::settings>("What is set.");
   d.internal<&S::slots>("Number of the cam in each slot, from 1; 0: none.");
   d.internal<&S::state>("Of the module.");
@@ -40,6 +50,7 @@ void describe(Description<State>& d) {
   d.internal<&S::action_ticket>("Of the command that did.");
   d.internal<&S::request>("What was asked for in this cycle.");
   d.internal<&S::request_ticket>("Of the command that did.");
+  d.internal<&S::adjusting>("Tickets of offsets and factors that are ramped.");
   d.internal<&S::holds>("The slave's stop is the module's.");
   d.internal<&S::instant>("The cam that is set is to be taken at once.");
   d.internal<&S::done>("It is done.");
@@ -53,6 +64,7 @@ void describe(Description<State>& d) {
   d.internal<&S::assigned>("X is the master's position.");
   d.internal<&S::clutch>("The clutch.");
   d.internal<&S::sequencer>("The sequence of cams.");
+  d.internal<&S::entry>("How X came into its cam.");
   d.internal<&S::bounds>("Extreme values.");
   d.internal<&S::pending>("Changes of cam that wait.");
   d.internal<&S::pending_count>("How many.");

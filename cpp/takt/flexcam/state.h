@@ -12,6 +12,7 @@
 #include "takt/flexcam/commands.h"
 #include "takt/flexcam/master.h"
 #include "takt/flexcam/outputs.h"
+#include "takt/flexcam/profiler.h"
 #include "takt/flexcam/sequencer.h"
 #include "takt/flexcam/way.h"
 
@@ -24,6 +25,14 @@ struct PendingChange {
   ChangeCam change;
 };
 
+// How X came into the cam of a sequence that it is in: a cam that is left over the side where X came in was not run.
+struct SequenceEntry {
+  std::int8_t sense = 0;    // of X at that end of the cam; 0: it was taken up within, or runs again and again
+  bool has_before = false;  // what follows is what was left there
+  ProfilerState profiler;
+  SequencerState sequencer;
+};
+
 struct JogKeys {
   Ticket ticket = 0;  // 0: none is held
   Jog keys;
@@ -31,12 +40,17 @@ struct JogKeys {
   std::uint64_t lease_end_cycle = 0;
 };
 
+// What Control may change by a ramp.
+enum class Adjustment : std::uint8_t { kOffsetMaster, kOffsetSlave, kScalingMaster, kScalingSlave };
+inline constexpr std::size_t kAdjustments = 4;
+
 // What Control started and whose end is to be told.
 enum class Action : std::uint8_t { kNone, kSyncIn, kSyncOut, kHome };
 
 struct State {
   Inputs inputs;
   Inputs before;  // inputs of the cycle before, for their edges
+  Inputs rose;    // levels that rose in this cycle, also if they fell before or behind that
   Settings settings;
   std::array<std::uint32_t, kSlots> slots{};  // number of the machine's cam in each, from 1; 0: none
   ModuleState state = ModuleState::kInit;
@@ -46,6 +60,7 @@ struct State {
   Ticket action_ticket = 0;
   Action request = Action::kNone;  // asked for in this cycle
   Ticket request_ticket = 0;
+  std::array<Ticket, kAdjustments> adjusting{};  // whose ramps are told when they end; 0: none
   bool done = false;
   bool holds = false;    // the slave's stop is the module's
   bool instant = false;  // the cam that is set is to be taken at once
@@ -60,6 +75,7 @@ struct State {
   bool assigned = false;  // X is the master's position
   ClutchState clutch;
   SequencerState sequencer;
+  SequenceEntry entry;
   BoundsState bounds;
   std::array<PendingChange, kPendingChanges> pending;  // [0] is next
   std::uint8_t pending_count = 0;
@@ -70,6 +86,7 @@ struct State {
 };
 
 void describe(Description<PendingChange>&);
+void describe(Description<SequenceEntry>&);
 void describe(Description<JogKeys>&);
 void describe(Enumeration<Action>&);
 void describe(Description<State>&);

@@ -159,9 +159,14 @@ msgs::flex_cam_state ToMessage(const engine::FlexCamSnapshot& snapshot, const en
   m.mp06_y_to_slave_position = o.mp06_y_to_slave_position;
   m.op01_set_x_position_out = o.op01_set_x_position_out;
   m.op02_set_y_position_out = o.op02_set_y_position_out;
+  m.clutch_position = o.clutch_position;
+  m.clutch_distance = o.clutch_distance;
+  m.clutch_master_velocity = o.clutch_master_velocity;
   m.error = static_cast<std::int32_t>(o.error);
   m.warning = static_cast<std::int32_t>(o.warning);
   m.state = static_cast<std::int8_t>(o.state);
+  m.clutch = static_cast<std::int8_t>(o.clutch);
+  m.clutch_waits = static_cast<std::int8_t>(o.clutch_waits);
   m.cam_table = o.cam_table;
   m.next_cam_table = o.next_cam_table;
   m.pending_changes = o.pending_changes;
@@ -180,6 +185,15 @@ msgs::flex_cam_state ToMessage(const engine::FlexCamSnapshot& snapshot, const en
   m.end_of_profile = o.end_of_profile;
   m.sequencer_active = o.sequencer_active;
   m.bounds_valid = o.bounds_valid;
+  m.master_lost = o.master_lost;
+  m.offset_master_busy = o.offset_master_busy;
+  m.offset_slave_busy = o.offset_slave_busy;
+  m.scaling_master_busy = o.scaling_master_busy;
+  m.scaling_slave_busy = o.scaling_slave_busy;
+  m.offset_master_done = o.offset_master_done;
+  m.offset_slave_done = o.offset_slave_done;
+  m.scaling_master_done = o.scaling_master_done;
+  m.scaling_slave_done = o.scaling_slave_done;
   return m;
 }
 

@@ -43,7 +43,8 @@ TEST(LoadFlexCams, NamesWhatIsNotThere) {
   EXPECT_THAT(FlexCamProblems("  - {name: a, slave: knive, master: wep, cams: [hill, hil]}\n"),
               ElementsAre("m.yaml:13:22: flex_cams[0].slave: expected the name of an axis, found 'knive'; did you mean "
                           "knife?",
-                          "m.yaml:13:37: flex_cams[0].master: expected the name of an axis, found 'wep'; did you mean "
+                          "m.yaml:13:37: flex_cams[0].master: expected the name of an axis, a belt or a mover, found "
+                          "'wep'; did you mean "
                           "web?",
                           "m.yaml:13:55: flex_cams[0].cams[1]: expected the name of a cam, found 'hil'; did you mean "
                           "hill?"));

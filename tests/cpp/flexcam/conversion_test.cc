@@ -30,10 +30,10 @@ TEST_P(Tables, AreThoseOfTheManual) {
   target.scaling_mode = row.mode;
   target.absolute_zero = row.absolute_zero;
   target.factor = 2;
-  Approach(target, {1, 0.001}, {100, 1000, 0}, {101, 1000, 0}, planner, c);
+  Approach(target, {1, 0.001}, {{100, 1000, 0}, {100, 1000, 0}}, planner, c);
   EXPECT_EQ(Convert(c, {}, {101, 1000, 0}), (KinematicState{row.second, 2000, 0}));
   target.factor = 1;
-  Approach(target, {2, 0.001}, {101, 1000, 0}, {102, 1000, 0}, planner, c);
+  Approach(target, {2, 0.001}, {{101, 1000, 0}, {101, 1000, 0}}, planner, c);
   EXPECT_EQ(Convert(c, {}, {102, 1000, 0}), (KinematicState{row.third, 1000, 0}));
 }
 

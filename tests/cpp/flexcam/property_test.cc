@@ -1,24 +1,12 @@
 // What must hold for any cam, any master and any clutch (CAM-37, CAM-39).
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "bench.h"
+#include "dice.h"
 #include "watch.h"
 
 namespace takt::flexcam {
 namespace {
-
-class Dice {
- public:
-  explicit Dice(unsigned seed) : generator_(seed) {}
-  double Between(double low, double high) { return std::uniform_real_distribution<>(low, high)(generator_); }
-  int Upto(int last) { return std::uniform_int_distribution<>(0, last)(generator_); }
-  bool Coin() { return Upto(1) == 1; }
-
- private:
-  std::mt19937 generator_;
-};
 
 // A smooth cyclic cam through a few points; `rising`: never falling.
 cam::CamParams RandomCam(Dice& dice, const std::string& name, bool rising) {
