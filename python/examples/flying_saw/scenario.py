@@ -33,9 +33,10 @@ def correct(web: takt.Axis, cutter: takt.FlexCam) -> float:
     """Waits for a mark and shifts X to where it should have been. How far it was off, in mm."""
     probe = web.arm_probe(edge="rising")
     probe.wait()
-    x = probe.value + cutter.set_offset_master  # the web's position is X but for the offset
+    offset = cutter.ip03_set_offset_master  # as it is set: marks come while it is still being ramped in
+    x = probe.value + offset  # the web's position is X but for the offset
     error = (AT_SENSOR - x + LENGTH / 2) % LENGTH - LENGTH / 2
-    cutter.control(offset_master=cutter.set_offset_master + error).wait()
+    cutter.control(offset_master=offset + error).wait(until="active")
     return error
 
 
