@@ -102,7 +102,9 @@ def test_a_mover_that_is_off_is_no_master() -> None:
 
 
 def test_an_unknown_master_is_named() -> None:
-    with pytest.raises(takt.ConfigError, match=r"expected the name of an axis, a belt or a mover, found 'infed'.*infeed"):
+    with pytest.raises(
+        takt.ConfigError, match=r"expected the name of an axis, a belt or a mover, found 'infed'.*infeed"
+    ):
         takt.Engine(machine("infed"))
 
 
