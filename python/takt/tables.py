@@ -174,7 +174,10 @@ def units_of(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, An
     components = components_of(machine)
 
     def unit(name: str) -> str:
-        return units_of(machine, *components[name])["u"]
+        if name in components:
+            return units_of(machine, *components[name])["u"]
+        mover, _, coordinate = name.rpartition(".")  # a coordinate of a mover: mover.x
+        return "deg" if coordinate == "c" else units_of(machine, *components[mover])["u"]
 
     cam = next(c for c in machine["cams"] if c["name"] == parameters["cams"][0])
     master = parameters.get("master")

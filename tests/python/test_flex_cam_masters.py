@@ -111,3 +111,16 @@ def test_an_unknown_master_is_named() -> None:
 def test_a_virtual_master_is_none() -> None:
     with takt.Engine(machine("drive").replace("master: drive, ", "")) as engine:
         assert engine.flex_cam("fc").master is None
+
+
+@pytest.mark.parametrize(
+    ("master", "unit"), [("infeed", "mm"), ("shuttle.x", "mm"), ("shuttle.c", "deg"), ("drive", "mm")]
+)
+def test_recordings_know_the_unit_of_any_master(master: str, unit: str) -> None:
+    """CAM-80: what is in the master's unit is so in a recording, whatever kind of component the master is."""
+    with takt.Engine(machine(master)) as engine:
+        recorder = engine.record()
+        engine.step(5)
+        recording = recorder.stop()
+    assert recording.unit("fc", "clutch_position") == unit
+    assert recording.unit("fc", "clutch_master_velocity") == f"{unit}/s"

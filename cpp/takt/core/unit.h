@@ -24,6 +24,7 @@ inline constexpr Unit u_s{"u/s", "the axis' unit per second"};
 inline constexpr Unit u_s2{"u/s2", "the axis' unit per second squared"};
 inline constexpr Unit u_s3{"u/s3", "the axis' unit per second cubed"};
 inline constexpr Unit u_m{"u_m", "the master's own unit"};
+inline constexpr Unit u_m_s{"u_m/s", "the master's own unit per second"};
 inline constexpr Unit x{"x", "the unit of a cam's x"};
 inline constexpr Unit x_s{"x/s", "the unit of a cam's x per second"};
 inline constexpr Unit x_s2{"x/s2", "the unit of a cam's x per second squared"};

@@ -83,9 +83,9 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::clutch_position>(
       unit::u_m, "Master's position in its turn at which the clutch is closed, or open (ramp_pos); 0: not known.");
   d.internal<&O::clutch_distance>(unit::u_m, "Master's displacement until there; 0: not known.");
-  d.internal<&O::clutch_master_velocity>(
-      "Largest steady speed of the master, in its unit per second, at which the slave keeps its limits on the clutch's "
-      "curve; 0: it is on none.");
+  d.internal<&O::clutch_master_velocity>(unit::u_m_s,
+                                         "Largest steady speed of the master at which the slave keeps its limits on "
+                                         "the clutch's curve; 0: it is on none.");
   d.internal<&O::error>("Why the module is in error. Flex Cam: xError, eErrorID.");
   d.internal<&O::warning>("What was not done as asked last. Flex Cam: xWarning, eErrorID.");
   d.internal<&O::state>("State of the module. Flex Cam: eTMState.");
