@@ -18,7 +18,7 @@ extern "C" void* malloc(std::size_t size) {
   ++allocations;
   return __libc_malloc(size);
 }
-#else  // these have a malloc of their own: then calls of new are counted
+#elif !defined(TAKT_SANITIZED_THREADS)  // a malloc of its own: calls of new are counted; Clang's brings new, too
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size)) return memory;
