@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import random
 import signal
 import socket
 import struct
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -255,42 +253,3 @@ def test_events_carry_checksums(engine: tuple[subprocess.Popen[str], str, Path])
         changed = bytearray(event.data)
         changed[len(changed) // 2] ^= 4
         assert _core.checksum_holds(event.channel, bytes(changed)) is False
-
-
-HASHES = """
-import sys, warnings
-from pathlib import Path
-import takt
-from takt.ready import scenario_of
-from takt.scenario import load_scenario, play
-warnings.simplefilter("ignore")
-for name in sys.argv[1:]:
-    scenario = load_scenario(scenario_of(name))
-    with takt.Engine(scenario.machine) as session:
-        problem = play(scenario, session)
-        print(name, session.cycle, hex(session.state_hash), problem)
-"""
-
-
-@pytest.mark.parametrize("name", ["delta_cell", "flying_saw", "one_axis", "pick_cell", "planar_line", "six_axes"])
-def test_results_do_not_depend_on_the_cpu(name: str, tmp_path: Path) -> None:
-    """EN-35: bit for bit, whatever the C library picks by what the CPU can do."""
-    said = []
-    settings = ["", "-FMA,-AVX2,-FMA4,-AVX,-AVX512F"]
-    if os.environ.get("TAKT_LONG"):
-        settings.append("-AVX2,-AVX512F")
-    for less in settings:
-        environment = os.environ | ({"GLIBC_TUNABLES": f"glibc.cpu.hwcaps={less}"} if less else {})
-        environment["NPY_DISABLE_CPU_FEATURES"] = "AVX2 FMA3 AVX512F" if less else ""
-        run = subprocess.run(
-            [sys.executable, "-c", HASHES, name],
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=300,
-        )
-        assert run.returncode == 0, run.stderr
-        said.append(run.stdout)
-    assert "broken_off=None" in said[0]
-    assert len(set(said)) == 1
