@@ -3,6 +3,7 @@
 #include <ruckig/ruckig.hpp>
 
 #include "../core/allocations.h"
+#include "../core/trials.h"
 #include "rig.h"
 
 namespace takt::mover {
@@ -121,7 +122,7 @@ TEST(MoverMoves, TurnsOntoAnotherLineWithoutAStop) {
 TEST(MoverMoves, RandomCommandsKeepAllLimits) {
   std::mt19937 random(11);
   int done = 0;
-  for (int run = 0; run < 150; ++run) {
+  for (int run = 0; run < Trials(150, 1); ++run) {
     MoverParams params;
     params.xy.maximum = {Uniform(random, 200, 3000), Uniform(random, 1000, 20000), Uniform(random, 1000, 20000),
                          Uniform(random, 20000, 500000)};
@@ -183,7 +184,7 @@ TEST(MoverMoves, RandomCommandsKeepAllLimits) {
       done += rig.Of(move).state == FeedbackState::kDone ? 1 : 0;
     }
   }
-  EXPECT_GT(done, 200);
+  EXPECT_GT(done, Trials(200, 1));
 }
 
 // PL-11: with its orientation the mover arrives in all three coordinates together, from rest.

@@ -3,6 +3,7 @@
 // given up; and it goes on with the next one.
 #include <algorithm>
 
+#include "../core/trials.h"
 #include "../group/watch.h"
 #include "cell.h"
 
@@ -96,7 +97,7 @@ constexpr double kPick_s = 1.4;  // of one pick, and some time more
 
 // The belt stops for ever at every instant of a pick: the workpiece is picked where it stands.
 TEST(GiveUp, BeltStopsForEver) {
-  for (double stop = 0; stop < kPick_s; stop += 0.017) {
+  for (double stop = 0; stop < kPick_s; stop += Stride(0.017)) {
     SCOPED_TRACE(stop);
     Watched run(Infeed(Changing(150, 0, stop, 0.1)));
     run.Put(150);
@@ -113,7 +114,7 @@ TEST(GiveUp, BeltStopsForEver) {
 // It turns back at every instant: near the beginning of the range that is too early for some.
 TEST(GiveUp, BeltTurnsBack) {
   int given_up = 0;
-  for (double turn = 0; turn < kPick_s; turn += 0.013) {
+  for (double turn = 0; turn < kPick_s; turn += Stride(0.013)) {
     SCOPED_TRACE(turn);
     Watched run(Infeed(Changing(100, -200, turn, 0.2)));
     run.Put(120);
@@ -123,15 +124,15 @@ TEST(GiveUp, BeltTurnsBack) {
     run.Put(450);
     ASSERT_TRUE(run.RunUntil([&] { return run.counters().picked > 0; }));
   }
-  EXPECT_GT(given_up, 10);
-  EXPECT_LT(given_up, 100);
+  EXPECT_GT(given_up, Trials(10, 1));
+  EXPECT_LT(given_up, Trials(100, 1));
 }
 
 // It becomes much faster at every instant, beyond what was said of it: in the end it is too late for some. Those go on
 // along the belt, to whoever else may reach them.
 TEST(GiveUp, BeltBecomesMuchFaster) {
   int given_up = 0, low = 0;
-  for (double change = 0; change < kPick_s + 0.5; change += 0.009) {
+  for (double change = 0; change < kPick_s + 0.5; change += Stride(0.009)) {
     SCOPED_TRACE(change);
     CellBelt belt = Infeed(Changing(100, 600, change, 0.3));
     belt.settings.sync_time = 0.6;
@@ -151,16 +152,16 @@ TEST(GiveUp, BeltBecomesMuchFaster) {
       ASSERT_TRUE(run.RunUntil([&] { return run.cell.out().in_park_position; }, 2));
     }
   }
-  EXPECT_GT(given_up, 10);
-  EXPECT_LT(given_up, 190);
-  EXPECT_GT(low, 3) << "a test that cannot fail";
+  EXPECT_GT(given_up, Trials(10, 1));
+  EXPECT_LT(given_up, Trials(190, 1));
+  EXPECT_GT(low, Trials(3, 1) - 1) << "a test that cannot fail";
 }
 
 // The camera or the program takes the workpiece away while the tool goes to it: it goes up, straight and in step, and
 // parks; what comes next is picked. On the workpiece it stays as long as it should.
 TEST(GiveUp, WorkpieceIsRemoved) {
   int low = 0;
-  for (int instant = 1; instant < 1400; instant += 11) {
+  for (int instant = 1; instant < 1400; instant += Stride(11)) {
     SCOPED_TRACE(instant);
     Watched run(Infeed(Changing(150, 150, 0, 1)));
     run.Put(150);
@@ -179,7 +180,7 @@ TEST(GiveUp, WorkpieceIsRemoved) {
     run.Put(130);
     ASSERT_TRUE(run.RunUntil([&] { return run.counters().picked == 1; }));
   }
-  EXPECT_GT(low, 5) << "a test that cannot fail";
+  EXPECT_GT(low, Trials(5, 1)) << "a test that cannot fail";
 }
 
 // What is said of the belt's speed counts from the choice of a workpiece on: how fast it may become, and how slow, or
@@ -208,7 +209,7 @@ TEST(GiveUp, ReckonsWithWhatTheBeltMayDo) {
 // over the belt it goes straight up from there before anything else.
 TEST(GiveUp, StoppedUntilItHasLeft) {
   int low = 0;
-  for (int instant = 1; instant < 1400; instant += 17) {
+  for (int instant = 1; instant < 1400; instant += Stride(17)) {
     SCOPED_TRACE(instant);
     Watched run(Infeed(Changing(150, 150, 0, 1)));
     run.Put(150);
@@ -232,7 +233,7 @@ TEST(GiveUp, StoppedUntilItHasLeft) {
     ASSERT_TRUE(run.RunUntil([&] { return run.counters().picked == 1; }));
     EXPECT_EQ(run.counters().interrupted, 1u);
   }
-  EXPECT_GT(low, 5) << "a test that cannot fail";
+  EXPECT_GT(low, Trials(5, 1)) << "a test that cannot fail";
 }
 
 // From belt to belt: the place on the second one vanishes while the tool lifts from the first one. It goes on lifting,

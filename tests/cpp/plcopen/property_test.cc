@@ -6,6 +6,7 @@
 #include <random>
 #include <utility>
 
+#include "../core/trials.h"
 #include "bench.h"
 
 namespace takt::plcopen {
@@ -121,7 +122,8 @@ void Press(Dice& dice, Instances& on) {
 // more.
 TEST(Properties, OutputsExcludeOneAnother) {
   int ended = 0;
-  for (std::uint32_t seed = 0; seed < 1000 && !testing::Test::HasFailure(); ++seed) {
+  for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(Trials(1000, 1)) && !testing::Test::HasFailure();
+       ++seed) {
     SCOPED_TRACE(seed);
     Dice dice(seed);
     Bench bench;
@@ -165,7 +167,7 @@ TEST(Properties, OutputsExcludeOneAnother) {
     EXPECT_EQ(bench.State(bench.w), axis::PlcState::kStandstill);
     for (const Instances& on : both) ended += on.move.ended + on.ever.ended + on.stop.ended;
   }
-  EXPECT_GT(ended, 1000);
+  EXPECT_GT(ended, Trials(1000, 1));
 }
 
 }  // namespace
