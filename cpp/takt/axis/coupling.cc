@@ -35,18 +35,40 @@ double ReportedOf(const Context& c, std::uint32_t master, double position) {
   return Outside(c, master) ? position : Reported(c.machine.params[master], position);
 }
 
-// A master as this axis sees it: over all turns, with the phase.
-KinematicState Seen(const Context& c, const CouplingTerm& term, const KinematicState& phase) {
-  if (const OutsideMaster* outside = Outside(c, term.master)) {
-    const KinematicState& its = outside->at;
-    return {its.position + phase.position, its.velocity + phase.velocity, its.acceleration + phase.acceleration};
-  }
+// An axis over all turns, as it is set or measured.
+KinematicState AsItIs(const Context& c, const CouplingTerm& term) {
   const State& master = c.machine.states[term.master];
   const bool measured = term.source == MasterSource::kActualValue;
   KinematicState its = measured ? master.actual : master.setpoint;
   if (measured && master.loop_closed) its.acceleration = master.setpoint.acceleration;  // it is not measured
-  return {its.position + master.origin + phase.position, its.velocity + phase.velocity,
-          its.acceleration + phase.acceleration};
+  its.position += master.origin;
+  return its;
+}
+
+// A master as this axis sees it: over all turns, with the phase.
+KinematicState Seen(const Context& c, const CouplingState& k, const CouplingTerm& term, const KinematicState& phase) {
+  if (const OutsideMaster* outside = Outside(c, term.master)) {
+    const KinematicState& its = outside->at;
+    return {its.position + phase.position, its.velocity + phase.velocity, its.acceleration + phase.acceleration};
+  }
+  const MasterFilter& filter = k.filters[&term == &k.law.terms[1] ? 1 : 0];
+  const KinematicState its = filter.cycles > 0 ? filter.estimate : AsItIs(c, term);
+  return {its.position + phase.position, its.velocity + phase.velocity, its.acceleration + phase.acceleration};
+}
+
+// Once a cycle: the filters of masters that are measured and have one.
+void FilterMasters(const Context& c, CouplingState& k) {
+  for (std::size_t i = 0; i < k.law.terms.size(); ++i) {
+    const CouplingTerm& term = k.law.terms[i];
+    if (term.master == kNoAxis || term.source == MasterSource::kSetValue || Outside(c, term.master)) continue;
+    const Encoder& encoder = c.machine.params[term.master].encoder;
+    const double time_s = term.filter_s < 0 ? encoder.velocity_filter_s : term.filter_s;
+    if (time_s <= 0) continue;
+    KinematicState its = AsItIs(c, term);
+    const State& master = c.machine.states[term.master];
+    if (master.loop_closed) its.velocity = master.setpoint.velocity;  // to begin with: better known than measured
+    Filter(time_s, 1 / encoder.increments_per_unit, c.cycle, its, k.filters[i]);
+  }
 }
 
 // The sum of all terms, as a demand over all own turns.
@@ -54,7 +76,7 @@ KinematicState Sum(const Context& c, const CouplingState& k, const KinematicStat
   KinematicState sum;
   for (const CouplingTerm& term : k.law.terms) {
     if (term.master == kNoAxis) continue;
-    const KinematicState master = Seen(c, term, &term == &k.law.terms[0] ? phase : KinematicState{});
+    const KinematicState master = Seen(c, k, term, &term == &k.law.terms[0] ? phase : KinematicState{});
     sum.position += term.ratio * master.position;
     sum.velocity += term.ratio * master.velocity;
     sum.acceleration += term.ratio * master.acceleration;
@@ -179,7 +201,7 @@ bool HasBegun(double standing, const KinematicState& master, CouplingState& k) {
 bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, KinematicState& demand) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
-  const KinematicState master = Seen(c, term, phase);
+  const KinematicState master = Seen(c, k, term, phase);
   if (k.joining == Joining::kWaiting) {
     if (!HasBegun(Standing(c, term.master), master, k)) return false;
     BeginCurve(c, master, s);
@@ -202,7 +224,7 @@ void BeginJoining(const Context& c, const Request& r, State& s) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
   const double origin = OriginOf(c, term.master);
-  const KinematicState seen = Seen(c, term, {});
+  const KinematicState seen = Seen(c, k, term, {});
   const double sense = seen.velocity < 0 ? -1 : 1;
   const double distance = std::max(0.0, r.coupling.master_start_distance);
   k.turn = TurnOf(c, term.master);
@@ -225,7 +247,7 @@ void BeginCam(const Context& c, const Request& r, State& s) {
   const double origin = OriginOf(c, term.master);
   const double turn = TurnOf(c, term.master);
   const CamLaw law = CamOf(c, r);
-  const KinematicState seen = Seen(c, term, {});
+  const KinematicState seen = Seen(c, k, term, {});
   const bool takes_over = s.end_of_profile && k.cam.end_axis == term.master;
   const double sense = seen.velocity < 0 ? -1 : 1;
   const bool waits = k.law.master_start_distance >= 0;
@@ -259,7 +281,7 @@ double Blur(const Context& c, const State& s) {
   for (const CouplingTerm& term : s.coupling.law.terms) {
     if (term.master == kNoAxis || term.source == MasterSource::kSetValue || Outside(c, term.master)) continue;
     const double slope =
-        Joins(s.active.kind) ? InStep(c, Seen(c, term, PhaseAt(c, s.coupling)).position, s).dy : term.ratio;
+        Joins(s.active.kind) ? InStep(c, Seen(c, s.coupling, term, PhaseAt(c, s.coupling)).position, s).dy : term.ratio;
     blur += std::abs(slope) * kBlurredIncrements / c.machine.params[term.master].encoder.increments_per_unit;
   }
   return blur;
@@ -270,7 +292,7 @@ void NoteEnd(const Context& c, const KinematicState& phase, State& s) {
   CouplingState& k = s.coupling;
   if (s.active.kind != RequestKind::kCamIn || k.joining != Joining::kJoined) return;
   const CamLaw law = CamOf(c, s.active);
-  const double share = ShareOf(law, k.cam, Seen(c, k.law.terms[0], phase).position);
+  const double share = ShareOf(law, k.cam, Seen(c, k, k.law.terms[0], phase).position);
   const std::optional<double> end = EndPassed(k.cam.share, share);
   k.cam.share = share;
   s.end_of_profile = end.has_value();
@@ -397,6 +419,7 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     ComeToRest(c, ramps, FromCycleBefore(c), s);
     return false;
   }
+  FilterMasters(c, k);
   KinematicState phase = PhaseAt(c, k);
   NoteEnd(c, phase, s);
   if (s.end_of_profile && s.buffered > 0 && Couples(s.buffer[0].kind)) {  // takes over in this very cycle
@@ -476,6 +499,7 @@ void describe(Description<CouplingState>& d) {
   using S = CouplingState;
   d.about("An axis that follows masters.");
   d.internal<&S::law>("What it follows.");
+  d.internal<&S::filters>("Of the masters that are measured.");
   d.internal<&S::chase>("The catching up.");
   d.internal<&S::in_step>("With the masters, as far as they are known.");
   d.internal<&S::locked>("By place.");

@@ -1,10 +1,12 @@
 // Axes coupled at run time: gears, their phase, sums of two masters, cams.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
 #include "takt/axis/cam_law.h"
+#include "takt/axis/master_filter.h"
 #include "takt/axis/request.h"
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
@@ -27,7 +29,8 @@ enum class Joining : std::uint8_t {
 };
 
 struct CouplingState {
-  CouplingRequest law;  // in force
+  CouplingRequest law;                  // in force
+  std::array<MasterFilter, 2> filters;  // of the masters that are measured
   trajectory::ChaseState chase;
   bool in_step = false;  // with the masters, as far as they are known
   bool locked = false;   // followed by place: gears and sums are from when they were in step first

@@ -25,12 +25,20 @@ constexpr RatioFields kRatio1 = {"ratio_numerator1", "ratio_denominator1"};
 constexpr RatioFields kRatio2 = {"ratio_numerator2", "ratio_denominator2"};
 
 bool Term(const Maker& m, const Name& name, MasterSource source, double ratio, CouplingTerm& out) {
-  out = {name, kNoAxis, source, ratio};
+  out.name = name;
+  out.source = source;
+  out.ratio = ratio;
   if (name.empty() || name.view() == m.params.name || source > MasterSource::kActualValue) {
     m.why.field = source > MasterSource::kActualValue ? "source" : "master";
     return false;
   }
   return true;
+}
+
+bool Filter(const Maker& m, const std::optional<double>& filter_s, CouplingTerm& out) {
+  constexpr double kLongest = 10;  // s
+  if (filter_s) out.filter_s = *filter_s;
+  return m.In("master_filter", filter_s.value_or(0), 0, kLongest);
 }
 
 }  // namespace
@@ -41,7 +49,8 @@ bool Fill(const Maker& m, const GearIn& c) {
   m.r.velocity = m.params.limits.velocity;
   double ratio = 0;
   return Ratio(m, kRatio, c.ratio_numerator, c.ratio_denominator, ratio) &&
-         Term(m, c.master, c.source, ratio, m.r.coupling.terms[0]) && m.Ramps(c);
+         Term(m, c.master, c.source, ratio, m.r.coupling.terms[0]) &&
+         Filter(m, c.master_filter, m.r.coupling.terms[0]) && m.Ramps(c);
 }
 
 bool Fill(const Maker& m, const GearInPos& c) {
@@ -61,7 +70,7 @@ bool Fill(const Maker& m, const GearInPos& c) {
          m.In("slave_sync_position", c.slave_sync_position, -kMaxPosition, kMaxPosition) &&
          m.In("master_start_distance", c.master_start_distance.value_or(0), 0, kMaxPosition) &&
          Ratio(m, kRatio, c.ratio_numerator, c.ratio_denominator, ratio) &&
-         Term(m, c.master, c.source, ratio, out.terms[0]) &&
+         Term(m, c.master, c.source, ratio, out.terms[0]) && Filter(m, c.master_filter, out.terms[0]) &&
          m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
 }
 
@@ -148,6 +157,7 @@ bool Fill(const Maker& m, const PhasingRelative& c) {
 
 void describe(Description<CouplingTerm>& d) {
   d.about("One master and how it is followed.");
+  d.internal<&CouplingTerm::filter_s>(unit::s, "Of a measured master; negative: that of its encoder.");
   d.internal<&CouplingTerm::name>("Of the master.");
   d.internal<&CouplingTerm::master>("Its index.");
   d.internal<&CouplingTerm::source>("Which of its positions.");

@@ -16,7 +16,8 @@ struct CouplingTerm {
   Name name;                       // of the master; empty: no such term
   std::uint32_t master = kNoAxis;  // its index in the machine, found when the command arrives
   MasterSource source = MasterSource::kSetValue;
-  double ratio = 1;  // own u (cams: x) per master's u; with its sign in a difference
+  double filter_s = -1;  // of a measured master; negative: that of its encoder
+  double ratio = 1;      // own u (cams: x) per master's u; with its sign in a difference
 };
 
 struct CouplingRequest {

@@ -4,6 +4,14 @@
 
 namespace takt::axis {
 
+namespace {
+
+constexpr const char* kMasterFilter =
+    "Time constant of the filter of a measured master, which has no lag at constant velocity; 0: none; unset: the "
+    "encoder.velocity_filter_s of the master.";
+
+}  // namespace
+
 void describe(Enumeration<MasterSource>& e) {
   e.about("Which position of a master counts.");
   e.value(MasterSource::kSetValue, "set_value", "Its set point of the same cycle.");
@@ -33,6 +41,7 @@ void describe(Description<GearIn>& d) {
   d.defaulted<&C::ratio_numerator>("Own units ...");
   d.defaulted<&C::ratio_denominator>(positive, "... per so many of the master's.");
   d.defaulted<&C::source>("Which of the master's positions is followed.");
+  d.defaulted<&C::master_filter>(unit::s, between(0, 10), kMasterFilter);
   DescribeRamps(d);
   d.defaulted<&C::buffer_mode>(kBufferMode);
 }
@@ -51,6 +60,7 @@ void describe(Description<GearInPos>& d) {
   d.defaulted<&C::ratio_numerator>("Own units ...");
   d.defaulted<&C::ratio_denominator>(positive, "... per so many of the master's.");
   d.defaulted<&C::source>("Which of the master's positions is followed.");
+  d.defaulted<&C::master_filter>(unit::s, between(0, 10), kMasterFilter);
   d.required<&C::master_sync_position>("Where the master is, in its own unit, when both are in step.");
   d.required<&C::slave_sync_position>(unit::u, "Where this axis is then.");
   d.defaulted<&C::sync_mode>("How a rotary axis gets there.");

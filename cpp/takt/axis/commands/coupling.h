@@ -22,6 +22,7 @@ struct GearIn {  // MC_GearIn
   double ratio_numerator = 1;
   double ratio_denominator = 1;
   MasterSource source = MasterSource::kSetValue;
+  std::optional<double> master_filter{};
   std::optional<double> acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
 };
@@ -35,6 +36,7 @@ struct GearInPos {  // MC_GearInPos
   double master_sync_position = 0;
   double slave_sync_position = 0;
   SyncMode sync_mode = SyncMode::kShortest;
+  std::optional<double> master_filter{};
   std::optional<double> master_start_distance{};
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;

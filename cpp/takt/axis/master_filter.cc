@@ -1,0 +1,58 @@
+// A g-h filter (alpha-beta filter: Brookner, Tracking and Kalman Filtering Made Easy, chapter 1), fed forward with the
+// acceleration that is known. It has no lag at constant velocity, nor at a constant known acceleration. g is that of
+// the critically damped filter with both poles at exp(-T / tau), h half of its own: overdamped. In its first
+// cycles its memory grows up to tau, so that it starts well from a rough first velocity; and it spans a few increments,
+// also where the master is slow.
+//
+// What is ours: the error that corrects it is the distance of the prediction to the increment that was measured, not to
+// the middle of it. A prediction inside the increment agrees with what is measured and is left alone; so at constant
+// velocity the estimate ends in a straight line through all increments. With less damping it would swing between
+// their borders.
+#include "takt/axis/master_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+namespace {
+
+constexpr double kDamping = 0.5;   // of the h of critical damping
+constexpr double kIncrements = 4;  // that the memory spans
+constexpr double kLongest = 10;    // times the time constant
+
+}  // namespace
+
+const KinematicState& Filter(double time_constant_s, double increment, Cycle cycle, const KinematicState& measured,
+                             MasterFilter& filter) noexcept {
+  KinematicState& e = filter.estimate;
+  if (filter.cycles == 0) {
+    filter.cycles = 1;
+    return e = measured;
+  }
+  const double period = cycle.period_s;
+  const double increments_s = kIncrements * increment / (std::abs(e.velocity) + increment);
+  const double wanted_s = std::clamp(increments_s, time_constant_s, kLongest * time_constant_s);
+  const double memory_s = std::min(wanted_s, filter.cycles * period);
+  if (filter.cycles * period < kLongest * time_constant_s) ++filter.cycles;
+  const double pole = std::exp(-period / memory_s);
+  const double acceleration = measured.acceleration;
+  e.position += (e.velocity + 0.5 * acceleration * period) * period;
+  e.velocity += acceleration * period;
+  e.acceleration = acceleration;
+  const double away = measured.position - e.position;
+  const double error = away - std::clamp(away, -0.5 * increment, 0.5 * increment);
+  e.position += (1 - pole * pole) * error;
+  e.velocity += kDamping * (1 - pole) * (1 - pole) * error / period;
+  return e;
+}
+
+void describe(Description<MasterFilter>& d) {
+  d.about("What a measured master does, smoothed.");
+  d.internal<&MasterFilter::estimate>("Over all turns.");
+  d.internal<&MasterFilter::cycles>(unit::cycles, "Since it first saw the master.");
+}
+
+}  // namespace takt::axis
