@@ -44,6 +44,8 @@ class SetPoint:
     velocity_counts_s: float = 0.0  # csp: fed forward; csv: set point; cst: largest speed either way
     voltage_v: float = 0.0  # analogue, -10 to 10 V
     torque_nm: float = 0.0  # cst; N on linear motors
+    torque_until_counts_s: float = 0.0  # cst: signed velocity at which the torque ends in this cycle
+    torque_limit_nm: float = 0.0  # largest torque either way, in all modes; 0: that of the drive
     period_s: float = 0.001  # length of a cycle
 
 

@@ -66,15 +66,16 @@ def test_touch_probe_records_the_position(x: takt.Axis) -> None:  # AX-49
     assert not probe.Done
 
 
-def test_abort_trigger_and_a_second_block_end_the_wait(x: takt.Axis) -> None:  # AX-49
+def test_abort_trigger_ends_all_that_wait(x: takt.Axis) -> None:  # AX-49, AX-109
     first, second, abort = MC_TouchProbe(x), MC_TouchProbe(x), MC_AbortTrigger(x)
     first(Execute=True)
     step(x)
     second(Execute=True)
-    until(x, lambda: first.CommandAborted, first, second)
+    step(x)
+    assert first.Busy
     assert second.Busy
     abort(Execute=True)
-    until(x, lambda: second.CommandAborted, second, abort)
+    until(x, lambda: first.CommandAborted and second.CommandAborted, first, second, abort)
     assert abort().Done
 
 

@@ -75,7 +75,7 @@ Status TakeOver(const Context& c, const Request& r, State& s) {
     return Status::Ok();
   }
   Plan plan;
-  const Status status = PlanRequest(c.params, SurroundingsOfBoth(c, s), c.planner, s.setpoint, r, nullptr, plan);
+  const Status status = PlanRequest(c.params, SurroundingsOfBoth(c, s), c.planner, s.setpoint, r, {}, plan);
   if (status.failed()) return status;
   AbortAll(c, s);
   TakeControl(c, r, plan, FromCycleBefore(c), s);
@@ -213,7 +213,8 @@ void Apply(const Context& c, Ticket ticket, double lease_s, const Command& comma
   if (status.failed()) Report(c, ticket, FeedbackState::kError, status.error);
 }
 
-bool Release(const Context&, Ticket ticket, State& s) noexcept {
+bool Release(const Context& c, Ticket ticket, State& s) noexcept {
+  if (EndProbing(c, ticket, s)) return true;
   Request* const request = Find(ticket, s);
   if (request == nullptr) return false;
   request->hold = false;

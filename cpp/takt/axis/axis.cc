@@ -260,6 +260,13 @@ void BrakeInFault(const Context& c, ErrorId error, State& s) {
   StartMotion(profile, profile.end().position, FromCycleBefore(c), s);
 }
 
+// Nm, of the command in control or of the axis; 0: none.
+double TorqueLimit(const AxisParams& p, const State& s) {
+  const double own = p.limits.torque.value_or(0);
+  const double asked = s.plc == PlcState::kHoming ? s.active.homing.torque_limit : 0;
+  return asked > 0 ? asked : own;
+}
+
 }  // namespace
 
 State MakeState(const AxisParams& params) noexcept {
@@ -345,11 +352,14 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   }
   out.mode = mode;
   out.position_counts = sign * CountsAt(p.encoder, s.setpoint.position + s.origin);
-  out.velocity_counts_s = torque          ? std::abs(CountRateAt(p.encoder, s.active.velocity))
+  out.velocity_counts_s = torque
+                              ? std::abs(CountRateAt(p.encoder, std::max(s.active.velocity, std::abs(s.torque.until))))
                           : engine_closes ? CountRateAt(p.encoder, loop.velocity)
                                           : sign * CountRateAt(p.encoder, s.setpoint.velocity);
   out.voltage_v = loop.voltage_v;
   out.torque_nm = torque ? sign * s.torque.set_torque_nm : 0;
+  out.torque_until_counts_s = torque ? sign * CountRateAt(p.encoder, s.torque.until) : 0;
+  out.torque_limit_nm = TorqueLimit(p, s);
   const bool sound =
       std::isfinite(out.position_counts + out.velocity_counts_s + out.voltage_v) && std::isfinite(out.torque_nm);
   if (!sound) {
@@ -419,7 +429,9 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.error = s.error;
   out.state = s.plc;
   out.superimposed = s.superimposed;
-  out.limited_by = s.limited_by;
+  const double torque_limit = TorqueLimit(p, s);
+  const bool at_torque_limit = torque_limit > 0 && s.loop_closed && std::abs(s.torque_nm) >= 0.999 * torque_limit;
+  out.limited_by = at_torque_limit ? LimitedBy::kTorque : s.limited_by;
   out.covered_distance = 0;
   if (s.superimposed) {
     out.covered_distance = s.overlay.covered;

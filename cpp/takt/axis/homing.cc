@@ -307,7 +307,7 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
     leave.kind = RequestKind::kMoveRelative;
     Surroundings around = SurroundingsOf(c, s);
     around.factors = {};
-    const Status status = PlanRequest(c.params, around, c.planner, s.setpoint, leave, nullptr, plan);
+    const Status status = PlanRequest(c.params, around, c.planner, s.setpoint, leave, {}, plan);
     if (status.failed()) return status;
   }
   if (aborts) AbortAll(c, s);

@@ -40,6 +40,7 @@ void describe(Description<HomingParams>& d) {
   d.defaulted<&H::deviation>(unit::u, not_negative, "The following error that says that the axis is at its end stop.");
   d.defaulted<&H::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&H::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.defaulted<&H::torque_limit>(unit::nm, positive, "Largest torque of the search; unset: that of the axis.");
   d.rule<&H::velocity>("must be more than 0 for a search",
                        [](const H& h) { return !Searches(h.method) || h.velocity > 0; });
   d.rule<&H::direction>("must be positive or negative where there is no switch",

@@ -28,6 +28,7 @@ struct HomingParams {
   double deviation = 0;                                          // u, following error at an end stop; more than 0
   double time_limit = 0;                                         // s, of all of it; 0: any
   double distance_limit = 0;                                     // u, of all of it; 0: any
+  std::optional<double> torque_limit{};                          // Nm, of the search; unset: that of the axis
 };
 
 inline bool Searches(HomingMethod method) noexcept {

@@ -12,6 +12,8 @@ bool Search(const Maker& m, RequestKind kind, const T& c) {
   m.r.homing.direction = c.direction;
   m.r.homing.time_limit = c.time_limit;
   m.r.homing.distance_limit = c.distance_limit;
+  const double most = m.params.limits.torque.value_or(kMaxTorque);
+  if (c.torque_limit && !m.Take("torque_limit", c.torque_limit, most, m.r.homing.torque_limit)) return false;
   if (c.direction > HomingDirection::kSwitchNegative) {
     m.why.field = "direction";
     return false;
@@ -58,6 +60,7 @@ Step StepOf(const HomingParams& h, const Home& c) {
   step.buffer_mode = c.buffer_mode;
   step.time_limit = h.time_limit;
   step.distance_limit = h.distance_limit;
+  step.torque_limit = h.torque_limit;
   return step;
 }
 
@@ -170,6 +173,7 @@ void describe(Description<HomingRequest>& d) {
   d.internal<&H::deviation>(unit::u, "Following error at an end stop.");
   d.internal<&H::time_limit>(unit::s, "Longest search; 0: any.");
   d.internal<&H::distance_limit>(unit::u, "Longest way; 0: any.");
+  d.internal<&H::torque_limit>(unit::nm, "Largest torque; 0: that of the axis.");
   d.internal<&H::until_halt>("A halt ends a search in passing.");
   d.internal<&H::ends>("The search of a switch ends homing.");
   d.internal<&H::pulse_velocity>(unit::u_s, "Of the search of the index pulse after it; 0: none.");

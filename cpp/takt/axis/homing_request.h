@@ -15,6 +15,7 @@ struct HomingRequest {
   double time_limit = 0;      // s; 0: none
   double distance_limit = 0;  // u; 0: none
 
+  double torque_limit = 0;  // Nm; 0: that of the axis
   bool until_halt = false;  // in passing: a halt or a stop ends it
 
   // MC_Home: a step that ends homing, where it was to end the search of a switch after one of the index pulse.

@@ -17,6 +17,9 @@ void describe(Description<AxisLimits>& d) {
   d.required<&L::acceleration>(unit::u_s2, positive, "Largest acceleration.");
   d.defaulted<&L::deceleration>(unit::u_s2, positive, "Largest deceleration; unset: as the acceleration.");
   d.required<&L::jerk>(unit::u_s3, not_negative, "Largest jerk; 0: unlimited.");
+  d.defaulted<&L::torque>(unit::nm, positive,
+                          "Largest torque that the drive is allowed, in N on linear motors (TorqueLimit); unset: all "
+                          "that it has.");
   d.defaulted<&L::lower>(unit::u, "Lower SW limit (LimNeg); unset: none.");
   d.defaulted<&L::upper>(unit::u, "Upper SW limit (LimPos); unset: none.");
   d.rule<&L::upper>("must lie above lower", [](const L& l) { return !l.lower || !l.upper || *l.lower < *l.upper; });
@@ -55,6 +58,7 @@ void describe(Description<InputSense>& d) {
   d.defaulted<&I::invert_limit_negative>("Inverts LIM-.");
   d.defaulted<&I::invert_reference>("Inverts REF.");
   d.defaulted<&I::invert_touch_probe>("Inverts TP.");
+  d.defaulted<&I::touch_probe_of>("The axis whose TP wire captures this axis' position, too; unset: its own.");
 }
 
 void describe(Description<Following>& d) {

@@ -25,6 +25,7 @@ struct AxisLimits {
   double acceleration = 0;               // u/s²
   std::optional<double> deceleration{};  // u/s²; unset: as acceleration
   double jerk = 0;                       // u/s³; 0: unlimited
+  std::optional<double> torque{};        // Nm (N on linear motors), that the drive may use; unset: all that it has
   std::optional<double> lower{};         // u, SW limit LimNeg; unset: none
   std::optional<double> upper{};         // u, SW limit LimPos; unset: none
 };
@@ -51,6 +52,7 @@ struct InputSense {
   bool invert_limit_negative = false;
   bool invert_reference = false;
   bool invert_touch_probe = false;
+  std::string touch_probe_of;  // name of the axis whose TP wire counts here, too; empty: its own
 };
 
 // A second axis on the same mechanics (gantry, line shaft): it follows a master from load on.

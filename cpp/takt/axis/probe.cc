@@ -11,11 +11,11 @@ namespace takt::axis {
 
 namespace {
 
-bool InWindow(const AxisParams& p, const ProbeState& probe, double position) {
-  if (!probe.window_only) return true;
-  const bool across_zero = p.rotary() && probe.last_position < probe.first_position;
-  const bool above = position >= probe.first_position;
-  const bool below = position <= probe.last_position;
+bool InWindow(const AxisParams& p, const Capture& capture, double position) {
+  if (!capture.window_only) return true;
+  const bool across_zero = p.rotary() && capture.last_position < capture.first_position;
+  const bool above = position >= capture.first_position;
+  const bool below = position <= capture.last_position;
   return across_zero ? above || below : above && below;
 }
 
@@ -30,32 +30,44 @@ double PositionBefore(const Context& c, const State& s, double age_s) {
   return s.actual.position - s.probe.step * age / period - 0.5 * acceleration * age * (period - age);
 }
 
-void Capture(const Context& c, double position, State& s) {
-  ProbeState& probe = s.probe;
-  const double reported = Reported(c.params, position);
-  if (!InWindow(c.params, probe, reported)) return;
+void Note(double reported, ProbeState& probe) {
   probe.position = reported;
   ++probe.captures;
-  if (probe.watch == ProbeWatch::kTouch) {
-    probe.touched = true;
-    probe.touch_position = position;
-  } else {
-    probe.watch = ProbeWatch::kNothing;
-    Report(c, probe.ticket, FeedbackState::kDone, ErrorId::kNone, false, reported);
-  }
 }
 
-void LookForEdge(const Context& c, const ServoInputs& in, State& s) {
+// Ends the commands that wait for this edge at this position.
+void CaptureAt(const Context& c, ProbeEdge edge, double position, State& s) {
   ProbeState& probe = s.probe;
-  const bool waits = probe.watch == ProbeWatch::kCapture || (probe.watch == ProbeWatch::kTouch && !probe.touched);
-  if (!waits || s.encoder_error) return;
-  const bool rise = (probe.edge == ProbeEdge::kRising) != c.params.inputs.invert_touch_probe;
+  const double reported = Reported(c.params, position);
+  std::uint8_t left = 0;
+  for (std::uint8_t i = 0; i < probe.waits; ++i) {
+    const Capture one = probe.waiting[i];
+    if (one.edge == edge && InWindow(c.params, one, reported)) {
+      Report(c, one.ticket, FeedbackState::kDone, ErrorId::kNone, false, reported);
+    } else {
+      probe.waiting[left++] = one;
+    }
+  }
+  const bool touches = probe.watch == ProbeWatch::kTouch && !probe.touched && probe.edge == edge;
+  if (left < probe.waits || touches) Note(reported, probe);
+  for (std::uint8_t i = left; i < probe.waits; ++i) probe.waiting[i] = {};
+  probe.waits = left;
+  if (!touches) return;
+  probe.touched = true;
+  probe.touch_position = position;
+}
+
+// An edge of the wire since the sample before, and how long ago it came; the instant is unknown where drives do not
+// say.
+void LookForEdge(const Context& c, const ServoInputs& in, ProbeEdge edge, State& s) {
+  const ProbeState& probe = s.probe;
+  const bool rise = (edge == ProbeEdge::kRising) != c.params.inputs.invert_touch_probe;
   const bool counted = rise ? in.probe_rises != probe.rises : in.probe_falls != probe.falls;
   const bool counts = in.probe_rises != 0 || in.probe_falls != 0;
   if (counted) {
-    Capture(c, PositionBefore(c, s, rise ? in.probe_rise_age_s : in.probe_fall_age_s), s);
+    CaptureAt(c, edge, PositionBefore(c, s, rise ? in.probe_rise_age_s : in.probe_fall_age_s), s);
   } else if (!counts && in.touch_probe == rise && probe.wire != rise) {
-    Capture(c, s.actual.position, s);
+    CaptureAt(c, edge, s.actual.position, s);
   }
 }
 
@@ -105,14 +117,14 @@ Status TakeTouch(const Context& c, State& s) {
   request.jerk = probe.jerk;
   Plan plan;
   plan.target = probe.touch_position;
-  const Status status = Replan(c.params, SurroundingsOfBoth(c, s), c.planner, s.setpoint, request, nullptr, plan);
+  const Status status = Replan(c.params, SurroundingsOfBoth(c, s), c.planner, s.setpoint, request, {}, plan);
   if (status.failed()) return status;
   AbortAll(c, s);
   TakeControl(c, request, plan, FromCycleBefore(c), s);
   return Status::Ok();
 }
 
-// Puts another command in the place of the one that waits.
+// Puts another GT_Touch in the place of the one that waits.
 void Supersede(const Context& c, ProbeWatch watch, ProbeEdge edge, Ticket ticket, State& s) {
   Restore(c, s);
   ProbeState& probe = s.probe;
@@ -120,7 +132,6 @@ void Supersede(const Context& c, ProbeWatch watch, ProbeEdge edge, Ticket ticket
   probe.watch = watch;
   probe.edge = edge;
   probe.ticket = ticket;
-  probe.window_only = false;
   probe.touched = false;
   probe.reported = false;
 }
@@ -142,11 +153,14 @@ bool Fill(const Maker& m, const Touch& c) {
 void SenseProbe(const Context& c, const ServoInputs& in, State& s) noexcept {
   ProbeState& probe = s.probe;
   const bool good = !s.encoder_error;
-  if (probe.watch != ProbeWatch::kNothing) {
+  if (probe.watch != ProbeWatch::kNothing || probe.waits > 0) {
     const bool known = probe.sampled && good;
     const double before = known ? LatchedPosition(c.params.encoder, s.encoder, probe.counts) - s.origin : 0;
     probe.step = known ? s.actual.position - before : s.actual.velocity * c.cycle.period_s;
-    LookForEdge(c, in, s);
+    if (good) {
+      LookForEdge(c, in, ProbeEdge::kRising, s);
+      LookForEdge(c, in, ProbeEdge::kFalling, s);
+    }
   }
   probe.sampled = good;
   probe.counts = in.counts;
@@ -175,16 +189,50 @@ void FollowProbe(const Context& c, State& s) noexcept {
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const TouchProbe& command, State& s) noexcept {
-  Supersede(c, ProbeWatch::kCapture, command.edge, ticket, s);
-  s.probe.window_only = command.window_only;
-  s.probe.first_position = command.first_position;
-  s.probe.last_position = command.last_position;
+  ProbeState& probe = s.probe;
+  if (probe.waits == kCaptures) return Status::Failed(ErrorId::kBufferFull);
+  probe.waiting[probe.waits++] = {ticket, command.edge, command.window_only, command.first_position,
+                                  command.last_position};
   Report(c, ticket, FeedbackState::kActive);
   return Status::Ok();
 }
 
-Status CarryOut(const Context& c, Ticket ticket, const AbortTrigger&, State& s) noexcept {
-  Supersede(c, ProbeWatch::kNothing, s.probe.edge, 0, s);
+namespace {
+
+// Ends the commands for which `ends` is true, as aborted.
+template <typename Ends>
+bool EndCaptures(const Context& c, const Ends& ends, ProbeState& probe) {
+  std::uint8_t left = 0;
+  for (std::uint8_t i = 0; i < probe.waits; ++i) {
+    const Capture one = probe.waiting[i];
+    if (ends(one)) {
+      Report(c, one.ticket, FeedbackState::kAborted);
+    } else {
+      probe.waiting[left++] = one;
+    }
+  }
+  const bool any = left < probe.waits;
+  for (std::uint8_t i = left; i < probe.waits; ++i) probe.waiting[i] = {};
+  probe.waits = left;
+  return any;
+}
+
+}  // namespace
+
+bool EndProbing(const Context& c, Ticket ticket, State& s) noexcept {
+  if (ticket == 0) return false;
+  if (s.probe.watch != ProbeWatch::kNothing && s.probe.ticket == ticket) {
+    Supersede(c, ProbeWatch::kNothing, s.probe.edge, 0, s);
+    return true;
+  }
+  return EndCaptures(
+      c, [&](const Capture& one) { return one.ticket == ticket; }, s.probe);
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const AbortTrigger& command, State& s) noexcept {
+  EndCaptures(
+      c, [&](const Capture& one) { return !command.edge || one.edge == *command.edge; }, s.probe);
+  if (!command.edge || s.probe.edge == *command.edge) Supersede(c, ProbeWatch::kNothing, s.probe.edge, 0, s);
   Report(c, ticket, FeedbackState::kActive);
   Report(c, ticket, FeedbackState::kDone);
   return Status::Ok();
@@ -206,24 +254,32 @@ Status CarryOut(const Context& c, Ticket ticket, const Touch& command, State& s)
 }
 
 void describe(Enumeration<ProbeWatch>& e) {
-  e.about("What waits for the touch probe.");
+  e.about("What GT_Touch does.");
   e.value(ProbeWatch::kNothing, "nothing", "Nothing.");
-  e.value(ProbeWatch::kCapture, "capture", "MC_TouchProbe.");
-  e.value(ProbeWatch::kTouch, "touch", "GT_Touch, to capture, stop and return.");
-  e.value(ProbeWatch::kSlow, "slow", "GT_Touch, to slow down while the probe is on.");
+  e.value(ProbeWatch::kTouch, "touch", "Waits, to capture, stop and return.");
+  e.value(ProbeWatch::kSlow, "slow", "Waits, to slow down while the probe is on.");
+}
+
+void describe(Description<Capture>& d) {
+  using C = Capture;
+  d.about("An MC_TouchProbe that waits.");
+  d.internal<&C::ticket>("Of the command.");
+  d.internal<&C::edge>("For which edge.");
+  d.internal<&C::window_only>("Only within a window.");
+  d.internal<&C::first_position>(unit::u, "Where the window begins.");
+  d.internal<&C::last_position>(unit::u, "Where it ends.");
 }
 
 void describe(Description<ProbeState>& d) {
   using P = ProbeState;
   d.about("The touch probe.");
-  d.internal<&P::watch>("What waits for it.");
-  d.internal<&P::edge>("For which edge.");
-  d.internal<&P::window_only>("Only within a window.");
+  d.internal<&P::waiting>("MC_TouchProbe commands.");
+  d.internal<&P::waits>("How many.");
+  d.internal<&P::watch>("GT_Touch: what it does.");
+  d.internal<&P::edge>("GT_Touch: for which edge.");
   d.internal<&P::touched>("GT_Touch: the edge came.");
   d.internal<&P::touch_position>(unit::u, "GT_Touch: where, unwrapped.");
-  d.internal<&P::first_position>(unit::u, "Where the window begins.");
-  d.internal<&P::last_position>(unit::u, "Where it ends.");
-  d.internal<&P::ticket>("Of what waits.");
+  d.internal<&P::ticket>("GT_Touch: of the command.");
   d.internal<&P::velocity>(unit::u_s, "GT_Touch: largest velocity.");
   d.internal<&P::acceleration>(unit::u_s2, "GT_Touch: largest acceleration.");
   d.internal<&P::deceleration>(unit::u_s2, "GT_Touch: largest deceleration.");

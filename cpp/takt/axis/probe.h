@@ -1,12 +1,14 @@
 // The touch probe: MC_TouchProbe, GT_Touch and MC_AbortTrigger (AX-49). They take no control of the axis while they
 // wait.
 //
-// One of them waits at a time; another one, of whatever kind, supersedes it. MC_TouchProbe is Active until its edge
-// comes, whatever state the axis is in. GT_Touch needs an axis in its loop: capturing, it is Busy until the edge, then
-// ends the motion in progress, brakes and is Done at the captured position; slowing, it is Active from the first time
-// it slows a motion down, and never done.
+// Several MC_TouchProbe wait at once, each for its own edge and window (AX-109), and beside them one GT_Touch; a second
+// GT_Touch supersedes it. MC_TouchProbe is Active until its edge comes, in every state of the axis. GT_Touch needs an
+// axis in its loop: capturing, it is Busy until the edge, then ends the motion in progress, brakes and is Done at the
+// captured position; slowing, it is Active from the first time it slows a motion down, and never done.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "takt/axis/commands/probe.h"
@@ -21,16 +23,28 @@ namespace takt::axis {
 struct Context;
 struct State;
 
-enum class ProbeWatch : std::uint8_t { kNothing, kCapture, kTouch, kSlow };
+inline constexpr std::size_t kCaptures = 8;  // that wait for one probe
 
-struct ProbeState {
-  ProbeWatch watch = ProbeWatch::kNothing;
+enum class ProbeWatch : std::uint8_t { kNothing, kTouch, kSlow };
+
+// An MC_TouchProbe that waits.
+struct Capture {
+  Ticket ticket = 0;
   ProbeEdge edge = ProbeEdge::kRising;
   bool window_only = false;
-  bool touched = false;       // GT_Touch: the edge came in this cycle ...
-  double touch_position = 0;  // u, unwrapped: ... here
   double first_position = 0;  // u
   double last_position = 0;   // u
+};
+
+struct ProbeState {
+  std::array<Capture, kCaptures> waiting;  // in the order in which they were given
+  std::uint8_t waits = 0;                  // how many
+
+  // GT_Touch.
+  ProbeWatch watch = ProbeWatch::kNothing;
+  ProbeEdge edge = ProbeEdge::kRising;
+  bool touched = false;       // the edge came in this cycle ...
+  double touch_position = 0;  // u, unwrapped: ... here
   Ticket ticket = 0;
   // GT_Touch: its limits.
   double velocity = 0;
@@ -66,12 +80,16 @@ void ForgetSample(const ServoInputs& inputs, ProbeState& probe) noexcept;
 // move, before the set point: lets a GT_Touch take control, or slows down.
 void FollowProbe(const Context& context, State& state) noexcept;
 
-// Errors: kPowerOff, kErrorStop (GT_Touch).
+// Ends the command with this ticket that waits for the probe, as aborted. False: there is none.
+bool EndProbing(const Context& context, Ticket ticket, State& state) noexcept;
+
+// Errors: kPowerOff, kErrorStop (GT_Touch), kBufferFull (MC_TouchProbe).
 Status CarryOut(const Context& context, Ticket ticket, const TouchProbe& command, State& state) noexcept;
 Status CarryOut(const Context& context, Ticket ticket, const AbortTrigger& command, State& state) noexcept;
 Status CarryOut(const Context& context, Ticket ticket, const Touch& command, State& state) noexcept;
 
 void describe(Enumeration<ProbeWatch>&);
+void describe(Description<Capture>&);
 void describe(Description<ProbeState>&);
 
 }  // namespace takt::axis

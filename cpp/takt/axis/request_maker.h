@@ -9,6 +9,7 @@
 
 namespace takt::axis {
 
+inline constexpr double kMaxTorque = 1e9;     // Nm
 inline constexpr double kMaxPosition = 1e12;  // u; beyond it a double no longer tells thousandths apart
 
 struct Maker {

@@ -168,6 +168,8 @@ std::optional<double> ValueOf(const AxisParams& p, const State& s, std::int32_t 
       return p.loop.velocity_at_10v;
     case Parameter::kMaxPositionLagStandstill:
       return OrInfinity(p.supervision.deviation_standstill);
+    case Parameter::kTorqueLimit:
+      return OrInfinity(p.limits.torque);
   }
   return std::nullopt;
 }
@@ -223,6 +225,10 @@ Status CarryOut(const Context& c, Ticket ticket, const WriteParameter& w, State&
     case Parameter::kMaxPositionLagStandstill:
       if (!(w.value > 0)) return Status::Failed(ErrorId::kParameter);
       c.params.supervision.deviation_standstill = w.value;
+      return Done(c, ticket);
+    case Parameter::kTorqueLimit:
+      if (!(w.value > 0)) return Status::Failed(ErrorId::kParameter);
+      c.params.limits.torque = w.value;
       return Done(c, ticket);
     case Parameter::kMaxVelocity:
     case Parameter::kMaxAcceleration:
@@ -310,7 +316,7 @@ bool Fill(const Maker& m, const SetConstants& k) {
          position_if("lower", k.lower) && position_if("upper", k.upper);
 }
 
-constexpr auto kLastParameter = static_cast<std::int32_t>(Parameter::kMaxPositionLagStandstill);
+constexpr auto kLastParameter = static_cast<std::int32_t>(Parameter::kTorqueLimit);
 
 bool Fill(const Maker& m, const WriteParameter& w) {
   return m.In("value", w.value, -kMaxPosition, kMaxPosition) && m.In("number", w.number, 1, kLastParameter);

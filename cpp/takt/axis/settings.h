@@ -34,6 +34,7 @@ enum class Parameter : std::int32_t {
   kLoopFf = 1005,
   kLoopVmax = 1006,
   kMaxPositionLagStandstill = 1007,
+  kTorqueLimit = 1008,
 };
 
 // In the parameter's unit, 0 and 1 for no and yes. Nothing: there is no such parameter. The limits of the system are

@@ -12,7 +12,10 @@ namespace takt::axis {
 namespace {
 
 constexpr double kAtSpeedLimit = 0.99;  // of it
-constexpr double kMaxTorque = 1e9;      // Nm
+constexpr double kAtTorque = 0.999;     // of it: the torque is what holds the axis
+constexpr double kMostLead = 4;         // cycles at the command's acceleration, of the ramp before what is measured
+constexpr double kMostSteps = 2;        // increments a cycle, beside that
+constexpr double kCorrection = 0.1;     // of the distance to what is measured, each cycle
 
 bool InControl(const State& s) {
   return s.loop_closed && s.active.kind == RequestKind::kTorqueControl;
@@ -36,15 +39,58 @@ void Ramp(const Context& c, State& s) {
   t.set_torque_nm += std::clamp(s.active.value - t.set_torque_nm, -step, step);
 }
 
+void PlanRamp(const Context& c, const KinematicState& from, double sense, State& s) {
+  trajectory::Limits limits = s.active.limits();
+  limits.velocity = c.params.limits.velocity;  // the command's own may be exceeded when it begins
+  trajectory::Profile ramp{from};
+  if (c.planner.ToVelocity(from, sense * s.active.velocity, limits, ramp).failed()) ramp = trajectory::Profile{from};
+  StartMotion(ramp, from.position, FromCycleBefore(c), s);
+}
+
+// The ramp of this cycle, and whether the axis is too far from it.
+struct Bound {
+  KinematicState at;
+  double step = 0;  // u, of this cycle
+  bool left = false;
+};
+
+// The acceleration of the set point on its way to `wanted`, within the jerk.
+double Slewed(const Context& c, double acceleration, double wanted) {
+  const double jerk = c.params.limits.jerk;
+  const double step = jerk > 0 ? jerk * c.cycle.period_s : HUGE_VAL;
+  return acceleration + std::clamp(wanted - acceleration, -step, step);
+}
+
+Bound NextBound(const Context& c, double sense, State& s) {
+  TorqueState& t = s.torque;
+  if (t.ticket != s.active.ticket) {
+    t.ticket = s.active.ticket;
+    PlanRamp(c, s.setpoint, sense, s);
+  }
+  const double period = c.cycle.period_s;
+  const double most =
+      kMostLead * s.active.acceleration * period + kMostSteps / (c.params.encoder.increments_per_unit * period);
+  KinematicState bound = s.motion.profile.At(Elapsed(c, s));
+  const double lead = sense * (bound.velocity - s.actual.velocity);
+  const bool turns = sense * bound.velocity < 0;  // friction may be quicker than the ramp
+  if (lead <= most && !(turns && lead < -most))
+    return {bound, bound.position - s.motion.profile.At(Elapsed(c, s) - period).position, false};
+  bound.velocity = s.actual.velocity + std::copysign(most, sense * lead);
+  PlanRamp(c, bound, sense, s);
+  s.motion.start_cycle = c.cycle.count;
+  return {bound, 0.5 * (s.setpoint.velocity + bound.velocity) * period, true};
+}
+
 }  // namespace
 
 bool Fill(const Maker& m, const TorqueControl& c) {
   m.r.kind = RequestKind::kTorqueControl;
   m.r.buffer_mode = c.buffer_mode;
   m.r.value = c.torque;
-  if (!m.In("torque", c.torque, -kMaxTorque, kMaxTorque)) return false;
+  const double most = m.params.limits.torque.value_or(kMaxTorque);
+  if (!m.In("torque", c.torque, -most, most)) return false;
   if (c.torque_ramp && !m.Take("torque_ramp", c.torque_ramp, kMaxTorque, m.r.torque_ramp)) return false;
-  return m.Braking(Halt{}) && m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity);
+  return m.Ramps(c) && m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity);
 }
 
 bool FollowsTorque(const State& s) noexcept {
@@ -52,7 +98,9 @@ bool FollowsTorque(const State& s) noexcept {
 }
 
 void SenseTorque(State& s) noexcept {
-  if (FollowsTorque(s)) s.setpoint = {s.actual.position, s.actual.velocity, 0};
+  if (FollowsTorque(s) && s.torque.holds) {
+    s.setpoint = {s.actual.position, s.actual.velocity, s.setpoint.acceleration};
+  }
 }
 
 bool MoveTorque(const Context& c, State& s) noexcept {
@@ -61,7 +109,7 @@ bool MoveTorque(const Context& c, State& s) noexcept {
     t = TorqueState{};
     return false;
   }
-  if (!t.engaged) t = {true, s.torque_nm, s.actual.velocity};
+  if (!t.engaged) t = {true, false, s.torque_nm, s.actual.velocity, s.setpoint.velocity};
   const KinematicState foreseen = Foreseen(c, s);
   t.velocity_before = s.actual.velocity;
   if (!CanStopInside(c.params, s.setpoint, foreseen)) {
@@ -69,11 +117,25 @@ bool MoveTorque(const Context& c, State& s) noexcept {
     Fail(c, upwards ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
     return false;
   }
+  const double sense = s.active.value < 0 ? -1 : 1;
+  const bool begins = t.set_torque_nm == 0 && s.active.value != 0;
+  const bool pushes = !begins && sense * s.torque_nm >= kAtTorque * std::abs(t.set_torque_nm);
   Ramp(c, s);
-  const bool at_speed_limit = std::abs(s.actual.velocity) >= kAtSpeedLimit * s.active.velocity;
-  s.limited_by = at_speed_limit ? LimitedBy::kVelocity : LimitedBy::kNothing;
+  const auto [bound, step, left] = NextBound(c, sense, s);
+  t.until = bound.velocity;
+  const bool at_speed_limit = std::abs(bound.velocity) >= kAtSpeedLimit * s.active.velocity;
+  t.holds = left || (pushes && sense * (bound.velocity - s.actual.velocity) >= 0);
+  if (t.holds) {
+    const double fastest = std::max(std::abs(bound.velocity), s.active.velocity);
+    const double velocity = std::clamp(s.actual.velocity, -fastest, fastest);
+    s.setpoint = {s.actual.position + velocity * c.cycle.period_s, velocity, Slewed(c, s.setpoint.acceleration, 0)};
+  } else {
+    const double correction = kCorrection * (s.actual.position - s.due);
+    s.setpoint = {s.setpoint.position + step + correction, bound.velocity,
+                  Slewed(c, s.setpoint.acceleration, bound.acceleration)};
+  }
+  s.limited_by = t.holds ? LimitedBy::kNothing : at_speed_limit ? LimitedBy::kVelocity : LimitedBy::kAcceleration;
   if (s.actual.velocity != 0) s.last_sense = s.actual.velocity > 0 ? 1 : -1;
-  s.setpoint.position += s.setpoint.velocity * c.cycle.period_s;
   if (t.set_torque_nm == s.active.value) Conclude(c, 0, s);
   return true;
 }
@@ -82,8 +144,11 @@ void describe(Description<TorqueState>& d) {
   using T = TorqueState;
   d.about("Torque control.");
   d.internal<&T::engaged>("The drive is told a torque.");
+  d.internal<&T::holds>("The torque is what holds the axis.");
   d.internal<&T::set_torque_nm>(unit::nm, "Torque of this cycle.");
   d.internal<&T::velocity_before>(unit::u_s, "Measured in the cycle before.");
+  d.internal<&T::until>(unit::u_s, "Where the torque ends in this cycle.");
+  d.internal<&T::ticket>("Of the command in control.");
 }
 
 }  // namespace takt::axis

@@ -1,12 +1,14 @@
 // MC_TorqueControl (AX-42): the drive follows a torque, no faster than a speed.
 //
-// The speed limit is kept where speed and torque meet, in the drive: it gets the torque and the largest speed in each
-// cycle (DriveMode::kCyclicTorque), and its velocity loop takes over at that speed. Acceleration is what the torque
-// makes it. The set point follows what is measured meanwhile, so that whatever comes next starts from where the axis
-// is, as fast as it is, with acceleration 0.
+// Velocity and acceleration are limited where they meet the torque, in the drive: each cycle it gets the torque and the
+// velocity up to which the torque may drive (DriveMode::kCyclicTorque); there its velocity loop takes over. That
+// velocity runs on a ramp within the command's limits towards its largest one, never further ahead of what is measured
+// than kMostLead. While the torque is what holds the axis, the set point follows what is measured, with acceleration 0;
+// else it is the ramp. So the next command starts from where the axis is, and as fast as it is.
 #pragma once
 
 #include "takt/core/describe_fwd.h"
+#include "takt/core/feedback.h"
 
 namespace takt::axis {
 
@@ -15,14 +17,17 @@ struct State;
 
 struct TorqueState {
   bool engaged = false;        // the drive is told a torque
+  bool holds = false;          // the torque is what holds the axis: the set point follows what is measured
   double set_torque_nm = 0;    // on its ramp, from the measured torque on
   double velocity_before = 0;  // u/s, measured in the cycle before
+  double until = 0;            // u/s, on its ramp: where the torque ends in this cycle
+  Ticket ticket = 0;           // of the command that the ramp was planned for
 };
 
 // Whether the drive is to follow a torque in this cycle.
 bool FollowsTorque(const State& state) noexcept;
 
-// sense: the set point is where the axis is.
+// sense: where the torque holds the axis, the set point is where that is.
 void SenseTorque(State& state) noexcept;
 
 // move: the next torque. Before a stop inside the SW limits gets impossible, foreseen one cycle ahead by the measured

@@ -111,6 +111,8 @@ void describe(Description<ServoOutputs>& d) {
   d.internal<&S::mode>("Which of these the drive follows.");
   d.internal<&S::enable>("Power stage on.");
   d.internal<&S::release_brake>("Brake relay energised.");
+  d.internal<&S::torque_until_counts_s>(unit::count_s, "Velocity at which the torque ends in this cycle (cst).");
+  d.internal<&S::torque_limit_nm>(unit::nm, "Largest torque either way; 0: that of the drive.");
 }
 
 }  // namespace takt

@@ -45,6 +45,9 @@ struct ServoOutputs {
   DriveMode mode = DriveMode::kCyclicPosition;
   bool enable = false;         // power stage on
   bool release_brake = false;  // brake relay energised
+  // cst: signed velocity up to which the torque may drive in this cycle; there the drive's velocity loop takes over.
+  double torque_until_counts_s = 0;
+  double torque_limit_nm = 0;  // all modes: largest torque either way; 0: that of the drive
 };
 
 enum class DriveLink : std::uint8_t {

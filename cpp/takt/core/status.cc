@@ -170,6 +170,7 @@ void describe(Enumeration<LimitedBy>& e) {
           "Too little room, for instance to blend at the velocity asked for, or to stop with the command's ramps.");
   e.value(LimitedBy::kOvershoot, "overshoot", "The target is too near to stop at: the axis passes it and comes back.");
   e.value(LimitedBy::kOverride, "override", "The velocity factor of the override is 0: the axis waits.");
+  e.value(LimitedBy::kTorque, "torque", "The torque limit: the drive gives all that it is allowed.");
 }
 
 void describe(Description<Status>& d) {

@@ -143,7 +143,8 @@ enum class LimitedBy : std::uint8_t {
   kPosition,
   kDistance,
   kOvershoot,
-  kOverride
+  kOverride,
+  kTorque
 };
 
 // ok, limited (done, but held back by something) or failed.

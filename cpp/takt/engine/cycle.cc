@@ -319,10 +319,31 @@ axis::Forecast Foresee(World& w, std::size_t axis, const axis::Command& command)
   return axis::Foresee(ContextOf(w, axis), command, w.axis_states.at(axis));
 }
 
+namespace {
+
+// One probe for several axes: the wire of another one.
+ServoInputs WithProbeOf(const ServoInputs& wire, ServoInputs in) noexcept {
+  in.touch_probe = wire.touch_probe;
+  in.probe_rises = wire.probe_rises;
+  in.probe_falls = wire.probe_falls;
+  in.probe_rise_age_s = wire.probe_rise_age_s;
+  in.probe_fall_age_s = wire.probe_fall_age_s;
+  return in;
+}
+
+}  // namespace
+
 void Sense(World& w) noexcept {
   for (HeardDrive& drive : w.drives) w.samplings[drive.axis] = SamplingIn(w.cycle, drive);
-  for (std::size_t i = 0; i < w.axis_states.size(); ++i)
-    axis::Sense(ContextOf(w, i), w.servo_inputs[i], w.axis_states[i], w.samplings[i]);
+  for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
+    const std::uint32_t wire = w.probe_wires[i];
+    if (wire == i) {
+      axis::Sense(ContextOf(w, i), w.servo_inputs[i], w.axis_states[i], w.samplings[i]);
+    } else {
+      axis::Sense(ContextOf(w, i), WithProbeOf(w.servo_inputs[wire], w.servo_inputs[i]), w.axis_states[i],
+                  w.samplings[i]);
+    }
+  }
 }
 
 void Apply(World& w, const Command& command) noexcept {

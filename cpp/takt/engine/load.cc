@@ -114,6 +114,11 @@ class CrossCheck {
   void CheckMasters() {
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
       const axis::AxisParams& axis = machine_.axes[i];
+      const std::string& wire = axis.inputs.touch_probe_of;
+      if (!wire.empty() && axis::FindAxis(machine_.axes, wire) == axis::kNoAxis) {
+        Add("axes[" + std::to_string(i) + "].inputs.touch_probe_of",
+            "expected the name of an axis, found " + Quoted(wire) + DidYouMean(wire, names_));
+      }
       if (!axis.follows || axis.follows->axis.empty()) continue;
       const std::string path = "axes[" + std::to_string(i) + "].follows.axis";
       const std::optional<std::uint32_t> master = MasterOf(machine_, i);

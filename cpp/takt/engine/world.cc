@@ -116,6 +116,8 @@ World::World(const Machine& machine)
   }
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axis_masters.push_back(engine::MasterOf(machine, i));
+    const std::uint32_t wire = axis::FindAxis(machine.axes, machine.axes[i].inputs.touch_probe_of);
+    probe_wires.push_back(wire == axis::kNoAxis ? static_cast<std::uint32_t>(i) : wire);
     if (axis_masters.back()) axis_states[*axis_masters.back()].leads = true;
   }
   MakeModules(machine);

@@ -102,6 +102,7 @@ struct World {
   std::vector<axis::Outputs> axis_outputs;
   axis::Surrounding surrounding;                           // all axes, as each of them sees it
   Order axis_order;                                        // masters before followers; behind all axes: the movers
+  std::vector<std::uint32_t> probe_wires;                  // the axis whose touch probe each has
   std::vector<std::optional<std::uint32_t>> axis_masters;  // which axis each follows, if any
 
   std::vector<FlexCam> flex_cams;

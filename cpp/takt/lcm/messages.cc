@@ -610,6 +610,8 @@ msgs::drive_setpoint ToMessage(const engine::DriveSetPoint& set_point, const eng
   m.velocity_counts_s = o.velocity_counts_s;
   m.voltage_v = o.voltage_v;
   m.torque_nm = o.torque_nm;
+  m.torque_until_counts_s = o.torque_until_counts_s;
+  m.torque_limit_nm = o.torque_limit_nm;
   return m;
 }
 

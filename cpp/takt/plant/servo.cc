@@ -217,13 +217,18 @@ bool Reads(const ServoSwitch& sw, double position, double revolution) noexcept {
   (on ? s.probe_rise_age_s : s.probe_fall_age_s) = rest + time - after;
 }
 
-// The law of a torque set point: that torque, but for what a velocity loop at the largest speed takes from it; pushed
-// beyond that speed against it, the drive brakes with all it has.
-void FollowTorque(double most, double set_torque, double largest_speed, double v, Law& law) noexcept {
-  const bool up = set_torque >= 0 ? v >= -largest_speed : v > largest_speed;
-  law.target = up ? largest_speed : -largest_speed;
-  law.low = up ? -most : set_torque;
-  law.high = up ? set_torque : most;
+// The law of a torque set point: that torque, but for what a velocity loop at `until` takes from it. While `until` is
+// still of the other sense, the axis is turning round, and friction may be quicker: nothing pushes against the torque.
+// Pushed beyond the largest speed either way, the drive brakes with all it has.
+void FollowTorque(double most, double set_torque, double largest_speed, double until, double v, Law& law) noexcept {
+  const double sense = set_torque >= 0 ? 1 : -1;
+  const bool overhauled = sense * v < -largest_speed;
+  const bool overrun = sense * v > largest_speed;
+  const double against = overhauled || (sense * until < 0 && !overrun) ? 0 : most;
+  const double along = overhauled ? most : std::abs(set_torque);
+  law.target = overhauled ? -sense * largest_speed : overrun ? sense * largest_speed : until;
+  law.low = sense > 0 ? -against : -along;
+  law.high = sense > 0 ? along : against;
 }
 
 void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, bool powered, ServoState& s) noexcept {
@@ -242,7 +247,8 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   if (powered) {
     law.lag = drive.velocity_time_constant_s;
     law.gain = 1 / law.lag;
-    law.high = drive.max_torque * per_inertia;
+    const double limit = FiniteOrZero(commanded.torque_limit_nm);
+    law.high = (limit > 0 ? std::min(limit, drive.max_torque) : drive.max_torque) * per_inertia;
     law.low = -law.high;
     law.target = SetVelocity(p, commanded, sense);
   }
@@ -269,6 +275,8 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   const double most = law.high;
   const double set_torque = cst ? std::clamp(sense * FiniteOrZero(commanded.torque_nm) * per_inertia, -most, most) : 0;
   const double largest_speed = std::abs(law.target);
+  const double until = std::clamp(sense * FiniteOrZero(commanded.torque_until_counts_s) / CountsPerUnit(p.encoder),
+                                  -largest_speed, largest_speed);
   const Reach whole{s.reach_to_velocity, s.reach_to_distance};
   const Reach model = law.viscous > 0 ? ReachAfter(law.gain, time) : whole;
   const double learning = compensates ? time / ((drive.load_compensation_s + time) * model.to_velocity) : 0;
@@ -287,7 +295,7 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
       const double error = set - (motor_encoder ? motion.position : motion.load);
       law.target = drive.position_gain * error + drive.velocity_feed_forward * feed_forward;
     }
-    if (cst) FollowTorque(most, set_torque, largest_speed, motion.velocity, law);
+    if (cst) FollowTorque(most, set_torque, largest_speed, until, motion.velocity, law);
     const Motion begin = motion;
     bool hit = false;
     if (!s.faults.stuck) {

@@ -41,15 +41,11 @@ void GT_Jog::Press() noexcept {
 
 void GT_Touch::operator()() noexcept {
   if (Rises()) {
-    abort_.Forget();
     slows_ = mode == axis::TouchMode::kSlow;
     StartWith(*this);
   }
   Show();
-  const bool aborts = abort_.given() && !abort_.failed();
-  if (slows_ && !Execute && feedback().busy() && !aborts) {
-    abort_.Give(axis().target(), axis::Command(axis::AbortTrigger{}));
-  }
+  if (slows_ && !Execute && feedback().busy()) feedback().Release();
 }
 
 void MC_CamIn::operator()() noexcept {

@@ -149,12 +149,11 @@ class MC_TouchProbe : public Block<axis::TouchProbe> {
 // kSlow it slows down whatever moves while the probe is on instead, no longer than Execute is true.
 class GT_Touch : public Block<axis::Touch> {
  public:
-  explicit GT_Touch(AxisRef axis) : Block(axis), abort_(axis.program()) {}
+  explicit GT_Touch(AxisRef axis) : Block(axis) {}
   void operator()() noexcept;
   double RecordedPosition() const noexcept { return Done() ? axis().outputs().probe_position : 0; }
 
  private:
-  Feedback abort_;      // of the command that ends slowing down
   bool slows_ = false;  // the command given
 };
 

@@ -21,7 +21,8 @@ class MC_Home(HomingBlock):  # noqa: N801
 
 
 class SearchBlock(HomingBlock):
-    """A step that searches. TimeLimit in s and DistanceLimit in u end it with errors 1 and 2; 0: no limit."""
+    """A step that searches. TimeLimit in s and DistanceLimit in u end it with errors 1 and 2; 0: no limit. TorqueLimit
+    in Nm (N on linear motors): what the drive may use meanwhile; None: as much as ever."""
 
     Velocity = Input(0.0, "velocity")
     Acceleration = Input[float | None](None, "acceleration")
@@ -29,6 +30,7 @@ class SearchBlock(HomingBlock):
     Jerk = Input[float | None](None, "jerk")
     TimeLimit = Input(0.0, "time_limit")
     DistanceLimit = Input(0.0, "distance_limit")
+    TorqueLimit = Input[float | None](None, "torque_limit")
 
 
 class MC_StepAbsSwitch(SearchBlock):  # noqa: N801

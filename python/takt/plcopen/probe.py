@@ -11,7 +11,7 @@ from takt.plcopen.base import ExecuteBlock, Input, Output
 
 class MC_TouchProbe(ExecuteBlock):  # noqa: N801
     """Captures the position of the axis at the next edge of its touch probe. TriggerInput is the edge; each axis has
-    one probe. A second block that waits for the same probe takes over from the first."""
+    one probe. Up to eight blocks wait for it at once, each for its edge and window."""
 
     VERB = "arm_probe"
     TriggerInput = Input(_commands.ProbeEdge.RISING, "edge")
@@ -22,6 +22,11 @@ class MC_TouchProbe(ExecuteBlock):  # noqa: N801
     CommandAborted = Output(False)
     RecordedPosition = Output(0.0)
 
+    def _command(self) -> Feedback:
+        if self._feedback is not None and not self._feedback.final:
+            self._feedback.release()  # a new edge of this block takes over from its last one
+        return super()._command()
+
     def _follow(self, feedback: Feedback) -> None:
         super()._follow(feedback)
         if self.Done:
@@ -29,9 +34,11 @@ class MC_TouchProbe(ExecuteBlock):  # noqa: N801
 
 
 class MC_AbortTrigger(ExecuteBlock):  # noqa: N801
-    """Ends whatever waits for the touch probe of the axis."""
+    """Ends the blocks that wait for the touch probe of the axis, as aborted. TriggerInput: only those that wait for
+    this edge; None: all."""
 
     VERB = "abort_trigger"
+    TriggerInput = Input[_commands.ProbeEdge | None](None, "edge")
     Done = Output(False)
 
 
@@ -64,4 +71,4 @@ class GT_Touch(ExecuteBlock):  # noqa: N801
     def _fall(self) -> None:
         slows: Any = self._given["mode"] == _commands.TouchMode.SLOW
         if slows and self._feedback is not None and self._feedback.busy:
-            self.Axis.abort_trigger()
+            self._feedback.release()

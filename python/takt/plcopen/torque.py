@@ -10,13 +10,16 @@ from takt.plcopen.base import Input, MotionBlock, Output
 
 
 class MC_TorqueControl(MotionBlock):  # noqa: N801
-    """Drives with a torque, no faster than Velocity. Never done: InTorque says that the set point of the torque is what
-    was asked for. Direction NEGATIVE turns the torque round. The axis accelerates as the torque makes it."""
+    """Drives with a torque, within Velocity, Acceleration, Deceleration and Jerk. Never done: InTorque says that the
+    set point of the torque is what was asked for. Direction NEGATIVE turns the torque round."""
 
     VERB = "torque_control"
     Torque = Input(0.0, "torque")
     TorqueRamp = Input[float | None](None, "torque_ramp")
     Velocity = Input[float | None](None, "velocity")
+    Acceleration = Input[float | None](None, "acceleration")
+    Deceleration = Input[float | None](None, "deceleration")
+    Jerk = Input[float | None](None, "jerk")
     Direction = Input(_commands.Direction.POSITIVE)
     InTorque = Output(False)
 

@@ -85,7 +85,10 @@ TEST(Parameters, OfTaktsOwn) {
   EXPECT_EQ(rig.params.supervision.deviation_standstill, 2);
   EXPECT_EQ(ErrorOf(rig, WriteParameter{1007, 0}), ErrorId::kParameter);
   EXPECT_EQ(ErrorOf(rig, WriteParameter{1001, 1}), ErrorId::kParameter);  // GT_SetConstant does that
-  for (const int number : {18, 1000, 1008}) EXPECT_EQ(ErrorOf(rig, ReadParameter{number}), ErrorId::kParameter);
+  EXPECT_EQ(Read(rig, 1008), HUGE_VAL);
+  EXPECT_EQ(ErrorOf(rig, WriteParameter{1008, 3}), ErrorId::kNone);  // AX-105
+  EXPECT_EQ(Read(rig, 1008), 3);
+  for (const int number : {18, 1000, 1009}) EXPECT_EQ(ErrorOf(rig, ReadParameter{number}), ErrorId::kParameter);
 }
 
 // AX-52: new limits hold at once; those that a motion could not keep are refused, and it goes on.

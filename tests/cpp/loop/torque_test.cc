@@ -41,10 +41,11 @@ TEST(Torque, AcceleratesAsTheTorqueSays) {  // AX-42
   MachineRig rig = Machine(DriveMode::kCyclicVelocity);
   ASSERT_TRUE(rig.PowerOn());
   rig.Give(TorqueControl{.torque = -2});
-  rig.Step();
-  rig.Run(0.1);
-  // 2 Nm / 0.001 Nm s²/u over 0.101 s.
-  EXPECT_NEAR(rig.servo.velocity, -2000 * 0.101, 1e-6);
+  rig.Run(0.05);
+  const double begin = rig.servo.velocity;
+  rig.Run(0.05);
+  // 2 Nm / 0.001 Nm s²/u, which is less than the axis' acceleration; before that its jerk limits it.
+  EXPECT_NEAR(rig.servo.velocity - begin, -2000 * 0.05, 1e-6);
 }
 
 TEST(Torque, SpeedStaysBelowItsLimitWhateverPushes) {  // AX-42
@@ -91,9 +92,9 @@ TEST(Torque, WhatComesNextStartsFromWhereTheAxisIs) {  // AX-42
       rig.Step();
       EXPECT_EQ(rig.ends[torque].state, FeedbackState::kAborted);
       // The set point is due one cycle later; what is measured is the mean of the cycle before, 2000 u/s² * 0.5 ms
-      // less.
-      EXPECT_NEAR(rig.state.setpoint.position, was.position + was.velocity * 0.001, 0.003);
-      EXPECT_NEAR(rig.state.setpoint.velocity, was.velocity, 1.2);
+      // less; and the drive's velocity loop (1 ms) lags behind the ramp.
+      EXPECT_NEAR(rig.state.setpoint.position, was.position + was.velocity * 0.001, 0.009);
+      EXPECT_NEAR(rig.state.setpoint.velocity, was.velocity, 2000 * 0.0017);
       KinematicState before = rig.state.setpoint;
       double last_velocity = rig.servo.velocity;
       ASSERT_TRUE(rig.RunUntil([&] {

@@ -49,6 +49,7 @@ void describe(Description<StepAbsSwitch>& d) {
   DescribeRamps(d);
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.defaulted<&C::torque_limit>(unit::nm, positive, "Largest torque meanwhile, at most that of the axis; unset: that.");
   d.defaulted<&C::buffer_mode>(kBlendedHoming);
 }
 
@@ -62,6 +63,7 @@ void describe(Description<StepLimitSwitch>& d) {
   DescribeRamps(d);
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.defaulted<&C::torque_limit>(unit::nm, positive, "Largest torque meanwhile, at most that of the axis; unset: that.");
   d.defaulted<&C::buffer_mode>(kBlendedHoming);
 }
 
@@ -75,6 +77,7 @@ void describe(Description<StepBlock>& d) {
   DescribeRamps(d);
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.defaulted<&C::torque_limit>(unit::nm, positive, "Largest torque meanwhile, at most that of the axis; unset: that.");
   d.defaulted<&C::buffer_mode>("aborting or buffered.");
 }
 
@@ -88,6 +91,7 @@ void describe(Description<StepRefPulse>& d) {
   DescribeRamps(d);
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.defaulted<&C::torque_limit>(unit::nm, positive, "Largest torque meanwhile, at most that of the axis; unset: that.");
   d.defaulted<&C::buffer_mode>("aborting or buffered.");
 }
 

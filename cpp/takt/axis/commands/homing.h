@@ -27,6 +27,7 @@ struct StepAbsSwitch {  // MC_StepAbsSwitch
   BufferMode buffer_mode = BufferMode::kAborting;
   double time_limit = 0;
   double distance_limit = 0;
+  std::optional<double> torque_limit{};
 };
 struct StepLimitSwitch {  // MC_StepLimitSwitch
   HomingDirection direction = HomingDirection::kSwitchNegative;
@@ -37,6 +38,7 @@ struct StepLimitSwitch {  // MC_StepLimitSwitch
   BufferMode buffer_mode = BufferMode::kAborting;
   double time_limit = 0;
   double distance_limit = 0;
+  std::optional<double> torque_limit{};
 };
 struct StepBlock {  // MC_StepBlock
   HomingDirection direction = HomingDirection::kNegative;
@@ -47,6 +49,7 @@ struct StepBlock {  // MC_StepBlock
   BufferMode buffer_mode = BufferMode::kAborting;
   double time_limit = 0;
   double distance_limit = 0;
+  std::optional<double> torque_limit{};
 };
 struct StepRefPulse {  // MC_StepRefPulse
   HomingDirection direction = HomingDirection::kPositive;
@@ -56,6 +59,7 @@ struct StepRefPulse {  // MC_StepRefPulse
   BufferMode buffer_mode = BufferMode::kAborting;
   double time_limit = 0;
   double distance_limit = 0;
+  std::optional<double> torque_limit{};
 };
 struct StepDirect {  // MC_StepDirect
   double set_position = 0;

@@ -19,7 +19,9 @@ void describe(Enumeration<TouchMode>& e) {
 
 void describe(Description<TouchProbe>& d) {
   using C = TouchProbe;
-  d.about("Captures the position at the touch probe's next edge (MC_TouchProbe).");
+  d.about(
+      "Captures the position at the touch probe's next edge (MC_TouchProbe). Up to 8 wait at once, each for its edge "
+      "and window.");
   d.defaulted<&C::edge>("Which edge.");
   d.defaulted<&C::window_only>("True: only within the window.");
   d.defaulted<&C::first_position>(unit::u, "Lower end of the window.");
@@ -27,7 +29,8 @@ void describe(Description<TouchProbe>& d) {
 }
 
 void describe(Description<AbortTrigger>& d) {
-  d.about("Gives up waiting for the touch probe (MC_AbortTrigger).");
+  d.about("Ends the commands that wait for the touch probe, as aborted (MC_AbortTrigger).");
+  d.defaulted<&AbortTrigger::edge>("Only those that wait for this edge; unset: all.");
 }
 
 void describe(Description<Touch>& d) {
@@ -56,11 +59,12 @@ void describe(Description<DigitalCamSwitch>& d) {
 void describe(Description<TorqueControl>& d) {
   using C = TorqueControl;
   d.about(
-      "Drives with a torque, no faster than a velocity (MC_TorqueControl). Reached when the set point of the torque "
-      "is.");
+      "Drives with a torque, within limits of velocity and acceleration (MC_TorqueControl). Reached when the set point "
+      "of the torque is.");
   d.required<&C::torque>(unit::nm, "Signed.");
   d.defaulted<&C::torque_ramp>(positive, "Nm/s; unset: at once.");
   d.defaulted<&C::velocity>(unit::u_s, positive, "Largest velocity, either way; unset: the axis' limit.");
+  DescribeRamps(d);
   d.defaulted<&C::buffer_mode>(kBufferMode);
 }
 

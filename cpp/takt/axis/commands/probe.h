@@ -22,7 +22,8 @@ struct TouchProbe {  // MC_TouchProbe
   double first_position = 0;
   double last_position = 0;
 };
-struct AbortTrigger {  // MC_AbortTrigger
+struct AbortTrigger {               // MC_AbortTrigger
+  std::optional<ProbeEdge> edge{};  // unset: both
 };
 struct Touch {  // GT_Touch
   TouchMode mode = TouchMode::kCapture;
@@ -39,6 +40,7 @@ struct TorqueControl {  // MC_TorqueControl
   double torque = 0;
   std::optional<double> torque_ramp{};
   std::optional<double> velocity{};
+  std::optional<double> acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
 };
 
