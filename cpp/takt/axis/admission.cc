@@ -1,4 +1,6 @@
 // Commands as they arrive: carried out, buffered or refused.
+#include <algorithm>
+
 #include "takt/axis/cam_switch.h"
 #include "takt/axis/following.h"
 #include "takt/axis/override.h"
@@ -24,7 +26,9 @@ Status Enqueue(const Context& c, const Request& r, State& s) {
   if (s.buffered == kBufferSize) return Status::Failed(ErrorId::kBufferFull);
   s.buffer[s.buffered++] = r;
   Report(c, r.ticket, FeedbackState::kBusy);
-  if (s.buffered == 1 && r.blends()) ReplanActive(c, s);
+  const bool all_blend = std::all_of(s.buffer.begin(), s.buffer.begin() + s.buffered,
+                                     [](const Request& waiting) { return waiting.blends(); });
+  if (all_blend) ReplanActive(c, s);  // there is more room ahead
   // Beneath what is superimposed nothing is in control: its turn has come.
   if (s.buffered == 1 && s.active.kind == RequestKind::kNone && Carries(r) && StandsBeneath(s)) {
     const Beneath beneath(s);

@@ -115,7 +115,9 @@ void GuardLimits(const Context& c, const KinematicState& before, State& s) {
   const bool positions_count = s.plc != PlcState::kErrorStop && s.plc != PlcState::kHoming;
   if (!positions_count || !GoesOn(s)) return;
   const bool early = s.fault_ramp.leaves_limits && IsGuided(s) && StopsBeyond(c, before, s);
-  if (!early && CanStopInside(c.params, before, s.setpoint)) return;
+  // A run of blended moves may end at the limit exactly.
+  const double slack = s.active.positions() ? Rounding(s.setpoint.position) : 0;
+  if (!early && CanStopInside(c.params, before, s.setpoint, slack)) return;
   const bool upwards = s.setpoint.position > before.position;
   s.setpoint = before;
   Fail(c, upwards ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);

@@ -108,11 +108,12 @@ Profile::Range RangeOfStop(const AxisParams& p, const KinematicState& x) noexcep
   return {std::min({stop, turn, x.position}), std::max({stop, turn, x.position})};
 }
 
-bool CanStopInside(const AxisParams& p, const KinematicState& before, const KinematicState& next) noexcept {
+bool CanStopInside(const AxisParams& p, const KinematicState& before, const KinematicState& next,
+                   double slack) noexcept {
   if (StopsFarInside(p, next)) return true;
   const Profile::Range range = RangeOfStop(p, next);
-  const bool too_high = p.limits.upper && range.max > *p.limits.upper && range.max > before.position;
-  const bool too_low = p.limits.lower && range.min < *p.limits.lower && range.min < before.position;
+  const bool too_high = p.limits.upper && range.max > *p.limits.upper + slack && range.max > before.position;
+  const bool too_low = p.limits.lower && range.min < *p.limits.lower - slack && range.min < before.position;
   return !too_high && !too_low;
 }
 

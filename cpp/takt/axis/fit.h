@@ -28,8 +28,10 @@ LimitedBy Breaks(const AxisParams& params, const KinematicState& from, const tra
 trajectory::Profile::Range RangeOfStop(const AxisParams& params, const KinematicState& x) noexcept;
 
 // Invariant of motions that go on: braking now, from this set point, ends inside the SW limits. A set point that would
-// break it is not taken; the brake begins in its place, which the set point before allowed (AX-13).
-bool CanStopInside(const AxisParams& params, const KinematicState& before, const KinematicState& next) noexcept;
+// break it is not taken; the brake begins in its place, which the set point before allowed (AX-13). `slack`, u: so far
+// beyond them still counts as inside.
+bool CanStopInside(const AxisParams& params, const KinematicState& before, const KinematicState& next,
+                   double slack = 0) noexcept;
 
 // Whether the acceleration of a piece is beyond what the axis allows while its speed grows, or falls.
 bool BreaksRamps(const trajectory::Limits& own, const trajectory::Piece& piece, double duration) noexcept;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "takt/axis/fit.h"
+#include "takt/axis/look_ahead.h"
 #include "takt/axis/promise.h"
 
 namespace takt::axis {
@@ -32,67 +33,6 @@ bool RunsStraight(const Profile& profile, double sense) {
   const double backwards = sense > 0 ? -velocity.min : velocity.max;
   const double allowed = std::max(0.0, -sense * profile.start().velocity);
   return backwards <= allowed + 1e-9 * (1 + allowed);
-}
-
-// How far an axis at `position` may go on in this sense before its SW limit.
-double RoomToLimit(const AxisLimits& limits, double position, double sense) {
-  const std::optional<double>& limit = sense > 0 ? limits.upper : limits.lower;
-  return limit ? sense * (*limit - position) : std::numeric_limits<double>::infinity();
-}
-
-// How far the positioning command `next` goes on from `position` in this sense; 0 or less: it does not.
-double RoomToTarget(const AxisParams& params, double position, double sense, const Request& next) {
-  const double target = next.by_distance() ? position + next.value
-                                           : ResolveTarget(params, {position, 0, 0}, next.limits(), next.value,
-                                                           next.direction, static_cast<std::int8_t>(sense));
-  return Inside(params.limits, target) ? sense * (target - position) : 0;
-}
-
-// The highest speed up to `speed` from which a stop takes no more than `room`.
-double FastestThatStops(double speed, const Limits& braking, double room) {
-  const auto stops_in_time = [&](double v) { return trajectory::StopPosition({0, v, 0}, braking) <= room; };
-  if (stops_in_time(speed)) return speed;
-  double low = 0;
-  double high = speed;
-  for (int i = 0; i < kBlendBisections; ++i) {
-    const double middle = 0.5 * (low + high);
-    (stops_in_time(middle) ? low : high) = middle;
-  }
-  return low;
-}
-
-// The speed at which `next` may take over at the end of `request`, from what its buffer mode asks, lowered so far that
-// it can still end where it has to. 0: not at all (reversal).
-double TakeOverSpeed(const AxisParams& params, const Request& request, double target, double sense,
-                     const Request& next) {
-  double speed = 0;
-  switch (next.buffer_mode) {
-    case BufferMode::kBlendingLow:
-      speed = std::min(request.velocity, next.velocity);
-      break;
-    case BufferMode::kBlendingPrevious:
-      speed = request.velocity;
-      break;
-    case BufferMode::kBlendingNext:
-      speed = next.velocity;
-      break;
-    case BufferMode::kBlendingHigh:
-      speed = std::max(request.velocity, next.velocity);
-      break;
-    default:
-      return 0;
-  }
-  // A gear takes over from any velocity; homing begins at rest, and so does what follows a table.
-  const bool gear = next.kind == RequestKind::kGearIn;
-  if (gear)
-    return FastestThatStops(request.velocity, params.planner_limits(), RoomToLimit(params.limits, target, sense));
-  const bool endless = next.kind == RequestKind::kMoveVelocity;
-  if (!endless && !next.positions()) return 0;
-  if (endless && SenseOf(next, static_cast<std::int8_t>(sense)) != static_cast<int>(sense)) return 0;
-  const Limits braking = endless ? params.planner_limits() : next.limits();
-  const double room = endless ? RoomToLimit(params.limits, target, sense) : RoomToTarget(params, target, sense, next);
-  if (room <= 0) return 0;
-  return FastestThatStops(speed, braking, room);
 }
 
 // To `target`, left with `speed` of this sense. An axis that is faster than asked the planner brakes to that velocity
@@ -225,9 +165,31 @@ bool PlanPast(const AxisParams& params, Planner& planner, const KinematicState& 
          PassAt(params, planner, from, target, sense, 0, params.planner_limits(), out);
 }
 
+// As one motion with the commands behind that have the same limits, cut at the target. False: there are none, or the
+// motion turns round.
+bool PlanRun(Planner& planner, const KinematicState& from, double target, const Limits& limits, const LookAhead& ahead,
+             Plan& out) {
+  if (ahead.run_end == target) return false;
+  Plan plan = out;
+  const Status status = ahead.run_end_speed > 0
+                            ? PlanBlended(planner, from, ahead.run_end, ahead.sense, ahead.run_end_speed, limits, plan)
+                            : PlanTo(planner, from, ahead.run_end, ahead.sense, 0, limits, plan);
+  if (status.failed() || !RunsStraight(plan.profile, ahead.sense)) return false;
+  const double t = plan.profile.TimeAt(target);
+  if (std::isnan(t)) return false;
+  plan.profile.Cut(t);
+  const KinematicState end = plan.profile.end();
+  if (ahead.sense * end.velocity <= 0) return false;
+  plan.profile.SnapEnd({target, end.velocity, end.acceleration});
+  plan.limited_by =
+      ahead.sense * end.velocity < ahead.asked - Rounding(ahead.asked) ? LimitedBy::kDistance : out.limited_by;
+  out = plan;
+  return true;
+}
+
 // From `from` on to what the request asks for, with its own limits; positions: to `out.target`.
 Status PlanOn(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-              const Request& request, const Request* next, Plan& out) {
+              const Request& request, const LookAhead& ahead, Plan& out) {
   const Limits limits = request.limits();
   if (request.kind == RequestKind::kMoveVelocity) {
     Limits ramps = limits;
@@ -239,11 +201,12 @@ Status PlanOn(const AxisParams& params, const Surroundings& around, Planner& pla
   double speed = 0;
   if (request.continuous()) {
     const double room = RoomToLimit(params.limits, out.target, sense);
-    speed = room > 0 ? FastestThatStops(request.end_velocity, params.planner_limits(), room) : 0;
+    speed = room > 0 ? FastestWithin(request.end_velocity, 0, params.planner_limits(), room) : 0;
     if (speed < request.end_velocity) out.limited_by = LimitedBy::kPosition;
-  } else if (next) {
-    speed = TakeOverSpeed(params, request, out.target, sense, *next);
-    if (speed == 0) out.limited_by = LimitedBy::kDistance;
+  } else if (ahead.blends && ahead.sense == sense) {
+    if (PlanRun(planner, from, out.target, limits, ahead, out)) return Status::Ok();
+    speed = ahead.speed;
+    if (speed < ahead.asked - Rounding(ahead.asked)) out.limited_by = LimitedBy::kDistance;
   }
   // Too near to have its end velocity there, it passes as near to that as it can, and gets it beyond (AX-102).
   if (request.continuous() && speed > 0) {
@@ -269,14 +232,14 @@ Demands DemandsOn(const Request& request) {
 
 // The first opening with which the plan keeps what it must; if none does, the strongest.
 Status PlanOpened(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                  const Request& request, const Request* next, Plan& out) {
+                  const Request& request, const LookAhead& ahead, Plan& out) {
   const bool endless = request.kind == RequestKind::kMoveVelocity;
   LimitedBy broken = LimitedBy::kNothing;
   for (const Opening opening : {Opening::kNone, Opening::kEase, Opening::kStop}) {
     if (opening == Opening::kStop && endless) break;
     Plan plan{.profile = {}, .target = out.target, .limited_by = broken};
     Profile whole = Open(params, planner, from, opening);
-    const Status status = PlanOn(params, around, planner, whole.end(), request, next, plan);
+    const Status status = PlanOn(params, around, planner, whole.end(), request, ahead, plan);
     if (opening == Opening::kNone && status.failed()) return status;
     if (status.failed() || !whole.Append(plan.profile)) continue;
     plan.profile = whole;
@@ -303,32 +266,28 @@ Promises KeptFor(const Surroundings& around, const KinematicState& from, const R
 
 // With ramps that keep what was promised: those of the request, or stronger ones.
 Status PlanKept(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                const Request& request, const Request* next, const Promises& kept, Plan& out) {
-  const Status status = PlanOpened(params, around, planner, from, request, next, out);
+                const Request& request, const LookAhead& ahead, const Promises& kept, Plan& out) {
+  const Status status = PlanOpened(params, around, planner, from, request, ahead, out);
   if (status.failed() || !BreaksPromise(params, kept, out.profile)) return status;
   const Request stronger = Strengthened(params, from, request, kept);
   Plan plan{.profile = {}, .target = out.target};
-  if (PlanOpened(params, around, planner, from, stronger, next, plan).failed()) return status;
+  if (PlanOpened(params, around, planner, from, stronger, ahead, plan).failed()) return status;
   out = plan;
   out.limited_by = LimitedBy::kDistance;
   return status;
 }
 
-// Where the move behind the one in control ends, if the motion in progress already runs on towards that.
-std::optional<double> PassingTo(const AxisParams& params, const Surroundings& around, const KinematicState& from,
-                                double target, const Request* next) {
-  if (!around.passes || !next || !next->positions()) return std::nullopt;
-  const double sense = Sense(target - from.position);
-  const double room = RoomToTarget(params, target, sense, *next);
-  return room > 0 ? std::optional(target + sense * room) : std::nullopt;
+// Where the commands behind the one in control come to rest, if the motion in progress already runs on towards that.
+std::optional<double> PassingTo(const Surroundings& around, const LookAhead& ahead) {
+  return around.passes && ahead.blends ? ahead.stops_at : std::nullopt;
 }
 
 // Past the target so that the move behind it can still stop where it was promised to.
 void PlanPassing(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                 const Request& request, const Request& next, const Promises& kept, Plan& out) {
+                 const Request& request, const LookAhead& ahead, const Promises& kept, Plan& out) {
   const Request stronger = Strengthened(params, from, request, kept);
   Plan plan{.profile = {}, .target = out.target};
-  if (PlanOpened(params, around, planner, from, stronger, &next, plan).ok() &&
+  if (PlanOpened(params, around, planner, from, stronger, ahead, plan).ok() &&
       StopsBy(plan.profile.end(), params.planner_limits(), *kept.furthest)) {
     out = plan;
   } else {
@@ -340,12 +299,12 @@ void PlanPassing(const AxisParams& params, const Surroundings& around, Planner& 
 
 // `request` is scaled, and moves.
 Status PlanMoving(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                  const Request& request, const Request* next, Plan& out) {
+                  const Request& request, const LookAhead& ahead, Plan& out) {
   Promises kept = KeptFor(around, from, request, out.target);
-  const Status status = PlanKept(params, around, planner, from, request, next, kept, out);
-  kept.furthest = PassingTo(params, around, from, out.target, next);
-  if (status.ok() && kept.furthest && !StopsBy(out.profile.end(), next->limits(), *kept.furthest)) {
-    PlanPassing(params, around, planner, from, request, *next, kept, out);
+  const Status status = PlanKept(params, around, planner, from, request, ahead, kept, out);
+  kept.furthest = PassingTo(around, ahead);
+  if (status.ok() && kept.furthest && !StopsBy(out.profile.end(), ahead.next, *kept.furthest)) {
+    PlanPassing(params, around, planner, from, request, ahead, kept, out);
   }
   if (status.ok() && request.positions() && Overshoots(out.profile, out.target)) {
     out.limited_by = LimitedBy::kOvershoot;
@@ -355,19 +314,19 @@ Status PlanMoving(const AxisParams& params, const Surroundings& around, Planner&
 
 // To rest where the override holds the request; beyond its target where the next one goes on.
 Status PlanHeld(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                const Request& request, const Request* next, Plan& out) {
+                const Request& request, const LookAhead& ahead, Plan& out) {
   const double sense = Sense(out.target - from.position);
   Promises kept = KeptFor(around, from, request, out.target);
   Request braking = request;
   if (around.passes) {
     Promises passing = kept;
-    passing.furthest = PassingTo(params, around, from, out.target, next);
+    passing.furthest = PassingTo(around, ahead);
     braking = Strengthened(params, from, request, passing);
     out.limited_by = LimitedBy::kOverride;
     if (PlanPast(params, planner, from, out.target, sense, 0, braking.limits(), out.profile)) return Status::Ok();
   }
   braking.kind = RequestKind::kHalt;
-  const Status status = PlanKept(params, around, planner, from, braking, nullptr, kept, out);
+  const Status status = PlanKept(params, around, planner, from, braking, {}, kept, out);
   const KinematicState end = out.profile.end();
   out.held = !request.positions() || std::abs(end.position - out.target) > 10 * Rounding(out.target);
   if (!out.held) out.profile.SnapEnd({out.target, end.velocity, end.acceleration});
@@ -375,16 +334,17 @@ Status PlanHeld(const AxisParams& params, const Surroundings& around, Planner& p
   return status;
 }
 
-// `request` and `next` as commanded; positions: to `out.target`.
+// `request` and `queue` as commanded; positions: to `out.target`.
 Status PlanScaled(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                  const Request& request, const Request* next, Plan& out) {
+                  const Request& request, std::span<const Request> queue, Plan& out) {
   LimitedBy clamped = LimitedBy::kNothing;
   const Request scaled = Scaled(params, around.factors, request, clamped);
-  LimitedBy next_clamped = LimitedBy::kNothing;
-  const Request scaled_next = next ? Scaled(params, around.factors, *next, next_clamped) : Request{};
-  const Request* const then = next ? &scaled_next : nullptr;
-  if (Held(around.factors, request.kind)) return PlanHeld(params, around, planner, from, scaled, then, out);
-  const Status status = PlanMoving(params, around, planner, from, scaled, then, out);
+  const LookAhead ahead = LookAheadOf(params, around.factors, from, scaled, out.target, queue);
+  // From a run of blended moves it may be too fast to come to rest at this target: the run was promised to go on.
+  Surroundings now = around;
+  now.passes |= ahead.blends && ahead.stops_at && !StopsBy(from, params.planner_limits(), out.target);
+  if (Held(around.factors, request.kind)) return PlanHeld(params, now, planner, from, scaled, ahead, out);
+  const Status status = PlanMoving(params, now, planner, from, scaled, ahead, out);
   if (out.limited_by == LimitedBy::kNothing) out.limited_by = clamped;
   return status;
 }
@@ -473,22 +433,22 @@ double ResolveTarget(const AxisParams& params, const KinematicState& from, const
 }
 
 Status PlanRequest(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                   const Request& request, const Request* next, Plan& out) noexcept {
+                   const Request& request, std::span<const Request> queue, Plan& out) noexcept {
   LimitedBy clamped = LimitedBy::kNothing;
   const Request scaled = Scaled(params, around.factors, request, clamped);
   Status status = Check(params, around, from, scaled, out);
-  if (status.ok()) status = PlanScaled(params, around, planner, from, request, next, out);
+  if (status.ok()) status = PlanScaled(params, around, planner, from, request, queue, out);
   const bool brakes = !request.positions() && request.kind != RequestKind::kMoveVelocity;
   if (status.failed() || brakes) return status;
   if (!out.held) return CheckSwitches(around, from, out.profile);
   Plan released{.profile = {}, .target = out.target};  // what it is held back from must be allowed, too
-  status = PlanMoving(params, around, planner, from, scaled, nullptr, released);
+  status = PlanMoving(params, around, planner, from, scaled, {}, released);
   return status.failed() ? status : CheckSwitches(around, from, released.profile);
 }
 
 Status Replan(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-              const Request& request, const Request* next, Plan& out) noexcept {
-  return PlanScaled(params, around, planner, from, request, next, out);
+              const Request& request, std::span<const Request> queue, Plan& out) noexcept {
+  return PlanScaled(params, around, planner, from, request, queue, out);
 }
 
 Status PlanStop(const AxisParams& params, Planner& planner, const KinematicState& from, const Limits& limits,
@@ -500,7 +460,7 @@ Status PlanStop(const AxisParams& params, Planner& planner, const KinematicState
   halt.deceleration = limits.deceleration;
   halt.jerk = limits.jerk;
   Plan plan;
-  const Status status = PlanKept(params, {}, planner, from, halt, nullptr, {furthest}, plan);
+  const Status status = PlanKept(params, {}, planner, from, halt, {}, {furthest}, plan);
   if (status.ok()) out = plan.profile;
   return status;
 }

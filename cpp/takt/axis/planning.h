@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "takt/axis/override.h"
 #include "takt/axis/params.h"
@@ -36,15 +37,16 @@ struct Plan {
   bool held = false;  // by the override: the profile ends where that stops it
 };
 
-// Plans `request`, scaled by the override, from `from`. `next`, where not null, is the blending command behind it: the
-// profile then ends with the highest velocity that `next` allows and both can keep (AX-12). Errors: kTargetBehindLimit,
+// Plans `request`, scaled by the override, from `from`. `queue` has the blending commands behind it: the profile then
+// ends with the highest velocity from which all of them can be done (AX-12, AX-103). Errors: kTargetBehindLimit,
 // kAwayFromLimitOnly, kPlanning.
 Status PlanRequest(const AxisParams& params, const Surroundings& around, trajectory::Planner& planner,
-                   const KinematicState& from, const Request& request, const Request* next, Plan& out) noexcept;
+                   const KinematicState& from, const Request& request, std::span<const Request> queue,
+                   Plan& out) noexcept;
 
 // The same for a positioning request that is under way: `out.target` is given and stays.
 Status Replan(const AxisParams& params, const Surroundings& around, trajectory::Planner& planner,
-              const KinematicState& from, const Request& request, const Request* next, Plan& out) noexcept;
+              const KinematicState& from, const Request& request, std::span<const Request> queue, Plan& out) noexcept;
 
 // To standstill as `limits` say, or harder where the SW limits want it, or a promise (Surroundings).
 Status PlanStop(const AxisParams& params, trajectory::Planner& planner, const KinematicState& from,

@@ -78,9 +78,11 @@ bool InPosition(const AxisParams& p, const State& s) noexcept {
 
 namespace {
 
-// The blending command behind the one in control, if any.
-const Request* Follower(const State& s) {
-  return s.buffered > 0 && s.buffer[0].blends() ? &s.buffer[0] : nullptr;
+// The commands behind the one in control, as far as they blend.
+std::span<const Request> BlendingQueue(const State& s) {
+  std::size_t count = 0;
+  while (count < s.buffered && s.buffer[count].blends()) ++count;
+  return {s.buffer.data(), count};
 }
 
 Request TakeFirst(State& s) {
@@ -148,7 +150,7 @@ Request Onward(const State& s) {
 Status GoOn(const Context& c, double late_s, State& s) {
   const KinematicState from = s.motion.profile.end();
   Plan plan;
-  const Status status = PlanRequest(c.params, SurroundingsOf(c, s), c.planner, from, Onward(s), nullptr, plan);
+  const Status status = PlanRequest(c.params, SurroundingsOf(c, s), c.planner, from, Onward(s), {}, plan);
   if (status.failed()) {
     s.setpoint = from;
     Brake(c, c.params.planner_limits(), {c.cycle.count, late_s}, s);
@@ -331,7 +333,7 @@ void StartNext(const Context& c, double late_s, State& s, bool committed) noexce
     if (status.ok()) {
       status = homes     ? BeginHoming(c, next, false, s)
                : follows ? MayFollow(c, next, s)
-                         : PlanRequest(c.params, around, c.planner, from, next, Follower(s), plan);
+                         : PlanRequest(c.params, around, c.planner, from, next, BlendingQueue(s), plan);
     }
     if (status.ok() && next.positions() && !Inside(c.params.limits, plan.target + AddedAtEnd(s)))
       status = Status::Failed(ErrorId::kTargetBehindLimit);
@@ -366,7 +368,7 @@ void ReplanPositioning(const Context& c, State& s) {
   around.passes = s.motion.profile.end().velocity != 0;
   Plan plan;
   plan.target = s.motion.target;
-  if (Replan(c.params, around, c.planner, s.setpoint, s.active, Follower(s), plan).failed()) return;
+  if (Replan(c.params, around, c.planner, s.setpoint, s.active, BlendingQueue(s), plan).failed()) return;
   StartMotion(plan, FromCycleBefore(c), s);
 }
 
@@ -391,7 +393,7 @@ void PlanAgain(const Context& c, State& s) noexcept {
     const Request velocity = HasPassed(s) ? Onward(s) : s.active;
     Surroundings around = SurroundingsOf(c, s);
     around.again = true;
-    status = PlanRequest(c.params, around, c.planner, s.setpoint, velocity, nullptr, plan);
+    status = PlanRequest(c.params, around, c.planner, s.setpoint, velocity, {}, plan);
   } else {
     return ReplanPositioning(c, s);
   }
@@ -477,7 +479,7 @@ Status PlanJog(const Context& c, const Request& jog, const State& s, Plan& plan)
   Request move = jog;
   move.kind = RequestKind::kMoveVelocity;
   move.direction = jog.forward ? Direction::kPositive : Direction::kNegative;
-  return PlanRequest(c.params, SurroundingsOf(c, s), c.planner, s.setpoint, move, nullptr, plan);
+  return PlanRequest(c.params, SurroundingsOf(c, s), c.planner, s.setpoint, move, {}, plan);
 }
 
 }  // namespace takt::axis
