@@ -124,6 +124,19 @@ void GuardLimits(const Context& c, const KinematicState& before, State& s) {
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
 }
 
+// Takes back a set point with which a motion towards a limit switch that is on would begin.
+void GuardSwitches(const Context& c, const KinematicState& before, State& s) {
+  if (s.superimposed || s.plc == PlcState::kErrorStop || OwnsLimitSwitches(s)) return;
+  const bool up = s.setpoint.velocity > std::max(0.0, before.velocity);
+  const bool down = s.setpoint.velocity < std::min(0.0, before.velocity);
+  if (!up && !down) return;
+  const bool own = up ? s.limit_positive : s.limit_negative;
+  if (!own && !FollowerOnLimit(c, s, up ? 1 : -1)) return;
+  s.setpoint = before;
+  Fail(c, !own ? ErrorId::kAxisFault : up ? ErrorId::kLimitSwitchPositive : ErrorId::kLimitSwitchNegative, false, s);
+  s.setpoint = s.motion.profile.At(Elapsed(c, s));
+}
+
 // The sense in which a motion came to its end; `otherwise` if it did not move at all.
 std::int8_t SenseAtEnd(const trajectory::Profile& profile, std::int8_t otherwise) {
   if (profile.size() == 0) return otherwise;
@@ -195,6 +208,7 @@ void FollowDemand(const Context& c, State& s) {
   const bool table = FollowsTable(s.active.kind);
   if (!FollowNow(c, s)) return Advance(c, s);
   GuardLimits(c, before, s);
+  if (s.limit_positive || s.limit_negative || s.leads) GuardSwitches(c, before, s);
   if (coupled && (s.coupling.in_step || s.coupling.cam.over)) Conclude(c, 0, s);
   if (table && s.time_table.over) ConcludeDue(c, before, s);
   NoteSense(s);

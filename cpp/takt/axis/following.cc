@@ -221,6 +221,8 @@ Status CarryOut(const Context& c, Ticket ticket, const Straighten& straighten, S
   const bool stands = AtRest(master) && master.active.kind == RequestKind::kNone && !master.superimposed;
   if (!s.coupled || s.plc != PlcState::kSynchronizedMotion || !stands) return Status::Failed(ErrorId::kState);
   if (s.skew.straightens) return Status::Failed(ErrorId::kState);
+  const bool onto_switch = s.skew.commanded < 0 ? s.limit_positive : s.skew.commanded > 0 && s.limit_negative;
+  if (onto_switch) return Status::Failed(ErrorId::kAwayFromLimitOnly);
   if (!BeginStraightening(c, straighten.velocity.value_or(kShare * c.params.limits.velocity), s)) {
     return Status::Failed(ErrorId::kPlanning);
   }
