@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from takt import _core
@@ -79,11 +80,11 @@ ASK = {"flex_cam.control": ("regulator_on", "sync_cam", "home_execute"),
 Given = tuple[str, str, dict[str, Any]]  # target, verb, arguments
 
 
-def value_of(field: dict[str, Any]) -> Any:
+def value_of(field: dict[str, Any], names: Mapping[str, str]) -> Any:
     """Something that the field takes."""
     kind = field["type"]["kind"]
     if kind in ("text", "name"):
-        return NAMES.get(field["name"], "web")
+        return names.get(field["name"], "web")
     if kind == "enum":
         return field["type"]["values"][0]["name"]
     if kind == "bool":
@@ -94,18 +95,22 @@ def value_of(field: dict[str, Any]) -> Any:
 SIGNED = ("distance", "position", "torque", "x", "y", "z")
 
 
-def commands(sense: int = 1) -> list[Given]:
+def commands(
+    sense: int = 1,
+    targets: Mapping[str, tuple[str, ...]] = TARGETS,
+    names: Mapping[str, str] = NAMES,
+) -> list[Given]:
     """Every command of every component, with what must be given, and what asks for something; motions of one sense."""
     found: list[Given] = []
     for verb in VERBS:
         fields = verb["arguments"]["fields"]
-        needed = {f["name"]: value_of(f) for f in fields if f["presence"] == "required"}
+        needed = {f["name"]: value_of(f, names) for f in fields if f["presence"] == "required"}
         needed |= {key: sense * needed[key] for key in SIGNED if isinstance(needed.get(key), float)}
         name = f"{verb['target_kind']}.{verb['name']}"
         sets = [{key: True} for key in ASK.get(name, ())] or [{}]
         if verb["name"] == "jog":
             keys = ("forward", "positive") if sense > 0 else ("backward", "negative")
             sets = [{f["name"]: True} for f in fields if f["name"] in keys]
-        for target in TARGETS.get(verb["target_kind"], ()):
+        for target in targets.get(verb["target_kind"], ()):
             found += [(target, verb["name"], needed | given) for given in sets]
     return found

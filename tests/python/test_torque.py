@@ -120,3 +120,53 @@ def test_homing_onto_a_stop_pushes_no_harder_than_asked(torque: float) -> None:
             assert x.set_position == pytest.approx(5, abs=0.1)
             x.move_relative(distance=20).wait()  # free again
             assert x.true_position == pytest.approx(-10, abs=0.2)
+
+
+DIRECT = """
+name: direct
+axes:
+  - {name: x, limits: {velocity: 400, acceleration: 4000, jerk: 80000, upper: 70}, drive: {mode: analog},
+     loop: {kp: 0.05, velocity_at_10v: 800}}
+simulation:
+  servos:
+    - {axis: x, drive: {velocity_at_10v: 800}, switches: {limit_negative: {to: -25}}}
+"""
+
+
+@pytest.mark.parametrize(("voltage", "error"), [(0.75, 2006), (-1.5, 2005)])
+def test_a_voltage_put_out_turns_the_motor_until_a_limit(voltage: float, error: int) -> None:
+    """AX-53: with the loop open; it ends at the switch and at the SW limit, and needs a reset."""
+    with takt.Engine(DIRECT) as s:
+        x = s.axis("x")
+        x.direct_output(voltage=voltage).wait()
+        s.run(0.2)  # the drive gets ready
+        assert x.actual_velocity == pytest.approx(voltage * 80, rel=0.02)
+        assert (x.state, x.loop_closed) == (takt.PlcState.DISABLED, False)
+        s.run(2.0)
+        assert (x.actual_velocity, x.voltage_v, x.error) == (0, 0, error)
+        assert x.true_position == pytest.approx(70 if voltage > 0 else -25, abs=0.6)
+        x.reset().wait()
+        x.direct_output(voltage=-voltage).wait()  # away from there
+        s.run(0.15)
+        assert x.actual_velocity * voltage < 0
+
+
+def test_power_closes_the_loop_of_a_motor_at_rest() -> None:
+    """AX-53, AX-20: 0 V first; then the loop, without a step."""
+    with takt.Engine(DIRECT) as s:
+        x = s.axis("x")
+        x.direct_output(voltage=3).wait()
+        s.run(0.15)
+        with s.record() as recorder:
+            x.power().wait()
+            s.run(0.1)
+        assert np.abs(recorder.recording["x"]["following_error"]).max() < 0.1
+        assert x.actual_velocity == 0
+        assert x.direct_output(voltage=1).wait_final().error_id == 13
+        x.power(enable=False).wait()
+        pulse = x.pulse_output(voltage=1, duration=0.2)
+        s.run(0.15)
+        assert x.actual_velocity > 0
+        pulse.wait()
+        s.run(0.05)
+        assert x.actual_velocity == 0

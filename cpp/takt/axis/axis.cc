@@ -18,6 +18,8 @@ namespace {
 
 // An axis whose measured position moves further than this many times its largest velocity allows has a broken encoder.
 constexpr double kJumpFactor = 4;
+// Of the largest velocity: a loop is not closed on an analogue drive that still turns faster.
+constexpr double kCoastingShare = 0.05;
 // Rotary axes: positions are brought back once they are so many turns out.
 constexpr double kFarTurns = 1000;
 
@@ -50,6 +52,18 @@ void WatchSwitches(const Context& c, State& s) {
   }
 }
 
+// A voltage that is put out with the loop open ends at a limit switch and at a SW limit.
+void WatchDirectOutput(const Context& c, State& s) {
+  const AxisLimits& limits = c.params.limits;
+  const bool up = s.direct_voltage_v > 0;
+  const double position = s.actual.position;
+  if (up ? s.limit_positive : s.limit_negative) {
+    Fail(c, up ? ErrorId::kLimitSwitchPositive : ErrorId::kLimitSwitchNegative, false, s);
+  } else if (up ? limits.upper && position >= *limits.upper : limits.lower && position <= *limits.lower) {
+    Fail(c, up ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
+  }
+}
+
 void WatchLease(const Context& c, State& s) {
   if (s.active.lease_s <= 0 || c.cycle.count < s.lease_end_cycle) return;
   const Ticket ticket = s.active.ticket;
@@ -67,6 +81,7 @@ void Supervise(const Context& c, State& s) {
   const bool off = s.drive_fault || (s.loop_closed && !s.drive_ready);
   if (off && s.sampling.link == DriveLink::kHeard) Fail(c, ErrorId::kDrive, true, s);
   if (s.blind || s.sampling.link == DriveLink::kLost) WatchLink(c, s);
+  if (s.direct_voltage_v != 0) WatchDirectOutput(c, s);
   if (!s.loop_closed) return;
   WatchDeviation(c, s);
   if (s.limit_positive || s.limit_negative) WatchSwitches(c, s);
@@ -77,7 +92,10 @@ void Supervise(const Context& c, State& s) {
 void AwaitDrive(const Context& c, State& s) {
   if (s.active.kind != RequestKind::kPower || !s.active.enable) return;
   if (s.enable_cycle == c.cycle.count) return;  // it was open for a cycle at least
-  if (s.drive_ready) {
+  // After a voltage was put out directly the drive comes to rest by itself, at 0 V.
+  const bool coasts = c.params.drive.mode == DriveMode::kAnalog &&
+                      std::abs(s.actual.velocity) > kCoastingShare * c.params.limits.velocity;
+  if (s.drive_ready && !coasts) {
     s.loop_closed = true;
     s.motion.profile = trajectory::Profile{s.setpoint};
     s.motion.target = s.setpoint.position;
@@ -388,10 +406,11 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
     out.voltage_v = 0;
     out.torque_nm = 0;
   }
-  if (s.plc == PlcState::kDisabled && !s.enable) out.voltage_v = sign * InConverterSteps(s.direct_voltage_v);
+  const bool direct = s.plc == PlcState::kDisabled && !s.enable && s.direct_voltage_v != 0;
+  if (direct) out.voltage_v = sign * InConverterSteps(s.direct_voltage_v);
   s.voltage_v = out.voltage_v;
-  out.enable = s.enable;
-  out.release_brake = s.loop_closed;
+  out.enable = s.enable || direct;
+  out.release_brake = s.loop_closed || direct;
   return sound;
 }
 

@@ -1,0 +1,187 @@
+"""Random walks of commands, stops and faults over whole machines, with what must hold in every cycle."""
+
+from __future__ import annotations
+
+import copy
+import os
+import random
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import takt
+import yaml
+from seams import MACHINE, NAMES, SIGNED, Given, commands
+from takt import _core
+
+SEEDS = range(1000 if os.environ.get("TAKT_LONG") else 4)
+EXAMPLES = Path(__file__).parents[2] / "python" / "examples"
+STRAIGHTENING = 1.3  # of the limits of a follower, while it goes along with its master besides
+EMERGENCY, RELEASE = ("machine", "emergency_stop", {"hold": True}), ("machine", "release_emergency_stop", {})
+
+
+def with_switches() -> str:
+    """The machine of all kinds, with limit switches within reach and a skew that is watched."""
+    machine = yaml.safe_load(MACHINE)
+    switches = {"limit_positive": {"from": 60}, "limit_negative": {"to": -60}, "reference": {"from": 20, "to": 25}}
+    machine["simulation"] = {
+        "servos": [{"axis": axis["name"], "switches": copy.deepcopy(switches)} for axis in machine["axes"]]
+    }
+    right = next(axis for axis in machine["axes"] if axis["name"] == "right")
+    right["follows"] |= {"largest_skew": 2.0, "square": True}
+    return str(yaml.safe_dump(machine))
+
+
+def example(name: str) -> str:
+    return (EXAMPLES / name / "machine.yaml").read_text(encoding="utf-8")
+
+
+MACHINES = {"all kinds": with_switches(), **{name: example(name) for name in ("six_axes", "positioning_module")}}
+
+
+def targets_of(s: takt.Engine) -> dict[str, tuple[str, ...]]:
+    """The components by their kinds; poses and belts take objects, which is another matter."""
+    found: dict[str, tuple[str, ...]] = {}
+    for kind, group in (
+        ("axis", s.axes),
+        ("flex_cam", s.flex_cams),
+        ("group", s.groups),
+        ("pick_place", s.pick_places),
+        ("mover", s.movers),
+        ("part", s.parts),
+    ):
+        found[kind] = tuple(group)
+    return found
+
+
+def names_of(s: takt.Engine) -> Mapping[str, str]:
+    names = {key: value for key, value in NAMES.items() if value in s.components}
+    axes = list(s.axes)
+    cams = [cam["name"] for cam in s.machine.get("cams", [])] or ["none"]
+    return {"master": axes[0], "axis": axes[-1], "cam": cams[0], "profile": cams[0]} | names | {"cam": cams[0]}
+
+
+def varied(rnd: random.Random, given: Given) -> Given:
+    target, verb, arguments = given
+    out: dict[str, Any] = dict(arguments)
+    for key, value in arguments.items():
+        if key in SIGNED and isinstance(value, float):
+            out[key] = rnd.choice([0.3, 5.0, 40.0, 90.0]) * rnd.uniform(-1, 1)
+    return target, verb, out
+
+
+def walk(s: takt.Engine, rnd: random.Random, steps: int) -> list[tuple[int, int]]:
+    """Gives commands at random; the cycles between which an emergency stop was held."""
+    known = commands(1, targets_of(s), names_of(s)) + commands(-1, targets_of(s), names_of(s))
+    power = [given for given in known if given[1] in ("power", "enable") or "regulator_on" in given[2]]
+    reset = [given for given in known if given[1] == "reset"]
+    held: list[tuple[int, int]] = []
+    since: int | None = None
+    for given in power:
+        s.command(*given)
+    s.run(0.15)
+    for _ in range(steps):
+        chance = rnd.random()
+        if since is not None and chance < 0.1:
+            held.append((since, s.cycle))
+            since = None
+            s.command(*RELEASE)
+        elif since is None and chance < 0.02:
+            s.command(*EMERGENCY)
+            since = s.cycle + 2
+        elif chance < 0.03:
+            s.command("machine", "stop_all", {"open_loops": rnd.random() < 0.5})
+        elif chance < 0.04:
+            s.command("machine", "fail_all_axes")
+        elif chance < 0.16:
+            for group in (reset, power):
+                for one in group:
+                    s.command(*one)
+                s.step(rnd.choice([1, 5, 60]))
+        else:
+            feedback = s.command(*varied(rnd, rnd.choice(known)))
+            if rnd.random() < 0.4:
+                s.step(rnd.randrange(40))
+                if not feedback.final:
+                    feedback.release()
+        s.step(rnd.choice([0, 1, 1, 3, 10, 60]))
+    if since is not None:
+        held.append((since, s.cycle))
+    return held
+
+
+def wrong_of(s: takt.Engine, recording: takt.Recording, held: list[tuple[int, int]]) -> list[str]:
+    """What of the invariants a recording breaks."""
+    wrong = []
+    homing = list(takt.PlcState).index(takt.PlcState.HOMING)
+    for name, axis in s.axes.items():
+        r = recording[name]
+        cycle = np.asarray(r["cycle"])
+        velocity, acceleration = np.asarray(r["set_velocity"]), np.asarray(r["set_acceleration"])
+        closed = np.asarray(r["loop_closed"], bool)
+        for begin, end in held:
+            during = (cycle >= begin) & (cycle < end)
+            if closed[during].any() or np.abs(velocity[during]).max(initial=0) > 0:
+                wrong.append(f"{name}: powered or moved while the emergency stop was held, cycles {begin} to {end}")
+        searches = np.asarray(r["state"]) == homing
+        follows = axis.parameters.get("follows")
+        if follows:
+            searches |= np.asarray(recording[follows["axis"]]["state"]) == homing
+        for sense, switch in ((1, "limit_positive"), (-1, "limit_negative")):
+            on = np.asarray(r[switch], bool)
+            both = on[1:] & on[:-1] & closed[1:] & ~searches[1:] & ~searches[:-1]
+            faster = sense * velocity[1:] > np.maximum(0, sense * velocity[:-1]) + 1e-9
+            # An axis that runs onto its switch while it speeds up ends its acceleration within its jerk.
+            eases = (sense * velocity[:-1] > 0) & (sense * acceleration[1:] < sense * acceleration[:-1])
+            towards = faster & ~eases
+            if (both & towards).any():
+                wrong.append(f"{name}: moves onto its switch in cycle {cycle[1:][both & towards][0]}")
+        limits = axis.parameters["limits"]
+        share = STRAIGHTENING if follows else 1 + 1e-6
+        strongest = max(limits["acceleration"], limits.get("deceleration") or 0)
+        jerk = np.abs(np.diff(acceleration)) / s.period
+        still_closed = closed[1:] & closed[:-1]
+        if np.abs(velocity).max() > limits["velocity"] * share:
+            wrong.append(f"{name}: velocity")
+        if np.abs(acceleration).max() > strongest * share:
+            wrong.append(f"{name}: acceleration")
+        if limits["jerk"] and (jerk[still_closed] > limits["jerk"] * share).any():
+            at = cycle[1:][still_closed][jerk[still_closed] > limits["jerk"] * share][0]
+            wrong.append(f"{name}: jerk in cycle {at}")
+        if follows and follows.get("largest_skew"):
+            leader = recording[follows["axis"]]
+            together = closed & (np.asarray(r["error"]) == 0) & (np.abs(leader["set_velocity"]) > 0)
+            apart = np.abs(r["skew"])[together].max(initial=0)
+            if apart > follows["largest_skew"] + follows["in_step"]:
+                wrong.append(f"{name}: skew {apart}")
+    for name in s.movers:
+        r = recording[name]
+        cycle = np.asarray(r["cycle"])
+        for begin, end in held:
+            during = (cycle >= begin + 400) & (cycle < end)  # after its ramp
+            if during.any() and np.ptp(np.asarray(r["x"])[during]) > 0:
+                wrong.append(f"{name}: moves while the emergency stop is held")
+    return wrong
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("name", MACHINES)
+def test_walk(name: str) -> None:
+    """AX-100, AX-101, AX-13, AX-83: in every cycle: while an emergency stop is held no axis is powered or moves; none
+    moves onto a switch that is on; set points keep their limits."""
+    failures = []
+    for seed in SEEDS:
+        rnd = random.Random(seed)
+        with takt.Engine(MACHINES[name]) as s:
+            with s.record() as recorder:
+                held = walk(s, rnd, 150)
+            wrong = wrong_of(s, recorder.recording, held)
+        failures += [f"seed {seed}: {one}" for one in wrong]
+    assert not failures, "\n".join(failures)
+
+
+def test_the_walk_knows_all_verbs() -> None:
+    assert len(commands()) > 300
+    assert _core.reference()
