@@ -1,7 +1,7 @@
 """Torque.
 
-The drive follows a torque on its ramp, within a velocity and an acceleration. The set point is the ramp of these limits, and where the
-torque holds the axis, what is measured.
+The drive follows a torque on its ramp, within a velocity and an acceleration. The set point is the ramp of these
+limits, and where the torque holds the axis, what is measured.
 """
 
 import takt

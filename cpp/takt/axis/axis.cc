@@ -215,6 +215,7 @@ void NoteSense(State& s) {
 bool FollowNow(const Context& c, State& s) {
   if (Couples(s.active.kind)) return FollowMasters(c, s);
   if (FollowsTable(s.active.kind)) return FollowTime(c, s);
+  if (Streams(s.active.kind)) return FollowStream(c, s);
   FollowGuidance(c, s);
   return true;
 }
@@ -483,8 +484,8 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.fault_of = s.fault_of == kNoAxis ? 0 : s.fault_of + 1;
   const bool coupled = Couples(s.active.kind);
   const auto& terms = s.coupling.law.terms;
-  out.in_step = (s.coupled && InStep(p, s)) || (coupled && s.coupling.in_step) ||
-                (s.active.kind == RequestKind::kGuided && s.guidance.chase.in_step);
+  out.in_step = (s.coupled && InStep(p, s)) || (Streams(s.active.kind) && s.stream.chase.in_step) ||
+                (coupled && s.coupling.in_step) || (s.active.kind == RequestKind::kGuided && s.guidance.chase.in_step);
   out.synchronizing = coupled && !out.in_step && s.coupling.joining != Joining::kWaiting;
   out.master1 = coupled ? terms[0].master + 1 : 0;  // none: 0
   out.master2 = coupled ? terms[1].master + 1 : 0;

@@ -11,6 +11,7 @@
 #include "takt/axis/commands/probe.h"
 #include "takt/axis/commands/profiles.h"
 #include "takt/axis/commands/settings.h"
+#include "takt/axis/commands/stream.h"
 
 namespace takt::axis {
 
@@ -22,6 +23,6 @@ using Command =
                  Home, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse, StepDirect, StepAbsolute, FinishHoming,
                  StepRefFlyingSwitch, StepRefFlyingRefPulse, AbortPassiveHoming, SetConstants, WriteParameter,
                  ReadParameter, SetSoftLimits, DirectOutput, PulseOutput, SetPosition, SetOverride, TouchProbe,
-                 AbortTrigger, Touch, DigitalCamSwitch>;
+                 AbortTrigger, Touch, DigitalCamSwitch, Stream, StreamPoint>;
 
 }  // namespace takt::axis

@@ -113,7 +113,9 @@ bool Fill(const Maker& m, const CamIn& c) {
   out.slave_absolute = c.slave_absolute && c.start_mode != CamStart::kRelative;
   m.r.table = {.name = c.cam, .index = kNoTable, .time_scale = 1, .scale = c.slave_scaling, .offset = c.slave_offset};
   out.periodic = c.periodic;
-  const CamIn ramps = c.start_mode == CamStart::kRampIn ? c : CamIn{};
+  const auto takes_ramps = [&m](const CamIn& of) {
+    return m.Take("velocity", of.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(of);
+  };
   return m.In("master_offset", c.master_offset, -kMaxPosition, kMaxPosition) &&
          m.In("slave_offset", c.slave_offset, -kMaxPosition, kMaxPosition) &&
          m.In("master_scaling", std::abs(c.master_scaling), 1 / kMaxPosition, kMaxPosition) &&
@@ -121,7 +123,7 @@ bool Fill(const Maker& m, const CamIn& c) {
          m.In("master_sync_position", out.master_sync_position, -kMaxPosition, kMaxPosition) &&
          m.In("master_start_distance", c.master_start_distance.value_or(0), 0, kMaxPosition) &&
          Term(m, c.master, c.source, c.master_scaling, out.terms[0]) &&
-         m.Take("velocity", ramps.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(ramps);
+         (c.start_mode == CamStart::kRampIn ? takes_ramps(c) : takes_ramps(CamIn{}));
 }
 
 bool Fill(const Maker& m, const GearOut&) {

@@ -297,7 +297,7 @@ bool StandsBeneath(const State& s) noexcept {
 bool Carries(const Request& r) noexcept {
   const bool switches_off = r.kind == RequestKind::kPower && !r.enable;
   return !switches_off && !Homes(r.kind) && r.kind != RequestKind::kStop && r.kind != RequestKind::kTorqueControl &&
-         r.kind != RequestKind::kTouch && r.kind != RequestKind::kGuided;
+         r.kind != RequestKind::kTouch && r.kind != RequestKind::kStream && r.kind != RequestKind::kGuided;
 }
 
 double AddedAtEnd(const State& s) noexcept {

@@ -40,6 +40,7 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kStepAbsolute, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kFinishHoming, true, true, true, PlcState::kHoming},
     RequestRules{RequestKind::kTouch, false, false, true, PlcState::kDiscreteMotion},
+    RequestRules{RequestKind::kStream, false, false, false, PlcState::kSynchronizedMotion},
     RequestRules{RequestKind::kGuided, false, false, false, PlcState::kSynchronizedMotion},
 };
 
@@ -229,6 +230,7 @@ void describe(Enumeration<RequestKind>& e) {
   e.value(RequestKind::kStepAbsolute, "step_absolute", "StepAbsolute.");
   e.value(RequestKind::kFinishHoming, "finish_homing", "FinishHoming.");
   e.value(RequestKind::kTouch, "touch", "Touch.");
+  e.value(RequestKind::kStream, "stream", "Stream.");
   e.value(RequestKind::kGuided, "guided", "Set points of another component of the machine.");
 }
 
@@ -243,6 +245,8 @@ void describe(Description<Request>& d) {
   d.internal<&R::jerk>(unit::u_s3, "Largest jerk; 0: unlimited.");
   d.internal<&R::torque_ramp>("Torque control: Nm/s; 0: at once.");
   d.internal<&R::end_velocity>(unit::u_s, "With which a continuous move goes on.");
+  d.internal<&R::timeout_s>(unit::s, "Longest time without a set point of a stream.");
+  d.internal<&R::key>("That set points of a stream must carry.");
   d.internal<&R::lease_s>(unit::s, "Dead man's lease; 0: none.");
   d.internal<&R::kind>("Which command.");
   d.internal<&R::direction>("Sense of travel.");

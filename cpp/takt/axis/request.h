@@ -45,6 +45,7 @@ enum class RequestKind : std::uint8_t {
   kStepAbsolute,
   kFinishHoming,
   kTouch,
+  kStream,
   kGuided,  // by another component of the machine, not by a command
 };
 
@@ -57,7 +58,9 @@ struct Request {
   double jerk = 0;
   double torque_ramp = 0;   // Nm/s, of torque control; 0: at once
   double end_velocity = 0;  // u/s, of continuous moves, in the sense of travel
+  double timeout_s = 0;     // s, of streams
   double lease_s = 0;       // > 0: level-sensitive command under a dead man's lease
+  std::int32_t key = 0;     // of streams
   RequestKind kind = RequestKind::kNone;
   Direction direction = Direction::kShortest;
   BufferMode buffer_mode = BufferMode::kAborting;

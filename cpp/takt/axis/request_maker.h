@@ -97,6 +97,8 @@ bool Fill(const Maker& m, const StepAbsolute& c);
 bool Fill(const Maker& m, const FinishHoming& c);
 bool Fill(const Maker& m, const StepRefFlyingSwitch& c);
 bool Fill(const Maker& m, const StepRefFlyingRefPulse& c);
+bool Fill(const Maker& m, const Stream& c);
+bool Fill(const Maker& m, const StreamPoint& c);
 template <typename T>
 bool Fill(const Maker&, const T&) {
   return true;

@@ -235,10 +235,12 @@ void TakeControl(const Context& c, const Request& request, const Plan& plan, con
 }
 
 Status MayFollow(const Context& c, const Request& request, const State& s) noexcept {
+  if (Streams(request.kind)) return Status::Ok();
   return Couples(request.kind) ? MayCouple(c, request, s) : MayFollowTable(c, request, s);
 }
 
 void BeginFollowing(const Context& c, const Request& request, const MotionStart& start, State& s) noexcept {
+  if (Streams(request.kind)) return BeginStream(c, request, s);
   Couples(request.kind) ? Couple(c, request, s) : BeginTable(c, request, start, s);
 }
 
@@ -421,6 +423,7 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
     case RequestKind::kGearIn:
     case RequestKind::kGearInPos:
     case RequestKind::kCombineAxes:
+    case RequestKind::kStream:
       ConcludeReached(c, s);
       break;
     case RequestKind::kCamIn:

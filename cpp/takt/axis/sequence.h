@@ -44,7 +44,7 @@ void TakeControl(const Context& c, const Request& request, const Plan& plan, con
                  State& s) noexcept;
 // What follows something that moves, a master, a table over time, another component, instead of a plan.
 inline bool FollowsDemand(RequestKind kind) noexcept {
-  return Couples(kind) || FollowsTable(kind) || kind == RequestKind::kGuided;
+  return Couples(kind) || FollowsTable(kind) || Streams(kind) || kind == RequestKind::kGuided;
 }
 // Whether such a command may take control now: MayCouple, MayFollowTable.
 Status MayFollow(const Context& c, const Request& request, const State& s) noexcept;

@@ -120,6 +120,7 @@ void describe(Description<State>& d) {
   d.internal<&S::guidance>("Set points of another component.");
   d.internal<&S::fault_ramp>("On which it brakes after a fault.");
   d.internal<&S::time_table>("Table over time that it follows.");
+  d.internal<&S::stream>("Set points from outside.");
   d.internal<&S::overlay>("What is on top of it.");
   d.internal<&S::homing>("Its reference.");
   d.internal<&S::probe>("Touch probe.");

@@ -16,6 +16,7 @@
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
+#include "takt/axis/stream.h"
 #include "takt/axis/time_table.h"
 #include "takt/axis/torque.h"
 #include "takt/core/kinematic_state.h"
@@ -157,6 +158,7 @@ struct State {
   std::uint64_t illegal_transitions = 0;    // always 0: the state table holds
   trajectory::Limits system;  // of the machine file; those of the application, in the parameters, keep within them
   OverlayState overlay;
+  StreamState stream;
   SkewState skew;
   std::uint32_t fault_of = kNoAxis;  // the axis that follows this one and whose fault stopped it
 };

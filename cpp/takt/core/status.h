@@ -114,6 +114,10 @@ enum class ErrorId : std::uint16_t {
   kSyncPassed = 3110,   // the master has passed the position at which the clutch was to close
   kSlaveLimits = 3111,  // the slave cannot follow within its limits
   kEmptySlot = 3112,    // there is no cam in a slot that is needed
+  kStreamKey = 3120,    // a set point for another stream than the one in control
+  kStreamLate = 3121,   // a set point came after its time
+  kStreamJump = 3122,   // a set point is further from the one before it than the axis can move in their time
+  kStreamEnded = 3123,  // set points stopped coming
   kGroupDeviation = 8001,
   kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual
   // A cam module is in error; numbers of the Flex Cam manual.

@@ -208,6 +208,8 @@ const std::vector<Entry>& Entries() {
       Make<axis::Command, axis::AbortTrigger>(kAxis, "abort_trigger"),
       Make<axis::Command, axis::Touch>(kAxis, "touch"),
       Make<axis::Command, axis::DigitalCamSwitch>(kAxis, "digital_cam_switch"),
+      Make<axis::Command, axis::Stream>(kAxis, "stream"),
+      Make<axis::Command, axis::StreamPoint>(kAxis, "stream_point"),
       Make<flexcam::Command, flexcam::Control>(kFlexCam, "control"),
       Make<flexcam::Command, flexcam::Jog>(kFlexCam, "jog", true),
       Make<flexcam::Command, flexcam::Configure>(kFlexCam, "configure"),

@@ -1,0 +1,177 @@
+#include "takt/axis/stream.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/axis/fit.h"
+#include "takt/axis/request_maker.h"
+#include "takt/axis/sequence.h"
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+namespace {
+
+constexpr double kClockGain = 1e-3;     // of how much earlier or later than the delay a set point comes
+constexpr double kFastestClock = 5e-3;  // most that the sender's clock is followed faster or slower by
+constexpr double kJumpFactor = 1.5;     // of the axis' velocity: faster set points jump
+
+// The slope of the curve at point i, from those around it.
+double Slope(const StreamState& k, std::size_t i) {
+  const StreamedPoint& here = k.points[i];
+  if (here.fixed) return here.velocity;
+  const StreamedPoint& from = k.points[i > 0 ? i - 1 : i];
+  const StreamedPoint& to = k.points[i + 1u < k.count ? i + 1 : i];
+  return to.time > from.time ? (to.position - from.position) / (to.time - from.time) : 0;
+}
+
+void Fix(StreamState& k, std::size_t i) {
+  k.points[i].velocity = Slope(k, i);
+  k.points[i].fixed = true;
+}
+
+void DropFirst(StreamState& k) {
+  std::move(k.points.begin() + 1, k.points.begin() + k.count, k.points.begin());
+  k.points[--k.count] = {};
+}
+
+KinematicState Between(const StreamedPoint& a, const StreamedPoint& b, double time) {
+  const double h = b.time - a.time;
+  const double x = (time - a.time) / h;
+  const double rise = b.position - a.position;
+  const double c2 = 3 * rise - (2 * a.velocity + b.velocity) * h;
+  const double c3 = (a.velocity + b.velocity) * h - 2 * rise;
+  return {a.position + x * (a.velocity * h + x * (c2 + x * c3)), a.velocity + x * (2 * c2 + 3 * x * c3) / h,
+          (2 * c2 + 6 * x * c3) / (h * h)};
+}
+
+// What the stream asks for now, over all turns. Requires: it has a set point.
+KinematicState DemandAt(StreamState& k) {
+  while (k.count > 1 && k.points[1].time <= k.clock) {
+    Fix(k, 1);
+    DropFirst(k);
+  }
+  const StreamedPoint& first = k.points[0];
+  if (k.clock <= first.time) return {first.position, 0, 0};
+  Fix(k, 0);
+  if (k.count == 1) return {first.position + first.velocity * (k.clock - first.time), first.velocity, 0};
+  Fix(k, 1);
+  return Between(first, k.points[1], k.clock);
+}
+
+// The turn of a rotary axis that is nearest to where the stream is.
+double Unwrapped(const Context& c, double position, double near) {
+  if (!c.params.rotary()) return position;
+  return near + std::remainder(position - near, c.params.modulus);
+}
+
+}  // namespace
+
+bool Fill(const Maker& m, const Stream& c) {
+  m.r.kind = RequestKind::kStream;
+  m.r.value = c.delay;
+  m.r.timeout_s = c.timeout;
+  m.r.key = c.key;
+  return m.In("delay", c.delay, 0, 10) && m.In("timeout", c.timeout, 0.001, 60) &&
+         m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
+}
+
+bool Fill(const Maker& m, const StreamPoint& c) {
+  const bool turns = m.params.rotary();
+  return m.In("position", c.position, turns ? 0 : -kMaxPosition, turns ? m.params.modulus : kMaxPosition) &&
+         m.In("velocity", c.velocity.value_or(0), -m.params.limits.velocity, m.params.limits.velocity) &&
+         m.In("time", c.time.value_or(0), -kMaxPosition, kMaxPosition);
+}
+
+void BeginStream(const Context& c, const Request& r, State& s) noexcept {
+  Grant(c, r, s);
+  s.stream = StreamState{};
+  s.limited_by = LimitedBy::kNothing;
+  s.motion.profile = trajectory::Profile{s.setpoint};
+  s.motion.target = s.setpoint.position;
+  s.motion.arrived = false;
+  Enter(s, PlcState::kSynchronizedMotion);
+}
+
+bool FollowStream(const Context& c, State& s) noexcept {
+  StreamState& k = s.stream;
+  const double period = c.cycle.period_s;
+  if (k.count > 0) k.clock += period;
+  const double silent_s = static_cast<double>(c.cycle.count - k.heard_cycle) * period;
+  if (k.count > 0 && silent_s > s.active.timeout_s) {
+    const trajectory::Limits ramps = s.active.limits();
+    EndActive(c, FeedbackState::kError, ErrorId::kStreamEnded, s);
+    AbortBuffer(c, s);
+    ComeToRest(c, ramps, FromCycleBefore(c), s);
+    return false;
+  }
+  // Until there is a set point, the axis comes to rest where it is.
+  KinematicState demand{s.setpoint.position + s.origin + s.setpoint.velocity * period, 0, 0};
+  if (k.count > 0) demand = DemandAt(k);
+  demand.position -= s.origin;
+  const auto mode = k.count > 0 ? trajectory::ChaseMode::kPosition : trajectory::ChaseMode::kVelocity;
+  const trajectory::Limits own = c.params.planner_limits();
+  s.setpoint = Chase({own, c.planner, s.active.limits(), period}, mode, s.setpoint, demand, k.chase);
+  s.limited_by = k.count > 0 ? Beyond(own, demand, k.chase.in_step) : LimitedBy::kNothing;
+  if (k.count > 0 && k.chase.in_step) Conclude(c, 0, s);
+  if (!AtRest(s)) s.motion.arrived_cycle = c.cycle.count;
+  return true;
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const StreamPoint& command, State& s) noexcept {
+  StreamState& k = s.stream;
+  if (!Streams(s.active.kind)) return Status::Failed(ErrorId::kState);
+  if (command.key != s.active.key) return Status::Failed(ErrorId::kStreamKey);
+  const double now = static_cast<double>(c.cycle.count) * c.cycle.period_s;
+  StreamedPoint point{command.time.value_or(now), 0, command.velocity.value_or(0), command.velocity.has_value()};
+  const bool begins = k.count == 0;
+  if (begins) k.clock = point.time - s.active.value - c.cycle.period_s;
+  // Its place among the others. Those of the curve in use are taken.
+  std::size_t place = k.count;
+  while (place > 0 && k.points[place - 1].time >= point.time) --place;
+  const bool doubled = place < k.count && k.points[place].time == point.time;
+  const bool in_use = place < std::min<std::size_t>(k.count, 2) && k.clock > k.points[0].time;
+  if (!begins && (doubled || in_use || point.time <= k.clock)) return Status::Failed(ErrorId::kStreamLate);
+  if (k.count == kStreamed) return Status::Failed(ErrorId::kBufferFull);
+  const double near = place > 0 ? k.points[place - 1].position : s.setpoint.position + s.origin;
+  point.position = Unwrapped(c, command.position + s.origin, near);
+  if (!Inside(c.params.limits, point.position - s.origin)) return Status::Failed(ErrorId::kTargetBehindLimit);
+  if (place > 0) {
+    const double way = kJumpFactor * c.params.limits.velocity * (point.time - k.points[place - 1].time);
+    if (std::abs(point.position - near) > way) return Status::Failed(ErrorId::kStreamJump);
+  }
+  std::move_backward(k.points.begin() + static_cast<std::ptrdiff_t>(place), k.points.begin() + k.count,
+                     k.points.begin() + k.count + 1);
+  k.points[place] = point;
+  ++k.count;
+  k.heard_cycle = c.cycle.count;
+  // The two clocks drift apart: the stream is played a little faster or slower, so that it keeps its delay.
+  if (!begins && place + 1u == k.count) {
+    const double early = point.time - k.clock - s.active.value;
+    const double most = kFastestClock * (point.time - k.points[place - 1].time);
+    k.clock += std::clamp(kClockGain * early, -most, most);
+  }
+  Report(c, ticket, FeedbackState::kDone);
+  return Status::Ok();
+}
+
+void describe(Description<StreamedPoint>& d) {
+  using P = StreamedPoint;
+  d.about("A set point from outside.");
+  d.internal<&P::time>(unit::s, "When it is due, by the sender's clock.");
+  d.internal<&P::position>(unit::u, "Over all turns.");
+  d.internal<&P::velocity>(unit::u_s, "Of the curve there.");
+  d.internal<&P::fixed>("That is known.");
+}
+
+void describe(Description<StreamState>& d) {
+  using K = StreamState;
+  d.about("Set points that are streamed from outside.");
+  d.internal<&K::points>("By time.");
+  d.internal<&K::count>("How many.");
+  d.internal<&K::clock>(unit::s, "The end of this cycle, by the sender's clock.");
+  d.internal<&K::heard_cycle>("When the last one was taken.");
+  d.internal<&K::chase>("The catching up.");
+}
+
+}  // namespace takt::axis
