@@ -90,6 +90,11 @@ Status SwitchOn(const Context& c, const Request& r, State& s) {
   if (s.emergency == Emergency::kHeld) return Status::Failed(ErrorId::kEmergencyStop);
   if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
   if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
+  if (s.loop_closed && SwitchingOn(s)) {  // the brake opens: it counts for this one, too
+    EndActive(c, FeedbackState::kAborted, ErrorId::kNone, s);
+    Grant(c, r, s);
+    return Status::Ok();
+  }
   if (s.loop_closed) {
     if (r.buffer_mode == BufferMode::kBuffered && s.active.kind != RequestKind::kNone) return Enqueue(c, r, s);
     Report(c, r.ticket, FeedbackState::kActive);
@@ -139,6 +144,7 @@ Status Admit(const Context& c, const Request& r, State& s) {
     return buffered && SwitchingOn(s) ? Enqueue(c, r, s) : Status::Failed(ErrorId::kPowerOff);
   }
   if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
+  if (SwitchingOn(s)) return buffered ? Enqueue(c, r, s) : Status::Failed(ErrorId::kPowerOff);  // the brake opens
   if (buffered) return Enqueue(c, r, s);
   if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
   if (r.kind == RequestKind::kInch && s.plc != PlcState::kStandstill) return Status::Failed(ErrorId::kState);
@@ -153,8 +159,8 @@ void BeginReset(const Context& c, Ticket ticket, State& s) {
   Report(c, ticket, FeedbackState::kActive);
 }
 
-// Commands that take no control of the axis: carried out beside what is in progress. An error is reported by whoever
-// calls; the rest they report themselves.
+// Commands that take no control of the axis: carried out beside what is in progress. The caller reports an
+// error; they report the rest themselves.
 Status CarryOut(const Context& c, Ticket ticket, const Reset&, State& s) {
   BeginReset(c, ticket, s);
   return Status::Ok();

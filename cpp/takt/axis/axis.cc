@@ -81,11 +81,21 @@ void Supervise(const Context& c, State& s) {
   const bool off = s.drive_fault || (s.loop_closed && !s.drive_ready);
   if (off && s.sampling.link == DriveLink::kHeard) Fail(c, ErrorId::kDrive, true, s);
   if (s.blind || s.sampling.link == DriveLink::kLost) WatchLink(c, s);
-  if (s.direct_voltage_v != 0) WatchDirectOutput(c, s);
-  if (!s.loop_closed) return;
+  if (!s.loop_closed) {
+    if (s.direct_voltage_v != 0) WatchDirectOutput(c, s);
+    return;
+  }
   WatchDeviation(c, s);
   if (s.limit_positive || s.limit_negative) WatchSwitches(c, s);
   WatchLease(c, s);
+}
+
+// Holds the axis while its brake opens; then power is done.
+void AwaitBrake(const Context& c, State& s) {
+  const double open_s = static_cast<double>(c.cycle.count - s.brake_cycle) * c.cycle.period_s;
+  if (open_s < c.params.drive.brake_opens_s) return;
+  EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
+  StartNext(c, 0, s);
 }
 
 // Between power on and the drive's readiness.
@@ -101,8 +111,9 @@ void AwaitDrive(const Context& c, State& s) {
     s.motion.target = s.setpoint.position;
     s.motion.arrived = true;
     s.motion.arrived_cycle = c.cycle.count;
-    EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
-    StartNext(c, 0, s);
+    s.brake_cycle = c.cycle.count;
+    s.brake_falls = false;
+    AwaitBrake(c, s);
   } else if (static_cast<double>(c.cycle.count - s.enable_cycle) * c.cycle.period_s > c.params.drive.ready_timeout_s) {
     Fail(c, ErrorId::kDrive, true, s);
   }
@@ -191,7 +202,7 @@ void AdvanceWatched(const Context& c, double t, State& s) {
   const bool over = t >= s.motion.profile.duration();
   // A move that ends in this cycle hands over first: what it is left with is another command's set point.
   if (!over || s.plc == PlcState::kContinuousMotion) GuardLimits(c, before, s);
-  // Nobody waits for the end of a motion that is over and done with.
+  // The end of a motion that is over concerns no command.
   const bool rests = s.motion.arrived && s.active.kind == RequestKind::kNone;
   if (over && !rests) ConcludeDue(c, before, s);
 }
@@ -244,6 +255,8 @@ void StayOpen(const Context& c, State& s) {
 void MoveOne(const Context& c, State& s) {
   if (!s.loop_closed) [[unlikely]]
     return StayOpen(c, s);
+  if (s.active.kind == RequestKind::kPower && s.active.enable) [[unlikely]]
+    return AwaitBrake(c, s);
   if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
   // The master's set point is this axis' too.
   if (c.params.follows && Follow(c, s)) return;
@@ -295,6 +308,33 @@ void BrakeInFault(const Context& c, ErrorId error, State& s) {
   StartMotion(profile, profile.end().position, FromCycleBefore(c), s);
 }
 
+// The state of a switch, once its wire has said otherwise than before for long enough.
+bool Settled(const Context& c, bool wire, bool before, std::uint32_t& changed) {
+  if (wire == before) {
+    changed = 0;
+    return before;
+  }
+  ++changed;
+  if (changed * c.cycle.period_s <= c.params.inputs.debounce_s) return before;
+  changed = 0;
+  return wire;
+}
+
+// The switches behind inversion and debouncing; at the first look as they are.
+void ReadSwitches(const Context& c, const ServoInputs& in, State& s) {
+  const InputSense& sense = c.params.inputs;
+  const bool positive = in.limit_positive != sense.invert_limit_positive;
+  const bool negative = in.limit_negative != sense.invert_limit_negative;
+  const bool reference = in.reference != sense.invert_reference;
+  s.limit_positive_before = s.limit_positive;
+  s.limit_negative_before = s.limit_negative;
+  const bool known = s.switches_known && sense.debounce_s > 0;
+  s.limit_positive = known ? Settled(c, positive, s.limit_positive, s.unsettled[0]) : positive;
+  s.limit_negative = known ? Settled(c, negative, s.limit_negative, s.unsettled[1]) : negative;
+  s.reference = known ? Settled(c, reference, s.reference, s.unsettled[2]) : reference;
+  s.switches_known = true;
+}
+
 // Nm, of the command in control or of the axis; 0: none.
 double TorqueLimit(const AxisParams& p, const State& s) {
   const double own = p.limits.torque.value_or(0);
@@ -330,11 +370,7 @@ void Sense(const Context& c, const ServoInputs& in, State& s, const Sampling& sa
   if (s.torque.engaged) SenseTorque(s);
   s.due = s.setpoint.position;
   s.following_error = s.loop_closed ? s.due - s.actual.position : 0;
-  s.limit_positive_before = s.limit_positive;
-  s.limit_negative_before = s.limit_negative;
-  s.limit_positive = in.limit_positive != sense.invert_limit_positive;
-  s.limit_negative = in.limit_negative != sense.invert_limit_negative;
-  s.reference = in.reference != sense.invert_reference;
+  ReadSwitches(c, in, s);
   s.touch_probe = in.touch_probe != sense.invert_touch_probe;
   s.index_pulse = in.index_pulses != s.index_pulses;
   s.index_pulses = in.index_pulses;
@@ -411,7 +447,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   if (direct) out.voltage_v = sign * InConverterSteps(s.direct_voltage_v);
   s.voltage_v = out.voltage_v;
   out.enable = s.enable || direct;
-  out.release_brake = s.loop_closed || direct;
+  out.release_brake = (s.loop_closed && !s.brake_falls) || direct;
   return sound;
 }
 

@@ -75,7 +75,7 @@ void Fail(const Context& context, ErrorId error, bool open_loop, State& state) n
 // GT_EStop: the drive is switched off and the brake falls at once; faults are cleared, the axis is Disabled (AX-38),
 // and power is refused until the stop is released (AX-100) ...
 void EmergencyStop(const Context& context, State& state) noexcept;
-// ... Then it is there for whoever asks anew.
+// ... Then commands may ask for it anew.
 void ReleaseEmergencyStop(State& state) noexcept;
 
 // Whether a command asks for power or motion: what a held emergency stop refuses, and a gantry whose members are not in

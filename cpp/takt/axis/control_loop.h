@@ -9,7 +9,7 @@ namespace takt::axis {
 
 // A numeric PID in the form of sampled loops, sampled once a cycle of T seconds. All gains are plain numbers: the three
 // terms are positions, their sum is what the axis shall make up for within one cycle, so sum / T is a speed. (kp = T
-// Kv, for those who think in a speed gain Kv in 1/s.)
+// Kv with a speed gain Kv in 1/s.)
 struct ControlLoop {
   double kp = 0.05;  // >= 0: P = kp e
   double ki = 0;     // >= 0: I = sum of ki e over the cycles; T / Ti

@@ -55,7 +55,7 @@ inline bool Couples(RequestKind kind) noexcept {
          kind == RequestKind::kCamIn;
 }
 // Whether that position of a master is known. What is measured does without power, but not with a fault until it was
-// reset: nobody knows how far the master goes meanwhile.
+// reset: how far the master moves meanwhile is not known.
 bool IsKnown(const State& master, MasterSource source) noexcept;
 // The number of an axis, or of what else can be followed; kNoAxis: there is none of that name.
 std::uint32_t FindMaster(const Surrounding& machine, std::string_view name) noexcept;

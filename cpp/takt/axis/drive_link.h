@@ -1,6 +1,6 @@
 // A drive in another process that is not heard any more (AX-87): a drive error and a controlled stop.
 //
-// Where the axis is, nobody knows then, so nothing may go by it. The set point brakes with all the axis has and the
+// Where the axis is, is not known then, so nothing may go by it. The set point brakes with all the axis has and the
 // drive is told so, for it may well still hear: one that closes the position loop gets positions as before, any other
 // one the speed alone, as the engine's loop has nothing left to close it with. Once the set point rests, the drive is
 // switched off and the brake falls. An axis at rest is switched off at once; one whose loop is open just has the fault.

@@ -34,7 +34,7 @@ Status FollowersReady(const Context& context, const State& state) noexcept;
 // Whether an axis that follows this one is on a limit switch that lies ahead in this sense.
 bool FollowerOnLimit(const Context& context, const State& state, int sense) noexcept;
 
-// While this axis searches its reference switch: all that are squared by it have found theirs ...
+// While this axis searches its reference switch: each follower that is squared by it has found its own ...
 bool FollowersFound(const Context& context, const State& state) noexcept;
 // ... and, it being found, stand straight.
 bool FollowersSquared(const Context& context, const State& state) noexcept;

@@ -114,7 +114,7 @@ std::optional<HomingEvent> EventOf(const Context& c, State& s) {
         h.found = true;
         h.edge = s.actual.position + s.origin;
       }
-      // On until those that follow have found theirs.
+      // The search goes on until each follower has found its own switch.
       const bool waits = h.found && r.kind == RequestKind::kStepAbsSwitch && !FollowersFound(c, s);
       if (h.found && !waits) {
         h.found_cycle = c.cycle.count;
@@ -219,7 +219,7 @@ void Act(const Context& c, const HomingRow& row, State& s) {
       const bool late = row.event == HomingEvent::kTimeOver;
       EndActive(c, FeedbackState::kError, late ? ErrorId::kTimeLimit : ErrorId::kDistanceLimit, s);
       AbortBuffer(c, s);
-      s.active.kind = RequestKind::kHalt;  // nobody's: to Standstill once at rest
+      s.active.kind = RequestKind::kHalt;  // of no command: to Standstill once at rest
       Profile profile{s.setpoint};
       c.planner.Stop(s.setpoint, c.params.planner_limits(), profile);
       StartMotion(profile, profile.end().position, FromThisCycle(c), s);

@@ -91,9 +91,9 @@ struct HomingState {
   std::uint8_t turns = 0;      // how often it turned round
   double way = 0;              // u, gone since the step began
   std::uint64_t begin_cycle = 0;
-  bool found = false;             // its switch; those that follow it look for theirs
+  bool found = false;             // its switch; its followers still look for their own
   double edge = 0;                // u, over all turns: where it was
-  std::uint64_t found_cycle = 0;  // in which all had found theirs
+  std::uint64_t found_cycle = 0;  // in which all switches were found
 
   // References taken while another motion goes on.
   Ticket flying_ticket = 0;   // 0: none is awaited

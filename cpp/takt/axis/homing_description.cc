@@ -55,7 +55,7 @@ void describe(Description<HomingState>& d) {
   d.internal<&H::begin_cycle>("When it began.");
   d.internal<&H::found>("Its switch was found.");
   d.internal<&H::edge>(unit::u, "Where, over all turns.");
-  d.internal<&H::found_cycle>("When those that follow had found theirs, too.");
+  d.internal<&H::found_cycle>("When the followers had found their switches, too.");
   d.internal<&H::flying_ticket>("Of the reference awaited in passing.");
   d.internal<&H::flying_pulse>("From the index pulse.");
   d.internal<&H::flying>("What is awaited.");

@@ -18,7 +18,7 @@ struct Outputs {
   double actual_velocity = 0;   // u/s
   double following_error = 0;   // u, set point of the cycle before minus what is measured now
   // u, over all turns: where a drive simulated in the engine has really brought the load when `actual_position` was
-  // measured, whatever the encoder makes of it; NaN: nobody knows.
+  // measured, whatever the encoder makes of it; NaN: not known.
   double true_position = std::numeric_limits<double>::quiet_NaN();
   double voltage_v = 0;            // V, output of the position loop
   double torque_nm = 0;            // Nm, as the drive reports it

@@ -49,6 +49,10 @@ void describe(Description<Drive>& d) {
   d.defaulted<&Drive::invert>("Inverts the control sense.");
   d.defaulted<&Drive::ready_timeout_s>(unit::s, positive,
                                        "How long the drive may take to get ready; then ErrorStop 3002.");
+  d.defaulted<&Drive::brake_opens_s>(
+      unit::s, between(0, 10), "How long the brake takes to open: the axis is held meanwhile, and power is done then.");
+  d.defaulted<&Drive::brake_closes_s>(
+      unit::s, between(0, 10), "How long it takes to close: at power off the loop stays closed as long as that.");
 }
 
 void describe(Description<InputSense>& d) {
@@ -58,6 +62,8 @@ void describe(Description<InputSense>& d) {
   d.defaulted<&I::invert_limit_negative>("Inverts LIM-.");
   d.defaulted<&I::invert_reference>("Inverts REF.");
   d.defaulted<&I::invert_touch_probe>("Inverts TP.");
+  d.defaulted<&I::debounce_s>(unit::s, between(0, 1),
+                              "How long LIM+, LIM- and REF must have changed before it counts; 0: at once.");
   d.defaulted<&I::touch_probe_of>("The axis whose TP wire captures this axis' position, too; unset: its own.");
 }
 
@@ -80,12 +86,12 @@ void describe(Description<Following>& d) {
                            "Skew up to which master and follower move; beyond it commands are refused with error 3102 "
                            "until it is straightened.");
   d.defaulted<&F::square>(
-      "It has a reference switch of its own: step_abs_switch of the master goes on until both have found theirs, and "
+      "It has a reference switch of its own: step_abs_switch of the master goes on until both switches are found, and "
       "what lies between them is the skew, which is straightened before the step is done.");
 }
 
 void describe(Description<StopRamp>& d) {
-  d.about("The ramp of a stop that nobody asked for. An axis never stops more gently than with its own limits.");
+  d.about("The ramp of a stop that no command asked for. An axis never stops more gently than with its own limits.");
   d.defaulted<&StopRamp::deceleration>(unit::u_s2, positive, "Deceleration; unset: that of the limits.");
   d.defaulted<&StopRamp::jerk>(unit::u_s3, not_negative, "Jerk, 0: unlimited; unset: that of the limits.");
 }

@@ -44,6 +44,8 @@ struct Drive {
   DriveMode mode = DriveMode::kCyclicPosition;
   bool invert = false;           // AX-03: invert the control sense
   double ready_timeout_s = 1.0;  // s from enabling to ready
+  double brake_opens_s = 0;      // s from energising the brake relay until the brake is open (AX-115)
+  double brake_closes_s = 0;     // s from letting it go until the brake holds
 };
 
 // AX-03: which of the switch inputs are active low.
@@ -52,6 +54,7 @@ struct InputSense {
   bool invert_limit_negative = false;
   bool invert_reference = false;
   bool invert_touch_probe = false;
+  double debounce_s = 0;       // s, for which LIM+, LIM- and REF must have changed before that counts (AX-115)
   std::string touch_probe_of;  // name of the axis whose TP wire counts here, too; empty: its own
 };
 

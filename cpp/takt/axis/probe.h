@@ -37,8 +37,7 @@ struct Capture {
 };
 
 struct ProbeState {
-  std::array<Capture, kCaptures> waiting;  // in the order in which they were given
-  std::uint8_t waits = 0;                  // how many
+  std::uint8_t waits = 0;  // how many MC_TouchProbe wait
 
   // GT_Touch.
   ProbeWatch watch = ProbeWatch::kNothing;
@@ -68,6 +67,8 @@ struct ProbeState {
   std::uint32_t falls = 0;
   double set_velocity = 0;  // u/s, of the set point for that sample
   double step = 0;          // u, from there to this one
+
+  std::array<Capture, kCaptures> waiting;  // in the order in which they were given
 };
 
 // sense, once the position is known: looks for the edge and captures. Where between its two samples the axis was at the

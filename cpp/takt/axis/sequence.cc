@@ -200,6 +200,18 @@ void ConcludeVelocityProfile(const Context& c, double late_s, State& s) {
   if (s.buffered > 0) StartNext(c, late_s, s);
 }
 
+// At rest: the brake closes, then the loop opens.
+void ConcludePower(const Context& c, State& s) {
+  if (!s.loop_closed) return SwitchedOff(c, s);
+  if (!s.brake_falls) {
+    s.brake_falls = true;
+    s.brake_cycle = c.cycle.count;
+  }
+  const double closing_s = static_cast<double>(c.cycle.count - s.brake_cycle) * c.cycle.period_s;
+  if (closing_s >= c.params.drive.brake_closes_s) return SwitchedOff(c, s);
+  if (s.plc != PlcState::kStopping && IsLegal(s.plc, PlcState::kStopping)) Enter(s, PlcState::kStopping);
+}
+
 // Done when the next command may be given: at rest, and where it is not held, out of Stopping, which is seen for one
 // cycle at least.
 void ConcludeStop(const Context& c, State& s) {
@@ -297,6 +309,7 @@ void SwitchedOff(const Context& c, State& s) noexcept {
 void OpenLoop(State& s) noexcept {
   s.enable = false;
   s.loop_closed = false;
+  s.brake_falls = false;
   s.blind = false;
   s.homing.stage = HomingStage::kNone;
   s.voltage_v = 0;
@@ -353,7 +366,7 @@ void StartNext(const Context& c, double late_s, State& s, bool committed) noexce
     if (s.homing.stage != HomingStage::kWaiting) Enter(s, PlcState::kStandstill);
     return;
   }
-  // Nobody takes over (any more): come to rest, if there is still anything to come to rest from.
+  // No command takes over: come to rest, if the axis still moves.
   const bool stands = s.plc == PlcState::kStandstill || (s.superimposed && AtRest(s));
   if (stands) return;
   if (seamless) s.setpoint = s.motion.profile.end();
@@ -441,7 +454,7 @@ void Conclude(const Context& c, double late_s, State& s) noexcept {
       ConcludeStop(c, s);
       break;
     case RequestKind::kPower:
-      SwitchedOff(c, s);
+      ConcludePower(c, s);
       break;
     case RequestKind::kJog:
       if (s.jog_sense == 0 && !s.active.forward && !s.active.backward) {

@@ -57,7 +57,7 @@ void AbortAll(const Context& c, State& s) noexcept;
 // Brakes as `limits` say, and no further than `furthest` where the axis can. Never fails.
 void Brake(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s,
            std::optional<double> furthest = {}) noexcept;
-// The same, with nobody in control, to Standstill.
+// The same, with no command in control, to Standstill.
 void ComeToRest(const Context& c, const trajectory::Limits& limits, const MotionStart& start, State& s,
                 std::optional<double> furthest = {}) noexcept;
 // Power off has come to its end.

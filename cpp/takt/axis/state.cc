@@ -90,6 +90,10 @@ void describe(Description<State>& d) {
   d.internal<&S::index_counts>("Count at the last one.");
   d.internal<&S::limit_positive_before>("LIM+ a cycle before.");
   d.internal<&S::limit_negative_before>("LIM- a cycle before.");
+  d.internal<&S::unsettled>(unit::cycles, "For which LIM+, LIM-, REF have said otherwise.");
+  d.internal<&S::switches_known>("They were read once.");
+  d.internal<&S::brake_falls>("The brake is closing, the loop still closed.");
+  d.internal<&S::brake_cycle>("When its relay was energised or let go of.");
   d.internal<&S::drive_ready>("Drive says ready.");
   d.internal<&S::drive_fault>("Drive says fault.");
   d.internal<&S::encoder_error>("The measured position is not to be believed.");

@@ -120,6 +120,8 @@ struct State {
   bool index_pulse = false;  // one came since the cycle before ...
   bool limit_positive_before = false;
   bool limit_negative_before = false;
+  bool switches_known = false;  // they were read once
+  bool brake_falls = false;     // being switched off: the relay is let go of, the loop still closed
   bool drive_ready = false;
   bool drive_fault = false;
   bool encoder_error = false;       // not to be believed this cycle
@@ -127,7 +129,9 @@ struct State {
   std::uint32_t index_pulses = 0;
   std::uint32_t index_counts = 0;  // ... at this count
   std::uint32_t cam_outputs = 0;
-  std::uint32_t profile_ends = 0;  // how often the end of a cam was passed
+  std::uint32_t profile_ends = 0;            // how often the end of a cam was passed
+  std::array<std::uint32_t, 3> unsettled{};  // cycles for which LIM+, LIM-, REF have said otherwise
+  std::uint64_t brake_cycle = 0;             // when the brake relay was energised or let go of
   std::uint64_t enable_cycle = 0;
   std::uint64_t lease_end_cycle = 0;
 

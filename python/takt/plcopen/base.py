@@ -194,6 +194,8 @@ class ExecuteBlock(FunctionBlock):
             self._seen = set()
         elif self._edge and not execute:
             self._fall()
+        elif execute:
+            self._hold()
         self._edge = execute
         if self._feedback is not None:
             self._follow(self._feedback)
@@ -204,6 +206,9 @@ class ExecuteBlock(FunctionBlock):
 
     def _fall(self) -> None:
         """The falling edge of Execute. The command goes on all the same."""
+
+    def _hold(self) -> None:
+        """Execute is still true."""
 
     def _follow(self, feedback: Feedback) -> None:
         self._ending = self._ending or self._end(feedback)
@@ -245,6 +250,37 @@ class MotionBlock(ExecuteBlock):
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
         self._show(Active=in_control(feedback, self._given))
+
+
+class UpdatedBlock(MotionBlock):
+    """A motion whose inputs may change while Execute is true: with ContinuousUpdate true at the rising edge each change
+    is commanded, once the command is in control, and the motion goes on from where it is. A change that is refused is
+    an error of the block; the motion goes on as it did."""
+
+    ContinuousUpdate = Input(False)
+
+    def __init__(self, subject: Component, **inputs: Any) -> None:
+        self._updates = False
+        super().__init__(subject, **inputs)
+
+    def _command(self) -> Feedback:
+        self._updates = bool(self.ContinuousUpdate)
+        return super()._command()
+
+    def _hold(self) -> None:
+        feedback = self._feedback
+        if not self._updates or feedback is None or feedback.final or not in_control(feedback, self._given):
+            return
+        wanted = self._arguments() | {"buffer_mode": _commands.BufferMode.ABORTING}
+        if wanted == self._given | {"buffer_mode": _commands.BufferMode.ABORTING}:
+            return
+        verb, arguments = self._changed(wanted)
+        self._given = wanted
+        self._feedback = self._subject.session.command(self._subject.name, verb, arguments)
+
+    def _changed(self, wanted: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+        """The command that changes the one in control (`self._given`) into what is wanted."""
+        return self.VERB, wanted
 
 
 class ReadBlock(FunctionBlock):

@@ -7,7 +7,7 @@ from typing import Any
 from takt import _commands
 from takt.axis import Axis
 from takt.feedback import Feedback
-from takt.plcopen.base import AxisName, ExecuteBlock, Input, MotionBlock, Output
+from takt.plcopen.base import AxisName, ExecuteBlock, Input, MotionBlock, Output, UpdatedBlock
 
 
 def axis_name(axis: Axis | str) -> str:
@@ -29,7 +29,7 @@ class CouplingBlock(MotionBlock):
         self._show(**{self.IN_STEP: feedback.reached and self.Axis.in_step})
 
 
-class MC_GearIn(CouplingBlock):  # noqa: N801
+class MC_GearIn(CouplingBlock, UpdatedBlock):  # noqa: N801
     """Follows the velocity of Master times RatioNumerator / RatioDenominator, from InGear on its place, too. InGear
     falls where the axis cannot."""
 
@@ -117,7 +117,7 @@ class MC_Phasing(MC_PhasingAbsolute):  # noqa: N801
     """The GT-775x's name of MC_PhasingAbsolute."""
 
 
-class MC_CombineAxes(CouplingBlock):  # noqa: N801
+class MC_CombineAxes(CouplingBlock, UpdatedBlock):  # noqa: N801
     """Follows the sum or the difference of two masters, each times its ratio."""
 
     VERB = "combine_axes"

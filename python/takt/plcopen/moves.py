@@ -6,10 +6,10 @@ from typing import Any
 
 from takt import _commands
 from takt.feedback import Feedback
-from takt.plcopen.base import ExecuteBlock, Input, MotionBlock, Output
+from takt.plcopen.base import ExecuteBlock, Input, MotionBlock, Output, UpdatedBlock
 
 
-class MC_MoveAbsolute(MotionBlock):  # noqa: N801
+class MC_MoveAbsolute(UpdatedBlock):  # noqa: N801
     """Moves to a position."""
 
     VERB = "move_absolute"
@@ -22,7 +22,7 @@ class MC_MoveAbsolute(MotionBlock):  # noqa: N801
     Done = Output(False)
 
 
-class MC_MoveRelative(MotionBlock):  # noqa: N801
+class MC_MoveRelative(UpdatedBlock):  # noqa: N801
     """Moves by a distance."""
 
     VERB = "move_relative"
@@ -33,6 +33,10 @@ class MC_MoveRelative(MotionBlock):  # noqa: N801
     Jerk = Input[float | None](None, "jerk")
     Done = Output(False)
 
+    def _changed(self, wanted: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+        more = wanted["distance"] - self._given["distance"]
+        return "move_additive", wanted | {"distance": more}
+
 
 class MC_MoveAdditive(MC_MoveRelative):  # noqa: N801
     """Moves by a distance from where the move in progress was to end."""
@@ -40,7 +44,7 @@ class MC_MoveAdditive(MC_MoveRelative):  # noqa: N801
     VERB = "move_additive"
 
 
-class MC_MoveVelocity(MotionBlock):  # noqa: N801
+class MC_MoveVelocity(UpdatedBlock):  # noqa: N801
     """Moves on and on. Never done: InVelocity says that the velocity is reached."""
 
     VERB = "move_velocity"
@@ -82,7 +86,7 @@ class MC_Stop(MotionBlock):  # noqa: N801
             self._feedback.release()
 
 
-class MC_MoveContinuousAbsolute(MotionBlock):  # noqa: N801
+class MC_MoveContinuousAbsolute(UpdatedBlock):  # noqa: N801
     """Moves to a position and goes on from there with EndVelocity. Never done: InEndVelocity says that it is there."""
 
     VERB = "move_continuous_absolute"

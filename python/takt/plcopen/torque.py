@@ -6,10 +6,10 @@ from typing import Any
 
 from takt import _commands
 from takt.feedback import Feedback
-from takt.plcopen.base import Input, MotionBlock, Output
+from takt.plcopen.base import Input, Output, UpdatedBlock
 
 
-class MC_TorqueControl(MotionBlock):  # noqa: N801
+class MC_TorqueControl(UpdatedBlock):  # noqa: N801
     """Drives with a torque, within Velocity, Acceleration, Deceleration and Jerk. Never done: InTorque says that the
     set point of the torque is what was asked for. Direction NEGATIVE turns the torque round."""
 
