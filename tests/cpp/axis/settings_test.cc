@@ -225,6 +225,11 @@ TEST(DirectOutput, IsForDisabledAnalogueAxes) {
   Rig rig(p);
   EXPECT_EQ(ErrorOf(rig, DirectOutput{2.5}), ErrorId::kNone);
   EXPECT_EQ(rig.commanded.voltage_v, 2.5);
+  rig.Run(0.01);
+  EXPECT_TRUE(rig.commanded.enable);
+  EXPECT_TRUE(rig.commanded.release_brake);  // the drive is ready and holds the load
+  EXPECT_EQ(ErrorOf(rig, DirectOutput{0}), ErrorId::kNone);
+  EXPECT_FALSE(rig.commanded.enable);
   EXPECT_FALSE(rig.commanded.release_brake);
   EXPECT_EQ(ErrorOf(rig, DirectOutput{10.1}), ErrorId::kParameter);
   ASSERT_TRUE(rig.PowerOn());

@@ -54,7 +54,9 @@ std::vector<axis::Command> GoodAxisCommands() {
           axis::SetPosition{.position = 1},
           axis::SetOverride{},
           axis::TouchProbe{},
-          axis::Touch{}};
+          axis::Touch{},
+          axis::Stream{},
+          axis::StreamPoint{.position = 1}};
 }
 
 struct AxisSituation {

@@ -57,6 +57,8 @@ class Plant {
       ServoOutputs told{m.position_counts, m.velocity_counts_s, m.voltage_v, m.torque_nm, DriveMode{}, false, false};
       told.enable = m.enable;
       told.release_brake = m.release_brake;
+      told.torque_until_counts_s = m.torque_until_counts_s;
+      told.torque_limit_nm = m.torque_limit_nm;
       plant::Step(params_, told, m.period_s, state_, inputs_);
       heard = m.cycle;
       enabled = m.enable;
