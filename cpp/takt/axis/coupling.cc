@@ -52,22 +52,26 @@ KinematicState Seen(const Context& c, const CouplingState& k, const CouplingTerm
     return {its.position + phase.position, its.velocity + phase.velocity, its.acceleration + phase.acceleration};
   }
   const MasterFilter& filter = k.filters[&term == &k.law.terms[1] ? 1 : 0];
-  const KinematicState its = filter.cycles > 0 ? filter.estimate : AsItIs(c, term);
+  const KinematicState its = k.filtered && filter.cycles > 0 ? filter.estimate : AsItIs(c, term);
   return {its.position + phase.position, its.velocity + phase.velocity, its.acceleration + phase.acceleration};
 }
 
-// Once a cycle: the filters of masters that are measured and have one.
+// s, of the filter of a measured master; 0: none.
+double FilterTime(const Context& c, const CouplingTerm& term) {
+  if (term.master == kNoAxis || term.source == MasterSource::kSetValue || Outside(c, term.master)) return 0;
+  return term.filter_s < 0 ? c.machine.params[term.master].encoder.velocity_filter_s : term.filter_s;
+}
+
+// Once a cycle, where there are any: the filters of measured masters.
 void FilterMasters(const Context& c, CouplingState& k) {
   for (std::size_t i = 0; i < k.law.terms.size(); ++i) {
     const CouplingTerm& term = k.law.terms[i];
-    if (term.master == kNoAxis || term.source == MasterSource::kSetValue || Outside(c, term.master)) continue;
-    const Encoder& encoder = c.machine.params[term.master].encoder;
-    const double time_s = term.filter_s < 0 ? encoder.velocity_filter_s : term.filter_s;
+    const double time_s = FilterTime(c, term);
     if (time_s <= 0) continue;
     KinematicState its = AsItIs(c, term);
     const State& master = c.machine.states[term.master];
     if (master.loop_closed) its.velocity = master.setpoint.velocity;  // to begin with: better known than measured
-    Filter(time_s, 1 / encoder.increments_per_unit, c.cycle, its, k.filters[i]);
+    Filter(time_s, 1 / c.machine.params[term.master].encoder.increments_per_unit, c.cycle, its, k.filters[i]);
   }
 }
 
@@ -399,6 +403,7 @@ void Couple(const Context& c, const Request& r, State& s) noexcept {
   s.motion.target = s.setpoint.position;
   s.motion.arrived = false;
   k.locked = Joins(r.kind);
+  k.filtered = std::ranges::any_of(k.law.terms, [&](const CouplingTerm& term) { return FilterTime(c, term) > 0; });
   if (r.kind == RequestKind::kGearInPos) BeginJoining(c, r, s);
   if (r.kind == RequestKind::kCamIn) BeginCam(c, r, s);
   Enter(s, PlcState::kSynchronizedMotion);
@@ -419,7 +424,7 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     ComeToRest(c, ramps, FromCycleBefore(c), s);
     return false;
   }
-  FilterMasters(c, k);
+  if (k.filtered) FilterMasters(c, k);
   KinematicState phase = PhaseAt(c, k);
   NoteEnd(c, phase, s);
   if (s.end_of_profile && s.buffered > 0 && Couples(s.buffer[0].kind)) {  // takes over in this very cycle
@@ -499,6 +504,7 @@ void describe(Description<CouplingState>& d) {
   using S = CouplingState;
   d.about("An axis that follows masters.");
   d.internal<&S::law>("What it follows.");
+  d.internal<&S::filtered>("A master is measured and has a filter.");
   d.internal<&S::filters>("Of the masters that are measured.");
   d.internal<&S::chase>("The catching up.");
   d.internal<&S::in_step>("With the masters, as far as they are known.");

@@ -29,11 +29,11 @@ enum class Joining : std::uint8_t {
 };
 
 struct CouplingState {
-  CouplingRequest law;                  // in force
-  std::array<MasterFilter, 2> filters;  // of the masters that are measured
+  CouplingRequest law;  // in force
   trajectory::ChaseState chase;
-  bool in_step = false;  // with the masters, as far as they are known
-  bool locked = false;   // followed by place: gears and sums are from when they were in step first
+  bool filtered = false;  // a master is measured and has a filter
+  bool in_step = false;   // with the masters, as far as they are known
+  bool locked = false;    // followed by place: gears and sums are from when they were in step first
   Joining joining = Joining::kJoined;
   double master_sync = 0;     // master's u over all turns, where both are in step ...
   double slave_sync = 0;      // ... with the slave here (u over all turns)
@@ -48,6 +48,8 @@ struct CouplingState {
   std::uint64_t phase_start = 0;
   Ticket phase_ticket = 0;
   bool phase_moves = false;
+
+  std::array<MasterFilter, 2> filters;  // of the masters that are measured
 };
 
 inline bool Couples(RequestKind kind) noexcept {
