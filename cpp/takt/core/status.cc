@@ -69,6 +69,9 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kOffPath, "OffPath", "the tool is not where its path was left"},
     ErrorInfo{ErrorId::kNoWorkpiece, "NoWorkpiece", "there is no such workpiece"},
     ErrorInfo{ErrorId::kTooOld, "TooOld", "the command was not taken within its age limit (lcm.command_age_s)"},
+    ErrorInfo{ErrorId::kTiltedEllipse, "TiltedEllipse",
+              "an elliptical profile cannot lead to or from a coordinate system that is turned about A or B of the world; "
+              "use path_mode linear"},
     ErrorInfo{ErrorId::kMoverDisabled, "MoverDisabled", "the mover is not enabled"},
     ErrorInfo{ErrorId::kCommandMode, "CommandMode",
               "the mover does not accept this in its command mode, or while it moves"},
@@ -129,13 +132,13 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kGroupDeviation, "ERRPOSG", "an axis of the group had too large a following error"},
     ErrorInfo{ErrorId::kTooManyWorkpieces, "TooManyWorkpieces", "the belt holds as many workpieces as it can"},
     ErrorInfo{ErrorId::kModuleSoftLimitPositive, "SWLimitPos",
-              "the slave of the module was stopped by its upper SW limit"},
+              "an axis of the module is at its upper SW limit"},
     ErrorInfo{ErrorId::kModuleSoftLimitNegative, "SWLimitNeg",
-              "the slave of the module was stopped by its lower SW limit"},
+              "an axis of the module is at its lower SW limit"},
     ErrorInfo{ErrorId::kModuleLimitSwitchPositive, "HWLimitPos",
-              "the slave of the module is on its positive limit switch"},
+              "the positive limit switch of an axis of the module is on; only motion away from it is accepted"},
     ErrorInfo{ErrorId::kModuleLimitSwitchNegative, "HWLimitNeg",
-              "the slave of the module is on its negative limit switch"},
+              "the negative limit switch of an axis of the module is on; only motion away from it is accepted"},
 };
 
 constexpr ErrorInfo kUnknown{ErrorId::kNone, "unknown", "unknown error"};

@@ -79,10 +79,11 @@ bool NothingToGo(const Context& c, const State& s) {
 
 void MoveOn(const Context& c, State& s) {
   if (!Advance(c, s)) {
-    // It was good when the path was tried: something is wrong with the machine's own numbers. Each brakes by itself.
+    // It was good when the path was tried: a limit switch is on now, or something is wrong with the machine's own
+    // numbers. Each brakes by itself.
     LetGoOfMembers(c, s);
     s.begun = false;
-    return Fail(c, ErrorId::kUnreachable, s);
+    return Fail(c, s.refused.any() ? ErrorId::kAwayFromLimitOnly : ErrorId::kUnreachable, s);
   }
   if (!Rests(s)) return;
   const bool rides = !s.lets_go && IsOnRide(c, s);

@@ -9,6 +9,7 @@
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
 #include "takt/group/rides.h"
+#include "takt/group/switches.h"
 #include "takt/group/track.h"
 #include "takt/path/make.h"
 
@@ -137,6 +138,7 @@ void Begin(const Context& c, State& s) {
   s.blocked_at = 0;
   s.blocked_element = 0;
   s.answer = {};
+  s.refused = {};
   if (s.planning.element == 0) {
     if (!c.ahead.known) {
       const End end = Present(c, s);
@@ -248,6 +250,25 @@ bool CanAsk(const Context& c) {
   return !c.ahead.rides[c.ahead.next.from_ride % kRides].displaces;
 }
 
+// Per mm or whatever the path counts: what is less is rounding.
+constexpr double kTowardsAlong = 1e-6;
+
+// Whether the path goes towards a limit switch that is on there; State::refused says which.
+bool IsClosed(const Context& c, const Stretch& stretch, double way, const trajectory::PathSlopes& slopes, State& s) {
+  const Directions closed = ClosedNow(c, s);
+  if (!closed.any()) return false;
+  kinematics::Joints velocity{};
+  std::copy_n(slopes.first.begin(), kMaxAxes, velocity.begin());
+  if (stretch.joints) {
+    s.refused = TakenOf(closed, s, velocity, nullptr, kTowardsAlong);
+  } else {
+    const path::MovingFrame tool = IsCarried(c.ahead, stretch) ? ToolThen(c, stretch, {way, 1, 0}, true)
+                                                               : path::At(stretch.segment, way);
+    s.refused = TakenOf(closed, s, velocity, &tool, kTowardsAlong);
+  }
+  return s.refused.any();
+}
+
 // Tries places all along, before anything moves.
 void Verify(const Context& c, int& budget, State& s) {
   const Stretch& stretch = c.ahead.next;
@@ -275,6 +296,11 @@ void Verify(const Context& c, int& budget, State& s) {
       s.blocked_at = to;
       s.blocked_element = ElementOf(s);
       return Refuse(c, ErrorOf(reason), s);
+    }
+    if (IsClosed(c, stretch, to, point.slopes, s)) {
+      s.blocked_at = to;
+      s.blocked_element = ElementOf(s);
+      return Refuse(c, ErrorId::kAwayFromLimitOnly, s);
     }
     c.ahead.near = motion.position;
     c.ahead.tried = point.slopes;

@@ -10,6 +10,7 @@
 #include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
 #include "takt/group/queue.h"
+#include "takt/group/switches.h"
 #include "takt/group/sync.h"
 #include "takt/group/track.h"
 
@@ -24,6 +25,17 @@ const Stretch* GoOnTo(LookAhead& ahead, double s) {
     --ahead.count;
   }
   return ahead.count > 0 ? &ahead[ahead.first] : nullptr;
+}
+
+constexpr double kTowards_s = 1e-6;  // u/s, mm/s or rad/s: less is rounding
+
+// Whether the next set points go towards a limit switch that is on, and are no braking.
+bool GoesToClosed(const Context& c, const kinematics::JointMotion& motion, const MovingFrame* tool, State& s) {
+  if (s.ends || s.interrupted) return false;
+  const Directions closed = ClosedNow(c, s);
+  if (!closed.any()) return false;
+  s.refused = TakenOf(closed, s, motion.velocity, tool, kTowards_s);
+  return s.refused.any();
 }
 
 void Demand(const Context& c, const kinematics::JointMotion& motion, State& s) {
@@ -42,6 +54,7 @@ bool FollowCarried(const Context& c, const Stretch& stretch, double way, State& 
     s.reason = reason;
     return false;
   }
+  if (GoesToClosed(c, motion, &tool, s)) return false;
   Demand(c, motion, s);
   // Where it could not be braked any more it is braked now.
   if (!s.lets_go && !CanLetGo(c, s)) {
@@ -70,6 +83,14 @@ bool Follow(const Context& c, State& s) {
         trajectory::AlongWay({by_way.position[k], by_way.velocity[k], by_way.acceleration[k]}, now);
     motion.velocity[k] = at.velocity;
     motion.acceleration[k] = at.acceleration;
+  }
+  if (stretch->joints) {
+    if (GoesToClosed(c, motion, nullptr, s)) return false;
+  } else {
+    MovingFrame tool = path::At(stretch->segment, way);
+    tool.p.v = tool.p.v * now.velocity;
+    tool.M.w = tool.M.w * now.velocity;
+    if (GoesToClosed(c, motion, &tool, s)) return false;
   }
   Demand(c, motion, s);
   return true;

@@ -153,8 +153,16 @@ void describe(Description<State>& d) {
   d.internal<&S::problem>("Why there was no path.");
   d.internal<&S::blocked_at>("How far it could be gone.");
   d.internal<&S::blocked_element>("On which element of a path.");
+  d.internal<&S::closed>("Nothing moves so: switches of a module.");
+  d.internal<&S::refused>("Closed directions that the last move wanted.");
   d.internal<&S::answer>("To the last question about a path.");
   d.internal<&S::illegal_transitions>("Always 0.");
+}
+
+void describe(Description<Directions>& d) {
+  d.about("Directions of axes and tool, as masks: bits 0 to 7 axes, 8 to 13 the tool along and about X, Y, Z.");
+  d.internal<&Directions::positive>("Positive ones.");
+  d.internal<&Directions::negative>("Negative ones.");
 }
 
 void describe(Enumeration<Task>& e) {

@@ -90,6 +90,14 @@ struct Track {
   double out_tool = 0;
 };
 
+// Directions of the axes (bits 0 to 7) and of the tool along and about X, Y, Z of the MCS (bits 8 to 13).
+struct Directions {
+  std::uint32_t positive = 0;
+  std::uint32_t negative = 0;
+
+  bool any() const noexcept { return (positive | negative) != 0; }
+};
+
 // What a group is doing besides moves.
 enum class Task : std::uint8_t { kNone, kStop, kHalt, kInterrupt, kHome, kPower };
 
@@ -162,6 +170,8 @@ struct State {
   path::Problem problem = path::Problem::kNone;
   double blocked_at = 0;
   std::uint32_t blocked_element = 0;      // of a path, from 1; 0: no path
+  Directions closed;                      // by switches that a module looks at: nothing moves so (switches.h)
+  Directions refused;                     // of those, and of the members' own: what the last move wanted
   PathChecked answer;                     // to the last question
   std::uint64_t illegal_transitions = 0;  // always 0: the state table holds
 };
@@ -171,6 +181,7 @@ void describe(Enumeration<Stage>&);
 void describe(Description<Planning>&);
 void describe(Description<Clutch>&);
 void describe(Description<Track>&);
+void describe(Description<Directions>&);
 void describe(Enumeration<Task>&);
 void describe(Description<Brake>&);
 void describe(Description<SyncedAxis>&);

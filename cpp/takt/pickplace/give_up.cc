@@ -25,28 +25,83 @@ double WayDown(const Context& c, const Order& order) {
   return std::numeric_limits<double>::infinity();
 }
 
-// It is on the way up from where it began.
+// It is on the way up from the belt on which it began.
 bool Lifts(const group::State& g, const Order& order) {
-  return g.done <= order.first && !order.profile.legs[0].turns;
+  return order.from_belt && g.done <= order.first && !order.profile.legs[0].turns;
 }
 
 bool Lowers(const Order& order) {
   const Profile& profile = order.profile;
-  return profile.count > 1 && !profile.legs[profile.count - 1].turns;
+  return order.belt != 0 && profile.count > 1 && !profile.legs[profile.count - 1].turns;
 }
 
-// Braked now it rests in step with what it is low on.
-bool RestsLow(const Context& c, const group::State& g, const Order& order) {
-  return g.begun && (Lifts(g, order) || (Lowers(order) && group::RestAt(c.group, g) >= WayDown(c, order)));
+bool ParkingLifts(const group::State& g, const State& s) {
+  return s.parking && s.parking_lifts && g.done < s.parking_move;
+}
+
+// The point over where the tool is low, or may be when it comes to rest; nothing: nowhere.
+std::optional<Place> PointOver(const group::State& g, const Order& order) {
+  if (Lifts(g, order)) return order.profile.legs[0].to;
+  if (!Lowers(order)) return std::nullopt;
+  return order.profile.legs[order.profile.count - 2].to;
+}
+
+bool IsUnderWay(const State& s) {
+  return s.order_count > 0 && (s.orders[0].phase == Phase::kGoing || s.orders[0].phase == Phase::kStaying);
 }
 
 }  // namespace
 
-std::optional<Place> PointOver(const group::State& g, const Order& order) noexcept {
-  if (order.phase != Phase::kGoing && order.phase != Phase::kStaying) return std::nullopt;
-  if (Lifts(g, order)) return order.profile.legs[0].to;
-  if (order.belt == 0 || !Lowers(order)) return std::nullopt;
-  return order.profile.legs[order.profile.count - 2].to;
+void NoteHeight(const group::State& g, State& s) noexcept {
+  if (s.lifting) {
+    s.may_be_low = true;
+    s.over_now = s.over;
+  } else if (IsUnderWay(s)) {
+    const std::optional<Place> over = PointOver(g, s.orders[0]);
+    s.may_be_low = over.has_value();
+    if (over) s.over_now = *over;
+  } else if (s.parking) {
+    s.may_be_low = ParkingLifts(g, s);
+    if (s.may_be_low) s.over_now = s.parking_over;
+  }
+}
+
+// Braked now it rests in step with what it is low on.
+bool IsLow(const Context& c, const group::State& g, const State& s) noexcept {
+  if (!g.begun || g.ends || g.interrupted || g.lets_go || !group::IsOnRide(c.group, g)) return false;
+  if (ParkingLifts(g, s)) return true;
+  if (s.at_known && s.at_belt != 0 && g.queue.count == 0) return s.may_be_low;  // on its workpiece
+  if (!IsUnderWay(s)) return false;
+  const Order& order = s.orders[0];
+  return Lifts(g, order) || (Lowers(order) && group::RestAt(c.group, g) >= WayDown(c, order));
+}
+
+void ComeToRest(const Context& c, const PathRamps& ramps, group::State& g, State& s) noexcept {
+  if (s.lifting) return;
+  const bool low = IsLow(c, g, s);
+  const std::uint32_t belt = s.at_belt != 0 ? s.at_belt : s.parked_at;
+  LosePath(c, g, false, s);
+  if (!low) return HaltGroup(c, g, s);
+  const group::MoveLinearAbsolute lift{.z = s.over.pose.z,
+                                       .coordinate_system = s.over.system,
+                                       .pcs = s.over.pcs,
+                                       .velocity = ramps.velocity,
+                                       .acceleration = ramps.acceleration,
+                                       .deceleration = ramps.deceleration,
+                                       .jerk = ramps.jerk};
+  if (Tell(c, lift, g) != ErrorId::kNone) return HaltGroup(c, g, s);
+  s.lifting = true;
+  s.lifting_move = g.done + g.queue.count - 1;
+  s.at = s.over;
+  s.at_belt = belt;
+}
+
+void StepLift(const Context& c, group::State& g, State& s) noexcept {
+  if (!s.lifting || !IsLifted(c, g, s)) return;
+  const std::uint32_t belt = s.at_belt;
+  ForgetPlace(s);
+  s.at_belt = belt;  // it parks there if nothing else is to be done
+  if (IsOn(c, g) && !IsFree(c, g)) HaltGroup(c, g, s);
 }
 
 double RiseTo(const Context& c, const group::State& g, const Place& over) noexcept {
@@ -68,25 +123,9 @@ void GiveUp(const Context& c, group::State& g, State& s) noexcept {
   if (const double left_s = group::TimeLeft(c.group, g); !std::isnan(left_s)) {
     Learn(TimeGone(c, order) + left_s, order, s);
   }
-  const bool low = RestsLow(c, g, order);
-  const std::uint32_t belt = order.belt;
   const PathRamps ramps = order.ramps;
   GiveBackWorkpiece(c, order);
-  LosePath(c, g, false, s);
-  if (!low) return HaltGroup(c, g, s);
-  // It is braked in step with what it is over; then it rises.
-  const group::MoveLinearAbsolute lift{.z = s.over.pose.z,
-                                       .coordinate_system = s.over.system,
-                                       .pcs = s.over.pcs,
-                                       .velocity = ramps.velocity,
-                                       .acceleration = ramps.acceleration,
-                                       .deceleration = ramps.deceleration,
-                                       .jerk = ramps.jerk};
-  if (Tell(c, lift, g) != ErrorId::kNone) return HaltGroup(c, g, s);
-  s.lifting = true;
-  s.lifting_move = g.done + g.queue.count - 1;
-  s.at = s.over;
-  s.at_belt = belt;
+  ComeToRest(c, ramps, g, s);
 }
 
 bool IsLifted(const Context& c, const group::State& g, State& s) noexcept {

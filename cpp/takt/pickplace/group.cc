@@ -31,6 +31,7 @@ bool IsFree(const Context& c, const group::State& g) noexcept {
 }
 
 void StopAxes(const Context& c, group::State& g, State& s) noexcept {
+  s.lifting = false;
   if (Tell(c, group::Disable{}, g) == ErrorId::kNone) s.enables = true;
   for (std::size_t k = 0; k < group::kMaxAxes; ++k) {
     if (g.members[k] == 0) continue;
@@ -55,6 +56,20 @@ Place PresentPlace(const Context& c, const group::State& g) noexcept {
   return place;
 }
 
+Place Levelled(const Context& c, const group::State& g, const Place& place) noexcept {
+  const kinematics::Kinematics* kinematics = group::HasTool(c.group, g) ? c.group.kinematics : nullptr;
+  if (!kinematics || std::holds_alternative<kinematics::SixAxis>(kinematics->mechanism) ||
+      std::holds_alternative<kinematics::Serial>(kinematics->mechanism)) {
+    return place;
+  }
+  const kinematics::Frame system = group::SystemFrame(c.group, g, place.system, place.pcs - 1);
+  const kinematics::Pose tool = kinematics::ToPose(system.Inverse() * group::Present(c.group, g).tool);
+  Place level = place;
+  level.pose.a = tool.a;
+  level.pose.b = tool.b;
+  return level;
+}
+
 std::size_t Aux1Of(const Context& c, const group::State& g) noexcept {
   const std::size_t behind = group::InKinematics(c.group, g);
   return behind > 0 && behind < group::kMaxAxes && g.members[behind] != 0 ? behind : group::kMaxAxes;
@@ -66,6 +81,10 @@ std::size_t RealOf(const Context& c, const group::State& g, std::size_t place) n
 }
 
 ErrorId TroubleOf(const group::State& g) noexcept {
+  const bool closed = g.error == ErrorId::kNone || g.error == ErrorId::kAwayFromLimitOnly;
+  if (closed && g.refused.any()) {
+    return g.refused.positive != 0 ? ErrorId::kModuleLimitSwitchPositive : ErrorId::kModuleLimitSwitchNegative;
+  }
   if (g.error != ErrorId::kNone) return g.error;
   if (g.problem != path::Problem::kNone) return ErrorId::kPathGeometry;
   if (g.answer.trouble != workspace::Trouble::kNone) return ErrorId::kCollision;

@@ -57,7 +57,7 @@ double& NumberOf(kinematics::Pose& pose, SelectAxis axis) {
 }
 
 // Of the tool along or about an axis of the MCS.
-group::MoveLinearAbsolute ToolMove(const Context& c, const group::State& g, const State& s) {
+group::MoveLinearAbsolute ToolMove(const Context& c, const group::State& g, double& way, State& s) {
   const group::End present = group::Present(c.group, g);
   const kinematics::Pose from = kinematics::ToPose(present.tool);
   const auto at = [&](double way) {
@@ -73,13 +73,19 @@ group::MoveLinearAbsolute ToolMove(const Context& c, const group::State& g, cons
   };
   double most = s.jog_axis <= SelectAxis::kZ ? kFarthest : kWidest;
   if (s.jog_axis == SelectAxis::kB) most = std::clamp(kUprightest - s.jog_sense * from.b, 0.0, kWidest);
-  const kinematics::Pose to = at(Furthest(most, may));
+  way = Furthest(most, may);
+  kinematics::Joints beyond = present.joints;
+  const kinematics::Frame further = kinematics::ToFrame(at(way + 2 * kShort));
+  const bool known = group::JointsAt(c.group, further, present.joints, beyond) == kinematics::Reason::kNone;
+  s.jog_end = known ? BeyondRanges(c, g, beyond) : group::Directions{};
+  const kinematics::Pose to = at(way);
   return {.x = to.x, .y = to.y, .z = to.z, .a = to.a, .b = to.b, .c = to.c};
 }
 
-group::MoveLinearAbsolute AxisMove(const Context& c, const group::State& g, std::size_t k, const State& s) {
+group::MoveLinearAbsolute AxisMove(const Context& c, const group::State& g, std::size_t k, double& way, State& s) {
   const bool up = s.jog_sense > 0;
-  double to = group::PresentJoints(c.group, g)[k] + s.jog_sense * kFarthest;
+  const double from = group::PresentJoints(c.group, g)[k];
+  double to = from + s.jog_sense * kFarthest;
   const axis::AxisLimits& limits = c.group.axes.params[g.members[k] - 1].limits;
   if (const auto& limit = up ? limits.upper : limits.lower) to = up ? std::min(to, *limit) : std::max(to, *limit);
   if (k < group::InKinematics(c.group, g)) {
@@ -89,7 +95,10 @@ group::MoveLinearAbsolute AxisMove(const Context& c, const group::State& g, std:
   group::MoveLinearAbsolute move;
   move.coordinate_system = CoordinateSystem::kAcs;
   const std::array axes = {&move.a1, &move.a2, &move.a3, &move.a4, &move.a5, &move.a6, &move.a7, &move.a8};
-  *axes[k] = to - s.jog_sense * kShort;
+  const bool ends = std::abs(to - from) < kFarthest;
+  if (ends) (up ? s.jog_end.positive : s.jog_end.negative) |= 1u << k;
+  way = std::max(0.0, s.jog_sense * (to - from) - kShort);
+  *axes[k] = from + s.jog_sense * way;
   return move;
 }
 
@@ -104,15 +113,18 @@ std::size_t PlaceOf(const Context& c, const group::State& g, const State& s) {
 
 ErrorId GiveMove(const Context& c, group::State& g, State& s) {
   group::MoveLinearAbsolute move;
+  double way = 0;
+  s.jog_end = {};
   if (s.jog_axis == SelectAxis::kNone) return ErrorId::kParameter;
   if (s.jog_axis <= SelectAxis::kC) {
     if (!group::HasTool(c.group, g)) return ErrorId::kParameter;
-    move = ToolMove(c, g, s);
+    move = ToolMove(c, g, way, s);
   } else {
     const std::size_t k = PlaceOf(c, g, s);
     if (k == group::kMaxAxes) return ErrorId::kNotGroupMember;
-    move = AxisMove(c, g, k, s);
+    move = AxisMove(c, g, k, way, s);
   }
+  if (way <= 0 && !s.jog_end.any()) return ErrorId::kUnreachable;
   const Ramps ramps = RampsOf(s);
   move.velocity = ramps.velocity;
   move.acceleration = ramps.acceleration;
@@ -159,7 +171,15 @@ void InJog(const Context& c, group::State& g, State& s) noexcept {
   }
   if (!IsFree(c, g)) return;
   s.halting = false;
-  if (any && !refused) return;  // it has come to the end of its range
+  if (held && !refused) {  // it has come to the end of its range
+    if (!s.jog_end.any()) s.warning = ErrorId::kUnreachable;
+    if (!s.jog_end.any()) return;
+    s.given = 0;
+    s.error_axes |= AxesOf(c, g, s.jog_end);
+    return Fail(
+        c, s.jog_end.positive != 0 ? ErrorId::kModuleSoftLimitPositive : ErrorId::kModuleSoftLimitNegative, g, s);
+  }
+  if (any && !refused) return;
   const ErrorId error = refused ? TroubleOf(g) : ErrorId::kNone;
   if (refused) s.warning = error;
   EndJog(c, refused ? FeedbackState::kError : FeedbackState::kDone, error, s);

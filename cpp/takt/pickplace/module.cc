@@ -12,10 +12,6 @@ namespace {
 
 using group::GroupState;
 
-bool Rises(bool now, bool before) {
-  return now && !before;
-}
-
 // Something that stops harder than what is there.
 bool StopRises(const State& s) {
   return Rises(s.inputs.stop_all, s.before.stop_all) || Rises(s.inputs.path_stop, s.before.path_stop);
@@ -39,23 +35,14 @@ ErrorId ErrorOf(ErrorId axis_error) {
 
 void WatchFaults(const Context& c, group::State& g, State& s) {
   if (g.state == GroupState::kErrorStop) {
-    ErrorId error = g.error;
+    ErrorId error = TroubleOf(g);
+    s.error_axes |= AxesOf(c, g, g.refused);
     group::AllMembers(c.group, g, [&](const axis::State& m) {
       if (m.error == ErrorId::kNone) return true;
       error = ErrorOf(m.error);
       return false;
     });
     return Fail(c, error, g, s);
-  }
-  if (!s.inputs.enable_hw_limit) return;
-  const bool on = s.before.enable_hw_limit;
-  for (std::size_t i = 0; i < kAllAxes; ++i) {
-    const bool positive = Rises(s.inputs.hw_limit_positive[i], on && s.before.hw_limit_positive[i]);
-    const bool negative = Rises(s.inputs.hw_limit_negative[i], on && s.before.hw_limit_negative[i]);
-    if (!positive && !negative) continue;
-    Fail(c, positive ? ErrorId::kModuleLimitSwitchPositive : ErrorId::kModuleLimitSwitchNegative, g, s);
-    if (g.state != GroupState::kDisabled) StopAxes(c, g, s);
-    return;
   }
 }
 
@@ -64,6 +51,24 @@ void ForgetAll(const Context& c, FeedbackState feedback, ErrorId error, group::S
   EndOrders(c, feedback, error, s);
   EndJog(c, feedback, error, s);
   EndHoming(c, feedback, error, g, s);
+}
+
+PathRamps PathRampsOf(const State& s) {
+  const Settings& p = s.settings;
+  return {p.path_velocity, p.path_acceleration, p.path_deceleration, p.path_jerk};
+}
+
+// Forgets all and brings the tool to rest, as high as it can.
+void Leave(const Context& c, FeedbackState feedback, ErrorId error, group::State& g, State& s) {
+  const bool moves = IsOn(c, g) && !IsFree(c, g);
+  if (moves && (s.lifting || IsLow(c, g, s))) {
+    const PathRamps ramps = s.order_count > 0 ? s.orders[0].ramps
+                                              : PathRampsOf(s);
+    ComeToRest(c, ramps, g, s);
+    return ForgetAll(c, feedback, error, g, s);
+  }
+  ForgetAll(c, feedback, error, g, s);
+  if (moves) HaltGroup(c, g, s);
 }
 
 void SwitchPower(const Context& c, group::State& g, State& s) {
@@ -106,6 +111,17 @@ void Interrupt(const Context& c, double deceleration, double jerk, group::State&
   Tell(c, group::Interrupt{.deceleration = std::max(deceleration, PathDeceleration(s)), .jerk = jerk}, g);
 }
 
+// On its path; a tool that is low over a belt rises in step first, and its order begins anew from there (PP-61).
+void StopOnPath(const Context& c, double deceleration, double jerk, group::State& g, State& s) {
+  if (!s.lifting && !IsLow(c, g, s)) return Interrupt(c, deceleration, jerk, g, s);
+  if (s.order_count > 0 && s.orders[0].phase == Phase::kStaying) Complete(c, s);  // as ack_gripper does
+  s.hold.held = s.order_count > 0 || s.loop.active;
+  PathRamps ramps = PathRampsOf(s);
+  ramps.deceleration = std::max(deceleration, PathDeceleration(s));
+  ramps.jerk = jerk;
+  ComeToRest(c, ramps, g, s);
+}
+
 void EndReturn(const Context& c, FeedbackState feedback, State& s) {
   Report(c, s.hold.ticket, feedback);
   s.hold.returning = false;
@@ -130,10 +146,12 @@ void BeginStop(const Context& c, group::State& g, State& s) {
     s.halting = false;
     if (g.state != GroupState::kDisabled) StopAxes(c, g, s);
   } else if (path) {
-    Interrupt(c, deceleration, jerk, g, s);
+    StopOnPath(c, deceleration, jerk, g, s);
   } else {
     if (s.hold.returning) EndReturn(c, FeedbackState::kAborted, s);
-    if (IsOn(c, g) && !IsFree(c, g)) {
+    if (s.lifting || IsLow(c, g, s)) {
+      ComeToRest(c, PathRampsOf(s), g, s);
+    } else if (IsOn(c, g) && !IsFree(c, g)) {
       const group::Halt halt{.deceleration = deceleration, .jerk = jerk};
       s.halting = Tell(c, halt, g) == ErrorId::kNone;
     }
@@ -197,7 +215,7 @@ void InReturn(const Context& c, group::State& g, State& s) {
 
 void InMove(const Context& c, group::State& g, State& s) {
   if (s.state == PickPlaceState::kMovePp && s.inputs.path_interrupt && !s.hold.returning) {
-    Interrupt(c, s.settings.path_stop_deceleration, s.settings.path_stop_jerk, g, s);
+    StopOnPath(c, s.settings.path_stop_deceleration, s.settings.path_stop_jerk, g, s);
     if (s.order_count > 0) s.orders[0].pulse_at_end = true;
     return Enter(PickPlaceState::kPathInterrupt, s);
   }
@@ -208,6 +226,7 @@ void InError(const Context& c, group::State& g, State& s) {
   if (s.reset) {
     Tell(c, group::Reset{}, g);
     s.error = s.warning = ErrorId::kNone;
+    s.error_axes = 0;
   }
   const bool well = g.state != GroupState::kErrorStop && !g.resetting && Stands(c, g);
   if (s.error != ErrorId::kNone || !well) return;
@@ -224,7 +243,7 @@ void ReadyOrService(const Context& c, const group::State& g, State& s) {
   if (s.state != PickPlaceState::kReady && s.state != PickPlaceState::kService) return;
   const bool moves =
       g.state == GroupState::kMoving || g.state == GroupState::kHoming || g.state == GroupState::kStopping;
-  const bool service = s.inputs.internal_control || (moves && !s.hold.held && !s.halting);
+  const bool service = s.inputs.internal_control || (moves && !s.hold.held && !s.halting && !s.lifting);
   const PickPlaceState wanted = service ? PickPlaceState::kService : PickPlaceState::kReady;
   if (wanted == s.state) return;
   EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
@@ -239,8 +258,11 @@ void WatchLease(const Context& c, State& s) {
 
 void Disable(const Context& c, group::State& g, State& s) {
   if (s.state == PickPlaceState::kInit) return;
-  ForgetAll(c, FeedbackState::kAborted, ErrorId::kNone, g, s);
-  if (s.state != PickPlaceState::kService && IsOn(c, g) && !IsFree(c, g)) HaltGroup(c, g, s);
+  if (s.state == PickPlaceState::kService) {
+    ForgetAll(c, FeedbackState::kAborted, ErrorId::kNone, g, s);
+  } else {
+    Leave(c, FeedbackState::kAborted, ErrorId::kNone, g, s);
+  }
   Enter(PickPlaceState::kInit, s);
 }
 
@@ -272,6 +294,7 @@ void RunStates(const Context& c, group::State& g, State& s) {
     Enter(s.error == ErrorId::kNone ? PickPlaceState::kReady : PickPlaceState::kError, s);
   }
   if (s.state != PickPlaceState::kError) WatchFaults(c, g, s);
+  WatchSwitches(c, g, s);
   // A jog from STOP goes on beneath the level that led there.
   const bool jogs = Jogs(s) && s.back == PickPlaceState::kStop;
   const bool stops = jogs ? StopRises(s) : StopIsAsked(s);
@@ -287,7 +310,7 @@ void RunStates(const Context& c, group::State& g, State& s) {
 bool IsTooLate(const Context& c, const group::State& g, const State& s) {
   if (s.order_count == 0 || s.orders[0].workpiece == 0) return false;
   const Order& order = s.orders[0];
-  return !StaysWithin(c, order, TimeToGo(c, g, order, s) + s.belts[order.belt - 1].sync_time, s);
+  return !StaysWithin(c, order, TimeToGo(c, g, order, s) + order.own.sync_time, s);
 }
 
 // Along its path, or away from where it stood.
@@ -313,15 +336,13 @@ void GoOn(const Context& c, group::State& g, State& s) noexcept {
     Tell(c, group::Continue{}, g);
     return;
   }
-  LosePath(c, g, false, s);
-  HaltGroup(c, g, s);
+  ComeToRest(c, s.orders[0].ramps, g, s);
 }
 
 void Fail(const Context& c, ErrorId error, group::State& g, State& s) noexcept {
   if (s.error == ErrorId::kNone) s.error = error;
   if (s.state == PickPlaceState::kError) return;
-  ForgetAll(c, FeedbackState::kError, error, g, s);
-  if (IsOn(c, g) && !IsFree(c, g)) HaltGroup(c, g, s);
+  Leave(c, FeedbackState::kError, error, g, s);
   Enter(PickPlaceState::kError, s);
 }
 
@@ -337,6 +358,7 @@ void Step(const Context& c, group::State& g, State& s) noexcept {
   if (MovesOn(c, g)) s.in_target = false;
   SwitchPower(c, g, s);
   SetOverride(c, g, s);
+  CloseDirections(c, g, s);
   for (std::size_t k = 0; k < group::kMaxAxes; ++k) {
     const std::size_t real = g.members[k] != 0 ? RealOf(c, g, k) : kRealAxes;
     if (real < kRealAxes) group::MemberOf(c.group, g, k).reference |= s.inputs.home_abs_switch[real];
@@ -347,7 +369,9 @@ void Step(const Context& c, group::State& g, State& s) noexcept {
   } else {
     Disable(c, g, s);
   }
+  if (s.state != PickPlaceState::kMovePp && s.state != PickPlaceState::kPreparingPath) StepLift(c, g, s);
   StepGripper(c, g, s);
+  NoteHeight(g, s);
   CountLost(c, s);
   WatchWindow(c, s);
   s.before = s.inputs;

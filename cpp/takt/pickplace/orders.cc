@@ -39,7 +39,8 @@ Order MakeOrder(std::uint32_t belt, bool picks, const State& s) {
                   .pose = {p.x_target, p.y_target, p.z_target, p.a_target, p.b_target, p.c_target},
                   .aux1 = p.aux1_target};
   order.shape = ShapeOf(p);
-  if (belt != 0) order.shape.target_distance = s.belts[belt - 1].z_distance;
+  if (belt != 0) order.own = s.belts[belt - 1];
+  if (belt != 0) order.shape.target_distance = order.own.z_distance;
   order.ramps = RampsOf(p);
   const bool opens = p.tracking_mode != TrackingMode::kProgram && !picks;
   order.gripper_time = opens ? p.gripper_open_time : p.gripper_closing_time;
@@ -83,6 +84,10 @@ ErrorId GiveLeg(const Context& c, const Leg& leg, const PathRamps& ramps, bool k
   return error;
 }
 
+Place StartOf(const Context& c, const group::State& g, const State& s) {
+  return s.at_known ? s.at : PresentPlace(c, g);
+}
+
 struct Given {
   ErrorId error = ErrorId::kNone;
   std::uint64_t first = 0;
@@ -93,6 +98,12 @@ struct Given {
 Given GiveLegs(const Context& c, const Profile& profile, std::uint32_t from, const PathRamps& ramps,
                bool keep_orientation, group::State& g, State& s) {
   Given given{profile.error, g.done + g.queue.count, 0};
+  const group::Directions closed = ClosedOn(c, g, profile, from, StartOf(c, g, s), keep_orientation);
+  if (closed.any()) {
+    s.error_axes |= AxesOf(c, g, closed);
+    given.error =
+        closed.positive != 0 ? ErrorId::kModuleLimitSwitchPositive : ErrorId::kModuleLimitSwitchNegative;
+  }
   for (std::uint32_t i = from; i < profile.count && given.error == ErrorId::kNone; ++i) {
     Leg leg = profile.legs[i];
     if (i == from) leg.radius = 0;
@@ -108,15 +119,12 @@ Systems SystemsOf(const Context& c, const group::State& g, const Place& start, c
           SystemFrame(c.group, g, target.system, target.pcs - 1)};
 }
 
-Place StartOf(const Context& c, const group::State& g, const State& s) {
-  return s.at_known ? s.at : PresentPlace(c, g);
-}
-
 // Where the moves given end.
-void SetPlace(const Place& at, std::uint32_t belt, State& s) {
+void SetPlace(const Place& at, std::uint32_t belt, double distance, State& s) {
   s.at = at;
   s.at_known = true;
   s.at_belt = belt;
+  s.at_distance = distance;
   s.low = false;
   s.parked_at = 0;
 }
@@ -124,22 +132,28 @@ void SetPlace(const Place& at, std::uint32_t belt, State& s) {
 void Park(const Context& c, std::uint32_t belt, group::State& g, State& s) {
   const BeltSettings& own = s.belts[belt - 1];
   const Place start = StartOf(c, g, s);
-  const Place target{.pose = {own.park_x, own.park_y, own.park_z, own.park_a, own.park_b, own.park_c},
-                     .aux1 = start.aux1,
-                     .parks = true};
+  const Place target = Levelled(c, g,
+                                {.pose = {own.park_x, own.park_y, own.park_z, own.park_a, own.park_b, own.park_c},
+                                 .aux1 = start.aux1,
+                                 .parks = true});
   const Shape shape = ShapeFromHere(c, g, ShapeOf(s.settings), s);
   const Profile profile = MakeProfile(start, target, shape, SystemsOf(c, g, start, target));
   const Given given = GiveLegs(c, profile, 0, RampsOf(s.settings), s.settings.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) return Fail(c, given.error, g, s);
-  SetPlace(target, 0, s);
+  const bool from_belt = s.at_belt != 0 || s.low;
+  SetPlace(target, 0, 0, s);
   s.parked_at = belt;
   s.parking = true;
   s.parking_move = given.last;
+  s.parking_lifts = from_belt && profile.count > 1 && !profile.legs[0].turns;
+  s.parking_over = profile.legs[0].to;
 }
 
 // Its moves are given; or it waits for a workpiece, where such wait.
 void Begin(const Context& c, group::State& g, Order& order, State& s) {
   s.in_target = false;
+  CountLeft(c, order, s);
+  order.left = 0;
   Place target = order.target;
   if (!IsStatic(order)) {
     const conveyor::Object* object = s.parking ? nullptr : ChooseWorkpiece(c, g, order, s);
@@ -155,12 +169,14 @@ void Begin(const Context& c, group::State& g, Order& order, State& s) {
       return Fail(c, error, g, s);
     }
   }
+  target = Levelled(c, g, target);
   order.start = StartOf(c, g, s);
   const Systems systems = SystemsOf(c, g, order.start, target);
   order.profile = MakeProfile(order.start, target, ShapeFromHere(c, g, order.shape, s), systems);
   if (IsStatic(order)) order.expected_s = TimeAlong(order.profile, order.start, order.ramps, systems);
   order.next_leg = 0;
   order.pulsed = false;
+  if (&order == &s.orders[0]) s.profile_time = 0;  // not known yet
   const Given given = GiveLegs(c, order.profile, 0, order.ramps, order.shape.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) {
     if (order.workpiece != 0) ++s.counters.missed, ++s.counters.refused;
@@ -170,7 +186,8 @@ void Begin(const Context& c, group::State& g, Order& order, State& s) {
   order.last = given.last;
   order.begin_cycle = c.group.cycle.count;
   order.phase = Phase::kGoing;
-  SetPlace(target, order.belt, s);
+  order.from_belt = s.at_belt != 0 || s.low;
+  SetPlace(target, order.belt, order.own.z_distance, s);
 }
 
 // The rest of a path that was left, from where it was left. An arch goes on to the same height.
@@ -191,20 +208,26 @@ void BeginAgain(const Context& c, group::State& g, Order& order, State& s) {
   order.first = given.first;
   order.last = given.last;
   order.phase = Phase::kGoing;
-  SetPlace(order.target, 0, s);
+  SetPlace(order.target, 0, 0, s);
 }
 
 void CountPick(const Context& c, const Order& order, State& s) {
   if (!order.picks) {
     ++s.counters.placed;
+    if (s.held_count > 0) std::shift_left(s.held.begin(), s.held.begin() + s.held_count--, 1);
     return;
   }
+  const conveyor::Object* object =
+      order.belt != 0 ? conveyor::Find(*c.belts[order.belt - 1].state, order.workpiece) : nullptr;
+  if (s.held_count < kHeld) s.held[s.held_count++] = object ? object->attributes : conveyor::Attributes{};
   ++s.counters.picked;
   s.pick_cycles[s.pick_count % kPickTimes] = c.group.cycle.count;
   ++s.pick_count;
 }
 
-void Finish(const Context& c, State& s) {
+}  // namespace
+
+void Complete(const Context& c, State& s) noexcept {
   Order& order = s.orders[0];
   CountPick(c, order, s);
   if (order.workpiece != 0) conveyor::Remove(order.workpiece, *c.belts[order.belt - 1].state);
@@ -213,18 +236,20 @@ void Finish(const Context& c, State& s) {
   Drop(c, 0, FeedbackState::kDone, ErrorId::kNone, s);
 }
 
+namespace {
+
 void Go(const Context& c, group::State& g, State& s) {
   Order& order = s.orders[0];
   if (g.done <= order.last) {
     if (IsStatic(order)) return;
     const double left_s = TimeToGo(c, g, order, s);
-    if (!StaysWithin(c, order, left_s + s.belts[order.belt - 1].sync_time, s)) GiveUp(c, g, s);
+    if (!StaysWithin(c, order, left_s + order.own.sync_time, s)) GiveUp(c, g, s);
     return;
   }
   if (g.reason != kinematics::Reason::kNone) return Fail(c, TroubleOf(g), g, s);
   s.in_target = true;
   if (order.pulse_at_end && order.gripper_time > 0 && !order.pulsed) s.pulse = order.pulsed = true;
-  if (IsStatic(order)) return Finish(c, s);
+  if (IsStatic(order)) return Complete(c, s);
   Learn(TimeGone(c, order), order, s);
   order.phase = Phase::kStaying;
   order.stay_cycle = c.group.cycle.count;
@@ -233,10 +258,10 @@ void Go(const Context& c, group::State& g, State& s) {
 void Stay(const Context& c, State& s) {
   Order& order = s.orders[0];
   const double period = c.group.cycle.period_s;
-  const double wanted = std::round(s.belts[order.belt - 1].sync_time / period);
+  const double wanted = std::round(order.own.sync_time / period);
   const auto cycles = static_cast<std::uint64_t>(std::max(1.0, wanted));
   const std::uint64_t gone = c.group.cycle.count - order.stay_cycle;
-  if (s.ack || gone >= cycles) return Finish(c, s);
+  if (s.ack || gone >= cycles) return Complete(c, s);
   const bool there = conveyor::Find(*c.belts[order.belt - 1].state, order.workpiece) != nullptr;
   if (!there || StaysWithin(c, order, static_cast<double>(cycles - gone) * period, s)) return;
   // Whether the gripper has it is not known: nobody else gets it. What comes next leads up.
@@ -315,6 +340,12 @@ std::pair<std::uint32_t, std::uint32_t> BeltsOf(const Settings& s) {
   }
 }
 
+// An ellipse is to lead onto a belt that is turned about A or B of the world.
+bool IsTilted(const Context& c, std::uint32_t belt, const State& s) {
+  if (belt == 0 || s.settings.path_mode != PathMode::kElliptical) return false;
+  return !IsUpright(kinematics::ToFrame(c.belts[belt - 1].params->origin));
+}
+
 bool NoMore(const group::State& g, const State& s) {
   return s.order_count == 0 && !s.loop.active && s.at_belt == 0 && !s.parking && !s.halting && g.queue.count == 0;
 }
@@ -324,15 +355,14 @@ bool NoMore(const group::State& g, const State& s) {
 Shape ShapeFromHere(const Context& c, const group::State& g, const Shape& shape, const State& s) noexcept {
   Shape from_here = shape;
   // The way up from a workpiece is the belt's.
-  if (s.at_belt != 0) from_here.start_distance = s.belts[s.at_belt - 1].z_distance;
+  if (s.at_belt != 0) from_here.start_distance = s.at_distance;
   if (s.low) from_here.start_distance = std::max(s.at_known ? 0 : shape.start_distance, RiseTo(c, g, s.over));
   return from_here;
 }
 
 void ForgetPlace(State& s) noexcept {
-  s.at_known = s.parking = s.lifting = false;
+  s.at_known = s.parking = false;
   s.at_belt = s.parked_at = 0;
-  s.low = false;
 }
 
 // At once where it is longer, bit by bit where it is shorter.
@@ -343,6 +373,7 @@ void Learn(double takes_s, const Order& order, State& s) noexcept {
 }
 
 void HaltGroup(const Context& c, group::State& g, State& s) noexcept {
+  s.lifting = false;
   if (Tell(c, group::Halt{}, g) == ErrorId::kNone) s.halting = true;
 }
 
@@ -350,6 +381,7 @@ void Accept(const Context& c, Ticket ticket, std::uint32_t belt, State& s) noexc
   ErrorId error = ErrorId::kNone;
   if (s.order_count == kOrders) error = ErrorId::kBufferFull;
   if (belt > c.params.belts.size()) error = ErrorId::kUnknownTarget;
+  if (error == ErrorId::kNone && IsTilted(c, belt, s)) error = ErrorId::kTiltedEllipse;
   if (error != ErrorId::kNone) {
     s.warning = error;
     return Report(c, ticket, FeedbackState::kError, error);
@@ -370,6 +402,7 @@ void BeginLoop(const Context& c, Ticket ticket, State& s) noexcept {
   const auto [pick, place] = BeltsOf(s.settings);
   ErrorId error = ErrorId::kNone;
   if (std::max(pick, place) > c.params.belts.size()) error = ErrorId::kUnknownTarget;
+  if (error == ErrorId::kNone && (IsTilted(c, pick, s) || IsTilted(c, place, s))) error = ErrorId::kTiltedEllipse;
   if (s.loop.active && s.loop.mode == s.settings.tracking_mode && s.loop.pick_belt == pick &&
       s.loop.place_belt == place && !s.loop.ends) {
     error = ErrorId::kState;
@@ -386,18 +419,29 @@ void BeginLoop(const Context& c, Ticket ticket, State& s) noexcept {
   Report(c, ticket, FeedbackState::kActive);
 }
 
+namespace {
+
+// What is known of it when the path is lost.
+void KeepHeight(State& s) {
+  if (!s.may_be_low) return;
+  s.low = true;
+  s.over = s.over_now;
+}
+
+}  // namespace
+
 void EndOrders(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
   while (s.order_count > 0) Drop(c, s.order_count - 1, feedback, error, s);
   EndLoop(c, feedback, error, s);
   s.in_target = false;
   ForgetPlace(s);
+  KeepHeight(s);
   s.given = 0;
   s.hold = {};
   s.scout = {};
 }
 
 void LosePath(const Context& c, const group::State& g, bool kept, State& s) noexcept {
-  const std::optional<Place> over = s.order_count > 0 ? PointOver(g, s.orders[0]) : std::nullopt;
   for (std::uint32_t i = 0; i < s.order_count; ++i) {
     Order& order = s.orders[i];
     if (i == 0 && kept && order.phase == Phase::kGoing && IsStatic(order)) {
@@ -407,14 +451,12 @@ void LosePath(const Context& c, const group::State& g, bool kept, State& s) noex
       continue;
     }
     if (i == 0 && kept && order.phase == Phase::kHeld) continue;
-    if (order.workpiece != 0) ++s.counters.missed, ++s.counters.interrupted;
+    if (order.workpiece != 0) order.left = order.workpiece;
     GiveBackWorkpiece(c, order);
     order.phase = Phase::kNew;
   }
-  const bool was_low = s.low;
   ForgetPlace(s);
-  s.low = was_low || over;
-  if (over) s.over = *over;
+  KeepHeight(s);
   s.given = 0;
   s.scout = {};
 }
@@ -437,7 +479,10 @@ void RunOrders(const Context& c, group::State& g, State& s) noexcept {
     EndOrders(c, FeedbackState::kAborted, ErrorId::kNone, s);
     return Enter(PickPlaceState::kReady, s);
   }
-  if (s.given > g.done + g.queue.count) return Fail(c, TroubleOf(g), g, s);
+  if (s.given > g.done + g.queue.count) {
+    s.error_axes |= AxesOf(c, g, g.refused);
+    return Fail(c, TroubleOf(g), g, s);
+  }
   if (s.parking && g.done > s.parking_move) s.parking = false;
   StepLoop(c, s);
   if (s.order_count > 0) StepOrder(c, g, s);

@@ -62,7 +62,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::set_path_velocity>(unit::mm_s, "Along the path, as commanded. T&P: lrSetPathVelOut.");
   d.internal<&O::path_preparation_time>(
       unit::s, "From the edge to the first set point of the profile. T&P: lrPathPreparationTime.");
-  d.internal<&O::precalculated_profile_time>(unit::s, "The profile takes so long. T&P: lrPreCalcProfileTime.");
+  d.internal<&O::precalculated_profile_time>(unit::s, "The profile takes so long; 0: not known yet. T&P: lrPreCalcProfileTime.");
   d.internal<&O::position>("As measured. T&P: alrActPos.");
   d.internal<&O::velocity>(unit::one_s, "As measured, the same per s. T&P: alrActVel.");
   d.internal<&O::profile_point_passed>("Number of the last point passed; 0: the start. T&P: iProfilePointPassed.");
@@ -75,6 +75,11 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::missed_too_late>("They left the range.");
   d.internal<&O::missed_interrupted>("The path to them was stopped or aborted.");
   d.internal<&O::missed_refused>("There was no path to them.");
+  d.internal<&O::warning_belt>("The belt that the warning is about, from 1; 0: none. T&P: in ascErrorInfo.");
+  d.internal<&O::held>("Products that were picked and not placed yet, as far as profiles tell.");
+  d.internal<&O::held_kind>("Kind of the oldest of them, which is placed next; 0: none, or of no kind.");
+  d.internal<&O::held_colour>("Its colour, likewise.");
+  d.internal<&O::held_quality>(unit::one, "Its quality; 0: there is none.");
   d.internal<&O::picks_per_minute>(Unit{"1/min", ""}, "By the time between the last picks.");
   d.internal<&O::internal_control_active>("The group is given to others. T&P: xInternalControlActive.");
   d.internal<&O::axes_enabled>("All axes are on. T&P: xAxesEnabled.");

@@ -27,10 +27,6 @@ KDL::Vector In(const Frame& system, const Place& place) {
   return system * KDL::Vector(place.pose.x, place.pose.y, place.pose.z);
 }
 
-bool IsUpright(const Frame& base, const Frame& system) {
-  return (base.M * system.M).UnitZ().z() > kUpright;
-}
-
 struct Maker {
   const Systems& systems;
   Profile profile;
@@ -107,6 +103,10 @@ void Fill(const Leg& leg, const PathRamps& ramps, bool keep_orientation, std::si
 
 }  // namespace
 
+bool IsUpright(const Frame& system) noexcept {
+  return system.M.UnitZ().z() > kUpright;
+}
+
 Profile MakeProfile(const Place& start, const Place& target, const Shape& shape, const Systems& systems) noexcept {
   using group::CoordinateSystem;
   if (start.system == CoordinateSystem::kAcs || target.system == CoordinateSystem::kAcs) {
@@ -115,8 +115,8 @@ Profile MakeProfile(const Place& start, const Place& target, const Shape& shape,
   Maker m{systems, {}, In(systems.start, start), {}, 0};
   if (start.parks || target.parks) return Parking(start, target, shape, m);
   const bool arch = shape.mode == PathMode::kElliptical;
-  if (arch && !(IsUpright(systems.base, systems.start) && IsUpright(systems.base, systems.target))) {
-    return Refused(ErrorId::kParameter);
+  if (arch && !(IsUpright(systems.base * systems.start) && IsUpright(systems.base * systems.target))) {
+    return Refused(ErrorId::kTiltedEllipse);
   }
   if (shape.start_distance > path::kSame) m.Add({.to = Above(start, shape.start_distance)}, systems.start, 0);
   const bool lowers = shape.target_distance > path::kSame;

@@ -59,8 +59,12 @@ struct Systems {
 // Linear: up to point 1, across to point 2, down. Elliptical: half an ellipse between the points. To or from a parking
 // position: two straight legs whatever the mode, over a point `height` further up, rounded by height + radius. Points
 // that would lie where start or target are are left out. A rounding reaches no further than half of the shorter leg
-// beside it. kParameter: places in ACS; an ellipse where a coordinate system is turned about A or B of the world.
+// beside it. kParameter: places in ACS. kTiltedEllipse:
+// an ellipse where a coordinate system is turned about A or B of the world.
 Profile MakeProfile(const Place& start, const Place& target, const Shape& shape, const Systems& systems) noexcept;
+
+// Z of a coordinate system points up, seen from the world.
+bool IsUpright(const kinematics::Frame& system) noexcept;
 
 // Limits along a profile.
 struct PathRamps {

@@ -15,6 +15,9 @@ constexpr std::array kNumbers = {&AxisNumbers::x,   &AxisNumbers::y,  &AxisNumbe
                                  &AxisNumbers::aux1};
 
 void PublishAxes(const Context& c, const group::State& g, const State& s, Outputs& out) {
+  out.error_axes = s.error_axes;
+  const bool soft = s.error == ErrorId::kModuleSoftLimitPositive || s.error == ErrorId::kModuleSoftLimitNegative;
+  if (soft) out.sw_limit_switches = s.error_axes;
   out.axes_enabled = out.axes_group_homed = group::CountOf(g) > 0;
   for (std::size_t k = 0; k < group::kMaxAxes; ++k) {
     if (g.members[k] == 0) continue;
@@ -110,6 +113,13 @@ void Publish(const Context& c, const group::State& g, const State& s, Outputs& o
   out.state = s.state;
   out.error = s.error;
   out.warning = s.warning;
+  out.warning_belt = s.warning == ErrorId::kTooManyWorkpieces ? s.warning_belt : 0;
+  out.held = s.held_count;
+  if (s.held_count > 0) {
+    out.held_kind = s.held[0].kind;
+    out.held_colour = s.held[0].colour;
+    out.held_quality = s.held[0].quality;
+  }
   out.set_path_velocity = g.begun ? g.pace.now.velocity : 0;
   out.path_preparation_time = s.preparation_time;
   out.precalculated_profile_time = s.profile_time;

@@ -14,6 +14,9 @@ inline void Enter(PickPlaceState to, State& s) noexcept {
   if (!IsLegal(s.state, to)) ++s.illegal_transitions;
   s.state = to;
 }
+inline bool Rises(bool now, bool before) noexcept {
+  return now && !before;
+}
 inline bool Jogs(const State& s) noexcept {
   return s.state == PickPlaceState::kJogPos || s.state == PickPlaceState::kJogNeg;
 }
@@ -34,6 +37,8 @@ bool IsFree(const Context& c, const group::State& g) noexcept;
 void StopAxes(const Context& c, group::State& g, State& s) noexcept;
 // Where the tool is told to be, and Aux1.
 Place PresentPlace(const Context& c, const group::State& g) noexcept;
+// The same place with the tool turned about Z alone, where the mechanism cannot tilt it.
+Place Levelled(const Context& c, const group::State& g, const Place& place) noexcept;
 // Number of Aux1 in the group, from 0; none: kMaxAxes.
 std::size_t Aux1Of(const Context& c, const group::State& g) noexcept;
 // Index among A1 to A6, Aux1 of the member in a place of the group; none: kRealAxes.
@@ -57,12 +62,16 @@ void GiveBackWorkpiece(const Context& c, Order& order) noexcept;
 bool StaysWithin(const Context& c, const Order& order, double time_s, const State& s) noexcept;
 // Of what it was thought to take a profile may take so many times as much now.
 double LongerBy(const State& s) noexcept;
+// Counts a workpiece that a stop left as missed once it has left the range.
+void CountLeft(const Context& c, Order& order, State& s) noexcept;
 void CountLost(const Context& c, State& s) noexcept;
 
 // orders.cc
 // Takes a target; belt 0: the static one. An error: it was refused, and told.
 void Accept(const Context& c, Ticket ticket, std::uint32_t belt, State& s) noexcept;
 void BeginLoop(const Context& c, Ticket ticket, State& s) noexcept;
+// The order that is gone is done.
+void Complete(const Context& c, State& s) noexcept;
 // Goes on with what is to be done; MOVE_PP and PREPARING_PATH.
 void RunOrders(const Context& c, group::State& g, State& s) noexcept;
 // The loop is over behind the order that is gone; at once if that waits.
@@ -87,14 +96,33 @@ void HaltGroup(const Context& c, group::State& g, State& s) noexcept;
 // give_up.cc
 // The workpiece of the order that is gone will not be reached in time: the tool leaves it, and its belt, upwards.
 void GiveUp(const Context& c, group::State& g, State& s) noexcept;
-// The point over where the tool is low, or may be when it comes to rest; nothing: nowhere.
-std::optional<Place> PointOver(const group::State& g, const Order& order) noexcept;
+// Notes whether the tool is low over a belt, for the time when its group is not able to say (PP-61).
+void NoteHeight(const group::State& g, State& s) noexcept;
+// Brings the tool to rest. One that is low over a belt is braked in step, rises in step and only then lets go.
+void ComeToRest(const Context& c, const PathRamps& ramps, group::State& g, State& s) noexcept;
+// Whether it has to rise for that.
+bool IsLow(const Context& c, const group::State& g, const State& s) noexcept;
+// Lets go of the belt once the tool is up, outside MOVE_PP.
+void StepLift(const Context& c, group::State& g, State& s) noexcept;
 // mm that the tool has to rise to be as high as that.
 double RiseTo(const Context& c, const group::State& g, const Place& over) noexcept;
 // Whether it is up there; from then on the next order may begin.
 bool IsLifted(const Context& c, const group::State& g, State& s) noexcept;
 // s until the group is through with the order's moves.
 double TimeToGo(const Context& c, const group::State& g, const Order& order, const State& s) noexcept;
+
+// limits.cc
+// The group gets the directions that the module's limit switches close.
+void CloseDirections(const Context& c, group::State& g, const State& s) noexcept;
+// Stops for a limit switch input that turned on, or that an axis goes towards by itself.
+void WatchSwitches(const Context& c, group::State& g, State& s) noexcept;
+// The axes of these directions, as a mask of the module.
+std::uint32_t AxesOf(const Context& c, const group::State& g, const group::Directions& directions) noexcept;
+// Directions towards limit switches that are on, which a profile would take from its leg `first` on.
+group::Directions ClosedOn(const Context& c, const group::State& g, const Profile& profile, std::uint32_t first,
+                           const Place& start, bool keep_orientation) noexcept;
+// In which directions members would be beyond their SW limits, or the ranges of the kinematics.
+group::Directions BeyondRanges(const Context& c, const group::State& g, const kinematics::Joints& joints) noexcept;
 
 // gripper.cc
 void StepGripper(const Context& c, const group::State& g, State& s) noexcept;

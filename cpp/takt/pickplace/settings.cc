@@ -134,6 +134,14 @@ void DescribeBelt(Description<BeltSettingsOf<Of>>& d) {
   d.template defaulted<&S::highest_speed>(unit::mm_s, kPositions,
                                           "It may come up to this speed meanwhile. No less than its present speed "
                                           "counts.");
+  d.template defaulted<&S::sudden_acceleration>(
+      unit::mm_s2, kFromZero,
+      "The belt may change its speed so fast without notice: the tool goes down only where it could be up again within "
+      "the range all the same. Not beyond highest_speed or lowest_speed where these are set. 0: no change is reckoned "
+      "with before it shows.");
+  d.template defaulted<&S::kind>("Workpieces of this kind are taken; 0: of any.");
+  d.template defaulted<&S::colour>("Workpieces of this colour are taken; 0: of any.");
+  d.template defaulted<&S::least_quality>(unit::one, kPositions, "Workpieces that are at least as good are taken.");
   d.template defaulted<&S::grip_x>(unit::mm, kPositions,
                                    "Where the tool stands on a workpiece, in its coordinate system.");
   d.template defaulted<&S::grip_y>(unit::mm, kPositions,

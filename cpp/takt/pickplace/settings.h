@@ -122,6 +122,11 @@ struct BeltSettingsOf {
   // What the belt may do while a workpiece is gone for, mm/s along its X: at least from its present speed to 0.
   Of<double> lowest_speed = Preset<Of>(0.0);
   Of<double> highest_speed = Preset<Of>(0.0);
+  Of<double> sudden_acceleration = Preset<Of>(0.0);  // mm/s², of the belt without notice
+  // Which workpieces are taken; beyond the manual.
+  Of<std::uint32_t> kind = Preset<Of>(std::uint32_t{0});    // 0: any
+  Of<std::uint32_t> colour = Preset<Of>(std::uint32_t{0});  // 0: any
+  Of<double> least_quality = Preset<Of>(-1e9);
   // How the tool stands on a workpiece; beyond the manual.
   Of<double> grip_x = Preset<Of>(0.0);
   Of<double> grip_y = Preset<Of>(0.0);

@@ -22,6 +22,7 @@ void describe(Description<Order>& d) {
   d.internal<&Order::target>("Static.");
   d.internal<&Order::start>("Where it began.");
   d.internal<&Order::shape>("How its profile runs.");
+  d.internal<&Order::own>("Of the belt.");
   d.internal<&Order::ramps>("Limits along it.");
   d.internal<&Order::gripper_time>("Before its end.");
   d.internal<&Order::phase>("Where it has got to.");
@@ -30,6 +31,8 @@ void describe(Description<Order>& d) {
   d.internal<&Order::first>("Number of its first move.");
   d.internal<&Order::last>("Number of its last one.");
   d.internal<&Order::workpiece>("That is taken; 0: none.");
+  d.internal<&Order::left>("That a stop left; 0: none.");
+  d.internal<&Order::from_belt>("It began on a workpiece, or low over a belt.");
   d.internal<&Order::begin_cycle>("When it began.");
   d.internal<&Order::stay_cycle>("When it arrived.");
   d.internal<&Order::expected_s>("So long the way was thought to take.");
@@ -100,6 +103,7 @@ void describe(Description<State>& d) {
   d.internal<&State::back>("From a jog.");
   d.internal<&State::error>("Why it is in error.");
   d.internal<&State::warning>("What was not done as asked.");
+  d.internal<&State::error_axes>("Axes that the module stopped for, a mask.");
   d.internal<&State::reset>("Edge of this cycle.");
   d.internal<&State::abort>("Edge of this cycle.");
   d.internal<&State::ack>("Edge of this cycle.");
@@ -111,13 +115,18 @@ void describe(Description<State>& d) {
   d.internal<&State::loop>("A tracking mode.");
   d.internal<&State::at_known>("Where the moves given end.");
   d.internal<&State::at>("There.");
+  d.internal<&State::at_distance>("Up from there.");
   d.internal<&State::at_belt>("On a workpiece of that belt.");
   d.internal<&State::low>("The next profile rises first.");
   d.internal<&State::over>("As high as this.");
+  d.internal<&State::may_be_low>("The tool is low over a belt, or will be at rest.");
+  d.internal<&State::over_now>("Lower than this.");
   d.internal<&State::parked_at>("The parking position of that belt.");
   d.internal<&State::parking>("On the way there.");
   d.internal<&State::parking_move>("Number of the move.");
-  d.internal<&State::lifting>("From where a pick was given up.");
+  d.internal<&State::parking_lifts>("It begins on a belt.");
+  d.internal<&State::parking_over>("Up to here.");
+  d.internal<&State::lifting>("In step, before the tool leaves the belt.");
   d.internal<&State::lifting_move>("Number of the move.");
   d.internal<&State::given>("Number of the next move.");
   d.internal<&State::second_pcs>("The second one is next.");
@@ -125,6 +134,7 @@ void describe(Description<State>& d) {
   d.internal<&State::jog>("Keys.");
   d.internal<&State::jog_sense>("1 or -1.");
   d.internal<&State::jog_axis>("That moves.");
+  d.internal<&State::jog_end>("SW limits at which it ends.");
   d.internal<&State::homing>("Homing.");
   d.internal<&State::override_given>("To the group.");
   d.internal<&State::pulse>("Of the gripper.");
@@ -137,6 +147,11 @@ void describe(Description<State>& d) {
   d.internal<&State::out_of_window>("Cycles left.");
   d.internal<&State::in_target>("The target is reached.");
   d.internal<&State::counters>("Of workpieces.");
+  d.internal<&State::held>("Of what was picked and is not placed yet.");
+  d.internal<&State::held_count>("How many.");
+  d.internal<&State::warning_belt>("That the warning is about; 0: none.");
+  d.internal<&State::counted_before>("Of those that belts will lose.");
+  d.internal<&State::refused_before>("Of the belts.");
   d.internal<&State::pick_cycles>("Of the last picks.");
   d.internal<&State::pick_count>("So many.");
   d.internal<&State::lost_before>("Of the belts.");

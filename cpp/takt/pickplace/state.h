@@ -4,9 +4,11 @@
 #include <array>
 #include <cstdint>
 
+#include "takt/conveyor/state.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
 #include "takt/core/status.h"
+#include "takt/group/state.h"
 #include "takt/kinematics/joints.h"
 #include "takt/pickplace/commands.h"
 #include "takt/pickplace/outputs.h"
@@ -19,6 +21,7 @@ namespace takt::pickplace {
 
 inline constexpr std::size_t kOrders = 8;  // profiles that may wait, with the one that is gone
 inline constexpr std::size_t kPickTimes = 8;
+inline constexpr std::size_t kHeld = 8;  // products whose attributes are known
 
 // Where an order has got to.
 enum class Phase : std::uint8_t {
@@ -37,6 +40,7 @@ struct Order {
   Place target;            // static
   Place start;             // where it began
   Shape shape;
+  BeltSettings own;  // of the belt, as it was accepted
   PathRamps ramps;
   double gripper_time = 0;  // s
   Phase phase = Phase::kNew;
@@ -45,6 +49,8 @@ struct Order {
   std::uint64_t first = 0;      // number of its first move ...
   std::uint64_t last = 0;       // ... and of its last one, in the group
   std::uint32_t workpiece = 0;  // its number; 0: none is taken
+  std::uint32_t left = 0;       // number of the one that a stop left; 0: none, or it is known what became of it
+  bool from_belt = false;       // it began on a workpiece, or low over a belt
   std::uint64_t begin_cycle = 0;
   std::uint64_t stay_cycle = 0;  // when it arrived
   double expected_s = 0;         // the way was thought to take
@@ -106,6 +112,7 @@ struct State {
   PickPlaceState back = PickPlaceState::kReady;  // from a jog
   ErrorId error = ErrorId::kNone;
   ErrorId warning = ErrorId::kNone;
+  std::uint32_t error_axes = 0;  // mask: those that the module stopped for
   bool reset = false;  // edges of this cycle
   bool abort = false;
   bool ack = false;
@@ -118,13 +125,18 @@ struct State {
   // Where the moves given end.
   bool at_known = false;  // else where the tool stands
   Place at;
+  double at_distance = 0;       // mm, that the way up from there is long
   std::uint32_t at_belt = 0;    // on a workpiece of that belt; 0: static
   bool low = false;             // it was left where the next profile has to rise first ...
   Place over;                   // ... as high as this
+  bool may_be_low = false;      // it is low over a belt, or will be when it comes to rest now: ...
+  Place over_now;               // ... lower than this
   std::uint32_t parked_at = 0;  // the parking position of that belt, from 1
   bool parking = false;         // on the way there
   std::uint64_t parking_move = 0;
-  bool lifting = false;  // from where a pick was given up
+  bool parking_lifts = false;  // the first move of that leads up from a belt ...
+  Place parking_over;          // ... to this
+  bool lifting = false;  // in step, before the tool leaves the belt
   std::uint64_t lifting_move = 0;
   std::uint64_t given = 0;  // number that the next move gets: fewer in the group mean that it refused some
   bool second_pcs = false;  // workpieces get the second one next
@@ -132,6 +144,7 @@ struct State {
   JogKeys jog;
   std::int8_t jog_sense = 0;
   SelectAxis jog_axis = SelectAxis::kNone;
+  group::Directions jog_end;  // SW limits at which the jog ends
   HomingState homing;
   double override_given = 1;
   bool pulse = false;
@@ -144,6 +157,11 @@ struct State {
   std::uint32_t out_of_window = 0;  // cycles since the measured tool was too far away: counts down
   bool in_target = false;
   Counters counters;
+  std::array<conveyor::Attributes, kHeld> held{};  // of what was picked and is not placed yet, the oldest first
+  std::uint32_t held_count = 0;
+  std::uint32_t warning_belt = 0;                     // that the warning is about, from 1; 0: none
+  std::array<std::uint32_t, kBelts> counted_before{};  // of those that belts will lose
+  std::array<std::uint32_t, kBelts> refused_before{};  // of the belts
   std::array<std::uint64_t, kPickTimes> pick_cycles{};  // a ring
   std::uint32_t pick_count = 0;
   std::array<std::uint32_t, kBelts> lost_before{};  // of the belts

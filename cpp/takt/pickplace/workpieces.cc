@@ -18,18 +18,23 @@ constexpr int kRounds = 3;
 // From the end of the time on a workpiece until the way up from it begins.
 constexpr double kCyclesBetween = 4;
 constexpr double kLeastOverride = 1e-3;
+constexpr double kSpeedsUp_s = 0.05;
 // Workpieces in a cycle: one after the other they can be reached, or leave the range.
 constexpr std::size_t kTriesWhileWaiting = 2;
 
 const Belt& BeltOf(const Context& c, const Order& order) {
   return c.belts[order.belt - 1];
 }
-const BeltSettings& SettingsFor(const Order& order, const State& s) {
-  return s.belts[order.belt - 1];
-}
 
 bool IsInside(const BeltSettings& own, double place) {
   return own.lower_limit >= own.upper_limit || (place >= own.lower_limit && place <= own.upper_limit);
+}
+
+// PP-66: of the kind, the colour and the quality that are asked for.
+bool IsWanted(const BeltSettings& own, const Object& object) {
+  const conveyor::Attributes& of = object.attributes;
+  return (own.kind == 0 || of.kind == own.kind) && (own.colour == 0 || of.colour == own.colour) &&
+         of.quality >= own.least_quality;
 }
 
 kinematics::Pose GripOn(const BeltSettings& own) {
@@ -49,13 +54,21 @@ Frame ObjectAfter(const Context& c, const Belt& belt, const Object& object, doub
   return c.group.mounting.base_inverse * conveyor::PoseOf(*belt.params, later, object).GetFrame();
 }
 
+// What belts lose is missed while the module moves.
+bool CountsLost(const State& s) {
+  return s.state == PickPlaceState::kMovePp || s.state == PickPlaceState::kPreparingPath;
+}
+
 double OverrideOf(const State& s) {
   return std::clamp(s.inputs.override_factor, kLeastOverride, 1.0);
 }
 
 // What a belt may do from now on. Between these it may change its speed as it likes.
 std::array<double, 2> SpeedsOf(const Belt& belt, const BeltSettings& own) {
-  const double now = belt.state->travel.velocity;
+  // One that speeds up goes on so for a while.
+  const KinematicState& travel = belt.state->travel;
+  const bool speeds_up = travel.velocity * travel.acceleration >= 0;
+  const double now = travel.velocity + (speeds_up ? kSpeedsUp_s * travel.acceleration : 0);
   return {std::min(now, own.lowest_speed), std::max(now, own.highest_speed)};
 }
 
@@ -70,6 +83,21 @@ bool IsInside(const Belt& belt, const BeltSettings& own, double place) {
   return IsInside(own, place) && conveyor::IsWithin(*belt.params, place);
 }
 
+// Whether a place of the workpiece is within the range, and stays there while a tool that is on its way down is braked
+// and goes up again, though the belt changes its speed with the acceleration that is reckoned with. As long as that
+// holds for where the pick is expected to end, it can be given up within the range (PP-61): what the belt does in the
+// time T of that is at most v T + a T²/2.
+bool IsSafe(const Context& c, const Order& order, double place, double speed, const State& s) {
+  const BeltSettings& own = order.own;
+  const Belt& belt = BeltOf(c, order);
+  const double brake_s = own.z_distance > 0 ? 0.5 * TimeFor(2 * own.z_distance, order.ramps) / OverrideOf(s) : 0;
+  const double time_s = brake_s + TimeUp(c, order, own, s);
+  const double travel = 0.5 * own.sudden_acceleration * time_s * time_s;
+  const double ahead = own.highest_speed > 0 ? 0 : std::max(0.0, travel - std::max(0.0, -speed) * time_s);
+  const double back = own.lowest_speed < 0 ? 0 : std::max(0.0, travel - std::max(0.0, speed) * time_s);
+  return IsInside(belt, own, place - back) && IsInside(belt, own, place + ahead);
+}
+
 // The tool can be there, and over there.
 bool CanBeAt(const Context& c, const group::State& g, const BeltSettings& own, const Frame& object, const State& s) {
   const group::End present = group::Present(c.group, g);
@@ -77,6 +105,7 @@ bool CanBeAt(const Context& c, const group::State& g, const BeltSettings& own, c
   for (const double height : {0.0, own.z_distance}) {
     grip.z = own.grip_z + height;
     Frame at = object * kinematics::ToFrame(grip);
+    at = kinematics::ToFrame(Levelled(c, g, {.pose = kinematics::ToPose(at)}).pose);
     if (s.settings.keep_orientation) at.M = present.tool.M;
     kinematics::Joints joints = present.joints;
     if (group::JointsAt(c.group, at, present.joints, joints) != kinematics::Reason::kNone) return false;
@@ -94,7 +123,7 @@ struct Meeting {
 
 Meeting Meet(const Context& c, const group::State& g, const Order& order, const Object& object, double speed,
              const State& s) {
-  const BeltSettings& own = SettingsFor(order, s);
+  const BeltSettings& own = order.own;
   const Place from = s.at_known ? s.at : PresentPlace(c, g);
   const Frame start = group::SystemFrame(c.group, g, from.system, from.pcs - 1);
   const Shape shape = ShapeFromHere(c, g, order.shape, s);
@@ -114,18 +143,18 @@ Meeting Meet(const Context& c, const group::State& g, const Order& order, const 
 bool IsReachableAt(double speed, const Context& c, const group::State& g, const Order& order, const Object& object,
                    const State& s) {
   const Belt& belt = BeltOf(c, order);
-  const BeltSettings& own = SettingsFor(order, s);
+  const BeltSettings& own = order.own;
   const Meeting meeting = Meet(c, g, order, object, speed, s);
   if (meeting.error != ErrorId::kNone) return false;
   const double travel = speed * (LongerBy(s) * meeting.time_s + own.sync_time + TimeUp(c, order, own, s));
   const double end = conveyor::PlaceOf(*belt.params, *belt.state, object) + travel;
-  return IsInside(belt, own, end) && CanBeAt(c, g, own, meeting.object, s) &&
+  return IsSafe(c, order, end, speed, s) && CanBeAt(c, g, own, meeting.object, s) &&
          CanBeAt(c, g, own, ObjectAfter(c, belt, object, travel), s);
 }
 
 // Wherever the belt may have come to meanwhile lies between where its two speeds take it.
 bool IsReachable(const Context& c, const group::State& g, const Order& order, const Object& object, const State& s) {
-  const auto [lowest, highest] = SpeedsOf(BeltOf(c, order), SettingsFor(order, s));
+  const auto [lowest, highest] = SpeedsOf(BeltOf(c, order), order.own);
   return IsReachableAt(highest, c, g, order, object, s) &&
          (lowest == highest || IsReachableAt(lowest, c, g, order, object, s));
 }
@@ -138,7 +167,7 @@ double LongerBy(const State& s) noexcept {
 
 const Object* ChooseWorkpiece(const Context& c, const group::State& g, const Order& order, State& s) noexcept {
   const Belt& belt = BeltOf(c, order);
-  const BeltSettings& own = SettingsFor(order, s);
+  const BeltSettings& own = order.own;
   const auto objects = conveyor::ObjectsOf(*belt.state);
   const KDL::Vector tool = group::Present(c.group, g).tool.p;
   const auto rank = [&](const Object& object) {
@@ -168,7 +197,7 @@ const Object* ChooseWorkpiece(const Context& c, const group::State& g, const Ord
       const Object& object = objects[i];
       if (tried < objects.size() && !is_behind(i, tried)) continue;
       if (best < objects.size() && is_behind(i, best)) continue;
-      if (!conveyor::IsFree(*belt.params, *belt.state, object)) continue;
+      if (!conveyor::IsFree(*belt.params, *belt.state, object) || !IsWanted(own, object)) continue;
       if (IsInside(own, conveyor::PlaceOf(*belt.params, *belt.state, object))) best = i;
     }
     const bool found = best < objects.size() && IsReachable(c, g, order, objects[best], s);
@@ -188,7 +217,7 @@ double TimeToMeet(const Context& c, const group::State& g, const Order& order, c
 ErrorId BindWorkpiece(const Context& c, const Object& object, group::State& g, Order& order, Place& place,
                       State& s) noexcept {
   const Belt& belt = BeltOf(c, order);
-  const BeltSettings& own = SettingsFor(order, s);
+  const BeltSettings& own = order.own;
   // Not the one in which the tool is now, which is that of a pick before one that was given up.
   const Place& here = s.low ? s.over : s.at;
   const bool in_pcs = (s.low || s.at_known) && here.system == group::CoordinateSystem::kPcs;
@@ -227,22 +256,44 @@ void GiveBackWorkpiece(const Context& c, Order& order) noexcept {
 
 bool StaysWithin(const Context& c, const Order& order, double time_s, const State& s) noexcept {
   const Belt& belt = BeltOf(c, order);
-  const BeltSettings& own = SettingsFor(order, s);
+  const BeltSettings& own = order.own;
   const Object* object = conveyor::Find(*belt.state, order.workpiece);
   if (!object) return false;
   const double place = conveyor::PlaceOf(*belt.params, *belt.state, *object);
   const double until_s = time_s + TimeUp(c, order, own, s);
   return std::ranges::all_of(SpeedsOf(belt, own),
-                             [&](double speed) { return IsInside(belt, own, place + speed * until_s); });
+                             [&](double speed) { return IsSafe(c, order, place + speed * until_s, speed, s); });
+}
+
+void CountLeft(const Context& c, Order& order, State& s) noexcept {
+  if (order.left == 0) return;
+  const Belt& belt = BeltOf(c, order);
+  const Object* object = conveyor::Find(*belt.state, order.left);
+  if (object && IsInside(belt, order.own, conveyor::PlaceOf(*belt.params, *belt.state, *object))) return;
+  order.left = 0;
+  if (!object && CountsLost(s)) return;  // as one of those that the belt has lost
+  if (object) ++s.counted_before[order.belt - 1];  // the belt will lose it, too
+  ++s.counters.missed, ++s.counters.interrupted;
 }
 
 void CountLost(const Context& c, State& s) noexcept {
-  const bool counts = s.state == PickPlaceState::kMovePp || s.state == PickPlaceState::kPreparingPath;
+  const bool counts = CountsLost(s);
+  if (s.order_count > 0) CountLeft(c, s.orders[0], s);
   for (std::size_t i = 0; i < c.params.belts.size(); ++i) {
-    const std::uint32_t lost = c.belts[i].state->lost;
-    if (counts) {
-      s.counters.too_late += lost - s.lost_before[i];
-      s.counters.missed += lost - s.lost_before[i];
+    const std::uint32_t lost = c.belts[i].state->lost, refused = c.belts[i].state->refused;
+    if (refused != s.refused_before[i]) {
+      s.warning = ErrorId::kTooManyWorkpieces;
+      s.warning_belt = static_cast<std::uint32_t>(i + 1);
+    }
+    s.refused_before[i] = refused;
+    // Of the belts of a tracking mode alone.
+    const bool ours = !s.loop.active || s.loop.pick_belt == i + 1 || s.loop.place_belt == i + 1;
+    if (counts && ours) {
+      const std::uint32_t known = std::min(lost - s.lost_before[i], s.counted_before[i]);
+      const std::uint32_t fresh = lost - s.lost_before[i] - known;
+      s.counted_before[i] -= known;
+      s.counters.too_late += fresh;
+      s.counters.missed += fresh;
     }
     s.lost_before[i] = lost;
   }

@@ -126,9 +126,9 @@ TEST(Profiles, EllipseRefused) {
   };
   EXPECT_EQ(error({}, {}, shape), ErrorId::kNone);
   EXPECT_EQ(error({}, {0, 0, 0, 0, 0, 30}, shape), ErrorId::kNone);
-  EXPECT_EQ(error({}, {0, 0, 0, 1, 0, 0}, shape), ErrorId::kParameter);
-  EXPECT_EQ(error({}, {0, 0, 0, 0, 1, 0}, shape), ErrorId::kParameter);
-  EXPECT_EQ(error({0, 0, 0, 0, 1, 0}, {}, shape), ErrorId::kParameter);
+  EXPECT_EQ(error({}, {0, 0, 0, 1, 0, 0}, shape), ErrorId::kTiltedEllipse);
+  EXPECT_EQ(error({}, {0, 0, 0, 0, 1, 0}, shape), ErrorId::kTiltedEllipse);
+  EXPECT_EQ(error({0, 0, 0, 0, 1, 0}, {}, shape), ErrorId::kTiltedEllipse);
   EXPECT_EQ(error({0, 0, 0, 0, 1, 0}, {0, 0, 0, 1, 0, 0}, {}), ErrorId::kNone);
   Place acs = b;
   acs.system = CoordinateSystem::kAcs;

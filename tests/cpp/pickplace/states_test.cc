@@ -298,21 +298,51 @@ TEST(Jogs, BothKeys) {
   EXPECT_EQ(cell.rig.lives[both].error_id, ErrorId::kParameter);
 }
 
-// PP-03: up to the end of the axis' range.
+// PP-03, PP-60: a jog up to the end of an axis' range is an error that names the axis; after a reset it goes back only.
 TEST(Jogs, EndsAtTheRange) {
-  group::Rig rig = group::Gantry();
-  rig.axes[0].limits.upper = 40;
-  rig.axes[0].limits.lower = -40;
-  for (const SelectAxis axis : {SelectAxis::kX, SelectAxis::kA1}) {
-    group::Rig same = group::Gantry();
-    same.axes[0].limits = rig.axes[0].limits;
-    Cell cell(Fast(), {}, std::move(same));
+  struct Case {
+    SelectAxis axis;
+    double sense;
+  };
+  for (const Case& one : {Case{SelectAxis::kX, 1}, Case{SelectAxis::kA1, 1}, Case{SelectAxis::kX, -1}}) {
+    SCOPED_TRACE(testing::Message() << static_cast<int>(one.axis) << " " << one.sense);
+    group::Rig rig = group::Gantry();
+    rig.axes[0].limits.upper = 40;
+    rig.axes[0].limits.lower = -40;
+    Cell cell(Fast(), {}, std::move(rig));
     cell.Start();
-    cell.Do(Control{.select_axis = axis});
-    cell.Do(Jog{.positive = true});
+    const auto jog = [&](bool positive) { return cell.Do(Jog{.positive = positive, .negative = !positive}); };
+    cell.Do(Control{.select_axis = one.axis});
+    const Ticket ticket = jog(one.sense > 0);
     cell.Steps(2000);
-    EXPECT_NEAR(cell.tool().x(), 40, 0.01);
-    EXPECT_EQ(cell.state.state, M::kJogPos) << static_cast<int>(cell.state.error) << static_cast<int>(axis);
+    const auto is_at_limit = [&] {
+      EXPECT_NEAR(cell.tool().x(), one.sense * 40, 0.01);
+      EXPECT_EQ(cell.state.state, M::kError);
+      EXPECT_EQ(cell.out().error,
+                one.sense > 0 ? ErrorId::kModuleSoftLimitPositive : ErrorId::kModuleSoftLimitNegative);
+      EXPECT_EQ(cell.out().error_axes, 1u << kFirstReal);
+      EXPECT_EQ(cell.out().sw_limit_switches, 1u << kFirstReal);
+      EXPECT_TRUE(cell.out().sw_limit_switch_active);
+    };
+    is_at_limit();
+    EXPECT_TRUE(cell.rig.lives[ticket].error);
+    const auto reset = [&] {
+      cell.Do(Control{.reset_error = true});
+      EXPECT_TRUE(cell.RunTo(M::kReady, 0.5));
+      cell.Do(Control{.reset_error = false});
+    };
+    reset();
+    EXPECT_EQ(cell.out().error_axes, 0u);
+    const double x = cell.tool().x();
+    jog(one.sense > 0);  // no further
+    cell.Steps(50);
+    is_at_limit();
+    EXPECT_NEAR(cell.tool().x(), x, 1e-6);
+    reset();
+    jog(one.sense < 0);
+    cell.Steps(200);
+    EXPECT_LT(one.sense * cell.tool().x(), 39);
+    EXPECT_EQ(cell.out().error, ErrorId::kNone);
     cell.Do(Jog{});
     EXPECT_TRUE(cell.RunTo(M::kReady, 0.5));
   }

@@ -84,7 +84,7 @@ TEST(Static, Ellipse) {
   cell.Do(c);
   const Ticket turned = cell.Execute();
   ASSERT_TRUE(cell.RunToEnd(turned, 1));
-  EXPECT_EQ(cell.rig.lives[turned].error_id, ErrorId::kParameter);
+  EXPECT_EQ(cell.rig.lives[turned].error_id, ErrorId::kTiltedEllipse);
 }
 
 // PP-20: stopped in the middle of an ellipse, jogged away and brought back: it goes on over the same height.

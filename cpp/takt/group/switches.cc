@@ -1,0 +1,36 @@
+#include "takt/group/switches.h"
+
+#include "takt/group/members.h"
+
+namespace takt::group {
+
+Directions ClosedNow(const Context& c, const State& s) noexcept {
+  Directions closed = s.closed;
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] == 0) continue;
+    const axis::State& member = MemberOf(c, s, k);
+    if (member.limit_positive) closed.positive |= 1u << k;
+    if (member.limit_negative) closed.negative |= 1u << k;
+  }
+  return closed;
+}
+
+Directions TakenOf(const Directions& closed, const State& s, const kinematics::Joints& velocity,
+                   const kinematics::MovingFrame* tool, double least) noexcept {
+  Directions taken;
+  const auto look = [&](std::size_t bit, double v) {
+    if (v > least) taken.positive |= closed.positive & (1u << bit);
+    if (v < -least) taken.negative |= closed.negative & (1u << bit);
+  };
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] != 0) look(k, velocity[k]);
+  }
+  if (!tool) return taken;
+  for (int i = 0; i < 3; ++i) {
+    look(kMaxAxes + static_cast<std::size_t>(i), tool->p.v(i));
+    look(kMaxAxes + 3 + static_cast<std::size_t>(i), tool->M.w(i));
+  }
+  return taken;
+}
+
+}  // namespace takt::group

@@ -1,0 +1,21 @@
+// Limit switches that are on: nothing moves towards them (PP-60).
+//
+// Invariant: while a switch is on, no motion along a path goes towards it but one that is being braked. Planning refuses
+// a move that would (kAwayFromLimitOnly); where a motion turns to it afterwards, as carriers may make it, the group is
+// stopped before the set point is given.
+#pragma once
+
+#include "takt/group/group.h"
+#include "takt/kinematics/frames.h"
+
+namespace takt::group {
+
+// The directions that are closed now: by the limit switches of the members, and by State::closed.
+Directions ClosedNow(const Context& c, const State& s) noexcept;
+
+// Which of these directions a motion of the axes takes, and of the tool in the MCS (null: it has none): faster than
+// `least`, in u/s, mm/s and rad/s, or per mm along a path.
+Directions TakenOf(const Directions& closed, const State& s, const kinematics::Joints& velocity,
+                   const kinematics::MovingFrame* tool, double least) noexcept;
+
+}  // namespace takt::group
