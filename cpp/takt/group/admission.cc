@@ -161,6 +161,7 @@ struct Applier {
     s.begun = s.ends = s.hold = s.lets_go = false;
     s.clutches = {};
     s.ridden = {};
+    s.rise = {};
     s.pace = {};
   }
   void operator()(const Disable&) const {

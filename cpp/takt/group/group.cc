@@ -34,6 +34,7 @@ void ComeToRest(const Context& c, State& s) {
   s.ends = s.begun = s.lets_go = false;
   s.clutches = {};
   s.ridden = {};
+  s.rise = {};
   s.brake = {};
   s.active = 0;
   s.way_before += s.pace.now.position;
@@ -83,6 +84,7 @@ void MoveOn(const Context& c, State& s) {
     // numbers. Each brakes by itself.
     LetGoOfMembers(c, s);
     s.begun = false;
+    s.rise = {};
     return Fail(c, s.refused.any() ? ErrorId::kAwayFromLimitOnly : ErrorId::kUnreachable, s);
   }
   if (!Rests(s)) return;
@@ -98,6 +100,7 @@ void MoveOn(const Context& c, State& s) {
   if (s.ends && RidesFreely(c, s)) {  // each brakes by itself
     LetGoOfMembers(c, s);
     s.begun = false;
+    s.rise = {};
     return;
   }
   // The members get to the last set point after this.

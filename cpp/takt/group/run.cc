@@ -10,6 +10,7 @@
 #include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
 #include "takt/group/queue.h"
+#include "takt/group/rise.h"
 #include "takt/group/switches.h"
 #include "takt/group/sync.h"
 #include "takt/group/track.h"
@@ -49,7 +50,8 @@ void Demand(const Context& c, const kinematics::JointMotion& motion, State& s) {
 bool FollowCarried(const Context& c, const Stretch& stretch, double way, State& s) {
   const KinematicState along = {way, s.pace.now.velocity, s.pace.now.acceleration};
   kinematics::JointMotion motion;
-  const MovingFrame tool = ToolNow(c, s, stretch, along);
+  MovingFrame tool = ToolNow(c, s, stretch, along);
+  StepRise(c, stretch, tool, s);
   if (const auto reason = AxesFor(c, s, stretch, tool, along, s.joints, motion); reason != kinematics::Reason::kNone) {
     s.reason = reason;
     return false;
@@ -185,7 +187,7 @@ bool Advance(const Context& c, State& s) noexcept {
 }
 
 bool Rests(const State& s) noexcept {
-  return trajectory::Stands(s.pace) && (!s.lets_go || ClutchesStand(s));
+  return trajectory::Stands(s.pace) && RiseStands(s) && (!s.lets_go || ClutchesStand(s));
 }
 
 double RestAt(const Context& c, const State& s) noexcept {
@@ -224,7 +226,12 @@ void Sit(const Context& c, State& s) noexcept {
   const double way = std::clamp(stretch->from + s.pace.now.position - stretch->begin, stretch->from, stretch->to);
   const std::uint64_t number = ShareAt(c.ahead, *stretch, way).position > 0 ? stretch->to_ride : stretch->from_ride;
   const Ride ride = ahead.rides[number % kRides];
-  const path::Point place = path::PointAt(stretch->segment, way);
+  path::Point place = path::PointAt(stretch->segment, way);
+  if (s.rise.used) {  // as high as it is
+    const KDL::Vector up = PlaceOf(c, ride.cargo).M.R.UnitZ();
+    place.frame.p += DisplacementOf(c, ride, 0).M.R.Inverse() * (s.rise.offset.position * up);
+    s.rise = {};
+  }
   const Clutch* found = std::ranges::find_if(s.clutches, [&](const Clutch& k) { return k.used && k.ride == number; });
   Clutch clutch = found != s.clutches.end() ? *found : Clutch{};
   s.way_before += s.pace.now.position;

@@ -133,6 +133,7 @@ void describe(Description<State>& d) {
   d.internal<&S::lets_go>("Of what carries it.");
   d.internal<&S::clutches>("Between carriers and the tool.");
   d.internal<&S::ridden>("Carriers that take part now.");
+  d.internal<&S::rise>("Above the path, while it is braked.");
   d.internal<&S::track>("Tracking of an object.");
   d.internal<&S::hold>("Stop: until released.");
   d.internal<&S::ticket>("Of stop, halt, interrupt, home or power.");
@@ -157,6 +158,17 @@ void describe(Description<State>& d) {
   d.internal<&S::refused>("Closed directions that the last move wanted.");
   d.internal<&S::answer>("To the last question about a path.");
   d.internal<&S::illegal_transitions>("Always 0.");
+}
+
+void describe(Description<Rise>& d) {
+  d.about("The tool above its path.");
+  d.internal<&Rise::used>("It rises.");
+  d.internal<&Rise::height>("In the end.");
+  d.internal<&Rise::target>("Of the offset.");
+  d.internal<&Rise::offset>("From the path.");
+  d.internal<&Rise::velocity>("Largest.");
+  d.internal<&Rise::acceleration>("Largest.");
+  d.internal<&Rise::jerk>("Largest.");
 }
 
 void describe(Description<Directions>& d) {

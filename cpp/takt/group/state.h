@@ -98,6 +98,17 @@ struct Directions {
   bool any() const noexcept { return (positive | negative) != 0; }
 };
 
+// The tool above its path (rise.h).
+struct Rise {
+  bool used = false;
+  double height = 0;      // mm, that it is to have in the end
+  double target = 0;      // mm, of the offset
+  KinematicState offset;  // mm
+  double velocity = 0;    // limits of that
+  double acceleration = 0;
+  double jerk = 0;
+};
+
 // What a group is doing besides moves.
 enum class Task : std::uint8_t { kNone, kStop, kHalt, kInterrupt, kHome, kPower };
 
@@ -150,6 +161,7 @@ struct State {
   bool lets_go = false;      // of what carries it: the tool comes to rest in the MCS
   std::array<Clutch, kClutches> clutches{};
   std::array<std::uint32_t, kClutches> ridden{};  // numbers of the carriers that take part in the motion now
+  Rise rise;
   Track track;
   bool hold = false;  // stop: until released
   Ticket ticket = 0;  // of the task
@@ -182,6 +194,7 @@ void describe(Description<Planning>&);
 void describe(Description<Clutch>&);
 void describe(Description<Track>&);
 void describe(Description<Directions>&);
+void describe(Description<Rise>&);
 void describe(Enumeration<Task>&);
 void describe(Description<Brake>&);
 void describe(Description<SyncedAxis>&);

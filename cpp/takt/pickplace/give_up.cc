@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "takt/group/plan.h"
+#include "takt/group/rise.h"
 #include "takt/group/run.h"
 #include "takt/group/systems.h"
 #include "takt/pickplace/run.h"
@@ -11,6 +12,9 @@
 namespace takt::pickplace {
 
 namespace {
+
+constexpr double kUp = 1e-6;     // mm
+constexpr double kLetsGo = 2.5;  // of the way in which it is braked along its path
 
 kinematics::Frame ToolFrom(const Context& c, const group::State& g, const Place& place) {
   return group::SystemFrame(c.group, g, place.system, place.pcs - 1).Inverse() * group::Present(c.group, g).tool;
@@ -46,6 +50,20 @@ std::optional<Place> PointOver(const group::State& g, const Order& order) {
   return order.profile.legs[order.profile.count - 2].to;
 }
 
+// Up to `over`, in step.
+ErrorId GiveLift(const Context& c, group::State& g, const State& s) {
+  const PathRamps& ramps = s.lifting_ramps;
+  return Tell(c,
+              group::MoveLinearAbsolute{.z = s.over.pose.z,
+                                        .coordinate_system = s.over.system,
+                                        .pcs = s.over.pcs,
+                                        .velocity = ramps.velocity,
+                                        .acceleration = ramps.acceleration,
+                                        .deceleration = ramps.deceleration,
+                                        .jerk = ramps.jerk},
+              g);
+}
+
 bool IsUnderWay(const State& s) {
   return s.order_count > 0 && (s.orders[0].phase == Phase::kGoing || s.orders[0].phase == Phase::kStaying);
 }
@@ -73,7 +91,10 @@ bool IsLow(const Context& c, const group::State& g, const State& s) noexcept {
   if (s.at_known && s.at_belt != 0 && g.queue.count == 0) return s.may_be_low;  // on its workpiece
   if (!IsUnderWay(s)) return false;
   const Order& order = s.orders[0];
-  return Lifts(g, order) || (Lowers(order) && group::RestAt(c.group, g) >= WayDown(c, order));
+  if (Lifts(g, order)) return true;
+  // A tool that lets go of its belt may need more.
+  const double place = g.pace.raw.position, rest = group::RestAt(c.group, g);
+  return Lowers(order) && place + kLetsGo * (rest - place) >= WayDown(c, order);
 }
 
 void ComeToRest(const Context& c, const PathRamps& ramps, group::State& g, State& s) noexcept {
@@ -82,16 +103,18 @@ void ComeToRest(const Context& c, const PathRamps& ramps, group::State& g, State
   const std::uint32_t belt = s.at_belt != 0 ? s.at_belt : s.parked_at;
   LosePath(c, g, false, s);
   if (!low) return HaltGroup(c, g, s);
-  const group::MoveLinearAbsolute lift{.z = s.over.pose.z,
-                                       .coordinate_system = s.over.system,
-                                       .pcs = s.over.pcs,
-                                       .velocity = ramps.velocity,
-                                       .acceleration = ramps.acceleration,
-                                       .deceleration = ramps.deceleration,
-                                       .jerk = ramps.jerk};
-  if (Tell(c, lift, g) != ErrorId::kNone) return HaltGroup(c, g, s);
+  // What moves is braked in step, and rises meanwhile; IsLifted gives the rest of the way up.
+  const bool moves = g.pace.now.velocity > 0 || s.over.system != group::CoordinateSystem::kPcs;
+  s.lifting_ramps = ramps;
+  if (moves) {
+    const group::MoveLinearRelative stay{.z = 0, .coordinate_system = s.over.system, .pcs = s.over.pcs};
+    if (Tell(c, stay, g) != ErrorId::kNone) return HaltGroup(c, g, s);
+    group::BeginRise({ramps.velocity, ramps.acceleration, ramps.deceleration, ramps.jerk}, s.over.pose.z, g);
+    s.rises = true;
+  } else if (GiveLift(c, g, s) != ErrorId::kNone) {
+    return HaltGroup(c, g, s);
+  }
   s.lifting = true;
-  s.lifting_move = g.done + g.queue.count - 1;
   s.at = s.over;
   s.at_belt = belt;
 }
@@ -128,10 +151,15 @@ void GiveUp(const Context& c, group::State& g, State& s) noexcept {
   ComeToRest(c, ramps, g, s);
 }
 
-bool IsLifted(const Context& c, const group::State& g, State& s) noexcept {
+bool IsLifted(const Context& c, group::State& g, State& s) noexcept {
   if (g.queue.count > 0) return false;
-  s.lifting = false;
-  if (g.ends || !group::IsOnRide(c.group, g)) {
+  const bool sits = !g.ends && group::IsOnRide(c.group, g);
+  if (s.rises && sits) {
+    s.rises = false;
+    if (RiseTo(c, g, s.over) > kUp && GiveLift(c, g, s) == ErrorId::kNone) return false;
+  }
+  s.lifting = s.rises = false;
+  if (!sits) {
     s.at_belt = 0;
     return true;
   }

@@ -16,7 +16,7 @@ constexpr double kFarthest = 16'384;  // mm or u
 constexpr double kWidest = 170;       // deg: beyond half a turn it would go the other way round
 constexpr double kUprightest = 89.9;  // deg, of B
 constexpr double kShort = 1e-3;       // of the end of what can be reached
-constexpr int kHalvings = 16;
+constexpr int kHalvings = 24;
 
 struct Ramps {
   double velocity, acceleration, deceleration, jerk;
@@ -75,7 +75,7 @@ group::MoveLinearAbsolute ToolMove(const Context& c, const group::State& g, doub
   if (s.jog_axis == SelectAxis::kB) most = std::clamp(kUprightest - s.jog_sense * from.b, 0.0, kWidest);
   way = Furthest(most, may);
   kinematics::Joints beyond = present.joints;
-  const kinematics::Frame further = kinematics::ToFrame(at(way + 2 * kShort));
+  const kinematics::Frame further = kinematics::ToFrame(at(way + 3 * kShort));
   const bool known = group::JointsAt(c.group, further, present.joints, beyond) == kinematics::Reason::kNone;
   s.jog_end = known ? BeyondRanges(c, g, beyond) : group::Directions{};
   const kinematics::Pose to = at(way);

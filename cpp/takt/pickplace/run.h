@@ -107,7 +107,7 @@ void StepLift(const Context& c, group::State& g, State& s) noexcept;
 // mm that the tool has to rise to be as high as that.
 double RiseTo(const Context& c, const group::State& g, const Place& over) noexcept;
 // Whether it is up there; from then on the next order may begin.
-bool IsLifted(const Context& c, const group::State& g, State& s) noexcept;
+bool IsLifted(const Context& c, group::State& g, State& s) noexcept;
 // s until the group is through with the order's moves.
 double TimeToGo(const Context& c, const group::State& g, const Order& order, const State& s) noexcept;
 

@@ -127,7 +127,8 @@ void describe(Description<State>& d) {
   d.internal<&State::parking_lifts>("It begins on a belt.");
   d.internal<&State::parking_over>("Up to here.");
   d.internal<&State::lifting>("In step, before the tool leaves the belt.");
-  d.internal<&State::lifting_move>("Number of the move.");
+  d.internal<&State::rises>("While it is still braked.");
+  d.internal<&State::lifting_ramps>("Of the rest of the way up.");
   d.internal<&State::given>("Number of the next move.");
   d.internal<&State::second_pcs>("The second one is next.");
   d.internal<&State::hold>("A path that was left.");

@@ -137,7 +137,8 @@ struct State {
   bool parking_lifts = false;  // the first move of that leads up from a belt ...
   Place parking_over;          // ... to this
   bool lifting = false;  // in step, before the tool leaves the belt
-  std::uint64_t lifting_move = 0;
+  bool rises = false;       // while it is still braked; then the rest of the way up
+  PathRamps lifting_ramps;  // of that
   std::uint64_t given = 0;  // number that the next move gets: fewer in the group mean that it refused some
   bool second_pcs = false;  // workpieces get the second one next
   Hold hold;
