@@ -14,7 +14,7 @@ namespace takt::pickplace {
 namespace {
 
 constexpr double kUp = 1e-6;     // mm
-constexpr double kLetsGo = 2.5;  // of the way in which it is braked along its path
+constexpr double kLetsGo = 8;  // of the way in which it is braked along its path, at most
 
 kinematics::Frame ToolFrom(const Context& c, const group::State& g, const Place& place) {
   return group::SystemFrame(c.group, g, place.system, place.pcs - 1).Inverse() * group::Present(c.group, g).tool;
