@@ -31,7 +31,7 @@ bool IsFree(const Context& c, const group::State& g) noexcept {
 }
 
 void StopAxes(const Context& c, group::State& g, State& s) noexcept {
-  s.lifting = false;
+  s.lifting = s.rises = false;
   if (Tell(c, group::Disable{}, g) == ErrorId::kNone) s.enables = true;
   for (std::size_t k = 0; k < group::kMaxAxes; ++k) {
     if (g.members[k] == 0) continue;

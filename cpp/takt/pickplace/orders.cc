@@ -373,7 +373,7 @@ void Learn(double takes_s, const Order& order, State& s) noexcept {
 }
 
 void HaltGroup(const Context& c, group::State& g, State& s) noexcept {
-  s.lifting = false;
+  s.lifting = s.rises = false;
   if (Tell(c, group::Halt{}, g) == ErrorId::kNone) s.halting = true;
 }
 
