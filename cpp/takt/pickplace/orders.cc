@@ -230,8 +230,7 @@ void CountPick(const Context& c, const Order& order, State& s) {
 void Complete(const Context& c, State& s) noexcept {
   Order& order = s.orders[0];
   CountPick(c, order, s);
-  if (order.workpiece != 0) conveyor::Remove(order.workpiece, *c.belts[order.belt - 1].state);
-  order.workpiece = 0;
+  RemoveWorkpiece(c, order);
   s.done = true;
   Drop(c, 0, FeedbackState::kDone, ErrorId::kNone, s);
 }

@@ -62,6 +62,8 @@ void GiveBackWorkpiece(const Context& c, Order& order) noexcept;
 bool StaysWithin(const Context& c, const Order& order, double time_s, const State& s) noexcept;
 // Of what it was thought to take a profile may take so many times as much now.
 double LongerBy(const State& s) noexcept;
+// It was fetched, or something was put there: it is deleted, and what lies in the same place (PP-66).
+void RemoveWorkpiece(const Context& c, Order& order) noexcept;
 // Counts a workpiece that a stop left as missed once it has left the range.
 void CountLeft(const Context& c, Order& order, State& s) noexcept;
 void CountLost(const Context& c, State& s) noexcept;

@@ -142,6 +142,10 @@ void DescribeBelt(Description<BeltSettingsOf<Of>>& d) {
   d.template defaulted<&S::kind>("Workpieces of this kind are taken; 0: of any.");
   d.template defaulted<&S::colour>("Workpieces of this colour are taken; 0: of any.");
   d.template defaulted<&S::least_quality>(unit::one, kPositions, "Workpieces that are at least as good are taken.");
+  d.template defaulted<&S::same_within>(
+      unit::mm, kFromZero,
+      "What lies so near to a workpiece that was fetched is the same one, seen twice, as where pictures of a camera "
+      "overlap: it is deleted with it. 0: nothing is.");
   d.template defaulted<&S::grip_x>(unit::mm, kPositions,
                                    "Where the tool stands on a workpiece, in its coordinate system.");
   d.template defaulted<&S::grip_y>(unit::mm, kPositions,

@@ -127,6 +127,7 @@ struct BeltSettingsOf {
   Of<std::uint32_t> kind = Preset<Of>(std::uint32_t{0});    // 0: any
   Of<std::uint32_t> colour = Preset<Of>(std::uint32_t{0});  // 0: any
   Of<double> least_quality = Preset<Of>(-1e9);
+  Of<double> same_within = Preset<Of>(2.0);  // mm: what lies so near to a workpiece that was fetched is that one
   // How the tool stands on a workpiece; beyond the manual.
   Of<double> grip_x = Preset<Of>(0.0);
   Of<double> grip_y = Preset<Of>(0.0);

@@ -254,6 +254,22 @@ void GiveBackWorkpiece(const Context& c, Order& order) noexcept {
   order.workpiece = 0;
 }
 
+void RemoveWorkpiece(const Context& c, Order& order) noexcept {
+  if (order.workpiece == 0) return;
+  const Belt& belt = BeltOf(c, order);
+  if (const Object* object = conveyor::Find(*belt.state, order.workpiece)) {
+    const KDL::Vector place = conveyor::PoseOf(*belt.params, *belt.state, *object).GetFrame().p;
+    for (std::uint32_t i = belt.state->count; i-- > 0 && order.own.same_within > 0;) {
+      const Object& other = belt.state->objects[i];
+      if (other.state != conveyor::ObjectState::kVisible) continue;
+      const double apart = (conveyor::PoseOf(*belt.params, *belt.state, other).GetFrame().p - place).Norm();
+      if (apart <= order.own.same_within) conveyor::Remove(other.number, *belt.state);
+    }
+    conveyor::Remove(order.workpiece, *belt.state);
+  }
+  order.workpiece = 0;
+}
+
 bool StaysWithin(const Context& c, const Order& order, double time_s, const State& s) noexcept {
   const Belt& belt = BeltOf(c, order);
   const BeltSettings& own = order.own;

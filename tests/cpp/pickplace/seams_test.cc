@@ -177,7 +177,8 @@ class SeamsRun {
   void WatchSwitches() {
     const std::array<std::pair<std::size_t, std::size_t>, 4> axes = {{{0, 0}, {1, 1}, {kFirstReal, 0}, {kFirstReal + 1, 1}}};
     for (std::size_t n = 0; n < axes.size(); ++n) {
-      const double v = cell_.rig.states[axes[n].second].setpoint.velocity;
+      const KinematicState& set = cell_.rig.states[axes[n].second].setpoint;
+      const double v = set.velocity;
       for (const int sense : {1, -1}) {
         const auto& inputs = sense > 0 ? cell_.state.inputs.hw_limit_positive : cell_.state.inputs.hw_limit_negative;
         const bool closed = cell_.state.inputs.enable && cell_.state.inputs.enable_hw_limit && inputs[axes[n].first];
@@ -188,7 +189,8 @@ class SeamsRun {
           ASSERT_LE(sense * v, 1e-6) << "axis " << axes[n].second << ", state "
                                      << static_cast<int>(cell_.state.state);
         }
-        rested = closed && sense * v <= 1e-6;
+        // One that goes away from it with an acceleration towards it is not braked within no time.
+        rested = closed && sense * v <= 1e-6 && (rested || sense * set.acceleration <= 1e-6);
       }
     }
   }
@@ -201,7 +203,9 @@ class SeamsRun {
     const bool jogs = cell_.state.state == M::kJogPos || cell_.state.state == M::kJogNeg;
     if (jogs || cell_.state.state == M::kService) Excuse();  // by hand it goes anywhere
     if (!over || height > kUpFrom - kRound) {
-      const bool alone = cell_.rig.state.state == group::GroupState::kDisabled || cell_.state.state == M::kError;
+      const group::GroupState state = cell_.rig.state.state;
+      const bool alone = state == group::GroupState::kDisabled || state == group::GroupState::kErrorStop ||
+                         cell_.state.state == M::kError;
       if (!jogs && !alone && !cell_.state.inputs.stop_all) excused_ = false;
       was_over_ = over;
       return;
