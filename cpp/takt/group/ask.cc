@@ -1,5 +1,8 @@
 #include "takt/group/ask.h"
 
+#include <algorithm>
+
+#include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
 #include "takt/group/rides.h"
 #include "takt/group/systems.h"
@@ -8,19 +11,44 @@ namespace takt::group {
 
 namespace {
 
+// A path that begins on what moves, as it is expected to lie in the MCS: from where the carrier will have taken the tool
+// when it begins to where the target will be when it arrives.
+void FromCarrier(const Context& c, const State& s, Question& question) {
+  const LookAhead& ahead = c.ahead;
+  const Stretch& next = ahead.next;
+  const Ride& from = ahead.rides[next.from_ride % kRides];
+  const Ride& to = ahead.rides[next.to_ride % kRides];
+  const double begin_s = std::max(0.0, ahead.end_eta - Now(c)), end_s = std::max(begin_s, next.eta_end - Now(c));
+  const Frame begin = DisplacementOf(c, from, begin_s).GetFrame();
+  const Frame target =
+      DisplacementOf(c, to, end_s).GetFrame() * path::PointAt(next.segment, next.segment.length).frame;
+  Request& move = question.move;
+  move.kind = move.kind == MoveKind::kArch ? MoveKind::kArch : MoveKind::kLinear;
+  move.relative = false;
+  move.system = CoordinateSystem::kMcs;
+  move.cargo = {};
+  move.frame = kinematics::ToPose(target);
+  std::fill_n(move.to.begin(), kToolNumbers, 0.0);
+  std::fill_n(move.to.begin() + kToolNumbers, c.kinematics->count, kNotGiven);
+  JointsAt(c, begin * ahead.end_tool, s.joints, question.from);
+  if (question.follows) question.before.segment = Moved(begin, question.before.segment);
+}
+
 Question QuestionOf(const Context& c, const State& s) {
   const LookAhead& ahead = c.ahead;
   Question question;
   question.group = c.number;
   question.number = s.planning.question;
   question.move = MoveAt(s, s.planning.move);
-  if (question.move.cargo.carrier != 0) {  // where it will be
-    question.move.cargo = {};
-    question.move.frame = kinematics::ToPose(ReferenceOf(ahead.rides[ahead.next.to_ride % kRides]));
-  }
   question.from = ahead.end_joints;
   question.follows = ahead.known && ahead.count > 0;
   if (question.follows) question.before = ahead[ahead.end() - 1];
+  if (BeginsOnCarrier(c)) {
+    FromCarrier(c, s, question);
+  } else if (question.move.cargo.carrier != 0) {  // where it will be
+    question.move.cargo = {};
+    question.move.frame = kinematics::ToPose(ReferenceOf(ahead.rides[ahead.next.to_ride % kRides]));
+  }
   question.limits = ahead.window.limits();
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
@@ -36,6 +64,16 @@ Question QuestionOf(const Context& c, const State& s) {
 
 bool HasWorkspace(const Context& c, const State& s) noexcept {
   return c.questions != nullptr && c.params.workspace && HasTool(c, s);
+}
+
+bool BeginsOnCarrier(const Context& c) noexcept {
+  return c.ahead.rides[c.ahead.next.from_ride % kRides].displaces;
+}
+
+bool CanAsk(const Context& c, const State& s) noexcept {
+  if (!HasWorkspace(c, s)) return false;
+  const MoveKind kind = MoveAt(s, s.planning.move).kind;
+  return !BeginsOnCarrier(c) || kind == MoveKind::kLinear || kind == MoveKind::kDirect || kind == MoveKind::kArch;
 }
 
 void Ask(const Context& c, State& s) noexcept {

@@ -8,6 +8,11 @@ namespace takt::group {
 // Somebody knows what stands around the mechanism.
 bool HasWorkspace(const Context& c, const State& s) noexcept;
 
+// The path that is planned begins on what moves.
+bool BeginsOnCarrier(const Context& c) noexcept;
+// And can be asked about: arcs and paths of the machine file that begin there cannot.
+bool CanAsk(const Context& c, const State& s) noexcept;
+
 // Goes into Stage::kCheck with the move that is planned, from where `ahead` ends.
 void Ask(const Context& c, State& s) noexcept;
 

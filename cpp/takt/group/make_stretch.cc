@@ -102,17 +102,6 @@ path::Circle InBase(const Frame& system, const path::Circle& circle, const KDL::
   return out;
 }
 
-path::Segment InBase(const Frame& system, const path::Segment& segment) {
-  path::Segment out = segment;
-  out.place[0] = ToTriple(system * ToVector(segment.place[0]));
-  for (std::size_t i = 1; i < out.place.size(); ++i) out.place[i] = ToTriple(system.M * ToVector(segment.place[i]));
-  for (path::Triple& turn : out.turn) turn = ToTriple(system.M * ToVector(turn));
-  const std::array<double, 4>& q = segment.base;
-  (system.M * KDL::Rotation::Quaternion(q[0], q[1], q[2], q[3]))
-      .GetQuaternion(out.base[0], out.base[1], out.base[2], out.base[3]);
-  return out;
-}
-
 ErrorId AlongPath(const Context& c, const Request& move, std::uint32_t element, const Frame& system, LookAhead& ahead,
                   State& s) {
   const PathPiece& piece = c.paths[move.path].pieces[element];
@@ -120,7 +109,7 @@ ErrorId AlongPath(const Context& c, const Request& move, std::uint32_t element, 
   if (piece.velocity > 0) one.limits.velocity = std::min(one.limits.velocity, piece.velocity);
   const path::Auxiliaries auxiliaries = Behind(ahead.end_joints, c.kinematics->count);
   if (piece.shape == ElementShape::kSpline) {
-    ahead.next.segment = InBase(system, piece.segment);
+    ahead.next.segment = Moved(system, piece.segment);
     ahead.next.limits = one.limits;
     const KDL::Vector gap = path::PointAt(ahead.next.segment, 0).frame.p - ahead.end_tool.p;
     if (gap.Norm() <= 1e-3) return ErrorId::kNone;
@@ -198,6 +187,17 @@ ErrorId OffRide(const Context& c, const Request& move, const kinematics::Joints&
 }
 
 }  // namespace
+
+path::Segment Moved(const Frame& system, const path::Segment& segment) noexcept {
+  path::Segment out = segment;
+  out.place[0] = ToTriple(system * ToVector(segment.place[0]));
+  for (std::size_t i = 1; i < out.place.size(); ++i) out.place[i] = ToTriple(system.M * ToVector(segment.place[i]));
+  for (path::Triple& turn : out.turn) turn = ToTriple(system.M * ToVector(turn));
+  const std::array<double, 4>& q = segment.base;
+  (system.M * KDL::Rotation::Quaternion(q[0], q[1], q[2], q[3]))
+      .GetQuaternion(out.base[0], out.base[1], out.base[2], out.base[3]);
+  return out;
+}
 
 ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element, LookAhead& ahead, State& s) noexcept {
   const bool rides = Moves(ahead.rides[ahead.end_ride % kRides]);

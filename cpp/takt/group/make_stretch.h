@@ -11,6 +11,9 @@ inline constexpr double kUnlimited = 1e12;
 // Fills `ahead.next` from where `ahead` ends. An error: there is no such path (State::problem and reason say why).
 ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element, LookAhead& ahead, State& s) noexcept;
 
+// The same segment, seen from where a frame is seen from.
+path::Segment Moved(const Frame& frame, const path::Segment& segment) noexcept;
+
 // How many stretches a move is made of; of an arch, once the first is made.
 std::size_t ElementsOf(const Context& c, const Request& move) noexcept;
 

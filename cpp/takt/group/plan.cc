@@ -88,7 +88,7 @@ void GoBackToTrial(LookAhead& ahead) {
 void EndTrial(const Context& c, State& s) {
   GoBackToTrial(c.ahead);
   BeginAgain(true, s);
-  if (HasWorkspace(c, s)) Ask(c, s);
+  if (CanAsk(c, s)) Ask(c, s);
 }
 
 void NextElement(const Context& c, State& s) {
@@ -245,11 +245,6 @@ void TakeNextTool(const Context& c, const State& s) {
   if (ride.displaces) ahead.next_tool = ReferenceOf(ride) * ahead.next_tool;
 }
 
-// A path that begins on what moves cannot be looked at from outside: where it will be is not known there.
-bool CanAsk(const Context& c) {
-  return !c.ahead.rides[c.ahead.next.from_ride % kRides].displaces;
-}
-
 // Per mm or whatever the path counts: what is less is rounding.
 constexpr double kTowardsAlong = 1e-6;
 
@@ -320,7 +315,7 @@ void Verify(const Context& c, int& budget, State& s) {
     c.ahead.end_eta = c.ahead.next.eta_end;
     c.ahead.tried_way += c.ahead.next.to;
     NextElement(c, s);
-  } else if (!IsPath(s) && HasWorkspace(c, s) && CanAsk(c)) {
+  } else if (!IsPath(s) && CanAsk(c, s)) {
     Ask(c, s);
   } else {
     s.planning.stage = Stage::kJoin;

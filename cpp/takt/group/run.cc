@@ -32,10 +32,16 @@ constexpr double kTowards_s = 1e-6;  // u/s, mm/s or rad/s: less is rounding
 
 // Whether the next set points go towards a limit switch that is on, and are no braking.
 bool GoesToClosed(const Context& c, const kinematics::JointMotion& motion, const MovingFrame* tool, State& s) {
-  if (s.ends || s.interrupted) return false;
+  const bool brakes = s.ends || s.interrupted;
+  if (brakes && s.lets_go) return false;
   const Directions closed = ClosedNow(c, s);
   if (!closed.any()) return false;
-  s.refused = TakenOf(closed, s, motion.velocity, tool, kTowards_s);
+  const Directions taken = TakenOf(closed, s, motion.velocity, tool, kTowards_s);
+  if (brakes) {  // in step: a carrier that takes the tool there is let go of
+    s.lets_go = taken.any();
+    return false;
+  }
+  s.refused = taken;
   return s.refused.any();
 }
 

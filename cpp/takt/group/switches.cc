@@ -9,8 +9,9 @@ Directions ClosedNow(const Context& c, const State& s) noexcept {
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
     const axis::State& member = MemberOf(c, s, k);
-    if (member.limit_positive) closed.positive |= 1u << k;
-    if (member.limit_negative) closed.negative |= 1u << k;
+    // A switch that turns on is a fault of the axis, which all brake for along the path.
+    if (member.limit_positive && member.limit_positive_before) closed.positive |= 1u << k;
+    if (member.limit_negative && member.limit_negative_before) closed.negative |= 1u << k;
   }
   return closed;
 }

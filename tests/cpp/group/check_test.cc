@@ -2,6 +2,7 @@
 #include <random>
 
 #include "../core/allocations.h"
+#include "belts.h"
 #include "machines.h"
 #include "takt/group/survey.h"
 #include "watch.h"
@@ -519,6 +520,49 @@ TEST(Check, TakesNoMemoryInTheCycle) {
   EXPECT_EQ(AllocationsOfThisThread() - before, 0);
   EXPECT_EQ(answered, 1u);
   EXPECT_GT(rig.states[0].setpoint.position, 10);
+}
+
+// GR-45: a path that begins on what moves is asked about, too, as it will lie in the MCS: from where the carrier takes the
+// tool to where the target will be. Nothing of it is gone before the answer.
+TEST(Check, PathsThatBeginOnABelt) {
+  for (const double speed : {0.0, 120.0}) {
+    for (const bool stays : {false, true}) {  // on the belt, or off it
+      SCOPED_TRACE(testing::Message() << speed << (stays ? ", on the belt" : ", off it"));
+      Rig rig = WatchedGantry();
+      const auto belts = Put(rig, {BeltAt("belt", {0, 200, 0, 0, 0, 0}, [=](double t) { return Steady(t, speed); })});
+      rig.Start();
+      rig.Give(SetDynCoordTransform{.pcs = 3, .carrier = Name::Of("belt"), .x = 50});
+      RunAnswering(rig, rig.Give(MoveLinearAbsolute{
+                            .x = 0, .y = 0, .z = 0, .coordinate_system = CoordinateSystem::kPcs, .pcs = 3}));
+      rig.Run(0.3);
+      Asked(rig);
+      const KDL::Vector left = ToolOf(rig).p;
+      const Ticket move = stays ? rig.Give(MoveLinearAbsolute{
+                                      .z = 40, .coordinate_system = CoordinateSystem::kPcs, .pcs = 3})
+                                : rig.Give(MoveLinearAbsolute{.x = 10, .y = 0, .z = 30});
+      rig.Run(0.05);
+      const std::optional<Question> question = Asked(rig);
+      ASSERT_TRUE(question);
+      EXPECT_NEAR(ToolOf(rig).p.y(), 200, 1e-6);
+      EXPECT_NEAR(ToolOf(rig).p.z(), 0, 1e-6);
+      EXPECT_NEAR(ToolOf(rig).p.x(), left.x() + 0.05 * speed, 1e-6);
+      EXPECT_NEAR(question->from[0], left.x() + 0.01 * speed, 0.05 * speed + 1e-6);
+      EXPECT_NEAR(question->from[1], 200, 1e-6);
+      EXPECT_EQ(question->move.cargo.carrier, 0u);
+      const Pose& target = question->move.frame;
+      EXPECT_NEAR(target.y, stays ? 200 : 0, 1e-6);
+      EXPECT_NEAR(target.z, stays ? 40 : 30, 1e-6);
+      if (stays) {
+        EXPECT_GE(target.x, left.x() + 0.1 * speed);
+        EXPECT_LE(target.x, left.x() + 0.5 * speed + 1e-6);
+      } else {
+        EXPECT_NEAR(target.x, 10, 1e-6);
+      }
+      rig.Give(Blocked(*question));
+      ASSERT_TRUE(rig.RunToEnd(move, 0.5));
+      EXPECT_EQ(rig.lives[move].error_id, ErrorId::kCollision);
+    }
+  }
 }
 
 }  // namespace
