@@ -91,6 +91,11 @@ void DescribeDirect(Description<MoveDirect<kReference>>& d) {
   using M = MoveDirect<kReference>;
   DescribeNumbers(d);
   DescribeSystem(d);
+  d.template defaulted<&M::shoulder>(
+      "To a pose: with the arm facing so. Keep, as that of the others: of all configurations and turns within the axes' "
+      "ranges the one that the axes reach first.");
+  d.template defaulted<&M::elbow>("To a pose: with the elbow so.");
+  d.template defaulted<&M::wrist>("To a pose: with the wrist so.");
   d.template defaulted<&M::velocity_factor>(kFactors, "Of the axes' largest velocities.");
   d.template defaulted<&M::acceleration_factor>(kFactors, "Of their largest accelerations.");
   d.template defaulted<&M::jerk_factor>(kFactors, "Of their largest jerks.");

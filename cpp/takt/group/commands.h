@@ -77,6 +77,10 @@ struct MoveDirect {  // MC_MoveDirectAbsolute, MC_MoveDirectRelative
   std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
   CoordinateSystem coordinate_system = CoordinateSystem::kAcs;
   std::uint32_t pcs = 1;
+  // Of a pose; keep: whatever is nearest.
+  kinematics::Shoulder shoulder = kinematics::Shoulder::kKeep;
+  kinematics::Elbow elbow = kinematics::Elbow::kKeep;
+  kinematics::Wrist wrist = kinematics::Wrist::kKeep;
   double velocity_factor = 1;      // of the axes' own limits
   double acceleration_factor = 1;  // the same
   double jerk_factor = 1;          // the same

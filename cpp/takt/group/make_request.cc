@@ -93,6 +93,7 @@ struct RequestMaker {
   template <Reference kReference>
   ErrorId Fill(const MoveDirect<kReference>& m) const {
     r.kind = MoveKind::kDirect;
+    r.configuration = {m.shoulder, m.elbow, m.wrist};
     r.relative = kReference == Reference::kRelative;
     r.to = NumbersOf(m);
     r.system = m.coordinate_system;

@@ -230,7 +230,7 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
   // Onto what moves, and off it, the tool goes straight: where the axes are to be in the end is not known.
   if (move.kind == MoveKind::kDirect && !IsCarried(ahead, stretch)) {
     kinematics::Joints target = joints;
-    s.reason = JointsAt(c, to, joints, target);
+    s.reason = NearestJointsAt(c, s, to, move.configuration, ahead.end_joints, target);
     if (s.reason == kinematics::Reason::kNone) return AlongJoints(move, target, ahead, s);
     return s.reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
   }

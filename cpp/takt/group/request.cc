@@ -40,6 +40,7 @@ void describe(Description<Request>& d) {
   d.internal<&R::height>("Of arches.");
   d.internal<&R::ratio>("mm per unit of it.");
   d.internal<&R::limits>("Along the path.");
+  d.internal<&R::configuration>("Direct moves to a pose.");
   d.internal<&R::velocity_factor>("Direct moves: of the axes' velocity.");
   d.internal<&R::acceleration_factor>("Of their acceleration.");
   d.internal<&R::jerk_factor>("Of their jerk.");

@@ -30,18 +30,12 @@ const Stretch* GoOnTo(LookAhead& ahead, double s) {
 
 constexpr double kTowards_s = 1e-6;  // u/s, mm/s or rad/s: less is rounding
 
-// Whether the next set points go towards a limit switch that is on, and are no braking.
+// Whether the next set points go towards a limit switch that is on.
 bool GoesToClosed(const Context& c, const kinematics::JointMotion& motion, const MovingFrame* tool, State& s) {
-  const bool brakes = s.ends || s.interrupted;
-  if (brakes && s.lets_go) return false;
+  if (s.state == GroupState::kErrorStop) return false;  // braked for a switch, along the path
   const Directions closed = ClosedNow(c, s);
   if (!closed.any()) return false;
-  const Directions taken = TakenOf(closed, s, motion.velocity, tool, kTowards_s);
-  if (brakes) {  // in step: a carrier that takes the tool there is let go of
-    s.lets_go = taken.any();
-    return false;
-  }
-  s.refused = taken;
+  s.refused = TakenOf(closed, s, motion.velocity, tool, kTowards_s);
   return s.refused.any();
 }
 

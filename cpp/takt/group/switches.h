@@ -1,8 +1,8 @@
 // Limit switches that are on: nothing moves towards them (PP-60).
 //
-// Invariant: while a switch is on, no motion along a path goes towards it but one that is being braked. Planning refuses
-// a move that would (kAwayFromLimitOnly); where a motion turns to it afterwards, as carriers may make it, the group is
-// stopped before the set point is given.
+// Invariant: while a switch is on, no motion along a path goes towards it but that which is braked for it. Planning
+// refuses a move that would (kAwayFromLimitOnly); where a motion turns to it afterwards, as carriers and interrupts may
+// make it, each axis brakes by itself before the set point is given.
 #pragma once
 
 #include "takt/group/group.h"

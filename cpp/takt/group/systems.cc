@@ -1,8 +1,10 @@
 #include "takt/group/systems.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "takt/group/rides.h"
+#include "takt/kinematics/solutions.h"
 
 namespace takt::group {
 
@@ -55,6 +57,57 @@ kinematics::Reason JointsAt(const Context& c, const Frame& tcp, const kinematics
             found.begin() + static_cast<std::ptrdiff_t>(c.kinematics->count));
   joints = found;
   return reason;
+}
+
+namespace {
+
+// Both the SW limits of a member and the range of the kinematics.
+kinematics::JointRange RangeOf(const Context& c, const State& s, std::size_t k) {
+  const axis::AxisLimits& limits = c.axes.params[s.members[k] - 1].limits;
+  const kinematics::JointRange& own = c.kinematics->ranges[k];
+  return {std::max(own.lower, limits.lower.value_or(own.lower)), std::min(own.upper, limits.upper.value_or(own.upper))};
+}
+
+// The turn of a rotary axis within its range that is nearest. False: there is none.
+bool TakeTurn(const kinematics::JointRange& range, double near, double& position) {
+  constexpr double kTurn = 360;
+  position += kTurn * std::round((near - position) / kTurn);
+  if (position < range.lower) position += kTurn * std::ceil((range.lower - position) / kTurn);
+  if (position > range.upper) position -= kTurn * std::ceil((position - range.upper) / kTurn);
+  return position >= range.lower;
+}
+
+}  // namespace
+
+kinematics::Reason NearestJointsAt(const Context& c, const State& s, const Frame& tcp,
+                                   const kinematics::Configuration& wanted, const kinematics::Joints& near,
+                                   kinematics::Joints& joints) noexcept {
+  const kinematics::Kinematics& kinematics = *c.kinematics;
+  kinematics::Solutions all = kinematics::SolutionsOf(kinematics, tcp * c.mounting.tool_inverse, wanted, near);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < all.count; ++i) {
+    kinematics::Joints& one = all.of[i];
+    bool admissible = true;
+    double slowest = 0, sum = 0;
+    for (std::size_t k = 0; k < kinematics.count && admissible; ++k) {
+      const kinematics::JointRange range = RangeOf(c, s, k);
+      if (kinematics.kinds[k] == kinematics::JointKind::kRotary) {
+        admissible = TakeTurn(range, near[k], one[k]);
+      } else {
+        admissible = one[k] >= range.lower && one[k] <= range.upper;
+      }
+      const double time = std::abs(one[k] - near[k]) / c.axes.params[s.members[k] - 1].limits.velocity;
+      slowest = std::max(slowest, time);
+      sum += time;
+    }
+    // Where the slowest axis is the same the others decide.
+    const double cost = slowest + 1e-3 * sum;
+    if (!admissible || cost >= least) continue;
+    least = cost;
+    std::copy_n(one.begin(), kinematics.count, joints.begin());
+  }
+  if (least < std::numeric_limits<double>::infinity()) return kinematics::Reason::kNone;
+  return all.count > 0 ? kinematics::Reason::kAxisLimit : all.reason;
 }
 
 bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints) noexcept {

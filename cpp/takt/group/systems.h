@@ -27,6 +27,11 @@ kinematics::Reason ToolAt(const Context& c, const kinematics::Joints& joints, Fr
 // The axes for a TCP in the MCS, the others as in `near`.
 kinematics::Reason JointsAt(const Context& c, const Frame& tcp, const kinematics::Joints& near,
                             kinematics::Joints& joints) noexcept;
+// The nearest position of the axes for a TCP in the MCS, of those within all ranges, in all configurations and turns
+// that `wanted` leaves (GR-44): that which the slowest axis reaches first from `near` at its velocity limit.
+kinematics::Reason NearestJointsAt(const Context& c, const State& s, const Frame& tcp,
+                                   const kinematics::Configuration& wanted, const kinematics::Joints& near,
+                                   kinematics::Joints& joints) noexcept;
 // Whether all members are within their SW limits and those of the kinematics.
 bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints) noexcept;
 

@@ -67,12 +67,6 @@ Joints RatesToAxes(const Kinematics& k, const Joints& rates) {
   return out;
 }
 
-Joints ToAxes(const Kinematics& k, const Joints& joints) {
-  Joints out = RatesToAxes(k, joints);
-  for (std::size_t i = 0; i < k.count; ++i) out[i] += k.scales[i].zero;
-  return out;
-}
-
 Joints Middles(const Kinematics& k) {
   Joints out{};
   for (std::size_t i = 0; i < k.count; ++i) {
@@ -108,6 +102,12 @@ Reason ForwardOfAny(const Kinematics& k, const From& own, To& tool) {
 Joints ToMechanism(const Kinematics& k, const Joints& joints) noexcept {
   Joints out{};
   for (std::size_t i = 0; i < k.count; ++i) out[i] = (joints[i] - k.scales[i].zero) * k.scales[i].factor;
+  return out;
+}
+
+Joints ToAxes(const Kinematics& k, const Joints& joints) noexcept {
+  Joints out = RatesToAxes(k, joints);
+  for (std::size_t i = 0; i < k.count; ++i) out[i] += k.scales[i].zero;
   return out;
 }
 

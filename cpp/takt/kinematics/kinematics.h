@@ -60,6 +60,8 @@ MakeResult Make(const KinematicsParams& params, std::string_view folder = ".");
 
 // Positions of the axes in the mechanism's own numbers, mm and rad.
 Joints ToMechanism(const Kinematics& kinematics, const Joints& joints) noexcept;
+// And the other way round.
+Joints ToAxes(const Kinematics& k, const Joints& joints) noexcept;
 
 // Where the tool is. kOutOfReach, kSingular: no such position (Delta). The result is of use with kNone only.
 Reason Forward(const Kinematics& kinematics, const Joints& joints, Frame& tool) noexcept;

@@ -114,7 +114,7 @@ MakeResult Make(const KinematicsParams& params, std::string_view folder) {
     std::string why;
     urdf = ReadUrdf(*text, params.serial->base, params.serial->tip, why);
     if (!urdf) return Refused("serial", (inside ? "" : path.string() + ": ") + why);
-    k.mechanism = Serial{urdf->chain, urdf->links};
+    k.mechanism = Serial{urdf->chain, urdf->links, Recognise(urdf->chain)};
     TakeKinds(urdf->chain, k);
   }
   if (std::string why = TakeScales(params.joints, k); !why.empty()) return Refused("joints", std::move(why));

@@ -14,12 +14,27 @@
 
 #include "takt/core/name.h"
 #include "takt/kinematics/chain.h"
+#include "takt/kinematics/six_axis.h"
 
 namespace takt::kinematics {
+
+// A chain with the geometry of an articulated arm with a spherical wrist (six_axis.h), however its file puts its axes:
+// tool = base * arm(zero + sign * joints) * flange.
+struct ClosedForm {
+  bool known = false;
+  SixAxis arm;
+  Frame base;
+  Frame flange;
+  std::array<double, 6> zero{};  // rad
+  std::array<double, 6> sign{};
+};
+// Finds it by the lines of the axes. Not known: the chain is of another kind.
+ClosedForm Recognise(const Chain& chain);
 
 struct Serial {
   Chain chain;
   std::array<Name, kMaxJoints> links{};  // what each axis moves, as URDF calls it
+  ClosedForm closed{};
 };
 
 // The position found is the one that the axes given as near run into, on the same side of all singularities: where a

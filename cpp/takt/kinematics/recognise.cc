@@ -1,0 +1,114 @@
+// Articulated arms with a spherical wrist among serial chains, by the lines of their axes: axes 2 and 3 parallel, axis 1
+// and axis 4 perpendicular to them, axes 4, 5 and 6 through one point and perpendicular one to the next. What is left
+// open, where each axis counts from and which way, follows from the chain at rest. Ours; the arm's form itself is that
+// of Brandstoetter, Angerer, Hofbaur: An Analytical Solution of the Inverse Kinematics Problem of Industrial Serial
+// Manipulators with an Ortho-parallel Basis and a Spherical Wrist (2014).
+#include <cmath>
+
+#include "takt/kinematics/serial.h"
+
+namespace takt::kinematics {
+
+namespace {
+
+// Files give angles with few digits: solutions are made exact afterwards (solutions.cc).
+constexpr double kAngle = 2e-3;  // rad
+constexpr double kPart = 1e-3;   // of the arm's length
+constexpr int kTrials = 4;
+
+struct Line {
+  KDL::Vector point, along;
+};
+
+bool Parallel(const Line& a, const Line& b) {
+  return (a.along * b.along).Norm() < kAngle;
+}
+bool Perpendicular(const Line& a, const Line& b) {
+  return std::abs(KDL::dot(a.along, b.along)) < kAngle;
+}
+
+double Distance(const KDL::Vector& point, const Line& line) {
+  return ((point - line.point) * line.along).Norm();
+}
+
+// The point of `a` that is nearest to `b`, which is not parallel.
+KDL::Vector Nearest(const Line& a, const Line& b) {
+  const double cosine = KDL::dot(a.along, b.along);
+  const KDL::Vector apart = b.point - a.point;
+  const double along = (KDL::dot(apart, a.along) - cosine * KDL::dot(apart, b.along)) / (1 - cosine * cosine);
+  return a.point + along * a.along;
+}
+
+Joints Counted(const ClosedForm& form, const Joints& joints) {
+  Joints out{};
+  for (std::size_t i = 0; i < form.zero.size(); ++i) out[i] = form.zero[i] + form.sign[i] * joints[i];
+  return out;
+}
+
+bool Agrees(const ClosedForm& form, const Chain& chain) {
+  for (int trial = 1; trial <= kTrials; ++trial) {
+    Joints joints{};
+    for (std::size_t i = 0; i < chain.count; ++i) joints[i] = std::sin(trial * (1.3 + static_cast<double>(i)));
+    const Frame own = form.base * Forward(form.arm.chain, Counted(form, joints)) * form.flange;
+    const Frame wanted = Forward(chain, joints);
+    if ((own.p - wanted.p).Norm() > 10 * kPart * chain.length) return false;
+    if (KDL::diff(own.M, wanted.M).Norm() > 10 * kAngle) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+ClosedForm Recognise(const Chain& chain) {
+  ClosedForm form;
+  if (chain.count != form.zero.size()) return form;
+  std::array<Line, 6> axes;
+  Frame at = Frame::Identity();
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (chain.links[i].kind != JointKind::kRotary) return form;
+    at = at * chain.links[i].before;
+    axes[i] = {at.p, at.M * chain.links[i].axis};
+  }
+  const double near = kPart * chain.length;
+  const KDL::Vector wrist = Nearest(axes[3], axes[4]);
+  const bool spherical = Distance(wrist, axes[4]) < near && Distance(wrist, axes[5]) < near;
+  const bool upright = Perpendicular(axes[0], axes[1]) && Parallel(axes[1], axes[2]) &&
+                       Perpendicular(axes[2], axes[3]) && Perpendicular(axes[3], axes[4]) &&
+                       Perpendicular(axes[4], axes[5]);
+  if (!spherical || !upright) return form;
+  const KDL::Vector& z = axes[0].along;
+  KDL::Vector y = axes[1].along - KDL::dot(axes[1].along, z) * z;
+  y = y / y.Norm();
+  const KDL::Vector x = y * z;
+  form.base = Frame(KDL::Rotation(x, y, z), axes[0].point + KDL::dot(axes[1].point - axes[0].point, z) * z);
+  const auto seen = [&](const KDL::Vector& v) { return form.base.M.Inverse() * v; };
+  const auto place = [&](const KDL::Vector& p) { return form.base.Inverse() * p; };
+  const KDL::Vector second = place(axes[1].point), third = place(axes[2].point), center = place(wrist);
+  const KDL::Vector upper = third - second, fore = center - third;
+  const double c2 = std::hypot(upper.x(), upper.z());
+  if (c2 < near) return form;
+  const double lean = std::atan2(upper.x(), upper.z());
+  const KDL::Vector fourth = seen(axes[3].along);
+  const double turned = std::atan2(fourth.x(), fourth.z());
+  const KDL::Vector forearm_x(std::cos(turned), 0, -std::sin(turned)), forearm_z(std::sin(turned), 0, std::cos(turned));
+  const SixAxisLengths lengths{.a1 = second.x(),
+                               .a2 = KDL::dot(fore, forearm_x),
+                               .b = center.y(),
+                               .c1 = 0,
+                               .c2 = c2,
+                               .c3 = KDL::dot(fore, forearm_z),
+                               .c4 = 0};
+  if (std::hypot(lengths.a2, lengths.c3) < near) return form;
+  const KDL::Vector fifth = seen(axes[4].along), sixth = seen(axes[5].along);
+  const double roll = std::atan2(-KDL::dot(fifth, forearm_x), fifth.y());
+  const KDL::Vector bent = std::cos(roll) * forearm_x + KDL::Vector(0, std::sin(roll), 0);
+  const double bend = std::atan2(KDL::dot(sixth, bent), KDL::dot(sixth, forearm_z));
+  form.arm = MakeSixAxis(lengths);
+  form.zero = {0, lean, turned - lean, roll, bend, 0};
+  form.sign = {1, 1, KDL::dot(axes[2].along, axes[1].along) > 0 ? 1.0 : -1.0, 1, 1, 1};
+  form.flange = (form.base * Forward(form.arm.chain, Counted(form, {}))).Inverse() * (at * chain.tool);
+  form.known = Agrees(form, chain);
+  return form;
+}
+
+}  // namespace takt::kinematics
