@@ -21,18 +21,27 @@ void TakeReason(Reason reason, Solutions& out) {
   if (reason != Reason::kOutOfReach) out.reason = reason;
 }
 
-template <typename Mechanism>
-void Try(const Kinematics& k, const Mechanism& mechanism, const Frame& tool, const Configuration& in,
-         const Joints& present, Solutions& out) {
-  Joints own{};
-  const Reason reason = Inverse(mechanism, tool, in, present, own);
-  if (reason != Reason::kNone) return TakeReason(reason, out);
+void Add(const Kinematics& k, const Configuration& in, const Joints& own, Solutions& out) {
   const Joints found = ToAxes(k, own);
   const bool finite = std::all_of(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(k.count),
                                   [](double position) { return std::isfinite(position); });
   if (!finite || out.count == kMostSolutions) return;
   out.in[out.count] = in;
   out.of[out.count++] = found;
+}
+
+bool IsThere(const Chain& chain, const Joints& own, const Frame& tool) {
+  const Frame at = Forward(chain, own);
+  return (at.p - tool.p).Norm() <= kSlack && KDL::diff(at.M, tool.M).Norm() <= kSlack;
+}
+
+template <typename Mechanism>
+void Try(const Kinematics& k, const Mechanism& mechanism, const Frame& tool, const Configuration& in,
+         const Joints& present, Solutions& out) {
+  Joints own{};
+  const Reason reason = Inverse(mechanism, tool, in, present, own);
+  if (reason != Reason::kNone) return TakeReason(reason, out);
+  Add(k, in, own, out);
 }
 
 void TryAll(const Kinematics& k, const SixAxis& arm, const Frame& tool, const Configuration& wanted,
@@ -73,7 +82,11 @@ void TryAll(const Kinematics& k, const Serial& serial, const Frame& tool, const 
           continue;
         }
         for (std::size_t i = 0; i < serial.chain.count; ++i) arm[i] = form.sign[i] * (arm[i] - form.zero[i]);
-        Try(k, serial, tool, {shoulder, elbow, wrist}, arm, out);
+        if (IsThere(serial.chain, arm, tool)) {
+          Add(k, {shoulder, elbow, wrist}, arm, out);
+        } else {
+          Try(k, serial, tool, {shoulder, elbow, wrist}, arm, out);
+        }
       }
     }
   }

@@ -63,6 +63,8 @@ std::vector<PtpCase> PtpCases() {
   cases.push_back({"URDF, Puma", Arm(std::string(TAKT_SOURCE_DIR) + "/tests/cpp/kinematics/puma.urdf"), puma});
   for (PtpCase& one : cases) {
     for (std::size_t k = 0; k < one.ranges.size(); ++k) {
+      const kinematics::JointRange& own = one.rig.kinematics->ranges[k];
+      one.ranges[k] = {std::max(one.ranges[k].lower, own.lower), std::min(one.ranges[k].upper, own.upper)};
       one.rig.axes[k].limits.lower = one.ranges[k].lower;
       one.rig.axes[k].limits.upper = one.ranges[k].upper;
     }
@@ -115,6 +117,7 @@ TEST(Ptp, TakesAllThatTheAxesReach) {
 TEST(Ptp, InTheConfigurationAsked) {
   Rig rig = SixAxisRobot();
   rig.Start({0, -30, 60, 0, 50, 0});
+  rig.Step();
   const Pose target = kinematics::ToPose(ToolOf(rig));
   int solutions = 0;
   for (const kinematics::Wrist wrist : {kinematics::Wrist::kPositive, kinematics::Wrist::kNegative}) {
