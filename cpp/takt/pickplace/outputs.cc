@@ -75,7 +75,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::missed_too_late>("They left the range.");
   d.internal<&O::missed_interrupted>("The path to them was stopped or aborted.");
   d.internal<&O::missed_refused>("There was no path to them.");
-  d.internal<&O::warning_belt>("The belt that the warning is about, from 1; 0: none. T&P: in ascErrorInfo.");
+  d.internal<&O::warning_belt>("The belt that the warning is about, from 1; 0: none. T&P: ascErrorInfo.");
   d.internal<&O::held>("Products that were picked and not placed yet, as far as profiles tell.");
   d.internal<&O::held_kind>("Kind of the oldest of them, which is placed next; 0: none, or of no kind.");
   d.internal<&O::held_colour>("Its colour, likewise.");
