@@ -274,6 +274,23 @@ def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int) 
 
 
 @cli.command()
+@click.argument("kind", type=click.Choice(["frame", "belt"]))
+@click.argument("file", type=FILE)
+def calibrate(kind: str, file: Path) -> int:
+    """Find the frame of a table, a camera or a belt from points measured with the tool.
+
+    FILE is a table (CSV) with a head. frame: columns x, y, z, as measured: origin, a point on X, a point towards Y;
+    with seen_x, seen_y, seen_z three points or more, wherever they are. belt: columns position (of the belt's axis),
+    x, y, z of one mark; and without a position a point on the belt, towards its Y.
+    """
+    from takt import calibration_files
+
+    for line in calibration_files.lines(kind, file):
+        print(line)
+    return 0
+
+
+@cli.command()
 @click.argument("axis")
 @click.option("--machine", type=FILE, help="Tune on this machine in virtual time.")
 @click.option("--url", type=str, help="Tune on the engine of this LCM network (taktd): the axis, which is on, moves!")

@@ -446,6 +446,11 @@ msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, cons
   m.missed_too_late = o.missed_too_late;
   m.missed_interrupted = o.missed_interrupted;
   m.missed_refused = o.missed_refused;
+  m.warning_belt = o.warning_belt;
+  m.held = o.held;
+  m.held_kind = o.held_kind;
+  m.held_colour = o.held_colour;
+  m.held_quality = o.held_quality;
   m.picks_per_minute = o.picks_per_minute;
   m.internal_control_active = o.internal_control_active;
   m.axes_enabled = o.axes_enabled;

@@ -17,7 +17,7 @@ constexpr double kSeamY = 200, kSeamZ = -50, kUpFrom = 25, kRound = 10;
 constexpr double kLower = 100, kUpper = 500;       // mm, of the range
 constexpr double kLow = kUpFrom - kRound - 1;  // mm over workpieces
 constexpr double kBeltChange = 3000;                // mm/s², at most
-constexpr double kSlip = 0.5;                      // mm
+constexpr double kSlip = 1;                        // mm
 constexpr double kStill = 3;                        // mm/s against the belt
 
 // A belt that runs at one speed after the other, with ramps whose acceleration is a smooth hump.

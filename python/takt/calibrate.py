@@ -1,0 +1,151 @@
+"""Frames from points that were measured with a tool: of tables, cameras and belts, with what is left over.
+
+Points are places of the tool centre point in mm, as a group publishes them, one in each row. Frames come back as poses
+(x, y, z in mm, a, b, c in deg), as `origin` of a belt, `base` of a group or `set_cartesian_transform` take them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from takt.errors import TaktError
+from takt.kinematics import matrix_to_pose
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    Array = npt.NDArray[np.float64]
+
+LEAST_SPREAD = 0.1  # mm: points that are no further apart, or no further from one line, define no frame
+
+
+class CalibrationError(TaktError):
+    """The points define no frame."""
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A frame, and how far each measured point is from where the frame has it."""
+
+    pose: Array  # x, y, z in mm, a, b, c in deg
+    residuals: Array  # mm, one for each point; empty where the points leave none
+    ratio: float | None = None  # of a belt: mm along X per unit of its axis
+
+    @property
+    def largest(self) -> float:
+        """The largest residual in mm; 0 without any."""
+        return float(self.residuals.max(initial=0.0))
+
+    @property
+    def yaml(self) -> str:
+        """The pose as a machine file has it."""
+        numbers = (f"{key}: {value + 0.0:.6g}" for key, value in zip("xyzabc", self.pose, strict=True))
+        return "{" + ", ".join(numbers) + "}"
+
+
+def three_points(origin: npt.ArrayLike, on_x: npt.ArrayLike, on_xy: npt.ArrayLike) -> Calibration:
+    """The frame with this origin, whose X leads to the second point, and whose Y lies on the side of the third one.
+
+    Raises CalibrationError where the points coincide or lie on one line.
+    """
+    o, x, xy = (_points(point, 1, "a point")[0] for point in (origin, on_x, on_xy))
+    if np.linalg.norm(x - o) < LEAST_SPREAD:
+        raise CalibrationError(
+            f"the point on X is {np.linalg.norm(x - o):.3g} mm from the origin: measure one further away"
+        )
+    along = (x - o) / np.linalg.norm(x - o)
+    across = (xy - o) - np.dot(xy - o, along) * along
+    if np.linalg.norm(across) < LEAST_SPREAD:
+        raise CalibrationError(
+            f"the third point is {np.linalg.norm(across):.3g} mm from the line through the other two: "
+            "the three must not lie on one line"
+        )
+    return Calibration(_pose(along, across, o), np.empty(0))
+
+
+def fit(seen: npt.ArrayLike, measured: npt.ArrayLike) -> Calibration:
+    """The frame in which the `seen` points (as of a camera or a drawing) are nearest to the measured ones, by the sum
+    of squares. Three points that do not lie on one line, or more.
+
+    Kabsch, A solution for the best rotation to relate two sets of vectors, Acta Crystallographica A32 (1976).
+    """
+    a, b = _points(seen, 3, "seen points"), _points(measured, 3, "measured points")
+    if len(a) != len(b):
+        raise CalibrationError(f"there are {len(a)} seen points and {len(b)} measured ones: expected as many of both")
+    for points, name in ((a, "seen"), (b, "measured")):
+        _refuse_line(points, name)
+    centre_a, centre_b = a.mean(axis=0), b.mean(axis=0)
+    u, _, vt = np.linalg.svd((a - centre_a).T @ (b - centre_b))
+    mirror = np.sign(np.linalg.det(vt.T @ u.T))
+    rotation = vt.T @ np.diag([1.0, 1.0, mirror]) @ u.T
+    offset = centre_b - rotation @ centre_a
+    return Calibration(_to_pose(rotation, offset), np.linalg.norm(a @ rotation.T + offset - b, axis=1))
+
+
+def belt(positions: npt.ArrayLike, measured: npt.ArrayLike, beside: npt.ArrayLike) -> Calibration:
+    """The origin and the ratio of a straight belt: of one mark on it, measured at two or more positions of the belt's
+    axis (u), and of a point `beside` it, on the belt and towards its Y. The origin is where the mark is at position 0.
+
+    Raises CalibrationError where the mark did not move, or the point is on its line.
+    """
+    at = np.asarray(positions, dtype=float).reshape(-1)
+    points = _points(measured, 2, "measured points")
+    if len(at) != len(points):
+        raise CalibrationError(f"there are {len(at)} positions and {len(points)} points: expected one for each")
+    spread = at - at.mean()
+    if not np.any(spread):
+        raise CalibrationError(
+            "all points were measured at one position of the belt's axis: move the belt between them"
+        )
+    slope = spread @ (points - points.mean(axis=0)) / (spread @ spread)
+    ratio = float(np.linalg.norm(slope))
+    if ratio * np.ptp(at) < LEAST_SPREAD:
+        raise CalibrationError(
+            f"the mark moved {ratio * np.ptp(at):.3g} mm: measure it at least {LEAST_SPREAD} mm apart"
+        )
+    along = slope / ratio
+    origin = points.mean(axis=0) - at.mean() * slope
+    side = _points(beside, 1, "a point")[0] - origin
+    across = side - np.dot(side, along) * along
+    if np.linalg.norm(across) < LEAST_SPREAD:
+        raise CalibrationError(
+            f"the point beside is {np.linalg.norm(across):.3g} mm from the line of the mark: it must not lie on it"
+        )
+    residuals = np.linalg.norm(origin + np.outer(at, slope) - points, axis=1)
+    return Calibration(_pose(along, across, origin), residuals, ratio)
+
+
+def _points(values: npt.ArrayLike, least: int, name: str) -> Array:
+    points = np.atleast_2d(np.asarray(values, dtype=float))
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise CalibrationError(f"{name}: expected x, y, z in each row, found {points.shape[-1]} numbers")
+    if len(points) < least:
+        raise CalibrationError(f"{name}: expected at least {least}, found {len(points)}")
+    if not np.all(np.isfinite(points)):
+        row = int(np.argmin(np.isfinite(points).all(axis=1)))
+        raise CalibrationError(f"{name}: point {row + 1} is not finite: {', '.join(f'{v:g}' for v in points[row])}")
+    return points
+
+
+def _refuse_line(points: Array, name: str) -> None:
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    if spread[1] < LEAST_SPREAD:
+        raise CalibrationError(
+            f"the {name} points lie within {spread[1]:.3g} mm of one line: measure one beside it"
+            if spread[0] >= LEAST_SPREAD
+            else f"the {name} points lie within {spread[0]:.3g} mm of one another: measure them further apart"
+        )
+
+
+def _pose(along: Array, across: Array, origin: Array) -> Array:
+    y = across / np.linalg.norm(across)
+    return _to_pose(np.column_stack([along, y, np.cross(along, y)]), origin)
+
+
+def _to_pose(rotation: Array, offset: Array) -> Array:
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = rotation, offset
+    return np.asarray(matrix_to_pose(matrix))

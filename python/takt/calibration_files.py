@@ -1,0 +1,75 @@
+"""Tables of measured points, as `takt calibrate` reads them."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+
+from takt import calibrate
+from takt.calibrate import Calibration, CalibrationError
+
+MEASURED = ("x", "y", "z")
+SEEN = ("seen_x", "seen_y", "seen_z")
+
+
+def lines(kind: str, file: Path) -> Iterator[str]:
+    """What there is to be said of the points in a file: the pose, and how far each point is from it."""
+    rows = _read(file)
+    found = _belt(file, rows) if kind == "belt" else _frame(file, rows)
+    yield f"origin: {found.yaml}"
+    if found.ratio is not None:
+        yield f"ratio: {found.ratio:.6g}"
+    for number, residual in enumerate(found.residuals, 1):
+        yield f"point {number}: {residual:.3f} mm off"
+    if len(found.residuals):
+        yield f"largest residual: {found.largest:.3f} mm"
+
+
+def _read(file: Path) -> list[dict[str, str]]:
+    with file.open(encoding="utf-8-sig", newline="") as source:
+        rows = list(csv.DictReader(source))
+    if not rows:
+        raise CalibrationError(f"{file}: expected a head and a row for each point, found no row")
+    missing = [name for name in MEASURED if name not in rows[0]]
+    if missing:
+        raise CalibrationError(f"{file}: there is no column {missing[0]}; the head says {', '.join(rows[0])}")
+    return rows
+
+
+def _numbers(file: Path, row: int, fields: dict[str, str], names: tuple[str, ...]) -> list[float]:
+    numbers = []
+    for name in names:
+        try:
+            numbers.append(float(fields[name]))
+        except (KeyError, TypeError, ValueError):
+            raise CalibrationError(f"{file}:{row + 2}: {name}: expected a number, found {fields.get(name)!r}") from None
+    return numbers
+
+
+def _frame(file: Path, rows: list[dict[str, str]]) -> Calibration:
+    measured = [_numbers(file, row, fields, MEASURED) for row, fields in enumerate(rows)]
+    if any(name in rows[0] for name in SEEN):
+        return calibrate.fit([_numbers(file, row, fields, SEEN) for row, fields in enumerate(rows)], measured)
+    if len(measured) != 3:
+        raise CalibrationError(
+            f"{file}: expected three points (origin, on X, towards Y), found {len(measured)}; more of them need the "
+            "columns seen_x, seen_y, seen_z"
+        )
+    return calibrate.three_points(*measured)
+
+
+def _belt(file: Path, rows: list[dict[str, str]]) -> Calibration:
+    if "position" not in rows[0]:
+        raise CalibrationError(f"{file}: there is no column position; the head says {', '.join(rows[0])}")
+    positions, measured, beside = [], [], []
+    for row, fields in enumerate(rows):
+        point = _numbers(file, row, fields, MEASURED)
+        if (fields["position"] or "").strip():
+            positions += _numbers(file, row, fields, ("position",))
+            measured.append(point)
+        else:
+            beside.append(point)
+    if len(beside) != 1:
+        raise CalibrationError(f"{file}: expected one row without a position, of a point beside, found {len(beside)}")
+    return calibrate.belt(positions, measured, beside[0])
