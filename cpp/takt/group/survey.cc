@@ -42,6 +42,7 @@ struct Survey::Inside {
       state.members[k] = q.members[k] ? static_cast<std::uint32_t>(k + 1) : 0;
       axes[k].limits.lower = q.ranges[k].lower;
       axes[k].limits.upper = q.ranges[k].upper;
+      axes[k].limits.velocity = q.limits.of[k].velocity;  // by which configurations are chosen
     }
     ahead.window.SetLimits(q.limits);
     GoTo(q.from);
