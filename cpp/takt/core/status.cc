@@ -69,9 +69,10 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kOffPath, "OffPath", "the tool is not where its path was left"},
     ErrorInfo{ErrorId::kNoWorkpiece, "NoWorkpiece", "there is no such workpiece"},
     ErrorInfo{ErrorId::kTooOld, "TooOld", "the command was not taken within its age limit (lcm.command_age_s)"},
-    ErrorInfo{ErrorId::kTiltedEllipse, "TiltedEllipse",
-              "an elliptical profile cannot lead to or from a coordinate system that is turned about A or B of the world; "
-              "use path_mode linear"},
+    ErrorInfo{
+        ErrorId::kTiltedEllipse, "TiltedEllipse",
+        "an elliptical profile cannot lead to or from a coordinate system that is turned about A or B of the world; "
+        "use path_mode linear"},
     ErrorInfo{ErrorId::kMoverDisabled, "MoverDisabled", "the mover is not enabled"},
     ErrorInfo{ErrorId::kCommandMode, "CommandMode",
               "the mover does not accept this in its command mode, or while it moves"},
@@ -131,10 +132,8 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kStreamEnded, "StreamEnded", "no set point of the stream has come within its timeout"},
     ErrorInfo{ErrorId::kGroupDeviation, "ERRPOSG", "an axis of the group had too large a following error"},
     ErrorInfo{ErrorId::kTooManyWorkpieces, "TooManyWorkpieces", "the belt holds as many workpieces as it can"},
-    ErrorInfo{ErrorId::kModuleSoftLimitPositive, "SWLimitPos",
-              "an axis of the module is at its upper SW limit"},
-    ErrorInfo{ErrorId::kModuleSoftLimitNegative, "SWLimitNeg",
-              "an axis of the module is at its lower SW limit"},
+    ErrorInfo{ErrorId::kModuleSoftLimitPositive, "SWLimitPos", "an axis of the module is at its upper SW limit"},
+    ErrorInfo{ErrorId::kModuleSoftLimitNegative, "SWLimitNeg", "an axis of the module is at its lower SW limit"},
     ErrorInfo{ErrorId::kModuleLimitSwitchPositive, "HWLimitPos",
               "the positive limit switch of an axis of the module is on; only motion away from it is accepted"},
     ErrorInfo{ErrorId::kModuleLimitSwitchNegative, "HWLimitNeg",

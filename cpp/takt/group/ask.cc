@@ -11,8 +11,8 @@ namespace takt::group {
 
 namespace {
 
-// A path that begins on what moves, as it is expected to lie in the MCS: from where the carrier will have taken the tool
-// when it begins to where the target will be when it arrives.
+// A path that begins on what moves, as it is expected to lie in the MCS: from where the carrier will have taken the
+// tool when it begins to where the target will be when it arrives.
 void FromCarrier(const Context& c, const State& s, Question& question) {
   const LookAhead& ahead = c.ahead;
   const Stretch& next = ahead.next;
@@ -20,8 +20,7 @@ void FromCarrier(const Context& c, const State& s, Question& question) {
   const Ride& to = ahead.rides[next.to_ride % kRides];
   const double begin_s = std::max(0.0, ahead.end_eta - Now(c)), end_s = std::max(begin_s, next.eta_end - Now(c));
   const Frame begin = DisplacementOf(c, from, begin_s).GetFrame();
-  const Frame target =
-      DisplacementOf(c, to, end_s).GetFrame() * path::PointAt(next.segment, next.segment.length).frame;
+  const Frame target = DisplacementOf(c, to, end_s).GetFrame() * path::PointAt(next.segment, next.segment.length).frame;
   Request& move = question.move;
   move.kind = move.kind == MoveKind::kArch ? MoveKind::kArch : MoveKind::kLinear;
   move.relative = false;

@@ -92,7 +92,8 @@ void DescribeDirect(Description<MoveDirect<kReference>>& d) {
   DescribeNumbers(d);
   DescribeSystem(d);
   d.template defaulted<&M::shoulder>(
-      "To a pose: with the arm facing so. Keep, as that of the others: of all configurations and turns within the axes' "
+      "To a pose: with the arm facing so. Keep, as that of the others: of all configurations and turns within the "
+      "axes' "
       "ranges the one that the axes reach first.");
   d.template defaulted<&M::elbow>("To a pose: with the elbow so.");
   d.template defaulted<&M::wrist>("To a pose: with the wrist so.");

@@ -47,7 +47,7 @@ struct Request {
   double ratio = 1;          // mm per u of it
   trajectory::AlongPath limits;
   kinematics::Configuration configuration{};  // direct moves to a pose; kKeep: any
-  double velocity_factor = 1;  // direct moves: of the axes' limits
+  double velocity_factor = 1;                 // direct moves: of the axes' limits
   double acceleration_factor = 1;
   double jerk_factor = 1;
   BufferMode buffer_mode = BufferMode::kAborting;

@@ -1,5 +1,5 @@
-// A tool that is braked on a carrier rises meanwhile, away from its path (PP-61): bends leave little to brake with, and the
-// path leads down.
+// A tool that is braked on a carrier rises meanwhile, away from its path (PP-61): bends leave little to brake with, and
+// the path leads down.
 //
 // The tool is offset from its path along Z of what it is carried by. The offset grows until the tool will rest as high
 // as it is to be; it never shrinks. It ends where the tool sits down on the carrier (Sit), as high as it is then.

@@ -1,5 +1,5 @@
-// Articulated arms with a spherical wrist among serial chains, by the lines of their axes: axes 2 and 3 parallel, axis 1
-// and axis 4 perpendicular to them, axes 4, 5 and 6 through one point and perpendicular one to the next. What is left
+// Articulated arms with a spherical wrist among serial chains, by the lines of their axes: axes 2 and 3 parallel, axis
+// 1 and axis 4 perpendicular to them, axes 4, 5 and 6 through one point and perpendicular one to the next. What is left
 // open, where each axis counts from and which way, follows from the chain at rest. Ours; the arm's form itself is that
 // of Brandstoetter, Angerer, Hofbaur: An Analytical Solution of the Inverse Kinematics Problem of Industrial Serial
 // Manipulators with an Ortho-parallel Basis and a Spherical Wrist (2014).

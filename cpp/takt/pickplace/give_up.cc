@@ -13,7 +13,7 @@ namespace takt::pickplace {
 
 namespace {
 
-constexpr double kUp = 1e-6;     // mm
+constexpr double kUp = 1e-6;   // mm
 constexpr double kLetsGo = 8;  // of the way in which it is braked along its path, at most
 
 kinematics::Frame ToolFrom(const Context& c, const group::State& g, const Place& place) {

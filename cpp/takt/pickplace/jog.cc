@@ -176,8 +176,8 @@ void InJog(const Context& c, group::State& g, State& s) noexcept {
     if (!s.jog_end.any()) return;
     s.given = 0;
     s.error_axes |= AxesOf(c, g, s.jog_end);
-    return Fail(
-        c, s.jog_end.positive != 0 ? ErrorId::kModuleSoftLimitPositive : ErrorId::kModuleSoftLimitNegative, g, s);
+    return Fail(c, s.jog_end.positive != 0 ? ErrorId::kModuleSoftLimitPositive : ErrorId::kModuleSoftLimitNegative, g,
+                s);
   }
   if (any && !refused) return;
   const ErrorId error = refused ? TroubleOf(g) : ErrorId::kNone;

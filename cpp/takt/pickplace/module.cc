@@ -62,8 +62,7 @@ PathRamps PathRampsOf(const State& s) {
 void Leave(const Context& c, FeedbackState feedback, ErrorId error, group::State& g, State& s) {
   const bool moves = IsOn(c, g) && !IsFree(c, g);
   if (moves && (s.lifting || IsLow(c, g, s))) {
-    const PathRamps ramps = s.order_count > 0 ? s.orders[0].ramps
-                                              : PathRampsOf(s);
+    const PathRamps ramps = s.order_count > 0 ? s.orders[0].ramps : PathRampsOf(s);
     ComeToRest(c, ramps, g, s);
     return ForgetAll(c, feedback, error, g, s);
   }

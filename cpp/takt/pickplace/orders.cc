@@ -101,8 +101,7 @@ Given GiveLegs(const Context& c, const Profile& profile, std::uint32_t from, con
   const group::Directions closed = ClosedOn(c, g, profile, from, StartOf(c, g, s), keep_orientation);
   if (closed.any()) {
     s.error_axes |= AxesOf(c, g, closed);
-    given.error =
-        closed.positive != 0 ? ErrorId::kModuleLimitSwitchPositive : ErrorId::kModuleLimitSwitchNegative;
+    given.error = closed.positive != 0 ? ErrorId::kModuleLimitSwitchPositive : ErrorId::kModuleLimitSwitchNegative;
   }
   for (std::uint32_t i = from; i < profile.count && given.error == ErrorId::kNone; ++i) {
     Leg leg = profile.legs[i];

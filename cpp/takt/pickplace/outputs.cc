@@ -62,7 +62,8 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::set_path_velocity>(unit::mm_s, "Along the path, as commanded. T&P: lrSetPathVelOut.");
   d.internal<&O::path_preparation_time>(
       unit::s, "From the edge to the first set point of the profile. T&P: lrPathPreparationTime.");
-  d.internal<&O::precalculated_profile_time>(unit::s, "The profile takes so long; 0: not known yet. T&P: lrPreCalcProfileTime.");
+  d.internal<&O::precalculated_profile_time>(unit::s,
+                                             "The profile takes so long; 0: not known yet. T&P: lrPreCalcProfileTime.");
   d.internal<&O::position>("As measured. T&P: alrActPos.");
   d.internal<&O::velocity>(unit::one_s, "As measured, the same per s. T&P: alrActVel.");
   d.internal<&O::profile_point_passed>("Number of the last point passed; 0: the start. T&P: iProfilePointPassed.");

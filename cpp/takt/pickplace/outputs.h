@@ -49,8 +49,8 @@ struct Outputs {
   std::uint32_t missed_too_late = 0;
   std::uint32_t missed_interrupted = 0;
   std::uint32_t missed_refused = 0;
-  std::uint32_t warning_belt = 0;      // that the warning is about, from 1; 0: none
-  std::uint32_t held = 0;              // products picked and not placed yet; of the oldest of them:
+  std::uint32_t warning_belt = 0;  // that the warning is about, from 1; 0: none
+  std::uint32_t held = 0;          // products picked and not placed yet; of the oldest of them:
   std::uint32_t held_kind = 0;
   std::uint32_t held_colour = 0;
   double held_quality = 0;

@@ -113,7 +113,7 @@ struct State {
   ErrorId error = ErrorId::kNone;
   ErrorId warning = ErrorId::kNone;
   std::uint32_t error_axes = 0;  // mask: those that the module stopped for
-  bool reset = false;  // edges of this cycle
+  bool reset = false;            // edges of this cycle
   bool abort = false;
   bool ack = false;
   bool done = false;
@@ -136,11 +136,11 @@ struct State {
   std::uint64_t parking_move = 0;
   bool parking_lifts = false;  // the first move of that leads up from a belt ...
   Place parking_over;          // ... to this
-  bool lifting = false;  // in step, before the tool leaves the belt
-  bool rises = false;       // while it is still braked; then the rest of the way up
-  PathRamps lifting_ramps;  // of that
-  std::uint64_t given = 0;  // number that the next move gets: fewer in the group mean that it refused some
-  bool second_pcs = false;  // workpieces get the second one next
+  bool lifting = false;        // in step, before the tool leaves the belt
+  bool rises = false;          // while it is still braked; then the rest of the way up
+  PathRamps lifting_ramps;     // of that
+  std::uint64_t given = 0;     // number that the next move gets: fewer in the group mean that it refused some
+  bool second_pcs = false;     // workpieces get the second one next
   Hold hold;
   JogKeys jog;
   std::int8_t jog_sense = 0;
@@ -160,9 +160,9 @@ struct State {
   Counters counters;
   std::array<conveyor::Attributes, kHeld> held{};  // of what was picked and is not placed yet, the oldest first
   std::uint32_t held_count = 0;
-  std::uint32_t warning_belt = 0;                     // that the warning is about, from 1; 0: none
-  std::array<std::uint32_t, kBelts> counted_before{};  // of those that belts will lose
-  std::array<std::uint32_t, kBelts> refused_before{};  // of the belts
+  std::uint32_t warning_belt = 0;                       // that the warning is about, from 1; 0: none
+  std::array<std::uint32_t, kBelts> counted_before{};   // of those that belts will lose
+  std::array<std::uint32_t, kBelts> refused_before{};   // of the belts
   std::array<std::uint64_t, kPickTimes> pick_cycles{};  // a ring
   std::uint32_t pick_count = 0;
   std::array<std::uint32_t, kBelts> lost_before{};  // of the belts

@@ -105,8 +105,11 @@ bool CanBeAt(const Context& c, const group::State& g, const BeltSettings& own, c
   for (const double height : {0.0, own.z_distance}) {
     grip.z = own.grip_z + height;
     Frame at = object * kinematics::ToFrame(grip);
-    at = kinematics::ToFrame(Levelled(c, g, {.pose = kinematics::ToPose(at)}).pose);
-    if (s.settings.keep_orientation) at.M = present.tool.M;
+    if (s.settings.keep_orientation) {
+      at.M = present.tool.M;
+    } else {
+      at = kinematics::ToFrame(Levelled(c, g, {.pose = kinematics::ToPose(at)}).pose);
+    }
     kinematics::Joints joints = present.joints;
     if (group::JointsAt(c.group, at, present.joints, joints) != kinematics::Reason::kNone) return false;
     if (!group::WithinRanges(c.group, g, joints)) return false;
@@ -287,7 +290,7 @@ void CountLeft(const Context& c, Order& order, State& s) noexcept {
   const Object* object = conveyor::Find(*belt.state, order.left);
   if (object && IsInside(belt, order.own, conveyor::PlaceOf(*belt.params, *belt.state, *object))) return;
   order.left = 0;
-  if (!object && CountsLost(s)) return;  // as one of those that the belt has lost
+  if (!object && CountsLost(s)) return;            // as one of those that the belt has lost
   if (object) ++s.counted_before[order.belt - 1];  // the belt will lose it, too
   ++s.counters.missed, ++s.counters.interrupted;
 }

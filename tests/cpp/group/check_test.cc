@@ -522,8 +522,8 @@ TEST(Check, TakesNoMemoryInTheCycle) {
   EXPECT_GT(rig.states[0].setpoint.position, 10);
 }
 
-// GR-45: a path that begins on what moves is asked about, too, as it will lie in the MCS: from where the carrier takes the
-// tool to where the target will be. Nothing of it is gone before the answer.
+// GR-45: a path that begins on what moves is asked about, too, as it will lie in the MCS: from where the carrier takes
+// the tool to where the target will be. Nothing of it is gone before the answer.
 TEST(Check, PathsThatBeginOnABelt) {
   for (const double speed : {0.0, 120.0}) {
     for (const bool stays : {false, true}) {  // on the belt, or off it
@@ -537,9 +537,9 @@ TEST(Check, PathsThatBeginOnABelt) {
       rig.Run(0.3);
       Asked(rig);
       const KDL::Vector left = ToolOf(rig).p;
-      const Ticket move = stays ? rig.Give(MoveLinearAbsolute{
-                                      .z = 40, .coordinate_system = CoordinateSystem::kPcs, .pcs = 3})
-                                : rig.Give(MoveLinearAbsolute{.x = 10, .y = 0, .z = 30});
+      const Ticket move =
+          stays ? rig.Give(MoveLinearAbsolute{.z = 40, .coordinate_system = CoordinateSystem::kPcs, .pcs = 3})
+                : rig.Give(MoveLinearAbsolute{.x = 10, .y = 0, .z = 30});
       rig.Run(0.05);
       const std::optional<Question> question = Asked(rig);
       ASSERT_TRUE(question);

@@ -1,5 +1,5 @@
-// GR-44: a direct move to a pose is taken whenever some configuration within the axes' ranges leads there, and takes the
-// nearest one. Poses come from random positions of the axes.
+// GR-44: a direct move to a pose is taken whenever some configuration within the axes' ranges leads there, and takes
+// the nearest one. Poses come from random positions of the axes.
 #include <random>
 
 #include "../core/trials.h"
@@ -121,8 +121,14 @@ TEST(Ptp, InTheConfigurationAsked) {
   const Pose target = kinematics::ToPose(ToolOf(rig));
   int solutions = 0;
   for (const kinematics::Wrist wrist : {kinematics::Wrist::kPositive, kinematics::Wrist::kNegative}) {
-    MoveDirectAbsolute move{.x = target.x, .y = target.y + 60, .z = target.z, .a = target.a, .b = target.b, .c = target.c,
-                            .coordinate_system = CoordinateSystem::kMcs, .wrist = wrist};
+    MoveDirectAbsolute move{.x = target.x,
+                            .y = target.y + 60,
+                            .z = target.z,
+                            .a = target.a,
+                            .b = target.b,
+                            .c = target.c,
+                            .coordinate_system = CoordinateSystem::kMcs,
+                            .wrist = wrist};
     const Ticket ticket = rig.Give(move);
     ASSERT_TRUE(rig.RunToEnd(ticket, 20));
     ASSERT_TRUE(rig.lives[ticket].done);

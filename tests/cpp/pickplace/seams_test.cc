@@ -1,6 +1,6 @@
 // PP-60, PP-61: modules, belts and operators at random. Towards a limit switch that is on nothing moves; a tool that is
-// low over a belt is still against it, on its workpiece or on the way up, and within the range where it was said how the
-// belt may change its speed. TAKT_LONG in the environment: 2,000 runs instead of 40.
+// low over a belt is still against it, on its workpiece or on the way up, and within the range where it was said how
+// the belt may change its speed. TAKT_LONG in the environment: 2,000 runs instead of 40.
 #include <iostream>
 #include <optional>
 #include <random>
@@ -14,11 +14,11 @@ namespace {
 using M = PickPlaceState;
 
 constexpr double kSeamY = 200, kSeamZ = -50, kUpFrom = 25, kRound = 10;
-constexpr double kLower = 100, kUpper = 500;       // mm, of the range
+constexpr double kLower = 100, kUpper = 500;   // mm, of the range
 constexpr double kLow = kUpFrom - kRound - 1;  // mm over workpieces
-constexpr double kBeltChange = 3000;                // mm/s², at most
-constexpr double kSlip = 1;                        // mm
-constexpr double kStill = 3;                        // mm/s against the belt
+constexpr double kBeltChange = 3000;           // mm/s², at most
+constexpr double kSlip = 1;                    // mm
+constexpr double kStill = 3;                   // mm/s against the belt
 
 // A belt that runs at one speed after the other, with ramps whose acceleration is a smooth hump.
 class Travel {
@@ -103,8 +103,12 @@ class SeamsRun {
     belt.params.origin = {0, kSeamY, kSeamZ, 0, 0, 0};
     belt.params.lower_limit = kLower;
     belt.params.upper_limit = kUpper;
-    belt.settings = {.park_x = 300, .park_y = kSeamY, .park_z = 30, .z_distance = kUpFrom,
-                     .sync_time = Pick(0, 0.1), .sudden_acceleration = says_how_ ? kBeltChange : 0};
+    belt.settings = {.park_x = 300,
+                     .park_y = kSeamY,
+                     .park_z = 30,
+                     .z_distance = kUpFrom,
+                     .sync_time = Pick(0, 0.1),
+                     .sudden_acceleration = says_how_ ? kBeltChange : 0};
     belt.travel = Travel(random_);
     return belt;
   }
@@ -159,8 +163,8 @@ class SeamsRun {
           (Chance(0.5) ? positive : negative)[axes[std::uniform_int_distribution<std::size_t>(0, 3)(random_)]] = true;
           Excuse();
         }
-        return static_cast<void>(cell_.Give(
-            Control{.enable_hw_limit = true, .hw_limit_positive = positive, .hw_limit_negative = negative}));
+        return static_cast<void>(
+            cell_.Give(Control{.enable_hw_limit = true, .hw_limit_positive = positive, .hw_limit_negative = negative}));
       }
       case 7:
         if (!Chance(0.3)) return;
@@ -177,7 +181,8 @@ class SeamsRun {
   void Excuse() { excused_ = true; }
 
   void WatchSwitches() {
-    const std::array<std::pair<std::size_t, std::size_t>, 4> axes = {{{0, 0}, {1, 1}, {kFirstReal, 0}, {kFirstReal + 1, 1}}};
+    const std::array<std::pair<std::size_t, std::size_t>, 4> axes = {
+        {{0, 0}, {1, 1}, {kFirstReal, 0}, {kFirstReal + 1, 1}}};
     for (std::size_t n = 0; n < axes.size(); ++n) {
       const KinematicState& set = cell_.rig.states[axes[n].second].setpoint;
       const double v = set.velocity;
@@ -190,8 +195,8 @@ class SeamsRun {
         // Once it does not go there it goes no further; what has an acceleration is not braked within no time.
         if (place) {
           place = std::min(*place, sense * set.position);
-          ASSERT_LE(sense * set.position - *place, kSlip) << "axis " << axes[n].second << ", state "
-                                                          << static_cast<int>(cell_.state.state);
+          ASSERT_LE(sense * set.position - *place, kSlip)
+              << "axis " << axes[n].second << ", state " << static_cast<int>(cell_.state.state);
         }
         if (closed && !place && sense * v <= 1e-6 && sense * set.acceleration <= 1e-6) place = sense * set.position;
       }
@@ -205,11 +210,11 @@ class SeamsRun {
     const auto speed = [&](std::size_t k) { return cell_.rig.states[k].setpoint.velocity; };
     const bool jogs = cell_.state.state == M::kJogPos || cell_.state.state == M::kJogNeg;
     if (jogs || cell_.state.state == M::kService) Excuse();  // by hand it goes anywhere
+    const group::GroupState state = cell_.rig.state.state;
+    const bool alone = state == group::GroupState::kDisabled || state == group::GroupState::kErrorStop;
+    if (alone) Excuse();  // each axis, or the group for a fault of one
     if (!over || height > kUpFrom - kRound) {
-      const group::GroupState state = cell_.rig.state.state;
-      const bool alone = state == group::GroupState::kDisabled || state == group::GroupState::kErrorStop ||
-                         cell_.state.state == M::kError;
-      if (!jogs && !alone && !cell_.state.inputs.stop_all) excused_ = false;
+      if (!jogs && !alone && cell_.state.state != M::kError && !cell_.state.inputs.stop_all) excused_ = false;
       was_over_ = over;
       return;
     }
