@@ -17,8 +17,10 @@ constexpr double kSeamY = 200, kSeamZ = -50, kUpFrom = 25, kRound = 10;
 constexpr double kLower = 100, kUpper = 500;   // mm, of the range
 constexpr double kLow = kUpFrom - kRound - 1;  // mm over workpieces
 constexpr double kBeltChange = 3000;           // mm/s², at most
-constexpr double kSlip = 1;                    // mm
-constexpr double kStill = 3;                   // mm/s against the belt
+// mm that a motion that turns towards a switch, as belts and interrupts make it, takes to be braked: its acceleration
+// is taken back within the jerk of its axis first.
+constexpr double kSlip = 3;
+constexpr double kStill = 3;  // mm/s against the belt
 
 // A belt that runs at one speed after the other, with ramps whose acceleration is a smooth hump.
 class Travel {
