@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "takt/group/systems.h"
+#include "takt/kinematics/solutions.h"
 #include "takt/pickplace/run.h"
 
 namespace takt::pickplace {
@@ -51,6 +53,23 @@ double Furthest(double most, const May& may) {
   return good < most ? std::max(0.0, good - kShort) : most;
 }
 
+// The SW limits beyond which the axes would be with the tool there; none: it cannot be there at all.
+group::Directions EndsAt(const Context& c, const group::State& g, const kinematics::Frame& tool,
+                         const kinematics::Joints& near) {
+  const kinematics::Solutions all =
+      kinematics::SolutionsOf(*c.group.kinematics, tool * c.group.mounting.tool_inverse, {}, near);
+  kinematics::Joints joints = near;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < all.count; ++i) {
+    double way = 0;
+    for (std::size_t k = 0; k < c.group.kinematics->count; ++k) way += std::abs(all.of[i][k] - near[k]);
+    if (way >= least) continue;
+    least = way;
+    std::copy_n(all.of[i].begin(), c.group.kinematics->count, joints.begin());
+  }
+  return all.count > 0 ? BeyondRanges(c, g, joints) : group::Directions{};
+}
+
 double& NumberOf(kinematics::Pose& pose, SelectAxis axis) {
   double* const numbers[] = {&pose.x, &pose.y, &pose.z, &pose.a, &pose.b, &pose.c};
   return *numbers[static_cast<std::size_t>(axis) - 1];
@@ -74,10 +93,7 @@ group::MoveLinearAbsolute ToolMove(const Context& c, const group::State& g, doub
   double most = s.jog_axis <= SelectAxis::kZ ? kFarthest : kWidest;
   if (s.jog_axis == SelectAxis::kB) most = std::clamp(kUprightest - s.jog_sense * from.b, 0.0, kWidest);
   way = Furthest(most, may);
-  kinematics::Joints beyond = present.joints;
-  const kinematics::Frame further = kinematics::ToFrame(at(way + 3 * kShort));
-  const bool known = group::JointsAt(c.group, further, present.joints, beyond) == kinematics::Reason::kNone;
-  s.jog_end = known ? BeyondRanges(c, g, beyond) : group::Directions{};
+  s.jog_end = EndsAt(c, g, kinematics::ToFrame(at(way + 3 * kShort)), present.joints);
   const kinematics::Pose to = at(way);
   return {.x = to.x, .y = to.y, .z = to.z, .a = to.a, .b = to.b, .c = to.c};
 }
