@@ -28,6 +28,7 @@ const Stretch* GoOnTo(LookAhead& ahead, double s) {
   return ahead.count > 0 ? &ahead[ahead.first] : nullptr;
 }
 
+constexpr double kTowardsThen = 1;   // u/s: a motion that ends there at rest does not
 constexpr double kTowards_s = 1e-6;  // u/s, mm/s or rad/s: less is rounding
 
 // Whether the next set points go towards a limit switch that is on.
@@ -36,6 +37,15 @@ bool GoesToClosed(const Context& c, const kinematics::JointMotion& motion, const
   const Directions closed = ClosedNow(c, s);
   if (!closed.any()) return false;
   s.refused = TakenOf(closed, s, motion.velocity, tool, kTowards_s);
+  if (s.refused.any()) return true;
+  // An acceleration towards it is taken back within the jerk of the axis: by then it would go there.
+  kinematics::Joints then = motion.velocity;
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    const double jerk = s.members[k] != 0 ? c.axes.params[s.members[k] - 1].planner_limits().jerk : 0;
+    const double a = motion.acceleration[k];
+    if (jerk > 0) then[k] += a * std::abs(a) / (2 * jerk);
+  }
+  s.refused = TakenOf(closed, s, then, nullptr, kTowardsThen);
   return s.refused.any();
 }
 
