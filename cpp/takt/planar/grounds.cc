@@ -53,6 +53,21 @@ ObjectInfo WhoComesTo(std::uint32_t track, std::uint32_t group, const Grounds& g
   return {};
 }
 
+// The mover that this area would lie on, whether or not it has a group; none: there is room. `but`: not this one.
+ObjectInfo MoverBelow(std::uint32_t but, std::uint32_t system, const Area& area, const Grounds& g) noexcept {
+  for (std::uint32_t i = 0; i < g.movers.size(); ++i) {
+    const MoverNow& now = g.movers[i];
+    const Area its{.places = {now.pose.place},
+                   .count = 1,
+                   .least_c = now.pose.c,
+                   .most_c = now.pose.c,
+                   .mover = now.mover,
+                   .margin = 0};
+    if (i != but && now.system == system && Near(area, its, -kSame)) return ObjectAt(ObjectKind::kMover, i);
+  }
+  return {};
+}
+
 Verdict Leaves(std::uint32_t& group) noexcept {
   if (group == 0) return {ErrorId::kNoPlanarGroup, {}};
   group = 0;
@@ -136,6 +151,7 @@ Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, Gro
   const Area area{
       .places = {pose.place}, .count = 1, .least_c = pose.c, .most_c = pose.c, .mover = g.movers[mover].mover};
   if (const ObjectInfo who = WhoComes(mover, system, area, g)) return Collision(who);
+  if (const ObjectInfo who = MoverBelow(mover, system, area, g)) return Collision(who);
   const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
   if (group == 0) return {};
   Reservations& r = ReservedBy(group, g);

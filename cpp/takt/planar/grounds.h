@@ -81,7 +81,8 @@ void AdvanceMover(std::uint32_t mover, Grounds& g) noexcept;
 Area AreaThere(const MoverNow& now) noexcept;
 // Whom a part brings to where this area is; whether or not they have a group. `but`: not this one.
 ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, const Grounds& g) noexcept;
-// It is set to another place in this coordinate system, if there is room.
+// It is set to another place in this coordinate system, if there is room: no mover stands there, in a group or not,
+// none is brought there, and nothing that its group has reserved is in the way.
 Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, Grounds& g) noexcept;
 
 // Whether a mover may move along these tracks, each of which is in the mover's group if that watches; and it does.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "rig.h"
+#include "troop.h"
 
 namespace takt::mover {
 namespace {
@@ -274,6 +275,29 @@ TEST(MoverStates, KeepsWhatWasReduced) {
   EXPECT_EQ(history.records[1].limited_by, LimitedBy::kVelocity);
   EXPECT_EQ(history.records[3].state, FeedbackState::kDone);
   EXPECT_EQ(history.records[3].limited_by, LimitedBy::kNothing);
+}
+
+// PL-81: set_position puts no mover onto another one, with or without a group; side by side there is room.
+TEST(MoverStates, IsSetOntoNoOtherMover) {
+  struct Case {
+    double x, y, c;
+    bool room;
+  };
+  const Case cases[] = {{400, 0, 0, false},   {400 - 112.9, 0, 0, false}, {400 - 113, 0, 0, true},
+                        {400, 113, 0, true},  {400 - 130, 0, 45, false},  {400 - 137, 0, 45, true},
+                        {310, 100, 0, false}, {-50, 20, 10, true}};  // the last one: where it is itself
+  for (const Case& k : cases) {
+    Troop troop({Turning(0, 0), Turning(400, 0)});
+    const Ticket set = troop.Give(0, SetPosition{.x = k.x, .y = k.y, .c = k.c});
+    const FeedbackEvent& of = troop.Of(set);
+    EXPECT_EQ(of.state, k.room ? FeedbackState::kDone : FeedbackState::kError) << k.x << " " << k.y << " " << k.c;
+    troop.Run(2);
+    EXPECT_EQ(troop.outs[0].x, k.room ? k.x : 0);
+    EXPECT_EQ(troop.outs[0].c, k.room ? k.c : 0);
+    if (k.room) continue;
+    EXPECT_EQ(of.error, ErrorId::kCollision);
+    EXPECT_EQ(of.object, (ObjectInfo{ObjectKind::kMover, 2}));
+  }
 }
 
 }  // namespace
