@@ -1,0 +1,74 @@
+"""Cams from machine and product data (CAM-91)."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+import takt
+from takt.cam_makers import Limits, RotaryKnife
+
+LIMITS = Limits(velocity=3000, acceleration=150_000, jerk=20_000_000)
+KNIFE = RotaryKnife(circumference=480, cut_zone=15, limits=LIMITS)
+
+
+@pytest.mark.parametrize("length", [411.25, 437.5, 480.0, 512.0, 733.3])
+def test_knife_runs_with_the_web_where_it_cuts_and_keeps_its_limits(length):  # CAM-91
+    speed = min(1000.0, KNIFE.highest_speed(length))
+    table = KNIFE.cam(length, speed=speed)
+    assert (table.begin, table.end, table.stroke, table.cyclic) == (0, length, 360, True)
+    cutting = table.at(np.concatenate([np.linspace(0, 15, 50), np.linspace(length - 15, length, 50)]))
+    assert np.allclose(cutting.dy, 360 / 480, rtol=1e-9)
+    dense = table.at(np.linspace(0, length, 100_001))
+    assert np.abs(dense.dy).max() * speed <= 3000 * (1 + 1e-9)
+    assert np.abs(dense.ddy).max() * speed**2 <= 150_000 * (1 + 1e-9)
+    assert np.abs(dense.dddy).max() * speed**3 <= 20_000_000 * (1 + 1e-9)
+    assert dense.dy.min() >= -1e-9
+
+
+def test_at_the_synchronous_length_the_knife_runs_evenly():  # CAM-91
+    knife = RotaryKnife(circumference=600, blades=3, cut_zone=10)
+    values = knife.cam(200, speed=2000).at(np.linspace(0, 200, 1000))
+    assert np.allclose(values.dy, 0.6, rtol=1e-9)
+    assert np.abs(values.ddy).max() < 1e-9
+
+
+@pytest.mark.parametrize(("length", "speed"), [(300.0, 2000.0), (250.0, 1500.0), (120.0, 900.0)])
+def test_what_is_impossible_is_told_with_what_would_do(length, speed):  # CAM-91
+    with pytest.raises(takt.ConfigError, match=r"its limit is \d+; up to .* would do") as error:
+        KNIFE.cam(length, speed=speed)
+    slower = float(re.search(r"up to ([\d.]+) mm/s it", str(error.value))[1])
+    longer = float(re.search(r"at least ([\d.]+) mm", str(error.value))[1])
+    KNIFE.cam(length, speed=slower * (1 - 1e-5))
+    KNIFE.cam(longer * (1 + 1e-5), speed=speed)
+    with pytest.raises(takt.ConfigError):
+        KNIFE.cam(length, speed=slower * (1 + 1e-4))
+
+
+def test_a_knife_that_may_not_turn_back_says_so():  # CAM-91
+    with pytest.raises(takt.ConfigError, match=r"turn back between two cuts; at most ([\d.]+) mm") as error:
+        KNIFE.cam(3000, speed=100)
+    longest = float(re.search(r"at most ([\d.]+) mm", str(error.value))[1])
+    KNIFE.cam(longest * (1 - 1e-5), speed=100)
+    RotaryKnife(circumference=480, cut_zone=15, limits=LIMITS, may_reverse=True).cam(3000, speed=100)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "what"),
+    [
+        ({"circumference": 0}, "circumference: expected a number of mm above 0, found 0"),
+        ({"circumference": math.nan}, "circumference: "),
+        ({"circumference": 400, "blades": 0}, "blades: expected a whole number from 1 on, found 0"),
+        ({"circumference": 400, "cut_zone": 200}, "cut_zone: expected less than 200 mm"),
+        ({"circumference": 400, "limits": Limits(velocity=-1)}, "limits.velocity: expected a number above 0, found -1"),
+    ],
+)
+def test_impossible_machines_are_refused(arguments, what):  # CAM-91
+    with pytest.raises(takt.ConfigError, match=re.escape(what)):
+        RotaryKnife(**arguments)
+
+
+@pytest.mark.parametrize(("length", "speed"), [(30.0, 100.0), (math.inf, 100.0), (400.0, 0.0), (400.0, math.nan)])
+def test_impossible_products_are_refused(length, speed):  # CAM-91
+    with pytest.raises(takt.ConfigError, match="expected"):
+        KNIFE.cam(length, speed=speed)
