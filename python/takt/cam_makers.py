@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from takt.cam import Table
 from takt.errors import ConfigError
@@ -89,7 +90,7 @@ class RotaryKnife:
         run = {"begin_v": per_mm, "begin_a": 0.0, "end_v": per_mm, "end_a": 0.0}
         middle = {"to": {"x": length - zone, "y": self.pitch - zone * per_mm}, **run}
         if not zone:
-            segments = [middle]
+            segments: list[dict[str, Any]] = [middle]
         else:
             into = {"to": {"x": zone, "y": zone * per_mm}, "law": "line"}
             out = {"to": {"x": length, "y": self.pitch}, "law": "line"}

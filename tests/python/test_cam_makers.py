@@ -1,11 +1,13 @@
 """Cams from machine and product data (CAM-91)."""
 
+import json
 import math
 import re
 
 import numpy as np
 import pytest
 import takt
+from takt import expect
 from takt.cam_makers import Limits, RotaryKnife
 
 LIMITS = Limits(velocity=3000, acceleration=150_000, jerk=20_000_000)
@@ -72,3 +74,51 @@ def test_impossible_machines_are_refused(arguments, what):  # CAM-91
 def test_impossible_products_are_refused(length, speed):  # CAM-91
     with pytest.raises(takt.ConfigError, match="expected"):
         KNIFE.cam(length, speed=speed)
+
+
+MACHINE = """
+name: knife
+axes:
+  - {name: web, unit: mm, limits: {velocity: 1500, acceleration: 4000, jerk: 40000}}
+  - {name: knife, unit: deg, kind: rotary, limits: {velocity: 3000, acceleration: 150000, jerk: 20000000}}
+cams:
+"""
+MODULE = """flex_cams:
+  - name: cutter
+    slave: knife
+    master: web
+    cams: [first, second]
+    settings: {slave_absolute: true, sync_mode: ramp_pos, master_sync_in_distance: 400, master_sync_in_position: 960}
+"""
+
+
+@pytest.mark.parametrize("length", [437.5, 533.25])
+def test_lengths_are_cut_and_changed_while_the_web_runs(length):  # CAM-91
+    speed = 700.0
+    cams = [KNIFE.cam(480, speed=speed, name="first"), KNIFE.cam(length, speed=speed, name="second")]
+    text = MACHINE + "".join(f"  - {json.dumps(one.source)}\n" for one in cams) + MODULE
+    with takt.Engine(text) as session:
+        web, cutter = session.axis("web"), session.flex_cam("cutter")
+        web.power().wait()
+        cutter.control(regulator_on=True)
+        session.wait(lambda: cutter.axis_enabled)
+        web.move_velocity(velocity=speed)
+        cutter.control(sync_cam=True).wait()
+        recorder = session.record()
+        session.run(3)
+        cutter.control(cam_table=2).wait()
+        session.run(4)
+        recording = recorder.stop()
+    place = recording["web"]["true_position"]
+    turns = np.unwrap(recording["knife"]["true_position"], period=360) / 360
+    cuts = np.flatnonzero(np.diff(np.floor(turns)) > 0)
+    share = (np.ceil(turns[cuts]) - turns[cuts]) / (turns[cuts + 1] - turns[cuts])
+    lengths = np.diff(place[cuts] + share * (place[cuts + 1] - place[cuts]))
+    changed = int(np.argmax(np.abs(lengths - 480) > 1))
+    assert changed > 1
+    assert np.abs(lengths[:changed] - 480).max() < 1e-6
+    assert len(lengths) > changed + 2
+    assert np.abs(lengths[changed:] - length).max() < 1e-6
+    ratio = recording["knife"]["set_velocity"][cuts + 1] / recording["web"]["set_velocity"][cuts + 1]
+    assert np.allclose(ratio, 360 / 480, rtol=1e-6)
+    expect.within_limits(recording, "knife")
