@@ -1,0 +1,36 @@
+// Elementary functions whose results are the same bits on every processor. The C library chooses among several
+// implementations by the processor's features, and their last bits differ; these are made of additions,
+// multiplications, divisions and square roots only, which IEEE 754 rounds in one way, and are compiled without fused
+// operations.
+//
+// Errors are below 1.1 ulp unless a function says more (tests/cpp/core/maths_test.cc). Special values are those of C.
+// What rounds exactly in any library stays std::: sqrt, abs, floor, ceil, round, trunc, fmod, remainder, ldexp.
+#pragma once
+
+namespace takt::maths {
+
+struct SineCosine {
+  double sine;
+  double cosine;
+};
+
+[[gnu::const]] double Sin(double x) noexcept;         // x in rad, of any size
+[[gnu::const]] double Cos(double x) noexcept;         // x in rad, of any size
+[[gnu::const]] SineCosine SinCos(double x) noexcept;  // the same bits as Sin and Cos, for the price of one and a half
+[[gnu::const]] double Tan(double x) noexcept;         // below 2 ulp
+[[gnu::const]] double Asin(double x) noexcept;        // rad; nan beyond [-1, 1]
+[[gnu::const]] double Acos(double x) noexcept;        // rad; nan beyond [-1, 1]
+[[gnu::const]] double Atan(double x) noexcept;        // rad
+[[gnu::const]] double Atan2(double y, double x) noexcept;
+[[gnu::const]] double Exp(double x) noexcept;
+[[gnu::const]] double Expm1(double x) noexcept;  // exp(x) - 1
+[[gnu::const]] double Log(double x) noexcept;
+[[gnu::const]] double Log1p(double x) noexcept;  // log(1 + x)
+[[gnu::const]] double Sinh(double x) noexcept;   // below 3 ulp
+[[gnu::const]] double Cosh(double x) noexcept;   // below 3 ulp
+[[gnu::const]] double Atanh(double x) noexcept;  // below 3 ulp
+[[gnu::const]] double Cbrt(double x) noexcept;
+[[gnu::const]] double Hypot(double x, double y) noexcept;              // below 1.5 ulp
+[[gnu::const]] double Power(double base, unsigned exponent) noexcept;  // by repeated multiplication
+
+}  // namespace takt::maths
