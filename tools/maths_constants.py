@@ -1,5 +1,5 @@
-"""Writes cpp/takt/core/maths_constants.h: the numbers that core/maths.cc computes with, from their definitions, in decimal
-arithmetic of 450 digits. To be called when a polynomial's degree or range or a table's step changes.
+"""Writes cpp/takt/core/maths_constants.h: the numbers that core/maths.cc computes with, from their definitions, in
+decimal arithmetic of 450 digits. To be called when a polynomial's degree or range or a table's step changes.
 
 A number that a double does not hold exactly is given as the double next to it and the double next to what is left. The
 polynomials interpolate at Chebyshev nodes; their error is within a small factor of the least possible one.
@@ -142,7 +142,8 @@ def header() -> str:
     bits = int(2 / pi * Decimal(2) ** (64 * WORDS))
     words = [(bits >> (64 * (WORDS - 1 - i))) & (2**64 - 1) for i in range(WORDS)]
     items = ", ".join(f"0x{word:016x}" for word in [0, *words])
-    text += f"// The bits of 2/pi: a word before the point, then those behind it.\ninline constexpr std::uint64_t kTwoOverPiBits[] = {{{items}}};\n"
+    text += "// The bits of 2/pi: a word before the point, then those behind it.\n"
+    text += f"inline constexpr std::uint64_t kTwoOverPiBits[] = {{{items}}};\n"
     text += f"inline constexpr std::uint64_t kHalfPiBits = 0x{int(half * 2**63):016x};  // pi/2 times 2^63\n\n"
 
     eighth = (pi / 4 * Decimal("1.0001")) ** 2
