@@ -317,7 +317,9 @@ TEST(Curves, StayOnTheirBranch) {
   }
   std::cout << gone << " lines gone, " << singular << " singular, " << others << " out of reach\n";
   EXPECT_GE(gone, Trials(40, 1));
-  if (!kSanitized) EXPECT_GE(singular, 1);
+  if (!kSanitized) {
+    EXPECT_GE(singular, 1);
+  }
 }
 
 // How corners are gone.
