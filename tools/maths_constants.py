@@ -36,7 +36,7 @@ def atan(x: Decimal) -> Decimal:
         total += power / (2 * k + 1) * (1 if k % 2 == 0 else -1)
         power *= square
         k += 1
-    return total * 2**halvings
+    return total * Decimal(2**halvings)
 
 
 def factorial_series(z: Decimal, first: int) -> Decimal:
