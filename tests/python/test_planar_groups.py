@@ -189,7 +189,7 @@ def test_what_a_group_needs_to_be_enabled() -> None:
     mover, other, group = engine.mover("mover"), engine.mover("other"), engine.planar_group("group")
     engine.step()
     assert engine.environment("environment").border_count == 4
-    other.set_position(x=110, y=0).wait()
+    other.set_position(x=113, y=0).wait()  # side by side
     refused = group.enable().wait_final()
     assert refused.error_id == 3024
     assert refused.object is other

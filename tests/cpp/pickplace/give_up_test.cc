@@ -154,7 +154,7 @@ TEST(GiveUp, BeltBecomesMuchFaster) {
   }
   EXPECT_GT(given_up, Trials(10, 1));
   EXPECT_LT(given_up, Trials(190, 1));
-  EXPECT_GT(low, Trials(3, 1) - 1) << "a test that cannot fail";
+  EXPECT_GE(low, Trials(4, 1)) << "a test that cannot fail";
 }
 
 // The camera or the program takes the workpiece away while the tool goes to it: it goes up, straight and in step, and
@@ -180,7 +180,7 @@ TEST(GiveUp, WorkpieceIsRemoved) {
     run.Put(130);
     ASSERT_TRUE(run.RunUntil([&] { return run.counters().picked == 1; }));
   }
-  EXPECT_GT(low, Trials(5, 1)) << "a test that cannot fail";
+  EXPECT_GE(low, Trials(6, 1)) << "a test that cannot fail";
 }
 
 // What is said of the belt's speed counts from the choice of a workpiece on: how fast it may become, and how slow, or
@@ -239,7 +239,7 @@ TEST(GiveUp, StoppedUntilItHasLeft) {
     ASSERT_TRUE(run.RunUntil([&] { return run.counters().picked == 1; }));
     EXPECT_EQ(run.counters().interrupted, was_on_it ? 0u : 1u);
   }
-  EXPECT_GT(low, Trials(5, 1)) << "a test that cannot fail";
+  EXPECT_GE(low, Trials(6, 1)) << "a test that cannot fail";
 }
 
 // From belt to belt: the place on the second one vanishes while the tool lifts from the first one. It goes on lifting,
