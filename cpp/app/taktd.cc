@@ -43,7 +43,7 @@ void HandleSignals() {
     std::signal(signal, OnSignal);
   }
   if (std::signal(SIGHUP, OnSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup: runs on without its terminal
-  // A reader of the log that has gone, and a file that is as long as it may be, are errors of writing it.
+  // A closed reader of the log and a file at its size limit (EPIPE, EFBIG) are errors of writing it.
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 

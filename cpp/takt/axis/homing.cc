@@ -114,7 +114,7 @@ std::optional<HomingEvent> EventOf(const Context& c, State& s) {
         h.found = true;
         h.edge = s.actual.position + s.origin;
       }
-      // The search goes on until each follower has found its own switch.
+      // The search continues until each follower is at its own switch.
       const bool waits = h.found && r.kind == RequestKind::kStepAbsSwitch && !FollowersFound(c, s);
       if (h.found && !waits) {
         h.found_cycle = c.cycle.count;

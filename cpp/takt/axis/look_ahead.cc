@@ -38,7 +38,7 @@ double BrakingDistance(double from, double to, const Limits& limits) {
   return 0.5 * (from + to) * time;
 }
 
-// How far the positioning command `next` goes on from `position` in this sense; 0 or less: it does not.
+// Distance of the positioning command `next` from `position` in this sense; 0 or less: no room.
 double RoomToTarget(const AxisParams& params, double position, double sense, const Request& next) {
   const double target = next.by_distance() ? position + next.value
                                            : ResolveTarget(params, {position, 0, 0}, next.limits(), next.value,

@@ -124,7 +124,7 @@ Status TakeTouch(const Context& c, State& s) {
   return Status::Ok();
 }
 
-// Puts another GT_Touch in the place of the one that waits.
+// Replaces the GT_Touch that waits.
 void Supersede(const Context& c, ProbeWatch watch, ProbeEdge edge, Ticket ticket, State& s) {
   Restore(c, s);
   ProbeState& probe = s.probe;
