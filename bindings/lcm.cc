@@ -5,11 +5,14 @@
 #include <optional>
 #include <regex>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bindings.h"
 #include "takt/engine/command.h"
 #include "takt/lcm/checksum.h"
+#include "takt/lcm/network.h"
 #include "takt/lcm/network_log.h"
 #include "takt/lcm/receiver.h"
 
@@ -32,13 +35,25 @@ bool Close(lcm::NetworkLog& log, double patience_s) {
   return log.Close(std::chrono::milliseconds(static_cast<std::int64_t>(patience_s * 1000)));
 }
 
-// What Python clients hear on udpm:// networks (takt/network.py): handlers are Python's, by number of subscription.
-class PythonReceiver {
+// A member of an LCM network for Python clients (takt/network.py): handlers are Python's, by number of subscription.
+class PythonNetwork {
  public:
-  explicit PythonReceiver(const std::string& url) {
+  explicit PythonNetwork(const std::string& url) {
+    lcm::Network network;
+    {
+      const py::gil_scoped_release others_go_on;
+      network = lcm::OpenNetwork(url);
+    }
+    if (!network.lcm) Throw("ConnectionError", py::str(network.problem));
+    sender_ = std::move(network.lcm);
     std::string problem;
-    receiver_ = lcm::OpenReceiver(url, problem);
+    receiver_ = lcm::OpenReceiver(url, *sender_, problem);
     if (!receiver_) Throw("ConnectionError", py::str(problem));
+  }
+
+  void Publish(const std::string& channel, const py::bytes& data) {
+    const std::string_view bytes = data;
+    if (sender_->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size())) != 0) Fail("message is not sent");
   }
 
   int Subscribe(const std::string& channels, std::size_t capacity) {
@@ -62,7 +77,7 @@ class PythonReceiver {
   // unwound by force, which C++ answers by ending the process. Python waits for the file.
   py::object Receive() {
     takers_.clear();
-    receiver_->Handle(0);
+    if (receiver_->Handle(0) < 0) Fail("network's server is gone");
     if (takers_.empty()) return py::none();
     return py::make_tuple(takers_, channel_, py::bytes(data_));
   }
@@ -71,7 +86,13 @@ class PythonReceiver {
   std::uint64_t malformed() const { return receiver_->malformed(); }
 
  private:
-  std::unique_ptr<lcm::Receiver> receiver_;
+  [[noreturn]] static void Fail(const char* what) {
+    PyErr_SetString(PyExc_OSError, what);
+    throw py::error_already_set();
+  }
+
+  std::unique_ptr<::lcm::LCM> sender_;
+  std::unique_ptr<lcm::Receiver> receiver_;  // of networks other than udpm:// by the sender's LCM
   std::vector<int> takers_;
   std::string channel_, data_;
 };
@@ -103,19 +124,22 @@ void BindLcm(py::module_& m) {
       },
       py::arg("kind"), py::arg("verb"), py::arg("arguments"),
       "The command of this kind of component stops something, releases it or switches it off: it is always taken.");
-  py::class_<PythonReceiver>(m, "Receiver", "Hears what is said on an LCM network over UDP, whatever comes.")
+  py::class_<PythonNetwork>(m, "Network",
+                            "A member of an LCM network; on udpm:// any datagram is survived. Raises ConnectionError "
+                            "where it cannot be joined, OSError where it is gone later.")
       .def(py::init<const std::string&>(), py::arg("url"))
-      .def("subscribe", &PythonReceiver::Subscribe, py::arg("channels"), py::arg("capacity"),
+      .def("publish", &PythonNetwork::Publish, py::arg("channel"), py::arg("data"), "Sends the bytes of a message.")
+      .def("subscribe", &PythonNetwork::Subscribe, py::arg("channels"), py::arg("capacity"),
            "Hears the channels that this regular expression matches; returns the number of the subscription. Of more "
            "messages than `capacity` (0: any number) the newest are dropped. Raises ValueError where it is no "
            "expression.")
-      .def("unsubscribe", &PythonReceiver::Unsubscribe, py::arg("number"))
-      .def("set_capacity", &PythonReceiver::SetCapacity, py::arg("number"), py::arg("capacity"),
+      .def("unsubscribe", &PythonNetwork::Unsubscribe, py::arg("number"))
+      .def("set_capacity", &PythonNetwork::SetCapacity, py::arg("number"), py::arg("capacity"),
            "Of more messages that wait than this (0: any number) the newest are dropped from now on.")
-      .def("receive", &PythonReceiver::Receive,
+      .def("receive", &PythonNetwork::Receive,
            "The next message that waits: (numbers of subscriptions, channel, bytes); None if there is none.")
-      .def("fileno", &PythonReceiver::file, "Readable while messages wait.")
-      .def_property_readonly("malformed", &PythonReceiver::malformed,
+      .def("fileno", &PythonNetwork::file, "Readable while messages wait.")
+      .def_property_readonly("malformed", &PythonNetwork::malformed,
                              "Datagrams that were none of LCM's, or from elsewhere where only this host is heard.");
 }
 

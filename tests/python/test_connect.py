@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import lcm
@@ -175,6 +176,38 @@ def test_no_engine_and_no_network() -> None:
     for wrong in ("udpm://nowhere", "udpm://239.255.76.67:99999", "http://x", ""):
         with pytest.raises(takt.ConnectionError, match="expected one like udpm://"):
             open_network(wrong)
+
+
+def test_a_network_within_the_program() -> None:
+    """EN-25: memq:// needs no socket; on it, too, one hears what was asked for."""
+    network = open_network("memq://")
+    heard: list[tuple[str, bytes]] = []
+    subscription = network.subscribe("a.*", lambda channel, data: heard.append((channel, data)))
+    for channel in ("b", "ab", "ca"):
+        network.publish(channel, b"\0" + channel.encode())
+    assert network.handle_timeout(1000) == 1
+    assert network.handle_timeout(0) == 0
+    assert heard == [("ab", b"\0ab")]
+    network.unsubscribe(subscription)
+    network.publish("ab", b"unheard")
+    assert network.handle_timeout(0) == 0
+
+
+def test_a_server_that_goes_away() -> None:
+    """Bad input: a network of tcpq:// without its server, first and later."""
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        url = f"tcpq://127.0.0.1:{listening.getsockname()[1]}"
+        with ThreadPoolExecutor(1) as others:
+            opening = others.submit(open_network, url)
+            server = listening.accept()[0]
+            assert len(server.recv(8, socket.MSG_WAITALL)) == 8
+            server.sendall(bytes.fromhex("287617fa00000100"))  # magic, version
+            network = opening.result()
+    server.close()
+    with pytest.raises(takt.ConnectionError, match="cannot be joined"):
+        open_network(url)
+    with pytest.raises(OSError, match="server is gone"):
+        network.handle()
 
 
 def test_a_port_that_is_taken() -> None:

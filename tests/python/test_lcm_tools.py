@@ -144,4 +144,4 @@ def test_recording_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixt
     assert capsys.readouterr().err == f"takt: log file {text} exists and is no LCM log; it is left as it is\n"
     assert text.read_text() == "a letter"
     assert main(["record", str(tmp_path / "x.lcm"), "--url", "udpm://239.255.76.67:99999"]) == 2
-    assert 'takt: LCM URL "udpm://239.255.76.67:99999": expected one like' in capsys.readouterr().err
+    assert "takt: LCM URL 'udpm://239.255.76.67:99999': expected one like" in capsys.readouterr().err

@@ -27,8 +27,7 @@ std::unique_ptr<NetworkLog> NetworkLog::Open(const std::string& url, const std::
     problem = network.problem;
     return nullptr;
   }
-  // Where liblcm reads, one member does both.
-  std::unique_ptr<Receiver> receiver = ParseUdp(url) ? OpenReceiver(url, problem) : ReceiverOf(*network.lcm);
+  std::unique_ptr<Receiver> receiver = OpenReceiver(url, *network.lcm, problem);
   if (!receiver) return nullptr;
   std::unique_ptr<LogOutlet> log = OpenLog(path, problem);
   if (!log) return nullptr;

@@ -72,21 +72,26 @@ std::unique_ptr<Receiver> ReceiverOf(::lcm::LCM& network) {
   return std::make_unique<LcmReceiver>(network);
 }
 
-std::unique_ptr<Receiver> OpenReceiver(const std::string& url, std::string& problem) {
-  Network network = OpenNetwork(url);
-  problem = network.problem;
-  if (!network.lcm) return nullptr;
+std::unique_ptr<Receiver> OpenReceiver(const std::string& url, ::lcm::LCM& network, std::string& problem) {
   std::unique_ptr<Receiver> receiver;
   if (const std::optional<UdpAddress> address = ParseUdp(url)) {
     receiver = OpenUdpReceiver(*address);
-  } else if (network.lcm->getFileno() >= 0) {  // without it LCM sends but cannot receive
-    receiver = std::make_unique<LcmReceiver>(std::move(network.lcm));
+  } else if (network.getFileno() >= 0) {  // without it LCM sends but cannot receive
+    receiver = ReceiverOf(network);
   }
   if (!receiver) {
     problem = "LCM network " + url + " cannot be joined (" + std::strerror(errno) +
               "); with the loopback interface alone it needs: ip route add 224.0.0.0/4 dev lo";
   }
   return receiver;
+}
+
+std::unique_ptr<Receiver> OpenReceiver(const std::string& url, std::string& problem) {
+  Network network = OpenNetwork(url);
+  problem = network.problem;
+  if (!network.lcm) return nullptr;
+  if (ParseUdp(url) || network.lcm->getFileno() < 0) return OpenReceiver(url, *network.lcm, problem);
+  return std::make_unique<LcmReceiver>(std::move(network.lcm));
 }
 
 }  // namespace takt::lcm

@@ -44,7 +44,10 @@ class Receiver {
 // Messages of a network that liblcm reads: memq:// and tcpq://. `network` must outlive this.
 std::unique_ptr<Receiver> ReceiverOf(::lcm::LCM& network);
 
-// Null, and `problem` says in one line why, when the network cannot be joined.
+// Null, and `problem` says in one line why, when the network cannot be joined. What is heard on memq:// and tcpq://
+// comes through `network`, a member of the same network, which must outlive the receiver; or through a member of its
+// own.
+std::unique_ptr<Receiver> OpenReceiver(const std::string& url, ::lcm::LCM& network, std::string& problem);
 std::unique_ptr<Receiver> OpenReceiver(const std::string& url, std::string& problem);
 
 }  // namespace takt::lcm
