@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 import os
+import sys
+from pathlib import Path
 
+import pytest
 from hypothesis import settings
+
+sys.path.insert(0, str(Path(__file__).parent))
+from starved import Host
 
 # The same examples each time: a test that fails once in a hundred runs tells nobody why.
 # The long run looks for new ones.
 settings.register_profile("same each time", derandomize=True, database=None)
 if not os.environ.get("TAKT_LONG"):
     settings.load_profile("same each time")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "any_host: a failure is a fault, however busy the host is")
+    if folder := os.environ.get("TAKT_BUILD_DIR"):
+        config.pluginmanager.register(Host(Path(folder)), "host")

@@ -86,6 +86,10 @@ class Stages:
                     print(f"\r\033[K{text}" if TTY else text, end="" if TTY else "\n", flush=True)
         return process.returncode == 0
 
+    def note(self, name: str, good: bool) -> None:
+        """A stage that was a question alone."""
+        self._results.append((name, 0.0, good))
+
     def summary(self) -> int:
         """Prints one line for each stage; the exit code of the whole."""
         good = all(result[2] for result in self._results)
