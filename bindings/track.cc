@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bindings.h"
+#include "takt/core/maths.h"
 #include "takt/mover/streets.h"
 #include "takt/track/ranges.h"
 
@@ -67,7 +68,7 @@ class Layout {
         now[k].length = tracks_.states[k].length;
         now[k].start_node = tracks_.start_nodes[k];
         now[k].end_node = tracks_.end_nodes[k];
-        now[k].reach = std::hypot(its.mover_width, its.mover_height);
+        now[k].reach = maths::Hypot(its.mover_width, its.mover_height);
       }
       mover::Refresh(now, *streets_);
     }

@@ -22,16 +22,24 @@ pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 find_package(ruckig 0.19 CONFIG REQUIRED)
 get_target_property(ruckig_wheel_archive ruckig::ruckig IMPORTED_LOCATION_RELEASE)
 set(ruckig_archive "${CMAKE_BINARY_DIR}/libtakt_ruckig.a")
-if(NOT EXISTS "${ruckig_archive}" OR "${ruckig_wheel_archive}" IS_NEWER_THAN "${ruckig_archive}")
-  # The client's object holds copies of standard library functions, for which a linker may pull it in.
+if(NOT EXISTS "${ruckig_archive}" OR "${ruckig_wheel_archive}" IS_NEWER_THAN "${ruckig_archive}"
+   OR "${CMAKE_CURRENT_LIST_FILE}" IS_NEWER_THAN "${ruckig_archive}")
   configure_file("${ruckig_wheel_archive}" "${ruckig_archive}" COPYONLY)
+  # The client's object holds copies of standard library functions, for which a linker may pull it in.
   execute_process(COMMAND "${CMAKE_AR}" d "${ruckig_archive}" cloud_client.cpp.o COMMAND_ERROR_IS_FATAL ANY)
+  # Its elementary functions become those of core/maths_names.cc, which have the same bits on every processor.
+  set(renamed "")
+  foreach(function acos atan cbrt sincos)
+    list(APPEND renamed --redefine-sym ${function}=takt_${function})
+  endforeach()
+  execute_process(COMMAND "${CMAKE_OBJCOPY}" ${renamed} "${ruckig_archive}" COMMAND_ERROR_IS_FATAL ANY)
+  file(TOUCH "${ruckig_archive}")
 endif()
 get_target_property(ruckig_headers ruckig::ruckig INTERFACE_INCLUDE_DIRECTORIES)
 file(GLOB TAKT_RUCKIG_LICENSE "${ruckig_DIR}/../../../ruckig-*.dist-info/licenses/LICENSE")
 add_library(takt::ruckig STATIC IMPORTED GLOBAL)
 set_target_properties(takt::ruckig PROPERTIES
-  IMPORTED_LOCATION "${ruckig_archive}" INTERFACE_INCLUDE_DIRECTORIES "${ruckig_headers}")
+  IMPORTED_LOCATION "${ruckig_archive}" INTERFACE_INCLUDE_DIRECTORIES "${ruckig_headers}" INTERFACE_LINK_LIBRARIES takt::core)
 
 if(TAKT_BUILD_PYTHON)
   find_package(Python 3.10 COMPONENTS Interpreter Development.Module REQUIRED)

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 
 namespace takt::axis {
 
@@ -62,7 +63,7 @@ void Step(const Encoder& p, const EncoderInputs& in, Cycle cycle, EncoderState& 
     s.missed += in.cycles;
   } else if (fresh) {
     const double time = cycle.period_s * static_cast<double>(s.missed + in.cycles);
-    const double share = p.velocity_filter_s > 0 ? -std::expm1(-time / p.velocity_filter_s) : 1;
+    const double share = p.velocity_filter_s > 0 ? -maths::Expm1(-time / p.velocity_filter_s) : 1;
     s.velocity += (distance / time - s.velocity) * share;
     s.missed = 0;
   }

@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 
 namespace takt::axis {
 
@@ -37,7 +38,7 @@ const KinematicState& Filter(double time_constant_s, double increment, Cycle cyc
   const double wanted_s = std::clamp(increments_s, time_constant_s, kLongest * time_constant_s);
   const double memory_s = std::min(wanted_s, filter.cycles * period);
   if (filter.cycles * period < kLongest * time_constant_s) ++filter.cycles;
-  const double pole = std::exp(-period / memory_s);
+  const double pole = maths::Exp(-period / memory_s);
   const double acceleration = measured.acceleration;
   e.position += (e.velocity + 0.5 * acceleration * period) * period;
   e.velocity += acceleration * period;

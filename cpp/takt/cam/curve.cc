@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "takt/core/maths.h"
+
 namespace takt::cam {
 
 Curve Derivative(const Curve& curve) noexcept {
@@ -29,11 +31,12 @@ Curve Combined(double p, const Curve& first, double q, const Curve& second) noex
   Curve result;
   for (std::size_t i = 0; i < result.c.size(); ++i) result.c[i] = p * first.c[i] + q * second.c[i];
   const double a = p * first.amplitude, b = q * second.amplitude;
-  const double sine = a * std::sin(first.phase) + b * std::sin(second.phase);
-  const double cosine = a * std::cos(first.phase) + b * std::cos(second.phase);
-  result.amplitude = std::hypot(sine, cosine);
+  const maths::SineCosine one = maths::SinCos(first.phase), other = maths::SinCos(second.phase);
+  const double sine = a * one.sine + b * other.sine;
+  const double cosine = a * one.cosine + b * other.cosine;
+  result.amplitude = maths::Hypot(sine, cosine);
   result.frequency = a != 0 ? first.frequency : second.frequency;
-  result.phase = std::atan2(sine, cosine);
+  result.phase = maths::Atan2(sine, cosine);
   return result;
 }
 

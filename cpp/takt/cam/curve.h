@@ -3,8 +3,9 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
+
+#include "takt/core/maths.h"
 
 namespace takt::cam {
 
@@ -27,7 +28,7 @@ struct Curve {
   double At(double d) const noexcept {
     double sum = c[7];
     for (std::size_t i = 7; i-- > 0;) sum = sum * d + c[i];
-    return amplitude == 0 ? sum : sum + amplitude * std::sin(frequency * d + phase);
+    return amplitude == 0 ? sum : sum + amplitude * maths::Sin(frequency * d + phase);
   }
   bool operator==(const Curve&) const = default;
 };

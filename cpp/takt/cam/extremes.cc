@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/cam/roots.h"
+#include "takt/core/maths.h"
 
 namespace takt::cam {
 
@@ -46,7 +47,9 @@ Roots Places(const Table& table, std::size_t i, double y) {
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * (std::abs(y) + std::abs(curve.c[0]));
   curve.c[0] -= y;
   double reach = std::abs(curve.amplitude) + rounding;
-  for (std::size_t k = curve.c.size(); k-- > 1;) reach += std::abs(curve.c[k]) * std::pow(h, static_cast<double>(k));
+  for (std::size_t k = curve.c.size(); k-- > 1;) {
+    reach += std::abs(curve.c[k]) * maths::Power(h, static_cast<unsigned>(k));
+  }
   if (std::abs(curve.c[0]) > reach) return {};
   return RootsOf(curve, h, rounding);
 }

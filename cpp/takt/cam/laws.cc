@@ -5,6 +5,7 @@
 
 #include "takt/cam/roots.h"
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 
 namespace takt::cam {
 
@@ -40,8 +41,9 @@ Curve Integrated(double constant, const Curve& sine, double y, double v) {
   curve.c = {y, v, constant / 2};
   if (sine.amplitude == 0) return curve;
   const double w = sine.frequency;
-  curve.c[0] += sine.amplitude / (w * w) * std::sin(sine.phase);
-  curve.c[1] += sine.amplitude / w * std::cos(sine.phase);
+  const maths::SineCosine of_phase = maths::SinCos(sine.phase);
+  curve.c[0] += sine.amplitude / (w * w) * of_phase.sine;
+  curve.c[1] += sine.amplitude / w * of_phase.cosine;
   curve.amplitude = -sine.amplitude / (w * w);
   curve.frequency = w;
   curve.phase = sine.phase;

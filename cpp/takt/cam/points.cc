@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "takt/core/maths.h"
+
 namespace takt::cam {
 
 namespace {
@@ -108,7 +110,7 @@ class Spline {
     const std::array<std::array<double, 2>, 3> gauss{{{0.5 - root, 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 + root, 5.0 / 18}}};
     for (const auto& [u, share] : gauss) {
       const auto form = Form(h, u);
-      const double weight = share / std::pow(h, 2 * N + 1);
+      const double weight = share / maths::Power(h, 2 * N + 1);
       for (std::size_t r = 0; r < N; ++r) {
         for (std::size_t c = 0; c < N; ++c) {
           diagonal_[i][r][c] += weight * form[1 + r] * form[1 + c];

@@ -1,9 +1,9 @@
 #include "takt/cam/table.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "takt/cam/roots.h"
+#include "takt/core/maths.h"
 
 namespace takt::cam {
 
@@ -83,8 +83,9 @@ void Table::Add(const More& m, double d, Value& value) noexcept {
   value.ddy += d4 * (30 * m.c6 + d * 42 * m.c7);
   value.dddy += d2 * d * (120 * m.c6 + d * 210 * m.c7);
   if (m.amplitude == 0) return;
-  const double sine = m.amplitude * std::sin(m.frequency * d + m.phase);
-  const double cosine = m.amplitude * std::cos(m.frequency * d + m.phase);
+  const maths::SineCosine wave = maths::SinCos(m.frequency * d + m.phase);
+  const double sine = m.amplitude * wave.sine;
+  const double cosine = m.amplitude * wave.cosine;
   const double f = m.frequency, f2 = f * f;
   value.y += sine;
   value.dy += f * cosine;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "takt/core/angle.h"
+#include "takt/core/maths.h"
 
 namespace takt::conveyor {
 
@@ -15,7 +16,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // Along the belt, where the object lay when it was detected.
 double InitialPlace(const BeltParams& p, const Object& object) {
-  return p.kind == BeltKind::kTurning ? std::atan2(object.pose.y, object.pose.x) / kDegree : object.pose.x;
+  return p.kind == BeltKind::kTurning ? maths::Atan2(object.pose.y, object.pose.x) / kDegree : object.pose.x;
 }
 
 template <typename Objects>

@@ -110,6 +110,7 @@ Reduced Reduce(double x) {
 }
 
 double Sine(const Reduced& r) {
+  if (r.high == 0) return r.high;  // -0 as well
   const double x = r.high, z = x * x;
   const double s = z * (kSine[1] + z * (kSine[2] + z * (kSine[3] + z * (kSine[4] + z * kSine[5]))));
   return x + (x * z * (kSine[0] + s) + r.low * (1 - 0.5 * z));
@@ -363,6 +364,7 @@ double Cbrt(double x) noexcept {
 double Hypot(double x, double y) noexcept {
   const double more = std::max(std::abs(x), std::abs(y)), less = std::min(std::abs(x), std::abs(y));
   if (std::isinf(x) || std::isinf(y)) return kInfinity;
+  if (std::isnan(x) || std::isnan(y)) return kNan;
   if (more > 0x1p500)
     return std::sqrt((more * 0x1p-600) * (more * 0x1p-600) + (less * 0x1p-600) * (less * 0x1p-600)) * 0x1p600;
   if (more < 0x1p-450)

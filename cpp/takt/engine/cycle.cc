@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <type_traits>
 #include <utility>
 
+#include "takt/core/maths.h"
 #include "takt/engine/carriers.h"
 #include "takt/engine/masters.h"
 #include "takt/engine/mover_masters.h"
@@ -79,7 +79,7 @@ void RefreshStreets(World& w) {
                        w.tracks.states[i].state == planar::ObjectState::kEnabled && carried,
                        w.tracks.start_nodes[i],
                        w.tracks.end_nodes[i],
-                       std::hypot(params.mover_width, params.mover_height),
+                       maths::Hypot(params.mover_width, params.mover_height),
                        part,
                        w.tracks.spot(i),
                        w.tracks.goal(i),

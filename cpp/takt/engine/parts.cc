@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/core/maths.h"
 #include "takt/mover/formation.h"
 #include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
@@ -91,7 +92,7 @@ bool IsTooNear(const World& w, const planar::Rider& one, double gap, std::uint32
   const auto strides = static_cast<int>(std::ceil((to - from) / kStride));
   for (int i = 0; touch && i <= strides; ++i) {
     const planar::Place off = PlaceOn(w, track, strides == 0 ? from : from + (to - from) * i / strides) - place;
-    if (std::hypot(off.x, off.y) < reach + (strides == 0 ? 0 : kStride / 2)) return true;
+    if (maths::Hypot(off.x, off.y) < reach + (strides == 0 ? 0 : kStride / 2)) return true;
   }
   return false;
 }

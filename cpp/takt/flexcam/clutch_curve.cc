@@ -6,6 +6,7 @@
 
 #include "takt/cam/roots.h"
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 
 namespace takt::flexcam {
 
@@ -45,7 +46,7 @@ double FastestOn(const Quintic& q, const trajectory::Limits& limits) {
   double fastest = std::numeric_limits<double>::max();
   if (peaks.first > 0) fastest = std::min(fastest, limits.velocity / peaks.first);
   if (peaks.second > 0) fastest = std::min(fastest, std::sqrt(Weaker(limits) / peaks.second));
-  if (peaks.third > 0 && limits.jerk > 0) fastest = std::min(fastest, std::cbrt(limits.jerk / peaks.third));
+  if (peaks.third > 0 && limits.jerk > 0) fastest = std::min(fastest, maths::Cbrt(limits.jerk / peaks.third));
   return fastest;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "takt/core/maths.h"
 #include "takt/group/clutch.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/rides.h"
@@ -150,7 +151,7 @@ void LookAt(const Context& c, const State& s, double place, double wish, KeepUp:
     const double now = at_rest[k] + most * (by_way[k] + most * bend[k]);
     const double jerk = std::abs(later[k] - now) / kJerkOver_s;
     const double allowed = of_limits * limits.of[k].jerk;
-    if (jerk > allowed) share = std::min(share, std::cbrt(allowed / jerk));
+    if (jerk > allowed) share = std::min(share, maths::Cbrt(allowed / jerk));
   }
   seen.velocity = std::max(share * most, kLeast * u);
   for (std::size_t k = 0; k < limits.count; ++k) {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "takt/core/angle.h"
+#include "takt/core/maths.h"
 #include "takt/group/clutch.h"
 #include "takt/group/members.h"
 #include "takt/group/plan.h"
@@ -58,8 +59,8 @@ double TravelOfTool(const Track& track, const kinematics::Carrier& carrier, cons
   const kinematics::Pose& on = track.cargo.lies;
   if (carrier.kind == kinematics::CarrierKind::kStraight) return track.cargo.from + there.x() - on.x;
   const double now = carrier.travel.position;
-  if (std::hypot(there.x(), there.y()) < kCenter || std::hypot(on.x, on.y) < kCenter) return now;
-  const double angle = track.cargo.from + std::atan2(there.y(), there.x()) - std::atan2(on.y, on.x);
+  if (maths::Hypot(there.x(), there.y()) < kCenter || maths::Hypot(on.x, on.y) < kCenter) return now;
+  const double angle = track.cargo.from + maths::Atan2(there.y(), there.x()) - maths::Atan2(on.y, on.x);
   return now + std::remainder(angle - now, 2 * std::numbers::pi);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/core/maths.h"
 #include "takt/kinematics/joints.h"
 
 namespace takt::kinematics {
@@ -24,7 +25,7 @@ struct TwoLinks {
 // Lengths in mm, both above 0. `positive`: the sign of the elbow.
 inline Reason Reach(double first_length, double second_length, double x, double y, bool positive,
                     TwoLinks& out) noexcept {
-  const double distance = std::hypot(x, y);
+  const double distance = maths::Hypot(x, y);
   const double longest = first_length + second_length;
   const double shortest = std::abs(first_length - second_length);
   // Differences of near lengths stay exact: 1 - cos and 1 + cos of the elbow, times `scale`.
@@ -35,8 +36,9 @@ inline Reason Reach(double first_length, double second_length, double x, double 
   const double sine = std::sqrt(less * more) / scale;
   if (sine < kSingularSine) return Reason::kSingular;
   const double cosine = (more - less) / (2 * scale);
-  out.elbow = std::atan2(positive ? sine : -sine, cosine);
-  out.first = std::atan2(y, x) - std::atan2(second_length * std::sin(out.elbow), first_length + second_length * cosine);
+  out.elbow = maths::Atan2(positive ? sine : -sine, cosine);
+  out.first =
+      maths::Atan2(y, x) - maths::Atan2(second_length * maths::Sin(out.elbow), first_length + second_length * cosine);
   return Reason::kNone;
 }
 
@@ -56,7 +58,7 @@ inline bool UprightMotion(const MovingFrame& frame) noexcept {
 
 // The angle about Z of an upright orientation, rad.
 inline double AngleAboutZ(const KDL::Rotation& r) noexcept {
-  return std::atan2(r(1, 0), r(0, 0));
+  return maths::Atan2(r(1, 0), r(0, 0));
 }
 
 }  // namespace takt::kinematics

@@ -1,6 +1,7 @@
 #include "takt/kinematics/carrier.h"
 
 #include "takt/core/describe.h"
+#include "takt/kinematics/rotations.h"
 
 namespace takt::kinematics {
 
@@ -12,7 +13,7 @@ MovingFrame Travelled(CarrierKind kind, const KinematicState& travel) {
     moved.p = KDL::VectorAcc(KDL::Vector(travel.position, 0, 0), KDL::Vector(travel.velocity, 0, 0),
                              KDL::Vector(travel.acceleration, 0, 0));
   } else if (kind == CarrierKind::kTurning) {
-    moved.M = KDL::RotationAcc(KDL::Rotation::RotZ(travel.position), KDL::Vector(0, 0, travel.velocity),
+    moved.M = KDL::RotationAcc(AboutZ(travel.position), KDL::Vector(0, 0, travel.velocity),
                                KDL::Vector(0, 0, travel.acceleration));
   }
   return moved;
@@ -35,8 +36,8 @@ Carrier Ahead(const Carrier& carrier, double time_s) noexcept {
     MovingFrame& pose = later.pose;
     pose.p.p += time_s * pose.p.v;
     pose.p.dv = pose.M.dw = KDL::Vector::Zero();
-    const double angle = pose.M.w.Norm() * time_s;
-    if (angle > 0) pose.M.R = KDL::Rotation::Rot(pose.M.w, angle) * pose.M.R;
+    const double rate = pose.M.w.Norm();
+    if (rate > 0) pose.M.R = About(pose.M.w / rate, rate * time_s) * pose.M.R;
   }
   return later;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "takt/kinematics/rotations.h"
 #include "takt/kinematics/twist.h"
 
 namespace takt::kinematics {
@@ -70,7 +71,7 @@ Frame Forward(const Chain& chain, const Joints& joints) noexcept {
     if (link.kind == JointKind::kLinear) {
       frame.p += frame.M * (link.axis * joints[i]);
     } else {
-      frame.M = frame.M * KDL::Rotation::Rot2(link.axis, joints[i]);
+      frame.M = frame.M * About(link.axis, joints[i]);
     }
   }
   return frame * chain.tool;
@@ -86,7 +87,7 @@ MovingFrame Forward(const Chain& chain, const JointMotion& motion) noexcept {
     if (link.kind == JointKind::kLinear) {
       joint.p = KDL::VectorAcc(link.axis * motion.position[i], v, a);
     } else {
-      joint.M = KDL::RotationAcc(KDL::Rotation::Rot2(link.axis, motion.position[i]), v, a);
+      joint.M = KDL::RotationAcc(About(link.axis, motion.position[i]), v, a);
     }
     frame = frame * link.before * joint;
   }
@@ -107,7 +108,7 @@ Jacobian JacobianAt(const Chain& chain, const Joints& joints) noexcept {
       frame.p += axis * joints[i];
     } else {
       columns[i].rot = axis;
-      frame.M = frame.M * KDL::Rotation::Rot2(link.axis, joints[i]);
+      frame.M = frame.M * About(link.axis, joints[i]);
     }
   }
   const KDL::Vector tool = frame * chain.tool.p;

@@ -1,6 +1,8 @@
 #include "takt/kinematics/delta.h"
 
+#include "takt/core/maths.h"
 #include "takt/kinematics/angles.h"
+#include "takt/kinematics/rotations.h"
 
 namespace takt::kinematics {
 namespace {
@@ -17,13 +19,15 @@ struct Arm {
 
 Vector Knee(const Delta& delta, std::size_t i, double angle) {
   const DeltaLengths& l = delta.lengths;
-  const double radius = l.base_radius - l.platform_radius + l.upper_arm * std::cos(angle);
-  return delta.outward[i] * radius + Vector(0, 0, -l.upper_arm * std::sin(angle));
+  const auto [sine, cosine] = maths::SinCos(angle);
+  const double radius = l.base_radius - l.platform_radius + l.upper_arm * cosine;
+  return delta.outward[i] * radius + Vector(0, 0, -l.upper_arm * sine);
 }
 
 Arm ArmAt(const Delta& delta, std::size_t i, double angle, const Vector& tool) {
-  const double s = std::sin(angle) * delta.lengths.upper_arm;
-  const double c = std::cos(angle) * delta.lengths.upper_arm;
+  const auto [sine, cosine] = maths::SinCos(angle);
+  const double s = sine * delta.lengths.upper_arm;
+  const double c = cosine * delta.lengths.upper_arm;
   Arm arm;
   arm.lower = tool - Knee(delta, i, angle);
   arm.along = delta.outward[i] * -s + Vector(0, 0, -c);
@@ -76,7 +80,8 @@ Delta MakeDelta(const DeltaLengths& lengths, double first_arm, bool rotary) {
   Delta delta{.lengths = lengths, .outward = {}, .rotary = rotary};
   for (std::size_t i = 0; i < 3; ++i) {
     const double angle = first_arm + static_cast<double>(i) * 2 * std::numbers::pi / 3;
-    delta.outward[i] = {std::cos(angle), std::sin(angle), 0};
+    const auto [sine, cosine] = maths::SinCos(angle);
+    delta.outward[i] = {cosine, sine, 0};
   }
   return delta;
 }
@@ -84,7 +89,7 @@ Delta MakeDelta(const DeltaLengths& lengths, double first_arm, bool rotary) {
 Reason Forward(const Delta& delta, const Joints& joints, Frame& tool) noexcept {
   Vector place;
   if (const Reason reason = ForwardPlace(delta, joints, place); reason != Reason::kNone) return reason;
-  tool = Frame(KDL::Rotation::RotZ(joints[3]), place);
+  tool = Frame(AboutZ(joints[3]), place);
   return Reason::kNone;
 }
 

@@ -7,6 +7,8 @@
 
 #include "takt/core/angle.h"
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
+#include "takt/kinematics/rotations.h"
 
 namespace takt::kinematics {
 namespace {
@@ -31,18 +33,17 @@ bool AllFinite(std::span<const double> numbers) {
 }  // namespace
 
 Frame ToFrame(const Pose& pose) noexcept {
-  return {KDL::Rotation::RPY(pose.a * kDegree, pose.b * kDegree, pose.c * kDegree), {pose.x, pose.y, pose.z}};
+  return {RollPitchYaw(pose.a * kDegree, pose.b * kDegree, pose.c * kDegree), {pose.x, pose.y, pose.z}};
 }
 
 Pose ToPose(const Frame& frame) noexcept {
   const KDL::Rotation& r = frame.M;
-  const double cos_b = std::hypot(r(2, 1), r(2, 2));
-  const double a = cos_b < kGimbalLock ? 0 : std::atan2(r(2, 1), r(2, 2));
-  const double b = std::atan2(-r(2, 0), cos_b);
+  const double cos_b = maths::Hypot(r(2, 1), r(2, 2));
+  const double a = cos_b < kGimbalLock ? 0 : maths::Atan2(r(2, 1), r(2, 2));
+  const double b = maths::Atan2(-r(2, 0), cos_b);
   // C is what is left when A is turned back: exact for whatever A was taken.
-  const double s = std::sin(a);
-  const double c = std::cos(a);
-  const double rest = std::atan2(s * r(0, 2) - c * r(0, 1), c * r(1, 1) - s * r(1, 2));
+  const auto [s, c] = maths::SinCos(a);
+  const double rest = maths::Atan2(s * r(0, 2) - c * r(0, 1), c * r(1, 1) - s * r(1, 2));
   return {frame.p.x(), frame.p.y(), frame.p.z(), Degrees(a), Degrees(b), Degrees(rest)};
 }
 
@@ -64,7 +65,7 @@ GreatArc ArcBetween(const KDL::Rotation& from, const KDL::Rotation& to) noexcept
   if (sine == 0) return arc;
   const Eigen::Vector3d axis = turn.vec() * (sign / sine);
   arc.axis = {axis.x(), axis.y(), axis.z()};
-  arc.angle = 2 * std::atan2(sine, sign * turn.w());
+  arc.angle = 2 * maths::Atan2(sine, sign * turn.w());
   return arc;
 }
 
@@ -74,7 +75,7 @@ KDL::Vector TurnBetween(const KDL::Rotation& from, const KDL::Rotation& to) noex
 }
 
 KDL::RotationAcc Along(const GreatArc& arc, const Share& share) noexcept {
-  return {KDL::Rotation::Rot2(arc.axis, arc.angle * share.value) * arc.start, arc.axis * (arc.angle * share.rate),
+  return {About(arc.axis, arc.angle * share.value) * arc.start, arc.axis * (arc.angle * share.rate),
           arc.axis * (arc.angle * share.acceleration)};
 }
 

@@ -2,6 +2,7 @@
 
 #include "takt/core/describe.h"
 #include "takt/kinematics/angles.h"
+#include "takt/kinematics/rotations.h"
 
 namespace takt::kinematics {
 namespace {
@@ -62,7 +63,7 @@ Linear MakeCoreXy(bool with_z, bool with_c) {
 
 Reason Forward(const Linear& linear, const Joints& joints, Frame& tool) noexcept {
   const Four c = ToTool(linear, joints);
-  tool = Frame(KDL::Rotation::RotZ(c[3]), Place(c));
+  tool = Frame(AboutZ(c[3]), Place(c));
   return Reason::kNone;
 }
 
@@ -70,7 +71,7 @@ Reason Forward(const Linear& linear, const JointMotion& motion, MovingFrame& too
   const Four p = ToTool(linear, motion.position);
   const Four v = ToTool(linear, motion.velocity);
   const Four a = ToTool(linear, motion.acceleration);
-  tool = MovingFrame(KDL::RotationAcc(KDL::Rotation::RotZ(p[3]), {0, 0, v[3]}, {0, 0, a[3]}),
+  tool = MovingFrame(KDL::RotationAcc(AboutZ(p[3]), {0, 0, v[3]}, {0, 0, a[3]}),
                      KDL::VectorAcc(Place(p), Place(v), Place(a)));
   return Reason::kNone;
 }

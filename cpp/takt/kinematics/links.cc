@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "takt/core/maths.h"
+#include "takt/kinematics/rotations.h"
+
 namespace takt::kinematics {
 namespace {
 
@@ -154,7 +157,7 @@ Reason FramesOf(const Chain& chain, const Joints& joints, LinkFrameArray& out) {
     if (link.kind == JointKind::kLinear) {
       frame.p += frame.M * (link.axis * joints[i]);
     } else {
-      frame.M = frame.M * KDL::Rotation::Rot2(link.axis, joints[i]);
+      frame.M = frame.M * About(link.axis, joints[i]);
     }
   }
   out[chain.count + 1] = out[chain.count] * chain.tool;
@@ -231,7 +234,7 @@ Reason FramesOf(const Delta& delta, const Joints& joints, LinkFrameArray& out) {
     const Vector tangent = Tangent(delta, arm);
     const KDL::Rotation level(outward, tangent, {0, 0, 1});
     Frame& upper = out[kUpper + arm];
-    upper = Frame(level * KDL::Rotation::RotY(joints[arm]), outward * l.base_radius);
+    upper = Frame(level * AboutY(joints[arm]), outward * l.base_radius);
     const Vector knee = upper * Vector(l.upper_arm, 0, 0);
     const Vector along = (tool.p + outward * l.platform_radius - knee) / l.lower_arm;
     Vector side = tangent - along * dot(tangent, along);
@@ -276,9 +279,9 @@ double MoveOfRod(const Delta& delta, const Sweep& sweep, std::size_t link, const
   const Vector along = sweep.start[link].M.UnitX();
   const double sine = std::abs(dot(along, Tangent(delta, ArmOf(link)))) + tilt;
   if (!(tilt < 1 && sine < 1)) return kUnknown;
-  const double turn = 2 * std::asin(tilt / 2) / std::sqrt((1 - sine) * (1 + sine));
+  const double turn = 2 * maths::Asin(tilt / 2) / std::sqrt((1 - sine) * (1 + sine));
   const double share = point.x() / length;
-  const double aside = std::hypot(point.y(), point.z()) + radius;
+  const double aside = maths::Hypot(point.y(), point.z()) + radius;
   return std::abs(1 - share) * knee + std::abs(share) * sweep.platform + aside * turn;
 }
 

@@ -5,6 +5,7 @@
 // Manipulators with an Ortho-parallel Basis and a Spherical Wrist (2014).
 #include <cmath>
 
+#include "takt/core/maths.h"
 #include "takt/kinematics/serial.h"
 
 namespace takt::kinematics {
@@ -48,11 +49,11 @@ Joints Counted(const ClosedForm& form, const Joints& joints) {
 bool Agrees(const ClosedForm& form, const Chain& chain) {
   for (int trial = 1; trial <= kTrials; ++trial) {
     Joints joints{};
-    for (std::size_t i = 0; i < chain.count; ++i) joints[i] = std::sin(trial * (1.3 + static_cast<double>(i)));
+    for (std::size_t i = 0; i < chain.count; ++i) joints[i] = maths::Sin(trial * (1.3 + static_cast<double>(i)));
     const Frame own = form.base * Forward(form.arm.chain, Counted(form, joints)) * form.flange;
     const Frame wanted = Forward(chain, joints);
     if ((own.p - wanted.p).Norm() > 10 * kPart * chain.length) return false;
-    if (KDL::diff(own.M, wanted.M).Norm() > 10 * kAngle) return false;
+    if (ArcBetween(own.M, wanted.M).angle > 10 * kAngle) return false;
   }
   return true;
 }
@@ -85,12 +86,13 @@ ClosedForm Recognise(const Chain& chain) {
   const auto place = [&](const KDL::Vector& p) { return form.base.Inverse() * p; };
   const KDL::Vector second = place(axes[1].point), third = place(axes[2].point), center = place(wrist);
   const KDL::Vector upper = third - second, fore = center - third;
-  const double c2 = std::hypot(upper.x(), upper.z());
+  const double c2 = maths::Hypot(upper.x(), upper.z());
   if (c2 < near) return form;
-  const double lean = std::atan2(upper.x(), upper.z());
+  const double lean = maths::Atan2(upper.x(), upper.z());
   const KDL::Vector fourth = seen(axes[3].along);
-  const double turned = std::atan2(fourth.x(), fourth.z());
-  const KDL::Vector forearm_x(std::cos(turned), 0, -std::sin(turned)), forearm_z(std::sin(turned), 0, std::cos(turned));
+  const double turned = maths::Atan2(fourth.x(), fourth.z());
+  const maths::SineCosine fore_turn = maths::SinCos(turned);
+  const KDL::Vector forearm_x(fore_turn.cosine, 0, -fore_turn.sine), forearm_z(fore_turn.sine, 0, fore_turn.cosine);
   const SixAxisLengths lengths{.a1 = second.x(),
                                .a2 = KDL::dot(fore, forearm_x),
                                .b = center.y(),
@@ -98,11 +100,12 @@ ClosedForm Recognise(const Chain& chain) {
                                .c2 = c2,
                                .c3 = KDL::dot(fore, forearm_z),
                                .c4 = 0};
-  if (std::hypot(lengths.a2, lengths.c3) < near) return form;
+  if (maths::Hypot(lengths.a2, lengths.c3) < near) return form;
   const KDL::Vector fifth = seen(axes[4].along), sixth = seen(axes[5].along);
-  const double roll = std::atan2(-KDL::dot(fifth, forearm_x), fifth.y());
-  const KDL::Vector bent = std::cos(roll) * forearm_x + KDL::Vector(0, std::sin(roll), 0);
-  const double bend = std::atan2(KDL::dot(sixth, bent), KDL::dot(sixth, forearm_z));
+  const double roll = maths::Atan2(-KDL::dot(fifth, forearm_x), fifth.y());
+  const maths::SineCosine of_roll = maths::SinCos(roll);
+  const KDL::Vector bent = of_roll.cosine * forearm_x + KDL::Vector(0, of_roll.sine, 0);
+  const double bend = maths::Atan2(KDL::dot(sixth, bent), KDL::dot(sixth, forearm_z));
   form.arm = MakeSixAxis(lengths);
   form.zero = {0, lean, turned - lean, roll, bend, 0};
   form.sign = {1, 1, KDL::dot(axes[2].along, axes[1].along) > 0 ? 1.0 : -1.0, 1, 1, 1};

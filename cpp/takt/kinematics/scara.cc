@@ -1,5 +1,6 @@
 #include "takt/kinematics/scara.h"
 
+#include "takt/core/maths.h"
 #include "takt/kinematics/angles.h"
 
 namespace takt::kinematics {
@@ -16,7 +17,7 @@ Scara MakeScara(double first_arm, double second_arm, double height) {
 
 Configuration ConfigurationOf(const Scara&, const Joints& joints) noexcept {
   return {.shoulder = Shoulder::kKeep,
-          .elbow = std::sin(joints[1]) >= 0 ? Elbow::kPositive : Elbow::kNegative,
+          .elbow = maths::Sin(joints[1]) >= 0 ? Elbow::kPositive : Elbow::kNegative,
           .wrist = Wrist::kKeep};
 }
 

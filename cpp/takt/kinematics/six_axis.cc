@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "takt/core/maths.h"
 #include "takt/kinematics/angles.h"
+#include "takt/kinematics/rotations.h"
 
 namespace takt::kinematics {
 namespace {
@@ -10,13 +12,14 @@ namespace {
 // How far the wrist is in front of axis 1.
 double FrontOf(const SixAxis& arm, const Joints& joints) {
   const double forearm = joints[1] + joints[2] + arm.forearm_angle;
-  return arm.lengths.a1 + arm.lengths.c2 * std::sin(joints[1]) + arm.forearm * std::sin(forearm);
+  return arm.lengths.a1 + arm.lengths.c2 * maths::Sin(joints[1]) + arm.forearm * maths::Sin(forearm);
 }
 
 }  // namespace
 
 SixAxis MakeSixAxis(const SixAxisLengths& l) {
-  SixAxis arm{.chain = {}, .lengths = l, .forearm = std::hypot(l.a2, l.c3), .forearm_angle = std::atan2(l.a2, l.c3)};
+  SixAxis arm{
+      .chain = {}, .lengths = l, .forearm = maths::Hypot(l.a2, l.c3), .forearm_angle = maths::Atan2(l.a2, l.c3)};
   const KDL::Vector y(0, 1, 0);
   const KDL::Vector z(0, 0, 1);
   Append(arm.chain, {Frame::Identity(), z, JointKind::kRotary});
@@ -31,8 +34,8 @@ SixAxis MakeSixAxis(const SixAxisLengths& l) {
 
 Configuration ConfigurationOf(const SixAxis& arm, const Joints& joints) noexcept {
   return {.shoulder = FrontOf(arm, joints) >= 0 ? Shoulder::kFront : Shoulder::kBack,
-          .elbow = std::sin(joints[2] + arm.forearm_angle) >= 0 ? Elbow::kPositive : Elbow::kNegative,
-          .wrist = std::sin(joints[4]) >= 0 ? Wrist::kPositive : Wrist::kNegative};
+          .elbow = maths::Sin(joints[2] + arm.forearm_angle) >= 0 ? Elbow::kPositive : Elbow::kNegative,
+          .wrist = maths::Sin(joints[4]) >= 0 ? Wrist::kPositive : Wrist::kNegative};
 }
 
 Reason Inverse(const SixAxis& arm, const Frame& tool, const Configuration& configuration, const Joints& near,
@@ -40,13 +43,13 @@ Reason Inverse(const SixAxis& arm, const Frame& tool, const Configuration& confi
   const SixAxisLengths& l = arm.lengths;
   const KDL::Vector wrist = tool.p - tool.M.UnitZ() * l.c4;
 
-  const double distance = std::hypot(wrist.x(), wrist.y());
+  const double distance = maths::Hypot(wrist.x(), wrist.y());
   const double front_squared = (distance - std::abs(l.b)) * (distance + std::abs(l.b));
   if (!(front_squared >= 0)) return Reason::kOutOfReach;
   const double magnitude = std::sqrt(front_squared);
   if (magnitude < kSingularSine * arm.chain.length) return Reason::kSingular;
   const double front = configuration.shoulder == Shoulder::kFront ? magnitude : -magnitude;
-  const double first = std::atan2(wrist.y(), wrist.x()) - std::atan2(l.b, front);
+  const double first = maths::Atan2(wrist.y(), wrist.x()) - maths::Atan2(l.b, front);
 
   // Seen from the side, angles from Z to X.
   TwoLinks links;
@@ -55,17 +58,17 @@ Reason Inverse(const SixAxis& arm, const Frame& tool, const Configuration& confi
   if (reason != Reason::kNone) return reason;
 
   const double third = links.elbow - arm.forearm_angle;
-  const KDL::Rotation forearm = KDL::Rotation::RotZ(first) * KDL::Rotation::RotY(links.first + third);
+  const KDL::Rotation forearm = AboutZ(first) * AboutY(links.first + third);
   const KDL::Rotation turn = forearm.Inverse() * tool.M;
-  const double sine = std::hypot(turn(0, 2), turn(1, 2));
+  const double sine = maths::Hypot(turn(0, 2), turn(1, 2));
   if (sine < kSingularSine) return Reason::kSingular;
   const double sign = configuration.wrist == Wrist::kPositive ? 1 : -1;
 
   // Axis 4 may be known badly; axes 5 and 6 make up for it.
-  const double fourth = std::atan2(sign * turn(1, 2), sign * turn(0, 2));
-  const KDL::Rotation rest = KDL::Rotation::RotZ(-fourth) * turn;
+  const double fourth = maths::Atan2(sign * turn(1, 2), sign * turn(0, 2));
+  const KDL::Rotation rest = AboutZ(-fourth) * turn;
   const std::array<double, 6> angles{
-      first, links.first, third, fourth, std::atan2(rest(0, 2), rest(2, 2)), std::atan2(rest(1, 0), rest(1, 1))};
+      first, links.first, third, fourth, maths::Atan2(rest(0, 2), rest(2, 2)), maths::Atan2(rest(1, 0), rest(1, 1))};
   for (std::size_t i = 0; i < angles.size(); ++i) joints[i] = NearestTurn(angles[i], near[i]);
   return Reason::kNone;
 }

@@ -32,7 +32,7 @@ void Add(const Kinematics& k, const Configuration& in, const Joints& own, Soluti
 
 bool IsThere(const Chain& chain, const Joints& own, const Frame& tool) {
   const Frame at = Forward(chain, own);
-  return (at.p - tool.p).Norm() <= kSlack && KDL::diff(at.M, tool.M).Norm() <= kSlack;
+  return (at.p - tool.p).Norm() <= kSlack && ArcBetween(at.M, tool.M).angle <= kSlack;
 }
 
 template <typename Mechanism>

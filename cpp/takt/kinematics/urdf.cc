@@ -5,16 +5,19 @@
 #include <vector>
 
 #include "takt/kinematics/serial.h"
+#include "takt/kinematics/urdf_angles.h"
 
 namespace takt::kinematics {
 namespace {
 
 constexpr double kMetre = 1000;  // mm: URDF counts in metres
 
-Frame ToFrame(const urdf::Pose& pose) {
-  const urdf::Rotation& q = pose.rotation;
-  const urdf::Vector3& p = pose.position;
-  return {KDL::Rotation::Quaternion(q.x, q.y, q.z, q.w), KDL::Vector(p.x, p.y, p.z) * kMetre};
+Frame ToFrame(const KDL::Rotation& rotation, const urdf::Vector3& p) {
+  return {rotation, KDL::Vector(p.x, p.y, p.z) * kMetre};
+}
+
+Frame OriginOf(const urdf::Joint& joint, const UrdfAngles& angles) {
+  return ToFrame(angles.joints.at(joint.name), joint.parent_to_joint_origin_transform.position);
 }
 
 std::string Quoted(const std::string& name) {
@@ -86,7 +89,7 @@ std::string OnlyEnd(const urdf::ModelInterface& model, std::string& why) {
 }
 
 // What it goes along with, and where it is on that. Empty: with an axis that does not belong to the chain.
-std::string FixedTo(const urdf::ModelInterface& model, const urdf::LinkConstSharedPtr& of,
+std::string FixedTo(const urdf::ModelInterface& model, const UrdfAngles& angles, const urdf::LinkConstSharedPtr& of,
                     const std::vector<urdf::JointConstSharedPtr>& way, const std::string& base, Frame& pose) {
   urdf::LinkConstSharedPtr link = of;
   pose = Frame::Identity();
@@ -96,7 +99,7 @@ std::string FixedTo(const urdf::ModelInterface& model, const urdf::LinkConstShar
     if (joint->type != urdf::Joint::FIXED) {
       return std::find(way.begin(), way.end(), joint) == way.end() ? std::string() : link->name;
     }
-    pose = ToFrame(joint->parent_to_joint_origin_transform) * pose;
+    pose = OriginOf(*joint, angles) * pose;
     link = model.getLink(joint->parent_link_name);
   }
   return "base";
@@ -130,14 +133,17 @@ std::vector<UrdfShape> ReadUrdfShapes(const std::string& xml, const std::string&
   std::string why;
   const std::string begin = base.empty() ? model->getRoot()->name : base;
   const std::vector<urdf::JointConstSharedPtr> way = Way(*model, begin, tip.empty() ? OnlyEnd(*model, why) : tip, why);
+  const UrdfAngles angles = ReadUrdfAngles(xml);
   std::vector<UrdfShape> shapes;
   for (const auto& [name, link] : model->links_) {
     Frame at;
-    const std::string fixed = FixedTo(*model, link, way, begin, at);
+    const std::string fixed = FixedTo(*model, angles, link, way, begin, at);
     if (fixed.empty()) continue;
-    for (const urdf::CollisionSharedPtr& collision : link->collision_array) {
-      UrdfShape shape{.link = name, .fixed = fixed, .mesh = {}, .pose = at * ToFrame(collision->origin)};
-      if (collision->geometry && TakeGeometry(*collision->geometry, shape)) shapes.push_back(shape);
+    for (std::size_t i = 0; i < link->collision_array.size(); ++i) {
+      const urdf::Collision& collision = *link->collision_array[i];
+      const Frame origin = ToFrame(angles.collisions.at(name).at(i), collision.origin.position);
+      UrdfShape shape{.link = name, .fixed = fixed, .mesh = {}, .pose = at * origin};
+      if (collision.geometry && TakeGeometry(*collision.geometry, shape)) shapes.push_back(shape);
     }
   }
   return shapes;
@@ -157,10 +163,11 @@ std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& bas
   }
   const std::string end = tip.empty() ? OnlyEnd(*model, why) : tip;
   if (!why.empty()) return std::nullopt;
+  const UrdfAngles angles = ReadUrdfAngles(xml);
   UrdfChain out;
   Frame rest;  // behind the last axis
   for (const urdf::JointConstSharedPtr& joint : Way(*model, base.empty() ? model->getRoot()->name : base, end, why)) {
-    rest = rest * ToFrame(joint->parent_to_joint_origin_transform);
+    rest = rest * OriginOf(*joint, angles);
     if (joint->type == urdf::Joint::FIXED) continue;
     const bool slides = joint->type == urdf::Joint::PRISMATIC;
     if (!slides && joint->type != urdf::Joint::REVOLUTE && joint->type != urdf::Joint::CONTINUOUS) {

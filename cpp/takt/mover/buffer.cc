@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 #include "takt/mover/admission.h"
 #include "takt/mover/on_parts.h"
 
@@ -50,7 +51,7 @@ void Pop(Buffer& buffer) {
 bool IsStraightOn(const PlaneMove& plane, const MoveToPosition& next) {
   const double x = next.x - plane.motion.end_x, y = next.y - plane.motion.end_y;
   const double ahead = plane.motion.direction_x * x + plane.motion.direction_y * y;
-  return ahead > 0.996 * std::hypot(x, y);  // 5 deg
+  return ahead > 0.996 * maths::Hypot(x, y);  // 5 deg
 }
 
 // There it goes on where the move in progress is to be braked for.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "takt/core/maths.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/formation.h"
 #include "takt/mover/ground.h"
@@ -19,7 +20,7 @@ constexpr double kStill = 1e-9;     // mm, deg
 constexpr int kHalvings = 12;       // of shares
 
 double Length(double x, double y) {
-  return std::hypot(x, y);
+  return maths::Hypot(x, y);
 }
 
 // Of one coordinate, or of two as a vector (the second one all 0 else).

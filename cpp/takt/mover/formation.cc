@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "takt/core/angle.h"
+#include "takt/core/maths.h"
 #include "takt/mover/admission.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/ground.h"
@@ -44,7 +45,7 @@ Dynamics DynamicsOf(const Limits& l) {
 Limits TurningAt(double distance, const Limits& l) {
   const double v = l.velocity / distance, a = std::min(l.acceleration, l.deceleration) / distance / std::numbers::sqrt2;
   const double j = std::sqrt(3.0 / 20) * l.jerk / distance;
-  return trajectory::ShareOf(1 / kDegree, {std::min({v, std::sqrt(a), std::cbrt(j)}), a, a, j});
+  return trajectory::ShareOf(1 / kDegree, {std::min({v, std::sqrt(a), maths::Cbrt(j)}), a, a, j});
 }
 
 // The window of C that leaves most to both; the star is `here`, within that of `c`.
@@ -68,7 +69,7 @@ void MakeParams(const Context& c, double turning, double moving, MoverParams& bo
     const MoverParams& its = c.fleet.params[i];
     const FormationState& f = c.fleet.states[i].formation;
     const Limits most = its.xy.maximum.limits();
-    const double distance = std::hypot(f.x, f.y);
+    const double distance = maths::Hypot(f.x, f.y);
     plane = Less(plane, trajectory::ShareOf(distance > 0 ? moving : 1, most));
     turn = Less(turn, its.c.maximum.limits());
     if (distance > 0) turn = Less(turn, TurningAt(distance, trajectory::ShareOf(turning, most)));
@@ -202,7 +203,7 @@ void ShareOut(const Context& c, double turning, State& s) noexcept {
 
 void Compose(const SetPoint& star, const FormationState& f, SetPoint& at) noexcept {
   const KinematicState& c = star[kC];
-  const double cosine = std::cos(c.position * kDegree), sine = std::sin(c.position * kDegree);
+  const auto [sine, cosine] = maths::SinCos(c.position * kDegree);
   const double x = cosine * f.x - sine * f.y, y = sine * f.x + cosine * f.y;
   const double w = c.velocity * kDegree, u = c.acceleration * kDegree;
   at[kX] = {star[kX].position + x, star[kX].velocity - w * y, star[kX].acceleration - u * y - w * w * x};
@@ -252,7 +253,7 @@ Answer CarryOut(const Given& g, const JoinFormation& command) noexcept {
   const double c = star.set_point[kC].position;
   const double x = s.set_point[kX].position - star.set_point[kX].position;
   const double y = s.set_point[kY].position - star.set_point[kY].position;
-  const double cosine = std::cos(c * kDegree), sine = std::sin(c * kDegree);
+  const auto [sine, cosine] = maths::SinCos(c * kDegree);
   s.formation = {
       .star = index, .x = cosine * x + sine * y, .y = cosine * y - sine * x, .c = s.set_point[kC].position - c};
   s.mode = CommandMode::kFormation;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/follow.h"
 #include "takt/mover/formation.h"
@@ -45,7 +46,7 @@ PlaneState PlaneOf(const Context& c, const State& s) {
   if (IsOnTrack(s)) {
     const KinematicState& way = c.rider().at;
     const planar::TrackPoint at = c.streets.At(s.track, way.position);
-    const double cosine = std::cos(at.direction), sine = std::sin(at.direction);
+    const auto [sine, cosine] = maths::SinCos(at.direction);
     const double across = way.velocity * way.velocity * at.curvature;
     PlaneState off = At(s.plane.motion, Elapsed(c, s.plane.begin) + c.cycle.period_s);
     off.x.position += at.place.x;
@@ -178,7 +179,8 @@ void Change(const Context& c, State& s) {
 // What is measured is held against the set point of the cycle before.
 void Watch(const Context& c, const Inputs& inputs, State& s) {
   if (!c.params.deviation || s.state == ObjectState::kDisabled) return;
-  const double off = std::hypot(inputs.actual.x - s.set_point[kX].position, inputs.actual.y - s.set_point[kY].position);
+  const double off =
+      maths::Hypot(inputs.actual.x - s.set_point[kX].position, inputs.actual.y - s.set_point[kY].position);
   if (!(off <= *c.params.deviation)) Fail(c, ErrorId::kMoverDeviation, s);
 }
 

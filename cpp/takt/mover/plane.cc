@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 #include "takt/planar/braking.h"
 
 namespace takt::mover {
@@ -43,7 +44,7 @@ Framed InFrame(const PlaneState& s, const Direction& d) {
 }
 
 std::optional<Direction> DirectionOf(double x, double y) {
-  const double length = std::hypot(x, y);
+  const double length = maths::Hypot(x, y);
   if (!(length > 0)) return std::nullopt;
   return Direction{x / length, y / length};
 }
@@ -136,14 +137,14 @@ double SpeedBound(const PlaneMotion& m) noexcept {
   if (m.share == 0) return largest(m.along);
   Profile beside = m.along;
   beside.Cut(m.across.duration());
-  return std::max(largest(m.along), std::hypot(largest(beside), largest(m.across)));
+  return std::max(largest(m.along), maths::Hypot(largest(beside), largest(m.across)));
 }
 
 bool PlanMove(Planner& planner, const PlaneState& from, double x, double y, const Limits& limits,
               PlaneMotion& out) noexcept {
   const double way_x = x - from.x.position;
   const double way_y = y - from.y.position;
-  const double distance = std::hypot(way_x, way_y);
+  const double distance = maths::Hypot(way_x, way_y);
   auto direction = DirectionOf(way_x, way_y);
   if (!direction) direction = DirectionOf(from.x.velocity, from.y.velocity);
   if (!direction) direction = DirectionOf(from.x.acceleration, from.y.acceleration);
@@ -156,7 +157,7 @@ bool PlanMove(Planner& planner, const PlaneState& from, double x, double y, cons
     Limits even = limits;  // one profile brakes while the other speeds up
     even.acceleration = even.deceleration = std::min(limits.acceleration, limits.deceleration);
     const double least = Least(framed.across, even);
-    const double most = std::sqrt(std::max(0.0, 1 - std::pow(Least(framed.along, even), 2)));
+    const double most = std::sqrt(std::max(0.0, 1 - maths::Power(Least(framed.along, even), 2)));
     for (int i = 0; i < kTriedShares; ++i) {
       PlaneMotion motion = Begin(from, *direction);
       const double share = least + (std::max(most, least) - least) * i / (kTriedShares - 1);
@@ -179,7 +180,7 @@ bool PlanRound(Planner& planner, const PlaneState& from, const PlaneState& corne
   if (!direction) return false;
   const Framed framed = InFrame(from, *direction, corner.x.position, corner.y.position);
   PlaneMotion motion = Begin(corner, *direction);
-  if (!PlanOntoLine(planner, framed, std::hypot(way_x, way_y), share, limits, motion)) return false;
+  if (!PlanOntoLine(planner, framed, maths::Hypot(way_x, way_y), share, limits, motion)) return false;
   motion.end_x = x;
   motion.end_y = y;
   out = motion;
@@ -202,7 +203,7 @@ bool PlanCorner(Planner& planner, double x, double y, double most, const Limits&
   const double sine = std::abs(motion.direction_x * direction->y - motion.direction_y * direction->x);
   Limits even = then;
   even.acceleration = even.deceleration = std::min(then.acceleration, then.deceleration);
-  const double angle = std::atan2(sine, std::abs(cosine));
+  const double angle = maths::Atan2(sine, std::abs(cosine));
   bool found = false;
   double least = 0;
   PlaneMotion passing;
@@ -211,8 +212,8 @@ bool PlanCorner(Planner& planner, double x, double y, double most, const Limits&
     const int part = i % (kTriedShares + 1);
     if (part == 0 && found) break;
     if (part == 0 && i > 0) most *= 0.4;
-    const double share = std::sin(angle * part / kTriedShares);
-    const double rest = std::cos(angle * part / kTriedShares);
+    const maths::SineCosine heading = maths::SinCos(angle * part / kTriedShares);
+    const double share = heading.sine, rest = heading.cosine;
     if (sine > kNothing ? part == 0 || rest < 0.05 : part > 0) continue;
     const auto brakes = [](double part, const Limits& l) {
       return planar::Brakes{part * l.deceleration, part * l.jerk};
@@ -289,7 +290,7 @@ bool PlanRest(Planner& planner, const PlaneMotion& motion, double t, const Limit
 }
 
 bool PlanRest(Planner& planner, const PlaneState& from, const Limits& limits, PlaneMotion& out) noexcept {
-  const double a = std::hypot(from.x.acceleration, from.y.acceleration);
+  const double a = maths::Hypot(from.x.acceleration, from.y.acceleration);
   const auto of_velocity = DirectionOf(from.x.velocity, from.y.velocity);
   Direction direction =
       of_velocity.value_or(DirectionOf(from.x.acceleration, from.y.acceleration).value_or(Direction{}));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/core/maths.h"
+#include "takt/kinematics/rotations.h"
 #include "takt/path/ends.h"
 #include "takt/path/make.h"
 #include "takt/path/place.h"
@@ -49,9 +51,10 @@ Feet FeetOf(const Point& begin, const Point& end, double height, const Triple& u
 
 VectorPolynomial Quarter(const Feet& s, int piece) {
   const auto at = [&](double angle) -> Derivatives<Vector> {
-    const Vector flat = std::cos(angle) * s.across;
-    const Vector high = std::sin(angle) * s.crest;
-    return {s.centre - flat + high, kAngle * (std::sin(angle) * s.across + std::cos(angle) * s.crest),
+    const maths::SineCosine of = maths::SinCos(angle);
+    const Vector flat = of.cosine * s.across;
+    const Vector high = of.sine * s.crest;
+    return {s.centre - flat + high, kAngle * (of.sine * s.across + of.cosine * s.crest),
             kAngle * kAngle * (flat - high)};
   };
   return VectorHermite(at(piece * kAngle), at((piece + 1) * kAngle));
@@ -97,9 +100,8 @@ Problem MakeArchPiece(const Point& begin, const Point& end, double height, const
   if (!std::isfinite(whole)) return Problem::kNotFinite;
   const auto part_way = [&](double way) {
     const double share = way / whole;
-    const KDL::Vector turn = kinematics::TurnBetween(begin.frame.M, end.frame.M);
-    const double angle = share * turn.Norm();
-    Point point{{KDL::Rotation::Rot(turn, angle) * begin.frame.M, {}}, {}};
+    const kinematics::GreatArc turn = kinematics::ArcBetween(begin.frame.M, end.frame.M);
+    Point point{{kinematics::About(turn.axis, share * turn.angle) * begin.frame.M, {}}, {}};
     for (std::size_t i = 0; i < kMaxAuxiliaries; ++i) {
       point.auxiliaries[i] = std::lerp(begin.auxiliaries[i], end.auxiliaries[i], share);
     }

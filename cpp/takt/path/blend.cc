@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "takt/core/angle.h"
+#include "takt/core/maths.h"
 #include "takt/path/ends.h"
 #include "takt/path/make.h"
 #include "takt/path/place.h"
@@ -32,8 +33,8 @@ double TangentShare(double q) {
 
 // Of the tangents to a circle, how long the arc between them is.
 double ArcShare(double q) {
-  const double half = std::acos(std::min(q, 1.0));
-  return half > 1e-6 ? half / std::tan(half) : 1;
+  const double half = maths::Acos(std::min(q, 1.0));
+  return half > 1e-6 ? half / maths::Tan(half) : 1;
 }
 
 struct Joint {

@@ -7,6 +7,7 @@
 
 #include "takt/core/angle.h"
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 #include "takt/path/ends.h"
 #include "takt/path/turn.h"
 #include "takt/path/vectors.h"
@@ -36,7 +37,7 @@ struct Round {
 
 // Counterclockwise from one radius to the other, above 0, at most a whole turn.
 double AngleBetween(const Vector& normal, const Vector& from, const Vector& to) {
-  const double angle = std::atan2(normal.dot(from.cross(to)), from.dot(to));
+  const double angle = maths::Atan2(normal.dot(from.cross(to)), from.dot(to));
   return angle > 0 ? angle : angle + kWholeTurn;
 }
 
@@ -120,7 +121,7 @@ Problem WithRadius(const Vector& from, const Circle& circle, const Vector& to, R
   const Vector left = out.normal.cross(chord) / (2 * half);
   const bool is_short = circle.choice == PathChoice::kShort;
   out.radius = (is_short ? -height : height) * left - chord / 2;
-  const double small = 2 * std::atan2(half, height);
+  const double small = 2 * maths::Atan2(half, height);
   out.angle = is_short ? small : kWholeTurn - small;
   return Problem::kNone;
 }
@@ -198,7 +199,7 @@ Problem MakeArc(const Point& from, const Circle& circle, const Point& to, Segmen
   const Vector rise = round.normal * round.normal.dot(end - start);
   Segment segment;
   segment.shape = Shape::kArc;
-  segment.length = std::hypot(round.radius.norm() * angle, rise.norm());
+  segment.length = maths::Hypot(round.radius.norm() * angle, rise.norm());
   if (!std::isfinite(segment.length)) return Problem::kNotFinite;
   segment.rate = angle / segment.length;
   segment.place[0] = ToTriple(start);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/core/maths.h"
+
 namespace takt::path {
 namespace {
 
@@ -141,8 +143,7 @@ Derivatives<Vector> PlaceAt(const Segment& segment, double s) noexcept {
   if (segment.shape == Shape::kQuintic) return ByLength(c, ParameterAt(segment, s));
   // From the start, not from the centre, which may be far away. 1 - cos = 2 sin².
   const double half = segment.rate * s / 2;
-  const double sine_half = std::sin(half);
-  const double cosine_half = std::cos(half);
+  const auto [sine_half, cosine_half] = maths::SinCos(half);
   const double sine = 2 * sine_half * cosine_half;
   const double less = 2 * sine_half * sine_half;
   const Vector radius = ToVector(c[1]);

@@ -1,9 +1,9 @@
 #include "takt/path/segment.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 #include "takt/path/place.h"
 #include "takt/path/turn.h"
 #include "takt/path/vectors.h"
@@ -31,8 +31,9 @@ KDL::RotationAcc TurnAt(const Segment& segment, double s) {
     const Vector turn = share * whole;
     const double half = turn.norm() / 2;
     Eigen::Quaterniond by;
-    by.w() = std::cos(half);
-    by.vec() = turn * (half < 1e-8 ? 0.5 : std::sin(half) / (2 * half));
+    const auto [sine, cosine] = maths::SinCos(half);
+    by.w() = cosine;
+    by.vec() = turn * (half < 1e-8 ? 0.5 : sine / (2 * half));
     return {ToKdl(by * base), path::ToKdl(whole / segment.length), KDL::Vector::Zero()};
   }
   const Turned turned = TurnBy(Evaluate(segment.turn, share));

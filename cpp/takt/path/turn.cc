@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "takt/core/maths.h"
+
 namespace takt::path {
 namespace {
 
@@ -37,8 +39,7 @@ Factors FactorsOf(double squared) {
     return sum;
   }
   const double t = std::sqrt(squared);
-  const double sine = std::sin(t);
-  const double cosine = std::cos(t);
+  const auto [sine, cosine] = maths::SinCos(t);
   return {(1 - cosine) / squared, (t - sine) / (squared * t), (t * sine - 2 * (1 - cosine)) / (squared * squared),
           (3 * sine - 2 * t - t * cosine) / (squared * squared * t)};
 }
@@ -54,14 +55,15 @@ Turned TurnBy(const Derivatives<Vector>& turn) noexcept {
   const Vector& v = turn.value;
   const double squared = v.squaredNorm();
   const double half = std::sqrt(squared) / 2;
-  const double sine = half < 1e-8 ? 0.5 : std::sin(half) / (2 * half);
+  const maths::SineCosine of_half = maths::SinCos(half);
+  const double sine = half < 1e-8 ? 0.5 : of_half.sine / (2 * half);
   const auto [a, b, da, db] = FactorsOf(squared);
   const double outward = v.dot(turn.first);
   const Vector cross = v.cross(turn.first);
   const Vector double_cross = v.cross(cross);
   const Vector change = v.cross(turn.second);
   Turned out;
-  out.rotation.w() = std::cos(half);
+  out.rotation.w() = of_half.cosine;
   out.rotation.vec() = v * sine;
   out.velocity = turn.first + a * cross + b * double_cross;
   out.acceleration = turn.second + outward * (da * cross + db * double_cross) + a * change +
@@ -72,7 +74,7 @@ Turned TurnBy(const Derivatives<Vector>& turn) noexcept {
 Derivatives<Vector> TurnOf(const Vector& turn, const Vector& velocity, const Vector& acceleration) noexcept {
   const double squared = turn.squaredNorm();
   const double half = std::sqrt(squared) / 2;
-  const double factor = squared < 1e-4 ? 1.0 / 12 + squared / 720 : (1 - half / std::tan(half)) / squared;
+  const double factor = squared < 1e-4 ? 1.0 / 12 + squared / 720 : (1 - half / maths::Tan(half)) / squared;
   const auto inverse = [&](const Vector& v) -> Vector {
     const Vector cross = turn.cross(v);
     return v - cross / 2 + factor * turn.cross(cross);

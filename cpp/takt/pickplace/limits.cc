@@ -1,12 +1,13 @@
 // Limit switches and SW limits as the module sees them (PP-05, PP-60): towards a switch that is on nothing moves.
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
+#include "takt/core/maths.h"
 #include "takt/group/members.h"
 #include "takt/group/rides.h"
 #include "takt/group/switches.h"
 #include "takt/group/systems.h"
+#include "takt/kinematics/rotations.h"
 #include "takt/pickplace/run.h"
 
 namespace takt::pickplace {
@@ -34,13 +35,12 @@ Frame Along(const Context& c, const Leg& leg, const Frame& from, const Frame& to
   if (!leg.arch) {
     at.p = from.p + share * (to.p - from.p);
   } else {
-    const double angle = std::numbers::pi * share;
-    at.p = from.p + 0.5 * (1 - std::cos(angle)) * (to.p - from.p);
-    at.p += std::sin(angle) * leg.height * c.group.mounting.base_inverse.M.UnitZ();
+    const auto [sine, cosine] = maths::SinCos(std::numbers::pi * share);
+    at.p = from.p + 0.5 * (1 - cosine) * (to.p - from.p);
+    at.p += sine * leg.height * c.group.mounting.base_inverse.M.UnitZ();
   }
-  const KDL::Vector turn = KDL::diff(from.M, to.M);
-  const double angle = turn.Norm();
-  at.M = angle > 0 ? KDL::Rotation::Rot2(turn / angle, share * angle) * from.M : from.M;
+  const kinematics::GreatArc turn = kinematics::ArcBetween(from.M, to.M);
+  at.M = kinematics::About(turn.axis, share * turn.angle) * from.M;
   return at;
 }
 
@@ -53,7 +53,7 @@ Directions Between(const Context& c, const group::State& g, const Directions& cl
   if (known) joints = after;
   kinematics::MovingFrame tool(to);
   tool.p.v = to.p - from.p;
-  tool.M.w = KDL::diff(from.M, to.M);
+  tool.M.w = kinematics::TurnBetween(from.M, to.M);
   return group::TakenOf(closed, g, change, &tool, kLeast);
 }
 

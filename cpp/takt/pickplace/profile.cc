@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 #include "takt/path/make.h"
 
 namespace takt::pickplace {
@@ -136,7 +137,7 @@ double TimeFor(double length, const PathRamps& ramps) noexcept {
   // Accelerations build up within a / j, speeds within v / a.
   if (length >= v * v / a + v * a / j) return length / v + v / a + a / j;
   if (length >= 2 * a * a * a / (j * j)) return a / j + std::sqrt(a * a / (j * j) + 4 * length / a);
-  return 4 * std::cbrt(length / (2 * j));
+  return 4 * maths::Cbrt(length / (2 * j));
 }
 
 double TimeAlong(const Profile& profile, const Place& start, const PathRamps& ramps, const Systems& systems) noexcept {

@@ -4,6 +4,7 @@
 
 #include "takt/core/angle.h"
 #include "takt/group/systems.h"
+#include "takt/kinematics/rotations.h"
 #include "takt/pickplace/run.h"
 
 namespace takt::pickplace {
@@ -230,7 +231,7 @@ ErrorId BindWorkpiece(const Context& c, const Object& object, group::State& g, O
   const double since = belt.state->travel.position - object.latch;
   Frame moved = kinematics::ToFrame(object.pose);
   if (belt.params->kind == conveyor::BeltKind::kTurning) {
-    moved = Frame(KDL::Rotation::RotZ(since * kDegree)) * moved;
+    moved = Frame(kinematics::AboutZ(since * kDegree)) * moved;
   } else {
     moved.p.x(moved.p.x() + since);
   }

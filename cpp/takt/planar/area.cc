@@ -6,6 +6,7 @@
 
 #include "takt/core/angle.h"
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 #include "takt/planar/flat.h"
 
 namespace takt::planar {
@@ -15,7 +16,7 @@ namespace {
 bool CoversCircle(const Area& area) {
   if (area.mover.any_angle) return true;
   // Its corners are so far apart, seen from its centre: each has to come to where the next one began.
-  const double corner = 2 * std::atan2(area.mover.height, area.mover.width);
+  const double corner = 2 * maths::Atan2(area.mover.height, area.mover.width);
   return (area.most_c - area.least_c) * kDegree >= std::max(corner, std::numbers::pi - corner);
 }
 
@@ -41,7 +42,7 @@ Hull HullOf(const Area& area) {
   hull.radius = area.margin;
   const double along = area.mover.width / 2, across = area.mover.height / 2;
   if (along == 0 && across == 0) return hull;
-  hull.far = std::hypot(along, across);
+  hull.far = maths::Hypot(along, across);
   if (CoversCircle(area)) {
     hull.radius += hull.far;
     return hull;
@@ -182,7 +183,7 @@ class Axes {
 // How much further than the area its hull reaches: between where a corner ends and the next one began.
 double SlackOf(const Area& area) {
   if (area.most_c <= area.least_c || CoversCircle(area)) return 0;
-  return std::max(area.mover.width, area.mover.height) / 2 * std::sin((area.most_c - area.least_c) / 2 * kDegree);
+  return std::max(area.mover.width, area.mover.height) / 2 * maths::Sin((area.most_c - area.least_c) / 2 * kDegree);
 }
 
 bool Near(const Area& a, const Hull& hull_a, const Area& b, const Hull& hull_b, double clearance) {

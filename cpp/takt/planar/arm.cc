@@ -7,6 +7,7 @@
 #include <span>
 
 #include "takt/core/angle.h"
+#include "takt/core/maths.h"
 #include "takt/planar/flat.h"
 
 namespace takt::planar {
@@ -30,8 +31,8 @@ Between CosineBetween(double from, double to) {
     constexpr double kTurn = 2 * std::numbers::pi;
     return angle + kTurn * std::ceil((from - angle) / kTurn) <= to;
   };
-  return {passes(std::numbers::pi) ? -1 : std::min(std::cos(from), std::cos(to)),
-          passes(0) ? 1 : std::max(std::cos(from), std::cos(to))};
+  const auto [least, most] = std::minmax({maths::Cos(from), maths::Cos(to)});
+  return {passes(std::numbers::pi) ? -1 : least, passes(0) ? 1 : most};
 }
 
 struct Corners {
@@ -41,7 +42,7 @@ struct Corners {
 // Of a rectangle along a direction around all that the end of the arm comes to while the carrier is at any of these
 // places.
 Corners BoxOf(const Flat& off, std::span<const Place> places, const Turning& turning, const Flat& along) {
-  const double length = off.norm(), angle = std::atan2(off.y(), off.x()) - std::atan2(along.y(), along.x());
+  const double length = off.norm(), angle = maths::Atan2(off.y(), off.x()) - maths::Atan2(along.y(), along.x());
   const auto reach = [&](const Flat& axis, double quarter) {
     const Between arm =
         CosineBetween(turning.least * kDegree + angle - quarter, turning.most * kDegree + angle - quarter);
@@ -61,10 +62,11 @@ Corners BoxOf(const Flat& off, std::span<const Place> places, const Turning& tur
 // With the ends of an arc they make a polygon around it.
 Corners ApexesOf(const Flat& off, const Place& place, const Turning& turning) {
   const double step = (turning.most - turning.least) * kDegree / kApexes;
-  const double length = off.norm() / std::cos(step / 2);
+  const double length = off.norm() / maths::Cos(step / 2);
   Corners out;
   for (std::size_t i = 0; i < kApexes; ++i) {
-    const double angle = turning.least * kDegree + std::atan2(off.y(), off.x()) + (static_cast<double>(i) + 0.5) * step;
+    const double angle =
+        turning.least * kDegree + maths::Atan2(off.y(), off.x()) + (static_cast<double>(i) + 0.5) * step;
     out.places[i] = ToPlace(ToFlat(place) + length * Heading(angle));
   }
   return out;
@@ -76,7 +78,7 @@ Flat DirectionBetween(const Place& from, const Place& to) {
 }
 
 Place EndOf(const Arm& arm, const Place& carrier, double c) {
-  const double cosine = std::cos(c * kDegree), sine = std::sin(c * kDegree);
+  const auto [sine, cosine] = maths::SinCos(c * kDegree);
   return {carrier.x + cosine * arm.off.x - sine * arm.off.y, carrier.y + sine * arm.off.x + cosine * arm.off.y};
 }
 

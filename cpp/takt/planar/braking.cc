@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/core/maths.h"
 #include "takt/trajectory/ramp.h"
 
 namespace takt::planar {
@@ -107,7 +108,7 @@ double WayToRest(double speed, const Brakes& b) noexcept {
 double SpeedForWay(double way, const Brakes& b) noexcept {
   if (!(way > 0)) return 0;
   const double d = b.deceleration, full = d * d / b.jerk;
-  if (way < full * d / b.jerk) return std::cbrt(way * way * b.jerk);
+  if (way < full * d / b.jerk) return maths::Cbrt(way * way * b.jerk);
   return 0.5 * (-full + std::sqrt(full * full + 8 * d * way));
 }
 
@@ -119,7 +120,7 @@ double SpeedBefore(double way, double end, const Brakes& b) noexcept {
   const double v = -half + std::sqrt(std::max(0.0, (end - half) * (end - half) + 2 * d * way));
   if (v - end >= d * ramp) return v;
   // way = (2 end + j w²) w, v = end + j w². Convex from the root on: Newton from above comes down to it.
-  double w = std::min(std::cbrt(way / b.jerk), end > 0 ? way / (2 * end) : INFINITY);
+  double w = std::min(maths::Cbrt(way / b.jerk), end > 0 ? way / (2 * end) : INFINITY);
   for (int i = 0; i < 8; ++i) {
     const double f = (2 * end + b.jerk * w * w) * w - way;
     const double step = f / (2 * end + 3 * b.jerk * w * w);

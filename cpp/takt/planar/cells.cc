@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "takt/core/maths.h"
 #include "takt/path/place.h"
 #include "takt/planar/flat.h"
 
@@ -97,7 +98,7 @@ void AppendQuintic(const path::Segment& segment, double u0, double u1, double s0
 double StrayOf(const Cell& cell, double half, double radius) noexcept {
   // The curvature of a cell is known to a thousandth.
   const double turn = std::min(cell.turn, 1.01 * cell.curvature * half);
-  return 2 * std::sin(turn / 2) * (half + radius);
+  return 2 * maths::Sin(turn / 2) * (half + radius);
 }
 
 void AppendCells(const path::Segment& segment, double start, std::uint32_t piece, std::vector<Cell>& out) {
@@ -126,7 +127,7 @@ void AppendCells(const path::Segment& segment, double start, std::uint32_t piece
     cell.end = ToPlace(path::PlaceAt(segment, s1).value.head<2>());
     cell.turn = angle / count;
     cell.curvature = angle > 0 ? segment.rate : 0;
-    if (angle > 0) cell.off = 2 / segment.rate * std::pow(std::sin(cell.turn / 4), 2);
+    if (angle > 0) cell.off = 2 / segment.rate * maths::Power(maths::Sin(cell.turn / 4), 2);
     out.push_back(cell);
   }
 }

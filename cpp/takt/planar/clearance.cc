@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 #include "takt/planar/flat.h"
 
 namespace takt::planar {
@@ -21,7 +22,7 @@ struct Box {
 };
 
 double Radius(const Footprint& mover) {
-  return std::hypot(mover.width, mover.height) / 2;
+  return maths::Hypot(mover.width, mover.height) / 2;
 }
 
 Box BoxOf(const TrackPoint& point, const Footprint& mover) {
@@ -156,7 +157,8 @@ class ConflictSearch {
 }  // namespace
 
 double ClearGap(const Footprint& mover, double turn) noexcept {
-  return std::min(mover.width / std::abs(std::cos(turn)), mover.height / std::abs(std::sin(turn)));
+  const auto [sine, cosine] = maths::SinCos(turn);
+  return std::min(mover.width / std::abs(cosine), mover.height / std::abs(sine));
 }
 
 double Separation(const TrackPoint& a, const Footprint& on_a, const TrackPoint& b, const Footprint& on_b) noexcept {

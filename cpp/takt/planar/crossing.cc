@@ -1,9 +1,9 @@
 #include "takt/planar/crossing.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
+#include "takt/core/maths.h"
 #include "takt/planar/flat.h"
 
 namespace takt::planar {
@@ -27,7 +27,7 @@ CellPart CellPartOf(const Cell& cell) {
 
 // What turns by no more than `turn` strays from its chord by no more than this.
 double OffOf(double length, double turn) {
-  return length / 2 * std::sin(std::min(turn, std::numbers::pi / 2));
+  return length / 2 * maths::Sin(std::min(turn, std::numbers::pi / 2));
 }
 
 double FromLine(const Flat& p, const CellPart& line) {

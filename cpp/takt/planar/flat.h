@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "takt/core/maths.h"
 #include "takt/path/segment.h"
 #include "takt/path/vectors.h"
 #include "takt/planar/point.h"
@@ -25,7 +26,8 @@ inline path::Vector ToSpace(const Flat& v) noexcept {
   return {v.x(), v.y(), 0};
 }
 inline Flat Heading(double direction) noexcept {
-  return {std::cos(direction), std::sin(direction)};
+  const auto [sine, cosine] = maths::SinCos(direction);
+  return {cosine, sine};
 }
 inline Flat Left(const Flat& v) noexcept {
   return {-v.y(), v.x()};
@@ -35,7 +37,7 @@ inline double Cross(const Flat& a, const Flat& b) noexcept {
 }
 // From one direction to the other, between -pi and pi.
 inline double AngleTo(const Flat& from, const Flat& to) noexcept {
-  return std::atan2(Cross(from, to), from.dot(to));
+  return maths::Atan2(Cross(from, to), from.dot(to));
 }
 
 // Of a quintic, over its parameter.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/core/maths.h"
 #include "takt/path/make.h"
 #include "takt/path/place.h"
 #include "takt/path/spline.h"
@@ -49,7 +50,7 @@ Piece PieceOf(const path::Segment& segment, bool given) {
   Piece piece{.segment = segment, .given = given};
   const bool quintic = segment.shape == path::Shape::kQuintic;
   const Flat heading = quintic ? BentAt(segment.place, 0.5).first : Flat(path::PlaceAt(segment, 0).first.head<2>());
-  piece.direction = std::atan2(heading.y(), heading.x());
+  piece.direction = maths::Atan2(heading.y(), heading.x());
   return piece;
 }
 
@@ -224,7 +225,7 @@ class Maker {
       const path::Segment& segment = spline[last ? k - 1 : k];
       const auto at = path::PlaceAt(segment, last ? segment.length : 0);
       Standing& here = standing_[(first + i) % count()];
-      here.end.direction = std::atan2(at.first.y(), at.first.x());
+      here.end.direction = maths::Atan2(at.first.y(), at.first.x());
       here.end.curvature = Cross(at.first.head<2>(), at.second.head<2>());
       here.begin = here.end;
     }

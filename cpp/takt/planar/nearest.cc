@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/core/maths.h"
 #include "takt/path/place.h"
 #include "takt/planar/flat.h"
 
@@ -82,13 +83,13 @@ class NearestSearch {
     // From the middle of the cell.
     const double start = track_.pieces[cell.piece].start;
     const double middle = (cell.from + cell.to) / 2;
-    const double angle = segment.rate * (middle - start);
-    const Flat out = std::cos(angle) * radius + std::sin(angle) * across;
-    const Flat along = std::cos(angle) * across - std::sin(angle) * radius;
+    const auto [sine, cosine] = maths::SinCos(segment.rate * (middle - start));
+    const Flat out = cosine * radius + sine * across;
+    const Flat along = cosine * across - sine * radius;
     const double half = (cell.to - cell.from) / 2;
     const bool center = off.norm() < kAsNear;
     const double way =
-        center ? -half : std::clamp(std::atan2(off.dot(along), off.dot(out)) / segment.rate, -half, half);
+        center ? -half : std::clamp(maths::Atan2(off.dot(along), off.dot(out)) / segment.rate, -half, half);
     const double s = std::clamp(middle + way, cell.from, cell.to);
     Take(s, path::PlaceAt(segment, s - start).value.head<2>());
   }

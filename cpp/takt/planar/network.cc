@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 #include "takt/planar/nearest.h"
 
 namespace takt::planar {
@@ -73,7 +74,7 @@ double MostApart(const Road& near, const Road& far, bool at_end) noexcept {
       const double t = theirs.stride * static_cast<double>(k);
       if (t - s <= most) break;
       const Place &a = ours.places[i], &b = theirs.places[k];
-      const double apart = std::hypot(b.x - a.x, b.y - a.y) - reach;
+      const double apart = maths::Hypot(b.x - a.x, b.y - a.y) - reach;
       if (apart < 0) {
         most = t - s;
         break;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 
 namespace takt::planar {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kSameCurvatureRelative = 1e-7;  // of the larger one
 }  // namespace
 
 bool SamePlace(const Place& a, const Place& b) noexcept {
-  return std::hypot(b.x - a.x, b.y - a.y) < kSame;
+  return maths::Hypot(b.x - a.x, b.y - a.y) < kSame;
 }
 
 bool SameDirection(const TrackPoint& a, const TrackPoint& b) noexcept {

@@ -1,9 +1,9 @@
 #include "takt/planar/track_area.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
+#include "takt/core/maths.h"
 #include "takt/planar/flat.h"
 
 namespace takt::planar {
@@ -19,7 +19,7 @@ Area Stretch(const Track& track, const Footprint& mover, const Cell& cell, doubl
   area.count = 2;
   area.least_c = area.most_c = middle.direction * 180 / std::numbers::pi;
   area.mover = mover;
-  area.margin = StrayOf(cell, half, mover.any_angle ? 0 : std::hypot(mover.width, mover.height) / 2);
+  area.margin = StrayOf(cell, half, mover.any_angle ? 0 : maths::Hypot(mover.width, mover.height) / 2);
   return area;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "takt/core/angle.h"
+#include "takt/core/maths.h"
 #include "takt/path/place.h"
 #include "takt/path/vectors.h"
 #include "takt/planar/flat.h"
@@ -54,7 +55,8 @@ double BendOf(const VectorPolynomial& curve) {
     bend += curvature * curvature * speed;
     rate += curvature_rate * curvature_rate * speed;
   }
-  return std::pow(length, 0.75) * std::sqrt(bend + kRateShare * length * length * rate);
+  const double root = std::sqrt(length);
+  return root * std::sqrt(root) * std::sqrt(bend + kRateShare * length * length * rate);
 }
 
 // The lengths of the derivatives that bend least, by their logarithms: the best of a grid, then Newton's steps on
@@ -69,7 +71,7 @@ class TransitionSearch {
     for (int i = 0; i < kMostSteps && reach > kCloseEnough; ++i) reach = Improve(reach);
   }
 
-  VectorPolynomial curve() const { return CurveOf(gap_, std::exp(best_.x()), std::exp(best_.y())); }
+  VectorPolynomial curve() const { return CurveOf(gap_, maths::Exp(best_.x()), maths::Exp(best_.y())); }
 
  private:
   static constexpr int kGrid = 14;
@@ -80,7 +82,9 @@ class TransitionSearch {
   static constexpr double kDifference = 1e-3;
   static constexpr double kFlat = 1e-3;
 
-  double Value(const Flat& at) const { return std::log(BendOf(CurveOf(gap_, std::exp(at.x()), std::exp(at.y())))); }
+  double Value(const Flat& at) const {
+    return maths::Log(BendOf(CurveOf(gap_, maths::Exp(at.x()), maths::Exp(at.y()))));
+  }
 
   bool Try(const Flat& at) {
     const double value = Value(at);

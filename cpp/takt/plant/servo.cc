@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "takt/core/maths.h"
+
 namespace takt::plant {
 
 namespace {
@@ -25,13 +27,13 @@ Reach ReachAfter(double rate, double time) noexcept {
     return {time * (1 - ratio / 2 * (1 - ratio / 3 * (1 - ratio / 4))),
             time * time / 2 * (1 - ratio / 3 * (1 - ratio / 4 * (1 - ratio / 5)))};
   }
-  const double to_velocity = (1 - std::exp(-ratio)) / rate;
+  const double to_velocity = (1 - maths::Exp(-ratio)) / rate;
   return {to_velocity, (time - to_velocity) / rate};
 }
 
 // The time after which to_velocity has the given value.
 double TimeToReach(double rate, double to_velocity) noexcept {
-  return rate > 0 ? -std::log1p(-rate * to_velocity) / rate : to_velocity;
+  return rate > 0 ? -maths::Log1p(-rate * to_velocity) / rate : to_velocity;
 }
 
 // What moves the axis during one step of the drive, per unit of inertia:
@@ -335,8 +337,8 @@ double Uniform(std::uint64_t& state) noexcept {
 }
 
 double Normal(std::uint64_t& state) noexcept {
-  const double radius = std::sqrt(-2 * std::log(Uniform(state)));
-  return radius * std::cos(2 * std::numbers::pi * Uniform(state));
+  const double radius = std::sqrt(-2 * maths::Log(Uniform(state)));
+  return radius * maths::Cos(2 * std::numbers::pi * Uniform(state));
 }
 
 std::int64_t IndexCell(const ServoEncoder& encoder, double position) noexcept {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/core/maths.h"
+
 namespace takt::trajectory {
 
 namespace {
@@ -34,8 +36,8 @@ ReferenceState Move(double root, double slope, double bend, double t) {
     s = t * (1 + x * (1.0 / 6 + x * (1.0 / 120 + x * (1.0 / 5040))));
   } else {
     const double w = std::sqrt(std::abs(bend));
-    c = bend > 0 ? std::cosh(w * t) : std::cos(w * t);
-    s = (bend > 0 ? std::sinh(w * t) : std::sin(w * t)) / w;
+    c = bend > 0 ? maths::Cosh(w * t) : maths::Cos(w * t);
+    s = (bend > 0 ? maths::Sinh(w * t) : maths::Sin(w * t)) / w;
     integral = (c - 1) / bend;
   }
   const double way = root * s + slope * integral;
@@ -49,7 +51,7 @@ double Duration(double length, double before, double after, double bend) {
   const double y = bend * x * x;
   if (std::abs(y) < 1e-3) return 2 * x * (1 + y * (1.0 / 3 + y * (1.0 / 5 + y * (1.0 / 7))));
   const double w = std::sqrt(std::abs(bend));
-  return 2 / w * (bend > 0 ? std::atanh(w * x) : std::atan(w * x));
+  return 2 / w * (bend > 0 ? maths::Atanh(w * x) : maths::Atan(w * x));
 }
 
 bool Above0(double number) {
@@ -134,7 +136,7 @@ double PathPlanner::UniformSquare() noexcept {
       }
     }
   }
-  const double rate = std::max({velocity, std::sqrt(acceleration), std::cbrt(jerk)});
+  const double rate = std::max({velocity, std::sqrt(acceleration), maths::Cbrt(jerk)});
   return rate > 0 && std::isfinite(rate) ? 1 / (rate * rate) : 0;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/core/maths.h"
+
 namespace takt::trajectory {
 
 namespace {
@@ -151,7 +153,7 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
     const double room = std::max(most - bends, (1 - kBendShare) * most);
     if (turning > room) shares.strength = std::min(shares.strength, room / turning);
     if (bends > kBendShare * most) {
-      const double speed = std::cbrt(kBendShare * most / bends);
+      const double speed = maths::Cbrt(kBendShare * most / bends);
       shares.square = std::min(shares.square, speed * speed);
     }
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/core/maths.h"
 #include "takt/trajectory/path_limits.h"
 
 namespace takt::trajectory {
@@ -60,7 +61,7 @@ class BuildUp {
   // to build up what can be used: a quarter of the least time from rest to rest with that jerk.
   double For(double length, double period_s, double most_cycles) const noexcept {
     const double n = std::max(count_, 1);
-    const double time = std::min(time_ / n, std::cbrt(0.5 * length * n / jerk_));
+    const double time = std::min(time_ / n, maths::Cbrt(0.5 * length * n / jerk_));
     return period_s * std::clamp(std::ceil(time / period_s), 2.0, most_cycles);
   }
 

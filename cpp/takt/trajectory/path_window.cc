@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/core/maths.h"
+
 namespace takt::trajectory {
 
 namespace {
@@ -31,7 +33,7 @@ double DriftSquare(const Third& third, const CoordinateLimits& limits, double le
     const double jerk = kDriftShare * left * limits.of[k].jerk;
     if (third[k] * cube > jerk) cube = jerk / third[k];
   }
-  const double v = std::cbrt(cube);
+  const double v = maths::Cbrt(cube);
   return v * v;
 }
 

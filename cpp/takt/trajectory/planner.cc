@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "takt/core/maths.h"
 #include "takt/trajectory/ramp.h"
 #include "takt/trajectory/reversal.h"
 #include "takt/trajectory/ruckig_solver.h"
@@ -55,7 +56,7 @@ double MotionTime(const PositionProblem& q) noexcept {
   }
   const double j = q.bounds.jerk;
   const double time = std::max(std::sqrt(speed / j), std::abs(q.acceleration) / j);
-  return distance > j * time * time * time ? std::cbrt(distance / j) : time;
+  return distance > j * time * time * time ? maths::Cbrt(distance / j) : time;
 }
 
 // How long it takes to reach the velocity limit from rest: the second unit. It helps where a start far beyond the

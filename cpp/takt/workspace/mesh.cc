@@ -13,6 +13,8 @@
 #include <sstream>
 #include <system_error>
 
+#include "takt/core/maths.h"
+
 namespace takt::workspace {
 namespace {
 
@@ -168,7 +170,7 @@ bool Encloses(const Mesh& mesh, const Vector& point) noexcept {
     const double volume = dot(a, b * c);
     const double rest =
         a.Norm() * b.Norm() * c.Norm() + dot(a, b) * c.Norm() + dot(b, c) * a.Norm() + dot(c, a) * b.Norm();
-    angle += 2 * std::atan2(volume, rest);
+    angle += 2 * maths::Atan2(volume, rest);
   }
   return std::abs(angle) > 2 * std::numbers::pi;
 }

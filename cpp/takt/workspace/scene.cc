@@ -82,6 +82,15 @@ struct Scene::Inside {
     }
   };
 
+  // All objects at once. The manager's setup() would ask the C library's logarithm how to balance the tree.
+  void MakeTree() {
+    std::vector<Object*> objects;
+    for (const auto& object : obstacles) objects.push_back(object.get());
+    tree.clear();
+    tree.registerObjects(objects);
+    ready = true;
+  }
+
   // The managers keep pointers to objects.
   std::vector<std::unique_ptr<Object>> obstacles;
   std::vector<Body> bodies;
@@ -97,7 +106,6 @@ Scene::~Scene() = default;
 std::size_t Scene::AddObstacle(const Shape& shape) {
   const Geometry geometry = std::visit([](const auto& form) { return GeometryOf(form); }, shape.form);
   inside_->obstacles.push_back(std::make_unique<Object>(geometry, TransformOf(shape.pose)));
-  inside_->tree.registerObject(inside_->obstacles.back().get());
   inside_->ready = false;
   return inside_->obstacles.size() - 1;
 }
@@ -115,8 +123,7 @@ void Scene::Ignore(std::size_t body, std::size_t obstacle) {
 Scene::Nearest Scene::NearestObstacle(std::size_t body, const Frame& at, double within) {
   Inside::Body& moved = inside_->bodies[body];
   moved.MoveTo(at);
-  if (!inside_->ready) inside_->tree.setup();
-  inside_->ready = true;
+  if (!inside_->ready) inside_->MakeTree();
 
   struct Query {
     const Inside::Body& body;

@@ -109,6 +109,16 @@ TEST(Maths, KnowsSpecialValues) {
   for (int i = 1; i < 1000; ++i) ASSERT_EQ(Cbrt(i * i * i), i);
   EXPECT_EQ(Hypot(3, 4), 5);
   EXPECT_EQ(Hypot(3e300, 4e300), 5e300);
+  for (const double x : {0.0, 1.0, INFINITY, NAN}) {
+    EXPECT_EQ(std::isnan(Hypot(x, NAN)), !std::isinf(x)) << x;
+    EXPECT_EQ(std::isnan(Hypot(NAN, x)), !std::isinf(x)) << x;
+    EXPECT_TRUE(std::isnan(Atan2(x, NAN)) && std::isnan(Atan2(NAN, x))) << x;
+  }
+  for (const auto of : {Sin, Tan, Asin, Atan, Expm1, Log1p, Sinh, Atanh, Cbrt}) {
+    EXPECT_TRUE(of(-0.0) == 0 && std::signbit(of(-0.0)) && !std::signbit(of(0.0)));
+    EXPECT_TRUE(std::isnan(of(NAN)));
+  }
+  for (const auto of : {Cos, Acos, Exp, Log, Cosh}) EXPECT_TRUE(std::isnan(of(NAN)));
 }
 
 }  // namespace

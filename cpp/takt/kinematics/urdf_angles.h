@@ -1,0 +1,20 @@
+// Orientations in a URDF. urdfdom turns roll, pitch and yaw into quaternions with the C library's sine, whose last bits
+// depend on the processor; these are made of the same attributes with the same bits on every processor.
+#pragma once
+
+#include <kdl/frames.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace takt::kinematics {
+
+struct UrdfAngles {
+  std::map<std::string, KDL::Rotation> joints;                   // from the parent link, by joint
+  std::map<std::string, std::vector<KDL::Rotation>> collisions;  // on the link, by link, in the file's order
+};
+
+// Requires: urdfdom has read the text. Without rpy the orientation is that of the parent.
+UrdfAngles ReadUrdfAngles(const std::string& xml);
+
+}  // namespace takt::kinematics
