@@ -109,7 +109,7 @@ TEST(Maths, KnowsSpecialValues) {
   for (int i = 1; i < 1000; ++i) ASSERT_EQ(Cbrt(i * i * i), i);
   EXPECT_EQ(Hypot(3, 4), 5);
   EXPECT_EQ(Hypot(3e300, 4e300), 5e300);
-  for (const double x : {0.0, 1.0, INFINITY, NAN}) {
+  for (const double x : {0.0, 1.0, double{INFINITY}, double{NAN}}) {
     EXPECT_EQ(std::isnan(Hypot(x, NAN)), !std::isinf(x)) << x;
     EXPECT_EQ(std::isnan(Hypot(NAN, x)), !std::isinf(x)) << x;
     EXPECT_TRUE(std::isnan(Atan2(x, NAN)) && std::isnan(Atan2(NAN, x))) << x;
