@@ -16,6 +16,7 @@ find_package(fcl 0.7 CONFIG REQUIRED)
 pkg_check_modules(URDFDOM REQUIRED urdfdom)
 pkg_check_modules(LCM REQUIRED IMPORTED_TARGET lcm)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto)
 
 # takt::ruckig: the wheel's headers and archive, without its cloud client, which does not link with GCC 12 and is not wanted. A target of
 # our own, since an installation of ours brings the archive along under this name.
