@@ -24,6 +24,7 @@
 #include "takt/engine/load.h"
 #include "takt/engine/path_checks.h"
 #include "takt/engine/reference.h"
+#include "takt/lcm/authentication.h"
 #include "takt/lcm/clock.h"
 #include "takt/lcm/drives.h"
 #include "takt/planar/nearest.h"
@@ -94,9 +95,10 @@ using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::ui
 // for without the GIL.
 class VirtualEngine {
  public:
-  // Of a machine that LoadMachine has made. With `drives_url` external drives are reached there; without, they are what
-  // Hear says.
-  VirtualEngine(engine::LoadResult loaded, bool journal, const std::optional<std::string>& drives_url, bool checks)
+  // Of a machine that LoadMachine has made. With `drives_url` external drives are reached there, those that have
+  // `drives_key` if there is one; without, they are what Hear says.
+  VirtualEngine(engine::LoadResult loaded, bool journal, const std::optional<std::string>& drives_url,
+                const std::optional<lcm::Key>& drives_key, bool checks)
       : journaling_(journal),
         engine_(std::move(*loaded.machine),
                 {.drives = drives_url.has_value(), .journal = journal, .command_queue = kCommandQueue}) {
@@ -106,11 +108,14 @@ class VirtualEngine {
     if (checks && asks) checks_.emplace(engine_, std::move(loaded.checkers));
     if (!drives_url || engine_.machine().external.drives.empty()) return;
     std::string problem;
-    drives_ = lcm::Drives::Open(engine_,
-                                {.url = *drives_url,
-                                 .run_id = lcm::WallClockUs(),
-                                 .complain = [this](const std::string& text) { complaints_.push_back(text); }},
-                                problem);
+    const auto complain = [this](const std::string& text) { complaints_.push_back(text); };
+    drives_ = lcm::Drives::Open(
+        engine_,
+        {.url = *drives_url,
+         .run_id = lcm::WallClockUs(),
+         .authentication = drives_key ? std::make_shared<lcm::Authentication>(*drives_key, complain) : nullptr,
+         .complain = complain},
+        problem);
     if (!drives_) Throw("ConnectionError", py::str(problem));
   }
 
@@ -429,7 +434,7 @@ class VirtualEngine {
 // does it.
 std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::string& file_name, bool journal,
                                           std::optional<double> period_s, const std::optional<std::string>& drives_url,
-                                          bool checks) {
+                                          const std::optional<py::bytes>& drives_key, bool checks) {
   engine::LoadResult loaded = Load(text, file_name, checks);
   for (const std::string& warning : loaded.warnings) {
     if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 2) != 0) throw py::error_already_set();
@@ -439,7 +444,8 @@ std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::stri
     if (!field.range.Holds(*period_s)) ThrowConfigError({"the cycle's period must be " + Text(field.range) + " s"});
     loaded.machine->cycle.period_s = *period_s;
   }
-  return std::make_unique<VirtualEngine>(std::move(loaded), journal, drives_url, checks);
+  const auto key = drives_key ? std::optional(KeyOf(*drives_key)) : std::nullopt;
+  return std::make_unique<VirtualEngine>(std::move(loaded), journal, drives_url, key, checks);
 }
 
 }  // namespace
@@ -485,7 +491,8 @@ void BindEngine(py::module_& m) {
   using Released = py::call_guard<py::gil_scoped_release>;
   py::class_<E>(m, "Engine", "One machine in virtual time.")
       .def(py::init(&MakeEngine), py::arg("text"), py::arg("file_name"), py::kw_only(), py::arg("journal") = false,
-           py::arg("period_s") = py::none(), py::arg("drives_url") = py::none(), py::arg("checks") = true)
+           py::arg("period_s") = py::none(), py::arg("drives_url") = py::none(), py::arg("drives_key") = py::none(),
+           py::arg("checks") = true)
       .def("step", &E::Step, py::arg("cycles"), py::arg("until_feedback") = false, Released())
       .def("measure", &E::Measure, py::arg("cycles"), Released())
       .def("submit", &E::Submit, py::arg("target"), py::arg("verb"), py::arg("arguments"))

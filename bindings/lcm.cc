@@ -1,9 +1,12 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <regex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,7 +14,9 @@
 
 #include "bindings.h"
 #include "takt/engine/command.h"
+#include "takt/lcm/authentication.h"
 #include "takt/lcm/checksum.h"
+#include "takt/lcm/clock.h"
 #include "takt/lcm/network.h"
 #include "takt/lcm/network_log.h"
 #include "takt/lcm/receiver.h"
@@ -19,14 +24,16 @@
 namespace takt::bindings {
 namespace {
 
+// Text that holds the name of a file, whatever bytes that has.
+py::object FromFileSystem(const std::string& text) {
+  return py::reinterpret_steal<py::object>(
+      PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<Py_ssize_t>(text.size())));
+}
+
 std::unique_ptr<lcm::NetworkLog> OpenNetworkLog(const std::string& url, const py::bytes& path) {
   std::string problem;
   auto log = lcm::NetworkLog::Open(url, path, problem);
-  if (!log) {
-    const auto text = py::reinterpret_steal<py::object>(
-        PyUnicode_DecodeFSDefaultAndSize(problem.data(), static_cast<Py_ssize_t>(problem.size())));
-    Throw("ConnectionError", text);
-  }
+  if (!log) Throw("ConnectionError", FromFileSystem(problem));
   return log;
 }
 
@@ -61,6 +68,7 @@ class PythonNetwork {
       auto number = std::make_shared<int>(0);
       *number = receiver_->Subscribe(channels, capacity, [this, number](const lcm::Heard& heard) {
         channel_ = heard.channel;
+        utime_ = heard.utime;
         data_.assign(heard.data.begin(), heard.data.end());
         takers_.push_back(*number);
       });
@@ -79,7 +87,7 @@ class PythonNetwork {
     takers_.clear();
     if (receiver_->Handle(0) < 0) Fail("network's server is gone");
     if (takers_.empty()) return py::none();
-    return py::make_tuple(takers_, channel_, py::bytes(data_));
+    return py::make_tuple(takers_, channel_, py::bytes(data_), utime_);
   }
 
   int file() const { return receiver_->file(); }
@@ -95,11 +103,76 @@ class PythonNetwork {
   std::unique_ptr<lcm::Receiver> receiver_;  // of networks other than udpm:// by the sender's LCM
   std::vector<int> takers_;
   std::string channel_, data_;
+  std::int64_t utime_ = 0;
 };
+
+std::span<const std::uint8_t> BytesOf(const py::bytes& data) {
+  const std::string_view bytes = data;
+  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+}
+
+py::bytes ToBytes(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+py::bytes ReadKey(const py::bytes& path) {
+  std::string problem;
+  const auto key = lcm::ReadKey(path, problem);
+  if (!key) Throw("KeyFileError", FromFileSystem(problem));
+  return ToBytes(*key);
+}
+
+py::bytes Sign(lcm::Signer& signer, const std::string& channel, const py::bytes& data) {
+  const auto bytes = BytesOf(data);
+  std::vector<std::uint8_t> message(bytes.begin(), bytes.end());
+  signer.Sign(channel, message);
+  return ToBytes(message);
+}
+
+py::typing::Tuple<lcm::TagState, py::bytes> OpenTagged(lcm::Verifier& verifier, const std::string& channel,
+                                                       const py::bytes& data, std::optional<std::int64_t> heard_us) {
+  auto bytes = BytesOf(data);
+  const lcm::TagState state = verifier.Open(channel, bytes, heard_us.value_or(lcm::WallClockUs()));
+  return py::make_tuple(state, ToBytes(bytes));
+}
+
+void BindAuthentication(py::module_& m) {
+  py::enum_<lcm::TagState>(m, "TagState", "What became of the authentication tag of a message.")
+      .value("good", lcm::TagState::kGood)
+      .value("untagged", lcm::TagState::kMissing)
+      .value("wrong_key", lcm::TagState::kForeign)
+      .value("replayed", lcm::TagState::kReplayed)
+      .value("stale", lcm::TagState::kStale);
+  m.def("tag_text", &lcm::Text, py::arg("state"), "What is wrong with a tag, for people.");
+  m.def("read_key", &ReadKey, py::arg("path"), "The key in a file. Raises KeyFileError, which says why there is none.");
+  m.def("is_tagged_channel", &lcm::IsTaggedChannel, py::arg("channel"),
+        "With a key, messages on this channel carry a tag.");
+  m.def(
+      "has_tag", [](const py::bytes& data) { return lcm::HasTag(BytesOf(data)); }, py::arg("data"),
+      "The bytes end like a tag, good or not.");
+  py::class_<lcm::Signer>(m, "Signer", "Tags the messages of one sender.")
+      .def(py::init([](const py::bytes& key) { return std::make_unique<lcm::Signer>(KeyOf(key)); }), py::arg("key"))
+      .def("sign", &Sign, py::arg("channel"), py::arg("data"), "The message with a tag behind it.");
+  py::class_<lcm::Verifier>(m, "Verifier", "Checks the tags of what one receiver hears.")
+      .def(py::init([](const py::bytes& key) { return std::make_unique<lcm::Verifier>(KeyOf(key)); }), py::arg("key"))
+      .def("open", &OpenTagged, py::arg("channel"), py::arg("data"), py::arg("heard_us") = py::none(),
+           "State of the tag of a message that came at this time [us, wall clock; now], and the message: without the "
+           "tag "
+           "where that is good.");
+}
 
 }  // namespace
 
+lcm::Key KeyOf(const py::bytes& data) {
+  const auto bytes = BytesOf(data);
+  lcm::Key key{};
+  if (bytes.size() != key.size()) throw py::value_error("a key has " + std::to_string(key.size()) + " bytes");
+  std::ranges::copy(bytes, key.begin());
+  return key;
+}
+
 void BindLcm(py::module_& m) {
+  BindAuthentication(m);
   py::class_<lcm::NetworkLog>(m, "NetworkLog", "Writes what is said on an LCM network into an LCM log, without gaps.")
       .def(py::init(&OpenNetworkLog), py::arg("url"), py::arg("path"))
       .def(
@@ -109,9 +182,7 @@ void BindLcm(py::module_& m) {
   m.def(
       "checksum_holds",
       [](const std::string& channel, const py::bytes& data) -> std::optional<bool> {
-        const std::string_view bytes = data;
-        const auto state =
-            lcm::CheckChecksum(channel, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+        const auto state = lcm::CheckChecksum(channel, BytesOf(data));
         if (state == lcm::ChecksumState::kNone) return {};
         return state == lcm::ChecksumState::kHolds;
       },
@@ -137,7 +208,9 @@ void BindLcm(py::module_& m) {
       .def("set_capacity", &PythonNetwork::SetCapacity, py::arg("number"), py::arg("capacity"),
            "Of more messages that wait than this (0: any number) the newest are dropped from now on.")
       .def("receive", &PythonNetwork::Receive,
-           "The next message that waits: (numbers of subscriptions, channel, bytes); None if there is none.")
+           "The next message that waits: (numbers of subscriptions, channel, bytes, when it came [us, wall clock]); "
+           "None: "
+           "there is none.")
       .def("fileno", &PythonNetwork::file, "Readable while messages wait.")
       .def_property_readonly("malformed", &PythonNetwork::malformed,
                              "Datagrams that were none of LCM's, or from elsewhere where only this host is heard.");

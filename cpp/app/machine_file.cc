@@ -12,6 +12,7 @@ namespace takt::app {
 namespace {
 
 constexpr char kEnvironment[] = "LCM_DEFAULT_URL";
+constexpr char kKeyEnvironment[] = "TAKT_KEY_FILE";
 constexpr char kDefaultUrl[] = "udpm://239.255.76.67:7667?ttl=0";  // EN-25: stays on this host
 
 // Appends what is wrong with the URL of the machine file or of the environment; the command line's was checked there.
@@ -28,6 +29,17 @@ std::string NetworkOf(const Options& options, const engine::Machine& machine, st
   if (machine.lcm.url) return own;
   const char* const usual = std::getenv(kEnvironment);
   return usual && *usual ? checked(kEnvironment, usual) : kDefaultUrl;
+}
+
+// Likewise the key, if there is to be one.
+std::optional<lcm::Key> KeyOf(const Options& options, std::vector<std::string>& problems) {
+  if (!options.lcm || options.task != Task::kRun) return {};
+  const char* const usual = std::getenv(kKeyEnvironment);
+  if (!options.key_file && (usual == nullptr || *usual == '\0')) return {};
+  std::string problem;
+  const std::optional<lcm::Key> key = lcm::ReadKey(options.key_file ? *options.key_file : usual, problem);
+  if (!key) problems.push_back(problem);
+  return key;
 }
 
 }  // namespace
@@ -52,6 +64,7 @@ MachineFile ReadMachineFile(const Options& options) {
     if (loaded.machine) loaded.machine->cycle.period_s = *options.cycle_time_s;
   }
   if (loaded.machine) file.url = NetworkOf(options, *loaded.machine, file.problems);
+  file.key = KeyOf(options, file.problems);
   file.checkers = std::move(loaded.checkers);
   if (file.problems.empty()) file.machine = std::move(loaded.machine);
   return file;

@@ -8,6 +8,7 @@
 #include "app/options.h"
 #include "takt/engine/checkers.h"
 #include "takt/engine/machine.h"
+#include "takt/lcm/key.h"
 
 namespace takt::app {
 
@@ -15,6 +16,7 @@ struct MachineFile {
   std::optional<engine::Machine> machine;  // empty: see problems
   std::string text;                        // as it was read; with files it names written out
   std::string url;                         // the LCM network it runs on; empty: none
+  std::optional<lcm::Key> key;             // of those that may command there; empty: anyone
   engine::Checkers checkers;               // of its groups
   std::vector<std::string> problems;       // one line each
   std::vector<std::string> warnings;       // likewise

@@ -52,7 +52,12 @@ std::optional<Options> ParseOptions(int argc, char** argv, int& exit_code) {
   cli.add_option("--duration", run.duration_s, "Seconds of machine time, then stop [until SIGINT]")->check(IsDuration);
   auto* url = cli.add_option("--lcm-url", options.lcm_url, "LCM network [machine file, LCM_DEFAULT_URL]")
                   ->check(lcm::WhyNotUrl);
-  cli.add_flag("--no-lcm", no_lcm, "Neither publish nor listen")->excludes(url);
+  auto* key =
+      cli.add_option(
+             "--key", options.key_file,
+             "Hear only holders of the key in this file, which takt key new FILE makes [TAKT_KEY_FILE, else none]")
+          ->option_text("FILE");
+  cli.add_flag("--no-lcm", no_lcm, "Neither publish nor listen")->excludes(url)->excludes(key);
   cli.add_option("--log", options.log_file, "Record everything of every cycle, and the journal, into this LCM log")
       ->option_text("FILE");
   cli.add_option("--cpu", run.cpu, "CPU to keep to, real time only [any]")->check(IsCpu);

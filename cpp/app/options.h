@@ -13,8 +13,9 @@ enum class Task { kRun, kCheck, kSchema, kReference };
 struct Options {
   Task task = Task::kRun;
   std::string machine_file;
-  std::optional<double> cycle_time_s;  // instead of the machine file's
-  std::optional<std::string> lcm_url;  // likewise
+  std::optional<double> cycle_time_s;   // instead of the machine file's
+  std::optional<std::string> lcm_url;   // likewise
+  std::optional<std::string> key_file;  // instead of the environment's
   bool lcm = true;
   std::string log_file;  // empty: none
   engine::SchedulerOptions scheduler;

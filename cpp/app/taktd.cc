@@ -15,6 +15,7 @@
 #include "app/summary.h"
 #include "takt/engine/path_checks.h"
 #include "takt/engine/reference.h"
+#include "takt/lcm/authentication.h"
 #include "takt/lcm/drives.h"
 #include "takt/lcm/service.h"
 
@@ -24,6 +25,8 @@ namespace {
 constexpr int kLogIncomplete = 1;
 constexpr int kWrongInput = 2;
 constexpr int kEndedAtOnce = 130;
+constexpr char kWithKey[] = "only holders of the key may command";
+constexpr char kWithoutKey[] = "no key: anyone on the network may command (see taktd --help: --key)";
 constexpr unsigned kCloseWithinS = 1;  // s for closing the log after a second signal
 
 std::atomic<int> signals{0};
@@ -72,19 +75,30 @@ int Run(const Options& options, MachineFile file) {
   engine::SchedulerOptions scheduler = options.scheduler;
   const lcm::RunInfo info{file.text, TAKT_VERSION, static_cast<std::int8_t>(scheduler.pace)};
   std::string problem;
+  const auto authentication = file.key ? std::make_shared<lcm::Authentication>(*file.key, SayOnStderr) : nullptr;
   std::unique_ptr<lcm::Service> service;
   if (options.lcm || log) {
     const auto explain = [&checks](const FeedbackEvent& event) { return checks.Sentence(event); };
-    service = lcm::Service::Open(
-        engine, {.url = file.url, .log_path = options.log_file, .info = info, .explain = explain}, problem);
+    service = lcm::Service::Open(engine,
+                                 {.url = file.url,
+                                  .log_path = options.log_file,
+                                  .info = info,
+                                  .authentication = authentication,
+                                  .explain = explain},
+                                 problem);
     if (!service) return Refuse(problem);
     scheduler.wait_for_reader = log;
   }
   std::unique_ptr<lcm::Drives> drives;
   const bool real_time = scheduler.pace == engine::Pace::kRealTime;
   if (has_drives) {
-    drives = lcm::Drives::Open(
-        engine, {.url = file.url, .run_id = info.run_id, .real_time = real_time, .complain = SayOnStderr}, problem);
+    drives = lcm::Drives::Open(engine,
+                               {.url = file.url,
+                                .run_id = info.run_id,
+                                .real_time = real_time,
+                                .authentication = authentication,
+                                .complain = SayOnStderr},
+                               problem);
     if (!drives) return Refuse(problem);
   }
   scheduler.ready = [&] {  // in simulated time
@@ -92,7 +106,9 @@ int Run(const Options& options, MachineFile file) {
     return !drives || drives->Ready();
   };
 
-  std::cout << Greeting(machine, scheduler.pace) << (file.url.empty() ? "" : ", on " + file.url) << std::endl;
+  std::cout << Greeting(machine, scheduler.pace);
+  if (!file.url.empty()) std::cout << ", on " << file.url << '\n' << (file.key ? kWithKey : kWithoutKey);
+  std::cout << std::endl;
   std::optional<engine::PathCheckThread> checking;
   if (real_time) checking.emplace(checks);
   cycle_runs = true;

@@ -16,7 +16,16 @@ from takt.axis import Axis
 from takt.belt import Belt, BeltObject
 from takt.engine import Engine, error_name, error_text, read_machine
 from takt.environment import Environment
-from takt.errors import ClosedError, CommandError, ConfigError, ConnectionError, DriveWarning, TaktError, TimeoutError
+from takt.errors import (
+    ClosedError,
+    CommandError,
+    ConfigError,
+    ConnectionError,
+    DriveWarning,
+    KeyFileError,
+    TaktError,
+    TimeoutError,
+)
 from takt.events import LogError
 from takt.feedback import Feedback, FeedbackState
 from takt.flex_cam import FlexCam
@@ -54,6 +63,7 @@ __all__ = [
     "Forecast",
     "FreePose",
     "Journey",
+    "KeyFileError",
     "Part",
     "PickPlace",
     "PlanarGroup",

@@ -49,6 +49,7 @@ def _counted_from_0(_context: click.Context, _option: click.Parameter, number: i
 
 
 FILE = click.Path(path_type=Path)
+KEY = click.option("--key", type=FILE, help="File with the key of the engine [TAKT_KEY_FILE, else none].")
 START = click.option(
     "--run",
     "start_number",
@@ -155,12 +156,13 @@ def reference(output: Path | None) -> None:
 @click.option("--machine", type=FILE, help="Run on this machine in virtual time [machine.yaml beside FILE].")
 @click.option("--url", help="Run on the engine of this LCM network (taktd) instead.")
 @click.option("--report", type=FILE, help="Write report.html, pictures and the recording into this directory.")
-def run(file: Path, machine: Path | None, url: str | None, report: Path | None) -> int:
+@KEY
+def run(file: Path, machine: Path | None, url: str | None, report: Path | None, key: Path | None) -> int:
     """Run a scenario FILE and verify what was recorded; the same on a running engine and in virtual time."""
     if machine is not None and url is not None:
         raise click.UsageError("--machine is for virtual time, --url for a running engine: give one of them")
     scenario = load_scenario(file)
-    session: Session = connect(url) if url is not None else Engine(machine or scenario.machine)
+    session: Session = connect(url, key=key) if url is not None else Engine(machine or scenario.machine, key=key)
     with session, _watching(session, scenario.title):
         outcome = run_scenario(scenario, session, report)
         figures = session.figures
@@ -253,12 +255,13 @@ def show_report(run: Path, output: Path | None, judge: Path | None, start_number
 @click.option("--port", default=8047, show_default=True, type=click.IntRange(0, 65535), help="Of the page; 0: any.")
 @click.option("--browser/--no-browser", default=True, help="Open it in the browser.")
 @click.option("--pace", type=click.Choice(["real", "paced"]), default="real", show_default=True, help="Of taktd.")
-def view(what: str | None, port: int, browser: bool, pace: str) -> int:
+@KEY
+def view(what: str | None, port: int, browser: bool, pace: str, key: Path | None) -> int:
     """Show what an engine does in a page on this host: of a MACHINE file, which then runs on a taktd of its own, or the
     one of an LCM network [the usual one]."""
     from takt.view import command
 
-    return command.run(what, port, browser, pace, _say)
+    return command.run(what, port, browser, pace, _say, key)
 
 
 @cli.command()
@@ -268,9 +271,26 @@ def view(what: str | None, port: int, browser: bool, pace: str) -> int:
 @click.option(
     "--watchdog", default=WATCHDOG, show_default=True, type=click.IntRange(1), help="Periods without a set point: off."
 )
-def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int) -> int:
+@KEY
+def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int, key: Path | None) -> int:
     """Simulate the external drives of a MACHINE in this process, for an engine in another one."""
-    return simulate(machine, url, axes, watchdog)
+    return simulate(machine, url, axes, watchdog, key)
+
+
+@cli.group(context_settings={"help_option_names": ["-h", "--help"]})
+def key() -> None:
+    """Keys, which engines, clients and drives share, so that nobody else may command (docs/trust.md)."""
+
+
+@key.command()
+@click.argument("file", type=FILE)
+def new(file: Path) -> None:
+    """Make a key in a new FILE that its owner alone may open: for taktd --key, takt --key, takt.connect(key=...), or
+    TAKT_KEY_FILE in the environment."""
+    from takt.keys import new_key
+
+    new_key(file)
+    print(file)
 
 
 @cli.command()
@@ -298,8 +318,16 @@ def calibrate(kind: str, file: Path) -> int:
 @click.option("--watch", type=float, default=0.5, show_default=True, help="s to look at each step, at least.")
 @click.option("--keep", is_flag=True, help="Leave the axis with the new gains [with those that it had].")
 @click.option("--picture", "target", type=FILE, help="Draw the step responses before and after.")
+@KEY
 def tune(
-    axis: str, machine: Path | None, url: str | None, distance: float, watch: float, keep: bool, target: Path | None
+    axis: str,
+    machine: Path | None,
+    url: str | None,
+    distance: float,
+    watch: float,
+    keep: bool,
+    target: Path | None,
+    key: Path | None,
 ) -> int:
     """Find the gains of the position loop of AXIS with small steps beside where it stands."""
     from takt import tuning
@@ -307,7 +335,7 @@ def tune(
     if (machine is None) == (url is None):
         raise click.UsageError("give either --machine or --url")
     drawing = target and _writable(target, (".png", ".svg"))
-    session: Session = Engine(machine) if machine else connect(url)
+    session: Session = Engine(machine, key=key) if machine else connect(url, key=key)
     with session:
         found = session.axis(axis)
         if machine:

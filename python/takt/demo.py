@@ -18,6 +18,7 @@ from takt import _core
 from takt.counted import counted
 from takt.engine import read_machine
 from takt.errors import ConnectionError, TaktError
+from takt.keys import Key
 from takt.lcmlog import read_log, write_log
 from takt.network import open_network, roomy
 from takt.remote import RemoteSession, connect
@@ -132,15 +133,17 @@ def free_url() -> str:
 
 @contextlib.contextmanager
 def taktd(
-    machine: Path, url: str, journal: Path | None, pace: str, directory: Path
+    machine: Path, url: str, journal: Path | None, pace: str, directory: Path, key: Key | None = None
 ) -> Iterator[subprocess.Popen[bytes]]:
-    """The engine as a process of its own, which is ended in order. What it says goes into taktd.txt."""
+    """The engine as a process of its own, which is ended in order. What it says goes into taktd.txt. Without a key it
+    has the one that the environment names, if any."""
     beside = str(Path(sys.executable).parent)  # the one that came with this package comes first
     program = shutil.which("taktd", path=beside) or shutil.which("taktd")
     if program is None:
         raise TaktError("taktd is not installed (or not on PATH)")
     command = [program, str(machine), "--pace", pace, "--lcm-url", url]
     command += ["--log", str(journal)] if journal else []
+    command += ["--key", key.file] if key else []
     with (
         (directory / "taktd.txt").open("wb") as text,
         _ended(subprocess.Popen(command, stdout=text, stderr=subprocess.STDOUT)) as process,

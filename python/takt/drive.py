@@ -14,6 +14,7 @@ import signal
 import sys
 import time
 from abc import ABC, abstractmethod
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import partial
@@ -21,6 +22,7 @@ from typing import Any, Final
 
 from takt import _core, msgs
 from takt.errors import TaktError
+from takt.keys import KeyFile, no_key, not_the_key, read_key
 from takt.network import DEFAULT_URL, network_of, open_network
 
 CYCLIC_POSITION: Final = msgs.drive_setpoint.MODE_CYCLIC_POSITION
@@ -136,7 +138,9 @@ class Plant:
     watchdog: in real time, drives that hear no set point for so many periods are told to be off: 0 V, power stage off,
         brake fallen. They stay off until the engine has switched them off and on again. Simulated time stands still
         until the drives have answered: there is nothing to watch.
-    say: takes a sentence when an engine starts, when it is not heard any more, when it is back.
+    say: takes a sentence when an engine starts, when it is not heard any more, when it is back, and the first time when
+        its messages are ignored for want of the right key.
+    key: file with the key of the engine, unless the environment names it (TAKT_KEY_FILE); "": none.
     """
 
     def __init__(
@@ -146,6 +150,7 @@ class Plant:
         *,
         watchdog: int = WATCHDOG,
         say: Callable[[str], None] | None = None,
+        key: KeyFile | None = None,
     ) -> None:
         if not drives:
             raise TaktError("a plant needs at least one drive")
@@ -153,7 +158,10 @@ class Plant:
             raise TaktError(f"a watchdog needs at least one period, not {watchdog}")
         self._watchdog = watchdog
         self._say = say or (lambda sentence: print(sentence, file=sys.stderr, flush=True))
-        self._network = open_network(url)
+        self._url = url
+        self._key = read_key(key)
+        self._network = open_network(url, key=self._key, refused=self._refuse)
+        self.refused: Counter[str] = Counter()  # set points that were ignored for want of the right key, by reason
         self._id = random.SystemRandom().getrandbits(62)
         self._lines = {axis: _Line(axis, drive) for axis, drive in drives.items()}
         self._running = False
@@ -205,7 +213,17 @@ class Plant:
             line.drive.step(SetPoint(period_s=line.period_s), now_s - line.stepped_s)
             line.stepped_s = now_s
 
-    def _receive(self, line: _Line, _: str, data: bytes) -> None:
+    def _refuse(self, channel: str, state: _core.TagState) -> None:
+        self.refused[state.name] += 1
+        if self.refused[state.name] == 1 and self._key is not None:
+            self._say(f"{channel}: {not_the_key(self._url, self._key, state)}")
+
+    def _receive(self, line: _Line, channel: str, data: bytes) -> None:
+        if self._key is None and _core.has_tag(data):  # nothing here could tell whether it is the engine's
+            self.refused["no_key"] += 1
+            if self.refused["no_key"] == 1:
+                self._say(f"{channel}: {no_key(self._url)}")
+            return
         try:
             message = msgs.drive_setpoint.decode(data)
         except Exception:  # generated code raises whatever comes
@@ -263,7 +281,11 @@ def _feedback_channel(line: _Line) -> str:
 
 
 def simulate(
-    machine: str | os.PathLike[str], url: str | None = None, axes: Sequence[str] = (), watchdog: int = WATCHDOG
+    machine: str | os.PathLike[str],
+    url: str | None = None,
+    axes: Sequence[str] = (),
+    watchdog: int = WATCHDOG,
+    key: KeyFile | None = None,
 ) -> int:
     """Serves the external drives of a machine, or those of these axes, until SIGINT or SIGTERM."""
     from takt.engine import read_machine
@@ -277,7 +299,7 @@ def simulate(
     if not external:
         raise TaktError(f"{file_name}: has no external drives (external: drives: - axis: NAME)")
     drives = {axis: SimulatedServo(machine, axis) for axis in axes or external}
-    plant = Plant(drives, url or network_of(described), watchdog=watchdog)
+    plant = Plant(drives, url or network_of(described), watchdog=watchdog, key=key)
     before = [signal.signal(number, lambda *_: plant.stop()) for number in (signal.SIGINT, signal.SIGTERM)]
     print(f"simulating {', '.join(drives)}", file=sys.stderr, flush=True)
     plant.run()

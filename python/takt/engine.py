@@ -21,6 +21,7 @@ from takt.component import Component
 from takt.errors import ConfigError, DriveWarning, seconds, whole
 from takt.feedback import Feedback
 from takt.forecast import Forecast
+from takt.keys import KeyFile, read_key
 from takt.lying import LOOK_S
 from takt.mover import Mover
 from takt.network import network_of
@@ -56,6 +57,7 @@ class Engine(Session):
     journal: keep the journal and a hash of the whole state after every cycle (`take_journal`, `take_hashes`).
     url: LCM network of external drives, instead of the machine file's (`lcm.url`, else LCM_DEFAULT_URL). Time stands
         still until they have answered.
+    key: file with the key of external drives, unless the environment names it (TAKT_KEY_FILE); "": none.
     """
 
     def __init__(
@@ -65,13 +67,22 @@ class Engine(Session):
         period: float | None = None,
         journal: bool = False,
         url: str | None = None,
+        key: KeyFile | None = None,
     ) -> None:
         text, file_name = read_machine(machine)
         if period is not None:
             period = seconds(period, "a period")
         described = json.loads(_core.load_machine(text, file_name))
         drives_url = (url or network_of(described)) if described["external"]["drives"] else None
-        self._core = _core.Engine(text, file_name, journal=journal, period_s=period, drives_url=drives_url)
+        drives_key = read_key(key) if drives_url else None
+        self._core = _core.Engine(
+            text,
+            file_name,
+            journal=journal,
+            period_s=period,
+            drives_url=drives_url,
+            drives_key=drives_key.data if drives_key else None,
+        )
         self._unfinished: dict[int, Feedback] = {}
         self._unreleased: list[Feedback] = []  # their release was refused
         self._core_recorders: dict[Recorder, _core.Recorder] = {}

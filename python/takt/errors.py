@@ -41,6 +41,10 @@ class ConnectionError(TaktError, builtins.ConnectionError):
     """The engine cannot be reached, or went away."""
 
 
+class KeyFileError(TaktError):
+    """A key file cannot be used; the text says why, without what is in the file."""
+
+
 class DriveWarning(UserWarning):
     """An external drive sent what cannot be used, or is not heard."""
 

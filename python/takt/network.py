@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from takt import _core
+from takt.keys import Key, KeyedNetwork, Refused
 
 Handler = Callable[[str, bytes], object]
 
@@ -61,6 +62,7 @@ class Network:
     def __init__(self, url: str) -> None:
         self._core = _core.Network(url)
         self._subscriptions: dict[int, Subscription] = {}
+        self.heard_us: int | None = None  # when the message that is handled came, by the wall clock
 
     def publish(self, channel: str, data: bytes) -> None:
         self._core.publish(channel, data)
@@ -95,7 +97,7 @@ class Network:
             heard = self._core.receive()
         if heard is None:
             return 0
-        numbers, channel, data = heard
+        numbers, channel, data, self.heard_us = heard
         for number in numbers:
             subscription = self._subscriptions.get(number)
             if subscription is not None:
@@ -108,6 +110,9 @@ class Network:
         return self._core.malformed
 
 
-def open_network(url: str, *, room: bool = False) -> Network:
-    """A member of the network; room: with a buffer for bursts (`roomy`)."""
-    return Network(roomy(url) if room else url)
+def open_network(
+    url: str, *, room: bool = False, key: Key | None = None, refused: Refused | None = None
+) -> Network | KeyedNetwork:
+    """A member of the network; room: with a buffer for bursts (`roomy`); with a key, one that uses it."""
+    network = Network(roomy(url) if room else url)
+    return network if key is None else KeyedNetwork(network, key, refused)

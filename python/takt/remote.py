@@ -8,6 +8,7 @@ import os
 import random
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -18,6 +19,7 @@ from takt.component import Component
 from takt.errors import ConnectionError, TaktError
 from takt.feedback import Feedback
 from takt.figures import DROPPED, figures_of
+from takt.keys import Key, KeyFile, no_key, not_the_key, read_key
 from takt.lying import objects_of
 from takt.network import open_network, usual_url
 from takt.recording import Recording
@@ -25,6 +27,7 @@ from takt.session import Recorder, Session, release_of
 from takt.tables import KINDS, PREFIXES, State, is_possible, kind_of_channel, make_recording, named, table_of
 
 QUEUE = 100_000  # messages waiting to be received before LCM drops some
+DESCRIPTION_S = 2.5  # the engine describes itself within that, every second
 SILENCE_S = 3.0  # without any message: the engine is gone (it sends its own state, and the machine every second)
 RESEND_S = 0.2  # between two tries of a command that is not answered
 REFRESH_S = 2.0  # after which a command that is not finished is asked about: its last answer may have been lost
@@ -68,11 +71,12 @@ class _Kept:
 class RemoteSession(Session):
     """A session with a running engine. Made by `connect`."""
 
-    def __init__(self, url: str, client: str, timeout: float) -> None:
+    def __init__(self, url: str, client: str, timeout: float, key: Key | None = None) -> None:
         self.url = url
         self.client = client
         self.losses: dict[str, int] = {}  # messages lost on the way, by channel
         self.ignored = 0  # messages whose cycle cannot be true
+        self.refused: Counter[str] = Counter()  # messages without a good tag where there is a key, by reason
         self._session_id = random.SystemRandom().getrandbits(62) + 1
         self._news = threading.Condition()  # guards all that follows
         self._sequences: dict[str, int] = {}
@@ -82,6 +86,8 @@ class RemoteSession(Session):
         self._cycle = -1
         self._heard = 0.0
         self._trouble = ""  # why the session cannot go on
+        self._key = key
+        self._key_trouble = ""  # why the engine's last description could not be believed
         self._belt_objects: dict[str, msgs.belt_objects] = {}
         self._sent: dict[int, _Sent] = {}
         self._held: list[Feedback] = []  # level-sensitive commands that need heartbeats
@@ -91,7 +97,7 @@ class RemoteSession(Session):
         self._stop = threading.Event()
         self._beat_now = threading.Event()
 
-        self._lcm = open_network(url, room=True)
+        self._lcm = open_network(url, room=True, key=key, refused=self._on_refused)
         self._subscriptions: list[Any] = []
         for channel, handler in (
             ("takt/machine", self._on_machine),
@@ -186,7 +192,8 @@ class RemoteSession(Session):
                     sent.answered = False  # asks again
                 self._beat_now.set()
         self._sequences[channel] = sequence
-        self._heard = time.monotonic()
+        if self._key is None or _core.is_tagged_channel(channel):  # the others may be of anyone
+            self._heard = time.monotonic()
         self._news.notify_all()
 
     def _check_run(self, run_id: int) -> None:
@@ -211,9 +218,19 @@ class RemoteSession(Session):
             return
         with self._news:
             self._check_run(message.run_id)
-            if self._description is None:
+            if self._description is None and self._key is None and _core.has_tag(data):
+                self._trouble = no_key(self.url)
+            elif self._description is None:
                 self._description = message
             self._hear(channel, message.sequence)
+
+    def _on_refused(self, channel: str, state: _core.TagState) -> None:
+        assert self._key is not None
+        with self._news:
+            self.refused[state.name] += 1
+            if channel == "takt/machine":
+                self._key_trouble = not_the_key(self.url, self._key, state)
+                self._news.notify_all()
 
     def _on_engine(self, channel: str, data: bytes) -> None:
         message = _decoded(msgs.engine_state, data)
@@ -439,13 +456,20 @@ class RemoteSession(Session):
             raise ConnectionError(self._trouble)
         silence = time.monotonic() - self._heard
         if silence > SILENCE_S:
-            raise ConnectionError(f"the engine on {self.url} has been silent for {silence:.1f} s")
+            why = f": {self._key_trouble}" if self._key_trouble else ""
+            raise ConnectionError(f"the engine on {self.url} has been silent for {silence:.1f} s{why}")
 
     def _first_description(self, timeout: float) -> msgs.machine_description:
+        end = time.monotonic() + timeout
         with self._news:
-            self._news.wait_for(lambda: self._description or self._trouble, timeout)
+            self._news.wait_for(lambda: self._description or self._trouble or self._key_trouble, timeout)
+            if self._key_trouble:  # anyone may have sent that: another description comes within a second
+                left = min(DESCRIPTION_S, end - time.monotonic())
+                self._news.wait_for(lambda: self._description or self._trouble, left)
             if self._trouble:
                 raise ConnectionError(self._trouble)
+            if self._description is None and self._key_trouble:
+                raise ConnectionError(self._key_trouble)
             if self._description is None:
                 raise ConnectionError(f"no engine answers on {self.url} within {timeout:g} s; is taktd running there?")
             return self._description
@@ -460,15 +484,20 @@ class RemoteSession(Session):
             raise ConnectionError(f"the engine on {self.url} does not publish its component {silent[0]}")
 
 
-def connect(url: str | None = None, *, client: str | None = None, timeout: float = 5.0) -> RemoteSession:
+def connect(
+    url: str | None = None, *, client: str | None = None, timeout: float = 5.0, key: KeyFile | None = None
+) -> RemoteSession:
     """Joins the LCM network and waits until its engine has described itself, `timeout` seconds at most.
 
     url: "udpm://239.255.76.67:7667?ttl=0" unless given here or in the environment (LCM_DEFAULT_URL).
     client: a name of one's own; two clients of one name are refused by the engine. Made up unless given.
+    key: the file with the key that the engine was started with (`taktd --key`), unless the environment names it
+        (TAKT_KEY_FILE); "": none. Raises KeyFileError where the file cannot be used, ConnectionError where the engine
+        has another key, has none, or has one and this client has none.
     """
     url = url or usual_url()
     name = client if client is not None else f"python-{os.getpid()}-{random.SystemRandom().getrandbits(24):06x}"
-    return RemoteSession(url, name, timeout)
+    return RemoteSession(url, name, timeout, read_key(key))
 
 
 def _more(now: dict[str, int], then: dict[str, int]) -> dict[str, int]:

@@ -69,13 +69,14 @@ Clients::Clients(const engine::Machine& machine, std::int64_t run_id, Submit sub
     : machine_(machine), run_id_(run_id), submit_(std::move(submit)), explain_(std::move(explain)), limits_(limits) {}
 
 template <typename Message>
-bool Clients::IsForUs(const Message& message, msgs::feedback& refusal) const {
+bool Clients::IsForUs(const Message& message, msgs::feedback& refusal) {
   if (!IsGoodName(message.client)) {
     Refuse(refusal, ErrorId::kParameter,
            "client: expected a name of 1 to " + std::to_string(kLongestName) + " printable ASCII characters");
     return false;
   }
   if (message.run_id != run_id_) {
+    ++other_run_;
     Refuse(refusal, ErrorId::kOtherRun, std::string(ErrorText(ErrorId::kOtherRun)));
     return false;
   }
@@ -273,7 +274,11 @@ ClientFigures Clients::figures(std::int64_t now_ns) const {
   const auto alive = std::count_if(clients_.begin(), clients_.end(), [&](const auto& entry) {
     return now_ns - entry.second.last_seen_ns <= limits_.alive_ns;
   });
-  return {malformed_, ignored_, replies_dropped_, static_cast<std::uint32_t>(alive)};
+  return {.malformed = malformed_,
+          .ignored = ignored_,
+          .other_run = other_run_,
+          .replies_dropped = replies_dropped_,
+          .alive = static_cast<std::uint32_t>(alive)};
 }
 
 bool Clients::MakeRoomForClient(std::int64_t now_ns) {

@@ -31,7 +31,8 @@ struct ClientLimits {
 
 struct ClientFigures {
   std::uint64_t malformed = 0;
-  std::uint64_t ignored = 0;  // commands and heartbeats that came too late
+  std::uint64_t ignored = 0;    // commands and heartbeats that came too late
+  std::uint64_t other_run = 0;  // likewise, for another start of the engine
   std::uint64_t replies_dropped = 0;
   std::uint32_t alive = 0;  // clients
 };
@@ -91,7 +92,7 @@ class Clients {
   // It comes from a sender that has a name, for this start of the engine. False: `refusal` says why not. `Message`:
   // command or heartbeat.
   template <typename Message>
-  bool IsForUs(const Message& message, msgs::feedback& refusal) const;
+  bool IsForUs(const Message& message, msgs::feedback& refusal);
   // The client of this name and session, made if there is room, seen alive now. Null, and `refusal` says why, if there
   // is no place for it.
   template <typename Message>
@@ -123,6 +124,7 @@ class Clients {
   std::deque<msgs::feedback> replies_;
   std::uint64_t malformed_ = 0;
   std::uint64_t ignored_ = 0;
+  std::uint64_t other_run_ = 0;
   std::uint64_t replies_dropped_ = 0;
 };
 

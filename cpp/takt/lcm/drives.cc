@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "takt/lcm/channels.h"
 #include "takt/lcm/clock.h"
@@ -37,6 +38,14 @@ std::unique_ptr<Drives> Drives::Open(engine::Engine& engine, const DrivesOptions
   problem = drives->sending_.problem;
   if (drives->sending_.lcm) drives->receiving_ = OpenReceiver(options.url, problem);
   if (!drives->receiving_) return nullptr;
+  if (Authentication* const authentication = options.authentication.get()) {
+    drives->signer_.emplace(authentication->key());
+    drives->receiving_ = WithKey(std::move(drives->receiving_), authentication->key(),
+                                 [&engine, authentication](std::string_view channel, TagState state) {
+                                   engine.CountRefusedSample();
+                                   authentication->Refuse(channel, state);
+                                 });
+  }
   drives->receiving_->Subscribe(kDriveFeedbackChannels, kDriveQueue,
                                 [d = drives.get()](const Heard& heard) { d->Receive(heard); });
   if (options.real_time) {
@@ -133,6 +142,7 @@ void Drives::Send(Line& line) {
   message.sequence = line.sequence++;
   message.real_time = options_.real_time;
   Encode(message, buffer_);
+  if (signer_) signer_->Sign(line.channel, buffer_);
   gate_.OnSent(line.newest);
   sending_.lcm->publish(line.channel, buffer_.data(), static_cast<unsigned>(buffer_.size()));
 }

@@ -14,11 +14,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "takt/engine/engine.h"
+#include "takt/lcm/authentication.h"
 #include "takt/lcm/drive_gate.h"
 #include "takt/lcm/network.h"
 #include "takt/lcm/receiver.h"
@@ -29,6 +31,7 @@ struct DrivesOptions {
   std::string url{};
   std::int64_t run_id = 0;
   bool real_time = false;
+  std::shared_ptr<Authentication> authentication{};  // null: no key, anyone on the network may answer
   // Takes one sentence for people; from any thread.
   std::function<void(const std::string&)> complain = [](const std::string&) {};
 };
@@ -73,6 +76,7 @@ class Drives {
   DriveGate gate_;
   Network sending_;
   std::unique_ptr<Receiver> receiving_;
+  std::optional<Signer> signer_;
   std::vector<Line> lines_;
   std::vector<std::uint8_t> buffer_;
 

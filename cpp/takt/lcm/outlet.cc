@@ -56,7 +56,16 @@ bool KeepOld(const std::string& path) {
 
 }  // namespace
 
+NetworkOutlet::NetworkOutlet(::lcm::LCM& network, const std::optional<Key>& key) : network_(network) {
+  if (key) signer_.emplace(*key);
+}
+
 bool NetworkOutlet::Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t) {
+  if (signer_ && IsTaggedChannel(channel)) {
+    tagged_.assign(bytes.begin(), bytes.end());
+    signer_->Sign(channel, tagged_);
+    bytes = tagged_;
+  }
   return network_.publish(channel, bytes.data(), static_cast<unsigned int>(bytes.size())) == 0;
 }
 

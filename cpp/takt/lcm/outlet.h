@@ -3,8 +3,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
+
+#include "takt/lcm/authentication.h"
 
 namespace lcm {
 class LCM;
@@ -24,12 +28,14 @@ class Outlet {
 
 class NetworkOutlet : public Outlet {
  public:
-  // `network` must outlive this.
-  explicit NetworkOutlet(::lcm::LCM& network) : network_(network) {}
+  // `network` must outlive this. With a key, messages of tagged channels are tagged.
+  explicit NetworkOutlet(::lcm::LCM& network, const std::optional<Key>& key = {});
   bool Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t utime) override;
 
  private:
   ::lcm::LCM& network_;
+  std::optional<Signer> signer_;
+  std::vector<std::uint8_t> tagged_;
 };
 
 // An LCM log, as lcm-logger writes it. The first thing that cannot be written is said

@@ -30,8 +30,14 @@ bool Take(SpscQueue<T>& queue, Use use) {
 
 }  // namespace
 
-Publisher::Publisher(engine::Engine& engine, Clients& clients, Outlet* network, Outlet* log, RunInfo info)
-    : engine_(engine), clients_(clients), network_(network), log_(log), info_(std::move(info)) {
+Publisher::Publisher(engine::Engine& engine, Clients& clients, Outlet* network, Outlet* log, RunInfo info,
+                     const Authentication* authentication)
+    : engine_(engine),
+      clients_(clients),
+      network_(network),
+      log_(log),
+      info_(std::move(info)),
+      authentication_(authentication) {
   engine_channel_.name = kEngineChannel;
   machine_channel_.name = kMachineChannel;
   feedback_channel_.name = kFeedbackChannel;
@@ -153,6 +159,15 @@ void Publisher::PublishFigures(const engine::EngineFigures& figures) {
   message.pace = info_.pace;
   message.malformed = static_cast<std::int64_t>(clients.malformed);
   message.ignored = static_cast<std::int64_t>(clients.ignored);
+  message.other_run = static_cast<std::int64_t>(clients.other_run);
+  message.has_key = authentication_ != nullptr;
+  if (authentication_ != nullptr) {
+    const auto refused = [this](TagState state) { return static_cast<std::int64_t>(authentication_->refused(state)); };
+    message.untagged = refused(TagState::kMissing);
+    message.wrong_key = refused(TagState::kForeign);
+    message.replayed = refused(TagState::kReplayed);
+    message.stale = refused(TagState::kStale);
+  }
   message.send_failures = static_cast<std::int64_t>(send_failures());
   message.replies_dropped = static_cast<std::int64_t>(clients.replies_dropped);
   message.clients = static_cast<std::int32_t>(clients.alive);

@@ -26,9 +26,10 @@ struct RunInfo {
 
 class Publisher {
  public:
-  // Publishes from now on. `network` or `log` may be null; all others must outlive this. All states the engine
-  // hands over go to the log, those that are due to the network.
-  Publisher(engine::Engine& engine, Clients& clients, Outlet* network, Outlet* log, RunInfo info);
+  // Publishes from now on. `network`, `log` and `authentication` (no key) may be null; all others must outlive this.
+  // All states the engine hands over go to the log, those that are due to the network.
+  Publisher(engine::Engine& engine, Clients& clients, Outlet* network, Outlet* log, RunInfo info,
+            const Authentication* authentication = nullptr);
   ~Publisher() { Stop(); }
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
@@ -78,6 +79,7 @@ class Publisher {
   Outlet* const network_;
   Outlet* const log_;
   const RunInfo info_;
+  const Authentication* const authentication_;
 
   std::vector<std::vector<Channel>> state_channels_;  // by kind, by component
   std::size_t first_kind_ = 0;                        // that has its turn first

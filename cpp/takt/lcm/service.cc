@@ -1,9 +1,13 @@
 #include "takt/lcm/service.h"
 
+#include <optional>
+#include <utility>
+
 namespace takt::lcm {
 
 Service::Service(engine::Engine& engine, const ServiceOptions& options)
-    : clients_(
+    : authentication_(options.authentication),
+      clients_(
           engine.machine(), options.info.run_id,
           [&engine](const engine::Command& command) { return engine.Submit(command); }, {}, options.explain) {}
 
@@ -14,14 +18,21 @@ std::unique_ptr<Service> Service::Open(engine::Engine& engine, const ServiceOpti
     problem = service->sending_.problem;
     if (service->sending_.lcm) service->receiving_ = OpenReceiver(options.url, problem);
     if (!service->receiving_) return nullptr;
-    service->network_ = std::make_unique<NetworkOutlet>(*service->sending_.lcm);
+    std::optional<Key> key;
+    if (Authentication* const authentication = options.authentication.get()) {
+      key = authentication->key();
+      service->receiving_ = WithKey(
+          std::move(service->receiving_), *key,
+          [authentication](std::string_view channel, TagState state) { authentication->Refuse(channel, state); });
+    }
+    service->network_ = std::make_unique<NetworkOutlet>(*service->sending_.lcm, key);
   }
   if (!options.log_path.empty()) {
     service->log_ = OpenLog(options.log_path, problem);
     if (!service->log_) return nullptr;
   }
   service->publisher_ = std::make_unique<Publisher>(engine, service->clients_, service->network_.get(),
-                                                    service->log_.get(), options.info);
+                                                    service->log_.get(), options.info, options.authentication.get());
   if (service->receiving_) service->gateway_ = std::make_unique<Gateway>(*service->receiving_, service->clients_);
   return service;
 }

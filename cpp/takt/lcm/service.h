@@ -5,6 +5,7 @@
 #include <string>
 
 #include "takt/engine/engine.h"
+#include "takt/lcm/authentication.h"
 #include "takt/lcm/clients.h"
 #include "takt/lcm/gateway.h"
 #include "takt/lcm/network.h"
@@ -23,6 +24,7 @@ struct ServiceOptions {
   std::string url{};       // empty: no network
   std::string log_path{};  // empty: no log
   RunInfo info{};
+  std::shared_ptr<Authentication> authentication{};  // null: no key, anyone on the network may command
   Clients::Explain explain = engine::Sentence;
 };
 
@@ -39,6 +41,7 @@ class Service {
  private:
   Service(engine::Engine& engine, const ServiceOptions& options);
 
+  const std::shared_ptr<Authentication> authentication_;
   Clients clients_;
   // Two members of the same network: sending and receiving do not wait for each other.
   Network sending_;

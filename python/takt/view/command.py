@@ -15,6 +15,7 @@ from takt import _core
 from takt.demo import free_url, taktd
 from takt.ending import end_in_order, wait_until_ended
 from takt.engine import read_machine
+from takt.keys import KeyFile, read_key
 from takt.network import usual_url
 from takt.view.server import serving
 
@@ -22,12 +23,16 @@ LOOK_S = 0.2  # from one look at the engine's process to the next
 OPENS_S = 15.0  # that a browser may take to open the page, before the scenario begins without it
 
 
-def run(what: str | None, port: int, browser: bool, pace: str, say: Callable[[str], None]) -> int:
-    """Shows the engine of a network (its URL, or nothing for the usual one), or one of its own for a machine file."""
+def run(
+    what: str | None, port: int, browser: bool, pace: str, say: Callable[[str], None], key_file: KeyFile | None = None
+) -> int:
+    """Shows the engine of a network (its URL, or nothing for the usual one), or one of its own for a machine file, with
+    the key in this file (`read_key`)."""
+    key = read_key(key_file)
     end_in_order()
     if what is None or "://" in what:
         url = what or usual_url()
-        with serving(url, None, port) as address:
+        with serving(url, None, port, key=key) as address:
             _show(address, f"the engine on {url}", browser, say)
             wait_until_ended()
     file = Path(what or "")
@@ -35,8 +40,8 @@ def run(what: str | None, port: int, browser: bool, pace: str, say: Callable[[st
     url = free_url()
     with contextlib.ExitStack() as stack:
         directory = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="takt-view-")))
-        address = stack.enter_context(serving(url, file.parent, port))
-        engine = stack.enter_context(taktd(file, url, None, pace, directory))
+        address = stack.enter_context(serving(url, file.parent, port, key=key))
+        engine = stack.enter_context(taktd(file, url, None, pace, directory, key))
         _show(address, f"{file} on {url}", browser, say)
         return _until_it_ends(engine, directory / "taktd.txt", say)
 
@@ -56,7 +61,7 @@ class Beside:
     def __call__(self, url: str) -> Iterator[None]:
         end_in_order()
         drawn = threading.Event()
-        with serving(url, self.folder, self.port, drawn) as address:
+        with serving(url, self.folder, self.port, drawn, read_key()) as address:
             address += f"#{self.shows}" if self.shows else ""
             self.say(f"the live page: {address} (the scenario begins as soon as it is open)")
             if self.browser:

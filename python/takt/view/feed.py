@@ -15,8 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from takt import msgs
+from takt import _core, msgs
 from takt.errors import ConfigError
+from takt.keys import Key, not_the_key
 from takt.lying import objects_of, rows_of
 from takt.network import open_network
 from takt.remote import JUMP_S
@@ -78,7 +79,7 @@ class Tap:
 
 
 class Feed:
-    def __init__(self, url: str, folder: Path | None = None) -> None:
+    def __init__(self, url: str, folder: Path | None = None, key: Key | None = None) -> None:
         self.url = url
         self.folder = folder  # where files are that the machine names
         self.machine: Machine | None = None
@@ -95,7 +96,9 @@ class Feed:
         self.listeners: set[Callable[[msgs.feedback], None]] = set()  # to what becomes of commands
         self._heard = 0.0
         self._other_heard = 0.0
-        self._news: Any = open_network(url, room=True)
+        self._key = key
+        self.may_command = True  # False: the engine has a key, and this page has none
+        self._news: Any = open_network(url, room=True, key=key, refused=self._on_refused)
         self._scope: Any = open_network(url, room=True)
         self._subscriptions: list[Any] = []
         self._tap_subscriptions: dict[int, Any] = {}
@@ -173,6 +176,7 @@ class Feed:
         message = _decoded(msgs.machine_description, data)
         if message is None or not message.period_s > 0:
             return
+        self.may_command = self._key is not None or not _core.has_tag(data)
         now = time.monotonic()
         if self.machine is not None and message.run_id == self.machine.run_id:
             self._heard = now
@@ -188,6 +192,10 @@ class Feed:
             self.trouble = ""
         except ConfigError as error:
             self.trouble = f"the machine {message.name} cannot be read here: {error.problems[0]}"
+
+    def _on_refused(self, channel: str, state: _core.TagState) -> None:
+        if channel == "takt/machine" and self.gone and self._key is not None:
+            self.trouble = not_the_key(self.url, self._key, state)
 
     def _begin(self, machine: Machine) -> None:
         for subscription in self._subscriptions:

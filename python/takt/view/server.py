@@ -27,6 +27,7 @@ from starlette.types import Message, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from takt.errors import TaktError
+from takt.keys import Key, no_key
 from takt.recording import Array
 from takt.tables import KINDS
 from takt.view.commander import Commander, RefusedError
@@ -93,6 +94,8 @@ class Page:
         now = time.monotonic()
         if self._commander is not None and self._epoch == self._feed.epoch:
             if request.command is not None:
+                if not self._feed.may_command:
+                    raise RefusedError(no_key(self._feed.url))
                 self._commander.give(*request.command, now)
             if request.hold is not None:
                 self._commander.hold(now) if request.hold else self._commander.release()
@@ -285,10 +288,16 @@ def _files(directory: str) -> Any:
 
 
 @contextlib.contextmanager
-def serving(url: str, folder: Path | None = None, port: int = 0, drawn: threading.Event | None = None) -> Iterator[str]:
+def serving(
+    url: str,
+    folder: Path | None = None,
+    port: int = 0,
+    drawn: threading.Event | None = None,
+    key: Key | None = None,
+) -> Iterator[str]:
     """The page of the engine on this network, on a thread of its own. Yields its address. `drawn` is set as soon as
     somebody's page has drawn something of the engine."""
-    site = Site(Feed(url, folder), drawn or threading.Event())
+    site = Site(Feed(url, folder, key), drawn or threading.Event())
     with socket.socket() as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

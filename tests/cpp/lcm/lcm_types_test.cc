@@ -148,9 +148,10 @@ TEST(LcmTypes, FlexCamStateSaysWhatTheDescriptionOfOutputsSays) {
 
 // EN-11
 TEST(LcmTypes, EngineStateSaysWhatTheDescriptionOfFiguresSays) {
-  ExpectSameFields("engine_state.lcm", TypeOf<engine::EngineFigures>(),
-                   {"utime", "time_ns", "sequence", "run_id", "pace", "period_s", "malformed", "ignored",
-                    "send_failures", "replies_dropped", "clients"});
+  ExpectSameFields(
+      "engine_state.lcm", TypeOf<engine::EngineFigures>(),
+      {"utime", "time_ns", "sequence", "run_id", "pace", "period_s", "malformed", "ignored", "other_run", "has_key",
+       "untagged", "wrong_key", "replayed", "stale", "send_failures", "replies_dropped", "clients"});
   ExpectSameFields("histogram.lcm", TypeOf<engine::Histogram>(), {});
 }
 

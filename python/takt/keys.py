@@ -1,0 +1,116 @@
+"""The key that an engine, its clients and its drives share (EN-31).
+
+With a key, messages that command, keep alive, drive or describe carry an authentication tag; those without a good one
+are counted and ignored. Tags are made and checked by Takt's core (`cpp/takt/lcm/authentication.h` says how).
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from takt import _core
+from takt.errors import KeyFileError
+
+ENVIRONMENT = "TAKT_KEY_FILE"
+BYTES = 32
+
+Handler = Callable[[str, bytes], object]
+Refused = Callable[[str, _core.TagState], object]
+KeyFile = str | os.PathLike[str]
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key, and the name of the file it is from."""
+
+    file: str
+    data: bytes = field(repr=False)
+
+
+def read_key(file: KeyFile | None = None) -> Key | None:
+    """The key in this file, else in the one that the environment names (TAKT_KEY_FILE); None where neither is given,
+    or `file` is "". Raises KeyFileError, which says what is wrong with the file."""
+    name = os.fspath(file) if file is not None else os.environ.get(ENVIRONMENT, "")
+    return Key(name, _core.read_key(os.fsencode(name))) if name else None
+
+
+def new_key(file: KeyFile) -> None:
+    """Makes a key in a new file, which its owner alone may open. Raises KeyFileError where the file exists or cannot
+    be written."""
+    name = os.fspath(file)
+    try:
+        number = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o600)
+    except FileExistsError:
+        raise KeyFileError(f"key file {name}: it is there already; it is left as it is") from None
+    except OSError as error:
+        raise KeyFileError(f"key file {name}: {error.strerror}") from None
+    with os.fdopen(number, "w") as made:
+        made.write(secrets.token_hex(BYTES) + "\n")
+
+
+def no_key(url: str) -> str:
+    """Why an engine with a key does not answer somebody without."""
+    return (
+        f"the engine on {url} has a key and hears only holders of it: "
+        f"name its key file (key=, --key, or {ENVIRONMENT} in the environment)"
+    )
+
+
+def not_the_key(url: str, key: Key, state: _core.TagState) -> str:
+    """Why an engine is not heard by somebody with this key, by what its messages lack."""
+    if state == _core.TagState.untagged:
+        return (
+            f"the engine on {url} has no key, but this side has one ({key.file}): "
+            "start taktd with --key and this file, or leave the key out here"
+        )
+    if state == _core.TagState.wrong_key:
+        return f"the engine on {url} has another key than {key.file}"
+    return f"the engine on {url}: its messages are ignored: {_core.tag_text(state)}"
+
+
+class KeyedNetwork:
+    """A member of an LCM network that tags what it sends, and of tagged channels hears only messages with a good tag.
+    It has the methods of lcm.LCM that Takt uses; handlers get messages without their tags."""
+
+    def __init__(self, network: Any, key: Key, refused: Refused | None = None) -> None:
+        """refused: called with channel and reason of each message that is ignored, by the thread that handles."""
+        self.refused: Counter[str] = Counter()  # messages, by reason
+        self._network = network
+        self._key = key
+        self._refused = refused
+        self._signer = _core.Signer(key.data)
+
+    def publish(self, channel: str, data: bytes) -> None:
+        self._network.publish(channel, self._signer.sign(channel, data) if _core.is_tagged_channel(channel) else data)
+
+    def subscribe(self, channels: str, handler: Handler) -> Any:
+        """As that of the network. Each subscription has a verifier of its own: it gets each message once."""
+        return self._network.subscribe(channels, partial(self._open, _core.Verifier(self._key.data), handler))
+
+    def unsubscribe(self, subscription: Any) -> None:
+        self._network.unsubscribe(subscription)
+
+    def fileno(self) -> int:
+        return int(self._network.fileno())
+
+    def handle(self) -> None:
+        self._network.handle()
+
+    def handle_timeout(self, timeout_ms: float) -> int:
+        return int(self._network.handle_timeout(timeout_ms))
+
+    def _open(self, verifier: _core.Verifier, handler: Handler, channel: str, data: bytes) -> None:
+        if _core.is_tagged_channel(channel):
+            state, data = verifier.open(channel, data, getattr(self._network, "heard_us", None))
+            if state != _core.TagState.good:
+                self.refused[state.name] += 1
+                if self._refused is not None:
+                    self._refused(channel, state)
+                return
+        handler(channel, data)
