@@ -41,7 +41,8 @@ lcm::Key KeyOf(const py::bytes& data);
 
 // A machine file: there is a machine in it, or takt.ConfigError says every problem.
 // `workspaces`: what knows whether paths are free is made, too.
-engine::LoadResult Load(const py::bytes& text, const std::string& file_name, bool workspaces);
+engine::LoadResult Load(const py::bytes& text, const std::string& file_name, bool workspaces,
+                        engine::Files files = engine::Files::kOpen);
 
 void BindCore(py::module_& m);
 void BindCam(py::module_& m);

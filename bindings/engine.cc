@@ -38,9 +38,9 @@ constexpr std::size_t kCommandQueue = 1 << 12;
 
 }  // namespace
 
-engine::LoadResult Load(const py::bytes& text, const std::string& file_name, bool workspaces) {
-  engine::LoadResult result = engine::LoadMachine(static_cast<std::string_view>(text), file_name,
-                                                  workspaces ? engine::Workspaces::kMake : engine::Workspaces::kSkip);
+engine::LoadResult Load(const py::bytes& text, const std::string& file_name, bool workspaces, engine::Files files) {
+  const auto make = workspaces ? engine::Workspaces::kMake : engine::Workspaces::kSkip;
+  engine::LoadResult result = engine::LoadMachine(static_cast<std::string_view>(text), file_name, make, files);
   if (!result.machine) ThrowConfigError(result.problems);
   return result;
 }
@@ -55,8 +55,8 @@ std::vector<std::string> CheckMachine(const py::bytes& text, const std::string& 
   return Load(text, file_name, true).warnings;
 }
 
-std::string LoadMachine(const py::bytes& text, const std::string& file_name) {
-  return MachineJson(*Load(text, file_name, false).machine);
+std::string LoadMachine(const py::bytes& text, const std::string& file_name, bool files) {
+  return MachineJson(*Load(text, file_name, false, files ? engine::Files::kOpen : engine::Files::kRefuse).machine);
 }
 
 py::typing::Dict<py::str, py::typing::List<py::str>> PartsOfGroups(const py::bytes& text,
@@ -431,11 +431,12 @@ class VirtualEngine {
 };
 
 // `checks`: groups with a workspace are answered when they ask about a path, and tracks are made; without, the journal
-// does it.
+// does it, and the machine is from a log: it opens no files.
 std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::string& file_name, bool journal,
                                           std::optional<double> period_s, const std::optional<std::string>& drives_url,
                                           const std::optional<py::bytes>& drives_key, bool checks) {
-  engine::LoadResult loaded = Load(text, file_name, checks);
+  engine::LoadResult loaded =
+      Load(text, file_name, checks, checks ? engine::Files::kOpen : engine::Files::kRefuse);
   for (const std::string& warning : loaded.warnings) {
     if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 2) != 0) throw py::error_already_set();
   }
@@ -451,9 +452,10 @@ std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::stri
 }  // namespace
 
 void BindEngine(py::module_& m) {
-  m.def("load_machine", &LoadMachine, py::arg("text"), py::arg("file_name"),
-        "Reads and checks a machine file: all its parameters with their defaults, as JSON. Raises takt.ConfigError "
-        "with every problem.");
+  m.def("load_machine", &LoadMachine, py::arg("text"), py::arg("file_name"), py::arg("files") = true,
+        "Reads and checks a machine file: all its parameters with their defaults, as JSON. Without `files` it opens none "
+        "of those that the text names, which is a problem then: for texts from a network or a log. Raises "
+        "takt.ConfigError with every problem.");
   m.def("check_machine", &CheckMachine, py::arg("text"), py::arg("file_name"),
         "Reads and checks a machine file: its warnings. Raises takt.ConfigError with every problem.");
   m.def("parts_of_groups", &PartsOfGroups, py::arg("text"), py::arg("file_name"),

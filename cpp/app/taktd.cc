@@ -26,7 +26,7 @@ constexpr int kLogIncomplete = 1;
 constexpr int kWrongInput = 2;
 constexpr int kEndedAtOnce = 130;
 constexpr char kWithKey[] = "only holders of the key may command";
-constexpr char kWithoutKey[] = "no key: anyone on the network may command (see taktd --help: --key)";
+constexpr char kWithoutKey[] = "no key: anyone who reaches the network may command (--key, TAKT_KEY_FILE)";
 constexpr unsigned kCloseWithinS = 1;  // s for closing the log after a second signal
 
 std::atomic<int> signals{0};

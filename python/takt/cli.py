@@ -208,7 +208,7 @@ def demo(
 
     scenario = load_scenario(scenario_of(what))
     of = machine or scenario.machine
-    page = Beside(of.parent, scenario.view, port, browser, _say) if view else None
+    page = Beside(scenario.view, port, browser, _say) if view else None
     stays = page is not None and (sys.stdin.isatty() if stay is None else stay)
 
     def judged(outcome: Outcome, figures: Mapping[str, Any]) -> None:
@@ -279,7 +279,7 @@ def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int, 
 
 @cli.group(context_settings={"help_option_names": ["-h", "--help"]})
 def key() -> None:
-    """Keys, which engines, clients and drives share, so that nobody else may command (docs/trust.md)."""
+    """Keys, which engines, clients and drives share, so that nobody else may command (docs/keys.md)."""
 
 
 @key.command()

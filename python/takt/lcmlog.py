@@ -247,7 +247,7 @@ def to_recording(log: Log, run: int = -1) -> Recording:
     if one.machine is None:
         raise LogError(f"{log.path}: holds no description of a machine (channel takt/machine)")
     text, period, version = _description(one)
-    machine = json.loads(_core.load_machine(text.encode(), str(log.path)))
+    machine = json.loads(_core.load_machine(text.encode(), str(log.path), files=False))
     tables: dict[str, dict[str, Array]] = {}
     wrong = 0
     for name, (kind, _) in components_of(machine).items():
@@ -276,7 +276,7 @@ def _description(run: Run) -> tuple[str, float, str]:
     for text, period, version in said:
         with contextlib.suppress(ConfigError):
             if 0 < period < 1:
-                _core.load_machine(text.encode(), "machine")
+                _core.load_machine(text.encode(), "machine", files=False)
                 return text, period, version
     return said[0]
 

@@ -115,7 +115,7 @@ class RemoteSession(Session):
             description = self._first_description(timeout)
             self._period = description.period_s
             self._run_id = description.run_id
-            machine = json.loads(_core.load_machine(description.text.encode(), "machine"))
+            machine = json.loads(_core.load_machine(description.text.encode(), "machine", files=False))
             super().__init__(machine, description.text)
             self._dead_man_s = float(machine["lcm"]["dead_man_s"])
             self._command_age_s = float(machine["lcm"]["command_age_s"])

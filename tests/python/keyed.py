@@ -1,4 +1,4 @@
-"""Tags of messages (EN-31) as docs/trust.md describes them, made with Python's hmac alone; and a member of the network
+"""Tags of messages (EN-31) as docs/keys.md describes them, made with Python's hmac alone; and a member of the network
 that hears and says everything as it is."""
 
 from __future__ import annotations

@@ -41,6 +41,12 @@ def test_whole_cycles_by_number_of_axes(tmp_path: Path) -> None:
     assert found["CycleMovingLoop/1000"]["cpu_time"] > found["CycleMovingLoop/1"]["cpu_time"]
 
 
+def test_tags_by_length_of_message(tmp_path: Path) -> None:
+    """EN-31: what a tag costs to make, to check and to refuse."""
+    found = rows("bench_lcm", "Tag", tmp_path)
+    assert {f"Tag{kind}/{size}" for kind in ("Sign", "Open", "Refuse") for size in (60, 200, 10_000)} <= found.keys()
+
+
 def test_cams_by_number_of_points(tmp_path: Path) -> None:
     """CAM-04, CAM-60: a look-up by the number of points, beside a cubic polynomial as the floor."""
     found = rows("bench_cam", "Cam(Walk|Floor)", tmp_path)

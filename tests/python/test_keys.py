@@ -160,7 +160,7 @@ def test_hostile_commands_move_nothing(keyed: tuple[takt.RemoteSession, Bystande
 
 
 def test_tags_as_described_are_taken(keyed: tuple[takt.RemoteSession, Bystander, Path]) -> None:
-    """EN-31: what docs/trust.md says of the tag is enough to write a client in any language."""
+    """EN-31: what docs/keys.md says of the tag is enough to write a client in any language."""
     session, bystander, key = keyed
     session.axis("x").power().wait()
     bystander.say("takt/command", Sender(key_bytes(key)).tag("takt/command", forged_command(session, 1)))
@@ -425,7 +425,7 @@ def test_the_engine_says_who_may_command(tmp_path: Path, key: Path, monkeypatch:
         return subprocess.run(command, capture_output=True, text=True, timeout=LONG_S).stdout
 
     on = ("--lcm-url", new_url())
-    assert said(*on).count("no key: anyone on the network may command") == 1
+    assert said(*on).count("no key: anyone who reaches the network may command") == 1
     assert "may command" not in said("--no-lcm")
     assert "only holders of the key may command" in said(*on, "--key", str(key))
     monkeypatch.setenv("TAKT_KEY_FILE", str(key))

@@ -381,7 +381,12 @@ class CrossCheck {
 
 }  // namespace
 
-LoadResult LoadMachine(std::string_view text, std::string_view file_name, Workspaces workspaces) {
+std::string NotOpened(const std::string& file) {
+  return "expected what stands in the file itself, found its name " + Quoted(file) +
+         ": a machine that is described over a network or in a log opens no files";
+}
+
+LoadResult LoadMachine(std::string_view text, std::string_view file_name, Workspaces workspaces, Files files) {
   Machine machine;
   SourceMap source(file_name);
   std::vector<Problem> problems = ReadYaml(TypeOf<Machine>(), &machine, text, file_name, source);
@@ -389,8 +394,8 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name, Worksp
   CamLoading cams;
   GroupLoading groups;
   if (problems.empty()) {
-    cams = LoadCams(source, machine);
-    groups = LoadGroups(source, machine, workspaces == Workspaces::kMake);
+    cams = LoadCams(source, machine, files);
+    groups = LoadGroups(source, machine, workspaces, files);
   }
   const bool has_any = std::ranges::any_of(ComponentKinds(), [&](const ComponentKind& k) { return k.count(machine); });
   if (readable && has_any) {

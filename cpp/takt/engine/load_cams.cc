@@ -14,8 +14,8 @@ namespace {
 
 class CamLoader {
  public:
-  CamLoader(const SourceMap& source, std::size_t index, cam::CamParams& cam, CamLoading& loading)
-      : source_(source), path_("cams[" + std::to_string(index) + "]"), cam_(cam), loading_(loading) {}
+  CamLoader(const SourceMap& source, std::size_t index, cam::CamParams& cam, Files files, CamLoading& loading)
+      : source_(source), path_("cams[" + std::to_string(index) + "]"), cam_(cam), files_(files), loading_(loading) {}
 
   void Run() {
     if (!cam_.file.empty() && !ReadFile()) return;
@@ -29,6 +29,10 @@ class CamLoader {
  private:
   bool ReadFile() {
     loading_.files = true;
+    if (files_ == Files::kRefuse) {
+      loading_.problems.push_back(source_.ProblemAt(path_ + ".file", NotOpened(cam_.file)));
+      return false;
+    }
     file_ = (std::filesystem::path(source_.file()).parent_path() / cam_.file).string();
     std::string why;
     const std::optional<std::string> text = LoadText(file_, why);
@@ -53,6 +57,7 @@ class CamLoader {
   const SourceMap& source_;
   std::string path_;
   cam::CamParams& cam_;
+  const Files files_;
   CamLoading& loading_;
   std::string file_;  // of points, where there is one
   cam::CsvPoints csv_;
@@ -60,9 +65,9 @@ class CamLoader {
 
 }  // namespace
 
-CamLoading LoadCams(const SourceMap& source, Machine& machine) {
+CamLoading LoadCams(const SourceMap& source, Machine& machine, Files files) {
   CamLoading loading;
-  for (std::size_t i = 0; i < machine.cams.size(); ++i) CamLoader(source, i, machine.cams[i], loading).Run();
+  for (std::size_t i = 0; i < machine.cams.size(); ++i) CamLoader(source, i, machine.cams[i], files, loading).Run();
   return loading;
 }
 

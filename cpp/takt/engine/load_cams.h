@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "takt/core/problem.h"
+#include "takt/engine/load.h"
 #include "takt/engine/machine.h"
 
 namespace takt::engine {
@@ -15,6 +16,6 @@ struct CamLoading {
 };
 
 // Puts the points of files into the machine. A file's path counts from the machine file's folder.
-CamLoading LoadCams(const SourceMap& source, Machine& machine);
+CamLoading LoadCams(const SourceMap& source, Machine& machine, Files files);
 
 }  // namespace takt::engine

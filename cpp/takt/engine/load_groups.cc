@@ -16,8 +16,11 @@ namespace {
 
 class Loader {
  public:
-  Loader(const SourceMap& source, Machine& machine, bool workspaces)
-      : source_(source), machine_(machine), workspaces_(workspaces) {}
+  Loader(const SourceMap& source, Machine& machine, Workspaces workspaces, Files files)
+      : source_(source),
+        machine_(machine),
+        workspaces_(workspaces == Workspaces::kMake && files == Files::kOpen),
+        files_(files) {}
 
   GroupLoading Run() {
     loading_.checkers.resize(machine_.groups.size());
@@ -41,6 +44,10 @@ class Loader {
   // Of the file that the key `path` names.
   std::optional<std::string> Read(const std::string& path, const std::string& file) {
     loading_.files = true;
+    if (files_ == Files::kRefuse) {
+      Add(path, NotOpened(file));
+      return {};
+    }
     std::string why;
     std::optional<std::string> text = LoadText(file, why);
     if (text && text->size() > kMaxYamlBytes) {
@@ -115,13 +122,14 @@ class Loader {
   const SourceMap& source_;
   Machine& machine_;
   const bool workspaces_;
+  const Files files_;
   GroupLoading loading_;
 };
 
 }  // namespace
 
-GroupLoading LoadGroups(const SourceMap& source, Machine& machine, bool workspaces) {
-  return Loader(source, machine, workspaces).Run();
+GroupLoading LoadGroups(const SourceMap& source, Machine& machine, Workspaces workspaces, Files files) {
+  return Loader(source, machine, workspaces, files).Run();
 }
 
 }  // namespace takt::engine

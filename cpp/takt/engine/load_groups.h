@@ -5,6 +5,7 @@
 
 #include "takt/core/problem.h"
 #include "takt/engine/checkers.h"
+#include "takt/engine/load.h"
 #include "takt/engine/machine.h"
 
 namespace takt::engine {
@@ -16,7 +17,7 @@ struct GroupLoading {
 };
 
 // Puts what stands in files (URDF, paths as CSV) into the machine. A file's path counts from the machine file's folder.
-// `workspaces`: what knows whether paths are free is made, too.
-GroupLoading LoadGroups(const SourceMap& source, Machine& machine, bool workspaces);
+// kMake: what knows whether paths are free is made, too, unless no files may be opened.
+GroupLoading LoadGroups(const SourceMap& source, Machine& machine, Workspaces workspaces, Files files);
 
 }  // namespace takt::engine

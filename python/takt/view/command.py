@@ -32,7 +32,7 @@ def run(
     end_in_order()
     if what is None or "://" in what:
         url = what or usual_url()
-        with serving(url, None, port, key=key) as address:
+        with serving(url, port, key=key) as address:
             _show(address, f"the engine on {url}", browser, say)
             wait_until_ended()
     file = Path(what or "")
@@ -40,7 +40,7 @@ def run(
     url = free_url()
     with contextlib.ExitStack() as stack:
         directory = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="takt-view-")))
-        address = stack.enter_context(serving(url, file.parent, port, key=key))
+        address = stack.enter_context(serving(url, port, key=key))
         engine = stack.enter_context(taktd(file, url, None, pace, directory, key))
         _show(address, f"{file} on {url}", browser, say)
         return _until_it_ends(engine, directory / "taktd.txt", say)
@@ -51,7 +51,6 @@ class Beside:
     """The page of an engine that somebody else runs: a context for as long as that is, given the engine's network. It
     begins when the page has drawn something, or when that takes too long."""
 
-    folder: Path  # where files are that the machine names
     shows: str  # what the page shows at first, as in its address
     port: int  # 0: any
     browser: bool
@@ -61,7 +60,7 @@ class Beside:
     def __call__(self, url: str) -> Iterator[None]:
         end_in_order()
         drawn = threading.Event()
-        with serving(url, self.folder, self.port, drawn, read_key()) as address:
+        with serving(url, self.port, drawn, read_key()) as address:
             address += f"#{self.shows}" if self.shows else ""
             self.say(f"the live page: {address} (the scenario begins as soon as it is open)")
             if self.browser:

@@ -10,7 +10,6 @@ import math
 import re
 import time
 from collections.abc import Callable, Iterable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -79,9 +78,8 @@ class Tap:
 
 
 class Feed:
-    def __init__(self, url: str, folder: Path | None = None, key: Key | None = None) -> None:
+    def __init__(self, url: str, key: Key | None = None) -> None:
         self.url = url
-        self.folder = folder  # where files are that the machine names
         self.machine: Machine | None = None
         self.overview: Overview | None = None
         self.ledger = Ledger(())
@@ -188,7 +186,7 @@ class Feed:
             self.trouble = "another engine runs on this network, too: what it says is left out"
             return
         try:
-            self._begin(Machine(message, self.folder))
+            self._begin(Machine(message))
             self.trouble = ""
         except ConfigError as error:
             self.trouble = f"the machine {message.name} cannot be read here: {error.problems[0]}"

@@ -44,7 +44,9 @@ class Source:
 
 
 class Machine:
-    """What an engine said it runs. Raises ConfigError where this package cannot read it."""
+    """What an engine said it runs. Raises ConfigError where this package cannot read it.
+
+    folder: where files are that the text names; without, none is opened."""
 
     def __init__(self, message: msgs.machine_description, folder: Path | None = None) -> None:
         self.run_id = message.run_id
@@ -54,7 +56,7 @@ class Machine:
         self.text = message.text
         self.folder = folder or Path()
         self.parameters: dict[str, Any] = json.loads(
-            _core.load_machine(self.text.encode(), str(self.folder / "machine"))
+            _core.load_machine(self.text.encode(), str(self.folder / "machine"), files=folder is not None)
         )
         self.sources = [
             Source(i, name, kind.name, Layout(kind.name, name), parameters)

@@ -290,14 +290,13 @@ def _files(directory: str) -> Any:
 @contextlib.contextmanager
 def serving(
     url: str,
-    folder: Path | None = None,
     port: int = 0,
     drawn: threading.Event | None = None,
     key: Key | None = None,
 ) -> Iterator[str]:
     """The page of the engine on this network, on a thread of its own. Yields its address. `drawn` is set as soon as
     somebody's page has drawn something of the engine."""
-    site = Site(Feed(url, folder, key), drawn or threading.Event())
+    site = Site(Feed(url, key), drawn or threading.Event())
     with socket.socket() as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
