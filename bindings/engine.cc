@@ -102,10 +102,7 @@ class VirtualEngine {
       : journaling_(journal),
         engine_(std::move(*loaded.machine),
                 {.drives = drives_url.has_value(), .journal = journal, .command_queue = kCommandQueue}) {
-    const auto made = [](const auto& checker) { return checker.has_value(); };
-    const bool asks = std::ranges::any_of(loaded.checkers, made) || !engine_.machine().tracks.empty() ||
-                      !engine_.machine().environments.empty();
-    if (checks && asks) checks_.emplace(engine_, std::move(loaded.checkers));
+    if (checks) checks_.emplace(engine_, std::move(loaded.checkers));
     if (!drives_url || engine_.machine().external.drives.empty()) return;
     std::string problem;
     const auto complain = [this](const std::string& text) { complaints_.push_back(text); };
@@ -301,6 +298,22 @@ class VirtualEngine {
       if (tracks.start_nodes[i] == tracks.end_nodes.at(track)) behind.push_back(i);
     }
     return py::make_tuple(before, behind);
+  }
+
+  // A copy of the cam with this number.
+  cam::Table Cam(std::uint64_t number) {
+    const auto lock = Lock();
+    const auto cams = engine_.cams();
+    const auto found = std::ranges::find(cams, number, &cam::Table::number);
+    if (number == 0 || found == cams.end()) Throw("TaktError", py::str("there is no cam of this number any more"));
+    return *found;
+  }
+
+  // Of the cam that this name stands for; 0: none.
+  std::uint64_t CamNumber(const std::string& name) {
+    const auto lock = Lock();
+    const std::optional<std::uint32_t> index = cam::Find(engine_.cams(), name);
+    return index ? engine_.cams()[*index].number() : 0;
   }
 
   py::object Value(std::size_t component, std::size_t field) {
@@ -511,6 +524,8 @@ void BindEngine(py::module_& m) {
       .def("track_at", &E::TrackAt, py::arg("track"), py::arg("s"))
       .def("track_closest_to", &E::TrackClosestTo, py::arg("track"), py::arg("x"), py::arg("y"))
       .def("track_links", &E::LinksOf, py::arg("track"))
+      .def("cam", &E::Cam, py::arg("number"))
+      .def("cam_number", &E::CamNumber, py::arg("name"))
       .def("value", &E::Value, py::arg("component"), py::arg("field"))
       .def("foresee", &E::Foresee, py::arg("axis"))
       .def("foresee_command", &E::ForeseeCommand, py::arg("target"), py::arg("verb"), py::arg("arguments"))

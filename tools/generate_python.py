@@ -99,7 +99,7 @@ def type_text(node: Json, argument: bool) -> str:
         if node["name"] in NUMBERS:
             return "int"
         return f"{node['name']} | {node['name']}Name" if argument else str(node["name"])
-    return SCALARS[kind]
+    return "Mapping[str, Any]" if kind == "struct" else SCALARS[kind]
 
 
 def default_text(field: Json) -> str:

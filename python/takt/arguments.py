@@ -34,6 +34,8 @@ def _value(value: Any) -> str:
         return repr(int(value))
     if isinstance(value, Real):
         return repr(float(value))
+    if isinstance(value, Mapping):
+        return to_text(value) or "{}"
     if isinstance(value, Sequence) and not isinstance(value, str):
         return f"[{', '.join(map(_value, value))}]"
     text = str(value)

@@ -13,17 +13,25 @@ if TYPE_CHECKING:
     from takt.axis import Axis
 
 COUPLING_LOOP = 3018  # error numbers: the axis would follow itself ...
-UNKNOWN_TARGET = 3010  # ... there is no such component
+UNKNOWN_TARGET = 3010  # ... there is no such component, or no such cam
 COORDINATES = ("", ".x", ".y", ".c")  # of a mover, that axes can follow; without: its way along tracks
 
 
 def why_refused(
-    error_id: int, target: str, arguments: str, axes: Mapping[str, Axis], movers: Collection[str] = ()
+    error_id: int,
+    target: str,
+    arguments: str,
+    axes: Mapping[str, Axis],
+    movers: Collection[str] = (),
+    cams: Collection[str] = (),
 ) -> str:
-    """Why a command for an axis was refused, with the names it is about. Empty: there is nothing to add."""
+    """Why a command was refused, with the names it is about. Empty: there is nothing to add."""
     if error_id == COUPLING_LOOP:
         return loop_sentence(target, arguments, axes)
-    return unknown_sentence(arguments, axes, movers) if error_id == UNKNOWN_TARGET and target in axes else ""
+    if error_id != UNKNOWN_TARGET:
+        return ""
+    other = unknown_sentence(arguments, axes, movers) if target in axes else ""
+    return other or unknown_cam_sentence(arguments, cams)
 
 
 def unknown_sentence(arguments: str, axes: Mapping[str, Axis], movers: Collection[str]) -> str:
@@ -36,9 +44,20 @@ def unknown_sentence(arguments: str, axes: Mapping[str, Axis], movers: Collectio
         near = difflib.get_close_matches(asked[key], coordinates, 1) or coordinates[1:2]
         others = f", and movers with their coordinates, such as {near[0]}" if near else ""
         return f"{key}: there is no axis '{asked[key]}'; there are {', '.join(axes)}{others}"
-    for key, what in (("cam", "cam"), ("profile", "cam"), ("switches", "list of cam switches")):
+    if asked.get("switches"):
+        return f"switches: the machine has no list of cam switches '{asked['switches']}'"
+    return ""
+
+
+def unknown_cam_sentence(arguments: str, cams: Collection[str]) -> str:
+    """Which name among the arguments no cam has; `cams` are the known names."""
+    asked = yaml.safe_load(arguments) or {}
+    for key in ("cam", "profile"):
         if asked.get(key):
-            return f"{key}: the machine has no {what} '{asked[key]}'"
+            near = difflib.get_close_matches(asked[key], cams, 1)
+            hint = f"; did you mean '{near[0]}'?" if near else ""
+            has = f" (there are {', '.join(cams)})" if cams else ""
+            return f"{key}: the machine has no cam '{asked[key]}'{hint}{has}"
     return ""
 
 

@@ -8,7 +8,7 @@ import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,6 +29,9 @@ from takt.recording import Recording
 from takt.session import Recorder, Session
 from takt.tables import KINDS, fields_of_kind, make_recording, named
 from takt.track import Track
+
+if TYPE_CHECKING:
+    from takt.cam import Table
 
 CHUNK = 20_000  # cycles between two looks at Ctrl-C
 
@@ -168,6 +171,16 @@ class Engine(Session):
 
     def _track_links(self, track: Track) -> tuple[list[int], list[int]]:
         return self._core.track_links(list(self.tracks).index(track.name))
+
+    def _cam(self, number: int) -> Table:
+        from takt.cam import Table
+
+        return Table(self._core.cam(number))
+
+    def cam(self, name: str) -> Table:
+        self._check_open()
+        number = self._core.cam_number(name)
+        return self._cam(number) if number else super().cam(name)
 
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
         self._check_open()

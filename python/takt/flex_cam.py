@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
 from takt._commands import FlexCamCommands, FlexCamOutputs
 from takt.axis import Axis
 from takt.belt import Belt
 from takt.component import Component
 from takt.mover import Mover
+
+if TYPE_CHECKING:
+    from takt.cam import Table
+    from takt.feedback import Feedback
 
 
 class FlexCam(Component, FlexCamCommands, FlexCamOutputs):
@@ -16,6 +23,19 @@ class FlexCam(Component, FlexCamCommands, FlexCamOutputs):
 
     def __repr__(self) -> str:
         return f"<FlexCam {self.name}: {self.state.value}, cam {self.cam_table} at x = {self.set_x_position:.6g}>"
+
+    def load_cam(self, slot: int, cam: Table | Mapping[str, Any], *, name: str | None = None) -> Feedback:
+        """Makes a cam at run time and puts it into a slot, while the module may run the cam of another one, or of this
+        one: that is left at its end. Lets engine time pass until the cam is built. The feedback is that of `set_cam`;
+        `cam` and `name` are those of `Session.make_cam`."""
+        self.session.make_cam(cam, name=name).wait()
+        return self.set_cam(slot=slot, cam=name or (cam["name"] if isinstance(cam, Mapping) else cam.name))
+
+    @property
+    def cam_in_force(self) -> Table:
+        """The cam that runs, made at run time or of the machine file: points, laws, extremes (CAM-71). Factors and
+        offsets in force are `set_scaling_master`, `set_scaling_slave`, `set_offset_master` and `set_offset_slave`."""
+        return self.session._cam(self.cam_number)
 
     @property
     def slave(self) -> Axis:

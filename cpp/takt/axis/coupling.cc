@@ -364,6 +364,12 @@ std::uint32_t FindMaster(const Surrounding& machine, std::string_view name) noex
   return static_cast<std::uint32_t>(machine.states.size() + static_cast<std::size_t>(found - machine.outside.begin()));
 }
 
+bool UsesTable(const State& s, std::uint32_t index) noexcept {
+  const auto uses = [&](const Request& r) { return !r.table.name.empty() && r.table.index == index; };
+  if (s.active.kind != RequestKind::kNone && uses(s.active)) return true;
+  return std::any_of(s.buffer.begin(), s.buffer.begin() + s.buffered, uses);
+}
+
 Status FindNamed(const Context& c, Request& r) noexcept {
   for (CouplingTerm& term : r.coupling.terms) {
     if (term.name.empty()) continue;
@@ -371,9 +377,7 @@ Status FindNamed(const Context& c, Request& r) noexcept {
     if (term.master == kNoAxis) return Status::Failed(ErrorId::kUnknownTarget);
   }
   if (r.table.name.empty()) return Status::Ok();
-  for (std::size_t i = 0; i < c.machine.cams.size() && r.table.index == kNoTable; ++i) {
-    if (c.machine.cams[i].name() == r.table.name.view()) r.table.index = static_cast<std::uint32_t>(i);
-  }
+  if (r.table.index == kNoTable) r.table.index = cam::Find(c.machine.cams, r.table.name.view()).value_or(kNoTable);
   if (r.table.index == kNoTable) return Status::Failed(ErrorId::kUnknownTarget);
   if (!r.coupling.periodic) r.coupling.periodic = c.machine.cams[r.table.index].cyclic();
   return Status::Ok();

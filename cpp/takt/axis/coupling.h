@@ -61,6 +61,8 @@ inline bool Couples(RequestKind kind) noexcept {
 bool IsKnown(const State& master, MasterSource source) noexcept;
 // The number of an axis, or of what else can be followed; kNoAxis: there is none of that name.
 std::uint32_t FindMaster(const Surrounding& machine, std::string_view name) noexcept;
+// Whether the command in control or a buffered one follows this table.
+bool UsesTable(const State& state, std::uint32_t index) noexcept;
 // Finds the masters and the table of a request. kUnknownTarget: there is no such axis, or no such table.
 Status FindNamed(const Context& c, Request& r) noexcept;
 // kNoReference: positions of this axis mean nothing yet.

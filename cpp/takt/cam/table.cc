@@ -107,4 +107,12 @@ Curve Table::CurveOf(std::size_t i) const noexcept {
   return curve;
 }
 
+std::optional<std::uint32_t> Find(std::span<const Table> tables, std::string_view name) noexcept {
+  for (std::size_t i = tables.size(); i-- > 0;) {
+    const Table& table = tables[i];
+    if (table.size() > 0 && !table.superseded() && table.name() == name) return static_cast<std::uint32_t>(i);
+  }
+  return std::nullopt;
+}
+
 }  // namespace takt::cam

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "takt/cam/curve.h"
@@ -14,6 +16,8 @@ namespace takt::cam {
 
 class Table {
  public:
+  // A place for a table: size() is 0, and no other query is allowed.
+  Table() = default;
   // The pieces, `begins` growing, the last one up to `end`. Numbers must be finite; Build sees to it. The last y is
   // that of the source, without rounding, so that the stroke adds up to no drift (CAM-21).
   Table(CamParams source, std::span<const double> begins, std::span<const Curve> curves, double end);
@@ -22,6 +26,12 @@ class Table {
   // As it was written down, points of a file included (CAM-71).
   const CamParams& source() const noexcept { return source_; }
   bool cyclic() const noexcept { return source_.cyclic; }
+  // Unique in a machine: from 1 in the order of its file, then in the order in which cams are made at run time.
+  std::uint64_t number() const noexcept { return number_; }
+  void SetNumber(std::uint64_t number) noexcept { number_ = number; }
+  // Its name stands for another table, or for none; axes and modules that refer to it continue.
+  bool superseded() const noexcept { return superseded_; }
+  void Supersede() noexcept { superseded_ = true; }
 
   double begin() const noexcept { return begin_; }               // x, master's unit
   double end() const noexcept { return end_; }                   // x
@@ -69,6 +79,12 @@ class Table {
   std::vector<std::uint32_t> before_;  // for each bucket: how many pieces begin in buckets before it
   std::vector<More> more_;
   CamParams source_;
+  std::uint64_t number_ = 0;
+  bool superseded_ = false;
 };
+
+// Index of the table that a name stands for; nothing: there is none. The last one of several: a cam made at run time
+// hides one of the machine file.
+std::optional<std::uint32_t> Find(std::span<const Table> tables, std::string_view name) noexcept;
 
 }  // namespace takt::cam

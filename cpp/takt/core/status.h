@@ -47,7 +47,7 @@ enum class ErrorId : std::uint16_t {
   kState = 3005,              // the command is not legal in the axis' state
   kAwayFromLimitOnly = 3006,  // while a limit switch is on, only moves away from it are accepted
   kOverrun = 3007,            // too many cycles in a row came too late; everything was stopped
-  kUnknownTarget = 3010,      // no such component
+  kUnknownTarget = 3010,      // no component or cam of this name
   kUnknownVerb = 3011,        // the component has no such command
   kQueueFull = 3012,          // commands arrive faster than the cycle takes them
   kClientName = 3013,         // another client uses this name
@@ -115,6 +115,7 @@ enum class ErrorId : std::uint16_t {
   kSyncPassed = 3110,   // the master has passed the position at which the clutch was to close
   kSlaveLimits = 3111,  // the slave cannot follow within its limits
   kEmptySlot = 3112,    // there is no cam in a slot that is needed
+  kCamMaking = 3113,    // a cam cannot be made at run time; the value of the feedback says why
   kStreamKey = 3120,    // a set point for another stream than the one in control
   kStreamLate = 3121,   // a set point came after its time
   kStreamJump = 3122,   // a set point is further from the one before it than the axis can move in their time

@@ -145,7 +145,7 @@ Entry Make(std::string_view target_kind, std::string_view name, bool level_sensi
 // What the engine alone gives.
 bool IsInternal(const Verb& verb) {
   return verb.arguments == &TypeOf<group::PathChecked>() || verb.arguments == &TypeOf<track::TrackMade>() ||
-         verb.arguments == &TypeOf<environment::BoundaryMade>();
+         verb.arguments == &TypeOf<environment::BoundaryMade>() || verb.arguments == &TypeOf<cam::CamBuilt>();
 }
 
 // Every command there is: the one list.
@@ -157,6 +157,12 @@ const std::vector<Entry>& Entries() {
       Make<MachineCommand, FailAllAxes>(kMachine, "fail_all_axes"),
       Make<MachineCommand, Release>(kMachine, "release"),
       Make<MachineCommand, Renew>(kMachine, "renew"),
+      Make<MachineCommand, cam::BeginCam>(kMachine, "begin_cam"),
+      Make<MachineCommand, cam::AddCamPoints>(kMachine, "add_cam_points"),
+      Make<MachineCommand, cam::AddCamSegments>(kMachine, "add_cam_segments"),
+      Make<MachineCommand, cam::BuildCam>(kMachine, "build_cam"),
+      Make<MachineCommand, cam::DropCam>(kMachine, "drop_cam"),
+      Make<MachineCommand, cam::CamBuilt>(kMachine, "cam_built"),
       Make<axis::Command, axis::Power>(kAxis, "power"),
       Make<axis::Command, axis::Reset>(kAxis, "reset"),
       Make<axis::Command, axis::Straighten>(kAxis, "straighten"),
@@ -498,9 +504,7 @@ std::string WhyNot(const Machine& machine, const Command& command) {
   if (const auto* body = std::get_if<axis::Command>(&command.body)) {
     return WhyNot(machine, *body, machine.axes[command.target - 1]);
   }
-  if (const auto* body = std::get_if<flexcam::Command>(&command.body)) {
-    return flexcam::WhyNot(*body, machine.cams);
-  }
+  if (const auto* body = std::get_if<flexcam::Command>(&command.body)) return flexcam::WhyNot(*body);
   if (const auto* body = std::get_if<group::Command>(&command.body)) {
     return WhyNot(machine, *body, NameOf(machine, command.target));
   }

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "takt/axis/commands.h"
+#include "takt/cam/commands.h"
 #include "takt/conveyor/commands.h"
 #include "takt/conveyor/pose.h"
 #include "takt/core/describe_fwd.h"
@@ -50,7 +51,9 @@ void describe(Description<FailAllAxes>&);
 void describe(Description<Release>&);
 void describe(Description<Renew>&);
 
-using MachineCommand = std::variant<StopAll, EmergencyStop, ReleaseEmergencyStop, FailAllAxes, Release, Renew>;
+using MachineCommand =
+    std::variant<StopAll, EmergencyStop, ReleaseEmergencyStop, FailAllAxes, Release, Renew, cam::BeginCam,
+                 cam::AddCamPoints, cam::AddCamSegments, cam::BuildCam, cam::DropCam, cam::CamBuilt>;
 // Behind those of the machine itself, in the order of ComponentKinds().
 using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command,
                                  conveyor::PoseCommand, pickplace::Command, mover::Command, track::Command,

@@ -67,6 +67,15 @@ environment::Context EnvironmentContext(World& w) {
   return {w.environments, w.grounds, w.cycle, w.feedback};
 }
 
+bool UsesCam(const void* world, std::uint32_t index) noexcept {
+  const World& w = *static_cast<const World*>(world);
+  return std::ranges::any_of(w.axis_states, [&](const axis::State& s) { return axis::UsesTable(s, index); }) ||
+         std::ranges::any_of(w.flex_cam_states, [&](const flexcam::State& s) { return flexcam::UsesCam(s, index); });
+}
+cam::Context CamContext(World& w) {
+  return {w.cams, w.cycle.count, w.feedback, UsesCam, &w};
+}
+
 // The tracks as movers see them.
 void RefreshStreets(World& w) {
   for (std::size_t i = 0; i < w.tracks_now.size(); ++i) {
@@ -272,6 +281,12 @@ struct MachineApplier {
   }
   void operator()(const Renew& c) const {
     ToOwner(c.ticket, axis::Renew, flexcam::Renew, group::Renew, pickplace::Renew);
+  }
+
+  // Commands that make cams.
+  template <typename OfCams>
+  void operator()(const OfCams& c) const {
+    cam::Apply(CamContext(world), ticket, c);
   }
 
   // A mover cannot be let go: it comes to rest with its maximum dynamics.

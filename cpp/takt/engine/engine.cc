@@ -47,6 +47,11 @@ bool IsBoundaryMade(const Command& command) {
   return environment && std::holds_alternative<environment::BoundaryMade>(*environment);
 }
 
+bool IsCamBuilt(const Command& command) {
+  const auto* machine = std::get_if<MachineCommand>(&command.body);
+  return machine && std::holds_alternative<cam::CamBuilt>(*machine);
+}
+
 // Stops the whole machine.
 bool StopsAll(const Command& command) {
   const auto* machine = std::get_if<MachineCommand>(&command.body);
@@ -317,6 +322,7 @@ bool Engine::Resubmit(const Command& command) noexcept {
   impl_->next_ticket = std::max(impl_->next_ticket, command.ticket + 1);
   if (IsTrackMade(command)) track::Make(impl_->world.tracks.desk);  // what the journal says of it is given anyhow
   if (IsBoundaryMade(command)) environment::Make(impl_->world.environments.desk);
+  if (IsCamBuilt(command)) BuildCam();
   return impl_->journalled.TryPush(command);
 }
 
@@ -335,6 +341,14 @@ void Engine::MakeTracks() {
   while (const std::optional<environment::Answer> answer = environment::Make(impl_->world.environments.desk)) {
     impl_->GiveAnswer(answer->environment, environment::Command(answer->made));
   }
+}
+
+std::optional<cam::BuildResult> Engine::BuildCam() {
+  return cam::BuildNext(impl_->world.cams.queues);
+}
+
+void Engine::Answer(const cam::CamBuilt& result) noexcept {
+  impl_->answers.TryPush({0, kMachineTarget, 0, MachineCommand(result)});
 }
 
 group::Fixed Engine::fixed(std::size_t group) const noexcept {
@@ -397,6 +411,9 @@ const track::Tracks& Engine::tracks() const noexcept {
 }
 const planar::Grounds& Engine::grounds() const noexcept {
   return impl_->world.grounds;
+}
+std::span<const cam::Table> Engine::cams() const noexcept {
+  return impl_->world.cams.tables;
 }
 std::size_t Engine::components() const noexcept {
   return std::apply([](const auto&... kind) { return (kind.outputs.size() + ...); }, impl_->kinds());

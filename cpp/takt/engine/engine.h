@@ -8,6 +8,8 @@
 #include <span>
 
 #include "takt/axis/forecast.h"
+#include "takt/cam/builder.h"
+#include "takt/cam/table.h"
 #include "takt/conveyor/outputs.h"
 #include "takt/conveyor/pose.h"
 #include "takt/core/cycle.h"
@@ -84,6 +86,8 @@ class Engine {
   const part::Outputs& part_outputs(std::size_t part) const noexcept;
   const track::Tracks& tracks() const noexcept;
   const planar::Grounds& grounds() const noexcept;
+  // Those of the machine file and those made at run time; a table without pieces is none.
+  std::span<const cam::Table> cams() const noexcept;
   // The same for components of any kind, by the number that is their target, less one.
   struct Published {
     const Type* type;
@@ -117,6 +121,9 @@ class Engine {
   bool Answer(std::size_t group, const group::PathChecked& answer) noexcept;
   // Makes the tracks and boundaries that the cycle asks for (track/desk.h), and tells it in the next cycle.
   void MakeTracks();
+  // Builds the next cam that the cycle asks for (cam/builder.h) and returns the result, which Answer gives to it.
+  std::optional<cam::BuildResult> BuildCam();
+  void Answer(const cam::CamBuilt& result) noexcept;
   // Never changes.
   group::Fixed fixed(std::size_t group) const noexcept;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "takt/cam/commands.h"
 #include "takt/core/scalar.h"
 #include "takt/environment/environments.h"
 #include "takt/group/survey.h"
@@ -49,6 +50,11 @@ std::string StatorSentence(double value) {
   const std::string why(text.empty() ? ErrorText(ErrorId::kStators) : text);
   const std::uint32_t stator = environment::StatorOf(value);
   return stator == 0 ? why : why + ", found with stator " + std::to_string(stator);
+}
+
+std::string CamSentence(double value) {
+  const std::string_view text = cam::Text(static_cast<cam::MakingProblem>(value));
+  return std::string(text.empty() ? ErrorText(ErrorId::kCamMaking) : text);
 }
 
 std::string GapSentence(double least) {
@@ -175,6 +181,10 @@ PathChecks::~PathChecks() = default;
 
 void PathChecks::Run() {
   engine_.MakeTracks();
+  while (const std::optional<cam::BuildResult> result = engine_.BuildCam()) {
+    if (!result->sentence.empty()) Remember(result->ticket, result->sentence);
+    engine_.Answer(result->built);
+  }
   group::Question question;
   bool any = false;
   while (engine_.questions().TryPop(question)) {  // what was asked before is not waited for any more
@@ -223,10 +233,10 @@ std::string PathChecks::Sentence(const FeedbackEvent& event) {
   if (found == sentences_.end()) return SentenceNaming(event, engine_.machine());
   std::string sentence = std::move(found->second);
   sentences_.erase(found);
-  // Something else may have ended the move meanwhile.
-  const bool of_path =
-      event.error == ErrorId::kCollision || event.error == ErrorId::kUnreachable || event.error == ErrorId::kSingular;
-  return of_path ? sentence : SentenceNaming(event, engine_.machine());
+  // Something else may have ended the command meanwhile.
+  const bool as_answered = event.error == ErrorId::kCollision || event.error == ErrorId::kUnreachable ||
+                           event.error == ErrorId::kSingular || event.error == ErrorId::kCamMaking;
+  return as_answered ? sentence : SentenceNaming(event, engine_.machine());
 }
 
 std::string Sentence(const FeedbackEvent& event) {
@@ -234,6 +244,7 @@ std::string Sentence(const FeedbackEvent& event) {
   const bool of_path = event.error == ErrorId::kCollision || event.error == ErrorId::kUnreachable ||
                        event.error == ErrorId::kSingular || event.error == ErrorId::kPathGeometry;
   if (event.error == ErrorId::kTrackGeometry) return TrackSentence(event.value);
+  if (event.error == ErrorId::kCamMaking) return CamSentence(event.value);
   if (event.error == ErrorId::kStators) return StatorSentence(event.value);
   if (event.error == ErrorId::kGapTooSmall) return GapSentence(event.value);
   if (event.error == ErrorId::kCommandMode) return ModeSentence(event.value);

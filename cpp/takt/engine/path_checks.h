@@ -1,5 +1,5 @@
 // Answers groups that ask whether a path is free (group/question.h), with what stands in their workspaces, and has
-// tracks made (track/desk.h). Not for the cycle.
+// tracks made (track/desk.h) and cams built (cam/builder.h). Not for the cycle.
 //
 // Simulated time asks between two cycles, so that it stands still meanwhile and each run is the same; real time has a
 // thread for it. The answer is a command of the journal: a replay asks nobody.

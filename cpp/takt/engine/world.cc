@@ -5,7 +5,6 @@
 #include <variant>
 
 #include "takt/axis/coupling.h"
-#include "takt/cam/build.h"
 #include "takt/core/describe.h"
 #include "takt/core/hash.h"
 #include "takt/engine/components.h"
@@ -70,6 +69,7 @@ World::World(const Machine& machine)
       first_of(FirstNumbers(machine)),
       axis_params(machine.axes),
       cam_switches(machine.cam_switches),
+      cams(machine.cams),
       axis_outputs(machine.axes.size()),
       axis_order(machine.axes.size() + 1),
       questions(kQuestionsPerGroup * machine.groups.size()),
@@ -91,7 +91,8 @@ World::World(const Machine& machine)
       feedback_storage(machine.axes.size() * kEventsPerAxis + machine.groups.size() * kEventsPerGroup +
                        machine.movers.size() * kEventsPerMover + machine.parts.size() * kEventsPerPart +
                        track::EventsOf(machine.tracks.size()) + planargroup::EventsOf(machine.planar_groups.size()) +
-                       machine.environments.size() + (kCommandsPerCycle + kRenewalsPerCycle) * kEventsPerCommand),
+                       machine.environments.size() + cam::kDrafts +
+                       (kCommandsPerCycle + kRenewalsPerCycle) * kEventsPerCommand),
       feedback(feedback_storage) {
   TypeOf<axis::State>();  // the first use of a type allocates
   TypeOf<plant::ServoState>();
@@ -100,8 +101,9 @@ World::World(const Machine& machine)
   TypeOf<track::State>();
   TypeOf<track::Works>();
   TypeOf<track::Sketch>();
+  TypeOf<cam::StoreState>();
   TouchTypes(static_cast<const track::Command*>(nullptr));
-  for (const cam::CamParams& cam : machine.cams) cams.push_back(cam::Build(cam).table.value());
+  TouchTypes(static_cast<const MachineCommand*>(nullptr));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axis_states.push_back(axis::MakeState(axis_params[i]));
     servo_params.push_back(ServoOf(machine, i));
@@ -128,7 +130,7 @@ World::World(const Machine& machine)
   MakeMovers(machine);
   MakePlanarGroups(machine);
   NameMasters(*this);
-  surrounding = {axis_states, axis_params, cam_switches, cams, mover_masters};
+  surrounding = {axis_states, axis_params, cam_switches, cams.tables, mover_masters};
   for (FlexCam& module : flex_cams) {
     if (module.params.master) module.master = axis::FindMaster(surrounding, *module.params.master);
   }
@@ -294,6 +296,7 @@ std::uint64_t World::StateHash() const noexcept {
       for (const std::uint32_t group : *groups) hash = HashOf(group, hash);
     }
   }
+  if (cams.state.drafts_begun != 0) hash = HashOf(cams.state, hash);
   for (const plant::ServoState& state : servo_states) hash = HashOf(state, hash);
   for (const HeardDrive& drive : drives) hash = HashOf(servo_inputs[drive.axis], HashOf(drive, hash));
   return hash;

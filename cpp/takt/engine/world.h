@@ -10,7 +10,7 @@
 #include "takt/axis/outputs.h"
 #include "takt/axis/params.h"
 #include "takt/axis/state.h"
-#include "takt/cam/table.h"
+#include "takt/cam/store.h"
 #include "takt/conveyor/belt.h"
 #include "takt/conveyor/pose.h"
 #include "takt/core/cycle.h"
@@ -97,7 +97,7 @@ struct World {
 
   std::vector<axis::AxisParams> axis_params;
   std::vector<axis::CamSwitches> cam_switches;
-  std::vector<cam::Table> cams;
+  cam::Store cams;
   std::vector<axis::State> axis_states;
   std::vector<axis::Outputs> axis_outputs;
   axis::Surrounding surrounding;                           // all axes, as each of them sees it

@@ -154,13 +154,11 @@ void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& comman
 }
 
 void CarryOut(const Context& c, Ticket ticket, double, const SetCam& command, axis::State&, State& s) {
-  for (std::size_t i = 0; i < c.slave.machine.cams.size(); ++i) {
-    if (c.slave.machine.cams[i].name() != command.cam.view()) continue;
-    s.slots[command.slot - 1] = static_cast<std::uint32_t>(i) + 1;
-    Report(c, ticket, FeedbackState::kActive);
-    return Report(c, ticket, FeedbackState::kDone);
-  }
-  Report(c, ticket, FeedbackState::kError, ErrorId::kUnknownTarget);
+  const std::optional<std::uint32_t> index = cam::Find(c.slave.machine.cams, command.cam.view());
+  if (!index) return Report(c, ticket, FeedbackState::kError, ErrorId::kUnknownTarget);
+  s.slots[command.slot - 1] = *index + 1;
+  Report(c, ticket, FeedbackState::kActive);
+  Report(c, ticket, FeedbackState::kDone);
 }
 
 void CarryOut(const Context& c, Ticket ticket, double, const ChangeCam& command, axis::State&, State& s) {

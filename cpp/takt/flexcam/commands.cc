@@ -1,10 +1,6 @@
 #include "takt/flexcam/commands.h"
 
-#include <algorithm>
-#include <vector>
-
 #include "takt/core/describe.h"
-#include "takt/core/problem.h"
 
 namespace takt::flexcam {
 
@@ -46,14 +42,9 @@ void DescribeInputs(Description<InputsOf<Of>>& d) {
 
 }  // namespace
 
-std::string WhyNot(const Command& command, std::span<const cam::CamParams> cams) {
+std::string WhyNot(const Command& command) {
   const auto* set = std::get_if<SetCam>(&command);
-  if (!set) return {};
-  std::vector<std::string_view> names;
-  for (const cam::CamParams& cam : cams) names.push_back(cam.name);
-  if (std::ranges::find(names, set->cam.view()) != names.end()) return {};
-  return "cam: expected the name of a cam of the machine, found " + Quoted(set->cam.view()) +
-         DidYouMean(set->cam.view(), names);
+  return set && set->cam.empty() ? "cam: expected the name of a cam, found an empty text" : std::string();
 }
 
 void describe(Description<Inputs>& d) {
@@ -78,9 +69,12 @@ void describe(Description<Jog>& d) {
 }
 
 void describe(Description<SetCam>& d) {
-  d.about("Puts another cam into a slot. The cam that runs there is changed as when another slot is set.");
+  d.about(
+      "Puts another cam into a slot, one of the machine file or made at run time. Where that slot runs, the cam "
+      "changes "
+      "as when another slot is set.");
   d.required<&SetCam::slot>(between(1, kSlots), "Which one.");
-  d.required<&SetCam::cam>("Name of a cam of the machine. Flex Cam: CamTable1 to CamTable4.");
+  d.required<&SetCam::cam>("Name of the cam. Flex Cam: CamTable1 to CamTable4.");
 }
 
 void describe(Description<ChangeCam>& d) {

@@ -4,11 +4,9 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <variant>
 
-#include "takt/cam/params.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/given.h"
 #include "takt/core/name.h"
@@ -75,7 +73,7 @@ struct WithdrawChanges {};  // of those that have not taken place
 using Command = std::variant<Control, Jog, Configure, SetCam, ChangeCam, WithdrawChanges>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
-std::string WhyNot(const Command& command, std::span<const cam::CamParams> cams);
+std::string WhyNot(const Command& command);
 
 void describe(Enumeration<ChangeWhen>&);
 void describe(Enumeration<ChangeAlign>&);

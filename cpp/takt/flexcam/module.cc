@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "takt/axis/coupling.h"
 #include "takt/axis/guidance.h"
@@ -441,6 +442,12 @@ bool IsOn(const axis::State& slave) noexcept {
 void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
   if (s.jog.ticket != 0) Report(c, s.jog.ticket, feedback, error);
   s.jog = {};
+}
+
+bool UsesCam(const State& s, std::uint32_t index) noexcept {
+  const auto bounded = std::span(s.bounds.of.cams).first(s.bounds.of.count);
+  return std::ranges::find(s.slots, index + 1) != s.slots.end() || s.way.profiler.cam == index ||
+         s.entry.profiler.cam == index || std::ranges::find(bounded, index) != bounded.end();
 }
 
 State MakeState(const FlexCamParams& params, const std::array<std::uint32_t, kSlots>& slots) noexcept {

@@ -22,6 +22,9 @@ struct Context {
   axis::HomingParams homing{};  // of the slave, as the machine file has it
 };
 
+// Whether a slot, the cam that runs or one that a sequence may come back to has this index.
+bool UsesCam(const State& state, std::uint32_t index) noexcept;
+
 // As it stands when power comes on. `slots`: numbers of the machine's cams from 1; 0: none.
 State MakeState(const FlexCamParams& params, const std::array<std::uint32_t, kSlots>& slots) noexcept;
 

@@ -68,7 +68,9 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::ip05_offset_mode_slave>("Its mode.");
   d.internal<&O::ip06_set_scaling_slave>(unit::one, "Factor of the slave, as set.");
   d.internal<&O::ip07_scaling_mode_slave>("Its mode.");
-  d.internal<&O::ip08_cam_table1>("Number of the machine's cam in slot 1, from 1; 0: none.");
+  d.internal<&O::ip08_cam_table1>(
+      "Number of the cam in slot 1: from 1 in the order of the machine file, then in the order in which cams are made "
+      "at run time; 0: none.");
   d.internal<&O::ip09_cam_table2>("In slot 2.");
   d.internal<&O::ip10_cam_table3>("In slot 3.");
   d.internal<&O::ip11_cam_table4>("In slot 4.");
@@ -92,6 +94,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::clutch>("How far the clutch is.");
   d.internal<&O::clutch_waits>("For what it waits.");
   d.internal<&O::cam_table>("Slot of the cam that runs. Flex Cam: eSetCamTableOut.");
+  d.internal<&O::cam_number>("Number of the cam that runs, as in ip08_cam_table1.");
   d.internal<&O::next_cam_table>("Slot of the cam that is to run next; 0: the same.");
   d.internal<&O::pending_changes>("Changes of cam that wait.");
   d.internal<&O::cam_ends>("How often the end of a cam was passed.");

@@ -59,7 +59,7 @@ struct Outputs {
   OffsetMode ip05_offset_mode_slave = OffsetMode::kXZero;
   double ip06_set_scaling_slave = 1;
   ScalingMode ip07_scaling_mode_slave = ScalingMode::kXZero;
-  std::uint32_t ip08_cam_table1 = 0;  // number of the machine's cam in each slot, from 1; 0: none
+  std::uint32_t ip08_cam_table1 = 0;  // Table::number of the cam in each slot; 0: none
   std::uint32_t ip09_cam_table2 = 0;
   std::uint32_t ip10_cam_table3 = 0;
   std::uint32_t ip11_cam_table4 = 0;
@@ -80,6 +80,7 @@ struct Outputs {
   ClutchPhase clutch = ClutchPhase::kOpen;
   ClutchWait clutch_waits = ClutchWait::kNothing;
   std::uint32_t cam_table = 1;        // slot of the cam that runs
+  std::uint32_t cam_number = 0;       // Table::number of that cam
   std::uint32_t next_cam_table = 0;   // slot of the cam that is next; 0: none
   std::uint32_t pending_changes = 0;  // of change_cam
   std::uint32_t cam_ends = 0;         // how often the end of a cam was passed

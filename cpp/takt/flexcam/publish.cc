@@ -8,6 +8,11 @@ namespace takt::flexcam {
 
 namespace {
 
+// Of the cam with this index, counted from 1; 0: none.
+std::uint32_t NumberOf(const Context& c, std::uint32_t from_one) {
+  return from_one == 0 ? 0 : static_cast<std::uint32_t>(c.slave.machine.cams[from_one - 1].number());
+}
+
 void PublishClutch(const Context& c, const State& s, Outputs& out) {
   const ClutchState& clutch = s.clutch;
   out.clutch = clutch.phase;
@@ -56,10 +61,10 @@ void Publish(const Context& c, const axis::State& slave, const State& s, Outputs
   out.ip05_offset_mode_slave = s.settings.offset_mode_slave;
   out.ip06_set_scaling_slave = s.inputs.scaling_slave;
   out.ip07_scaling_mode_slave = s.settings.scaling_mode_slave;
-  out.ip08_cam_table1 = s.slots[0];
-  out.ip09_cam_table2 = s.slots[1];
-  out.ip10_cam_table3 = s.slots[2];
-  out.ip11_cam_table4 = s.slots[3];
+  out.ip08_cam_table1 = NumberOf(c, s.slots[0]);
+  out.ip09_cam_table2 = NumberOf(c, s.slots[1]);
+  out.ip10_cam_table3 = NumberOf(c, s.slots[2]);
+  out.ip11_cam_table4 = NumberOf(c, s.slots[3]);
   const double master = s.master.now.position - ZeroOf(c.slave, c.master);
   out.mp01_set_master_position = ReportedOf(c.slave, c.master, master);
   out.mp02_set_slave_position = axis::Reported(p, slave.setpoint.position);
@@ -76,6 +81,7 @@ void Publish(const Context& c, const axis::State& slave, const State& s, Outputs
   const std::uint32_t running = s.way.profiler.slot;
   const std::uint32_t next = s.pending_count > 0 ? s.pending[0].change.cam_table : s.inputs.cam_table;
   out.cam_table = running;
+  out.cam_number = NumberOf(c, s.way.profiler.cam + 1);
   out.next_cam_table = next == running || s.state != ModuleState::kSync ? 0 : next;
   out.pending_changes = s.pending_count;
   out.cam_ends = s.cam_ends;

@@ -168,6 +168,7 @@ msgs::flex_cam_state ToMessage(const engine::FlexCamSnapshot& snapshot, const en
   m.clutch = static_cast<std::int8_t>(o.clutch);
   m.clutch_waits = static_cast<std::int8_t>(o.clutch_waits);
   m.cam_table = o.cam_table;
+  m.cam_number = o.cam_number;
   m.next_cam_table = o.next_cam_table;
   m.pending_changes = o.pending_changes;
   m.cam_ends = o.cam_ends;

@@ -206,6 +206,13 @@ inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m)
   commands.push_back({6, ToModule(m, Control{.regulator_on = true})});
   commands.push_back({330, ToModule(m, Control{.sync_cam = true, .cam_table = 2u})});
   commands.push_back({600, ToModule(m, Control{.offset_master = 30.0, .scaling_slave = 0.5})});
+  // A cam that is made at run time if there is a builder.
+  cam::AddCamPoints points{.cam = Name::Of("made"), .first = 0, .points = {}};
+  for (const double x : {0.0, 90.0, 360.0}) points.points.Add({x, x == 90 ? 12.5 : 0, 0, 0});
+  commands.push_back({610, {.body = MachineCommand(cam::BeginCam{.name = Name::Of("made"), .cyclic = true})}});
+  commands.push_back({611, {.body = MachineCommand(points)}});
+  commands.push_back({612, {.body = MachineCommand(cam::BuildCam{Name::Of("made"), 3})}});
+  commands.push_back({690, ToModule(m, flexcam::SetCam{1, Name::Of("made")})});
   commands.push_back({700, ToModule(m, flexcam::ChangeCam{1, flexcam::ChangeWhen::kCamPosition, 20,
                                                           flexcam::ChangeAlign::kVelocity})});
   commands.push_back({800, ToModule(m, flexcam::Configure{.sync_mode = flexcam::ClutchMode::kRampPos})});

@@ -111,6 +111,7 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
   bool group_moved = false;
   bool failed = false;
   bool linked = false;
+  bool made = false;
   std::atomic<bool> ended{false};
   const Command flood = ToAxis(machine, "z", axis::Halt{});
   long cycle_allocations = -1;
@@ -134,6 +135,7 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
       engine.RunCycle({500, 5000, late});
       moved |= engine.outputs(AxisNamed(machine, "c")).set_velocity > 1000;
       group_moved |= engine.group_outputs(0).path_velocity > 100;
+      made |= engine.flex_cam_outputs(0).cam_number > machine.cams.size();
       linked |= engine.tracks().outputs[1].length > 400 && engine.tracks().outputs[1].subsequent_tracks == 1;
       failed |= engine.outputs(AxisNamed(machine, "c")).error == ErrorId::kOverrun;
     }
@@ -143,7 +145,10 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
     EndThread();
   });
   std::thread maker([&] {
-    while (!ended) engine.MakeTracks();
+    while (!ended) {
+      engine.MakeTracks();
+      while (const auto result = engine.BuildCam()) engine.Answer(result->built);
+    }
   });
   thread.join();
   ended = true;
@@ -153,6 +158,7 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
   EXPECT_TRUE(group_moved);
   EXPECT_TRUE(failed);
   EXPECT_TRUE(linked);
+  EXPECT_TRUE(made);
   EXPECT_TRUE(lost);
   EXPECT_GT(engine.figures().set_points_dropped, 0u);
   EXPECT_TRUE(engine.all_disabled());

@@ -1,0 +1,75 @@
+// Commands that make cams at run time (CAM-88). A cam is sent in pieces of a bounded size, in the terms of a machine
+// file, and then built outside the cycle (builder.h). It can be used from the cycle that takes the result on.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "takt/cam/params.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/few.h"
+#include "takt/core/name.h"
+
+namespace takt::cam {
+
+// As many as fit into a command without making it larger than other commands.
+inline constexpr std::size_t kPointsPerCommand = 20;
+inline constexpr std::size_t kSegmentsPerCommand = 8;
+
+struct BeginCam {  // a draft without points and segments
+  Name name;
+  bool cyclic = false;
+  Interpolation interpolation = Interpolation::kQuintic;
+  Name x_unit = Name::Of("u");
+  Name y_unit = Name::Of("u");
+};
+struct AddCamPoints {
+  Name cam;
+  std::optional<std::uint32_t> first{};  // number of points in the draft before this command
+  Few<CamPoint, kPointsPerCommand> points;
+};
+struct AddCamSegments {
+  Name cam;
+  std::optional<std::uint32_t> first{};  // likewise of segments
+  Few<CamSegment, kSegmentsPerCommand> segments;
+};
+struct BuildCam {  // done when the cam can be used
+  Name cam;
+  std::optional<std::uint32_t> count{};  // of points or segments in all
+};
+struct DropCam {  // made at run time
+  Name cam;
+};
+
+// The builder's result; given by the engine alone.
+struct CamBuilt {
+  std::uint64_t number = 0;  // of the draft
+  bool good = false;
+};
+
+// Why a cam was not made: the value of a feedback with ErrorId::kCamMaking.
+enum class MakingProblem : std::uint8_t {
+  kNone,
+  kFaulty,           // Build found errors
+  kNoDraft,          // no draft has this name
+  kBusy,             // all drafts are being built
+  kTooManyPoints,    //
+  kTooManySegments,  //
+  kMixed,            // points and segments in one draft
+  kOutOfOrder,       // `first` is not the number of those in the draft
+  kIncomplete,       // a piece was refused, or `count` is not the number of those in the draft
+  kNoRoom,           // kMadeCams cams are in use
+  kNotMade,          // no cam of this name was made at run time
+};
+// A sentence without a full stop; empty for kNone.
+std::string_view Text(MakingProblem problem) noexcept;
+
+void describe(Description<BeginCam>&);
+void describe(Description<AddCamPoints>&);
+void describe(Description<AddCamSegments>&);
+void describe(Description<BuildCam>&);
+void describe(Description<DropCam>&);
+void describe(Description<CamBuilt>&);
+
+}  // namespace takt::cam

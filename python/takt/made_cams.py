@@ -1,0 +1,115 @@
+"""Cams made at run time (CAM-88): how they are sent to an engine, and which ones this session knows."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from takt.errors import TaktError
+from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
+
+if TYPE_CHECKING:
+    from takt.cam import Table
+    from takt.session import Session
+
+POINTS = 20  # in one command
+SEGMENTS = 8
+UNANSWERED = 128  # commands under way
+KNOWN = 256  # cams whose data is kept; an engine holds 64
+BUILDS = 2  # cams that an engine builds at a time
+
+
+@dataclass(frozen=True)
+class MadeCam:
+    """A cam that this session has given."""
+
+    name: str
+    table: Table
+    feedback: Feedback  # its value is the number of the cam
+
+
+class MadeCams:
+    """The cams that a session has made."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._given: deque[Feedback] = deque()
+        self.cams: list[MadeCam] = []
+
+    def make(self, cam: Table | Mapping[str, Any], name: str | None) -> Feedback:
+        from takt.cam import Table
+
+        table = cam if isinstance(cam, Table) else Table.from_dict(cam)
+        name = table.name if name is None else name
+        self._wait_for_fewer(BUILDS, "cams being built", lambda: [m.feedback for m in self.cams if not m.feedback._final])
+        for verb, arguments in _commands(table, name):
+            self._give(verb, arguments)
+        feedback = self._give("build_cam", {"cam": name, "count": _count(table)})
+        self.cams = [made for made in self.cams if not made.feedback._final or made.feedback._done][1 - KNOWN :]
+        self.cams.append(MadeCam(name, table, feedback))
+        return feedback
+
+    def find(self, name: str) -> Table:
+        """The cam that this name stands for, as far as this session knows."""
+        for made in reversed(self.cams):
+            if made.name == name and made.feedback._done:
+                return made.table
+        for number, cam in enumerate(self._session.machine["cams"], 1):
+            if cam["name"] == name:
+                return self._session._cam(number)
+        known = [cam["name"] for cam in self._session.machine["cams"]] + [made.name for made in self.cams]
+        raise TaktError(f"there is no cam '{name}' (there are {', '.join(dict.fromkeys(known))})")
+
+    def numbered(self, number: int) -> Table:
+        """The cam with this number, as far as this session knows."""
+        from takt.cam import Table
+
+        if 1 <= number <= len(self._session.machine["cams"]):
+            return Table.from_dict(self._session.machine["cams"][number - 1])
+        for made in self.cams:
+            if made.feedback._done and made.feedback.value == number:
+                return made.table
+        raise TaktError(f"cam number {number} was made by another client; its data is known there and in the engine")
+
+    def _give(self, verb: str, arguments: Mapping[str, Any]) -> Feedback:
+        self._wait_for_fewer(UNANSWERED, "pieces of cams unanswered", lambda: self._given)
+        feedback = self._session.command("machine", verb, arguments)
+        if verb != "build_cam":
+            feedback._heeded = True  # build_cam is refused where one of them was
+        self._given.append(feedback)
+        return feedback
+
+    def _wait_for_fewer(self, most: int, what: str, unfinished: Any) -> None:
+        def few() -> bool:
+            while self._given and self._given[0]._final:
+                self._given.popleft()
+            return len(unfinished()) < most
+
+        if not few() and not self._session._wait_for(few, DEFAULT_TIMEOUT_S, on_feedback=True):
+            raise TaktError(f"the engine does not answer: {most} {what}")
+
+
+def _count(table: Table) -> int:
+    return len(table.points.x) or len(table.source["segments"])
+
+
+def _commands(table: Table, name: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The commands that send a cam, without the last one."""
+    source = table.source
+    begin = {key: source[key] for key in ("cyclic", "interpolation", "x_unit", "y_unit")}
+    yield "begin_cam", {"name": name, **begin}
+    x, y, v, a = table.points
+    for first in range(0, len(x), POINTS):
+        rows = zip(*(column[first : first + POINTS].tolist() for column in (x, y, v, a)), strict=True)
+        points = [{"x": px, "y": py, "v": _given(pv), "a": _given(pa)} for px, py, pv, pa in rows]
+        yield "add_cam_points", {"cam": name, "first": first, "points": points}
+    segments = [] if len(x) else source["segments"]
+    for first in range(0, len(segments), SEGMENTS):
+        yield "add_cam_segments", {"cam": name, "first": first, "segments": segments[first : first + SEGMENTS]}
+
+
+def _given(value: float) -> float | None:
+    """None: free, which points of cams write as NaN."""
+    return value if value == value else None
