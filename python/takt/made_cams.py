@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -43,7 +43,9 @@ class MadeCams:
 
         table = cam if isinstance(cam, Table) else Table.from_dict(cam)
         name = table.name if name is None else name
-        self._wait_for_fewer(BUILDS, "cams being built", lambda: [m.feedback for m in self.cams if not m.feedback._final])
+        self._wait_for_fewer(
+            BUILDS, "cams being built", lambda: [m.feedback for m in self.cams if not m.feedback._final]
+        )
         for verb, arguments in _commands(table, name):
             self._give(verb, arguments)
         feedback = self._give("build_cam", {"cam": name, "count": _count(table)})
@@ -81,7 +83,7 @@ class MadeCams:
         self._given.append(feedback)
         return feedback
 
-    def _wait_for_fewer(self, most: int, what: str, unfinished: Any) -> None:
+    def _wait_for_fewer(self, most: int, what: str, unfinished: Callable[[], Collection[Any]]) -> None:
         def few() -> bool:
             while self._given and self._given[0]._final:
                 self._given.popleft()
