@@ -1,7 +1,8 @@
 """Cams, and tables over time.
 
 An axis follows a table over its master's position, once or over and over, from where the cam and the axis meet; or it
-follows a table of positions, velocities or accelerations over time. The tables are the machine's `cams:`.
+follows a table of positions, velocities or accelerations over time. The tables are the machine's `cams:`, and those
+made at run time (docs/cams.md).
 """
 
 import takt
@@ -11,11 +12,16 @@ COMMANDS = (
     "cam_table_select",
     "cam_in",
     "cam_out",
+    "begin_cam",
+    "add_cam_points",
+    "add_cam_segments",
+    "build_cam",
+    "drop_cam",
     "position_profile",
     "velocity_profile",
     "acceleration_profile",
 )
-ERRORS = (5, 6, 9, 10, 11, 13, 2006, 2007, 3004, 3005, 3010, 3018, 3019)
+ERRORS = (5, 6, 9, 10, 11, 13, 2006, 2007, 3004, 3005, 3010, 3018, 3019, 3113)
 SIGNALS = ("[xyz].set_position", "[yz].set_velocity", "y.in_step", "y.state", "z.state")
 
 

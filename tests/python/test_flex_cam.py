@@ -176,7 +176,7 @@ def test_components_go_by_their_names(session: takt.Session) -> None:
     assert session.command("cutter", "controll").sentence.endswith("did you mean control?")
     assert session.command("cutter", "move_absolute", "{position: 1}").error_id == 3011
     assert session.command("knife", "set_cam", "{slot: 1, cam: hill}").error_id == 3011
-    assert session.flex_cam("cutter").set_cam(slot=1, cam="hil").sentence.endswith("did you mean hill?")
+    assert session.flex_cam("cutter").set_cam(slot=1, cam="hil").wait_final().sentence.endswith("did you mean hill?")
 
 
 WRONG: list[tuple[str, dict[str, Any], str]] = [

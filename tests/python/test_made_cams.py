@@ -96,7 +96,7 @@ def test_an_axis_follows_a_cam_made_at_run_time(session):  # CAM-88
     gate.power().wait()
     table = steps(14.5, "gate cam")
     refused = gate.cam_in(master="drum", cam="gate cam").wait_final()
-    assert (refused.error_id, refused.sentence) == (3010, "cam: the machine has no cam 'gate cam' (there are flat)")
+    assert (refused.error_id, refused.sentence) == (3010, "cam: the machine has no cam 'gate cam' (it has flat)")
     session.make_cam(table).wait()
     gate.cam_in(master="drum", cam="gate cam", master_sync_position=0.0).wait(until="active")
     drum.move_absolute(position=75, velocity=300).wait()
@@ -291,5 +291,5 @@ def test_over_lcm_and_in_the_log_of_the_run(tmp_path):  # CAM-88, EN-07: real ti
         built = session.command("machine", "build_cam", {"cam": "odd"}).wait_final()
         assert built.sentence == "cam 'odd': points: expected 2 to 100,000 points, found 1"
         unknown = stamp.set_cam(slot=3, cam="odd").wait_final()
-        assert unknown.sentence == "cam: the machine has no cam 'odd' (there are flat, hill)"
+        assert unknown.sentence == "cam: the machine has no cam 'odd' (it has flat, hill)"
     assert replay(log).same

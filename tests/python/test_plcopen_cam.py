@@ -86,7 +86,7 @@ def test_what_is_no_cam(engine: takt.Engine) -> None:
     call(engine, select, 0.01, Execute=True)
     assert (select.Error, select.ErrorID, select.CamTableID) == (True, 3010, None)
     refused = y.cam_in(master="x", cam="strike").wait_final()
-    assert refused.sentence == "cam: the machine has no cam 'strike'; did you mean 'stroke'? (there are stroke)"
+    assert refused.sentence == "cam: the machine has no cam 'strike' (it has stroke, ramp); did you mean stroke?"
     assert y.gear_in(master="z").wait_final().sentence == "master: there is no axis 'z'; there are x, y"
     assert "expected the name of a cam" in y.cam_in(master="x", cam="").wait_final().sentence
     assert "other than 0" in y.cam_in(master="x", cam="stroke", master_scaling=0).wait_final().sentence
