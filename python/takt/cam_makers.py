@@ -27,6 +27,53 @@ class Limits:
     jerk: float = math.inf
 
 
+def peaks(table: Table, speed: float) -> dict[str, float]:
+    """The slave's largest velocity, acceleration and jerk at this speed of the master, exact from the polynomials."""
+    extremes = table.extremes()
+    most = [max(abs(b.least.value), abs(b.greatest.value)) for b in (extremes.dy, extremes.ddy, extremes.dddy)]
+    names = ("velocity", "acceleration", "jerk")
+    return {name: most[i] * speed ** (i + 1) for i, name in enumerate(names)}
+
+
+def fastest(table: Table, limits: Limits) -> float:
+    """The highest speed of the master at which the slave keeps its limits."""
+    at_one = peaks(table, 1.0)
+    return min(
+        (getattr(limits, name) / peak) ** (1 / k) if peak else math.inf
+        for k, (name, peak) in enumerate(at_one.items(), 1)
+    )
+
+
+def beyond(table: Table, limits: Limits, speed: float, slave: str) -> str:
+    """Which limit the slave does not keep at this speed of the master; empty: it keeps all."""
+    for name, peak in peaks(table, speed).items():
+        limit = getattr(limits, name)
+        if peak > limit * (1 + 1e-9):
+            return f"the {slave}'s {name} would be {peak:.6g}, its limit is {limit:g}"
+    return ""
+
+
+class Wrong(list[str]):
+    """What is wrong with the data of a machine or a product."""
+
+    def expect(self, name: str, value: float, above: float, what: str = "a number") -> None:
+        if not (math.isfinite(value) and value > above):
+            self.append(f"{name}: expected {what} above {above:g}, found {value!r}")
+
+    def expect_not_below(self, name: str, value: float, least: float, what: str = "a number") -> None:
+        if not (math.isfinite(value) and value >= least):
+            self.append(f"{name}: expected {what} from {least:g} on, found {value!r}")
+
+    def expect_limits(self, limits: Limits) -> None:
+        for name in ("velocity", "acceleration", "jerk"):
+            if not getattr(limits, name) > 0:
+                self.append(f"limits.{name}: expected a number above 0, found {getattr(limits, name)!r}")
+
+    def tell(self) -> None:
+        if self:
+            raise ConfigError(self)
+
+
 @dataclass(frozen=True)
 class RotaryKnife:
     """A rotary knife or cross cutter above a running web.
@@ -45,23 +92,18 @@ class RotaryKnife:
     may_reverse: bool = False
 
     def __post_init__(self) -> None:
-        wrong = []
-        if not (math.isfinite(self.circumference) and self.circumference > 0):
-            wrong.append(f"circumference: expected a number of mm above 0, found {self.circumference!r}")
+        wrong = Wrong()
+        wrong.expect("circumference", self.circumference, 0, "a number of mm")
         if isinstance(self.blades, bool) or not isinstance(self.blades, int) or self.blades < 1:
             wrong.append(f"blades: expected a whole number from 1 on, found {self.blades!r}")
-        if not (math.isfinite(self.cut_zone) and self.cut_zone >= 0):
-            wrong.append(f"cut_zone: expected a number of mm from 0 on, found {self.cut_zone!r}")
-        for name in ("velocity", "acceleration", "jerk"):
-            if not getattr(self.limits, name) > 0:
-                wrong.append(f"limits.{name}: expected a number above 0, found {getattr(self.limits, name)!r}")
+        wrong.expect_not_below("cut_zone", self.cut_zone, 0, "a number of mm")
+        wrong.expect_limits(self.limits)
         if not wrong and 2 * self.cut_zone >= self.circumference / self.blades:
             most = self.circumference / self.blades / 2
             wrong.append(
                 f"cut_zone: expected less than {most:g} mm, half of the way of a blade, found {self.cut_zone:g}"
             )
-        if wrong:
-            raise ConfigError(wrong)
+        wrong.tell()
 
     @property
     def pitch(self) -> float:
@@ -97,34 +139,19 @@ class RotaryKnife:
             segments = [into, middle, out]
         return Table.from_segments(segments, name=name, cyclic=True, x_unit="mm", y_unit="deg")
 
-    @staticmethod
-    def _peaks(table: Table, speed: float) -> dict[str, float]:
-        """The knife's largest velocity, acceleration and jerk at this speed of the web, exact from the polynomials."""
-        extremes = table.extremes()
-        most = [max(abs(b.least.value), abs(b.greatest.value)) for b in (extremes.dy, extremes.ddy, extremes.dddy)]
-        names = ("velocity", "acceleration", "jerk")
-        return {name: most[i] * speed ** (i + 1) for i, name in enumerate(names)}
-
     def _reverses(self, table: Table) -> bool:
         return not self.may_reverse and table.extremes().dy.least.value < -1e-9 * 360 / self.circumference
 
     def _problem(self, table: Table, speed: float) -> str:
-        for name, peak in self._peaks(table, speed).items():
-            limit = getattr(self.limits, name)
-            if peak > limit * (1 + 1e-9):
-                return f"the knife's {name} would be {peak:.6g}, its limit is {limit:g}"
-        return "the knife would turn back between two cuts" if self._reverses(table) else ""
+        reverses = "the knife would turn back between two cuts" if self._reverses(table) else ""
+        return beyond(table, self.limits, speed, "knife") or reverses
 
     def highest_speed(self, length: float) -> float:
         """mm/s of web up to which the limits hold for products of this length; 0: the knife would turn back."""
         table = self._made(length, "knife")
         if self._reverses(table):
             return 0.0
-        at_one = self._peaks(table, 1.0)
-        return min(
-            (getattr(self.limits, name) / peak) ** (1 / k) if peak else math.inf
-            for k, (name, peak) in enumerate(at_one.items(), 1)
-        )
+        return fastest(table, self.limits)
 
     def _remedy(self, length: float, speed: float) -> str:
         slower = self.highest_speed(length)
@@ -141,3 +168,163 @@ class RotaryKnife:
         bound = "at least" if length < synchronous else "at most"
         which = f"{bound} {good:.6g} mm would do at this speed"
         return which if slower == 0 else f"up to {slower:.6g} mm/s it would do, or {which}"
+
+
+@dataclass(frozen=True)
+class FlyingSaw:
+    """A saw, a printer or a gripper on a carriage that rides along with a running web and goes back.
+
+    travel: mm, how far the carriage can ride from its rear end, which is y = 0.
+    ride: mm of web over which it runs with the web.
+    limits: of the carriage's axis, which counts mm.
+    """
+
+    travel: float
+    ride: float
+    limits: Limits = Limits()
+
+    def __post_init__(self) -> None:
+        wrong = Wrong()
+        wrong.expect("travel", self.travel, 0, "a number of mm")
+        wrong.expect("ride", self.ride, 0, "a number of mm")
+        wrong.expect_limits(self.limits)
+        if not wrong and self.ride >= self.travel:
+            wrong.append(f"ride: expected less than {self.travel:g} mm, the travel, found {self.ride:g}")
+        wrong.tell()
+
+    def cam(self, length: float, *, speed: float, name: str | None = None) -> Table:
+        """The cyclic cam for products of `length` mm: x in mm of web from one product to the next, y in mm of the
+        carriage. It gets up to the web's speed over `run_up(length)` mm of web, rides along, brakes likewise, and goes
+        back under a modified sine.
+
+        speed: mm/s, the highest of the web: the limits hold up to there.
+        """
+        wrong = Wrong()
+        wrong.expect("speed", speed, 0, "a number of mm/s")
+        wrong.expect("length", length, self.ride, "a number of mm")
+        wrong.tell()
+        table = self._made(length, self.run_up(length), name or f"saw_{length:g}")
+        problem = beyond(table, self.limits, speed, "carriage")
+        if problem:
+            remedy = f"up to {fastest(table, self.limits):.6g} mm/s it would do"
+            longer = self._shortest(length, speed)
+            raise ConfigError([f"length {length:g} mm at {speed:g} mm/s: {problem}; {remedy}{longer}"])
+        return table
+
+    def run_up(self, length: float) -> float:
+        """mm of web over which the carriage gets up to speed: where the web may run fastest."""
+        # The faster the run-up, the more is left for the way back: the highest speed has one greatest value.
+        most = min(self.travel - self.ride, (length - self.ride) / 2)
+        low, high = 0.0, most
+        for _ in range(SEARCH_STEPS):
+            third = (high - low) / 3
+            if self._highest(length, low + third) < self._highest(length, high - third):
+                low += third
+            else:
+                high -= third
+        return (low + high) / 2
+
+    def highest_speed(self, length: float) -> float:
+        """mm/s of web up to which the limits hold for products of this length."""
+        return self._highest(length, self.run_up(length))
+
+    def _highest(self, length: float, run_up: float) -> float:
+        if not 0 < 2 * run_up < length - self.ride:
+            return 0.0
+        return fastest(self._made(length, run_up, "saw"), self.limits)
+
+    def _made(self, length: float, run_up: float, name: str) -> Table:
+        ride = self.ride
+        segments: list[dict[str, Any]] = [
+            {"to": {"x": run_up, "y": run_up / 2}, "begin_v": 0.0, "begin_a": 0.0, "end_v": 1.0, "end_a": 0.0},
+            {"to": {"x": run_up + ride, "y": run_up / 2 + ride}, "law": "line"},
+            {
+                "to": {"x": 2 * run_up + ride, "y": run_up + ride},
+                **{"begin_v": 1.0, "begin_a": 0.0, "end_v": 0.0, "end_a": 0.0},
+            },
+            {"to": {"x": length, "y": 0.0}, "law": "modified_sine"},
+        ]
+        return Table.from_segments(segments, name=name, cyclic=True, x_unit="mm", y_unit="mm")
+
+    def _shortest(self, length: float, speed: float) -> str:
+        bad, good = length, 2 * length
+        while self.highest_speed(good) < speed:
+            bad, good = good, 2 * good
+            if good > 1e3 * length:
+                return ""
+        for _ in range(SEARCH_STEPS // 2):
+            middle = (bad + good) / 2
+            bad, good = (middle, good) if self.highest_speed(middle) < speed else (bad, middle)
+        return f", or at least {good:.6g} mm would do at this speed"
+
+
+@dataclass(frozen=True)
+class WinderTraverse:
+    """The guide that lays a thread, a wire or a band onto a turning spool, layer by layer.
+
+    pitch: mm of guide per turn of the spool.
+    reversal: deg of the spool over which the guide turns round at an edge.
+    dwell: deg of the spool for which it stays at each edge.
+    limits: of the guide's axis, which counts mm.
+    """
+
+    pitch: float
+    reversal: float
+    dwell: float = 0.0
+    limits: Limits = Limits()
+
+    def __post_init__(self) -> None:
+        wrong = Wrong()
+        wrong.expect("pitch", self.pitch, 0, "a number of mm")
+        wrong.expect("reversal", self.reversal, 0, "a number of deg")
+        wrong.expect_not_below("dwell", self.dwell, 0, "a number of deg")
+        wrong.expect_limits(self.limits)
+        wrong.tell()
+
+    @property
+    def _edge(self) -> float:
+        """mm from where the guide begins to brake to the edge."""
+        return self.pitch / 360 * self.reversal * (1 / 4 if self.dwell else 5 / 16)
+
+    def cam(self, width: float, *, speed: float, name: str | None = None) -> Table:
+        """The cyclic cam of two layers: x in deg of the spool, y in mm of the guide from one edge, 0, to the other,
+        `width`, and back. Between the reversals the guide moves evenly by the pitch.
+
+        speed: deg/s, the highest of the spool: the limits hold up to there.
+        """
+        wrong = Wrong()
+        wrong.expect("speed", speed, 0, "a number of deg/s")
+        wrong.expect("width", width, 2 * self._edge, "a number of mm")
+        wrong.tell()
+        table = self._made(width, name or f"traverse_{width:g}")
+        problem = beyond(table, self.limits, speed, "guide")
+        if problem:
+            slower = fastest(table, self.limits)
+            raise ConfigError(
+                [f"width {width:g} mm at {speed:g} deg/s: {problem}; up to {slower:.6g} deg/s it would do"]
+            )
+        return table
+
+    def highest_speed(self, width: float) -> float:
+        """deg/s of the spool up to which the limits hold for this width."""
+        return fastest(self._made(width, "traverse"), self.limits)
+
+    def _made(self, width: float, name: str) -> Table:
+        per_deg, edge, half = self.pitch / 360, self._edge, self.reversal / 2
+        # Without a dwell the guide turns round along u - 2 u³ + u⁴, the least polynomial that has no jump of
+        # acceleration; at the edge, u = 1/2, its second derivative is -3.
+        bend = 0.0 if self.dwell else 3 * per_deg / self.reversal
+        even = (width - 2 * edge) / per_deg
+        out = [
+            ({"x": half, "y": edge}, {"begin_v": 0.0, "begin_a": bend, "end_v": per_deg, "end_a": 0.0}),
+            ({"x": half + even, "y": width - edge}, {"law": "line"}),
+            ({"x": 2 * half + even, "y": width}, {"begin_v": per_deg, "begin_a": 0.0, "end_v": 0.0, "end_a": -bend}),
+            ({"x": 2 * half + even + self.dwell, "y": width}, {"law": "dwell"}),
+        ]
+        layer = 2 * half + even + self.dwell
+        back = [
+            ({"x": layer + to["x"], "y": width - to["y"]}, {k: v if k == "law" else -v for k, v in how.items()})
+            for to, how in out
+        ]
+        segments = [{"to": to, **how} for to, how in out + back if self.dwell or how.get("law") != "dwell"]
+        return Table.from_segments(segments, name=name, cyclic=True, x_unit="deg", y_unit="mm")

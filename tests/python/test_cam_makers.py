@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import takt
 from takt import expect
-from takt.cam_makers import Limits, RotaryKnife
+from takt.cam_makers import FlyingSaw, Limits, RotaryKnife, WinderTraverse
 
 LIMITS = Limits(velocity=3000, acceleration=150_000, jerk=20_000_000)
 KNIFE = RotaryKnife(circumference=480, cut_zone=15, limits=LIMITS)
@@ -122,3 +122,74 @@ def test_lengths_are_cut_and_changed_while_the_web_runs(length):  # CAM-91
     ratio = recording["knife"]["set_velocity"][cuts + 1] / recording["web"]["set_velocity"][cuts + 1]
     assert np.allclose(ratio, 360 / 480, rtol=1e-6)
     expect.within_limits(recording, "knife")
+
+
+# --- the flying saw ---
+
+SAW = FlyingSaw(travel=420, ride=150, limits=Limits(velocity=2500, acceleration=35_000, jerk=2_500_000))
+
+
+@pytest.mark.parametrize("length", [391.25, 437.5, 620.0, 1400.0])
+def test_a_saw_rides_with_the_web_and_keeps_its_limits(length):  # CAM-91
+    speed = SAW.highest_speed(length) * (1 - 1e-9)
+    table = SAW.cam(length, speed=speed)
+    assert (table.begin, table.end, table.stroke, table.cyclic) == (0, length, 0, True)
+    up = SAW.run_up(length)
+    rides = table.at(np.linspace(up, up + 150, 100))
+    assert np.allclose(rides.dy, 1, rtol=1e-9)
+    dense = table.at(np.linspace(0, length, 100_001))
+    assert (dense.y.min(), dense.y.max()) == (pytest.approx(0, abs=1e-9), pytest.approx(up + 150))
+    assert up + 150 <= 420 + 1e-9
+    for values, limit, power in ((dense.dy, 2500, 1), (dense.ddy, 35_000, 2), (dense.dddy, 2_500_000, 3)):
+        assert np.abs(values).max() * speed**power <= limit * (1 + 1e-6)
+    # No other run-up lets the web run faster.
+    for share in (0.8, 0.95, 1.05, 1.2):
+        assert SAW._highest(length, min(share * up, 420 - 150)) <= speed * (1 + 1e-6)
+
+
+def test_a_saw_that_cannot_follow_says_what_would_do():  # CAM-91
+    with pytest.raises(takt.ConfigError, match=r"carriage's .* its limit is \S+; up to \S+ mm/s it would do") as error:
+        SAW.cam(391.25, speed=1500)
+    slower = float(re.search(r"up to ([\d.]+) mm/s it", str(error.value))[1])
+    longer = float(re.search(r"at least ([\d.]+) mm", str(error.value))[1])
+    SAW.cam(391.25, speed=slower * (1 - 1e-5))
+    SAW.cam(longer * (1 + 1e-4), speed=1500)
+
+
+# --- the traverse of a winder ---
+
+
+@pytest.mark.parametrize("dwell", [0.0, 45.0])
+@pytest.mark.parametrize(("width", "pitch", "reversal"), [(82.5, 3.2, 120.0), (40.0, 0.31, 90.0)])
+def test_a_traverse_lays_evenly_from_edge_to_edge(width, pitch, reversal, dwell):  # CAM-91
+    guide = WinderTraverse(pitch=pitch, reversal=reversal, dwell=dwell, limits=Limits(velocity=500, acceleration=3000))
+    speed = min(guide.highest_speed(width), 7200.0) * (1 - 1e-9)
+    table = guide.cam(width, speed=speed)
+    dense = table.at(np.linspace(0, table.end, 200_001))
+    assert (dense.y.min(), dense.y.max()) == (pytest.approx(0, abs=1e-9), pytest.approx(width))
+    assert np.abs(dense.dy).max() == pytest.approx(pitch / 360)
+    even = np.isclose(np.abs(dense.dy), pitch / 360, rtol=1e-9).mean() * table.end
+    assert table.end - even == pytest.approx(2 * (reversal + dwell), rel=1e-2)
+    assert np.isclose(dense.dy, 0, atol=1e-12).mean() * table.end == pytest.approx(2 * dwell, abs=1.0)
+    assert np.abs(np.diff(dense.ddy)).max() < 0.25 * np.abs(dense.ddy).max()  # no jump of acceleration
+    half = len(dense.y) // 2
+    assert np.allclose(
+        dense.y[: half + 1], width - dense.y[half:], atol=1e-9
+    )  # the second layer is the first, mirrored
+
+
+@pytest.mark.parametrize(
+    ("make", "what"),
+    [
+        (lambda: FlyingSaw(travel=100, ride=100), "ride: expected less than 100 mm, the travel, found 100"),
+        (lambda: FlyingSaw(travel=math.inf, ride=10), "travel: expected a number of mm above 0, found inf"),
+        (lambda: SAW.cam(150, speed=100), "length: expected a number of mm above 150, found 150"),
+        (lambda: SAW.cam(500, speed=-1), "speed: expected a number of mm/s above 0, found -1"),
+        (lambda: WinderTraverse(pitch=0, reversal=10), "pitch: expected a number of mm above 0, found 0"),
+        (lambda: WinderTraverse(pitch=1, reversal=10, dwell=-1), "dwell: expected a number of deg from 0 on, found -1"),
+        (lambda: WinderTraverse(pitch=36, reversal=180).cam(5, speed=1), "width: expected a number of mm above 11.25"),
+    ],
+)
+def test_impossible_saws_and_winders_are_refused(make, what):  # CAM-91
+    with pytest.raises(takt.ConfigError, match=re.escape(what)):
+        make()
