@@ -315,7 +315,7 @@ class WinderTraverse:
         # acceleration; at the edge, u = 1/2, its second derivative is -3.
         bend = 0.0 if self.dwell else 3 * per_deg / self.reversal
         even = (width - 2 * edge) / per_deg
-        out = [
+        out: list[tuple[dict[str, float], dict[str, Any]]] = [
             ({"x": half, "y": edge}, {"begin_v": 0.0, "begin_a": bend, "end_v": per_deg, "end_a": 0.0}),
             ({"x": half + even, "y": width - edge}, {"law": "line"}),
             ({"x": 2 * half + even, "y": width}, {"begin_v": per_deg, "begin_a": 0.0, "end_v": 0.0, "end_a": -bend}),
