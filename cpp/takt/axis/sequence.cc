@@ -145,21 +145,32 @@ Request Onward(const State& s) {
   return onward;
 }
 
-// On from the position of a continuous move that got there with another velocity than it is to have.
-// kTargetBehindLimit: there is no room for that.
-Status GoOn(const Context& c, double late_s, State& s) {
-  const KinematicState from = s.motion.profile.end();
-  Plan plan;
-  const Status status = PlanRequest(c.params, SurroundingsOf(c, s), c.planner, from, Onward(s), {}, plan);
-  if (status.failed()) {
-    s.setpoint = from;
-    Brake(c, c.params.planner_limits(), {c.cycle.count, late_s}, s);
-  } else {
-    plan.target = s.motion.target;
-    if (plan.limited_by == LimitedBy::kNothing) plan.limited_by = s.limited_by;  // until it is there
-    StartMotion(plan, {c.cycle.count, late_s}, s);
-  }
+// Brakes from the end of the motion in progress, `late_s` ago.
+void BrakeFromEnd(const Context& c, double late_s, State& s) {
+  s.setpoint = s.motion.profile.end();
+  Brake(c, c.params.planner_limits(), {c.cycle.count, late_s}, s);
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
+}
+
+// On from the position of a continuous move that got there with another velocity than it is to have.
+// kTargetBehindLimit: there is no room for that. A command behind it takes over from a set point from which the axis
+// can stop inside the SW limits: its plan has to keep them from there.
+Status GoOn(const Context& c, double late_s, State& s) {
+  const Profile passing = s.motion.profile;
+  Plan plan;
+  const Status status = PlanRequest(c.params, SurroundingsOf(c, s), c.planner, passing.end(), Onward(s), {}, plan);
+  if (status.failed()) {
+    BrakeFromEnd(c, late_s, s);
+    return status;
+  }
+  plan.target = s.motion.target;
+  if (plan.limited_by == LimitedBy::kNothing) plan.limited_by = s.limited_by;  // until it is there
+  StartMotion(plan, {c.cycle.count, late_s}, s);
+  s.setpoint = s.motion.profile.At(Elapsed(c, s));
+  if (s.buffered > 0 && !s.superimposed && !CanStopInside(c.params, passing.end(), s.setpoint)) {
+    s.motion.profile = passing;
+    BrakeFromEnd(c, late_s, s);
+  }
   return status;
 }
 

@@ -121,6 +121,32 @@ TEST(MoveContinuous, DoesNotStandReachedAtALimit) {
   EXPECT_LE(rig.position(), 100 + 1e-6);
 }
 
+// AX-13, AX-102: what waits behind one that is slower than it is to be takes over in the midst of its ramp. From there
+// it stops inside the SW limits, however long a cycle is and however gentle the ramps of the next command are.
+TEST(MoveContinuous, IsFollowedInsideTheLimits) {
+  int handed_over = 0;
+  for (const double period : {0.001, 0.008, 0.02}) {
+    for (const double distance : {6.0, 11.0, 19.0}) {
+      for (double gap = 0.5; gap < 16; gap += 0.5) {
+        SCOPED_TRACE(testing::Message() << period << " s, " << distance << " then " << gap << " to the limit");
+        AxisParams p = LinearParams();
+        p.limits.deceleration = 1500;
+        p.limits.upper = distance + gap;
+        Rig rig(p, period);
+        ASSERT_TRUE(rig.PowerOn());
+        const Ticket passing = rig.Give(
+            MoveContinuousAbsolute{.position = distance, .end_velocity = 400, .acceleration = 1300, .jerk = 30000});
+        const Ticket back = rig.Give(MoveAbsolute{.position = -30, .jerk = 2000, .buffer_mode = BufferMode::kBuffered});
+        rig.RunToEnd(back, 20);
+        EXPECT_LE(Highest(rig), *p.limits.upper + 1e-6);
+        ExpectWithinLimits(rig);
+        handed_over += rig.lives[back].done && !rig.lives[passing].reached ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(handed_over, 100);  // of 279
+}
+
 // What waits behind it begins at its position.
 TEST(MoveContinuous, IsFollowed) {
   Rig rig(LinearParams());
