@@ -16,6 +16,7 @@ using kinematics::Frame;
 
 // cos of what is still upright, and of what is no way back.
 constexpr double kUpright = 1 - 1e-9;
+constexpr double kBoards = 2;  // mm, of a leg across on which the tool gets into step
 
 Place Above(const Place& place, double distance) {
   Place above = place;
@@ -52,6 +53,16 @@ struct Maker {
     last = length;
   }
 };
+
+// Point 2, over the target. The tool gets into step on the leg there, before it is low: where it stands at that point
+// already, the leg leads further up (PP-61).
+Place PointOver(const Place& target, const Place& start, double distance, const Maker& m) {
+  const Place over = Above(target, distance);
+  const bool boards =
+      target.system == group::CoordinateSystem::kPcs && (start.system != target.system || start.pcs != target.pcs);
+  const double length = (In(m.systems.target, over) - m.at).Norm();
+  return boards && length < kBoards ? Above(over, kBoards + length) : over;
+}
 
 Profile Refused(ErrorId error) {
   Profile profile;
@@ -121,7 +132,7 @@ Profile MakeProfile(const Place& start, const Place& target, const Shape& shape,
   }
   if (shape.start_distance > path::kSame) m.Add({.to = Above(start, shape.start_distance)}, systems.start, 0);
   const bool lowers = shape.target_distance > path::kSame;
-  m.Add({.to = lowers ? Above(target, shape.target_distance) : target,
+  m.Add({.to = lowers ? PointOver(target, start, shape.target_distance, m) : target,
          .arch = arch,
          .turns = true,
          .height = arch ? shape.height : 0},

@@ -46,7 +46,7 @@ Settings Rounded() {
 
 class Watched {
  public:
-  explicit Watched(const CellBelt& belt) : cell(Rounded(), {belt}) { cell.Start(); }
+  explicit Watched(const CellBelt& belt, const Pose& tool = {}) : cell(Rounded(), {belt}) { cell.Start(tool); }
 
   void Put(double x) {
     cell.Put(0, {x, 20, 0, 0, 0, 0});
@@ -108,6 +108,25 @@ TEST(GiveUp, BeltStopsForEver) {
     EXPECT_GE(run.low, 100);
     ASSERT_TRUE(run.RunUntil([&] { return run.cell.state.state == M::kReady; }));
     EXPECT_TRUE(run.cell.out().in_park_position);
+  }
+}
+
+// PP-61: the tool waits straight over its workpiece, or all but, and the belt sets out at every instant of its way
+// down. It is in step before it is low.
+TEST(GiveUp, BeltSetsOutBelowTheTool) {
+  for (const double beside : {0.0, 1e-7, 1e-4, 0.02, 0.5, 3.0}) {
+    for (const double above : {0.0, 4.0}) {
+      for (double starts = 0; starts < 0.3; starts += Stride(0.011)) {
+        SCOPED_TRACE(testing::Message() << beside << " mm beside, " << above << " mm above, at " << starts);
+        const Pose over = {150 + beside, kBeltY + 20, kBeltZ + kDistance + above, 0, 0, 0};
+        Watched run(Infeed(Changing(0, 150, starts, 0.15)), over);
+        run.Put(150);
+        const Ticket ticket = run.cell.Execute(1);
+        ASSERT_TRUE(run.RunUntil([&] { return run.cell.rig.lives[ticket].ended(); }));
+        EXPECT_TRUE(run.cell.rig.lives[ticket].done);
+        EXPECT_GE(run.low, 20);
+      }
+    }
   }
 }
 
