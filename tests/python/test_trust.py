@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import random
+import re
 import signal
 import socket
 import struct
 import subprocess
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -253,3 +256,53 @@ def test_events_carry_checksums(engine: tuple[subprocess.Popen[str], str, Path])
         changed = bytearray(event.data)
         changed[len(changed) // 2] ^= 4
         assert _core.checksum_holds(event.channel, bytes(changed)) is False
+
+
+NAMES_FILES = {
+    "cams[0].file": "cams: [{name: c, file: FILE}]\n",
+    "paths[0].file": "paths: [{name: p, file: FILE}]\n",
+    "groups[0].kinematics.serial.urdf": (
+        "groups: [{name: g, axes: [x, r], kinematics: {serial: {urdf: FILE}}, "
+        "path: {velocity: 1, acceleration: 1, jerk: 1}}]\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("where", NAMES_FILES)
+def test_a_description_opens_no_files(where: str, tmp_path: Path) -> None:
+    """EN-37: of a machine that is described over the network or in a log, no file is opened, and a sentence says which
+    it names; the same text as a file may name it."""
+    from takt import _core
+    from takt.view.machine import Machine
+
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)  # who opened it would wait
+    description = msgs.machine_description()
+    description.run_id, description.name, description.period_s = 7, "test", 0.001
+    description.text = machine_with("{}") + NAMES_FILES[where].replace("FILE", str(pipe))
+    sentence = rf"{re.escape(where)}: expected what stands in the file itself, found its name .*: .* opens no files"
+    with pytest.raises(takt.ConfigError, match=sentence):
+        Machine(description)
+    log = lcm.EventLog(str(tmp_path / "log"), "w")
+    log.write_event(1, "takt/machine", description.encode())
+    log.close()
+    with pytest.raises(takt.ConfigError, match=sentence):
+        lcmlog.read_log(tmp_path / "log")
+    url = new_url()
+    network, stop = lcm.LCM(url), threading.Event()
+
+    def describe() -> None:
+        while not stop.wait(0.05):
+            network.publish("takt/machine", description.encode())
+
+    thread = threading.Thread(target=describe)
+    thread.start()
+    try:
+        with pytest.raises(takt.ConfigError, match=sentence):
+            takt.connect(url)
+    finally:
+        stop.set()
+        thread.join()
+    pipe.unlink()
+    with pytest.raises(takt.ConfigError, match="No such file"):
+        _core.load_machine(description.text.encode(), "machine")

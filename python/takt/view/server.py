@@ -12,7 +12,6 @@ import traceback
 from collections import deque
 from collections.abc import AsyncIterator, Iterator
 from importlib import resources
-from pathlib import Path
 from typing import Any
 
 import uvicorn
