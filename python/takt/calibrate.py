@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
+REACH = 1e9  # mm or u: numbers beyond it are a mistake, and their squares would be infinite
 LEAST_SPREAD = 0.1  # mm: points that are no further apart, or no further from one line, define no frame
 
 
@@ -95,6 +96,10 @@ def belt(positions: npt.ArrayLike, measured: npt.ArrayLike, beside: npt.ArrayLik
     points = _points(measured, 2, "measured points")
     if len(at) != len(points):
         raise CalibrationError(f"there are {len(at)} positions and {len(points)} points: expected one for each")
+    if not np.all(np.abs(at) <= REACH):
+        raise CalibrationError(
+            f"positions: expected numbers up to {REACH:g}, found {at[np.argmin(np.abs(at) <= REACH)]:g}"
+        )
     spread = at - at.mean()
     if not np.any(spread):
         raise CalibrationError(
@@ -124,9 +129,11 @@ def _points(values: npt.ArrayLike, least: int, name: str) -> Array:
         raise CalibrationError(f"{name}: expected x, y, z in each row, found {points.shape[-1]} numbers")
     if len(points) < least:
         raise CalibrationError(f"{name}: expected at least {least}, found {len(points)}")
-    if not np.all(np.isfinite(points)):
-        row = int(np.argmin(np.isfinite(points).all(axis=1)))
-        raise CalibrationError(f"{name}: point {row + 1} is not finite: {', '.join(f'{v:g}' for v in points[row])}")
+    good = (np.abs(points) <= REACH).all(axis=1)  # NaN is not
+    if not np.all(good):
+        row = int(np.argmin(good))
+        said = "is not finite" if not np.all(np.isfinite(points[row])) else f"lies beyond {REACH:g} mm"
+        raise CalibrationError(f"{name}: point {row + 1} {said}: {', '.join(f'{v:g}' for v in points[row])}")
     return points
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from takt import calibrate
 from takt.calibrate import Calibration, CalibrationError
+from takt.csv_rows import Fields, read_rows
+from takt.errors import shortened
 
 MEASURED = ("x", "y", "z")
 SEEN = ("seen_x", "seen_y", "seen_z")
@@ -26,28 +28,34 @@ def lines(kind: str, file: Path) -> Iterator[str]:
         yield f"largest residual: {found.largest:.3f} mm"
 
 
-def _read(file: Path) -> list[dict[str, str]]:
-    with file.open(encoding="utf-8-sig", newline="") as source:
-        rows = list(csv.DictReader(source))
+def _read(file: Path) -> list[Fields]:
+    head, rows = read_rows(file, CalibrationError)
     if not rows:
         raise CalibrationError(f"{file}: expected a head and a row for each point, found no row")
-    missing = [name for name in MEASURED if name not in rows[0]]
+    missing = [name for name in MEASURED if name not in head]
     if missing:
-        raise CalibrationError(f"{file}: there is no column {missing[0]}; the head says {', '.join(rows[0])}")
-    return rows
+        raise CalibrationError(f"{file}: there is no column {missing[0]}; the head says {_shown(head)}")
+    return [fields for _, fields in rows]
 
 
-def _numbers(file: Path, row: int, fields: dict[str, str], names: tuple[str, ...]) -> list[float]:
+def _shown(head: Sequence[str]) -> str:
+    return shortened(", ".join(head))
+
+
+def _numbers(file: Path, row: int, fields: Fields, names: tuple[str, ...]) -> list[float]:
     numbers = []
     for name in names:
         try:
-            numbers.append(float(fields[name]))
-        except (KeyError, TypeError, ValueError):
-            raise CalibrationError(f"{file}:{row + 2}: {name}: expected a number, found {fields.get(name)!r}") from None
+            numbers.append(float(fields[name] or ""))
+        except (KeyError, ValueError):
+            numbers.append(math.nan)
+        if not math.isfinite(numbers[-1]):
+            found = shortened(repr(fields.get(name)))
+            raise CalibrationError(f"{file}:{row + 2}: {name}: expected a finite number, found {found}")
     return numbers
 
 
-def _frame(file: Path, rows: list[dict[str, str]]) -> Calibration:
+def _frame(file: Path, rows: list[Fields]) -> Calibration:
     measured = [_numbers(file, row, fields, MEASURED) for row, fields in enumerate(rows)]
     if any(name in rows[0] for name in SEEN):
         return calibrate.fit([_numbers(file, row, fields, SEEN) for row, fields in enumerate(rows)], measured)
@@ -59,9 +67,9 @@ def _frame(file: Path, rows: list[dict[str, str]]) -> Calibration:
     return calibrate.three_points(*measured)
 
 
-def _belt(file: Path, rows: list[dict[str, str]]) -> Calibration:
+def _belt(file: Path, rows: list[Fields]) -> Calibration:
     if "position" not in rows[0]:
-        raise CalibrationError(f"{file}: there is no column position; the head says {', '.join(rows[0])}")
+        raise CalibrationError(f"{file}: there is no column position; the head says {_shown(list(rows[0]))}")
     positions, measured, beside = [], [], []
     for row, fields in enumerate(rows):
         point = _numbers(file, row, fields, MEASURED)

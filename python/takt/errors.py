@@ -53,6 +53,12 @@ class ClosedError(TaktError):
     """The session was closed."""
 
 
+def shortened(text: str, most: int = 200) -> str:
+    """The text on one line, cut off after so many characters."""
+    line = " ".join(text.split())
+    return line if len(line) <= most else f"{line[:most]} ..."
+
+
 def whole(value: object, what: str, least: int) -> int:
     """A whole number from `least` on, or a sentence."""
     if isinstance(value, bool) or not isinstance(value, Integral):

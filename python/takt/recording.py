@@ -18,8 +18,6 @@ import hashlib
 import importlib
 import json
 import math
-import zipfile
-import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
@@ -29,7 +27,7 @@ import numpy as np
 import numpy.typing as npt
 
 from takt.counted import counted
-from takt.errors import TaktError
+from takt.errors import TaktError, shortened
 
 Array = npt.NDArray[Any]
 FloatArray = npt.NDArray[np.float64]
@@ -343,18 +341,10 @@ class Recording:
             raise
         except RecordingError:
             raise
-        except (
-            OSError,
-            ValueError,
-            KeyError,
-            TypeError,
-            AttributeError,
-            zipfile.BadZipFile,
-            IndexError,
-            EOFError,
-            zlib.error,
-        ) as error:
-            raise RecordingError(f"{path} is not a recording: {error}") from None
+        except MemoryError:
+            raise RecordingError(f"{path} is not a recording: it asks for more memory than there is") from None
+        except Exception as error:  # NumPy and zipfile raise whatever the bytes make them raise
+            raise RecordingError(f"{path} is not a recording: {shortened(str(error))}") from None
 
     def to_csv(self, path: str | PathLike[str]) -> Path:
         """Writes one wide table: a row per cycle, "component.field [unit]" columns, texts for enumerated

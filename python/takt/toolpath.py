@@ -22,7 +22,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from takt.errors import TaktError
+from takt.csv_rows import read_rows
+from takt.errors import TaktError, shortened
 
 if TYPE_CHECKING:
     from takt.gcode import Options
@@ -88,12 +89,10 @@ class Toolpath:
     @classmethod
     def from_csv(cls, path: str | PathLike[str], start: Point = (0.0, 0.0, 0.0)) -> Toolpath:
         """Lines and arcs of a file as machine files name it. Raises ToolpathError."""
-        with Path(path).open(newline="", encoding="utf-8") as file:
-            table = csv.DictReader(file, restkey="", skipinitialspace=True)
-            unknown = [name for name in table.fieldnames or () if name not in COLUMNS]
-            if unknown or not {"x", "y", "z"} <= set(table.fieldnames or ()):
-                raise ToolpathError(f"{path}:1: expected the columns x, y, z and perhaps {', '.join(COLUMNS)}")
-            elements = [_element_of(row, f"{path}:{table.line_num}") for row in table]
+        head, rows = read_rows(path, ToolpathError)
+        if not {"x", "y", "z"} <= set(head) <= set(COLUMNS):
+            raise ToolpathError(f"{path}:1: expected the columns x, y, z and perhaps {', '.join(COLUMNS)}")
+        elements = [_element_of(row, f"{path}:{line}") for line, row in rows]
         return cls(start, tuple(elements))._checked(str(path))
 
     @property
@@ -417,14 +416,14 @@ def _element_of(row: dict[str, str | None], place: str) -> Element:
             try:
                 values.append(float(row.get(name) or ""))
             except ValueError:
-                raise ToolpathError(f"{place}: {name}: expected a number, found '{row.get(name) or ''}'") from None
+                values.append(math.nan)
             if not math.isfinite(values[-1]):
-                raise ToolpathError(f"{place}: {name}: expected a number, found '{row[name]}'")
+                raise ToolpathError(f"{place}: {name}: expected a number, found '{shortened(row.get(name) or '')}'")
         return values
 
     shape = row.get("shape") or "line"
     if shape not in ("line", "arc"):
-        raise ToolpathError(f"{place}: shape: expected line or arc, found '{shape}'")
+        raise ToolpathError(f"{place}: shape: expected line or arc, found '{shortened(shape)}'")
     x, y, z = numbers("xyz")
     via: Point | None = None
     if shape == "arc":

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from os import PathLike
 from typing import Any, NamedTuple
 
-from takt.errors import TaktError
+from takt.errors import TaktError, shortened
 from takt.toolpath import REACH
 from takt.track_drawing import SAME, TOLERANCE, Piece
 
@@ -52,7 +52,7 @@ def read_dxf(file: str | PathLike[str], left_out: Counter[str]) -> list[Run]:
         drawing = readfile(str(file))
         space = drawing.modelspace()
     except Exception as error:  # ezdxf raises whatever the data make it raise
-        raise TaktError(f"{file}: is no DXF: {error}") from None
+        raise TaktError(f"{file}: is no DXF: {shortened(str(error))}") from None
     try:
         scale = conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters) if drawing.units else 1.0
     except (ValueError, KeyError):
@@ -60,9 +60,9 @@ def read_dxf(file: str | PathLike[str], left_out: Counter[str]) -> list[Run]:
     try:
         return list(_Reader(drawing, scale, left_out).runs(space, 0))
     except _EntityError as error:
-        raise TaktError(f"{file}: {error}") from None
+        raise TaktError(f"{file}: {shortened(str(error), 400)}") from None
     except Exception as error:  # damaged tables and blocks
-        raise TaktError(f"{file}: is damaged: {error}") from None
+        raise TaktError(f"{file}: is damaged: {shortened(str(error))}") from None
 
 
 class _EntityError(Exception):

@@ -170,7 +170,7 @@ def _binary(function: Callable[[float, float], float], left: Value, right: Value
 def _constant(function: Callable[..., float], *arguments: float) -> float:
     try:
         return function(*arguments)
-    except OverflowError:
+    except (OverflowError, ValueError):  # of infinity, too
         raise LineError("an expression has no finite value") from None
 
 

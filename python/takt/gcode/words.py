@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 # Of each group one may stand in a line.
 GROUPS = {
     "motion": ("G0", "G1", "G2", "G3", "G5", "G5.1", "G5.2", "G5.3", "G6.2", "G73", "G81", "G82", "G83", "G85", "G89"),
@@ -90,7 +92,7 @@ def code_name(letter: str, number: float) -> str:
 
 def program_name(number: float) -> str:
     """O0010 is O10."""
-    return str(int(number)) if number == int(number) else repr(number)
+    return str(int(number)) if math.isfinite(number) and number == int(number) else repr(number)
 
 
 def refused(word: str) -> str:
