@@ -129,12 +129,17 @@ def _command_line() -> Iterator[str]:
     """What each command of `takt` says of itself."""
     yield "# The command line\n"
     yield "Exit code 0: all is well; 1: something that was checked has failed; 2: bad input, said in one line.\n"
-    context = click.Context(cli, info_name="takt", max_content_width=96, terminal_width=96)
-    for name in cli.list_commands(context):
-        command = cli.get_command(context, name)
+    yield from _commands_of(cli, click.Context(cli, info_name="takt", max_content_width=96, terminal_width=96))
+
+
+def _commands_of(group: click.Group, context: click.Context) -> Iterator[str]:
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
         assert command is not None
         inner = click.Context(command, info_name=name, parent=context, max_content_width=96, terminal_width=96)
-        yield f"## takt {name}\n\n```text\n{command.get_help(inner)}\n```\n"
+        yield f"## {inner.command_path}\n\n```text\n{command.get_help(inner)}\n```\n"
+        if isinstance(command, click.Group):
+            yield from _commands_of(command, inner)
 
 
 def _channels() -> Iterator[str]:

@@ -77,7 +77,7 @@ class Engine(Session):
             period = seconds(period, "a period")
         described = json.loads(_core.load_machine(text, file_name))
         drives_url = (url or network_of(described)) if described["external"]["drives"] else None
-        drives_key = read_key(key) if drives_url else None
+        drives_key = read_key(key) if drives_url or key else None
         self._core = _core.Engine(
             text,
             file_name,

@@ -217,6 +217,7 @@ class RemoteSession(Session):
         if message is None:
             return
         with self._news:
+            self._key_trouble = ""
             self._check_run(message.run_id)
             if self._description is None and self._key is None and _core.has_tag(data):
                 self._trouble = no_key(self.url)

@@ -17,7 +17,7 @@ import numpy as np
 import takt
 from every_kind import FULL, MINIMAL, text_of
 from machines import taktd
-from takt import calibration_files, cam, lcmlog, toolpath, track_drawing
+from takt import calibration_files, cam, kinematics, lcmlog, toolpath, track_drawing
 from takt.engine import read_machine
 from takt.errors import TaktError
 
@@ -44,7 +44,7 @@ def check(file: Path) -> None:
 
 
 def read_urdf(file: Path) -> None:
-    takt.kinematics.Kinematics(folder=file.parent, serial={"urdf": file.name})
+    kinematics.Kinematics(folder=file.parent, serial={"urdf": file.name})
 
 
 MESH = """\

@@ -1,7 +1,7 @@
 """Files that were changed at random, given to every reader (EN-38): each is read, or refused in a sentence, in bounded
 time and memory.
 
-`python tests/python/fuzzing.py READER [--tries N] [--first SEED]` tries one reader and says what failed, each with the
+`python tests/python/fuzzing.py READER [--tries N] [--seconds S] [--first SEED]` tries one reader and says what failed, each with the
 seed that makes the file again; `--keep SEED FILE` writes that file. Tries run in a child of their own, whose memory and
 processor time the system bounds; one that dies costs its own try alone.
 """
@@ -21,7 +21,7 @@ import time
 import traceback
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from fuzz_readers import NUMBERS, READERS, Reader
@@ -36,9 +36,11 @@ LONGEST_SENTENCE = 2000  # characters of a line
 
 
 def changed(reader: Reader, seed: int) -> bytes:
-    """A whole file that has been changed a few times, the same for the same seed."""
-    chance = random.Random(f"{reader.name} {seed}")
+    """A whole file that has been changed a few times, the same for the same seed; below 0: the first as it is."""
     whole = _whole(reader)
+    if seed < 0:
+        return whole[0]
+    chance = random.Random(f"{reader.name} {seed}")
     data = chance.choice(whole)
     for _ in range(chance.choice([1, 1, 2, 3, 5, 10])):
         data = chance.choice(CHANGES)(data, chance, reader, whole)
@@ -190,15 +192,20 @@ def _child(reader: Reader, seeds: range) -> Iterator[tuple[int, str]]:
         finally:
             os._exit(code)
     os.close(write_end)
-    seed = -1
-    with os.fdopen(read_end) as said:
-        for line in said:
-            number, _, found = line.partition("\t")
-            seed = int(number)
-            if line.endswith("\n"):
-                yield seed, found.rstrip("\n")
-                seed = -1
-    _, status = os.waitpid(child, 0)
+    seed, status = -1, -1
+    try:
+        with os.fdopen(read_end) as said:
+            for line in said:
+                number, _, found = line.partition("\t")
+                seed = int(number)
+                if line.endswith("\n"):
+                    yield seed, found.rstrip("\n")
+                    seed = -1
+        _, status = os.waitpid(child, 0)
+    finally:
+        if status == -1:  # nobody wants to know more
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
     if os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGPROF:
         yield seed, f"took more than {SECONDS} s of processor time"
     elif status != 0:
@@ -206,6 +213,12 @@ def _child(reader: Reader, seeds: range) -> Iterator[tuple[int, str]]:
             seed,
             f"ended the process: {signal.Signals(os.WTERMSIG(status)).name if os.WIFSIGNALED(status) else status}",
         )
+
+
+def outcome(reader: Reader, data: bytes) -> str:
+    """What becomes of this very file: "" (read), "refused", or why it is a failure."""
+    only = replace(reader, whole=lambda: [data])
+    return next(said for _, said in _child(only, range(-1, 0)))
 
 
 def tried(reader: Reader, tries: int, first: int = 0, seconds: float = 1e9) -> Tried:
@@ -230,6 +243,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0] if __doc__ else "")
     parser.add_argument("reader", choices=READERS)
     parser.add_argument("--tries", type=int, default=1000)
+    parser.add_argument("--seconds", type=float, default=1e9, help="no new file after that")
     parser.add_argument("--first", type=int, default=0, help="seed of the first file")
     parser.add_argument("--keep", nargs=2, metavar=("SEED", "FILE"), help="only write this file")
     options = parser.parse_args()
@@ -237,7 +251,7 @@ def main() -> int:
     if options.keep:
         Path(options.keep[1]).write_bytes(changed(reader, int(options.keep[0])))
         return 0
-    found = tried(reader, options.tries, options.first)
+    found = tried(reader, options.tries, options.first, options.seconds)
     print("\n".join(found.failed))
     print(f"{reader.name}: {found.read} read, {found.refused} refused, {len(found.failed)} failed")
     return 1 if found.failed else 0

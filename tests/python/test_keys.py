@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 import takt
@@ -21,6 +22,7 @@ from plants import LONG_S, Lag, eventually, only_x
 from takt import drive, lcmlog, msgs
 from takt.cli import main
 from takt.keys import read_key
+from takt.view.commander import Commander
 from takt.view.feed import Feed
 
 REASONS = ("untagged", "wrong_key", "replayed", "stale")
@@ -478,6 +480,47 @@ def test_the_live_page_shows_without_the_key_and_commands_with_it(which: str, tm
         assert (feed.machine is not None) == (which != "other")
         assert feed.may_command == (which != "none")
         assert ("has another key" in feed.trouble) == (which == "other")
+
+
+def test_a_page_with_the_key_commands(tmp_path: Path, key: Path) -> None:
+    """EN-31: what the live page gives is tagged, too."""
+    url, told = new_url(), list[Any]()
+    machine = machine_with("{axis_rate_hz: 100}") + "view: {commands: true}\n"
+    with (
+        running(tmp_path, url, "--key", str(key), machine=machine),
+        takt.connect(url, key=key, timeout=LONG_S) as session,
+    ):
+        feed = Feed(url, key=read_key(key))
+        eventually(lambda: feed.tick() or feed.machine)
+        assert feed.machine is not None
+        commander = Commander(feed.network, feed.machine, told.append)
+        feed.listeners.add(commander.take)
+        commander.give("x", "power", {"enable": True}, time.monotonic())
+        eventually(lambda: feed.tick() or session.axis("x").powered)
+        assert session.axis("x").powered
+        assert not told
+
+
+def test_clocks_that_differ_are_said(key: Path) -> None:
+    """EN-31: an engine whose tags are of another time is not believed, and the sentence names the clocks."""
+    url, stop = new_url(), threading.Event()
+    bystander, engine = Bystander(url), Sender(key_bytes(key))
+    description = msgs.machine_description()
+    description.run_id, description.period_s, description.text = 1, 0.001, machine_with("{}")
+
+    def describe() -> None:
+        while not stop.wait(0.05):
+            late = engine.tag("takt/machine", description.encode(), now_us() - 5_000_000)
+            bystander.say("takt/machine", late)
+
+    thread = threading.Thread(target=describe)
+    thread.start()
+    try:
+        with pytest.raises(takt.ConnectionError, match="the clocks of the hosts differ"):
+            takt.connect(url, key=key, timeout=0.5)
+    finally:
+        stop.set()
+        thread.join()
 
 
 def test_a_restart_with_another_key_is_said(tmp_path: Path, key: Path) -> None:

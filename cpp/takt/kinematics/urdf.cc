@@ -6,11 +6,13 @@
 
 #include "takt/kinematics/serial.h"
 #include "takt/kinematics/urdf_angles.h"
+#include "takt/kinematics/xml_shape.h"
 
 namespace takt::kinematics {
 namespace {
 
-constexpr double kMetre = 1000;  // mm: URDF counts in metres
+constexpr double kMetre = 1000;           // mm: URDF counts in metres
+constexpr std::size_t kMostLevels = 100;  // of elements in one another; URDF itself has 6
 
 Frame ToFrame(const KDL::Rotation& rotation, const urdf::Vector3& p) {
   return {rotation, KDL::Vector(p.x, p.y, p.z) * kMetre};
@@ -26,6 +28,7 @@ std::string Quoted(const std::string& name) {
 
 // Null when it cannot be read; the reader has then said why on stderr.
 urdf::ModelInterfaceSharedPtr Parsed(const std::string& xml) {
+  if (ShapeOf(xml, kMostLevels) != XmlShape::kGood) return nullptr;
   try {
     const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(xml);
     if (!model) return nullptr;
@@ -155,6 +158,9 @@ std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& bas
   const urdf::ModelInterfaceSharedPtr model = Parsed(xml);
   if (!model) {
     why = "this is no URDF that can be read";
+    if (ShapeOf(xml, kMostLevels) == XmlShape::kTooDeep) {
+      why += ": its elements nest deeper than " + std::to_string(kMostLevels) + " levels";
+    }
     return std::nullopt;
   }
   if (const std::string link = HangsTwice(*model); !link.empty()) {
