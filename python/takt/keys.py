@@ -55,7 +55,7 @@ def new_key(file: KeyFile) -> None:
 
 
 def no_key(url: str) -> str:
-    """Why an engine with a key does not answer somebody without."""
+    """Why an engine with a key does not answer a client or drive without."""
     return (
         f"the engine on {url} has a key and hears only holders of it: "
         f"name its key file (key=, --key, or {ENVIRONMENT} in the environment)"
@@ -63,7 +63,7 @@ def no_key(url: str) -> str:
 
 
 def not_the_key(url: str, key: Key, state: _core.TagState) -> str:
-    """Why an engine is not heard by somebody with this key, by what its messages lack."""
+    """Why a client or drive with this key does not hear an engine, by what its messages lack."""
     if state == _core.TagState.untagged:
         return (
             f"the engine on {url} has no key, but this side has one ({key.file}): "

@@ -1,9 +1,9 @@
 """Files that were changed at random, given to every reader (EN-38): each is read, or refused in a sentence, in bounded
 time and memory.
 
-`python tests/python/fuzzing.py READER [--tries N] [--seconds S] [--first SEED]` tries one reader and says what failed, each with the
-seed that makes the file again; `--keep SEED FILE` writes that file. Tries run in a child of their own, whose memory and
-processor time the system bounds; one that dies costs its own try alone.
+`python tests/python/fuzzing.py READER [--tries N] [--seconds S] [--first SEED]` tries one reader and says what failed,
+each with the seed that makes the file again; `--keep SEED FILE` writes that file. Tries run in a child of their own,
+whose memory and processor time the system bounds; one that dies costs its own try alone.
 """
 
 from __future__ import annotations
