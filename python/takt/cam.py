@@ -177,6 +177,32 @@ class Table:
         how = (name or path.stem, interpolation, cyclic, x_unit, y_unit)
         return cls(*_core.cam_from_csv(path.read_bytes(), str(path), *how))
 
+    @classmethod
+    def from_file(
+        cls,
+        file: str | os.PathLike[str],
+        *,
+        columns: Mapping[str, str | int] | None = None,
+        name: str | None = None,
+        interpolation: Interpolation | None = None,
+        cyclic: bool = False,
+        x_unit: str | None = None,
+        y_unit: str | None = None,
+    ) -> Table:
+        """A cam from a file of another system, recognised by its content (CAM-92): a table of numbers with any
+        separator, decimal point or comma, with or without a header; an array of CODESYS (SMC_CAMXYVA) or TwinCAT
+        (MC_MotionFunctionPoint, positions) as structured text; a cam table of TwinCAT CNC, which is cyclic.
+
+        columns: which column has x, y, v and a, by its title or its number from 1; None: by their usual titles, or in
+            this order.
+        interpolation: "quintic" unless given or said by the file.
+        x_unit, y_unit: those of a second line of titles, else "u".
+        """
+        from takt.cam_files import read
+
+        how = {"name": name, "interpolation": interpolation, "x_unit": x_unit, "y_unit": y_unit}
+        return read(file, columns=columns, cyclic=cyclic, **how)  # type: ignore[arg-type]
+
     @property
     def name(self) -> str:
         return self._core.name

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,6 +28,7 @@ class Options:
     interpolation: cam.Interpolation | None = None
     cyclic: bool = False
     units: tuple[str, str] | None = None
+    columns: Mapping[str, str | int] | None = None
     master_speed: float | None = None
     master_acceleration: float = 0.0
     axis: str | None = None
@@ -78,14 +80,22 @@ def _refuse_nonsense(options: Options) -> None:
 
 
 def _read(file: Path, name: str | None, options: Options) -> list[cam.Table]:
-    if file.suffix == ".csv":
-        x_unit, y_unit = options.units or ("u", "u")
-        how = options.interpolation or "quintic"
+    if file.suffix not in (".yaml", ".yml"):
+        x_unit, y_unit = options.units or (None, None)
         return [
-            cam.Table.from_csv(file, name=name, interpolation=how, cyclic=options.cyclic, x_unit=x_unit, y_unit=y_unit)
+            cam.Table.from_file(
+                file,
+                columns=options.columns,
+                name=name,
+                interpolation=options.interpolation,
+                cyclic=options.cyclic,
+                x_unit=x_unit,
+                y_unit=y_unit,
+            )
         ]
-    if options.interpolation or options.cyclic or options.units:
-        raise click.UsageError("--interpolation, --cyclic and --units are for CSV files; a YAML file says them itself")
+    if options.interpolation or options.cyclic or options.units or options.columns:
+        what = "--interpolation, --cyclic, --units and --columns"
+        raise click.UsageError(f"{what} are for files of points; a YAML file says them itself")
     text, _ = read_machine(file)
     tables = cam.of_machine(file) if cam.is_machine(text) else [cam.Table.from_yaml(file)]
     if not tables:

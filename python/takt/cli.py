@@ -438,9 +438,12 @@ def export(
 @cli.command("cam")
 @click.argument("file", type=FILE)
 @click.option("--name", help="Which cam of a machine file [all].")
-@click.option("--interpolation", type=click.Choice(["linear", "quintic", "cubic_spline"]), help="CSV only [quintic].")
-@click.option("--cyclic", is_flag=True, help="CSV only: the end goes over into the beginning.")
-@click.option("--units", nargs=2, metavar="X Y", help="CSV only: the master's and the slave's, for people.")
+@click.option(
+    "--interpolation", type=click.Choice(["linear", "quintic", "cubic_spline"]), help="Points only [quintic]."
+)
+@click.option("--cyclic", is_flag=True, help="Points only: the end goes over into the beginning.")
+@click.option("--units", nargs=2, metavar="X Y", help="Points only: the master's and the slave's, for people.")
+@click.option("--columns", nargs=2, metavar="X Y", help="Points only: titles or numbers (from 1) of the columns.")
 @click.option("--master-speed", type=float, help="Largest velocity of the master, its unit/s.")
 @click.option("--master-acceleration", type=float, default=0.0, help="Largest acceleration of the master, its unit/s².")
 @click.option("--axis", help="Hold the cam against the limits of this axis.")
@@ -450,11 +453,16 @@ def export(
 @click.option("--count", type=click.IntRange(2, 100_000), help="With --csv: so many points at even distances.")
 @click.option("--yaml", "yaml_file", type=FILE, help="Write the cam into this file, as it stands in a machine file.")
 def show_cam(file: Path, name: str | None, **options: Any) -> int:
-    """Check the cam of a FILE: points (.csv), one cam (.yaml) or the cams of a machine file. Says how smooth it is and
-    what its slave meets; draws and converts it. Exit code 1: a limit of the axis is exceeded."""
+    """Check the cam of a FILE: points or an export of another system (any name), one cam (.yaml) or the cams of a
+    machine file. Says how smooth it is and what its slave meets; draws and converts it. Exit code 1: a limit of the
+    axis is exceeded."""
     from takt import cam_command
 
-    return cam_command.run(file, name, cam_command.Options(**options), out)
+    columns = options.pop("columns")
+    chosen = None
+    if columns:
+        chosen = {key: int(of) if of.isdecimal() else of for key, of in zip("xy", columns, strict=True)}
+    return cam_command.run(file, name, cam_command.Options(columns=chosen, **options), out)
 
 
 @cli.command("path")

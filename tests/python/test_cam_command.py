@@ -87,7 +87,7 @@ BAD = [
     (["points.csv", "--machine", "machine.yaml"], "say of which --axis"),
     (["points.csv", "--count", "5"], "--count is for --csv"),
     (["feed.yaml", "--csv", "out.csv"], "a cam of segments has no points: say how many"),
-    (["feed.yaml", "--cyclic"], "--interpolation, --cyclic and --units are for CSV files"),
+    (["feed.yaml", "--cyclic"], "--interpolation, --cyclic, --units and --columns are for files of points"),
     (["feed.yaml", "--axis", "z", "--machine", "machine.yaml"], "expected an axis of line, x, found 'z'"),
     (["machine.yaml", "--name", "sew"], "machine.yaml: expected a cam of saw, feed, found 'sew'"),
     (["machine.yaml", "--plot", "out.png"], "machine.yaml has the cams saw, feed: choose one with --name"),
@@ -118,3 +118,14 @@ def test_bad_cams(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (files / "none.yaml").write_text(MACHINE.split("cams:")[0])
     assert main(["cam", "none.yaml"]) == 2
     assert capsys.readouterr().err == "takt: none.yaml: expected a cam, found a machine without cams\n"
+
+
+def test_files_of_other_systems(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """CAM-92: read with the columns that are named, written as a machine file has it."""
+    (files / "export.txt").write_text("Nr\tWeg\tWinkel\n1\t0,0\t0,0\n2\t12,5\t120,25\n3\t0,0\t360,0\n")
+    assert main(["cam", "export.txt", "--columns", "winkel", "2", "--cyclic", "--yaml", "out.yaml"]) == 0
+    assert "export: cyclic cam of 3 points, quintic; x 0 to 360 u" in capsys.readouterr().out
+    assert main(["cam", "out.yaml"]) == 0
+    assert "export: cyclic cam of 3 points, quintic; x 0 to 360 u" in capsys.readouterr().out
+    assert main(["cam", "export.txt"]) == 2
+    assert "found 'Nr', 'Weg', 'Winkel': say which with columns" in capsys.readouterr().err

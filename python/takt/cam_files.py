@@ -1,0 +1,316 @@
+"""Cams from files of other systems, recognised by their content (CAM-92).
+
+- a table of numbers, with any separator, decimal point or comma, with or without a header: of spreadsheets, and of
+  CODESYS' "Write Cam Data to ASCII Table";
+- (dX := 0, dY := 0, dV := 0, dA := 0), ...: an ARRAY OF SMC_CAMXYVA of CODESYS;
+- (MasterPos := 0, SlavePos := 0, FunctionType := ..., ...), ..., or columns of these names: an ARRAY OF
+  MC_MotionFunctionPoint of TwinCAT;
+- ARRAY[0..3, 0..1] OF LREAL := [0, 0, 90, 10, ...]: a table of positions of TwinCAT;
+- Tabletype = 3, Lines = 36, ...: a cam table of TwinCAT CNC, over 360 deg.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from takt.cam import Interpolation, Table
+from takt.errors import ConfigError
+
+ERRORS = 20  # of one file, at most
+TURN = 360.0  # deg, the master's range of TwinCAT CNC tables
+
+Row = dict[str, Any]
+ALIASES = {
+    "x": {"x", "dx", "master", "masterpos", "masterposition"},
+    "y": {"y", "dy", "slave", "slavepos", "slaveposition"},
+    "v": {"v", "dv", "velocity", "slavevelo", "slavevelocity", "y'"},
+    "a": {"a", "da", "acceleration", "slaveacc", "slaveacceleration", "y''"},
+    "law": {"functiontype", "segmenttype"},
+}
+# Functions of TwinCAT and CODESYS between two points, by name or number.
+LAWS = {
+    **dict.fromkeys(("polynom1", "1", "line"), "line"),
+    **dict.fromkeys(("polynom5", "5", "poly5"), "quintic"),
+    **dict.fromkeys(("sinusline", "10", "inclinedsine"), "cycloid"),
+    **dict.fromkeys(("modsinusline", "11", "modifiedsine"), "modified_sine"),
+    **dict.fromkeys(("beschltrapez", "13"), "modified_trapezoid"),
+}
+_STRUCT = re.compile(r"\(([^()]*:=[^()]*)\)")
+_ARRAY = re.compile(r"ARRAY\s*\[[^\],]*,\s*0\s*\.\.\s*1\s*\]\s*OF\s*L?REAL\s*:=\s*\[([^\]]*)\]", re.IGNORECASE)
+_CNC = re.compile(r"^\s*tabletype\s*=", re.IGNORECASE | re.MULTILINE)
+_FINDING = re.compile(r"(?:points|segments)\[(\d+)\][.\w]*: (.*)")
+_NUMBERS = re.compile(r"[-+0-9.,eE]+(\s+[-+0-9.,eE]+)+")
+
+
+def read(
+    file: str | os.PathLike[str],
+    *,
+    columns: Mapping[str, str | int] | None,
+    name: str | None,
+    interpolation: Interpolation | None,
+    cyclic: bool,
+    x_unit: str | None,
+    y_unit: str | None,
+) -> Table:
+    """See Table.from_file."""
+    path = Path(file)
+    text = _decoded(path.read_bytes())
+    content = _Content(str(path))
+    if _CNC.search(text):
+        cyclic, law = content.read_cnc(text)
+        interpolation = interpolation or law
+    elif _STRUCT.search(text):
+        content.read_structs(text)
+    elif _ARRAY.search(text):
+        content.read_array(text)
+    else:
+        content.read_columns(text, columns)
+    content.tell()
+    units = {"x_unit": x_unit or content.units.get("x", "u"), "y_unit": y_unit or content.units.get("y", "u")}
+    head = {"name": name or path.stem, "cyclic": cyclic, **units}
+    if any("law" in row for row in content.rows):
+        cam = {**head, "segments": content.segments()}
+    else:
+        points = [{key: row.get(key) for key in "xyva"} for row in content.rows]
+        cam = {**head, "interpolation": interpolation or "quintic", "points": points}
+    try:
+        return Table.from_dict(cam)
+    except ConfigError as error:
+        raise ConfigError([content.placed(problem) for problem in error.problems]) from None
+
+
+def _decoded(data: bytes) -> str:
+    encodings = ("utf-16",) if data[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252")
+    for encoding in encodings:
+        try:
+            return data.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+    return data.decode("latin-1")
+
+
+class _Content:
+    """What a file holds: rows with x, y and perhaps v, a, law; and what is wrong with it."""
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.rows: list[Row] = []
+        self.units: dict[str, str] = {}
+        self._wrong: list[str] = []
+
+    def tell(self) -> None:
+        if not self._wrong and len(self.rows) < 2:
+            self._add(None, f"expected 2 to 100,000 points, found {len(self.rows)}")
+        if self._wrong:
+            raise ConfigError(self._wrong)
+
+    def placed(self, problem: str) -> str:
+        """What is wrong with the cam, with its place in the file."""
+        match = _FINDING.search(problem)
+        if not match:
+            return f"{self.file}: {problem}"
+        return f"{self.file}:{self.rows[int(match[1])]['line']}:1: {match[2]}"
+
+    def _add(self, line: int | None, message: str) -> None:
+        if len(self._wrong) < ERRORS:
+            self._wrong.append(f"{self.file}:{line}: {message}" if line else f"{self.file}: {message}")
+
+    def _number(self, text: str, what: str, line: int, decimal_comma: bool) -> float | None:
+        plain = text.replace(",", ".") if decimal_comma and "." not in text else text
+        try:
+            value = float(plain)
+        except ValueError:
+            value = math.nan
+        if math.isfinite(value) and "_" not in text:
+            return value
+        self._add(line, f"expected a finite number for {what}, found {text!r}")
+        return None
+
+    # --- tables of numbers ---
+
+    def read_columns(self, text: str, columns: Mapping[str, str | int] | None) -> None:
+        lines = [(i, line.split("//")[0].strip()) for i, line in enumerate(text.splitlines(), 1)]
+        lines = [(i, line) for i, line in lines if line and not line.startswith("#")]
+        if not lines:
+            return self._add(None, "expected a table of numbers, found an empty file")
+        separator = _separator(lines[0][1])
+        cells = [(i, _split(line, separator)) for i, line in lines]
+        header = None if all(_is_number(cell) for cell in cells[0][1]) else cells.pop(0)[1]
+        has_units = header and cells and not any(cell and _is_number(cell) for cell in cells[0][1])
+        units = cells.pop(0)[1] if has_units else []
+        places = self._places(header, cells, columns)
+        if places is None:
+            return None
+        self.units = {key: units[k].strip("[]() ") for key, k in places.items() if k < len(units) and units[k]}
+        for line, row in cells:
+            self._take(line, row, places, separator != ",")
+        return None
+
+    def _places(
+        self, header: list[str] | None, cells: Sequence[tuple[int, list[str]]], columns: Mapping[str, str | int] | None
+    ) -> dict[str, int] | None:
+        """Which column has what, from 0."""
+        width = len(header) if header else max((len(row) for _, row in cells), default=0)
+        if columns is not None:
+            return self._chosen(header, width, columns)
+        if header is None:
+            if width in (2, 3, 4):
+                return dict(zip("xyva", range(width), strict=False))
+            self._add(None, f"expected the columns x, y and perhaps v, a, found {width}: say which with columns")
+            return None
+        found: dict[str, int] = {}
+        for k, title in enumerate(header):
+            plain = re.sub(r"[\[(].*|[^a-z']", "", title.lower())
+            for key, names in ALIASES.items():
+                if plain in names:
+                    found.setdefault(key, k)
+        if not {"x", "y"} <= found.keys():
+            titles = ", ".join(f"'{title}'" for title in header)
+            self._add(None, f"expected columns for x and y, found {titles}: say which with columns")
+            return None
+        return found
+
+    def _chosen(self, header: list[str] | None, width: int, columns: Mapping[str, str | int]) -> dict[str, int] | None:
+        titles = [title.lower() for title in header or []]
+        found: dict[str, int] = {}
+        for key, column in columns.items():
+            if key not in ("x", "y", "v", "a"):
+                self._add(None, f"columns: expected x, y, v or a, found {key!r}")
+            elif isinstance(column, int) and 1 <= column <= width:
+                found[key] = column - 1
+            elif isinstance(column, str) and column.lower() in titles:
+                found[key] = titles.index(column.lower())
+            else:
+                has = f"one of {', '.join(header)}, or " if header else ""
+                self._add(None, f"columns: expected for {key} {has}a number from 1 to {width}, found {column!r}")
+        if not {"x", "y"} <= columns.keys():
+            self._add(None, "columns: expected x and y at least")
+        return None if self._wrong else found
+
+    def _take(self, line: int, cells: list[str], places: Mapping[str, int], decimal_comma: bool) -> None:
+        row: Row = {"line": line}
+        for key, k in places.items():
+            text = cells[k] if k < len(cells) else ""
+            if key == "law":
+                row[key] = text
+            elif text or key in "xy":
+                row[key] = self._number(text, key, line, decimal_comma)
+        self.rows.append(row)
+
+    # --- structured text ---
+
+    def read_structs(self, text: str) -> None:
+        for match in _STRUCT.finditer(text):
+            line = text.count("\n", 0, match.start()) + 1
+            pairs = dict(part.split(":=", 1) for part in match[1].split(",") if ":=" in part)
+            fields = {re.sub(r"[^a-z']", "", key.lower()): value.strip() for key, value in pairs.items()}
+            places = {key: next((n for n in names if n in fields), "") for key, names in ALIASES.items()}
+            if not places["x"] or not places["y"]:
+                continue
+            row: Row = {"line": line}
+            for key, field in places.items():
+                if field:
+                    value = fields[field]
+                    row[key] = value if key == "law" else self._number(value, field, line, False)
+            self.rows.append(row)
+        if not self.rows:
+            self._add(None, "expected (dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...), found neither")
+
+    def read_array(self, text: str) -> None:
+        match = _ARRAY.search(text)
+        assert match
+        line = text.count("\n", 0, match.start()) + 1
+        values = [self._number(part.strip(), "a position", line, False) for part in match[1].split(",")]
+        if len(values) % 2:
+            return self._add(line, f"expected pairs of master and slave positions, found {len(values)} numbers")
+        self.rows = [{"line": line, "x": x, "y": y} for x, y in zip(values[::2], values[1::2], strict=True)]
+        return None
+
+    # --- TwinCAT CNC ---
+
+    def read_cnc(self, text: str) -> tuple[bool, Interpolation]:
+        """Whether it is cyclic, and how it is interpolated."""
+        head: dict[str, str] = {}
+        values: list[tuple[int, list[float]]] = []
+        for i, line in enumerate(text.splitlines(), 1):
+            content = line.split("#")[0].strip()
+            if "=" in content:
+                key, _, value = content.partition("=")
+                head[key.strip().lower()] = value.strip()
+            elif content:
+                numbers = [self._number(cell, "a position", i, True) for cell in re.split(r"[\s;]+", content)]
+                values.append((i, [number for number in numbers if number is not None]))
+        if head.get("lines") not in (None, str(len(values))):
+            self._add(None, f"Lines: expected {head['lines']} lines of values, found {len(values)}")
+        function = head.get("functiontype", "1")
+        if function not in ("1", "4", "5"):
+            self._add(None, f"Functiontype: expected 1 (linear), 4 (line, poly5) or 5 (poly5, line), found {function}")
+        if self._wrong or not values:
+            return True, "linear"
+        if len(values[0][1]) == 1:  # slave positions at even distances; the turn closes with the first one
+            step = TURN / len(values)
+            self.rows = [{"line": i, "x": k * step, "y": row[0]} for k, (i, row) in enumerate(values)]
+        else:
+            self.rows = [{"line": i, "x": row[0], "y": row[1]} for i, row in values]
+        first = self.rows[0]
+        self.rows.append({**first, "x": first["x"] + TURN})
+        if function != "1":
+            # The segment that ends at the first point is the one that is named first.
+            names = ("quintic", "line") if function == "4" else ("line", "quintic")
+            for k, row in enumerate(self.rows[:-1]):
+                row["law"] = names[k % 2]
+        return True, "linear"
+
+    # --- laws of motion between points ---
+
+    def segments(self) -> list[dict[str, Any]]:
+        """Of rows with laws, each of which holds from its point to the next one."""
+        segments = []
+        for row, following in zip(self.rows, self.rows[1:], strict=False):
+            law = self._law(row)
+            segment: dict[str, Any] = {"to": {"x": following["x"], "y": following["y"]}, "law": law}
+            if law == "quintic":
+                ends = {"begin_v": row, "end_v": following}, {"begin_a": row, "end_a": following}
+                for key, of in zip("va", ends, strict=True):
+                    segment |= {end: at[key] for end, at in of.items() if at.get(key) is not None}
+            segments.append(segment)
+        self.tell()
+        segments[0]["from"] = {"x": self.rows[0]["x"], "y": self.rows[0]["y"]}
+        return segments
+
+    def _law(self, row: Row) -> str:
+        given = str(row.get("law") or "5")
+        if given in LAWS.values():
+            return given
+        plain = re.sub(r"[^a-z0-9]", "", given.lower().rpartition("type_")[2])
+        law = LAWS.get(plain)
+        if law is None:
+            self._add(row["line"], f"expected one of the functions {', '.join(LAWS)}, found {given!r}")
+        return law or "quintic"
+
+
+def _separator(line: str) -> str:
+    """Of the columns; blank: any number of blanks."""
+    for candidate in ("\t", ";", "|"):
+        if candidate in line:
+            return candidate
+    if _NUMBERS.fullmatch(line):
+        return " "
+    return "," if "," in line else " "
+
+
+def _split(line: str, separator: str) -> list[str]:
+    return line.split() if separator == " " else [cell.strip().strip('"') for cell in line.split(separator)]
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text.replace(",", "."))
+    except ValueError:
+        return not text
+    return True

@@ -1,0 +1,154 @@
+"""Cams from files of other systems (CAM-92)."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+import takt
+from takt.cam import Table
+
+X = np.array([0.0, 72.5, 140.0, 250.25, 360.0])
+Y = np.array([0.0, 3.125, 11.5, 4.75, 0.0])
+
+
+def german(number):
+    return f"{number:.3f}".replace(".", ",")
+
+
+TABLES = {
+    "semicolons and decimal commas": "x;y\n" + "\n".join(f"{german(x)};{german(y)}" for x, y in zip(X, Y, strict=True)),
+    "tabs, no header": "\n".join(f"{german(x)}\t{german(y)}" for x, y in zip(X, Y, strict=True)),
+    "blanks, as CODESYS writes them": "\r\n".join(f"{x:.6f} {y:.6f}" for x, y in zip(X, Y, strict=True)) + "\r\n",
+    "blanks and decimal commas": "\n".join(f"{german(x)}   {german(y)} // point" for x, y in zip(X, Y, strict=True)),
+    "commas": "# made by hand\nX,Y\n" + "\n".join(f"{x},{y}" for x, y in zip(X, Y, strict=True)),
+    "quotes and bars": '"Master"|"Slave"\n' + "\n".join(f'"{x}"|"{y}"' for x, y in zip(X, Y, strict=True)),
+    "other columns": "Slave Position [mm];Nr;Master Position [deg]\n"
+    + "\n".join(f"{german(y)};{i};{german(x)}" for i, (x, y) in enumerate(zip(X, Y, strict=True))),
+    "units below the titles": "Master pos;Slave pos\n[deg];[mm]\n"
+    + "\n".join(f"{german(x)};{german(y)}" for x, y in zip(X, Y, strict=True)),
+    "TwinCAT, positions": "Table1 : ARRAY[0..4, 0..1] OF LREAL := ["
+    + ", ".join(f"{x}, {y}" for x, y in zip(X, Y, strict=True))
+    + "];",
+    "CODESYS, structured text": "aPoints : ARRAY[0..4] OF SMC_CAMXYVA := [\n"
+    + ",\n".join(f"(dX := {x}, dY := {y})" for x, y in zip(X, Y, strict=True))
+    + "];",
+}
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize("text", TABLES.values(), ids=TABLES)
+def test_tables_of_points(tmp_path, text, encoding):  # CAM-92
+    file = tmp_path / "press.txt"
+    file.write_bytes(text.encode(encoding))
+    table = Table.from_file(file, cyclic=True)
+    assert table.name == "press"
+    assert np.array_equal(table.points.x, X)
+    assert np.array_equal(table.points.y, Y)
+    assert table.source["interpolation"] == "quintic"
+    assert table.cyclic
+
+
+def test_units_and_velocities_are_taken(tmp_path):  # CAM-92
+    file = tmp_path / "with units.csv"
+    file.write_text("phi;s;v;a\ndeg;mm;mm/deg;\n0,5;1,5;0,25;\n10,5;7;;0,125\n20;9;0;0\n")
+    table = Table.from_file(file, columns={"x": "phi", "y": 2, "v": "V", "a": 4}, interpolation="quintic")
+    assert (table.x_unit, table.y_unit) == ("deg", "mm")
+    assert list(table.points.x) == [0.5, 10.5, 20]
+    assert np.array_equal(table.points.v, [0.25, math.nan, 0], equal_nan=True)
+    assert np.array_equal(table.points.a, [math.nan, 0.125, 0], equal_nan=True)
+
+
+CODESYS_DEFAULT = """
+(* made by the cam editor *)
+  (dX := 0.0, dY := 0, dV := 0, dA := 0),
+  (dX := 120, dY := 120, dV := 1, dA := 0),
+  (dX := 240, dY := 240, dV := 1, dA := 0),
+  (dX := 360, dY := 360, dV := 0, dA := 0)
+"""
+
+
+def test_codesys_polynomials_are_those_of_codesys(tmp_path):  # CAM-92: its default cam, three quintics
+    file = tmp_path / "default.exp"
+    file.write_text(CODESYS_DEFAULT)
+    table = Table.from_file(file)
+    u = np.linspace(0, 1, 50)
+    # From rest at 0 to slope 1 at 120: y = 120 (6 u^3 - 8 u^4 + 3 u^5), from its six conditions.
+    assert np.allclose(table.at(120 * u).y, 120 * (6 * u**3 - 8 * u**4 + 3 * u**5))
+    assert np.allclose(table.at(np.linspace(120, 240, 9)).dy, 1)
+
+
+TWINCAT = """
+  (PointIndex := 1, FunctionType := MOTIONFUNCTYPE_MODSINUSLINE, MasterPos := 0, SlavePos := 0, SlaveVelo := 0),
+  (PointIndex := 2, FunctionType := MOTIONFUNCTYPE_POLYNOM1, MasterPos := 90, SlavePos := 40),
+  (PointIndex := 3, FunctionType := MOTIONFUNCTYPE_POLYNOM5, MasterPos := 150, SlavePos := 40, SlaveVelo := 0),
+  (PointIndex := 4, FunctionType := MOTIONFUNCTYPE_POLYNOM1, MasterPos := 270, SlavePos := 10, SlaveVelo := -0.2),
+  (PointIndex := 5, FunctionType := MOTIONFUNCTYPE_NOTDEF, MasterPos := 300, SlavePos := 4)
+"""
+TWINCAT_COLUMNS = """PointIndex\tFunctionType\tPointType\tRelIndex\tMasterPos\tSlavePos\tSlaveVelo\tSlaveAcc\tJerk
+1\t11\t0\t1\t0,0\t0,0\t0,0\t0,0\t0,0
+2\t1\t0\t1\t90,0\t40,0\t0,0\t0,0\t0,0
+3\t5\t0\t1\t150,0\t40,0\t0,0\t0,0\t0,0
+4\t1\t0\t1\t270,0\t10,0\t-0,2\t0,0\t0,0
+5\t0\t0\t1\t300,0\t4,0\t-0,2\t0,0\t0,0
+"""
+
+
+@pytest.mark.parametrize("text", [TWINCAT, TWINCAT_COLUMNS], ids=["structured text", "columns"])
+def test_twincat_motion_functions_become_laws(tmp_path, text):  # CAM-92
+    file = tmp_path / "mf.txt"
+    file.write_text(text)
+    table = Table.from_file(file)
+    own = Table.from_segments(
+        [
+            {"to": {"x": 90, "y": 40}, "law": "modified_sine"},
+            {"to": {"x": 150, "y": 40}, "law": "dwell"},
+            {"to": {"x": 270, "y": 10}, "begin_v": 0, "begin_a": 0, "end_v": -0.2, "end_a": 0},
+            {"to": {"x": 300, "y": 4}, "law": "line"},
+        ]
+    )
+    x = np.linspace(0, 300, 1001)
+    for got, wanted in zip(table.at(x), own.at(x), strict=True):
+        assert np.allclose(got, wanted, atol=1e-12)
+
+
+def test_twincat_cnc_tables_close_over_a_turn(tmp_path):  # CAM-92
+    file = tmp_path / "sine.tab"
+    values = [10 * math.sin(2 * math.pi * k / 36) for k in range(36)]
+    head = "Tablename = Sinus_360\nTabletype = 3 # one column\nTable-ID = 402\nFunctiontype = 1\nLines = 36\n"
+    file.write_text(head + "\n".join(f"{value:.9f}" for value in values))
+    table = Table.from_file(file, interpolation="quintic")
+    assert (table.begin, table.end, table.cyclic) == (0, 360, True)
+    x = np.linspace(0, 360, 500)
+    assert np.abs(table.at(x).y - 10 * np.sin(np.radians(x))).max() < 1e-3
+    zebra = tmp_path / "zebra.tab"
+    zebra.write_text("Tabletype = 4\nFunctiontype = 4\nLines = 2\n90 0\n270 180\n")  # the turn closes with a line
+    table = Table.from_file(zebra)
+    assert (table.begin, table.end) == (90, 450)
+    assert np.allclose(table.at(np.linspace(275, 445, 9)).dy, -1)
+
+
+@pytest.mark.parametrize(
+    ("text", "columns", "sentence"),
+    [
+        ("", None, "expected a table of numbers, found an empty file"),
+        ("x;y\n0,5;1\n1,5;abc\n", None, ":3: expected a finite number for y, found 'abc'"),
+        ("x;y\n0;1\n1.234,5;2\n", None, ":3: expected a finite number for x, found '1.234,5'"),
+        ("x;y\n0;nan\n1;2\n", None, ":2: expected a finite number for y, found 'nan'"),
+        ("x;y\n0;1\n", None, "expected 2 to 100,000 points, found 1"),
+        ("angle;lift\n0;1\n1;2\n", None, "expected columns for x and y, found 'angle', 'lift': say which with columns"),
+        ("0 1 2 3 4\n1 2 3 4 5\n", None, "expected the columns x, y and perhaps v, a, found 5"),
+        ("a;b\n0;1\n1;2\n", {"x": "a", "y": "c"}, "columns: expected for y one of a, b, or a number from 1 to 2"),
+        ("a;b\n0;1\n1;2\n", {"x": "a"}, "columns: expected x and y at least"),
+        ("x;y\n1;1\n0;2\n", None, "odd.txt:3:1: expected x above 1 of the point before, found 0"),
+        ("(MasterPos := 0, SlavePos := 0, FunctionType := BESTEHORN), (MasterPos := 1, SlavePos := 1)", None,
+         "expected one of the functions"),
+        ("Tabletype = 3\nLines = 3\n1\n2\n", None, "Lines: expected 3 lines of values, found 2"),
+        ("f(a := 1)", None, "expected (dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...), found neither"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_told_with_its_place(tmp_path, text, columns, sentence):  # CAM-92
+    file = tmp_path / "odd.txt"
+    file.write_text(text)
+    with pytest.raises(takt.ConfigError, match=re.escape(sentence)):
+        Table.from_file(file, columns=columns)
