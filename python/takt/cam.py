@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     FloatArray = NDArray[np.float64]
 
-Interpolation = Literal["linear", "quintic", "cubic_spline"]
+Interpolation = Literal["linear", "quintic", "cubic_spline", "monotone"]
 
 
 class Value(NamedTuple):

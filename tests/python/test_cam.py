@@ -181,7 +181,7 @@ def test_arrays_that_do_not_fit() -> None:
         cam.Table.from_points(["a", 1], [0, 1])
     with pytest.raises(ConfigError, match=r"cam: points\[0\].v: expected a finite number, found inf"):
         cam.Table.from_points([0, 1], [0, 1], v=[math.inf, 0])
-    with pytest.raises(ConfigError, match="expected one of linear, quintic, cubic_spline, found 'quintc'"):
+    with pytest.raises(ConfigError, match="expected one of linear, quintic, cubic_spline, monotone, found 'quintc'"):
         cam.Table.from_points([0, 1], [0, 1], interpolation="quintc")  # type: ignore[arg-type]
 
 

@@ -7,6 +7,7 @@
 #include "takt/cam/joints.h"
 #include "takt/cam/points.h"
 #include "takt/cam/segments.h"
+#include "takt/cam/tasks.h"
 #include "takt/cam/text.h"
 
 namespace takt::cam {
@@ -67,8 +68,10 @@ class Builder {
               "expected x above " + Text(points[i - 1].x) + " of the point before, found " + Text(p.x));
       }
       if (p.v && linear) Error(PathOf("points", i, ".v"), "expected no velocity in a linear cam, found " + Text(*p.v));
-      if (p.a && params_.interpolation != Interpolation::kQuintic) {
-        Error(PathOf("points", i, ".a"), "expected no acceleration but in a quintic cam, found " + Text(*p.a));
+      if (p.a && params_.interpolation != Interpolation::kQuintic &&
+          params_.interpolation != Interpolation::kMonotone) {
+        Error(PathOf("points", i, ".a"),
+              "expected no acceleration but in a quintic or monotone cam, found " + Text(*p.a));
       }
     }
   }
@@ -92,7 +95,7 @@ class Builder {
     Value& end = joints_.back().before.value;
     const Value& beginning = joints_.back().behind.value;
     end.dy = points.back().v.value_or(beginning.dy);
-    if (params_.interpolation == Interpolation::kQuintic) end.ddy = points.back().a.value_or(beginning.ddy);
+    if (params_.interpolation != Interpolation::kCubicSpline) end.ddy = points.back().a.value_or(beginning.ddy);
   }
 
   struct Nature {
@@ -134,7 +137,8 @@ class Builder {
                                        {".end_v", s.end_v.value_or(0)},
                                        {".end_a", s.end_a.value_or(0)},
                                        {".sine_share", s.sine_share},
-                                       {".cosine_share", s.cosine_share}}) {
+                                       {".cosine_share", s.cosine_share},
+                                       {".inflection", s.inflection}}) {
       CheckFinite(PathOf("segments", i, field), value);
     }
     if (from.x != before.x) {
@@ -149,9 +153,11 @@ class Builder {
       Error(PathOf("segments", i, ".to.y"),
             "expected y " + Text(from.y) + " of its beginning in a dwell, found " + Text(s.to.y));
     }
-    if (s.law != Law::kQuintic && (s.begin_v || s.begin_a || s.end_v || s.end_a)) {
+    if (!ConnectsAny(s.law) && (s.begin_v || s.begin_a || s.end_v || s.end_a)) {
       Error(PathOf("segments", i, ".law"),
-            "expected quintic where velocities or accelerations are given, found another law");
+            "expected a law that takes velocities and accelerations where they are given (quintic, modified_sine, "
+            "modified_trapezoid, cycloid, sine_constant_cosine, polynomial_345, polynomial_4567, polynomial_8, task, "
+            "least_acceleration, least_jerk), found another law");
     }
   }
 

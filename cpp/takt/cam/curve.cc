@@ -6,12 +6,26 @@
 
 namespace takt::cam {
 
+namespace {
+
+// The sum of two sines of the same frequency.
+void Add(double a, double phase_a, double b, double phase_b, double& amplitude, double& phase) noexcept {
+  const double sine = a * maths::Sin(phase_a) + b * maths::Sin(phase_b);
+  const double cosine = a * maths::Cos(phase_a) + b * maths::Cos(phase_b);
+  amplitude = maths::Hypot(sine, cosine);
+  phase = maths::Atan2(sine, cosine);
+}
+
+}  // namespace
+
 Curve Derivative(const Curve& curve) noexcept {
   Curve result;
   for (std::size_t i = 0; i + 1 < curve.c.size(); ++i) result.c[i] = static_cast<double>(i + 1) * curve.c[i + 1];
   result.amplitude = curve.amplitude * curve.frequency;
   result.frequency = curve.frequency;
   result.phase = curve.phase + std::numbers::pi / 2;
+  result.amplitude2 = 2 * curve.amplitude2 * curve.frequency;
+  result.phase2 = curve.phase2 + std::numbers::pi / 2;
   return result;
 }
 
@@ -23,6 +37,7 @@ Curve Scaled(const Curve& curve, double length, double height) noexcept {
     factor /= length;
   }
   result.amplitude *= height;
+  result.amplitude2 *= height;
   result.frequency /= length;
   return result;
 }
@@ -30,13 +45,10 @@ Curve Scaled(const Curve& curve, double length, double height) noexcept {
 Curve Combined(double p, const Curve& first, double q, const Curve& second) noexcept {
   Curve result;
   for (std::size_t i = 0; i < result.c.size(); ++i) result.c[i] = p * first.c[i] + q * second.c[i];
-  const double a = p * first.amplitude, b = q * second.amplitude;
-  const maths::SineCosine one = maths::SinCos(first.phase), other = maths::SinCos(second.phase);
-  const double sine = a * one.sine + b * other.sine;
-  const double cosine = a * one.cosine + b * other.cosine;
-  result.amplitude = maths::Hypot(sine, cosine);
-  result.frequency = a != 0 ? first.frequency : second.frequency;
-  result.phase = maths::Atan2(sine, cosine);
+  const bool of_first = first.amplitude != 0 || first.amplitude2 != 0;
+  result.frequency = of_first ? first.frequency : second.frequency;
+  Add(p * first.amplitude, first.phase, q * second.amplitude, second.phase, result.amplitude, result.phase);
+  Add(p * first.amplitude2, first.phase2, q * second.amplitude2, second.phase2, result.amplitude2, result.phase2);
   return result;
 }
 

@@ -1,5 +1,6 @@
-// What a cam is between two joints: a polynomial of the seventh degree and a sine, over the distance d from the first
-// joint. Every law of motion is made of such pieces; so derivatives, roots and extremes are exact.
+// What a cam is between two joints: a polynomial of the eighth degree, a sine and one of twice its frequency, over the
+// distance d from the first joint. Every law of motion is made of such pieces; so derivatives, roots and extremes are
+// exact.
 #pragma once
 
 #include <array>
@@ -18,17 +19,22 @@ struct Value {
   bool operator==(const Value&) const = default;
 };
 
-// c[0] + c[1] d + ... + c[7] d^7 + amplitude sin(frequency d + phase)
+inline constexpr std::size_t kCoefficients = 9;
+
+// c[0] + c[1] d + ... + c[8] d^8 + amplitude sin(frequency d + phase) + amplitude2 sin(2 frequency d + phase2)
 struct Curve {
-  std::array<double, 8> c{};
+  std::array<double, kCoefficients> c{};
   double amplitude = 0;
   double frequency = 0;  // rad per master's unit
   double phase = 0;      // rad
+  double amplitude2 = 0;
+  double phase2 = 0;  // rad
 
   double At(double d) const noexcept {
-    double sum = c[7];
-    for (std::size_t i = 7; i-- > 0;) sum = sum * d + c[i];
-    return amplitude == 0 ? sum : sum + amplitude * maths::Sin(frequency * d + phase);
+    double sum = c[kCoefficients - 1];
+    for (std::size_t i = kCoefficients - 1; i-- > 0;) sum = sum * d + c[i];
+    if (amplitude != 0) sum += amplitude * maths::Sin(frequency * d + phase);
+    return amplitude2 == 0 ? sum : sum + amplitude2 * maths::Sin(2 * frequency * d + phase2);
   }
   bool operator==(const Curve&) const = default;
 };
@@ -36,7 +42,7 @@ struct Curve {
 Curve Derivative(const Curve& curve) noexcept;
 // height * curve(d / length)
 Curve Scaled(const Curve& curve, double length, double height) noexcept;
-// p * first + q * second. If both have a sine, then of the same frequency.
+// p * first + q * second. If both have sines, then of the same frequency.
 Curve Combined(double p, const Curve& first, double q, const Curve& second) noexcept;
 // y and its derivatives at d.
 Value ValueOf(const Curve& curve, double d) noexcept;

@@ -16,9 +16,9 @@ double LengthOf(const Table& table, std::size_t i) {
 
 // The curve stays this near to its value at 0: cheap, and mostly enough to see that a piece has no extreme.
 double ReachOf(const Curve& curve, double h) {
-  double reach = std::abs(curve.c[7]);
-  for (std::size_t k = 7; k-- > 1;) reach = reach * h + std::abs(curve.c[k]);
-  return reach * h + std::abs(curve.amplitude);
+  double reach = std::abs(curve.c[kCoefficients - 1]);
+  for (std::size_t k = kCoefficients - 1; k-- > 1;) reach = reach * h + std::abs(curve.c[k]);
+  return reach * h + std::abs(curve.amplitude) + std::abs(curve.amplitude2);
 }
 
 void Include(const Curve& curve, double begin, double h, Bounds& bounds) {
@@ -46,10 +46,9 @@ Roots Places(const Table& table, std::size_t i, double y) {
   const double h = LengthOf(table, i);
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * (std::abs(y) + std::abs(curve.c[0]));
   curve.c[0] -= y;
-  double reach = std::abs(curve.amplitude) + rounding;
-  for (std::size_t k = curve.c.size(); k-- > 1;) {
+  double reach = std::abs(curve.amplitude) + std::abs(curve.amplitude2) + rounding;
+  for (std::size_t k = curve.c.size(); k-- > 1;)
     reach += std::abs(curve.c[k]) * maths::Power(h, static_cast<unsigned>(k));
-  }
   if (std::abs(curve.c[0]) > reach) return {};
   return RootsOf(curve, h, rounding);
 }

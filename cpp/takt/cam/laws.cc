@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "takt/cam/roots.h"
+#include "takt/cam/tasks.h"
 #include "takt/core/describe.h"
 #include "takt/core/maths.h"
 
@@ -81,6 +82,22 @@ std::vector<LawPiece> Family(const Shares& shares) {
   return pieces;
 }
 
+// y = (1 - cos(pi z)) / 2 - (1 - cos(2 pi z)) / 8
+Curve DoubleHarmonic() {
+  Curve curve{.amplitude = -0.5, .frequency = kPi, .phase = kPi / 2, .amplitude2 = 0.125, .phase2 = kPi / 2};
+  curve.c[0] = 0.375;
+  return curve;
+}
+
+// 1 - y(1 - z)
+Curve Reversed(const Curve& curve) {
+  Curve result = curve;
+  result.c[0] = 1 - curve.c[0];
+  result.phase = kPi - curve.frequency - curve.phase + kPi;
+  result.phase2 = kPi - 2 * curve.frequency - curve.phase2 + kPi;
+  return result;
+}
+
 }  // namespace
 
 std::vector<LawPiece> PiecesOf(Law law, double sine_share, double cosine_share) {
@@ -92,14 +109,24 @@ std::vector<LawPiece> PiecesOf(Law law, double sine_share, double cosine_share) 
       return {{0, {.c = {0, 0, 0, 10, -15, 6}}}};
     case Law::kPolynomial4567:
       return {{0, {.c = {0, 0, 0, 0, 35, -84, 70, -20}}}};
+    case Law::kPolynomial8:
+      return PiecesOf(Law::kPolynomial4567);
+    case Law::kTask:
+    case Law::kLeastAcceleration:
+    case Law::kLeastJerk:
+      return PiecesOf(Resolved(law, {.length = 1, .end = {.y = 1}}));
+    case Law::kDoubleHarmonic:
+      return {{0, DoubleHarmonic()}};
+    case Law::kDoubleHarmonicBack:
+      return {{0, Reversed(DoubleHarmonic())}};
     default:
       return Family(SharesOf(law, sine_share, cosine_share));
   }
 }
 
 bool JumpsInAcceleration(Law law, double sine_share) noexcept {
-  return law == Law::kLine || law == Law::kParabola || law == Law::kHarmonic ||
-         (law == Law::kSineConstantCosine && sine_share == 0);
+  return law == Law::kLine || law == Law::kDoubleHarmonic || law == Law::kDoubleHarmonicBack || law == Law::kParabola ||
+         law == Law::kHarmonic || (law == Law::kSineConstantCosine && sine_share == 0);
 }
 
 PeakFactors PeakFactorsOf(Law law, double sine_share, double cosine_share) {
@@ -123,7 +150,9 @@ PeakFactors PeakFactorsOf(Law law, double sine_share, double cosine_share) {
 }
 
 void describe(Enumeration<Law>& e) {
-  e.about("A law of motion. Those from parabola on go from rest to rest.");
+  e.about(
+      "A law of motion. Those from parabola to sine_constant_cosine go from rest to rest unless velocities or "
+      "accelerations at their ends are given.");
   e.value(Law::kDwell, "dwell", "Stays where it is.");
   e.value(Law::kLine, "line", "Constant velocity.");
   e.value(Law::kQuintic, "quintic", "Polynomial of the fifth degree, with velocity and acceleration at both ends.");
@@ -137,6 +166,16 @@ void describe(Enumeration<Law>& e) {
   e.value(Law::kSineConstantCosine, "sine_constant_cosine",
           "Acceleration that rises along a sine, stays, falls along a cosine; sine_share and cosine_share say how "
           "long.");
+  e.value(Law::kDoubleHarmonic, "double_harmonic",
+          "From rest to a reversal: the acceleration at the end is that of the reversal, -pi^2 rise / length^2.");
+  e.value(Law::kDoubleHarmonicBack, "double_harmonic_back", "From such a reversal to rest.");
+  e.value(Law::kPolynomial8, "polynomial_8",
+          "Polynomial of the eighth degree: the jerk is 0 at the ends, the acceleration at the inflection.");
+  e.value(Law::kTask, "task", "As VDI 2143 recommends: modified_sine, with accelerations at the ends quintic.");
+  e.value(Law::kLeastAcceleration, "least_acceleration",
+          "Of quintic, modified_sine, modified_trapezoid, cycloid and polynomial_4567 the one with the least peak "
+          "acceleration.");
+  e.value(Law::kLeastJerk, "least_jerk", "Of the same the one with the least peak jerk.");
 }
 
 }  // namespace takt::cam

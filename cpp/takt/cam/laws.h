@@ -30,6 +30,13 @@ enum class Law : std::uint8_t {
   kPolynomial345,
   kPolynomial4567,
   kSineConstantCosine,
+  kDoubleHarmonic,      // from rest to a reversal, with its acceleration
+  kDoubleHarmonicBack,  // from a reversal to rest
+  // Between any velocities and accelerations (tasks.h).
+  kPolynomial8,
+  kTask,               // the law that VDI 2143 recommends for the ends
+  kLeastAcceleration,  // of several laws the one with the least peak
+  kLeastJerk,
 };
 
 // A piece of a law: from `begin` to the next piece, or 1.

@@ -25,6 +25,9 @@ void describe(Enumeration<Interpolation>& e) {
       Interpolation::kCubicSpline, "cubic_spline",
       "Polynomials of the third degree; the acceleration jumps only where a velocity is given. Its ends are natural, "
       "or periodic where the cam is cyclic.");
+  e.value(Interpolation::kMonotone, "monotone",
+          "Polynomials of the fifth degree that rise and fall only where the points do; nothing up to the acceleration "
+          "jumps.");
 }
 
 void describe(Description<CamPoint>& d) {
@@ -32,7 +35,7 @@ void describe(Description<CamPoint>& d) {
   d.required<&CamPoint::x>(kX, "Where the master is.");
   d.required<&CamPoint::y>(kY, "Where the slave is then.");
   d.defaulted<&CamPoint::v>(kV, "Velocity, dy/dx.");
-  d.defaulted<&CamPoint::a>(kA, "Acceleration, d2y/dx2; quintic only.");
+  d.defaulted<&CamPoint::a>(kA, "Acceleration, d2y/dx2; quintic and monotone only.");
 }
 
 void describe(Description<CamPlace>& d) {
@@ -47,12 +50,21 @@ void describe(Description<CamSegment>& d) {
   d.defaulted<&S::from>("Where it begins; unset: where the one before ends, the first one at 0, 0.");
   d.required<&S::to>("Where it ends.");
   d.defaulted<&S::law>("The law of motion.");
-  d.defaulted<&S::begin_v>(kV, "Quintic: velocity at its beginning; unset: as the segment before has it, else 0.");
-  d.defaulted<&S::begin_a>(kA, "Quintic: acceleration at its beginning; unset: likewise.");
-  d.defaulted<&S::end_v>(kV, "Quintic: velocity at its end; unset: as the next segment has it, else 0.");
-  d.defaulted<&S::end_a>(kA, "Quintic: acceleration at its end; unset: likewise.");
+  d.defaulted<&S::begin_v>(
+      kV,
+      "Velocity at its beginning; unset: of quintic, task, least_acceleration and least_jerk as the segment before has "
+      "it, else 0.");
+  d.defaulted<&S::begin_a>(kA, "Acceleration at its beginning; unset: likewise.");
+  d.defaulted<&S::end_v>(kV, "Velocity at its end; unset: likewise, as the next segment has it.");
+  d.defaulted<&S::end_a>(kA, "Acceleration at its end; unset: likewise.");
   d.defaulted<&S::sine_share>(between(0, 1), "Sine-constant-cosine combination: share of the way along the sine.");
   d.defaulted<&S::cosine_share>(between(0, 1), "Likewise along the cosine; what is left has constant acceleration.");
+  d.defaulted<&S::inflection>(between(0.05, 0.95),
+                              "Laws with sines and polynomial_8: share of the length before the acceleration changes "
+                              "its sign; other than 0.5 the law is asymmetric.");
+  d.rule<&S::inflection>("must be from 0.35 to 0.65 for polynomial_8", [](const S& s) {
+    return s.law != Law::kPolynomial8 || (s.inflection >= 0.35 && s.inflection <= 0.65);
+  });
   d.rule<&S::cosine_share>("must leave sine_share and cosine_share 1 at most together",
                            [](const S& s) { return s.sine_share + s.cosine_share <= 1; });
 }

@@ -21,6 +21,7 @@ enum class Interpolation : std::uint8_t {
   kLinear,       // straight lines; the velocity jumps at the points
   kQuintic,      // polynomials of the fifth degree; position, velocity and acceleration have no jump
   kCubicSpline,  // polynomials of the third degree; the acceleration jumps only where a velocity is given
+  kMonotone,     // polynomials of the fifth degree that rise and fall only as the points do
 };
 
 // Velocity is dy/dx, acceleration d²y/dx². What is not given is free: see Interpolate.
@@ -36,8 +37,9 @@ struct CamPlace {
   double y = 0;  // slave's unit
 };
 
-// One law of motion. Of a quintic's ends, what is not given is as the neighbour has it; 0 where the neighbour is a
-// quintic that does not say so either, and at the ends of a cam that is not cyclic.
+// One law of motion. Of the ends of a quintic, and of the laws that choose one by themselves (HasFreeEnds), what is not
+// given is as the neighbour has it; 0 where the neighbour does not say so either, and at the ends of a cam that is not
+// cyclic. Of other laws it is 0.
 struct CamSegment {
   std::optional<CamPlace> from{};  // unset: where the segment before ends; the first one: (0, 0)
   CamPlace to;
@@ -48,6 +50,7 @@ struct CamSegment {
   std::optional<double> end_a{};
   double sine_share = 0.25;  // sine-constant-cosine combination only
   double cosine_share = 0.5;
+  double inflection = 0.5;  // share of the length, where the acceleration changes its sign; tasks.h
 };
 
 struct CamParams {

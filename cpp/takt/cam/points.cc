@@ -1,5 +1,6 @@
 #include "takt/cam/points.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -206,6 +207,33 @@ class Spline {
   std::vector<Vector<N>> right_;  // at the end the solution
 };
 
+// Slopes at the points such that no quintic between two of them, with accelerations 0 at both, leaves their range.
+//
+// With m the slope of the straight line and v, w the slopes at both ends, all of one sign, the derivative of such a
+// quintic is v (1 - S) + w S + 30 (m - (v + w) / 2) u^2 (1 - u)^2, where S rises from 0 to 1. It is linear in v and w,
+// and nowhere negative (m > 0) for v and w each 0 or 2 m; so it is not for any v and w from 0 to 2 m. Inside that the
+// slopes are the weighted harmonic means of Fritsch and Butland; 0 where the points turn.
+std::vector<double> MonotoneSlopes(std::span<const CamPoint> points, bool cyclic) {
+  const std::size_t n = points.size();
+  const auto length = [&](std::size_t i) { return points[i + 1].x - points[i].x; };
+  const auto slope = [&](std::size_t i) { return (points[i + 1].y - points[i].y) / length(i); };
+  const auto mean = [&](std::size_t before, std::size_t behind) {
+    const double m = slope(before), k = slope(behind);
+    if (!(m * k > 0)) return 0.0;
+    const double h = length(before), g = length(behind);
+    const double harmonic = 3 * (h + g) / ((2 * g + h) / m + (g + 2 * h) / k);
+    const double most = 2 * std::min(std::abs(m), std::abs(k));
+    return std::clamp(harmonic, -most, most);
+  };
+  std::vector<double> slopes(n);
+  for (std::size_t i = 1; i + 1 < n; ++i) slopes[i] = mean(i - 1, i);
+  slopes.front() = cyclic ? mean(n - 2, 0) : slope(0);
+  slopes.back() = cyclic ? slopes.front() : slope(n - 2);
+  for (std::size_t i = 0; i < n; ++i) slopes[i] = points[i].v.value_or(slopes[i]);
+  if (cyclic && !points.back().v) slopes.back() = slopes.front();
+  return slopes;
+}
+
 bool GivesNothing(const CamPoint& p) {
   return !p.v && !p.a;
 }
@@ -229,6 +257,12 @@ std::vector<Curve> Interpolate(std::span<const CamPoint> points, Interpolation i
     pieces([&](std::size_t i, double h, double slope) {
       const double v0 = spline.solution()[i][0], v1 = spline.solution()[i + 1][0];
       return Curve{.c = {0, v0, (3 * slope - 2 * v0 - v1) / h, (v0 + v1 - 2 * slope) / (h * h)}};
+    });
+  } else if (interpolation == Interpolation::kMonotone) {
+    const std::vector<double> slopes = MonotoneSlopes(points, cyclic);
+    pieces([&](std::size_t i, double h, double) {
+      const auto value = [&](std::size_t k) { return Value{points[k].y, slopes[k], points[k].a.value_or(0), 0}; };
+      return Quintic(h, value(i), value(i + 1));
     });
   } else {
     const Spline<2> spline(points, cyclic);

@@ -4,6 +4,8 @@
 #include <limits>
 #include <numbers>
 
+#include "takt/core/maths.h"
+
 namespace takt::cam {
 
 namespace {
@@ -26,7 +28,7 @@ void Append(double root, Roots& roots) {
 double RoundingOf(const Curve& curve, double h) {
   double sum = 0;
   for (std::size_t i = curve.c.size(); i-- > 0;) sum = sum * h + std::abs(curve.c[i]);
-  return 4 * std::numeric_limits<double>::epsilon() * (sum + std::abs(curve.amplitude));
+  return 4 * std::numeric_limits<double>::epsilon() * (sum + std::abs(curve.amplitude) + std::abs(curve.amplitude2));
 }
 
 // The zero between low and high, where the curve has different signs: Newton, or halving where that leads away.
@@ -57,17 +59,61 @@ Roots OfSine(const Curve& curve, double h) {
   return roots;
 }
 
+// Of p sin(w) + q sin(2w + delta) with w = frequency d + phase: with t = tan(w/2) a polynomial of the fourth degree,
+// for each turn of w from -pi to pi. Where t is infinite the pieces meet: a zero or not, it parts the curve there.
+Roots OfSines(const Curve& curve, double h) {
+  constexpr double kPi = std::numbers::pi;
+  const double p = curve.amplitude, q = curve.amplitude2, delta = curve.phase2 - 2 * curve.phase;
+  const double sine = q * maths::Sin(delta), cosine = q * maths::Cos(delta);
+  // In t from -1 to 1, and in 1/t beyond.
+  const Curve inner{.c = {sine, 2 * p + 4 * cosine, -6 * sine, 2 * p - 4 * cosine, sine}};
+  const Curve outer{.c = {sine, 2 * p - 4 * cosine, -6 * sine, 2 * p + 4 * cosine, sine}};
+  std::array<double, kMaxRoots + 2> angles{};  // in (-pi, pi]
+  std::size_t count = 0;
+  const auto take = [&](double angle) {
+    if (count < angles.size()) angles[count++] = std::remainder(angle, 2 * kPi);
+  };
+  for (const bool within : {true, false}) {
+    const Curve& of = within ? inner : outer;
+    Curve shifted;  // over t + 1
+    for (std::size_t i = 0; i <= 4; ++i) {
+      double binomial = 1;
+      for (std::size_t k = 0; k <= i; ++k) {
+        shifted.c[k] += of.c[i] * binomial * ((i - k) % 2 == 0 ? 1 : -1);
+        binomial = binomial * static_cast<double>(i - k) / static_cast<double>(k + 1);
+      }
+    }
+    for (const double at : RootsOf(shifted, 2)) {
+      const double t = at - 1;
+      take(within ? 2 * maths::Atan(t) : 2 * maths::Atan2(1, t));
+    }
+  }
+  take(kPi);
+  std::sort(angles.begin(), angles.begin() + static_cast<std::ptrdiff_t>(count));
+  Roots roots;
+  const double turns = std::floor(curve.phase / (2 * kPi) - 1);
+  for (double turn = turns; roots.count < kMaxRoots; ++turn) {
+    double x = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      x = (angles[i] + 2 * kPi * turn - curve.phase) / curve.frequency;
+      if (x > -1e-9 * h && x < h * (1 + 1e-9)) Append(std::clamp(x, 0.0, h), roots);
+    }
+    if (x >= h) break;
+  }
+  return roots;
+}
+
 }  // namespace
 
 Roots RootsOf(const Curve& curve, double h, double rounding_before) noexcept {
   // The curve and its derivatives, down to the one whose zeros are known; each is monotonic between those of the next.
-  std::array<Curve, 9> chain;
+  std::array<Curve, kCoefficients + 1> chain;
   chain[0] = curve;
-  const bool sine = curve.amplitude != 0 && curve.frequency > 0;
+  const bool sine = (curve.amplitude != 0 || curve.amplitude2 != 0) && curve.frequency > 0;
   const std::size_t last = DegreeOf(curve) + (sine ? 1 : 0);
   for (std::size_t i = 1; i <= std::max<std::size_t>(last, 1); ++i) chain[i] = Derivative(chain[i - 1]);
   Roots roots;
-  if (sine) roots = OfSine(chain[last], h);
+  if (sine) roots = curve.amplitude2 == 0 ? OfSine(chain[last], h) : OfSines(chain[last], h);
   // A constant goes through the loop, too.
   for (std::size_t k = std::max<std::size_t>(last, 1); k-- > 0;) {
     const double rounding = RoundingOf(chain[k], h) + (k == 0 ? rounding_before : 0);

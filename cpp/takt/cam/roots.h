@@ -8,7 +8,7 @@
 
 namespace takt::cam {
 
-// Enough for a polynomial of the seventh degree with a whole turn of a sine.
+// Enough for a polynomial of the eighth degree with a whole turn of a sine and two of the other.
 inline constexpr std::size_t kMaxRoots = 16;
 
 struct Roots {

@@ -9,7 +9,8 @@
 
 namespace takt::cam {
 
-// Segments with their beginnings and the velocities and accelerations at a quintic's ends filled in.
+// Segments with their beginnings and the velocities and accelerations at their ends filled in, and with the law that
+// they are made with.
 std::vector<CamSegment> Completed(std::span<const CamSegment> segments, bool cyclic);
 
 struct SegmentPiece {

@@ -11,6 +11,17 @@ namespace {
 
 constexpr std::size_t kBucketsPerPiece = 2;
 
+void AddSine(double amplitude, double frequency, double phase, double d, Value& value) noexcept {
+  const maths::SineCosine wave = maths::SinCos(frequency * d + phase);
+  const double sine = amplitude * wave.sine;
+  const double cosine = amplitude * wave.cosine;
+  const double f2 = frequency * frequency;
+  value.y += sine;
+  value.dy += frequency * cosine;
+  value.ddy -= f2 * sine;
+  value.dddy -= f2 * frequency * cosine;
+}
+
 }  // namespace
 
 Table::Table(CamParams source, std::span<const double> begins, std::span<const Curve> curves, double end)
@@ -20,8 +31,9 @@ Table::Table(CamParams source, std::span<const double> begins, std::span<const C
     Piece piece;
     piece.x = begins[i];
     std::copy_n(curve.c.begin(), 6, piece.c);
-    const More more{curve.c[6], curve.c[7], curve.amplitude, curve.frequency, curve.phase};
-    if (more.c6 != 0 || more.c7 != 0 || more.amplitude != 0) {
+    const More more{curve.c[6],      curve.c[7],  curve.c[8],       curve.amplitude,
+                    curve.frequency, curve.phase, curve.amplitude2, curve.phase2};
+    if (more.c6 != 0 || more.c7 != 0 || more.c8 != 0 || more.amplitude != 0 || more.amplitude2 != 0) {
       piece.more = static_cast<std::uint32_t>(more_.size());
       more_.push_back(more);
     }
@@ -78,19 +90,12 @@ Value Table::At(double x) const noexcept {
 
 void Table::Add(const More& m, double d, Value& value) noexcept {
   const double d2 = d * d, d4 = d2 * d2;
-  value.y += d4 * d2 * (m.c6 + d * m.c7);
-  value.dy += d4 * d * (6 * m.c6 + d * 7 * m.c7);
-  value.ddy += d4 * (30 * m.c6 + d * 42 * m.c7);
-  value.dddy += d2 * d * (120 * m.c6 + d * 210 * m.c7);
-  if (m.amplitude == 0) return;
-  const maths::SineCosine wave = maths::SinCos(m.frequency * d + m.phase);
-  const double sine = m.amplitude * wave.sine;
-  const double cosine = m.amplitude * wave.cosine;
-  const double f = m.frequency, f2 = f * f;
-  value.y += sine;
-  value.dy += f * cosine;
-  value.ddy -= f2 * sine;
-  value.dddy -= f2 * f * cosine;
+  value.y += d4 * d2 * (m.c6 + d * (m.c7 + d * m.c8));
+  value.dy += d4 * d * (6 * m.c6 + d * (7 * m.c7 + d * 8 * m.c8));
+  value.ddy += d4 * (30 * m.c6 + d * (42 * m.c7 + d * 56 * m.c8));
+  value.dddy += d2 * d * (120 * m.c6 + d * (210 * m.c7 + d * 336 * m.c8));
+  if (m.amplitude != 0) AddSine(m.amplitude, m.frequency, m.phase, d, value);
+  if (m.amplitude2 != 0) AddSine(m.amplitude2, 2 * m.frequency, m.phase2, d, value);
 }
 
 Curve Table::CurveOf(std::size_t i) const noexcept {
@@ -101,9 +106,12 @@ Curve Table::CurveOf(std::size_t i) const noexcept {
   const More& more = more_[piece.more];
   curve.c[6] = more.c6;
   curve.c[7] = more.c7;
+  curve.c[8] = more.c8;
   curve.amplitude = more.amplitude;
   curve.frequency = more.frequency;
   curve.phase = more.phase;
+  curve.amplitude2 = more.amplitude2;
+  curve.phase2 = more.phase2;
   return curve;
 }
 

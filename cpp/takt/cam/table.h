@@ -63,8 +63,9 @@ class Table {
   };
   // What few laws need.
   struct More {
-    double c6 = 0, c7 = 0;
+    double c6 = 0, c7 = 0, c8 = 0;
     double amplitude = 0, frequency = 0, phase = 0;
+    double amplitude2 = 0, phase2 = 0;
   };
 
   std::size_t BucketOf(double x) const noexcept { return static_cast<std::size_t>((x - begin_) * buckets_per_x_); }

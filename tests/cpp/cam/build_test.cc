@@ -114,9 +114,9 @@ TEST(BuildSegments, RefusesWhatIsNoCam) {
               ElementsAre("segments[1].to.x: expected x above 10 of its beginning, found 10"));
   EXPECT_THAT(Errors(Segments({To(10, 5, Law::kDwell)})),
               ElementsAre("segments[0].to.y: expected y 0 of its beginning in a dwell, found 5"));
-  CamSegment given = To(10, 5, Law::kCycloid);
+  CamSegment given = To(10, 5, Law::kParabola);
   given.end_v = 1;
-  EXPECT_THAT(Errors(Segments({given})), ElementsAre(HasSubstr("segments[0].law: expected quintic where velocities")));
+  EXPECT_THAT(Errors(Segments({given})), ElementsAre(HasSubstr("segments[0].law: expected a law that takes velocities")));
   EXPECT_THAT(Errors(Segments(std::vector<CamSegment>(20'001))), ElementsAre(HasSubstr("20,000 segments at most")));
 }
 

@@ -52,8 +52,8 @@ TEST(LoadCams, MakesTablesForTheAxes) {
   ASSERT_THAT(loaded.problems, IsEmpty());
   World world(*loaded.machine);
   ASSERT_EQ(world.cams.size(), 2u);
-  EXPECT_EQ(world.cams[0].name(), "flat");
-  EXPECT_FALSE(world.cams[0].cyclic());
+  EXPECT_EQ(world.cams.tables[0].name(), "flat");
+  EXPECT_FALSE(world.cams.tables[0].cyclic());
   EXPECT_EQ(world.cams[1].name(), "saw");
   EXPECT_TRUE(world.cams[1].cyclic());
   EXPECT_EQ(world.cams[1].At(90).y, 10);
@@ -88,11 +88,11 @@ TEST(LoadCams, ReadsSegments) {
   ASSERT_THAT(loaded.problems, IsEmpty());
   EXPECT_THAT(loaded.warnings, IsEmpty());
   const World world(*loaded.machine);
-  EXPECT_NEAR(world.cams[0].At(60).y, 25, 1e-12);
-  EXPECT_NEAR(world.cams[0].At(240).dy, -0.4, 1e-12);
+  EXPECT_NEAR(world.cams.tables[0].At(60).y, 25, 1e-12);
+  EXPECT_NEAR(world.cams.tables[0].At(240).dy, -0.4, 1e-12);
   const LoadResult again = LoadMachine(WriteYaml(*loaded.machine), "again.yaml");
   EXPECT_THAT(again.problems, IsEmpty());
-  EXPECT_EQ(World(*again.machine).cams[0].At(200), world.cams[0].At(200));
+  EXPECT_EQ(World(*again.machine).cams[0].At(200), world.cams.tables[0].At(200));
   EXPECT_THAT(CamProblems("  - {name: a, segments: [{to: {x: 1, y: 1}}, {to: {x: 1, y: 2}}]}\n"),
               ElementsAre(HasSubstr("m.yaml:4:55: cams[0].segments[1].to.x: expected x above 1 of its beginning")));
   EXPECT_THAT(CamProblems("  - {name: a, segments: [{to: {x: 1, y: 1}, law: cycloidal}]}\n"),
@@ -114,7 +114,7 @@ TEST_F(LoadCamFiles, ReadsFilesBesideTheMachineFile) {
   const LoadResult loaded = Load("  - {name: a, cyclic: true, file: cam.csv}\n");
   ASSERT_THAT(loaded.problems, IsEmpty());
   const World world(*loaded.machine);
-  EXPECT_EQ(world.cams[0].At(90).y, 10);
+  EXPECT_EQ(world.cams.tables[0].At(90).y, 10);
   EXPECT_TRUE(loaded.names_files);
   // What is written out needs no file any more.
   const LoadResult again = LoadMachine(WriteYaml(*loaded.machine), "nowhere/m.yaml");
