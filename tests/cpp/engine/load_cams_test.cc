@@ -51,12 +51,12 @@ TEST(LoadCams, MakesTablesForTheAxes) {
                   "m.yaml");
   ASSERT_THAT(loaded.problems, IsEmpty());
   World world(*loaded.machine);
-  ASSERT_EQ(world.cams.size(), 2u);
+  ASSERT_EQ(world.cams.of_machine, 2u);
   EXPECT_EQ(world.cams.tables[0].name(), "flat");
   EXPECT_FALSE(world.cams.tables[0].cyclic());
-  EXPECT_EQ(world.cams[1].name(), "saw");
-  EXPECT_TRUE(world.cams[1].cyclic());
-  EXPECT_EQ(world.cams[1].At(90).y, 10);
+  EXPECT_EQ(world.cams.tables[1].name(), "saw");
+  EXPECT_TRUE(world.cams.tables[1].cyclic());
+  EXPECT_EQ(world.cams.tables[1].At(90).y, 10);
 }
 
 TEST(LoadCams, NamesFilePlaceAndValue) {
@@ -92,7 +92,7 @@ TEST(LoadCams, ReadsSegments) {
   EXPECT_NEAR(world.cams.tables[0].At(240).dy, -0.4, 1e-12);
   const LoadResult again = LoadMachine(WriteYaml(*loaded.machine), "again.yaml");
   EXPECT_THAT(again.problems, IsEmpty());
-  EXPECT_EQ(World(*again.machine).cams[0].At(200), world.cams.tables[0].At(200));
+  EXPECT_EQ(World(*again.machine).cams.tables[0].At(200), world.cams.tables[0].At(200));
   EXPECT_THAT(CamProblems("  - {name: a, segments: [{to: {x: 1, y: 1}}, {to: {x: 1, y: 2}}]}\n"),
               ElementsAre(HasSubstr("m.yaml:4:55: cams[0].segments[1].to.x: expected x above 1 of its beginning")));
   EXPECT_THAT(CamProblems("  - {name: a, segments: [{to: {x: 1, y: 1}, law: cycloidal}]}\n"),
