@@ -11,6 +11,8 @@ from takt import expect
 COMMANDS = (
     "cam_table_select",
     "cam_in",
+    "cam_add",
+    "cam_remove",
     "cam_out",
     "begin_cam",
     "add_cam_points",

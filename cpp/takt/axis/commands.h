@@ -19,10 +19,10 @@ using Command =
     std::variant<Power, Reset, Straighten, MoveAbsolute, MoveRelative, MoveAdditive, MoveVelocity,
                  MoveContinuousAbsolute, MoveContinuousRelative, Inch, Halt, Stop, Jog, MoveSuperimposed,
                  HaltSuperimposed, TorqueControl, GearIn, GearOut, GearInPos, PhasingAbsolute, PhasingRelative,
-                 CombineAxes, CamTableSelect, CamIn, CamOut, PositionProfile, VelocityProfile, AccelerationProfile,
-                 Home, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse, StepDirect, StepAbsolute, FinishHoming,
-                 StepRefFlyingSwitch, StepRefFlyingRefPulse, AbortPassiveHoming, SetConstants, WriteParameter,
-                 ReadParameter, SetSoftLimits, DirectOutput, PulseOutput, SetPosition, SetOverride, TouchProbe,
-                 AbortTrigger, Touch, DigitalCamSwitch, Stream, StreamPoint>;
+                 CombineAxes, CamTableSelect, CamIn, CamAdd, CamRemove, CamOut, PositionProfile, VelocityProfile,
+                 AccelerationProfile, Home, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse, StepDirect,
+                 StepAbsolute, FinishHoming, StepRefFlyingSwitch, StepRefFlyingRefPulse, AbortPassiveHoming,
+                 SetConstants, WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, PulseOutput, SetPosition,
+                 SetOverride, TouchProbe, AbortTrigger, Touch, DigitalCamSwitch, Stream, StreamPoint>;
 
 }  // namespace takt::axis

@@ -125,10 +125,31 @@ CamLaw CamOf(const Context& c, const Request& r) {
   return {c.machine.cams[r.table.index], q.terms[0].ratio, q.periodic.value_or(false), r.table.scale};
 }
 
+CamLaw LawOf(const Context& c, const AddedCam& added) {
+  return {c.machine.cams[added.table], added.ratio, added.periodic, added.scale};
+}
+
+// What all cams on top add for a master here; derivatives over the master's position.
+cam::Value Added(const Context& c, double master, const CouplingState& k) {
+  cam::Value sum;
+  for (const AddedCam& added : k.added) {
+    if (added.table == kNoTable) continue;
+    const cam::Value value = ValueAt(LawOf(c, added), added.cam, master);
+    sum.y += value.y;
+    sum.dy += value.dy;
+    sum.ddy += value.ddy;
+    sum.dddy += value.dddy;
+  }
+  return sum;
+}
+
 // Where an axis that is in step has its place for a master here; derivatives over the master's position.
 cam::Value InStep(const Context& c, double master, const State& s) {
   const CouplingState& k = s.coupling;
-  if (s.active.kind == RequestKind::kCamIn) return ValueAt(CamOf(c, s.active), k.cam, master);
+  if (s.active.kind == RequestKind::kCamIn) {
+    const cam::Value own = ValueAt(CamOf(c, s.active), k.cam, master), added = Added(c, master, k);
+    return {own.y + added.y, own.dy + added.dy, own.ddy + added.ddy, own.dddy + added.dddy};
+  }
   const double ratio = k.law.terms[0].ratio;
   return {k.slave_sync + ratio * (master - k.master_sync), ratio, 0, 0};
 }
@@ -305,8 +326,8 @@ void NoteEnd(const Context& c, const KinematicState& phase, State& s) {
   ++s.profile_ends;
   k.cam.end_axis = k.law.terms[0].master;
   k.cam.end_master = k.cam.master + *end * law.way() - phase.position;
-  k.cam.end_slave =
-      k.cam.slave + k.chase.offset + law.scale * (law.table.At(law.table.begin()).y + *end * law.table.stroke());
+  k.cam.end_slave = k.cam.slave + k.chase.offset + Added(c, k.cam.end_master + phase.position, k).y +
+                    law.scale * (law.table.At(law.table.begin()).y + *end * law.table.stroke());
 }
 
 bool MastersStand(const Context& c, const CouplingRequest& law) {
@@ -367,6 +388,7 @@ std::uint32_t FindMaster(const Surrounding& machine, std::string_view name) noex
 bool UsesTable(const State& s, std::uint32_t index) noexcept {
   const auto uses = [&](const Request& r) { return !r.table.name.empty() && r.table.index == index; };
   if (s.active.kind != RequestKind::kNone && uses(s.active)) return true;
+  if (std::ranges::find(s.coupling.added, index, &AddedCam::table) != s.coupling.added.end()) return true;
   return std::any_of(s.buffer.begin(), s.buffer.begin() + s.buffered, uses);
 }
 
@@ -469,6 +491,49 @@ Status CarryOut(const Context& c, Ticket ticket, const PhasingRelative& p, State
   return ShiftPhase(c, ticket, true, p.phase_shift, p.velocity, p.acceleration, p.deceleration, p.jerk, s);
 }
 
+Status CarryOut(const Context& c, Ticket ticket, const CamAdd& command, State& s) noexcept {
+  CouplingState& k = s.coupling;
+  if (s.active.kind != RequestKind::kCamIn) return Status::Failed(ErrorId::kState);
+  const std::optional<std::uint32_t> table = cam::Find(c.machine.cams, command.cam.view());
+  if (!table) return Status::Failed(ErrorId::kUnknownTarget);
+  const auto same = std::ranges::find_if(k.added, [&](const AddedCam& one) {
+    return one.table != kNoTable && c.machine.cams[one.table].name() == command.cam.view();
+  });
+  const auto place = same != k.added.end() ? same : std::ranges::find(k.added, kNoTable, &AddedCam::table);
+  if (place == k.added.end()) return Status::Failed(ErrorId::kBufferFull);
+  const CouplingTerm& term = k.law.terms[0];
+  const double master = Seen(c, k, term, PhaseAt(c, k)).position;
+  const double origin = OriginOf(c, term.master);
+  AddedCam added{*table,
+                 command.master_scaling,
+                 command.slave_scaling,
+                 command.periodic.value_or(c.machine.cams[*table].cyclic()),
+                 {}};
+  const double zero = master - ReportedOf(c, term.master, master - origin);
+  const double begin = (c.machine.cams[*table].begin() - command.master_offset) / added.ratio;
+  added.cam.master = command.master_absolute ? zero + begin : master - command.master_offset / added.ratio;
+  const CamLaw law = LawOf(c, added);
+  BeginCycles(law, master, added.cam);
+  added.cam.slave = command.slave_offset;
+  if (!command.slave_absolute) added.cam.slave -= ValueAt(law, added.cam, master).y - command.slave_offset;
+  *place = added;
+  Report(c, ticket, FeedbackState::kActive);
+  Report(c, ticket, FeedbackState::kDone);
+  return Status::Ok();
+}
+
+Status CarryOut(const Context& c, Ticket ticket, const CamRemove& command, State& s) noexcept {
+  if (s.active.kind != RequestKind::kCamIn) return Status::Failed(ErrorId::kState);
+  for (AddedCam& added : s.coupling.added) {
+    if (added.table == kNoTable || c.machine.cams[added.table].name() != command.cam.view()) continue;
+    added = {};
+    Report(c, ticket, FeedbackState::kActive);
+    Report(c, ticket, FeedbackState::kDone);
+    return Status::Ok();
+  }
+  return Status::Failed(ErrorId::kState);
+}
+
 Status LetGo(const Context& c, const Request& r, State& s) noexcept {
   if (s.plc != PlcState::kSynchronizedMotion || !Couples(s.active.kind)) return Status::Failed(ErrorId::kState);
   trajectory::Profile profile{s.setpoint};
@@ -486,6 +551,7 @@ Status LetGo(const Context& c, const Request& r, State& s) noexcept {
 void Uncouple(const Context& c, bool after_fault, State& s) noexcept {
   EndPhase(c, FeedbackState::kAborted, s);
   s.coupling.in_step = false;
+  s.coupling.added = {};
   if (!after_fault) s.coupling.law = CouplingRequest{};
 }
 
@@ -504,6 +570,16 @@ void describe(Enumeration<Joining>& e) {
   e.value(Joining::kJoined, "joined", "In step, as far as the limits allow.");
 }
 
+void describe(Description<AddedCam>& d) {
+  using S = AddedCam;
+  d.about("A cam on top of that of a coupling.");
+  d.internal<&S::table>("Its index among the machine's cams.");
+  d.internal<&S::ratio>("Its x per master's unit.");
+  d.internal<&S::scale>("Of its y.");
+  d.internal<&S::periodic>("Over and over.");
+  d.internal<&S::cam>("Where it lies.");
+}
+
 void describe(Description<CouplingState>& d) {
   using S = CouplingState;
   d.about("An axis that follows masters.");
@@ -520,6 +596,7 @@ void describe(Description<CouplingState>& d) {
   d.internal<&S::begin_side>("On which side of that the master was.");
   d.internal<&S::curve>("Over the master's way from there on.");
   d.internal<&S::cam>("The cam that it follows.");
+  d.internal<&S::added>("Cams on top of that.");
   d.internal<&S::turn>("After how far there is the next such place of the master.");
   d.internal<&S::phase>("Added to the master's position.");
   d.internal<&S::phase_start>("Cycle its time counts from.");

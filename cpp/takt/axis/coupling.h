@@ -28,6 +28,16 @@ enum class Joining : std::uint8_t {
   kJoined,
 };
 
+// A cam on top of that of the coupling (CAM-90).
+struct AddedCam {
+  std::uint32_t table = kNoTable;  // index among the machine's cams; kNoTable: there is none
+  double ratio = 1;                // x per master's u
+  double scale = 1;                // of y
+  bool periodic = false;
+  CamState cam;
+};
+inline constexpr std::size_t kAddedCams = 3;
+
 struct CouplingState {
   CouplingRequest law;  // in force
   trajectory::ChaseState chase;
@@ -42,6 +52,7 @@ struct CouplingState {
   double begin_side = 0;      // on which side of that the master was when it was last looked at
   trajectory::Quintic curve;  // u, over the master's way from there on
   CamState cam;
+  std::array<AddedCam, kAddedCams> added;
 
   // The phase: a motion in the master's unit on top of its position.
   trajectory::Profile phase;
@@ -76,6 +87,10 @@ bool LostMasters(const Context& c, const State& s) noexcept;
 // Shifts what the axis takes for its master's position. kState: not coupled to one master.
 Status CarryOut(const Context& c, Ticket ticket, const PhasingAbsolute& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const PhasingRelative& command, State& s) noexcept;
+// Puts another cam on top of that of cam_in, or takes it off again. kState: the axis follows no cam, or has no
+// such cam on top; kBufferFull: there is no room.
+Status CarryOut(const Context& c, Ticket ticket, const CamAdd& command, State& s) noexcept;
+Status CarryOut(const Context& c, Ticket ticket, const CamRemove& command, State& s) noexcept;
 // GearOut, CamOut: on with the velocity there is.
 Status LetGo(const Context& c, const Request& r, State& s) noexcept;
 // The coupling is over, and its phase with it. After a fault its masters are kept until they were stopped, too (AX-55).
@@ -84,6 +99,7 @@ void Uncouple(const Context& c, bool after_fault, State& s) noexcept;
 bool CouplingOf(const Context& c, const Command& command, CouplingRequest& out) noexcept;
 
 void describe(Enumeration<Joining>&);
+void describe(Description<AddedCam>&);
 void describe(Description<CouplingState>&);
 
 }  // namespace takt::axis

@@ -126,6 +126,16 @@ bool Fill(const Maker& m, const CamIn& c) {
          (c.start_mode == CamStart::kRampIn ? takes_ramps(c) : takes_ramps(CamIn{}));
 }
 
+bool Fill(const Maker& m, const CamAdd& c) {
+  if (c.cam.empty()) m.why.field = "cam";
+  m.r.table = {.name = c.cam, .index = kNoTable, .time_scale = 1, .scale = c.slave_scaling, .offset = c.slave_offset};
+  m.r.coupling.periodic = c.periodic;
+  return !c.cam.empty() && m.In("master_offset", c.master_offset, -kMaxPosition, kMaxPosition) &&
+         m.In("slave_offset", c.slave_offset, -kMaxPosition, kMaxPosition) &&
+         m.In("master_scaling", std::abs(c.master_scaling), 1 / kMaxPosition, kMaxPosition) &&
+         m.In("slave_scaling", c.slave_scaling, -kMaxPosition, kMaxPosition);
+}
+
 bool Fill(const Maker& m, const GearOut&) {
   m.r.kind = RequestKind::kLetGo;
   return m.Braking(Halt{});

@@ -68,6 +68,7 @@ bool Fill(const Maker& m, const GearInPos& c);
 bool Fill(const Maker& m, const CombineAxes& c);
 bool Fill(const Maker& m, const CamTableSelect& c);
 bool Fill(const Maker& m, const CamIn& c);
+bool Fill(const Maker& m, const CamAdd& c);
 bool Fill(const Maker& m, const CamOut& c);
 bool Fill(const Maker& m, const PositionProfile& c);
 bool Fill(const Maker& m, const VelocityProfile& c);

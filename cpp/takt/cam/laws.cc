@@ -114,7 +114,7 @@ std::vector<LawPiece> PiecesOf(Law law, double sine_share, double cosine_share) 
     case Law::kTask:
     case Law::kLeastAcceleration:
     case Law::kLeastJerk:
-      return PiecesOf(Resolved(law, {.length = 1, .end = {.y = 1}}));
+      return PiecesOf(Resolved(law, {.length = 1, .begin = {}, .end = {.y = 1}}));
     case Law::kDoubleHarmonic:
       return {{0, DoubleHarmonic()}};
     case Law::kDoubleHarmonicBack:

@@ -187,6 +187,8 @@ const std::vector<Entry>& Entries() {
       Make<axis::Command, axis::CombineAxes>(kAxis, "combine_axes"),
       Make<axis::Command, axis::CamTableSelect>(kAxis, "cam_table_select"),
       Make<axis::Command, axis::CamIn>(kAxis, "cam_in"),
+      Make<axis::Command, axis::CamAdd>(kAxis, "cam_add"),
+      Make<axis::Command, axis::CamRemove>(kAxis, "cam_remove"),
       Make<axis::Command, axis::CamOut>(kAxis, "cam_out"),
       Make<axis::Command, axis::PositionProfile>(kAxis, "position_profile"),
       Make<axis::Command, axis::VelocityProfile>(kAxis, "velocity_profile"),

@@ -23,8 +23,11 @@ class SelectedCam:
 
 
 class MC_CamTableSelect(SettingBlock):  # noqa: N801
-    """Selects the cam of the machine whose name is CamTable. CamTableID is for MC_CamIn, and stays what it is until
-    another cam is selected. An error if the machine has no such cam."""
+    """Selects the cam of the machine whose name is CamTable, of its file or made at run time. CamTableID is for MC_CamIn,
+    and stays what it is until another cam is selected. An error if the machine has no such cam.
+
+    ExecutionMode: immediately; delayed: when the command in control of Slave is over; queued: when all commands given to
+    it before are. A cam that runs over and over counts as over at its next end."""
 
     VERB = "cam_table_select"
     Master = Input[Axis | str]("")
@@ -33,6 +36,7 @@ class MC_CamTableSelect(SettingBlock):  # noqa: N801
     Periodic = Input[bool | None](None)
     MasterAbsolute = Input(True)
     SlaveAbsolute = Input(True)
+    ExecutionMode = Input(_commands.ExecutionMode.IMMEDIATELY)
     CamTableID = Output[SelectedCam | None](None)
 
     def __init__(self, axis: Axis, **inputs: Any) -> None:
@@ -40,13 +44,30 @@ class MC_CamTableSelect(SettingBlock):  # noqa: N801
         self._selected: SelectedCam | None = None
         super().__init__(axis, **inputs)
 
+    def _end(self, feedback: Feedback) -> tuple[str, int] | None:
+        return None if feedback.done and self._waits(feedback) else super()._end(feedback)
+
+    def _waits(self, feedback: Feedback) -> bool:
+        """Whether commands given before this one are still in control, or wait."""
+        axis = self.Axis
+        mode = _commands.ExecutionMode(self._mode)
+        if mode is _commands.ExecutionMode.IMMEDIATELY:
+            return False
+        earlier = 0 < axis.active_command < feedback.ticket
+        if mode is _commands.ExecutionMode.DELAYED:
+            earlier = earlier and axis.active_command == self._active
+        passed = axis.active_command == self._active and axis.profile_ends != self._ends
+        return earlier and not (passed and axis.buffered_commands == 0)
+
     def _command(self) -> Feedback:
+        self._mode = self.ExecutionMode
+        self._active, self._ends = self.Axis.active_command, self.Axis.profile_ends
         self._asked = SelectedCam(self.CamTable, self.Periodic, self.MasterAbsolute, self.SlaveAbsolute)
         return super()._command()
 
     def _follow(self, feedback: Feedback) -> None:
         super()._follow(feedback)
-        if feedback.done:
+        if feedback.done and self._ending is not None:
             self._selected = self._asked
         self._show(CamTableID=self._selected)
 
@@ -89,6 +110,38 @@ class MC_CamIn(CouplingBlock):  # noqa: N801
         super()._run(feedback)
         self._show(EndOfProfile=feedback.active and self.Axis.profile_ends != self._ends)
         self._ends = self.Axis.profile_ends
+
+
+class MC_CamAdd(SettingBlock):  # noqa: N801
+    """Superimposes the cam of CamTableID on that of MC_CamIn, over the same master: SlaveScaling times y(x) plus
+    SlaveOffset is added to the slave's position, by SlaveAbsolute as it is, else without a step. Up to three cams."""
+
+    VERB = "cam_add"
+    Slave = AxisName()
+    CamTableID = Input[SelectedCam | str | None]("")
+    MasterOffset = Input(0.0, "master_offset")
+    SlaveOffset = Input(0.0, "slave_offset")
+    MasterScaling = Input(1.0, "master_scaling")
+    SlaveScaling = Input(1.0, "slave_scaling")
+    MasterAbsolute = Input(True, "master_absolute")
+    SlaveAbsolute = Input(False, "slave_absolute")
+
+    def _arguments(self) -> dict[str, Any]:
+        cam = self.CamTableID
+        name, periodic = (cam.cam, cam.periodic) if isinstance(cam, SelectedCam) else (cam or "", None)
+        return super()._arguments() | {"cam": name, "periodic": periodic}
+
+
+class MC_CamRemove(SettingBlock):  # noqa: N801
+    """Removes a superimposed cam; the slave goes to the position without it, within the limits of MC_CamIn."""
+
+    VERB = "cam_remove"
+    Slave = AxisName()
+    CamTableID = Input[SelectedCam | str | None]("")
+
+    def _arguments(self) -> dict[str, Any]:
+        cam = self.CamTableID
+        return {"cam": cam.cam if isinstance(cam, SelectedCam) else cam or ""}
 
 
 class MC_CamOut(ExecuteBlock):  # noqa: N801

@@ -50,6 +50,31 @@ void describe(Description<CamIn>& d) {
   d.defaulted<&C::buffer_mode>(kBufferMode);
 }
 
+void describe(Description<CamAdd>& d) {
+  using C = CamAdd;
+  d.about(
+      "Superimposes another cam on that of cam_in, over the same master (MC_CamAdd): slave_scaling times its y, plus "
+      "slave_offset, is added to this axis' position. Up to three at a time; what steps is caught up with within the "
+      "limits of cam_in. They end with that coupling.");
+  d.required<&C::cam>("Name of the cam; each once at a time.");
+  d.defaulted<&C::master_offset>("In the cam's x.");
+  d.defaulted<&C::slave_offset>(unit::u, "Added to the cam's y.");
+  d.defaulted<&C::master_scaling>("The cam's x per master's unit, not 0.");
+  d.defaulted<&C::slave_scaling>("The cam's y is multiplied by it.");
+  d.defaulted<&C::master_absolute>(
+      "True: x counts from the master's zero. False: the cam begins where the master is now.");
+  d.defaulted<&C::slave_absolute>("True: y is added as it is. False: less what it is now, without a step.");
+  d.defaulted<&C::periodic>(
+      "True: over and over. False: once, outside its end positions are held. Unset: periodic where the cam is cyclic.");
+}
+
+void describe(Description<CamRemove>& d) {
+  d.about(
+      "Removes a superimposed cam (MC_CamRemove): this axis goes to the position without it, within the limits of "
+      "cam_in.");
+  d.required<&CamRemove::cam>("Name of the cam.");
+}
+
 void describe(Description<CamOut>& d) {
   d.about("Lets go of the master; the axis goes on with the velocity it has (MC_CamOut).");
 }

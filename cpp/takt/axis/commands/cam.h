@@ -37,12 +37,30 @@ struct CamIn {  // MC_CamIn
   BufferMode buffer_mode = BufferMode::kAborting;
 };
 
+// Another cam on top of that of cam_in, over the same master: slave_scaling * y(master_scaling * master's position +
+// master_offset) is added to the slave's position.
+struct CamAdd {  // MC_CamAdd
+  Name cam;
+  double master_offset = 0;
+  double slave_offset = 0;
+  double master_scaling = 1;
+  double slave_scaling = 1;
+  bool master_absolute = true;
+  bool slave_absolute = false;
+  std::optional<bool> periodic{};
+};
+struct CamRemove {  // MC_CamRemove
+  Name cam;
+};
+
 struct CamOut {  // MC_CamOut
 };
 
 void describe(Enumeration<CamStart>&);
 void describe(Description<CamTableSelect>&);
 void describe(Description<CamIn>&);
+void describe(Description<CamAdd>&);
+void describe(Description<CamRemove>&);
 void describe(Description<CamOut>&);
 
 }  // namespace takt::axis
