@@ -37,6 +37,7 @@ CLOSED_FORMS = {
     ),
     "polynomial_345": (("15/8", 15 / 8), ("10/√3", 10 / sqrt(3)), ("60", 60)),
     "polynomial_4567": (("35/16", 35 / 16), ("84√5/25", 84 * sqrt(5) / 25), ("105/2", 105 / 2)),
+    "double_harmonic": (("3√3π/8", 3 * sqrt(3) * pi / 8), ("π²", pi**2), JUMPS),
     "sine_constant_cosine": (
         ("A(3/(4π) + 1/8)", COMBINED * (SINE / pi + (1 - SINE - COSINE) / 2 + COSINE / pi)),
         ("A = 64π²/(16π² - 8π(π-2) - 3(π²-8))", COMBINED),

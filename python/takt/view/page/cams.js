@@ -29,11 +29,15 @@ export class Cams {
     return { of, canvas, words, place, title, picture, node, module: "start" in of };
   }
 
-  // The cam that a module runs.
-  running(module) {
+  // The number of the cam that a module runs: from 1 in the order of the machine file, beyond it made at run time.
+  numberOf(module) {
     const slot = this.model.liveOf(module, "cam_table");
-    const of = slot >= 1 && slot <= SLOTS.length ? this.model.liveOf(module, SLOTS[slot - 1]) : NaN;
-    return this.model.machine.cams[of - 1] ?? null;
+    return slot >= 1 && slot <= SLOTS.length ? this.model.liveOf(module, SLOTS[slot - 1]) : NaN;
+  }
+
+  // The cam that a module runs, of the machine file.
+  running(module) {
+    return this.model.machine.cams[this.numberOf(module) - 1] ?? null;
   }
 
   draw() {
@@ -44,7 +48,8 @@ export class Cams {
         const cam = this.running(card.of);
         busy.add(cam);
         const row = model.rows[card.of.index];
-        put(card.words, [cam?.name ?? "no cam", row?.state, row?.more, row?.waits].filter(Boolean).join("  ·  "));
+        const made = this.numberOf(card.of) > model.machine.cams.length;
+        put(card.words, [cam?.name ?? (made ? "a cam made at run time" : "no cam"), row?.state, row?.more, row?.waits].filter(Boolean).join("  ·  "));
         const [x, y] = ["set_x_position", "set_y_position"].map((field) => model.liveOf(card.of, field));
         put(card.place, cam ? `x ${number(x)} ${cam.units[0]}   y ${number(y)} ${cam.units[1]}` : "");
         this.curves(card, cam, x, y);
