@@ -439,7 +439,9 @@ def export(
 @click.argument("file", type=FILE)
 @click.option("--name", help="Which cam of a machine file [all].")
 @click.option(
-    "--interpolation", type=click.Choice(["linear", "quintic", "cubic_spline", "monotone"]), help="Points only [quintic]."
+    "--interpolation",
+    type=click.Choice(["linear", "quintic", "cubic_spline", "monotone"]),
+    help="Points only [quintic].",
 )
 @click.option("--cyclic", is_flag=True, help="Points only: the end goes over into the beginning.")
 @click.option("--units", nargs=2, metavar="X Y", help="Points only: the master's and the slave's, for people.")

@@ -12,7 +12,9 @@ axes:
   - {name: main, unit: deg, kind: rotary, limits: {velocity: 720, acceleration: 7200, jerk: 144000}}
   - {name: bar, unit: mm, limits: {velocity: 4000, acceleration: 400000, jerk: 80000000}}
 cams:
-  - {name: stitch, cyclic: true, segments: [{to: {x: 170, y: 24}, law: modified_sine}, {to: {x: 360, y: 0}, law: modified_sine}]}
+  - name: stitch
+    cyclic: true
+    segments: [{to: {x: 170, y: 24}, law: modified_sine}, {to: {x: 360, y: 0}, law: modified_sine}]
   - {name: wobble, cyclic: true, segments: [{to: {x: 45, y: 1.5}, law: cycloid}, {to: {x: 90, y: 0}, law: cycloid}]}
   - {name: once, segments: [{to: {x: 200, y: 6}, law: polynomial_345}]}
   - {name: a, cyclic: true, segments: [{to: {x: 360, y: 2}, law: line}]}
@@ -30,14 +32,16 @@ def session():
 def follow(session, velocity=180.0):
     main, bar = session.axis("main"), session.axis("bar")
     bar.cam_in(master="main", cam="stitch").wait(until="active")
-    main.move_velocity(velocity=abs(velocity), direction="negative" if velocity < 0 else "positive").wait(until="reached")
+    main.move_velocity(velocity=abs(velocity), direction="negative" if velocity < 0 else "positive").wait(
+        until="reached"
+    )
     session.run(0.1)
     return main, bar
 
 
 @pytest.mark.parametrize("velocity", [180.0, -240.0])
 def test_the_slave_follows_the_sum(session, velocity):  # CAM-90
-    main, bar = follow(session, velocity)
+    _, bar = follow(session, velocity)
     record = session.record()
     bar.cam_add(cam="wobble", master_scaling=2.0, slave_scaling=-1.5, slave_absolute=True).wait()
     bar.cam_add(cam="a", slave_absolute=True, slave_offset=3.25, periodic=False).wait()
@@ -114,7 +118,7 @@ def call(session, block, seconds, **inputs):
 
 
 def test_blocks(session):  # CAM-90
-    main, bar = follow(session)
+    _, bar = follow(session)
     add = call(session, plc.MC_CamAdd(bar, CamTableID="wobble", MasterScaling=2.0), 0.01, Execute=True)
     assert (add.Done, add.Error) == (True, False)
     remove = call(session, plc.MC_CamRemove(bar, CamTableID="wobble"), 0.01, Execute=True)
@@ -124,12 +128,15 @@ def test_blocks(session):  # CAM-90
 
 
 def test_a_table_is_selected_in_its_turn(session):  # CAM-90: ExecutionMode
-    main, bar = session.axis("main"), session.axis("bar")
+    bar = session.axis("bar")
     bar.move_absolute(position=30, velocity=60).wait(until="active")
     bar.move_absolute(position=60, velocity=60, buffer_mode="buffered")
-    blocks = {mode: plc.MC_CamTableSelect(bar, CamTable="stitch", ExecutionMode=mode) for mode in ("immediately", "delayed", "queued")}
+    blocks = {
+        mode: plc.MC_CamTableSelect(bar, CamTable="stitch", ExecutionMode=mode)
+        for mode in ("immediately", "delayed", "queued")
+    }
     done = {}
-    for step in range(2000):
+    for _ in range(2000):
         for mode, block in blocks.items():
             block(Execute=True)
             if block.Done and mode not in done:

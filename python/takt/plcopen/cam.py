@@ -23,11 +23,11 @@ class SelectedCam:
 
 
 class MC_CamTableSelect(SettingBlock):  # noqa: N801
-    """Selects the cam of the machine whose name is CamTable, of its file or made at run time. CamTableID is for MC_CamIn,
-    and stays what it is until another cam is selected. An error if the machine has no such cam.
+    """Selects the cam of the machine whose name is CamTable, of its file or made at run time. CamTableID is for
+    MC_CamIn, and stays what it is until another cam is selected. An error if the machine has no such cam.
 
-    ExecutionMode: immediately; delayed: when the command in control of Slave is over; queued: when all commands given to
-    it before are. A cam that runs over and over counts as over at its next end."""
+    ExecutionMode: immediately; delayed: when the command in control of Slave is over; queued: when all commands given
+    to it before are. A cam that runs over and over counts as over at its next end."""
 
     VERB = "cam_table_select"
     Master = Input[Axis | str]("")
