@@ -70,6 +70,8 @@ def test_moves(engine: takt.Engine, gantry: takt.Group) -> None:
     assert gantry.pose[:3] == pytest.approx((0, 0, 0), abs=1e-9)
     with pytest.raises(TypeError, match="up to 6 numbers with mcs, found 7"):
         plc.MC_MoveLinearAbsolute(gantry, Position=[0] * 7)(Execute=True)
+    with pytest.raises(TypeError, match=r"AuxPoint has 3 numbers, X, Y and Z in mm, found 2: \[15, 5\]"):
+        plc.MC_MoveCircularAbsolute(gantry, AuxPoint=[15, 5], EndPoint=[20, 0])(Execute=True)
 
 
 def test_buffered_moves_and_aborts(engine: takt.Engine, gantry: takt.Group) -> None:

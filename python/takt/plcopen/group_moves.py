@@ -120,6 +120,13 @@ class MC_MoveLinearRelative(PathMove):  # noqa: N801
         return with_numbers(super()._arguments(), self.Distance)
 
 
+def three(argument: str, what: str, numbers: Sequence[float]) -> dict[str, float]:
+    """The arguments of a command from X, Y and Z. Raises TypeError for another number of them."""
+    if len(numbers) != len("xyz"):
+        raise TypeError(f"{what} has 3 numbers, X, Y and Z in mm, found {len(numbers)}: {list(numbers)}")
+    return {f"{argument}_{name}": number for name, number in zip("xyz", numbers, strict=True)}
+
+
 class MC_MoveCircularAbsolute(PathMove):  # noqa: N801
     """Moves along a circle or a helix to EndPoint. AuxPoint is X, Y, Z of what CircMode says."""
 
@@ -132,8 +139,7 @@ class MC_MoveCircularAbsolute(PathMove):  # noqa: N801
     Turns = Input(0, "turns")
 
     def _arguments(self) -> dict[str, Any]:
-        points = {"aux": self.AuxPoint, "normal": self.Normal}
-        vectors = {f"{what}_{name}": v for what, of in points.items() for name, v in zip("xyz", of, strict=True)}
+        vectors = three("aux", "AuxPoint", self.AuxPoint) | three("normal", "Normal", self.Normal)
         return with_numbers(super()._arguments() | vectors, self.EndPoint)
 
 
