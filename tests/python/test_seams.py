@@ -4,6 +4,7 @@ page says, set points keep their limits, nothing moves onto a switch, nothing re
 from __future__ import annotations
 
 import copy
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +13,7 @@ import numpy as np
 import pytest
 import takt
 import yaml
-from seams import MACHINE, Given, commands
+from seams import MACHINE, TARGETS, VERBS, Given, commands
 
 ROUNDING = 1e-9
 WATCHED = 40  # cycles after each command: enough to see that a motion has begun
@@ -260,6 +261,44 @@ def test_every_command_in_every_situation(name: str) -> None:
             s = situation.enter()
     s.close()
     assert not wrong, "\n".join(wrong)
+
+
+LEASE = 0.05  # s
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_levels_of_a_client_that_is_gone_end() -> None:
+    """EN-05: the client is gone as a column: what it held is let go of when its lease is over, and nothing else."""
+    levels = {(verb["target_kind"], verb["name"]) for verb in VERBS if verb["level_sensitive"]}
+    kinds = {target: kind for kind, targets in TARGETS.items() for target in targets}
+    wrong: list[str] = []
+    tried = set()
+    for n, (target, verb, arguments) in enumerate(commands()):
+        if (kinds[target], verb) not in levels:
+            continue
+        hold = {"hold": True} if verb == "stop" else {}
+        tried.add((kinds[target], verb))
+        with powered() as s:
+            moves = s.axis("web").move_velocity(velocity=50) if target != "web" else None
+            with s.record() as recorder:
+                error = s._core.resubmit(target, verb, json.dumps(arguments | hold), 10**9 + n, LEASE)[1]
+                s.run(LEASE)
+                held = {name: a.state for name, a in s.axes.items()}
+                s.run(1)
+            what = f"{target}.{verb} {arguments | hold}"
+            wrong += [f"{what}: {one}" for one in out_of_limits(s, recorder.recording)]
+            if error:
+                wrong.append(f"{what}: refused with {error}")
+            on = [name for name, a in s.axes.items() if a.set_velocity and not (moves and name == "web")]
+            wrong += [f"{what}: {name} moves on" for name in on]
+            stays = (takt.PlcState.STOPPING, takt.PlcState.ERROR_STOP, takt.PlcState.DISABLED)
+            wrong += [f"{what}: {name} is {a.state.value}, was {held[name].value}"
+                      for name, a in s.axes.items() if a.state in stays]  # fmt: skip
+            wrong += [f"{what}: {g.name} is {g.state.value}" for g in s.groups.values() if "Stopping" in g.state.value]
+            if moves and not moves.active:
+                wrong.append(f"{what}: ended what nobody held")
+    assert not wrong, "\n".join(wrong)
+    assert tried == {one for one in levels if one[0] in ("axis", "flex_cam", "group", "pick_place", "mover")}
 
 
 @pytest.mark.filterwarnings("ignore")
