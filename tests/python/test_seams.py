@@ -14,6 +14,7 @@ import pytest
 import takt
 import yaml
 from seams import MACHINE, TARGETS, VERBS, Given, commands
+from takt import checks
 
 ROUNDING = 1e-9
 WATCHED = 40  # cycles after each command: enough to see that a motion has begun
@@ -43,7 +44,8 @@ def beside(servos: dict[str, Any], **axes: Any) -> str:
 
 
 def out_of_limits(s: takt.Engine, recording: takt.Recording) -> list[str]:
-    """Set points beyond the limits of their axis; the first cycle after a loop was closed or opened is no step."""
+    """Set points beyond the limits of their axis or mover; the first cycle after a loop was closed or opened is no
+    step."""
     wrong = []
     for name, axis in s.axes.items():
         limits = axis.parameters["limits"]
@@ -58,7 +60,8 @@ def out_of_limits(s: takt.Engine, recording: takt.Recording) -> list[str]:
             "jerk": (jerk[closed[1:] & closed[:-1]] <= limits["jerk"] * (1 + 1e-6)).all(),
         }
         wrong += [f"{name}: {limit}" for limit, kept in within.items() if not kept]
-    return wrong
+    verdicts = [checks.within_limits(recording, name) for name in s.movers]
+    return wrong + [verdict.sentence for verdict in verdicts if not verdict.passed]
 
 
 @dataclass(frozen=True)
