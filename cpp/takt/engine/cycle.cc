@@ -439,7 +439,9 @@ void StepMovers(World& w) {
   ShowAxesToMovers(w);
   ShowMovers(w);  // commands have changed some
   for (std::size_t i = 0; i < w.movers.size(); ++i) mover::Lead(MoverContext(w, i), w.mover_states[i]);
-  if (!w.streets.names.empty()) w.streets.traffic.Step(w.cycle, w.planner, w.streets.network, w.streets.riders);
+  if (!w.streets.names.empty()) {
+    w.streets.traffic.Step(w.cycle, w.planner, w.streets.network, w.streets.riders, &w.grounds.guard);
+  }
   // Planets of formations behind their stars.
   for (const bool planets : {false, true}) {
     for (std::size_t i = 0; i < w.movers.size(); ++i) {

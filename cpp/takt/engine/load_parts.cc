@@ -13,9 +13,12 @@
 #include "takt/core/scalar.h"
 #include "takt/core/yaml_reader.h"
 #include "takt/engine/components.h"
+#include "takt/environment/params.h"
 #include "takt/mover/on_parts.h"
 #include "takt/part/params.h"
 #include "takt/planar/clearance.h"
+#include "takt/planar/environment.h"
+#include "takt/planargroup/params.h"
 
 namespace takt::engine {
 
@@ -137,15 +140,45 @@ class Checker {
           spots.back().reset();
           break;
         case ErrorId::kOffStators:
-          Add(path + ".initial", "expected a place where all of the mover is on stators");
+          Add(path + ".initial", "expected a place where all of the mover is on stators, found " + Described(i, at));
           break;
         default:
+          if (parts.none()) CheckOnEnvironment(i, at);
           break;
       }
       for (std::size_t k = 0; k < i && spots.back(); ++k) {
         if (spots[k]) CheckPair(k, *spots[k], i, at);
       }
     }
+  }
+
+  // Without parts the environment of its group says where a mover may be.
+  void CheckOnEnvironment(std::size_t i, const planar::Spot& at) {
+    for (const planargroup::PlanarGroupParams& group : machine_.planar_groups) {
+      if (!group.environment || std::ranges::find(group.movers, machine_.movers[i].name) == group.movers.end())
+        continue;
+      for (const environment::EnvironmentParams& one : machine_.environments) {
+        planar::Environment surface;
+        if (one.name != *group.environment ||
+            planar::MakeEnvironment(one.stators, surface).problem != planar::StatorProblem::kNone ||
+            planar::Carries(surface, mover::AreaAt(machine_.movers[i], at.origin, machine_.movers[i].initial.c))) {
+          continue;
+        }
+        Add(At("movers", i) + ".initial", "expected a place where all of the mover is on stators of environment " +
+                                              Quoted(one.name) + ", found " + Described(i, at));
+      }
+    }
+  }
+
+  // What a mover covers at the start, for a person to read.
+  std::string Described(std::size_t i, const planar::Spot& at) const {
+    const mover::MoverParams& mover = machine_.movers[i];
+    const planar::Extent extent = planar::ExtentOf(mover::AreaAt(mover, at.origin, mover.initial.c));
+    const auto from_to = [](double from, double to) {
+      return "from " + FormatReal(std::round(from * 1000) / 1000) + " to " + FormatReal(std::round(to * 1000) / 1000);
+    };
+    return Quoted(mover.name) + " on X " + from_to(extent.lower.x, extent.upper.x) + " mm, Y " +
+           from_to(extent.lower.y, extent.upper.y) + " mm";
   }
 
   // Two coordinate systems have nothing to do with each other.

@@ -50,7 +50,10 @@ bool TouchesPart(World& w, std::size_t mover, std::size_t part) {
 
 // It stands on the part, or its way leads over it.
 bool Uses(World& w, std::size_t mover, std::size_t part) {
-  if (w.mover_states[mover].part == part || TouchesPart(w, mover, part)) return true;
+  if (w.mover_states[mover].part == part || TouchesPart(w, mover, part) ||
+      mover::LeadsOver(MoverContext(w, mover), w.mover_states[mover], static_cast<std::uint32_t>(part))) {
+    return true;
+  }
   const planar::Rider& rider = w.streets.riders[mover];
   return rider.on &&
          std::ranges::any_of(rider.route.all(), [&](std::uint32_t track) { return w.tracks.part_of[track] == part; });
@@ -183,7 +186,7 @@ bool Holds(World& w, std::size_t mover, std::uint32_t part, const mover::Cover& 
       return planar::Touches(w.surface.all[k], w.surface.spot(k), s.system, area);
     });
   };
-  if (s.part != part) return touches(part);
+  if (s.part != part) return touches(part) || mover::LeadsOver(MoverContext(w, mover), s, part);
   if (!mover::IsStill(MoverContext(w, mover), s)) return true;
   for (std::uint32_t k = 0; k < w.surface.all.size(); ++k) {
     if (k != part && !w.surface.now[k].away && touches(k)) return true;
@@ -232,7 +235,12 @@ Hindrance HindranceOf(World& w, std::uint32_t part, std::uint32_t position) {
         cover.all(), [&](const planar::Area& area) { return planar::Touches(shape, to, s.system, area); });
     if (s.part != part && (below || ComesUnder(w, i, shape, to))) return By(ErrorId::kPartMover, ObjectKind::kMover, i);
     if (s.part != part) continue;
-    // Those that are there already, or are to be.
+    // Those that are there already, or are to be; and those that could not stop before it any more.
+    const auto goes_along = [&](std::uint32_t k, bool) { return w.mover_states[k].part == part; };
+    planar::Course brought;
+    for (const planar::Area& area : cover.all()) planar::Add(Shifted(area, to.origin - from.origin), brought);
+    const std::uint32_t near = w.grounds.guard.Find(static_cast<std::uint32_t>(i), to.system, brought, goes_along);
+    if (near != planar::kNobody) return By(ErrorId::kPartMover, ObjectKind::kMover, near);
     for (const planar::Area& area : cover.all()) {
       const planar::Area there = Shifted(area, to.origin - from.origin);
       const ObjectInfo comes = planar::WhoComes(static_cast<std::uint32_t>(i), to.system, there, w.grounds);

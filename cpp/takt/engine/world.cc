@@ -266,6 +266,7 @@ void World::MakePlanarGroups(const Machine& machine) {
     }
   }
   grounds.surfaces = environments.surfaces;
+  grounds.on_parts = !surface.none();
   for (std::size_t i = 0; i < movers.size(); ++i) mover::Arrive(MoverContext(*this, i), mover_states[i]);
 }
 

@@ -6,6 +6,7 @@
 
 #include "takt/core/maths.h"
 #include "takt/mover/coordinate.h"
+#include "takt/mover/course.h"
 #include "takt/mover/formation.h"
 #include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
@@ -77,7 +78,7 @@ double ReachOf(const Context& c, const SetPoint& given) {
 }
 
 // The others on tracks keep as much more away from it; there has to be room for that.
-ErrorId GetOff(const Context& c, const State& s, const SetPoint& given) {
+ErrorId GetOff(const Context& c, const State& s, const SetPoint& given, ObjectInfo& object) {
   planar::Rider& rider = c.rider();
   const double before = rider.off, reach = ReachOf(c, given);
   if (reach <= before) {
@@ -86,9 +87,9 @@ ErrorId GetOff(const Context& c, const State& s, const SetPoint& given) {
   }
   rider.off = reach;
   Streets& streets = c.streets;
-  if (streets.traffic.TooNear(c.cycle, streets.network, streets.riders, c.index) == planar::kNobody) {
-    return ErrorId::kNone;
-  }
+  const std::uint32_t near = streets.traffic.TooNear(c.cycle, streets.network, streets.riders, c.index);
+  object = near == planar::kNobody ? TakeRoom(c, s) : ObjectAt(ObjectKind::kMover, near);
+  if (!object) return ErrorId::kNone;
   rider.off = before;
   return ErrorId::kCollision;
 }
@@ -178,20 +179,20 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept {
   ObjectInfo object;
   if (IsOnTrack(s)) {
     const PlacesOff places = PlacesOffTrack(c, external.given);
-    if (const ErrorId why = WhyNotOn(c, s, CoverOf(places)); why != ErrorId::kNone) return why;
+    if (const ErrorId why = WhyNotOn(c, s, CoverOf(c, s, places)); why != ErrorId::kNone) return why;
     object = TakeStopOff(c, places, to);
   } else {
     if (const ErrorId why = WhyNotOn(c, s, CoverOfStop(c, to)); why != ErrorId::kNone) return why;
     if (external.mode == SetpointMode::kRelative) object = TakeStop(c, s, to);
+    if (!object) object = TakeCourse(c, s, to);
   }
+  ErrorId why = object ? ErrorId::kCollision : ErrorId::kNone;
+  if (!object && c.rider().on) why = GetOff(c, s, external.given, object);
   if (object) {
     Report(c, s.tickets[kExternal], FeedbackState::kError, ErrorId::kCollision, 0, s, object);
     s.tickets[kExternal] = 0;
-    return ErrorId::kCollision;
   }
-  if (c.rider().on) {
-    if (const ErrorId why = GetOff(c, s, external.given); why != ErrorId::kNone) return why;
-  }
+  if (why != ErrorId::kNone) return why;
   external.taken = external.given;
   at = to;
   return ErrorId::kNone;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/mover/admission.h"
+#include "takt/mover/on_parts.h"
 #include "takt/planar/going_along.h"
 #include "takt/planar/send.h"
 
@@ -115,6 +116,7 @@ Answer Couple(const Given& g, const Gear& command, Rider& next, std::uint32_t ax
   const double least = LeastGap(g.c, s, next);
   if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);
   next.aim = planar::Aim::kFollow;
+  if (const ErrorId why = WhyNotAlong(g.c, s, next, s.others.back()); why != ErrorId::kNone) return Refused(why);
   next.planned = next.there = false;
   next.waits = planar::Waits::kNot;
   next.waits_for = kNobody;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "takt/mover/course.h"
 #include "takt/mover/formation.h"
 #include "takt/mover/on_parts.h"
 
@@ -174,6 +175,7 @@ void Stand(const Context& c, const State& s) noexcept {
     const planar::Spot &from = parts.spot(s.part), &to = parts.goal(s.part);
     now.goal = {to.system, now.pose.place + (to.origin - from.origin)};
   }
+  ShowRest(c, s);
   const std::uint32_t group = g.Watching(g.group_of_mover[c.index]);
   if (group == 0) return;
   // What is not straight is looked at anew.

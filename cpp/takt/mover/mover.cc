@@ -6,6 +6,7 @@
 #include "takt/core/describe.h"
 #include "takt/core/maths.h"
 #include "takt/mover/coordinate.h"
+#include "takt/mover/course.h"
 #include "takt/mover/follow.h"
 #include "takt/mover/formation.h"
 #include "takt/mover/gear.h"
@@ -29,7 +30,7 @@ Context NextTo(const Context& c) {
 // At rest on its old line it goes on to its target; off its place on a track not before that leads it nowhere.
 void GoOn(const Context& c, State& s) {
   if (!s.plane.waits || Elapsed(c, s.plane.begin) < DurationOf(s.plane.motion)) return;
-  if (IsOnTrack(s) && GoesAlongTrack(c, s)) return;
+  if (IsOnTrack(s) ? GoesAlongTrack(c, s) : IsHeld(c, s)) return;
   const MoveToPosition next = s.plane.next;
   const trajectory::Limits limits{*next.velocity, *next.acceleration, *next.deceleration, *next.jerk};
   PlaneMotion motion;
@@ -73,6 +74,22 @@ SetPoint Planned(const Context& c, const State& s) {
   return at;
 }
 
+// X, Y or C, in the plane and by itself.
+bool Moves(const State& s, const SetPoint& at) {
+  return std::ranges::any_of(std::array{kX, kY, kC}, [&](Coordinate i) {
+    return at[i].position != s.set_point[i].position || !planar::Rests(at[i]) || !planar::Rests(s.set_point[i]);
+  });
+}
+
+// In the plane it brakes rather than to get onto a course that another mover is on.
+void MindOthers(const Context& c, SetPoint& at, State& s) {
+  if (IsOnTrack(s) || !Moves(s, at)) return;
+  const ObjectInfo other = TakeCourse(c, s, at);
+  if (!other) return;
+  Hold(c, other.number - 1, s);
+  at = Planned(c, s);
+}
+
 void MoveOn(const Context& c, State& s) {
   GoOn(c, s);
   SetPoint at = Planned(c, s);
@@ -88,6 +105,7 @@ void MoveOn(const Context& c, State& s) {
       at = Planned(c, s);
     }
   }
+  if (s.external.mode == SetpointMode::kNone) MindOthers(c, at, s);
   s.set_point = at;
   if (s.external.mode == SetpointMode::kNone && IsOver(NextTo(c), s.plane)) c.rider().off = 0;
 }
@@ -197,6 +215,10 @@ Delay DelayOf(planar::Waits waits) {
   }
 }
 
+bool IsHeldInPlane(const State& s) {
+  return !IsOnTrack(s) && s.plane.held_by != planar::kNobody;
+}
+
 // Why the mover does not go on.
 void PublishDelay(const Context& c, const State& s, Outputs& out) {
   const planar::Rider& rider = c.rider();
@@ -204,6 +226,10 @@ void PublishDelay(const Context& c, const State& s, Outputs& out) {
     const bool for_time = c.cycle.count < s.buffer.until;
     out.delay = for_time ? Delay::kTime : Delay::kRelease;
     out.delay_since = s.begun[kWait];
+  } else if (IsHeldInPlane(s)) {
+    out.delay = Delay::kMover;
+    out.delay_since = s.plane.held_since;
+    out.waits_for = s.plane.held_by + 1;
   } else if (IsOnTrack(s) && rider.waits != planar::Waits::kNot) {
     out.delay = DelayOf(rider.waits);
     out.delay_since = rider.waits_since;

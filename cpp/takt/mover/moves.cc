@@ -4,6 +4,7 @@
 
 #include "takt/mover/admission.h"
 #include "takt/mover/coordinate.h"
+#include "takt/mover/course.h"
 #include "takt/mover/formation.h"
 #include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
@@ -140,13 +141,16 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
   }
   if (const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, *move, turn)); why != ErrorId::kNone) return Refused(why);
   if (const ObjectInfo object = InTheWay(g.c, *move, turn, false)) return Refused(ErrorId::kCollision, object);
+  if (const ObjectInfo object = InTheTurn(g.c, s, turn)) return Refused(ErrorId::kCollision, object);
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   if (turns_along) End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);
   s.others.back() = turn;
+  if (turns_along) ShowCourse(g.c, s);
   s.plane = *move;
   s.plane.turns = turns_along;
   s.plane.limits = limits;
+  s.plane.goes = true;
   s.limited_by = limited_by;
   Reserve(g.c, s, false);
   return {Status::Ok(), duration};
@@ -187,11 +191,15 @@ Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept {
   if (!IsOnTrack(s)) {
     const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, s.plane, move));
     if (why != ErrorId::kNone) return Refused(why);
+  } else if (const ErrorId why = WhyNotAlong(g.c, s, g.c.rider(), move); why != ErrorId::kNone) {
+    return Refused(why);
   }
   if (const ObjectInfo object = InTheWay(g.c, s.plane, move, IsOnTrack(s))) return Refused(ErrorId::kCollision, object);
+  if (const ObjectInfo object = InTheTurn(g.c, s, move)) return Refused(ErrorId::kCollision, object);
   if (!inside && s.mode == CommandMode::kFreeMovement) s.mode = CommandMode::kCRotationFreeMovement;
   if (!inside && s.mode == CommandMode::kOnTrack) s.mode = CommandMode::kCRotationOnTrack;
   s.others.back() = move;
+  ShowCourse(g.c, s);
   Reserve(g.c, s, IsOnTrack(s));
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kMoveC);

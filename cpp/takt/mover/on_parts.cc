@@ -5,6 +5,8 @@
 
 #include "takt/mover/formation.h"
 #include "takt/mover/ground.h"
+#include "takt/planar/course.h"
+#include "takt/planar/send.h"
 
 namespace takt::mover {
 
@@ -152,10 +154,12 @@ PlacesOff PlacesOffTrack(const Context& c, const SetPoint& off) noexcept {
   return {here, there, here + by, there + by};
 }
 
-Cover CoverOf(const PlacesOff& places) noexcept {
+Cover CoverOf(const Context& c, const State& s, const PlacesOff& places) noexcept {
   Cover cover;
   planar::Area& area = cover.areas[cover.count++];
-  area.count = 0;
+  const Angles angles = AnglesOf(c, s.others.back());
+  const double turned = s.set_point[kC].position;
+  area = AreaOf(c, {std::min(angles.least, turned), std::max(angles.most, turned)});
   for (const planar::Place& place : places) area.places[area.count++] = place;
   return cover;
 }
@@ -163,6 +167,12 @@ Cover CoverOf(const PlacesOff& places) noexcept {
 Cover CoverOf(const Context& c, const PlaneMove& move, const CoordinateMove& turn) noexcept {
   Cover cover;
   Add(c, AreaOf(c, AnglesOf(c, turn)), move, cover);
+  return cover;
+}
+
+Cover CoverOf(const Area& kind, const PlaneMotion& motion) noexcept {
+  Cover cover;
+  Add(kind, motion, 0, cover);
   return cover;
 }
 
@@ -178,6 +188,83 @@ ErrorId WhyNotOn(const Context& c, const State& s, const Cover& cover) noexcept 
     });
   }
   return why;
+}
+
+namespace {
+
+constexpr double kFlush = 0.01;  // mm: so exactly a way is held against the border
+
+struct Stretch {
+  double from = 0, to = 0;  // mm, from the start of its first track
+};
+Stretch WayOf(const Context& c, const planar::Rider& r) {
+  const planar::Network& network = c.streets.network;
+  const double at = r.at.position;
+  if (r.aim == planar::Aim::kTarget && !r.there) {
+    const double end = planar::EndOfWay(network, r);
+    return {std::min(at, end), std::max(at, end)};
+  }
+  if (r.aim == planar::Aim::kFollow) {
+    double length = 0;
+    for (const std::uint32_t track : r.route.all()) length += network[track].length;
+    return {0, length};
+  }
+  if (planar::Rests(r.at)) return {at, at};
+  const planar::Braking braking = planar::Brake(r.at, r.brakes);
+  return {braking.lowest, braking.highest};
+}
+
+// By halves, until what the bend adds is small enough to leave out.
+ErrorId WhyNotOn(const planar::Parts& parts, std::uint32_t system, const planar::Road& road, double from, double to,
+                 const Area& kind) {
+  const double length = to - from, curvature = 1.01 * planar::PeakCurvature(*road.track, from, to);
+  const double stray = curvature * length * length / 8;
+  Area area = kind;
+  area.places = {planar::At(*road.track, from).place + road.origin, planar::At(*road.track, to).place + road.origin};
+  area.count = length > 0 ? 2 : 1;
+  area.margin = stray > kFlush ? stray : 0;
+  const ErrorId why = WhyNotOn(parts, system, area);
+  if (why == ErrorId::kNone || stray <= kFlush) return why;
+  const double middle = from + length / 2;
+  const ErrorId first = WhyNotOn(parts, system, road, from, middle, kind);
+  return first != ErrorId::kNone ? first : WhyNotOn(parts, system, road, middle, to, kind);
+}
+
+Area KindOnTrack(const Context& c, const State& s, const CoordinateMove& turn) {
+  const Angles angles = AnglesOf(c, turn);
+  const double turned = s.set_point[kC].position;
+  return AreaOf(c, {std::min(angles.least, turned), std::max(angles.most, turned)});
+}
+
+}  // namespace
+
+ErrorId WhyNotAlong(const Context& c, const State& s, const planar::Rider& rider, const CoordinateMove& turn) noexcept {
+  const planar::Parts& parts = PartsOf(c);
+  if (parts.none()) return ErrorId::kNone;
+  const planar::Network& network = c.streets.network;
+  const Stretch way = WayOf(c, rider);
+  const Area kind = KindOnTrack(c, s, turn);
+  ErrorId why = ErrorId::kNone;
+  planar::EachStretch(network, rider.route, way.from, way.to, [&](std::uint32_t track, double from, double to) {
+    if (why == ErrorId::kNone) why = WhyNotOn(parts, s.system, network[track], from, to, kind);
+  });
+  return why;
+}
+
+bool LeadsOver(const Context& c, const State& s, std::uint32_t part) noexcept {
+  if (!IsOnTrack(s)) return false;
+  const planar::Parts& parts = PartsOf(c);
+  const planar::Network& network = c.streets.network;
+  const Stretch way = WayOf(c, c.rider());
+  const Area kind = KindOnTrack(c, s, s.others.back());
+  bool leads = false;
+  planar::EachStretch(network, c.rider().route, way.from, way.to, [&](std::uint32_t track, double from, double to) {
+    constexpr int kStrides = 1000;
+    planar::EachArea(*network[track].track, network[track].origin, from, to, kind, kStrides, [&](const Area& area) {
+      leads = leads || planar::Touches(parts.all[part], parts.spot(part), s.system, area);
+    });
+  });
+  return leads;
 }
 
 bool IsAway(const Context& c, const State& s) noexcept {
@@ -236,19 +323,18 @@ void Carry(const Context& c, const planar::Spot& from, const planar::Spot& to, I
   Stand(c, s);
 }
 
+planar::Area AreaAt(const MoverParams& params, const planar::Place& place, double c) noexcept {
+  return {
+      .places = {place}, .count = 1, .least_c = c, .most_c = c, .mover = {params.width, params.height}, .margin = 0};
+}
+
 ErrorId FindSpot(const MoverParams& params, const planar::Parts& parts, std::string_view reference,
                  const planar::Pose& pose, planar::Spot& out) noexcept {
   const std::optional<planar::Spot> from = planar::Resolve(parts, reference);
   if (!from) return ErrorId::kReference;
   out = {from->system, from->origin + pose.place};
   if (parts.none()) return ErrorId::kNone;
-  const planar::Area area{.places = {out.origin},
-                          .count = 1,
-                          .least_c = pose.c,
-                          .most_c = pose.c,
-                          .mover = {params.width, params.height},
-                          .margin = 0};
-  return planar::Carries(parts, out.system, area) ? ErrorId::kNone : ErrorId::kOffStators;
+  return planar::Carries(parts, out.system, AreaAt(params, out.origin, pose.c)) ? ErrorId::kNone : ErrorId::kOffStators;
 }
 
 void PutAt(const planar::Spot& at, State& s) noexcept {

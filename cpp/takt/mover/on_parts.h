@@ -32,13 +32,21 @@ Cover CoverOfStop(const Context& c, const SetPoint& at) noexcept;
 // it rests, and on its way back to the track.
 using PlacesOff = std::array<planar::Place, 4>;
 PlacesOff PlacesOffTrack(const Context& c, const SetPoint& off) noexcept;
-// Of its middle alone.
-Cover CoverOf(const PlacesOff& places) noexcept;
+Cover CoverOf(const Context& c, const State& s, const PlacesOff& places) noexcept;
 // If X and Y went so, and C so.
 Cover CoverOf(const Context& c, const PlaneMove& move, const CoordinateMove& turn) noexcept;
 
+// What a mover covers (`kind`: an area without places) while it goes so.
+Cover CoverOf(const planar::Area& kind, const PlaneMotion& motion) noexcept;
+
 // Why the mover must not cover that: kOffStators, kPartDisabled.
 ErrorId WhyNotOn(const Context& c, const State& s, const Cover& cover) noexcept;
+
+// The same of the way of a mover along its tracks, turned as it is and as `turn` has it: to its target, or to where it
+// stops; of one that goes along with a master, anywhere on its route.
+ErrorId WhyNotAlong(const Context& c, const State& s, const planar::Rider& rider, const CoordinateMove& turn) noexcept;
+// Whether that way leads over a part.
+bool LeadsOver(const Context& c, const State& s, std::uint32_t part) noexcept;
 
 // The part below it cannot take part in anything: it is on its way.
 bool IsAway(const Context& c, const State& s) noexcept;
@@ -57,6 +65,8 @@ void Locate(const Context& c, State& s) noexcept;
 // Its part has gone so far, or the mover is set there; it rests.
 void Carry(const Context& c, const planar::Spot& from, const planar::Spot& to, Inputs& inputs, State& s) noexcept;
 
+// What a mover covers that stands there, turned so (deg).
+planar::Area AreaAt(const MoverParams& params, const planar::Place& place, double c) noexcept;
 // Where the mover is when it stands so, with this reference: the coordinate system and the place in that. Why it must
 // not: kReference, kOffStators.
 ErrorId FindSpot(const MoverParams& params, const planar::Parts& parts, std::string_view reference,

@@ -151,6 +151,7 @@ planar::Verdict AskRoute(const Context& c, const planar::Route& route) noexcept 
   for (const std::uint32_t on : route.all()) {
     if (!c.streets.tracks[on].enabled) return {ErrorId::kTrackDisabled, TrackOf(on)};
     if (c.streets.uses[on].configuring > 0) return {ErrorId::kTrackMode, TrackOf(on)};
+    if (!IsSmallEnough(c.params, c.streets.tracks[on])) return {ErrorId::kMoverTooLarge, TrackOf(on)};
   }
   return planar::AskTracks(c.index, route.all(), c.grounds);
 }
@@ -174,7 +175,8 @@ planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const Stat
   const planar::Destination to{track, command.position, WayOf(command.direction), command.additional_turns,
                                command.modulo_tolerance};
   if (!planar::Send(streets.network, streets.search, to, rider)) return {ErrorId::kNoRoute, {}};
-  return AskRoute(c, rider.route);
+  const planar::Verdict route = AskRoute(c, rider.route);
+  return route.error == ErrorId::kNone ? planar::Verdict{WhyNotAlong(c, s, rider, s.others.back()), {}} : route;
 }
 
 Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {

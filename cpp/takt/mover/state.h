@@ -18,6 +18,7 @@
 #include "takt/planar/network.h"
 #include "takt/planar/object_state.h"
 #include "takt/planar/parts.h"
+#include "takt/planar/rider.h"
 #include "takt/trajectory/profile.h"
 
 namespace takt::mover {
@@ -38,7 +39,10 @@ struct PlaneMove {
   bool tried = false;   // whether it can go round a corner has been looked at
   bool passes = false;  // it goes round a corner at its end: what is buffered next takes over where it ends
   double share = 0;     // of the limits then, across the second line
-  double corner_x = 0, corner_y = 0;  // mm
+  double corner_x = 0, corner_y = 0;        // mm
+  bool goes = false;                        // a command leads it to a target; else it comes to rest
+  std::uint32_t held_by = planar::kNobody;  // the mover in its way: it comes to rest, and goes on once that is clear
+  std::uint64_t held_since = 0;             // cycle
 };
 
 // One of another coordinate.

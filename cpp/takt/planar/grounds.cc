@@ -87,7 +87,8 @@ Grounds::Grounds(std::size_t of_movers, std::size_t of_tracks, std::size_t of_en
       areas(of_tracks),
       spots(of_tracks),
       moving(of_tracks),
-      surfaces(of_environments) {
+      surfaces(of_environments),
+      guard(of_movers) {
   for (Ground& ground : grounds) ground.reserved = MakeReservations(of_movers, of_tracks);
 }
 
@@ -103,7 +104,8 @@ std::uint32_t Grounds::EnvironmentOf(std::uint32_t group) const noexcept {
 
 Surroundings Grounds::Around(std::uint32_t group) const noexcept {
   const std::uint32_t environment = EnvironmentOf(group);
-  return {.environment = environment == 0 ? nullptr : surfaces[environment - 1], .tracks = areas, .spots = spots};
+  const bool has_border = environment != 0 && !on_parts;
+  return {.environment = has_border ? surfaces[environment - 1] : nullptr, .tracks = areas, .spots = spots};
 }
 
 ObjectInfo AskMove(std::uint32_t mover, const Move& move, const Grounds& g) noexcept {
@@ -214,7 +216,8 @@ Verdict AddEnvironment(std::uint32_t environment, std::uint32_t group, Grounds& 
   own = group;
   if (g.Watching(group) == 0) return {};
   Verdict verdict;
-  if (!g.surfaces[environment]) verdict = {ErrorId::kNoBoundary, ObjectAt(ObjectKind::kEnvironment, environment)};
+  if (!g.surfaces[environment] && !g.on_parts)
+    verdict = {ErrorId::kNoBoundary, ObjectAt(ObjectKind::kEnvironment, environment)};
   for (std::uint32_t i = 0; i < g.moving.size() && verdict.error == ErrorId::kNone; ++i) {
     const bool moves = g.grounds[group - 1].reserved.tracks[i].moving;
     if (moves) verdict = {ErrorId::kObjectMoves, ObjectAt(ObjectKind::kTrack, i)};
@@ -247,7 +250,7 @@ Verdict RemoveEnvironment(std::uint32_t environment, Grounds& g) noexcept {
 
 Verdict Watch(std::uint32_t group, Grounds& g) noexcept {
   const std::uint32_t environment = g.EnvironmentOf(group);
-  if (environment != 0 && !g.surfaces[environment - 1]) {
+  if (environment != 0 && !g.surfaces[environment - 1] && !g.on_parts) {
     return {ErrorId::kNoBoundary, {ObjectKind::kEnvironment, environment}};
   }
   for (std::uint32_t i = 0; i < g.moving.size(); ++i) {

@@ -12,6 +12,7 @@
 #include "takt/core/describe_fwd.h"
 #include "takt/core/status.h"
 #include "takt/planar/environment.h"
+#include "takt/planar/guard.h"
 #include "takt/planar/network.h"
 #include "takt/planar/reservation.h"
 #include "takt/planar/track_area.h"
@@ -64,6 +65,8 @@ struct Grounds {
   std::vector<Spot> spots;                   // by track: where the part that it lies on is
   std::vector<std::uint8_t> moving;          // by track: it is Moving
   std::vector<const Environment*> surfaces;  // by environment; null: it has no boundary
+  bool on_parts = false;                     // the surface is made of parts: environments are what these say
+  Guard guard;                               // of all movers, in a group or not
 };
 
 // Whether something of a group that watches is or would be in the way. `error` is none, or why not.

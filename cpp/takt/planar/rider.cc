@@ -74,6 +74,7 @@ void describe(Description<Rider>& d) {
   d.internal<&R::calm_cycles>("So long it does not speed up more, having had to brake.");
   d.internal<&R::eased>(unit::mm_s2, "What following asks for, without the shaking of those before it.");
   d.internal<&R::origin>(unit::mm, "Of all tracks it has left behind.");
+  d.internal<&R::held_by>("The mover that is across its way.");
   d.internal<&R::waits>("Why it does not go on.");
   d.internal<&R::waits_for>("The mover that is in its way.");
   d.internal<&R::waits_since>("Cycle since when.");

@@ -62,6 +62,7 @@ struct Rider {
   double eased = 0;               // mm/s², what following asks for, without the shaking of those before it
   double origin = 0;              // mm, of all tracks that it has left behind: at + origin goes on over borders
 
+  std::uint32_t held_by = kNobody;  // the mover that is across its way: it brakes, and goes on once that is clear
   Waits waits = Waits::kNot;
   std::uint32_t waits_for = kNobody;
   std::uint64_t waits_since = 0;  // cycle

@@ -269,6 +269,7 @@ std::uint32_t RightOfWay::TooNear(std::uint32_t i) const noexcept {
 void RightOfWay::Take(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept {
   s_.now[i].next = next;
   s_.now[i].braking = braking;
+  s_.now[i].taken = true;
   EnterNodes(i, next, braking);
 }
 

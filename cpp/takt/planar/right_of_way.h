@@ -28,9 +28,11 @@ struct Now {
   Braking braking;         // from there
   double rest_before = 0;  // where it would stand if it only braked
   std::uint32_t leader = kNobody;
-  double leader_offset = 0;  // from the leader's places to its own
-  bool entered = false;      // in the search for an order
-  bool settled = false;      // `next` is what it is going to do
+  double leader_offset = 0;        // from the leader's places to its own
+  bool entered = false;            // in the search for an order
+  bool settled = false;            // `next` is what it is going to do
+  bool taken = false;              // it takes the step it asked for, and does not only brake
+  std::uint32_t across = kNobody;  // the mover that its last step asked for would have overlapped
 };
 // A mover's way through a node.
 struct Passage {

@@ -31,14 +31,15 @@ constexpr double kFarAhead = 1e5;
 class Traffic::Step_ {
  public:
   Step_(Traffic& traffic, const Cycle& cycle, trajectory::Planner& planner, const Network& network,
-        std::span<Rider> riders)
+        std::span<Rider> riders, Guard* guard)
       : t_(traffic),
         s_(traffic.scene_),
         w_(traffic.scene_, network, riders, cycle.period_s),
         cycle_(cycle),
         planner_(planner),
         network_(network),
-        riders_(riders) {}
+        riders_(riders),
+        guard_(guard) {}
 
   void Run() {
     t_.refused_ = 0;
@@ -205,7 +206,85 @@ class Traffic::Step_ {
       t_.refused_ += std::abs(riders_[i].at.velocity) > kStands ? 1 : 0;
       return false;
     }
+    if (guard_ != nullptr && !PassesGuard(i, next, braking)) return false;
     w_.Take(i, next, braking);
+    return true;
+  }
+
+  Area KindOf(std::uint32_t i) const {
+    Area kind = guard_->figure(i).kind;
+    kind.margin += riders_[i].off;
+    return kind;
+  }
+  // What it covers on its way between two positions; with room for `off`.
+  Course CourseOf(std::uint32_t i, double from, double to) const {
+    return CourseOn(network_, riders_[i], from, to, KindOf(i));
+  }
+  bool IsInOrder(std::uint32_t i, std::uint32_t k) const { return s_.now[i].leader == k || s_.now[k].leader == i; }
+
+  // Whether another mover on a track keeps away though the courses overlap: both brake one behind the other.
+  bool KeepsAway(std::uint32_t i, const Braking& braking, std::uint32_t k) const {
+    const Rider &r = riders_[i], &other = riders_[k];
+    if (!other.on || !guard_->figure(k).on_track) return false;
+    const Area own = KindOf(i), its = KindOf(k);
+    const Braking& its_braking = s_.now[k].braking;
+    const auto in_order = [&](const Rider& behind, const Braking& behind_brakes, const Area& behind_kind,
+                              const Braking& ahead_brakes, const Area& ahead_kind, double apart) {
+      return ApartByOrder(network_, behind, behind_brakes, behind_kind, ahead_brakes, ahead_kind, apart);
+    };
+    if (s_.now[i].leader == k) {
+      const double apart = s_.now[i].leader_offset;
+      const bool forward = r.direction > 0;
+      if (forward ? in_order(r, braking, own, its_braking, its, apart)
+                  : in_order(other, its_braking, its, braking, own, -apart)) {
+        return true;
+      }
+    } else if (s_.now[k].leader == i) {
+      const double apart = s_.now[k].leader_offset;
+      const bool forward = other.direction > 0;
+      if (forward ? in_order(other, its_braking, its, braking, own, apart)
+                  : in_order(r, braking, own, its_braking, its, -apart)) {
+        return true;
+      }
+    }
+    return ApartInTime(network_, {r, braking, own}, {other, its_braking, its}, period());
+  }
+
+  // Whether the guard lets it take this step; then its course is that.
+  bool PassesGuard(std::uint32_t i, const KinematicState& next, const Braking& braking) {
+    const Course course = CourseOf(i, std::min({riders_[i].at.position, next.position, braking.lowest}),
+                                   std::max({riders_[i].at.position, next.position, braking.highest}));
+    const std::uint32_t across = guard_->Find(i, guard_->figure(i).system, course, [&](std::uint32_t k, bool there) {
+      return !there && KeepsAway(i, braking, k);
+    });
+    s_.now[i].across = across;
+    if (across == kNobody) {
+      guard_->Put(i, course);
+      return true;
+    }
+    if (!IsInOrder(i, across)) riders_[i].held_by = across;
+    return false;
+  }
+
+  // The mover across its way, as far as it has to see ahead to go on at its pace; kNobody: it is clear.
+  std::uint32_t Across(std::uint32_t i) {
+    const Rider& r = riders_[i];
+    double ahead = WayToRest(r.pace.limits.velocity, r.pace.brakes());
+    if (r.aim == Aim::kTarget) ahead = std::min(ahead, std::abs(EndOfWay(network_, r) - r.at.position));
+    const double there = r.at.position + r.direction * ahead;
+    return guard_->Find(i, guard_->figure(i).system,
+                        CourseOf(i, std::min(r.at.position, there), std::max(r.at.position, there)),
+                        [&](std::uint32_t k, bool brought) { return !brought && IsInOrder(i, k); });
+  }
+
+  // It brakes for a mover across its way, or waits for it.
+  bool Holds(std::uint32_t i) {
+    Rider& r = riders_[i];
+    if (guard_ == nullptr || r.held_by == kNobody) return false;
+    r.held_by = Across(i);
+    if (r.held_by == kNobody) return false;
+    r.planned = false;
+    if (std::abs(r.at.velocity) < kStands) WaitFor(r, Waits::kMover, r.held_by);
     return true;
   }
 
@@ -285,8 +364,10 @@ class Traffic::Step_ {
     const bool halts = r.aim == Aim::kRest && r.softly && !Rests(r.at);
     if ((r.aim == Aim::kRest && !halts) || (r.aim == Aim::kTarget && r.there)) {
       r.planned = false;
+      r.held_by = kNobody;
       return WaitFor(r, Waits::kNot, kNobody);
     }
+    if (Holds(i)) return;
     // Who stands and waits has nothing to plan until there is room, or room enough for the rest of its way.
     if (r.aim == Aim::kTarget && r.waits == Waits::kMover && !r.planned && Rests(r.at)) {
       Limit limit;
@@ -351,13 +432,20 @@ class Traffic::Step_ {
     if (goes && !(comes && Passes(r, step, demand)) && Take(i, step)) {
       return stands ? WaitFor(r, Waits::kMover, limit.by) : WaitFor(r, Waits::kNot, kNobody);
     }
-    if (stands) WaitFor(r, limit.by != kNobody ? Waits::kMover : Waits::kRoute, limit.by);
+    if (!stands) return;
+    const std::uint32_t by = now.across != kNobody ? now.across : limit.by;
+    WaitFor(r, by != kNobody ? Waits::kMover : Waits::kRoute, by);
   }
 
   // The end of the cycle: places are those on the track where the mover is now.
   void GoOn(std::uint32_t i) {
     Rider& r = riders_[i];
-    r.at = s_.now[i].next;
+    const Now& now = s_.now[i];
+    if (guard_ != nullptr && !now.taken && !(Rests(r.at) && Rests(now.next))) {
+      guard_->Put(i, CourseOf(i, std::min(now.next.position, now.braking.lowest),
+                              std::max(now.next.position, now.braking.highest)));
+    }
+    r.at = now.next;
     if (std::abs(r.at.velocity) < 1e-9 && std::abs(r.at.acceleration) < 1e-6) r.at.velocity = r.at.acceleration = 0;
     const auto shift = [&r](double by) {
       r.at.position -= by;
@@ -390,13 +478,14 @@ class Traffic::Step_ {
   trajectory::Planner& planner_;
   const Network& network_;
   std::span<Rider> riders_;
+  Guard* guard_;
 };
 
 Traffic::Traffic(const TrafficSettings& settings) : scene_(settings.movers, settings.tracks) {}
 
-void Traffic::Step(const Cycle& cycle, trajectory::Planner& planner, const Network& network,
-                   std::span<Rider> riders) noexcept {
-  Step_(*this, cycle, planner, network, riders).Run();
+void Traffic::Step(const Cycle& cycle, trajectory::Planner& planner, const Network& network, std::span<Rider> riders,
+                   Guard* guard) noexcept {
+  Step_(*this, cycle, planner, network, riders, guard).Run();
 }
 
 std::uint32_t Traffic::TooNear(const Cycle& cycle, const Network& network, std::span<const Rider> riders,

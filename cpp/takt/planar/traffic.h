@@ -24,6 +24,10 @@
 // larger, and so are zones and ranges around nodes between it and each other. Whoever gets onto a track, or further off
 // its place, has to ask before (TooNear).
 //
+// What gaps and nodes do not keep apart, the guard does (guard.h): movers on tracks that cross or come near each other
+// without a node, movers nearer than their size in a bend, and movers that are on no track. A mover that the guard does
+// not let go on for one that is not before or behind it brakes, and goes on once its way is clear again.
+//
 // How a mover follows another is not part of that: its speed falls with the way left to where the one before it could
 // stop, in a way that does not swing (following.h). It keeps a little more than the invariant asks for.
 #pragma once
@@ -32,6 +36,7 @@
 #include <span>
 
 #include "takt/core/cycle.h"
+#include "takt/planar/guard.h"
 #include "takt/planar/network.h"
 #include "takt/planar/rider.h"
 #include "takt/planar/right_of_way.h"
@@ -48,8 +53,9 @@ class Traffic {
  public:
   explicit Traffic(const TrafficSettings& settings);
 
-  // One cycle of all movers.
-  void Step(const Cycle& cycle, trajectory::Planner& planner, const Network& network, std::span<Rider> riders) noexcept;
+  // One cycle of all movers. With a guard: none overlaps any other mover, either.
+  void Step(const Cycle& cycle, trajectory::Planner& planner, const Network& network, std::span<Rider> riders,
+            Guard* guard = nullptr) noexcept;
 
   // Who would come nearer to this mover than the larger gap of both if from now on all braked; kNobody: nobody. Asked
   // before a mover is put on a track, or may be further off its place, so that the invariant holds from then on.

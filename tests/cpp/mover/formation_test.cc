@@ -271,7 +271,9 @@ TEST(MoverFormation, AStarThatIsLostEndsIt) {
       EXPECT_EQ(t.outs[i].formation, 0u);
     }
     EXPECT_EQ(t.outs[0].formation, 0u);
-    EXPECT_EQ(t.Become(t.Give(1, MoveToPosition{.x = 0, .y = 0})), FeedbackState::kDone);
+    // Away from the others, which stand where they were.
+    const Complex away = 2.0 * PlaceOf(t.states[1].set_point) - PlaceOf(t.states[0].set_point);
+    EXPECT_EQ(t.Become(t.Give(1, MoveToPosition{.x = away.real(), .y = away.imag()})), FeedbackState::kDone);
   };
   lose([](Troop& t) { t.Break(0); }, ObjectState::kError);
   lose([](Troop& t) { t.Give(0, Disable{}); }, ObjectState::kDisabled);

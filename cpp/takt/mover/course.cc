@@ -1,0 +1,194 @@
+#include "takt/mover/course.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/mover/formation.h"
+#include "takt/mover/on_parts.h"
+
+namespace takt::mover {
+
+namespace {
+
+using planar::Area;
+using planar::Course;
+using planar::kNobody;
+
+constexpr double kAhead = 1;  // mm, besides what braking takes: so much has to be clear at the least
+
+planar::Guard& GuardOf(const Context& c) {
+  return c.grounds.guard;
+}
+
+ObjectInfo OneInTheWay(std::uint32_t mover) {
+  return mover == kNobody ? ObjectInfo{} : ObjectAt(ObjectKind::kMover, mover);
+}
+
+// All angles from here on as planned, or where set points come from outside, until it stops.
+Area KindOf(const Context& c, const State& s, const CoordinateMove& turn, const SetPoint& at) {
+  Area kind{.places = {}, .count = 0, .mover = {c.params.width, c.params.height}, .margin = 0};
+  const double turned = at[kC].position;
+  double other = turned, another = turned;
+  if (s.external.mode != SetpointMode::kNone) {
+    other = trajectory::StopPosition(at[kC], c.params.c.maximum.limits());
+  } else if (!IsPlanet(s)) {
+    const trajectory::Profile::Range range = turn.profile.PositionRange(Elapsed(c, turn.begin));
+    other = range.min;
+    another = range.max;
+  }
+  kind.least_c = std::min({turned, other, another});
+  kind.most_c = std::max({turned, other, another});
+  return kind;
+}
+
+Course CourseOf(const Cover& cover) {
+  Course course;
+  for (const Area& area : cover.all()) planar::Add(area, course);
+  return course;
+}
+
+Course OfPlanet(const Context& c, std::uint32_t planet, const Course& star) {
+  const planar::Arm arm = ArmOf(c.fleet.params[planet], c.fleet.states[planet].formation);
+  Course course;
+  for (const Area& area : star.all()) planar::Add(planar::AreaOf(arm, area), course);
+  return course;
+}
+
+// Whom this mover, or one of its planets, would overlap.
+std::uint32_t Find(const Context& c, const Course& course) {
+  std::uint32_t found = GuardOf(c).Find(c.index, course);
+  EachPlanet(c, [&](std::uint32_t i) {
+    if (found == kNobody) found = GuardOf(c).Find(i, OfPlanet(c, i, course));
+  });
+  return found;
+}
+
+void Put(const Context& c, const Course& course) {
+  GuardOf(c).Put(c.index, course);
+  EachPlanet(c, [&](std::uint32_t i) { GuardOf(c).Put(i, OfPlanet(c, i, course)); });
+}
+
+// It brakes from this set point, where it is when this cycle begins; in the plane.
+Course StopFrom(const Context& c, const State& s, const SetPoint& at, const CoordinateMove& turn) {
+  const Area kind = KindOf(c, s, turn, at);
+  PlaneMotion rest;
+  if (!PlanStop(c, s, at, c.params.xy.maximum.limits(), rest)) rest = StandingAt(at[kX].position, at[kY].position);
+  return CourseOf(CoverOf(kind, rest));
+}
+
+// Where it is when this cycle begins, and with such a rotation.
+Course CourseNow(const Context& c, const State& s, const CoordinateMove& turn) {
+  if (!IsOnTrack(s)) return StopFrom(c, s, s.set_point, turn);
+  const planar::Rider& r = c.rider();
+  Area kind = KindOf(c, s, turn, s.set_point);
+  kind.margin = r.off;
+  const planar::Braking braking = planar::Brake(r.at, r.brakes);
+  const bool rests = planar::Rests(r.at);
+  return planar::CourseOn(c.streets.network, r, rests ? r.at.position : braking.lowest,
+                          rests ? r.at.position : braking.highest, kind);
+}
+
+}  // namespace
+
+void ShowCourse(const Context& c, const State& s) noexcept {
+  planar::Guard& guard = GuardOf(c);
+  planar::Guard::Figure& figure = guard.figure(c.index);
+  figure.kind = KindOf(c, s, s.others.back(), s.set_point);
+  figure.system = s.system;
+  figure.body = BodyOf(c, s);
+  figure.on_track = IsOnTrack(s);
+  if (IsPlanet(s)) {
+    Area stands = figure.kind;
+    stands.places[stands.count++] = {s.set_point[kX].position, s.set_point[kY].position};
+    Course course;
+    planar::Add(stands, course);
+    return guard.Put(c.index, course);
+  }
+  const Course course = CourseNow(c, s, s.others.back());
+  if (course.count > 0) guard.Put(c.index, course);
+}
+
+void ShowRest(const Context& c, const State& s) noexcept {
+  planar::Guard& guard = GuardOf(c);
+  const planar::MoverNow& now = c.grounds.movers[c.index];
+  if (now.comes) {
+    Course there;
+    planar::Add(planar::AreaThere(now), there);
+    guard.PutThere(c.index, now.goal.system, there);
+  } else {
+    guard.ClearThere(c.index);
+  }
+  const planar::Guard::Figure& figure = guard.figure(c.index);
+  const Course& known = guard.course(c.index);
+  const bool turns = !planar::Rests(s.set_point[kC]) || figure.kind.most_c > figure.kind.least_c;
+  const Area& area = known.areas[0];
+  const bool same = known.count == 1 && area.count == 1 && area.places[0].x == s.set_point[kX].position &&
+                    area.places[0].y == s.set_point[kY].position && area.least_c == s.set_point[kC].position &&
+                    figure.system == s.system && figure.body == now.body && figure.on_track == now.on_track &&
+                    area.mover.width == c.params.width && area.margin == (now.on_track ? c.rider().off : 0);
+  // What moves X and Y has told it.
+  const bool led = IsPlanet(s) && !now.rests;
+  if (!led && (turns || (now.rests && !same) || figure.on_track != now.on_track || known.count == 0)) ShowCourse(c, s);
+}
+
+ObjectInfo TakeCourse(const Context& now, const State& s, const SetPoint& at) noexcept {
+  Context c = now;
+  ++c.cycle.count;
+  const Course course = StopFrom(c, s, at, s.others.back());
+  const std::uint32_t found = Find(c, course);
+  if (found == kNobody) Put(c, course);
+  return OneInTheWay(found);
+}
+
+ObjectInfo InTheTurn(const Context& c, const State& s, const CoordinateMove& turn) noexcept {
+  if (IsOver(c, turn)) return {};
+  return OneInTheWay(Find(c, CourseNow(c, s, turn)));
+}
+
+ObjectInfo TakeRoom(const Context& c, const State& s) noexcept {
+  const Course course = CourseNow(c, s, s.others.back());
+  const auto passes = [&](std::uint32_t k, bool there) { return !there && c.grounds.guard.figure(k).on_track; };
+  const std::uint32_t found = GuardOf(c).Find(c.index, s.system, course, passes);
+  if (found == kNobody) GuardOf(c).Put(c.index, course);
+  return OneInTheWay(found);
+}
+
+void Hold(const Context& c, std::uint32_t other, State& s) noexcept {
+  PlaneMove& plane = s.plane;
+  PlaneMotion rest;
+  if (!PlanStop(c, s, s.set_point, c.params.xy.maximum.limits(), rest)) return Fail(c, ErrorId::kPlanning, s);
+  if (plane.goes && !plane.waits) {
+    const trajectory::Limits& l = plane.limits;
+    plane.next = {.x = plane.passes ? plane.corner_x : plane.motion.end_x,
+                  .y = plane.passes ? plane.corner_y : plane.motion.end_y,
+                  .velocity = l.velocity,
+                  .acceleration = l.acceleration,
+                  .deceleration = l.deceleration,
+                  .jerk = l.jerk};
+    plane.waits = true;
+  }
+  plane.motion = rest;
+  plane.begin = c.cycle.count;
+  plane.passes = false;
+  if (plane.goes && plane.held_by == kNobody) plane.held_since = c.cycle.count;
+  if (plane.goes) plane.held_by = other;
+}
+
+bool IsHeld(const Context& c, State& s) noexcept {
+  PlaneMove& plane = s.plane;
+  if (plane.held_by == kNobody) return false;
+  const planar::Place here{plane.motion.end_x, plane.motion.end_y};
+  const planar::Place way = planar::Place{plane.next.x, plane.next.y} - here;
+  const double length = std::hypot(way.x, way.y);
+  const double needed = planar::WayToRest(*plane.next.velocity, {*plane.next.deceleration, *plane.next.jerk}) + kAhead;
+  const double share = length > needed ? needed / length : 1;
+  Area ahead = KindOf(c, s, s.others.back(), s.set_point);
+  ahead.places = {here, here + planar::Place{share * way.x, share * way.y}};
+  ahead.count = length > 0 ? 2 : 1;
+  Course course;
+  planar::Add(ahead, course);
+  plane.held_by = Find(c, course);
+  return plane.held_by != kNobody;
+}
+
+}  // namespace takt::mover

@@ -1,0 +1,27 @@
+// How a mover keeps off others wherever it goes: its side of the guard (planar/guard.h).
+#pragma once
+
+#include "takt/mover/run.h"
+#include "takt/planar/guard.h"
+
+namespace takt::mover {
+
+// Tells the guard the course of a mover that brakes from where it is when this cycle begins. Traffic does so for movers
+// that it moves.
+void ShowCourse(const Context& c, const State& s) noexcept;
+// The same once it is at rest, or turns; at the end of each step.
+void ShowRest(const Context& c, const State& s) noexcept;
+
+// A step in the plane to this set point, and whom its course from there would overlap; none: that is its course now.
+ObjectInfo TakeCourse(const Context& c, const State& s, const SetPoint& at) noexcept;
+// Whom the mover would overlap where it is, and comes to rest, by such a rotation; none: it may turn.
+ObjectInfo InTheTurn(const Context& c, const State& s, const CoordinateMove& turn) noexcept;
+// Whom it would overlap on its track with so much more room around it (planar::Rider::off). None: its course has that.
+ObjectInfo TakeRoom(const Context& c, const State& s) noexcept;
+
+// X and Y brake on their line for another mover, and go on once the way is clear as far as it takes to get fast.
+void Hold(const Context& c, std::uint32_t other, State& s) noexcept;
+// At rest on its line: whether another mover is still in the way of one that was held.
+bool IsHeld(const Context& c, State& s) noexcept;
+
+}  // namespace takt::mover

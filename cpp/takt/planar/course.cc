@@ -1,0 +1,167 @@
+#include "takt/planar/course.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "takt/core/angle.h"
+#include "takt/planar/clearance.h"
+#include "takt/planar/parts.h"
+
+namespace takt::planar {
+namespace {
+
+// Places of a stretch at most: beyond that the slack grows.
+constexpr int kMostStrides = 24;
+// Instants of two courses that are looked at.
+constexpr int kMostInstants = 64;
+
+double RadiusOf(const Area& kind) {
+  return std::hypot(kind.mover.width, kind.mover.height) / 2 + kind.margin;
+}
+
+// The places of both and, around them, the larger of both.
+Area Around(const Area& a, const Area& b) {
+  Area out = a;
+  Place lower = a.places[0], upper = lower;
+  for (const Area* area : {&a, &b}) {
+    for (std::size_t i = 0; i < area->count; ++i) {
+      const Place& p = area->places[i];
+      lower = {std::min(lower.x, p.x), std::min(lower.y, p.y)};
+      upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
+    }
+  }
+  out.places = {lower, {upper.x, lower.y}, upper, {lower.x, upper.y}};
+  out.count = 4;
+  out.least_c = std::min(a.least_c, b.least_c);
+  out.most_c = std::max(a.most_c, b.most_c);
+  out.margin = std::max(a.margin, b.margin);
+  return out;
+}
+
+// Of the directions between two, in the frame of a rectangle with these half sides: how far the middle of another
+// point has to be away at most not to lie in it.
+double MostReach(double half_width, double half_height, double from, double to) {
+  const auto reach = [&](double direction) {
+    return std::min(half_width / std::abs(std::cos(direction)), half_height / std::abs(std::sin(direction)));
+  };
+  const double corner = std::atan2(half_height, half_width), turn = std::numbers::pi;
+  for (const double at : {corner, -corner}) {
+    if (at + turn * std::ceil((from - at) / turn) <= to) return std::hypot(half_width, half_height);
+  }
+  return std::max(reach(from), reach(to));
+}
+
+struct Turned {
+  TrackPoint point;
+  Footprint mover;
+  double margin = 0;  // mm, for what turns, and for what is off the track
+};
+
+Turned TurnedAt(const Network& network, const Rolling& r, double s) {
+  const Route& route = r.rider.route;
+  std::uint32_t k = 0;
+  while (k + 1 < route.count && s > network[route.tracks[k]].length) s -= network[route.tracks[k++]].length;
+  const Road& road = network[route.tracks[k]];
+  Turned out{At(*road.track, s), r.kind.mover, r.kind.margin};
+  out.point.place = out.point.place + road.origin;
+  out.point.direction = (r.kind.least_c + r.kind.most_c) / 2 * kDegree;
+  const double turns = (r.kind.most_c - r.kind.least_c) / 2 * kDegree;
+  if (turns > 0) {
+    out.margin += std::hypot(out.mover.width, out.mover.height) * std::sin(std::min(turns, std::numbers::pi) / 2);
+  }
+  return out;
+}
+
+// No faster than this, whatever acceleration it has to get rid of first. mm/s
+double MostSpeed(const Braking& b, const Brakes& brakes) {
+  const trajectory::Piece& first = b.pieces[0];
+  return std::abs(first.velocity) + first.acceleration * first.acceleration / (2 * brakes.jerk);
+}
+
+}  // namespace
+
+void Add(const Area& area, Course& out) noexcept {
+  const double radius = RadiusOf(area);
+  Extent extent{area.places[0], area.places[0]};
+  for (std::size_t i = 1; i < area.count; ++i) {
+    const Place& p = area.places[i];
+    extent.lower = {std::min(extent.lower.x, p.x), std::min(extent.lower.y, p.y)};
+    extent.upper = {std::max(extent.upper.x, p.x), std::max(extent.upper.y, p.y)};
+  }
+  const Place off{radius, radius};
+  extent = {extent.lower - off, extent.upper + off};
+  if (out.count == 0) {
+    out.extent = extent;
+  } else {
+    out.extent.lower = {std::min(out.extent.lower.x, extent.lower.x), std::min(out.extent.lower.y, extent.lower.y)};
+    out.extent.upper = {std::max(out.extent.upper.x, extent.upper.x), std::max(out.extent.upper.y, extent.upper.y)};
+  }
+  if (out.count < kCourseAreas) {
+    out.areas[out.count++] = area;
+  } else {
+    out.areas[kCourseAreas - 1] = Around(out.areas[kCourseAreas - 1], area);
+  }
+}
+
+void AddStretch(const Track& track, const Place& origin, double from, double to, const Area& kind,
+                Course& out) noexcept {
+  EachArea(track, origin, from, to, kind, kMostStrides, [&](const Area& area) { Add(area, out); });
+}
+
+Course CourseOn(const Network& network, const Rider& rider, double from, double to, const Area& kind) noexcept {
+  Course out;
+  EachStretch(network, rider.route, from, to, [&](std::uint32_t track, double begin, double end) {
+    const Road& road = network[track];
+    if (road.track) AddStretch(*road.track, road.origin, begin, end, kind, out);
+  });
+  return out;
+}
+
+bool ApartByOrder(const Network& network, const Rider& behind, const Braking& behind_brakes, const Area& behind_kind,
+                  const Braking& ahead_brakes, const Area& ahead_kind, double apart) noexcept {
+  const double from = behind_brakes.lowest, to = ahead_brakes.highest + apart;
+  const double gap = LeastDistance(behind_brakes, ahead_brakes, apart);
+  if (!(gap > 0) || !(to >= from)) return false;
+  double curvature = 0, direction = 0;
+  bool begins = true;
+  EachStretch(network, behind.route, from, to, [&](std::uint32_t track, double begin, double end) {
+    const Road& road = network[track];
+    if (!road.track) return;
+    curvature = std::max(curvature, 1.01 * PeakCurvature(*road.track, begin, end));
+    if (begins) direction = At(*road.track, begin).direction;
+    begins = false;
+  });
+  const double bend = curvature * (to - from);
+  if (bend > std::numbers::pi) return false;
+  const double chord = curvature * gap > 1e-9 ? 2 / curvature * std::sin(curvature * gap / 2) : gap;
+  if (chord >= RadiusOf(behind_kind) + RadiusOf(ahead_kind)) return true;
+  const bool turns = behind_kind.most_c > behind_kind.least_c || ahead_kind.most_c > ahead_kind.least_c;
+  if (turns || behind_kind.margin > 0 || ahead_kind.margin > 0) return false;
+  // What both cover together along and across the one behind.
+  const double turned = (ahead_kind.least_c - behind_kind.least_c) * kDegree;
+  const double cosine = std::abs(std::cos(turned)), sine = std::abs(std::sin(turned));
+  const Footprint &own = behind_kind.mover, &its = ahead_kind.mover;
+  const double half_width = (own.width + cosine * its.width + sine * its.height) / 2;
+  const double half_height = (own.height + sine * its.width + cosine * its.height) / 2;
+  const double seen = direction - behind_kind.least_c * kDegree;
+  return chord >= MostReach(half_width, half_height, seen - bend, seen + bend) - kSame;
+}
+
+bool ApartInTime(const Network& network, const Rolling& a, const Rolling& b, double period_s) noexcept {
+  const double end = std::max(a.braking.ends_s.back(), b.braking.ends_s.back());
+  const double closing = MostSpeed(a.braking, a.rider.brakes) + MostSpeed(b.braking, b.rider.brakes);
+  double t = 0;
+  for (int i = 0; i < kMostInstants; ++i) {
+    const Turned one = TurnedAt(network, a, a.braking.At(t).position);
+    const Turned other = TurnedAt(network, b, b.braking.At(t).position);
+    const double apart = Separation(one.point, one.mover, other.point, other.mover) - one.margin - other.margin;
+    if (apart < -kSame) return false;
+    if (t >= end) return true;
+    const double cycles = closing > 0 ? std::floor(apart / closing / period_s) : 1e9;
+    t = std::min(t + period_s * std::max(1.0, cycles), end);
+  }
+  return false;
+}
+
+}  // namespace takt::planar
