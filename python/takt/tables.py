@@ -193,7 +193,10 @@ def _info(machine: Mapping[str, Any], kind: Kind, axis: Mapping[str, Any]) -> di
     info: dict[str, Any] = {"unit": units_of(machine, kind, axis)["u"], "limits": {}}
     if kind.name == "mover":
         info["limits"] = {name: dict(axis[name]) for name in "zabc"}
-        info["limits"] |= {"xy": dict(axis["xy"]["maximum"]), "lateral_acceleration": axis["lateral_acceleration"]}
+        most = dict(axis["xy"]["maximum"])
+        lateral = axis.get("lateral_acceleration")
+        lateral = lateral if lateral is not None else min(5000.0, most["acceleration"])
+        info["limits"] |= {"xy": most, "lateral_acceleration": lateral}
     if kind.name != "axis":
         return info
     limits = axis["limits"]

@@ -1,4 +1,4 @@
-"""PY-05, PL-50: `within_limits` of planar movers, in the plane, on tracks and of each other coordinate."""
+"""PY-05, PL-50, PL-82: `within_limits` of planar movers, in the plane, on tracks and of each other coordinate."""
 
 from __future__ import annotations
 
@@ -117,8 +117,8 @@ def put(at: int, value: float) -> Callable[[np.ndarray], object]:
         ("velocity_y", 1600, False, "left its velocity limit of 1500 mm/s by"),
         ("acceleration_x", 8100, False, "; also acceleration"),
         ("acceleration_y", 200, False, "left its jerk limit of 160000 mm/s³ by"),
-        ("track_velocity", -1501, True, "left its velocity limit of 1500 mm/s by 1 mm/s: 1501 mm/s"),
-        ("track_acceleration", 170, True, "left its jerk limit of 160000 mm/s³ by"),
+        ("velocity_x", -1501, True, "left its velocity limit of 1500 mm/s by 1 mm/s: 1501 mm/s"),
+        ("acceleration_y", 170, True, "left its jerk limit of 160000 mm/s³ by"),
         ("z", 5.1, False, "left its range 0 … 5 mm for the position of Z by 0.1 mm: 5.1 mm"),
         ("velocity_c", 400, True, "left its limit of 360 deg/s for the velocity of C by 40 deg/s"),
         ("acceleration_b", -301, True, "; also acceleration of B"),
@@ -134,6 +134,66 @@ def test_each_limit_is_asked(recording: Recording, field: str, value: float, on_
     assert sentence in verdict.sentence
     assert verdict.when_s == pytest.approx(recording["one"]["time_s"][at], abs=0.0015)
     assert verdict.lanes
+
+
+def round_a_corner(distance: float, jerk: float, lateral: float) -> Recording:
+    machine = f"""
+name: corner
+axes: []
+movers:
+  - name: one
+    xy: {{maximum: {{velocity: 1800, acceleration: 9000, jerk: {jerk}}}}}
+    lateral_acceleration: {lateral}
+tracks:
+  - name: bend
+    elements:
+      - {{from: {{x: 0, y: 0}}, to: {{x: 500, y: 0}}}}
+      - {{from: {{x: {500 + distance}, y: {-distance}}}, to: {{x: {500 + distance}, y: -700}}}}
+"""
+    with takt.Engine(machine) as engine:
+        one, bend = engine.mover("one"), engine.track("bend")
+        bend.enable().wait()
+        one.enable().wait()
+        one.join_track(track="bend").wait()
+        with engine.record() as recorder:
+            one.move_on_track(position=bend.length - 1).wait()
+    return recorder.recording
+
+
+@pytest.mark.parametrize("distance", [12.0, 55.0, 140.0])
+@pytest.mark.parametrize(("jerk", "lateral"), [(60_000.0, 9000.0), (250_000.0, 2500.0), (1_200_000.0, 6000.0)])
+def test_a_corner_is_gone_round_within_the_vectors(distance: float, jerk: float, lateral: float) -> None:  # PL-82
+    recording = round_a_corner(distance, jerk, lateral)
+    verdict = checks.within_limits(recording, "one")
+    assert verdict.passed, verdict.sentence
+    table = recording["one"]
+    ax, ay = table["acceleration_x"], table["acceleration_y"]
+    assert np.hypot(ax, ay).max() <= 9000 * (1 + 1e-6)
+    measured = np.hypot(np.diff(ax), np.diff(ay)).max() / 0.001
+    assert 0.98 * jerk <= measured <= jerk * (1 + 2e-5)
+
+
+def test_a_jerk_across_the_track_is_found(recording: Recording) -> None:  # PL-82
+    """The acceleration along the track stays as it is; its vector turns by as much as no mover can."""
+    on = recording.text("one", "command_mode") == "OnTrack"
+    fast = np.flatnonzero(on & (np.abs(recording["one"]["track_velocity"]) > 300))
+    at = int(fast[len(fast) // 2])
+    across = float(recording["one"]["acceleration_y"][at]) + 500
+    verdict = checks.within_limits(changed(recording, "acceleration_y", put(at, across)), "one")
+    assert not verdict.passed
+    assert "left its jerk limit of 160000 mm/s³ by" in verdict.sentence
+
+
+@pytest.mark.parametrize(("lateral", "acceleration"), [(5001, 5000), (12_000, 9000)])
+def test_more_across_the_track_than_there_is_is_refused(lateral: float, acceleration: float) -> None:  # PL-82
+    xy = f"xy: {{maximum: {{velocity: 900, acceleration: {acceleration}, jerk: 90000}}}}"
+    with pytest.raises(takt.ConfigError, match=r"lateral_acceleration: must not be above xy\.maximum\.acceleration"):
+        takt.Engine(f"name: x\naxes: []\nmovers: [{{name: one, {xy}, lateral_acceleration: {lateral}}}]\n")
+    # Without one it is what the mover has, where that is less than 5000.
+    with takt.Engine(f"name: x\naxes: []\nmovers: [{{name: one, {xy.replace(str(acceleration), '700')}}}]\n") as engine:
+        with engine.record() as recorder:
+            engine.step()
+        assert recorder.recording.info("one")["limits"]["lateral_acceleration"] == 700
 
 
 def test_set_points_from_outside_may_have_any_jerk() -> None:

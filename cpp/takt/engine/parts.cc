@@ -106,7 +106,7 @@ bool AreTooNear(const World& w, const planar::Rider& one, const planar::Rider& o
   const double gap = std::max(one.gap, other.gap);
   double least = other.at.position, most = least;
   if (!planar::Rests(other.at)) {
-    const planar::Braking braking = planar::Brake(other.at, other.brakes);
+    const planar::Braking braking = planar::Brake(other.at, planar::BrakesOf(other));
     least = braking.lowest;
     most = braking.highest;
   }

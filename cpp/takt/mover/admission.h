@@ -65,6 +65,12 @@ trajectory::Limits LimitsOf(const Move& m, const Params& params, LimitedBy& limi
           take(m.jerk, standard.jerk, most.jerk, LimitedBy::kJerk)};
 }
 
+// Along tracks with these limits; as vectors in the plane acceleration and jerk keep the mover's maxima.
+inline planar::Pace PaceOf(const MoverParams& params, const trajectory::Limits& limits) noexcept {
+  const trajectory::Limits most = params.xy.maximum.limits();
+  return {limits, params.lateral(), std::max(most.acceleration, most.deceleration), most.jerk};
+}
+
 // Carries it out, or refuses it; reports either way. Whether it was accepted.
 bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) noexcept;
 

@@ -116,7 +116,8 @@ bool LeadsInto(const Context& c, const MoveOnTrack& next, const State& s) {
   const planar::Rider& rider = c.rider();
   if (s.mode != CommandMode::kOnTrack || s.tickets[kPassing] != 0) return false;
   if (rider.aim != planar::Aim::kTarget || rider.there) return false;
-  const double rest = std::abs(planar::Brake(rider.at, rider.pace.brakes()).rest - rider.at.position);
+  const planar::Brakes brakes = planar::WithShare(rider.pace.brakes(), rider.pace, rider.share);
+  const double rest = std::abs(planar::Brake(rider.at, brakes).rest - rider.at.position);
   // It begins to brake within a cycle or two.
   const double in_time = 4 * std::abs(rider.at.velocity) * c.cycle.period_s;
   const double left = WayLeft(c.streets.network, rider);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/core/maths.h"
 #include "takt/mover/formation.h"
 #include "takt/mover/on_parts.h"
 
@@ -179,7 +180,7 @@ bool IsHeld(const Context& c, State& s) noexcept {
   if (plane.held_by == kNobody) return false;
   const planar::Place here{plane.motion.end_x, plane.motion.end_y};
   const planar::Place way = planar::Place{plane.next.x, plane.next.y} - here;
-  const double length = std::hypot(way.x, way.y);
+  const double length = maths::Hypot(way.x, way.y);
   const double needed = planar::WayToRest(*plane.next.velocity, {*plane.next.deceleration, *plane.next.jerk}) + kAhead;
   const double share = length > needed ? needed / length : 1;
   Area ahead = KindOf(c, s, s.others.back(), s.set_point);

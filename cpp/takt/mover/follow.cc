@@ -55,7 +55,7 @@ bool AddsNoMore(const Context& c, const External& external, const SetPoint& to) 
   constexpr double kMore = 1 + kRounding;
   const trajectory::Limits limits = c.params.xy.maximum.limits();
   const SetPoint &was = external.taken, &is = external.given;
-  const double most = Length(std::max(limits.acceleration, limits.deceleration), c.params.lateral_acceleration);
+  const double most = Length(std::max(limits.acceleration, limits.deceleration), c.params.lateral());
   return Keeps(was[kX], was[kY], is[kX], is[kY], limits, c.cycle.period_s) &&
          Length(to[kX].velocity, to[kY].velocity) <= kMore * limits.velocity &&
          Length(to[kX].acceleration, to[kY].acceleration) <= kMore * most;

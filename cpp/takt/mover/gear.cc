@@ -120,7 +120,7 @@ Answer Couple(const Given& g, const Gear& command, Rider& next, std::uint32_t ax
   next.planned = next.there = false;
   next.waits = planar::Waits::kNot;
   next.waits_for = kNobody;
-  next.pace = {LimitsOf(command, g.c.params.xy, s.limited_by), g.c.params.lateral_acceleration};
+  next.pace = PaceOf(g.c.params, LimitsOf(command, g.c.params.xy, s.limited_by));
   next.gap = command.gap.value_or(std::max(g.c.params.gap, least));
   next.gear.tolerance = command.in_sync_tolerance;
   next.gear.sense = SenseOf(command.allowed_slave_sync_directions);

@@ -142,7 +142,7 @@ PlacesOff PlacesOffTrack(const Context& c, const SetPoint& off) noexcept {
     const double around = s - length * std::floor(s / length);
     return c.streets.At(track, network[track].closed ? around : std::clamp(s, 0.0, length)).place;
   };
-  double rest = planar::Brake(r.at, r.brakes).rest;
+  double rest = planar::Brake(r.at, planar::BrakesOf(r)).rest;
   std::uint32_t k = 0;
   while (k + 1 < r.route.count && rest > network[r.route.tracks[k]].length) rest -= network[r.route.tracks[k++]].length;
   PlaneMotion stop;

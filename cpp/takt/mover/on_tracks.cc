@@ -80,7 +80,7 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   rider.route.tracks[0] = track;
   rider.route.count = 1;
   rider.gap = rider.zone = std::max(g.c.params.gap, LeastGap(g.c, s, rider));
-  rider.pace = {StandardOf(g.c.params.xy), g.c.params.lateral_acceleration};
+  rider.pace = PaceOf(g.c.params, StandardOf(g.c.params.xy));
   const Limits most = g.c.params.xy.maximum.limits();
   rider.brakes = {most.deceleration, most.jerk};
   rider.top_speed = most.velocity;
@@ -188,7 +188,7 @@ Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
   }
   const double least = LeastGap(g.c, s, next);
   if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);
-  next.pace = {LimitsOf(command, g.c.params.xy, s.limited_by), g.c.params.lateral_acceleration};
+  next.pace = PaceOf(g.c.params, LimitsOf(command, g.c.params.xy, s.limited_by));
   next.gap = command.gap.value_or(std::max(g.c.params.gap, least));
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);

@@ -63,7 +63,10 @@ void describe(Description<MoverParams>& d) {
   d.defaulted<&P::c_modulus>(unit::deg, between(1, 36000), "A turn, for the directions of move_c.");
   d.defaulted<&P::c_modulo_tolerance>(unit::deg, between(0, 36000),
                                       "So far move_c goes against its direction instead of nearly a whole turn.");
-  d.defaulted<&P::lateral_acceleration>(unit::mm_s2, kAccelerations, "Largest one in curves of tracks.");
+  d.defaulted<&P::lateral_acceleration>(
+      unit::mm_s2, kAccelerations,
+      "Largest one in curves of tracks, across the track; not above the largest acceleration of xy. Unset: 5000, or "
+      "that where it is less.");
   d.defaulted<&P::gap>(unit::mm, between(0, 1e6),
                        "To the mover ahead on a track, middle to middle, unless a command says otherwise.");
   d.defaulted<&P::deviation>(unit::mm, between(1e-6, 1e6),
@@ -72,6 +75,8 @@ void describe(Description<MoverParams>& d) {
                                      "So many external set points missing in a row are an error.");
   d.rule<&P::c_modulo_tolerance>("must be less than half of c_modulus",
                                  [](const P& p) { return 2 * p.c_modulo_tolerance < p.c_modulus; });
+  d.rule<&P::lateral_acceleration>("must not be above xy.maximum.acceleration",
+                                   [](const P& p) { return p.lateral() <= p.xy.maximum.acceleration; });
   d.rule<&P::initial>("must lie within the limits of z, a and b", [](const P& p) {
     const auto holds = [](const CoordinateParams& limits, double at) {
       return limits.lower <= at && at <= limits.upper;

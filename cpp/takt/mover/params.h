@@ -1,6 +1,7 @@
 // What a machine file says about one planar mover.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -52,12 +53,15 @@ struct MoverParams {
   CoordinateParams b{{30, 300, {}, 6000}, {}, -5, 5};
   // The limits are those of a window, which is there four times, each turned by 90 deg.
   CoordinateParams c{{360, 3600, {}, 72000}, {}, -15, 15};
-  double c_modulus = 360;               // deg, a turn of move_c
-  double c_modulo_tolerance = 0;        // deg that it may go against its direction
-  double lateral_acceleration = 5000;   // mm/s², in curves of tracks
+  double c_modulus = 360;         // deg, a turn of move_c
+  double c_modulo_tolerance = 0;  // deg that it may go against its direction
+  // mm/s², in curves of tracks; unset: see lateral()
+  std::optional<double> lateral_acceleration{};
   double gap = 200;                     // mm to the mover ahead on tracks, unless a command says otherwise
   std::optional<double> deviation{};    // mm between set and actual position that are an error; unset: not watched
   std::uint32_t missing_setpoints = 1;  // so many external set points missing in a row are an error
+
+  double lateral() const noexcept { return lateral_acceleration.value_or(std::min(5000.0, xy.maximum.acceleration)); }
 };
 
 void describe(Description<Dynamics>&);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/core/maths.h"
 #include "takt/core/angle.h"
 #include "takt/planar/clearance.h"
 #include "takt/planar/parts.h"
@@ -17,7 +18,7 @@ constexpr int kMostStrides = 24;
 constexpr int kMostInstants = 64;
 
 double RadiusOf(const Area& kind) {
-  return std::hypot(kind.mover.width, kind.mover.height) / 2 + kind.margin;
+  return maths::Hypot(kind.mover.width, kind.mover.height) / 2 + kind.margin;
 }
 
 // The places of both and, around them, the larger of both.
@@ -43,11 +44,11 @@ Area Around(const Area& a, const Area& b) {
 // point has to be away at most not to lie in it.
 double MostReach(double half_width, double half_height, double from, double to) {
   const auto reach = [&](double direction) {
-    return std::min(half_width / std::abs(std::cos(direction)), half_height / std::abs(std::sin(direction)));
+    return std::min(half_width / std::abs(maths::Cos(direction)), half_height / std::abs(maths::Sin(direction)));
   };
-  const double corner = std::atan2(half_height, half_width), turn = std::numbers::pi;
+  const double corner = maths::Atan2(half_height, half_width), turn = std::numbers::pi;
   for (const double at : {corner, -corner}) {
-    if (at + turn * std::ceil((from - at) / turn) <= to) return std::hypot(half_width, half_height);
+    if (at + turn * std::ceil((from - at) / turn) <= to) return maths::Hypot(half_width, half_height);
   }
   return std::max(reach(from), reach(to));
 }
@@ -68,7 +69,7 @@ Turned TurnedAt(const Network& network, const Rolling& r, double s) {
   out.point.direction = (r.kind.least_c + r.kind.most_c) / 2 * kDegree;
   const double turns = (r.kind.most_c - r.kind.least_c) / 2 * kDegree;
   if (turns > 0) {
-    out.margin += std::hypot(out.mover.width, out.mover.height) * std::sin(std::min(turns, std::numbers::pi) / 2);
+    out.margin += maths::Hypot(out.mover.width, out.mover.height) * maths::Sin(std::min(turns, std::numbers::pi) / 2);
   }
   return out;
 }
@@ -134,13 +135,13 @@ bool ApartByOrder(const Network& network, const Rider& behind, const Braking& be
   });
   const double bend = curvature * (to - from);
   if (bend > std::numbers::pi) return false;
-  const double chord = curvature * gap > 1e-9 ? 2 / curvature * std::sin(curvature * gap / 2) : gap;
+  const double chord = curvature * gap > 1e-9 ? 2 / curvature * maths::Sin(curvature * gap / 2) : gap;
   if (chord >= RadiusOf(behind_kind) + RadiusOf(ahead_kind)) return true;
   const bool turns = behind_kind.most_c > behind_kind.least_c || ahead_kind.most_c > ahead_kind.least_c;
   if (turns || behind_kind.margin > 0 || ahead_kind.margin > 0) return false;
   // What both cover together along and across the one behind.
   const double turned = (ahead_kind.least_c - behind_kind.least_c) * kDegree;
-  const double cosine = std::abs(std::cos(turned)), sine = std::abs(std::sin(turned));
+  const double cosine = std::abs(maths::Cos(turned)), sine = std::abs(maths::Sin(turned));
   const Footprint &own = behind_kind.mover, &its = ahead_kind.mover;
   const double half_width = (own.width + cosine * its.width + sine * its.height) / 2;
   const double half_height = (own.height + sine * its.width + cosine * its.height) / 2;

@@ -52,6 +52,7 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
   const Rider& r = w.rider(i);
   const Now& now = w.now(i);
   const int direction = r.direction;
+  const Brakes own_brakes = WithShare(r.pace.brakes(), r.pace, r.share);
   // Where its own plan ends.
   const bool plans = r.aim == Aim::kTarget && r.planned && r.plan_ends;
   const double end = r.plan_from + direction * r.plan.end().position;
@@ -80,11 +81,11 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
     const Now& its = w.now(other);
     Limit one;
     one.room = direction * (its.rest_before + apart - r.at.position) - gap;
-    one.brakes = Common(r.pace.brakes(), before.brakes);
+    one.brakes = Common(own_brakes, before.brakes);
     one.by = other;
     const double its_speed = direction * before.at.velocity, its_acceleration = direction * before.at.acceleration;
     if (its_speed < 0) {
-      one.rate = direction * (its.braking.rest - its.rest_before) / w.period_s();
+      one.rate = direction * (its.hard.rest - its.rest_before) / w.period_s();
       return one;
     }
     // By its speed and acceleration; its jerk moves the place to and fro, and with it all that follow.
@@ -138,7 +139,7 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
         if (is_free) {
           one.room = free;
           one.rate = 0;
-          one.brakes = Common(r.pace.brakes(), r.brakes);
+          one.brakes = Common(own_brakes, own_brakes);
         }
         take(one);
         if (active && distance > 0 && !is_free) as_fast(one);
@@ -155,7 +156,8 @@ bool GoesAlong(const RightOfWay& w, std::uint32_t i, const KinematicState& wish,
   if (limit.by == kNobody || limit.by != w.now(i).leader) return false;
   const Rider& before = w.rider(limit.by);
   const KinematicState& other = w.now(limit.by).next;
-  return r.brakes.deceleration >= before.brakes.deceleration && r.brakes.jerk >= before.brakes.jerk &&
+  const Brakes own = BrakesOf(r);
+  return own.deceleration >= before.brakes.deceleration && own.jerk >= before.brakes.jerk &&
          r.direction * (wish.velocity - other.velocity) <= 1e-9 &&
          r.direction * (wish.acceleration - other.acceleration) <= 1e-6;
 }
@@ -172,7 +174,8 @@ double CloseUp(const RightOfWay& w, std::uint32_t i, const Limit& limit) noexcep
   const Rider& r = w.rider(i);
   if (limit.by == kNobody || limit.by != w.now(i).leader) return -kInfinite;
   const Rider& before = w.rider(limit.by);
-  if (r.brakes.deceleration < before.brakes.deceleration || r.brakes.jerk < before.brakes.jerk) return -kInfinite;
+  const Brakes own = BrakesOf(r);
+  if (own.deceleration < before.brakes.deceleration || own.jerk < before.brakes.jerk) return -kInfinite;
   const double room = r.direction * (before.at.position + w.now(i).leader_offset - r.at.position) - r.gap;
   if (room < 0 || r.direction * before.at.velocity < 0) return -kInfinite;
   return ComeUp(r, room, {0, before.at.velocity, w.now(limit.by).next.acceleration}, r.brakes, w.period_s());

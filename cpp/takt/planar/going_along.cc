@@ -1,8 +1,10 @@
 #include "takt/planar/going_along.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "takt/core/describe.h"
 #include "takt/planar/send.h"
@@ -29,6 +31,47 @@ double TimeAt(const Braking& braking, int direction, double from, double way) {
   for (int i = 0; i < 40; ++i) {
     const double t = 0.5 * (low + high);
     (direction * (braking.At(t).position - from) < way ? low : high) = t;
+  }
+  return high;
+}
+
+// A step and the braking behind it.
+struct Stretch {
+  trajectory::Piece piece;
+  double duration = 0;  // s
+};
+struct Stretches {
+  std::array<Stretch, 4> of;
+  std::size_t count = 0;
+
+  void Add(const trajectory::Piece& piece, double duration) {
+    if (duration > 0) of[count++] = {piece, duration};
+  }
+  std::span<const Stretch> all() const { return {of.data(), count}; }
+};
+
+// What is the largest between two times of a piece. Where the acceleration passes 0 the speed may be larger than at
+// both ends.
+Stress StressOf(const trajectory::Piece& piece, double from, double to) {
+  Stress most{0, 0, std::abs(piece.jerk)};
+  const double top = piece.jerk != 0 ? -piece.acceleration / piece.jerk : from;
+  for (const double t : {from, std::clamp(top, from, to), to}) {
+    const KinematicState at = piece.At(t);
+    most.speed = std::max(most.speed, std::abs(at.velocity));
+    most.acceleration = std::max(most.acceleration, std::abs(at.acceleration));
+  }
+  return most;
+}
+
+// When a stretch that goes one way comes to a place on it.
+template <typename Way>
+double TimeOn(const Stretch& stretch, const Way& way, double place) {
+  double low = 0, high = stretch.duration;
+  if (place <= way(low)) return low;
+  if (place >= way(high)) return high;
+  for (int i = 0; i < 24; ++i) {
+    const double t = 0.5 * (low + high);
+    (way(t) < place ? low : high) = t;
   }
   return high;
 }
@@ -61,15 +104,15 @@ int RunsOut(const Network& network, const Rider& r, const KinematicState& at) no
   return std::max(at.position, braking.highest) > end + kTolerance ? 1 : 0;
 }
 
-bool KeepsToLimits(const Network& network, const Rider& r, const KinematicState& next,
-                   const Braking& braking) noexcept {
+bool KeepsToLimits(const Network& network, const Rider& r, const KinematicState& next, const Braking& braking,
+                   double jerk) noexcept {
   if (Rests(next)) return true;
   const Pace most = MostOf(r);
   const std::int8_t direction = next.velocity < 0 || (next.velocity == 0 && next.acceleration < 0) ? -1 : 1;
   const double ahead = braking.highest - next.position, behind = next.position - braking.lowest;
   const double until = direction > 0 ? ahead : behind, beyond = direction > 0 ? behind : ahead;
   // Where it goes back in the end it is slow: it must be slower than everywhere on the way.
-  const double back = -direction * Peak(next, r.brakes.jerk);
+  const double back = -direction * Peak(next, jerk);
   if (back > 0) {
     const auto reverse = static_cast<std::int8_t>(-direction);
     KinematicState turn = next;
@@ -80,13 +123,13 @@ bool KeepsToLimits(const Network& network, const Rider& r, const KinematicState&
     }
   }
   const Caps caps = CapsAhead(network, StartOf(r, next, direction), until, most);
-  const double fastest = std::max(direction * next.velocity, direction * Peak(next, r.brakes.jerk));
+  const double fastest = std::max(direction * next.velocity, direction * Peak(next, jerk));
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < caps.count; ++k) least = std::min(least, caps.of[k].speed);
   constexpr double kMore = 1 + 1e-8;
   if (fastest <= least * kMore) return true;
   // The speed rises until the acceleration is taken away, and then falls.
-  const double peak = std::max(0.0, direction * next.acceleration / r.brakes.jerk);
+  const double peak = std::max(0.0, direction * next.acceleration / jerk);
   double begin = 0;
   for (std::size_t k = 0; k < caps.count; ++k) {
     const double end =
@@ -94,6 +137,48 @@ bool KeepsToLimits(const Network& network, const Rider& r, const KinematicState&
     const double speed = direction * braking.At(std::clamp(peak, begin, std::max(begin, end))).velocity;
     if (speed > caps.of[k].speed * kMore) return false;
     begin = end;
+  }
+  return true;
+}
+
+bool KeepsToVectors(const Network& network, const Rider& r, const KinematicState& next, const Braking& braking,
+                    double period_s) noexcept {
+  if (!std::isfinite(r.pace.vector_jerk) || (Rests(r.at) && Rests(next))) return true;
+  const Pace most = MostOf(r);
+  const std::int8_t direction = next.velocity < 0 || (next.velocity == 0 && next.acceleration < 0) ? -1 : 1;
+  const double lowest = std::min(r.at.position, braking.lowest), highest = std::max(r.at.position, braking.highest);
+  KinematicState from = r.at;
+  from.position = direction > 0 ? lowest : highest;
+  const Caps caps = CapsAhead(network, StartOf(r, from, direction), highest - lowest, most);
+  Bend tightest;
+  for (const Cap& cap : caps.all()) {
+    tightest = {0, std::max(tightest.curvature, cap.curvature), std::max(tightest.rate, cap.rate)};
+  }
+  if (!(tightest.curvature > 0)) return true;
+  // This step, then the braking. Its jerk is the mean one, as its set points show it.
+  Stretches all;
+  all.Add({r.at.position, r.at.velocity, r.at.acceleration, (next.acceleration - r.at.acceleration) / period_s},
+          period_s);
+  double begin = 0;
+  for (std::size_t i = 0; i < braking.pieces.size(); ++i) {
+    all.Add(braking.pieces[i], braking.ends_s[i] - begin);
+    begin = std::max(begin, braking.ends_s[i]);
+  }
+  for (const Stretch& stretch : all.all()) {
+    const Stress whole = StressOf(stretch.piece, 0, stretch.duration);
+    if (KeepsVectors(tightest, whole, most)) continue;
+    const auto way = [&](double t) { return direction * (stretch.piece.At(t).position - from.position); };
+    const double at = way(0), to = way(stretch.duration);
+    for (std::size_t k = 0; k < caps.count; ++k) {
+      const double enters = caps.of[k].way, leaves = k + 1 < caps.count ? caps.of[k + 1].way : kInfinite;
+      if (leaves < std::min(at, to) || enters > std::max(at, to)) continue;
+      if (KeepsVectors(caps.of[k].bend(), whole, most)) continue;
+      // Where it turns round it may be in a bend more than once: all of it counts.
+      const bool one_way = stretch.piece.velocity * stretch.piece.At(stretch.duration).velocity >= 0 && at <= to;
+      const double first = one_way ? TimeOn(stretch, way, enters) : 0;
+      const double last = one_way ? TimeOn(stretch, way, leaves) : stretch.duration;
+      if (!KeepsVectors(caps.of[k].bend(), StressOf(stretch.piece, first, last), most)) return false;
+    }
   }
   return true;
 }
@@ -117,7 +202,7 @@ bool RunsFree(const Network& network, const Rider& r, const KinematicState& step
 }
 
 bool MayTake(const Network& network, const Rider& r, const Route& route) noexcept {
-  const double rest = Brake(r.at, r.brakes).rest;
+  const double rest = Brake(r.at, BrakesOf(r)).rest;
   double end = 0;
   for (std::uint32_t i = 0; i < r.route.count && (i == 0 || end <= rest); ++i) {
     if (i >= route.count || route.tracks[i] != r.route.tracks[i]) return false;

@@ -18,9 +18,13 @@ KinematicState GoAlong(trajectory::Planner& planner, const Rider& rider, const K
 // end; -1, before the start; 0: nowhere.
 int RunsOut(const Network& network, const Rider& rider, const KinematicState& at) noexcept;
 
-// Whether it keeps its greatest speed, and its lateral acceleration in curves, if from this step on it brakes.
-bool KeepsToLimits(const Network& network, const Rider& rider, const KinematicState& next,
-                   const Braking& braking) noexcept;
+// Whether it keeps its greatest speed, and its lateral acceleration in curves, if from this step on it brakes with so
+// much jerk.
+bool KeepsToLimits(const Network& network, const Rider& rider, const KinematicState& next, const Braking& braking,
+                   double jerk) noexcept;
+// Whether the vectors of acceleration and jerk keep their maxima in this step, and in braking from there on.
+bool KeepsToVectors(const Network& network, const Rider& rider, const KinematicState& next, const Braking& braking,
+                    double period_s) noexcept;
 // Whether it has to look out for curves.
 bool CurvesAhead(const Network& network, const Rider& rider) noexcept;
 // Whether from this step on it has to look out for nothing but others: no curve is so near that it would slow down for

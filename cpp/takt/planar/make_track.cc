@@ -77,10 +77,16 @@ Problem Stand(const Element& element, Standing& out) {
   return Problem::kNone;
 }
 
-constexpr double kStep = 1;         // mm, in which bends are looked at ...
-constexpr double kMostSteps = 16;   // ... or so many in a cell, which turns little
-constexpr double kUneven = 1.2;     // within a bend curvature varies by this factor, which is 1.1 in speed
-constexpr double kStraight = 1e-5;  // 1/mm: what bends less is straight
+constexpr double kStep = 1;          // mm, in which bends are looked at ...
+constexpr double kMostSteps = 16;    // ... or so many in a cell, which turns little
+constexpr double kUneven = 1.2;      // within a bend curvature varies by this factor, which is 1.1 in speed
+constexpr double kUnevenRate = 1.4;  // its rate by this one, which is 1.12 in speed
+constexpr double kStraight = 1e-5;   // 1/mm: what bends less is straight
+// The rate is sampled three times in a step.
+constexpr double kRateMargin = 1.02;
+// A curvature below this share of the square root of its rate may vary, and a rate below this share of the square of
+// the curvature: the other one bounds the speed there.
+constexpr double kMinor = 0.1;
 
 // What the curvature between two places may come to: where it grows at the first and falls at the second, not more than
 // where the tangents meet.
@@ -93,17 +99,31 @@ double MostBetween(const TrackPoint& a, const TrackPoint& b, double way) {
   return std::max({from, to, from + grows * there});
 }
 
+// The least and the largest of what the steps of a bend have.
+struct StepRange {
+  double least = 0, most = 0;
+
+  StepRange With(double value) const { return {std::min(least, value), std::max(most, value)}; }
+  bool IsEven(double factor) const { return most <= factor * least; }
+};
+
 std::vector<Bend> BendsOf(const Track& track) {
   std::vector<Bend> bends;
-  double least = 0;
-  const auto add = [&](double from, double most) {
-    const bool goes_on = !bends.empty() && std::max(bends.back().curvature, most) <= kUneven * std::min(least, most);
-    if (goes_on) {
-      bends.back().curvature = std::max(bends.back().curvature, most);
-      least = std::min(least, most);
+  StepRange curvatures, rates;
+  const auto add = [&](double from, double curvature, double rate) {
+    const double counts = std::max(curvature, kMinor * std::sqrt(rate));
+    const double rate_counts = std::max(rate, kMinor * curvature * curvature);
+    const StepRange curvatures_with = curvatures.With(counts), rates_with = rates.With(rate_counts);
+    if (!bends.empty() && curvatures_with.IsEven(kUneven) && rates_with.IsEven(kUnevenRate)) {
+      Bend& bend = bends.back();
+      bend.curvature = std::max(bend.curvature, curvature);
+      bend.rate = std::max(bend.rate, rate);
+      curvatures = curvatures_with;
+      rates = rates_with;
     } else {
-      bends.push_back({from, most});
-      least = most;
+      bends.push_back({from, curvature, rate});
+      curvatures = {counts, counts};
+      rates = {rate_counts, rate_counts};
     }
   };
   for (const Cell& cell : track.cells) {
@@ -112,15 +132,18 @@ std::vector<Bend> BendsOf(const Track& track) {
     const double step = (cell.to - cell.from) / steps;
     for (double i = 0; i < steps; ++i) {
       const double from = cell.from + i * step;
-      double most = 0;
+      double most = 0, rate = 0;
       if (!straight) {
         const double half = 0.5 * step;
         // The last place is one of this cell, not of the next: the rate may make a jump there.
         const TrackPoint begin = At(track, from), middle = At(track, from + half);
         const TrackPoint end = At(track, from + step * (1 - 1e-9));
         most = std::max(MostBetween(begin, middle, half), MostBetween(middle, end, half));
+        for (const TrackPoint& p : {begin, middle, end})
+          rate = std::max(rate, kRateMargin * std::abs(p.curvature_rate));
       }
-      add(from, most < kStraight ? 0 : most);
+      if (most < kStraight) most = rate = 0;
+      add(from, most, rate);
     }
   }
   return bends;

@@ -43,6 +43,8 @@ void describe(Description<Pace>& d) {
   d.about("How fast a mover may go.");
   d.internal<&Pace::limits>("Along the way.");
   d.internal<&Pace::lateral>(unit::mm_s2, "Across it, in curves.");
+  d.internal<&Pace::vector_acceleration>(unit::mm_s2, "Largest length of the acceleration in the plane.");
+  d.internal<&Pace::vector_jerk>(unit::mm_s3, "Largest length of the jerk in the plane.");
 }
 
 void describe(Description<Rider>& d) {
@@ -61,6 +63,7 @@ void describe(Description<Rider>& d) {
   d.internal<&R::demand>("Where that one is, over all tracks.");
   d.internal<&R::pace>("As commanded.");
   d.internal<&R::brakes>("Its greatest.");
+  d.internal<&R::share>("Number of the share of its dynamics that it brakes with, by the bends on its way to rest.");
   d.internal<&R::top_speed>(unit::mm_s, "Its greatest.");
   d.internal<&R::gap>(unit::mm, "To the mover before it.");
   d.internal<&R::zone>(unit::mm, "So near to a node it is active there, at the least.");

@@ -41,16 +41,17 @@ struct Rider {
   std::int8_t direction = 1;  // of its way; changes at rest only
 
   Aim aim = Aim::kRest;
-  bool softly = false;    // kRest: as its pace says; else as hard as it can
-  double target = 0;      // mm on the last track of the route; of a closed loop turns are counted in
-  Gear gear;              // kFollow: whom, and how
-  KinematicState demand;  // kFollow: mm, where its master is at the end of this cycle, over all tracks
-  Pace pace;              // as commanded
-  Brakes brakes;          // its greatest
-  double top_speed = 0;   // mm/s, its greatest
-  double gap = 0;         // mm to the mover before it, from centre to centre
-  double off = 0;         // mm, so far from its place it may be; everybody's gap to it is as much larger
-  double zone = 0;        // mm around a node in which it is active at the least: its gap, once there is room for that
+  bool softly = false;     // kRest: as its pace says; else as hard as it can
+  double target = 0;       // mm on the last track of the route; of a closed loop turns are counted in
+  Gear gear;               // kFollow: whom, and how
+  KinematicState demand;   // kFollow: mm, where its master is at the end of this cycle, over all tracks
+  Pace pace;               // as commanded
+  Brakes brakes;           // its greatest
+  std::uint8_t share = 0;  // of kShares: what it brakes with from where it is, by the bends on its way to rest
+  double top_speed = 0;    // mm/s, its greatest
+  double gap = 0;          // mm to the mover before it, from centre to centre
+  double off = 0;          // mm, so far from its place it may be; everybody's gap to it is as much larger
+  double zone = 0;         // mm around a node in which it is active at the least: its gap, once there is room for that
 
   bool planned = false;           // `plan` is good
   trajectory::Profile plan;       // along the way, 0 at `plan_from`
@@ -70,7 +71,14 @@ struct Rider {
 
 // What it never exceeds, whatever is commanded.
 inline Pace MostOf(const Rider& r) noexcept {
-  return {{r.top_speed, r.pace.limits.acceleration, r.brakes.deceleration, r.brakes.jerk}, r.pace.lateral};
+  return {{r.top_speed, r.pace.limits.acceleration, r.brakes.deceleration, r.brakes.jerk},
+          r.pace.lateral,
+          r.pace.vector_acceleration,
+          r.pace.vector_jerk};
+}
+// What it brakes with from where it is.
+inline Brakes BrakesOf(const Rider& r) noexcept {
+  return WithShare(r.brakes, r.pace, r.share);
 }
 // The limits it goes by now: those commanded; but where by their jerk the acceleration that it has would make it faster
 // than commanded (than it is, if that is more), or drive it back from braking, its greatest jerk, until that is over.

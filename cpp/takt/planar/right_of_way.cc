@@ -61,12 +61,18 @@ void RightOfWay::TakeToBrake(std::uint32_t i) noexcept {
   if (Rests(r.at)) {
     now.next = r.at;
     now.braking.rest = now.braking.lowest = now.braking.highest = now.rest_before = r.at.position;
+    now.hard = now.braking;
     return;
   }
-  const Braking braking = Brake(r.at, r.brakes);
+  const Brakes brakes = BrakesOf(r);
+  const Braking braking = Brake(r.at, brakes);
   now.next = braking.At(period_s_);
-  now.braking = Brake(now.next, r.brakes);
+  now.share = r.share;
+  now.hard = now.braking = Brake(now.next, brakes);
   now.rest_before = braking.rest;
+  if (r.share == 0) return;
+  now.hard = Brake(now.next, r.brakes);
+  now.rest_before = Brake(r.at, r.brakes).rest;
 }
 
 void RightOfWay::Sort() noexcept {
@@ -117,9 +123,22 @@ std::uint32_t RightOfWay::FindLeader(std::uint32_t i, int direction, double& off
   return kNobody;
 }
 
+bool RightOfWay::HoldsAhead(const Braking& of_behind, std::uint32_t ahead, double apart,
+                            double required) const noexcept {
+  const Now& its = s_.now[ahead];
+  return Holds(of_behind, its.braking, apart, required) &&
+         (its.share == 0 || Holds(of_behind, its.hard, apart, required));
+}
+
+bool RightOfWay::HoldsBehind(std::uint32_t behind, const Braking& of_ahead, double apart,
+                             double required) const noexcept {
+  const Now& its = s_.now[behind];
+  return Holds(its.braking, of_ahead, apart, required) &&
+         (its.share == 0 || Holds(its.hard, of_ahead, apart, required));
+}
+
 bool RightOfWay::Keeps(const Braking& own, const Meeting& m, double required) const noexcept {
-  const Braking& its = s_.now[m.other].braking;
-  return m.ahead ? Holds(own, its, m.apart, required) : Holds(its, own, -m.apart, required);
+  return m.ahead ? HoldsAhead(own, m.other, m.apart, required) : HoldsBehind(m.other, own, -m.apart, required);
 }
 
 // Whoever may be active with somebody.
@@ -173,7 +192,7 @@ bool RightOfWay::MayTake(std::uint32_t i, const KinematicState& next, const Brak
     const std::uint32_t leader = r.direction > 0 ? now.leader : FindLeader(i, 1, apart);
     if (leader != kNobody) {
       const double required = Required(GapTo(i, leader, 1), riders_[leader].at.position + apart - r.at.position);
-      if (!Holds(braking, s_.now[leader].braking, apart, required)) return false;
+      if (!HoldsAhead(braking, leader, apart, required)) return false;
     }
   }
   if (back) {
@@ -181,14 +200,14 @@ bool RightOfWay::MayTake(std::uint32_t i, const KinematicState& next, const Brak
     const std::uint32_t leader = r.direction < 0 ? now.leader : FindLeader(i, -1, apart);
     if (leader != kNobody) {
       const double required = Required(GapTo(i, leader, -1), r.at.position - riders_[leader].at.position - apart);
-      if (!Holds(s_.now[leader].braking, braking, -apart, required)) return false;
+      if (!HoldsBehind(leader, braking, -apart, required)) return false;
     }
     bool may = true;
     Followers(i, [&](std::uint32_t k, double offset) {
       const Rider& other = riders_[k];
       const double gap = std::max(other.gap, r.gap) + other.off + r.off;
       const double required = Required(gap, r.at.position + offset - other.at.position);
-      may = may && Holds(s_.now[k].braking, braking, offset, required);
+      may = may && HoldsBehind(k, braking, offset, required);
     });
     if (!may) return false;
   }
@@ -236,9 +255,9 @@ std::uint32_t RightOfWay::TooNear(std::uint32_t i) const noexcept {
   std::uint32_t who = kNobody;
   // Places of the other count `apart` more here.
   const auto look = [&](std::uint32_t other, double apart, bool ahead, double gap) {
-    const Braking &own = now.braking, &its = s_.now[other].braking;
+    const Braking& own = now.braking;
     const double required = gap - kJustThere;
-    if (!(ahead ? Holds(own, its, apart, required) : Holds(its, own, -apart, required))) who = other;
+    if (!(ahead ? HoldsAhead(own, other, apart, required) : HoldsBehind(other, own, -apart, required))) who = other;
   };
   const auto gap = [&](std::uint32_t other) {
     const Rider& o = riders_[other];
@@ -266,10 +285,13 @@ std::uint32_t RightOfWay::TooNear(std::uint32_t i) const noexcept {
   return who;
 }
 
-void RightOfWay::Take(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept {
-  s_.now[i].next = next;
-  s_.now[i].braking = braking;
-  s_.now[i].taken = true;
+void RightOfWay::Take(std::uint32_t i, const KinematicState& next, const Braking& braking, std::size_t share) noexcept {
+  Now& now = s_.now[i];
+  now.next = next;
+  now.braking = braking;
+  now.share = static_cast<std::uint8_t>(share);
+  now.hard = share == 0 ? braking : Brake(next, riders_[i].brakes);
+  now.taken = true;
   EnterNodes(i, next, braking);
 }
 

@@ -25,8 +25,10 @@ inline constexpr std::size_t kBeyond = 24;
 // What is worked out of a mover in each cycle. Places are those on the track where it is when the cycle begins.
 struct Now {
   KinematicState next;     // at the end of the cycle
-  Braking braking;         // from there
-  double rest_before = 0;  // where it would stand if it only braked
+  Braking braking;         // from there, as it can in the bends on its way
+  Braking hard;            // from there, with its greatest dynamics: it never comes to rest before that
+  std::uint8_t share = 0;  // of kShares, in `braking`; 0: both are the same
+  double rest_before = 0;  // where it would stand if it only braked with its greatest dynamics
   std::uint32_t leader = kNobody;
   double leader_offset = 0;        // from the leader's places to its own
   bool entered = false;            // in the search for an order
@@ -113,8 +115,8 @@ class RightOfWay {
     const Now& its = s_.now[m.other];
     return IsActive(riders_[m.other].zone, m.off, its.next, its.braking, *m.its);
   }
-  // It takes it.
-  void Take(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept;
+  // It takes it, with a braking by this share.
+  void Take(std::uint32_t i, const KinematicState& next, const Braking& braking, std::size_t share) noexcept;
 
   // Who is next in this direction, on the track or the rest of the route.
   std::uint32_t FindLeader(std::uint32_t i, int direction, double& offset) const noexcept;
@@ -242,6 +244,9 @@ class RightOfWay {
   }
   void TakeToBrake(std::uint32_t i) noexcept;
   void Sort() noexcept;
+  // Whether another keeps so far ahead of, or behind, a braking if it brakes, as it can in bends or harder.
+  bool HoldsAhead(const Braking& of_behind, std::uint32_t ahead, double apart, double required) const noexcept;
+  bool HoldsBehind(std::uint32_t behind, const Braking& of_ahead, double apart, double required) const noexcept;
   // Whether two keep so far apart if both brake.
   bool Keeps(const Braking& own, const Meeting& m, double required) const noexcept;
   void EnterNodes(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept;

@@ -34,7 +34,7 @@ double OnLoop(Way way, double position, double modulo_tolerance, double now, dou
 bool Send(const Network& network, RouteSearch& search, const Destination& to, Rider& r) noexcept {
   if (!network[to.track].track) return false;
   const Road& here = network[r.route.first()];
-  const double rest = Brake(r.at, r.brakes).rest;
+  const double rest = Brake(r.at, BrakesOf(r)).rest;
   Route route = r.route;
   double target = to.position;
   if (here.closed) {
@@ -88,7 +88,7 @@ void PlanOn(trajectory::Planner& planner, const Network& network, double place, 
 }
 
 double TimeAlone(trajectory::Planner& planner, const Network& network, Rider r) noexcept {
-  constexpr int kParts = 16;  // at most; the rest is not counted
+  constexpr int kParts = 48;  // at most; the rest is not counted
   double time = 0;
   KinematicState at{r.at.position, r.direction * r.at.velocity, r.direction * r.at.acceleration};
   for (int i = 0; i < kParts; ++i) {

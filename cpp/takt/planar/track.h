@@ -48,10 +48,11 @@ struct Piece {
 // 0 <= s <= length of the segment.
 TrackPoint At(const Piece& piece, double s) noexcept;
 
-// A stretch of a track whose curvature varies little.
+// A stretch of a track whose curvature, and its rate, vary little. Both are 0 where the track is straight.
 struct Bend {
   double from = 0;       // mm along the track; it reaches to the next one
   double curvature = 0;  // 1/mm, the largest, without sign
+  double rate = 0;       // 1/mm², the largest rate of the curvature, without sign
 };
 
 struct Track {

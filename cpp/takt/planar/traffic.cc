@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "takt/planar/following.h"
 #include "takt/planar/going_along.h"
@@ -199,16 +200,36 @@ class Traffic::Step_ {
     return {r.plan_from + r.direction * way.position, r.direction * way.velocity, r.direction * way.acceleration};
   }
 
-  bool Take(std::uint32_t i, const KinematicState& next) {
-    const Braking braking = Brake(next, riders_[i].brakes);
-    if (!KeepsToLimits(network_, riders_[i], next, braking) || !w_.MayTake(i, next, braking)) {
-      riders_[i].calm_cycles = kCalmCycles;
-      t_.refused_ += std::abs(riders_[i].at.velocity) > kStands ? 1 : 0;
-      return false;
+  // With the largest share of its brakes that keeps the vectors within their maxima in the bends on its way to rest.
+  bool TryToTake(std::uint32_t i, const KinematicState& next) {
+    const Rider& r = riders_[i];
+    for (std::size_t share = 0; share < kShares.size(); ++share) {
+      const Brakes brakes = WithShare(r.brakes, r.pace, share);
+      const Braking braking = Brake(next, brakes);
+      if (!KeepsToVectors(network_, r, next, braking, period())) continue;
+      // A smaller share would only make it come to rest later.
+      if (!KeepsToLimits(network_, r, next, braking, brakes.jerk) || !w_.MayTake(i, next, braking)) return false;
+      if (guard_ != nullptr && !PassesGuard(i, next, braking)) return false;
+      w_.Take(i, next, braking, share);
+      return true;
     }
-    if (guard_ != nullptr && !PassesGuard(i, next, braking)) return false;
-    w_.Take(i, next, braking);
-    return true;
+    return false;
+  }
+  bool Refuse(std::uint32_t i) {
+    riders_[i].calm_cycles = kCalmCycles;
+    t_.refused_ += std::abs(riders_[i].at.velocity) > kStands ? 1 : 0;
+    return false;
+  }
+  bool Take(std::uint32_t i, const KinematicState& next) { return TryToTake(i, next) || Refuse(i); }
+  // The first of these steps, one for each share of its dynamics, that it may take; in bends a smaller share may do.
+  template <typename StepWithShare>
+  bool TakeWithShare(std::uint32_t i, const StepWithShare& step) {
+    const std::size_t shares = std::isfinite(riders_[i].pace.vector_jerk) ? kShares.size() : 1;
+    for (std::size_t share = 0; share < shares; ++share) {
+      const std::optional<KinematicState> next = step(share);
+      if (next && TryToTake(i, *next)) return true;
+    }
+    return Refuse(i);
   }
 
   Area KindOf(std::uint32_t i) const {
@@ -311,22 +332,25 @@ class Traffic::Step_ {
   }
   // The range of accelerations that it can have at the end of the cycle. What it has may have to be taken away quicker
   // than it was told to change it.
-  trajectory::Profile::Range Reachable(const Rider& r) const {
+  trajectory::Profile::Range Reachable(const Rider& r, std::size_t share) const {
     const double before = r.direction * r.at.acceleration;
-    const double change = r.pace.limits.jerk * period(), away = LimitsNow(r).jerk * period();
+    const double change = WithShare(r.pace.limits, r.pace, share).jerk * period();
+    const double away = WithShare(LimitsNow(r), r.pace, share).jerk * period();
     return {before - (before > 0 ? away : change), before + (before < 0 ? away : change)};
   }
   // At the end of the cycle, with this acceleration or one as near to it as can be.
-  KinematicState StepWith(const Rider& r, double acceleration) const {
+  KinematicState StepWith(const Rider& r, double acceleration, std::size_t share = 0) const {
     const double before = r.direction * r.at.acceleration, speed = r.direction * r.at.velocity;
-    const auto [lowest, highest] = Reachable(r);
+    const trajectory::Limits limits = WithShare(r.pace.limits, r.pace, share);
+    const auto [lowest, highest] = Reachable(r, share);
     double next = std::clamp(acceleration, lowest, highest);
     // What is braked with must be gone when it stands, or it would run back: at the end of the cycle, with a tenth of
     // the jerk to spare.
-    const double jerk_then = 0.9 * r.pace.limits.jerk, half = 0.5 * jerk_then * period();
+    const double jerk_then = 0.9 * limits.jerk, half = 0.5 * jerk_then * period();
     const double left = std::max(0.0, speed + 0.5 * period() * before);
     const double gone = std::sqrt(half * half + 2 * jerk_then * left) - half;
-    next = std::clamp(next, -std::min(gone, r.brakes.deceleration), r.pace.limits.acceleration);
+    const double braked = WithShare(r.brakes, r.pace, share).deceleration;
+    next = std::clamp(next, -std::min(gone, braked), limits.acceleration);
     next = std::clamp(next, lowest, highest);
     const double jerk = (next - before) / period();
     return trajectory::Piece{r.at.position, r.at.velocity, r.at.acceleration, r.direction * jerk}.At(period());
@@ -335,6 +359,11 @@ class Traffic::Step_ {
   // The rest of its way, however short, is within this room.
   bool Reaches(const Rider& r, double room) const {
     return std::abs(EndOfWay(network_, r) - r.at.position) <= room + kTolerance;
+  }
+
+  // Braking as it was told to, at the end of the cycle.
+  KinematicState Halting(const Rider& r, std::size_t share) const {
+    return Brake(r.at, WithShare(Brakes{r.pace.limits.deceleration, LimitsNow(r).jerk}, r.pace, share)).At(period());
   }
 
   // One that was held back, and still is, needs no plan of its own as long as nothing else is near that it would slow
@@ -350,10 +379,10 @@ class Traffic::Step_ {
     const double eased = Eased(r, most);
     most = Calmed(r, eased);
     const KinematicState step = StepWith(r, most);
-    if (most >= Reachable(r).max || r.direction * step.velocity <= 0 || !RunsFree(network_, r, step)) return false;
+    if (most >= Reachable(r, 0).max || r.direction * step.velocity <= 0 || !RunsFree(network_, r, step)) return false;
     r.eased = eased;
     if (r.calm_cycles > 0) --r.calm_cycles;
-    Take(i, step);  // or it brakes
+    TakeWithShare(i, [&](std::size_t share) { return std::optional(StepWith(r, most, share)); });  // or it brakes
     WaitFor(r, Waits::kNot, kNobody);
     return true;
   }
@@ -382,9 +411,7 @@ class Traffic::Step_ {
     // Who is held back stays so until there is room: else it would swing between both.
     const bool was_free = r.aim == Aim::kFollow || r.planned || Rests(r.at);
     const std::int8_t went = r.direction;
-    const KinematicState wish = halts ? Brake(r.at, {r.pace.limits.deceleration, LimitsNow(r).jerk}).At(period())
-                                : r.aim == Aim::kTarget ? Wish(r)
-                                                        : WishAlong(r, demand, exact);
+    const KinematicState wish = halts ? Halting(r, 0) : r.aim == Aim::kTarget ? Wish(r) : WishAlong(r, demand, exact);
     const bool follows = r.aim == Aim::kFollow;
     if (follows && Rests(r.at) && wish.velocity * r.direction < 0) r.direction = wish.velocity < 0 ? -1 : 1;
     // Who turns has somebody else before it now; a new way may have, too.
@@ -417,6 +444,9 @@ class Traffic::Step_ {
         follows ? std::max(least_end, std::sqrt(r.pace.limits.jerk * std::max(0.0, fastest))) : least_end;
     const double wished = std::min(end, as_fast);
     const bool limited = mean > most + 1e-9 && !(was_free && GoesAlong(w_, i, wish, limit));
+    if (halts && !limited && TakeWithShare(i, [&](std::size_t share) { return std::optional(Halting(r, share)); })) {
+      return WaitFor(r, Waits::kNot, kNobody);
+    }
     if (!limited && !(comes && Passes(r, wish, demand)) && Take(i, wish)) {
       if (r.aim == Aim::kTarget && r.plan_ends && r.plan_time >= r.plan.duration()) r.there = true;
       if (follows && AwaitsMaster(r, demand)) {
@@ -427,9 +457,13 @@ class Traffic::Step_ {
     r.planned = false;
     const bool stands = std::abs(r.at.velocity) < kStands;
     // Slower than it wishes, as fast as it may behind the other.
-    const KinematicState step = StepWith(r, std::min(most, wished));
-    const bool goes = direction * step.velocity > 0 && !(stands && limit.room < kAtLimit);
-    if (goes && !(comes && Passes(r, step, demand)) && Take(i, step)) {
+    const auto slower = [&](std::size_t share) -> std::optional<KinematicState> {
+      const KinematicState step = StepWith(r, std::min(most, wished), share);
+      const bool goes = direction * step.velocity > 0 && !(stands && limit.room < kAtLimit);
+      if (!goes || (comes && Passes(r, step, demand))) return std::nullopt;
+      return step;
+    };
+    if (slower(0) && TakeWithShare(i, slower)) {
       return stands ? WaitFor(r, Waits::kMover, limit.by) : WaitFor(r, Waits::kNot, kNobody);
     }
     if (!stands) return;
@@ -440,12 +474,8 @@ class Traffic::Step_ {
   // The end of the cycle: places are those on the track where the mover is now.
   void GoOn(std::uint32_t i) {
     Rider& r = riders_[i];
-    const Now& now = s_.now[i];
-    if (guard_ != nullptr && !now.taken && !(Rests(r.at) && Rests(now.next))) {
-      guard_->Put(i, CourseOf(i, std::min(now.next.position, now.braking.lowest),
-                              std::max(now.next.position, now.braking.highest)));
-    }
-    r.at = now.next;
+    r.at = s_.now[i].next;
+    r.share = s_.now[i].share;
     if (std::abs(r.at.velocity) < 1e-9 && std::abs(r.at.acceleration) < 1e-6) r.at.velocity = r.at.acceleration = 0;
     const auto shift = [&r](double by) {
       r.at.position -= by;

@@ -16,8 +16,9 @@
 // other.
 //
 // Each mover alone has one as well: if from now on it brakes with its greatest dynamics, its speed stays within its
-// maximum, and in curves its lateral acceleration within its limit. So both are kept in every cycle, whatever command
-// comes, and when: where from the state it is in the commanded dynamics do not keep them, the greatest are used until
+// maximum, in curves its lateral acceleration within its limit, and its acceleration and jerk as vectors within theirs:
+// in bends it brakes with a share of its dynamics only (way.h). So all are kept in every cycle, whatever command comes,
+// and when: where from the state it is in the commanded dynamics do not keep them, the greatest are used until
 // they do. They are used, too, to take away an acceleration that would make it faster than commanded.
 //
 // A mover may be off its place (Rider::off), as set points from outside have it: every gap to it is as much

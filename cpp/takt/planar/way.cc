@@ -10,10 +10,65 @@ namespace {
 
 constexpr double kSlight = 1e-9;  // share of a speed, or mm
 
-double SpeedIn(const Bend& bend, const Pace& pace) {
-  const double most = pace.limits.velocity;
-  return bend.curvature > 0 ? std::min(most, std::sqrt(pace.lateral / bend.curvature)) : most;
+// Of squares: rounding.
+constexpr double kWithin = 1 + 1e-9;
+
+// The largest square of a jerk's length that a bend may make, and its derivative by the speed.
+struct JerkSquare {
+  double value = 0;
+  double slope = 0;
+};
+JerkSquare JerkSquareAt(const Bend& bend, const Stress& s) {
+  const double k = bend.curvature, v = s.speed;
+  const double along = s.jerk + k * k * v * v * v;
+  const double across = 3 * k * v * s.acceleration + bend.rate * v * v * v;
+  return {along * along + across * across,
+          2 * along * 3 * k * k * v * v + 2 * across * (3 * k * s.acceleration + 3 * bend.rate * v * v)};
 }
+
+}  // namespace
+
+trajectory::Limits WithShare(trajectory::Limits limits, const Pace& pace, std::size_t share) noexcept {
+  const double acceleration = kShares[share].acceleration * pace.vector_acceleration;
+  limits.acceleration = std::min(limits.acceleration, acceleration);
+  limits.deceleration = std::min(limits.deceleration, acceleration);
+  limits.jerk = std::min(limits.jerk, kShares[share].jerk * pace.vector_jerk);
+  return limits;
+}
+
+Brakes WithShare(Brakes brakes, const Pace& pace, std::size_t share) noexcept {
+  return {std::min(brakes.deceleration, kShares[share].acceleration * pace.vector_acceleration),
+          std::min(brakes.jerk, kShares[share].jerk * pace.vector_jerk)};
+}
+
+bool KeepsVectors(const Bend& bend, const Stress& stress, const Pace& pace) noexcept {
+  if (!(bend.curvature > 0)) return true;  // along the way alone it keeps its limits anyhow
+  const double across = bend.curvature * stress.speed * stress.speed;
+  const double most = pace.vector_acceleration * pace.vector_acceleration;
+  if (stress.acceleration * stress.acceleration + across * across > most * kWithin) return false;
+  return JerkSquareAt(bend, stress).value <= pace.vector_jerk * pace.vector_jerk * kWithin;
+}
+
+double SpeedIn(const Bend& bend, const Pace& pace) noexcept {
+  double most = pace.limits.velocity;
+  if (!(bend.curvature > 0)) return most;
+  const Share& least = kShares.back();
+  const double room = std::sqrt(1 - least.acceleration * least.acceleration) * pace.vector_acceleration;
+  most = std::min(most, std::sqrt(std::min(pace.lateral, room) / bend.curvature));
+  if (!std::isfinite(pace.vector_jerk)) return most;
+  // The square grows with the speed, ever faster: Newton's steps from above come down to the root.
+  constexpr int kMostSteps = 12;
+  const double allowed = pace.vector_jerk * pace.vector_jerk;
+  const Stress stress{most, least.acceleration * pace.vector_acceleration, least.jerk * pace.vector_jerk};
+  for (int i = 0; i < kMostSteps; ++i) {
+    const JerkSquare square = JerkSquareAt(bend, {most, stress.acceleration, stress.jerk});
+    if (square.value <= allowed * (1 + 1e-10)) break;
+    most -= (square.value - allowed) / square.slope;
+  }
+  return most;
+}
+
+namespace {
 
 // The number of the bend that s lies in; at a border, that on the far side.
 std::size_t BendAt(const Road& road, double s, std::int8_t direction) {
@@ -31,7 +86,7 @@ double AlongTrack(const Road& road, double s, double gone, double until, const P
   for (std::size_t i = BendAt(road, s, 1); i < bends.size(); ++i) {
     const double way = gone + std::max(0.0, bends[i].from - s);
     if (way > until) return until;
-    caps.Add(way, SpeedIn(bends[i], pace));
+    caps.Add(way, SpeedIn(bends[i], pace), bends[i]);
   }
   return gone + road.length - s;
 }
@@ -40,7 +95,7 @@ double BackAlongTrack(const Road& road, double s, double gone, double until, con
   double way = gone;
   for (std::size_t i = BendAt(road, s, -1) + 1; i-- > 0;) {
     if (way > until) return until;
-    caps.Add(way, SpeedIn(road.track->bends[i], pace));
+    caps.Add(way, SpeedIn(road.track->bends[i], pace), road.track->bends[i]);
     way = gone + s - road.track->bends[i].from;
   }
   return gone + s;
@@ -48,19 +103,27 @@ double BackAlongTrack(const Road& road, double s, double gone, double until, con
 
 }  // namespace
 
-void Caps::Add(double way, double speed) noexcept {
+void Caps::Add(double way, double speed, const Bend& bend) noexcept {
   if (cut) return;
-  if (count > 0 && std::abs(of[count - 1].speed - speed) <= kSlight * speed) return;
-  // What was passed already, or is too short to be seen.
-  if (count > 0 && way <= of[count - 1].way + kSlight) {
-    of[count - 1].speed = count == 1 && way <= 0 ? speed : std::min(of[count - 1].speed, speed);
-    return;
+  if (count > 0) {
+    Cap& last = of[count - 1];
+    const bool passed = way <= last.way + kSlight;  // or too short to be seen
+    if (passed && count == 1 && way <= 0) {
+      last = {last.way, speed, bend.curvature, bend.rate};
+      return;
+    }
+    const bool alike = last.bends() == (bend.curvature > 0) && std::abs(last.speed - speed) <= kSlight * speed;
+    if (passed || alike) {
+      last = {last.way, std::min(last.speed, speed), std::max(last.curvature, bend.curvature),
+              std::max(last.rate, bend.rate)};
+      return;
+    }
   }
   if (count == kCaps) {
     cut = true;
     return;
   }
-  of[count++] = {way, speed};
+  of[count++] = {way, speed, bend.curvature, bend.rate};
 }
 
 Caps CapsAhead(const Network& network, const Start& start, double until, const Pace& pace) noexcept {
@@ -87,34 +150,51 @@ struct Gate {
   double speed = 0;
 };
 
-// Whether a motion keeps to the caps up to its end. Speeds are looked at where they are largest: at borders, and where
-// the motion turns from faster to slower.
-bool Keeps(const trajectory::Profile& plan, const Caps& caps) {
-  const double fastest = plan.VelocityRange().max;
+// What is the largest between two times of a motion. The speed is largest at their borders, and where the motion turns
+// from faster to slower.
+Stress StressOf(const trajectory::Profile& plan, double begin, double end) {
+  Stress most;
+  most.speed = std::max({0.0, plan.At(begin).velocity, plan.At(end).velocity});
+  double from = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(plan.size()); ++k) {
+    const trajectory::Piece& piece = plan.pieces[k];
+    const double to = plan.piece_ends_s[k], first = std::max(from, begin), last = std::min(to, end);
+    if (first < last) {
+      const double top = piece.jerk != 0 ? from - piece.acceleration / piece.jerk : first;
+      for (const double t : {first, std::clamp(top, first, last), last}) {
+        const KinematicState at = piece.At(t - from);
+        most.speed = std::max(most.speed, at.velocity);
+        most.acceleration = std::max(most.acceleration, std::abs(at.acceleration));
+      }
+      most.jerk = std::max(most.jerk, std::abs(piece.jerk));
+    }
+    from = to;
+  }
+  return most;
+}
+
+// Whether a motion keeps to the caps up to its end, and its vectors within their maxima.
+bool Keeps(const trajectory::Profile& plan, const Caps& caps, const Pace& pace) {
+  const Stress all = StressOf(plan, 0, plan.duration());
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < caps.count && caps.of[i].way < plan.end().position; ++i) {
-    least = std::min(least, caps.of[i].speed);
+  Bend tightest;
+  for (const Cap& cap : caps.all()) {
+    if (!(cap.way < plan.end().position)) break;
+    least = std::min(least, cap.speed);
+    tightest = {0, std::max(tightest.curvature, cap.curvature), std::max(tightest.rate, cap.rate)};
   }
   // What it began with too fast it may keep.
-  const double allowance = 1e-9 * fastest;
-  if (fastest <= least + allowance) return true;
+  const double allowance = 1e-9 * all.speed;
+  if (all.speed <= least + allowance && KeepsVectors(tightest, all, pace)) return true;
   double begin = 0;
   for (std::size_t i = 0; i < caps.count && caps.of[i].way < plan.end().position; ++i) {
     if (caps.cut && i + 1 == caps.count) return true;  // what comes is not known
     const double border = i + 1 < caps.count ? caps.of[i + 1].way : plan.end().position;
     const double end = border < plan.end().position ? plan.TimeAt(border, begin) : plan.duration();
     if (!(end >= begin)) return false;
-    double most = std::max(plan.At(begin).velocity, plan.At(end).velocity);
-    for (int k = 0; k < plan.size(); ++k) {
-      const double from = k == 0 ? 0 : plan.piece_ends_s[static_cast<std::size_t>(k - 1)];
-      const trajectory::Piece& piece = plan.pieces[static_cast<std::size_t>(k)];
-      const double to = plan.piece_ends_s[static_cast<std::size_t>(k)];
-      for (const double t : {from, piece.jerk != 0 ? from - piece.acceleration / piece.jerk : from}) {
-        if (t >= from && t <= to && t > begin && t < end) most = std::max(most, plan.At(t).velocity);
-      }
-    }
+    const Stress most = StressOf(plan, begin, end);
     const double allowed = i == 0 ? std::max(caps.of[0].speed, plan.start().velocity) : caps.of[i].speed;
-    if (most > allowed + allowance) return false;
+    if (most.speed > allowed + allowance || !KeepsVectors(caps.of[i].bend(), most, pace)) return false;
     begin = end;
   }
   return true;
@@ -124,7 +204,7 @@ bool Keeps(const trajectory::Profile& plan, const Caps& caps) {
 bool KeepsMost(const Network& network, const Start& start, const trajectory::Profile& plan, const Pace& pace,
                const Pace& most) {
   if (plan.VelocityRange().max <= pace.limits.velocity * (1 + kSlight)) return true;
-  return Keeps(plan, CapsAhead(network, start, plan.PositionRange().max, most));
+  return Keeps(plan, CapsAhead(network, start, plan.PositionRange().max, most), most);
 }
 
 // Braking as it was told to it gets no faster than that, or than it is, and does not go back.
@@ -132,7 +212,17 @@ bool StopsWithin(const Network& network, const Start& start, const trajectory::P
                  const Pace& most) {
   const trajectory::Profile::Range range = stop.VelocityRange();
   if (range.max > std::max(pace.limits.velocity, start.speed) * (1 + kSlight) || range.min < -1e-6) return false;
-  return Keeps(stop, CapsAhead(network, start, stop.PositionRange().max, most));
+  return Keeps(stop, CapsAhead(network, start, stop.PositionRange().max, most), most);
+}
+
+// The largest share that a mover may use throughout a stretch.
+std::size_t ShareIn(const Cap& cap, const Pace& pace) {
+  for (std::size_t share = 0; share + 1 < kShares.size(); ++share) {
+    const trajectory::Limits limits = WithShare(pace.limits, pace, share);
+    const Stress stress{cap.speed, std::max(limits.acceleration, limits.deceleration), limits.jerk};
+    if (KeepsVectors(cap.bend(), stress, pace)) return share;
+  }
+  return kShares.size() - 1;
 }
 
 // False: there is no such plan.
@@ -140,7 +230,6 @@ bool TryWay(trajectory::Planner& planner, const Network& network, const Start& s
             const Pace& most, trajectory::Profile& out, bool& ends) {
   if (!(way >= 0)) return false;
   const KinematicState from{0, start.speed, start.acceleration};
-  const Brakes brakes = pace.brakes();
   ends = true;
   const Caps caps = CapsAhead(network, start, way, pace);
 
@@ -153,51 +242,62 @@ bool TryWay(trajectory::Planner& planner, const Network& network, const Start& s
   gates[count - 1] = {caps.cut ? caps.of[count - 1].way : way, 0};
   for (std::size_t k = count - 1; k-- > 0;) {
     const double room = gates[k + 1].way - gates[k].way;
+    const Brakes brakes = WithShare(pace.brakes(), pace, ShareIn(caps.of[k + 1], pace));
     gates[k].speed = std::min(gates[k].speed, SpeedBefore(room, gates[k + 1].speed, brakes));
   }
 
-  trajectory::Limits limits = pace.limits;
   const double v = start.speed;
+  // With less than all of its dynamics only as far as the bend goes in which it is.
+  const auto straight = std::ranges::find_if(caps.all(), [](const Cap& cap) { return !cap.bends(); });
+  const auto bends = static_cast<std::size_t>(straight - caps.all().begin());
+  const bool bounded = std::isfinite(pace.vector_jerk);
   for (std::size_t k = caps.cut ? count - 1 : count; k-- > 0;) {
     const Gate& gate = gates[k];
     // Not to be reached that fast.
-    if (gate.speed * gate.speed > v * v + 2 * limits.acceleration * gate.way + kSlight && k > 0) continue;
+    if (gate.speed * gate.speed > v * v + 2 * pace.limits.acceleration * gate.way + kSlight && k > 0) continue;
     if (gate.way <= 0 && k + 1 < count) break;
-    limits.velocity = 0;
-    for (std::size_t i = 0; i <= k; ++i) limits.velocity = std::max(limits.velocity, caps.of[i].speed);
-    limits.velocity = std::max(limits.velocity, gate.speed);
-    trajectory::Profile plan;
-    if (planner.ToPosition(from, gate.way, gate.speed, limits, plan).failed()) continue;
-    // It would have to run back: too near to stop, or too near to get so fast.
-    const trajectory::Profile::Range range = plan.PositionRange();
-    const bool straight = range.min >= -1e-6 && range.max <= gate.way + 1e-6 && plan.VelocityRange().min >= -1e-9;
-    if (straight && Keeps(plan, caps) && KeepsMost(network, start, plan, pace, most)) {
-      out = plan;
-      ends = k + 1 == count;
-      return true;
+    for (std::size_t share = 0; share < (bounded && k < bends ? kShares.size() : 1); ++share) {
+      trajectory::Limits limits = WithShare(pace.limits, pace, share);
+      limits.velocity = 0;
+      for (std::size_t i = 0; i <= k; ++i) limits.velocity = std::max(limits.velocity, caps.of[i].speed);
+      limits.velocity = std::max(limits.velocity, gate.speed);
+      trajectory::Profile plan;
+      if (planner.ToPosition(from, gate.way, gate.speed, limits, plan).failed()) continue;
+      // It would have to run back: too near to stop, or too near to get so fast.
+      const trajectory::Profile::Range range = plan.PositionRange();
+      const bool on = range.min >= -1e-6 && range.max <= gate.way + 1e-6 && plan.VelocityRange().min >= -1e-9;
+      if (on && Keeps(plan, caps, pace) && KeepsMost(network, start, plan, pace, most)) {
+        out = plan;
+        ends = k + 1 == count;
+        return true;
+      }
     }
   }
   // Up to the first gate as fast as may be, or slower from here on.
-  const double cap = caps.of[0].speed;
-  const Gate& gate = gates[0];
-  double low = 0, high = std::min(cap, gate.speed);
-  limits.velocity = std::max(cap, high);
-  bool found = false;
-  for (int i = 0; i < 12; ++i) {
-    const double speed = 0.5 * (low + high);
-    trajectory::Profile plan;
-    const bool planned = planner.ToPosition(from, gate.way, speed, limits, plan).ok();
-    const bool straight = planned && plan.PositionRange().max <= gate.way + 1e-6 && plan.VelocityRange().min >= -1e-9;
-    if (straight) {
-      out = plan;
-      found = true;
+  for (std::size_t share = 0; share < (bounded && caps.of[0].bends() ? kShares.size() : 1); ++share) {
+    const double cap = caps.of[0].speed;
+    const Gate& gate = gates[0];
+    trajectory::Limits limits = WithShare(pace.limits, pace, share);
+    double low = 0, high = std::min(cap, gate.speed);
+    limits.velocity = std::max(cap, high);
+    bool found = false;
+    for (int i = 0; i < 12; ++i) {
+      const double speed = 0.5 * (low + high);
+      trajectory::Profile plan;
+      const bool planned = planner.ToPosition(from, gate.way, speed, limits, plan).ok();
+      const bool on = planned && plan.PositionRange().max <= gate.way + 1e-6 && plan.VelocityRange().min >= -1e-9;
+      if (on) {
+        out = plan;
+        found = true;
+      }
+      // Too fast to get there slower, or too slow to get there faster.
+      const bool faster = on || (planned && plan.PositionRange().max > gate.way + 1e-6 && v > speed);
+      (faster ? low : high) = speed;
     }
-    // Too fast to get there slower, or too slow to get there faster.
-    const bool faster = straight || (planned && plan.PositionRange().max > gate.way + 1e-6 && v > speed);
-    (faster ? low : high) = speed;
+    ends = count == 1 && out.end().velocity == 0;
+    if (found && Keeps(out, caps, pace) && KeepsMost(network, start, out, pace, most)) return true;
   }
-  ends = count == 1 && out.end().velocity == 0;
-  return found && Keeps(out, caps) && KeepsMost(network, start, out, pace, most);
+  return false;
 }
 
 }  // namespace

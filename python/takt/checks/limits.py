@@ -41,9 +41,9 @@ def within_limits(
     """Position, velocity, acceleration and jerk stay within limits.
 
     position: (lower, upper); the others are largest absolute values. What is not given is taken from the
-        component's `limits`; what is not known there either is not checked. Of a planar mover they are those along
-        its way: in the plane the lengths of the vectors, on a track along that; `lateral_acceleration` in curves
-        of tracks, and Z, A, B and C, are held against its own limits. Jerk is not asked of set points from outside.
+        component's `limits`; what is not known there either is not checked. Of a planar mover they are the lengths
+        of the vectors of X and Y, in the plane and on tracks; `lateral_acceleration` in curves of tracks, and Z, A,
+        B and C, are held against its own limits. Jerk is not checked of set points from outside.
     tolerance: relative to the limit, for rounding.
     jerk_tolerance: relative. Jerk is not recorded; it is the difference of two accelerations over the time
         between them, which is the mean jerk of that stretch. The mean of a jerk that keeps its limit keeps it

@@ -21,11 +21,14 @@ SAME = 1e-6  # mm/s: what is faster or slower than its way along the track has s
 def of_mover(
     check: Check, mover: str, given: Mapping[str, float | None], tolerance: float, jerk_tolerance: float
 ) -> Verdict:
-    """Along its way (in the plane the length of the vectors, on a track along that), across it in curves of tracks, and
-    each of Z, A, B and C by itself. `given` is for along the way, instead of the mover's own."""
+    """X and Y together (the lengths of the vectors), across the track in curves, and each of Z, A, B and C by itself.
+    `given` is for X and Y, instead of the mover's own."""
     own = check.recording.info(mover)["limits"]
-    limits = {**own["xy"], **{what: limit for what, limit in given.items() if limit is not None}}
-    found = _along(check, mover, limits, tolerance, jerk_tolerance)
+    limits = dict(own["xy"])
+    # A recording of a mover that decelerates harder than it accelerates: one length is held against both.
+    limits["acceleration"] = max(limits["acceleration"], limits.get("deceleration") or 0.0)
+    limits |= {what: limit for what, limit in given.items() if limit is not None}
+    found = _in_plane(check, mover, limits, tolerance, jerk_tolerance)
     found += _across(check, mover, own["lateral_acceleration"], max(tolerance, CURVATURE))
     says = ", ".join(one.says for one in found)
     others = []
@@ -39,24 +42,31 @@ def of_mover(
     return judge(check, mover, found, f"stayed within its {says}", "left")
 
 
-def _along(
+def _in_plane(
     check: Check, mover: str, limits: Mapping[str, float], tolerance: float, jerk_tolerance: float
 ) -> list[Measured]:
-    on = _modes(check, mover)
+    """The lengths of the vectors, on tracks, too. What set points from outside add on a track is not recorded by
+    itself: the acceleration there is the one along the track."""
     v, a = (_vector(check, mover, what) for what in ("velocity", "acceleration"))
-    track_v, track_a = (check.series(mover, f"track_{what}") for what in ("velocity", "acceleration"))
-    speed = np.where(on, np.abs(track_v.values), np.hypot(*v))
-    push = np.where(on, np.abs(track_a.values), np.hypot(*a))
+    along = check.series(mover, "track_acceleration")
+    added = _modes(check, mover) & (check.series(mover, "external").values > 0)
+    push = np.where(added, np.abs(along.values), np.hypot(*a))
+    speed = check.series(mover, "velocity_x")
+    # Rounding of the direction and the curvature of a track.
+    on_tracks = max(tolerance, CURVATURE)
     found = [
-        against(what, s.unit, s.time_s, values, limits[what], tolerance * limits[what], f"{mover}: {what}")
-        for what, s, values in (("velocity", track_v, speed), ("acceleration", track_a, push))
+        against(what, s.unit, s.time_s, values, limits[what], margin * limits[what], f"{mover}: {what}")
+        for what, s, values, margin in (
+            ("velocity", speed, np.hypot(*v), tolerance),
+            ("acceleration", along, push, on_tracks),
+        )
     ]
-    if len(on) > 1:
-        both, none = on[1:] & on[:-1], ~(on[1:] | on[:-1])
-        steps = np.where(both, np.diff(track_a.values), np.where(none, np.hypot(*(np.diff(one) for one in a)), 0))
+    if len(push) > 1:
+        steps = np.hypot(*(np.diff(one) for one in a))
         steps[_pushed(check, mover)] = 0
         label = f"{mover}: jerk (by differences)"
-        found.append(jerk_against("jerk", replace(track_a, values=push), steps, limits["jerk"], jerk_tolerance, label))
+        margin = max(jerk_tolerance, 10 * CURVATURE)
+        found.append(jerk_against("jerk", replace(along, values=push), steps, limits["jerk"], margin, label))
     return found
 
 

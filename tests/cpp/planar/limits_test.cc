@@ -27,6 +27,22 @@ void ExpectWithin(const Watcher& watcher, const char* what) {
   EXPECT_LE(watcher.acceleration, 1 + 1e-8) << what;
   EXPECT_LE(watcher.jerk, 1 + 1e-5) << what;
   EXPECT_LE(watcher.lateral, 1 + 1e-6) << what;
+  EXPECT_LE(watcher.vector_acceleration, 1 + 1e-6) << what;
+  EXPECT_LE(watcher.vector_jerk, 1 + 2e-5) << what;
+}
+
+// A line into a corner, as tight as its distance from both sides says, and on.
+Layout CornerOf(double distance) {
+  return {{testing::Line({0, 0}, {500, 0}), testing::Line({500 + distance, distance}, {500 + distance, 1200})}};
+}
+// Corners to both sides without a line between them.
+Layout Serpentine(double distance) {
+  Layout layout;
+  for (int i = 0; i < 8; ++i) {
+    const double x = 2.5 * distance * i, y = i % 2 == 0 ? 0 : 1.5 * distance;
+    layout.elements.push_back(testing::Line({x, y}, {x + 0.5 * distance, y}));
+  }
+  return layout;
 }
 
 // Where it is is known but for rounding, and so is whether that is on its track.
@@ -101,6 +117,39 @@ TEST(Limits, LessDynamicsAreNoReasonToTakeACurveTooFast) {  // PL-21
       }
     }
   }
+}
+
+// However tight the track, with whatever maxima, up to a lateral acceleration that is all of the acceleration: alone it
+// keeps both vectors within them, and comes to its end without having to stop before.
+TEST(Limits, VectorsKeepTheirMaximaInCurvesAndTransitions) {  // PL-82
+  double hardest = 0;
+  for (const double distance : {15.0, 45.0, 120.0, 260.0}) {
+    for (const Layout& layout : {CornerOf(distance), Serpentine(distance)}) {
+      for (const double jerk : {40000.0, 150000.0, 900000.0}) {
+        for (const double lateral : {1500.0, 5000.0, 9000.0}) {
+          const Pace pace = testing::InPlane(testing::PaceOf(2500, 9000, jerk, lateral));
+          Streets streets({layout}, 1);
+          streets.Put(0, 0, 0, pace);
+          streets.Send(0, 0, streets.track(0).length);
+          Watcher watcher(streets);
+          double slowest = INFINITY;
+          streets.watch = [&] {
+            watcher.Look();
+            const double at = streets[0].at.position;
+            if (at > 0.1 * streets.track(0).length && at < 0.9 * streets.track(0).length) {
+              slowest = std::min(slowest, streets[0].at.velocity);
+            }
+          };
+          EXPECT_TRUE(streets.Run(60));
+          const auto what = std::to_string(distance) + " " + std::to_string(jerk) + " " + std::to_string(lateral);
+          ExpectWithin(watcher, what.c_str());
+          EXPECT_GT(slowest, 20) << what;
+          hardest = std::max(hardest, watcher.vector_jerk);
+        }
+      }
+    }
+  }
+  EXPECT_GT(hardest, 0.99);
 }
 
 // A halt takes the deceleration and jerk that it is given; behind a mover that brakes harder it brakes as that does.

@@ -202,11 +202,13 @@ void Watcher::Look() {
   before_.resize(riders.size());
   ways_.resize(riders.size());
   most_.resize(riders.size());
+  pushes_.resize(riders.size());
   for (std::uint32_t i = 0; i < riders.size(); ++i) {
     const Rider& r = riders[i];
     if (!r.on) {
       before_[i] = {};
       ways_[i] = most_[i] = 0;
+      pushes_[i] = {};
       continue;
     }
     const KinematicState& b = before_[i];
@@ -219,6 +221,13 @@ void Watcher::Look() {
     jerk = std::max(jerk, std::abs(r.at.acceleration - b.acceleration) / kPeriod / most);
     lateral =
         std::max(lateral, r.at.velocity * r.at.velocity * std::abs(streets_.PointOf(i).curvature) / r.pace.lateral);
+    const TrackPoint point = streets_.PointOf(i);
+    const double across = r.at.velocity * r.at.velocity * point.curvature;
+    const double c = std::cos(point.direction), s = std::sin(point.direction);
+    const Place push{r.at.acceleration * c - across * s, r.at.acceleration * s + across * c};
+    vector_acceleration = std::max(vector_acceleration, std::hypot(push.x, push.y) / r.pace.vector_acceleration);
+    vector_jerk = std::max(vector_jerk, Distance(push, pushes_[i]) / kPeriod / r.pace.vector_jerk);
+    pushes_[i] = push;
     // What is said of speed and place is one motion.
     const double way = r.at.position + r.origin;
     if (ways_[i] != 0) {

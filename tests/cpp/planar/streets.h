@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -20,6 +21,13 @@ inline constexpr double kPeriod = 0.001;  // s
 
 inline Pace PaceOf(double velocity, double acceleration, double jerk, double lateral = 5000) {
   return {{velocity, acceleration, acceleration, jerk}, lateral};
+}
+
+// The lengths of its acceleration and jerk in the plane are bounded by its greatest dynamics.
+inline Pace InPlane(Pace pace) {
+  pace.vector_acceleration = std::max(pace.limits.acceleration, pace.limits.deceleration);
+  pace.vector_jerk = pace.limits.jerk;
+  return pace;
 }
 
 // From the origin along X.
@@ -92,7 +100,8 @@ class Streets {
 // Tracks between random crossings, with merges, splits and rings; bodies of this size can only meet where tracks do.
 std::vector<Layout> RandomCity(Random& random, int tracks, double size);
 
-// Limits of every mover, cycle by cycle: of speed, acceleration, jerk along the way and acceleration across it.
+// Limits of every mover, cycle by cycle: of speed, acceleration, jerk along the way and acceleration across it; and of
+// the lengths of acceleration and jerk as vectors, where they are bounded.
 class Watcher {
  public:
   explicit Watcher(Streets& streets) : streets_(streets) {}
@@ -102,11 +111,14 @@ class Watcher {
   double acceleration = 0;  // of the greatest brakes where it slows down
   double jerk = 0;
   double lateral = 0;
+  double vector_acceleration = 0;
+  double vector_jerk = 0;
 
  private:
   Streets& streets_;
   std::vector<KinematicState> before_;
   std::vector<double> ways_, most_;
+  std::vector<Place> pushes_;  // acceleration in the plane, mm/s²
 };
 
 }  // namespace takt::planar::testing
