@@ -12,7 +12,7 @@ namespace takt::cam {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 
 // A stretch of constant, linear and sine acceleration.
 struct Zone {
@@ -33,12 +33,12 @@ std::vector<Zone> ZonesOf(double inflection, double length, double b, double d) 
   const auto add = [&](double width, double pulse, const Curve& curve, bool behind) {
     if (width > 0) zones.push_back({width, pulse, curve, behind});
   };
-  if (b > 0) add(b * first, 0, sine(kPi / 2 / (b * first), 0), false);
+  if (b > 0) add(b * first, 0, sine(kHalfTurn / 2 / (b * first), 0), false);
   add(c * first, 1, {}, false);
-  if (d > 0) add(d * first, 0, sine(kPi / 2 / (d * first), kPi / 2), false);
-  if (d > 0) add(d * second, 0, sine(kPi / 2 / (d * second), 0), true);
+  if (d > 0) add(d * first, 0, sine(kHalfTurn / 2 / (d * first), kHalfTurn / 2), false);
+  if (d > 0) add(d * second, 0, sine(kHalfTurn / 2 / (d * second), 0), true);
   add(c * second, 1, {}, true);
-  if (b > 0) add(b * second, 0, sine(kPi / 2 / (b * second), kPi / 2), true);
+  if (b > 0) add(b * second, 0, sine(kHalfTurn / 2 / (b * second), kHalfTurn / 2), true);
   return zones;
 }
 
