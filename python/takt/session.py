@@ -428,6 +428,8 @@ class Session(MachineCommands):
             self._event(feedback.target, f"{name}: {feedback._state.name.lower()}", "end", feedback.time_s)
 
     def _why_refused(self, error_id: int, feedback: Feedback) -> str:
+        if feedback.target not in self._components:
+            return ""
         cams = [cam["name"] for cam in self.machine["cams"]] + [made.name for made in self._made_cams.cams]
         return why_refused(error_id, feedback.target, feedback.arguments, self._axes, self._movers, cams)
 
