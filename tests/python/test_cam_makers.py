@@ -172,6 +172,8 @@ def test_a_traverse_lays_evenly_from_edge_to_edge(width, pitch, reversal, dwell)
     assert table.end - even == pytest.approx(2 * (reversal + dwell), rel=1e-2)
     assert np.isclose(dense.dy, 0, atol=1e-12).mean() * table.end == pytest.approx(2 * dwell, abs=2.0)
     assert np.abs(np.diff(dense.ddy)).max() < 0.25 * np.abs(dense.ddy).max()  # no jump of acceleration
+    if not dwell:  # u - 2 u³ + u⁴ has its largest second derivative, 3, at the edge
+        assert np.abs(dense.ddy).max() == pytest.approx(3 * pitch / 360 / reversal)
     half = len(dense.y) // 2
     assert np.allclose(
         dense.y[: half + 1], width - dense.y[half:], atol=1e-9
