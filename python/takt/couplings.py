@@ -55,7 +55,7 @@ def unknown_cam_sentence(arguments: str, cams: Collection[str]) -> str:
     for key in ("cam", "profile"):
         if asked.get(key):
             near = difflib.get_close_matches(asked[key], cams, 1)
-            has = f" (it has {', '.join(dict.fromkeys(cams))})" if 0 < len(cams) <= 10 else ""
+            has = f" (it has {', '.join(cams)})" if 0 < len(cams) <= 10 else ""
             hint = f"; did you mean {near[0]}?" if near else ""
             return f"{key}: the machine has no cam '{asked[key]}'{has}{hint}"
     return ""

@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from takt._commands import MachineCommands
 from takt.errors import TaktError
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 
@@ -21,13 +22,19 @@ KNOWN = 256  # cams whose data is kept; an engine holds 64
 BUILDS = 2  # cams that an engine builds at a time
 
 
-@dataclass(frozen=True)
+@dataclass
 class MadeCam:
     """A cam that this session has given."""
 
     name: str
     table: Table
     feedback: Feedback  # its value is the number of the cam
+    dropped: Feedback | None = None
+
+    @property
+    def found(self) -> bool:
+        """Whether its name stands for it, unless a later one has it."""
+        return self.feedback._done and not (self.dropped and self.dropped._done)
 
 
 class MadeCams:
@@ -53,16 +60,26 @@ class MadeCams:
         self.cams.append(MadeCam(name, table, feedback))
         return feedback
 
+    def drop(self, name: str, feedback: Feedback) -> None:
+        for made in self.cams:
+            if made.name == name and made.found:
+                made.dropped = feedback
+
+    @property
+    def names(self) -> list[str]:
+        """Of all cams that commands find, as far as this session knows."""
+        names = [cam["name"] for cam in self._session.machine["cams"]]
+        return list(dict.fromkeys(names + [made.name for made in self.cams if made.found]))
+
     def find(self, name: str) -> Table:
         """The cam that this name stands for, as far as this session knows."""
         for made in reversed(self.cams):
-            if made.name == name and made.feedback._done:
+            if made.name == name and made.found:
                 return made.table
         for number, cam in enumerate(self._session.machine["cams"], 1):
             if cam["name"] == name:
                 return self._session._cam(number)
-        known = [cam["name"] for cam in self._session.machine["cams"]] + [made.name for made in self.cams]
-        raise TaktError(f"there is no cam '{name}' (there are {', '.join(dict.fromkeys(known))})")
+        raise TaktError(f"there is no cam '{name}' (there are {', '.join(self.names)})")
 
     def numbered(self, number: int) -> Table:
         """The cam with this number, as far as this session knows."""
@@ -115,3 +132,43 @@ def _commands(table: Table, name: str) -> Iterator[tuple[str, dict[str, Any]]]:
 def _given(value: float) -> float | None:
     """None: free, which points of cams write as NaN."""
     return value if value == value else None
+
+
+class SessionWithCams(MachineCommands):
+    """The part of a session that makes cams and reads them back."""
+
+    _made_cams: MadeCams
+
+    def _check_open(self) -> None:
+        raise NotImplementedError
+
+    def make_cam(self, cam: Table | Mapping[str, Any], *, name: str | None = None) -> Feedback:
+        """Makes a cam at run time (CAM-88): the engine checks and builds it outside its cycle, and the feedback is done
+        when it can be used, by `set_cam` of a cam module or `cam_in` of an axis. What runs an earlier cam of this name
+        keeps it until it is left.
+
+        cam: a takt.cam.Table (points, segments, a file, the result of a maker), or a cam as in a machine file.
+        name: how commands call it, 40 bytes at most; its own name unless given.
+
+        A cam is sent in pieces. More than 2,500 points, and a third cam while two are being built, let engine time pass
+        until there is room. Raises takt.ConfigError if the cam has errors; nothing is sent then.
+        """
+        self._check_open()
+        return self._made_cams.make(cam, name)
+
+    def drop_cam(self, *, cam: str) -> Feedback:
+        feedback = super().drop_cam(cam=cam)
+        self._made_cams.drop(cam, feedback)
+        return feedback
+
+    drop_cam.__doc__ = MachineCommands.drop_cam.__doc__
+
+    def cam(self, name: str) -> Table:
+        """The cam that this name stands for now, of the machine file or made at run time: points, laws, extremes. Over
+        LCM, of cams made at run time those that this session has made."""
+        self._check_open()
+        return self._made_cams.find(name)
+
+    def _cam(self, number: int) -> Table:
+        """The cam with this number."""
+        return self._made_cams.numbered(number)

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import FrameType, MappingProxyType, TracebackType
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from takt._commands import DEFAULTS, LEVEL_SENSITIVE, MachineCommands
+from takt._commands import DEFAULTS, LEVEL_SENSITIVE
 from takt.arguments import to_text, without_arguments
 from takt.axis import Axis
 from takt.belt import Belt
@@ -25,7 +25,7 @@ from takt.feedback import DEFAULT_TIMEOUT_S, Feedback, FeedbackState, Place
 from takt.flex_cam import FlexCam
 from takt.group import Group
 from takt.lying import Lying
-from takt.made_cams import MadeCams
+from takt.made_cams import MadeCams, SessionWithCams
 from takt.mover import Mover
 from takt.part import Part
 from takt.pick_place import PickPlace
@@ -38,7 +38,6 @@ from takt.track import Track
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-    from takt.cam import Table
     from takt.forecast import Forecast
 
 Program = Callable[[], object]
@@ -97,7 +96,7 @@ class Recorder:
         self.stop()
 
 
-class Session(MachineCommands):
+class Session(SessionWithCams):
     """One engine. `axis("x")` gives an axis, whose commands return feedback objects; `wait` and `run` let engine time
     pass."""
 
@@ -316,28 +315,6 @@ class Session(MachineCommands):
         self._check_open()
         return move_on_tracks(self, targets, route=route, may_move=may_move, gap=gap, timeout=timeout, **dynamics)
 
-    # --- cams ---
-
-    def make_cam(self, cam: Table | Mapping[str, Any], *, name: str | None = None) -> Feedback:
-        """Makes a cam at run time (CAM-88): the engine checks and builds it outside its cycle, and the feedback is done
-        when it can be used, by `set_cam` of a cam module or `cam_in` of an axis. What runs an earlier cam of this name
-        keeps it until it is left.
-
-        cam: a takt.cam.Table (points, segments, a file, the result of a maker), or a cam as in a machine file.
-        name: how commands call it, 40 bytes at most; its own name unless given.
-
-        A cam is sent in pieces. More than 2,500 points, and a third cam while two are being built, let engine time pass
-        until there is room. Raises takt.ConfigError if the cam has errors; nothing is sent then.
-        """
-        self._check_open()
-        return self._made_cams.make(cam, name)
-
-    def cam(self, name: str) -> Table:
-        """The cam that this name stands for now, of the machine file or made at run time: points, laws, extremes. Over
-        LCM, of cams made at run time those that this session has made."""
-        self._check_open()
-        return self._made_cams.find(name)
-
     # --- time ---
 
     def wait(self, condition: Callable[[], object], timeout: float = DEFAULT_TIMEOUT_S, *, what: str = "") -> None:
@@ -430,8 +407,8 @@ class Session(MachineCommands):
     def _why_refused(self, error_id: int, feedback: Feedback) -> str:
         if feedback.target not in self._components:
             return ""
-        cams = [cam["name"] for cam in self.machine["cams"]] + [made.name for made in self._made_cams.cams]
-        return why_refused(error_id, feedback.target, feedback.arguments, self._axes, self._movers, cams)
+        names = self._made_cams.names
+        return why_refused(error_id, feedback.target, feedback.arguments, self._axes, self._movers, names)
 
     def _object(self, kind: int, number: int) -> Component | None:
         """What the engine calls so."""
@@ -490,10 +467,6 @@ class Session(MachineCommands):
     def _track_links(self, track: Track) -> tuple[list[int], list[int]]:
         """Numbers of the tracks before and behind a track."""
         raise TaktError(IN_PROCESS)
-
-    def _cam(self, number: int) -> Table:
-        """The cam with this number."""
-        return self._made_cams.numbered(number)
 
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
         raise TaktError("forecasts are made in process only; over LCM a feedback has travel_time_s")

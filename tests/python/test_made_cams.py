@@ -290,6 +290,10 @@ def test_over_lcm_and_in_the_log_of_the_run(tmp_path):  # CAM-88, EN-07: real ti
         session.command("machine", "add_cam_points", {"cam": "odd", "points": [POINT]}).wait()
         built = session.command("machine", "build_cam", {"cam": "odd"}).wait_final()
         assert built.sentence == "cam 'odd': points: expected 2 to 100,000 points, found 1"
+        stamp.load_cam(3, hill(2, "flat")).wait()
+        assert session.cam("flat").extremes().y.greatest.value == pytest.approx(2, abs=1e-6)
+        session.drop_cam(cam="flat").wait()
+        assert session.cam("flat").extremes().y.greatest.value == pytest.approx(12)
         unknown = stamp.set_cam(slot=3, cam="odd").wait_final()
         assert unknown.sentence == "cam: the machine has no cam 'odd' (it has flat, hill)"
     assert replay(log).same
