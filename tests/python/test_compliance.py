@@ -19,7 +19,7 @@ THERE = [entry for entry in ENTRIES if entry.name in BLOCKS]
 # Names of the standard's Appendix B and of its Part 5, counted: a table that loses some is noticed.
 NUMBERS = {"plcopen_part1.yaml": 45 + 11, "plcopen_part4.yaml": 39, "gt775x.yaml": 45, "conveyor_tracking.yaml": 2}
 ENUMERATIONS = ("ENUM", "MC_DIRECTION", "MC_BUFFER_MODE", "MC_SOURCE", "MC_HOME_DIRECTION", "MC_SWITCH_MODE")
-ENUMERATIONS += ("MC_SYNC_MODE", "MC_COMBINE_MODE", "MC_BUFFERMODE", "MC_START_MODE")
+ENUMERATIONS += ("MC_SYNC_MODE", "MC_COMBINE_MODE", "MC_BUFFERMODE", "MC_START_MODE", "MC_EXECUTION_MODE")
 # Blocks with an output of the interface rules that the standard does not give them (AX-11).
 OUTPUTS_TOO_MANY = {
     "MC_Reset": {"Active", "CommandAborted", "Aborted"},
