@@ -49,11 +49,12 @@ def play(
     interrupt: float | None = None,
 ) -> Cell:
     """Power on, pick for so long, and off again. `speeds` of belts at times, as SPEEDS; `interrupt`, as INTERRUPT."""
-    robot = session.group("robot")
+    robot, picker = session.group("robot"), session.pick_place("picker")
     axes = {name: belt.axis for name, belt in session.belts.items()}
-    for one in (robot, *axes.values()):
-        one.power().wait()
-    robot.enable().wait()
+    for axis in axes.values():
+        axis.power().wait()
+    picker.control(regulator_on=True).wait()
+    session.wait(lambda: picker.axes_enabled and picker.axes_group_enabled, 10)
     cell = Cell(session, settings)
     begins = session.now
 
@@ -63,12 +64,12 @@ def play(
 
     def hold_up() -> None:
         session.mark(INTERRUPTED)
-        robot.interrupt()
+        picker.control(path_interrupt=True)
         cell.at(session.now + REST, go_on)
 
     def go_on() -> None:
         session.mark(GOES_ON)
-        robot.continue_path()
+        picker.control(path_interrupt=False)
 
     for at, belt, speed in ((0.0, "infeed", INFEED), (0.0, "outfeed", OUTFEED), *speeds):
         cell.at(begins + at, lambda belt=belt, speed=speed: change(belt, speed))
@@ -79,9 +80,10 @@ def play(
     session.mark(ENDS)
     for axis in axes.values():
         axis.halt().wait()
-    robot.disable().wait()
-    for one in (robot, *axes.values()):
-        one.power(enable=False).wait()
+    picker.control(regulator_on=False).wait()
+    session.wait(lambda: not picker.axes_enabled, 10)
+    for axis in axes.values():
+        axis.power(enable=False).wait()
     return cell
 
 
