@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import takt
+from machines import new_url
 from takt.plcopen import MC_AbortPassiveHoming, MC_MoveAbsolute, MC_ReadAxisInfo, MC_ReadMotionState, MC_ReadParameter
 
 
@@ -114,6 +115,19 @@ def test_limits_of_the_application_are_written_by_number() -> None:
         x.move_relative(distance=-50)
         s.run(0.1)
         assert x.write_parameter(number=9, value=100).wait_final().error_id == 3005
+
+
+def test_a_drive_that_was_never_heard_is_not_ready() -> None:
+    """AX-108: neither before the first cycle nor after it."""
+    drives = "external:\n  drives: [{axis: x}]\n  answer_within_s: 0.001\n"
+    axis = "{name: x, limits: {velocity: 100, acceleration: 900, jerk: 9000}}"
+    with takt.Engine(f"name: away\naxes: [{axis}]\n{drives}", url=new_url()) as s:
+        info = MC_ReadAxisInfo(s.axis("x"), Enable=True)
+        for _ in range(3):
+            info()
+            assert (info.Valid, info.Simulation) == (True, False)
+            assert (info.CommunicationReady, info.ReadyForPowerOn) == (False, False)
+            s.step(1)
 
 
 def test_what_blocks_say() -> None:

@@ -238,13 +238,15 @@ class MC_ReadAxisInfo(ReadBlock):  # noqa: N801
 
     def _read(self) -> None:
         axis = self.Axis
+        simulated = not math.isnan(axis.true_position)  # a servo in the engine
+        heard = axis.drive_heard and (simulated or axis.session.cycle > 0)  # before the first cycle there was nothing
         self._show(
             HomeAbsSwitch=axis.reference,
             LimitSwitchPos=axis.limit_positive,
             LimitSwitchNeg=axis.limit_negative,
-            Simulation=not math.isnan(axis.true_position),  # a servo simulated in the engine
-            CommunicationReady=axis.drive_heard,
-            ReadyForPowerOn=axis.error == 0 and axis.drive_heard and not axis.emergency_stopped,
+            Simulation=simulated,
+            CommunicationReady=heard,
+            ReadyForPowerOn=axis.error == 0 and heard and not axis.emergency_stopped,
             PowerOn=axis.loop_closed,
             IsHomed=axis.homed,
             AxisWarning=axis.limited_by is not _commands.LimitedBy.NOTHING,
