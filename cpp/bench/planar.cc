@@ -291,8 +291,13 @@ void AdvanceAll(benchmark::State& state, bool turning) {
 // are sent on when they are there.
 class Ring {
  public:
-  explicit Ring(std::uint32_t movers)
-      : movers_(movers), traffic_({movers, Tracks()}), search_(Tracks()), riders_(movers) {
+  Ring(std::uint32_t movers, bool guarded)
+      : movers_(movers),
+        guarded_(guarded),
+        guard_(movers),
+        traffic_({movers, Tracks()}),
+        search_(Tracks()),
+        riders_(movers) {
     const double radius = 450.0 * movers / (2 * M_PI);
     const auto at = [&](double share, double r) {
       const double angle = 2 * M_PI * share / modules();
@@ -332,6 +337,10 @@ class Ring {
       r.brakes = r.pace.brakes();
       r.top_speed = r.pace.limits.velocity;
       r.gap = 200;
+      Guard::Figure& figure = guard_.figure(i);
+      figure.kind = {.places = {}, .count = 0, .mover = {113, 113}, .margin = 0};
+      figure.on_track = true;
+      guard_.Put(i, CourseOn(network_, r, r.at.position, r.at.position, figure.kind));
     }
   }
 
@@ -341,7 +350,7 @@ class Ring {
       const auto on = static_cast<std::uint32_t>(3 * (random_() % modules()) + random_() % 3);
       Send(network_, search_, {.track = on, .position = 0.5 * network_[on].length}, r);
     }
-    traffic_.Step(cycle_, planner_, network_, riders_);
+    traffic_.Step(cycle_, planner_, network_, riders_, guarded_ ? &guard_ : nullptr);
     ++cycle_.count;
   }
   double moving() const {
@@ -361,6 +370,8 @@ class Ring {
   }
 
   std::uint32_t movers_;
+  bool guarded_;
+  Guard guard_;
   std::vector<std::unique_ptr<Track>> tracks_;
   Network network_;
   Traffic traffic_;
@@ -373,7 +384,7 @@ class Ring {
 
 // PL-60: one cycle of all movers, orders and routes included. The same run again and again: of each of its cycles the
 // least time counts, which is free of what else the computer does.
-void OneCycle(benchmark::State& state) {
+void OneCycle(benchmark::State& state, bool guarded) {
   constexpr std::size_t kCycles = 2000;
   std::unique_ptr<Ring> ring;
   std::vector<double> least(kCycles, INFINITY);
@@ -382,7 +393,7 @@ void OneCycle(benchmark::State& state) {
   for (auto _ : state) {
     if (i == kCycles) {
       state.PauseTiming();
-      ring = std::make_unique<Ring>(static_cast<std::uint32_t>(state.range(0)));
+      ring = std::make_unique<Ring>(static_cast<std::uint32_t>(state.range(0)), guarded);
       for (int before = 0; before < 3000; ++before) ring->Step();
       i = 0;
       state.ResumeTiming();
@@ -406,7 +417,13 @@ BENCHMARK_CAPTURE(LookUp, transitions, true)->Name("AtTransition")->Arg(5)->Arg(
 BENCHMARK(FindNearest)->Name("NearestTo")->Arg(5)->Arg(20)->Arg(100);
 BENCHMARK(MakeOne)->Name("MakeTrack")->Unit(benchmark::kMicrosecond);
 BENCHMARK(FindConflicts)->Name("Conflicts")->Unit(benchmark::kMicrosecond);
-BENCHMARK(OneCycle)
+BENCHMARK_CAPTURE(OneCycle, unguarded, false)
+    ->Name("TrafficCycleUnguarded")
+    ->Arg(200)
+    ->Arg(800)
+    ->Iterations(10000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(OneCycle, guarded, true)
     ->Name("TrafficCycle")
     ->Arg(50)
     ->Arg(100)

@@ -14,7 +14,7 @@ name: plane
 axes: []
 movers:
   - {name: one}
-  - {name: two, initial: {x: 300, y: 60, c: 45}, missing_setpoints: 100}
+  - {name: two, initial: {x: 300, y: -300, c: 45}, missing_setpoints: 100}
 """
 
 

@@ -167,7 +167,7 @@ def test_through_a_network(network: Engine) -> None:
     assert blue.waits_for == 1
     with pytest.raises(takt.CommandError, match="no way along tracks leads there"):
         red.move_on_track(position=0, track="one").wait()
-    red.leave_track(x=600, y=900).wait()
+    red.leave_track(x=300, y=900).wait()
     network.run(4)
     assert back.done
     assert blue.track == 2
@@ -384,7 +384,7 @@ tracks: [{name: line, mover_width: 300, mover_height: 300, elements: [{from: {x:
 TWO_TRACKS = """
 name: two
 axes: []
-movers: [{name: one, gap: 120}, {name: two, initial: {x: 240}}]
+movers: [{name: one, gap: 120}, {name: two, initial: {x: 240, y: 400}}]
 tracks:
   - {name: first, elements: [{from: {x: 0, y: 0}, to: {x: 400, y: 0}}]}
   - {name: second, starts_from: [first], elements: [{from: {x: 500, y: 0}, to: {x: 900, y: 0}}]}

@@ -62,7 +62,14 @@ def test_a_group_refuses_the_place_of_another() -> None:
     two.move_to_position(x=0, y=0).wait()
     two.remove_from_group().wait()
     assert two.group == 0
-    two.move_to_position(x=0, y=240).wait()
+    # PL-81: without the group nothing is refused; it waits on its way, and says for which mover.
+    move = two.move_to_position(x=0, y=240)
+    engine.run(2)
+    assert move.active
+    assert (two.waits_for, two.delay) == (1, "mover")
+    assert one.y - 113 - 5 < two.y <= one.y - 113
+    one.move_to_position(x=0, y=480).wait()
+    move.wait()
 
 
 def test_the_same_over_lcm(tmp_path: Path) -> None:
@@ -210,7 +217,7 @@ def test_what_a_group_needs_to_be_enabled() -> None:
     assert refused.object is engine.environment("environment")
     assert other.x == 250
     group.disable().wait()
-    mover.move_to_position(x=250, y=0).wait()
+    mover.move_to_position(x=100, y=30).wait()
 
 
 def test_a_turn_needs_room() -> None:
@@ -341,7 +348,7 @@ def test_who_is_in_the_way_on_tracks() -> None:
     for component in (track, one, two):
         component.enable().wait()
     one.join_track(track="track").wait()
-    one.move_on_track(position=150).wait()
+    one.move_on_track(position=100).wait()
     assert two.join_track(track="track").wait_final().object is one
     one.move_on_track(position=0)
     refused = two.join_track(track="track").wait_final()

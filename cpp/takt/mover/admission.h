@@ -77,9 +77,9 @@ bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) no
 // Whether a mover may go along these tracks now; and then it does.
 planar::Verdict AskRoute(const Context& c, const planar::Route& route) noexcept;
 void TakeRoute(const Context& c, const planar::Route& route) noexcept;
-// The least gap, mm, at which it and those that are on its route now would not touch, turned as it will be, where the
-// tracks of that begin and end, and where it is.
-double LeastGap(const Context& c, const State& s, const planar::Rider& rider) noexcept;
+// The least gap, mm, at which it and those that are on its route now would not touch, turned as it will be, anywhere on
+// its way. No less than `wanted` if that is enough in all bends.
+double LeastGap(const Context& c, const State& s, const planar::Rider& rider, double wanted) noexcept;
 // Sends a mover on its way as `command` asks; not yet with its dynamics.
 planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept;
 planar::Way WayOf(TurnDirection direction) noexcept;

@@ -42,6 +42,22 @@ Area KindOf(const Context& c, const State& s, const CoordinateMove& turn, const 
   return kind;
 }
 
+// How far a mover is off its place on its track when this cycle begins, and gets until it rests and is back there.
+void AddOff(const Context& c, const State& s, const SetPoint& at, const SetPoint& more, Area& kind) {
+  const planar::Rider& r = c.rider();
+  if (r.off == 0 && s.external.mode == SetpointMode::kNone) return;
+  const planar::Place on = c.streets.At(r.route.first(), r.at.position).place;
+  const planar::Place off = planar::Place{at[kX].position, at[kY].position} - on;
+  planar::Place rest = {s.plane.motion.end_x, s.plane.motion.end_y};
+  PlaneMotion stop;
+  if (s.external.mode == SetpointMode::kRelative &&
+      PlanRest(c.planner, {more[kX], more[kY]}, c.params.xy.maximum.limits(), stop)) {
+    rest = off + planar::Place{stop.end_x - more[kX].position, stop.end_y - more[kY].position};
+  }
+  kind.places = {planar::Place{}, off, rest};
+  kind.count = 3;
+}
+
 Course CourseOf(const Cover& cover) {
   Course course;
   for (const Area& area : cover.all()) planar::Add(area, course);
@@ -77,16 +93,20 @@ Course StopFrom(const Context& c, const State& s, const SetPoint& at, const Coor
   return CourseOf(CoverOf(kind, rest));
 }
 
-// Where it is when this cycle begins, and with such a rotation.
-Course CourseNow(const Context& c, const State& s, const CoordinateMove& turn) {
-  if (!IsOnTrack(s)) return StopFrom(c, s, s.set_point, turn);
+Course CourseOnTrack(const Context& c, const Area& kind) {
   const planar::Rider& r = c.rider();
-  Area kind = KindOf(c, s, turn, s.set_point);
-  kind.margin = r.off;
   const planar::Braking braking = planar::Brake(r.at, r.brakes);
   const bool rests = planar::Rests(r.at);
   return planar::CourseOn(c.streets.network, r, rests ? r.at.position : braking.lowest,
                           rests ? r.at.position : braking.highest, kind);
+}
+
+// Where it is when this cycle begins, and with such a rotation.
+Course CourseNow(const Context& c, const State& s, const CoordinateMove& turn) {
+  if (!IsOnTrack(s)) return StopFrom(c, s, s.set_point, turn);
+  Area kind = KindOf(c, s, turn, s.set_point);
+  AddOff(c, s, s.set_point, s.external.taken, kind);
+  return CourseOnTrack(c, kind);
 }
 
 }  // namespace
@@ -95,6 +115,7 @@ void ShowCourse(const Context& c, const State& s) noexcept {
   planar::Guard& guard = GuardOf(c);
   planar::Guard::Figure& figure = guard.figure(c.index);
   figure.kind = KindOf(c, s, s.others.back(), s.set_point);
+  if (IsOnTrack(s)) AddOff(c, s, s.set_point, s.external.taken, figure.kind);
   figure.system = s.system;
   figure.body = BodyOf(c, s);
   figure.on_track = IsOnTrack(s);
@@ -126,10 +147,12 @@ void ShowRest(const Context& c, const State& s) noexcept {
   const bool same = known.count == 1 && area.count == 1 && area.places[0].x == s.set_point[kX].position &&
                     area.places[0].y == s.set_point[kY].position && area.least_c == s.set_point[kC].position &&
                     figure.system == s.system && figure.body == now.body && figure.on_track == now.on_track &&
-                    area.mover.width == c.params.width && area.margin == (now.on_track ? c.rider().off : 0);
+                    area.mover.width == c.params.width && area.margin == 0;
+  const bool off = now.on_track && (c.rider().off > 0 || figure.kind.count > 0);
   // What moves X and Y has told it.
   const bool led = IsPlanet(s) && !now.rests;
-  if (!led && (turns || (now.rests && !same) || figure.on_track != now.on_track || known.count == 0)) ShowCourse(c, s);
+  if (!led && (turns || off || (now.rests && !same) || figure.on_track != now.on_track || known.count == 0))
+    ShowCourse(c, s);
 }
 
 ObjectInfo TakeCourse(const Context& now, const State& s, const SetPoint& at) noexcept {
@@ -146,9 +169,17 @@ ObjectInfo InTheTurn(const Context& c, const State& s, const CoordinateMove& tur
   return OneInTheWay(Find(c, CourseNow(c, s, turn)));
 }
 
-ObjectInfo TakeRoom(const Context& c, const State& s) noexcept {
-  const Course course = CourseNow(c, s, s.others.back());
-  const auto passes = [&](std::uint32_t k, bool there) { return !there && c.grounds.guard.figure(k).on_track; };
+ObjectInfo TakeCourseOff(const Context& now, const State& s, const SetPoint& at) noexcept {
+  Context c = now;
+  ++c.cycle.count;
+  Area kind = KindOf(c, s, s.others.back(), at);
+  AddOff(c, s, at, s.external.given, kind);
+  const Course course = CourseOnTrack(c, kind);
+  // Traffic looks at those on tracks in each cycle, as long as one of both moves.
+  const auto passes = [&](std::uint32_t k, bool there) {
+    const planar::Rider& other = c.streets.riders[k];
+    return !there && other.on && !(planar::Rests(c.rider().at) && planar::Rests(other.at));
+  };
   const std::uint32_t found = GuardOf(c).Find(c.index, s.system, course, passes);
   if (found == kNobody) GuardOf(c).Put(c.index, course);
   return OneInTheWay(found);

@@ -16,8 +16,8 @@ void ShowRest(const Context& c, const State& s) noexcept;
 ObjectInfo TakeCourse(const Context& c, const State& s, const SetPoint& at) noexcept;
 // Whom the mover would overlap where it is, and comes to rest, by such a rotation; none: it may turn.
 ObjectInfo InTheTurn(const Context& c, const State& s, const CoordinateMove& turn) noexcept;
-// Whom it would overlap on its track with so much more room around it (planar::Rider::off). None: its course has that.
-ObjectInfo TakeRoom(const Context& c, const State& s) noexcept;
+// The same of one on a track whose set point from outside is off its place there.
+ObjectInfo TakeCourseOff(const Context& c, const State& s, const SetPoint& at) noexcept;
 
 // X and Y brake on their line for another mover, and go on once the way is clear as far as it takes to get fast.
 void Hold(const Context& c, std::uint32_t other, State& s) noexcept;

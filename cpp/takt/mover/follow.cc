@@ -88,8 +88,8 @@ ErrorId GetOff(const Context& c, const State& s, const SetPoint& given, ObjectIn
   rider.off = reach;
   Streets& streets = c.streets;
   const std::uint32_t near = streets.traffic.TooNear(c.cycle, streets.network, streets.riders, c.index);
-  object = near == planar::kNobody ? TakeRoom(c, s) : ObjectAt(ObjectKind::kMover, near);
-  if (!object) return ErrorId::kNone;
+  if (near == planar::kNobody) return ErrorId::kNone;
+  object = ObjectAt(ObjectKind::kMover, near);
   rider.off = before;
   return ErrorId::kCollision;
 }
@@ -181,6 +181,7 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept {
     const PlacesOff places = PlacesOffTrack(c, external.given);
     if (const ErrorId why = WhyNotOn(c, s, CoverOf(c, s, places)); why != ErrorId::kNone) return why;
     object = TakeStopOff(c, places, to);
+    if (!object) object = TakeCourseOff(c, s, to);
   } else {
     if (const ErrorId why = WhyNotOn(c, s, CoverOfStop(c, to)); why != ErrorId::kNone) return why;
     if (external.mode == SetpointMode::kRelative) object = TakeStop(c, s, to);

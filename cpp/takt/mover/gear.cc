@@ -113,7 +113,7 @@ Answer Couple(const Given& g, const Gear& command, Rider& next, std::uint32_t ax
   if (const planar::Verdict way = AskRoute(g.c, next.route); way.error != ErrorId::kNone) {
     return Refused(way.error, way.object);
   }
-  const double least = LeastGap(g.c, s, next);
+  const double least = LeastGap(g.c, s, next, command.gap.value_or(g.c.params.gap));
   if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);
   next.aim = planar::Aim::kFollow;
   if (const ErrorId why = WhyNotAlong(g.c, s, next, s.others.back()); why != ErrorId::kNone) return Refused(why);

@@ -6,7 +6,6 @@
 #include "takt/mover/formation.h"
 #include "takt/mover/ground.h"
 #include "takt/planar/course.h"
-#include "takt/planar/send.h"
 
 namespace takt::mover {
 
@@ -194,26 +193,6 @@ namespace {
 
 constexpr double kFlush = 0.01;  // mm: so exactly a way is held against the border
 
-struct Stretch {
-  double from = 0, to = 0;  // mm, from the start of its first track
-};
-Stretch WayOf(const Context& c, const planar::Rider& r) {
-  const planar::Network& network = c.streets.network;
-  const double at = r.at.position;
-  if (r.aim == planar::Aim::kTarget && !r.there) {
-    const double end = planar::EndOfWay(network, r);
-    return {std::min(at, end), std::max(at, end)};
-  }
-  if (r.aim == planar::Aim::kFollow) {
-    double length = 0;
-    for (const std::uint32_t track : r.route.all()) length += network[track].length;
-    return {0, length};
-  }
-  if (planar::Rests(r.at)) return {at, at};
-  const planar::Braking braking = planar::Brake(r.at, r.brakes);
-  return {braking.lowest, braking.highest};
-}
-
 // By halves, until what the bend adds is small enough to leave out.
 ErrorId WhyNotOn(const planar::Parts& parts, std::uint32_t system, const planar::Road& road, double from, double to,
                  const Area& kind) {
@@ -242,7 +221,7 @@ ErrorId WhyNotAlong(const Context& c, const State& s, const planar::Rider& rider
   const planar::Parts& parts = PartsOf(c);
   if (parts.none()) return ErrorId::kNone;
   const planar::Network& network = c.streets.network;
-  const Stretch way = WayOf(c, rider);
+  const planar::Interval way = planar::WayOf(network, rider);
   const Area kind = KindOnTrack(c, s, turn);
   ErrorId why = ErrorId::kNone;
   planar::EachStretch(network, rider.route, way.from, way.to, [&](std::uint32_t track, double from, double to) {
@@ -255,7 +234,7 @@ bool LeadsOver(const Context& c, const State& s, std::uint32_t part) noexcept {
   if (!IsOnTrack(s)) return false;
   const planar::Parts& parts = PartsOf(c);
   const planar::Network& network = c.streets.network;
-  const Stretch way = WayOf(c, c.rider());
+  const planar::Interval way = planar::WayOf(network, c.rider());
   const Area kind = KindOnTrack(c, s, s.others.back());
   bool leads = false;
   planar::EachStretch(network, c.rider().route, way.from, way.to, [&](std::uint32_t track, double from, double to) {

@@ -8,6 +8,7 @@
 #include "takt/mover/follow.h"
 #include "takt/mover/on_parts.h"
 #include "takt/planar/clearance.h"
+#include "takt/planar/course.h"
 #include "takt/planar/nearest.h"
 
 namespace takt::mover {
@@ -79,7 +80,7 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   rider.off = ReachOf(g.c, s);
   rider.route.tracks[0] = track;
   rider.route.count = 1;
-  rider.gap = rider.zone = std::max(g.c.params.gap, LeastGap(g.c, s, rider));
+  rider.gap = rider.zone = std::max(g.c.params.gap, LeastGap(g.c, s, rider, g.c.params.gap));
   rider.pace = PaceOf(g.c.params, StandardOf(g.c.params.xy));
   const Limits most = g.c.params.xy.maximum.limits();
   rider.brakes = {most.deceleration, most.jerk};
@@ -125,7 +126,7 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
   return answer;
 }
 
-double LeastGap(const Context& c, const State& s, const planar::Rider& rider) noexcept {
+double LeastGap(const Context& c, const State& s, const planar::Rider& rider, double wanted) noexcept {
   planar::Footprint largest{c.params.width, c.params.height};
   for (std::size_t k = 0; k < c.streets.riders.size(); ++k) {
     const planar::Rider& other = c.streets.riders[k];
@@ -144,7 +145,13 @@ double LeastGap(const Context& c, const State& s, const planar::Rider& rider) no
     look(track, 0);
     look(track, c.streets.network[track].length);
   }
-  return least;
+  double in_bends = std::max(least, wanted);
+  const planar::Interval way = planar::WayOf(c.streets.network, rider);
+  planar::EachStretch(
+      c.streets.network, rider.route, way.from, way.to, [&](std::uint32_t track, double from, double to) {
+        in_bends = planar::ClearGapAlong(*c.streets.network[track].track, largest, turned, from, to, in_bends);
+      });
+  return in_bends > std::max(least, wanted) ? in_bends : least;
 }
 
 planar::Verdict AskRoute(const Context& c, const planar::Route& route) noexcept {
@@ -186,7 +193,7 @@ Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
   if (const planar::Verdict way = FindWay(g.c, command, s, next); way.error != ErrorId::kNone) {
     return Refused(way.error, way.object);
   }
-  const double least = LeastGap(g.c, s, next);
+  const double least = LeastGap(g.c, s, next, command.gap.value_or(g.c.params.gap));
   if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);
   next.pace = PaceOf(g.c.params, LimitsOf(command, g.c.params.xy, s.limited_by));
   next.gap = command.gap.value_or(std::max(g.c.params.gap, least));

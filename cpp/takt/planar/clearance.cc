@@ -161,6 +161,35 @@ double ClearGap(const Footprint& mover, double turn) noexcept {
   return std::min(mover.width / std::abs(cosine), mover.height / std::abs(sine));
 }
 
+double ClearGapAlong(const Track& track, const Footprint& mover, double turned, double from, double to,
+                     double least) noexcept {
+  constexpr double kStride = 10, kStep = 1, kFine = 1e-3;  // mm
+  const double reach = 2 * Radius(mover), most = 3 * reach;
+  const auto place = [&](double s) { return TrackPoint{.place = At(track, s).place, .direction = turned}; };
+  const auto end = [&](double s) { return track.closed ? s : std::min(s, track.length); };
+  for (double s = from; s <= to; s += kStride) {
+    const double wanted = std::max(least, kStep);
+    if (end(s + wanted) - s < wanted) break;
+    // Of a closed track: where it begins anew it is looked at as bent.
+    const double peak = s + wanted <= track.length ? PeakCurvature(track, s, s + wanted) : 1 / reach;
+    // A chord is no shorter than that of a circle (Schur).
+    const double half = peak * wanted / 2;
+    if (half == 0 || (half < std::numbers::pi / 2 && 2 / peak * maths::Sin(half) >= reach)) continue;
+    const TrackPoint here = place(s);
+    const auto clear = [&](double gap) { return Separation(here, mover, place(s + gap), mover) >= -kSame; };
+    double gap = wanted;
+    while (gap < most && end(s + gap) - s >= gap && !clear(gap)) gap += kStep;
+    if (gap == wanted) continue;
+    double enough = gap, less = gap - kStep;
+    while (enough - less > kFine) {
+      const double middle = (enough + less) / 2;
+      (clear(middle) ? enough : less) = middle;
+    }
+    least = enough;
+  }
+  return least;
+}
+
 double Separation(const TrackPoint& a, const Footprint& on_a, const TrackPoint& b, const Footprint& on_b) noexcept {
   return Separation(BoxOf(a, on_a), BoxOf(b, on_b));
 }

@@ -29,6 +29,13 @@ double Separation(const TrackPoint& a, const Footprint& on_a, const TrackPoint& 
 // each other. mm
 double ClearGap(const Footprint& mover, double turn) noexcept;
 
+// The least gap along a track, mm, from `least` on, at which two such movers, both turned to `turned` (rad, in the
+// plane) and one of them between two arc lengths, clear each other; what is beyond the end of the track is not looked
+// at. Where no bend is near, `least` has to be enough. Fit for the cycle; takes some 0.1 µs for each cm, and some 50 µs
+// more where it finds one.
+double ClearGapAlong(const Track& track, const Footprint& mover, double turned, double from, double to,
+                     double least) noexcept;
+
 // Where on `a` a mover comes nearer than `clearance` to a mover somewhere on `b`, in order. Never too little; too much
 // only where they come nearer than `clearance` + `resolution` (mm, 0.001 or more). Allocates; not for the cycle.
 std::vector<Range> Conflicts(const Track& a, const Footprint& on_a, const Track& b, const Footprint& on_b,

@@ -8,6 +8,7 @@
 #include "takt/core/angle.h"
 #include "takt/planar/clearance.h"
 #include "takt/planar/parts.h"
+#include "takt/planar/send.h"
 
 namespace takt::planar {
 namespace {
@@ -19,6 +20,13 @@ constexpr int kMostInstants = 64;
 
 double RadiusOf(const Area& kind) {
   return maths::Hypot(kind.mover.width, kind.mover.height) / 2 + kind.margin;
+}
+
+// Around the place on the track of a mover (EachArea).
+double ReachOf(const Area& kind) {
+  double off = 0;
+  for (std::size_t i = 0; i < kind.count; ++i) off = std::max(off, maths::Hypot(kind.places[i].x, kind.places[i].y));
+  return RadiusOf(kind) + off;
 }
 
 // The places of both and, around them, the larger of both.
@@ -64,7 +72,7 @@ Turned TurnedAt(const Network& network, const Rolling& r, double s) {
   std::uint32_t k = 0;
   while (k + 1 < route.count && s > network[route.tracks[k]].length) s -= network[route.tracks[k++]].length;
   const Road& road = network[route.tracks[k]];
-  Turned out{At(*road.track, s), r.kind.mover, r.kind.margin};
+  Turned out{At(*road.track, s), r.kind.mover, ReachOf(r.kind) - RadiusOf(r.kind) + r.kind.margin};
   out.point.place = out.point.place + road.origin;
   out.point.direction = (r.kind.least_c + r.kind.most_c) / 2 * kDegree;
   const double turns = (r.kind.most_c - r.kind.least_c) / 2 * kDegree;
@@ -110,6 +118,22 @@ void AddStretch(const Track& track, const Place& origin, double from, double to,
   EachArea(track, origin, from, to, kind, kMostStrides, [&](const Area& area) { Add(area, out); });
 }
 
+Interval WayOf(const Network& network, const Rider& r) noexcept {
+  const double at = r.at.position;
+  if (r.aim == Aim::kTarget && !r.there) {
+    const double end = EndOfWay(network, r);
+    return {std::min(at, end), std::max(at, end)};
+  }
+  if (r.aim == Aim::kFollow) {
+    double length = 0;
+    for (const std::uint32_t track : r.route.all()) length += network[track].length;
+    return {0, length};
+  }
+  if (Rests(r.at)) return {at, at};
+  const Braking braking = Brake(r.at, r.brakes);
+  return {braking.lowest, braking.highest};
+}
+
 Course CourseOn(const Network& network, const Rider& rider, double from, double to, const Area& kind) noexcept {
   Course out;
   EachStretch(network, rider.route, from, to, [&](std::uint32_t track, double begin, double end) {
@@ -136,9 +160,9 @@ bool ApartByOrder(const Network& network, const Rider& behind, const Braking& be
   const double bend = curvature * (to - from);
   if (bend > std::numbers::pi) return false;
   const double chord = curvature * gap > 1e-9 ? 2 / curvature * maths::Sin(curvature * gap / 2) : gap;
-  if (chord >= RadiusOf(behind_kind) + RadiusOf(ahead_kind)) return true;
+  if (chord >= ReachOf(behind_kind) + ReachOf(ahead_kind)) return true;
   const bool turns = behind_kind.most_c > behind_kind.least_c || ahead_kind.most_c > ahead_kind.least_c;
-  if (turns || behind_kind.margin > 0 || ahead_kind.margin > 0) return false;
+  if (turns || behind_kind.count > 0 || ahead_kind.count > 0) return false;
   // What both cover together along and across the one behind.
   const double turned = (ahead_kind.least_c - behind_kind.least_c) * kDegree;
   const double cosine = std::abs(maths::Cos(turned)), sine = std::abs(maths::Sin(turned));

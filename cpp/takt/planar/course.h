@@ -29,22 +29,33 @@ struct Course {
 // Appends an area. A full course grows around it instead.
 void Add(const Area& area, Course& out) noexcept;
 
-// Calls `look` with areas that together are what a mover (`kind`: an area without places) covers while its middle goes
-// along a track from one arc length to another, in no more than so many strides, and at most kCourseSlack mm more if
-// these are enough.
+// Calls `look` with areas that together are what a mover covers while its middle goes along a track from one arc length
+// to another, in no more than so many strides, and at most kCourseSlack mm more if these are enough. `kind`: its sides
+// and angles; its places, 3 at most, are how far its middle may be off its place on the track, none: not at all.
 template <typename Look>
 void EachArea(const Track& track, const Place& origin, double from, double to, const Area& kind, int most_strides,
               const Look& look) {
   Area area = kind;
-  area.count = 0;
+  std::array<Place, 7> middles{};
+  std::size_t count = 0;
   const auto place = [&](double s) {
     const Place p = At(track, s).place;
-    area.places[area.count++] = {p.x + origin.x, p.y + origin.y};
+    middles[count++] = {p.x + origin.x, p.y + origin.y};
+  };
+  const auto show = [&] {
+    area.count = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (kind.count == 0) area.places[area.count++] = middles[i];
+      for (std::size_t k = 0; k < kind.count; ++k) {
+        area.places[area.count++] = {middles[i].x + kind.places[k].x, middles[i].y + kind.places[k].y};
+      }
+    }
+    look(area);
   };
   const double length = to - from;
   if (!(length > 0)) {
     place(from);
-    return look(area);
+    return show();
   }
   // Linear interpolation over a stride h is off by no more than k h²/8. The curvature of a cell is known to a
   // thousandth.
@@ -53,17 +64,18 @@ void EachArea(const Track& track, const Place& origin, double from, double to, c
   const int strides = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(most_strides)));
   const double stride = length / strides;
   area.margin += curvature * stride * stride / 8;
+  const std::size_t most = kind.count == 0 ? middles.size() : 2;
   for (int i = 0; i <= strides; ++i) {
     place(i < strides ? from + stride * i : to);
-    if (area.count < area.places.size() || i == strides) continue;
-    look(area);
-    area.places[0] = area.places.back();
-    area.count = 1;
+    if (count < most || i == strides) continue;
+    show();
+    middles[0] = middles[count - 1];
+    count = 1;
   }
-  look(area);
+  show();
 }
 
-// Appends what a mover (`kind`: an area without places) covers while its middle goes along a track from one arc length
+// Appends what a mover (`kind`, as above) covers while its middle goes along a track from one arc length
 // to another, 0 <= from <= to <= length; at most kCourseSlack mm more. `origin`: of the coordinates of the track.
 void AddStretch(const Track& track, const Place& origin, double from, double to, const Area& kind,
                 Course& out) noexcept;
@@ -91,6 +103,13 @@ void EachStretch(const Network& network, const Route& route, double from, double
     begin += length;
   }
 }
+
+// The positions between which a mover stays on its route: on the way to its target, or until it stops; of one that goes
+// along with a master, all of them.
+struct Interval {
+  double from = 0, to = 0;  // mm, from the start of its first track
+};
+Interval WayOf(const Network& network, const Rider& rider) noexcept;
 
 // The course along its route of a mover whose middle stays between two positions.
 Course CourseOn(const Network& network, const Rider& rider, double from, double to, const Area& kind) noexcept;

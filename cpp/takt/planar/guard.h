@@ -29,7 +29,7 @@ class Guard {
 
   // What of a mover stays as it goes.
   struct Figure {
-    Area kind{};               // an area without places: its sides, and all angles that it turns by
+    Area kind{.count = 0};     // its sides, all angles that it turns by, and how far it is off its track (EachArea)
     std::uint32_t system = 0;  // the coordinate system that it is in
     std::uint32_t body = 0;    // movers with the same number, from 1, move as one; 0: it moves alone
     bool on_track = false;     // traffic moves it

@@ -232,12 +232,8 @@ class Traffic::Step_ {
     return Refuse(i);
   }
 
-  Area KindOf(std::uint32_t i) const {
-    Area kind = guard_->figure(i).kind;
-    kind.margin += riders_[i].off;
-    return kind;
-  }
-  // What it covers on its way between two positions; with room for `off`.
+  const Area& KindOf(std::uint32_t i) const { return guard_->figure(i).kind; }
+  // What it covers on its way between two positions.
   Course CourseOf(std::uint32_t i, double from, double to) const {
     return CourseOn(network_, riders_[i], from, to, KindOf(i));
   }
@@ -247,7 +243,7 @@ class Traffic::Step_ {
   bool KeepsAway(std::uint32_t i, const Braking& braking, std::uint32_t k) const {
     const Rider &r = riders_[i], &other = riders_[k];
     if (!other.on || !guard_->figure(k).on_track) return false;
-    const Area own = KindOf(i), its = KindOf(k);
+    const Area &own = KindOf(i), &its = KindOf(k);
     const Braking& its_braking = s_.now[k].braking;
     const auto in_order = [&](const Rider& behind, const Braking& behind_brakes, const Area& behind_kind,
                               const Braking& ahead_brakes, const Area& ahead_kind, double apart) {

@@ -164,12 +164,13 @@ class RandomWorld {
         rig.Give(mover, "leave_track", "{" + place + ", use_orientation: false}");
         break;
       case 16:
-        rig.Give(mover, "gear_in_pos_on_track_with_master_mover",
-                 "{master: " + other + ", master_sync_position: " + Number(Uniform(0, 1000)) +
-                     ", slave_sync_position: " + Number(Uniform(0, 1000)) + "}");
+        if (mover != other)
+          rig.Give(mover, "gear_in_pos_on_track_with_master_mover",
+                   "{master: " + other + ", master_sync_position: " + Number(Uniform(0, 1000)) +
+                       ", slave_sync_position: " + Number(Uniform(0, 1000)) + "}");
         break;
       case 17:
-        rig.Give(mover, "join_formation", "{star: " + other + "}");
+        if (mover != other) rig.Give(mover, "join_formation", "{star: " + other + "}");
         break;
       case 18:
         rig.Give(mover, "leave_formation");
