@@ -330,7 +330,7 @@ def test_bad_requests() -> None:
     with pytest.raises(ValueError, match="auto, shortest"):
         engine.move_on_tracks({"a": ("main", 1.0)}, route="best")  # type: ignore[arg-type]
     assert set(engine.move_on_tracks({"a": ("main", 900.0)}, route="shortest")) == {"a"}
-    leaving = engine.mover("b").leave_track(x=0, y=-500)
+    leaving = engine.mover("b").leave_track(x=1300, y=-500)
     engine.step()
     with pytest.raises(takt.RoutingError, match="b is in motion"):
         engine.move_on_tracks({"a": ("main", 800.0)})

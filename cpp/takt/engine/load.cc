@@ -1,6 +1,7 @@
 #include "takt/engine/load.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "takt/axis/following.h"
@@ -13,6 +14,8 @@
 #include "takt/engine/order.h"
 #include "takt/planar/environment.h"
 #include "takt/track/build.h"
+#include "takt/track/ranges.h"
+#include "takt/track/tracks.h"
 
 namespace takt::engine {
 
@@ -252,8 +255,34 @@ class CrossCheck {
     for (std::size_t i = 0; i < machine_.tracks.size(); ++i) CheckUnique("tracks", i, machine_.tracks[i].name);
     if (!parts_are_good) return;
     const planar::Parts parts = part::Make(machine_.coordinate_systems, machine_.parts);
-    for (const track::BuildProblem& problem : track::Build(machine_.tracks, &parts).problems) {
-      Add("tracks" + problem.path, problem.message);
+    const std::vector<track::BuildProblem> problems = track::Build(machine_.tracks, &parts).problems;
+    for (const track::BuildProblem& problem : problems) Add("tracks" + problem.path, problem.message);
+    if (problems.empty()) CheckRanges(parts);
+  }
+
+  // PL-81: ranges that are given are no shorter than those that its movers need.
+  void CheckRanges(const planar::Parts& parts) {
+    const auto is_manual = [](const track::TrackParams& params) {
+      return params.collision_range_mode == track::CollisionRangeMode::kManual;
+    };
+    if (std::ranges::none_of(machine_.tracks, is_manual)) return;
+    std::vector<track::TrackParams> automatic = machine_.tracks;
+    for (track::TrackParams& params : automatic) params.collision_range_mode = track::CollisionRangeMode::kAutomatic;
+    const track::Tracks tracks(automatic, &parts);
+    for (std::size_t i = 0; i < automatic.size(); ++i) {
+      const track::TrackParams& params = machine_.tracks[i];
+      if (!is_manual(params)) continue;
+      const track::CollisionRanges least = track::RangesOf(tracks, i);
+      const auto check = [&](const char* key, double given, double needed) {
+        constexpr double kResolution = 1;  // mm, of what is needed
+        if (given >= needed - kResolution) return;
+        Add("tracks[" + std::to_string(i) + "]." + key,
+            "expected at least " + FormatReal(std::ceil(needed)) + " mm, within which movers of " +
+                FormatReal(params.mover_width) + " mm by " + FormatReal(params.mover_height) +
+                " mm on tracks that meet there can touch, found " + FormatReal(given) + " mm");
+      };
+      check("collision_range_at_start", params.collision_range_at_start, least.at_start);
+      check("collision_range_at_end", params.collision_range_at_end, least.at_end);
     }
   }
 

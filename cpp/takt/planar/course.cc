@@ -44,6 +44,8 @@ Area Around(const Area& a, const Area& b) {
   out.count = 4;
   out.least_c = std::min(a.least_c, b.least_c);
   out.most_c = std::max(a.most_c, b.most_c);
+  out.mover.width = std::max(a.mover.width, b.mover.width);
+  out.mover.height = std::max(a.mover.height, b.mover.height);
   out.margin = std::max(a.margin, b.margin);
   return out;
 }

@@ -131,6 +131,29 @@ TEST(MoversWait, ForTheWholeMoverOnParts) {
   EXPECT_EQ(rig.ErrorOf("one", "move_c", "{position: 10}"), ErrorId::kOffStators);
 }
 
+// PL-81: a collision range shorter than the movers of the track need is an error with the least that would do.
+TEST(MoversWait, WithinRangesThatAreLongEnough) {
+  const auto problem = [](const std::string& range) {
+    const LoadResult loaded = LoadMachine(R"(
+name: fork
+axes: []
+movers: [{name: one}]
+tracks:
+  - {name: in, elements: [{from: {x: 0, y: 0}, to: {x: 300, y: 0}}]}
+  - {name: left, starts_from: [in], elements: [{from: {x: 600, y: 150}, to: {x: 900, y: 150}}],
+     collision_range_mode: manual, collision_range_at_start: )" +
+                                              range + R"(}
+  - {name: right, starts_from: [in], elements: [{from: {x: 600, y: -150}, to: {x: 900, y: -150}}]}
+)",
+                                          "fork.yaml");
+    return loaded.problems.empty() ? std::string() : loaded.problems.front();
+  };
+  EXPECT_EQ(problem("600"), "");
+  EXPECT_THAT(problem("60"), HasSubstr("tracks[1].collision_range_at_start: expected at least "));
+  EXPECT_THAT(problem("60"),
+              HasSubstr("movers of 155.0 mm by 155.0 mm on tracks that meet there can touch, found 60.0 mm"));
+}
+
 // PL-87: a mover off the stators of the environment of its group is an error, with what it covers.
 TEST(MoversWait, NotOffTheirEnvironment) {
   const auto problem = [](const std::string& place) {

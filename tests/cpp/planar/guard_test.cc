@@ -123,7 +123,7 @@ TEST(GuardProperty, FindsTheFirstInTheWay) {
       }
     }
   }
-  EXPECT_GT(found, Trials(1000));
+  EXPECT_GT(found, Trials(500));
 }
 
 // Two movers that brake one behind the other: whenever they are said to be kept apart they are, at any time, turned as
@@ -163,9 +163,9 @@ TEST(CourseProperty, KnowsWhatIsApart) {
       EXPECT_GT(least, -1e-4) << "trial " << i << ": " << ordered << ", " << timed;
     }
   }
-  EXPECT_GT(by_order, Trials(100));
-  EXPECT_GT(in_time, Trials(100));
-  EXPECT_GT(overlaps, Trials(50));
+  EXPECT_GT(by_order, Trials(20));
+  EXPECT_GT(in_time, Trials(20));
+  EXPECT_GT(overlaps, Trials(5));
 }
 
 // On a straight line squares that stand along it need no more than their side, turned ones what their corners take.
