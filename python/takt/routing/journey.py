@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from takt.errors import TimeoutError
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
-from takt.routing.plan import RoutePlan, Target, plan_routes
+from takt.routing.plan import STANDS, RoutePlan, Target, plan_routes
 from takt.routing.streets import SAME, RoutingError, Streets
 
 if TYPE_CHECKING:
@@ -223,6 +223,8 @@ class Journey:
         going = [t.mover for t in self._all if not t.there and t.mover.state.value == "Enabled"]
         for feedback in [mover.halt() for mover in going]:
             feedback.wait_final()
+        # One that is disabled, or has a fault, may brake for longer than the others.
+        self.session.wait(lambda: all(abs(t.mover.track_velocity) < STANDS for t in self._all))
 
 
 def move_on_tracks(

@@ -161,21 +161,30 @@ def _in_place(hops: Sequence[Hop], new: Hop, at: int, dropped: Sequence[int]) ->
 
 def steps_of(task: Task, hops: Sequence[Hop]) -> tuple[tuple[Step, ...], ...]:
     steps: list[list[Step]] = [[] for _ in task.starts]
-    numbered: list[tuple[Hop, int]] = []
+    # Hops of one kind differ by their movers alone; of each mover the last one of a kind counts.
+    last: dict[Hop, dict[int, int]] = {}
+    waits: dict[tuple[Hop, Hop], bool] = {}
     for hop in hops:
+        kind = replace(hop, mover=-1)
         after: dict[int, int] = {}
-        for before, number in numbered:
-            if before.mover == hop.mover:
-                continue
-            # Into a row that has to make room at its front comes nobody before that.
-            if before.comes_back(task.streets[hop.street]) or (
-                task.streets.meet(hop.sweep, before.sweep) and not _follows(hop, before)
-            ):
-                after[before.mover] = number
+        for before, numbers in last.items():
+            if (kind, before) not in waits:
+                waits[kind, before] = _waits_for(task.streets, kind, before)
+            if waits[kind, before]:
+                for mover, number in numbers.items():
+                    if mover != hop.mover:
+                        after[mover] = max(number, after.get(mover, 0))
         number = len(steps[hop.mover])
-        steps[hop.mover].append(Step(hop, tuple(after.items())))
-        numbered.append((hop, number))
+        steps[hop.mover].append(Step(hop, tuple(sorted(after.items()))))
+        last.setdefault(kind, {})[hop.mover] = number
     return tuple(tuple(own) for own in steps)
+
+
+def _waits_for(streets: Streets, hop: Hop, before: Hop) -> bool:
+    # Into a row that has to make room at its front comes nobody before that.
+    if before.comes_back(streets[hop.street]):
+        return True
+    return streets.meet(hop.sweep, before.sweep) and not _follows(hop, before)
 
 
 def shifts_of(task: Task, hops: Sequence[Hop]) -> dict[int, tuple[Shift, ...]]:

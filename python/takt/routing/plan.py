@@ -16,12 +16,16 @@ from takt.counted import counted
 from takt.routing.arrangement import Place, Task, search
 from takt.routing.loop import Loop, go_round
 from takt.routing.order import Shift, Step, ends_of, in_time, shifts_of, shorter, steps_of
+from takt.routing.rings import by_rules
 from takt.routing.streets import SAME, RoutingError, Sweep, read_streets
 
 if TYPE_CHECKING:
     from takt.session import Session
 
 EFFORT = 20_000  # arrangements looked at before a plan is given up
+ENOUGH = 60_000  # for one mover, where there is a plan by rules already; for more, as much less each ...
+LEAST_EFFORT = 500  # ... but for all together this
+MOST_REORDERED = 250  # hops in a plan that is looked through for a better order; the time grows with their square
 DYNAMICS = ("velocity", "acceleration", "deceleration", "jerk")
 STANDS = 1e-3  # mm/s
 Target = tuple[str, float]  # a track, and mm along it
@@ -124,18 +128,24 @@ def plan_routes(
     _check_targets(task, names)
     ends = {i: s for loop in _loops(task) for i, s in go_round(loop, streets, names).items()}
     _check_ways(task, names)
-    found = search(task, effort)
-    if found.hops is None and found.complete:
+    rules = by_rules(task)
+    # With an order at hand a shorter one is looked for only a little.
+    found = search(task, effort if rules is None else min(effort, max(LEAST_EFFORT, ENOUGH // len(names))))
+    hops = found.hops
+    if hops is None:
+        hops = rules
+    if hops is None and found.complete:
         switches = any(street.end_node >= 0 for street in streets.all)
         resting = " by movers that wait outside the zones of switches" if switches else ""
         raise RoutingError(
             f"the targets cannot all be reached{resting}: every order of passing was tried "
             f"({counted(found.tried, 'arrangement')}{_aside(task, names)})"
         )
-    if found.hops is None:
+    if hops is None:
         raise RoutingError(f"no plan was found after {counted(found.tried, 'arrangement')} of movers; there may be one")
     pace = dynamics.get("velocity") or max((_velocity(m.parameters) for m in movers.values()), default=1.0)
-    hops = in_time(task, shorter(task, found.hops), pace)
+    if len(hops) <= MOST_REORDERED:
+        hops = tuple(in_time(task, shorter(task, hops), pace))
     steps, shifts = steps_of(task, hops), shifts_of(task, hops)
     ends |= ends_of(task, hops, shifts)
     return RoutePlan(names, dict(targets), task, steps, shifts, ends, found.tried, gap, dynamics)
