@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "takt/core/maths.h"
 #include "takt/core/angle.h"
+#include "takt/core/maths.h"
 #include "takt/planar/clearance.h"
 #include "takt/planar/parts.h"
 #include "takt/planar/send.h"
