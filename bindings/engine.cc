@@ -448,8 +448,7 @@ class VirtualEngine {
 std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::string& file_name, bool journal,
                                           std::optional<double> period_s, const std::optional<std::string>& drives_url,
                                           const std::optional<py::bytes>& drives_key, bool checks) {
-  engine::LoadResult loaded =
-      Load(text, file_name, checks, checks ? engine::Files::kOpen : engine::Files::kRefuse);
+  engine::LoadResult loaded = Load(text, file_name, checks, checks ? engine::Files::kOpen : engine::Files::kRefuse);
   for (const std::string& warning : loaded.warnings) {
     if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 2) != 0) throw py::error_already_set();
   }
@@ -465,10 +464,11 @@ std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::stri
 }  // namespace
 
 void BindEngine(py::module_& m) {
-  m.def("load_machine", &LoadMachine, py::arg("text"), py::arg("file_name"), py::arg("files") = true,
-        "Reads and checks a machine file: all its parameters with their defaults, as JSON. Without `files` it opens none "
-        "of those that the text names, which is a problem then: for texts from a network or a log. Raises "
-        "takt.ConfigError with every problem.");
+  m.def(
+      "load_machine", &LoadMachine, py::arg("text"), py::arg("file_name"), py::arg("files") = true,
+      "Reads and checks a machine file: all its parameters with their defaults, as JSON. Without `files` it opens none "
+      "of those that the text names, which is a problem then: for texts from a network or a log. Raises "
+      "takt.ConfigError with every problem.");
   m.def("check_machine", &CheckMachine, py::arg("text"), py::arg("file_name"),
         "Reads and checks a machine file: its warnings. Raises takt.ConfigError with every problem.");
   m.def("parts_of_groups", &PartsOfGroups, py::arg("text"), py::arg("file_name"),

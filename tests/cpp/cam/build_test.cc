@@ -116,7 +116,8 @@ TEST(BuildSegments, RefusesWhatIsNoCam) {
               ElementsAre("segments[0].to.y: expected y 0 of its beginning in a dwell, found 5"));
   CamSegment given = To(10, 5, Law::kParabola);
   given.end_v = 1;
-  EXPECT_THAT(Errors(Segments({given})), ElementsAre(HasSubstr("segments[0].law: expected a law that takes velocities")));
+  EXPECT_THAT(Errors(Segments({given})),
+              ElementsAre(HasSubstr("segments[0].law: expected a law that takes velocities")));
   EXPECT_THAT(Errors(Segments(std::vector<CamSegment>(20'001))), ElementsAre(HasSubstr("20,000 segments at most")));
 }
 
