@@ -95,7 +95,7 @@ void TryAll(const Kinematics& k, const Serial& serial, const Frame& tool, const 
 template <typename Mechanism>
 void TryAll(const Kinematics& k, const Mechanism& mechanism, const Frame& tool, const Configuration&,
             const Joints& present, Solutions& out) {
-  Try(k, mechanism, tool, ConfigurationOf(mechanism, present), present, out);
+  Try(k, mechanism, tool, {}, present, out);
 }
 
 }  // namespace
