@@ -85,12 +85,17 @@ void Put(const Context& c, const Course& course) {
   EachPlanet(c, [&](std::uint32_t i) { GuardOf(c).Put(i, OfPlanet(c, i, course)); });
 }
 
-// It brakes from this set point, where it is when this cycle begins; in the plane.
-Course StopFrom(const Context& c, const State& s, const SetPoint& at, const CoordinateMove& turn) {
-  const Area kind = KindOf(c, s, turn, at);
-  PlaneMotion rest;
-  if (!PlanStop(c, s, at, c.params.xy.maximum.limits(), rest)) rest = StandingAt(at[kX].position, at[kY].position);
-  return CourseOf(CoverOf(kind, rest));
+// It brakes from this set point, where it is when this cycle begins; in the plane. What leads to rest already goes on.
+Escape EscapeFrom(const Context& c, const State& s, const SetPoint& at) {
+  const bool brakes = s.external.mode == SetpointMode::kNone && (s.plane.waits || !s.plane.goes);
+  if (brakes) return {s.plane.motion, s.plane.begin, c.cycle.count};
+  Escape escape{StandingAt(at[kX].position, at[kY].position), c.cycle.count, c.cycle.count};
+  PlanStop(c, s, at, c.params.xy.maximum.limits(), escape.motion);
+  return escape;
+}
+
+Course CourseOf(const Context& c, const Area& kind, const Escape& escape) {
+  return CourseOf(CoverOf(kind, escape.motion, Elapsed(c, escape.begin)));
 }
 
 Course CourseOnTrack(const Context& c, const Area& kind) {
@@ -103,7 +108,7 @@ Course CourseOnTrack(const Context& c, const Area& kind) {
 
 // Where it is when this cycle begins, and with such a rotation.
 Course CourseNow(const Context& c, const State& s, const CoordinateMove& turn) {
-  if (!IsOnTrack(s)) return StopFrom(c, s, s.set_point, turn);
+  if (!IsOnTrack(s)) return CourseOf(c, KindOf(c, s, turn, s.set_point), EscapeOf(c, s));
   Area kind = KindOf(c, s, turn, s.set_point);
   AddOff(c, s, s.set_point, s.external.taken, kind);
   return CourseOnTrack(c, kind);
@@ -155,13 +160,20 @@ void ShowRest(const Context& c, const State& s) noexcept {
     ShowCourse(c, s);
 }
 
-ObjectInfo TakeCourse(const Context& now, const State& s, const SetPoint& at) noexcept {
+Escape EscapeOf(const Context& c, const State& s) noexcept {
+  return s.escape.cycle == c.cycle.count ? s.escape : EscapeFrom(c, s, s.set_point);
+}
+
+ObjectInfo TakeCourse(const Context& now, const SetPoint& at, State& s) noexcept {
   Context c = now;
   ++c.cycle.count;
-  const Course course = StopFrom(c, s, at, s.others.back());
+  const Escape escape = EscapeFrom(c, s, at);
+  const Course course = CourseOf(c, KindOf(c, s, s.others.back(), at), escape);
   const std::uint32_t found = Find(c, course);
-  if (found == kNobody) Put(c, course);
-  return OneInTheWay(found);
+  if (found != kNobody) return OneInTheWay(found);
+  Put(c, course);
+  s.escape = escape;
+  return {};
 }
 
 ObjectInfo InTheTurn(const Context& c, const State& s, const CoordinateMove& turn) noexcept {
@@ -187,8 +199,9 @@ ObjectInfo TakeCourseOff(const Context& now, const State& s, const SetPoint& at)
 
 void Hold(const Context& c, std::uint32_t other, State& s) noexcept {
   PlaneMove& plane = s.plane;
-  PlaneMotion rest;
-  if (!PlanStop(c, s, s.set_point, c.params.xy.maximum.limits(), rest)) return Fail(c, ErrorId::kPlanning, s);
+  const bool known = s.escape.cycle == c.cycle.count;
+  const Escape rest =
+      known ? s.escape : Escape{StandingAt(s.set_point[kX].position, s.set_point[kY].position), c.cycle.count, 0};
   if (plane.goes && !plane.waits) {
     const trajectory::Limits& l = plane.limits;
     plane.next = {.x = plane.passes ? plane.corner_x : plane.motion.end_x,
@@ -199,8 +212,8 @@ void Hold(const Context& c, std::uint32_t other, State& s) noexcept {
                   .jerk = l.jerk};
     plane.waits = true;
   }
-  plane.motion = rest;
-  plane.begin = c.cycle.count;
+  plane.motion = rest.motion;
+  plane.begin = rest.begin;
   plane.passes = false;
   if (plane.goes && plane.held_by == kNobody) plane.held_since = c.cycle.count;
   if (plane.goes) plane.held_by = other;

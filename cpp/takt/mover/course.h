@@ -13,7 +13,9 @@ void ShowCourse(const Context& c, const State& s) noexcept;
 void ShowRest(const Context& c, const State& s) noexcept;
 
 // A step in the plane to this set point, and whom its course from there would overlap; none: that is its course now.
-ObjectInfo TakeCourse(const Context& c, const State& s, const SetPoint& at) noexcept;
+ObjectInfo TakeCourse(const Context& c, const SetPoint& at, State& s) noexcept;
+// How it comes to rest when this cycle begins, as the guard knows it.
+Escape EscapeOf(const Context& c, const State& s) noexcept;
 // Whom the mover would overlap where it is, and comes to rest, by such a rotation; none: it may turn.
 ObjectInfo InTheTurn(const Context& c, const State& s, const CoordinateMove& turn) noexcept;
 // The same of one on a track whose set point from outside is off its place there.

@@ -185,7 +185,7 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept {
   } else {
     if (const ErrorId why = WhyNotOn(c, s, CoverOfStop(c, to)); why != ErrorId::kNone) return why;
     if (external.mode == SetpointMode::kRelative) object = TakeStop(c, s, to);
-    if (!object) object = TakeCourse(c, s, to);
+    if (!object) object = TakeCourse(c, to, s);
   }
   ErrorId why = object ? ErrorId::kCollision : ErrorId::kNone;
   if (!object && c.rider().on) why = GetOff(c, s, external.given, object);

@@ -84,7 +84,7 @@ bool Moves(const State& s, const SetPoint& at) {
 // In the plane it brakes rather than to get onto a course that another mover is on.
 void MindOthers(const Context& c, SetPoint& at, State& s) {
   if (IsOnTrack(s) || !Moves(s, at)) return;
-  const ObjectInfo other = TakeCourse(c, s, at);
+  const ObjectInfo other = TakeCourse(c, at, s);
   if (!other) return;
   Hold(c, other.number - 1, s);
   at = Planned(c, s);

@@ -169,9 +169,9 @@ Cover CoverOf(const Context& c, const PlaneMove& move, const CoordinateMove& tur
   return cover;
 }
 
-Cover CoverOf(const Area& kind, const PlaneMotion& motion) noexcept {
+Cover CoverOf(const Area& kind, const PlaneMotion& motion, double t) noexcept {
   Cover cover;
-  Add(kind, motion, 0, cover);
+  Add(kind, motion, t, cover);
   return cover;
 }
 

@@ -36,8 +36,8 @@ Cover CoverOf(const Context& c, const State& s, const PlacesOff& places) noexcep
 // If X and Y went so, and C so.
 Cover CoverOf(const Context& c, const PlaneMove& move, const CoordinateMove& turn) noexcept;
 
-// What a mover covers (`kind`: an area without places) while it goes so.
-Cover CoverOf(const planar::Area& kind, const PlaneMotion& motion) noexcept;
+// What a mover covers (`kind`: an area without places) while it goes so, from a time (s) on.
+Cover CoverOf(const planar::Area& kind, const PlaneMotion& motion, double t) noexcept;
 
 // Why the mover must not cover that: kOffStators, kPartDisabled.
 ErrorId WhyNotOn(const Context& c, const State& s, const Cover& cover) noexcept;

@@ -183,7 +183,13 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
     return;
   }
   // As hard as it can it stays within what it has reserved.
-  if (plane && InTheWay(c, rest.plane, rest.others.back(), IsOnTrack(s))) rest = PlanRest(c, nullptr, s);
+  const bool hard = !plane || InTheWay(c, rest.plane, rest.others.back(), IsOnTrack(s));
+  if (plane && hard) rest = PlanRest(c, nullptr, s);
+  // As the guard knows it.
+  if (hard && !IsOnTrack(s) && s.escape.cycle == c.cycle.count) {
+    rest.plane.motion = s.escape.motion;
+    rest.plane.begin = s.escape.begin;
+  }
   s.plane = rest.plane;
   s.others = rest.others;
   if (IsOnTrack(s)) {

@@ -56,6 +56,14 @@ void describe(Description<PlaneMove>& d) {
   d.internal<&P::held_since>("Cycle since when.");
 }
 
+void describe(Description<Escape>& d) {
+  d.named("MoverEscape");
+  d.about("How X and Y come to rest if the mover may not go on.");
+  d.internal<&Escape::motion>("The way.");
+  d.internal<&Escape::begin>("Cycle in which it began.");
+  d.internal<&Escape::cycle>("Cycle from which on it is good.");
+}
+
 void describe(Description<CoordinateMove>& d) {
   d.about("A motion of a coordinate in progress.");
   d.internal<&CoordinateMove::profile>("Where it leads.");
@@ -107,6 +115,7 @@ void describe(Description<State>& d) {
   d.internal<&S::tickets>("Of the commands in progress.");
   d.internal<&S::begun>("Cycles in which those began.");
   d.internal<&S::buffer>("Commands that wait for their turn.");
+  d.internal<&S::escape>("How it comes to rest if it may not go on.");
   d.internal<&S::plane>("Motion of X and Y.");
   d.internal<&S::track>("Track that it joins, is on, or leaves.");
   d.internal<&S::gear>("What it goes along with.");

@@ -45,6 +45,13 @@ struct PlaneMove {
   std::uint64_t held_since = 0;             // cycle
 };
 
+// How X and Y come to rest if the mover may not go on: the course that the guard knows of it.
+struct Escape {
+  PlaneMotion motion;
+  std::uint64_t begin = 0;  // cycle
+  std::uint64_t cycle = 0;  // it is good from the beginning of this cycle on
+};
+
 // One of another coordinate.
 struct CoordinateMove {
   trajectory::Profile profile;
@@ -107,6 +114,7 @@ struct State {
   std::array<Ticket, kSlots> tickets{};
   std::array<std::uint64_t, kSlots> begun{};  // cycle in which each took its slot
   Buffer buffer;
+  Escape escape;
   PlaneMove plane;                         // on a track: of where it is off its place there
   std::uint32_t track = planar::kNoTrack;  // that it joins, is on, or leaves
   std::uint32_t system = 0;                // coordinate system where it is, from 0
@@ -123,6 +131,7 @@ struct State {
 State MakeState(const MoverParams& params);
 
 void describe(Description<PlaneMove>&);
+void describe(Description<Escape>&);
 void describe(Description<CoordinateMove>&);
 void describe(Description<External>&);
 void describe(Description<GearState>&);
