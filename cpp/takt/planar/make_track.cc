@@ -135,8 +135,8 @@ std::vector<Bend> BendsOf(const Track& track) {
       double most = 0, rate = 0;
       if (!straight) {
         const double half = 0.5 * step;
-        // The last place is one of this cell, not of the next: the rate may make a jump there.
-        const TrackPoint begin = At(track, from), middle = At(track, from + half);
+        // The first and the last place are ones of this cell, not of its neighbours: the rate may make a jump there.
+        const TrackPoint begin = At(track, from + step * 1e-9), middle = At(track, from + half);
         const TrackPoint end = At(track, from + step * (1 - 1e-9));
         most = std::max(MostBetween(begin, middle, half), MostBetween(middle, end, half));
         for (const TrackPoint& p : {begin, middle, end})
