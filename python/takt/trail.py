@@ -2,10 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import overload
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, overload
 
+from takt.errors import TaktError
 from takt.track import Track
+
+if TYPE_CHECKING:
+    from takt.session import Session
+
+
+@dataclass(frozen=True)
+class TrailInformation:
+    """The tracks of a trail as they are in a session."""
+
+    length: float  # mm, of all together
+    begins: Mapping[str, float]  # by track: mm from the start of the trail to its start
+
+    def position(self, track: str | Track, s: float) -> float:
+        """The arc length [mm] from the start of the trail of a position on one of its tracks."""
+        name = track if isinstance(track, str) else track.name
+        if name not in self.begins:
+            raise TaktError(f"track {name} is not on the trail {', '.join(self.begins)}")
+        return self.begins[name] + s
 
 
 class TrackTrail(Sequence[str]):
@@ -23,6 +43,22 @@ class TrackTrail(Sequence[str]):
         if name in self._names:
             raise ValueError(f"{name} is on the trail already")
         self._names.append(name)
+
+    def information(self, session: Session) -> TrailInformation:
+        """Lengths, and where each track begins on the trail. Raises TaktError where a track has no geometry, or does
+        not start where the one before it ends."""
+        begins: dict[str, float] = {}
+        length, before = 0.0, None
+        for name in self._names:
+            track = session.track(name)
+            if not track.length > 0:
+                raise TaktError(f"track {name} of the trail has no geometry")
+            if before is not None and name not in [behind.name for behind in before.subsequent]:
+                raise TaktError(f"track {name} does not start where {before.name} ends: they make no trail")
+            begins[name] = length
+            length += track.length
+            before = track
+        return TrailInformation(length, begins)
 
     def clear(self) -> None:
         self._names.clear()

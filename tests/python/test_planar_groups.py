@@ -371,3 +371,28 @@ def test_replay_is_the_same(tmp_path: Path) -> None:
         mover.move_to_position(x=50, y=50).wait()
     result = takt.replay(log)
     assert result.same, result.sentence
+
+
+@pytest.mark.parametrize("checked", [True, False])
+def test_static_objects_may_be_left_out(checked: bool) -> None:
+    """PL-86: a track nearer to the border than its largest mover allows, though the mover on it fits."""
+    engine = Engine(f"""
+name: narrow
+axes: []
+movers: [{{name: small, width: 100, height: 100, initial: {{x: 90, y: 120}}}}]
+tracks:
+  - name: way
+    check_collision_against_static_objects: {str(checked).lower()}
+    elements: [{{from: {{x: 90, y: 120}}, to: {{x: 390, y: 120}}}}]
+environments: [{{name: floor, stators: [{{x: 0, y: 0}}, {{x: 240, y: 0}}]}}]
+planar_groups: [{{name: group, movers: [small], tracks: [way], environment: floor}}]
+""")
+    small = engine.mover("small")
+    engine.track("way").enable().wait()
+    small.enable().wait()
+    engine.planar_group("group").enable().wait()
+    small.join_track(track="way").wait()
+    move = small.move_on_track(position=250).wait_final()
+    assert move.done is not checked
+    if checked:
+        assert move.object is engine.environment("floor")

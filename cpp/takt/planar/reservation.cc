@@ -158,6 +158,7 @@ ObjectInfo AskTrack(std::uint32_t track, const Surroundings& around, const Reser
     if (!mover.present || mover.level != spot.system || (mover.linked && mover.network == own.network)) continue;
     if (Near(AreaOf(mover), mover.extent, track, around)) return ObjectAt(ObjectKind::kMover, i);
   }
+  if (!own.checks_static_objects) return {};
   for (std::size_t i = 0; i < r.tracks.size(); ++i) {
     const TrackArea* other = Moving(i, spot.system, around, r);
     if (!other || other->network == own.network) continue;

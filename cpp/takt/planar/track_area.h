@@ -15,6 +15,8 @@ struct TrackArea {
   Extent extent{};
   // Tracks that are linked have the same: traffic keeps their movers apart, not areas.
   std::uint32_t network = 0;
+  // Whether the areas of other tracks and the border of an environment count for it.
+  bool checks_static_objects = true;
 };
 
 // What the area of a track may be too large by. Finer takes more stretches: one for each 2 mm that the mover's corners

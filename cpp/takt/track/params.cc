@@ -66,6 +66,10 @@ void describe(Description<TrackParams>& d) {
   d.defaulted<&P::ends_at_positions>("Others at whose starts it ends, for positions of the parts of both.");
   d.defaulted<&P::mover_width>(unit::mm, kSizes, "Width of the largest mover on it.");
   d.defaulted<&P::mover_height>(unit::mm, kSizes, "Height of the largest mover on it.");
+  d.defaulted<&P::check_collision_against_static_objects>(
+      "In a group of movers: false lets movers go along it although the area of its largest mover touches that of "
+      "another "
+      "track or the border of the environment. Movers are watched all the same.");
   d.defaulted<&P::collision_range_mode>("Where the collision ranges come from.");
   d.defaulted<&P::collision_range_at_start>(
       unit::mm, kRanges, "So near to its start a mover counts for movers on other tracks; if they are given.");

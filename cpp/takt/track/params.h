@@ -46,6 +46,8 @@ struct TrackParams {
   std::vector<LinkParams> ends_at_positions;
   double mover_width = 155;   // mm, of the largest mover on it
   double mover_height = 155;  // mm
+  // In a group: whether the areas of other tracks and the border of the environment hinder movers on it.
+  bool check_collision_against_static_objects = true;
   CollisionRangeMode collision_range_mode = CollisionRangeMode::kAutomatic;
   double collision_range_at_start = 0;  // mm along the track, where it is manual
   double collision_range_at_end = 0;

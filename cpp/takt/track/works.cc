@@ -256,7 +256,9 @@ bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) no
 void NameNetworks(Tracks& t) noexcept {
   const auto count = static_cast<std::uint32_t>(t.areas.size());
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (t.areas[i]) t.areas[i]->network = i;
+    if (!t.areas[i]) continue;
+    t.areas[i]->network = i;
+    t.areas[i]->checks_static_objects = t.params[i].check_collision_against_static_objects;
   }
   const auto meet = [&](std::uint32_t a, std::uint32_t b) {
     return t.end_nodes[a] == t.start_nodes[b] || t.start_nodes[a] == t.end_nodes[b] ||
