@@ -12,13 +12,16 @@
 #include "bindings.h"
 #include "takt/core/maths.h"
 #include "takt/mover/streets.h"
+#include "takt/planar/nearest.h"
 #include "takt/track/ranges.h"
+#include "takt/track/works.h"
 
 namespace takt::bindings {
 namespace {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using RangePair = py::typing::Tuple<double, double>;
+using PlaceRow = py::typing::Tuple<double, double, double, double>;
 
 class Layout {
  public:
@@ -40,6 +43,29 @@ class Layout {
     const planar::Track* way = tracks_.ways.at(i);
     const double curvature = way ? planar::PeakCurvature(*way, 0, way->length) : 0;
     return curvature > 0 ? 1 / curvature : std::numeric_limits<double>::infinity();
+  }
+
+  // Where it leads, in the coordinates of its part: x, y, direction in deg, curvature in 1/mm.
+  PlaceRow At(std::size_t i, double s) const {
+    const planar::TrackPoint point = planar::At(WayOf(i), s);
+    return py::make_tuple(point.place.x, point.place.y, point.direction * 180 / std::numbers::pi, point.curvature);
+  }
+  double ClosestTo(std::size_t i, double x, double y) const {
+    return planar::NearestTo(WayOf(i), planar::Place{x, y}).s;
+  }
+  // Number of its part, from 0; -1: none.
+  int Part(std::size_t i) const {
+    CheckTrack(i);
+    return tracks_.part_of[i] == planar::kNoPart ? -1 : static_cast<int>(tracks_.part_of[i]);
+  }
+  // Each part is at this position, by its index from 1: as of there tracks are linked.
+  void PlaceParts(const std::vector<std::uint32_t>& indices) {
+    if (indices.size() != parts_.now.size()) throw std::invalid_argument("one position of each part");
+    for (std::size_t k = 0; k < indices.size(); ++k) {
+      if (indices[k] < 1 || indices[k] > parts_.all[k].positions.size()) throw std::out_of_range("no such position");
+      parts_.now[k].position = parts_.now[k].commanded = indices[k] - 1;
+    }
+    track::MakeNodes(tracks_);
   }
 
   // Numbers of the tracks that end where it starts, or start where it ends.
@@ -101,6 +127,11 @@ class Layout {
   void CheckTrack(std::size_t i) const {
     if (i >= tracks_.ways.size()) throw std::out_of_range("no such track");
   }
+  const planar::Track& WayOf(std::size_t i) const {
+    CheckTrack(i);
+    if (!tracks_.ways[i]) throw std::invalid_argument("the track has no geometry");
+    return *tracks_.ways[i];
+  }
   static std::vector<std::size_t> Meeting(const std::vector<std::uint32_t>& nodes, std::uint32_t node) {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -125,6 +156,10 @@ void BindTrack(py::module_& m) {
       .def("length", &L::Length, py::arg("track"))
       .def("closed", &L::Closed, py::arg("track"))
       .def("smallest_radius", &L::SmallestRadius, py::arg("track"))
+      .def("at", &L::At, py::arg("track"), py::arg("s"))
+      .def("closest_to", &L::ClosestTo, py::arg("track"), py::arg("x"), py::arg("y"))
+      .def("part", &L::Part, py::arg("track"))
+      .def("place_parts", &L::PlaceParts, py::arg("indices"))
       .def("before", &L::Before, py::arg("track"))
       .def("behind", &L::Behind, py::arg("track"))
       .def("collision_ranges", &L::Ranges, py::arg("track"))

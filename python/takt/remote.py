@@ -21,10 +21,14 @@ from takt.feedback import Feedback
 from takt.figures import DROPPED, figures_of
 from takt.keys import Key, KeyFile, no_key, not_the_key, read_key
 from takt.lying import objects_of
+from takt.mover import Mover
 from takt.network import open_network, usual_url
 from takt.recording import Recording
+from takt.remote_history import CommandLog
+from takt.remote_tracks import RemoteTracks
 from takt.session import Recorder, Session, release_of
 from takt.tables import KINDS, PREFIXES, State, is_possible, kind_of_channel, make_recording, named, table_of
+from takt.track import Track
 
 QUEUE = 100_000  # messages waiting to be received before LCM drops some
 DESCRIPTION_S = 2.5  # the engine describes itself within that, every second
@@ -92,6 +96,7 @@ class RemoteSession(Session):
         self._sent: dict[int, _Sent] = {}
         self._held: list[Feedback] = []  # level-sensitive commands that need heartbeats
         self._last_id = 0
+        self._log: CommandLog | None = None  # of movers, once the machine is known
         self._recorded: dict[Recorder, dict[str, _Kept]] = {}
         self._before: dict[Recorder, tuple[dict[str, int], dict[str, int]]] = {}  # lost and dropped when it began
         self._stop = threading.Event()
@@ -103,6 +108,7 @@ class RemoteSession(Session):
             ("takt/machine", self._on_machine),
             ("takt/engine", self._on_engine),
             ("takt/feedback", self._on_feedback),
+            ("takt/command", self._on_command),
             ("takt/belt_objects/.*", self._on_objects),
             *((f"{prefix}.*", self._on_state) for prefix in PREFIXES.values()),
         ):
@@ -117,6 +123,9 @@ class RemoteSession(Session):
             self._run_id = description.run_id
             machine = json.loads(_core.load_machine(description.text.encode(), "machine", files=False))
             super().__init__(machine, description.text)
+            self._geometry = RemoteTracks(self)
+            with self._news:
+                self._log = CommandLog(self.movers)
             self._dead_man_s = float(machine["lcm"]["dead_man_s"])
             self._command_age_s = float(machine["lcm"]["command_age_s"])
             self._answer_s = max(ANSWER_S, self._command_age_s)  # then the engine refuses it
@@ -254,6 +263,8 @@ class RemoteSession(Session):
             if not self._believable(message):
                 return
             self._states[message.name] = message
+            if self._log is not None and kind is not None and kind.name == "mover":
+                self._log.state(message)
             self._cycle = max(self._cycle, message.cycle)
             for rows in self._recorded.values():
                 if message.name in rows:
@@ -277,9 +288,19 @@ class RemoteSession(Session):
         if message is None:
             return
         with self._news:
+            if self._log is not None:
+                self._log.feedback(message)
             if message.client == self.client and message.session == self._session_id:
                 self._take(message)
             self._hear(channel, message.sequence)
+
+    def _on_command(self, channel: str, data: bytes) -> None:
+        message = _decoded(msgs.command, data)
+        if message is None:
+            return
+        with self._news:
+            if self._log is not None:
+                self._log.command(message)
 
     def _take(self, message: msgs.feedback) -> None:
         sent = self._sent.get(message.id)
@@ -354,6 +375,8 @@ class RemoteSession(Session):
             self._last_id += 1
             message.id = self._last_id
             sent = self._sent[message.id] = _Sent(message, feedback, time.monotonic())
+            if self._log is not None:
+                self._log.command(message)
             if feedback.level_sensitive:
                 self._held.append(feedback)
                 self._beat_now.set()
@@ -388,6 +411,19 @@ class RemoteSession(Session):
     def _objects(self, belt: Belt) -> Iterable[tuple[Any, ...]]:
         message = self._belt_objects.get(belt.name)
         return objects_of(message) if message else ()
+
+    def _history(self, mover: Mover) -> Iterable[tuple[Any, ...]]:
+        with self._news:
+            return self._log.of(mover.name) if self._log is not None else ()
+
+    def _track_at(self, track: Track, s: float) -> tuple[float, float, float, float]:
+        return self._geometry.at(track, s)
+
+    def _track_closest_to(self, track: Track, x: float, y: float) -> float:
+        return self._geometry.closest_to(track, x, y)
+
+    def _track_links(self, track: Track) -> tuple[list[int], list[int]]:
+        return self._geometry.links(track)
 
     def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
         end = self.now + timeout

@@ -57,8 +57,6 @@ EXAMPLES = f"{PACKAGE}examples{os.sep}"  # in its folder, but programs like othe
 CALLS = 8  # kept of where a command was given
 REFUSED = 1000  # commands, kept at most
 
-IN_PROCESS = "the geometry of tracks is known in process only"
-
 
 class Recorder:
     """A recording in progress: `stop` makes it a Recording. Also a context manager, after which `recording` has it."""
@@ -417,6 +415,10 @@ class Session(SessionWithCams):
         alike = [component for component in self._components.values() if OBJECTS[kind] == component.KIND]
         return alike[number - 1]
 
+    def _object_of(self, kind: str, number: int) -> Component | None:
+        """The same, by the name of its kind."""
+        return self._object(OBJECTS.index(kind) if kind in OBJECTS else 0, number)
+
     # --- the end ---
 
     def close(self) -> None:
@@ -452,21 +454,21 @@ class Session(SessionWithCams):
     def _objects(self, belt: Belt) -> Iterable[tuple[Any, ...]]:
         """What lies on a belt: the fields of a BeltObject, the state by number."""
 
+    @abstractmethod
     def _history(self, mover: Mover) -> Iterable[tuple[Any, ...]]:
         """The last commands of a mover: the fields of a MoverRecord, the state by number."""
-        raise TaktError("a mover's last commands are known in process only")
 
+    @abstractmethod
     def _track_at(self, track: Track, s: float) -> tuple[float, float, float, float]:
-        """A place along a track: x, y, direction in deg, curvature."""
-        raise TaktError(IN_PROCESS)
+        """A position along a track: x, y, direction in deg, curvature."""
 
+    @abstractmethod
     def _track_closest_to(self, track: Track, x: float, y: float) -> float:
-        """Where along a track it is nearest to a place."""
-        raise TaktError(IN_PROCESS)
+        """The arc length of a track where it is nearest to a position."""
 
+    @abstractmethod
     def _track_links(self, track: Track) -> tuple[list[int], list[int]]:
         """Numbers of the tracks before and behind a track."""
-        raise TaktError(IN_PROCESS)
 
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
         raise TaktError("forecasts are made in process only; over LCM a feedback has travel_time_s")

@@ -21,7 +21,8 @@ class TrackPosition:
 
 
 class Track(Component, TrackCommands, TrackOutputs):
-    """A track. Its geometry can be asked for in process only."""
+    """A track. Over LCM its geometry is that of the machine file; one that was changed while the machine runs is
+    refused there."""
 
     KIND = "track"
 
