@@ -42,8 +42,14 @@ class Mover(Component, MoverCommands, MoverOutputs):
         part = list(self.session.parts.values())[self.part - 1]
         return self.x - part.x, self.y - part.y, self.c
 
+    @property
+    def blocked_by(self) -> Component | None:
+        """What it waits for: a mover, the axis that is its master, a track that ends, a part. None: nothing."""
+        return self.session._object_of(str(self.blocker_kind), self.blocker)
+
     def history(self) -> tuple[MoverRecord, ...]:
-        """Its last 100 commands, the oldest first; external set points apart. In process only."""
+        """Its last 100 commands, the oldest first; external set points apart. Over LCM: those of all clients since this
+        session was connected."""
         rows = self.session._history(self)
         return tuple(
             MoverRecord(

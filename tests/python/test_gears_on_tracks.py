@@ -342,8 +342,8 @@ def test_trails() -> None:
         gear(trail=["track1", "track9"])
     with pytest.raises(takt.CommandError, match="expected each track once"):
         gear(trail=["track1", "track1"])
-    with pytest.raises(takt.CommandError, match="a list of at most 16"):
-        gear(trail=["track1"] * 17)
+    with pytest.raises(takt.CommandError, match="a list of at most 128"):
+        gear(trail=["track1"] * 129)
     with pytest.raises(takt.CommandError, match="master: expected the name of an axis, found 'mover'"):
         gear(master="mover")
     with pytest.raises(takt.CommandError, match="must be 0 where the direction is non_modulo"):
@@ -515,6 +515,7 @@ tracks: [{{name: track, elements: [{{from: {{x: 0, y: 0}}, to: {{x: 900, y: 0}}}
         )
         engine.run(1)
         assert (mover.delay, mover.waits_for, mover.in_sync) == ("master", 0, False)
+        assert mover.blocked_by is axis
         assert begun <= mover.delay_since < begun + 5
         assert mover.track_position == begin
         way = begin - end + (20 if allowed == "positive" else -20)

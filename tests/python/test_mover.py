@@ -210,5 +210,11 @@ def test_the_same_over_lcm(tmp_path: Path) -> None:
         session.wait(lambda: mover.command_mode == "CRotationFreeMovement" and mover.c == 20)
         with pytest.raises(takt.CommandError, match="command mode"):
             mover.move_to_position(x=0, y=0).wait()
-        with pytest.raises(takt.TaktError, match="in process only"):
-            mover.history()
+        told = [(record.verb, record.state.name, record.error_id) for record in mover.history()]
+        assert told == [
+            ("enable", "DONE", 0),
+            ("move_to_position", "DONE", 0),
+            ("move_c", "DONE", 0),
+            ("move_to_position", "ERROR", 3041),
+        ]
+        assert all(0 <= record.cycle <= record.begun <= record.changed for record in mover.history())

@@ -81,7 +81,7 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kWildSetPoint, "WildSetPoint", "the mover cannot follow this set point from outside"},
     ErrorInfo{ErrorId::kMoverDeviation, "MoverDeviation", "the mover was too far from where it was to be"},
     ErrorInfo{ErrorId::kTrackMode, "TrackMode", "movers on the track do what does not go with this"},
-    ErrorInfo{ErrorId::kNoRoute, "NoRoute", "no way along tracks leads there, or none of up to 32 tracks"},
+    ErrorInfo{ErrorId::kNoRoute, "NoRoute", "no way along tracks leads there"},
     ErrorInfo{ErrorId::kTrackDisabled, "TrackDisabled", "the track is not enabled"},
     ErrorInfo{ErrorId::kMoverTooLarge, "MoverTooLarge", "the mover is larger than those the track is for"},
     ErrorInfo{ErrorId::kTrackGeometry, "TrackGeometry", "the track cannot be so"},

@@ -443,6 +443,15 @@ std::string WhyNotReferenceOf(const Machine& machine, const Command& command) {
       command);
 }
 
+// Of a part that has no such position.
+std::string WhyNotPosition(const Machine& machine, std::string_view part, std::uint32_t index) {
+  const auto found = std::ranges::find(machine.parts, part, &part::PartParams::name);
+  if (found == machine.parts.end() || index <= found->positions.size()) return {};
+  const std::size_t count = found->positions.size();
+  return "index: expected " + (count == 1 ? std::string("1") : "1 to " + std::to_string(count)) +
+         ", of the positions of part " + found->name + ", found " + std::to_string(index);
+}
+
 std::string WhyNot(const Machine& machine, const track::Command& command, std::string_view target) {
   if (const auto* add = std::get_if<track::AddToGroup>(&command)) return WhyNotGroup(machine, add->group);
   std::vector<std::string_view> others = NamesOf(machine.tracks);
@@ -515,6 +524,10 @@ std::string WhyNot(const Machine& machine, const Command& command) {
   }
   if (const auto* body = std::get_if<track::Command>(&command.body)) {
     return WhyNot(machine, *body, NameOf(machine, command.target));
+  }
+  if (const auto* body = std::get_if<part::Command>(&command.body)) {
+    const auto* activate = std::get_if<part::ActivatePosition>(body);
+    return activate ? WhyNotPosition(machine, NameOf(machine, command.target), activate->index) : std::string();
   }
   if (const auto* body = std::get_if<environment::Command>(&command.body)) {
     const auto* add = std::get_if<environment::AddToGroup>(body);

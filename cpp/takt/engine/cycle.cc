@@ -98,6 +98,17 @@ void RefreshStreets(World& w) {
                        params.mover_width,
                        params.mover_height};
   }
+  if (w.streets_changes != w.tracks.changes) {
+    w.streets_changes = w.tracks.changes;
+    std::ranges::fill(w.streets.declared, planar::Links{});
+    for (std::uint32_t i = 0; i < w.tracks.states.size(); ++i) {
+      const track::State& state = w.tracks.states[i];
+      for (std::uint32_t k = 0; k < state.starts_from.count; ++k) {
+        w.streets.declared[state.starts_from.tracks[k]].Add(i);
+      }
+      for (std::uint32_t k = 0; k < state.ends_at.count; ++k) w.streets.declared[i].Add(state.ends_at.tracks[k]);
+    }
+  }
   mover::Refresh(w.tracks_now, w.streets);
   for (std::size_t i = 0; i < w.tracks_now.size(); ++i) {
     w.grounds.areas[i] = w.tracks.areas[i];

@@ -11,6 +11,7 @@
 #include "takt/group/survey.h"
 #include "takt/mover/command_mode.h"
 #include "takt/planar/problem.h"
+#include "takt/planar/send.h"
 #include "takt/track/sketch.h"
 #include "takt/workspace/trouble.h"
 
@@ -57,6 +58,27 @@ std::string CamSentence(double value) {
   return std::string(text.empty() ? ErrorText(ErrorId::kCamMaking) : text);
 }
 
+std::string_view NoWaySentence(double value) {
+  switch (static_cast<planar::NoWay>(value)) {
+    case planar::NoWay::kDirection:
+      return "the direction does not lead to the target from where the mover can stop";
+    case planar::NoWay::kTooLong:
+      return "the way has more than 256 tracks";
+    case planar::NoWay::kPartAway:
+      return "the way leads over a part that is elsewhere";
+    default:
+      return ErrorText(ErrorId::kNoRoute);
+  }
+}
+static_assert(planar::kRouteTracks == 256, "NoWaySentence says so");
+
+// To three places, a whole number without any.
+std::string Rounded(double value) {
+  std::string text = FormatReal(std::round(value * 1000) / 1000);
+  if (text.ends_with(".0")) text.resize(text.size() - 2);
+  return text;
+}
+
 std::string GapSentence(double least) {
   return std::string(ErrorText(ErrorId::kGapTooSmall)) + ": expected at least " +
          FormatReal(std::ceil(least * 1000) / 1000) + " mm";
@@ -73,6 +95,12 @@ std::string NameOf(const ObjectInfo& object, const Machine& machine) {
     return object.number == 0 || object.number > list.size() ? std::string() : kind + list[object.number - 1].name;
   };
   switch (object.kind) {
+    case ObjectKind::kPart:
+      return name("part ", machine.parts);
+    case ObjectKind::kCoordinateSystem:
+      return name("coordinate system ", machine.coordinate_systems);
+    case ObjectKind::kAxis:
+      return name("axis ", machine.axes);
     case ObjectKind::kMover:
       return name("mover ", machine.movers);
     case ObjectKind::kTrack:
@@ -248,13 +276,27 @@ std::string Sentence(const FeedbackEvent& event) {
   if (event.error == ErrorId::kStators) return StatorSentence(event.value);
   if (event.error == ErrorId::kGapTooSmall) return GapSentence(event.value);
   if (event.error == ErrorId::kCommandMode) return ModeSentence(event.value);
+  if (event.error == ErrorId::kNoRoute) return std::string(NoWaySentence(event.value));
   const std::string text(ErrorText(event.error));
   return of_path && event.value > 0 ? text + InElement(static_cast<std::uint32_t>(event.value)) : text;
 }
 
 std::string SentenceNaming(const FeedbackEvent& event, const Machine& machine) {
   const std::string object = NameOf(event.object, machine);
-  return Sentence(event) + (object.empty() ? "" : ": " + object);
+  if (object.empty()) return Sentence(event);
+  const bool of_track = event.object.kind == ObjectKind::kTrack;
+  if (event.error == ErrorId::kTargetBehindLimit && of_track) {
+    return "the target is not on " + object + ": expected 0 to " + Rounded(event.value) + " mm";
+  }
+  if (event.error == ErrorId::kTargetBehindLimit) {
+    return "the target is outside the limits of " + object + ": the nearest position allowed is " +
+           Rounded(event.value);
+  }
+  if (event.error == ErrorId::kParameter && of_track) {
+    return "turns, their directions and modulo tolerances are for closed loops, and " + object + " is open";
+  }
+  if (event.error == ErrorId::kOffStators) return Sentence(event) + "; it is on " + object;
+  return Sentence(event) + ": " + object;
 }
 
 PathCheckThread::PathCheckThread(PathChecks& checks)

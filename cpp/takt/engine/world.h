@@ -149,6 +149,7 @@ struct World {
   std::vector<mover::Outputs> mover_outputs;
   mover::Streets streets;
   std::vector<mover::TrackNow> tracks_now;         // of this cycle
+  std::uint64_t streets_changes = 0;               // Tracks::changes as of which the links between them are known
   std::vector<axis::OutsideMaster> mover_masters;  // the coordinates of movers, as axes follow them
 
   track::Tracks tracks;

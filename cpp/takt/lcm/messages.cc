@@ -538,6 +538,8 @@ msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine:
   m.deadlocked = o.deadlocked;
   m.delay = static_cast<std::int8_t>(o.delay);
   m.delay_since = Signed(o.delay_since);
+  m.blocker_kind = static_cast<std::int8_t>(o.blocker_kind);
+  m.blocker = o.blocker;
   m.buffered = o.buffered;
   m.group = o.group;
   m.coordinate_system = o.coordinate_system;

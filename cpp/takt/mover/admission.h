@@ -25,8 +25,11 @@ struct Answer {
   ObjectInfo object{};  // that is in the way
 };
 
-inline Answer Refused(ErrorId error, const ObjectInfo& object = {}) noexcept {
-  return {.status = Status::Failed(error), .object = object};
+inline Answer Refused(ErrorId error, const ObjectInfo& object = {}, double value = 0) noexcept {
+  return {.status = Status::Failed(error), .value = value, .object = object};
+}
+inline Answer Refused(const planar::Verdict& why) noexcept {
+  return Refused(why.error, why.object, why.value);
 }
 inline Answer RefusedGap(double least) noexcept {
   return {.status = Status::Failed(ErrorId::kGapTooSmall), .value = least, .object = {}};
@@ -80,6 +83,18 @@ void TakeRoute(const Context& c, const planar::Route& route) noexcept;
 // The least gap, mm, at which it and those that are on its route now would not touch, turned as it will be, anywhere on
 // its way. No less than `wanted` if that is enough in all bends.
 double LeastGap(const Context& c, const State& s, const planar::Rider& rider, double wanted) noexcept;
+// The mover must not cover what a move would cover; the part that it would leave is named.
+inline Answer RefusedThere(const State& s, ErrorId why) noexcept {
+  const bool leaves = why == ErrorId::kOffStators && s.part != planar::kNoPart;
+  return Refused(why, leaves ? ObjectAt(ObjectKind::kPart, s.part) : ObjectInfo{});
+}
+// A part that is not where it is to be.
+inline bool IsOnItsWay(const Context& c, std::uint32_t part) noexcept {
+  const planar::PartNow& now = c.streets.parts->now[part];
+  return now.away || now.position != now.commanded;
+}
+// The part that a move has to wait for before it can begin; kNoPart: none, or it is not on its way.
+std::uint32_t PartAwaited(const Context& c, const Command& command, const State& s) noexcept;
 // Sends a mover on its way as `command` asks; not yet with its dynamics.
 planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept;
 planar::Way WayOf(TurnDirection direction) noexcept;

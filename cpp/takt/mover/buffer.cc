@@ -158,12 +158,23 @@ void PassReleases(const Context& c, State& s) {
   }
 }
 
+// The next one waits for a part that is on its way.
+bool HoldForPart(const Context& c, State& s) {
+  Buffer& b = s.buffer;
+  const std::uint32_t part = PartAwaited(c, b.waiting[0].command, s);
+  const std::uint32_t number = part == planar::kNoPart ? 0 : part + 1;
+  if (number != 0 && number != b.held_by) b.held_since = c.cycle.count;
+  b.held_by = number;
+  return number != 0;
+}
+
 // The next one begins, if it is its turn.
 void GiveTurn(const Context& c, State& s) {
   Buffer& b = s.buffer;
   if (b.count == 0) return;
   PrepareCorner(c, b.waiting[0], s);
   if (!IsNext(c, b.waiting[0], s)) return;
+  if (HoldForPart(c, s)) return;
   const Queued next = b.waiting[0];
   Pop(b);
   // What it takes over from without a stop is done when its end is passed; in the plane that is now.
@@ -224,6 +235,7 @@ void AbortBuffered(const Context& c, State& s) noexcept {
   s.plane.tried = s.plane.passes;
   s.buffer.waiting = {};
   s.buffer.count = 0;
+  s.buffer.held_by = 0;
 }
 
 void TakeTurns(const Context& c, State& s) noexcept {
@@ -272,6 +284,8 @@ void describe(Description<Buffer>& d) {
   d.internal<&B::for_release>("It waits for a release, too.");
   d.internal<&B::passing_at>("Where the way ends that went over into another one.");
   d.internal<&B::direction>("Of that way.");
+  d.internal<&B::held_by>("Number of the part that the next one waits for, from 1; 0: none.");
+  d.internal<&B::held_since>("Cycle since which it waits for that.");
 }
 
 }  // namespace takt::mover

@@ -32,6 +32,8 @@ struct Buffer {
   // A way along tracks that went over into the next one is done where it was to end (Slot kPassing).
   double passing_at = 0;  // mm, with those of all tracks left behind
   std::int8_t direction = 1;
+  std::uint32_t held_by = 0;     // number of the part that the next one waits for, from 1; 0: none
+  std::uint64_t held_since = 0;  // cycle
 };
 
 // Whether this one waits for its turn.

@@ -133,7 +133,7 @@ struct MoveOnTrack {
 enum class SyncDirections : std::uint8_t { kPositive, kNegative, kBoth };
 
 // Tracks one behind the other, each once.
-using Trail = Few<Name, 16>;
+using Trail = Few<Name, 128>;
 
 struct GearInPosOnTrack {  // along tracks, with an axis
   Name master{};

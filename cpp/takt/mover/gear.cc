@@ -41,41 +41,49 @@ bool BeginOf(const planar::Network& network, const Rider& r, std::uint32_t track
   return false;
 }
 
-ErrorId Find(const planar::Network& network, const Rider& r, const SyncPlace& place, double& begin, double& total) {
+planar::Verdict Find(const planar::Network& network, const Rider& r, const SyncPlace& place, double& begin,
+                     double& total) {
   const planar::Road& road = network[place.track];
+  const ObjectInfo track = ObjectAt(ObjectKind::kTrack, place.track);
   if (!road.closed && (place.direction != TurnDirection::kNonModulo || place.modulo_tolerance != 0)) {
-    return ErrorId::kParameter;
+    return {ErrorId::kParameter, track};
   }
-  if (!(place.position >= 0 && place.position <= road.length) && !road.closed) return ErrorId::kTargetBehindLimit;
-  if (!BeginOf(network, r, place.track, begin)) return ErrorId::kTrail;
+  if (!(place.position >= 0 && place.position <= road.length) && !road.closed) {
+    return {ErrorId::kTargetBehindLimit, track, road.length};
+  }
+  if (!BeginOf(network, r, place.track, begin)) return {ErrorId::kTrail, track};
   const double position = road.closed ? planar::OnLoop(WayOf(place.direction), place.position, place.modulo_tolerance,
                                                        r.at.position, road.length)
                                       : place.position;
   total = begin + position;
-  return ErrorId::kNone;
+  return {};
 }
 
-// Tracks from the mover's own one on. kTrail: they do not make a trail, or it is on none of them.
-ErrorId RouteAlong(const Streets& streets, const Trail& trail, std::uint32_t own, Route& out) {
+// Tracks from the mover's own one on. kTrail: the one that does not begin where the one before it ends, or has no
+// geometry; its own track, if that is on none of them.
+planar::Verdict RouteAlong(const Streets& streets, const Trail& trail, std::uint32_t own, Route& out) {
   const planar::Network& network = streets.network;
   out = {};
   Route all;
   for (const Name& name : trail.all()) {
     const std::uint32_t track = streets.Find(name.view());
-    if (track == kNoTrack) return ErrorId::kParameter;
+    if (track == kNoTrack) return {ErrorId::kParameter, {}};
     const auto goes_on = [&](std::uint32_t from) {
       const planar::Links& behind = network[from].behind;
       return std::ranges::find(behind.all(), track) != behind.all().end();
     };
     const bool connects = all.count == 0 || goes_on(all.last());
-    if (!network[track].track || !connects || all.Contains(track)) return ErrorId::kTrail;
+    if (!network[track].track || !connects || all.Contains(track)) {
+      return {ErrorId::kTrail, ObjectAt(ObjectKind::kTrack, track)};
+    }
     all.tracks[all.count++] = track;
   }
   if (all.count == 0) all.tracks[all.count++] = own;
   for (const std::uint32_t track : all.all()) {
     if (track == own || out.count > 0) out.tracks[out.count++] = track;
   }
-  return out.count > 0 ? ErrorId::kNone : ErrorId::kTrail;
+  if (out.count == 0) return {ErrorId::kTrail, ObjectAt(ObjectKind::kTrack, own)};
+  return {};
 }
 
 // As far as a track; what is missing is filled with the shortest way.
@@ -110,9 +118,7 @@ SyncPlace SlavePlace(const State& s, const Streets& streets, const Gear& command
 template <typename Gear>
 Answer Couple(const Given& g, const Gear& command, Rider& next, std::uint32_t axis) {
   State& s = g.s;
-  if (const planar::Verdict way = AskRoute(g.c, next.route); way.error != ErrorId::kNone) {
-    return Refused(way.error, way.object);
-  }
+  if (const planar::Verdict way = AskRoute(g.c, next.route); way.error != ErrorId::kNone) return Refused(way);
   const double least = LeastGap(g.c, s, next, command.gap.value_or(g.c.params.gap));
   if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);
   next.aim = planar::Aim::kFollow;
@@ -164,14 +170,12 @@ Answer CarryOut(const Given& g, const GearInPosOnTrack& command) noexcept {
   if (place.track == kNoTrack) return Refused(ErrorId::kParameter);
   Rider next = g.c.rider();
   next.gear = {};
-  if (const ErrorId why = RouteAlong(streets, command.trail, s.track, next.route); why != ErrorId::kNone) {
-    return Refused(why);
-  }
+  const planar::Verdict trail = RouteAlong(streets, command.trail, s.track, next.route);
+  if (trail.error != ErrorId::kNone) return Refused(trail);
   if (!planar::MayTake(streets.network, g.c.rider(), next.route)) return Refused(ErrorId::kTrail);
   double begin = 0, slave_sync = 0;
-  if (const ErrorId why = Find(streets.network, next, place, begin, slave_sync); why != ErrorId::kNone) {
-    return Refused(why);
-  }
+  const planar::Verdict sync = Find(streets.network, next, place, begin, slave_sync);
+  if (sync.error != ErrorId::kNone) return Refused(sync);
   // Of an axis that turns, the place nearest to where it is.
   double master_sync = command.master_sync_position + master->origin;
   if (master->turn > 0) {
@@ -199,26 +203,31 @@ Answer CarryOut(const Given& g, const GearInPosOnTrackWithMasterMover& command) 
   const SyncPlace place = SlavePlace(s, streets, command);
   if (place.track == kNoTrack || its_place.track == kNoTrack) return Refused(ErrorId::kParameter);
   double its_begin = 0, master_sync = 0;
-  if (const ErrorId why = Find(network, master, its_place, its_begin, master_sync); why != ErrorId::kNone) {
-    return Refused(why == ErrorId::kTrail ? ErrorId::kNoRoute : why);
+  if (planar::Verdict why = Find(network, master, its_place, its_begin, master_sync); why.error != ErrorId::kNone) {
+    if (why.error == ErrorId::kTrail) why.error = ErrorId::kNoRoute;
+    return Refused(why);
   }
   Rider next = g.c.rider();
   next.gear = {};
   next.gear.master = index;
-  if (const ErrorId why = RouteAlong(streets, command.trail, s.track, next.route); why != ErrorId::kNone) {
-    return Refused(why);
-  }
+  const planar::Verdict trail = RouteAlong(streets, command.trail, s.track, next.route);
+  if (trail.error != ErrorId::kNone) return Refused(trail);
   if (command.follow_mover) {
-    if (!Lengthen(g.c, its_place.track, next.route)) return Refused(ErrorId::kNoRoute);
+    if (!Lengthen(g.c, its_place.track, next.route)) {
+      return Refused(ErrorId::kNoRoute, ObjectAt(ObjectKind::kTrack, its_place.track));
+    }
     double begin = 0;
     BeginOf(network, next, its_place.track, begin);
     next.gear.takes_masters_way = true;
     next.gear.apart = begin - its_begin;
-    if (!planar::TakeMastersWay(network, master, next)) return Refused(ErrorId::kNoRoute);
+    if (!planar::TakeMastersWay(network, master, next)) {
+      return Refused(ErrorId::kNoRoute, ObjectAt(ObjectKind::kMover, index));
+    }
   }
   if (!planar::MayTake(network, g.c.rider(), next.route)) return Refused(ErrorId::kTrail);
   double begin = 0, slave_sync = 0;
-  if (const ErrorId why = Find(network, next, place, begin, slave_sync); why != ErrorId::kNone) return Refused(why);
+  const planar::Verdict sync = Find(network, next, place, begin, slave_sync);
+  if (sync.error != ErrorId::kNone) return Refused(sync);
   next.gear.offset = slave_sync - master_sync;
   return Couple(g, command, next, kNoMaster);
 }

@@ -219,6 +219,44 @@ bool IsHeldInPlane(const State& s) {
   return !IsOnTrack(s) && s.plane.held_by != planar::kNobody;
 }
 
+void Block(ObjectKind kind, std::uint32_t index, Outputs& out) {
+  out.blocker_kind = kind;
+  out.blocker = index + 1;
+}
+
+// On a track: what keeps it from going on.
+void PublishWaiting(const Context& c, const State& s, Outputs& out) {
+  const planar::Rider& rider = c.rider();
+  out.delay = DelayOf(rider.waits);
+  out.delay_since = rider.waits_since;
+  switch (rider.waits) {
+    case planar::Waits::kMover:
+      if (IsGeared(c, s) && rider.gear.master == rider.waits_for) out.delay = Delay::kMaster;
+      if (!out.deadlocked && planar::LeadsToDeadlock(c.streets.riders, c.index)) out.delay = Delay::kDeadlock;
+      return Block(ObjectKind::kMover, rider.waits_for, out);
+    case planar::Waits::kMaster:
+      if (s.gear.axis != kNoMaster) Block(ObjectKind::kAxis, s.gear.axis, out);
+      return;
+    case planar::Waits::kRoute:
+      return Block(ObjectKind::kTrack, rider.route.last(), out);
+    default:
+      return;
+  }
+}
+
+// It is where its master wants it, and stands because that mover is held up.
+bool IsHeldUpWithMaster(const Context& c, const State& s) {
+  const planar::Rider& rider = c.rider();
+  if (!IsGeared(c, s) || rider.gear.master == planar::kNobody || !planar::Rests(rider.at)) return false;
+  return c.streets.riders[rider.gear.master].waits != planar::Waits::kNot;
+}
+
+// It is to be enabled, or reset, which the part below it does not let it yet.
+bool IsHeldUpByPart(const Context& c, const State& s) {
+  const bool wants = s.state == ObjectState::kEnabling || s.state == ObjectState::kResetting;
+  return wants && s.part != planar::kNoPart && !IsPartReady(c, s);
+}
+
 // Why the mover does not go on.
 void PublishDelay(const Context& c, const State& s, Outputs& out) {
   const planar::Rider& rider = c.rider();
@@ -230,9 +268,21 @@ void PublishDelay(const Context& c, const State& s, Outputs& out) {
     out.delay = Delay::kMover;
     out.delay_since = s.plane.held_since;
     out.waits_for = s.plane.held_by + 1;
+    Block(ObjectKind::kMover, s.plane.held_by, out);
   } else if (IsOnTrack(s) && rider.waits != planar::Waits::kNot) {
-    out.delay = DelayOf(rider.waits);
-    out.delay_since = rider.waits_since;
+    PublishWaiting(c, s, out);
+  } else if (IsOnTrack(s) && IsHeldUpWithMaster(c, s)) {
+    out.delay = Delay::kMaster;
+    out.delay_since = c.streets.riders[rider.gear.master].waits_since;
+    Block(ObjectKind::kMover, rider.gear.master, out);
+  } else if (s.buffer.held_by != 0) {
+    out.delay = Delay::kPart;
+    out.delay_since = s.buffer.held_since;
+    Block(ObjectKind::kPart, s.buffer.held_by - 1, out);
+  } else if (IsHeldUpByPart(c, s)) {
+    out.delay = Delay::kPart;
+    out.delay_since = s.since;
+    Block(ObjectKind::kPart, s.part, out);
   }
 }
 

@@ -89,7 +89,10 @@ Answer MoveOne(const Given& g, const Move& command, std::size_t other, Ask ask) 
   const CoordinateParams params = ParamsOf(g.c, g.s, other);
   LimitedBy limited_by;
   const Limits limits = LimitsOf(command, params, limited_by);
-  if (command.position < params.lower || command.position > params.upper) return Refused(ErrorId::kTargetBehindLimit);
+  if (command.position < params.lower || command.position > params.upper) {
+    return Refused(ErrorId::kTargetBehindLimit, ObjectAt(ObjectKind::kMover, g.c.index),
+                   std::clamp(command.position, params.lower, params.upper));
+  }
   CoordinateMove& move = g.s.others[other];
   if (!PlanCoordinate(g.c.planner, Now(g.c, move), command.position, limits, params, move.profile)) {
     return Refused(ErrorId::kPlanning);
@@ -139,7 +142,9 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
     PlanRest(g.c.planner, turned, StandardOf(free), ParamsOf(g.c, s, kOthers.size() - 1), turn.profile);
     turn.begin = g.c.cycle.count;
   }
-  if (const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, *move, turn)); why != ErrorId::kNone) return Refused(why);
+  if (const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, *move, turn)); why != ErrorId::kNone) {
+    return RefusedThere(s, why);
+  }
   if (const ObjectInfo object = InTheWay(g.c, *move, turn, false)) return Refused(ErrorId::kCollision, object);
   if (const ObjectInfo object = InTheTurn(g.c, s, turn)) return Refused(ErrorId::kCollision, object);
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
@@ -190,7 +195,7 @@ Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept {
   move.begin = g.c.cycle.count;
   if (!IsOnTrack(s)) {
     const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, s.plane, move));
-    if (why != ErrorId::kNone) return Refused(why);
+    if (why != ErrorId::kNone) return RefusedThere(s, why);
   } else if (const ErrorId why = WhyNotAlong(g.c, s, g.c.rider(), move); why != ErrorId::kNone) {
     return Refused(why);
   }

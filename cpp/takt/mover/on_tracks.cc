@@ -1,5 +1,6 @@
 // Onto tracks, along them, and off them.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "takt/core/angle.h"
@@ -10,6 +11,7 @@
 #include "takt/planar/clearance.h"
 #include "takt/planar/course.h"
 #include "takt/planar/nearest.h"
+#include "takt/planar/problem.h"
 
 namespace takt::mover {
 
@@ -28,6 +30,74 @@ ObjectInfo TrackOf(std::uint32_t index) {
 bool IsSmallEnough(const MoverParams& mover, const TrackNow& track) {
   return std::max(mover.width, mover.height) <= std::max(track.width, track.height) &&
          std::min(mover.width, mover.height) <= std::min(track.width, track.height);
+}
+
+planar::Verdict WithoutGeometry(std::uint32_t track) {
+  return {ErrorId::kTrackGeometry, TrackOf(track), static_cast<double>(planar::Problem::kEmpty)};
+}
+
+// Of a track that is not enabled: its part may be on its way.
+planar::Verdict WhyNotEnabled(const Context& c, std::uint32_t track) {
+  const std::uint32_t part = c.streets.tracks[track].part;
+  if (part != planar::kNoPart && IsOnItsWay(c, part)) {
+    return {ErrorId::kPartDisabled, ObjectAt(ObjectKind::kPart, part)};
+  }
+  return {ErrorId::kTrackDisabled, TrackOf(track)};
+}
+
+// Of two tracks that are linked only where their parts meet: the part that has to go there. One that is on its way
+// before one that only could go. kNoPart: none can.
+std::uint32_t PartBetween(const Context& c, std::uint32_t from, std::uint32_t to) {
+  const planar::Parts& parts = *c.streets.parts;
+  const std::array both = {c.streets.tracks[to].part, c.streets.tracks[from].part};
+  const auto goes = [&](std::uint32_t part) { return part != planar::kNoPart && parts.all[part].positions.size() > 1; };
+  for (const std::uint32_t part : both) {
+    if (goes(part) && IsOnItsWay(c, part)) return part;
+  }
+  const auto found = std::ranges::find_if(both, goes);
+  return found == both.end() ? planar::kNoPart : *found;
+}
+
+// The first part that is not where a way from one track to another needs it, over as few tracks as can be; kNoPart:
+// wherever the parts are, there is no such way.
+std::uint32_t PartOnTheWay(const Context& c, std::uint32_t from, std::uint32_t to) {
+  Streets& streets = c.streets;
+  planar::RouteSearch& search = streets.search;
+  std::ranges::fill(search.settled, std::uint8_t{0});
+  // Breadth first; the queue is in search.queue.
+  std::uint32_t count = 0;
+  const auto reach = [&](std::uint32_t track, std::uint32_t before) {
+    if (search.settled[track] != 0) return;
+    search.settled[track] = 1;
+    search.came_from[track] = before;
+    search.queue[count++] = track;
+  };
+  for (const std::uint32_t next : streets.declared[from].all()) reach(next, from);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    for (const std::uint32_t next : streets.declared[search.queue[k]].all()) reach(next, search.queue[k]);
+  }
+  if (search.settled[to] == 0) return planar::kNoPart;
+  std::uint32_t part = planar::kNoPart;
+  std::uint32_t at = to;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::uint32_t before = search.came_from[at];
+    const auto behind = streets.network[before].behind.all();
+    if (std::ranges::find(behind, at) == behind.end()) part = PartBetween(c, before, at);
+    if (before == from) break;
+    at = before;
+  }
+  return part;
+}
+
+planar::Verdict NoWayTo(const Context& c, const planar::Destination& to, const planar::Rider& rider) {
+  const planar::NoWay why = planar::WhyNoWay(c.streets.network, c.streets.search, to, rider);
+  if (why == planar::NoWay::kNotLinked) {
+    const std::uint32_t part = PartOnTheWay(c, rider.route.first(), to.track);
+    if (part != planar::kNoPart) {
+      return {ErrorId::kNoRoute, ObjectAt(ObjectKind::kPart, part), static_cast<double>(planar::NoWay::kPartAway)};
+    }
+  }
+  return {ErrorId::kNoRoute, TrackOf(to.track), static_cast<double>(why)};
 }
 
 // To a place, as a command onto or from a track says.
@@ -65,8 +135,9 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   const std::uint32_t track = streets.Find(command.track.view());
   if (track == planar::kNoTrack) return Refused(ErrorId::kParameter);
   const planar::Spot& spot = streets.tracks[track].spot;
-  if (spot.system != s.system) return Refused(ErrorId::kReference);
-  if (!streets.tracks[track].enabled) return Refused(ErrorId::kTrackDisabled, TrackOf(track));
+  if (spot.system != s.system) return Refused(ErrorId::kReference, TrackOf(track));
+  if (!streets.network[track].track) return Refused(WithoutGeometry(track));
+  if (!streets.tracks[track].enabled) return Refused(WhyNotEnabled(g.c, track));
   if (!IsSmallEnough(g.c.params, streets.tracks[track])) return Refused(ErrorId::kMoverTooLarge, TrackOf(track));
   if (streets.uses[track].moving > 0) return Refused(ErrorId::kTrackMode, TrackOf(track));
   const planar::Place from{s.set_point[kX].position, s.set_point[kY].position};
@@ -156,7 +227,7 @@ double LeastGap(const Context& c, const State& s, const planar::Rider& rider, do
 
 planar::Verdict AskRoute(const Context& c, const planar::Route& route) noexcept {
   for (const std::uint32_t on : route.all()) {
-    if (!c.streets.tracks[on].enabled) return {ErrorId::kTrackDisabled, TrackOf(on)};
+    if (!c.streets.tracks[on].enabled) return WhyNotEnabled(c, on);
     if (c.streets.uses[on].configuring > 0) return {ErrorId::kTrackMode, TrackOf(on)};
     if (!IsSmallEnough(c.params, c.streets.tracks[on])) return {ErrorId::kMoverTooLarge, TrackOf(on)};
   }
@@ -173,17 +244,28 @@ planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const Stat
   const std::uint32_t track = command.track.empty() ? s.track : streets.Find(command.track.view());
   if (track == planar::kNoTrack) return {ErrorId::kParameter, {}};
   const planar::Road& road = streets.network[track];
+  if (!road.track) return WithoutGeometry(track);
   if (!road.closed && (command.additional_turns != 0 || command.modulo_tolerance != 0)) {
-    return {ErrorId::kParameter, {}};
+    return {ErrorId::kParameter, TrackOf(track)};
   }
   const bool turns_count = road.closed && command.direction == TurnDirection::kNonModulo;
   const bool outside = !(command.position >= 0 && command.position <= road.length);
-  if (outside && !turns_count) return {ErrorId::kTargetBehindLimit, {}};
+  if (outside && !turns_count) return {ErrorId::kTargetBehindLimit, TrackOf(track), road.length};
   const planar::Destination to{track, command.position, WayOf(command.direction), command.additional_turns,
                                command.modulo_tolerance};
-  if (!planar::Send(streets.network, streets.search, to, rider)) return {ErrorId::kNoRoute, {}};
+  if (!planar::Send(streets.network, streets.search, to, rider)) return NoWayTo(c, to, rider);
   const planar::Verdict route = AskRoute(c, rider.route);
   return route.error == ErrorId::kNone ? planar::Verdict{WhyNotAlong(c, s, rider, s.others.back()), {}} : route;
+}
+
+std::uint32_t PartAwaited(const Context& c, const Command& command, const State& s) noexcept {
+  const auto* move = std::get_if<MoveOnTrack>(&command);
+  if (!move || !IsOnTrack(s) || c.streets.parts->none()) return planar::kNoPart;
+  planar::Rider then = c.rider();
+  const planar::Verdict way = FindWay(c, *move, s, then);
+  if (way.object.kind != ObjectKind::kPart) return planar::kNoPart;
+  const std::uint32_t part = way.object.number - 1;
+  return IsOnItsWay(c, part) ? part : planar::kNoPart;
 }
 
 Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
@@ -191,7 +273,7 @@ Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
   if (const ErrorId why = WhyNot(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
   planar::Rider next = g.c.rider();
   if (const planar::Verdict way = FindWay(g.c, command, s, next); way.error != ErrorId::kNone) {
-    return Refused(way.error, way.object);
+    return Refused(way);
   }
   const double least = LeastGap(g.c, s, next, command.gap.value_or(g.c.params.gap));
   if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);

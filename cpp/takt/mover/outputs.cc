@@ -11,7 +11,10 @@ void describe(Enumeration<Delay>& e) {
   e.value(Delay::kTrackEnd, "track_end", "Its way ends here.");
   e.value(Delay::kTime, "time", "It is told to wait for some time.");
   e.value(Delay::kRelease, "release", "It is told to wait for a release.");
-  e.value(Delay::kMaster, "master", "It waits for its master, an axis, to come where it may go.");
+  e.value(Delay::kMaster, "master",
+          "It waits for its master, an axis or a mover, to come where it may go, or to go on: blocker.");
+  e.value(Delay::kPart, "part", "It waits for a part that is on its way, or not enabled: blocker.");
+  e.value(Delay::kDeadlock, "deadlock", "The movers ahead of it wait for one another: waits_for.");
 }
 
 void describe(Description<Outputs>& d) {
@@ -74,6 +77,8 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::deadlocked>("The mover that it waits for waits for it, be it over others.");
   d.internal<&O::delay>("Why it does not go on.");
   d.internal<&O::delay_since>("Cycle since which it does not; 0: it goes on.");
+  d.internal<&O::blocker_kind>("Of what kind the component is that it waits for.");
+  d.internal<&O::blocker>("Number of that, from 1, in the order of the machine file; 0: none.");
   d.internal<&O::buffered>("So many commands wait for their turn.");
   d.internal<&O::group>("Number of the group of movers that it is in, from 1; 0: none.");
   d.internal<&O::coordinate_system>("Number of the coordinate system that its positions are in, from 1; 0: none.");

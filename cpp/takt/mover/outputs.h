@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "takt/core/describe_fwd.h"
+#include "takt/core/object.h"
 #include "takt/core/status.h"
 #include "takt/mover/command_mode.h"
 #include "takt/mover/commands.h"
@@ -18,7 +19,9 @@ enum class Delay : std::uint8_t {
   kTrackEnd,  // its way ends here
   kTime,      // a wait for some time
   kRelease,   // one for a release
-  kMaster,    // the axis that it follows is where it may not go
+  kMaster,    // its master is where it may not go, or is held up itself
+  kPart,      // a part of the surface is on its way, or not enabled
+  kDeadlock,  // the movers ahead of it wait for one another
 };
 
 struct Outputs {
@@ -57,8 +60,11 @@ struct Outputs {
   bool deadlocked = false;        // that one waits for it, over others or not
   Delay delay = Delay::kNone;     // why it does not go on
   std::uint64_t delay_since = 0;  // cycle; 0: it goes on
-  std::uint32_t buffered = 0;     // commands that wait for their turn
-  std::uint32_t group = 0;        // number of the group of movers that it is in, from 1; 0: none
+  // What it waits for, be it a mover, an axis, a track or a part: of what kind, and its number from 1; 0: nothing.
+  ObjectKind blocker_kind = ObjectKind::kNone;
+  std::uint32_t blocker = 0;
+  std::uint32_t buffered = 0;  // commands that wait for their turn
+  std::uint32_t group = 0;     // number of the group of movers that it is in, from 1; 0: none
   // Numbers, from 1, of the coordinate system that positions are in, and of the part that its middle is on; 0: none.
   std::uint32_t coordinate_system = 0;
   std::uint32_t part = 0;

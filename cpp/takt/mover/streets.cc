@@ -62,7 +62,8 @@ Streets::Streets(std::size_t movers, std::vector<std::string> of_tracks, const p
       traffic({static_cast<std::uint32_t>(movers), static_cast<std::uint32_t>(names.size())}),
       riders(movers),
       uses(names.size()),
-      tracks(names.size()) {
+      tracks(names.size()),
+      declared(names.size()) {
   network.roads.resize(names.size());
 }
 

@@ -75,6 +75,8 @@ struct Streets {
   std::vector<planar::Rider> riders;  // by mover
   std::vector<TrackUse> uses;         // by track
   std::vector<TrackNow> tracks;       // as the network was made of
+  // By track: those that it leads on to where their parts are as their links want them, be they there now or not.
+  std::vector<planar::Links> declared;
   std::vector<Master> masters;
   std::vector<MoverNow> movers;
 };

@@ -73,6 +73,7 @@ struct Grounds {
 struct Verdict {
   ErrorId error = ErrorId::kNone;
   ObjectInfo object{};
+  double value = 0;  // what the error says besides, as the value of a feedback
 };
 
 // With what a mover would collide in its group; none where that does not watch. And what follows for what is reserved.

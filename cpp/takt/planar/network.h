@@ -75,7 +75,7 @@ double LeadAtStart(const Network& network, std::uint32_t ahead, std::uint32_t be
 double LeadAtEnd(const Network& network, std::uint32_t ahead, std::uint32_t behind) noexcept;
 
 // Tracks one after the other, the first one is where the mover is.
-inline constexpr std::size_t kRouteTracks = 32;
+inline constexpr std::size_t kRouteTracks = 256;
 struct Route {
   std::array<std::uint32_t, kRouteTracks> tracks{};
   std::uint32_t count = 0;
@@ -92,8 +92,9 @@ struct RouteSearch {
   std::vector<double> way;
   std::vector<std::uint32_t> came_from;
   std::vector<std::uint8_t> settled;
+  std::vector<std::uint32_t> queue;
 
-  explicit RouteSearch(std::size_t tracks = 0) : way(tracks), came_from(tracks), settled(tracks) {}
+  explicit RouteSearch(std::size_t tracks = 0) : way(tracks), came_from(tracks), settled(tracks), queue(tracks) {}
 };
 
 // The shortest way from the end of `from` (which is its first track) to the start of `to`, by length; of ways that are

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace takt::planar {
 namespace {
@@ -66,6 +67,18 @@ bool Send(const Network& network, RouteSearch& search, const Destination& to, Ri
   r.waits = Waits::kNot;
   r.waits_for = kNobody;
   return true;
+}
+
+NoWay WhyNoWay(const Network& network, RouteSearch& search, const Destination& to, const Rider& r) noexcept {
+  Destination any = to;
+  any.way = Way::kNonModulo;
+  Rider then = r;
+  if (to.way != any.way && Send(network, search, any, then)) return NoWay::kDirection;
+  if (network[r.route.first()].closed || network[to.track].closed) return NoWay::kNotLinked;
+  Route route;
+  const bool found = FindRoute(network, r.route.first(), to.track, search, route);
+  const bool reached = search.way[to.track] < std::numeric_limits<double>::infinity();
+  return found || reached ? NoWay::kTooLong : NoWay::kNotLinked;
 }
 
 double EndOfWay(const Network& network, const Rider& r) noexcept {

@@ -28,8 +28,19 @@ struct Destination {
   double modulo_tolerance = 0;         // mm, of a closed loop: so far it may go against its direction
 };
 
+// Why no way leads to a destination. The numbers are values of feedbacks.
+enum class NoWay : std::uint8_t {
+  kNotLinked = 0,  // from no place where the mover can still turn off do tracks lead there
+  kDirection = 1,  // tracks lead there, but not in this direction
+  kTooLong = 2,    // over more than kRouteTracks tracks
+  kPartAway = 3,   // over a part of the surface that is elsewhere; found by those who know parts
+};
+
 // False: no way leads there from where the mover can still turn off; it keeps what it had.
 bool Send(const Network& network, RouteSearch& search, const Destination& to, Rider& rider) noexcept;
+
+// What is wrong where Send says that there is no way.
+NoWay WhyNoWay(const Network& network, RouteSearch& search, const Destination& to, const Rider& rider) noexcept;
 
 // mm on its first track, where its target is.
 double EndOfWay(const Network& network, const Rider& rider) noexcept;

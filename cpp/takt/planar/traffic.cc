@@ -525,6 +525,15 @@ std::span<const std::uint32_t> Traffic::On(std::uint32_t track) const noexcept {
   return {scene_.order.data() + scene_.begins[track], scene_.order.data() + scene_.begins[track + 1]};
 }
 
+bool LeadsToDeadlock(std::span<const Rider> riders, std::uint32_t mover) noexcept {
+  std::uint32_t at = mover;
+  for (std::size_t i = 0; i <= riders.size(); ++i) {
+    if (riders[at].waits != Waits::kMover || riders[at].waits_for == kNobody) return false;
+    at = riders[at].waits_for;
+  }
+  return true;
+}
+
 bool IsDeadlocked(std::span<const Rider> riders, std::uint32_t mover) noexcept {
   std::uint32_t at = mover;
   for (std::size_t i = 0; i < riders.size(); ++i) {

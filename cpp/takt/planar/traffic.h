@@ -77,5 +77,7 @@ class Traffic {
 
 // Whether this mover waits for others that wait for it, in a ring.
 bool IsDeadlocked(std::span<const Rider> riders, std::uint32_t mover) noexcept;
+// Whether it waits, be it over others, for movers that wait for one another: in that ring, or behind it.
+bool LeadsToDeadlock(std::span<const Rider> riders, std::uint32_t mover) noexcept;
 
 }  // namespace takt::planar

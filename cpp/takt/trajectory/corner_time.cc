@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/core/maths.h"
+
 namespace takt::trajectory {
 
 AlongPath AlongLine(const PathPoint& point, const CoordinateLimits& limits) noexcept {
@@ -24,7 +26,7 @@ double HalfLineWithStops(double length, const AlongPath& limits) noexcept {
   const double j = limits.jerk, v = limits.velocity;
   const double build_up = a / j;
   // The time in which it speeds up to the peak, or brakes from there: its mean speed is half of the peak.
-  double ramp = std::cbrt(4 * length / j);  // jerk alone
+  double ramp = maths::Cbrt(4 * length / j);  // jerk alone
   if (ramp > 2 * build_up) ramp = 0.5 * (build_up + std::sqrt(build_up * build_up + 4 * length / a));
   const double full = v > a * build_up ? v / a + build_up : 2 * std::sqrt(v / j);
   return ramp <= full ? ramp : 0.5 * (full + length / v);

@@ -202,8 +202,15 @@ def _mover(v: Values, name_of: NamesOf, more: list[str], waits: list[str]) -> in
         waits.append(f"waits for {name_of('mover', int(v['waits_for']))}")
         if v["deadlocked"]:
             waits.append("and that one for it: deadlocked")
+        elif delay == "deadlock":
+            waits.append("behind movers that wait for one another")
     elif delay != "none":
-        words = {"track_end": "at the end of its track", "time": "stays for a time", "master": "waits for its master"}
+        words = {
+            "track_end": "at the end of its track",
+            "time": "stays for a time",
+            "master": "waits for its master",
+            "part": "waits for a part",
+        }
         waits.append(words.get(delay, "waits to be released"))
     return int(v["delay_since"]) if waits else 0
 

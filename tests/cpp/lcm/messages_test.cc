@@ -495,6 +495,8 @@ TEST(Messages, MoverStateKeepsEveryNumber) {
           FIELD(mover_state, sync_error),
           FIELD(mover_state, waits_for),
           FIELD(mover_state, deadlocked),
+          FIELD(mover_state, blocker_kind),
+          FIELD(mover_state, blocker),
           FIELD(mover_state, delay),
           FIELD(mover_state, delay_since),
           FIELD(mover_state, buffered),
