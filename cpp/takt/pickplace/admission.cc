@@ -103,7 +103,10 @@ void CarryOut(const Context& c, Ticket ticket, double, const Configure& command,
 void CarryOut(const Context& c, Ticket ticket, double, const ConfigureBelt& command, group::State&, State& s) {
   const std::uint32_t belt = command.belt.value_or(1);
   if (belt > c.params.belts.size()) return Refuse(c, ticket, ErrorId::kUnknownTarget, s);
-  TakeGiven(command, s.belts[belt - 1]);
+  BeltSettings changed = s.belts[belt - 1];
+  TakeGiven(command, changed);
+  if (!TurnsFit(changed)) return Refuse(c, ticket, ErrorId::kParameter, s);
+  s.belts[belt - 1] = changed;
   Finish(c, ticket);
 }
 

@@ -1,5 +1,6 @@
 #include "takt/pickplace/settings.h"
 
+#include "takt/conveyor/state.h"
 #include "takt/core/describe.h"
 
 namespace takt::pickplace {
@@ -142,6 +143,17 @@ void DescribeBelt(Description<BeltSettingsOf<Of>>& d) {
   d.template defaulted<&S::kind>("Workpieces of this kind are taken; 0: of any.");
   d.template defaulted<&S::colour>("Workpieces of this colour are taken; 0: of any.");
   d.template defaulted<&S::least_quality>(unit::one, kPositions, "Workpieces that are at least as good are taken.");
+  d.template defaulted<&S::every>(between(1, 1000),
+                                  "How modules share a belt: of so many workpieces one behind the other, as the belt "
+                                  "numbers them, ...");
+  d.template defaulted<&S::turn>(between(1, 1000), "... this module takes those from this one on, from 1, ...");
+  d.template defaulted<&S::turns>(between(1, 1000),
+                                  "... so many. 2 of 3 for one and 1 of 3 for the other share 2 : 1.");
+  d.template defaulted<&S::most_per_minute>(Unit{"1/min", ""}, kFromZero,
+                                            "It takes no more workpieces a minute than this, evenly; 0: any number.");
+  d.template defaulted<&S::leave>(
+      at_most(conveyor::kObjects),
+      "It takes one only while so many free ones lie behind its range, for modules further on; 0: it does not look.");
   d.template defaulted<&S::same_within>(
       unit::mm, kFromZero,
       "What lies so near to a workpiece that was fetched is the same one, seen twice, as where pictures of a camera "
@@ -161,6 +173,10 @@ void DescribeBelt(Description<BeltSettingsOf<Of>>& d) {
 
 }  // namespace
 
+bool TurnsFit(const BeltSettings& s) noexcept {
+  return s.turn <= s.every && s.turns <= s.every - s.turn + 1;
+}
+
 void describe(Description<Settings>& d) {
   d.named("PickPlaceSettings");
   d.about("What is set of a pick and place module.");
@@ -179,6 +195,8 @@ void describe(Description<BeltSettings>& d) {
   d.named("PickPlaceBeltSettings");
   d.about("What is set for one belt of a pick and place module.");
   DescribeBelt(d);
+  d.rule<&BeltSettings::turns>("must not lead beyond every: turn + turns - 1 is at most every",
+                               [](const BeltSettings& s) { return TurnsFit(s); });
 }
 
 void describe(Description<ConfigureBelt>& d) {

@@ -127,6 +127,12 @@ struct BeltSettingsOf {
   Of<std::uint32_t> kind = Preset<Of>(std::uint32_t{0});    // 0: any
   Of<std::uint32_t> colour = Preset<Of>(std::uint32_t{0});  // 0: any
   Of<double> least_quality = Preset<Of>(-1e9);
+  // How several modules share a belt: which of its workpieces are this one's.
+  Of<std::uint32_t> every = Preset<Of>(std::uint32_t{1});  // of so many one behind the other ...
+  Of<std::uint32_t> turn = Preset<Of>(std::uint32_t{1});   // ... those from this one on, from 1, ...
+  Of<std::uint32_t> turns = Preset<Of>(std::uint32_t{1});  // ... so many
+  Of<double> most_per_minute = Preset<Of>(0.0);            // 0: any number
+  Of<std::uint32_t> leave = Preset<Of>(std::uint32_t{0});  // so many lie free behind its range before it takes one
   Of<double> same_within = Preset<Of>(2.0);  // mm: what lies so near to a workpiece that was fetched is that one
   // How the tool stands on a workpiece; beyond the manual.
   Of<double> grip_x = Preset<Of>(0.0);
@@ -140,6 +146,9 @@ struct BeltSettingsOf {
 using BeltSettings = BeltSettingsOf<Plain>;
 // The command that changes what is given of them.
 using ConfigureBelt = BeltSettingsOf<std::optional>;
+
+// The workpieces that a module takes in turn are among those of a round.
+bool TurnsFit(const BeltSettings& settings) noexcept;
 
 void describe(Enumeration<PathMode>&);
 void describe(Enumeration<TrackingMode>&);

@@ -156,6 +156,7 @@ void describe(Description<State>& d) {
   d.internal<&State::pick_cycles>("Of the last picks.");
   d.internal<&State::pick_count>("So many.");
   d.internal<&State::lost_before>("Of the belts.");
+  d.internal<&State::taken_cycle>("When a workpiece of each belt was taken last.");
   d.internal<&State::illegal_transitions>("Always 0: the state table holds.");
 }
 

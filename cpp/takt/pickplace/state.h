@@ -166,6 +166,7 @@ struct State {
   std::array<std::uint64_t, kPickTimes> pick_cycles{};  // a ring
   std::uint32_t pick_count = 0;
   std::array<std::uint32_t, kBelts> lost_before{};  // of the belts
+  std::array<std::uint64_t, kBelts> taken_cycle{};  // when a workpiece was taken last; 0: none was
   std::uint64_t illegal_transitions = 0;            // always 0: the state table holds
 };
 

@@ -1,6 +1,7 @@
 // Which workpiece is next, and whether it can be reached in time (PP-44).
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "takt/core/angle.h"
 #include "takt/group/systems.h"
@@ -36,6 +37,30 @@ bool IsWanted(const BeltSettings& own, const Object& object) {
   const conveyor::Attributes& of = object.attributes;
   return (own.kind == 0 || of.kind == own.kind) && (own.colour == 0 || of.colour == own.colour) &&
          of.quality >= own.least_quality;
+}
+
+// PP-67: it is this module's by its number.
+bool IsOurs(const BeltSettings& own, const Object& object) {
+  const std::uint32_t place = (object.number - 1) % own.every + 1;  // among so many
+  return place >= own.turn && place - own.turn < own.turns;
+}
+
+// PP-67: the module may take another one of this belt by now.
+bool MayTake(const Context& c, const Order& order, const State& s) {
+  const BeltSettings& own = order.own;
+  const Belt& belt = c.belts[order.belt - 1];
+  const std::uint64_t last = s.taken_cycle[order.belt - 1];
+  const double since_s = static_cast<double>(c.group.cycle.count - last) * c.group.cycle.period_s;
+  if (own.most_per_minute > 0 && last != 0 && since_s * own.most_per_minute < 60) return false;
+  if (own.leave == 0) return true;
+  const int sense = belt.state->sense;
+  const double end = own.lower_limit < own.upper_limit ? (sense > 0 ? own.upper_limit : own.lower_limit)
+                                                       : std::numeric_limits<double>::infinity();
+  const auto lies_behind = [&](const Object& object) {
+    return object.state == conveyor::ObjectState::kVisible &&
+           sense * (conveyor::PlaceOf(*belt.params, *belt.state, object) - end) > 0;
+  };
+  return std::ranges::count_if(conveyor::ObjectsOf(*belt.state), lies_behind) >= static_cast<int>(own.leave);
 }
 
 kinematics::Pose GripOn(const BeltSettings& own) {
@@ -172,6 +197,7 @@ double LongerBy(const State& s) noexcept {
 const Object* ChooseWorkpiece(const Context& c, const group::State& g, const Order& order, State& s) noexcept {
   const Belt& belt = BeltOf(c, order);
   const BeltSettings& own = order.own;
+  if (!MayTake(c, order, s)) return nullptr;
   const auto objects = conveyor::ObjectsOf(*belt.state);
   const KDL::Vector tool = group::Present(c.group, g).tool.p;
   const auto rank = [&](const Object& object) {
@@ -201,7 +227,8 @@ const Object* ChooseWorkpiece(const Context& c, const group::State& g, const Ord
       const Object& object = objects[i];
       if (tried < objects.size() && !is_behind(i, tried)) continue;
       if (best < objects.size() && is_behind(i, best)) continue;
-      if (!conveyor::IsFree(*belt.params, *belt.state, object) || !IsWanted(own, object)) continue;
+      if (!conveyor::IsFree(*belt.params, *belt.state, object) || !IsWanted(own, object) || !IsOurs(own, object))
+        continue;
       if (IsInside(own, conveyor::PlaceOf(*belt.params, *belt.state, object))) best = i;
     }
     const bool found = best < objects.size() && IsReachable(c, g, order, objects[best], s);
@@ -248,6 +275,7 @@ ErrorId BindWorkpiece(const Context& c, const Object& object, group::State& g, O
   const std::uint32_t number = object.number;
   if (const Status taken = conveyor::Take(number, *belt.state); taken.failed()) return taken.error;
   order.workpiece = number;
+  s.taken_cycle[order.belt - 1] = c.group.cycle.count;
   s.second_pcs = !s.second_pcs;
   place = {.system = group::CoordinateSystem::kPcs, .pcs = pcs, .pose = GripOn(own), .aux1 = own.aux1_target};
   return ErrorId::kNone;
