@@ -119,9 +119,9 @@ template <typename Gear>
 Answer Couple(const Given& g, const Gear& command, Rider& next, std::uint32_t axis) {
   State& s = g.s;
   if (const planar::Verdict way = AskRoute(g.c, next.route); way.error != ErrorId::kNone) return Refused(way);
+  next.aim = planar::Aim::kFollow;
   const double least = LeastGap(g.c, s, next, command.gap.value_or(g.c.params.gap));
   if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);
-  next.aim = planar::Aim::kFollow;
   if (const ErrorId why = WhyNotAlong(g.c, s, next, s.others.back()); why != ErrorId::kNone) return Refused(why);
   next.planned = next.there = false;
   next.waits = planar::Waits::kNot;

@@ -18,7 +18,7 @@ using testing::Make;
 using testing::Random;
 using testing::RandomTrack;
 
-Area Standing(const Place& place, double width, double height, double c) {
+Area BodyAt(const Place& place, double width, double height, double c) {
   return {.places = {place}, .count = 1, .least_c = c, .most_c = c, .mover = {width, height}, .margin = 0};
 }
 
@@ -74,7 +74,7 @@ TEST(GuardProperty, FindsTheFirstInTheWay) {
     const double reach = random.Below(20) == 0 ? 6000 : 400;
     const Place place{random.Between(-4000, 4000), random.Between(-4000, 4000)};
     for (int n = random.Below(5); n >= 0; --n) {
-      Area area = Standing(place, random.Between(50, 300), random.Between(50, 300), random.Between(-180, 180));
+      Area area = BodyAt(place, random.Between(50, 300), random.Between(50, 300), random.Between(-180, 180));
       area.places[1] = {place.x + random.Between(-reach, reach), place.y + random.Between(-reach, reach)};
       area.count = 2;
       Add(area, out);
@@ -141,8 +141,8 @@ TEST(CourseProperty, KnowsWhatIsApart) {
     };
     const Braking behind = Brake(start(at), alone.rider.brakes), ahead = Brake(start(at + gap), alone.rider.brakes);
     if (behind.lowest < 0 || ahead.highest > alone.track.length || LeastDistance(behind, ahead, 0) <= 0) continue;
-    Area own = Standing({}, random.Between(50, 200), random.Between(50, 200), random.Between(-45, 45));
-    Area its = Standing({}, random.Between(50, 200), random.Between(50, 200), random.Between(-45, 45));
+    Area own = BodyAt({}, random.Between(50, 200), random.Between(50, 200), random.Between(-45, 45));
+    Area its = BodyAt({}, random.Between(50, 200), random.Between(50, 200), random.Between(-45, 45));
     own.count = its.count = 0;
     if (random.Below(4) == 0) its.most_c += random.Between(0, 20);
     const bool ordered = ApartByOrder(alone.network, alone.rider, behind, own, ahead, its, 0);
