@@ -93,25 +93,19 @@ double MostSpeed(const Braking& b, const Brakes& brakes) {
 }  // namespace
 
 void Add(const Area& area, Course& out) noexcept {
-  const double radius = RadiusOf(area);
-  Extent extent{area.places[0], area.places[0]};
-  for (std::size_t i = 1; i < area.count; ++i) {
-    const Place& p = area.places[i];
-    extent.lower = {std::min(extent.lower.x, p.x), std::min(extent.lower.y, p.y)};
-    extent.upper = {std::max(extent.upper.x, p.x), std::max(extent.upper.y, p.y)};
-  }
-  const Place off{radius, radius};
-  extent = {extent.lower - off, extent.upper + off};
-  if (out.count == 0) {
-    out.extent = extent;
-  } else {
-    out.extent.lower = {std::min(out.extent.lower.x, extent.lower.x), std::min(out.extent.lower.y, extent.lower.y)};
-    out.extent.upper = {std::max(out.extent.upper.x, extent.upper.x), std::max(out.extent.upper.y, extent.upper.y)};
-  }
+  if (out.count == 0) out.extent = {area.places[0], area.places[0]};
   if (out.count < kCourseAreas) {
     out.areas[out.count++] = area;
   } else {
     out.areas[kCourseAreas - 1] = Around(out.areas[kCourseAreas - 1], area);
+  }
+  const Area& last = out.areas[out.count - 1];
+  const double radius = RadiusOf(last);
+  Extent& extent = out.extent;
+  for (std::size_t i = 0; i < last.count; ++i) {
+    const Place& p = last.places[i];
+    extent.lower = {std::min(extent.lower.x, p.x - radius), std::min(extent.lower.y, p.y - radius)};
+    extent.upper = {std::max(extent.upper.x, p.x + radius), std::max(extent.upper.y, p.y + radius)};
   }
 }
 
