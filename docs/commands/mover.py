@@ -95,9 +95,9 @@ def scenario(session: takt.Session) -> None:
         allowed_slave_sync_directions="both",
     ).wait(until="reached")
     trailer.halt().wait()
+    trailer.leave_track(x=300, y=340, use_orientation=False).wait()  # out of the way of the other
     shuttle.leave_track(x=60, y=60, use_orientation=False).wait()
     session.mark("both as one body")
-    trailer.leave_track(x=300, y=60, use_orientation=False).wait()
     trailer.join_formation(star="shuttle").wait(until="reached")
     shuttle.move_to_position(x=100, y=100, c=shuttle.c + 10, use_orientation=True).wait()
     trailer.leave_formation().wait()

@@ -42,7 +42,7 @@ def scenario(session: takt.Session) -> None:
     cell.enable().wait()
     session.mark("refused: the guest stands on the way, the border lies on it")
     assert shuttle.move_to_position(x=1200, y=840).wait_final().object is guest
-    assert shuttle.move_to_position(x=720, y=1000).wait_final().object is floor
+    assert shuttle.move_to_position(x=720, y=1180).wait_final().object is floor
     session.run(0.05)
     session.mark("the guest leaves the group, and the stators")
     guest.remove_from_group().wait()

@@ -191,7 +191,8 @@ def test_who_waits_for_whom(network: Engine) -> None:
     assert not first.final
     assert red.waits_for == 2
     assert not red.deadlocked
-    assert red.track_position == pytest.approx(place - 200, abs=0.05)
+    assert red.gap >= 200  # what bends on its way ask for
+    assert red.track_position == pytest.approx(place - red.gap, abs=0.05)
     second = blue.move_on_track(position=100)
     network.run(3)
     assert red.deadlocked

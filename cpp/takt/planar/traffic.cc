@@ -202,6 +202,7 @@ class Traffic::Step_ {
 
   // With the largest share of its brakes that keeps the vectors within their maxima in the bends on its way to rest.
   bool TryToTake(std::uint32_t i, const KinematicState& next) {
+    held_by_guard_ = false;
     const Rider& r = riders_[i];
     for (std::size_t share = 0; share < kShares.size(); ++share) {
       const Brakes brakes = WithShare(r.brakes, r.pace, share);
@@ -209,13 +210,15 @@ class Traffic::Step_ {
       if (!KeepsToVectors(network_, r, next, braking, period())) continue;
       // A smaller share would only make it come to rest later.
       if (!KeepsToLimits(network_, r, next, braking, brakes.jerk) || !w_.MayTake(i, next, braking)) return false;
-      if (guard_ != nullptr && !PassesGuard(i, next, braking)) return false;
+      held_by_guard_ = guard_ != nullptr && !PassesGuard(i, next, braking);
+      if (held_by_guard_) return false;
       w_.Take(i, next, braking, share);
       return true;
     }
     return false;
   }
   bool Refuse(std::uint32_t i) {
+    if (held_by_guard_) return false;
     riders_[i].calm_cycles = kCalmCycles;
     t_.refused_ += std::abs(riders_[i].at.velocity) > kStands ? 1 : 0;
     return false;
@@ -470,8 +473,13 @@ class Traffic::Step_ {
   // The end of the cycle: places are those on the track where the mover is now.
   void GoOn(std::uint32_t i) {
     Rider& r = riders_[i];
-    r.at = s_.now[i].next;
-    r.share = s_.now[i].share;
+    const Now& now = s_.now[i];
+    if (guard_ != nullptr && !now.taken && !(Rests(r.at) && Rests(now.next))) {
+      guard_->Put(i, CourseOf(i, std::min(now.next.position, now.braking.lowest),
+                              std::max(now.next.position, now.braking.highest)));
+    }
+    r.at = now.next;
+    r.share = now.share;
     if (std::abs(r.at.velocity) < 1e-9 && std::abs(r.at.acceleration) < 1e-6) r.at.velocity = r.at.acceleration = 0;
     const auto shift = [&r](double by) {
       r.at.position -= by;
@@ -505,6 +513,7 @@ class Traffic::Step_ {
   const Network& network_;
   std::span<Rider> riders_;
   Guard* guard_;
+  bool held_by_guard_ = false;  // the step that was tried last
 };
 
 Traffic::Traffic(const TrafficSettings& settings) : scene_(settings.movers, settings.tracks) {}
