@@ -1,7 +1,7 @@
 """Groups of movers, and environments.
 
 A mover of a group asks for the area that it needs before it moves ([what is reserved](../../docs/planar_groups.md)).
-Here one is refused, as another one stands on its way, and as its target lies off the stators; then the other leaves.
+Here one is refused, as another one stands on its way, and as it would leave the stators of the part it is on; then the other leaves.
 """
 
 import takt
@@ -40,9 +40,9 @@ def scenario(session: takt.Session) -> None:
     shuttle.add_to_group(group="cell")
     guest.add_to_group(group="cell").wait()
     cell.enable().wait()
-    session.mark("refused: the guest stands on the way, the border lies on it")
+    session.mark("refused: the guest stands on the way, the stators end")
     assert shuttle.move_to_position(x=1200, y=840).wait_final().object is guest
-    assert shuttle.move_to_position(x=720, y=1180).wait_final().object is floor
+    assert shuttle.move_to_position(x=720, y=1180).wait_final().object is session.part("deck")
     session.run(0.05)
     session.mark("the guest leaves the group, and the stators")
     guest.remove_from_group().wait()
