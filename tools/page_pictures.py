@@ -101,7 +101,7 @@ def running(folder: Path) -> Iterator[tuple[str, str]]:
     url = free_url()
     with (
         tempfile.TemporaryDirectory() as directory,
-        serving(url, folder) as address,
+        serving(url) as address,
         taktd(folder / "machine.yaml", url, None, "paced", Path(directory)),
     ):
         yield url, address
