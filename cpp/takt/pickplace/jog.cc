@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 
+#include "takt/core/angle.h"
 #include "takt/group/systems.h"
 #include "takt/kinematics/solutions.h"
 #include "takt/pickplace/run.h"
@@ -19,6 +20,7 @@ constexpr double kWidest = 170;       // deg: beyond half a turn it would go the
 constexpr double kUprightest = 89.9;  // deg, of B
 constexpr double kShort = 1e-3;       // of the end of what can be reached
 constexpr int kHalvings = 24;
+constexpr double kOfTurn = 0.1;  // of a turn that was asked for
 
 struct Ramps {
   double velocity, acceleration, deceleration, jerk;
@@ -87,8 +89,15 @@ group::MoveLinearAbsolute ToolMove(const Context& c, const group::State& g, doub
   const auto may = [&](double way) {
     kinematics::Joints joints = present.joints;
     const kinematics::Frame tool = kinematics::ToFrame(at(way));
-    return group::JointsAt(c.group, tool, present.joints, joints) == kinematics::Reason::kNone &&
-           group::WithinRanges(c.group, g, joints);
+    if (group::JointsAt(c.group, tool, present.joints, joints) != kinematics::Reason::kNone) return false;
+    // Mechanisms without a wrist take any orientation for theirs.
+    kinematics::Frame reached;
+    const bool turns = s.jog_axis > SelectAxis::kZ;
+    if (turns && (group::ToolAt(c.group, joints, reached) != kinematics::Reason::kNone ||
+                  !KDL::Equal(reached.M, tool.M, kOfTurn * kDegree * way))) {
+      return false;
+    }
+    return group::WithinRanges(c.group, g, joints);
   };
   double most = s.jog_axis <= SelectAxis::kZ ? kFarthest : kWidest;
   if (s.jog_axis == SelectAxis::kB) most = std::clamp(kUprightest - s.jog_sense * from.b, 0.0, kWidest);

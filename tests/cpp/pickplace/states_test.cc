@@ -278,6 +278,28 @@ TEST(Jogs, EachAxis) {
   }
 }
 
+// GR-48, PP-03: what the mechanism does not have is refused, and leaves nothing behind.
+TEST(Jogs, AxesThatThereAreNot) {
+  Cell cell;
+  cell.Start();
+  for (const SelectAxis axis : {SelectAxis::kA, SelectAxis::kB, SelectAxis::kC, SelectAxis::kA4, SelectAxis::kAux1}) {
+    for (const bool positive : {true, false}) {
+      SCOPED_TRACE(testing::Message() << static_cast<int>(axis) << ", positive " << positive);
+      cell.Do(Control{.select_axis = axis});
+      const Ticket jog = cell.Do(Jog{.positive = positive, .negative = !positive});
+      cell.Steps(2);
+      const bool of_tool = axis <= SelectAxis::kC;
+      EXPECT_EQ(cell.rig.lives[jog].error_id, of_tool ? ErrorId::kUnreachable : ErrorId::kNotGroupMember);
+      EXPECT_EQ(cell.state.state, M::kReady);
+      EXPECT_EQ(cell.state.warning, cell.rig.lives[jog].error_id);
+      cell.Do(Jog{});
+    }
+  }
+  cell.Do(Control{.select_axis = SelectAxis::kX});
+  cell.Do(Jog{.positive = true});
+  EXPECT_EQ(cell.state.state, M::kJogPos);
+}
+
 // PP-03: the direction chosen first stays; READY again only when both keys are released.
 TEST(Jogs, BothKeys) {
   Cell cell;
