@@ -1,7 +1,8 @@
 """Groups of movers, and environments.
 
 A mover of a group asks for the area that it needs before it moves ([what is reserved](../../docs/planar_groups.md)).
-Here one is refused, as another one stands on its way, and as it would leave the stators of the part it is on; then the other leaves.
+Here one is refused, as another one stands on its way, and as it would leave the stators of the part it is on; then the
+other leaves.
 """
 
 import takt
