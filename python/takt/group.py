@@ -50,6 +50,21 @@ class Group(Component, GroupCommands, GroupOutputs):
         return tuple(self.parts[number - 1] for number in numbers if number)
 
     @property
+    def zone_names(self) -> tuple[str, ...]:
+        """The zones of the machine file that the group has: its tool is there, or is to go there."""
+        names = [str(zone["name"]) for zone in self.session.machine.get("zones", [])]
+        return tuple(name for i, name in enumerate(names) if int(self.zones) >> i & 1)
+
+    @property
+    def waiting(self) -> str:
+        """Where it waits and for what: "at zone 'belt' for group 'left'". Empty: it does not wait at a zone."""
+        group, zone = int(self.waits_for), int(self.waits_zone)
+        if not group:
+            return ""
+        machine = self.session.machine
+        return f"at zone '{machine['zones'][zone - 1]['name']}' for group '{machine['groups'][group - 1]['name']}'"
+
+    @property
     def pose(self) -> Pose:
         """Where the tool centre point is commanded to be, in the machine coordinate system."""
         return self.x, self.y, self.z, self.a, self.b, self.c

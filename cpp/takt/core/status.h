@@ -120,6 +120,8 @@ enum class ErrorId : std::uint16_t {
   kStreamLate = 3121,   // a set point came after its time
   kStreamJump = 3122,   // a set point is further from the one before it than the axis can move in their time
   kStreamEnded = 3123,  // set points stopped coming
+  kZoneTaken = 3130,    // the tool came into a zone that another group has
+  kZoneCircle = 3131,   // groups would wait for one another at zones
   kGroupDeviation = 8001,
   kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual
   // A cam module is in error; numbers of the Flex Cam manual.

@@ -45,7 +45,8 @@ group::Context ContextOf(World& w, const AxesGroup& group) {
           w.feedback,
           w.look_aheads[index],
           CarriersFor(w.riders[index]),
-          group.params.workspace ? &w.questions : nullptr};
+          group.params.workspace ? &w.questions : nullptr,
+          {w.zones, w.group_states}};
 }
 
 pickplace::Context ContextOf(World& w, const PickPlace& module) {

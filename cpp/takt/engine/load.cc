@@ -56,6 +56,8 @@ class CrossCheck {
     CheckNames("groups", machine_.groups);
     CheckNames("paths", machine_.paths);
     CheckGroups();
+    CheckNames("zones", machine_.zones);
+    CheckZones();
     CheckNames("belts", machine_.belts);
     CheckNames("poses", machine_.poses);
     CheckBelts();
@@ -194,6 +196,41 @@ class CrossCheck {
         const std::string place = path + ".axes[" + std::to_string(k) + "]";
         CheckReference(place, group.axes[k], members);
         CheckMember(place, group.axes[k]);
+      }
+    }
+  }
+
+  // Zones and the groups that share them.
+  void CheckZones() {
+    if (machine_.zones.size() > group::kZones) {
+      Add("zones", "expected at most " + std::to_string(group::kZones) + " zones, found " +
+                       std::to_string(machine_.zones.size()));
+    }
+    if (!machine_.zones.empty() && machine_.groups.size() > group::kZoneGroups) {
+      Add("zones", "expected at most " + std::to_string(group::kZoneGroups) +
+                       " groups in a machine with zones, found " + std::to_string(machine_.groups.size()));
+    }
+    std::vector<std::string_view> groups, seen;
+    for (const group::GroupParams& group : machine_.groups) groups.push_back(group.name);
+    for (std::size_t i = 0; i < machine_.zones.size(); ++i) {
+      const group::ZoneParams& zone = machine_.zones[i];
+      const std::string path = "zones[" + std::to_string(i) + "]";
+      if (!zone.name.empty() && std::ranges::find(seen, zone.name) != seen.end()) {
+        Add(path + ".name", "expected each zone once, found " + Quoted(zone.name) + " again");
+      }
+      seen.push_back(zone.name);
+      std::vector<std::string_view> sharing;
+      for (std::size_t k = 0; k < zone.groups.size(); ++k) {
+        const std::string place = path + ".groups[" + std::to_string(k) + "]";
+        CheckReference(place, zone.groups[k], sharing, groups, "group");
+        for (const group::GroupParams& group : machine_.groups) {
+          if (group.name == zone.groups[k] && !group.kinematics) {
+            Add(place, "expected a group with kinematics, for only these have a tool, found " + Quoted(group.name));
+          }
+        }
+      }
+      if (zone.groups.size() == 1) {
+        Add(path + ".groups", "expected at least 2 groups, or none for all of them, found " + Quoted(zone.groups[0]));
       }
     }
   }

@@ -135,6 +135,7 @@ void describe(Description<Machine>& d) {
   d.defaulted<&M::flex_cams>("Cam modules.");
   d.defaulted<&M::groups>("Groups of axes.");
   d.defaulted<&M::paths>("Paths, for any group.");
+  d.defaulted<&M::zones>("Boxes that groups share: one is inside at a time.");
   d.defaulted<&M::belts>("Belts, and tables that turn.");
   d.defaulted<&M::poses>("Poses that come from elsewhere.");
   d.defaulted<&M::pick_and_place>("Pick and place modules.");

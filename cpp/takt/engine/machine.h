@@ -85,6 +85,7 @@ struct Machine {
   std::vector<flexcam::FlexCamParams> flex_cams;
   std::vector<group::GroupParams> groups;
   std::vector<group::PathParams> paths;
+  std::vector<group::ZoneParams> zones;
   std::vector<conveyor::BeltParams> belts;
   std::vector<conveyor::PoseParams> poses;
   std::vector<pickplace::PickPlaceParams> pick_and_place;

@@ -166,6 +166,7 @@ void World::MakeGroups(const Machine& machine) {
   TouchTypes(static_cast<const group::Command*>(nullptr));
   group_of.assign(machine.axes.size(), 0);
   for (const group::PathParams& path : machine.paths) paths.push_back(group::MakePathTable(path).table.value());
+  for (const group::ZoneParams& zone : machine.zones) zones.push_back(group::MakeZone(zone, machine.groups));
   for (const group::GroupParams& params : machine.groups) {
     AxesGroup& group = groups.emplace_back();
     group.params = params;

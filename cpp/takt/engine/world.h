@@ -115,6 +115,7 @@ struct World {
   std::vector<group::Outputs> group_outputs;
   std::vector<group::LookAhead> look_aheads;
   std::vector<group::PathTable> paths;
+  std::vector<group::Zone> zones;
   group::Questions questions;               // of all groups
   std::vector<std::uint32_t> group_of;      // the group that each axis is a member of, from 1; 0: none
   std::vector<std::uint8_t> group_stepped;  // in this cycle

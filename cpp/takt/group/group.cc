@@ -64,10 +64,15 @@ void EndCutShort(const Context& c, State& s) {
   ComeToRest(c, s);
 }
 
-bool IsThrough(const Context& c, const State& s) {
+// At the end of what is known of the path.
+bool StandsAtEnd(const Context& c, const State& s) {
   const trajectory::PathWindow& window = c.ahead.window;
   const bool last = s.pace.node + 1 >= window.known();
-  return s.pace.raw_stands && last && window.swept() && IsPlanned(c, s);
+  return s.pace.raw_stands && last && window.swept() && c.ahead.sampling >= c.ahead.end();
+}
+
+bool IsThrough(const Context& c, const State& s) {
+  return StandsAtEnd(c, s) && IsPlanned(c, s);
 }
 
 bool HasStopped(const axis::State& member) {
@@ -109,6 +114,11 @@ void MoveOn(const Context& c, State& s) {
   if (s.interrupted) {
     if (s.task == Task::kInterrupt) EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
     return;
+  }
+  // Before a zone it waits for, all that leads there is done.
+  while (s.waits_for != 0 && StandsAtEnd(c, s) && s.done < s.planning.move) {
+    Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
+    s.active = 0;
   }
   if (!IsThrough(c, s) || (rides && Slips(s))) return;
   if (c.ahead.cut_short) return EndCutShort(c, s);
@@ -220,6 +230,7 @@ void Step(const Context& c, State& s) noexcept {
     while (!s.ends && s.queue.count > 0) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
     ComeToRest(c, s);
   }
+  if (const ErrorId error = StepZones(c, s); error != ErrorId::kNone) Fail(c, error, s);
   WatchTracking(c, s);
   LeadSynced(c, s);
 }

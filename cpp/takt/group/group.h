@@ -17,6 +17,7 @@
 #include "takt/group/path_table.h"
 #include "takt/group/question.h"
 #include "takt/group/state.h"
+#include "takt/group/zones.h"
 #include "takt/kinematics/kinematics.h"
 
 namespace takt::group {
@@ -55,6 +56,7 @@ struct Context {
   LookAhead& ahead;
   Carriers carriers{};
   Questions* questions = nullptr;  // where paths are asked about before they start; null: nobody knows what is free
+  Zones zones{};
 };
 
 // As it stands when power comes on. `axes`: index of each member.

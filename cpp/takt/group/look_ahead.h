@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "takt/group/keep_up.h"
+#include "takt/group/params.h"
 #include "takt/group/request.h"
 #include "takt/kinematics/frames.h"
 #include "takt/path/segment.h"
@@ -51,7 +52,8 @@ struct Stretch {
   double build_up_s = 0;         // of accelerations, from one stop to the next
   // Numbers of the ride on which it is, and of the one from which the tool goes over to that on the way.
   std::uint64_t from_ride = 0, to_ride = 0;
-  double eta_begin = 0, eta_end = 0;  // s from the start of the engine, expected when it was planned
+  double eta_begin = 0, eta_end = 0;         // s from the start of the engine, expected when it was planned
+  std::array<double, kZones> zones_until{};  // of the segment: so far it meets these zones; 0: it does not
 
   double end() const noexcept { return begin + (to - from); }
 };
@@ -99,8 +101,11 @@ struct LookAhead {
   path::Point arch_begin, arch_end;
   path::Triple arch_up{};
   int arch_pieces = 0;
-  double arch_left = 0;  // mm, of the pieces behind the next one
-  double load = 0;       // the largest share of a limit that carriers take, of what was tried
+  double arch_left = 0;           // mm, of the pieces behind the next one
+  double load = 0;                // the largest share of a limit that carriers take, of what was tried
+  double tried_at_way = 0;        // of `next`, and
+  KDL::Vector tried_at;           // in the world: the place tried last
+  std::uint32_t tried_zones = 0;  // that a path meets, a mask
   // Where it ended before a path was tried that is not yet planned.
   kinematics::Joints tried_from{};
   kinematics::Frame tried_from_tool;

@@ -83,6 +83,9 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::second_part>("To what; 0: to nothing.");
   d.internal<&O::on_blend>("That is on the blend into the move, or into that element of a path.");
   d.internal<&O::checking>("It waits until the next path has been checked.");
+  d.internal<&O::zones>("Zones that it has, a mask: bit 0 is the first of the machine file.");
+  d.internal<&O::waits_for>("Number of the group that it waits for at a zone, from 1; 0: it does not wait.");
+  d.internal<&O::waits_zone>("Number of that zone, from 1; 0: none.");
 }
 
 }  // namespace takt::group

@@ -82,8 +82,11 @@ struct Outputs {
   // What meets what: numbers from 1 in workspace::PartNames; 0: none.
   std::uint32_t first_part = 0;
   std::uint32_t second_part = 0;
-  bool on_blend = false;  // on the blend into that move or element
-  bool checking = false;  // the next path is being checked
+  bool on_blend = false;         // on the blend into that move or element
+  bool checking = false;         // the next path is being checked
+  std::uint32_t zones = 0;       // that the group has, a mask
+  std::uint32_t waits_for = 0;   // number of the group that it waits for at a zone, from 1; 0: it does not wait
+  std::uint32_t waits_zone = 0;  // at this one, from 1
 };
 
 // Product coordinate systems by number, from 0.

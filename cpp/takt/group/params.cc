@@ -105,6 +105,25 @@ void describe(Description<PathElement>& d) {
                      [](const E& e) { return FitsShape(!e.points.empty(), e, ElementShape::kSpline); });
 }
 
+void describe(Description<ZoneCorner>& d) {
+  d.about("A corner of a zone, in the world.");
+  d.required<&ZoneCorner::x>(unit::mm, kPlaces, "X.");
+  d.required<&ZoneCorner::y>(unit::mm, kPlaces, "Y.");
+  d.required<&ZoneCorner::z>(unit::mm, kPlaces, "Z.");
+}
+
+void describe(Description<ZoneParams>& d) {
+  using Z = ZoneParams;
+  d.about("A box that groups share: the tool of one of them is inside at a time, the others wait outside.");
+  d.required<&Z::name>("How it is called.");
+  d.defaulted<&Z::groups>("Names of the groups that share it; none: all groups.");
+  d.required<&Z::lower>("Its corner with the least coordinates.");
+  d.required<&Z::upper>("Its corner with the greatest ones.");
+  d.defaulted<&Z::margin>(unit::mm, kLengths, "So much around it counts as inside: what grippers and workpieces need.");
+  d.rule<&Z::upper>("must lie above lower in X, Y and Z",
+                    [](const Z& z) { return z.lower.x < z.upper.x && z.lower.y < z.upper.y && z.lower.z < z.upper.z; });
+}
+
 void describe(Description<PathParams>& d) {
   using P = PathParams;
   d.about("A path for groups of axes: lines, arcs and splines, one behind the other.");

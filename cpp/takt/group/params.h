@@ -1,6 +1,7 @@
 // What a machine file says about one axes group, and about paths for groups.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -76,6 +77,25 @@ struct PathParams {
   std::vector<PathElement> elements;  // the first one begins where the group is, but for a spline's
 };
 
+inline constexpr std::size_t kZones = 8;  // of a machine
+
+struct ZoneCorner {
+  double x = 0;  // mm, in the world
+  double y = 0;
+  double z = 0;
+};
+
+// A box that several groups share: the tool of one of them is inside at a time (zones.h).
+struct ZoneParams {
+  std::string name;
+  std::vector<std::string> groups;  // names; empty: all
+  ZoneCorner lower;
+  ZoneCorner upper;
+  double margin = 5;  // mm around it that count as inside
+};
+
+void describe(Description<ZoneCorner>&);
+void describe(Description<ZoneParams>&);
 void describe(Description<PathLimits>&);
 void describe(Description<ToolLimits>&);
 void describe(Enumeration<AfterSync>&);

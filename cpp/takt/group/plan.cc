@@ -11,6 +11,7 @@
 #include "takt/group/rides.h"
 #include "takt/group/switches.h"
 #include "takt/group/track.h"
+#include "takt/group/zones.h"
 #include "takt/path/make.h"
 
 namespace takt::group {
@@ -140,6 +141,7 @@ void Begin(const Context& c, State& s) {
   s.blocked_element = 0;
   s.answer = {};
   s.refused = {};
+  s.zone_circle = false;
   if (s.planning.element == 0) {
     if (!c.ahead.known) {
       const End end = Present(c, s);
@@ -154,6 +156,7 @@ void Begin(const Context& c, State& s) {
     c.ahead.tried_from_eta = c.ahead.end_eta;
     c.ahead.tried_way = 0;
     c.ahead.arch_pieces = 0;
+    if (!s.planning.tried) c.ahead.tried_zones = 0;
   }
   BeginStretch(c, 0, s);
 }
@@ -298,6 +301,7 @@ void Verify(const Context& c, int& budget, State& s) {
       s.blocked_element = ElementOf(s);
       return Refuse(c, ErrorId::kAwayFromLimitOnly, s);
     }
+    NoteZones(c, s, motion.position, to, !p.verifying);
     c.ahead.near = motion.position;
     c.ahead.tried = point.slopes;
     if (!p.verifying || p.step == full) c.ahead.build_up.Add(point, c.ahead.window.limits());
@@ -315,11 +319,12 @@ void Verify(const Context& c, int& budget, State& s) {
     c.ahead.end_ride = c.ahead.next.to_ride;
     c.ahead.end_eta = c.ahead.next.eta_end;
     c.ahead.tried_way += c.ahead.next.to;
+    c.ahead.tried_zones |= ZonesOf(c.ahead.next);
     NextElement(c, s);
   } else if (!IsPath(s) && CanAsk(c, s)) {
     Ask(c, s);
   } else {
-    s.planning.stage = Stage::kJoin;
+    s.planning.stage = Stage::kEnter;
   }
 }
 
@@ -328,7 +333,7 @@ bool Check(const Context& c, State& s) {
   if (!IsAnswered(c, s)) return false;
   const PathChecked& answer = s.answer;
   if (answer.trouble == workspace::Trouble::kNone) {
-    s.planning.stage = IsPath(s) ? Stage::kIdle : Stage::kJoin;
+    s.planning.stage = IsPath(s) ? Stage::kIdle : Stage::kEnter;
     return true;
   }
   s.reason = answer.reason;
@@ -523,6 +528,32 @@ void Sweep(const Context& c, State& s) {
   }
 }
 
+// False: it waits for a zone. What is planned already is then sampled to its end, where the tool waits.
+bool MayEnter(const Context& c, State& s) {
+  const bool waited = s.waits_for != 0;
+  switch (EnterZones(c, s)) {
+    case Entry::kWaits:
+      c.ahead.corner.open = false;
+      if (c.ahead.sampling >= SampledTo(c, s)) return false;
+      s.planning.stage = Stage::kSample;
+      return true;
+    case Entry::kCircle:
+      s.zone_circle = true;
+      Refuse(c, ErrorId::kZoneCircle, s);
+      return true;
+    case Entry::kFree:
+      break;
+  }
+  // What carries its target has moved meanwhile.
+  const bool stale = waited && s.planning.element == 0 && IsCarried(c.ahead, c.ahead.next);
+  if (stale) {
+    BeginAgain(false, s);
+  } else {
+    s.planning.stage = Stage::kJoin;
+  }
+  return true;
+}
+
 bool HasRoom(const LookAhead& ahead) {
   if (ahead.count > 0 && ahead.rides_end - ahead[ahead.first].from_ride + 2 > kRides) return false;
   return ahead.count + 2 < ahead.stretches.size() && ahead.window.room() > kNodes / 4;
@@ -581,6 +612,10 @@ void Plan(const Context& c, State& s) noexcept {
         break;
       case Stage::kCheck:
         if (!Check(c, s)) return;
+        --budget;
+        break;
+      case Stage::kEnter:
+        if (!MayEnter(c, s)) return;
         --budget;
         break;
       case Stage::kJoin:

@@ -129,6 +129,9 @@ void Publish(const Context& c, const State& s, Outputs& out) noexcept {
   out.second_part = s.answer.second;
   out.on_blend = s.answer.on_blend;
   out.checking = s.planning.stage == Stage::kCheck;
+  out.zones = s.zones;
+  out.waits_for = s.waits_for;
+  out.waits_zone = s.waits_zone;
 }
 
 }  // namespace takt::group

@@ -19,6 +19,7 @@ void describe(Enumeration<Stage>& e) {
   e.value(Stage::kJoin, "join", "How it is joined to the path before.");
   e.value(Stage::kSample, "sample", "Nodes are made.");
   e.value(Stage::kSweep, "sweep", "Ceilings are worked out.");
+  e.value(Stage::kEnter, "enter", "Whether its zones are free.");
 }
 
 void describe(Description<Planning>& d) {
@@ -157,6 +158,14 @@ void describe(Description<State>& d) {
   d.internal<&S::closed>("Nothing moves so: switches of a module.");
   d.internal<&S::refused>("Closed directions that the last move wanted.");
   d.internal<&S::answer>("To the last question about a path.");
+  d.internal<&S::zones>("Zones that it has, a mask.");
+  d.internal<&S::zones_claimed>("Of those: for the move that is planned.");
+  d.internal<&S::claimed_for>("Number of that move.");
+  d.internal<&S::zones_wanted>("Zones that it waits for, a mask.");
+  d.internal<&S::waits_for>("Number of the group that it waits for, from 1; 0: none.");
+  d.internal<&S::waits_zone>("For this zone, from 1.");
+  d.internal<&S::waits_since>("Cycle.");
+  d.internal<&S::zone_circle>("The last move was refused, for groups would have waited for one another.");
   d.internal<&S::illegal_transitions>("Always 0.");
 }
 

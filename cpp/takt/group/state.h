@@ -29,7 +29,7 @@ struct Queue {
 };
 
 // Where the planning of a move has got to.
-enum class Stage : std::uint8_t { kIdle, kVerify, kCheck, kJoin, kSample, kSweep };
+enum class Stage : std::uint8_t { kIdle, kVerify, kCheck, kJoin, kSample, kSweep, kEnter };
 
 struct Planning {
   Stage stage = Stage::kIdle;
@@ -181,10 +181,19 @@ struct State {
   kinematics::Reason reason = kinematics::Reason::kNone;
   path::Problem problem = path::Problem::kNone;
   double blocked_at = 0;
-  std::uint32_t blocked_element = 0;      // of a path, from 1; 0: no path
-  Directions closed;                      // by switches that a module looks at: nothing moves so (switches.h)
-  Directions refused;                     // of those, and of the members' own: what the last move wanted
-  PathChecked answer;                     // to the last question
+  std::uint32_t blocked_element = 0;  // of a path, from 1; 0: no path
+  Directions closed;                  // by switches that a module looks at: nothing moves so (switches.h)
+  Directions refused;                 // of those, and of the members' own: what the last move wanted
+  PathChecked answer;                 // to the last question
+  // Zones (zones.h), as masks.
+  std::uint32_t zones = 0;                // that the group has
+  std::uint32_t zones_claimed = 0;        // of those: for the move that is planned, ...
+  std::uint64_t claimed_for = 0;          // ... with this number
+  std::uint32_t zones_wanted = 0;         // that it waits for, ...
+  std::uint32_t waits_for = 0;            // ... because this group has one or is before it, from 1; 0: it does not wait
+  std::uint32_t waits_zone = 0;           // this one, from 1
+  std::uint64_t waits_since = 0;          // cycle
+  bool zone_circle = false;               // the last move was refused for that
   std::uint64_t illegal_transitions = 0;  // always 0: the state table holds
 };
 

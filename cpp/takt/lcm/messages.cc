@@ -277,6 +277,9 @@ msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine:
   m.second_part = o.second_part;
   m.on_blend = o.on_blend;
   m.checking = o.checking;
+  m.zones = o.zones;
+  m.waits_for = o.waits_for;
+  m.waits_zone = o.waits_zone;
   return m;
 }
 

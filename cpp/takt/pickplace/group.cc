@@ -86,6 +86,7 @@ ErrorId TroubleOf(const group::State& g) noexcept {
     return g.refused.positive != 0 ? ErrorId::kModuleLimitSwitchPositive : ErrorId::kModuleLimitSwitchNegative;
   }
   if (g.error != ErrorId::kNone) return g.error;
+  if (g.zone_circle) return ErrorId::kZoneCircle;
   if (g.problem != path::Problem::kNone) return ErrorId::kPathGeometry;
   if (g.answer.trouble != workspace::Trouble::kNone) return ErrorId::kCollision;
   return g.reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;

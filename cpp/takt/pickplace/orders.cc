@@ -239,6 +239,7 @@ namespace {
 void Go(const Context& c, group::State& g, State& s) {
   Order& order = s.orders[0];
   if (g.done <= order.last) {
+    if (g.waits_for != 0) order.begin_cycle = c.group.cycle.count;  // the time at a zone is not that of the profile
     if (IsStatic(order)) return;
     const double left_s = TimeToGo(c, g, order, s);
     if (!StaysWithin(c, order, left_s + order.own.sync_time, s)) GiveUp(c, g, s);

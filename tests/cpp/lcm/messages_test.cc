@@ -310,6 +310,9 @@ TEST(Messages, GroupStateKeepsEveryNumber) {
           FIELD(group_state, second_part),
           FIELD(group_state, on_blend),
           FIELD(group_state, checking),
+          FIELD(group_state, zones),
+          FIELD(group_state, waits_for),
+          FIELD(group_state, waits_zone),
       },
       machine, "robot");
   EXPECT_EQ(static_cast<int>(group::GroupState::kErrorStop), msgs::group_state::STATE_GROUP_ERROR_STOP);
