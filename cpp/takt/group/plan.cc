@@ -616,7 +616,6 @@ void Plan(const Context& c, State& s) noexcept {
         break;
       case Stage::kEnter:
         if (!MayEnter(c, s)) return;
-        --budget;
         break;
       case Stage::kJoin:
         budget -= Join(c, s);
