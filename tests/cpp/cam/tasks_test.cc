@@ -15,7 +15,7 @@
 namespace takt::cam {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 constexpr std::array kAny = {Law::kQuintic,           Law::kModifiedSine,       Law::kModifiedTrapezoid,
                              Law::kCycloid,           Law::kPolynomial345,      Law::kPolynomial4567,
                              Law::kPolynomial8,       Law::kSineConstantCosine, Law::kTask,
@@ -83,9 +83,9 @@ TEST(Tasks, AreTheTextbooksLawsFromRestToRest) {
 // From one velocity to the same one the law rides on a straight line: its peak is the textbooks' factor times what is
 // left of the rise.
 TEST(Tasks, HaveTheirFactorsBetweenEqualVelocities) {
-  const std::pair<Law, double> factors[] = {{Law::kModifiedSine, 4 * kPi * kPi / (4 + kPi)},
-                                            {Law::kModifiedTrapezoid, 8 * kPi / (2 + kPi)},
-                                            {Law::kCycloid, 2 * kPi},
+  const std::pair<Law, double> factors[] = {{Law::kModifiedSine, 4 * kHalfTurn * kHalfTurn / (4 + kHalfTurn)},
+                                            {Law::kModifiedTrapezoid, 8 * kHalfTurn / (2 + kHalfTurn)},
+                                            {Law::kCycloid, 2 * kHalfTurn},
                                             {Law::kQuintic, 10 / std::sqrt(3.0)},
                                             {Law::kPolynomial4567, 84 * std::sqrt(5.0) / 25}};
   for (const auto& [law, factor] : factors) {
@@ -102,15 +102,16 @@ TEST(Tasks, DoubleHarmonicHasItsFactors) {
   for (const Law law : {Law::kDoubleHarmonic, Law::kDoubleHarmonicBack}) {
     const Table table = Made(Segments({To(1, 1, law)}));
     const Extremes extremes = ExtremesOf(table);
-    EXPECT_NEAR(extremes.dy.greatest.value, 3 * std::sqrt(3.0) * kPi / 8, 1e-9);
-    EXPECT_NEAR(std::max(extremes.ddy.greatest.value, -extremes.ddy.least.value), kPi * kPi, 1e-9);
-    EXPECT_NEAR(std::min(extremes.ddy.greatest.value, -extremes.ddy.least.value), 9 * kPi * kPi / 16, 1e-9);
+    EXPECT_NEAR(extremes.dy.greatest.value, 3 * std::sqrt(3.0) * kHalfTurn / 8, 1e-9);
+    EXPECT_NEAR(std::max(extremes.ddy.greatest.value, -extremes.ddy.least.value), kHalfTurn * kHalfTurn, 1e-9);
+    EXPECT_NEAR(std::min(extremes.ddy.greatest.value, -extremes.ddy.least.value), 9 * kHalfTurn * kHalfTurn / 16, 1e-9);
     double jerk = 0;
     for (int i = 0; i <= 100'000; ++i) jerk = std::max(jerk, std::abs(table.At(i / 100'000.0).dddy));
     EXPECT_NEAR(std::max(extremes.dddy.greatest.value, -extremes.dddy.least.value), jerk, 1e-6 * jerk);
     EXPECT_NEAR(table.At(0.25).y,
-                law == Law::kDoubleHarmonic ? (1 - std::cos(kPi / 4)) / 2 - (1 - std::cos(kPi / 2)) / 8
-                                            : 1 - ((1 - std::cos(3 * kPi / 4)) / 2 - (1 - std::cos(3 * kPi / 2)) / 8),
+                law == Law::kDoubleHarmonic
+                    ? (1 - std::cos(kHalfTurn / 4)) / 2 - (1 - std::cos(kHalfTurn / 2)) / 8
+                    : 1 - ((1 - std::cos(3 * kHalfTurn / 4)) / 2 - (1 - std::cos(3 * kHalfTurn / 2)) / 8),
                 1e-14);
   }
   // Rise and return make one cam without a jump.
@@ -160,8 +161,8 @@ TEST(Tasks, TheLeastPeakIsChosen) {
       }
     }
   }
-  EXPECT_NEAR(Peak(Made(Segments({To(1, 1, Law::kLeastAcceleration)})), false), 8 * kPi / (2 + kPi), 1e-9);
-  EXPECT_NEAR(Peak(Made(Segments({To(1, 1, Law::kLeastJerk)})), true), 4 * kPi * kPi, 1e-8);
+  EXPECT_NEAR(Peak(Made(Segments({To(1, 1, Law::kLeastAcceleration)})), false), 8 * kHalfTurn / (2 + kHalfTurn), 1e-9);
+  EXPECT_NEAR(Peak(Made(Segments({To(1, 1, Law::kLeastJerk)})), true), 4 * kHalfTurn * kHalfTurn, 1e-8);
 }
 
 TEST(Tasks, ChooseByTheirEndsAndTakeThemFromTheNeighbours) {
