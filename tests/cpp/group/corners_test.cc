@@ -12,9 +12,6 @@ namespace takt::group {
 namespace {
 
 constexpr double kSlack_s = 0.0015;  // a cycle, and rounding
-// What is rounded is chosen by an estimate of the time: so much longer than with stops it may take at worst.
-constexpr double kWorstOfStairs = 1.02;
-constexpr double kWorstOfPolylines = 1.4;
 
 using Corners = std::vector<KDL::Vector>;
 
@@ -135,7 +132,7 @@ Rig FastGantry(std::vector<PathTable> paths) {
   return Gantry(std::move(paths));
 }
 
-TEST(Corners, OfStairsAreNoSlowerThanStops) {
+TEST(Corners, OfStairsAreNeverSlowerThanStops) {
   double worst = 0;
   for (const double turn : {60.0, 90.0, 150.0}) {
     for (const double step : {2.0, 8.0, 30.0}) {
@@ -146,7 +143,7 @@ TEST(Corners, OfStairsAreNoSlowerThanStops) {
         const Went went = GoAlong(FlatBed, corners, Given::kPath, TransitionMode::kMaxCornerDeviation, deviation);
         ExpectWithinLimits(went);
         EXPECT_LE(went.off, deviation + 1e-3);
-        EXPECT_LE(went.time, kWorstOfStairs * stops + kSlack_s);
+        EXPECT_LE(went.time, stops + kSlack_s);
         worst = std::max(worst, went.time / stops);
       }
     }
@@ -171,16 +168,15 @@ TEST(Corners, OfRandomPolylinesKeepEveryLimit) {
     const Went went = GoAlong(make, corners, given, TransitionMode::kMaxCornerDeviation, deviation);
     ExpectWithinLimits(went);
     EXPECT_LE(went.off, deviation + 1e-3);
-    EXPECT_LE(went.time, kWorstOfPolylines * stops + kSlack_s);
+    EXPECT_LE(went.time, stops + kSlack_s);
     slowest = std::max(slowest, went.time / stops);
     sum += went.time / stops;
   }
-  EXPECT_LE(sum, count);
   std::cout << "polylines: " << sum / count << " of the time with stops, at worst " << slowest << "\n";
 }
 
 // Up, across, down: as rounded as may be, on every mechanism that carries a tool so.
-TEST(Corners, OfPickPathsAreNoSlowerThanStops) {
+TEST(Corners, OfPickPathsAreNeverSlowerThanStops) {
   const auto delta = [](std::vector<PathTable> paths) {
     KinematicsParams k;
     k.delta = {.base_radius = 200, .platform_radius = 45, .upper_arm = 235, .lower_arm = 800};
