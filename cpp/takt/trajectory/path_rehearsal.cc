@@ -157,7 +157,7 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
       shares.square = std::min(shares.square, speed * speed);
     }
   }
-  const double along = probed ? 0 : JerkUse(window, here_.pace, before, period_s);
+  const double along = JerkUse(window, here_.pace, before, period_s);
   if (shares.square >= 1 && shares.strength >= 1 && along <= 1 + kJerkRounding) return;
   if (!trouble_) {
     trouble_ = true;
