@@ -5,17 +5,14 @@
 
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
-#include "takt/group/rides.h"
 #include "takt/path/blend.h"
-#include "takt/trajectory/corner_time.h"
 
 namespace takt::group {
 
 namespace {
 
-constexpr int kBlendPlaces = 8;
+constexpr int kBlendPlaces = 6;
 constexpr int kHalvings = 8;
-constexpr double kQuicker = 0.95;  // than a stop, for what the estimate leaves out
 // Slower than this a joint without a blend is no better than a stop, mm/s.
 constexpr double kLeastJointSpeed = 1;
 constexpr double kRounding = 1e-9;
@@ -28,6 +25,13 @@ constexpr double kMostUneven = 2.5;
 // move.
 bool Blends(const Request& move, std::uint32_t element) {
   return move.transition_mode != TransitionMode::kNone && (move.blends() || element > 0);
+}
+
+// Whether the path goes on behind this stretch without a stop, as far as is known.
+bool GoesOn(const Context& c, const State& s) {
+  const Request& move = MoveAt(s, s.planning.move);
+  if (s.planning.element + 1 < ElementsOf(c, move)) return true;
+  return s.planning.move + 1 < s.done + s.queue.count && MoveAt(s, s.planning.move + 1).blends();
 }
 
 double BlendVelocity(const Request& move, double before, double after) {
@@ -56,47 +60,20 @@ bool MakeBlend(const Stretch& before, const Stretch& after, double first, double
          path::Problem::kNone;
 }
 
-// The slowest speed, squared, that the limits ask for on a blend; negative where it cannot be gone. `drift`: also for
-// the jerk of bends that are gone steadily.
-double SquareOn(const Context& c, const State& s, const Stretch& blend, bool drift = false) {
-  const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
+// The slowest speed, squared, that the limits ask for on a blend; negative where it cannot be gone.
+double SquareOn(const Context& c, const State& s, const Stretch& blend) {
   double square = std::numeric_limits<double>::infinity();
   kinematics::Joints near = c.ahead.end_joints;
-  trajectory::PathPoint before;
   for (int i = 0; i <= kBlendPlaces; ++i) {
     trajectory::PathPoint point;
     point.limits = blend.limits;
-    point.s = blend.segment.length * i / kBlendPlaces;
     kinematics::JointMotion motion;
-    if (SlopesOn(c, s, blend, point.s, near, point, motion) != kinematics::Reason::kNone) return -1;
+    const double way = blend.segment.length * i / kBlendPlaces;
+    if (SlopesOn(c, s, blend, way, near, point, motion) != kinematics::Reason::kNone) return -1;
     near = motion.position;
-    square = std::min(square, trajectory::SquareAt(point, limits, 1));
-    if (drift && i > 0) square = std::min(square, trajectory::DriftSquare(before, point, limits));
-    before = point;
+    square = std::min(square, trajectory::SquareAt(point, c.ahead.window.limits(), 1));
   }
   return square;
-}
-
-trajectory::AlongPath AlongLine(const Context& c, const State& s, const Stretch& line, double way) {
-  trajectory::PathPoint point;
-  point.limits = line.limits;
-  kinematics::JointMotion motion;
-  SlopesOn(c, s, line, way, c.ahead.end_joints, point, motion);
-  return trajectory::AlongLine(point, c.ahead.window.limits());
-}
-
-// Whether the motion past a blend, at `speed` [mm/s] on it, is quicker than a stop at the corner.
-bool IsQuickerThanStop(const Context& c, const State& s, const Stretch& before, const Stretch& after,
-                       const CornerBlend& blend, double speed) {
-  const double first = before.segment.length, second = after.segment.length;
-  const trajectory::AlongPath one = AlongLine(c, s, before, first), two = AlongLine(c, s, after, 0);
-  const double stops = trajectory::HalfLineWithStops(first, one) + trajectory::HalfLineWithStops(second, two);
-  const double passes = trajectory::HalfLineWithBlends(first, blend.first, speed, one) +
-                        trajectory::HalfLineWithBlends(second, blend.second, speed, two) +
-                        blend.stretch.segment.length / speed;
-  // The other ends of both lines may be stops.
-  const double lost = trajectory::LossFromRest(first, one) + trajectory::LossFromRest(second, two);
-  return passes + lost < kQuicker * stops;
 }
 
 // From the corner; 0: there is no transition.
@@ -235,27 +212,6 @@ bool MakeRound(const OpenCorner& corner, const path::Segment& second, double to,
   return corner.deviation >= kNoEnd || path::Deviation(corner.first, second, out) <= corner.deviation;
 }
 
-// Whether the next corner's blend may begin where that of this one would end, in the middle of the line between.
-bool MayBecomeCurve(const Stretch& before, const Stretch& after, const CornerBlend& d) {
-  if (!d.to_middle || !path::BendBetween(before.segment, before.segment, after.segment)) return false;
-  const OpenCorner corner{true, before.segment, before.segment.length - d.first, {}, d.reach, d.deviation};
-  path::Segment made;
-  return MakeRound(corner, after.segment, after.segment.length / 2, {}, made);
-}
-
-// Whether a blend from chord to chord is quicker than a stop at its corner.
-bool IsQuickerThanStop(const Context& c, const State& s, const OpenCorner& corner, const Stretch& blend,
-                       const Stretch& line, double speed) {
-  Stretch before = line;
-  before.segment = corner.first;
-  const double first = corner.first.length, second = line.segment.length;
-  const trajectory::AlongPath one = AlongLine(c, s, before, first), two = AlongLine(c, s, line, 0);
-  const double stops = trajectory::HalfLineWithStops(first, one) + trajectory::HalfLineWithStops(second, two);
-  const double passes =
-      trajectory::HalfLineWithBlends(first, first - corner.from, speed, one) + blend.segment.length / speed;
-  return passes < stops;
-}
-
 // Instead of a blend of its own, one that goes on from that of the last corner in the middle of the stretch between
 // them, with the same curvature. `blend` lacks its segment.
 bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, int& work) {
@@ -280,12 +236,9 @@ bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, 
     if (made || *bend == path::Triple{}) break;
   }
   work += 2 * (kBlendPlaces + 1);
-  const double square = made ? SquareOn(c, s, last, true) : 0;
-  if (!(square > 0) || !(SquareOn(c, s, blend) > 0)) return false;
-  if (d.may_stop && !IsQuickerThanStop(c, s, ahead.corner, last, ahead[last_one + 1], std::sqrt(square))) return false;
+  if (!made || !(SquareOn(c, s, last) > 0) || !(SquareOn(c, s, blend) > 0)) return false;
   if (!CutAt(c, s, last.begin, last_one)) return false;
   last.to = last.segment.length;
-  last.slower = false;
   ahead[last_one] = last;
   --ahead.count;  // nothing is left of the line
   blend.to = blend.segment.length;
@@ -329,10 +282,6 @@ bool FindDistances(const Context& c, const State& s, const Request& move, std::u
   out.deviation = d.deviation;
   // One that the deviation keeps short of the middle of both lines is never made again: nothing has to wait for it.
   out.to_middle = d.first >= room.first || d.second >= room.second;
-  // Where a speed at the corner is asked for it is no question of time.
-  const bool by_distance = move.transition_mode == TransitionMode::kCornerDistance ||
-                           move.transition_mode == TransitionMode::kMaxCornerDeviation;
-  out.may_stop = by_distance && !IsCarried(c.ahead, before) && !IsCarried(c.ahead, after);
   return d.first > 0 && d.second > 0;
 }
 
@@ -341,12 +290,7 @@ bool MakeSegment(const Context& c, const State& s, const Stretch& before, const 
   work += kBlendPlaces + 1;
   if (!MakeBlend(before, after, out.first, out.second, out.stretch.segment)) return false;
   out.stretch.to = out.stretch.segment.length;
-  const double square = SquareOn(c, s, out.stretch, true);
-  if (!(square > 0)) return false;
-  if (!out.may_stop) return true;
-  work += 2;
-  out.stretch.slower = !IsQuickerThanStop(c, s, before, after, out, std::sqrt(square));
-  return !out.stretch.slower || MayBecomeCurve(before, after, out);
+  return SquareOn(c, s, out.stretch) > 0;
 }
 
 bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, int& work) {
@@ -373,26 +317,6 @@ bool FindBlend(const Context& c, const State& s, const Request& move, std::uint3
   return FindDistances(c, s, move, element, before, after, work, out) && MakeSegment(c, s, before, after, work, out);
 }
 
-bool StopInstead(LookAhead& ahead, std::uint64_t blend) noexcept {
-  if (blend <= ahead.first || blend + 1 >= ahead.end()) return false;
-  for (std::uint64_t i = blend - 1; i < ahead.end(); ++i) {
-    if (GoesOver(ahead[i])) return false;  // its rides know where it begins
-  }
-  Stretch& before = ahead[blend - 1];
-  before.to = before.segment.length;
-  before.stops = true;
-  Stretch& after = ahead[blend + 1];
-  after.from = 0;
-  after.goes_on = false;
-  if (blend + 2 == ahead.end()) ahead.corner.open = false;
-  --ahead.count;
-  for (std::uint64_t i = blend; i < ahead.end(); ++i) {
-    ahead[i] = ahead[i + 1];
-    ahead[i].begin = ahead[i - 1].end();
-  }
-  return true;
-}
-
 int Join(const Context& c, State& s) noexcept {
   LookAhead& ahead = c.ahead;
   const Request& move = MoveAt(s, s.planning.move);
@@ -412,11 +336,15 @@ int Join(const Context& c, State& s) noexcept {
     goes_on = goes_on || blended;
     if (!goes_on) {
       before.stops = true;
-      if (before.begun && ahead.last.s >= before.end()) ahead.window.Stay();
+      if (ahead.last.s >= before.end()) ahead.window.Stay();
     }
   }
-  ahead.next.build_up = ahead.build_up;
-  ahead.next.build_up_s = goes_on ? ahead[ahead.end() - 1].build_up_s : 0;
+  if (!goes_on) {
+    const double length = GoesOn(c, s) ? kNoEnd : ahead.next.segment.length;
+    ahead.next.build_up_s = ahead.build_up.For(length, c.cycle.period_s, trajectory::kMostBuildUpCycles);
+  } else {
+    ahead.next.build_up_s = ahead[ahead.end() - 1].build_up_s;
+  }
   ahead.next.goes_on = goes_on;
   if (!follows) {
     ahead.last_joints = ahead.end_joints;

@@ -10,10 +10,6 @@ inline constexpr double kNoEnd = 1e12;  // mm
 // Appends `ahead.next`, and a blend before it where there is one. How many inverses of the kinematics that took.
 int Join(const Context& c, State& s) noexcept;
 
-// Takes a blend out again, of which nothing is sampled: the motion stops at its corner. False, and nothing is changed:
-// the line before it is forgotten already, or the path goes over from ride to ride behind it.
-bool StopInstead(LookAhead& ahead, std::uint64_t blend) noexcept;
-
 // The blend that a move, or an element of a path, asks for at the corner before it.
 struct CornerBlend {
   Stretch stretch;
@@ -22,7 +18,6 @@ struct CornerBlend {
   double reach = 0;           // what these may be at most ...
   double deviation = kNoEnd;  // ... and how far from the lines it
   bool to_middle = false;     // of one of the lines
-  bool may_stop = false;      // the motion stops at the corner instead where that is quicker
 };
 // False: there is none. Depends on nothing but the arguments, the limits in `ahead.window` and where the corner is, in
 // `ahead.end_joints`: what was checked is what is gone, but for chords of a curve, whose blends are made again from

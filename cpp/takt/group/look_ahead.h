@@ -46,10 +46,8 @@ struct Stretch {
   bool goes_on = false;        // from the stretch before, without a corner
   bool bends_at_ends = false;  // it is rounded also where it goes on from a line
   bool begun = false;          // its first node is there
-  bool slower = false;         // a blend that is slower than a stop, unless it becomes part of a curve
   trajectory::AlongPath limits;
-  trajectory::BuildUp build_up;  // from places on it
-  double build_up_s = 0;         // of accelerations, from one stop to the next
+  double build_up_s = 0;  // of accelerations, from one stop to the next
   // Numbers of the ride on which it is, and of the one from which the tool goes over to that on the way.
   std::uint64_t from_ride = 0, to_ride = 0;
   double eta_begin = 0, eta_end = 0;         // s from the start of the engine, expected when it was planned

@@ -27,8 +27,7 @@ constexpr std::size_t kSweepNodes = 512;
 constexpr int kRehearsed = 24;         // cycles of the motion ahead
 constexpr int kRehearsedIfCostly = 4;  // with an inverse of a chain for each
 constexpr std::size_t kSpareNodes = 4;
-constexpr std::uint64_t kRunStretches = 8;  // of a short run are waited for before it begins
-constexpr double kLeastStep = 1e-3;         // mm
+constexpr double kLeastStep = 1e-3;  // mm
 constexpr int kLeastPlaces = 4;
 constexpr int kMostPlaces = 64;
 // What waits to be sampled is, as soon as the motion might have to brake for it within so many nodes and seconds: in
@@ -418,59 +417,12 @@ bool IsTransition(const Stretch& stretch) {
   return stretch.from_ride != stretch.to_ride;
 }
 
-// Whether what is planned next may go on from the path without a stop.
-bool MayGoOn(const State& s) {
-  if (s.planning.move >= s.done + s.queue.count) return false;
-  return (s.planning.element > 0 && !Tries(s)) || MoveAt(s, s.planning.move).blends();
-}
-
-// And will be planned at once.
-bool GoesOnAtOnce(const Context& c, const State& s) {
-  return MayGoOn(s) && !Tries(s) && !HasWorkspace(c, s) && !WaitsForTracking(s, MoveAt(s, s.planning.move));
-}
-
-// Where the run from one stop to the next begins that the last stretch belongs to, while accelerations that suit its
-// length cannot be chosen yet: it is short, and may become longer. Else behind the last stretch.
-std::uint64_t OpenRun(const Context& c, const State& s) {
-  const LookAhead& ahead = c.ahead;
-  if (!GoesOnAtOnce(c, s)) return ahead.end();
-  double length = 0;
-  for (std::uint64_t i = ahead.end(); i > ahead.first && ahead.end() - i < kRunStretches; --i) {
-    const Stretch& stretch = ahead[i - 1];
-    if (stretch.begun || IsCarried(ahead, stretch)) break;
-    length += stretch.to - stretch.from;
-    if (!stretch.goes_on) return length < stretch.build_up.FullLength() ? i - 1 : ahead.end();
-  }
-  return ahead.end();
-}
-
-// Settles where the run that begins with a stretch ends, and in what time accelerations build up on it.
-void BeginRun(const Context& c, std::uint64_t first, const State& s) {
-  LookAhead& ahead = c.ahead;
-  const bool more = MayGoOn(s);
-  double length = ahead[first].to - ahead[first].from;
-  std::uint64_t behind = first + 1;
-  for (; behind < ahead.end() && ahead[behind].goes_on; ++behind) {
-    const bool open = more && ahead.corner.open && behind + 2 == ahead.end();
-    if (ahead[behind].slower && !open && StopInstead(ahead, behind)) {
-      length = ahead[behind - 1].end() - ahead[first].begin;
-      break;
-    }
-    length += ahead[behind].to - ahead[behind].from;
-  }
-  const bool carried = behind > first + 1 && IsCarried(ahead, ahead[first]);
-  if ((behind == ahead.end() && more) || carried) length = kNoEnd;
-  const double time = ahead[first].build_up.For(length, c.cycle.period_s, trajectory::kMostBuildUpCycles);
-  for (std::uint64_t i = first; i < behind; ++i) ahead[i].build_up_s = time;
-}
-
 // Behind the last stretch that is to be sampled now. A blend that the next move may make again, and what is behind it,
 // wait for that as long as there is time.
 std::uint64_t SampledTo(const Context& c, const State& s) {
   const LookAhead& ahead = c.ahead;
   const bool more = s.planning.move < s.done + s.queue.count;
   if (ahead.cut_short || ahead.count == 0) return ahead.end();
-  if (const std::uint64_t run = OpenRun(c, s); run < ahead.end()) return run;
   // How the path goes over from ride to ride depends on where that ends.
   if (more && (s.planning.element > 0 || MoveAt(s, s.planning.move).blends())) {
     std::uint64_t open = ahead.end();
@@ -484,7 +436,7 @@ std::uint64_t SampledTo(const Context& c, const State& s) {
 
 void Sample(const Context& c, int& budget, State& s) {
   LookAhead& ahead = c.ahead;
-  std::uint64_t end = SampledTo(c, s);
+  const std::uint64_t end = SampledTo(c, s);
   while (budget > 0 && ahead.sampling < end) {
     if (ahead.window.room() < kSpareNodes) {  // the rest when there is room again
       ahead.window.Close();
@@ -492,16 +444,6 @@ void Sample(const Context& c, int& budget, State& s) {
       return;
     }
     Stretch& stretch = ahead[ahead.sampling];
-    if (!stretch.begun && stretch.slower) {
-      stretch.slower = false;
-      if (StopInstead(ahead, ahead.sampling)) --ahead.sampling;
-      end = SampledTo(c, s);
-      continue;
-    }
-    if (!stretch.begun && !stretch.goes_on) {
-      BeginRun(c, ahead.sampling, s);
-      end = SampledTo(c, s);
-    }
     ahead.window.SetBuildUp(stretch.build_up_s);
     if (!stretch.begun) {
       stretch.begun = true;
