@@ -158,12 +158,6 @@ void Advance(const PathWindow& window, double wish, double period_s, PathPace& p
   while (pace.passed < pace.node && window[pace.passed + 1].at.s <= pace.now.position) ++pace.passed;
 }
 
-double JerkUse(const PathWindow& window, const PathPace& pace, const KinematicState& before, double period_s) noexcept {
-  double jerk = window[pace.passed].at.limits.jerk;
-  if (pace.passed + 1 < window.known()) jerk = std::min(jerk, window[pace.passed + 1].at.limits.jerk);
-  return std::abs(pace.now.acceleration - before.acceleration) / (period_s * jerk);
-}
-
 bool GoesOn(const PathWindow& window, const PathPace& pace, double period_s) noexcept {
   if (pace.raw_stands || pace.node + 1 >= window.known() || window[pace.node].stop) return true;
   const PathNode& node = window[pace.node];

@@ -43,10 +43,6 @@ void BeginAt(const PathWindow& window, std::uint64_t node, double period_s, Path
 inline constexpr double kFullSpeed = std::numeric_limits<double>::infinity();
 void Advance(const PathWindow& window, double wish, double period_s, PathPace& pace) noexcept;
 
-inline constexpr double kJerkRounding = 1e-9;  // of a limit
-// The share that the last cycle used of the jerk allowed along the path; `before`: PathPace::now before it.
-double JerkUse(const PathWindow& window, const PathPace& pace, const KinematicState& before, double period_s) noexcept;
-
 // Whether it stays beneath the ceilings with an acceleration that changes no faster than it may.
 bool GoesOn(const PathWindow& window, const PathPace& pace, double period_s) noexcept;
 

@@ -53,7 +53,7 @@ void PathRehearsal::StartFrom(const PathPace& pace, std::uint64_t cycle) noexcep
   started_ = true;
   marked_ = weakened_ = trouble_ = again_ = false;
   here_.accelerations.fill(std::numeric_limits<double>::quiet_NaN());
-  tries_ = path_tries_ = 0;
+  tries_ = 0;
   tried_to_ = pace.raw.position;
   saved_.fill(here_);
   until_save_ = 0;
@@ -157,16 +157,12 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
       shares.square = std::min(shares.square, speed * speed);
     }
   }
-  const double along = JerkUse(window, here_.pace, before, period_s);
-  if (shares.square >= 1 && shares.strength >= 1 && along <= 1 + kJerkRounding) return;
+  if (shares.square >= 1 && shares.strength >= 1) return;
   if (!trouble_) {
     trouble_ = true;
     from_ = here_.pace.last[here_.pace.oldest].position;
     shares_ = {};
-    fastest_ = 0;
-    for (std::uint32_t i = 0; i < here_.pace.cycles; ++i) fastest_ = std::max(fastest_, here_.pace.last[i].velocity);
   }
-  fastest_ = std::max(fastest_, here_.pace.raw.velocity);
   to_ = here_.pace.raw.position;
   const auto take = [](double& share, double more) {
     if (more < 1) share = std::min(share, std::max(kLeastShare, more - kMore));
@@ -174,11 +170,6 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
   take(shares_.square, shares.square);
   take(shares_.acceleration, shares.acceleration);
   take(shares_.strength, shares.strength);
-  if (along > 1 + kJerkRounding) {
-    // It sped up for so long that it has to brake before that has left the mean.
-    const double slower = std::max(kLeastShare, 1 / (along * along) - kMore);
-    shares_.most = std::min(shares_.most, slower * fastest_ * fastest_);
-  }
 }
 
 // To the last place from which what is changed now makes no difference.
@@ -195,15 +186,12 @@ void PathRehearsal::GoBack(const PathWindow& window) noexcept {
 
 void PathRehearsal::EndTrouble(PathWindow& window, const PathPace& now, double period_s) noexcept {
   trouble_ = false;
-  // What coordinates are asked for comes first: less speed may be all that it takes.
-  const bool of_path = shares_.square >= 1 && shares_.strength >= 1;
-  if (!of_path) shares_.most = CoordinateLimits::kNone;
   window.Weaken(from_, to_, now.node + 1, shares_);
   if (!GoesOn(window, now, period_s)) return window.TakeBack();  // it is too near
-  if (!of_path) weakened_ = true;
-  if (from_ > tried_to_) tries_ = path_tries_ = 0;
+  weakened_ = true;
+  if (from_ > tried_to_) tries_ = 0;
   tried_to_ = std::max(tried_to_, to_);
-  again_ = (of_path ? path_tries_ : tries_)++ < kTries;
+  again_ = tries_++ < kTries;
 }
 
 }  // namespace takt::trajectory

@@ -68,10 +68,8 @@ class PathRehearsal {
   bool trouble_ = false;
   double from_ = 0, to_ = 0;
   double tried_to_ = 0;  // up to here it was gone again ...
-  int tries_ = 0;        // ... so often for coordinates ...
-  int path_tries_ = 0;   // ... and for the jerk along the path
+  int tries_ = 0;        // ... so often
   PathShares shares_;
-  double fastest_ = 0;  // mm/s, of the raw motion there
 };
 
 }  // namespace takt::trajectory

@@ -57,13 +57,6 @@ class BuildUp {
     return {velocity_ / n, acceleration_ / n, acceleration_ / n, jerk_ / n};
   }
 
-  // The length of a way on which all that may be can be built up.
-  double FullLength() const noexcept {
-    const double n = std::max(count_, 1);
-    const double time = time_ / n;
-    return 2 * jerk_ / n * time * time * time;
-  }
-
   // Whole cycles. Longer than it takes to build up what may be is of no use, nor, on a short way, longer than it takes
   // to build up what can be used: a quarter of the least time from rest to rest with that jerk.
   double For(double length, double period_s, double most_cycles) const noexcept {

@@ -27,7 +27,7 @@ Third ThirdBetween(const PathPoint& before, const PathPoint& after, const Coordi
   return third;
 }
 
-double SquareOfDrift(const Third& third, const CoordinateLimits& limits, double left) {
+double DriftSquare(const Third& third, const CoordinateLimits& limits, double left) {
   double cube = CoordinateLimits::kNone;
   for (std::size_t k = 0; k < limits.count; ++k) {
     const double jerk = kDriftShare * left * limits.of[k].jerk;
@@ -38,10 +38,6 @@ double SquareOfDrift(const Third& third, const CoordinateLimits& limits, double 
 }
 
 }  // namespace
-
-double DriftSquare(const PathPoint& before, const PathPoint& after, const CoordinateLimits& limits) noexcept {
-  return SquareOfDrift(ThirdBetween(before, after, limits), limits, std::min(before.left, after.left));
-}
 
 PathWindow::PathWindow(std::size_t capacity, const CoordinateLimits& limits, double period_s)
     : nodes_(capacity), limits_(limits), period_s_(period_s), build_up_s_(period_s) {
@@ -64,7 +60,7 @@ void PathWindow::Append(const PathPoint& point, bool stop) noexcept {
   if (!IsFirst(end_)) {
     PathNode& before = Node(end_ - 1);
     third = ThirdBetween(before.at, point, limits_);
-    const double square = SquareOfDrift(third, limits_, std::min(before.at.left, point.left));
+    const double square = DriftSquare(third, limits_, std::min(before.at.left, point.left));
     node.own = std::min(node.own, square);
     before.own = std::min(before.own, square);
     before.cap = std::min(before.cap, square);
@@ -139,8 +135,8 @@ void PathWindow::Weaken(double from, double to, std::uint64_t first, const PathS
   while (i > first && (i == behind || Node(i).at.s > from) && kept_.size() < kKept) {
     PathNode& node = Node(--i);
     kept_.push_back(node);
-    node.own = std::min(node.own * shares.square, shares.most);
-    node.cap = std::min(node.cap * shares.square, shares.most);
+    node.own *= shares.square;
+    node.cap *= shares.square;
     for (std::size_t k = 0; k < node.bounds.count; ++k) node.bounds.reach[k] *= shares.acceleration;
     for (Strength* strength : {&node.own_strength, &node.bounds.strength}) {
       strength->at_rest *= shares.strength;

@@ -24,10 +24,9 @@ namespace takt::trajectory {
 
 // What is left of the limits of a stretch.
 struct PathShares {
-  double square = 1;                      // of the speed
-  double acceleration = 1;                // of the coordinates
-  double strength = 1;                    // of what their jerk allows
-  double most = CoordinateLimits::kNone;  // the square of the speed itself, at most
+  double square = 1;        // of the speed
+  double acceleration = 1;  // of the coordinates
+  double strength = 1;      // of what their jerk allows
 };
 
 struct PathNode {
@@ -42,10 +41,6 @@ struct PathNode {
   double coast = 0;    // from where there is time to take an acceleration back before
   bool stop = false;   // the motion stops here; what comes behind begins with a node at the same place
 };
-
-// The square of the speed at which bends alone, gone steadily, use up the share of the coordinates' jerk that the
-// window leaves to them between two points.
-double DriftSquare(const PathPoint& before, const PathPoint& after, const CoordinateLimits& limits) noexcept;
 
 // A queue of nodes. Takes memory only when it is made.
 class PathWindow {
