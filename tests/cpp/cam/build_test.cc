@@ -50,7 +50,7 @@ TEST(BuildPoints, RefusesWhatIsNoCam) {
   EXPECT_THAT(Errors(Points(kLinear, {{0, 0, 1}, {1, 0}})),
               ElementsAre("points[0].v: expected no velocity in a linear cam, found 1"));
   EXPECT_THAT(Errors(Points(kSpline, {{0, 0, 1, 2}, {1, 0}})),
-              ElementsAre("points[0].a: expected no acceleration but in a quintic cam, found 2"));
+              ElementsAre("points[0].a: expected no acceleration but in a quintic or monotone cam, found 2"));
   EXPECT_THAT(Errors(Points(kLinear, {{0, 0}, {1e-310, 0}})),
               ElementsAre(HasSubstr("a length that a number can hold")));
   EXPECT_THAT(Errors(Points(kLinear, {{-1e308, 0}, {1e308, 0}})),

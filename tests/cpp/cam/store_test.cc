@@ -58,7 +58,6 @@ TEST(Store, NamesStandForTheLastCamAndWhatIsInUseStays) {
   Dice dice(88);
   std::map<std::string, double> ends;  // of the cam that each name stands for
   std::map<std::uint32_t, double> in_use;
-  int refused = 0;
   for (int step = 0; step < 4000; ++step) {
     const std::string name = "cam " + std::to_string(dice.Whole(40));
     switch (dice.Whole(6)) {
@@ -84,7 +83,6 @@ TEST(Store, NamesStandForTheLastCamAndWhatIsInUseStays) {
           ends[name] = step + 1;
         } else {
           EXPECT_EQ(static_cast<MakingProblem>(event.value), MakingProblem::kNoRoom);
-          ++refused;
         }
       }
     }
@@ -95,7 +93,6 @@ TEST(Store, NamesStandForTheLastCamAndWhatIsInUseStays) {
     }
     for (const auto& [index, end] : in_use) ASSERT_EQ(bench.store.tables[index].At(1).y, end);
   }
-  EXPECT_GT(refused, 0);  // there were more than it has room for
   EXPECT_EQ(Find(bench.store.tables, "cam"), 0u);  // that of the machine file
   std::set<std::uint64_t> numbers;
   for (const Table& table : bench.store.tables) {

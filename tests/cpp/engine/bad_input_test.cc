@@ -17,6 +17,7 @@ std::vector<axis::Command> GoodAxisCommands() {
   const Name master = Name::Of("a0");
   return {axis::MoveAbsolute{.position = 10},
           axis::MoveRelative{.distance = 10},
+          axis::CamAdd{.cam = Name::Of("feed")},
           axis::MoveAdditive{.distance = 10},
           axis::MoveVelocity{.velocity = 10},
           axis::MoveContinuousAbsolute{.position = 10, .end_velocity = 1},
@@ -151,7 +152,8 @@ TEST(BadInput, KnowsEveryCommand) {
     return index == axis::Command(axis::Power{}).index() || index == axis::Command(axis::Reset{}).index() ||
            index == axis::Command(axis::Straighten{}).index() ||  // none that must be there: refused as a whole
            index == axis::Command(axis::GearOut{}).index() || index == axis::Command(axis::CamTableSelect{}).index() ||
-           index == axis::Command(axis::CamOut{}).index() || index == axis::Command(axis::StepAbsolute{}).index() ||
+           index == axis::Command(axis::CamOut{}).index() || index == axis::Command(axis::CamRemove{}).index() ||
+           index == axis::Command(axis::StepAbsolute{}).index() ||
            index == axis::Command(axis::ReadParameter{}).index() ||
            index == axis::Command(axis::AbortTrigger{}).index() ||
            index == axis::Command(axis::AbortPassiveHoming{}).index() ||

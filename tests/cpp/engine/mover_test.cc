@@ -199,7 +199,9 @@ TEST(MoverMachine, BadNumbersAreRefusedInTheCycle) {
 // What stops everything stops movers, with their maximum dynamics.
 TEST(MoverMachine, WhatStopsEverythingStopsMovers) {
   const auto stops = [](const auto& how, ObjectState then) {
-    Engine engine(PlaneMachine());
+    std::string text = kPlaneText;  // with nobody in the way
+    text.replace(text.find("x: 300, y: 60"), 13, "x: 300, y: 900");
+    Engine engine(MachineOf(text));
     engine.Submit(To(0, mover::Enable{}));
     for (int i = 0; i < 5; ++i) engine.RunCycle();
     EXPECT_FALSE(engine.all_disabled());

@@ -61,7 +61,7 @@ TEST_F(OnTracks, TheTimeOfAMoveIsKnown) {
     const double takes = Value(move);
     const FeedbackEvent end = rig.End(move);
     EXPECT_EQ(end.error, ErrorId::kNone);
-    EXPECT_NEAR(takes, end.value, 0.0025) << to;
+    EXPECT_NEAR(takes, end.value, 0.01 * end.value) << to;  // in bends its dynamics may be softer than it reckoned with
   }
   // On the way, with dynamics that do not suffice for what it does: about.
   rig.Give("one", "move_on_track", "{position: 2500}");

@@ -109,7 +109,7 @@ movers:
   - {name: other, reference: two, initial: {x: 120, y: 120}})");
   PartsRig rig(text);
   rig.Run();
-  EXPECT_EQ(rig.ErrorOf("three", "activate_position", "{index: 3}"), ErrorId::kParameter);
+  EXPECT_THROW(rig.Give("three", "activate_position", "{index: 3}"), std::runtime_error);
   EXPECT_EQ(rig.Do("three", "activate_position", "{index: 2}").state, FeedbackState::kDone);  // it is there
   EXPECT_EQ(rig.Do("four", "activate_position", "{index: 2}").state, FeedbackState::kDone);
   FeedbackEvent refused = rig.Do("three", "activate_position", "{index: 1}");

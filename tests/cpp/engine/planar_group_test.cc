@@ -156,10 +156,11 @@ TEST(PlanarGroupMachine, HasMembers) {
   EXPECT_EQ(error(1, mover::Command(cell(mover::AddToGroup{}))), ErrorId::kObjectMoves);
   for (int i = 0; i < 1000; ++i) talk.Cycle();
   const FeedbackEvent refused = talk.Give(1, mover::Command(cell(mover::AddToGroup{})));
-  EXPECT_EQ(refused.error, ErrorId::kCollision);
-  EXPECT_EQ(refused.object, (ObjectInfo{ObjectKind::kMover, 2}));
+  EXPECT_EQ(refused.error, ErrorId::kObjectMoves);  // it waits for the other one, where it cannot go
+  EXPECT_EQ(refused.object, (ObjectInfo{ObjectKind::kMover, 1}));
+  EXPECT_EQ(talk.engine.mover_outputs(0).waits_for, 2u);
   EXPECT_EQ(SentenceNaming(refused, talk.engine.machine()),
-            std::string(ErrorText(ErrorId::kCollision)) + ": mover two");
+            std::string(ErrorText(ErrorId::kObjectMoves)) + ": mover one");
 }
 
 // A random walk in a hall: stators with a hole, movers that go, turn, halt and fail, and some that ride on a track.
