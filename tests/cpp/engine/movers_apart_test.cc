@@ -276,7 +276,7 @@ TEST(MoversApart, WhateverTheyAreTold) {
   EXPECT_GT(done, Trials(200));
   EXPECT_GT(refused, Trials(5));
   EXPECT_GT(held, Trials(1000));
-  if (!kSanitized) EXPECT_GT(waits, 500);  // not in each world
+  EXPECT_GT(waits, kSanitized ? -1 : 500);  // not in each world
   EXPECT_GT(near, Trials(100));
 }
 

@@ -260,7 +260,7 @@ planar_groups: [{name: cell, movers: [one, two], tracks: [on_a, on_b]}]
           rig.Run();
           // On its way nothing gets onto it.
           if (travel_s > 0 && rig.answers[goes].error == ErrorId::kNone) {
-            EXPECT_EQ(rig.ErrorOf("two", "move_on_track", "{track: on_a, position: 100}"), ErrorId::kTrackDisabled);
+            EXPECT_EQ(rig.ErrorOf("two", "move_on_track", "{track: on_a, position: 100}"), ErrorId::kPartDisabled);
           }
           const FeedbackEvent gone = rig.End(goes);
           rig.Run(1500);

