@@ -78,7 +78,7 @@ def test_event_log_reads(by: str, logged: tuple[Path, takt.Recording]) -> None:
         for event in lcm.EventLog(str(logged[0]), "r")
         if event.channel == "takt/axis/x"
     ]
-    assert len(states) > 50
+    assert len(states) > (50 if by == OURS else 10)  # lcm-logger loses some on a busy host
     steps = np.diff([s.sequence for s in states])
     assert np.all(steps == 1 if by == OURS else steps >= 1)
     assert states[-1].name == "x"
