@@ -34,8 +34,17 @@ def by(request: pytest.FixtureRequest) -> str:
 
 @pytest.fixture(scope="module")
 def logged(by: str, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, takt.Recording]:
-    """What a logger wrote of a run, and what the session recorded of it."""
-    directory = tmp_path_factory.mktemp("logger")
+    """What a logger wrote of a run, and what the session recorded of it. lcm-logger, which ends with what it has
+    written by then, gets a second and a third run on a busy host."""
+    for _ in range(3):
+        file, recording = log_a_run(by, tmp_path_factory.mktemp("logger"))
+        kept = np.isin(recording["x"]["cycle"], takt.read_log(file)["x"]["cycle"])
+        if by == OURS or np.mean(kept) > 0.5:
+            return file, recording
+    pytest.skip(f"lcm-logger kept {np.mean(kept):.0%} of the states: the host is busy")
+
+
+def log_a_run(by: str, directory: Path) -> tuple[Path, takt.Recording]:
     url = new_url()
     file = directory / "logger.lcm"
     ours = [sys.executable, "-m", "takt", "record", f"--url={url}", file]
