@@ -95,8 +95,8 @@ using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::ui
 // for without the GIL.
 class VirtualEngine {
  public:
-  // Of a machine that LoadMachine has made. With `drives_url` external drives are reached there, those that have
-  // `drives_key` if there is one; without, they are what Hear says.
+  // `loaded`: from LoadMachine. `drives_url`: LCM network of external drives; without it their feedback comes from
+  // Hear. `drives_key`: the key they share, if any.
   VirtualEngine(engine::LoadResult loaded, bool journal, const std::optional<std::string>& drives_url,
                 const std::optional<lcm::Key>& drives_key, bool checks)
       : journaling_(journal),
@@ -464,11 +464,10 @@ std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::stri
 }  // namespace
 
 void BindEngine(py::module_& m) {
-  m.def(
-      "load_machine", &LoadMachine, py::arg("text"), py::arg("file_name"), py::arg("files") = true,
-      "Reads and checks a machine file: all its parameters with their defaults, as JSON. Without `files` it opens none "
-      "of those that the text names, which is a problem then: for texts from a network or a log. Raises "
-      "takt.ConfigError with every problem.");
+  m.def("load_machine", &LoadMachine, py::arg("text"), py::arg("file_name"), py::arg("files") = true,
+        "Reads and checks a machine file: all its parameters with their defaults, as JSON. With `files` false, for "
+        "texts from a network or a log, a file that the text names is a problem and is not opened. Raises "
+        "takt.ConfigError with every problem.");
   m.def("check_machine", &CheckMachine, py::arg("text"), py::arg("file_name"),
         "Reads and checks a machine file: its warnings. Raises takt.ConfigError with every problem.");
   m.def("parts_of_groups", &PartsOfGroups, py::arg("text"), py::arg("file_name"),

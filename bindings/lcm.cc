@@ -85,7 +85,7 @@ class PythonNetwork {
   // unwound by force, which C++ answers by ending the process. Python waits for the file.
   py::object Receive() {
     takers_.clear();
-    if (receiver_->Handle(0) < 0) Fail("network's server is gone");
+    if (receiver_->Handle(0) < 0) Fail("the server of the LCM network is gone");
     if (takers_.empty()) return py::none();
     return py::make_tuple(takers_, channel_, py::bytes(data_), utime_);
   }
@@ -197,7 +197,7 @@ void BindLcm(py::module_& m) {
       "The command of this kind of component stops something, releases it or switches it off: it is always taken.");
   py::class_<PythonNetwork>(m, "Network",
                             "A member of an LCM network; on udpm:// any datagram is survived. Raises ConnectionError "
-                            "where it cannot be joined, OSError where it is gone later.")
+                            "where it cannot be joined, OSError when it is lost later.")
       .def(py::init<const std::string&>(), py::arg("url"))
       .def("publish", &PythonNetwork::Publish, py::arg("channel"), py::arg("data"), "Sends the bytes of a message.")
       .def("subscribe", &PythonNetwork::Subscribe, py::arg("channels"), py::arg("capacity"),

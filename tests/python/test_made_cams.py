@@ -257,7 +257,7 @@ def test_places_for_cams_are_bounded_and_come_back(session):  # CAM-88
     for number in range(64):
         session.make_cam(hill(number + 1, f"cam {number}", count=3)).wait()
     full = session.make_cam(hill(1, "one more", count=3)).wait_final()
-    assert full.sentence == "64 cams made at run time are in use; drop_cam those that are no longer needed"
+    assert full.sentence == "64 cams made at run time are in use; drop one with drop_cam first"
     session.drop_cam(cam="cam 17").wait()
     gone = session.flex_cam("stamp").set_cam(slot=1, cam="cam 17").wait_final()
     assert gone.error_id == 3010

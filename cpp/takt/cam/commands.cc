@@ -27,7 +27,7 @@ std::string_view Text(MakingProblem problem) noexcept {
     case MakingProblem::kIncomplete:
       return "a piece of the cam was refused or is missing; send the cam again from begin_cam on";
     case MakingProblem::kNoRoom:
-      return "64 cams made at run time are in use; drop_cam those that are no longer needed";
+      return "64 cams made at run time are in use; drop one with drop_cam first";
     case MakingProblem::kNotMade:
       return "expected the name of a cam made at run time";
   }

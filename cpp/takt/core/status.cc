@@ -133,8 +133,7 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kStreamEnded, "StreamEnded", "no set point of the stream has come within its timeout"},
     ErrorInfo{ErrorId::kZoneTaken, "ZoneTaken", "the tool came to a zone that another group has; it was stopped"},
     ErrorInfo{ErrorId::kZoneCircle, "ZoneCircle",
-              "groups would wait for one another at zones: this group has a zone that the one that has the next zone "
-              "waits for"},
+              "deadlock at zones: this group holds a zone for which the holder of the next zone waits"},
     ErrorInfo{ErrorId::kGroupDeviation, "ERRPOSG", "an axis of the group had too large a following error"},
     ErrorInfo{ErrorId::kTooManyWorkpieces, "TooManyWorkpieces", "the belt holds as many workpieces as it can"},
     ErrorInfo{ErrorId::kModuleSoftLimitPositive, "SWLimitPos", "an axis of the module is at its upper SW limit"},

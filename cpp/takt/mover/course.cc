@@ -100,7 +100,7 @@ Course CourseOf(const Context& c, const Area& kind, const Escape& escape) {
 
 Course CourseOnTrack(const Context& c, const Area& kind) {
   const planar::Rider& r = c.rider();
-  const planar::Braking braking = planar::Brake(r.at, r.brakes);
+  const planar::Braking braking = planar::Brake(r.at, planar::BrakesOf(r));
   const bool rests = planar::Rests(r.at);
   return planar::CourseOn(c.streets.network, r, rests ? r.at.position : braking.lowest,
                           rests ? r.at.position : braking.highest, kind);

@@ -85,9 +85,14 @@ Turned TurnedAt(const Network& network, const Rolling& r, double s) {
 }
 
 // No faster than this, whatever acceleration it has to get rid of first. mm/s
-double MostSpeed(const Braking& b, const Brakes& brakes) {
-  const trajectory::Piece& first = b.pieces[0];
-  return std::abs(first.velocity) + first.acceleration * first.acceleration / (2 * brakes.jerk);
+double MostSpeed(const Braking& b) {
+  double most = 0;
+  for (const trajectory::Piece& piece : b.pieces) {
+    const double jerk = std::abs(piece.jerk);
+    const double more = jerk > 0 ? piece.acceleration * piece.acceleration / (2 * jerk) : 0;
+    most = std::max(most, std::abs(piece.velocity) + more);
+  }
+  return most;
 }
 
 }  // namespace
@@ -126,7 +131,7 @@ Interval WayOf(const Network& network, const Rider& r) noexcept {
     return {0, length};
   }
   if (Rests(r.at)) return {at, at};
-  const Braking braking = Brake(r.at, r.brakes);
+  const Braking braking = Brake(r.at, BrakesOf(r));
   return {braking.lowest, braking.highest};
 }
 
@@ -171,7 +176,7 @@ bool ApartByOrder(const Network& network, const Rider& behind, const Braking& be
 
 bool ApartInTime(const Network& network, const Rolling& a, const Rolling& b, double period_s) noexcept {
   const double end = std::max(a.braking.ends_s.back(), b.braking.ends_s.back());
-  const double closing = MostSpeed(a.braking, a.rider.brakes) + MostSpeed(b.braking, b.rider.brakes);
+  const double closing = MostSpeed(a.braking) + MostSpeed(b.braking);
   double t = 0;
   for (int i = 0; i < kMostInstants; ++i) {
     const Turned one = TurnedAt(network, a, a.braking.At(t).position);
