@@ -206,7 +206,7 @@ def test_a_server_that_goes_away() -> None:
     server.close()
     with pytest.raises(takt.ConnectionError, match="cannot be joined"):
         open_network(url)
-    with pytest.raises(OSError, match="server is gone"):
+    with pytest.raises(OSError, match="server of the LCM network is gone"):
         network.handle()
 
 
