@@ -27,7 +27,7 @@ DOCS = ROOT / "docs"
 
 BLOCK = re.compile(r"^```(\w+) ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 PICTURE = re.compile(r"!\[[^\]]*\]\((\w+)/([\w./]+)\)")
-TIMEOUT_S = 120.0
+TIMEOUT_S = 300.0
 
 
 class PageError(Exception):

@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 TESTS = Path(__file__).parents[1]
+sys.path.insert(0, str(TESTS))
+from starved import AHEAD
 
 PROBE = """
 import subprocess, time
@@ -37,33 +39,61 @@ def test_nothing_in_real_time():
     run_beside("other", False)
 """
 
+# Keeps its priority, for what watches the tests of this file takes it for one of them.
+BUSY = """
+import contextlib, os, sys
+while True:
+    with contextlib.suppress(PermissionError):
+        os.setpriority(os.PRIO_PROCESS, 0, int(sys.argv[1]))
+"""
+
+
+def use_one_processor() -> None:
+    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+
+
+def run_beside_a_busy_program(folder: Path, probe: str, priority: int) -> str:
+    """What pytest says of `probe` on one processor that a program with this nice value wants for itself."""
+    for program in ("taktd", "other"):
+        shutil.copy("/bin/sleep", folder / program)
+    (folder / "test_probe.py").write_text(probe)
+    (folder / "conftest.py").write_text(
+        (TESTS / "conftest.py").read_text().replace("Path(__file__).parent", repr(str(TESTS)))
+    )
+
+    busy = subprocess.Popen([sys.executable, "-c", BUSY, str(priority)], preexec_fn=use_one_processor)
+    try:
+        return subprocess.run(
+            [sys.executable, "-m", "pytest", "-q", "-rA", "-p", "no:cacheprovider", "--rootdir", folder, folder],
+            env={**os.environ, "TAKT_BUILD_DIR": str(folder)},
+            preexec_fn=use_one_processor,
+            capture_output=True,
+            text=True,
+            check=False,
+        ).stdout
+    finally:
+        busy.kill()
+        busy.wait()
+
 
 @pytest.mark.any_host
 def test_a_starved_test_is_skipped(tmp_path: Path) -> None:
     """Two programs share one processor: of the tests that fail the one in real time is excused, no other."""
-    for program in ("taktd", "other"):
-        shutil.copy("/bin/sleep", tmp_path / program)
-    (tmp_path / "test_probe.py").write_text(PROBE)
-    (tmp_path / "conftest.py").write_text(
-        (TESTS / "conftest.py").read_text().replace("Path(__file__).parent", repr(str(TESTS)))
-    )
-    one = {min(os.sched_getaffinity(0))}
-    busy = subprocess.Popen([sys.executable, "-c", "while True: pass"], preexec_fn=lambda: os.sched_setaffinity(0, one))
-    try:
-        done = subprocess.run(
-            [sys.executable, "-m", "pytest", "-q", "-rA", "-p", "no:cacheprovider", "--rootdir", tmp_path, tmp_path],
-            env={**os.environ, "TAKT_BUILD_DIR": str(tmp_path)},
-            preexec_fn=lambda: os.sched_setaffinity(0, one),
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-    finally:
-        busy.kill()
-        busy.wait()
-    assert "1 failed, 1 passed, 1 skipped" in done.stdout, done.stdout
-    assert "test_probe.py::test_nothing_in_real_time" in done.stdout
-    assert "the host was starved: " in done.stdout
-    assert "it had failed: told too late" in done.stdout
+    said = run_beside_a_busy_program(tmp_path, PROBE, AHEAD)
+    assert "1 failed, 1 passed, 1 skipped" in said, said
+    assert "test_probe.py::test_nothing_in_real_time" in said
+    assert "the host was starved: " in said
+    assert "it had failed: told too late" in said
     (line,) = (tmp_path / "starved.txt").read_text().splitlines()
     assert "test_probe.py::test_late: the host was starved: " in line
+
+
+@pytest.mark.any_host
+@pytest.mark.skipif(os.geteuid() != 0, reason="root alone may raise priorities")
+def test_what_is_in_real_time_comes_first(tmp_path: Path) -> None:
+    """Beside a program of normal priority it has nearly the whole processor for itself."""
+    measured = PROBE.replace("end = time", "began = time.process_time(); end = time").replace(
+        "assert good", "assert time.process_time() - began > (1.4 if program == 'taktd' else 0.0)"
+    )
+    said = run_beside_a_busy_program(tmp_path, measured, 0)
+    assert "3 passed" in said, said
