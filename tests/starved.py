@@ -79,7 +79,7 @@ def put_ahead(pids: Iterable[int], ahead: set[int]) -> None:
     """Gives their threads the priority, but for those in `ahead`, which have been given it; adds them there."""
     for pid in pids:
         try:
-            for thread in {int(name) for name in os.listdir(f"/proc/{pid}/task")} - ahead:
+            for thread in {int(task.name) for task in Path(f"/proc/{pid}/task").iterdir()} - ahead:
                 os.setpriority(os.PRIO_PROCESS, thread, AHEAD)
                 ahead.add(thread)
         except OSError:  # ended meanwhile, or not allowed
