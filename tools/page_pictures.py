@@ -16,7 +16,7 @@ from pathlib import Path
 from playwright.sync_api import Page, sync_playwright
 from takt import Engine, checks
 from takt.demo import free_url, taktd
-from takt.report import write_report
+from takt.report import compare, keep, write_comparison, write_report
 from takt.scenario import load_scenario, run_scenario
 from takt.view.server import serving
 
@@ -83,6 +83,14 @@ REPORTS: dict[str, tuple[bool, str]] = {
 }
 
 
+COMPARISON = "compare"  # of two runs
+SHOWN = """() => {
+    document.querySelectorAll("#differences tr").forEach((row, i) => { row.hidden = i > 7; });
+    for (const id of ["verdicts-section", "facts-section", "same"]) document.getElementById(id).hidden = true;
+    scrollTo(0, 0);
+}"""
+
+
 @contextlib.contextmanager
 def machine_of(name: str) -> Iterator[Path]:
     """The folder with the machine and the scenario of an example, or of a page."""
@@ -141,9 +149,9 @@ def take(name: str, target: Path) -> None:
 
 
 def take_report(name: str, target: Path) -> None:
-    dark, before = REPORTS[name]
+    dark, before = REPORTS.get(name, (False, SHOWN))
     with tempfile.TemporaryDirectory() as directory, sync_playwright() as playwright:
-        report = failed(Path(directory))
+        report = two_runs(Path(directory)) if name == COMPARISON else failed(Path(directory))
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
         page: Page = browser.new_page(viewport=SIZE, color_scheme="dark" if dark else "light")  # type: ignore[arg-type]
         page.goto(report.as_uri())
@@ -164,9 +172,21 @@ def failed(directory: Path) -> Path:
     return write_report(outcome.recording, [verdict, *outcome.verdicts], directory, scenario.title).html
 
 
+def two_runs(directory: Path) -> Path:
+    """Two runs of the ready axis, one with half its jerk."""
+    scenario = load_scenario(ROOT / "python" / "examples" / "one_axis" / "scenario.py")
+    text = scenario.machine.read_text(encoding="utf-8")
+    runs = []
+    for machine in (text, text.replace("jerk: 100000", "jerk: 50000")):
+        with Engine(machine) as engine:
+            outcome = run_scenario(scenario, engine)
+        runs.append(keep(outcome.recording, scenario.title, outcome.verdicts, outcome.assertion))
+    return write_comparison(compare(*runs, names=("before", "after")), directory / "compare.html")
+
+
 def main() -> int:
     folder, *names = sys.argv[1:]
-    for name in names or [*PICTURES, *REPORTS]:
+    for name in names or [*PICTURES, *REPORTS, COMPARISON]:
         (take if name in PICTURES else take_report)(name, Path(folder) / f"{name}.png")
         print(Path(folder) / f"{name}.png")
     return 0

@@ -38,6 +38,8 @@ from takt.terminal import Output
 BAD_INPUT = 2
 FAILED = 1
 
+DIFFERENCES = 10  # between two runs, said on the terminal at most
+
 out = Output()
 err = Output(stderr=True)
 
@@ -227,26 +229,45 @@ def demo(
 
 
 @cli.command("report")
-@click.argument("run", type=FILE)
+@click.argument("runs", nargs=-1, required=True, type=FILE, metavar="RUN [OTHER]")
 @click.option("-o", "--output", type=FILE, help="The page (.html) [report.html in the directory; RUN.html].")
 @click.option("--scenario", "judge", type=FILE, help="Judge it again with `verify` of this scenario.")
+@click.option("--align", default="", metavar="start | EVENT", help="Two runs: what is at the same time [engine time].")
 @START
-def show_report(run: Path, output: Path | None, judge: Path | None, start_number: int | None) -> int:
+def show_report(
+    runs: tuple[Path, ...], output: Path | None, judge: Path | None, align: str, start_number: int | None
+) -> int:
     """Write the report of a RUN, one HTML page with everything inside: of a recording (.npz), an LCM log, or the
-    directory that `takt run --report` or `takt demo` wrote. Exit code 1: what --scenario verifies has failed."""
-    from takt.report.command import judged, target_of, write_page
+    directory that `takt run --report` or `takt demo` wrote. Exit code 1: what --scenario verifies has failed.
 
-    target = _writable(output or target_of(run), (".html",)) if run.exists() else Path()
-    recording = _read(run, start_number)
-    passed = True
-    if judge is not None:
-        scenario = load_scenario(judge)
-        outcome = verify_recording(scenario, recording)
-        _show(outcome)
-        recording, passed = judged(outcome, scenario), outcome.passed
-    for sentence in troubles(recording):
-        print(sentence)
-    print(f"report: {write_page(recording, run, target)}")
+    With an OTHER run: what differs between the two, in figures, verdicts and curves. --align start lays their
+    beginnings over one another, the text of a mark or event the first ones of this text.
+    """
+    from takt.report.command import judged, names_of, target_of, target_of_two, write_page
+
+    if len(runs) > 2:
+        raise click.UsageError(f"one run, or two to compare: {len(runs)} are given")
+    if align and len(runs) == 1:
+        raise click.UsageError("--align is for two runs")
+    usual = target_of(runs[0]) if len(runs) == 1 else target_of_two(runs)
+    target = _writable(output or usual, (".html",)) if all(run.exists() for run in runs) else Path()
+    scenario = load_scenario(judge) if judge is not None else None
+    passed, recordings = True, []
+    for run in runs:
+        recording = _read(run, start_number)
+        if scenario is not None:
+            outcome = verify_recording(scenario, recording)
+            _show(outcome)
+            recording, passed = judged(outcome, scenario), passed and outcome.passed
+        recordings.append(recording)
+    names = names_of(runs) if len(runs) == 2 else ("",)
+    for name, recording in zip(names, recordings, strict=True):
+        for sentence in troubles(recording):
+            print(f"{name}: {sentence}" if name else sentence)
+    if len(runs) == 1:
+        print(f"report: {write_page(recordings[0], runs[0], target)}")
+    else:
+        _show_comparison(recordings, (names[0], names[-1]), align, target)
     return 0 if passed else FAILED
 
 
@@ -605,6 +626,16 @@ def _show(outcome: Outcome) -> None:
     lacks = all_missing(outcome.recording)
     whole = f"; missing: {lacks}" if lacks else ", no sample missing"
     print(f"{passed} passed, {failed} failed; {outcome.recording.duration_s:.3f} s of engine time{whole}")
+
+
+def _show_comparison(recordings: Sequence[Recording], names: tuple[str, str], align: str, target: Path) -> None:
+    from takt.report import compare, write_comparison
+
+    comparison = compare(recordings[0], recordings[1], names, align=align)
+    for difference in comparison.differing[:DIFFERENCES]:
+        print(difference.sentence)
+    print(comparison.sentence)
+    print(f"report: {write_comparison(comparison, target)}")
 
 
 def _show_figures(rows: Mapping[str, str]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,22 @@ def write_outcome(outcome: Outcome, scenario: Scenario, directory: Path, engine:
 def target_of(run: Path) -> Path:
     """Where the page of a run goes unless told: into its directory, or beside its file."""
     return run / PAGE if run.is_dir() else run.with_suffix(".html")
+
+
+def target_of_two(runs: Sequence[Path]) -> Path:
+    """Where the page of two runs goes unless told: beside the first one."""
+    names = [run.resolve().name if run.is_dir() else run.stem for run in runs]
+    return runs[0].parent / f"{names[0]}_and_{names[1]}.html"
+
+
+def names_of(runs: Sequence[Path]) -> tuple[str, str]:
+    """What two runs are called: as short as they can be told apart."""
+    whole = [run.resolve() for run in runs]
+    for parts in range(1, max(len(run.parts) for run in whole)):
+        a, b = ("/".join(run.parts[-parts:]) for run in whole)
+        if a != b:
+            return a, b
+    return "A", "B"
 
 
 def judged(outcome: Outcome, scenario: Scenario) -> Recording:

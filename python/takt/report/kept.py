@@ -148,12 +148,12 @@ def _rows(time_s: Array, values: Array, view: Interval | None) -> Array:
         begin, end = max(begin - 1, 0), min(end + 1, len(values))
         inside = np.arange(begin, end)
         if len(inside) > POINTS_AT_PLACE:
-            inside = begin + _extremes(values[begin:end], POINTS_AT_PLACE)
+            inside = begin + extremes(values[begin:end], POINTS_AT_PLACE)
     ends = np.array([0, len(values) - 1])
-    return np.unique(np.concatenate((ends, inside, _extremes(values, POINTS))))
+    return np.unique(np.concatenate((ends, inside, extremes(values, POINTS))))
 
 
-def _extremes(values: Array, count: int) -> Array:
+def extremes(values: Array, count: int) -> Array:
     edges = np.linspace(0, len(values), count // 2 + 1).astype(np.int64)
     low, high = np.nan_to_num(values, nan=np.inf), np.nan_to_num(values, nan=-np.inf)
     found = [int(a + pick) for a, b in itertools.pairwise(edges) for pick in (low[a:b].argmin(), high[a:b].argmax())]

@@ -98,7 +98,7 @@ def render_kept(recording: Recording, name: str) -> str:
     """The HTML page of a recording and of what is kept with it. `name`: what it is called where nothing is."""
     run = kept(recording) or {"title": name, "made": "", "verdicts": [], "complaint": "", "figures": {}, "pictures": {}}
     block = Block()
-    facts = _facts(recording, run["figures"])
+    facts = facts_of(recording, run["figures"])
     scene = scene_of(recording, block)
     judged = [v for v in (*run["verdicts"], run.get("assertion")) if v is not None]
     failing = [v["view"] for v in judged if v["view"] and not v["passed"]]
@@ -108,11 +108,7 @@ def render_kept(recording: Recording, name: str) -> str:
         "trouble": " ".join(troubles(recording)),
         "meta": facts,
         "span": plain([recording.start_s, recording.end_s]),
-        **_columns(
-            recording,
-            block,
-            failing,
-        ),
+        **columns_of(recording, block, failing),
         "events": [[e.time_s, e.component, e.text, e.kind] for e in recording.events],
         "complaint": run["complaint"],
         "assertion": _verdict(run["assertion"], block, recording) if run.get("assertion") else None,
@@ -122,21 +118,27 @@ def render_kept(recording: Recording, name: str) -> str:
         "palette": list(style.PALETTE),
         "scene": scene,
     }
+    pictures = "".join(_shown(name, bytes(png)) for name, png in run["pictures"].items())
+    return filled("page", str(run["title"]), payload, block, pictures=pictures)
+
+
+def filled(name: str, title: str, payload: Mapping[str, Any], block: Block, **parts: str) -> str:
+    """The page `name`.html with all that it needs: its module, those that this one imports, its data."""
+    main = f"takt/report/page/{MAINS[name]}"
     data = json.dumps(payload, ensure_ascii=False, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-    parts = {
-        "title": html.escape(str(run["title"])),
+    parts |= {
+        "title": html.escape(title),
         "style": "".join(asset(*path) for path in STYLES),
         "uplot": asset("report", "page", "uplot", "uPlot.iife.min.js"),
-        "modules": import_map(MAIN),
-        "main": MAIN,
+        "modules": import_map(main),
+        "main": main,
         "data": data,
         "columns": block.text(),
-        "pictures": "".join(_shown(name, bytes(png)) for name, png in run["pictures"].items()),
     }
-    return re.sub(r"\{\{(\w+)\}\}", lambda m: parts[m[1]], asset("report", "page", "page.html"))
+    return re.sub(r"\{\{(\w+)\}\}", lambda m: parts[m[1]], asset("report", "page", f"{name}.html"))
 
 
-MAIN = "takt/report/page/main.js"
+MAINS = {"page": "main.js", "compare": "compare.js"}
 STYLES = (
     ("view", "page", "look.css"),
     ("report", "page", "uplot", "uPlot.min.css"),
@@ -144,7 +146,7 @@ STYLES = (
 )
 
 
-def _facts(recording: Recording, figures: Mapping[str, Any]) -> dict[str, Any]:
+def facts_of(recording: Recording, figures: Mapping[str, Any]) -> dict[str, Any]:
     """What the head says of the run: that of the recording's own `meta`, and what was kept besides, in words."""
     facts: dict[str, Any] = {**told({k: v for k, v in recording.meta.items() if k not in ELSEWHERE}), **figures}
     if isinstance(engine := facts.get("engine"), Mapping):
@@ -169,7 +171,7 @@ def _shown(name: str, png: bytes) -> str:
 # --- what the page is given ---
 
 
-def _columns(recording: Recording, block: Block, whole: Sequence[Sequence[float]]) -> dict[str, Any]:
+def columns_of(recording: Recording, block: Block, whole: Sequence[Sequence[float]]) -> dict[str, Any]:
     """Time bases, shared where they are the same, and the columns of each component; every n-th sample of recordings
     that would be too long for a page, but all of the windows `whole`."""
     every = _every(recording)

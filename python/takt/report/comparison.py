@@ -1,0 +1,255 @@
+"""What differs between two runs: signal by signal, in figures.
+
+    comparison = compare(before, after)
+    comparison.differing[0].largest      # the signal that differs most for its range
+
+Two recordings are compared at times that both span. Of a component that was sampled at different times the run with
+fewer samples says at which; the other one's numbers lie on the line between its neighbouring samples, its states are
+those of the last sample. Where samples are missing nothing is compared. Samples of the same times differ unless their
+values are equal; between samples numbers differ above `TOLERANCE` of the signal's range, since the line is not the
+motion.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from dataclasses import field as kept_field
+
+import numpy as np
+
+from takt.checks.series import quantity, wrap
+from takt.counted import counted
+from takt.recording import Array, FloatArray, Recording, RecordingError
+from takt.verdict import number, seconds
+
+SAME_TIME_S = 1e-9  # two samples that are no further apart are of the same time
+TOLERANCE = 1e-3  # of the range of a signal, where one run has no samples at the other's times
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One signal of two runs, B less A."""
+
+    component: str
+    field: str
+    unit: str
+    samples: int  # times that were compared
+    largest: float | None  # of the differences, by amount; None: states, numbers of commands, or no number in both
+    largest_s: float | None  # when
+    rms: float | None
+    first_s: float | None  # the first time at which they differ; None: they do not
+    share: float  # of the times at which they differ, 0 to 1
+    relative: float  # the largest difference as a share of the range of both; of states the share of times
+    states: bool  # an enumeration or a switch
+    interpolated: bool  # the samples of the two are not of the same times
+    time_s: FloatArray = kept_field(repr=False, compare=False)
+    delta: FloatArray = kept_field(repr=False, compare=False)
+
+    @property
+    def signal(self) -> str:
+        return f"{self.component}.{self.field}"
+
+    @property
+    def differs(self) -> bool:
+        return self.first_s is not None
+
+    @property
+    def sentence(self) -> str:
+        if self.first_s is None:
+            return f"{self.signal}: no difference at {counted(self.samples, 'time')}"
+        since = f"from {seconds(self.first_s)} on"
+        if self.largest is None or self.largest_s is None:
+            return f"{self.signal}: differs {since}, {100 * self.share:.3g} % of the time"
+        at = f"{number(self.largest, self.unit)} at {seconds(self.largest_s)}"
+        return f"{self.signal}: differs {since}, most by {at}, rms {number(self.rms or 0.0, self.unit)}"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two runs, and what differs between them."""
+
+    a: Recording
+    b: Recording  # its times are shifted by `shift_s`
+    names: tuple[str, str]
+    shift_s: float
+    signals: tuple[Difference, ...]  # that both have, those first that differ most for their range
+    only: tuple[tuple[str, ...], tuple[str, ...]]  # components and signals that one of them has
+    incomparable: tuple[str, ...]  # signals of both that mean something else, in sentences
+
+    @property
+    def differing(self) -> tuple[Difference, ...]:
+        return tuple(signal for signal in self.signals if signal.differs)
+
+    @property
+    def same(self) -> bool:
+        """Whether they are the same in all signals."""
+        return not self.differing and not self.incomparable and self.only == ((), ())
+
+    @property
+    def sentence(self) -> str:
+        said = f"{len(self.differing)} of {counted(len(self.signals), 'signal')} differ"
+        if self.signals and not self.differing:
+            said = f"no difference in {counted(len(self.signals), 'signal')}"
+        lacking = zip(self.names, self.only, strict=True)
+        more = [f"only {name} has {', '.join(there)}" for name, there in lacking if there]
+        return "; ".join([said, *more, *self.incomparable])
+
+
+def compare(a: Recording, b: Recording, names: tuple[str, str] = ("A", "B"), *, align: str = "") -> Comparison:
+    """Compares two recordings.
+
+    names: what they are called.
+    align: "": engine time is the same in both; "start": the first samples of both are at the same time; else the text
+        of a mark or another event that both have: its first ones are.
+    """
+    shift = _shift(a, b, names, align)
+    b = b.shifted(shift) if shift else b
+    for name, run in zip(names, (a, b), strict=True):
+        if math.isnan(run.start_s):
+            raise RecordingError(f"{name} holds no samples: there is nothing to compare")
+    if max(a.start_s, b.start_s) > min(a.end_s, b.end_s):
+        spans = " and ".join(
+            f"{name} from {seconds(run.start_s)} to {seconds(run.end_s)}"
+            for name, run in zip(names, (a, b), strict=True)
+        )
+        raise RecordingError(f"the runs have no time in common: {spans}; --align start lays their beginnings together")
+    found: list[Difference] = []
+    incomparable: list[str] = []
+    for component in (name for name in a if name in b):
+        for signal in (f for f in a.fields(component)[2:] if f in b.fields(component)):
+            if why := _why_not(a, b, names, component, signal):
+                incomparable.append(f"{component}.{signal}: {why}")
+            else:
+                found.append(_difference(a, b, component, signal))
+    found.sort(key=lambda one: (not one.differs, -one.relative))
+    only = (_only(a, b), _only(b, a))
+    return Comparison(a, b, names, shift, tuple(found), only, tuple(incomparable))
+
+
+def _shift(a: Recording, b: Recording, names: tuple[str, str], align: str) -> float:
+    """What to add to the times of B, s."""
+    if not align:
+        return 0.0
+    if align == "start":
+        return 0.0 if math.isnan(a.start_s + b.start_s) else a.start_s - b.start_s
+    times = []
+    for name, run in zip(names, (a, b), strict=True):
+        found = next((event.time_s for event in run.events if event.text == align), None)
+        if found is None:
+            marks = list(dict.fromkeys(event.text for event in run.events if event.kind == "mark"))
+            raise RecordingError(f"{name} has no event '{align}' (its marks are {', '.join(marks) or 'none'})")
+        times.append(found)
+    return times[0] - times[1]
+
+
+def _only(one: Recording, other: Recording) -> tuple[str, ...]:
+    """What the other one has not."""
+    found = []
+    for component in one:
+        if component not in other:
+            found.append(component)
+        else:
+            found += [f"{component}.{f}" for f in one.fields(component)[2:] if f not in other.fields(component)]
+    return tuple(found)
+
+
+def _why_not(a: Recording, b: Recording, names: tuple[str, str], component: str, signal: str) -> str:
+    """Why two columns of one name cannot be compared; empty: they can."""
+    units = [run.unit(component, signal) for run in (a, b)]
+    if units[0] != units[1]:
+        return " but ".join(f"[{unit or '1'}] in {name}" for name, unit in zip(names, units, strict=True))
+    kinds = [bool(run.names(component, signal)) for run in (a, b)]
+    if kinds[0] != kinds[1]:
+        return " but ".join(f"{'states' if k else 'numbers'} in {name}" for name, k in zip(names, kinds, strict=True))
+    moduli = [run.info(component).get("modulus") for run in (a, b)]
+    if moduli[0] != moduli[1] and quantity(signal) == "position":
+        return " but ".join(
+            f"{f'modulus {m:g}' if m else 'endless'} in {name}" for name, m in zip(names, moduli, strict=True)
+        )
+    return ""
+
+
+def _difference(a: Recording, b: Recording, component: str, signal: str) -> Difference:
+    columns = [_numbers(run, component, signal, a.names(component, signal)) for run in (a, b)]
+    times = [run[component]["time_s"] for run in (a, b)]
+    states = bool(a.names(component, signal)) or all(r.column(component, signal).dtype.kind == "b" for r in (a, b))
+    held = states or any(run.column(component, signal).dtype.kind != "f" for run in (a, b))
+    unit = a.unit(component, signal)
+    unit = "" if unit == "1" else unit
+    position = quantity(signal) == "position"
+    modulus = a.info(component).get("modulus") if position else None
+    asks = 0 if len(times[0]) <= len(times[1]) else 1  # whose samples say at which times
+    time_s = times[asks]
+    other_time, other = times[1 - asks], columns[1 - asks]
+    rows = np.empty(0, np.int64)
+    if len(time_s) and len(other_time):
+        inside = (time_s >= other_time[0] - SAME_TIME_S) & (time_s <= other_time[-1] + SAME_TIME_S)
+        for gap in (b, a)[asks].gaps(component):
+            inside &= (time_s <= gap.time_s + SAME_TIME_S) | (time_s >= gap.until_s - SAME_TIME_S)
+        rows = np.flatnonzero(inside)
+    time_s, values = time_s[rows], columns[asks][rows]
+    found, sampled = _at(time_s, other_time, other, held, modulus)
+    with np.errstate(invalid="ignore", over="ignore"):
+        delta = wrap(found - values if asks == 0 else values - found, modulus)
+    one_has_none = np.isnan(found) != np.isnan(values)
+    good = np.concatenate((values, found))
+    good = good[np.isfinite(good)]
+    extent = float(np.ptp(good)) if len(good) else 0.0
+    limit = 0.0 if sampled or held else TOLERANCE * extent
+    differs = one_has_none | (np.abs(np.nan_to_num(delta, nan=0.0)) > limit)
+    amounts = np.abs(delta[np.isfinite(delta)])
+    share = float(np.mean(differs)) if len(differs) else 0.0
+    numbered = held and unit == ""  # of commands, errors: how far apart they are says nothing
+    numeric = not states and not numbered and len(amounts) > 0
+    worst = float(amounts.max()) if numeric else None
+    largest_s = float(time_s[int(np.nanargmax(np.where(np.isfinite(delta), np.abs(delta), -1.0)))]) if numeric else None
+    return Difference(
+        component,
+        signal,
+        unit,
+        len(time_s),
+        worst,
+        largest_s,
+        float(np.sqrt(np.mean(np.square(amounts)))) if numeric else None,
+        float(time_s[int(np.argmax(differs))]) if np.any(differs) else None,
+        share,
+        share if worst is None else worst / extent if extent else 0.0,
+        states,
+        not sampled,
+        time_s,
+        np.asarray(differs, dtype=np.float64) if states else delta,
+    )
+
+
+def _numbers(run: Recording, component: str, signal: str, names: Mapping[int, str]) -> FloatArray:
+    """A column as numbers; states of both runs by the numbers that they have in the first one."""
+    column = run.column(component, signal)
+    own = run.names(component, signal)
+    if own and own != names:
+        known = {text: value for value, text in names.items()}
+        translated = {value: known.get(text, 1000 + value) for value, text in own.items()}
+        return np.array([translated.get(int(v), int(v)) for v in column], dtype=np.float64)
+    return column.astype(np.float64)
+
+
+def _at(
+    time_s: FloatArray, other_time: FloatArray, other: FloatArray, held: bool, modulus: float | None
+) -> tuple[Array, bool]:
+    """The values of another time base at these times, and whether all of them are samples of it."""
+    if not len(time_s):
+        return np.empty(0), True
+    behind = np.clip(np.searchsorted(other_time, time_s), 0, len(other_time) - 1)
+    before = np.maximum(behind - 1, 0)
+    nearest = np.where(np.abs(other_time[behind] - time_s) <= np.abs(other_time[before] - time_s), behind, before)
+    sampled = np.abs(other_time[nearest] - time_s) <= SAME_TIME_S
+    if np.all(sampled):
+        return other[nearest], True
+    if held:
+        return np.where(sampled, other[nearest], other[before]), False
+    line = np.unwrap(other, period=modulus) if modulus and np.all(np.isfinite(other)) else other
+    width = np.where(behind > before, other_time[behind] - other_time[before], 1.0)
+    part = (time_s - other_time[before]) / width
+    between = line[before] + part * (line[behind] - line[before])
+    return np.where(sampled, other[nearest], between), False
