@@ -309,6 +309,11 @@ class Table:
             Path(file).write_text(text, encoding="utf-8")
         return text
 
+    def _repr_png_(self) -> bytes:
+        from takt import cam_picture, plot
+
+        return plot.png(cam_picture.draw(self))
+
     def __repr__(self) -> str:
         kind = "cyclic cam" if self.cyclic else "cam"
         return f"<{kind} {self.name}: x {self.begin:g} to {self.end:g}, stroke {self.stroke:g}>"

@@ -10,8 +10,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from takt import plot, style
 from takt.cam import Extreme, Table
@@ -30,14 +28,20 @@ def picture(
     limits: Limits | None = None,
     title: str | None = None,
 ) -> Path:
+    """Writes what `draw` draws into a file."""
+    return plot.save(draw(table, master_velocity, limits, title), path)
+
+
+def draw(
+    table: Table, master_velocity: float | None = None, limits: Limits | None = None, title: str | None = None
+) -> plot.Picture:
     """Draws y and its derivatives one below the other, with extremes, points and segments. Where the velocity of the
     master is given: on the right what that is for the slave in seconds, with limits that are near as lines."""
     x = _places(table)
     values, extremes = table.at(x), table.extremes()
     ends = [segment["to"]["x"] for segment in table.source["segments"]]
     points = table.points if len(table.points.x) <= MOST_POINTS else None
-    drawing = Figure(figsize=(plot.WIDTH_IN, 9.5), dpi=plot.DPI, facecolor="white", layout="constrained")
-    FigureCanvasAgg(drawing)
+    drawing = plot.Picture(9.5, layout="constrained")
     lanes: list[Axes] = list(drawing.subplots(4, 1, sharex=True, height_ratios=[1.35, 1, 1, 1]))
     for power, (ax, bounds) in enumerate(zip(lanes, extremes, strict=True)):
         plot.dress(ax)
@@ -61,7 +65,7 @@ def picture(
     drawing.align_ylabels(lanes)
     behind = f"   master at {master_velocity:g} {table.x_unit}/s" if master_velocity else ""
     drawing.suptitle((title or table.name) + behind, x=0.01, ha="left", color=plot.INK, weight="bold", size=14)
-    return plot.save(drawing, path)
+    return drawing
 
 
 def _places(table: Table) -> Any:

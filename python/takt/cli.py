@@ -433,6 +433,7 @@ def plot(
 @click.argument("signals", nargs=-1)
 @click.option("--mcap", type=FILE, help="Write MCAP (.mcap), for Foxglove and its like.")
 @click.option("--csv", type=FILE, help="Write one wide table (.csv).")
+@click.option("--parquet", type=FILE, help="Write the same table as Parquet (.parquet).")
 @click.option("--from", "start", type=float, help="s, where to begin.")
 @click.option("--to", "end", type=float, help="s, where to end.")
 @START
@@ -441,6 +442,7 @@ def export(
     signals: tuple[str, ...],
     mcap: Path | None,
     csv: Path | None,
+    parquet: Path | None,
     start: float | None,
     end: float | None,
     start_number: int | None,
@@ -449,9 +451,10 @@ def export(
     LCM log, or the directory that `takt run --report` or `takt demo` wrote."""
     from takt.export import write
 
-    targets = [_writable(file, (suffix,)) for file, suffix in ((mcap, ".mcap"), (csv, ".csv")) if file is not None]
+    files = ((mcap, ".mcap"), (csv, ".csv"), (parquet, ".parquet"))
+    targets = [_writable(file, (suffix,)) for file, suffix in files if file is not None]
     if not targets:
-        raise click.UsageError("give --mcap FILE or --csv FILE, or both")
+        raise click.UsageError("give --mcap FILE, --csv FILE or --parquet FILE, or several of them")
     for sentence in write(_read(run, start_number), targets, signals, start, end):
         print(sentence)
 

@@ -51,6 +51,8 @@ def write(
         if target.suffix == ".mcap":
             said = counted(to_mcap(chosen, target), "message")
             yield f"{target}: {said} of {counted(len(chosen), 'component')} and of events"
+        elif target.suffix == ".parquet":
+            yield f"{chosen.to_parquet(target)}: {words_on_rates(chosen)}"
         else:
             yield f"{chosen.to_csv(target)}: {words_on_rates(chosen)}"
 

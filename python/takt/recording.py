@@ -42,6 +42,10 @@ class RecordingError(TaktError, ValueError):
     """A recording cannot be made, read or asked as wanted; the text is one sentence for people."""
 
 
+class MissingPackageError(TaktError, ImportError):
+    """A package is not installed that what was asked for needs; the text says how to get it."""
+
+
 class Event(NamedTuple):
     """Something that happened at one time: a command's start or end, an error, a mark set by the user."""
 
@@ -173,6 +177,11 @@ class Recording:
     def __repr__(self) -> str:
         parts = ", ".join(f"{c}: {counted(len(a), 'sample')}" for c, a in self._data.items())
         return f"<Recording {self.duration_s:.3f} s; {parts or 'empty'}; {counted(len(self.events), 'event')}>"
+
+    def _repr_html_(self) -> str:
+        from takt.notebook import recording_table
+
+        return recording_table(self)
 
     def fields(self, component: str) -> tuple[str, ...]:
         """The fields of a component, `time_s` and `cycle` first."""
@@ -375,10 +384,52 @@ class Recording:
             writer.writerows(zip(*columns, strict=True))
         return target
 
+    def to_dataframe(self, *signals: str) -> Any:
+        """A pandas.DataFrame of these signals, as `takt plot` names them ("x", "x.set_position", "*.torque_nm"), or of
+        all: index `time_s`, columns `cycle` and "component.field"; states are categories by their texts, units stand in
+        `attrs`. A row for each cycle in which any of the components has a sample. Needs pandas."""
+        pandas = _optional("pandas", "to_dataframe")
+        part = self._part(signals)
+        frame = part.to_pandas()
+        for component, field in part._signals():
+            if names := part.names(component, field):
+                numbers = frame[f"{component}.{field}"]
+                texts = numbers.map(lambda value, names=names: names.get(int(value), f"?{int(value)}"), "ignore")
+                frame[f"{component}.{field}"] = pandas.Categorical(texts, dict.fromkeys(names.values()))
+        return frame
+
+    def to_parquet(self, path: str | PathLike[str], *signals: str) -> Path:
+        """Writes these signals, or all, as one wide table like `to_csv`: texts for states, nulls where a component has
+        no sample in that cycle; the unit of a column stands in its metadata. Needs pyarrow."""
+        arrow = _optional("pyarrow", "to_parquet")
+        parquet = _optional("pyarrow.parquet", "to_parquet")
+        part = self._part(signals)
+        cycle, time_s, rows = part._joined()
+        fields = [arrow.field("cycle", arrow.int64()), arrow.field("time_s", arrow.float64(), metadata={"unit": "s"})]
+        columns = [arrow.array(cycle), arrow.array(time_s)]
+        for component, field in part._signals():
+            texts = bool(part.names(component, field))
+            values = arrow.array(part.text(component, field) if texts else part.column(component, field))
+            places = np.full(len(cycle), -1)
+            places[rows[component]] = np.arange(len(values))
+            values = values.take(arrow.array(places, mask=places < 0))
+            columns.append(values.dictionary_encode() if texts else values)
+            unit = part.unit(component, field)
+            fields.append(arrow.field(f"{component}.{field}", columns[-1].type, metadata={"unit": unit}))
+        target = Path(path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        parquet.write_table(arrow.Table.from_arrays(columns, schema=arrow.schema(fields)), target)
+        return target
+
+    def _part(self, signals: Sequence[str]) -> Recording:
+        from takt.plot import select  # which takes long to import
+
+        return self.pick(select(self, signals)) if signals else self
+
     def to_pandas(self) -> Any:
-        """A pandas.DataFrame: index `time_s`, columns "component.field"; units and texts in `attrs`. Needs
-        pandas."""
-        pandas = _optional("pandas")
+        """A pandas.DataFrame: index `time_s`, columns "component.field", states by number; units and texts in `attrs`.
+        Needs pandas."""
+        pandas = _optional("pandas", "to_pandas")
         cycle, time_s, rows = self._joined()
         columns: dict[str, Array] = {"cycle": cycle}
         for component, field in self._signals():
@@ -390,7 +441,7 @@ class Recording:
     def to_xarray(self) -> Any:
         """An xarray.Dataset: dimension `time_s`, a variable per "component.field" with its unit. Needs
         xarray."""
-        xarray = _optional("xarray")
+        xarray = _optional("xarray", "to_xarray")
         cycle, time_s, rows = self._joined()
         variables: dict[str, Any] = {}
         for component, field in self._signals():
@@ -520,11 +571,13 @@ def _spread(values: Array, rows: Array, length: int) -> Array:
     return out
 
 
-def _optional(package: str) -> Any:
+def _optional(module: str, asks: str) -> Any:
+    """A module of a package that is not installed with this one."""
     try:
-        return importlib.import_module(package)
+        return importlib.import_module(module)
     except ImportError:
-        raise ImportError(f"to_{package}() needs the package {package}: pip install {package}") from None
+        package = module.partition(".")[0]
+        raise MissingPackageError(f"{asks}() needs the package {package}: pip install {package}") from None
 
 
 def _nothing(kind: str, wanted: str, there: Iterable[str], where: str) -> str:

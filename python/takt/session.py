@@ -18,6 +18,7 @@ from takt.arguments import to_text, without_arguments
 from takt.axis import Axis
 from takt.belt import Belt
 from takt.component import Component
+from takt.counted import counted
 from takt.couplings import why_refused
 from takt.environment import Environment
 from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
@@ -122,6 +123,14 @@ class Session(SessionWithCams):
         self._refused: deque[Feedback] = deque(maxlen=REFUSED)
         self._made_cams = MadeCams(self)
         self._closed = False
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name}: {counted(len(self._components), 'component')}, {self.now:.3f} s>"
+
+    def _repr_html_(self) -> str:
+        from takt.notebook import session_table
+
+        return session_table(self)
 
     # --- the machine ---
 

@@ -95,6 +95,11 @@ class Toolpath:
         elements = [_element_of(row, f"{path}:{line}") for line, row in rows]
         return cls(start, tuple(elements))._checked(str(path))
 
+    def _repr_png_(self) -> bytes:
+        from takt import plot, toolpath_picture
+
+        return plot.png(toolpath_picture.draw(self))
+
     @property
     def length(self) -> float:
         """mm."""

@@ -11,8 +11,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from takt import plot, style
@@ -25,17 +23,21 @@ COMMANDED, ACTUAL = style.PALETTE[0], style.PALETTE[1]
 
 
 def picture(path: Toolpath, target: str | os.PathLike[str], title: str = "") -> Path:
+    """Writes what `draw` draws into a file."""
+    return plot.save(draw(path, title), target)
+
+
+def draw(path: Toolpath, title: str = "") -> plot.Picture:
     """Draws a path as seen from above; thin where the tool goes at the velocity of the command."""
     low, high = path.extents
     width, depth = (max(float(one), 1e-3) for one in (high - low)[:2])
     tall = min(max(plot.WIDTH_IN * depth / width, 4.0), plot.WIDTH_IN)
-    figure = Figure(figsize=(plot.WIDTH_IN, tall), dpi=plot.DPI, facecolor="white", layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = plot.Picture(tall, layout="constrained")
     ax = figure.add_subplot()
     plan(ax, path)
     span = f"{counted(len(path.elements), 'element')}, {path.length:.6g} mm, Z {low[2]:.6g} to {high[2]:.6g} mm"
     ax.set_title(f"{title}   {span}", loc="left", color=plot.INK, weight="bold", size=13)
-    return plot.save(figure, target)
+    return figure
 
 
 def plan(ax: Axes, path: Toolpath) -> None:

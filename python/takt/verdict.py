@@ -69,6 +69,11 @@ class Verdict:
     def __bool__(self) -> bool:
         return self.passed
 
+    def _repr_html_(self) -> str:
+        from takt.notebook import verdict_picture
+
+        return verdict_picture(self)
+
     @property
     def title(self) -> str:
         return f"{self.name}({', '.join(self.components)})" if self.components else self.name

@@ -197,7 +197,7 @@ def test_an_empty_run(empty: str, tmp_path: Path) -> None:
 
 
 BAD = {
-    "to where": (["a.npz"], "give --mcap FILE or --csv FILE, or both"),
+    "to where": (["a.npz"], "give --mcap FILE, --csv FILE or --parquet FILE"),
     "nothing there": (["none.npz", "--csv", "a.csv"], "none.npz: No such file or directory"),
     "name": (["a.npz", "--csv", "a.mcap"], "a.mcap: expected a name that ends in .csv"),
     "folder": (["a.npz", "--mcap", "no/a.mcap"], "no/a.mcap: there is no directory no"),

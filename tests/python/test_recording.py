@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -197,12 +198,48 @@ def test_xarray() -> None:
     assert data["x.state"].attrs["flag_meanings"].split()[2] == "DiscreteMotion"
 
 
-# PY-04
-@pytest.mark.parametrize("package", ["pandas", "xarray"])
-def test_a_package_that_is_not_installed_is_named(package: str, monkeypatch: pytest.MonkeyPatch) -> None:
+# PY-25: states by their texts, some signals only
+def test_dataframe() -> None:
+    pytest.importorskip("pandas")
+    frame = two_rates().to_dataframe("x.state", "belt")
+    assert frame["x.state"].iloc[0] == "Standstill"
+    assert frame["x.state"].dtype.name == "category"
+    assert frame["belt.position"].dropna().tolist() == [0.5, 1.5]
+    assert "x.set_position" not in frame
+    assert frame.attrs["units"]["belt.position"] == "m"
+    with pytest.raises(RecordingError, match="no signal matches 'z'"):
+        two_rates().to_dataframe("z")
+
+
+# PY-25: what to_csv writes, with types, nulls and units
+def test_parquet(tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    rec = two_rates()
+    table = parquet.read_table(rec.to_parquet(tmp_path / "new" / "a.parquet"))
+    assert table.column_names[:3] == ["cycle", "time_s", "x.set_position"]
+    assert table["x.set_position"].to_pylist() == list(range(8))
+    assert table["x.state"].to_pylist()[0] == "Standstill"
+    assert table["belt.position"].to_pylist() == [0.5, None, None, None, 1.5, None, None, None]
+    assert table.schema.field("belt.position").metadata == {b"unit": b"m"}
+    assert parquet.read_table(rec.to_parquet(tmp_path / "b.parquet", "x.state")).column_names[2:] == ["x.state"]
+
+
+# PY-04, PY-25
+@pytest.mark.parametrize(
+    ("package", "asks"),
+    [
+        ("pandas", lambda rec: rec.to_pandas()),
+        ("pandas", lambda rec: rec.to_dataframe()),
+        ("xarray", lambda rec: rec.to_xarray()),
+        ("pyarrow", lambda rec: rec.to_parquet("a.parquet")),
+    ],
+)
+def test_a_package_that_is_not_installed_is_named(
+    package: str, asks: Callable[[Recording], object], monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(ImportError, match=f"needs the package {package}: pip install {package}"):
-        getattr(two_rates(), f"to_{package}")()
+        asks(two_rates())
 
 
 @pytest.mark.parametrize(

@@ -78,6 +78,11 @@ class Comparison:
     only: tuple[tuple[str, ...], tuple[str, ...]]  # components and signals that one of them has
     incomparable: tuple[str, ...]  # signals of both that mean something else, in sentences
 
+    def _repr_html_(self) -> str:
+        from takt.notebook import comparison_table
+
+        return comparison_table(self)
+
     @property
     def differing(self) -> tuple[Difference, ...]:
         return tuple(signal for signal in self.signals if signal.differs)

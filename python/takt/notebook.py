@@ -1,0 +1,105 @@
+"""What notebooks show as the last value of a cell: tables as HTML, in the notebook's own colours."""
+
+from __future__ import annotations
+
+import base64
+import html
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from takt.counted import counted
+from takt.errors import TaktError
+from takt.missing import all_missing
+
+if TYPE_CHECKING:
+    from takt.component import Component
+    from takt.recording import Recording
+    from takt.report.comparison import Comparison
+    from takt.session import Session
+    from takt.verdict import Verdict
+
+FIELDS = 6  # of a component, named in a table
+ROWS = 30  # of differences
+
+
+def table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]], note: str = "") -> str:
+    """A table with a title above and a note below; all texts are escaped."""
+    cells = "".join(f'<th style="text-align:left">{html.escape(text)}</th>' for text in head)
+    lines = ("".join(f'<td style="text-align:left">{html.escape(str(text))}</td>' for text in row) for row in rows)
+    body = "".join(f"<tr>{line}</tr>" for line in lines)
+    below = f"<div>{html.escape(note)}</div>" if note else ""
+    return (
+        f"<div><b>{html.escape(title)}</b></div>"
+        f"<table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>{below}"
+    )
+
+
+def recording_table(recording: Recording) -> str:
+    """What was recorded, by component."""
+    from takt.export import rates
+
+    title = f"Recording of {recording.meta.get('machine', 'a machine')}, {recording.duration_s:.3f} s"
+    known = rates(recording)
+    rows = []
+    for name in recording:
+        fields = recording.fields(name)[2:]
+        named = [f"{f} [{unit}]" if (unit := recording.unit(name, f)) else f for f in fields[:FIELDS]]
+        more = f", {len(fields) - FIELDS} more" if len(fields) > FIELDS else ""
+        rate = f"{known[name]:g} Hz" if name in known else "—"
+        rows.append((name, f"{len(recording[name]):,}", rate, ", ".join(named) + more))
+    lacks = all_missing(recording)
+    note = f"{counted(len(recording.events), 'event')}; " + (f"missing: {lacks}" if lacks else "no sample missing")
+    return table(title, ("component", "samples", "rate", "fields"), rows, note)
+
+
+def session_table(session: Session) -> str:
+    """What the components of a machine do at this time."""
+    title = f"{session.name} at {session.now:.3f} s, cycle {1e3 * session.period:g} ms"
+    rows = [(name, one.KIND, _state(one)) for name, one in session.components.items()]
+    return table(title, ("component", "kind", "state"), rows, "closed" if session._closed else "")
+
+
+def _state(component: Component) -> str:
+    """What its text in brackets says of it besides its name."""
+    try:
+        said = repr(component).removeprefix("<").removesuffix(">")
+    except TaktError as error:  # over LCM, where nothing was heard of it yet
+        return str(error)
+    _, colon, state = said.partition(": ")
+    return state if colon else "—"
+
+
+def verdict_picture(verdict: Verdict) -> str:
+    """What it says, and its picture."""
+    from takt import plot, style
+
+    mark = "passed" if verdict.passed else "failed"
+    colour = style.GOOD if verdict.passed else style.BAD
+    text = f'<div><b style="color:{colour}">{mark}</b> <b>{html.escape(verdict.title)}</b> '
+    text += f"{html.escape(verdict.sentence)}</div>"
+    if not any(len(trace.time_s) for lane in verdict.lanes for trace in lane.traces):
+        return text
+    data = base64.b64encode(plot.png(plot.draw_verdict(verdict))).decode("ascii")
+    return text + f'<img alt="{html.escape(verdict.title)}" src="data:image/png;base64,{data}">'
+
+
+def comparison_table(comparison: Comparison) -> str:
+    """What differs between two runs."""
+    from takt.verdict import number, seconds
+
+    def told(value: float | None, words: Any) -> str:
+        return "—" if value is None else str(words(value))
+
+    rows = [
+        (
+            one.signal,
+            told(one.largest, lambda value, unit=one.unit: number(value, unit)),
+            told(one.largest_s, seconds),
+            told(one.rms, lambda value, unit=one.unit: number(value, unit)),
+            told(one.first_s, seconds),
+            f"{100 * one.share:.3g} %",
+        )
+        for one in comparison.differing[:ROWS]
+    ]
+    head = ("signal", "largest difference", "at", "rms", "differs first", "of the time")
+    return table(" and ".join(comparison.names), head, rows, comparison.sentence)
