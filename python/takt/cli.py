@@ -30,7 +30,7 @@ from takt.network import usual_url
 from takt.recording import Recording, RecordingError
 from takt.remote import connect
 from takt.replay import replay as replay_log
-from takt.scenario import Outcome, load_scenario, run_scenario, verify_recording
+from takt.scenario import Outcome, load_scenario, run_scenario, settings_of, verify_recording, with_settings
 from takt.session import Session
 from takt.source import read_run
 from takt.terminal import Output
@@ -158,13 +158,28 @@ def reference(output: Path | None) -> None:
 @click.option("--machine", type=FILE, help="Run on this machine in virtual time [machine.yaml beside FILE].")
 @click.option("--url", help="Run on the engine of this LCM network (taktd) instead.")
 @click.option("--report", type=FILE, help="Write report.html, pictures and the recording into this directory.")
+@click.option(
+    "--set", "settings", multiple=True, metavar="KEY=VALUE", help="A parameter of the scenario, or axes.x.limits.jerk."
+)
 @KEY
-def run(file: Path, machine: Path | None, url: str | None, report: Path | None, key: Path | None) -> int:
+def run(
+    file: Path,
+    machine: Path | None,
+    url: str | None,
+    report: Path | None,
+    settings: tuple[str, ...],
+    key: Path | None,
+) -> int:
     """Run a scenario FILE and verify what was recorded; the same on a running engine and in virtual time."""
     if machine is not None and url is not None:
         raise click.UsageError("--machine is for virtual time, --url for a running engine: give one of them")
-    scenario = load_scenario(file)
-    session: Session = connect(url, key=key) if url is not None else Engine(machine or scenario.machine, key=key)
+    scenario, changes = with_settings(load_scenario(file), settings_of(settings))
+    if changes and url is not None:
+        raise click.UsageError(f"{next(iter(changes))}: keys of the machine file can be set in virtual time only")
+    if url is not None:
+        session: Session = connect(url, key=key)
+    else:
+        session = Engine(machine or scenario.machine, key=key, changes=changes)
     with session, _watching(session, scenario.title):
         outcome = run_scenario(scenario, session, report)
         figures = session.figures

@@ -17,6 +17,7 @@ from takt._commands import DEFAULTS
 from takt.arguments import to_text
 from takt.axis import Axis
 from takt.belt import Belt
+from takt.changes import changed
 from takt.component import Component
 from takt.errors import ConfigError, DriveWarning, seconds, whole
 from takt.feedback import Feedback
@@ -60,6 +61,7 @@ class Engine(Session):
     journal: keep the journal and a hash of the whole state after every cycle (`take_journal`, `take_hashes`).
     url: LCM network of external drives, instead of the machine file's (`lcm.url`, else LCM_DEFAULT_URL). Time stands
         still until they have answered.
+    changes: values of the machine file to be changed, as {"axes.x.limits.velocity": 300}.
     key: file with the key of external drives, unless the environment names it (TAKT_KEY_FILE); "": none.
     """
 
@@ -71,8 +73,10 @@ class Engine(Session):
         journal: bool = False,
         url: str | None = None,
         key: KeyFile | None = None,
+        changes: Mapping[str, bool | int | float | str] | None = None,
     ) -> None:
         text, file_name = read_machine(machine)
+        text = changed(text, file_name, changes or {})
         if period is not None:
             period = seconds(period, "a period")
         described = json.loads(_core.load_machine(text, file_name))

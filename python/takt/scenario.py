@@ -3,6 +3,10 @@
 EVERY, how many cycles lie between two samples of the recording [1]; TAKES_S, about how many seconds of engine time it
 takes; VIEW, what the live page shows of it at first, as {"tab": "scope", "signals": ["x.set_position"]}.
 
+`results(recording)` may say numbers of a run by their names, for sweeps. What these functions have as further arguments
+with defaults are the scenario's parameters: `takt run --set velocity=200` and `takt sweep` give them other values, to
+each function those that it has.
+
 They run unchanged in virtual time and on a running engine. The machine is the one the command line names, or
 machine.yaml beside the file.
 """
@@ -10,12 +14,13 @@ machine.yaml beside the file.
 from __future__ import annotations
 
 import contextlib
+import difflib
 import importlib.util
 import inspect
 import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -24,6 +29,7 @@ from urllib.parse import urlencode
 import numpy as np
 
 from takt import expect
+from takt.changes import value_of
 from takt.complaint import VERIFY, Complaint
 from takt.errors import CommandError, TaktError, TimeoutError
 from takt.judging import asserts
@@ -48,11 +54,13 @@ class ScenarioError(TaktError):
 class Scenario:
     path: Path
     title: str  # the first line of its doc string, or the file's name
-    scenario: Callable[[Session], object]
-    verify: Callable[[Recording], object] | None
-    pictures: Callable[[Recording], Mapping[str, Figure]] | None = None
+    scenario: Callable[..., object]  # of the session
+    verify: Callable[..., object] | None  # of the recording, and so are those below
+    pictures: Callable[..., Mapping[str, Figure]] | None = None
     every: int = 1  # cycles from one recorded sample to the next: EVERY in the file
     takes_s: float | None = None  # TAKES_S in the file
+    results: Callable[..., Mapping[str, Any]] | None = None
+    arguments: Mapping[str, Any] = field(default_factory=dict)  # of its parameters, where not the defaults
     view: str = ""  # VIEW in the file, as it stands behind the # of the live page's address
 
     @property
@@ -63,14 +71,57 @@ class Scenario:
     def play(self, session: Session) -> None:
         """Does what the scenario does."""
         with _no_exit(self.path):
-            self.scenario(session)
+            self.scenario(session, **self._arguments_of(self.scenario))
 
     def draw(self, recording: Recording) -> Mapping[str, Figure]:
         """Its own pictures of a recording."""
         if self.pictures is None:
             return {}
         with _no_exit(self.path):
-            return self.pictures(recording)
+            return self.pictures(recording, **self._arguments_of(self.pictures))
+
+    def judge(self, recording: Recording) -> object:
+        """What its `verify` returns."""
+        if self.verify is None:
+            return None
+        with _no_exit(self.path):
+            return self.verify(recording, **self._arguments_of(self.verify))
+
+    def numbers(self, recording: Recording) -> dict[str, Any]:
+        """What its `results` says of a recording."""
+        if self.results is None:
+            return {}
+        with _no_exit(self.path):
+            told = self.results(recording, **self._arguments_of(self.results))
+        if not isinstance(told, Mapping) or not all(isinstance(name, str) for name in told):
+            raise ScenarioError(f"{self.path}: results must return numbers by their names, found {told!r}")
+        return dict(told)
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Its parameters with their defaults."""
+        found: dict[str, Any] = {}
+        for function in (self.results, self.pictures, self.verify, self.scenario):
+            found |= _parameters(function) if function is not None else {}
+        return found
+
+    def with_arguments(self, arguments: Mapping[str, Any]) -> Scenario:
+        """The same with other values of parameters. A whole number for one whose default is a float becomes a float."""
+        known = self.parameters
+        for name in arguments:
+            if name not in known:
+                near = difflib.get_close_matches(name, known, n=1)
+                hint = f"; did you mean '{near[0]}'?" if near else ""
+                has = f"it has {', '.join(known)}" if known else "its functions have no arguments with defaults"
+                more = "keys of the machine file are paths, as axes.x.limits.velocity"
+                raise ScenarioError(f"{self.path}: has no parameter '{name}'{hint} ({has}; {more})")
+        given = {name: _like(value, known[name]) for name, value in arguments.items()}
+        return replace(self, arguments={**self.arguments, **given})
+
+    def _arguments_of(self, function: Callable[..., object]) -> dict[str, Any]:
+        if not self.arguments:
+            return {}
+        return {name: value for name, value in self.arguments.items() if name in _parameters(function)}
 
 
 @dataclass(frozen=True)
@@ -103,12 +154,14 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     scenario: Any = getattr(module, "scenario", None)
     verify: Any = getattr(module, "verify", None)
     pictures: Any = getattr(module, "pictures", None)
+    results: Any = getattr(module, "results", None)
     if not callable(scenario):
         raise ScenarioError(f"{file}: has no function scenario(session)")
     for name, function, argument in (
         ("scenario", scenario, "session"),
         ("verify", verify, "recording"),
         ("pictures", pictures, "recording"),
+        ("results", results, "recording"),
     ):
         if function is None:
             continue
@@ -124,7 +177,8 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
         raise ScenarioError(f"{file}: TAKES_S must be a number of seconds above 0, found {takes_s!r}")
     lines = (module.__doc__ or "").strip().splitlines()
     title = lines[0].rstrip(".") if lines else file.stem
-    return Scenario(file, title, scenario, verify, pictures, every, takes_s, _address(file, module))
+    view = _address(file, module)
+    return Scenario(file, title, scenario, verify, pictures, every, takes_s, results, view=view)
 
 
 def _address(file: Path, module: ModuleType) -> str:
@@ -136,6 +190,25 @@ def _address(file: Path, module: ModuleType) -> str:
                 chosen = {"tab": tab, "signals": ",".join(signals)}
                 return urlencode({key: text for key, text in chosen.items() if text}, safe=",")
     raise ScenarioError(f'{file}: VIEW must be like {{"tab": "scope", "signals": ["x.set_position"]}}')
+
+
+def settings_of(given: Sequence[str]) -> dict[str, Any]:
+    """What `KEY=VALUE` says, each of them."""
+    found: dict[str, Any] = {}
+    for text in given:
+        key, equals, value = text.partition("=")
+        if not key or not equals:
+            raise ScenarioError(f"'{text}': expected KEY=VALUE, as velocity=200")
+        if key in found:
+            raise ScenarioError(f"'{key}' is set twice")
+        found[key] = value_of(value)
+    return found
+
+
+def with_settings(scenario: Scenario, settings: Mapping[str, Any]) -> tuple[Scenario, dict[str, Any]]:
+    """A scenario with these values of its parameters, and the others: keys with a dot, which are of the machine."""
+    changes = {key: value for key, value in settings.items() if "." in key}
+    return scenario.with_arguments({k: v for k, v in settings.items() if k not in changes}), changes
 
 
 _folders: set[Path] = set()  # of scenarios that were loaded
@@ -232,8 +305,7 @@ def _judge(scenario: Scenario, recording: Recording, verdicts: Sequence[Verdict]
         if asserts(scenario.scenario, folder):
             return None
         return Complaint(f"nothing was judged: {scenario.path.name} has no verify(recording)", None, name=VERIFY)
-    with _no_exit(scenario.path):
-        answer = scenario.verify(recording)
+    answer = scenario.judge(recording)
     code = getattr(scenario.verify, "__code__", None)
     where = f"{scenario.path.name}:{code.co_firstlineno}" if code else scenario.path.name
     if isinstance(answer, bool | np.bool_):
@@ -250,6 +322,24 @@ def _no_exit(path: Path) -> Iterator[None]:
         yield
     except SystemExit as error:
         raise ScenarioError(f"{path}: ended by exit({'' if error.code is None else error.code})") from None
+
+
+def _parameters(function: Callable[..., object]) -> dict[str, Any]:
+    """Its arguments with defaults, but for the first of all."""
+    try:
+        arguments = list(inspect.signature(function).parameters.values())[1:]
+    except (TypeError, ValueError):
+        return {}
+    return {one.name: one.default for one in arguments if one.default is not one.empty}
+
+
+def _like(value: Any, default: Any) -> Any:
+    """A number of the kind of its default, where it is the same number."""
+    if isinstance(value, bool) or isinstance(default, bool):
+        return value
+    if isinstance(default, float) and isinstance(value, int):
+        return float(value)
+    return int(value) if isinstance(default, int) and isinstance(value, float) and value.is_integer() else value
 
 
 def _takes_one(function: Callable[..., object]) -> bool:

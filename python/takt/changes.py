@@ -1,0 +1,123 @@
+"""Single values of a machine file changed for a run: `takt.Engine(machine, changes={"axes.x.limits.velocity": 300})`,
+`takt run --set` and `takt sweep`. The text is edited where the values stand, so that all else, places included, stays.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import yaml
+
+from takt.errors import ConfigError
+
+NAMES = ("name", "axis")  # what elements of lists go by
+MARK = "__takt_change_{}__"
+
+Value = bool | int | float | str
+
+
+def changed(text: bytes, file_name: str, changes: Mapping[str, Value]) -> bytes:
+    """The text of a machine file with other values. Keys are paths: "axes.x.limits.velocity", elements of lists by
+    their name, by the axis that they belong to, or by number from 0. A key that is not there is added, and judged like
+    any other."""
+    if not changes:
+        return text
+    try:
+        parts = _parts(text.decode(), file_name, tuple(changes))
+    except (UnicodeDecodeError, yaml.YAMLError):
+        return text  # the engine says what is wrong with it, and where
+    values = [json.dumps(value, ensure_ascii=False) for value in changes.values()]
+    return "".join(part if isinstance(part, str) else values[part] for part in parts).encode()
+
+
+@functools.lru_cache(maxsize=8)
+def _parts(text: str, file_name: str, paths: tuple[str, ...]) -> tuple[str | int, ...]:
+    """The text around the values, and the numbers of these."""
+    for number, path in enumerate(paths):
+        text = _edited(text, file_name, path, MARK.format(number))
+    places = sorted((text.index(MARK.format(number)), number) for number in range(len(paths)))
+    parts: list[str | int] = []
+    at = 0
+    for place, number in places:
+        parts += [text[at:place], number]
+        at = place + len(MARK.format(number))
+    return (*parts, text[at:])
+
+
+def _edited(text: str, file_name: str, path: str, value: str) -> str:
+    node = yaml.compose(text, Loader=yaml.SafeLoader)
+    keys = path.split(".")
+    if not all(keys):
+        raise ConfigError([f"{file_name}: {path}: is no path of keys, as axes.x.limits.velocity is one"])
+    for depth, key in enumerate(keys):
+        if isinstance(node, yaml.SequenceNode):
+            node = _element(node, file_name, keys[:depth], key)
+        elif isinstance(node, yaml.MappingNode):
+            found = next((of for name, of in node.value if getattr(name, "value", None) == key), None)
+            if found is None:
+                return _added(text, node, keys[depth:], value)
+            node = found
+        elif isinstance(node, yaml.ScalarNode) and node.tag.endswith(":null"):
+            return _replaced(text, node, f" {_flow(keys[depth:], value)}")
+        else:
+            raise ConfigError([f"{file_name}: {'.'.join(keys[:depth])}: holds a value, so there is no {path}"])
+    if not isinstance(node, yaml.ScalarNode):
+        raise ConfigError([f"{file_name}: {path}: holds further keys; only single values can be changed"])
+    return _replaced(text, node, f" {value}" if node.start_mark.index == node.end_mark.index else value)
+
+
+def _element(node: yaml.SequenceNode, file_name: str, above: list[str], key: str) -> yaml.Node:
+    named: dict[str, yaml.Node] = {}
+    for one in node.value:
+        pairs = one.value if isinstance(one, yaml.MappingNode) else ()
+        own = {getattr(name, "value", ""): getattr(of, "value", "") for name, of in pairs}
+        named |= {own[name]: one for name in NAMES[::-1] if isinstance(own.get(name), str)}
+    if key in named:
+        return named[key]
+    if key.isdecimal() and int(key) < len(node.value):
+        element: yaml.Node = node.value[int(key)]
+        return element
+    there = ", ".join(named) or f"{len(node.value)} without names"
+    raise ConfigError([f"{file_name}: {'.'.join(above)}: has no element '{key}' (it has {there})"])
+
+
+def _flow(keys: list[str], value: str) -> str:
+    return f"{{{keys[0]}: {_flow(keys[1:], value)}}}" if keys else value
+
+
+def _added(text: str, node: yaml.MappingNode, keys: list[str], value: str) -> str:
+    line = f"{keys[0]}: {_flow(keys[1:], value)}"
+    if node.flow_style:
+        at = node.start_mark.index + 1
+        return text[:at] + line + (", " if node.value else "") + text[at:]
+    first = node.value[0][0].start_mark
+    return text[: first.index] + line + "\n" + " " * first.column + text[first.index :]
+
+
+def _replaced(text: str, node: yaml.Node, new: str) -> str:
+    begin, end = int(node.start_mark.index), int(node.end_mark.index)
+    return f"{text[:begin]}{new}{text[end:]}"
+
+
+def value_of(text: str) -> Value:
+    """A value as it is given on a command line: numbers, true and false, else a text."""
+    if text in ("true", "false"):
+        return text == "true"
+    for kind in (int, float):
+        try:
+            number: int | float = kind(text)
+        except ValueError:
+            continue
+        if abs(number) < float("inf"):
+            return number
+    return text
+
+
+def text_of(value: Any) -> str:
+    """The same the other way round: exactly this value again."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return repr(value) if isinstance(value, float) else str(value)

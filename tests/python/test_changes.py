@@ -1,0 +1,141 @@
+"""PY-24: single values of machine files and parameters of scenarios, given for a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import takt
+import yaml
+from takt.changes import Value, changed, text_of, value_of
+from takt.cli import main
+from takt.scenario import load_scenario
+
+MACHINE = """\
+# Two axes, in both styles.
+name: m
+axes:
+  - {name: x, unit: mm, limits: {velocity: 500, acceleration: 5000, jerk: 50000}} # flow
+  - name: y # block
+    unit: mm
+    limits:
+      velocity: 100
+      acceleration: 1000
+      jerk: 9000
+simulation:
+  servos: [{axis: x}]
+"""
+SCENARIO = '''\
+"""A move."""
+from takt import expect
+def scenario(session, velocity=100.0, repeat=1, *, where="there"):
+    assert isinstance(velocity, float) and isinstance(repeat, int), (velocity, repeat)
+    x = session.axis("x")
+    x.power().wait()
+    for i in range(repeat):
+        x.move_absolute(position=10 * (i + 1), velocity=velocity).wait()
+    assert where == "there"
+def verify(recording, most=500.0):
+    expect.within_limits(recording, "x", velocity=most)
+'''
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "machine.yaml").write_text(MACHINE)
+    (tmp_path / "scenario.py").write_text(SCENARIO)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_values_are_changed_where_they_stand() -> None:
+    changes = {"axes.x.limits.velocity": 250.5, "axes.1.limits.velocity": 7, "axes.y.unit": "in: ch"}
+    text = changed(MACHINE.encode(), "m", changes).decode()
+    assert text == MACHINE.replace("500,", "250.5,").replace("100\n", "7\n").replace("unit: mm\n", 'unit: "in: ch"\n')
+
+
+def test_keys_are_added_where_there_are_none() -> None:
+    changes = {
+        "axes.x.limits.deceleration": 1e-5,
+        "axes.y.limits.deceleration": 2,
+        "axes.y.supervision.deviation_moving": 3,
+        "simulation.servos.x.mechanics.inertia": 4,
+        "simulation.servos.x.mechanics.start_position": 5,
+        "cycle.period_s": 0.002,
+    }
+    found = yaml.safe_load(changed(MACHINE.encode(), "m", changes))
+    assert found["axes"][1]["limits"] == {"velocity": 100, "acceleration": 1000, "jerk": 9000, "deceleration": 2}
+    assert found["axes"][1]["supervision"] == {"deviation_moving": 3}
+    assert found["simulation"]["servos"] == [{"axis": "x", "mechanics": {"inertia": 4, "start_position": 5}}]
+    assert found["cycle"] == {"period_s": 0.002}
+
+
+def test_a_key_that_holds_nothing_yet() -> None:
+    assert yaml.safe_load(changed(b"name: m\nview:\n", "m", {"view.commands": True}))["view"] == {"commands": True}
+    assert yaml.safe_load(changed(b"{name: }", "m", {"name": "n", "cycle.period_s": 1})) == {
+        "name": "n",
+        "cycle": {"period_s": 1},
+    }
+
+
+def test_an_engine_with_changes() -> None:
+    with takt.Engine(MACHINE, changes={"axes.x.limits.velocity": 300, "cycle.period_s": 0.002}) as session:
+        assert session.axis("x").parameters["limits"]["velocity"] == 300
+        assert session.period == 0.002
+
+
+@pytest.mark.parametrize(
+    ("key", "wrong"),
+    [
+        ("axes.z.unit", r"m: axes: has no element 'z' \(it has x, y\)"),
+        ("axes.2.unit", "has no element '2'"),
+        ("axes.x.unit.more", "m: axes.x.unit: holds a value, so there is no axes.x.unit.more"),
+        ("axes.x.limits", "m: axes.x.limits: holds further keys"),
+        ("axes..x", "is no path of keys"),
+    ],
+)
+def test_what_cannot_be_changed(key: str, wrong: str) -> None:
+    with pytest.raises(takt.ConfigError, match=wrong):
+        changed(MACHINE.encode(), "m", {key: 1})
+
+
+def test_what_the_engine_complains_about() -> None:
+    with pytest.raises(takt.ConfigError, match=r"limits: expected a known key, found 'velocty'; did you mean velocity"):
+        takt.Engine(MACHINE, changes={"axes.x.limits.velocty": 1})
+    with pytest.raises(takt.ConfigError, match="machine:1:"):
+        takt.Engine("name: [\n", changes={"axes.x.limits.velocity": 1})
+
+
+@pytest.mark.parametrize("value", [1, -2.5, 1e-300, 0.1 + 0.2, 1e22, True, False, "text", "a b", 10**30])
+def test_values_come_back_as_they_were(value: Value) -> None:
+    assert value_of(text_of(value)) == value
+    assert type(value_of(text_of(value))) is type(value)
+
+
+def test_run_with_other_values(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    settings = ["velocity=200", "repeat=2.0", "most=50", "axes.x.limits.velocity=250"]
+    assert main(["run", "scenario.py", *(f"--set={one}" for one in settings)]) == 1
+    assert "velocity limit of 50 mm/s" in capsys.readouterr().out
+    assert main(["run", "scenario.py", "--set", "velocity=200", "--set", "axes.x.limits.velocity=150"]) == 1
+    assert main(["run", "scenario.py"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("settings", "wrong"),
+    [
+        (["velocty=1"], "has no parameter 'velocty'; did you mean 'velocity'? (it has most, velocity, repeat, where;"),
+        (["session=1"], "has no parameter 'session'"),
+        (["velocity"], "'velocity': expected KEY=VALUE"),
+        (["velocity=1", "velocity=2"], "'velocity' is set twice"),
+        (["axes.x.limits.velocity=fast"], "machine.yaml:4"),
+    ],
+)
+def test_bad_settings(folder: Path, settings: list[str], wrong: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "scenario.py", *(f"--set={one}" for one in settings)]) == 2
+    assert wrong in capsys.readouterr().err
+
+
+def test_parameters_have_defaults(folder: Path) -> None:
+    scenario = load_scenario("scenario.py")
+    assert scenario.parameters == {"velocity": 100.0, "repeat": 1, "where": "there", "most": 500.0}
+    assert scenario.with_arguments({"velocity": 3}).arguments == {"velocity": 3.0}
