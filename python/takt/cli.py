@@ -9,7 +9,7 @@ import traceback
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from rich.progress import BarColumn, Progress, ProgressColumn, SpinnerColumn, Task, TextColumn, TimeElapsedColumn
@@ -34,6 +34,9 @@ from takt.scenario import Outcome, load_scenario, run_scenario, settings_of, ver
 from takt.session import Session
 from takt.source import read_run
 from takt.terminal import Output
+
+if TYPE_CHECKING:
+    from takt.sweep import sweeping
 
 BAD_INPUT = 2
 FAILED = 1
@@ -189,6 +192,51 @@ def run(
 
         print(f"report: {write_outcome(outcome, scenario, report, figures).html}")
     return 0 if outcome.passed else FAILED
+
+
+@cli.command("sweep")
+@click.argument("file", type=FILE)
+@click.option("--grid", multiple=True, metavar="KEY=LOW:HIGH:COUNT", help="Even values; or KEY=A,B,C.")
+@click.option("--sample", multiple=True, metavar="KEY=LAW:...:COUNT", help="Drawn: uniform:1:2:100, normal:0:0.1:100.")
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Of what is drawn.")
+@click.option("--machine", type=FILE, help="The machine [machine.yaml beside FILE].")
+@click.option("-o", "--output", type=FILE, help="Directory of table and page [sweeps/FILE].")
+@click.option("--workers", type=click.IntRange(1, 1024), help="Processes [one a processor].")
+@click.option("--stop-after", type=click.IntRange(0), metavar="RUNS", help="So many runs now; later it goes on.")
+@click.option("--timeout", default=600.0, show_default=True, type=click.FloatRange(0.1), help="s that a run may take.")
+@click.option("--fresh", is_flag=True, help="Begin again [go on with what is there].")
+def run_sweep(
+    file: Path,
+    grid: tuple[str, ...],
+    sample: tuple[str, ...],
+    seed: int,
+    machine: Path | None,
+    output: Path | None,
+    workers: int | None,
+    stop_after: int | None,
+    timeout: float,
+    fresh: bool,
+) -> int:
+    """Run a scenario FILE by the thousand, with other values of its parameters and of the machine file each time. A
+    table with a row a run, and a page. The same command goes on with a sweep that was interrupted. Exit code 1: a run
+    failed."""
+    from takt.sweep import sweep
+
+    with _bar(f"sweep {file.name}") as progress:
+        result = sweep(
+            file,
+            grid,
+            sample,
+            output,
+            machine=machine,
+            seed=seed,
+            workers=workers,
+            stop_after=stop_after,
+            timeout_s=timeout,
+            fresh=fresh,
+            progress=progress,
+        )
+    return _show_sweep(result)
 
 
 @cli.command()
@@ -654,6 +702,24 @@ def _show_comparison(recordings: Sequence[Recording], names: tuple[str, str], al
         print(difference.sentence)
     print(comparison.sentence)
     print(f"report: {write_comparison(comparison, target)}")
+
+
+def _show_sweep(result: sweeping.Result) -> int:
+    summary = result.summary
+    reasons = sorted(summary.reasons.items(), key=lambda item: -item[1][0])
+    for reason, (count, first, command) in reasons[:DIFFERENCES]:
+        print(f"failed: {counted(count, 'run')}: {reason}; the first one is run {first}: {command}")
+    rest = summary.size - summary.runs
+    more = f", {counted(rest, 'run')} not made yet: the same command goes on" if rest else ""
+    print(f"{summary.passed:,} passed, {summary.failed:,} failed{more}")
+    if not result.repeats:
+        print("the same run gave other results when it was made again: what is random must come from --sample")
+    if result.made:
+        print(f"{counted(result.made, 'run')} made, {60 * result.made / max(result.elapsed_s, 1e-9):,.0f} a minute")
+    print(f"table: {result.table}")
+    print(f"table: {result.parquet}" if result.parquet else "Parquet, too, with: pip install pyarrow")
+    print(f"page: {result.page}")
+    return FAILED if summary.failed else 0
 
 
 def _show_figures(rows: Mapping[str, str]) -> None:

@@ -1,0 +1,104 @@
+"""One run of a sweep, and its row."""
+
+from __future__ import annotations
+
+import shlex
+import traceback
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from takt.changes import Value, text_of
+from takt.engine import Engine
+from takt.errors import ConfigError
+from takt.scenario import Outcome, load_scenario, run_scenario, with_settings
+
+Row = dict[str, Any]
+TEXT = 300  # letters of a sentence
+
+
+@dataclass(frozen=True)
+class Job:
+    """What all runs of a sweep have in common."""
+
+    scenario: str
+    machine: str  # as it was given; empty: the one beside the scenario
+
+    def command(self, point: Mapping[str, Value]) -> str:
+        """The command that makes a run again."""
+        words = ["takt", "run", self.scenario]
+        words += ["--machine", self.machine] if self.machine else []
+        for key, value in point.items():
+            words += ["--set", f"{key}={text_of(value)}"]
+        return shlex.join(words)
+
+    def run(self, number: int, point: Mapping[str, Value]) -> Row:
+        """Makes a run. Whatever goes wrong in it is said in its row."""
+        found: Row = {"engine_s": "", "hash": ""}
+        failed = ""
+        more: Row = {}
+        try:
+            failed, more = self._outcome(point, found)
+        except ConfigError as error:
+            failed = error.problems[0]
+        except Exception as error:
+            failed = f"{type(error).__name__}: {error}{_place(error, Path(self.scenario))}"
+        return self.row(number, point, failed, found, more)
+
+    def row(self, number: int, point: Mapping[str, Value], failed: str, found: Row, more: Row) -> Row:
+        """The columns of all rows first, then what this one has besides."""
+        said = " ".join(failed.split())
+        head = {"run": number, **point, "passed": int(not failed), "failed": said[:TEXT]}
+        return {**head, "engine_s": "", "hash": "", **found, "command": self.command(point), **more}
+
+    def _outcome(self, point: Mapping[str, Value], found: Row) -> tuple[str, Row]:
+        # Loaded each time: what a scenario keeps in its module would otherwise depend on the runs before.
+        scenario, changes = with_settings(load_scenario(self.scenario), point)
+        with Engine(self.machine or scenario.machine, changes=changes) as session:
+            try:
+                outcome = run_scenario(scenario, session)
+            finally:
+                found |= {"engine_s": round(session.now, 9), "hash": f"{session.state_hash:016x}"}
+        more = _margins(outcome)
+        if outcome.verdicts:
+            taken = {*found, *point, "run", "passed", "failed", "command", *more}
+            for name, value in scenario.numbers(outcome.recording).items():
+                more[f"{name} (result)" if name in taken else name] = _plain(value)
+        return _why(outcome), more
+
+
+def _why(outcome: Outcome) -> str:
+    """What failed first, in a sentence; empty: nothing."""
+    if outcome.assertion is not None:
+        return outcome.complaint
+    return next((f"{v.title}: {v.sentence}" for v in outcome.verdicts if not v.passed), "")
+
+
+def _margins(outcome: Outcome) -> Row:
+    """By how much each verdict passed; below 0: by how much it failed."""
+    found: Row = {}
+    seen: Counter[str] = Counter()
+    for verdict in outcome.verdicts:
+        seen[verdict.title] += 1
+        number = seen[verdict.title]
+        name = verdict.title if number == 1 else f"{verdict.title} {number}"
+        if verdict.by_how_much is not None:
+            found[name] = verdict.by_how_much if verdict.passed else -abs(verdict.by_how_much)
+    return found
+
+
+def _plain(value: Any) -> Any:
+    """As a table holds it: Python's own number, or a text."""
+    value = value.item() if hasattr(value, "item") and getattr(value, "ndim", 0) == 0 else value
+    if isinstance(value, bool):
+        return int(value)
+    return value if isinstance(value, int | float) else " ".join(str(value).split())[:TEXT]
+
+
+def _place(error: Exception, scenario: Path) -> str:
+    folder = scenario.resolve().parent
+    frames = traceback.extract_tb(error.__traceback__)
+    own = [frame for frame in frames if Path(frame.filename).resolve().parent == folder]
+    return f" ({Path(own[-1].filename).name}:{own[-1].lineno})" if own else ""

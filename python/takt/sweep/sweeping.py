@@ -1,0 +1,118 @@
+"""A whole sweep: its runs, its table and its page."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from takt.changes import changed
+from takt.engine import read_machine
+from takt.scenario import load_scenario, with_settings
+from takt.sweep.design import Design, SweepError
+from takt.sweep.pool import Pool
+from takt.sweep.runs import Job, Row
+from takt.sweep.summary import Summary
+from takt.sweep.table import ABOUT, Table, about, rows_of, to_parquet
+
+FLUSH_S = 1.0
+TIMEOUT_S = 600.0
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a sweep has come to."""
+
+    table: Path  # runs.csv
+    page: Path  # sweep.html
+    parquet: Path | None  # runs.parquet, where pyarrow is installed
+    summary: Summary
+    made: int  # runs of this call; the others were there
+    elapsed_s: float
+    repeats: bool  # the first run had the same state when it was made again
+
+    @property
+    def done(self) -> bool:
+        return self.summary.runs == self.summary.size
+
+
+def sweep(
+    scenario: str | os.PathLike[str],
+    grid: Sequence[str] = (),
+    sample: Sequence[str] = (),
+    directory: str | os.PathLike[str] | None = None,
+    *,
+    machine: str | os.PathLike[str] | None = None,
+    seed: int = 0,
+    workers: int | None = None,
+    stop_after: int | None = None,
+    timeout_s: float = TIMEOUT_S,
+    fresh: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> Result:
+    """Runs a scenario at all points of a grid and of samples, in virtual time.
+
+    grid: "velocity=100:500:9" or "mode=slow,fast"; sample: "mass=uniform:1:2:100". Keys are parameters of the scenario,
+        or, with a dot, paths of the machine file.
+    directory: where the table and the page go [sweeps/SCENARIO]; a sweep that is there goes on.
+    workers: processes [as many as there are processors].
+    stop_after: so many runs now; the next call goes on.
+    timeout_s: s of this host's time that a run may take.
+    fresh: begins again.
+    """
+    from takt.sweep.page import write_page  # what draws takes long to import, and workers need none of it
+
+    job = Job(str(scenario), str(machine or ""))
+    design = Design.of(grid, sample, seed)
+    _check(job, design)
+    if workers is not None and workers < 1:
+        raise SweepError(f"at least one worker is needed, found {workers}")
+    target = Path(directory) if directory is not None else Path("sweeps") / Path(scenario).stem
+    table = Table(target, about(job, design), fresh)
+    try:
+        first, end = table.count, design.size
+        if first > end:
+            raise SweepError(f"{table.path}: holds {first} runs of {end}; --fresh begins again")
+        if stop_after is not None:
+            end = min(end, first + stop_after)
+        begin = time.monotonic()
+        repeats = _make(table, Pool(job, design, workers or os.cpu_count() or 1, timeout_s), first, end, job, progress)
+        elapsed = time.monotonic() - begin
+    finally:
+        table.close()
+    summary = Summary.of(rows_of(table.path), design)
+    arrow = importlib.util.find_spec("pyarrow") is not None
+    parquet = to_parquet(table.path, summary.texts) if arrow and summary.runs else None
+    page = write_page(summary, target, load_scenario(scenario).title, target / ABOUT)
+    return Result(table.path, page, parquet, summary, end - first, elapsed, repeats)
+
+
+def _make(table: Table, pool: Pool, first: int, end: int, job: Job, progress: Callable[[float], None] | None) -> bool:
+    flushed = time.monotonic()
+    repeats = True
+
+    def take(row: Row) -> None:
+        nonlocal flushed, repeats
+        if row["run"] == first and row["hash"]:
+            again = job.run(first, {key: row[key] for key in pool.keys})
+            repeats = again == row
+        table.append(row)
+        if time.monotonic() - flushed > FLUSH_S:
+            table.flush()
+            flushed = time.monotonic()
+        if progress is not None:
+            progress((table.count - first) / (end - first))
+
+    if end > first:
+        pool.run(first, end, take)
+    return repeats
+
+
+def _check(job: Job, design: Design) -> None:
+    """Refuses what no run could be made with, before any is."""
+    scenario, changes = with_settings(load_scenario(job.scenario), design.point(0))
+    text, file_name = read_machine(job.machine or scenario.machine)
+    changed(text, file_name, changes)
