@@ -6,6 +6,7 @@ build/venv/bin/python -m tools.page_pictures docs/images [NAME ...]
 from __future__ import annotations
 
 import contextlib
+import os
 import subprocess
 import sys
 import tempfile
@@ -18,6 +19,7 @@ from takt import Engine, checks
 from takt.demo import free_url, taktd
 from takt.report import compare, keep, write_comparison, write_report
 from takt.scenario import load_scenario, run_scenario
+from takt.sweep import sweep
 from takt.view.server import serving
 
 from tools import page_blocks
@@ -84,6 +86,7 @@ REPORTS: dict[str, tuple[bool, str]] = {
 
 
 COMPARISON = "compare"  # of two runs
+SWEEP = "sweep"
 SHOWN = """() => {
     document.querySelectorAll("#differences tr").forEach((row, i) => { row.hidden = i > 7; });
     for (const id of ["verdicts-section", "facts-section", "same"]) document.getElementById(id).hidden = true;
@@ -149,9 +152,9 @@ def take(name: str, target: Path) -> None:
 
 
 def take_report(name: str, target: Path) -> None:
-    dark, before = REPORTS.get(name, (False, SHOWN))
+    dark, before = REPORTS.get(name, (False, SHOWN if name == COMPARISON else ""))
     with tempfile.TemporaryDirectory() as directory, sync_playwright() as playwright:
-        report = two_runs(Path(directory)) if name == COMPARISON else failed(Path(directory))
+        report = {COMPARISON: two_runs, SWEEP: swept}.get(name, failed)(Path(directory))
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
         page: Page = browser.new_page(viewport=SIZE, color_scheme="dark" if dark else "light")  # type: ignore[arg-type]
         page.goto(report.as_uri())
@@ -184,9 +187,21 @@ def two_runs(directory: Path) -> Path:
     return write_comparison(compare(*runs, names=("before", "after")), directory / "compare.html")
 
 
+def swept(directory: Path) -> Path:
+    """The sweep of its page."""
+    page_blocks.unpack(ROOT / "docs" / "sweeps.md", directory)
+    grid, sample = ["velocity=100:400:4"], ["axes.ram.limits.acceleration=uniform:2000:8000:25"]
+    before = Path.cwd()
+    os.chdir(directory)  # whose name the commands of the page would say otherwise
+    try:
+        return sweep("scenario.py", grid, sample, "sweep").page.resolve()
+    finally:
+        os.chdir(before)
+
+
 def main() -> int:
     folder, *names = sys.argv[1:]
-    for name in names or [*PICTURES, *REPORTS, COMPARISON]:
+    for name in names or [*PICTURES, *REPORTS, COMPARISON, SWEEP]:
         (take if name in PICTURES else take_report)(name, Path(folder) / f"{name}.png")
         print(Path(folder) / f"{name}.png")
     return 0

@@ -63,7 +63,8 @@ def render(summary: Summary, title: str, about: dict[str, object]) -> str:
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{_text(title)}</title>\n<style>{style}{CSS}</style>\n</head>\n<body>\n<main>\n"
+        f"<title>{_text(title)}</title>\n<style>{style}{CSS}</style>\n</head>\n"
+        '<body class="ready">\n<main>\n'
         f'<header class="headline"><h1>{_text(title)}</h1><span class="pill {colour}">{pill}</span></header>\n'
         f'{notice}<dl class="facts">{told}</dl>\n{"".join(parts)}</main>\n</body>\n</html>\n'
     )
