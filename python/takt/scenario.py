@@ -219,9 +219,10 @@ def modules_of(folder: Path) -> Iterator[None]:
     """Here modules are imported that lie in the folder of a scenario. Those of other scenarios are forgotten: another
     `judge` beside this one would be taken for them."""
     folder = folder.resolve()
-    for name, module in list(sys.modules.items()):
+    others = {str(other) for other in _folders - {folder}}
+    for name, module in list(sys.modules.items()) if others else ():
         place = getattr(module, "__file__", None)
-        if place and Path(place).parent in _folders - {folder}:
+        if place and place.rpartition(os.sep)[0] in others:
             del sys.modules[name]
     _folders.add(folder)
     sys.path.insert(0, str(folder))
