@@ -24,6 +24,7 @@ from takt.cli import main
 from takt.keys import read_key
 from takt.view.commander import Commander
 from takt.view.feed import Feed
+from tcpq import Server
 
 REASONS = ("untagged", "wrong_key", "replayed", "stale")
 
@@ -256,6 +257,31 @@ def test_commands_of_an_earlier_start_are_void(tmp_path: Path, key: Path) -> Non
         session.wait(lambda: sum(session.figures[r] for r in ("stale", "other_run", "wrong_key")) >= len(old), LONG_S)
         assert session.axis("x").set_position == 0
         assert not session.axis("x").powered
+
+
+def test_keys_over_tcpq(tmp_path: Path, key: Path) -> None:
+    """EN-31: on tcpq:// tags count as on UDP: holders command; what has no good tag, or was heard, moves nothing."""
+    foreign = Sender(key_bytes(new_key(tmp_path, "other")))
+    machine = machine_with("{dead_man_s: 0.5, engine_rate_hz: 50}")
+    with Server() as server:
+        bystander = Bystander(server.url)
+        with running(tmp_path, server.url, "--key", str(key), machine=machine):
+            with takt.connect(server.url, key=key, timeout=LONG_S) as session:
+                x = session.axis("x")
+                x.power().wait()
+                x.move_relative(distance=1.0).wait()
+                bystander.until(lambda: len(bystander.on("takt/command")) >= 2)
+                bystander.say("takt/command", bystander.on("takt/command")[-1])
+                for number in range(3):
+                    bystander.say("takt/command", forged_command(session, number))
+                    bystander.say("takt/command", foreign.tag("takt/command", forged_command(session, number)))
+                counted(session, "replayed", 1)
+                counted(session, "untagged", 3)
+                counted(session, "wrong_key", 3)
+                assert x.set_position == 1.0
+                x.halt().wait()
+            with pytest.raises(takt.ConnectionError, match="has a key and hears only holders of it"):
+                takt.connect(server.url, key="", timeout=LONG_S)
 
 
 # --- drives ---

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <map>
@@ -15,6 +16,7 @@
 #include <thread>
 
 #include "packets.h"
+#include "takt/lcm/authentication.h"
 #include "takt/lcm/clock.h"
 #include "takt/lcm/network.h"
 #include "takt/lcm/udp_receiver.h"
@@ -163,6 +165,89 @@ TEST(Receiver, FuzzAtTheSocket) {
   EXPECT_EQ(heard, right);
   EXPECT_GE(heard, sent * 9 / 10) << "of " << sent;  // a loaded host may lose some
   EXPECT_GT(receiver->malformed(), rounds / 4);
+}
+
+// EN-30, EN-31: with a key: what holders say arrives once, short or in fragments, among copies of it that were changed,
+// cut, said again, moved to another channel or tagged with another key; nothing else arrives. With TAKT_LONG by the
+// million.
+TEST(Receiver, FuzzAtTheSocketWithAKey) {
+  const std::string url = NewUrl();
+  std::map<TagState, std::uint64_t> refused;
+  const Key key{1, 2, 3}, other{3, 2, 1};
+  const auto receiver =
+      WithKey(Open(url + "&recv_buf_size=4194304"), key, [&](std::string_view, TagState state) { ++refused[state]; });
+  std::mt19937 random(31);
+  const auto uniform = [&](std::size_t low, std::size_t high) {
+    return std::uniform_int_distribution<std::size_t>(low, high)(random);
+  };
+  std::map<Packet, int> heard;  // how often
+  std::uint64_t open = 0;
+  receiver->Subscribe("takt/command", Receiver::kAll,
+                      [&](const Heard& message) { ++heard[Packet(message.data.begin(), message.data.end())]; });
+  receiver->Subscribe("takt/axis/x", Receiver::kAll, [&](const Heard&) { ++open; });
+  receiver->Subscribe("takt/.*", 100, [](const Heard&) {});
+  std::vector<std::unique_ptr<Anybody>> senders;
+  for (int i = 0; i < 5; ++i) senders.push_back(std::make_unique<Anybody>(url));
+  Signer signer(key), foreign(other);
+  const auto send = [&](const Anybody& sender, std::size_t number, const std::string& channel, const Packet& data) {
+    if (data.size() < 400 && number % 2 == 0) {
+      return sender.Send(ShortPacket(static_cast<std::uint32_t>(number), channel, data));
+    }
+    for (const Packet& piece : Fragments(static_cast<std::uint32_t>(number), channel, data, 300)) sender.Send(piece);
+  };
+  std::vector<Packet> said;
+  const std::size_t rounds = std::getenv("TAKT_LONG") ? 200'000 : 1'000;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    Packet message(uniform(8, 1500), 0xab);
+    for (std::size_t i = 0; i < 8; ++i) message[i] = static_cast<std::uint8_t>(round >> (8 * i));
+    said.push_back(message);
+    Packet tagged = message;
+    signer.Sign("takt/command", tagged);
+    send(*senders[0], round, "takt/command", tagged);
+    for (std::size_t i = 0; i < 4; ++i) {  // the others
+      Packet copy = tagged;
+      std::string channel = "takt/command";
+      switch (uniform(0, 6)) {
+        case 0:
+          copy[uniform(0, copy.size() - 1)] ^= static_cast<std::uint8_t>(1 << uniform(0, 7));
+          break;
+        case 1:
+          copy.resize(uniform(0, copy.size() - 1));
+          break;
+        case 2:
+          copy.insert(copy.end(), tagged.end() - static_cast<std::ptrdiff_t>(kTagBytes), tagged.end());
+          break;
+        case 3:
+          channel = uniform(0, 1) == 0 ? "takt/heartbeat" : "takt/axis/x";
+          break;
+        case 4:
+          copy = message;
+          foreign.Sign(channel, copy);
+          break;
+        case 5:
+          copy = message;
+          break;
+        default:  // said again as it was
+          break;
+      }
+      std::ranges::shuffle(senders.begin() + 1, senders.end(), random);
+      send(*senders[1], uniform(0, 1'000'000), channel, copy);
+    }
+    while (receiver->Handle(0) > 0) {
+    }
+    for (int i = 0; i < 100 && !heard.contains(message); ++i) receiver->Handle(10);
+  }
+  while (receiver->Handle(50) > 0) {
+  }
+  std::size_t once = 0;
+  for (const Packet& message : said) once += heard.contains(message) ? 1 : 0;
+  EXPECT_EQ(heard.size(), once);  // nothing else
+  for (const auto& [message, times] : heard) EXPECT_EQ(times, 1);
+  EXPECT_GE(once, rounds * 9 / 10);  // a loaded host may lose some
+  EXPECT_GT(open, rounds / 20);
+  for (const TagState state : {TagState::kMissing, TagState::kForeign, TagState::kReplayed}) {
+    EXPECT_GT(refused[state], rounds / 20) << Text(state);
+  }
 }
 
 }  // namespace
