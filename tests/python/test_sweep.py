@@ -291,6 +291,27 @@ def test_rows_that_are_not_in_order() -> None:
         sweep("scenario.py", grid, directory="d", workers=1)
 
 
+def test_two_sweeps_at_once() -> None:
+    grid = ["velocity=100:200:2"]
+    wrong: list[str] = []
+
+    def also(share: float) -> None:
+        with pytest.raises(SweepError) as error:
+            sweep("scenario.py", grid, directory="d", workers=1)
+        wrong.append(str(error.value))
+
+    assert sweep("scenario.py", grid, directory="d", workers=1, progress=also).done
+    assert wrong == ["d/runs.csv: another sweep is writing it; -o names another directory"] * 2
+
+
+def test_a_machine_of_ones_own() -> None:
+    Path("other.yaml").write_text(MACHINE.replace("velocity: 400", "velocity: 150"))
+    sweep("scenario.py", ["velocity=100,200"], directory="d", machine="other.yaml", workers=1)
+    found = rows("d")
+    assert [row["passed"] for row in found] == ["1", "0"]
+    assert found[0]["command"] == "takt run scenario.py --machine other.yaml --set velocity=100"
+
+
 def test_a_sweep_whose_process_is_killed_leaves_no_workers() -> None:
     program = (
         "import os, signal, threading\nfrom takt.sweep import sweep\n"

@@ -4,6 +4,7 @@ to as rows come, so that a sweep that was interrupted, by whatever, goes on wher
 from __future__ import annotations
 
 import csv
+import fcntl
 import hashlib
 import importlib
 import io
@@ -17,7 +18,7 @@ from takt.sweep.design import Design, SweepError
 from takt.sweep.runs import Job, Row
 
 FORMAT = 1
-TABLE, ABOUT = "runs.csv", "sweep.json"
+TABLE, ABOUT, LOCK = "runs.csv", "sweep.json", ".lock"
 
 
 def about(job: Job, design: Design) -> dict[str, Any]:
@@ -57,15 +58,25 @@ class Table:
         self.path = directory / TABLE
         self._about = directory / ABOUT
         directory.mkdir(parents=True, exist_ok=True)
+        self._lock = (directory / LOCK).open("w")
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            self._lock.close()
+            raise SweepError(f"{self.path}: another sweep is writing it; -o names another directory") from None
         self.columns: list[str] = []
         self.count = 0
-        if not fresh and (self._about.exists() or self.path.exists()):
-            self._check(facts)
-        else:
-            self.path.unlink(missing_ok=True)
-        self._about.write_text(json.dumps(facts, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
-        if self.path.exists():
-            self._take_up()
+        try:
+            if not fresh and (self._about.exists() or self.path.exists()):
+                self._check(facts)
+            else:
+                self.path.unlink(missing_ok=True)
+            self._about.write_text(json.dumps(facts, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+            if self.path.exists():
+                self._take_up()
+        except BaseException:
+            self._lock.close()
+            raise
         self._file: IO[str] = self.path.open("a", newline="", encoding="utf-8")
 
     def append(self, row: Row) -> None:
@@ -80,6 +91,7 @@ class Table:
 
     def close(self) -> None:
         self._file.close()
+        self._lock.close()
 
     def _check(self, facts: Mapping[str, Any]) -> None:
         """Refuses to add to a table that other runs made."""
