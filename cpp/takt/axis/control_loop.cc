@@ -18,7 +18,7 @@ double WithDeadBand(const ControlLoop& p, double volts) noexcept {
 }  // namespace
 
 double InConverterSteps(double volts) noexcept {
-  constexpr double kLargestCode = kVoltageSteps / 2 - 1;
+  constexpr auto kLargestCode = static_cast<double>(kVoltageSteps / 2 - 1);
   return std::min(std::round(volts / kVoltageStep), kLargestCode) * kVoltageStep;
 }
 

@@ -29,7 +29,7 @@ std::optional<Answer> Make(Desk& desk) {
       answer.made.stator = static_cast<std::uint32_t>(surfacing.stator + 1);
     }
   } else if (desk.deliveries.TryPush({question.number, surface.get()})) {
-    surface.release();
+    static_cast<void>(surface.release());  // the cycle has it
   }
   return answer;
 }
