@@ -17,7 +17,7 @@ COMMANDS = (
     "release",
     "renew",
 )
-ERRORS = (5, 7, 11, 13, 2001, 2004, 2005, 2006, 2007, 3001, 3002, 3007, 3016, 3100)
+ERRORS = (5, 7, 11, 13, 2001, 2004, 2005, 2006, 2007, 3001, 3002, 3007, 3016, 3100, 3103)
 SIGNALS = ("x.set_velocity", "x.actual_position", "x.loop_closed", "x.state")
 
 

@@ -170,6 +170,13 @@ Status CarryOut(const Context& c, Ticket ticket, const CamTableSelect&, State&) 
   Report(c, ticket, FeedbackState::kDone);
   return Status::Ok();
 }
+// Directions that a power command enables or not: from now on, also while it waits for its turn (AX-111).
+void Permit(const Context& c, const Power& power, State& s) {
+  if (power.enable_positive || power.enable_negative) s.bars_cycle = c.cycle.count;
+  if (power.enable_positive) s.bars_positive = !*power.enable_positive;
+  if (power.enable_negative) s.bars_negative = !*power.enable_negative;
+}
+
 // What asks for control never comes here.
 template <typename T>
 Status CarryOut(const Context&, Ticket, const T&, State&) {
@@ -217,6 +224,7 @@ void Apply(const Context& c, Ticket ticket, double lease_s, const Command& comma
     request.ticket = ticket;
     request.lease_s = lease_s;
     status = Admit(c, request, s);
+    if (status.ok() && request.kind == RequestKind::kPower) Permit(c, std::get<Power>(command), s);
     const bool halts = request.kind == RequestKind::kHalt || request.kind == RequestKind::kStop;
     if (halts && status.ok()) EndFlyingByHalt(c, s);
   }

@@ -52,6 +52,29 @@ void WatchSwitches(const Context& c, State& s) {
   }
 }
 
+// Speeds below this are rounding.
+double Standing(const Context& c) {
+  return 1e-9 * c.params.limits.velocity;
+}
+
+// The axis is on its way to rest already, by a command.
+bool BrakesAnyway(const State& s) {
+  const RequestKind kind = s.active.kind;
+  const bool brakes = kind == RequestKind::kHalt || kind == RequestKind::kStop || kind == RequestKind::kPower ||
+                      (kind == RequestKind::kJog && s.jog_sense == 0);
+  return brakes && !s.superimposed;
+}
+
+// A motion in a direction that MC_Power does not enable ends as at a limit switch (AX-111). Under torque control it is
+// the torque that counts: what is measured trembles.
+void WatchDirections(const Context& c, State& s) {
+  if (s.plc == PlcState::kErrorStop || BrakesAnyway(s)) return;
+  const bool torque = s.active.kind == RequestKind::kTorqueControl;
+  const double way = torque ? s.active.value : s.setpoint.velocity;
+  const double least = torque ? 0 : Standing(c);
+  if ((s.bars_positive && way > least) || (s.bars_negative && way < -least)) Fail(c, ErrorId::kDirection, false, s);
+}
+
 // A voltage that is put out with the loop open ends at a limit switch and at a SW limit.
 void WatchDirectOutput(const Context& c, State& s) {
   const AxisLimits& limits = c.params.limits;
@@ -87,6 +110,7 @@ void Supervise(const Context& c, State& s) {
   }
   WatchDeviation(c, s);
   if (s.limit_positive || s.limit_negative) WatchSwitches(c, s);
+  if (s.bars_positive || s.bars_negative) WatchDirections(c, s);
   WatchLease(c, s);
 }
 
@@ -153,16 +177,19 @@ void GuardLimits(const Context& c, const KinematicState& before, State& s) {
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
 }
 
-// Takes back a set point with which a motion towards a limit switch that is on would begin.
+// Takes back a set point with which a motion towards a limit switch that is on, or in a direction that is not enabled,
+// would begin.
 void GuardSwitches(const Context& c, const KinematicState& before, State& s) {
   if (s.superimposed || s.plc == PlcState::kErrorStop || OwnsLimitSwitches(s)) return;
   const bool up = s.setpoint.velocity > std::max(0.0, before.velocity);
   const bool down = s.setpoint.velocity < std::min(0.0, before.velocity);
   if (!up && !down) return;
   const bool own = up ? s.limit_positive : s.limit_negative;
-  if (!own && !FollowerOnLimit(c, s, up ? 1 : -1)) return;
+  const bool barred = std::abs(s.setpoint.velocity) > Standing(c) && Bars(c, s, up ? 1 : -1);
+  if (!own && !barred && !FollowerOnLimit(c, s, up ? 1 : -1)) return;
   s.setpoint = before;
-  Fail(c, !own ? ErrorId::kAxisFault : up ? ErrorId::kLimitSwitchPositive : ErrorId::kLimitSwitchNegative, false, s);
+  const ErrorId at_switch = up ? ErrorId::kLimitSwitchPositive : ErrorId::kLimitSwitchNegative;
+  Fail(c, own ? at_switch : barred ? ErrorId::kDirection : ErrorId::kAxisFault, false, s);
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
 }
 
@@ -238,7 +265,8 @@ void FollowDemand(const Context& c, State& s) {
   const bool table = FollowsTable(s.active.kind);
   if (!FollowNow(c, s)) return Advance(c, s);
   GuardLimits(c, before, s);
-  if (s.limit_positive || s.limit_negative || s.leads) GuardSwitches(c, before, s);
+  const bool closed = s.limit_positive || s.limit_negative || s.bars_positive || s.bars_negative;
+  if (closed || s.leads) GuardSwitches(c, before, s);
   if (coupled && (s.coupling.in_step || s.coupling.cam.over)) Conclude(c, 0, s);
   if (table && s.time_table.over) ConcludeDue(c, before, s);
   NoteSense(s);

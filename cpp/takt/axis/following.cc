@@ -207,6 +207,15 @@ bool FollowerOnLimit(const Context& c, const State& s, int sense) noexcept {
   return on;
 }
 
+bool Bars(const Context& c, const State& s, int sense) noexcept {
+  bool bars = sense > 0 ? s.bars_positive : s.bars_negative;
+  if (!s.leads) return bars;
+  ForFollowers(c, [&](const AxisParams& p, const State& follower) {
+    bars |= (p.follows->ratio > 0) == (sense > 0) ? follower.bars_positive : follower.bars_negative;
+  });
+  return bars;
+}
+
 bool Fill(const Maker& m, const Straighten& straighten) {
   double velocity = 0;
   return m.Take("velocity", straighten.velocity, m.params.limits.velocity, velocity);
@@ -223,6 +232,8 @@ Status CarryOut(const Context& c, Ticket ticket, const Straighten& straighten, S
   if (s.skew.straightens) return Status::Failed(ErrorId::kState);
   const bool onto_switch = s.skew.commanded < 0 ? s.limit_positive : s.skew.commanded > 0 && s.limit_negative;
   if (onto_switch) return Status::Failed(ErrorId::kAwayFromLimitOnly);
+  const bool barred = s.skew.commanded < 0 ? s.bars_positive : s.skew.commanded > 0 && s.bars_negative;
+  if (barred) return Status::Failed(ErrorId::kDirection);
   if (!BeginStraightening(c, straighten.velocity.value_or(kShare * c.params.limits.velocity), s)) {
     return Status::Failed(ErrorId::kPlanning);
   }

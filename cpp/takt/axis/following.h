@@ -34,6 +34,9 @@ Status FollowersReady(const Context& context, const State& state) noexcept;
 // Whether an axis that follows this one is on a limit switch that lies ahead in this sense.
 bool FollowerOnLimit(const Context& context, const State& state, int sense) noexcept;
 
+// Whether MC_Power enables no motion in this sense, of this axis or of one that follows it (AX-111).
+bool Bars(const Context& context, const State& state, int sense) noexcept;
+
 // While this axis searches its reference switch: each follower that is squared by it has found its own ...
 bool FollowersFound(const Context& context, const State& state) noexcept;
 // ... and, it being found, stand straight.

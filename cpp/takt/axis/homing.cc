@@ -295,6 +295,7 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
   if (Searches(r.kind) && !BySwitch(r.kind) && LimitAhead(s, FirstSense(r, s))) {
     return Status::Failed(ErrorId::kAwayFromLimitOnly);
   }
+  if (Searches(r.kind) && Bars(c, s, FirstSense(r, s))) return Status::Failed(ErrorId::kDirection);
   // As define_position: no place beyond a SW limit.
   const bool names =
       r.homing.sets_position && r.kind != RequestKind::kFinishHoming && r.kind != RequestKind::kStepAbsolute;

@@ -130,7 +130,9 @@ Status MayBeOnTop(const Context& c, const State& s) {
 
 Status CheckSwitches(double way, const State& s) {
   const bool onto = (s.limit_positive && way > 0) || (s.limit_negative && way < 0);
-  return onto ? Status::Failed(ErrorId::kAwayFromLimitOnly) : Status::Ok();
+  if (onto) return Status::Failed(ErrorId::kAwayFromLimitOnly);
+  const bool barred = (s.bars_positive && way > 0) || (s.bars_negative && way < 0);
+  return barred ? Status::Failed(ErrorId::kDirection) : Status::Ok();
 }
 
 void RememberBase(State& s) {

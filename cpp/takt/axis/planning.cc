@@ -349,7 +349,7 @@ Status PlanScaled(const AxisParams& params, const Surroundings& around, Planner&
   return status;
 }
 
-// While a limit switch is on, no motion may go (further) towards it.
+// While a limit switch is on, no motion may go (further) towards it; and none where MC_Power does not enable it.
 Status CheckSwitches(const Surroundings& around, const KinematicState& from, const Profile& profile) {
   const Profile::Range velocity = profile.VelocityRange();
   const double up = std::max(velocity.max, profile.end().velocity);
@@ -358,6 +358,8 @@ Status CheckSwitches(const Surroundings& around, const KinematicState& from, con
   const bool goes_down = down < std::min(0.0, from.velocity) - Rounding(0);
   if ((around.limit_positive && goes_up) || (around.limit_negative && goes_down))
     return Status::Failed(ErrorId::kAwayFromLimitOnly);
+  if ((around.bars_positive && goes_up) || (around.bars_negative && goes_down))
+    return Status::Failed(ErrorId::kDirection);
   return Status::Ok();
 }
 
@@ -373,6 +375,8 @@ Status CheckTorque(const AxisParams& params, const Surroundings& around, const K
   if (params.drive.mode == DriveMode::kAnalog) return Status::Failed(ErrorId::kState);  // it takes no torque
   if ((around.limit_positive && torque > 0) || (around.limit_negative && torque < 0))
     return Status::Failed(ErrorId::kAwayFromLimitOnly);
+  if ((around.bars_positive && torque > 0) || (around.bars_negative && torque < 0))
+    return Status::Failed(ErrorId::kDirection);
   return CheckAtLimit(params.limits, from, torque);
 }
 

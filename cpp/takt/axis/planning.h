@@ -18,6 +18,8 @@ namespace takt::axis {
 struct Surroundings {
   bool limit_positive = false;
   bool limit_negative = false;
+  bool bars_positive = false;  // motion upwards is not enabled (MC_Power)
+  bool bars_negative = false;
   bool homed = true;
   std::int8_t last_sense = 1;
   std::optional<double> promised;  // u, unwrapped: where the positioning command in control ends, if there is one
@@ -39,7 +41,7 @@ struct Plan {
 
 // Plans `request`, scaled by the override, from `from`. `queue` has the blending commands behind it: the profile then
 // ends with the highest velocity from which all of them can be done (AX-12, AX-103). Errors: kTargetBehindLimit,
-// kAwayFromLimitOnly, kPlanning.
+// kAwayFromLimitOnly, kDirection, kPlanning.
 Status PlanRequest(const AxisParams& params, const Surroundings& around, trajectory::Planner& planner,
                    const KinematicState& from, const Request& request, std::span<const Request> queue,
                    Plan& out) noexcept;

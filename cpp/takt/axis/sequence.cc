@@ -40,6 +40,8 @@ Surroundings SurroundingsOf(const Context& c, const State& s) noexcept {
   Surroundings around;
   around.limit_positive = s.limit_positive || FollowerOnLimit(c, s, 1);
   around.limit_negative = s.limit_negative || FollowerOnLimit(c, s, -1);
+  around.bars_positive = Bars(c, s, 1);
+  around.bars_negative = Bars(c, s, -1);
   around.homed = s.homing.homed;
   around.last_sense = s.last_sense;
   around.factors = s.override_factors;

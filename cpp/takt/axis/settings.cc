@@ -35,9 +35,11 @@ bool Fits(const Context& c, const AxisLimits& limits, const State& s) {
          Inside(limits, std::max(range.max, end) + std::max(0.0, added));
 }
 
-Status MayPutOut(const Context& c, const State& s) {
+Status MayPutOut(const Context& c, double voltage, const State& s) {
   if (c.params.drive.mode != DriveMode::kAnalog) return Status::Failed(ErrorId::kState);
-  return s.plc != PlcState::kDisabled || s.enable ? Status::Failed(ErrorId::kPowerOn) : Status::Ok();
+  if (s.plc != PlcState::kDisabled || s.enable) return Status::Failed(ErrorId::kPowerOn);
+  const bool barred = (s.bars_positive && voltage > 0) || (s.bars_negative && voltage < 0);
+  return barred ? Status::Failed(ErrorId::kDirection) : Status::Ok();
 }
 
 void EndPulse(const Context& c, FeedbackState feedback, State& s) {
@@ -263,14 +265,14 @@ Status CarryOut(const Context& c, Ticket ticket, const SetSoftLimits& l, State& 
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const DirectOutput& d, State& s) noexcept {
-  if (const Status status = MayPutOut(c, s); status.failed()) return status;
+  if (const Status status = MayPutOut(c, d.voltage, s); status.failed()) return status;
   EndPulse(c, FeedbackState::kAborted, s);
   s.direct_voltage_v = d.voltage;
   return Done(c, ticket);
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const PulseOutput& p, State& s) noexcept {
-  if (const Status status = MayPutOut(c, s); status.failed()) return status;
+  if (const Status status = MayPutOut(c, p.voltage, s); status.failed()) return status;
   EndPulse(c, FeedbackState::kAborted, s);
   const double cycles = std::max(1.0, std::round(p.duration / c.cycle.period_s));
   s.direct_voltage_v = p.voltage;

@@ -85,6 +85,9 @@ void describe(Description<State>& d) {
   d.internal<&S::limit_negative>("LIM-.");
   d.internal<&S::reference>("REF.");
   d.internal<&S::touch_probe>("TP.");
+  d.internal<&S::bars_positive>("No motion upwards is enabled.");
+  d.internal<&S::bars_negative>("No motion downwards is enabled.");
+  d.internal<&S::bars_cycle>("When that was said.");
   d.internal<&S::index_pulse>("NI came since the cycle before.");
   d.internal<&S::index_pulses>("How many came.");
   d.internal<&S::index_counts>("Count at the last one.");

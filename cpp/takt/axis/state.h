@@ -117,7 +117,9 @@ struct State {
   bool limit_negative = false;
   bool reference = false;
   bool touch_probe = false;
-  bool index_pulse = false;  // one came since the cycle before ...
+  bool bars_positive = false;  // MC_Power: no motion upwards ...
+  bool bars_negative = false;  // ... and downwards
+  bool index_pulse = false;    // one came since the cycle before ...
   bool limit_positive_before = false;
   bool limit_negative_before = false;
   bool switches_known = false;  // they were read once
@@ -134,6 +136,7 @@ struct State {
   std::uint64_t brake_cycle = 0;             // when the brake relay was energised or let go of
   std::uint64_t enable_cycle = 0;
   std::uint64_t lease_end_cycle = 0;
+  std::uint64_t bars_cycle = 0;  // when a power command last said in which directions the axis may move
 
   double torque_nm = 0;
   double voltage_v = 0;

@@ -120,6 +120,8 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kSkew, "Skew", "the axis is further from where its master has it than follows.largest_skew"},
     ErrorInfo{ErrorId::kNotInStep, "NotInStep",
               "an axis that follows this one is not powered, has a fault, or stands askew"},
+    ErrorInfo{ErrorId::kDirection, "Direction",
+              "motion in this direction is not enabled (enable_positive and enable_negative of power)"},
     ErrorInfo{ErrorId::kSyncPassed, "SyncPassed",
               "the master has passed the begin of the clutch's curve to master_sync_in_position"},
     ErrorInfo{ErrorId::kSlaveLimits, "SlaveLimits",

@@ -111,6 +111,7 @@ enum class ErrorId : std::uint16_t {
   kEmergencyStop = 3100,     // an emergency stop is on, or has switched the axis off: nothing is powered or moved
   kSkew = 3101,              // a member of a gantry is too far from where its master has it
   kNotInStep = 3102,         // a member of a gantry is not powered, has a fault, or stands askew
+  kDirection = 3103,         // motion in this direction is not enabled (MC_Power)
   // A cam module did not do as asked.
   kSyncPassed = 3110,   // the master has passed the position at which the clutch was to close
   kSlaveLimits = 3111,  // the slave cannot follow within its limits

@@ -9,6 +9,7 @@
 #include "takt/group/plan.h"
 #include "takt/group/queue.h"
 #include "takt/group/run.h"
+#include "takt/group/switches.h"
 #include "takt/group/sync.h"
 #include "takt/group/systems.h"
 #include "takt/group/track.h"
@@ -90,7 +91,7 @@ void MoveOn(const Context& c, State& s) {
     LetGoOfMembers(c, s);
     s.begun = false;
     s.rise = {};
-    return Fail(c, s.refused.any() ? ErrorId::kAwayFromLimitOnly : ErrorId::kUnreachable, s);
+    return Fail(c, s.refused.any() ? RefusalOf(c, s) : ErrorId::kUnreachable, s);
   }
   if (!Rests(s)) return;
   const bool rides = !s.lets_go && IsOnRide(c, s);

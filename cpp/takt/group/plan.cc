@@ -298,7 +298,7 @@ void Verify(const Context& c, int& budget, State& s) {
     if (IsClosed(c, stretch, to, point.slopes, s)) {
       s.blocked_at = to;
       s.blocked_element = ElementOf(s);
-      return Refuse(c, ErrorId::kAwayFromLimitOnly, s);
+      return Refuse(c, RefusalOf(c, s), s);
     }
     NoteZones(c, s, motion.position, to, !p.verifying);
     c.ahead.near = motion.position;

@@ -12,8 +12,24 @@ Directions ClosedNow(const Context& c, const State& s) noexcept {
     // A switch that turns on is a fault of the axis, which all brake for along the path.
     if (member.limit_positive && member.limit_positive_before) closed.positive |= 1u << k;
     if (member.limit_negative && member.limit_negative_before) closed.negative |= 1u << k;
+    // Likewise a direction that is not enabled any more: the axis looks at it behind the group.
+    if (member.bars_cycle == c.cycle.count) continue;
+    if (member.bars_positive) closed.positive |= 1u << k;
+    if (member.bars_negative) closed.negative |= 1u << k;
   }
   return closed;
+}
+
+ErrorId RefusalOf(const Context& c, const State& s) noexcept {
+  Directions by_switch = s.refused;
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] == 0) continue;
+    const axis::State& member = MemberOf(c, s, k);
+    const std::uint32_t bit = 1u << k;
+    if (member.bars_positive && !member.limit_positive) by_switch.positive &= ~bit | s.closed.positive;
+    if (member.bars_negative && !member.limit_negative) by_switch.negative &= ~bit | s.closed.negative;
+  }
+  return by_switch.any() ? ErrorId::kAwayFromLimitOnly : ErrorId::kDirection;
 }
 
 Directions TakenOf(const Directions& closed, const State& s, const kinematics::Joints& velocity,

@@ -1,7 +1,8 @@
-// Limit switches that are on: nothing moves towards them (PP-60).
+// Limit switches that are on: nothing moves towards them (PP-60). Directions in which MC_Power of a member enables no
+// motion are closed in the same way (AX-111).
 //
 // Invariant: while a switch is on, no motion along a path goes towards it but that which is braked for it. Planning
-// refuses a move that would (kAwayFromLimitOnly); where a motion turns to it afterwards, as carriers and interrupts may
+// refuses a move that would (RefusalOf); where a motion turns to it afterwards, as carriers and interrupts may
 // make it, each axis brakes by itself before the set point is given.
 #pragma once
 
@@ -10,8 +11,12 @@
 
 namespace takt::group {
 
-// The directions that are closed now: by the limit switches of the members, and by State::closed.
+// The directions that are closed now: by the limit switches and the power commands of the members, and by
+// State::closed.
 Directions ClosedNow(const Context& c, const State& s) noexcept;
+
+// Why State::refused is: kAwayFromLimitOnly, or kDirection where all of it is not enabled.
+ErrorId RefusalOf(const Context& c, const State& s) noexcept;
 
 // Which of these directions a motion of the axes takes, and of the tool in the MCS (null: it has none): faster than
 // `least`, in u/s, mm/s and rad/s, or per mm along a path.

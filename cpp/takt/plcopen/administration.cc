@@ -18,7 +18,11 @@ void MC_Power::operator()() noexcept {
   anew_ = Enable && !axis.loop_closed && (anew_ || !level_);
   level_ = Enable;
   if (IsDue()) {
-    given_ = {.enable = Enable, .buffer_mode = buffer_mode};
+    const bool on = Enable && axis.loop_closed;  // only other directions
+    given_ = {.enable = Enable,
+              .buffer_mode = on ? axis::BufferMode::kAborting : buffer_mode,
+              .enable_positive = EnablePositive,
+              .enable_negative = EnableNegative};
     feedback_.Give(axis_.target(), axis::Command(given_));
     TakeEnd();
   }
@@ -40,6 +44,7 @@ void MC_Power::TakeEnd() noexcept {
   if (!feedback_.given() || feedback_.busy()) return;
   out_.aborted = feedback_.aborted();
   out_.error = feedback_.error();
+  if (!feedback_.failed()) taken_ = given_;
   if (out_.error == ErrorId::kEmergencyStop) anew_ = false;
   const bool hopeless = out_.error == ErrorId::kParameter || !given_.enable;
   const bool refused = feedback_.failed() && out_.error != ErrorId::kQueueFull && hopeless;
@@ -54,10 +59,16 @@ bool MC_Power::IsHeldOff() const noexcept {
   return Enable && !anew_ && axis_.outputs().emergency_stopped;
 }
 
+// The directions that are enabled are those that the axis was told last.
+bool MC_Power::IsPermitted() const noexcept {
+  return taken_.enable_positive == EnablePositive && taken_.enable_negative == EnableNegative;
+}
+
 bool MC_Power::IsDue() const noexcept {
   if (refusal_ || IsHeldOff()) return false;
   if (feedback_.given()) return given_.enable && !Enable;
   const axis::Outputs& axis = axis_.outputs();
+  if (Enable && axis.loop_closed && axis.state != axis::PlcState::kErrorStop && !IsPermitted()) return true;
   const bool disabled = axis.state == axis::PlcState::kDisabled;
   return Enable ? disabled && axis.active_command == 0 : !disabled;
 }

@@ -17,6 +17,8 @@ namespace takt::plcopen {
 class MC_Power {
  public:
   bool Enable = false;
+  bool EnablePositive = true;  // whether the axis may move upwards ...
+  bool EnableNegative = true;  // ... and downwards (AX-111)
   axis::BufferMode buffer_mode = axis::BufferMode::kAborting;
 
   explicit MC_Power(AxisRef axis) : axis_(axis), feedback_(axis.program()) {}
@@ -45,13 +47,15 @@ class MC_Power {
   };
   bool IsDue() const noexcept;
   bool IsHeldOff() const noexcept;
+  bool IsPermitted() const noexcept;
   void TakeEnd() noexcept;
 
   AxisRef axis_;
-  Feedback feedback_;   // of the command in progress ...
-  axis::Power given_;   // ... and that command
-  bool level_ = false;  // Enable in the call before
-  bool anew_ = false;   // it has risen, and the axis has not been on since
+  Feedback feedback_;                                                    // of the command in progress ...
+  axis::Power given_;                                                    // ... and that command
+  axis::Power taken_{.enable_positive = true, .enable_negative = true};  // the last one that was not refused
+  bool level_ = false;                                                   // Enable in the call before
+  bool anew_ = false;  // it has risen, and the axis has not been on since
   std::optional<Refusal> refusal_;
   Outputs out_;
 };

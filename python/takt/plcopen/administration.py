@@ -42,9 +42,15 @@ class MC_Power(FunctionBlock):  # noqa: N801
     A fault that opened the loop is shown by Error until the axis is reset; then the loop is closed again. Enable true
     on a Disabled axis with a fault leads to ErrorStop. A command that is refused is given again once the axis is in
     another state. After an emergency stop it shows error 3100 until Enable has risen anew: nothing resumes by itself.
-    One instance an axis: two with different Enable switch it to and fro."""
+    One instance an axis: two with different Enable switch it to and fro.
+
+    EnablePositive, EnableNegative: the directions in which the axis may move. Motion in another one is refused with
+    error 3103, and one in progress ends with it, as at a limit switch: the axis brakes into ErrorStop. Both are told to
+    the axis while it is powered, whenever they change."""
 
     Enable = Input(False)
+    EnablePositive = Input(True, "enable_positive")
+    EnableNegative = Input(True, "enable_negative")
     BufferMode = Input(_commands.BufferMode.ABORTING, "buffer_mode")
     Status = Output(False)
     Valid = Output(False)
@@ -58,6 +64,7 @@ class MC_Power(FunctionBlock):  # noqa: N801
         self._anew = False  # Enable has risen, and the axis has not been on since
         self._feedback: Feedback | None = None  # of the command in progress ...
         self._given: dict[str, Any] = {}  # ... and its arguments
+        self._told = (True, True)  # EnablePositive and EnableNegative of the last command that was not refused
         self._refusal: tuple[_commands.PlcState, int] | None = None  # of the last command: the axis' state, the error
         super().__init__(axis, **inputs)
 
@@ -71,6 +78,8 @@ class MC_Power(FunctionBlock):  # noqa: N801
         self._level = enable
         if self._is_due(enable, state):
             self._given = {"enable": enable, **self._arguments()}
+            if enable and self.Axis.loop_closed:  # only other directions
+                self._given["buffer_mode"] = _commands.BufferMode.ABORTING
             self._feedback = self.Axis.session.command(self.Axis.name, "power", self._given)
             ended = self._end(enable) or ended
         self._show_all(enable, state, ended)
@@ -84,6 +93,8 @@ class MC_Power(FunctionBlock):  # noqa: N801
         self.Axis.session._catch_up(ended.cycle)
         if ended.error_id == EMERGENCY_STOP:
             self._anew = False
+        if not ended.error:
+            self._told = (self._given["enable_positive"], self._given["enable_negative"])
         refused = ended.error and (ended.ticket == 0 or not enable)
         if self._given["enable"] is enable and (refused or (ended.aborted and not enable)):
             self._refusal = (self.Axis.state, ended.error_id)
@@ -96,6 +107,9 @@ class MC_Power(FunctionBlock):  # noqa: N801
         if self._feedback is not None:
             return bool(self._given["enable"]) and not enable
         disabled = state is _commands.PlcState.DISABLED
+        told = self._told == (self.EnablePositive, self.EnableNegative)
+        if enable and not told and self.Axis.loop_closed and state is not _commands.PlcState.ERROR_STOP:
+            return True
         return disabled and not self.Axis.active_command if enable else not disabled
 
     def _is_held_off(self, enable: bool) -> bool:

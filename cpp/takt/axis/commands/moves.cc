@@ -29,6 +29,10 @@ void describe(Description<Power>& d) {
       "Standstill, or is Disabled.");
   d.defaulted<&Power::enable>("True: on. False: off; a moving axis stops along its ramp first.");
   d.defaulted<&Power::buffer_mode>("aborting, or buffered: after the motion in progress.");
+  d.defaulted<&Power::enable_positive>(
+      "Whether the axis may move in the positive direction, from this command on; unset: as before, at first it may. "
+      "Motion in a direction that is not enabled is refused; one in progress ends as at a limit switch.");
+  d.defaulted<&Power::enable_negative>("The same for the negative direction.");
 }
 
 void describe(Description<Reset>& d) {

@@ -25,6 +25,8 @@ enum class BufferMode : std::uint8_t {
 struct Power {  // MC_Power
   bool enable = true;
   BufferMode buffer_mode = BufferMode::kAborting;
+  // Whether the axis may move upwards and downwards, from this command on; unset: as before, at first both (AX-111).
+  std::optional<bool> enable_positive{}, enable_negative{};
 };
 struct Reset {};       // MC_Reset
 struct MoveAbsolute {  // MC_MoveAbsolute
