@@ -7,13 +7,20 @@ from typing import Any
 import pytest
 import takt
 from takt.plcopen import (
+    MC_AccelerationProfile,
+    MC_CamIn,
     MC_GearIn,
     MC_MoveAbsolute,
     MC_MoveAdditive,
     MC_MoveContinuousAbsolute,
+    MC_MoveContinuousRelative,
     MC_MoveRelative,
+    MC_MoveSuperimposed,
     MC_MoveVelocity,
+    MC_PositionProfile,
     MC_TorqueControl,
+    MC_VelocityProfile,
+    SelectedCam,
 )
 
 MACHINE = """
@@ -21,6 +28,11 @@ name: updates
 axes:
   - {name: x, limits: {velocity: 300, acceleration: 3000, jerk: 60000}}
   - {name: y, limits: {velocity: 600, acceleration: 6000, jerk: 120000}}
+cams:
+  - {name: hill, cyclic: true,
+     points: [{x: 0, y: 0, v: 0, a: 0}, {x: 60, y: 20, v: 0, a: 0}, {x: 120, y: 0, v: 0, a: 0}]}
+  - {name: way, points: [{x: 0, y: 0, v: 0, a: 0}, {x: 2, y: 50, v: 0, a: 0}]}
+  - {name: speed, points: [{x: 0, y: 0, v: 0, a: 0}, {x: 1, y: 100, v: 0, a: 0}]}
 """
 
 
@@ -106,3 +118,108 @@ def test_what_waits_changes_when_its_turn_comes(s: takt.Engine) -> None:
     assert first.Done
     assert second.Done
     assert x.set_position == pytest.approx(70)
+
+
+def test_a_continuous_distance_counts_from_its_beginning(s: takt.Engine) -> None:
+    """AX-111: MC_MoveContinuousRelative, changed twice on the way."""
+    x = s.axis("x")
+    x.move_absolute(position=13).wait()
+    block = MC_MoveContinuousRelative(x, EndVelocity=20.0, Velocity=100.0, ContinuousUpdate=True)
+    with s.record("x") as recorder:
+        run(s, block, 0.3, Distance=80.0)
+        run(s, block, 0.1, Distance=90.0)
+        run(s, block, 1.0, Distance=70.0)
+    r = recorder.recording["x"]
+    assert block.InEndVelocity
+    at_end = r["set_position"][abs(r["set_velocity"] - 20) < 1e-9]
+    assert at_end[0] == pytest.approx(83, abs=0.05)
+    takt.expect.within_limits(recorder.recording, "x")
+
+
+@pytest.mark.parametrize("beneath", [False, True])
+def test_what_is_on_top_counts_from_its_beginning(s: takt.Engine, beneath: bool) -> None:
+    """AX-111: MC_MoveSuperimposed adds the new distance in all, also less than it has added already."""
+    x = s.axis("x")
+    if beneath:
+        x.move_velocity(velocity=40)
+    block = MC_MoveSuperimposed(x, VelocityDiff=50.0, ContinuousUpdate=True)
+    run(s, block, 0.3, Distance=40.0)
+    covered = block.CoveredDistance
+    assert 5 < covered < 40
+    run(s, block, 0.002, Distance=25.0)
+    assert covered < block.CoveredDistance < covered + 1
+    run(s, block, 1.5, Distance=2.0)
+    assert block.Done
+    assert block.CoveredDistance == pytest.approx(2)
+    block(Execute=False)
+    bad = MC_MoveSuperimposed(x, VelocityDiff=50.0, ContinuousUpdate=True)
+    run(s, bad, 0.1, Distance=20.0)
+    run(s, bad, 0.01, VelocityDiff=-1.0)
+    assert bad.Error
+    s.run(1)
+    assert not x.superimposed
+
+
+def test_tables_go_on_at_their_place(s: takt.Engine) -> None:
+    """AX-111: scales of a profile change where it is, not from its beginning."""
+    x = s.axis("x")
+    block = MC_PositionProfile(x, TimePosition="way", ContinuousUpdate=True)
+    with s.record("x") as recorder:
+        run(s, block, 1.0)
+        assert x.set_position == pytest.approx(25, abs=0.2)
+        run(s, block, 0.5, PositionScale=0.5)
+        run(s, block, 0.9, TimeScale=2.0)
+        assert not block.Done
+        run(s, block, 0.2)
+    assert block.Done  # 0.5 s of the table were left, 1 s twice as slow
+    assert x.set_position == pytest.approx(25)
+    takt.expect.within_limits(recorder.recording, "x")
+    speeds = MC_VelocityProfile(x, TimeVelocity="speed", ContinuousUpdate=True)
+    run(s, speeds, 0.5)
+    run(s, speeds, 0.3, VelocityScale=-1.0)
+    assert x.set_velocity == pytest.approx(-94.2, abs=0.5)  # of the table at 0.8 s
+    run(s, speeds, 0.01, VelocityScale=50.0)  # beyond the axis
+    assert speeds.Error
+    run(s, speeds, 0.3)
+    assert -101 < x.set_velocity < -50
+    ramps = MC_AccelerationProfile(x, TimeAcceleration="speed", ContinuousUpdate=True)
+    before = x.set_velocity
+    run(s, ramps, 0.5)
+    run(s, ramps, 0.6, AccelerationScale=0.0)
+    assert ramps.Done
+    assert before + 5 < x.set_velocity < before + 50
+
+
+@pytest.mark.parametrize("absolute", [True, False])
+@pytest.mark.parametrize("change", ["slave_scale", "slave_offset", "master_offset", "master_scale"])
+def test_a_cam_stays_where_it_is(s: takt.Engine, absolute: bool, change: str) -> None:
+    """AX-111: MC_CamIn goes on with other scales and offsets, and does not begin anew."""
+    x, y = s.axis("x"), s.axis("y")
+    table = SelectedCam("hill", None, absolute, absolute)
+    y.move_absolute(position=7).wait()
+    x.move_absolute(position=11).wait()
+    x.move_velocity(velocity=50)
+    s.run(0.2)
+    block = MC_CamIn(y, Master=x, CamTableID=table, ContinuousUpdate=True)
+    run(s, block, 2.0)
+    assert block.InSync
+    with s.record("y") as recorder:
+        new = {
+            "slave_scale": {"SlaveScaling": 0.5},
+            "slave_offset": {"SlaveOffset": 3.0},
+            "master_offset": {"MasterOffset": 10.0},
+            "master_scale": {"MasterScaling": 1.2},
+        }[change]
+        run(s, block, 1.0, **new)
+    assert block.InSync
+    takt.expect.within_limits(recorder.recording, "y")
+    again = MC_CamIn(y, Master=x, CamTableID=table, ContinuousUpdate=True, **new)
+    if absolute:  # a new block finds the cam laid as it is: the axis goes on without a correction
+        with s.record("y") as recorder:
+            run(s, again, 0.2)
+        assert again.InSync
+        assert abs(recorder.recording["y"]["set_acceleration"]).max() < 500
+    block(Execute=True, SlaveScaling=float("nan"))
+    s.step()
+    block()
+    assert block.Error or block.CommandAborted

@@ -68,12 +68,28 @@ Status JogBy(const Context& c, const Request& r, State& s) {
   return Status::Ok();
 }
 
+// A request that changes the one in control: the same table, and the same master, followed in another way.
+bool IsUpdate(const Request& r, const State& s) {
+  const Request& now = s.active;
+  return r.kind == now.kind && r.table.index == now.table.index &&
+         r.coupling.terms[0].master == now.coupling.terms[0].master &&
+         r.coupling.terms[0].source == now.coupling.terms[0].source && r.coupling.periodic == now.coupling.periodic;
+}
+
+void Update(const Context& c, const Request& r, State& s) {
+  Report(c, s.active.ticket, FeedbackState::kAborted, ErrorId::kNone, s.reported);
+  AbortBuffer(c, s);
+  AbortOverlay(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  FollowsTable(r.kind) ? UpdateTable(c, r, s) : UpdateCam(c, r, s);
+}
+
 Status TakeOver(const Context& c, const Request& r, State& s) {
   if (Homes(r.kind)) return BeginHoming(c, r, true, s);
   if (s.plc == PlcState::kHoming && !MayFollowStep(r.kind)) return Status::Failed(ErrorId::kState);
   if (FollowsDemand(r.kind)) {
     const Status status = MayFollow(c, r, s);
     if (status.failed()) return status;
+    if (r.update && IsUpdate(r, s)) return Update(c, r, s), Status::Ok();
     AbortAll(c, s);
     BeginFollowing(c, r, FromCycleBefore(c), s);
     return Status::Ok();

@@ -435,6 +435,39 @@ void Couple(const Context& c, const Request& r, State& s) noexcept {
   Enter(s, PlcState::kSynchronizedMotion);
 }
 
+void UpdateCam(const Context& c, const Request& r, State& s) noexcept {
+  CouplingState& k = s.coupling;
+  if (k.joining == Joining::kWaiting) return Couple(c, r, s);  // it has not begun yet
+  const CamLaw was = CamOf(c, s.active);
+  const CamLaw law = CamOf(c, r);
+  const bool fixed = k.law.master_absolute || k.law.at_sync_position;  // x counts from a place of the master
+  const double offset = r.coupling.master_offset - k.law.master_offset;
+  const double slave_offset = r.table.offset - s.active.table.offset;
+  Grant(c, r, s);
+  k.law = r.coupling;
+  const KinematicState master = Seen(c, k, k.law.terms[0], PhaseAt(c, k));
+  const auto cycle_of = [&](const CamLaw& at) {
+    return at.periodic ? std::floor((master.position - k.cam.master) / at.way()) : 0;
+  };
+  const double cycle = cycle_of(was);
+  const double begin = k.cam.master + cycle * was.way();  // of the cycle that the master is in
+  if (fixed) {
+    const double zero = begin - (was.table.begin() - (k.law.master_offset - offset)) / was.ratio;
+    k.cam.master = zero + (law.table.begin() - k.law.master_offset) / law.ratio;
+    BeginCycles(law, master.position, k.cam);
+    k.cam.master -= cycle * law.way();
+  } else {
+    const double x = was.ratio * (master.position - begin) + offset;  // from the beginning of the cam
+    k.cam.master = master.position - x / law.ratio - cycle * law.way();
+  }
+  // In a later cycle the cam stands higher by its strokes: that is not scaled anew.
+  k.cam.slave += slave_offset + (was.scale - law.scale) * cycle * law.table.stroke();
+  k.cam.share = ShareOf(law, k.cam, master.position);
+  k.cam.over = false;
+  s.limited_by = LimitedBy::kNothing;
+  if (k.joining == Joining::kOnCurve) BeginCurve(c, master, s);
+}
+
 bool LostMasters(const Context& c, const State& s) noexcept {
   return Couples(s.active.kind) && !MastersStand(c, s.coupling.law);
 }

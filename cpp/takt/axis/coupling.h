@@ -80,6 +80,9 @@ Status FindNamed(const Context& c, Request& r) noexcept;
 Status MayCouple(const Context& c, const Request& r, const State& s) noexcept;
 // Puts a request that couples in control. What was in control must have been ended.
 void Couple(const Context& c, const Request& r, State& s) noexcept;
+// Takes over from the cam in control, of the same table and master, with other scales and offsets (AX-111): a relative
+// one stays where it is in the cam. What has been put on top of it, and its phase, stay.
+void UpdateCam(const Context& c, const Request& r, State& s) noexcept;
 // The next set point of a coupled axis; false: it is not (any more) coupled.
 bool FollowMasters(const Context& c, State& s) noexcept;
 // Whether it is coupled to a master that was switched off or has failed: it cannot follow any more (AX-55).

@@ -317,9 +317,10 @@ bool Fill(const Maker& m, const HaltSuperimposed& c) {
 
 Status CarryOut(const Context& c, Ticket ticket, const MoveSuperimposed& command, State& s) noexcept {
   if (const Status status = MayBeOnTop(c, s); status.failed()) return status;
-  if (const Status status = CheckSwitches(command.distance, s); status.failed()) return status;
   const KinematicState from = AddedMotion(c, s);
-  const double target = from.position + command.distance;
+  const double begin = command.update && s.superimposed && !s.overlay.halting ? s.overlay.begin : from.position;
+  const double target = begin + command.distance;
+  if (const Status status = CheckSwitches(target - from.position, s); status.failed()) return status;
   if (!EndsInside(c, target, s)) return Status::Failed(ErrorId::kTargetBehindLimit);
   Request r;
   Refusal why;
@@ -335,6 +336,7 @@ Status CarryOut(const Context& c, Ticket ticket, const MoveSuperimposed& command
   const Status status = PlanRest(c, planned, from, limits, c.cycle.period_s, s, planned.profile);
   if (status.failed()) return status;
   Begin(c, ticket, from, planned, s);
+  s.overlay.begin = begin;
   return Status::Ok();
 }
 

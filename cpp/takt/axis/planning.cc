@@ -383,6 +383,7 @@ Status CheckTorque(const AxisParams& params, const Surroundings& around, const K
 double TargetOf(const AxisParams& params, const Surroundings& around, const KinematicState& from,
                 const Request& request) {
   if (request.kind == RequestKind::kMoveAdditive) return around.promised.value_or(from.position) + request.value;
+  if (request.update && around.begin) return *around.begin + request.value;
   if (request.by_distance()) return from.position + request.value;
   const auto resolved = [&](const Limits& limits) {
     return ResolveTarget(params, from, limits, request.value, request.direction, around.last_sense);

@@ -94,6 +94,7 @@ bool Fill(const Maker& m, const MoveContinuousAbsolute& c) {
 
 bool Fill(const Maker& m, const MoveContinuousRelative& c) {
   m.r.end_velocity = c.end_velocity;
+  m.r.update = c.update && c.buffer_mode == BufferMode::kAborting;
   return ByDistance(m, RequestKind::kMoveContinuousRelative, c) &&
          m.In("end_velocity", c.end_velocity, 0, m.params.limits.velocity);
 }
@@ -253,6 +254,7 @@ void describe(Description<Request>& d) {
   d.internal<&R::buffer_mode>("How it follows the one before.");
   d.internal<&R::enable>("Power: on.");
   d.internal<&R::hold>("Stop: until released.");
+  d.internal<&R::update>("Changes the command of its kind that is in control.");
   d.internal<&R::forward>("Jog: key for upwards.");
   d.internal<&R::backward>("Jog: key for downwards.");
   d.internal<&R::coupling>("Of commands that couple axes.");

@@ -66,6 +66,7 @@ struct Request {
   BufferMode buffer_mode = BufferMode::kAborting;
   bool enable = false;   // power
   bool hold = false;     // stop
+  bool update = false;   // changes the command of its kind that is in control (MC's ContinuousUpdate; AX-111)
   bool forward = false;  // jog
   bool backward = false;
 

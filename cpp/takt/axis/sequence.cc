@@ -47,6 +47,7 @@ Surroundings SurroundingsOf(const Context& c, const State& s) noexcept {
   around.factors = s.override_factors;
   if (!s.active.positions()) return around;
   around.promised = s.motion.target;
+  if (s.active.kind == RequestKind::kMoveContinuousRelative) around.begin = s.motion.target - s.active.value;
   if (!HasPassed(s) && s.motion.profile.end().velocity == 0) around.furthest = FurthestOf(c, s);
   return around;
 }
@@ -54,8 +55,10 @@ Surroundings SurroundingsOf(const Context& c, const State& s) noexcept {
 Surroundings SurroundingsOfBoth(const Context& c, const State& s) noexcept {
   Surroundings around = SurroundingsOf(c, s);
   if (!s.superimposed) return around;
-  if (around.promised) *around.promised += s.setpoint.position - s.overlay.base.position;  // covered so far
-  around.furthest.reset();                                                                 // of the one alone
+  const double covered = s.setpoint.position - s.overlay.base.position;
+  if (around.promised) *around.promised += covered;
+  if (around.begin) *around.begin += covered;
+  around.furthest.reset();  // of the one alone
   return around;
 }
 

@@ -101,6 +101,7 @@ template <typename T>
 bool Table(const Maker& m, RequestKind kind, const T& c, const char* scale_field, double scale) {
   m.r.kind = kind;
   m.r.buffer_mode = c.buffer_mode;
+  m.r.update = c.update && c.buffer_mode == BufferMode::kAborting;
   m.r.velocity = m.params.limits.velocity;
   m.r.table = {.name = c.profile, .index = kNoTable, .time_scale = c.time_scale, .scale = scale, .offset = c.offset};
   if (c.profile.empty()) m.why.field = "profile";
@@ -148,6 +149,18 @@ void BeginTable(const Context& c, const Request& r, const MotionStart& start, St
   k.demand = {own, s.setpoint.velocity, s.setpoint.acceleration};
   k.chase.in_step = true;  // until the first demand shows otherwise
   Enter(s, RulesOf(r.kind).state);
+}
+
+void UpdateTable(const Context& c, const Request& r, State& s) noexcept {
+  const double stretch = r.table.time_scale / s.active.table.time_scale;
+  const Curve curve = CurveOf(c, r);
+  // At the same place in the table as before; one that is over is at its end.
+  const double elapsed = s.time_table.over ? curve.duration() : stretch * (Elapsed(c, s) - c.cycle.period_s);
+  Grant(c, r, s, std::max(0.0, curve.duration() - elapsed));
+  MotionStart start = FromCycleBefore(c);
+  start.offset_s = elapsed;
+  StartMotion(Profile{s.setpoint}, s.setpoint.position, start, s);
+  s.time_table.over = false;
 }
 
 bool FollowTime(const Context& c, State& s) noexcept {

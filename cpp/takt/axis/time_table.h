@@ -32,6 +32,8 @@ inline bool FollowsTable(RequestKind kind) noexcept {
 Status MayFollowTable(const Context& c, const Request& r, const State& s) noexcept;
 // Puts a request that follows a table in control. What was in control must have been ended.
 void BeginTable(const Context& c, const Request& r, const MotionStart& start, State& s) noexcept;
+// Takes over from the one in control, of the same kind and table, with other scales (AX-111).
+void UpdateTable(const Context& c, const Request& r, State& s) noexcept;
 // The next set point; false: the table is over, the motion in progress counts.
 bool FollowTime(const Context& c, State& s) noexcept;
 

@@ -252,10 +252,12 @@ class MotionBlock(ExecuteBlock):
         self._show(Active=in_control(feedback, self._given))
 
 
-class UpdatedBlock(MotionBlock):
+class ChangedBlock(ExecuteBlock):
     """A motion whose inputs may change while Execute is true: with ContinuousUpdate true at the rising edge each change
     is commanded, once the command is in control, and the motion goes on from where it is. A change that is refused is
     an error of the block; the motion goes on as it did."""
+
+    AT_ONCE: ClassVar[dict[str, Any]] = {}  # arguments of a change, whatever the inputs say
 
     ContinuousUpdate = Input(False)
 
@@ -269,18 +271,37 @@ class UpdatedBlock(MotionBlock):
 
     def _hold(self) -> None:
         feedback = self._feedback
-        if not self._updates or feedback is None or feedback.final or not in_control(feedback, self._given):
+        if not self._updates or feedback is None or feedback.final or not self._is_in_control(feedback):
             return
-        wanted = self._arguments() | {"buffer_mode": _commands.BufferMode.ABORTING}
-        if wanted == self._given | {"buffer_mode": _commands.BufferMode.ABORTING}:
+        wanted = self._arguments() | self.AT_ONCE
+        if wanted == self._given | self.AT_ONCE:
             return
         verb, arguments = self._changed(wanted)
         self._given = wanted
         self._feedback = self._subject.session.command(self._subject.name, verb, arguments)
 
+    def _is_in_control(self, feedback: Feedback) -> bool:
+        return feedback.busy
+
     def _changed(self, wanted: dict[str, Any]) -> tuple[str, dict[str, Any]]:
         """The command that changes the one in control (`self._given`) into what is wanted."""
         return self.VERB, wanted
+
+
+class UpdatedBlock(MotionBlock, ChangedBlock):
+    """Such a motion that may wait for others: it changes once it is in control."""
+
+    AT_ONCE: ClassVar[dict[str, Any]] = {"buffer_mode": _commands.BufferMode.ABORTING}
+
+    def _is_in_control(self, feedback: Feedback) -> bool:
+        return in_control(feedback, self._given)
+
+
+class ResumedBlock(UpdatedBlock):
+    """One whose command counts from its beginning: a distance, a time, a place in a cam. A change goes on with that."""
+
+    def _changed(self, wanted: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+        return self.VERB, wanted | {"update": True}
 
 
 class ReadBlock(FunctionBlock):

@@ -6,7 +6,7 @@ from typing import Any
 
 from takt import _commands
 from takt.feedback import Feedback
-from takt.plcopen.base import ExecuteBlock, Input, MotionBlock, Output, UpdatedBlock
+from takt.plcopen.base import ExecuteBlock, Input, MotionBlock, Output, ResumedBlock, UpdatedBlock
 
 
 class MC_MoveAbsolute(UpdatedBlock):  # noqa: N801
@@ -105,7 +105,7 @@ class MC_MoveContinuousAbsolute(UpdatedBlock):  # noqa: N801
         self._show(InEndVelocity=there and self._is_due("InEndVelocity"))
 
 
-class MC_MoveContinuousRelative(MotionBlock):  # noqa: N801
+class MC_MoveContinuousRelative(ResumedBlock):  # noqa: N801
     """Moves by a distance and goes on from there with EndVelocity. Never done: InEndVelocity says that it is there."""
 
     VERB = "move_continuous_relative"

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from takt.feedback import Feedback
-from takt.plcopen.base import ExecuteBlock, Input, Output
+from takt.plcopen.base import ChangedBlock, ExecuteBlock, Input, Output
 
 
 class SuperimposedBlock(ExecuteBlock):
@@ -16,7 +18,7 @@ class SuperimposedBlock(ExecuteBlock):
     Aborted = Output(False, alias="CommandAborted")
 
 
-class MC_MoveSuperimposed(SuperimposedBlock):  # noqa: N801
+class MC_MoveSuperimposed(SuperimposedBlock, ChangedBlock):  # noqa: N801
     """Moves by Distance on top of the motion in progress, with VelocityDiff more than that has. CoveredDistance: how
     much of it was added so far, or at last."""
 
@@ -25,6 +27,9 @@ class MC_MoveSuperimposed(SuperimposedBlock):  # noqa: N801
     VelocityDiff = Input[float | None](None, "velocity_difference")
     Acceleration = Input[float | None](None, "acceleration")
     CoveredDistance = Output(0.0)
+
+    def _changed(self, wanted: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+        return self.VERB, wanted | {"update": True}
 
     def _follow(self, feedback: Feedback) -> None:
         super()._follow(feedback)

@@ -48,6 +48,7 @@ void describe(Description<CamIn>& d) {
   d.defaulted<&C::velocity>(unit::u_s, positive, "Largest velocity of ramping in; unset: the axis' limit.");
   DescribeRamps(d);
   d.defaulted<&C::buffer_mode>(kBufferMode);
+  d.defaulted<&C::update>(kUpdate);
 }
 
 void describe(Description<CamAdd>& d) {

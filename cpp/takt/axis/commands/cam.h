@@ -35,6 +35,7 @@ struct CamIn {  // MC_CamIn
   std::optional<double> master_start_distance{};
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
+  bool update = false;  // of the one in control: the cam stays laid as it is, but for what changes
 };
 
 // Another cam on top of that of cam_in, over the same master: slave_scaling * y(master_scaling * master's position +

@@ -101,6 +101,7 @@ void describe(Description<MoveContinuousRelative>& d) {
   d.defaulted<&M::velocity>(unit::u_s, positive, "Largest velocity on the way; unset: the axis' limit.");
   DescribeRamps(d);
   d.defaulted<&M::buffer_mode>(kBufferMode);
+  d.defaulted<&M::update>(kUpdate);
 }
 
 void describe(Description<Inch>& d) {

@@ -75,6 +75,7 @@ struct MoveContinuousRelative {  // MC_MoveContinuousRelative
   double end_velocity = 0;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
+  bool update = false;  // of the one in control: the distance counts from where that began
 };
 struct Inch {  // MC_Inch: one increment a press
   double distance = 0;

@@ -14,6 +14,10 @@ void describe(Description<MoveSuperimposed>& d) {
   d.defaulted<&C::acceleration>(unit::u_s2, positive, "Largest acceleration added; unset: the axis' limit.");
   d.defaulted<&C::deceleration>(unit::u_s2, positive, "Largest deceleration added; unset: the axis' limit.");
   d.defaulted<&C::jerk>(unit::u_s3, not_negative, kJerk);
+  d.defaulted<&C::update>(
+      "True: changes the motion that is on top already, the distance counts from where that began; where there is "
+      "none, "
+      "it begins as without.");
 }
 
 void describe(Description<HaltSuperimposed>& d) {

@@ -10,6 +10,7 @@ namespace takt::axis {
 struct MoveSuperimposed {  // MC_MoveSuperimposed
   double distance = 0;
   std::optional<double> velocity_difference{}, acceleration{}, deceleration{}, jerk{};
+  bool update = false;  // of the one in progress: the distance counts from where that began
 };
 struct HaltSuperimposed {  // MC_HaltSuperimposed
   std::optional<double> deceleration{}, jerk{};

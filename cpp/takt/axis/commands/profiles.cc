@@ -20,6 +20,7 @@ void describe(Description<PositionProfile>& d) {
   d.defaulted<&C::position_scale>("The table's positions are multiplied by it.");
   d.defaulted<&C::offset>(unit::u, "And this is added.");
   d.defaulted<&C::buffer_mode>(kBufferMode);
+  d.defaulted<&C::update>(kUpdate);
 }
 
 void describe(Description<VelocityProfile>& d) {
@@ -33,6 +34,7 @@ void describe(Description<VelocityProfile>& d) {
   d.defaulted<&C::velocity_scale>("The table's velocities are multiplied by it.");
   d.defaulted<&C::offset>(unit::u_s, "And this is added.");
   d.defaulted<&C::buffer_mode>(kBufferMode);
+  d.defaulted<&C::update>(kUpdate);
 }
 
 void describe(Description<AccelerationProfile>& d) {
@@ -46,6 +48,7 @@ void describe(Description<AccelerationProfile>& d) {
   d.defaulted<&C::acceleration_scale>("The table's accelerations are multiplied by it.");
   d.defaulted<&C::offset>(unit::u_s2, "And this is added.");
   d.defaulted<&C::buffer_mode>(kBufferMode);
+  d.defaulted<&C::update>(kUpdate);
 }
 
 }  // namespace takt::axis

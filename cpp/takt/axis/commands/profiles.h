@@ -14,6 +14,7 @@ struct PositionProfile {  // MC_PositionProfile
   double position_scale = 1;
   double offset = 0;
   BufferMode buffer_mode = BufferMode::kAborting;
+  bool update = false;  // of the one in control: at the place in the table where that is
 };
 struct VelocityProfile {  // MC_VelocityProfile
   Name profile;
@@ -21,6 +22,7 @@ struct VelocityProfile {  // MC_VelocityProfile
   double velocity_scale = 1;
   double offset = 0;
   BufferMode buffer_mode = BufferMode::kAborting;
+  bool update = false;  // of the one in control: at the place in the table where that is
 };
 struct AccelerationProfile {  // MC_AccelerationProfile
   Name profile;
@@ -28,6 +30,7 @@ struct AccelerationProfile {  // MC_AccelerationProfile
   double acceleration_scale = 1;
   double offset = 0;
   BufferMode buffer_mode = BufferMode::kAborting;
+  bool update = false;  // of the one in control: at the place in the table where that is
 };
 
 void describe(Description<PositionProfile>&);

@@ -18,4 +18,9 @@ void DescribeRamps(Description<T>& d) {
   d.template defaulted<&T::jerk>(unit::u_s3, not_negative, kJerk);
 }
 
+// Of commands that ContinuousUpdate changes.
+inline constexpr std::string_view kUpdate =
+    "True: changes the command of this kind that is in control, from whose beginning everything counts; where there is "
+    "none, or this one is buffered, it begins as without.";
+
 }  // namespace takt::axis
