@@ -548,6 +548,8 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.fault_of = s.fault_of == kNoAxis ? 0 : s.fault_of + 1;
   const bool coupled = Couples(s.active.kind);
   const auto& terms = s.coupling.law.terms;
+  out.phase_shift = coupled ? s.coupling.phase_now : 0;
+  out.covered_phase_shift = coupled ? s.coupling.phase_now - s.coupling.phase_begin : 0;
   out.in_step = (s.coupled && InStep(p, s)) || (Streams(s.active.kind) && s.stream.chase.in_step) ||
                 (coupled && s.coupling.in_step) || (s.active.kind == RequestKind::kGuided && s.guidance.chase.in_step);
   out.synchronizing = coupled && !out.in_step && s.coupling.joining != Joining::kWaiting;

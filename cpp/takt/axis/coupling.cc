@@ -341,7 +341,8 @@ bool MastersStand(const Context& c, const CouplingRequest& law) {
 void EndPhase(const Context& c, FeedbackState feedback, State& s) {
   if (!s.coupling.phase_moves) return;
   s.coupling.phase_moves = false;
-  Report(c, s.coupling.phase_ticket, feedback);
+  const double covered = s.coupling.phase_now - s.coupling.phase_begin;
+  Report(c, s.coupling.phase_ticket, feedback, ErrorId::kNone, false, covered);
   s.coupling.phase_ticket = 0;
 }
 
@@ -361,6 +362,7 @@ Status ShiftPhase(const Context& c, Ticket ticket, bool relative, double shift, 
   const double target = relative ? k.phase.end().position + shift : shift;
   if (const Status status = c.planner.ToPosition(from, target, 0, limits, profile); status.failed()) return status;
   EndPhase(c, FeedbackState::kAborted, s);
+  k.phase_begin = relative ? from.position : 0;
   k.phase = profile;
   k.phase_start = c.cycle.count - 1;
   k.phase_ticket = ticket;
@@ -499,6 +501,7 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     demand = {s.setpoint.position + s.origin + s.setpoint.velocity * c.cycle.period_s, s.setpoint.velocity, 0};
   }
   demand.position -= s.origin;
+  k.phase_now = phase.position;
   const trajectory::Chaser chaser = {c.params.planner_limits(), c.planner, s.active.limits(), c.cycle.period_s};
   if (k.locked) {
     if (begun) demand.position += k.chase.offset;
@@ -633,6 +636,8 @@ void describe(Description<CouplingState>& d) {
   d.internal<&S::turn>("After how far there is the next such place of the master.");
   d.internal<&S::phase>("Added to the master's position.");
   d.internal<&S::phase_start>("Cycle its time counts from.");
+  d.internal<&S::phase_now>("What has been added by now.");
+  d.internal<&S::phase_begin>("What had been before the last shift by an amount; to an amount: 0.");
   d.internal<&S::phase_ticket>("Of the command that shifts it.");
   d.internal<&S::phase_moves>("It is being shifted.");
 }

@@ -57,6 +57,8 @@ struct CouplingState {
   // The phase: a motion in the master's unit on top of its position.
   trajectory::Profile phase;
   std::uint64_t phase_start = 0;
+  double phase_now = 0;    // master's u, what has been added by now ...
+  double phase_begin = 0;  // ... and had been when the last shift by an amount began; to an amount: 0
   Ticket phase_ticket = 0;
   bool phase_moves = false;
 

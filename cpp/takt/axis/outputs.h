@@ -24,6 +24,8 @@ struct Outputs {
   double torque_nm = 0;            // Nm, as the drive reports it
   double probe_position = 0;       // u, where the touch probe was captured last
   double covered_distance = 0;     // u, by the motion on top of the one in progress; 0: there is none
+  double phase_shift = 0;          // master's u, that it is taken to be ahead of where it is
+  double covered_phase_shift = 0;  // master's u, by the last shift; one to an amount: in all
   double override_factor = 1;      // of the velocity; 0: held
   double skew = 0;                 // u, of an axis that follows another from load on: off where its master has it
   Ticket active_command = 0;       // 0: none

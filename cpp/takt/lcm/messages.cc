@@ -95,6 +95,8 @@ msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::M
   m.synchronizing = o.synchronizing;
   m.superimposed = o.superimposed;
   m.covered_distance = o.covered_distance;
+  m.phase_shift = o.phase_shift;
+  m.covered_phase_shift = o.covered_phase_shift;
   m.end_of_profile = o.end_of_profile;
   m.profile_ends = o.profile_ends;
   m.homed = o.homed;

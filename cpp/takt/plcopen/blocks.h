@@ -25,8 +25,6 @@ using MC_AccelerationProfile = Block<axis::AccelerationProfile>;
 using MC_CamTableSelect = Block<axis::CamTableSelect>;
 using MC_CamOut = Block<axis::CamOut>;
 using MC_GearOut = Block<axis::GearOut>;
-using MC_PhasingAbsolute = Block<axis::PhasingAbsolute>;
-using MC_PhasingRelative = Block<axis::PhasingRelative>;
 using MC_Phasing = MC_PhasingAbsolute;
 
 using MC_Home = Block<axis::Home>;

@@ -71,6 +71,19 @@ class MC_MoveSuperimposed : public Block<axis::MoveSuperimposed> {
   double CoveredDistance() const noexcept { return Active() ? axis().outputs().covered_distance : ValueAtEnd(); }
 };
 
+// How much of the shift was added so far, or at last.
+class MC_PhasingAbsolute : public Block<axis::PhasingAbsolute> {
+ public:
+  using Block::Block;
+  double AbsolutePhaseShift() const noexcept { return Active() ? axis().outputs().covered_phase_shift : ValueAtEnd(); }
+};
+
+class MC_PhasingRelative : public Block<axis::PhasingRelative> {
+ public:
+  using Block::Block;
+  double CoveredPhaseShift() const noexcept { return Active() ? axis().outputs().covered_phase_shift : ValueAtEnd(); }
+};
+
 // A SW limit behind the place may leave a continuous move less than its end velocity.
 inline bool HasSpeed(AxisRef axis, double speed) noexcept {
   return std::abs(axis.outputs().set_velocity) >= speed * (1 - 1e-9);

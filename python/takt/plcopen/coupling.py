@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from takt import _commands
 from takt.axis import Axis
@@ -96,21 +96,34 @@ class PhasingBlock(ExecuteBlock):
     CommandAborted = Output(False)
     Aborted = Output(False, alias="CommandAborted")
 
+    SHIFT: ClassVar[str]  # the output that says how far it is
+
+    def _follow(self, feedback: Feedback) -> None:
+        super()._follow(feedback)
+        if self.Done or self.CommandAborted or self.Error:
+            self._show(**{self.SHIFT: feedback.value})
+
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
         self._show(Active=feedback.active)
+        if feedback.active:
+            self._show(**{self.SHIFT: self.Axis.covered_phase_shift})
 
 
 class MC_PhasingAbsolute(PhasingBlock):  # noqa: N801
-    """Shifts the phase to an amount."""
+    """Shifts the phase to an amount. AbsolutePhaseShift: what it is now, or was at last."""
 
     VERB = "phasing_absolute"
+    SHIFT = "AbsolutePhaseShift"
+    AbsolutePhaseShift = Output(0.0)
 
 
 class MC_PhasingRelative(PhasingBlock):  # noqa: N801
-    """Shifts the phase by an amount."""
+    """Shifts the phase by an amount. CoveredPhaseShift: how much of that was added so far, or at last."""
 
     VERB = "phasing_relative"
+    SHIFT = "CoveredPhaseShift"
+    CoveredPhaseShift = Output(0.0)
 
 
 class MC_Phasing(MC_PhasingAbsolute):  # noqa: N801
