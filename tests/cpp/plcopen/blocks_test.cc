@@ -449,6 +449,36 @@ TEST_F(Blocks, MotionsOnTopOfOthers) {
   EXPECT_EQ(top.CoveredDistance(), 0);
 }
 
+// AX-111: a direction that is not enabled is refused, and told to the axis while it is powered, whenever it changes.
+TEST_F(Blocks, PowerEnablesDirections) {
+  MC_Power power(x);
+  power.Enable = true;
+  power.EnablePositive = false;
+  power();
+  Step(3);
+  power();
+  EXPECT_TRUE(power.Status() && !power.Error());
+  MC_MoveAbsolute move(x);
+  move.position = At(x).set_position + 20;
+  move.velocity = 50;
+  move.Execute = true;
+  ASSERT_TRUE(Until(move, [&] { return move.Error(); }));
+  EXPECT_EQ(move.ErrorID(), ErrorId::kDirection);
+  EXPECT_EQ(bench.State(x), axis::PlcState::kStandstill);
+  move.Execute = false;
+  move();
+  power.EnablePositive = true;
+  power();
+  Step(3);
+  move.Execute = true;
+  ASSERT_TRUE(Until(move, [&] { return At(x).set_velocity > 10; }));
+  power.EnablePositive = false;
+  power();
+  ASSERT_TRUE(Until(move, [&] { return move.Error(); }));
+  EXPECT_EQ(move.ErrorID(), ErrorId::kDirection);
+  EXPECT_EQ(bench.State(x), axis::PlcState::kErrorStop);
+}
+
 // AX-38: every axis of the machine.
 TEST_F(Blocks, EmergencyStop) {
   MC_MoveVelocity ever(x);
