@@ -223,3 +223,33 @@ def test_a_cam_stays_where_it_is(s: takt.Engine, absolute: bool, change: str) ->
     s.step()
     block()
     assert block.Error or block.CommandAborted
+
+
+@pytest.mark.parametrize(
+    ("verb", "arguments"),
+    [
+        ("move_continuous_relative", {"distance": 20.0, "end_velocity": 10.0}),
+        ("move_superimposed", {"distance": 20.0}),
+        ("position_profile", {"profile": "way"}),
+        ("velocity_profile", {"profile": "speed"}),
+        ("acceleration_profile", {"profile": "speed"}),
+        ("cam_in", {"master": "y", "cam": "hill", "slave_absolute": False}),
+    ],
+)
+def test_what_is_not_there_cannot_be_changed(s: takt.Engine, verb: str, arguments: dict[str, Any]) -> None:
+    """AX-111: `update` begins as without where no such command is in control, and is refused where that is."""
+    x = s.axis("x")
+    for bad in ({"update": "perhaps"}, {"update": True, next(iter(arguments)): float("nan")}):
+        assert s.command("x", verb, arguments | bad).wait_final().error
+    ended = []
+    for update in (False, True):
+        x.move_absolute(position=100).wait()
+        s.command("x", verb, arguments | {"update": update})
+        s.run(0.4)
+        ended.append((x.set_position, x.set_velocity, x.state))
+        x.stop().wait()
+    assert ended[0][2] is ended[1][2]
+    assert ended[0][:2] == pytest.approx(ended[1][:2], abs=1e-6)
+    x.power(enable=False).wait()
+    assert s.command("x", verb, arguments | {"update": True}).wait_final().error_id == 10
+    assert x.state.value == "Disabled"
