@@ -523,6 +523,27 @@ def test_cams_show_the_point_in_force(tmp_path: Path, browser: Browser) -> None:
         expect(card.locator("output")).to_have_text(
             f"x {cutter.set_x_position:.3f} mm   y {cutter.set_y_position:.3f} mm"
         )
+        expect(card.locator("p")).to_have_text(
+            f"master {cutter.mp01_set_master_position:.3f} mm   slave {cutter.mp02_set_slave_position:.3f} mm, "
+            f"measured {cutter.actual_slave_position:.3f} mm"
+        )
+        shown = page.evaluate("() => window.takt.model.machine.cams[0]")
+        table, x = session.cam("product_600"), np.array(shown["x"])
+        inside = np.abs(x[:, None] - table.joints).min(axis=1) > 1e-3  # x has nine digits, and the jerk jumps at joints
+        for curve, values in zip(shown["curves"], table.at(x), strict=True):  # position, velocity, acceleration, jerk
+            np.testing.assert_allclose(np.array(curve)[inside], values[inside], atol=1e-6 * np.abs(values).max())
+
+        # The cam that is asked for and not in force yet: of another slot, then one put into the slot that runs.
+        expect(card.locator("header .soft")).not_to_contain_text("next:")
+        expect(page.locator(".cam:visible")).to_have_count(2)
+        cutter.control(cam_table=2)
+        expect(card.locator("header .soft")).to_contain_text("next: product_450")
+        expect(page.locator(".cam:visible")).to_have_count(1)  # it is drawn there, and not by itself
+        cutter.control(cam_table=1)
+        expect(card.locator("header .soft")).not_to_contain_text("next:")
+        made = session.cam("product_450")
+        cutter.load_cam(1, made, name="other").wait()
+        expect(card.locator("header .soft")).to_contain_text("product_600  ·  next: a cam made at run time")
 
 
 def test_engine_figures(tmp_path: Path, browser: Browser) -> None:

@@ -189,14 +189,14 @@ class Machine:
         cams = []
         for table, _ in tables:
             x = np.unique(np.concatenate([np.linspace(table.begin, table.end, CAM_POINTS), table.joints]))
-            y, v, a, _ = table.at(x)
+            y, *derivatives = table.at(x)
             cams.append(
                 {
                     "name": table.name,
                     "units": [table.x_unit, table.y_unit],
                     "cyclic": table.cyclic,
                     "x": _finite(x),
-                    "curves": [_finite(y), _finite(v), _finite(a)],
+                    "curves": [_finite(curve) for curve in (y, *derivatives)],
                 }
             )
         return cams

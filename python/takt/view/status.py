@@ -18,6 +18,8 @@ LIVE: dict[str, tuple[str, ...]] = {
     "flex_cam": (
         *("set_x_position", "set_y_position", "actual_slave_position", "set_x_velocity", "cam_table"),
         *("ip08_cam_table1", "ip09_cam_table2", "ip10_cam_table3", "ip11_cam_table4"),
+        *("cam_number", "next_cam_table", "mp01_set_master_position", "mp02_set_slave_position"),
+        *("set_scaling_slave",),
     ),
     "group": ("x", "y", "z", "a", "b", "c", "path_velocity", "path_left"),
     "belt": ("position", "velocity"),

@@ -1,10 +1,14 @@
-// Cams with the point that is in force: of each cam module the one that runs, then those that no module runs.
+// Cams with the places of master and slave: of each cam module the one that runs and the one that is to run next, then
+// those that no module runs.
 
 import { byId, css, el, fitCanvas, number, ticks, tone } from "./dom.js";
 import { put } from "./rows.js";
 
 const SLOTS = ["ip08_cam_table1", "ip09_cam_table2", "ip10_cam_table3", "ip11_cam_table4"];
-const CURVES = ["position", "velocity", "acceleration"];
+const CURVES = ["position", "velocity", "acceleration", "jerk"];
+const POWERS = ["", "", "²", "³"];
+const HEIGHTS = [0.43, 0.19, 0.19, 0.19];
+const DASHES = [6, 4]; // of the next cam
 
 export class Cams {
   constructor(model) {
@@ -23,21 +27,34 @@ export class Cams {
     const canvas = el("canvas");
     const words = el("span", { className: "soft" });
     const place = el("output");
+    const places = el("p", { className: "soft" });
     const title = el("b", { textContent: of.name });
     const picture = el("div", { className: "picture" }, canvas);
-    const node = el("section", { className: "card cam" }, el("header", {}, title, words, place), picture);
-    return { of, canvas, words, place, title, picture, node, module: "start" in of };
+    const node = el("section", { className: "card cam" }, el("header", {}, title, words, place), places, picture);
+    return { of, canvas, words, place, places, title, picture, node, module: "start" in of };
   }
 
-  // The number of the cam that a module runs: from 1 in the order of the machine file, beyond it made at run time.
-  numberOf(module) {
-    const slot = this.model.liveOf(module, "cam_table");
-    return slot >= 1 && slot <= SLOTS.length ? this.model.liveOf(module, SLOTS[slot - 1]) : NaN;
+  // The number of the cam in a slot: from 1 in the order of the machine file, beyond it made at run time; 0: none.
+  numberIn(module, slot) {
+    return slot >= 1 && slot <= SLOTS.length ? this.model.liveOf(module, SLOTS[slot - 1]) || 0 : 0;
   }
 
-  // The cam that a module runs, of the machine file.
-  running(module) {
-    return this.model.machine.cams[this.numberOf(module) - 1] ?? null;
+  // The numbers of the cam that runs and of the one that is to run next: of another slot, or put into the same one;
+  // 0: none.
+  numbersOf(module) {
+    const [slot, next] = ["cam_table", "next_cam_table"].map((field) => this.model.liveOf(module, field));
+    const running = this.model.liveOf(module, "cam_number") || 0;
+    const asked = this.numberIn(module, next || slot);
+    return { running, next: running && asked !== running ? asked : 0 };
+  }
+
+  // The cam of a number, of the machine file; null: there is none, or it was made at run time.
+  cam(number) {
+    return this.model.machine.cams[number - 1] ?? null;
+  }
+
+  nameOf(number) {
+    return this.cam(number)?.name ?? (number ? "a cam made at run time" : "no cam");
   }
 
   draw() {
@@ -45,24 +62,34 @@ export class Cams {
     const busy = new Set();
     for (const card of this.cards) {
       if (card.module) {
-        const cam = this.running(card.of);
-        busy.add(cam);
+        const numbers = this.numbersOf(card.of);
+        const [cam, next] = [this.cam(numbers.running), this.cam(numbers.next)];
+        busy.add(cam).add(next);
         const row = model.rows[card.of.index];
-        const made = this.numberOf(card.of) > model.machine.cams.length;
-        put(card.words, [cam?.name ?? (made ? "a cam made at run time" : "no cam"), row?.state, row?.more, row?.waits].filter(Boolean).join("  ·  "));
-        const [x, y] = ["set_x_position", "set_y_position"].map((field) => model.liveOf(card.of, field));
+        const then = numbers.next ? `next: ${this.nameOf(numbers.next)}` : "";
+        put(card.words, [this.nameOf(numbers.running), then, row?.state, row?.more, row?.waits].filter(Boolean).join("  ·  "));
+        const live = (field) => model.liveOf(card.of, field);
+        const [x, y] = [live("set_x_position"), live("set_y_position")];
         put(card.place, cam ? `x ${number(x)} ${cam.units[0]}   y ${number(y)} ${cam.units[1]}` : "");
-        this.curves(card, cam, x, y);
+        put(card.places, `master ${this.at(card.of, "mp01_set_master_position")}   slave ${this.at(card.of, "mp02_set_slave_position")}, measured ${this.at(card.of, "actual_slave_position")}`);
+        const measured = y + (live("actual_slave_position") - live("mp02_set_slave_position")) / live("set_scaling_slave");
+        this.curves(card, cam, x, y, next, measured);
       } else {
         card.node.hidden = busy.has(card.of);
         if (card.node.hidden) continue;
         put(card.words, card.of.cyclic ? "cyclic" : "");
-        this.curves(card, card.of, NaN, NaN);
+        this.curves(card, card.of, NaN, NaN, null, NaN);
       }
     }
   }
 
-  curves(card, cam, x, y) {
+  // A value with its unit.
+  at(module, field) {
+    return `${number(this.model.liveOf(module, field))} ${this.model.unit(module, field)}`;
+  }
+
+  // The set point is a full dot, what is measured a ring; the cam that is to run next is dashed.
+  curves(card, cam, x, y, next, measured) {
     const [width, height] = [card.picture.clientWidth, card.picture.clientHeight];
     if (width < 50) return;
     const c = fitCanvas(card.canvas, width, height);
@@ -70,14 +97,18 @@ export class Cams {
     if (!cam) return;
     c.font = `11px ${css("--font")}`;
     const [left, right, bottom] = [66, 8, 20];
-    const [from, to] = [cam.x[0], cam.x.at(-1)];
+    const both = next ? [cam, next] : [cam];
+    const [from, to] = [Math.min(...both.map((one) => one.x[0])), Math.max(...both.map((one) => one.x.at(-1)))];
     const across = (v) => left + ((v - from) / (to - from)) * (width - left - right);
-    const heights = [0.56, 0.22, 0.22];
     let top = 6;
     CURVES.forEach((name, i) => {
-      const space = (height - bottom - 6) * heights[i] - 8;
-      this.curve(c, cam, i, name, { top, space, left, right, width, across });
-      if (i === 0 && Number.isFinite(x)) this.dot(c, cam, x, y, { top, space, across });
+      const space = (height - bottom - 6) * HEIGHTS[i] - 8;
+      const [low, high] = this.scale(both, i);
+      const down = (v) => top + space * (1 - (v - low) / (high - low));
+      this.frame(c, cam, i, name, { top, space, left, right, width, low, high, down });
+      if (next) this.curve(c, next, i, across, down, css("--soft"), DASHES);
+      this.curve(c, cam, i, across, down, tone(this.model.machine.palette[i]), []);
+      if (Number.isFinite(x)) this.dots(c, cam, i, across(x), x, y, measured, { low, high, down });
       top += space + 8;
     });
     if (Number.isFinite(x) && x >= from && x <= to) {
@@ -100,19 +131,21 @@ export class Cams {
     c.fillText(`x, ${cam.units[0]}`, width - right, height - 15);
   }
 
-  scale(cam, i) {
-    cam.scales ??= cam.curves.map((curve) => {
-      const known = curve.filter((v) => v !== null);
-      const [low, high] = [Math.min(...known, i ? 0 : Infinity), Math.max(...known, i ? 0 : -Infinity)];
-      const room = 0.08 * (high - low || 1);
-      return [low - room, high + room];
+  // The least and the greatest value that is shown, with room.
+  scale(cams, i) {
+    const all = cams.map((cam) => {
+      cam.extents ??= cam.curves.map((curve, k) => {
+        const known = curve.filter((v) => v !== null);
+        return [Math.min(...known, k ? 0 : Infinity), Math.max(...known, k ? 0 : -Infinity)];
+      });
+      return cam.extents[i];
     });
-    return cam.scales[i];
+    const [low, high] = [Math.min(...all.map(([least]) => least)), Math.max(...all.map(([, most]) => most))];
+    const room = 0.08 * (high - low || 1);
+    return [low - room, high + room];
   }
 
-  curve(c, cam, i, name, { top, space, left, right, width, across }) {
-    const [low, high] = this.scale(cam, i);
-    const y = (v) => top + space * (1 - (v - low) / (high - low));
+  frame(c, cam, i, name, { top, space, left, right, width, low, high, down: y }) {
     c.lineWidth = 1;
     c.strokeStyle = css("--line");
     c.strokeRect(left + 0.5, Math.round(top) + 0.5, width - left - right - 1, Math.round(space));
@@ -129,9 +162,13 @@ export class Cams {
       if (y(value) > top + 5 && y(value) < top + space - 4) c.fillText(value.toFixed(decimals).replace("-", "−"), left - 5, y(value));
     }
     c.textAlign = "left";
-    c.fillText(`${name}, ${cam.units[1]}${i ? `/${cam.units[0]}${i > 1 ? "²" : ""}` : ""}`, left + 6, top + 9);
-    c.strokeStyle = tone(this.model.machine.palette[i]);
+    c.fillText(`${name}, ${cam.units[1]}${i ? `/${cam.units[0]}${POWERS[i]}` : ""}`, left + 6, top + 9);
+  }
+
+  curve(c, cam, i, across, y, colour, dashes) {
+    c.strokeStyle = colour;
     c.lineWidth = 1.6;
+    c.setLineDash(dashes);
     c.beginPath();
     let down = false;
     cam.curves[i].forEach((v, k) => {
@@ -143,28 +180,39 @@ export class Cams {
       }
     });
     c.stroke();
+    c.setLineDash([]);
   }
 
-  dot(c, cam, x, y, { top, space, across }) {
-    const [low, high] = this.scale(cam, 0);
+  dots(c, cam, i, px, x, y, measured, { low, high, down }) {
     // With strokes of earlier cycles Y counts on: then the curve itself says where it is.
-    const on = y >= low && y <= high ? y : this.valueAt(cam, x);
-    const py = top + space * (1 - (on - low) / (high - low));
-    if (!Number.isFinite(py)) return;
+    const counts = i === 0 && y >= low && y <= high;
+    const on = counts ? y : this.valueAt(cam, i, x);
+    if (!Number.isFinite(on)) return;
+    if (i === 0 && Number.isFinite(measured)) {
+      const ring = on + measured - y;
+      if (ring >= low && ring <= high) {
+        c.strokeStyle = css("--ink");
+        c.lineWidth = 1.5;
+        c.beginPath();
+        c.arc(px, down(ring), 8, 0, 7);
+        c.stroke();
+      }
+    }
     c.fillStyle = css("--bad");
     c.strokeStyle = css("--card");
     c.lineWidth = 1.5;
     c.beginPath();
-    c.arc(across(x), py, 5, 0, 7);
+    c.arc(px, down(on), i ? 3.5 : 5, 0, 7);
     c.fill();
     c.stroke();
   }
 
-  valueAt(cam, x) {
+  valueAt(cam, i, x) {
+    const curve = cam.curves[i];
     const k = cam.x.findIndex((v) => v >= x);
-    if (k < 1) return k === 0 ? cam.curves[0][0] : NaN;
+    if (k < 1) return k === 0 ? curve[0] : NaN;
     const share = (x - cam.x[k - 1]) / (cam.x[k] - cam.x[k - 1]);
-    return cam.curves[0][k - 1] + share * (cam.curves[0][k] - cam.curves[0][k - 1]);
+    return curve[k - 1] + share * (curve[k] - curve[k - 1]);
   }
 }
 

@@ -240,4 +240,4 @@ addEventListener("hashchange", () => {
 
 listen(() => tab, scope, plan);
 show(fromAddress().tab);
-window.takt = { model, scope, connection, plan, health }; // to look at from the console, and for tests
+window.takt = { model, scope, connection, plan, cams, health }; // to look at from the console, and for tests
