@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import os
@@ -13,6 +14,7 @@ import time
 import urllib.error
 import urllib.request
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -28,6 +30,7 @@ from takt.view.feed import Tap
 from takt.view.layout import Layout
 from takt.view.ledger import Ledger
 from takt.view.machine import Machine
+from takt.view.made import MadeCams
 from takt.view.protocol import MOST_SIGNALS, RequestError, frame, parse
 from takt.view.ring import Ring
 from takt.view.status import LIVE, WORDS, name_in, words
@@ -190,6 +193,46 @@ def test_why_something_waits() -> None:
     for kind in KINDS:  # any number whatever is put into words
         words(kind, dict.fromkeys(WORDS[kind], 1), name_of)
         words(kind, dict.fromkeys(WORDS[kind], 0), name_in({}))
+
+
+def test_cams_that_pass_by_are_known_when_they_are_whole() -> None:  # CAM-88
+    made = MadeCams(lambda table: {"name": table.name, "end": table.end, "stroke": table.stroke})
+    ids = itertools.count(1)
+
+    def told(verb: str, arguments: str) -> msgs.command:
+        message = msgs.command()
+        message.client, message.session, message.id, message.target = "line", 1, next(ids), "machine"
+        message.verb, message.arguments = verb, arguments
+        made.take_command(message)
+        return message
+
+    def answer(command: msgs.command, value: float, state: int = msgs.feedback.STATE_DONE) -> list[dict[str, Any]]:
+        before = made.count
+        message = msgs.feedback()
+        message.client, message.session, message.id = command.client, command.session, command.id
+        message.state, message.value = state, value
+        made.take_feedback(message)
+        return made.since(before)
+
+    def send(*pieces: str, count: int = 3) -> msgs.command:
+        told("begin_cam", "{name: lift, interpolation: linear}")
+        for piece in pieces:
+            command = told("add_cam_points", piece)
+            made.take_command(command)  # sent again
+        return told("build_cam", f"{{cam: lift, count: {count}}}")
+
+    first = "{cam: lift, first: 0, points: [{x: 0, y: 1e-05}, {x: 1.0, y: 2.0}]}"
+    last = "{cam: lift, first: 2, points: [{x: 4.0, y: 3.0}]}"
+    for pieces in ((first, last), (last, first)):  # in the order of the network
+        assert answer(send(*pieces), 7.0) == [{"number": 7, "name": "lift", "end": 4.0, "stroke": 2.99999}]
+    assert answer(send(first), 8.0) == []  # a piece was not heard
+    assert answer(send(first, last), 0.0, msgs.feedback.STATE_ERROR) == []
+    assert answer(send(first, last, "{cam: lift, first: 3, points: [{x: .nan}]}", count=4), 9.0) == []
+    for value in (math.nan, math.inf, -1.0, 0.0):
+        assert answer(send(first, last), value) == []
+    for nonsense in ("", "{", "[1]", "{name: [1]}", "{cam: {}}", "{cam: unknown}"):
+        for verb in ("begin_cam", "add_cam_points", "build_cam"):
+            assert answer(told(verb, nonsense), 10.0) == []
 
 
 def test_the_ledger_knows_what_became_of_commands() -> None:

@@ -543,7 +543,15 @@ def test_cams_show_the_point_in_force(tmp_path: Path, browser: Browser) -> None:
         expect(card.locator("header .soft")).not_to_contain_text("next:")
         made = session.cam("product_450")
         cutter.load_cam(1, made, name="other").wait()
-        expect(card.locator("header .soft")).to_contain_text("product_600  ·  next: a cam made at run time")
+        expect(card.locator("header .soft")).to_contain_text("product_600  ·  next: other")
+        until(page, "() => window.takt.model.madeCams.get(3)?.name === 'other'")
+        other, prepared = page.evaluate("() => [window.takt.model.madeCams.get(3), window.takt.model.machine.cams[1]]")
+        assert (other["x"], other["curves"]) == (prepared["x"], prepared["curves"])
+        web.move_velocity(velocity=300)
+        session.wait(lambda: cutter.cam_number == 3)
+        web.halt().wait()
+        expect(card.locator("header .soft")).to_have_text(re.compile("^other"))
+        expect(card.locator("output")).to_contain_text(" mm   y ")
 
 
 def test_engine_figures(tmp_path: Path, browser: Browser) -> None:

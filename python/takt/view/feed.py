@@ -22,7 +22,8 @@ from takt.network import open_network
 from takt.remote import JUMP_S
 from takt.tables import fields_of
 from takt.view.ledger import Ledger
-from takt.view.machine import Machine, Source
+from takt.view.machine import Machine, Source, drawn
+from takt.view.made import MadeCams
 from takt.view.overview import Overview
 from takt.view.ring import Ring
 from takt.view.shapes import Shapes
@@ -83,6 +84,7 @@ class Feed:
         self.machine: Machine | None = None
         self.overview: Overview | None = None
         self.ledger = Ledger(())
+        self.made_cams = MadeCams(drawn)
         self.taps: dict[int, Tap] = {}
         self.engine: dict[str, Any] | None = None
         self.objects: dict[str, list[list[float]]] = {}  # what lies on belts
@@ -205,6 +207,7 @@ class Feed:
         self.machine, self.overview, self.ledger = machine, Overview(machine), Ledger(machine.by_name)
         self.engine, self.objects, self.links, self.messages = None, {}, {}, 0
         self.shapes = Shapes(machine.names["part"])
+        self.made_cams = MadeCams(drawn)
         self.epoch += 1
         self._heard = time.monotonic()
         self._subscriptions = [self._newest(source.channel, self._taker(source)) for source in machine.sources]
@@ -246,11 +249,13 @@ class Feed:
     def _on_command(self, _: str, data: bytes) -> None:
         message = _decoded(msgs.command, data)
         if message is not None and self.machine is not None and message.run_id == self.machine.run_id:
+            self.made_cams.take_command(message)
             self.ledger.take_command(message, self.overview.cycle if self.overview else 0)
 
     def _on_feedback(self, _: str, data: bytes) -> None:
         message = _decoded(msgs.feedback, data)
         if message is not None:
+            self.made_cams.take_feedback(message)
             self.ledger.take_feedback(message)
             for listener in list(self.listeners):
                 listener(message)

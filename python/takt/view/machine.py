@@ -25,6 +25,7 @@ from takt.view.shapes import track as shape_of
 from takt.view.status import LIVE
 
 CAM_POINTS = 400
+MOST_JOINTS = 4000
 TRACK_STEP = 10.0  # mm
 
 
@@ -186,20 +187,7 @@ class Machine:
             tables = _core.cams_of_machine(self.text.encode(), str(self.folder / "machine"))
         except ConfigError:
             return []
-        cams = []
-        for table, _ in tables:
-            x = np.unique(np.concatenate([np.linspace(table.begin, table.end, CAM_POINTS), table.joints]))
-            y, *derivatives = table.at(x)
-            cams.append(
-                {
-                    "name": table.name,
-                    "units": [table.x_unit, table.y_unit],
-                    "cyclic": table.cyclic,
-                    "x": _finite(x),
-                    "curves": [_finite(curve) for curve in (y, *derivatives)],
-                }
-            )
-        return cams
+        return [drawn(table) for table, _ in tables]
 
     # --- arms ---
 
@@ -226,6 +214,19 @@ class Machine:
             return np.full((len(mechanism.links), 6), math.nan)
         world: Array = (places @ base[:3, :3].T + base[:3, 3]).reshape(-1, 6)
         return world
+
+
+def drawn(table: Any) -> dict[str, Any]:
+    """A cam as the page draws it: position, velocity, acceleration and jerk. Of many points not every joint."""
+    joints = table.joints[:: 1 + len(table.joints) // MOST_JOINTS]
+    x = np.unique(np.concatenate([np.linspace(table.begin, table.end, CAM_POINTS), joints]))
+    return {
+        "name": table.name,
+        "units": [table.x_unit, table.y_unit],
+        "cyclic": table.cyclic,
+        "x": _finite(x),
+        "curves": [_finite(curve) for curve in table.at(x)],
+    }
 
 
 def _pose(pose: Mapping[str, float]) -> list[float]:

@@ -48,9 +48,9 @@ export class Cams {
     return { running, next: running && asked !== running ? asked : 0 };
   }
 
-  // The cam of a number, of the machine file; null: there is none, or it was made at run time.
+  // The cam of a number; null: there is none, or it was made before anyone listened.
   cam(number) {
-    return this.model.machine.cams[number - 1] ?? null;
+    return this.model.machine.cams[number - 1] ?? this.model.madeCams.get(number) ?? null;
   }
 
   nameOf(number) {

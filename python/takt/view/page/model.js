@@ -16,6 +16,7 @@ export class Model {
     this.objects = {};
     this.links = {};
     this.shapes = new Map(); // of tracks, by name
+    this.madeCams = new Map(); // at run time, by number
     this.health = {};
   }
 
@@ -64,6 +65,7 @@ export class Model {
     if (header.events) this.events = [...this.events, ...header.events].slice(-500);
     if (header.engine) this.engine = header.engine;
     for (const shape of header.shapes ?? []) this.shapes.set(shape.name, shape);
+    for (const cam of header.cams ?? []) this.madeCams.set(cam.number, cam);
     this.objects = header.objects;
     this.links = header.links;
     this.health = header.health;
