@@ -1,0 +1,52 @@
+// The quickest legs of one mover between those of all others. SIPP (Phillips and Likhachev, ICRA 2011) over runs:
+// states are a place and the time until which it is free; of each the earliest arrival is enough.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "takt/routing/timetable.h"
+
+namespace takt::routing {
+
+class Sipp {
+ public:
+  explicit Sipp(const Grid& grid) : grid_(grid), earliest_(static_cast<std::size_t>(grid.size())) {}
+
+  struct Query {
+    PlaceIndex start = 0, target = 0;
+    const std::vector<double>* alone = nullptr;  // Grid::TimesTo(target)
+    double bound = kForever;                     // s, it has to be there before
+    double weight = 1;                           // above 1: sooner found, up to so much longer
+    std::int64_t most = 30'000;                  // states looked at before it is given up
+  };
+  // Requires: the mover itself is not in the timetable.
+  std::optional<Legs> Find(const Timetable& timetable, const Query& query);
+
+  std::int64_t expanded() const noexcept { return expanded_; }  // states in all
+
+ private:
+  struct State {
+    double time = 0, free_until = 0;
+    PlaceIndex place = 0;
+    std::int32_t parent = kNone;
+    Leg leg{};
+  };
+  struct Earliest {
+    double free_until, time;
+  };
+  // The earliest departure in [from, latest] on which nothing is in the way; infinite: none.
+  double Departure(const Timetable& timetable, PlaceIndex place, Direction lane, int count, double from,
+                   double latest) const;
+  bool Better(PlaceIndex place, double free_until, double time);
+
+  const Grid& grid_;
+  std::vector<State> states_;
+  std::vector<std::vector<Earliest>> earliest_;  // by place
+  std::vector<PlaceIndex> touched_;
+  std::int64_t expanded_ = 0;
+};
+
+}  // namespace takt::routing

@@ -1,0 +1,129 @@
+#include "takt/routing/surface.h"
+
+#include <algorithm>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "takt/routing/assignment.h"
+#include "takt/routing/compose.h"
+#include "takt/routing/improve.h"
+#include "takt/routing/steps.h"
+
+namespace takt::routing {
+namespace {
+
+constexpr std::int64_t kStepEffort = 4'000'000;  // places looked at for a first plan; by mover and step
+constexpr std::int64_t kLeastSteps = 5'000;
+constexpr int kSeeds = 8;                     // first plans, of which the best is taken; with few movers
+constexpr std::int64_t kMoversPerSeed = 400;  // ... of 8 seeds: with more movers fewer seeds
+constexpr int kTurns = 6;                     // tries of prioritised planning
+constexpr std::int64_t kTurnStates = 4'000;   // states that those may take
+
+// Which mover takes which target, by the times alone. Returns the sum of these; infinite: not all targets are in reach.
+double AssignTargets(const std::vector<PlaceIndex>& targets, Alone& alone, Task& task) {
+  std::vector<std::vector<double>> costs(targets.size());
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    for (const PlaceIndex start : task.starts) costs[k].push_back(alone(start, targets[k]));
+  }
+  task.targets.assign(task.starts.size(), kNone);
+  const std::vector<std::size_t> movers = Assign(costs);
+  double sum = 0;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    task.targets[movers[k]] = targets[k];
+    sum += costs[k][movers[k]];
+  }
+  return sum;
+}
+
+void MakeVisits(const Grid& grid, const SurfaceProblem& problem, SurfacePlan& plan) {
+  using ByTime = std::tuple<double, MoverIndex, std::int32_t>;
+  std::vector<std::vector<ByTime>> at(static_cast<std::size_t>(grid.size()));
+  const auto add = [&](MoverIndex mover, PlaceIndex place, double entry, double middle) {
+    std::vector<Visit>& visits = plan.visits[static_cast<std::size_t>(mover)];
+    // By its middle: in one lane a follower may be bound to a place before its leader has reached it.
+    at[static_cast<std::size_t>(place)].emplace_back(middle, mover, static_cast<std::int32_t>(visits.size()));
+    visits.push_back({.place = place, .entry = entry});
+  };
+  plan.visits.resize(problem.starts.size());
+  for (std::size_t i = 0; i < problem.starts.size(); ++i) {
+    const auto mover = static_cast<MoverIndex>(i);
+    add(mover, problem.starts[i], -1, -1);
+    for (const Leg& leg : plan.legs[i]) {
+      const int count = grid.Count(leg.from, leg.to);
+      const PlaceIndex step = grid.Step(grid.Towards(leg.from, leg.to));
+      for (int k = 1; k <= count; ++k) {
+        add(mover, leg.from + k * step, leg.departure + grid.Entry(count, k), leg.departure + grid.Middle(count, k));
+      }
+    }
+  }
+  for (auto& its : at) {
+    std::sort(its.begin(), its.end());
+    for (std::size_t k = 1; k < its.size(); ++k) {
+      const auto [time, mover, index] = its[k];
+      Visit& visit = plan.visits[static_cast<std::size_t>(mover)][static_cast<std::size_t>(index)];
+      visit.before = std::get<1>(its[k - 1]);
+      visit.before_index = std::get<2>(its[k - 1]);
+    }
+  }
+}
+
+}  // namespace
+
+SurfacePlan PlanSurface(const SurfaceProblem& problem) {
+  const Grid grid(problem.width, problem.height, problem.pitch, problem.dynamics, problem.blocked);
+  Alone alone(grid);
+  SurfacePlan result;
+  Task task{.starts = problem.starts, .targets = problem.targets};
+  if (problem.interchangeable) {
+    result.lower_bound = AssignTargets(problem.targets, alone, task);
+    if (result.lower_bound == kForever) return {.outcome = Outcome::kUnreachable};
+  } else {
+    for (std::size_t i = 0; i < task.starts.size(); ++i) {
+      if (task.targets[i] == kNone) continue;
+      const double time = alone(task.starts[i], task.targets[i]);
+      if (time == kForever) return {.outcome = Outcome::kUnreachable, .unreachable = static_cast<MoverIndex>(i)};
+      result.lower_bound += time;
+    }
+  }
+  std::optional<Plan> best;
+  const auto offer = [&](std::optional<Plan> plan) {
+    if (plan && (!best || SumOf(grid, *plan) < SumOf(grid, *best))) best = std::move(plan);
+  };
+  const auto offer_steps = [&](const std::vector<Configuration>& steps) {
+    std::optional<std::vector<Legs>> legs = Compose(grid, steps);
+    if (legs) offer(Plan{.legs = *std::move(legs), .targets = steps.back()});
+  };
+  Task swapped = task;
+  const bool all_have_targets = std::find(task.targets.begin(), task.targets.end(), kNone) == task.targets.end();
+  if (problem.interchangeable && all_have_targets) {
+    if (const auto steps = SwapTargets(grid, swapped, problem.seed)) offer_steps(*steps);
+  }
+  const auto movers = static_cast<std::int64_t>(std::max<std::size_t>(1, task.starts.size()));
+  if (!best) {
+    const StepTables tables = MakeStepTables(grid, task);
+    const std::int64_t effort = std::max(kLeastSteps, kStepEffort / movers);
+    const auto seeds = static_cast<std::uint64_t>(std::clamp<std::int64_t>(kMoversPerSeed / movers, 1, kSeeds));
+    for (std::uint64_t k = 0; k < seeds; ++k) {
+      const StepSearch found = FindSteps(grid, task, tables, problem.seed + k, best ? kLeastSteps : effort);
+      if (found.steps) offer_steps(*found.steps);
+      if (!best) {
+        const bool impossible = found.exhausted && !problem.interchangeable;  // another assignment might do
+        return {.outcome = impossible ? Outcome::kImpossible : Outcome::kGivenUp};
+      }
+    }
+  }
+  offer(PlanInTurn(grid, task, alone, kTurns, kTurnStates));
+  result.first_sum = SumOf(grid, *best);
+  // Whoever has none of its own ends where the first plan leaves it.
+  *best = Improve(grid, task, alone, *std::move(best),
+                  {.effort = problem.effort, .seed = problem.seed, .interchangeable = problem.interchangeable});
+  result.outcome = Outcome::kPlanned;
+  result.sum = SumOf(grid, *best);
+  result.targets = std::move(best->targets);
+  result.legs = std::move(best->legs);
+  MakeVisits(grid, problem, result);
+  return result;
+}
+
+}  // namespace takt::routing

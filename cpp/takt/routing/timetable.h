@@ -1,0 +1,61 @@
+// Legs of movers, and who has which place when.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "takt/routing/grid.h"
+
+namespace takt::routing {
+
+inline constexpr double kForever = std::numeric_limits<double>::infinity();
+inline constexpr double kTimeRounding = 1e-9;  // s
+
+// One run of a mover.
+struct Leg {
+  double departure = 0;  // s
+  PlaceIndex from = 0, to = 0;
+};
+using Legs = std::vector<Leg>;  // of one mover, one after the other; empty: it stays where it is
+
+// When [s] it is where it stays.
+double Arrival(const Grid& grid, const Legs& legs);
+
+// A place taken by a mover for a time.
+struct Stay {
+  double from = 0, to = 0;  // s
+  MoverIndex who = kNone;
+  Direction lane = Direction::kNone;  // it passes; the run that it is on:
+  int count = 0, along = 0;           // how many places, and Grid::Along of its first one
+  double departure = 0;
+};
+
+class Timetable {
+ public:
+  Timetable(const Grid& grid, std::size_t movers);
+
+  const std::vector<Stay>& stays(PlaceIndex place) const noexcept { return stays_[static_cast<std::size_t>(place)]; }
+  const std::vector<PlaceIndex>& places_of(MoverIndex who) const noexcept {
+    return places_[static_cast<std::size_t>(who)];
+  }
+  // It takes the place for a time. Before `from` = -1 nothing happens.
+  void Rest(PlaceIndex place, double from, double to, MoverIndex who);
+  void Add(MoverIndex who, PlaceIndex start, const Legs& legs);
+  void Remove(MoverIndex who);
+
+  // Returns the index of the first stay that ends after t.
+  std::size_t FirstEndingAfter(PlaceIndex place, double t) const noexcept;
+  // Returns until when the place is free from t on; t itself or before, if it is not.
+  double FreeUntil(PlaceIndex place, double t) const noexcept;
+  // Returns when the last of its stays ends; -1 without any.
+  double LastEnd(PlaceIndex place) const noexcept;
+
+ private:
+  void Insert(PlaceIndex place, const Stay& stay);
+
+  const Grid& grid_;
+  std::vector<std::vector<Stay>> stays_;         // by place, by time
+  std::vector<std::vector<PlaceIndex>> places_;  // by mover; may name a place more than once
+};
+
+}  // namespace takt::routing
