@@ -50,6 +50,7 @@ void BindKinematics(py::module_& m);
 void BindAxis(py::module_& m);
 void BindEngine(py::module_& m);
 void BindTrack(py::module_& m);
+void BindRouting(py::module_& m);
 void BindServo(py::module_& m);
 void BindLcm(py::module_& m);
 

@@ -9,6 +9,7 @@ PYBIND11_MODULE(_core, m) {
   takt::bindings::BindAxis(m);
   takt::bindings::BindEngine(m);
   takt::bindings::BindTrack(m);
+  takt::bindings::BindRouting(m);
   takt::bindings::BindServo(m);
   takt::bindings::BindLcm(m);
 }

@@ -40,7 +40,16 @@ from takt.pose import FreePose
 from takt.recording import Recording, RecordingError
 from takt.remote import RemoteSession, connect
 from takt.replay import ReplayResult, replay
-from takt.routing import Journey, RoutePlan, RoutingError, plan_routes
+from takt.routing import (
+    Journey,
+    RoutePlan,
+    RoutingError,
+    SurfaceJourney,
+    SurfaceLeg,
+    SurfacePlan,
+    plan_routes,
+    plan_surface,
+)
 from takt.session import Recorder, Session
 from takt.track import Track, TrackPosition
 from takt.trail import TrackTrail
@@ -79,6 +88,9 @@ __all__ = [
     "RoutePlan",
     "RoutingError",
     "Session",
+    "SurfaceJourney",
+    "SurfaceLeg",
+    "SurfacePlan",
     "TaktError",
     "TimeoutError",
     "Track",
@@ -90,6 +102,7 @@ __all__ = [
     "error_text",
     "expect",
     "plan_routes",
+    "plan_surface",
     "read_log",
     "read_machine",
     "replay",

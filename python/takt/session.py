@@ -8,7 +8,7 @@ import os
 import sys
 from abc import abstractmethod
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import FrameType, MappingProxyType, TracebackType
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
@@ -321,6 +321,29 @@ class Session(SessionWithCams):
 
         self._check_open()
         return move_on_tracks(self, targets, route=route, may_move=may_move, gap=gap, timeout=timeout, **dynamics)
+
+    def move_on_surface(
+        self,
+        targets: Mapping[str, tuple[float, float]] | Sequence[tuple[float, float]],
+        *,
+        movers: Iterable[str] | None = None,
+        may_move: bool | Iterable[str] = False,
+        timeout: float = DEFAULT_TIMEOUT_S,
+        **options: Any,
+    ) -> dict[str, float]:
+        """Moves many movers over the free surface at once, and lets engine time pass until all are there. How long each
+        of those that were moved took, in s. RoutingError, before anything moves, if there is no plan
+        (takt.plan_surface).
+
+        targets: by mover, X and Y in mm. Or a list of them, each for any of `movers` (all that can move).
+        may_move: movers without a target that may be moved out of the way, or all of them (True).
+        timeout: s of engine time for all of it.
+        options: as those of takt.plan_surface: environment, pitch, origin, effort, seed, velocity, acceleration, jerk.
+        """
+        from takt.routing.surface_journey import move_on_surface
+
+        self._check_open()
+        return move_on_surface(self, targets, movers=movers, may_move=may_move, timeout=timeout, **options)
 
     # --- time ---
 

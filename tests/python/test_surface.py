@@ -1,0 +1,300 @@
+"""Routes on the free surface for many movers at once: all get there, without a collision or a deadlock (PL-72)."""
+
+from __future__ import annotations
+
+import math
+import os
+import random
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+import takt
+from machines import new_url, running
+from takt import Engine
+
+PITCH = 120.0
+SIDE = 113.0
+XY = "xy: {maximum: {velocity: 2000, acceleration: 10000, jerk: 200000}}"
+Cell = tuple[int, int]
+LONG = bool(os.environ.get("TAKT_LONG"))
+
+
+def at(cell: Cell) -> tuple[float, float]:
+    return PITCH * (cell[0] + 0.5), PITCH * (cell[1] + 0.5)
+
+
+def machine(starts: Mapping[str, Cell], stators: list[Cell], extra: str = "") -> str:
+    movers = "".join(
+        f"  - {{name: {name}, width: {SIDE}, height: {SIDE}, initial: {{x: {at(cell)[0]}, y: {at(cell)[1]}}}, {XY}}}\n"
+        for name, cell in starts.items()
+    )
+    floor = ", ".join(f"{{x: {240 * x}, y: {240 * y}}}" for x, y in stators)
+    return f"name: surface\naxes: []\nmovers:\n{movers}environments:\n  - {{name: floor, stators: [{floor}]}}\n{extra}"
+
+
+def engine_of(starts: Mapping[str, Cell], stators: list[Cell], extra: str = "") -> Engine:
+    engine = Engine(machine(starts, stators, extra))
+    for feedback in [mover.enable() for mover in engine.movers.values()]:
+        feedback.wait()
+    return engine
+
+
+def square(side: int) -> list[Cell]:
+    return [(x, y) for x in range(side) for y in range(side)]
+
+
+def random_world(side: int, count: int, seed: int) -> tuple[dict[str, Cell], dict[str, tuple[float, float]]]:
+    """Movers on `side` by `side` stators, and a target for each."""
+    chance = random.Random(seed)
+    cells = square(2 * side)
+    starts = dict(zip((f"m{i}" for i in range(count)), chance.sample(cells, count), strict=True))
+    targets = {name: at(cell) for name, cell in zip(starts, chance.sample(cells, count), strict=True)}
+    return starts, targets
+
+
+class Watch:
+    """No two movers overlap in any cycle."""
+
+    def __init__(self, engine: Engine) -> None:
+        self.movers = list(engine.movers.values())
+        self.overlaps: set[tuple[str, str]] = set()
+        engine.program(self.look)
+
+    def look(self) -> None:
+        x, y = (np.array([getattr(m, of) for m in self.movers]) for of in "xy")
+        near = np.maximum(np.abs(x[:, None] - x), np.abs(y[:, None] - y)) < SIDE - 1e-6
+        for i, k in zip(*np.nonzero(np.triu(near, 1)), strict=True):
+            self.overlaps.add((self.movers[i].name, self.movers[k].name))
+
+
+def check(engine: Engine, plan: takt.SurfacePlan) -> takt.SurfaceJourney:
+    """Is carried out, and all is well."""
+    watch = Watch(engine)
+    journey = takt.SurfaceJourney(engine, plan).wait()
+    for name, (x, y) in plan.targets.items():
+        mover = engine.mover(name)
+        assert (mover.x, mover.y) == (pytest.approx(x, abs=1e-6), pytest.approx(y, abs=1e-6))
+    assert not watch.overlaps
+    return journey
+
+
+# --- plans that are carried out ---
+
+
+@pytest.mark.parametrize(("count", "worst"), [(10, 1.25), (20, 1.4), (26, 1.5)])
+def test_random_targets_are_reached_without_a_collision(count: int, worst: float) -> None:
+    """By precedence, and not much later than planned."""
+    starts, targets = random_world(4, count, count)
+    engine = engine_of(starts, square(4))
+    plan = takt.plan_surface(engine, targets)
+    assert plan.lower_bound_s <= plan.sum_s <= plan.first_sum_s
+    journey = check(engine, plan)
+    assert sum(journey.arrived_s.values()) < worst * plan.sum_s
+
+
+def test_three_quarters_of_the_places_are_filled() -> None:
+    starts, targets = random_world(2, 12, 1)
+    engine = engine_of(starts, square(2))
+    check(engine, takt.plan_surface(engine, targets, effort=1000))
+
+
+def test_movers_change_places_over_a_siding_round_a_hole() -> None:
+    """A ring of stators round one that is missing: two movers that meet in it."""
+    ring = [cell for cell in square(3) if cell != (1, 1)]
+    engine = engine_of({"a": (0, 0), "b": (5, 5)}, ring)
+    plan = takt.plan_surface(engine, {"a": at((5, 5)), "b": at((0, 0))})
+    hole = [place for place, free in enumerate(plan.raster.free) if not free]
+    assert len(hole) == 4
+    assert not {visit.place for visits in plan.visits for visit in visits} & set(hole)
+    check(engine, plan)
+    assert set(engine.move_on_surface({"a": at((0, 5))})) == {"a"}
+
+
+def test_interchangeable_targets_go_to_whom_they_suit() -> None:
+    starts, targets = random_world(3, 12, 4)
+    engine = engine_of(starts, square(3))
+    labelled = takt.plan_surface(engine, targets)
+    plan = takt.plan_surface(engine, list(targets.values()))
+    assert plan.sum_s < 0.8 * labelled.sum_s
+    assert plan.lower_bound_s <= plan.sum_s < 1.3 * plan.lower_bound_s
+    assert sorted(plan.targets.values()) == sorted(targets.values())
+    check(engine, plan)
+
+
+def test_movers_that_stand_are_gone_round_or_moved_aside() -> None:
+    column = [(0, y) for y in range(3)]  # two places wide
+    starts = {"a": (0, 0), "b": (0, 2), "c": (1, 2)}
+    engine = engine_of(starts, column)
+    target = {"a": at((0, 5))}
+    with pytest.raises(takt.RoutingError, match=r"mover a: no way leads .* \(b, c may not be moved\)"):
+        takt.plan_surface(engine, target)
+    plan = takt.plan_surface(engine, target, may_move=["c"])
+    assert plan.moved_aside == ("c",)
+    check(engine, plan)
+    # The other way round nobody has to make room.
+    assert takt.plan_surface(engine, {"a": at((0, 4))}, may_move=True).moved_aside == ()
+
+
+def test_after_a_halt_the_journey_goes_on() -> None:
+    """Who is late holds up those behind it, and the order stays good."""
+    starts, targets = random_world(3, 14, 2)
+    engine = engine_of(starts, square(3))
+    plan = takt.plan_surface(engine, targets)
+    journey = takt.SurfaceJourney(engine, plan)
+    watch = Watch(engine)
+    chance = random.Random(5)
+    halted = 0
+    while halted < 5:
+        due = engine.now + chance.uniform(0.05, 0.2)
+        engine.wait(lambda due=due: journey.scan() or engine.now > due)
+        moving = [m for m in engine.movers.values() if math.hypot(m.velocity_x, m.velocity_y) > 1]
+        if moving:
+            chance.choice(moving).halt()
+            halted += 1
+            with pytest.raises(takt.RoutingError, match="does not go its way any more"):
+                journey.wait()
+            engine.run(0.3)
+    journey.wait()
+    assert not watch.overlaps
+    for name, (x, y) in targets.items():
+        assert math.dist((engine.mover(name).x, engine.mover(name).y), (x, y)) < 1e-6
+
+
+def test_a_mover_that_fails_is_named_and_the_others_rest_in_places() -> None:
+    engine = engine_of({"a": (0, 0), "b": (0, 3)}, square(2))
+    journey = takt.SurfaceJourney(engine, takt.plan_surface(engine, {"a": at((3, 0)), "b": at((3, 3))}))
+    engine.wait(lambda: journey.scan() or engine.mover("a").x > 150)
+    engine.mover("a").disable()
+    with pytest.raises(takt.RoutingError, match="mover a is Disabling on its way"):
+        journey.wait()
+    engine.run(1)
+    assert (engine.mover("b").x - 60) % PITCH == pytest.approx(0, abs=1e-6)
+    engine.mover("a").enable().wait()
+    journey.wait()
+    assert (engine.mover("a").x, engine.mover("a").y) == pytest.approx(at((3, 0)), abs=1e-6)
+
+
+def test_the_same_plan_each_time() -> None:
+    starts, targets = random_world(3, 12, 8)
+    plans = [takt.plan_surface(engine_of(starts, square(3)), targets) for _ in range(2)]
+    assert plans[0].legs == plans[1].legs
+    assert plans[0].visits == plans[1].visits
+
+
+def test_two_hundred_movers_are_planned() -> None:
+    starts, targets = random_world(10, 200, 6)
+    engine = engine_of(starts, square(10))
+    plan = takt.plan_surface(engine, targets, effort=0)
+    ends = {name: plan.legs[name][-1].end if plan.legs[name] else at(starts[name]) for name in starts}
+    assert ends == targets
+    if LONG:
+        check(engine, plan)
+
+
+def test_legs_are_as_the_engine_moves() -> None:
+    """A mover alone: the times of the plan are those of the engine."""
+    engine = engine_of({"a": (0, 0)}, square(3))
+    plan = takt.plan_surface(engine, {"a": at((5, 4))}, velocity=700, acceleration=3000)
+    assert plan.sum_s == pytest.approx(plan.lower_bound_s)
+    assert len(plan.legs["a"]) == 2
+    journey = check(engine, plan)
+    assert journey.duration_s == pytest.approx(plan.duration_s, abs=0.01)
+    assert "a: to (660, 540) in 2 legs" in str(plan)
+
+
+def test_over_lcm(tmp_path: Path) -> None:
+    """A plan is made and carried out from another process."""
+    url = new_url()
+    text = machine({"a": (0, 0), "b": (3, 3), "c": (2, 0)}, square(2))
+    with running(tmp_path, url, machine=text), takt.connect(url) as session:
+        for feedback in [mover.enable() for mover in session.movers.values()]:
+            feedback.wait()
+        times = session.move_on_surface({"a": at((3, 3)), "b": at((0, 0))})
+        assert set(times) == {"a", "b"}
+        assert (session.mover("a").x, session.mover("a").y) == pytest.approx(at((3, 3)), abs=1e-6)
+
+
+# --- what cannot be ---
+
+
+def test_targets_that_cannot_be_are_named() -> None:
+    ring = [cell for cell in square(3) if cell != (1, 1)]
+    engine = engine_of({"a": (0, 0), "b": (5, 5), "c": (0, 1)}, ring)
+    cases: list[tuple[object, str]] = [
+        ({"a": at((2, 2))}, r"the target of mover a at \(300, 300\) is not on the surface"),
+        ({"a": (-60.0, 60.0)}, "the target of mover a at .* is not on the surface"),
+        ({"a": (190.0, 60.0)}, r"is not in the middle of a place: the nearest is \(180, 60\), places are 120 mm apart"),
+        ({"a": at((4, 0)), "b": at((4, 0))}, r"the target of mover a and the target of mover b are in one place"),
+        ({"a": at((0, 1))}, r"mover c stands at the target \(60, 180\), and may not be moved"),
+        ({"a": [at((4, 0)), at((5, 0))]}, "the target of mover a is X and Y in mm, not"),
+        ({"a": (math.nan, 0.0)}, "the target of mover a is X and Y in mm"),
+        ({"a": "here"}, "the target of mover a is X and Y in mm"),
+        ([at((4, 0))] * 2, "target 1 and target 2 are in one place"),
+        ([at((x, 0)) for x in range(4)], "4 targets for 3 movers"),
+    ]
+    for targets, sentence in cases:
+        with pytest.raises(takt.RoutingError, match=sentence):
+            takt.plan_surface(engine, targets)  # type: ignore[arg-type]
+    with pytest.raises(takt.TaktError, match="no mover 'd'"):
+        takt.plan_surface(engine, {"d": at((0, 0))})
+    with pytest.raises(TypeError, match="dynamics are velocity, acceleration, jerk, not speed"):
+        takt.plan_surface(engine, {"a": at((4, 0))}, speed=1)
+    with pytest.raises(takt.RoutingError, match="velocity is above 0"):
+        takt.plan_surface(engine, {"a": at((4, 0))}, velocity=0)
+    with pytest.raises(takt.RoutingError, match="effort and seed are 0 or more"):
+        takt.plan_surface(engine, {"a": at((4, 0))}, effort=-1)
+    assert takt.plan_surface(engine, {}).sum_s == 0
+    assert takt.plan_surface(engine, {"a": at((0, 0))}).targets == {"a": at((0, 0))}  # it is there
+
+
+def test_rasters_that_cannot_be_are_named() -> None:
+    engine = engine_of({"a": (0, 0), "b": (3, 3)}, square(2))
+    with pytest.raises(takt.RoutingError, match="mover a is 113 mm large, and has no room in places of 80 mm"):
+        takt.plan_surface(engine, {"a": at((1, 0))}, pitch=80)
+    with pytest.raises(takt.RoutingError, match="the pitch is above 0 mm"):
+        takt.plan_surface(engine, {"a": at((1, 0))}, pitch=-1)
+    with pytest.raises(takt.RoutingError, match=r"mover a at \(60, 60\) is not in the middle of a place"):
+        takt.plan_surface(engine, {"a": at((1, 0))}, pitch=160)
+    with pytest.raises(takt.RoutingError, match="no place of 120 mm is on the stators"):
+        takt.plan_surface(engine, {"a": at((1, 0))}, origin=(5000.0, 0.0))
+    far = engine_of({"a": (0, 0)}, [(0, 0), (70, 0)])
+    with pytest.raises(takt.RoutingError, match="142 by 2 places of 120 mm: expected at most 128 each way"):
+        takt.plan_surface(far, {"a": at((1, 0))})
+    with pytest.raises(takt.TaktError, match="no environment 'roof'"):
+        takt.plan_surface(engine, {"a": at((1, 0))}, environment="roof")
+    nowhere = Engine(f"name: n\naxes: []\nmovers: [{{name: a, initial: {{x: 60, y: 60}}, {XY}}}]\n")
+    nowhere.mover("a").enable().wait()
+    with pytest.raises(takt.RoutingError, match="expected an environment with stators"):
+        takt.plan_surface(nowhere, {"a": (60.0, 60.0)})
+
+
+def test_movers_that_cannot_go_are_named() -> None:
+    group = "planar_groups: [{name: cell, movers: [a], environment: floor}]\n"
+    engine = engine_of({"a": (0, 0), "b": (3, 3), "c": (2, 2)}, square(2), group)
+    engine.mover("b").disable().wait()
+    with pytest.raises(takt.RoutingError, match="mover b cannot be moved on the surface: it is Disabled"):
+        takt.plan_surface(engine, {"b": at((1, 0))})
+    engine.planar_group("cell").enable().wait()
+    with pytest.raises(takt.RoutingError, match="mover a cannot be moved on the surface: it is in group cell"):
+        takt.plan_surface(engine, {"a": at((1, 0))})
+    engine.planar_group("cell").disable().wait()
+    engine.mover("c").move_to_position(x=180, y=300)
+    engine.run(0.05)
+    with pytest.raises(takt.RoutingError, match="mover c is in motion"):
+        takt.plan_surface(engine, {"a": at((1, 0))})
+
+
+def test_two_movers_in_a_lane_cannot_change_places() -> None:
+    """Every order was tried, and that is said."""
+    movers = "".join(
+        f"  - {{name: {name}, width: 200, height: 200, initial: {{x: {x}, y: 120}}, {XY}}}\n"
+        for name, x in (("a", 120), ("b", 360))
+    )
+    floor = "environments: [{name: floor, stators: [{x: 0, y: 0}, {x: 240, y: 0}]}]\n"
+    engine = Engine(f"name: lane\naxes: []\nmovers:\n{movers}{floor}")
+    for feedback in [mover.enable() for mover in engine.movers.values()]:
+        feedback.wait()
+    with pytest.raises(takt.RoutingError, match="every order of passing was tried"):
+        takt.plan_surface(engine, {"a": (360.0, 120.0), "b": (120.0, 120.0)})
