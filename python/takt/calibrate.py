@@ -47,8 +47,11 @@ class Calibration:
         return "{" + ", ".join(numbers) + "}"
 
 
-def three_points(origin: npt.ArrayLike, on_x: npt.ArrayLike, on_xy: npt.ArrayLike) -> Calibration:
+def three_points(
+    origin: npt.ArrayLike, on_x: npt.ArrayLike, on_xy: npt.ArrayLike, *, at: npt.ArrayLike | None = None
+) -> Calibration:
     """The frame with this origin, whose X leads to the second point, and whose Y lies on the side of the third one.
+    With a fourth point, `at`, the frame turned so has its origin there.
 
     Raises CalibrationError where the points coincide or lie on one line.
     """
@@ -64,7 +67,8 @@ def three_points(origin: npt.ArrayLike, on_x: npt.ArrayLike, on_xy: npt.ArrayLik
             f"the third point is {np.linalg.norm(across):.3g} mm from the line through the other two: "
             "the three must not lie on one line"
         )
-    return Calibration(_pose(along, across, o), np.empty(0))
+    place = o if at is None else _points(at, 1, "a point")[0]
+    return Calibration(_pose(along, across, place), np.empty(0))
 
 
 def fit(seen: npt.ArrayLike, measured: npt.ArrayLike) -> Calibration:

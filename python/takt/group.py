@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import json
 from functools import cached_property
+from typing import TYPE_CHECKING
 
-from takt import _core
+import numpy as np
+
+from takt import _core, calibrate
 from takt._commands import GroupCommands, GroupOutputs
 from takt.axis import Axis
 from takt.component import Component
 from takt.errors import TaktError
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 PRODUCT_SYSTEMS = 16
 POSE = ("x", "y", "z", "a", "b", "c")
@@ -81,6 +87,44 @@ class Group(Component, GroupCommands, GroupOutputs):
         x, y, z, a, b, c = (float(self._value(f"pcs{pcs}_{number}")) for number in POSE)
         return x, y, z, a, b, c
 
+    def calibrate_product_system(
+        self,
+        pcs: int,
+        measured: npt.ArrayLike,
+        *,
+        seen: npt.ArrayLike | None = None,
+        largest_residual: float | None = None,
+    ) -> calibrate.Calibration:
+        """Sets product coordinate system `pcs` to where measured places of the tool have it, as of a table or a camera,
+        and returns it with what is left over (GR-46).
+
+        `measured`: places or poses in the machine coordinate system, as `actual_pose` has them; the turn of a pose is
+        not used. Three: the origin, a point on X, a point towards Y. Four: the same three give the directions, the
+        fourth one is the origin. With `seen`, the same points by their numbers in the product coordinate system, three
+        or more in any order, it is the nearest frame by the sum of squares.
+
+        Raises CalibrationError, and sets nothing, where the points define no frame or one of them is further off than
+        `largest_residual` (mm).
+        """
+        self.product_system(pcs)
+        places = _places(measured)
+        if seen is not None:
+            made = calibrate.fit(_places(seen), places)
+        elif len(places) in (3, 4):
+            made = calibrate.three_points(*places[:3], at=places[3] if len(places) == 4 else None)
+        else:
+            raise calibrate.CalibrationError(
+                f"measured points: expected three or four without seen ones, found {len(places)}"
+            )
+        if largest_residual is not None and not made.largest <= largest_residual:
+            worst = int(np.argmax(made.residuals))
+            raise calibrate.CalibrationError(
+                f"measured points: point {worst + 1} is {made.largest:.3g} mm from where the frame has it, expected "
+                f"up to {largest_residual:g} mm: measure it again"
+            )
+        self.set_cartesian_transform(pcs=pcs, **dict(zip(POSE, map(float, made.pose), strict=True))).wait()
+        return made
+
     @property
     def base(self) -> Pose:
         """Where the machine coordinate system is in the world, as the machine file says."""
@@ -94,3 +138,12 @@ class Group(Component, GroupCommands, GroupOutputs):
     def _given(self, key: str) -> Pose:
         x, y, z, a, b, c = (float(self.parameters[key][number]) for number in POSE)
         return x, y, z, a, b, c
+
+
+def _places(points: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """X, Y, Z of each place or pose."""
+    try:
+        rows = np.atleast_2d(np.asarray(points, dtype=float))
+    except (TypeError, ValueError):
+        raise calibrate.CalibrationError("points: expected rows of three numbers, or of six of a pose") from None
+    return rows[:, :3] if rows.ndim == 2 and rows.shape[1] == len(POSE) else rows
