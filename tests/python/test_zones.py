@@ -190,3 +190,34 @@ def test_bad_zones_are_named(zone: str, sentence: str) -> None:
     with pytest.raises(takt.ConfigError) as refused:
         takt.Engine(machine(f"  - {zone}\n", gantry("left"), gantry("right")))
     assert sentence in str(refused.value)
+
+
+def test_a_blend_that_cuts_through_a_zone_is_counted() -> None:
+    """GR-47: neither side of the corner meets the zone, the blend between them does: it has the zone where it is free,
+    else the tool waits at the corner."""
+    zone = "  - {name: corner, lower: {x: 100, y: 100, z: -50}, upper: {x: 190, y: 190, z: 50}, margin: 3}\n"
+    rounded = {"buffer_mode": "blending_next", "transition_mode": "corner_distance", "transition_parameter": 90}
+
+    def within(recording: takt.Recording, name: str) -> Any:
+        tool = recording[name]
+        return (np.abs(tool["x"] - 145) < 45) & (np.abs(tool["y"] - 145) < 45)
+
+    with takt.Engine(machine(zone, gantry("left"), gantry("right"))) as session:
+        left, right = on(session)
+        for taken in (False, True):
+            right.move_linear_absolute(x=150 if taken else 400, y=150).wait()
+            left.move_linear_absolute(y=0).wait()
+            left.move_linear_absolute(x=200).wait()
+            with session.record() as recorder:
+                left.move_linear_absolute(y=200)
+                last = left.move_linear_absolute(x=0, **rounded)
+                session.run(1)
+                if taken:
+                    assert left.waiting == "at zone 'corner' for group 'right'"
+                    assert (left.x, left.y) == pytest.approx((200, 200))
+                    right.move_linear_absolute(x=400, y=0).wait()
+                assert last.wait().done
+            cuts = within(recorder.recording, "left")
+            assert cuts.any() is np.bool_(not taken)
+            assert (recorder.recording["left"]["zones"][cuts] == 1).all()
+            assert not (cuts & within(recorder.recording, "right")).any()

@@ -223,13 +223,7 @@ double BrakeShare(const State& s) noexcept {
   return both && !s.ends ? kBothShare : 1;
 }
 
-bool CanLetGo(const Context& c, State& s) noexcept {
-  const double place = RestAt(c, s);
-  const LookAhead& ahead = c.ahead;
-  const Stretch& stretch = *ahead.At(place);
-  if (!IsCarried(ahead, stretch)) return true;
-  const double way = std::clamp(stretch.from + place - stretch.begin, stretch.from, stretch.to);
-  // And the carriers with it, from the next cycle on.
+MovingFrame ToolBraked(const Context& c, const State& s, const Stretch& stretch, double way) noexcept {
   const auto braked = [&](std::uint64_t number, kinematics::Carrier carrier) {
     const Clutch* clutch = Find(s, number);
     KinematicState& travel = carrier.travel;
@@ -240,7 +234,17 @@ bool CanLetGo(const Context& c, State& s) noexcept {
     travel.acceleration = 0;
     return carrier;
   };
-  const MovingFrame tool = ToolWith(c, stretch, {way, 0, 0}, braked);
+  return ToolWith(c, stretch, {way, 0, 0}, braked);
+}
+
+bool CanLetGo(const Context& c, State& s) noexcept {
+  const double place = RestAt(c, s);
+  const LookAhead& ahead = c.ahead;
+  const Stretch& stretch = *ahead.At(place);
+  if (!IsCarried(ahead, stretch)) return true;
+  const double way = std::clamp(stretch.from + place - stretch.begin, stretch.from, stretch.to);
+  // And the carriers with it, from the next cycle on.
+  const MovingFrame tool = ToolBraked(c, s, stretch, way);
   kinematics::JointMotion motion;
   kinematics::Reason reason = AxesFor(c, s, stretch, tool, {way, 0, 0}, s.joints, motion);
   // As fast as the carriers are now the axes must be able to go there.

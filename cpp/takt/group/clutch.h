@@ -26,6 +26,9 @@ bool ClutchesStand(const State& s) noexcept;
 // path. Not where that is not gone on with: then axes may come late.
 double BrakeShare(const State& s) noexcept;
 
+// The tool at a place of a stretch when all that carries it has come to rest, braked from the next cycle on.
+MovingFrame ToolBraked(const Context& c, const State& s, const Stretch& stretch, double way) noexcept;
+
 // Whether the tool could still be braked within what the axes reach, path and carriers at once, and the axes could move
 // it there as fast as its carriers do now; s.reason if not.
 bool CanLetGo(const Context& c, State& s) noexcept;

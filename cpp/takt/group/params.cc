@@ -47,6 +47,9 @@ void describe(Description<TrackingParams>& d) {
   d.defaulted<&P::tolerance>(at_least(0), "mm, or rad on tables, that count as in step; 0: exactly.");
   d.defaulted<&P::tolerance_time_s>(unit::s, at_least(0), "For so long.");
   d.defaulted<&P::override_in_sync>("The override holds for getting into step, too.");
+  d.defaulted<&P::zones_ahead_s>(
+      unit::s, between(0, 10),
+      "So long beforehand a free zone is taken that the tool is carried into: nobody else goes there then.");
 }
 
 void describe(Description<GroupParams>& d) {

@@ -40,6 +40,7 @@ struct TrackingParams {
   double tolerance = 0;           // mm (tables: rad) from the object that count as in step; 0: exactly there
   double tolerance_time_s = 0;    // s, for so long
   bool override_in_sync = false;  // the override slows down getting into step, too
+  double zones_ahead_s = 0.5;     // s: so long beforehand a zone is taken that the tool is carried into
 };
 
 struct GroupParams {

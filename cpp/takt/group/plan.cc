@@ -38,9 +38,10 @@ constexpr double kPlaceWay = 8;     // mm between two places at which a path is 
 constexpr double kLeastTry = 1e-3;  // where it is uneven
 constexpr double kUneven = 0.25;    // mm or deg
 constexpr double kUnevenShare = 0.1;
-constexpr double kMostLoad = 0.8;      // share of a limit that carriers may take
-constexpr double kLatency_s = 0.004;   // from planning to motion
-constexpr double kStraightEnough = 1;  // mm that a target moves while the tool is early or late
+constexpr double kMostLoad = 0.8;         // share of a limit that carriers may take
+constexpr double kLatency_s = 0.004;      // from planning to motion
+constexpr double kStraightEnough = 1;     // mm that a target moves while the tool is early or late
+constexpr std::uint64_t kLookAgain = 64;  // cycles, at a move onto what moves that waits for a zone
 
 // `least` of them.
 int PlacesOf(const Stretch& stretch, int least) {
@@ -311,6 +312,7 @@ void Verify(const Context& c, int& budget, State& s) {
   if (p.verified < length) return;
   c.ahead.next_joints = c.ahead.near;
   if (carried && !Settled(c, s)) return;
+  if (ElementsOf(c, MoveAt(s, s.planning.move)) <= s.planning.element + 1) NoteRide(c, s);
   TakeNextTool(c, s);
   if (Tries(s)) {
     c.ahead.end_joints = c.ahead.next_joints;
@@ -473,9 +475,14 @@ void Sweep(const Context& c, State& s) {
 // False: it waits for a zone. What is planned already is then sampled to its end, where the tool waits.
 bool MayEnter(const Context& c, State& s) {
   const bool waited = s.waits_for != 0;
+  if (!waited) NoteBlend(c, s);
   switch (EnterZones(c, s)) {
     case Entry::kWaits:
       c.ahead.corner.open = false;
+      if (IsCarried(c.ahead, c.ahead.next) && s.planning.element == 0 && c.cycle.count % kLookAgain == 0) {
+        BeginAgain(false, s);  // what carries its target has moved
+        return false;
+      }
       if (c.ahead.sampling >= SampledTo(c, s)) return false;
       s.planning.stage = Stage::kSample;
       return true;

@@ -166,6 +166,8 @@ void describe(Description<State>& d) {
   d.internal<&S::waits_zone>("For this zone, from 1.");
   d.internal<&S::waits_since>("Cycle.");
   d.internal<&S::zone_circle>("The last move was refused, for groups would have waited for one another.");
+  d.internal<&S::zone_near>("What carries the tool takes it soon into a zone of another group.");
+  d.internal<&S::gets_off>("It is braked for such a zone, to wait there.");
   d.internal<&S::illegal_transitions>("Always 0.");
 }
 

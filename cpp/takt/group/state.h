@@ -194,6 +194,8 @@ struct State {
   std::uint32_t waits_zone = 0;           // this one, from 1
   std::uint64_t waits_since = 0;          // cycle
   bool zone_circle = false;               // the last move was refused for that
+  bool zone_near = false;                 // what carries the tool takes it soon into a zone of another group
+  bool gets_off = false;                  // it is braked for such a zone, to wait there: its moves are kept
   std::uint64_t illegal_transitions = 0;  // always 0: the state table holds
 };
 

@@ -4,8 +4,14 @@
 #include <bit>
 #include <cmath>
 
+#include "takt/group/clutch.h"
 #include "takt/group/group.h"
+#include "takt/group/join.h"
+#include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
+#include "takt/group/queue.h"
+#include "takt/group/rides.h"
+#include "takt/group/run.h"
 #include "takt/group/systems.h"
 
 namespace takt::group {
@@ -13,6 +19,8 @@ namespace takt::group {
 namespace {
 
 constexpr double kLeast = 1e-9;  // mm: it begins there and leads out of it at once
+constexpr int kLooks = 6;        // at places on the way to rest, and along a ride
+constexpr int kBlendLooks = 8;
 
 std::uint32_t BitOf(std::size_t zone) {
   return 1u << zone;
@@ -40,14 +48,18 @@ double MeetsUntil(const Zone& zone, const KDL::Vector& from, const KDL::Vector& 
   return first <= last ? last : -1;
 }
 
-// Of those that this group shares.
-std::uint32_t ZonesMet(const Context& c, const KDL::Vector& from, const KDL::Vector& to, bool with_margin) {
-  std::uint32_t met = 0;
+// Masks: zones of this group that something meets, and those of which it meets the box itself.
+struct Met {
+  std::uint32_t widened = 0;
+  std::uint32_t inside = 0;
+};
+void MeetLine(const Context& c, const KDL::Vector& from, const KDL::Vector& to, Met& met) {
   for (std::size_t i = 0; i < c.zones.of.size(); ++i) {
     const Zone& zone = c.zones.of[i];
-    if (Shares(zone, c.number - 1) && MeetsUntil(zone, from, to, with_margin ? zone.margin : 0) >= 0) met |= BitOf(i);
+    if (!Shares(zone, c.number - 1) || MeetsUntil(zone, from, to, zone.margin) < 0) continue;
+    met.widened |= BitOf(i);
+    if (MeetsUntil(zone, from, to, 0) >= 0) met.inside |= BitOf(i);
   }
-  return met;
 }
 
 // The group that has one of these zones, from 1, and which; 0: none has.
@@ -96,6 +108,96 @@ void EndWait(State& s) {
   s.zones_wanted = s.waits_for = s.waits_zone = 0;
 }
 
+// The tool now, as its axes are told.
+bool ToolOf(const Context& c, const State& s, kinematics::MovingFrame& tool) {
+  kinematics::JointMotion motion;
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] == 0) continue;
+    const KinematicState& set = MemberOf(c, s, k).setpoint;
+    motion.position[k] = set.position;
+    motion.velocity[k] = set.velocity;
+  }
+  kinematics::MovingFrame flange;
+  if (kinematics::Forward(*c.kinematics, motion, flange) != kinematics::Reason::kNone) return false;
+  tool = flange * c.mounting.tool;
+  return true;
+}
+
+double WayAt(const Stretch& stretch, double place) {
+  return std::clamp(stretch.from + place - stretch.begin, stretch.from, stretch.to);
+}
+
+// Where a carrier without travel of its own is let go of each axis brakes by itself: along its velocity, about.
+KDL::Vector FreelyBraked(const Context& c, const kinematics::MovingFrame& tool) {
+  const PathLimits& path = c.params.path;
+  const double deceleration = path.deceleration.value_or(path.acceleration);
+  const double stop_s = 0.5 * (tool.p.v.Norm() / deceleration + deceleration / path.jerk) + c.cycle.period_s;
+  return tool.p.p + stop_s * tool.p.v;
+}
+
+// What a tool on a carrier can still come to if it is braked from the next cycle on: path and carriers slow down at
+// once, so it is somewhere between where the path alone and where both would have taken it.
+void MeetBraking(const Context& c, const State& s, const kinematics::MovingFrame& tool, Met& met) {
+  const LookAhead& ahead = c.ahead;
+  if (ahead.count == 0) return;
+  const double now = s.pace.now.position, rest = std::max(now, RestAt(c, s));
+  if (!IsCarried(ahead, *ahead.At(now)) && !IsCarried(ahead, *ahead.At(rest))) return;
+  const KDL::Vector here = c.mounting.base * tool.p.p;
+  if (RidesFreely(c, s)) MeetLine(c, here, c.mounting.base * FreelyBraked(c, tool), met);
+  KDL::Vector up = KDL::Vector::Zero();  // still to be risen
+  if (s.rise.used) {
+    const Stretch& stretch = *ahead.At(now);
+    const Ride& to = ahead.rides[stretch.to_ride % kRides];
+    const Ride& ride = Moves(to) ? to : ahead.rides[stretch.from_ride % kRides];
+    up = c.mounting.base.M * (s.rise.target * PlaceOf(c, ride.cargo).M.R.UnitZ());
+  }
+  KDL::Vector along = here, braked = here;
+  const int looks = rest > now ? kLooks : 1;
+  for (int i = 0; i < looks; ++i) {
+    const double place = looks > 1 ? std::lerp(now, rest, static_cast<double>(i) / (looks - 1)) : rest;
+    const Stretch& stretch = *ahead.At(place);
+    if (stretch.joints) break;
+    const double way = WayAt(stretch, place);
+    const KDL::Vector next = c.mounting.base * ToolNow(c, s, stretch, {way, 0, 0}).p.p;
+    const KDL::Vector next_braked = c.mounting.base * ToolBraked(c, s, stretch, way).p.p;
+    MeetLine(c, along, next, met);
+    MeetLine(c, braked, next_braked, met);
+    MeetLine(c, next, next_braked, met);
+    if (s.rise.used) MeetLine(c, next_braked, next_braked + up, met);
+    along = next;
+    braked = next_braked;
+  }
+}
+
+// Where the ride of a stretch takes a place of it within this time.
+void MeetRide(const Context& c, const Stretch& stretch, double way, double time_s, Met& met) {
+  KDL::Vector before;
+  for (int i = 0; i <= kLooks; ++i) {
+    const KDL::Vector place = c.mounting.base * ToolIn(c, stretch, {way, 0, 0}, time_s * i / kLooks).p.p;
+    if (i > 0) MeetLine(c, before, place, met);
+    before = place;
+  }
+}
+
+// What the tool is taken into within zones_ahead_s if all that carries it goes on as now, until it is not tracked any
+// more.
+std::uint32_t ZonesOfRide(const Context& c, const State& s) {
+  if (!s.begun || s.ends || s.lets_go || !IsOnRide(c, s)) return 0;
+  double time_s = c.params.tracking.zones_ahead_s;
+  const Track& track = s.track;
+  if (track.started) {
+    const KinematicState travel = CarrierOf(c, track.cargo).travel;
+    const double left = track.end - track.sense * (travel.position - track.cargo.from);
+    const double speed = track.sense * travel.velocity;
+    if (speed > 0) time_s = std::clamp(left / speed, 0.0, time_s);
+  }
+  Met met;
+  const double place = s.pace.now.position;
+  const Stretch& stretch = *c.ahead.At(place);
+  MeetRide(c, stretch, WayAt(stretch, place), time_s, met);
+  return met.widened;
+}
+
 // What the rest of the path meets.
 std::uint32_t ZonesAhead(const Context& c, const State& s) {
   const LookAhead& ahead = c.ahead;
@@ -142,6 +244,49 @@ void NoteZones(const Context& c, const State& s, const kinematics::Joints& joint
   ahead.tried_at_way = way;
 }
 
+void NoteRide(const Context& c, const State& s) noexcept {
+  Stretch& next = c.ahead.next;
+  const Ride& ride = c.ahead.rides[next.to_ride % kRides];
+  if (c.zones.of.empty() || !HasTool(c, s) || next.joints || !Moves(ride)) return;
+  const Stretch* here = IsOnRide(c, s) ? Here(c, s) : nullptr;
+  if (here && c.ahead.rides[here->to_ride % kRides].cargo == ride.cargo) return;  // it does not board it
+  Met met;
+  // From now on: stopped on the way over it comes to rest nearer to where its target is then.
+  const double there_s = std::max(0.0, next.eta_end - Now(c));
+  MeetRide(c, next, next.segment.length, there_s + c.params.tracking.zones_ahead_s, met);
+  for (std::size_t k = 0; k < c.zones.of.size(); ++k) {
+    if ((met.widened & BitOf(k)) != 0) next.zones_until[k] = next.segment.length;
+  }
+}
+
+void NoteBlend(const Context& c, const State& s) noexcept {
+  LookAhead& ahead = c.ahead;
+  if (c.zones.of.empty() || !HasTool(c, s) || !ahead.known || ahead.count == 0) return;
+  CornerBlend blend;
+  int work = 0;
+  const Stretch& before = ahead[ahead.end() - 1];
+  if (!FindBlend(c, s, MoveAt(s, s.planning.move), s.planning.element, before, ahead.next, work, blend)) return;
+  Met met;
+  kinematics::Joints near = ahead.end_joints;
+  KDL::Vector from;
+  for (int i = 0; i <= kBlendLooks; ++i) {
+    trajectory::PathPoint point;
+    kinematics::JointMotion motion;
+    Frame tool;
+    const double way = blend.stretch.segment.length * i / kBlendLooks;
+    if (SlopesOn(c, s, blend.stretch, way, near, point, motion) != kinematics::Reason::kNone) return;
+    if (ToolAt(c, motion.position, tool) != kinematics::Reason::kNone) return;
+    near = motion.position;
+    const KDL::Vector place = c.mounting.base * tool.p;
+    if (i > 0) MeetLine(c, from, place, met);
+    from = place;
+  }
+  for (std::size_t k = 0; k < c.zones.of.size(); ++k) {
+    double& until = ahead.next.zones_until[k];
+    if ((met.widened & BitOf(k)) != 0) until = std::max(until, blend.second + kLeast);
+  }
+}
+
 std::uint32_t ZonesOf(const Stretch& stretch) noexcept {
   std::uint32_t zones = 0;
   for (std::size_t k = 0; k < kZones; ++k) zones |= stretch.zones_until[k] > 0 ? BitOf(k) : 0;
@@ -179,37 +324,44 @@ Entry EnterZones(const Context& c, State& s) noexcept {
 
 ErrorId StepZones(const Context& c, State& s) noexcept {
   if (c.zones.of.empty() || !HasTool(c, s)) return ErrorId::kNone;
+  // Before the next move stands the tool, and nothing but that move is left to do.
+  const bool only_waits = s.waits_for != 0 && s.done == s.planning.move && !s.interrupted;
   const bool plans = s.queue.count > 0 && s.claimed_for == s.planning.move && !s.ends;
   if (!plans) s.zones_claimed = 0;
   if (!plans || s.interrupted) EndWait(s);
-  kinematics::JointMotion motion;
-  for (std::size_t k = 0; k < kMaxAxes; ++k) {
-    if (s.members[k] == 0) continue;
-    const KinematicState& set = MemberOf(c, s, k).setpoint;
-    motion.position[k] = set.position;
-    motion.velocity[k] = set.velocity;
-  }
-  kinematics::MovingFrame flange;
-  if (kinematics::Forward(*c.kinematics, motion, flange) != kinematics::Reason::kNone) return ErrorId::kNone;
-  const kinematics::MovingFrame tool = flange * c.mounting.tool;
+  s.gets_off = s.gets_off && s.ends;
+  s.zone_near = false;
+  kinematics::MovingFrame tool;
+  if (!ToolOf(c, s, tool)) return ErrorId::kNone;
   const KDL::Vector here = c.mounting.base * tool.p.p;
-  s.zones &= ZonesMet(c, here, here, true) | ZonesAhead(c, s) | s.zones_claimed;
-  // What is planned was looked at beforehand. Carried along it comes to rest there at the earliest.
-  const bool carried = s.begun && s.pace.now.velocity == 0;
-  const PathLimits& path = c.params.path;
-  const double stop_s = carried ? 0.5 * tool.p.v.Norm() / path.deceleration.value_or(path.acceleration) : 0;
-  const KDL::Vector there = c.mounting.base * (tool.p.p + stop_s * tool.p.v);
-  std::uint32_t entered = ZonesMet(c, here, there, false) & ~s.zones;
-  if (!s.begun) entered |= ZonesMet(c, here, here, true) & ~s.zones;
+  Met now, comes;
+  MeetLine(c, here, here, now);
+  if (s.begun) MeetBraking(c, s, tool, comes);
+  const std::uint32_t ride = ZonesOfRide(c, s);
+  const std::uint32_t stays = s.pace.now.velocity == 0 ? ride : 0;  // else its path may lead away from there
+  s.zones &= now.widened | comes.widened | ride | ZonesAhead(c, s) | s.zones_claimed;
+  // Who is within the margin already may leave it.
+  const std::uint32_t must_not = now.inside | comes.inside | (comes.widened & ~now.widened);
+  const std::uint32_t wanted = must_not | comes.widened | stays | (s.begun ? 0 : now.widened);
+  std::uint32_t of_others = 0;
   for (std::size_t k = 0; k < c.zones.of.size(); ++k) {
-    if ((entered & BitOf(k)) == 0) continue;
-    const Holder holder = HolderOf(c, BitOf(k));
-    if (holder.group == 0) {
+    if (((wanted | ride) & ~s.zones & BitOf(k)) == 0) continue;
+    if (HolderOf(c, BitOf(k)).group != 0) {
+      of_others |= BitOf(k);
+    } else if ((wanted & BitOf(k)) != 0) {
       s.zones |= BitOf(k);
-    } else if (s.begun && s.state == GroupState::kMoving && !s.ends) {
-      return ErrorId::kZoneTaken;
     }
   }
+  s.zone_near = (ride & of_others) != 0;
+  if ((must_not & of_others) == 0 || !s.begun) return ErrorId::kNone;
+  if (s.ends && s.lets_go) {  // as strongly as it can
+    EndMotion({}, true, s);
+    return ErrorId::kNone;
+  }
+  if (s.state == GroupState::kErrorStop) return ErrorId::kNone;
+  if (!only_waits || s.task != Task::kNone) return ErrorId::kZoneTaken;
+  EndMotion({}, true, s);
+  s.gets_off = true;
   return ErrorId::kNone;
 }
 

@@ -242,7 +242,9 @@ void Go(const Context& c, group::State& g, State& s) {
     if (g.waits_for != 0) order.begin_cycle = c.group.cycle.count;  // the time at a zone is not that of the profile
     if (IsStatic(order)) return;
     const double left_s = TimeToGo(c, g, order, s);
-    if (!StaysWithin(c, order, left_s + order.own.sync_time, s)) GiveUp(c, g, s);
+    const bool descends = g.done == order.last;
+    const bool into_zone = descends && g.zone_near;
+    if (into_zone || !StaysWithin(c, order, left_s + order.own.sync_time, s)) GiveUp(c, g, s);
     return;
   }
   if (g.reason != kinematics::Reason::kNone) return Fail(c, TroubleOf(g), g, s);
@@ -473,6 +475,10 @@ void RunOrders(const Context& c, group::State& g, State& s) noexcept {
     s.halting = false;
   }
   if (s.lifting && !IsLifted(c, g, s)) return;
+  if (g.gets_off) {  // its belt would have carried it into a zone that it waits for: from there anew
+    LosePath(c, g, false, s);
+    return HaltGroup(c, g, s);
+  }
   if (g.ends && g.reason != kinematics::Reason::kNone) return Fail(c, TroubleOf(g), g, s);
   if (g.ends) {  // somebody else told the group to
     EndOrders(c, FeedbackState::kAborted, ErrorId::kNone, s);
