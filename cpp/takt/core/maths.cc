@@ -134,7 +134,7 @@ Pair Angle(double n, double n_low, double d, double d_low) {
     for (int i = 15; i > 1; i -= 2) rest = 1.0 / i - z * rest;
     return {quotient, (n_low - quotient * d_low) / d - quotient * z * rest};
   }
-  const int k = static_cast<int>(quotient * kArcTangentSteps + 0.5);  // NOLINT(bugprone-incorrect-roundings): above 0
+  const int k = static_cast<int>(quotient * kArcTangentSteps + 0.5);
   const double c = static_cast<double>(k) / kArcTangentSteps;
   const double upper = std::bit_cast<double>(Bits(d) & ~std::uint64_t{63});  // products with c are exact
   const double t = (((n - c * upper) - c * (d - upper)) + (n_low - c * d_low)) / (d + c * n);
