@@ -20,6 +20,8 @@ _CAM = {"name": "lift", "segments": [{"to": {"x": 120, "y": 15}}, {"to": {"x": 3
 _PATH = {"velocity": 300, "acceleration": 3000, "jerk": 60000}
 _PORTAL = {"name": "portal", "axes": ["x", "y"], "path": _PATH}
 _ARM = {"name": "arm", "axes": ["x", "y", "z"], "kinematics": {"gantry": {"axes": ["x", "y", "z"]}}, "path": _PATH}
+_OTHER = {**_ARM, "name": "other", "axes": ["u", "v", "w"]}
+_ZONE = {"name": "middle", "lower": {"x": 100, "y": -50, "z": -50}, "upper": {"x": 200, "y": 50, "z": 50}}
 _BELT = {"name": "belt", "axis": "feed"}
 _TRACK = {"name": "line", "elements": [{"from": {"x": 0, "y": 0}, "to": {"x": 900, "y": 0}}]}
 _FIELDS = [{"x": 240 * i, "y": 240 * k} for i in range(4) for k in range(3)]
@@ -41,6 +43,7 @@ MINIMAL: dict[str, Machine] = {
     },
     "group without kinematics": {"axes": _axes("x", "y"), "groups": [_PORTAL]},
     "group": {"axes": _axes("x", "y", "z"), "groups": [_ARM]},
+    "groups with a zone": {"axes": _axes(*"xyzuvw"), "groups": [_ARM, _OTHER], "zones": [_ZONE]},
     "belt": {"axes": _axes("feed"), "belts": [_BELT]},
     "turning belt": {"axes": _axes("feed", unit="deg"), "belts": [{**_BELT, "kind": "turning"}]},
     "pose": {"axes": [], "poses": [{"name": "camera"}]},
@@ -107,12 +110,13 @@ FULL: Machine = {
             **_ARM,
             "path": {**_PATH, "deceleration": 2500},
             "tool_limits": {"velocity": 250},
-            "tracking": {"tolerance": 0.5},
+            "tracking": {"tolerance": 0.5, "zones_ahead_s": 0.2},
             "base": {"z": 100},
             "tool": {"z": -20},
             "workspace": {"bounds": {"lower": {"z": -500}}},
         }
     ],
+    "zones": [{**_ZONE, "margin": 8}],
     "paths": [{"name": "round", "elements": [{"shape": "line", "to": {"x": 10, "y": 5, "z": 0}}]}],
     "belts": [
         {
