@@ -35,6 +35,7 @@ COMMANDS = (
     "group.move_path",
     "group.move_path_synchronized",
     "group.sync_axis",
+    "group.jog",
     "group.stop",
     "group.halt",
     "group.interrupt",

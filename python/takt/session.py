@@ -13,6 +13,7 @@ from pathlib import Path
 from types import FrameType, MappingProxyType, TracebackType
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
+from takt import _core
 from takt._commands import DEFAULTS, LEVEL_SENSITIVE
 from takt.arguments import to_text, without_arguments
 from takt.axis import Axis
@@ -264,9 +265,12 @@ class Session(SessionWithCams):
             raise TypeError(f"the arguments of a command are a mapping or a text, not {arguments!r}")
         asked = (self._kind(target), verb)
         text = arguments if isinstance(arguments, str) else to_text(arguments, DEFAULTS.get(asked))
-        level = (
-            not isinstance(arguments, str) and asked in LEVEL_SENSITIVE and any(v is True for v in arguments.values())
-        )
+        level = False
+        if not isinstance(arguments, str) and asked in LEVEL_SENSITIVE:
+            held = any(value is True for value in arguments.values())
+            level = held or (
+                verb == "jog" and not _core.lets_go(*asked, _clean(text))
+            )  # without a direction it lets go
         feedback = Feedback(self, _clean(target), _clean(verb), _clean(text), level_sensitive=level)
         feedback.given_at = _places()
         self._give(feedback)

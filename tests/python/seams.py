@@ -110,7 +110,7 @@ def commands(
         sets = [{key: True} for key in ASK.get(name, ())] or [{}]
         if verb["name"] == "jog":
             keys = ("forward", "positive") if sense > 0 else ("backward", "negative")
-            sets = [{f["name"]: True} for f in fields if f["name"] in keys]
+            sets = [{f["name"]: True} for f in fields if f["name"] in keys] or [{"x": sense * 10.0}]
         for target in targets.get(verb["target_kind"], ()):
             found += [(target, verb["name"], needed | given) for given in sets]
     return found

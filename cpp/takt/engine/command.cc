@@ -79,6 +79,10 @@ bool Releases(const flexcam::Jog& c) noexcept {
 bool Releases(const group::Stop&) noexcept {
   return true;
 }
+bool Releases(const group::Jog& c) noexcept {
+  const std::array speeds = {c.x, c.y, c.z, c.a, c.b, c.c, c.a1, c.a2, c.a3, c.a4, c.a5, c.a6, c.a7, c.a8};
+  return std::ranges::all_of(speeds, [](double speed) { return speed == 0; });
+}
 bool Releases(const group::Halt&) noexcept {
   return true;
 }
@@ -250,6 +254,7 @@ const std::vector<Entry>& Entries() {
       Make<group::Command, group::MovePath>(kGroup, "move_path"),
       Make<group::Command, group::MovePathSynchronized>(kGroup, "move_path_synchronized"),
       Make<group::Command, group::SyncAxis>(kGroup, "sync_axis"),
+      Make<group::Command, group::Jog>(kGroup, "jog", true),
       Make<group::Command, group::Stop>(kGroup, "stop", true),
       Make<group::Command, group::Halt>(kGroup, "halt"),
       Make<group::Command, group::Interrupt>(kGroup, "interrupt"),

@@ -4,6 +4,7 @@
 #include "takt/group/ask.h"
 #include "takt/group/clutch.h"
 #include "takt/group/group.h"
+#include "takt/group/jog.h"
 #include "takt/group/make_request.h"
 #include "takt/group/members.h"
 #include "takt/group/plan.h"
@@ -53,19 +54,15 @@ struct Applier {
   void AbortAll(const Brake& brake = {}, bool lets_go = true) const {
     AbortTask();
     AbortMoves(c, ErrorId::kNone, s);
-    if (s.begun || s.planning.stage != Stage::kIdle || c.ahead.known) {
-      EndMotion(brake, lets_go || s.lets_go, s);
-    } else {
-      ForgetPlan(c, s);
-    }
-    s.interrupted = false;
+    GiveUpPath(c, brake, lets_go, s);
   }
 
   void Move(const MadeRequest& made) const {
     if (made.error != ErrorId::kNone) return Refuse(made.error);
     if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
-    if (made.move.buffer_mode != BufferMode::kAborting && s.task == Task::kHalt) return Refuse(ErrorId::kState);
-    if (made.move.buffer_mode == BufferMode::kAborting) AbortAll({}, false);
+    const bool waits = made.move.buffer_mode != BufferMode::kAborting;
+    if (waits && (s.task == Task::kHalt || Jogs(s))) return Refuse(ErrorId::kState);
+    if (!waits) AbortAll({}, false);
     if (!c.ahead.known && !s.begun) c.ahead.window.SetLimits(LimitsOf(c, s));
     Request move = made.move;
     move.ticket = ticket;
@@ -74,6 +71,25 @@ struct Applier {
     if (!Push(move, s)) return Refuse(ErrorId::kBufferFull);
     Report(c, ticket, FeedbackState::kBusy);
     if (Is(GroupState::kStandby)) Enter(GroupState::kMoving, s);
+  }
+
+  void Jog(const MadeRequest& made) const {
+    if (IsReleased(made.move)) {
+      if (!Jogs(s)) return Finish(ErrorId::kNone);
+      Report(c, MoveAt(s, s.done).ticket, FeedbackState::kAborted);
+      return EndJog(c, ticket, s);
+    }
+    if (made.error != ErrorId::kNone) return Refuse(made.error);
+    if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
+    if (!ChangeJog(c, ticket, made.move, s)) {
+      EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
+      AbortAll();
+      if (!c.ahead.known && !s.begun) c.ahead.window.SetLimits(LimitsOf(c, s));
+      BeginJog(c, ticket, made.move, s);
+      if (Is(GroupState::kStandby)) Enter(GroupState::kMoving, s);
+    }
+    s.lease_s = lease_s;
+    s.lease_end_cycle = CycleIn(c.cycle, lease_s);
   }
 
   void operator()(const Stop& m) const {
@@ -311,7 +327,9 @@ void Apply(const Context& c, Ticket ticket, double lease_s, const Command& comma
   const bool in_range = std::visit([](const auto& body) { return InRange(body); }, command);
   const Applier applier{c, ticket, lease_s, s};
   if (!in_range) return applier.Refuse(ErrorId::kParameter);
-  if (const auto made = MakeRequest(c, s, command)) return applier.Move(*made);
+  if (const auto made = MakeRequest(c, s, command)) {
+    return IsJog(made->move) ? applier.Jog(*made) : applier.Move(*made);
+  }
   std::visit(applier, command);
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string_view>
+#include <utility>
 
 #include "takt/core/in_range.h"
 #include "takt/core/problem.h"
@@ -226,6 +227,16 @@ std::string WhyNotThis(const SetDynCoordTransform& c) {
   return WhyNotNamed("carrier", c.carrier, "a belt, a group or a pose");
 }
 
+std::string WhyNotThis(const Jog& c) {
+  const std::array<std::pair<std::string_view, double>, 6> tool = {
+      {{"x", c.x}, {"y", c.y}, {"z", c.z}, {"a", c.a}, {"b", c.b}, {"c", c.c}}};
+  for (const auto& [name, speed] : tool) {
+    if (c.coordinate_system != JogSystem::kAcs || speed == 0) continue;
+    return std::string(name) + ": expected a1 to a8 only, with coordinate_system acs";
+  }
+  return {};
+}
+
 std::string WhyNotThis(const MoveArch& c) {
   return FirstOf(WhyNotAPlace(c), WhyNotTransition(c));
 }
@@ -396,6 +407,42 @@ void describe(Description<SyncAxis>& d) {
   d.required<&C::axis>("Its name.");
   d.defaulted<&C::ratio_numerator>(unit::u, between(-1e9, 1e9), "So much of the axis ...");
   d.defaulted<&C::ratio_denominator>(unit::mm, between(-1e9, 1e9), "... per so much of the path, not 0.");
+}
+
+void describe(Enumeration<JogSystem>& e) {
+  e.about("What the directions of a jog are seen from.");
+  e.value(JogSystem::kAcs, "acs", "The axes themselves.");
+  e.value(JogSystem::kMcs, "mcs", "The machine coordinate system.");
+  e.value(JogSystem::kWcs, "wcs", "The world.");
+  e.value(JogSystem::kPcs, "pcs", "A product, as it lies when the jog begins.");
+  e.value(JogSystem::kTool, "tool", "The tool, as it is turned when the jog begins.");
+}
+
+void describe(Description<Jog>& d) {
+  d.named("GroupJog");
+  d.about(
+      "Moves at these speeds as long as it is held, to the border of what can be reached, where it ends "
+      "with an error. The other way is open from there. Given again in the same direction it changes the speed, in "
+      "another one it comes to rest first; all 0, or a release, lets go: done when the group is at rest.");
+  d.defaulted<&Jog::x>(unit::mm_s, kJogSpeeds, "Speed of the tool along X. Not in ACS, as all of x to c.");
+  d.defaulted<&Jog::y>(unit::mm_s, kJogSpeeds, "Along Y.");
+  d.defaulted<&Jog::z>(unit::mm_s, kJogSpeeds, "Along Z.");
+  d.defaulted<&Jog::a>(unit::deg_s, kJogSpeeds, "Speed of its turn about X, through the tool centre point.");
+  d.defaulted<&Jog::b>(unit::deg_s, kJogSpeeds, "About Y.");
+  d.defaulted<&Jog::c>(unit::deg_s, kJogSpeeds, "About Z.");
+  d.defaulted<&Jog::a1>(unit::u_s, kJogSpeeds, "Speed of axis 1: any in ACS, else those beyond the kinematics.");
+  d.defaulted<&Jog::a2>(unit::u_s, kJogSpeeds, "Axis 2.");
+  d.defaulted<&Jog::a3>(unit::u_s, kJogSpeeds, "Axis 3.");
+  d.defaulted<&Jog::a4>(unit::u_s, kJogSpeeds, "Axis 4.");
+  d.defaulted<&Jog::a5>(unit::u_s, kJogSpeeds, "Axis 5.");
+  d.defaulted<&Jog::a6>(unit::u_s, kJogSpeeds, "Axis 6.");
+  d.defaulted<&Jog::a7>(unit::u_s, kJogSpeeds, "Axis 7.");
+  d.defaulted<&Jog::a8>(unit::u_s, kJogSpeeds, "Axis 8.");
+  d.defaulted<&Jog::coordinate_system>("What the directions are seen from.");
+  d.defaulted<&Jog::pcs>(between(1, kProductSystems), "Which product coordinate system; with pcs.");
+  d.defaulted<&Jog::acceleration>(unit::mm_s2, kAccelerations, "Largest acceleration along the way; unset: the limit.");
+  d.defaulted<&Jog::deceleration>(unit::mm_s2, kAccelerations, "Largest deceleration along it; unset: the limit.");
+  d.defaulted<&Jog::jerk>(unit::mm_s3, kJerks, "Largest jerk along it; unset: the limit.");
 }
 
 void describe(Description<Stop>& d) {

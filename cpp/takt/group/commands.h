@@ -131,6 +131,21 @@ struct SyncAxis {                // MC_SyncAxisToGroup
   double ratio_denominator = 1;  // ... per mm of the path
 };
 
+// What a jog is seen from: the axes, the machine, the world, a product, or the tool itself.
+enum class JogSystem : std::uint8_t { kAcs, kMcs, kWcs, kPcs, kTool };
+
+// Level-sensitive: moves at these speeds until it is released; give it again to change them, all 0 to let
+// go. x to c of the tool along and about the axes of the coordinate system, a1 to a8 of axes in ACS; of auxiliary axes
+// in all.
+struct Jog {
+  double x = 0, y = 0, z = 0;                                             // mm/s
+  double a = 0, b = 0, c = 0;                                             // deg/s
+  double a1 = 0, a2 = 0, a3 = 0, a4 = 0, a5 = 0, a6 = 0, a7 = 0, a8 = 0;  // u/s
+  JogSystem coordinate_system = JogSystem::kMcs;
+  std::uint32_t pcs = 1;
+  std::optional<double> acceleration{}, deceleration{}, jerk{};
+};
+
 struct Stop {  // MC_GroupStop
   std::optional<double> deceleration{}, jerk{};
   bool hold = false;  // stay in Stopping until released (Execute kept true)
@@ -253,7 +268,7 @@ using Command =
                  MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop, Halt, Interrupt, Continue, AddAxis,
                  RemoveAxis, UngroupAllAxes, Enable, Disable, Reset, Power, Home, SetPosition, SetOverride,
                  SetKinTransform, SetCartesianTransform, SetCoordinateTransform, SetDynCoordTransform,
-                 TrackConveyorBelt, TrackRotaryTable, MoveArch, PathChecked>;
+                 TrackConveyorBelt, TrackRotaryTable, MoveArch, Jog, PathChecked>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
 std::string WhyNot(const Command& command);
@@ -272,6 +287,8 @@ void describe(Description<MoveArch>&);
 void describe(Description<MovePath>&);
 void describe(Description<MovePathSynchronized>&);
 void describe(Description<SyncAxis>&);
+void describe(Enumeration<JogSystem>&);
+void describe(Description<Jog>&);
 void describe(Description<Stop>&);
 void describe(Description<Halt>&);
 void describe(Description<Interrupt>&);

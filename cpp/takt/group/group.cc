@@ -5,6 +5,7 @@
 
 #include "takt/axis/guidance.h"
 #include "takt/group/clutch.h"
+#include "takt/group/jog.h"
 #include "takt/group/members.h"
 #include "takt/group/plan.h"
 #include "takt/group/queue.h"
@@ -123,6 +124,10 @@ void MoveOn(const Context& c, State& s) {
   }
   if (!IsThrough(c, s) || (rides && Slips(s))) return;
   if (c.ahead.cut_short) return EndCutShort(c, s);
+  if (Jogs(s)) {
+    if (AtBorder(c, s)) ComeToRest(c, s);
+    return;
+  }
   while (s.queue.count > 0) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
   s.active = 0;
   if (!rides) ComeToRest(c, s);  // else it goes along until it is told something else
@@ -185,7 +190,12 @@ void AskForReset(const Context& c, State& s) {
 
 void WatchLease(const Context& c, State& s) {
   if (s.lease_s <= 0 || c.cycle.count < s.lease_end_cycle) return;
-  Release(c, s.ticket, s);
+  if (!Jogs(s)) {
+    Release(c, s.ticket, s);
+    return;
+  }
+  Report(c, MoveAt(s, s.done).ticket, FeedbackState::kAborted, ErrorId::kLeaseExpired);
+  EndJog(c, 0, s);
 }
 
 void WatchMembers(const Context& c, State& s) {
@@ -241,6 +251,10 @@ bool Owns(const State& s) noexcept {
 }
 
 bool Release(const Context& c, Ticket ticket, State& s) noexcept {
+  if (IsJogOf(ticket, s)) {
+    EndJog(c, ticket, s);
+    return true;
+  }
   if (ticket == 0 || s.task != Task::kStop || s.ticket != ticket) return false;
   s.hold = false;
   s.lease_s = 0;
@@ -253,7 +267,8 @@ bool Release(const Context& c, Ticket ticket, State& s) noexcept {
 }
 
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept {
-  if (ticket == 0 || s.task != Task::kStop || s.ticket != ticket || s.lease_s <= 0) return false;
+  const bool stops = ticket != 0 && s.task == Task::kStop && s.ticket == ticket;
+  if ((!stops && !IsJogOf(ticket, s)) || s.lease_s <= 0) return false;
   s.lease_end_cycle = CycleIn(c.cycle, s.lease_s);
   return true;
 }

@@ -62,9 +62,10 @@ struct Context {
 // As it stands when power comes on. `axes`: index of each member.
 State MakeState(std::span<const std::uint32_t> axes) noexcept;
 
-// command: carries a command out, queues it or refuses it; reports either way. `lease_s` > 0: of a held stop.
+// command: carries a command out, queues it or refuses it; reports either way. `lease_s` > 0: of a held stop or a
+// jog.
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept;
-// Lets go of a held stop with this ticket, and extends its lease. False: there is none.
+// Lets go of a held stop or a jog with this ticket, and extends its lease. False: there is none.
 bool Release(const Context& c, Ticket ticket, State& s) noexcept;
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept;
 

@@ -52,6 +52,7 @@ struct Stretch {
   std::uint64_t from_ride = 0, to_ride = 0;
   double eta_begin = 0, eta_end = 0;         // s from the start of the engine, expected when it was planned
   std::array<double, kZones> zones_until{};  // of the segment: so far it meets these zones; 0: it does not
+  std::array<double, kZones> zones_from{};   // and not before this
 
   double end() const noexcept { return begin + (to - from); }
 };

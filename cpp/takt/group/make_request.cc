@@ -114,6 +114,26 @@ struct RequestMaker {
     TakeManner(m);
     return m.coordinate_system == CoordinateSystem::kAcs ? ErrorId::kParameter : ErrorId::kNone;
   }
+  ErrorId Fill(const Jog& m) const {
+    r.kind = MoveKind::kJog;
+    r.to = {m.x, m.y, m.z, m.a, m.b, m.c, m.a1, m.a2, m.a3, m.a4, m.a5, m.a6, m.a7, m.a8};
+    for (double& speed : r.to) speed = speed != 0 ? speed : kNotGiven;
+    r.jog_system = m.coordinate_system;
+    const bool axes = m.coordinate_system == JogSystem::kAcs;
+    r.system = axes ? CoordinateSystem::kAcs : CoordinateSystem::kMcs;
+    r.pcs = m.pcs - 1;
+    const PathLimits& own = c.params.path;
+    const double deceleration = own.deceleration.value_or(own.acceleration);
+    r.limits = {own.velocity, s.acceleration_factor * m.acceleration.value_or(own.acceleration),
+                s.acceleration_factor * m.deceleration.value_or(m.acceleration.value_or(deceleration)),
+                s.jerk_factor * m.jerk.value_or(own.jerk)};
+    // Speeds of the tool belong to it, those of the axes that move it to ACS.
+    const auto first = r.to.begin(), of_axes = first + kToolNumbers;
+    const auto given = [](double speed) { return !std::isnan(speed); };
+    const auto moves_tool = static_cast<std::ptrdiff_t>(InKinematics(c, s));
+    const bool strange = axes ? std::any_of(first, of_axes, given) : std::any_of(of_axes, of_axes + moves_tool, given);
+    return strange ? ErrorId::kParameter : ErrorId::kNone;
+  }
   ErrorId Fill(const MovePath& m) const {
     r.buffer_mode = m.buffer_mode;
     TakeManner(m);

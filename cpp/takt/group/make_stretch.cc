@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/group/jog.h"
 #include "takt/group/rides.h"
 #include "takt/path/arch.h"
 
@@ -204,6 +205,7 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
   Stretch& stretch = ahead.next;
   stretch.from_ride = stretch.to_ride = ahead.end_ride;
   if (move.kind == MoveKind::kArch && element > 0) stretch.from_ride = ahead.from_ride;
+  if (move.kind == MoveKind::kJog) return MakeJog(c, move, ahead, s);
   if (move.system == CoordinateSystem::kAcs) {
     if (move.kind != MoveKind::kLinear && move.kind != MoveKind::kDirect) return ErrorId::kParameter;
     if (Any(move, 0, kToolNumbers)) return ErrorId::kParameter;

@@ -34,6 +34,15 @@ void describe(Description<ToolLimits>& d) {
   d.defaulted<&L::angular_jerk>(unit::deg_s3, kJerks, "Largest jerk about each.");
 }
 
+void describe(Description<JogLimits>& d) {
+  using L = JogLimits;
+  d.about("The most that jogs may ask for; faster ones are held to it.");
+  d.defaulted<&L::velocity>(unit::mm_s, kSpeeds,
+                            "Of the tool centre point, also where axes are jogged; unset: as moves.");
+  d.defaulted<&L::angular_velocity>(unit::deg_s, kSpeeds, "Of the turn of the tool, likewise; unset: as moves.");
+  d.defaulted<&L::axis_factor>(kFactors, "Of the velocity limits of axes that are jogged themselves.");
+}
+
 void describe(Enumeration<AfterSync>& e) {
   e.about("What counts once the tool is in step with what moves.");
   e.value(AfterSync::kStay, "stay", "To stay in step, whatever that does; the axes keep their own limits.");
@@ -60,6 +69,7 @@ void describe(Description<GroupParams>& d) {
   d.defaulted<&G::kinematics>("How the axes move the tool; unset: there is none, only axes move.");
   d.required<&G::path>("Limits along the path.");
   d.defaulted<&G::tool_limits>("Limits of the tool.");
+  d.defaulted<&G::jog>("Limits of jogs.");
   d.defaulted<&G::tracking>("How it follows objects on belts and tables.");
   d.defaulted<&G::base>("Where the machine coordinate system is in the world.");
   d.defaulted<&G::tool>("Where the tool centre point is on the flange.");

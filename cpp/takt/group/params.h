@@ -31,6 +31,14 @@ struct ToolLimits {
   std::optional<double> angular_jerk{};          // deg/s³
 };
 
+// The most that jogs may ask for; faster ones are held to it.
+struct JogLimits {
+  // Of the tool centre point, and of its turn, also where axes are jogged; unset: as moves.
+  std::optional<double> velocity{};          // mm/s
+  std::optional<double> angular_velocity{};  // deg/s
+  double axis_factor = 1;                    // of the velocity limits of axes that are jogged themselves
+};
+
 // Once in step with what moves: go along whatever it does, or keep the limits of the group and fall out of step.
 enum class AfterSync : std::uint8_t { kStay, kLimited };
 
@@ -49,6 +57,7 @@ struct GroupParams {
   std::optional<kinematics::KinematicsParams> kinematics{};
   PathLimits path;
   ToolLimits tool_limits;
+  JogLimits jog;
   TrackingParams tracking;
   kinematics::Pose base;                                  // of the machine coordinate system in the world
   kinematics::Pose tool;                                  // of the tool centre point on the flange
@@ -99,6 +108,7 @@ void describe(Description<ZoneCorner>&);
 void describe(Description<ZoneParams>&);
 void describe(Description<PathLimits>&);
 void describe(Description<ToolLimits>&);
+void describe(Description<JogLimits>&);
 void describe(Enumeration<AfterSync>&);
 void describe(Description<TrackingParams>&);
 void describe(Description<GroupParams>&);

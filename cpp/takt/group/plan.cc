@@ -5,6 +5,7 @@
 
 #include "takt/group/ask.h"
 #include "takt/group/clutch.h"
+#include "takt/group/jog.h"
 #include "takt/group/join.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
@@ -36,6 +37,7 @@ constexpr std::uint64_t kNodesAhead = 256;
 constexpr double kTimeAhead = 0.2;
 constexpr double kPlaceWay = 8;     // mm between two places at which a path is tried beforehand
 constexpr double kLeastTry = 1e-3;  // where it is uneven
+constexpr double kFreeBefore = 1;   // mm or deg: a jog ends so far before what would be met
 constexpr double kUneven = 0.25;    // mm or deg
 constexpr double kUnevenShare = 0.1;
 constexpr double kMostLoad = 0.8;         // share of a limit that carriers may take
@@ -291,6 +293,7 @@ void Verify(const Context& c, int& budget, State& s) {
     }
     if (!even) reason = kinematics::Reason::kSingular;
     if (reason != kinematics::Reason::kNone) {
+      if (p.verifying && ShortenJog(p.verified, ErrorOf(reason), s)) return BeginAgain(false, s);
       s.reason = reason;
       s.blocked_at = to;
       s.blocked_element = ElementOf(s);
@@ -335,6 +338,12 @@ bool Check(const Context& c, State& s) {
   const PathChecked& answer = s.answer;
   if (answer.trouble == workspace::Trouble::kNone) {
     s.planning.stage = IsPath(s) ? Stage::kIdle : Stage::kEnter;
+    return true;
+  }
+  const double free = answer.place - kFreeBefore;
+  if (answer.trouble != workspace::Trouble::kNoPose && ShortenJog(free, ErrorId::kCollision, s)) {
+    s.jog.met = answer;
+    BeginAgain(false, s);
     return true;
   }
   s.reason = answer.reason;
@@ -478,6 +487,13 @@ bool MayEnter(const Context& c, State& s) {
   if (!waited) NoteBlend(c, s);
   switch (EnterZones(c, s)) {
     case Entry::kWaits:
+      if (IsJog(MoveAt(s, s.planning.move))) {  // it does not wait: it ends before the zone
+        const double from = ZonesBeginAt(c.ahead.next, s.zones_wanted);
+        const bool shorter = ShortenJog(from, ErrorId::kZoneTaken, s);
+        s.zones_claimed = s.zones_wanted = s.waits_for = s.waits_zone = 0;
+        shorter ? BeginAgain(false, s) : Refuse(c, ErrorId::kZoneTaken, s);
+        return true;
+      }
       c.ahead.corner.open = false;
       if (IsCarried(c.ahead, c.ahead.next) && s.planning.element == 0 && c.cycle.count % kLookAgain == 0) {
         BeginAgain(false, s);  // what carries its target has moved
@@ -607,7 +623,7 @@ void Rehearse(const Context& c, const State& s) noexcept {
     const State& s;
   };
   const Owner owner{c, s};
-  if (s.velocity_factor < 1 || Slips(s) || c.ahead.keep_up.on) {
+  if (s.velocity_factor < 1 || Slips(s) || c.ahead.keep_up.on || Jogs(s)) {
     c.ahead.delayed = true;
   } else if (c.ahead.delayed) {  // it comes later than was rehearsed
     c.ahead.delayed = false;
@@ -629,8 +645,8 @@ void Rehearse(const Context& c, const State& s) noexcept {
 
 double TimeLeft(const Context& c, const State& s) noexcept {
   const std::uint64_t end = c.ahead.rehearsal.end_cycle();
-  const bool slowed =
-      s.velocity_factor < 1 || s.ends || s.interrupted || Slips(s) || c.ahead.keep_up.on || s.master.axis != 0;
+  const bool slowed = Jogs(s) || s.velocity_factor < 1 || s.ends || s.interrupted || Slips(s) || c.ahead.keep_up.on ||
+                      s.master.axis != 0;
   if (!s.begun || slowed || !IsPlanned(c, s) || end == 0) return kNotGiven;
   return end > c.cycle.count ? static_cast<double>(end - c.cycle.count) * c.cycle.period_s : 0;
 }

@@ -12,6 +12,7 @@ void describe(Enumeration<MoveKind>& e) {
   e.value(MoveKind::kDirect, "direct", "All axes evenly.");
   e.value(MoveKind::kPath, "path", "Along a path of the machine file.");
   e.value(MoveKind::kArch, "arch", "Along half an ellipse.");
+  e.value(MoveKind::kJog, "jog", "As long as it is held.");
 }
 
 void describe(Description<Cargo>& d) {
@@ -41,12 +42,15 @@ void describe(Description<Request>& d) {
   d.internal<&R::ratio>("mm per unit of it.");
   d.internal<&R::limits>("Along the path.");
   d.internal<&R::configuration>("Direct moves to a pose.");
-  d.internal<&R::velocity_factor>("Direct moves: of the axes' velocity.");
+  d.internal<&R::velocity_factor>("Direct moves: of the axes' velocity; jogs: of the speeds given.");
   d.internal<&R::acceleration_factor>("Of their acceleration.");
   d.internal<&R::jerk_factor>("Of their jerk.");
   d.internal<&R::buffer_mode>("When it takes over.");
   d.internal<&R::transition_mode>("How.");
   d.internal<&R::transition_parameter>("With what.");
+  d.internal<&R::jog_system>("Of a jog.");
+  d.internal<&R::most_s>("A jog goes on for so long at most.");
+  d.internal<&R::border>("Because this is in the way.");
 }
 
 }  // namespace takt::group

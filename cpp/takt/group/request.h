@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
@@ -14,7 +15,7 @@
 
 namespace takt::group {
 
-enum class MoveKind : std::uint8_t { kNone, kLinear, kCircular, kDirect, kPath, kArch };
+enum class MoveKind : std::uint8_t { kNone, kLinear, kCircular, kDirect, kPath, kArch, kJog };
 
 // Something that lies on a carrier: its place then, and the carrier's travel since.
 struct Cargo {
@@ -30,6 +31,7 @@ struct Cargo {
 // Six numbers of the tool, then those of the axes; NaN: not given.
 inline constexpr std::size_t kToolNumbers = 6;
 using Numbers = std::array<double, kToolNumbers + kMaxAxes>;
+inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 struct Request {
   Ticket ticket = 0;
@@ -47,12 +49,15 @@ struct Request {
   double ratio = 1;          // mm per u of it
   trajectory::AlongPath limits;
   kinematics::Configuration configuration{};  // direct moves to a pose; kKeep: any
-  double velocity_factor = 1;                 // direct moves: of the axes' limits
+  double velocity_factor = 1;                 // direct moves: of the axes' limits; jogs: of the speeds in `to`
   double acceleration_factor = 1;
   double jerk_factor = 1;
   BufferMode buffer_mode = BufferMode::kAborting;
   TransitionMode transition_mode = TransitionMode::kNone;
   double transition_parameter = 0;
+  JogSystem jog_system = JogSystem::kMcs;  // a jog's; its numbers are speeds
+  double most_s = kNoLimit;                // a jog goes on for so long at most at these speeds, ...
+  ErrorId border = ErrorId::kNone;         // ... because this is in the way
 
   bool blends() const noexcept { return buffer_mode >= BufferMode::kBlendingLow; }
 };

@@ -5,10 +5,12 @@
 
 #include "takt/axis/guidance.h"
 #include "takt/group/clutch.h"
+#include "takt/group/jog.h"
 #include "takt/group/join.h"
 #include "takt/group/keep_up.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
+#include "takt/group/plan.h"
 #include "takt/group/queue.h"
 #include "takt/group/rise.h"
 #include "takt/group/switches.h"
@@ -138,6 +140,7 @@ double WishOf(const Context& c, State& s) {
     if (Follows(c, s)) return SlowDown(c, s, WishOfMaster(c, s));
     const double own = node.at.limits.velocity;
     const double full = own < kUnlimited ? own : std::sqrt(node.own);  // as fast as the axes can
+    if (Jogs(s)) return SlowDown(c, s, s.velocity_factor * std::min(full, JogSpeed(s)));
     return SlowDown(c, s, s.velocity_factor < 1 ? s.velocity_factor * full : trajectory::kFullSpeed);
   }
   return SlowDown(c, s, Braked(c, node, s.brake, s));
@@ -280,6 +283,15 @@ void SitOn(const Context& c, const Ride& ride, const path::Point& place, State& 
   s.begun = true;
   s.ends = s.lets_go = false;
   s.brake = {};
+}
+
+void GiveUpPath(const Context& c, const Brake& brake, bool lets_go, State& s) noexcept {
+  if (s.begun || s.planning.stage != Stage::kIdle || c.ahead.known) {
+    EndMotion(brake, lets_go || s.lets_go, s);
+  } else {
+    ForgetPlan(c, s);
+  }
+  s.interrupted = false;
 }
 
 void EndMotion(const Brake& brake, bool lets_go, State& s) noexcept {

@@ -18,6 +18,9 @@ bool Rests(const State& s) noexcept;
 // Comes to rest on the path, which is then forgotten. mm/s²; 0: as the path says.
 void EndMotion(const Brake& brake, bool lets_go, State& s) noexcept;
 
+// The same wherever it has got to with that: what is only planned is forgotten at once.
+void GiveUpPath(const Context& c, const Brake& brake, bool lets_go, State& s) noexcept;
+
 // Along the path, where it comes to rest at the furthest if it is braked from now on.
 double RestAt(const Context& c, const State& s) noexcept;
 

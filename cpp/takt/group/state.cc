@@ -151,6 +151,7 @@ void describe(Description<State>& d) {
   d.internal<&S::synced>("Axes that follow the path.");
   d.internal<&S::way_before>("Way along all paths before this one.");
   d.internal<&S::master>("What the path follows.");
+  d.internal<&S::jog>("A jog as it was planned.");
   d.internal<&S::reason>("Why there was no position of the axes.");
   d.internal<&S::problem>("Why there was no path.");
   d.internal<&S::blocked_at>("How far it could be gone.");
@@ -186,6 +187,14 @@ void describe(Description<Directions>& d) {
   d.about("Directions of axes and tool, as masks: bits 0 to 7 axes, 8 to 13 the tool along and about X, Y, Z.");
   d.internal<&Directions::positive>("Positive ones.");
   d.internal<&Directions::negative>("Negative ones.");
+}
+
+void describe(Description<Jogging>& d) {
+  d.about("A jog as it was planned.");
+  d.internal<&Jogging::speed>("Of the speeds given.");
+  d.internal<&Jogging::border>("What its way ends at.");
+  d.internal<&Jogging::reason>("The same.");
+  d.internal<&Jogging::met>("The same, of the workspace.");
 }
 
 void describe(Enumeration<Task>& e) {

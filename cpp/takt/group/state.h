@@ -109,6 +109,14 @@ struct Rise {
   double jerk = 0;
 };
 
+// A jog as it was planned.
+struct Jogging {
+  double speed = 0;                                       // along its way, of the speeds in Request::to
+  ErrorId border = ErrorId::kNone;                        // what its way ends at; kNone: it could be longer
+  kinematics::Reason reason = kinematics::Reason::kNone;  // the same
+  PathChecked met;                                        // the same, of the workspace
+};
+
 // What a group is doing besides moves.
 enum class Task : std::uint8_t { kNone, kStop, kHalt, kInterrupt, kHome, kPower };
 
@@ -166,7 +174,7 @@ struct State {
   bool hold = false;  // stop: until released
   Ticket ticket = 0;  // of the task
   Task task = Task::kNone;
-  double lease_s = 0;
+  double lease_s = 0;  // of a held stop or a jog
   std::uint64_t lease_end_cycle = 0;
   kinematics::Joints joints{};   // where the members are told to be
   kinematics::Joints origins{};  // whole turns and zeros taken out of their positions when they began to be guided
@@ -178,6 +186,7 @@ struct State {
   std::array<SyncedAxis, kSynced> synced;
   double way_before = 0;  // mm, gone along all paths before this one
   MasterState master;
+  Jogging jog;
   kinematics::Reason reason = kinematics::Reason::kNone;
   path::Problem problem = path::Problem::kNone;
   double blocked_at = 0;
@@ -206,6 +215,7 @@ void describe(Description<Clutch>&);
 void describe(Description<Track>&);
 void describe(Description<Directions>&);
 void describe(Description<Rise>&);
+void describe(Description<Jogging>&);
 void describe(Enumeration<Task>&);
 void describe(Description<Brake>&);
 void describe(Description<SyncedAxis>&);

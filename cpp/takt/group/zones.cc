@@ -238,6 +238,7 @@ void NoteZones(const Context& c, const State& s, const kinematics::Joints& joint
   for (std::size_t k = 0; k < c.zones.of.size(); ++k) {
     const Zone& zone = c.zones.of[k];
     const double until = Shares(zone, c.number - 1) ? MeetsUntil(zone, from, there, zone.margin) : -1;
+    if (until >= 0 && ahead.next.zones_until[k] == 0) ahead.next.zones_from[k] = before;
     if (until >= 0) ahead.next.zones_until[k] = std::max(std::lerp(before, way, until), kLeast);
   }
   ahead.tried_at = there;
@@ -291,6 +292,14 @@ std::uint32_t ZonesOf(const Stretch& stretch) noexcept {
   std::uint32_t zones = 0;
   for (std::size_t k = 0; k < kZones; ++k) zones |= stretch.zones_until[k] > 0 ? BitOf(k) : 0;
   return zones;
+}
+
+double ZonesBeginAt(const Stretch& stretch, std::uint32_t zones) noexcept {
+  double from = stretch.segment.length;
+  for (std::size_t k = 0; k < kZones; ++k) {
+    if ((zones & BitOf(k)) != 0) from = std::min(from, stretch.zones_from[k]);
+  }
+  return from;
 }
 
 Entry EnterZones(const Context& c, State& s) noexcept {

@@ -61,6 +61,9 @@ void NoteBlend(const Context& c, const State& s) noexcept;
 // A mask: those that a piece of path meets.
 std::uint32_t ZonesOf(const Stretch& stretch) noexcept;
 
+// Where, along its segment, it meets the first of these.
+double ZonesBeginAt(const Stretch& stretch, std::uint32_t zones) noexcept;
+
 enum class Entry : std::uint8_t { kFree, kWaits, kCircle };
 // Takes the zones that `ahead.next` meets, all or none.
 Entry EnterZones(const Context& c, State& s) noexcept;

@@ -135,6 +135,24 @@ bool Counts(double displacement, double least, double others) {
   return displacement >= least && (displacement > kTiny || displacement >= kTinyShare * others);
 }
 
+// What the length of a straight piece counts, and how long it is.
+Problem Measured(const Vector& way, double turn_deg, const Auxiliaries& from, const Auxiliaries& to, Segment& segment) {
+  double furthest = 0;
+  for (std::size_t i = 0; i < kMaxAuxiliaries; ++i) furthest = std::max(furthest, std::abs(to[i] - from[i]));
+  if (Counts(way.norm(), kSame, std::max(turn_deg, furthest))) {
+    segment.length = way.norm();
+  } else if (Counts(turn_deg, kSameTurn, furthest)) {
+    segment.measure = Measure::kTurn;
+    segment.length = turn_deg;
+  } else if (furthest >= kSameAuxiliary) {
+    segment.measure = Measure::kAuxiliaries;
+    segment.length = furthest;
+  } else {
+    return Problem::kLengthZero;
+  }
+  return std::isfinite(segment.length) ? Problem::kNone : Problem::kNotFinite;
+}
+
 }  // namespace
 
 Problem MakeLine(const Point& from, const Point& to, Segment& out) noexcept {
@@ -143,25 +161,27 @@ Problem MakeLine(const Point& from, const Point& to, Segment& out) noexcept {
   const Vector start = ToVector(from.frame.p);
   const Vector way = ToVector(to.frame.p) - start;
   const double turn = kinematics::ArcBetween(from.frame.M, to.frame.M).angle / kDegree;
-  double furthest = 0;
-  for (std::size_t i = 0; i < kMaxAuxiliaries; ++i) {
-    furthest = std::max(furthest, std::abs(to.auxiliaries[i] - from.auxiliaries[i]));
-  }
-  if (Counts(way.norm(), kSame, std::max(turn, furthest))) {
-    segment.length = way.norm();
-  } else if (Counts(turn, kSameTurn, furthest)) {
-    segment.measure = Measure::kTurn;
-    segment.length = turn;
-  } else if (furthest >= kSameAuxiliary) {
-    segment.measure = Measure::kAuxiliaries;
-    segment.length = furthest;
-  } else {
-    return Problem::kLengthZero;
-  }
-  if (!std::isfinite(segment.length)) return Problem::kNotFinite;
+  const Problem problem = Measured(way, turn, from.auxiliaries, to.auxiliaries, segment);
+  if (problem != Problem::kNone) return problem;
   segment.place[0] = ToTriple(start);
   segment.place[1] = ToTriple(way / segment.length);
   SetEven(segment, from, to);
+  out = segment;
+  return Problem::kNone;
+}
+
+Problem MakeTwist(const Point& from, const Triple& way, const Triple& turn_rad, const Auxiliaries& to,
+                  Segment& out) noexcept {
+  if (!Sound(from) || !ToVector(turn_rad).allFinite()) return Problem::kNotFinite;
+  Segment segment;
+  const double turn = ToVector(turn_rad).norm() / kDegree;
+  const Problem problem = Measured(ToVector(way), turn, from.auxiliaries, to, segment);
+  if (problem != Problem::kNone) return problem;
+  segment.place[0] = ToTriple(ToVector(from.frame.p));
+  segment.place[1] = ToTriple(ToVector(way) / segment.length);
+  SetEven(segment, from, {from.frame, to});
+  segment.turn[1] = turn_rad;
+  segment.turning = turn > 0 ? Course::kEven : Course::kStill;
   out = segment;
   return Problem::kNone;
 }

@@ -16,6 +16,11 @@ namespace takt::path {
 // auxiliary axes. What the length does not count moves evenly along with it.
 Problem MakeLine(const Point& from, const Point& to, Segment& out) noexcept;
 
+// Straight on by `way` and, meanwhile, turned evenly by the vector `turn` (axis times angle, of any number of turns),
+// to those auxiliary axes. The length counts as for MakeLine.
+Problem MakeTwist(const Point& from, const Triple& way, const Triple& turn_rad, const Auxiliaries& to,
+                  Segment& out) noexcept;
+
 // Where nothing moves: a place as a segment, of which only the beginning is of use.
 Segment Still(const Point& point) noexcept;
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "takt/core/angle.h"
+#include "takt/group/jog.h"
 #include "takt/group/systems.h"
 #include "takt/kinematics/solutions.h"
 #include "takt/pickplace/run.h"
@@ -19,8 +20,7 @@ constexpr double kFarthest = 16'384;  // mm or u
 constexpr double kWidest = 170;       // deg: beyond half a turn it would go the other way round
 constexpr double kUprightest = 89.9;  // deg, of B
 constexpr double kShort = 1e-3;       // of the end of what can be reached
-constexpr int kHalvings = 24;
-constexpr double kOfTurn = 0.1;  // of a turn that was asked for
+constexpr double kOfTurn = 0.1;       // of a turn that was asked for
 
 struct Ramps {
   double velocity, acceleration, deceleration, jerk;
@@ -36,23 +36,6 @@ Ramps RampsOf(const State& s) {
             p.orientation_jog_jerk};
   }
   return {p.real_axis_jog_velocity, p.real_axis_jog_acceleration, p.real_axis_jog_deceleration, p.real_axis_jog_jerk};
-}
-
-// The furthest that `may` allows of a way up to `most`, as far as doubling steps and halves tell.
-template <typename May>
-double Furthest(double most, const May& may) {
-  double good = 0;
-  double step = std::min(1.0, most);
-  while (good < most && may(step)) {
-    good = step;
-    step = std::min(2 * step, most);
-  }
-  double bad = step;
-  for (int i = 0; i < kHalvings && good < most; ++i) {
-    const double middle = (good + bad) / 2;
-    (may(middle) ? good : bad) = middle;
-  }
-  return good < most ? std::max(0.0, good - kShort) : most;
 }
 
 // The SW limits beyond which the axes would be with the tool there; none: it cannot be there at all.
@@ -101,7 +84,7 @@ group::MoveLinearAbsolute ToolMove(const Context& c, const group::State& g, doub
   };
   double most = s.jog_axis <= SelectAxis::kZ ? kFarthest : kWidest;
   if (s.jog_axis == SelectAxis::kB) most = std::clamp(kUprightest - s.jog_sense * from.b, 0.0, kWidest);
-  way = Furthest(most, may);
+  way = group::Furthest(most, 1, kShort, may);
   s.jog_end = EndsAt(c, g, kinematics::ToFrame(at(way + 3 * kShort)), present.joints);
   const kinematics::Pose to = at(way);
   return {.x = to.x, .y = to.y, .z = to.z, .a = to.a, .b = to.b, .c = to.c};

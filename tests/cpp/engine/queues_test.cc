@@ -97,6 +97,7 @@ TEST(CommandQueue, TakesWhatLetsGoOfEveryKind) {
       {{"axis", "direct_output"}, {"{voltage: 0}"}},
       {{"flex_cam", "control"}, {"{stop: true}", "{halt: true}", "{regulator_on: false}", "{sync_out_instant: true}"}},
       {{"flex_cam", "jog"}, {""}},
+      {{"group", "jog"}, {"", "{x: 0, coordinate_system: wcs}"}},
       {{"group", "stop"}, {""}},
       {{"group", "halt"}, {""}},
       {{"group", "interrupt"}, {""}},
