@@ -93,7 +93,7 @@ def _added(text: str, node: yaml.MappingNode, keys: list[str], value: str) -> st
     if node.flow_style:
         at = node.start_mark.index + 1
         return text[:at] + line + (", " if node.value else "") + text[at:]
-    first = node.value[0][0].start_mark
+    first: yaml.Mark = node.value[0][0].start_mark
     return text[: first.index] + line + "\n" + " " * first.column + text[first.index :]
 
 
