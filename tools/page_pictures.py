@@ -184,7 +184,8 @@ def two_runs(directory: Path) -> Path:
         with Engine(machine) as engine:
             outcome = run_scenario(scenario, engine)
         runs.append(keep(outcome.recording, scenario.title, outcome.verdicts, outcome.assertion))
-    return write_comparison(compare(*runs, names=("before", "after")), directory / "compare.html")
+    before, after = runs
+    return write_comparison(compare(before, after, ("before", "after")), directory / "compare.html")
 
 
 def swept(directory: Path) -> Path:

@@ -51,8 +51,8 @@ def draw(recording: takt.Recording, plan: takt.SurfacePlan) -> None:
     above.grid(False)
     raster = plan.raster
     for place, free in enumerate(raster.free):
-        x, y = raster.middle(place)
-        corner = (x - raster.pitch / 2, y - raster.pitch / 2)
+        middle = raster.middle(place)
+        corner = (middle[0] - raster.pitch / 2, middle[1] - raster.pitch / 2)
         face = "white" if free else plot.FAINT
         above.add_patch(Rectangle(corner, raster.pitch, raster.pitch, fc=face, ec=plot.FAINT, lw=0.8, zorder=0))
     for i, name in enumerate(plan.names):
