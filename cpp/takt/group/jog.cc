@@ -8,6 +8,7 @@
 #include "takt/group/plan.h"
 #include "takt/group/run.h"
 #include "takt/group/systems.h"
+#include "takt/kinematics/rotations.h"
 #include "takt/path/make.h"
 
 namespace takt::group {
@@ -38,8 +39,9 @@ struct Speeds {
   double most = 0;    // of them all, mm/s, deg/s or u/s
 
   Frame ToolAfter(const Frame& from, double time_s) const {
-    const double angle = about.Norm() * time_s;
-    return {angle > 0 ? KDL::Rotation::Rot(about, angle) * from.M : from.M, from.p + along * time_s};
+    const double rate = about.Norm();
+    const KDL::Rotation turned = rate > 0 ? kinematics::About(about / rate, rate * time_s) * from.M : from.M;
+    return {turned, from.p + along * time_s};
   }
   Joints AxesAfter(const Joints& from, double time_s) const {
     Joints joints = from;
