@@ -163,10 +163,10 @@ def make_recording(
 
 
 def units_of(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]) -> dict[str, str]:
-    """What the units in the descriptions stand for: "u" is the component's own. A cam module has those of slave, master
-    and its first cam; a virtual master has that of the cam's x."""
+    """What the units in the descriptions stand for: "u" is the component's own, "u_m" its master's. A cam module has
+    those of slave, master and its first cam; a virtual master has that of the cam's x."""
     if kind.name == "axis":
-        return {"u": str(parameters["unit"])}
+        return {"u": str(parameters["unit"]), "u_m": "u of the master"}  # which changes while it runs
     if kind.name == "belt":
         return {"u": "deg" if parameters["kind"] == "turning" else "mm"}
     if kind.name != "flex_cam":

@@ -18,8 +18,9 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::torque_nm>(unit::nm, "As the drive reports it.");
   d.internal<&O::probe_position>(unit::u, "Where the touch probe was captured last.");
   d.internal<&O::covered_distance>(unit::u, "By the motion on top of the one in progress; 0: there is none.");
-  d.internal<&O::phase_shift>("How far the master is taken to be ahead of where it is, in its unit.");
-  d.internal<&O::covered_phase_shift>("What of it the last phasing_relative has added; after phasing_absolute: all.");
+  d.internal<&O::phase_shift>(unit::u_m, "How far the master is taken to be ahead of where it is.");
+  d.internal<&O::covered_phase_shift>(unit::u_m,
+                                      "What of it the last phasing_relative has added; after phasing_absolute: all.");
   d.internal<&O::override_factor>(unit::one, "Velocity factor of the override; 0: held.");
   d.internal<&O::skew>(unit::u,
                        "Measured distance to where its master has it, of an axis that follows another from load on.");
