@@ -36,8 +36,8 @@ void FromPython(const Type& type, const py::dict& values, void* object);
 // Raises an exception of takt.errors.
 [[noreturn]] void Throw(const char* kind, const py::object& about);
 
-// A key that takt._core.read_key has read. Raises ValueError where it is none.
-lcm::Key KeyOf(const py::bytes& data);
+// Keys that takt._core.read_keys has read. Raises ValueError where they are none.
+lcm::Keys KeysOf(const py::bytes& data);
 
 // A machine file: there is a machine in it, or takt.ConfigError says every problem.
 // `workspaces`: what knows whether paths are free is made, too.

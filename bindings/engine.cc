@@ -96,9 +96,9 @@ using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::ui
 class VirtualEngine {
  public:
   // `loaded`: from LoadMachine. `drives_url`: LCM network of external drives; without it their feedback comes from
-  // Hear. `drives_key`: the key they share, if any.
+  // Hear. `drives_keys`: those that they share, if any.
   VirtualEngine(engine::LoadResult loaded, bool journal, const std::optional<std::string>& drives_url,
-                const std::optional<lcm::Key>& drives_key, bool checks)
+                const std::optional<lcm::Keys>& drives_keys, bool checks)
       : journaling_(journal),
         engine_(std::move(*loaded.machine),
                 {.drives = drives_url.has_value(), .journal = journal, .command_queue = kCommandQueue}) {
@@ -110,7 +110,7 @@ class VirtualEngine {
         engine_,
         {.url = *drives_url,
          .run_id = lcm::WallClockUs(),
-         .authentication = drives_key ? std::make_shared<lcm::Authentication>(*drives_key, complain) : nullptr,
+         .authentication = drives_keys ? std::make_shared<lcm::Authentication>(*drives_keys, complain) : nullptr,
          .complain = complain},
         problem);
     if (!drives_) Throw("ConnectionError", py::str(problem));
@@ -457,8 +457,8 @@ std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::stri
     if (!field.range.Holds(*period_s)) ThrowConfigError({"the cycle's period must be " + Text(field.range) + " s"});
     loaded.machine->cycle.period_s = *period_s;
   }
-  const auto key = drives_key ? std::optional(KeyOf(*drives_key)) : std::nullopt;
-  return std::make_unique<VirtualEngine>(std::move(loaded), journal, drives_url, key, checks);
+  const auto keys = drives_key ? std::optional(KeysOf(*drives_key)) : std::nullopt;
+  return std::make_unique<VirtualEngine>(std::move(loaded), journal, drives_url, keys, checks);
 }
 
 }  // namespace

@@ -115,11 +115,13 @@ py::bytes ToBytes(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-py::bytes ReadKey(const py::bytes& path) {
+py::bytes ReadKeys(const py::bytes& path) {
   std::string problem;
-  const auto key = lcm::ReadKey(path, problem);
-  if (!key) Throw("KeyFileError", FromFileSystem(problem));
-  return ToBytes(*key);
+  const auto keys = lcm::ReadKeys(path, problem);
+  if (!keys) Throw("KeyFileError", FromFileSystem(problem));
+  std::vector<std::uint8_t> bytes(keys->own.begin(), keys->own.end());
+  if (keys->other) bytes.insert(bytes.end(), keys->other->begin(), keys->other->end());
+  return ToBytes(bytes);
 }
 
 py::bytes Sign(lcm::Signer& signer, const std::string& channel, const py::bytes& data) {
@@ -144,17 +146,20 @@ void BindAuthentication(py::module_& m) {
       .value("replayed", lcm::TagState::kReplayed)
       .value("stale", lcm::TagState::kStale);
   m.def("tag_text", &lcm::Text, py::arg("state"), "What is wrong with a tag, for people.");
-  m.def("read_key", &ReadKey, py::arg("path"), "The key in a file. Raises KeyFileError, which says why there is none.");
+  m.def("read_keys", &ReadKeys, py::arg("path"),
+        "The key in a file; while it is changed the two, one behind the other, of which the first tags what is sent. "
+        "Raises KeyFileError, which says why there is none.");
   m.def("is_tagged_channel", &lcm::IsTaggedChannel, py::arg("channel"),
         "With a key, messages on this channel carry a tag.");
   m.def(
       "has_tag", [](const py::bytes& data) { return lcm::HasTag(BytesOf(data)); }, py::arg("data"),
       "The bytes end like a tag, good or not.");
   py::class_<lcm::Signer>(m, "Signer", "Tags the messages of one sender.")
-      .def(py::init([](const py::bytes& key) { return std::make_unique<lcm::Signer>(KeyOf(key)); }), py::arg("key"))
+      .def(py::init([](const py::bytes& key) { return std::make_unique<lcm::Signer>(KeysOf(key).own); }),
+           py::arg("key"))
       .def("sign", &Sign, py::arg("channel"), py::arg("data"), "The message with a tag behind it.");
   py::class_<lcm::Verifier>(m, "Verifier", "Checks the tags of what one receiver hears.")
-      .def(py::init([](const py::bytes& key) { return std::make_unique<lcm::Verifier>(KeyOf(key)); }), py::arg("key"))
+      .def(py::init([](const py::bytes& key) { return std::make_unique<lcm::Verifier>(KeysOf(key)); }), py::arg("key"))
       .def("open", &OpenTagged, py::arg("channel"), py::arg("data"), py::arg("heard_us") = py::none(),
            "State of the tag of a message that came at this time [us, wall clock; now], and the message: without the "
            "tag "
@@ -163,12 +168,15 @@ void BindAuthentication(py::module_& m) {
 
 }  // namespace
 
-lcm::Key KeyOf(const py::bytes& data) {
+lcm::Keys KeysOf(const py::bytes& data) {
   const auto bytes = BytesOf(data);
-  lcm::Key key{};
-  if (bytes.size() != key.size()) throw py::value_error("a key has " + std::to_string(key.size()) + " bytes");
-  std::ranges::copy(bytes, key.begin());
-  return key;
+  if (bytes.size() != lcm::kKeyBytes && bytes.size() != 2 * lcm::kKeyBytes) {
+    throw py::value_error("expected one key of " + std::to_string(lcm::kKeyBytes) + " bytes, or two");
+  }
+  lcm::Keys keys;
+  std::ranges::copy(bytes.first(lcm::kKeyBytes), keys.own.begin());
+  if (bytes.size() > lcm::kKeyBytes) std::ranges::copy(bytes.last(lcm::kKeyBytes), keys.other.emplace().begin());
+  return keys;
 }
 
 void BindLcm(py::module_& m) {

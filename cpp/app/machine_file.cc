@@ -31,15 +31,15 @@ std::string NetworkOf(const Options& options, const engine::Machine& machine, st
   return usual && *usual ? checked(kEnvironment, usual) : kDefaultUrl;
 }
 
-// Likewise the key, if there is to be one.
-std::optional<lcm::Key> KeyOf(const Options& options, std::vector<std::string>& problems) {
+// Likewise the keys, if there are to be any.
+std::optional<lcm::Keys> KeysOf(const Options& options, std::vector<std::string>& problems) {
   if (!options.lcm || options.task != Task::kRun) return {};
   const char* const usual = std::getenv(kKeyEnvironment);
   if (!options.key_file && (usual == nullptr || *usual == '\0')) return {};
   std::string problem;
-  const std::optional<lcm::Key> key = lcm::ReadKey(options.key_file ? *options.key_file : usual, problem);
-  if (!key) problems.push_back(problem);
-  return key;
+  const std::optional<lcm::Keys> keys = lcm::ReadKeys(options.key_file ? *options.key_file : usual, problem);
+  if (!keys) problems.push_back(problem);
+  return keys;
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ MachineFile ReadMachineFile(const Options& options) {
     if (loaded.machine) loaded.machine->cycle.period_s = *options.cycle_time_s;
   }
   if (loaded.machine) file.url = NetworkOf(options, *loaded.machine, file.problems);
-  file.key = KeyOf(options, file.problems);
+  file.keys = KeysOf(options, file.problems);
   file.checkers = std::move(loaded.checkers);
   if (file.problems.empty()) file.machine = std::move(loaded.machine);
   return file;

@@ -16,7 +16,7 @@ struct MachineFile {
   std::optional<engine::Machine> machine;  // empty: see problems
   std::string text;                        // as it was read; with files it names written out
   std::string url;                         // the LCM network it runs on; empty: none
-  std::optional<lcm::Key> key;             // that commands must carry; empty: anyone may command
+  std::optional<lcm::Keys> keys;           // one of which commands must carry; empty: anyone may command
   engine::Checkers checkers;               // of its groups
   std::vector<std::string> problems;       // one line each
   std::vector<std::string> warnings;       // likewise

@@ -26,6 +26,7 @@ constexpr int kLogIncomplete = 1;
 constexpr int kWrongInput = 2;
 constexpr int kEndedAtOnce = 130;
 constexpr char kWithKey[] = "only holders of the key may command";
+constexpr char kWithKeys[] = "only holders of either key may command: it is being changed";
 constexpr char kWithoutKey[] = "no key: anyone who reaches the network may command (--key, TAKT_KEY_FILE)";
 constexpr unsigned kCloseWithinS = 1;  // s for closing the log after a second signal
 
@@ -75,7 +76,7 @@ int Run(const Options& options, MachineFile file) {
   engine::SchedulerOptions scheduler = options.scheduler;
   const lcm::RunInfo info{file.text, TAKT_VERSION, static_cast<std::int8_t>(scheduler.pace)};
   std::string problem;
-  const auto authentication = file.key ? std::make_shared<lcm::Authentication>(*file.key, SayOnStderr) : nullptr;
+  const auto authentication = file.keys ? std::make_shared<lcm::Authentication>(*file.keys, SayOnStderr) : nullptr;
   std::unique_ptr<lcm::Service> service;
   if (options.lcm || log) {
     const auto explain = [&checks](const FeedbackEvent& event) { return checks.Sentence(event); };
@@ -107,7 +108,8 @@ int Run(const Options& options, MachineFile file) {
   };
 
   std::cout << Greeting(machine, scheduler.pace);
-  if (!file.url.empty()) std::cout << ", on " << file.url << '\n' << (file.key ? kWithKey : kWithoutKey);
+  if (!file.url.empty())
+    std::cout << ", on " << file.url << '\n' << (!file.keys ? kWithoutKey : file.keys->other ? kWithKeys : kWithKey);
   std::cout << std::endl;
   std::optional<engine::PathCheckThread> checking;
   if (real_time) checking.emplace(checks);

@@ -1,4 +1,4 @@
-"""The key that an engine, its clients and its drives share (EN-31).
+"""The key that an engine, its clients and its drives share (EN-31); two while it is changed.
 
 With a key, messages that command, keep alive, drive or describe carry an authentication tag; those without a good one
 are counted and ignored. Tags are made and checked by Takt's core (`cpp/takt/lcm/authentication.h` says how).
@@ -27,17 +27,23 @@ KeyFile = str | os.PathLike[str]
 
 @dataclass(frozen=True)
 class Key:
-    """A key, and the name of the file it is from."""
+    """A key, and the name of the file it is from; where that holds two, the first tags what is sent, and both are
+    accepted."""
 
     file: str
-    data: bytes = field(repr=False)
+    data: bytes = field(repr=False)  # one behind the other
+
+    @property
+    def changing(self) -> bool:
+        """The file holds two."""
+        return len(self.data) > BYTES
 
 
 def read_key(file: KeyFile | None = None) -> Key | None:
     """The key in this file, else in the one that the environment names (TAKT_KEY_FILE); None where neither is given,
     or `file` is "". Raises KeyFileError, which says what is wrong with the file."""
     name = os.fspath(file) if file is not None else os.environ.get(ENVIRONMENT, "")
-    return Key(name, _core.read_key(os.fsencode(name))) if name else None
+    return Key(name, _core.read_keys(os.fsencode(name))) if name else None
 
 
 def new_key(file: KeyFile) -> None:
@@ -72,6 +78,14 @@ def not_the_key(url: str, key: Key, state: _core.TagState) -> str:
     if state == _core.TagState.wrong_key:
         return f"the engine on {url} has another key than {key.file}"
     return f"the engine on {url}: its messages are ignored: {_core.tag_text(state)}"
+
+
+def first_key_not_taken(key: Key) -> str:
+    """Why an engine that is heard does not answer a client with two keys."""
+    return (
+        f"it does not take the first key of {key.file}, which tags what is sent: "
+        "start the engine with both keys, or put the other key first"
+    )
 
 
 class KeyedNetwork:

@@ -19,7 +19,7 @@ from takt.component import Component
 from takt.errors import ConnectionError, TaktError
 from takt.feedback import Feedback
 from takt.figures import DROPPED, figures_of
-from takt.keys import Key, KeyFile, no_key, not_the_key, read_key
+from takt.keys import Key, KeyFile, first_key_not_taken, no_key, not_the_key, read_key
 from takt.lying import objects_of
 from takt.mover import Mover
 from takt.network import open_network, usual_url
@@ -391,6 +391,7 @@ class RemoteSession(Session):
                 self._check_open()
             else:
                 self._check_alive()
+        wrong_keys = self._wrong_keys()
         sent = self._send(feedback)
         with self._news:
             if not self._news.wait_for(lambda: sent.answered or (self._trouble and not lets_go), self._answer_s):
@@ -399,11 +400,17 @@ class RemoteSession(Session):
                 elif feedback.verb != "release":
                     del self._sent[sent.message.id]
                 late = "" if lets_go else f"; it refuses what reaches it later than {self._command_age_s:g} s"
+                if self._key is not None and self._key.changing and self._wrong_keys() > wrong_keys:
+                    late = f"; {first_key_not_taken(self._key)}"
                 raise ConnectionError(
                     f"{feedback.text}: the engine on {self.url} does not answer within {self._answer_s:g} s{late}"
                 )
             if not sent.answered:
                 raise ConnectionError(self._trouble)
+
+    def _wrong_keys(self) -> int:
+        """How many messages the engine has refused for their key so far, by its last word."""
+        return int(self._engine_state.wrong_key) if self._engine_state is not None else 0
 
     def _value(self, component: Component, field: str) -> Any:
         return named(component.KIND, field, KINDS[component.KIND].getters[field](self._states[component.name]))

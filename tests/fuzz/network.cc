@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace takt::lcm;
   constexpr Reassembly::Limits kLimits{.messages = 4, .bytes = 1 << 16};
   Reassembly reassembly(kLimits);
-  Verifier verifier(Key{});
+  Verifier verifier({.own = Key{}, .other = Key{1}});
   std::span<const std::uint8_t> rest(data, size);
   while (rest.size() >= 3) {
     const std::uint8_t sender = rest[0];

@@ -75,6 +75,48 @@ def test_clients_and_engines_by_their_keys(client: str, engine: str, tmp_path: P
         assert ("has no key" if not engine else "has another key") in sentence
 
 
+@pytest.mark.parametrize(
+    ("engine", "client", "said"),
+    [
+        ("old new", "old", ""),  # first the engine
+        ("old new", "new old", ""),  # then clients and drives, one after the other
+        ("new", "new old", ""),  # the engine anew
+        ("new", "new", ""),
+        ("old new", "new", "has another key than"),
+        ("new", "old", "has another key than"),
+        ("new", "old new", "does not take the first key of"),
+        ("new old", "old", "has another key than"),
+    ],
+)
+def test_a_key_is_changed_step_by_step(engine: str, client: str, said: str, tmp_path: Path) -> None:
+    """EN-31: with two keys in a file the first tags and both are heard, so nobody is locked out between two steps."""
+    url, keys = new_url(), {name: new_key(tmp_path, name) for name in ("old", "new")}
+
+    def file(which: str) -> Path:
+        made = tmp_path / which.replace(" ", "_and_")
+        if not made.exists():
+            made.touch(mode=0o600)
+            made.write_text("\n".join(keys[name].read_text() for name in which.split()))
+        return made
+
+    machine = machine_with("{engine_rate_hz: 50}")
+    with running(tmp_path, url, "--key", str(file(engine)), machine=machine):
+        if said:
+            with (
+                pytest.raises(takt.ConnectionError, match=said) as refused,
+                takt.connect(url, key=file(client), timeout=2.0) as session,
+            ):
+                session.axis("x").power()
+            assert str(file(client)) in str(refused.value)
+            return
+        with takt.connect(url, key=file(client), timeout=LONG_S) as session:
+            session.axis("x").power().wait()
+            session.axis("x").move_absolute(position=3.0).wait()
+            session.run(0.3)  # heartbeats
+            assert all(session.figures[reason] == 0 for reason in REASONS)
+            assert not session.refused
+
+
 @pytest.mark.parametrize("engine", ["", "a", "b"])
 @pytest.mark.parametrize("plant", ["", "a", "b"])
 def test_drives_and_engines_by_their_keys(plant: str, engine: str, tmp_path: Path) -> None:
@@ -398,7 +440,11 @@ HEX = "0123456789abcdef" * 4
         ("", 0o600, "it is empty; expected one key of 64 hexadecimal digits"),
         (HEX[:40], 0o600, "too short: expected one key of 64 hexadecimal digits, found 40"),
         (HEX + "00", 0o600, "too long: .*, found 66"),
-        (f"{HEX}\n{HEX[::-1]}\n", 0o600, "holds 2 keys; expected one key of 64"),
+        (f"{HEX}\n{HEX[::-1]}\n{HEX}\n", 0o600, "holds 3 keys; expected one, or two while the key is changed"),
+        (f"{HEX}\n{HEX[:20]}\n", 0o600, "key 2: too short: .*, found 20"),
+        (f"{HEX[:40]}\n{HEX}\n", 0o600, "key 1: too short: .*, found 40"),
+        (f"{HEX}\n\n{HEX}\n", 0o600, "holds the same key twice"),
+        (HEX + HEX[::-1], 0o600, "too long: .*, found 128"),
         (HEX[:63] + "g", 0o600, "found other characters"),
         (HEX[:32] + " " + HEX[32:], 0o600, "found spaces between them"),
         (HEX, 0o644, r"others than its owner may open it \(mode 0644\); chmod 600"),
@@ -456,6 +502,9 @@ def test_the_engine_says_who_may_command(tmp_path: Path, key: Path, monkeypatch:
     assert said(*on).count("no key: anyone who reaches the network may command") == 1
     assert "may command" not in said("--no-lcm")
     assert "only holders of the key may command" in said(*on, "--key", str(key))
+    both = new_key(tmp_path, "both")
+    both.write_text(both.read_text() + key.read_text())
+    assert "only holders of either key may command: it is being changed" in said(*on, "--key", str(both))
     monkeypatch.setenv("TAKT_KEY_FILE", str(key))
     assert "only holders of the key may command" in said(*on)
     monkeypatch.setenv("TAKT_KEY_FILE", str(tmp_path / "none"))

@@ -122,14 +122,20 @@ void Signer::Sign(std::string_view channel, std::vector<std::uint8_t>& message) 
   if (const auto mac = mac_->Of(channel, message)) message.insert(message.end(), mac->begin(), mac->end());
 }
 
-Verifier::Verifier(const Key& key) : mac_(std::make_unique<Mac>(key)) {}
+Verifier::Verifier(const Keys& keys) {
+  macs_.push_back(std::make_unique<Mac>(keys.own));
+  if (keys.other) macs_.push_back(std::make_unique<Mac>(*keys.other));
+}
 Verifier::~Verifier() = default;
 
 TagState Verifier::Open(std::string_view channel, std::span<const std::uint8_t>& bytes, std::int64_t heard_us) {
   if (!HasTag(bytes)) return TagState::kMissing;
   const auto message = bytes.first(bytes.size() - kTagBytes), tag = bytes.last(kTagBytes);
-  const auto mac = mac_->Of(channel, bytes.first(bytes.size() - kMacBytes));
-  if (!mac || CRYPTO_memcmp(mac->data(), tag.data() + kHeadBytes, kMacBytes) != 0) return TagState::kForeign;
+  const bool good = std::ranges::any_of(macs_, [&](const auto& of_key) {
+    const auto mac = of_key->Of(channel, bytes.first(bytes.size() - kMacBytes));
+    return mac && CRYPTO_memcmp(mac->data(), tag.data() + kHeadBytes, kMacBytes) == 0;
+  });
+  if (!good) return TagState::kForeign;
   // From here on a holder of the key has said it.
   const std::uint64_t number = ReadNumber(tag.subspan(4)), counter = ReadNumber(tag.subspan(12));
   const auto utime = static_cast<std::int64_t>(ReadNumber(tag.subspan(20)));
@@ -157,7 +163,7 @@ bool Verifier::Take(Sender& sender, std::uint64_t counter) {
   return true;
 }
 
-Authentication::Authentication(const Key& key, Complain complain) : key_(key), complain_(std::move(complain)) {}
+Authentication::Authentication(const Keys& keys, Complain complain) : keys_(keys), complain_(std::move(complain)) {}
 
 void Authentication::Refuse(std::string_view channel, TagState state) {
   if (refused_[static_cast<std::size_t>(state)].fetch_add(1, std::memory_order_relaxed) != 0) return;
@@ -173,12 +179,12 @@ namespace {
 
 class KeyedReceiver : public Receiver {
  public:
-  KeyedReceiver(std::unique_ptr<Receiver> receiver, const Key& key, OnRefused refused)
-      : receiver_(std::move(receiver)), key_(key), refused_(std::move(refused)) {}
+  KeyedReceiver(std::unique_ptr<Receiver> receiver, const Keys& keys, OnRefused refused)
+      : receiver_(std::move(receiver)), keys_(keys), refused_(std::move(refused)) {}
 
   // One verifier each: a message that several subscriptions take comes to each of them once.
   int Subscribe(const std::string& channels, std::size_t capacity, Handler handler) override {
-    const auto verifier = std::make_shared<Verifier>(key_);
+    const auto verifier = std::make_shared<Verifier>(keys_);
     return receiver_->Subscribe(channels, capacity, [this, verifier, handler = std::move(handler)](const Heard& heard) {
       Heard opened = heard;
       if (IsTaggedChannel(heard.channel)) {
@@ -196,14 +202,14 @@ class KeyedReceiver : public Receiver {
 
  private:
   const std::unique_ptr<Receiver> receiver_;
-  const Key key_;
+  const Keys keys_;
   const OnRefused refused_;
 };
 
 }  // namespace
 
-std::unique_ptr<Receiver> WithKey(std::unique_ptr<Receiver> receiver, const Key& key, OnRefused refused) {
-  return std::make_unique<KeyedReceiver>(std::move(receiver), key, std::move(refused));
+std::unique_ptr<Receiver> WithKey(std::unique_ptr<Receiver> receiver, const Keys& keys, OnRefused refused) {
+  return std::make_unique<KeyedReceiver>(std::move(receiver), keys, std::move(refused));
 }
 
 }  // namespace takt::lcm

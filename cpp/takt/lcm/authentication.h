@@ -10,7 +10,8 @@
 // kWindow behind the newest, since the threads of a sender may overtake one another; and, as MAVLink 2 message signing
 // does, no message whose clock differs from that of its arrival by more than kFreshUs. A sender that was forgotten has
 // sent nothing for that long, so that what it had sent is stale. The clock is no part of the counter: a clock that is
-// set back does not silence a sender.
+// set back does not silence a sender. While a key is changed, a second one is accepted; counters are the sender's,
+// whichever of the two it tags with.
 #pragma once
 
 #include <array>
@@ -72,7 +73,7 @@ class Signer {
 // Checks the tags of what one receiver hears. One thread at a time.
 class Verifier {
  public:
-  explicit Verifier(const Key& key);
+  explicit Verifier(const Keys& keys);
   ~Verifier();
   // Takes a good tag off the end of `bytes`, which came at `heard_us` by the wall clock.
   TagState Open(std::string_view channel, std::span<const std::uint8_t>& bytes, std::int64_t heard_us);
@@ -85,26 +86,26 @@ class Verifier {
   };
   static bool Take(Sender& sender, std::uint64_t counter);
 
-  const std::unique_ptr<Mac> mac_;
+  std::vector<std::unique_ptr<Mac>> macs_;  // one for each key
   std::map<std::uint64_t, Sender> senders_;
 };
 
-// The key of an engine, and what was ignored for want of a good tag. Any thread.
+// The keys of an engine, and what was ignored for want of a good tag. Any thread.
 class Authentication {
  public:
   using Complain = std::function<void(const std::string& sentence)>;
   // `complain` takes a sentence the first time for each reason.
   explicit Authentication(
-      const Key& key, Complain complain = [](const std::string&) {});
+      const Keys& keys, Complain complain = [](const std::string&) {});
 
-  const Key& key() const { return key_; }
+  const Keys& keys() const { return keys_; }
   // A message of this channel was ignored.
   void Refuse(std::string_view channel, TagState state);
   // How many were, so far.
   std::uint64_t refused(TagState state) const;
 
  private:
-  const Key key_;
+  const Keys keys_;
   const Complain complain_;
   std::array<std::atomic<std::uint64_t>, kTagStates> refused_{};
 };
@@ -112,6 +113,6 @@ class Authentication {
 // Called for each message that is refused.
 using OnRefused = std::function<void(std::string_view channel, TagState state)>;
 // Hears the same as `receiver`; of tagged channels only messages with a good tag, without it.
-std::unique_ptr<Receiver> WithKey(std::unique_ptr<Receiver> receiver, const Key& key, OnRefused refused);
+std::unique_ptr<Receiver> WithKey(std::unique_ptr<Receiver> receiver, const Keys& keys, OnRefused refused);
 
 }  // namespace takt::lcm

@@ -39,8 +39,8 @@ std::unique_ptr<Drives> Drives::Open(engine::Engine& engine, const DrivesOptions
   if (drives->sending_.lcm) drives->receiving_ = OpenReceiver(options.url, problem);
   if (!drives->receiving_) return nullptr;
   if (Authentication* const authentication = options.authentication.get()) {
-    drives->signer_.emplace(authentication->key());
-    drives->receiving_ = WithKey(std::move(drives->receiving_), authentication->key(),
+    drives->signer_.emplace(authentication->keys().own);
+    drives->receiving_ = WithKey(std::move(drives->receiving_), authentication->keys(),
                                  [&engine, authentication](std::string_view channel, TagState state) {
                                    engine.CountRefusedSample();
                                    authentication->Refuse(channel, state);

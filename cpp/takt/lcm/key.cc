@@ -9,12 +9,15 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
+#include <vector>
 
 namespace takt::lcm {
 namespace {
 
 constexpr std::size_t kLongestFile = 4096;  // bytes
 constexpr std::size_t kDigits = 2 * kKeyBytes;
+constexpr std::size_t kMostKeys = 2;
 
 std::string Mode(mode_t mode) {
   std::string digits = "0";
@@ -26,25 +29,21 @@ bool IsSpace(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
 }
 
-// Why this text, which has no space at its end, is no key; empty: it is.
-std::string WhyNoKey(const std::string& text) {
+// Why this line, which has no space at its end, is no key; empty: it is.
+std::string WhyNoKey(std::string_view line) {
   const std::string expected = "expected one key of " + std::to_string(kDigits) + " hexadecimal digits";
-  if (text.empty()) return "it is empty; " + expected;
   const bool hex =
-      std::ranges::all_of(text, [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0 || IsSpace(c); });
+      std::ranges::all_of(line, [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0 || IsSpace(c); });
   if (!hex) return expected + ", found other characters";
-  const auto digits = text.size() - static_cast<std::size_t>(std::ranges::count_if(text, IsSpace));
-  if (digits > kDigits && digits % kDigits == 0) {
-    return "holds " + std::to_string(digits / kDigits) + " keys; " + expected;
-  }
+  const auto digits = line.size() - static_cast<std::size_t>(std::ranges::count_if(line, IsSpace));
   if (digits != kDigits) {
     return std::string(digits < kDigits ? "too short: " : "too long: ") + expected + ", found " +
            std::to_string(digits);
   }
-  return std::ranges::any_of(text, IsSpace) ? expected + ", found spaces between them" : "";
+  return std::ranges::any_of(line, IsSpace) ? expected + ", found spaces between them" : "";
 }
 
-Key FromDigits(const std::string& text) {
+Key FromDigits(std::string_view text) {
   const auto value = [](char c) {
     return c <= '9' ? c - '0' : std::tolower(static_cast<unsigned char>(c)) - 'a' + 10;  // isxdigit holds
   };
@@ -55,9 +54,41 @@ Key FromDigits(const std::string& text) {
   return key;
 }
 
+// The lines with something in them, without spaces at their ends.
+std::vector<std::string_view> LinesOf(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    while (!line.empty() && IsSpace(line.back())) line.remove_suffix(1);
+    if (!line.empty()) lines.push_back(line);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+// The keys in the text of a file; nothing, and why.
+std::optional<Keys> KeysIn(std::string_view text, std::string& why) {
+  const std::vector<std::string_view> lines = LinesOf(text);
+  if (lines.empty()) why = "it is empty; expected one key of " + std::to_string(kDigits) + " hexadecimal digits";
+  if (lines.size() > kMostKeys) {
+    why = "holds " + std::to_string(lines.size()) + " keys; expected one, or two while the key is changed";
+  }
+  for (std::size_t i = 0; why.empty() && i < lines.size(); ++i) {
+    why = WhyNoKey(lines[i]);
+    if (!why.empty() && lines.size() > 1) why = "key " + std::to_string(i + 1) + ": " + why;
+  }
+  if (!why.empty()) return {};
+  Keys keys{.own = FromDigits(lines[0]), .other = {}};
+  if (lines.size() == kMostKeys) keys.other = FromDigits(lines[1]);
+  if (keys.other != keys.own) return keys;
+  why = "holds the same key twice";
+  return {};
+}
+
 }  // namespace
 
-std::optional<Key> ReadKey(const std::string& path, std::string& problem) {
+std::optional<Keys> ReadKeys(const std::string& path, std::string& problem) {
   const auto refuse = [&](const std::string& why) {
     problem = "key file " + path + ": " + why;
     return std::nullopt;
@@ -79,11 +110,11 @@ std::optional<Key> ReadKey(const std::string& path, std::string& problem) {
   }
   if (size < 0) return refuse(std::strerror(error));
   text.resize(static_cast<std::size_t>(size));
-  while (!text.empty() && IsSpace(text.back())) text.pop_back();
-  if (const std::string why = WhyNoKey(text); !why.empty()) return refuse(why);
-  const Key key = FromDigits(text);
+  std::string why;
+  const std::optional<Keys> keys = KeysIn(text, why);
   OPENSSL_cleanse(text.data(), text.size());
-  return key;
+  if (!keys) return refuse(why);
+  return keys;
 }
 
 }  // namespace takt::lcm

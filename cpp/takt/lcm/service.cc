@@ -18,14 +18,14 @@ std::unique_ptr<Service> Service::Open(engine::Engine& engine, const ServiceOpti
     problem = service->sending_.problem;
     if (service->sending_.lcm) service->receiving_ = OpenReceiver(options.url, problem);
     if (!service->receiving_) return nullptr;
-    std::optional<Key> key;
+    std::optional<Key> own;
     if (Authentication* const authentication = options.authentication.get()) {
-      key = authentication->key();
+      own = authentication->keys().own;
       service->receiving_ = WithKey(
-          std::move(service->receiving_), *key,
+          std::move(service->receiving_), authentication->keys(),
           [authentication](std::string_view channel, TagState state) { authentication->Refuse(channel, state); });
     }
-    service->network_ = std::make_unique<NetworkOutlet>(*service->sending_.lcm, key);
+    service->network_ = std::make_unique<NetworkOutlet>(*service->sending_.lcm, own);
   }
   if (!options.log_path.empty()) {
     service->log_ = OpenLog(options.log_path, problem);

@@ -22,6 +22,10 @@ Key KeyFrom(unsigned seed) {
   return key;
 }
 
+Keys KeysFrom(unsigned seed) {
+  return {.own = KeyFrom(seed), .other = {}};
+}
+
 Bytes MessageFrom(unsigned seed, std::size_t size) {
   std::mt19937 random(seed);
   Bytes message(size);
@@ -42,7 +46,7 @@ TagState Open(Verifier& verifier, std::string_view channel, const Bytes& bytes, 
 // EN-31: a good tag is taken off, and the message is as it was, whatever its length.
 TEST(Authentication, LeavesTheMessageAsItWas) {
   Signer signer(KeyFrom(1));
-  Verifier verifier(KeyFrom(1));
+  Verifier verifier(KeysFrom(1));
   for (const std::size_t size : {0u, 1u, 55u, 64u, 60u, 5000u}) {
     const Bytes message = MessageFrom(7, size);
     const Bytes bytes = Signed(signer, "takt/command", message);
@@ -57,7 +61,7 @@ TEST(Authentication, LeavesTheMessageAsItWas) {
 // EN-31: a bit changed anywhere, in message, tag or channel, another key, or a piece cut off: never taken.
 TEST(Authentication, RefusesEveryChangedBit) {
   Signer signer(KeyFrom(1));
-  Verifier verifier(KeyFrom(1)), other(KeyFrom(2));
+  Verifier verifier(KeysFrom(1)), other(KeysFrom(2));
   Bytes bytes = Signed(signer, "takt/heartbeat", MessageFrom(3, 90));
   EXPECT_EQ(Open(verifier, "takt/heartbeas", bytes), TagState::kForeign);
   EXPECT_EQ(Open(verifier, "takt/heartbeat/", bytes), TagState::kForeign);
@@ -80,7 +84,7 @@ TEST(Authentication, TakesEachMessageOnce) {
   std::mt19937 random(31);
   for (int round = 0; round < 20; ++round) {
     Signer signer(KeyFrom(1));
-    Verifier verifier(KeyFrom(1));
+    Verifier verifier(KeysFrom(1));
     std::vector<Bytes> said;
     for (unsigned i = 0; i < 300; ++i) said.push_back(Signed(signer, "takt/command", MessageFrom(i, 20)));
     std::vector<int> taken(said.size(), 0);
@@ -98,7 +102,7 @@ TEST(Authentication, TakesEachMessageOnce) {
 // EN-31: what is older than the window is not taken, although it was never heard.
 TEST(Authentication, TakesNothingFromBehindTheWindow) {
   Signer signer(KeyFrom(1));
-  Verifier verifier(KeyFrom(1));
+  Verifier verifier(KeysFrom(1));
   const Bytes late = Signed(signer, "takt/command", MessageFrom(1, 20));
   const Bytes edge = Signed(signer, "takt/command", MessageFrom(1, 20));
   for (std::uint64_t i = 0; i < kWindow - 1; ++i) {
@@ -119,15 +123,34 @@ TEST(Authentication, TakesNothingOfAnotherTime) {
                                        {-kFreshUs - 1'000'000, TagState::kStale},
                                        {std::int64_t{1} << 62, TagState::kStale},
                                        {-now - 1, TagState::kStale}}) {
-    Verifier verifier(KeyFrom(1));
+    Verifier verifier(KeysFrom(1));
     EXPECT_EQ(Open(verifier, "takt/machine", Signed(signer, "takt/machine", {1, 2, 3}), now + late_us), state)
         << late_us;
   }
 }
 
+// EN-31: while a key is changed, senders with the old one and with the new one are heard, each message once, whichever
+// key the sender tags with; others are not. What is sent has the first one's tag.
+TEST(Authentication, AcceptsTwoKeysWhileOneIsChanged) {
+  const Keys changing{.own = KeyFrom(1), .other = KeyFrom(2)};
+  Verifier verifier(changing), old(KeysFrom(2)), made(KeysFrom(1));
+  Signer with_new(KeyFrom(1)), with_old(KeyFrom(2)), foreign(KeyFrom(3)), both(changing.own);
+  for (Signer* const signer : {&with_new, &with_old}) {
+    const Bytes bytes = Signed(*signer, "takt/command", MessageFrom(1, 40));
+    EXPECT_EQ(Open(verifier, "takt/command", bytes), TagState::kGood);
+    EXPECT_EQ(Open(verifier, "takt/command", bytes), TagState::kReplayed);
+    Bytes changed = Signed(*signer, "takt/command", MessageFrom(1, 40));
+    changed[7] ^= 1;
+    EXPECT_EQ(Open(verifier, "takt/command", changed), TagState::kForeign);
+  }
+  EXPECT_EQ(Open(verifier, "takt/command", Signed(foreign, "takt/command", {1})), TagState::kForeign);
+  EXPECT_EQ(Open(made, "takt/command", Signed(both, "takt/command", {1})), TagState::kGood);
+  EXPECT_EQ(Open(old, "takt/command", Signed(both, "takt/command", {1})), TagState::kForeign);
+}
+
 // EN-31: many senders, each with counters of its own, are told apart; forgetting them forgets no counter that is fresh.
 TEST(Authentication, RemembersManySenders) {
-  Verifier verifier(KeyFrom(1));
+  Verifier verifier(KeysFrom(1));
   std::vector<Bytes> said;
   for (int i = 0; i < 5000; ++i) {
     Signer signer(KeyFrom(1));
@@ -157,7 +180,7 @@ TEST(Authentication, IsAsDescribed) {
                  mac.data(), &size),
             nullptr);
   bytes.insert(bytes.end(), mac.begin(), mac.end());
-  Verifier verifier(key);
+  Verifier verifier({.own = key, .other = {}});
   std::span<const std::uint8_t> view = bytes;
   EXPECT_EQ(verifier.Open("takt/drive/x/s", view, WallClockUs()), TagState::kGood);
   EXPECT_TRUE(std::ranges::equal(view, message));
@@ -166,7 +189,7 @@ TEST(Authentication, IsAsDescribed) {
 // EN-31: each reason is counted, and said once.
 TEST(Authentication, CountsAndSaysEachReasonOnce) {
   std::vector<std::string> said;
-  Authentication authentication(KeyFrom(1), [&](const std::string& sentence) { said.push_back(sentence); });
+  Authentication authentication(KeysFrom(1), [&](const std::string& sentence) { said.push_back(sentence); });
   for (int i = 0; i < 3; ++i) authentication.Refuse("takt/command", TagState::kMissing);
   authentication.Refuse("takt/heartbeat", TagState::kReplayed);
   EXPECT_EQ(authentication.refused(TagState::kMissing), 3u);

@@ -174,8 +174,8 @@ TEST(Receiver, FuzzAtTheSocketWithAKey) {
   const std::string url = NewUrl();
   std::map<TagState, std::uint64_t> refused;
   const Key key{1, 2, 3}, other{3, 2, 1};
-  const auto receiver =
-      WithKey(Open(url + "&recv_buf_size=4194304"), key, [&](std::string_view, TagState state) { ++refused[state]; });
+  const auto receiver = WithKey(Open(url + "&recv_buf_size=4194304"), {.own = key, .other = {}},
+                                [&](std::string_view, TagState state) { ++refused[state]; });
   std::mt19937 random(31);
   const auto uniform = [&](std::size_t low, std::size_t high) {
     return std::uniform_int_distribution<std::size_t>(low, high)(random);
