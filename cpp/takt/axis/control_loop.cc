@@ -18,8 +18,8 @@ double WithDeadBand(const ControlLoop& p, double volts) noexcept {
 }  // namespace
 
 double InConverterSteps(double volts) noexcept {
-  constexpr auto kLargestCode = static_cast<double>(kVoltageSteps / 2 - 1);
-  return std::min(std::round(volts / kVoltageStep), kLargestCode) * kVoltageStep;
+  constexpr auto kLargestCode = kVoltageSteps / 2 - 1;
+  return std::min(std::round(volts / kVoltageStep), double{kLargestCode}) * kVoltageStep;
 }
 
 void Step(const ControlLoop& p, const ControlLoopInputs& in, Cycle cycle, ControlLoopState& s,

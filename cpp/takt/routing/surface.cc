@@ -116,12 +116,12 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
   offer(PlanInTurn(grid, task, alone, kTurns, kTurnStates));
   result.first_sum = SumOf(grid, *best);
   // Whoever has none of its own ends where the first plan leaves it.
-  *best = Improve(grid, task, alone, *std::move(best),
-                  {.effort = problem.effort, .seed = problem.seed, .interchangeable = problem.interchangeable});
+  Plan plan = Improve(grid, task, alone, *std::move(best),
+                      {.effort = problem.effort, .seed = problem.seed, .interchangeable = problem.interchangeable});
   result.outcome = Outcome::kPlanned;
-  result.sum = SumOf(grid, *best);
-  result.targets = std::move(best->targets);
-  result.legs = std::move(best->legs);
+  result.sum = SumOf(grid, plan);
+  result.targets = std::move(plan.targets);
+  result.legs = std::move(plan.legs);
   MakeVisits(grid, problem, result);
   return result;
 }
