@@ -1,6 +1,7 @@
 #include "takt/cam/roots.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 

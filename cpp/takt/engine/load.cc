@@ -12,6 +12,7 @@
 #include "takt/engine/load_groups.h"
 #include "takt/engine/load_parts.h"
 #include "takt/engine/order.h"
+#include "takt/group/zones.h"
 #include "takt/planar/environment.h"
 #include "takt/track/build.h"
 #include "takt/track/ranges.h"

@@ -6,6 +6,7 @@
 
 #include "takt/kinematics/serial.h"
 #include "takt/kinematics/urdf_angles.h"
+#include "takt/kinematics/urdf_tree.h"
 #include "takt/kinematics/xml_shape.h"
 
 namespace takt::kinematics {
@@ -28,17 +29,9 @@ std::string Quoted(const std::string& name) {
 
 // Null when it cannot be read; the reader has then said why on stderr.
 urdf::ModelInterfaceSharedPtr Parsed(const std::string& xml) {
-  if (ShapeOf(xml, kMostLevels) != XmlShape::kGood) return nullptr;
+  if (ShapeOf(xml, kMostLevels) != XmlShape::kGood || !LinkInLoop(xml).empty()) return nullptr;
   try {
-    const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(xml);
-    if (!model) return nullptr;
-    // Links in a loop would keep one another for ever.
-    return {model.get(), [model](urdf::ModelInterface* read) {
-              for (const auto& [name, link] : read->links_) {
-                link->child_links.clear();
-                link->child_joints.clear();
-              }
-            }};
+    return urdf::parseURDF(xml);
   } catch (const std::exception&) {
     return nullptr;
   }
@@ -54,10 +47,6 @@ std::vector<urdf::JointConstSharedPtr> Way(const urdf::ModelInterface& model, co
     if (!link->parent_joint) {
       why = model.getLink(base) ? "no joints lead from " + Quoted(base) + " to " + Quoted(tip)
                                 : "the URDF has no link " + Quoted(base);
-      return {};
-    }
-    if (way.size() == model.joints_.size()) {
-      why = "the joints that lead to " + Quoted(tip) + " go in a loop";
       return {};
     }
     way.push_back(link->parent_joint);
@@ -160,6 +149,8 @@ std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& bas
     why = "this is no URDF that can be read";
     if (ShapeOf(xml, kMostLevels) == XmlShape::kTooDeep) {
       why += ": its elements nest deeper than " + std::to_string(kMostLevels) + " levels";
+    } else if (const std::string link = LinkInLoop(xml); !link.empty()) {
+      why += ": link " + Quoted(link) + " is in a loop of joints, or hangs on one";
     }
     return std::nullopt;
   }
