@@ -1,4 +1,4 @@
-"""Runs a journal again and compares the whole state after every cycle."""
+"""Runs a journal again and compares the whole state after every cycle, and what components published."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import json
 import os
 import sys
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,8 +15,10 @@ from takt import _core, msgs
 from takt.counted import counted
 from takt.events import LogError, Progress
 from takt.lcmlog import Run, open_log, run_of
+from takt.recording import Array
+from takt.tables import components_of, fields_of_kind, table_of
 
-CHUNK = 10_000  # cycles between two reports of progress
+CHUNK = 2_000  # cycles between two reports of progress
 WIRES = tuple(_core.servo_inputs())
 
 Hashes = tuple[npt.NDArray[np.int64], npt.NDArray[np.uint64]]  # cycles, rising, and the hash after each
@@ -31,6 +34,17 @@ class Difference:
 
 
 @dataclass(frozen=True)
+class StateDifference:
+    """The first recorded state that is not what the component published in this cycle."""
+
+    component: str
+    field: str
+    cycle: int
+    recorded: Any
+    replayed: Any
+
+
+@dataclass(frozen=True)
 class ReplayResult:
     machine: str
     cycles: int  # that were compared
@@ -40,6 +54,9 @@ class ReplayResult:
     version: str  # of the engine that wrote the log
     difference: Difference | None
     missing: str  # why not all of them could be compared; empty: all were
+    states: int = 0  # recorded ones of components that were compared
+    wrong_states: int = 0  # of these others than the replay's
+    state_difference: StateDifference | None = None
 
     @property
     def complete(self) -> bool:
@@ -48,8 +65,8 @@ class ReplayResult:
 
     @property
     def same(self) -> bool:
-        """Every cycle was compared, and equal."""
-        return self.complete and self.difference is None
+        """Every cycle was compared, and equal, and so was every state that the log holds."""
+        return self.complete and self.difference is None and self.state_difference is None
 
     def __bool__(self) -> bool:
         return self.same
@@ -57,11 +74,18 @@ class ReplayResult:
     @property
     def sentence(self) -> str:
         span = f"{counted(self.cycles, 'cycle')} ({self.cycles * self.period_s:.3f} s)"
-        what = f"{span} with {counted(self.commands, 'command')}"
+        states = f" and {counted(self.states, 'recorded state')}" if self.states else ""
+        what = f"{span} with {counted(self.commands, 'command')}{states}"
         if self.difference is not None:
             at = self.difference.cycle
             missing = f" ({self.missing})" if self.missing else ""
             return f"{what}: differs from cycle {at} ({at * self.period_s:.4f} s) on{missing}"
+        if (state := self.state_difference) is not None:
+            where = f"{state.component}.{state.field} in cycle {state.cycle} ({state.cycle * self.period_s:.4f} s)"
+            return (
+                f"{what}: {self.wrong_states:,} of the recorded states are not what the run published: "
+                f"{where} was {state.replayed}, the log has {state.recorded}"
+            )
         if self.missing:
             compared = f"{self.cycles:,} of {counted(self.of, 'cycle')}"
             return f"{compared} compared and equal, so not proven the same: {self.missing}"
@@ -70,15 +94,17 @@ class ReplayResult:
 
 def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | None = None) -> ReplayResult:
     """Rebuilds the engine from a log that taktd wrote (--log), gives every command so that it is applied in the same
-    cycle, and compares the hash of the state after every cycle. The run is the same only if every cycle from the first
-    to the last one that the log knows of was compared; a hole in the journal ends the comparison."""
+    cycle, and compares the hash of the state after every cycle, and every state of a component that the log holds with
+    what the component publishes in this cycle. The run is the same only if every cycle from the first to the last one
+    that the log knows of was compared; a hole in the journal ends the comparison. Not compared: feedback, what lies on
+    belts, shapes of tracks, figures of the host."""
     content = open_log(log, (lambda share: progress(share / 2)) if progress else None)
     one = run_of(content, run)
     if one.start is None:
         raise LogError(f"{content.path}: holds no journal; taktd writes one with --log")
     cycles, recorded = _hashes(one)
     known = _last_cycle(one, cycles) + 1
-    missing = _missing(one, cycles, known)
+    missing = _missing(one, cycles, known) or _contradiction(one, cycles, recorded)
     if content.damaged:
         missing = f"the log is cut off or damaged{', and ' + missing if missing else ''}"
     comparable = _in_a_row(cycles)
@@ -86,6 +112,7 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
     engine = _core.Engine(text, str(content.path), journal=True, period_s=one.start.period_s, checks=False)
     commands = sorted(one.journal, key=lambda entry: entry.cycle)
     drives = _Drives(engine, one)
+    states = _States(engine, one)
     given = 0
     difference = None
     while difference is None and engine.cycle < comparable:
@@ -95,12 +122,14 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
         first = engine.cycle
         next_cycle = commands[given].cycle if given < len(commands) else comparable
         next_cycle = min(next_cycle, drives.give(first))
+        states.begin()
         engine.step(min(comparable, first + CHUNK, next_cycle) - first)
         made = engine.take_hashes()[1]
         wrong = np.flatnonzero(made != recorded[first : first + len(made)])
         if len(wrong):
             at = first + int(wrong[0])
             difference = Difference(at, int(recorded[at]), int(made[wrong[0]]))
+        states.compare(first + (int(wrong[0]) if len(wrong) else len(made)))
         engine.take_feedback()
         engine.take_journal()
         engine.take_drive_journal()
@@ -108,7 +137,79 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
             progress(0.5 + 0.5 * engine.cycle / comparable)
     compared = comparable if difference is None else difference.cycle + 1
     name = json.loads(engine.machine_json)["name"]
-    return ReplayResult(name, compared, known, given, one.start.period_s, one.start.version, difference, missing)
+    return ReplayResult(
+        name,
+        compared,
+        known,
+        given,
+        one.start.period_s,
+        one.start.version,
+        difference,
+        missing,
+        states.compared,
+        states.wrong,
+        states.first,
+    )
+
+
+@dataclass
+class _Recorded:
+    """The states of one component in a log, as columns."""
+
+    name: str
+    index: int  # among the components of the engine
+    fields: tuple[str, ...]
+    columns: dict[str, Array]
+    given: int = 0  # rows that were compared
+
+
+class _States:
+    """Compares the states of components that a log holds with those that are published now. It compares what a
+    recording of the log would hold."""
+
+    def __init__(self, engine: _core.Engine, run: Run) -> None:
+        self.compared = 0
+        self.wrong = 0
+        self.first: StateDifference | None = None
+        self._engine = engine
+        self._recorder: _core.Recorder | None = None
+        self._all: list[_Recorded] = []
+        period = run.start.period_s if run.start is not None else 0.0
+        for index, (name, (kind, _)) in enumerate(components_of(json.loads(engine.machine_json)).items()):
+            if run.states.get(name):
+                columns, _ = table_of(kind.name, run.states[name], period)
+                self._all.append(_Recorded(name, index, fields_of_kind(kind.name), columns))
+
+    def begin(self) -> None:
+        """Records the cycles from now on."""
+        if self._all:
+            self._recorder = self._engine.start_recorder([one.index for one in self._all], 1)
+
+    def compare(self, end: int) -> None:
+        """Those of the cycles that were recorded, before this one."""
+        if self._recorder is None:
+            return
+        self._engine.stop_recorder(self._recorder)
+        cycles = self._recorder.cycles().astype(np.int64)
+        for place, one in enumerate(self._all):
+            last = int(np.searchsorted(one.columns["cycle"], end))
+            if not len(cycles) or one.given == last:
+                continue
+            rows = self._recorder.table(place)
+            chosen = one.columns["cycle"][one.given : last] - cycles[0]
+            wrong = np.zeros(len(chosen), dtype=bool)
+            for field in one.fields:
+                was, now = one.columns[field][one.given : last], rows[field][chosen]
+                differs = ~((was == now) | ((was != was) & (now != now)))  # nan is like itself
+                if differs.any() and (self.first is None or cycles[0] + chosen[differs][0] < self.first.cycle):
+                    at = int(np.flatnonzero(differs)[0])
+                    cycle = int(cycles[0] + chosen[at])
+                    self.first = StateDifference(one.name, field, cycle, was[at].item(), now[at].item())
+                wrong |= differs
+            self.compared += len(chosen)
+            self.wrong += int(wrong.sum())
+            one.given = last
+        self._recorder = None
 
 
 class _Drives:
@@ -169,6 +270,19 @@ def _missing(run: Run, cycles: npt.NDArray[np.int64], known: int) -> str:
         return f"the journal has no hash of cycle {row:,}" if cycles[row] > row else f"cycle {row - 1:,} comes twice"
     if row < known:
         return f"the journal ends after cycle {row - 1:,}"
+    return ""
+
+
+def _contradiction(run: Run, cycles: npt.NDArray[np.int64], recorded: npt.NDArray[np.uint64]) -> str:
+    """What else in the log says another thing than its journal; empty: nothing."""
+    start = run.start
+    if start is not None and any(text != start.text for text, _, _ in run.descriptions):
+        return "the machine that is described is not that of the journal"
+    for state in run.engine_states:
+        told = state.state_hash & 0xFFFF_FFFF_FFFF_FFFF
+        row = int(np.searchsorted(cycles, state.cycle))
+        if told and row < len(cycles) and cycles[row] == state.cycle and int(recorded[row]) != told:
+            return f"the engine's figures have another hash for cycle {state.cycle:,} than the journal"
     return ""
 
 

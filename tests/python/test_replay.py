@@ -89,6 +89,59 @@ def test_the_slightest_change_is_found(log: Path, tmp_path: Path) -> None:
     assert "differs from cycle" in result.sentence
 
 
+def test_forged_states_are_found(log: Path, tmp_path: Path) -> None:
+    """EN-36: the journal is whole and is reproduced, but the states beside it are not those of the run."""
+    wanted = open_log(log).runs[-1]
+    whole = takt.replay(log)
+    assert whole.states == sum(map(len, wanted.states.values()))
+    assert f"{whole.states:,} recorded states: the same" in whole.sentence
+    at = wanted.states["x"][700].cycle
+
+    def change(channel: str, data: bytes) -> bytes:
+        if channel != "takt/axis/x":
+            return data
+        state = msgs.axis_state.decode(data)
+        if state.cycle == at:
+            state.set_position += 1e-9
+        return state.encode()
+
+    result = takt.replay(changed(log, tmp_path / "changed.lcm", change))
+    assert not result.same
+    assert result.complete
+    assert result.difference is None
+    assert result.wrong_states == 1
+    found = result.state_difference
+    assert found is not None
+    assert (found.component, found.field, found.cycle) == ("x", "set_position", at)
+    assert f"1 of the recorded states are not what the run published: x.set_position in cycle {at} " in result.sentence
+
+
+def test_forged_descriptions_and_hashes_are_found(log: Path, tmp_path: Path) -> None:
+    """EN-36: limits that a report would judge by, and hashes in the engine's figures, are those of the journal."""
+
+    def other_limits(channel: str, data: bytes) -> bytes:
+        if channel != "takt/machine":
+            return data
+        description = msgs.machine_description.decode(data)
+        description.text = description.text.replace("velocity: ", "velocity: 9", 1)
+        return description.encode()
+
+    result = takt.replay(changed(log, tmp_path / "limits.lcm", other_limits))
+    assert not result.same
+    assert "the machine that is described is not that of the journal" in result.sentence
+
+    def other_hash(channel: str, data: bytes) -> bytes:
+        if channel != "takt/engine":
+            return data
+        figures = msgs.engine_state.decode(data)
+        figures.state_hash ^= figures.cycle > 500
+        return figures.encode()
+
+    result = takt.replay(changed(log, tmp_path / "hash.lcm", other_hash))
+    assert not result.same
+    assert "the engine's figures have another hash" in result.sentence
+
+
 def test_a_log_without_a_journal_says_so(log: Path, tmp_path: Path) -> None:
     def change(channel: str, data: bytes) -> bytes | None:
         return None if channel.startswith("takt/journal") else data
