@@ -2,7 +2,7 @@
 
 A joystick, a camera or another controller says where the axis is to be, many times a second, with times of its own
 clock. The axis goes by a smooth curve through these set points, one `delay` late, within its limits; when they stop
-coming it stops.
+coming it stops. Set points of a group say where its tool is to be, in any coordinate system that stands, or its axes.
 """
 
 import math
@@ -11,9 +11,9 @@ import random
 import takt
 from takt import expect
 
-COMMANDS = ("stream", "stream_point")
-ERRORS = (5, 8, 10, 11, 3003, 3005, 3120, 3121, 3122, 3123)
-SIGNALS = ("x.set_position", "x.set_velocity", "x.set_acceleration", "x.state")
+COMMANDS = ("stream", "stream_point", "group.stream", "group.stream_point")
+ERRORS = (5, 8, 10, 11, 1001, 1003, 3003, 3005, 3021, 3022, 3120, 3121, 3122, 3123, 3130)
+SIGNALS = ("x.set_position", "x.set_velocity", "y.set_position", "x.state")
 
 
 def scenario(session: takt.Session) -> None:
@@ -33,8 +33,20 @@ def scenario(session: takt.Session) -> None:
     stream.wait_final()
     assert stream.error_id == 3123
     session.run(0.3)
+    session.mark("the tool of a portal round a circle", axis="x")
+    portal = session.group("portal")
+    portal.power().wait()
+    portal.enable().wait()
+    portal.stream(key=18, delay=0.08)
+    x, y = portal.x, portal.y
+    for i in range(100):
+        t = i / 50
+        portal.stream_point(x=x + 20 * math.sin(3 * t), y=y + 20 * (1 - math.cos(3 * t)), time=t, key=18)
+        session.run(0.02)
+    portal.halt().wait()
 
 
 def verify(recording: takt.Recording) -> None:
-    expect.within_limits(recording, "x")
+    for axis in ("x", "y"):
+        expect.within_limits(recording, axis)
     expect.visits_states(recording, "x", ["Standstill", "SynchronizedMotion", "DiscreteMotion", "Standstill"])

@@ -63,6 +63,16 @@ def grouped(s: takt.Engine, sense: int) -> Any:
     return s.group("portal").move_linear_absolute(x=0, y=150 * sense, z=0, velocity=100)
 
 
+def group_streamed(s: takt.Engine, sense: int) -> Any:
+    portal = s.group("portal")
+    portal.enable().wait()
+    stream = portal.stream(key=7, delay=0.01, timeout=1.0)
+    for i in range(60):
+        portal.stream_point(key=7, y=sense * 0.0015 * i * i)
+        s.step(1)
+    return stream
+
+
 KINDS: dict[str, Start] = {
     "move_absolute": lambda s, k: s.axis("y").move_absolute(position=150 * k),
     "move_relative": lambda s, k: s.axis("y").move_relative(distance=150 * k),
@@ -85,6 +95,7 @@ KINDS: dict[str, Start] = {
     "stream": streamed,
     "combine_axes": summed,
     "group": grouped,
+    "group stream": group_streamed,
 }
 
 

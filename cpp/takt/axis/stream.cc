@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kClockGain = 1e-3;     // of how much earlier or later than the delay a set point comes
 constexpr double kFastestClock = 5e-3;  // most that the sender's clock is followed faster or slower by
-constexpr double kJumpFactor = 1.5;     // of the axis' velocity: faster set points jump
 
 // The slope of the curve at point i, from those around it.
 double Slope(const StreamState& k, std::size_t i) {
@@ -45,8 +44,15 @@ KinematicState Between(const StreamedPoint& a, const StreamedPoint& b, double ti
           (2 * c2 + 6 * x * c3) / (h * h)};
 }
 
-// What the stream asks for now, over all turns. Requires: it has a set point.
-KinematicState DemandAt(StreamState& k) {
+// The turn of a rotary axis that is nearest to where the stream is.
+double Unwrapped(const Context& c, double position, double near) {
+  if (!c.params.rotary()) return position;
+  return near + std::remainder(position - near, c.params.modulus);
+}
+
+}  // namespace
+
+KinematicState DemandAt(StreamState& k) noexcept {
   while (k.count > 1 && k.points[1].time <= k.clock) {
     Fix(k, 1);
     DropFirst(k);
@@ -59,13 +65,32 @@ KinematicState DemandAt(StreamState& k) {
   return Between(first, k.points[1], k.clock);
 }
 
-// The turn of a rotary axis that is nearest to where the stream is.
-double Unwrapped(const Context& c, double position, double near) {
-  if (!c.params.rotary()) return position;
-  return near + std::remainder(position - near, c.params.modulus);
+StreamSlot SlotOf(const StreamState& k, double time) noexcept {
+  std::size_t place = k.count;
+  while (place > 0 && k.points[place - 1].time >= time) --place;
+  if (k.count == 0) return {ErrorId::kNone, place};
+  const bool doubled = place < k.count && k.points[place].time == time;
+  // Those of the curve in use are taken.
+  const bool in_use = place < std::min<std::size_t>(k.count, 2) && k.clock > k.points[0].time;
+  if (doubled || in_use || time <= k.clock) return {ErrorId::kStreamLate, place};
+  return {k.count == kStreamed ? ErrorId::kBufferFull : ErrorId::kNone, place};
 }
 
-}  // namespace
+void Keep(const Cycle& cycle, const StreamedPoint& point, std::size_t place, double delay, StreamState& k) noexcept {
+  const bool begins = k.count == 0;
+  if (begins) k.clock = point.time - delay - cycle.period_s;
+  std::move_backward(k.points.begin() + static_cast<std::ptrdiff_t>(place), k.points.begin() + k.count,
+                     k.points.begin() + k.count + 1);
+  k.points[place] = point;
+  ++k.count;
+  k.heard_cycle = cycle.count;
+  // The two clocks drift apart: the stream is played a little faster or slower, so that it keeps its delay.
+  if (!begins && place + 1u == k.count) {
+    const double early = point.time - k.clock - delay;
+    const double most = kFastestClock * (point.time - k.points[place - 1].time);
+    k.clock += std::clamp(kClockGain * early, -most, most);
+  }
+}
 
 bool Fill(const Maker& m, const Stream& c) {
   m.r.kind = RequestKind::kStream;
@@ -124,33 +149,16 @@ Status CarryOut(const Context& c, Ticket ticket, const StreamPoint& command, Sta
   if (command.key != s.active.key) return Status::Failed(ErrorId::kStreamKey);
   const double now = static_cast<double>(c.cycle.count) * c.cycle.period_s;
   StreamedPoint point{command.time.value_or(now), 0, command.velocity.value_or(0), command.velocity.has_value()};
-  const bool begins = k.count == 0;
-  if (begins) k.clock = point.time - s.active.value - c.cycle.period_s;
-  // Its place among the others. Those of the curve in use are taken.
-  std::size_t place = k.count;
-  while (place > 0 && k.points[place - 1].time >= point.time) --place;
-  const bool doubled = place < k.count && k.points[place].time == point.time;
-  const bool in_use = place < std::min<std::size_t>(k.count, 2) && k.clock > k.points[0].time;
-  if (!begins && (doubled || in_use || point.time <= k.clock)) return Status::Failed(ErrorId::kStreamLate);
-  if (k.count == kStreamed) return Status::Failed(ErrorId::kBufferFull);
+  const auto [error, place] = SlotOf(k, point.time);
+  if (error != ErrorId::kNone) return Status::Failed(error);
   const double near = place > 0 ? k.points[place - 1].position : s.setpoint.position + s.origin;
   point.position = Unwrapped(c, command.position + s.origin, near);
   if (!Inside(c.params.limits, point.position - s.origin)) return Status::Failed(ErrorId::kTargetBehindLimit);
   if (place > 0) {
-    const double way = kJumpFactor * c.params.limits.velocity * (point.time - k.points[place - 1].time);
+    const double way = kStreamJumpFactor * c.params.limits.velocity * (point.time - k.points[place - 1].time);
     if (std::abs(point.position - near) > way) return Status::Failed(ErrorId::kStreamJump);
   }
-  std::move_backward(k.points.begin() + static_cast<std::ptrdiff_t>(place), k.points.begin() + k.count,
-                     k.points.begin() + k.count + 1);
-  k.points[place] = point;
-  ++k.count;
-  k.heard_cycle = c.cycle.count;
-  // The two clocks drift apart: the stream is played a little faster or slower, so that it keeps its delay.
-  if (!begins && place + 1u == k.count) {
-    const double early = point.time - k.clock - s.active.value;
-    const double most = kFastestClock * (point.time - k.points[place - 1].time);
-    k.clock += std::clamp(kClockGain * early, -most, most);
-  }
+  Keep(c.cycle, point, place, s.active.value, k);
   Report(c, ticket, FeedbackState::kDone);
   return Status::Ok();
 }

@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "takt/axis/request.h"
+#include "takt/core/cycle.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
@@ -41,6 +42,19 @@ struct StreamState {
 inline bool Streams(RequestKind kind) noexcept {
   return kind == RequestKind::kStream;
 }
+// What a stream asks for now, over all turns. Requires: it has a set point.
+KinematicState DemandAt(StreamState& k) noexcept;
+// Where among those that are kept a set point of this time belongs. kStreamLate: its time is over, or there already.
+struct StreamSlot {
+  ErrorId error = ErrorId::kNone;
+  std::size_t place = 0;
+};
+StreamSlot SlotOf(const StreamState& k, double time) noexcept;
+// Keeps a set point there, and follows the sender's clock, so that the stream stays `delay` behind it.
+void Keep(const Cycle& cycle, const StreamedPoint& point, std::size_t place, double delay, StreamState& k) noexcept;
+// Faster than an axis with this velocity by so much: a set point jumps.
+inline constexpr double kStreamJumpFactor = 1.5;
+
 // Puts a stream in control. What was in control must have been ended.
 void BeginStream(const Context& c, const Request& r, State& s) noexcept;
 // The next set point; false: it has ended, the motion in progress counts.

@@ -255,6 +255,8 @@ const std::vector<Entry>& Entries() {
       Make<group::Command, group::MovePathSynchronized>(kGroup, "move_path_synchronized"),
       Make<group::Command, group::SyncAxis>(kGroup, "sync_axis"),
       Make<group::Command, group::Jog>(kGroup, "jog", true),
+      Make<group::Command, group::Stream>(kGroup, "stream"),
+      Make<group::Command, group::StreamPoint>(kGroup, "stream_point"),
       Make<group::Command, group::Stop>(kGroup, "stop", true),
       Make<group::Command, group::Halt>(kGroup, "halt"),
       Make<group::Command, group::Interrupt>(kGroup, "interrupt"),

@@ -10,6 +10,7 @@
 #include "takt/group/plan.h"
 #include "takt/group/queue.h"
 #include "takt/group/run.h"
+#include "takt/group/stream.h"
 #include "takt/group/sync.h"
 #include "takt/group/systems.h"
 #include "takt/group/track.h"
@@ -53,6 +54,7 @@ struct Applier {
   // Everything that is planned or waits gives way.
   void AbortAll(const Brake& brake = {}, bool lets_go = true) const {
     AbortTask();
+    EndStream(c, FeedbackState::kAborted, ErrorId::kNone, s);
     AbortMoves(c, ErrorId::kNone, s);
     GiveUpPath(c, brake, lets_go, s);
   }
@@ -61,7 +63,7 @@ struct Applier {
     if (made.error != ErrorId::kNone) return Refuse(made.error);
     if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
     const bool waits = made.move.buffer_mode != BufferMode::kAborting;
-    if (waits && (s.task == Task::kHalt || Jogs(s))) return Refuse(ErrorId::kState);
+    if (waits && (s.task == Task::kHalt || Jogs(s) || Streams(s))) return Refuse(ErrorId::kState);
     if (!waits) AbortAll({}, false);
     if (!c.ahead.known && !s.begun) c.ahead.window.SetLimits(LimitsOf(c, s));
     Request move = made.move;
@@ -92,6 +94,15 @@ struct Applier {
     s.lease_end_cycle = CycleIn(c.cycle, lease_s);
   }
 
+  void operator()(const Stream& m) const {
+    if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
+    if (const ErrorId error = BeginStream(c, ticket, m, s); error != ErrorId::kNone) Refuse(error);
+  }
+  void operator()(const StreamPoint& m) const {
+    if (const ErrorId error = TakePoint(c, m, s); error != ErrorId::kNone) return Refuse(error);
+    Report(c, ticket, FeedbackState::kDone);
+  }
+
   void operator()(const Stop& m) const {
     if (Is(GroupState::kDisabled)) return Refuse(ErrorId::kGroupDisabled);
     if (Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
@@ -119,7 +130,7 @@ struct Applier {
     if (Is(GroupState::kStandby)) Enter(GroupState::kMoving, s);
   }
   void operator()(const Interrupt& m) const {
-    if (!Is(GroupState::kMoving) || s.ends || RidesFreely(c, s)) return Refuse(ErrorId::kState);
+    if (!Is(GroupState::kMoving) || s.ends || Streams(s) || RidesFreely(c, s)) return Refuse(ErrorId::kState);
     AbortTask();
     s.interrupted = s.lets_go = true;
     for (Clutch& clutch : s.clutches) clutch.law_length = 0;
@@ -201,7 +212,7 @@ struct Applier {
     if (m.enable && Is(GroupState::kHoming)) return Refuse(ErrorId::kState);
     if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
     if (m.enable && s.guides) return Finish(ErrorId::kNone);
-    if (!m.enable && (s.begun || s.queue.count > 0)) {  // along the path first
+    if (!m.enable && (s.begun || s.queue.count > 0 || Streams(s))) {  // along the path first
       EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
       AbortAll();
       s.hold = false;
@@ -292,7 +303,7 @@ struct Applier {
   }
   template <typename T>
   void Track(const T& m) const {
-    ErrorId error = MayMove();
+    ErrorId error = Streams(s) ? ErrorId::kState : MayMove();
     if (error == ErrorId::kNone) error = BeginTracking(c, ticket, m, s);
     if (error != ErrorId::kNone) Refuse(error);
   }

@@ -237,6 +237,15 @@ std::string WhyNotThis(const Jog& c) {
   return {};
 }
 
+std::string WhyNotThis(const StreamPoint& c) {
+  if (GivenOfTool(c).empty() && !GivesAxis(c)) return "x: expected at least one of x to c or a1 to a8";
+  const bool moves = c.vx || c.vy || c.vz || c.wx || c.wy || c.wz;
+  if (c.coordinate_system == CoordinateSystem::kAcs && moves) {
+    return "vx: expected v1 to v8 only, with coordinate_system acs";
+  }
+  return WhyNotInAcs(c);
+}
+
 std::string WhyNotThis(const MoveArch& c) {
   return FirstOf(WhyNotAPlace(c), WhyNotTransition(c));
 }
@@ -443,6 +452,56 @@ void describe(Description<Jog>& d) {
   d.defaulted<&Jog::acceleration>(unit::mm_s2, kAccelerations, "Largest acceleration along the way; unset: the limit.");
   d.defaulted<&Jog::deceleration>(unit::mm_s2, kAccelerations, "Largest deceleration along it; unset: the limit.");
   d.defaulted<&Jog::jerk>(unit::mm_s3, kJerks, "Largest jerk along it; unset: the limit.");
+}
+
+void describe(Description<Stream>& d) {
+  using C = Stream;
+  d.named("GroupStream");
+  d.about(
+      "Follows set points that come from outside, one stream_point after another, at 20 Hz to once a cycle. Each axis "
+      "goes by a smooth curve through them, within its limits. Reached when all are on it. Takes over from moves and "
+      "streams without a stop. Ends with error 3123 and a stop within limits when no set point has come for the "
+      "timeout.");
+  d.defaulted<&C::key>(
+      "A number that the set points must carry: choose one of your own, so that no other client's are taken.");
+  d.defaulted<&C::delay>(unit::s, between(0, 10),
+                         "How long after it came the first set point is due, the others by their times: what jitter "
+                         "and losses may take.");
+  d.defaulted<&C::timeout>(unit::s, between(0.001, 60), "Longest time without a set point, from the first one on.");
+  d.defaulted<&C::velocity_factor>(kFactors, "Of the axes' largest velocities, to get onto the set points.");
+  d.defaulted<&C::acceleration_factor>(kFactors, "Of their largest accelerations, the same.");
+  d.defaulted<&C::jerk_factor>(kFactors, "Of their largest jerks, the same.");
+}
+
+void describe(Description<StreamPoint>& d) {
+  using C = StreamPoint;
+  d.named("GroupStreamPoint");
+  d.about(
+      "A set point of the stream in control. What is not given stays as in the set point before. Refused, and the "
+      "stream goes on: a key of another stream (3120), a time that is over or there already (3121), further from the "
+      "set point before than the axes can move in the time between them (3122), beyond a SW limit (8), a pose that "
+      "cannot be reached (3021, 3022), a zone of another group (3130), a product coordinate system that moves (5).");
+  DescribeNumbers(d);
+  d.defaulted<&C::vx>(unit::mm_s, kJogSpeeds,
+                      "How fast the tool is there along X. Those of the tool that are not given are 0; without any, "
+                      "as the set points around it say.");
+  d.defaulted<&C::vy>(unit::mm_s, kJogSpeeds, "Along Y.");
+  d.defaulted<&C::vz>(unit::mm_s, kJogSpeeds, "Along Z.");
+  d.defaulted<&C::wx>(unit::deg_s, kJogSpeeds, "How fast it turns about X, through the tool centre point.");
+  d.defaulted<&C::wy>(unit::deg_s, kJogSpeeds, "About Y.");
+  d.defaulted<&C::wz>(unit::deg_s, kJogSpeeds, "About Z.");
+  d.defaulted<&C::v1>(unit::u_s, kJogSpeeds, "How fast axis 1 is there; unset: as the set points around it say.");
+  d.defaulted<&C::v2>(unit::u_s, kJogSpeeds, "Axis 2.");
+  d.defaulted<&C::v3>(unit::u_s, kJogSpeeds, "Axis 3.");
+  d.defaulted<&C::v4>(unit::u_s, kJogSpeeds, "Axis 4.");
+  d.defaulted<&C::v5>(unit::u_s, kJogSpeeds, "Axis 5.");
+  d.defaulted<&C::v6>(unit::u_s, kJogSpeeds, "Axis 6.");
+  d.defaulted<&C::v7>(unit::u_s, kJogSpeeds, "Axis 7.");
+  d.defaulted<&C::v8>(unit::u_s, kJogSpeeds, "Axis 8.");
+  DescribeSystem(d);
+  d.defaulted<&C::time>(unit::s, between(-1e12, 1e12),
+                        "When, by any clock of the sender that goes on; unset: when it comes.");
+  d.defaulted<&C::key>("That of the stream.");
 }
 
 void describe(Description<Stop>& d) {

@@ -146,6 +146,26 @@ struct Jog {
   std::optional<double> acceleration{}, deceleration{}, jerk{};
 };
 
+// Set points that come from outside, one StreamPoint after another (AX-114).
+struct Stream {
+  std::int32_t key = 0;
+  double delay = 0.02;             // s
+  double timeout = 0.1;            // s
+  double velocity_factor = 1;      // of the axes' own limits, to get onto the set points
+  double acceleration_factor = 1;  // the same
+  double jerk_factor = 1;          // the same
+};
+struct StreamPoint {
+  std::optional<double> x{}, y{}, z{}, a{}, b{}, c{};
+  std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
+  std::optional<double> vx{}, vy{}, vz{}, wx{}, wy{}, wz{};              // mm/s, deg/s
+  std::optional<double> v1{}, v2{}, v3{}, v4{}, v5{}, v6{}, v7{}, v8{};  // u/s
+  CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
+  std::uint32_t pcs = 1;
+  std::optional<double> time{};  // s, by the sender's clock; unset: when it comes
+  std::int32_t key = 0;
+};
+
 struct Stop {  // MC_GroupStop
   std::optional<double> deceleration{}, jerk{};
   bool hold = false;  // stay in Stopping until released (Execute kept true)
@@ -268,7 +288,7 @@ using Command =
                  MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop, Halt, Interrupt, Continue, AddAxis,
                  RemoveAxis, UngroupAllAxes, Enable, Disable, Reset, Power, Home, SetPosition, SetOverride,
                  SetKinTransform, SetCartesianTransform, SetCoordinateTransform, SetDynCoordTransform,
-                 TrackConveyorBelt, TrackRotaryTable, MoveArch, Jog, PathChecked>;
+                 TrackConveyorBelt, TrackRotaryTable, MoveArch, Jog, Stream, StreamPoint, PathChecked>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
 std::string WhyNot(const Command& command);
@@ -289,6 +309,8 @@ void describe(Description<MovePathSynchronized>&);
 void describe(Description<SyncAxis>&);
 void describe(Enumeration<JogSystem>&);
 void describe(Description<Jog>&);
+void describe(Description<Stream>&);
+void describe(Description<StreamPoint>&);
 void describe(Description<Stop>&);
 void describe(Description<Halt>&);
 void describe(Description<Interrupt>&);

@@ -10,6 +10,7 @@
 #include "takt/group/plan.h"
 #include "takt/group/queue.h"
 #include "takt/group/run.h"
+#include "takt/group/stream.h"
 #include "takt/group/switches.h"
 #include "takt/group/sync.h"
 #include "takt/group/systems.h"
@@ -25,6 +26,7 @@ void Fail(const Context& c, ErrorId error, State& s) {
   EndTask(c, FeedbackState::kError, error, s);
   s.hold = false;
   EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  EndStream(c, FeedbackState::kError, error, s);
   AbortMoves(c, error, s);
   EndMotion({}, true, s);
   if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
@@ -228,12 +230,15 @@ void Step(const Context& c, State& s) noexcept {
   }
   if (s.task == Task::kPower) WatchPower(c, s);
   if (s.state == GroupState::kHoming && s.task != Task::kPower) WatchHoming(c, s);
-  if (s.state == GroupState::kStandby || s.state == GroupState::kMoving) {
+  const bool plans = s.state == GroupState::kStandby || s.state == GroupState::kMoving;
+  if (plans && !Streams(s)) {
     if (!s.interrupted) StepTracking(c, s);
     if (!s.ends && !s.interrupted) Plan(c, s);
     if (!s.begun && !s.ends && MayBegin(c)) BeginMotion(c, s);
   }
-  if (s.begun) {
+  if (Streams(s)) {
+    FollowStream(c, s);
+  } else if (s.begun) {
     if (!s.ends && !s.interrupted) Rehearse(c, s);
     MoveOn(c, s);
   } else if (s.ends ? AllMembers(c, s, HasStopped) : s.state == GroupState::kMoving && NothingToGo(c, s)) {

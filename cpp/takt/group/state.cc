@@ -152,6 +152,7 @@ void describe(Description<State>& d) {
   d.internal<&S::way_before>("Way along all paths before this one.");
   d.internal<&S::master>("What the path follows.");
   d.internal<&S::jog>("A jog as it was planned.");
+  d.internal<&S::stream>("Set points from outside.");
   d.internal<&S::reason>("Why there was no position of the axes.");
   d.internal<&S::problem>("Why there was no path.");
   d.internal<&S::blocked_at>("How far it could be gone.");

@@ -10,6 +10,7 @@
 #include "takt/core/status.h"
 #include "takt/group/request.h"
 #include "takt/group/state_table.h"
+#include "takt/group/stream.h"
 #include "takt/group/track_state.h"
 #include "takt/kinematics/carrier.h"
 #include "takt/kinematics/joints.h"
@@ -187,6 +188,7 @@ struct State {
   double way_before = 0;  // mm, gone along all paths before this one
   MasterState master;
   Jogging jog;
+  StreamState stream;
   kinematics::Reason reason = kinematics::Reason::kNone;
   path::Problem problem = path::Problem::kNone;
   double blocked_at = 0;

@@ -12,6 +12,7 @@
 #include "takt/group/queue.h"
 #include "takt/group/rides.h"
 #include "takt/group/run.h"
+#include "takt/group/stream.h"
 #include "takt/group/systems.h"
 
 namespace takt::group {
@@ -167,6 +168,31 @@ void MeetBraking(const Context& c, const State& s, const kinematics::MovingFrame
     along = next;
     braked = next_braked;
   }
+}
+
+// What the tool meets while all axes go evenly from one place to another.
+void MeetJoints(const Context& c, const kinematics::Joints& from, const kinematics::Joints& to, Met& met) {
+  KDL::Vector before;
+  bool known = false;
+  for (int i = 0; i <= kLooks; ++i) {
+    kinematics::Joints joints{};
+    for (std::size_t k = 0; k < kMaxAxes; ++k) joints[k] = std::lerp(from[k], to[k], static_cast<double>(i) / kLooks);
+    Frame tool;
+    if (ToolAt(c, joints, tool) != kinematics::Reason::kNone) continue;
+    const KDL::Vector place = c.mounting.base * tool.p;
+    if (known) MeetLine(c, before, place, met);
+    before = place;
+    known = true;
+  }
+}
+
+// Set points that are kept lead into these.
+std::uint32_t ZonesOfStream(const Context& c, const State& s) {
+  std::uint32_t zones = 0;
+  for (std::size_t k = 0; k < c.zones.of.size(); ++k) {
+    if ((s.stream.zones & BitOf(k)) != 0 && s.stream.zones_until[k] > s.stream.of[0].clock) zones |= BitOf(k);
+  }
+  return zones;
 }
 
 // Where the ride of a stretch takes a place of it within this time.
@@ -331,6 +357,24 @@ Entry EnterZones(const Context& c, State& s) noexcept {
   return Entry::kWaits;
 }
 
+bool EnterZonesOf(const Context& c, const kinematics::Joints& before, const kinematics::Joints& there,
+                  const kinematics::Joints& after, double until, State& s) noexcept {
+  if (c.zones.of.empty() || !HasTool(c, s)) return true;
+  Met met;
+  MeetJoints(c, before, there, met);
+  if (after != there) MeetJoints(c, there, after, met);
+  const std::uint32_t missing = met.widened & ~s.zones;
+  if (HolderOf(c, missing).group != 0 || NextInLine(c, missing, s).group != 0) return false;
+  s.zones |= missing;
+  for (std::size_t k = 0; k < c.zones.of.size(); ++k) {
+    if ((met.widened & BitOf(k)) == 0) continue;
+    const bool has = (s.stream.zones & BitOf(k)) != 0;
+    s.stream.zones_until[k] = has ? std::max(s.stream.zones_until[k], until) : until;
+    s.stream.zones |= BitOf(k);
+  }
+  return true;
+}
+
 ErrorId StepZones(const Context& c, State& s) noexcept {
   if (c.zones.of.empty() || !HasTool(c, s)) return ErrorId::kNone;
   // Before the next move stands the tool, and nothing but that move is left to do.
@@ -345,13 +389,16 @@ ErrorId StepZones(const Context& c, State& s) noexcept {
   const KDL::Vector here = c.mounting.base * tool.p.p;
   Met now, comes;
   MeetLine(c, here, here, now);
+  // No path to brake along: each axis brakes by itself.
+  const bool by_itself = Streams(s) || (s.ends && !s.begun);
   if (s.begun) MeetBraking(c, s, tool, comes);
+  if (by_itself) MeetJoints(c, PresentJoints(c, s), JointsBraked(c, s), comes);
   const std::uint32_t ride = ZonesOfRide(c, s);
   const std::uint32_t stays = s.pace.now.velocity == 0 ? ride : 0;  // else its path may lead away from there
-  s.zones &= now.widened | comes.widened | ride | ZonesAhead(c, s) | s.zones_claimed;
+  s.zones &= now.widened | comes.widened | ride | ZonesAhead(c, s) | ZonesOfStream(c, s) | s.zones_claimed;
   // Who is within the margin already may leave it.
   const std::uint32_t must_not = now.inside | comes.inside | (comes.widened & ~now.widened);
-  const std::uint32_t wanted = must_not | comes.widened | stays | (s.begun ? 0 : now.widened);
+  const std::uint32_t wanted = must_not | comes.widened | stays | (s.begun || Streams(s) ? 0 : now.widened);
   std::uint32_t of_others = 0;
   for (std::size_t k = 0; k < c.zones.of.size(); ++k) {
     if (((wanted | ride) & ~s.zones & BitOf(k)) == 0) continue;
@@ -362,7 +409,9 @@ ErrorId StepZones(const Context& c, State& s) noexcept {
     }
   }
   s.zone_near = (ride & of_others) != 0;
-  if ((must_not & of_others) == 0 || !s.begun) return ErrorId::kNone;
+  if ((must_not & of_others) == 0) return ErrorId::kNone;
+  EndStream(c, FeedbackState::kError, ErrorId::kZoneTaken, s);
+  if (!s.begun) return ErrorId::kNone;
   if (s.ends && s.lets_go) {  // as strongly as it can
     EndMotion({}, true, s);
     return ErrorId::kNone;

@@ -68,6 +68,11 @@ enum class Entry : std::uint8_t { kFree, kWaits, kCircle };
 // Takes the zones that `ahead.next` meets, all or none.
 Entry EnterZones(const Context& c, State& s) noexcept;
 
+// A streamed set point leads the axes from `before` to `there`, and on to `after`, until `until` of the sender's clock:
+// takes the zones that the tool meets on the way. False: they are not free, or another group is next in line.
+bool EnterZonesOf(const Context& c, const kinematics::Joints& before, const kinematics::Joints& there,
+                  const kinematics::Joints& after, double until, State& s) noexcept;
+
 // move, behind the set points: lets go of zones that the tool has left, and takes those that it is in or is bound to be
 // carried into. A tool that would be carried into one of another group is braked: one that only waits for a zone gets
 // off its carrier and waits there (State::gets_off), else the group has to fail (kZoneTaken).

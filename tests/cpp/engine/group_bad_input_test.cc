@@ -28,6 +28,8 @@ std::vector<group::Command> GoodGroupCommands() {
           group::MoveDirectRelative{.a1 = 10},
           group::MoveArch{.x = 10, .height = 5},
           group::Jog{.x = 10},
+          group::Stream{},
+          group::StreamPoint{.x = 10, .vx = 1},
           group::MovePath{.path = square},
           group::MovePathSynchronized{.path = square, .master = Name::Of("a3")},
           group::SyncAxis{.axis = Name::Of("a4")},
@@ -103,6 +105,12 @@ TEST(GroupBadInput, SaysWhatWasExpected) {
       {"jog", "{c: 1, coordinate_system: acs}", "c: expected a1 to a8 only, with coordinate_system acs"},
       {"jog", "{x: 1, coordinate_system: hand}", "expected one of acs, mcs, wcs, pcs, tool, found 'hand'"},
       {"jog", "{x: 1, pcs: 17}", "pcs: expected a whole number from 1 to 16, found 17"},
+      {"stream", "{delay: -1}", "delay: expected a number in s from 0 to 10, found -1"},
+      {"stream", "{timeout: 0}", "timeout: expected a number in s from 0.001 to 60, found 0"},
+      {"stream_point", "{time: 1}", "x: expected at least one of x to c or a1 to a8"},
+      {"stream_point", "{x: .nan}", "x: expected a finite number in mm"},
+      {"stream_point", "{a1: 1, vx: 1, coordinate_system: acs}", "vx: expected v1 to v8 only"},
+      {"stream_point", "{b: 1, coordinate_system: acs}", "b: expected a1 to a8 only, with coordinate_system acs"},
       {"jog", "{x: 1, deceleration: 0}", "deceleration: expected a number "},
       {"set_dyn_coord_transform", "{carrier: portal}", "carrier: expected the name of a belt, another group or a pose"},
       {"set_dyn_coord_transform", "{carrier: movr}", "found 'movr'; did you mean mover?"},
@@ -175,6 +183,12 @@ const GroupSituation kGroupSituations[] = {
      [](Portal& p) {
        p.Tell(group::MoveLinearAbsolute{.x = 200, .velocity = 0.01});
        p.Tell(group::MoveLinearAbsolute{.x = 100, .y = 100, .buffer_mode = axis::BufferMode::kBuffered});
+       p.Run(100);
+     }},
+    {"streaming", group::GroupState::kMoving,
+     [](Portal& p) {
+       p.Tell(group::Stream{.timeout = 60});
+       p.Tell(group::StreamPoint{.x = 20, .vx = 1, .time = 0.0});
        p.Run(100);
      }},
     {"stopping", group::GroupState::kStopping,

@@ -1,0 +1,54 @@
+// Set points of a group that are streamed from outside (AX-114), as axis/stream.h has those of an axis.
+//
+// A set point becomes one of each axis when it comes: by the inverse kinematics from the one before, so in its branch.
+// Each axis goes by its own curve through them, all with the same times, and chases that within its limits
+// (trajectory/chase.h). Between set points the tool is off the straight line by what the axes bend in that time.
+//
+// Invariant: with the set points given, braking each axis with all that it has ends within its SW limits, and outside
+// zones of other groups; a set point that would break that is not given, and the stream ends.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "takt/axis/stream.h"
+#include "takt/core/describe_fwd.h"
+#include "takt/core/feedback.h"
+#include "takt/group/commands.h"
+#include "takt/group/params.h"
+#include "takt/kinematics/joints.h"
+
+namespace takt::group {
+
+struct Context;
+struct State;
+
+struct StreamState {
+  Ticket ticket = 0;  // 0: none
+  std::int32_t key = 0;
+  double delay = 0;    // s
+  double timeout = 0;  // s
+  double velocity_factor = 1;
+  double acceleration_factor = 1;
+  double jerk_factor = 1;
+  bool reached = false;                          // all axes were on their curves once
+  std::array<axis::StreamState, kMaxAxes> of{};  // of each member, with the times of all
+  std::array<double, kZones> zones_until{};      // by the sender's clock: set points lead into these zones
+  std::uint32_t zones = 0;                       // those that it has so, a mask
+};
+
+bool Streams(const State& s) noexcept;
+// In control at once: what the group did before is aborted, without a stop. An error: nothing has changed.
+ErrorId BeginStream(const Context& c, Ticket ticket, const Stream& command, State& s) noexcept;
+ErrorId TakePoint(const Context& c, const StreamPoint& command, State& s) noexcept;
+// Each axis comes to rest by itself, within its limits.
+void EndStream(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
+// move: the next set points of the members.
+void FollowStream(const Context& c, State& s) noexcept;
+
+// Where the members come to rest if each is braked by itself from now on.
+kinematics::Joints JointsBraked(const Context& c, const State& s) noexcept;
+
+void describe(Description<StreamState>&);
+
+}  // namespace takt::group
