@@ -10,19 +10,21 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "takt/core/name.h"
 #include "takt/kinematics/chain.h"
+#include "takt/kinematics/offset_arm.h"
 #include "takt/kinematics/six_axis.h"
 
 namespace takt::kinematics {
 
-// A chain with the geometry of an articulated arm with a spherical wrist (six_axis.h), however its file puts its axes:
-// tool = base * arm(zero + sign * joints) * flange.
+// A chain with the geometry of an articulated arm with a spherical wrist (six_axis.h) or with an offset one
+// (offset_arm.h), however its file puts its axes: tool = base * arm(zero + sign * joints) * flange.
 struct ClosedForm {
   bool known = false;
-  SixAxis arm;
+  std::variant<SixAxis, OffsetArm> arm;
   Frame base;
   Frame flange;
   std::array<double, 6> zero{};  // rad

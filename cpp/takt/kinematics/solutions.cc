@@ -76,16 +76,18 @@ void TryAll(const Kinematics& k, const Serial& serial, const Frame& tool, const 
       for (const Wrist wrist : kWrists) {
         if (!Wants(wanted.shoulder, shoulder) || !Wants(wanted.elbow, elbow) || !Wants(wanted.wrist, wrist)) continue;
         Joints arm{};
-        const Reason reason = Inverse(form.arm, flange, {shoulder, elbow, wrist}, near, arm);
+        const Configuration in = {shoulder, elbow, wrist};
+        const Reason reason =
+            std::visit([&](const auto& own) { return Inverse(own, flange, in, near, arm); }, form.arm);
         if (reason != Reason::kNone) {
           TakeReason(reason, out);
           continue;
         }
         for (std::size_t i = 0; i < serial.chain.count; ++i) arm[i] = form.sign[i] * (arm[i] - form.zero[i]);
         if (IsThere(serial.chain, arm, tool)) {
-          Add(k, {shoulder, elbow, wrist}, arm, out);
+          Add(k, in, arm, out);
         } else {
-          Try(k, serial, tool, {shoulder, elbow, wrist}, arm, out);
+          Try(k, serial, tool, in, arm, out);
         }
       }
     }

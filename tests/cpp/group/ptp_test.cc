@@ -37,6 +37,25 @@ constexpr const char* kStretched = R"(<robot name="stretched">
   <joint name="end" type="fixed"><parent link="l6"/><child link="flange"/><origin rpy="0 1.5708 0"/></joint>
 </robot>)";
 
+// An arm with an offset wrist (lengths of a UR5e), stretched to the side of -X at rest.
+constexpr const char* kOffset = R"(<robot name="offset">
+  <link name="base"/><link name="l1"/><link name="l2"/><link name="l3"/><link name="l4"/><link name="l5"/><link name="l6"/>
+  <link name="flange"/>
+  <joint name="j1" type="revolute"><parent link="base"/><child link="l1"/><origin xyz="0 0 0.1625"/><axis xyz="0 0 1"/>
+    <limit lower="-6.283" upper="6.283" effort="1" velocity="1"/></joint>
+  <joint name="j2" type="revolute"><parent link="l1"/><child link="l2"/><origin xyz="0 -0.138 0"/><axis xyz="0 -1 0"/>
+    <limit lower="-6.283" upper="6.283" effort="1" velocity="1"/></joint>
+  <joint name="j3" type="revolute"><parent link="l2"/><child link="l3"/><origin xyz="-0.425 0.131 0"/><axis xyz="0 -1 0"/>
+    <limit lower="-3.141" upper="3.141" effort="1" velocity="1"/></joint>
+  <joint name="j4" type="revolute"><parent link="l3"/><child link="l4"/><origin xyz="-0.3922 0 0"/><axis xyz="0 1 0"/>
+    <limit lower="-6.283" upper="6.283" effort="1" velocity="1"/></joint>
+  <joint name="j5" type="revolute"><parent link="l4"/><child link="l5"/><origin xyz="0 -0.1263 0"/><axis xyz="0 0 -1"/>
+    <limit lower="-6.283" upper="6.283" effort="1" velocity="1"/></joint>
+  <joint name="j6" type="revolute"><parent link="l5"/><child link="l6"/><origin xyz="0 0 -0.0997"/><axis xyz="0 -1 0"/>
+    <limit lower="-6.283" upper="6.283" effort="1" velocity="1"/></joint>
+  <joint name="end" type="fixed"><parent link="l6"/><child link="flange"/><origin xyz="0 -0.0996 0" rpy="1.5708 0 0"/></joint>
+</robot>)";
+
 const std::vector<std::string> kSix = {"a1", "a2", "a3", "a4", "a5", "a6"};
 
 Rig Arm(const std::string& urdf) {
@@ -61,6 +80,9 @@ std::vector<PtpCase> PtpCases() {
   cases.push_back({"URDF, stretched at rest", Arm(kStretched), own});
   const std::vector<Range> puma = {{-160, 160}, {-110, 110}, {-135, 135}, {-266, 266}, {-100, 100}, {-266, 266}};
   cases.push_back({"URDF, Puma", Arm(std::string(TAKT_SOURCE_DIR) + "/tests/cpp/kinematics/puma.urdf"), puma});
+  cases.push_back({"URDF, offset wrist",
+                   Arm(kOffset),
+                   {{-270, 270}, {-200, 20}, {-160, 160}, {-350, 350}, {-350, 350}, {-350, 350}}});
   for (PtpCase& one : cases) {
     for (std::size_t k = 0; k < one.ranges.size(); ++k) {
       const kinematics::JointRange& own = one.rig.kinematics->ranges[k];
@@ -111,6 +133,35 @@ TEST(Ptp, TakesAllThatTheAxesReach) {
     }
     EXPECT_GT(others, poses / 5) << "a test that cannot fail";
   }
+}
+
+// All eight, each another one, and each of them there.
+TEST(Ptp, KnowsAllConfigurationsOfAnOffsetWrist) {
+  const Rig rig = Arm(kOffset);
+  const kinematics::Kinematics& k = *rig.kinematics;
+  std::mt19937_64 random(8);
+  int eight = 0;
+  for (int i = 0; i < 200; ++i) {
+    Joints there{};
+    for (std::size_t n = 0; n < 6; ++n) there[n] = Uniform(random, -170, 170);
+    kinematics::Frame tool;
+    ASSERT_EQ(kinematics::Forward(k, there, tool), Reason::kNone);
+    const kinematics::Solutions all = kinematics::SolutionsOf(k, tool, {}, there);
+    eight += all.count == 8 ? 1 : 0;
+    bool known = false;
+    for (std::size_t a = 0; a < all.count; ++a) {
+      kinematics::Frame reached;
+      ASSERT_EQ(kinematics::Forward(k, all.of[a], reached), Reason::kNone);
+      ASSERT_LE((reached.p - tool.p).Norm(), 1e-6) << i;
+      ASSERT_LE(KDL::diff(reached.M, tool.M).Norm(), 1e-8) << i;
+      double most = 0;
+      for (std::size_t n = 0; n < 6; ++n) most = std::max(most, std::abs(all.of[a][n] - there[n]));
+      known |= most < 1e-4;
+      for (std::size_t b = 0; b < a; ++b) ASSERT_FALSE(all.in[a] == all.in[b]);
+    }
+    ASSERT_TRUE(known) << i;
+  }
+  EXPECT_GT(eight, 60);
 }
 
 // By name: that configuration, or none.
