@@ -373,3 +373,30 @@ def test_coarsely_measured_belts_are_followed(increments: int) -> None:
     assert np.ptp(shakes) < 0.1 / increments + 1e-3
     assert np.mean(robot["in_sync"][last]) > 0.95
     assert np.ptp(robot["velocity"][last] - belt["velocity"][last]) < 5
+
+
+@pytest.mark.parametrize("how", ["member", "group", "all", "emergency_stop"])
+def test_power_off_ends_a_track_that_waits(how: str) -> None:
+    """AX-100: a tool whose tracking waits for its object does not set off when the power comes back."""
+    with takt.Engine(MACHINE) as session:
+        gantry = ready(session)
+        track = gantry.track_conveyor_belt(belt="infeed", start_distance=60)
+        session.run(0.1)
+        assert gantry.track_state is TRACK.WAITING
+        if how == "member":
+            session.axis("y").power(enable=False).wait()
+        elif how == "group":
+            gantry.power(enable=False).wait()
+        elif how == "all":
+            session.command("machine", "stop_all", {"open_loops": True})
+        else:
+            session.command("machine", "emergency_stop")
+        session.run(0.1)
+        assert track.aborted
+        assert gantry.track_state is TRACK.NONE
+        gantry.reset().wait()
+        gantry.power().wait()
+        session.axis("drive").power().wait()
+        session.axis("drive").move_velocity(velocity=100)
+        session.run(1.0)
+        assert gantry.x == 0

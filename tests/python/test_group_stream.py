@@ -30,6 +30,7 @@ groups:
 JOINT = (
     "  - {name: j%d, unit: deg, limits: {velocity: 200, acceleration: 1500, jerk: 30000, lower: -170, upper: 170}}\n"
 )
+LIMITS = "{velocity: 200, acceleration: 1500, jerk: 30000, lower: -170, upper: 170}"
 SIX = (
     "name: streamed\naxes:\n"
     + "".join(f"  - {{name: j{i}, unit: deg, limits: {LIMITS}}}\n" for i in range(1, 7))

@@ -221,3 +221,34 @@ def test_a_blend_that_cuts_through_a_zone_is_counted() -> None:
             assert cuts.any() is np.bool_(not taken)
             assert (recorder.recording["left"]["zones"][cuts] == 1).all()
             assert not (cuts & within(recorder.recording, "right")).any()
+
+
+@pytest.mark.parametrize("how", ["member", "group", "all", "emergency_stop"])
+def test_power_off_ends_a_wait(how: str) -> None:
+    """GR-47, AX-100: a move that waits for a zone does not set off when the power comes back."""
+    with takt.Engine(TWO) as session:
+        left, right = on(session)
+        left.move_linear_absolute(x=150).wait()
+        waits = right.move_linear_absolute(x=-150)
+        session.run(0.1)
+        assert right.waiting
+        if how == "member":
+            session.axis("right_y").power(enable=False).wait()
+        elif how == "group":
+            right.power(enable=False).wait()
+        elif how == "all":
+            session.command("machine", "stop_all", {"open_loops": True})
+        else:
+            session.command("machine", "emergency_stop")
+        session.run(0.1)
+        assert waits.final
+        assert not waits.done
+        assert not right.waiting
+        right.reset().wait()
+        right.power().wait()
+        left.reset().wait()
+        left.power().wait()
+        left.move_linear_absolute(x=0).wait()
+        session.run(0.5)
+        assert right.x == 0
+        right.move_linear_absolute(x=-150).wait()

@@ -3,6 +3,7 @@
 
 #include "takt/axis/cam_switch.h"
 #include "takt/axis/following.h"
+#include "takt/axis/guidance.h"
 #include "takt/axis/override.h"
 #include "takt/axis/probe.h"
 #include "takt/axis/sequence.h"
@@ -135,6 +136,7 @@ Status SwitchOff(const Context& c, const Request& r, State& s) {
   const bool moves = s.active.kind != RequestKind::kNone || s.superimposed;
   const bool waits = r.buffer_mode == BufferMode::kBuffered && moves && !SwitchingOff(s);
   if (waits && s.plc != PlcState::kErrorStop) return Enqueue(c, r, s);
+  const bool guided = IsGuided(s);  // in a fault braked by its component: it has no motion of its own
   AbortAll(c, s);
   s.direct_voltage_v = 0;
   Grant(c, r, s);
@@ -142,10 +144,9 @@ Status SwitchOff(const Context& c, const Request& r, State& s) {
     Conclude(c, 0, s);
     return Status::Ok();
   }
-  if (s.plc != PlcState::kErrorStop) {
-    Enter(s, PlcState::kStopping);
-    Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);
-  }
+  const bool brakes = s.plc == PlcState::kErrorStop && !guided;
+  if (s.plc != PlcState::kErrorStop) Enter(s, PlcState::kStopping);
+  if (!brakes) Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);
   return Status::Ok();
 }
 

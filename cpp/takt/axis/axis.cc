@@ -187,9 +187,14 @@ void GuardSwitches(const Context& c, const KinematicState& before, State& s) {
   const bool own = up ? s.limit_positive : s.limit_negative;
   const bool barred = std::abs(s.setpoint.velocity) > Standing(c) && Bars(c, s, up ? 1 : -1);
   if (!own && !barred && !FollowerOnLimit(c, s, up ? 1 : -1)) return;
+  const KinematicState next = s.setpoint;
   s.setpoint = before;
   const ErrorId at_switch = up ? ErrorId::kLimitSwitchPositive : ErrorId::kLimitSwitchNegative;
   Fail(c, own ? at_switch : barred ? ErrorId::kDirection : ErrorId::kAxisFault, false, s);
+  if (IsGuided(s)) {  // braked by its component, with others: there is no motion of its own
+    s.setpoint = next;
+    return;
+  }
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
 }
 

@@ -222,11 +222,12 @@ struct Applier {
       return Report(c, ticket, FeedbackState::kActive);
     }
     AbortTask();
+    if (!m.enable) EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
     if (!m.enable && Is(GroupState::kStopping)) {
       s.hold = false;
       Enter(GroupState::kStandby, s);
     }
-    const ErrorId error = TellAll(c, s, axis::Power{.enable = m.enable});
+    const ErrorId error = m.enable ? TellAll(c, s, axis::Power{}) : SwitchOffAll(c, s);
     if (error != ErrorId::kNone) return Refuse(error);
     s.task = Task::kPower;
     s.power_on = m.enable;

@@ -23,7 +23,8 @@ namespace {
 void Fail(const Context& c, ErrorId error, State& s) {
   if (s.error == ErrorId::kNone) s.error = error;
   if (s.state == GroupState::kErrorStop) return;
-  EndTask(c, FeedbackState::kError, error, s);
+  // Switching off goes on: it is stronger than a fault.
+  if (s.task != Task::kPower || s.power_on) EndTask(c, FeedbackState::kError, error, s);
   s.hold = false;
   EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
   EndStream(c, FeedbackState::kError, error, s);
@@ -56,7 +57,7 @@ void ComeToRest(const Context& c, State& s) {
   // What waits goes on from here.
   if (s.queue.count > 0 && s.state != GroupState::kErrorStop) return;
   LetGoOfMembers(c, s);
-  if (s.task == Task::kPower && !s.power_on) TellAll(c, s, axis::Power{.enable = false});
+  if (s.task == Task::kPower && !s.power_on) SwitchOffAll(c, s);
   if (s.state != GroupState::kErrorStop) Enter(GroupState::kStandby, s);
 }
 
@@ -164,9 +165,10 @@ void WatchPower(const Context& c, State& s) {
   if (AllMembers(c, s, [&](const axis::State& member) { return member.loop_closed == s.power_on; })) {
     EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
     if (s.state == GroupState::kHoming) Enter(GroupState::kStandby, s);
-  } else if (const ErrorId fault = FaultOfMembers(c, s); fault != ErrorId::kNone) {
-    EndTask(c, FeedbackState::kError, fault, s);
+    return;
   }
+  const ErrorId fault = FaultOfMembers(c, s);
+  if (s.power_on && fault != ErrorId::kNone) EndTask(c, FeedbackState::kError, fault, s);
 }
 
 void WatchReset(const Context& c, State& s) {
@@ -203,7 +205,17 @@ void WatchLease(const Context& c, State& s) {
 void WatchMembers(const Context& c, State& s) {
   if (s.state == GroupState::kDisabled) return;
   const ErrorId fault = FaultOfMembers(c, s);
-  if (fault != ErrorId::kNone) Fail(c, fault, s);
+  if (fault != ErrorId::kNone) return Fail(c, fault, s);
+  // What waits, for a zone or an object, does not set off by itself when a member is switched on again.
+  const bool waits = s.queue.count > 0 || s.track.ticket != 0;
+  if (s.guides || !waits) return;
+  if (AllMembers(c, s, [](const axis::State& member) { return member.loop_closed; })) return;
+  EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  AbortMoves(c, ErrorId::kNone, s);
+  if (s.ends) return;  // comes to rest
+  ForgetPlan(c, s);
+  s.interrupted = false;
+  if (s.state == GroupState::kMoving) Enter(GroupState::kStandby, s);
 }
 
 }  // namespace
@@ -213,6 +225,7 @@ void EmergencyStop(const Context& c, State& s) noexcept {
                      s.state == GroupState::kHoming || s.state == GroupState::kStopping;
   if (moves && s.state != GroupState::kDisabled) return Fail(c, ErrorId::kEmergencyStop, s);
   EndTask(c, FeedbackState::kAborted, ErrorId::kEmergencyStop, s);
+  EndTracking(c, FeedbackState::kAborted, ErrorId::kEmergencyStop, s);
 }
 
 State MakeState(std::span<const std::uint32_t> axes) noexcept {

@@ -63,6 +63,18 @@ ErrorId TellAll(const Context& c, const State& s, const axis::Command& command) 
   return first;
 }
 
+ErrorId SwitchOffAll(const Context& c, const State& s) noexcept {
+  const axis::Power off{.enable = false};
+  const ErrorId error = TellAll(c, s, off);
+  for (std::size_t i = 0; i < c.axes.states.size(); ++i) {
+    if (!c.axes.params[i].follows) continue;
+    const axis::Context follower = c.axes.Of(i);
+    const bool follows_us = !AllMembers(c, s, [&](const axis::State& member) { return &member != follower.master; });
+    if (follows_us) axis::Apply(follower, 0, 0, off, c.axes.states[i]);
+  }
+  return error;
+}
+
 ErrorId Add(const Context& c, const AddAxis& command, State& s) noexcept {
   const std::uint32_t axis = axis::FindAxis(c.axes.params, command.axis.view());
   if (axis == axis::kNoAxis) return ErrorId::kUnknownTarget;

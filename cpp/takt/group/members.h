@@ -18,6 +18,9 @@ ErrorId Tell(const Context& c, const State& s, std::size_t place, const axis::Co
 // The same for all; the first refusal, the others are told all the same.
 ErrorId TellAll(const Context& c, const State& s, const axis::Command& command) noexcept;
 
+// Switches all members off, and what follows them as members of gantries (AX-101). The first refusal, as above.
+ErrorId SwitchOffAll(const Context& c, const State& s) noexcept;
+
 template <typename Test>
 bool AllMembers(const Context& c, const State& s, const Test& test) noexcept {
   for (std::size_t k = 0; k < kMaxAxes; ++k) {

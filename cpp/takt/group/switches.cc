@@ -1,5 +1,6 @@
 #include "takt/group/switches.h"
 
+#include "takt/axis/following.h"
 #include "takt/group/members.h"
 
 namespace takt::group {
@@ -9,6 +10,10 @@ Directions ClosedNow(const Context& c, const State& s) noexcept {
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
     const axis::State& member = MemberOf(c, s, k);
+    // Those of followers of a gantry count for the one that leads.
+    const axis::Context own = ContextOf(c, s, k);
+    if (!member.bars_positive && axis::Bars(own, member, 1)) closed.positive |= 1u << k;
+    if (!member.bars_negative && axis::Bars(own, member, -1)) closed.negative |= 1u << k;
     // A switch that turns on is a fault of the axis, which all brake for along the path.
     if (member.limit_positive && member.limit_positive_before) closed.positive |= 1u << k;
     if (member.limit_negative && member.limit_negative_before) closed.negative |= 1u << k;
