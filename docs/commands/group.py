@@ -25,6 +25,7 @@ COMMANDS = (
     "group.set_kin_transform",
     "group.set_cartesian_transform",
     "group.set_coordinate_transform",
+    "group.calibrate",
     "group.move_linear_absolute",
     "group.move_linear_relative",
     "group.move_circular_absolute",
@@ -41,7 +42,10 @@ COMMANDS = (
     "group.interrupt",
     "group.continue_path",
 )
-ERRORS = (5, 6, 7, 9, 10, 11, 1000, 1001, 1003, 1004, 1005, 3003, 3005, 3010, 3018, 3021, 3022, 3023, 3024, 3025, 3026)
+ERRORS = (
+    *(5, 6, 7, 9, 10, 11, 1000, 1001, 1003, 1004, 1005),
+    *(3003, 3005, 3010, 3018, 3021, 3022, 3023, 3024, 3025, 3026, 3140, 3141),
+)
 SIGNALS = ("portal.[xy]", "portal.path_velocity", "c.set_position", "portal.state", "portal.interrupted")
 
 

@@ -95,10 +95,64 @@ def test_only_product_systems_that_there_are(gantry: takt.Group, pcs: int) -> No
         gantry.calibrate_product_system(pcs, CORNERS[:3])
 
 
+def places(points: np.ndarray, prefix: str = "") -> dict[str, float]:
+    return {
+        f"{prefix}{axis}{i + 1}": float(v) for i, row in enumerate(points) for axis, v in zip("xyz", row, strict=True)
+    }
+
+
+def test_the_command_has_the_same_frames(gantry: takt.Group) -> None:
+    """GR-46: three places, four of which the last is the origin, and seen ones with residuals."""
+    rnd = np.random.default_rng(46)
+    for i in range(40):
+        seen = rnd.uniform(-300, 300, (4 if i % 2 else 3, 3))
+        measured = placed(seen) + rnd.normal(0, 0.2, seen.shape)
+        made = gantry.calibrate(pcs=7, **places(measured), **places(seen, "seen_")).wait()
+        wanted = takt.calibrate.fit(seen, measured)
+        assert made.value == pytest.approx(wanted.largest, abs=1e-9)
+        assert np.allclose(pose_to_matrix(gantry.product_system(7)), pose_to_matrix(wanted.pose), atol=1e-9)
+        gantry.calibrate(pcs=8, **places(measured)).wait()
+        at = measured[3] if len(measured) == 4 else None
+        wanted = takt.calibrate.three_points(*measured[:3], at=at)
+        assert np.allclose(pose_to_matrix(gantry.product_system(8)), pose_to_matrix(wanted.pose), atol=1e-9)
+
+
+def test_the_command_refuses_what_defines_no_frame(gantry: takt.Group) -> None:
+    """GR-46: places on one line, in both ways to give them, and residuals."""
+    line = np.array([[0, 0, 0], [10, 0, 0], [20, 0, 0.05]], dtype=float)
+    corners = CORNERS[:3]
+    for given in (places(line), places(line) | places(corners, "seen_"), places(corners) | places(line, "seen_"),
+                  places(corners * 0)):  # fmt: skip
+        assert gantry.calibrate(pcs=3, **given).wait_final().error_id == 3140
+    measured = placed(corners) + np.array([[0, 0, 0], [2, 0, 0], [0, 0, 0]])
+    bad = gantry.calibrate(pcs=3, largest_residual=0.1, **places(measured), **places(corners, "seen_")).wait_final()
+    assert bad.error_id == 3141
+    assert bad.value > 0.1
+    assert gantry.product_system(3) == (0, 0, 0, 0, 0, 0)
+
+
+def test_what_is_under_way_keeps_its_frame(gantry: takt.Group) -> None:
+    """GR-46: a move and a jog in the product coordinate system; the next one goes by the new one."""
+    gantry.calibrate(pcs=2, **places(np.array([[20, 0, 0], [30, 0, 0], [20, 10, 0]]))).wait()
+    move = gantry.move_linear_absolute(x=60, coordinate_system="pcs", pcs=2)
+    gantry.session.run(0.1)
+    gantry.calibrate(pcs=2, **places(np.array([[0, 0, 0], [0, 10, 0], [-10, 0, 0]]))).wait()
+    move.wait()
+    assert gantry.x == pytest.approx(80)
+    jog = gantry.jog(x=50, coordinate_system="pcs", pcs=2)
+    gantry.session.run(0.1)
+    gantry.set_cartesian_transform(pcs=2).wait()
+    gantry.session.run(0.3)
+    jog.release()
+    assert gantry.x == pytest.approx(80)
+    assert gantry.y > 5
+
+
 def test_over_lcm(tmp_path: Path) -> None:
     url = new_url()
     with running(tmp_path, url, machine=PORTAL), takt.connect(url) as session:
         group = session.group("gantry")
         group.calibrate_product_system(5, placed(CORNERS[:3]))
+        assert group.calibrate(pcs=6, **places(placed(CORNERS[:3]))).wait().value == 0
         session.wait(lambda: group.product_system(5)[0] != 0, 2.0, what="the frame")
         assert group.product_system(5) == pytest.approx(POSE)

@@ -123,6 +123,8 @@ enum class ErrorId : std::uint16_t {
   kStreamEnded = 3123,  // set points stopped coming
   kZoneTaken = 3130,    // the tool came into a zone that another group has
   kZoneCircle = 3131,   // groups would wait for one another at zones
+  kNoFrame = 3140,      // measured places define no frame
+  kResidual = 3141,     // a measured place is too far from where the frame has it
   kGroupDeviation = 8001,
   kTooManyWorkpieces = 17918,  // a belt holds as many workpieces as it can; number of the Track Pick & Place manual
   // A cam module is in error; numbers of the Flex Cam manual.

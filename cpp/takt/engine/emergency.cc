@@ -63,7 +63,8 @@ bool Asks(const group::Command& command) {
       []<typename T>(const T&) {
         return !kIsOneOf<T, group::AddAxis, group::RemoveAxis, group::UngroupAllAxes, group::Enable, group::Disable,
                          group::Reset, group::SetPosition, group::SetOverride, group::SetKinTransform,
-                         group::SetCartesianTransform, group::SetCoordinateTransform, group::PathChecked>;
+                         group::SetCartesianTransform, group::SetCoordinateTransform, group::Calibrate,
+                         group::PathChecked>;
       },
       command);
 }

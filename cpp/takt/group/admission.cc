@@ -2,6 +2,7 @@
 #include "takt/core/describe.h"
 #include "takt/core/in_range.h"
 #include "takt/group/ask.h"
+#include "takt/group/calibrate.h"
 #include "takt/group/clutch.h"
 #include "takt/group/group.h"
 #include "takt/group/jog.h"
@@ -314,6 +315,17 @@ struct Applier {
     s.cargoes[m.pcs - 1] = {};
     s.product_systems[m.pcs - 1] = {m.x, m.y, m.z, m.a, m.b, m.c};
     Finish(ErrorId::kNone);
+  }
+  void operator()(const Calibrate& m) const {
+    const std::optional<Calibrated> made = FrameOf(m);
+    if (!made) return Refuse(ErrorId::kNoFrame);
+    if (m.largest_residual && made->largest > *m.largest_residual) {
+      return Report(c, ticket, FeedbackState::kError, ErrorId::kResidual, made->largest);
+    }
+    s.cargoes[m.pcs - 1] = {};
+    s.product_systems[m.pcs - 1] = made->pose;
+    Report(c, ticket, FeedbackState::kActive);
+    Report(c, ticket, FeedbackState::kDone, ErrorId::kNone, made->largest);
   }
   void operator()(const SetCoordinateTransform& m) const {
     if (m.reference == CoordinateSystem::kAcs) return Refuse(ErrorId::kParameter);

@@ -1,5 +1,6 @@
 #include "takt/group/commands.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
@@ -219,6 +220,24 @@ std::string WhyNotThis(const SetCoordinateTransform& c) {
   if (c.reference == CoordinateSystem::kAcs) return "reference: expected mcs, wcs or pcs, found acs";
   if (c.reference == CoordinateSystem::kPcs && c.reference_pcs == c.pcs) {
     return "reference_pcs: expected another coordinate system than pcs itself";
+  }
+  return {};
+}
+
+std::string WhyNotThis(const Calibrate& c) {
+  const std::array<std::optional<double>, 9> seen = {c.seen_x1, c.seen_y1, c.seen_z1, c.seen_x2, c.seen_y2,
+                                                     c.seen_z2, c.seen_x3, c.seen_y3, c.seen_z3};
+  const auto given = [](const auto& numbers) {
+    return std::ranges::count_if(numbers, [](const auto& number) { return number.has_value(); });
+  };
+  const auto fourth = given(std::array{c.x4, c.y4, c.z4}),
+             fourth_seen = given(std::array{c.seen_x4, c.seen_y4, c.seen_z4});
+  if (fourth != 0 && fourth != 3) return "x4: expected x4, y4 and z4 together";
+  if (given(seen) != 0 && given(seen) != 9) return "seen_x1: expected the numbers of all places in the system, or none";
+  const auto wanted = given(seen) != 0 ? fourth : 0;
+  if (fourth_seen != wanted) {
+    return wanted != 0 ? "seen_x4: expected the numbers of all places in the system, or none"
+                       : "seen_x4: expected nothing, without x4, y4, z4 and all other seen ones";
   }
   return {};
 }
@@ -593,6 +612,42 @@ void describe(Description<SetCoordinateTransform>& d) {
   DescribePose(d);
   d.defaulted<&C::reference>("In which one it is: mcs, wcs or pcs.");
   d.defaulted<&C::reference_pcs>(between(1, kProductSystems), "Which product coordinate system that is; with pcs.");
+}
+
+void describe(Description<Calibrate>& d) {
+  using C = Calibrate;
+  d.about(
+      "Sets a product coordinate system to where measured places of the tool have it, and returns as value how far the "
+      "worst of them is from there (mm). Three: its origin, one on X, one towards Y; a fourth is its origin instead of "
+      "the first. With the seen numbers of all places it is the nearest system by the sum of squares. Places that "
+      "coincide or lie on one line define none (3140). What is under way in that system keeps it as it was.");
+  d.defaulted<&C::pcs>(between(1, kProductSystems), "Which one.");
+  d.required<&C::x1>(unit::mm, kPlaces, "First place, in the MCS; X.");
+  d.required<&C::y1>(unit::mm, kPlaces, "Y of it.");
+  d.required<&C::z1>(unit::mm, kPlaces, "Z of it.");
+  d.required<&C::x2>(unit::mm, kPlaces, "Second place.");
+  d.required<&C::y2>(unit::mm, kPlaces, "Y of it.");
+  d.required<&C::z2>(unit::mm, kPlaces, "Z of it.");
+  d.required<&C::x3>(unit::mm, kPlaces, "Third place.");
+  d.required<&C::y3>(unit::mm, kPlaces, "Y of it.");
+  d.required<&C::z3>(unit::mm, kPlaces, "Z of it.");
+  d.defaulted<&C::x4>(unit::mm, kPlaces, "Fourth place; unset: none.");
+  d.defaulted<&C::y4>(unit::mm, kPlaces, "Y of it.");
+  d.defaulted<&C::z4>(unit::mm, kPlaces, "Z of it.");
+  d.defaulted<&C::seen_x1>(unit::mm, kPlaces, "The first place as it is in the product coordinate system; X.");
+  d.defaulted<&C::seen_y1>(unit::mm, kPlaces, "Y of it.");
+  d.defaulted<&C::seen_z1>(unit::mm, kPlaces, "Z of it.");
+  d.defaulted<&C::seen_x2>(unit::mm, kPlaces, "The second one.");
+  d.defaulted<&C::seen_y2>(unit::mm, kPlaces, "Y of it.");
+  d.defaulted<&C::seen_z2>(unit::mm, kPlaces, "Z of it.");
+  d.defaulted<&C::seen_x3>(unit::mm, kPlaces, "The third one.");
+  d.defaulted<&C::seen_y3>(unit::mm, kPlaces, "Y of it.");
+  d.defaulted<&C::seen_z3>(unit::mm, kPlaces, "Z of it.");
+  d.defaulted<&C::seen_x4>(unit::mm, kPlaces, "The fourth one.");
+  d.defaulted<&C::seen_y4>(unit::mm, kPlaces, "Y of it.");
+  d.defaulted<&C::seen_z4>(unit::mm, kPlaces, "Z of it.");
+  d.defaulted<&C::largest_residual>(unit::mm, kLengths,
+                                    "Refused where a place is further from where the system has it (3141).");
 }
 
 void describe(Enumeration<ExecutionMode>& e) {

@@ -222,6 +222,20 @@ struct SetCoordinateTransform {  // MC_SetCoordinateTransform: a PCS in any othe
   std::uint32_t reference_pcs = 1;
 };
 
+// A PCS from three or four measured places of the tool (GR-46).
+struct Calibrate {
+  std::uint32_t pcs = 1;
+  // mm, in the MCS.
+  double x1 = 0, y1 = 0, z1 = 0;
+  double x2 = 0, y2 = 0, z2 = 0;
+  double x3 = 0, y3 = 0, z3 = 0;
+  std::optional<double> x4{}, y4{}, z4{};
+  // mm, the same places as they are in the PCS; unset: the first is its origin, the second on X, the third towards Y.
+  std::optional<double> seen_x1{}, seen_y1{}, seen_z1{}, seen_x2{}, seen_y2{}, seen_z2{};
+  std::optional<double> seen_x3{}, seen_y3{}, seen_z3{}, seen_x4{}, seen_y4{}, seen_z4{};
+  std::optional<double> largest_residual{};  // mm
+};
+
 // When a command that is no motion itself takes effect.
 enum class ExecutionMode : std::uint8_t {
   kImmediately,  // at once, whatever runs
@@ -287,7 +301,7 @@ using Command =
     std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircularAbsolute, MoveCircularRelative, MoveDirectAbsolute,
                  MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop, Halt, Interrupt, Continue, AddAxis,
                  RemoveAxis, UngroupAllAxes, Enable, Disable, Reset, Power, Home, SetPosition, SetOverride,
-                 SetKinTransform, SetCartesianTransform, SetCoordinateTransform, SetDynCoordTransform,
+                 SetKinTransform, SetCartesianTransform, SetCoordinateTransform, Calibrate, SetDynCoordTransform,
                  TrackConveyorBelt, TrackRotaryTable, MoveArch, Jog, Stream, StreamPoint, PathChecked>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
@@ -327,6 +341,7 @@ void describe(Description<SetPosition>&);
 void describe(Description<SetOverride>&);
 void describe(Description<SetKinTransform>&);
 void describe(Description<SetCartesianTransform>&);
+void describe(Description<Calibrate>&);
 void describe(Enumeration<ExecutionMode>&);
 void describe(Description<SetDynCoordTransform>&);
 void describe(Description<TrackConveyorBelt>&);

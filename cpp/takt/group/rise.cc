@@ -10,8 +10,8 @@ namespace takt::group {
 
 namespace {
 
-constexpr double kShare = 0.7;     // of the limits: the path is braked with the rest
-constexpr double kAhead_s = 0.06;  // so much lower the path is expected to lead
+constexpr double kShare = 0.7;    // of the limits: the path is braked with the rest
+constexpr double kLook_s = 0.06;  // so much lower the path is expected to lead
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void StepRise(const Context& c, const Stretch& stretch, kinematics::MovingFrame&
   const KDL::Vector up = object.M.R.UnitZ();
   const double height = KDL::dot(up, tool.p.p - object.p.p);
   const double change = KDL::dot(up, tool.p.v - object.p.v);
-  rise.target = std::max(rise.target, rise.height - height - std::min(0.0, kAhead_s * change));
+  rise.target = std::max(rise.target, rise.height - height - std::min(0.0, kLook_s * change));
   if (rise.offset.position != rise.target || !RiseStands(s)) {
     std::size_t place = 0;
     while (s.members[place] == 0) ++place;
