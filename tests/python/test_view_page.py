@@ -23,6 +23,7 @@ from pages import (
     wait_for_cycle,
 )
 from playwright.sync_api import Browser, expect
+from portals import PORTAL
 
 pytestmark = needs_chromium
 
@@ -608,6 +609,36 @@ def test_jogging_by_hand(how: str, dead_man: float, tmp_path: Path, browser: Bro
                 page.mouse.up()
         page.click("#emergency-stop")
         session.wait(lambda: x.state is takt.PlcState.DISABLED, 10.0)
+
+
+def test_groups_are_jogged_by_hand(tmp_path: Path, browser: Browser) -> None:
+    """GR-48, EN-23: along an axis of a coordinate system, and one axis, as long as the button is held."""
+    url = new_url()
+    with (
+        running(
+            tmp_path, url, machine=PORTAL.replace("dead_man_s: 0.3", "dead_man_s: 60") + "view: {commands: true}\n"
+        ),
+        served(url) as address,
+        opened(browser, address) as page,
+        takt.connect(url) as session,
+    ):
+        gantry = session.group("gantry")
+        row(page, "gantry").click()
+        page.click("#details-commands button:text-is('On')")
+        session.wait(lambda: session.axis("x").loop_closed, 10.0)
+        page.click("#details-commands button:text-is('Enable')")
+        session.wait(lambda: gantry.state is takt.GroupState.GROUP_STANDBY, 10.0)
+        page.fill("#details-commands input", "12")
+        for system, axis, moved, speed in (("wcs", "x", "y", -12.0), ("acs", "a3", "z", 12.0)):
+            page.select_option("#details-commands select[title='Coordinate system']", system)
+            page.select_option("#details-commands select[title='Axis']", axis)
+            page.locator("#details-commands button", has_text="jog ▶").hover()
+            page.mouse.down()
+            session.wait(
+                lambda moved=moved, speed=speed: session.axis(moved).set_velocity == pytest.approx(speed), 10.0
+            )
+            page.mouse.up()
+            session.wait(lambda: gantry.state is takt.GroupState.GROUP_STANDBY, 10.0)
 
 
 def test_memory_is_bounded(tmp_path: Path, browser: Browser) -> None:

@@ -29,6 +29,7 @@ ALLOWED: dict[str, dict[str, frozenset[str]]] = {
     "group": {
         **{verb: frozenset() for verb in ("enable", "disable", "reset", "halt")},
         "power": frozenset({"enable"}),
+        "jog": frozenset({*"xyzabc", *(f"a{i}" for i in range(1, 9)), "coordinate_system"}),
     },
     "flex_cam": {"control": frozenset({"regulator_on", "reset_error", "halt"})},
     "pick_place": {"control": frozenset({"regulator_on", "reset_error", "path_halt"})},
@@ -36,7 +37,7 @@ ALLOWED: dict[str, dict[str, frozenset[str]]] = {
     "track": {verb: frozenset() for verb in ("enable", "disable", "reset")},
     "planar_group": {verb: frozenset() for verb in ("enable", "disable", "reset")},
 }
-HELD = {("axis", "jog")}  # go on only while they are held
+HELD = {("axis", "jog"), ("group", "jog")}  # go on only while they are held
 RESEND_S = 0.2  # between two tries of a command that is not answered
 GIVEN_UP_S = 2.0
 FINAL = 2  # from this state on a feedback is the last one

@@ -113,6 +113,9 @@ class Machine:
         shown["units"] = {unit: unit_of(source.kind, field, own) for field, unit in KINDS[source.kind].units.items()}
         if source.parameters.get("kind") == "rotary":
             shown["modulus"] = source.parameters["modulus"]
+        if source.kind == "group":
+            shown["axes"] = len(source.parameters["axes"])
+            shown["tool"] = any((source.parameters.get("kinematics") or {}).values())
         limits = source.parameters.get("limits", {}) if source.kind == "axis" else {}
         if limits:
             shown["velocity"] = limits["velocity"]

@@ -91,9 +91,14 @@ def _details(said: Any, machine: Machine) -> tuple[int, ...]:
 def _command(said: Any) -> tuple[str, str, dict[str, Any]]:
     match said:
         case [str(target), str(verb), dict(arguments)]:
-            if all(type(value) in (bool, int, float) for value in arguments.values()):
+            if all(_is_plain(value) for value in arguments.values()):
                 return target, verb, arguments
-    raise RequestError("a command has a target, a verb and arguments that are numbers or switches")
+    raise RequestError("a command has a target, a verb and arguments that are numbers, switches or words")
+
+
+def _is_plain(value: Any) -> bool:
+    """Nothing in it that an argument's text could be ended with."""
+    return type(value) in (bool, int, float) or (isinstance(value, str) and value.isascii() and value.isidentifier())
 
 
 def _pairs(said: Any) -> list[list[Any]]:

@@ -20,6 +20,8 @@ const BUTTONS = {
 const LEAST_MS = 15;
 const APART_MS = 100; // from one command of a button to the next, so that the engine sees both
 
+const speedInput = (value, unit) => el("input", { type: "number", min: 0, step: "any", value, title: `Velocity, ${unit}` });
+
 export class Commands {
   constructor(model, connection) {
     this.model = model;
@@ -61,27 +63,45 @@ export class Commands {
     const plain = buttons.map(([text, verb, ...all]) => el("button", { textContent: text, onclick: () => all.forEach((given, i) => setTimeout(() => this.give(component.name, verb, given), i * APART_MS)) }));
     const rows = [el("div", { className: "buttons" }, ...plain)];
     if (component.kind === "axis") rows.push(this.jogRow(component));
+    if (component.kind === "group") rows.push(this.groupJogRow(component));
     return rows;
   }
 
   jogRow(component) {
     const unit = this.model.unit(component, "set_velocity");
-    const velocity = el("input", { type: "number", min: 0, step: "any", value: Number((component.velocity / 10).toPrecision(2)), title: `Velocity, ${unit}` });
-    const button = (text, way) => {
-      const node = el("button", { className: "jog", textContent: text, title: "Moves while it is held; Space or Enter holds it, too" });
-      node.onpointerdown = (event) => {
-        if (event.button === 0) this.hold(component.name, { [way]: true, velocity: Number(velocity.value) }, node);
-      };
-      node.onkeydown = (event) => {
-        if (event.key !== " " && event.key !== "Enter") return;
-        event.preventDefault();
-        if (!event.repeat) this.hold(component.name, { [way]: true, velocity: Number(velocity.value) }, node);
-      };
-      node.onblur = () => this.letGo();
-      node.oncontextmenu = (event) => event.preventDefault();
-      return node;
-    };
+    const velocity = speedInput(Number((component.velocity / 10).toPrecision(2)), unit);
+    const button = (text, way) => this.jogButton(component, text, () => ({ [way]: true, velocity: Number(velocity.value) }));
     return el("div", { className: "buttons" }, button("◀ jog", "backward"), velocity, el("span", { className: "soft", textContent: unit }), button("jog ▶", "forward"));
+  }
+
+  // The tool along and about the axes of a coordinate system, or one axis of the group.
+  groupJogRow(component) {
+    const choice = (title, names) => el("select", { title }, ...names.map((name) => el("option", { value: name, textContent: name })));
+    const system = choice("Coordinate system", component.tool ? ["mcs", "wcs", "tool", "acs"] : ["acs"]);
+    const axis = el("select", { title: "Axis" });
+    const axes = Array.from({ length: component.axes }, (_, i) => `a${i + 1}`);
+    const choose = () => axis.replaceChildren(...choice("", system.value === "acs" ? axes : ["x", "y", "z", "a", "b", "c"]).children);
+    system.onchange = choose;
+    choose();
+    const speed = speedInput(10, "mm/s, deg/s, or unit/s of an axis");
+    const button = (text, sense) => this.jogButton(component, text, () => ({ [axis.value]: sense * Number(speed.value), coordinate_system: system.value }));
+    return el("div", { className: "buttons" }, system, axis, button("◀ jog", -1), speed, button("jog ▶", 1));
+  }
+
+  // Gives a jog as long as it is held; `given` says which.
+  jogButton(component, text, given) {
+    const node = el("button", { className: "jog", textContent: text, title: "Moves while it is held; Space or Enter holds it, too" });
+    node.onpointerdown = (event) => {
+      if (event.button === 0) this.hold(component.name, given(), node);
+    };
+    node.onkeydown = (event) => {
+      if (event.key !== " " && event.key !== "Enter") return;
+      event.preventDefault();
+      if (!event.repeat) this.hold(component.name, given(), node);
+    };
+    node.onblur = () => this.letGo();
+    node.oncontextmenu = (event) => event.preventDefault();
+    return node;
   }
 
   hold(target, given, node) {
