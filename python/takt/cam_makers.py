@@ -12,10 +12,13 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from takt.cam import Table
 from takt.errors import ConfigError
 
 SEARCH_STEPS = 60  # of a bisection: as near as numbers go
+REVERSAL_POINTS = 1001  # at which the way of a knife that turns back is looked at
 
 
 @dataclass(frozen=True)
@@ -53,20 +56,25 @@ def beyond(table: Table, limits: Limits, speed: float, slave: str) -> str:
     return ""
 
 
+def is_number(value: object) -> bool:
+    return isinstance(value, (int, float, np.number)) and math.isfinite(value)
+
+
 class Wrong(list[str]):
     """What is wrong with the data of a machine or a product."""
 
     def expect(self, name: str, value: float, above: float, what: str = "a number") -> None:
-        if not (math.isfinite(value) and value > above):
+        if not (is_number(value) and value > above):
             self.append(f"{name}: expected {what} above {above:g}, found {value!r}")
 
     def expect_not_below(self, name: str, value: float, least: float, what: str = "a number") -> None:
-        if not (math.isfinite(value) and value >= least):
+        if not (is_number(value) and value >= least):
             self.append(f"{name}: expected {what} from {least:g} on, found {value!r}")
 
     def expect_limits(self, limits: Limits) -> None:
         for name in ("velocity", "acceleration", "jerk"):
-            if not getattr(limits, name) > 0:
+            value = getattr(limits, name)
+            if isinstance(value, str) or not value > 0:
                 self.append(f"limits.{name}: expected a number above 0, found {getattr(limits, name)!r}")
 
     def tell(self) -> None:
@@ -82,7 +90,8 @@ class RotaryKnife:
     blades: evenly spaced around it.
     cut_zone: mm of web before and behind each cut in which the blade runs with the web.
     limits: of the knife's axis, which counts deg.
-    may_reverse: the knife may turn back between two cuts; else long products are refused where it would.
+    may_reverse: the knife may turn back between two cuts; else long products are refused where it would. A blade
+        that would come back to the web between two cuts, into the cut zone, is refused all the same.
     """
 
     circumference: float
@@ -115,17 +124,20 @@ class RotaryKnife:
 
         speed: mm/s, the highest of the web: the limits hold up to there.
         """
-        if not (math.isfinite(speed) and speed > 0):
+        if not (is_number(speed) and speed > 0):
             raise ConfigError([f"speed: expected a number of mm/s above 0, found {speed!r}"])
-        if not (math.isfinite(length) and length > 2 * self.cut_zone):
-            raise ConfigError(
-                [f"length: expected more than {2 * self.cut_zone:g} mm, twice the cut zone, found {length!r}"]
-            )
-        table = self._made(length, name or f"knife_{length:g}")
+        table = self._made(self._product(length), name or f"knife_{length:g}")
         problem = self._problem(table, speed)
         if problem:
             raise ConfigError([f"length {length:g} mm at {speed:g} mm/s: {problem}; {self._remedy(length, speed)}"])
         return table
+
+    def _product(self, length: float) -> float:
+        if not (is_number(length) and length > 2 * self.cut_zone):
+            raise ConfigError(
+                [f"length: expected more than {2 * self.cut_zone:g} mm, twice the cut zone, found {length!r}"]
+            )
+        return length
 
     def _made(self, length: float, name: str) -> Table:
         zone, per_mm = self.cut_zone, 360.0 / self.circumference
@@ -139,17 +151,28 @@ class RotaryKnife:
             segments = [into, middle, out]
         return Table.from_segments(segments, name=name, cyclic=True, x_unit="mm", y_unit="deg")
 
-    def _reverses(self, table: Table) -> bool:
-        return not self.may_reverse and table.extremes().dy.least.value < -1e-9 * 360 / self.circumference
+    def _blocked(self, table: Table) -> str:
+        """Why the knife cannot go this way at any speed; empty: it can."""
+        least = table.extremes().dy.least.value
+        if least >= -1e-9 * 360 / self.circumference:
+            return ""
+        if not self.may_reverse:
+            return "the knife would turn back between two cuts"
+        edge = self.cut_zone * 360 / self.circumference
+        zone, length = self.cut_zone, table.end
+        between = np.linspace(zone, length - zone, REVERSAL_POINTS)
+        y = table.at(between).y
+        inside = y.min() < edge - 1e-9 * self.pitch or y.max() > self.pitch - edge + 1e-9 * self.pitch
+        return "a blade would come back into the cut zone between two cuts" if inside else ""
 
     def _problem(self, table: Table, speed: float) -> str:
-        reverses = "the knife would turn back between two cuts" if self._reverses(table) else ""
-        return beyond(table, self.limits, speed, "knife") or reverses
+        return beyond(table, self.limits, speed, "knife") or self._blocked(table)
 
     def highest_speed(self, length: float) -> float:
-        """mm/s of web up to which the limits hold for products of this length; 0: the knife would turn back."""
-        table = self._made(length, "knife")
-        if self._reverses(table):
+        """mm/s of web up to which the limits hold for products of this length; 0: the knife would turn back, or come
+        back into the cut zone."""
+        table = self._made(self._product(length), "knife")
+        if self._blocked(table):
             return 0.0
         return fastest(table, self.limits)
 
@@ -212,9 +235,15 @@ class FlyingSaw:
         return table
 
     def run_up(self, length: float) -> float:
-        """mm of web over which the carriage gets up to speed: where the web may run fastest."""
+        """mm of web over which the carriage gets up to speed: where the web may run fastest. Without limits: as long
+        as travel and product allow."""
+        wrong = Wrong()
+        wrong.expect("length", length, self.ride, "a number of mm")
+        wrong.tell()
         # The faster the run-up, the more is left for the way back: the highest speed has one greatest value.
         most = min(self.travel - self.ride, (length - self.ride) / 2)
+        if self.limits == Limits():
+            return min(self.travel - self.ride, (length - self.ride) / 3)  # a third of the rest each: up, down, back
         low, high = 0.0, most
         for _ in range(SEARCH_STEPS):
             third = (high - low) / 3
@@ -307,6 +336,9 @@ class WinderTraverse:
 
     def highest_speed(self, width: float) -> float:
         """deg/s of the spool up to which the limits hold for this width."""
+        wrong = Wrong()
+        wrong.expect("width", width, 2 * self._edge, "a number of mm")
+        wrong.tell()
         return fastest(self._made(width, "traverse"), self.limits)
 
     def _made(self, width: float, name: str) -> Table:

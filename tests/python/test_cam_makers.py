@@ -52,7 +52,36 @@ def test_a_knife_that_may_not_turn_back_says_so():  # CAM-91
         KNIFE.cam(3000, speed=100)
     longest = float(re.search(r"at most ([\d.]+) mm", str(error.value))[1])
     KNIFE.cam(longest * (1 - 1e-5), speed=100)
-    RotaryKnife(circumference=480, cut_zone=15, limits=LIMITS, may_reverse=True).cam(3000, speed=100)
+    RotaryKnife(circumference=480, cut_zone=15, limits=LIMITS, may_reverse=True).cam(2000, speed=100)
+
+
+def test_a_knife_that_may_turn_back_stays_out_of_the_cut_zone_between_two_cuts():  # CAM-91
+    knife = RotaryKnife(circumference=500, cut_zone=20, limits=LIMITS, may_reverse=True)
+    with pytest.raises(
+        takt.ConfigError, match=r"back into the cut zone between two cuts; at most ([\d.]+) mm"
+    ) as error:
+        knife.cam(3000, speed=500)
+    assert knife.highest_speed(3000) == 0
+    longest = float(re.search(r"at most ([\d.]+) mm", str(error.value))[1]) * (1 - 1e-5)
+    table = knife.cam(longest, speed=500)
+    assert table.extremes().dy.least.value < 0  # it does turn back
+    y = table.at(np.linspace(20, longest - 20, 100_001)).y
+    assert y.min() > 14.4 - 1e-6
+    assert y.max() < 360 - 14.4 + 1e-6
+
+
+def test_makers_without_limits_and_with_impossible_lengths():  # CAM-91
+    saw = FlyingSaw(travel=900, ride=300)
+    assert saw.run_up(1200) == 300  # no limit asks for less
+    for wrong in (math.nan, 100):
+        with pytest.raises(takt.ConfigError, match="length: expected a number of mm above 300, found"):
+            saw.run_up(wrong)
+    with pytest.raises(takt.ConfigError, match="length: expected more than 30 mm, twice the cut zone, found 10"):
+        KNIFE.highest_speed(10)
+    with pytest.raises(takt.ConfigError, match="width: expected"):
+        WinderTraverse(pitch=10, reversal=90).highest_speed(0.1)
+    with pytest.raises(takt.ConfigError, match="circumference: expected a number of mm above 0, found 'long'"):
+        RotaryKnife(circumference="long")
 
 
 @pytest.mark.parametrize(
