@@ -258,9 +258,12 @@ class Table:
     def at(self, x: ArrayLike) -> Values: ...
     def at(self, x: ArrayLike) -> Value | Values:
         """y and its derivatives at x (master's unit): floats for a number, arrays of the same shape for an array.
-        Outside the cam as at its nearer end."""
+        Outside the cam as at its nearer end; NaN at NaN."""
         places = np.asarray(x, dtype=np.float64)
         arrays = self._core.at(places)
+        if np.isnan(places).any():
+            y, dy, ddy, dddy = (np.where(np.isnan(places), np.nan, one) for one in arrays)
+            arrays = (y, dy, ddy, dddy)
         if places.ndim == 0:
             return Value(*(float(one) for one in arrays))
         return Values(*arrays)

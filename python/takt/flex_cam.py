@@ -9,11 +9,15 @@ from takt._commands import FlexCamCommands, FlexCamOutputs
 from takt.axis import Axis
 from takt.belt import Belt
 from takt.component import Component
+from takt.errors import TaktError
 from takt.mover import Mover
 
 if TYPE_CHECKING:
     from takt.cam import Table
     from takt.feedback import Feedback
+
+
+SLOTS = 4
 
 
 class FlexCam(Component, FlexCamCommands, FlexCamOutputs):
@@ -28,6 +32,8 @@ class FlexCam(Component, FlexCamCommands, FlexCamOutputs):
         """Makes a cam at run time and puts it into a slot, while the module may run the cam of another one, or of this
         one: that is left at its end. Lets engine time pass until the cam is built. The feedback is that of `set_cam`;
         `cam` and `name` are those of `Session.make_cam`."""
+        if slot not in range(1, SLOTS + 1):  # before the cam is made
+            raise TaktError(f"{self.name}.load_cam: slot: expected 1 to {SLOTS}, found {slot!r}")
         self.session.make_cam(cam, name=name).wait()
         return self.set_cam(slot=slot, cam=name or (cam["name"] if isinstance(cam, Mapping) else cam.name))
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from takt._commands import MachineCommands
-from takt.errors import TaktError
+from takt.errors import ConfigError, TaktError
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ POINTS = 20  # in one command
 SEGMENTS = 8
 UNANSWERED = 128  # commands under way
 KNOWN = 256  # cams whose data is kept; an engine holds 64
+MOST_KEPT = 5_000  # points of a cam, in recordings
 BUILDS = 2  # cams that an engine builds at a time
 
 
@@ -50,6 +51,8 @@ class MadeCams:
 
         table = cam if isinstance(cam, Table) else Table.from_dict(cam)
         name = table.name if name is None else name
+        if not name:
+            raise ConfigError(["name: expected the name that commands call the cam by, found ''"])
         self._wait_for_fewer(
             BUILDS, "cams being built", lambda: [m.feedback for m in self.cams if not m.feedback._final]
         )
@@ -91,6 +94,15 @@ class MadeCams:
             if made.feedback._done and made.feedback.value == number:
                 return made.table
         raise TaktError(f"cam number {number} was made by another client; its data is known there and in the engine")
+
+    def kept(self) -> dict[str, Any]:
+        """What recordings keep of the cams made so far, by number; of the largest ones nothing."""
+        made = [
+            (made.feedback.value, made.table.source)
+            for made in self.cams
+            if made.feedback._done and _count(made.table) <= MOST_KEPT
+        ]
+        return {"made_cams": made} if made else {}
 
     def _give(self, verb: str, arguments: Mapping[str, Any]) -> Feedback:
         self._wait_for_fewer(UNANSWERED, "pieces of cams unanswered", lambda: self._given)

@@ -297,3 +297,21 @@ def test_over_lcm_and_in_the_log_of_the_run(tmp_path):  # CAM-88, EN-07: real ti
         unknown = stamp.set_cam(slot=3, cam="odd").wait_final()
         assert unknown.sentence == "cam: the machine has no cam 'odd' (it has flat, hill)"
     assert replay(log).same
+
+
+def test_impossible_cams_are_refused_before_anything_is_made(session):  # CAM-88
+    stamp = session.flex_cam("stamp")
+    for slot in (0, 5):
+        with pytest.raises(takt.TaktError, match=f"slot: expected 1 to 4, found {slot}"):
+            stamp.load_cam(slot, hill(10, name="flat"))
+    assert session._made_cams.cams == []
+    with pytest.raises(takt.ConfigError, match="name: expected"):
+        session.make_cam(hill(10, name=""))
+
+
+def test_nan_has_no_place_on_a_cam():  # CAM-71
+    values = hill(10).at([90.0, math.nan])
+    assert math.isfinite(values.y[0])
+    assert math.isnan(values.y[1])
+    assert math.isnan(values.dddy[1])
+    assert math.isnan(hill(10).at(math.nan).y)
