@@ -256,7 +256,7 @@ class Engine(Session):
             rows = core.table(i)
             tables[name] = base | {f: rows[f] for f in fields_of_kind(self._components[name].KIND)}
         meta = {"source": "engine", "period_s": self.period, "version": _core.__version__}
-        meta |= {"objects": recorder.lying.columns()}
+        meta |= {"objects": recorder.lying.columns(), **self._made_cams.kept()}
         return make_recording(self.machine, tables, recorder.events, meta, self.machine_text, self._folder)
 
 

@@ -484,6 +484,7 @@ class RemoteSession(Session):
             "losses": lost,
             "dropped": dropped,
             "objects": recorder.lying.columns(),
+            **self._made_cams.kept(),
         }
         return make_recording(self.machine, tables, recorder.events, meta, self.machine_text)
 

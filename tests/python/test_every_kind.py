@@ -16,7 +16,7 @@ from takt import _core, msgs
 from takt.cli import main
 from takt.missing import all_missing
 from takt.report.columns import Block
-from takt.report.scene import scene_of
+from takt.report.scene import machine_of, scene_of
 from takt.view.machine import Machine
 
 ALL = {**MINIMAL, "all of them": FULL}
@@ -80,7 +80,7 @@ def test_with_anything_left_out() -> None:
             continue
         tried.append(where)
         recording = recorded(text)
-        scene = scene_of(recording, Block())
+        scene = scene_of(recording, Block(), machine_of(recording))
         shown = scene["machine"] if scene else live(text)
         assert [one["name"] for one in shown["components"]] == list(recording), where
     assert len(tried) > 100

@@ -9,20 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from takt import msgs
+from takt import msgs, style
+from takt.cam import Table
 from takt.errors import ConfigError
 from takt.kinematics import KinematicsError
 from takt.recording import Array, Recording
 from takt.report.columns import Block
-from takt.view.machine import Machine
+from takt.view.machine import Machine, drawn
 
 RATE_HZ = 50.0  # of the places of arms, where they stay below
 NUMBERS = 1_000_000  # of them
 LYING = ("tracks", "stators", "parts", "movers", "belts", "groups")  # what there is to see from above
 
 
-def scene_of(recording: Recording, block: Block) -> dict[str, Any] | None:
-    """None where nothing lies in the plane, or the recording does not know its machine."""
+def machine_of(recording: Recording) -> Machine | None:
+    """None where the recording does not know its machine."""
     file = recording.meta.get("machine_file")
     if not file:
         return None
@@ -32,9 +33,33 @@ def scene_of(recording: Recording, block: Block) -> dict[str, Any] | None:
     description.period_s = float(recording.meta.get("period_s", 0.001))
     description.text = file["text"]
     try:
-        machine = Machine(description, Path(file["folder"]))
+        return Machine(description, Path(file["folder"]))
     except ConfigError:
         return None  # of another version
+
+
+def cams_of(recording: Recording, machine: Machine | None) -> dict[str, Any] | None:
+    """What the page draws of the cams of recorded modules, those made at run time included; None: no module."""
+    modules = [name for name in recording.components if "mp05_set_y_position" in recording.fields(name)]
+    if machine is None or not modules:
+        return None
+    fields = ("mp01_set_master_position", "mp02_set_slave_position", "actual_slave_position")
+    tables = [(number, Table.from_dict(cam)) for number, cam in recording.meta.get("made_cams", [])]
+    return {
+        "cams": machine.describe()["cams"],
+        "made": [{"number": number, **drawn(table)} for number, table in tables],
+        "modules": [
+            {"name": name, "units": {f: recording.unit(name, f) for f in fields if f in recording.fields(name)}}
+            for name in modules
+        ],
+        "palette": list(style.PALETTE),
+    }
+
+
+def scene_of(recording: Recording, block: Block, machine: Machine | None) -> dict[str, Any] | None:
+    """None where nothing lies in the plane, or the recording does not know its machine."""
+    if machine is None:
+        return None
     told = machine.describe()
     if not any(told["plan"][what] for what in LYING):
         return None

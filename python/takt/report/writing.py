@@ -23,7 +23,7 @@ from takt.recording import Array, Recording
 from takt.report.columns import Block
 from takt.report.inlined import asset, import_map
 from takt.report.kept import KEY, keep, kept, plain, told
-from takt.report.scene import scene_of
+from takt.report.scene import cams_of, machine_of, scene_of
 from takt.source import IN_DIRECTORY
 from takt.tables import short_name
 from takt.verdict import Verdict
@@ -46,7 +46,19 @@ LARGEST = {
 PAGE = "report.html"
 BYTES = 128 << 20  # of all curves of a page before they are deflated; longer runs are thinned evenly
 # What the page does not show as a fact of its head.
-ELSEWHERE = (KEY, "machine_file", "objects", "trouble", "starts", "period_s", "losses", "dropped", "silent", "played")
+ELSEWHERE = (
+    KEY,
+    "machine_file",
+    "objects",
+    "made_cams",
+    "trouble",
+    "starts",
+    "period_s",
+    "losses",
+    "dropped",
+    "silent",
+    "played",
+)
 
 
 class Report(NamedTuple):
@@ -99,7 +111,8 @@ def render_kept(recording: Recording, name: str) -> str:
     run = kept(recording) or {"title": name, "made": "", "verdicts": [], "complaint": "", "figures": {}, "pictures": {}}
     block = Block()
     facts = facts_of(recording, run["figures"])
-    scene = scene_of(recording, block)
+    machine = machine_of(recording)
+    scene = scene_of(recording, block, machine)
     judged = [v for v in (*run["verdicts"], run.get("assertion")) if v is not None]
     failing = [v["view"] for v in judged if v["view"] and not v["passed"]]
     payload = {
@@ -117,6 +130,7 @@ def render_kept(recording: Recording, name: str) -> str:
         "quantities": list(style.QUANTITY_ORDER),
         "palette": list(style.PALETTE),
         "scene": scene,
+        "cams": cams_of(recording, machine),
     }
     pictures = "".join(_shown(name, bytes(png)) for name, png in run["pictures"].items())
     return filled("page", str(run["title"]), payload, block, pictures=pictures)

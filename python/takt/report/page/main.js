@@ -1,6 +1,7 @@
 // The page of a report: what it is given goes to its parts, which share one time.
 
 import { byId, el, forgetColours } from "../../view/page/dom.js";
+import { RecordedCams } from "./cams.js";
 import { Clock, showPlayer } from "./clock.js";
 import { Columns, inflated } from "./columns.js";
 import { Curves } from "./curves.js";
@@ -82,6 +83,7 @@ const step = Math.min(1, ...times.filter((t) => t.length > 1).map((t) => (t.at(-
 const clock = new Clock(span, step);
 const verdicts = new Verdicts(data, columns, clock, goTo);
 const scene = data.scene && !empty ? new Scene(data.scene, columns, recorded, clock) : null;
+const cams = data.cams && !empty ? new RecordedCams(data.cams, recorded, clock) : null;
 const curves = new Curves(data, recorded, clock);
 byId("curves-section").hidden = !data.components.length;
 if (!empty) showPlayer(clock);
@@ -101,6 +103,7 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   forgetColours();
   redrawAll();
   scene?.draw();
+  cams?.draw();
 });
-window.takt = { data, clock, curves, verdicts, recorded, model: scene?.model, plan: scene?.plan }; // for the console, and for tests
+window.takt = { data, clock, curves, verdicts, recorded, cams, model: scene?.model, plan: scene?.plan }; // for the console, and for tests
 document.body.classList.add("ready");
