@@ -102,6 +102,7 @@ class VirtualEngine {
       : journaling_(journal),
         engine_(std::move(*loaded.machine),
                 {.drives = drives_url.has_value(), .journal = journal, .command_queue = kCommandQueue}) {
+    engine_.PlanElsewhere();  // a replay has the answers from its journal
     if (checks) checks_.emplace(engine_, std::move(loaded.checkers));
     if (!drives_url || engine_.machine().external.drives.empty()) return;
     std::string problem;

@@ -148,8 +148,9 @@ Entry Make(std::string_view target_kind, std::string_view name, bool level_sensi
 
 // What the engine alone gives.
 bool IsInternal(const Verb& verb) {
-  return verb.arguments == &TypeOf<group::PathChecked>() || verb.arguments == &TypeOf<track::TrackMade>() ||
-         verb.arguments == &TypeOf<environment::BoundaryMade>() || verb.arguments == &TypeOf<cam::CamBuilt>();
+  return verb.arguments == &TypeOf<group::PathChecked>() || verb.arguments == &TypeOf<group::PathPlanned>() ||
+         verb.arguments == &TypeOf<track::TrackMade>() || verb.arguments == &TypeOf<environment::BoundaryMade>() ||
+         verb.arguments == &TypeOf<cam::CamBuilt>();
 }
 
 // Every command there is: the one list.
@@ -263,6 +264,7 @@ const std::vector<Entry>& Entries() {
       Make<group::Command, group::Interrupt>(kGroup, "interrupt"),
       Make<group::Command, group::Continue>(kGroup, "continue_path"),
       Make<group::Command, group::PathChecked>(kGroup, "path_checked"),
+      Make<group::Command, group::PathPlanned>(kGroup, "path_planned"),
       Make<conveyor::Command, conveyor::Detect>(kBelt, "detect"),
       Make<conveyor::Command, conveyor::Locate>(kBelt, "locate"),
       Make<conveyor::Command, conveyor::TakeObject>(kBelt, "take"),

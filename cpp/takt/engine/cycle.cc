@@ -46,7 +46,8 @@ group::Context ContextOf(World& w, const AxesGroup& group) {
           w.look_aheads[index],
           CarriersFor(w.riders[index]),
           group.params.workspace ? &w.questions : nullptr,
-          {w.zones, w.group_states}};
+          {w.zones, w.group_states},
+          w.plans_elsewhere};
 }
 
 pickplace::Context ContextOf(World& w, const PickPlace& module) {

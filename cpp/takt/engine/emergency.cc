@@ -64,7 +64,7 @@ bool Asks(const group::Command& command) {
         return !kIsOneOf<T, group::AddAxis, group::RemoveAxis, group::UngroupAllAxes, group::Enable, group::Disable,
                          group::Reset, group::SetPosition, group::SetOverride, group::SetKinTransform,
                          group::SetCartesianTransform, group::SetCoordinateTransform, group::Calibrate,
-                         group::PathChecked>;
+                         group::PathChecked, group::PathPlanned>;
       },
       command);
 }

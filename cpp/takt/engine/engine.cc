@@ -334,6 +334,18 @@ bool Engine::Answer(std::size_t group, const group::PathChecked& answer) noexcep
   return impl_->GiveAnswer(group, group::Command(answer));
 }
 
+void Engine::PlanElsewhere() noexcept {
+  impl_->world.plans_elsewhere = true;
+}
+
+void Engine::MakePlans() {
+  for (std::size_t i = 0; i < impl_->world.look_aheads.size(); ++i) {
+    if (const auto number = impl_->world.look_aheads[i].timing.MakePlan()) {
+      impl_->GiveAnswer(i, group::Command(group::PathPlanned{*number}));
+    }
+  }
+}
+
 void Engine::MakeTracks() {
   while (const std::optional<track::Answer> answer = track::Make(impl_->world.tracks.desk)) {
     impl_->GiveAnswer(answer->track, track::Command(answer->made));

@@ -119,6 +119,11 @@ class Engine {
   SpscQueue<group::Question>& questions() noexcept;
   // The next cycle takes it. False: there is no room; then nobody waits for it, either.
   bool Answer(std::size_t group, const group::PathChecked& answer) noexcept;
+  // Whether plans of groups are made by MakePlans, which has to be called for them; else the cycle makes them itself.
+  // Before the first cycle. A journal with such plans needs it, too.
+  void PlanElsewhere() noexcept;
+  // Makes the plans that groups ask for, and tells them in the next cycle.
+  void MakePlans();
   // Makes the tracks and boundaries that the cycle asks for (track/desk.h), and tells it in the next cycle.
   void MakeTracks();
   // Builds the next cam that the cycle asks for (cam/builder.h) and returns the result, which Answer gives to it.

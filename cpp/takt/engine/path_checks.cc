@@ -200,6 +200,7 @@ struct PathChecks::OfGroup {
 };
 
 PathChecks::PathChecks(Engine& engine, Checkers checkers) : engine_(engine) {
+  engine_.PlanElsewhere();
   for (std::size_t i = 0; i < checkers.size(); ++i) {
     groups_.push_back(checkers[i] ? std::make_unique<OfGroup>(engine.fixed(i), std::move(*checkers[i])) : nullptr);
   }
@@ -208,6 +209,7 @@ PathChecks::PathChecks(Engine& engine, Checkers checkers) : engine_(engine) {
 PathChecks::~PathChecks() = default;
 
 void PathChecks::Run() {
+  engine_.MakePlans();
   engine_.MakeTracks();
   while (const std::optional<cam::BuildResult> result = engine_.BuildCam()) {
     if (!result->sentence.empty()) Remember(result->ticket, result->sentence);

@@ -116,6 +116,7 @@ struct World {
   std::vector<group::LookAhead> look_aheads;
   std::vector<group::PathTable> paths;
   std::vector<group::Zone> zones;
+  bool plans_elsewhere = false;             // of groups: PathPlanned tells that they are there
   group::Questions questions;               // of all groups
   std::vector<std::uint32_t> group_of;      // the group that each axis is a member of, from 1; 0: none
   std::vector<std::uint8_t> group_stepped;  // in this cycle

@@ -340,6 +340,10 @@ struct Applier {
     if (const ErrorId error = Sync(c, ticket, m, s); error != ErrorId::kNone) return Refuse(error);
     Report(c, ticket, FeedbackState::kActive);
   }
+  void operator()(const PathPlanned& m) const {
+    c.ahead.timing.TakePlan(m.number);
+    Finish(ErrorId::kNone);
+  }
   void operator()(const PathChecked& m) const { Finish(Take(m, s) ? ErrorId::kNone : ErrorId::kState); }
   template <typename T>
   void operator()(const T&) const {}  // moves: see Apply

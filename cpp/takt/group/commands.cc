@@ -724,4 +724,9 @@ void describe(Description<PathChecked>& d) {
   d.defaulted<&C::on_blend>("On the blend into it.");
 }
 
+void describe(Description<PathPlanned>& d) {
+  d.about("The plan that the group has asked for is there. Given by the engine alone.");
+  d.required<&PathPlanned::number>("Of the order.");
+}
+
 }  // namespace takt::group

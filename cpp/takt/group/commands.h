@@ -297,12 +297,17 @@ struct PathChecked {
   bool operator==(const PathChecked&) const = default;
 };
 
+// The plan that a group has asked for is there (trajectory/path_timing.h). The engine alone gives it to itself.
+struct PathPlanned {
+  std::uint64_t number = 0;  // of the order
+};
+
 using Command =
     std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircularAbsolute, MoveCircularRelative, MoveDirectAbsolute,
                  MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop, Halt, Interrupt, Continue, AddAxis,
                  RemoveAxis, UngroupAllAxes, Enable, Disable, Reset, Power, Home, SetPosition, SetOverride,
                  SetKinTransform, SetCartesianTransform, SetCoordinateTransform, Calibrate, SetDynCoordTransform,
-                 TrackConveyorBelt, TrackRotaryTable, MoveArch, Jog, Stream, StreamPoint, PathChecked>;
+                 TrackConveyorBelt, TrackRotaryTable, MoveArch, Jog, Stream, StreamPoint, PathChecked, PathPlanned>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
 std::string WhyNot(const Command& command);
@@ -348,5 +353,6 @@ void describe(Description<TrackConveyorBelt>&);
 void describe(Description<TrackRotaryTable>&);
 void describe(Description<SetCoordinateTransform>&);
 void describe(Description<PathChecked>&);
+void describe(Description<PathPlanned>&);
 
 }  // namespace takt::group

@@ -148,6 +148,7 @@ void BeginMotion(const Context& c, State& s) {
   trajectory::BeginAt(c.ahead.window, c.ahead.window.begin(), c.cycle.period_s, s.pace);
   s.begun = true;
   BeginFollowing(c, MoveAt(s, s.done), s.done, s);
+  BeginTiming(c, s);
   if (s.state == GroupState::kStandby) Enter(GroupState::kMoving, s);
 }
 

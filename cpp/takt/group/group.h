@@ -57,6 +57,7 @@ struct Context {
   Carriers carriers{};
   Questions* questions = nullptr;  // where paths are asked about before they start; null: nobody knows what is free
   Zones zones{};
+  bool plans_elsewhere = false;  // plans are made outside the cycle, which the command PathPlanned then tells
 };
 
 // As it stands when power comes on. `axes`: index of each member.

@@ -5,6 +5,8 @@
 
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
+#include "takt/group/rides.h"
+#include "takt/group/run.h"
 #include "takt/path/blend.h"
 
 namespace takt::group {
@@ -54,10 +56,21 @@ double BrakingWay(double v, const trajectory::AlongPath& limits) {
                                                      : 0.5 * v * (v / limits.deceleration + build_up);
 }
 
+// How a motion along both speeds up.
+path::Ramp RampOf(const Context& c, const Stretch& before, const Stretch& after) {
+  const LookAhead& ahead = c.ahead;
+  if (!c.params.path.planned_ahead || IsCarried(ahead, before) || IsCarried(ahead, after)) return {};
+  const trajectory::AlongPath l = trajectory::Least(before.limits, after.limits);
+  const double a = std::min(l.acceleration, l.deceleration);
+  if (!(a < kUnlimited && l.jerk < kUnlimited)) return {};
+  return {l.velocity, a, l.jerk};
+}
+
 // A blend that begins and ends so far from the corner.
-bool MakeBlend(const Stretch& before, const Stretch& after, double first, double second, path::Segment& out) {
-  return path::Blend(before.segment, before.to - first, after.segment, after.from + second, out) ==
-         path::Problem::kNone;
+bool MakeBlend(const Context& c, const Stretch& before, const Stretch& after, double first, double second,
+               path::Segment& out) {
+  return path::Blend(before.segment, before.to - first, after.segment, after.from + second, out,
+                     RampOf(c, before, after)) == path::Problem::kNone;
 }
 
 // The slowest speed, squared, that the limits ask for on a blend; negative where it cannot be gone.
@@ -94,7 +107,7 @@ Distances DistancesOf(const Context& c, const State& s, const Request& move, con
     case TransitionMode::kCornerDistance:
       return both(parameter);
     case TransitionMode::kMaxCornerDeviation: {
-      const double d = path::CornerDistance(before.segment, after.segment, parameter, room);
+      const double d = path::CornerDistance(before.segment, after.segment, parameter, room, RampOf(c, before, after));
       return {d, d, kNoEnd, parameter};
     }
     case TransitionMode::kStartVelocity:
@@ -106,7 +119,7 @@ Distances DistancesOf(const Context& c, const State& s, const Request& move, con
       for (int i = 0; i < kHalvings; ++i) {
         const double d = 0.5 * (short_of + enough);
         work += kBlendPlaces + 1;
-        const bool made = MakeBlend(before, after, d, d, blend.segment);
+        const bool made = MakeBlend(c, before, after, d, d, blend.segment);
         (made && SquareOn(c, s, blend) >= parameter * parameter ? enough : short_of) = d;
       }
       return both(enough);
@@ -153,6 +166,7 @@ bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch
     std::uint64_t on = std::min(ahead.sampling, stretch);
     while (on > ahead.first && ahead[on].begin > place) --on;
     trajectory::PathPoint there = end;
+    there.has_middle = false;
     there.s = place;
     const double way = ahead[on].from + (place - ahead[on].begin);
     const kinematics::Reason reason = SlopesOn(c, s, ahead[on], way, ahead.last_joints, there, motion);
@@ -160,7 +174,11 @@ bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch
     // Where nodes are far apart, the motion would have to stop far before the place: it gets one of its own.
     if (place > end.s) end = there;
   }
-  if (s.begun && !CanStopAt(window, s.pace, node, end.s)) return false;
+  if (s.begun) {
+    const bool stops =
+        ahead.timing.active() ? ahead.timing.StopBefore(window, end.s, s.pace) : CanStopAt(window, s.pace, node, end.s);
+    if (!stops) return false;
+  }
   if (shorter) {
     window.CutBehind(node);
     if (end.s > window[node].at.s) {
@@ -288,7 +306,7 @@ bool FindDistances(const Context& c, const State& s, const Request& move, std::u
 bool MakeSegment(const Context& c, const State& s, const Stretch& before, const Stretch& after, int& work,
                  CornerBlend& out) {
   work += kBlendPlaces + 1;
-  if (!MakeBlend(before, after, out.first, out.second, out.stretch.segment)) return false;
+  if (!MakeBlend(c, before, after, out.first, out.second, out.stretch.segment)) return false;
   out.stretch.to = out.stretch.segment.length;
   return SquareOn(c, s, out.stretch) > 0;
 }
@@ -327,11 +345,12 @@ int Join(const Context& c, State& s) noexcept {
   const bool follows = ahead.known && ahead.count > 0;
   if (follows) {
     Stretch& before = ahead[ahead.end() - 1];
-    const bool wanted = move.blends() || s.planning.element > 0;
+    const bool other = ahead.timing.active() && !IsTimed(c, move, ahead.next);
+    const bool wanted = (move.blends() || s.planning.element > 0) && !other;
     goes_on = wanted && Passes(c, s, before, ahead.next);
     const bool bends = s.planning.element == 0 && (before.bends_at_ends || ahead.next.bends_at_ends);
     const bool smooth = goes_on && !bends && path::Smooth(before.segment, ahead.next.segment);
-    const bool blended = !smooth && TryBlend(c, s, move, before, work);
+    const bool blended = wanted && !smooth && TryBlend(c, s, move, before, work);
     if (!blended) ahead.corner.open = false;
     goes_on = goes_on || blended;
     if (!goes_on) {

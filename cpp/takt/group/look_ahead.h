@@ -13,6 +13,7 @@
 #include "takt/path/segment.h"
 #include "takt/trajectory/path_rehearsal.h"
 #include "takt/trajectory/path_sampling.h"
+#include "takt/trajectory/path_timing.h"
 #include "takt/trajectory/path_window.h"
 
 namespace takt::group {
@@ -70,9 +71,10 @@ struct OpenCorner {
 
 struct LookAhead {
   LookAhead(const trajectory::CoordinateLimits& limits, double period_s)
-      : window(kNodes, limits, period_s), stretches(kStretches) {}
+      : window(kNodes, limits, period_s), timing(period_s), stretches(kStretches) {}
 
   trajectory::PathWindow window;
+  trajectory::PathTiming timing;
   trajectory::PathRehearsal rehearsal;
   KeepUp keep_up;
   std::vector<Stretch> stretches;  // a ring

@@ -414,6 +414,7 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
 
 // Whether the motion goes for a while as if the end that is known were no stop.
 bool GoesFreely(const Context& c, const State& s) {
+  if (c.ahead.timing.active()) return c.ahead.timing.rest_s() > kTimeAhead;
   const trajectory::PathWindow& window = c.ahead.window;
   const std::uint64_t end = std::min(window.known(), s.pace.node + kNodesAhead);
   const double far = s.pace.raw.position + kTimeAhead * s.pace.raw.velocity;
@@ -601,6 +602,7 @@ void Plan(const Context& c, State& s) noexcept {
 void ForgetPlan(const Context& c, State& s) noexcept {
   c.ahead.window.Clear();
   c.ahead.rehearsal.Clear();
+  c.ahead.timing.Clear();
   c.ahead.keep_up = {};
   c.ahead.first = c.ahead.end();
   c.ahead.sampling = c.ahead.first;
@@ -618,6 +620,12 @@ bool IsPlanned(const Context& c, const State& s) noexcept {
 }
 
 void Rehearse(const Context& c, const State& s) noexcept {
+  if (trajectory::PathTiming& timing = c.ahead.timing; timing.active()) {
+    timing.Ask(c.ahead.window, s.velocity_factor, s.pace);
+    if (c.plans_elsewhere) return;
+    if (const auto number = timing.MakePlan()) timing.TakePlan(*number);
+    return;
+  }
   struct Owner {
     const Context& c;
     const State& s;
@@ -644,6 +652,11 @@ void Rehearse(const Context& c, const State& s) noexcept {
 }
 
 double TimeLeft(const Context& c, const State& s) noexcept {
+  if (const trajectory::PathTiming& timing = c.ahead.timing; timing.active()) {
+    const double end = c.ahead[c.ahead.end() - 1].end();
+    const bool known = s.begun && !s.ends && !s.interrupted && IsPlanned(c, s) && timing.Settles(end);
+    return known ? c.cycle.period_s * static_cast<double>(timing.rest_cycles()) : kNotGiven;
+  }
   const std::uint64_t end = c.ahead.rehearsal.end_cycle();
   const bool slowed = Jogs(s) || s.velocity_factor < 1 || s.ends || s.interrupted || Slips(s) || c.ahead.keep_up.on ||
                       s.master.axis != 0;

@@ -180,6 +180,25 @@ void LetGoOfMembers(const Context& c, State& s) noexcept {
   s.guides = false;
 }
 
+bool IsTimed(const Context& c, const Request& move, const Stretch& stretch) noexcept {
+  return move.cargo.carrier == 0 && move.master == 0 && !IsCarried(c.ahead, stretch);
+}
+
+void BeginTiming(const Context& c, State& s) noexcept {
+  c.ahead.timing.Clear();
+  if (!c.params.path.planned_ahead || Jogs(s) || s.master.axis != 0 || s.track.ticket != 0) return;
+  // What may come may be carried.
+  if (std::ranges::any_of(s.cargoes, [](const Cargo& cargo) { return cargo.carrier != 0; })) return;
+  for (std::uint64_t i = c.ahead.first; i < c.ahead.end(); ++i) {
+    if (IsCarried(c.ahead, c.ahead[i]) || (c.ahead[i].stops && i + 1 < c.ahead.end())) return;
+  }
+  for (std::uint64_t i = s.done; i < s.done + s.queue.count; ++i) {
+    const Request& move = MoveAt(s, i);
+    if (move.cargo.carrier != 0 || move.master != 0 || (!move.blends() && i > s.done)) return;
+  }
+  c.ahead.timing.Begin(s.pace);
+}
+
 bool Advance(const Context& c, State& s) noexcept {
   if (s.pace.raw_stands && trajectory::Stands(s.pace) && !s.ends) {
     // Behind a stop the next motion begins.
@@ -189,9 +208,17 @@ bool Advance(const Context& c, State& s) noexcept {
       trajectory::BeginAt(window, next, c.cycle.period_s, s.pace);
       const std::uint64_t move = c.ahead[c.ahead.first].move;
       BeginFollowing(c, MoveAt(s, move), move, s);
+      BeginTiming(c, s);
     }
   }
-  trajectory::Advance(c.ahead.window, WishOf(c, s), c.cycle.period_s, s.pace);
+  trajectory::PathTiming& timing = c.ahead.timing;
+  if (!timing.active()) {
+    trajectory::Advance(c.ahead.window, WishOf(c, s), c.cycle.period_s, s.pace);
+  } else if (s.ends || s.interrupted || s.velocity_factor == 0) {
+    timing.Stop(c.ahead.window, s.brake, s.pace);
+  } else {
+    timing.Advance(c.ahead.window, s.velocity_factor, s.pace);
+  }
   if (!Follow(c, s)) return false;
   TellMoves(c, s);
   WatchMaster(c, s);
@@ -204,6 +231,7 @@ bool Rests(const State& s) noexcept {
 }
 
 double RestAt(const Context& c, const State& s) noexcept {
+  if (c.ahead.timing.active()) return c.ahead.timing.BrakesTo(c.ahead.window, s.pace);
   // The mean comes to rest where the raw motion does.
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const double v = s.pace.raw.velocity;
@@ -279,6 +307,7 @@ void SitOn(const Context& c, const Ride& ride, const path::Point& place, State& 
   ahead.window.Append(ahead.last, true);
   ahead.window.Close();
   ahead.window.Sweep(1);
+  ahead.timing.Clear();
   trajectory::BeginAt(ahead.window, ahead.window.begin(), c.cycle.period_s, s.pace);
   s.begun = true;
   s.ends = s.lets_go = false;

@@ -35,12 +35,6 @@ void describe(Description<Planning>& d) {
   d.internal<&Planning::nodes>("Nodes made so far.");
 }
 
-void describe(Description<Brake>& d) {
-  d.about("How a motion along a path is ended.");
-  d.internal<&Brake::deceleration>("0: as the path says.");
-  d.internal<&Brake::jerk>("The same.");
-}
-
 void describe(Description<SyncedAxis>& d) {
   d.about("An axis that follows the way along the path.");
   d.internal<&SyncedAxis::ticket>("Of the command.");

@@ -15,6 +15,7 @@
 #include "takt/kinematics/carrier.h"
 #include "takt/kinematics/joints.h"
 #include "takt/trajectory/limits.h"
+#include "takt/trajectory/path_brake.h"
 #include "takt/trajectory/path_pace.h"
 
 namespace takt::group {
@@ -121,11 +122,7 @@ struct Jogging {
 // What a group is doing besides moves.
 enum class Task : std::uint8_t { kNone, kStop, kHalt, kInterrupt, kHome, kPower };
 
-// Along the path; 0: as the path says.
-struct Brake {
-  double deceleration = 0;  // mm/s²
-  double jerk = 0;          // mm/s³
-};
+using Brake = trajectory::PathBrake;
 
 struct SyncedAxis {
   Ticket ticket = 0;
@@ -219,7 +216,6 @@ void describe(Description<Directions>&);
 void describe(Description<Rise>&);
 void describe(Description<Jogging>&);
 void describe(Enumeration<Task>&);
-void describe(Description<Brake>&);
 void describe(Description<SyncedAxis>&);
 void describe(Description<MasterState>&);
 void describe(Description<State>&);

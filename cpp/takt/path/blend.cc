@@ -23,12 +23,49 @@ constexpr double kUnused = 0.02;
 // Part of the deviation that is kept free for what lies between the samples.
 constexpr double kMargin = 5e-3;
 constexpr std::size_t kSamples = 16;
+constexpr int kGuesses = 12;
+// Of a blend that bends least, for small turns: its largest curvature beside that of the circle, and how fast it rises.
+constexpr double kPeakBend = 1.62, kBendRise = 2;
 // Of the mean curvatures on both sides of a chord's middle, what it may be there.
 constexpr double kMostBend = 2.5;
 
 // Tangent length of a blend over its distance, by the cosine of half the angle.
 double TangentShare(double q) {
   return q / (0.2067 + 0.28 * q);
+}
+
+// How one side of a blend begins at the line, over its distance from the corner: the first and the second derivative by
+// the parameter, both along the line.
+struct Side {
+  double first = 0;
+  double second = 0;
+};
+
+// The way from rest in which a motion gets so fast, without acceleration at either end.
+double WayTo(double velocity, const Ramp& ramp) {
+  const double full = ramp.acceleration * ramp.acceleration / ramp.jerk;
+  const double time = velocity > full ? velocity / ramp.acceleration + ramp.acceleration / ramp.jerk
+                                      : 2 * std::sqrt(velocity / ramp.jerk);
+  return 0.5 * velocity * time;
+}
+
+// For a corner, `q` the cosine of half its turn, at which the first motion ends and the second begins as a ramp does:
+// they overlap in `k` times the time in which an acceleration builds up. Where the corner can be gone faster at one
+// speed the curve is the one that bends least.
+Side SideFor(double distance, double tangent, double q, const Ramp& ramp) {
+  if (!(ramp.jerk > 0)) return {tangent, 0};
+  const double highest = std::sqrt(std::min(ramp.velocity * ramp.jerk, ramp.acceleration * ramp.acceleration));
+  const double built_up = highest * highest * highest / (6 * ramp.jerk * ramp.jerk);
+  const double x = std::max(1.0, distance / built_up);
+  const double k = 0.5 * (1 + std::sqrt(1 + 4.0 / 3 * (x - 1)));
+  // How fast a ramp is so far from rest, and the corner at one speed: its curvature, and how fast that comes and goes.
+  const double ramped = x > 1 ? highest * highest / ramp.jerk * (k - 0.5)
+                              : 0.5 * ramp.jerk * maths::Cbrt(36 * distance * distance / (ramp.jerk * ramp.jerk));
+  const double bend = kPeakBend * std::sqrt(std::max(0.0, 1 - q * q)) / (q * distance);
+  const double steady =
+      std::min(std::sqrt(ramp.acceleration / bend), maths::Cbrt(ramp.jerk * distance / (kBendRise * bend)));
+  const double share = std::min(1.0, WayTo(ramp.velocity, ramp) / distance) * std::clamp(2 - steady / ramped, 0.0, 1.0);
+  return {std::lerp(tangent, 6 * k * (k - 0.5) / x, share), 6 * k * k / x * share};
 }
 
 // Of the tangents to a circle, how long the arc between them is.
@@ -52,7 +89,7 @@ bool Onward(const Vector& way, const Vector& derivative, const Vector& second) {
 }
 
 Problem Places(const Segment& first, double s_first, const Segment& second, double s_second, const Bends* bends,
-               VectorPolynomial& out) {
+               const Ramp& ramp, VectorPolynomial& out) {
   auto [a, b] = JointAt(first, s_first, second, s_second);
   const Vector way = a.first + b.first;
   const double q = way.norm() / 2;
@@ -61,13 +98,21 @@ Problem Places(const Segment& first, double s_first, const Segment& second, doub
   const double third = (1 - 0.4 * TangentShare(q)) * std::min(before, s_second);
   double u = 2.5 * (before - third);
   double v = 2.5 * (s_second - third);
+  Side leaves, joins;
+  if (!bends && ramp.jerk > 0 && before > 0 && s_second > 0) {
+    const double shorter = std::min(before, s_second);
+    leaves = SideFor(shorter, u / before, q, ramp);
+    joins = SideFor(shorter, v / s_second, q, ramp);
+    u = leaves.first * before;
+    v = joins.first * s_second;
+  }
   if (bends) {
     a.second += ToVector(bends->first);
     b.second += ToVector(bends->second);
     u = v = (before + s_second) * ArcShare(q);
   }
-  const Derivatives<Vector> begin{a.value, a.first * u, a.second * (u * u)};
-  const Derivatives<Vector> end{b.value, b.first * v, b.second * (v * v)};
+  const Derivatives<Vector> begin{a.value, a.first * u, a.second * (u * u) - leaves.second * before * a.first};
+  const Derivatives<Vector> end{b.value, b.first * v, b.second * (v * v) + joins.second * s_second * b.first};
   const Vector middle =
       end.value - 0.4 * end.first + end.second / 20 - (begin.value + 0.4 * begin.first + begin.second / 20);
   if (!(Onward(way, begin.first, begin.second) && Onward(way, end.first, -end.second) && way.dot(middle) > 0)) {
@@ -246,14 +291,14 @@ double Sweep(const Derivatives<Vector>& place) {
 
 // The longest distance whose blend stays within the deviation: `guess` is where to begin.
 double Search(const Segment& first, const Segment& second, const Corner& corner, double deviation, double guess,
-              double most) {
+              double most, const Ramp& ramp) {
   double good = 0;
   double bad = INFINITY;
   double d = std::min(guess, most);
   for (int i = 0; i < 20; ++i) {
     VectorPolynomial blend;
     double found = INFINITY;
-    if (Places(first, first.length - d, second, d, nullptr, blend) == Problem::kNone) {
+    if (Places(first, first.length - d, second, d, nullptr, ramp, blend) == Problem::kNone) {
       found = corner.Deviation(blend) * (1 + kMargin);
     }
     if (found <= deviation) {
@@ -273,7 +318,7 @@ double Search(const Segment& first, const Segment& second, const Corner& corner,
 }
 
 Problem MakeBlend(const Segment& first, double s_first, const Segment& second, double s_second, const Bends* bends,
-                  Segment& out) {
+                  const Ramp& ramp, Segment& out) {
   if (first.measure != second.measure) return Problem::kMeasure;
   const bool inside = s_first >= 0 && s_first < first.length && s_second > 0 && s_second <= second.length;
   if (!inside) return Problem::kOutside;
@@ -287,7 +332,7 @@ Problem MakeBlend(const Segment& first, double s_first, const Segment& second, d
   blend.measure = first.measure;
   if (first.measure == Measure::kWay) {
     VectorPolynomial place;
-    const Problem problem = Places(first, s_first, second, s_second, bends, place);
+    const Problem problem = Places(first, s_first, second, s_second, bends, ramp, place);
     if (problem != Problem::kNone) return problem;
     SetQuintic(blend, place);
   } else {
@@ -306,13 +351,14 @@ Problem MakeBlend(const Segment& first, double s_first, const Segment& second, d
 
 }  // namespace
 
-Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, Segment& out) noexcept {
-  return MakeBlend(first, s_first, second, s_second, nullptr, out);
+Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, Segment& out,
+              const Ramp& ramp) noexcept {
+  return MakeBlend(first, s_first, second, s_second, nullptr, ramp, out);
 }
 
 Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, const Bends& bends,
               Segment& out) noexcept {
-  return MakeBlend(first, s_first, second, s_second, &bends, out);
+  return MakeBlend(first, s_first, second, s_second, &bends, {}, out);
 }
 
 std::optional<Triple> BendBetween(const Segment& before, const Segment& chord, const Segment& after) noexcept {
@@ -346,7 +392,8 @@ Room HalfOf(const Segment& first, const Segment& second) noexcept {
   return {first.length / 2, second.length / 2};
 }
 
-double CornerDistance(const Segment& first, const Segment& second, double deviation, const Room& room) noexcept {
+double CornerDistance(const Segment& first, const Segment& second, double deviation, const Room& room,
+                      const Ramp& ramp) noexcept {
   if (first.measure != second.measure || !(deviation > 0) || Smooth(first, second)) return 0;
   double most = std::min({room.first, room.second, first.length, second.length});
   if (!(most > 0)) return 0;
@@ -359,10 +406,20 @@ double CornerDistance(const Segment& first, const Segment& second, double deviat
   const double q = corner.half_cosine();
   if (q < kReversal) return 0;
   const double sine = (b.first - a.first).norm() / 2;
-  const double guess = deviation / (sine * (1 - 5.0 / 16 * TangentShare(q)));
-  if (first.shape == Shape::kLine && second.shape == Shape::kLine) return std::min(guess, most);
+  // The middle of a blend that begins and ends as far from the corner, over its distance: of the six control points.
+  const auto middle = [&](double d) {
+    const Side side = SideFor(d, TangentShare(q), q, ramp);
+    return sine * (1 - (5.0 / 16) * side.first + side.second / 32);
+  };
+  double guess = deviation / middle(deviation);
+  for (int i = 0; i < kGuesses && ramp.jerk > 0; ++i) guess = deviation / middle(std::min(guess, most));
+  if (first.shape == Shape::kLine && second.shape == Shape::kLine) {
+    // The last guess may be a little too long.
+    const double d = std::min(guess, most);
+    return ramp.jerk > 0 ? d * std::min(1.0, (1 - 1e-9) * deviation / (middle(d) * d)) : d;
+  }
   most = std::min({most, Sweep(a), Sweep(b)});
-  return Search(first, second, corner, deviation, guess, most);
+  return Search(first, second, corner, deviation, guess, most, ramp);
 }
 
 double Deviation(const Segment& first, const Segment& second, const Segment& blend) noexcept {

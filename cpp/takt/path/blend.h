@@ -29,9 +29,23 @@
 
 namespace takt::path {
 
+// How a motion speeds up, where what rounds a corner is to be as fast as one that brakes to it and speeds up again
+// overlapping: mm/s, mm/s², mm/s³. All 0: the corner is gone at one speed. With a = min(acceleration, √(velocity jerk))
+// and x the distance d from the corner over that in which the acceleration has built up, a³ / (6 jerk²) (1 at least),
+// k = (1 + √(1 + 4/3 (x - 1))) / 2 is the time of the overlap over that in which it builds up. The blend begins and
+// ends as such ramps do: the first derivative by its parameter is d 6 k (k - 1/2) / x and the second d 6 k² / x. Up to
+// x = 1 that is the cubic with both inner control points on the corner. Where one speed is faster, the blend is as
+// without.
+struct Ramp {
+  double velocity = 0;
+  double acceleration = 0;
+  double jerk = 0;
+};
+
 // From `first` at s_first to `second` at s_second; second begins where first ends. Between segments that only turn the
 // tool or only move auxiliary axes (both the same) the blend is as long as what it replaces.
-Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, Segment& out) noexcept;
+Problem Blend(const Segment& first, double s_first, const Segment& second, double s_second, Segment& out,
+              const Ramp& ramp = {}) noexcept;
 
 // A round blend of two lines. Its curvatures at both ends: vectors across the line, 1/mm.
 struct Bends {
@@ -61,7 +75,8 @@ Room HalfOf(const Segment& first, const Segment& second) noexcept;
 // and is nowhere further than that from the path it replaces; never more than there is room, nor a piece of a curve
 // that turns by more than 1 rad. 0: there is nothing to blend, as the segments go on smoothly, or there can be no
 // blend. mm, or what the segments count.
-double CornerDistance(const Segment& first, const Segment& second, double deviation, const Room& room) noexcept;
+double CornerDistance(const Segment& first, const Segment& second, double deviation, const Room& room,
+                      const Ramp& ramp = {}) noexcept;
 
 // The deviation of a blend: the distance from the corner to it, or from it to the path where that is more. mm; between
 // segments that do not move the tool, what they count, at the corner.

@@ -64,7 +64,13 @@ void StepScout(const Context& c, const group::State& g, const Order& order, doub
   if (!scout.running) {
     scout = {.running = true, .order_last = order.last, .cycle = c.group.cycle.count - 1, .pace = g.pace};
   }
-  for (int i = 0; i < kScouted && !scout.known; ++i) {
+  // A law that leads to the end says when; one that is to be replaced does not.
+  const trajectory::PathTiming& timing = c.group.ahead.timing;
+  if (timing.active()) {
+    scout.known = timing.Settles(end);
+    scout.cycle = c.group.cycle.count - 1 + timing.rest_cycles();
+  }
+  for (int i = 0; i < kScouted && !scout.known && !timing.active(); ++i) {
     Advance(window, c.group.cycle.period_s, scout.pace);
     ++scout.cycle;
     scout.known = IsThere(scout.pace, end);
@@ -95,7 +101,11 @@ void StepGripper(const Context& c, const group::State& g, State& s) noexcept {
   const auto before = static_cast<std::uint64_t>(std::llround(order.gripper_time / period));
   if (c.group.cycle.count + before + kEarly < s.scout.end_cycle) return;
   // What stands after this cycle is its first step.
-  if (!ArrivesWithin(c.group.ahead.window, *end, before + 1, period, g.pace)) return;
+  const trajectory::PathTiming& timing = c.group.ahead.timing;
+  if (timing.active() ? timing.rest_cycles() > before + 1
+                      : !ArrivesWithin(c.group.ahead.window, *end, before + 1, period, g.pace)) {
+    return;
+  }
   s.pulse = order.pulsed = true;
 }
 

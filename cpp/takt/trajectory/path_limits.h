@@ -50,6 +50,9 @@ struct PathPoint {
   PathSlopes slopes;
   AlongPath limits;
   double left = 1;  // of the coordinates' limits: the rest is taken by what moves the path itself
+  // The second slopes halfway from the point before; without them they are taken for even.
+  std::array<double, kPathCoordinates> middle{};
+  bool has_middle = false;
 };
 
 // An acceleration that falls with the square of the speed.

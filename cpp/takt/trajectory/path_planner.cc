@@ -13,13 +13,16 @@ constexpr double kPlanShare = 0.99;  // of the limits that rows leave: the rest 
 constexpr int kFadeIntervals = 8;    // behind a given pace, which may use all of a limit, the share comes down to that
 constexpr int kVerifyRounds = 8;     // of checking and tightening
 constexpr double kTighter = 1.002;   // than what a check found
-constexpr double kNearly = 1.05;     // a plan that uses less of a limit is good at a lower rate
+constexpr int kStubborn = 2;         // rounds
+constexpr double kNearly = 1.5;      // a plan that uses less of a limit is good at a lower rate
 constexpr double kLowerRounding = 1e-9;
 constexpr double kPrecision = 1e-3;
 constexpr double kToBoundary = 0.99;
 constexpr double kLeastLeft = 0.2;  // of an ordinate after a step
 constexpr int kStepsPerRound = 80;
+constexpr double kLost = 1e6;       // of the time: steps that lead nowhere
 constexpr double kBetween = 0.2;    // of a second difference: more than a parabola through three samples rises (1/8)
+constexpr double kSmall = 1e-3;     // share of a limit that asks for no rows: the check looks at it all the same
 constexpr double kOfUniform = 0.7;  // of the fastest uniform rate: where steps begin
 
 double Series(double x) {  // (cosh √x - 1) / x and its like for x < 0, for small x
@@ -84,6 +87,8 @@ PathPlanner::PathPlanner(std::size_t intervals, std::size_t coordinates)
     : most_intervals_(intervals),
       most_coordinates_(coordinates),
       ends_(2 * intervals * coordinates),
+      merged_(2 * intervals),
+      apart_(2 * intervals),
       at_(coordinates),
       ordinates_(intervals),
       tighten_(intervals),
@@ -101,11 +106,14 @@ bool PathPlanner::Read() noexcept {
   for (const double length : request_->lengths) {
     if (!Above0(length)) return false;
   }
-  for (const RateLimits& l : request_->limits) {
-    for (const double limit : {l.velocity, l.acceleration, l.deceleration, l.jerk}) {
-      if (!(limit > 0)) return false;
+  for (const auto& limits : {request_->limits, request_->first_limits}) {
+    for (const RateLimits& l : limits) {
+      for (const double limit : {l.velocity, l.acceleration, l.deceleration, l.jerk}) {
+        if (!(limit > 0)) return false;
+      }
     }
   }
+  if (!request_->first_limits.empty() && request_->first_limits.size() != n_) return false;
   for (const auto& pace : {request_->begin, request_->end}) {
     if (pace && !(Above0(pace->square) && std::isfinite(pace->slope))) return false;
   }
@@ -116,9 +124,44 @@ bool PathPlanner::Read() noexcept {
       for (const ReferenceRate& r : out) {
         if (!std::isfinite(r.first + r.second + r.third)) return false;
       }
+      Merge(k, e);
     }
   }
   return true;
+}
+
+// What one limit says at an end of an interval need not be said by another one: on a straight line all coordinates go
+// as the first one does, and of each kind only the smallest limit counts.
+void PathPlanner::Merge(std::size_t k, std::size_t e) noexcept {
+  const ReferenceRate* rates = &ends_[(2 * k + e) * count_];
+  const ReferenceRate& first = rates[0];
+  RateLimits& merged = merged_[2 * k + e];
+  std::uint64_t& apart = apart_[2 * k + e];
+  merged = LimitsOf(k, 0);
+  apart = 0;
+  for (std::size_t q = 1; q < count_; ++q) {
+    const ReferenceRate& own = rates[q];
+    const RateLimits& l = LimitsOf(k, q);
+    // What has no limit of its own may still be large where the other limits are.
+    const auto within = [](double rate, double limit) {
+      return std::isfinite(limit) ? std::abs(rate) <= kSmall * limit : rate == 0;
+    };
+    const auto is_small = [&](double one, double two, double three) {
+      return within(one, l.velocity) && within(two, l.acceleration) && within(three, l.jerk);
+    };
+    if (is_small(own.first, own.second, own.third)) continue;
+    const double ratio = first.first != 0 ? own.first / first.first : first.third != 0 ? own.third / first.third : 0;
+    if (!is_small(1e3 * (own.first - ratio * first.first), 1e3 * (own.second - ratio * first.second),
+                  1e3 * (own.third - ratio * first.third))) {
+      apart |= std::uint64_t{1} << q;
+      continue;
+    }
+    const double size = std::abs(ratio);
+    merged.velocity = std::min(merged.velocity, l.velocity / size);
+    merged.acceleration = std::min(merged.acceleration, l.acceleration / size);
+    merged.deceleration = std::min(merged.deceleration, l.acceleration / size);
+    merged.jerk = std::min(merged.jerk, l.jerk / size);
+  }
 }
 
 // The largest R that is within all limits where it is the same everywhere; 0: the rates are not finite.
@@ -128,7 +171,7 @@ double PathPlanner::UniformSquare() noexcept {
     for (int i = 0; i <= kSamples; ++i) {
       request_->motion.rates(request_->motion.owner, k, static_cast<double>(i) / kSamples, at_);
       for (std::size_t q = 0; q < count_; ++q) {
-        const RateLimits& l = request_->limits[q];
+        const RateLimits& l = LimitsOf(k, q);
         velocity = std::max(velocity, std::abs(at_[q].first) / l.velocity);
         acceleration = std::max({acceleration, at_[q].second / l.acceleration, -at_[q].second / l.deceleration});
         jerk = std::max(jerk, std::abs(at_[q].third) / l.jerk);
@@ -209,7 +252,8 @@ void PathPlanner::MakeRows() noexcept {
       double cap = std::numeric_limits<double>::infinity();
       for (std::size_t q = 0; q < count_; ++q) {
         const ReferenceRate& rate = ends_[(2 * k + e) * count_ + q];
-        const RateLimits& l = request_->limits[q];
+        if (q > 0 && (apart_[2 * k + e] >> q & 1) == 0) continue;
+        const RateLimits& l = q == 0 ? merged_[2 * k + e] : LimitsOf(k, q);
         const double d1 = f * rate.first, d2 = f * rate.second, d3 = f * rate.third;
         if (d1 != 0) cap = std::min(cap, l.velocity * l.velocity / (d1 * d1));
         if (d1 == 0 && d2 == 0 && d3 == 0) continue;
@@ -380,6 +424,7 @@ void PathPlanner::Solve(double start_share) noexcept {
   for (int i = 0; i < kStepsPerRound && steps_ < kMostSteps; ++i) {
     ++steps_;
     if (!Step(centring, start_share, i == 0)) return;
+    if (!(gap_ < kLost && residual_ < kLost)) return;
     if (gap_ < kPrecision && residual_ < kPrecision && infeasible_ < 1e-6) return;
     const double share = std::min(primal_, dual_);
     centring = share > 0.9 ? 0.1 : share > 0.5 ? 0.25 : share > 0.2 ? 0.5 : 0.8;
@@ -415,7 +460,7 @@ double PathPlanner::UseOf(std::size_t k) noexcept {
     if (!shares(i)) return kInfinite;
     if (i < 2) continue;
     for (std::size_t q = 0; q < count_; ++q) {
-      const RateLimits& l = request_->limits[q];
+      const RateLimits& l = LimitsOf(k, q);
       for (std::size_t order = 0; order < 3; ++order) {
         const std::size_t at = 3 * q + order;
         const auto value = [&](int j) { return signed_[static_cast<std::size_t>(j % 3) * width + at]; };
@@ -438,7 +483,7 @@ double PathPlanner::UseOf(std::size_t k) noexcept {
 }
 
 // True: all are within. Else the intervals where they are not are tightened, and their neighbours.
-bool PathPlanner::Verify() noexcept {
+bool PathPlanner::Verify(int round) noexcept {
   most_use_ = 0;
   for (std::size_t k = 0; k < n_; ++k) {
     use_[k] = UseOf(k);
@@ -449,6 +494,9 @@ bool PathPlanner::Verify() noexcept {
     double use = use_[k];
     if (k > 0) use = std::max(use, use_[k - 1] > 1 ? use_[k - 1] : 0);
     if (k + 1 < n_) use = std::max(use, use_[k + 1] > 1 ? use_[k + 1] : 0);
+    // What is found again lies between the ends of an interval, where rows say less about it.
+    if (round >= kStubborn) use *= use;
+    if (round >= 2 * kStubborn) use *= use;
     if (use > 1) tighten_[k] *= kTighter * std::min(use, 2.0);
   }
   return false;
@@ -485,14 +533,15 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
     tighten_[k] = 1 + (1 / kPlanShare - 1) * std::min({1.0, from_begin, from_end});
   }
   double start = kOfUniform * uniform;
-  if (request.begin) start = std::max(start, kOfUniform * request.begin->square);
+  // What goes on from a motion begins with what that would be.
+  if (request.begin) start = request.begin->square;
   std::fill_n(ordinates_.begin(), n_, start);
   SettleEnds();
   if (ordinates_[0] > 0 && ordinates_[n_ - 1] > 0) {
     double start_share = 0.1;
     for (int round = 0; round < kVerifyRounds && steps_ < kMostSteps; ++round) {
       Solve(start_share);
-      if (Verify()) {
+      if (Verify(round)) {
         Publish(out);
         return PathPlanStatus::kPlanned;
       }
@@ -505,7 +554,7 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
   if (most_use_ < kNearly) {
     const double lower = (1 - kLowerRounding) / (most_use_ * most_use_);
     for (std::size_t k = 0; k < n_; ++k) ordinates_[k] *= lower;
-    if (Verify()) {
+    if (Verify(0)) {
       Publish(out);
       return PathPlanStatus::kPlanned;
     }
@@ -514,7 +563,7 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
   double square = uniform;
   for (int i = 0; i < kVerifyRounds; ++i) {
     std::fill_n(ordinates_.begin(), n_, square);
-    if (Verify()) {
+    if (Verify(0)) {
       Publish(out);
       return PathPlanStatus::kScaled;
     }

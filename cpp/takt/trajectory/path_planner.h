@@ -57,6 +57,8 @@ struct ReferencePace {
 struct PathPlanRequest {
   std::span<const double> lengths;     // of the intervals of the reference time [s], > 0
   std::span<const RateLimits> limits;  // of each coordinate
+  // Of the first coordinate in each interval, instead of those for all; empty: they are the same everywhere.
+  std::span<const RateLimits> first_limits;
   ReferenceMotion motion;
   // At the beginning and at the end; none: the reference stands there, and so does the motion.
   std::optional<ReferencePace> begin;
@@ -152,7 +154,11 @@ class PathPlanner {
     Linear bend;
   };
 
+  const RateLimits& LimitsOf(std::size_t k, std::size_t q) const noexcept {
+    return q == 0 && !request_->first_limits.empty() ? request_->first_limits[k] : request_->limits[q];
+  }
   bool Read() noexcept;
+  void Merge(std::size_t k, std::size_t e) noexcept;
   double UniformSquare() noexcept;
   Shape ShapeOf(std::size_t k) const noexcept;
   void SettleEnds() noexcept;
@@ -162,18 +168,20 @@ class PathPlanner {
   bool Step(double centring, double start_share, bool first) noexcept;
   bool SolveLinear() noexcept;
   double UseOf(std::size_t k) noexcept;
-  bool Verify() noexcept;
+  bool Verify(int round) noexcept;
   void Publish(PathPlan& out) const noexcept;
 
   const PathPlanRequest* request_ = nullptr;
   std::size_t n_ = 0, count_ = 0;  // intervals, coordinates
   std::size_t most_intervals_, most_coordinates_;
-  std::vector<ReferenceRate> ends_;  // of all coordinates at the beginning and at the end of each interval
-  std::vector<ReferenceRate> at_;    // of all coordinates
-  std::vector<double> ordinates_;    // c: R's control ordinate above the middle of each interval
-  std::vector<double> tighten_;      // factor of the rates of each interval
-  std::vector<double> use_;          // of the limits in each interval
-  std::vector<double> signed_;       // velocity, acceleration and jerk of all coordinates at three samples
+  std::vector<ReferenceRate> ends_;   // of all coordinates at the beginning and at the end of each interval
+  std::vector<RateLimits> merged_;    // of the first one there, those of coordinates that go like it included
+  std::vector<std::uint64_t> apart_;  // coordinates that do not, a mask
+  std::vector<ReferenceRate> at_;     // of all coordinates
+  std::vector<double> ordinates_;     // c: R's control ordinate above the middle of each interval
+  std::vector<double> tighten_;       // factor of the rates of each interval
+  std::vector<double> use_;           // of the limits in each interval
+  std::vector<double> signed_;        // velocity, acceleration and jerk of all coordinates at three samples
   std::vector<Row> rows_;
   std::vector<double> diagonal_, next_, second_next_, right_, step_;
   std::size_t row_count_ = 0;

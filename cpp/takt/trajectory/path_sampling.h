@@ -114,7 +114,11 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
       const double line = 0.5 * (before.slopes.second[k] + next.slopes.second[k]);
       linear = std::abs(middle.slopes.second[k] - line) * square <= c::kBend * limits.of[k].acceleration;
     }
-    if (linear || i == c::kHalvings) return true;
+    if (linear || i == c::kHalvings) {
+      next.middle = middle.slopes.second;
+      next.has_middle = true;
+      return true;
+    }
     step *= 0.5;
   }
 }

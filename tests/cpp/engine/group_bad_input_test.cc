@@ -239,10 +239,10 @@ INSTANTIATE_TEST_SUITE_P(AllStates, GroupBadInputIn, testing::ValuesIn(kGroupSit
 TEST(GroupBadInput, KnowsEveryCommand) {
   std::set<std::size_t> known;
   for (const group::Command& good : GoodGroupCommands()) known.insert(good.index());
-  for (const group::Command& plain :
-       std::vector<group::Command>{group::Continue{}, group::AddAxis{}, group::RemoveAxis{}, group::UngroupAllAxes{},
-                                   group::Enable{}, group::Disable{}, group::Reset{}, group::Power{}, group::Home{},
-                                   group::SetKinTransform{}, group::PathChecked{}}) {  // no user's
+  for (const group::Command& plain : std::vector<group::Command>{
+           group::Continue{}, group::AddAxis{}, group::RemoveAxis{}, group::UngroupAllAxes{}, group::Enable{},
+           group::Disable{}, group::Reset{}, group::Power{}, group::Home{}, group::SetKinTransform{},
+           group::PathChecked{}, group::PathPlanned{}}) {  // no user's
     known.insert(plain.index());
   }
   EXPECT_EQ(known.size(), std::variant_size_v<group::Command>);

@@ -1,0 +1,359 @@
+#include "takt/trajectory/path_timing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "takt/core/describe.h"
+
+namespace takt::trajectory {
+
+namespace {
+
+constexpr double kLead_s = 0.012;  // from asking for a plan until it takes over
+constexpr std::uint64_t kMostLead = 400;
+constexpr std::uint64_t kAskAgain = 8;
+constexpr double kRenew_s = 0.4;  // a law that ends before the path does is made longer so long before
+constexpr double kWithin = 1 + 1e-7;
+constexpr int kPlaces = 48;                                       // at which a profile is looked at
+constexpr double kShares[] = {1, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1};  // of limits, to brake with or to begin with
+constexpr double kSamePlace = 1e-9;                               // mm
+constexpr double kBridgeShare = 0.98;                             // of the coordinates' limits
+constexpr int kTails = 16;
+constexpr double kStraight = 1e-12;
+constexpr double kGentle = 0.3;  // of the limits that a stop may take
+
+bool IsAtRest(const KinematicState& state) {
+  return state.velocity == 0 && state.acceleration == 0;
+}
+
+}  // namespace
+
+double PathTiming::Law::Duration() const noexcept {
+  if (tail_s < std::numeric_limits<double>::infinity()) return tail_s + tail.duration();
+  return planned ? plan.duration() : profile.duration();
+}
+
+double PathTiming::Law::EndPlace() const noexcept {
+  if (tail_s < std::numeric_limits<double>::infinity()) return tail.end().position;
+  return planned ? course.end_place() : profile.end().position;
+}
+
+KinematicState PathTiming::Law::At(double t) const noexcept {
+  if (t >= Duration()) return {EndPlace(), 0, 0};
+  if (t >= tail_s) return tail.At(t - tail_s);
+  return planned ? course.At(plan.At(t)) : profile.At(t);
+}
+
+PathTiming::PathTiming(double period_s) : period_s_(period_s), maker_(std::make_unique<Maker>(kIntervals)) {}
+
+void PathTiming::Clear() noexcept {
+  active_ = braking_ = final_ = false;
+  DropPlan();
+}
+
+void PathTiming::DropPlan() noexcept {
+  dropped_ = planning_;
+  ready_ = false;
+}
+
+void PathTiming::Begin(const PathPace& pace) noexcept {
+  Clear();
+  active_ = true;
+  late_ = 0;
+  tick_ = wait_until_ = 0;
+  Take(Profile(pace.now), 1);
+}
+
+void PathTiming::Take(const Profile& profile, double factor) noexcept {
+  current_.begin = tick_;
+  current_.planned = false;
+  current_.profile = profile;
+  current_.tail_s = std::numeric_limits<double>::infinity();
+  current_.factor = factor;
+}
+
+KinematicState PathTiming::StateAt(std::uint64_t tick) const noexcept {
+  return current_.At(static_cast<double>(tick - current_.begin) * period_s_);
+}
+
+double PathTiming::rest_s() const noexcept {
+  return std::max(0.0, current_.Duration() - static_cast<double>(tick_ - current_.begin) * period_s_);
+}
+
+std::uint64_t PathTiming::rest_cycles() const noexcept {
+  return static_cast<std::uint64_t>(std::ceil(rest_s() / period_s_ - 1e-9));
+}
+
+bool PathTiming::Settles(double place) const noexcept {
+  return !braking_ && (current_.planned || final_) && rest_place() >= place - 1e-6;
+}
+
+// Whether a motion never goes back and keeps the limits of all coordinates.
+bool PathTiming::Holds(const PathWindow& window, std::uint64_t node, const Profile& profile) const noexcept {
+  if (profile.VelocityRange().min < -kSamePlace) return false;
+  KinematicState before = profile.At(0);
+  double begin_s = 0;
+  for (int i = 0; i < profile.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double jerk = profile.pieces[k].jerk;
+    const double length_s = profile.piece_ends_s[k] - begin_s;
+    for (int place = 0; place <= kPlaces; ++place) {
+      const KinematicState at = profile.pieces[k].At(length_s * place / kPlaces);
+      // What lies between two places: each node, with its slopes before and behind.
+      while (node + 1 < window.known() && !window[node].stop && window[node + 1].at.s <= at.position + kSamePlace) {
+        const double s = window[node + 1].at.s;
+        const double way = at.position - before.position;
+        const double share = way > kSamePlace ? std::clamp((s - before.position) / way, 0.0, 1.0) : 1;
+        const double square = std::lerp(before.velocity * before.velocity, at.velocity * at.velocity, share);
+        const double acceleration = std::lerp(before.acceleration, at.acceleration, share);
+        const KinematicState there{s, std::sqrt(square), acceleration};
+        if (UseOf(window, node, there, jerk) > kWithin) return false;
+        ++node;
+        if (UseOf(window, node, there, jerk) > kWithin) return false;
+      }
+      if (UseOf(window, node, at, jerk) > kWithin) return false;
+      before = at;
+    }
+    begin_s = profile.piece_ends_s[k];
+  }
+  return true;
+}
+
+// One motion from where it is to rest at a place ahead.
+bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, const PathPace& pace) noexcept {
+  const std::uint64_t end = StopBehind(window, pace.node);
+  if (!(window[end].at.s > pace.now.position + kSamePlace)) return false;
+  // To the end, or to where bends begin.
+  std::uint64_t bend = end;
+  const auto steady = [&](std::uint64_t i) {
+    const PathSlopes& slopes = window[i].at.slopes;
+    const double most = factor * window[i].at.limits.velocity;
+    return window[i].own >= 0.9 * most * most || std::ranges::all_of(slopes.second, [](double q) { return q == 0; });
+  };
+  for (std::uint64_t i = pace.node + 1; i <= end; ++i) {
+    if (steady(i)) continue;
+    bend = i - 1;
+    break;
+  }
+  // Where it bends at once a plan from rest is there soon; without one it goes as fast as the slowest place.
+  if (bend <= pace.node || !(window[bend].at.s > pace.now.position + kSamePlace)) {
+    if (!slowly) return false;
+    bend = end;
+  }
+  for (const std::uint64_t to : {slowly ? end : bend, bend}) {
+    AlongPath least = window[pace.node].at.limits;
+    double velocity = std::numeric_limits<double>::infinity();
+    bool straight = true;
+    for (std::uint64_t i = pace.node; i <= to; ++i) {
+      const PathPoint& point = window[i].at;
+      least = Least(least, point.limits);
+      const double most = factor * point.limits.velocity;
+      straight = straight && std::ranges::all_of(point.slopes.second, [](double q) { return std::abs(q) < kStraight; });
+      velocity = std::min({velocity, most, std::max(factor, 1e-3) * std::sqrt(window[i].own)});
+      for (std::size_t k = 0; k < window.limits().count; ++k) {
+        const double slope = std::abs(point.slopes.first[k]);
+        const double a = kBridgeShare * point.left * window.limits().of[k].acceleration;
+        const double j = kBridgeShare * point.left * window.limits().of[k].jerk;
+        if (slope * least.acceleration > a) least.acceleration = a / slope;
+        if (slope * least.deceleration > a) least.deceleration = a / slope;
+        if (slope * least.jerk > j) least.jerk = j / slope;
+      }
+    }
+    if (!(velocity > 0)) continue;
+    for (const double share : kShares) {
+      const Limits limits{velocity, share * least.acceleration, share * least.deceleration, share * least.jerk};
+      Profile profile{};
+      if (planner_.ToPosition(pace.now, window[to].at.s, 0, limits, profile).failed()) continue;
+      if (profile.PositionRange().max > window[to].at.s + kSamePlace || profile.VelocityRange().min < -kSamePlace)
+        continue;
+      if (!Holds(window, pace.node, profile)) continue;
+      DropPlan();
+      Take(profile, factor);
+      final_ = to == end && share == 1 && straight && StopBehind(window, to) == to;
+      braking_ = false;
+      return true;
+    }
+    if (to == bend) break;
+  }
+  return false;
+}
+
+void PathTiming::Go(const PathWindow& window, PathPace& pace) noexcept {
+  ++tick_;
+  if (ready_ && next_.begin <= tick_) {
+    std::swap(current_, next_);
+    ready_ = false;
+    braking_ = final_ = false;
+  }
+  pace.now = pace.raw = StateAt(tick_);
+  pace.node = pace.passed = NodeAt(window, pace.node, pace.now.position);
+  pace.entered = pace.now.velocity * pace.now.velocity;
+  pace.raw_stands = IsAtRest(pace.now) && (pace.node + 1 >= window.known() || window[pace.node].stop);
+}
+
+void PathTiming::Advance(const PathWindow& window, double factor, PathPace& pace) noexcept {
+  if (factor > 0 && IsAtRest(pace.now) && rest_s() == 0 && !ready_) {
+    Bridge(window, factor, no_plan_, pace);
+  }
+  Go(window, pace);
+}
+
+void PathTiming::Stop(const PathWindow& window, const PathBrake& brake, PathPace& pace) noexcept {
+  if (!braking_ && !IsAtRest(pace.now)) {
+    const AlongPath& along = window[pace.node].at.limits;
+    double deceleration = brake.deceleration > 0 ? brake.deceleration : along.deceleration;
+    double jerk = brake.jerk > 0 ? std::min(brake.jerk, along.jerk) : along.jerk;
+    for (std::size_t k = 0; k < window.limits().count; ++k) {
+      const double slope = std::abs(window[pace.node].at.slopes.first[k]);
+      const double a = kBridgeShare * window.limits().of[k].acceleration, j = kBridgeShare * window.limits().of[k].jerk;
+      if (slope * deceleration > a) deceleration = a / slope;
+      if (slope * jerk > j) jerk = j / slope;
+    }
+    const double furthest = window[StopBehind(window, pace.node)].at.s;
+    for (const double share : kShares) {
+      Profile profile{};
+      if (planner_.Stop(pace.now, {along.velocity, deceleration, share * deceleration, share * jerk}, profile).failed())
+        continue;
+      if (profile.end().position > furthest || !Holds(window, pace.node, profile)) continue;
+      Take(profile, current_.factor);
+      DropPlan();
+      braking_ = true;
+      final_ = false;
+      break;
+    }
+  }
+  if (IsAtRest(pace.now)) {
+    DropPlan();
+    braking_ = true;
+    Take(Profile(pace.now), current_.factor);
+  }
+  Go(window, pace);
+}
+
+double PathTiming::BrakesTo(const PathWindow& window, const PathPace& pace) const noexcept {
+  if (braking_) return rest_place();
+  const AlongPath& along = window[pace.node].at.limits;
+  const Limits gentle{along.velocity, along.acceleration, kGentle * along.deceleration, kGentle * along.jerk};
+  return std::min(window[StopBehind(window, pace.node)].at.s, StopPosition(pace.now, gentle));
+}
+
+bool PathTiming::StartPlan(const PathWindow& window, double factor, const PathPace& pace) noexcept {
+  const std::uint64_t end = StopBehind(window, pace.node);
+  const std::uint64_t lead = std::max(late_, static_cast<std::uint64_t>(std::ceil(kLead_s / period_s_)));
+  const KinematicState begin = StateAt(tick_ + lead);
+  from_rest_ = IsAtRest(begin);
+  const std::uint64_t node = NodeAt(window, pace.node, begin.position);
+  if (!next_.course.Make(window, node, begin, end, factor, kIntervals, planner_)) return false;
+  next_.begin = tick_ + lead;
+  next_.planned = true;
+  next_.factor = factor;
+  next_.tail_s = std::numeric_limits<double>::infinity();
+  maker_->request = next_.course.Request();
+  ++maker_->number;
+  maker_->order.store(Order::kAsked, std::memory_order_release);
+  planning_ = true;
+  dropped_ = no_plan_ = false;
+  asked_ = tick_;
+  return true;
+}
+
+void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pace) noexcept {
+  if (!active_ || ready_ || !(factor > 0) || tick_ == 0) return;
+  if (planning_) {
+    if (tick_ > asked_ + kMostLead) no_plan_ = true;  // nobody answers
+    return;
+  }
+  const std::uint64_t end = StopBehind(window, pace.node);
+  const bool further = window[end].at.s > rest_place() + kSamePlace;
+  const bool wanted =
+      (further && rest_s() < kRenew_s) || braking_ || (!current_.planned && !final_) || current_.factor != factor;
+  if (!wanted || tick_ < wait_until_ || !(window[end].at.s > pace.now.position + kSamePlace)) return;
+  if (StartPlan(window, factor, pace)) return;
+  wait_until_ = tick_ + kAskAgain;
+  no_plan_ = IsAtRest(pace.now);
+}
+
+std::optional<std::uint64_t> PathTiming::MakePlan() noexcept {
+  if (maker_->order.load(std::memory_order_acquire) != Order::kAsked) return {};
+  maker_->status = maker_->planner.Plan(maker_->request, next_.plan);
+  const std::uint64_t number = maker_->number;
+  maker_->order.store(Order::kMade, std::memory_order_release);
+  return number;
+}
+
+void PathTiming::TakePlan(std::uint64_t number) noexcept {
+  if (!planning_ || number != maker_->number) return;
+  MakePlan();
+  maker_->order.store(Order::kNone, std::memory_order_relaxed);
+  planning_ = false;
+  if (dropped_) return;
+  const PathPlanStatus status = maker_->status;
+  const bool found = status == PathPlanStatus::kPlanned || status == PathPlanStatus::kScaled;
+  if (found && from_rest_) {
+    const auto rests = current_.begin + static_cast<std::uint64_t>(std::ceil(current_.Duration() / period_s_ - 1e-9));
+    next_.begin = std::max(tick_, rests);
+    ready_ = true;
+  } else if (found && next_.begin >= tick_) {
+    ready_ = true;
+  } else if (found) {  // too late
+    late_ = std::min(2 * (next_.begin - asked_), kMostLead);
+    return;
+  } else {
+    wait_until_ = tick_ + kAskAgain;
+    no_plan_ = from_rest_;
+  }
+  late_ = 0;
+}
+
+bool PathTiming::StopBefore(const PathWindow& window, double place, const PathPace& pace) noexcept {
+  if (rest_place() <= place + kSamePlace) {
+    DropPlan();
+    return true;
+  }
+  // When it gets there, to the cycle.
+  std::uint64_t last = tick_;
+  const auto ends = static_cast<std::uint64_t>(std::ceil(rest_s() / period_s_)) + tick_;
+  std::uint64_t behind = ends;
+  while (behind - last > 1) {
+    const std::uint64_t middle = last + (behind - last) / 2;
+    (StateAt(middle).position < place ? last : behind) = middle;
+  }
+  const std::uint64_t step = std::max<std::uint64_t>(1, (last - tick_ + kTails - 1) / kTails);
+  for (std::uint64_t tick = last;; tick -= std::min(step, tick - tick_)) {
+    const KinematicState from = StateAt(tick);
+    const std::uint64_t node = NodeAt(window, pace.node, from.position);
+    AlongPath least = window[node].at.limits;
+    for (std::uint64_t i = node; i < window.known() && window[i].at.s < place; ++i) {
+      const PathPoint& point = window[i].at;
+      least = Least(least, point.limits);
+      for (std::size_t k = 0; k < window.limits().count; ++k) {
+        const double slope = std::abs(point.slopes.first[k]);
+        const CoordinateLimits::One& of = window.limits().of[k];
+        if (slope * least.acceleration > of.acceleration) least.acceleration = of.acceleration / slope;
+        if (slope * least.deceleration > of.acceleration) least.deceleration = of.acceleration / slope;
+        if (slope * least.jerk > of.jerk) least.jerk = of.jerk / slope;
+      }
+    }
+    const Limits limits{std::max(least.velocity, from.velocity), least.acceleration, least.deceleration, least.jerk};
+    Profile profile{};
+    const bool found = !planner_.ToPosition(from, place, 0, limits, profile).failed() &&
+                       profile.PositionRange().max <= place + kSamePlace &&
+                       profile.VelocityRange().min >= -kSamePlace && Holds(window, node, profile);
+    if (found) {
+      current_.tail_s = static_cast<double>(tick - current_.begin) * period_s_;
+      current_.tail = profile;
+      DropPlan();
+      final_ = false;
+      return true;
+    }
+    if (tick == tick_) return false;
+  }
+}
+
+void describe(Description<PathBrake>& d) {
+  d.about("How a motion along a path is ended.");
+  d.internal<&PathBrake::deceleration>("0: as the path says.");
+  d.internal<&PathBrake::jerk>("The same.");
+}
+
+}  // namespace takt::trajectory

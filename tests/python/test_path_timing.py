@@ -1,0 +1,182 @@
+"""Motion along paths: limits that hold at every instant, corners that cost no time (docs/groups.md, Path timing)."""
+
+from __future__ import annotations
+
+import itertools
+import os
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+import takt
+
+Points = list[tuple[float, float, float]]
+Disturb = Callable[[takt.Engine, takt.Group], None]
+LONG = os.environ.get("TAKT_LONG") == "1"
+PERIOD = 1e-3
+WITHIN = 1 + 1e-6
+
+
+class Limits(NamedTuple):
+    velocity: float
+    acceleration: float
+    jerk: float
+
+
+class Case(NamedTuple):
+    points: Points
+    limits: Limits
+    deviation: float
+
+
+def machine(points: Points, limits: Limits) -> str:
+    values = f"{{velocity: {limits.velocity!r}, acceleration: {limits.acceleration!r}, jerk: {limits.jerk!r}}}"
+    planned = values.replace("}", ", planned_ahead: true}")
+    axes = "".join(f"  - {{name: {name}, unit: mm, limits: {values}}}\n" for name in "xyz")
+    elements = "".join(f"      - {{shape: line, to: {{x: {x!r}, y: {y!r}, z: {z!r}}}}}\n" for x, y, z in points)
+    return (
+        f"name: gantry\naxes:\n{axes}groups:\n"
+        f"  - {{name: g, axes: [x, y, z], kinematics: {{gantry: {{axes: [x, y, z]}}}}, path: {planned}}}\n"
+        f"paths:\n  - name: p\n    elements:\n{elements}"
+    )
+
+
+def go(case: Case, rounded: bool, disturb: Disturb | None = None) -> tuple[float, takt.Recording]:
+    with takt.Engine(machine(case.points, case.limits)) as session:
+        group = session.group("g")
+        group.power().wait()
+        group.enable().wait()
+        began = session.now
+        with session.record("g", "x", "y", "z") as recorder:
+            if rounded:
+                done = group.move_path(
+                    path="p", transition_mode="max_corner_deviation", transition_parameter=case.deviation
+                )
+            else:
+                done = group.move_path(path="p")
+            if disturb is not None:
+                disturb(session, group)
+            done.wait(timeout=200)
+            took = session.now - began
+        return took, recorder.recording
+
+
+def off_path(points: Points, recording: takt.Recording) -> float:
+    """How far set points are from the nearest line, mm."""
+    tool = np.stack([recording[name]["set_position"] for name in "xyz"], axis=1)
+    least: npt.NDArray[np.floating] = np.full(len(tool), np.inf)
+    corners = [np.zeros(3), *map(np.array, points)]
+    for begin, end in itertools.pairwise(corners):
+        along = end - begin
+        share = np.clip((tool - begin) @ along / (along @ along), 0, 1)
+        least = np.minimum(least, np.linalg.norm(tool - begin - share[:, None] * along, axis=1))
+    return float(least.max())
+
+
+def check_limits(case: Case, recording: takt.Recording) -> None:
+    """Velocity, acceleration and jerk of the path and of each axis, and the tool on its path."""
+    limits = case.limits
+    path = recording["g"]
+    assert path["path_velocity"].min() >= -1e-9
+    assert path["path_velocity"].max() <= WITHIN * limits.velocity
+    assert np.abs(path["path_acceleration"]).max() <= WITHIN * limits.acceleration
+    assert np.abs(np.diff(path["path_acceleration"])).max() <= WITHIN * limits.jerk * PERIOD
+    speed = 0.0
+    for name in "xyz":
+        axis = recording[name]
+        speed += axis["set_velocity"] ** 2
+        assert np.abs(axis["set_acceleration"]).max() <= WITHIN * limits.acceleration
+        # From positions alone: no motion within the limits passes through samples that differ by more.
+        assert np.abs(np.diff(axis["set_position"], 3)).max() <= (1 + 1e-4) * limits.jerk * PERIOD**3
+    # The axes follow the path: none had to keep its own limits against it.
+    assert np.abs(np.sqrt(speed) - path["path_velocity"]).max() <= 2e-3
+    assert off_path(case.points, recording) <= case.deviation + 1e-3
+
+
+def random_case(rng: np.random.Generator, least_leg: float = 0.1) -> Case:
+    """Three to eight lines of `least_leg` to 100 mm that turn by any angle."""
+    points: Points = []
+    at = np.zeros(3)
+    for _ in range(rng.integers(3, 9)):
+        direction = rng.normal(size=3)
+        at = at + direction / np.linalg.norm(direction) * 10 ** rng.uniform(np.log10(least_leg), 2)
+        points.append((round(float(at[0]), 4), round(float(at[1]), 4), round(float(at[2]), 4)))
+    acceleration = float(10 ** rng.uniform(3, 4.5))
+    limits = Limits(float(rng.uniform(50, 1000)), acceleration, float(acceleration * 10 ** rng.uniform(1, 2.2)))
+    return Case(points, limits, float(10 ** rng.uniform(-2.5, 0.5)))
+
+
+def stairs(step: float, deviation: float, count: int = 8) -> Case:
+    at = [0.0, 0.0, 0.0]
+    points = []
+    for i in range(count):
+        at[i % 2] += step
+        points.append((at[0], at[1], 0.0))
+    return Case(points, Limits(500, 5000, 100_000), deviation)
+
+
+@pytest.mark.parametrize("seed", range(2000 if LONG else 12))
+def test_random_polylines_keep_all_limits(seed: int) -> None:
+    """GR-40: turns to 180 degrees, legs from 0.1 mm on, blends from 3 um on."""
+    case = random_case(np.random.default_rng(seed))
+    _, recording = go(case, rounded=True)
+    check_limits(case, recording)
+
+
+@pytest.mark.parametrize("seed", range(2000 if LONG else 10))
+def test_interrupts_and_overrides_keep_all_limits(seed: int) -> None:
+    """GR-40: interrupted, continued, slowed down and stopped by the override at random instants."""
+    rng = np.random.default_rng(seed)
+    case = random_case(rng, least_leg=1)
+
+    def disturb(session: takt.Engine, group: takt.Group) -> None:
+        for _ in range(6):
+            session.run(float(rng.integers(1, 150)) * PERIOD)
+            if group.state != "GroupMoving":
+                break
+            what = rng.integers(0, 3)
+            if what == 0:
+                group.interrupt()
+                session.run(float(rng.integers(1, 400)) * PERIOD)
+                group.continue_path()
+            else:
+                factor = rng.uniform(0.05, 1) if what == 1 else rng.integers(0, 2)
+                group.set_override(velocity_factor=float(factor))
+        group.set_override(velocity_factor=1.0)
+
+    _, recording = go(case, rounded=True, disturb=disturb)
+    check_limits(case, recording)
+
+
+@pytest.mark.parametrize("step", [5, 25.4, 50])
+def test_rounding_a_staircase_is_no_slower_than_stopping(step: float) -> None:
+    """GR-41: but for what a plan takes to be there."""
+    stopping, _ = go(stairs(step, 0.01), rounded=False)
+    for deviation in (0.01, 0.05, 0.2, 1):
+        case = stairs(step, deviation)
+        took, recording = go(case, rounded=True)
+        check_limits(case, recording)
+        assert took <= 1.02 * stopping, deviation
+    assert took <= 0.93 * stopping
+
+
+def test_an_interrupt_is_answered_soon_and_goes_on_to_the_end() -> None:
+    """GR-40: on a staircase, at every instant of one step."""
+    case = stairs(25.4, 0.05, count=3)
+    longest = 0.0
+    for instant in range(40, 400, 30 if not LONG else 1):
+
+        def disturb(session: takt.Engine, group: takt.Group, instant: int = instant) -> None:
+            nonlocal longest
+            session.run(instant * PERIOD)
+            began = session.now
+            group.interrupt().wait(timeout=5)
+            longest = max(longest, session.now - began)
+            group.continue_path()
+
+        _, recording = go(case, rounded=True, disturb=disturb)
+        check_limits(case, recording)
+    # From full speed the ramp takes 0.1 s.
+    assert longest <= 0.15
