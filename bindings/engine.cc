@@ -96,7 +96,7 @@ using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::ui
 class VirtualEngine {
  public:
   // `loaded`: from LoadMachine. `drives_url`: LCM network of external drives; without it their feedback comes from
-  // Hear. `drives_keys`: those that they share, if any.
+  // Hear. `drives_keys`: the keys shared with them, if any.
   VirtualEngine(engine::LoadResult loaded, bool journal, const std::optional<std::string>& drives_url,
                 const std::optional<lcm::Keys>& drives_keys, bool checks)
       : journaling_(journal),

@@ -132,7 +132,7 @@ def test_the_command_refuses_what_defines_no_frame(gantry: takt.Group) -> None:
 
 
 def test_what_is_under_way_keeps_its_frame(gantry: takt.Group) -> None:
-    """GR-46: a move and a jog in the product coordinate system; the next one goes by the new one."""
+    """GR-46: a move and a jog in the product coordinate system; the next one uses the new frame."""
     gantry.calibrate(pcs=2, **places(np.array([[20, 0, 0], [30, 0, 0], [20, 10, 0]]))).wait()
     move = gantry.move_linear_absolute(x=60, coordinate_system="pcs", pcs=2)
     gantry.session.run(0.1)

@@ -5,12 +5,15 @@ from __future__ import annotations
 import itertools
 import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 import takt
+from machines import new_url, running
+from takt.lcmlog import open_log
 
 Points = list[tuple[float, float, float]]
 Disturb = Callable[[takt.Engine, takt.Group], None]
@@ -180,3 +183,97 @@ def test_an_interrupt_is_answered_soon_and_goes_on_to_the_end() -> None:
         check_limits(case, recording)
     # From full speed the ramp takes 0.1 s.
     assert longest <= 0.15
+
+
+# --- with everything else ---
+
+STOPS: dict[str, Callable[[takt.Engine, takt.Group], object]] = {
+    "halt": lambda _, group: group.halt(),
+    "gentle halt": lambda _, group: group.halt(deceleration=500, jerk=20_000),
+    "stop": lambda _, group: group.stop(),
+    "interrupt": lambda _, group: group.interrupt(),
+    "override 0": lambda _, group: group.set_override(velocity_factor=0.0),
+    "abort": lambda _, group: group.move_linear_absolute(x=0, y=0),
+    "emergency stop": lambda session, _: session.command("machine", "emergency_stop", {"hold": True}),
+    "stop all": lambda session, _: session.command("machine", "stop_all", {"open_loops": True}),
+    "power off": lambda _, group: group.power(enable=False),
+    "power off of a member": lambda session, _: session.axis("x").power(enable=False),
+    "disable": lambda _, group: group.disable(),
+}
+# The members then brake by themselves, or the tool leaves the path for another one.
+OFF_PATH = ("emergency stop", "stop all", "power off", "power off of a member", "disable", "abort")
+
+
+@pytest.mark.parametrize("stop", STOPS)
+def test_every_stop_brakes_within_limits_and_nothing_resumes(stop: str) -> None:
+    """GR-40, AX-100: at instants all along a staircase."""
+    case = stairs(25.4, 0.05, count=4)
+    for instant in range(11, 600, 5 if LONG else 97):
+        with takt.Engine(machine(case.points, case.limits)) as session:
+            group = session.group("g")
+            group.power().wait()
+            group.enable().wait()
+            with session.record("g", "x", "y", "z") as recorder:
+                group.move_path(path="p", transition_mode="max_corner_deviation", transition_parameter=0.05)
+                session.run(instant * PERIOD)
+                STOPS[stop](session, group)
+                session.run(1.5 if stop == "abort" else 0.6)
+            recording = recorder.recording
+            ends = [recording[name]["set_position"][-1] for name in "xyz"]
+            if stop == "abort":
+                assert np.abs(ends).max() <= 1e-6
+            else:
+                session.run(0.5)
+                assert [session.axis(name).set_position for name in "xyz"] == pytest.approx(ends, abs=1e-9)
+            if stop not in OFF_PATH:
+                check_limits(case, recording)
+            for name in "xyz":
+                assert np.abs(recording[name]["set_acceleration"]).max() <= WITHIN * case.limits.acceleration
+
+
+@pytest.mark.parametrize("seed", range(200 if LONG else 6))
+def test_moves_that_come_late_keep_all_limits(seed: int) -> None:
+    """GR-22, GR-40: each move is given while the one before it is in motion, from far ahead to too late to blend."""
+    rng = np.random.default_rng(seed)
+    case = random_case(rng, least_leg=3)
+    with takt.Engine(machine(case.points, case.limits)) as session:
+        group = session.group("g")
+        group.power().wait()
+        group.enable().wait()
+        with session.record("g", "x", "y", "z") as recorder:
+            done = None
+            for i, (x, y, z) in enumerate(case.points):
+                done = group.move_linear_absolute(
+                    x=x,
+                    y=y,
+                    z=z,
+                    buffer_mode="blending_high" if i else "aborting",
+                    transition_mode="max_corner_deviation",
+                    transition_parameter=case.deviation,
+                )
+                session.run(float(rng.integers(1, 250)) * PERIOD)
+            assert done is not None
+            done.wait(timeout=100)
+        check_limits(case, recorder.recording)
+
+
+@pytest.mark.parametrize("pace", ["real", "fast"])
+def test_a_run_with_plans_is_reproduced(tmp_path: Path, pace: str) -> None:
+    """EN-07: plans are made in another thread; the journal says when each was there."""
+    case = stairs(25.4, 0.05)
+    url = new_url()
+    file = tmp_path / "run.lcm"
+    text = machine(case.points, case.limits)
+    with running(tmp_path, url, "--log", str(file), machine=text, pace=pace), takt.connect(url) as session:
+        group = session.group("g")
+        group.power().wait_final()
+        group.enable().wait_final()
+        done = group.move_path(path="p", transition_mode="max_corner_deviation", transition_parameter=0.05)
+        session.run(0.4)
+        group.interrupt().wait_final()
+        group.continue_path()
+        done.wait(timeout=30)
+    assert any(event.verb == "path_planned" for event in open_log(file).runs[-1].journal)
+    result = takt.replay(file)
+    assert result.same
+    assert result.states > 0

@@ -44,7 +44,7 @@ inline bool Streams(RequestKind kind) noexcept {
 }
 // What a stream asks for now, over all turns. Requires: it has a set point.
 KinematicState DemandAt(StreamState& k) noexcept;
-// Where among those that are kept a set point of this time belongs. kStreamLate: its time is over, or there already.
+// The slot of a set point by its time; kStreamLate: the time has passed or has a set point already.
 struct StreamSlot {
   ErrorId error = ErrorId::kNone;
   std::size_t place = 0;

@@ -341,7 +341,8 @@ void Engine::PlanElsewhere() noexcept {
 void Engine::MakePlans() {
   for (std::size_t i = 0; i < impl_->world.look_aheads.size(); ++i) {
     if (const auto number = impl_->world.look_aheads[i].timing.MakePlan()) {
-      impl_->GiveAnswer(i, group::Command(group::PathPlanned{*number}));
+      const bool told = impl_->GiveAnswer(i, group::Command(group::PathPlanned{*number}));
+      if (!told) impl_->world.look_aheads[i].timing.MakeAgain();
     }
   }
 }

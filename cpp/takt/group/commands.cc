@@ -477,8 +477,9 @@ void describe(Description<Stream>& d) {
   using C = Stream;
   d.named("GroupStream");
   d.about(
-      "Follows set points that come from outside, one stream_point after another, at 20 Hz to once a cycle. Each axis "
-      "goes by a smooth curve through them, within its limits. Reached when all are on it. Takes over from moves and "
+      "Follows external set points, one stream_point after another, at 20 Hz to once a cycle. Each axis follows a "
+      "smooth "
+      "curve through them, within its limits. Reached when all axes are on their curves. Takes over from moves and "
       "streams without a stop. Ends with error 3123 and a stop within limits when no set point has come for the "
       "timeout.");
   d.defaulted<&C::key>(
@@ -496,8 +497,9 @@ void describe(Description<StreamPoint>& d) {
   using C = StreamPoint;
   d.named("GroupStreamPoint");
   d.about(
-      "A set point of the stream in control. What is not given stays as in the set point before. Refused, and the "
-      "stream goes on: a key of another stream (3120), a time that is over or there already (3121), further from the "
+      "A set point of the stream in control. What is not given stays as in the set point before. Refused "
+      "without ending the stream: a key of another stream (3120), a time that has passed or has a set point (3121), "
+      "further from the "
       "set point before than the axes can move in the time between them (3122), beyond a SW limit (8), a pose that "
       "cannot be reached (3021, 3022), a zone of another group (3130), a product coordinate system that moves (5).");
   DescribeNumbers(d);
@@ -519,7 +521,7 @@ void describe(Description<StreamPoint>& d) {
   d.defaulted<&C::v8>(unit::u_s, kJogSpeeds, "Axis 8.");
   DescribeSystem(d);
   d.defaulted<&C::time>(unit::s, between(-1e12, 1e12),
-                        "When, by any clock of the sender that goes on; unset: when it comes.");
+                        "When, by a clock of the sender that runs steadily; unset: on arrival.");
   d.defaulted<&C::key>("That of the stream.");
 }
 

@@ -23,7 +23,7 @@ namespace {
 void Fail(const Context& c, ErrorId error, State& s) {
   if (s.error == ErrorId::kNone) s.error = error;
   if (s.state == GroupState::kErrorStop) return;
-  // Switching off goes on: it is stronger than a fault.
+  // A fault does not end a power-off.
   if (s.task != Task::kPower || s.power_on) EndTask(c, FeedbackState::kError, error, s);
   s.hold = false;
   EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);

@@ -49,13 +49,6 @@ double BlendVelocity(const Request& move, double before, double after) {
   }
 }
 
-// The distance in which a speed is braked to standstill.
-double BrakingWay(double v, const trajectory::AlongPath& limits) {
-  const double build_up = limits.deceleration / limits.jerk;
-  return v * build_up >= v * v / limits.deceleration ? v * std::sqrt(v / limits.jerk)
-                                                     : 0.5 * v * (v / limits.deceleration + build_up);
-}
-
 // How a motion along both speeds up.
 path::Ramp RampOf(const Context& c, const Stretch& before, const Stretch& after) {
   const LookAhead& ahead = c.ahead;
@@ -111,7 +104,7 @@ Distances DistancesOf(const Context& c, const State& s, const Request& move, con
       return {d, d, kNoEnd, parameter};
     }
     case TransitionMode::kStartVelocity:
-      return both(BrakingWay(parameter, before.limits));
+      return both(trajectory::RampLength(parameter, 0, before.limits.deceleration, before.limits.jerk));
     case TransitionMode::kConstantVelocity: {
       // The shortest one on which that speed can be kept.
       double short_of = 0;

@@ -395,8 +395,8 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   double end = left < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
   trajectory::PathPoint next;
   for (bool even = false; !even;) {
-    if (!trajectory::NextPoint(c.ahead.last, end, limits, c.ahead.window.build_up_s(), c.cycle.period_s, slopes_at,
-                               next)) {
+    if (!trajectory::NextPoint(c.ahead.last, end, limits, c.ahead.window.build_up_s(), c.cycle.period_s, !carried,
+                               slopes_at, next)) {
       CutShort(c, stretch.move, reason, failed_at - stretch.begin, s);
       return false;
     }

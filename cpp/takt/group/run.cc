@@ -187,7 +187,7 @@ bool IsTimed(const Context& c, const Request& move, const Stretch& stretch) noex
 void BeginTiming(const Context& c, State& s) noexcept {
   c.ahead.timing.Clear();
   if (!c.params.path.planned_ahead || Jogs(s) || s.master.axis != 0 || s.track.ticket != 0) return;
-  // What may come may be carried.
+  // A move onto what moves may follow.
   if (std::ranges::any_of(s.cargoes, [](const Cargo& cargo) { return cargo.carrier != 0; })) return;
   for (std::uint64_t i = c.ahead.first; i < c.ahead.end(); ++i) {
     if (IsCarried(c.ahead, c.ahead[i]) || (c.ahead[i].stops && i + 1 < c.ahead.end())) return;

@@ -9,9 +9,9 @@ namespace takt::group {
 ErrorId TakeMembers(const Context& c, State& s) noexcept;
 void LetGoOfMembers(const Context& c, State& s) noexcept;
 
-// Whether a move may be gone by a law that is planned ahead (trajectory/path_timing.h): on nothing that moves, as time
-// says. And all that is known of the way to the next stop.
+// Returns whether PathTiming can time a move: it is not carried and follows no master.
 bool IsTimed(const Context& c, const Request& move, const Stretch& stretch) noexcept;
+// At rest, before a motion: starts PathTiming if the group plans ahead and all that is known of the path is such.
 void BeginTiming(const Context& c, State& s) noexcept;
 
 // The next set points of the members; ends moves that are over. False: the axes cannot be there, nothing was set.

@@ -15,7 +15,6 @@
 #include "takt/kinematics/carrier.h"
 #include "takt/kinematics/joints.h"
 #include "takt/trajectory/limits.h"
-#include "takt/trajectory/path_brake.h"
 #include "takt/trajectory/path_pace.h"
 
 namespace takt::group {

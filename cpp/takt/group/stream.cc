@@ -82,7 +82,7 @@ struct Point {
     return ErrorId::kNone;
   }
 
-  // Where the axes are to be, and how fast, those that are known; `motion`: as the set point before has them.
+  // Computes position and velocity of the axes, as far as they are given; `motion`: those of the set point before.
   ErrorId ToAxes(const Context& c, State& s, kinematics::JointMotion& motion, std::array<bool, kMaxAxes>& known) const {
     if (Any(tool) || Any(tool_velocity)) {
       const Frame frame = SystemFrame(c, s, system, pcs);

@@ -1,8 +1,17 @@
 #include "takt/trajectory/limits.h"
 
+#include <cmath>
+
 #include "takt/core/describe.h"
 
 namespace takt::trajectory {
+
+double RampLength(double from, double to, double acceleration, double jerk) noexcept {
+  const double change = std::abs(to - from);
+  const double full = acceleration * acceleration / jerk;
+  const double time = change > full ? change / acceleration + acceleration / jerk : 2 * std::sqrt(change / jerk);
+  return 0.5 * (from + to) * time;
+}
 
 void describe(Description<Limits>& d) {
   d.about("How fast a motion may change.");

@@ -12,6 +12,9 @@ struct Limits {
   double jerk = 0;          // u/s³, >= 0; 0: unlimited (trapezoid)
 };
 
+// Returns the distance [u] in which a speed becomes another one, with no acceleration at both ends.
+double RampLength(double from, double to, double acceleration, double jerk) noexcept;
+
 inline Limits ShareOf(double share, const Limits& l) noexcept {
   return {share * l.velocity, share * l.acceleration, share * l.deceleration, share * l.jerk};
 }

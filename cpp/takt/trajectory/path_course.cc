@@ -9,22 +9,20 @@ namespace {
 
 constexpr std::size_t kMostSlow = 128;
 constexpr std::size_t kMostNodes = 1024;
-constexpr double kFast = 0.7;        // of the speed around it: a place is not slow
-constexpr double kOfBuildUp = 0.25;  // of the time in which accelerations build up: an interval
-constexpr double kShortest_s = 5e-4;
-constexpr double kLongest_s = 0.025;
-// Shares of jerk that steps at a node, by how the coordinates bend: it becomes a knot.
-constexpr double kTurn = 0.15;
-constexpr double kLeastParts = 16;
+constexpr double kFast = 0.7;        // share of the largest speed around it above which a node is not slow
+constexpr double kOfBuildUp = 0.25;  // length of an interval over the time in which accelerations build up
+constexpr double kShortest_s = 5e-4, kLongest_s = 0.025;  // of an interval
+constexpr double kTurn = 0.15;                            // share of the jerk limit that steps at a node: it is a knot
+constexpr double kLeastParts = 16;                        // intervals between two slow nodes, about
 constexpr int kAttempts = 6, kEasings = 4;
-constexpr double kEased = 0.97;
-constexpr double kReferenceShare = 0.97;  // of the limits: what begins with it can be gone on with
-// Of the limits of coordinates: between two nodes the slopes' bend is taken for even.
+constexpr double kEased = 0.97;           // share of a limit that the reference is to use at most at slow nodes
+constexpr double kReferenceShare = 0.97;  // of the limits, used by the reference: a plan can start from it
+// Of the limits of coordinates: the second slopes are taken for parabolas between nodes.
 constexpr double kCoordinateShare = 0.98;
 constexpr double kNoLimitFrom = 1e11;
 constexpr double kHere = 1e-9;  // mm
 
-double Or(double limit) {
+double InfiniteIfNone(double limit) {
   return limit < kNoLimitFrom ? limit : std::numeric_limits<double>::infinity();
 }
 
@@ -51,31 +49,6 @@ const PathNode& Next(const PathWindow& window, std::uint64_t node) {
   return window[last ? node : node + 1];
 }
 
-// What the coordinates leave of acceleration and jerk along a straight piece of path.
-struct AlongLimits {
-  double acceleration, deceleration, jerk;
-};
-AlongLimits LimitsAt(const PathPoint& point, const CoordinateLimits& limits) {
-  AlongLimits least{point.limits.acceleration, point.limits.deceleration, point.limits.jerk};
-  for (std::size_t k = 0; k < limits.count; ++k) {
-    const double slope = std::abs(point.slopes.first[k]);
-    const double a = kCoordinateShare * point.left * limits.of[k].acceleration;
-    const double j = kCoordinateShare * point.left * limits.of[k].jerk;
-    if (slope * least.acceleration > a) least.acceleration = a / slope;
-    if (slope * least.deceleration > a) least.deceleration = a / slope;
-    if (slope * least.jerk > j) least.jerk = j / slope;
-  }
-  return least;
-}
-
-// The way in which a speed becomes another one, without acceleration at either end.
-double WayBetween(double one, double other, double acceleration, double jerk) {
-  const double change = std::abs(other - one);
-  const double full = acceleration * acceleration / jerk;
-  const double time = change > full ? change / acceleration + acceleration / jerk : 2 * std::sqrt(change / jerk);
-  return 0.5 * (one + other) * time;
-}
-
 }  // namespace
 
 std::uint64_t NodeAt(const PathWindow& window, std::uint64_t from, double place) noexcept {
@@ -86,6 +59,19 @@ std::uint64_t NodeAt(const PathWindow& window, std::uint64_t from, double place)
 std::uint64_t StopBehind(const PathWindow& window, std::uint64_t from) noexcept {
   while (from + 1 < window.known() && !window[from].stop) ++from;
   return from;
+}
+
+AlongPath LimitsAt(const PathPoint& point, const CoordinateLimits& limits, double share) noexcept {
+  AlongPath least = point.limits;
+  for (std::size_t k = 0; k < limits.count; ++k) {
+    const double slope = std::abs(point.slopes.first[k]);
+    const double a = share * point.left * limits.of[k].acceleration;
+    const double j = share * point.left * limits.of[k].jerk;
+    if (slope * least.acceleration > a) least.acceleration = a / slope;
+    if (slope * least.deceleration > a) least.deceleration = a / slope;
+    if (slope * least.jerk > j) least.jerk = j / slope;
+  }
+  return least;
 }
 
 double UseOf(const PathWindow& window, std::uint64_t node, const KinematicState& along, double jerk) noexcept {
@@ -104,7 +90,7 @@ double UseOf(const PathWindow& window, std::uint64_t node, const KinematicState&
   return use;
 }
 
-PathCourse::PathCourse(std::size_t intervals) {
+PathCourse::PathCourse(std::size_t intervals, double period_s) : period_s_(period_s) {
   steps_.reserve(intervals);
   lengths_.reserve(intervals);
   first_limits_.reserve(intervals);
@@ -119,15 +105,15 @@ PathCourse::PathCourse(std::size_t intervals) {
 }
 
 // The mean of what holds between two places.
-Limits PathCourse::Between(const PathWindow& window, const Slow& from, const Slow& to) const noexcept {
+Limits PathCourse::Between(const Slow& from, const Slow& to) const noexcept {
   double length = 0, velocity = 0, acceleration = 0, jerk = 0;
-  for (std::uint64_t i = from.node; i <= to.node; ++i) {
-    const double begin = std::max(window[i].at.s, from.place);
-    const double end = i < to.node ? window[i + 1].at.s : to.place;
+  for (std::size_t i = from.node; i <= to.node; ++i) {
+    const double begin = std::max(nodes_[i].at.s, from.place);
+    const double end = i < to.node ? nodes_[i + 1].at.s : to.place;
     const double way = std::max(end - begin, 1e-12);
-    const AlongLimits along = LimitsAt(window[i].at, window.limits());
+    const AlongPath along = LimitsAt(nodes_[i].at, coordinates_, kCoordinateShare);
     length += way;
-    velocity += way * std::sqrt(square_[i - slow_.front().node]);
+    velocity += way * std::sqrt(square_[i]);
     acceleration += way * std::min(along.acceleration, along.deceleration);
     jerk += way * along.jerk;
   }
@@ -136,73 +122,63 @@ Limits PathCourse::Between(const PathWindow& window, const Slow& from, const Slo
   return {velocity, acceleration, acceleration, kReferenceShare * jerk / length};
 }
 
-// Places slower than what lies around them, from `begin` to rest at `end`.
-void PathCourse::FindSlow(const PathWindow& window, std::uint64_t node, const KinematicState& begin, std::uint64_t end,
-                          double factor) noexcept {
+// The largest speed at each node, the steps of jerk there, and the slow nodes from `begin` to rest at `end`.
+void PathCourse::FindSlow(const KinematicState& begin, std::size_t end) noexcept {
   square_.clear();
   turns_.clear();
-  for (std::uint64_t i = node; i <= end; ++i) {
-    const PathNode& at = window[i];
-    const double most = factor * at.at.limits.velocity;
-    double square = std::min(at.own, most < kNoLimitFrom ? most * most : factor * factor * at.own);
-    for (const std::uint64_t k : {i - 1, i}) {  // two nodes at the same place
-      if (k < node || k + 1 > end || window[k + 1].at.s > window[k].at.s) continue;
-      square = std::min(square, JointSquare(window[k].at.slopes, window[k + 1].at.slopes, window.limits(), 1e-3));
-    }
+  const auto at = [&](std::size_t i) { return nodes_[i].at.s; };
+  for (std::size_t i = 0; i <= end; ++i) {
+    const PathNode& node = nodes_[i];
+    const double most = factor_ * node.at.limits.velocity;
+    double square = std::min(node.own, most < kNoLimitFrom ? most * most : factor_ * factor_ * node.own);
+    const bool joins_before = i > 0 && !(at(i) > at(i - 1)), joins_behind = i < end && !(at(i + 1) > at(i));
+    const auto joint = [&](std::size_t k) {
+      return JointSquare(nodes_[k].at.slopes, nodes_[k + 1].at.slopes, coordinates_, period_s_);
+    };
+    if (joins_before) square = std::min(square, joint(i - 1));
+    if (joins_behind) square = std::min(square, joint(i));
     square_.push_back(square);
-    double turn = 0;
-    if (i > node && i < end && window[i].at.s > window[i - 1].at.s && window[i + 1].at.s > window[i].at.s) {
-      for (std::size_t k = 0; k < window.limits().count; ++k) {
-        const double before = SlopesAt(window[i - 1], window[i], window[i].at.s, k).third;
-        const double after = SlopesAt(window[i], window[i + 1], window[i].at.s, k).third;
-        turn = std::max(turn, std::abs(after - before) / window.limits().of[k].jerk);
+    double turn = joins_before || joins_behind ? std::numeric_limits<double>::infinity() : 0;
+    if (turn == 0 && i > 0 && i < end) {
+      for (std::size_t k = 0; k < coordinates_.count; ++k) {
+        const double before = SlopesAt(nodes_[i - 1], node, at(i), k).third;
+        const double after = SlopesAt(node, nodes_[i + 1], at(i), k).third;
+        turn = std::max(turn, std::abs(after - before) / coordinates_.of[k].jerk);
       }
-    } else if (i > node && i < end) {
-      turn = std::numeric_limits<double>::infinity();
     }
     turns_.push_back(turn * square * std::sqrt(square));
   }
-  // What acceleration alone allows from either side; in place, the own squares are found again by comparing.
   slow_.clear();
-  slow_.push_back({node, begin.position, begin.velocity});
-  const std::size_t n = square_.size();
-  for (std::size_t i = 1; i + 1 < n; ++i) {
+  slow_.push_back({0, begin.position, begin.velocity});
+  const auto peak = [&](std::size_t from, std::size_t to) {  // the largest speed between two nodes
+    const auto first = square_.begin() + static_cast<std::ptrdiff_t>(from);
+    const auto last = square_.begin() + static_cast<std::ptrdiff_t>(to) + 1;
+    return std::sqrt(*std::max_element(first, last));
+  };
+  for (std::size_t i = 1; i < end && slow_.size() <= kMostSlow; ++i) {
     const bool lowest = square_[i] < square_[i - 1] && square_[i] <= square_[i + 1];
-    if (!lowest || window[node + i].at.s <= begin.position + kHere) continue;
-    const Slow slow{node + i, window[node + i].at.s, std::sqrt(square_[i])};
-    // A place is slow beside the fastest one between it and its slow neighbours.
-    const auto peak = [&](std::uint64_t from, std::uint64_t to) {
-      const auto first = square_.begin() + static_cast<std::ptrdiff_t>(from - node);
-      const auto last = square_.begin() + static_cast<std::ptrdiff_t>(to - node) + 1;
-      return std::sqrt(*std::max_element(first, last));
-    };
+    if (!lowest || at(i) <= begin.position + kHere) continue;
+    const Slow slow{i, at(i), std::sqrt(square_[i])};
     while (slow_.size() > 1 && slow.speed <= slow_.back().speed &&
-           slow_.back().speed > kFast * peak(slow_.back().node, slow.node)) {
+           slow_.back().speed > kFast * peak(slow_.back().node, i)) {
       slow_.pop_back();
     }
-    if (slow_.size() > 1 && slow.speed > kFast * peak(slow_.back().node, slow.node)) continue;
-    if (slow_.size() > kMostSlow) break;
-    slow_.push_back(slow);
+    if (slow_.size() == 1 || slow.speed <= kFast * peak(slow_.back().node, i)) slow_.push_back(slow);
   }
-  while (slow_.size() > 1) {
-    double most = 0;
-    for (std::uint64_t i = slow_.back().node; i <= end; ++i) most = std::max(most, square_[i - node]);
-    if (slow_.back().speed <= kFast * std::sqrt(most)) break;
-    slow_.pop_back();
-  }
-  slow_.push_back({end, window[end].at.s, 0});
+  while (slow_.size() > 1 && slow_.back().speed > kFast * peak(slow_.back().node, end)) slow_.pop_back();
+  slow_.push_back({end, at(end), 0});
 }
 
 // No speed from which, or to which, the way to the next slow place is too short.
-void PathCourse::MakeReachable(const PathWindow& window, const KinematicState& begin) noexcept {
+void PathCourse::MakeReachable(const KinematicState& begin) noexcept {
   const auto lower = [&](const Slow& from, Slow& to) {
-    const Limits limits = &from < &to ? Between(window, from, to) : Between(window, to, from);
+    const Limits limits = &from < &to ? Between(from, to) : Between(to, from);
     const double way = std::abs(to.place - from.place);
-    if (to.speed <= from.speed || WayBetween(from.speed, to.speed, limits.acceleration, limits.jerk) <= way) return;
+    if (to.speed <= from.speed || RampLength(from.speed, to.speed, limits.acceleration, limits.jerk) <= way) return;
     double low = from.speed, high = to.speed;
     for (int i = 0; i < 24; ++i) {
       const double middle = 0.5 * (low + high);
-      (WayBetween(from.speed, middle, limits.acceleration, limits.jerk) <= way ? low : high) = middle;
+      (RampLength(from.speed, middle, limits.acceleration, limits.jerk) <= way ? low : high) = middle;
     }
     to.speed = low;
   };
@@ -212,29 +188,25 @@ void PathCourse::MakeReachable(const PathWindow& window, const KinematicState& b
 }
 
 // An interval of the reference, whatever its pieces are in between: place, speed and acceleration at both ends are its.
-void PathCourse::Add(const PathWindow& window, const KinematicState& from, const KinematicState& to,
-                     double length_s) noexcept {
+void PathCourse::Add(const KinematicState& from, const KinematicState& to, double length_s) noexcept {
   Step step;
   static_cast<Quintic&>(step) = Connect(length_s, from, to);
   step.begin_s = steps_.empty() ? 0 : steps_.back().begin_s + steps_.back().length;
-  step.node = NodeAt(window, steps_.empty() ? slow_.front().node : steps_.back().node, from.position);
+  step.node = NodeAt(steps_.empty() ? 0 : steps_.back().node, from.position);
   steps_.push_back(step);
 }
 
 // Intervals of one motion of the reference: with knots where its jerk steps, and where the way coordinates bend does.
 // False: there is no room for them.
-bool PathCourse::Cut(const PathWindow& window, const Slow& from, const Slow& to, const Profile& profile,
-                     double longest_s) noexcept {
+bool PathCourse::Cut(const Slow& from, const Slow& to, const Profile& profile, double longest_s) noexcept {
   knots_.clear();
   for (int i = 0; i < profile.size(); ++i) knots_.push_back({profile.piece_ends_s[static_cast<std::size_t>(i)], kTurn});
-  const std::uint64_t first = slow_.front().node;
   double at_s = 0;
-  for (std::uint64_t node = from.node + 1; node < to.node; ++node) {
-    const double turn = turns_[node - first];
-    if (!(turn > kTurn) || !(window[node].at.s > profile.start().position)) continue;
-    at_s = profile.TimeAt(window[node].at.s, at_s);
+  for (std::size_t i = from.node + 1; i < to.node; ++i) {
+    if (!(turns_[i] > kTurn) || !(nodes_[i].at.s > profile.start().position)) continue;
+    at_s = profile.TimeAt(nodes_[i].at.s, at_s);
     if (std::isnan(at_s)) break;
-    knots_.push_back({at_s, turn});
+    knots_.push_back({at_s, turns_[i]});
   }
   std::ranges::sort(knots_, {}, &Knot::at_s);
   const double end_s = profile.duration();
@@ -253,9 +225,9 @@ bool PathCourse::Cut(const PathWindow& window, const Slow& from, const Slow& to,
     const auto parts = static_cast<int>(std::ceil((until_s - begin_s) / longest_s));
     const double length_s = (until_s - begin_s) / parts;
     for (int part = 1; part <= parts; ++part) {
-      if (steps_.size() >= most_) return false;
+      if (steps_.size() == steps_.capacity()) return false;
       const KinematicState end = profile.At(part < parts ? begin_s + length_s * part : until_s);
-      Add(window, begin, end, length_s);
+      Add(begin, end, length_s);
       begin = end;
     }
     begin_s = until_s;
@@ -264,29 +236,34 @@ bool PathCourse::Cut(const PathWindow& window, const Slow& from, const Slow& to,
   return true;
 }
 
-bool PathCourse::Make(const PathWindow& window, std::uint64_t node, const KinematicState& begin, std::uint64_t end,
-                      double factor, std::size_t most, Planner& planner) noexcept {
-  most_ = std::min(most, steps_.capacity());
+bool PathCourse::Take(const PathWindow& window, std::uint64_t node, const KinematicState& begin, std::uint64_t end,
+                      double factor) noexcept {
+  if (end <= node || !(window[end].at.s > begin.position + kHere)) return false;
+  nodes_.clear();
+  for (std::uint64_t i = node; i <= std::min(end, node + kMostNodes - 1); ++i) nodes_.push_back(window[i]);
+  coordinates_ = window.limits();
+  begin_ = begin;
   factor_ = factor;
-  begins_at_rest_ = begin.velocity == 0 && begin.acceleration == 0;
-  // What is faster than it may be (the factor has become less) is braked as the reference is.
-  brakes_ = begin.velocity > factor * window[node].at.limits.velocity;
-  end = std::min(end, node + kMostNodes - 1);
+  return true;
+}
+
+bool PathCourse::Make(Planner& planner) noexcept {
+  std::size_t end = nodes_.size() - 1;
   double of_build_up = kOfBuildUp;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    if (end <= node || !(window[end].at.s > begin.position + kHere)) return false;
-    FindSlow(window, node, begin, end, factor);
+    if (end == 0 || !(nodes_[end].at.s > begin_.position + kHere)) return false;
+    FindSlow(begin_, end);
     Laid laid = Laid::kWhole;
     for (int i = 0; i < kEasings; ++i) {
-      MakeReachable(window, begin);
-      laid = Lay(window, begin, of_build_up, planner);
+      MakeReachable(begin_);
+      laid = Lay(begin_, of_build_up, planner);
       if (laid != Laid::kWhole) break;
-      SetLimits(window, node, end);
+      SetLimits(end);
       if (!Ease()) break;
     }
     if (laid == Laid::kTooNear) return false;
     if (laid == Laid::kWhole && steps_.size() >= 4) {
-      end_place_ = window[end].at.s;
+      end_place_ = nodes_[end].at.s;
       return true;
     }
     if (laid == Laid::kWhole) {
@@ -294,20 +271,23 @@ bool PathCourse::Make(const PathWindow& window, std::uint64_t node, const Kinema
       continue;
     }
     // Not so far: to a node at four fifths of what there is room for.
-    const std::uint64_t nearer = NodeAt(window, node, steps_[most_ * 4 / 5].At(0).position);
-    end = std::min(nearer, end - 1);
+    end = std::min(NodeAt(0, steps_[steps_.capacity() * 4 / 5].At(0).position), end - 1);
   }
   return false;
 }
 
+std::size_t PathCourse::NodeAt(std::size_t from, double place) const noexcept {
+  while (from + 1 < nodes_.size() && nodes_[from + 1].at.s <= place + kHere) ++from;
+  return from;
+}
+
 // The reference from slow place to slow place.
-PathCourse::Laid PathCourse::Lay(const PathWindow& window, const KinematicState& begin, double of_build_up,
-                                 Planner& planner) noexcept {
+PathCourse::Laid PathCourse::Lay(const KinematicState& begin, double of_build_up, Planner& planner) noexcept {
   steps_.clear();
   KinematicState from = begin;
   for (std::size_t i = 1; i < slow_.size();) {
     const Slow to = slow_[i];
-    const Limits limits = Between(window, slow_[i - 1], to);
+    const Limits limits = Between(slow_[i - 1], to);
     Profile profile{};
     if (planner.ToPosition(from, to.place, to.speed, limits, profile).failed()) return Laid::kTooNear;
     const Profile::Range places = profile.PositionRange();
@@ -320,7 +300,7 @@ PathCourse::Laid PathCourse::Lay(const PathWindow& window, const KinematicState&
     }
     const double usual = std::min(of_build_up * limits.acceleration / limits.jerk, profile.duration() / kLeastParts);
     const double longest = std::clamp(usual, kShortest_s, kLongest_s);
-    if (!Cut(window, slow_[i - 1], to, profile, longest)) return Laid::kNoRoom;
+    if (!Cut(slow_[i - 1], to, profile, longest)) return Laid::kNoRoom;
     from = {to.place, to.speed, 0};
     ++i;
   }
@@ -351,19 +331,16 @@ bool PathCourse::Ease() noexcept {
   return eased;
 }
 
-void PathCourse::SetLimits(const PathWindow& window, std::uint64_t node, std::uint64_t end) noexcept {
-  const CoordinateLimits& limits = window.limits();
-  nodes_.clear();
-  first_node_ = node;
-  for (std::uint64_t i = node; i <= end; ++i) nodes_.push_back(window[i]);
+// The coordinates that move and their limits, and those of the path in each interval.
+void PathCourse::SetLimits(std::size_t end) noexcept {
   limits_.assign(1, {});
   of_.clear();
   double left = 1;
-  for (std::uint64_t i = node; i <= end; ++i) left = std::min(left, window[i].at.left);
-  for (std::size_t k = 0; k < limits.count; ++k) {
-    const CoordinateLimits::One& of = limits.of[k];
+  for (std::size_t i = 0; i <= end; ++i) left = std::min(left, nodes_[i].at.left);
+  for (std::size_t k = 0; k < coordinates_.count; ++k) {
+    const CoordinateLimits::One& of = coordinates_.of[k];
     bool moves = false;
-    for (std::uint64_t i = node; i <= end && !moves; ++i) moves = window[i].at.slopes.first[k] != 0;
+    for (std::size_t i = 0; i <= end && !moves; ++i) moves = nodes_[i].at.slopes.first[k] != 0;
     if (!moves || !(std::isfinite(of.velocity) || std::isfinite(of.acceleration) || std::isfinite(of.jerk))) continue;
     const double share = kCoordinateShare * left;
     limits_.push_back({share * of.velocity, share * of.acceleration, share * of.acceleration, share * of.jerk});
@@ -372,29 +349,28 @@ void PathCourse::SetLimits(const PathWindow& window, std::uint64_t node, std::ui
   rates_.resize(limits_.size());
   lengths_.clear();
   first_limits_.clear();
+  // A start faster than the speed limit (the factor has become less) is braked as the reference is.
+  const bool brakes = begin_.velocity > factor_ * nodes_.front().at.limits.velocity;
   for (const Step& step : steps_) {
     lengths_.push_back(step.length);
     const KinematicState before = step.At(0), after = step.At(step.length);
-    AlongPath along = window[step.node].at.limits;
-    const std::uint64_t last = NodeAt(window, step.node, after.position);
-    double square = square_[step.node - node];
-    for (std::uint64_t i = step.node + 1; i <= std::min(last + 1, end); ++i) {
-      if (i > last && window[i - 1].at.s >= after.position - kHere) break;
-      along = Least(along, window[i].at.limits);
-      if (window[i].at.s == window[i - 1].at.s) square = std::min(square, square_[i - node]);
+    AlongPath along = nodes_[step.node].at.limits;
+    double square = std::numeric_limits<double>::infinity();  // what joints allow, and a path without a speed limit
+    for (std::size_t i = step.node;; ++i) {
+      along = Least(along, nodes_[i].at.limits);
+      const bool joint =
+          (i < end && nodes_[i + 1].at.s == nodes_[i].at.s) || (i > 0 && nodes_[i].at.s == nodes_[i - 1].at.s);
+      if (joint || (factor_ < 1 && along.velocity >= kNoLimitFrom)) square = std::min(square, square_[i]);
+      if (i == end || nodes_[i].at.s >= after.position - kHere) break;
     }
-    double velocity = factor_ * along.velocity;
-    if (along.velocity >= kNoLimitFrom) velocity = factor_ < 1 ? std::sqrt(square) : along.velocity;
-    for (const std::uint64_t i : {step.node, last}) {
-      if (i + 1 <= end && i >= node && window[i + 1].at.s == window[i].at.s) {
-        velocity = std::min(velocity, std::sqrt(square_[i - node]));
-      }
-    }
-    if (brakes_) {
+    double velocity = along.velocity >= kNoLimitFrom ? along.velocity : factor_ * along.velocity;
+    velocity = std::min(velocity, std::sqrt(square));
+    if (brakes) {
       const double braked = 1.001 * std::max(before.velocity, after.velocity);
       velocity = std::max(velocity, std::min(braked, std::max(along.velocity, before.velocity)));
     }
-    first_limits_.push_back({Or(velocity), Or(along.acceleration), Or(along.deceleration), Or(along.jerk)});
+    first_limits_.push_back({InfiniteIfNone(velocity), InfiniteIfNone(along.acceleration),
+                             InfiniteIfNone(along.deceleration), InfiniteIfNone(along.jerk)});
   }
 }
 
@@ -405,10 +381,9 @@ void PathCourse::Rates(std::size_t interval, double share, std::span<ReferenceRa
   const auto& c = step.c;
   const double j = (6 * c[3] + share * (24 * c[4] + share * 60 * c[5])) / (step.length * step.length * step.length);
   out[0] = {v, a, j};
-  const std::uint64_t node = step.node;
-  // At the beginning what lies behind the place counts, at the end what lies before it.
+  // At its beginning the slopes behind a node count, at its end those before it.
   const double place = at.position + (share < 0.5 ? kHere : -kHere);
-  std::size_t i = node - first_node_;
+  std::size_t i = step.node;
   while (i + 2 < nodes_.size() && nodes_[i + 1].at.s <= place) ++i;
   const PathNode &before = nodes_[i], &after = nodes_[i + 1];
   for (std::size_t k = 0; k < of_.size(); ++k) {
@@ -428,7 +403,7 @@ PathPlanRequest PathCourse::Request() const noexcept {
                             std::span<ReferenceRate> out) noexcept {
     static_cast<const PathCourse*>(owner)->Rates(interval, share, out);
   };
-  if (!begins_at_rest_) request.begin = ReferencePace{1, 0};
+  if (begin_.velocity != 0 || begin_.acceleration != 0) request.begin = ReferencePace{1, 0};
   return request;
 }
 

@@ -1,8 +1,8 @@
-// A path as PathPlanner gets to see it: a reference motion along the nodes of a window, and the limits on the way.
+// The reference motion and the limits that PathPlanner needs, for a path given by the nodes of a window.
 //
-// The reference goes from one slow place of the path to the next as fast as one motion with the limits that hold
-// between them in the mean; at a slow place it has the speed that bends allow there, and no acceleration. So it is
-// nearly what the plan will be, and needs few intervals. It need not keep any limit.
+// The reference is a sequence of time-optimal profiles between slow nodes, each with the mean limits between its ends.
+// At a slow node its speed is what the bends allow there and its acceleration is 0. It is close to the plan, so few
+// intervals suffice, and it need not keep any limit. (Ours.)
 #pragma once
 
 #include <vector>
@@ -14,77 +14,81 @@
 
 namespace takt::trajectory {
 
-// The node of a window that a place lies on or behind, from `from` on.
+// Returns the last node at or before an arc length, from `from` on.
 std::uint64_t NodeAt(const PathWindow& window, std::uint64_t from, double place) noexcept;
 
-// The first node from `from` on at which the motion stops, or the last one known.
+// Returns the first node from `from` on at which the motion stops, or the last known one.
 std::uint64_t StopBehind(const PathWindow& window, std::uint64_t from) noexcept;
 
-// Velocity, acceleration and jerk of all coordinates, as shares of their limits; `node` is where the place lies.
+// Returns the limits along the path, with `share` of what the coordinates allow where it does not bend.
+AlongPath LimitsAt(const PathPoint& point, const CoordinateLimits& limits, double share) noexcept;
+
+// Returns the largest share of a limit that velocity, acceleration and jerk of any coordinate use; `node`: the one at
+// or before the position.
 double UseOf(const PathWindow& window, std::uint64_t node, const KinematicState& along, double jerk) noexcept;
 
-// Takes memory only when it is made.
+// Allocates only in the constructor.
 class PathCourse {
  public:
-  explicit PathCourse(std::size_t intervals);
+  PathCourse(std::size_t intervals, double period_s);
 
-  // From `begin` on, which lies behind `node`, to rest at `end` or, where that takes more than `most` intervals, at a
-  // node before. `factor`: of the speed along the path. False: there is no such reference.
-  bool Make(const PathWindow& window, std::uint64_t node, const KinematicState& begin, std::uint64_t end, double factor,
-            std::size_t most, Planner& planner) noexcept;
+  // Copies what is needed of the window, for the cycle: a path from `begin`, behind `node`, to rest at the node `end`
+  // or before. `factor`: of the speed along the path, above 0. Returns false if there is no distance to it.
+  bool Take(const PathWindow& window, std::uint64_t node, const KinematicState& begin, std::uint64_t end,
+            double factor) noexcept;
+  // Computes the reference; in another thread than Take if that has returned. If the intervals do not suffice it ends
+  // at rest at an earlier node. Returns false if there is none.
+  bool Make(Planner& planner) noexcept;
 
-  // What to plan; it refers to this course.
+  // Returns what to plan; refers to this course.
   PathPlanRequest Request() const noexcept;
-  // Along the path, where the reference time passes so.
+  // Returns the state along the path where the reference time passes so.
   KinematicState At(const ReferenceState& reference) const noexcept;
-  double end_place() const noexcept { return end_place_; }  // mm along the path, where it rests
-  std::size_t coordinates() const noexcept { return limits_.size(); }
-  std::size_t intervals() const noexcept { return steps_.size(); }
+  double end_place() const noexcept { return end_place_; }  // arc length at which it rests [mm]
 
  private:
   // An interval of the reference.
   struct Step : Quintic {
     double begin_s = 0;  // reference time
-    std::uint64_t node = 0;
+    std::size_t node = 0;
   };
   struct Knot {
     double at_s = 0;
     double turn = 0;
   };
   struct Slow {
-    std::uint64_t node = 0;
+    std::size_t node = 0;
     double place = 0;
     double speed = 0;
   };
-
-  void FindSlow(const PathWindow& window, std::uint64_t node, const KinematicState& begin, std::uint64_t end,
-                double factor) noexcept;
-  void MakeReachable(const PathWindow& window, const KinematicState& begin) noexcept;
-  trajectory::Limits Between(const PathWindow& window, const Slow& from, const Slow& to) const noexcept;
-  bool Cut(const PathWindow& window, const Slow& from, const Slow& to, const Profile& profile,
-           double longest_s) noexcept;
-  void Add(const PathWindow& window, const KinematicState& from, const KinematicState& to, double length_s) noexcept;
   enum class Laid : std::uint8_t { kWhole, kNoRoom, kTooNear };
-  Laid Lay(const PathWindow& window, const KinematicState& begin, double of_build_up, Planner& planner) noexcept;
+
+  std::size_t NodeAt(std::size_t from, double place) const noexcept;
+  void FindSlow(const KinematicState& begin, std::size_t end) noexcept;
+  void MakeReachable(const KinematicState& begin) noexcept;
+  Limits Between(const Slow& from, const Slow& to) const noexcept;
+  Laid Lay(const KinematicState& begin, double of_build_up, Planner& planner) noexcept;
+  bool Cut(const Slow& from, const Slow& to, const Profile& profile, double longest_s) noexcept;
+  void Add(const KinematicState& from, const KinematicState& to, double length_s) noexcept;
   bool Ease() noexcept;
-  void SetLimits(const PathWindow& window, std::uint64_t node, std::uint64_t end) noexcept;
+  void SetLimits(std::size_t end) noexcept;
   void Rates(std::size_t interval, double share, std::span<ReferenceRate> out) const noexcept;
 
-  std::vector<PathNode> nodes_;  // of the window, from `first_node_` on
-  std::uint64_t first_node_ = 0;
-  std::size_t most_ = 0;
+  double period_s_;
+  std::vector<PathNode> nodes_;  // of the window
+  CoordinateLimits coordinates_;
+  KinematicState begin_;
   double factor_ = 1;
   double end_place_ = 0;
-  bool begins_at_rest_ = false, brakes_ = false;
   std::vector<Step> steps_;
   std::vector<double> lengths_;
   std::vector<RateLimits> limits_, first_limits_;
-  std::vector<std::size_t> of_;  // the coordinate of the window behind each of these but the first
+  std::vector<std::size_t> of_;  // coordinate of limits_[i + 1]
   std::vector<ReferenceRate> rates_;
   std::vector<Slow> slow_;
   std::vector<double> square_;  // of the largest speed at each node
   std::vector<Knot> knots_;
-  std::vector<double> turns_;  // share of jerk that steps there, at that speed
+  std::vector<double> turns_;  // share of the jerk limit that steps at each node, at that speed
 };
 
 }  // namespace takt::trajectory

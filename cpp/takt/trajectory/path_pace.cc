@@ -179,6 +179,12 @@ void describe(Description<PathCycle>& d) {
   d.internal<&PathCycle::ahead>("Mean of the position less that at the beginning.");
 }
 
+void describe(Description<PathBrake>& d) {
+  d.about("How a motion along a path is ended.");
+  d.internal<&PathBrake::deceleration>("0: as the path says.");
+  d.internal<&PathBrake::jerk>("The same.");
+}
+
 void describe(Description<PathPace>& d) {
   using P = PathPace;
   d.about("Motion along a path.");

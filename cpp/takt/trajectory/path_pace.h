@@ -35,6 +35,12 @@ struct PathPace {
   std::array<PathCycle, kMostBuildUpCycles> last{};  // a ring
 };
 
+// How a motion along a path is braked; 0: as the path says.
+struct PathBrake {
+  double deceleration = 0;  // mm/s²
+  double jerk = 0;          // mm/s³
+};
+
 // At rest on a node of the window.
 void BeginAt(const PathWindow& window, std::uint64_t node, double period_s, PathPace& pace) noexcept;
 
@@ -50,6 +56,7 @@ bool GoesOn(const PathWindow& window, const PathPace& pace, double period_s) noe
 bool Stands(const PathPace& pace) noexcept;
 
 void describe(Description<PathCycle>&);
+void describe(Description<PathBrake>&);
 void describe(Description<PathPace>&);
 
 }  // namespace takt::trajectory

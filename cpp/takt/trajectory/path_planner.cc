@@ -533,7 +533,7 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
     tighten_[k] = 1 + (1 / kPlanShare - 1) * std::min({1.0, from_begin, from_end});
   }
   double start = kOfUniform * uniform;
-  // What goes on from a motion begins with what that would be.
+  // From a motion in progress: the reference continues it at this rate.
   if (request.begin) start = request.begin->square;
   std::fill_n(ordinates_.begin(), n_, start);
   SettleEnds();

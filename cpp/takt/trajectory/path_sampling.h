@@ -19,7 +19,11 @@ inline constexpr double kCycles = 2;
 inline constexpr double kMostSteps = 32;
 // How far an acceleration between two nodes may be from the line, as a share of its limit.
 inline constexpr double kBend = 0.02;
+// How far the mean of the acceleration between two nodes may be from that of the parabola through both and their
+// middle.
+inline constexpr double kHidden = 0.002;
 inline constexpr int kHalvings = 12;
+inline constexpr int kHalvingsForHidden = 5;
 }  // namespace sampling
 
 // The acceleration along the way that the limits allow at a place, but for bends.
@@ -89,10 +93,11 @@ inline double StepBetweenSlowPlaces(const PathPoint& point, double begin, double
 }
 
 // The node behind `before`, at `end` at most. `slopes_at(s, point)` fills slopes and what is left of the limits; it
-// answers false where there is no path, then this does, too. The limits along the way are those of `before`.
+// answers false where there is no path, then this does, too. The limits along the way are those of `before`. `exact`:
+// the second slopes are those of the first.
 template <typename SlopesAt>
 bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limits, double build_up_s, double period_s,
-               const SlopesAt& slopes_at, PathPoint& next) {
+               bool exact, const SlopesAt& slopes_at, PathPoint& next) {
   namespace c = sampling;
   const auto square_at = [&](const PathPoint& point) { return SquareAt(point, limits, 1); };
   const double time = std::max(c::kTimeShare * build_up_s, c::kCycles * period_s);
@@ -113,6 +118,14 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
     for (std::size_t k = 0; k < limits.count && linear; ++k) {
       const double line = 0.5 * (before.slopes.second[k] + next.slopes.second[k]);
       linear = std::abs(middle.slopes.second[k] - line) * square <= c::kBend * limits.of[k].acceleration;
+      if (!linear || !exact || i >= c::kHalvingsForHidden) continue;
+      // A bend that all three places miss changes the first slopes.
+      const double before_it = before.slopes.second[k], in_it = middle.slopes.second[k], behind = next.slopes.second[k];
+      const double whole =
+          (before_it + 4 * in_it + behind) / 6 - (next.slopes.first[k] - before.slopes.first[k]) / step;
+      const double half =
+          (5 * before_it + 8 * in_it - behind) / 24 - (middle.slopes.first[k] - before.slopes.first[k]) / step;
+      linear = std::max(std::abs(whole), std::abs(half)) * square <= c::kHidden * limits.of[k].acceleration;
     }
     if (linear || i == c::kHalvings) {
       next.middle = middle.slopes.second;

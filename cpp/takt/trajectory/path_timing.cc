@@ -3,24 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "takt/core/describe.h"
-
 namespace takt::trajectory {
 
 namespace {
 
-constexpr double kLead_s = 0.012;  // from asking for a plan until it takes over
-constexpr std::uint64_t kMostLead = 400;
-constexpr std::uint64_t kAskAgain = 8;
-constexpr double kRenew_s = 0.4;  // a law that ends before the path does is made longer so long before
-constexpr double kWithin = 1 + 1e-7;
-constexpr int kPlaces = 48;                                       // at which a profile is looked at
-constexpr double kShares[] = {1, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1};  // of limits, to brake with or to begin with
-constexpr double kSamePlace = 1e-9;                               // mm
-constexpr double kBridgeShare = 0.98;                             // of the coordinates' limits
-constexpr int kTails = 16;
-constexpr double kStraight = 1e-12;
-constexpr double kGentle = 0.3;  // of the limits that a stop may take
+constexpr double kLead_s = 0.012;         // from the order of a plan to its start
+constexpr std::uint64_t kMostLead = 400;  // cycles
+constexpr std::uint64_t kOrderAgain = 8;  // cycles after one that failed
+constexpr double kRenew_s = 0.4;          // before a law ends, if the path does not
+constexpr double kWithin = 1 + 1e-7;      // of a limit
+constexpr int kSamples = 12;              // of a piece of a profile that is verified, besides the nodes it passes
+constexpr double kShares[] = {1, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1};  // of limits, tried for braking and for bridges
+constexpr double kSamePosition = 1e-9;                            // mm
+constexpr double kCoordinatesShare = 0.98;                        // of the coordinates' limits
+constexpr int kTails = 16;                                        // starts tried for a tail
+constexpr double kStraight = 1e-12;                               // second slopes that are rounding
+constexpr double kGentle = 0.3;  // of the limits: a stop that kShares finds later may be so gentle
 
 bool IsAtRest(const KinematicState& state) {
   return state.velocity == 0 && state.acceleration == 0;
@@ -44,7 +42,8 @@ KinematicState PathTiming::Law::At(double t) const noexcept {
   return planned ? course.At(plan.At(t)) : profile.At(t);
 }
 
-PathTiming::PathTiming(double period_s) : period_s_(period_s), maker_(std::make_unique<Maker>(kIntervals)) {}
+PathTiming::PathTiming(double period_s)
+    : period_s_(period_s), maker_(std::make_unique<Maker>()), current_(period_s), next_(period_s) {}
 
 void PathTiming::Clear() noexcept {
   active_ = braking_ = final_ = false;
@@ -59,8 +58,7 @@ void PathTiming::DropPlan() noexcept {
 void PathTiming::Begin(const PathPace& pace) noexcept {
   Clear();
   active_ = true;
-  late_ = 0;
-  tick_ = wait_until_ = 0;
+  late_ = tick_ = wait_until_ = ordered_ = 0;
   Take(Profile(pace.now), 1);
 }
 
@@ -88,22 +86,22 @@ bool PathTiming::Settles(double place) const noexcept {
   return !braking_ && (current_.planned || final_) && rest_place() >= place - 1e-6;
 }
 
-// Whether a motion never goes back and keeps the limits of all coordinates.
+// Returns whether a motion keeps the limits of all coordinates and never reverses.
 bool PathTiming::Holds(const PathWindow& window, std::uint64_t node, const Profile& profile) const noexcept {
-  if (profile.VelocityRange().min < -kSamePlace) return false;
+  if (profile.VelocityRange().min < -kSamePosition) return false;
   KinematicState before = profile.At(0);
   double begin_s = 0;
   for (int i = 0; i < profile.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double jerk = profile.pieces[k].jerk;
     const double length_s = profile.piece_ends_s[k] - begin_s;
-    for (int place = 0; place <= kPlaces; ++place) {
-      const KinematicState at = profile.pieces[k].At(length_s * place / kPlaces);
-      // What lies between two places: each node, with its slopes before and behind.
-      while (node + 1 < window.known() && !window[node].stop && window[node + 1].at.s <= at.position + kSamePlace) {
+    for (int sample = 0; sample <= kSamples; ++sample) {
+      const KinematicState at = profile.pieces[k].At(length_s * sample / kSamples);
+      // Nodes between two samples, with their slopes on both sides.
+      while (node + 1 < window.known() && !window[node].stop && window[node + 1].at.s <= at.position + kSamePosition) {
         const double s = window[node + 1].at.s;
-        const double way = at.position - before.position;
-        const double share = way > kSamePlace ? std::clamp((s - before.position) / way, 0.0, 1.0) : 1;
+        const double length = at.position - before.position;
+        const double share = length > kSamePosition ? std::clamp((s - before.position) / length, 0.0, 1.0) : 1;
         const double square = std::lerp(before.velocity * before.velocity, at.velocity * at.velocity, share);
         const double acceleration = std::lerp(before.acceleration, at.acceleration, share);
         const KinematicState there{s, std::sqrt(square), acceleration};
@@ -119,10 +117,11 @@ bool PathTiming::Holds(const PathWindow& window, std::uint64_t node, const Profi
   return true;
 }
 
-// One motion from where it is to rest at a place ahead.
+// Takes one motion from the present state to rest: where the path begins to bend, or `slowly` at its end, no faster
+// than its slowest node.
 bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, const PathPace& pace) noexcept {
   const std::uint64_t end = StopBehind(window, pace.node);
-  if (!(window[end].at.s > pace.now.position + kSamePlace)) return false;
+  if (!(window[end].at.s > pace.now.position + kSamePosition)) return false;
   // To the end, or to where bends begin.
   std::uint64_t bend = end;
   const auto steady = [&](std::uint64_t i) {
@@ -136,7 +135,7 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
     break;
   }
   // Where it bends at once a plan from rest is there soon; without one it goes as fast as the slowest place.
-  if (bend <= pace.node || !(window[bend].at.s > pace.now.position + kSamePlace)) {
+  if (bend <= pace.node || !(window[bend].at.s > pace.now.position + kSamePosition)) {
     if (!slowly) return false;
     bend = end;
   }
@@ -146,26 +145,17 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
     bool straight = true;
     for (std::uint64_t i = pace.node; i <= to; ++i) {
       const PathPoint& point = window[i].at;
-      least = Least(least, point.limits);
+      least = Least(least, LimitsAt(point, window.limits(), kCoordinatesShare));
       const double most = factor * point.limits.velocity;
       straight = straight && std::ranges::all_of(point.slopes.second, [](double q) { return std::abs(q) < kStraight; });
       velocity = std::min({velocity, most, std::max(factor, 1e-3) * std::sqrt(window[i].own)});
-      for (std::size_t k = 0; k < window.limits().count; ++k) {
-        const double slope = std::abs(point.slopes.first[k]);
-        const double a = kBridgeShare * point.left * window.limits().of[k].acceleration;
-        const double j = kBridgeShare * point.left * window.limits().of[k].jerk;
-        if (slope * least.acceleration > a) least.acceleration = a / slope;
-        if (slope * least.deceleration > a) least.deceleration = a / slope;
-        if (slope * least.jerk > j) least.jerk = j / slope;
-      }
     }
     if (!(velocity > 0)) continue;
     for (const double share : kShares) {
       const Limits limits{velocity, share * least.acceleration, share * least.deceleration, share * least.jerk};
       Profile profile{};
       if (planner_.ToPosition(pace.now, window[to].at.s, 0, limits, profile).failed()) continue;
-      if (profile.PositionRange().max > window[to].at.s + kSamePlace || profile.VelocityRange().min < -kSamePlace)
-        continue;
+      if (profile.PositionRange().max > window[to].at.s + kSamePosition) continue;
       if (!Holds(window, pace.node, profile)) continue;
       DropPlan();
       Take(profile, factor);
@@ -200,20 +190,17 @@ void PathTiming::Advance(const PathWindow& window, double factor, PathPace& pace
 
 void PathTiming::Stop(const PathWindow& window, const PathBrake& brake, PathPace& pace) noexcept {
   if (!braking_ && !IsAtRest(pace.now)) {
-    const AlongPath& along = window[pace.node].at.limits;
-    double deceleration = brake.deceleration > 0 ? brake.deceleration : along.deceleration;
-    double jerk = brake.jerk > 0 ? std::min(brake.jerk, along.jerk) : along.jerk;
-    for (std::size_t k = 0; k < window.limits().count; ++k) {
-      const double slope = std::abs(window[pace.node].at.slopes.first[k]);
-      const double a = kBridgeShare * window.limits().of[k].acceleration, j = kBridgeShare * window.limits().of[k].jerk;
-      if (slope * deceleration > a) deceleration = a / slope;
-      if (slope * jerk > j) jerk = j / slope;
-    }
+    AlongPath asked = window[pace.node].at.limits;
+    if (brake.deceleration > 0) asked.deceleration = brake.deceleration;
+    if (brake.jerk > 0) asked.jerk = std::min(brake.jerk, asked.jerk);
+    PathPoint here = window[pace.node].at;
+    here.limits = asked;
+    const AlongPath along = LimitsAt(here, window.limits(), kCoordinatesShare);
     const double furthest = window[StopBehind(window, pace.node)].at.s;
     for (const double share : kShares) {
       Profile profile{};
-      if (planner_.Stop(pace.now, {along.velocity, deceleration, share * deceleration, share * jerk}, profile).failed())
-        continue;
+      const Limits limits{along.velocity, along.deceleration, share * along.deceleration, share * along.jerk};
+      if (planner_.Stop(pace.now, limits, profile).failed()) continue;
       if (profile.end().position > furthest || !Holds(window, pace.node, profile)) continue;
       Take(profile, current_.factor);
       DropPlan();
@@ -237,54 +224,57 @@ double PathTiming::BrakesTo(const PathWindow& window, const PathPace& pace) cons
   return std::min(window[StopBehind(window, pace.node)].at.s, StopPosition(pace.now, gentle));
 }
 
-bool PathTiming::StartPlan(const PathWindow& window, double factor, const PathPace& pace) noexcept {
-  const std::uint64_t end = StopBehind(window, pace.node);
+bool PathTiming::Order(const PathWindow& window, double factor, const PathPace& pace) noexcept {
   const std::uint64_t lead = std::max(late_, static_cast<std::uint64_t>(std::ceil(kLead_s / period_s_)));
   const KinematicState begin = StateAt(tick_ + lead);
-  from_rest_ = IsAtRest(begin);
   const std::uint64_t node = NodeAt(window, pace.node, begin.position);
-  if (!next_.course.Make(window, node, begin, end, factor, kIntervals, planner_)) return false;
+  if (!next_.course.Take(window, node, begin, StopBehind(window, pace.node), factor)) return false;
+  from_rest_ = IsAtRest(begin);
   next_.begin = tick_ + lead;
   next_.planned = true;
   next_.factor = factor;
   next_.tail_s = std::numeric_limits<double>::infinity();
-  maker_->request = next_.course.Request();
   ++maker_->number;
-  maker_->order.store(Order::kAsked, std::memory_order_release);
+  maker_->order.store(OrderState::kOrdered, std::memory_order_release);
   planning_ = true;
   dropped_ = no_plan_ = false;
-  asked_ = tick_;
+  ordered_ = tick_;
   return true;
 }
 
 void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pace) noexcept {
   if (!active_ || ready_ || !(factor > 0) || tick_ == 0) return;
   if (planning_) {
-    if (tick_ > asked_ + kMostLead) no_plan_ = true;  // nobody answers
+    if (tick_ > ordered_ + kMostLead) no_plan_ = true;  // no maker runs
     return;
   }
   const std::uint64_t end = StopBehind(window, pace.node);
-  const bool further = window[end].at.s > rest_place() + kSamePlace;
+  const bool further = window[end].at.s > rest_place() + kSamePosition;
   const bool wanted =
       (further && rest_s() < kRenew_s) || braking_ || (!current_.planned && !final_) || current_.factor != factor;
-  if (!wanted || tick_ < wait_until_ || !(window[end].at.s > pace.now.position + kSamePlace)) return;
-  if (StartPlan(window, factor, pace)) return;
-  wait_until_ = tick_ + kAskAgain;
+  if (!wanted || tick_ < wait_until_ || !(window[end].at.s > pace.now.position + kSamePosition)) return;
+  if (Order(window, factor, pace)) return;
+  wait_until_ = tick_ + kOrderAgain;
   no_plan_ = IsAtRest(pace.now);
 }
 
 std::optional<std::uint64_t> PathTiming::MakePlan() noexcept {
-  if (maker_->order.load(std::memory_order_acquire) != Order::kAsked) return {};
-  maker_->status = maker_->planner.Plan(maker_->request, next_.plan);
+  if (maker_->order.load(std::memory_order_acquire) != OrderState::kOrdered) return {};
+  maker_->status = PathPlanStatus::kNoPlan;
+  if (next_.course.Make(maker_->profiles)) maker_->status = maker_->planner.Plan(next_.course.Request(), next_.plan);
   const std::uint64_t number = maker_->number;
-  maker_->order.store(Order::kMade, std::memory_order_release);
+  maker_->order.store(OrderState::kMade, std::memory_order_release);
   return number;
+}
+
+void PathTiming::MakeAgain() noexcept {
+  maker_->order.store(OrderState::kOrdered, std::memory_order_release);
 }
 
 void PathTiming::TakePlan(std::uint64_t number) noexcept {
   if (!planning_ || number != maker_->number) return;
   MakePlan();
-  maker_->order.store(Order::kNone, std::memory_order_relaxed);
+  maker_->order.store(OrderState::kNone, std::memory_order_relaxed);
   planning_ = false;
   if (dropped_) return;
   const PathPlanStatus status = maker_->status;
@@ -296,17 +286,17 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
   } else if (found && next_.begin >= tick_) {
     ready_ = true;
   } else if (found) {  // too late
-    late_ = std::min(2 * (next_.begin - asked_), kMostLead);
+    late_ = std::min(2 * (next_.begin - ordered_), kMostLead);
     return;
   } else {
-    wait_until_ = tick_ + kAskAgain;
+    wait_until_ = tick_ + kOrderAgain;
     no_plan_ = from_rest_;
   }
   late_ = 0;
 }
 
 bool PathTiming::StopBefore(const PathWindow& window, double place, const PathPace& pace) noexcept {
-  if (rest_place() <= place + kSamePlace) {
+  if (rest_place() <= place + kSamePosition) {
     DropPlan();
     return true;
   }
@@ -324,21 +314,12 @@ bool PathTiming::StopBefore(const PathWindow& window, double place, const PathPa
     const std::uint64_t node = NodeAt(window, pace.node, from.position);
     AlongPath least = window[node].at.limits;
     for (std::uint64_t i = node; i < window.known() && window[i].at.s < place; ++i) {
-      const PathPoint& point = window[i].at;
-      least = Least(least, point.limits);
-      for (std::size_t k = 0; k < window.limits().count; ++k) {
-        const double slope = std::abs(point.slopes.first[k]);
-        const CoordinateLimits::One& of = window.limits().of[k];
-        if (slope * least.acceleration > of.acceleration) least.acceleration = of.acceleration / slope;
-        if (slope * least.deceleration > of.acceleration) least.deceleration = of.acceleration / slope;
-        if (slope * least.jerk > of.jerk) least.jerk = of.jerk / slope;
-      }
+      least = Least(least, LimitsAt(window[i].at, window.limits(), 1));
     }
     const Limits limits{std::max(least.velocity, from.velocity), least.acceleration, least.deceleration, least.jerk};
     Profile profile{};
     const bool found = !planner_.ToPosition(from, place, 0, limits, profile).failed() &&
-                       profile.PositionRange().max <= place + kSamePlace &&
-                       profile.VelocityRange().min >= -kSamePlace && Holds(window, node, profile);
+                       profile.PositionRange().max <= place + kSamePosition && Holds(window, node, profile);
     if (found) {
       current_.tail_s = static_cast<double>(tick - current_.begin) * period_s_;
       current_.tail = profile;
@@ -348,12 +329,6 @@ bool PathTiming::StopBefore(const PathWindow& window, double place, const PathPa
     }
     if (tick == tick_) return false;
   }
-}
-
-void describe(Description<PathBrake>& d) {
-  d.about("How a motion along a path is ended.");
-  d.internal<&PathBrake::deceleration>("0: as the path says.");
-  d.internal<&PathBrake::jerk>("The same.");
 }
 
 }  // namespace takt::trajectory

@@ -1,11 +1,12 @@
-// Motion along the nodes of a window by laws, each known from its beginning to rest: at any time there is one that ends
-// at rest on the path within all limits, whatever becomes of planning.
+// Timing of the motion along the nodes of a window by timing laws, each known from its start to rest.
 //
-// From rest a bridge begins at once where the path is straight: one jerk-limited motion to rest before it bends.
-// Meanwhile a plan as fast as may be (PathPlanner) is made outside the cycle, from a place that the motion is to pass;
-// when it is there in time, and verified, it takes over at that place, else it is dropped and asked for again. The same
-// brings longer paths and other speeds into force. What has to stop does so by a braking law, verified as well, from
-// the instant at which there is one; until then the law in force goes on, which ends at rest, too.
+// Invariant: at any time one law is in force that keeps all limits and ends at rest on the path; planning only ever
+// replaces it by another such law. From rest a bridge starts at once if the path is straight there: one jerk-limited
+// motion to rest before the first bend. Meanwhile a time-optimal plan (PathPlanner) is computed outside the cycle, from
+// a state that the law in force will reach; it takes over at that instant if it is verified and in time, and is dropped
+// and ordered again if not. Longer paths and other speed factors come into force in the same way. Braking is one
+// jerk-limited motion, verified over all nodes ahead; if none is found, because the path bends, the law in force stays.
+// (Ours.)
 #pragma once
 
 #include <atomic>
@@ -13,53 +14,56 @@
 #include <memory>
 #include <optional>
 
-#include "takt/trajectory/path_brake.h"
 #include "takt/trajectory/path_course.h"
 #include "takt/trajectory/path_pace.h"
 
 namespace takt::trajectory {
 
-// Takes memory only when it is made; nothing else allocates or throws. The same calls give the same bits.
+// Allocates only in the constructor; the same calls give the same bits.
 class PathTiming {
  public:
   explicit PathTiming(double period_s);
 
   bool active() const noexcept { return active_; }
   void Clear() noexcept;
-  // The motion stands at `pace.now`, on `pace.node`.
+  // Requires: the motion is at rest at `pace.now`, at or behind `pace.node`.
   void Begin(const PathPace& pace) noexcept;
 
-  // One cycle: fills pace.now, raw, node, passed and raw_stands. `factor`: of the speed along the path, 0 to 1.
+  // One cycle: updates now, raw, node, passed and raw_stands. `factor`: of the speed along the path, above 0 to 1.
   void Advance(const PathWindow& window, double factor, PathPace& pace) noexcept;
-  // The same, but it comes to rest as soon as it can.
+  // One cycle, braking to rest.
   void Stop(const PathWindow& window, const PathBrake& brake, PathPace& pace) noexcept;
-  // Asks for a plan, where one is wanted.
+  // Orders a plan if one is wanted.
   void Ask(const PathWindow& window, double factor, const PathPace& pace) noexcept;
-  // Outside the cycle, one thread: makes the plan that is asked for; its number, for TakePlan, or nothing.
+  // Outside the cycle, in one thread: computes the plan that is ordered. Returns its number for TakePlan.
   std::optional<std::uint64_t> MakePlan() noexcept;
-  // In the cycle: a plan is there. What nobody has made yet, in a replay, is made here.
+  // In the same thread: the number could not be passed on; MakePlan returns it again.
+  void MakeAgain() noexcept;
+  // In the cycle: the plan with this number is computed (in a replay it is computed here).
   void TakePlan(std::uint64_t number) noexcept;
 
-  // Whatever lies behind a place becomes another path: the motion is to rest there at the latest until that is known.
-  // False: it cannot, nothing has changed.
+  // The path behind an arc length [mm] is about to change: the motion is to rest there at the latest. Returns false,
+  // with nothing changed, if it cannot.
   bool StopBefore(const PathWindow& window, double place, const PathPace& pace) noexcept;
 
-  // Where it comes to rest at the furthest if it is to stop now.
+  // Returns the arc length [mm] at which braking from now on ends at the furthest.
   double BrakesTo(const PathWindow& window, const PathPace& pace) const noexcept;
-  double rest_place() const noexcept { return current_.EndPlace(); }  // mm along the path, where the law in force ends
-  double rest_s() const noexcept;                                     // from now on until then
+  double rest_place() const noexcept { return current_.EndPlace(); }  // arc length at which the law in force ends [mm]
+  double rest_s() const noexcept;                                     // time until then [s]
   std::uint64_t rest_cycles() const noexcept;
-  // The law in force leads to a place, and no faster one is to come.
+  // Returns whether the law in force leads to an arc length [mm] and no faster one is to come.
   bool Settles(double place) const noexcept;
 
  private:
   struct Law {
+    explicit Law(double period_s) : course(kIntervals, period_s) {}
+
     std::uint64_t begin = 0;  // tick
     bool planned = false;
     Profile profile = {};
-    PathCourse course{kIntervals};
+    PathCourse course;
     PathPlan plan{kIntervals};
-    // From some time on instead.
+    // Replaces the rest of it from some time on.
     double tail_s = std::numeric_limits<double>::infinity();
     Profile tail = {};
     double factor = 1;
@@ -75,18 +79,17 @@ class PathTiming {
   bool Bridge(const PathWindow& window, double factor, bool slowly, const PathPace& pace) noexcept;
   void Take(const Profile& profile, double factor) noexcept;
   void Go(const PathWindow& window, PathPace& pace) noexcept;
-  bool StartPlan(const PathWindow& window, double factor, const PathPace& pace) noexcept;
+  bool Order(const PathWindow& window, double factor, const PathPace& pace) noexcept;
   void DropPlan() noexcept;
 
   double period_s_;
   Planner planner_;
-  // What is asked for, in next_: the cycle leaves it alone until it is told that the plan is there.
-  enum class Order : std::uint8_t { kNone, kAsked, kMade };
+  // While a plan is ordered next_ belongs to the thread that makes it.
+  enum class OrderState : std::uint8_t { kNone, kOrdered, kMade };
   struct Maker {
-    explicit Maker(std::size_t intervals) : planner(intervals, kPathCoordinates + 1) {}
-    PathPlanner planner;
-    PathPlanRequest request;
-    std::atomic<Order> order{Order::kNone};
+    Planner profiles;
+    PathPlanner planner{kIntervals, kPathCoordinates + 1};
+    std::atomic<OrderState> order{OrderState::kNone};
     std::uint64_t number = 0;
     PathPlanStatus status = PathPlanStatus::kNoPlan;
   };
@@ -94,14 +97,16 @@ class PathTiming {
   Law current_, next_;
   std::uint64_t tick_ = 0;
   bool active_ = false;
-  bool braking_ = false;                                     // what is in force is
-  bool final_ = false;                                       // nothing faster is to be had
-  bool planning_ = false, ready_ = false, dropped_ = false;  // what is asked for is not wanted any more
-  std::uint64_t asked_ = 0;                                  // tick
-  bool no_plan_ = false;                                     // there is none from here
-  bool from_rest_ = false;                                   // the plan being made begins at rest
-  std::uint64_t late_ = 0;                                   // how many it has to be, as the last one came too late
-  std::uint64_t wait_until_ = 0;                             // tick, to ask again
+  bool braking_ = false;          // the law in force brakes
+  bool final_ = false;            // no plan would be faster
+  bool planning_ = false;         // a plan is ordered ...
+  bool dropped_ = false;          // ... and not wanted any more
+  bool ready_ = false;            // next_ takes over at its begin
+  bool from_rest_ = false;        // next_ begins at rest
+  bool no_plan_ = false;          // from the present rest
+  std::uint64_t ordered_ = 0;     // tick
+  std::uint64_t late_ = 0;        // lead of the next order [ticks], as the last plan came too late; 0: the usual one
+  std::uint64_t wait_until_ = 0;  // tick of the next order
 };
 
 }  // namespace takt::trajectory
