@@ -14,6 +14,7 @@ COMMANDS = (
     "step_limit_switch",
     "step_block",
     "step_ref_pulse",
+    "step_distance_coded",
     "step_direct",
     "step_absolute",
     "finish_homing",
@@ -21,7 +22,7 @@ COMMANDS = (
     "step_ref_flying_ref_pulse",
     "abort_passive_homing",
 )
-ERRORS = (1, 2, 5, 8, 10, 11, 13, 2004, 2005, 3005, 3006)
+ERRORS = (1, 2, 5, 8, 10, 11, 13, 2004, 2005, 3005, 3006, 3104, 3105)
 SIGNALS = ("x.set_position", "x.set_velocity", "x.reference", "x.homed", "x.state")
 
 

@@ -11,6 +11,7 @@ COMMANDS = (
     "set_constants",
     "read_parameter",
     "write_parameter",
+    "write_output",
     "set_soft_limits",
     "define_position",
     "direct_output",

@@ -48,6 +48,7 @@ class SetPoint:
     torque_nm: float = 0.0  # cst; N on linear motors
     torque_until_counts_s: float = 0.0  # cst: signed velocity at which the torque ends in this cycle
     torque_limit_nm: float = 0.0  # largest torque either way, in all modes; 0: that of the drive
+    digital_outputs: int = 0  # of the axis, a bit for each
     period_s: float = 0.001  # length of a cycle
 
 
@@ -70,6 +71,8 @@ class Measured:
     drive_ready: bool = False  # power stage on and following its set point
     drive_fault: bool = False
     torque_nm: float = 0.0
+    load_counts: int = 0  # of a second encoder, on the load
+    load_encoder_error: bool = False
 
 
 class Drive(ABC):
@@ -109,7 +112,7 @@ class SimulatedServo(Drive):
 
 _TOLD: Final = [f.name for f in fields(SetPoint)]
 _MEASURED: Final = [f.name for f in fields(Measured)]
-_COUNTERS: Final = ("counts", "index_counts", "index_pulses", "probe_rises", "probe_falls")
+_COUNTERS: Final = ("counts", "index_counts", "index_pulses", "probe_rises", "probe_falls", "load_counts")
 
 
 @dataclass

@@ -313,6 +313,8 @@ void FinishReset(const Context& c, State& s) {
   s.error = ErrorId::kNone;
   s.fault_of = kNoAxis;
   Trust(s.encoder);
+  Trust(s.correction.load);
+  s.correction.load_known = false;
   if (s.plc == PlcState::kErrorStop) {
     Enter(s, s.loop_closed ? PlcState::kStandstill : PlcState::kDisabled);
   }
@@ -380,7 +382,7 @@ double TorqueLimit(const AxisParams& p, const State& s) {
 State MakeState(const AxisParams& params) noexcept {
   State s;
   s.system = params.planner_limits();
-  s.homing.homed = params.encoder.type == EncoderType::kAbsoluteSsi;
+  s.homing.homed = params.position_encoder().type == EncoderType::kAbsoluteSsi;
   s.motion.arrived = true;
   return s;
 }
@@ -392,9 +394,11 @@ void Sense(const Context& c, const ServoInputs& in, State& s, const Sampling& sa
   s.sampling = sampling;
   EncoderOutputs measured;
   Step(c.params.encoder, {in.counts, in.encoder_error, LargestStep(c), sampling.step}, c.cycle, s.encoder, measured);
+  if (c.params.load_encoder) SenseLoad(c, in, sampling.step, LargestStep(c), measured, s);
   s.encoder_error = measured.error;
-  s.encoder_line_error = in.encoder_error;
-  const KinematicState sampled{measured.position - s.origin, measured.velocity, 0};
+  s.encoder_line_error = in.encoder_error || in.load_encoder_error;
+  const KinematicState sampled{measured.position - s.correction.now - s.origin, measured.velocity - s.correction.rate,
+                               0};
   if (s.blind || lost || sampling.age > 0) {
     Locate(c, sampled, s);
   } else {
@@ -406,9 +410,10 @@ void Sense(const Context& c, const ServoInputs& in, State& s, const Sampling& sa
   ReadSwitches(c, in, s);
   s.touch_probe = in.touch_probe != sense.invert_touch_probe;
   s.index_pulse = in.index_pulses != s.index_pulses;
+  s.index_skipped = in.index_pulses - s.index_pulses > 1;
   s.index_pulses = in.index_pulses;
   s.index_counts = in.index_counts;
-  if (measured.error && c.params.encoder.type == EncoderType::kIncremental) s.homing.homed = false;
+  if (measured.error && c.params.position_encoder().type == EncoderType::kIncremental) s.homing.homed = false;
   s.drive_ready = in.drive_ready && !lost;
   s.drive_fault = in.drive_fault || lost;
   s.torque_nm = in.torque_nm;
@@ -446,7 +451,10 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   ControlLoopOutputs loop;
   // The new set point is the one for the end of this cycle. What is measured now is held against the one before, and
   // the speed fed forward is the one that leads from there to the new one.
-  const double mean_velocity = (s.setpoint.position - s.due) / c.cycle.period_s;
+  if (p.compensation.any()) Correct(c, s);
+  const double correction = s.correction.now;
+  const double corrected = p.load_encoder ? 0 : s.correction.rate;  // u/s, by which the motor is told to go beyond
+  const double mean_velocity = (s.setpoint.position - s.due) / c.cycle.period_s + corrected;
   const ControlLoopInputs inputs{p.drive.mode,     s.loop_closed && engine_closes, p.drive.invert, s.due, mean_velocity,
                                  s.actual.position};
   if (s.blind) {
@@ -455,22 +463,23 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
     Step(p.loop, inputs, c.cycle, s.loop, loop);
   }
   out.mode = mode;
-  out.position_counts = sign * CountsAt(p.encoder, s.setpoint.position + s.origin);
+  out.position_counts = sign * CountsAt(p.encoder, s.setpoint.position + s.origin + correction);
   out.velocity_counts_s = torque
                               ? std::abs(CountRateAt(p.encoder, std::max(s.active.velocity, std::abs(s.torque.until))))
                           : engine_closes ? CountRateAt(p.encoder, loop.velocity)
-                                          : sign * CountRateAt(p.encoder, s.setpoint.velocity);
+                                          : sign * CountRateAt(p.encoder, s.setpoint.velocity + corrected);
   out.voltage_v = loop.voltage_v;
   out.torque_nm = torque ? sign * s.torque.set_torque_nm : 0;
   out.torque_until_counts_s = torque ? sign * CountRateAt(p.encoder, s.torque.until) : 0;
   out.torque_limit_nm = TorqueLimit(p, s);
+  out.digital_outputs = s.cam_outputs | s.written_outputs;
   const bool sound =
       std::isfinite(out.position_counts + out.velocity_counts_s + out.voltage_v) && std::isfinite(out.torque_nm);
   if (!sound) {
     s.setpoint = {0, 0, 0};
     Fail(c, ErrorId::kInternal, true, s);
     s.loop = ControlLoopState{};
-    out.position_counts = CountsAt(p.encoder, s.actual.position + s.origin);
+    out.position_counts = CountsAt(p.encoder, s.actual.position + s.origin + correction);
     out.mode = p.drive.mode;
     out.velocity_counts_s = 0;
     out.voltage_v = 0;
@@ -571,6 +580,10 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.probe_position = s.probe.position;
   out.probe_captures = s.probe.captures;
   out.cam_outputs = s.cam_outputs;
+  out.digital_outputs = s.cam_outputs | s.written_outputs;
+  out.enable_positive = !s.bars_positive;
+  out.enable_negative = !s.bars_negative;
+  out.encoder_correction = s.correction.now;
 }
 
 }  // namespace takt::axis

@@ -20,9 +20,9 @@ using Command =
                  MoveContinuousAbsolute, MoveContinuousRelative, Inch, Halt, Stop, Jog, MoveSuperimposed,
                  HaltSuperimposed, TorqueControl, GearIn, GearOut, GearInPos, PhasingAbsolute, PhasingRelative,
                  CombineAxes, CamTableSelect, CamIn, CamAdd, CamRemove, CamOut, PositionProfile, VelocityProfile,
-                 AccelerationProfile, Home, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse, StepDirect,
-                 StepAbsolute, FinishHoming, StepRefFlyingSwitch, StepRefFlyingRefPulse, AbortPassiveHoming,
-                 SetConstants, WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, PulseOutput, SetPosition,
-                 SetOverride, TouchProbe, AbortTrigger, Touch, DigitalCamSwitch, Stream, StreamPoint>;
+                 AccelerationProfile, Home, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse, StepDistanceCoded,
+                 StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch, StepRefFlyingRefPulse, AbortPassiveHoming,
+                 SetConstants, WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, PulseOutput, WriteOutput,
+                 SetPosition, SetOverride, TouchProbe, AbortTrigger, Touch, DigitalCamSwitch, Stream, StreamPoint>;
 
 }  // namespace takt::axis

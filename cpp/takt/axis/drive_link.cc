@@ -16,7 +16,7 @@ void Locate(const Context& c, const KinematicState& sampled, State& s) noexcept 
     s.actual = sampled;
     s.actual.position += sampled.velocity * s.sampling.age * c.cycle.period_s;
   }
-  if (lost && c.params.encoder.type == EncoderType::kIncremental) s.homing.homed = false;
+  if (lost && c.params.position_encoder().type == EncoderType::kIncremental) s.homing.homed = false;
 }
 
 void WatchLink(const Context& c, State& s) noexcept {

@@ -79,6 +79,21 @@ double LatchedPosition(const Encoder& p, const EncoderState& s, std::uint32_t co
   return PositionOf(p, s.count + Difference(p, s.word, Decode(p, counts)));
 }
 
+// Upwards from a fixed mark its coded one is half the distance and some steps away, the next fixed one what is left.
+std::optional<double> MarkPosition(const CodedMarks& m, double before, double mark) noexcept {
+  const double apart = m.reversed ? before - mark : mark - before;
+  const double steps = (std::abs(apart) - m.distance / 2) / m.step;
+  const double whole = std::round(std::abs(steps));
+  const bool coded = whole >= 1 && whole * m.step < m.distance / 2 && std::abs(std::abs(steps) - whole) <= 0.25;
+  if (!coded) return std::nullopt;
+  const double fixed_mark = (whole - 1) * m.distance;
+  const double coded_mark = fixed_mark + m.distance / 2 + whole * m.step;
+  const double lower = steps > 0 ? fixed_mark : coded_mark;
+  const double upper = steps > 0 ? coded_mark : fixed_mark + m.distance;
+  const double at = apart > 0 ? upper : lower;
+  return m.position + (m.reversed ? -at : at);
+}
+
 void describe(Enumeration<EncoderType>& e) {
   e.about("What an encoder sends.");
   e.value(EncoderType::kIncremental, "incremental", "A 32-bit counter of quadrature increments.");
@@ -91,6 +106,18 @@ void describe(Enumeration<SsiCoding>& e) {
   e.value(SsiCoding::kGray, "gray", "In Gray code: one bit changes from one count to the next.");
 }
 
+void describe(Description<CodedMarks>& d) {
+  using M = CodedMarks;
+  d.about(
+      "Distance-coded reference marks: pair k has a fixed mark at k distance, and a coded one (k + 1) step behind the "
+      "middle between this and the next fixed one. Two neighbours tell the position (step_distance_coded).");
+  d.required<&M::distance>(unit::u, between(1e-6, 1e9), "From one fixed mark to the next.");
+  d.required<&M::step>(unit::u, between(1e-9, 1e9), "By which each coded mark is further behind the middle.");
+  d.defaulted<&M::position>(unit::u, "Position of the axis at the fixed mark of pair 0.");
+  d.defaulted<&M::reversed>("The scale counts against the axis.");
+  d.rule<&M::step>("must be less than half of distance", [](const M& m) { return m.step < m.distance / 2; });
+}
+
 void describe(Description<Encoder>& d) {
   using P = Encoder;
   d.about("The position encoder of an axis.");
@@ -101,6 +128,10 @@ void describe(Description<Encoder>& d) {
   d.defaulted<&P::coding>("Absolute: how the word is written.");
   d.defaulted<&P::offset>(unit::u, "Position of the axis where the encoder counts 0.");
   d.defaulted<&P::velocity_filter_s>(unit::s, between(0, 10), "Time constant of the velocity's filter; 0: none.");
+  d.defaulted<&P::coded_marks>("Distance-coded reference marks; unset: index pulses are all alike.");
+  d.rule<&P::coded_marks>("must have a step of four counts or more, which tell one code from the next", [](const P& p) {
+    return !p.coded_marks || p.coded_marks->step * p.increments_per_unit >= 4 * (1 - 1e-9);
+  });
 }
 
 void describe(Description<EncoderState>& d) {

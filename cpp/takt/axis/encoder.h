@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "takt/core/cycle.h"
 #include "takt/core/describe_fwd.h"
@@ -12,14 +13,26 @@ namespace takt::axis {
 enum class EncoderType : std::uint8_t { kIncremental, kAbsoluteSsi };
 enum class SsiCoding : std::uint8_t { kBinary, kGray };
 
+// A scale with distance-coded marks. In its own sense marks lie in pairs: pair k has a fixed mark at k * distance and a
+// coded one at (k + 1/2) * distance + (k + 1) * step, so that no two neighbours are as far apart as any others.
+struct CodedMarks {
+  double distance = 0;    // u, > 0: from one fixed mark to the next
+  double step = 0;        // u, > 0: by which a coded mark is further from its fixed one than that of the pair before
+  double position = 0;    // u: of the axis at the fixed mark of pair 0
+  bool reversed = false;  // the scale counts against the axis
+
+  bool operator==(const CodedMarks&) const = default;
+};
+
 struct Encoder {
   EncoderType type = EncoderType::kIncremental;
-  double increments_per_unit = 1000;      // counts per u, > 0
-  bool invert = false;                    // counts fall while the position grows
-  int ssi_bits = 24;                      // absolute: 8 to 32; bits of the word above them are ignored
-  SsiCoding coding = SsiCoding::kBinary;  // absolute
-  double offset = 0;                      // u: position at count 0
-  double velocity_filter_s = 0;           // s, >= 0: time constant of the velocity's filter; 0: none
+  double increments_per_unit = 1000;        // counts per u, > 0
+  bool invert = false;                      // counts fall while the position grows
+  int ssi_bits = 24;                        // absolute: 8 to 32; bits of the word above them are ignored
+  SsiCoding coding = SsiCoding::kBinary;    // absolute
+  double offset = 0;                        // u: position at count 0
+  double velocity_filter_s = 0;             // s, >= 0: time constant of the velocity's filter; 0: none
+  std::optional<CodedMarks> coded_marks{};  // unset: index pulses are all alike
 
   bool operator==(const Encoder&) const = default;
 };
@@ -62,6 +75,10 @@ void Trust(EncoderState& state) noexcept;
 // The position of a counter value latched near the last good sample (index pulse).
 double LatchedPosition(const Encoder& params, const EncoderState& state, std::uint32_t counts) noexcept;
 
+// Returns the position of the axis at a mark from how far it is from its neighbour [u], which was passed before; empty
+// if no neighbours are so far apart, within a quarter of a step.
+std::optional<double> MarkPosition(const CodedMarks& marks, double before, double mark) noexcept;
+
 // What a position is in counts without wraps: csp set points.
 inline double CountsAt(const Encoder& params, double position) noexcept {
   const double counts = (position - params.offset) * params.increments_per_unit;
@@ -75,6 +92,7 @@ inline double CountRateAt(const Encoder& params, double velocity) noexcept {
 
 void describe(Enumeration<EncoderType>&);
 void describe(Enumeration<SsiCoding>&);
+void describe(Description<CodedMarks>&);
 void describe(Description<Encoder>&);
 void describe(Description<EncoderState>&);
 

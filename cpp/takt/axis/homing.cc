@@ -22,7 +22,8 @@ bool BySwitch(RequestKind kind) {
 }
 
 bool Searches(RequestKind kind) {
-  return BySwitch(kind) || kind == RequestKind::kStepBlock || kind == RequestKind::kStepRefPulse;
+  return BySwitch(kind) || kind == RequestKind::kStepBlock || kind == RequestKind::kStepRefPulse ||
+         kind == RequestKind::kStepDistanceCoded;
 }
 
 HomingScope ScopeOf(RequestKind kind) {
@@ -93,7 +94,24 @@ bool Reverses(SwitchMode mode, const Edge& edge) {
 
 // Where the encoder was at its last index pulse.
 double PulsePosition(const Context& c, const State& s) {
-  return LatchedPosition(c.params.encoder, s.encoder, s.index_counts) - s.origin;
+  return LatchedPosition(c.params.encoder, s.encoder, s.index_counts) - s.correction.now - s.origin;
+}
+
+// A mark was passed: with the one before it, its position is known. None is the one before where several came in a
+// cycle, for the latch has only the last.
+std::optional<HomingEvent> ReadCode(const Context& c, State& s) {
+  HomingState& h = s.homing;
+  const double mark = PulsePosition(c, s) + s.origin;
+  const double before = h.mark;
+  const bool pair = h.mark_known && !s.index_skipped;
+  h.mark = mark;
+  h.mark_known = true;
+  if (!pair) return std::nullopt;
+  const std::optional<double> position = MarkPosition(*c.params.encoder.coded_marks, before, mark);
+  if (!position) return HomingEvent::kNoCode;
+  h.captured = PulsePosition(c, s);
+  s.active.homing.set_position = *position;
+  return HomingEvent::kFound;
 }
 
 bool OnTheWay(HomingStage stage) {
@@ -125,6 +143,9 @@ std::optional<HomingEvent> EventOf(const Context& c, State& s) {
     } else if (r.kind == RequestKind::kStepRefPulse && s.index_pulse) {
       h.captured = PulsePosition(c, s);
       return HomingEvent::kFound;
+    } else if (r.kind == RequestKind::kStepDistanceCoded && s.index_pulse) {
+      const std::optional<HomingEvent> event = ReadCode(c, s);
+      if (event) return event;
     } else if (r.kind == RequestKind::kStepBlock && std::abs(s.actual.velocity) < kBlockedShare * r.velocity &&
                h.sense * s.following_error > r.homing.deviation) {
       h.captured = s.actual.position;
@@ -145,6 +166,7 @@ std::optional<HomingEvent> EventOf(const Context& c, State& s) {
 
 void Search(const Context& c, const MotionStart& start, State& s) {
   s.homing.found = false;
+  s.homing.mark_known = false;
   Profile profile{s.setpoint};
   if (c.planner.ToVelocity(s.setpoint, s.homing.sense * s.active.velocity, s.active.limits(), profile).failed()) {
     return Fail(c, ErrorId::kPlanning, false, s);
@@ -187,6 +209,12 @@ void SearchPulse(const Context& c, State& s) {
   Search(c, FromThisCycle(c), s);
 }
 
+// Of a search that is given up.
+ErrorId ErrorOf(HomingEvent event) {
+  if (event == HomingEvent::kNoCode) return ErrorId::kMarkDistance;
+  return event == HomingEvent::kTimeOver ? ErrorId::kTimeLimit : ErrorId::kDistanceLimit;
+}
+
 void Act(const Context& c, const HomingRow& row, State& s) {
   HomingState& h = s.homing;
   h.stage = row.to;
@@ -216,8 +244,7 @@ void Act(const Context& c, const HomingRow& row, State& s) {
       Finish(c, s);
       break;
     case HomingAction::kGiveUp: {
-      const bool late = row.event == HomingEvent::kTimeOver;
-      EndActive(c, FeedbackState::kError, late ? ErrorId::kTimeLimit : ErrorId::kDistanceLimit, s);
+      EndActive(c, FeedbackState::kError, ErrorOf(row.event), s);
       AbortBuffer(c, s);
       s.active.kind = RequestKind::kHalt;  // of no command: to Standstill once at rest
       Profile profile{s.setpoint};
@@ -289,16 +316,19 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
   const bool from_here = s.plc == PlcState::kStandstill || (s.plc == PlcState::kHoming && between);
   if (!from_here || !AtRest(s)) return Status::Failed(ErrorId::kState);
   if (r.kind == RequestKind::kFinishHoming && s.plc != PlcState::kHoming) return Status::Failed(ErrorId::kState);
-  if (r.kind == RequestKind::kStepAbsolute && c.params.encoder.type != EncoderType::kAbsoluteSsi) {
+  if (r.kind == RequestKind::kStepAbsolute && c.params.position_encoder().type != EncoderType::kAbsoluteSsi) {
     return Status::Failed(ErrorId::kState);
+  }
+  if (r.kind == RequestKind::kStepDistanceCoded && !c.params.encoder.coded_marks) {
+    return Status::Failed(ErrorId::kNoCodedMarks);
   }
   if (Searches(r.kind) && !BySwitch(r.kind) && LimitAhead(s, FirstSense(r, s))) {
     return Status::Failed(ErrorId::kAwayFromLimitOnly);
   }
   if (Searches(r.kind) && Bars(c, s, FirstSense(r, s))) return Status::Failed(ErrorId::kDirection);
   // As define_position: no place beyond a SW limit.
-  const bool names =
-      r.homing.sets_position && r.kind != RequestKind::kFinishHoming && r.kind != RequestKind::kStepAbsolute;
+  const bool names = r.homing.sets_position && r.kind != RequestKind::kFinishHoming &&
+                     r.kind != RequestKind::kStepAbsolute && r.kind != RequestKind::kStepDistanceCoded;
   if (names && !Inside(c.params.limits, r.homing.set_position)) return Status::Failed(ErrorId::kTargetBehindLimit);
   HomingState& h = s.homing;
   const MotionStart start = aborts ? FromCycleBefore(c) : FromThisCycle(c);  // a buffered one: this cycle is done

@@ -25,6 +25,7 @@ enum class HomingStage : std::uint8_t {
 enum class HomingEvent : std::uint8_t {
   kFound,      // what the step is looking for
   kWrongEdge,  // the switch changed the other way
+  kNoCode,     // marks whose distance is no code (StepDistanceCoded)
   kLimit,      // a limit switch lies ahead (StepAbsSwitch)
   kStopped,    // the motion of the stage is over
   kTimeOver,   // TimeLimit
@@ -58,6 +59,8 @@ inline constexpr std::array kHomingTable = {
               HomingStage::kTurning},
     HomingRow{HomingStage::kSearching, HomingEvent::kLimit, HomingScope::kSwitches, HomingAction::kBrake,
               HomingStage::kTurning},
+    HomingRow{HomingStage::kSearching, HomingEvent::kNoCode, HomingScope::kPulse, HomingAction::kGiveUp,
+              HomingStage::kNone},
     HomingRow{HomingStage::kSearching, HomingEvent::kTimeOver, HomingScope::kAll, HomingAction::kGiveUp,
               HomingStage::kNone},
     HomingRow{HomingStage::kSearching, HomingEvent::kTooFar, HomingScope::kAll, HomingAction::kGiveUp,
@@ -88,6 +91,8 @@ struct HomingState {
   std::int8_t sense = 1;       // of the search
   bool switch_before = false;  // the switch that is searched, a cycle ago
   double captured = 0;         // u, where it was found
+  double mark = 0;             // u, over all turns: the coded mark that was passed last ...
+  bool mark_known = false;     // ... if one was
   std::uint8_t turns = 0;      // how often it turned round
   double way = 0;              // u, gone since the step began
   std::uint64_t begin_cycle = 0;

@@ -19,6 +19,7 @@ void describe(Enumeration<HomingEvent>& e) {
   e.value(HomingEvent::kFound, "found", "What it looks for.");
   e.value(HomingEvent::kWrongEdge, "wrong_edge", "The switch changed the other way.");
   e.value(HomingEvent::kLimit, "limit", "A limit switch lies ahead.");
+  e.value(HomingEvent::kNoCode, "no_code", "Marks whose distance is no code.");
   e.value(HomingEvent::kStopped, "stopped", "The motion of the stage is over.");
   e.value(HomingEvent::kTimeOver, "time_over", "TimeLimit.");
   e.value(HomingEvent::kTooFar, "too_far", "DistanceLimit.");
@@ -39,7 +40,7 @@ void describe(Enumeration<HomingScope>& e) {
   e.value(HomingScope::kAll, "all", "All.");
   e.value(HomingScope::kSwitches, "switches", "MC_StepAbsSwitch and MC_StepLimitSwitch.");
   e.value(HomingScope::kBlock, "block", "MC_StepBlock.");
-  e.value(HomingScope::kPulse, "pulse", "MC_StepRefPulse.");
+  e.value(HomingScope::kPulse, "pulse", "MC_StepRefPulse and MC_StepDistanceCoded.");
 }
 
 void describe(Description<HomingState>& d) {
@@ -50,6 +51,8 @@ void describe(Description<HomingState>& d) {
   d.internal<&H::sense>("Of the search.");
   d.internal<&H::switch_before>("The switch that is searched, a cycle ago.");
   d.internal<&H::captured>(unit::u, "Where it was found.");
+  d.internal<&H::mark>(unit::u, "Coded mark that was passed last, over all turns.");
+  d.internal<&H::mark_known>("One was passed.");
   d.internal<&H::turns>("How often it turned round.");
   d.internal<&H::way>(unit::u, "Gone since the step began.");
   d.internal<&H::begin_cycle>("When it began.");

@@ -24,6 +24,8 @@ void describe(Enumeration<HomingMethod>& e) {
   e.value(HomingMethod::kLimitSwitch, "limit_switch", "Searches a limit switch.");
   e.value(HomingMethod::kBlock, "block", "Searches an end stop.");
   e.value(HomingMethod::kPulse, "pulse", "Searches the next index pulse.");
+  e.value(HomingMethod::kDistanceCoded, "distance_coded",
+          "Finds the position from the distance of two marks (encoder.coded_marks).");
 }
 
 void describe(Description<HomingParams>& d) {

@@ -10,12 +10,13 @@
 namespace takt::axis {
 
 enum class HomingMethod : std::uint8_t {
-  kDirect,       // where the axis stands is the reference
-  kAbsolute,     // as the absolute encoder says
-  kSwitch,       // the reference switch
-  kLimitSwitch,  // a limit switch
-  kBlock,        // an end stop
-  kPulse,        // the next index pulse
+  kDirect,         // where the axis stands is the reference
+  kAbsolute,       // as the absolute encoder says
+  kSwitch,         // the reference switch
+  kLimitSwitch,    // a limit switch
+  kBlock,          // an end stop
+  kPulse,          // the next index pulse
+  kDistanceCoded,  // two coded marks
 };
 
 struct HomingParams {

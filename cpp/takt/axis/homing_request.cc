@@ -56,7 +56,7 @@ Step StepOf(const HomingParams& h, const Home& c) {
   Step step;
   step.direction = h.direction;
   step.velocity = h.velocity;
-  step.set_position = c.position;
+  if constexpr (requires { step.set_position; }) step.set_position = c.position;
   step.buffer_mode = c.buffer_mode;
   step.time_limit = h.time_limit;
   step.distance_limit = h.distance_limit;
@@ -98,6 +98,8 @@ bool Fill(const Maker& m, const Home& c) {
     }
     case HomingMethod::kPulse:
       return Fill(m, StepOf<StepRefPulse>(h, c));
+    case HomingMethod::kDistanceCoded:
+      return Fill(m, StepOf<StepDistanceCoded>(h, c));
   }
   return false;
 }
@@ -119,6 +121,10 @@ bool Fill(const Maker& m, const StepBlock& c) {
 
 bool Fill(const Maker& m, const StepRefPulse& c) {
   return OneWay(m, c.direction) && Position(m, c.set_position) && Search(m, RequestKind::kStepRefPulse, c);
+}
+
+bool Fill(const Maker& m, const StepDistanceCoded& c) {
+  return OneWay(m, c.direction) && Search(m, RequestKind::kStepDistanceCoded, c);
 }
 
 bool Fill(const Maker& m, const StepDirect& c) {

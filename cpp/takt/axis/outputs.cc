@@ -21,6 +21,9 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::phase_shift>(unit::u_m, "How far the master is taken to be ahead of where it is.");
   d.internal<&O::covered_phase_shift>(unit::u_m,
                                       "What of it the last phasing_relative has added; after phasing_absolute: all.");
+  d.internal<&O::encoder_correction>(unit::u,
+                                     "How far the encoder on the motor is ahead of the axis: backlash and the error "
+                                     "of the screw; with load_encoder, the other encoder.");
   d.internal<&O::override_factor>(unit::one, "Velocity factor of the override; 0: held.");
   d.internal<&O::skew>(unit::u,
                        "Measured distance to where its master has it, of an axis that follows another from load on.");
@@ -50,6 +53,9 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::touch_probe>("TP after inversion.");
   d.internal<&O::probe_captures>("How often the touch probe was captured.");
   d.internal<&O::cam_outputs>("Outputs of the cam switches, a bit for each track.");
+  d.internal<&O::digital_outputs>("Outputs that are on, written or by cam switches, a bit for each.");
+  d.internal<&O::enable_positive>("It may move upwards (enable_positive of power).");
+  d.internal<&O::enable_negative>("It may move downwards (enable_negative of power).");
 }
 
 }  // namespace takt::axis

@@ -26,6 +26,7 @@ struct Outputs {
   double covered_distance = 0;     // u, by the motion on top of the one in progress; 0: there is none
   double phase_shift = 0;          // master's u, that it is taken to be ahead of where it is
   double covered_phase_shift = 0;  // master's u, by the last shift; one to an amount: in all
+  double encoder_correction = 0;   // u, that the encoder on the motor is ahead of the axis
   double override_factor = 1;      // of the velocity; 0: held
   double skew = 0;                 // u, of an axis that follows another from load on: off where its master has it
   Ticket active_command = 0;       // 0: none
@@ -36,8 +37,9 @@ struct Outputs {
   std::uint32_t master2 = 0;
   std::uint32_t fault_of = 0;  // number of the axis whose fault stopped this one, its master, from 1; 0: none
   std::uint32_t probe_captures = 0;
-  std::uint32_t profile_ends = 0;  // how often the end of its cam was passed
-  std::uint32_t cam_outputs = 0;   // of the cam switches, a bit for each track
+  std::uint32_t profile_ends = 0;     // how often the end of its cam was passed
+  std::uint32_t cam_outputs = 0;      // of the cam switches, a bit for each track
+  std::uint32_t digital_outputs = 0;  // written ones and those of the cam switches, a bit for each
   std::uint8_t buffered_commands = 0;
   bool loop_closed = false;
   bool in_position = false;
@@ -54,6 +56,8 @@ struct Outputs {
   bool limit_negative = false;
   bool reference = false;
   bool touch_probe = false;
+  bool enable_positive = true;  // directions in which it may move (MC_Power)
+  bool enable_negative = true;
 };
 
 void describe(Description<Outputs>&);

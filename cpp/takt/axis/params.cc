@@ -37,6 +37,10 @@ void describe(Description<Supervision>& d) {
   d.defaulted<&S::encoder_noise_counts>(unit::count, not_negative,
                                         "What a standing encoder may move from one cycle to the next; a change beyond "
                                         "that and four times the axis' velocity is error 3001.");
+  d.defaulted<&S::encoders_apart>(
+      unit::u, positive,
+      "With load_encoder: by which motor and load may get apart since both were first measured, or since reset; beyond "
+      "it: ErrorStop 3106, and the loop is opened. Unset: not watched.");
   d.defaulted<&S::in_position_timeout_s>(unit::s, positive,
                                          "How long to wait for that; then the command fails with error 0003.");
 }
@@ -96,6 +100,49 @@ void describe(Description<StopRamp>& d) {
   d.defaulted<&StopRamp::jerk>(unit::u_s3, not_negative, "Jerk, 0: unlimited; unset: that of the limits.");
 }
 
+void describe(Description<ScrewPoint>& d) {
+  using P = ScrewPoint;
+  d.about("The error of a lead screw at a position.");
+  d.required<&P::position>(unit::u, "Of the axis.");
+  d.required<&P::error>(unit::u, "How much further the load is there than the encoder on the motor says.");
+}
+
+namespace {
+constexpr double kSteepestScrew = 0.1;  // u per u: what is more is no error of a screw
+
+bool Rises(const std::vector<ScrewPoint>& screw) {
+  for (std::size_t i = 1; i < screw.size(); ++i) {
+    if (!(screw[i].position > screw[i - 1].position)) return false;
+  }
+  return true;
+}
+
+bool IsFlat(const std::vector<ScrewPoint>& screw) {
+  for (std::size_t i = 1; i < screw.size(); ++i) {
+    const double apart = screw[i].position - screw[i - 1].position;
+    if (std::abs(screw[i].error - screw[i - 1].error) > kSteepestScrew * apart) return false;
+  }
+  return true;
+}
+}  // namespace
+
+void describe(Description<Compensation>& d) {
+  using C = Compensation;
+  d.about(
+      "What lies between the encoder on the motor and the load, and is made up for: the motor is told to go so much "
+      "further that the load is where the axis shall be.");
+  d.defaulted<&C::backlash>(unit::u, between(0, 1e9),
+                            "How far the motor goes after turning round before the load comes along.");
+  d.defaulted<&C::screw>(
+      "Errors of the lead screw, by rising positions, on the line between two of them; beyond the ends as at the ends. "
+      "They count while the axis has its reference.");
+  d.defaulted<&C::velocity>(unit::u_s, positive,
+                            "How fast the correction is made; unset: a tenth of the largest velocity.");
+  d.rule<&C::screw>("must have rising positions", [](const C& c) { return Rises(c.screw); });
+  d.rule<&C::screw>("must not change by more than a tenth of the distance from one position to the next",
+                    [](const C& c) { return IsFlat(c.screw); });
+}
+
 void describe(Description<AxisParams>& d) {
   using A = AxisParams;
   d.about("One axis. Positions in its own unit u, velocities u/s, accelerations u/s², jerk u/s³.");
@@ -106,6 +153,19 @@ void describe(Description<AxisParams>& d) {
   d.required<&A::limits>("What the axis may do at most.");
   d.defaulted<&A::supervision>("What is watched.");
   d.defaulted<&A::encoder>("How the position is measured.");
+  d.defaulted<&A::load_encoder>(
+      "A second encoder, on the load: where the axis is. The drive keeps the other one, on its motor, to which index "
+      "pulses belong. Unset: none.");
+  d.rule<&A::load_encoder>("must have no coded_marks: index pulses are those of encoder",
+                           [](const A& a) { return !a.load_encoder || !a.load_encoder->coded_marks; });
+  d.rule<&A::load_encoder>(
+      "must not be given with drive.mode cyclic_position, where the drive closes the loop with its own encoder",
+      [](const A& a) { return !a.load_encoder || a.drive.mode != DriveMode::kCyclicPosition; });
+  d.defaulted<&A::compensation>("Backlash and errors of the lead screw that are made up for.");
+  d.rule<&A::compensation>("must not be given beside load_encoder, which sees the load",
+                           [](const A& a) { return !a.load_encoder || !a.compensation.any(); });
+  d.rule<&A::compensation>("must be made no faster than the axis' largest velocity",
+                           [](const A& a) { return a.compensation.velocity.value_or(0) <= a.limits.velocity; });
   d.defaulted<&A::drive>("The drive.");
   d.defaulted<&A::inputs>("The switch inputs.");
   d.defaulted<&A::loop>("The position loop, for drives that do not close it themselves.");
@@ -122,7 +182,10 @@ void describe(Description<AxisParams>& d) {
     return a.homing.deviation <= a.supervision.deviation_moving.value_or(a.homing.deviation);
   });
   d.rule<&A::homing>("must have an absolute encoder for method absolute", [](const A& a) {
-    return a.homing.method != HomingMethod::kAbsolute || a.encoder.type == EncoderType::kAbsoluteSsi;
+    return a.homing.method != HomingMethod::kAbsolute || a.position_encoder().type == EncoderType::kAbsoluteSsi;
+  });
+  d.rule<&A::homing>("must have encoder.coded_marks for method distance_coded", [](const A& a) {
+    return a.homing.method != HomingMethod::kDistanceCoded || a.encoder.coded_marks;
   });
   d.rule<&A::limits>("must have no lower and upper on a rotary axis",
                      [](const A& a) { return !a.rotary() || (!a.limits.lower && !a.limits.upper); });

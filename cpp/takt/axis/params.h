@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "takt/axis/control_loop.h"
 #include "takt/axis/encoder.h"
@@ -37,7 +38,8 @@ struct Supervision {
       in_position{};                 // u, window in which a positioning command is done; unset: set point alone decides
   double encoder_noise_counts = 16;  // counts a standing encoder may move from one cycle to the next; more than that
                                      // and four times what the axis can move is a jump
-  double in_position_timeout_s = 1.0;  // s after the set point's arrival; then the command fails with error 0003
+  std::optional<double> encoders_apart{};  // u, by which motor and load may get apart; unset: not watched
+  double in_position_timeout_s = 1.0;      // s after the set point's arrival; then the command fails with error 0003
 };
 
 struct Drive {
@@ -75,6 +77,25 @@ struct StopRamp {
   std::optional<double> jerk{};          // u/s³; 0: unlimited
 };
 
+struct ScrewPoint {
+  double position = 0;  // u
+  double error = 0;     // u, load less what the motor's encoder says
+
+  bool operator==(const ScrewPoint&) const = default;
+};
+
+// Of a velocity that is not given: a share of the axis' largest.
+inline constexpr double kCorrectionShare = 0.1;
+
+// What lies between motor and load and is made up for (AX-115).
+struct Compensation {
+  double backlash = 0;               // u, >= 0: the motor goes so much before the load comes along, after turning round
+  std::vector<ScrewPoint> screw;     // rising positions
+  std::optional<double> velocity{};  // u/s, > 0: with which the correction is made
+
+  bool any() const { return backlash > 0 || !screw.empty(); }
+};
+
 struct AxisParams {
   std::string name;
   std::string unit = "mm";  // the axis' own unit u, for people and columns
@@ -83,6 +104,8 @@ struct AxisParams {
   AxisLimits limits;
   Supervision supervision;
   Encoder encoder;
+  std::optional<Encoder> load_encoder{};  // on the load (AX-115): where the axis is; `encoder` stays that of the drive
+  Compensation compensation;
   Drive drive;
   InputSense inputs;
   ControlLoop loop;
@@ -96,6 +119,8 @@ struct AxisParams {
   bool rotary() const { return kind == AxisKind::kRotary; }
   // u, after which positions repeat; linear axes: 0.
   double turn() const { return rotary() ? modulus : 0; }
+  // The encoder that says where the axis is.
+  const Encoder& position_encoder() const { return load_encoder ? *load_encoder : encoder; }
   // The limits as the planner takes them.
   trajectory::Limits planner_limits() const {
     return {limits.velocity, limits.acceleration, limits.deceleration.value_or(limits.acceleration), limits.jerk};
@@ -127,6 +152,8 @@ void describe(Description<Drive>&);
 void describe(Description<InputSense>&);
 void describe(Description<Following>&);
 void describe(Description<StopRamp>&);
+void describe(Description<ScrewPoint>&);
+void describe(Description<Compensation>&);
 void describe(Description<AxisParams>&);
 
 }  // namespace takt::axis

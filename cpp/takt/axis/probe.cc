@@ -155,7 +155,8 @@ void SenseProbe(const Context& c, const ServoInputs& in, State& s) noexcept {
   const bool good = !s.encoder_error;
   if (probe.watch != ProbeWatch::kNothing || probe.waits > 0) {
     const bool known = probe.sampled && good;
-    const double before = known ? LatchedPosition(c.params.encoder, s.encoder, probe.counts) - s.origin : 0;
+    const double before =
+        known ? LatchedPosition(c.params.encoder, s.encoder, probe.counts) - s.correction.now - s.origin : 0;
     probe.step = known ? s.actual.position - before : s.actual.velocity * c.cycle.period_s;
     if (good) {
       LookForEdge(c, in, ProbeEdge::kRising, s);

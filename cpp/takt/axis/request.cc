@@ -36,6 +36,7 @@ constexpr std::array kRules = {
     RequestRules{RequestKind::kStepLimitSwitch, true, true, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepBlock, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepRefPulse, true, false, true, PlcState::kHoming},
+    RequestRules{RequestKind::kStepDistanceCoded, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepDirect, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kStepAbsolute, true, false, true, PlcState::kHoming},
     RequestRules{RequestKind::kFinishHoming, true, true, true, PlcState::kHoming},
@@ -227,6 +228,7 @@ void describe(Enumeration<RequestKind>& e) {
   e.value(RequestKind::kStepLimitSwitch, "step_limit_switch", "StepLimitSwitch.");
   e.value(RequestKind::kStepBlock, "step_block", "StepBlock.");
   e.value(RequestKind::kStepRefPulse, "step_ref_pulse", "StepRefPulse.");
+  e.value(RequestKind::kStepDistanceCoded, "step_distance_coded", "StepDistanceCoded.");
   e.value(RequestKind::kStepDirect, "step_direct", "StepDirect.");
   e.value(RequestKind::kStepAbsolute, "step_absolute", "StepAbsolute.");
   e.value(RequestKind::kFinishHoming, "finish_homing", "FinishHoming.");

@@ -41,6 +41,7 @@ enum class RequestKind : std::uint8_t {
   kStepLimitSwitch,
   kStepBlock,
   kStepRefPulse,
+  kStepDistanceCoded,
   kStepDirect,
   kStepAbsolute,
   kFinishHoming,

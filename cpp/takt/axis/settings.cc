@@ -289,6 +289,12 @@ void WatchPulse(const Context& c, State& s) noexcept {
   EndPulse(c, cut_off ? FeedbackState::kAborted : FeedbackState::kDone, s);
 }
 
+Status CarryOut(const Context& c, Ticket ticket, const WriteOutput& w, State& s) noexcept {
+  const std::uint32_t bit = 1U << (w.number - 1);
+  s.written_outputs = w.value ? s.written_outputs | bit : s.written_outputs & ~bit;
+  return Done(c, ticket);
+}
+
 Status CarryOut(const Context& c, Ticket ticket, const SetPosition& p, State& s) noexcept {
   if (s.plc == PlcState::kHoming || s.plc == PlcState::kStopping || s.plc == PlcState::kErrorStop) {
     return Status::Failed(ErrorId::kState);
@@ -341,6 +347,10 @@ bool Fill(const Maker& m, const PulseOutput& p) {
   constexpr double kLongest = 1e6;  // s
   return m.In("voltage", p.voltage, -kVoltageLimit, kVoltageLimit) &&
          m.In("duration", p.duration, std::numeric_limits<double>::min(), kLongest);
+}
+
+bool Fill(const Maker& m, const WriteOutput& w) {
+  return m.In("number", w.number, 1, 32);
 }
 
 bool Fill(const Maker& m, const SetPosition& p) {

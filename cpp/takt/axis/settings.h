@@ -54,6 +54,7 @@ Status CarryOut(const Context& c, Ticket ticket, const DirectOutput& command, St
 Status CarryOut(const Context& c, Ticket ticket, const PulseOutput& command, State& s) noexcept;
 // Each cycle of a pulse (`pulsing`): ends it.
 void WatchPulse(const Context& c, State& s) noexcept;
+Status CarryOut(const Context& c, Ticket ticket, const WriteOutput& command, State& s) noexcept;
 // Calls where the axis is by another number: nothing moves, a motion in progress goes on to where it went. kState: in
 // Homing and Stopping. kTargetBehindLimit: the axis, or the end of its motion, would lie outside the SW limits.
 Status CarryOut(const Context& c, Ticket ticket, const SetPosition& command, State& s) noexcept;

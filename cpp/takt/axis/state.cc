@@ -89,6 +89,7 @@ void describe(Description<State>& d) {
   d.internal<&S::bars_negative>("No motion downwards is enabled.");
   d.internal<&S::bars_cycle>("When that was said.");
   d.internal<&S::index_pulse>("NI came since the cycle before.");
+  d.internal<&S::index_skipped>("Several came.");
   d.internal<&S::index_pulses>("How many came.");
   d.internal<&S::index_counts>("Count at the last one.");
   d.internal<&S::limit_positive_before>("LIM+ a cycle before.");
@@ -117,6 +118,7 @@ void describe(Description<State>& d) {
   d.internal<&S::fault_of>("The follower whose fault stopped it.");
   d.internal<&S::origin>(unit::u, "Whole turns taken out of all positions.");
   d.internal<&S::encoder>("Encoder.");
+  d.internal<&S::correction>("How far it is ahead of the axis.");
   d.internal<&S::loop>("Position loop.");
   d.internal<&S::voltage_v>(unit::volt, "Output of the position loop.");
   d.internal<&S::due>(unit::u, "Where the axis should be now.");
@@ -134,6 +136,7 @@ void describe(Description<State>& d) {
   d.internal<&S::torque>("Torque control.");
   d.internal<&S::cam_switch>("Cam switches.");
   d.internal<&S::cam_outputs>("Their outputs.");
+  d.internal<&S::written_outputs>("Outputs that commands switch on.");
 }
 
 }  // namespace takt::axis

@@ -7,6 +7,7 @@
 
 #include "takt/axis/cam_switch.h"
 #include "takt/axis/control_loop.h"
+#include "takt/axis/correction.h"
 #include "takt/axis/coupling.h"
 #include "takt/axis/encoder.h"
 #include "takt/axis/guidance.h"
@@ -120,6 +121,7 @@ struct State {
   bool bars_positive = false;  // MC_Power: no motion upwards ...
   bool bars_negative = false;  // ... and downwards
   bool index_pulse = false;    // one came since the cycle before ...
+  bool index_skipped = false;  // ... and others before it
   bool limit_positive_before = false;
   bool limit_negative_before = false;
   bool switches_known = false;  // they were read once
@@ -131,6 +133,7 @@ struct State {
   std::uint32_t index_pulses = 0;
   std::uint32_t index_counts = 0;  // ... at this count
   std::uint32_t cam_outputs = 0;
+  std::uint32_t written_outputs = 0;         // by commands, a bit for each output
   std::uint32_t profile_ends = 0;            // how often the end of a cam was passed
   std::array<std::uint32_t, 3> unsettled{};  // cycles for which LIM+, LIM-, REF have said otherwise
   std::uint64_t brake_cycle = 0;             // when the brake relay was energised or let go of
@@ -145,6 +148,7 @@ struct State {
   double follow_offset = 0;     // u, own position minus ratio times the master's without a skew
   Override override_factors;    // of commands in control and waiting
   EncoderState encoder;
+  CorrectionState correction;
   ControlLoopState loop;
   TorqueState torque;
   HomingState homing;

@@ -98,6 +98,8 @@ void describe(Description<ServoInputs>& d) {
   d.internal<&S::drive_ready>("Power stage on and following its set point.");
   d.internal<&S::drive_fault>("The drive reports a fault.");
   d.internal<&S::torque_nm>(unit::nm, "Torque; the force in N on linear motors.");
+  d.internal<&S::load_counts>(unit::count, "Encoder on the load, if there is one.");
+  d.internal<&S::load_encoder_error>("That reports an error or does not answer.");
 }
 
 void describe(Description<ServoOutputs>& d) {
@@ -113,6 +115,7 @@ void describe(Description<ServoOutputs>& d) {
   d.internal<&S::release_brake>("Brake relay energised.");
   d.internal<&S::torque_until_counts_s>(unit::count_s, "Velocity at which the torque ends in this cycle (cst).");
   d.internal<&S::torque_limit_nm>(unit::nm, "Largest torque either way; 0: that of the drive.");
+  d.internal<&S::digital_outputs>("Outputs of the axis, a bit for each.");
 }
 
 }  // namespace takt

@@ -33,7 +33,9 @@ struct ServoInputs {
   double probe_fall_age_s = 0;
   bool drive_ready = false;  // power stage on and following its set point
   bool drive_fault = false;
-  double torque_nm = 0;  // Nm; N on linear motors
+  double torque_nm = 0;             // Nm; N on linear motors
+  std::uint32_t load_counts = 0;    // of a second encoder, on the load
+  bool load_encoder_error = false;  // its ERR line, or no answer from it
 };
 
 // To the machine, written once a cycle.
@@ -47,7 +49,8 @@ struct ServoOutputs {
   bool release_brake = false;  // brake relay energised
   // cst: signed velocity up to which the torque may drive in this cycle; there the drive's velocity loop takes over.
   double torque_until_counts_s = 0;
-  double torque_limit_nm = 0;  // all modes: largest torque either way; 0: that of the drive
+  double torque_limit_nm = 0;         // all modes: largest torque either way; 0: that of the drive
+  std::uint32_t digital_outputs = 0;  // of the axis, a bit for each
 };
 
 enum class DriveLink : std::uint8_t {

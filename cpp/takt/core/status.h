@@ -112,6 +112,9 @@ enum class ErrorId : std::uint16_t {
   kSkew = 3101,              // a member of a gantry is too far from where its master has it
   kNotInStep = 3102,         // a member of a gantry is not powered, has a fault, or stands askew
   kDirection = 3103,         // motion in this direction is not enabled (MC_Power)
+  kMarkDistance = 3104,      // two coded marks of an encoder are as far apart as no two neighbours are
+  kNoCodedMarks = 3105,      // the encoder has no coded marks
+  kEncodersApart = 3106,     // the encoders on motor and load have got further apart than they may
   // A cam module did not do as asked.
   kSyncPassed = 3110,   // the master has passed the position at which the clutch was to close
   kSlaveLimits = 3111,  // the slave cannot follow within its limits

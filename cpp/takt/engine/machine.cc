@@ -16,6 +16,12 @@ plant::ServoEncoder MatchingEncoder(const axis::Encoder& expected) {
   encoder.ssi_bits = expected.ssi_bits;
   encoder.coding =
       expected.coding == axis::SsiCoding::kGray ? plant::ServoEncoderCoding::kGray : plant::ServoEncoderCoding::kBinary;
+  if (expected.coded_marks) {
+    encoder.index_distance = expected.coded_marks->distance;
+    encoder.index_step = expected.coded_marks->step;
+    encoder.index_offset = expected.coded_marks->position;
+    encoder.index_reversed = expected.coded_marks->reversed;
+  }
   return encoder;
 }
 
@@ -35,12 +41,14 @@ plant::ServoParams ServoOf(const Machine& machine, std::size_t index) {
   servo.drive.inverted = axis.drive.invert;
   servo.mechanics = MatchingMechanics(axis, servo.drive);
   servo.encoder = MatchingEncoder(axis.encoder);
+  if (axis.load_encoder) servo.load_encoder = MatchingEncoder(*axis.load_encoder);
   for (const SimulatedServo& given : machine.simulation.servos) {
     if (given.axis != axis.name) continue;
     servo.drive = given.drive;
     servo.mechanics = given.mechanics;
     servo.switches = given.switches;
     if (given.encoder) servo.encoder = *given.encoder;
+    if (given.load_encoder) servo.load_encoder = given.load_encoder;
   }
   return servo;
 }
@@ -92,6 +100,7 @@ void describe(Description<SimulatedServo>& d) {
   d.defaulted<&S::mechanics>("Motor and load.");
   d.defaulted<&S::switches>("Where the switches are.");
   d.defaulted<&S::encoder>("The encoder; unset: the one the axis expects.");
+  d.defaulted<&S::load_encoder>("The encoder on the load; unset: the one the axis expects, if any.");
 }
 
 void describe(Description<Simulation>& d) {

@@ -52,7 +52,8 @@ struct SimulatedServo {
   plant::ServoDrive drive;
   plant::ServoMechanics mechanics;
   plant::ServoSwitches switches;
-  std::optional<plant::ServoEncoder> encoder;  // unset: the one the axis expects
+  std::optional<plant::ServoEncoder> encoder;       // unset: the one the axis expects
+  std::optional<plant::ServoEncoder> load_encoder;  // likewise, if any
 };
 
 struct Simulation {

@@ -113,6 +113,10 @@ msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::M
   m.skew = o.skew;
   m.skewed = o.skewed;
   m.fault_of = o.fault_of;
+  m.enable_positive = o.enable_positive;
+  m.enable_negative = o.enable_negative;
+  m.digital_outputs = o.digital_outputs;
+  m.encoder_correction = o.encoder_correction;
   m.limit_positive = o.limit_positive;
   m.limit_negative = o.limit_negative;
   m.reference = o.reference;
@@ -625,6 +629,7 @@ msgs::drive_setpoint ToMessage(const engine::DriveSetPoint& set_point, const eng
   m.torque_nm = o.torque_nm;
   m.torque_until_counts_s = o.torque_until_counts_s;
   m.torque_limit_nm = o.torque_limit_nm;
+  m.digital_outputs = o.digital_outputs;
   return m;
 }
 
@@ -648,6 +653,8 @@ msgs::drive_feedback ToMessage(const engine::DriveSample& sample, const engine::
   m.drive_ready = in.drive_ready;
   m.drive_fault = in.drive_fault;
   m.torque_nm = in.torque_nm;
+  m.load_counts = in.load_counts;
+  m.load_encoder_error = in.load_encoder_error;
   return m;
 }
 
@@ -678,6 +685,8 @@ engine::DriveSample ToSample(const msgs::drive_feedback& m, std::uint32_t axis) 
   in.drive_ready = m.drive_ready != 0;
   in.drive_fault = m.drive_fault != 0;
   in.torque_nm = m.torque_nm;
+  in.load_counts = static_cast<std::uint32_t>(m.load_counts);
+  in.load_encoder_error = m.load_encoder_error != 0;
   return sample;
 }
 
@@ -694,7 +703,7 @@ std::optional<msgs::machine_description> DecodeMachine(std::span<const std::uint
 }
 
 std::optional<msgs::drive_feedback> DecodeDriveFeedback(std::span<const std::uint8_t> bytes) {
-  return Decode<msgs::drive_feedback>(bytes, "iiiiisiiibbbbbiiiibbi");
+  return Decode<msgs::drive_feedback>(bytes, "iiiiisiiibbbbbiiiibbiib");
 }
 
 }  // namespace takt::lcm

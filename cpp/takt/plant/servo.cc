@@ -125,8 +125,8 @@ double EncoderPosition(const ServoEncoder& encoder, const ServoState& s) noexcep
   return encoder.place == ServoEncoderPlace::kMotor ? s.motor_position : s.load_position;
 }
 
-std::int64_t CounterAt(const ServoEncoder& encoder, const ServoState& s, double position, double noise) noexcept {
-  return Nearest(position * CountsPerUnit(encoder) + noise) + s.counter_origin;
+std::int64_t CounterAt(const ServoEncoder& encoder, std::int64_t origin, double position, double noise) noexcept {
+  return Nearest(position * CountsPerUnit(encoder) + noise) + origin;
 }
 
 std::uint32_t OnTheWire(const ServoEncoder& encoder, std::int64_t counter) noexcept {
@@ -169,6 +169,19 @@ bool PowerOn(const ServoDrive& drive, bool enable, double period_s, ServoState& 
   return ready;
 }
 
+// How much further than the motor the screw takes the load.
+double ScrewError(const ServoMechanics& mechanics, double position) noexcept {
+  const std::vector<ServoScrewPoint>& screw = mechanics.screw;
+  if (screw.empty()) return 0;
+  if (position <= screw.front().position) return screw.front().error;
+  for (std::size_t i = 1; i < screw.size(); ++i) {
+    if (position > screw[i].position) continue;
+    const ServoScrewPoint& low = screw[i - 1];
+    return low.error + (screw[i].error - low.error) * (position - low.position) / (screw[i].position - low.position);
+  }
+  return screw.back().error;
+}
+
 // The mechanics behind the motor: the load follows at the ends of the play, and no further than the stops, which
 // swallow the speed. True: a stop was hit.
 bool MoveLoad(const ServoMechanics& mechanics, Motion& m) noexcept {
@@ -182,7 +195,8 @@ bool MoveLoad(const ServoMechanics& mechanics, Motion& m) noexcept {
     hit = m.velocity < 0;
   }
   if (hit) m.velocity = 0;
-  m.load = std::clamp(m.load, m.position - play, m.position + play);
+  const double driven = m.position + ScrewError(mechanics, m.position);
+  m.load = std::clamp(m.load, driven - play, driven + play);
   return hit;
 }
 
@@ -341,8 +355,35 @@ double Normal(std::uint64_t& state) noexcept {
   return radius * maths::Cos(2 * std::numbers::pi * Uniform(state));
 }
 
+// Distance-coded marks: how far the coded mark is behind the fixed one of this pair.
+double CodedMark(const ServoEncoder& encoder, std::int64_t pair) noexcept {
+  return encoder.index_distance / 2 + static_cast<double>(pair + 1) * encoder.index_step;
+}
+
+// A scale has as many pairs as there are codes.
+std::int64_t CodedPairs(const ServoEncoder& encoder) noexcept {
+  return -Floor(-encoder.index_distance / (2 * encoder.index_step)) - 1;
+}
+
+// The number of the last mark below the position, in the sense of the scale.
 std::int64_t IndexCell(const ServoEncoder& encoder, double position) noexcept {
-  return encoder.index_distance > 0 ? Floor((position - encoder.index_offset) / encoder.index_distance) : 0;
+  if (encoder.index_distance <= 0) return 0;
+  const double way = encoder.index_reversed ? encoder.index_offset - position : position - encoder.index_offset;
+  const std::int64_t pair = Floor(way / encoder.index_distance);
+  if (encoder.index_step == 0) return pair;
+  const std::int64_t pairs = CodedPairs(encoder);
+  if (pair < 0) return -1;
+  if (pair >= pairs) return 2 * pairs - 1;
+  const double within = way - static_cast<double>(pair) * encoder.index_distance;
+  return 2 * pair + (within >= CodedMark(encoder, pair) ? 1 : 0);
+}
+
+double IndexMark(const ServoEncoder& encoder, std::int64_t mark) noexcept {
+  const bool coded = encoder.index_step > 0;
+  const std::int64_t pair = coded ? mark / 2 : mark;
+  const double behind = coded && mark % 2 != 0 ? CodedMark(encoder, pair) : 0;
+  const double way = static_cast<double>(pair) * encoder.index_distance + behind;
+  return encoder.index_offset + (encoder.index_reversed ? -way : way);
 }
 
 void ReadEncoder(const ServoEncoder& encoder, ServoState& s) noexcept {
@@ -350,15 +391,27 @@ void ReadEncoder(const ServoEncoder& encoder, ServoState& s) noexcept {
   const std::int64_t cell = IndexCell(encoder, position);
   const double noise = encoder.noise_counts > 0 ? encoder.noise_counts * Normal(s.noise) : 0;
   if (!s.faults.encoder_frozen) {
-    s.counts = OnTheWire(encoder, CounterAt(encoder, s, position, noise));
+    s.counts = OnTheWire(encoder, CounterAt(encoder, s.counter_origin, position, noise));
     if (cell != s.index_cell) {
       const std::int64_t passed = cell > s.index_cell ? cell : cell + 1;  // the last one met on the way
-      const double at = encoder.index_offset + static_cast<double>(passed) * encoder.index_distance;
-      s.index_counts = OnTheWire(encoder, CounterAt(encoder, s, at, 0));
+      const double at = IndexMark(encoder, passed);
+      s.index_counts = OnTheWire(encoder, CounterAt(encoder, s.counter_origin, at, 0));
       s.index_pulses += static_cast<std::uint32_t>(std::abs(cell - s.index_cell));
     }
   }
   s.index_cell = cell;
+}
+
+void ReadLoadEncoder(const ServoEncoder& encoder, ServoState& s) noexcept {
+  if (s.faults.encoder_frozen) return;
+  const double noise = encoder.noise_counts > 0 ? encoder.noise_counts * Normal(s.noise) : 0;
+  s.load_counts = OnTheWire(encoder, CounterAt(encoder, s.load_counter_origin, s.load_position, noise));
+}
+
+// What the counter shows at position 0: an incremental one begins with its offset wherever the axis is.
+std::int64_t CounterOrigin(const ServoEncoder& encoder, double start) noexcept {
+  const bool incremental = encoder.type == ServoEncoderType::kIncremental;
+  return encoder.offset_counts - (incremental ? Nearest(start * CountsPerUnit(encoder)) : 0);
 }
 
 }  // namespace
@@ -366,14 +419,15 @@ void ReadEncoder(const ServoEncoder& encoder, ServoState& s) noexcept {
 ServoState MakeServoState(const ServoParams& p) noexcept {
   ServoState s;
   s.motor_position = p.mechanics.start_position;
-  s.load_position = p.mechanics.start_position;
-  s.counter_origin = p.encoder.offset_counts;
-  if (p.encoder.type == ServoEncoderType::kIncremental) {
-    s.counter_origin -= Nearest(s.motor_position * CountsPerUnit(p.encoder));
+  s.load_position = p.mechanics.start_position + ScrewError(p.mechanics, p.mechanics.start_position);
+  s.counter_origin = CounterOrigin(p.encoder, s.motor_position);
+  if (p.load_encoder) {
+    s.load_counter_origin = CounterOrigin(*p.load_encoder, s.load_position);
+    s.load_counts = OnTheWire(*p.load_encoder, CounterAt(*p.load_encoder, s.load_counter_origin, s.load_position, 0));
   }
   s.index_cell = IndexCell(p.encoder, s.motor_position);
   s.noise = static_cast<std::uint64_t>(p.encoder.noise_seed);
-  s.counts = OnTheWire(p.encoder, CounterAt(p.encoder, s, s.motor_position, 0));
+  s.counts = OnTheWire(p.encoder, CounterAt(p.encoder, s.counter_origin, s.motor_position, 0));
   s.probe = Reads(p.switches.touch_probe, s.load_position, p.switches.revolution);
   return s;
 }
@@ -383,6 +437,7 @@ void Step(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   const bool powered = PowerOn(p.drive, commanded.enable, period_s, s);
   Move(p, commanded, period_s, powered, s);
   ReadEncoder(p.encoder, s);
+  if (p.load_encoder) ReadLoadEncoder(*p.load_encoder, s);
 
   measured.counts = s.counts;
   measured.index_counts = s.index_counts;
@@ -399,6 +454,7 @@ void Step(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   measured.drive_ready = powered;
   measured.drive_fault = s.faults.drive_fault;
   measured.torque_nm = s.torque;
+  measured.load_counts = s.load_counts;
 }
 
 }  // namespace takt::plant

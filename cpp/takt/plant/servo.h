@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "takt/core/describe_fwd.h"
 #include "takt/core/ports.h"
@@ -31,6 +32,14 @@ struct ServoDrive {
   bool operator==(const ServoDrive&) const = default;
 };
 
+// The error of a lead screw: how much further than the motor the load is where the motor is at a position.
+struct ServoScrewPoint {
+  double position = 0;  // u
+  double error = 0;     // u
+
+  bool operator==(const ServoScrewPoint&) const = default;
+};
+
 struct ServoMechanics {
   double inertia = 0.0001;      // torque per u/s², > 0
   double coulomb_friction = 0;  // torque, >= 0
@@ -38,9 +47,10 @@ struct ServoMechanics {
   double load_torque = 0;       // torque, constant, pulls towards smaller positions when positive
   double brake_torque = 10;     // torque, >= 0, while the brake is not released; 0: no brake
   double backlash = 0;          // u, >= 0: play between motor and load; friction keeps the load where it is meanwhile
-  std::optional<double> lower_stop;  // u: the load cannot get below
-  std::optional<double> upper_stop;  // u: nor above
-  double start_position = 0;         // u
+  std::vector<ServoScrewPoint> screw;  // rising positions; on the line between two of them
+  std::optional<double> lower_stop;    // u: the load cannot get below
+  std::optional<double> upper_stop;    // u: nor above
+  double start_position = 0;           // u
 
   bool operator==(const ServoMechanics&) const = default;
 };
@@ -59,8 +69,10 @@ struct ServoEncoder {
   ServoEncoderCoding coding = ServoEncoderCoding::kBinary;  // absolute: the word on the wire
   double index_distance = 10;                               // u, >= 0: from one index pulse to the next; 0: none
   double index_offset = 0;                                  // u: position of one of them
-  double noise_counts = 0;                                  // counts, >= 0: standard deviation
-  std::int32_t noise_seed = 1;                              // the same seed gives the same noise, bit for bit
+  bool index_reversed = false;                              // distance-coded marks count downwards
+  double index_step = 0;  // u, >= 0: distance-coded marks, each coded one so much further from the fixed one before it
+  double noise_counts = 0;      // counts, >= 0: standard deviation
+  std::int32_t noise_seed = 1;  // the same seed gives the same noise, bit for bit
 
   bool operator==(const ServoEncoder&) const = default;
 };
@@ -88,6 +100,7 @@ struct ServoParams {
   ServoDrive drive;
   ServoMechanics mechanics;
   ServoEncoder encoder;
+  std::optional<ServoEncoder> load_encoder{};  // a second one, on the load; its place and index do not matter
   ServoSwitches switches;
 
   bool operator==(const ServoParams&) const = default;
@@ -120,7 +133,9 @@ struct ServoState {
   std::uint32_t index_counts = 0;
   std::uint32_t index_pulses = 0;
   std::uint32_t counts = 0;  // as last read
-  bool probe = false;        // the touch probe's wire
+  std::int64_t load_counter_origin = 0;
+  std::uint32_t load_counts = 0;
+  bool probe = false;  // the touch probe's wire
   std::uint32_t probe_rises = 0;
   std::uint32_t probe_falls = 0;
   double probe_rise_age_s = 0;  // s before the end of the cycle in which it came
@@ -146,6 +161,7 @@ void Step(const ServoParams& params, const ServoOutputs& commanded, double perio
           ServoInputs& measured) noexcept;
 
 void describe(Description<ServoDrive>&);
+void describe(Description<ServoScrewPoint>&);
 void describe(Description<ServoMechanics>&);
 void describe(Description<ServoEncoder>&);
 void describe(Description<ServoSwitch>&);

@@ -56,6 +56,13 @@ void describe(Description<ServoDrive>& d) {
   d.defaulted<&D::inverted>("Set points of all modes count the other way round.");
 }
 
+void describe(Description<ServoScrewPoint>& d) {
+  using P = ServoScrewPoint;
+  d.about("The error of the lead screw at a position of the motor.");
+  d.required<&P::position>(unit::u, kPlace, "Of the motor.");
+  d.required<&P::error>(unit::u, kPlace, "How much further the load is.");
+}
+
 void describe(Description<ServoMechanics>& d) {
   using M = ServoMechanics;
   d.about("What the simulated motor has to move.");
@@ -66,6 +73,13 @@ void describe(Description<ServoMechanics>& d) {
   d.defaulted<&M::load_torque>(kTorque, kPlace, "Constant load; positive: pulls towards smaller positions.");
   d.defaulted<&M::brake_torque>(kTorque, kAnySize, "Torque of the brake while it is not released; 0: no brake.");
   d.defaulted<&M::backlash>(unit::u, kAnySize, "Play between motor and load.");
+  d.defaulted<&M::screw>("Errors of the lead screw, by rising positions of the motor; none if left out.");
+  d.rule<&M::screw>("must have rising positions", [](const M& m) {
+    for (std::size_t i = 1; i < m.screw.size(); ++i) {
+      if (!(m.screw[i].position > m.screw[i - 1].position)) return false;
+    }
+    return true;
+  });
   d.defaulted<&M::lower_stop>(unit::u, kPlace, "End stop: the load cannot get below; none if left out.");
   d.defaulted<&M::upper_stop>(unit::u, kPlace, "End stop: the load cannot get above; none if left out.");
   d.defaulted<&M::start_position>(unit::u, kPlace, "Where the axis stands at the start.");
@@ -86,6 +100,12 @@ void describe(Description<ServoEncoder>& d) {
   d.defaulted<&E::coding>("Absolute: how the word is written.");
   d.defaulted<&E::index_distance>(unit::u, kAnySize, "Distance from one index pulse to the next; 0: none.");
   d.defaulted<&E::index_offset>(unit::u, kPlace, "Position of one of the index pulses.");
+  d.defaulted<&E::index_step>(unit::u, kAnySize,
+                              "Distance-coded marks: behind fixed ones index_distance apart, from index_offset on, lie "
+                              "coded ones, in the middle and 1, 2, 3 ... index_step beyond it; 0: all are alike.");
+  d.defaulted<&E::index_reversed>("Distance-coded marks count downwards from index_offset.");
+  d.rule<&E::index_step>("must be less than half of index_distance",
+                         [](const E& e) { return e.index_step == 0 || e.index_step < e.index_distance / 2; });
   d.defaulted<&E::noise_counts>(unit::count, between(0, 1e6), "Standard deviation of the noise; 0: none.");
   d.defaulted<&E::noise_seed>("Where the noise begins: the same number gives the same noise.");
 }
@@ -116,6 +136,7 @@ void describe(Description<ServoParams>& d) {
   d.defaulted<&P::drive>("The drive.");
   d.defaulted<&P::mechanics>("What the motor has to move.");
   d.defaulted<&P::encoder>("The encoder.");
+  d.defaulted<&P::load_encoder>("A second encoder, on the load; none if left out.");
   d.defaulted<&P::switches>("The switches.");
 }
 
@@ -147,6 +168,8 @@ void describe(Description<ServoState>& d) {
   d.internal<&S::index_counts>(unit::count, "Counter at the last index pulse.");
   d.internal<&S::index_pulses>("Index pulses since the start.");
   d.internal<&S::counts>(unit::count, "Counter as last read.");
+  d.internal<&S::load_counter_origin>(unit::count, "What the counter on the load shows at position 0.");
+  d.internal<&S::load_counts>(unit::count, "Counter on the load as last read.");
   d.internal<&S::probe>("The touch probe's wire.");
   d.internal<&S::probe_rises>("Rising edges of the touch probe.");
   d.internal<&S::probe_falls>("Falling edges of the touch probe.");

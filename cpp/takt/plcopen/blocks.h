@@ -32,6 +32,7 @@ using MC_StepAbsSwitch = Block<axis::StepAbsSwitch>;
 using MC_StepLimitSwitch = Block<axis::StepLimitSwitch>;
 using MC_StepBlock = Block<axis::StepBlock>;
 using MC_StepRefPulse = Block<axis::StepRefPulse>;
+using MC_StepDistanceCoded = Block<axis::StepDistanceCoded>;
 using MC_StepDirect = Block<axis::StepDirect>;
 using MC_StepAbsolute = Block<axis::StepAbsolute>;
 using MC_FinishHoming = Block<axis::FinishHoming>;
@@ -43,6 +44,7 @@ using GT_SWLim = Block<axis::SetSoftLimits>;
 using GT_Analog = Block<axis::DirectOutput>;
 using GT_Pulse = Block<axis::PulseOutput>;
 using MC_SetPosition = Block<axis::SetPosition>;
+using MC_WriteDigitalOutput = Block<axis::WriteOutput>;
 using MC_WriteParameter = Block<axis::WriteParameter>;
 using MC_AbortTrigger = Block<axis::AbortTrigger>;
 

@@ -1,6 +1,9 @@
 // Blocks that show something as long as Enable is true.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "takt/plcopen/feedback.h"
 
 namespace takt::plcopen {
@@ -61,6 +64,34 @@ class MC_ReadAxisError : public ReadBlock {
   bool Error() const noexcept { return AxisErrorID() != ErrorId::kNone; }
   ErrorId ErrorID() const noexcept { return AxisErrorID(); }
   ErrorId AxisErrorID() const noexcept { return shown().error; }
+};
+
+// InputNumber: 1 LIM+, 2 LIM-, 3 REF, 4 TP.
+class MC_ReadDigitalInput : public ReadBlock {
+ public:
+  using ReadBlock::ReadBlock;
+  int InputNumber = 1;
+  bool Valid() const noexcept { return ReadBlock::Valid() && !Error(); }
+  bool Busy() const noexcept { return Valid(); }
+  bool Error() const noexcept { return Enable && (InputNumber < 1 || InputNumber > 4); }
+  ErrorId ErrorID() const noexcept { return Error() ? ErrorId::kParameter : ErrorId::kNone; }
+  bool Value() const noexcept {
+    const axis::Outputs& o = shown();
+    const std::array inputs{o.limit_positive, o.limit_negative, o.reference, o.touch_probe};
+    return Valid() && inputs[static_cast<std::size_t>(InputNumber - 1)];
+  }
+};
+
+// OutputNumber: from 1 to 32, of those that MC_WriteDigitalOutput and MC_DigitalCamSwitch switch.
+class MC_ReadDigitalOutput : public ReadBlock {
+ public:
+  using ReadBlock::ReadBlock;
+  int OutputNumber = 1;
+  bool Valid() const noexcept { return ReadBlock::Valid() && !Error(); }
+  bool Busy() const noexcept { return Valid(); }
+  bool Error() const noexcept { return Enable && (OutputNumber < 1 || OutputNumber > 32); }
+  ErrorId ErrorID() const noexcept { return Error() ? ErrorId::kParameter : ErrorId::kNone; }
+  bool Value() const noexcept { return Valid() && (shown().digital_outputs >> (OutputNumber - 1) & 1U) != 0; }
 };
 
 class MC_ReadActualPosition : public ReadBlock {

@@ -9,10 +9,10 @@ from takt import _commands
 from takt.axis import Axis
 from takt.engine import error_text
 from takt.feedback import Feedback
-from takt.plcopen.base import AxisName, ExecuteBlock, FunctionBlock, Input, Output, ReadBlock, in_control
+from takt.plcopen.base import AxisName, ExecuteBlock, FunctionBlock, Input, Output, ReadBlock, SettingBlock, in_control
 
 PARAMETER = 5  # error of a command: an input is out of its range
-CAM_OUTPUTS = 32
+OUTPUTS = 32
 AXIS_FAULT = 7  # error of a command: the fault of the axis is still there
 EMERGENCY_STOP = 3100  # error of a command: an emergency stop is on, or nobody has asked for power since
 
@@ -322,18 +322,29 @@ class MC_ReadDigitalInput(ReadBlock):  # noqa: N801
 
 
 class MC_ReadDigitalOutput(ReadBlock):  # noqa: N801
-    """An output that the cam switches of the axis switch. OutputNumber: its track, from 1 to 32."""
+    """A digital output of the axis, which MC_WriteDigitalOutput or a track of MC_DigitalCamSwitch switches.
+    OutputNumber: from 1 to 32."""
 
     OutputNumber = Input(1)
     Value = Output(False)
     Output = AxisName()
 
     def _read(self) -> None:
-        if 1 <= self.OutputNumber <= CAM_OUTPUTS:
-            self._show(Value=bool(self.Axis.cam_outputs >> (self.OutputNumber - 1) & 1))
+        if 1 <= self.OutputNumber <= OUTPUTS:
+            self._show(Value=bool(self.Axis.digital_outputs >> (self.OutputNumber - 1) & 1))
         else:
             self._show(Valid=False, Busy=False)
             self._show_error(PARAMETER)
+
+
+class MC_WriteDigitalOutput(SettingBlock):  # noqa: N801
+    """Switches a digital output of the axis. OutputNumber: from 1 to 32. Value False leaves on what a track of
+    MC_DigitalCamSwitch switches on."""
+
+    VERB = "write_output"
+    OutputNumber = Input(1, "number")
+    Value = Input(False, "value")
+    Output = AxisName()
 
 
 class GT_EStop(ExecuteBlock):  # noqa: N801

@@ -69,6 +69,14 @@ class MC_StepRefPulse(SearchBlock):  # noqa: N801
     SetPosition = Input(0.0, "set_position")
 
 
+class MC_StepDistanceCoded(SearchBlock):  # noqa: N801
+    """Finds the position from the distance between two distance-coded marks of the encoder (`encoder.coded_marks`);
+    stops behind the second one and does not return. Ends homing."""
+
+    VERB = "step_distance_coded"
+    Direction = Input(_commands.HomingDirection.POSITIVE, "direction")
+
+
 class MC_StepDirect(HomingBlock):  # noqa: N801
     """Where the axis stands is SetPosition. Ends homing."""
 

@@ -33,8 +33,10 @@ void describe(Enumeration<SwitchMode>& e) {
 void describe(Description<Home>& d) {
   using C = Home;
   d.about("Finds the reference as the section `homing` of the axis says, and ends homing (MC_Home).");
-  d.defaulted<&C::position>(unit::u,
-                            "What the place of the reference is called; method absolute knows that by itself.");
+  d.defaulted<&C::position>(
+      unit::u,
+      "What the place of the reference is called; methods absolute and distance_coded know that by "
+      "themselves.");
   d.defaulted<&C::buffer_mode>("aborting or buffered.");
 }
 
@@ -88,6 +90,20 @@ void describe(Description<StepRefPulse>& d) {
   d.defaulted<&C::direction>("Where to search first.");
   d.required<&C::velocity>(unit::u_s, positive, "How fast to search.");
   d.defaulted<&C::set_position>(unit::u, "What the position is called there.");
+  DescribeRamps(d);
+  d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
+  d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
+  d.defaulted<&C::torque_limit>(unit::nm, positive, "Largest torque meanwhile, at most that of the axis; unset: that.");
+  d.defaulted<&C::buffer_mode>("aborting or buffered.");
+}
+
+void describe(Description<StepDistanceCoded>& d) {
+  using C = StepDistanceCoded;
+  d.about(
+      "Finds the position from the distance between two index pulses of a scale with distance-coded marks "
+      "(MC_StepDistanceCoded), which encoder.coded_marks describes; stops behind the second one. Ends homing.");
+  d.defaulted<&C::direction>("Where to search.");
+  d.required<&C::velocity>(unit::u_s, positive, "How fast to search.");
   DescribeRamps(d);
   d.defaulted<&C::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
   d.defaulted<&C::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");

@@ -61,6 +61,15 @@ struct StepRefPulse {  // MC_StepRefPulse
   double distance_limit = 0;
   std::optional<double> torque_limit{};
 };
+struct StepDistanceCoded {  // MC_StepDistanceCoded
+  HomingDirection direction = HomingDirection::kPositive;
+  double velocity = 0;
+  std::optional<double> acceleration{}, deceleration{}, jerk{};
+  BufferMode buffer_mode = BufferMode::kAborting;
+  double time_limit = 0;
+  double distance_limit = 0;
+  std::optional<double> torque_limit{};
+};
 struct StepDirect {  // MC_StepDirect
   double set_position = 0;
   BufferMode buffer_mode = BufferMode::kAborting;
@@ -96,6 +105,7 @@ void describe(Description<StepAbsSwitch>&);
 void describe(Description<StepLimitSwitch>&);
 void describe(Description<StepBlock>&);
 void describe(Description<StepRefPulse>&);
+void describe(Description<StepDistanceCoded>&);
 void describe(Description<StepDirect>&);
 void describe(Description<StepAbsolute>&);
 void describe(Description<FinishHoming>&);

@@ -61,6 +61,15 @@ void describe(Description<PulseOutput>& d) {
   d.required<&C::duration>(unit::s, positive, "How long, to the nearest cycle, one at least.");
 }
 
+void describe(Description<WriteOutput>& d) {
+  using C = WriteOutput;
+  d.about(
+      "Switches a digital output (MC_WriteDigitalOutput), which stays so whatever the axis does. An output is on while "
+      "it is written so, or a track of digital_cam_switch with its number is on.");
+  d.required<&C::number>(between(1, 32), "Which output: bit number - 1 of digital_outputs.");
+  d.required<&C::value>("On or off.");
+}
+
 void describe(Description<SetPosition>& d) {
   using C = SetPosition;
   d.about("Calls the position the axis is at by another number, without any motion (MC_SetPosition).");

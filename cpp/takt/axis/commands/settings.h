@@ -32,6 +32,10 @@ struct PulseOutput {  // GT_Pulse
   double voltage = 0;
   double duration = 0;
 };
+struct WriteOutput {  // MC_WriteDigitalOutput
+  std::int32_t number = 1;
+  bool value = false;
+};
 struct SetPosition {  // MC_SetPosition
   double position = 0;
   bool relative = false;
@@ -50,6 +54,7 @@ void describe(Description<ReadParameter>&);
 void describe(Description<SetSoftLimits>&);
 void describe(Description<DirectOutput>&);
 void describe(Description<PulseOutput>&);
+void describe(Description<WriteOutput>&);
 void describe(Description<SetPosition>&);
 void describe(Description<SetOverride>&);
 
