@@ -8,6 +8,8 @@
 // one cycle later.
 #pragma once
 
+#include <type_traits>
+
 #include "takt/axis/commands.h"
 #include "takt/group/commands.h"
 #include "takt/plcopen/feedback.h"
@@ -51,6 +53,8 @@ class ExecuteBlock {
 
   static End EndOf(const Feedback& feedback) noexcept;
   Feedback& feedback() noexcept { return feedback_; }
+  // The command was accepted, does not wait any more, and has not ended.
+  bool CommandInControl() const noexcept { return feedback_.active() || (feedback_.busy() && !may_wait_); }
   // Reached once, whatever Execute does.
   bool EverReached() const noexcept { return busy_ && feedback_.reached(); }
 
@@ -103,7 +107,10 @@ class CommandBlock : public Base, public C {
   }
 
  protected:
-  void StartWith(const C& command) noexcept {
+  void StartWith(const C& command) noexcept { StartAs(command); }
+  // As another command, that carries on with its own.
+  template <typename Given>
+  void StartAs(const Given& command) noexcept {
     bool may_wait = true;
     if constexpr (requires { command.buffer_mode; }) may_wait = command.buffer_mode != axis::BufferMode::kAborting;
     if constexpr (requires { command.execution_mode; }) {
@@ -118,6 +125,45 @@ template <typename C>
 class Block : public CommandBlock<AxisBlock, axis::Command, C> {
  public:
   using CommandBlock<AxisBlock, axis::Command, C>::CommandBlock;
+};
+
+// Of a command whose inputs may change while Execute is true (AX-111): with ContinuousUpdate true at the rising edge
+// each change is commanded, once the command is in control, and the motion goes on from where it is. A change that is
+// refused is an error of the block; the motion goes on as it did.
+template <typename C>
+class UpdatedBlock : public Block<C> {
+ public:
+  using Block<C>::Block;
+  bool ContinuousUpdate = false;
+
+  void operator()() noexcept {
+    const C& wanted = *this;
+    if (this->Rises()) {
+      updates_ = ContinuousUpdate;
+      given_ = wanted;
+      this->StartWith(wanted);
+    } else if (updates_ && this->Execute && this->CommandInControl() && wanted != given_) {
+      Change(wanted);
+      given_ = wanted;
+    }
+    this->Show();
+  }
+
+ private:
+  void Change(C wanted) noexcept {
+    if constexpr (requires { wanted.buffer_mode; }) wanted.buffer_mode = axis::BufferMode::kAborting;
+    if constexpr (std::is_same_v<C, axis::MoveRelative> || std::is_same_v<C, axis::MoveAdditive>) {
+      // The distance counts from where the move began: what it has more now is added to where that ends.
+      this->StartAs(axis::MoveAdditive{wanted.distance - given_.distance, wanted.velocity, wanted.acceleration,
+                                       wanted.deceleration, wanted.jerk, wanted.buffer_mode});
+    } else {
+      if constexpr (requires { wanted.update; }) wanted.update = true;
+      this->StartWith(wanted);
+    }
+  }
+
+  C given_{};
+  bool updates_ = false;  // ContinuousUpdate at the rising edge
 };
 
 }  // namespace takt::plcopen

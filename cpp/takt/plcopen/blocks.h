@@ -11,16 +11,16 @@
 
 namespace takt::plcopen {
 
-using MC_MoveAbsolute = Block<axis::MoveAbsolute>;
-using MC_MoveRelative = Block<axis::MoveRelative>;
-using MC_MoveAdditive = Block<axis::MoveAdditive>;
+using MC_MoveAbsolute = UpdatedBlock<axis::MoveAbsolute>;
+using MC_MoveRelative = UpdatedBlock<axis::MoveRelative>;
+using MC_MoveAdditive = UpdatedBlock<axis::MoveAdditive>;
 using MC_Halt = Block<axis::Halt>;
 using MC_HaltSuperimposed = Block<axis::HaltSuperimposed>;
 using MC_MoveContinue = MC_MoveContinuousAbsolute;
 
-using MC_PositionProfile = Block<axis::PositionProfile>;
-using MC_VelocityProfile = Block<axis::VelocityProfile>;
-using MC_AccelerationProfile = Block<axis::AccelerationProfile>;
+using MC_PositionProfile = UpdatedBlock<axis::PositionProfile>;
+using MC_VelocityProfile = UpdatedBlock<axis::VelocityProfile>;
+using MC_AccelerationProfile = UpdatedBlock<axis::AccelerationProfile>;
 
 using MC_CamTableSelect = Block<axis::CamTableSelect>;
 using MC_CamOut = Block<axis::CamOut>;

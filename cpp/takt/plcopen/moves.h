@@ -58,15 +58,15 @@ class MC_Inch : public Block<axis::Inch> {
   bool Active() const noexcept { return Busy(); }
 };
 
-class MC_MoveVelocity : public Block<axis::MoveVelocity> {
+class MC_MoveVelocity : public UpdatedBlock<axis::MoveVelocity> {
  public:
-  using Block::Block;
+  using UpdatedBlock::UpdatedBlock;
   bool InVelocity() const noexcept { return Reached(); }
 };
 
-class MC_MoveSuperimposed : public Block<axis::MoveSuperimposed> {
+class MC_MoveSuperimposed : public UpdatedBlock<axis::MoveSuperimposed> {
  public:
-  using Block::Block;
+  using UpdatedBlock::UpdatedBlock;
   // How much of it was added so far, or at last.
   double CoveredDistance() const noexcept { return Active() ? axis().outputs().covered_distance : ValueAtEnd(); }
 };
@@ -89,30 +89,30 @@ inline bool HasSpeed(AxisRef axis, double speed) noexcept {
   return std::abs(axis.outputs().set_velocity) >= speed * (1 - 1e-9);
 }
 
-class MC_MoveContinuousAbsolute : public Block<axis::MoveContinuousAbsolute> {
+class MC_MoveContinuousAbsolute : public UpdatedBlock<axis::MoveContinuousAbsolute> {
  public:
-  using Block::Block;
+  using UpdatedBlock::UpdatedBlock;
   bool InEndVelocity() const noexcept { return Reached() && HasSpeed(axis(), end_velocity); }
 };
 
-class MC_MoveContinuousRelative : public Block<axis::MoveContinuousRelative> {
+class MC_MoveContinuousRelative : public UpdatedBlock<axis::MoveContinuousRelative> {
  public:
-  using Block::Block;
+  using UpdatedBlock::UpdatedBlock;
   bool InEndVelocity() const noexcept { return Reached() && HasSpeed(axis(), end_velocity); }
 };
 
-class MC_TorqueControl : public Block<axis::TorqueControl> {
+class MC_TorqueControl : public UpdatedBlock<axis::TorqueControl> {
  public:
-  using Block::Block;
+  using UpdatedBlock::UpdatedBlock;
   bool InTorque() const noexcept { return Reached(); }
 };
 
 // Couplings. The axis of the block is the slave; its masters go by their names: gear.master = Name::Of("x"). In step as
 // long as it follows exactly.
-template <typename C>
-class CouplingBlock : public Block<C> {
+template <typename C, typename Base = UpdatedBlock<C>>
+class CouplingBlock : public Base {
  public:
-  using Block<C>::Block;
+  using Base::Base;
 
  protected:
   bool InStep() const noexcept { return this->EverReached() && this->axis().outputs().in_step; }
@@ -124,7 +124,7 @@ class MC_GearIn : public CouplingBlock<axis::GearIn> {
   bool InGear() const noexcept { return InStep(); }
 };
 
-class MC_GearInPos : public CouplingBlock<axis::GearInPos> {
+class MC_GearInPos : public CouplingBlock<axis::GearInPos, Block<axis::GearInPos>> {
  public:
   using CouplingBlock::CouplingBlock;
   // Getting into step has begun.

@@ -509,5 +509,134 @@ TEST_F(Blocks, ThereIsOneForEveryCommand) {
   Step(10);  // what was given by blocks that are gone by now is nobody's news
 }
 
+// AX-111: with ContinuousUpdate at the rising edge each change of an input is commanded, and only then.
+TEST_F(Blocks, ContinuousUpdateOfAMove) {
+  for (const bool updates : {true, false}) {
+    MC_MoveAbsolute move(x);
+    move.position = updates ? 100 : 150;
+    move.velocity = 100;
+    move.ContinuousUpdate = updates;
+    move.Execute = true;
+    move();
+    Step(50);
+    move();
+    move.position = updates ? 60 : 20;
+    move.velocity = 200;
+    ASSERT_TRUE(Until(move, [&] { return move.Done() || move.Error(); }));
+    EXPECT_TRUE(move.Done());
+    EXPECT_EQ(Shown(move), 1);
+    EXPECT_DOUBLE_EQ(At(x).set_position, updates ? 60 : 150);
+  }
+}
+
+// AX-111: a distance counts from where the move began.
+TEST_F(Blocks, ContinuousUpdateOfADistance) {
+  MC_MoveRelative move(x);
+  move.distance = 30;
+  move.velocity = 100;
+  move.ContinuousUpdate = true;
+  move.Execute = true;
+  move();
+  Step(50);
+  move();
+  move.distance = 50;
+  move();
+  Step(50);
+  move();
+  EXPECT_TRUE(move.Busy() && move.Active());
+  move.distance = 40;
+  ASSERT_TRUE(Until(move, [&] { return move.Done(); }));
+  EXPECT_NEAR(At(x).set_position, 40, 1e-9);
+  MC_MoveContinuousRelative onwards(x);
+  onwards.distance = 30;
+  onwards.velocity = 100;
+  onwards.end_velocity = 20;
+  onwards.ContinuousUpdate = true;
+  onwards.Execute = true;
+  onwards();
+  Step(50);
+  onwards();
+  onwards.distance = 60;
+  ASSERT_TRUE(Until(onwards, [&] { return onwards.InEndVelocity(); }));
+  EXPECT_NEAR(At(x).set_position, 100, 0.1);
+}
+
+// AX-111: couplings and velocities, too; a change that is refused is an error of the block, and the motion goes on.
+TEST_F(Blocks, ContinuousUpdateOfWhatNeverEnds) {
+  bench.PowerOn(bench.y);
+  MC_MoveVelocity move(x);
+  move.velocity = 50;
+  move.ContinuousUpdate = true;
+  move.Execute = true;
+  ASSERT_TRUE(Until(move, [&] { return move.InVelocity(); }));
+  MC_GearIn gear(bench.y);
+  gear.master = Name::Of("x");
+  gear.ContinuousUpdate = true;
+  gear.Execute = true;
+  ASSERT_TRUE(Until(gear, [&] { return gear.InGear(); }));
+  gear.ratio_numerator = 2;
+  ASSERT_TRUE(Until(gear, [&] { return gear.InGear() && std::abs(At(bench.y).set_velocity - 100) < 1e-6; }));
+  move.velocity = 80;
+  ASSERT_TRUE(Until(move, [&] { return move.InVelocity() && At(x).set_velocity == 80; }));
+  move.velocity = -1;
+  ASSERT_TRUE(Until(move, [&] { return move.Error(); }));
+  EXPECT_NE(move.ErrorID(), ErrorId::kNone);
+  Step(100);
+  EXPECT_DOUBLE_EQ(At(x).set_velocity, 80);
+}
+
+// AX-111: a move that waits changes once it is in control.
+TEST_F(Blocks, ContinuousUpdateOfWhatWaits) {
+  MC_MoveAbsolute first(x), second(x);
+  first.position = 20;
+  first.velocity = second.velocity = 100;
+  first.Execute = second.Execute = second.ContinuousUpdate = true;
+  second.position = 50;
+  second.buffer_mode = BufferMode::kBuffered;
+  first();
+  second();
+  Step(20);
+  second();
+  second.position = 70;
+  bool met = false;
+  ASSERT_TRUE(bench.Until([&] {
+    first();
+    second();
+    met |= At(x).set_position == 20;
+    return second.Done() || second.Error();
+  }));
+  EXPECT_TRUE(second.Done() && met);
+  EXPECT_DOUBLE_EQ(At(x).set_position, 70);
+}
+
+// AX-111: outputs are written at the edge; what there is not is an error.
+TEST_F(Blocks, DigitalOutputsAndInputs) {
+  MC_WriteDigitalOutput write(x);
+  MC_ReadDigitalOutput read(x);
+  MC_ReadDigitalInput input(x);
+  write.number = read.OutputNumber = 7;
+  write.value = read.Enable = input.Enable = true;
+  read();
+  input();
+  EXPECT_TRUE(read.Valid() && !read.Value() && input.Valid() && !input.Value());
+  write.Execute = true;
+  ASSERT_TRUE(Until(write, [&] { return write.Done(); }));
+  read();
+  EXPECT_TRUE(read.Value());
+  for (const int number : {0, 33}) {
+    read.OutputNumber = number;
+    read();
+    EXPECT_TRUE(read.Error() && !read.Valid() && !read.Value());
+  }
+  input.InputNumber = 5;
+  input();
+  EXPECT_TRUE(input.Error() && !input.Value());
+  write.Execute = false;
+  write();
+  write.number = 33;
+  write.Execute = true;
+  ASSERT_TRUE(Until(write, [&] { return write.Error(); }));
+}
+
 }  // namespace
 }  // namespace takt::plcopen

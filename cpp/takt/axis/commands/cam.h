@@ -36,6 +36,8 @@ struct CamIn {  // MC_CamIn
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
   bool update = false;  // of the one in control: the cam stays laid as it is, but for what changes
+
+  bool operator==(const CamIn&) const = default;
 };
 
 // Another cam on top of that of cam_in, over the same master: slave_scaling * y(master_scaling * master's position +

@@ -25,6 +25,8 @@ struct GearIn {  // MC_GearIn
   std::optional<double> master_filter{};
   std::optional<double> acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
+
+  bool operator==(const GearIn&) const = default;
 };
 struct GearOut {  // MC_GearOut
 };
@@ -61,6 +63,8 @@ struct CombineAxes {  // MC_CombineAxes
   MasterSource source2 = MasterSource::kSetValue;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
+
+  bool operator==(const CombineAxes&) const = default;
 };
 
 void describe(Enumeration<MasterSource>&);

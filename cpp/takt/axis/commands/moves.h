@@ -34,22 +34,30 @@ struct MoveAbsolute {  // MC_MoveAbsolute
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   Direction direction = Direction::kShortest;
   BufferMode buffer_mode = BufferMode::kAborting;
+
+  bool operator==(const MoveAbsolute&) const = default;
 };
 struct MoveRelative {  // MC_MoveRelative
   double distance = 0;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
+
+  bool operator==(const MoveRelative&) const = default;
 };
 struct MoveAdditive {  // MC_MoveAdditive
   double distance = 0;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
+
+  bool operator==(const MoveAdditive&) const = default;
 };
 struct MoveVelocity {  // MC_MoveVelocity
   double velocity = 0;
   std::optional<double> acceleration{}, deceleration{}, jerk{};
   Direction direction = Direction::kPositive;  // positive, negative or current
   BufferMode buffer_mode = BufferMode::kAborting;
+
+  bool operator==(const MoveVelocity&) const = default;
 };
 struct Halt {  // MC_Halt
   std::optional<double> deceleration{}, jerk{};
@@ -69,6 +77,8 @@ struct MoveContinuousAbsolute {  // MC_MoveContinuousAbsolute
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   Direction direction = Direction::kShortest;
   BufferMode buffer_mode = BufferMode::kAborting;
+
+  bool operator==(const MoveContinuousAbsolute&) const = default;
 };
 struct MoveContinuousRelative {  // MC_MoveContinuousRelative
   double distance = 0;
@@ -76,6 +86,8 @@ struct MoveContinuousRelative {  // MC_MoveContinuousRelative
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
   bool update = false;  // of the one in control: the distance counts from where that began
+
+  bool operator==(const MoveContinuousRelative&) const = default;
 };
 struct Inch {  // MC_Inch: one increment a press
   double distance = 0;

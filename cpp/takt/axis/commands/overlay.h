@@ -11,6 +11,8 @@ struct MoveSuperimposed {  // MC_MoveSuperimposed
   double distance = 0;
   std::optional<double> velocity_difference{}, acceleration{}, deceleration{}, jerk{};
   bool update = false;  // of the one in progress: the distance counts from where that began
+
+  bool operator==(const MoveSuperimposed&) const = default;
 };
 struct HaltSuperimposed {  // MC_HaltSuperimposed
   std::optional<double> deceleration{}, jerk{};

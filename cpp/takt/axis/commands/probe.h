@@ -42,6 +42,8 @@ struct TorqueControl {  // MC_TorqueControl
   std::optional<double> velocity{};
   std::optional<double> acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
+
+  bool operator==(const TorqueControl&) const = default;
 };
 
 void describe(Enumeration<ProbeEdge>&);

@@ -15,6 +15,8 @@ struct PositionProfile {  // MC_PositionProfile
   double offset = 0;
   BufferMode buffer_mode = BufferMode::kAborting;
   bool update = false;  // of the one in control: at the place in the table where that is
+
+  bool operator==(const PositionProfile&) const = default;
 };
 struct VelocityProfile {  // MC_VelocityProfile
   Name profile;
@@ -23,6 +25,8 @@ struct VelocityProfile {  // MC_VelocityProfile
   double offset = 0;
   BufferMode buffer_mode = BufferMode::kAborting;
   bool update = false;  // of the one in control: at the place in the table where that is
+
+  bool operator==(const VelocityProfile&) const = default;
 };
 struct AccelerationProfile {  // MC_AccelerationProfile
   Name profile;
@@ -31,6 +35,8 @@ struct AccelerationProfile {  // MC_AccelerationProfile
   double offset = 0;
   BufferMode buffer_mode = BufferMode::kAborting;
   bool update = false;  // of the one in control: at the place in the table where that is
+
+  bool operator==(const AccelerationProfile&) const = default;
 };
 
 void describe(Description<PositionProfile>&);
