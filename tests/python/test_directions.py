@@ -49,6 +49,14 @@ def cammed(s: takt.Engine, sense: int) -> Any:
     return cam
 
 
+def geared_in_pos(s: takt.Engine, sense: int) -> Any:
+    gear = s.axis("y").gear_in_pos(
+        master="m", master_sync_position=30.0 * sense, slave_sync_position=20.0 * sense, master_start_distance=25
+    )
+    s.axis("m").move_velocity(velocity=150, direction="positive" if sense > 0 else "negative")
+    return gear
+
+
 def streamed(s: takt.Engine, sense: int) -> Any:
     y = s.axis("y")
     stream = y.stream(key=7, delay=0.01, timeout=1.0)
@@ -73,6 +81,11 @@ def group_streamed(s: takt.Engine, sense: int) -> Any:
     return stream
 
 
+def jogged(s: takt.Engine, sense: int) -> Any:
+    s.group("portal").enable().wait()
+    return s.group("portal").jog(y=50.0 * sense)
+
+
 KINDS: dict[str, Start] = {
     "move_absolute": lambda s, k: s.axis("y").move_absolute(position=150 * k),
     "move_relative": lambda s, k: s.axis("y").move_relative(distance=150 * k),
@@ -91,11 +104,13 @@ KINDS: dict[str, Start] = {
         direction="positive" if k > 0 else "negative", switch_mode="is_on", velocity=50
     ),
     "gear_in": geared,
+    "gear_in_pos": geared_in_pos,
     "cam_in": cammed,
     "stream": streamed,
     "combine_axes": summed,
     "group": grouped,
     "group stream": group_streamed,
+    "group_jog": jogged,
 }
 
 
@@ -235,3 +250,120 @@ def test_the_block_tells_changes(s: takt.Engine) -> None:
     run(0.4, EnablePositive=False)
     assert move.ErrorID == DIRECTION
     assert y.state.value == "ErrorStop"
+
+
+def test_the_permits_are_shown(s: takt.Engine) -> None:
+    """AX-111: in the state of the axis, and in what is recorded."""
+    y = s.axis("y")
+    assert (y.enable_positive, y.enable_negative) == (True, True)
+    with s.record("y") as recorder:
+        s.step(3)
+        permit(s, -1, False)
+        s.step(3)
+    assert (y.enable_positive, y.enable_negative) == (True, False)
+    assert list(recorder.recording["y"]["enable_negative"][[0, -1]]) == [True, False]
+    assert recorder.recording["y"]["enable_positive"].all()
+
+
+PROBED = (
+    MACHINE
+    + """\
+simulation:
+  servos:
+    - {axis: y, switches: {touch_probe: {from: 20}}}
+    - {axis: z, switches: {touch_probe: {to: -20}}}
+"""
+)
+
+
+@pytest.mark.parametrize(("name", "sense"), [("y", 1), ("z", -1)])
+def test_the_way_back_of_a_touch(name: str, sense: int) -> None:
+    """AX-111: a touch whose way back is not enabled is refused at the touch; the motion goes on."""
+    with takt.Engine(PROBED) as s:
+        axis = s.axis(name)
+        axis.power().wait()
+        back = "enable_negative" if sense > 0 else "enable_positive"
+        axis.power(**{back: False}).wait()
+        touch = axis.touch()
+        move = axis.move_velocity(velocity=200, direction="positive" if sense > 0 else "negative")
+        s.run(1.0)
+        assert touch.error_id == DIRECTION
+        assert move.active
+        assert sense * axis.set_velocity == 200
+        axis.halt().wait()
+        axis.power(**{back: True}).wait()
+        axis.move_absolute(position=0).wait()
+        touch = axis.touch()
+        axis.move_velocity(velocity=200, direction="positive" if sense > 0 else "negative")
+        s.run(1.5)
+        assert touch.done
+        assert sense * axis.set_position == pytest.approx(20, abs=0.01)
+
+
+MODULES = """
+name: modules
+axes:
+  - {name: x, limits: {velocity: 1500, acceleration: 10000, jerk: 500000}}
+  - {name: y, limits: {velocity: 1500, acceleration: 10000, jerk: 500000}}
+  - {name: z, limits: {velocity: 1500, acceleration: 10000, jerk: 500000}}
+  - {name: web, kind: rotary, unit: deg, limits: {velocity: 720, acceleration: 7200, jerk: 100000}}
+  - {name: knife, limits: {velocity: 2000, acceleration: 50000, jerk: 5000000}}
+cams:
+  - {name: hill, x_unit: deg, cyclic: true,
+     points: [{x: 0, y: 0, v: 0, a: 0}, {x: 150, y: 20, v: 0, a: 0}, {x: 360, y: 0, v: 0, a: 0}]}
+flex_cams:
+  - name: cutter
+    slave: knife
+    master: web
+    cams: [hill]
+    settings: {sync_mode: ramp_time, sync_in_time_s: 0.3, sync_out_time_s: 0.2, slave_absolute: true,
+               jog_velocity: 30, jog_acceleration: 1000, jog_deceleration: 1000, jog_jerk: 20000}
+groups:
+  - name: portal
+    axes: [x, y, z]
+    kinematics: {gantry: {axes: [x, y, z]}}
+    path: {velocity: 1000, acceleration: 8000, jerk: 400000}
+pick_and_place:
+  - name: picker
+    group: portal
+    settings:
+      {path_velocity: 1000, path_acceleration: 8000, path_deceleration: 8000, path_jerk: 400000, keep_orientation: true,
+       blending_radius: 10, z_start_distance: 30, z_target_distance: 20, x_target: 100}
+"""
+
+
+def test_a_cam_module_names_the_direction() -> None:
+    """AX-111: its jog is refused, and a cam that turns that way ends with 3103, before the first step."""
+    with takt.Engine(MODULES) as s:
+        knife, cutter = s.axis("knife"), s.flex_cam("cutter")
+        s.axis("web").power().wait()
+        cutter.control(regulator_on=True).wait()
+        s.wait(lambda: cutter.axis_enabled, 2.0)
+        knife.power(enable_negative=False).wait()
+        with s.record("knife") as recorder:
+            jog = cutter.jog(negative=True)
+            s.run(0.3)
+        assert jog.error_id == DIRECTION
+        assert recorder.recording["knife"]["set_position"].min() > -1e-3
+        cutter.jog(negative=False)
+        cutter.control(reset_error=True)
+        knife.reset()
+        s.run(0.2)
+        cutter.control(reset_error=False)
+        s.axis("web").move_velocity(velocity=300).wait(until="reached")
+        cutter.control(sync_cam=True)
+        s.run(2.0)
+        assert (knife.error, cutter.error) == (DIRECTION, DIRECTION)
+
+
+def test_a_pick_and_place_module_names_the_direction() -> None:
+    """AX-111: not a limit switch (20500), which there is none of; the motion is not begun."""
+    with takt.Engine(MODULES) as s:
+        picker = s.pick_place("picker")
+        picker.configure(max_velocity=[0.0] * 7, max_acceleration=[0.0] * 7, max_jerk=[0.0] * 7).wait()
+        picker.control(regulator_on=True).wait()
+        s.run(0.5)
+        s.axis("x").power(enable_positive=False).wait()
+        going = picker.execute().wait_final()
+        assert (going.error_id, picker.error) == (DIRECTION, DIRECTION)
+        assert s.axis("x").set_position == pytest.approx(0, abs=1e-6)

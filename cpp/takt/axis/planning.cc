@@ -349,20 +349,6 @@ Status PlanScaled(const AxisParams& params, const Surroundings& around, Planner&
   return status;
 }
 
-// While a limit switch is on, no motion may go (further) towards it; and none where MC_Power does not enable it.
-Status CheckSwitches(const Surroundings& around, const KinematicState& from, const Profile& profile) {
-  const Profile::Range velocity = profile.VelocityRange();
-  const double up = std::max(velocity.max, profile.end().velocity);
-  const double down = std::min(velocity.min, profile.end().velocity);
-  const bool goes_up = up > std::max(0.0, from.velocity) + Rounding(0);
-  const bool goes_down = down < std::min(0.0, from.velocity) - Rounding(0);
-  if ((around.limit_positive && goes_up) || (around.limit_negative && goes_down))
-    return Status::Failed(ErrorId::kAwayFromLimitOnly);
-  if ((around.bars_positive && goes_up) || (around.bars_negative && goes_down))
-    return Status::Failed(ErrorId::kDirection);
-  return Status::Ok();
-}
-
 // Standing at a SW limit there is no way further out.
 Status CheckAtLimit(const AxisLimits& limits, const KinematicState& from, double velocity) {
   if (from.velocity != 0 || velocity == 0) return Status::Ok();
@@ -409,6 +395,19 @@ Status Check(const AxisParams& params, const Surroundings& around, const Kinemat
 }
 
 }  // namespace
+
+Status CheckSwitches(const Surroundings& around, const KinematicState& from, const Profile& profile) noexcept {
+  const Profile::Range velocity = profile.VelocityRange();
+  const double up = std::max(velocity.max, profile.end().velocity);
+  const double down = std::min(velocity.min, profile.end().velocity);
+  const bool goes_up = up > std::max(0.0, from.velocity) + Rounding(0);
+  const bool goes_down = down < std::min(0.0, from.velocity) - Rounding(0);
+  if ((around.limit_positive && goes_up) || (around.limit_negative && goes_down))
+    return Status::Failed(ErrorId::kAwayFromLimitOnly);
+  if ((around.bars_positive && goes_up) || (around.bars_negative && goes_down))
+    return Status::Failed(ErrorId::kDirection);
+  return Status::Ok();
+}
 
 int SenseOf(const Request& request, std::int8_t last_sense) noexcept {
   if (request.direction == Direction::kCurrent) return last_sense;

@@ -51,6 +51,11 @@ Status PlanRequest(const AxisParams& params, const Surroundings& around, traject
 Status Replan(const AxisParams& params, const Surroundings& around, trajectory::Planner& planner,
               const KinematicState& from, const Request& request, std::span<const Request> queue, Plan& out) noexcept;
 
+// While a limit switch is on, no motion may go (further) towards it: kAwayFromLimitOnly; and none where MC_Power does
+// not enable it: kDirection.
+Status CheckSwitches(const Surroundings& around, const KinematicState& from,
+                     const trajectory::Profile& profile) noexcept;
+
 // To standstill as `limits` say, or harder where the SW limits want it, or a promise (Surroundings).
 Status PlanStop(const AxisParams& params, trajectory::Planner& planner, const KinematicState& from,
                 const trajectory::Limits& limits, std::optional<double> furthest, trajectory::Profile& out) noexcept;

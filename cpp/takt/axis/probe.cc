@@ -117,7 +117,9 @@ Status TakeTouch(const Context& c, State& s) {
   request.jerk = probe.jerk;
   Plan plan;
   plan.target = probe.touch_position;
-  const Status status = Replan(c.params, SurroundingsOfBoth(c, s), c.planner, s.setpoint, request, {}, plan);
+  const Surroundings around = SurroundingsOfBoth(c, s);
+  Status status = Replan(c.params, around, c.planner, s.setpoint, request, {}, plan);
+  if (status.ok()) status = CheckSwitches(around, s.setpoint, plan.profile);
   if (status.failed()) return status;
   AbortAll(c, s);
   TakeControl(c, request, plan, FromCycleBefore(c), s);

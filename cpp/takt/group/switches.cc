@@ -25,8 +25,8 @@ Directions ClosedNow(const Context& c, const State& s) noexcept {
   return closed;
 }
 
-ErrorId RefusalOf(const Context& c, const State& s) noexcept {
-  Directions by_switch = s.refused;
+ErrorId RefusalOf(const Context& c, const State& s, Directions taken) noexcept {
+  Directions by_switch = taken;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
     const axis::State& member = MemberOf(c, s, k);

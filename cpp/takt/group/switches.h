@@ -15,8 +15,13 @@ namespace takt::group {
 // State::closed.
 Directions ClosedNow(const Context& c, const State& s) noexcept;
 
-// Why State::refused is: kAwayFromLimitOnly, or kDirection where all of it is not enabled.
-ErrorId RefusalOf(const Context& c, const State& s) noexcept;
+// Why a motion that takes closed directions is refused: kAwayFromLimitOnly, or kDirection where all of them are not
+// enabled.
+ErrorId RefusalOf(const Context& c, const State& s, Directions taken) noexcept;
+// The same of State::refused.
+inline ErrorId RefusalOf(const Context& c, const State& s) noexcept {
+  return RefusalOf(c, s, s.refused);
+}
 
 // Which of these directions a motion of the axes takes, and of the tool in the MCS (null: it has none): faster than
 // `least`, in u/s, mm/s and rad/s, or per mm along a path.

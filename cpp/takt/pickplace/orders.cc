@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "takt/group/plan.h"
+#include "takt/group/switches.h"
 #include "takt/group/systems.h"
 #include "takt/pickplace/run.h"
 
@@ -101,7 +102,10 @@ Given GiveLegs(const Context& c, const Profile& profile, std::uint32_t from, con
   const group::Directions closed = ClosedOn(c, g, profile, from, StartOf(c, g, s), keep_orientation);
   if (closed.any()) {
     s.error_axes |= AxesOf(c, g, closed);
-    given.error = closed.positive != 0 ? ErrorId::kModuleLimitSwitchPositive : ErrorId::kModuleLimitSwitchNegative;
+    const ErrorId at_switch =
+        closed.positive != 0 ? ErrorId::kModuleLimitSwitchPositive : ErrorId::kModuleLimitSwitchNegative;
+    const bool barred = group::RefusalOf(c.group, g, closed) == ErrorId::kDirection;
+    given.error = barred ? ErrorId::kDirection : at_switch;
   }
   for (std::uint32_t i = from; i < profile.count && given.error == ErrorId::kNone; ++i) {
     Leg leg = profile.legs[i];
