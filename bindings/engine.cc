@@ -4,6 +4,7 @@
 #include <pybind11/typing.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -19,11 +20,13 @@
 #include "bindings.h"
 #include "recorder.h"
 #include "takt/conveyor/objects.h"
+#include "takt/core/angle.h"
 #include "takt/core/schema.h"
 #include "takt/engine/components.h"
 #include "takt/engine/load.h"
 #include "takt/engine/path_checks.h"
 #include "takt/engine/reference.h"
+#include "takt/engine/track_shapes.h"
 #include "takt/lcm/authentication.h"
 #include "takt/lcm/clock.h"
 #include "takt/lcm/drives.h"
@@ -72,6 +75,8 @@ py::typing::Dict<py::str, py::typing::List<py::str>> PartsOfGroups(const py::byt
 }
 
 using Submitted = py::typing::Tuple<Ticket, int, py::str>;  // ticket, error number, sentence
+using ShapeRow = py::typing::Tuple<int, double, bool, std::vector<double>, std::vector<double>, std::vector<double>,
+                                   std::vector<double>>;
 using FeedbackRow =
     py::typing::Tuple<Ticket, std::uint64_t, int, bool, int, double, py::str, int,
                       std::uint32_t>;  // ticket, cycle, state, reached, error, value, sentence, object: kind and number
@@ -256,6 +261,26 @@ class VirtualEngine {
                                  quality));
     }
     return list;
+  }
+
+  // Of a track, as it is published: number of its part, length, whether it is closed, places, x, y and direction.
+  ShapeRow TrackShape(std::uint32_t track) {
+    const auto lock = Lock();
+    if (track >= engine_.machine().tracks.size()) throw std::out_of_range("no such track");
+    std::array<std::vector<double>, 4> all;
+    engine::TrackPlaces places;
+    do {
+      const auto first = static_cast<std::uint32_t>(all[0].size());
+      places = engine::PlacesOf(0, engine_.tracks(), track, first);
+      for (std::uint32_t i = 0; i < places.count; ++i) {
+        const engine::TrackPlaces::At& at = places.places[i];
+        all[0].push_back(at.position);
+        all[1].push_back(at.x);
+        all[2].push_back(at.y);
+        all[3].push_back(at.direction / kDegree);
+      }
+    } while (all[0].size() < places.total);
+    return py::make_tuple(places.part, places.length, places.closed, all[0], all[1], all[2], all[3]);
   }
 
   // The last commands of a mover, the oldest first.
@@ -520,6 +545,7 @@ void BindEngine(py::module_& m) {
       .def("take_journal", &E::TakeJournal)
       .def("take_hashes", &E::TakeHashes)
       .def("belt_objects", &E::BeltObjects, py::arg("belt"))
+      .def("track_shape", &E::TrackShape, py::arg("track"))
       .def("mover_history", &E::MoverHistory, py::arg("mover"))
       .def("track_at", &E::TrackAt, py::arg("track"), py::arg("s"))
       .def("track_closest_to", &E::TrackClosestTo, py::arg("track"), py::arg("x"), py::arg("y"))

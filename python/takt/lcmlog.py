@@ -80,6 +80,7 @@ class Run:
     machine: msgs.machine_description | msgs.journal_start | None = None
     states: dict[str, list[Any]] = field(default_factory=dict)  # of components, by name
     objects: list[msgs.belt_objects] = field(default_factory=list)
+    shapes: list[msgs.track_shape] = field(default_factory=list)
     engine_states: list[msgs.engine_state] = field(default_factory=list)
     commands: list[msgs.command] = field(default_factory=list)
     feedback: list[msgs.feedback] = field(default_factory=list)
@@ -164,7 +165,7 @@ def _leave_out_impossible(run: Run) -> None:
     if not run.descriptions:
         return
     (_, period, _), _ = run.descriptions.most_common(1)[0]
-    for messages in (*run.states.values(), run.objects, run.engine_states):
+    for messages in (*run.states.values(), run.objects, run.shapes, run.engine_states):
         possible = [message for message in messages if is_possible(message, period)]
         run.impossible += len(messages) - len(possible)
         messages[:] = possible
@@ -200,6 +201,8 @@ def _sort_in(runs: list[Run], message: Any) -> None:
         run.states.setdefault(message.name, []).append(message)
     elif isinstance(message, msgs.belt_objects):
         run.objects.append(message)
+    elif isinstance(message, msgs.track_shape):
+        run.shapes.append(message)
     elif isinstance(message, msgs.engine_state):
         run.engine_states.append(message)
     elif isinstance(message, msgs.command):

@@ -6,7 +6,6 @@ import json
 import os
 import sys
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +14,7 @@ from takt import _core, msgs
 from takt.counted import counted
 from takt.events import LogError, Progress
 from takt.lcmlog import Run, open_log, run_of
-from takt.recording import Array
-from takt.tables import components_of, fields_of_kind, table_of
+from takt.replay_comparison import Comparison, StateDifference
 
 CHUNK = 2_000  # cycles between two reports of progress
 WIRES = tuple(_core.servo_inputs())
@@ -34,17 +32,6 @@ class Difference:
 
 
 @dataclass(frozen=True)
-class StateDifference:
-    """The first recorded state that is not what the component published in this cycle."""
-
-    component: str
-    field: str
-    cycle: int
-    recorded: Any
-    replayed: Any
-
-
-@dataclass(frozen=True)
 class ReplayResult:
     machine: str
     cycles: int  # that were compared
@@ -54,7 +41,7 @@ class ReplayResult:
     version: str  # of the engine that wrote the log
     difference: Difference | None
     missing: str  # why not all of them could be compared; empty: all were
-    states: int = 0  # recorded ones of components that were compared
+    states: int = 0  # recorded messages that were compared: of components, belts, tracks, and feedback
     wrong_states: int = 0  # of these others than the replay's
     state_difference: StateDifference | None = None
 
@@ -65,7 +52,7 @@ class ReplayResult:
 
     @property
     def same(self) -> bool:
-        """Every cycle was compared, and equal, and so was every state that the log holds."""
+        """Every cycle was compared, and equal, and so was every message that the log holds."""
         return self.complete and self.difference is None and self.state_difference is None
 
     def __bool__(self) -> bool:
@@ -74,7 +61,7 @@ class ReplayResult:
     @property
     def sentence(self) -> str:
         span = f"{counted(self.cycles, 'cycle')} ({self.cycles * self.period_s:.3f} s)"
-        states = f" and {counted(self.states, 'recorded state')}" if self.states else ""
+        states = f" and {counted(self.states, 'recorded message')}" if self.states else ""
         what = f"{span} with {counted(self.commands, 'command')}{states}"
         if self.difference is not None:
             at = self.difference.cycle
@@ -83,7 +70,7 @@ class ReplayResult:
         if (state := self.state_difference) is not None:
             where = f"{state.component}.{state.field} in cycle {state.cycle} ({state.cycle * self.period_s:.4f} s)"
             return (
-                f"{what}: {self.wrong_states:,} of the recorded states are not what the run published: "
+                f"{what}: {self.wrong_states:,} of the recorded messages are not what the run published: "
                 f"{where} was {state.replayed}, the log has {state.recorded}"
             )
         if self.missing:
@@ -94,10 +81,10 @@ class ReplayResult:
 
 def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | None = None) -> ReplayResult:
     """Rebuilds the engine from a log that taktd wrote (--log), gives every command so that it is applied in the same
-    cycle, and compares the hash of the state after every cycle, and every state of a component that the log holds with
-    what the component publishes in this cycle. The run is the same only if every cycle from the first to the last one
-    that the log knows of was compared; a hole in the journal ends the comparison. Not compared: feedback, what lies on
-    belts, shapes of tracks, figures of the host."""
+    cycle, and compares the hash of the state after every cycle, and every message that the log holds of components,
+    of what lies on belts, of the shapes of tracks, and of what became of commands with what is published in this cycle.
+    The run is the same only if every cycle from the first to the last one that the log knows of was compared; a hole in
+    the journal ends the comparison. Not compared: sentences of feedback, figures of the host."""
     content = open_log(log, (lambda share: progress(share / 2)) if progress else None)
     one = run_of(content, run)
     if one.start is None:
@@ -112,7 +99,7 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
     engine = _core.Engine(text, str(content.path), journal=True, period_s=one.start.period_s, checks=False)
     commands = sorted(one.journal, key=lambda entry: entry.cycle)
     drives = _Drives(engine, one)
-    states = _States(engine, one)
+    comparison = Comparison(engine, one)
     given = 0
     difference = None
     while difference is None and engine.cycle < comparable:
@@ -122,15 +109,13 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
         first = engine.cycle
         next_cycle = commands[given].cycle if given < len(commands) else comparable
         next_cycle = min(next_cycle, drives.give(first))
-        states.begin()
-        engine.step(min(comparable, first + CHUNK, next_cycle) - first)
+        comparison.step(min(comparable, first + CHUNK, next_cycle))
         made = engine.take_hashes()[1]
         wrong = np.flatnonzero(made != recorded[first : first + len(made)])
         if len(wrong):
             at = first + int(wrong[0])
             difference = Difference(at, int(recorded[at]), int(made[wrong[0]]))
-        states.compare(first + (int(wrong[0]) if len(wrong) else len(made)))
-        engine.take_feedback()
+        comparison.compare(first + (int(wrong[0]) if len(wrong) else len(made)))
         engine.take_journal()
         engine.take_drive_journal()
         if progress is not None:
@@ -146,70 +131,10 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
         one.start.version,
         difference,
         missing,
-        states.compared,
-        states.wrong,
-        states.first,
+        comparison.compared,
+        comparison.wrong,
+        comparison.first,
     )
-
-
-@dataclass
-class _Recorded:
-    """The states of one component in a log, as columns."""
-
-    name: str
-    index: int  # among the components of the engine
-    fields: tuple[str, ...]
-    columns: dict[str, Array]
-    given: int = 0  # rows that were compared
-
-
-class _States:
-    """Compares the states of components that a log holds with those that are published now. It compares what a
-    recording of the log would hold."""
-
-    def __init__(self, engine: _core.Engine, run: Run) -> None:
-        self.compared = 0
-        self.wrong = 0
-        self.first: StateDifference | None = None
-        self._engine = engine
-        self._recorder: _core.Recorder | None = None
-        self._all: list[_Recorded] = []
-        period = run.start.period_s if run.start is not None else 0.0
-        for index, (name, (kind, _)) in enumerate(components_of(json.loads(engine.machine_json)).items()):
-            if run.states.get(name):
-                columns, _ = table_of(kind.name, run.states[name], period)
-                self._all.append(_Recorded(name, index, fields_of_kind(kind.name), columns))
-
-    def begin(self) -> None:
-        """Records the cycles from now on."""
-        if self._all:
-            self._recorder = self._engine.start_recorder([one.index for one in self._all], 1)
-
-    def compare(self, end: int) -> None:
-        """Those of the cycles that were recorded, before this one."""
-        if self._recorder is None:
-            return
-        self._engine.stop_recorder(self._recorder)
-        cycles = self._recorder.cycles().astype(np.int64)
-        for place, one in enumerate(self._all):
-            last = int(np.searchsorted(one.columns["cycle"], end))
-            if not len(cycles) or one.given == last:
-                continue
-            rows = self._recorder.table(place)
-            chosen = one.columns["cycle"][one.given : last] - cycles[0]
-            wrong = np.zeros(len(chosen), dtype=bool)
-            for field in one.fields:
-                was, now = one.columns[field][one.given : last], rows[field][chosen]
-                differs = ~((was == now) | ((was != was) & (now != now)))  # nan is like itself
-                if differs.any() and (self.first is None or cycles[0] + chosen[differs][0] < self.first.cycle):
-                    at = int(np.flatnonzero(differs)[0])
-                    cycle = int(cycles[0] + chosen[at])
-                    self.first = StateDifference(one.name, field, cycle, was[at].item(), now[at].item())
-                wrong |= differs
-            self.compared += len(chosen)
-            self.wrong += int(wrong.sum())
-            one.given = last
-        self._recorder = None
 
 
 class _Drives:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import time
 from collections.abc import Callable
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import lcm
 import numpy as np
@@ -93,8 +95,10 @@ def test_forged_states_are_found(log: Path, tmp_path: Path) -> None:
     """EN-36: the journal is whole and is reproduced, but the states beside it are not those of the run."""
     wanted = open_log(log).runs[-1]
     whole = takt.replay(log)
-    assert whole.states == sum(map(len, wanted.states.values()))
-    assert f"{whole.states:,} recorded states: the same" in whole.sentence
+    reports = [report for report in wanted.feedback if report.ticket > 0 and report.cycle >= 0]
+    assert reports
+    assert whole.states == sum(map(len, wanted.states.values())) + len(reports)
+    assert f"{whole.states:,} recorded messages: the same" in whole.sentence
     at = wanted.states["x"][700].cycle
 
     def change(channel: str, data: bytes) -> bytes:
@@ -113,7 +117,101 @@ def test_forged_states_are_found(log: Path, tmp_path: Path) -> None:
     found = result.state_difference
     assert found is not None
     assert (found.component, found.field, found.cycle) == ("x", "set_position", at)
-    assert f"1 of the recorded states are not what the run published: x.set_position in cycle {at} " in result.sentence
+    assert (
+        f"1 of the recorded messages are not what the run published: x.set_position in cycle {at} " in result.sentence
+    )
+
+
+CELL = """
+name: cell
+axes:
+  - {name: drive, limits: {velocity: 1000, acceleration: 10000, jerk: 1000000}}
+belts:
+  - {name: infeed, axis: drive, upper_limit: 300}
+movers:
+  - {name: m}
+tracks:
+  - {name: ring}
+"""
+
+
+@pytest.fixture(scope="module")
+def cell_log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Of a run with things on a belt and a track that is made on the way."""
+    directory = tmp_path_factory.mktemp("cell")
+    url = new_url()
+    file = directory / "run.lcm"
+    with running(directory, url, "--log", str(file), machine=CELL), takt.connect(url) as session:
+        belt = session.belt("infeed")
+        belt.axis.power().wait()
+        belt.axis.move_velocity(velocity=100.0).wait(until="reached")
+        belt.detect(kind=4).wait()
+        track = session.track("ring")
+        track.append_line(start_x=0, start_y=0, end_x=500, end_y=0)
+        track.append_position(x=500, y=300)
+        track.enable().wait()
+        belt.detect(kind=5, quality=0.5, x=10.0, y=3.0).wait()
+        session.run(0.2)
+        track.disable().wait()
+        track.clear().wait()
+    return file
+
+
+def forge(message: Any, field: str) -> None:
+    """Another value in a field of one of the message's parts, or of itself."""
+    owner, _, name = field.rpartition(".")
+    if owner:
+        message = getattr(message, owner)[-1]
+    value = getattr(message, name)
+    setattr(message, name, [*value[:-1], value[-1] + 1] if isinstance(value, (list, tuple)) else type(value)(value + 1))
+
+
+@pytest.mark.parametrize(
+    ("channel", "kind", "field", "said"),
+    [
+        ("takt/belt_objects/infeed", msgs.belt_objects, "objects.kind", r"infeed\.object 2: kind"),
+        ("takt/belt_objects/infeed", msgs.belt_objects, "objects.place", r"infeed\.object 2: place"),
+        ("takt/track_shapes/ring", msgs.track_shape, "y", r"ring\.y"),
+        ("takt/track_shapes/ring", msgs.track_shape, "length", r"ring\.length"),
+        ("takt/feedback", msgs.feedback, "state", r"infeed\.feedback of command \d+"),
+        ("takt/feedback", msgs.feedback, "error_id", r"infeed\.feedback of command \d+"),
+        ("takt/feedback", msgs.feedback, "value", r"infeed\.feedback of command \d+"),
+        ("takt/feedback", msgs.feedback, "ticket", r"ring\.feedback of command \d+"),
+    ],
+)
+def test_forged_messages_of_every_kind_are_found(
+    cell_log: Path, tmp_path: Path, channel: str, kind: Any, field: str, said: str
+) -> None:
+    """EN-36: what lies on belts, shapes of tracks, and what became of commands."""
+    whole = takt.replay(cell_log)
+    assert whole.same, whole.sentence
+    run = open_log(cell_log).runs[-1]
+    assert len(run.shapes) >= 3
+    assert any(message.count == 2 for message in run.objects)
+    forged = 0
+
+    def change(where: str, data: bytes) -> bytes:
+        nonlocal forged
+        if where != channel or forged:
+            return data
+        message = kind.decode(data)
+        second = {
+            msgs.belt_objects: lambda: message.count == 2 and message.objects[1].place > 0,
+            msgs.track_shape: lambda: message.count > 0,
+            msgs.feedback: lambda: message.value == 2,
+        }
+        if not second[kind]():
+            return data
+        forged = 1
+        forge(message, field)
+        return bytes(message.encode())
+
+    result = takt.replay(changed(cell_log, tmp_path / "changed.lcm", change))
+    assert forged
+    assert result.complete
+    assert not result.same
+    assert result.wrong_states == 1
+    assert re.search(rf": {said} in cycle \d+ ", result.sentence), result.sentence
 
 
 def test_forged_descriptions_and_hashes_are_found(log: Path, tmp_path: Path) -> None:

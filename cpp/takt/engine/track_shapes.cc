@@ -17,6 +17,24 @@ std::uint32_t CountOn(double length) {
 
 }  // namespace
 
+TrackPlaces PlacesOf(std::uint64_t cycle, const track::Tracks& tracks, std::uint32_t track,
+                     std::uint32_t first) noexcept {
+  const std::uint32_t part = tracks.part_of[track];
+  TrackPlaces out{.cycle = cycle, .track = track, .part = part == planar::kNoPart ? 0 : part + 1, .first = first};
+  const planar::Track* way = tracks.ways[track];
+  if (!way) return out;
+  out.length = tracks.states[track].length;
+  out.closed = way->closed;
+  out.total = CountOn(out.length);
+  out.count = std::min<std::uint32_t>(out.total - first, TrackPlaces::kMost);
+  for (std::uint32_t k = 0; k < out.count; ++k) {
+    const double s = out.length * (first + k) / (out.total - 1);
+    const planar::TrackPoint at = planar::At(*way, s);
+    out.places[k] = {s, at.place.x, at.place.y, at.direction};
+  }
+  return out;
+}
+
 std::optional<std::uint32_t> TrackShapes::Next(const track::Tracks& tracks) noexcept {
   for (std::uint32_t i = 0; i < known_.size(); ++i) {
     const Known now{tracks.states[i].sketch_hash, tracks.ways[i]};
@@ -43,19 +61,7 @@ void TrackShapes::Publish(std::uint64_t cycle, const track::Tracks& tracks, Spsc
     all_known_ = !now_;
   }
   if (!now_) return;
-  const std::uint32_t track = *now_, part = tracks.part_of[track];
-  TrackPlaces out{.cycle = cycle, .track = track, .part = part == planar::kNoPart ? 0 : part + 1, .first = first_};
-  if (const planar::Track* way = tracks.ways[track]) {
-    out.length = tracks.states[track].length;
-    out.closed = way->closed;
-    out.total = CountOn(out.length);
-    out.count = std::min<std::uint32_t>(out.total - first_, TrackPlaces::kMost);
-    for (std::uint32_t k = 0; k < out.count; ++k) {
-      const double s = out.length * (first_ + k) / (out.total - 1);
-      const planar::TrackPoint at = planar::At(*way, s);
-      out.places[k] = {s, at.place.x, at.place.y, at.direction};
-    }
-  }
+  const TrackPlaces out = PlacesOf(cycle, tracks, *now_, first_);
   if (!queue.TryPush(out)) return;  // in one of the next cycles
   first_ += out.count;
   if (first_ == out.total) now_.reset();

@@ -32,6 +32,10 @@ struct TrackPlaces {
   std::array<At, kMost> places{};
 };
 
+// The places of a track from number `first` on.
+TrackPlaces PlacesOf(std::uint64_t cycle, const track::Tracks& tracks, std::uint32_t track,
+                     std::uint32_t first) noexcept;
+
 class TrackShapes {
  public:
   explicit TrackShapes(std::size_t tracks) : known_(tracks) {}

@@ -1,0 +1,255 @@
+"""Compares what a log holds besides the journal with what a run of the journal published."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from takt import _core, msgs
+from takt.lcmlog import STATES, Run
+from takt.lying import objects_of
+from takt.recording import Array
+from takt.tables import components_of, fields_of_kind, table_of
+
+OBJECT_FIELDS = ("number", "state", "place", "pose", "in_range", "kind", "colour", "quality")
+SHUTDOWN, TOO_OLD = 3015, 3033  # errors of commands: the engine is stopping; it was too old when it came
+ERROR, ABORTED = msgs.feedback.STATE_ERROR, msgs.feedback.STATE_ABORTED
+SHAPE_FIELDS = ("part", "length", "closed", "position", "x", "y", "direction")
+
+
+@dataclass(frozen=True)
+class StateDifference:
+    """The first recorded message that is not what the engine published in this cycle."""
+
+    component: str
+    field: str
+    cycle: int
+    recorded: Any
+    replayed: Any
+
+
+class Comparison:
+    """Compares the messages of components, what lies on belts, the shapes of tracks, and feedback. Steps the engine,
+    and stops it where it has to look."""
+
+    def __init__(self, engine: _core.Engine, run: Run) -> None:
+        self._engine = engine
+        self._states = _States(engine, run)
+        self._looks = _Looks(engine, run)
+        self._feedback = _Feedback(engine, run)
+        self._parts = (self._states, self._looks, self._feedback)
+
+    @property
+    def compared(self) -> int:
+        return sum(part.tally.compared for part in self._parts)
+
+    @property
+    def wrong(self) -> int:
+        return sum(part.tally.wrong for part in self._parts)
+
+    @property
+    def first(self) -> StateDifference | None:
+        found = [part.tally.first for part in self._parts if part.tally.first is not None]
+        return min(found, key=lambda difference: difference.cycle, default=None)
+
+    def step(self, end: int) -> None:
+        """Runs the engine up to a cycle, and collects what it publishes."""
+        self._states.begin()
+        while self._engine.cycle < end:
+            self._engine.step(min(end, self._looks.next_cycle + 1) - self._engine.cycle)
+            self._looks.compare()
+
+    def compare(self, end: int) -> None:
+        """What was collected of the cycles before this one."""
+        self._states.compare(end)
+        self._feedback.compare(end)
+
+
+class Tally:
+    def __init__(self) -> None:
+        self.compared = 0
+        self.wrong = 0
+        self.first: StateDifference | None = None
+
+    def add(self, difference: StateDifference | None) -> None:
+        self.compared += 1
+        if difference is not None:
+            self.wrong += 1
+            self.keep(difference)
+
+    def keep(self, difference: StateDifference) -> None:
+        if self.first is None or difference.cycle < self.first.cycle:
+            self.first = difference
+
+
+@dataclass
+class _Recorded:
+    """The states of one component in a log, as columns."""
+
+    name: str
+    index: int  # among the components of the engine
+    fields: tuple[str, ...]
+    columns: dict[str, Array]
+    given: int = 0  # rows that were compared
+
+
+class _States:
+    """Compares the states of components that a log holds with those that are published now. It compares what a
+    recording of the log would hold."""
+
+    def __init__(self, engine: _core.Engine, run: Run) -> None:
+        self.tally = Tally()
+        self._engine = engine
+        self._recorder: _core.Recorder | None = None
+        self._all: list[_Recorded] = []
+        period = run.start.period_s if run.start is not None else 0.0
+        for index, (name, (kind, _)) in enumerate(components_of(json.loads(engine.machine_json)).items()):
+            if run.states.get(name):
+                columns, _ = table_of(kind.name, run.states[name], period)
+                self._all.append(_Recorded(name, index, fields_of_kind(kind.name), columns))
+
+    def begin(self) -> None:
+        """Records the cycles from now on."""
+        if self._all:
+            self._recorder = self._engine.start_recorder([one.index for one in self._all], 1)
+
+    def compare(self, end: int) -> None:
+        """Those of the cycles that were recorded, before this one."""
+        if self._recorder is None:
+            return
+        self._engine.stop_recorder(self._recorder)
+        cycles = self._recorder.cycles().astype(np.int64)
+        for place, one in enumerate(self._all):
+            last = int(np.searchsorted(one.columns["cycle"], end))
+            if not len(cycles) or one.given == last:
+                continue
+            rows = self._recorder.table(place)
+            chosen = one.columns["cycle"][one.given : last] - cycles[0]
+            wrong = np.zeros(len(chosen), dtype=bool)
+            for field in one.fields:
+                was, now = one.columns[field][one.given : last], rows[field][chosen]
+                differs = ~((was == now) | ((was != was) & (now != now)))  # nan is like itself
+                if differs.any():
+                    at = int(np.flatnonzero(differs)[0])
+                    cycle = int(cycles[0] + chosen[at])
+                    self.tally.keep(StateDifference(one.name, field, cycle, was[at].item(), now[at].item()))
+                wrong |= differs
+            self.tally.compared += len(chosen)
+            self.tally.wrong += int(wrong.sum())
+            one.given = last
+        self._recorder = None
+
+
+class _Looks:
+    """Compares what lies on belts, and the shapes of tracks, in the cycles of the messages that say so."""
+
+    def __init__(self, engine: _core.Engine, run: Run) -> None:
+        self.tally = Tally()
+        self._engine = engine
+        machine = json.loads(engine.machine_json)
+        self._belts = {belt["name"]: i for i, belt in enumerate(machine["belts"])}
+        self._tracks = {track["name"]: i for i, track in enumerate(machine["tracks"])}
+        messages: Iterator[Any] = itertools.chain(
+            (one for one in run.objects if one.name in self._belts),
+            (one for one in run.shapes if one.name in self._tracks),
+        )
+        self._messages = sorted(messages, key=lambda message: message.cycle)
+        self._given = 0
+
+    @property
+    def next_cycle(self) -> int:
+        """Cycle of the next message."""
+        return self._messages[self._given].cycle if self._given < len(self._messages) else 2**62
+
+    def compare(self) -> None:
+        """The messages of the cycle that was the last one."""
+        at = self._engine.cycle - 1
+        while self.next_cycle <= at:
+            message = self._messages[self._given]
+            self._given += 1
+            if message.cycle < at:  # there is no such cycle
+                difference: StateDifference | None = StateDifference(message.name, "cycle", at, message.cycle, at)
+            else:
+                difference = next(self._differences(message), None)
+            self.tally.add(difference)
+
+    def _differences(self, message: Any) -> Iterator[StateDifference]:
+        def difference(field: str, was: Any, now: Any) -> StateDifference:
+            return StateDifference(message.name, field, message.cycle, was, now)
+
+        if isinstance(message, msgs.track_shape):
+            shape = (message.part, message.length, bool(message.closed))
+            recorded = (*shape, *map(list, (message.position, message.x, message.y, message.direction)))
+            for field, was, now in zip(
+                SHAPE_FIELDS, recorded, self._engine.track_shape(self._tracks[message.name]), strict=True
+            ):
+                if not _same(was, now):
+                    yield difference(field, was, now)
+            return
+        lying = self._engine.belt_objects(self._belts[message.name])
+        if message.count != len(lying):
+            yield difference("objects", message.count, len(lying))
+        for one, other in zip(objects_of(message), lying, strict=False):
+            for field, was, now in zip(OBJECT_FIELDS, one, other, strict=True):
+                if not _same(was, now):
+                    yield difference(f"object {other[0]}: {field}", was, now)
+
+
+class _Feedback:
+    """Compares what became of commands. Not compared: sentences (a run says more than a replay, which does not check
+    paths against the cell), which client a command came from, and refusals of what a stopping engine or an old command
+    never began: the journal does not know of them."""
+
+    def __init__(self, engine: _core.Engine, run: Run) -> None:
+        self.tally = Tally()
+        self._engine = engine
+        self._targets = {entry.ticket: entry.target for entry in run.journal}
+        reports = (one for one in run.feedback if one.ticket > 0 and one.cycle >= 0 and not self._never_began(one))
+        self._reports = sorted(reports, key=lambda report: report.cycle)
+        self._given = 0
+
+    def _never_began(self, report: msgs.feedback) -> bool:
+        refused = report.state == ERROR and report.error_id in (SHUTDOWN, TOO_OLD)
+        return refused and report.ticket not in self._targets
+
+    def compare(self, end: int) -> None:
+        made: dict[tuple[int, int], list[tuple[Any, ...]]] = {}
+        for ticket, cycle, state, reached, error_id, value, _, *place in self._engine.take_feedback():
+            made.setdefault((ticket, cycle), []).append((state, reached, error_id, value, *place))
+        while self._given < len(self._reports) and self._reports[self._given].cycle < end:
+            report = self._reports[self._given]
+            self._given += 1
+            where = (report.object_kind, report.object_number)
+            # A replay stops all without knowing why.
+            stopped = report.state == ABORTED and report.error_id == SHUTDOWN
+            error_id = 0 if stopped else report.error_id
+            recorded = (report.state, bool(report.reached), error_id, report.value, *where)
+            replayed = made.get((report.ticket, report.cycle), [])
+            if any(_same(recorded, one) for one in replayed):
+                self.tally.add(None)
+                continue
+            target = self._targets.get(report.ticket, "engine")
+            said = " and ".join(map(_said, replayed)) or "nothing"
+            field = f"feedback of command {report.ticket}"
+            self.tally.add(StateDifference(target, field, report.cycle, _said(recorded), said))
+
+
+def _said(report: tuple[Any, ...]) -> str:
+    state, reached, error_id, value, *_ = report
+    words = [STATES[state]]
+    words += ["reached"] if reached else []
+    words += [f"error {error_id}"] if error_id else []
+    words += [f"value {value}"] if value else []
+    return ", ".join(words)
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Bit for bit but for the sign of 0; nan is like itself."""
+    if isinstance(one, (list, tuple)):
+        return len(one) == len(other) and all(map(_same, one, other))
+    return bool(one == other or (one != one and other != other))
