@@ -53,6 +53,7 @@ void describe(Description<FeedbackEvent>& d) {
   d.internal<&F::error>("Why it failed.");
   d.internal<&F::value>("What it found out; active: s its motion takes.");
   d.internal<&F::object>("What is in the way.");
+  d.internal<&F::detail>("Of the error, for its sentence.");
 }
 
 void describe(Enumeration<DriveMode>& e) {

@@ -39,7 +39,8 @@ struct FeedbackEvent {
   // What the command found out: done: what it was to read or capture, of movers' moves: s that it took; active: s its
   // motion takes as planned (AX-96).
   double value = 0;
-  ObjectInfo object{};  // that is in the way; none where nothing is
+  ObjectInfo object{};       // that is in the way; none where nothing is
+  std::uint64_t detail = 0;  // of the error, for its sentence (group/failures.h); 0: none
 };
 
 // Where components report during a cycle. Storage is given from outside and sized so that it cannot overflow in normal

@@ -8,6 +8,7 @@
 #include "takt/cam/commands.h"
 #include "takt/core/scalar.h"
 #include "takt/environment/environments.h"
+#include "takt/group/failures.h"
 #include "takt/group/survey.h"
 #include "takt/mover/command_mode.h"
 #include "takt/planar/problem.h"
@@ -284,6 +285,11 @@ std::string Sentence(const FeedbackEvent& event) {
 }
 
 std::string SentenceNaming(const FeedbackEvent& event, const Machine& machine) {
+  if (event.detail != 0) {
+    const group::Failures failures(event.detail);
+    const std::string sentence = failures.Sentence(machine.groups[failures.group() - 1].axes);
+    if (!sentence.empty()) return sentence + InElement(static_cast<std::uint32_t>(event.value));
+  }
   const std::string object = NameOf(event.object, machine);
   if (object.empty()) return Sentence(event);
   const bool of_track = event.object.kind == ObjectKind::kTrack;

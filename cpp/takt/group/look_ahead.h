@@ -121,6 +121,7 @@ struct LookAhead {
   bool delayed = false;        // the motion was slower than rehearsed
   bool asked = false;          // the question whether the path is free is on its way
   bool cut_short = false;      // the path ends where it could not be gone on with; `reason` says why
+  std::uint64_t failures = 0;  // of the axes there, or at the place refused last (failures.h)
 
   Stretch& operator[](std::uint64_t number) noexcept { return stretches[number % stretches.size()]; }
   const Stretch& operator[](std::uint64_t number) const noexcept { return stretches[number % stretches.size()]; }

@@ -232,7 +232,9 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
   // Onto what moves, and off it, the tool goes straight: where the axes are to be in the end is not known.
   if (move.kind == MoveKind::kDirect && !IsCarried(ahead, stretch)) {
     kinematics::Joints target = joints;
-    s.reason = NearestJointsAt(c, s, to, move.configuration, ahead.end_joints, target);
+    Failures failures;
+    s.reason = NearestJointsAt(c, s, to, move.configuration, ahead.end_joints, target, failures);
+    ahead.failures = failures.Detail(c.number);
     if (s.reason == kinematics::Reason::kNone) return AlongJoints(move, target, ahead, s);
     return s.reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
   }
@@ -256,6 +258,18 @@ kinematics::Reason AxesOn(const Context& c, const State& s, const Stretch& stret
   const bool carried = IsCarried(c.ahead, stretch);
   const path::MovingFrame tool = carried ? ToolThen(c, stretch, along, true) : path::At(stretch.segment, way);
   return AxesFor(c, s, stretch, tool, along, near, motion);
+}
+
+std::uint64_t FailuresOn(const Context& c, const State& s, const Stretch& stretch, double way,
+                         kinematics::Reason reason, const kinematics::Joints& near) noexcept {
+  const kinematics::Joints behind = path::AuxiliariesAt(stretch.segment, way).position;
+  if (stretch.joints) return FailuresOf(c, s, behind).Detail(c.number);
+  kinematics::Joints from = near;
+  for (std::size_t k = c.kinematics->count; k < kMaxAxes; ++k) from[k] = behind[k - c.kinematics->count];
+  const KinematicState along = {way, 1, 0};
+  const bool carried = IsCarried(c.ahead, stretch);
+  const path::MovingFrame tool = carried ? ToolThen(c, stretch, along, true) : path::At(stretch.segment, way);
+  return FailuresAt(c, s, tool.GetFrame(), reason, from).Detail(c.number);
 }
 
 kinematics::Reason AxesFor(const Context& c, const State& s, const Stretch& stretch, const path::MovingFrame& tool,

@@ -22,6 +22,10 @@ kinematics::Reason AxesFor(const Context& c, const State& s, const Stretch& stre
                            const KinematicState& along, const kinematics::Joints& near,
                            kinematics::JointMotion& motion) noexcept;
 
+// Why the axes cannot go on from `near` to a place of a stretch; as FeedbackEvent::detail.
+std::uint64_t FailuresOn(const Context& c, const State& s, const Stretch& stretch, double way,
+                         kinematics::Reason reason, const kinematics::Joints& near) noexcept;
+
 // What a motion along the path asks of all coordinates of LimitsOf where it is carried, if that goes on as it does now.
 // `positions` of the place before, NaN: none. False: it is not carried there, or the axes cannot be so.
 bool Foresee(const Context& c, const State& s, const KinematicState& along, double ahead_s,

@@ -108,13 +108,14 @@ void NextElement(const Context& c, State& s) {
 }
 
 // What a path began and cannot go on with ends there, and so do the moves behind it.
-void CutShort(const Context& c, std::uint64_t move, kinematics::Reason reason, double at, State& s) {
+void CutShort(const Context& c, const Stretch& stretch, kinematics::Reason reason, double at, State& s) {
   s.reason = reason;
+  c.ahead.failures = FailuresOn(c, s, stretch, stretch.from + at, reason, c.ahead.last_joints);
   s.blocked_at = at;
   s.blocked_element = ElementOf(s);
   c.ahead.cut_short = true;
   c.ahead.sampling = c.ahead.end();
-  AbortBehind(c, move, s);
+  AbortBehind(c, stretch.move, s);
 }
 
 void Refuse(const Context& c, ErrorId error, State& s) {
@@ -138,6 +139,7 @@ bool LiesAhead(const Context& c, const State& s) {
 
 void Begin(const Context& c, State& s) {
   s.reason = kinematics::Reason::kNone;
+  c.ahead.failures = 0;
   s.problem = path::Problem::kNone;
   s.blocked_at = 0;
   s.blocked_element = 0;
@@ -295,6 +297,7 @@ void Verify(const Context& c, int& budget, State& s) {
     if (reason != kinematics::Reason::kNone) {
       if (p.verifying && ShortenJog(p.verified, ErrorOf(reason), s)) return BeginAgain(false, s);
       s.reason = reason;
+      c.ahead.failures = FailuresOn(c, s, stretch, to, reason, c.ahead.near);
       s.blocked_at = to;
       s.blocked_element = ElementOf(s);
       return Refuse(c, ErrorOf(reason), s);
@@ -397,7 +400,7 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   for (bool even = false; !even;) {
     if (!trajectory::NextPoint(c.ahead.last, end, limits, c.ahead.window.build_up_s(), c.cycle.period_s, !carried,
                                slopes_at, next)) {
-      CutShort(c, stretch.move, reason, failed_at - stretch.begin, s);
+      CutShort(c, stretch, reason, failed_at - stretch.begin, s);
       return false;
     }
     const double length = next.s - c.ahead.last.s;
@@ -460,7 +463,7 @@ void Sample(const Context& c, int& budget, State& s) {
     if (!stretch.begun) {
       stretch.begun = true;
       --budget;
-      if (!SampleBegin(c, stretch, s)) CutShort(c, stretch.move, kinematics::Reason::kSingular, 0, s);
+      if (!SampleBegin(c, stretch, s)) CutShort(c, stretch, kinematics::Reason::kSingular, 0, s);
     } else if (ahead.last.s >= stretch.end()) {
       ++ahead.sampling;
     } else {

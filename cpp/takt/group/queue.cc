@@ -1,9 +1,14 @@
 #include "takt/group/queue.h"
 
+#include <utility>
+
 namespace takt::group {
 
 void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error, double value) noexcept {
-  c.feedback.Report({ticket, c.cycle.count, feedback, false, error, value});
+  const bool unreachable = error == ErrorId::kUnreachable || error == ErrorId::kSingular;
+  // Once: what fails next fails for reasons of its own. A module reports itself.
+  const std::uint64_t detail = unreachable && ticket != 0 ? std::exchange(c.ahead.failures, 0) : 0;
+  c.feedback.Report({ticket, c.cycle.count, feedback, false, error, value, {}, detail});
 }
 
 bool Push(const Request& move, State& s) noexcept {

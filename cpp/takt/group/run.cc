@@ -66,6 +66,7 @@ bool FollowCarried(const Context& c, const Stretch& stretch, double way, State& 
   StepRise(c, stretch, tool, s);
   if (const auto reason = AxesFor(c, s, stretch, tool, along, s.joints, motion); reason != kinematics::Reason::kNone) {
     s.reason = reason;
+    c.ahead.failures = FailuresOn(c, s, stretch, way, reason, s.joints);
     return false;
   }
   if (GoesToClosed(c, motion, &tool, s)) return false;
@@ -89,6 +90,7 @@ bool Follow(const Context& c, State& s) {
   kinematics::JointMotion by_way;
   if (const auto reason = AxesOn(c, s, *stretch, way, s.joints, by_way); reason != kinematics::Reason::kNone) {
     s.reason = reason;
+    c.ahead.failures = FailuresOn(c, s, *stretch, way, reason, s.joints);
     return false;
   }
   kinematics::JointMotion motion = by_way;

@@ -61,10 +61,10 @@ kinematics::Reason JointsAt(const Context& c, const Frame& tcp, const kinematics
 
 namespace {
 
-// Both the SW limits of a member and the range of the kinematics.
-kinematics::JointRange RangeOf(const Context& c, const State& s, std::size_t k) {
+// Both the SW limits of a member and, of the first `moved` ones, the range of the kinematics: a URDF has its own.
+kinematics::JointRange RangeOf(const Context& c, const State& s, std::size_t k, std::size_t moved) {
   const axis::AxisLimits& limits = c.axes.params[s.members[k] - 1].limits;
-  const kinematics::JointRange& own = c.kinematics->ranges[k];
+  const kinematics::JointRange own = k < moved ? c.kinematics->ranges[k] : kinematics::JointRange{};
   return {std::max(own.lower, limits.lower.value_or(own.lower)), std::min(own.upper, limits.upper.value_or(own.upper))};
 }
 
@@ -81,21 +81,24 @@ bool TakeTurn(const kinematics::JointRange& range, double near, double& position
 
 kinematics::Reason NearestJointsAt(const Context& c, const State& s, const Frame& tcp,
                                    const kinematics::Configuration& wanted, const kinematics::Joints& near,
-                                   kinematics::Joints& joints) noexcept {
+                                   kinematics::Joints& joints, Failures& failures) noexcept {
   const kinematics::Kinematics& kinematics = *c.kinematics;
+  failures = {};
   kinematics::Solutions all = kinematics::SolutionsOf(kinematics, tcp * c.mounting.tool_inverse, wanted, near);
+  for (std::size_t i = 0; i < all.failed_count; ++i) failures.Add(all.failed[i], all.failed_for[i]);
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < all.count; ++i) {
     kinematics::Joints& one = all.of[i];
     bool admissible = true;
     double slowest = 0, sum = 0;
     for (std::size_t k = 0; k < kinematics.count && admissible; ++k) {
-      const kinematics::JointRange range = RangeOf(c, s, k);
+      const kinematics::JointRange range = RangeOf(c, s, k, kinematics.count);
       if (kinematics.kinds[k] == kinematics::JointKind::kRotary) {
         admissible = TakeTurn(range, near[k], one[k]);
       } else {
         admissible = one[k] >= range.lower && one[k] <= range.upper;
       }
+      if (!admissible) failures.AddLimit(all.in[i], k, one[k] > range.upper);
       const double time = std::abs(one[k] - near[k]) / c.axes.params[s.members[k] - 1].limits.velocity;
       slowest = std::max(slowest, time);
       sum += time;
@@ -110,17 +113,60 @@ kinematics::Reason NearestJointsAt(const Context& c, const State& s, const Frame
   return all.count > 0 ? kinematics::Reason::kAxisLimit : all.reason;
 }
 
+Failures FailuresOf(const Context& c, const State& s, const kinematics::Joints& joints) noexcept {
+  Failures failures;
+  const std::size_t moved = InKinematics(c, s);
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] == 0) continue;
+    const kinematics::JointRange range = RangeOf(c, s, k, moved);
+    if (joints[k] >= range.lower && joints[k] <= range.upper) continue;
+    failures.AddLimit({}, k, joints[k] > range.upper);
+    break;
+  }
+  return failures;
+}
+
+Failures FailuresAt(const Context& c, const State& s, const Frame& tcp, kinematics::Reason reason,
+                    const kinematics::Joints& near) noexcept {
+  Failures failures;
+  if (reason != kinematics::Reason::kAxisLimit) {
+    failures.Add({}, reason);
+    return failures;
+  }
+  const kinematics::Solutions all = kinematics::SolutionsOf(*c.kinematics, tcp * c.mounting.tool_inverse, {}, near);
+  kinematics::Joints nearest = near;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < all.count; ++i) {
+    double way = 0;
+    for (std::size_t k = 0; k < c.kinematics->count; ++k) way = std::max(way, std::abs(all.of[i][k] - near[k]));
+    if (way >= least) continue;
+    least = way;
+    std::copy_n(all.of[i].begin(), c.kinematics->count, nearest.begin());
+  }
+  failures = FailuresOf(c, s, nearest);
+  if (failures.Detail(c.number) != 0) return failures;
+  // It is just out of it: then the one that is nearest to an end.
+  std::size_t axis = 0;
+  bool upper = false;
+  least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < c.kinematics->count; ++k) {
+    const kinematics::JointRange range = RangeOf(c, s, k, c.kinematics->count);
+    const double below = near[k] - range.lower, above = range.upper - near[k];
+    if (std::min(below, above) >= least) continue;
+    least = std::min(below, above);
+    axis = k;
+    upper = above < below;
+  }
+  failures.AddLimit({}, axis, upper);
+  return failures;
+}
+
 bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints) noexcept {
   const std::size_t moved = InKinematics(c, s);
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
-    if (k < moved) {  // a URDF has limits of its own
-      const kinematics::JointRange& range = c.kinematics->ranges[k];
-      if (joints[k] < range.lower || joints[k] > range.upper) return false;
-    }
-    const axis::AxisLimits& limits = c.axes.params[s.members[k] - 1].limits;
-    if (limits.lower && joints[k] < *limits.lower) return false;
-    if (limits.upper && joints[k] > *limits.upper) return false;
+    const kinematics::JointRange range = RangeOf(c, s, k, moved);
+    if (joints[k] < range.lower || joints[k] > range.upper) return false;
   }
   return true;
 }

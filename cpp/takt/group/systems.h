@@ -5,6 +5,7 @@
 // says.
 #pragma once
 
+#include "takt/group/failures.h"
 #include "takt/group/group.h"
 #include "takt/kinematics/frames.h"
 
@@ -29,9 +30,15 @@ kinematics::Reason JointsAt(const Context& c, const Frame& tcp, const kinematics
                             kinematics::Joints& joints) noexcept;
 // The nearest position of the axes for a TCP in the MCS, of those within all ranges, in all configurations and turns
 // that `wanted` leaves (GR-44): that which the slowest axis reaches first from `near` at its velocity limit.
+// `failures`: of those that do not do.
 kinematics::Reason NearestJointsAt(const Context& c, const State& s, const Frame& tcp,
                                    const kinematics::Configuration& wanted, const kinematics::Joints& near,
-                                   kinematics::Joints& joints) noexcept;
+                                   kinematics::Joints& joints, Failures& failures) noexcept;
+// Why the axes cannot go on from `near` to a TCP in the MCS that is next to it, where `reason` says that they cannot.
+Failures FailuresAt(const Context& c, const State& s, const Frame& tcp, kinematics::Reason reason,
+                    const kinematics::Joints& near) noexcept;
+// The first member that is out of its range.
+Failures FailuresOf(const Context& c, const State& s, const kinematics::Joints& joints) noexcept;
 // Whether all members are within their SW limits and those of the kinematics.
 bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints) noexcept;
 

@@ -17,8 +17,11 @@ bool Wants(T wanted, T one) {
 }
 
 // Out of reach in one configuration means less than singular in another.
-void TakeReason(Reason reason, Solutions& out) {
+void TakeReason(const Configuration& in, Reason reason, Solutions& out) {
   if (reason != Reason::kOutOfReach) out.reason = reason;
+  if (out.failed_count == kMostSolutions) return;
+  out.failed[out.failed_count] = in;
+  out.failed_for[out.failed_count++] = reason;
 }
 
 void Add(const Kinematics& k, const Configuration& in, const Joints& own, Solutions& out) {
@@ -40,7 +43,7 @@ void Try(const Kinematics& k, const Mechanism& mechanism, const Frame& tool, con
          const Joints& present, Solutions& out) {
   Joints own{};
   const Reason reason = Inverse(mechanism, tool, in, present, own);
-  if (reason != Reason::kNone) return TakeReason(reason, out);
+  if (reason != Reason::kNone) return TakeReason(in, reason, out);
   Add(k, in, own, out);
 }
 
@@ -80,7 +83,7 @@ void TryAll(const Kinematics& k, const Serial& serial, const Frame& tool, const 
         const Reason reason =
             std::visit([&](const auto& own) { return Inverse(own, flange, in, near, arm); }, form.arm);
         if (reason != Reason::kNone) {
-          TakeReason(reason, out);
+          TakeReason(in, reason, out);
           continue;
         }
         for (std::size_t i = 0; i < serial.chain.count; ++i) arm[i] = form.sign[i] * (arm[i] - form.zero[i]);

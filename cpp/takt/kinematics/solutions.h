@@ -11,6 +11,9 @@ struct Solutions {
   std::array<Joints, kMostSolutions> of{};
   std::array<Configuration, kMostSolutions> in{};
   std::size_t count = 0;
+  std::array<Configuration, kMostSolutions> failed{};  // those in which there is none, and
+  std::array<Reason, kMostSolutions> failed_for{};     // why
+  std::size_t failed_count = 0;
   Reason reason = Reason::kOutOfReach;  // why there is none, of that which comes nearest to one
 };
 

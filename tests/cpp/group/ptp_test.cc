@@ -122,7 +122,8 @@ TEST(Ptp, TakesAllThatTheAxesReach) {
       Frame tool;
       ASSERT_EQ(ToolAt(c, there, tool), Reason::kNone);
       Joints found = near;
-      ASSERT_EQ(NearestJointsAt(c, one.rig.state, tool, {}, near, found), Reason::kNone) << i;
+      Failures failures;
+      ASSERT_EQ(NearestJointsAt(c, one.rig.state, tool, {}, near, found, failures), Reason::kNone) << i;
       Frame reached;
       ToolAt(c, found, reached);
       ASSERT_LE((reached.p - tool.p).Norm(), 1e-6);
