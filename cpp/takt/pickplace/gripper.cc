@@ -12,8 +12,11 @@ using trajectory::PathPace;
 using trajectory::PathWindow;
 
 constexpr double kThere = 1e-6;  // mm
-// The scout goes so many cycles in one.
+// The scout goes so many cycles in one: fewer than the group's rehearsal, which may slow the motion down where it
+// passes.
 constexpr int kScouted = 16;
+// Where that is through already.
+constexpr int kScoutedBehind = 64;
 // Before the pulse may be due it is looked at in each cycle.
 constexpr std::uint64_t kEarly = 3;
 
@@ -56,29 +59,51 @@ bool IsOnItsWay(const group::State& g, const Order& order) {
          g.done <= order.last;
 }
 
-// Goes on ahead of the group.
+// Goes on ahead of the group to the end of an order.
+void GoOn(const Context& c, double end, int cycles, Scout& scout) {
+  for (int i = 0; i < cycles && !scout.known; ++i) {
+    Advance(c.group.ahead.window, c.group.cycle.period_s, scout.pace);
+    ++scout.cycle;
+    scout.known = IsThere(scout.pace, end);
+  }
+  scout.end_cycle = scout.cycle;
+}
+
+double TimeOf(const Context& c, const Order& order, const Scout& scout) {
+  return static_cast<double>(scout.end_cycle - order.begin_cycle) * c.group.cycle.period_s;
+}
+
 void StepScout(const Context& c, const group::State& g, const Order& order, double end, State& s) {
   Scout& scout = s.scout;
   if (scout.known) return;
-  const PathWindow& window = c.group.ahead.window;
   if (!scout.running) {
     scout = {.running = true, .order_last = order.last, .cycle = c.group.cycle.count - 1, .pace = g.pace};
   }
   // A law that leads to the end says when; one that is to be replaced does not.
-  const trajectory::PathTiming& timing = c.group.ahead.timing;
-  if (timing.active()) {
+  if (const trajectory::PathTiming& timing = c.group.ahead.timing; timing.active()) {
     scout.known = timing.Settles(end);
-    scout.cycle = c.group.cycle.count - 1 + timing.rest_cycles();
-  }
-  for (int i = 0; i < kScouted && !scout.known && !timing.active(); ++i) {
-    Advance(window, c.group.cycle.period_s, scout.pace);
-    ++scout.cycle;
-    scout.known = IsThere(scout.pace, end);
+    scout.end_cycle = scout.cycle = c.group.cycle.count - 1 + timing.rest_cycles();
+  } else {
+    GoOn(c, end, kScouted, scout);
   }
   if (!scout.known) return;
-  scout.end_cycle = scout.cycle;
-  s.profile_time = static_cast<double>(scout.end_cycle - order.begin_cycle) * c.group.cycle.period_s;
+  s.profile_time = TimeOf(c, order, scout);
   Learn(s.profile_time, order, s);
+}
+
+// From the end of the first order to that of the second one, so that its time is known when it begins. Looked at again
+// then: axes that have to keep up may make it longer.
+void StepNextScout(const Context& c, State& s) {
+  Scout& scout = s.next_scout;
+  if (!s.scout.known || scout.known || s.order_count < 2 || c.group.ahead.timing.active()) return;
+  const Order& order = s.orders[1];
+  if (order.phase != Phase::kGoing || c.group.ahead.rehearsal.end_cycle() == 0) return;
+  const std::optional<double> end = EndOf(c.group.ahead, order.last);
+  if (!end) return;
+  if (scout.order_last != order.last) {
+    scout = {.running = true, .order_last = order.last, .cycle = s.scout.end_cycle, .pace = s.scout.pace};
+  }
+  GoOn(c, *end, kScoutedBehind, scout);
 }
 
 }  // namespace
@@ -86,16 +111,25 @@ void StepScout(const Context& c, const group::State& g, const Order& order, doub
 void StepGripper(const Context& c, const group::State& g, State& s) noexcept {
   if (s.order_count == 0) return;
   Order& order = s.orders[0];
-  if (s.inputs.override_factor != 1) order.gripper_off = true;
-  if (!IsOnItsWay(g, order)) return;
+  if (s.inputs.override_factor != 1) {
+    order.gripper_off = true;
+    s.next_scout = {};
+  }
+  if (!IsOnItsWay(g, order)) {
+    if (s.scout.order_last == order.last) s.next_scout = {};  // it is not when it was expected that it goes on
+    return;
+  }
   if (s.scout.order_last != order.last) {
-    s.scout = {};
-    s.scout.order_last = order.last;
     order.begin_cycle = c.group.cycle.count - 1;
+    const bool known = s.next_scout.known && s.next_scout.order_last == order.last;
+    s.profile_time = known ? TimeOf(c, order, s.next_scout) : 0;
+    s.scout = s.next_scout = {};
+    s.scout.order_last = order.last;
   }
   const std::optional<double> end = EndOf(c.group.ahead, order.last);
   if (!end) return;
   StepScout(c, g, order, *end, s);
+  StepNextScout(c, s);
   if (order.gripper_time <= 0 || order.gripper_off || order.pulse_at_end || order.pulsed || !s.scout.known) return;
   const double period = c.group.cycle.period_s;
   const auto before = static_cast<std::uint64_t>(std::llround(order.gripper_time / period));

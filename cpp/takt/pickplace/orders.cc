@@ -443,7 +443,7 @@ void EndOrders(const Context& c, FeedbackState feedback, ErrorId error, State& s
   KeepHeight(s);
   s.given = 0;
   s.hold = {};
-  s.scout = {};
+  s.scout = s.next_scout = {};
 }
 
 void LosePath(const Context& c, const group::State& g, bool kept, State& s) noexcept {
@@ -463,7 +463,7 @@ void LosePath(const Context& c, const group::State& g, bool kept, State& s) noex
   ForgetPlace(s);
   KeepHeight(s);
   s.given = 0;
-  s.scout = {};
+  s.scout = s.next_scout = {};
 }
 
 void EndLoopBehindThis(const Context& c, State& s) noexcept {

@@ -140,6 +140,7 @@ void describe(Description<State>& d) {
   d.internal<&State::override_given>("To the group.");
   d.internal<&State::pulse>("Of the gripper.");
   d.internal<&State::scout>("Ahead of the group.");
+  d.internal<&State::next_scout>("Ahead of that, on the next profile.");
   d.internal<&State::profile_time>("Of the profile.");
   d.internal<&State::preparation_time>("Of the path.");
   d.internal<&State::prepare_cycle>("When it began.");

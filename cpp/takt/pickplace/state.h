@@ -150,6 +150,7 @@ struct State {
   double override_given = 1;
   bool pulse = false;
   Scout scout;
+  Scout next_scout;                 // of the second order, from where that of the first one has got to
   double profile_time = 0;          // s
   double preparation_time = 0;      // s
   std::uint64_t prepare_cycle = 0;  // when it began

@@ -180,6 +180,40 @@ TEST(Static, PulseToTheCycle) {
   }
 }
 
+// PP-63, PP-15: the time of a profile that waited is known when the tool sets out, and is that taken; of one from rest
+// it is known some cycles later.
+TEST(Static, ProfileTimeIsKnownWhenTheToolSetsOut) {
+  for (const double radius : {0.0, 10.0}) {
+    SCOPED_TRACE(testing::Message() << "radius " << radius);
+    Settings s = Fast();
+    s.blending_radius = radius;
+    Cell cell(s);
+    cell.Start();
+    std::vector<Ticket> tickets;
+    for (int i = 0; i < 5; ++i) {
+      cell.Give(To(i % 2 == 0 ? 200 + 10.0 * i : 0, 10.0 * i, 0));
+      tickets.push_back(cell.Execute());
+    }
+    double told = 0;
+    for (std::size_t k = 0; k < tickets.size(); ++k) {
+      int cycles = 0, known = -1;
+      while (!cell.rig.lives[tickets[k]].done && cycles < 5000) {
+        cell.Step();
+        const bool moves = cell.out().set_path_velocity > 0;
+        if (moves || cycles > 0) ++cycles;
+        if (known < 0 && cycles > 0 && cell.out().precalculated_profile_time > 0) {
+          known = cycles;
+          told = cell.out().precalculated_profile_time;
+        }
+      }
+      ASSERT_GE(known, 0) << k;
+      EXPECT_NEAR(told, 0.001 * cycles, 0.0021) << k;
+      EXPECT_NEAR(cell.state.profile_time, told, 0.0021) << k;
+      EXPECT_LE(known, k == 0 ? 40 : 1) << k;
+    }
+  }
+}
+
 // PP-30: each of several profiles has its pulse, to the cycle, although the next one is planned already.
 TEST(Static, PulsesOfProfilesBehindOneAnother) {
   Settings s = Fast();
