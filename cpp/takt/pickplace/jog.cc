@@ -149,7 +149,8 @@ void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) n
 }
 
 void BeginJog(const Context& c, group::State& g, State& s) noexcept {
-  if (s.jog.ticket == 0 || s.halting || !IsOn(c, g) || !Stands(c, g)) return;
+  // What rises is let go of first: a stop would wait for that.
+  if (s.jog.ticket == 0 || s.halting || s.lifting || !IsOn(c, g) || !Stands(c, g)) return;
   if (!s.jog.keys.positive && !s.jog.keys.negative) return EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
   s.jog_axis = s.inputs.select_axis;
   s.jog_sense = s.jog.keys.positive ? 1 : -1;

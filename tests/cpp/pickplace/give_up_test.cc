@@ -130,6 +130,37 @@ TEST(GiveUp, BeltSetsOutBelowTheTool) {
   }
 }
 
+// PP-60: a halt at every instant of a pick, on which the tool rises where it is low; whoever asks for it in every
+// cycle jogs it as soon as it stands. Then a stop, or the end of enable, ends the jog as any other.
+TEST(GiveUp, JogBehindARiseIsStopped) {
+  int jogged = 0, rose = 0;
+  for (const bool disable : {false, true}) {
+    for (double at = 0; at < kPick_s; at += Stride(0.023)) {
+      SCOPED_TRACE(testing::Message() << "at " << at << (disable ? ", enable false" : ", path_stop"));
+      Cell cell(Rounded(), {Infeed(Changing(100, 0, at, 0.1))});
+      cell.Start();
+      cell.Put(0, {150, 20, 0, 0, 0, 0});
+      cell.Execute(1);
+      cell.Steps(static_cast<int>(at / 0.001));
+      cell.Give(Control{.path_halt = true});
+      cell.Give(Control{.select_axis = SelectAxis::kZ});
+      for (int i = 0; i < 1000 && cell.state.state != M::kJogNeg; ++i) {
+        cell.Give(Jog{.negative = true});
+        cell.Step();
+        rose += cell.state.lifting ? 1 : 0;
+      }
+      if (cell.state.state != M::kJogNeg) continue;
+      ++jogged;
+      for (int i = 0; i < 1000 && !(std::abs(cell.rig.states[2].setpoint.velocity) > 1); ++i) cell.Step();
+      cell.Give(disable ? Control{.enable = false} : Control{.path_stop = true});
+      cell.Steps(300);
+      for (const axis::State& axis : cell.rig.states) EXPECT_EQ(axis.setpoint.velocity, 0);
+    }
+  }
+  EXPECT_GT(jogged, Trials(35, 1));
+  EXPECT_GT(rose, Trials(500, 1));
+}
+
 // It turns back at every instant: near the beginning of the range that is too early for some.
 TEST(GiveUp, BeltTurnsBack) {
   int given_up = 0;
