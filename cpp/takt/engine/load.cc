@@ -8,6 +8,7 @@
 #include "takt/core/scalar.h"
 #include "takt/core/yaml_reader.h"
 #include "takt/engine/components.h"
+#include "takt/engine/load_buses.h"
 #include "takt/engine/load_cams.h"
 #include "takt/engine/load_groups.h"
 #include "takt/engine/load_parts.h"
@@ -85,6 +86,8 @@ class CrossCheck {
     for (std::size_t i = 0; i < machine_.external.drives.size(); ++i) {
       CheckReference("external.drives[" + std::to_string(i) + "].axis", machine_.external.drives[i].axis, external);
     }
+    const std::vector<Problem> of_buses = CheckBuses(source_, machine_);
+    problems_.insert(problems_.end(), of_buses.begin(), of_buses.end());
     CheckRates();
     return std::move(problems_);
   }
@@ -481,7 +484,10 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name, Worksp
   for (const Problem& problem : problems) result.problems.push_back(problem.Text());
   for (const Problem& warning : cams.warnings) result.warnings.push_back(warning.Text());
   result.checkers = std::move(groups.checkers);
-  if (problems.empty()) result.machine = std::move(machine);
+  if (problems.empty()) {
+    AddDrivesOfBuses(machine);
+    result.machine = std::move(machine);
+  }
   return result;
 }
 

@@ -121,6 +121,7 @@ void describe(Description<External>& d) {
   d.about("What lives in other processes.");
   d.defaulted<&E::drives>(
       "Drives. Their axes are simulated no more; takt plant puts the simulation in another process.");
+  d.defaulted<&E::buses>("Field buses whose drives move axes; takt drives run is the process for them.");
   d.defaulted<&E::answer_within_s>(unit::s, between(0.001, 3600),
                                    "Simulated time waits so long for the answers to one cycle, by the wall clock; then "
                                    "the cycle goes on without them.");

@@ -13,6 +13,7 @@
 #include "takt/conveyor/params.h"
 #include "takt/conveyor/pose.h"
 #include "takt/core/describe_fwd.h"
+#include "takt/engine/bus.h"
 #include "takt/environment/params.h"
 #include "takt/flexcam/params.h"
 #include "takt/group/params.h"
@@ -68,6 +69,7 @@ struct ExternalDrive {
 
 struct External {
   std::vector<ExternalDrive> drives;
+  std::vector<Bus> buses;
   double answer_within_s = 2;  // simulated time: s of the wall clock to wait for the answers to one cycle
 };
 

@@ -1,0 +1,62 @@
+#include "takt/engine/bus.h"
+
+#include "takt/core/describe.h"
+
+namespace takt::engine {
+
+void describe(Description<BusScaling>& d) {
+  using S = BusScaling;
+  d.about("Resolution, gear and feed: from increments of the drive to the unit of the axis.");
+  d.required<&S::increments_per_revolution>(positive, "Increments (0x6064) in a revolution of the motor.");
+  d.defaulted<&S::gear_motor>(positive, "Gear: so many revolutions of the motor ...");
+  d.defaulted<&S::gear_shaft>(positive, "... are so many of the shaft.");
+  d.required<&S::feed>(unit::u_rev, positive, "Way of the axis in a revolution of the shaft.");
+}
+
+void describe(Description<BusInputs>& d) {
+  using I = BusInputs;
+  d.about("Bits of the digital inputs of a drive (0x60FD), -1: the axis has no such wire.");
+  d.defaulted<&I::limit_negative>(between(-1, 31), "Negative limit switch.");
+  d.defaulted<&I::limit_positive>(between(-1, 31), "Positive limit switch.");
+  d.defaulted<&I::reference>(between(-1, 31), "Reference switch.");
+  d.defaulted<&I::touch_probe>(between(-1, 31), "Touch probe.");
+}
+
+void describe(Description<BusObject>& d) {
+  using O = BusObject;
+  d.about("An object that is written to a drive at start, before it is operational.");
+  d.required<&O::object>("Index and subindex, \"0x6098:0\".");
+  d.required<&O::value>("What is written.");
+  d.defaulted<&O::bits>(between(8, 64), "Length of the object: 8, 16, 32 or 64.");
+}
+
+void describe(Description<BusDrive>& d) {
+  using B = BusDrive;
+  d.about("A drive on a field bus that speaks CiA 402 and moves an axis.");
+  d.required<&B::axis>("Name of the axis. Its drive: mode (cyclic_position, cyclic_velocity) is that of the drive.");
+  d.required<&B::node>(between(1, 127), "Address of the drive on the bus.");
+  d.defaulted<&B::vendor>("Vendor of the drive (0x1018:1), \"0x2E1\": another one is refused.");
+  d.defaulted<&B::product>("Product code of the drive (0x1018:2): another one is refused.");
+  d.defaulted<&B::scaling>("Unset: an increment of the drive is a count of the axis' encoder.");
+  d.defaulted<&B::velocity_factor>(positive, "Units of the drive's velocities (0x60FF) in 1 increment/s.");
+  d.defaulted<&B::rated_torque>(unit::nm, positive,
+                                "Rated torque, N on linear motors; unset: the drive says it (0x6076).");
+  d.defaulted<&B::inputs>("Which of its inputs are wires of the axis.");
+  d.defaulted<&B::start_up>("Objects to write at start, in this order.");
+  d.defaulted<&B::ready_within_s>(unit::s, between(0.1, 600), "How long the drive may take to answer at start.");
+}
+
+void describe(Description<Bus>& d) {
+  using B = Bus;
+  d.about("A field bus with drives, which takt drives run connects with the engine.");
+  d.required<&B::bus>("Kind and channel: canopen:can0, canopen:INTERFACE:CHANNEL (interfaces of python-can).");
+  d.defaulted<&B::bitrate>("Bits per second; 0: as the interface is set.");
+  d.defaulted<&B::node>(between(1, 127), "Address of this end.");
+  d.defaulted<&B::heartbeat_s>(unit::s, between(0.01, 10),
+                               "Between two signs of life of this end and of each drive; three missing are a fault.");
+  d.defaulted<&B::missing_cycles>(unit::cycles, between(3, 100000),
+                                  "So many answers of a drive missing in a row are a drive error (ErrorStop 3002).");
+  d.required<&B::drives>("The drives. Their axes are external drives without being named under drives.");
+}
+
+}  // namespace takt::engine

@@ -1,0 +1,65 @@
+// Field buses of the machine file: which drives stand on them, for which axes. Only described and checked here; the
+// process of the drives (`takt drives run`) works with it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "takt/core/describe_fwd.h"
+
+namespace takt::engine {
+
+// From increments of a drive (0x6064) to the unit of its axis.
+struct BusScaling {
+  double increments_per_revolution = 0;  // of the motor
+  double gear_motor = 1;                 // so many revolutions of the motor ...
+  double gear_shaft = 1;                 // ... are so many of the shaft
+  double feed = 0;                       // u in a revolution of the shaft
+};
+
+// Bits of the digital inputs of a drive (0x60FD); -1: the axis has no such wire.
+struct BusInputs {
+  std::int32_t limit_negative = 0;
+  std::int32_t limit_positive = 1;
+  std::int32_t reference = 2;
+  std::int32_t touch_probe = -1;
+};
+
+// Written to an object of a drive at start.
+struct BusObject {
+  std::string object;  // "0x6098:0"
+  std::int64_t value = 0;
+  std::uint8_t bits = 32;
+};
+
+struct BusDrive {
+  std::string axis;                      // name of the axis
+  std::uint8_t node = 1;                 // address on the bus
+  std::optional<std::string> vendor{};   // "0x2E1": that of the drive, else it is the wrong one
+  std::optional<std::string> product{};  // the same of its product code
+  std::optional<BusScaling> scaling{};   // unset: an increment of the drive is a count of the axis' encoder
+  double velocity_factor = 1;            // units of velocity objects in 1 increment/s
+  std::optional<double> rated_torque{};  // Nm or N; unset: the drive says it
+  BusInputs inputs;
+  std::vector<BusObject> start_up;
+  double ready_within_s = 10;  // s from the start of the process to a drive that has answered
+};
+
+struct Bus {
+  std::string bus;                   // "canopen:can0"
+  std::uint32_t bitrate = 1000000;   // bit/s; 0: as the interface is set
+  std::uint8_t node = 127;           // address of this end
+  double heartbeat_s = 0.1;          // s between two signs of life, of this end and of each drive
+  std::uint32_t missing_cycles = 5;  // so many answers missing in a row are a drive error
+  std::vector<BusDrive> drives;
+};
+
+void describe(Description<BusScaling>&);
+void describe(Description<BusInputs>&);
+void describe(Description<BusObject>&);
+void describe(Description<BusDrive>&);
+void describe(Description<Bus>&);
+
+}  // namespace takt::engine

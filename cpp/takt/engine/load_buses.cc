@@ -1,0 +1,175 @@
+#include "takt/engine/load_buses.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "takt/axis/params.h"
+#include "takt/core/scalar.h"
+#include "takt/core/yaml_reader.h"
+
+namespace takt::engine {
+
+namespace {
+
+constexpr std::string_view kCanopen = "canopen:";
+
+// "0x6098", up to `largest`.
+bool IsHex(std::string_view text, std::uint64_t largest) {
+  if (!text.starts_with("0x") && !text.starts_with("0X")) return false;
+  text.remove_prefix(2);
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+  return error == std::errc() && end == text.data() + text.size() && value <= largest;
+}
+
+// "0x6098:0", both hexadecimal or the second one decimal.
+bool IsObject(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos || !IsHex(text.substr(0, colon), 0xFFFF)) return false;
+  const std::string_view sub = text.substr(colon + 1);
+  std::uint8_t number = 0;
+  const auto [end, error] = std::from_chars(sub.data(), sub.data() + sub.size(), number);
+  return IsHex(sub, 0xFF) || (error == std::errc() && !sub.empty() && end == sub.data() + sub.size());
+}
+
+bool FitsBits(std::int64_t value, int bits) {
+  if (bits == 64) return true;
+  const std::int64_t half = std::int64_t{1} << (bits - 1);
+  return value >= -half && value < 2 * half;  // with or without a sign
+}
+
+class BusChecker {
+ public:
+  BusChecker(const SourceMap& source, const Machine& machine) : source_(source), machine_(machine) {
+    for (const axis::AxisParams& axis : machine.axes) names_.push_back(axis.name);
+  }
+
+  std::vector<Problem> Run() {
+    const std::vector<Bus>& buses = machine_.external.buses;
+    for (std::size_t i = 0; i < buses.size(); ++i) {
+      const std::string path = "external.buses[" + std::to_string(i) + "]";
+      CheckBus(path, buses[i]);
+      for (std::size_t k = 0; k < i; ++k) {
+        if (!buses[i].bus.empty() && buses[i].bus == buses[k].bus) {
+          Add(path + ".bus", "expected each bus once, found " + Quoted(buses[i].bus) + " again");
+          break;
+        }
+      }
+    }
+    const std::vector<ExternalDrive>& drives = machine_.external.drives;
+    for (std::size_t i = 0; i < drives.size(); ++i) {
+      if (drives[i].missing_cycles < 3 && std::ranges::find(axes_, drives[i].axis) != axes_.end()) {
+        Add("external.drives[" + std::to_string(i) + "].missing_cycles",
+            "expected at least 3 cycles, for answers over a bus come a cycle later, found " +
+                std::to_string(drives[i].missing_cycles));
+      }
+    }
+    return std::move(problems_);
+  }
+
+ private:
+  void Add(const std::string& path, const std::string& message) {
+    problems_.push_back(source_.ProblemAt(path, message));
+  }
+
+  void CheckBus(const std::string& path, const Bus& bus) {
+    if (!bus.bus.empty() && (!bus.bus.starts_with(kCanopen) || bus.bus.size() == kCanopen.size())) {
+      Add(path + ".bus", "expected canopen:CHANNEL or canopen:INTERFACE:CHANNEL, found " + Quoted(bus.bus));
+    }
+    if (!bus.bus.empty() && bus.drives.empty()) Add(path + ".drives", "expected at least one drive");
+    for (std::size_t i = 0; i < bus.drives.size(); ++i) {
+      const BusDrive& drive = bus.drives[i];
+      const std::string at = path + ".drives[" + std::to_string(i) + "]";
+      CheckAxis(at, drive);
+      CheckNode(at, bus, i);
+      for (const auto& [key, given] : {std::pair{".vendor", &drive.vendor}, std::pair{".product", &drive.product}}) {
+        if (*given && !IsHex(**given, 0xFFFFFFFF)) {
+          Add(at + key, "expected a number of 32 bits like \"0x2E1\", found " + Quoted(**given));
+        }
+      }
+      for (std::size_t k = 0; k < drive.start_up.size(); ++k) {
+        CheckObject(at + ".start_up[" + std::to_string(k) + "]", drive.start_up[k]);
+      }
+    }
+  }
+
+  void CheckAxis(const std::string& at, const BusDrive& drive) {
+    if (drive.axis.empty()) return;  // reported as missing
+    const std::uint32_t index = axis::FindAxis(machine_.axes, drive.axis);
+    if (index == axis::kNoAxis) {
+      return Add(at + ".axis",
+                 "expected the name of an axis, found " + Quoted(drive.axis) + DidYouMean(drive.axis, names_));
+    }
+    if (std::ranges::find(axes_, drive.axis) != axes_.end()) {
+      return Add(at + ".axis", "expected each axis once, found " + Quoted(drive.axis) + " again");
+    }
+    axes_.push_back(drive.axis);
+    const axis::AxisParams& axis = machine_.axes[index];
+    if (axis.drive.mode == DriveMode::kAnalog) {
+      Add(at + ".axis", "expected an axis whose drive: mode is cyclic_position or cyclic_velocity, found " +
+                            Quoted(drive.axis) + ", which is analog");
+    }
+    const axis::Encoder& encoder = axis.encoder;
+    if (encoder.type != axis::EncoderType::kIncremental &&
+        (encoder.ssi_bits != 32 || encoder.coding != axis::SsiCoding::kBinary)) {
+      Add(at + ".axis",
+          "expected an encoder that is incremental, or absolute with ssi_bits: 32 and coding: binary, as "
+          "drives on a bus send it, found another one on " +
+              Quoted(drive.axis));
+    }
+  }
+
+  void CheckNode(const std::string& at, const Bus& bus, std::size_t i) {
+    const std::uint8_t node = bus.drives[i].node;
+    if (node == bus.node) {
+      Add(at + ".node", "expected another address than that of this end of the bus, found " + std::to_string(node));
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      if (bus.drives[k].node != node) continue;
+      return Add(at + ".node", "expected each address once on a bus, found " + std::to_string(node) + " again");
+    }
+  }
+
+  void CheckObject(const std::string& at, const BusObject& object) {
+    if (!object.object.empty() && !IsObject(object.object)) {
+      Add(at + ".object", "expected index and subindex like \"0x6098:0\", found " + Quoted(object.object));
+    }
+    if (object.bits != 8 && object.bits != 16 && object.bits != 32 && object.bits != 64) {
+      Add(at + ".bits", "expected 8, 16, 32 or 64, found " + std::to_string(object.bits));
+    } else if (!FitsBits(object.value, object.bits)) {
+      Add(at + ".value",
+          "expected a number of " + std::to_string(object.bits) + " bits, found " + std::to_string(object.value));
+    }
+  }
+
+  const SourceMap& source_;
+  const Machine& machine_;
+  std::vector<std::string_view> names_;
+  std::vector<std::string_view> axes_;  // on a bus
+  std::vector<Problem> problems_;
+};
+
+}  // namespace
+
+std::vector<Problem> CheckBuses(const SourceMap& source, const Machine& machine) {
+  return BusChecker(source, machine).Run();
+}
+
+void AddDrivesOfBuses(Machine& machine) {
+  std::vector<ExternalDrive>& drives = machine.external.drives;
+  for (const Bus& bus : machine.external.buses) {
+    for (const BusDrive& drive : bus.drives) {
+      const auto same = [&](const ExternalDrive& listed) { return listed.axis == drive.axis; };
+      if (std::ranges::none_of(drives, same)) {
+        drives.push_back({.axis = drive.axis, .missing_cycles = bus.missing_cycles});
+      }
+    }
+  }
+}
+
+}  // namespace takt::engine

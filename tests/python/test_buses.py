@@ -1,0 +1,143 @@
+"""AX-87, EN-26: field buses in machine files, checked with line and key."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+import yaml
+from buses import described, machine
+from takt import _core
+from takt.cli import main
+from takt.errors import ConfigError
+
+URL = "udpm://239.255.76.67:7667?ttl=0"
+
+
+def problems(text: str) -> list[str]:
+    with pytest.raises(ConfigError) as caught:
+        _core.load_machine(text.encode(), "m.yaml")
+    return list(caught.value.problems)
+
+
+def test_axes_on_a_bus_are_external_drives() -> None:
+    """AX-87: without being named under drives; what is written there counts."""
+    found = described(machine(URL, "canopen:can0", 3, bus_keys="missing_cycles: 7"))["external"]
+    assert found["drives"] == [{"axis": f"x{k}", "missing_cycles": 7} for k in (1, 2, 3)]
+    assert found["buses"][0]["drives"][1]["inputs"] == {
+        "limit_negative": 0,
+        "limit_positive": 1,
+        "reference": 2,
+        "touch_probe": -1,
+    }
+    text = machine(URL, "canopen:can0", 2).replace("  buses:", "  drives: [{axis: x2, missing_cycles: 20}]\n  buses:")
+    assert described(text)["external"]["drives"] == [
+        {"axis": "x2", "missing_cycles": 20},
+        {"axis": "x1", "missing_cycles": 5},
+    ]
+
+
+def test_all_that_may_be_given() -> None:
+    """AX-87."""
+    keys = (
+        'vendor: "0x2E1", product: "0x10", scaling: {increments_per_revolution: 65536, gear_motor: 10, feed: 5}, '
+        "velocity_factor: 0.5, rated_torque: 1.27, inputs: {limit_negative: -1, touch_probe: 16}, "
+        'start_up: [{object: "0x6098:0", value: -3, bits: 8}], ready_within_s: 20'
+    )
+    found = described(machine(URL, "canopen:can0", 1, drive_keys=keys, bus_keys="bitrate: 0"))["external"]["buses"][0]
+    one = found["drives"][0]
+    assert found["bitrate"] == 0
+    assert one["inputs"]["limit_negative"] == -1
+    assert one["scaling"]["gear_shaft"] == 1
+    assert one["start_up"] == [{"object": "0x6098:0", "value": -3, "bits": 8}]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ('"canopen:can0"', '"profibus:1"', "m.yaml:14:12: external.buses[0].bus: expected canopen:CHANNEL or"),
+        (
+            "axis: x2",
+            "axis: x3",
+            "m.yaml:17:18: external.buses[0].drives[1].axis: expected the name of an axis, found 'x3'",
+        ),
+        ("axis: x2", "axis: x1", "external.buses[0].drives[1].axis: expected each axis once, found 'x1' again"),
+        ("node: 2", "node: 1", "external.buses[0].drives[1].node: expected each address once on a bus, found 1 again"),
+        ("node: 2", "node: 127", "node: expected another address than that of this end of the bus, found 127"),
+        ("node: 2", "node: 128", "external.buses[0].drives[1].node: expected a whole number from 1 to 127, found 128"),
+        (
+            "node: 2",
+            "nodes: 2",
+            "m.yaml:17:22: external.buses[0].drives[1]: expected a known key, found 'nodes'; did you mean node?",
+        ),
+        ("node: 2", 'node: 2, vendor: "2E1"', 'vendor: expected a number of 32 bits like "0x2E1", found'),
+        (
+            "node: 2",
+            'node: 2, start_up: [{object: "6098", value: 1}]',
+            'start_up[0].object: expected index and subindex like "0x6098:0", found',
+        ),
+        (
+            "node: 2",
+            'node: 2, start_up: [{object: "0x6098:0", value: 300, bits: 8}]',
+            "start_up[0].value: expected a number of 8 bits, found 300",
+        ),
+        (
+            "node: 2",
+            'node: 2, start_up: [{object: "0x6098:0", value: 3, bits: 9}]',
+            "bits: expected 8, 16, 32 or 64, found 9",
+        ),
+        (
+            "node: 2",
+            "node: 2, inputs: {reference: 32}",
+            "inputs.reference: expected a whole number from -1 to 31, found 32",
+        ),
+        (
+            "node: 2",
+            "node: 2, scaling: {feed: 5}",
+            "scaling.increments_per_revolution: expected this key with a number above 0, found nothing",
+        ),
+        (
+            "    encoder: {increments_per_unit: 1000}\nexternal",
+            "    encoder: {increments_per_unit: 1000}\n    drive: {mode: analog}\nexternal",
+            "expected an axis whose drive: mode is cyclic_position or cyclic_velocity, found",
+        ),
+        (
+            "    encoder: {increments_per_unit: 1000}\nexternal",
+            "    encoder: {type: absolute_ssi, increments_per_unit: 1000}\nexternal",
+            "expected an encoder that is incremental, or absolute with ssi_bits: 32",
+        ),
+        (
+            "  buses:",
+            "  drives: [{axis: x2, missing_cycles: 2}]\n  buses:",
+            "external.drives[0].missing_cycles: expected at least 3 cycles",
+        ),
+    ],
+)
+def test_what_is_wrong_is_said_with_line_and_key(old: str, new: str, sentence: str) -> None:
+    """AX-87, EN-10."""
+    text = machine(URL, "canopen:can0", 2)
+    assert old in text
+    before, _, after = text.rpartition(old)
+    found = problems(before + new + after)
+    assert any(sentence in line for line in found), found
+
+
+def test_the_schema_knows_buses(capsys: pytest.CaptureFixture[str]) -> None:
+    """EN-11: editors complete them."""
+    import jsonschema
+
+    assert main(["schema"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    text = machine(URL, "canopen:can0", 2, drive_keys='vendor: "0x2E1"')
+    jsonschema.validate(yaml.safe_load(text), schema)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(yaml.safe_load(text.replace("node: 2", "node: 0")), schema)
+
+
+def test_check_says_ok(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """EN-10."""
+    file = tmp_path / "machine.yaml"
+    file.write_text(machine(URL, "canopen:can0", 2))
+    assert main(["check", str(file)]) == 0
+    assert capsys.readouterr().out.endswith("ok\n")
