@@ -19,6 +19,7 @@ from rich.text import Text
 from takt import _core
 from takt.counted import counted
 from takt.drive import WATCHDOG, simulate
+from takt.drives.commands import drives
 from takt.ending import end_in_order, wait_until_ended
 from takt.engine import Engine, read_machine
 from takt.errors import ConfigError, TaktError
@@ -359,6 +360,9 @@ def view(what: str | None, port: int, browser: bool, pace: str, key: Path | None
 def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int, key: Path | None) -> int:
     """Simulate the external drives of a MACHINE in this process, for an engine in another one."""
     return simulate(machine, url, axes, watchdog, key)
+
+
+cli.add_command(drives)
 
 
 @cli.group(context_settings={"help_option_names": ["-h", "--help"]})

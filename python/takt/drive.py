@@ -15,7 +15,7 @@ import sys
 import time
 from abc import ABC, abstractmethod
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import partial
 from typing import Any, Final
@@ -88,6 +88,31 @@ class Drive(ABC):
         time, it is called with a set point that says off, again and again."""
 
 
+class Bus(ABC):
+    """Drives that share a wire: all set points of a cycle go out together, and what was measured comes back together.
+
+    axes: the names of the axes of its drives.
+    period_s: how often it is kept going while there is no engine.
+    """
+
+    axes: Sequence[str]
+    period_s: float = 0.001
+
+    def start(self, axis: str, *, real_time: bool, period_s: float) -> None:  # noqa: B027 (may be left as it is)
+        """An engine has started, and the drive of this axis is its own from now on."""
+
+    @abstractmethod
+    def exchange(self, told: Mapping[str, SetPoint], *, real_time: bool) -> Mapping[str, Measured | None]:
+        """Carries out one cycle. In real time what comes back was measured when the set points went out, so it is the
+        answer to the cycle before; in simulated time it was measured at the end of the cycle. None: a drive was not
+        heard. Set points that were lost on the way are missing in `told`."""
+
+    @abstractmethod
+    def idle(self, stop: Collection[str]) -> None:
+        """Keeps the bus going while no engine is heard, every `period_s`. stop: axes that had one before: their drives
+        brake by themselves; all are off."""
+
+
 class SimulatedServo(Drive):
     """The servo that the engine itself would simulate for this axis: the very same motion, bit for bit."""
 
@@ -120,7 +145,8 @@ class _Line:
     """One axis between the network and its drive."""
 
     axis: str
-    drive: Drive
+    drive: Drive | None  # None: it is on a bus
+    bus: _Shared | None = field(default=None, repr=False)
     run_id: int = -1
     cycle: int = -1  # carried out last
     sequence: int = 0  # of the next answer
@@ -134,10 +160,36 @@ class _Line:
     subscription: Any = field(default=None, repr=False)
 
 
+@dataclass
+class _Shared:
+    """A bus between the network and its drives."""
+
+    bus: Bus
+    lines: list[_Line] = field(default_factory=list)
+    pending: dict[str, tuple[_Line, SetPoint, int]] = field(default_factory=dict)  # by axis: of which cycle
+    since_s: float = 0.0  # the first of them
+    served_s: float = 0.0  # when there was the last exchange
+
+    @property
+    def newest(self) -> int:
+        return max(cycle for _, _, cycle in self.pending.values())
+
+    @property
+    def complete(self) -> bool:
+        """There is a set point of one and the same cycle for all."""
+        return len(self.pending) == len(self.lines) and len({cycle for _, _, cycle in self.pending.values()}) == 1
+
+    @property
+    def alone(self) -> bool:
+        """No engine is heard."""
+        return all(line.run_id == -1 or line.off_since_s is not None for line in self.lines)
+
+
 class Plant:
     """Connects drives with an engine.
 
     drives: by the names of their axes.
+    buses: with drives that share a wire, beside those.
     watchdog: in real time, drives that hear no set point for so many periods are told to be off: 0 V, power stage off,
         brake fallen. They stay off until the engine has switched them off and on again. Simulated time stands still
         until the drives have answered: there is nothing to watch.
@@ -151,11 +203,12 @@ class Plant:
         drives: Mapping[str, Drive],
         url: str = DEFAULT_URL,
         *,
+        buses: Sequence[Bus] = (),
         watchdog: int = WATCHDOG,
         say: Callable[[str], None] | None = None,
         key: KeyFile | None = None,
     ) -> None:
-        if not drives:
+        if not drives and not buses:
             raise TaktError("a plant needs at least one drive")
         if watchdog < 1:
             raise TaktError(f"a watchdog needs at least one period, not {watchdog}")
@@ -167,6 +220,10 @@ class Plant:
         self.refused: Counter[str] = Counter()  # set points that were ignored for want of the right key, by reason
         self._id = random.SystemRandom().getrandbits(62)
         self._lines = {axis: _Line(axis, drive) for axis, drive in drives.items()}
+        self._shared = [_Shared(bus) for bus in buses]
+        for shared in self._shared:
+            shared.lines = [_Line(axis, None, shared) for axis in shared.bus.axes]
+            self._lines |= {line.axis: line for line in shared.lines}
         self._running = False
         self.malformed = 0  # messages that were no set points
         for line in self._lines.values():
@@ -192,17 +249,28 @@ class Plant:
         # Waiting with select, not with LCM, which fails when a signal comes.
         if select.select([self._network.fileno()], [], [], max(0.0, min(timeout_s, self._wait_s())))[0]:
             self._network.handle()
+            # Set points for a bus are collected; after a stall only the newest ones count.
+            while self._shared and select.select([self._network.fileno()], [], [], 0)[0]:
+                self._network.handle()
         now_s = time.monotonic()
+        for shared in self._shared:
+            self._serve(shared, now_s)
         for line in self._lines.values():
             self._watch(line, now_s)
 
     def _wait_s(self) -> float:
         """How long until the watchdog of some drive wants to be looked at."""
         waits = [_MOST_WAIT_S]
+        now_s = time.monotonic()
+        for shared in self._shared:
+            if shared.pending:
+                waits.append(shared.since_s + shared.bus.period_s / 2 - now_s)
+            elif shared.alone:
+                waits.append(shared.served_s + shared.bus.period_s - now_s)
         for line in self._lines.values():
             if line.real_time:
                 waits.append(_REST_S if line.off_since_s is not None else self._watchdog * line.period_s / 4)
-        return max(0.001, min(waits))
+        return max(0.0 if self._shared else 0.001, min(waits))
 
     def _watch(self, line: _Line, now_s: float) -> None:
         if not line.real_time or now_s - line.heard_s < self._watchdog * line.period_s:
@@ -211,8 +279,9 @@ class Plant:
             line.off_since_s = line.stepped_s = now_s
             line.latched = True
             self._say(f"{line.axis}: no set point for {self._watchdog} periods: off, brake on")
-            line.drive.step(SetPoint(period_s=line.period_s), line.period_s)
-        elif now_s - line.stepped_s >= _REST_S:
+            if line.drive is not None:
+                line.drive.step(SetPoint(period_s=line.period_s), line.period_s)
+        elif line.drive is not None and now_s - line.stepped_s >= _REST_S:
             line.drive.step(SetPoint(period_s=line.period_s), now_s - line.stepped_s)
             line.stepped_s = now_s
 
@@ -237,7 +306,8 @@ class Plant:
         if message.run_id > line.run_id:
             self._begin(line, message)
         elif message.cycle == line.cycle:
-            self._network.publish(_feedback_channel(line), line.answer)
+            if line.answer:
+                self._network.publish(_feedback_channel(line), line.answer)
             return
         elif message.cycle < line.cycle:
             return
@@ -247,7 +317,11 @@ class Plant:
         line.run_id, line.sequence, line.cycle = message.run_id, 0, message.cycle - 1
         line.latched = False
         line.off_since_s = None
-        line.drive.start()
+        if line.bus is not None:
+            line.bus.pending.pop(line.axis, None)
+            line.bus.bus.start(line.axis, real_time=message.real_time, period_s=message.period_s)
+        elif line.drive is not None:
+            line.drive.start()
         self._say(f"{line.axis}: an engine has started" + ("" if message.real_time else ", in simulated time"))
 
     def _carry_out(self, line: _Line, message: msgs.drive_setpoint) -> None:
@@ -260,15 +334,48 @@ class Plant:
         line.latched = line.latched and told.enable
         if line.latched:
             told = SetPoint(period_s=message.period_s)
+        if line.bus is not None:
+            if not line.bus.pending:
+                line.bus.since_s = line.heard_s
+            line.bus.pending[line.axis] = (line, told, message.cycle)
+            return
+        assert line.drive is not None
         measured = line.drive.step(told, elapsed_s)
         line.cycle = message.cycle
-        line.answer = self._encode(line, measured)
+        self._answer(line, measured, line.cycle)
+
+    def _serve(self, shared: _Shared, now_s: float) -> None:
+        """Has a bus carry out what is complete, or in real time what there is after half a period."""
+        if not shared.pending:
+            if shared.alone and now_s - shared.served_s >= shared.bus.period_s:
+                shared.served_s = now_s
+                shared.bus.idle([line.axis for line in shared.lines if line.run_id != -1])
+            return
+        real_time = all(line.real_time for line, _, _ in shared.pending.values())
+        if not shared.complete and not (real_time and now_s - shared.since_s >= shared.bus.period_s / 2):
+            return
+        shared.served_s = now_s
+        newest = shared.newest
+        taken = [(line, told) for line, told, cycle in shared.pending.values() if cycle == newest]
+        shared.pending.clear()
+        measured = shared.bus.exchange({line.axis: told for line, told in taken}, real_time=real_time)
+        for line, _ in taken:
+            found = measured.get(line.axis)
+            if found is None and not real_time:
+                continue  # the engine asks again
+            line.cycle, line.answer = newest, b""
+            if found is None or (real_time and newest == 0):
+                continue
+            self._answer(line, found, max(-1, newest - 1) if real_time else newest)
+
+    def _answer(self, line: _Line, measured: Measured, cycle: int) -> None:
+        line.answer = self._encode(line, measured, cycle)
         self._network.publish(_feedback_channel(line), line.answer)
 
-    def _encode(self, line: _Line, measured: Measured) -> bytes:
+    def _encode(self, line: _Line, measured: Measured, cycle: int) -> bytes:
         answer = msgs.drive_feedback()
         answer.utime = time.time_ns() // 1000
-        answer.run_id, answer.cycle, answer.plant = line.run_id, line.cycle, self._id
+        answer.run_id, answer.cycle, answer.plant = line.run_id, cycle, self._id
         answer.axis, answer.sequence = line.axis, line.sequence
         line.sequence += 1
         for name in _MEASURED:

@@ -1,0 +1,279 @@
+"""A CAN bus by the packages python-can and canopen: opened by its name, read where somebody waits for it."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from takt.errors import TaktError
+
+KIND: Final = "canopen"
+DEFAULT_INTERFACE: Final = "socketcan"
+WITHOUT_BIT_RATE: Final = ("virtual", "udp_multicast")  # no wire, so no bit rate either
+MISSING: Final = "CANopen needs the packages canopen and python-can: pip install 'takt-motion[canopen]'"
+
+
+def packages() -> tuple[Any, Any]:
+    """The modules can and canopen; TaktError says how to get them."""
+    try:
+        import can
+        import canopen
+    except ImportError:
+        raise TaktError(MISSING) from None
+    for name in ("can", "canopen"):  # what they report is said here; whoever wants theirs sets a handler of logging
+        logger = logging.getLogger(name)
+        if not logger.handlers:
+            logger.addHandler(logging.NullHandler())
+    return can, canopen
+
+
+@dataclass(frozen=True)
+class BusName:
+    """ "canopen:INTERFACE:CHANNEL?OPTION=VALUE", interface and channel as python-can names them."""
+
+    text: str
+    interface: str
+    channel: str
+    options: dict[str, int | str] = field(default_factory=dict)
+
+    @property
+    def has_wire(self) -> bool:
+        return self.interface not in WITHOUT_BIT_RATE
+
+
+def parse(text: str) -> BusName:
+    """The bus of this name; without an interface it is one of Linux (socketcan)."""
+    can, _ = packages()
+    kind, _, rest = text.partition(":")
+    if kind != KIND or not rest:
+        raise TaktError(f"{text}: expected canopen:CHANNEL or canopen:INTERFACE:CHANNEL, such as canopen:can0")
+    rest, _, tail = rest.partition("?")
+    options: dict[str, int | str] = {}
+    for part in filter(None, tail.split("&")):
+        key, equals, value = part.partition("=")
+        if not equals or not key:
+            raise TaktError(f"{text}: expected OPTION=VALUE behind the question mark, found {part}")
+        options[key] = int(value) if value.lstrip("-").isdigit() else value
+    interface, colon, channel = rest.partition(":")
+    if not colon:
+        return BusName(text, DEFAULT_INTERFACE, rest, options)
+    if interface not in can.VALID_INTERFACES:
+        known = ", ".join(sorted(can.VALID_INTERFACES))
+        raise TaktError(f"{text}: python-can has no interface {interface}; it has {known}")
+    if not channel:
+        raise TaktError(f"{text}: expected a channel behind the interface, such as canopen:{interface}:0")
+    return BusName(text, interface, channel, options)
+
+
+def open_bus(name: BusName, bitrate: int | None) -> Any:
+    """python-can's bus; TaktError says in one line why not."""
+    can, _ = packages()
+    options = dict(name.options)
+    if bitrate and name.has_wire and name.interface != DEFAULT_INTERFACE:  # a socketcan interface has its own
+        options["bitrate"] = bitrate
+    try:
+        return can.Bus(interface=name.interface, channel=name.channel, **options)
+    except Exception as error:
+        why = " ".join(str(error).split()) or type(error).__name__
+        raise TaktError(f"{name.text}: the bus cannot be opened: {why}{_hint(name)}") from None
+
+
+def _hint(name: BusName) -> str:
+    if name.interface != DEFAULT_INTERFACE:
+        return ""
+    return f" (interfaces of this host: ip -br link show type can; switch on: ip link set {name.channel} up)"
+
+
+class CanLink:
+    """A bus and canopen's network on it. Messages are taken in by `pump`, or by a thread of `background`."""
+
+    def __init__(self, name: BusName, bitrate: int | None = None, *, network: Any = None) -> None:
+        _, canopen = packages()
+        self.name = name
+        self.bus = open_bus(name, bitrate)
+        self.network = canopen.Network() if network is None else network  # an empty one is false
+        self.network.bus = self.bus
+        self._lock = threading.Lock()
+        self._pumping: threading.Thread | None = None
+
+    def pump(self, timeout_s: float = 0.0) -> bool:
+        """Takes in one message, waiting so long for it at most: whether there was one."""
+        message = self.bus.recv(timeout_s)
+        if message is None:
+            return False
+        if not message.is_error_frame and not message.is_remote_frame:
+            self.network.notify(message.arbitration_id, message.data, message.timestamp)
+        return True
+
+    def drain(self, most: int = 1000) -> None:
+        """Takes in what has come."""
+        while most and self.pump():
+            most -= 1
+
+    def wait(self, seconds: float) -> None:
+        """Takes in what comes for so long."""
+        end_s = time.monotonic() + seconds
+        while (left_s := end_s - time.monotonic()) > 0:
+            self.pump(left_s)
+
+    @contextlib.contextmanager
+    def background(self) -> Iterator[None]:
+        """Messages are taken in by a thread meanwhile, so that answers to SDOs come in."""
+        ended = threading.Event()
+
+        def take() -> None:
+            while not ended.is_set():
+                self.pump(0.02)
+
+        thread = threading.Thread(target=take, daemon=True)
+        thread.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            thread.join()
+
+    def send(self, can_id: int, data: bytes) -> None:
+        """TaktError if the interface takes nothing."""
+        try:
+            self.network.send_message(can_id, data)
+        except Exception as error:
+            raise TaktError(f"{self.name.text}: nothing can be sent: {' '.join(str(error).split())}") from None
+
+    def close(self) -> None:
+        self.network.bus = None
+        with contextlib.suppress(Exception):
+            self.bus.shutdown()
+
+    def __enter__(self) -> CanLink:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+# --- SDO ---
+
+
+class SdoError(Exception):
+    """An object could not be read or written. code: of the abort; None: there was no answer."""
+
+    def __init__(self, what: str, code: int | None = None) -> None:
+        super().__init__(what)
+        self.code = code
+
+
+class Sdo:
+    """Objects of one node, as integers. Someone else has to take in messages meanwhile (`CanLink.background`)."""
+
+    def __init__(self, link: CanLink, node: int, timeout_s: float = 0.3) -> None:
+        _, canopen = packages()
+        self._canopen = canopen
+        self._remote = canopen.RemoteNode(node, canopen.ObjectDictionary())
+        link.network.add_node(self._remote)  # instead of one that there was
+        self._remote.sdo.RESPONSE_TIMEOUT = timeout_s
+        self.node = node
+
+    def patience(self, timeout_s: float) -> Sdo:
+        """Answers may take so long."""
+        self._remote.sdo.RESPONSE_TIMEOUT = timeout_s
+        return self
+
+    def read_bytes(self, index: int, subindex: int = 0) -> bytes:
+        with self._told(f"0x{index:04X}:{subindex} cannot be read"):
+            return bytes(self._remote.sdo.upload(index, subindex))
+
+    def read(self, index: int, subindex: int = 0, *, signed: bool = False) -> int:
+        return int.from_bytes(self.read_bytes(index, subindex), "little", signed=signed)
+
+    def find(self, index: int, subindex: int = 0, *, signed: bool = False) -> int | None:
+        """None: the node does not have it. Raises SdoError where there is no answer."""
+        try:
+            return self.read(index, subindex, signed=signed)
+        except SdoError as error:
+            if error.code is None:
+                raise
+            return None
+
+    def write(self, index: int, subindex: int, value: int, bits: int) -> None:
+        data = (value & ((1 << bits) - 1)).to_bytes(bits // 8, "little")
+        with self._told(f"0x{index:04X}:{subindex} cannot be written with {value}"):
+            self._remote.sdo.download(index, subindex, data)
+
+    def try_to_write(self, index: int, subindex: int, value: int, bits: int) -> bool:
+        """False: the node does not take it."""
+        try:
+            self.write(index, subindex, value, bits)
+        except SdoError as error:
+            if error.code is None:
+                raise
+            return False
+        return True
+
+    @contextlib.contextmanager
+    def _told(self, what: str) -> Iterator[None]:
+        try:
+            yield
+        except self._canopen.SdoAbortedError as error:
+            raise SdoError(f"{what}: {abort_text(error.code)}", error.code) from None
+        except self._canopen.SdoCommunicationError:
+            raise SdoError(f"{what}: no answer") from None
+
+
+def abort_text(code: int) -> str:
+    """ "SDO abort 0x06020000, the object does not exist"."""
+    text = ABORTS.get(code)
+    return f"SDO abort 0x{code:08X}" + (f", {text}" if text else "")
+
+
+ABORTS: Final = {
+    0x05040000: "the transfer timed out",
+    0x06010000: "such an access is not supported",
+    0x06010001: "the object can only be written",
+    0x06010002: "the object can only be read",
+    0x06020000: "the object does not exist",
+    0x06040041: "the object cannot be mapped",
+    0x06040042: "the mapping would be longer than a message",
+    0x06040043: "the parameters do not fit together",
+    0x06060000: "the hardware refuses it",
+    0x06070010: "the length is wrong",
+    0x06070012: "the data are too long",
+    0x06070013: "the data are too short",
+    0x06090011: "the subindex does not exist",
+    0x06090030: "the value is out of range",
+    0x06090031: "the value is too large",
+    0x06090032: "the value is too small",
+    0x060A0023: "the resource is not there",
+    0x08000000: "general error",
+    0x08000020: "the data cannot be stored",
+    0x08000021: "the drive is controlled locally",
+    0x08000022: "not in the present state of the drive",
+}
+
+
+# --- what CANopen fixes ---
+
+NMT_COMMAND: Final = 0x000
+SYNC: Final = 0x080
+EMERGENCY: Final = 0x080  # + node
+TPDO1: Final = 0x180
+RPDO1: Final = 0x200
+TPDO2: Final = 0x280
+RPDO2: Final = 0x300
+SDO_ANSWER: Final = 0x580
+SDO_REQUEST: Final = 0x600
+HEARTBEAT: Final = 0x700
+
+START, STOP, PRE_OPERATIONAL, RESET_NODE, RESET_COMMUNICATION = 1, 2, 128, 129, 130
+NMT_STATES: Final = {0: "starting", 4: "stopped", 5: "operational", 127: "pre-operational"}
+
+
+def frame_bits(data_bytes: int) -> int:
+    """The longest that a frame with 11 bits of identifier can be on the wire, stuffing and pause included."""
+    stuffed = 34 + 8 * data_bytes
+    return stuffed + (stuffed - 1) // 4 + 13

@@ -1,0 +1,216 @@
+"""`takt drives`: what is on a field bus, its drives as the process of an engine, and drives without metal."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+
+from takt.counted import counted
+from takt.drive import WATCHDOG, Plant
+from takt.drives import objects as od
+from takt.drives.can_link import CanLink, Sdo, SdoError, parse
+from takt.drives.canopen_bus import CanopenBus, nodes_on
+from takt.drives.cia402 import MODE_NAMES, Mode, state_of, supported_modes
+from takt.drives.emulation import Emulation, bus_of, emulated_link, emulated_nodes, read_commands
+from takt.drives.error_texts import error_text
+from takt.errors import TaktError
+from takt.network import network_of
+
+FILE = click.Path(path_type=Path)
+BUS = click.option("--bus", required=True, metavar="BUS", help="canopen:CHANNEL or canopen:INTERFACE:CHANNEL.")
+BITRATE = click.option("--bitrate", default=1_000_000, show_default=True, type=click.IntRange(1), help="bit/s.")
+NONE_THERE = 1
+
+
+def _say(sentence: str) -> None:
+    print(sentence, file=sys.stderr, flush=True)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+def drives() -> None:
+    """Drives of metal on a field bus (CiA 402): look, run them for an engine, emulate them."""
+
+
+@drives.command()
+@BUS
+@BITRATE
+def scan(bus: str, bitrate: int) -> int:
+    """List the nodes of a bus: type, maker, state."""
+    with CanLink(parse(bus), bitrate) as link, link.background():
+        found = nodes_on(link)
+        for node in found:
+            print(_line_on(Sdo(link, node)))
+        print(f"{bus}: {counted(len(found), 'node')}", file=sys.stderr)
+    return 0 if found else NONE_THERE
+
+
+def _line_on(sdo: Sdo) -> str:
+    device = sdo.read(0x1000)
+    said = f"node {sdo.node}: {_text(sdo, 0x1008) or 'no name'}, {_identity(sdo)}"
+    if device & 0xFFFF != 402:
+        return f"{said}, device type 0x{device:08X}: no drive of CiA 402"
+    state = state_of(sdo.find(od.STATUS_WORD.index) or 0)
+    return f"{said}, {state.value if state else 'no state'}, {_error(sdo)}"
+
+
+def _identity(sdo: Sdo) -> str:
+    vendor, product, revision = (sdo.find(0x1018, subindex) for subindex in (1, 2, 3))
+    return ", ".join(
+        f"{name} 0x{value:X}"
+        for name, value in (("vendor", vendor), ("product", product), ("revision", revision))
+        if value is not None
+    )
+
+
+def _text(sdo: Sdo, index: int) -> str:
+    try:
+        return sdo.read_bytes(index).decode("ascii", "replace").strip("\0 ")
+    except SdoError:
+        return ""
+
+
+def _error(sdo: Sdo) -> str:
+    code = sdo.find(od.ERROR_CODE.index)
+    return error_text(code) if code else "no error"
+
+
+@drives.command()
+@BUS
+@BITRATE
+@click.option("--node", "number", required=True, type=click.IntRange(1, 127), help="Address of the drive.")
+def info(bus: str, bitrate: int, number: int) -> int:
+    """Say all that a drive tells of itself: maker, modes, state, scaling, process data."""
+    with CanLink(parse(bus), bitrate) as link, link.background():
+        sdo = Sdo(link, number)
+        try:
+            print(_line_on(sdo))
+        except SdoError as error:
+            raise TaktError(f"{bus}: node {number}: {error}") from None
+        for name, value in _facts(sdo):
+            print(f"  {name}: {value}")
+    return 0
+
+
+def _facts(sdo: Sdo) -> Iterator[tuple[str, str]]:
+    modes = sdo.find(od.SUPPORTED_MODES.index)
+    if modes is not None:
+        yield "modes", ", ".join(supported_modes(modes))
+    mode = sdo.find(od.MODE_DISPLAY.index, signed=True)
+    if mode is not None:
+        yield "mode", MODE_NAMES.get(Mode(mode), str(mode)) if mode in list(Mode) else str(mode)
+    for entry in od.OBJECTS.values():
+        if entry in (od.MODE, od.MODE_DISPLAY, od.SUPPORTED_MODES):
+            continue
+        value = sdo.find(entry.index, signed=entry.signed)
+        if value is not None:
+            yield f"0x{entry.index:04X} {entry.name}", f"0x{value:04X}" if "word" in entry.name else str(value)
+    for index, name in ((0x608F, "encoder increments / revolutions"), (0x6091, "gear"), (0x6092, "feed / revolutions")):
+        pair = [sdo.find(index, subindex) for subindex in (1, 2)]
+        if None not in pair:
+            yield f"0x{index:04X} {name}", f"{pair[0]} / {pair[1]}"
+    for index in (0x1400, 0x1401, 0x1402, 0x1403, 0x1800, 0x1801, 0x1802, 0x1803):
+        cob_id = sdo.find(index, 1)
+        if cob_id is not None and not cob_id >> 31:
+            count = sdo.find(index + 0x200, 0) or 0
+            mapped = [sdo.find(index + 0x200, k) or 0 for k in range(1, count + 1)]
+            kind = f"{'RPDO' if index < 0x1800 else 'TPDO'}{(index & 0xF) + 1}"
+            objects = " ".join(f"0x{word >> 16:04X}:{word & 0xFF}" for word in mapped)
+            yield kind, f"0x{cob_id & 0x7FF:03X}, transmission {sdo.find(index, 2)}: {objects}"
+
+
+@contextmanager
+def until_signal(stop: Callable[[], None]) -> Iterator[None]:
+    """SIGINT and SIGTERM call `stop` meanwhile."""
+    before = [signal.signal(number, lambda *_: stop()) for number in (signal.SIGINT, signal.SIGTERM)]
+    try:
+        yield
+    finally:
+        for number, handler in zip((signal.SIGINT, signal.SIGTERM), before, strict=True):
+            signal.signal(number, handler)
+
+
+def _described(machine: Path) -> tuple[bytes, str, Mapping[str, Any]]:
+    import json
+
+    from takt import _core
+    from takt.engine import read_machine
+
+    text, file_name = read_machine(machine)
+    return text, file_name, json.loads(_core.load_machine(text, file_name))
+
+
+@drives.command()
+@click.argument("machine", type=FILE)
+@click.option("--bus", metavar="BUS", help="Only this bus of the machine file [all].")
+@click.option("--url", help="LCM network of the engine [machine file].")
+@click.option("--key", type=FILE, help="File with the key of the engine [TAKT_KEY_FILE, else none].")
+@click.option(
+    "--watchdog", default=WATCHDOG, show_default=True, type=click.IntRange(1), help="Periods without a set point."
+)
+def run(machine: Path, bus: str | None, url: str | None, key: Path | None, watchdog: int) -> int:
+    """Be the process of the drives of a machine file: its field buses for the engine (taktd MACHINE)."""
+    _, file_name, described = _described(machine)
+    buses: list[CanopenBus] = []
+    try:
+        for one in bus_of(described, file_name, bus):
+            buses.append(CanopenBus(one, described, _say))
+        plant = Plant({}, url or network_of(described), buses=buses, watchdog=watchdog, key=key, say=_say)
+        _say(f"ready: {', '.join(axis for one in buses for axis in one.axes)}")
+        with until_signal(plant.stop):
+            plant.run()
+    finally:
+        for each in buses:
+            each.close()
+    for each in buses:
+        _say(each.summary())
+    return 0
+
+
+@drives.command()
+@click.argument("machine", type=FILE, required=False)
+@click.option("--bus", metavar="BUS", help="Only this bus of the machine file [all]; without a file: where.")
+@click.option("--nodes", default=1, show_default=True, type=click.IntRange(1, 126), help="Without a file: how many.")
+def emulate(machine: Path | None, bus: str | None, nodes: int) -> int:
+    """Be the drives themselves, without metal: those of a machine file, or as many as one likes.
+
+    Commands are read from standard input: fault NODE CODE [lasting], clear NODE, cut NODE|all, join NODE|all,
+    power NODE off|on, stall NODE, show, quit."""
+    if machine is None:
+        if bus is None:
+            raise click.UsageError("give a machine file, or --bus with --nodes")
+        text, file_name, described = _standing_alone(bus, nodes)
+    else:
+        text, file_name, described = _described(machine)
+    chosen = bus_of(described, file_name, bus)
+    if len(chosen) > 1:
+        raise TaktError(f"{file_name} has {len(chosen)} buses: choose one with --bus")
+    with emulated_link(chosen[0]["bus"]) as link:
+        emulation = Emulation(link, emulated_nodes(chosen[0], described, text, file_name), _say)
+        _say(f"{chosen[0]['bus']}: {counted(len(emulation.nodes), 'emulated drive')}")
+        read_commands(emulation)
+        with until_signal(emulation.stop):
+            emulation.run()
+    return 0
+
+
+def _standing_alone(bus: str, nodes: int) -> tuple[bytes, str, Mapping[str, Any]]:
+    """A machine with so many drives on this bus."""
+    import json
+
+    from takt import _core
+
+    lines = ["name: emulated", "axes:"]
+    limits = "{velocity: 500, acceleration: 5000, jerk: 100000}"
+    lines += [
+        f"  - {{name: x{k}, limits: {limits}, encoder: {{increments_per_unit: 1000}}}}" for k in range(1, nodes + 1)
+    ]
+    lines += ["external:", f"  buses:\n    - bus: {json.dumps(bus)}", "      drives:"]
+    lines += [f"        - {{axis: x{k}, node: {k}}}" for k in range(1, nodes + 1)]
+    text = "\n".join(lines).encode()
+    return text, "emulated", json.loads(_core.load_machine(text, "emulated"))
