@@ -38,7 +38,7 @@ class DriveAxis:
     """The drive of one axis.
 
     called: "node 3", as sentences name it.
-    inputs: bits of the digital inputs by what they are: limit_negative, limit_positive, reference, touch_probe; -1: none.
+    inputs: bits of the digital inputs by what they are (limit_negative ...); -1: none.
     modes: that the drive has; a set point in another one switches it off.
     """
 

@@ -117,8 +117,8 @@ class EmulatedDrive:
         told = dict(self._told)
         told["torque_limit_nm"] = self._torque_limit()
         if state is State.SWITCHED_ON and enabling and not self.never_ready:
-            told["enable"] = told["release_brake"] = True
-            told["mode"] = drive.CYCLIC_VELOCITY  # stands, until the power stage is up
+            told["enable"] = True  # the brake holds until the power stage is up
+            told["mode"] = drive.CYCLIC_VELOCITY
         elif state is State.OPERATION_ENABLED:
             told["enable"] = told["release_brake"] = True
             self._follow(told)
