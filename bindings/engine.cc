@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -14,6 +15,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -96,6 +98,18 @@ using TrackLinks = py::typing::Tuple<py::typing::List<std::size_t>, py::typing::
 using State = py::typing::Tuple<double, double, double>;  // position, velocity, acceleration
 using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::uint64_t>>;  // cycles, hashes
 
+// What moves instead of simulated servos, in this process: a step of it, in Python, for the set points of each cycle.
+struct InProcess {
+  std::vector<std::uint32_t> axes;  // indices in Machine::axes
+  std::vector<ServoOutputs> told;   // one an axis
+  std::vector<ServoInputs> measured;
+  std::int64_t cycle = -1;  // of the set points
+  py::object step{};        // called with the cycle and views of both
+  py::object told_view{};
+  py::object measured_view{};
+  bool failed = false;
+};
+
 // An engine in virtual time. Stepping releases the GIL; what it collects is guarded by a mutex that is only ever waited
 // for without the GIL.
 class VirtualEngine {
@@ -103,13 +117,17 @@ class VirtualEngine {
   // `loaded`: from LoadMachine. `drives_url`: LCM network of external drives; without it their feedback comes from
   // Hear. `drives_keys`: the keys shared with them, if any.
   VirtualEngine(engine::LoadResult loaded, bool journal, const std::optional<std::string>& drives_url,
-                const std::optional<lcm::Keys>& drives_keys, bool checks)
+                const std::optional<lcm::Keys>& drives_keys, const std::vector<std::uint32_t>& plant, bool checks)
       : journaling_(journal),
-        engine_(std::move(*loaded.machine),
-                {.drives = drives_url.has_value(), .journal = journal, .command_queue = kCommandQueue}) {
+        engine_(
+            std::move(*loaded.machine),
+            {.drives = drives_url.has_value() || !plant.empty(), .journal = journal, .command_queue = kCommandQueue}) {
+    plant_.axes = plant;
+    plant_.told.resize(plant.size());
+    plant_.measured.resize(plant.size());
     engine_.PlanElsewhere();  // a replay has the answers from its journal
     if (checks) checks_.emplace(engine_, std::move(loaded.checkers));
-    if (!drives_url || engine_.machine().external.drives.empty()) return;
+    if (!plant.empty() || !drives_url || engine_.machine().external.drives.empty()) return;
     std::string problem;
     const auto complain = [this](const std::string& text) { complaints_.push_back(text); };
     drives_ = lcm::Drives::Open(
@@ -124,9 +142,11 @@ class VirtualEngine {
 
   // Steps up to `cycles` cycles, or until one reports feedback, or until external drives let it wait. How many it were.
   std::uint64_t Step(std::uint64_t cycles, bool until_feedback) {
+    RefuseFromPlant();
     const std::lock_guard lock(mutex_);
     for (std::uint64_t i = 0; i < cycles;) {
       if (drives_ && !drives_->Ready()) return i;
+      if (!plant_.axes.empty()) MovePlant();
       engine_.RunCycle();
       if (checks_) checks_->Run();
       ++i;
@@ -142,8 +162,20 @@ class VirtualEngine {
     return cycles;
   }
 
+  // `step` moves the axes that this engine was made with as those of a plant.
+  void SetPlant(const py::object& step) {
+    plant_.step = step;
+    const auto view = [this](const Type& type, std::size_t size, void* rows) {
+      const auto count = static_cast<py::ssize_t>(plant_.axes.size());
+      return py::array(LayoutOf(ColumnsOf(type), size), count, rows, py::capsule(rows, [](void*) {}));
+    };
+    plant_.told_view = view(TypeOf<ServoOutputs>(), sizeof(ServoOutputs), plant_.told.data());
+    plant_.measured_view = view(TypeOf<ServoInputs>(), sizeof(ServoInputs), plant_.measured.data());
+  }
+
   // Seconds that so many bare cycles take, nothing collected: what stepping is compared with.
   double Measure(std::uint64_t cycles) {
+    if (!plant_.axes.empty()) throw std::logic_error("bare cycles have no plant");
     const std::lock_guard lock(mutex_);
     const auto start = std::chrono::steady_clock::now();
     for (std::uint64_t i = 0; i < cycles; ++i) engine_.RunCycle();
@@ -430,7 +462,44 @@ class VirtualEngine {
     return any;
   }
 
+  // One step of the plant, once all set points of a cycle are there; the GIL is not held. What it raises ends the step
+  // of the engine before its cycle, and each later one.
+  void MovePlant() {
+    if (plant_.failed) throw std::logic_error("the plant has failed before");
+    engine::DriveSetPoint set_point;
+    while (engine_.set_points().TryPop(set_point)) {
+      const auto at = std::ranges::find(plant_.axes, set_point.axis) - plant_.axes.begin();
+      plant_.told[static_cast<std::size_t>(at)] = set_point.outputs;
+      plant_.cycle = set_point.cycle;
+    }
+    {
+      const py::gil_scoped_acquire acquire;
+      plant_.failed = true;  // until it has come back
+      stepping_ = std::this_thread::get_id();
+      try {
+        plant_.step(plant_.cycle, plant_.told_view, plant_.measured_view);
+      } catch (...) {
+        stepping_ = std::thread::id();
+        throw;
+      }
+      stepping_ = std::thread::id();
+      plant_.failed = false;
+    }
+    for (std::size_t i = 0; i < plant_.axes.size(); ++i) {
+      if (!engine_.drive_samples().TryPush({plant_.cycle, plant_.axes[i], plant_.measured[i]})) {
+        engine_.CountRefusedSample();
+      }
+    }
+  }
+
+  // A plant that asks its own engine in the middle of a cycle would wait for itself for ever.
+  void RefuseFromPlant() const {
+    if (stepping_ != std::this_thread::get_id()) return;
+    throw std::logic_error("a plant's step must not use its engine, which is in the middle of a cycle");
+  }
+
   std::unique_lock<std::mutex> Lock() {
+    RefuseFromPlant();
     const py::gil_scoped_release release;
     return std::unique_lock(mutex_);
   }
@@ -461,6 +530,8 @@ class VirtualEngine {
   engine::Engine engine_;
   std::optional<engine::PathChecks> checks_;
   std::unique_ptr<lcm::Drives> drives_;
+  InProcess plant_;
+  std::atomic<std::thread::id> stepping_{};  // the thread that the plant's step runs in
   std::vector<FeedbackEvent> feedback_;
   std::vector<engine::JournalEntry> journal_;
   std::vector<engine::HashEntry> hashes_;
@@ -473,7 +544,8 @@ class VirtualEngine {
 // does it, and the machine is from a log: it opens no files.
 std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::string& file_name, bool journal,
                                           std::optional<double> period_s, const std::optional<std::string>& drives_url,
-                                          const std::optional<py::bytes>& drives_key, bool checks) {
+                                          const std::optional<py::bytes>& drives_key,
+                                          const std::vector<std::string>& plant_axes, bool checks) {
   engine::LoadResult loaded = Load(text, file_name, checks, checks ? engine::Files::kOpen : engine::Files::kRefuse);
   for (const std::string& warning : loaded.warnings) {
     if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 2) != 0) throw py::error_already_set();
@@ -484,7 +556,14 @@ std::unique_ptr<VirtualEngine> MakeEngine(const py::bytes& text, const std::stri
     loaded.machine->cycle.period_s = *period_s;
   }
   const auto keys = drives_key ? std::optional(KeysOf(*drives_key)) : std::nullopt;
-  return std::make_unique<VirtualEngine>(std::move(loaded), journal, drives_url, keys, checks);
+  std::vector<std::uint32_t> plant;
+  for (const std::string& name : plant_axes) {
+    const std::uint32_t axis = axis::FindAxis(loaded.machine->axes, name);
+    if (axis == axis::kNoAxis) throw std::invalid_argument("the machine has no axis " + name);
+    if (!engine::ExternalOf(*loaded.machine, axis)) loaded.machine->external.drives.push_back({.axis = name});
+    plant.push_back(axis);
+  }
+  return std::make_unique<VirtualEngine>(std::move(loaded), journal, drives_url, keys, plant, checks);
 }
 
 }  // namespace
@@ -532,7 +611,8 @@ void BindEngine(py::module_& m) {
   py::class_<E>(m, "Engine", "One machine in virtual time.")
       .def(py::init(&MakeEngine), py::arg("text"), py::arg("file_name"), py::kw_only(), py::arg("journal") = false,
            py::arg("period_s") = py::none(), py::arg("drives_url") = py::none(), py::arg("drives_key") = py::none(),
-           py::arg("checks") = true)
+           py::arg("plant") = std::vector<std::string>{}, py::arg("checks") = true)
+      .def("set_plant", &E::SetPlant, py::arg("step"))
       .def("step", &E::Step, py::arg("cycles"), py::arg("until_feedback") = false, Released())
       .def("measure", &E::Measure, py::arg("cycles"), Released())
       .def("submit", &E::Submit, py::arg("target"), py::arg("verb"), py::arg("arguments"))

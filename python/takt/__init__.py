@@ -36,6 +36,7 @@ from takt.mover import Mover, MoverRecord
 from takt.part import Part
 from takt.pick_place import PickPlace
 from takt.planar_group import PlanarGroup
+from takt.plant import Plant, PlantError
 from takt.pose import FreePose
 from takt.recording import Recording, RecordingError
 from takt.remote import RemoteSession, connect
@@ -76,6 +77,8 @@ __all__ = [
     "Part",
     "PickPlace",
     "PlanarGroup",
+    "Plant",
+    "PlantError",
     "LogError",
     "Moment",
     "Mover",

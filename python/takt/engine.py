@@ -8,7 +8,7 @@ import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from takt.keys import KeyFile, read_key
 from takt.lying import LOOK_S
 from takt.mover import Mover
 from takt.network import network_of
+from takt.plant import Plant, axes_of
 from takt.recording import Recording
 from takt.session import Recorder, Session
 from takt.tables import KINDS, fields_of_kind, make_recording, named
@@ -63,6 +64,8 @@ class Engine(Session):
         still until they have answered.
     changes: values of the machine file to be changed, as {"axes.x.limits.velocity": 300}.
     key: file with the key of external drives, unless the environment names it (TAKT_KEY_FILE); "": none.
+    plant: what moves axes instead of simulated servos, in this process: a `takt.Plant`, or "mujoco", which is the
+        machine's twin (section `twin` of the machine file; takt.twin). It moves external drives, too.
     """
 
     def __init__(
@@ -74,13 +77,16 @@ class Engine(Session):
         url: str | None = None,
         key: KeyFile | None = None,
         changes: Mapping[str, bool | int | float | str] | None = None,
+        plant: Plant | Literal["mujoco"] | None = None,
     ) -> None:
         text, file_name = read_machine(machine)
         text = changed(text, file_name, changes or {})
         if period is not None:
             period = seconds(period, "a period")
         described = json.loads(_core.load_machine(text, file_name))
-        drives_url = (url or network_of(described)) if described["external"]["drives"] else None
+        self.plant = _plant_of(plant, text, file_name, described, period)
+        moved = axes_of(self.plant, described, file_name) if self.plant is not None else []
+        drives_url = (url or network_of(described)) if described["external"]["drives"] and not moved else None
         drives_key = read_key(key) if drives_url or key else None
         self._core = _core.Engine(
             text,
@@ -89,12 +95,16 @@ class Engine(Session):
             period_s=period,
             drives_url=drives_url,
             drives_key=drives_key.data if drives_key else None,
+            plant=moved,
         )
         self._unfinished: dict[int, Feedback] = {}
         self._unreleased: list[Feedback] = []  # their release was refused
         self._core_recorders: dict[Recorder, _core.Recorder] = {}
         self._folder = str(Path(file_name).resolve().parent)
         super().__init__(json.loads(self._core.machine_json), text.decode())
+        if self.plant is not None:
+            self.plant.start(self.machine, self.period)
+            self._core.set_plant(self.plant.step)
 
     @property
     def cycle(self) -> int:
@@ -257,7 +267,22 @@ class Engine(Session):
             tables[name] = base | {f: rows[f] for f in fields_of_kind(self._components[name].KIND)}
         meta = {"source": "engine", "period_s": self.period, "version": _core.__version__}
         meta |= {"objects": recorder.lying.columns(), **self._made_cams.kept()}
-        return make_recording(self.machine, tables, recorder.events, meta, self.machine_text, self._folder)
+        recording = make_recording(self.machine, tables, recorder.events, meta, self.machine_text, self._folder)
+        if self.plant is not None:
+            self.plant.finish(recording)
+        return recording
+
+
+def _plant_of(
+    plant: Plant | str | None, text: bytes, file_name: str, machine: Mapping[str, Any], period: float | None
+) -> Plant | None:
+    if plant is None or isinstance(plant, Plant):
+        return plant
+    if plant != "mujoco":
+        raise TypeError(f'a plant is a takt.Plant or "mujoco", not {plant!r}')
+    from takt.twin import Twin
+
+    return Twin(text, file_name, machine, period)
 
 
 def error_text(error_id: int) -> str:

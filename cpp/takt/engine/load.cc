@@ -12,6 +12,7 @@
 #include "takt/engine/load_cams.h"
 #include "takt/engine/load_groups.h"
 #include "takt/engine/load_parts.h"
+#include "takt/engine/load_twin.h"
 #include "takt/engine/order.h"
 #include "takt/group/zones.h"
 #include "takt/planar/environment.h"
@@ -88,6 +89,8 @@ class CrossCheck {
     }
     const std::vector<Problem> of_buses = CheckBuses(source_, machine_);
     problems_.insert(problems_.end(), of_buses.begin(), of_buses.end());
+    const std::vector<Problem> of_twin = CheckTwin(source_, machine_);
+    problems_.insert(problems_.end(), of_twin.begin(), of_twin.end());
     CheckRates();
     return std::move(problems_);
   }

@@ -157,6 +157,7 @@ void describe(Description<Machine>& d) {
   d.defaulted<&M::environments>("Surfaces that movers float on.");
   d.defaulted<&M::simulation>("What stands in for the metal.");
   d.defaulted<&M::external>("What lives in other processes.");
+  d.defaulted<&M::twin>("A twin in a physics engine.");
   d.defaulted<&M::view>("The live page.");
 }
 

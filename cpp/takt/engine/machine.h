@@ -22,6 +22,7 @@
 #include "takt/pickplace/params.h"
 #include "takt/planargroup/params.h"
 #include "takt/plant/servo.h"
+#include "takt/plant/twin.h"
 #include "takt/track/params.h"
 
 namespace takt::engine {
@@ -100,6 +101,7 @@ struct Machine {
   std::vector<environment::EnvironmentParams> environments;
   Simulation simulation;
   External external;
+  std::optional<plant::TwinParams> twin{};  // unset: there is none
   ViewParams view;
 };
 

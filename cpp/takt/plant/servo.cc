@@ -414,6 +414,25 @@ std::int64_t CounterOrigin(const ServoEncoder& encoder, double start) noexcept {
   return encoder.offset_counts - (incremental ? Nearest(start * CountsPerUnit(encoder)) : 0);
 }
 
+void Report(const ServoParams& p, const ServoState& s, bool powered, ServoInputs& measured) noexcept {
+  measured.counts = s.counts;
+  measured.index_counts = s.index_counts;
+  measured.index_pulses = s.index_pulses;
+  measured.encoder_error = s.faults.encoder_error;
+  measured.limit_positive = Reads(p.switches.limit_positive, s.load_position, 0);
+  measured.limit_negative = Reads(p.switches.limit_negative, s.load_position, 0);
+  measured.reference = Reads(p.switches.reference, s.load_position, p.switches.revolution);
+  measured.touch_probe = s.probe;
+  measured.probe_rises = s.probe_rises;
+  measured.probe_falls = s.probe_falls;
+  measured.probe_rise_age_s = s.probe_rise_age_s;
+  measured.probe_fall_age_s = s.probe_fall_age_s;
+  measured.drive_ready = powered;
+  measured.drive_fault = s.faults.drive_fault;
+  measured.torque_nm = s.torque;
+  measured.load_counts = s.load_counts;
+}
+
 }  // namespace
 
 ServoState MakeServoState(const ServoParams& p) noexcept {
@@ -438,23 +457,115 @@ void Step(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   Move(p, commanded, period_s, powered, s);
   ReadEncoder(p.encoder, s);
   if (p.load_encoder) ReadLoadEncoder(*p.load_encoder, s);
+  Report(p, s, powered, measured);
+}
 
-  measured.counts = s.counts;
-  measured.index_counts = s.index_counts;
-  measured.index_pulses = s.index_pulses;
-  measured.encoder_error = s.faults.encoder_error;
-  measured.limit_positive = Reads(p.switches.limit_positive, s.load_position, 0);
-  measured.limit_negative = Reads(p.switches.limit_negative, s.load_position, 0);
-  measured.reference = Reads(p.switches.reference, s.load_position, p.switches.revolution);
-  measured.touch_probe = s.probe;
-  measured.probe_rises = s.probe_rises;
-  measured.probe_falls = s.probe_falls;
-  measured.probe_rise_age_s = s.probe_rise_age_s;
-  measured.probe_fall_age_s = s.probe_fall_age_s;
-  measured.drive_ready = powered;
-  measured.drive_fault = s.faults.drive_fault;
-  measured.torque_nm = s.torque;
-  measured.load_counts = s.load_counts;
+MovedServo MakeMovedServo(const ServoParams& p) noexcept {
+  MovedServo m;
+  m.servo = MakeServoState(p);
+  return m;
+}
+
+void BeginCycle(const ServoParams& p, const ServoOutputs& commanded, double period_s, int steps,
+                MovedServo& m) noexcept {
+  ServoState& s = m.servo;
+  const double sense = p.drive.inverted ? -1 : 1;
+  m.powered = PowerOn(p.drive, commanded.enable, period_s, s);
+  m.commanded = commanded;
+  m.steps = steps;
+  m.time = period_s / steps;
+  const bool csp = m.powered && commanded.mode == DriveMode::kCyclicPosition;
+  m.end_velocity = m.powered ? SetVelocity(p, commanded, sense) : 0;
+  m.end_position = csp ? SetPosition(p.encoder, s, sense * commanded.position_counts) : 0;
+  m.start_velocity = s.following ? s.set_velocity : m.end_velocity;
+  m.start_position = s.following ? s.set_position : m.end_position;
+  s.following = csp;
+  s.set_position = m.end_position;
+  s.set_velocity = m.end_velocity;
+  if (!m.powered) m.expects = false;
+  if (commanded.release_brake) m.braked = false;
+}
+
+double AskTorque(const ServoParams& p, int i, double position, double velocity, double feed_forward,
+                 MovedServo& m) noexcept {
+  ServoState& s = m.servo;
+  const ServoDrive& drive = p.drive;
+  const double inertia = p.mechanics.inertia;
+  const double motor_limit = drive.max_torque / inertia;
+  s.motor_position = position;
+  s.load_position = position;
+  s.velocity = velocity;
+  if (const bool on = Reads(p.switches.touch_probe, position, p.switches.revolution); on != s.probe) {
+    s.probe = on;
+    ++(on ? s.probe_rises : s.probe_falls);
+    (on ? s.probe_rise_age_s : s.probe_fall_age_s) = m.time * (m.steps - i);
+  }
+
+  double asked = 0;
+  m.limited = false;
+  if (m.powered) {
+    const double limit = FiniteOrZero(m.commanded.torque_limit_nm);
+    const double most = limit > 0 ? std::min(limit / inertia, motor_limit) : motor_limit;
+    Law law;
+    law.lag = drive.velocity_time_constant_s;
+    law.low = -most;
+    law.high = most;
+    law.target = m.end_velocity;
+    const double sense = drive.inverted ? -1 : 1;
+    if (m.commanded.mode == DriveMode::kCyclicPosition) {
+      const double share = static_cast<double>(i) / m.steps;
+      const double set = m.start_position + (m.end_position - m.start_position) * share;
+      const double ahead = m.start_velocity + (m.end_velocity - m.start_velocity) * (share + 0.5 / m.steps);
+      law.target = drive.position_gain * (set - position) + drive.velocity_feed_forward * ahead;
+    }
+    if (m.commanded.mode == DriveMode::kCyclicTorque) {
+      const double largest = std::abs(law.target);
+      const double until = std::clamp(
+          sense * FiniteOrZero(m.commanded.torque_until_counts_s) / CountsPerUnit(p.encoder), -largest, largest);
+      const double set = std::clamp(sense * FiniteOrZero(m.commanded.torque_nm) / inertia, -most, most);
+      FollowTorque(most, set, largest, until, velocity, law);
+    }
+    // What the speed lacks against the first-order model is load: the drive learns to add it, as in Move.
+    if (m.expects && drive.load_compensation_s > 0) {
+      const double learning = (m.expected_velocity - velocity) / (drive.load_compensation_s + m.time);
+      s.compensation = std::clamp(s.compensation + learning, -most, most);
+    }
+    // The gain that leads as far within a step as the continuous law does: stable whatever the time constant.
+    const double share = 1 - maths::Exp(-m.time / law.lag);
+    const double free = share / m.time * (law.target - velocity) + s.compensation + feed_forward / inertia;
+    asked = std::clamp(free, law.low, law.high);
+    m.limited = std::abs(free) > most;
+    m.expects = asked == free;
+    m.expected_velocity = velocity + share * (law.target - velocity);
+    if (m.commanded.mode == DriveMode::kCyclicTorque) {  // the position loop will take over from where the axis is
+      s.following = true;
+      s.set_position = position;
+      s.set_velocity = velocity;
+    }
+  }
+  s.torque = asked * inertia;
+
+  // A brake that has fallen holds the place as a stiff spring does, with no more than its torque.
+  m.brake = 0;
+  if (!m.commanded.release_brake && p.mechanics.brake_torque > 0) {
+    if (!m.braked) m.brake_position = position;
+    m.braked = true;
+    const double stiffness = 0.1 / m.time;  // 1/s
+    const double wanted = stiffness * (stiffness * (m.brake_position - position) - 2 * velocity) * inertia;
+    m.brake = std::clamp(wanted, -p.mechanics.brake_torque, p.mechanics.brake_torque);
+    if (m.brake != wanted) m.brake_position = position;
+  }
+  return s.torque + m.brake;
+}
+
+void Sense(const ServoParams& p, double position, double velocity, MovedServo& m, ServoInputs& measured) noexcept {
+  ServoState& s = m.servo;
+  s.motor_position = position;
+  s.load_position = position;
+  s.velocity = velocity;
+  ReadEncoder(p.encoder, s);
+  if (p.load_encoder) ReadLoadEncoder(*p.load_encoder, s);
+  Report(p, s, m.powered, measured);
 }
 
 }  // namespace takt::plant

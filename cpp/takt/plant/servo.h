@@ -160,6 +160,43 @@ ServoState MakeServoState(const ServoParams& params) noexcept;
 void Step(const ServoParams& params, const ServoOutputs& commanded, double period_s, ServoState& state,
           ServoInputs& measured) noexcept;
 
+// --- a servo whose mechanics are another physics' ---
+// Drive, encoder and switches of the servo above; what moves is elsewhere and goes in steps of its own: in each cycle
+// BeginCycle, for every step AskTorque, and Sense at the end. ServoMechanics gives the inertia that the drive's gain
+// fits, start_position and brake_torque; the rest of it, backlash and the noise of stops included, is not used.
+
+struct MovedServo {
+  ServoState servo;
+  double expected_velocity = 0;  // u/s: after this step, by the drive's own model of the load ...
+  bool expects = false;          // ... if it has one
+  bool braked = false;           // the brake has fallen ...
+  double brake_position = 0;     // u: ... here
+  double brake = 0;              // torque of the brake in this step
+  bool limited = false;          // the motor's torque limit held the last step back
+
+  // Of the cycle.
+  ServoOutputs commanded{};
+  bool powered = false;
+  int steps = 1;
+  double time = 0;  // s, of each step
+  double start_position = 0;
+  double start_velocity = 0;
+  double end_position = 0;
+  double end_velocity = 0;
+};
+
+MovedServo MakeMovedServo(const ServoParams& params) noexcept;
+// `steps` of the physics to a cycle.
+void BeginCycle(const ServoParams& params, const ServoOutputs& commanded, double period_s, int steps,
+                MovedServo& servo) noexcept;
+// Torque of motor and brake during step `i`, at whose beginning the axis is there. `feed_forward`: what the motor is
+// told to add.
+double AskTorque(const ServoParams& params, int i, double position, double velocity, double feed_forward,
+                 MovedServo& servo) noexcept;
+// What the wires say at the end of the cycle.
+void Sense(const ServoParams& params, double position, double velocity, MovedServo& servo,
+           ServoInputs& measured) noexcept;
+
 void describe(Description<ServoDrive>&);
 void describe(Description<ServoScrewPoint>&);
 void describe(Description<ServoMechanics>&);
