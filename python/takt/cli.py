@@ -28,6 +28,7 @@ from takt.figures import in_words
 from takt.lcmlog import open_log, to_recording, write_log
 from takt.missing import all_missing, troubles
 from takt.network import usual_url
+from takt.plant import PlantError
 from takt.recording import Recording, RecordingError
 from takt.remote import connect
 from takt.replay import replay as replay_log
@@ -363,6 +364,41 @@ def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int, 
 
 
 cli.add_command(drives)
+
+
+@cli.command("twin")
+@click.argument("what", type=FILE, metavar="MACHINE | NAME | SCENARIO")
+@click.option("--scenario", type=FILE, help="The scenario [scenario.py beside the machine file].")
+@click.option("--picture", type=FILE, help="Draw the twin at the end (.png).")
+@click.option("--report", type=FILE, help="Write report.html, pictures and the recording into this directory.")
+@click.option("--compare/--no-compare", default=True, help="Run it with the simulated servos, too.")
+@click.option("--speed/--no-speed", default=True, help="Say how fast both were.")
+def run_twin(
+    what: Path, scenario: Path | None, picture: Path | None, report: Path | None, compare: bool, speed: bool
+) -> int:
+    """Run a scenario in the twin of its machine: MuJoCo has the mechanics (section `twin` of the machine file). Judges
+    where the tool is, what the motors give and what touches what, and says how that differs from the simulated servos.
+    Exit code 1: a verdict of the scenario or of the twin has failed."""
+    from takt.twin import command
+
+    drawing = picture and _writable(picture, (".png",))
+    machine, found = command.find(what, scenario)
+    ran = command.run(machine, found, compare=compare, report=report)
+    _show(ran.outcome)
+    out.print(command.table(ran.judged))
+    if speed:
+        servo = f"; with simulated servos {ran.servo_cycles_s:,.0f}" if ran.servo_cycles_s else ""
+        print(f"{ran.cycles_s:,.0f} cycles a second{servo}")
+    if report is not None:
+        from takt.report.command import write_outcome
+
+        print(f"report: {write_outcome(ran.outcome, found, report, {}).html}")
+    if drawing:
+        try:
+            print(f"picture: {ran.twin.picture(drawing)}")
+        except PlantError as error:  # what the picture would show has been judged
+            print(error)
+    return 0 if ran.outcome.passed else FAILED
 
 
 @cli.group(context_settings={"help_option_names": ["-h", "--help"]})

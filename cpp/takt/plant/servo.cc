@@ -550,7 +550,7 @@ double AskTorque(const ServoParams& p, int i, double position, double velocity, 
   if (!m.commanded.release_brake && p.mechanics.brake_torque > 0) {
     if (!m.braked) m.brake_position = position;
     m.braked = true;
-    const double stiffness = 0.1 / m.time;  // 1/s
+    const double stiffness = 0.3 / m.time;  // 1/s
     const double wanted = stiffness * (stiffness * (m.brake_position - position) - 2 * velocity) * inertia;
     m.brake = std::clamp(wanted, -p.mechanics.brake_torque, p.mechanics.brake_torque);
     if (m.brake != wanted) m.brake_position = position;

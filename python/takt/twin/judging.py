@@ -1,0 +1,163 @@
+"""What a twin says of a run: verdicts of its own, and figures beside those of our servo model."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from takt.counted import counted
+from takt.recording import Recording
+from takt.twin.model import Array
+from takt.twin.plant import Twin
+from takt.verdict import Verdict, seconds
+
+AGREES_MM = 0.3  # between the tool of the model and Takt's kinematics of the model's joints: its rods are springs
+AGREES_DEG = 0.3
+
+
+@dataclass(frozen=True)
+class AxisFigures:
+    """Of one axis, in its unit and in Nm or N."""
+
+    axis: str
+    unit: str
+    following: tuple[float, float]  # rms and largest
+    servo: tuple[float, float] | None  # the same with our servo model
+    torque: tuple[float, float]
+    max_torque: float
+    limited: int  # cycles in which its motor was at its limit
+
+
+@dataclass(frozen=True)
+class ToolFigures:
+    """Of the tool of one group, in mm and deg."""
+
+    group: str
+    agreement: tuple[float, float]  # rms and largest
+    turned: float  # largest
+    off: tuple[float, float]  # rms and largest distance from the set pose
+    servo_off: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class Judged:
+    cycles: int
+    axes: tuple[AxisFigures, ...]
+    tools: tuple[ToolFigures, ...]
+    verdicts: tuple[Verdict, ...]
+
+    @property
+    def passed(self) -> bool:
+        return all(verdict.passed for verdict in self.verdicts)
+
+
+def judge(twin: Twin, recording: Recording, servo: Recording | None = None) -> Judged:
+    """Judges what a twin has seen while this was recorded. servo: the same run with our servo model, to compare."""
+    seen = twin.seen()
+    period = float(recording.meta["period_s"])
+    verdicts: list[Verdict] = []
+    tools = []
+    for tool in twin.built.tools:
+        places, turns = seen.tools[tool.group]
+        expected, expected_turns = tool.expected(seen.joints[:, tool.rows])
+        off = np.linalg.norm(places - expected, axis=1)
+        cosines = (np.einsum("nij,nij->n", expected_turns, turns) - 1) / 2
+        turned = np.degrees(np.arccos(np.clip(cosines, -1, 1)))
+        tools.append(
+            ToolFigures(
+                tool.group,
+                _size(off),
+                float(turned.max(initial=0.0)),
+                _size(_off(recording, tool.group)),
+                _size(_off(servo, tool.group)) if servo is not None and tool.group in servo else None,
+            )
+        )
+        verdicts.append(_agrees(tool.group, off, turned, period))
+    axes = []
+    for number, joint in enumerate(twin.built.joints):
+        name, most = joint.axis, twin.limits[joint.axis]
+        torque, limited = seen.torques[:, number], seen.limited[:, number]
+        unit = recording.unit(name, "actual_position")
+        axes.append(
+            AxisFigures(
+                name,
+                unit,
+                _size(_following(recording, name)),
+                _size(_following(servo, name)) if servo is not None and name in servo else None,
+                _size(torque),
+                most,
+                int(limited.sum()),
+            )
+        )
+        verdicts.append(_within(name, torque, limited, most, period, "N" if abs(joint.scale) == 1000 else "Nm"))
+    verdicts.append(_untouched(twin, period))
+    return Judged(len(seen.joints), tuple(axes), tuple(tools), tuple(verdicts))
+
+
+def _agrees(group: str, off: Array, turned: Array, period: float) -> Verdict:
+    worst = int(off.argmax()) if len(off) else 0
+    most, angle = float(off.max(initial=0.0)), float(turned.max(initial=0.0))
+    passed = most <= AGREES_MM and angle <= AGREES_DEG
+    sentence = (
+        f"the tool is within {most:.2g} mm and {angle:.2g} deg of where Takt's kinematics of the twin's joints say, "
+        f"worst at {seconds(worst * period)} ({AGREES_MM} mm and {AGREES_DEG} deg are allowed)"
+    )
+    return _verdict("twin.tool", group, passed, sentence, worst * period, abs(AGREES_MM - most), "mm")
+
+
+def _within(name: str, torque: Array, limited: npt.NDArray[np.bool_], most: float, period: float, unit: str) -> Verdict:
+    sizes = np.abs(torque)
+    worst = int(limited.argmax()) if limited.any() else int(sizes.argmax()) if len(sizes) else 0
+    peak = float(sizes.max(initial=0.0))
+    if limited.any():
+        sentence = (
+            f"the motor was at its limit of {most:g} {unit} in {counted(int(limited.sum()), 'cycle')}, "
+            f"the first at {seconds(worst * period)}"
+        )
+    else:
+        sentence = f"the motor gave up to {peak:.3g} {unit} of {most:g} ({100 * peak / most:.0f} %)"
+    return _verdict("twin.torque", name, not limited.any(), sentence, worst * period, most - peak, unit)
+
+
+def _untouched(twin: Twin, period: float) -> Verdict:
+    seen = sorted(twin.contacts.values(), key=lambda one: one.cycle)
+    if not seen:
+        return _verdict("twin.contacts", "", True, "nothing touched anything", None, None, "")
+    first = seen[0]
+    x, y, z = first.at_mm
+    others = f"; {counted(len(seen) - 1, 'other pair')} later" if len(seen) > 1 else ""
+    sentence = (
+        f"{first.bodies[0]} and {first.bodies[1]} touched from {seconds(first.cycle * period)} on, at X {x:.1f}, "
+        f"Y {y:.1f}, Z {z:.1f} mm{others}"
+    )
+    return _verdict("twin.contacts", "", False, sentence, first.cycle * period, first.depth_mm, "mm")
+
+
+def _verdict(
+    name: str, component: str, passed: bool, sentence: str, when: float | None, room: float | None, unit: str
+) -> Verdict:
+    return Verdict(name, (component,) if component else (), passed, sentence, when, room, unit, None)
+
+
+def _size(values: Array) -> tuple[float, float]:
+    """Root mean square and largest magnitude."""
+    if not len(values):
+        return math.nan, math.nan
+    return float(np.sqrt(np.mean(np.square(values)))), float(np.abs(values).max())
+
+
+def _following(recording: Recording, axis: str) -> Array:
+    table = recording[axis]
+    return np.asarray(table["following_error"][table["loop_closed"].astype(bool)], float)
+
+
+def _off(recording: Recording, group: str) -> Array:
+    """Distance of the tool from its set pose while the group is enabled. The measured pose answers the set pose of the
+    cycle before."""
+    table = recording[group]
+    columns = [np.asarray(table[name], float) for name in ("x", "y", "z", "actual_x", "actual_y", "actual_z")]
+    off = np.linalg.norm(np.subtract(columns[3:], columns[:3])[:, 1:], axis=0)
+    return np.asarray(off[np.isfinite(off)])

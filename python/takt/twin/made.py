@@ -1,0 +1,238 @@
+"""Models made from the kinematics of a machine file: MJCF, in m, kg and degrees.
+
+Each axis moves one body, whose mass the section `twin` says; shapes are there for inertia, contact and pictures. A
+Delta is a closed chain: six rods on ball joints between its arms and a platform that nothing else holds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+MECHANISMS = ("gantry", "core_xy", "scara", "delta", "six_axis", "serial")
+ROD_SPACING = 60.0  # mm: of the rods of a Delta that does not say it
+ENVIRONMENT = 1 << 30  # contact group of obstacles; each mechanism has one of its own
+GROUPS = 29
+SLIDES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
+TURNS = {"a": (1, 0, 0), "b": (0, 1, 0), "c": (0, 0, 1)}
+
+
+@dataclass(frozen=True)
+class Body:
+    """What an axis of a made mechanism moves, seen from what the axis before it moves."""
+
+    axis: str
+    direction: tuple[float, float, float]
+    slides: bool
+    at: tuple[float, float, float] = (0.0, 0.0, 0.0)  # mm
+    to: tuple[float, float, float] = (0.0, 0.0, 0.0)  # mm, where its shape ends
+
+
+@dataclass
+class Made:
+    """Parts of an MJCF."""
+
+    world: list[str] = field(default_factory=list)
+    equality: list[str] = field(default_factory=list)
+    joints: dict[str, str] = field(default_factory=dict)  # of axes
+    tools: dict[str, str] = field(default_factory=dict)  # sites of groups
+
+
+def mechanism_of(group: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Kind and parameters of a group's kinematics."""
+    kinematics = group["kinematics"]
+    kind = next(kind for kind in MECHANISMS if kinematics.get(kind) is not None)
+    return kind, kinematics[kind]
+
+
+def document(name: str, made: Made, step_s: float) -> str:
+    """The model as one MJCF."""
+    return f"""<mujoco model={quoteattr(name)}>
+<compiler angle="degree" eulerseq="XYZ" autolimits="true"/>
+<option timestep="{step_s!r}" integrator="implicitfast" gravity="0 0 -9.81"/>
+<visual><global offwidth="1280" offheight="720"/><headlight ambient=".4 .4 .4" diffuse=".5 .5 .5"/></visual>
+<default><equality solref="0.001 1" solimp="0.99 0.9999 0.0001"/></default>
+<worldbody><light pos="0 -1 2.5" diffuse=".7 .7 .7"/>
+{"".join(made.world)}</worldbody>
+<equality>{"".join(made.equality)}</equality>
+</mujoco>"""
+
+
+def add_group(made: Made, number: int, group: Mapping[str, Any], twin: Mapping[str, Any]) -> None:
+    """A group's mechanism; not one from a URDF."""
+    kind, params = mechanism_of(group)
+    axes = {axis["axis"]: axis for axis in twin["axes"]}
+    told: Mapping[str, Any] = next((one for one in twin["mechanisms"] if one["group"] == group["name"]), {})
+    if kind == "delta":
+        inside = _delta(made, number, group, params, axes, told)
+    else:
+        inside = _chain(made, number, group, _bodies(kind, group["axes"], params), axes, told)
+    obstacles = "".join(_obstacle(solid) for solid in ((group.get("workspace") or {}).get("obstacles") or ()))
+    made.world.append(f"<body {_pose(group['base'])}>{inside}{obstacles}</body>\n")
+
+
+def add_alone(made: Made, number: int, place: int, axis: Mapping[str, Any], rotary: bool) -> None:
+    """An axis without a mechanism."""
+    direction = axis.get("direction") or ("z" if rotary else "x")
+    joint = _joint(made, axis, SLIDES[direction], not rotary)
+    if rotary:
+        radius = axis["radius"] / 1000
+        ends = " ".join(f"{0.01 * n:g} " for n in SLIDES[direction])
+        minus = " ".join(f"{-0.01 * n:g} " for n in SLIDES[direction])
+        shape = f'<geom type="cylinder" size="{radius!r}" fromto="{minus}{ends}"'
+        shape += f' mass="{axis["mass"]!r}" rgba=".8 .5 .2 1" {_contacts(number)}/>'
+    else:
+        shape = f'<geom type="box" size=".05 .05 .03" mass="{axis["mass"]!r}" rgba=".2 .4 .8 1" {_contacts(number)}/>'
+    made.world.append(f'<body pos="0 {0.4 * place:g} 0">{joint}{shape}</body>\n')
+
+
+def _bodies(kind: str, axes: Sequence[str], p: Mapping[str, Any]) -> list[Body]:
+    if kind == "gantry":
+        moved = list(zip(axes, p["axes"], strict=False))
+        slides = [Body(axis, SLIDES[c], True, to=(0, 0, -60)) for axis, c in moved if c in SLIDES]
+        turns = [Body(a, TURNS[t], False, to=(0, 0, -40)) for t in "cba" for a, c in moved if c == t]
+        return slides + turns
+    if kind == "scara":
+        first, second, height = p["first_arm"], p["second_arm"], p["height"]
+        z, turn = (0.0, 0.0, 1.0), False
+        return [
+            Body(axes[0], z, turn, at=(0, 0, height), to=(first, 0, 0)),
+            Body(axes[1], z, turn, at=(first, 0, 0), to=(second, 0, 0)),
+            Body(axes[2], z, True, at=(second, 0, 0), to=(0, 0, 100)),
+            Body(axes[3], z, turn, to=(0, 0, 30)),
+        ]
+    z, y = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
+    return [
+        Body(axes[0], z, False, to=(p["a1"], 0, p["c1"])),
+        Body(axes[1], y, False, at=(p["a1"], 0, p["c1"]), to=(0, 0, p["c2"])),
+        Body(axes[2], y, False, at=(0, 0, p["c2"]), to=(p["a2"], p["b"], p["c3"] / 2)),
+        Body(axes[3], z, False, at=(p["a2"], p["b"], p["c3"]), to=(0, 0, -p["c3"] / 4)),
+        Body(axes[4], y, False, to=(0, 0, p["c4"] / 2)),
+        Body(axes[5], z, False, at=(0, 0, p["c4"]), to=(0, 0, -20)),
+    ]
+
+
+def _chain(
+    made: Made,
+    number: int,
+    group: Mapping[str, Any],
+    bodies: Sequence[Body],
+    axes: Mapping[str, Mapping[str, Any]],
+    told: Mapping[str, Any],
+) -> str:
+    text, ends = "", ""
+    for body in bodies:
+        axis = axes[body.axis]
+        joint = _joint(made, axis, body.direction, body.slides)
+        to = body.to if math.hypot(*body.to) > 1 else (0.0, 0.0, -30.0)
+        shape = f'<geom type="capsule" size="0.02" fromto="0 0 0 {_metres(to)}" mass="{axis["mass"]!r}"'
+        text += f'<body name={quoteattr(body.axis)} pos="{_metres(body.at)}">{joint}{shape} {_contacts(number)}/>'
+        ends += "</body>"
+    return text + _tool(made, number, group, told) + ends
+
+
+def _delta(
+    made: Made,
+    number: int,
+    group: Mapping[str, Any],
+    p: Mapping[str, Any],
+    axes: Mapping[str, Mapping[str, Any]],
+    told: Mapping[str, Any],
+) -> str:
+    name, lower = group["name"], p["lower_arm"] / 1000
+    half = (p["rod_spacing"] or ROD_SPACING) / 2000
+    platform = p["platform_radius"] / 1000
+    arms, sites = "", ""
+    for i in range(3):
+        turn = p["first_arm_deg"] + 120 * i
+        cos, sin = math.cos(math.radians(turn)), math.sin(math.radians(turn))
+        rods = ""
+        for k, y in enumerate((-half, half)):
+            end = f"{name}.rod_{i + 1}{k + 1}"
+            rods += (
+                f'<body name={quoteattr(end)} pos="{p["upper_arm"] / 1000!r} {y!r} 0">'
+                f'<joint name={quoteattr(end)} type="ball" damping="0.0002"/>'
+                f'<geom type="capsule" size="0.006" fromto="0 0 0 0 0 {-lower!r}" mass="{told["rod_mass"]!r}"'
+                f' rgba=".3 .3 .3 1" {_contacts(number)}/>'
+                f'<site name={quoteattr(end)} pos="0 0 {-lower!r}"/></body>'
+            )
+            at = f"{platform * cos - y * sin!r} {platform * sin + y * cos!r} 0"
+            sites += f'<site name={quoteattr(end + ".at")} pos="{at}"/>'
+            made.equality.append(f"<connect site1={quoteattr(end)} site2={quoteattr(end + '.at')}/>")
+        axis = axes[group["axes"][i]]
+        joint = _joint(made, axis, (0, 1, 0), False)
+        arms += (
+            f'<body euler="0 0 {turn!r}">'
+            f'<body name={quoteattr(axis["axis"])} pos="{p["base_radius"] / 1000!r} 0 0">{joint}'
+            f'<geom type="capsule" size="0.02" fromto="0 0 0 {p["upper_arm"] / 1000!r} 0 0" mass="{axis["mass"]!r}"'
+            f' rgba=".2 .4 .8 1" {_contacts(number)}/>{rods}</body></body>'
+        )
+    tool = _tool(made, number, group, told)
+    if p["rotary"]:
+        axis = axes[group["axes"][3]]
+        tool = (
+            f"<body name={quoteattr(axis['axis'])}>{_joint(made, axis, (0, 0, 1), False)}"
+            f'<geom type="cylinder" size="0.02 0.01" mass="{axis["mass"]!r}" {_contacts(number)}/>{tool}</body>'
+        )
+    # Moved onto the world by its free joint, which MuJoCo allows there only: see Twin, which assembles the chain.
+    made.world.append(
+        f"<body name={quoteattr(name + '.platform')}><freejoint name={quoteattr(name + '.platform')}/>"
+        f'<geom type="cylinder" size="{max(platform, 0.01)!r} 0.008" mass="{told["platform_mass"]!r}" rgba=".8 .2 .2 1"'
+        f" {_contacts(number)}/>{sites}{tool}</body>\n"
+    )
+    return arms
+
+
+def _joint(made: Made, axis: Mapping[str, Any], direction: Sequence[float], slides: bool) -> str:
+    name = axis["axis"]
+    made.joints[name] = name
+    kind, along = "slide" if slides else "hinge", " ".join(map(str, direction))
+    return f'<joint name={quoteattr(name)} type="{kind}" axis="{along}"/>'
+
+
+def _tool(made: Made, number: int, group: Mapping[str, Any], told: Mapping[str, Any]) -> str:
+    name = f"{group['name']}.flange"
+    made.tools[group["name"]] = name
+    text = f"<site name={quoteattr(name)}/>"
+    if payload := told.get("payload", 0):
+        tool = group["tool"]
+        at = _metres((tool["x"], tool["y"], tool["z"]))
+        text += (
+            f'<geom type="sphere" size="0.015" pos="{at}" mass="{payload!r}" rgba=".9 .6 .1 1" {_contacts(number)}/>'
+        )
+    return text
+
+
+def _contacts(number: int) -> str:
+    """Parts of one mechanism do not touch one another; those of others and obstacles they do."""
+    own = 1 << (number % GROUPS)
+    return f'contype="{own}" conaffinity="{((1 << GROUPS) - 1) & ~own | ENVIRONMENT}"'
+
+
+def _obstacle(solid: Mapping[str, Any]) -> str:
+    kind = next((kind for kind in ("box", "cylinder", "sphere", "capsule") if solid.get(kind)), None)
+    if kind is None:
+        return ""  # meshes: see the limits in docs/twin.md
+    p = solid[kind]
+    lengths = {
+        "box": [p[edge] / 2 for edge in "xyz"] if kind == "box" else [],
+        "cylinder": [p.get("radius"), p.get("height", 0) / 2],
+        "sphere": [p.get("radius")],
+        "capsule": [p.get("radius"), (p.get("length") or 1) / 2],
+    }[kind]
+    size = " ".join(f"{length / 1000!r}" for length in lengths)
+    name = quoteattr(f"obstacle {solid['name']}")
+    contacts = f'contype="{ENVIRONMENT}" conaffinity="{(1 << GROUPS) - 1}"'
+    return f'<geom name={name} type="{kind}" size="{size}" {_pose(solid["pose"])} rgba=".6 .6 .6 .6" {contacts}/>'
+
+
+def _pose(pose: Mapping[str, float]) -> str:
+    at = _metres((pose["x"], pose["y"], pose["z"]))
+    return f'pos="{at}" euler="{pose["a"]!r} {pose["b"]!r} {pose["c"]!r}"'
+
+
+def _metres(at: Sequence[float]) -> str:
+    return " ".join(repr(float(one) / 1000) for one in at)

@@ -1,0 +1,438 @@
+"""The model of a twin: made or read, and what of it belongs to which axis and group. Says what does not fit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import numpy.typing as npt
+
+from takt.errors import ConfigError
+from takt.kinematics import Kinematics, KinematicsError
+from takt.twin import made
+from takt.twin.places import Problems, mujoco_missing, near
+
+Array = npt.NDArray[np.float64]
+
+FITS_MM = 0.5  # how far a model's tool may be from where the kinematics say
+FITS_DEG = 0.5
+STABLE = 0.8  # gain of the velocity loops over one step, all together: below 2, with room for other poses
+LOOP_MM = 0.05  # how far a loop may be open at the start
+PER_M = 1000.0  # mm
+PER_RAD = 180 / math.pi  # deg
+
+
+@dataclass(frozen=True)
+class Joint:
+    """How an axis and a joint of the model belong together: position = zero + scale * joint, in u, m and rad."""
+
+    axis: str
+    name: str
+    position: int  # place in qpos
+    velocity: int  # place in qvel
+    scale: float
+    zero: float
+
+
+@dataclass(frozen=True)
+class Tool:
+    """The flange of a group, and what Takt knows of it."""
+
+    group: str
+    kinematics: Kinematics
+    rows: tuple[int, ...]  # of its axes, among those of the twin
+    site: int  # of the model, or -1: a body
+    body: int
+    base: Array  # (4, 4), mm: of the machine coordinate system in the world
+
+    def pose_in(self, data: Any) -> tuple[Array, Array]:
+        """Position in m and rotation, as the data have them."""
+        if self.site >= 0:
+            return data.site_xpos[self.site], data.site_xmat[self.site]
+        return data.xpos[self.body], data.xmat[self.body]
+
+    def expected(self, joints: npt.ArrayLike) -> tuple[Array, Array]:
+        """Positions in mm, and rotations, by Takt's own kinematics, of rows of positions of its axes."""
+        poses = np.atleast_2d(self.kinematics.forward(joints))
+        turns = rotations(poses[:, 3:])
+        return poses[:, :3] @ self.base[:3, :3].T + self.base[:3, 3], self.base[:3, :3] @ turns
+
+
+@dataclass
+class Model:
+    """A model and its state at the start."""
+
+    model: Any  # mujoco.MjModel
+    data: Any
+    joints: tuple[Joint, ...]
+    tools: tuple[Tool, ...]
+    inertia: Array  # kg m2 or kg, that the gain of each drive fits
+
+
+def rotations(angles: Array) -> Array:
+    """(n, 3, 3) of (n, 3) angles about X, Y, Z of a frame that stands still, in deg."""
+    a, b, c = np.radians(angles).T
+    zero, one = np.zeros_like(a), np.ones_like(a)
+
+    def matrix(*rows: Array) -> Array:
+        return np.stack(rows, axis=-1).reshape(-1, 3, 3)
+
+    about_x = matrix(one, zero, zero, zero, np.cos(a), -np.sin(a), zero, np.sin(a), np.cos(a))
+    about_y = matrix(np.cos(b), zero, np.sin(b), zero, one, zero, -np.sin(b), zero, np.cos(b))
+    about_z = matrix(np.cos(c), -np.sin(c), zero, np.sin(c), np.cos(c), zero, zero, zero, one)
+    return np.asarray(about_z @ about_y @ about_x)
+
+
+def build(text: bytes, file_name: str, machine: Mapping[str, Any], step_s: float) -> Model:
+    """The model of the machine's twin, at rest where its axes stand when power comes on."""
+    try:
+        import mujoco
+    except ImportError:
+        raise mujoco_missing() from None
+    twin = machine.get("twin")
+    problems = Problems(text, file_name)
+    if twin is None:
+        raise problems.fail("twin", "expected a section that says which axes the twin moves (docs: A twin), found none")
+    builder = _Builder(mujoco, problems, file_name, machine, step_s)
+    return builder.from_file() if twin["model"] else builder.from_kinematics()
+
+
+class _Builder:
+    def __init__(self, mujoco: Any, problems: Problems, file_name: str, machine: Mapping[str, Any], step_s: float):
+        self.mujoco, self.problems = mujoco, problems
+        self.machine, self.twin, self.step_s = machine, machine["twin"], step_s
+        self.folder = Path(file_name).resolve().parent
+        self.axes = {axis["name"]: axis for axis in machine["axes"]}
+        self.moved = [axis["axis"] for axis in self.twin["axes"]]
+        self.groups = [
+            group
+            for group in machine["groups"]
+            if group.get("kinematics") and any(axis in self.moved for axis in group["axes"])
+        ]
+
+    # --- both kinds ---
+
+    def compiled(self, spec: Any, path: str) -> Any:
+        try:
+            model = spec.compile()
+        except Exception as error:  # the compiler's own sentence says which element
+            raise self.problems.fail(path, f"MuJoCo does not take the model: {_line(error)}") from None
+        model.opt.timestep = self.step_s
+        model.opt.disableflags |= int(self.mujoco.mjtDisableBit.mjDSBL_ACTUATION)
+        model.opt.disableflags |= int(self.mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+        return model
+
+    def rotary(self, axis: str) -> bool:
+        """Whether an axis without a mechanism turns."""
+        return bool(self.axes[axis]["unit"] == "deg")
+
+    def joint_of(self, model: Any, number: int, name: str) -> Joint | None:
+        """The joint of an axis, if it fits."""
+        axis, path = self.moved[number], f"twin.axes[{number}].joint"
+        names = [model.joint(i).name for i in range(model.njnt)]
+        if name not in names:
+            self.problems.add(path, f"expected the name of a joint of the model, found '{name}'{near(name, names)}")
+            return None
+        joint = model.joint(name)
+        kinds = self.mujoco.mjtJoint
+        turns, slides = int(joint.type[0]) == int(kinds.mjJNT_HINGE), int(joint.type[0]) == int(kinds.mjJNT_SLIDE)
+        if not turns and not slides:
+            self.problems.add(path, f"expected a joint that turns or slides, found '{name}', which does neither alone")
+            return None
+        group, place = self.member(axis)
+        if group is not None:
+            expected = Kinematics(folder=self.folder, **mechanism(group)).rotary[place]
+        else:
+            expected = self.rotary(axis)
+        if expected != turns:
+            is_, wants = ("turns", "a joint that slides") if turns else ("slides", "a joint that turns")
+            self.problems.add(path, f"expected {wants}, as axis {axis} does, found '{name}', which {is_}")
+            return None
+        scale, zero = (PER_RAD if turns else PER_M), 0.0
+        if group is not None and group["kinematics"]["joints"]:
+            counts = group["kinematics"]["joints"][place]
+            scale, zero = -scale if counts["invert"] else scale, counts["zero"]
+        return Joint(axis, name, int(joint.qposadr[0]), int(joint.dofadr[0]), scale, zero)
+
+    def member(self, axis: str) -> tuple[Mapping[str, Any] | None, int]:
+        """The group whose mechanism an axis moves, and its place there."""
+        for group in self.groups:
+            count = Kinematics(folder=self.folder, **mechanism(group)).axes
+            if axis in group["axes"][:count]:
+                return group, list(group["axes"]).index(axis)
+        return None, -1
+
+    def tool_of(self, model: Any, group: Mapping[str, Any], name: str, path: str) -> Tool | None:
+        sites = [model.site(i).name for i in range(model.nsite)]
+        bodies = [model.body(i).name for i in range(model.nbody)]
+        if name not in sites and name not in bodies:
+            known = near(name, [one for one in sites + bodies if one])
+            self.problems.add(path, f"expected the name of a site or body of the model, found '{name}'{known}")
+            return None
+        site = sites.index(name) if name in sites else -1
+        body = bodies.index(name) if site < 0 else -1
+        kinematics = Kinematics(folder=self.folder, **mechanism(group))
+        missing = [axis for axis in group["axes"][: kinematics.axes] if axis not in self.moved]
+        if missing:
+            self.problems.add("twin.axes", f"expected all axes of group {group['name']}, found no {missing[0]}")
+            return None
+        rows = tuple(self.moved.index(axis) for axis in group["axes"][: kinematics.axes])
+        base = np.eye(4)
+        pose = group["base"]
+        base[:3, :3] = rotations(np.array([[pose["a"], pose["b"], pose["c"]]]))[0]
+        base[:3, 3] = pose["x"], pose["y"], pose["z"]
+        return Tool(group["name"], kinematics, rows, site, body, base)
+
+    def weigh(self, model: Any, joints: Sequence[Joint]) -> None:
+        """Gives the joints motors, gears and friction."""
+        for joint, told in zip(joints, self.twin["axes"], strict=True):
+            model.dof_armature[joint.velocity] += told["rotor_inertia"]
+            model.dof_frictionloss[joint.velocity] += told["coulomb_friction"]
+            model.dof_damping[joint.velocity] += told["viscous_friction"]
+
+    def start_of(self, axis: str) -> float:
+        servos = self.machine["simulation"]["servos"]
+        return float(next((s["mechanics"]["start_position"] for s in servos if s["axis"] == axis), 0.0))
+
+    def lag_of(self, axis: str) -> float:
+        """Time constant of the velocity loop of its drive."""
+        servos = self.machine["simulation"]["servos"]
+        return float(next((s["drive"]["velocity_time_constant_s"] for s in servos if s["axis"] == axis), 0.001))
+
+    def done(self, model: Any, data: Any, joints: Sequence[Joint], tools: Sequence[Tool]) -> Model:
+        self.mujoco.mj_forward(model, data)
+        self.check_loops(model, data)
+        self.check_tools(data, joints, tools)
+        self.problems.end()
+        inertia = self.inertia_of(model, data, joints)
+        return Model(model, data, tuple(joints), tuple(tools), inertia)
+
+    def check_loops(self, model: Any, data: Any) -> None:
+        kinds = self.mujoco.mjtConstraint
+        rows = np.flatnonzero(data.efc_type[: data.nefc] == int(kinds.mjCNSTR_EQUALITY))
+        if not len(rows):
+            return
+        worst = rows[np.argmax(np.abs(data.efc_pos[rows]))]
+        open_mm = abs(float(data.efc_pos[worst])) * PER_M
+        if open_mm > LOOP_MM:
+            number = int(data.efc_id[worst])
+            name = model.equality(number).name or f"number {number}"
+            path = "twin.model" if self.twin["model"] else "twin.mechanisms"
+            self.problems.add(
+                path, f"expected loops that close at the start, found {open_mm:.3g} mm between the ends of {name}"
+            )
+
+    def check_tools(self, data: Any, joints: Sequence[Joint], tools: Sequence[Tool]) -> None:
+        for tool in tools:
+            at = np.array([joints[row].zero + joints[row].scale * data.qpos[joints[row].position] for row in tool.rows])
+            place, turn = tool.pose_in(data)
+            expected, expected_turn = tool.expected(at)
+            off = float(np.linalg.norm(place * PER_M - expected[0]))
+            turned = math.degrees(
+                math.acos(np.clip((np.trace(expected_turn[0].T @ turn.reshape(3, 3)) - 1) / 2, -1, 1))
+            )
+            if off > FITS_MM or turned > FITS_DEG:
+                number = next((i for i, m in enumerate(self.twin["mechanisms"]) if m["group"] == tool.group), None)
+                path = "twin.model" if number is None else f"twin.mechanisms[{number}]"
+                sentence = f"expected the tool of {tool.group} where its kinematics say, found it {off:.4g} mm"
+                self.problems.add(path, f"{sentence} and {turned:.3g} deg away, at the start")
+
+    def inertia_of(self, model: Any, data: Any, joints: Sequence[Joint]) -> Array:
+        """The inertia that fits each motor's gain: what it moves at the start while the others hold, less where all
+        together would swing. From the accelerations that a torque gives, so that loops count, too."""
+        losses = model.dof_frictionloss.copy()
+        model.dof_frictionloss[:] = 0
+        data.qvel[:] = 0
+        self.mujoco.mj_forward(model, data)
+        dofs = [joint.velocity for joint in joints]
+        at_rest = data.qacc[dofs]
+        gained = np.zeros((len(joints), len(joints)))
+        for row, joint in enumerate(joints):
+            data.qfrc_applied[joint.velocity] = 1.0
+            self.mujoco.mj_forward(model, data)
+            gained[:, row] = data.qacc[dofs] - at_rest
+            data.qfrc_applied[joint.velocity] = 0.0
+            if not gained[row, row] > 1e-9:
+                sentence = f"expected that its motor can move it, found that joint '{joint.name}' is held"
+                self.problems.add(f"twin.axes[{row}]", sentence)
+        model.dof_frictionloss[:] = losses
+        self.mujoco.mj_forward(model, data)
+        self.problems.end()
+        held = np.diag(np.linalg.inv(gained))
+        shares = [1 - math.exp(-self.step_s / self.lag_of(joint.axis)) for joint in joints]
+        swing = float(np.abs(np.linalg.eigvals(gained * held)).max())
+        return np.asarray(held * min(1.0, STABLE / (max(shares) * swing)))
+
+    # --- made ---
+
+    def from_kinematics(self) -> Model:
+        parts, twin = made.Made(), self.twin
+        alone = [(n, axis) for n, axis in enumerate(twin["axes"]) if self.member(axis["axis"])[0] is None]
+        for number, group in enumerate(self.groups):
+            if made.mechanism_of(group)[0] == "serial":
+                continue
+            if made.mechanism_of(group)[0] == "core_xy":
+                raise self.problems.fail("twin", f"group {group['name']}: core_xy cannot be made; give a model")
+            made.add_group(parts, number, group, twin)
+        for place, (_, axis) in enumerate(alone):
+            made.add_alone(parts, len(self.groups) + place, place, axis, self.rotary(axis["axis"]))
+        spec = self.mujoco.MjSpec.from_string(made.document(self.machine["name"], parts, self.step_s))
+        for number, group in enumerate(self.groups):
+            if made.mechanism_of(group)[0] == "serial":
+                self.attach(spec, number, group, parts)
+        model = self.compiled(spec, "twin")
+        joints = [self.joint_of(model, n, parts.joints[axis]) for n, axis in enumerate(self.moved)]
+        tools = [self.tool_of(model, group, parts.tools[group["name"]], "twin.mechanisms") for group in self.groups]
+        self.problems.end()
+        fitting = [joint for joint in joints if joint is not None]
+        self.weigh(model, fitting)
+        data = self.mujoco.MjData(model)
+        for joint in fitting:
+            data.qpos[joint.position] = (self.start_of(joint.axis) - joint.zero) / joint.scale
+        found = [tool for tool in tools if tool is not None]
+        for tool, group in zip(found, self.groups, strict=True):
+            if made.mechanism_of(group)[0] == "delta":
+                self.assemble(model, data, tool, group, fitting)
+        return self.done(model, data, fitting, found)
+
+    def assemble(self, model: Any, data: Any, tool: Tool, group: Mapping[str, Any], joints: Sequence[Joint]) -> None:
+        """Puts the platform of a Delta where it hangs at the start, and turns its rods towards it."""
+        at = [self.start_of(joints[row].axis) for row in tool.rows]
+        try:
+            places, _ = tool.expected(at)
+        except KinematicsError as error:
+            number = next(i for i, m in enumerate(self.twin["mechanisms"]) if m["group"] == group["name"])
+            raise self.problems.fail(
+                f"twin.mechanisms[{number}]", f"expected loops that close at the start, {at}: {error}"
+            ) from None
+        free = model.joint(f"{group['name']}.platform").qposadr[0]
+        data.qpos[free : free + 3] = places[0] / PER_M
+        self.mujoco.mju_mat2Quat(data.qpos[free + 3 : free + 7], tool.base[:3, :3].ravel())
+        self.mujoco.mj_kinematics(model, data)
+        for i in range(3):
+            for k in range(2):
+                name = f"{group['name']}.rod_{i + 1}{k + 1}"
+                knee = data.xpos[model.body(name).id]
+                wanted = data.site_xpos[model.site(name + ".at").id] - knee
+                parent = data.xmat[model.body(group["axes"][i]).id].reshape(3, 3)
+                quat = np.zeros(4)
+                self.mujoco.mju_quatZ2Vec(quat, -(parent.T @ wanted) / np.linalg.norm(wanted))
+                ball = model.joint(name).qposadr[0]
+                data.qpos[ball : ball + 4] = quat
+
+    # --- from URDF of the kinematics ---
+
+    def attach(self, spec: Any, number: int, group: Mapping[str, Any], parts: made.Made) -> None:
+        kinematics = group["kinematics"]["serial"]
+        path = f"groups[{self.machine['groups'].index(group)}].kinematics.serial.urdf"
+        text = kinematics["urdf"]
+        if not text.lstrip().startswith("<"):
+            text = (self.folder / text).read_text(encoding="utf-8")
+        child = self.read_urdf(text, path, None)
+        names, tip = _chain_of(text, kinematics["base"], kinematics["tip"])
+        for body in child.bodies:
+            for geom in body.geoms:
+                own = 1 << (number % made.GROUPS)
+                geom.contype, geom.conaffinity = own, ((1 << made.GROUPS) - 1) & ~own | made.ENVIRONMENT
+        pose, prefix = group["base"], f"{group['name']}."
+        quat = np.zeros(4)
+        turn = rotations(np.array([[pose["a"], pose["b"], pose["c"]]]))[0]
+        self.mujoco.mju_mat2Quat(quat, turn.ravel())
+        frame = spec.worldbody.add_frame(pos=[pose[k] / PER_M for k in "xyz"], quat=quat)
+        told = next((m for m in self.twin["mechanisms"] if m["group"] == group["name"]), None)
+        flange = child.body(tip)
+        if flange is None:
+            raise self.problems.fail(path, f"expected link '{tip}' in the model that MuJoCo made of it, found none")
+        flange.add_site(name="flange")
+        if told and told["payload"]:
+            at = [group["tool"][k] / PER_M for k in "xyz"]
+            flange.add_geom(type=self.mujoco.mjtGeom.mjGEOM_SPHERE, size=[0.015, 0, 0], pos=at, mass=told["payload"])
+        spec.attach(child, frame=frame, prefix=prefix)
+        for axis, name in zip(group["axes"], names, strict=False):
+            parts.joints[axis] = prefix + name
+        parts.tools[group["name"]] = prefix + "flange"
+
+    def read_urdf(self, text: str, path: str, folder: Path | None) -> Any:
+        try:
+            spec = self.mujoco.MjSpec.from_string(text)
+        except Exception as error:
+            raise self.problems.fail(path, f"MuJoCo cannot read it: {_line(error)}") from None
+        spec.compiler.fusestatic = False
+        if folder is not None:
+            spec.compiler.meshdir = str(folder)
+        return spec
+
+    # --- given ---
+
+    def from_file(self) -> Model:
+        file = self.folder / self.twin["model"]
+        try:
+            text = file.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            why = error.strerror if isinstance(error, OSError) else "it is no text"
+            raise self.problems.fail("twin.model", f"{file}: cannot be read: {why}") from None
+        if "<robot" in text:
+            spec = self.read_urdf(text, "twin.model", file.parent)
+        else:
+            try:
+                spec = self.mujoco.MjSpec.from_file(str(file))
+            except Exception as error:
+                raise self.problems.fail("twin.model", f"MuJoCo cannot read it: {_line(error)}") from None
+        model = self.compiled(spec, "twin.model")
+        joints = [self.joint_of(model, n, axis["joint"]) for n, axis in enumerate(self.twin["axes"])]
+        tools = []
+        for number, told in enumerate(self.twin["mechanisms"]):
+            group = next(g for g in self.machine["groups"] if g["name"] == told["group"])
+            if told["tool"]:
+                tools.append(self.tool_of(model, group, told["tool"], f"twin.mechanisms[{number}].tool"))
+        names = [joint.name for joint in joints if joint is not None]
+        for number, name in enumerate(names):
+            if name in names[:number]:
+                self.problems.add(f"twin.axes[{number}].joint", f"expected each joint once, found '{name}' again")
+        self.problems.end()
+        fitting = [joint for joint in joints if joint is not None]
+        self.weigh(model, fitting)
+        data = self.mujoco.MjData(model)
+        for joint in fitting:
+            data.qpos[joint.position] = (self.start_of(joint.axis) - joint.zero) / joint.scale
+        return self.done(model, data, fitting, [tool for tool in tools if tool is not None])
+
+
+def mechanism(group: Mapping[str, Any]) -> dict[str, Any]:
+    """The arguments of takt.kinematics.Kinematics for a group."""
+    kind, params = made.mechanism_of(group)
+    found: dict[str, Any] = {kind: params}
+    if group["kinematics"]["joints"]:
+        found["joints"] = group["kinematics"]["joints"]
+    return found
+
+
+def _chain_of(urdf: str, base: str, tip: str) -> tuple[list[str], str]:
+    """Joints that move from base to tip of a URDF, in order, and the tip."""
+    root = ElementTree.fromstring(urdf)
+    into = {}
+    for joint in root.findall("joint"):
+        parent, child = joint.find("parent"), joint.find("child")
+        if parent is not None and child is not None:
+            into[child.get("link", "")] = (joint, parent.get("link", ""))
+    links = [link.get("name", "") for link in root.findall("link")]
+    parents = {parent for _, parent in into.values()}
+    tip = tip or next((link for link in links if link not in parents), "")
+    names, at = [], tip
+    while at in into and at != base:
+        joint, at = into[at]
+        if joint.get("type") != "fixed":
+            names.append(joint.get("name", ""))
+    return names[::-1], tip
+
+
+def _line(error: Exception) -> str:
+    return " ".join(str(error).split())
+
+
+__all__ = ["ConfigError", "Joint", "Model", "Tool", "build", "rotations"]

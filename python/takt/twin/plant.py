@@ -1,0 +1,194 @@
+"""A machine's twin as a plant of its engine: MuJoCo has the mechanics, Takt's simulated drives turn set points into
+torques, its encoders and switches read the joints.
+
+In each cycle every drive takes its set point, then MuJoCo makes the cycle's steps with the torques that the drives ask
+for at the beginning of each, then the encoders are read. It is a function of the set points alone: the same run comes
+out the same, bit for bit, on the same build of MuJoCo and the same processor.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from takt import _core
+from takt.plant import Plant, PlantError, Rows
+from takt.twin.model import Array, Model, build
+
+if TYPE_CHECKING:
+    from takt.recording import Recording
+
+FASTEST = 1e6  # m/s or rad/s: no machine, the physics has exploded
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A state of the model: what `takt.twin.picture` shows."""
+
+    cycle: int
+    positions: Array  # MuJoCo's qpos
+    velocities: Array  # and qvel
+
+
+@dataclass(frozen=True)
+class ContactSeen:
+    """Two bodies that touched."""
+
+    cycle: int  # the first
+    bodies: tuple[str, str]
+    depth_mm: float
+    at_mm: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What the twin saw, a row a cycle from 0 on."""
+
+    joints: Array  # (n, axes): in the units of the axes, at the last step of the physics in the cycle
+    torques: Array  # (n, axes): Nm or N, of the motors
+    limited: np.ndarray[Any, np.dtype[np.bool_]]  # (n, axes): held back by the motor's limit
+    tools: dict[str, tuple[Array, Array]]  # by group: (n, 3) mm and (n, 3, 3), in the world, at the same instant
+
+
+class Twin(Plant):
+    """The twin of a machine, `takt.Engine(machine, plant="mujoco")`; made for one engine."""
+
+    def __init__(
+        self,
+        text: bytes,
+        file_name: str | os.PathLike[str],
+        machine: Mapping[str, Any],
+        period: float | None = None,
+    ) -> None:
+        self._period_s = period or float(machine["cycle"]["period_s"])
+        twin: Mapping[str, Any] = machine.get("twin") or {"step_s": 1.0, "axes": ()}  # build says what is wrong then
+        self.steps = max(1, round(self._period_s / twin["step_s"]))
+        self.built: Model = build(text, os.fspath(file_name), machine, self._period_s / self.steps)
+        self.name = str(machine["name"])
+        self.axes = tuple(joint.axis for joint in self.built.joints)
+        self.contacts: dict[tuple[str, str], ContactSeen] = {}
+        self.limits = {axis["axis"]: float(axis["max_torque"]) for axis in twin["axes"]}
+        self._servos = _core.MovedServos(text, os.fspath(file_name), self._period_s, self.steps)
+        for joint, told, inertia in zip(self.built.joints, twin["axes"], self.built.inertia, strict=True):
+            most = told["max_torque"]
+            brake = told.get("brake_torque", most)
+            self._servos.add(joint.axis, joint.position, joint.velocity, joint.scale, joint.zero, inertia, most, brake)
+        self._servos.start()
+        model, data = self.built.model, self.built.data
+        self._begin = (data.qpos.copy(), data.qvel.copy())
+        self._ahead = np.zeros(model.nv)
+        self._places = np.array([joint.position for joint in self.built.joints])
+        self._scales = np.array([joint.scale for joint in self.built.joints])
+        self._zeros = np.array([joint.zero for joint in self.built.joints])
+        self._rows: list[tuple[Any, ...]] = []
+        self._good = self._begin
+        self._cycle = -1
+
+    @classmethod
+    def of(cls, machine: str | os.PathLike[str]) -> Twin:
+        """That of a machine file."""
+        import json
+
+        from takt.engine import read_machine
+
+        text, file_name = read_machine(machine)
+        return cls(text, file_name, json.loads(_core.load_machine(text, file_name)))
+
+    @property
+    def frame(self) -> Frame:
+        """The state after the last cycle that was good."""
+        return Frame(self._cycle, self._good[0].copy(), self._good[1].copy())
+
+    def step(self, cycle: int, told: Rows, measured: Rows) -> None:
+        import mujoco
+
+        model, data, servos = self.built.model, self.built.data, self._servos
+        qpos, qvel, torques = data.qpos, data.qvel, data.qfrc_applied
+        servos.begin(told)
+        at = qpos
+        for i in range(self.steps):
+            servos.ask(i, qpos, qvel, self._ahead, torques)
+            if i == self.steps - 1:
+                at = qpos[self._places]
+            mujoco.mj_step(model, data)
+        self._check(cycle)
+        servos.sense(qpos, qvel, measured)
+        # After a step of MuJoCo, poses of bodies are those of its beginning.
+        tools = [value.copy() for tool in self.built.tools for value in tool.pose_in(data)]
+        if cycle >= 0:
+            self._rows.append((at, servos.torques, bytes(servos.limited), *tools))
+        if data.ncon:
+            self._touch(cycle)
+        self._good = (qpos.copy(), qvel.copy())
+        self._cycle = cycle
+
+    def _check(self, cycle: int) -> None:
+        """Says that the physics has exploded, before anything of it is believed."""
+        data = self.built.data
+        worst = float(np.abs(data.qvel).max(initial=0.0))
+        if worst < FASTEST and not data.warning.number.any():  # NaN is not below either
+            return
+        model = self.built.model
+        finite = np.isfinite(data.qvel)
+        dof = int(np.flatnonzero(~finite)[0]) if not finite.all() else int(np.abs(data.qvel).argmax())
+        joint = model.joint(int(model.dof_jntid[dof])).name or f"number {int(model.dof_jntid[dof])}"
+        why = f"joint '{joint}' has a speed of {data.qvel[dof]:.3g}"
+        if finite.all() and worst < FASTEST:
+            import mujoco
+
+            number = int(np.flatnonzero(data.warning.number)[0])
+            why = f"MuJoCo warns {mujoco.mjtWarning(number).name}"
+        raise PlantError(
+            f"the physics of {self.name} exploded in cycle {cycle} ({cycle * self._period_s:.4f} s): {why}; stopped, "
+            f"the state after cycle {self._cycle} is kept (Twin.frame)"
+        )
+
+    def _touch(self, cycle: int) -> None:
+        model, data = self.built.model, self.built.data
+        for i in range(data.ncon):
+            contact = data.contact[i]
+            if contact.dist > 0:
+                continue
+            names = sorted(_called(model, int(geom)) for geom in contact.geom)
+            pair = (names[0], names[1])
+            if pair not in self.contacts:
+                x, y, z = (float(one) * 1000 for one in contact.pos)
+                self.contacts[pair] = ContactSeen(cycle, pair, -float(contact.dist) * 1000, (x, y, z))
+
+    def seen(self) -> Seen:
+        """What it has seen so far."""
+        count = len(self.axes)
+        columns = list(zip(*self._rows, strict=True)) or [() for _ in range(3 + 2 * len(self.built.tools))]
+        joints = np.array(columns[0], float).reshape(-1, count)
+        limited = np.frombuffer(b"".join(columns[2]), np.uint8).reshape(-1, count) > 0
+        tools = {}
+        for number, tool in enumerate(self.built.tools):
+            places = np.array(columns[3 + 2 * number], float).reshape(-1, 3) * 1000
+            tools[tool.group] = (places, np.array(columns[4 + 2 * number], float).reshape(-1, 3, 3))
+        torques = np.array(columns[1], float).reshape(-1, count)
+        return Seen(self._zeros + self._scales * joints, torques, limited, tools)
+
+    def finish(self, recording: Recording) -> None:
+        recording.meta["plant"] = f"MuJoCo {_version()}"
+
+    def picture(self, file: str | os.PathLike[str], frame: Frame | None = None) -> Path:
+        """Draws a state, the last one if none is given, as PNG. Raises PlantError where nothing here can draw."""
+        from takt.twin.picture import draw
+
+        return draw(self.built, frame or self.frame, Path(file))
+
+
+def _called(model: Any, geom: int) -> str:
+    name = model.geom(geom).name
+    return name or model.body(int(model.geom_bodyid[geom])).name or f"geom {geom}"
+
+
+def _version() -> str:
+    import mujoco
+
+    return str(mujoco.__version__)
