@@ -7,17 +7,26 @@
 
 #include <pybind11/typing.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "takt/core/columns.h"
 #include "takt/core/describe.h"
+#include "takt/core/ports.h"
 #include "takt/engine/load.h"
 #include "takt/lcm/key.h"
 
 namespace takt::bindings {
 
 namespace py = pybind11;
+
+// What a plant in this process says of one axis: the wires, and where the load really is (u; NaN: it does not say).
+struct PlantAnswer {
+  ServoInputs wires;
+  double true_position = std::numeric_limits<double>::quiet_NaN();
+};
+py::dtype LayoutOfAnswers();
 
 // Raises takt.ConfigError with these sentences.
 [[noreturn]] void ThrowConfigError(const std::vector<std::string>& problems);

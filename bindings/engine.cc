@@ -102,7 +102,7 @@ using Hashes = py::typing::Tuple<py::array_t<std::uint64_t>, py::array_t<std::ui
 struct InProcess {
   std::vector<std::uint32_t> axes;  // indices in Machine::axes
   std::vector<ServoOutputs> told;   // one an axis
-  std::vector<ServoInputs> measured;
+  std::vector<PlantAnswer> measured;
   std::int64_t cycle = -1;  // of the set points
   py::object step{};        // called with the cycle and views of both
   py::object told_view{};
@@ -165,12 +165,13 @@ class VirtualEngine {
   // `step` moves the axes that this engine was made with as those of a plant.
   void SetPlant(const py::object& step) {
     plant_.step = step;
-    const auto view = [this](const Type& type, std::size_t size, void* rows) {
-      const auto count = static_cast<py::ssize_t>(plant_.axes.size());
-      return py::array(LayoutOf(ColumnsOf(type), size), count, rows, py::capsule(rows, [](void*) {}));
-    };
-    plant_.told_view = view(TypeOf<ServoOutputs>(), sizeof(ServoOutputs), plant_.told.data());
-    plant_.measured_view = view(TypeOf<ServoInputs>(), sizeof(ServoInputs), plant_.measured.data());
+    const auto count = static_cast<py::ssize_t>(plant_.axes.size());
+    const auto nothing = [](void*) {};  // the rows are this engine's own
+    void* const told = plant_.told.data();
+    void* const measured = plant_.measured.data();
+    const py::dtype layout = LayoutOf(ColumnsOf(TypeOf<ServoOutputs>()), sizeof(ServoOutputs));
+    plant_.told_view = py::array(layout, count, told, py::capsule(told, nothing));
+    plant_.measured_view = py::array(LayoutOfAnswers(), count, measured, py::capsule(measured, nothing));
   }
 
   // Seconds that so many bare cycles take, nothing collected: what stepping is compared with.
@@ -486,7 +487,8 @@ class VirtualEngine {
       plant_.failed = false;
     }
     for (std::size_t i = 0; i < plant_.axes.size(); ++i) {
-      if (!engine_.drive_samples().TryPush({plant_.cycle, plant_.axes[i], plant_.measured[i]})) {
+      const auto& [wires, true_position] = plant_.measured[i];
+      if (!engine_.drive_samples().TryPush({plant_.cycle, plant_.axes[i], wires, true_position})) {
         engine_.CountRefusedSample();
       }
     }

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -112,13 +114,14 @@ class MovedServos {
   }
 
   void Sense(const Doubles& positions, const Doubles& velocities, py::array& measured) {
-    auto* wires = static_cast<ServoInputs*>(const_cast<void*>(Checked(measured, sizeof(ServoInputs))));
+    auto* answers = static_cast<PlantAnswer*>(const_cast<void*>(Checked(measured, sizeof(PlantAnswer))));
     const auto q = positions.unchecked<1>();
     const auto v = velocities.unchecked<1>();
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       Axis& a = axes_[i];
       const auto [at, dof] = PlacesIn(a, q.shape(0), v.shape(0), v.shape(0));
-      plant::Sense(a.params, a.zero + a.scale * q(at), a.scale * v(dof), a.state, wires[i]);
+      answers[i].true_position = a.zero + a.scale * q(at);
+      plant::Sense(a.params, answers[i].true_position, a.scale * v(dof), a.state, answers[i].wires);
     }
   }
 
@@ -163,11 +166,19 @@ Wires Nothing() {
 
 }  // namespace
 
+py::dtype LayoutOfAnswers() {
+  static_assert(offsetof(PlantAnswer, wires) == 0);
+  std::vector<Column> columns = ColumnsOf(TypeOf<ServoInputs>());
+  const Type* const real = std::ranges::find(columns, "torque_nm", &Column::name)->type;
+  columns.push_back({"true_position", "", unit::u, offsetof(PlantAnswer, true_position), real});
+  return LayoutOf(columns, sizeof(PlantAnswer));
+}
+
 void BindServo(py::module_& m) {
   m.def("servo_outputs", &Off, "What a drive is told, switched off: by name.");
   m.def("servo_inputs", &Nothing, "What a drive says when there is nothing to say: by name.");
   m.def("told_layout", [] { return LayoutOf(ColumnsOf(TypeOf<ServoOutputs>()), sizeof(ServoOutputs)); });
-  m.def("measured_layout", [] { return LayoutOf(ColumnsOf(TypeOf<ServoInputs>()), sizeof(ServoInputs)); });
+  m.def("measured_layout", &LayoutOfAnswers);
   using M = MovedServos;
   py::class_<M>(m, "MovedServos", "Drives, encoders and switches of axes that another physics moves.")
       .def(py::init<const py::bytes&, const std::string&, double, int>(), py::arg("text"), py::arg("file_name"),

@@ -34,8 +34,9 @@ class PlantError(TaktError):
 class Plant(ABC):
     """All that moves the axes named in `axes`, stepped once a cycle with the set points of all of them.
 
-    The columns of `told` and `measured` have the names and units of takt.drive.SetPoint and takt.drive.Measured. Both
-    are the engine's own memory: no reference to them may be kept. What is not written into `measured` stays as it was.
+    The columns of `told` and `measured` have the names and units of takt.drive.SetPoint and takt.drive.Measured; and
+    `measured` has true_position, where the load really is in the unit of the axis, which is only published. Both are
+    the engine's own memory: no reference to them may be kept. What is not written into `measured` stays as it was.
     """
 
     axes: Sequence[str]  # names; the order of the rows
@@ -75,13 +76,12 @@ class Drives(Plant):
         for row, drive in enumerate(self._drives):
             values = dict(zip(_TOLD, told[row].item(), strict=True))
             answer = drive.step(SetPoint(**values, period_s=self._period_s), self._period_s)
-            measured[row] = tuple(
-                int(getattr(answer, n)) & _WRAP if n in _COUNTERS else getattr(answer, n) for n in _SAID
-            )
+            said = [int(getattr(answer, n)) & _WRAP if n in _COUNTERS else getattr(answer, n) for n in _SAID]
+            measured[row] = (*said, np.nan)
 
 
 _TOLD: Final = TOLD.names or ()
-_SAID: Final = MEASURED.names or ()
+_SAID: Final = tuple(name for name in MEASURED.names or () if name != "true_position")
 _COUNTERS: Final = {name for name in _SAID if MEASURED[name].kind == "u"}
 _WRAP: Final = 0xFFFF_FFFF
 assert set(_TOLD) <= {field.name for field in fields(SetPoint)}

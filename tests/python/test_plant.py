@@ -41,6 +41,7 @@ class Lag(takt.Plant):
         self.at += 0.5 * np.where(told["enable"], told["position_counts"] - self.at, 0)
         measured["counts"] = np.round(self.at).astype(np.int64) & 0xFFFF_FFFF
         measured["drive_ready"] = told["enable"]
+        measured["true_position"] = self.at / 1000
 
 
 def test_drives_in_process_are_the_built_in_servos() -> None:
@@ -67,6 +68,7 @@ def test_all_set_points_of_a_cycle_come_at_once() -> None:
         x.move_absolute(position=50).wait()
         assert plant.at[1] == pytest.approx(50_000, abs=20)
         assert plant.at[0] == 0
+        assert x.true_position == pytest.approx(50, abs=0.02)
         assert plant.calls == list(range(-1, engine.cycle - 1))
 
 
@@ -91,7 +93,8 @@ class Recorded:
         self.wires = wires
 
     def step(self, cycle: int, told: Rows, measured: Rows) -> None:
-        measured[0] = tuple(self.wires[cycle + 1][name] for name in MEASURED.names or ())
+        wires = self.wires[cycle + 1]
+        measured[0] = tuple(wires.get(name, np.nan) for name in MEASURED.names or ())
 
 
 def test_a_plant_that_fails_stops_its_engine() -> None:

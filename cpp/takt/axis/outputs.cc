@@ -13,7 +13,8 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::actual_position>(unit::u, "Measured; rotary axes: in [0, modulus).");
   d.internal<&O::actual_velocity>(unit::u_s, "Measured.");
   d.internal<&O::following_error>(unit::u, "Set point of the cycle before minus measured position.");
-  d.internal<&O::true_position>(unit::u, "Where the load of a simulated servo really is, over all turns; others: nan.");
+  d.internal<&O::true_position>(
+      unit::u, "Where the load of a simulated servo really is, over all turns; also in a plant; others: nan.");
   d.internal<&O::voltage_v>(unit::volt, "Output of the position loop, analogue drives.");
   d.internal<&O::torque_nm>(unit::nm, "As the drive reports it.");
   d.internal<&O::probe_position>(unit::u, "Where the touch probe was captured last.");

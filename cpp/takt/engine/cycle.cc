@@ -334,7 +334,10 @@ struct MachineApplier {
 
 bool Take(World& w, const DriveSample& sample) noexcept {
   for (HeardDrive& drive : w.drives) {
-    if (drive.axis == sample.axis) return Take(w.cycle, sample, drive, w.servo_inputs[drive.axis]);
+    if (drive.axis != sample.axis) continue;
+    if (!Take(w.cycle, sample, drive, w.servo_inputs[drive.axis])) return false;
+    w.true_positions[drive.axis] = sample.true_position;
+    return true;
   }
   return false;
 }
@@ -503,6 +506,7 @@ void Control(World& w) noexcept {
     axis::Publish(w.axis_params[i], w.axis_states[i], w.axis_outputs[i]);
   }
   for (const std::uint32_t i : w.simulated) w.axis_outputs[i].true_position = w.servo_states[i].load_position;
+  for (const HeardDrive& drive : w.drives) w.axis_outputs[drive.axis].true_position = w.true_positions[drive.axis];
   for (std::size_t i = 0; i < w.flex_cams.size(); ++i) {
     const FlexCam& module = w.flex_cams[i];
     flexcam::Publish(ContextOf(w, module), w.axis_states[module.slave], w.flex_cam_states[i], w.flex_cam_outputs[i]);

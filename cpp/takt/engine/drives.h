@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "takt/core/cycle.h"
 #include "takt/core/describe_fwd.h"
@@ -26,6 +27,8 @@ struct DriveSample {
   std::int64_t cycle = -1;  // of the set point it answers
   std::uint32_t axis = 0;   // index in Machine::axes
   ServoInputs inputs;
+  // u: where the load really is, of a plant that knows it; published, but no part of what the engine goes by.
+  double true_position = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct DriveEntry {  // a sample as the cycle took it, for the journal

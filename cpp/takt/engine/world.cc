@@ -1,6 +1,7 @@
 #include "takt/engine/world.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -107,6 +108,7 @@ World::World(const Machine& machine)
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axis_states.push_back(axis::MakeState(axis_params[i]));
     servo_params.push_back(ServoOf(machine, i));
+    true_positions.push_back(std::numeric_limits<double>::quiet_NaN());
     servo_states.push_back(plant::MakeServoState(servo_params[i]));
     const auto index = static_cast<std::uint32_t>(i);
     if (const ExternalDrive* external = ExternalOf(machine, i)) {

@@ -166,6 +166,7 @@ struct World {
   std::vector<plant::ServoState> servo_states;
   std::vector<std::uint32_t> simulated;  // axes whose drive is a servo here ...
   std::vector<HeardDrive> drives;        // ... and those of the others
+  std::vector<double> true_positions;    // u, of axes whose plant says them; else NaN
   std::vector<Sampling> samplings;
 
   std::vector<FeedbackEvent> feedback_storage;

@@ -54,6 +54,7 @@ def document(name: str, made: Made, step_s: float) -> str:
 <compiler angle="degree" eulerseq="XYZ" autolimits="true"/>
 <option timestep="{step_s!r}" integrator="implicitfast" gravity="0 0 -9.81"/>
 <visual><global offwidth="1280" offheight="720"/><headlight ambient=".4 .4 .4" diffuse=".5 .5 .5"/></visual>
+<asset><texture type="skybox" builtin="gradient" rgb1=".96 .97 .98" rgb2=".8 .83 .88" width="64" height="384"/></asset>
 <default><equality solref="0.001 1" solimp="0.99 0.9999 0.0001"/></default>
 <worldbody><light pos="0 -1 2.5" diffuse=".7 .7 .7"/>
 {"".join(made.world)}</worldbody>

@@ -1,5 +1,5 @@
-"""Pictures of a twin, without a screen: MuJoCo's renderer in a process of its own, since a driver that cannot draw may
-end its process. `python -m takt.twin.picture MODEL STATE PICTURE` is that process."""
+"""Pictures of a twin, without a screen: MuJoCo's renderer in a process of its own (takt/twin/render.py), since a driver
+that cannot draw may end its process."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from takt.twin.plant import Frame
 
 DRIVERS = ("egl", "osmesa")  # that need no screen
-SIZE = (960, 640)
+SIZE = (960, 640)  # pixels
+RENDER = Path(__file__).with_name("render.py")
 WAIT_S = 60.0
 
 
@@ -36,7 +37,7 @@ def draw(model: Model, frame: Frame, file: Path) -> Path:
         np.save(state, frame.positions)
         given = os.environ.get("MUJOCO_GL")
         for driver in (given,) if given else DRIVERS:
-            command = [sys.executable, "-m", "takt.twin.picture", str(saved), str(state), str(file)]
+            command = [sys.executable, "-P", str(RENDER), str(saved), str(state), str(file), *map(str, SIZE)]
             try:
                 ended = subprocess.run(
                     command, env={**os.environ, "MUJOCO_GL": driver}, capture_output=True, text=True, timeout=WAIT_S
@@ -49,32 +50,3 @@ def draw(model: Model, frame: Frame, file: Path) -> Path:
             lines = [line for line in ended.stderr.splitlines() if line.strip()]
             reasons.append(f"{driver}: {lines[-1].strip() if lines else f'ended with {ended.returncode}'}")
     raise PlantError(f"no picture: {'; '.join(reasons)}")
-
-
-def _render(saved: str, state: str, file: str) -> None:
-    import matplotlib.image
-    import mujoco
-
-    model = mujoco.MjModel.from_binary_path(saved)
-    data = mujoco.MjData(model)
-    data.qpos[:] = np.load(state)
-    mujoco.mj_forward(model, data)
-    spheres = [data.geom_xpos[i] for i in range(model.ngeom)]
-    middle = (np.min(spheres, axis=0) + np.max(spheres, axis=0)) / 2
-    extent = float(np.max(np.ptp(spheres, axis=0))) + 0.3
-    camera = mujoco.MjvCamera()
-    camera.lookat[:] = middle
-    camera.distance, camera.azimuth, camera.elevation = 1.7 * extent, 125, -18
-    renderer = mujoco.Renderer(model, SIZE[1], SIZE[0])
-    try:
-        renderer.update_scene(data, camera)
-        picture = renderer.render()
-    finally:
-        renderer.close()
-    if not np.ptp(picture):
-        raise SystemExit("the driver drew nothing")
-    matplotlib.image.imsave(file, picture)
-
-
-if __name__ == "__main__":
-    _render(*sys.argv[1:])
