@@ -74,17 +74,18 @@ class _Reader:
         self._scale, self._left_out, self._count = scale, left_out, 0
         self._hidden = {layer.dxf.name.lower() for layer in drawing.layers if layer.is_off() or layer.is_frozen()}
 
-    def runs(self, entities: Iterable[Any], depth: int) -> Iterator[Run]:
+    def runs(self, entities: Iterable[Any], depth: int, matrix: Any = None) -> Iterator[Run]:
+        """`matrix`: from the coordinates of a block to those of the drawing; None: they are these."""
         for entity in entities:
             self._room(1)
             if self._is_hidden(entity):
                 self._left_out["what is invisible, or on a layer that is off or frozen"] += 1
                 continue
             if entity.dxftype() == "INSERT":
-                yield from self._block(entity, depth)
+                yield from self._block(entity, depth, matrix)
                 continue
             try:
-                found = self._of(entity)
+                found = self._of(entity, matrix)
             except _EntityError:
                 raise
             except Exception as error:  # damaged entities
@@ -100,30 +101,34 @@ class _Reader:
         layer = entity.dxf.get("layer", "0") if entity.dxf.is_supported("layer") else "0"
         return bool(invisible) or str(layer).lower() in self._hidden
 
-    def _block(self, insert: Any, depth: int) -> Iterator[Run]:
+    def _block(self, insert: Any, depth: int, matrix: Any) -> Iterator[Run]:
+        from ezdxf.xclip import XClip
+
         if depth >= DEPTH:
             raise _EntityError(f"blocks nest deeper than {DEPTH}")
-        if insert.block() is None:
+        block = insert.block()
+        if block is None:
             self._left_out[f"INSERT of the block '{insert.dxf.get('name', '')}', which is not in the file"] += 1
             return
+        if XClip(insert).is_clipping_enabled:
+            raise _EntityError(
+                f"{_label(insert)} of the block '{insert.dxf.name}' is clipped, and blocks are read whole"
+            )
         self._room(insert.mcount)
         for one in insert.multi_insert() if insert.mcount > 1 else [insert]:
+            inner = one.matrix44()
+            yield from self.runs(block, depth + 1, inner if matrix is None else inner * matrix)
 
-            def skip(entity: Any, reason: str) -> None:
-                raise _EntityError(f"{_label(entity)} in the block '{insert.dxf.name}': {reason}")
-
-            yield from self.runs(one.virtual_entities(skipped_entity_callback=skip), depth + 1)
-
-    def _of(self, entity: Any) -> list[Piece]:
+    def _of(self, entity: Any, matrix: Any) -> list[Piece]:
         kind = entity.dxftype()
         if kind in ("LWPOLYLINE", "POLYLINE"):
-            return self._polyline(entity)
-        if kind == "LINE":
-            return [Piece(self._point(entity.dxf.start, entity), self._point(entity.dxf.end, entity, entity.dxf.start))]
-        if kind in ("ARC", "CIRCLE"):
-            return [self._arc(entity)]
-        if kind in ("ELLIPSE", "SPLINE", "HELIX"):
-            return self._curve(entity)
+            return self._polyline(entity, matrix)
+        if kind in ("LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "HELIX"):
+            entity = entity if matrix is None else _moved(entity, matrix)
+            if kind == "LINE":
+                begin, end = entity.dxf.start, entity.dxf.end
+                return [Piece(self._point(begin, entity), self._point(end, entity, begin))]
+            return [self._arc(entity)] if entity.dxftype() in ("ARC", "CIRCLE") else self._curve(entity)
         if kind in _SURFACES:
             raise _EntityError(f"{_label(entity)} is a surface or body; expected lines, arcs and curves")
         if kind in _ANNOTATIONS:
@@ -135,7 +140,7 @@ class _Reader:
             f"{_label(entity)} is not read; expected lines, polylines, arcs, circles, ellipses and splines"
         )
 
-    def _polyline(self, entity: Any) -> list[Piece]:
+    def _polyline(self, entity: Any, matrix: Any) -> list[Piece]:
         if entity.dxftype() == "POLYLINE" and (entity.is_polygon_mesh or entity.is_poly_face_mesh):
             raise _EntityError(f"{_label(entity)} is a mesh; expected lines, arcs and curves")
         parts = list(entity.virtual_entities())
@@ -143,16 +148,18 @@ class _Reader:
         if not parts:
             self._left_out[f"{entity.dxftype()} of one point"] += 1
             return []
-        pieces = [piece for part in parts for piece in self._of(part)]
-        kept = [piece for piece in pieces if piece.length > SAME]
-        for i, piece in enumerate(kept):  # arcs of ezdxf run counterclockwise, whatever their sense in the polyline
+        found = [self._of(part, matrix) for part in parts]
+        kept = [long for part in found if (long := [piece for piece in part if piece.length > SAME])]
+        for i, part in enumerate(kept):  # arcs of ezdxf run counterclockwise, whatever their sense in the polyline
             if len(kept) > 1:
                 other = kept[1] if i == 0 else kept[i - 1]
-                ends = (other.begin, other.end) if i == 0 else (other.end,)
-                here, turned = (piece.end, piece.begin) if i == 0 else (piece.begin, piece.end)
+                ends = (other[0].begin, other[-1].end) if i == 0 else (other[-1].end,)
+                here, turned = part[0].begin, part[-1].end
+                if i == 0:
+                    here, turned = turned, here
                 if min(abs(turned - end) for end in ends) < min(abs(here - end) for end in ends):
-                    kept[i] = piece.reversed()
-        return kept or pieces
+                    kept[i] = [piece.reversed() for piece in reversed(part)]
+        return [piece for part in kept or found for piece in part]
 
     def _arc(self, entity: Any) -> Piece:
         """ezdxf takes its points to the coordinates of the drawing; seen from below it turns the other way."""
@@ -201,6 +208,23 @@ class _Reader:
         self._count += count
         if self._count > MOST:
             raise _EntityError(f"more than {MOST:,} entities, with those of blocks and the lines of curves")
+
+
+def _moved(entity: Any, matrix: Any) -> Any:
+    """A copy in other coordinates; a circle that the matrix does not leave one becomes an ellipse.
+
+    ezdxf tells that by the lengths of two axes alone, which suffices for the matrix of one block. Of blocks in one
+    another the product is applied: an insertion cannot stand for all that two of them make."""
+    from ezdxf.entities import Ellipse
+
+    copy = entity.copy()
+    if entity.dxftype() in ("ARC", "CIRCLE"):
+        first, second = (matrix.transform_direction(axis) for axis in (entity.ocs().ux, entity.ocs().uy))
+        size = first.magnitude * second.magnitude
+        if abs(first.magnitude**2 - second.magnitude**2) > FLAT * size or abs(first.dot(second)) > FLAT * size:
+            copy = Ellipse.from_arc(entity)
+            copy.dxf.handle = entity.dxf.get("handle")
+    return copy.transform(matrix)
 
 
 def _label(entity: Any) -> str:

@@ -7,12 +7,14 @@ import contextlib
 import math
 import time
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import yaml
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from takt.cli import main
 from takt.errors import TaktError
@@ -126,6 +128,96 @@ def test_blocks(tmp_path: Path, attributes: dict[str, float], function: Callable
     assert sorted(found, key=abs) == pytest.approx(sorted(map(function, (5 + 0j, -4 + 5j)), key=abs), abs=1e-9)
     arc = next(one for one in track["elements"] if "center" in one)
     assert middle(arc) == pytest.approx(function(5 * cmath.exp(0.25j * math.pi)), abs=0.01)
+
+
+Insertion = tuple[complex, float, float, float]  # of a block: where, xscale, yscale, rotation in deg
+
+
+def inserted(point: complex, insertion: Insertion) -> complex:
+    at, x, y, rotation = insertion
+    return at + complex(point.real * x, point.imag * y) * cmath.exp(1j * math.radians(rotation))
+
+
+SCALES = st.sampled_from([1.0, 2.0, -1.0, -2.0, 0.5, 3.0])
+INSERTIONS = st.tuples(
+    st.sampled_from([0j, 30 - 20j]), SCALES, SCALES, st.sampled_from([0.0, 90.0, 180.0, 270.0, 45.0, -30.0, 77.7])
+)
+
+
+def in_blocks(insertions: list[Insertion], add: Callable[[Any], object]) -> Draw:
+    """What is added, in a block for each insertion; the last one is the outermost."""
+
+    def draw(model: Any, document: Any) -> None:
+        block = document.blocks.new("B0")
+        add(block)
+        for i, (at, x, y, rotation) in enumerate(insertions):
+            outer = model if i == len(insertions) - 1 else document.blocks.new(f"B{i + 1}")
+            attributes = {"xscale": x, "yscale": y, "rotation": rotation}
+            outer.add_blockref(f"B{i}", (at.real, at.imag), dxfattribs=attributes)
+
+    return draw
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60, deadline=None)
+@given(st.lists(INSERTIONS, min_size=1, max_size=4), st.sampled_from(["line", "polyline", "circle", "arc", "bulge"]))
+@example([(10 + 0j, 1, 1, 90), (0j, 1, -2, 0)], "line")
+@example([(0j, 1, 1, 45), (0j, 3, 1, 0)], "circle")
+@example([(0j, 1, 1, 45), (0j, 3, 1, 0)], "bulge")
+def test_property_blocks_in_one_another(tmp_path: Path, insertions: list[Insertion], kind: str) -> None:
+    """PY-22: each point is where the insertions, one after the other, take it; also turned within stretched."""
+
+    def add(block: Any) -> None:
+        if kind == "line":
+            block.add_line((10, 0), (100, 50))
+        elif kind == "polyline":
+            block.add_lwpolyline([(0, 0), (100, 0), (100, 50)])
+        elif kind == "circle":
+            block.add_circle((20, 10), 40)
+        elif kind == "arc":
+            block.add_arc((20, 10), 40, 20, 130)
+        else:
+            block.add_lwpolyline([(0, 0, -1), (0, 80, 0), (50, 80, 0)], format="xyb")
+
+    def there(point: complex) -> complex:
+        for one in insertions:
+            point = inserted(point, one)
+        return point
+
+    tracks, _ = read(tmp_path, in_blocks(insertions, add))
+    arc = {"circle": (0, 360), "arc": (20, 130)}.get(kind)
+    if kind == "bulge":  # half a circle to the left of the way up, seen from its end
+        outline = [complex(-40 * math.sin(t), 40 - 40 * math.cos(t)) for t in np.linspace(0, math.pi, 2000)]
+        outline += [complex(x, 80) for x in np.linspace(0, 50, 500)]
+    elif arc:
+        outline = [20 + 10j + cmath.rect(40, math.radians(angle)) for angle in np.linspace(*arc, 2000)]
+    else:
+        corners = {"line": [10, 100 + 50j], "polyline": [0, 100, 100 + 50j]}[kind]
+        outline = [a + t * (b - a) for a, b in pairwise(corners) for t in np.linspace(0, 1, 500)]
+    expected = np.array([there(point) for point in outline])
+    found = [
+        place(element["from"]) + t * (place(element["to"]) - place(element["from"]))
+        for (track,) in [tracks]
+        for element in track["elements"]
+        if "center" not in element
+        for t in (0, 0.5, 1)
+    ] + [middle(element) for element in tracks[0]["elements"] if "center" in element]
+    step = np.max(np.abs(np.diff(expected)))
+    assert max(np.min(np.abs(expected - point)) for point in found) < 0.5 + step
+    box = np.array([[np.min(z.real), np.max(z.real), np.min(z.imag), np.max(z.imag)] for z in (expected,)])
+    if not any("center" in element for element in tracks[0]["elements"]):
+        z = np.array(found)
+        assert np.array([z.real.min(), z.real.max(), z.imag.min(), z.imag.max()]) == pytest.approx(box[0], abs=0.6)
+
+
+def test_clipped_blocks_are_refused(tmp_path: Path) -> None:
+    """PY-22: what a block's clip would cut off is not read in silence."""
+    from ezdxf.xclip import XClip
+
+    def draw(model: Any, document: Any) -> None:
+        in_blocks([(0j, 1, 1, 0)], lambda block: block.add_line((0, 0), (100, 0)))(model, document)
+        XClip(model[0]).set_block_clipping_path([(0, -1), (50, 1)])
+
+    assert "of the block 'B0' is clipped, and blocks are read whole" in wrong(tmp_path, draw)
 
 
 def test_curves_keep_the_tolerance(tmp_path: Path) -> None:
