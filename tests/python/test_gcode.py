@@ -610,10 +610,55 @@ def test_drilling(text: str, heights: list[float]) -> None:
         ("G83 X1 Z-1 R1 Q0.0000001", "more than 100,000 pecks"),
         ("G81 X1 Z-1 R1 L0", "L: expected a whole number of repeats from 1"),
         ("G84 X1 Z-1 R1", "G84 is not read: it follows a spindle"),
+        ("G81 X1 Z-1 R1 K3", "K is not read with G81 in the dialect rs274; L is the number of repeats"),
+        ("G81 X1 Z-1 R1\nX2 I3", "p.nc:2: I is not read with G81 in the dialect rs274 (--leave-out I leaves it out)"),
     ],
 )
 def test_drilling_that_is_refused(text: str, said: str) -> None:
     assert said in wrong(text)
+
+
+def test_repeats_of_holes() -> None:
+    """PY-22: L in all dialects, K in that of Fanuc; a hole each, one beside the other."""
+    for text, dialect in (("L3", "linuxcnc"), ("K3", "fanuc"), ("L3", "fanuc")):
+        x = along_x("G0 Z5\nG91 G81 X10 Z-3 R-4 F60 " + text, dialect=dialect)
+        assert sorted(set(x)) == [0, 10, 20, 30]
+    assert "K and L exclude each other" in wrong("G91 G81 X10 Z-3 R1 F60 K3 L3", dialect="fanuc")
+    assert parse_gcode("G82 X1 Z-2 R3 P0.5 F60\nX2").left_out == ("P of G82 (1 time)",)
+
+
+WORDS_OF_MOVES = ["G0", "G1", "G2 I1", "G3 R9", "G5 I1 J1 P1 Q1", "G5.1 I1 J1", "G73 Z-1 R1 Q1", "G81 Z-1 R1"]
+WORDS_OF_MOVES += [
+    "G82 Z-1 R1",
+    "G83 Z-1 R1 Q1",
+    "G85 Z-1 R1",
+    "G89 Z-1 R1",
+    "G53 G0",
+    "G10 L2 P1",
+    "G52",
+    "G92",
+    "G28",
+]
+
+
+@pytest.mark.parametrize("code", WORDS_OF_MOVES)
+def test_no_word_of_a_move_is_dropped_unsaid(code: str) -> None:
+    """PY-22: it changes the path or what follows, or is listed, or refused with the line."""
+
+    def outcome(word: str, dialect: str) -> object:
+        text = f"G21 G90 G17 G94 F600\nG0 X0 Y0 Z5\n{code} X2 {word}\nG1 X9 Y7 Z1"
+        path = path_or_sentence(text, Options(dialect=dialect, offsets={"G54": (0, 0, 0)}))
+        return path if isinstance(path, str) else (path.elements, path.left_out)
+
+    for dialect in DIALECTS:
+        plain = outcome("", dialect)
+        for letter in "ABCDEFHIJKLPQRSTUVWYZ":
+            if letter in code or (dialect == "marlin" and code.startswith("G10")):  # there it retracts filament
+                continue
+            found = outcome(f"{letter}2", dialect)
+            assert found != plain, f"{code} {letter}2 in {dialect}"
+            if isinstance(found, str) and not isinstance(plain, str):
+                assert ":3: " in found
 
 
 # --- Limits ---

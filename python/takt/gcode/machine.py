@@ -380,11 +380,22 @@ class Machine:
         elif motion in ("G5.2", "G5.3", "G6.2"):
             self._nurbs_line(motion, numbers)
         else:
-            self._refuse(numbers, "IJKRPQL")
-            if self._away:
-                raise self._away
-            shift = self._shift_now()
-            self._cycle.run(motion, numbers, modal, shift, self.path)
+            self._drill(motion, numbers)
+
+    def _drill(self, cycle: str, numbers: Numbers) -> None:
+        own = words.CYCLES[cycle]
+        if self._dialect == "fanuc" and "K" in numbers:  # as L has it elsewhere
+            if "L" in numbers:
+                raise LineError("K and L exclude each other: both are the number of repeats")
+            numbers["L"] = numbers.pop("K")
+        for letter in numbers:
+            if letter not in _PLAIN and letter not in own:
+                raise LineError(words.refused_in_cycle(letter, cycle, self._dialect))
+        if "P" in numbers:
+            self.left_out[f"P of {cycle}"] += 1
+        if self._away:
+            raise self._away
+        self._cycle.run(cycle, numbers, self.modal, self._shift_now(), self.path)
 
     def _refuse(self, numbers: Numbers, allowed: str = "") -> None:
         for letter in numbers:

@@ -17,7 +17,8 @@ GROUPS = {
     "coordinates": ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"),
 }
 GROUP_OF = {code: group for group, codes in GROUPS.items() for code in codes}
-CYCLES = ("G73", "G81", "G82", "G83", "G85", "G89")
+# Of the words beside axes those that cycles of drilling have.
+CYCLES = {"G73": "RLQ", "G81": "RL", "G82": "RLP", "G83": "RLQ", "G85": "RL", "G89": "RLP"}
 # They say how a controller rounds corners, or what a path does not know of: nothing to do.
 NOTHING = {"G40": "D", "G49": "", "G61": "", "G61.1": "", "G64": "PQR", "G97": "", "G50": "", "G69": "", "G15": ""}
 # Said to be left out: a tool's length (the path is that of its tip), speeds of spindles, dwells.
@@ -99,6 +100,11 @@ def refused(word: str) -> str:
     """The sentence, with what to do."""
     why = f": {WHY_NOT[word]}" if word in WHY_NOT else ""
     return f"{word} is not read{why} ({hint(word)})"
+
+
+def refused_in_cycle(word: str, cycle: str, dialect: str) -> str:
+    repeats = "; L is the number of repeats, K in the dialect fanuc" if word == "K" else ""
+    return f"{word} is not read with {cycle} in the dialect {dialect}{repeats} ({hint(word)})"
 
 
 def hint(word: str) -> str:
