@@ -1,6 +1,7 @@
 #include "takt/axis/guidance.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "takt/axis/fit.h"
 #include "takt/axis/following.h"
@@ -18,6 +19,18 @@ Status MayGuide(const Context& c, const State& s) {
   if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
   if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
   return FollowersReady(c, s);
+}
+
+// What holds an axis back that is not where the demand is. A demand that asks for no more than the axis can may have
+// jumped: then the limit says it that the axis catches up with.
+LimitedBy HeldBackBy(const trajectory::Limits& own, const KinematicState& demand, const KinematicState& set,
+                     bool in_step) {
+  const LimitedBy beyond = Beyond(own, demand, in_step);
+  if (in_step || beyond != LimitedBy::kNothing) return beyond;
+  constexpr double kNear = 0.98;
+  if (std::abs(set.velocity) >= kNear * own.velocity) return LimitedBy::kVelocity;
+  const double ramp = set.velocity * set.acceleration > 0 ? own.acceleration : own.deceleration;
+  return own.jerk == 0 || std::abs(set.acceleration) >= kNear * ramp ? LimitedBy::kAcceleration : LimitedBy::kJerk;
 }
 
 }  // namespace
@@ -62,7 +75,7 @@ void FollowGuidance(const Context& c, State& s) noexcept {
   trajectory::ChaseState& chase = s.guidance.chase;
   s.setpoint =
       Chase({own, c.planner, own, c.cycle.period_s}, trajectory::ChaseMode::kPosition, s.setpoint, demand, chase);
-  s.limited_by = Beyond(own, demand, chase.in_step);
+  s.limited_by = HeldBackBy(own, demand, s.setpoint, chase.in_step);
   if (!AtRest(s)) s.motion.arrived_cycle = c.cycle.count;
 }
 

@@ -186,7 +186,17 @@ void AbortAdjustments(const Context& c, State& s) noexcept {
 void EndAdjustments(const Context& c, State& s) noexcept {
   for (std::size_t i = 0; i < kAdjustments; ++i) {
     const Ticket ticket = s.adjusting[i];
-    if (ticket == 0 || !IsSettled(s, static_cast<Adjustment>(i))) continue;
+    const auto what = static_cast<Adjustment>(i);
+    if (IsStuck(s, what)) {
+      s.warning = ErrorId::kCamOver;
+      if (ticket == 0) continue;
+      for (Ticket& other : s.adjusting) {
+        if (other == ticket) other = 0;
+      }
+      Report(c, ticket, FeedbackState::kError, ErrorId::kCamOver);
+      continue;
+    }
+    if (ticket == 0 || !IsSettled(s, what)) continue;
     s.adjusting[i] = 0;
     if (std::ranges::find(s.adjusting, ticket) == s.adjusting.end()) Report(c, ticket, FeedbackState::kDone);
   }

@@ -37,8 +37,13 @@ bool OnCurves(const ClutchState& s) {
   return s.curve_count > 0 && s.mode == ClutchMode::kRampPos && (opens || s.phase == ClutchPhase::kClosing);
 }
 
+// Requires: OnCurves(s). A master at `master` has passed the end of the curve.
+bool EndsBefore(const ClutchState& s, double master) {
+  return On(Top(s), master) >= Top(s).over.length;
+}
+
 bool BeyondEnd(const ClutchContext& c, const ClutchState& s) {
-  return On(Top(s), c.master.position) >= Top(s).over.length;
+  return EndsBefore(s, c.master.position);
 }
 
 // --- The sense of the master ---
@@ -87,7 +92,7 @@ bool IsTied(const ClutchContext& c, const ClutchState& s) {
 
 // Requires: it is tied, and the master is at `master`, in the cycle before or between that and this one.
 KinematicState OwnOver(const ClutchContext& c, const ClutchState& s, double master) {
-  if (OnCurves(s) && !BeyondEnd(c, s)) return OverMaster(Top(s), master);
+  if (OnCurves(s) && !EndsBefore(s, master)) return OverMaster(Top(s), master);
   const KinematicState& m = c.master_before;
   const KinematicState& own = c.own_before;
   if (!OnCam(s) || m.velocity == 0) return {own.position, 0, 0};
@@ -96,23 +101,27 @@ KinematicState OwnOver(const ClutchContext& c, const ClutchState& s, double mast
 }
 
 // Begins a curve on what the slave does now. False: too many are there.
-bool Push(const ClutchContext& c, const ClutchCurve& curve, ClutchState& s) {
-  if (!OnCurves(s) || BeyondEnd(c, s)) {
+bool Push(const ClutchCurve& curve, const Way& way, ClutchState& s) {
+  if (!OnCurves(s) || EndsBefore(s, curve.begin)) {
     s.curve_count = 0;
     s.from_cam = OnCam(s);
   }
   if (s.curve_count == kClutchCurves) return false;
-  s.curves[s.curve_count++] = curve;
+  s.curves[s.curve_count] = curve;
+  s.curves[s.curve_count++].slave_zero = way.to_slave.out_zero;
   return true;
 }
 
 // Takes back the curves whose begin the master has gone back behind.
-void TakeBack(const ClutchContext& c, ClutchState& s) {
+// With an opening the turn of a rotary slave comes back that it began in: a
+// closing that was planned meanwhile may have chosen another one.
+void TakeBack(const ClutchContext& c, Way& way, ClutchState& s) {
   const bool closes = s.phase == ClutchPhase::kWaitingIn || (s.phase == ClutchPhase::kClosing && !s.leaves);
   bool taken = false;
   double rest = s.out;
   while (s.curve_count > 0 && On(Top(s), c.master.position) < 0) {
     rest = Top(s).over.At(0).position;
+    if (!Top(s).closes) way.to_slave.out_zero = Top(s).slave_zero;
     --s.curve_count;
     taken = true;
   }
@@ -140,6 +149,11 @@ void TakeBack(const ClutchContext& c, ClutchState& s) {
 }
 
 // --- Closing over the master's displacement ---
+
+// Meanwhile the cam is no function of the master's position.
+bool IsRamped(const Way& way) {
+  return way.to_x.ramp.kind != RampKind::kNone || way.to_slave.ramp.kind != RampKind::kNone;
+}
 
 // Master's u after which there is the next sync position; 0: there is one only.
 double TurnOfPlace(const ClutchContext& c, const Way& way) {
@@ -250,8 +264,7 @@ Status WaitForBegin(const ClutchContext& c, Way& way, ClutchState& s) {
     }
   }
   const bool there = sense * (c.master.position - (s.place - sense * s.distance)) > 0;
-  const Ramp& slaves = way.to_slave.ramp;  // the slave's stays as it is meanwhile (IsFrozen) until it has ended
-  const bool ramps = way.to_x.ramp.kind != RampKind::kNone || !IsOver(slaves, c.cycle);
+  const bool ramps = IsRamped(way);
   if (!there) {
     s.looked_from = c.master.position;
     return wait(ramps ? ClutchWait::kRamps : s.sense == 0 ? ClutchWait::kMasterStands : ClutchWait::kPosition);
@@ -271,7 +284,12 @@ Status WaitForBegin(const ClutchContext& c, Way& way, ClutchState& s) {
     wait(ClutchWait::kReverse);
     return plan();
   }
-  if (!Push(c, curve, s)) return wait(ClutchWait::kSlave);
+  if (!Push(curve, way, s)) {  // once the opening has come to its end there is room
+    s.looked_from = c.master.position;
+    s.planned_sense = 0;
+    wait(ClutchWait::kSlave);
+    return plan();
+  }
   s.phase = ClutchPhase::kClosing;
   s.mode = ClutchMode::kRampPos;
   return Status::Ok();
@@ -373,11 +391,13 @@ double OutPlace(const ClutchContext& c, double expected) {
 }
 
 // Begins the opening over the master's displacement, if there is a curve.
-void BeginOut(const ClutchContext& c, ClutchState& s) {
+void BeginOut(const ClutchContext& c, const Way& way, ClutchState& s) {
   const double length = c.settings.master_sync_out_distance;
   UpdateSense(c, length, s);
   s.waits = ClutchWait::kMasterStands;
   if (s.sense == 0 || c.master.velocity == 0) return;
+  s.waits = ClutchWait::kRamps;
+  if (OnCam(s) && IsRamped(way) && !way.profiler.held) return;  // where the cam is held no ramp of the slave goes on
   s.waits = ClutchWait::kSlave;
   if (!IsTied(c, s)) return;
   const double sense = s.sense;
@@ -393,7 +413,7 @@ void BeginOut(const ClutchContext& c, ClutchState& s) {
       s.waits = ClutchWait::kLimits;
     } else if (!turns_round) {
       s.waits = ClutchWait::kSlave;
-      if (!Push(c, curve, s)) return;
+      if (!Push(curve, way, s)) return;
       s.out = out;
       s.mode = ClutchMode::kRampPos;
       s.phase = ClutchPhase::kOpening;
@@ -438,7 +458,9 @@ Status WaitToClose(const ClutchContext& c, Way& way, ClutchState& s) {
 }
 
 Status WaitToOpen(const ClutchContext& c, const Way& way, ClutchState& s) {
-  BeginOut(c, s);
+  if (OnCurves(s) && BeyondEnd(c, s)) return Status::Ok();  // it is closed in this cycle, and opens from the cam
+  BeginOut(c, way, s);
+  if (s.waits == ClutchWait::kRamps) s.waits_since = c.master.position;
   const double longest = c.table.length() / way.to_x.factor;
   if (s.phase != ClutchPhase::kWaitingOut || std::abs(c.master.position - s.waits_since) <= longest) {
     return Status::Ok();
@@ -454,7 +476,7 @@ bool IsCoupled(const ClutchState& s) noexcept {
 }
 
 bool IsOnCurve(const ClutchState& s) noexcept {
-  return s.phase != ClutchPhase::kWaitingIn && OnCurves(s);
+  return OnCurves(s);
 }
 
 bool IsOnRamp(const ClutchState& s) noexcept {
@@ -472,7 +494,7 @@ const ClutchCurve* FollowedCurve(const ClutchState& s) noexcept {
 
 void BeginClosing(const ClutchContext& c, ClutchState& s) noexcept {
   s.stretched = false;
-  if (s.leaves || s.phase == ClutchPhase::kWaitingOut) {  // it is on the cam still, or on its way there
+  if (s.leaves || OnCam(s)) {  // it is on the cam still, or on its way there
     if (s.phase == ClutchPhase::kWaitingOut) s.phase = ClutchPhase::kClosed;
     s.leaves = false;
     return;
@@ -509,30 +531,30 @@ void BeginOpening(const ClutchContext& c, ClutchState& s) noexcept {
 Status StepClutch(const ClutchContext& c, const KinematicState& wanted, Way& way, ClutchState& s,
                   KinematicState& demand) noexcept {
   const double zero = way.to_slave.out_zero;
+  const auto on_cam = [&] {  // in the turn that the slave is in now
+    return KinematicState{wanted.position + way.to_slave.out_zero - zero, wanted.velocity, wanted.acceleration};
+  };
   bool there = false;
   Status status = Status::Ok();
   s.waits = ClutchWait::kNothing;
-  if (OnCurves(s)) TakeBack(c, s);
+  if (OnCurves(s)) TakeBack(c, way, s);
   if (s.phase == ClutchPhase::kWaitingIn) status = WaitToClose(c, way, s);
   if (s.phase == ClutchPhase::kWaitingOut || s.leaves) status = WaitToOpen(c, way, s);
   switch (s.phase) {
     case ClutchPhase::kWaitingIn:
       demand = s.opens_still ? Opening(c, s, there) : KinematicState{s.out, 0, 0};
       break;
-    case ClutchPhase::kClosing: {
-      const KinematicState shifted = {wanted.position + way.to_slave.out_zero - zero, wanted.velocity,
-                                      wanted.acceleration};
-      demand = Closing(c, shifted, way, s);
+    case ClutchPhase::kClosing:
+      demand = Closing(c, on_cam(), way, s);
       if (s.phase == ClutchPhase::kClosed && s.leaves) {
         s.phase = ClutchPhase::kWaitingOut;
         s.waits_since = c.master.position;
         s.leaves = false;
       }
       break;
-    }
     case ClutchPhase::kClosed:
     case ClutchPhase::kWaitingOut:
-      demand = wanted;
+      demand = on_cam();
       break;
     case ClutchPhase::kOpening:
       demand = Opening(c, s, there);

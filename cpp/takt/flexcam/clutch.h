@@ -12,7 +12,9 @@
 // - A curve is a function of the master's position, and so is what the slave did before its begin (rest, the cam, or an
 //   earlier curve). A master that turns round takes the slave back along it; behind the begin the curve is taken back
 //   and the clutch waits as it did before, from then on for a master in the other sense. So it closes, and opens,
-//   whichever way the master goes on.
+//   whichever way the master goes on. A rotary slave that gets back onto the cam is there in the turn that it left.
+// - The cam is a function of the master's position because no ramp of an offset or factor is under way when a curve
+//   begins, and none begins, nor does another cam, until the slave has left all curves (IsOnCurve).
 // - Peak velocity, acceleration and jerk over time follow from the derivatives of the curve and the master's speed
 //   (clutch_curve.h). They are compared with the slave's limits when a curve is planned and when it begins. A master
 //   that gets faster on the curve leaves the slave behind, within its limits; the module warns (kSlaveLimits).
@@ -21,7 +23,7 @@
 // What is asked to happen at once (absolute, relative) is followed within the slave's limits (axis/guidance.h).
 //
 // Without reversing (PositionControl::kMasterDirection) a curve over the master's displacement is only taken if its
-// slope keeps one sign; else the next turn of a rotary slave is tried, then a later begin: a shorter distance is
+// slope is not negative; else the next turn of a rotary slave is tried, then a later begin: a shorter distance is
 // steeper but does not turn round. If none serves, the closing is refused, and the opening waits on the cam until one
 // does.
 #pragma once

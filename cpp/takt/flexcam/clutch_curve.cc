@@ -75,7 +75,7 @@ bool Monotone(const ClutchCurve& curve) noexcept {
   const Quintic& q = curve.over;
   const cam::Curve slope = cam::Derivative(CurveOf(q));
   double least = HUGE_VAL;
-  for (const double x : cam::ExtremePlaces(slope, q.length)) least = std::min(least, slope.At(x));
+  for (const double x : cam::ExtremePlaces(slope, q.length)) least = std::min(least, curve.sense * slope.At(x));
   return least >= -kRounding * (std::abs(q.c[1]) + std::abs(q.At(q.length).position - q.c[0])) / q.length;
 }
 
@@ -90,6 +90,7 @@ void describe(Description<ClutchCurve>& d) {
   d.internal<&C::begin>("Master's position where it begins.");
   d.internal<&C::sense>("Of the master on it.");
   d.internal<&C::closes>("It closes the clutch.");
+  d.internal<&C::slave_zero>("Of the conversion to the slave where it begins.");
   d.internal<&C::fastest>("Largest steady speed of the master at which the slave follows.");
 }
 

@@ -13,6 +13,7 @@ struct ClutchCurve {
   double begin = 0;          // master's u over all turns
   double sense = 1;          // of the master on it
   bool closes = true;        // false: it opens
+  double slave_zero = 0;     // of the conversion to the slave where it begins: which turn of a rotary slave
   double fastest = 0;        // master's u/s: largest steady speed at which the slave keeps its limits on the curve
 };
 
@@ -30,7 +31,7 @@ inline double EndOf(const ClutchCurve& curve) noexcept {
 // Position and derivatives over the master's position.
 KinematicState OverMaster(const ClutchCurve& curve, double master) noexcept;
 
-// Whether the slope keeps one sign; a slope of zero within rounding counts as either.
+// Whether the slave nowhere moves against the master; a slope of zero within rounding does not count.
 bool Monotone(const ClutchCurve& curve) noexcept;
 // Whether a slave with these limits follows the curve while the master keeps this speed.
 inline bool Follows(const ClutchCurve& curve, double master_speed) noexcept {

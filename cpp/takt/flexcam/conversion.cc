@@ -1,5 +1,7 @@
 #include "takt/flexcam/conversion.h"
 
+#include <algorithm>
+
 #include "takt/core/describe.h"
 
 namespace takt::flexcam {
@@ -23,11 +25,36 @@ Ride RideOf(const ConversionTarget& target, const ConversionInputs& in, const Co
   return {in.ride_before, in.before.velocity, c.factor, target.ramps};
 }
 
+// What of a ramp is left, from 1 to 0.
+double ShareLeft(const Conversion& c, const Cycle& cycle) {
+  if (c.ramp_begin == 0) return 0;
+  const KinematicState shift = At(c.ramp, cycle);
+  return std::clamp((c.by_speed ? shift.velocity : shift.position) / c.ramp_begin, 0.0, 1.0);
+}
+
+// After `old` has become `c`: what of each is to be ramped, from what was in force.
+void NoteRamp(const Cycle& cycle, const ConversionInputs& in, const Conversion& old, bool by_speed, Conversion& c) {
+  const Cycle earlier = Earlier(cycle);
+  const KinematicState begin = At(c.ramp, earlier);
+  c.offset_left = OffsetInForce(old, earlier) - c.offset;
+  c.factor_left = FactorInForce(old, earlier, in.before) - c.factor;
+  c.by_speed = by_speed;
+  c.ramp_begin = by_speed ? begin.velocity : begin.position;
+}
+
+// The acceleration that a factor has of its input is no part of the ramp's motion: with its own jerk it would take long
+// to end, and the ramp would run away meanwhile.
+KinematicState WithOwnAcceleration(const KinematicState& shift, const trajectory::Limits& limits) {
+  const double most = std::max(limits.acceleration, limits.deceleration);
+  return {shift.position, shift.velocity, std::clamp(shift.acceleration, -most, most)};
+}
+
 // Begins the ramp from `old` to what `c` has become.
 bool RampFrom(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in, const Conversion& old,
               trajectory::Planner& planner, Conversion& c) {
   const KinematicState shift = Difference(Convert(old, Earlier(cycle), in.before), Law(c, in.before));
-  if (!target.with_master) return BeginProfile(shift, target.ramps, cycle, planner, c.ramp);
+  if (!target.with_master)
+    return BeginProfile(WithOwnAcceleration(shift, target.ramps), target.ramps, cycle, planner, c.ramp);
   if (old.ramp.kind == RampKind::kWithMaster && old.factor == c.factor) {
     return MoveZero(Law(old, in.before).position - Law(c, in.before).position, planner, c.ramp);
   }
@@ -36,19 +63,19 @@ bool RampFrom(const ConversionTarget& target, const Cycle& cycle, const Conversi
 
 // What the output was under the old law, as a shift that goes to zero under the new one.
 void TakeRamped(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in, const Conversion& old,
-                Ramped ramped, trajectory::Planner& planner, Conversion& c) {
+                trajectory::Planner& planner, Conversion& c) {
   if (!RampFrom(target, cycle, in, old, planner, c)) {
     c = old;
     return;
   }
-  c.ramped = ramped;
+  NoteRamp(cycle, in, old, false, c);
 }
 
 // Only the speed is to change: the position where the ramp of the speed ends is the one that counts.
 void RampSlope(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in, const Conversion& old,
                trajectory::Planner& planner, Conversion& c) {
   const KinematicState was = Convert(old, Earlier(cycle), in.before);
-  const KinematicState shift = Difference(was, Law(c, in.before));
+  const KinematicState shift = WithOwnAcceleration(Difference(was, Law(c, in.before)), target.ramps);
   double begin = 0;
   const bool good = target.with_master ? BeginSpeedWithMaster(shift, RideOf(target, in, c), planner, begin, c.ramp)
                                        : BeginSpeed(shift, target.ramps, cycle, planner, begin, c.ramp);
@@ -57,7 +84,7 @@ void RampSlope(const ConversionTarget& target, const Cycle& cycle, const Convers
     return;
   }
   c.out_zero += was.position - begin - Law(c, in.before).position;
-  c.ramped = Ramped::kSlope;
+  NoteRamp(cycle, in, old, true, c);
 }
 
 // A ramp with the master counts on the factor of what it is added to: a smaller one has to wait for its end.
@@ -89,7 +116,7 @@ void TakeFactor(const ConversionTarget& target, const Cycle& cycle, const Conver
     case ScalingMode::kRampAbsolute:
       CountFrom(target.absolute_zero, c);
       c.factor = target.factor;
-      return TakeRamped(target, cycle, in, old, Ramped::kFactor, planner, c);
+      return TakeRamped(target, cycle, in, old, planner, c);
     case ScalingMode::kRampRelative:
       CountFrom(in.before.position, c);
       c.factor = target.factor;
@@ -101,7 +128,7 @@ void TakeOffset(const ConversionTarget& target, const Cycle& cycle, const Conver
                 trajectory::Planner& planner, Conversion& c) {
   const Conversion old = c;
   c.offset = target.offset;
-  if (ramped) TakeRamped(target, cycle, in, old, Ramped::kOffset, planner, c);
+  if (ramped) TakeRamped(target, cycle, in, old, planner, c);
 }
 
 }  // namespace
@@ -122,12 +149,14 @@ void CountFrom(double in_zero, Conversion& c) noexcept {
   c.in_zero = in_zero;
 }
 
+void EndRamp(const Cycle& cycle, Conversion& c) noexcept {
+  if (c.ramp.kind == RampKind::kNone || !IsOver(c.ramp, cycle)) return;
+  c.ramp.kind = RampKind::kNone;
+  c.offset_left = c.factor_left = 0;
+}
+
 void Approach(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in,
               trajectory::Planner& planner, Conversion& c) noexcept {
-  if (c.ramp.kind != RampKind::kNone && IsOver(c.ramp, cycle)) {
-    c.ramp.kind = RampKind::kNone;
-    c.ramped = Ramped::kNothing;
-  }
   if (target.factor != c.factor) TakeFactor(target, cycle, in, planner, c);
   if (target.offset == c.offset) return;
   if (target.at_once) {
@@ -149,23 +178,24 @@ void ApproachAtZero(const ConversionTarget& target, double at, const Cycle& cycl
 }
 
 double OffsetInForce(const Conversion& c, const Cycle& cycle) noexcept {
-  return c.ramped == Ramped::kOffset ? c.offset + At(c.ramp, cycle).position : c.offset;
+  if (c.ramp.kind == RampKind::kNone || c.offset_left == 0) return c.offset;
+  if (c.factor_left == 0 && !c.by_speed) return c.offset + At(c.ramp, cycle).position;
+  return c.offset + c.offset_left * ShareLeft(c, cycle);
 }
 
 double FactorInForce(const Conversion& c, const Cycle& cycle, const KinematicState& in) noexcept {
+  if (c.ramp.kind == RampKind::kNone || c.factor_left == 0) return c.factor;
   const KinematicState shift = At(c.ramp, cycle);
   const double from_zero = in.position - c.in_zero;
-  if (c.ramped == Ramped::kFactor && from_zero != 0) return c.factor + shift.position / from_zero;
-  if (c.ramped == Ramped::kSlope && in.velocity != 0) return c.factor + shift.velocity / in.velocity;
-  return c.factor;
-}
-
-void describe(Enumeration<Ramped>& e) {
-  e.about("What a ramp takes over.");
-  e.value(Ramped::kNothing, "nothing", "There is none.");
-  e.value(Ramped::kOffset, "offset", "An offset.");
-  e.value(Ramped::kFactor, "factor", "A factor of the position.");
-  e.value(Ramped::kSlope, "slope", "A factor of the velocity.");
+  double left = 0;
+  if (c.offset_left == 0 && c.by_speed && in.velocity != 0) {
+    left = shift.velocity / in.velocity;
+  } else if (c.offset_left == 0 && !c.by_speed && from_zero != 0) {
+    left = shift.position / from_zero;
+  } else {
+    left = c.factor_left * ShareLeft(c, cycle);
+  }
+  return c.factor + std::clamp(left, std::min(c.factor_left, 0.0), std::max(c.factor_left, 0.0));
 }
 
 void describe(Description<Conversion>& d) {
@@ -176,7 +206,10 @@ void describe(Description<Conversion>& d) {
   d.internal<&C::in_zero>("Input that is counted from.");
   d.internal<&C::out_zero>("Output there, without offset.");
   d.internal<&C::ramp>("What is left of what was in force before.");
-  d.internal<&C::ramped>("What it takes over.");
+  d.internal<&C::offset_left>("Of the offset, at the begin of the ramp.");
+  d.internal<&C::factor_left>(unit::one, "Of the factor, at the begin of the ramp.");
+  d.internal<&C::by_speed>("The ramp is one of the speed.");
+  d.internal<&C::ramp_begin>("Shift at the begin of the ramp, or the speed of that.");
 }
 
 }  // namespace takt::flexcam

@@ -15,16 +15,18 @@
 
 namespace takt::flexcam {
 
-// What a ramp takes over.
-enum class Ramped : std::uint8_t { kNothing, kOffset, kFactor, kSlope };
-
 struct Conversion {
   double factor = 1;  // > 0 on the master's side, >= 0 on the slave's
   double offset = 0;
   double in_zero = 0;
   double out_zero = 0;
   Ramp ramp;
-  Ramped ramped = Ramped::kNothing;  // last; what is left of an earlier ramp is part of it
+  // What the ramp takes over: at its begin so much more was in force than is set. What is left of an earlier ramp is
+  // part of it.
+  double offset_left = 0;
+  double factor_left = 0;
+  bool by_speed = false;  // the ramp is one of the speed
+  double ramp_begin = 0;  // its shift then, or the speed of that
 };
 
 // What is wanted of it, and how it gets there.
@@ -52,6 +54,8 @@ struct ConversionInputs {
   KinematicState ride_before;
 };
 
+// Each cycle, before Approach: a ramp that is over is gone. One with the master would come back with it else.
+void EndRamp(const Cycle& cycle, Conversion& conversion) noexcept;
 // Each cycle: takes over what has changed and may be taken over anywhere, from the input of the cycle before on.
 void Approach(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in,
               trajectory::Planner& planner, Conversion& conversion) noexcept;
@@ -59,12 +63,12 @@ void Approach(const ConversionTarget& target, const Cycle& cycle, const Conversi
 void ApproachAtZero(const ConversionTarget& target, double at, const Cycle& cycle, const ConversionInputs& in,
                     trajectory::Planner& planner, Conversion& conversion) noexcept;
 
-// What is in force in this cycle, ramps included: of an offset the sum, of a factor what the output has of the input
-// (of a ramped slope: its velocity of the input's velocity).
+// What is in force in this cycle, ramps included, never beyond the value before a ramp and the one that is set for a
+// factor. An offset ramped by itself: the sum. A factor ramped by itself: what the output has of the input (of a ramped
+// speed: its velocity of the input's velocity). Both in one ramp: each has the share of its change that is left of it.
 double OffsetInForce(const Conversion& conversion, const Cycle& cycle) noexcept;
 double FactorInForce(const Conversion& conversion, const Cycle& cycle, const KinematicState& in) noexcept;
 
-void describe(Enumeration<Ramped>&);
 void describe(Description<Conversion>&);
 
 }  // namespace takt::flexcam

@@ -104,7 +104,7 @@ void Fail(const Context& c, ErrorId error, axis::State& slave, State& s) {
   EndAction(c, FeedbackState::kError, error, s);
   EndJog(c, FeedbackState::kError, error, s);
   Abandon(c, s);
-  if (IsOn(slave)) HoldStopped(c, slave, s);
+  if (IsOn(slave) && slave.emergency == axis::Emergency::kNone) HoldStopped(c, slave, s);
 }
 
 void WatchLimits(const Context& c, axis::State& slave, State& s) {
@@ -292,8 +292,10 @@ void InSync(const Context& c, axis::State& slave, State& s) {
     s.state = ModuleState::kReady;
     return;
   }
-  if (!axis::IsGuided(slave)) {  // a command of its own has taken the slave away
+  if (!axis::IsGuided(slave)) {  // a command of its own has taken the slave away, or it is off
+    if (slave.emergency != axis::Emergency::kNone) return Fail(c, ErrorId::kEmergencyStop, slave, s);
     Abandon(c, s);
+    if (!IsOn(slave)) s.warning = ErrorId::kPowerOff;
     s.state = ModuleState::kReady;
     return;
   }

@@ -102,16 +102,16 @@ void Publish(const Context& c, const axis::State& slave, const State& s, Outputs
   out.acc_dec_sync =
       sync && (phase == ClutchPhase::kClosing || phase == ClutchPhase::kOpening || phase == ClutchPhase::kReleased);
   out.end_of_profile = sync && s.end_of_profile;
-  out.sequencer_active = sync && IsActive(SequencerOf(s), s.sequencer);
+  out.sequencer_active = sync && IsActive(SequencerOf(c, s), s.sequencer);
   out.master_lost = !s.master.known;
   out.offset_master_done = IsSettled(s, Adjustment::kOffsetMaster);
   out.offset_slave_done = IsSettled(s, Adjustment::kOffsetSlave);
   out.scaling_master_done = IsSettled(s, Adjustment::kScalingMaster);
   out.scaling_slave_done = IsSettled(s, Adjustment::kScalingSlave);
-  out.offset_master_busy = !out.offset_master_done;
-  out.offset_slave_busy = !out.offset_slave_done;
-  out.scaling_master_busy = !out.scaling_master_done;
-  out.scaling_slave_busy = !out.scaling_slave_done;
+  out.offset_master_busy = !out.offset_master_done && !IsStuck(s, Adjustment::kOffsetMaster);
+  out.offset_slave_busy = !out.offset_slave_done && !IsStuck(s, Adjustment::kOffsetSlave);
+  out.scaling_master_busy = !out.scaling_master_done && !IsStuck(s, Adjustment::kScalingMaster);
+  out.scaling_slave_busy = !out.scaling_slave_done && !IsStuck(s, Adjustment::kScalingSlave);
 }
 
 }  // namespace takt::flexcam

@@ -68,8 +68,19 @@ RampClock ClockFor(const KinematicState& shift, const Ride& ride, KinematicState
   return clock;
 }
 
-bool PlanToZero(const KinematicState& from, const trajectory::Limits& limits, trajectory::Planner& planner,
+// An acceleration that would lead to more speed than the limit, once it has ended with the jerk, is cut: the sense of
+// the sum depends on that speed.
+KinematicState WithinSpeed(KinematicState from, const trajectory::Limits& limits) {
+  if (from.velocity * from.acceleration <= 0) return from;
+  const double room = std::max(limits.velocity - std::abs(from.velocity), 0.0);
+  const double most = limits.jerk > 0 ? std::sqrt(2 * limits.jerk * room) : limits.acceleration;
+  from.acceleration = std::clamp(from.acceleration, -most, most);
+  return from;
+}
+
+bool PlanToZero(KinematicState from, const trajectory::Limits& limits, trajectory::Planner& planner,
                 trajectory::Profile& out) {
+  from = WithinSpeed(from, limits);
   trajectory::Profile profile{from};
   if (planner.ToPosition(from, 0, 0, limits, profile).failed()) return false;
   out = profile;
@@ -77,8 +88,9 @@ bool PlanToZero(const KinematicState& from, const trajectory::Limits& limits, tr
 }
 
 // The part of the profile's motion from `from` that has no position to get to ends at zero.
-bool PlanToRest(const KinematicState& from, trajectory::Limits limits, trajectory::Planner& planner, double& begin,
+bool PlanToRest(KinematicState from, trajectory::Limits limits, trajectory::Planner& planner, double& begin,
                 trajectory::Profile& out) {
+  from = WithinSpeed(from, limits);
   limits.velocity = std::max(limits.velocity, std::abs(from.velocity));
   trajectory::Profile profile{from};
   if (planner.ToVelocity(from, 0, limits, profile).failed()) return false;

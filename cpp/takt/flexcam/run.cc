@@ -76,6 +76,21 @@ bool IsEmpty(const State& s, std::uint32_t slot) {
   return slot == 0 || slot > kSlots || s.slots[slot - 1] == 0;
 }
 
+// Whether a cam's slope has a step where its end would go over into its beginning: it was not made to be run again and
+// again. Cams of straight lines have such steps anyhow.
+bool IsOpen(const cam::Table& table) {
+  if (table.cyclic() || table.source().interpolation == cam::Interpolation::kLinear) return false;
+  const double begin = table.At(table.begin()).dy, end = table.At(table.end()).dy;
+  return std::abs(end - begin) > 1e-6 * (1 + std::max(std::abs(begin), std::abs(end)));
+}
+
+// Whether the cam that was taken is run once: an open one is, whatever is asked for (CAM-86).
+bool RunsOnce(const Context& c, bool cyclic, State& s) {
+  const bool open = IsOpen(TableOf(c, s));
+  if (open && (cyclic || s.settings.cam_cyclic)) s.warning = ErrorId::kOpenCam;
+  return !cyclic || open;
+}
+
 void Take(const SequenceStep& next, State& s) {
   s.way.profiler.slot = next.slot;
   s.way.profiler.cam = s.slots[next.slot - 1] - 1;
@@ -104,8 +119,9 @@ bool ChangeHere(const Context& c, std::uint32_t slot, ChangeAlign align, double 
     x = *same;
   }
   ProfilerState& p = s.way.profiler;
+  const bool cyclic = IsOpen(TableOf(c, s)) ? s.settings.cam_cyclic : !p.once;
   Take({slot, true}, s);
-  Lay(to, x_before, x, p.once, p);
+  Lay(to, x_before, x, RunsOnce(c, cyclic, s), p);
   const bool meets = align != ChangeAlign::kNothing || !s.settings.slave_absolute;
   p.base = meets ? was.y - ValueAt(to, p, x_before).y : zero;
   s.inputs.cam_table = slot;
@@ -134,6 +150,13 @@ double GapTo(const Context& c, const PendingChange& change, bool in_place, const
   return in_place ? ZeroOfY(c, s) + there.y - s.at.y : there.dy - s.at.dy;
 }
 
+// The slave can get from one slope to the other in a few cycles.
+bool CanTakeSlope(const Context& c, double step, const State& s) {
+  const trajectory::Limits own = c.slave.params.planner_limits();
+  return std::abs(step * s.x.velocity * s.way.to_slave.factor) <=
+         4 * std::min(own.acceleration, own.deceleration) * c.slave.cycle.period_s;
+}
+
 bool MeetsNow(const Context& c, const PendingChange& change, State& s) {
   if (change.change.align == ChangeAlign::kVelocity) return true;
   const bool in_place = change.change.align == ChangeAlign::kNothing && s.settings.slave_absolute;
@@ -142,10 +165,12 @@ bool MeetsNow(const Context& c, const PendingChange& change, State& s) {
   s.gap = gap;
   s.gap_known = true;
   if (!meets || !in_place) return meets;
-  // The slave can get from one slope to the other in a few cycles.
-  const double step = std::abs(GapTo(c, change, false, s) * s.x.velocity * s.way.to_slave.factor);
-  const trajectory::Limits own = c.slave.params.planner_limits();
-  return step <= 4 * std::min(own.acceleration, own.deceleration) * c.slave.cycle.period_s;
+  return CanTakeSlope(c, GapTo(c, change, false, s), s);
+}
+
+// Goes away from a place that comes only once.
+bool GoesAway(double place, double before, double now) {
+  return (now - place) * (now - before) > 0;
 }
 
 bool IsDue(const Context& c, const PendingChange& change, double x_before, State& s) {
@@ -153,9 +178,13 @@ bool IsDue(const Context& c, const PendingChange& change, double x_before, State
   switch (change.change.when) {
     case ChangeWhen::kAtOnce:
       return true;
-    case ChangeWhen::kMasterPosition:
-      return Passes(change.change.position + ZeroOf(c.slave, c.master), TurnOf(c.slave, c.master),
-                    s.master.before.position, s.master.now.position);
+    case ChangeWhen::kMasterPosition: {
+      const double place = change.change.position + ZeroOf(c.slave, c.master), turn = TurnOf(c.slave, c.master);
+      const double before = s.master.before.position, now = s.master.now.position;
+      if (Passes(place, turn, before, now)) return true;
+      if (turn == 0 && GoesAway(place, before, now)) s.warning = ErrorId::kSyncPassed;
+      return false;
+    }
     case ChangeWhen::kCamPosition: {
       const cam::Table& table = TableOf(c, s);
       return Passes(p.laid + change.change.position - table.begin(), p.once ? 0 : table.length(), x_before,
@@ -198,13 +227,28 @@ void Hold(const cam::Table& table, ProfilerState& p) {
 void ChangeAtEnd(const Context& c, const Passed& passed, const SequenceStep& next, bool relative, State& s) {
   const cam::Table& from = TableOf(c, s);
   Take(next, s);
-  Change(from, TableOf(c, s), passed, relative, !next.cyclic, s.way.profiler);
+  Change(from, TableOf(c, s), passed, relative, RunsOnce(c, next.cyclic, s), s.way.profiler);
+}
+
+// Whether the other cam begins (X going back: ends) as this one is left, in place and, as far as the slave can in a few
+// cycles, in slope. Between two cycles that is not seen: the cams may touch there without crossing one another.
+bool MeetsAtEnd(const Context& c, const PendingChange& change, const Passed& passed, const State& s) {
+  const bool in_place = change.change.align == ChangeAlign::kNothing && s.settings.slave_absolute;
+  const cam::Table& from = TableOf(c, s);
+  const cam::Table& to = c.slave.machine.cams[s.slots[change.change.cam_table - 1] - 1];
+  const double gap = to.At(to.begin()).y - from.At(from.begin()).y;
+  if (!in_place || std::abs(gap) > 1e-9 * (1 + std::abs(from.lowest()) + std::abs(from.highest()))) return false;
+  const double left = from.At(passed.sense > 0 ? from.end() : from.begin()).dy;
+  const double entered = to.At(passed.sense > 0 ? to.begin() : to.end()).dy;
+  return CanTakeSlope(c, entered - left, s);
 }
 
 // The cam that a command wants from this end on. False: there is none.
 bool TakePending(const Context& c, const Passed& passed, State& s) {
   const PendingChange* pending = Due(s, ChangeWhen::kNextCycle);
+  if (pending == nullptr) pending = Due(s, ChangeWhen::kWithoutJump);
   if (pending == nullptr) return false;
+  if (pending->change.when == ChangeWhen::kWithoutJump && !MeetsAtEnd(c, *pending, passed, s)) return false;
   const ChangeCam change = pending->change;
   // With equal slopes it goes on somewhere within the other cam, else at its beginning.
   if (change.align == ChangeAlign::kVelocity) {
@@ -223,14 +267,14 @@ bool TakePending(const Context& c, const Passed& passed, State& s) {
 
 void TakeNext(const Context& c, const Passed& passed, State& s) {
   ProfilerState& p = s.way.profiler;
-  SequenceStep next = Next(SequencerOf(s), s.sequencer);
+  SequenceStep next = Next(SequencerOf(c, s), s.sequencer);
   if (IsEmpty(s, next.slot)) {
     s.warning = ErrorId::kUnknownTarget;
     next = {p.slot, !p.once};
   }
   const bool same = next.slot == p.slot && s.slots[next.slot - 1] - 1 == p.cam;
   if (!same) return ChangeAtEnd(c, passed, next, !s.settings.slave_absolute, s);
-  if (next.cyclic) {
+  if (!RunsOnce(c, next.cyclic, s)) {
     p.once = false;
   } else if (!p.once) {
     Hold(TableOf(c, s), p);
@@ -240,7 +284,14 @@ void TakeNext(const Context& c, const Passed& passed, State& s) {
 // The cam of a sequence is left over the side where X came in: it was not run, and the one before it goes on. One that
 // was taken up right there goes on itself, from its other end.
 bool ComesBack(const Context& c, const Passed& passed, State& s) {
-  if (s.sequencer.part == SequencePart::kNone || s.entry.sense == 0 || passed.sense != -s.entry.sense) return false;
+  if (s.entry.sense == 0 || passed.sense != -s.entry.sense) return false;
+  if (s.sequencer.part == SequencePart::kNone) {  // the sequence was switched on before a cam was run at all
+    if (!s.inputs.cam_sequencer) return false;
+    const SequenceStep first = First(SequencerOf(c, s), s.sequencer);
+    if (!IsEmpty(s, first.slot)) ChangeAtEnd(c, passed, first, !s.settings.slave_absolute, s);
+    s.entry = {passed.sense, false, {}, {}};
+    return true;
+  }
   if (s.entry.has_before) {
     s.way.profiler = s.entry.profiler;
     s.sequencer = s.entry.sequencer;
@@ -290,7 +341,7 @@ std::optional<SequenceStep> AfterHeld(const Context& c, State& s) {
     EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
     return SequenceStep{s.inputs.cam_table, s.settings.cam_cyclic};
   }
-  if (const std::optional<SequenceStep> next = FromHeld(SequencerOf(s), s.sequencer)) return next;
+  if (const std::optional<SequenceStep> next = FromHeld(SequencerOf(c, s), s.sequencer)) return next;
   const bool other = s.slots[p.slot - 1] - 1 != p.cam;
   return other ? std::optional(SequenceStep{p.slot, s.settings.cam_cyclic}) : std::nullopt;
 }
@@ -304,7 +355,7 @@ void HoldOn(const Context& c, State& s) {
   Take(*next, s);
   const cam::Table& table = TableOf(c, s);
   const double back = s.x.velocity < 0 ? table.length() : 0;
-  Lay(table, s.x.position, table.begin() + back, !next->cyclic, p);
+  Lay(table, s.x.position, table.begin() + back, RunsOnce(c, next->cyclic, s), p);
   if (!s.settings.slave_absolute) p.base = was - ValueAt(table, p, s.x.position).y;
 }
 
@@ -319,32 +370,57 @@ const cam::Table& TableOf(const Context& c, const State& s) noexcept {
 }
 
 bool IsSettled(const State& s, Adjustment what) noexcept {
-  const Conversion& master = s.way.to_x;
-  const Conversion& slave = s.way.to_slave;
-  const bool x_ramps = master.ramp.kind != RampKind::kNone, y_ramps = slave.ramp.kind != RampKind::kNone;
+  const auto ramps = [](const Conversion& c) { return c.ramp.kind != RampKind::kNone; };
+  const auto offset = [&](const Conversion& c, double set) {
+    return c.offset == set && !(ramps(c) && c.offset_left != 0);
+  };
+  const auto factor = [&](const Conversion& c, double set) {
+    return c.factor == set && !(ramps(c) && c.factor_left != 0);
+  };
   switch (what) {
     case Adjustment::kOffsetMaster:
-      return master.offset == s.inputs.offset_master && !(x_ramps && master.ramped == Ramped::kOffset);
+      return offset(s.way.to_x, s.inputs.offset_master);
     case Adjustment::kOffsetSlave:
-      return slave.offset == s.inputs.offset_slave && !(y_ramps && slave.ramped == Ramped::kOffset);
+      return offset(s.way.to_slave, s.inputs.offset_slave);
     case Adjustment::kScalingMaster:
-      return master.factor == s.inputs.scaling_master && !(x_ramps && master.ramped != Ramped::kOffset);
+      return factor(s.way.to_x, s.inputs.scaling_master);
     case Adjustment::kScalingSlave:
-      return slave.factor == s.inputs.scaling_slave && !(y_ramps && slave.ramped != Ramped::kOffset);
+      return factor(s.way.to_slave, s.inputs.scaling_slave);
   }
   return true;
 }
 
-SequencerInputs SequencerOf(const State& s) noexcept {
+bool IsStuck(const State& s, Adjustment what) noexcept {
+  const bool on_cam = s.clutch.phase == ClutchPhase::kClosed || s.clutch.phase == ClutchPhase::kWaitingOut;
+  if (s.state != ModuleState::kSync || !on_cam || !s.way.profiler.held || IsSettled(s, what)) return false;
+  const Settings& set = s.settings;
+  const bool rides = s.way.to_slave.ramp.kind == RampKind::kWithMaster;  // on Y, which stands
+  switch (what) {
+    case Adjustment::kOffsetMaster:
+      return set.offset_mode_master == OffsetMode::kXZero && s.way.to_x.offset != s.inputs.offset_master;
+    case Adjustment::kOffsetSlave:
+      return rides || (set.offset_mode_slave == OffsetMode::kXZero && s.way.to_slave.offset != s.inputs.offset_slave);
+    case Adjustment::kScalingMaster:
+      return set.scaling_mode_master == ScalingMode::kXZero && s.way.to_x.factor != s.inputs.scaling_master;
+    case Adjustment::kScalingSlave:
+      return rides ||
+             (set.scaling_mode_slave == ScalingMode::kXZero && s.way.to_slave.factor != s.inputs.scaling_slave);
+  }
+  return false;
+}
+
+SequencerInputs SequencerOf(const Context& c, const State& s) noexcept {
   const ProfilerState& p = s.way.profiler;
+  const std::uint32_t slot = s.inputs.cam_table;
+  const bool open = !IsEmpty(s, slot) && IsOpen(c.slave.machine.cams[s.slots[slot - 1] - 1]);
   return {s.inputs.cam_sequencer,
           s.settings.cam_sequence_mode,
-          {s.inputs.cam_table, s.settings.cam_cyclic},
+          {s.inputs.cam_table, s.settings.cam_cyclic && !open},
           {p.slot, !p.once}};
 }
 
 void TakeUp(const Context& c, const axis::State& slave, State& s) noexcept {
-  SequenceStep first = First(SequencerOf(s), s.sequencer);
+  SequenceStep first = First(SequencerOf(c, s), s.sequencer);
   if (IsEmpty(s, first.slot)) first = {s.way.profiler.slot, s.settings.cam_cyclic};
   Take(first, s);
   const cam::Table& table = TableOf(c, s);
@@ -358,9 +434,13 @@ void TakeUp(const Context& c, const axis::State& slave, State& s) noexcept {
   }
   s.x = Convert(to_x, c.slave.cycle, s.master.before);
   const double x = s.assigned ? s.x.position : table.begin() + to_x.offset;
-  Lay(table, s.x.position, x, !first.cyclic, s.way.profiler);
+  // A sequence begins in the cycle in which X is, wherever the master has got to; a cam that is run once may be over.
+  const bool once = RunsOnce(c, first.cyclic, s);
+  ProfilerState& p = s.way.profiler;
+  Lay(table, s.x.position, x, once && s.sequencer.part == SequencePart::kNone, p);
+  p.once = once;
   s.entry = {};
-  if (std::abs(x - table.begin()) <= 1e-9 * table.length()) s.entry.sense = 1;
+  if (std::abs(s.x.position - p.laid) <= 1e-9 * table.length()) s.entry.sense = 1;
   if (s.way.profiler.once) GoOn(table, s.x.position, s.way.profiler);
   TakeY(c, s);
   Conversion& to_slave = s.way.to_slave;
@@ -372,7 +452,9 @@ void TakeUp(const Context& c, const axis::State& slave, State& s) noexcept {
 }
 
 void ShowWay(const Context& c, const axis::State& slave, State& s) noexcept {
+  const ErrorId warning = s.warning;
   TakeUp(c, slave, s);
+  s.warning = warning;
   s.x = Convert(s.way.to_x, c.slave.cycle, s.master.now);
   TakeY(c, s);
   s.wanted = Convert(s.way.to_slave, c.slave.cycle, s.y);
@@ -384,6 +466,8 @@ void RunWay(const Context& c, State& s) noexcept {
   const double x_before = s.x.position;
   const ConversionInputs masters = {s.master.before, s.master.before};
   const ConversionInputs ys = {s.y, RideOf(s.y, s.x)};
+  EndRamp(cycle, s.way.to_x);
+  EndRamp(cycle, s.way.to_slave);
   if (!IsOnCurve(s.clutch)) Approach(MasterTarget(c, s), cycle, masters, c.slave.planner, s.way.to_x);
   Advance(s.master.before, s.master.now, s.master.now.position - s.master.before.position, cycle, c.slave.planner,
           s.way.to_x.ramp);

@@ -20,12 +20,14 @@ void AbortChanges(const Context& c, State& s) noexcept;
 
 // Whether the offset or factor that is set is in force.
 bool IsSettled(const State& s, Adjustment what) noexcept;
+// Whether it cannot come into force as things stand: it waits for a way on, or an end of, a cam that is over (CAM-82).
+bool IsStuck(const State& s, Adjustment what) noexcept;
 
 void AbortAdjustments(const Context& c, State& s) noexcept;
 // Tells the ends of ramps.
 void EndAdjustments(const Context& c, State& s) noexcept;
 
-SequencerInputs SequencerOf(const State& s) noexcept;
+SequencerInputs SequencerOf(const Context& c, const State& s) noexcept;
 // The slave is powered and takes commands.
 bool IsOn(const axis::State& slave) noexcept;
 void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;

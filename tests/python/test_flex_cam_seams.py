@@ -1,0 +1,315 @@
+"""Seams of cam modules through the public face: clutch, ramps, sequences and changes where they meet (CAM-81 to 86)."""
+
+from __future__ import annotations
+
+import json
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+import takt
+
+SYNC_PASSED, WOULD_REVERSE, CAM_OVER, OPEN_CAM = 3110, 3020, 3114, 3115
+LINE = {"name": "line", "cyclic": True, "segments": [{"to": {"x": 100, "y": 100}, "law": "line"}]}
+AT_ONCE = {"slave_absolute": True, "sync_mode": "absolute"}
+STRONG = "velocity: 100000, acceleration: 100000000, jerk: 1000000000000"
+
+
+def hill(name: str, height: float, length: float = 360) -> dict[str, Any]:
+    law = "polynomial_345"
+    segments = [{"to": {"x": length / 2, "y": height}, "law": law}, {"to": {"x": length, "y": 0}, "law": law}]
+    return {"name": name, "cyclic": True, "segments": segments}
+
+
+def rise(name: str, length: float, stroke: float, **law: Any) -> dict[str, Any]:
+    segments = [{"to": {"x": length, "y": stroke}, "law": "polynomial_345", **law}]
+    return {"name": name, "cyclic": not law, "segments": segments}
+
+
+class Rig:
+    """A web of any speed, and a knife with strong limits on a cam module."""
+
+    def __init__(self, *cams: dict[str, Any], settings: dict[str, Any], slave: str = "linear", limits: str = STRONG):
+        kind = "rotary, modulus: 360" if slave == "rotary" else slave
+        module = {"name": "m", "slave": "knife", "master": "web", "cams": [c["name"] for c in cams]}
+        self.engine = takt.Engine(
+            "name: t\naxes:\n"
+            "  - {name: web, unit: mm, limits: {velocity: 2000, acceleration: 20000, jerk: 2000000}}\n"
+            f"  - {{name: knife, unit: mm, kind: {kind}, limits: {{{limits}}}}}\n"
+            f"cams: {json.dumps(cams)}\nflex_cams: {json.dumps([{**module, 'settings': settings}])}\n"
+        )
+        self.web, self.knife, self.module = (
+            self.engine.axis("web"),
+            self.engine.axis("knife"),
+            self.engine.flex_cam("m"),
+        )
+        self.web.power().wait()
+        self.module.control(regulator_on=True).wait()
+        self.engine.wait(lambda: self.module.axis_enabled, 2.0)
+
+    def __enter__(self) -> Rig:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.engine.close()
+
+    def run(self, velocity: float) -> Any:
+        return self.web.move_velocity(velocity=abs(velocity), direction="negative" if velocity < 0 else "positive")
+
+    def seconds(self, seconds: float) -> Any:
+        """Recorded."""
+        recorder = self.engine.record()
+        self.engine.run(seconds)
+        return recorder.stop()
+
+
+def steps_of_speed(recording: Any) -> float:
+    """Largest change of the slave's velocity that its acceleration does not explain."""
+    v, a = recording["knife"]["set_velocity"], recording["knife"]["set_acceleration"]
+    return float(np.abs(np.diff(v) - (a[1:] + a[:-1]) / 2 * 0.001).max())
+
+
+ON_CURVE = {**AT_ONCE, "sync_mode": "ramp_pos", "master_sync_in_position": 0}
+
+
+@pytest.mark.parametrize(
+    ("slave", "velocity", "at", "closes"),
+    [
+        ("linear", 300, -60, True),
+        ("linear", -300, 60, True),
+        ("linear", -300, -60, False),
+        ("rotary", 300, 100, True),
+        ("rotary", -300, 100, True),
+        ("rotary", -300, 10, True),
+    ],
+)
+def test_without_reversing_a_clutch_goes_with_its_master_in_both_directions(slave, velocity, at, closes):  # CAM-37
+    cams = rise("stroke", 300, 150) if slave == "linear" else LINE
+    distance = 30 if slave == "linear" else 100
+    settings = {"sync_in_passed": "next_cycle", "position_control": "master_direction"}
+    with Rig(cams, settings={**ON_CURVE, **settings, "master_sync_in_distance": distance}, slave=slave) as rig:
+        rig.knife.move_absolute(position=at, velocity=5000).wait()
+        rig.run(velocity)
+        rig.engine.run(0.5)
+        feedback = rig.module.control(sync_cam=True)
+        recording = rig.seconds(2.5)
+        moved = np.diff(recording["knife"]["set_position"])
+        if slave == "rotary":
+            moved = (moved + 180) % 360 - 180
+        closing = recording["m"]["clutch"][1:] == 2
+        assert (np.sign(velocity) * moved[closing] > -1e-7).all()
+        assert (rig.module.clutch.name == "CLOSED") == closes
+        if not closes:
+            assert feedback.error_id == WOULD_REVERSE
+
+
+def test_a_rotary_slave_comes_back_onto_the_cam_in_the_turn_that_it_left():  # CAM-39, CAM-81
+    settings = {"master_sync_in_distance": 30, "sync_in_passed": "here", "master_sync_out_distance": 200}
+    with Rig(LINE, settings={**ON_CURVE, **settings}, slave="rotary") as rig:
+        rig.run(300)
+        rig.module.control(sync_cam=True)
+        rig.engine.run(1.0)
+        rig.module.control(sync_cam=False)
+        rig.engine.run(0.5)
+        rig.module.control(sync_cam=True)
+        rig.engine.run(0.02)
+        rig.run(-300)  # back along the curve of the opening
+        recording = rig.seconds(1.5)
+        assert rig.module.cam_synchronised
+        assert np.abs(recording["knife"]["set_velocity"]).max() < 2000
+        closed = recording["m"]["clutch"] == 3
+        assert recording["m"]["cam_synchronised"][closed].all()
+
+
+TOGGLE = object()
+
+
+@pytest.mark.parametrize(
+    ("steps", "settings"),
+    [
+        (["on", 0.1, TOGGLE, 0.05, "off"], {}),
+        (["on", 0.5, TOGGLE, 0.05, TOGGLE], {}),
+        (["on", 0.5, TOGGLE, 0.05, TOGGLE], {"master_sync_in_distance": 100, "master_sync_out_distance": 200}),
+        (["on", 0.5, TOGGLE, 0.05, TOGGLE], {"sync_in_passed": "next_cycle"}),
+        (["on", 1.0, "off", 1.2, "on"], {"position_control": "master_direction"}),
+    ],
+)
+def test_commands_on_curves_make_no_step(steps, settings):  # CAM-39, CAM-81
+    curves = {"master_sync_in_distance": 50, "sync_in_passed": "here", "master_sync_out_distance": 50}
+    with Rig(LINE, settings={**ON_CURVE, **curves, **settings}) as rig:
+        rig.run(300).wait(until="reached")
+        recorder = rig.engine.record()
+        for step in steps:
+            if step is TOGGLE:
+                rig.module.control(sync_cam=False)
+                rig.engine.run(0.001)
+                rig.module.control(sync_cam=True)
+            elif isinstance(step, str):
+                rig.module.control(sync_cam=step == "on")
+            else:
+                rig.engine.run(step)
+        rig.engine.run(2.0)
+        recording = recorder.stop()
+        assert steps_of_speed(recording) < 1.0
+        assert np.abs(recording["knife"]["set_velocity"]).max() < 6000
+        assert recording["m"]["warning"].max() in (0, WOULD_REVERSE)
+        closed = recording["m"]["clutch"] == 3
+        assert recording["m"]["cam_synchronised"][closed].all()
+        assert rig.module.clutch.name == ("OPEN" if steps[-1] == "off" else "CLOSED")
+
+
+@pytest.mark.parametrize("what", ["scaling_master", "scaling_slave"])
+@pytest.mark.parametrize("jerk", [100_000, 10_000])
+@pytest.mark.parametrize("mode", ["ramp_absolute", "ramp_relative"])
+def test_a_factor_given_while_the_master_brakes_does_not_run_away(what, jerk, mode):  # CAM-83
+    settings = {"scaling_mode_master": mode, "scaling_mode_slave": mode, "jerk": jerk}
+    with Rig(LINE, settings={**AT_ONCE, **settings}) as rig:
+        rig.run(300)
+        rig.module.control(sync_cam=True)
+        rig.engine.run(1.0)
+        rig.web.halt()
+        rig.engine.run(0.01)
+        rig.module.control(**{what: 2.0})
+        recording = rig.seconds(8.0)
+        place = recording["knife"]["set_position"]
+        assert np.abs(recording["knife"]["set_velocity"]).max() < 620
+        assert place.max() < place[-1] + 60
+        assert abs(place[-1] - rig.module.mp06_y_to_slave_position) < 1e-6
+        assert not rig.module.scaling_master_busy
+        assert not rig.module.scaling_slave_busy
+
+
+@pytest.mark.parametrize("control", ["both", "master_direction"])
+@pytest.mark.parametrize("side", ["master", "slave"])
+@pytest.mark.parametrize("offset_first", [True, False])
+def test_offset_and_factor_in_force_are_between_old_and_new(control, side, offset_first):  # CAM-84
+    settings = {f"scaling_mode_{side}": "ramp_absolute", f"offset_mode_{side}": "ramp_in", "position_control": control}
+    ramps = {f"offset_scaling_{side}_velocity": 300, f"offset_scaling_{side}_acceleration": 3000, "jerk": 10_000}
+    with Rig(LINE, settings={**AT_ONCE, **settings, **ramps}) as rig:
+        rig.run(300)
+        rig.module.control(sync_cam=True)
+        rig.engine.run(0.8)
+        recorder = rig.engine.record()
+        commands = [{f"offset_{side}": -60.0}, {f"scaling_{side}": 1.5}]
+        for command in commands if offset_first else commands[::-1]:
+            rig.module.control(**command)
+            rig.engine.run(0.02)
+        assert getattr(rig.module, f"offset_{side}_busy")
+        assert getattr(rig.module, f"scaling_{side}_busy")
+        rig.engine.run(6.0)
+        recording = recorder.stop()
+        factor, offset = recording["m"][f"set_scaling_{side}"], recording["m"][f"set_offset_{side}"]
+        assert factor.min() >= 1 - 1e-9
+        assert factor.max() <= 1.5 + 1e-9
+        assert offset.min() >= -60 - 1e-9
+        assert offset.max() <= 1e-9
+        assert np.abs(np.diff(offset)).max() < 5  # no step
+        assert (factor[-1], offset[-1]) == (1.5, -60)
+
+
+def test_a_ramp_that_rides_on_a_cam_that_is_over_ends_with_a_warning():  # CAM-82
+    once = {**rise("one", 200, 70), "cyclic": False}
+    settings = {"cam_cyclic": False, "position_control": "master_direction", "offset_mode_slave": "ramp_in"}
+    with Rig(once, settings={**AT_ONCE, **settings}) as rig:
+        rig.run(300)
+        rig.module.control(sync_cam=True).wait(timeout=3)
+        rig.engine.run(1.5)
+        feedback = rig.module.control(offset_slave=20.0).wait_final(timeout=1)
+        assert feedback.error_id == CAM_OVER
+        assert rig.module.warning == CAM_OVER
+        assert not rig.module.offset_slave_busy
+        assert not rig.module.offset_slave_done
+
+
+@pytest.mark.parametrize("what", ["offset_master", "offset_slave", "scaling_master", "scaling_slave"])
+def test_a_next_x_zero_that_never_comes_is_told(what):  # CAM-82
+    once = {**rise("one", 200, 70), "cyclic": False}
+    with Rig(once, settings={**AT_ONCE, "cam_cyclic": False}) as rig:
+        rig.run(300)
+        rig.module.control(sync_cam=True).wait(timeout=3)
+        rig.engine.run(1.5)
+        rig.module.control(**{what: 2.0})
+        rig.engine.run(0.01)
+        assert rig.module.warning == CAM_OVER
+        assert not getattr(rig.module, f"{what}_busy")
+
+
+def test_what_holds_a_slave_back_that_catches_up_is_said():  # flex_cam.md "What holds"
+    slow = {**LINE, "name": "slow", "segments": [{"to": {"x": 100, "y": 30}, "law": "line"}]}
+    with Rig(LINE, slow, settings=AT_ONCE, limits="velocity: 1000, acceleration: 20000, jerk: 2000000") as rig:
+        rig.run(300)
+        rig.module.control(sync_cam=True)
+        rig.engine.run(0.5)
+        rig.module.control(cam_table=2)
+        recording = rig.seconds(1.0)
+        away = np.abs(recording["knife"]["set_position"] - recording["m"]["mp06_y_to_slave_position"]) > 1e-6
+        assert away.sum() > 10
+        assert recording["knife"]["limited_by"][away].all()
+        assert (recording["knife"]["limited_by"][~away] != 0).sum() < 3
+
+
+def test_an_open_cam_is_run_once_and_says_so():  # CAM-86
+    with Rig(rise("one", 200, 70, end_v=0.5), settings=AT_ONCE) as rig:
+        rig.run(300)
+        rig.module.control(sync_cam=True)
+        recording = rig.seconds(3.0)
+        assert recording["m"]["cam_ends"][-1] == 1
+        assert abs(rig.knife.set_position - 70) < 1e-9
+        assert rig.module.warning == OPEN_CAM
+
+
+CAMS = [hill(name, height) for name, height in (("one", 10), ("two", 20), ("three", 30), ("four", 40))]
+
+
+def peaks(recording: Any, begin: float = 0.0, count: int = 4) -> list[int]:
+    """Of the slave, cycle by cycle of the web."""
+    place, web = recording["knife"]["set_position"], np.abs(recording["web"]["set_position"] - begin)
+    bounds = pairwise(360 * k for k in range(count + 1))
+    return [round(float(place[(web > low) & (web < high)].max())) for low, high in bounds]
+
+
+@pytest.mark.parametrize("order", [("cam_sequencer", "sync_cam"), ("sync_cam", "cam_sequencer")])
+@pytest.mark.parametrize("velocity", [1440, -1440])
+def test_a_sequence_runs_all_cams_whichever_is_switched_on_first(order, velocity):  # CAM-86
+    with Rig(*CAMS, settings={**AT_ONCE, "cam_sequence_mode": "cam1_cam2_cam3"}) as rig:
+        for switch in order:
+            rig.module.control(**{switch: True}).wait()
+            rig.engine.run(0.05)
+        rig.run(velocity)
+        assert peaks(rig.seconds(1.2)) == [10, 20, 30, 30]
+
+
+@pytest.mark.parametrize(("begin", "velocity"), [(720, 1440), (1080, -1440), (-720, -1440), (-360, 1440)])
+def test_a_sequence_begins_wherever_a_linear_master_has_got_to(begin, velocity):  # CAM-82, CAM-86
+    with Rig(*CAMS, settings={**AT_ONCE, "cam_sequence_mode": "cam1_cam2_cam3"}) as rig:
+        rig.web.move_absolute(position=begin, velocity=2000).wait()
+        rig.module.control(cam_sequencer=True)
+        rig.module.control(sync_cam=True).wait()
+        rig.run(velocity)
+        assert peaks(rig.seconds(1.2), begin) == [10, 20, 30, 30]
+
+
+@pytest.mark.parametrize("velocity", [300, -300])
+def test_cams_that_meet_at_their_ends_are_changed_there(velocity):  # CAM-70
+    with Rig(hill("a", 100, 500), hill("b", 60, 500), settings=AT_ONCE) as rig:
+        rig.run(velocity)
+        rig.module.control(sync_cam=True)
+        rig.engine.run(0.3)
+        feedback = rig.module.change_cam(cam_table=2, when="without_jump")
+        recording = rig.seconds(2.0)
+        assert feedback.done
+        assert rig.module.cam_table == 2
+        assert recording["m"]["cam_ends"][-1] - recording["m"]["cam_ends"][0] == 1
+        assert steps_of_speed(recording) < 1.0
+
+
+def test_a_change_at_a_position_that_a_master_has_left_behind_warns():  # CAM-70, CAM-82
+    with Rig(hill("a", 100, 500), hill("b", 60, 500), settings=AT_ONCE) as rig:
+        rig.run(300)
+        rig.module.control(sync_cam=True)
+        rig.engine.run(0.5)
+        rig.module.change_cam(cam_table=2, when="master_position", position=50.0)
+        rig.engine.run(0.01)
+        assert rig.module.pending_changes == 1
+        assert rig.module.warning == SYNC_PASSED
