@@ -83,7 +83,10 @@ Warned FromPoints(const Array& x, const Array& y, const std::optional<Array>& v,
                   const std::string& y_unit) {
   const auto check = [&](const Array& array, const char* which) {
     if (array.ndim() != 1) throw std::invalid_argument(std::string(which) + " must be an array of one dimension");
-    if (array.size() != x.size()) throw std::invalid_argument(std::string(which) + " must be as long as x");
+    if (array.size() != x.size()) {
+      throw std::invalid_argument(std::string(which) + ": expected as many values as x has, " +
+                                  std::to_string(x.size()) + ", found " + std::to_string(array.size()));
+    }
   };
   check(x, "x");
   check(y, "y");

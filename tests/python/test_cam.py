@@ -173,7 +173,7 @@ def test_points_that_are_no_cam(x: Any, y: Any, sentence: str) -> None:
 
 def test_arrays_that_do_not_fit() -> None:
     """CAM-03, CAM-04."""
-    with pytest.raises(ValueError, match="y must be as long as x"):
+    with pytest.raises(ValueError, match="y: expected as many values as x has, 2, found 3"):
         cam.Table.from_points([0, 1], [0, 1, 2])
     with pytest.raises(ValueError, match="x must be an array of one dimension"):
         cam.Table.from_points([[0, 1]], [[0, 1]])

@@ -313,3 +313,75 @@ def test_a_change_at_a_position_that_a_master_has_left_behind_warns():  # CAM-70
         rig.engine.run(0.01)
         assert rig.module.pending_changes == 1
         assert rig.module.warning == SYNC_PASSED
+
+
+@pytest.mark.parametrize("velocity", [300, -300])
+@pytest.mark.parametrize("where", [{"master_sync_position": 200.0}, {"master_start_distance": 0.0}])
+def test_cam_in_without_a_distance_gets_into_step_from_its_place_on(where, velocity):  # CAM-82, CAM-90
+    with Rig(hill("a", 100, 500), settings=AT_ONCE, limits="velocity: 3000, acceleration: 60000, jerk: 5000000") as rig:
+        rig.module.control(enable=False).wait()
+        sign = np.sign(velocity)
+        rig.knife.cam_in(master="web", cam="a", **{k: sign * v for k, v in where.items()})
+        rig.run(velocity)
+        record = rig.seconds(4)
+        begins = sign * where.get("master_sync_position", 500 if velocity > 0 else 0)
+        in_step, web = record["knife"]["in_step"].astype(bool), record["web"]["set_position"]
+        first = int(np.argmax(in_step))
+        assert in_step.any()
+        assert in_step[first:].all()
+        if "master_sync_position" in where:
+            assert 0 <= sign * web[first] - abs(begins) < 100
+        assert np.ptp(record["knife"]["set_position"]) == pytest.approx(100, abs=0.01)
+        assert np.abs(record["knife"]["set_acceleration"]).max() <= 60000 * (1 + 1e-9)
+
+
+def test_cam_in_ends_where_a_linear_master_goes_away_from_its_place():  # CAM-82
+    with Rig(hill("a", 100, 500), settings=AT_ONCE) as rig:
+        rig.module.control(enable=False).wait()
+        feedback = rig.knife.cam_in(master="web", cam="a", master_sync_position=-200.0)
+        rig.run(300)
+        rig.seconds(1.5)
+        assert not feedback._final  # it may come back
+        rig.seconds(1)
+        assert feedback.error_id == SYNC_PASSED, feedback.sentence
+        assert rig.knife.state == "Standstill"
+
+
+@pytest.mark.parametrize("how", ["stop", "halt"])
+def test_a_stop_with_an_opening_opens(how):
+    with Rig(hill("a", 100, 500), settings=AT_ONCE) as rig:
+        rig.run(300)
+        rig.module.control(sync_cam=True).wait()
+        rig.seconds(0.3)
+        feedback = rig.module.control(**{how: True}, sync_cam=False)
+        rig.seconds(0.3)
+        assert feedback._done, feedback.sentence
+        assert rig.module.warning == 0
+        assert rig.module.state == "Stop"
+
+
+@pytest.mark.parametrize("control", [{"offset_master": 40.0}, {"offset_slave": 30.0}, {"scaling_master": 1.5}])
+@pytest.mark.parametrize("position_control", ["both", "master_direction"])
+def test_an_opening_waits_for_ramps_so_a_master_that_comes_back_finds_the_cam(control, position_control):  # CAM-39
+    ramps = {"offset_mode_master": "ramp_in", "offset_mode_slave": "ramp_in", "scaling_mode_master": "ramp_relative"}
+    settings = {**ON_CURVE, **ramps, "master_sync_in_distance": 50, "sync_in_passed": "here"}
+    settings |= {"master_sync_out_distance": 200, "position_control": position_control}
+    with Rig(LINE, settings=settings, slave="rotary") as rig:
+        rig.run(300)
+        rig.module.control(sync_cam=True).wait()
+        rig.module.control(**control)
+        rig.seconds(0.05)
+        recorder = rig.engine.record()
+        rig.module.control(sync_cam=False)
+        rig.engine.run(0.02)
+        assert rig.module.clutch_waits == "ramps"
+        rig.engine.wait(lambda: rig.module.clutch == "opening", 10.0)
+        rig.engine.run(0.1)
+        rig.module.control(sync_cam=True)
+        rig.run(-300)
+        rig.engine.run(1.0)
+        record = recorder.stop()
+        assert rig.module.clutch == "closed"
+        assert rig.module.cam_synchronised
+        assert steps_of_speed(record) < 40
+        assert np.abs(record["knife"]["set_velocity"]).max() < 1500

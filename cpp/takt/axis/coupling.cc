@@ -172,13 +172,20 @@ void PlaceSlave(const Context& c, double expected, State& s) {
   k.cam.slave += wanted - place;
 }
 
-// The curve over the master's way that begins as the slave moves now and ends in step.
+// The curve over the master's displacement that begins as the slave moves now and ends in step. A master that is there
+// already, or beyond, leaves none: the slave gets into step within the limits of the command.
 void BeginCurve(const Context& c, const KinematicState& master, State& s) {
   CouplingState& k = s.coupling;
-  k.joining = Joining::kOnCurve;
-  k.curve_begin = master.position;
+  const double planned = k.master_sync - k.curve_begin;
   const double way = k.master_sync - master.position;
   const double own = s.setpoint.position + s.origin - k.chase.offset;
+  if (way * planned <= 0) {
+    PlaceSlave(c, own, s);
+    k.joining = Joining::kJoined;
+    return;
+  }
+  k.joining = Joining::kOnCurve;
+  k.curve_begin = master.position;
   double slope = 0;
   double bend = 0;
   if (std::abs(master.velocity) > Standing(c, k.law.terms[0].master)) {
@@ -206,6 +213,9 @@ void Wait(double master, double distance, CouplingState& k) {
 // that turns round on a circle meets the place from the other side.
 bool HasBegun(double standing, const KinematicState& master, CouplingState& k) {
   const double way = k.master_sync - k.curve_begin;
+  const double side = master.position - k.curve_begin;
+  const bool passes = side == 0 || (side > 0) != (k.begin_side > 0);
+  if (way == 0 && passes) return true;
   if (std::abs(master.velocity) > standing) {
     const double sense = master.velocity < 0 ? -1 : 1;
     const double left = k.master_sync - master.position;
@@ -218,8 +228,7 @@ bool HasBegun(double standing, const KinematicState& master, CouplingState& k) {
       return false;
     }
   }
-  const double side = master.position - k.curve_begin;
-  return side == 0 || (side > 0) != (k.begin_side > 0);
+  return passes;
 }
 
 // GearInPos, CamIn: waits for the place where it begins, goes along the curve, then stays in step.
@@ -344,6 +353,23 @@ void EndPhase(const Context& c, FeedbackState feedback, State& s) {
   const double covered = s.coupling.phase_now - s.coupling.phase_begin;
   Report(c, s.coupling.phase_ticket, feedback, ErrorId::kNone, false, covered);
   s.coupling.phase_ticket = 0;
+}
+
+// A cam waits for the only position of its master at which it could get into step, and the master has gone away from it
+// by more than a cycle of the cam since the waiting began (CAM-82).
+bool LeavesSyncPosition(const Context& c, const KinematicState& phase, const State& s) {
+  const CouplingState& k = s.coupling;
+  if (s.active.kind != RequestKind::kCamIn || k.joining != Joining::kWaiting || k.turn != 0) return false;
+  const double side = Seen(c, k, k.law.terms[0], phase).position - k.curve_begin;
+  return std::abs(side) - std::abs(k.begin_side) > std::abs(CamOf(c, s.active).way());
+}
+
+void BreakOff(const Context& c, ErrorId error, State& s) {
+  const Limits ramps = c.params.planner_limits();
+  EndActive(c, FeedbackState::kError, error, s);
+  s.coupling.law = CouplingRequest{};
+  AbortBuffer(c, s);
+  ComeToRest(c, ramps, FromCycleBefore(c), s);
 }
 
 Status ShiftPhase(const Context& c, Ticket ticket, bool relative, double shift, const std::optional<double>& velocity,
@@ -478,15 +504,15 @@ bool FollowMasters(const Context& c, State& s) noexcept {
   if (!Couples(s.active.kind)) return false;
   CouplingState& k = s.coupling;
   if (LostMasters(c, s)) {
-    const Limits ramps = c.params.planner_limits();
-    EndActive(c, FeedbackState::kError, ErrorId::kAxisFault, s);
-    s.coupling.law = CouplingRequest{};
-    AbortBuffer(c, s);
-    ComeToRest(c, ramps, FromCycleBefore(c), s);
+    BreakOff(c, ErrorId::kAxisFault, s);
     return false;
   }
   if (k.filtered) FilterMasters(c, k);
   KinematicState phase = PhaseAt(c, k);
+  if (LeavesSyncPosition(c, phase, s)) {
+    BreakOff(c, ErrorId::kSyncPassed, s);
+    return false;
+  }
   NoteEnd(c, phase, s);
   if (s.end_of_profile && s.buffered > 0 && Couples(s.buffer[0].kind)) {  // takes over in this very cycle
     Conclude(c, 0, s);

@@ -53,7 +53,9 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kOtherRun, "OtherRun", "the command was meant for another start of the engine"},
     ErrorInfo{ErrorId::kCouplingLoop, "CouplingLoop",
               "it would follow itself, through those that follow it; all movers count as one"},
-    ErrorInfo{ErrorId::kMasterOff, "MasterOff", "an axis that is to be followed is not powered, or has a fault"},
+    ErrorInfo{ErrorId::kMasterOff, "MasterOff",
+              "the position of the master is not known: an axis without power or with a fault, a mover that is not "
+              "enabled or not on its track"},
     ErrorInfo{ErrorId::kWouldReverse, "WouldReverse", "the clutch cannot close without reversing the slave"},
     ErrorInfo{ErrorId::kUnreachable, "Unreachable",
               "no position of the axes leads there: out of reach, not turned so, or beyond the range of an axis"},
@@ -128,9 +130,10 @@ constexpr std::array kErrors = {
               "the encoder has no distance-coded marks (encoder.coded_marks of the machine file)"},
     ErrorInfo{ErrorId::kEncodersApart, "EncodersApart",
               "motor and load have got further apart than supervision.encoders_apart"},
-    ErrorInfo{ErrorId::kSyncPassed, "SyncPassed",
-              "the master has passed the begin of the clutch's curve to master_sync_in_position, or the position of a "
-              "change of cam"},
+    ErrorInfo{
+        ErrorId::kSyncPassed, "SyncPassed",
+        "the master has passed the begin of the clutch's curve to master_sync_in_position, master_sync_position of "
+        "cam_in, or the position of a change of cam, and goes on"},
     ErrorInfo{ErrorId::kSlaveLimits, "SlaveLimits",
               "the slave's limits are too low for the clutch's curve at the speed of the master"},
     ErrorInfo{ErrorId::kEmptySlot, "EmptySlot", "a slot of the sequence has no cam"},

@@ -214,6 +214,10 @@ void BeginStop(const Context& c, axis::State& slave, State& s) {
     stop ? HoldStopped(c, slave, s) : Brake(c, s.settings.halt_deceleration, s.settings.jerk, false, slave);
   }
   EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  if (s.state == ModuleState::kSync && s.request == Action::kSyncOut) {  // the stop has opened the clutch
+    Report(c, s.request_ticket, FeedbackState::kDone);
+    s.request = Action::kNone;
+  }
   Abandon(c, s);
   s.state = ModuleState::kStop;
 }
