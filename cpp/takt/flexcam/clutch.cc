@@ -458,7 +458,10 @@ Status WaitToClose(const ClutchContext& c, Way& way, ClutchState& s) {
 }
 
 Status WaitToOpen(const ClutchContext& c, const Way& way, ClutchState& s) {
-  if (OnCurves(s) && BeyondEnd(c, s)) return Status::Ok();  // it is closed in this cycle, and opens from the cam
+  if (OnCurves(s) && BeyondEnd(c, s)) {  // it is closed in this cycle, and opens from the cam
+    s.waits = ClutchWait::kSlave;
+    return Status::Ok();
+  }
   BeginOut(c, way, s);
   if (s.waits == ClutchWait::kRamps) s.waits_since = c.master.position;
   const double longest = c.table.length() / way.to_x.factor;
@@ -494,12 +497,12 @@ const ClutchCurve* FollowedCurve(const ClutchState& s) noexcept {
 
 void BeginClosing(const ClutchContext& c, ClutchState& s) noexcept {
   s.stretched = false;
-  if (s.leaves || OnCam(s)) {  // it is on the cam still, or on its way there
+  if (s.phase == ClutchPhase::kClosing || OnCam(s)) {  // it is on the cam still, or on its way there
     if (s.phase == ClutchPhase::kWaitingOut) s.phase = ClutchPhase::kClosed;
     s.leaves = false;
     return;
   }
-  s.opens_still = s.phase == ClutchPhase::kOpening;
+  s.opens_still = s.phase == ClutchPhase::kOpening || (s.phase == ClutchPhase::kWaitingIn && s.opens_still);
   s.phase = ClutchPhase::kWaitingIn;
   s.next = c.settings.sync_mode;
   if (s.next == ClutchMode::kRampPos && c.settings.master_sync_in_distance == 0) s.next = ClutchMode::kAbsolute;

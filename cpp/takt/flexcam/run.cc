@@ -332,6 +332,11 @@ void PassEnd(const Context& c, const Passed& passed, double x_before, State& s) 
   if (!IsFrozen(s.clutch)) ApproachAtZero(SlaveTarget(c, s), entered, cycle, ys, c.slave.planner, s.way.to_slave);
 }
 
+// What is set may come into force here. A clutch that waits for the ramps under way is not kept waiting by new ones.
+bool TakesOver(const ClutchState& clutch) {
+  return !IsOnCurve(clutch) && clutch.waits != ClutchWait::kRamps;
+}
+
 // What is to be run instead of the end of a cam that is held, if anything: what a command wants, a sequence, or what is
 // set, be it another slot, another cam in this one, or this one again and again.
 std::optional<SequenceStep> AfterHeld(const Context& c, State& s) {
@@ -468,7 +473,7 @@ void RunWay(const Context& c, State& s) noexcept {
   const ConversionInputs ys = {s.y, RideOf(s.y, s.x)};
   EndRamp(cycle, s.way.to_x);
   EndRamp(cycle, s.way.to_slave);
-  if (!IsOnCurve(s.clutch)) Approach(MasterTarget(c, s), cycle, masters, c.slave.planner, s.way.to_x);
+  if (TakesOver(s.clutch)) Approach(MasterTarget(c, s), cycle, masters, c.slave.planner, s.way.to_x);
   Advance(s.master.before, s.master.now, s.master.now.position - s.master.before.position, cycle, c.slave.planner,
           s.way.to_x.ramp);
   s.x = Convert(s.way.to_x, cycle, s.master.now);
@@ -481,7 +486,8 @@ void RunWay(const Context& c, State& s) noexcept {
   }
   s.end_of_profile = AnnouncesEnd(TableOf(c, s), cycle, s.x, passed.has_value(), s.way.profiler);
   TakeY(c, s);
-  if (!IsFrozen(s.clutch)) Approach(SlaveTarget(c, s), cycle, ys, c.slave.planner, s.way.to_slave);
+  if (TakesOver(s.clutch) && !IsFrozen(s.clutch))
+    Approach(SlaveTarget(c, s), cycle, ys, c.slave.planner, s.way.to_slave);
   const double y_moved = std::copysign(s.y.position - ys.before.position, s.x.position - x_before);
   Advance(ys.ride_before, RideOf(s.y, s.x), y_moved, cycle, c.slave.planner, s.way.to_slave.ramp);
   s.wanted = Convert(s.way.to_slave, cycle, s.y);
