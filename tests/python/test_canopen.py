@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import random
 import sys
 import time
 from pathlib import Path
@@ -357,3 +358,58 @@ def test_a_lost_engine_lets_drives_brake() -> None:
         assert State.QUICK_STOP_ACTIVE in seen
         assert abs(node.read(od.VELOCITY)) < 1000
         bus.close()
+
+
+def switched_on(bus: CanopenBus) -> None:
+    """Until its drive x1 follows; then it stands."""
+    end_s = time.monotonic() + 20
+    faulty = False
+    while time.monotonic() < end_s:
+        told = drive.SetPoint(enable=not faulty, period_s=PERIOD_S)  # a loaded computer may have lost SYNC
+        found = bus.exchange({"x1": told}, real_time=True)["x1"]
+        if found is not None and found.drive_ready:
+            return
+        faulty = found.drive_fault if found is not None else faulty
+        time.sleep(PERIOD_S)
+    raise AssertionError("never ready")
+
+
+def test_a_drive_process_that_is_killed() -> None:
+    """AX-87: nobody sends SYNC or signs of life any more: the drive has a fault of its own and is off."""
+    text = machine(new_url(), new_bus(), 1)
+    whole = described(text)
+    with emulated(text) as emulation:
+        bus = CanopenBus(whole["external"]["buses"][0], whole, lambda _: None)
+        switched_on(bus)
+        node = emulation.nodes[1].drive
+        assert eventually(lambda: node.machine.state is State.FAULT, 10)
+        assert node.machine.error_code in (0x8130, 0x8700)
+        bus.close()
+
+
+def test_noise_on_the_wire() -> None:
+    """AX-87: frames of any length and kind, from anybody, end neither side; the drive is not switched off by them."""
+    import can
+
+    url, name = new_url(), new_bus()
+    text = machine(url, name, 1)
+    numbers = random.Random(1)
+    # Not those that are commands by rights: NMT, SYNC, set points and objects of the drive.
+    taken = {0x000, 0x080, 0x201, 0x301, 0x601}
+    with emulated(text) as emulation, run(text, url) as (bus, _), takt.Engine(text) as engine:
+        x = engine.axis("x1")
+        x.power().wait()
+        channel = parse(name).channel
+        with can.Bus(interface="virtual", channel=channel) as stranger:
+            for _ in range(2000):
+                number = numbers.randrange(0x800)
+                if number in taken or number in (0x081, 0x181, 0x281, 0x701):  # nor what comes from the drive itself
+                    number = 0x7E5
+                data = numbers.randbytes(numbers.randrange(9))
+                stranger.send(can.Message(arbitration_id=number, data=data, is_extended_id=False))
+            for number in (0x081, 0x281, 0x701, 0x000, 0x601):  # too short to be anything
+                stranger.send(can.Message(arbitration_id=number, data=b"", is_extended_id=False))
+        x.move_absolute(position=10.0).wait()
+        assert x.actual_position == pytest.approx(10.0, abs=0.05)
+        assert bus._link.malformed > 0
+        assert emulation.link.malformed > 0

@@ -98,16 +98,21 @@ class CanLink:
         self.bus = open_bus(name, bitrate)
         self.network = canopen.Network() if network is None else network  # an empty one is false
         self.network.bus = self.bus
-        self._lock = threading.Lock()
-        self._pumping: threading.Thread | None = None
+        self.malformed = 0  # frames that could not be read
 
     def pump(self, timeout_s: float = 0.0) -> bool:
         """Takes in one message, waiting so long for it at most: whether there was one."""
         message = self.bus.recv(timeout_s)
         if message is None:
             return False
-        if not message.is_error_frame and not message.is_remote_frame:
+        if message.is_error_frame or message.is_remote_frame:
+            return True
+        try:
             self.network.notify(message.arbitration_id, message.data, message.timestamp)
+        except TaktError:
+            raise
+        except Exception:  # frames that are too short, or no answers to anything: whoever is on the wire may send them
+            self.malformed += 1
         return True
 
     def drain(self, most: int = 1000) -> None:
