@@ -297,6 +297,16 @@ def test_an_interface_that_is_not_there() -> None:
         CanLink(parse("canopen:nocan7"))
 
 
+def test_an_adapter_that_is_unplugged() -> None:
+    """AX-87: one line, whichever way it shows."""
+    link = CanLink(parse(new_bus()))
+    link.bus.shutdown()
+    with pytest.raises(TaktError, match="nothing can be received: Cannot operate on a closed bus"):
+        link.pump()
+    with pytest.raises(TaktError, match="nothing can be sent: "):
+        link.send(0x80, b"")
+
+
 def test_without_the_packages_all_else_works(monkeypatch: pytest.MonkeyPatch) -> None:
     """The sentence says how to get them."""
     monkeypatch.setitem(sys.modules, "can", None)

@@ -102,7 +102,10 @@ class CanLink:
 
     def pump(self, timeout_s: float = 0.0) -> bool:
         """Takes in one message, waiting so long for it at most: whether there was one."""
-        message = self.bus.recv(timeout_s)
+        try:
+            message = self.bus.recv(timeout_s)
+        except Exception as error:  # the adapter was unplugged, the interface switched off
+            raise TaktError(f"{self.name.text}: nothing can be received: {' '.join(str(error).split())}") from None
         if message is None:
             return False
         if message.is_error_frame or message.is_remote_frame:
@@ -132,8 +135,9 @@ class CanLink:
         ended = threading.Event()
 
         def take() -> None:
-            while not ended.is_set():
-                self.pump(0.02)
+            with contextlib.suppress(TaktError):  # whoever waits for an answer says that there is none
+                while not ended.is_set():
+                    self.pump(0.02)
 
         thread = threading.Thread(target=take, daemon=True)
         thread.start()
