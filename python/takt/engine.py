@@ -35,6 +35,7 @@ from takt.track import Track
 if TYPE_CHECKING:
     from takt.cam import Table
 
+MOST_BYTES = 8_000_001  # of a machine file: one more than there may be
 CHUNK = 20_000  # cycles between two looks at Ctrl-C
 
 
@@ -49,7 +50,8 @@ def read_machine(machine: str | os.PathLike[str]) -> tuple[bytes, str]:
         raise ConfigError(["the path of the machine file is empty"])
     path = Path(machine)
     try:
-        return path.read_bytes(), str(path)
+        with path.open("rb") as file:
+            return file.read(MOST_BYTES), str(path)
     except OSError as error:
         raise ConfigError([f"{path}: cannot be read: {error.strerror}"]) from None
 

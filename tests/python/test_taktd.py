@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
+import takt
 
 MACHINE = """\
 name: two_axes
@@ -263,3 +264,31 @@ def test_a_reader_that_goes_is_an_error(machine: Path, tmp_path: Path) -> None:
     assert process.returncode == 1
     assert problem.splitlines() == [f"log file {fifo} is incomplete: Broken pipe"]
     assert "stopped, all loops open" in output
+
+
+def test_what_a_machine_file_names_is_no_pipe(tmp_path: Path) -> None:
+    """EN-37: what never ends is not waited for; more than there may be is not read."""
+    os.mkfifo(tmp_path / "fifo")
+    own = "name: m\naxes:\n" + "".join(
+        f"  - {{name: {n}, limits: {{velocity: 9, acceleration: 9, jerk: 9}}}}\n" for n in "xyz"
+    )
+    group = "groups:\n  - name: g\n    axes: [x, y, z]\n    path: {velocity: 1, acceleration: 1, jerk: 1}\n"
+    texts = {
+        "paths": own + "paths:\n  - {name: p, file: fifo}\n",
+        "cams": own + "cams:\n  - {name: c, file: fifo}\n",
+        "urdf": own + group + "    kinematics: {serial: {urdf: fifo}}\n",
+        "mesh": own
+        + group
+        + "    kinematics: {gantry: {axes: [x, y, z]}}\n    workspace:\n      obstacles:\n"
+        + "        - {name: o, mesh: {file: fifo}}\n",
+    }
+    for name, text in texts.items():
+        file = tmp_path / f"{name}.yaml"
+        file.write_text(text)
+        done = taktd(file, "--check")
+        assert done.returncode == 2, done.stdout + done.stderr
+        assert "fifo" in done.stdout + done.stderr
+    endless = taktd("/dev/zero", "--check")
+    assert endless.returncode == 2
+    with pytest.raises(takt.ConfigError, match="8 MB"):
+        takt.Engine("/dev/zero")

@@ -6,6 +6,7 @@
 
 #include "takt/cam/build.h"
 #include "takt/cam/csv.h"
+#include "takt/core/read_file.h"
 #include "takt/core/yaml_reader.h"
 
 namespace takt::engine {
@@ -35,7 +36,7 @@ class CamLoader {
     }
     file_ = (std::filesystem::path(source_.file()).parent_path() / cam_.file).string();
     std::string why;
-    const std::optional<std::string> text = LoadText(file_, why);
+    const std::optional<std::string> text = takt::ReadFile(file_, kMaxYamlBytes + 1, why);
     if (!text || text->size() > kMaxYamlBytes) {
       if (text) why = "holds more than " + std::to_string(kMaxYamlBytes / 1'000'000) + " MB";
       loading_.problems.push_back(source_.ProblemAt(path_ + ".file", file_ + ": " + why));

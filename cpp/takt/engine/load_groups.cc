@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "takt/core/read_file.h"
 #include "takt/core/yaml_reader.h"
 #include "takt/group/path_table.h"
 #include "takt/kinematics/kinematics.h"
@@ -49,7 +50,7 @@ class Loader {
       return {};
     }
     std::string why;
-    std::optional<std::string> text = LoadText(file, why);
+    std::optional<std::string> text = ReadFile(file, kMaxYamlBytes + 1, why);
     if (text && text->size() > kMaxYamlBytes) {
       why = "holds more than " + std::to_string(kMaxYamlBytes / 1'000'000) + " MB";
       text.reset();

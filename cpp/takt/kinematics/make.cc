@@ -1,9 +1,8 @@
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "takt/core/angle.h"
+#include "takt/core/read_file.h"
 #include "takt/kinematics/kinematics.h"
 
 namespace takt::kinematics {
@@ -73,10 +72,9 @@ std::string TakeScales(const std::vector<JointParams>& joints, Kinematics& k) {
 }
 
 std::optional<std::string> TextOf(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return file ? std::optional(text.str()) : std::nullopt;
+  constexpr std::size_t kMostBytes = 64'000'000;
+  std::string why;
+  return ReadFile(path.string(), kMostBytes, why);
 }
 
 }  // namespace

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <numbers>
 #include <sstream>
-#include <system_error>
 
 #include "takt/core/maths.h"
+#include "takt/core/read_file.h"
 
 namespace takt::workspace {
 namespace {
@@ -22,6 +20,7 @@ using KDL::Vector;
 
 constexpr std::size_t kHeader = 84;  // bytes: a text and the number of triangles
 constexpr std::size_t kRecord = 50;  // bytes: a normal, three corners, two bytes more
+constexpr std::size_t kMostBytes = 256'000'000;
 static_assert(std::endian::native == std::endian::little, "STL counts so");
 
 using Corner = std::array<double, 3>;
@@ -146,15 +145,13 @@ std::optional<Mesh> ReadStl(std::string_view bytes, double scale, std::string& w
 }
 
 std::optional<Mesh> LoadStl(const std::string& path, double scale, std::string& why) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  if (file) bytes << file.rdbuf();
-  if (!file) {
-    why = "cannot read this file: " + std::system_category().message(errno);
+  const std::optional<std::string> bytes = ReadFile(path, kMostBytes + 1, why);
+  if (!bytes) return std::nullopt;
+  if (bytes->size() > kMostBytes) {
+    why = "holds more than " + std::to_string(kMostBytes / 1'000'000) + " MB";
     return std::nullopt;
   }
-  return ReadStl(std::move(bytes).str(), scale, why);
+  return ReadStl(*bytes, scale, why);
 }
 
 // The sum of the angles of sight of all triangles: 4 pi inside, 0 outside.
