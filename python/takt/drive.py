@@ -176,8 +176,12 @@ class _Shared:
 
     @property
     def complete(self) -> bool:
-        """There is a set point of one and the same cycle for all."""
-        return len(self.pending) == len(self.lines) and len({cycle for _, _, cycle in self.pending.values()}) == 1
+        """There is a set point of one and the same cycle for all that have not carried it out already."""
+        newest = self.newest
+        return all(
+            self.pending[line.axis][2] == newest if line.axis in self.pending else line.cycle == newest
+            for line in self.lines
+        )
 
     @property
     def alone(self) -> bool:

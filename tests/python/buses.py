@@ -74,6 +74,7 @@ def run(text: str, url: str, watchdog: int = drive.WATCHDOG) -> Iterator[tuple[C
     plant = drive.Plant({}, url, buses=[bus], watchdog=watchdog, say=said.append)
     thread = threading.Thread(target=plant.run)
     thread.start()
+    eventually(lambda: plant._running)
     try:
         yield bus, said
     finally:

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -153,3 +154,47 @@ def test_plants_that_cannot_be(tmp_path: Path, text: str, options: list[str], se
     assert len(result.stderr.splitlines()) == 1
     with pytest.raises(takt.TaktError, match="at least one drive"):
         drive.Plant({})
+
+
+class Forgetful(drive.Bus):
+    """Two drives on a wire that now and then does not hear one of them."""
+
+    axes = ("x", "y.2")
+
+    def __init__(self) -> None:
+        self.exchanges = 0
+        self.counts = dict.fromkeys(self.axes, 0.0)
+
+    def exchange(self, told: Mapping[str, drive.SetPoint], *, real_time: bool) -> Mapping[str, drive.Measured | None]:
+        self.exchanges += 1
+        for axis, point in told.items():
+            if point.enable and point.mode == drive.CYCLIC_POSITION:
+                self.counts[axis] = point.position_counts
+        heard = {
+            axis: drive.Measured(counts=round(self.counts[axis]), drive_ready=point.enable)
+            for axis, point in told.items()
+        }
+        return heard | {"x": None} if self.exchanges % 100 == 0 else heard
+
+    def idle(self, stop: Collection[str]) -> None: ...
+
+
+def test_drives_on_one_wire() -> None:
+    """EN-26: all set points of a cycle at once; only an answer that is missing is asked for again."""
+    url = new_url()
+    bus, said = Forgetful(), []  # type: ignore[var-annotated]
+    plant = drive.Plant({}, url, buses=[bus], say=said.append)
+    thread = threading.Thread(target=plant.run)
+    thread.start()
+    try:
+        with takt.Engine(outside(url)) as engine:
+            x = engine.axis("x")
+            x.power().wait()
+            x.move_absolute(position=30.0).wait()
+            engine.run(0.2)
+            assert x.actual_position == pytest.approx(30.0, abs=0.01)
+            assert x.error == 0
+            assert bus.exchanges - engine.cycle == pytest.approx(bus.exchanges / 100, abs=3)
+    finally:
+        plant.stop()
+        thread.join(LONG_S)

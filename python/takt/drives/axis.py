@@ -82,12 +82,12 @@ class DriveAxis:
         mode = MODES.get(told.mode, Mode.NONE)
         enable = told.enable and self._has(mode)
         words = Words(self._control(enable, now_s, stop), int(mode), torque_limit=self._limit(told))
+        words.position = self.position  # so that the drive does not jump when it is switched on, or to csp
         if self.state is State.OPERATION_ENABLED and enable:
-            words.position = self.scaling.increments(told.position_counts)
+            if mode is Mode.CYCLIC_POSITION:
+                words.position = self.scaling.increments(told.position_counts)
             words.velocity = self.scaling.velocity(told.velocity_counts_s) if mode is Mode.CYCLIC_VELOCITY else 0
             words.torque = self.scaling.torque(told.torque_nm) if mode is Mode.CYCLIC_TORQUE else 0
-        else:
-            words.position = self.position  # so that it does not jump when it is switched on
         return words
 
     def _limit(self, told: drive.SetPoint) -> int:

@@ -47,6 +47,7 @@ HEARTBEATS_MISSING: Final = 3
 STARTS_WITHIN_S: Final = 0.5  # until a node says that it is operational
 ANSWERS_WITHIN: Final = 0.9  # of a period, in real time
 ANSWERS_WITHIN_S: Final = 1.0  # in simulated time
+INPUTS_AGAIN_MS: Final = 100  # inputs come when they change, and that often, as one message may be lost
 BUSY: Final = 0.8  # of the bit rate
 NOT_MAPPED: Final = 1 << 31
 
@@ -264,9 +265,11 @@ class CanopenBus(drive.Bus):
         target = od.TARGET_POSITION if node.mode is Mode.CYCLIC_POSITION else od.TARGET_VELOCITY
         _map_one(sdo, 0x1400, RPDO1 + node.id, 1, (od.CONTROL_WORD, target, od.MAX_TORQUE))
         if node.torque:
-            _map_one(sdo, 0x1401, RPDO2 + node.id, 255, (od.MODE, od.TARGET_TORQUE))
+            # At SYNC, too: the mode must not change before the set point that belongs to it.
+            _map_one(sdo, 0x1401, RPDO2 + node.id, 1, (od.MODE, od.TARGET_TORQUE))
         _map_one(sdo, 0x1800, TPDO1 + node.id, 1, (od.STATUS_WORD, od.POSITION, od.TORQUE))
         _map_one(sdo, 0x1801, TPDO2 + node.id, 255, (od.DIGITAL_INPUTS, od.ERROR_CODE))
+        sdo.try_to_write(0x1801, 5, INPUTS_AGAIN_MS, 16)
         for index, first in ((0x1402, 0x400), (0x1403, 0x500), (0x1802, 0x380), (0x1803, 0x480)):
             with contextlib.suppress(SdoError):  # most have no more
                 if not sdo.read(index, 1) & NOT_MAPPED:

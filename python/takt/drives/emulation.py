@@ -63,7 +63,7 @@ def _dictionary(product: int) -> Any:
 
     def record(index: int, *members: Any) -> None:
         made = dictionary.ODRecord(f"0x{index:04X}", index)
-        made.add_member(variable(index, 0, 8, len(members)))
+        made.add_member(variable(index, 0, 8, members[-1].subindex))
         for member in members:
             made.add_member(member)
         whole.add_object(made)
@@ -83,7 +83,9 @@ def _dictionary(product: int) -> Any:
     record(0x1018, *(variable(0x1018, k, 32, v, "ro") for k, v in ((1, VENDOR), (2, product), (3, 1), (4, 0))))
     record(0x60C2, variable(0x60C2, 1, 8, 1), variable(0x60C2, 2, 8, -3, signed=True))
     for base, first in ((0x1400, 0x200), (0x1401, 0x300), (0x1800, 0x180), (0x1801, 0x280)):
-        record(base, variable(base, 1, 32, NOT_MAPPED | first), variable(base, 2, 8, 255))
+        settings = [variable(base, 1, 32, NOT_MAPPED | first), variable(base, 2, 8, 255)]
+        settings += [variable(base, 5, 16, 0)] if base >= 0x1800 else []
+        record(base, *settings)
         record(base + 0x200, *(variable(base + 0x200, k, 32, 0) for k in range(1, 9)))
     for entry in od.OBJECTS.values():
         access = "rw" if entry.writable else "ro"
@@ -94,8 +96,9 @@ def _dictionary(product: int) -> Any:
 class _Map:
     """One message of process data, as its mapping says."""
 
-    def __init__(self, cob_id: int, transmission: int, entries: Sequence[od.Object]) -> None:
-        self.cob_id, self.transmission = cob_id, transmission
+    def __init__(self, cob_id: int, transmission: int, again_s: float, entries: Sequence[od.Object]) -> None:
+        self.cob_id, self.transmission, self.again_s = cob_id, transmission, again_s
+        self.sent_s = 0.0
         self.entries = entries
         kinds = {(8, False): "B", (8, True): "b", (16, False): "H", (16, True): "h", (32, False): "I", (32, True): "i"}
         self._struct = struct.Struct("<" + "".join(kinds[e.bits, e.signed] for e in entries))
@@ -172,7 +175,8 @@ class EmulatedNode:
         if cob_id & NOT_MAPPED:
             return None
         words = [self.number(index + 0x200, k) for k in range(1, self.number(index + 0x200, 0) + 1)]
-        return _Map(cob_id & 0x7FF, self.number(index, 2), [od.OBJECTS[word >> 16] for word in words])
+        again_s = self.number(index, 5) / 1000 if index >= 0x1800 else 0.0
+        return _Map(cob_id & 0x7FF, self.number(index, 2), again_s, [od.OBJECTS[word >> 16] for word in words])
 
 
 class Emulation:
@@ -183,7 +187,7 @@ class Emulation:
         self.nodes = {node.id: node for node in nodes}
         self._say = say
         self._commands: queue.Queue[str] = queue.Queue()
-        self._running = False
+        self._running = True
         self.silence_s = SILENCE_S
         link.emulation = self
         network = link.network
@@ -196,7 +200,6 @@ class Emulation:
     # --- running ---
 
     def run(self) -> None:
-        self._running = True
         for node in self.nodes.values():
             self._boot(node)
         while self._running:
@@ -287,8 +290,10 @@ class Emulation:
         self._tell_fault(node)
         for mapped in reversed(node.tpdos):  # inputs before the position that they belong to
             data = mapped.data(node.drive)
-            if mapped.transmission <= 240 or data != mapped.sent:
-                mapped.sent = data
+            now_s = time.monotonic()
+            again = mapped.again_s and now_s - mapped.sent_s >= mapped.again_s
+            if mapped.transmission <= 240 or data != mapped.sent or again:
+                mapped.sent, mapped.sent_s = data, now_s
                 self._send(node, mapped.cob_id, data)
 
     def _tell_fault(self, node: EmulatedNode) -> None:
