@@ -6,7 +6,7 @@ import contextlib
 import logging
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -168,6 +168,8 @@ class CanLink:
 
 # --- SDO ---
 
+QUESTIONS: Final = 3  # without an answer
+
 
 class SdoError(Exception):
     """An object could not be read or written. code: of the abort; None: there was no answer."""
@@ -194,8 +196,8 @@ class Sdo:
         return self
 
     def read_bytes(self, index: int, subindex: int = 0) -> bytes:
-        with self._told(f"0x{index:04X}:{subindex} cannot be read"):
-            return bytes(self._remote.sdo.upload(index, subindex))
+        what = f"0x{index:04X}:{subindex} cannot be read"
+        return bytes(self._asked(what, lambda: self._remote.sdo.upload(index, subindex)))
 
     def read(self, index: int, subindex: int = 0, *, signed: bool = False) -> int:
         return int.from_bytes(self.read_bytes(index, subindex), "little", signed=signed)
@@ -211,8 +213,8 @@ class Sdo:
 
     def write(self, index: int, subindex: int, value: int, bits: int) -> None:
         data = (value & ((1 << bits) - 1)).to_bytes(bits // 8, "little")
-        with self._told(f"0x{index:04X}:{subindex} cannot be written with {value}"):
-            self._remote.sdo.download(index, subindex, data)
+        what = f"0x{index:04X}:{subindex} cannot be written with {value}"
+        self._asked(what, lambda: self._remote.sdo.download(index, subindex, data))
 
     def try_to_write(self, index: int, subindex: int, value: int, bits: int) -> bool:
         """False: the node does not take it."""
@@ -224,14 +226,16 @@ class Sdo:
             return False
         return True
 
-    @contextlib.contextmanager
-    def _told(self, what: str) -> Iterator[None]:
-        try:
-            yield
-        except self._canopen.SdoAbortedError as error:
-            raise SdoError(f"{what}: {abort_text(error.code)}", error.code) from None
-        except self._canopen.SdoCommunicationError:
-            raise SdoError(f"{what}: no answer") from None
+    def _asked(self, what: str, question: Callable[[], Any]) -> Any:
+        """The answer; without one the question is put again, as a frame may get lost."""
+        for _ in range(QUESTIONS):
+            try:
+                return question()
+            except self._canopen.SdoAbortedError as error:
+                raise SdoError(f"{what}: {abort_text(error.code)}", error.code) from None
+            except self._canopen.SdoCommunicationError:
+                pass
+        raise SdoError(f"{what}: no answer")
 
 
 def abort_text(code: int) -> str:
