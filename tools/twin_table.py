@@ -1,0 +1,72 @@
+"""The table of docs/twin.md: every ready machine with a twin, by its own scenario, there and with our servo model.
+
+Usage: build/venv/bin/python tools/twin_table.py [NAME...]       (prints the rows; --write puts them into docs/twin.md)
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import sys
+from pathlib import Path
+
+from takt import _core, read_machine
+from takt.ready import ready_machines
+from takt.scenario import load_scenario
+from takt.twin import command
+
+PAGE = Path(__file__).resolve().parent.parent / "docs" / "twin.md"
+HEAD = (
+    "| machine | takes | tool: twin, kinematics | tool: off its set pose, twin | servo | following error, twin | servo "
+    "| torque | verdicts |\n|---|---|---|---|---|---|---|---|---|\n"
+)
+BEGIN, END = "torques in Nm, as rms / largest.\n", "\n## Limits"
+
+
+def pair(values: tuple[float, float] | None) -> str:
+    return "" if values is None else f"{values[0]:.2g} / {values[1]:.2g}"
+
+
+def worst(pairs: list[tuple[float, float] | None]) -> tuple[float, float] | None:
+    there = [one for one in pairs if one is not None]
+    return max(there, key=lambda one: one[1]) if there else None
+
+
+def row(name: str, file: Path) -> str:
+    with contextlib.redirect_stdout(io.StringIO()):
+        ran = command.run(file.parent / "machine.yaml", load_scenario(file))
+    judged = ran.judged
+    failed = [v.title for v in ran.outcome.verdicts if not v.passed]
+    failed += ["the scenario's assert"] if ran.outcome.assertion is not None else []
+    peak = max(judged.axes, key=lambda axis: axis.torque[1] / axis.max_torque)
+    cells = [
+        name,
+        f"{ran.outcome.recording.duration_s:.1f} s",
+        pair(worst([tool.agreement for tool in judged.tools])),
+        pair(worst([tool.off for tool in judged.tools])),
+        pair(worst([tool.servo_off for tool in judged.tools])),
+        pair(worst([axis.following for axis in judged.axes])),
+        pair(worst([axis.servo for axis in judged.axes])),
+        f"{pair(peak.torque)} of {peak.max_torque:g}",
+        f"failed: {', '.join(failed)}" if failed else "all passed",
+    ]
+    return f"| {' | '.join(cells)} |\n"
+
+
+def main() -> None:
+    names = [name for name in sys.argv[1:] if not name.startswith("-")]
+    rows = ""
+    for one in ready_machines():
+        machine = json.loads(_core.load_machine(*read_machine(one.scenario.parent / "machine.yaml")))
+        if machine.get("twin") and (not names or one.name in names):
+            rows += row(one.name, one.scenario)
+            print(rows.splitlines()[-1], flush=True)
+    if "--write" in sys.argv:
+        text = PAGE.read_text(encoding="utf-8")
+        begin = text.index(BEGIN) + len(BEGIN)
+        PAGE.write_text(text[:begin] + "\n" + HEAD + rows + text[text.index(END) :], encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
