@@ -73,6 +73,9 @@ class Twin(Plant):
         self.axes = tuple(joint.axis for joint in self.built.joints)
         self.contacts: dict[tuple[str, str], ContactSeen] = {}
         self.limits = {axis["axis"]: float(axis["max_torque"]) for axis in twin["axes"]}
+        import mujoco
+
+        self._mj_step = mujoco.mj_step
         self._servos = _core.MovedServos(text, os.fspath(file_name), self._period_s, self.steps)
         for joint, told, inertia in zip(self.built.joints, twin["axes"], self.built.inertia, strict=True):
             most = told["max_torque"]
@@ -80,13 +83,16 @@ class Twin(Plant):
             self._servos.add(joint.axis, joint.position, joint.velocity, joint.scale, joint.zero, inertia, most, brake)
         self._servos.start()
         model, data = self.built.model, self.built.data
-        self._begin = (data.qpos.copy(), data.qvel.copy())
+        # Views of MuJoCo's own memory: asking the data for them costs more than a step of a small model.
+        self._qpos, self._qvel, self._torques = data.qpos, data.qvel, data.qfrc_applied
+        self._warnings = data.warning.number
+        self._poses = [view for tool in self.built.tools for view in tool.pose_in(data)]
         self._ahead = np.zeros(model.nv)
         self._places = np.array([joint.position for joint in self.built.joints])
         self._scales = np.array([joint.scale for joint in self.built.joints])
         self._zeros = np.array([joint.zero for joint in self.built.joints])
         self._rows: list[tuple[Any, ...]] = []
-        self._good = self._begin
+        self._good = (data.qpos.copy(), data.qvel.copy())
         self._cycle = -1
 
     @classmethod
@@ -105,40 +111,37 @@ class Twin(Plant):
         return Frame(self._cycle, self._good[0].copy(), self._good[1].copy())
 
     def step(self, cycle: int, told: Rows, measured: Rows) -> None:
-        import mujoco
-
-        model, data, servos = self.built.model, self.built.data, self._servos
-        qpos, qvel, torques = data.qpos, data.qvel, data.qfrc_applied
+        servos, qpos, qvel, last = self._servos, self._qpos, self._qvel, self.steps - 1
+        model, data, step = self.built.model, self.built.data, self._mj_step
         servos.begin(told)
         at = qpos
         for i in range(self.steps):
-            servos.ask(i, qpos, qvel, self._ahead, torques)
-            if i == self.steps - 1:
+            servos.ask(i, qpos, qvel, self._ahead, self._torques)
+            if i == last:
                 at = qpos[self._places]
-            mujoco.mj_step(model, data)
-        self._check(cycle)
+            step(model, data)
+        # NaN is not below either.
+        if not qvel.dot(qvel) < FASTEST * FASTEST or self._warnings.any():
+            self._explode(cycle)
         servos.sense(qpos, qvel, measured)
         # After a step of MuJoCo, poses of bodies are those of its beginning.
-        tools = [value.copy() for tool in self.built.tools for value in tool.pose_in(data)]
         if cycle >= 0:
-            self._rows.append((at, servos.torques, bytes(servos.limited), *tools))
+            self._rows.append((at, servos.torques, bytes(servos.limited), *[view.copy() for view in self._poses]))
         if data.ncon:
             self._touch(cycle)
-        self._good = (qpos.copy(), qvel.copy())
+        np.copyto(self._good[0], qpos)
+        np.copyto(self._good[1], qvel)
         self._cycle = cycle
 
-    def _check(self, cycle: int) -> None:
-        """Says that the physics has exploded, before anything of it is believed."""
+    def _explode(self, cycle: int) -> None:
+        """Says what has exploded, before anything of it is believed."""
         data = self.built.data
-        worst = float(np.abs(data.qvel).max(initial=0.0))
-        if worst < FASTEST and not data.warning.number.any():  # NaN is not below either
-            return
         model = self.built.model
         finite = np.isfinite(data.qvel)
         dof = int(np.flatnonzero(~finite)[0]) if not finite.all() else int(np.abs(data.qvel).argmax())
         joint = model.joint(int(model.dof_jntid[dof])).name or f"number {int(model.dof_jntid[dof])}"
         why = f"joint '{joint}' has a speed of {data.qvel[dof]:.3g}"
-        if finite.all() and worst < FASTEST:
+        if finite.all() and abs(data.qvel[dof]) < FASTEST and data.warning.number.any():
             import mujoco
 
             number = int(np.flatnonzero(data.warning.number)[0])
