@@ -21,7 +21,7 @@ HEAD = (
     "| machine | takes | tool: twin, kinematics | tool: off its set pose, twin | servo | following error, twin | servo "
     "| torque | verdicts |\n|---|---|---|---|---|---|---|---|---|\n"
 )
-BEGIN, END = "torques in Nm, as rms / largest.\n", "\n## Limits"
+BEGIN, END = "torques in Nm, as rms / largest.\n", "\nThe twin has found"
 
 
 def pair(values: tuple[float, float] | None) -> str:
@@ -37,8 +37,9 @@ def row(name: str, file: Path) -> str:
     with contextlib.redirect_stdout(io.StringIO()):
         ran = command.run(file.parent / "machine.yaml", load_scenario(file))
     judged = ran.judged
-    failed = [v.title for v in ran.outcome.verdicts if not v.passed]
-    failed += ["the scenario's assert"] if ran.outcome.assertion is not None else []
+    failed = sorted((v for v in ran.outcome.verdicts if not v.passed), key=lambda v: v.when_s or 0.0)
+    count = len(failed) + (ran.outcome.assertion is not None)
+    said = f"{count} failed, first {failed[0].title}: {failed[0].sentence}" if failed else ran.outcome.complaint
     peak = max(judged.axes, key=lambda axis: axis.torque[1] / axis.max_torque)
     cells = [
         name,
@@ -49,7 +50,7 @@ def row(name: str, file: Path) -> str:
         pair(worst([axis.following for axis in judged.axes])),
         pair(worst([axis.servo for axis in judged.axes])),
         f"{pair(peak.torque)} of {peak.max_torque:g}",
-        f"failed: {', '.join(failed)}" if failed else "all passed",
+        said or "all passed",
     ]
     return f"| {' | '.join(cells)} |\n"
 
