@@ -39,13 +39,19 @@ MOST_BYTES = 8_000_001  # of a machine file: one more than there may be
 CHUNK = 20_000  # cycles between two looks at Ctrl-C
 
 
-def read_machine(machine: str | os.PathLike[str]) -> tuple[bytes, str]:
-    """Text and file name of a machine given as a path, or as the text itself (which has more than one line). The text
-    stays as it is: the engine says where it is not UTF-8."""
+Machine = str | os.PathLike[str] | Mapping[str, Any]  # a path, the text itself, or what the text says, as dicts
+
+
+def read_machine(machine: Machine) -> tuple[bytes, str]:
+    """Text and file name of a machine given as a path, as the text itself (which has more than one line), or as dicts
+    and lists. The text stays as it is: the engine says where it is not UTF-8. Of dicts a text is made, in which places
+    of problems are counted, a key a line."""
+    if isinstance(machine, Mapping):
+        return _text_of(machine), "machine"
     if isinstance(machine, str) and "\n" in machine:
         return machine.encode("utf-8", "surrogatepass"), "machine"
     if not isinstance(machine, (str, os.PathLike)):
-        raise TypeError(f"a machine is the path of a file, or its text, not {machine!r}")
+        raise TypeError(f"a machine is the path of a file, its text, or a dict, not {machine!r}")
     if not str(machine):
         raise ConfigError(["the path of the machine file is empty"])
     path = Path(machine)
@@ -56,10 +62,30 @@ def read_machine(machine: str | os.PathLike[str]) -> tuple[bytes, str]:
         raise ConfigError([f"{path}: cannot be read: {error.strerror}"]) from None
 
 
+def _text_of(machine: Mapping[str, Any]) -> bytes:
+    """The machine file that says the same: JSON, which is YAML."""
+    try:
+        text = json.dumps(machine, indent=1, allow_nan=False, default=_plain)
+    except (TypeError, ValueError) as error:
+        raise ConfigError([f"machine: a dict that no machine file can hold: {error}"]) from None
+    return text.encode("utf-8", "surrogatepass")
+
+
+def _plain(value: Any) -> Any:
+    """What JSON does not know by itself."""
+    if isinstance(value, Mapping):
+        return dict(value)
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    raise TypeError(f"{value!r} is no number, text, list or dict")
+
+
 class Engine(Session):
     """A machine in virtual time.
 
-    machine: the path of a machine file, or its text.
+    machine: the path of a machine file, its text, or the same as a dict.
     period: s, instead of the machine file's.
     journal: keep the journal and a hash of the whole state after every cycle (`take_journal`, `take_hashes`).
     url: LCM network of external drives, instead of the machine file's (`lcm.url`, else LCM_DEFAULT_URL). Time stands
@@ -72,7 +98,7 @@ class Engine(Session):
 
     def __init__(
         self,
-        machine: str | os.PathLike[str],
+        machine: Machine,
         *,
         period: float | None = None,
         journal: bool = False,

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import takt
+import yaml
 from plants import inside, outside
 from takt import _core, drive
 from takt.plant import MEASURED, Drives, Rows
@@ -147,3 +148,21 @@ def test_plants_that_do_not_fit(plant: takt.Plant, machine: str, said: str) -> N
 def test_what_is_no_plant() -> None:
     with pytest.raises(TypeError, match='or "mujoco", not'):
         takt.Engine(MACHINE, plant="gazebo")  # type: ignore[arg-type]
+
+
+def test_a_machine_as_a_dict() -> None:
+    """PY-23: the same engine as of its text; what no machine file can hold is refused."""
+    described = yaml.safe_load(MACHINE)
+    described["axes"][0]["limits"]["velocity"] = np.float64(500)
+    hashes = []
+    for machine in (MACHINE, described):
+        with takt.Engine(machine, changes={"axes.x.limits.jerk": 50_000}) as engine:
+            engine.axis("x").power().wait()
+            engine.axis("x").move_absolute(position=20).wait()
+            hashes.append(engine.state_hash)
+    assert hashes[0] == hashes[1]
+    with pytest.raises(takt.ConfigError, match=r"machine:7:5: axes\[0\]\.limits: .*'velocty'"):
+        takt.Engine({"name": "x", "axes": [{"name": "x", "limits": {"velocty": 1, "acceleration": 1, "jerk": 1}}]})
+    for wrong, said in ((float("nan"), "no machine file can hold"), ({1, 2}, "is no number, text, list or dict")):
+        with pytest.raises(takt.ConfigError, match=said):
+            takt.Engine({"name": "x", "axes": wrong})

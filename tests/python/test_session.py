@@ -497,7 +497,7 @@ def test_what_is_no_number_or_name_is_said_in_a_sentence(engine: takt.Engine) ->
     wrong: list[tuple[Any, type[Exception], str]] = [
         (lambda: any_kind(MACHINE, period="1"), TypeError, "a period is a number of seconds, not '1'"),
         (lambda: any_kind(""), takt.ConfigError, "the path of the machine file is empty"),
-        (lambda: any_kind(5), TypeError, "a machine is the path of a file, or its text, not 5"),
+        (lambda: any_kind(5), TypeError, "a machine is the path of a file, its text, or a dict, not 5"),
         (lambda: any_engine.axis(None), TypeError, "an axis goes by its name, not by None"),
         (lambda: any_engine.step(1.5), TypeError, "a number of cycles is a whole number, not 1.5"),
         (lambda: any_engine.step(-1), ValueError, "a number of cycles is a whole number from 0 on, not -1"),
