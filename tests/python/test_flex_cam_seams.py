@@ -133,6 +133,11 @@ TOGGLE = object()
         (["on", 0.5, TOGGLE, 0.05, TOGGLE], {"master_sync_in_distance": 100, "master_sync_out_distance": 200}),
         (["on", 0.5, TOGGLE, 0.05, TOGGLE], {"sync_in_passed": "next_cycle"}),
         (["on", 1.0, "off", 1.2, "on"], {"position_control": "master_direction"}),
+        (["on", 0.1, "off", "on"], {}),  # within one cycle
+        (
+            ["on", 0.5, "off", 0.05, "on", 0.01, "off", "on"],
+            {"master_sync_out_distance": 200, "sync_in_passed": "next_cycle"},
+        ),
     ],
 )
 def test_commands_on_curves_make_no_step(steps, settings):  # CAM-39, CAM-81
