@@ -209,7 +209,7 @@ class _Feedback:
         self.tally = Tally()
         self._engine = engine
         self._targets = {entry.ticket: entry.target for entry in run.journal}
-        reports = (one for one in run.feedback if one.ticket > 0 and one.cycle >= 0 and not self._never_began(one))
+        reports = (one for one in run.feedback if one.ticket > 0 and not self._never_began(one))
         self._reports = sorted(reports, key=lambda report: report.cycle)
         self._given = 0
 
