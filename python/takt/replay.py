@@ -84,7 +84,7 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
     cycle, and compares the hash of the state after every cycle, and every message that the log holds of components,
     of what lies on belts, of the shapes of tracks, and of what became of commands with what is published in this cycle.
     The run is the same only if every cycle from the first to the last one that the log knows of was compared; a hole in
-    the journal ends the comparison. Not compared: sentences of feedback, figures of the host."""
+    the journal ends the comparison. Not compared: sentences of feedback, counts and times of the engine."""
     content = open_log(log, (lambda share: progress(share / 2)) if progress else None)
     one = run_of(content, run)
     if one.start is None:

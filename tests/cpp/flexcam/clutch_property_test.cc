@@ -171,7 +171,7 @@ void DriveAnyHow(Dice& dice, Bench& b, const Trial& t) {
 }
 
 // On and off at any instant, several times in a row.
-void Command(Dice& dice, Bench& b, const Trial& t) {
+void GiveAny(Dice& dice, Bench& b, const Trial& t) {
   const int times = 1 + dice.Upto(3);
   bool on = dice.Coin();
   for (int i = 0; i < times; ++i, on = !on) {
@@ -213,7 +213,7 @@ TEST(Contract, HoldsForCommandsAtAnyInstant) {
     DriveAnyHow(dice, b, t);
     b.Run(dice.Upto(150));
     for (int i = 0; i < 6; ++i) {
-      Command(dice, b, t);
+      GiveAny(dice, b, t);
       if (dice.Coin()) DriveAnyHow(dice, b, t);
       b.Run(dice.Upto(dice.Coin() ? 100 : 500));
     }
