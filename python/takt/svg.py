@@ -5,15 +5,13 @@ lines. Circular arcs stay arcs; ellipses and Béziers become lines that keep wit
 browser shows are drawn, whether stroked or filled; texts and pictures are left out, and said to be. Needs svgelements
 (pip install svgelements).
 
-`svg_tree` finds the shapes that are rendered; svgelements reads them, their styles, units and transforms. Shapes are
-taken as they are in their own coordinates, and each point is moved by the shape's matrix.
+`svg_tree` finds the shapes that are rendered, each with its matrix; svgelements makes segments of their outlines.
 """
 
 from __future__ import annotations
 
-import io
 import math
-from collections import Counter
+import re
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from os import PathLike
@@ -23,7 +21,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from takt.svg_tree import CLIP, CLIPPED, Rendered, TreeError
+from takt.svg_tree import Clip, Rendered, Shape
+from takt.svg_values import IDENTITY, PX, Matrix, TreeError, inverse, product
 from takt.toolpath import (
     MOST_ELEMENTS,
     REACH,
@@ -39,7 +38,7 @@ from takt.toolpath import (
 )
 
 LIFT = 5.0  # mm
-_MM = 1 / (96 * 0.0393701)  # of a pixel; svgelements rounds so, and drawings in mm come out exactly
+_MM = 1 / PX  # of a pixel
 _CUT = 0.01  # mm by which a shape may lie beyond its clip and count as within
 
 
@@ -59,122 +58,97 @@ def read_svg(
         raise ToolpathError(f"{path}: SVG needs svgelements (pip install svgelements)") from None
     data = Path(path).read_bytes()
     try:
-        tree = Rendered(ElementTree.fromstring(data), svgelements.Viewbox.viewbox_transform)
-        drawing, wrong = _parsed(svgelements, tree.root)
-        pen = _Pen(start, _height(drawing), tolerance, lift, velocity)
-        left_out = tree.left_out + wrong
-        _draw(svgelements, drawing, pen, left_out)
+        tree = Rendered(ElementTree.fromstring(data))
+        left_out = tree.left_out
+        if re.search(rb"<\?xml-stylesheet\b", data[:10_000]):
+            left_out["a style sheet in another file"] += 1
+        if not 0 <= tree.height * _MM <= REACH:
+            raise TreeError(f"a height of {tree.height * _MM:.6g} mm: expected numbers up to {REACH:.0e} mm")
+        pen = _Pen(start, tree.height * _MM, tolerance, lift, velocity)
+        for shape in tree.shapes:
+            _draw(svgelements, shape, pen)
         pen.up()
     except ElementTree.ParseError as error:
         raise ToolpathError(f"{path}: is no SVG: {error}") from None
     except TreeError as error:
         raise ToolpathError(f"{path}: {error}") from None
     said = tuple(what if count == 1 else f"{what} ({count} times)" for what, count in left_out.items())
+    if not pen.elements:
+        besides = f"; left out: {', '.join(said)}" if said else ""
+        raise ToolpathError(f"{path}: no outlines are drawn in it{besides}")
     return Toolpath(start, tuple(pen.elements), said)._checked(str(path))
 
 
-def _parsed(svgelements: Any, root: ElementTree.Element) -> tuple[Any, Counter[str]]:
-    """The drawing, and the paths whose data have an error: of these there is what stands before it, as SVG has it."""
-    text = ElementTree.tostring(root)
-    wrong: Counter[str] = Counter()
-    try:
-        return svgelements.SVG.parse(io.BytesIO(text), reify=False, ppi=96, on_error="raise"), wrong
-    except RecursionError:
-        raise TreeError("elements nest too deeply") from None
-    except Exception:  # svgelements raises whatever the data make it raise
-        for one in root.iter():
-            data = one.attrib.get("d")
-            if data is not None:
-                try:
-                    svgelements.Path(data)
-                except Exception:
-                    shown = data if len(data) < 40 else data[:37] + "..."
-                    wrong[f"what follows an error in the path '{shown}'"] += 1
-    try:
-        return svgelements.SVG.parse(io.BytesIO(text), reify=False, ppi=96, on_error="ignore"), wrong
-    except Exception as error:
-        raise TreeError(f"svgelements cannot read it: {error}") from None
-
-
-def _height(drawing: Any) -> float:
-    height = getattr(drawing, "height", None) or 0.0
-    if not 0 <= height * _MM <= REACH:
-        raise TreeError(f"a height of {height * _MM:.6g} mm: expected numbers up to {REACH:.0e} mm")
-    return float(height) * _MM
-
-
-def _draw(svgelements: Any, drawing: Any, pen: _Pen, left_out: Counter[str]) -> None:
-    clips: dict[str, list[Any]] = {}
-    shapes = list(drawing.elements(lambda one: isinstance(one, svgelements.Shape)))
-    for shape in shapes:
-        if CLIP in shape.values["attributes"]:
-            clips.setdefault(shape.values["attributes"][CLIP], []).append(shape)
-    for shape in shapes:
-        attributes = shape.values["attributes"]
-        if CLIP in attributes or _is_hidden(shape.values):
-            continue
-        if shape.values.get("fill") == "none" == shape.values.get("stroke", "none"):
-            left_out[f"<{shape.values['tag']}> with neither fill nor stroke"] += 1
-            continue
-        outline = _Outline(svgelements, shape)
-        for clip in attributes.get(CLIPPED, "").split():
-            if clip != "0":
-                _hold_against(svgelements, clips.get(clip, []), outline, shape)
-        for segment in outline.segments:
-            pen.draw(segment, type(segment).__name__, outline.matrix)
-
-
-def _is_hidden(values: Any) -> bool:
-    return values.get("visibility") in ("hidden", "collapse") or values.get("opacity") in ("0", "0.0", "0%")
+def _draw(svgelements: Any, shape: Shape, pen: _Pen) -> None:
+    outline = _Outline(svgelements, shape)
+    for clip in shape.clips:
+        _hold_against(svgelements, clip, outline)
+    for segment in outline.segments:
+        pen.draw(segment, type(segment).__name__, shape.matrix)
 
 
 class _Outline:
-    def __init__(self, svgelements: Any, shape: Any) -> None:
-        m = shape.transform
-        self.matrix = (float(m.a), float(m.b), float(m.c), float(m.d), float(m.e), float(m.f))
+    def __init__(self, svgelements: Any, shape: Shape) -> None:
+        self.shape = shape
+        n = shape.numbers
         try:
-            self.segments = list(shape if isinstance(shape, svgelements.Path) else shape.segments(transformed=False))
+            if shape.tag == "path":
+                self.segments = list(svgelements.Path(shape.data))
+                return
+            if shape.tag == "rect":
+                made = svgelements.Rect(n["x"], n["y"], n["width"], n["height"], n.get("rx", 0.0), n.get("ry", 0.0))
+            elif shape.tag == "circle":
+                made = svgelements.Circle(n["cx"], n["cy"], n["r"])
+            elif shape.tag == "ellipse":
+                made = svgelements.Ellipse(n["cx"], n["cy"], n["rx"], n["ry"])
+            elif shape.tag == "line":
+                made = svgelements.SimpleLine(n["x1"], n["y1"], n["x2"], n["y2"])
+            else:
+                kind = svgelements.Polygon if shape.tag == "polygon" else svgelements.Polyline
+                made = kind(*((point.real, point.imag) for point in shape.points))
+            self.segments = list(made.segments(transformed=False))
         except Exception as error:  # svgelements raises whatever the data make it raise
-            raise TreeError(f"<{shape.values['tag']}> cannot be read: {error}") from None
+            raise TreeError(f"{shape.label} cannot be read: {error}") from None
 
-    def box(self, svgelements: Any) -> tuple[float, float, float, float] | None:
-        """The least and greatest X and Y, px; None: it is empty."""
-        box = abs(svgelements.Path(*self.segments) * svgelements.Matrix(*self.matrix)).bbox()
+    def box(self, svgelements: Any, matrix: Matrix) -> tuple[float, float, float, float] | None:
+        """The least and greatest X and Y of where a matrix takes it; None: it is empty."""
+        box = abs(svgelements.Path(*self.segments) * svgelements.Matrix(*matrix)).bbox()
         if box is None:
             return None
         left, top, right, bottom = map(float, box)
         return (left, top, right, bottom)
 
 
-def _hold_against(svgelements: Any, clip: list[Any], outline: _Outline, shape: Any) -> None:
-    """Raises TreeError where a clip would cut something off a shape, or hide it; only rectangles are known not to."""
-    box = outline.box(svgelements)
+def _hold_against(svgelements: Any, clip: Clip, outline: _Outline) -> None:
+    """Raises TreeError where a clip would cut something off a shape, or hide it; only rectangles are known not to.
+    They are compared in the coordinates of the rectangle."""
+    matrix = clip.shapes[0].matrix if len(clip.shapes) == 1 else clip.matrix
+    into = inverse(matrix)
+    box = None if into is None else outline.box(svgelements, product(into, outline.shape.matrix))
     if box is None:
         return
-    if len(clip) == 1:
-        frame = _Outline(svgelements, clip[0])
-        corners = _corners(frame)
-        around = frame.box(svgelements)
-        if around is not None and corners:
-            slack = _CUT / _MM
+    if len(clip.shapes) == 1:
+        frame = _Outline(svgelements, clip.shapes[0])
+        around = frame.box(svgelements, IDENTITY)
+        if around is not None and _is_rectangle(frame):
+            slack = _CUT / _MM / _stretch(matrix)[0]
             low = box[0] >= around[0] - slack and box[1] >= around[1] - slack
             if low and box[2] <= around[2] + slack and box[3] <= around[3] + slack:
                 return
-    name = shape.values["attributes"].get("id")
-    label = f"<{shape.values['tag']}>" + (f" '{name}'" if name else "")
     raise TreeError(
-        f"a clip-path would cut {label}, and outlines are drawn whole; cut them in the drawing program first"
+        f"{clip.what} would cut {outline.shape.label}, and outlines are drawn whole;"
+        " cut them in the drawing program first"
     )
 
 
-def _corners(outline: _Outline) -> bool:
+def _is_rectangle(outline: _Outline) -> bool:
     """Whether it is a rectangle whose sides go along X and Y."""
     ends = []
     for segment in outline.segments:
         if type(segment).__name__ not in ("Move", "Line", "Close"):
             return False
         if segment.end is not None:
-            ends.append(_moved(outline.matrix, segment.end))
+            ends.append(_moved(IDENTITY, segment.end))
     if len(ends) > 1 and abs(ends[0] - ends[-1]) < 1e-9:
         ends.pop()
     if len(ends) != 4:

@@ -215,7 +215,7 @@ def _moved(entity: Any, matrix: Any) -> Any:
 
     ezdxf tells that by the lengths of two axes alone, which suffices for the matrix of one block. Of blocks in one
     another the product is applied: an insertion cannot stand for all that two of them make."""
-    from ezdxf.entities import Ellipse
+    from ezdxf.entities.ellipse import Ellipse
 
     copy = entity.copy()
     if entity.dxftype() in ("ARC", "CIRCLE"):

@@ -95,6 +95,9 @@ def test_transforms(tmp_path: Path, shape: str, transform: str, how: str) -> Non
         '<rect visibility="hidden" width="50" height="50"/>',
         '<g visibility="collapse"><rect width="50" height="50"/></g>',
         '<rect style="visibility:hidden" width="50" height="50"/>',
+        "<style>.a{display:none !important}</style><rect class='a' style='display:inline' width='5' height='5'/>",
+        '<rect style="DISPLAY:none" width="5" height="5"/>',
+        "<style>g .a{display:none}</style><g><g><rect class='a' width='5' height='5'/></g></g>",
         "<style>.a{visibility:hidden} .b{display:none}</style><rect class='a' width='5' height='5'/><g class='b'><rect"
         " width='5' height='5'/></g>",
         "<defs><style>.a{fill:red;visibility:hidden}</style></defs><rect class='a' width='5' height='5'/>",
@@ -144,7 +147,187 @@ def test_symbols_have_viewports(tmp_path: Path) -> None:
     length, box = drawn(read(tmp_path, symbol + '<use xlink:href="#s" x="20" y="10" width="30" height="40"/>'))
     assert length == pytest.approx(30 * math.sqrt(2))
     assert box == pytest.approx(np.array([[20, 100 - 45], [50, 100 - 15]]), abs=1e-6)
-    assert "expected a width and a height in numbers for <symbol> 's'" in wrong(tmp_path, symbol + '<use href="#s"/>')
+    whole = drawn(read(tmp_path, symbol + '<use href="#s"/>'))[1]  # 100 %: ten times, in the middle of the width
+    assert whole == pytest.approx(np.array([[50, 0], [150, 100]]))
+    assert "viewers do not agree" in wrong(tmp_path, symbol.replace("<symbol", '<symbol x="1"') + '<use href="#s"/>')
+
+
+@pytest.mark.parametrize(
+    ("attributes", "width", "height"),
+    [
+        ('width="100mm" viewBox="0 0 100 50"', 100, 50),
+        ('height="100mm" viewBox="0 0 100 50"', 200, 100),
+        ('width="10cm" height="auto" viewBox="0 0 100 50"', 100, 50),
+        ('width="100mm" height="100%" viewBox="0 0 100 50"', 100, 50),
+        ('style="width:100mm;height:50mm" viewBox="0,0,100,50"', 100, 50),
+        ('viewBox="0 0 96 192"', 25.4, 50.8),
+        ('width="100%" height="100%" viewBox="0 0 96 192"', 25.4, 50.8),
+        ('width="1in" height="1in" viewBox="0 0 9 9"', 25.4, 25.4),
+        ('width="72pt" height="6pc" viewBox="0 0 9 9"', 25.4, 25.4),
+        ('width="100mm" height="50mm" viewBox="-10 -5 20 10"', 100, 50),
+        ('width="100mm" height="60mm" viewBox="7 5 20 10" preserveAspectRatio="none"', 100, 60),
+    ],
+)
+def test_sizes_of_drawings(tmp_path: Path, attributes: str, width: float, height: float) -> None:
+    """PY-22: what is not given follows from the view box. A frame round all of it reaches from corner to corner."""
+    box = (attributes + ' viewBox="').split('viewBox="')[1].split('"')[0].replace(",", " ").split()
+    frame = '<rect x="{}" y="{}" width="{}" height="{}"/>'.format(*box)
+    found = drawn(read(tmp_path, frame, f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}>'))[1]
+    assert found == pytest.approx(np.array([[0, 0], [width, height]]), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("attributes", "said"),
+    [
+        ('width="100mm"', "<svg> has neither a height nor a viewBox; Y begins at its lower edge"),
+        ('width="50%" viewBox="0 0 9 9"', "width: 50% of a window; expected a length"),
+        ('viewBox="0 0 9"', "viewBox: expected four numbers, found '0 0 9'"),
+        ('width="9" height="9" transform="scale(2)"', "'transform' of the outermost <svg> is not read"),
+        ('width="0" height="9"', "no outlines are drawn in it; left out: <svg> of size 0"),
+        ('height="9bu"', "the unit of '9bu' is not read"),
+        (
+            'width="9" height="9" viewBox="0 0 9 9" preserveAspectRatio="middle"',
+            "preserveAspectRatio: expected none or",
+        ),
+    ],
+)
+def test_sizes_of_drawings_that_are_none(tmp_path: Path, attributes: str, said: str) -> None:
+    (tmp_path / "a.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}>{LINE}</svg>')
+    with pytest.raises(ToolpathError) as error:
+        read_svg(tmp_path / "a.svg")
+    assert said in str(error.value)
+
+
+VIEWPORTS = st.tuples(
+    st.sampled_from([0, 5, -12]), st.sampled_from([0, 7]), st.sampled_from([40, 100]), st.sampled_from([30, 80]),
+    st.sampled_from([None, (0, 0, 50, 50), (-5, 10, 20, 40)]),
+    st.sampled_from(["", "none", "xMinYMax", "xMaxYMid slice"]),
+)  # fmt: skip
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60, deadline=None)
+@given(st.lists(st.tuples(VIEWPORTS, st.sampled_from(["svg", "use", "symbol"])), min_size=1, max_size=3))
+def test_property_viewports_within_viewports(tmp_path: Path, around: list[tuple[tuple, str]]) -> None:  # type: ignore[type-arg]
+    """PY-22: svg within svg, used svg, and symbols: each point is where SVG 2, 8.2 says."""
+    begin, end = 10 + 20j, 30 + 25j
+    body, definitions, ends = '<path d="M10 20 L30 25"/>', "", [begin, end]
+    for i, ((x, y, width, height, box, aspect), kind) in enumerate(around):
+        view = f' viewBox="{box[0]} {box[1]} {box[2]} {box[3]}"' if box else ""
+        view += f' preserveAspectRatio="{aspect}"' if aspect else ""
+        place, size = f'x="{x}" y="{y}"', f'width="{width}" height="{height}"'
+        if kind == "svg":
+            body = f'<svg {place} {size} overflow="visible"{view}>{body}</svg>'
+        else:
+            own, name = ("", "symbol") if kind == "symbol" else ('x="3" width="1"', "svg")
+            definitions += f'<defs><{name} id="s{i}" overflow="visible" {own}{view}>{body}</{name}></defs>'
+            body = f'<use href="#s{i}" {place} {size}/>'
+        across, down, offset = 1.0, 1.0, 0j
+        if box:
+            across, down = width / box[2], height / box[3]
+            if aspect != "none":
+                across = down = max(across, down) if "slice" in aspect else min(across, down)
+            over = complex(width - across * box[2], height - down * box[3])
+            share = {"xMinYMax": (0, 1), "xMaxYMid slice": (1, 0.5), "none": (0, 0)}.get(aspect, (0.5, 0.5))
+            offset = complex(share[0] * over.real - box[0] * across, share[1] * over.imag - box[1] * down)
+        origin = complex(x + (3 if kind == "use" else 0), y)
+        ends = [origin + offset + complex(across * z.real, down * z.imag) for z in ends]
+    path = read(tmp_path, definitions + body)
+    expected = [(z.real, 100 - z.imag, 0) for z in ends]
+    assert [one.end for one in path.elements][1:3] == [pytest.approx(place, abs=1e-6) for place in expected]
+
+
+def test_what_viewports_cut_is_refused(tmp_path: Path) -> None:
+    """PY-22: beyond a viewport nothing is seen, unless its overflow is visible."""
+    for name in ("svg", "symbol"):
+        inner = f'<{name} id="s" width="12" height="30">{LINE}</{name}>'
+        body = inner if name == "svg" else f'<defs>{inner}</defs><use href="#s"/>'
+        assert f"the viewport of <{name}> 's' would cut <path>" in wrong(tmp_path, body)
+        assert drawn(read(tmp_path, body.replace('height="30"', 'height="30" overflow="visible"')))[0] == 7
+
+
+@pytest.mark.parametrize(
+    ("attributes", "function"),
+    [
+        ('transform="rotate(90)" transform-origin="10 20"', lambda z: 10 + 20j + (z - 10 - 20j) * 1j),
+        ('style="transform:rotate(0.25turn);transform-origin:1cm 20px"', None),
+        ('transform="scale(2)" transform-origin="center"', lambda z: 2 * z - 100 - 50j),
+        ('transform="scale(2)" style="transform-origin:right bottom"', lambda z: 2 * z - 200 - 100j),
+        ('transform="scale(2)" transform-origin="top"', lambda z: 2 * z - 100),
+        ('style="transform:translateX(3px) translateY(4px)"', lambda z: z + 3 + 4j),
+        ('transform="translate(9)" style="transform:none"', lambda z: z),
+    ],
+)
+def test_origins_of_transforms(tmp_path: Path, attributes: str, function: object) -> None:
+    """PY-22: by attribute and style, in lengths and shares of the viewport (200 by 100)."""
+    if function is None:
+        origin = 10 * 96 / 25.4 + 20j
+
+        def function(z: complex) -> complex:
+            return origin + (z - origin) * 1j
+
+    path = read(tmp_path, LINE.replace("<path", f"<path {attributes}"))
+    ends = [complex(one.end[0], 100 - one.end[1]) for one in path.elements[1:3]]
+    assert ends == pytest.approx([function(10 + 20j), function(17 + 20j)])  # type: ignore[operator]
+    boxed = LINE.replace("<path", '<path transform="scale(2)" transform-box="fill-box"')
+    assert "'transform-box: fill-box' is not read" in wrong(tmp_path, boxed)
+    assert "'rotate' is not read; expected 'transform'" in wrong(tmp_path, LINE.replace("/>", ' style="rotate:9deg"/>'))
+
+
+@pytest.mark.parametrize(
+    ("body", "box"),
+    [
+        ('<ellipse cx="20" cy="20" rx="10"/>', [10, 70, 30, 90]),
+        ('<ellipse cx="20" cy="20" rx="auto" ry="5"/>', [15, 75, 25, 85]),
+        ('<g x="5" width="50" rx="3" r="9"><rect x="1" y="1" width="10" height="4"/></g>', [1, 95, 11, 99]),
+        ('<circle r="1" style="r:8px;cx:20px" cy="20"/>', [12, 72, 28, 88]),
+        ('<line x1="1in" y1="1pc" x2="2em" y2="50%"/>', [32, 50, 96, 84]),
+        ('<g font-size="20"><line x1="2em" x2="50" y1="10" y2="1em"/></g>', [40, 80, 50, 90]),
+        ('<rect x="10%" y="10%" width="10%" height="50%"/>', [20, 40, 40, 90]),
+        ('<switch><g systemLanguage="xx"><path d="M0 0H9"/></g><path d="M1 5H9"/></switch>', [1, 95, 9, 95]),
+        ('<switch><g requiredExtensions="http://x/"/><path d="M1 5H9"/><path d="M0 0H9"/></switch>', [1, 95, 9, 95]),
+        ('<path d="M1 1H2" style="d:path(\'M10 10 H30\')"/>', [10, 90, 30, 90]),
+        ('<style>path{display:none}#a{display:inline}</style><path id="a" d="M1 5H9"/>', [1, 95, 9, 95]),
+        (
+            '<style>g > .a{display:none}</style><path class="a" d="M1 5H9"/><g><path class="a" d="M0 0H9"/></g>',
+            [1, 95, 9, 95],
+        ),
+        ('<path d="M1 5H9" style="display:none;display:inline"/>', [1, 95, 9, 95]),
+    ],
+)  # fmt: skip
+def test_sizes_and_styles_of_shapes(tmp_path: Path, body: str, box: list[float]) -> None:
+    """PY-22: the least X and Y and the greatest ones, by hand."""
+    found = drawn(read(tmp_path, body))[1]
+    assert found.ravel() == pytest.approx(box, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ('<path d="M0 0 20 20 X 5 5 L60 60"/>', "what follows an error in the path 'M0 0 20 20 X 5 5 L60 60'"),
+        ('<path d="L60 60"/>', "what follows an error in the path 'L60 60'"),
+        ('<polygon points="0,0 10,0 10,10 5"/>', "what follows an error in the polygon '0,0 10,0 10,10 5'"),
+        ('<path id="p" d="M0 0H9" opacity="0"/>', "<path> 'p' with opacity 0"),
+        ('<g opacity="0"><path d="M0 0H9"/></g>', "<path> with opacity 0"),
+        ('<path d="M0 0H9" fill="none" stroke="red" stroke-opacity="0"/>', "<path> with neither fill nor stroke"),
+        ('<path d="M0 0H9" fill="none" stroke="red" stroke-width="0"/>', "<path> with neither fill nor stroke"),
+        ('<path d="M0 0H9" fill="transparent"/>', "<path> with neither fill nor stroke"),
+        ('<path d="M0 0H9" fill="#0000"/>', "<path> with neither fill nor stroke"),
+        ('<path d="M0 0H9" fill="rgba(0,0,0,0)"/>', "<path> with neither fill nor stroke"),
+        ('<path d="M0 0H9" fill="url(#none)"/>', "<path> with neither fill nor stroke"),
+        ('<rect x="-5" width="-10" height="5"/>', "<rect> of a size below 0"),
+        ('<circle r="-1"/>', "<circle> of a size below 0"),
+        ('<path d="M0 0H9" systemLanguage="de"/>', "<path> for some languages or extensions only"),
+        ('<path d="M50 50H59" marker-end="url(#m)"/><marker id="m"/>', "marker-end of <path>"),
+        ('<path d="M50 50H59" filter="url(#f)"/>', "the filter of <path>"),
+        ('<path d="M50 50H59"><animate attributeName="d"/></path>', "<animate>"),
+        ("<style>@import url('a.css');</style>", "@import of a style sheet"),
+    ],
+)
+def test_what_is_not_drawn_as_written_is_said(tmp_path: Path, body: str, said: str) -> None:
+    """PY-22: nothing is left out in silence."""
+    assert read(tmp_path, LINE + body).left_out == (said,)
+    if "50 50" not in body and "M0 0 20" not in body and "polygon" not in body:
+        assert f"a.svg: no outlines are drawn in it; left out: {said}" in wrong(tmp_path, body)
 
 
 @pytest.mark.parametrize(
@@ -174,7 +357,8 @@ def test_data_of_paths(tmp_path: Path, data: str, length: float, said: bool) -> 
         ('<path d="M0 0 H200 V100 H0 Z"/>', LINE, True),
         ('<rect x="0" y="0" width="15" height="100"/>', LINE, False),
         ('<circle cx="15" cy="20" r="50"/>', LINE, False),
-        ('<rect width="200" height="100" transform="rotate(3)"/>', LINE, False),
+        ('<rect width="200" height="100" transform="rotate(3)"/>', LINE, True),
+        ('<rect x="5" y="15" width="9" height="10" transform="rotate(3)"/>', LINE, False),
         ('<rect width="8" height="30" transform="translate(10 0)"/>', LINE, True),
         ("", LINE, False),
     ],
@@ -195,10 +379,12 @@ def test_clips(tmp_path: Path, clip: str, shape: str, taken: bool) -> None:
 @pytest.mark.parametrize(
     ("rule", "said"),
     [
-        ("g .a{fill:red;display:none}", "'display' for 'g .a'"),
+        ("g + .a{fill:red;display:none}", "'display' for 'g + .a'"),
+        ("path:not(.a){stroke:none}", "'stroke' for 'path:not(.a)'"),
         ("rect, path:hover {visibility:hidden}", "'visibility' for 'path:hover'"),
         ("@media print{.a{opacity:0}}", "'opacity' for"),
-        (".a{clip-path:url(#c)}", "'clip-path' for '.a'"),
+        (".a{clip-path:url(#c)}", ""),
+        ("path{display:none}path{display:inline !important}", ""),
         ("g .a{fill:red}", ""),
         (".a{stroke:red}", ""),
     ],

@@ -390,7 +390,7 @@ def test_drawings_become_tracks(tmp_path: Path, capsys: pytest.CaptureFixture[st
 def test_what_is_no_drawing_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, text, sentence in (
         ("a.svg", "<svg", "is no SVG"),
-        ("b.svg", SVG[: SVG.index("<rect")] + "</svg>", "no lines, polylines"),
+        ("b.svg", SVG[: SVG.index("<rect")] + "</svg>", "no outlines are drawn in it"),
         ("c.dxf", "no drawing", "is no DXF"),
         ("d.yaml", EMPTY, "are for drawings"),
     ):

@@ -1,0 +1,196 @@
+"""Which properties an element of SVG has: of its attributes, of style sheets, of its own style, inherited.
+
+Selectors of tags, classes, ids, and of such within such, are read. Rules of others, and those for some media only, are
+errors if they say what is seen, or where.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+from xml.etree import ElementTree
+
+from takt.svg_values import NUMBER, TreeError
+
+INHERITED = (
+    "visibility", "fill", "stroke", "fill-opacity", "stroke-opacity", "stroke-width", "color", "font-size",
+    "marker-start", "marker-mid", "marker-end",
+)  # fmt: skip
+# Not inherited.
+OWN = (
+    "display", "opacity", "transform", "transform-origin", "transform-box", "clip-path", "mask", "filter", "overflow",
+    "d", "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry",
+)  # fmt: skip
+# No attributes.
+_STYLE_ONLY = ("rotate", "translate", "scale", "offset-path", "marker")
+_READ = frozenset((*INHERITED, *OWN, *_STYLE_ONLY))
+_SHOWN = ("fill", "stroke", "fill-opacity", "stroke-opacity", "stroke-width")  # of these only what hides matters
+_HARMLESS = ("filter", "overflow", "color", "font-size", "marker", "marker-start", "marker-mid", "marker-end")
+_WITHOUT_EFFECT = ("@font-face", "@charset", "@namespace", "@page", "@counter-style")
+Key = tuple[str, str, tuple[str, ...]]  # tag, id, classes
+_COMPOUND = re.compile(r"(\*|[\w-]+)?((?:[.#][\w-]+)*)")
+_DECLARATION = re.compile(r"""(?:[^;"'(]|"[^"]*"|'[^']*'|\((?:[^()"']|"[^"]*"|'[^']*'|\([^()]*\))*\))+""")
+
+
+class _Rule(NamedTuple):
+    parts: tuple[tuple[str, str, str, tuple[str, ...]], ...]  # from the last: combinator before, tag, id, classes
+    weight: tuple[int, int, int, int]  # ids, classes, tags, number
+    names: list[tuple[str, str, bool]]
+
+
+def is_paint(value: str, opacity: str) -> bool:
+    """Whether a fill or stroke is seen."""
+    value = value.strip().lower()
+    if value in ("none", "transparent") or is_zero(opacity):
+        return False
+    if re.fullmatch("#[0-9a-f]{3}0|#[0-9a-f]{6}00", value):
+        return False
+    match = re.fullmatch(r"(?:rgb|hsl)a?\(\s*([^()]*)\)", value)
+    words = re.split(r"[\s,/]+", match[1].strip()) if match else []
+    return not (len(words) == 4 and is_zero(words[3]))
+
+
+def is_zero(text: str) -> bool:
+    """A number or length that is 0, or an opacity below."""
+    match = re.fullmatch(rf"\s*({NUMBER})\s*(?:%|[a-zA-Z]*)\s*", text)
+    return match is not None and float(match[1]) <= 0
+
+
+class Styles:
+    """Raises TreeError where rules are not read and matter."""
+
+    def __init__(self, sheets: Sequence[str]) -> None:
+        self._rules: dict[str, list[_Rule]] = {}
+        self._count = 0
+        self.imported = 0
+        self.are_nested = False  # whether rules ask what elements are within
+        for sheet in sheets:
+            text = re.sub(r"/\*.*?\*/", " ", sheet, flags=re.DOTALL).replace("<!--", " ").replace("-->", " ")
+            for head, body in _blocks(text):
+                if head.startswith("@"):
+                    self._at_rule(head, body)
+                else:
+                    for selector in head.split(","):
+                        self._add(selector.strip(), _declarations(body))
+
+    def _at_rule(self, head: str, body: str) -> None:
+        if head.startswith("@import"):
+            self.imported += 1
+        elif not head.startswith(_WITHOUT_EFFECT):
+            for _, inner in _blocks(body):
+                _check_unread(head, _declarations(inner))
+
+    def _add(self, selector: str, names: list[tuple[str, str, bool]]) -> None:
+        parts, weight = [], [0, 0, 0]
+        words = re.sub(r"\s*>\s*", " >", selector).split()
+        for word in reversed(words):
+            match = _COMPOUND.fullmatch(word.removeprefix(">"))
+            marks = re.findall(r"[.#][\w-]+", match[2]) if match else []
+            ids = [mark[1:] for mark in marks if mark[0] == "#"]
+            if not match or len(ids) > 1:
+                _check_unread(selector, names)
+                return
+            classes = tuple(mark[1:] for mark in marks if mark[0] == ".")
+            tag = "" if match[1] in (None, "*") else match[1]
+            parts.append((">" if word.startswith(">") else " ", tag, ids[0] if ids else "", classes))
+            weight = [weight[0] + len(ids), weight[1] + len(classes), weight[2] + bool(tag)]
+        if parts:
+            self._count += 1
+            self.are_nested = self.are_nested or len(parts) > 1
+            _, tag, identity, classes = parts[0]
+            key = f"#{identity}" if identity else f".{classes[0]}" if classes else tag or "*"
+            rule = _Rule(tuple(parts), (weight[0], weight[1], weight[2], self._count), names)
+            self._rules.setdefault(key, []).append(rule)
+
+    def of(
+        self, one: ElementTree.Element, key: Key, around: Sequence[Key], inherited: dict[str, str]
+    ) -> dict[str, str]:
+        """The properties of an element. `around`: those that it is within, from the outermost."""
+        found = {name: one.attrib[name] for name in (*INHERITED, *OWN) if name in one.attrib}
+        tag, identity, classes = key
+        keys = ["*", tag, *(f".{name}" for name in classes), *([f"#{identity}"] if identity else [])]
+        rules = [rule for name in keys for rule in self._rules.get(name, ()) if _matches(rule, key, around)]
+        rules.sort(key=lambda rule: rule.weight)
+        own = _declarations(one.attrib.get("style", ""))
+        for important in (False, True):
+            for names in [*(rule.names for rule in rules), own]:
+                for name, value, is_important in names:
+                    if is_important == important and name in _READ:
+                        found[name] = value
+        result = dict(inherited)
+        for name, value in found.items():
+            word = value.strip().lower()
+            if "var(" in word:
+                raise TreeError(f"<{tag}>: '{name}: {value[:40]}' is not read; expected a value")
+            if word in ("inherit", "unset", "revert"):
+                if word == "inherit" and name not in INHERITED:
+                    raise TreeError(f"<{tag}>: '{name}: inherit' is not read; expected a value")
+            elif word == "initial":
+                result.pop(name, None)
+            elif name == "marker":
+                result.update({f"marker-{where}": value for where in ("start", "mid", "end")})
+            else:
+                result[name] = value.strip()
+        return result
+
+
+def key_of(one: ElementTree.Element, name: str) -> Key:
+    return (name, one.attrib.get("id", ""), tuple(one.attrib.get("class", "").split()))
+
+
+def _matches(rule: _Rule, key: Key, around: Sequence[Key]) -> bool:
+    if not _fits(rule.parts[0], key):
+        return False
+    return _within(rule, 1, around)
+
+
+def _within(rule: _Rule, part: int, around: Sequence[Key]) -> bool:
+    if part == len(rule.parts):
+        return True
+    last = len(around) - 1
+    steps = (last,) if rule.parts[part - 1][0] == ">" else range(last, -1, -1)
+    return any(i >= 0 and _fits(rule.parts[part], around[i]) and _within(rule, part + 1, around[:i]) for i in steps)
+
+
+def _fits(part: tuple[str, str, str, tuple[str, ...]], key: Key) -> bool:
+    _, tag, identity, classes = part
+    return tag in ("", key[0]) and identity in ("", key[1]) and all(name in key[2] for name in classes)
+
+
+def _blocks(text: str) -> Iterator[tuple[str, str]]:
+    """What stands before braces, and in them; a rule without braces by itself."""
+    at = 0
+    while at < len(text):
+        end = next((i for i in range(at, len(text)) if text[i] in "{};"), len(text))
+        head = text[at:end].strip()
+        at = end + 1
+        if end == len(text) or text[end] == "}":
+            continue
+        if text[end] == ";":
+            yield head, ""
+            continue
+        depth = 1
+        while at < len(text) and depth:
+            depth += {"{": 1, "}": -1}.get(text[at], 0)
+            at += 1
+        yield head, text[end + 1 : at - 1 if depth == 0 else at]
+
+
+def _declarations(text: str) -> list[tuple[str, str, bool]]:
+    """Name, value, and whether it is important."""
+    found = []
+    for part in _DECLARATION.findall(re.sub(r"/\*.*?\*/", " ", text, flags=re.DOTALL)):
+        name, colon, value = part.partition(":")
+        plain, mark, important = value.partition("!")
+        if colon:
+            found.append((name.strip().lower(), plain.strip(), bool(mark) and important.strip().lower() == "important"))
+    return found
+
+
+def _check_unread(selector: str, names: list[tuple[str, str, bool]]) -> None:
+    """Raises TreeError where rules of a kind that is not read say what is seen, or where."""
+    for name, value, _ in names:
+        hides = is_zero(value) or not is_paint(value, "1")
+        if name in _READ and name not in _HARMLESS and (name not in _SHOWN or hides):
+            raise TreeError(f"<style>: '{name}' for '{selector}' is not read; expected it at the elements")
