@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 from xml.etree import ElementTree
 
@@ -30,7 +31,9 @@ _HARMLESS = ("filter", "overflow", "color", "font-size", "marker", "marker-start
 _WITHOUT_EFFECT = ("@font-face", "@charset", "@namespace", "@page", "@counter-style")
 Key = tuple[str, str, tuple[str, ...]]  # tag, id, classes
 _COMPOUND = re.compile(r"(\*|[\w-]+)?((?:[.#][\w-]+)*)")
-_DECLARATION = re.compile(r"""(?:[^;"'(]|"[^"]*"|'[^']*'|\((?:[^()"']|"[^"]*"|'[^']*'|\([^()]*\))*\))+""")
+_BRACE = re.compile("[{};]")
+_MOST_RULES = 10_000  # of style sheets
+_MOST_LOOKS = 10_000_000  # of rules at elements
 
 
 class _Rule(NamedTuple):
@@ -62,11 +65,11 @@ class Styles:
 
     def __init__(self, sheets: Sequence[str]) -> None:
         self._rules: dict[str, list[_Rule]] = {}
-        self._count = 0
+        self._count = self._looks = 0
         self.imported = 0
         self.are_nested = False  # whether rules ask what elements are within
         for sheet in sheets:
-            text = re.sub(r"/\*.*?\*/", " ", sheet, flags=re.DOTALL).replace("<!--", " ").replace("-->", " ")
+            text = _without_comments(sheet).replace("<!--", " ").replace("-->", " ")
             for head, body in _blocks(text):
                 if head.startswith("@"):
                     self._at_rule(head, body)
@@ -83,9 +86,14 @@ class Styles:
 
     def _add(self, selector: str, names: list[tuple[str, str, bool]]) -> None:
         parts, weight = [], [0, 0, 0]
-        words = re.sub(r"\s*>\s*", " >", selector).split()
-        for word in reversed(words):
-            match = _COMPOUND.fullmatch(word.removeprefix(">"))
+        combinator = " "
+        for word in reversed(selector.replace(">", " > ").split()):
+            if word == ">" and parts and combinator == " ":
+                combinator = ">"
+                parts[-1] = (combinator, *parts[-1][1:])
+                continue
+            match = _COMPOUND.fullmatch(word)
+            combinator = " "
             marks = re.findall(r"[.#][\w-]+", match[2]) if match else []
             ids = [mark[1:] for mark in marks if mark[0] == "#"]
             if not match or len(ids) > 1:
@@ -93,10 +101,12 @@ class Styles:
                 return
             classes = tuple(mark[1:] for mark in marks if mark[0] == ".")
             tag = "" if match[1] in (None, "*") else match[1]
-            parts.append((">" if word.startswith(">") else " ", tag, ids[0] if ids else "", classes))
+            parts.append((" ", tag, ids[0] if ids else "", classes))
             weight = [weight[0] + len(ids), weight[1] + len(classes), weight[2] + bool(tag)]
         if parts:
             self._count += 1
+            if self._count > _MOST_RULES:
+                raise TreeError(f"<style>: more than {_MOST_RULES:,} rules")
             self.are_nested = self.are_nested or len(parts) > 1
             _, tag, identity, classes = parts[0]
             key = f"#{identity}" if identity else f".{classes[0]}" if classes else tag or "*"
@@ -110,7 +120,11 @@ class Styles:
         found = {name: one.attrib[name] for name in (*INHERITED, *OWN) if name in one.attrib}
         tag, identity, classes = key
         keys = ["*", tag, *(f".{name}" for name in classes), *([f"#{identity}"] if identity else [])]
-        rules = [rule for name in keys for rule in self._rules.get(name, ()) if _matches(rule, key, around)]
+        near = [rule for name in keys for rule in self._rules.get(name, ())]
+        self._looks += sum(len(rule.parts) + len(rule.names) for rule in near)
+        if self._looks > _MOST_LOOKS:
+            raise TreeError("<style>: too many rules for so many elements")
+        rules = [rule for rule in near if _matches(rule, key, around)]
         rules.sort(key=lambda rule: rule.weight)
         own = _declarations(one.attrib.get("style", ""))
         for important in (False, True):
@@ -142,15 +156,13 @@ def key_of(one: ElementTree.Element, name: str) -> Key:
 def _matches(rule: _Rule, key: Key, around: Sequence[Key]) -> bool:
     if not _fits(rule.parts[0], key):
         return False
-    return _within(rule, 1, around)
-
-
-def _within(rule: _Rule, part: int, around: Sequence[Key]) -> bool:
-    if part == len(rule.parts):
-        return True
-    last = len(around) - 1
-    steps = (last,) if rule.parts[part - 1][0] == ">" else range(last, -1, -1)
-    return any(i >= 0 and _fits(rule.parts[part], around[i]) and _within(rule, part + 1, around[:i]) for i in steps)
+    reached = {len(around)}  # where what was looked at last may stand
+    for part, before in pairwise(rule.parts):
+        near = {i - 1 for i in reached} if part[0] == ">" else range(max(reached))
+        reached = {i for i in near if i >= 0 and _fits(before, around[i])}
+        if not reached:
+            return False
+    return True
 
 
 def _fits(part: tuple[str, str, str, tuple[str, ...]], key: Key) -> bool:
@@ -162,7 +174,8 @@ def _blocks(text: str) -> Iterator[tuple[str, str]]:
     """What stands before braces, and in them; a rule without braces by itself."""
     at = 0
     while at < len(text):
-        end = next((i for i in range(at, len(text)) if text[i] in "{};"), len(text))
+        found = _BRACE.search(text, at)
+        end = found.start() if found else len(text)
         head = text[at:end].strip()
         at = end + 1
         if end == len(text) or text[end] == "}":
@@ -180,12 +193,38 @@ def _blocks(text: str) -> Iterator[tuple[str, str]]:
 def _declarations(text: str) -> list[tuple[str, str, bool]]:
     """Name, value, and whether it is important."""
     found = []
-    for part in _DECLARATION.findall(re.sub(r"/\*.*?\*/", " ", text, flags=re.DOTALL)):
+    for part in _parts(_without_comments(text)):
         name, colon, value = part.partition(":")
         plain, mark, important = value.partition("!")
         if colon:
             found.append((name.strip().lower(), plain.strip(), bool(mark) and important.strip().lower() == "important"))
     return found
+
+
+def _parts(text: str) -> Iterator[str]:
+    """Between semicolons that are neither quoted nor in brackets."""
+    begin = depth = 0
+    quote = ""
+    for i, letter in enumerate(text):
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in "\"'":
+            quote = letter
+        elif letter in "()":
+            depth = max(depth + (1 if letter == "(" else -1), 0)
+        elif letter == ";" and not depth:
+            yield text[begin:i]
+            begin = i + 1
+    yield text[begin:]
+
+
+def _without_comments(text: str) -> str:
+    first, *others = text.split("/*")
+    kept = [first]
+    for other in others:
+        _, end, behind = other.partition("*/")
+        kept += [behind] if end else []
+    return " ".join(kept)
 
 
 def _check_unread(selector: str, names: list[tuple[str, str, bool]]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time
 from pathlib import Path
@@ -422,6 +423,26 @@ BOMB = '<defs><path id="u0" d="M0 0 H1"/>' + "".join(
 def test_limits(tmp_path: Path, body: str, said: str) -> None:
     begin = time.process_time()
     assert said in wrong(tmp_path, body)
+    assert time.process_time() - begin < 20
+
+
+@pytest.mark.parametrize("sheet", ["a{", "/*", "/* */", "(", "a>", "a{}", '"', "a b>", "a,", "  ", "@media{", "a{b:(;"])
+def test_hostile_style_sheets_take_bounded_time(tmp_path: Path, sheet: str) -> None:
+    """PY-22: in proportion to their length, whatever is not closed in them."""
+    begin = time.process_time()
+    for body in (f"<style>{sheet * 100_000}</style>{LINE}", LINE.replace("/>", f" style='{sheet * 20_000}'/>")):
+        (tmp_path / "a.svg").write_text(HEAD + body.replace("<svg", "").replace("&", "") + "</svg>")
+        with contextlib.suppress(ToolpathError):
+            read_svg(tmp_path / "a.svg")
+    assert time.process_time() - begin < 10
+
+
+def test_rules_within_one_another_take_bounded_time(tmp_path: Path) -> None:
+    nested = "<g>" * 90 + LINE + "</g>" * 90
+    begin = time.process_time()
+    assert drawn(read(tmp_path, f"<style>{'g ' * 60}x > path{{display:none}}</style>{nested}"))[0] == pytest.approx(7)
+    rules = "path{fill:red}" * 9000
+    assert "<style>: too many rules for so many elements" in wrong(tmp_path, f"<style>{rules}</style>" + LINE * 2000)
     assert time.process_time() - begin < 20
 
 
